@@ -1,0 +1,28 @@
+# Every find_package of the project. The README's table says what each is for.
+find_package(Threads REQUIRED)
+find_package(TBB REQUIRED)
+find_package(fmt REQUIRED)
+find_path(RANDOM123_INCLUDE_DIR Random123/philox.h REQUIRED)
+find_package(embree 3 REQUIRED)
+find_package(OpenMesh CONFIG QUIET)
+find_package(OpenImageIO REQUIRED)
+# Debian's target names an OpenCV include folder that its package does not bring.
+set_target_properties(OpenImageIO::OpenImageIO PROPERTIES INTERFACE_INCLUDE_DIRECTORIES "")
+find_package(tomlplusplus REQUIRED)
+find_package(nlohmann_json REQUIRED)
+find_package(OpenSSL REQUIRED COMPONENTS Crypto)
+find_package(CLI11 REQUIRED)
+if(SEMSURF_TESTS)
+  find_package(GTest REQUIRED)
+endif()
+
+# One VTK per program: ParaView's own where its development files are, else the system's.
+if(SEMSURF_VTK)
+  find_package(ParaView QUIET COMPONENTS RemotingCore)
+  if(ParaView_FOUND)
+    find_package(VTK REQUIRED COMPONENTS CommonCore CommonDataModel IOXML
+                 PATHS "${ParaView_DIR}/vtk" NO_DEFAULT_PATH)
+  else()
+    find_package(VTK REQUIRED COMPONENTS CommonCore CommonDataModel IOXML)
+  endif()
+endif()

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <functional>
+#include <span>
+#include <string>
+
+namespace surf::io {
+
+/// The whole file. Throws FileError (missing, a folder, unreadable, larger than `max_bytes`).
+std::string read_file(const std::filesystem::path& path,
+                      std::size_t max_bytes = std::size_t{8} << 30);
+
+/// Calls `write(temporary)` with a name in the same folder and renames the result to `path`, so that
+/// a crash never leaves half a file under the real name. On failure the temporary is removed and
+/// FileError is thrown. Creates missing parent folders.
+void write_atomically(const std::filesystem::path& path,
+                      const std::function<void(const std::filesystem::path& temporary)>& write);
+
+/// Writes text through `write_atomically`.
+void write_text(const std::filesystem::path& path, const std::string& text);
+
+/// Throws FileError if no file can be created at `path` (folder missing and not creatable, not
+/// writable, or `path` is a folder). Leaves nothing behind but created folders.
+void check_writable(const std::filesystem::path& path);
+
+/// Lower-case hexadecimal SHA-256, as `sha256sum` prints it.
+std::string sha256_of_file(const std::filesystem::path& path);
+std::string sha256_of(std::span<const std::byte> bytes);
+
+}  // namespace surf::io

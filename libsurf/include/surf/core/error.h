@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <stdexcept>
+#include <string>
+
+namespace surf {
+
+/// Base of every exception semsurf throws. A message has three parts: the subject (a file or an
+/// option), the reason, and the remedy; `what()` joins them as "subject: reason. remedy".
+class Error : public std::runtime_error {
+ public:
+  Error(const std::string& subject, const std::string& reason, const std::string& remedy);
+
+  const std::string& subject() const { return subject_; }
+  const std::string& reason() const { return reason_; }
+  const std::string& remedy() const { return remedy_; }
+
+ private:
+  std::string subject_;
+  std::string reason_;
+  std::string remedy_;
+};
+
+/// An option or argument is missing, malformed or out of range. The command line exits with 2.
+class UsageError : public Error {
+  using Error::Error;
+};
+
+/// Data that was read cannot be used (NaN vertices, an open mesh, an empty image). Exits with 3.
+class InvalidInput : public Error {
+  using Error::Error;
+};
+
+/// A file cannot be opened, read, parsed or written. Exits with 3.
+class FileError : public Error {
+  using Error::Error;
+};
+
+/// The request is well formed but this build or version cannot do it. Exits with 3.
+class Unsupported : public Error {
+  using Error::Error;
+};
+
+}  // namespace surf

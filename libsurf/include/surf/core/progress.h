@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <atomic>
+#include <functional>
+
+namespace surf {
+
+/// Called now and then by long work, from one thread at a time.
+/// `done` of `total` units of work are finished; both are counted in the work's own unit.
+using ProgressCallback = std::function<void(double done, double total)>;
+
+/// A flag that long work looks at between units of work. Safe to set from a signal handler.
+class CancelToken {
+ public:
+  void cancel() noexcept { cancelled_.store(true, std::memory_order_relaxed); }
+  bool cancelled() const noexcept { return cancelled_.load(std::memory_order_relaxed); }
+
+ private:
+  std::atomic<bool> cancelled_{false};
+  static_assert(std::atomic<bool>::is_always_lock_free, "needed inside signal handlers");
+};
+
+}  // namespace surf

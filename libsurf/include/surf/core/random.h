@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+
+namespace surf {
+
+/// A stream of random numbers that is a pure function of (seed, pixel, electron): Philox4x32-10
+/// (Salmon et al., SC11, doi:10.1145/2063384.2063405). Threads, tiles and ranks play no part.
+/// Streams of different keys are independent for all practical purposes.
+class RandomStream {
+ public:
+  /// `pixel` and `electron` must be below 2^48.
+  RandomStream(std::uint64_t seed, std::uint64_t pixel, std::uint64_t electron);
+
+  /// A uniform 32-bit word.
+  std::uint32_t bits() {
+    if (next_ == buffer_words) refill();
+    return buffer_[next_++];
+  }
+
+  /// Uniform in (0, 1), both ends excluded; multiples of 2^-33.
+  double uniform() { return (bits() + 0.5) * 0x1p-32; }
+
+ private:
+  static constexpr int buffer_words = 64;
+
+  void refill();
+
+  int next_ = buffer_words;
+  std::uint32_t block_ = 0;
+  std::uint32_t key_[2];
+  std::uint32_t counter_[3];
+  alignas(64) std::uint32_t buffer_[buffer_words];
+};
+
+}  // namespace surf

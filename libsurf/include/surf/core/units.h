@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace surf {
+
+// Text with units to numbers in semsurf's native units: nm, eV, degrees. These parsers serve
+// everything a person writes (command line, scene files); libraries pass plain numbers.
+// `subject` names the option or key in the error message.
+
+/// "2", "2nm", "0.5um", "1e-3 mm", "3pm", "2A", "1m" to nm. Bare numbers are nm.
+/// Throws UsageError on unknown suffixes, NaN, infinity and trailing text.
+double parse_length_nm(std::string_view text, std::string_view subject);
+
+/// "500", "500eV", "1keV", "0.03MeV" to eV. Bare numbers are eV.
+double parse_energy_ev(std::string_view text, std::string_view subject);
+
+/// "30", "30deg", "0.5rad", "10mrad" to degrees. Bare numbers are degrees.
+double parse_angle_deg(std::string_view text, std::string_view subject);
+
+/// The nm in one `unit` ("nm", "um", "mm", "m", "pm", "A", "in"). Throws UsageError if unknown.
+double unit_length_nm(std::string_view unit, std::string_view subject);
+
+/// A length for people: "398 nm", "1.20 um", "3.5 mm", with `digits` significant digits.
+std::string format_length(double length_nm, int digits = 3);
+
+/// The shortest decimal text that reads back as exactly `value`.
+std::string format_exact(double value);
+
+inline constexpr double degrees_to_radians = 0.017453292519943295;
+
+}  // namespace surf

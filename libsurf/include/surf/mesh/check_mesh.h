@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "surf/mesh/triangle_mesh.h"
+
+namespace surf {
+
+/// What `check_mesh` found. Edges are undirected vertex pairs.
+struct MeshReport {
+  std::size_t vertices = 0;
+  std::size_t triangles = 0;
+  std::size_t degenerate_triangles = 0;   ///< zero area, or a corner used twice
+  std::size_t duplicate_triangles = 0;    ///< triangles beyond the first on the same three corners
+  std::size_t boundary_edges = 0;         ///< edges of exactly one triangle
+  std::size_t nonmanifold_edges = 0;      ///< edges of more than two triangles
+  std::size_t inconsistent_edges = 0;     ///< edges of two triangles that run through them the same way
+  std::size_t components = 0;             ///< sets of triangles connected through shared vertices
+  double area_nm2 = 0;
+  double signed_volume_nm3 = 0;           ///< > 0 when normals point out; meaningful when closed
+  Box bounds_nm;
+  Vec3 first_boundary_nm;                 ///< midpoint of one boundary edge, if there is any
+  Vec3 first_nonmanifold_nm;              ///< midpoint of one non-manifold edge, if there is any
+  Vec3 first_inconsistent_nm;             ///< midpoint of one inconsistent edge, if there is any
+
+  /// Every edge is run through equally often in both directions, so that inside and outside are
+  /// defined everywhere. Non-manifold edges are allowed if they balance.
+  bool closed_and_oriented = false;
+};
+
+/// Examines the mesh in O(n log n). Corners at exactly equal coordinates count as one vertex.
+MeshReport check_mesh(const TriangleMesh& mesh);
+
+/// The component (see MeshReport::components) of every triangle: numbers from 0, in the order of
+/// first appearance.
+std::vector<std::uint32_t> triangle_components(const TriangleMesh& mesh);
+
+/// One line for people: "closed, 12 triangles, 8 vertices, 1 component" or what is wrong and where.
+std::string summary(const MeshReport& report);
+
+}  // namespace surf

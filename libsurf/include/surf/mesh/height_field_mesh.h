@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "surf/core/height_field.h"
+#include "surf/mesh/triangle_mesh.h"
+
+namespace surf {
+
+/// How a height field goes on beyond its samples.
+enum class Edge {
+  mirror,    ///< reflected about its outermost samples
+  flat,      ///< the outermost height goes on
+  periodic,  ///< repeated; the period is the number of samples times the pitch
+};
+
+/// The open sheet of triangles over the samples, normals up. Each cell is split from lower-left to
+/// upper-right. Throws InvalidInput where samples are invalid (a hole has no height).
+TriangleMesh height_field_sheet(const HeightField& field);
+
+/// A field with `margin_x_nm`, `margin_y_nm` (>= 0, rounded up to whole pitches) more on every
+/// side, continued by `edge`.
+HeightField extend_height_field(const HeightField& field, double margin_x_nm, double margin_y_nm,
+                                Edge edge);
+
+/// The sheet with its outermost heights drawn out horizontally by `apron_nm` (> 0) on every side,
+/// so that the half-space below has a top everywhere that electrons can reach.
+TriangleMesh half_space_top(const HeightField& field, double apron_nm);
+
+/// A closed body: the sheet, vertical walls and a flat base at `base_z_nm`, which must lie below
+/// every height.
+TriangleMesh height_field_solid(const HeightField& field, double base_z_nm);
+
+}  // namespace surf

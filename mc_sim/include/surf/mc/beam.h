@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+
+#include "surf/core/vec3.h"
+
+namespace surf::mc {
+
+/// The electron probe: parallel, monochromatic, Gaussian across.
+struct Beam {
+  double energy_ev = 1000;   ///< 100 to 30000
+  double tilt_deg = 0;       ///< angle of the beam from -z, 0 <= tilt < 90
+  double azimuth_deg = 0;    ///< toward which side it turns: 0 is +x, counter-clockwise from above
+  double spot_nm = 0;        ///< standard deviation of the Gaussian spot along each axis; 0: a point
+};
+
+/// Unit vector along which the beam travels: (sin t cos a, sin t sin a, -cos t).
+Vec3 direction(const Beam& beam);
+
+/// Which points the beam visits: a grid in the plane through the region's centre perpendicular to
+/// the beam. For an untilted beam it is the region itself.
+struct Scan {
+  int width = 256;             ///< pixels, >= 1; width * height <= max_pixels
+  int height = 256;
+  double pixel_x_nm = 1;       ///< > 0
+  double pixel_y_nm = 1;
+  double center_x_nm = 0;      ///< centre of the region in the specimen frame
+  double center_y_nm = 0;
+};
+
+inline constexpr std::int64_t max_pixels = std::int64_t{1} << 28;
+
+/// Throws UsageError naming the option.
+void validate(const Beam& beam);
+void validate(const Scan& scan);
+
+}  // namespace surf::mc

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+
+#include "surf/core/vec3.h"
+#include "surf/mc/tally.h"
+
+namespace surf::mc {
+
+/// How a track ended.
+enum class TrackEnd { se, bse, transmitted, absorbed, lost };
+
+/// Watches the transport loop: trajectories, spectra, cascade libraries and tests derive from it.
+/// Calls come in the order in which things happen to one primary and its secondaries, on the
+/// thread that simulates it. Energies inside matter count from the bottom of the conduction band.
+class Observer {
+ public:
+  virtual ~Observer() = default;
+
+  /// A primary starts on its way to the specimen (energy in vacuum).
+  virtual void primary(std::int64_t /*pixel*/, std::int64_t /*electron*/) {}
+
+  /// A track begins: generation 0 is the primary. Tracks of one primary are numbered from 0.
+  virtual void begin_track(int /*track*/, int /*parent*/, int /*generation*/,
+                           const Vec3& /*position_nm*/, const Vec3& /*direction*/,
+                           double /*energy_ev*/) {}
+
+  /// A straight piece of the current track; `material` is -1 in vacuum.
+  virtual void segment(const Vec3& /*from_nm*/, const Vec3& /*to_nm*/, double /*energy_from_ev*/,
+                       double /*energy_to_ev*/, int /*material*/) {}
+
+  /// The current track ends, with its last energy: in vacuum for se, bse and transmitted.
+  virtual void end_track(TrackEnd /*end*/, const Vec3& /*position_nm*/, const Vec3& /*direction*/,
+                         double /*energy_ev*/) {}
+};
+
+}  // namespace surf::mc

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <vector>
+
+#include "surf/core/vec3.h"
+#include "surf/mc/beam.h"
+#include "surf/mc/physics.h"
+#include "surf/mc/specimen.h"
+
+namespace surf::mc {
+
+/// How `Scene` is built.
+struct SceneOptions {
+  /// Memory for the distance grid, bytes (>= 0; 0: no grid, every step asks for the surface). The
+  /// grid holds a lower bound of the distance to the nearest surface; it changes speed, not results.
+  std::size_t distance_grid_bytes = std::size_t{32} << 20;
+};
+
+struct SceneSummary {
+  std::size_t triangles = 0;          ///< as traced (with a height field's continuation)
+  std::size_t shells = 0;             ///< connected closed surfaces
+  std::size_t memory_bytes = 0;       ///< triangles, ray-tracing structures and distance grid
+  double grid_cell_nm = 0;            ///< 0 without a grid
+  double build_seconds = 0;
+};
+
+/// A specimen made ready for tracing: immutable, safe to query from many threads.
+class Scene {
+ public:
+  /// Validates and builds. `beam` and `scan` say how far surfaces matter: a height field is
+  /// continued as far as electrons from the scanned region reach, and the distance grid covers that.
+  Scene(const Specimen& specimen, const Beam& beam, const Scan& scan, const Physics& physics,
+        const SceneOptions& options = {});
+  ~Scene();
+  Scene(Scene&&) noexcept;
+  Scene& operator=(Scene&&) noexcept;
+
+  const std::vector<Material>& materials() const;
+  const Box& bounds_nm() const;
+  const SceneSummary& summary() const;
+
+  /// Height of the first surface along the beam's line; false where it misses everything.
+  /// `point` is anywhere on the line.
+  bool first_surface(const Vec3& point, const Vec3& direction, Vec3& hit) const;
+
+  /// A proven lower bound of the distance from a point to the nearest surface, nm (>= 0).
+  double distance_bound_nm(const Vec3& point) const;
+
+  struct Impl;
+  const Impl& impl() const { return *impl_; }
+
+ private:
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace surf::mc

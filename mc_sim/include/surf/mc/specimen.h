@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "surf/core/height_field.h"
+#include "surf/mc/material.h"
+#include "surf/mesh/height_field_mesh.h"
+#include "surf/mesh/triangle_mesh.h"
+
+namespace surf::mc {
+
+/// A closed triangle mesh filled with one material.
+struct Body {
+  std::string name;       ///< for messages: usually the file's name
+  TriangleMesh mesh;      ///< closed, normals outward (`validate` accepts all-inward and says so)
+  int material = 0;       ///< index into Specimen::materials
+};
+
+/// Everything below the plane z = `top_nm`.
+struct Substrate {
+  int material = 0;
+  double top_nm = 0;
+};
+
+/// Everything below a height field, which goes on beyond its samples by `edge`.
+struct HeightFieldBody {
+  std::string name;
+  HeightField field;
+  int material = 0;
+  Edge edge = Edge::mirror;
+};
+
+/// What the beam looks at. Where bodies overlap, the later one wins; a height field and a substrate
+/// come before all bodies. Faces that coincide within 1e-3 nm are one interface.
+struct Specimen {
+  std::vector<Material> materials;
+  std::optional<Substrate> substrate;
+  std::optional<HeightFieldBody> height_field;
+  std::vector<Body> bodies;
+};
+
+/// Checks materials, indices, meshes (closed and consistently oriented) and the field.
+/// Throws InvalidInput with the place of the first fault. At least one solid is needed.
+void validate(const Specimen& specimen);
+
+/// The box around bodies and height field; for a bare substrate 1000 nm around its origin.
+/// z runs from the lowest to the highest surface.
+Box extent(const Specimen& specimen);
+
+}  // namespace surf::mc

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace surf::mc {
+
+/// Energies are summed as whole multiples of 2^-16 eV, so that sums do not depend on their order.
+class EnergySum {
+ public:
+  void add(double energy_ev) {
+    const double scaled = energy_ev * 65536.0;
+    sum_ += static_cast<std::int64_t>(scaled < 0 ? scaled - 0.5 : scaled + 0.5);
+  }
+  EnergySum& operator+=(const EnergySum& b) { sum_ += b.sum_; return *this; }
+  double ev() const { return static_cast<double>(sum_) / 65536.0; }
+
+ private:
+  std::int64_t sum_ = 0;   // 1e14 eV in all: 3e9 primaries of 30 keV
+};
+
+/// Why an electron was given up. None of these should happen on a closed specimen.
+enum class LossCause {
+  no_surface_ahead,    ///< inside a body, but nothing to leave it through
+  too_many_steps,      ///< more than Limits::max_steps without being absorbed
+  too_many_secondaries,///< more tracks waiting than Limits::max_waiting
+};
+inline constexpr int loss_causes = 3;
+const char* name(LossCause cause);
+
+/// Where all electrons and all energy went:
+///   incident + generated = se + bse + transmitted + absorbed + lost
+///   incident + generated energy = escaped + deposited + lost energy
+/// Energies are total energies: kinetic energy inside minus the barrier, so that crossing a surface
+/// changes nothing. Secondaries are not debited from the electron that made them (the continuous
+/// loss pays for them), so `generated` is a source of energy of its own.
+struct Balance {
+  std::int64_t incident = 0;       ///< primaries, those that miss everything included
+  std::int64_t missed = 0;         ///< primaries that met nothing; they also count as transmitted
+  std::int64_t generated = 0;      ///< secondaries
+  std::int64_t se = 0;             ///< left for good below 50 eV, in any direction
+  std::int64_t bse = 0;            ///< left for good at 50 eV or more, upward
+  std::int64_t transmitted = 0;    ///< left for good at 50 eV or more, downward: not detected
+  std::int64_t absorbed = 0;       ///< stopped inside
+  std::array<std::int64_t, loss_causes> lost{};
+
+  EnergySum incident_energy, generated_energy, escaped_energy, deposited_energy, lost_energy;
+
+  std::int64_t steps = 0;          ///< path segments inside matter and in vacuum
+  std::int64_t rays = 0;           ///< segments that asked for the surface
+
+  std::int64_t total_lost() const;
+  Balance& operator+=(const Balance& other);
+};
+
+/// Sums over the primaries of one pixel, per detector. Counts per primary are whole numbers, so the
+/// sums are exact and merge in any order.
+struct PixelTally {
+  std::int64_t primaries = 0;
+  std::int64_t hits = 0;           ///< primaries that met the specimen
+  std::int64_t se = 0, se_squared = 0;
+  std::int64_t bse = 0, bse_squared = 0;
+
+  PixelTally& operator+=(const PixelTally& other);
+};
+
+/// Mean counts per primary, and the standard error of that mean from the scatter of the primaries'
+/// totals: sqrt((<x^2> - <x>^2) / (n - 1)); 0 for fewer than two primaries.
+struct Estimate {
+  double mean = 0;
+  double standard_error = 0;
+};
+Estimate estimate(std::int64_t primaries, std::int64_t sum, std::int64_t sum_of_squares);
+
+}  // namespace surf::mc
