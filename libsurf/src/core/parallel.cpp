@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "surf/core/parallel.h"
+
+#include <algorithm>
+#include <atomic>
+#include <exception>
+#include <mutex>
+#include <string>
+#include <system_error>
+#include <thread>
+#include <vector>
+
+#include "surf/core/error.h"
+
+namespace surf {
+namespace {
+
+/// Hands out the units of one parallel_for and keeps its error.
+class Queue {
+ public:
+  Queue(std::size_t count, const std::function<void(std::size_t, int)>& work)
+      : count_(count), work_(work) {}
+
+  void run(int worker) {
+    while (!stop_.load(std::memory_order_relaxed)) {
+      const std::size_t unit = next_.fetch_add(1, std::memory_order_relaxed);
+      if (unit >= count_) return;
+      try {
+        work_(unit, worker);
+      } catch (...) {
+        fail(unit);
+      }
+    }
+  }
+
+  void rethrow() const {
+    if (error_) std::rethrow_exception(error_);
+  }
+
+ private:
+  // A unit that was handed out always runs, so the lowest failing one is the same for any number
+  // of threads, and so is the message.
+  void fail(std::size_t unit) {
+    const std::lock_guard lock(mutex_);
+    if (!error_ || unit < failed_unit_) {
+      error_ = std::current_exception();
+      failed_unit_ = unit;
+    }
+    stop_.store(true, std::memory_order_relaxed);
+  }
+
+  const std::size_t count_;
+  const std::function<void(std::size_t, int)>& work_;
+  std::atomic<std::size_t> next_{0};
+  std::atomic<bool> stop_{false};
+  std::mutex mutex_;
+  std::exception_ptr error_;
+  std::size_t failed_unit_ = 0;
+};
+
+}  // namespace
+
+int resolve_threads(int requested) {
+  if (requested < 0) {
+    throw UsageError("threads", "is " + std::to_string(requested),
+                     "Give 1 or more, or 0 for one per hardware thread");
+  }
+  if (requested > 0) return requested;
+  return std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+}
+
+void parallel_for(std::size_t count, int threads,
+                  const std::function<void(std::size_t, int)>& work) {
+  const int workers =
+      static_cast<int>(std::min(count, static_cast<std::size_t>(resolve_threads(threads))));
+  Queue queue(count, work);
+  {
+    std::vector<std::jthread> others;
+    try {
+      for (int worker = 1; worker < workers; ++worker) {
+        others.emplace_back([&queue, worker] { queue.run(worker); });
+      }
+    } catch (const std::system_error&) {
+      // The system refuses more threads: those there are do all the work.
+    }
+    queue.run(0);
+  }
+  queue.rethrow();
+}
+
+}  // namespace surf
