@@ -27,6 +27,7 @@ struct Scan {
   double pixel_y_nm = 1;
   double center_x_nm = 0;      ///< centre of the region in the specimen frame
   double center_y_nm = 0;
+  double center_z_nm = 0;      ///< matters for a tilted beam only
 };
 
 inline constexpr std::int64_t max_pixels = std::int64_t{1} << 28;

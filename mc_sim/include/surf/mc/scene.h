@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "surf/core/vec3.h"
@@ -27,27 +28,29 @@ struct SceneSummary {
   double build_seconds = 0;
 };
 
-/// A specimen made ready for tracing: immutable, safe to query from many threads.
+/// A specimen, a beam, a scan and the physics, made ready for simulation: immutable, safe to use
+/// from many threads.
 class Scene {
  public:
-  /// Validates and builds. `beam` and `scan` say how far surfaces matter: a height field is
-  /// continued as far as electrons from the scanned region reach, and the distance grid covers that.
-  Scene(const Specimen& specimen, const Beam& beam, const Scan& scan, const Physics& physics,
+  /// Validates and builds. A height field is continued as far as electrons from the scanned region
+  /// reach, and the distance grid covers that.
+  Scene(const Specimen& specimen, const Beam& beam, const Scan& scan, const Physics& physics = {},
         const SceneOptions& options = {});
   ~Scene();
   Scene(Scene&&) noexcept;
   Scene& operator=(Scene&&) noexcept;
 
+  const Beam& beam() const;
+  const Scan& scan() const;
+  const Physics& physics() const;
   const std::vector<Material>& materials() const;
-  const Box& bounds_nm() const;
   const SceneSummary& summary() const;
 
-  /// Height of the first surface along the beam's line; false where it misses everything.
-  /// `point` is anywhere on the line.
-  bool first_surface(const Vec3& point, const Vec3& direction, Vec3& hit) const;
+  /// The first surface along a line through vacuum; false where it misses everything.
+  bool first_surface(const Vec3& start_nm, const Vec3& direction, Vec3& hit_nm) const;
 
   /// A proven lower bound of the distance from a point to the nearest surface, nm (>= 0).
-  double distance_bound_nm(const Vec3& point) const;
+  double distance_bound_nm(const Vec3& point_nm) const;
 
   struct Impl;
   const Impl& impl() const { return *impl_; }
@@ -55,5 +58,8 @@ class Scene {
  private:
   std::unique_ptr<Impl> impl_;
 };
+
+/// Version of the ray-tracing library, as built against.
+std::string ray_tracer_version();
 
 }  // namespace surf::mc

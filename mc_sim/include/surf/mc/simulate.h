@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 
 #include "surf/core/grid.h"
 #include "surf/core/image.h"
@@ -35,9 +34,10 @@ struct UnitTally {
   Balance balance;
 };
 
-/// Simulates one unit of work on the calling thread. `observer` may be null.
-UnitTally simulate_unit(const Scene& scene, const Beam& beam, const Scan& scan,
-                        const Physics& physics, std::uint64_t seed, const WorkUnit& unit,
+/// Simulates one unit of work on the calling thread. With an `observer` every track is followed to
+/// its end; without (null), electrons too far from any surface to matter are given up early, as
+/// `simulate` does. Both have the same statistics but not the same random numbers.
+UnitTally simulate_unit(const Scene& scene, std::uint64_t seed, const WorkUnit& unit,
                         Observer* observer = nullptr);
 
 struct SimulationResult {
@@ -49,8 +49,7 @@ struct SimulationResult {
 
 /// Simulates the whole scan, in parallel. On cancellation returns what is done.
 /// Progress counts primaries.
-SimulationResult simulate(const Scene& scene, const Beam& beam, const Scan& scan,
-                          const Physics& physics, const SimulationOptions& options,
+SimulationResult simulate(const Scene& scene, const SimulationOptions& options,
                           const ProgressCallback& progress = {},
                           const CancelToken* cancel = nullptr);
 

@@ -23,11 +23,12 @@ class EnergySum {
 
 /// Why an electron was given up. None of these should happen on a closed specimen.
 enum class LossCause {
-  no_surface_ahead,    ///< inside a body, but nothing to leave it through
-  too_many_steps,      ///< more than Limits::max_steps without being absorbed
-  too_many_secondaries,///< more tracks waiting than Limits::max_waiting
+  no_surface_ahead,       ///< inside a body, but nothing to leave it through
+  wrong_side,             ///< met a surface from the side it was not on
+  too_many_steps,         ///< a cascade of 10^8 steps
+  too_many_secondaries,   ///< 10^6 electrons waiting to be followed
 };
-inline constexpr int loss_causes = 3;
+inline constexpr int loss_causes = 4;
 const char* name(LossCause cause);
 
 /// Where all electrons and all energy went:
@@ -44,6 +45,7 @@ struct Balance {
   std::int64_t bse = 0;            ///< left for good at 50 eV or more, upward
   std::int64_t transmitted = 0;    ///< left for good at 50 eV or more, downward: not detected
   std::int64_t absorbed = 0;       ///< stopped inside
+  std::int64_t dropped = 0;        ///< of those: given up early, too far from any surface to matter
   std::array<std::int64_t, loss_causes> lost{};
 
   EnergySum incident_energy, generated_energy, escaped_energy, deposited_energy, lost_energy;

@@ -1,0 +1,198 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// How fast the simulator is, as JSON: flat silicon and the thesis's mesa at 1 keV with full secondary
+// cascades, one and two threads; cost against the number of triangles; electrons lost on the closed
+// samples; and the floor: rays per second of the ray tracer alone, scattering steps without a surface.
+//   bench_simulate [--quick] [output.json]
+#include <chrono>
+#include <cmath>
+#include <cstring>
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include <fmt/core.h>
+#include <nlohmann/json.hpp>
+
+#include "surf/core/random.h"
+#include "surf/io/sim/materials.h"
+#include "surf/mc/boundary.h"
+#include "surf/mc/simulate.h"
+#include "surf/mesh/height_field_mesh.h"
+#include "surf/mesh/shapes.h"
+
+namespace {
+
+using namespace surf;
+using nlohmann::json;
+
+constexpr double target_per_thread = 50000;   // primaries per second on the mesa
+
+mc::Specimen silicon() {
+  mc::Specimen specimen;
+  specimen.materials = {io::find_material("Si", "bench"), io::find_material("Au", "bench")};
+  return specimen;
+}
+
+mc::Specimen flat() {
+  mc::Specimen s = silicon();
+  s.substrate = mc::Substrate{};
+  return s;
+}
+
+// Seeger's figure 5-6: 79,202 triangles over 398 nm, 200 nm high, 80 nm wide at the top.
+mc::Specimen mesa(double pitch_nm = 2) {
+  mc::Specimen s = silicon();
+  s.height_field = mc::HeightFieldBody{
+      "mesa", make_mesa({398, 398, pitch_nm}, 200, 80, 2), 0, Edge::flat};
+  return s;
+}
+
+mc::Scan view(double width_nm, int pixels) {
+  mc::Scan scan;
+  scan.width = scan.height = pixels;
+  scan.pixel_x_nm = scan.pixel_y_nm = width_nm / pixels;
+  return scan;
+}
+
+struct Run {
+  mc::SimulationResult result;
+  mc::SceneSummary scene;
+};
+
+Run simulate(const mc::Specimen& specimen, const mc::Scan& scan, std::int64_t electrons,
+             int threads, double energy_ev = 1000, std::size_t grid_bytes = mc::SceneOptions{}.distance_grid_bytes) {
+  mc::Beam beam;
+  beam.energy_ev = energy_ev;
+  const mc::Scene scene(specimen, beam, scan, {}, {grid_bytes});
+  mc::SimulationOptions options;
+  options.electrons = electrons;
+  options.threads = threads;
+  return {mc::simulate(scene, options), scene.summary()};
+}
+
+json report(const Run& run) {
+  const mc::Balance& b = run.result.balance;
+  const double n = static_cast<double>(b.incident);
+  return {{"primaries", b.incident},
+          {"seconds", run.result.seconds},
+          {"primaries_per_second", n / run.result.seconds},
+          {"rays_per_second", static_cast<double>(b.rays) / run.result.seconds},
+          {"steps_per_primary", static_cast<double>(b.steps) / n},
+          {"rays_per_primary", static_cast<double>(b.rays) / n},
+          {"secondaries_per_primary", static_cast<double>(b.generated) / n},
+          {"nanoseconds_per_step", 1e9 * run.result.seconds / static_cast<double>(b.steps)},
+          {"se_yield", static_cast<double>(b.se) / n},
+          {"bse_yield", static_cast<double>(b.bse) / n},
+          {"triangles", run.scene.triangles},
+          {"grid_cell_nm", run.scene.grid_cell_nm},
+          {"memory_bytes", run.scene.memory_bytes},
+          {"build_seconds", run.scene.build_seconds},
+          {"lost", b.total_lost()}};
+}
+
+// The floor for rays: the ray tracer's own rate, long rays from above and short ones inside.
+json ray_floor(const mc::Specimen& specimen, bool quick) {
+  const mc::Scan scan = view(192, 96);
+  const mc::Scene scene(specimen, {}, scan);
+  RandomStream random(1, 0, 0);
+  const int n = quick ? 100000 : 2000000;
+  const auto begin = std::chrono::steady_clock::now();
+  int hits = 0;
+  for (int i = 0; i < n; ++i) {
+    Vec3 hit;
+    const Vec3 start{192 * (random.uniform() - 0.5), 192 * (random.uniform() - 0.5), 201};
+    hits += scene.first_surface(start, {0, 0, -1}, hit) ? 1 : 0;
+  }
+  const double s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  return {{"long_rays_per_second", n / s}, {"hits", hits}};
+}
+
+json lost_electrons(bool quick) {
+  struct Sample {
+    const char* name;
+    mc::Specimen specimen;
+    double view_nm;
+  };
+  std::vector<Sample> samples{{"flat", flat(), 100}, {"mesa", mesa(), 192}};
+  mc::Specimen cube = flat();
+  cube.bodies.push_back({"cube", make_box({-50, -50, 0}, {50, 50, 100}), 0});
+  samples.push_back({"cube on its substrate", cube, 160});
+  mc::Specimen sphere = flat();
+  sphere.bodies.push_back({"sphere", make_sphere({0, 0, 40}, 40, 5), 1});
+  samples.push_back({"gold sphere on silicon", sphere, 120});
+  mc::Specimen trench = silicon();
+  trench.height_field =
+      mc::HeightFieldBody{"trench", make_trench({300, 100, 2}, 100, 60, 20), 0, Edge::periodic};
+  samples.push_back({"trench", trench, 100});
+  mc::Specimen rough = silicon();
+  rough.height_field =
+      mc::HeightFieldBody{"rough", make_rough({254, 254, 2}, 8, 25, 1), 0, Edge::periodic};
+  samples.push_back({"rough", rough, 200});
+  json out = json::array();
+  std::int64_t electrons = 0, lost = 0;
+  for (const Sample& s : samples) {
+    const Run run = simulate(s.specimen, view(s.view_nm, 64), quick ? 4 : 60, 0);
+    const mc::Balance& b = run.result.balance;
+    json causes;
+    for (int c = 0; c < mc::loss_causes; ++c)
+      causes[mc::name(static_cast<mc::LossCause>(c))] = b.lost[static_cast<std::size_t>(c)];
+    electrons += b.incident + b.generated;
+    lost += b.total_lost();
+    out.push_back({{"sample", s.name}, {"electrons", b.incident + b.generated}, {"lost", causes}});
+  }
+  return {{"samples", out}, {"electrons", electrons}, {"lost", lost},
+          {"fraction", static_cast<double>(lost) / static_cast<double>(electrons)},
+          {"target", 1e-7}};
+}
+
+json cost_against_triangles(bool quick) {
+  json out = json::array();
+  for (const double triangles : {1e3, 1e4, 1e5, 1e6, 1e7}) {
+    if (quick && triangles > 1e5) break;
+    const double pitch = 398.0 / std::sqrt(triangles / 2);
+    mc::Specimen s = silicon();
+    // The same smooth rough surface, sampled more and more finely.
+    const int n = static_cast<int>(398.0 / pitch) + 1;
+    HeightField f;
+    f.z_nm = Grid<double>(n, n);
+    f.pitch_x_nm = f.pitch_y_nm = 398.0 / (n - 1);
+    f.origin_x_nm = f.origin_y_nm = -199;
+    for (int y = 0; y < n; ++y)
+      for (int x = 0; x < n; ++x)
+        f.z_nm(x, y) = 10 * std::sin(f.x_nm(x) * 0.05) * std::cos(f.y_nm(y) * 0.06);
+    s.height_field = mc::HeightFieldBody{"waves", f, 0, Edge::flat};
+    json row = report(simulate(s, view(192, 64), quick ? 4 : 40, 1));
+    row["triangles_asked"] = triangles;
+    out.push_back(row);
+  }
+  return out;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  bool quick = false;
+  std::string path;
+  for (int i = 1; i < argc; ++i) {
+    if (std::strcmp(argv[i], "--quick") == 0) quick = true;
+    else path = argv[i];
+  }
+  const std::int64_t n = quick ? 10 : 100;
+  json out;
+  for (const int threads : {1, 2}) {
+    const std::string key = std::to_string(threads) + "_threads";
+    out["flat"][key] = report(simulate(flat(), view(192, 96), n, threads));
+    out["mesa"][key] = report(simulate(mesa(), view(192, 96), n, threads));
+    // The alternative, in the same run: every step asks for the surface.
+    out["mesa_without_distance_grid"][key] = report(simulate(mesa(), view(192, 96), n / 2, threads, 1000, 0));
+  }
+  out["mesa"]["target_per_thread"] = target_per_thread;
+  out["mesa"]["ratio_to_target"] =
+      out["mesa"]["1_threads"]["primaries_per_second"].get<double>() / target_per_thread;
+  out["floor"] = ray_floor(mesa(), quick);
+  out["cost_against_triangles"] = cost_against_triangles(quick);
+  out["lost_electrons"] = lost_electrons(quick);
+  const std::string text = out.dump(2);
+  if (path.empty()) fmt::print("{}\n", text);
+  else std::ofstream(path) << text << "\n";
+}

@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "embree_scene.h"
+
+#include <embree3/rtcore.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "surf/core/error.h"
+#include "surf/mc/scene.h"
+
+namespace surf::mc {
+
+namespace {
+
+// Faces closer than this are one interface; so the search may start that far back.
+constexpr double interface_nm = 1e-3;
+
+struct Context {
+  RTCIntersectContext embree;   // first: Embree hands its address back
+  const TriangleMesh* mesh;
+  Vec3 direction;
+  EmbreeScene::Accept accept;
+  void* user;
+};
+
+Vec3 area_normal(const TriangleMesh& mesh, std::uint32_t triangle) {
+  const Triangle& t = mesh.triangles[triangle];
+  const Vec3& a = mesh.vertices_nm[t[0]];
+  return cross(mesh.vertices_nm[t[1]] - a, mesh.vertices_nm[t[2]] - a);
+}
+
+void filter(const RTCFilterFunctionNArguments* args) {
+  if (args->valid[0] != -1) return;
+  auto* context = reinterpret_cast<Context*>(args->context);
+  const auto* ray = reinterpret_cast<const RTCRay*>(args->ray);
+  const std::uint32_t triangle = RTCHitN_primID(args->hit, args->N, 0);
+  const Vec3 normal = area_normal(*context->mesh, triangle);
+  const double cosine = dot(normal, context->direction) / length(normal);
+  // A path inside the triangle's plane does not cross it; a sliver has no plane.
+  if (!(std::fabs(cosine) > 0.0) ||
+      !context->accept(context->user, triangle, cosine, ray->tfar))
+    args->valid[0] = 0;
+}
+
+}  // namespace
+
+struct EmbreeScene::Impl {
+  RTCDevice device = nullptr;
+  RTCScene scene = nullptr;
+  TriangleMesh mesh;
+  Vec3 center;
+  double start_back = interface_nm;
+  std::atomic<std::ptrdiff_t> bytes{0};
+
+  ~Impl() {
+    if (scene) rtcReleaseScene(scene);
+    if (device) rtcReleaseDevice(device);
+  }
+};
+
+EmbreeScene::EmbreeScene(const TriangleMesh& mesh) : impl_(std::make_unique<Impl>()) {
+  impl_->mesh = mesh;
+  const Box box = bounds(mesh);
+  impl_->center = box.center_nm();
+  const Vec3 half = box.size_nm() * 0.5;
+  const double largest = std::max({half.x, half.y, half.z});
+  impl_->start_back =
+      interface_nm + 8.0 * largest * static_cast<double>(std::numeric_limits<float>::epsilon());
+
+  impl_->device = rtcNewDevice(nullptr);
+  if (!impl_->device) throw Unsupported("ray tracing", "Embree finds no usable device", "Check that the processor has SSE2 or NEON");
+  rtcSetDeviceMemoryMonitorFunction(
+      impl_->device,
+      [](void* user, ssize_t bytes, bool) {
+        static_cast<Impl*>(user)->bytes += bytes;
+        return true;
+      },
+      impl_.get());
+  impl_->scene = rtcNewScene(impl_->device);
+  rtcSetSceneFlags(impl_->scene,
+                   static_cast<RTCSceneFlags>(RTC_SCENE_FLAG_ROBUST |
+                                              RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION));
+  RTCGeometry geometry = rtcNewGeometry(impl_->device, RTC_GEOMETRY_TYPE_TRIANGLE);
+  auto* vertices = static_cast<float*>(
+      rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
+                              3 * sizeof(float), mesh.vertices_nm.size()));
+  for (const Vec3& v : mesh.vertices_nm) {
+    const Vec3 local = v - impl_->center;
+    *vertices++ = static_cast<float>(local.x);
+    *vertices++ = static_cast<float>(local.y);
+    *vertices++ = static_cast<float>(local.z);
+  }
+  auto* indices = static_cast<std::uint32_t*>(
+      rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
+                              3 * sizeof(std::uint32_t), mesh.triangles.size()));
+  for (const Triangle& t : mesh.triangles) indices = std::copy(t.begin(), t.end(), indices);
+  rtcCommitGeometry(geometry);
+  rtcAttachGeometry(impl_->scene, geometry);
+  rtcReleaseGeometry(geometry);
+  rtcCommitScene(impl_->scene);
+  if (rtcGetDeviceError(impl_->device) != RTC_ERROR_NONE)
+    throw InvalidInput("ray tracing", "Embree could not build the scene (out of memory?)",
+                       "Simplify the mesh");
+}
+
+EmbreeScene::~EmbreeScene() = default;
+
+double EmbreeScene::tolerance_nm() const { return impl_->start_back; }
+
+std::size_t EmbreeScene::memory_bytes() const {
+  return static_cast<std::size_t>(impl_->bytes.load()) +
+         impl_->mesh.vertices_nm.size() * sizeof(Vec3) +
+         impl_->mesh.triangles.size() * sizeof(Triangle);
+}
+
+bool EmbreeScene::nearest(const Vec3& origin, const Vec3& direction, double length, Accept accept,
+                          void* user, Hit& hit) const {
+  const Vec3 start = origin - direction * impl_->start_back - impl_->center;
+  Context context;
+  rtcInitIntersectContext(&context.embree);
+  context.embree.filter = filter;
+  context.mesh = &impl_->mesh;
+  context.direction = direction;
+  context.accept = accept;
+  context.user = user;
+
+  RTCRayHit ray;
+  ray.ray.org_x = static_cast<float>(start.x);
+  ray.ray.org_y = static_cast<float>(start.y);
+  ray.ray.org_z = static_cast<float>(start.z);
+  ray.ray.dir_x = static_cast<float>(direction.x);
+  ray.ray.dir_y = static_cast<float>(direction.y);
+  ray.ray.dir_z = static_cast<float>(direction.z);
+  ray.ray.tnear = 0.0f;
+  ray.ray.tfar = static_cast<float>(length + impl_->start_back);
+  ray.ray.time = 0.0f;
+  ray.ray.mask = 0xffffffffu;
+  ray.ray.flags = 0;
+  ray.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+  ray.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+  rtcIntersect1(impl_->scene, &context.embree, &ray);
+  if (ray.hit.geomID == RTC_INVALID_GEOMETRY_ID) return false;
+
+  // In double, on the source triangle, with its barycentric coordinates kept inside.
+  const Triangle& t = impl_->mesh.triangles[ray.hit.primID];
+  const Vec3& a = impl_->mesh.vertices_nm[t[0]];
+  const Vec3 ab = impl_->mesh.vertices_nm[t[1]] - a;
+  const Vec3 ac = impl_->mesh.vertices_nm[t[2]] - a;
+  const Vec3 normal = cross(ab, ac);
+  const double determinant = dot(normal, direction);
+  const Vec3 q = cross(origin - a, direction);
+  double u = -dot(ac, q) / determinant;
+  double v = dot(ab, q) / determinant;
+  u = std::clamp(u, 0.0, 1.0);
+  v = std::clamp(v, 0.0, 1.0);
+  if (u + v > 1.0) {
+    const double excess = 0.5 * (u + v - 1.0);
+    u = std::clamp(u - excess, 0.0, 1.0);
+    v = 1.0 - u;
+  }
+  hit.triangle = ray.hit.primID;
+  hit.position = a + ab * u + ac * v;
+  hit.normal = normal * (1.0 / std::sqrt(dot(normal, normal)));
+  hit.distance = std::max(0.0, dot(hit.position - origin, direction));
+  return true;
+}
+
+std::string ray_tracer_version() {
+  return std::to_string(RTC_VERSION_MAJOR) + "." + std::to_string(RTC_VERSION_MINOR) + "." +
+         std::to_string(RTC_VERSION_PATCH);
+}
+
+}  // namespace surf::mc

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "surf/core/vec3.h"
+#include "surf/mesh/triangle_mesh.h"
+
+namespace surf::mc {
+
+/// Nearest triangles along rays. Embree proposes hits in single precision, about the mesh's centre;
+/// each one is recomputed in double on the source triangle, to a point exactly on it.
+class EmbreeScene {
+ public:
+  struct Hit {
+    double distance = 0;         ///< along the ray, >= 0
+    Vec3 position;               ///< on the triangle
+    Vec3 normal;                 ///< unit, the triangle's own sense
+    std::uint32_t triangle = 0;
+  };
+
+  /// Decides whether a proposed triangle counts. `cosine` is between the ray and the triangle's
+  /// normal, never 0; `distance` is single precision, from `tolerance_nm` before the origin.
+  using Accept = bool (*)(void* user, std::uint32_t triangle, double cosine, float distance);
+
+  explicit EmbreeScene(const TriangleMesh& mesh);
+  ~EmbreeScene();
+  EmbreeScene(const EmbreeScene&) = delete;
+  EmbreeScene& operator=(const EmbreeScene&) = delete;
+
+  /// The nearest accepted triangle within `length` of `origin`. The search starts a rounding error
+  /// before the origin, so that a surface the origin lies on is never missed; `accept` turns
+  /// down what was crossed already.
+  bool nearest(const Vec3& origin, const Vec3& direction, double length, Accept accept, void* user,
+               Hit& hit) const;
+
+  /// How far before its origin a ray starts: 1e-3 nm and the rounding of single precision.
+  double tolerance_nm() const;
+
+  std::size_t memory_bytes() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace surf::mc

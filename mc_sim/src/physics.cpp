@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "surf/mc/physics.h"
+
+#include <algorithm>
+#include <array>
+#include <sstream>
+#include <string_view>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "surf/core/error.h"
+#include "surf/mc/medium.h"
+
+namespace surf::mc {
+
+namespace {
+
+using Choice = std::pair<std::string_view, int>;
+
+// A key of --physics, its words (the default first), and how it is stored.
+struct Key {
+  std::string_view name;
+  std::vector<Choice> words;
+  int (*get)(const Physics&);
+  void (*set)(Physics&, int);
+};
+
+const std::array<Key, 4>& keys() {
+  static const std::array<Key, 4> all{{
+      {"elastic", {{"mott", int(ElasticModel::mott)}, {"browning", int(ElasticModel::browning)}},
+       [](const Physics& p) { return int(p.elastic); },
+       [](Physics& p, int v) { p.elastic = ElasticModel(v); }},
+      {"loss", {{"joy-luo", int(LossModel::joy_luo)}, {"none", int(LossModel::none)}},
+       [](const Physics& p) { return int(p.loss); },
+       [](Physics& p, int v) { p.loss = LossModel(v); }},
+      {"secondaries", {{"on", 1}, {"off", 0}},
+       [](const Physics& p) { return int(p.secondaries); },
+       [](Physics& p, int v) { p.secondaries = v != 0; }},
+      {"barrier",
+       {{"quantum", int(BarrierModel::quantum)}, {"classical", int(BarrierModel::classical)},
+        {"off", int(BarrierModel::off)}},
+       [](const Physics& p) { return int(p.barrier); },
+       [](Physics& p, int v) { p.barrier = BarrierModel(v); }},
+  }};
+  return all;
+}
+
+std::string choices(const Key& key) {
+  std::string out;
+  for (const auto& [word, value] : key.words) out += (out.empty() ? "" : ", ") + std::string(word);
+  return out;
+}
+
+void apply_item(const std::string& item, Physics& physics) {
+  const auto equals = item.find('=');
+  const std::string name = item.substr(0, equals);
+  for (const Key& key : keys()) {
+    if (key.name != name) continue;
+    const std::string word = equals == std::string::npos ? "" : item.substr(equals + 1);
+    for (const auto& [known, value] : key.words)
+      if (known == word) return key.set(physics, value);
+    throw UsageError("--physics", fmt::format("'{}' is no choice for {}", word, name),
+                     fmt::format("Choose one of: {}", choices(key)));
+  }
+  throw UsageError("--physics", fmt::format("there is no '{}'", name),
+                   "Use elastic=, loss=, secondaries= or barrier=, separated by commas");
+}
+
+}  // namespace
+
+double effective_cutoff_ev(const Physics& physics, const Material& material) {
+  if (physics.cutoff_ev > 0) return physics.cutoff_ev;
+  const bool full = physics.secondaries && physics.barrier != BarrierModel::off;
+  return full ? material.barrier_ev : se_bse_split_ev;
+}
+
+void parse_physics(const std::string& text, Physics& physics) {
+  std::stringstream stream(text);
+  for (std::string item; std::getline(stream, item, ',');)
+    if (!item.empty()) apply_item(item, physics);
+}
+
+std::string format_physics(const Physics& physics) {
+  std::string out;
+  for (const Key& key : keys())
+    for (const auto& [word, value] : key.words)
+      if (value == key.get(physics))
+        out += fmt::format("{}{}={}", out.empty() ? "" : ",", key.name, word);
+  return out;
+}
+
+std::vector<std::string> describe(const Physics& physics, const Material& material) {
+  std::vector<std::string> lines = make_medium(material, physics).describe();
+  if (physics.loss == LossModel::none) lines.push_back("continuous loss: none");
+  if (!physics.secondaries) lines.push_back("secondaries: none");
+  switch (physics.barrier) {
+    case BarrierModel::quantum:
+      lines.push_back(fmt::format("surface barrier of {:g} eV: refraction, total reflection, "
+                                  "quantum-mechanical transmission of an abrupt step",
+                                  material.barrier_ev));
+      break;
+    case BarrierModel::classical:
+      lines.push_back(fmt::format("surface barrier of {:g} eV: refraction and total reflection",
+                                  material.barrier_ev));
+      break;
+    case BarrierModel::off:
+      lines.push_back("surface barrier: none; energies count from the vacuum level");
+      break;
+  }
+  lines.push_back(fmt::format("tracking stops at {:g} eV inside; {:g} eV in vacuum divides SE from "
+                              "BSE", effective_cutoff_ev(physics, material), se_bse_split_ev));
+  return lines;
+}
+
+}  // namespace surf::mc

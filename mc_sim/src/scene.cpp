@@ -1,0 +1,206 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "surf/mc/scene.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "scene_impl.h"
+#include "surf/core/units.h"
+#include "surf/mesh/check_mesh.h"
+#include "surf/mesh/height_field_mesh.h"
+
+namespace surf::mc {
+
+namespace {
+
+// Beyond what its electrons reach inside the solid a height field is drawn out flat, this far:
+// where a track through vacuum gets there it is as good as gone.
+constexpr double apron_in_widths = 20;
+
+// All triangles of a scene, with the shell of each.
+struct Assembly {
+  TriangleMesh mesh;
+  std::vector<std::uint32_t> shell_of;
+  std::vector<Shell> shells;
+  std::vector<Solid> solids;
+};
+
+double signed_volume(const TriangleMesh& mesh, const std::vector<std::uint32_t>& component,
+                     std::uint32_t which) {
+  double six = 0;
+  Vec3 origin;
+  bool first = true;
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+    if (component[i] != which) continue;
+    const Triangle& t = mesh.triangles[i];
+    if (first) origin = mesh.vertices_nm[t[0]];
+    first = false;
+    six += dot(mesh.vertices_nm[t[0]] - origin,
+               cross(mesh.vertices_nm[t[1]] - origin, mesh.vertices_nm[t[2]] - origin));
+  }
+  return six / 6;
+}
+
+void append(Assembly& all, const TriangleMesh& mesh, const std::vector<std::uint32_t>& component) {
+  const auto base = static_cast<std::uint32_t>(all.mesh.vertices_nm.size());
+  const auto first_shell = static_cast<std::uint32_t>(all.shells.size());
+  all.mesh.vertices_nm.insert(all.mesh.vertices_nm.end(), mesh.vertices_nm.begin(),
+                              mesh.vertices_nm.end());
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+    const Triangle& t = mesh.triangles[i];
+    all.mesh.triangles.push_back({base + t[0], base + t[1], base + t[2]});
+    all.shell_of.push_back(first_shell + component[i]);
+  }
+}
+
+std::vector<double> volumes(const TriangleMesh& mesh, const std::vector<std::uint32_t>& component) {
+  const std::uint32_t count =
+      component.empty() ? 0 : 1 + *std::max_element(component.begin(), component.end());
+  std::vector<double> out;
+  if (count == 1) return {signed_volume(mesh, component, 0)};
+  // One pass for many components.
+  std::vector<double> six(count, 0.0);
+  std::vector<std::uint32_t> seen(count, 0xffffffffu);
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+    const Triangle& t = mesh.triangles[i];
+    if (seen[component[i]] == 0xffffffffu) seen[component[i]] = t[0];
+    const Vec3& o = mesh.vertices_nm[seen[component[i]]];
+    six[component[i]] += dot(mesh.vertices_nm[t[0]] - o,
+                             cross(mesh.vertices_nm[t[1]] - o, mesh.vertices_nm[t[2]] - o));
+  }
+  for (const double v : six) out.push_back(v / 6);
+  return out;
+}
+
+void add_body(Assembly& all, const Body& body) {
+  const TriangleMesh mesh = merge_equal_vertices(body.mesh);
+  const std::vector<std::uint32_t> component = triangle_components(mesh);
+  const std::vector<double> volume = volumes(mesh, component);
+  // A mesh whose normals all point inward is turned as a whole.
+  double total = 0;
+  for (const double v : volume) total += v;
+  const int turn = total < 0 ? -1 : 1;
+  append(all, mesh, component);
+  for (const double v : volume)
+    all.shells.push_back({static_cast<int>(all.solids.size()), v * turn < 0 ? -turn : turn});
+  all.solids.push_back({body.material});
+}
+
+void add_height_field(Assembly& all, const HeightFieldBody& body, const Scan& scan, double reach) {
+  const HeightField& f = body.field;
+  // The scan's corners, wherever a tilted beam may bring them, plus the electrons' reach.
+  const double half = 0.5 * std::hypot(scan.width * scan.pixel_x_nm, scan.height * scan.pixel_y_nm);
+  auto margin = [&](double center, double lower, double upper) {
+    return std::max({0.0, lower - (center - half - reach), center + half + reach - upper});
+  };
+  const double mx = margin(scan.center_x_nm, f.x_nm(0), f.x_nm(f.z_nm.width() - 1));
+  const double my = margin(scan.center_y_nm, f.y_nm(0), f.y_nm(f.z_nm.height() - 1));
+  const HeightField wide = extend_height_field(f, mx, my, body.edge);
+  const double width = std::max(wide.z_nm.width() * wide.pitch_x_nm,
+                                wide.z_nm.height() * wide.pitch_y_nm);
+  const TriangleMesh sheet = half_space_top(wide, apron_in_widths * width);
+  append(all, sheet, std::vector<std::uint32_t>(sheet.triangles.size(), 0));
+  all.shells.push_back({static_cast<int>(all.solids.size()), 1});
+  all.solids.push_back({body.material});
+}
+
+// The part of the surface's box that electrons of the scan come near: the scanned region and the
+// reach around it. Outside the box of all surfaces the distance to that box is bound enough.
+Box near_scan(const Box& surface, const Scan& scan, const Beam& beam, double reach) {
+  double half_x = 0.5 * scan.width * scan.pixel_x_nm, half_y = 0.5 * scan.height * scan.pixel_y_nm;
+  if (beam.tilt_deg > 0) {
+    // A tilted beam meets the surface beside the scan plane by up to its depth times tan(tilt).
+    const double slope = std::tan(std::min(beam.tilt_deg, 85.0) * degrees_to_radians);
+    half_x = half_y = std::hypot(half_x, half_y) * std::sqrt(1 + slope * slope) +
+                      surface.size_nm().z * slope;
+  }
+  Box box = surface;
+  box.lower_nm.x = std::max(box.lower_nm.x, scan.center_x_nm - half_x - reach);
+  box.lower_nm.y = std::max(box.lower_nm.y, scan.center_y_nm - half_y - reach);
+  box.upper_nm.x = std::min(box.upper_nm.x, scan.center_x_nm + half_x + reach);
+  box.upper_nm.y = std::min(box.upper_nm.y, scan.center_y_nm + half_y + reach);
+  return box;
+}
+
+}  // namespace
+
+Scene::Scene(const Specimen& specimen, const Beam& beam, const Scan& scan, const Physics& physics,
+             const SceneOptions& options)
+    : impl_(std::make_unique<Impl>()) {
+  const auto begin = std::chrono::steady_clock::now();
+  validate(beam);
+  validate(scan);
+  validate(specimen);
+  Impl& s = *impl_;
+  s.beam = beam;
+  s.scan = scan;
+  s.physics = physics;
+  s.materials = specimen.materials;
+  double reach = 0;
+  for (const Material& m : s.materials) {
+    s.media.push_back(make_medium(m, physics));
+    const double range = s.media.back().range_nm(beam.energy_ev + s.media.back().barrier_ev());
+    reach = std::max(reach, std::min(range, 1e6));
+  }
+  for (const Medium& m : s.media) s.medium_pointers.push_back(&m);
+
+  Assembly all;
+  Box near;   // the surface without aprons
+  if (specimen.substrate) {
+    s.plane_nm = specimen.substrate->top_nm;
+    s.plane_shell = 0;
+    all.shells.push_back({0, 1});
+    all.solids.push_back({specimen.substrate->material});
+  }
+  if (specimen.height_field) {
+    add_height_field(all, *specimen.height_field, scan, reach);
+    near.extend(bounds(all.mesh));
+  }
+  for (const Body& body : specimen.bodies) {
+    add_body(all, body);
+    near.extend(bounds(body.mesh));
+  }
+  s.shells = std::move(all.shells);
+  s.solids = std::move(all.solids);
+  s.shell_of = std::move(all.shell_of);
+  s.top_nm = s.plane_nm.value_or(near.empty() ? 0.0 : near.upper_nm.z);
+  s.farthest_nm = 1e12;
+  if (!all.mesh.triangles.empty()) {
+    s.top_nm = std::max(s.top_nm, near.upper_nm.z);
+    s.grid = DistanceGrid(all.mesh, near_scan(near, scan, beam, reach),
+                          options.distance_grid_bytes);
+    s.triangles = std::make_unique<EmbreeScene>(all.mesh);
+  }
+  s.summary.triangles = all.mesh.triangles.size();
+  s.summary.shells = s.shells.size();
+  s.summary.grid_cell_nm = s.grid.cell_nm();
+  s.summary.memory_bytes = s.grid.bytes() + s.shell_of.size() * sizeof(std::uint32_t) +
+                           (s.triangles ? s.triangles->memory_bytes() : 0);
+  s.summary.build_seconds =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+}
+
+Scene::~Scene() = default;
+Scene::Scene(Scene&&) noexcept = default;
+Scene& Scene::operator=(Scene&&) noexcept = default;
+
+const Beam& Scene::beam() const { return impl_->beam; }
+const Scan& Scene::scan() const { return impl_->scan; }
+const Physics& Scene::physics() const { return impl_->physics; }
+const std::vector<Material>& Scene::materials() const { return impl_->materials; }
+const SceneSummary& Scene::summary() const { return impl_->summary; }
+
+bool Scene::first_surface(const Vec3& start, const Vec3& direction, Vec3& hit) const {
+  SceneGeometry geometry(*impl_);
+  SceneGeometry::State state = 0;
+  SceneGeometry::Surface surface;
+  if (geometry.crossing(start, direction, HUGE_VAL, state, surface) != Crossing::surface)
+    return false;
+  hit = surface.position;
+  return true;
+}
+
+double Scene::distance_bound_nm(const Vec3& point) const { return impl_->clearance_nm(point); }
+
+}  // namespace surf::mc

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "surf/mc/specimen.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "surf/core/error.h"
+#include "surf/core/units.h"
+#include "surf/mesh/check_mesh.h"
+
+namespace surf::mc {
+
+namespace {
+
+std::string place(const Vec3& p) {
+  return fmt::format("({:g}, {:g}, {:g}) nm", p.x, p.y, p.z);
+}
+
+void check_material(const Specimen& specimen, int material, const std::string& owner) {
+  if (material < 0 || material >= static_cast<int>(specimen.materials.size()))
+    throw InvalidInput(owner, fmt::format("its material number {} does not exist", material),
+                       "Choose one of the specimen's materials");
+}
+
+void check_body(const Body& body) {
+  const std::string subject = body.name.empty() ? "body" : body.name;
+  validate(body.mesh, subject.c_str());
+  const MeshReport report = check_mesh(body.mesh);
+  if (report.boundary_edges > 0)
+    throw InvalidInput(subject,
+                       fmt::format("the mesh is open: {} of its edges have a triangle on one side "
+                                   "only, the first near {}", report.boundary_edges,
+                                   place(report.first_boundary_nm)),
+                       "Close its holes: inside and outside must be defined everywhere");
+  if (!report.closed_and_oriented)
+    throw InvalidInput(
+        subject,
+        report.nonmanifold_edges > 0
+            ? fmt::format("at {} edges several triangles meet without an inside, the first near {}",
+                          report.nonmanifold_edges, place(report.first_nonmanifold_nm))
+            : fmt::format("triangles next to each other face opposite ways at {} edges, the first "
+                          "near {}", report.inconsistent_edges, place(report.first_inconsistent_nm)),
+        "Repair the mesh so that all normals point outward");
+  if (report.signed_volume_nm3 == 0)
+    throw InvalidInput(subject, "the mesh encloses no volume", "Give it thickness");
+}
+
+}  // namespace
+
+void validate(const Specimen& specimen) {
+  for (const Material& m : specimen.materials) validate(m);
+  if (!specimen.substrate && !specimen.height_field && specimen.bodies.empty())
+    throw InvalidInput("specimen", "there is nothing in it", "Add a mesh, a field or a substrate");
+  if (specimen.substrate) {
+    check_material(specimen, specimen.substrate->material, "substrate");
+    if (!std::isfinite(specimen.substrate->top_nm))
+      throw InvalidInput("substrate", "its height is not finite", "Give a length");
+  }
+  if (specimen.height_field) {
+    const std::string& name = specimen.height_field->name;
+    check_material(specimen, specimen.height_field->material, "height field");
+    surf::validate(specimen.height_field->field, name.empty() ? "height field" : name.c_str());
+  }
+  for (const Body& body : specimen.bodies) {
+    check_material(specimen, body.material, body.name.empty() ? "body" : body.name);
+    check_body(body);
+  }
+}
+
+Box extent(const Specimen& specimen) {
+  Box box;
+  if (specimen.height_field) {
+    const HeightField& f = specimen.height_field->field;
+    const auto [low, high] = std::minmax_element(f.z_nm.data().begin(), f.z_nm.data().end());
+    box.extend(Vec3{f.x_nm(0), f.y_nm(0), *low});
+    box.extend(Vec3{f.x_nm(f.z_nm.width() - 1), f.y_nm(f.z_nm.height() - 1), *high});
+  }
+  for (const Body& body : specimen.bodies) box.extend(bounds(body.mesh));
+  if (box.empty() && specimen.substrate) {
+    const double z = specimen.substrate->top_nm;
+    box.extend(Vec3{-500, -500, z});
+    box.extend(Vec3{500, 500, z});
+  }
+  return box;
+}
+
+}  // namespace surf::mc

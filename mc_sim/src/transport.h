@@ -1,0 +1,286 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+// The one transport loop. Geometry and observer are template parameters, so that the loop over a
+// Scene without an observer costs nothing for either.
+//
+// A Geometry has:
+//   State                                     which bodies a point is in; a small value
+//   int material(State) const                 -1: vacuum
+//   double clearance(const Vec3&) const       lower bound of the distance to the nearest surface
+//   Crossing crossing(o, d, length, State&, Surface&)
+//     the first place along the path where the material changes; State follows silent crossings
+//     (into a body inside another of the same material)
+//   double farthest() const                   no path inside matter is this long
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "surf/core/vec3.h"
+#include "surf/mc/barrier.h"
+#include "surf/mc/medium.h"
+#include "surf/mc/observer.h"
+#include "surf/mc/tally.h"
+
+namespace surf::mc {
+
+/// What a path met.
+enum class Crossing { none, surface, wrong_side };
+
+struct Limits {
+  static constexpr std::int64_t max_steps = 100'000'000;   ///< of one primary with its secondaries
+  static constexpr std::size_t max_waiting = 1'000'000;    ///< tracks not yet followed
+};
+
+/// sin and cos of 2 pi `turn` for 0 <= turn < 4, to 2e-10.
+inline void sin_cos_turn(double turn, double& sine, double& cosine) {
+  const double quarters = 4.0 * turn;
+  const int nearest = static_cast<int>(quarters + 0.5);
+  const double r = quarters - nearest;   // quarter turns in [-1/2, 1/2]
+  const double r2 = r * r;
+  const double s = r * (1.5707963267948966 +
+                   r2 * (-0.6459640975062462 +
+                   r2 * (0.07969262624616703 +
+                   r2 * (-0.004681754135318687 + r2 * 1.6044118478735975e-4))));
+  const double c = 1.0 +
+                   r2 * (-1.2337005501361697 +
+                   r2 * (0.25366950790104802 +
+                   r2 * (-0.020863480763352960 + r2 * (9.1926027483942659e-4 -
+                   r2 * 2.5202042373060605e-5))));
+  const double a = (nearest & 1) ? c : s;
+  const double b = (nearest & 1) ? s : c;
+  sine = (nearest & 2) ? -a : a;
+  cosine = ((nearest + 1) & 2) ? -b : b;
+}
+
+/// `direction` turned by the polar angle with this cosine, at the azimuth `turn` about itself.
+/// Basis: Duff et al., JCGT 6(1), 2017.
+inline Vec3 deflected(const Vec3& d, double cos_theta, double turn) {
+  double sine, cosine;
+  sin_cos_turn(turn, sine, cosine);
+  const double sin_theta = std::sqrt(std::max(0.0, 1.0 - cos_theta * cos_theta));
+  const double sx = sin_theta * cosine;
+  const double sy = sin_theta * sine;
+  const double sign = std::copysign(1.0, d.z);
+  const double a = -1.0 / (sign + d.z);
+  const double b = d.x * d.y * a;
+  Vec3 out{sx * (1.0 + sign * d.x * d.x * a) + sy * b + cos_theta * d.x,
+           sx * sign * b + sy * (sign + d.y * d.y * a) + cos_theta * d.y,
+           -sx * sign * d.x - sy * d.y + cos_theta * d.z};
+  return out * (1.5 - 0.5 * dot(out, out));   // one Newton step keeps the length at 1
+}
+
+/// Stands in where nobody watches.
+struct NoObserver {
+  void begin_track(int, int, int, const Vec3&, const Vec3&, double) {}
+  void segment(const Vec3&, const Vec3&, double, double, int) {}
+  void end_track(TrackEnd, const Vec3&, const Vec3&, double) {}
+};
+
+/// Detected electrons of one primary.
+struct PrimaryTotals {
+  int se = 0;
+  int bse = 0;
+  bool hit = false;
+};
+
+template <class Geometry, class Watcher>
+class Transport {
+ public:
+  using State = typename Geometry::State;
+
+  /// `drop_unreachable`: whether electrons that cannot come near a surface any more are absorbed at
+  /// once. It changes no detector's mean or variance, but observers miss the rest of those tracks.
+  Transport(Geometry& geometry, const std::vector<const Medium*>& media, BarrierModel barrier,
+            bool drop_unreachable, Watcher& watcher, Balance& balance)
+      : geometry_(geometry), media_(media), barrier_(barrier), drop_unreachable_(drop_unreachable),
+        watcher_(watcher), balance_(balance) {}
+
+  /// Follows a primary and all its secondaries. `energy_ev` counts as `state`'s material says.
+  PrimaryTotals run(const Vec3& start, const Vec3& direction, double energy_ev, State state,
+                    RandomStream& random) {
+    totals_ = {};
+    steps_ = 0;
+    tracks_ = 0;
+    ++balance_.incident;
+    balance_.incident_energy.add(energy_ev - barrier_of(geometry_.material(state)));
+    waiting_.clear();
+    Track track{start, direction, energy_ev, state, 0, -1};
+    totals_.hit = geometry_.material(state) >= 0;
+    follow(track, random);
+    while (!waiting_.empty()) {
+      track = waiting_.back();
+      waiting_.pop_back();
+      follow(track, random);
+    }
+    if (!totals_.hit) ++balance_.missed;
+    balance_.steps += steps_;
+    return totals_;
+  }
+
+ private:
+  struct Track {
+    Vec3 position;
+    Vec3 direction;
+    double energy;
+    State state;
+    int generation;
+    int parent;
+  };
+
+  double barrier_of(int material) const {
+    return material < 0 ? 0.0 : media_[static_cast<std::size_t>(material)]->barrier_ev();
+  }
+
+  void follow(Track& t, RandomStream& random) {
+    number_ = tracks_++;
+    deposited_ = 0;
+    watcher_.begin_track(number_, t.parent, t.generation, t.position, t.direction, t.energy);
+    for (;;) {
+      const int material = geometry_.material(t.state);
+      const bool goes_on = material < 0 ? fly(t, random) : travel(t, material, random);
+      if (!goes_on) break;
+    }
+    balance_.deposited_energy.add(deposited_);
+  }
+
+  // Straight on through vacuum to the next surface. False when the electron is gone.
+  bool fly(Track& t, RandomStream& random) {
+    ++steps_;
+    ++balance_.rays;
+    typename Geometry::Surface surface;
+    const Crossing met = geometry_.crossing(t.position, t.direction,
+                                            std::numeric_limits<double>::infinity(), t.state,
+                                            surface);
+    if (met == Crossing::wrong_side) return lose(t, LossCause::wrong_side);
+    if (met == Crossing::none) return escape(t);
+    totals_.hit = true;
+    watcher_.segment(t.position, surface.position, t.energy, t.energy, -1);
+    t.position = surface.position;
+    enter(t, surface, random);
+    return true;
+  }
+
+  // Scatters inside a material until it leaves it or stops. False when the electron is gone.
+  bool travel(Track& t, int material, RandomStream& random) {
+    const Medium& medium = *media_[static_cast<std::size_t>(material)];
+    if (t.energy <= medium.cutoff_ev()) return absorb(t, medium);
+    for (;;) {
+      if (++steps_ > Limits::max_steps) return lose(t, LossCause::too_many_steps);
+      // Nothing but this material within this distance: where no surface can be reached, there is
+      // no ray, and where none can be reached ever again, the rest of the cascade is not followed.
+      const double clear = geometry_.clearance(t.position);
+      if (drop_unreachable_ && medium.range_nm(t.energy) < clear) {
+        ++balance_.dropped;
+        return absorb(t, medium);
+      }
+      const Medium::Step step = medium.step(t.energy, -std::log(random.uniform()));
+      if (step.length_nm > clear) {
+        ++balance_.rays;
+        typename Geometry::Surface surface;
+        const Crossing met =
+            geometry_.crossing(t.position, t.direction, step.length_nm, t.state, surface);
+        if (met == Crossing::surface) {
+          const double energy = medium.energy_after(t.energy, surface.distance);
+          advance(t, surface.position, energy, material);
+          enter(t, surface, random);
+          return true;
+        }
+        if (met == Crossing::wrong_side) return lose(t, LossCause::wrong_side);
+        if (!(step.length_nm < geometry_.farthest())) return lose(t, LossCause::no_surface_ahead);
+      }
+      advance(t, t.position + t.direction * step.length_nm, step.energy_ev, material);
+      if (step.stopped) return absorb(t, medium);
+      if (!scatter(t, medium, random)) return false;
+      if (t.energy <= medium.cutoff_ev()) return absorb(t, medium);
+    }
+  }
+
+  void advance(Track& t, const Vec3& to, double energy, int material) {
+    watcher_.segment(t.position, to, t.energy, energy, material);
+    deposited_ += t.energy - energy;
+    t.position = to;
+    t.energy = energy;
+  }
+
+  void enter(Track& t, const typename Geometry::Surface& surface, RandomStream& random) {
+    const double step = barrier_of(geometry_.material(t.state)) -
+                        barrier_of(geometry_.material(surface.state_ahead));
+    if (cross_barrier(barrier_, surface.normal, step, t.direction, t.energy, random)) {
+      t.state = surface.state_ahead;
+      t.position = surface.position_ahead;
+    }
+  }
+
+  bool scatter(Track& t, const Medium& medium, RandomStream& random) {
+    ScatterEvent event;
+    const Scattering& mechanism = medium.choose(t.energy, random.uniform());
+    mechanism.scatter(t.energy, random, event);
+    if (event.has_secondary && event.secondary_energy_ev > medium.cutoff_ev()) {
+      if (waiting_.size() >= Limits::max_waiting)
+        return lose(t, LossCause::too_many_secondaries);
+      ++balance_.generated;
+      balance_.generated_energy.add(event.secondary_energy_ev - medium.barrier_ev() -
+                                    event.energy_loss_ev);
+      waiting_.push_back({t.position,
+                          deflected(t.direction, event.secondary_cos_theta, event.secondary_turn),
+                          event.secondary_energy_ev, t.state, t.generation + 1, number_});
+    } else {
+      deposited_ += event.energy_loss_ev;
+    }
+    if (event.cos_theta != 1.0) t.direction = deflected(t.direction, event.cos_theta, event.turn);
+    t.energy -= event.energy_loss_ev;
+    return true;
+  }
+
+  bool escape(const Track& t) {
+    balance_.escaped_energy.add(t.energy);
+    TrackEnd end = TrackEnd::transmitted;
+    if (!totals_.hit) {
+      ++balance_.transmitted;   // a primary that met nothing
+    } else if (t.energy < se_bse_split_ev) {
+      end = TrackEnd::se;
+      ++balance_.se;
+      ++totals_.se;
+    } else if (t.direction.z >= 0) {
+      end = TrackEnd::bse;
+      ++balance_.bse;
+      ++totals_.bse;
+    } else {
+      ++balance_.transmitted;
+    }
+    watcher_.end_track(end, t.position, t.direction, t.energy);
+    return false;
+  }
+
+  bool absorb(const Track& t, const Medium& medium) {
+    ++balance_.absorbed;
+    deposited_ += t.energy - medium.barrier_ev();
+    watcher_.end_track(TrackEnd::absorbed, t.position, t.direction, t.energy);
+    return false;
+  }
+
+  bool lose(const Track& t, LossCause cause) {
+    ++balance_.lost[static_cast<std::size_t>(cause)];
+    balance_.lost_energy.add(t.energy - barrier_of(geometry_.material(t.state)));
+    watcher_.end_track(TrackEnd::lost, t.position, t.direction, t.energy);
+    return false;
+  }
+
+  Geometry& geometry_;
+  const std::vector<const Medium*>& media_;
+  BarrierModel barrier_;
+  bool drop_unreachable_;
+  Watcher& watcher_;
+  Balance& balance_;
+  PrimaryTotals totals_;
+  std::vector<Track> waiting_;
+  double deposited_ = 0;   // by the current track
+  std::int64_t steps_ = 0;
+  int tracks_ = 0;
+  int number_ = 0;
+};
+
+}  // namespace surf::mc
