@@ -18,7 +18,8 @@ struct ImageWriteOptions {
 /// its name in ImageDescription), PNG (8-bit grey, stretched between the 0.5 and 99.5 percentiles;
 /// the range is in the metadata) and VTI (ParaView, inline binary, one array per channel, placed in
 /// space). Row 0 of the file is the top. Pitch, origin, units and metadata go along where the format
-/// can hold them. The file appears under its name only when it is complete.
+/// can hold them (an empty value counts as none). The file appears under its name only when it is
+/// complete.
 /// Throws FileError, UsageError for an unknown extension or channel, Unsupported where this build
 /// lacks the format.
 void write_image(const std::filesystem::path& path, const Image& image,
@@ -29,12 +30,19 @@ void check_image_target(const std::filesystem::path& path, const Image* image = 
                         const ImageWriteOptions& options = {});
 
 /// Reads what `write_image` wrote (EXR, TIFF, PNG, VTI) and plain images of these formats: channels
-/// named by the file or "L", "R", "G", "B", "A"; pitch 1 nm where the file has none.
+/// named by the file or "L", "R", "G", "B", "A"; pitch 1 nm where the file has none; of a plain TIFF
+/// the first page. Whole numbers stay as they are stored (0 to 255 ...); a PNG of ours is stretched
+/// back to values, as well as 8 bits allow. Throws FileError.
 Image read_image(const std::filesystem::path& path);
 
 bool is_image_file(const std::filesystem::path& path);
 
-/// One channel of an image as heights in nm: values times `z_unit_nm`.
+/// One channel of an image (empty: the first) as heights in nm: values times `z_unit_nm`. Pixels
+/// that are not finite, or 0 in a channel "valid", are holes. Throws UsageError for an unknown
+/// channel.
 HeightField to_height_field(const Image& image, const std::string& channel, double z_unit_nm = 1);
+
+/// The image libraries at work, as "OpenImageIO 2.4.7, VTK 9.1.0".
+std::string image_library_versions();
 
 }  // namespace surf::io

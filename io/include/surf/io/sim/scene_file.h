@@ -36,24 +36,37 @@ struct SceneFile {
 
 /// Reads a scene in TOML. Paths in it are relative to the scene file. Unknown keys are errors, with
 /// the nearest known key suggested. Throws FileError with line and column, UsageError for values.
+/// Lengths, energies and angles are numbers (nm, eV, degrees) or texts with a unit; several lengths
+/// are an array or a text with commas. All keys, with defaults where they have one:
 ///
 ///     title = "80 nm mesa"
 ///     [beam]
-///     energy = "1keV"            # tilt, azimuth, spot
-///     [scan]
-///     size = "256x256"           # pixel_size = "1nm", region = "-96,-96,96,96"
+///     energy = "1keV"            # tilt = 0, azimuth = 0, spot = 0
+///     [scan]                     # see ScanRequest
+///     size = "256x256"           # or 256; pixel_size = "1nm" or "1nm x 2nm";
+///                                # region = "-96,-96,96,96" or [-96, -96, 96, 96]
 ///     [simulation]
-///     electrons = 200            # seed, physics = "elastic=mott"
+///     electrons = 200            # per pixel; seed = 1, physics = "elastic=mott", cutoff = "5eV"
 ///     [substrate]
-///     material = "Si"            # z = "0nm"
+///     material = "Si"            # z = 0: the height of its top
 ///     [height_field]
 ///     material = "Si"
 ///     edge = "mirror"            # mirror | flat | periodic
-///     shape = "mesa"             # mesa | trench | rough, with the parameters of make_mesa ...;
-///                                # or file = "scan.tif", channel, pixel_size, z_unit
+///     shape = "mesa"             # height, top_width, wall_run = 0; or
+///                                # "trench": trench_depth, bottom_width, wall_run = 0; or
+///                                # "rough": rms, correlation, seed = 1;
+///                                # all: width = 400, depth = width, pitch = 2 (see FieldExtent)
+///     # or, instead of shape:
+///     # file = "scan.tif"        # channel: the first; z_unit = "nm" or a length per grey level;
+///                                # pixel_size replaces the file's and centres the field on (0, 0)
 ///     [[body]]
-///     material = "Au"
-///     mesh = "cube.stl"          # with unit, scale, move, rotate_z; or shape = "box" | "sphere"
+///     material = "Au"            # name: the file's or the shape's
+///     mesh = "cube.stl"          # unit = "nm"
+///     # or, instead of mesh:
+///     # shape = "box"            # lower = [x, y, z], upper, subdivisions = 1; or
+///                                # "sphere": radius, center = [0, 0, 0], subdivisions = 4
+///     # any body is then scaled about the origin, turned about z (counter-clockwise seen from
+///     # above) and moved, in this order: scale = 1, rotate_z = 0, move = [0, 0, 0]
 SceneFile read_scene(const std::filesystem::path& path);
 
 /// Whether the name ends in ".toml".

@@ -1,0 +1,210 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "surf/io/image_file.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include "image_formats.h"
+#include "surf/core/error.h"
+#include "surf/core/units.h"
+#include "surf/io/files.h"
+
+namespace surf::io {
+namespace {
+
+enum class Format { none, exr, tiff, png, vti };
+
+Format format_of(const std::filesystem::path& path) {
+  std::string extension = path.extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  if (extension == ".exr") return Format::exr;
+  if (extension == ".tif" || extension == ".tiff") return Format::tiff;
+  if (extension == ".png") return Format::png;
+  if (extension == ".vti") return Format::vti;
+  return Format::none;
+}
+
+Format known_format_of(const std::filesystem::path& path) {
+  const Format format = format_of(path);
+  if (format == Format::none) {
+    throw UsageError(path.string(), fmt::format("'{}' is not an image format known here",
+                                                path.extension().string()),
+                     "Use .exr, .tif, .png or .vti");
+  }
+  if (format == Format::vti && !has_vti()) {
+    throw Unsupported(path.string(), "this semsurf was built without VTK, which VTI needs",
+                      "Use .exr or .tif, or build with VTK");
+  }
+  return format;
+}
+
+std::string channel_names(const Image& image) {
+  std::string names;
+  for (const Channel& channel : image.channels) {
+    names += (names.empty() ? "" : ", ") + channel.name;
+  }
+  return names;
+}
+
+const Channel& find_channel(const Image& image, const std::string& name,
+                            const std::string& subject) {
+  if (name.empty() && !image.channels.empty()) return image.channels.front();
+  const Channel* const channel = image.find(name);
+  if (!channel) {
+    throw UsageError(subject, fmt::format("there is no channel '{}'", name),
+                     fmt::format("Choose one of: {}", channel_names(image)));
+  }
+  return *channel;
+}
+
+bool has_control_character(const std::string& text) {
+  return std::any_of(text.begin(), text.end(), [](unsigned char c) { return c < ' '; });
+}
+
+/// What all formats can hold.
+void check_image(const Image& image, const std::string& file) {
+  validate(image, file.c_str());
+  if (image.width() < 1 || image.height() < 1) {
+    throw InvalidInput(file, "the image has no pixels", "Give it at least one");
+  }
+  for (const Channel& channel : image.channels) {
+    if (has_control_character(channel.name) || has_control_character(channel.unit)) {
+      throw InvalidInput(file, "the name or unit of a channel holds a control character",
+                         "Use plain text");
+    }
+  }
+  for (const auto& [key, value] : image.metadata) {
+    if (key.empty() || has_control_character(key) || value.find('\0') != std::string::npos) {
+      throw InvalidInput(file, fmt::format("the metadata '{}' cannot be stored", key),
+                         "Use plain text");
+    }
+  }
+}
+
+struct Stretch {
+  float low = 0;    ///< shown as 0
+  float high = 0;   ///< shown as 255
+};
+
+/// The 0.5 and 99.5 percentiles, or the extremes where these coincide.
+Stretch find_stretch(std::vector<float> values) {
+  if (values.empty()) return {};
+  const auto at = [&](double fraction) {
+    const auto rank = static_cast<std::ptrdiff_t>(
+        std::lround(fraction * static_cast<double>(values.size() - 1)));
+    std::nth_element(values.begin(), values.begin() + rank, values.end());
+    return values[static_cast<std::size_t>(rank)];
+  };
+  const Stretch stretch{at(0.005), at(0.995)};
+  return stretch.high > stretch.low ? stretch : Stretch{at(0), at(1)};
+}
+
+unsigned char grey_of(float value, const Stretch& stretch) {
+  if (!(stretch.high > stretch.low)) return 128;
+  const double scale = double{stretch.high} - double{stretch.low};
+  const double t = (double{value} - double{stretch.low}) / scale;
+  return static_cast<unsigned char>(std::lround(255 * std::clamp(t, 0.0, 1.0)));
+}
+
+void write_grey_picture(const std::filesystem::path& target, const std::string& file,
+                        const Image& image, const Channel& channel) {
+  const Channel* const mask = channel.name == "valid" ? nullptr : image.find("valid");
+  const std::vector<float>& values = channel.values.data();
+  const auto counts = [&](std::size_t i) {
+    return std::isfinite(values[i]) && (!mask || mask->values.data()[i] != 0);
+  };
+  std::vector<float> counted;
+  counted.reserve(values.size());
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (counts(i)) counted.push_back(values[i]);
+  }
+  const Stretch stretch = find_stretch(std::move(counted));
+
+  Grid<unsigned char> grey(image.width(), image.height());
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    grey.data()[i] = counts(i) ? grey_of(values[i], stretch) : static_cast<unsigned char>(0);
+  }
+  Image shown = without_channels(image);
+  shown.channels.push_back({channel.name, channel.unit, {}});
+  shown.metadata[stretch_low_key] = format_exact(double{stretch.low});
+  shown.metadata[stretch_high_key] = format_exact(double{stretch.high});
+  write_png(target, file, shown, grey);
+}
+
+}  // namespace
+
+void write_image(const std::filesystem::path& path, const Image& image,
+                 const ImageWriteOptions& options) {
+  const std::string file = path.string();
+  const Format format = known_format_of(path);
+  check_image(image, file);
+  const Channel& channel = find_channel(image, options.channel, file);
+  write_atomically(path, [&](const std::filesystem::path& temporary) {
+    switch (format) {
+      case Format::exr: write_exr(temporary, file, image); break;
+      case Format::tiff: write_tiff(temporary, file, image); break;
+      case Format::png: write_grey_picture(temporary, file, image, channel); break;
+      case Format::vti: write_vti(temporary, file, image); break;
+      case Format::none: break;
+    }
+  });
+}
+
+void check_image_target(const std::filesystem::path& path, const Image* image,
+                        const ImageWriteOptions& options) {
+  known_format_of(path);
+  if (image) find_channel(*image, options.channel, path.string());
+  check_writable(path);
+}
+
+Image read_image(const std::filesystem::path& path) {
+  const Format format = known_format_of(path);
+  // Complains about missing files and folders in our words, not a library's.
+  if (!std::filesystem::is_regular_file(path)) read_file(path, 0);
+  Image image = format == Format::vti ? read_vti(path) : read_raster(path);
+  try {
+    validate(image, path.string().c_str());
+  } catch (const InvalidInput& error) {
+    throw FileError(error.subject(), error.reason(), error.remedy());
+  }
+  return image;
+}
+
+bool is_image_file(const std::filesystem::path& path) { return format_of(path) != Format::none; }
+
+HeightField to_height_field(const Image& image, const std::string& channel, double z_unit_nm) {
+  const Channel& heights = find_channel(image, channel, "height field");
+  const Channel* const mask = image.find("valid");
+  HeightField field;
+  field.pitch_x_nm = image.pitch_x_nm;
+  field.pitch_y_nm = image.pitch_y_nm;
+  field.origin_x_nm = image.origin_x_nm;
+  field.origin_y_nm = image.origin_y_nm;
+  field.z_nm = Grid<double>(image.width(), image.height());
+  Grid<unsigned char> valid(image.width(), image.height(), 1);
+  bool has_holes = false;
+  for (std::size_t i = 0; i < heights.values.size(); ++i) {
+    const float value = heights.values.data()[i];
+    if (!std::isfinite(value) || (mask && mask->values.data()[i] == 0)) {
+      valid.data()[i] = 0;
+      has_holes = true;
+    } else {
+      field.z_nm.data()[i] = double{value} * z_unit_nm;
+    }
+  }
+  if (has_holes) field.valid = std::move(valid);
+  validate(field, heights.name.c_str());
+  return field;
+}
+
+std::string image_library_versions() {
+  return raster_library_version() + (has_vti() ? ", " + vti_library_version() : std::string{});
+}
+
+}  // namespace surf::io

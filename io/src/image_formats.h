@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <string>
+#include <string_view>
+
+#include "surf/core/image.h"
+
+namespace surf::io {
+
+// Behind read_image and write_image: one pair of functions per library. Writers get the name to
+// write to and the name for messages.
+
+void write_exr(const std::filesystem::path& target, const std::string& file, const Image& image);
+void write_tiff(const std::filesystem::path& target, const std::string& file, const Image& image);
+void write_vti(const std::filesystem::path& target, const std::string& file, const Image& image);
+
+/// A picture in grey, 0 is black. `image` gives the text, with the name and unit of one channel.
+void write_png(const std::filesystem::path& target, const std::string& file, const Image& image,
+               const Grid<unsigned char>& grey);
+
+/// Throws FileError where a TIFF file is cut off, which libtiff takes for missing text and black.
+void check_tiff_structure(const std::filesystem::path& path);
+
+/// EXR, TIFF and PNG.
+Image read_raster(const std::filesystem::path& path);
+Image read_vti(const std::filesystem::path& path);
+
+/// Whether this build can read and write VTI.
+bool has_vti();
+
+std::string raster_library_version();
+/// Empty without VTK.
+std::string vti_library_version();
+
+// How an image's placement and metadata become text in files. Metadata KEY is stored as
+// "semsurf:KEY" (no file format gives that prefix a meaning of its own); placement as
+// "image:pitch_x_nm" and so on; names and units of the channels, in their order, as
+// "image:channels" with one line "NAME<tab>UNIT" each. Empty values are left out, as OpenImageIO
+// loses them.
+
+/// Placement and metadata alone.
+Image without_channels(const Image& image);
+
+using Attributes = std::map<std::string, std::string>;
+
+Attributes to_attributes(const Image& image);
+
+/// Restores what `to_attributes` stored: placement, metadata, units and order of the channels that
+/// `image` already has. Unknown attributes are ignored.
+void apply_attributes(const Attributes& attributes, const std::string& file, Image& image);
+
+/// All attributes as lines "KEY=VALUE", for formats that have one text per picture.
+std::string to_description(const Image& image);
+Attributes parse_description(std::string_view text);
+
+// What a PNG's metadata says of its stretch: the values shown as black and as white.
+inline constexpr const char* stretch_low_key = "png.stretch_low";
+inline constexpr const char* stretch_high_key = "png.stretch_high";
+
+}  // namespace surf::io

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "surf/io/mesh_file.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+
+#include "mesh_formats.h"
+#include "surf/core/error.h"
+#include "surf/core/units.h"
+#include "surf/io/files.h"
+
+namespace surf::io {
+namespace {
+
+std::string lower_extension(const std::filesystem::path& path) {
+  std::string extension = path.extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return extension;
+}
+
+TriangleMesh parse(const std::filesystem::path& path, std::string_view content) {
+  const std::string file = path.string();
+  const std::string extension = lower_extension(path);
+  if (content.empty()) {
+    throw FileError(file, "the file is empty", "Export the mesh again");
+  }
+  if (is_ply(content)) return parse_ply(file, content);
+  if (is_off(content)) return parse_off(file, content);
+  if (is_binary_stl(content) || is_text_stl(content)) return parse_stl(file, content);
+  if (extension == ".stl") return parse_stl(file, content);
+  if (extension == ".obj") return parse_obj(file, content);
+  if (extension == ".ply") return parse_ply(file, content);
+  if (extension == ".off") return parse_off(file, content);
+  throw FileError(file, "neither its content nor its name is that of a mesh format known here",
+                  "Use STL, OBJ, PLY or OFF");
+}
+
+}  // namespace
+
+TriangleMesh read_mesh(const std::filesystem::path& path, double unit_nm) {
+  const std::string file = path.string();
+  if (!(unit_nm > 0) || !std::isfinite(unit_nm)) {
+    throw UsageError(file, fmt::format("{} nm cannot be the unit of a mesh", unit_nm),
+                     "Give a positive length");
+  }
+  TriangleMesh mesh;
+  {
+    const std::string content = read_file(path);
+    mesh = parse(path, content);
+  }
+  if (mesh.triangles.empty()) {
+    throw FileError(file, "there are no triangles in it",
+                    "Export a surface, not points or an empty scene");
+  }
+  if (unit_nm != 1) transform(mesh, unit_nm, {});
+  for (const Vec3& vertex : mesh.vertices_nm) {
+    if (!is_finite(vertex)) {
+      throw FileError(file, fmt::format("its coordinates are too large for a unit of {} nm",
+                                        format_exact(unit_nm)),
+                      "Check the unit");
+    }
+  }
+  return merge_equal_vertices(mesh);
+}
+
+bool is_mesh_file(const std::filesystem::path& path) {
+  const std::string extension = lower_extension(path);
+  return extension == ".stl" || extension == ".obj" || extension == ".ply" || extension == ".off";
+}
+
+}  // namespace surf::io

@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <utility>
+
+#include "mesh_formats.h"
+#include "text_scanner.h"
+
+namespace surf::io {
+namespace {
+
+/// Statements without geometry that matters here.
+bool is_ignored(std::string_view keyword) {
+  static constexpr std::array<std::string_view, 23> ignored{
+      "vn",     "vt",     "vp",    "l",        "p",        "o",          "g",         "s",
+      "mg",     "usemtl", "mtllib", "usemap",  "maplib",   "bevel",      "c_interp",  "d_interp",
+      "lod",    "shadow_obj", "trace_obj", "call", "csh",  "ctech",      "stech"};
+  return std::find(ignored.begin(), ignored.end(), keyword) != ignored.end();
+}
+
+bool is_free_form(std::string_view keyword) {
+  static constexpr std::array<std::string_view, 13> free_form{
+      "cstype", "deg", "bmat", "step", "curv", "curv2", "surf",
+      "parm",   "trim", "hole", "scrv", "sp",   "con"};
+  return std::find(free_form.begin(), free_form.end(), keyword) != free_form.end();
+}
+
+/// The vertex of a corner "7", "7/1", "7//3", "7/1/3", "-1": its index from 0. May point behind
+/// the vertices read so far, as OBJ allows it; the caller checks at the end.
+std::uint32_t corner(TextScanner& scanner, std::string_view word, std::size_t vertices) {
+  std::int64_t number = 0;
+  const char* const end = word.data() + word.size();
+  const auto [stop, error] = std::from_chars(word.data(), end, number);
+  const std::string_view rest(stop, static_cast<std::size_t>(end - stop));
+  const bool rest_fits = rest.empty() || (rest[0] == '/' && rest.size() < 40 &&
+                                          rest.find_first_not_of("/-0123456789") == rest.npos &&
+                                          std::count(rest.begin(), rest.end(), '/') <= 2);
+  if (error != std::errc{} || !rest_fits) {
+    scanner.fail(fmt::format("'{}' is not a corner of a face", shown(word)));
+  }
+  const auto count = static_cast<std::int64_t>(vertices);
+  const std::int64_t index = number > 0 ? number - 1 : count + number;
+  if (number == 0 || index < 0 || index >= static_cast<std::int64_t>(max_mesh_vertices)) {
+    scanner.fail(
+        fmt::format("a face names vertex {}, and {} are defined so far", number, vertices));
+  }
+  return static_cast<std::uint32_t>(index);
+}
+
+class ObjParser {
+ public:
+  ObjParser(const std::string& file, std::string_view content)
+      : scanner_(file, content, {.comment = '#', .continuation = true}) {}
+
+  TriangleMesh parse() {
+    while (scanner_.next_filled_line()) statement(scanner_.word());
+    if (highest_ >= mesh_.vertices_nm.size() && !mesh_.triangles.empty()) fail_at_highest();
+    return std::move(mesh_);
+  }
+
+ private:
+  void statement(std::string_view keyword) {
+    if (keyword == "v") {
+      vertex();
+    } else if (keyword == "f" || keyword == "fo") {
+      face();
+    } else if (is_ignored(keyword)) {
+      // Continued lines need the scanner's own idea of a line's end.
+      while (!scanner_.at_line_end()) scanner_.word();
+    } else if (is_free_form(keyword)) {
+      scanner_.fail(fmt::format("'{}' belongs to a free-form surface", keyword),
+                    "Export polygons: only they can be read");
+    } else {
+      scanner_.fail(fmt::format("'{}' is not an OBJ statement", shown(keyword)),
+                    "Check that this is an OBJ file");
+    }
+  }
+
+  void vertex() {
+    const double x = scanner_.number("the x of a vertex");
+    const double y = scanner_.number("the y of a vertex");
+    const double z = scanner_.number("the z of a vertex");
+    while (!scanner_.at_line_end()) scanner_.word();  // a weight or a colour
+    mesh_.vertices_nm.push_back({x, y, z});
+  }
+
+  void face() {
+    const std::size_t place = scanner_.position();
+    corners_.clear();
+    while (!scanner_.at_line_end()) {
+      corners_.push_back(corner(scanner_, scanner_.word(), mesh_.vertices_nm.size()));
+    }
+    if (corners_.size() < 3) {
+      scanner_.fail(fmt::format("a face has {} corners", corners_.size()),
+                    "Remove it: a face needs three or more");
+    }
+    const std::uint32_t highest = *std::max_element(corners_.begin(), corners_.end());
+    if (highest >= highest_) {
+      highest_ = highest;
+      highest_place_ = place;
+    }
+    add_fan(corners_, mesh_.triangles);
+  }
+
+  [[noreturn]] void fail_at_highest() {
+    scanner_.go_to(highest_place_);
+    scanner_.fail(fmt::format("a face names vertex {}, but the file has only {}",
+                              std::uint64_t{highest_} + 1, mesh_.vertices_nm.size()));
+  }
+
+  TextScanner scanner_;
+  TriangleMesh mesh_;
+  std::vector<std::uint32_t> corners_;
+  std::uint32_t highest_ = 0;
+  std::size_t highest_place_ = 0;
+};
+
+}  // namespace
+
+TriangleMesh parse_obj(const std::string& file, std::string_view content) {
+  return ObjParser(file, content).parse();
+}
+
+}  // namespace surf::io

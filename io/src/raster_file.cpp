@@ -1,0 +1,287 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// EXR, TIFF and PNG. The only source that knows OpenImageIO.
+#include <OpenImageIO/imageio.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <iterator>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "image_formats.h"
+#include "surf/core/error.h"
+
+namespace surf::io {
+namespace {
+
+constexpr std::int64_t max_values = std::int64_t{1} << 31;
+constexpr int rows_at_a_time = 64;
+constexpr const char* pages_key = "image:pages";
+
+/// Debian's OpenImageIO prints notes for its developers otherwise.
+void keep_quiet() {
+  [[maybe_unused]] static const bool done = OIIO::attribute("debug", 0);
+}
+
+std::unique_ptr<OIIO::ImageOutput> create_output(const char* format, const std::string& file) {
+  keep_quiet();
+  std::unique_ptr<OIIO::ImageOutput> output = OIIO::ImageOutput::create(format);
+  if (!output) {
+    throw Unsupported(file, fmt::format("OpenImageIO cannot write {} here ({})", format,
+                                        OIIO::geterror()),
+                      "Choose another format");
+  }
+  return output;
+}
+
+/// OpenImageIO gives files without a date the present one. A date that is no text is left out.
+void leave_out_date(OIIO::ImageSpec& spec) { spec.attribute("DateTime", 0); }
+
+void check_written(bool done, OIIO::ImageOutput& output, const std::string& file) {
+  if (done) return;
+  throw FileError(file, fmt::format("cannot be written: {}", output.geterror()),
+                  "Check the free space, or choose another format or place");
+}
+
+/// Pixels per centimetre, where the format's tags can hold that.
+void set_resolution(OIIO::ImageSpec& spec, const Image& image, double highest) {
+  constexpr double nm_per_cm = 1e7;
+  const double x = nm_per_cm / image.pitch_x_nm;
+  const double y = nm_per_cm / image.pitch_y_nm;
+  if (std::min(x, y) < 1 || std::max(x, y) > highest) return;
+  spec.attribute("ResolutionUnit", "cm");
+  spec.attribute("XResolution", static_cast<float>(x));
+  spec.attribute("YResolution", static_cast<float>(y));
+  // Without it OpenImageIO makes both resolutions equal.
+  spec.attribute("PixelAspectRatio", static_cast<float>(y) / static_cast<float>(x));
+}
+
+/// Writes the channels interleaved, the top row first.
+void write_rows(OIIO::ImageOutput& output, const std::string& file,
+                const std::vector<const Grid<float>*>& channels) {
+  const int width = channels.front()->width();
+  const int height = channels.front()->height();
+  std::vector<float> rows;
+  for (int first = 0; first < height; first += rows_at_a_time) {
+    const int end = std::min(first + rows_at_a_time, height);
+    rows.clear();
+    for (int row = first; row < end; ++row) {
+      for (int x = 0; x < width; ++x) {
+        for (const Grid<float>* channel : channels) rows.push_back((*channel)(x, height - 1 - row));
+      }
+    }
+    check_written(output.write_scanlines(first, end, 0, OIIO::TypeDesc::FLOAT, rows.data()), output,
+                  file);
+  }
+}
+
+/// Values of all channels, interleaved, the top row first. Whole numbers are left as they are.
+std::vector<float> read_values(OIIO::ImageInput& input, const std::string& file) {
+  const OIIO::ImageSpec& spec = input.spec();
+  if (spec.deep || spec.depth > 1 || spec.width < 1 || spec.height < 1 || spec.nchannels < 1 ||
+      std::int64_t{spec.width} * spec.height > max_values / spec.nchannels) {
+    throw FileError(file,
+                    fmt::format("{} x {} x {} pixels with {} channels cannot be used", spec.width,
+                                spec.height, spec.depth, spec.nchannels),
+                    "Use a flat image of ordinary size");
+  }
+  if (spec.get_int_attribute("Orientation", 1) != 1) {
+    throw FileError(file, "its tag says that it is to be turned or mirrored",
+                    "Save it upright, without an orientation tag");
+  }
+  std::vector<float> values(static_cast<std::size_t>(spec.width) *
+                            static_cast<std::size_t>(spec.height) *
+                            static_cast<std::size_t>(spec.nchannels));
+  if (!input.read_image(input.current_subimage(), 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT,
+                        values.data())) {
+    throw FileError(file, fmt::format("its pixels cannot be read: {}", input.geterror()),
+                    "It is cut off or damaged: copy or write it again");
+  }
+  double full_scale = 0;   // OpenImageIO maps whole numbers to 0 ... 1 or -1 ... 1
+  switch (spec.format.basetype) {
+    case OIIO::TypeDesc::UINT8: full_scale = 0xff; break;
+    case OIIO::TypeDesc::INT8: full_scale = 0x7f; break;
+    case OIIO::TypeDesc::UINT16: full_scale = 0xffff; break;
+    case OIIO::TypeDesc::INT16: full_scale = 0x7fff; break;
+    case OIIO::TypeDesc::UINT32: full_scale = 0xffffffffU; break;
+    case OIIO::TypeDesc::INT32: full_scale = 0x7fffffff; break;
+    default: return values;
+  }
+  for (float& value : values) value = static_cast<float>(std::round(double{value} * full_scale));
+  return values;
+}
+
+Grid<float> extract_channel(const OIIO::ImageSpec& spec, const std::vector<float>& values, int c) {
+  Grid<float> grid(spec.width, spec.height);
+  std::size_t i = static_cast<std::size_t>(c);
+  for (int row = 0; row < spec.height; ++row) {
+    for (int x = 0; x < spec.width; ++x, i += static_cast<std::size_t>(spec.nchannels)) {
+      grid(x, spec.height - 1 - row) = values[i];
+    }
+  }
+  return grid;
+}
+
+Attributes string_attributes(const OIIO::ImageSpec& spec) {
+  Attributes attributes;
+  for (const OIIO::ParamValue& attribute : spec.extra_attribs) {
+    if (attribute.type() != OIIO::TypeDesc::STRING) continue;
+    attributes[attribute.name().string()] = attribute.get_string();
+  }
+  return attributes;
+}
+
+/// Adds the channels of the current subimage under the file's names, "L" for lone grey.
+void append_channels(OIIO::ImageInput& input, const std::string& file, Image& image) {
+  const OIIO::ImageSpec spec = input.spec();
+  const std::vector<float> values = read_values(input, file);
+  const bool is_exr = std::string_view(input.format_name()) == "openexr";
+  for (int c = 0; c < spec.nchannels; ++c) {
+    std::string name = spec.channel_name(c);
+    if (!is_exr && spec.nchannels <= 2 && name == "Y") name = "L";
+    image.channels.push_back({name, "1", extract_channel(spec, values, c)});
+  }
+}
+
+Attributes attributes_of(const OIIO::ImageSpec& spec) {
+  Attributes attributes = string_attributes(spec);
+  attributes.merge(parse_description(spec.get_string_attribute("ImageDescription")));
+  return attributes;
+}
+
+/// The current subimage with what its text says.
+Image read_page(OIIO::ImageInput& input, const std::string& file) {
+  Image page;
+  append_channels(input, file, page);
+  const Attributes attributes = attributes_of(input.spec());
+  const auto list = attributes.find("image:channels");
+  if (list != attributes.end() && page.channels.size() == 1) {
+    page.channels.front().name = list->second.substr(0, list->second.find('\t'));
+  }
+  apply_attributes(attributes, file, page);
+  return page;
+}
+
+/// How many pages semsurf wrote; 1 for files of others.
+int page_count(const OIIO::ImageSpec& spec) {
+  const Attributes attributes = attributes_of(spec);
+  const auto found = attributes.find(pages_key);
+  int pages = 1;
+  if (found != attributes.end()) {
+    std::from_chars(found->second.data(), found->second.data() + found->second.size(), pages);
+  }
+  return pages;
+}
+
+/// From grey levels back to values, as well as eight bits allow.
+void undo_stretch(Image& image) {
+  const auto number = [&](const char* key, double& value) {
+    const auto found = image.metadata.find(key);
+    if (found == image.metadata.end()) return false;
+    const std::string& text = found->second;
+    return std::from_chars(text.data(), text.data() + text.size(), value).ec == std::errc{} &&
+           std::isfinite(value);
+  };
+  double low = 0;
+  double high = 0;
+  if (!number(stretch_low_key, low) || !number(stretch_high_key, high)) return;
+  for (float& value : image.channels.front().values.data()) {
+    value = static_cast<float>(low + (high - low) * double{value} / 255);
+  }
+}
+
+void close_output(OIIO::ImageOutput& output, const std::string& file) {
+  check_written(output.close(), output, file);
+}
+
+}  // namespace
+
+std::string raster_library_version() {
+  const int v = OIIO::openimageio_version();
+  return fmt::format("OpenImageIO {}.{}.{}", v / 10000, v / 100 % 100, v % 100);
+}
+
+void write_exr(const std::filesystem::path& target, const std::string& file, const Image& image) {
+  const auto output = create_output("openexr", file);
+  OIIO::ImageSpec spec(image.width(), image.height(), static_cast<int>(image.channels.size()),
+                       OIIO::TypeDesc::FLOAT);
+  spec.channelnames.clear();
+  std::vector<const Grid<float>*> channels;
+  for (const Channel& channel : image.channels) {
+    spec.channelnames.push_back(channel.name);
+    channels.push_back(&channel.values);
+  }
+  spec.attribute("compression", "zip");
+  leave_out_date(spec);
+  for (const auto& [key, value] : to_attributes(image)) spec.attribute(key, value);
+  check_written(output->open(target.string(), spec), *output, file);
+  write_rows(*output, file, channels);
+  close_output(*output, file);
+}
+
+void write_tiff(const std::filesystem::path& target, const std::string& file, const Image& image) {
+  const auto output = create_output("tiff", file);
+  const double bytes = 4.0 * image.width() * image.height() *
+                       static_cast<double>(image.channels.size());
+  auto mode = OIIO::ImageOutput::Create;
+  for (const Channel& channel : image.channels) {
+    OIIO::ImageSpec spec(image.width(), image.height(), 1, OIIO::TypeDesc::FLOAT);
+    Image page = without_channels(image);
+    page.channels.push_back({channel.name, channel.unit, {}});
+    spec.attribute("ImageDescription", fmt::format("{}{}={}\n", to_description(page), pages_key,
+                                                   image.channels.size()));
+    leave_out_date(spec);
+    spec.attribute("compression", "none");   // ImageJ and others cannot read compressed floats
+    if (bytes > 4e9) spec.attribute("tiff:bigtiff", 1);
+    set_resolution(spec, image, 4e9);
+    check_written(output->open(target.string(), spec, mode), *output, file);
+    write_rows(*output, file, {&channel.values});
+    mode = OIIO::ImageOutput::AppendSubimage;
+  }
+  close_output(*output, file);
+}
+
+void write_png(const std::filesystem::path& target, const std::string& file, const Image& image,
+               const Grid<unsigned char>& grey) {
+  const auto output = create_output("png", file);
+  OIIO::ImageSpec spec(grey.width(), grey.height(), 1, OIIO::TypeDesc::UINT8);
+  spec.attribute("ImageDescription", to_description(image));
+  set_resolution(spec, image, 2e7);
+  check_written(output->open(target.string(), spec), *output, file);
+  for (int row = 0; row < grey.height(); ++row) {
+    const unsigned char* const values =
+        grey.data().data() + static_cast<std::ptrdiff_t>(grey.height() - 1 - row) * grey.width();
+    check_written(output->write_scanline(row, 0, OIIO::TypeDesc::UINT8, values), *output, file);
+  }
+  close_output(*output, file);
+}
+
+Image read_raster(const std::filesystem::path& path) {
+  const std::string file = path.string();
+  keep_quiet();
+  OIIO::ImageSpec config;
+  config.attribute("oiio:UnassociatedAlpha", 1);
+  const auto input = OIIO::ImageInput::open(file, &config);
+  if (!input) {
+    throw FileError(file, fmt::format("cannot be read as an image: {}", OIIO::geterror()),
+                    "Check that its content fits its name, or write it again");
+  }
+  if (std::string_view(input->format_name()) == "tiff") check_tiff_structure(path);
+  const int pages = page_count(input->spec());
+  Image image = read_page(*input, file);
+  if (std::string_view(input->format_name()) == "png") undo_stretch(image);
+  for (int next = 1; next < pages; ++next) {
+    if (!input->seek_subimage(next, 0)) {
+      throw FileError(file, fmt::format("page {} of {} is missing", next + 1, pages),
+                      "It is cut off or damaged: copy or write it again");
+    }
+    Image page = read_page(*input, file);
+    std::move(page.channels.begin(), page.channels.end(), std::back_inserter(image.channels));
+  }
+  return image;
+}
+
+}  // namespace surf::io

@@ -1,0 +1,236 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sim/scene_parts.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <limits>
+
+#include "sim/suggest.h"
+#include "surf/core/units.h"
+#include "surf/io/image_file.h"
+#include "surf/io/mesh_file.h"
+#include "surf/io/sim/materials.h"
+#include "surf/mesh/shapes.h"
+
+namespace surf::io {
+namespace {
+
+double required_length(const TomlTable& table, std::string_view key, std::string_view why) {
+  table.require(key, why);
+  return *table.length_nm(key);
+}
+
+int small_integer(const TomlTable& table, std::string_view key, int fallback) {
+  const std::int64_t value = table.integer(key).value_or(fallback);
+  if (value < std::numeric_limits<int>::min() || value > std::numeric_limits<int>::max()) {
+    throw UsageError(table.place(key), fmt::format("{} is too large", value), "Give a smaller one");
+  }
+  return static_cast<int>(value);
+}
+
+[[noreturn]] void refuse_shape(const TomlTable& table, const std::string& shape,
+                               std::vector<std::string> known) {
+  const auto nearest = nearest_first(shape, std::move(known));
+  throw UsageError(table.place("shape"), fmt::format("there is no shape '{}' here", shape),
+                   fmt::format("Choose one of: {}", join(nearest)));
+}
+
+Edge read_edge(const TomlTable& table) {
+  const std::string edge = table.text("edge").value_or("mirror");
+  if (edge == "mirror") return Edge::mirror;
+  if (edge == "flat") return Edge::flat;
+  if (edge == "periodic") return Edge::periodic;
+  throw UsageError(table.place("edge"), fmt::format("'{}' is not a way to go on", edge),
+                   fmt::format("Choose one of: {}",
+                               join(nearest_first(edge, {"mirror", "flat", "periodic"}))));
+}
+
+FieldExtent read_extent(const TomlTable& table) {
+  FieldExtent extent;
+  extent.width_nm = table.length_nm("width").value_or(extent.width_nm);
+  extent.depth_nm = table.length_nm("depth").value_or(extent.width_nm);
+  extent.pitch_nm = table.length_nm("pitch").value_or(extent.pitch_nm);
+  return extent;
+}
+
+HeightField make_mesa_field(const TomlTable& table) {
+  table.allow({"material", "edge", "shape", "width", "depth", "pitch", "height", "top_width",
+               "wall_run"});
+  const double height = required_length(table, "height", "a mesa has one");
+  const double top_width = required_length(table, "top_width", "a mesa has one");
+  return make_mesa(read_extent(table), height, top_width, table.length_nm("wall_run").value_or(0));
+}
+
+HeightField make_trench_field(const TomlTable& table) {
+  table.allow({"material", "edge", "shape", "width", "depth", "pitch", "trench_depth",
+               "bottom_width", "wall_run"});
+  const double depth = required_length(table, "trench_depth", "a trench has one");
+  const double bottom = required_length(table, "bottom_width", "a trench has one");
+  return make_trench(read_extent(table), depth, bottom, table.length_nm("wall_run").value_or(0));
+}
+
+HeightField make_rough_field(const TomlTable& table) {
+  table.allow({"material", "edge", "shape", "width", "depth", "pitch", "rms", "correlation",
+               "seed"});
+  const double rms = required_length(table, "rms", "a rough surface has one");
+  const double correlation = required_length(table, "correlation", "a rough surface has one");
+  const auto seed = static_cast<std::uint64_t>(table.integer("seed").value_or(1));
+  return make_rough(read_extent(table), rms, correlation, seed);
+}
+
+HeightField make_field(const TomlTable& table) {
+  const std::string shape = *table.text("shape");
+  if (shape == "mesa") return make_mesa_field(table);
+  if (shape == "trench") return make_trench_field(table);
+  if (shape == "rough") return make_rough_field(table);
+  refuse_shape(table, shape, {"mesa", "trench", "rough"});
+}
+
+/// The nm of one unit of a height channel: "um", or a length such as "0.1nm".
+double read_z_unit(const TomlTable& table) {
+  const auto text = table.has("z_unit") ? table.text("z_unit") : std::nullopt;
+  if (!text) return 1;
+  const std::string place = table.place("z_unit");
+  const bool has_number = text->find_first_of("0123456789") != std::string::npos;
+  const double unit_nm = has_number ? parse_length_nm(*text, place) : unit_length_nm(*text, place);
+  if (!(unit_nm > 0)) throw UsageError(place, "the unit is not above 0", "Give a positive length");
+  return unit_nm;
+}
+
+/// Puts the field's middle at (0, 0), as for shapes.
+void center(HeightField& field) {
+  field.origin_x_nm = -0.5 * field.pitch_x_nm * (field.z_nm.width() - 1);
+  field.origin_y_nm = -0.5 * field.pitch_y_nm * (field.z_nm.height() - 1);
+}
+
+TriangleMesh make_body(const TomlTable& table) {
+  const std::string shape = *table.text("shape");
+  if (shape == "box") {
+    table.allow({"material", "name", "shape", "lower", "upper", "subdivisions", "scale",
+                 "rotate_z", "move"});
+    table.require("lower", "a box has a lower corner");
+    table.require("upper", "a box has an upper corner");
+    return make_box(*table.point_nm("lower"), *table.point_nm("upper"),
+                    small_integer(table, "subdivisions", 1));
+  }
+  if (shape == "sphere") {
+    table.allow({"material", "name", "shape", "center", "radius", "subdivisions", "scale",
+                 "rotate_z", "move"});
+    return make_sphere(table.point_nm("center").value_or(Vec3{}),
+                       required_length(table, "radius", "a sphere has one"),
+                       small_integer(table, "subdivisions", 4));
+  }
+  refuse_shape(table, shape, {"box", "sphere"});
+}
+
+/// Counter-clockwise seen from above. Quarter turns are exact.
+void rotate_about_z(TriangleMesh& mesh, double angle_deg) {
+  const double turns = std::remainder(angle_deg, 360.0);
+  double c = std::cos(turns * degrees_to_radians);
+  double s = std::sin(turns * degrees_to_radians);
+  if (std::fmod(turns, 90.0) == 0) {
+    c = std::round(c);
+    s = std::round(s);
+  }
+  for (Vec3& p : mesh.vertices_nm) p = {c * p.x - s * p.y, s * p.x + c * p.y, p.z};
+}
+
+void place_body(const TomlTable& table, TriangleMesh& mesh) {
+  if (const auto factor = table.number("scale")) transform(mesh, *factor, {});
+  if (const auto angle = table.angle_deg("rotate_z")) rotate_about_z(mesh, *angle);
+  if (const auto offset = table.point_nm("move")) transform(mesh, 1, *offset);
+}
+
+void require_one_source(const TomlTable& table, std::string_view file) {
+  if (table.has(file) == table.has("shape")) {
+    throw FileError(table.place(),
+                    fmt::format("it needs either '{}' or 'shape'{}", file,
+                                table.has(file) ? ", not both" : ""),
+                    table.has(file) ? "Remove one of them" : "Add one of them");
+  }
+}
+
+}  // namespace
+
+int SceneParts::material(const TomlTable& table) {
+  table.require("material", "every solid has one");
+  const mc::Material& material = find_material(*table.text("material"), table.place("material"));
+  auto& materials = scene_.specimen.materials;
+  for (std::size_t i = 0; i < materials.size(); ++i) {
+    if (materials[i].name == material.name) return static_cast<int>(i);
+  }
+  materials.push_back(material);
+  return static_cast<int>(materials.size()) - 1;
+}
+
+std::filesystem::path SceneParts::input(const TomlTable& table, std::string_view key) {
+  std::filesystem::path path = *table.text(key);
+  if (path.empty()) throw UsageError(table.place(key), "the name is empty", "Name a file");
+  if (path.is_relative()) path = folder_ / path;
+  scene_.inputs.push_back(path);
+  return path;
+}
+
+mc::Substrate SceneParts::read_substrate(const TomlTable& table) {
+  table.allow({"material", "z"});
+  return {.material = material(table), .top_nm = table.length_nm("z").value_or(0)};
+}
+
+HeightField SceneParts::read_field_file(const TomlTable& table) {
+  table.allow({"material", "edge", "file", "channel", "pixel_size", "z_unit"});
+  const double z_unit_nm = read_z_unit(table);
+  Image image = read_image(input(table, "file"));
+  const auto pixel = table.length_nm("pixel_size");
+  if (pixel) {
+    if (!(*pixel > 0)) {
+      throw UsageError(table.place("pixel_size"), "it is not above 0", "Give a positive length");
+    }
+    image.pitch_x_nm = image.pitch_y_nm = *pixel;
+  }
+  HeightField field = at_place(table, "channel", [&] {
+    return to_height_field(image, table.text("channel").value_or(""), z_unit_nm);
+  });
+  if (pixel) center(field);
+  return field;
+}
+
+mc::HeightFieldBody SceneParts::read_height_field(const TomlTable& table) {
+  require_one_source(table, "file");
+  mc::HeightFieldBody body;
+  body.material = material(table);
+  body.edge = read_edge(table);
+  if (table.has("file")) {
+    body.field = read_field_file(table);
+    body.name = scene_.inputs.back().filename().string();
+  } else {
+    body.field = at_place(table, {}, [&] { return make_field(table); });
+    body.name = *table.text("shape");
+  }
+  return body;
+}
+
+TriangleMesh SceneParts::read_body_mesh(const TomlTable& table) {
+  table.allow({"material", "name", "mesh", "unit", "scale", "rotate_z", "move"});
+  const auto unit = table.text("unit");
+  const double unit_nm = unit ? unit_length_nm(*unit, table.place("unit")) : 1;
+  return read_mesh(input(table, "mesh"), unit_nm);
+}
+
+mc::Body SceneParts::read_body(const TomlTable& table) {
+  require_one_source(table, "mesh");
+  mc::Body body;
+  body.material = material(table);
+  if (table.has("mesh")) {
+    body.mesh = read_body_mesh(table);
+    body.name = scene_.inputs.back().filename().string();
+  } else {
+    body.mesh = at_place(table, {}, [&] { return make_body(table); });
+    body.name = *table.text("shape");
+  }
+  body.name = table.text("name").value_or(body.name);
+  at_place(table, {}, [&] { place_body(table, body.mesh); });
+  return body;
+}
+
+}  // namespace surf::io

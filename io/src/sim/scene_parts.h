@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <filesystem>
+#include <functional>
+
+#include "sim/toml_table.h"
+#include "surf/core/error.h"
+#include "surf/io/sim/scene_file.h"
+
+namespace surf::io {
+
+/// The solids of a scene file: its substrate, height field and bodies.
+class SceneParts {
+ public:
+  /// Adds materials to `scene.specimen` and files to `scene.inputs`; both must outlive this.
+  SceneParts(std::filesystem::path folder, SceneFile& scene)
+      : folder_(std::move(folder)), scene_(scene) {}
+
+  mc::Substrate read_substrate(const TomlTable& table);
+  mc::HeightFieldBody read_height_field(const TomlTable& table);
+  mc::Body read_body(const TomlTable& table);
+
+ private:
+  int material(const TomlTable& table);
+  /// A path in the scene, relative to its folder; noted as an input.
+  std::filesystem::path input(const TomlTable& table, std::string_view key);
+  HeightField read_field_file(const TomlTable& table);
+  TriangleMesh read_body_mesh(const TomlTable& table);
+
+  std::filesystem::path folder_;
+  SceneFile& scene_;
+};
+
+/// Runs `work`; what it refuses is reported at the key's place in the scene file.
+template <class Work>
+auto at_place(const TomlTable& table, std::string_view key, const Work& work) {
+  try {
+    return work();
+  } catch (const UsageError& error) {
+    throw UsageError(table.place(key), error.subject() + ": " + error.reason(), error.remedy());
+  }
+}
+
+}  // namespace surf::io

@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <OpenImageIO/imageio.h>
+
+#include "io_test.h"
+#include "surf/io/image_file.h"
+
+namespace surf::io {
+namespace {
+
+using test::complaint;
+using test::files_in;
+using test::image_of_f;
+using test::TemporaryFolder;
+using test::write;
+using testing::HasSubstr;
+
+bool has_vtk() { return image_library_versions().find("VTK") != std::string::npos; }
+
+TEST(ImageFileErrors, UnknownExtensions) {
+  const TemporaryFolder folder;
+  for (const char* name : {"a.jpg", "a", "a.stl", ".exr"}) {
+    const auto path = folder.path() / name;
+    EXPECT_FALSE(is_image_file(path));
+    EXPECT_THAT(complaint<UsageError>([&] { write_image(path, image_of_f()); }), HasSubstr(".tif"));
+    complaint<UsageError>([&] { check_image_target(path); });
+    complaint<UsageError>([&] { read_image(path); });
+  }
+  EXPECT_EQ(files_in(folder.path()), 0);
+  for (const char* name : {"a.exr", "a.TIF", "a.tiff", "a.Png", "b/a.vti"}) {
+    EXPECT_TRUE(is_image_file(name));
+  }
+}
+
+TEST(ImageFileErrors, UnknownChannel) {
+  const TemporaryFolder folder;
+  const Image image = image_of_f();
+  for (const char* name : {"a.png", "a.exr"}) {
+    const auto path = folder.path() / name;
+    EXPECT_THAT(complaint<UsageError>([&] { write_image(path, image, {"se"}); }),
+                HasSubstr("'se'. Choose one of: SE, BSE.stderr, valid, A_z"));
+    complaint<UsageError>([&] { check_image_target(path, &image, {"se"}); });
+    check_image_target(path, &image, {"SE"});
+  }
+  EXPECT_EQ(files_in(folder.path()), 0);
+}
+
+TEST(ImageFileErrors, TargetsThatCannotBeWritten) {
+  const TemporaryFolder folder;
+  write(folder.path() / "file", "");
+  std::filesystem::create_directory(folder.path() / "folder.exr");
+  for (const auto& target : {folder.path() / "file" / "a.exr", folder.path() / "folder.exr"}) {
+    EXPECT_THAT(complaint<FileError>([&] { write_image(target, image_of_f()); }),
+                HasSubstr(target.string()));
+    complaint<FileError>([&] { check_image_target(target); });
+  }
+  EXPECT_EQ(files_in(folder.path()), 2);
+  write_image(folder.path() / "new" / "a.exr", image_of_f());
+  EXPECT_EQ(files_in(folder.path() / "new"), 1);
+}
+
+TEST(ImageFileErrors, ImagesThatAreNone) {
+  const TemporaryFolder folder;
+  const auto refuse = [&](const Image& image) {
+    for (const char* name : {"a.exr", "a.tif", "a.png"}) {
+      complaint<InvalidInput>([&] { write_image(folder.path() / name, image); });
+    }
+  };
+  refuse(Image{});
+  Image image = image_of_f();
+  image.pitch_x_nm = 0;
+  refuse(image);
+  image = image_of_f();
+  image.channels[1].name = "SE";
+  refuse(image);
+  image = image_of_f();
+  image.channels[1].name = "a\tb";
+  refuse(image);
+  image = image_of_f();
+  image.metadata["key"] = std::string("a\0b", 3);
+  refuse(image);
+  EXPECT_EQ(files_in(folder.path()), 0);
+}
+
+TEST(ImageFileErrors, FilesThatAreNoImages) {
+  const TemporaryFolder folder;
+  for (const char* name : {"a.exr", "a.tif", "a.png", "a.vti"}) {
+    const auto path = folder.path() / name;
+    if (path.extension() == ".vti" && !has_vtk()) continue;
+    EXPECT_THAT(complaint<FileError>([&] { read_image(path); }), HasSubstr("no such file"));
+    for (const std::string content : {"", "hello", "<VTKFile type=\"ImageData\"></VTKFile>"}) {
+      write(path, content);
+      EXPECT_THAT(complaint<FileError>([&] { read_image(path); }), HasSubstr(path.string()));
+    }
+  }
+  std::filesystem::create_directory(folder.path() / "b.png");
+  complaint<FileError>([&] { read_image(folder.path() / "b.png"); });
+}
+
+TEST(ImageFileErrors, AppendedVtiIsRefusedRatherThanReadAsNothing) {
+  const TemporaryFolder folder;
+  const auto path = folder.path() / "a.vti";
+  if (!has_vtk()) GTEST_SKIP() << "built without VTK";
+  write(path, "<VTKFile type=\"ImageData\"><ImageData/>"
+              "<AppendedData encoding=\"raw\">_</AppendedData></VTKFile>");
+  EXPECT_THAT(complaint<FileError>([&] { read_image(path); }), HasSubstr("appended"));
+}
+
+/// A plain picture of another program's.
+void write_plain(const std::filesystem::path& path, OIIO::TypeDesc type, int channels,
+                 int orientation = 1) {
+  OIIO::ImageSpec spec(2, 2, channels, type);
+  spec.attribute("Orientation", orientation);
+  spec.attribute("oiio:UnassociatedAlpha", 1);
+  const auto output = OIIO::ImageOutput::create(path.string());
+  std::vector<float> values(static_cast<std::size_t>(4 * channels));
+  for (std::size_t i = 0; i < values.size(); ++i) values[i] = static_cast<float>(i) / 255;
+  ASSERT_TRUE(output->open(path.string(), spec));
+  ASSERT_TRUE(output->write_image(OIIO::TypeDesc::FLOAT, values.data()));
+  ASSERT_TRUE(output->close());
+}
+
+TEST(PlainImages, KeepStoredNumbers) {
+  const TemporaryFolder folder;
+  for (const char* name : {"a.png", "a.tif"}) {
+    const auto path = folder.path() / name;
+    write_plain(path, OIIO::TypeDesc::UINT8, 1);
+    Image image = read_image(path);
+    ASSERT_EQ(image.channels.size(), 1u);
+    EXPECT_EQ(image.channels[0].name, "L");
+    EXPECT_EQ(image.pitch_x_nm, 1);
+    EXPECT_EQ(image.channels[0].values.data(), (std::vector<float>{2, 3, 0, 1}));
+    write_plain(path, OIIO::TypeDesc::UINT16, 4);
+    image = read_image(path);
+    ASSERT_EQ(image.channels.size(), 4u);
+    EXPECT_EQ(image.channels[0].name, "R");
+    EXPECT_EQ(image.channels[3].name, "A");
+    const std::vector<float> green{9 * 257, 13 * 257, 257, 5 * 257};
+    EXPECT_EQ(image.channels[1].values.data(), green);
+  }
+}
+
+TEST(PlainImages, ThatAreTurnedAreRefused) {
+  const TemporaryFolder folder;
+  const auto path = folder.path() / "a.tif";
+  write_plain(path, OIIO::TypeDesc::UINT8, 1, 6);
+  EXPECT_THAT(complaint<FileError>([&] { read_image(path); }), HasSubstr("turned"));
+}
+
+}  // namespace
+}  // namespace surf::io

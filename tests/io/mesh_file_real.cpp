@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <nlohmann/json.hpp>
+
+#include <cstdlib>
+
+#include "io_test.h"
+#include "surf/io/files.h"
+#include "surf/io/mesh_file.h"
+#include "surf/mesh/check_mesh.h"
+
+namespace surf::io {
+namespace {
+
+namespace fs = std::filesystem;
+
+class RealMeshes : public testing::Test {
+ protected:
+  void SetUp() override {
+    const char* const folder = std::getenv("SEMSURF_TEST_DATA");
+    if (!folder || !fs::exists(folder)) {
+      GTEST_SKIP() << "SEMSURF_TEST_DATA names no folder: real files are not tested";
+    }
+    root_ = folder;
+    truth_ = nlohmann::json::parse(read_file(root_ / "truth" / "meshes.json"));
+  }
+
+  /// The measured facts of a file, or null.
+  nlohmann::json truth(const std::string& file) const {
+    for (const auto& entry : truth_) {
+      if (entry["file"] == file) return entry;
+    }
+    return nullptr;
+  }
+
+  fs::path root_;
+  nlohmann::json truth_;
+};
+
+/// `facts` come from another reader. They count vertices as stored, with `dupV` of them duplicates.
+void expect_facts(const TriangleMesh& mesh, const nlohmann::json& facts) {
+  const MeshReport report = check_mesh(mesh);
+  const auto count = [&](const char* key) { return facts[key].get<std::size_t>(); };
+  EXPECT_EQ(mesh.triangles.size(), count("T"));
+  EXPECT_EQ(mesh.vertices_nm.size(), count("V") - count("dupV"));
+  EXPECT_EQ(report.boundary_edges, count("boundary_edges"));
+  EXPECT_EQ(report.nonmanifold_edges, count("nonmanifold_edges"));
+  const double area = facts["area"];
+  EXPECT_NEAR(report.area_nm2, area, 1e-6 * area);
+  EXPECT_EQ(report.closed_and_oriented, facts["closed"].get<bool>());
+  if (!report.closed_and_oriented) return;
+  const double volume = facts["signed_volume"];
+  EXPECT_NEAR(report.signed_volume_nm3, volume, 1e-6 * std::abs(volume));
+}
+
+TEST_F(RealMeshes, GoodFilesAgreeWithAnotherReader) {
+  int read = 0;
+  for (const auto& entry : fs::directory_iterator(root_ / "mesh")) {
+    if (!is_mesh_file(entry.path())) continue;
+    SCOPED_TRACE(entry.path());
+    const auto facts = truth("mesh/" + entry.path().filename().string());
+    ASSERT_FALSE(facts.is_null());
+    expect_facts(read_mesh(entry.path()), facts);
+    ++read;
+  }
+  EXPECT_GE(read, 13);
+}
+
+TEST_F(RealMeshes, BrokenFilesAreReadOrRefused) {
+  int seen = 0;
+  for (const auto& entry : fs::directory_iterator(root_ / "mesh" / "broken")) {
+    SCOPED_TRACE(entry.path());
+    try {
+      const TriangleMesh mesh = read_mesh(entry.path());
+      validate(mesh);
+      const auto facts = truth("mesh/broken/" + entry.path().filename().string());
+      EXPECT_EQ(mesh.triangles.size(), facts["T"].get<std::size_t>());
+    } catch (const FileError& error) {
+      EXPECT_THAT(error.what(), testing::HasSubstr(entry.path().filename().string()));
+      RecordProperty(entry.path().filename().string(), error.what());
+    }
+    ++seen;
+  }
+  EXPECT_GE(seen, 20);
+}
+
+TEST_F(RealMeshes, FilesWithoutASurfaceAreRefused) {
+  for (const char* name : {"cow_binary_truncated.ply", "empty.stl", "notenoughindices.obj",
+                           "points_only_bin.ply", "stl_empty_bin.stl"}) {
+    SCOPED_TRACE(name);
+    test::complaint<FileError>([&] { read_mesh(root_ / "mesh" / "broken" / name); });
+  }
+}
+
+}  // namespace
+}  // namespace surf::io
