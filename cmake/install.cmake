@@ -1,0 +1,43 @@
+# What `cmake --install` gives: libraries, headers, the program, the package for find_package(semsurf).
+include(CMakePackageConfigHelpers)
+set(SEMSURF_PACKAGE_DIR "${CMAKE_INSTALL_LIBDIR}/cmake/semsurf")
+
+install(TARGETS surf mc io io_sim workflow EXPORT semsurfTargets
+        ARCHIVE DESTINATION "${CMAKE_INSTALL_LIBDIR}/semsurf")
+foreach(folder libsurf mc_sim io workflow)
+  install(DIRECTORY ${folder}/include/ DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}"
+          FILES_MATCHING PATTERN "*.h")
+endforeach()
+install(TARGETS semsurf_program RUNTIME DESTINATION "${CMAKE_INSTALL_BINDIR}")
+
+# Shell completion, printed by the program itself.
+set(completions)
+foreach(shell bash zsh fish)
+  set(file "${CMAKE_BINARY_DIR}/completions/semsurf.${shell}")
+  add_custom_command(OUTPUT "${file}" COMMAND semsurf_program completion ${shell} > "${file}"
+                     DEPENDS semsurf_program COMMENT "Completion for ${shell}")
+  list(APPEND completions "${file}")
+endforeach()
+file(MAKE_DIRECTORY "${CMAKE_BINARY_DIR}/completions")
+add_custom_target(completions ALL DEPENDS ${completions})
+install(FILES "${CMAKE_BINARY_DIR}/completions/semsurf.bash" RENAME semsurf
+        DESTINATION "${CMAKE_INSTALL_DATADIR}/bash-completion/completions")
+install(FILES "${CMAKE_BINARY_DIR}/completions/semsurf.zsh" RENAME _semsurf
+        DESTINATION "${CMAKE_INSTALL_DATADIR}/zsh/site-functions")
+install(FILES "${CMAKE_BINARY_DIR}/completions/semsurf.fish"
+        DESTINATION "${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d")
+
+install(FILES LICENSE README.md CHANGELOG.md DESTINATION "${CMAKE_INSTALL_DOCDIR}")
+
+install(EXPORT semsurfTargets NAMESPACE semsurf:: DESTINATION "${SEMSURF_PACKAGE_DIR}")
+set(SEMSURF_PARAVIEW OFF)
+if(SEMSURF_VTK AND ParaView_FOUND)
+  set(SEMSURF_PARAVIEW ON)
+endif()
+configure_package_config_file(cmake/semsurfConfig.cmake.in
+  "${CMAKE_BINARY_DIR}/semsurfConfig.cmake" INSTALL_DESTINATION "${SEMSURF_PACKAGE_DIR}")
+write_basic_package_version_file("${CMAKE_BINARY_DIR}/semsurfConfigVersion.cmake"
+  COMPATIBILITY SameMinorVersion)
+install(FILES "${CMAKE_BINARY_DIR}/semsurfConfig.cmake"
+              "${CMAKE_BINARY_DIR}/semsurfConfigVersion.cmake"
+        DESTINATION "${SEMSURF_PACKAGE_DIR}")

@@ -1,0 +1,72 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Set-up shared by ./run and ./check; source it after setting -euo pipefail. Functions:
+#   setup_packages        installs what is missing of the list below
+#   setup_configure       configures the preset `release` into build/, once
+# Both leave everything alone when there is nothing to do.
+
+packages=(
+  cmake g++ ninja-build ccache                                    # build
+  libembree-dev libtbb-dev librandom123-dev                       # ray tracing, threads, random numbers
+  libopenimageio-dev openimageio-tools                            # images
+  libtomlplusplus-dev nlohmann-json3-dev libssl-dev               # scene files, records, hashes
+  libcli11-dev libfmt-dev                                         # command line, text
+  paraview-dev python3-paraview mpi-default-dev python3-dev       # VTK: ParaView's own
+  libgtest-dev libgmock-dev libbenchmark-dev python3-matplotlib   # tests, benchmarks, plots
+)
+
+say() { printf '==> %s\n' "$*"; }
+fail() { printf 'error: %s\n' "$*" >&2; exit 1; }
+
+# The packages of the list that are not installed, one a line.
+missing_packages() {
+  local installed
+  installed=$(dpkg-query -W -f='${Package} ${db:Status-Status}\n' "${packages[@]}" 2>/dev/null |
+              sed -n 's/ installed$//p') || true
+  printf '%s\n' "${packages[@]}" | grep -vxF -f <(printf '%s\n' "$installed" | sed '/^$/d') || true
+}
+
+setup_packages() {
+  if ! command -v dpkg-query >/dev/null; then
+    say "This is not Debian: going on with what is installed. Debian's names of what is needed:"
+    printf '      %s\n' "${packages[*]}"
+    return
+  fi
+  local missing
+  mapfile -t missing < <(missing_packages)
+  if ((${#missing[@]} == 0)); then
+    return
+  fi
+  if (($(id -u) != 0)); then
+    say "Packages are missing. Install them with this command, then start again:"
+    printf '\n  sudo apt-get update && sudo apt-get install --no-install-recommends %s\n\n' \
+           "${missing[*]}"
+    exit 1
+  fi
+  say "Installing with apt: ${missing[*]}"
+  export DEBIAN_FRONTEND=noninteractive
+  apt-get -qq update ||
+    fail "apt-get update failed, see above. Check the network and the package sources in /etc/apt."
+  # --no-remove: nothing that is already on this machine is taken away.
+  apt-get -qq install -y --no-install-recommends --no-remove "${missing[@]}" ||
+    fail "apt-get install failed, see above. If it says that packages need to be removed: python3-vtk9
+       and ParaView's Python cannot live together; remove python3-vtk9 yourself and start again."
+}
+
+setup_configure() {
+  local home fresh=()
+  home=$(sed -n 's/^CMAKE_HOME_DIRECTORY:INTERNAL=//p' build/CMakeCache.txt 2>/dev/null) || true
+  if [[ -n $home && ! $home -ef . ]]; then
+    fresh=(--fresh)   # this folder was copied or moved: its build would change the other one
+  elif [[ -f build/build.ninja && ! CMakePresets.json -nt build/build.ninja ]]; then
+    return   # Ninja configures again by itself where a CMake file changed
+  fi
+  say "Configuring into build/"
+  local log
+  log=$(mktemp)
+  if ! cmake --preset release "${fresh[@]}" >"$log" 2>&1; then
+    cat "$log" >&2
+    rm -f "$log"
+    fail "configuring failed, see above."
+  fi
+  rm -f "$log"
+}

@@ -1,0 +1,212 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Checks who includes whom. Usage: layers.py ROOT | layers.py --self-test
+
+Reads every source and header of the libraries and the program and complains, a line per fault,
+about arrows that run back, third-party headers outside the one place that is theirs or in a public
+header, quoted includes that leave their library, and files without an SPDX line.
+"""
+import fnmatch
+import pathlib
+import re
+import sys
+import tempfile
+
+# A part of the project: the folder patterns it lives in and the parts it may include. First match.
+PARTS = {
+    "io_sim": (["io/include/surf/io/sim/*", "io/src/sim/*"], {"surf", "mc", "io"}),
+    "io": (["io/*"], {"surf"}),
+    "surf": (["libsurf/*"], set()),
+    "mc": (["mc_sim/*"], {"surf"}),
+    "workflow": (["workflow/*"], {"surf", "mc", "io", "io_sim"}),
+    "cli": (["cli/*"], {"surf", "mc", "io", "io_sim", "workflow"}),
+    "samples": (["samples/*"], {"surf", "mc", "io", "io_sim", "workflow"}),
+}
+# Whose header "surf/..." is. First match.
+OWNERS = [("surf/io/sim/", "io_sim"), ("surf/io/", "io"), ("surf/mc/", "mc"),
+          ("surf/workflow/", "workflow"), ("surf/", "surf")]
+# Third-party headers <...> and the files that may include them. First match; public headers never.
+THIRD_PARTY = [
+    ("embree*/*", ["mc_sim/src/embree_scene.cpp"]),
+    ("OpenImageIO/*", ["io/src/raster_file.cpp"]),
+    ("vtk*", ["io/src/vti_file.cpp"]),
+    ("toml++/*", ["io/src/sim/*"]),
+    ("nlohmann/*", ["workflow/src/*", "io/src/*"]),
+    ("openssl/*", ["io/src/*"]),
+    ("CLI/*", ["cli/*"]),
+    ("Random123/*", ["libsurf/src/core/random.cpp"]),
+    ("tbb/*", ["libsurf/src/core/parallel.cpp"]),
+    ("oneapi/*", ["libsurf/src/core/parallel.cpp"]),
+    ("fmt/*", ["*"]),
+    # The operating system and the compiler.
+    ("sys/*", ["*"]),
+    ("*intrin.h", ["*"]),
+    ("fcntl.h", ["*"]),
+    ("poll.h", ["*"]),
+    ("signal.h", ["*"]),
+    ("termios.h", ["*"]),
+    ("unistd.h", ["*"]),
+]
+SOURCE_FOLDERS = ["libsurf", "mc_sim", "io", "workflow", "cli", "samples"]
+SPDX_FOLDERS = SOURCE_FOLDERS + ["tests", "bench", "cmake", "docs", "paraview_plugin"]
+SPDX_SUFFIXES = {".cpp", ".h", ".py", ".sh"}
+SPDX_LINE = "SPDX-License-Identifier: GPL-3.0-or-later"
+INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]', re.MULTILINE)
+
+
+def matches(name, patterns):
+    return any(fnmatch.fnmatchcase(name, pattern) for pattern in patterns)
+
+
+def part_of(path):
+    return next(part for part, (folders, _) in PARTS.items() if matches(path, folders))
+
+
+def is_public(path):
+    return path.split("/")[1] == "include"
+
+
+def files(root, folders, suffixes):
+    for folder in folders:
+        for path in sorted((root / folder).rglob("*")):
+            if path.suffix in suffixes and path.is_file():
+                yield path.relative_to(root).as_posix(), path.read_text(encoding="utf-8")
+
+
+def quoted_fault(root, path, name):
+    part = part_of(path)
+    if name.startswith("surf/"):
+        owner = next(owner for prefix, owner in OWNERS if name.startswith(prefix))
+        if owner != part and owner not in PARTS[part][1]:
+            return f"{part} must not know {owner}"
+        return None
+    if is_public(path):
+        return "a public header includes public headers only, as surf/..."
+    home = (root / path).parent
+    library_source = root / path.split("/")[0] / "src"
+    inside = [(home / name).resolve(), (library_source / name).resolve()]
+    allowed = (root / path.split("/")[0]).resolve()
+    for candidate in inside:
+        if candidate.is_file():
+            if allowed not in candidate.parents:
+                return "leaves its library"
+            other = part_of(candidate.relative_to(root.resolve()).as_posix())
+            if other != part and other not in PARTS[part][1]:
+                return f"{part} must not know {other}"
+            return None
+    return "is neither surf/... nor a private header of this library"
+
+
+def angle_fault(path, name):
+    if name.startswith("surf/"):
+        return 'own headers are included with "..."'
+    if re.fullmatch(r"[a-z0-9_]+", name):
+        return None   # the standard library
+    if is_public(path):
+        return "public headers include the standard library and surf/... only"
+    for pattern, places in THIRD_PARTY:
+        if fnmatch.fnmatchcase(name, pattern):
+            return None if matches(path, places) else "belongs in " + ", ".join(places) + " only"
+    return "is unknown: say in THIRD_PARTY of tests/architecture/layers.py where it belongs"
+
+
+def check(root):
+    faults = []
+    count = 0
+    for path, text in files(root, SOURCE_FOLDERS, {".cpp", ".h"}):
+        count += 1
+        for match in INCLUDE.finditer(text):
+            kind, name = match.groups()
+            fault = quoted_fault(root, path, name) if kind == '"' else angle_fault(path, name)
+            if fault:
+                line = text.count("\n", 0, match.start(1)) + 1
+                faults.append(f"{path}:{line}: {name}: {fault}")
+    for path, text in files(root, SPDX_FOLDERS, SPDX_SUFFIXES):
+        if SPDX_LINE not in "\n".join(text.split("\n")[:3]):
+            faults.append(f"{path}:1: no line '{SPDX_LINE}' at the top")
+    return count, faults
+
+
+GOOD = {
+    "libsurf/include/surf/core/a.h": '#include <vector>\n#include "surf/core/b.h"\n',
+    "libsurf/src/core/random.cpp": '#include <Random123/philox.h>\n#include "surf/core/a.h"\n',
+    "libsurf/src/core/parallel.cpp": "#include <tbb/parallel_for.h>\n#include <unistd.h>\n",
+    "mc_sim/include/surf/mc/a.h": '#include "surf/core/a.h"\n',
+    "mc_sim/src/embree_scene.cpp": '#include <embree3/rtcore.h>\n#include "private.h"\n',
+    "mc_sim/src/private.h": '#include <fmt/format.h>\n#include "surf/mc/a.h"\n',
+    "io/src/raster_file.cpp": "#include <OpenImageIO/imageio.h>\n",
+    "io/src/private.h": '#include "surf/io/files.h"\n',
+    "io/src/sim/scene_file.cpp": '#include <toml++/toml.h>\n#include "surf/mc/a.h"\n#include "private.h"\n',
+    "workflow/src/job.cpp": '#include <nlohmann/json.hpp>\n#include "surf/io/sim/scene_file.h"\n',
+    "cli/main.cpp": '#include <CLI/CLI.hpp>\n#include "surf/workflow/job.h"\n#include "private.h"\n',
+    "cli/private.h": "",
+    "tests/anything.cpp": "#include <gtest/gtest.h>\n#include <Random123/philox.h>\n",
+}
+# Each line is one fault; the rest of the file is as in GOOD.
+BAD = {
+    "libsurf/include/surf/core/a.h": ["#include <fmt/format.h>", '#include "surf/mc/a.h"',
+                                      "#include <unistd.h>", '#include "hidden.h"'],
+    "libsurf/src/core/parallel.cpp": ['#include "surf/io/files.h"', "#include <surf/core/a.h>",
+                                      "  #  include <Random123/philox.h>"],
+    "mc_sim/include/surf/mc/a.h": ["#include <embree3/rtcore.h>", '#include "surf/workflow/job.h"'],
+    "mc_sim/src/private.h": ["#include <embree3/rtcore.h>", '#include "surf/io/files.h"',
+                             '#include "../../io/src/private.h"', '#include "nowhere.h"'],
+    "io/src/private.h": ['#include "surf/mc/a.h"', '#include "surf/io/sim/scene_file.h"',
+                         "#include <vtkImageData.h>", "#include <toml++/toml.h>",
+                         '#include "sim/scene_file.cpp"'],
+    "io/src/sim/scene_file.cpp": ['#include "surf/workflow/job.h"', "#include <CLI/CLI.hpp>"],
+    "workflow/src/job.cpp": ["#include <OpenImageIO/imageio.h>", "#include <boost/any.hpp>",
+                             '#include "../../cli/private.h"'],
+    "cli/main.cpp": ["#include <nlohmann/json.hpp>", "#include <vtkImageData.h>"],
+    "tests/no_licence.cpp": None,
+}
+
+
+def self_test():
+    with tempfile.TemporaryDirectory() as folder:
+        root = pathlib.Path(folder)
+
+        def write(path, text):
+            (root / path).parent.mkdir(parents=True, exist_ok=True)
+            (root / path).write_text(f"// {SPDX_LINE}\n" + text if text is not None else "int x;\n",
+                                     encoding="utf-8")
+
+        for path, text in GOOD.items():
+            write(path, text)
+        _, faults = check(root)
+        if faults:
+            return ["a good tree was blamed:"] + faults
+
+        expected = set()
+        for path, lines in BAD.items():
+            if lines is None:
+                write(path, None)
+                expected.add(f"{path}:1")
+                continue
+            good = GOOD[path]
+            write(path, good + "\n".join(lines) + "\n")
+            first = 2 + good.count("\n")
+            expected.update(f"{path}:{first + i}" for i in range(len(lines)))
+        _, faults = check(root)
+        found = {":".join(fault.split(":")[:2]) for fault in faults}
+        return ([f"missed: {place}" for place in sorted(expected - found)] +
+                [f"wrongly blamed: {place}" for place in sorted(found - expected)])
+
+
+def main():
+    if len(sys.argv) != 2:
+        sys.exit(__doc__)
+    if sys.argv[1] == "--self-test":
+        faults = self_test()
+        print(f"{len(faults)} surprises on the script's own example")
+    else:
+        count, faults = check(pathlib.Path(sys.argv[1]))
+        print(f"{count} sources and headers, {len(faults)} faults")
+        if count == 0:
+            faults = ["found no sources: is this the project's root folder?"]
+    print("\n".join(faults))
+    sys.exit(1 if faults else 0)
+
+
+if __name__ == "__main__":
+    main()

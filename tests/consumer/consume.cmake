@@ -1,0 +1,39 @@
+# Installs BUILD under WORK, builds PROJECT against it, runs what comes out, leaves nothing behind.
+set(prefix "${WORK}/prefix")
+file(REMOVE_RECURSE "${WORK}")
+
+function(step)
+  execute_process(COMMAND ${ARGN} RESULT_VARIABLE status OUTPUT_VARIABLE output
+                  ERROR_VARIABLE output)
+  if(NOT status EQUAL 0)
+    file(REMOVE_RECURSE "${WORK}")
+    list(JOIN ARGN " " command)
+    message("${output}")
+    message(FATAL_ERROR "Failed (${status}): ${command}")
+  endif()
+  set(output "${output}" PARENT_SCOPE)
+endfunction()
+
+step("${CMAKE_COMMAND}" --install "${BUILD}" --prefix "${prefix}")
+foreach(file bin/semsurf include/surf/mc/simulate.h include/surf/io/sim/materials.h
+             share/doc/semsurf/LICENSE)
+  if(NOT EXISTS "${prefix}/${file}")
+    file(REMOVE_RECURSE "${WORK}")
+    message(FATAL_ERROR "${file} was not installed")
+  endif()
+endforeach()
+step("${prefix}/bin/semsurf" --version)
+message(STATUS "${output}")
+
+step("${CMAKE_COMMAND}" -G "${GENERATOR}" -S "${PROJECT}" -B "${WORK}/build"
+     "-DCMAKE_PREFIX_PATH=${prefix}" "-DWANTED_VERSION=${VERSION}"
+     "-DCMAKE_CXX_COMPILER=${COMPILER}" "-DCMAKE_CXX_COMPILER_LAUNCHER=${LAUNCHER}"
+     "-DCMAKE_BUILD_TYPE=${BUILD_TYPE}" "-DCMAKE_CXX_FLAGS_DEBUG=${FLAGS_DEBUG}")
+step("${CMAKE_COMMAND}" --build "${WORK}/build")
+step("${WORK}/build/all_libraries")
+step("${WORK}/build/consumer")
+message(STATUS "${output}")
+if(NOT output MATCHES "yield SE [0-9.]+ BSE [0-9.]+")
+  message(FATAL_ERROR "No yield in: ${output}")
+endif()
+file(REMOVE_RECURSE "${WORK}")

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Uses something of every library, so that every library and what it needs gets linked.
+#include <cstdio>
+
+#include "surf/core/units.h"
+#include "surf/io/image_file.h"
+#include "surf/io/sim/materials.h"
+#include "surf/mc/physics.h"
+#include "surf/workflow/simulate_job.h"
+
+int main() {
+  using namespace surf;
+  const auto& silicon = io::find_material("Si", "material");
+  const auto scan = workflow::resolve_scan({.width = 8, .height = 8}, {{0, 0, 0}, {80, 80, 10}}, {});
+  std::printf("%s, %zu mechanisms, %s a pixel\n", silicon.name.c_str(),
+              mc::describe({}, silicon).size(), format_length(scan.pixel_x_nm).c_str());
+  return io::is_image_file("a.exr") ? 0 : 1;
+}
