@@ -4,7 +4,6 @@ find_package(TBB REQUIRED)
 find_package(fmt REQUIRED)
 find_path(RANDOM123_INCLUDE_DIR Random123/philox.h REQUIRED)
 find_package(embree 3 REQUIRED)
-find_package(OpenMesh CONFIG QUIET)
 find_package(OpenImageIO REQUIRED)
 # Debian's target names an OpenCV include folder that its package does not bring.
 set_target_properties(OpenImageIO::OpenImageIO PROPERTIES INTERFACE_INCLUDE_DIRECTORIES "")

@@ -190,12 +190,12 @@ DistanceGrid::DistanceGrid(const TriangleMesh& mesh, const Box& domain, std::siz
 }
 
 double DistanceGrid::outside_nm(const Vec3& p) const {
-  if (surface_box_.empty()) return std::numeric_limits<double>::infinity();
-  auto beyond = [](double v, double lo, double hi) { return std::max({lo - v, v - hi, 0.0}); };
-  const Vec3 gap{beyond(p.x, surface_box_.lower_nm.x, surface_box_.upper_nm.x),
-                 beyond(p.y, surface_box_.lower_nm.y, surface_box_.upper_nm.y),
-                 beyond(p.z, surface_box_.lower_nm.z, surface_box_.upper_nm.z)};
-  return std::max(0.0, length(gap) - slack_nm);
+  const double above = p.z - surface_box_.upper_nm.z, below = surface_box_.lower_nm.z - p.z;
+  const double dz = std::max({above, below, 0.0});
+  const double dx = std::max({surface_box_.lower_nm.x - p.x, p.x - surface_box_.upper_nm.x, 0.0});
+  const double dy = std::max({surface_box_.lower_nm.y - p.y, p.y - surface_box_.upper_nm.y, 0.0});
+  const double gap = dx == 0 && dy == 0 ? dz : std::sqrt(dx * dx + dy * dy + dz * dz);
+  return std::max(0.0, gap - slack_nm);
 }
 
 }  // namespace surf::mc

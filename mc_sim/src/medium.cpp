@@ -37,10 +37,13 @@ Medium::Medium(std::vector<std::unique_ptr<const Scattering>> scatterings,
       const double power = loss_ ? loss_->stopping_power_ev_per_nm(energy) : 0.0;
       const double weight = std::min(1.0 / power, endless_nm_per_ev) / samples_per_bin;
       slowness += weight;
-      const double factor = secondary_rate_factor(energy, power);
+      const RateFactors factors = rate_factors(energy, power);
       for (std::size_t k = 0; k < n; ++k) {
-        const double part = scatterings_[k]->secondary_power_ev_per_nm(energy) > 0 ? factor : 1.0;
-        rate[k] += weight * part * scatterings_[k]->inverse_mean_free_path_per_nm(energy);
+        const Scattering& m = *scatterings_[k];
+        const double factor = m.secondary_power_ev_per_nm(energy) <= 0 ? 1.0
+                              : m.takes_remaining_loss()               ? factors.flexible
+                                                                       : factors.fixed;
+        rate[k] += weight * factor * m.inverse_mean_free_path_per_nm(energy);
       }
     }
     double total = 0;
@@ -61,16 +64,19 @@ Medium::Medium(std::vector<std::unique_ptr<const Scattering>> scatterings,
   }
 }
 
-// Secondaries are not debited from the electron that makes them: the continuous loss pays. So the
-// mechanisms that make them share out just that loss. Their rates as published cost more than the
-// loss below some 100 eV, where cascades would then grow out of nothing, and less above, where
-// generation would fall faster than the loss. A generation in proportion to the stopping power is
-// the principle of Salow and Bethe (Lin and Joy, Surf. Interface Anal. 37, 895 (2005)).
-double Medium::secondary_rate_factor(double energy_ev, double power_ev_per_nm) const {
-  if (!loss_) return 1.0;
-  double cost = 0;
-  for (const auto& s : scatterings_) cost += s->secondary_power_ev_per_nm(energy_ev);
-  return cost > 0 ? power_ev_per_nm / cost : 1.0;
+// Secondaries are not debited from the electron that makes them: the continuous loss pays. So what
+// the mechanisms hand out has to be that loss, on average. Where their published rates cost more
+// (below some 100 eV, where cascades would grow out of nothing), all are scaled down alike. Where
+// they cost less, the rest goes to the mechanisms that take it: generation then follows the stopping
+// power, the principle of Salow and Bethe (Lin and Joy, Surf. Interface Anal. 37, 895 (2005)).
+Medium::RateFactors Medium::rate_factors(double energy_ev, double power_ev_per_nm) const {
+  double fixed = 0, flexible = 0;
+  for (const auto& s : scatterings_)
+    (s->takes_remaining_loss() ? flexible : fixed) += s->secondary_power_ev_per_nm(energy_ev);
+  const double cost = fixed + flexible;
+  if (!loss_ || cost <= 0) return {1, 1};
+  if (cost > power_ev_per_nm) return {power_ev_per_nm / cost, power_ev_per_nm / cost};
+  return {1, flexible > 0 ? (power_ev_per_nm - fixed) / flexible : 1};
 }
 
 double Medium::energy_after(double energy_ev, double length_nm) const {

@@ -25,12 +25,14 @@ namespace {
 // Elastic scattering by one element from partial-wave tables. Cross-sections are interpolated
 // log-log. For the angle one of the two neighbouring tables is drawn, with the probability of the
 // position between them on the logarithmic scale.
-// Below the lowest table (50 eV) the cross-section follows Browning's fit, scaled to meet the table,
-// and the angles of that table are kept; no calculation for free atoms is right in a solid there.
+// Below the lowest table (50 eV) free-atom calculations mean little in a solid; what counts there is
+// the transport cross-section. It is taken from the table's end with the energy dependence of
+// Browning's fit, and scattering is isotropic, as in that fit's low-energy limit.
 class Mott final : public Scattering {
  public:
   Mott(const MottElement& element, double atoms_per_nm3)
-      : element_(element), atoms_per_nm3_(atoms_per_nm3) {
+      : element_(element), atoms_per_nm3_(atoms_per_nm3),
+        lowest_ev_(element.rows.front().energy_ev) {
     for (int i = 0; i < EnergyBins::count; ++i) {
       const double middle = 0.5 * (EnergyBins::lower_ev(i) + EnergyBins::lower_ev(i + 1));
       const auto [row, fraction] = locate(middle);
@@ -40,7 +42,7 @@ class Mott final : public Scattering {
 
   std::string describe() const override {
     return fmt::format("elastic, Z = {}: Mott tables, ELSEPA with the settings of NIST SRD 64, {:g} "
-                       "eV to {:g} eV (doi:10.1016/j.cpc.2004.09.006); below, Browning's shape",
+                       "eV to {:g} eV (doi:10.1016/j.cpc.2004.09.006); below, isotropic",
                        element_.atomic_number, element_.rows.front().energy_ev,
                        element_.rows.back().energy_ev);
   }
@@ -50,12 +52,17 @@ class Mott final : public Scattering {
   }
 
   void scatter(double energy_ev, RandomStream& random, ScatterEvent& event) const override {
+    if (energy_ev < lowest_ev_) {
+      event.cos_theta = 1.0 - 2.0 * random.uniform();
+      event.turn = random.uniform();
+      return;
+    }
     const Choice& choice = choices_[static_cast<std::size_t>(EnergyBins::bin(energy_ev))];
     // The azimuth's low bits choose the table: one word serves both.
     const std::uint32_t word = random.bits();
     const bool upper = static_cast<float>(word & 0xffff) * 0x1p-16f < choice.fraction;
     const MottRow& row = element_.rows[static_cast<std::size_t>(choice.row + (upper ? 1 : 0))];
-    const double u = (1.0 - std::sqrt(1.0 - random.uniform())) * (MottRow::points - 1);
+    const double u = (1.0 - std::sqrt(random.uniform())) * (MottRow::points - 1);
     const int i = static_cast<int>(u);
     const double f = u - i;
     const double x = row.x[i] + f * (row.x[i + 1] - row.x[i]);
@@ -89,7 +96,7 @@ class Mott final : public Scattering {
     const MottRow& lowest = rows.front();
     if (energy_ev < lowest.energy_ev) {
       const int z = element_.atomic_number;
-      return lowest.cross_section_nm2 * browning_cross_section_nm2(z, energy_ev) /
+      return lowest.transport_cross_section_nm2 * browning_cross_section_nm2(z, energy_ev) /
              browning_cross_section_nm2(z, lowest.energy_ev);
     }
     const Choice c = locate(energy_ev);
@@ -101,6 +108,7 @@ class Mott final : public Scattering {
 
   const MottElement& element_;
   double atoms_per_nm3_;
+  double lowest_ev_;
   std::array<Choice, EnergyBins::count> choices_;
 };
 

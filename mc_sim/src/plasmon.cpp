@@ -39,6 +39,8 @@ class Plasmon final : public Scattering {
     return plasmon_ev_ * inverse_mean_free_path_per_nm(energy_ev);
   }
 
+  bool takes_remaining_loss() const override { return true; }
+
   void scatter(double energy_ev, RandomStream& random, ScatterEvent& event) const override {
     if (energy_ev - level_ev_ <= plasmon_ev_) return;
     event.has_secondary = true;

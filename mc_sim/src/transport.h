@@ -150,7 +150,7 @@ class Transport {
   bool fly(Track& t, RandomStream& random) {
     ++steps_;
     ++balance_.rays;
-    typename Geometry::Surface surface;
+    typename Geometry::Surface& surface = surface_;
     const Crossing met = geometry_.crossing(t.position, t.direction,
                                             std::numeric_limits<double>::infinity(), t.state,
                                             surface);
@@ -167,19 +167,16 @@ class Transport {
   bool travel(Track& t, int material, RandomStream& random) {
     const Medium& medium = *media_[static_cast<std::size_t>(material)];
     if (t.energy <= medium.cutoff_ev()) return absorb(t, medium);
+    // Within this distance there is nothing but this material: where no surface can be reached,
+    // there is no ray, and where none can be reached ever again, a cascade is not followed.
+    double clear = geometry_.clearance(t.position);
     for (;;) {
       if (++steps_ > Limits::max_steps) return lose(t, LossCause::too_many_steps);
-      // Nothing but this material within this distance: where no surface can be reached, there is
-      // no ray, and where none can be reached ever again, the rest of the cascade is not followed.
-      const double clear = geometry_.clearance(t.position);
-      if (drop_unreachable_ && medium.range_nm(t.energy) < clear) {
-        ++balance_.dropped;
-        return absorb(t, medium);
-      }
+      if (drop_unreachable_ && medium.range_nm(t.energy) < clear) return drop(t, medium);
       const Medium::Step step = medium.step(t.energy, -std::log(random.uniform()));
       if (step.length_nm > clear) {
         ++balance_.rays;
-        typename Geometry::Surface surface;
+        typename Geometry::Surface& surface = surface_;
         const Crossing met =
             geometry_.crossing(t.position, t.direction, step.length_nm, t.state, surface);
         if (met == Crossing::surface) {
@@ -193,7 +190,8 @@ class Transport {
       }
       advance(t, t.position + t.direction * step.length_nm, step.energy_ev, material);
       if (step.stopped) return absorb(t, medium);
-      if (!scatter(t, medium, random)) return false;
+      clear = geometry_.clearance(t.position);
+      if (!scatter(t, medium, clear, random)) return false;
       if (t.energy <= medium.cutoff_ev()) return absorb(t, medium);
     }
   }
@@ -214,24 +212,37 @@ class Transport {
     }
   }
 
-  bool scatter(Track& t, const Medium& medium, RandomStream& random) {
+  bool scatter(Track& t, const Medium& medium, double clear, RandomStream& random) {
     ScatterEvent event;
     const Scattering& mechanism = medium.choose(t.energy, random.uniform());
     mechanism.scatter(t.energy, random, event);
-    if (event.has_secondary && event.secondary_energy_ev > medium.cutoff_ev()) {
-      if (waiting_.size() >= Limits::max_waiting)
-        return lose(t, LossCause::too_many_secondaries);
-      ++balance_.generated;
-      balance_.generated_energy.add(event.secondary_energy_ev - medium.barrier_ev() -
-                                    event.energy_loss_ev);
-      waiting_.push_back({t.position,
-                          deflected(t.direction, event.secondary_cos_theta, event.secondary_turn),
-                          event.secondary_energy_ev, t.state, t.generation + 1, number_});
+    if (event.has_secondary) {
+      if (!add_secondary(t, medium, event, clear)) return lose(t, LossCause::too_many_secondaries);
     } else {
       deposited_ += event.energy_loss_ev;
     }
     if (event.cos_theta != 1.0) t.direction = deflected(t.direction, event.cos_theta, event.turn);
     t.energy -= event.energy_loss_ev;
+    return true;
+  }
+
+  // False when too many are waiting.
+  bool add_secondary(const Track& t, const Medium& medium, const ScatterEvent& event,
+                     double clear) {
+    const double energy = event.secondary_energy_ev;
+    const double total = energy - medium.barrier_ev();
+    ++balance_.generated;
+    balance_.generated_energy.add(total - event.energy_loss_ev);
+    if (energy <= medium.cutoff_ev() || (drop_unreachable_ && medium.range_nm(energy) < clear)) {
+      ++balance_.absorbed;
+      ++balance_.dropped;
+      balance_.deposited_energy.add(total);
+      return true;
+    }
+    if (waiting_.size() >= Limits::max_waiting) return false;
+    waiting_.push_back({t.position,
+                        deflected(t.direction, event.secondary_cos_theta, event.secondary_turn),
+                        energy, t.state, t.generation + 1, number_});
     return true;
   }
 
@@ -253,6 +264,11 @@ class Transport {
     }
     watcher_.end_track(end, t.position, t.direction, t.energy);
     return false;
+  }
+
+  bool drop(const Track& t, const Medium& medium) {
+    ++balance_.dropped;
+    return absorb(t, medium);
   }
 
   bool absorb(const Track& t, const Medium& medium) {
@@ -277,6 +293,7 @@ class Transport {
   Balance& balance_;
   PrimaryTotals totals_;
   std::vector<Track> waiting_;
+  typename Geometry::Surface surface_;   // scratch
   double deposited_ = 0;   // by the current track
   std::int64_t steps_ = 0;
   int tracks_ = 0;

@@ -36,6 +36,10 @@ class Scattering {
   /// loss has to pay for it (see make_medium).
   virtual double secondary_power_ev_per_nm(double /*energy_ev*/) const { return 0; }
 
+  /// Whether the mechanism stands for all losses that no other mechanism accounts for, so that its
+  /// rate is raised until the secondaries take up the whole continuous loss.
+  virtual bool takes_remaining_loss() const { return false; }
+
   /// Draws one event. A secondary never has more energy than the electron that made it.
   /// Called only where the rate is positive somewhere in the energy's bin; where
   /// it is zero at this very energy, leave `event` as it is.

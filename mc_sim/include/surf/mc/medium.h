@@ -36,12 +36,12 @@ struct EnergyBins {
   }
 };
 
-/// A material's mechanisms, compiled for the transport loop. Within an energy bin (2 to 3 % wide)
+/// A material's mechanisms, compiled for the transport loop. Within an energy bin (3 to 6 % wide)
 /// event rates and stopping power are constant, at their averages over the bin; with that, free
 /// path and energy loss are sampled together exactly, however much energy a free path costs.
 ///
-/// Where there is a continuous loss, the mechanisms that make secondaries are scaled by a common
-/// factor, so that the energy they hand out is on average the energy lost: see medium.cpp.
+/// Where there is a continuous loss, the rates of the mechanisms that make secondaries are adjusted
+/// so that the energy they hand out is on average the energy lost: see medium.cpp.
 class Medium {
  public:
   Medium(std::vector<std::unique_ptr<const Scattering>> scatterings,
@@ -111,7 +111,11 @@ class Medium {
     double range_nm;   // of an electron at lower_ev
   };
 
-  double secondary_rate_factor(double energy_ev, double power_ev_per_nm) const;
+  struct RateFactors {
+    double fixed;      // for mechanisms that keep their published rate where it can be paid
+    double flexible;   // for those that take the remaining loss
+  };
+  RateFactors rate_factors(double energy_ev, double power_ev_per_nm) const;
 
   std::vector<std::unique_ptr<const Scattering>> scatterings_;
   std::unique_ptr<const ContinuousLoss> loss_;

@@ -15,9 +15,11 @@
 
 namespace surf::workflow {
 
-/// Turns what the user asked into a scan: any two of size, pixel size and region, the third follows;
-/// with one the specimen's extent gives the rest; with none 256 pixels across the longer side.
-/// Three, or numbers that do not fit, are a UsageError.
+/// Turns what the user asked into a scan: any two of size, pixel size and region, the third
+/// follows; with one the specimen's extent gives the rest; with none 256 pixels across the longer
+/// side. Three, or numbers that do not fit, are a UsageError. The specimen's extent is what the
+/// beam sees of its box; the scan plane goes through mid-height, so that a tilted view is centred
+/// too. A region and a pixel size must fit each other to 1e-6 of whole pixels.
 mc::Scan resolve_scan(const io::ScanRequest& request, const Box& specimen_extent,
                       const mc::Beam& beam);
 

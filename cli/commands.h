@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <CLI/App.hpp>
+#include <functional>
+#include <string>
+
+namespace surf::cli {
+
+/// What the chosen subcommand does once the command line is parsed; returns the exit code.
+using Action = std::function<int()>;
+
+// Each adds a subcommand that sets `action`. Options' type names say how to complete their values:
+// FILE, MATERIAL, or the choices as "a|b|c".
+void add_simulate(CLI::App& app, Action& action, const std::string& command_line);
+void add_info(CLI::App& app, Action& action);
+void add_materials(CLI::App& app, Action& action);
+void add_completion(CLI::App& app, Action& action);
+
+}  // namespace surf::cli

@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "info.h"
+
+#include <fmt/format.h>
+
+#include <memory>
+
+#include "commands.h"
+#include "options.h"
+#include "surf/core/error.h"
+#include "surf/core/units.h"
+#include "surf/io/image_file.h"
+#include "surf/io/mesh_file.h"
+#include "surf/io/sim/scene_file.h"
+#include "surf/workflow/simulate_job.h"
+
+namespace surf::cli {
+namespace {
+
+constexpr const char* examples = R"(Examples:
+  semsurf info part.stl --unit um      is it closed, how large is it
+  semsurf info out/cube.exr            channels, and every setting that made the image
+  semsurf info samples/mesa80.toml     specimen, scan and physics in words)";
+
+std::string join(const std::vector<std::string>& words) {
+  return fmt::format("{}", fmt::join(words, ", "));
+}
+
+void print_specimen(const mc::Specimen& specimen) {
+  const auto material = [&](int index) {
+    return specimen.materials.at(static_cast<std::size_t>(index)).name;
+  };
+  if (const auto& s = specimen.substrate)
+    print_item("substrate", fmt::format("{} below z = {}", material(s->material),
+                                        format_length(s->top_nm)));
+  if (const auto& h = specimen.height_field)
+    print_item("field", fmt::format("{}, {}, {} x {} samples, pitch {} x {}", h->name,
+                                    material(h->material), h->field.z_nm.width(),
+                                    h->field.z_nm.height(), format_length(h->field.pitch_x_nm),
+                                    format_length(h->field.pitch_y_nm)));
+  for (const mc::Body& body : specimen.bodies)
+    print_item("body", fmt::format("{}, {}, {} triangles, {}", body.name, material(body.material),
+                                   body.mesh.triangles.size(), format_extent(bounds(body.mesh))));
+  const Box extent = mc::extent(specimen);
+  print_item("extent", format_extent(extent));
+  print_item("bounds", format_bounds(extent));
+}
+
+void print_scan(const io::SceneFile& scene) {
+  const mc::Beam& beam = scene.beam;
+  print_item("beam", fmt::format("{} eV, tilt {} deg, azimuth {} deg, spot {}",
+                                 format_exact(beam.energy_ev), format_exact(beam.tilt_deg),
+                                 format_exact(beam.azimuth_deg), format_length(beam.spot_nm)));
+  const mc::Scan scan =
+      workflow::resolve_scan(scene.scan, mc::extent(scene.specimen), beam);
+  print_item("scan", fmt::format("{} x {} pixels of {} x {} about {}, {}, {} nm", scan.width,
+                                 scan.height, format_length(scan.pixel_x_nm),
+                                 format_length(scan.pixel_y_nm), format_exact(scan.center_x_nm),
+                                 format_exact(scan.center_y_nm),
+                                 format_exact(scan.center_z_nm)));
+  const auto electrons = scene.electrons.value_or(mc::SimulationOptions{}.electrons);
+  print_item("electrons", fmt::format("{} per pixel, {:.4g} million in all", electrons,
+                                      1e-6 * double(electrons) * scan.width * scan.height));
+}
+
+void print_scene(const std::filesystem::path& path) {
+  const io::SceneFile scene = io::read_scene(path);
+  mc::validate(scene.specimen);
+  fmt::print("{}: scene{}\n", path.string(),
+             scene.title.empty() ? "" : ", \"" + scene.title + "\"");
+  print_specimen(scene.specimen);
+  print_scan(scene);
+  print_item("physics", mc::format_physics(scene.physics));
+  for (const mc::Material& material : scene.specimen.materials) {
+    fmt::print("  in {}\n", material.name);
+    for (const std::string& line : mc::describe(scene.physics, material))
+      fmt::print("    {}\n", line);
+  }
+}
+
+void print_info(const std::filesystem::path& path, double unit_nm) {
+  if (io::is_scene_file(path)) return print_scene(path);
+  if (io::is_image_file(path)) return print_image(path);
+  print_mesh(path, unit_nm);
+}
+
+}  // namespace
+
+void print_item(const std::string& label, const std::string& value) {
+  fmt::print("  {:<10} {}\n", label, value);
+}
+
+std::string format_bounds(const Box& box) {
+  const Vec3 &a = box.lower_nm, &b = box.upper_nm;
+  return fmt::format("x {:.6g} to {:.6g}, y {:.6g} to {:.6g}, z {:.6g} to {:.6g} nm", a.x, b.x, a.y,
+                     b.y, a.z, b.z);
+}
+
+std::string format_extent(const Box& box) {
+  const Vec3 size = box.size_nm();
+  return join({format_length(size.x) + " wide", format_length(size.y) + " deep",
+               format_length(size.z) + " high"});
+}
+
+void add_info(CLI::App& app, Action& action) {
+  struct Options {
+    std::vector<std::string> files;
+    std::string unit = "nm";
+  };
+  const auto options = std::make_shared<Options>();
+  CLI::App* sub = app.add_subcommand("info", "What is in meshes, images and scene files");
+  sub->add_option("FILE", options->files, "Meshes, images or scenes")->type_name("FILE");
+  sub->add_option("--unit", options->unit, "Length of one unit of the mesh files (nm)")
+      ->type_name("nm|um|mm|m|pm|A|in");
+  sub->group("Commands");
+  sub->footer(examples);
+  sub->callback([options, &action] {
+    action = [options] {
+      if (options->files.empty())
+        throw UsageError("info", "no file is given", "Give meshes, images or scene files");
+      const double unit_nm = parse_unit_nm(options->unit, "--unit");
+      for (const std::string& file : options->files) print_info(file, unit_nm);
+      return 0;
+    };
+  });
+}
+
+}  // namespace surf::cli

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "surf/core/vec3.h"
+
+namespace surf::cli {
+
+/// "    label      value", as every line of `info` looks.
+void print_item(const std::string& label, const std::string& value);
+
+/// "x -50 to 50, y ..., z ... nm" and "100 nm x 100 nm x 40 nm".
+std::string format_bounds(const Box& box);
+std::string format_extent(const Box& box);
+
+void print_mesh(const std::filesystem::path& path, double unit_nm);
+void print_image(const std::filesystem::path& path);
+
+}  // namespace surf::cli

@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cctype>
+#include <cstring>
+#include <memory>
+#include <new>
+
+#include "commands.h"
+#include "options.h"
+#include "surf/core/error.h"
+#include "surf/workflow/version.h"
+#include "terminal.h"
+
+namespace {
+
+using namespace surf;
+using namespace surf::cli;
+
+constexpr int exit_usage = 2;
+constexpr int exit_unusable = 3;
+
+constexpr const char* examples = R"(Examples:
+  semsurf simulate cube.stl --material Si --substrate Si --tilt 40 -o cube.exr -o cube.png
+      the secondary-electron image of a mesh (in nm) at 1 keV, as data and as a picture
+  semsurf simulate samples/mesa80.toml --energy 3keV --electrons 500 -o mesa.vti
+      a scene file, with two of its settings changed, for ParaView
+  semsurf info mesa.vti
+      what is in a file, and how it was made
+
+'semsurf simulate --help' explains units and options.)";
+
+// CLI11's help with one empty line between groups, not two.
+class HelpFormatter : public CLI::Formatter {
+ public:
+  HelpFormatter() {
+    column_width(34);
+    label("Positionals", "Input");
+    label("SUBCOMMAND", "COMMAND");
+  }
+  std::string make_help(const CLI::App* app, std::string name,
+                        CLI::AppFormatMode mode) const override {
+    const std::string help = CLI::Formatter::make_help(app, name, mode);
+    return CLI::detail::find_and_replace(help, "\n\n\n", "\n\n");
+  }
+};
+
+std::string version_text() {
+  return fmt::format(
+      "semsurf {}\nwith {}, CLI11 {}\nCopyright the semsurf authors. Licence GPL-3.0-or-later; no "
+      "warranty.",
+      workflow::version(), workflow::library_versions(), CLI11_VERSION);
+}
+
+// The command line as a shell would read it, for the record.
+std::string quoted_command(int argc, char** argv) {
+  const auto is_plain = [](unsigned char c) {
+    return std::isalnum(c) || std::strchr("-_=+./,:%@", c);
+  };
+  std::string line;
+  for (int i = 0; i < argc; ++i) {
+    const std::string word = argv[i];
+    const bool plain = !word.empty() && std::all_of(word.begin(), word.end(), is_plain);
+    std::string quoted = "'";
+    for (const char c : word) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
+    line += (i ? " " : "") + (plain ? word : quoted + "'");
+  }
+  return line;
+}
+
+std::vector<std::string> names_of_options(const CLI::App& app) {
+  std::vector<std::string> names;
+  for (const CLI::Option* option : app.get_options())
+    for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+  return names;
+}
+
+// The subcommand that was parsed, else the program.
+const CLI::App& parsed_app(const CLI::App& app) {
+  const auto chosen = app.get_subcommands();
+  return chosen.empty() ? app : *chosen.front();
+}
+
+std::string help_hint(const CLI::App& app, const CLI::App& root) {
+  return &app == &root ? "See semsurf --help"
+                       : fmt::format("See semsurf {} --help", app.get_name());
+}
+
+int report_extra(const CLI::App& root) {
+  const CLI::App& app = parsed_app(root);
+  const auto remaining = root.remaining(true);
+  std::string word = remaining.empty() ? std::string() : remaining.front();
+  word.resize(std::min(word.find('='), word.size()));
+  const bool option = word.starts_with('-');
+  std::vector<std::string> candidates = names_of_options(app);
+  if (!option && &app == &root) {
+    candidates.clear();
+    for (const CLI::App* sub : root.get_subcommands(nullptr)) candidates.push_back(sub->get_name());
+  }
+  const std::string guess = nearest(word, candidates);
+  print_error(fmt::format("{}: unknown {}. {}", word, option ? "option" : "command",
+                          guess.empty() ? help_hint(app, root)
+                                        : fmt::format("Did you mean {}?", guess)));
+  return exit_usage;
+}
+
+int report_parse_error(const CLI::App& root, const CLI::ParseError& error) {
+  if (error.get_exit_code() == 0) return root.exit(error);   // help and version
+  if (dynamic_cast<const CLI::ExtrasError*>(&error)) return report_extra(root);
+  const CLI::App& app = parsed_app(root);
+  print_error(fmt::format("{}. {}", error.what(), help_hint(app, root)));
+  return exit_usage;
+}
+
+int act(const Action& action) {
+  try {
+    return action();
+  } catch (const UsageError& error) {
+    print_error(error.what());
+    return exit_usage;
+  } catch (const std::bad_alloc&) {
+    print_error("memory: there is not enough for this. Use fewer pixels or a smaller mesh");
+  } catch (const std::exception& error) {
+    print_error(error.what());
+  }
+  return exit_unusable;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Action action;
+  CLI::App app("Scanning electron microscope images of surfaces, by Monte Carlo simulation",
+               "semsurf");
+  app.formatter(std::make_shared<HelpFormatter>());
+  app.set_version_flag("-V,--version", version_text, "Versions of semsurf and its libraries");
+  app.footer(examples);
+  app.allow_windows_style_options(false);
+  add_simulate(app, action, quoted_command(argc, argv));
+  add_info(app, action);
+  add_materials(app, action);
+  add_completion(app, action);
+
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return report_parse_error(app, error);
+  }
+  if (!action) {
+    fmt::print(stderr, "{}", app.help());
+    return exit_usage;
+  }
+  return act(action);
+}

@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "options.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <utility>
+
+#include "surf/core/error.h"
+#include "surf/core/units.h"
+
+namespace surf::cli {
+namespace {
+
+std::vector<std::string_view> split(std::string_view text, std::string_view separators) {
+  std::vector<std::string_view> parts;
+  for (;;) {
+    const std::size_t at = text.find_first_of(separators);
+    parts.push_back(text.substr(0, at));
+    if (at == std::string_view::npos) return parts;
+    text.remove_prefix(at + 1);
+  }
+}
+
+template <class T>
+bool read_all(std::string_view text, T& value) {
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  return error == std::errc{} && end == text.data() + text.size();
+}
+
+std::size_t edit_distance(const std::string& a, const std::string& b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), std::size_t{0});
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    std::size_t diagonal = std::exchange(row[0], i);
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      const std::size_t replaced = diagonal + (a[i - 1] != b[j - 1]);
+      diagonal = row[j];
+      row[j] = std::min({replaced, row[j] + 1, row[j - 1] + 1});
+    }
+  }
+  return row[b.size()];
+}
+
+}  // namespace
+
+std::int64_t parse_whole(std::string_view text, std::string_view subject, std::int64_t lowest,
+                         std::int64_t highest) {
+  const auto fail = [&](const char* reason) {
+    return UsageError(std::string(subject), fmt::format("'{}' {}", text, reason),
+                      fmt::format("Give a whole number from {} to {}", lowest, highest));
+  };
+  std::int64_t value = 0;
+  if (!read_all(text, value)) {
+    double real = 0;
+    if (!read_all(text, real) || !std::isfinite(real) || real != std::floor(real))
+      throw fail("is not a whole number");
+    if (std::abs(real) > 9e15) throw fail("is out of range");
+    value = static_cast<std::int64_t>(real);
+  }
+  if (value < lowest || value > highest) throw fail("is out of range");
+  return value;
+}
+
+std::uint64_t parse_seed(std::string_view text, std::string_view subject) {
+  std::uint64_t value = 0;
+  if (!read_all(text, value))
+    throw UsageError(std::string(subject), fmt::format("'{}' is not a seed", text),
+                     fmt::format("Give a whole number from 0 to {}",
+                                 std::numeric_limits<std::uint64_t>::max()));
+  return value;
+}
+
+std::pair<int, int> parse_size(std::string_view text, std::string_view subject) {
+  constexpr std::int64_t most = std::numeric_limits<int>::max();
+  const auto parts = split(text, "xX");
+  if (parts.size() > 2)
+    throw UsageError(std::string(subject), fmt::format("'{}' is not a size", text),
+                     "Write width x height in pixels, as 256x192");
+  const auto width = static_cast<int>(parse_whole(parts[0], subject, 1, most));
+  return {width, parts.size() == 1 ? width
+                                   : static_cast<int>(parse_whole(parts[1], subject, 1, most))};
+}
+
+std::pair<double, double> parse_pixel_size(std::string_view text, std::string_view subject) {
+  const auto parts = split(text, ",x");
+  if (parts.size() > 2)
+    throw UsageError(std::string(subject), fmt::format("'{}' is not a pixel size", text),
+                     "Write one length, or two for x and y: 2nm or 2nmx3nm");
+  const double x = parse_length_nm(parts[0], subject);
+  const double y = parts.size() == 1 ? x : parse_length_nm(parts[1], subject);
+  return {x, y};
+}
+
+io::ScanRequest::Region parse_region(std::string_view text, std::string_view subject) {
+  const auto parts = split(text, ",");
+  if (parts.size() != 4)
+    throw UsageError(std::string(subject), fmt::format("'{}' has {} numbers", text, parts.size()),
+                     "Give the outer edges X0,Y0,X1,Y1, as -96,-96,96,96");
+  return {parse_length_nm(parts[0], subject), parse_length_nm(parts[1], subject),
+          parse_length_nm(parts[2], subject), parse_length_nm(parts[3], subject)};
+}
+
+double parse_unit_nm(std::string_view text, std::string_view subject) {
+  const bool named = text.find_first_of("0123456789") == std::string_view::npos;
+  const double unit_nm = named ? unit_length_nm(text, subject) : parse_length_nm(text, subject);
+  if (!(unit_nm > 0))
+    throw UsageError(std::string(subject), "it must be above zero",
+                     "Write a length, as um or 25.4mm");
+  return unit_nm;
+}
+
+Edge parse_edge(std::string_view text, std::string_view subject) {
+  if (text == "mirror") return Edge::mirror;
+  if (text == "flat") return Edge::flat;
+  if (text == "periodic") return Edge::periodic;
+  throw UsageError(std::string(subject), fmt::format("'{}' is not known", text),
+                   "Choose mirror, flat or periodic");
+}
+
+std::string nearest(const std::string& word, const std::vector<std::string>& candidates) {
+  std::string best;
+  std::size_t least = std::max<std::size_t>(2, word.size() / 3) + 1;
+  for (const std::string& candidate : candidates) {
+    const std::size_t distance = edit_distance(word, candidate);
+    if (distance < least) {
+      least = distance;
+      best = candidate;
+    }
+  }
+  return best;
+}
+
+}  // namespace surf::cli

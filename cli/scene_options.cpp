@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scene_options.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <tuple>
+
+#include "options.h"
+#include "surf/core/error.h"
+#include "surf/core/units.h"
+#include "surf/io/image_file.h"
+#include "surf/io/mesh_file.h"
+#include "surf/io/sim/materials.h"
+
+namespace surf::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+int material_index(mc::Specimen& specimen, const std::string& name, const std::string& subject) {
+  const mc::Material& material = io::find_material(name, subject);
+  auto& all = specimen.materials;
+  const auto found = std::find_if(all.begin(), all.end(),
+                                  [&](const mc::Material& m) { return m.name == material.name; });
+  if (found != all.end()) return static_cast<int>(found - all.begin());
+  all.push_back(material);
+  return static_cast<int>(all.size()) - 1;
+}
+
+const Channel& height_channel(const Image& image, const fs::path& path,
+                              std::vector<std::string>& notes) {
+  for (const char* name : {"z_nm", "z"})
+    if (const Channel* channel = image.find(name)) return *channel;
+  const Channel& first = image.channels.front();
+  if (image.channels.size() > 1)
+    notes.push_back(fmt::format("{}: heights are taken from its first channel, {}", path.string(),
+                                first.name));
+  return first;
+}
+
+HeightField read_height_field(const fs::path& path, const SceneOptions& options,
+                              std::vector<std::string>& notes) {
+  Image image = io::read_image(path);
+  if (options.pitch) {
+    const auto [x, y] = parse_pixel_size(*options.pitch, "--pitch");
+    if (!(x > 0) || !(y > 0))
+      throw UsageError("--pitch", "it must be above zero", "Write --pitch 2nm");
+    image.pitch_x_nm = x;
+    image.pitch_y_nm = y;
+    image.origin_x_nm = -0.5 * x * (image.width() - 1);   // as scene files do
+    image.origin_y_nm = -0.5 * y * (image.height() - 1);
+  }
+  const double z_unit_nm = options.z_unit ? parse_length_nm(*options.z_unit, "--z-unit") : 1.0;
+  if (!(z_unit_nm > 0))
+    throw UsageError("--z-unit", "it must be above zero", "Write --z-unit 0.1nm");
+  return io::to_height_field(image, height_channel(image, path, notes).name, z_unit_nm);
+}
+
+io::SceneFile scene_from_shapes(const SceneOptions& options, std::vector<std::string>& notes) {
+  io::SceneFile scene;
+  const int material =
+      material_index(scene.specimen, options.material.value_or("Si"), "--material");
+  if (!options.material) notes.push_back("no --material is given: Si");
+  const double unit_nm = options.unit ? parse_unit_nm(*options.unit, "--unit") : 1.0;
+  for (const std::string& input : options.inputs) {
+    const fs::path path(input);
+    if (io::is_scene_file(path))
+      throw UsageError(input, "a scene file cannot be combined with other inputs",
+                       "Add the others to the scene file");
+    if (io::is_image_file(path)) {
+      if (scene.specimen.height_field)
+        throw UsageError(input, "there is a height field already", "Give one image at most");
+      scene.specimen.height_field = mc::HeightFieldBody{
+          input, read_height_field(path, options, notes), material, Edge::mirror};
+    } else {
+      scene.specimen.bodies.push_back({input, io::read_mesh(path, unit_nm), material});
+    }
+    scene.inputs.push_back(path);
+  }
+  const bool has_field = scene.specimen.height_field.has_value();
+  if (!has_field && (options.pitch || options.z_unit))
+    throw UsageError(options.pitch ? "--pitch" : "--z-unit", "no input is a height field",
+                     "Leave it out, or give an image");
+  if (scene.specimen.bodies.empty() && options.unit)
+    throw UsageError("--unit", "no input is a mesh", "Leave it out; --z-unit scales heights");
+  return scene;
+}
+
+io::SceneFile scene_from_file(const SceneOptions& options) {
+  const auto refuse = [](const std::optional<std::string>& value, const char* option) {
+    if (value)
+      throw UsageError(option, "a scene file says this for each of its parts",
+                       "Change the scene file, or give a mesh");
+  };
+  refuse(options.material, "--material");
+  refuse(options.unit, "--unit");
+  refuse(options.pitch, "--pitch");
+  refuse(options.z_unit, "--z-unit");
+  return io::read_scene(options.inputs.front());
+}
+
+void apply_specimen(const SceneOptions& options, mc::Specimen& specimen) {
+  if (options.substrate) {
+    if (!specimen.substrate) specimen.substrate.emplace();
+    specimen.substrate->material = material_index(specimen, *options.substrate, "--substrate");
+  }
+  if (options.substrate_z) {
+    if (!specimen.substrate)
+      throw UsageError("--substrate-z", "there is no substrate", "Add --substrate Si");
+    specimen.substrate->top_nm = parse_length_nm(*options.substrate_z, "--substrate-z");
+  }
+  if (options.edge) {
+    const Edge edge = parse_edge(*options.edge, "--edge");
+    if (!specimen.height_field)
+      throw UsageError("--edge", "the specimen has no height field", "Leave it out");
+    specimen.height_field->edge = edge;
+  }
+}
+
+void apply_beam(const SceneOptions& options, mc::Beam& beam) {
+  if (options.energy) beam.energy_ev = parse_energy_ev(*options.energy, "--energy");
+  if (options.tilt) beam.tilt_deg = parse_angle_deg(*options.tilt, "--tilt");
+  if (options.azimuth) beam.azimuth_deg = parse_angle_deg(*options.azimuth, "--azimuth");
+  if (options.spot) beam.spot_nm = parse_length_nm(*options.spot, "--spot");
+}
+
+// What the command line gives replaces the same thing in the scene file. Where that leaves size,
+// pixel size and region, the one of the file that least changes the picture gives way.
+void apply_scan(const SceneOptions& options, io::ScanRequest& scan) {
+  const int given = options.size.has_value() + options.pixel_size.has_value() +
+                    options.region.has_value();
+  if (given == 2) scan = {};
+  if (options.size)
+    std::tie(scan.width, scan.height) = parse_size(*options.size, "--size");
+  if (options.pixel_size)
+    std::tie(scan.pixel_x_nm, scan.pixel_y_nm) =
+        parse_pixel_size(*options.pixel_size, "--pixel-size");
+  if (options.region) scan.region = parse_region(*options.region, "--region");
+  if (given != 1 || !scan.width || !scan.pixel_x_nm || !scan.region) return;
+  if (options.pixel_size)
+    scan.width = scan.height = std::nullopt;
+  else
+    scan.pixel_x_nm = scan.pixel_y_nm = std::nullopt;
+}
+
+}  // namespace
+
+io::SceneFile make_scene(const SceneOptions& options, std::vector<std::string>& notes) {
+  if (options.inputs.empty())
+    throw UsageError("simulate", "no specimen is given",
+                     "Give a mesh, a height field or a scene file, as in 'semsurf simulate "
+                     "cube.stl -o cube.exr'");
+  const bool from_file = options.inputs.size() == 1 && io::is_scene_file(options.inputs.front());
+  io::SceneFile scene =
+      from_file ? scene_from_file(options) : scene_from_shapes(options, notes);
+  apply_specimen(options, scene.specimen);
+  apply_beam(options, scene.beam);
+  apply_scan(options, scene.scan);
+  if (options.physics) mc::parse_physics(*options.physics, scene.physics);
+  if (options.cutoff) scene.physics.cutoff_ev = parse_energy_ev(*options.cutoff, "--cutoff");
+  return scene;
+}
+
+}  // namespace surf::cli

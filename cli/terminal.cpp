@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "terminal.h"
+
+#include <fmt/format.h>
+#include <signal.h>
+#include <sys/ioctl.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <cstdio>
+
+namespace surf::cli {
+namespace {
+
+constexpr auto update_interval = std::chrono::milliseconds(100);
+constexpr int exit_interrupted = 130;
+
+std::atomic<CancelToken*> interrupted_token{nullptr};
+
+void print_line(const char* kind, const std::string& message) {
+  fmt::print(stderr, "semsurf: {}: {}\n", kind, message);
+}
+
+int terminal_columns() {
+  winsize size{};
+  return ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : 80;
+}
+
+// Only calls that are safe in a signal handler.
+void on_interrupt(int) {
+  CancelToken* token = interrupted_token.load();
+  if (!token || token->cancelled()) _exit(exit_interrupted);
+  token->cancel();
+  static const char text[] =
+      "\nsemsurf: interrupted; writing what is done (Ctrl-C again to stop at once)\n";
+  [[maybe_unused]] const auto written = write(STDERR_FILENO, text, sizeof text - 1);
+}
+
+void handle_interrupts(void (*handler)(int)) {
+  struct sigaction action {};
+  action.sa_handler = handler;
+  sigemptyset(&action.sa_mask);
+  action.sa_flags = SA_RESTART;
+  sigaction(SIGINT, &action, nullptr);
+  sigaction(SIGTERM, &action, nullptr);
+}
+
+}  // namespace
+
+void print_error(const std::string& message) { print_line("error", message); }
+void print_warning(const std::string& message) { print_line("warning", message); }
+void print_note(const std::string& message) { print_line("note", message); }
+
+std::string format_count(double count) {
+  static constexpr const char* suffixes[] = {"", " k", " M", " G", " T"};
+  int power = 0;
+  while (count >= 999.5 && power < 4) {
+    count /= 1000;
+    ++power;
+  }
+  return fmt::format("{:.{}f}{}", count, power == 0 || count >= 99.95 ? 0 : 1, suffixes[power]);
+}
+
+std::string format_duration(double seconds) {
+  const auto s = static_cast<long long>(std::lround(std::clamp(seconds, 0.0, 1e9)));
+  return s < 3600 ? fmt::format("{}:{:02}", s / 60, s % 60)
+                  : fmt::format("{}:{:02}:{:02}", s / 3600, s / 60 % 60, s % 60);
+}
+
+ProgressBar::ProgressBar(bool wanted) : active_(wanted && isatty(STDERR_FILENO)) {}
+
+ProgressBar::~ProgressBar() {
+  if (started_) fmt::print(stderr, "\r\033[K");
+}
+
+void ProgressBar::show(double done, double total) {
+  if (!active_ || !(total > 0)) return;
+  const auto now = Clock::now();
+  if (!started_) {
+    started_ = true;
+    start_ = next_ = now;
+  }
+  if (now < next_) return;
+  next_ = now + update_interval;
+
+  const double seconds = std::chrono::duration<double>(now - start_).count();
+  const double fraction = std::clamp(done / total, 0.0, 1.0);
+  std::string numbers = fmt::format(" {:3.0f} %", 100 * fraction);
+  if (seconds > 0 && done > 0) {
+    const double rate = done / seconds;
+    numbers += fmt::format("  {} primaries/s  {} left", format_count(rate),
+                           format_duration((total - done) / rate));
+  }
+  const int room = terminal_columns() - static_cast<int>(numbers.size()) - 4;
+  const int width = std::clamp(room, 0, 40);
+  const int filled = static_cast<int>(fraction * width);
+  fmt::print(stderr, "\r[{:#<{}}{: <{}}]{}\033[K", "", filled, "", width - filled, numbers);
+  std::fflush(stderr);
+}
+
+InterruptGuard::InterruptGuard() {
+  interrupted_token.store(&token_);
+  handle_interrupts(on_interrupt);
+}
+
+InterruptGuard::~InterruptGuard() {
+  handle_interrupts(SIG_DFL);
+  interrupted_token.store(nullptr);
+}
+
+}  // namespace surf::cli

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <chrono>
+#include <string>
+
+#include "surf/core/progress.h"
+
+namespace surf::cli {
+
+/// "semsurf: error: ...", "semsurf: warning: ..." and "semsurf: note: ..." on stderr.
+void print_error(const std::string& message);
+void print_warning(const std::string& message);
+void print_note(const std::string& message);
+
+/// "13.1 M", "950": a count for people.
+std::string format_count(double count);
+
+/// "0:07", "3:21", "2:05:00".
+std::string format_duration(double seconds);
+
+/// A progress bar on stderr: percentage, primaries per second, time left. Silent unless `wanted`
+/// and stderr is a terminal. Erased when destroyed.
+class ProgressBar {
+ public:
+  explicit ProgressBar(bool wanted);
+  ~ProgressBar();
+  ProgressBar(const ProgressBar&) = delete;
+  ProgressBar& operator=(const ProgressBar&) = delete;
+
+  void show(double done, double total);
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  bool active_;
+  bool started_ = false;
+  Clock::time_point start_, next_;
+};
+
+/// While one exists, the first SIGINT or SIGTERM cancels its token; the second ends the program at
+/// once. One at a time.
+class InterruptGuard {
+ public:
+  InterruptGuard();
+  ~InterruptGuard();
+  InterruptGuard(const InterruptGuard&) = delete;
+  InterruptGuard& operator=(const InterruptGuard&) = delete;
+
+  const CancelToken* token() const { return &token_; }
+
+ private:
+  CancelToken token_;
+};
+
+}  // namespace surf::cli

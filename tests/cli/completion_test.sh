@@ -1,0 +1,29 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: GPL-3.0-or-later
+# completion_test.sh PROGRAM: asks bash's completion of semsurf as the shell would.
+set -eu
+source <("$1" completion bash)
+status=0
+
+# expect "what is offered" word... : the last word is the one being completed.
+expect() {
+  local wanted=$1
+  shift
+  COMP_WORDS=(semsurf "$@")
+  COMP_CWORD=$#
+  _semsurf
+  if [[ "${COMPREPLY[*]-}" != "$wanted" ]]; then
+    printf '%s -> "%s", not "%s"\n' "$*" "${COMPREPLY[*]-}" "$wanted"
+    status=1
+  fi
+}
+
+expect "simulate" sim
+expect "--energy" simulate --ener
+expect "--substrate --substrate-z --spot --size --seed" simulate cube.stl --s
+expect "mirror" simulate --edge m
+expect "bash zsh fish" completion ""
+expect "/etc/hostname" simulate -o /etc/hostnam
+expect "Si" materials Si
+expect "" simulate --energy ""
+exit $status

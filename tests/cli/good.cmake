@@ -1,0 +1,61 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Commands that work.
+set(few --electrons 2 --size 8x8)
+
+semsurf_cli_test(version ARGS --version STDOUT "semsurf ${PROJECT_VERSION}" "Embree [0-9]" "OpenImageIO [0-9]")
+semsurf_cli_test(help ARGS --help STDOUT "simulate" "info" "materials" "completion" "Examples:")
+semsurf_cli_test(help.simulate ARGS simulate --help
+  STDOUT "Specimen:" "Beam:" "Scan:" "Simulation:" "Output:" "bare lengths are nm" "Examples:")
+semsurf_cli_test(help.info ARGS info --help STDOUT "Examples:")
+semsurf_cli_test(help.materials ARGS materials --help STDOUT "Examples:")
+semsurf_cli_test(help.completion ARGS completion --help STDOUT "Examples:")
+semsurf_cli_test(no_arguments EXIT 2 ARGS simulate STDERR "no specimen")
+
+semsurf_cli_test(materials ARGS materials STDOUT "Si +2\\.33" "Au")
+semsurf_cli_test(materials.one ARGS materials Si STDOUT "Z = 14" "work function" "Mott table +yes")
+
+semsurf_cli_test(info.mesh ARGS info cube.off open.off --unit um
+  STDOUT "12 triangles" "40.* wide, 40.* deep" "volume +6\\.4e\\+04 um.3" "cannot be simulated")
+semsurf_cli_test(info.scene ARGS info scene.toml
+  STDOUT "a cube of gold" "2000 eV" "8 x 8 pixels of 10" "3 per pixel" "in Au" "Joy")
+
+semsurf_cli_test(simulate.mesh ARGS simulate cube.off ${few} -o cube.exr
+  STDOUT "8 x 8 pixels" "SE +0\\.[0-9]+ ± 0" "BSE" "primaries +128" "cube.exr"
+  STDERR "no --material is given: Si" WRITES cube.exr cube.run.json
+  INFO cube.exr "specimen.body.1 +cube.off, Si, 12 triangles")
+semsurf_cli_test(simulate.all_formats ARGS simulate cube.off --material Au ${few}
+  -o a/cube.exr -o a/cube.tif -o cube.png --channel BSE
+  WRITES a/cube.exr a/cube.tif cube.png a/cube.run.json cube.run.json INFO a/cube.tif "BSE.stderr")
+if(SEMSURF_VTK)
+  semsurf_cli_test(simulate.vti ARGS simulate cube.off ${few} -o cube.vti
+    WRITES cube.vti INFO cube.vti "SE.stderr")
+endif()
+semsurf_cli_test(simulate.quiet ARGS simulate cube.off ${few} -q -o cube.exr STDOUT "^$")
+semsurf_cli_test(simulate.every_option ARGS simulate cube.off cube.off --material Si --unit nm
+  --substrate Au --substrate-z -5nm --energy 0.5keV --tilt 0.3rad --azimuth 30 --spot 1nm
+  --region -32,-32,32,32 --pixel-size 8nm --electrons 3 --seed 18446744073709551615
+  --physics elastic=browning,secondaries=off,barrier=off --cutoff 60eV --threads 2 -o image.exr
+  STDOUT "8 x 8 pixels" INFO image.exr "seed +18446744073709551615")
+semsurf_cli_test(simulate.negative_region ARGS simulate cube.off --region -.5,-96,96,96
+  --electrons 1 --size 4x4 -o image.exr STDERR "one electron" INFO image.exr "scan.center_x_nm +47.75")
+semsurf_cli_test(simulate.nothing_seen ARGS simulate cube.off --region 100,100,120,120
+  --size 4x4 --electrons 2 -o image.exr STDERR "outside the specimen" "no pixel")
+semsurf_cli_test(simulate.scene ARGS simulate scene.toml -o image.exr
+  STDOUT "8 x 8 pixels of 10" INFO image.exr "input.2 +cube.off sha256 [0-9a-f]+")
+semsurf_cli_test(simulate.scene_overridden ARGS simulate scene.toml --energy 3keV --size 4x4
+  --electrons 5 --seed 7 --substrate C -o image.exr
+  STDOUT "4 x 4 pixels of 10" "primaries +80" INFO image.exr "beam.energy_ev +3000(.|\n)*specimen.substrate +C,")
+semsurf_cli_test(simulate.scene_region ARGS simulate scene.toml --region -10,-10,10,10 -o image.exr
+  STDOUT "8 x 8 pixels of 2.5")
+semsurf_cli_test(simulate.interrupted EXIT 130 INTERRUPT
+  ARGS simulate cube.off --substrate Si --electrons 100000000 --size 4x4 -o image.exr
+  STDERR "interrupted" STDOUT "partial" WRITES image.exr image.run.json INFO image.exr "partial +true")
+
+# Every sample runs, as it is but for its size.
+file(GLOB samples CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/samples/*.toml")
+foreach(sample IN LISTS samples)
+  get_filename_component(name "${sample}" NAME_WE)
+  semsurf_cli_test(sample.${name} ARGS simulate "${sample}" --electrons 2 --size 16x16
+    -o image.exr -o image.png WRITES image.exr image.png INFO image.exr "title")
+  semsurf_cli_test(sample.${name}.info ARGS info "${sample}" STDOUT "scene" "extent")
+endforeach()

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <fstream>
+#include <map>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace surf::test {
+
+/// The rows of a file in data/reference, each from column name to text. Quoted fields may hold commas.
+inline std::vector<std::map<std::string, std::string>> read_reference(const std::string& name) {
+  std::ifstream in(std::string(SEMSURF_REFERENCE_DATA) + "/" + name);
+  if (!in) throw std::runtime_error("no reference data " + name);
+  const auto split = [](const std::string& line) {
+    std::vector<std::string> fields(1);
+    bool quoted = false;
+    for (const char c : line) {
+      if (c == '"') quoted = !quoted;
+      else if (c == ',' && !quoted) fields.emplace_back();
+      else if (c != '\r') fields.back() += c;
+    }
+    return fields;
+  };
+  std::string line;
+  std::getline(in, line);
+  const auto names = split(line);
+  std::vector<std::map<std::string, std::string>> rows;
+  while (std::getline(in, line)) {
+    const auto fields = split(line);
+    std::map<std::string, std::string> row;
+    for (std::size_t i = 0; i < names.size() && i < fields.size(); ++i) row[names[i]] = fields[i];
+    rows.push_back(std::move(row));
+  }
+  return rows;
+}
+
+inline double number(const std::map<std::string, std::string>& row, const std::string& column) {
+  return std::stod(row.at(column));
+}
+
+}  // namespace surf::test

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "surf/io/sim/materials.h"
+#include "surf/mc/simulate.h"
+
+namespace surf::test {
+
+/// A bare half-space of one of the built-in materials.
+inline mc::Specimen flat(const char* material) {
+  mc::Specimen specimen;
+  specimen.materials = {io::find_material(material, "test")};
+  specimen.substrate = mc::Substrate{};
+  return specimen;
+}
+
+/// A scan of `pixels` x `pixels` over a square around the origin.
+inline mc::Scan square_scan(double width_nm, int pixels) {
+  mc::Scan scan;
+  scan.width = scan.height = pixels;
+  scan.pixel_x_nm = scan.pixel_y_nm = width_nm / pixels;
+  return scan;
+}
+
+inline mc::SimulationResult simulate(const mc::Specimen& specimen, const mc::Beam& beam,
+                                     const mc::Scan& scan, std::int64_t electrons,
+                                     const mc::Physics& physics = {}, std::uint64_t seed = 1) {
+  mc::SimulationOptions options;
+  options.electrons = electrons;
+  options.seed = seed;
+  return mc::simulate(mc::Scene(specimen, beam, scan, physics), options);
+}
+
+struct Yields {
+  mc::Estimate se, bse;
+};
+
+/// Yields over all pixels.
+inline Yields yields(const mc::SimulationResult& result) {
+  mc::PixelTally sum;
+  for (const mc::PixelTally& p : result.pixels.data()) sum += p;
+  return {mc::estimate(sum.primaries, sum.se, sum.se_squared),
+          mc::estimate(sum.primaries, sum.bse, sum.bse_squared)};
+}
+
+/// Yields of a bare half-space.
+inline Yields flat_yields(const char* material, double energy_ev, double tilt_deg,
+                          std::int64_t electrons, const mc::Physics& physics = {}) {
+  mc::Beam beam;
+  beam.energy_ev = energy_ev;
+  beam.tilt_deg = tilt_deg;
+  return yields(simulate(flat(material), beam, square_scan(10, 1), electrons, physics));
+}
+
+}  // namespace surf::test

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <gmock/gmock.h>
+
+#include "small_job.h"
+#include "temporary_folder.h"
+
+namespace surf::workflow {
+namespace {
+
+using test::TemporaryFolder;
+using testing::Contains;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+std::vector<std::string> warnings_of(SimulateJob job) {
+  const TemporaryFolder folder;
+  job.outputs = {folder.path() / "image.exr"};
+  job.options.electrons = std::min<std::int64_t>(job.options.electrons, 2);
+  return run(job).warnings;
+}
+
+void scan_about(SimulateJob& job, double x_nm) {
+  job.scene.scan = {};
+  job.scene.scan.width = job.scene.scan.height = 4;
+  job.scene.scan.region = io::ScanRequest::Region{x_nm - 2, -2, x_nm + 2, 2};
+}
+
+TEST(Warnings, AreAbsentWhereNothingIsOdd) { EXPECT_THAT(warnings_of(small_job()), IsEmpty()); }
+
+TEST(Warnings, TellThatNothingIsSeen) {
+  SimulateJob job = small_job();
+  job.scene.specimen.substrate.reset();
+  scan_about(job, 1000);
+  const auto warnings = warnings_of(job);
+  EXPECT_THAT(warnings, Contains(HasSubstr("outside the specimen")));
+  EXPECT_THAT(warnings, Contains(HasSubstr("no pixel")));
+}
+
+TEST(Warnings, TellOfUnlikelySizes) {
+  for (const double factor : {1e12, 1e-3}) {
+    SimulateJob job = small_job();
+    job.scene.specimen.substrate.reset();
+    transform(job.scene.specimen.bodies[0].mesh, factor, {0, 0, 0});
+    job.scene.scan = {};
+    job.scene.scan.width = job.scene.scan.height = 4;
+    EXPECT_THAT(warnings_of(job), Contains(HasSubstr("is --unit right?"))) << factor;
+  }
+}
+
+TEST(Warnings, TellOfBodiesUnderTheSubstrate) {
+  SimulateJob job = small_job();
+  job.scene.specimen.substrate->top_nm = 100;
+  EXPECT_THAT(warnings_of(job), Contains(HasSubstr("below the substrate's top")));
+}
+
+TEST(Warnings, TellOfMeshesInsideOut) {
+  SimulateJob job = small_job();
+  for (Triangle& t : job.scene.specimen.bodies[0].mesh.triangles) std::swap(t[1], t[2]);
+  EXPECT_THAT(warnings_of(job), Contains(HasSubstr("normals point inward")));
+}
+
+TEST(Warnings, TellOfScansBeyondAHeightField) {
+  SimulateJob job = small_job();
+  job.scene.specimen.substrate.reset();
+  job.scene.specimen.bodies.clear();
+  job.scene.specimen.height_field =
+      mc::HeightFieldBody{"mesa", make_mesa({100, 100, 5}, 20, 40, 10), 0, Edge::mirror};
+  scan_about(job, 0);
+  EXPECT_THAT(warnings_of(job), IsEmpty());
+  job.scene.scan.width = job.scene.scan.height = 18;
+  job.scene.scan.region = io::ScanRequest::Region{-90, -90, 90, 90};
+  EXPECT_THAT(warnings_of(job), Contains(HasSubstr("beyond the height field")));
+}
+
+TEST(Warnings, TellOfStandardErrorsThatMeanNothing) {
+  SimulateJob job = small_job();
+  job.options.electrons = 1;
+  EXPECT_THAT(warnings_of(job), Contains(HasSubstr("one electron per pixel")));
+}
+
+TEST(Warnings, TellOfUnfittedMaterials) {
+  SimulateJob job = small_job();
+  job.scene.specimen.materials[0].loss_join_fitted = false;
+  EXPECT_THAT(warnings_of(job), Contains(HasSubstr("Si: no measured yields")));
+}
+
+}  // namespace
+}  // namespace surf::workflow

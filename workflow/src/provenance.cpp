@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "provenance.h"
+
+#include <fmt/format.h>
+
+#include "surf/core/units.h"
+#include "surf/io/files.h"
+#include "surf/workflow/version.h"
+
+namespace surf::workflow {
+namespace {
+
+using Metadata = std::map<std::string, std::string>;
+
+void add_beam_and_scan(Metadata& out, const mc::Beam& beam, const mc::Scan& scan) {
+  out["beam.energy_ev"] = format_exact(beam.energy_ev);
+  out["beam.tilt_deg"] = format_exact(beam.tilt_deg);
+  out["beam.azimuth_deg"] = format_exact(beam.azimuth_deg);
+  out["beam.spot_nm"] = format_exact(beam.spot_nm);
+  out["scan.width"] = std::to_string(scan.width);
+  out["scan.height"] = std::to_string(scan.height);
+  out["scan.pixel_x_nm"] = format_exact(scan.pixel_x_nm);
+  out["scan.pixel_y_nm"] = format_exact(scan.pixel_y_nm);
+  out["scan.center_x_nm"] = format_exact(scan.center_x_nm);
+  out["scan.center_y_nm"] = format_exact(scan.center_y_nm);
+  out["scan.center_z_nm"] = format_exact(scan.center_z_nm);
+}
+
+void add_material(Metadata& out, const std::string& key, const mc::Material& material) {
+  out[key + ".name"] = material.name;
+  out[key + ".density_g_cm3"] = format_exact(material.density_g_cm3);
+  out[key + ".work_function_ev"] = format_exact(material.work_function_ev);
+  out[key + ".barrier_ev"] = format_exact(material.barrier_ev);
+  out[key + ".valence_electrons"] = format_exact(material.valence_electrons);
+  out[key + ".plasmon_ev"] = format_exact(material.plasmon_ev);
+  out[key + ".loss_join_ev"] = format_exact(material.loss_join_ev);
+  out[key + ".loss_join_fitted"] = material.loss_join_fitted ? "true" : "false";
+  std::string constituents;
+  for (const mc::Constituent& c : material.constituents)
+    constituents += fmt::format("{}Z={} A={} weight_fraction={} mean_ionization_ev={}",
+                                constituents.empty() ? "" : "; ", c.atomic_number,
+                                format_exact(c.atomic_weight), format_exact(c.weight_fraction),
+                                format_exact(c.mean_ionization_ev));
+  out[key + ".constituents"] = constituents;
+  if (!material.sources.empty()) out[key + ".sources"] = material.sources;
+}
+
+const char* edge_name(Edge edge) {
+  switch (edge) {
+    case Edge::mirror: return "mirror";
+    case Edge::flat: return "flat";
+    case Edge::periodic: return "periodic";
+  }
+  return "";
+}
+
+std::string file_name(const std::string& name) {
+  return std::filesystem::path(name).filename().string();
+}
+
+void add_specimen(Metadata& out, const mc::Specimen& specimen) {
+  const auto material = [&](int index) {
+    return specimen.materials.at(static_cast<std::size_t>(index)).name;
+  };
+  if (const auto& s = specimen.substrate)
+    out["specimen.substrate"] =
+        fmt::format("{}, top at {} nm", material(s->material), format_exact(s->top_nm));
+  if (const auto& h = specimen.height_field) {
+    const HeightField& f = h->field;
+    out["specimen.height_field"] = fmt::format(
+        "{}, {}, {}x{} samples, pitch {} x {} nm, origin {}, {} nm, edge {}", file_name(h->name),
+        material(h->material), f.z_nm.width(), f.z_nm.height(), format_exact(f.pitch_x_nm),
+        format_exact(f.pitch_y_nm), format_exact(f.origin_x_nm), format_exact(f.origin_y_nm),
+        edge_name(h->edge));
+  }
+  int number = 0;
+  for (const mc::Body& body : specimen.bodies) {
+    const Box box = bounds(body.mesh);
+    out[fmt::format("specimen.body.{}", ++number)] = fmt::format(
+        "{}, {}, {} triangles, from {}, {}, {} to {}, {}, {} nm", file_name(body.name),
+        material(body.material), body.mesh.triangles.size(), format_exact(box.lower_nm.x),
+        format_exact(box.lower_nm.y), format_exact(box.lower_nm.z), format_exact(box.upper_nm.x),
+        format_exact(box.upper_nm.y), format_exact(box.upper_nm.z));
+  }
+}
+
+}  // namespace
+
+std::vector<InputHash> hash_inputs(const std::vector<std::filesystem::path>& inputs) {
+  std::vector<InputHash> hashes;
+  for (const auto& path : inputs) hashes.push_back({path, io::sha256_of_file(path)});
+  return hashes;
+}
+
+Metadata provenance(const SimulateJob& job, const mc::Scan& scan,
+                    const std::vector<InputHash>& inputs) {
+  Metadata out;
+  out["semsurf.version"] = version();
+  if (!job.scene.title.empty()) out["title"] = job.scene.title;
+  int number = 0;
+  for (const InputHash& input : inputs)
+    out[fmt::format("input.{}", ++number)] =
+        fmt::format("{} sha256 {}", input.path.filename().string(), input.sha256);
+  add_beam_and_scan(out, job.scene.beam, scan);
+  add_specimen(out, job.scene.specimen);
+  out["physics"] = mc::format_physics(job.scene.physics);
+  number = 0;
+  for (const mc::Material& material : job.scene.specimen.materials) {
+    const std::string key = fmt::format("material.{}", ++number);
+    add_material(out, key, material);
+    out[key + ".cutoff_ev"] = format_exact(mc::effective_cutoff_ev(job.scene.physics, material));
+  }
+  out["electrons"] = std::to_string(job.options.electrons);
+  out["seed"] = std::to_string(job.options.seed);
+  return out;
+}
+
+Metadata outcome(const mc::SimulationResult& result, const std::vector<std::string>& warnings) {
+  Metadata out;
+  const mc::Balance& b = result.balance;
+  out["balance.incident"] = std::to_string(b.incident);
+  out["balance.missed"] = std::to_string(b.missed);
+  out["balance.generated"] = std::to_string(b.generated);
+  out["balance.se"] = std::to_string(b.se);
+  out["balance.bse"] = std::to_string(b.bse);
+  out["balance.transmitted"] = std::to_string(b.transmitted);
+  out["balance.absorbed"] = std::to_string(b.absorbed);
+  out["balance.lost"] = std::to_string(b.total_lost());
+  if (!result.complete) out["partial"] = "true";
+  int number = 0;
+  for (const std::string& warning : warnings) out[fmt::format("warning.{}", ++number)] = warning;
+  return out;
+}
+
+}  // namespace surf::workflow

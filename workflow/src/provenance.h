@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "surf/workflow/simulate_job.h"
+
+namespace surf::workflow {
+
+struct InputHash {
+  std::filesystem::path path;
+  std::string sha256;
+};
+
+std::vector<InputHash> hash_inputs(const std::vector<std::filesystem::path>& inputs);
+
+/// Everything that changes the result, as an image's metadata: nothing here may depend on threads,
+/// tiles, hosts, clocks, or on the folders that inputs and outputs are in.
+std::map<std::string, std::string> provenance(const SimulateJob& job, const mc::Scan& scan,
+                                              const std::vector<InputHash>& inputs);
+
+/// What a finished simulation adds: its balance, warnings and, when cancelled, that it is partial.
+std::map<std::string, std::string> outcome(const mc::SimulationResult& result,
+                                           const std::vector<std::string>& warnings);
+
+}  // namespace surf::workflow

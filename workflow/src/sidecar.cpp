@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sidecar.h"
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <array>
+#include <nlohmann/json.hpp>
+
+#include "surf/core/parallel.h"
+#include "surf/workflow/version.h"
+
+namespace surf::workflow {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::string utc(std::chrono::system_clock::time_point t) {
+  const auto ms = std::chrono::duration_cast<std::chrono::milliseconds>(t.time_since_epoch()) %
+                  std::chrono::seconds(1);
+  return fmt::format("{:%Y-%m-%dT%H:%M:%S}.{:03}Z",
+                     fmt::gmtime(std::chrono::system_clock::to_time_t(t)), ms.count());
+}
+
+std::string host_name() {
+  std::array<char, 256> name{};
+  return gethostname(name.data(), name.size() - 1) == 0 ? name.data() : "";
+}
+
+std::int64_t peak_memory_bytes() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+#ifdef __APPLE__
+  return usage.ru_maxrss;
+#else
+  return std::int64_t{usage.ru_maxrss} * 1024;
+#endif
+}
+
+Json balance_json(const mc::Balance& b) {
+  Json lost = Json::object();
+  for (int i = 0; i < mc::loss_causes; ++i)
+    lost[mc::name(static_cast<mc::LossCause>(i))] = b.lost[static_cast<std::size_t>(i)];
+  return {{"electrons",
+           {{"incident", b.incident},
+            {"missed", b.missed},
+            {"generated", b.generated},
+            {"se", b.se},
+            {"bse", b.bse},
+            {"transmitted", b.transmitted},
+            {"absorbed", b.absorbed},
+            {"lost", lost}}},
+          {"energy_ev",
+           {{"incident", b.incident_energy.ev()},
+            {"generated", b.generated_energy.ev()},
+            {"escaped", b.escaped_energy.ev()},
+            {"deposited", b.deposited_energy.ev()},
+            {"lost", b.lost_energy.ev()}}}};
+}
+
+Json scene_json(const mc::SceneSummary& s) {
+  return {{"triangles", s.triangles},
+          {"shells", s.shells},
+          {"memory_bytes", s.memory_bytes},
+          {"grid_cell_nm", s.grid_cell_nm},
+          {"build_seconds", s.build_seconds}};
+}
+
+Json files_json(const RunRecord& record, const char* which) {
+  Json files = Json::array();
+  if (std::string(which) == "inputs")
+    for (const InputHash& input : record.inputs)
+      files.push_back({{"path", input.path.string()}, {"sha256", input.sha256}});
+  else
+    for (const auto& path : record.outputs) files.push_back(path.string());
+  return files;
+}
+
+}  // namespace
+
+std::filesystem::path sidecar_path(const std::filesystem::path& output) {
+  std::filesystem::path path = output;
+  path.replace_extension(".run.json");
+  return path;
+}
+
+std::string sidecar_text(const SimulateJob& job, const SimulateSummary& summary,
+                         const RunRecord& record) {
+  const mc::SimulationResult& result = summary.result;
+  const mc::Balance& b = result.balance;
+  const double per_second = result.seconds > 0 ? double(b.incident) / result.seconds : 0;
+
+  Json json;
+  json["semsurf"] = version();
+  json["libraries"] = library_versions();
+  json["command"] = job.command_line;
+  json["complete"] = result.complete;
+  json["inputs"] = files_json(record, "inputs");
+  json["outputs"] = files_json(record, "outputs");
+  json["host"] = host_name();
+  json["threads"] = resolve_threads(job.options.threads);
+  json["tile_pixels"] = job.options.tile_pixels;
+  json["start"] = utc(record.start);
+  json["end"] = utc(record.end);
+  json["seconds"] = result.seconds;
+  json["primaries"] = b.incident;
+  json["primaries_per_second"] = per_second;
+  json["rays"] = b.rays;
+  json["steps"] = b.steps;
+  json["peak_memory_bytes"] = peak_memory_bytes();
+  json["scene"] = scene_json(summary.scene);
+  json["balance"] = balance_json(b);
+  json["physics"] = Json::object();
+  for (const mc::Material& material : job.scene.specimen.materials)
+    json["physics"][material.name] = mc::describe(job.scene.physics, material);
+  json["warnings"] = summary.warnings;
+  // Paths need not be UTF-8: such bytes are replaced rather than the record lost.
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace surf::workflow

@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "warnings.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "surf/core/units.h"
+
+namespace surf::workflow {
+namespace {
+
+constexpr double widest_nm = 1e9;        // a metre: no specimen chamber is wider
+constexpr double narrowest_nm = 0.1;     // an atom
+constexpr double finest_pixel_nm = 1e-3; // surfaces are no better than this
+constexpr double lost_fraction = 1e-6;
+
+// Six times the volume, about a corner of the mesh so that a far specimen loses no digits.
+double signed_volume6(const TriangleMesh& mesh) {
+  if (mesh.triangles.empty()) return 0;
+  const Vec3 origin = mesh.vertices_nm[mesh.triangles[0][0]];
+  double sum = 0;
+  for (const Triangle& t : mesh.triangles)
+    sum += dot(mesh.vertices_nm[t[0]] - origin,
+               cross(mesh.vertices_nm[t[1]] - origin, mesh.vertices_nm[t[2]] - origin));
+  return sum;
+}
+
+void warn_about_bodies(const mc::Specimen& specimen, std::vector<std::string>& out) {
+  for (const mc::Body& body : specimen.bodies)
+    if (signed_volume6(body.mesh) < 0)
+      out.push_back(body.name + ": its normals point inward; they are taken as pointing outward");
+  if (!specimen.substrate) return;
+  const double top_nm = specimen.substrate->top_nm;
+  for (const mc::Body& body : specimen.bodies) {
+    const Box box = bounds(body.mesh);
+    if (box.upper_nm.z <= top_nm)
+      out.push_back(fmt::format("{}: all of it lies below the substrate's top at {}", body.name,
+                                format_length(top_nm)));
+  }
+}
+
+void warn_about_size(const Box& extent, std::vector<std::string>& out) {
+  const Vec3 size = extent.size_nm();
+  const double widest = std::max({size.x, size.y, size.z});
+  if (widest > widest_nm || widest < narrowest_nm)
+    out.push_back(fmt::format("the specimen is {} wide; is --unit right?", format_length(widest)));
+}
+
+void warn_about_scan(const mc::Specimen& specimen, const Box& extent, const mc::Beam& beam,
+                     const mc::Scan& scan, std::vector<std::string>& out) {
+  const double half_x = 0.5 * scan.width * scan.pixel_x_nm;
+  const double half_y = 0.5 * scan.height * scan.pixel_y_nm;
+  const double x0 = scan.center_x_nm - half_x, x1 = scan.center_x_nm + half_x;
+  const double y0 = scan.center_y_nm - half_y, y1 = scan.center_y_nm + half_y;
+  if (std::min(scan.pixel_x_nm, scan.pixel_y_nm) < finest_pixel_nm)
+    out.push_back(fmt::format("pixels of {} are finer than surfaces are resolved (0.001 nm)",
+                              format_length(std::min(scan.pixel_x_nm, scan.pixel_y_nm))));
+  if (beam.tilt_deg != 0) return;   // below, region and specimen are compared along z
+  const bool bare_plane = specimen.bodies.empty() && !specimen.height_field;
+  if (bare_plane) return;
+  if (x1 <= extent.lower_nm.x || x0 >= extent.upper_nm.x || y1 <= extent.lower_nm.y ||
+      y0 >= extent.upper_nm.y) {
+    out.push_back("the scan lies outside the specimen");
+    return;
+  }
+  if (!specimen.height_field) return;
+  const HeightField& f = specimen.height_field->field;
+  const double beyond = std::max({f.origin_x_nm - x0, x1 - f.x_nm(f.z_nm.width() - 1),
+                                  f.origin_y_nm - y0, y1 - f.y_nm(f.z_nm.height() - 1)});
+  if (beyond > std::max({f.pitch_x_nm, f.pitch_y_nm, scan.pixel_x_nm, scan.pixel_y_nm}))
+    out.push_back(fmt::format("the scan reaches {} beyond the height field, into its continuation",
+                              format_length(beyond)));
+}
+
+}  // namespace
+
+std::vector<std::string> warn_before(const SimulateJob& job, const mc::Scan& scan) {
+  std::vector<std::string> out;
+  const mc::Specimen& specimen = job.scene.specimen;
+  const Box extent = mc::extent(specimen);
+  warn_about_size(extent, out);
+  warn_about_bodies(specimen, out);
+  warn_about_scan(specimen, extent, job.scene.beam, scan, out);
+  if (job.options.electrons == 1)
+    out.push_back("one electron per pixel has no scatter: the standard errors are 0 and mean "
+                  "nothing");
+  if (job.scene.physics.secondaries)
+    for (const mc::Material& material : specimen.materials)
+      if (!material.loss_join_fitted)
+        out.push_back(material.name + ": no measured yields were used to fit its secondary "
+                                      "electrons; trust their contrast, not their number");
+  return out;
+}
+
+std::vector<std::string> warn_after(const mc::SimulationResult& result) {
+  std::vector<std::string> out;
+  const auto& pixels = result.pixels.data();
+  const mc::Balance& b = result.balance;
+  if (b.incident > 0 &&
+      std::none_of(pixels.begin(), pixels.end(), [](const auto& p) { return p.hits > 0; }))
+    out.push_back("no pixel of the image sees the specimen");
+  const double lost = double(b.total_lost());
+  if (lost > lost_fraction * double(b.incident + b.generated)) {
+    std::string causes;
+    for (int i = 0; i < mc::loss_causes; ++i)
+      if (const auto n = b.lost[static_cast<std::size_t>(i)])
+        causes += fmt::format("{}{} {}", causes.empty() ? "" : ", ", n,
+                              mc::name(static_cast<mc::LossCause>(i)));
+    out.push_back(fmt::format("{} of {} electrons were given up ({}); is the mesh sound?",
+                              b.total_lost(), b.incident + b.generated, causes));
+  }
+  return out;
+}
+
+}  // namespace surf::workflow

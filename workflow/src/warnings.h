@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "surf/workflow/simulate_job.h"
+
+namespace surf::workflow {
+
+/// What looks like a mistake before anything is simulated: sizes off by a unit, a scan beside the
+/// specimen, numbers that cannot give what was asked.
+std::vector<std::string> warn_before(const SimulateJob& job, const mc::Scan& scan);
+
+/// What a result shows: nothing hit, lost electrons.
+std::vector<std::string> warn_after(const mc::SimulationResult& result);
+
+}  // namespace surf::workflow
