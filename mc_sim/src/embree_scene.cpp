@@ -22,6 +22,7 @@ constexpr double interface_nm = 1e-3;
 struct Context {
   RTCIntersectContext embree;   // first: Embree hands its address back
   const TriangleMesh* mesh;
+  Vec3 origin;
   Vec3 direction;
   EmbreeScene::Accept accept;
   void* user;
@@ -36,13 +37,14 @@ Vec3 area_normal(const TriangleMesh& mesh, std::uint32_t triangle) {
 void filter(const RTCFilterFunctionNArguments* args) {
   if (args->valid[0] != -1) return;
   auto* context = reinterpret_cast<Context*>(args->context);
-  const auto* ray = reinterpret_cast<const RTCRay*>(args->ray);
   const std::uint32_t triangle = RTCHitN_primID(args->hit, args->N, 0);
+  const Vec3& corner = context->mesh->vertices_nm[context->mesh->triangles[triangle][0]];
   const Vec3 normal = area_normal(*context->mesh, triangle);
-  const double cosine = dot(normal, context->direction) / length(normal);
+  const double along = dot(normal, context->direction);
+  const double distance = dot(corner - context->origin, normal) / along;
   // A path inside the triangle's plane does not cross it; a sliver has no plane.
-  if (!(std::fabs(cosine) > 0.0) ||
-      !context->accept(context->user, triangle, cosine, ray->tfar))
+  if (!std::isfinite(distance) ||
+      !context->accept(context->user, triangle, along / length(normal), distance))
     args->valid[0] = 0;
 }
 
@@ -118,12 +120,13 @@ std::size_t EmbreeScene::memory_bytes() const {
 }
 
 bool EmbreeScene::nearest(const Vec3& origin, const Vec3& direction, double length, Accept accept,
-                          void* user, Hit& hit) const {
-  const Vec3 start = origin - direction * impl_->start_back - impl_->center;
+                          void* user, Hit& hit, const Vec3& nudge) const {
+  const Vec3 start = origin + nudge - direction * impl_->start_back - impl_->center;
   Context context;
   rtcInitIntersectContext(&context.embree);
   context.embree.filter = filter;
   context.mesh = &impl_->mesh;
+  context.origin = origin;
   context.direction = direction;
   context.accept = accept;
   context.user = user;

@@ -23,8 +23,8 @@ class EmbreeScene {
   };
 
   /// Decides whether a proposed triangle counts. `cosine` is between the ray and the triangle's
-  /// normal, never 0; `distance` is single precision, from `tolerance_nm` before the origin.
-  using Accept = bool (*)(void* user, std::uint32_t triangle, double cosine, float distance);
+  /// normal, never 0; `distance` is to the triangle's plane, in double: negative behind the origin.
+  using Accept = bool (*)(void* user, std::uint32_t triangle, double cosine, double distance);
 
   explicit EmbreeScene(const TriangleMesh& mesh);
   ~EmbreeScene();
@@ -33,9 +33,9 @@ class EmbreeScene {
 
   /// The nearest accepted triangle within `length` of `origin`. The search starts a rounding error
   /// before the origin, so that a surface the origin lies on is never missed; `accept` turns
-  /// down what was crossed already.
+  /// down what was crossed already. `nudge` displaces the search alone, not the hit.
   bool nearest(const Vec3& origin, const Vec3& direction, double length, Accept accept, void* user,
-               Hit& hit) const;
+               Hit& hit, const Vec3& nudge = {}) const;
 
   /// How far before its origin a ray starts: 1e-3 nm and the rounding of single precision.
   double tolerance_nm() const;

@@ -9,6 +9,8 @@ namespace surf::mc {
 namespace {
 constexpr double interface_nm = 1e-3;   // faces closer than this are one interface
 constexpr int most_coinciding = 16;
+constexpr double rounding_nm = 1e-7;    // of positions in double, up to millimetres from the origin
+constexpr int most_silent_crossings = 1000;
 }  // namespace
 
 SceneGeometry::SceneGeometry(const Scene::Impl& scene)
@@ -56,15 +58,18 @@ SceneGeometry::State SceneGeometry::across(State s, std::uint32_t shell) {
 }
 
 // A face counts only from the side the path is on: going in where it is outside, out where inside.
-// That is what makes hits at edges, at corners and at the face just crossed harmless.
-bool SceneGeometry::accept(void* user, std::uint32_t triangle, double cosine, float distance) {
+// That is what makes hits at edges, at corners and at the face just crossed harmless. A little
+// behind the start, too, where rounding may have put the start beyond a face: ways out within the
+// tolerance, so that nobody is shut out of a body; ways in within rounding only, or paths along a
+// corner would go in again behind themselves.
+bool SceneGeometry::accept(void* user, std::uint32_t triangle, double cosine, double distance) {
   auto* self = static_cast<SceneGeometry*>(user);
   const std::uint32_t shell = self->scene_.shell_of[triangle];
-  if (self->goes_in(shell, cosine) != self->is_inside(self->asking_, shell)) return true;
+  const bool inward = self->goes_in(shell, cosine);
+  if (inward != self->is_inside(self->asking_, shell)) return !inward || distance > -rounding_nm;
   // Well past the rounding the path should not be on this side at all.
-  const double tolerance = self->scene_.triangles->tolerance_nm();
-  if ((distance - tolerance) * std::fabs(cosine) > 2 * tolerance)
-    self->wrong_side_at_ = std::min(self->wrong_side_at_, static_cast<double>(distance));
+  if (distance * std::fabs(cosine) > 2 * self->scene_.triangles->tolerance_nm())
+    self->wrong_side_at_ = std::min(self->wrong_side_at_, distance);
   return false;
 }
 
@@ -86,29 +91,31 @@ Crossing SceneGeometry::next_face(const Vec3& start, const Vec3& direction, doub
       met = Crossing::surface;
     }
   }
-  if (scene_.triangles) {
+  if (!scene_.triangles) return met;
+  // Embree's robust mode still lets some rays through exactly at an edge. They then meet a surface
+  // from behind, and the search is repeated a hair beside.
+  static constexpr Vec3 nudges[] = {{0, 0, 0}, {0.1, 0.02, 0.05}, {-0.03, 0.1, -0.06},
+                                    {-0.08, -0.09, 0.02}};
+  for (const Vec3& nudge : nudges) {
     asking_ = state;
     wrong_side_at_ = HUGE_VAL;
     EmbreeScene::Hit hit;
-    const bool found =
-        scene_.triangles->nearest(start, direction, face.distance, &SceneGeometry::accept, this, hit);
-    if (found) {
-      face.distance = hit.distance;
-      face.position = hit.position;
-      face.normal = hit.normal;
-      face.shell = scene_.shell_of[hit.triangle];
-      met = Crossing::surface;
-    }
-    if (wrong_side_at_ < face.distance) return Crossing::wrong_side;
+    const bool found = scene_.triangles->nearest(start, direction, face.distance,
+                                                 &SceneGeometry::accept, this, hit,
+                                                 nudge * scene_.triangles->tolerance_nm());
+    if (wrong_side_at_ < (found ? hit.distance : face.distance)) continue;
+    if (!found) return met;
+    face = {hit.distance, hit.position, hit.normal, scene_.shell_of[hit.triangle]};
+    return Crossing::surface;
   }
-  return met;
+  return Crossing::wrong_side;
 }
 
 Crossing SceneGeometry::crossing(const Vec3& start, const Vec3& direction, double length,
                                  State& state, Surface& surface) {
   Vec3 from = start;
   double done = 0;
-  for (;;) {
+  for (int i = 0; i < most_silent_crossings; ++i) {
     Face face;
     const Crossing met = next_face(from, direction, length - done, state, face);
     if (met != Crossing::surface) return met;
@@ -118,7 +125,7 @@ Crossing SceneGeometry::crossing(const Vec3& start, const Vec3& direction, doubl
     surface.normal = face.normal;
     if (material(ahead) != material(state) && faces_may_coincide_) {
       // The face of the neighbour on the same interface is crossed in the same breath.
-      for (int i = 0; i < most_coinciding; ++i) {
+      for (int k = 0; k < most_coinciding; ++k) {
         const double cosine = std::fabs(dot(face.normal, direction));
         Face next;
         if (next_face(face.position, direction, interface_nm / std::max(cosine, 1e-6), ahead,
@@ -137,6 +144,7 @@ Crossing SceneGeometry::crossing(const Vec3& start, const Vec3& direction, doubl
     from = face.position;
     done = dot(from - start, direction);
   }
+  return Crossing::wrong_side;   // a knot of faces that leads nowhere
 }
 
 }  // namespace surf::mc

@@ -97,7 +97,7 @@ class SceneGeometry {
   State intern(std::vector<std::uint32_t> inside);
   Crossing next_face(const Vec3& start, const Vec3& direction, double length, State state,
                      Face& face);
-  static bool accept(void* self, std::uint32_t triangle, double cosine, float distance);
+  static bool accept(void* self, std::uint32_t triangle, double cosine, double distance);
 
   const Scene::Impl& scene_;
   const bool faces_may_coincide_;

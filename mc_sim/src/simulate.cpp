@@ -124,20 +124,38 @@ void check_options(const SimulationOptions& options) {
     throw UsageError("tile size", "a tile needs at least one pixel", "Ask for 1024, say");
 }
 
-// Runs of pixels along a row; long counts of electrons are split, so that one pixel can keep all
-// threads busy.
-std::vector<WorkUnit> plan(const Scan& scan, const SimulationOptions& options) {
-  constexpr std::int64_t most_primaries = 1 << 15;
-  const std::int64_t pixels_by_work = std::max<std::int64_t>(1, most_primaries / options.electrons);
-  const int run = static_cast<int>(std::min<std::int64_t>(options.tile_pixels, pixels_by_work));
-  std::vector<WorkUnit> units;
-  for (int y = 0; y < scan.height; ++y)
-    for (int x = 0; x < scan.width; x += run)
-      for (std::int64_t e = 0; e < options.electrons; e += most_primaries)
-        units.push_back({x, y, std::min(x + run, scan.width), y + 1, e,
-                         std::min(most_primaries, options.electrons - e)});
-  return units;
-}
+// Units of work: runs of pixels along a row. Long counts of electrons are split, so that one pixel
+// can keep all threads busy. Numbered rather than listed: there may be very many.
+class Plan {
+ public:
+  Plan(const Scan& scan, const SimulationOptions& options) : scan_(scan), options_(options) {
+    const std::int64_t pixels = std::max<std::int64_t>(1, most_primaries / options.electrons);
+    run_ = static_cast<int>(std::min<std::int64_t>({options.tile_pixels, pixels, scan.width}));
+    runs_ = (scan.width + run_ - 1) / run_;
+    chunks_ = (options.electrons + most_primaries - 1) / most_primaries;
+  }
+
+  std::size_t units() const {
+    return static_cast<std::size_t>(chunks_) * static_cast<std::size_t>(runs_) *
+           static_cast<std::size_t>(scan_.height);
+  }
+
+  WorkUnit unit(std::size_t number) const {
+    const auto n = static_cast<std::int64_t>(number);
+    const std::int64_t first = n % chunks_ * most_primaries;
+    const int x = static_cast<int>(n / chunks_ % runs_) * run_;
+    const int y = static_cast<int>(n / chunks_ / runs_);
+    return {x, y, std::min(x + run_, scan_.width), y + 1, first,
+            std::min(most_primaries, options_.electrons - first)};
+  }
+
+ private:
+  static constexpr std::int64_t most_primaries = 4096;   // a fraction of a second
+  Scan scan_;
+  SimulationOptions options_;
+  int run_ = 1;
+  std::int64_t runs_ = 1, chunks_ = 1;
+};
 
 }  // namespace
 
@@ -161,7 +179,7 @@ SimulationResult simulate(const Scene& scene, const SimulationOptions& options,
   check_options(options);
   const auto begin = std::chrono::steady_clock::now();
   const Scan& scan = scene.scan();
-  const std::vector<WorkUnit> units = plan(scan, options);
+  const Plan plan(scan, options);
   const int threads = resolve_threads(options.threads);
   std::vector<std::unique_ptr<Worker>> workers(static_cast<std::size_t>(threads));
 
@@ -170,16 +188,16 @@ SimulationResult simulate(const Scene& scene, const SimulationOptions& options,
   const double total = static_cast<double>(options.electrons) * scan.width * scan.height;
   double done = 0;
   std::mutex merging;
-  parallel_for(units.size(), threads, [&](std::size_t i, int w) {
+  parallel_for(plan.units(), threads, [&](std::size_t i, int w) {
     if (cancel && cancel->cancelled()) return;
     auto& worker = workers[static_cast<std::size_t>(w)];
     if (!worker) worker = std::make_unique<Worker>(scene.impl());
     NoObserver nobody;
     UnitTally tally;
-    worker->simulate(options.seed, units[i], nobody, nullptr, tally);
+    const WorkUnit u = plan.unit(i);
+    worker->simulate(options.seed, u, nobody, nullptr, tally);
     // Sums are whole numbers: the order of merging does not matter.
     const std::lock_guard lock(merging);
-    const WorkUnit& u = units[i];
     for (int y = u.y0; y < u.y1; ++y)
       for (int x = u.x0; x < u.x1; ++x) result.pixels(x, y) += tally.pixels(x - u.x0, y - u.y0);
     result.balance += tally.balance;
@@ -235,6 +253,11 @@ class CustomGeometry {
                     Surface& surface) const {
     const auto hit = specimen_.boundary(start, direction, length, state);
     if (!hit) return Crossing::none;
+    if (!std::isfinite(hit->distance_nm) || hit->distance_nm < 0 ||
+        hit->material_ahead >= static_cast<int>(specimen_.media.size()))
+      throw InvalidInput("boundary function",
+                         "it gave a distance that is negative or not finite, or an unknown material",
+                         "Return nothing where there is no boundary ahead");
     surface.distance = hit->distance_nm;
     surface.position = surface.position_ahead = start + direction * hit->distance_nm;
     surface.normal = hit->normal;

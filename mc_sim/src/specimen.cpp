@@ -14,6 +14,8 @@ namespace surf::mc {
 
 namespace {
 
+constexpr double thinnest_nm = 0.01;   // ten times the distance at which faces are one interface
+
 std::string place(const Vec3& p) {
   return fmt::format("({:g}, {:g}, {:g}) nm", p.x, p.y, p.z);
 }
@@ -43,6 +45,12 @@ void check_body(const Body& body) {
             : fmt::format("triangles next to each other face opposite ways at {} edges, the first "
                           "near {}", report.inconsistent_edges, place(report.first_inconsistent_nm)),
         "Repair the mesh so that all normals point outward");
+  const Vec3 size = report.bounds_nm.size_nm();
+  if (std::min({size.x, size.y, size.z}) < thinnest_nm)
+    throw InvalidInput(subject,
+                       fmt::format("the body is only {:g} nm thick: faces within 1e-3 nm count as "
+                                   "one", std::min({size.x, size.y, size.z})),
+                       "Check its unit (--unit)");
   if (report.signed_volume_nm3 == 0)
     throw InvalidInput(subject, "the mesh encloses no volume", "Give it thickness");
 }

@@ -83,11 +83,14 @@ TEST(Mott, RateIsDensityTimesCrossSection) {
   const auto mott = make_mott(si, si.constituents[0]);
   // 1.376e-16 cm^2 at 1 keV (NIST SRD 64) and 2.33 g/cm^3.
   EXPECT_NEAR(mott->inverse_mean_free_path_per_nm(1000), 1.376e-2 * 602.214 * 2.33 / 28.086, 5e-4);
-  // Continuous at the lowest table, finite and falling below.
-  EXPECT_NEAR(mott->inverse_mean_free_path_per_nm(49.999), mott->inverse_mean_free_path_per_nm(50.001),
-              1e-3 * mott->inverse_mean_free_path_per_nm(50));
+  // Below the lowest table: isotropic, with the transport cross-section of that table's end.
+  EXPECT_NEAR(mott->inverse_mean_free_path_per_nm(49.999), 3.7249e-2 * 602.214 * 2.33 / 28.086, 5e-4);
   EXPECT_GT(mott->inverse_mean_free_path_per_nm(4), 0);
-  EXPECT_LT(mott->inverse_mean_free_path_per_nm(4), mott->inverse_mean_free_path_per_nm(50));
+  EXPECT_LT(mott->inverse_mean_free_path_per_nm(4), mott->inverse_mean_free_path_per_nm(49));
+  std::vector<double> edges;
+  for (int i = 1; i < 10; ++i) edges.push_back(-1 + i / 5.0);
+  expect_sampled(*mott, 20, 50000, edges, [](const ScatterEvent& e) { return e.cos_theta; },
+                 [](double c) { return (1 + c) / 2; });
 }
 
 TEST(Mott, SaysWhichElementItLacks) {

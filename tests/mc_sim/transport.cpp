@@ -6,6 +6,7 @@
 
 #include "csv.h"
 #include "mechanism_test.h"
+#include "surf/core/error.h"
 #include "surf/mc/boundary.h"
 
 namespace surf::mc {
@@ -206,7 +207,7 @@ TEST(Transport, TakesACallersOwnBoundary) {
       const double t = (plane - p.z) / d.z;
       if (entering == (inside < 0) && t > -1e-9) best = std::min(best, std::max(0.0, t));
     }
-    if (!(best <= length)) return std::nullopt;
+    if (!(best <= length) || std::isinf(best)) return std::nullopt;
     return BoundaryHit{best, {0, 0, 1}, inside < 0 ? 0 : -1};
   };
   const CustomSpecimen specimen{{&medium}, film, {}};
@@ -215,6 +216,17 @@ TEST(Transport, TakesACallersOwnBoundary) {
   EXPECT_GT(r.balance.transmitted, 1000);
   EXPECT_GT(r.balance.se, 1000);
   EXPECT_EQ(r.balance.total_lost(), 0);
+}
+
+TEST(Transport, RefusesABoundaryFunctionsNonsense) {
+  const Medium medium = make_medium(material("Si"), {});
+  const CustomSpecimen specimen{{&medium},
+                                [](const Vec3&, const Vec3&, double, int) {
+                                  return std::optional(BoundaryHit{HUGE_VAL, {0, 0, 1}, 0});
+                                },
+                                {}};
+  EXPECT_THROW(simulate_custom(specimen, {0, 0, 10}, {0, 0, -1}, 1000, -1, BarrierModel::off, 1, 1),
+               InvalidInput);
 }
 
 }  // namespace surf::mc
