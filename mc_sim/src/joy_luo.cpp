@@ -16,14 +16,16 @@ namespace {
 // Below E_b it goes on as E^(5/2) (Nieminen, Scanning Microsc. 2, 1917 (1988)), value continuous.
 class JoyLuo final : public ContinuousLoss {
  public:
-  JoyLuo(const Material& material, double zero_ev)
-      : material_(material), zero_ev_(zero_ev), join_ev_(material.loss_join_ev),
+  JoyLuo(const Material& material, double zero_ev, double join_ev)
+      : material_(material), zero_ev_(zero_ev), join_ev_(join_ev),
         power_at_join_(joy_luo(join_ev_)) {}
 
   std::string describe() const override {
     return fmt::format("continuous loss: Joy-Luo with MONSEL's k (doi:10.1002/sca.4950110404); as "
                        "E^(5/2) below E_b = {:g} eV ({})", join_ev_,
-                       material_.loss_join_fitted ? "fitted to measured SE yields" : "not fitted");
+                       join_ev_ < material_.loss_join_ev   ? "no secondaries"
+                       : material_.loss_join_fitted ? "fitted to measured SE yields"
+                                                    : "not fitted");
   }
 
   double stopping_power_ev_per_nm(double energy_ev) const override {
@@ -54,7 +56,12 @@ std::unique_ptr<const ContinuousLoss> make_joy_luo(const Material& material,
   // With the barrier off energies count from the vacuum level, as in the original MONSEL, whose
   // loss then vanishes at the work function plus 1 eV.
   const bool off = physics.barrier == BarrierModel::off;
-  return std::make_unique<JoyLuo>(material, off ? material.work_function_ev : material.barrier_ev);
+  // E_b belongs to the secondary-electron model: without secondaries the loss above 50 eV is plain
+  // Joy-Luo.
+  const double join = physics.secondaries ? material.loss_join_ev
+                                          : std::min(material.loss_join_ev, se_bse_split_ev);
+  return std::make_unique<JoyLuo>(material, off ? material.work_function_ev : material.barrier_ev,
+                                  join);
 }
 
 }  // namespace surf::mc

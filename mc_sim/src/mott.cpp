@@ -55,6 +55,7 @@ class Mott final : public Scattering {
     if (energy_ev < lowest_ev_) {
       event.cos_theta = 1.0 - 2.0 * random.uniform();
       event.turn = random.uniform();
+      event.isotropic = true;
       return;
     }
     const Choice& choice = choices_[static_cast<std::size_t>(EnergyBins::bin(energy_ev))];

@@ -55,6 +55,14 @@ inline void sin_cos_turn(double turn, double& sine, double& cosine) {
   cosine = ((nearest + 1) & 2) ? -b : b;
 }
 
+/// The direction at the polar angle with this cosine from z, at the azimuth `turn`.
+inline Vec3 from_axis(double cos_theta, double turn) {
+  double sine, cosine;
+  sin_cos_turn(turn, sine, cosine);
+  const double sin_theta = std::sqrt(std::max(0.0, 1.0 - cos_theta * cos_theta));
+  return {sin_theta * cosine, sin_theta * sine, cos_theta};
+}
+
 /// `direction` turned by the polar angle with this cosine, at the azimuth `turn` about itself.
 /// Basis: Duff et al., JCGT 6(1), 2017.
 inline Vec3 deflected(const Vec3& d, double cos_theta, double turn) {
@@ -221,7 +229,9 @@ class Transport {
     } else {
       deposited_ += event.energy_loss_ev;
     }
-    if (event.cos_theta != 1.0) t.direction = deflected(t.direction, event.cos_theta, event.turn);
+    if (event.isotropic) t.direction = from_axis(event.cos_theta, event.turn);
+    else if (event.cos_theta != 1.0)
+      t.direction = deflected(t.direction, event.cos_theta, event.turn);
     t.energy -= event.energy_loss_ev;
     return true;
   }

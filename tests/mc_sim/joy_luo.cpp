@@ -7,6 +7,7 @@ namespace surf::mc {
 TEST(JoyLuo, GivesTheReferenceStoppingPowers) {
   Physics physics;
   physics.barrier = BarrierModel::off;   // as the reference counts energy
+  physics.secondaries = false;           // plain Joy-Luo down to 50 eV
   const int energies[] = {200, 500, 1000, 2000, 5000, 10000, 20000, 30000};
   for (const auto& row : test::read_reference("stopping_joyluo.csv")) {
     const std::string& name = row.at("element");

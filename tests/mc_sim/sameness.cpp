@@ -108,12 +108,14 @@ TEST(Sameness, SplittingTrianglesChangesNothing) {
 
 TEST(Sameness, AMeshAndItsHeightFieldAgree) {
   const Scan scan = square_scan(90, 12);
-  const HeightField field = make_mesa({200, 200, 4}, 50, 40, 12);
+  const HeightField field = make_mesa({200, 200, 10}, 50, 40, 10);
+  // Electrons that fly low meet the plane far out: the solid has to go on there.
+  const HeightField wide = extend_height_field(field, 1500, 1500, Edge::flat);
   Specimen height = test::flat("Si"), mesh = test::flat("Si");
   height.substrate.reset();
   height.height_field = HeightFieldBody{"mesa", field, 0, Edge::flat};
   mesh.substrate.reset();
-  mesh.bodies.push_back({"mesa", height_field_solid(field, -2000), 0});
+  mesh.bodies.push_back({"mesa", height_field_solid(wide, -2000), 0});
   expect_same(test::simulate(height, {}, scan, 600), test::simulate(mesh, {}, scan, 600, {}, 2),
               same_pixel);
 }

@@ -12,6 +12,7 @@ namespace surf::mc {
 struct ScatterEvent {
   double cos_theta = 1;            ///< deflection of the electron
   double turn = 0;                 ///< azimuth of the deflection in turns, [0, 1)
+  bool isotropic = false;          ///< all directions alike: the two above count from any axis
   double energy_loss_ev = 0;       ///< debited from the electron (0 where the continuous loss pays)
   bool has_secondary = false;
   double secondary_energy_ev = 0;  ///< above the bottom of the conduction band
