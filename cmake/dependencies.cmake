@@ -1,6 +1,5 @@
 # Every find_package of the project. The README's table says what each is for.
 find_package(Threads REQUIRED)
-find_package(TBB REQUIRED)
 find_package(fmt REQUIRED)
 find_path(RANDOM123_INCLUDE_DIR Random123/philox.h REQUIRED)
 find_package(embree 3 REQUIRED)

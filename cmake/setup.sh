@@ -6,12 +6,12 @@
 
 packages=(
   cmake g++ ninja-build ccache                                    # build
-  libembree-dev libtbb-dev librandom123-dev                       # ray tracing, threads, random numbers
+  libembree-dev librandom123-dev                                  # ray tracing, random numbers
   libopenimageio-dev openimageio-tools                            # images
   libtomlplusplus-dev nlohmann-json3-dev libssl-dev               # scene files, records, hashes
   libcli11-dev libfmt-dev                                         # command line, text
   paraview-dev python3-paraview mpi-default-dev python3-dev       # VTK: ParaView's own
-  libgtest-dev libgmock-dev libbenchmark-dev python3-matplotlib   # tests, benchmarks, plots
+  libgtest-dev libgmock-dev python3-matplotlib                    # tests, plots
 )
 
 say() { printf '==> %s\n' "$*"; }
