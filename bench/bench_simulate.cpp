@@ -1,21 +1,25 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // How fast the simulator is, as JSON: flat silicon and the thesis's mesa at 1 keV with full secondary
 // cascades, one and two threads; cost against the number of triangles; electrons lost on the closed
-// samples; and the floor: rays per second of the ray tracer alone, scattering steps without a surface.
+// samples; and the floor: what the ray tracer and the scattering cost on their own.
 //   bench_simulate [--quick] [output.json]
 #include <chrono>
 #include <cmath>
 #include <cstring>
 #include <fstream>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
+#include "embree_scene.h"
 #include "surf/core/random.h"
 #include "surf/io/sim/materials.h"
 #include "surf/mc/boundary.h"
+#include "surf/mc/medium.h"
 #include "surf/mc/simulate.h"
 #include "surf/mesh/height_field_mesh.h"
 #include "surf/mesh/shapes.h"
@@ -90,21 +94,65 @@ json report(const Run& run) {
           {"lost", b.total_lost()}};
 }
 
-// The floor for rays: the ray tracer's own rate, long rays from above and short ones inside.
-json ray_floor(const mc::Specimen& specimen, bool quick) {
-  const mc::Scan scan = view(192, 96);
-  const mc::Scene scene(specimen, {}, scan);
+double seconds_since(std::chrono::steady_clock::time_point begin) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+}
+
+// What the parts cost on their own, on one thread: the ray tracer with rays as short as steps are,
+// started near the mesa's surface, and with rays from above; scattering in an endless medium.
+json floor_costs(bool quick) {
+  const TriangleMesh mesh = half_space_top(make_mesa({398, 398, 2}, 200, 80, 2), 1000);
+  const mc::EmbreeScene rays(mesh);
+  const auto accept = [](void*, std::uint32_t, double, double) { return true; };
   RandomStream random(1, 0, 0);
-  const int n = quick ? 100000 : 2000000;
-  const auto begin = std::chrono::steady_clock::now();
-  int hits = 0;
-  for (int i = 0; i < n; ++i) {
-    Vec3 hit;
-    const Vec3 start{192 * (random.uniform() - 0.5), 192 * (random.uniform() - 0.5), 201};
-    hits += scene.first_surface(start, {0, 0, -1}, hit) ? 1 : 0;
+  const int n = quick ? 200000 : 3000000;
+  std::vector<std::pair<Vec3, Vec3>> lines;
+  for (int i = 0; i < 4096; ++i) {
+    const double c = 1 - 2 * random.uniform(), f = 6.283185307 * random.uniform();
+    const double s = std::sqrt(1 - c * c);
+    lines.push_back({{192 * (random.uniform() - 0.5), 192 * (random.uniform() - 0.5),
+                      -2 * random.uniform()},
+                     {s * std::cos(f), s * std::sin(f), c}});
   }
-  const double s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  return {{"long_rays_per_second", n / s}, {"hits", hits}};
+  mc::EmbreeScene::Hit hit;
+  auto begin = std::chrono::steady_clock::now();
+  for (int i = 0; i < n; ++i) {
+    const auto& [from, to] = lines[static_cast<std::size_t>(i % 4096)];
+    rays.nearest(from, to, 0.7, accept, nullptr, hit);
+  }
+  const double short_ns = 1e9 * seconds_since(begin) / n;
+  begin = std::chrono::steady_clock::now();
+  for (int i = 0; i < n; ++i) {
+    Vec3 from = lines[static_cast<std::size_t>(i % 4096)].first;
+    from.z = 201;
+    rays.nearest(from, {0, 0, -1}, HUGE_VAL, accept, nullptr, hit);
+  }
+  const double long_ns = 1e9 * seconds_since(begin) / n;
+
+  const mc::Medium medium = mc::make_medium(io::find_material("Si", "bench"), {});
+  const mc::CustomSpecimen endless{
+      {&medium},
+      [](const Vec3&, const Vec3&, double, int) { return std::optional<mc::BoundaryHit>(); },
+      {}};
+  begin = std::chrono::steady_clock::now();
+  const mc::CustomResult r = mc::simulate_custom(endless, {}, {0, 0, -1}, 1000, 0,
+                                                 mc::BarrierModel::quantum, 1, quick ? 500 : 10000);
+  const double step_ns = 1e9 * seconds_since(begin) / static_cast<double>(r.balance.steps);
+  return {{"short_ray_ns", short_ns}, {"long_ray_ns", long_ns}, {"scattering_step_ns", step_ns}};
+}
+
+// Time per primary from the costs of the parts, and how far the run is above it.
+json against_floor(const json& run, const json& floor) {
+  const double steps = run["steps_per_primary"].get<double>();
+  const double rays = run["rays_per_primary"].get<double>();
+  const double us = 1e-3 * (steps * floor["scattering_step_ns"].get<double>() +
+                            (rays - 1) * floor["short_ray_ns"].get<double>() +
+                            floor["long_ray_ns"].get<double>());
+  const double measured = 1e6 / run["primaries_per_second"].get<double>();
+  return {{"microseconds_per_primary", measured},
+          {"floor_microseconds", us},
+          {"scattering_share_of_floor", 1e-3 * steps * floor["scattering_step_ns"].get<double>() / us},
+          {"ratio_to_floor", measured / us}};
 }
 
 json lost_electrons(bool quick) {
@@ -189,7 +237,8 @@ int main(int argc, char** argv) {
   out["mesa"]["target_per_thread"] = target_per_thread;
   out["mesa"]["ratio_to_target"] =
       out["mesa"]["1_threads"]["primaries_per_second"].get<double>() / target_per_thread;
-  out["floor"] = ray_floor(mesa(), quick);
+  out["floor"] = floor_costs(quick);
+  out["mesa"]["profile"] = against_floor(out["mesa"]["1_threads"], out["floor"]);
   out["cost_against_triangles"] = cost_against_triangles(quick);
   out["lost_electrons"] = lost_electrons(quick);
   const std::string text = out.dump(2);
