@@ -26,22 +26,6 @@ struct Assembly {
   std::vector<Solid> solids;
 };
 
-double signed_volume(const TriangleMesh& mesh, const std::vector<std::uint32_t>& component,
-                     std::uint32_t which) {
-  double six = 0;
-  Vec3 origin;
-  bool first = true;
-  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
-    if (component[i] != which) continue;
-    const Triangle& t = mesh.triangles[i];
-    if (first) origin = mesh.vertices_nm[t[0]];
-    first = false;
-    six += dot(mesh.vertices_nm[t[0]] - origin,
-               cross(mesh.vertices_nm[t[1]] - origin, mesh.vertices_nm[t[2]] - origin));
-  }
-  return six / 6;
-}
-
 void append(Assembly& all, const TriangleMesh& mesh, const std::vector<std::uint32_t>& component) {
   const auto base = static_cast<std::uint32_t>(all.mesh.vertices_nm.size());
   const auto first_shell = static_cast<std::uint32_t>(all.shells.size());
@@ -54,23 +38,21 @@ void append(Assembly& all, const TriangleMesh& mesh, const std::vector<std::uint
   }
 }
 
+// Signed volume of every component, about a point of its own: far from the origin digits would cancel.
 std::vector<double> volumes(const TriangleMesh& mesh, const std::vector<std::uint32_t>& component) {
-  const std::uint32_t count =
-      component.empty() ? 0 : 1 + *std::max_element(component.begin(), component.end());
-  std::vector<double> out;
-  if (count == 1) return {signed_volume(mesh, component, 0)};
-  // One pass for many components.
-  std::vector<double> six(count, 0.0);
-  std::vector<std::uint32_t> seen(count, 0xffffffffu);
+  constexpr std::uint32_t none = 0xffffffffu;
+  const std::uint32_t count = 1 + *std::max_element(component.begin(), component.end());
+  std::vector<double> volume(count, 0.0);
+  std::vector<std::uint32_t> about(count, none);
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
     const Triangle& t = mesh.triangles[i];
-    if (seen[component[i]] == 0xffffffffu) seen[component[i]] = t[0];
-    const Vec3& o = mesh.vertices_nm[seen[component[i]]];
-    six[component[i]] += dot(mesh.vertices_nm[t[0]] - o,
-                             cross(mesh.vertices_nm[t[1]] - o, mesh.vertices_nm[t[2]] - o));
+    std::uint32_t& vertex = about[component[i]];
+    if (vertex == none) vertex = t[0];
+    const Vec3& o = mesh.vertices_nm[vertex];
+    volume[component[i]] += dot(mesh.vertices_nm[t[0]] - o,
+                                cross(mesh.vertices_nm[t[1]] - o, mesh.vertices_nm[t[2]] - o)) / 6;
   }
-  for (const double v : six) out.push_back(v / 6);
-  return out;
+  return volume;
 }
 
 void add_body(Assembly& all, const Body& body) {
