@@ -142,7 +142,9 @@ TEST(Medium, SecondariesNeverOutdoTheirParents) {
       const double energy = 4 * std::pow(7000, random.uniform());
       ScatterEvent event;
       m.choose(energy, random.uniform()).scatter(energy, random, event);
-      if (event.has_secondary) ASSERT_LE(event.secondary_energy_ev, energy) << name;
+      if (event.has_secondary) {
+        ASSERT_LE(event.secondary_energy_ev, energy) << name;
+      }
     }
   }
 }
