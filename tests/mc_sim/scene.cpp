@@ -78,8 +78,8 @@ TEST(Scene, HasNoCracks) {
       for (const Vec3& target : {a, (a + b) * 0.5, a + (b - a) * random.uniform()}) {
         const Vec3 from{300 * (random.uniform() - 0.5), 300 * (random.uniform() - 0.5), 300};
         Vec3 hit;
-        // Only what faces the start squarely enough is met there.
-        if (dot(target - Vec3{3, -2, 1}, from - target) < 3000) continue;
+        // Only what faces the start is met there: facets turn from the sphere by up to 4 degrees.
+        if (dot(target - Vec3{3, -2, 1}, from - target) < 1700) continue;
         ASSERT_TRUE(scene.first_surface(from, normalized(target - from), hit));
         ASSERT_LT(length(hit - target), 1e-3);
       }
