@@ -58,6 +58,13 @@ void print_scan(const io::SceneFile& scene) {
                                  format_length(scan.pixel_y_nm), format_exact(scan.center_x_nm),
                                  format_exact(scan.center_y_nm),
                                  format_exact(scan.center_z_nm)));
+  for (const mc::Detector& d : scene.detectors) print_item("detector", mc::format_detector(d));
+  if (scene.current_pa && scene.dwell_us) {
+    print_item("dose", fmt::format("{} pA for {} us: {:.4g} primaries per pixel",
+                                   format_exact(*scene.current_pa), format_exact(*scene.dwell_us),
+                                   *scene.current_pa * *scene.dwell_us * electrons_per_pa_us));
+    return;
+  }
   const auto electrons = scene.electrons.value_or(mc::SimulationOptions{}.electrons);
   print_item("electrons", fmt::format("{} per pixel, {:.4g} million in all", electrons,
                                       1e-6 * double(electrons) * scan.width * scan.height));

@@ -37,7 +37,7 @@ void print_mesh_warnings(const MeshReport& r) {
     warn(fmt::format("{} wide; is --unit right?", format_length(widest)));
 }
 
-void print_channel(const Channel& channel) {
+void print_channel(const Channel& channel, std::size_t label_width) {
   double sum = 0, lowest = HUGE_VAL, highest = -HUGE_VAL;
   std::size_t finite = 0;
   for (const float value : channel.values.data()) {
@@ -54,7 +54,7 @@ void print_channel(const Channel& channel) {
                                 sum / double(finite), unit);
   if (finite > 0 && finite < channel.values.size())
     text += fmt::format(", {} not finite", channel.values.size() - finite);
-  print_item(channel.name, text);
+  print_item(fmt::format("{:<{}}", channel.name, label_width), text);
 }
 
 }  // namespace
@@ -83,7 +83,10 @@ void print_image(const std::filesystem::path& path) {
   print_item("origin", fmt::format("lower-left pixel's centre at {}, {} nm",
                                    format_exact(image.origin_x_nm),
                                    format_exact(image.origin_y_nm)));
-  for (const Channel& channel : image.channels) print_channel(channel);
+  std::size_t label_width = 0;
+  for (const Channel& channel : image.channels)
+    label_width = std::max(label_width, channel.name.size());
+  for (const Channel& channel : image.channels) print_channel(channel, label_width);
   if (image.metadata.empty()) return;
   fmt::print("  how it was made\n");
   std::size_t longest = 0;

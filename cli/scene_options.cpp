@@ -123,6 +123,28 @@ void apply_beam(const SceneOptions& options, mc::Beam& beam) {
   if (options.tilt) beam.tilt_deg = parse_angle_deg(*options.tilt, "--tilt");
   if (options.azimuth) beam.azimuth_deg = parse_angle_deg(*options.azimuth, "--azimuth");
   if (options.spot) beam.spot_nm = parse_length_nm(*options.spot, "--spot");
+  if (options.convergence)
+    beam.convergence_deg = parse_angle_deg(*options.convergence, "--convergence");
+  if (options.focus) beam.focus_nm = parse_length_nm(*options.focus, "--focus");
+  if (options.working_distance) {
+    beam.working_distance_nm = parse_length_nm(*options.working_distance, "--working-distance");
+    if (beam.working_distance_nm == 0)
+      throw UsageError("--working-distance", "it must be above zero",
+                       "Give a length, such as 5mm, or leave it out for parallel beams");
+  }
+}
+
+void apply_dose(const SceneOptions& options, io::SceneFile& scene) {
+  if (!options.current && !options.dwell) return;
+  if (options.current) scene.current_pa = parse_current_pa(*options.current, "--current");
+  if (options.dwell) scene.dwell_us = parse_time_us(*options.dwell, "--dwell");
+  scene.electrons.reset();   // what the scene file says: the command line goes before it
+}
+
+void add_detectors(const SceneOptions& options, io::SceneFile& scene) {
+  for (const std::string& text : options.detectors)
+    for (mc::Detector& d : mc::parse_detectors(text, "--detector"))
+      scene.detectors.push_back(std::move(d));
 }
 
 // What the command line gives replaces the same thing in the scene file. Where that leaves size,
@@ -156,6 +178,8 @@ io::SceneFile make_scene(const SceneOptions& options, std::vector<std::string>& 
       from_file ? scene_from_file(options) : scene_from_shapes(options, notes);
   apply_specimen(options, scene.specimen);
   apply_beam(options, scene.beam);
+  apply_dose(options, scene);
+  add_detectors(options, scene);
   apply_scan(options, scene.scan);
   if (options.physics) mc::parse_physics(*options.physics, scene.physics);
   if (options.cutoff) scene.physics.cutoff_ev = parse_energy_ev(*options.cutoff, "--cutoff");

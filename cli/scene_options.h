@@ -13,9 +13,11 @@ namespace surf::cli {
 struct SceneOptions {
   std::vector<std::string> inputs;
   std::optional<std::string> material, unit, substrate, substrate_z, edge, pitch, z_unit;
-  std::optional<std::string> energy, tilt, azimuth, spot;
+  std::optional<std::string> energy, tilt, azimuth, spot, convergence, focus, working_distance;
+  std::optional<std::string> current, dwell;
   std::optional<std::string> size, pixel_size, region;
   std::optional<std::string> physics, cutoff;
+  std::vector<std::string> detectors;
 };
 
 /// A scene file with the command line's overrides, or a scene made of meshes and one height field.

@@ -7,6 +7,7 @@
 #include "commands.h"
 #include "options.h"
 #include "scene_options.h"
+#include "simulate_options.h"
 #include "surf/core/error.h"
 #include "surf/core/parallel.h"
 #include "surf/core/units.h"
@@ -16,114 +17,22 @@
 namespace surf::cli {
 namespace {
 
-constexpr const char* examples =
-    R"(Units: bare lengths are nm, bare energies eV, bare angles degrees;
-suffixes are allowed everywhere (pm A nm um mm m, eV keV MeV, deg rad mrad).
-
-Any two of --size, --pixel-size and --region define the scan. With one the specimen's
-extent gives the rest; with none it is 256 pixels across the longer side. Numbers given
-here go before those of the scene file.
-
-Examples:
-  semsurf simulate cube.stl --substrate Si --tilt 40 -o cube.exr -o cube.png
-  semsurf simulate grain.ply --unit um --material Au --energy 5keV --pixel-size 5nm -o grain.tif
-  semsurf simulate samples/mesa80.toml --electrons 1000 --seed 2 -o mesa.vti
-  semsurf simulate afm.tif --pitch 2nm --z-unit 0.1nm --edge mirror -o sem.exr
-  semsurf simulate cube.stl --size 64x64 --region -96,-96,96,96 \
-      --physics elastic=browning,secondaries=off -o bse.exr)";
-
-struct Options {
-  SceneOptions scene;
-  std::optional<std::string> electrons, seed, threads;
-  std::vector<std::string> outputs;
-  std::string channel;
-  bool quiet = false;
-};
-
-void add_specimen_options(CLI::App& app, SceneOptions& o) {
-  app.add_option("INPUT", o.inputs,
-                 "Meshes (STL, OBJ, PLY, OFF), a height field (EXR, TIFF, PNG, VTI)\n"
-                 "or one scene file (TOML)")
-      ->type_name("FILE");
-  const char* group = "Specimen";
-  app.add_option("--material", o.material, "What meshes and height field are made of (Si)")
-      ->type_name("MATERIAL")->group(group);
-  app.add_option("--unit", o.unit, "Length of one unit of the mesh files (nm)")
-      ->type_name("nm|um|mm|m|pm|A|in")->group(group);
-  app.add_option("--substrate", o.substrate, "Add a half-space below the bodies")
-      ->type_name("MATERIAL")->group(group);
-  app.add_option("--substrate-z", o.substrate_z, "Height of its top (0nm)")
-      ->type_name("LENGTH")->group(group);
-  app.add_option("--edge", o.edge, "How a height field goes on outside (mirror)")
-      ->type_name("mirror|flat|periodic")->group(group);
-  app.add_option("--pitch", o.pitch, "Sample distance of a height field (as its file says, or 1nm)")
-      ->type_name("LENGTH")->group(group);
-  app.add_option("--z-unit", o.z_unit, "Height of one grey level of a height field (1nm)")
-      ->type_name("LENGTH")->group(group);
-}
-
-void add_beam_options(CLI::App& app, SceneOptions& o) {
-  const char* group = "Beam";
-  app.add_option("--energy", o.energy, "100eV to 30keV (1keV)")->type_name("ENERGY")->group(group);
-  app.add_option("--tilt", o.tilt, "Angle of the beam from straight down, below 90deg (0deg)")
-      ->type_name("ANGLE")->group(group);
-  app.add_option("--azimuth", o.azimuth, "Where the tilt turns to: 0 is +x, 90deg is +y (0deg)")
-      ->type_name("ANGLE")->group(group);
-  app.add_option("--spot", o.spot, "Standard deviation of the Gaussian spot (0nm)")
-      ->type_name("LENGTH")->group(group);
-}
-
-void add_scan_options(CLI::App& app, SceneOptions& o) {
-  const char* group = "Scan";
-  app.add_option("--size", o.size, "Pixels, as 256x192")->type_name("WxH")->group(group);
-  app.add_option("--pixel-size", o.pixel_size, "Width and height of a pixel, as 2nm")
-      ->type_name("LENGTH")->group(group);
-  app.add_option("--region", o.region, "Outer pixel edges, as -96,-96,96,96")
-      ->type_name("X0,Y0,X1,Y1")->group(group);
-}
-
-void add_simulation_options(CLI::App& app, Options& o) {
-  const char* group = "Simulation";
-  app.add_option("--electrons", o.electrons, "Primaries per pixel (200)")
-      ->type_name("N")->group(group);
-  app.add_option("--physics", o.scene.physics,
-                 "elastic=mott|browning, loss=joy-luo|none, secondaries=on|off,\n"
-                 "barrier=quantum|classical|off; any of them, first ones default")
-      ->type_name("KEY=VALUE,...")->group(group);
-  app.add_option("--cutoff", o.scene.cutoff,
-                 "Where tracking stops (the surface barrier; 50eV without secondaries)")
-      ->type_name("ENERGY")->group(group);
-  app.add_option("--seed", o.seed, "The same seed gives the same bytes (1)")
-      ->type_name("N")->group(group);
-  app.add_option("--threads", o.threads, "Does not change the result (one per hardware thread)")
-      ->type_name("N")->group(group);
-}
-
-void add_output_options(CLI::App& app, Options& o) {
-  const char* group = "Output";
-  app.add_option("-o,--output", o.outputs, "Image to write: .exr .tif .png .vti; may be repeated")
-      ->type_name("FILE")->option_text("FILE")->allow_extra_args(false)->group(group);
-  app.add_option("--channel", o.channel, "What PNG files show (SE)")
-      ->type_name("SE|SE.stderr|BSE|BSE.stderr|valid")->group(group);
-  app.add_flag("-q,--quiet", o.quiet, "Only errors and warnings")->group(group);
-}
-
 struct Yield {
   double mean = 0, standard_error = 0;
 };
 
 // Mean over the pixels that see the specimen; their errors are independent.
-Yield mean_yield(const mc::SimulationResult& result, bool backscattered, std::size_t& pixels) {
+Yield mean_yield(const mc::SimulationResult& result, std::size_t detector, std::size_t& pixels) {
   double sum = 0, variance = 0;
   pixels = 0;
-  for (const mc::PixelTally& p : result.pixels.data()) {
-    if (p.hits == 0) continue;
-    const mc::Estimate e = backscattered ? mc::estimate(p.primaries, p.bse, p.bse_squared)
-                                         : mc::estimate(p.primaries, p.se, p.se_squared);
-    sum += e.mean;
-    variance += e.standard_error * e.standard_error;
-    ++pixels;
-  }
+  for (int y = 0; y < result.pixels.height(); ++y)
+    for (int x = 0; x < result.pixels.width(); ++x) {
+      if (result.pixels(x, y).hits == 0) continue;
+      const mc::Estimate e = result.yield(detector, x, y);
+      sum += e.mean;
+      variance += e.standard_error * e.standard_error;
+      ++pixels;
+    }
   if (pixels == 0) return {};
   return {sum / double(pixels), std::sqrt(variance) / double(pixels)};
 }
@@ -138,11 +47,15 @@ void print_summary(const workflow::SimulateJob& job, const workflow::SimulateSum
              format_length(scan.width * scan.pixel_x_nm),
              format_length(scan.height * scan.pixel_y_nm), s.result.complete ? "" : " (partial)");
   std::size_t pixels = 0;
-  const Yield se = mean_yield(s.result, false, pixels);
-  const Yield bse = mean_yield(s.result, true, pixels);
-  fmt::print("{:<10} {:.4f} ± {:.4f} per primary, mean over {} pixels\n", "SE", se.mean,
-             se.standard_error, pixels);
-  fmt::print("{:<10} {:.4f} ± {:.4f}\n", "BSE", bse.mean, bse.standard_error);
+  std::size_t width = 10;
+  for (const mc::Detector& d : s.result.detectors) width = std::max(width, d.name.size());
+  for (std::size_t d = 0; d < s.result.detectors.size(); ++d) {
+    const Yield y = mean_yield(s.result, d, pixels);
+    fmt::print("{:<{}} {:.4f} ± {:.4f}{}\n", s.result.detectors[d].name, width, y.mean, y.standard_error,
+               d == 0 ? fmt::format(" per primary, mean over {} pixels", pixels) : "");
+  }
+  if (s.result.dose > 0)
+    fmt::print("{:<10} {:.4g} primaries per pixel on average\n", "dose", s.result.dose);
   const double primaries = double(s.result.balance.incident);
   const double seconds = s.result.seconds;
   fmt::print("{:<10} {} in {:.1f} s, {} per second on {} threads\n", "primaries",
@@ -155,7 +68,30 @@ void print_summary(const workflow::SimulateJob& job, const workflow::SimulateSum
   }
 }
 
-workflow::SimulateJob make_job(const Options& o, const std::string& command_line) {
+workflow::Extras make_extras(const SimulateOptions& o) {
+  workflow::Extras extras;
+  for (std::size_t from = 0; from < o.channels.size();) {
+    const std::size_t comma = std::min(o.channels.find(',', from), o.channels.size());
+    extras.surface.push_back(o.channels.substr(from, comma - from));
+    from = comma + 1;
+  }
+  if (o.deposit)
+    extras.deposit_cells = static_cast<int>(parse_whole(*o.deposit, "--deposit", 1, 1024));
+  if (o.trajectories)
+    extras.trajectories =
+        static_cast<int>(parse_whole(*o.trajectories, "--trajectories", 1, 100'000));
+  if (o.trajectories_at) {
+    const auto comma = o.trajectories_at->find(',');
+    if (comma == std::string::npos)
+      throw UsageError("--trajectories-at", "it is not a point", "Write two lengths, X,Y");
+    extras.trajectories_at_nm = {
+        parse_length_nm(o.trajectories_at->substr(0, comma), "--trajectories-at"),
+        parse_length_nm(o.trajectories_at->substr(comma + 1), "--trajectories-at")};
+  }
+  return extras;
+}
+
+workflow::SimulateJob make_job(const SimulateOptions& o, const std::string& command_line) {
   workflow::SimulateJob job;
   // Numbers first: a bad one should not wait for a large mesh to be read.
   const std::int64_t electrons =
@@ -168,8 +104,16 @@ workflow::SimulateJob make_job(const Options& o, const std::string& command_line
   if (o.outputs.empty() && !o.scene.inputs.empty())
     throw UsageError("--output", "no output file is given", "Add -o image.exr");
   job.scene = make_scene(o.scene, notes);
-  job.options.electrons =
-      o.electrons ? electrons : job.scene.electrons.value_or(job.options.electrons);
+  if (o.electrons) {
+    if (o.scene.current || o.scene.dwell)
+      throw UsageError("--electrons", "current and dwell time give the number of primaries",
+                       "Leave out --electrons, or --current and --dwell");
+    job.scene.electrons = electrons;
+    job.scene.current_pa = job.scene.dwell_us = std::nullopt;
+  }
+  job.options.electrons = job.scene.electrons.value_or(job.options.electrons);
+  job.options.spectra = o.spectra;
+  job.extras = make_extras(o);
   job.options.seed = o.seed ? seed : job.scene.seed.value_or(job.options.seed);
   job.outputs.assign(o.outputs.begin(), o.outputs.end());
   job.png_channel = o.channel;
@@ -179,16 +123,19 @@ workflow::SimulateJob make_job(const Options& o, const std::string& command_line
   return job;
 }
 
-int simulate(const Options& options, const std::string& command_line) {
+int simulate(const SimulateOptions& options, const std::string& command_line) {
   const workflow::SimulateJob job = make_job(options, command_line);
   workflow::SimulateSummary summary;
   {
     InterruptGuard interrupts;
     ProgressBar bar(!options.quiet);
     summary = workflow::run(
-        job, [&](double done, double total) { bar.show(done, total); }, interrupts.token());
+        job, [&](double done, double total) { bar.show(done, total); }, interrupts.token(),
+        [&](const std::string& warning) {
+          bar.clear();
+          print_warning(warning);
+        });
   }
-  for (const std::string& warning : summary.warnings) print_warning(warning);
   if (!options.quiet) print_summary(job, summary);
   return summary.result.complete ? 0 : 130;
 }
@@ -196,16 +143,11 @@ int simulate(const Options& options, const std::string& command_line) {
 }  // namespace
 
 void add_simulate(CLI::App& app, Action& action, const std::string& command_line) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<SimulateOptions>();
   CLI::App* sub = app.add_subcommand(
       "simulate", "Secondary- and backscattered-electron images of a specimen");
   sub->group("Commands");
-  add_specimen_options(*sub, options->scene);
-  add_beam_options(*sub, options->scene);
-  add_scan_options(*sub, options->scene);
-  add_simulation_options(*sub, *options);
-  add_output_options(*sub, *options);
-  sub->footer(examples);
+  add_simulate_options(*sub, *options);
   sub->callback([options, &action, command_line] {
     action = [options, command_line] { return simulate(*options, command_line); };
   });

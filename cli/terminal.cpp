@@ -71,7 +71,9 @@ std::string format_duration(double seconds) {
 
 ProgressBar::ProgressBar(bool wanted) : active_(wanted && isatty(STDERR_FILENO)) {}
 
-ProgressBar::~ProgressBar() {
+ProgressBar::~ProgressBar() { clear(); }
+
+void ProgressBar::clear() {
   if (started_) fmt::print(stderr, "\r\033[K");
 }
 

@@ -30,6 +30,9 @@ class ProgressBar {
 
   void show(double done, double total);
 
+  /// Makes room for a message; the bar comes back with the next `show`.
+  void clear();
+
  private:
   using Clock = std::chrono::steady_clock;
   bool active_;

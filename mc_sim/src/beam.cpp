@@ -11,6 +11,10 @@
 
 namespace surf::mc {
 
+namespace {
+constexpr double most_convergence_deg = 20;
+}
+
 Vec3 direction(const Beam& beam) {
   const double t = beam.tilt_deg * degrees_to_radians;
   const double a = beam.azimuth_deg * degrees_to_radians;
@@ -31,6 +35,15 @@ void validate(const Beam& beam) {
   if (!(beam.spot_nm >= 0 && std::isfinite(beam.spot_nm)))
     throw UsageError("--spot", "the spot's standard deviation must be 0 or more",
                      "Give a length, such as 1nm");
+  if (!(beam.convergence_deg >= 0 && beam.convergence_deg <= most_convergence_deg))
+    throw UsageError("--convergence", fmt::format("a half angle of {:g} degrees is outside 0 to {:g}",
+                                                  beam.convergence_deg, most_convergence_deg),
+                     "Microscopes have a few mrad: write 5mrad");
+  if (!std::isfinite(beam.focus_nm))
+    throw UsageError("--focus", "it is not finite", "Give a length, such as 0nm");
+  if (!(beam.working_distance_nm >= 0 && std::isfinite(beam.working_distance_nm)))
+    throw UsageError("--working-distance", "it must be above zero",
+                     "Give a length, such as 5mm, or leave it out for parallel beams");
 }
 
 void validate(const Scan& scan) {

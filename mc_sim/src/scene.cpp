@@ -147,6 +147,8 @@ Scene::Scene(const Specimen& specimen, const Beam& beam, const Scan& scan, const
   s.solids = std::move(all.solids);
   s.shell_of = std::move(all.shell_of);
   s.top_nm = s.plane_nm.value_or(near.empty() ? 0.0 : near.upper_nm.z);
+  s.bottom_nm = near.empty() ? s.top_nm : std::min(near.lower_nm.z, s.plane_nm.value_or(HUGE_VAL));
+  s.half_space = specimen.substrate || specimen.height_field;
   s.farthest_nm = 1e12;
   if (!all.mesh.triangles.empty()) {
     s.top_nm = std::max(s.top_nm, near.upper_nm.z);

@@ -46,6 +46,8 @@ struct Scene::Impl {
   std::unique_ptr<EmbreeScene> triangles;  ///< null for a bare substrate
   DistanceGrid grid;
   double top_nm = 0;                       ///< highest surface
+  double bottom_nm = 0;                    ///< lowest surface
+  bool half_space = false;                 ///< whether something goes on below without end
   double farthest_nm = 0;                  ///< longer than any path inside the solids
 
   double clearance_nm(const Vec3& p) const {

@@ -44,19 +44,20 @@ Balance& Balance::operator+=(const Balance& b) {
 PixelTally& PixelTally::operator+=(const PixelTally& b) {
   primaries += b.primaries;
   hits += b.hits;
-  se += b.se;
-  se_squared += b.se_squared;
-  bse += b.bse;
-  bse_squared += b.bse_squared;
   return *this;
 }
 
-Estimate estimate(std::int64_t primaries, std::int64_t sum, std::int64_t sum_of_squares) {
+Histogram& Histogram::operator+=(const Histogram& b) {
+  for (std::size_t i = 0; i < bins.size(); ++i) bins[i] += b.bins[i];
+  return *this;
+}
+
+Estimate estimate(std::int64_t primaries, const Counts& counts) {
   if (primaries < 1) return {};
   const double n = static_cast<double>(primaries);
-  const double mean = static_cast<double>(sum) / n;
+  const double mean = static_cast<double>(counts.sum) / n;
   if (primaries < 2) return {mean, 0};
-  const double variance = std::max(0.0, static_cast<double>(sum_of_squares) / n - mean * mean);
+  const double variance = std::max(0.0, static_cast<double>(counts.squares) / n - mean * mean);
   return {mean, std::sqrt(variance / (n - 1))};
 }
 

@@ -18,6 +18,7 @@
 #include <limits>
 #include <vector>
 
+#include "detection.h"
 #include "surf/core/vec3.h"
 #include "surf/mc/barrier.h"
 #include "surf/mc/medium.h"
@@ -84,14 +85,8 @@ inline Vec3 deflected(const Vec3& d, double cos_theta, double turn) {
 struct NoObserver {
   void begin_track(int, int, int, const Vec3&, const Vec3&, double) {}
   void segment(const Vec3&, const Vec3&, double, double, int) {}
+  void deposit(const Vec3&, const Vec3&, double) {}
   void end_track(TrackEnd, const Vec3&, const Vec3&, double) {}
-};
-
-/// Detected electrons of one primary.
-struct PrimaryTotals {
-  int se = 0;
-  int bse = 0;
-  bool hit = false;
 };
 
 template <class Geometry, class Watcher>
@@ -102,30 +97,31 @@ class Transport {
   /// `drop_unreachable`: whether electrons that cannot come near a surface any more are absorbed at
   /// once. It changes no detector's mean or variance, but observers miss the rest of those tracks.
   Transport(Geometry& geometry, const std::vector<const Medium*>& media, BarrierModel barrier,
-            bool drop_unreachable, Watcher& watcher, Balance& balance)
+            bool drop_unreachable, Watcher& watcher, Detection& detection, Balance& balance)
       : geometry_(geometry), media_(media), barrier_(barrier), drop_unreachable_(drop_unreachable),
-        watcher_(watcher), balance_(balance) {}
+        watcher_(watcher), detection_(detection), balance_(balance) {}
 
-  /// Follows a primary and all its secondaries. `energy_ev` counts as `state`'s material says.
-  PrimaryTotals run(const Vec3& start, const Vec3& direction, double energy_ev, State state,
-                    RandomStream& random) {
-    totals_ = {};
+  /// Follows a primary and all its secondaries; true if the primary met the specimen. `energy_ev`
+  /// counts as `state`'s material says.
+  bool run(const Vec3& start, const Vec3& direction, double energy_ev, State state,
+           RandomStream& random) {
+    beam_ = direction;
     steps_ = 0;
     tracks_ = 0;
     ++balance_.incident;
     balance_.incident_energy.add(energy_ev - barrier_of(geometry_.material(state)));
     waiting_.clear();
-    Track track{start, direction, energy_ev, state, 0, -1};
-    totals_.hit = geometry_.material(state) >= 0;
+    Track track{start, direction, energy_ev, state, 0, -1, false};
+    hit_ = geometry_.material(state) >= 0;
     follow(track, random);
     while (!waiting_.empty()) {
       track = waiting_.back();
       waiting_.pop_back();
       follow(track, random);
     }
-    if (!totals_.hit) ++balance_.missed;
+    if (!hit_) ++balance_.missed;
     balance_.steps += steps_;
-    return totals_;
+    return hit_;
   }
 
  private:
@@ -136,6 +132,7 @@ class Transport {
     State state;
     int generation;
     int parent;
+    bool turned;   // the primary had, by more than 90 degrees, when this cascade began
   };
 
   double barrier_of(int material) const {
@@ -164,7 +161,7 @@ class Transport {
                                             surface);
     if (met == Crossing::wrong_side) return lose(t, LossCause::wrong_side);
     if (met == Crossing::none) return escape(t);
-    totals_.hit = true;
+    hit_ = true;
     watcher_.segment(t.position, surface.position, t.energy, t.energy, -1);
     t.position = surface.position;
     enter(t, surface, random);
@@ -206,6 +203,7 @@ class Transport {
 
   void advance(Track& t, const Vec3& to, double energy, int material) {
     watcher_.segment(t.position, to, t.energy, energy, material);
+    watcher_.deposit(t.position, to, t.energy - energy);
     deposited_ += t.energy - energy;
     t.position = to;
     t.energy = energy;
@@ -218,6 +216,11 @@ class Transport {
       t.state = surface.state_ahead;
       t.position = surface.position_ahead;
     }
+    note_turn(t);
+  }
+
+  void note_turn(Track& t) const {
+    if (t.generation == 0 && dot(t.direction, beam_) < 0) t.turned = true;
   }
 
   bool scatter(Track& t, const Medium& medium, double clear, RandomStream& random) {
@@ -228,11 +231,14 @@ class Transport {
       if (!add_secondary(t, medium, event, clear)) return lose(t, LossCause::too_many_secondaries);
     } else {
       deposited_ += event.energy_loss_ev;
+      if (event.energy_loss_ev != 0)
+        watcher_.deposit(t.position, t.position, event.energy_loss_ev);
     }
     if (event.isotropic) t.direction = from_axis(event.cos_theta, event.turn);
     else if (event.cos_theta != 1.0)
       t.direction = deflected(t.direction, event.cos_theta, event.turn);
     t.energy -= event.energy_loss_ev;
+    note_turn(t);
     return true;
   }
 
@@ -247,31 +253,36 @@ class Transport {
       ++balance_.absorbed;
       ++balance_.dropped;
       balance_.deposited_energy.add(total);
+      watcher_.deposit(t.position, t.position, event.energy_loss_ev);
       return true;
     }
-    if (waiting_.size() >= Limits::max_waiting) return false;
+    watcher_.deposit(t.position, t.position, event.energy_loss_ev - total);
+    if (waiting_.size() >= Limits::max_waiting) {
+      ++balance_.lost[static_cast<std::size_t>(LossCause::too_many_secondaries)];
+      balance_.lost_energy.add(total);
+      return false;
+    }
     waiting_.push_back({t.position,
                         deflected(t.direction, event.secondary_cos_theta, event.secondary_turn),
-                        energy, t.state, t.generation + 1, number_});
+                        energy, t.state, t.generation + 1, number_, t.turned});
     return true;
   }
 
   bool escape(const Track& t) {
     balance_.escaped_energy.add(t.energy);
     TrackEnd end = TrackEnd::transmitted;
-    if (!totals_.hit) {
+    if (!hit_) {
       ++balance_.transmitted;   // a primary that met nothing
     } else if (t.energy < se_bse_split_ev) {
       end = TrackEnd::se;
       ++balance_.se;
-      ++totals_.se;
     } else if (t.direction.z >= 0) {
       end = TrackEnd::bse;
       ++balance_.bse;
-      ++totals_.bse;
     } else {
       ++balance_.transmitted;
     }
+    if (hit_) detection_.escaped({t.energy, t.direction, t.generation > 0, t.turned});
     watcher_.end_track(end, t.position, t.direction, t.energy);
     return false;
   }
@@ -284,6 +295,7 @@ class Transport {
   bool absorb(const Track& t, const Medium& medium) {
     ++balance_.absorbed;
     deposited_ += t.energy - medium.barrier_ev();
+    watcher_.deposit(t.position, t.position, t.energy - medium.barrier_ev());
     watcher_.end_track(TrackEnd::absorbed, t.position, t.direction, t.energy);
     return false;
   }
@@ -300,8 +312,10 @@ class Transport {
   BarrierModel barrier_;
   bool drop_unreachable_;
   Watcher& watcher_;
+  Detection& detection_;
   Balance& balance_;
-  PrimaryTotals totals_;
+  Vec3 beam_;              // the primary's direction at its start
+  bool hit_ = false;
   std::vector<Track> waiting_;
   typename Geometry::Surface surface_;   // scratch
   double deposited_ = 0;   // by the current track

@@ -20,7 +20,8 @@ expect() {
 
 expect "simulate" sim
 expect "--energy" simulate --ener
-expect "--substrate --substrate-z --spot --size --seed" simulate cube.stl --s
+expect "--substrate --substrate-z --spot --size --seed --spectra" simulate cube.stl --s
+expect "SE1 SE2" simulate --detector SE
 expect "mirror" simulate --edge m
 expect "bash zsh fish" completion ""
 expect "/etc/hostname" simulate -o /etc/hostnam

@@ -38,13 +38,9 @@ void expect_same(const SimulationResult& a, const SimulationResult& b, const Map
   };
   for (int y = 0; y < h; ++y)
     for (int x = 0; x < w; ++x) {
-      const PixelTally& p = a.pixels(x, y);
       const auto [bx, by] = map(x, y);
-      const PixelTally& q = b.pixels(bx, by);
-      compare(estimate(p.primaries, p.se, p.se_squared), estimate(q.primaries, q.se, q.se_squared),
-              p.se + q.se);
-      compare(estimate(p.primaries, p.bse, p.bse_squared),
-              estimate(q.primaries, q.bse, q.bse_squared), p.bse + q.bse);
+      for (const std::size_t d : {test::se, test::bse})
+        compare(a.yield(d, x, y), b.yield(d, bx, by), a.counts[d](x, y).sum + b.counts[d](bx, by).sum);
     }
   ASSERT_GT(cells, 20);
   // The z-scores are standard normal: neither too large nor too small.
@@ -128,7 +124,9 @@ TEST(Sameness, DroppingWhatCannotReachASurfaceChangesNothing) {
   const Scene scene(letter_l(), {}, scan);
   SimulationResult full;
   full.pixels = Grid<PixelTally>(6, 6);
-  const UnitTally unit = simulate_unit(scene, 2, {0, 0, 6, 6, 0, 400}, &nobody);
+  const UnitTally unit = simulate_unit(scene, test::seeded(2), {0, 0, 6, 6, 0, 400}, &nobody);
+  full.detectors = default_detectors();
+  full.counts = unit.counts;
   full.pixels = unit.pixels;
   EXPECT_EQ(unit.balance.dropped, 0);
   const auto quick = test::simulate(letter_l(), {}, scan, 400);
@@ -172,15 +170,19 @@ TEST(Sameness, SameNumbersForAnyThreadsAndTiles) {
 TEST(Sameness, ElectronRangesAddUp) {
   const Scan scan = square_scan(84, 4);
   const Scene scene(letter_l(), {}, scan);
-  UnitTally whole = simulate_unit(scene, 1, {0, 0, 4, 4, 0, 30});
-  UnitTally first = simulate_unit(scene, 1, {0, 0, 4, 4, 0, 11});
-  const UnitTally second = simulate_unit(scene, 1, {0, 0, 4, 4, 11, 19});
+  UnitTally whole = simulate_unit(scene, test::seeded(1), {0, 0, 4, 4, 0, 30});
+  UnitTally first = simulate_unit(scene, test::seeded(1), {0, 0, 4, 4, 0, 11});
+  const UnitTally second = simulate_unit(scene, test::seeded(1), {0, 0, 4, 4, 11, 19});
   first.balance += second.balance;
   EXPECT_EQ(first.balance.se, whole.balance.se);
   EXPECT_EQ(first.balance.escaped_energy.ev(), whole.balance.escaped_energy.ev());
   for (std::size_t i = 0; i < 16; ++i) {
     first.pixels.data()[i] += second.pixels.data()[i];
-    EXPECT_EQ(first.pixels.data()[i].se_squared, whole.pixels.data()[i].se_squared);
+    EXPECT_EQ(first.pixels.data()[i].hits, whole.pixels.data()[i].hits);
+    for (const std::size_t d : {test::se, test::bse}) {
+      first.counts[d].data()[i] += second.counts[d].data()[i];
+      EXPECT_EQ(first.counts[d].data()[i], whole.counts[d].data()[i]);
+    }
   }
 }
 
@@ -193,14 +195,14 @@ TEST(StandardError, IsHonest) {
   double squares = 0;
   int cells = 0;
   for (std::size_t i = 0; i < 36; ++i) {
-    PixelTally all;
-    for (const auto& r : runs) all += r.pixels.data()[i];
-    const Estimate truth = estimate(all.primaries, all.se, all.se_squared);
+    Counts all;
+    for (const auto& r : runs) all += r.counts[test::se].data()[i];
+    const Estimate truth = estimate(3000, all);
     for (const auto& r : runs) {
-      const PixelTally& p = r.pixels.data()[i];
-      if (p.se < 25) continue;
+      const std::int64_t counts = r.counts[test::se].data()[i].sum;
+      if (counts < 25) continue;
       // Against the pooled error: a run's own error is correlated with its mean.
-      const double z = (static_cast<double>(p.se) / 100 - truth.mean) /
+      const double z = (static_cast<double>(counts) / 100 - truth.mean) /
                        (truth.standard_error * std::sqrt(30.0));
       squares += z * z;
       ++cells;
@@ -222,7 +224,7 @@ TEST(Spot, BlursAnEdge) {
     double most = 0;
     for (int x = 0; x < 20; ++x) {
       double column = 0;
-      for (int y = 0; y < 20; ++y) column += static_cast<double>(r.pixels(x, y).se);
+      for (int y = 0; y < 20; ++y) column += static_cast<double>(r.counts[test::se](x, y).sum);
       most = std::max(most, column);
     }
     return most;

@@ -45,7 +45,7 @@ class Inside final : public Observer {
 };
 
 Balance observe(const Scene& scene, Observer& observer, int electrons) {
-  return simulate_unit(scene, 1, {0, 0, scene.scan().width, scene.scan().height, 0, electrons},
+  return simulate_unit(scene, test::seeded(1), {0, 0, scene.scan().width, scene.scan().height, 0, electrons},
                        &observer)
       .balance;
 }

@@ -8,16 +8,16 @@ namespace surf::mc {
 
 TEST(Estimate, ComesFromTheScatterOfPrimaries) {
   // 0, 1, 1, 4: mean 1.5, variance of the mean (18/4 - 2.25) / 3.
-  const Estimate e = estimate(4, 6, 18);
+  const Estimate e = estimate(4, {6, 18});
   EXPECT_DOUBLE_EQ(e.mean, 1.5);
   EXPECT_DOUBLE_EQ(e.standard_error, std::sqrt((4.5 - 2.25) / 3));
 }
 
 TEST(Estimate, HasLimits) {
-  EXPECT_EQ(estimate(0, 0, 0).mean, 0);
-  EXPECT_EQ(estimate(1, 3, 9).mean, 3);
-  EXPECT_EQ(estimate(1, 3, 9).standard_error, 0);
-  EXPECT_EQ(estimate(10, 20, 40).standard_error, 0);
+  EXPECT_EQ(estimate(0, {}).mean, 0);
+  EXPECT_EQ(estimate(1, {3, 9}).mean, 3);
+  EXPECT_EQ(estimate(1, {3, 9}).standard_error, 0);
+  EXPECT_EQ(estimate(10, {20, 40}).standard_error, 0);
 }
 
 TEST(EnergySum, DoesNotDependOnOrder) {

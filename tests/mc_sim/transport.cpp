@@ -79,7 +79,7 @@ TEST(Transport, ReflectsAsChandrasekharComputed) {
     const double truth = test::number(row, "reflectance_R");
     const CustomResult r = reflect(test::number(row, "single_scatter_albedo_c"),
                                    test::number(row, "mu0_incidence"), n);
-    const double share = static_cast<double>(r.tally.bse) / static_cast<double>(n);
+    const double share = static_cast<double>(r.bse.sum) / static_cast<double>(n);
     test::expect_mean(share, std::sqrt(truth * (1 - truth) / static_cast<double>(n)), truth,
                       rows.size());
   }

@@ -3,6 +3,7 @@
 
 #include "surf/io/sim/materials.h"
 #include "surf/mc/simulate.h"
+#include "surf/mesh/shapes.h"
 
 namespace surf::test {
 
@@ -12,6 +13,12 @@ inline mc::Specimen flat(const char* material) {
   specimen.materials = {io::find_material(material, "test")};
   specimen.substrate = mc::Substrate{};
   return specimen;
+}
+
+/// A box standing on z = 0 about the z axis.
+inline TriangleMesh pillar(double width_nm, double height_nm) {
+  const double half = 0.5 * width_nm;
+  return make_box({-half, -half, 0}, {half, half, height_nm});
 }
 
 /// A scan of `pixels` x `pixels` over a square around the origin.
@@ -31,16 +38,32 @@ inline mc::SimulationResult simulate(const mc::Specimen& specimen, const mc::Bea
   return mc::simulate(mc::Scene(specimen, beam, scan, physics), options);
 }
 
+/// The default detectors, as numbered in every result.
+inline constexpr std::size_t se = 0, bse = 1;
+
+/// The default options with this seed.
+inline mc::SimulationOptions seeded(std::uint64_t seed) {
+  mc::SimulationOptions options;
+  options.seed = seed;
+  return options;
+}
+
+/// A detector's yield over all pixels.
+inline mc::Estimate mean_yield(const mc::SimulationResult& result, std::size_t detector) {
+  mc::Counts sum;
+  std::int64_t primaries = 0;
+  for (const mc::PixelTally& p : result.pixels.data()) primaries += p.primaries;
+  for (const mc::Counts& c : result.counts[detector].data()) sum += c;
+  return mc::estimate(primaries, sum);
+}
+
 struct Yields {
   mc::Estimate se, bse;
 };
 
 /// Yields over all pixels.
 inline Yields yields(const mc::SimulationResult& result) {
-  mc::PixelTally sum;
-  for (const mc::PixelTally& p : result.pixels.data()) sum += p;
-  return {mc::estimate(sum.primaries, sum.se, sum.se_squared),
-          mc::estimate(sum.primaries, sum.bse, sum.bse_squared)};
+  return {mean_yield(result, se), mean_yield(result, bse)};
 }
 
 /// Yields of a bare half-space.

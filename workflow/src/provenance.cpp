@@ -17,6 +17,10 @@ void add_beam_and_scan(Metadata& out, const mc::Beam& beam, const mc::Scan& scan
   out["beam.tilt_deg"] = format_exact(beam.tilt_deg);
   out["beam.azimuth_deg"] = format_exact(beam.azimuth_deg);
   out["beam.spot_nm"] = format_exact(beam.spot_nm);
+  out["beam.convergence_deg"] = format_exact(beam.convergence_deg);
+  out["beam.focus_nm"] = format_exact(beam.focus_nm);
+  out["beam.working_distance_nm"] =
+      beam.working_distance_nm > 0 ? format_exact(beam.working_distance_nm) : "infinite";
   out["scan.width"] = std::to_string(scan.width);
   out["scan.height"] = std::to_string(scan.height);
   out["scan.pixel_x_nm"] = format_exact(scan.pixel_x_nm);
@@ -110,7 +114,18 @@ Metadata provenance(const SimulateJob& job, const mc::Scan& scan,
     add_material(out, key, material);
     out[key + ".cutoff_ev"] = format_exact(mc::effective_cutoff_ev(job.scene.physics, material));
   }
-  out["electrons"] = std::to_string(job.options.electrons);
+  number = 0;
+  for (const mc::Detector& d : job.options.detectors)
+    out[fmt::format("detector.{}", ++number)] = mc::format_detector(d);
+  if (job.options.dose > 0) {
+    out["beam.current_pa"] = format_exact(*job.scene.current_pa);
+    out["beam.dwell_us"] = format_exact(*job.scene.dwell_us);
+    out["dose"] = format_exact(job.options.dose);
+  } else {
+    out["electrons"] = std::to_string(job.options.electrons);
+  }
+  // Where energy is watched tracks are followed to their end, with other random numbers.
+  if (job.extras.deposit_cells > 0) out["deposit_cells"] = std::to_string(job.extras.deposit_cells);
   out["seed"] = std::to_string(job.options.seed);
   return out;
 }

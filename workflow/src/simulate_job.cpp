@@ -5,11 +5,15 @@
 
 #include <algorithm>
 
+#include "extras.h"
 #include "provenance.h"
 #include "sidecar.h"
 #include "surf/core/error.h"
+#include "surf/core/parallel.h"
+#include "surf/core/units.h"
 #include "surf/io/files.h"
 #include "surf/io/image_file.h"
+#include "surf/io/volume_file.h"
 #include "surf/mc/scene.h"
 #include "warnings.h"
 
@@ -32,13 +36,41 @@ void check_options(const mc::SimulationOptions& options) {
                      "Give 1 or more");
 }
 
+// The job with everything in its options that the simulator has to know.
+SimulateJob complete(const SimulateJob& job) {
+  SimulateJob out = job;
+  const io::SceneFile& s = job.scene;
+  for (const mc::Detector& d : s.detectors) out.options.detectors.push_back(d);
+  mc::validate(out.options.detectors);
+  if (s.current_pa.has_value() != s.dwell_us.has_value())
+    throw UsageError(s.current_pa ? "--current" : "--dwell", "the other of the two is missing",
+                     "Current and dwell time together make the dose of a pixel: give both");
+  if (s.current_pa) {
+    if (!(*s.current_pa > 0 && *s.dwell_us > 0))
+      throw UsageError("--current, --dwell", "they must be above zero",
+                       "Write for example --current 100pA --dwell 1us");
+    if (s.electrons)
+      throw UsageError("--electrons", "current and dwell time give the number of primaries",
+                       "Leave out --electrons, or --current and --dwell");
+    out.options.dose = *s.current_pa * *s.dwell_us * electrons_per_pa_us;
+  }
+  if (out.png_channel.empty()) out.png_channel = out.options.dose > 0 ? "SE.shot" : "SE";
+  return out;
+}
+
 // An image as the simulator makes them, small, to ask whether channels are known.
-Image image_like_the_result() {
+Image image_like_the_result(const SimulateJob& job) {
   mc::SimulationResult result;
+  result.detectors = job.options.detectors;
+  result.dose = job.options.dose;
   result.pixels = Grid<mc::PixelTally>(1, 1);
+  result.counts.assign(result.detectors.size(), Grid<mc::Counts>(1, 1));
   mc::Scan scan;
   scan.width = scan.height = 1;
-  return mc::make_image(result, scan);
+  Image image = mc::make_image(result, scan);
+  for (const std::string& name : surface_channels(job.extras))
+    image.channels.push_back({name, "1", Grid<float>(1, 1)});
+  return image;
 }
 
 bool same_file(const fs::path& a, const fs::path& b) {
@@ -49,7 +81,8 @@ bool same_file(const fs::path& a, const fs::path& b) {
 void check_outputs(const SimulateJob& job) {
   if (job.outputs.empty())
     throw UsageError("--output", "no output file is given", "Add -o image.exr");
-  const Image image = image_like_the_result();
+  const Image image = image_like_the_result(job);
+  for (const fs::path& extra : extra_files(job)) io::check_writable(extra);
   for (std::size_t i = 0; i < job.outputs.size(); ++i) {
     const fs::path& output = job.outputs[i];
     io::check_image_target(output, &image, {job.png_channel});
@@ -64,9 +97,11 @@ void check_outputs(const SimulateJob& job) {
   }
 }
 
-Image labelled_image(const SimulateSummary& summary,
+Image labelled_image(const SimulateJob& job, const mc::Scene& scene,
+                     const SimulateSummary& summary,
                      const std::map<std::string, std::string>& settings) {
   Image image = mc::make_image(summary.result, summary.scan);
+  add_surface_channels(scene, job, image);
   for (const auto& [key, value] : settings) image.metadata[key] = value;
   for (const auto& [key, value] : outcome(summary.result, summary.warnings))
     image.metadata[key] = value;
@@ -93,27 +128,50 @@ void write_all(const SimulateJob& job, const Image& image, SimulateSummary& summ
 
 }  // namespace
 
-SimulateSummary run(const SimulateJob& job, const ProgressCallback& progress,
-                    const CancelToken* cancel) {
+SimulateSummary run(const SimulateJob& asked, const ProgressCallback& progress,
+                    const CancelToken* cancel, const WarningCallback& warn) {
   RunRecord record;
   record.start = std::chrono::system_clock::now();
+  check_options(asked.options);
+  check_extras(asked.extras);
+  const SimulateJob job = complete(asked);
   const io::SceneFile& s = job.scene;
 
-  check_options(job.options);
   check_outputs(job);
   SimulateSummary summary;
   summary.scan = resolve_scan(s.scan, mc::extent(s.specimen), s.beam);
   record.inputs = hash_inputs(s.inputs);
   const mc::Scene scene(s.specimen, s.beam, summary.scan, s.physics);   // validates the specimen
   summary.scene = scene.summary();
-  summary.warnings = warn_before(job, summary.scan);
+  const auto note = [&](std::vector<std::string> warnings) {
+    for (std::string& warning : warnings) {
+      if (warn) warn(warning);
+      summary.warnings.push_back(std::move(warning));
+    }
+  };
+  note(warn_before(job, summary.scan));
   const auto settings = provenance(job, summary.scan, record.inputs);
 
-  summary.result = mc::simulate(scene, job.options, progress, cancel);
-  for (std::string& warning : warn_after(summary.result))
-    summary.warnings.push_back(std::move(warning));
+  std::optional<Deposits> deposits;
+  mc::ObserverOfThread observers;
+  if (job.extras.deposit_cells > 0) {
+    deposits.emplace(scene, job.extras.deposit_cells, resolve_threads(job.options.threads));
+    observers = [&](int thread) { return deposits->of_thread(thread); };
+  }
+  summary.result = mc::simulate(scene, job.options, progress, cancel, observers);
+  note(warn_after(summary.result));
 
-  write_all(job, labelled_image(summary, settings), summary, std::move(record));
+  const Image image = labelled_image(job, scene, summary, settings);
+  if (deposits) {
+    Volume volume = deposits->density(summary.result.balance.incident);
+    volume.metadata = image.metadata;
+    io::write_volume(extra_path(job, ".deposit.vti"), volume);
+  }
+  if (job.options.spectra)
+    io::write_text(extra_path(job, ".spectra.csv"), spectra_text(summary.result));
+  if (job.extras.trajectories > 0) write_trajectories(scene, job, settings);
+  for (const fs::path& extra : extra_files(job)) summary.written.push_back(extra);
+  write_all(job, image, summary, std::move(record));
   return summary;
 }
 

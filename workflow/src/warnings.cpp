@@ -83,7 +83,7 @@ std::vector<std::string> warn_before(const SimulateJob& job, const mc::Scan& sca
   warn_about_size(extent, out);
   warn_about_bodies(specimen, out);
   warn_about_scan(specimen, extent, job.scene.beam, scan, out);
-  if (job.options.electrons == 1)
+  if (job.options.electrons == 1 && job.options.dose == 0)
     out.push_back("one electron per pixel has no scatter: the standard errors are 0 and mean "
                   "nothing");
   if (job.scene.physics.secondaries)

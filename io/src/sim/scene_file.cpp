@@ -17,14 +17,23 @@ namespace {
 constexpr std::size_t max_scene_bytes = std::size_t{16} << 20;
 
 mc::Beam read_beam(const TomlTable& table) {
-  table.allow({"energy", "tilt", "azimuth", "spot"});
+  table.allow({"energy", "tilt", "azimuth", "spot", "convergence", "focus", "working_distance",
+               "current", "dwell"});
   mc::Beam beam;
   beam.energy_ev = table.energy_ev("energy").value_or(beam.energy_ev);
   beam.tilt_deg = table.angle_deg("tilt").value_or(beam.tilt_deg);
   beam.azimuth_deg = table.angle_deg("azimuth").value_or(beam.azimuth_deg);
   beam.spot_nm = table.length_nm("spot").value_or(beam.spot_nm);
+  beam.convergence_deg = table.angle_deg("convergence").value_or(beam.convergence_deg);
+  beam.focus_nm = table.length_nm("focus").value_or(beam.focus_nm);
+  beam.working_distance_nm = table.length_nm("working_distance").value_or(0);
   at_place(table, {}, [&] { mc::validate(beam); });
   return beam;
+}
+
+void read_dose(const TomlTable& table, SceneFile& scene) {
+  scene.current_pa = table.current_pa("current");
+  scene.dwell_us = table.time_us("dwell");
 }
 
 /// One value for both axes or one for each.
@@ -85,7 +94,7 @@ ScanRequest read_scan(const TomlTable& table) {
 }
 
 void read_simulation(const TomlTable& table, SceneFile& scene) {
-  table.allow({"electrons", "seed", "physics", "cutoff"});
+  table.allow({"electrons", "seed", "physics", "cutoff", "detectors"});
   if (const auto electrons = table.integer("electrons")) {
     if (*electrons < 1) {
       throw UsageError(table.place("electrons"), fmt::format("it is {}", *electrons),
@@ -102,6 +111,11 @@ void read_simulation(const TomlTable& table, SceneFile& scene) {
   if (const auto physics = table.text("physics")) {
     at_place(table, "physics", [&] { mc::parse_physics(*physics, scene.physics); });
   }
+  for (const std::string& text : table.texts("detectors"))
+    at_place(table, "detectors", [&] {
+      for (mc::Detector& d : mc::parse_detectors(text, "detectors"))
+        scene.detectors.push_back(std::move(d));
+    });
   if (const auto cutoff = table.energy_ev("cutoff")) {
     if (!(*cutoff >= 0)) {
       throw UsageError(table.place("cutoff"), "it is negative", "Give 0 or an energy such as 5eV");
@@ -132,7 +146,10 @@ SceneFile read_scene(const std::filesystem::path& path) {
   SceneFile scene;
   scene.inputs.push_back(path);
   scene.title = root.text("title").value_or("");
-  if (const auto table = root.table("beam")) scene.beam = read_beam(*table);
+  if (const auto table = root.table("beam")) {
+    scene.beam = read_beam(*table);
+    read_dose(*table, scene);
+  }
   if (const auto table = root.table("scan")) scene.scan = read_scan(*table);
   if (const auto table = root.table("simulation")) read_simulation(*table, scene);
   read_specimen(root, SceneParts(path.parent_path(), scene), scene.specimen);

@@ -162,6 +162,32 @@ std::optional<double> TomlTable::angle_deg(std::string_view key) const {
   return quantity(*node, place(key), parse_angle_deg);
 }
 
+std::optional<double> TomlTable::current_pa(std::string_view key) const {
+  const toml::node* const node = impl_->table->get(key);
+  if (!node) return {};
+  return quantity(*node, place(key), parse_current_pa);
+}
+
+std::optional<double> TomlTable::time_us(std::string_view key) const {
+  const toml::node* const node = impl_->table->get(key);
+  if (!node) return {};
+  return quantity(*node, place(key), parse_time_us);
+}
+
+std::vector<std::string> TomlTable::texts(std::string_view key) const {
+  const toml::node* const node = impl_->table->get(key);
+  if (!node) return {};
+  const toml::array* const array = node->as_array();
+  if (!array) return {*text(key)};
+  std::vector<std::string> values;
+  for (const toml::node& item : *array) {
+    const auto value = item.value_exact<std::string>();
+    if (!value) refuse(place(key), "one of its values is not a text", "Put it in quotation marks");
+    values.push_back(*value);
+  }
+  return values;
+}
+
 std::optional<std::vector<double>> TomlTable::lengths_nm(std::string_view key,
                                                          std::string_view separators) const {
   const toml::node* const node = impl_->table->get(key);

@@ -36,6 +36,10 @@ class TomlTable {
   std::optional<double> length_nm(std::string_view key) const;
   std::optional<double> energy_ev(std::string_view key) const;
   std::optional<double> angle_deg(std::string_view key) const;
+  std::optional<double> current_pa(std::string_view key) const;
+  std::optional<double> time_us(std::string_view key) const;
+  /// An array of texts, or one text; none where the key is missing.
+  std::vector<std::string> texts(std::string_view key) const;
   /// An array of lengths, or a text of lengths separated by `separators`.
   std::optional<std::vector<double>> lengths_nm(std::string_view key,
                                                 std::string_view separators = ",") const;

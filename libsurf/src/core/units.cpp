@@ -33,6 +33,11 @@ constexpr std::array angle_units{
     Unit{"mrad", 57.29577951308232, 1e3},
 };
 
+constexpr std::array current_units{Unit{"pA", 1, 1}, Unit{"nA", 1e3, 1}, Unit{"uA", 1e6, 1},
+                                   Unit{"fA", 1, 1e3}, Unit{"A", 1e12, 1}};
+constexpr std::array time_units{Unit{"us", 1, 1},  Unit{"\u00b5s", 1, 1}, Unit{"\u03bcs", 1, 1},
+                                Unit{"ns", 1, 1e3}, Unit{"ms", 1e3, 1},    Unit{"s", 1e6, 1}};
+
 /// What a message says about a kind of quantity.
 struct Kind {
   const char* name;
@@ -48,6 +53,12 @@ constexpr Kind energy_kind{
 constexpr Kind angle_kind{
     "angle", "deg",
     "Write a number and deg, rad or mrad (bare numbers are degrees), for example 30deg"};
+
+constexpr Kind current_kind{"current", "pA",
+                            "Write a number and pA, nA, uA, fA or A (bare numbers are pA), for "
+                            "example 100pA"};
+constexpr Kind time_kind{"time", "us",
+                         "Write a number and us, ns, ms or s (bare numbers are us), for example 10us"};
 
 std::string_view trimmed(std::string_view text) {
   constexpr std::string_view blanks = " \t\r\n";
@@ -76,8 +87,8 @@ Quantity split(std::string_view text, std::string_view subject, const Kind& kind
     refuse(subject, fmt::format("'{}' is beyond the range of numbers", text), kind);
   }
   if (error != std::errc{}) {
-    refuse(subject, fmt::format("'{}' is not {} {}", text, kind.name[0] == 'l' ? "a" : "an",
-                                kind.name), kind);
+    const bool vowel = std::string_view("aeiou").find(kind.name[0]) != std::string_view::npos;
+    refuse(subject, fmt::format("'{}' is not {} {}", text, vowel ? "an" : "a", kind.name), kind);
   }
   if (!std::isfinite(result.value)) {
     refuse(subject, fmt::format("'{}' is not a finite number", text), kind);
@@ -143,6 +154,18 @@ double parse_angle_deg(std::string_view text, std::string_view subject) {
   const Quantity q = split(text, subject, angle_kind);
   return scaled(q.value, find_unit(angle_units, q.unit, subject, angle_kind), text, subject,
                 angle_kind);
+}
+
+double parse_current_pa(std::string_view text, std::string_view subject) {
+  const Quantity q = split(text, subject, current_kind);
+  return scaled(q.value, find_unit(current_units, q.unit, subject, current_kind), text, subject,
+                current_kind);
+}
+
+double parse_time_us(std::string_view text, std::string_view subject) {
+  const Quantity q = split(text, subject, time_kind);
+  return scaled(q.value, find_unit(time_units, q.unit, subject, time_kind), text, subject,
+                time_kind);
 }
 
 double unit_length_nm(std::string_view unit, std::string_view subject) {

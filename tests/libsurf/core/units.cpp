@@ -101,6 +101,17 @@ TEST(ParseEnergy, RefusesOtherUnits) {
   EXPECT_THAT(refusal(parse_energy_ev, "1KV"), HasSubstr("'KV' is not a unit of energy"));
 }
 
+TEST(ParseCurrentAndTime, KnowEveryUnit) {
+  for (const char* text : {"100", "100pA", "0.1nA", "1e-4uA", "1e5fA", "1e-10 A"})
+    EXPECT_DOUBLE_EQ(parse_current_pa(text, "--thing"), 100) << text;
+  for (const char* text : {"10", "10us", "0.01ms", "1e4ns", "1e-5s", "10\u00b5s"})
+    EXPECT_DOUBLE_EQ(parse_time_us(text, "--thing"), 10) << text;
+  EXPECT_THAT(refusal(parse_current_pa, "1 amp"), HasSubstr("'amp' is not a unit of current"));
+  EXPECT_THAT(refusal(parse_time_us, "x"), HasSubstr("'x' is not a time"));
+  // 1 nA for 1 us: 6241.5 electrons.
+  EXPECT_NEAR(1000 * electrons_per_pa_us, 6241.509, 1e-3);
+}
+
 TEST(ParseAngle, KnowsEveryUnit) {
   EXPECT_EQ(deg("30"), 30);
   EXPECT_EQ(deg("-30deg"), -30);

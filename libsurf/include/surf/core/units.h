@@ -20,6 +20,12 @@ double parse_energy_ev(std::string_view text, std::string_view subject);
 /// "30", "30deg", "0.5rad", "10mrad" to degrees. Bare numbers are degrees.
 double parse_angle_deg(std::string_view text, std::string_view subject);
 
+/// "100", "100pA", "0.1nA" to pA. Bare numbers are pA.
+double parse_current_pa(std::string_view text, std::string_view subject);
+
+/// "10", "10us", "500ns", "1ms" to us. Bare numbers are us.
+double parse_time_us(std::string_view text, std::string_view subject);
+
 /// The nm in one `unit` ("nm", "um", "mm", "m", "pm", "A", "in"). Throws UsageError if unknown.
 double unit_length_nm(std::string_view unit, std::string_view subject);
 
@@ -28,6 +34,9 @@ std::string format_length(double length_nm, int digits = 3);
 
 /// The shortest decimal text that reads back as exactly `value`.
 std::string format_exact(double value);
+
+/// Electrons in 1 pA for 1 us (CODATA 2018: e = 1.602176634e-19 C).
+inline constexpr double electrons_per_pa_us = 1e-18 / 1.602176634e-19;
 
 inline constexpr double degrees_to_radians = 0.017453292519943295;
 

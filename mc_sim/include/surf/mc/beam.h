@@ -7,15 +7,21 @@
 
 namespace surf::mc {
 
-/// The electron probe: parallel, monochromatic, Gaussian across.
+/// The electron probe: monochromatic, Gaussian across at its focus, filling a cone evenly.
 struct Beam {
-  double energy_ev = 1000;   ///< 100 to 30000
-  double tilt_deg = 0;       ///< angle of the beam from -z, 0 <= tilt < 90
-  double azimuth_deg = 0;    ///< toward which side it turns: 0 is +x, counter-clockwise from above
-  double spot_nm = 0;        ///< standard deviation of the Gaussian spot along each axis; 0: a point
+  double energy_ev = 1000;     ///< 100 to 30000
+  double tilt_deg = 0;         ///< angle of the beam from -z, 0 <= tilt < 90
+  double azimuth_deg = 0;      ///< toward which side it turns: 0 is +x, counter-clockwise from above
+  double spot_nm = 0;          ///< standard deviation of the Gaussian spot along each axis; 0: a point
+  double convergence_deg = 0;  ///< half angle of the cone; 0: parallel
+  double focus_nm = 0;         ///< how far above the scan plane, along the beam, the cone has its tip
+  /// Distance from the scan plane's centre to the point that all pixels' beams come from, > 0:
+  /// perspective. 0: the beams are parallel, the point is infinitely far.
+  double working_distance_nm = 0;
 };
 
-/// Unit vector along which the beam travels: (sin t cos a, sin t sin a, -cos t).
+/// Unit vector along which the beam travels in the middle of the scan:
+/// (sin t cos a, sin t sin a, -cos t).
 Vec3 direction(const Beam& beam);
 
 /// Which points the beam visits: a grid in the plane through the region's centre perpendicular to

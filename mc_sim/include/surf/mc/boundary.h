@@ -39,9 +39,10 @@ struct CustomSpecimen {
 /// Sends `electrons` primaries of `energy_ev` from `start_nm` along `direction` into a custom
 /// specimen, by the same transport loop as `simulate`, with random streams (seed, pixel 0, electron).
 /// If `start_material` >= 0 they start inside that material, with energy inside it.
-/// Returns the counts as one pixel and the balance. `observer` may be null.
+/// Returns the counts of the two default detectors and the balance. `observer` may be null.
 struct CustomResult {
   PixelTally tally;
+  Counts se, bse;
   Balance balance;
 };
 CustomResult simulate_custom(const CustomSpecimen& specimen, const Vec3& start_nm,

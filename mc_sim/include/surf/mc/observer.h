@@ -3,13 +3,11 @@
 
 #include <cstdint>
 
+#include "surf/core/track.h"
 #include "surf/core/vec3.h"
 #include "surf/mc/tally.h"
 
 namespace surf::mc {
-
-/// How a track ended.
-enum class TrackEnd { se, bse, transmitted, absorbed, lost };
 
 /// Watches the transport loop: trajectories, spectra, cascade libraries and tests derive from it.
 /// Calls come in the order in which things happen to one primary and its secondaries, on the
@@ -29,6 +27,12 @@ class Observer {
   /// A straight piece of the current track; `material` is -1 in vacuum.
   virtual void segment(const Vec3& /*from_nm*/, const Vec3& /*to_nm*/, double /*energy_from_ev*/,
                        double /*energy_to_ev*/, int /*material*/) {}
+
+  /// Energy left in the matter along the straight piece between two points (or at a point), eV.
+  /// Negative where a secondary starts: secondaries are not debited from the electron that makes
+  /// them but from what its continuous loss has left there. All of it adds up to the incident energy
+  /// less what escaped and what was lost.
+  virtual void deposit(const Vec3& /*from_nm*/, const Vec3& /*to_nm*/, double /*energy_ev*/) {}
 
   /// The current track ends, with its last energy: in vacuum for se, bse and transmitted.
   virtual void end_track(TrackEnd /*end*/, const Vec3& /*position_nm*/, const Vec3& /*direction*/,

@@ -2,21 +2,30 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
+#include <vector>
 
 #include "surf/core/grid.h"
 #include "surf/core/image.h"
 #include "surf/core/progress.h"
 #include "surf/mc/beam.h"
+#include "surf/mc/detector.h"
 #include "surf/mc/observer.h"
 #include "surf/mc/physics.h"
 #include "surf/mc/scene.h"
+#include "surf/mc/spectra.h"
 #include "surf/mc/tally.h"
 
 namespace surf::mc {
 
 struct SimulationOptions {
   std::int64_t electrons = 200;   ///< primaries per pixel, 1 to 2^31
+  /// Instead of `electrons`, where above 0: the mean number of primaries of a pixel. Each pixel gets
+  /// a number of its own, drawn from the Poisson distribution, as in a microscope. At most 1e9.
+  double dose = 0;
   std::uint64_t seed = 1;
+  std::vector<Detector> detectors = default_detectors();   ///< at least one; unique names
+  bool spectra = false;           ///< collect `Spectra` per detector
   int threads = 0;                ///< 0: one per hardware thread. Does not change the result
   int tile_pixels = 1024;         ///< pixels in a unit of work, >= 1. Does not change the result
 };
@@ -30,31 +39,50 @@ struct WorkUnit {
 };
 
 struct UnitTally {
-  Grid<PixelTally> pixels;    ///< of the unit's rectangle
+  Grid<PixelTally> pixels;               ///< of the unit's rectangle
+  std::vector<Grid<Counts>> counts;      ///< per detector
+  std::vector<Spectra> spectra;          ///< per detector, where asked for
   Balance balance;
 };
 
 /// Simulates one unit of work on the calling thread. With an `observer` every track is followed to
 /// its end; without (null), electrons too far from any surface to matter are given up early, as
 /// `simulate` does. Both have the same statistics but not the same random numbers.
-UnitTally simulate_unit(const Scene& scene, std::uint64_t seed, const WorkUnit& unit,
+/// Of the options, seed, dose, detectors and spectra count.
+UnitTally simulate_unit(const Scene& scene, const SimulationOptions& options, const WorkUnit& unit,
                         Observer* observer = nullptr);
 
 struct SimulationResult {
+  std::vector<Detector> detectors;       ///< as in the options
   Grid<PixelTally> pixels;
+  std::vector<Grid<Counts>> counts;      ///< per detector
+  std::vector<Spectra> spectra;          ///< per detector, where asked for
   Balance balance;
+  double dose = 0;                       ///< as in the options
+  std::uint64_t seed = 1;
   bool complete = true;          ///< false when cancelled: some pixels have fewer primaries, or none
   double seconds = 0;            ///< wall time of the simulation, scene building apart
+
+  /// Yield of a detector at a pixel, its efficiency included.
+  Estimate yield(std::size_t detector, int x, int y) const;
 };
 
+/// The observer of each of the simulating threads, asked for once per thread, 0 to the number of
+/// threads less one. They must outlive the simulation.
+using ObserverOfThread = std::function<Observer*(int thread)>;
+
 /// Simulates the whole scan, in parallel. On cancellation returns what is done.
-/// Progress counts primaries.
+/// Progress counts primaries. With `observers` every track is followed to its end, as in
+/// `simulate_unit`.
 SimulationResult simulate(const Scene& scene, const SimulationOptions& options,
                           const ProgressCallback& progress = {},
-                          const CancelToken* cancel = nullptr);
+                          const CancelToken* cancel = nullptr,
+                          const ObserverOfThread& observers = {});
 
-/// Channels SE, SE.stderr, BSE, BSE.stderr and valid (1 where the beam meets the specimen and at
-/// least one primary was simulated), placed in the scan plane. Yields are counts per primary.
+/// Per detector the channels NAME and NAME.stderr, in counts per primary; with a dose also
+/// NAME.shot, what a microscope would show: electrons counted over the mean number of primaries.
+/// Then valid: 1 where the beam meets the specimen and at least one primary was simulated. Placed in
+/// the scan plane.
 Image make_image(const SimulationResult& result, const Scan& scan);
 
 }  // namespace surf::mc

@@ -57,15 +57,43 @@ struct Balance {
   Balance& operator+=(const Balance& other);
 };
 
-/// Sums over the primaries of one pixel, per detector. Counts per primary are whole numbers, so the
-/// sums are exact and merge in any order.
+/// What happened to the primaries of one pixel, whatever is detected.
 struct PixelTally {
   std::int64_t primaries = 0;
   std::int64_t hits = 0;           ///< primaries that met the specimen
-  std::int64_t se = 0, se_squared = 0;
-  std::int64_t bse = 0, bse_squared = 0;
 
   PixelTally& operator+=(const PixelTally& other);
+};
+
+/// Electrons counted over many primaries: the sum of each primary's number and of its square. Both
+/// are whole numbers, so sums are exact and merge in any order.
+struct Counts {
+  std::int64_t sum = 0;
+  std::int64_t squares = 0;
+
+  void add(std::int64_t of_one_primary) {
+    sum += of_one_primary;
+    squares += of_one_primary * of_one_primary;
+  }
+  Counts& operator+=(const Counts& b) { sum += b.sum; squares += b.squares; return *this; }
+  friend bool operator==(const Counts&, const Counts&) = default;
+};
+
+/// Counts in bins of equal width from `lower` to `upper`; what lies outside is in no bin.
+struct Histogram {
+  double lower = 0, upper = 0;
+  std::vector<Counts> bins;
+
+  /// The bin of a value, or -1.
+  int bin(double value) const {
+    if (!(value >= lower && value < upper)) return -1;
+    const int i = static_cast<int>((value - lower) / (upper - lower) * double(bins.size()));
+    return i < static_cast<int>(bins.size()) ? i : static_cast<int>(bins.size()) - 1;
+  }
+  double edge(std::size_t i) const {
+    return lower + (upper - lower) * double(i) / double(bins.size());
+  }
+  Histogram& operator+=(const Histogram& other);   ///< the same bins
 };
 
 /// Mean counts per primary, and the standard error of that mean from the scatter of the primaries'
@@ -74,6 +102,6 @@ struct Estimate {
   double mean = 0;
   double standard_error = 0;
 };
-Estimate estimate(std::int64_t primaries, std::int64_t sum, std::int64_t sum_of_squares);
+Estimate estimate(std::int64_t primaries, const Counts& counts);
 
 }  // namespace surf::mc

@@ -6,6 +6,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "surf/core/image.h"
@@ -23,12 +24,24 @@ namespace surf::workflow {
 mc::Scan resolve_scan(const io::ScanRequest& request, const Box& specimen_extent,
                       const mc::Beam& beam);
 
+/// What is wanted besides the image. File names are made from the first output's: for out.exr
+/// out.spectra.csv, out.deposit.vti, out.tracks.vtp and out.tracks.png.
+struct Extras {
+  /// Channels of what the beam sees: "z_nm", "normal" (three channels), "material".
+  std::vector<std::string> surface;
+  int deposit_cells = 0;        ///< deposited energy on a grid, this many cells along its longest side
+  int trajectories = 0;         ///< tracks of this many primaries, at most 100000
+  /// Where in the scan plane they land, nm; absent: in the middle of the scan.
+  std::optional<std::pair<double, double>> trajectories_at_nm;
+};
+
 /// One simulation from specimen to files.
 struct SimulateJob {
   io::SceneFile scene;                            ///< with the command line's overrides applied
-  mc::SimulationOptions options;
+  mc::SimulationOptions options;                  ///< its detectors come before the scene's
+  Extras extras;
   std::vector<std::filesystem::path> outputs;     ///< formats by extension; at least one
-  std::string png_channel;                        ///< for PNG; empty: SE
+  std::string png_channel;                        ///< for PNG; empty: SE, or SE.shot with a dose
   std::string command_line;                       ///< for the sidecar
 };
 
@@ -37,13 +50,17 @@ struct SimulateSummary {
   mc::Scan scan;
   mc::SceneSummary scene;
   std::vector<std::string> warnings;
-  std::vector<std::filesystem::path> written;     ///< outputs and their .run.json sidecars
+  std::vector<std::filesystem::path> written;     ///< outputs, extras and their .run.json sidecars
 };
+
+/// Is told of every warning as soon as it is known: what looks like a mistake comes before the
+/// simulation.
+using WarningCallback = std::function<void(const std::string&)>;
 
 /// Checks everything that can be wrong before spending time (targets writable, channel known), then
 /// builds the scene, simulates, and writes every output and its sidecar `NAME.run.json`. When
 /// cancelled the files are written with `partial = true` in their metadata.
 SimulateSummary run(const SimulateJob& job, const ProgressCallback& progress = {},
-                    const CancelToken* cancel = nullptr);
+                    const CancelToken* cancel = nullptr, const WarningCallback& warn = {});
 
 }  // namespace surf::workflow

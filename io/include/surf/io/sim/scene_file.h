@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "surf/mc/beam.h"
+#include "surf/mc/detector.h"
 #include "surf/mc/physics.h"
 #include "surf/mc/specimen.h"
 
@@ -31,6 +32,8 @@ struct SceneFile {
   mc::Physics physics;
   std::optional<std::int64_t> electrons;
   std::optional<std::uint64_t> seed;
+  std::optional<double> current_pa, dwell_us;  ///< of the probe; both or none make a dose
+  std::vector<mc::Detector> detectors;         ///< besides SE and BSE
   std::vector<std::filesystem::path> inputs;   ///< files read: the scene itself, then meshes and fields
 };
 
@@ -41,12 +44,14 @@ struct SceneFile {
 ///
 ///     title = "80 nm mesa"
 ///     [beam]
-///     energy = "1keV"            # tilt = 0, azimuth = 0, spot = 0
+///     energy = "1keV"            # tilt = 0, azimuth = 0, spot = 0, convergence = 0, focus = 0;
+///                                # working_distance: parallel beams; current and dwell: see --current
 ///     [scan]                     # see ScanRequest
 ///     size = "256x256"           # or 256; pixel_size = "1nm" or "1nm x 2nm";
 ///                                # region = "-96,-96,96,96" or [-96, -96, 96, 96]
 ///     [simulation]
 ///     electrons = 200            # per pixel; seed = 1, physics = "elastic=mott", cutoff = "5eV"
+///     detectors = ["SE1", "quadrants", "loss:energy=900eV.."]   # see mc::parse_detectors
 ///     [substrate]
 ///     material = "Si"            # z = 0: the height of its top
 ///     [height_field]

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "scene_options.h"
+
+namespace surf::cli {
+
+/// Everything `simulate` is told, as text; absent: not given.
+struct SimulateOptions {
+  SceneOptions scene;
+  std::optional<std::string> electrons, seed, threads;
+  std::vector<std::string> outputs;
+  std::string channel, channels;
+  std::optional<std::string> deposit, trajectories, trajectories_at;
+  bool spectra = false;
+  bool quiet = false;
+};
+
+/// Declares them all, with their help.
+void add_simulate_options(CLI::App& app, SimulateOptions& options);
+
+}  // namespace surf::cli

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "surf/mc/energy_deposit.h"
+#include "surf/mc/scene.h"
+#include "surf/workflow/simulate_job.h"
+
+namespace surf::workflow {
+
+/// Throws UsageError for unknown channels and numbers out of range.
+void check_extras(const Extras& extras);
+
+/// The name of one extra file.
+std::filesystem::path extra_path(const SimulateJob& job, const char* extension);
+
+/// The files besides the image that a job writes.
+std::vector<std::filesystem::path> extra_files(const SimulateJob& job);
+
+/// Adds the channels of the surface that are wanted. What materials' numbers mean goes into the
+/// metadata.
+void add_surface_channels(const mc::Scene& scene, const SimulateJob& job, Image& image);
+
+/// The channels that `add_surface_channels` adds.
+std::vector<std::string> surface_channels(const Extras& extras);
+
+/// Spectra as CSV: detector, quantity, unit, from, to, yield, standard_error. Yields are counts per
+/// primary in that bin, with the detector's efficiency.
+std::string spectra_text(const mc::SimulationResult& result);
+
+/// The deposits of all threads of one simulation.
+class Deposits {
+ public:
+  Deposits(const mc::Scene& scene, int cells, int threads);
+  mc::Observer* of_thread(int thread) { return &per_thread_[static_cast<std::size_t>(thread)]; }
+  Volume density(std::int64_t primaries) const;
+
+ private:
+  mc::DepositGrid grid_;
+  std::vector<mc::EnergyDeposit> per_thread_;
+};
+
+/// Simulates the tracks that are wanted, on their own, and writes them with a picture.
+void write_trajectories(const mc::Scene& scene, const SimulateJob& job,
+                        const std::map<std::string, std::string>& settings);
+
+}  // namespace surf::workflow
