@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "mesh_formats.h"
+#include "mesh_output.h"
 #include "surf/core/error.h"
 #include "surf/core/units.h"
 #include "surf/io/files.h"
@@ -39,14 +40,45 @@ TriangleMesh parse(const std::filesystem::path& path, std::string_view content) 
                   "Use STL, OBJ, PLY or OFF");
 }
 
-}  // namespace
-
-TriangleMesh read_mesh(const std::filesystem::path& path, double unit_nm) {
-  const std::string file = path.string();
+void check_unit(double unit_nm, const std::string& file) {
   if (!(unit_nm > 0) || !std::isfinite(unit_nm)) {
     throw UsageError(file, fmt::format("{} nm cannot be the unit of a mesh", unit_nm),
                      "Give a positive length");
   }
+}
+
+void check_known(const std::filesystem::path& path) {
+  if (is_mesh_file(path)) return;
+  throw UsageError(path.string(),
+                   fmt::format("'{}' is not a mesh format known here", path.extension().string()),
+                   "Use .stl, .obj, .ply or .off");
+}
+
+TriangleMesh in_file_units(TriangleMesh mesh, double unit_nm, const std::string& file) {
+  if (unit_nm == 1) return mesh;
+  for (Vec3& v : mesh.vertices_nm) {
+    v = {v.x / unit_nm, v.y / unit_nm, v.z / unit_nm};
+    if (is_finite(v)) continue;
+    throw InvalidInput(file, fmt::format("its coordinates are too large for a unit of {} nm",
+                                         format_exact(unit_nm)),
+                       "Use a larger unit");
+  }
+  return mesh;
+}
+
+std::string format_mesh(const std::string& file, const std::string& extension,
+                        const TriangleMesh& mesh) {
+  if (extension == ".stl") return format_stl(file, mesh);
+  if (extension == ".obj") return format_obj(mesh);
+  if (extension == ".ply") return format_ply(file, mesh);
+  return format_off(mesh);
+}
+
+}  // namespace
+
+TriangleMesh read_mesh(const std::filesystem::path& path, double unit_nm) {
+  const std::string file = path.string();
+  check_unit(unit_nm, file);
   TriangleMesh mesh;
   {
     const std::string content = read_file(path);
@@ -65,6 +97,19 @@ TriangleMesh read_mesh(const std::filesystem::path& path, double unit_nm) {
     }
   }
   return merge_equal_vertices(mesh);
+}
+
+void write_mesh(const std::filesystem::path& path, const TriangleMesh& mesh, double unit_nm) {
+  const std::string file = path.string();
+  check_known(path);
+  check_unit(unit_nm, file);
+  validate(mesh, file.c_str());
+  write_text(path, format_mesh(file, lower_extension(path), in_file_units(mesh, unit_nm, file)));
+}
+
+void check_mesh_target(const std::filesystem::path& path) {
+  check_known(path);
+  check_writable(path);
 }
 
 bool is_mesh_file(const std::filesystem::path& path) {
