@@ -117,9 +117,9 @@ TEST(WriteMesh, RefusesWhatCannotBeReadAgain) {
 TEST(WriteMesh, TargetsAreCheckedEarly) {
   const TemporaryFolder folder;
   const auto& root = folder.path();
-  for (const char* name : {"a.jpg", "a", "a.toml"}) {
+  for (const char* name : {"a.jpg", "a", "a.toml", "a.glb"}) {
     EXPECT_THAT(complaint<UsageError>([&] { check_mesh_target(root / name); }),
-                HasSubstr("mesh format"));
+                HasSubstr("not written"));
     EXPECT_THAT(complaint<UsageError>([&] {
                   write_mesh(root / name, test::letter_f_triangles());
                 }),
