@@ -2,22 +2,27 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "surf/io/mesh_file.h"
 #include "surf/mesh/triangle_mesh.h"
 
 namespace surf::io {
 
-// One parser per format, behind read_mesh. `file` is the name for messages. The result is in file
-// units, with the file's own vertices (not merged), finite and with indices in range; it may have
-// no triangles.
+// One parser per format, behind read_meshes. `file` is the name for messages. The result is in file
+// units, z up, with the file's own vertices (not merged), with indices in range; it may have no
+// triangles. Coordinates are finite, but those of glTF may overflow in the scene's transforms.
 
 TriangleMesh parse_stl(const std::string& file, std::string_view content);
-TriangleMesh parse_obj(const std::string& file, std::string_view content);
+/// One mesh per material in use.
+std::vector<NamedMesh> parse_obj(const std::string& file, std::string_view content);
 TriangleMesh parse_ply(const std::string& file, std::string_view content);
 TriangleMesh parse_off(const std::string& file, std::string_view content);
+/// glTF 2.0 as text or GLB. One mesh per node and material. `path` is where buffers are looked for.
+std::vector<NamedMesh> parse_gltf(const std::filesystem::path& path, std::string_view content);
 
 /// Whether the length is that which the count in a binary STL file demands.
 bool is_binary_stl(std::string_view content);
@@ -26,6 +31,7 @@ bool is_text_stl(std::string_view content);
 bool is_ply(std::string_view content);
 /// A first word that ends in "OFF".
 bool is_off(std::string_view content);
+bool is_glb(std::string_view content);
 
 /// Splits a polygon into triangles around its first corner.
 inline void add_fan(const std::vector<std::uint32_t>& corners, std::vector<Triangle>& triangles) {

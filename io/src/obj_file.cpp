@@ -4,9 +4,11 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <map>
 #include <utility>
 
 #include "mesh_formats.h"
+#include "split_mesh.h"
 #include "text_scanner.h"
 
 namespace surf::io {
@@ -14,10 +16,10 @@ namespace {
 
 /// Statements without geometry that matters here.
 bool is_ignored(std::string_view keyword) {
-  static constexpr std::array<std::string_view, 23> ignored{
-      "vn",     "vt",     "vp",    "l",        "p",        "o",          "g",         "s",
-      "mg",     "usemtl", "mtllib", "usemap",  "maplib",   "bevel",      "c_interp",  "d_interp",
-      "lod",    "shadow_obj", "trace_obj", "call", "csh",  "ctech",      "stech"};
+  static constexpr std::array<std::string_view, 21> ignored{
+      "vn",       "vt",       "vp",  "l",          "p",         "g",    "s",
+      "mg",       "mtllib",   "usemap", "maplib",  "bevel",     "c_interp", "d_interp",
+      "lod",      "shadow_obj", "trace_obj", "call", "csh",     "ctech", "stech"};
   return std::find(ignored.begin(), ignored.end(), keyword) != ignored.end();
 }
 
@@ -55,18 +57,29 @@ class ObjParser {
   ObjParser(const std::string& file, std::string_view content)
       : scanner_(file, content, {.comment = '#', .continuation = true}) {}
 
-  TriangleMesh parse() {
+  std::vector<NamedMesh> parse() {
     while (scanner_.next_filled_line()) statement(scanner_.word());
     if (highest_ >= mesh_.vertices_nm.size() && !mesh_.triangles.empty()) fail_at_highest();
-    return std::move(mesh_);
+    return parts();
   }
 
  private:
+  /// A material, and the object that its faces lie in.
+  struct Part {
+    std::string material;
+    std::string object;
+    bool has_faces = false;
+  };
+
   void statement(std::string_view keyword) {
     if (keyword == "v") {
       vertex();
     } else if (keyword == "f" || keyword == "fo") {
       face();
+    } else if (keyword == "usemtl") {
+      use_material(rest_of_line());
+    } else if (keyword == "o") {
+      object_ = rest_of_line();
     } else if (is_ignored(keyword)) {
       // Continued lines need the scanner's own idea of a line's end.
       while (!scanner_.at_line_end()) scanner_.word();
@@ -103,6 +116,43 @@ class ObjParser {
       highest_place_ = place;
     }
     add_fan(corners_, mesh_.triangles);
+    part_of_triangle_.resize(mesh_.triangles.size(), current_);
+    Part& part = parts_[current_];
+    if (!part.has_faces) part.object = object_;
+    if (part.object != object_) part.object.clear();   // faces of several objects
+    part.has_faces = true;
+  }
+
+  std::string rest_of_line() {
+    std::string text;
+    while (!scanner_.at_line_end()) {
+      if (!text.empty()) text += ' ';
+      text += scanner_.word();
+    }
+    return text;
+  }
+
+  void use_material(const std::string& name) {
+    const auto [entry, is_new] = numbers_.try_emplace(name, parts_.size());
+    if (is_new) parts_.push_back({name, {}, false});
+    current_ = static_cast<std::uint32_t>(entry->second);
+  }
+
+  std::vector<NamedMesh> parts() {
+    const auto in_use = [](const Part& part) { return part.has_faces; };
+    const auto used = std::count_if(parts_.begin(), parts_.end(), in_use);
+    std::vector<NamedMesh> result;
+    if (used == 1) {   // the vertices keep their order
+      const Part& part = *std::find_if(parts_.begin(), parts_.end(), in_use);
+      result.push_back({part.object, part.material, std::move(mesh_)});
+      return result;
+    }
+    std::vector<TriangleMesh> meshes = split_mesh(mesh_, part_of_triangle_, parts_.size());
+    for (std::size_t i = 0; i < parts_.size(); ++i) {
+      if (!parts_[i].has_faces) continue;
+      result.push_back({parts_[i].object, parts_[i].material, std::move(meshes[i])});
+    }
+    return result;
   }
 
   [[noreturn]] void fail_at_highest() {
@@ -114,13 +164,18 @@ class ObjParser {
   TextScanner scanner_;
   TriangleMesh mesh_;
   std::vector<std::uint32_t> corners_;
+  std::string object_;
+  std::vector<Part> parts_{Part{}};   // the first: faces before any material
+  std::map<std::string, std::size_t> numbers_{{std::string{}, 0}};
+  std::uint32_t current_ = 0;
+  std::vector<std::uint32_t> part_of_triangle_;
   std::uint32_t highest_ = 0;
   std::size_t highest_place_ = 0;
 };
 
 }  // namespace
 
-TriangleMesh parse_obj(const std::string& file, std::string_view content) {
+std::vector<NamedMesh> parse_obj(const std::string& file, std::string_view content) {
   return ObjParser(file, content).parse();
 }
 

@@ -172,8 +172,41 @@ TEST(MeshFile, FansPolygonsAndMergesVertices) {
   EXPECT_EQ(mesh.vertices_nm.size(), 5u);
 }
 
+TEST(MeshFile, ObjMaterialsMakeBodies) {
+  const TemporaryFolder folder;
+  const auto path = write(folder.path() / "part.obj",
+                          "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\no cone\nusemtl old gold\n"
+                          "f 1 2 4\nusemtl none\nusemtl grey\nf 2 3 4\no ball\nf 1 3 4\n"
+                          "usemtl old  gold # again\no cone\nf 4 3 2\n");
+  const auto meshes = read_meshes(path);
+  ASSERT_EQ(meshes.size(), 3u);
+  const auto expect_body = [&](std::size_t i, const char* name, const char* material,
+                               std::vector<Triangle> triangles) {
+    EXPECT_EQ(meshes[i].name, name);
+    EXPECT_EQ(meshes[i].material, material);
+    TriangleMesh expected{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, std::move(triangles)};
+    EXPECT_EQ(corners(meshes[i].mesh), corners(expected));
+  };
+  expect_body(0, "part", "", {{0, 1, 2}});
+  expect_body(1, "cone", "old gold", {{0, 1, 3}, {3, 2, 1}});
+  expect_body(2, "part", "grey", {{1, 2, 3}, {0, 2, 3}});   // faces of two objects
+  EXPECT_EQ(meshes[0].mesh.vertices_nm.size(), 3u);
+  EXPECT_EQ(read_mesh(path).vertices_nm.size(), 4u) << "joined, with shared vertices";
+  EXPECT_EQ(read_mesh(path).triangles.size(), 5u);
+}
+
+TEST(MeshFile, OtherFormatsAreOneBodyNamedByTheFile) {
+  const TemporaryFolder folder;
+  const auto path = write(folder.path() / "my part.v2.stl",
+                          test::binary_stl(test::letter_f_triangles()));
+  const auto meshes = read_meshes(path);
+  ASSERT_EQ(meshes.size(), 1u);
+  EXPECT_EQ(meshes[0].name, "my part.v2");
+  EXPECT_EQ(meshes[0].material, "");
+}
+
 TEST(MeshFile, KnowsItsExtensions) {
-  for (const char* name : {"a.stl", "a.STL", "b/a.Obj", "a.ply", "a.off"}) {
+  for (const char* name : {"a.stl", "a.STL", "b/a.Obj", "a.ply", "a.off", "a.glb", "a.gltf"}) {
     EXPECT_TRUE(is_mesh_file(name));
   }
   for (const char* name : {"a.toml", "stl", "a.stl/b", "a.exr", ""}) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -9,14 +10,46 @@
 
 namespace surf::io {
 
-/// Reads STL (text and binary), OBJ, PLY (text and binary) or OFF, by content and then by name.
-/// Polygons are fanned into triangles; equal vertices are merged. `unit` is the length of one file
-/// unit in nm (> 0): these formats carry none, so plain numbers are nm.
-/// Throws FileError naming the file, the place and the remedy; never returns NaN vertices, indices
-/// out of range or an empty mesh. Closedness is not checked here.
-TriangleMesh read_mesh(const std::filesystem::path& path, double unit_nm = 1.0);
+/// One of the bodies in a mesh file.
+struct NamedMesh {
+  std::string name;       ///< of the glTF node or OBJ object, else the file's without extension
+  std::string material;   ///< what the file calls its material; empty where it says nothing
+  TriangleMesh mesh;
+};
 
-/// Whether the name ends in a mesh format's extension (".stl", ".obj", ".ply", ".off").
+/// Reads STL (text and binary), OBJ, PLY (text and binary), OFF or glTF 2.0 (.gltf and .glb), by
+/// content and then by name. Polygons are fanned into triangles; equal vertices of a body are
+/// merged. `unit_nm` (> 0) is the length of one file unit: by default 1 nm, as the formats carry
+/// none, and 1 m for glTF, whose specification says so.
+/// - OBJ: one body per material in use, with the object's name where all its faces lie in one.
+/// - glTF: one body per node and material of the default scene, its transforms applied; a mesh that
+///   several nodes show is repeated. Its y axis, which is up, becomes z: (x, y, z) -> (x, -z, y).
+///   Buffers are in the file, in data URIs or in files beside it. Points and lines are skipped,
+///   images not loaded.
+/// - The others: one body, without a material.
+/// Throws FileError naming the file, the place and the remedy, Unsupported for compressed, skinned
+/// or morphed glTF; never returns NaN vertices, indices out of range or a body without triangles.
+/// Closedness is not checked here.
+std::vector<NamedMesh> read_meshes(const std::filesystem::path& path,
+                                   std::optional<double> unit_nm = {});
+
+/// All bodies of the file as one mesh, equal vertices merged.
+TriangleMesh read_mesh(const std::filesystem::path& path, std::optional<double> unit_nm = {});
+
+/// Writes by extension: STL (binary), OBJ, PLY (binary, little-endian, double) or OFF, one file
+/// unit being `unit_nm` (> 0). Vertices and triangles keep their order. The file appears under its
+/// name only when it is complete.
+/// OBJ, PLY and OFF keep every digit: with a unit of 1 nm, reading gives the same doubles. STL has
+/// 24 bits per coordinate (0.06 nm at 1 mm) and may so make vertices equal that were not.
+/// Throws InvalidInput for a mesh that `validate` refuses or whose coordinates the format cannot
+/// hold, UsageError for an unknown extension or unit, FileError.
+void write_mesh(const std::filesystem::path& path, const TriangleMesh& mesh, double unit_nm = 1.0);
+
+/// Throws what `write_mesh` would for the name or folder, before any work is spent.
+void check_mesh_target(const std::filesystem::path& path);
+
+/// Whether the name ends in the extension of a mesh format that is read (".stl", ".obj", ".ply",
+/// ".off", ".glb", ".gltf").
 bool is_mesh_file(const std::filesystem::path& path);
 
 }  // namespace surf::io

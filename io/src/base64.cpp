@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "base64.h"
+
+#include <array>
+#include <cstdint>
+
+namespace surf::io {
+namespace {
+
+constexpr std::string_view digits =
+    "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+
+constexpr std::array<std::int8_t, 256> make_values() {
+  std::array<std::int8_t, 256> values{};
+  values.fill(-1);
+  for (std::size_t i = 0; i < digits.size(); ++i) {
+    values[static_cast<unsigned char>(digits[i])] = static_cast<std::int8_t>(i);
+  }
+  return values;
+}
+
+}  // namespace
+
+std::optional<std::string> decode_base64(std::string_view text) {
+  static constexpr std::array<std::int8_t, 256> values = make_values();
+  std::string bytes;
+  bytes.reserve(text.size() / 4 * 3);
+  std::uint32_t bits = 0;
+  int count = 0;      // bits held
+  std::size_t used = 0, padding = 0;
+  for (const char c : text) {
+    if (c == ' ' || c == '\n' || c == '\r' || c == '\t') continue;
+    if (c == '=') {
+      ++padding;
+      continue;
+    }
+    const std::int8_t value = values[static_cast<unsigned char>(c)];
+    if (value < 0 || padding > 0) return {};
+    bits = (bits << 6 | static_cast<std::uint32_t>(value)) & 0xffffff;
+    count += 6;
+    ++used;
+    if (count >= 8) {
+      count -= 8;
+      bytes.push_back(static_cast<char>(bits >> count & 0xff));
+    }
+  }
+  // A single digit left over holds no byte; padding fills the last group of four or is left out.
+  const bool is_whole = used % 4 != 1 && (padding == 0 || (padding < 3 && (used + padding) % 4 == 0));
+  if (!is_whole) return {};
+  return bytes;
+}
+
+}  // namespace surf::io

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace surf::io {
+
+/// A value in a JSON file that knows its place: every complaint is a FileError which names file and
+/// place, as "part.gltf, nodes[3].scale". Copies share the parsed text.
+class JsonValue {
+ public:
+  /// The whole text, which must be one object. Nesting may be of any depth.
+  static JsonValue parse(const std::string& file, std::string_view text);
+
+  /// The value of a key of this object, if it is there.
+  std::optional<JsonValue> find(const std::string& key) const;
+  /// The same; throws where it is missing.
+  JsonValue require(const std::string& key) const;
+
+  /// The objects or values of the array at `key`; empty where the key is missing.
+  std::vector<JsonValue> items(const std::string& key) const;
+  /// The item that the whole number `index` names in the array at `key`.
+  JsonValue item(const std::string& key, std::uint64_t index) const;
+  std::size_t count(const std::string& key) const;
+
+  double number() const;
+  /// A whole number from 0 to 2^53.
+  std::uint64_t whole() const;
+  std::string text() const;
+  bool boolean() const;
+
+  // The value of a key or else the fallback.
+  std::uint64_t whole(const std::string& key, std::uint64_t fallback) const;
+  std::string text(const std::string& key, const std::string& fallback) const;
+  bool boolean(const std::string& key, bool fallback) const;
+
+  const std::string& place() const { return place_; }
+
+  [[noreturn]] void fail(const std::string& reason, const std::string& remedy = {}) const;
+
+ private:
+  JsonValue(std::shared_ptr<const nlohmann::json> root, const nlohmann::json* value,
+            std::string place)
+      : root_(std::move(root)), value_(value), place_(std::move(place)) {}
+
+  JsonValue at(const nlohmann::json& value, std::string_view step) const;
+  const nlohmann::json* array(const std::string& key) const;
+
+  std::shared_ptr<const nlohmann::json> root_;
+  const nlohmann::json* value_;
+  std::string place_;
+};
+
+}  // namespace surf::io
