@@ -183,13 +183,13 @@ TEST(ExtendOpenSheet, SaysWhyNot) {
   EXPECT_THAT(refusal({{{0, 0, 0}, {1, 0, 0}, {1, 0, 1}}, {{0, 1, 2}}}), HasSubstr("star-shaped"));
 }
 
-TEST(ExtendOpenSheet, RefusesASpiralThatGoesRoundTwice) {
-  TriangleMesh spiral{{{0, 0, 0}}, {}};
-  for (std::uint32_t i = 0; i <= 24; ++i) {
-    const double a = std::numbers::pi * i / 6;
-    spiral.vertices_nm.push_back({10 * std::cos(a), 10 * std::sin(a), double(i)});
-    if (i > 0) spiral.triangles.push_back({0, i, i + 1});
+TEST(ExtendOpenSheet, RefusesARimThatGoesRoundTwice) {
+  std::vector<std::pair<double, double>> rim;
+  for (int i = 0; i < 12; ++i) {
+    rim.emplace_back(10 * std::cos(std::numbers::pi * i / 3), 10 * std::sin(std::numbers::pi * i / 3));
   }
+  const TriangleMesh spiral = fan(rim);   // heights tell the two turns apart
+  EXPECT_EQ(check_mesh(spiral).boundary_edges, 12u);
   EXPECT_THAT(refusal(spiral), HasSubstr("star-shaped"));
 }
 
