@@ -5,120 +5,98 @@
 
 #include <algorithm>
 #include <limits>
-#include <numeric>
 
+#include "mesh/disjoint_sets.h"
+#include "mesh/edges.h"
 #include "mesh/weld.h"
 
 namespace surf {
 namespace {
 
-/// Numbers gathered per point and sorted there: a counting sort followed by many tiny sorts, much
-/// quicker than one large sort.
-struct Buckets {
-  std::vector<std::size_t> begin;      ///< of every point's values; one more at the end
-  std::vector<std::uint64_t> values;
-};
-
-/// `for_each(put)` calls put(point, value) for everything there is, the same each time.
-template <class ForEach>
-Buckets gather(std::size_t points, const ForEach& for_each) {
-  Buckets buckets;
-  std::vector<std::size_t>& begin = buckets.begin;
-  begin.assign(points + 1, 0);
-  for_each([&](std::uint32_t point, std::uint64_t) { ++begin[point]; });
-  std::partial_sum(begin.begin(), begin.end(), begin.begin());
-  buckets.values.resize(begin.back());
-  // begin[p] is p's end here, and becomes its beginning while the bucket is filled.
-  for_each([&](std::uint32_t point, std::uint64_t value) {
-    buckets.values[--begin[point]] = value;
-  });
-  const auto first = buckets.values.begin();
-  for (std::size_t p = 0; p < points; ++p) {
-    std::sort(first + static_cast<std::ptrdiff_t>(begin[p]),
-              first + static_cast<std::ptrdiff_t>(begin[p + 1]));
-  }
-  return buckets;
+/// Counts something and keeps the place of the first one.
+void note(std::size_t& count, Vec3& first_nm, const Vec3& place_nm) {
+  if (count++ == 0) first_nm = place_nm;
 }
 
-// A triangle with a repeated corner runs forth and back along one edge: it bounds nothing and has
-// no part in the counts of edges and duplicates.
-bool has_repeated_corner(const Triangle& t) {
-  return t[0] == t[1] || t[1] == t[2] || t[2] == t[0];
-}
-
-std::vector<Triangle> welded_triangles(const TriangleMesh& mesh, const Weld& weld) {
-  std::vector<Triangle> triangles(mesh.triangles.size());
-  std::ranges::transform(mesh.triangles, triangles.begin(), weld);
-  return triangles;
-}
-
-void count_duplicates(const std::vector<Triangle>& triangles, std::size_t points,
-                      MeshReport& report) {
-  const Buckets buckets = gather(points, [&](const auto& put) {
+void count_duplicates(const TriangleMesh& mesh, const Weld& weld,
+                      const std::vector<Triangle>& triangles, MeshReport& report) {
+  const Buckets buckets = gather(weld.points(), [&](const auto& put) {
     for (Triangle t : triangles) {
       if (has_repeated_corner(t)) continue;
       std::ranges::sort(t);
       put(t[0], std::uint64_t{t[1]} << 32 | t[2]);
     }
   });
-  for (std::size_t p = 0; p < points; ++p) {
+  const auto place = [&](std::uint64_t point) {
+    return mesh.vertices_nm[weld.first_vertex[point]];
+  };
+  for (std::size_t p = 0; p < weld.points(); ++p) {
     for (std::size_t i = buckets.begin[p] + 1; i < buckets.begin[p + 1]; ++i) {
-      if (buckets.values[i] == buckets.values[i - 1]) ++report.duplicate_triangles;
+      const std::uint64_t others = buckets.values[i];
+      if (others != buckets.values[i - 1]) continue;
+      note(report.duplicate_triangles, report.first_duplicate_nm,
+           (place(p) + place(others >> 32) + place(others & 0xffffffffu)) * (1.0 / 3));
     }
   }
 }
 
-/// One undirected edge: how often it is run through from its lower to its higher point and back.
-struct EdgeUse {
-  std::uint32_t low;
-  std::uint32_t high;
-  std::size_t forward;
-  std::size_t backward;
+/// Fans of triangles around points: corners that neighbour through an edge at their point.
+class Fans {
+ public:
+  explicit Fans(std::size_t corners) : sets_(corners) {}
+
+  void join(const std::vector<Triangle>& triangles, const EdgeUse& edge) {
+    const Side s0 = edge.side(0);
+    const bool from_low = side_begin(triangles, s0) == edge.low;
+    const Side low = from_low ? s0 : next_side(s0);
+    const Side high = from_low ? next_side(s0) : s0;
+    for (std::size_t i = 1; i < edge.uses(); ++i) {
+      const Side s = edge.side(i);
+      const bool forward = side_begin(triangles, s) == edge.low;
+      sets_.unite(low, forward ? s : next_side(s));
+      sets_.unite(high, forward ? next_side(s) : s);
+    }
+  }
+
+  /// Calls visit(point) for every point with more than one fan.
+  template <class Visit>
+  void visit_broken(const std::vector<Triangle>& triangles, std::size_t points,
+                    const Visit& visit) {
+    std::vector<unsigned char> fans(points, 0);
+    for (Side corner = 0; corner < 3 * triangles.size(); ++corner) {
+      if (sets_.find(corner) != corner || has_repeated_corner(triangles[corner / 3])) continue;
+      unsigned char& count = fans[side_begin(triangles, corner)];
+      if (count < 2 && ++count == 2) visit(side_begin(triangles, corner));
+    }
+  }
+
+ private:
+  DisjointSets sets_;
 };
-
-template <class Visit>
-void visit_edges(const std::vector<Triangle>& triangles, std::size_t points, const Visit& visit) {
-  const Buckets buckets = gather(points, [&](const auto& put) {
-    for (const Triangle& t : triangles) {
-      if (has_repeated_corner(t)) continue;
-      for (std::size_t k = 0; k < 3; ++k) {
-        const std::uint32_t a = t[k];
-        const std::uint32_t b = t[(k + 1) % 3];
-        put(std::min(a, b), std::uint64_t{std::max(a, b)} << 1 | (a > b));
-      }
-    }
-  });
-  for (std::uint32_t low = 0; low < points; ++low) {
-    const std::size_t end = buckets.begin[low + 1];
-    for (std::size_t i = buckets.begin[low]; i < end;) {
-      const auto high = static_cast<std::uint32_t>(buckets.values[i] >> 1);
-      EdgeUse edge{low, high, 0, 0};
-      for (; i < end && buckets.values[i] >> 1 == high; ++i) {
-        ++(buckets.values[i] & 1 ? edge.backward : edge.forward);
-      }
-      visit(edge);
-    }
-  }
-}
 
 void count_edges(const TriangleMesh& mesh, const Weld& weld,
                  const std::vector<Triangle>& triangles, MeshReport& report) {
   bool balanced = true;
   std::size_t edges = 0;
-  const auto note = [&](const EdgeUse& edge, std::size_t& count, Vec3& first_nm) {
-    if (count++ > 0) return;
-    first_nm = (mesh.vertices_nm[weld.first_vertex[edge.low]] +
-                mesh.vertices_nm[weld.first_vertex[edge.high]]) * 0.5;
+  Fans fans(3 * triangles.size());
+  const auto place = [&](std::uint32_t point) {
+    return mesh.vertices_nm[weld.first_vertex[point]];
   };
   visit_edges(triangles, weld.points(), [&](const EdgeUse& edge) {
     ++edges;
-    balanced &= edge.forward == edge.backward;
-    const std::size_t uses = edge.forward + edge.backward;
-    if (uses == 1) note(edge, report.boundary_edges, report.first_boundary_nm);
-    if (uses > 2) note(edge, report.nonmanifold_edges, report.first_nonmanifold_nm);
-    if (uses == 2 && edge.forward != 1) {
-      note(edge, report.inconsistent_edges, report.first_inconsistent_nm);
-    }
+    fans.join(triangles, edge);
+    const std::size_t forward = count_forward(triangles, edge);
+    const std::size_t backward = edge.uses() - forward;
+    balanced &= forward == backward;
+    report.doubled_directed_edges += (forward > 1) + (backward > 1);
+    if (edge.uses() == 2 && forward == 1) return;
+    const Vec3 middle = (place(edge.low) + place(edge.high)) * 0.5;
+    if (edge.uses() == 1) note(report.boundary_edges, report.first_boundary_nm, middle);
+    if (edge.uses() == 2) note(report.inconsistent_edges, report.first_inconsistent_nm, middle);
+    if (edge.uses() > 2) note(report.nonmanifold_edges, report.first_nonmanifold_nm, middle);
+  });
+  fans.visit_broken(triangles, weld.points(), [&](std::uint32_t point) {
+    note(report.nonmanifold_vertices, report.first_nonmanifold_vertex_nm, place(point));
   });
   report.closed_and_oriented = balanced && edges > 0;
 }
@@ -138,30 +116,11 @@ void measure(const TriangleMesh& mesh, const std::vector<Triangle>& triangles, M
     report.area_nm2 += 0.5 * twice_area;
     report.signed_volume_nm3 += dot(a, normal) / 6;
     if (has_repeated_corner(triangles[i]) || twice_area <= tolerance * length(ab) * length(ac)) {
-      ++report.degenerate_triangles;
+      note(report.degenerate_triangles, report.first_degenerate_nm,
+           mesh.vertices_nm[t[0]] + (ab + ac) * (1.0 / 3));
     }
   }
 }
-
-/// Sets of points; the lowest one stands for its set.
-class DisjointSets {
- public:
-  explicit DisjointSets(std::size_t count) : parent_(count) {
-    std::iota(parent_.begin(), parent_.end(), 0u);
-  }
-  std::uint32_t find(std::uint32_t i) {
-    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
-    return i;
-  }
-  void unite(std::uint32_t a, std::uint32_t b) {
-    a = find(a);
-    b = find(b);
-    parent_[std::max(a, b)] = std::min(a, b);
-  }
-
- private:
-  std::vector<std::uint32_t> parent_;
-};
 
 DisjointSets connect(const std::vector<Triangle>& triangles, std::size_t points) {
   DisjointSets sets(points);
@@ -194,7 +153,7 @@ MeshReport check_mesh(const TriangleMesh& mesh) {
   report.vertices = weld.points();
   measure(mesh, triangles, report);
   count_edges(mesh, weld, triangles, report);
-  count_duplicates(triangles, weld.points(), report);
+  count_duplicates(mesh, weld, triangles, report);
   DisjointSets sets = connect(triangles, weld.points());
   for (std::uint32_t p = 0; p < weld.points(); ++p) report.components += sets.find(p) == p;
   return report;
@@ -219,35 +178,38 @@ std::vector<std::uint32_t> triangle_components(const TriangleMesh& mesh) {
   return components;
 }
 
-std::string summary(const MeshReport& report) {
-  std::string text;
-  const auto add = [&text](const std::string& part) {
-    if (!text.empty()) text += ", ";
-    text += part;
+std::vector<std::string> faults(const MeshReport& r) {
+  std::vector<std::string> lines;
+  const auto add = [&](std::size_t count, const char* what, const std::string& counted,
+                       const Vec3& place) {
+    if (count > 0) lines.push_back(fmt::format("{}{} {}", what, counted, at(place)));
   };
+  add(r.boundary_edges, "open: ", plural(r.boundary_edges, "boundary edge"), r.first_boundary_nm);
+  add(r.inconsistent_edges, "triangles turned against each other at ",
+      plural(r.inconsistent_edges, "edge"), r.first_inconsistent_nm);
+  add(r.nonmanifold_edges, "more than two triangles at ", plural(r.nonmanifold_edges, "edge"),
+      r.first_nonmanifold_nm);
+  add(r.nonmanifold_vertices, "parts that touch in a point at ",
+      r.nonmanifold_vertices == 1 ? "1 vertex"
+                                  : fmt::format("{} vertices", r.nonmanifold_vertices),
+      r.first_nonmanifold_vertex_nm);
+  add(r.degenerate_triangles, "", plural(r.degenerate_triangles, "degenerate triangle"),
+      r.first_degenerate_nm);
+  add(r.duplicate_triangles, "", plural(r.duplicate_triangles, "duplicate triangle"),
+      r.first_duplicate_nm);
+  return lines;
+}
+
+std::string summary(const MeshReport& report) {
+  std::vector<std::string> parts = faults(report);
   if (report.closed_and_oriented) {
-    add(report.signed_volume_nm3 < 0 ? "closed, normals inward" : "closed");
+    parts.insert(parts.begin(), report.signed_volume_nm3 < 0 ? "closed, normals inward" : "closed");
   }
-  if (report.boundary_edges > 0) {
-    add(fmt::format("open: {} {}", plural(report.boundary_edges, "boundary edge"),
-                    at(report.first_boundary_nm)));
-  }
-  if (report.inconsistent_edges > 0) {
-    add(fmt::format("triangles turned against each other at {} {}",
-                    plural(report.inconsistent_edges, "edge"), at(report.first_inconsistent_nm)));
-  }
-  if (report.nonmanifold_edges > 0) {
-    add(fmt::format("more than two triangles at {} {}", plural(report.nonmanifold_edges, "edge"),
-                    at(report.first_nonmanifold_nm)));
-  }
-  if (report.degenerate_triangles > 0) {
-    add(plural(report.degenerate_triangles, "degenerate triangle"));
-  }
-  if (report.duplicate_triangles > 0) add(plural(report.duplicate_triangles, "duplicate triangle"));
-  add(plural(report.triangles, "triangle"));
-  add(fmt::format("{} {}", report.vertices, report.vertices == 1 ? "vertex" : "vertices"));
-  add(plural(report.components, "component"));
-  return text;
+  parts.push_back(plural(report.triangles, "triangle"));
+  parts.push_back(
+      fmt::format("{} {}", report.vertices, report.vertices == 1 ? "vertex" : "vertices"));
+  parts.push_back(plural(report.components, "component"));
+  return fmt::format("{}", fmt::join(parts, ", "));
 }
 
 }  // namespace surf

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <bit>
+#include <limits>
 
 #include "core/argument.h"
 #include "mesh/weld.h"
@@ -11,6 +12,9 @@
 
 namespace surf {
 namespace {
+
+// Sides of triangles are numbered with 32 bits.
+constexpr std::size_t max_triangles = std::numeric_limits<std::uint32_t>::max() / 3;
 
 // 0 and -0 get the same bits; so do equal NaNs, which keeps the search for them short.
 std::array<std::uint64_t, 3> coordinate_bits(const Vec3& v) {
@@ -90,6 +94,10 @@ TriangleMesh merge_equal_vertices(const TriangleMesh& mesh) {
 void validate(const TriangleMesh& mesh, const char* subject) {
   if (mesh.triangles.empty()) {
     throw InvalidInput(subject, "it has no triangles", "Give a surface made of triangles");
+  }
+  if (mesh.triangles.size() > max_triangles) {
+    throw Unsupported(subject, fmt::format("it has {} triangles", mesh.triangles.size()),
+                      fmt::format("{} is the most: cut it into pieces", max_triangles));
   }
   for (std::size_t i = 0; i < mesh.vertices_nm.size(); ++i) {
     const Vec3& v = mesh.vertices_nm[i];

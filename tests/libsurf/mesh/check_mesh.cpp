@@ -7,23 +7,17 @@
 #include <algorithm>
 #include <cmath>
 
+#include "mesh_test.h"
 #include "surf/core/error.h"
 #include "surf/mesh/shapes.h"
 
 namespace surf {
 namespace {
 
+using test::append;
 using testing::HasSubstr;
 
 TriangleMesh unit_cube() { return make_box({0, 0, 0}, {1, 1, 1}); }
-
-void append(TriangleMesh& mesh, const TriangleMesh& more) {
-  const auto first = static_cast<std::uint32_t>(mesh.vertices_nm.size());
-  mesh.vertices_nm.insert(mesh.vertices_nm.end(), more.vertices_nm.begin(), more.vertices_nm.end());
-  for (const auto& [a, b, c] : more.triangles) {
-    mesh.triangles.push_back({first + a, first + b, first + c});
-  }
-}
 
 /// Counts of a report that speak of defects.
 std::vector<std::size_t> defects(const MeshReport& r) {
@@ -145,6 +139,46 @@ TEST(CheckMesh, ComponentsMeetInSharedVertices) {
   append(mesh, make_box({3, 3, 3}, {4, 4, 4}));
   append(mesh, make_sphere({9, 9, 9}, 1, 1));
   EXPECT_EQ(check_mesh(mesh).components, 3u);
+}
+
+TEST(CheckMesh, CountsPointsWhereFansTouch) {
+  TriangleMesh mesh = unit_cube();
+  EXPECT_EQ(check_mesh(mesh).nonmanifold_vertices, 0u);
+  append(mesh, make_box({1, 1, 1}, {2, 2, 2}));
+  MeshReport r = check_mesh(mesh);
+  EXPECT_EQ(r.nonmanifold_vertices, 1u);
+  EXPECT_EQ(r.first_nonmanifold_vertex_nm, (Vec3{1, 1, 1}));
+  EXPECT_THAT(summary(r), HasSubstr("parts that touch in a point at 1 vertex near (1, 1, 1) nm"));
+  append(mesh, make_box({-1, -1, -1}, {0, 0, 0}));
+  r = check_mesh(mesh);
+  EXPECT_EQ(r.nonmanifold_vertices, 2u);
+  EXPECT_EQ(r.nonmanifold_edges, 0u);
+  EXPECT_TRUE(r.closed_and_oriented);
+}
+
+TEST(CheckMesh, CountsDirectedEdgesThatAreUsedTwice) {
+  TriangleMesh mesh = unit_cube();
+  EXPECT_EQ(check_mesh(mesh).doubled_directed_edges, 0u);
+  std::swap(mesh.triangles[0][0], mesh.triangles[0][1]);
+  EXPECT_EQ(check_mesh(mesh).doubled_directed_edges, 3u);
+  mesh = unit_cube();
+  append(mesh, unit_cube());
+  EXPECT_EQ(check_mesh(mesh).doubled_directed_edges, 36u) << "both ways of 18 edges";
+  EXPECT_EQ(check_mesh(mesh).inconsistent_edges, 0u);
+}
+
+TEST(CheckMesh, SaysWhereFacesAreFaulty) {
+  TriangleMesh mesh = make_box({0, 0, 0}, {3, 3, 3});
+  EXPECT_TRUE(faults(check_mesh(mesh)).empty());
+  append(mesh, {{{7, 7, 7}, {8, 8, 8}, {9, 9, 9}}, {{0, 1, 2}}});
+  mesh.triangles.push_back(mesh.triangles[0]);
+  const MeshReport r = check_mesh(mesh);
+  EXPECT_EQ(r.first_degenerate_nm, (Vec3{8, 8, 8}));
+  const Triangle t = mesh.triangles[0];
+  const Vec3 middle = (mesh.vertices_nm[t[0]] + mesh.vertices_nm[t[1]] + mesh.vertices_nm[t[2]]) *
+                      (1.0 / 3);
+  EXPECT_EQ(r.first_duplicate_nm, middle);
+  EXPECT_THAT(faults(r), testing::Contains("1 degenerate triangle near (8, 8, 8) nm"));
 }
 
 TEST(CheckMesh, VolumeSurvivesFarFromTheOrigin) {

@@ -19,6 +19,8 @@ struct MeshReport {
   std::size_t boundary_edges = 0;         ///< edges of exactly one triangle
   std::size_t nonmanifold_edges = 0;      ///< edges of more than two triangles
   std::size_t inconsistent_edges = 0;     ///< edges of two triangles that run through them the same way
+  std::size_t doubled_directed_edges = 0; ///< directed edges that several triangles run through
+  std::size_t nonmanifold_vertices = 0;   ///< points whose triangles hang together in several fans
   std::size_t components = 0;             ///< sets of triangles connected through shared vertices
   double area_nm2 = 0;
   double signed_volume_nm3 = 0;           ///< > 0 when normals point out; meaningful when closed
@@ -26,6 +28,9 @@ struct MeshReport {
   Vec3 first_boundary_nm;                 ///< midpoint of one boundary edge, if there is any
   Vec3 first_nonmanifold_nm;              ///< midpoint of one non-manifold edge, if there is any
   Vec3 first_inconsistent_nm;             ///< midpoint of one inconsistent edge, if there is any
+  Vec3 first_nonmanifold_vertex_nm;       ///< one such vertex, if there is any
+  Vec3 first_degenerate_nm;               ///< middle of one such triangle, if there is any
+  Vec3 first_duplicate_nm;                ///< the same
 
   /// Every edge is run through equally often in both directions, so that inside and outside are
   /// defined everywhere. Non-manifold edges are allowed if they balance.
@@ -38,6 +43,11 @@ MeshReport check_mesh(const TriangleMesh& mesh);
 /// The component (see MeshReport::components) of every triangle: numbers from 0, in the order of
 /// first appearance.
 std::vector<std::uint32_t> triangle_components(const TriangleMesh& mesh);
+
+/// What is wrong, a line each with how often and where: "open: 3 boundary edges near (1, 2, 3) nm".
+/// Empty for a mesh without faults. Doubled directed edges are not among them: where two triangles
+/// meet they are the inconsistent edges, elsewhere a matter of non-manifold ones.
+std::vector<std::string> faults(const MeshReport& report);
 
 /// One line for people: "closed, 12 triangles, 8 vertices, 1 component" or what is wrong and where.
 std::string summary(const MeshReport& report);

@@ -29,7 +29,8 @@ void transform(TriangleMesh& mesh, double factor, const Vec3& offset_nm);
 TriangleMesh merge_equal_vertices(const TriangleMesh& mesh);
 
 /// Throws InvalidInput (naming `subject`) if there is no triangle, an index is out of range or a
-/// vertex is NaN or infinite. The message gives the first offender.
+/// vertex is NaN or infinite, with the first offender in the message; Unsupported if there are more
+/// than 1.4 billion triangles.
 void validate(const TriangleMesh& mesh, const char* subject = "mesh");
 
 }  // namespace surf

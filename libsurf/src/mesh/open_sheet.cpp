@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "surf/mesh/open_sheet.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "core/argument.h"
+#include "mesh/boundary.h"
+#include "surf/mesh/check_mesh.h"
+
+namespace surf {
+namespace {
+
+double cross_xy(const Vec3& a, const Vec3& b) { return a.x * b.y - a.y * b.x; }
+
+std::string place(const Vec3& p) {
+  return fmt::format("({:.6g}, {:.6g}, {:.6g}) nm", p.x, p.y, p.z);
+}
+
+/// What of the check's findings makes it no sheet, or nothing.
+std::string fault(const MeshReport& r) {
+  if (r.boundary_edges == 0) return "it has no rim, it is closed";
+  if (r.nonmanifold_edges > 0) {
+    return "more than two triangles meet at an edge near " + place(r.first_nonmanifold_nm);
+  }
+  if (r.inconsistent_edges > 0) {
+    return "triangles are turned against each other near " + place(r.first_inconsistent_nm);
+  }
+  if (r.nonmanifold_vertices > 0) {
+    return "parts of it touch in a point only, at " + place(r.first_nonmanifold_vertex_nm);
+  }
+  return "";
+}
+
+/// The centroid of the polygon's area seen from above, and the signed area.
+struct Centroid {
+  double x, y, area;
+};
+
+Centroid centroid(const std::vector<Vec3>& rim) {
+  const Vec3 origin = rim.front();   // far from (0, 0) the area would drown in rounding
+  Centroid c{0, 0, 0};
+  for (std::size_t i = 0; i < rim.size(); ++i) {
+    const Vec3 a = rim[i] - origin;
+    const Vec3 b = rim[(i + 1) % rim.size()] - origin;
+    const double twice = cross_xy(a, b);
+    c.area += 0.5 * twice;
+    c.x += twice * (a.x + b.x) / 6;
+    c.y += twice * (a.y + b.y) / 6;
+  }
+  if (c.area == 0) return c;
+  return {origin.x + c.x / c.area, origin.y + c.y / c.area, c.area};
+}
+
+/// The angles from the centroid that neighbouring rim vertices enclose; empty if the rim, run
+/// counter-clockwise, goes back anywhere or round more than once.
+std::vector<double> angles(const std::vector<Vec3>& rim, const Centroid& c) {
+  std::vector<double> result;
+  double turn = 0;
+  for (std::size_t i = 0; i < rim.size(); ++i) {
+    const Vec3 a = rim[i] - Vec3{c.x, c.y, 0};
+    const Vec3 b = rim[(i + 1) % rim.size()] - Vec3{c.x, c.y, 0};
+    const double angle = std::atan2(cross_xy(a, b), a.x * b.x + a.y * b.y);
+    if (!(angle > 0 && angle < std::numbers::pi)) return {};
+    result.push_back(angle);
+    turn += angle;
+  }
+  if (turn > 3 * std::numbers::pi) return {};
+  return result;
+}
+
+/// Distance from the centroid to the farthest corner of the box, seen from above.
+double reach(const Box& box, const Centroid& c) {
+  return std::hypot(std::max(c.x - box.lower_nm.x, box.upper_nm.x - c.x),
+                    std::max(c.y - box.lower_nm.y, box.upper_nm.y - c.y));
+}
+
+void turn_component(TriangleMesh& mesh, std::uint32_t of_triangle) {
+  const std::vector<std::uint32_t> component = triangle_components(mesh);
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    if (component[t] == component[of_triangle]) std::swap(mesh.triangles[t][1], mesh.triangles[t][2]);
+  }
+}
+
+}  // namespace
+
+std::optional<TriangleMesh> extend_open_sheet(const TriangleMesh& mesh, double apron_nm,
+                                              std::string& reason) {
+  require_positive(apron_nm, "apron");
+  validate(mesh);
+  const auto refuse = [&reason](std::string why) {
+    reason = std::move(why);
+    return std::nullopt;
+  };
+  if (std::string why = fault(check_mesh(mesh)); !why.empty()) return refuse(std::move(why));
+  TriangleMesh result = merge_equal_vertices(mesh);
+  std::vector<BoundaryLoop> loops = boundary_loops(result.triangles, result.vertices_nm.size());
+  if (loops.size() != 1) {
+    return refuse(fmt::format("it has {} rims, one of them near {}", loops.size(),
+                              place(result.vertices_nm[loops[1].points[0]])));
+  }
+
+  std::vector<std::uint32_t>& rim = loops[0].points;
+  const auto positions = [&] {
+    std::vector<Vec3> corners;
+    for (const std::uint32_t v : rim) corners.push_back(result.vertices_nm[v]);
+    return corners;
+  };
+  const Centroid c = centroid(positions());
+  if (c.area < 0) {
+    turn_component(result, loops[0].sides[0] / 3);
+    std::ranges::reverse(rim);
+  }
+  const std::vector<double> angle = angles(positions(), c);
+  if (angle.empty()) {
+    return refuse("seen from above, its rim is not star-shaped about its centroid, " +
+                  fmt::format("({:.6g}, {:.6g}) nm", c.x, c.y));
+  }
+
+  // A chord between two directions stays outside the circle of radius `far` if both its ends are
+  // at far / cos(half the angle between them) or more.
+  const double far = reach(bounds(result), c) + apron_nm;
+  const auto count = static_cast<std::uint32_t>(rim.size());
+  const auto first = static_cast<std::uint32_t>(result.vertices_nm.size());
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const double widest = std::max(angle[i], angle[(i + count - 1) % count]);
+    Vec3 v = result.vertices_nm[rim[i]];
+    const double factor = far / std::cos(0.5 * widest) / std::hypot(v.x - c.x, v.y - c.y);
+    v.x = c.x + (v.x - c.x) * factor;
+    v.y = c.y + (v.y - c.y) * factor;
+    result.vertices_nm.push_back(v);
+  }
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const std::uint32_t next = (i + 1) % count;
+    result.triangles.push_back({rim[i], first + i, first + next});
+    result.triangles.push_back({rim[i], first + next, rim[next]});
+  }
+  return result;
+}
+
+}  // namespace surf
