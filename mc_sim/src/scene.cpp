@@ -9,6 +9,7 @@
 #include "surf/core/units.h"
 #include "surf/mesh/check_mesh.h"
 #include "surf/mesh/height_field_mesh.h"
+#include "surf/mesh/open_sheet.h"
 
 namespace surf::mc {
 
@@ -66,6 +67,30 @@ void add_body(Assembly& all, const Body& body) {
   append(all, mesh, component);
   for (const double v : volume)
     all.shells.push_back({static_cast<int>(all.solids.size()), v * turn < 0 ? -turn : turn});
+  all.solids.push_back({body.material});
+}
+
+// A sheet goes on flat as far as electrons of the scan reach, and further.
+void add_sheet(Assembly& all, const Body& body, const Scan& scan, double reach) {
+  Box needed = bounds(body.mesh);
+  const double half = 0.5 * std::hypot(scan.width * scan.pixel_x_nm, scan.height * scan.pixel_y_nm);
+  const Vec3 size = needed.size_nm();
+  const Vec3 away = Vec3{scan.center_x_nm, scan.center_y_nm, 0} - needed.center_nm();
+  const double apron = apron_in_widths * std::max(size.x, size.y) + reach + half +
+                       std::hypot(away.x, away.y);
+  std::string reason;
+  const TriangleMesh mesh = *extend_open_sheet(body.mesh, apron, reason);   // validated
+  const std::vector<std::uint32_t> component = triangle_components(mesh);
+  const std::vector<double> volume = volumes(mesh, component);
+  // The apron's vertices come last: what holds the last one is the sheet.
+  const auto last = static_cast<std::uint32_t>(mesh.vertices_nm.size() - 1);
+  std::uint32_t sheet = 0;
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i)
+    for (const std::uint32_t v : mesh.triangles[i])
+      if (v == last) sheet = component[i];
+  append(all, mesh, component);
+  for (std::uint32_t c = 0; c < volume.size(); ++c)
+    all.shells.push_back({static_cast<int>(all.solids.size()), c != sheet && volume[c] < 0 ? -1 : 1});
   all.solids.push_back({body.material});
 }
 
@@ -140,7 +165,12 @@ Scene::Scene(const Specimen& specimen, const Beam& beam, const Scan& scan, const
     near.extend(bounds(all.mesh));
   }
   for (const Body& body : specimen.bodies) {
-    add_body(all, body);
+    if (is_sheet(body)) {
+      add_sheet(all, body, scan, reach);
+      s.half_space = true;
+    } else {
+      add_body(all, body);
+    }
     near.extend(bounds(body.mesh));
   }
   s.shells = std::move(all.shells);
@@ -148,7 +178,7 @@ Scene::Scene(const Specimen& specimen, const Beam& beam, const Scan& scan, const
   s.shell_of = std::move(all.shell_of);
   s.top_nm = s.plane_nm.value_or(near.empty() ? 0.0 : near.upper_nm.z);
   s.bottom_nm = near.empty() ? s.top_nm : std::min(near.lower_nm.z, s.plane_nm.value_or(HUGE_VAL));
-  s.half_space = specimen.substrate || specimen.height_field;
+  s.half_space = s.half_space || specimen.substrate || specimen.height_field;
   s.farthest_nm = 1e12;
   if (!all.mesh.triangles.empty()) {
     s.top_nm = std::max(s.top_nm, near.upper_nm.z);

@@ -3,12 +3,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 
 #include <fmt/format.h>
 
 #include "surf/core/error.h"
 #include "surf/core/units.h"
 #include "surf/mesh/check_mesh.h"
+#include "surf/mesh/open_sheet.h"
 
 namespace surf::mc {
 
@@ -26,25 +28,42 @@ void check_material(const Specimen& specimen, int material, const std::string& o
                        "Choose one of the specimen's materials");
 }
 
+std::string repair_command(const std::string& name) {
+  return fmt::format("Try: semsurf mesh {} --repair -o {}", name,
+                     std::filesystem::path(name).stem().string() + ".fixed.ply");
+}
+
+[[noreturn]] void refuse_open(const std::string& subject, const MeshReport& report,
+                              const std::string& why_no_sheet) {
+  throw InvalidInput(
+      subject,
+      fmt::format("the mesh is open: {} of its edges have a triangle on one side only, the first "
+                  "near {}; and it cannot stand for the top of a half-space: {}",
+                  report.boundary_edges, place(report.first_boundary_nm), why_no_sheet),
+      repair_command(subject));
+}
+
+[[noreturn]] void refuse_unoriented(const std::string& subject, const MeshReport& report) {
+  throw InvalidInput(
+      subject,
+      report.nonmanifold_edges > 0
+          ? fmt::format("at {} edges several triangles meet without an inside, the first near {}",
+                        report.nonmanifold_edges, place(report.first_nonmanifold_nm))
+          : fmt::format("triangles next to each other face opposite ways at {} edges, the first "
+                        "near {}", report.inconsistent_edges, place(report.first_inconsistent_nm)),
+      repair_command(subject));
+}
+
 void check_body(const Body& body) {
   const std::string subject = body.name.empty() ? "body" : body.name;
   validate(body.mesh, subject.c_str());
   const MeshReport report = check_mesh(body.mesh);
-  if (report.boundary_edges > 0)
-    throw InvalidInput(subject,
-                       fmt::format("the mesh is open: {} of its edges have a triangle on one side "
-                                   "only, the first near {}", report.boundary_edges,
-                                   place(report.first_boundary_nm)),
-                       "Close its holes: inside and outside must be defined everywhere");
-  if (!report.closed_and_oriented)
-    throw InvalidInput(
-        subject,
-        report.nonmanifold_edges > 0
-            ? fmt::format("at {} edges several triangles meet without an inside, the first near {}",
-                          report.nonmanifold_edges, place(report.first_nonmanifold_nm))
-            : fmt::format("triangles next to each other face opposite ways at {} edges, the first "
-                          "near {}", report.inconsistent_edges, place(report.first_inconsistent_nm)),
-        "Repair the mesh so that all normals point outward");
+  if (report.boundary_edges > 0) {
+    std::string reason;
+    if (!extend_open_sheet(body.mesh, 1, reason)) refuse_open(subject, report, reason);
+    return;
+  }
+  if (!report.closed_and_oriented) refuse_unoriented(subject, report);
   const Vec3 size = report.bounds_nm.size_nm();
   if (std::min({size.x, size.y, size.z}) < thinnest_nm)
     throw InvalidInput(subject,
@@ -56,6 +75,8 @@ void check_body(const Body& body) {
 }
 
 }  // namespace
+
+bool is_sheet(const Body& body) { return check_mesh(body.mesh).boundary_edges > 0; }
 
 void validate(const Specimen& specimen) {
   for (const Material& m : specimen.materials) validate(m);

@@ -145,6 +145,33 @@ TEST(Sameness, TheDistanceGridChangesNothing) {
   expect_same(with, without, same_pixel);
 }
 
+TEST(Sameness, AnOpenSheetIsTheTopOfAHalfSpace) {
+  const HeightField mesa = make_mesa({120, 120, 4}, 40, 40, 8);
+  const Scan scan = square_scan(140, 10);   // beyond its rim, too
+  Specimen field = test::flat("Si"), sheet = test::flat("Si");
+  field.substrate.reset();
+  sheet.substrate.reset();
+  field.height_field = HeightFieldBody{"mesa", mesa, 0, Edge::flat};
+  sheet.bodies.push_back({"mesa", height_field_sheet(mesa), 0});
+  expect_same(test::simulate(field, {}, scan, 300), test::simulate(sheet, {}, scan, 300, {}, 2),
+              same_pixel);
+
+  // A box without its bottom, turned inside out for good measure, on the plane that it makes.
+  Specimen box = test::flat("Si"), open_box = box;
+  box.bodies.push_back({"box", test::pillar(60, 40), 0});
+  open_box.substrate.reset();
+  TriangleMesh open = test::pillar(60, 40);
+  std::erase_if(open.triangles, [&](const Triangle& t) {
+    return open.vertices_nm[t[0]].z + open.vertices_nm[t[1]].z + open.vertices_nm[t[2]].z == 0;
+  });
+  ASSERT_EQ(open.triangles.size(), 10u);
+  for (Triangle& t : open.triangles) std::swap(t[0], t[1]);
+  open_box.bodies.push_back({"open box", open, 0});
+  const auto a = test::simulate(open_box, {}, scan, 300);
+  EXPECT_EQ(a.balance.total_lost(), 0);
+  expect_same(a, test::simulate(box, {}, scan, 300, {}, 2), same_pixel);
+}
+
 TEST(Sameness, SameNumbersForAnyThreadsAndTiles) {
   const Scan scan = square_scan(84, 9);
   const Scene scene(letter_l(), {}, scan);

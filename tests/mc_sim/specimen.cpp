@@ -6,6 +6,7 @@
 #include "specimens.h"
 #include "statistics.h"
 #include "surf/core/error.h"
+#include "surf/mesh/height_field_mesh.h"
 #include "surf/mesh/shapes.h"
 
 namespace surf::mc {
@@ -43,6 +44,15 @@ TEST(Specimen, RefusesOpenMeshesWithThePlace) {
   EXPECT_THAT(why, HasSubstr("part.stl"));
   EXPECT_THAT(why, HasSubstr("open"));
   EXPECT_THAT(why, HasSubstr("3 of its edges"));
+  EXPECT_THAT(why, HasSubstr("top of a half-space: "));
+  EXPECT_THAT(why, HasSubstr("semsurf mesh part.stl --repair -o part.fixed.ply"));
+}
+
+TEST(Specimen, TakesSheetsForHalfSpaces) {
+  const Specimen s = with(height_field_sheet(make_mesa({}, 100, 50, 20)));
+  EXPECT_EQ(complaint(s), "");
+  EXPECT_TRUE(is_sheet(s.bodies[0]));
+  EXPECT_FALSE(is_sheet(with(make_box({0, 0, 0}, {1, 1, 1})).bodies[0]));
 }
 
 TEST(Specimen, RefusesMixedOrientation) {

@@ -29,7 +29,10 @@ double signed_volume6(const TriangleMesh& mesh) {
 
 void warn_about_bodies(const mc::Specimen& specimen, std::vector<std::string>& out) {
   for (const mc::Body& body : specimen.bodies)
-    if (signed_volume6(body.mesh) < 0)
+    if (mc::is_sheet(body))
+      out.push_back(body.name + ": the mesh is open; it is taken as the top of a half-space that goes "
+                                "on flat beyond its rim");
+    else if (signed_volume6(body.mesh) < 0)
       out.push_back(body.name + ": its normals point inward; they are taken as pointing outward");
   if (!specimen.substrate) return;
   const double top_nm = specimen.substrate->top_nm;

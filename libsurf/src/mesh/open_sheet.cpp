@@ -78,6 +78,39 @@ double reach(const Box& box, const Centroid& c) {
                     std::max(c.y - box.lower_nm.y, box.upper_nm.y - c.y));
 }
 
+constexpr double beyond_rim = 0.01;   // of the rim's size: more is not a sheet but a body with a hole
+
+/// A vertex of the sheet that seen from above lies well outside the rim, or nothing. The rim runs
+/// counter-clockwise about the centroid, `angle` being between neighbours.
+std::optional<Vec3> beyond(const TriangleMesh& mesh, std::uint32_t of_triangle,
+                           const std::vector<Vec3>& rim, const Centroid& c,
+                           const std::vector<double>& angle) {
+  Box box;
+  for (const Vec3& v : rim) box.extend(v);
+  const Vec3 size = box.size_nm();
+  const double slack = beyond_rim * std::max(size.x, size.y);
+  std::vector<double> turned{0};   // from the first rim vertex to each
+  for (const double a : angle) turned.push_back(turned.back() + a);
+  const Vec3 start = rim[0] - Vec3{c.x, c.y, 0};
+
+  const std::vector<std::uint32_t> component = triangle_components(mesh);
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    if (component[t] != component[of_triangle]) continue;
+    for (const std::uint32_t corner : mesh.triangles[t]) {
+      const Vec3& v = mesh.vertices_nm[corner];
+      const Vec3 d = v - Vec3{c.x, c.y, 0};
+      double turn = std::atan2(cross_xy(start, d), start.x * d.x + start.y * d.y);
+      if (turn < 0) turn += 2 * std::numbers::pi;
+      const auto after = std::upper_bound(turned.begin() + 1, turned.end() - 1, turn);
+      const auto i = static_cast<std::size_t>(after - turned.begin()) - 1;
+      const Vec3 p = rim[i], q = rim[(i + 1) % rim.size()];
+      const double outside = -cross_xy(q - p, v - p) / std::hypot(q.x - p.x, q.y - p.y);
+      if (outside > slack) return v;
+    }
+  }
+  return std::nullopt;
+}
+
 void turn_component(TriangleMesh& mesh, std::uint32_t of_triangle) {
   const std::vector<std::uint32_t> component = triangle_components(mesh);
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
@@ -118,6 +151,10 @@ std::optional<TriangleMesh> extend_open_sheet(const TriangleMesh& mesh, double a
   if (angle.empty()) {
     return refuse("seen from above, its rim is not star-shaped about its centroid, " +
                   fmt::format("({:.6g}, {:.6g}) nm", c.x, c.y));
+  }
+
+  if (const auto v = beyond(result, loops[0].sides[0] / 3, positions(), c, angle)) {
+    return refuse("it reaches sideways beyond its rim, to " + place(*v));
   }
 
   // A chord between two directions stays outside the circle of radius `far` if both its ends are

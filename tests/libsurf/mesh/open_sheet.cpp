@@ -134,15 +134,17 @@ TEST(ExtendOpenSheet, LeavesClosedBodiesBesideTheSheetAlone) {
   EXPECT_NEAR(check_mesh(box).signed_volume_nm3, body, 1e-9);
 }
 
-TEST(ExtendOpenSheet, AllowsOverhangs) {
-  // A mushroom: a sphere without its lowest triangles, standing on a plane.
+TEST(ExtendOpenSheet, RefusesABodyWithAHole) {
+  // A sphere without its lowest triangles: a hole to be filled, not a mushroom on a plane.
   TriangleMesh cap = make_sphere({0, 0, 0}, 10, 4);
   std::erase_if(cap.triangles, [&](const Triangle& t) {
     double z = 0;
     for (const std::uint32_t v : t) z += cap.vertices_nm[v].z / 3;
     return z < -9;
   });
-  expect_extended(merge_equal_vertices(cap), 30);
+  std::string reason;
+  EXPECT_FALSE(extend_open_sheet(merge_equal_vertices(cap), 30, reason));
+  EXPECT_THAT(reason, testing::HasSubstr("sideways beyond its rim"));
 }
 
 TEST(ExtendOpenSheet, WorksFarFromTheOrigin) {

@@ -13,9 +13,10 @@ namespace surf {
 /// least `apron_nm` (> 0) outside the sheet's box.
 ///
 /// The mesh must be manifold and consistently oriented, with exactly one boundary loop that seen
-/// from above is star-shaped about its centroid (every ray from there meets it once). Normals point
+/// from above is star-shaped about its centroid (every ray from there meets it once). It may reach
+/// sideways beyond that rim by 1 % of its size at most: else it is a body with a hole. Normals point
 /// up where the rim runs counter-clockwise from above; a sheet that points down is turned. Overhangs
-/// are allowed, and so are closed bodies beside the sheet, which stay as they are.
+/// within the rim are allowed, and so are closed bodies beside the sheet, which stay as they are.
 ///
 /// The sheet's own vertices come first and keep their places; equal ones are merged. Returns nothing
 /// if the mesh is no such sheet; `reason` then says why, in words that fit "it cannot stand for the

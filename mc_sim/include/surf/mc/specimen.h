@@ -13,10 +13,11 @@
 
 namespace surf::mc {
 
-/// A closed triangle mesh filled with one material.
+/// A triangle mesh filled with one material: closed, or an open sheet (`extend_open_sheet`), which
+/// is the top of a half-space and goes on flat beyond its rim.
 struct Body {
   std::string name;       ///< for messages: usually the file's name
-  TriangleMesh mesh;      ///< closed, normals outward (`validate` accepts all-inward and says so)
+  TriangleMesh mesh;      ///< normals outward (`validate` accepts all-inward and says so)
   int material = 0;       ///< index into Specimen::materials
 };
 
@@ -43,7 +44,10 @@ struct Specimen {
   std::vector<Body> bodies;
 };
 
-/// Checks materials, indices, meshes (closed and consistently oriented) and the field.
+/// Whether a body is an open sheet.
+bool is_sheet(const Body& body);
+
+/// Checks materials, indices, meshes (closed, or sheets; consistently oriented) and the field.
 /// Throws InvalidInput with the place of the first fault. At least one solid is needed.
 void validate(const Specimen& specimen);
 
