@@ -31,11 +31,11 @@ void TrackRecorder::segment(const Vec3& from, const Vec3& to, double, double ene
   track.material.push_back(material);
 }
 
-void TrackRecorder::end_track(TrackEnd end, const Vec3& position, const Vec3& direction,
+void TrackRecorder::end_track(TrackKind end, const Vec3& position, const Vec3& direction,
                               double energy) {
   Track& track = tracks.back();
-  track.end = end;
-  const bool left = end == TrackEnd::se || end == TrackEnd::bse || end == TrackEnd::transmitted;
+  track.kind = end;
+  const bool left = end == TrackKind::se || end == TrackKind::bse || end == TrackKind::transmitted;
   if (!left && track.points_nm.size() > 1) return;
   // A track that stops where it starts is a line of no length.
   track.points_nm.push_back(left ? position + direction * exit_nm_ : position);

@@ -86,7 +86,7 @@ struct NoObserver {
   void begin_track(int, int, int, const Vec3&, const Vec3&, double) {}
   void segment(const Vec3&, const Vec3&, double, double, int) {}
   void deposit(const Vec3&, const Vec3&, double) {}
-  void end_track(TrackEnd, const Vec3&, const Vec3&, double) {}
+  void end_track(TrackKind, const Vec3&, const Vec3&, double) {}
 };
 
 template <class Geometry, class Watcher>
@@ -270,14 +270,14 @@ class Transport {
 
   bool escape(const Track& t) {
     balance_.escaped_energy.add(t.energy);
-    TrackEnd end = TrackEnd::transmitted;
+    TrackKind end = TrackKind::transmitted;
     if (!hit_) {
       ++balance_.transmitted;   // a primary that met nothing
     } else if (t.energy < se_bse_split_ev) {
-      end = TrackEnd::se;
+      end = TrackKind::se;
       ++balance_.se;
     } else if (t.direction.z >= 0) {
-      end = TrackEnd::bse;
+      end = TrackKind::bse;
       ++balance_.bse;
     } else {
       ++balance_.transmitted;
@@ -296,14 +296,14 @@ class Transport {
     ++balance_.absorbed;
     deposited_ += t.energy - medium.barrier_ev();
     watcher_.deposit(t.position, t.position, t.energy - medium.barrier_ev());
-    watcher_.end_track(TrackEnd::absorbed, t.position, t.direction, t.energy);
+    watcher_.end_track(TrackKind::absorbed, t.position, t.direction, t.energy);
     return false;
   }
 
   bool lose(const Track& t, LossCause cause) {
     ++balance_.lost[static_cast<std::size_t>(cause)];
     balance_.lost_energy.add(t.energy - barrier_of(geometry_.material(t.state)));
-    watcher_.end_track(TrackEnd::lost, t.position, t.direction, t.energy);
+    watcher_.end_track(TrackKind::lost, t.position, t.direction, t.energy);
     return false;
   }
 

@@ -150,8 +150,8 @@ class Chronicle final : public Observer {
     if (path_.empty()) path_.push_back(from);
     path_.push_back(to);
   }
-  void end_track(TrackEnd end, const Vec3&, const Vec3&, double) override {
-    if (end != TrackEnd::se) return;
+  void end_track(TrackKind end, const Vec3&, const Vec3&, double) override {
+    if (end != TrackKind::se) return;
     const bool turned = current_ == 0 || turned_[static_cast<std::size_t>(current_)];
     ++(turned ? se2 : se1);
   }

@@ -8,20 +8,27 @@
 
 namespace surf {
 
-/// How an electron's track ended. SE, BSE and transmitted electrons left the specimen for good.
-enum class TrackEnd { absorbed, se, bse, transmitted, lost };
+/// How an electron's path ended: inside the specimen; as a secondary (below 50 eV) or backscattered
+/// electron seen by a detector; out of the far side; or not followed to its end.
+enum class TrackKind { absorbed, se, bse, transmitted, lost };
 
-/// The way of one electron.
+/// The path of one electron through vacuum and specimen, from its beginning to its end.
 struct Track {
-  int number = 0;                   ///< within its primary's cascade; 0 is the primary
-  int parent = -1;                  ///< number of the track that generated it; -1 for the primary
-  int generation = 0;               ///< 0 for the primary
-  bool secondary = false;
-  TrackEnd end = TrackEnd::absorbed;
-  std::int64_t electron = 0;        ///< which primary it belongs to
-  std::vector<Vec3> points_nm;      ///< at least two
-  std::vector<double> energy_ev;    ///< at each point: inside matter from the band's bottom
-  std::vector<int> material;        ///< of each segment, one fewer than points; -1 is vacuum
+  int number = 0;                      ///< among those of its primary, from 0 (the primary itself)
+  int parent = -1;                     ///< the number of the track that it came from; -1: none
+  int generation = 0;                  ///< 0: a primary
+  bool secondary = false;              ///< set free in the specimen, not from the beam
+  TrackKind kind = TrackKind::absorbed;
+  std::int64_t electron = 0;           ///< the number of its primary
+  std::vector<Vec3> points_nm;         ///< two or more, in the order of flight
+  std::vector<double> energy_ev;       ///< at each point, >= 0
+  std::vector<int> material;           ///< of each straight piece, one less than points; -1: vacuum
 };
+
+/// "absorbed", "se", "bse", "transmitted", "lost".
+const char* name_of(TrackKind kind);
+
+/// Throws InvalidInput (naming `subject`) where the lengths do not fit or a number is not finite.
+void validate(const Track& track, const char* subject = "track");
 
 }  // namespace surf

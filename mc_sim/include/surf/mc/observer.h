@@ -35,7 +35,7 @@ class Observer {
   virtual void deposit(const Vec3& /*from_nm*/, const Vec3& /*to_nm*/, double /*energy_ev*/) {}
 
   /// The current track ends, with its last energy: in vacuum for se, bse and transmitted.
-  virtual void end_track(TrackEnd /*end*/, const Vec3& /*position_nm*/, const Vec3& /*direction*/,
+  virtual void end_track(TrackKind /*end*/, const Vec3& /*position_nm*/, const Vec3& /*direction*/,
                          double /*energy_ev*/) {}
 };
 

@@ -20,7 +20,7 @@ class TrackRecorder final : public Observer {
                    const Vec3& direction, double energy_ev) override;
   void segment(const Vec3& from_nm, const Vec3& to_nm, double energy_from_ev, double energy_to_ev,
                int material) override;
-  void end_track(TrackEnd end, const Vec3& position_nm, const Vec3& direction,
+  void end_track(TrackKind end, const Vec3& position_nm, const Vec3& direction,
                  double energy_ev) override;
 
   std::vector<Track> tracks;   ///< in the order in which they were followed
