@@ -16,8 +16,7 @@
 namespace surf::io {
 namespace {
 
-/// Triangles and vertices, copies included: many nodes can show one mesh, so that a small file could
-/// fill any memory.
+/// Vertices and indices in a scene, copies included.
 constexpr std::uint64_t max_gltf_size = std::uint64_t{1} << 28;
 
 std::uint32_t little_endian_32(std::string_view content, std::size_t offset) {
@@ -113,14 +112,10 @@ std::vector<Triangle> assemble(std::uint64_t mode, const std::vector<std::uint32
     }
     return triangles;
   }
-  for (std::size_t i = 2; i < n; ++i) {
-    // Every other triangle of a strip runs the other way round.
-    const std::size_t odd = mode == 5 ? i % 2 : 0;
-    const Triangle t = mode == 5 ? Triangle{corners[i - 2], corners[i - 1 + odd],
-                                            corners[i - odd]}
-                                 : Triangle{corners[0], corners[i - 1], corners[i]};
-    // A corner given twice joins two strips and shows nothing.
-    if (t[0] != t[1] && t[1] != t[2] && t[2] != t[0]) triangles.push_back(t);
+  if (mode == 5) {
+    add_strip(corners, triangles);
+  } else {
+    add_fan(corners, triangles);
   }
   return triangles;
 }
@@ -131,11 +126,33 @@ class GltfParser {
       : root_(root), accessors_(path, root, binary) {}
 
   std::vector<NamedMesh> parse() {
-    for (const GltfInstance& instance : gltf_instances(root_)) add(instance);
+    const std::vector<GltfInstance> instances = gltf_instances(root_);
+    check_size(instances);
+    for (const GltfInstance& instance : instances) add(instance);
     return std::move(meshes_);
   }
 
  private:
+  /// Many nodes can show one mesh: this stops a small file from filling the memory.
+  void check_size(const std::vector<GltfInstance>& instances) const {
+    std::uint64_t total = 0;
+    for (const GltfInstance& instance : instances) {
+      for (const JsonValue& primitive : instance.mesh.items("primitives")) {
+        if (!has_triangles(primitive)) continue;
+        total += count(primitive.require("attributes").require("POSITION"));
+        if (const auto indices = primitive.find("indices")) total += count(*indices);
+        if (total > max_gltf_size) {
+          instance.node.fail("the scene has too many triangles, copies included",
+                             "Simplify the scene");
+        }
+      }
+    }
+  }
+
+  std::uint64_t count(const JsonValue& accessor_index) const {
+    return root_.item("accessors", accessor_index.whole()).require("count").whole();
+  }
+
   /// One mesh per material, in the order of their first primitive.
   void add(const GltfInstance& instance) {
     std::string name = instance.node.text("name", "");
@@ -171,10 +188,6 @@ class GltfParser {
     const std::vector<Vec3> points = accessors_.positions(position.whole());
     std::vector<Triangle> triangles =
         assemble(primitive.whole("mode", 4), corners(primitive, points.size()), primitive);
-    total_ += triangles.size() + points.size();
-    if (total_ > max_gltf_size || mesh.vertices_nm.size() + points.size() >= max_mesh_vertices) {
-      primitive.fail("the scene has too many triangles, copies included", "Simplify the scene");
-    }
     const auto first = static_cast<std::uint32_t>(mesh.vertices_nm.size());
     for (const Vec3& p : points) {
       const Vec3 q = to_scene(p);
@@ -219,7 +232,6 @@ class GltfParser {
   const JsonValue& root_;
   GltfAccessors accessors_;
   std::vector<NamedMesh> meshes_;
-  std::uint64_t total_ = 0;
 };
 
 }  // namespace

@@ -3,34 +3,28 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <string_view>
 #include <utility>
 
+#include "lower_extension.h"
 #include "mesh_formats.h"
 #include "mesh_output.h"
 #include "split_mesh.h"
 #include "surf/core/error.h"
 #include "surf/core/units.h"
 #include "surf/io/files.h"
+#include "vtp_format.h"
 
 namespace surf::io {
 namespace {
 
-std::string lower_extension(const std::filesystem::path& path) {
-  std::string extension = path.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return extension;
-}
-
-enum class Format { stl, obj, ply, off, gltf, unknown };
+enum class Format { stl, obj, ply, off, gltf, vtp, unknown };
 
 /// By content where that is telling, else by name.
 Format format_of(const std::filesystem::path& path, std::string_view content) {
   if (is_glb(content)) return Format::gltf;
+  if (is_vtp(content)) return Format::vtp;
   if (is_ply(content)) return Format::ply;
   if (is_off(content)) return Format::off;
   if (is_binary_stl(content) || is_text_stl(content)) return Format::stl;
@@ -40,6 +34,7 @@ Format format_of(const std::filesystem::path& path, std::string_view content) {
   if (extension == ".ply") return Format::ply;
   if (extension == ".off") return Format::off;
   if (extension == ".glb" || extension == ".gltf") return Format::gltf;
+  if (extension == ".vtp") return Format::vtp;
   return Format::unknown;
 }
 
@@ -60,10 +55,11 @@ Parsed parse(const std::filesystem::path& path) {
     case Format::ply: return {{{{}, {}, parse_ply(file, content)}}};
     case Format::off: return {{{{}, {}, parse_off(file, content)}}};
     case Format::gltf: return {parse_gltf(path, content), metre_nm};
+    case Format::vtp: return {parse_vtp(file, content)};
     case Format::unknown: break;
   }
   throw FileError(file, "neither its content nor its name is that of a mesh format known here",
-                  "Use STL, OBJ, PLY, OFF or glTF");
+                  "Use STL, OBJ, PLY, OFF, glTF or VTP");
 }
 
 void check_unit(double unit_nm, const std::string& file) {
@@ -74,14 +70,21 @@ void check_unit(double unit_nm, const std::string& file) {
 }
 
 bool is_writable_format(const std::string& extension) {
-  return extension == ".stl" || extension == ".obj" || extension == ".ply" || extension == ".off";
+  return extension == ".stl" || extension == ".obj" || extension == ".ply" ||
+         extension == ".off" || extension == ".vtp";
 }
 
 void check_known(const std::filesystem::path& path) {
-  if (is_writable_format(lower_extension(path))) return;
-  throw UsageError(path.string(),
-                   fmt::format("meshes are not written as '{}'", path.extension().string()),
-                   "Use .stl, .obj, .ply or .off");
+  const std::string extension = lower_extension(path);
+  if (!is_writable_format(extension)) {
+    throw UsageError(path.string(),
+                     fmt::format("meshes are not written as '{}'", path.extension().string()),
+                     "Use .stl, .obj, .ply, .off or .vtp");
+  }
+  if (extension == ".vtp" && !has_vtp()) {
+    throw Unsupported(path.string(), "this semsurf was built without VTK, which VTP needs",
+                      "Use .ply, or build with VTK");
+  }
 }
 
 void check_finite(const TriangleMesh& mesh, double unit_nm, const std::string& file) {
@@ -110,10 +113,16 @@ std::string format_mesh(const std::string& file, const std::string& extension,
   if (extension == ".stl") return format_stl(file, mesh);
   if (extension == ".obj") return format_obj(mesh);
   if (extension == ".ply") return format_ply(file, mesh);
+  if (extension == ".vtp") return format_vtp(file, mesh);
   return format_off(mesh);
 }
 
 }  // namespace
+
+bool is_vtp(std::string_view content) {
+  const std::string_view start = content.substr(0, 4096);
+  return start.find("<VTKFile") != start.npos && start.find("PolyData") != start.npos;
+}
 
 std::vector<NamedMesh> read_meshes(const std::filesystem::path& path,
                                    std::optional<double> unit_nm) {

@@ -40,6 +40,16 @@ inline void add_fan(const std::vector<std::uint32_t>& corners, std::vector<Trian
   }
 }
 
+/// Splits a strip: every other triangle runs the other way round. A corner given twice joins two
+/// strips and makes no triangle.
+inline void add_strip(const std::vector<std::uint32_t>& corners, std::vector<Triangle>& triangles) {
+  for (std::size_t i = 2; i < corners.size(); ++i) {
+    const std::size_t odd = i % 2;
+    const Triangle t{corners[i - 2], corners[i - 1 + odd], corners[i - odd]};
+    if (t[0] != t[1] && t[1] != t[2] && t[2] != t[0]) triangles.push_back(t);
+  }
+}
+
 inline constexpr std::uint64_t max_mesh_vertices = std::uint64_t{1} << 32;
 
 }  // namespace surf::io

@@ -1,20 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// VTK's image files. The only source that knows VTK.
+// VTK's image files.
 #include "image_formats.h"
 #include "surf/core/error.h"
 
 #ifdef SEMSURF_HAS_VTK
 
 #include <fmt/format.h>
-#include <vtkAbstractArray.h>
-#include <vtkCallbackCommand.h>
-#include <vtkExecutive.h>
-#include <vtkFieldData.h>
 #include <vtkFloatArray.h>
 #include <vtkImageData.h>
 #include <vtkNew.h>
 #include <vtkPointData.h>
-#include <vtkStringArray.h>
 #include <vtkVersion.h>
 #include <vtkXMLImageDataReader.h>
 #include <vtkXMLImageDataWriter.h>
@@ -23,42 +18,10 @@
 #include <utility>
 
 #include "surf/io/files.h"
+#include "vtk_support.h"
 
 namespace surf::io {
 namespace {
-
-/// Collects VTK's complaints, which would otherwise only be printed.
-class Complaints {
- public:
-  Complaints() {
-    command_->SetClientData(&text_);
-    command_->SetCallback([](vtkObject*, unsigned long, void* client, void* call) {
-      auto& text = *static_cast<std::string*>(client);
-      if (text.empty() && call) text = first_sentence(static_cast<const char*>(call));
-    });
-  }
-  vtkCommand* command() { return command_; }
-  const std::string& text() const { return text_; }
-
- private:
-  // "ERROR: In file, line n\nclass (address): what went wrong\n\n": addresses change each time.
-  static std::string first_sentence(std::string text) {
-    if (const auto end = text.find("): "); end != std::string::npos) text.erase(0, end + 3);
-    std::replace(text.begin(), text.end(), '\n', ' ');
-    while (!text.empty() && text.back() == ' ') text.pop_back();
-    return text;
-  }
-
-  std::string text_;
-  vtkNew<vtkCallbackCommand> command_;
-};
-
-void add_text(vtkFieldData* fields, const std::string& name, const std::string& value) {
-  vtkNew<vtkStringArray> array;
-  array->SetName(name.c_str());
-  array->InsertNextValue(value);
-  fields->AddArray(array);
-}
 
 void add_channel(vtkImageData* data, const Channel& channel) {
   vtkNew<vtkFloatArray> array;
@@ -100,11 +63,10 @@ void refuse_appended(const std::string& content, const std::string& file) {
 }
 
 void read_into(vtkXMLImageDataReader* reader, const std::string& file) {
-  Complaints complaints;
+  VtkComplaints complaints;
   reader->SetReaderErrorObserver(complaints.command());
   reader->SetParserErrorObserver(complaints.command());
-  reader->AddObserver("ErrorEvent", complaints.command());
-  reader->GetExecutive()->AddObserver("ErrorEvent", complaints.command());
+  complaints.listen_to(reader);
   reader->SetFileName(file.c_str());
   reader->Update();
   if (!complaints.text().empty() || reader->GetErrorCode() != 0) {
@@ -128,10 +90,9 @@ void write_vti(const std::filesystem::path& target, const std::string& file, con
   data->GetPointData()->SetActiveScalars(image.channels.front().name.c_str());
   for (const auto& [key, value] : to_attributes(image)) add_text(data->GetFieldData(), key, value);
 
-  Complaints complaints;
+  VtkComplaints complaints;
   vtkNew<vtkXMLImageDataWriter> writer;
-  writer->AddObserver("ErrorEvent", complaints.command());
-  writer->GetExecutive()->AddObserver("ErrorEvent", complaints.command());
+  complaints.listen_to(writer.GetPointer());
   writer->SetFileName(target.c_str());
   writer->SetInputData(data);
   writer->SetDataModeToBinary();   // ParaView 5.11 on Debian 12 cannot read appended data

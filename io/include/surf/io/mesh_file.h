@@ -17,8 +17,8 @@ struct NamedMesh {
   TriangleMesh mesh;
 };
 
-/// Reads STL (text and binary), OBJ, PLY (text and binary), OFF or glTF 2.0 (.gltf and .glb), by
-/// content and then by name. Polygons are fanned into triangles; equal vertices of a body are
+/// Reads STL (text and binary), OBJ, PLY (text and binary), OFF, glTF 2.0 (.gltf and .glb) or VTP
+/// (ParaView; not with appended data), by content and then by name. Polygons are fanned into triangles; equal vertices of a body are
 /// merged. `unit_nm` (> 0) is the length of one file unit: by default 1 nm, as the formats carry
 /// none, and 1 m for glTF, whose specification says so.
 /// - OBJ: one body per material in use, with the object's name where all its faces lie in one.
@@ -26,9 +26,10 @@ struct NamedMesh {
 ///   several nodes show is repeated. Its y axis, which is up, becomes z: (x, y, z) -> (x, -z, y).
 ///   Buffers are in the file, in data URIs or in files beside it. Points and lines are skipped,
 ///   images not loaded.
+/// - VTP: polygons and strips; one body per text in an array "material" of the cells or points.
 /// - The others: one body, without a material.
 /// Throws FileError naming the file, the place and the remedy, Unsupported for compressed, skinned
-/// or morphed glTF; never returns NaN vertices, indices out of range or a body without triangles.
+/// or morphed glTF and for VTP where this build lacks VTK; never returns NaN vertices, indices out of range or a body without triangles.
 /// Closedness is not checked here.
 std::vector<NamedMesh> read_meshes(const std::filesystem::path& path,
                                    std::optional<double> unit_nm = {});
@@ -36,20 +37,20 @@ std::vector<NamedMesh> read_meshes(const std::filesystem::path& path,
 /// All bodies of the file as one mesh, equal vertices merged.
 TriangleMesh read_mesh(const std::filesystem::path& path, std::optional<double> unit_nm = {});
 
-/// Writes by extension: STL (binary), OBJ, PLY (binary, little-endian, double) or OFF, one file
-/// unit being `unit_nm` (> 0). Vertices and triangles keep their order. The file appears under its
+/// Writes by extension: STL (binary), OBJ, PLY (binary, little-endian, double), OFF or VTP (inline
+/// binary, double), one file unit being `unit_nm` (> 0). Vertices and triangles keep their order. The file appears under its
 /// name only when it is complete.
-/// OBJ, PLY and OFF keep every digit: with a unit of 1 nm, reading gives the same doubles. STL has
+/// All but STL keep every digit: with a unit of 1 nm, reading gives the same doubles. STL has
 /// 24 bits per coordinate (0.06 nm at 1 mm) and may so make vertices equal that were not.
 /// Throws InvalidInput for a mesh that `validate` refuses or whose coordinates the format cannot
-/// hold, UsageError for an unknown extension or unit, FileError.
+/// hold, UsageError for an unknown extension or unit, FileError, Unsupported for VTP without VTK.
 void write_mesh(const std::filesystem::path& path, const TriangleMesh& mesh, double unit_nm = 1.0);
 
 /// Throws what `write_mesh` would for the name or folder, before any work is spent.
 void check_mesh_target(const std::filesystem::path& path);
 
 /// Whether the name ends in the extension of a mesh format that is read (".stl", ".obj", ".ply",
-/// ".off", ".glb", ".gltf").
+/// ".off", ".glb", ".gltf", ".vtp").
 bool is_mesh_file(const std::filesystem::path& path);
 
 }  // namespace surf::io

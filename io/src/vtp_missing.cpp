@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// VTP in a build without VTK.
+#include "surf/core/error.h"
+#include "vtp_format.h"
+
+namespace surf::io {
+namespace {
+
+[[noreturn]] void refuse(const std::string& file) {
+  throw Unsupported(file, "this semsurf was built without VTK, which VTP needs",
+                    "Use another format, or build with VTK");
+}
+
+}  // namespace
+
+bool has_vtp() { return false; }
+
+std::vector<NamedMesh> parse_vtp(const std::string& file, std::string_view) { refuse(file); }
+
+std::string format_vtp(const std::string& file, const TriangleMesh&) { refuse(file); }
+
+std::string format_tracks(const std::string& file, std::span<const Track>,
+                          const std::map<std::string, std::string>&) {
+  refuse(file);
+}
+
+}  // namespace surf::io
