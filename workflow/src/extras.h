@@ -45,6 +45,9 @@ class Deposits {
   std::vector<mc::EnergyDeposit> per_thread_;
 };
 
+/// Throws UsageError where tracks are wanted at a place outside the scan.
+void check_trajectories(const SimulateJob& job, const mc::Scan& scan);
+
 /// Simulates the tracks that are wanted, on their own, and writes them with a picture.
 void write_trajectories(const mc::Scene& scene, const SimulateJob& job,
                         const std::map<std::string, std::string>& settings);

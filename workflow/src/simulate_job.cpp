@@ -140,6 +140,7 @@ SimulateSummary run(const SimulateJob& asked, const ProgressCallback& progress,
   check_outputs(job);
   SimulateSummary summary;
   summary.scan = resolve_scan(s.scan, mc::extent(s.specimen), s.beam);
+  check_trajectories(job, summary.scan);
   record.inputs = hash_inputs(s.inputs);
   const mc::Scene scene(s.specimen, s.beam, summary.scan, s.physics);   // validates the specimen
   summary.scene = scene.summary();
