@@ -36,6 +36,24 @@ semsurf_cli_test(simulate.every_option ARGS simulate cube.off cube.off --materia
   --region -32,-32,32,32 --pixel-size 8nm --electrons 3 --seed 18446744073709551615
   --physics elastic=browning,secondaries=off,barrier=off --cutoff 60eV --threads 2 -o image.exr
   STDOUT "8 x 8 pixels" INFO image.exr "seed +18446744073709551615")
+semsurf_cli_test(simulate.detectors ARGS simulate cube.off ${few} --detector quadrants
+  --detector SE1 --detector loss:energy=400eV..,cone=30deg -o image.exr
+  STDOUT "BSE-bottom +0" "SE1 +0" "loss +0" WRITES image.exr
+  INFO image.exr "SE1.stderr(.|\n)*detector.8 +loss:energy=400eV")
+semsurf_cli_test(simulate.extras ARGS simulate cube.off --substrate Si ${few} --spectra
+  --trajectories 3 --trajectories-at 5,-5 --channels z_nm,normal,material -o image.exr
+  WRITES image.spectra.csv image.tracks.png
+  INFO image.exr "z_nm +0 to 40, mean(.|\n)*normal.z(.|\n)*material +1")
+if(SEMSURF_VTK)
+  semsurf_cli_test(simulate.deposit ARGS simulate cube.off --substrate Si ${few} --deposit 8
+    --trajectories 2 -o image.vti WRITES image.deposit.vti image.tracks.vtp)
+endif()
+semsurf_cli_test(simulate.microscope ARGS simulate cube.off --substrate Si --size 8x8 --current 10pA
+  --dwell 200ns --convergence 5mrad --focus 20nm --working-distance 4mm -o image.exr -o image.png
+  STDOUT "12.48 primaries per pixel" WRITES image.png
+  INFO image.exr "SE.shot(.|\n)*beam.convergence_deg +0.286")
+semsurf_cli_test(simulate.sheet ARGS simulate sheet.off ${few} -o image.exr
+  STDERR "taken as the top of a half-space")
 semsurf_cli_test(simulate.negative_region ARGS simulate cube.off --region -.5,-96,96,96
   --electrons 1 --size 4x4 -o image.exr STDERR "one electron" INFO image.exr "scan.center_x_nm +47.75")
 semsurf_cli_test(simulate.nothing_seen ARGS simulate cube.off --region 100,100,120,120

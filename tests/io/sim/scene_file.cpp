@@ -39,6 +39,11 @@ TEST_F(SceneFileTest, ReadsEverything) {
     tilt = "0.5rad"
     azimuth = 90
     spot = "1pm"
+    convergence = "10mrad"
+    focus = -5
+    working_distance = "4mm"
+    current = "0.1nA"
+    dwell = 2
     [scan]
     size = "64x32"
     pixel_size = "1nm x 0.5nm"
@@ -48,6 +53,7 @@ TEST_F(SceneFileTest, ReadsEverything) {
     seed = 9223372036854775807
     physics = "elastic=browning,secondaries=off"
     cutoff = "5eV"
+    detectors = ["quadrants", "loss:energy=900eV.."]
     [substrate]
     material = "Si"
     z = "-1nm"
@@ -85,6 +91,13 @@ TEST_F(SceneFileTest, ReadsEverything) {
   EXPECT_NEAR(scene.beam.tilt_deg, 90 / std::numbers::pi, 1e-12);
   EXPECT_EQ(scene.beam.azimuth_deg, 90);
   EXPECT_EQ(scene.beam.spot_nm, 0.001);
+  EXPECT_NEAR(scene.beam.convergence_deg, 1.8 / std::numbers::pi, 1e-12);
+  EXPECT_EQ(scene.beam.focus_nm, -5);
+  EXPECT_EQ(scene.beam.working_distance_nm, 4e6);
+  EXPECT_EQ(scene.current_pa, 100);
+  EXPECT_EQ(scene.dwell_us, 2);
+  ASSERT_EQ(scene.detectors.size(), 5u);
+  EXPECT_EQ(scene.detectors[4].min_energy_ev, 900);
   EXPECT_EQ(scene.scan.width, 64);
   EXPECT_EQ(scene.scan.height, 32);
   EXPECT_EQ(scene.scan.pixel_x_nm, 1);
