@@ -19,6 +19,7 @@
 #include "surf/core/random.h"
 #include "surf/io/sim/materials.h"
 #include "surf/mc/boundary.h"
+#include "surf/mc/energy_deposit.h"
 #include "surf/mc/medium.h"
 #include "surf/mc/simulate.h"
 #include "surf/mesh/height_field_mesh.h"
@@ -63,15 +64,29 @@ struct Run {
   mc::SceneSummary scene;
 };
 
+struct Settings {
+  mc::Physics physics = {};
+  std::vector<std::string> detectors = {};   // besides SE and BSE
+  bool spectra = false;
+  bool deposit = false;                      // energy on a grid of 64 cells
+  std::size_t grid_bytes = mc::SceneOptions{}.distance_grid_bytes;
+};
+
 Run simulate(const mc::Specimen& specimen, const mc::Scan& scan, std::int64_t electrons,
-             int threads, double energy_ev = 1000, std::size_t grid_bytes = mc::SceneOptions{}.distance_grid_bytes) {
-  mc::Beam beam;
-  beam.energy_ev = energy_ev;
-  const mc::Scene scene(specimen, beam, scan, {}, {grid_bytes});
+             int threads, const Settings& settings = {}) {
+  const mc::Scene scene(specimen, {}, scan, settings.physics, {settings.grid_bytes});
   mc::SimulationOptions options;
   options.electrons = electrons;
   options.threads = threads;
-  return {mc::simulate(scene, options), scene.summary()};
+  options.spectra = settings.spectra;
+  for (const std::string& text : settings.detectors)
+    for (const mc::Detector& d : mc::parse_detectors(text, "bench")) options.detectors.push_back(d);
+  if (!settings.deposit) return {mc::simulate(scene, options), scene.summary()};
+  std::vector<mc::EnergyDeposit> deposits(static_cast<std::size_t>(threads),
+                                          mc::EnergyDeposit(mc::deposit_grid(scene, 64)));
+  return {mc::simulate(scene, options, {}, nullptr,
+                       [&](int thread) { return &deposits[static_cast<std::size_t>(thread)]; }),
+          scene.summary()};
 }
 
 json report(const Run& run) {
@@ -193,6 +208,29 @@ json lost_electrons(bool quick) {
           {"target", 1e-7}};
 }
 
+// What more to watch costs, and what less physics saves (thesis, 5.3.2), beside the full model.
+json cost_of_outputs(std::int64_t electrons) {
+  mc::Physics without_secondaries;
+  mc::parse_physics("secondaries=off", without_secondaries);
+  const std::vector<std::string> many{"quadrants", "annular", "in-lens", "side", "SE1", "SE2"};
+  const std::vector<std::pair<const char*, Settings>> cases{
+      {"SE and BSE", {}},
+      {"eleven detectors", {{}, many}},
+      {"eleven detectors with spectra", {{}, many, true}},
+      {"deposited energy", {{}, {}, false, true}},
+      {"secondaries off", {without_secondaries}}};
+  json out = json::array();
+  double full = 0;
+  for (const auto& [name, settings] : cases) {
+    json row = report(simulate(mesa(), view(192, 96), electrons, 1, settings));
+    const double rate = row["primaries_per_second"];
+    if (full == 0) full = rate;
+    out.push_back({{"case", name}, {"primaries_per_second", rate}, {"times_full_model", rate / full},
+                   {"se_yield", row["se_yield"]}, {"bse_yield", row["bse_yield"]}});
+  }
+  return out;
+}
+
 json cost_against_triangles(bool quick) {
   json out = json::array();
   for (const double triangles : {1e3, 1e4, 1e5, 1e6, 1e7}) {
@@ -226,19 +264,22 @@ int main(int argc, char** argv) {
     else path = argv[i];
   }
   const std::int64_t n = quick ? 10 : 100;
+  Settings no_grid;
+  no_grid.grid_bytes = 0;
   json out;
   for (const int threads : {1, 2}) {
     const std::string key = std::to_string(threads) + "_threads";
     out["flat"][key] = report(simulate(flat(), view(192, 96), n, threads));
     out["mesa"][key] = report(simulate(mesa(), view(192, 96), n, threads));
     // The alternative, in the same run: every step asks for the surface.
-    out["mesa_without_distance_grid"][key] = report(simulate(mesa(), view(192, 96), n / 2, threads, 1000, 0));
+    out["mesa_without_distance_grid"][key] = report(simulate(mesa(), view(192, 96), n / 2, threads, no_grid));
   }
   out["mesa"]["target_per_thread"] = target_per_thread;
   out["mesa"]["ratio_to_target"] =
       out["mesa"]["1_threads"]["primaries_per_second"].get<double>() / target_per_thread;
   out["floor"] = floor_costs(quick);
   out["mesa"]["profile"] = against_floor(out["mesa"]["1_threads"], out["floor"]);
+  out["cost_of_outputs"] = cost_of_outputs(n);
   out["cost_against_triangles"] = cost_against_triangles(quick);
   out["lost_electrons"] = lost_electrons(quick);
   const std::string text = out.dump(2);
