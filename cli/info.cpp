@@ -85,7 +85,7 @@ void print_scene(const std::filesystem::path& path) {
   }
 }
 
-void print_info(const std::filesystem::path& path, double unit_nm) {
+void print_info(const std::filesystem::path& path, std::optional<double> unit_nm) {
   if (io::is_scene_file(path)) return print_scene(path);
   if (io::is_image_file(path)) return print_image(path);
   print_mesh(path, unit_nm);
@@ -112,12 +112,12 @@ std::string format_extent(const Box& box) {
 void add_info(CLI::App& app, Action& action) {
   struct Options {
     std::vector<std::string> files;
-    std::string unit = "nm";
+    std::optional<std::string> unit;
   };
   const auto options = std::make_shared<Options>();
   CLI::App* sub = app.add_subcommand("info", "What is in meshes, images and scene files");
   sub->add_option("FILE", options->files, "Meshes, images or scenes")->type_name("FILE");
-  sub->add_option("--unit", options->unit, "Length of one unit of the mesh files (nm)")
+  sub->add_option("--unit", options->unit, "Length of one unit of the mesh files (nm; glTF: m)")
       ->type_name("nm|um|mm|m|pm|A|in");
   sub->group("Commands");
   sub->footer(examples);
@@ -125,7 +125,8 @@ void add_info(CLI::App& app, Action& action) {
     action = [options] {
       if (options->files.empty())
         throw UsageError("info", "no file is given", "Give meshes, images or scene files");
-      const double unit_nm = parse_unit_nm(options->unit, "--unit");
+      std::optional<double> unit_nm;
+      if (options->unit) unit_nm = parse_unit_nm(*options->unit, "--unit");
       for (const std::string& file : options->files) print_info(file, unit_nm);
       return 0;
     };

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 
 #include "surf/core/vec3.h"
@@ -15,7 +16,7 @@ void print_item(const std::string& label, const std::string& value);
 std::string format_bounds(const Box& box);
 std::string format_extent(const Box& box);
 
-void print_mesh(const std::filesystem::path& path, double unit_nm);
+void print_mesh(const std::filesystem::path& path, std::optional<double> unit_nm);
 void print_image(const std::filesystem::path& path);
 
 }  // namespace surf::cli

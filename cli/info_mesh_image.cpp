@@ -37,7 +37,13 @@ void print_mesh_warnings(const MeshReport& r) {
     warn(fmt::format("{} wide; is --unit right?", format_length(widest)));
 }
 
-void print_channel(const Channel& channel, std::size_t label_width) {
+void print_body(const io::NamedMesh& body) {
+  print_item("body", fmt::format("{}{}, {} triangles, {}", body.name,
+                                 body.material.empty() ? "" : ", material " + body.material,
+                                 body.mesh.triangles.size(), format_extent(bounds(body.mesh))));
+}
+
+void print_channel(const Channel& channel) {
   double sum = 0, lowest = HUGE_VAL, highest = -HUGE_VAL;
   std::size_t finite = 0;
   for (const float value : channel.values.data()) {
@@ -59,10 +65,13 @@ void print_channel(const Channel& channel, std::size_t label_width) {
 
 }  // namespace
 
-void print_mesh(const std::filesystem::path& path, double unit_nm) {
-  const TriangleMesh mesh = io::read_mesh(path, unit_nm);
-  const MeshReport report = check_mesh(mesh);
-  fmt::print("{}: mesh\n", path.string());
+void print_mesh(const std::filesystem::path& path, std::optional<double> unit_nm) {
+  const std::vector<io::NamedMesh> bodies = io::read_meshes(path, unit_nm);
+  const MeshReport report = check_mesh(bodies.size() == 1 ? bodies.front().mesh : io::join(bodies));
+  fmt::print("{}: mesh{}\n", path.string(),
+             bodies.size() == 1 ? "" : fmt::format(" of {} bodies", bodies.size()));
+  for (const io::NamedMesh& body : bodies)
+    if (bodies.size() > 1 || !body.material.empty()) print_body(body);
   print_item("shape", summary(report));
   print_item("size", format_extent(report.bounds_nm));
   print_item("bounds", format_bounds(report.bounds_nm));

@@ -10,8 +10,8 @@
 #include "surf/core/error.h"
 #include "surf/core/units.h"
 #include "surf/io/image_file.h"
-#include "surf/io/mesh_file.h"
 #include "surf/io/sim/materials.h"
+#include "surf/io/sim/mesh_bodies.h"
 
 namespace surf::cli {
 namespace {
@@ -57,12 +57,28 @@ HeightField read_height_field(const fs::path& path, const SceneOptions& options,
   return io::to_height_field(image, height_channel(image, path, notes).name, z_unit_nm);
 }
 
+// All bodies of a mesh file; materials that its bodies name and semsurf knows are taken as such.
+void add_mesh_bodies(const std::string& input, std::optional<double> unit_nm,
+                     const std::string& fallback, mc::Specimen& specimen,
+                     std::vector<std::string>& notes) {
+  std::vector<io::MeshBody> bodies = io::read_mesh_bodies(input, unit_nm, {fallback, {}, "--material"});
+  for (io::MeshBody& body : bodies) {
+    const std::string name = bodies.size() == 1 ? input : input + ", " + body.name;
+    if (body.is_default && !body.file_material.empty())
+      notes.push_back(fmt::format("{}: '{}' is no known material: {}", name, body.file_material,
+                                  fallback));
+    specimen.bodies.push_back({name, std::move(body.mesh),
+                               material_index(specimen, body.material, "--material")});
+  }
+}
+
 io::SceneFile scene_from_shapes(const SceneOptions& options, std::vector<std::string>& notes) {
   io::SceneFile scene;
   const int material =
       material_index(scene.specimen, options.material.value_or("Si"), "--material");
   if (!options.material) notes.push_back("no --material is given: Si");
-  const double unit_nm = options.unit ? parse_unit_nm(*options.unit, "--unit") : 1.0;
+  std::optional<double> unit_nm;
+  if (options.unit) unit_nm = parse_unit_nm(*options.unit, "--unit");
   for (const std::string& input : options.inputs) {
     const fs::path path(input);
     if (io::is_scene_file(path))
@@ -74,7 +90,7 @@ io::SceneFile scene_from_shapes(const SceneOptions& options, std::vector<std::st
       scene.specimen.height_field = mc::HeightFieldBody{
           input, read_height_field(path, options, notes), material, Edge::mirror};
     } else {
-      scene.specimen.bodies.push_back({input, io::read_mesh(path, unit_nm), material});
+      add_mesh_bodies(input, unit_nm, options.material.value_or("Si"), scene.specimen, notes);
     }
     scene.inputs.push_back(path);
   }

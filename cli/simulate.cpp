@@ -17,6 +17,98 @@
 namespace surf::cli {
 namespace {
 
+constexpr const char* examples =
+    R"(Units: bare lengths are nm, bare energies eV, bare angles degrees;
+suffixes are allowed everywhere (pm A nm um mm m, eV keV MeV, deg rad mrad).
+
+Any two of --size, --pixel-size and --region define the scan. With one the specimen's
+extent gives the rest; with none it is 256 pixels across the longer side. Numbers given
+here go before those of the scene file.
+
+Examples:
+  semsurf simulate cube.stl --substrate Si --tilt 40 -o cube.exr -o cube.png
+  semsurf simulate grain.ply --unit um --material Au --energy 5keV --pixel-size 5nm -o grain.tif
+  semsurf simulate samples/mesa80.toml --electrons 1000 --seed 2 -o mesa.vti
+  semsurf simulate afm.tif --pitch 2nm --z-unit 0.1nm --edge mirror -o sem.exr
+  semsurf simulate cube.stl --size 64x64 --region -96,-96,96,96 \
+      --physics elastic=browning,secondaries=off -o bse.exr)";
+
+struct Options {
+  SceneOptions scene;
+  std::optional<std::string> electrons, seed, threads;
+  std::vector<std::string> outputs;
+  std::string channel;
+  bool quiet = false;
+};
+
+void add_specimen_options(CLI::App& app, SceneOptions& o) {
+  app.add_option("INPUT", o.inputs,
+                 "Meshes (STL, OBJ, PLY, OFF), a height field (EXR, TIFF, PNG, VTI)\n"
+                 "or one scene file (TOML)")
+      ->type_name("FILE");
+  const char* group = "Specimen";
+  app.add_option("--material", o.material, "What meshes and height field are made of (Si)")
+      ->type_name("MATERIAL")->group(group);
+  app.add_option("--unit", o.unit, "Length of one unit of the mesh files (nm; glTF: m)")
+      ->type_name("nm|um|mm|m|pm|A|in")->group(group);
+  app.add_option("--substrate", o.substrate, "Add a half-space below the bodies")
+      ->type_name("MATERIAL")->group(group);
+  app.add_option("--substrate-z", o.substrate_z, "Height of its top (0nm)")
+      ->type_name("LENGTH")->group(group);
+  app.add_option("--edge", o.edge, "How a height field goes on outside (mirror)")
+      ->type_name("mirror|flat|periodic")->group(group);
+  app.add_option("--pitch", o.pitch, "Sample distance of a height field (as its file says, or 1nm)")
+      ->type_name("LENGTH")->group(group);
+  app.add_option("--z-unit", o.z_unit, "Height of one grey level of a height field (1nm)")
+      ->type_name("LENGTH")->group(group);
+}
+
+void add_beam_options(CLI::App& app, SceneOptions& o) {
+  const char* group = "Beam";
+  app.add_option("--energy", o.energy, "100eV to 30keV (1keV)")->type_name("ENERGY")->group(group);
+  app.add_option("--tilt", o.tilt, "Angle of the beam from straight down, below 90deg (0deg)")
+      ->type_name("ANGLE")->group(group);
+  app.add_option("--azimuth", o.azimuth, "Where the tilt turns to: 0 is +x, 90deg is +y (0deg)")
+      ->type_name("ANGLE")->group(group);
+  app.add_option("--spot", o.spot, "Standard deviation of the Gaussian spot (0nm)")
+      ->type_name("LENGTH")->group(group);
+}
+
+void add_scan_options(CLI::App& app, SceneOptions& o) {
+  const char* group = "Scan";
+  app.add_option("--size", o.size, "Pixels, as 256x192")->type_name("WxH")->group(group);
+  app.add_option("--pixel-size", o.pixel_size, "Width and height of a pixel, as 2nm")
+      ->type_name("LENGTH")->group(group);
+  app.add_option("--region", o.region, "Outer pixel edges, as -96,-96,96,96")
+      ->type_name("X0,Y0,X1,Y1")->group(group);
+}
+
+void add_simulation_options(CLI::App& app, Options& o) {
+  const char* group = "Simulation";
+  app.add_option("--electrons", o.electrons, "Primaries per pixel (200)")
+      ->type_name("N")->group(group);
+  app.add_option("--physics", o.scene.physics,
+                 "elastic=mott|browning, loss=joy-luo|none, secondaries=on|off,\n"
+                 "barrier=quantum|classical|off; any of them, first ones default")
+      ->type_name("KEY=VALUE,...")->group(group);
+  app.add_option("--cutoff", o.scene.cutoff,
+                 "Where tracking stops (the surface barrier; 50eV without secondaries)")
+      ->type_name("ENERGY")->group(group);
+  app.add_option("--seed", o.seed, "The same seed gives the same bytes (1)")
+      ->type_name("N")->group(group);
+  app.add_option("--threads", o.threads, "Does not change the result (one per hardware thread)")
+      ->type_name("N")->group(group);
+}
+
+void add_output_options(CLI::App& app, Options& o) {
+  const char* group = "Output";
+  app.add_option("-o,--output", o.outputs, "Image to write: .exr .tif .png .vti; may be repeated")
+      ->type_name("FILE")->option_text("FILE")->allow_extra_args(false)->group(group);
+  app.add_option("--channel", o.channel, "What PNG files show (SE)")
+      ->type_name("SE|SE.stderr|BSE|BSE.stderr|valid")->group(group);
+  app.add_flag("-q,--quiet", o.quiet, "Only errors and warnings")->group(group);
+}
+
 struct Yield {
   double mean = 0, standard_error = 0;
 };

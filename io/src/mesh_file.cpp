@@ -145,12 +145,16 @@ std::vector<NamedMesh> read_meshes(const std::filesystem::path& path,
   return meshes;
 }
 
-TriangleMesh read_mesh(const std::filesystem::path& path, std::optional<double> unit_nm) {
-  std::vector<NamedMesh> meshes = read_meshes(path, unit_nm);
-  if (meshes.size() == 1) return std::move(meshes.front().mesh);
+TriangleMesh join(const std::vector<NamedMesh>& meshes) {
   TriangleMesh all;
   for (const NamedMesh& part : meshes) append(all, part.mesh);
   return merge_equal_vertices(all);
+}
+
+TriangleMesh read_mesh(const std::filesystem::path& path, std::optional<double> unit_nm) {
+  std::vector<NamedMesh> meshes = read_meshes(path, unit_nm);
+  if (meshes.size() == 1) return std::move(meshes.front().mesh);
+  return join(meshes);
 }
 
 void write_mesh(const std::filesystem::path& path, const TriangleMesh& mesh, double unit_nm) {

@@ -212,7 +212,7 @@ class Picture {
     for (std::size_t g = 0; g < groups.size(); ++g) {
       const double crowd = std::max(1.0, static_cast<double>(counts[g]) / 40);
       Color color = groups[g].color;
-      color.alpha = std::max(0.9 * std::pow(crowd, -0.32), 0.12);
+      color.alpha = std::max(0.9 * std::pow(crowd, -0.35), 0.06);
       const double width = unit_ * groups[g].weight * std::max(2.0 * std::pow(crowd, -0.18), 0.8);
       for (const Track& track : tracks) {
         if (group_of(track) == g) draw_track(track, width, color);
@@ -269,7 +269,7 @@ class Picture {
     double widest = 0;
     for (const auto& line : lines) widest = std::max(widest, canvas_.text_width(line.first, size));
     const double box_width = widest + sample + 3.5 * gap;
-    const double box_height = step * static_cast<double>(lines.size()) + gap;
+    const double box_height = step * static_cast<double>(lines.size()) + 1.6 * gap;
     const Point corner{left_ + width_ - box_width - gap, top_ + height_ - box_height - gap};
     canvas_.fill_rectangle(corner, box_width, box_height, {1, 1, 1, 0.88});
     canvas_.stroke_rectangle(corner, box_width, box_height, unit_, {0.75, 0.75, 0.75});

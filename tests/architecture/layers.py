@@ -29,7 +29,7 @@ OWNERS = [("surf/io/sim/", "io_sim"), ("surf/io/", "io"), ("surf/mc/", "mc"),
 THIRD_PARTY = [
     ("embree*/*", ["mc_sim/src/embree_scene.cpp"]),
     ("OpenImageIO/*", ["io/src/raster_file.cpp"]),
-    ("vtk*", ["io/src/vti_file.cpp", "io/src/vtp_*.cpp", "io/src/vtk_support.h", "io/src/volume_file.cpp"]),
+    ("vtk*", ["io/src/vti_file.cpp", "io/src/vtp_*.cpp", "io/src/vtk_support.h"]),
     ("cairo*.h", ["io/src/canvas.cpp"]),
     ("toml++/*", ["io/src/sim/*"]),
     ("nlohmann/*", ["workflow/src/*", "io/src/*"]),

@@ -206,7 +206,7 @@ TEST(MeshFile, OtherFormatsAreOneBodyNamedByTheFile) {
 }
 
 TEST(MeshFile, KnowsItsExtensions) {
-  for (const char* name : {"a.stl", "a.STL", "b/a.Obj", "a.ply", "a.off", "a.glb", "a.gltf"}) {
+  for (const char* name : {"a.stl", "a.STL", "b/a.Obj", "a.ply", "a.off", "a.glb", "a.gltf", "a.vtp"}) {
     EXPECT_TRUE(is_mesh_file(name));
   }
   for (const char* name : {"a.toml", "stl", "a.stl/b", "a.exr", ""}) {

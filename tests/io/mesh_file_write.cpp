@@ -14,7 +14,7 @@ using test::corners;
 using test::TemporaryFolder;
 using testing::HasSubstr;
 
-constexpr const char* exact_formats[] = {"f.obj", "f.ply", "f.off"};
+constexpr const char* exact_formats[] = {"f.obj", "f.ply", "f.off", "f.vtp"};
 
 /// The letter with coordinates that take all digits: thirds, huge, tiny and negative ones.
 TriangleMesh awkward_letter() {
@@ -33,7 +33,7 @@ TriangleMesh written_and_read(const std::string& name, const TriangleMesh& mesh,
 
 TEST(WriteMesh, EveryFormatKeepsTheLetter) {
   const TriangleMesh mesh = test::letter_f_triangles();
-  for (const char* name : {"f.stl", "f.obj", "f.PLY", "f.off"}) {
+  for (const char* name : {"f.stl", "f.obj", "f.PLY", "f.off", "f.vtp"}) {
     SCOPED_TRACE(name);
     const TriangleMesh read = written_and_read(name, mesh);
     EXPECT_EQ(corners(read), corners(mesh));
@@ -81,7 +81,7 @@ TEST(WriteMesh, StlHasOutwardNormalsAndDoesNotLookLikeText) {
 TEST(WriteMesh, DividesByTheUnit) {
   const TriangleMesh mesh{{{0, 0, 0}, {2000, 0, 0}, {0, 500, 0}}, {{0, 1, 2}}};
   const TemporaryFolder folder;
-  for (const char* name : {"a.stl", "a.obj", "a.ply", "a.off"}) {
+  for (const char* name : {"a.stl", "a.obj", "a.ply", "a.off", "a.vtp"}) {
     SCOPED_TRACE(name);
     write_mesh(folder.path() / name, mesh, 1000);
     const TriangleMesh read = read_mesh(folder.path() / name);

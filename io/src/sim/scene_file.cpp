@@ -130,7 +130,7 @@ void read_specimen(const TomlTable& root, SceneParts parts, mc::Specimen& specim
     specimen.height_field = parts.read_height_field(*table);
   }
   for (const TomlTable& table : root.tables("body")) {
-    specimen.bodies.push_back(parts.read_body(table));
+    for (mc::Body& body : parts.read_bodies(table)) specimen.bodies.push_back(std::move(body));
   }
   if (!specimen.substrate && !specimen.height_field && specimen.bodies.empty()) {
     throw FileError(root.place(), "there is nothing to look at",

@@ -9,8 +9,8 @@
 #include "sim/suggest.h"
 #include "surf/core/units.h"
 #include "surf/io/image_file.h"
-#include "surf/io/mesh_file.h"
 #include "surf/io/sim/materials.h"
+#include "surf/io/sim/mesh_bodies.h"
 #include "surf/mesh/shapes.h"
 
 namespace surf::io {
@@ -155,7 +155,11 @@ void require_one_source(const TomlTable& table, std::string_view file) {
 
 int SceneParts::material(const TomlTable& table) {
   table.require("material", "every solid has one");
-  const mc::Material& material = find_material(*table.text("material"), table.place("material"));
+  return material(*table.text("material"), table.place("material"));
+}
+
+int SceneParts::material(const std::string& name, const std::string& place) {
+  const mc::Material& material = find_material(name, place);
   auto& materials = scene_.specimen.materials;
   for (std::size_t i = 0; i < materials.size(); ++i) {
     if (materials[i].name == material.name) return static_cast<int>(i);
@@ -210,27 +214,43 @@ mc::HeightFieldBody SceneParts::read_height_field(const TomlTable& table) {
   return body;
 }
 
-TriangleMesh SceneParts::read_body_mesh(const TomlTable& table) {
-  table.allow({"material", "name", "mesh", "unit", "scale", "rotate_z", "move"});
+std::vector<mc::Body> SceneParts::read_mesh_file(const TomlTable& table) {
+  table.allow({"material", "materials", "name", "mesh", "unit", "scale", "rotate_z", "move"});
   const auto unit = table.text("unit");
-  const double unit_nm = unit ? unit_length_nm(*unit, table.place("unit")) : 1;
-  return read_mesh(input(table, "mesh"), unit_nm);
+  std::optional<double> unit_nm;
+  if (unit) unit_nm = unit_length_nm(*unit, table.place("unit"));
+  MaterialNames names{*table.text("material"), {}, table.place("materials")};
+  if (const auto meaning = table.table("materials")) {
+    for (const std::string& name : meaning->keys()) names.meaning[name] = *meaning->text(name);
+  }
+  const std::filesystem::path path = input(table, "mesh");
+  std::vector<MeshBody> read = read_mesh_bodies(path, unit_nm, names);
+  std::vector<mc::Body> bodies;
+  for (MeshBody& part : read) {
+    const std::string name = read.size() == 1 ? path.filename().string() : part.name;
+    const auto given = table.text("name");
+    bodies.push_back({!given              ? name
+                      : read.size() == 1 ? *given
+                                         : fmt::format("{}, {}", *given, name),
+                      std::move(part.mesh), material(part.material, table.place("material"))});
+  }
+  return bodies;
 }
 
-mc::Body SceneParts::read_body(const TomlTable& table) {
+std::vector<mc::Body> SceneParts::read_bodies(const TomlTable& table) {
   require_one_source(table, "mesh");
-  mc::Body body;
-  body.material = material(table);
+  std::vector<mc::Body> bodies;
+  const int default_material = material(table);
   if (table.has("mesh")) {
-    body.mesh = read_body_mesh(table);
-    body.name = scene_.inputs.back().filename().string();
+    bodies = read_mesh_file(table);
   } else {
-    body.mesh = at_place(table, {}, [&] { return make_body(table); });
-    body.name = *table.text("shape");
+    bodies.push_back({table.text("name").value_or(*table.text("shape")),
+                      at_place(table, {}, [&] { return make_body(table); }), default_material});
   }
-  body.name = table.text("name").value_or(body.name);
-  at_place(table, {}, [&] { place_body(table, body.mesh); });
-  return body;
+  for (mc::Body& body : bodies) {
+    at_place(table, {}, [&] { place_body(table, body.mesh); });
+  }
+  return bodies;
 }
 
 }  // namespace surf::io

@@ -19,14 +19,16 @@ class SceneParts {
 
   mc::Substrate read_substrate(const TomlTable& table);
   mc::HeightFieldBody read_height_field(const TomlTable& table);
-  mc::Body read_body(const TomlTable& table);
+  /// One body for a shape, one or more for a mesh file.
+  std::vector<mc::Body> read_bodies(const TomlTable& table);
 
  private:
   int material(const TomlTable& table);
+  int material(const std::string& name, const std::string& place);
   /// A path in the scene, relative to its folder; noted as an input.
   std::filesystem::path input(const TomlTable& table, std::string_view key);
   HeightField read_field_file(const TomlTable& table);
-  TriangleMesh read_body_mesh(const TomlTable& table);
+  std::vector<mc::Body> read_mesh_file(const TomlTable& table);
 
   std::filesystem::path folder_;
   SceneFile& scene_;

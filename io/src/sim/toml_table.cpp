@@ -59,6 +59,12 @@ std::vector<double> split_lengths(std::string_view text, std::string_view separa
 
 }  // namespace
 
+std::vector<std::string> TomlTable::keys() const {
+  std::vector<std::string> names;
+  for (const auto& [key, value] : *impl_->table) names.emplace_back(key.str());
+  return names;
+}
+
 TomlTable TomlTable::parse(std::string_view text, const std::string& file) {
   try {
     auto root = std::make_shared<const toml::table>(toml::parse(text, file));

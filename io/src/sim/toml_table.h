@@ -24,6 +24,8 @@ class TomlTable {
   void allow(std::initializer_list<std::string_view> known) const;
 
   bool has(std::string_view key) const;
+  /// In alphabetical order.
+  std::vector<std::string> keys() const;
   bool is_text(std::string_view key) const;
   /// Throws if the key is missing. `why` completes "is missing: ".
   void require(std::string_view key, std::string_view why) const;

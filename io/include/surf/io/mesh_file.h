@@ -34,7 +34,10 @@ struct NamedMesh {
 std::vector<NamedMesh> read_meshes(const std::filesystem::path& path,
                                    std::optional<double> unit_nm = {});
 
-/// All bodies of the file as one mesh, equal vertices merged.
+/// All bodies as one mesh, equal vertices merged.
+TriangleMesh join(const std::vector<NamedMesh>& meshes);
+
+/// The bodies of the file, joined.
 TriangleMesh read_mesh(const std::filesystem::path& path, std::optional<double> unit_nm = {});
 
 /// Writes by extension: STL (binary), OBJ, PLY (binary, little-endian, double), OFF or VTP (inline

@@ -66,7 +66,10 @@ struct SceneFile {
 ///                                # pixel_size replaces the file's and centres the field on (0, 0)
 ///     [[body]]
 ///     material = "Au"            # name: the file's or the shape's
-///     mesh = "cube.stl"          # unit = "nm"
+///     mesh = "cube.stl"          # unit = "nm", for glTF "m". A file of several bodies gives all:
+///                                # materials of the file that have one of semsurf's names are
+///                                # taken as such, for others there is
+///                                # materials = { "name in the file" = "Au" }, else `material`
 ///     # or, instead of mesh:
 ///     # shape = "box"            # lower = [x, y, z], upper, subdivisions = 1; or
 ///                                # "sphere": radius, center = [0, 0, 0], subdivisions = 4
