@@ -13,6 +13,7 @@ using Action = std::function<int()>;
 // Each adds a subcommand that sets `action`. Options' type names say how to complete their values:
 // FILE, MATERIAL, or the choices as "a|b|c".
 void add_simulate(CLI::App& app, Action& action, const std::string& command_line);
+void add_mesh(CLI::App& app, Action& action);
 void add_info(CLI::App& app, Action& action);
 void add_materials(CLI::App& app, Action& action);
 void add_completion(CLI::App& app, Action& action);

@@ -16,6 +16,7 @@ void print_item(const std::string& label, const std::string& value);
 std::string format_bounds(const Box& box);
 std::string format_extent(const Box& box);
 
+/// Without a unit: as the format says, else nm.
 void print_mesh(const std::filesystem::path& path, std::optional<double> unit_nm);
 void print_image(const std::filesystem::path& path);
 

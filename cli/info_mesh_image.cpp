@@ -9,6 +9,7 @@
 #include "surf/io/image_file.h"
 #include "surf/io/mesh_file.h"
 #include "surf/mesh/check_mesh.h"
+#include "surf/mesh/open_sheet.h"
 
 namespace surf::cli {
 namespace {
@@ -23,18 +24,40 @@ std::string format_power(double value, int power) {
   return fmt::format("{:.4g} {}^{}", value / std::pow(nm, power), unit, power);
 }
 
-void print_mesh_warnings(const MeshReport& r) {
+// Narrower or wider than any specimen of a microscope: the unit is likely not what was meant.
+constexpr double narrowest_nm = 1, widest_nm = 1e7;
+
+std::string size_warning(double wide_nm, double unit_nm) {
+  constexpr double typical_nm = 3e3;
+  const auto off = [&](double nm) { return std::abs(std::log10(nm / typical_nm)); };
+  std::pair<const char*, double> best{"nm", 1};
+  for (const auto& [unit, nm] : {std::pair{"pm", 1e-3}, {"nm", 1.0}, {"um", 1e3}, {"mm", 1e6}, {"m", 1e9}}) {
+    if (off(wide_nm / unit_nm * nm) < off(wide_nm / unit_nm * best.second)) best = {unit, nm};
+  }
+  const double then_nm = wide_nm / unit_nm * best.second;
+  if (then_nm < narrowest_nm || then_nm > widest_nm)
+    return fmt::format("{} wide; is --unit right?", format_length(wide_nm));
+  return fmt::format("{} wide; is --unit right? With --unit {} it would be {}",
+                     format_length(wide_nm), best.first, format_length(then_nm));
+}
+
+void print_mesh_warnings(const MeshReport& r, const TriangleMesh& mesh,
+                         const std::filesystem::path& path, double unit_nm) {
   const auto warn = [](const std::string& text) { print_item("warning", text); };
-  if (!r.closed_and_oriented) warn("not closed or not oriented: it cannot be simulated as it is");
-  if (r.closed_and_oriented && r.signed_volume_nm3 < 0)
-    warn("normals point inward; simulate takes them as pointing outward");
-  if (r.degenerate_triangles)
-    warn(fmt::format("{} triangles without area", r.degenerate_triangles));
-  if (r.duplicate_triangles) warn(fmt::format("{} triangles given twice", r.duplicate_triangles));
+  for (const std::string& fault : faults(r)) warn(fault);
+  std::string why_no_sheet;
+  const bool sheet = r.boundary_edges > 0 && extend_open_sheet(mesh, 1, why_no_sheet).has_value();
+  if (sheet) print_item("sheet", "simulate takes it as the top of a half-space");
+  else if (!r.closed_and_oriented)
+    warn("not closed or not oriented: it cannot be simulated as it is");
+  const bool inward = r.closed_and_oriented && r.signed_volume_nm3 < 0;
+  if (inward) warn("normals point inward; simulate takes them as pointing outward");
+  if ((!r.closed_and_oriented && !sheet) || inward || r.degenerate_triangles + r.duplicate_triangles > 0)
+    print_item("try", fmt::format("semsurf mesh {} --repair -o {}", path.string(),
+                                  path.stem().string() + "_repaired.ply"));
   const Vec3 size = r.bounds_nm.size_nm();
   const double widest = std::max({size.x, size.y, size.z});
-  if (widest > 1e9 || widest < 0.1)
-    warn(fmt::format("{} wide; is --unit right?", format_length(widest)));
+  if (widest > 0 && (widest > widest_nm || widest < narrowest_nm)) warn(size_warning(widest, unit_nm));
 }
 
 void print_body(const io::NamedMesh& body) {
@@ -43,7 +66,7 @@ void print_body(const io::NamedMesh& body) {
                                  body.mesh.triangles.size(), format_extent(bounds(body.mesh))));
 }
 
-void print_channel(const Channel& channel) {
+void print_channel(const Channel& channel, std::size_t label_width) {
   double sum = 0, lowest = HUGE_VAL, highest = -HUGE_VAL;
   std::size_t finite = 0;
   for (const float value : channel.values.data()) {
@@ -67,7 +90,8 @@ void print_channel(const Channel& channel) {
 
 void print_mesh(const std::filesystem::path& path, std::optional<double> unit_nm) {
   const std::vector<io::NamedMesh> bodies = io::read_meshes(path, unit_nm);
-  const MeshReport report = check_mesh(bodies.size() == 1 ? bodies.front().mesh : io::join(bodies));
+  const TriangleMesh mesh = bodies.size() == 1 ? bodies.front().mesh : io::join(bodies);
+  const MeshReport report = check_mesh(mesh);
   fmt::print("{}: mesh{}\n", path.string(),
              bodies.size() == 1 ? "" : fmt::format(" of {} bodies", bodies.size()));
   for (const io::NamedMesh& body : bodies)
@@ -78,7 +102,9 @@ void print_mesh(const std::filesystem::path& path, std::optional<double> unit_nm
   print_item("area", format_power(report.area_nm2, 2));
   if (report.closed_and_oriented)
     print_item("volume", format_power(std::abs(report.signed_volume_nm3), 3));
-  print_mesh_warnings(report);
+  const std::string extension = path.extension().string();
+  const double file_unit_nm = extension == ".glb" || extension == ".gltf" ? 1e9 : 1;
+  print_mesh_warnings(report, mesh, path, unit_nm.value_or(file_unit_nm));
 }
 
 void print_image(const std::filesystem::path& path) {

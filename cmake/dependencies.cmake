@@ -2,6 +2,9 @@
 find_package(Threads REQUIRED)
 find_package(fmt REQUIRED)
 find_path(RANDOM123_INCLUDE_DIR Random123/philox.h REQUIRED)
+find_package(CGAL 5.5 REQUIRED)
+# CONFIG: CGAL brings a FindOpenMesh of its own.
+find_package(OpenMesh REQUIRED CONFIG)
 find_package(embree 3 REQUIRED)
 find_package(OpenImageIO REQUIRED)
 # Debian's target names an OpenCV include folder that its package does not bring.

@@ -30,7 +30,7 @@ void check_material(const Specimen& specimen, int material, const std::string& o
 
 std::string repair_command(const std::string& name) {
   return fmt::format("Try: semsurf mesh {} --repair -o {}", name,
-                     std::filesystem::path(name).stem().string() + ".fixed.ply");
+                     std::filesystem::path(name).stem().string() + "_repaired.ply");
 }
 
 [[noreturn]] void refuse_open(const std::string& subject, const MeshReport& report,

@@ -28,6 +28,8 @@ OWNERS = [("surf/io/sim/", "io_sim"), ("surf/io/", "io"), ("surf/mc/", "mc"),
 # Third-party headers <...> and the files that may include them. First match; public headers never.
 THIRD_PARTY = [
     ("embree*/*", ["mc_sim/src/embree_scene.cpp"]),
+    ("CGAL/*", ["libsurf/src/mesh/cgal_*.cpp"]),
+    ("OpenMesh/*", ["libsurf/src/mesh/simplify_mesh.cpp"]),
     ("OpenImageIO/*", ["io/src/raster_file.cpp"]),
     ("vtk*", ["io/src/vti_file.cpp", "io/src/vtp_*.cpp", "io/src/vtk_support.h"]),
     ("cairo*.h", ["io/src/canvas.cpp"]),

@@ -16,6 +16,26 @@ semsurf_cli_test(materials.one ARGS materials Si STDOUT "Z = 14" "work function"
 
 semsurf_cli_test(info.mesh ARGS info cube.off open.off --unit um
   STDOUT "12 triangles" "40.* wide, 40.* deep" "volume +6\\.4e\\+04 um.3" "cannot be simulated")
+semsurf_cli_test(info.mesh_faults ARGS info open.off
+  STDOUT "open: [0-9]+ boundary edge.* near \\(" "try +semsurf mesh open.off --repair -o open_repaired.ply")
+semsurf_cli_test(info.mesh_too_wide ARGS info cube.off --unit m
+  STDOUT "40.0 m wide; is --unit right. With --unit nm it would be 40.0 nm")
+semsurf_cli_test(info.mesh_too_narrow ARGS info cube.off --unit 0.01nm
+  STDOUT "400 pm wide; is --unit right. With --unit nm it would be 40.0 nm")
+
+semsurf_cli_test(mesh.convert ARGS mesh cube.off -o cube.ply
+  STDOUT "shape +closed, 12 triangles" "size +40.0 nm wide" WRITES cube.ply INFO cube.ply "40.0 nm wide")
+semsurf_cli_test(mesh.units ARGS mesh cube.off --unit um --scale 0.5 --out-unit nm -o cube.stl
+  STDOUT "20.0 um wide" WRITES cube.stl INFO cube.stl "20.0 um wide")
+semsurf_cli_test(mesh.repair ARGS mesh open.off --repair --max-hole 1um -o closed.obj
+  STDOUT "repair +filled 1 hole with" "shape +closed" WRITES closed.obj INFO closed.obj "closed, ")
+semsurf_cli_test(mesh.repair_nothing ARGS mesh cube.off --repair -o cube.off.ply STDOUT "nothing to mend")
+semsurf_cli_test(mesh.open_warns ARGS mesh open.off -o out.ply STDERR "Try --repair" WRITES out.ply)
+semsurf_cli_test(mesh.simplify ARGS mesh "${PROJECT_SOURCE_DIR}/samples/pyramid.stl" --simplify 0.1nm
+  -o small.ply STDOUT "simplify +[0-9]+ triangles to [0-9]+" WRITES small.ply)
+semsurf_cli_test(mesh.smooth ARGS mesh cube.off --smooth 3 -o cube.ply -q STDOUT "^$" WRITES cube.ply)
+semsurf_cli_test(help.mesh ARGS mesh --help STDOUT "Repair:" "--simplify" "Examples:")
+
 semsurf_cli_test(info.scene ARGS info scene.toml
   STDOUT "a cube of gold" "2000 eV" "8 x 8 pixels of 10" "3 per pixel" "in Au" "Joy")
 

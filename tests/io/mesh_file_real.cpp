@@ -103,7 +103,7 @@ TEST_F(RealMeshes, BrokenFilesAreReadOrRefused) {
       validate(mesh);
       const auto facts = truth("mesh/broken/" + entry.path().filename().string());
       const auto name = entry.path().filename();
-      // degenerated.obj holds a cube's faces twice, the second time turned over.
+      // degenerated.obj holds every face twice, the second time turned over.
       expect_facts(mesh, facts, name == "cube-ouvert.off" ? 1 : 0, name == "degenerated.obj");
     } catch (const FileError& error) {
       EXPECT_THAT(error.what(), testing::HasSubstr(entry.path().filename().string()));

@@ -45,7 +45,7 @@ TEST(Specimen, RefusesOpenMeshesWithThePlace) {
   EXPECT_THAT(why, HasSubstr("open"));
   EXPECT_THAT(why, HasSubstr("3 of its edges"));
   EXPECT_THAT(why, HasSubstr("top of a half-space: "));
-  EXPECT_THAT(why, HasSubstr("semsurf mesh part.stl --repair -o part.fixed.ply"));
+  EXPECT_THAT(why, HasSubstr("semsurf mesh part.stl --repair -o part_repaired.ply"));
 }
 
 TEST(Specimen, TakesSheetsForHalfSpaces) {

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+
+#include "surf/mesh/mesh_deviation.h"
+#include "surf/mesh/triangle_mesh.h"
+
+namespace surf {
+
+/// At least one of the two limits must be given.
+struct SimplifyOptions {
+  /// No sample of either surface is farther from the other one; > 0, or 0: no such limit.
+  double tolerance_nm = 0;
+  /// Ends at this number of triangles; 0: as few as the tolerance allows.
+  std::size_t triangles = 0;
+  int threads = 0;   ///< of the measurement; 0: one per hardware thread. Same result
+};
+
+struct SimplifySummary {
+  std::size_t triangles_before = 0;
+  std::size_t triangles_after = 0;
+  MeshDeviation deviation;   ///< of the original (first) and the result (second), measured afterwards
+  int attempts = 0;          ///< runs, each measured
+  bool reached = false;      ///< the number of triangles asked for; true if none was
+};
+
+/// Removes vertices where they matter least (quadric error, Garland and Heckbert 1997,
+/// doi:10.1145/258734.258849), one at a time into a neighbour, so that what remains are vertices of
+/// the original. Faces do not turn over; closedness, components and holes are kept; vertices at rims
+/// and non-manifold edges stay where they are. With a tolerance, the number of triangles is halved
+/// again and again as long as the two-sided deviation from the original, measured anew each time,
+/// allows, and the last halving is refined by bisection. What comes back is within the tolerance at
+/// every sample, in the worst case because nothing was removed.
+///
+/// Deterministic. Throws InvalidInput on damaged meshes, UsageError if no limit is given or one is
+/// out of range.
+TriangleMesh simplify_mesh(const TriangleMesh& mesh, const SimplifyOptions& options,
+                           SimplifySummary& summary);
+
+}  // namespace surf

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Compiled with CGAL's checks on: where they fail they throw, and the attempt is given up.
+#include "mesh/cgal_resolve.h"
+
+#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <CGAL/Polygon_mesh_processing/corefinement.h>
+#include <CGAL/Polygon_mesh_processing/orient_polygon_soup.h>
+#include <CGAL/Polygon_mesh_processing/orientation.h>
+#include <CGAL/Polygon_mesh_processing/polygon_soup_to_polygon_mesh.h>
+#include <CGAL/Polygon_mesh_processing/repair_self_intersections.h>
+#include <CGAL/Surface_mesh.h>
+
+#include <array>
+#include <exception>
+
+namespace surf {
+namespace {
+
+namespace pmp = CGAL::Polygon_mesh_processing;
+using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
+using Mesh = CGAL::Surface_mesh<Kernel::Point_3>;
+
+/// Points that several fans share become several vertices. False if it cannot be a manifold.
+bool to_cgal(const TriangleMesh& mesh, Mesh& out) {
+  std::vector<Kernel::Point_3> points;
+  for (const Vec3& v : mesh.vertices_nm) points.emplace_back(v.x, v.y, v.z);
+  std::vector<std::vector<std::size_t>> polygons;
+  for (const Triangle& t : mesh.triangles) polygons.push_back({t[0], t[1], t[2]});
+  pmp::orient_polygon_soup(points, polygons);
+  if (!pmp::is_polygon_soup_a_polygon_mesh(polygons)) return false;
+  pmp::polygon_soup_to_polygon_mesh(points, polygons, out);
+  return true;
+}
+
+TriangleMesh from_cgal(const Mesh& mesh) {
+  TriangleMesh out;
+  std::vector<std::uint32_t> number(mesh.number_of_vertices() + mesh.number_of_removed_vertices());
+  for (const auto v : mesh.vertices()) {
+    number[v.idx()] = static_cast<std::uint32_t>(out.vertices_nm.size());
+    const auto& p = mesh.point(v);
+    out.vertices_nm.push_back({p.x(), p.y(), p.z()});
+  }
+  for (const auto f : mesh.faces()) {
+    Triangle t{};
+    std::size_t k = 0;
+    for (const auto v : CGAL::vertices_around_face(mesh.halfedge(f), mesh)) {
+      if (k == 3) return {};
+      t[k++] = number[v.idx()];
+    }
+    out.triangles.push_back(t);
+  }
+  return out;
+}
+
+}  // namespace
+
+TriangleMesh unite(const std::vector<TriangleMesh>& bodies) {
+  try {
+    Mesh sum;
+    for (const TriangleMesh& body : bodies) {
+      Mesh next;
+      if (!to_cgal(body, next)) return {};
+      if (sum.is_empty()) {
+        sum = next;
+        continue;
+      }
+      Mesh united;
+      if (!pmp::corefine_and_compute_union(sum, next, united,
+                                           pmp::parameters::throw_on_self_intersection(true))) {
+        return {};
+      }
+      sum = united;
+    }
+    return from_cgal(sum);
+  } catch (const std::exception&) {
+    return {};
+  }
+}
+
+TriangleMesh mend_self_intersections(const TriangleMesh& mesh) {
+  try {
+    Mesh mended;
+    if (!to_cgal(mesh, mended)) return {};
+    pmp::experimental::remove_self_intersections(mended, CGAL::parameters::preserve_genus(false));
+    return from_cgal(mended);
+  } catch (const std::exception&) {
+    return {};
+  }
+}
+
+}  // namespace surf

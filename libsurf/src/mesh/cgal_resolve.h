@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <vector>
+
+#include "surf/mesh/triangle_mesh.h"
+
+namespace surf {
+
+// Attempts by CGAL; the caller judges the result. Empty where CGAL gives up.
+
+/// The union of closed bodies with outward normals, each free of self-intersections.
+TriangleMesh unite(const std::vector<TriangleMesh>& bodies);
+
+/// Replaces the surroundings of self-intersections: smoothed, or cut out and filled anew.
+TriangleMesh mend_self_intersections(const TriangleMesh& mesh);
+
+}  // namespace surf

@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "surf/mesh/simplify_mesh.h"
+
+#include <OpenMesh/Core/Mesh/TriMesh_ArrayKernelT.hh>
+#include <OpenMesh/Tools/Decimater/DecimaterT.hh>
+#include <OpenMesh/Tools/Decimater/ModNormalFlippingT.hh>
+#include <OpenMesh/Tools/Decimater/ModQuadricT.hh>
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "core/argument.h"
+#include "mesh/disjoint_sets.h"
+#include "mesh/edges.h"
+#include "surf/core/error.h"
+
+namespace surf {
+namespace {
+
+struct Traits : OpenMesh::DefaultTraits {
+  using Point = OpenMesh::Vec3d;
+  using Normal = OpenMesh::Vec3d;
+};
+using HalfedgeMesh = OpenMesh::TriMesh_ArrayKernelT<Traits>;
+using PointNumber = OpenMesh::VPropHandleT<std::uint32_t>;   // a vertex's number in the merged mesh
+using Decimater = OpenMesh::Decimater::DecimaterT<HalfedgeMesh>;
+
+constexpr int bisections = 4;   // of the last halving: the number ends within 3 % of the fewest
+
+/// A halfedge mesh of a merged mesh, cut where more than two triangles meet or disagree; vertices
+/// along cuts and rims are locked: cuts fit together again, rims stay. Coordinates are taken from
+/// `middle`: OpenMesh computes plane equations, which suffer far from the origin.
+HalfedgeMesh to_halfedges(const TriangleMesh& mesh, const Vec3& middle, PointNumber& number) {
+  const std::vector<Triangle>& triangles = mesh.triangles;
+  DisjointSets fans(3 * triangles.size());
+  visit_edges(triangles, mesh.vertices_nm.size(), [&](const EdgeUse& edge) {
+    if (edge.uses() != 2 || count_forward(triangles, edge) != 1) return;
+    const Side a = edge.side(0), b = edge.side(1);
+    fans.unite(a, next_side(b));
+    fans.unite(next_side(a), b);
+  });
+  HalfedgeMesh out;
+  out.add_property(number);
+  out.request_face_normals();
+  out.request_vertex_status();
+  out.request_edge_status();
+  out.request_face_status();
+  out.reserve(mesh.vertices_nm.size(), 3 * triangles.size() / 2, triangles.size());
+  std::vector<HalfedgeMesh::VertexHandle> of_fan(3 * triangles.size()), of_point(mesh.vertices_nm.size());
+  for (Side corner = 0; corner < 3 * triangles.size(); ++corner) {
+    const std::uint32_t fan = fans.find(corner);
+    if (of_fan[fan].is_valid()) continue;
+    const std::uint32_t point = side_begin(triangles, corner);
+    const Vec3 p = mesh.vertices_nm[point] - middle;
+    of_fan[fan] = out.add_vertex({p.x, p.y, p.z});
+    out.property(number, of_fan[fan]) = point;
+    if (of_point[point].is_valid()) {
+      out.status(of_point[point]).set_locked(true);
+      out.status(of_fan[fan]).set_locked(true);
+    }
+    of_point[point] = of_fan[fan];
+  }
+  for (Side side = 0; side < 3 * triangles.size(); side += 3) {
+    if (has_repeated_corner(triangles[side / 3])) continue;
+    out.add_face(of_fan[fans.find(side)], of_fan[fans.find(side + 1)], of_fan[fans.find(side + 2)]);
+  }
+  for (const auto v : out.vertices()) {
+    if (out.is_boundary(v)) out.status(v).set_locked(true);
+  }
+  out.update_face_normals();
+  return out;
+}
+
+/// The triangles that are left, over the vertices of the merged mesh.
+TriangleMesh from_halfedges(const HalfedgeMesh& mesh, const PointNumber& number,
+                            const TriangleMesh& original) {
+  TriangleMesh out{original.vertices_nm, {}};
+  for (const auto f : mesh.faces()) {
+    Triangle t{};
+    std::size_t k = 0;
+    for (const auto v : mesh.fv_range(f)) t[k++] = mesh.property(number, v);
+    out.triangles.push_back(t);
+  }
+  return out;
+}
+
+/// One run down to a number of triangles, or as near to it as no face turns over.
+TriangleMesh decimated(const TriangleMesh& mesh, std::size_t triangles) {
+  const Vec3 middle = bounds(mesh).center_nm();
+  PointNumber number;
+  HalfedgeMesh work = to_halfedges(mesh, middle, number);
+  Decimater decimater(work);
+  OpenMesh::Decimater::ModQuadricT<HalfedgeMesh>::Handle quadric;
+  OpenMesh::Decimater::ModNormalFlippingT<HalfedgeMesh>::Handle flipping;
+  decimater.add(quadric);
+  decimater.module(quadric).unset_max_err();
+  decimater.add(flipping);
+  decimater.module(flipping).set_max_normal_deviation(90);
+  if (!decimater.initialize()) {
+    throw std::logic_error("simplify_mesh: the decimater refuses its modules");
+  }
+  decimater.decimate_to_faces(0, triangles);
+  work.garbage_collection();
+  return merge_equal_vertices(from_halfedges(work, number, mesh));
+}
+
+/// Goes down from a mesh to fewer and fewer triangles as long as the measured deviation from the
+/// original allows.
+class Descent {
+ public:
+  Descent(const TriangleMesh& original, const SimplifyOptions& options, SimplifySummary& summary)
+      : original_(original), options_(options), summary_(summary), best_(original) {}
+
+  TriangleMesh run() {
+    const std::size_t least = std::max<std::size_t>(options_.triangles, 4);
+    while (best_.triangles.size() > least) {
+      const std::size_t from = best_.triangles.size();
+      const std::size_t aim =
+          options_.tolerance_nm > 0 ? std::max(least, from / 2) : options_.triangles;
+      if (attempt(aim)) {
+        if (best_.triangles.size() + 4 > from || best_.triangles.size() > aim + aim / 4) break;
+        continue;
+      }
+      bisect(aim, from);
+      break;
+    }
+    return std::move(best_);
+  }
+
+ private:
+  bool attempt(std::size_t triangles) {
+    TriangleMesh next = decimated(best_, triangles);
+    if (next.triangles.empty() || next.triangles.size() >= best_.triangles.size()) return false;
+    ++summary_.attempts;
+    const MeshDeviation d = mesh_deviation(original_, next, {.threads = options_.threads});
+    if (options_.tolerance_nm > 0 && !(d.largest_nm() <= options_.tolerance_nm)) return false;
+    best_ = std::move(next);
+    summary_.deviation = d;
+    return true;
+  }
+
+  void bisect(std::size_t too_few, std::size_t enough) {
+    for (int i = 0; i < bisections && enough > too_few + 2; ++i) {
+      const std::size_t middle = too_few + (enough - too_few) / 2;
+      if (attempt(middle)) enough = best_.triangles.size();
+      else too_few = middle;
+    }
+  }
+
+  const TriangleMesh& original_;
+  const SimplifyOptions& options_;
+  SimplifySummary& summary_;
+  TriangleMesh best_;
+};
+
+}  // namespace
+
+TriangleMesh simplify_mesh(const TriangleMesh& mesh, const SimplifyOptions& options,
+                           SimplifySummary& summary) {
+  require_not_negative(options.tolerance_nm, "tolerance");
+  if (options.tolerance_nm == 0 && options.triangles == 0) {
+    throw UsageError("simplify", "neither a tolerance nor a number of triangles is given",
+                     "Give one of them, or both");
+  }
+  validate(mesh);
+  summary = {};
+  summary.triangles_before = mesh.triangles.size();
+  const TriangleMesh original = merge_equal_vertices(mesh);
+  TriangleMesh result = Descent(original, options, summary).run();
+  summary.triangles_after = result.triangles.size();
+  summary.reached = options.triangles == 0 || result.triangles.size() <= options.triangles;
+  return result;
+}
+
+}  // namespace surf
