@@ -11,6 +11,7 @@ packages=(
   libopenimageio-dev openimageio-tools                            # images
   libtomlplusplus-dev nlohmann-json3-dev libssl-dev               # scene files, records, hashes
   libcli11-dev libfmt-dev                                         # command line, text
+  libpugixml-dev zlib1g-dev                                       # VTK's files
   pkg-config libcairo2-dev fonts-dejavu-core                      # pictures of electron tracks
   paraview-dev python3-paraview mpi-default-dev python3-dev       # VTK: ParaView's own
   libgtest-dev libgmock-dev python3-matplotlib                    # tests, plots

@@ -19,17 +19,20 @@ constexpr std::array<std::int8_t, 256> make_values() {
   return values;
 }
 
+constexpr std::array<std::int8_t, 256> values = make_values();
+
+bool is_blank(char c) { return c == ' ' || c == '\n' || c == '\r' || c == '\t'; }
+
 }  // namespace
 
 std::optional<std::string> decode_base64(std::string_view text) {
-  static constexpr std::array<std::int8_t, 256> values = make_values();
   std::string bytes;
   bytes.reserve(text.size() / 4 * 3);
   std::uint32_t bits = 0;
   int count = 0;      // bits held
   std::size_t used = 0, padding = 0;
   for (const char c : text) {
-    if (c == ' ' || c == '\n' || c == '\r' || c == '\t') continue;
+    if (is_blank(c)) continue;
     if (c == '=') {
       ++padding;
       continue;
@@ -48,6 +51,36 @@ std::optional<std::string> decode_base64(std::string_view text) {
   const bool is_whole = used % 4 != 1 && (padding == 0 || (padding < 3 && (used + padding) % 4 == 0));
   if (!is_whole) return {};
   return bytes;
+}
+
+/// Four digits, the last one or two of which may be padding.
+bool Base64Reader::next_group() {
+  std::uint32_t bits = 0;
+  int digits_read = 0, padding = 0;
+  while (digits_read < 4) {
+    if (position_ == text_.size()) return false;
+    const char c = text_[position_++];
+    if (is_blank(c)) continue;
+    const std::int8_t value = c == '=' ? std::int8_t{0} : values[static_cast<unsigned char>(c)];
+    if (value < 0 || (padding > 0 && c != '=')) return false;
+    if (c == '=' && ++padding > 2) return false;
+    bits = bits << 6 | static_cast<std::uint32_t>(value);
+    ++digits_read;
+  }
+  for (int i = 0; i < 3 - padding; ++i) {
+    held_.push_back(static_cast<char>(bits >> (16 - 8 * i) & 0xff));
+  }
+  return true;
+}
+
+std::optional<std::string> Base64Reader::take(std::size_t bytes) {
+  if (bytes > most()) return {};
+  while (held_.size() < bytes) {
+    if (!next_group()) return {};
+  }
+  std::string taken = held_.substr(0, bytes);
+  held_.erase(0, bytes);
+  return taken;
 }
 
 }  // namespace surf::io

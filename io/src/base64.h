@@ -11,4 +11,23 @@ namespace surf::io {
 /// text that is not base64.
 std::optional<std::string> decode_base64(std::string_view text);
 
+/// Decodes base64 from the front, as much as is asked for. Padding may stand in the middle, where
+/// one encoded piece ends and the next begins.
+class Base64Reader {
+ public:
+  explicit Base64Reader(std::string_view text) : text_(text) {}
+
+  /// The next `bytes` bytes; nothing where the text ends before or is not base64.
+  std::optional<std::string> take(std::size_t bytes);
+  /// No fewer bytes than there can still be.
+  std::size_t most() const { return held_.size() + (text_.size() - position_) / 4 * 3 + 3; }
+
+ private:
+  bool next_group();
+
+  std::string_view text_;
+  std::size_t position_ = 0;
+  std::string held_;   // decoded, not yet taken
+};
+
 }  // namespace surf::io

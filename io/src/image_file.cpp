@@ -30,15 +30,17 @@ Format format_of(const std::filesystem::path& path) {
   return Format::none;
 }
 
-Format known_format_of(const std::filesystem::path& path) {
+enum class Use { read, write };
+
+Format known_format_of(const std::filesystem::path& path, Use use = Use::write) {
   const Format format = format_of(path);
   if (format == Format::none) {
     throw UsageError(path.string(), fmt::format("'{}' is not an image format known here",
                                                 path.extension().string()),
                      "Use .exr, .tif, .png or .vti");
   }
-  if (format == Format::vti && !has_vti()) {
-    throw Unsupported(path.string(), "this semsurf was built without VTK, which VTI needs",
+  if (format == Format::vti && use == Use::write && !has_vti()) {
+    throw Unsupported(path.string(), "this semsurf was built without VTK, which writes VTI",
                       "Use .exr or .tif, or build with VTK");
   }
   return format;
@@ -164,7 +166,7 @@ void check_image_target(const std::filesystem::path& path, const Image* image,
 }
 
 Image read_image(const std::filesystem::path& path) {
-  const Format format = known_format_of(path);
+  const Format format = known_format_of(path, Use::read);
   // Complains about missing files and folders in our words, not a library's.
   if (!std::filesystem::is_regular_file(path)) read_file(path, 0);
   Image image = format == Format::vti ? read_vti(path) : read_raster(path);

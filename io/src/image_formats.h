@@ -28,7 +28,7 @@ void check_tiff_structure(const std::filesystem::path& path);
 Image read_raster(const std::filesystem::path& path);
 Image read_vti(const std::filesystem::path& path);
 
-/// Whether this build can read and write VTI.
+/// Whether this build can write VTI.
 bool has_vti();
 
 std::string raster_library_version();

@@ -81,8 +81,8 @@ void check_known(const std::filesystem::path& path) {
                      fmt::format("meshes are not written as '{}'", path.extension().string()),
                      "Use .stl, .obj, .ply, .off or .vtp");
   }
-  if (extension == ".vtp" && !has_vtp()) {
-    throw Unsupported(path.string(), "this semsurf was built without VTK, which VTP needs",
+  if (extension == ".vtp" && !has_vtp_writer()) {
+    throw Unsupported(path.string(), "this semsurf was built without VTK, which writes VTP",
                       "Use .ply, or build with VTK");
   }
 }
@@ -118,11 +118,6 @@ std::string format_mesh(const std::string& file, const std::string& extension,
 }
 
 }  // namespace
-
-bool is_vtp(std::string_view content) {
-  const std::string_view start = content.substr(0, 4096);
-  return start.find("<VTKFile") != start.npos && start.find("PolyData") != start.npos;
-}
 
 std::vector<NamedMesh> read_meshes(const std::filesystem::path& path,
                                    std::optional<double> unit_nm) {

@@ -17,8 +17,8 @@ void check_name(const std::filesystem::path& path) {
                      fmt::format("tracks are not written as '{}'", path.extension().string()),
                      "Use .vtp, which ParaView opens");
   }
-  if (has_vtp()) return;
-  throw Unsupported(path.string(), "this semsurf was built without VTK, which VTP needs",
+  if (has_vtp_writer()) return;
+  throw Unsupported(path.string(), "this semsurf was built without VTK, which writes VTP",
                     "Build with VTK");
 }
 

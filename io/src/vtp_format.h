@@ -12,15 +12,16 @@
 
 namespace surf::io {
 
-// Behind read_meshes, write_mesh and write_tracks: VTK's polygonal data. The functions that format
-// give the content of the file; `file` is the name for messages. Where this build lacks VTK all but
-// the first two throw Unsupported.
+// Behind read_meshes, write_mesh and write_tracks: VTK's polygonal data. `file` is the name for
+// messages.
 
 bool is_vtp(std::string_view content);
-bool has_vtp();
-
 /// One mesh per text in the cells' or points' array "material", else one. Polygons and strips.
 std::vector<NamedMesh> parse_vtp(const std::string& file, std::string_view content);
+
+/// Whether this build has VTK, which writes the format. Else what follows throws Unsupported.
+bool has_vtp_writer();
+/// The content of the file.
 std::string format_vtp(const std::string& file, const TriangleMesh& mesh);
 std::string format_tracks(const std::string& file, std::span<const Track> tracks,
                           const std::map<std::string, std::string>& metadata);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// VTP in a build without VTK.
+// Writing VTP in a build without VTK.
 #include "surf/core/error.h"
 #include "vtp_format.h"
 
@@ -7,15 +7,13 @@ namespace surf::io {
 namespace {
 
 [[noreturn]] void refuse(const std::string& file) {
-  throw Unsupported(file, "this semsurf was built without VTK, which VTP needs",
+  throw Unsupported(file, "this semsurf was built without VTK, which writes VTP",
                     "Use another format, or build with VTK");
 }
 
 }  // namespace
 
-bool has_vtp() { return false; }
-
-std::vector<NamedMesh> parse_vtp(const std::string& file, std::string_view) { refuse(file); }
+bool has_vtp_writer() { return false; }
 
 std::string format_vtp(const std::string& file, const TriangleMesh&) { refuse(file); }
 

@@ -32,6 +32,8 @@ THIRD_PARTY = [
     ("OpenMesh/*", ["libsurf/src/mesh/simplify_mesh.cpp"]),
     ("OpenImageIO/*", ["io/src/raster_file.cpp"]),
     ("vtk*", ["io/src/vti_file.cpp", "io/src/vtp_*.cpp", "io/src/vtk_support.h"]),
+    ("pugixml.hpp", ["io/src/vtk_xml.cpp"]),
+    ("zlib.h", ["io/src/vtk_data.cpp"]),
     ("cairo*.h", ["io/src/canvas.cpp"]),
     ("toml++/*", ["io/src/sim/*"]),
     ("nlohmann/*", ["workflow/src/*", "io/src/*"]),

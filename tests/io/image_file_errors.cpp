@@ -96,13 +96,42 @@ TEST(ImageFileErrors, FilesThatAreNoImages) {
   complaint<FileError>([&] { read_image(folder.path() / "b.png"); });
 }
 
-TEST(ImageFileErrors, AppendedVtiIsRefusedRatherThanReadAsNothing) {
+TEST(ImageFileErrors, DamagedVti) {
   const TemporaryFolder folder;
-  const auto path = folder.path() / "a.vti";
-  if (!has_vtk()) GTEST_SKIP() << "built without VTK";
-  write(path, "<VTKFile type=\"ImageData\"><ImageData/>"
-              "<AppendedData encoding=\"raw\">_</AppendedData></VTKFile>");
-  EXPECT_THAT(complaint<FileError>([&] { read_image(path); }), HasSubstr("appended"));
+  const auto refusal = [&](const std::string& image, const std::string& rest = {}) {
+    const auto path = write(folder.path() / "a.vti", "<VTKFile type=\"ImageData\">" + image + rest +
+                                                         "</VTKFile>");
+    return complaint<FileError>([&] { read_image(path); });
+  };
+  const auto image = [](const std::string& attributes, const std::string& array) {
+    return "<ImageData " + attributes + "><Piece Extent=\"0 1 0 1 0 0\"><PointData>" + array +
+           "</PointData></Piece></ImageData>";
+  };
+  const std::string whole = "WholeExtent=\"0 1 0 1 0 0\"";
+  const std::string values = "<DataArray type=\"Float32\" Name=\"a\" format=\"ascii\">1 2 3"
+                             "</DataArray>";
+  EXPECT_THAT(refusal(image(whole, values)), HasSubstr("'a' has 3 values for 4 points"));
+  EXPECT_THAT(refusal(image(whole, "")), HasSubstr("no values"));
+  EXPECT_THAT(refusal(image("WholeExtent=\"0 1 0 1 0 4\"", values)), HasSubstr("not a picture"));
+  EXPECT_THAT(refusal(image("WholeExtent=\"0 1\"", values)), HasSubstr("'0 1', where 6 numbers"));
+  EXPECT_THAT(refusal(image("WholeExtent=\"0 2 0 1 0 0\"", values)), HasSubstr("pieces"));
+  EXPECT_THAT(refusal(image(whole + " Direction=\"0 1 0 1 0 0 0 0 1\"", values)),
+              HasSubstr("turned"));
+  EXPECT_THAT(refusal(image(whole + " Spacing=\"0 1 1\"", values + values)), HasSubstr("a.vti"));
+  EXPECT_THAT(refusal("<PolyData/>"), HasSubstr("type ImageData"));
+  EXPECT_THAT(refusal("<ImageData>"), HasSubstr("XML is broken"));
+  EXPECT_THAT(refusal("<ImageData/>", "<AppendedData encoding=\"raw\">"), HasSubstr("cut off"));
+  const auto array = [](const std::string& attributes, const std::string& data) {
+    return "<DataArray Name=\"a\" " + attributes + ">" + data + "</DataArray>";
+  };
+  EXPECT_THAT(refusal(image(whole, array("type=\"Float32\" format=\"ascii\"", "1 2 x 4"))),
+              HasSubstr("not made of numbers"));
+  EXPECT_THAT(refusal(image(whole, array("type=\"Float33\" format=\"binary\"", "AAAAAA=="))),
+              HasSubstr("type is not known"));
+  EXPECT_THAT(refusal(image(whole, array("type=\"Float32\" format=\"binary\"", "AA"))),
+              HasSubstr("cut off"));
+  EXPECT_THAT(refusal(image(whole, array("type=\"Float32\" format=\"appended\" offset=\"9\"", ""))),
+              HasSubstr("cut off"));
 }
 
 /// A plain picture of another program's.

@@ -1,4 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <vtkCellArray.h>
+#include <vtkCellData.h>
+#include <vtkNew.h>
+#include <vtkPoints.h>
+#include <vtkPolyData.h>
+#include <vtkStringArray.h>
+#include <vtkXMLPolyDataWriter.h>
+
+#include <functional>
+
 #include "io_test.h"
 #include "letter_f_mesh.h"
 #include "surf/io/mesh_file.h"
@@ -109,6 +119,64 @@ TEST(VtpFile, MaterialsMakeBodies) {
   EXPECT_EQ(by_point[1].material, "C");
 }
 
+/// Where VTK's writer is told how, and nothing else.
+std::string written_by_vtk(const std::function<void(vtkXMLPolyDataWriter*)>& choose) {
+  vtkNew<vtkPoints> points;
+  points->SetDataTypeToDouble();
+  for (const Vec3& v : test::letter_f_triangles().vertices_nm) points->InsertNextPoint(v.x, v.y, v.z);
+  vtkNew<vtkCellArray> polygons;
+  for (const Triangle& t : test::letter_f_triangles().triangles) {
+    polygons->InsertNextCell({vtkIdType{t[0]}, vtkIdType{t[1]}, vtkIdType{t[2]}});
+  }
+  vtkNew<vtkStringArray> materials;
+  materials->SetName("material");
+  materials->SetNumberOfValues(polygons->GetNumberOfCells());
+  for (vtkIdType i = 0; i < materials->GetNumberOfValues(); ++i) materials->SetValue(i, "SiO2");
+  vtkNew<vtkPolyData> data;
+  data->SetPoints(points);
+  data->SetPolys(polygons);
+  data->GetCellData()->AddArray(materials);
+  vtkNew<vtkXMLPolyDataWriter> writer;
+  writer->SetInputData(data);
+  writer->WriteToOutputStringOn();
+  choose(writer);
+  writer->Write();
+  return writer->GetOutputString();
+}
+
+TEST(VtpFile, ReadsAllThatVtkWrites) {
+  for (const int order : {vtkXMLWriter::LittleEndian, vtkXMLWriter::BigEndian}) {
+    for (const int header : {vtkXMLWriter::UInt32, vtkXMLWriter::UInt64}) {
+      for (const int compressor : {vtkXMLWriter::NONE, vtkXMLWriter::ZLIB}) {
+        for (const int mode : {vtkXMLWriter::Ascii, vtkXMLWriter::Binary, vtkXMLWriter::Appended}) {
+          for (const bool encoded : {false, true}) {
+            SCOPED_TRACE(fmt::format("{} {} {} {} {}", order, header, compressor, mode, encoded));
+            const auto meshes = read(written_by_vtk([&](vtkXMLPolyDataWriter* writer) {
+              writer->SetByteOrder(order);
+              writer->SetHeaderType(header);
+              writer->SetCompressorType(compressor);
+              writer->SetDataMode(mode);
+              writer->SetEncodeAppendedData(encoded);
+              writer->SetBlockSize(256);   // several blocks, the last one smaller
+            }));
+            ASSERT_EQ(meshes.size(), 1u);
+            EXPECT_EQ(corners(meshes[0].mesh), corners(test::letter_f_triangles()));
+            EXPECT_EQ(meshes[0].material, "SiO2");
+          }
+        }
+      }
+    }
+  }
+}
+
+TEST(VtpFile, OtherCompressorsAreNotSupported) {
+  const std::string content = written_by_vtk([](vtkXMLPolyDataWriter* writer) {
+    writer->SetDataModeToBinary();
+    writer->SetCompressorType(vtkXMLWriter::LZ4);
+  });
+  EXPECT_THAT(complaint<Unsupported>([&] { read(content); }), HasSubstr("LZ4"));
+}
+
 std::string refusal(const std::string& content) {
   const TemporaryFolder folder;
   return complaint<FileError>(
@@ -121,16 +189,22 @@ TEST(VtpFile, RefusesDamage) {
   };
   EXPECT_THAT(refusal(polygons("0 1 5", "3")), HasSubstr("point 5 of 5"));
   EXPECT_THAT(refusal(polygons("0 1 -1", "3")), HasSubstr("point -1 of 5"));
-  EXPECT_THAT(refusal(polygons("0 1 2", "4")), HasSubstr("a.vtp"));
-  EXPECT_THAT(refusal(polygons("0 1 2", "-3")), HasSubstr("a.vtp"));
+  EXPECT_THAT(refusal(polygons("0 1 nan", "3")), HasSubstr("point nan of 5"));
+  EXPECT_THAT(refusal(polygons("0 1 2", "4")), HasSubstr("cell 0 ends at corner 4"));
+  EXPECT_THAT(refusal(polygons("0 1 2", "-3")), HasSubstr("corner -3"));
+  EXPECT_THAT(refusal(polygons("0 1 2", "")), HasSubstr("1 cells are announced"));
+  EXPECT_THAT(refusal(vtp(5, "NumberOfPolys=\"1\"", square, "")), HasSubstr("Polys are missing"));
+  EXPECT_THAT(refusal(vtp(6, "NumberOfPolys=\"1\"", square, "")), HasSubstr("6 points"));
+  EXPECT_THAT(refusal(vtp(5, "NumberOfPolys=\"1e99\"", square, "")), HasSubstr("1e99"));
   EXPECT_THAT(refusal(polygons("0 1", "2")), HasSubstr("no triangles"));
   EXPECT_THAT(refusal(vtp(3, "NumberOfPolys=\"1\"", "0 0 0 nan 0 0 0 1 0",
                           cells("Polys", "0 1 2", "3"))),
-              HasSubstr("a.vtp"));
+              HasSubstr("point 1 is not finite"));
   const std::string good = vtp_of_f("Float64");
   EXPECT_THAT(refusal(good.substr(0, good.size() / 2)), HasSubstr("cut off"));
-  EXPECT_THAT(refusal(good + "<AppendedData encoding=\"raw\">"), HasSubstr("appended"));
-  EXPECT_THAT(refusal("not XML"), HasSubstr("a.vtp"));
+  EXPECT_THAT(refusal(good + "<AppendedData encoding=\"raw\">"), HasSubstr("cut off"));
+  EXPECT_THAT(refusal("not XML"), HasSubstr("XML is broken"));
+  EXPECT_THAT(refusal("<VTKFile type=\"ImageData\"/>"), HasSubstr("type PolyData"));
 }
 
 }  // namespace

@@ -18,7 +18,7 @@ struct NamedMesh {
 };
 
 /// Reads STL (text and binary), OBJ, PLY (text and binary), OFF, glTF 2.0 (.gltf and .glb) or VTP
-/// (ParaView; not with appended data), by content and then by name. Polygons are fanned into triangles; equal vertices of a body are
+/// (ParaView), by content and then by name. Polygons are fanned into triangles; equal vertices of a body are
 /// merged. `unit_nm` (> 0) is the length of one file unit: by default 1 nm, as the formats carry
 /// none, and 1 m for glTF, whose specification says so.
 /// - OBJ: one body per material in use, with the object's name where all its faces lie in one.
@@ -29,7 +29,7 @@ struct NamedMesh {
 /// - VTP: polygons and strips; one body per text in an array "material" of the cells or points.
 /// - The others: one body, without a material.
 /// Throws FileError naming the file, the place and the remedy, Unsupported for compressed, skinned
-/// or morphed glTF and for VTP where this build lacks VTK; never returns NaN vertices, indices out of range or a body without triangles.
+/// or morphed glTF; never returns NaN vertices, indices out of range or a body without triangles.
 /// Closedness is not checked here.
 std::vector<NamedMesh> read_meshes(const std::filesystem::path& path,
                                    std::optional<double> unit_nm = {});
