@@ -19,9 +19,9 @@ semsurf_cli_test(info.mesh ARGS info cube.off open.off --unit um
 semsurf_cli_test(info.mesh_faults ARGS info open.off
   STDOUT "open: [0-9]+ boundary edge.* near \\(" "try +semsurf mesh open.off --repair -o open_repaired.ply")
 semsurf_cli_test(info.mesh_too_wide ARGS info cube.off --unit m
-  STDOUT "40.0 m wide; is --unit right. With --unit nm it would be 40.0 nm")
+  STDOUT "40.0 m wide; is --unit right. With --unit um it would be 40.0 um")
 semsurf_cli_test(info.mesh_too_narrow ARGS info cube.off --unit 0.01nm
-  STDOUT "400 pm wide; is --unit right. With --unit nm it would be 40.0 nm")
+  STDOUT "400 pm wide; is --unit right. With --unit um it would be 40.0 um")
 
 semsurf_cli_test(mesh.convert ARGS mesh cube.off -o cube.ply
   STDOUT "shape +closed, 12 triangles" "size +40.0 nm wide" WRITES cube.ply INFO cube.ply "40.0 nm wide")

@@ -70,12 +70,47 @@ HeightField make_trench_field(const TomlTable& table) {
   return make_trench(read_extent(table), depth, bottom, table.length_nm("wall_run").value_or(0));
 }
 
+HeightField make_line_field(const TomlTable& table) {
+  table.allow({"material", "edge", "shape", "width", "depth", "pitch", "height", "top_width",
+               "wall_run"});
+  const double height = required_length(table, "height", "a line has one");
+  const double top_width = required_length(table, "top_width", "a line has one");
+  return make_line(read_extent(table), height, top_width, table.length_nm("wall_run").value_or(0));
+}
+
+HeightField make_via_field(const TomlTable& table) {
+  table.allow({"material", "edge", "shape", "width", "depth", "pitch", "via_depth", "bottom_width",
+               "wall_run"});
+  const double depth = required_length(table, "via_depth", "a via has one");
+  const double bottom = required_length(table, "bottom_width", "a via has one");
+  return make_via(read_extent(table), depth, bottom, table.length_nm("wall_run").value_or(0));
+}
+
+HeightField make_step_field(const TomlTable& table) {
+  table.allow({"material", "edge", "shape", "width", "depth", "pitch", "height", "wall_run"});
+  const double height = required_length(table, "height", "a step has one");
+  return make_step(read_extent(table), height, table.length_nm("wall_run").value_or(0));
+}
+
+HeightField make_grating_field(const TomlTable& table) {
+  table.allow({"material", "edge", "shape", "width", "depth", "pitch", "height", "period",
+               "top_width", "wall_run"});
+  const double height = required_length(table, "height", "a grating has one");
+  const double period = required_length(table, "period", "a grating has one");
+  const double top_width = required_length(table, "top_width", "a grating has one");
+  return make_grating(read_extent(table), height, period, top_width,
+                      table.length_nm("wall_run").value_or(0));
+}
+
 HeightField make_rough_field(const TomlTable& table) {
   table.allow({"material", "edge", "shape", "width", "depth", "pitch", "rms", "correlation",
-               "seed"});
+               "hurst", "seed"});
   const double rms = required_length(table, "rms", "a rough surface has one");
   const double correlation = required_length(table, "correlation", "a rough surface has one");
   const auto seed = static_cast<std::uint64_t>(table.integer("seed").value_or(1));
+  if (const auto hurst = table.number("hurst")) {
+    return make_self_affine(read_extent(table), rms, correlation, *hurst, seed);
+  }
   return make_rough(read_extent(table), rms, correlation, seed);
 }
 
@@ -83,8 +118,12 @@ HeightField make_field(const TomlTable& table) {
   const std::string shape = *table.text("shape");
   if (shape == "mesa") return make_mesa_field(table);
   if (shape == "trench") return make_trench_field(table);
+  if (shape == "line") return make_line_field(table);
+  if (shape == "via") return make_via_field(table);
+  if (shape == "step") return make_step_field(table);
+  if (shape == "grating") return make_grating_field(table);
   if (shape == "rough") return make_rough_field(table);
-  refuse_shape(table, shape, {"mesa", "trench", "rough"});
+  refuse_shape(table, shape, {"mesa", "trench", "line", "via", "step", "grating", "rough"});
 }
 
 /// The nm of one unit of a height channel: "um", or a length such as "0.1nm".
@@ -121,7 +160,16 @@ TriangleMesh make_body(const TomlTable& table) {
                        required_length(table, "radius", "a sphere has one"),
                        small_integer(table, "subdivisions", 4));
   }
-  refuse_shape(table, shape, {"box", "sphere"});
+  if (shape == "cone") {
+    table.allow({"material", "name", "shape", "base", "bottom_radius", "top_radius", "height",
+                 "segments", "scale", "rotate_z", "move"});
+    return make_cone(table.point_nm("base").value_or(Vec3{}),
+                     required_length(table, "bottom_radius", "a cone has one"),
+                     table.length_nm("top_radius").value_or(0),
+                     required_length(table, "height", "a cone has one"),
+                     small_integer(table, "segments", 64));
+  }
+  refuse_shape(table, shape, {"box", "sphere", "cone"});
 }
 
 /// Counter-clockwise seen from above. Quarter turns are exact.

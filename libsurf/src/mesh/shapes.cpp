@@ -4,13 +4,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <functional>
 #include <numbers>
 
 #include "core/argument.h"
 #include "surf/core/error.h"
-#include "surf/core/parallel.h"
 
 namespace surf {
 namespace {
@@ -111,97 +110,6 @@ TriangleMesh split_sphere(const TriangleMesh& coarse) {
   return fine;
 }
 
-// ---- Height fields --------------------------------------------------------------------------
-
-int sample_count(double length_nm, double pitch_nm, const char* subject) {
-  require_positive(length_nm, subject);
-  const double count = std::round(length_nm / pitch_nm) + 1;
-  if (count >= 2 && count <= 65536) return static_cast<int>(count);
-  throw UsageError(subject,
-                   fmt::format("{} nm at a pitch of {} nm makes {:.6g} samples", length_nm,
-                               pitch_nm, count),
-                   "Choose both so that there are 2 to 65536");
-}
-
-HeightField flat_field(const FieldExtent& extent) {
-  require_positive(extent.pitch_nm, "pitch");
-  const int width = sample_count(extent.width_nm, extent.pitch_nm, "width");
-  const int height = sample_count(extent.depth_nm, extent.pitch_nm, "depth");
-  HeightField field;
-  field.z_nm = Grid<double>(width, height);
-  field.pitch_x_nm = field.pitch_y_nm = extent.pitch_nm;
-  field.origin_x_nm = -0.5 * (width - 1) * extent.pitch_nm;
-  field.origin_y_nm = -0.5 * (height - 1) * extent.pitch_nm;
-  return field;
-}
-
-/// Distance of a sample from the middle of the field; exactly the same on both sides.
-double from_middle(int index, int count, double pitch_nm) {
-  return std::abs(index - 0.5 * (count - 1)) * pitch_nm;
-}
-
-/// 1 up to `half_width_nm` from the middle, falling to 0 over `run_nm`.
-double ramp(double distance_nm, double half_width_nm, double run_nm) {
-  return std::clamp(1 - (distance_nm - half_width_nm) / run_nm, 0.0, 1.0);
-}
-
-// ---- Rough surface --------------------------------------------------------------------------
-
-// The finaliser of SplitMix64 (Steele, Lea, Flood, OOPSLA 2014, doi:10.1145/2660193.2660195).
-std::uint64_t mixed(std::uint64_t x) {
-  x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9u;
-  x = (x ^ (x >> 27)) * 0x94d049bb133111ebu;
-  return x ^ (x >> 31);
-}
-
-/// A standard normal number as a function of (seed, index), by Box and Muller.
-double normal_number(std::uint64_t seed, std::uint64_t index) {
-  constexpr std::uint64_t step = 0x9e3779b97f4a7c15u;
-  const std::uint64_t start = mixed(seed + step);
-  const auto uniform = [&](std::uint64_t i) {
-    return (static_cast<double>(mixed(start + (i + 1) * step) >> 11) + 0.5) * 0x1p-53;
-  };
-  return std::sqrt(-2 * std::log(uniform(2 * index))) *
-         std::cos(2 * std::numbers::pi * uniform(2 * index + 1));
-}
-
-/// The convolution of two equal kernels exp(-2 r^2 / L^2) is exp(-r^2 / L^2). At 3 L it is 2e-8.
-std::vector<double> kernel(double correlation_nm, double pitch_nm) {
-  const int reach = static_cast<int>(std::ceil(3 * correlation_nm / pitch_nm));
-  std::vector<double> weights;
-  for (int i = -reach; i <= reach; ++i) {
-    const double r = i * pitch_nm / correlation_nm;
-    weights.push_back(std::exp(-2 * r * r));
-  }
-  return weights;
-}
-
-/// Convolves every column with the weights, periodically, and returns the transpose: done twice, it
-/// smooths along both axes and the inner loop always runs along memory.
-Grid<double> smoothed_transpose(const Grid<double>& in, const std::vector<double>& weights) {
-  const int reach = static_cast<int>(weights.size() / 2);
-  const int width = in.width();
-  const int height = in.height();
-  Grid<double> out(height, width);
-  parallel_for(static_cast<std::size_t>(height), 0, [&](std::size_t unit, int) {
-    const int y = static_cast<int>(unit);
-    std::vector<double> sum(static_cast<std::size_t>(width), 0.0);
-    for (int k = -reach; k <= reach; ++k) {
-      const double* const row = &in(0, ((y + k) % height + height) % height);
-      const double weight = weights[static_cast<std::size_t>(k + reach)];
-      for (std::size_t x = 0; x < sum.size(); ++x) sum[x] += weight * row[x];
-    }
-    for (int x = 0; x < width; ++x) out(y, x) = sum[static_cast<std::size_t>(x)];
-  });
-  return out;
-}
-
-double mean(const std::vector<double>& values, const std::function<double(double)>& f) {
-  double sum = 0;
-  for (const double value : values) sum += f(value);
-  return sum / static_cast<double>(values.size());
-}
-
 }  // namespace
 
 TriangleMesh make_box(const Vec3& lower_nm, const Vec3& upper_nm, int subdivisions) {
@@ -230,65 +138,39 @@ TriangleMesh make_sphere(const Vec3& center_nm, double radius_nm, int subdivisio
   return mesh;
 }
 
-HeightField make_mesa(const FieldExtent& extent, double height_nm, double top_width_nm,
-                      double wall_run_nm) {
-  require_positive(height_nm, "height of the mesa");
-  require_positive(top_width_nm, "top width of the mesa");
-  require_not_negative(wall_run_nm, "wall run of the mesa");
-  HeightField field = flat_field(extent);
-  const double run_nm = wall_run_nm > 0 ? wall_run_nm : extent.pitch_nm;
-  Grid<double>& z = field.z_nm;
-  for (int row = 0; row < z.height(); ++row) {
-    for (int column = 0; column < z.width(); ++column) {
-      const double distance_nm = std::max(from_middle(column, z.width(), extent.pitch_nm),
-                                          from_middle(row, z.height(), extent.pitch_nm));
-      z(column, row) = height_nm * ramp(distance_nm, 0.5 * top_width_nm, run_nm);
+TriangleMesh make_cone(const Vec3& base_nm, double bottom_radius_nm, double top_radius_nm,
+                       double height_nm, int segments) {
+  require_range(segments, 3, 100000, "segments");
+  require_positive(bottom_radius_nm, "bottom radius");
+  require_not_negative(top_radius_nm, "top radius");
+  require_positive(height_nm, "height of the cone");
+  const auto n = static_cast<std::uint32_t>(segments);
+  TriangleMesh mesh;
+  const auto ring = [&](double radius, double z) {
+    for (std::uint32_t i = 0; i < n; ++i) {
+      const double angle = 2 * std::numbers::pi * i / n;
+      mesh.vertices_nm.push_back(base_nm + Vec3{radius * std::cos(angle), radius * std::sin(angle), z});
     }
-  }
-  return field;
-}
-
-HeightField make_trench(const FieldExtent& extent, double depth_nm, double bottom_width_nm,
-                        double wall_run_nm) {
-  require_positive(depth_nm, "depth of the trench");
-  require_positive(bottom_width_nm, "bottom width of the trench");
-  require_not_negative(wall_run_nm, "wall run of the trench");
-  HeightField field = flat_field(extent);
-  const double run_nm = wall_run_nm > 0 ? wall_run_nm : extent.pitch_nm;
-  Grid<double>& z = field.z_nm;
-  for (int row = 0; row < z.height(); ++row) {
-    for (int column = 0; column < z.width(); ++column) {
-      const double distance_nm = from_middle(column, z.width(), extent.pitch_nm);
-      z(column, row) = 0.0 - depth_nm * ramp(distance_nm, 0.5 * bottom_width_nm, run_nm);
+  };
+  ring(bottom_radius_nm, 0);
+  const bool tip = top_radius_nm == 0;
+  if (!tip) ring(top_radius_nm, height_nm);
+  const auto bottom = static_cast<std::uint32_t>(mesh.vertices_nm.size());
+  mesh.vertices_nm.push_back(base_nm);
+  mesh.vertices_nm.push_back(base_nm + Vec3{0, 0, height_nm});
+  const std::uint32_t top = bottom + 1;
+  for (std::uint32_t i = 0; i < n; ++i) {
+    const std::uint32_t next = (i + 1) % n;
+    mesh.triangles.push_back({bottom, next, i});
+    if (tip) {
+      mesh.triangles.push_back({i, next, top});
+      continue;
     }
+    mesh.triangles.push_back({i, next, n + next});
+    mesh.triangles.push_back({i, n + next, n + i});
+    mesh.triangles.push_back({top, n + i, n + next});
   }
-  return field;
-}
-
-HeightField make_rough(const FieldExtent& extent, double rms_nm, double correlation_nm,
-                       std::uint64_t seed) {
-  require_positive(rms_nm, "rms height");
-  require_positive(correlation_nm, "correlation length");
-  HeightField field = flat_field(extent);
-  const double period_nm = std::min(field.z_nm.width(), field.z_nm.height()) * extent.pitch_nm;
-  if (correlation_nm > 0.5 * period_nm) {
-    throw UsageError("correlation length",
-                     fmt::format("{} nm is more than half of the field's {} nm", correlation_nm,
-                                 period_nm),
-                     "A periodic surface cannot vary that slowly: enlarge the field");
-  }
-
-  std::vector<double>& z = field.z_nm.data();
-  for (std::size_t i = 0; i < z.size(); ++i) z[i] = normal_number(seed, i);
-  const std::vector<double> weights = kernel(correlation_nm, extent.pitch_nm);
-  field.z_nm = smoothed_transpose(smoothed_transpose(field.z_nm, weights), weights);
-
-  std::vector<double>& smooth = field.z_nm.data();
-  const double offset = mean(smooth, [](double v) { return v; });
-  for (double& v : smooth) v -= offset;
-  const double factor = rms_nm / std::sqrt(mean(smooth, [](double v) { return v * v; }));
-  for (double& v : smooth) v *= factor;
-  return field;
+  return mesh;
 }
 
 }  // namespace surf

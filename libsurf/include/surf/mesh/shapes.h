@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <vector>
 
 #include "surf/core/height_field.h"
 #include "surf/mesh/triangle_mesh.h"
@@ -16,6 +17,12 @@ TriangleMesh make_box(const Vec3& lower_nm, const Vec3& upper_nm, int subdivisio
 /// A sphere of flat triangles with corners on the sphere: an icosahedron split `subdivisions`
 /// times (0 to 9), 20 * 4^subdivisions triangles.
 TriangleMesh make_sphere(const Vec3& center_nm, double radius_nm, int subdivisions = 4);
+
+/// A cone on its base, cut off at the top: `bottom_radius_nm` at z = base, `top_radius_nm` (>= 0; 0 is
+/// a tip) `height_nm` above it, about a vertical axis through `base_nm`. `segments` (3 to 100,000)
+/// flat sides with their edges on the cone.
+TriangleMesh make_cone(const Vec3& base_nm, double bottom_radius_nm, double top_radius_nm,
+                       double height_nm, int segments = 64);
 
 /// Size and sampling of a height field centred on (0, 0).
 struct FieldExtent {
@@ -34,10 +41,50 @@ HeightField make_mesa(const FieldExtent& extent, double height_nm, double top_wi
 HeightField make_trench(const FieldExtent& extent, double depth_nm, double bottom_width_nm,
                         double wall_run_nm);
 
+/// A line along y on a plane at z = 0, `top_width_nm` wide at the top, `height_nm` high, each wall
+/// running outwards by `wall_run_nm` (>= 0; 0 means one pitch).
+HeightField make_line(const FieldExtent& extent, double height_nm, double top_width_nm,
+                      double wall_run_nm);
+
+/// A round hole in a plane at z = 0, `bottom_width_nm` across at the bottom, `depth_nm` deep, its
+/// wall running outwards by `wall_run_nm` (>= 0; 0 means one pitch).
+HeightField make_via(const FieldExtent& extent, double depth_nm, double bottom_width_nm,
+                     double wall_run_nm);
+
+/// A step along y: 0 left of the middle, `height_nm` right of it, the wall centred on the middle and
+/// `wall_run_nm` (>= 0; 0 means one pitch) long.
+HeightField make_step(const FieldExtent& extent, double height_nm, double wall_run_nm);
+
+/// Lines along y as of make_line, `period_nm` apart, one of them in the middle. The period must
+/// exceed the width at the foot.
+HeightField make_grating(const FieldExtent& extent, double height_nm, double period_nm,
+                         double top_width_nm, double wall_run_nm);
+
 /// A Gaussian rough surface of zero mean: root-mean-square height `rms_nm`, Gaussian
 /// autocorrelation exp(-r^2 / L^2) with L = `correlation_nm`; periodic over the extent plus one
 /// pitch, so that `periodic` edges are seamless. The same `seed` gives the same surface.
 HeightField make_rough(const FieldExtent& extent, double rms_nm, double correlation_nm,
                        std::uint64_t seed);
+
+/// A self-affine rough surface of zero mean: power spectral density proportional to
+/// (1 + (2 pi f L)^2)^-(1 + H) at the spatial frequency f, with L = `correlation_nm` and the Hurst
+/// exponent H = `hurst` in (0, 1] (Palasantzas 1993, doi:10.1103/PhysRevB.48.14472); scaled to the
+/// root-mean-square height `rms_nm`. Periodic, seed and limits as of make_rough.
+HeightField make_self_affine(const FieldExtent& extent, double rms_nm, double correlation_nm,
+                             double hurst, std::uint64_t seed);
+
+/// A value of a two-dimensional, isotropic power spectral density: its integral over the plane of
+/// frequencies is the mean square height.
+struct SpectralDensity {
+  double frequency_per_nm;   ///< cycles per nm, > 0
+  double density_nm4;        ///< >= 0
+};
+
+/// A Gaussian rough surface of zero mean with a tabulated spectrum: frequencies rising, at least
+/// two; straight lines in between, 0 outside. Its mean square height scatters about the spectrum's,
+/// as a piece cut from an endless surface does. Periodic and seed as of make_rough.
+HeightField make_rough_from_spectrum(const FieldExtent& extent,
+                                     const std::vector<SpectralDensity>& spectrum,
+                                     std::uint64_t seed);
 
 }  // namespace surf

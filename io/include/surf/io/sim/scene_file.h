@@ -59,7 +59,12 @@ struct SceneFile {
 ///     edge = "mirror"            # mirror | flat | periodic
 ///     shape = "mesa"             # height, top_width, wall_run = 0; or
 ///                                # "trench": trench_depth, bottom_width, wall_run = 0; or
-///                                # "rough": rms, correlation, seed = 1;
+///                                # "line": height, top_width, wall_run = 0; or
+///                                # "via": via_depth, bottom_width, wall_run = 0; or
+///                                # "step": height, wall_run = 0; or
+///                                # "grating": height, period, top_width, wall_run = 0; or
+///                                # "rough": rms, correlation, seed = 1; Gaussian, or with
+///                                # hurst = 0.8 (0 to 1) self-affine;
 ///                                # all: width = 400, depth = width, pitch = 2 (see FieldExtent)
 ///     # or, instead of shape:
 ///     # file = "scan.tif"        # channel: the first; z_unit = "nm" or a length per grey level;
@@ -72,7 +77,9 @@ struct SceneFile {
 ///                                # materials = { "name in the file" = "Au" }, else `material`
 ///     # or, instead of mesh:
 ///     # shape = "box"            # lower = [x, y, z], upper, subdivisions = 1; or
-///                                # "sphere": radius, center = [0, 0, 0], subdivisions = 4
+///                                # "sphere": radius, center = [0, 0, 0], subdivisions = 4; or
+///     #                          # "cone": bottom_radius, height, top_radius = 0,
+///     #                          # base = [0, 0, 0], segments = 64
 ///     # any body is then scaled about the origin, turned about z (counter-clockwise seen from
 ///     # above) and moved, in this order: scale = 1, rotate_z = 0, move = [0, 0, 0]
 SceneFile read_scene(const std::filesystem::path& path);
