@@ -22,13 +22,13 @@ Examples:
 
 void add_specimen_options(CLI::App& app, SceneOptions& o) {
   app.add_option("INPUT", o.inputs,
-                 "Meshes (STL, OBJ, PLY, OFF), a height field (EXR, TIFF, PNG, VTI)\n"
-                 "or one scene file (TOML)")
+                 "Meshes (STL, OBJ, PLY, OFF, glTF, VTP), a height field (EXR, TIFF,\n"
+                 "PNG, VTI) or one scene file (TOML)")
       ->type_name("FILE");
   const char* group = "Specimen";
   app.add_option("--material", o.material, "What meshes and height field are made of (Si)")
       ->type_name("MATERIAL")->group(group);
-  app.add_option("--unit", o.unit, "Length of one unit of the mesh files (nm)")
+  app.add_option("--unit", o.unit, "Length of one unit of the mesh files (nm; glTF: m)")
       ->type_name("nm|um|mm|m|pm|A|in")->group(group);
   app.add_option("--substrate", o.substrate, "Add a half-space below the bodies")
       ->type_name("MATERIAL")->group(group);
