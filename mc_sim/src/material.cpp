@@ -11,6 +11,8 @@ namespace surf::mc {
 
 namespace {
 
+constexpr double avogadro_cm3_per_nm3 = 602.214076;   // N_A in 1/mol, times cm^3 per nm^3
+
 [[noreturn]] void fail(const Material& m, const std::string& reason) {
   throw InvalidInput("material " + (m.name.empty() ? "(no name)" : m.name), reason,
                      "Correct the material's definition");
@@ -38,6 +40,8 @@ void validate(const Material& m) {
     sum += c.weight_fraction;
   }
   require(m, std::fabs(sum - 1) < 1e-6, "the sum of weight fractions", sum, "1");
+  require(m, positive(m.formula_weight_g_mol), "formula_weight_g_mol", m.formula_weight_g_mol,
+          "positive");
   require(m, positive(m.work_function_ev), "work_function_ev", m.work_function_ev, "positive");
   require(m, not_negative(m.barrier_ev), "barrier_ev", m.barrier_ev, "0 or more");
   require(m, not_negative(m.valence_electrons), "valence_electrons", m.valence_electrons,
@@ -49,8 +53,15 @@ void validate(const Material& m) {
 }
 
 double number_density_per_nm3(const Material& m, const Constituent& c) {
-  constexpr double per_nm3 = 602.214076;   // N_A in atoms per mol, times cm^3 per nm^3
-  return per_nm3 * m.density_g_cm3 * c.weight_fraction / c.atomic_weight;
+  return avogadro_cm3_per_nm3 * m.density_g_cm3 * c.weight_fraction / c.atomic_weight;
+}
+
+double atoms_per_formula_unit(const Material& m, const Constituent& c) {
+  return m.formula_weight_g_mol * c.weight_fraction / c.atomic_weight;
+}
+
+double formula_units_per_nm3(const Material& m) {
+  return avogadro_cm3_per_nm3 * m.density_g_cm3 / m.formula_weight_g_mol;
 }
 
 }  // namespace surf::mc

@@ -10,7 +10,6 @@ namespace surf::mc {
 namespace {
 
 constexpr double pi_e4_ev2_nm2 = 6.5141e-14 * 1e14;
-constexpr double atoms_per_mol_per_nm3_per_g_cm3 = 602.214076;   // N_A * 1e-21
 
 // Collisions with valence electrons, as in MONSEL (Lowney, Scanning 18, 301 (1996); Reimer 1985).
 // E is the energy above the highest filled level, eps = dE / E the fraction handed over:
@@ -73,13 +72,8 @@ class Moller final : public Scattering {
 }  // namespace
 
 std::unique_ptr<const Scattering> make_moller(const Material& material, const Physics& physics) {
-  double formula_weight = 0;   // mean over atoms: elements carry their valence per atom
-  for (const Constituent& c : material.constituents)
-    formula_weight += c.weight_fraction / c.atomic_weight;
-  const double density = atoms_per_mol_per_nm3_per_g_cm3 * material.density_g_cm3 *
-                         formula_weight * material.valence_electrons;
-  return std::make_unique<Moller>(density, material.work_function_ev,
-                                  filled_level_ev(material, physics));
+  return std::make_unique<Moller>(formula_units_per_nm3(material) * material.valence_electrons,
+                                  material.work_function_ev, filled_level_ev(material, physics));
 }
 
 }  // namespace surf::mc

@@ -8,6 +8,7 @@
 #include "mechanisms.h"
 #include "mott_data.h"
 #include "surf/core/error.h"
+#include "surf/mc/element.h"
 #include "surf/mc/medium.h"
 
 namespace surf::mc {
@@ -21,6 +22,13 @@ const MottElement* find_mott_element(int atomic_number) {
 bool has_mott_table(int atomic_number) { return find_mott_element(atomic_number) != nullptr; }
 
 namespace {
+
+std::string symbols_with_tables() {
+  std::string symbols;
+  for (const MottElement& e : mott_elements())
+    symbols += fmt::format("{}{}", symbols.empty() ? "" : ", ", element(e.atomic_number).symbol);
+  return symbols;
+}
 
 // Elastic scattering by one element from partial-wave tables. Cross-sections are interpolated
 // log-log. For the angle one of the two neighbouring tables is drawn, with the probability of the
@@ -116,12 +124,14 @@ class Mott final : public Scattering {
 }  // namespace
 
 std::unique_ptr<const Scattering> make_mott(const Material& material, const Constituent& c) {
-  const MottElement* element = find_mott_element(c.atomic_number);
-  if (!element)
+  const MottElement* tables = find_mott_element(c.atomic_number);
+  if (!tables)
     throw InvalidInput("material " + material.name,
-                       fmt::format("there is no Mott table for Z = {}", c.atomic_number),
-                       "Use --physics elastic=browning");
-  return std::make_unique<Mott>(*element, number_density_per_nm3(material, c));
+                       fmt::format("there is no Mott table for {} (Z = {}), only for {}",
+                                   element(c.atomic_number).symbol, c.atomic_number,
+                                   symbols_with_tables()),
+                       "Use --physics elastic=browning, which needs none");
+  return std::make_unique<Mott>(*tables, number_density_per_nm3(material, c));
 }
 
 }  // namespace surf::mc

@@ -14,19 +14,27 @@ struct Constituent {
   double mean_ionization_ev = 0;  ///< J of the Joy-Luo loss, > 0
 };
 
+/// A value that was not given but follows from a rule.
+struct EstimatedValue {
+  std::string field;   ///< of Material, "plasmon_ev"
+  std::string rule;    ///< in words; completes "estimated: "
+};
+
 /// A homogeneous, isotropic solid. Energies inside are kinetic energies above the bottom of the
 /// conduction band; outside they count from the vacuum level. Plain data; `validate` checks it.
 struct Material {
   std::string name;
   double density_g_cm3 = 0;             ///< > 0
   std::vector<Constituent> constituents;
+  double formula_weight_g_mol = 0;      ///< of what `valence_electrons` counts for: SiO2, one Si atom
   double work_function_ev = 0;          ///< W: highest filled level to vacuum, > 0
   double barrier_ev = 0;                ///< U0: bottom of the conduction band to vacuum, >= 0
-  double valence_electrons = 0;         ///< per formula unit, for Moeller scattering, >= 0
+  double valence_electrons = 0;         ///< in `formula_weight_g_mol`, for Moeller scattering, >= 0
   double plasmon_ev = 0;                ///< bulk plasmon energy, 0: no plasmon events
   double loss_join_ev = 0;              ///< E_b: below it the loss continues as E^(5/2), > U0 + 1 eV
   bool loss_join_fitted = false;        ///< whether E_b was fitted to measured SE yields
   std::string sources;                  ///< where the numbers come from
+  std::vector<EstimatedValue> estimates;      ///< which of the numbers are estimates, and how
 };
 
 /// Throws InvalidInput naming the material and the field.
@@ -34,6 +42,12 @@ void validate(const Material& material);
 
 /// Atoms per nm^3 of one constituent.
 double number_density_per_nm3(const Material& material, const Constituent& constituent);
+
+/// Atoms of one constituent in the formula unit.
+double atoms_per_formula_unit(const Material& material, const Constituent& constituent);
+
+/// Formula units per nm^3.
+double formula_units_per_nm3(const Material& material);
 
 /// Whether the built-in Mott tables hold this element.
 bool has_mott_table(int atomic_number);
