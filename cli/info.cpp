@@ -7,6 +7,7 @@
 
 #include "commands.h"
 #include "options.h"
+#include "terminal.h"
 #include "surf/core/error.h"
 #include "surf/core/units.h"
 #include "surf/io/image_file.h"
@@ -70,8 +71,10 @@ void print_scan(const io::SceneFile& scene) {
                                       1e-6 * double(electrons) * scan.width * scan.height));
 }
 
-void print_scene(const std::filesystem::path& path) {
-  const io::SceneFile scene = io::read_scene(path);
+void print_scene(const std::filesystem::path& path,
+                 const std::vector<std::filesystem::path>& material_files) {
+  const io::SceneFile scene = io::read_scene(path, material_files);
+  for (const std::string& note : scene.notes) print_note(note);
   mc::validate(scene.specimen);
   fmt::print("{}: scene{}\n", path.string(),
              scene.title.empty() ? "" : ", \"" + scene.title + "\"");
@@ -85,8 +88,9 @@ void print_scene(const std::filesystem::path& path) {
   }
 }
 
-void print_info(const std::filesystem::path& path, std::optional<double> unit_nm) {
-  if (io::is_scene_file(path)) return print_scene(path);
+void print_info(const std::filesystem::path& path, std::optional<double> unit_nm,
+                const std::vector<std::filesystem::path>& material_files) {
+  if (io::is_scene_file(path)) return print_scene(path, material_files);
   if (io::is_image_file(path)) return print_image(path);
   print_mesh(path, unit_nm);
 }
@@ -113,12 +117,16 @@ void add_info(CLI::App& app, Action& action) {
   struct Options {
     std::vector<std::string> files;
     std::optional<std::string> unit;
+    std::vector<std::string> materials;
   };
   const auto options = std::make_shared<Options>();
   CLI::App* sub = app.add_subcommand("info", "What is in meshes, images and scene files");
   sub->add_option("FILE", options->files, "Meshes, images or scenes")->type_name("FILE");
   sub->add_option("--unit", options->unit, "Length of one unit of the mesh files (nm; glTF: m)")
       ->type_name("nm|um|mm|m|pm|A|in");
+  sub->add_option("--materials", options->materials,
+                  "Your own materials for the scene files (TOML); may be repeated")
+      ->type_name("FILE")->option_text("FILE")->allow_extra_args(false);
   sub->group("Commands");
   sub->footer(examples);
   sub->callback([options, &action] {
@@ -127,7 +135,8 @@ void add_info(CLI::App& app, Action& action) {
         throw UsageError("info", "no file is given", "Give meshes, images or scene files");
       std::optional<double> unit_nm;
       if (options->unit) unit_nm = parse_unit_nm(*options->unit, "--unit");
-      for (const std::string& file : options->files) print_info(file, unit_nm);
+      for (const std::string& file : options->files)
+        print_info(file, unit_nm, {options->materials.begin(), options->materials.end()});
       return 0;
     };
   });

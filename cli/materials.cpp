@@ -1,70 +1,123 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <memory>
 
 #include "commands.h"
 #include "surf/core/units.h"
 #include "surf/io/sim/materials.h"
+#include "surf/mc/element.h"
+#include "terminal.h"
 
 namespace surf::cli {
 namespace {
 
 constexpr const char* examples = R"(Examples:
-  semsurf materials         the table
-  semsurf materials Si      every number of silicon, with its source)";
+  semsurf materials                                    the table
+  semsurf materials Si                                 every number of silicon, with its source
+  semsurf materials nitride --materials mine.toml      your own, and what is estimated
+A file of your own materials:
+  [[material]]
+  name = "nitride"
+  formula = "Si3N4"
+  density_g_cm3 = 3.17
+  band_gap_ev = 5.3)";
 
-void print_table() {
-  fmt::print("{:<8} {:>8} {:>10} {:>10} {:>10} {:>8}  {}\n", "name", "g/cm^3", "work, eV",
-             "barrier, eV", "plasmon, eV", "E_b, eV", "SE yield");
-  for (const mc::Material& m : io::builtin_materials())
-    fmt::print("{:<8} {:>8} {:>10} {:>11} {:>11} {:>8}  {}\n", m.name, m.density_g_cm3,
-               m.work_function_ev, m.barrier_ev,
-               m.plasmon_ev > 0 ? format_exact(m.plasmon_ev) : "none", m.loss_join_ev,
-               m.loss_join_fitted ? "fitted" : "unfitted");
+const std::string* estimate_of(const mc::Material& m, const char* field) {
+  for (const mc::EstimatedValue& e : m.estimates)
+    if (e.field == field) return &e.rule;
+  return nullptr;
+}
+
+const char* how_fitted(const mc::Material& m) {
+  if (m.loss_join_fitted) return "fitted";
+  return estimate_of(m, "loss_join_ev") ? "estimated" : "unfitted";
+}
+
+void print_table(const std::vector<mc::Material>& materials) {
+  std::size_t width = 8;
+  for (const mc::Material& m : materials) width = std::max(width, m.name.size());
+  fmt::print("{:<{}}  {:>7}  {:>9}  {:>11}  {:>11}  {:>8}  {}\n", "name", width, "g/cm^3",
+             "work, eV ", "barrier, eV ", "plasmon, eV ", "E_b, eV ", "SE yield");
+  bool any = false;
+  for (const mc::Material& m : materials) {
+    const auto number = [&](double value, const char* field) {
+      const bool estimated = estimate_of(m, field);
+      any |= estimated;
+      return fmt::format("{:.4g}{}", value, estimated ? "*" : " ");
+    };
+    fmt::print("{:<{}}  {:>7.5g}  {:>9}  {:>12}  {:>12}  {:>8}  {}\n", m.name, width,
+               m.density_g_cm3, number(m.work_function_ev, "work_function_ev"),
+               number(m.barrier_ev, "barrier_ev"),
+               m.plasmon_ev > 0 ? number(m.plasmon_ev, "plasmon_ev") : "none ",
+               number(m.loss_join_ev, "loss_join_ev"), how_fitted(m));
+  }
+  if (any) fmt::print("* estimated; 'semsurf materials NAME' says how\n");
+}
+
+void print_line(const char* label, const std::string& value, const char* unit) {
+  fmt::print("  {:<38} {}{}{}\n", label, value, *unit ? " " : "", unit);
 }
 
 void print_material(const mc::Material& m) {
-  const auto line = [](const char* label, const std::string& value, const char* unit) {
-    fmt::print("  {:<38} {}{}{}\n", label, value, *unit ? " " : "", unit);
+  const auto line = [&](const char* label, double value, const char* unit, const char* field) {
+    const std::string* const rule = estimate_of(m, field);
+    print_line(label, rule ? fmt::format("{:.5g}", value) : format_exact(value), unit);
+    if (rule) fmt::print("    estimated: {}\n", *rule);
   };
   fmt::print("{}\n", m.name);
-  line("density", format_exact(m.density_g_cm3), "g/cm^3");
-  line("work function W", format_exact(m.work_function_ev), "eV");
-  line("surface barrier U0", format_exact(m.barrier_ev), "eV");
-  line("valence electrons per formula unit", format_exact(m.valence_electrons), "");
-  line("plasmon energy", m.plasmon_ev > 0 ? format_exact(m.plasmon_ev) : "none",
-       m.plasmon_ev > 0 ? "eV" : "");
-  line("E_b, where the low-energy loss joins",
-       format_exact(m.loss_join_ev) + " eV" +
-           (m.loss_join_fitted ? " (fitted to measured SE yields)" : " (unfitted)"), "");
+  line("density", m.density_g_cm3, "g/cm^3", "density_g_cm3");
+  line("work function W", m.work_function_ev, "eV", "work_function_ev");
+  line("surface barrier U0", m.barrier_ev, "eV", "barrier_ev");
+  line("valence electrons per formula unit", m.valence_electrons, "", "valence_electrons");
+  if (m.plasmon_ev > 0)
+    line("plasmon energy", m.plasmon_ev, "eV", "plasmon_ev");
+  else
+    print_line("plasmon energy", "none", "");
+  line("E_b, where the low-energy loss joins", m.loss_join_ev,
+       m.loss_join_fitted ? "eV (fitted to measured SE yields)" : "eV (unfitted)", "loss_join_ev");
   for (const mc::Constituent& c : m.constituents) {
-    fmt::print("  element Z = {}, {:.4g} % of the mass\n", c.atomic_number,
-               100 * c.weight_fraction);
-    line("  atomic weight", format_exact(c.atomic_weight), "g/mol");
-    line("  mean ionization energy J", format_exact(c.mean_ionization_ev), "eV");
-    line("  atoms", fmt::format("{:.4g}", mc::number_density_per_nm3(m, c)), "per nm^3");
-    line("  Mott table", mc::has_mott_table(c.atomic_number) ? "yes" : "no", "");
+    fmt::print("  {}, Z = {}, {:.4g} % of the mass, {:.4g} per formula unit\n",
+               mc::element(c.atomic_number).symbol, c.atomic_number, 100 * c.weight_fraction,
+               mc::atoms_per_formula_unit(m, c));
+    print_line("  atomic weight", format_exact(c.atomic_weight), "g/mol");
+    print_line("  mean ionization energy J", fmt::format("{:.5g}", c.mean_ionization_ev), "eV");
+    print_line("  atoms", fmt::format("{:.4g}", mc::number_density_per_nm3(m, c)), "per nm^3");
+    print_line("  Mott table", mc::has_mott_table(c.atomic_number)
+                                   ? "yes" : "no: use --physics elastic=browning", "");
   }
   if (!m.sources.empty()) fmt::print("  sources: {}\n", m.sources);
+}
+
+int print_materials(const std::string& name, const std::vector<std::string>& files) {
+  io::MaterialLibrary library;
+  std::vector<std::string> notes;
+  for (const std::string& file : files) library.read(file, notes);
+  for (const std::string& note : notes) print_note(note);
+  if (name.empty())
+    print_table(library.all());
+  else
+    print_material(library.find(name, "materials"));
+  return 0;
 }
 
 }  // namespace
 
 void add_materials(CLI::App& app, Action& action) {
-  const auto name = std::make_shared<std::string>();
-  CLI::App* sub = app.add_subcommand("materials", "The built-in materials and their numbers");
-  sub->add_option("NAME", *name, "Show this one, with sources")->type_name("MATERIAL");
+  struct Options {
+    std::string name;
+    std::vector<std::string> files;
+  };
+  const auto options = std::make_shared<Options>();
+  CLI::App* sub = app.add_subcommand("materials", "The materials and their numbers");
+  sub->add_option("NAME", options->name, "Show this one, with sources")->type_name("MATERIAL");
+  sub->add_option("--materials", options->files, "Your own materials (TOML); may be repeated")
+      ->type_name("FILE")->option_text("FILE")->allow_extra_args(false);
   sub->group("Commands");
   sub->footer(examples);
-  sub->callback([name, &action] {
-    action = [name] {
-      if (name->empty())
-        print_table();
-      else
-        print_material(io::find_material(*name, "materials"));
-      return 0;
-    };
+  sub->callback([options, &action] {
+    action = [options] { return print_materials(options->name, options->files); };
   });
 }
 

@@ -18,9 +18,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-int material_index(mc::Specimen& specimen, const std::string& name, const std::string& subject) {
-  const mc::Material& material = io::find_material(name, subject);
-  auto& all = specimen.materials;
+int material_index(io::SceneFile& scene, const std::string& name, const std::string& subject) {
+  const mc::Material& material = scene.materials.find(name, subject);
+  auto& all = scene.specimen.materials;
   const auto found = std::find_if(all.begin(), all.end(),
                                   [&](const mc::Material& m) { return m.name == material.name; });
   if (found != all.end()) return static_cast<int>(found - all.begin());
@@ -74,8 +74,12 @@ void add_mesh_bodies(const std::string& input, std::optional<double> unit_nm,
 
 io::SceneFile scene_from_shapes(const SceneOptions& options, std::vector<std::string>& notes) {
   io::SceneFile scene;
+  for (const std::string& file : options.materials) {
+    scene.materials.read(file, scene.notes);
+    scene.inputs.push_back(file);
+  }
   const int material =
-      material_index(scene.specimen, options.material.value_or("Si"), "--material");
+      material_index(scene, options.material.value_or("Si"), "--material");
   if (!options.material) notes.push_back("no --material is given: Si");
   std::optional<double> unit_nm;
   if (options.unit) unit_nm = parse_unit_nm(*options.unit, "--unit");
@@ -113,13 +117,15 @@ io::SceneFile scene_from_file(const SceneOptions& options) {
   refuse(options.unit, "--unit");
   refuse(options.pitch, "--pitch");
   refuse(options.z_unit, "--z-unit");
-  return io::read_scene(options.inputs.front());
+  return io::read_scene(options.inputs.front(),
+                        {options.materials.begin(), options.materials.end()});
 }
 
-void apply_specimen(const SceneOptions& options, mc::Specimen& specimen) {
+void apply_specimen(const SceneOptions& options, io::SceneFile& scene) {
+  mc::Specimen& specimen = scene.specimen;
   if (options.substrate) {
     if (!specimen.substrate) specimen.substrate.emplace();
-    specimen.substrate->material = material_index(specimen, *options.substrate, "--substrate");
+    specimen.substrate->material = material_index(scene, *options.substrate, "--substrate");
   }
   if (options.substrate_z) {
     if (!specimen.substrate)
@@ -192,7 +198,8 @@ io::SceneFile make_scene(const SceneOptions& options, std::vector<std::string>& 
   const bool from_file = options.inputs.size() == 1 && io::is_scene_file(options.inputs.front());
   io::SceneFile scene =
       from_file ? scene_from_file(options) : scene_from_shapes(options, notes);
-  apply_specimen(options, scene.specimen);
+  notes.insert(notes.end(), scene.notes.begin(), scene.notes.end());
+  apply_specimen(options, scene);
   apply_beam(options, scene.beam);
   apply_dose(options, scene);
   add_detectors(options, scene);

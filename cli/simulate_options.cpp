@@ -16,6 +16,7 @@ Examples:
   semsurf simulate cube.stl --substrate Si --tilt 40 -o cube.exr -o cube.png
   semsurf simulate grain.ply --unit um --material Au --energy 5keV --pixel-size 5nm -o grain.tif
   semsurf simulate samples/mesa80.toml --electrons 1000 --seed 2 -o mesa.vti
+  semsurf simulate cube.stl --materials mine.toml --material nitride -o nitride.exr
   semsurf simulate afm.tif --pitch 2nm --z-unit 0.1nm --edge mirror -o sem.exr
   semsurf simulate cube.stl --size 64x64 --region -96,-96,96,96 \
       --physics elastic=browning,secondaries=off -o bse.exr)";
@@ -28,6 +29,8 @@ void add_specimen_options(CLI::App& app, SceneOptions& o) {
   const char* group = "Specimen";
   app.add_option("--material", o.material, "What meshes and height field are made of (Si)")
       ->type_name("MATERIAL")->group(group);
+  app.add_option("--materials", o.materials, "Your own materials (TOML); may be repeated")
+      ->type_name("FILE")->option_text("FILE")->allow_extra_args(false)->group(group);
   app.add_option("--unit", o.unit, "Length of one unit of the mesh files (nm; glTF: m)")
       ->type_name("nm|um|mm|m|pm|A|in")->group(group);
   app.add_option("--substrate", o.substrate, "Add a half-space below the bodies")

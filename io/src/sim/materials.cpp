@@ -3,76 +3,83 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
+#include "sim/material_tables.h"
 #include "sim/materials_data.h"
 #include "sim/suggest.h"
-#include "sim/toml_table.h"
 #include "surf/core/error.h"
+#include "surf/io/files.h"
 
 namespace surf::io {
 namespace {
 
-double required(const TomlTable& table, std::string_view key) {
-  table.require(key, "every material has it");
-  return *table.number(key);
-}
+constexpr std::size_t max_file_bytes = std::size_t{16} << 20;
 
-int whole(const TomlTable& table, std::string_view key) {
-  table.require(key, "every element has it");
-  return static_cast<int>(*table.integer(key));
-}
-
-mc::Constituent read_element(const TomlTable& table) {
-  table.allow({"Z", "A", "weight_fraction", "J_ev"});
-  return {.atomic_number = whole(table, "Z"),
-          .atomic_weight = required(table, "A"),
-          .weight_fraction = table.number("weight_fraction").value_or(1),
-          .mean_ionization_ev = required(table, "J_ev")};
-}
-
-mc::Material read_material(const TomlTable& table) {
-  table.allow({"name", "density_g_cm3", "elements", "work_function_ev", "barrier_ev",
-               "valence_electrons", "plasmon_ev", "loss_join_ev", "loss_join_fitted", "sources"});
-  table.require("name", "every material has one");
-  mc::Material material;
-  material.name = *table.text("name");
-  material.density_g_cm3 = required(table, "density_g_cm3");
-  for (const TomlTable& element : table.tables("elements")) {
-    material.constituents.push_back(read_element(element));
-  }
-  material.work_function_ev = required(table, "work_function_ev");
-  material.barrier_ev = required(table, "barrier_ev");
-  material.valence_electrons = required(table, "valence_electrons");
-  material.plasmon_ev = table.number("plasmon_ev").value_or(0);
-  material.loss_join_ev = required(table, "loss_join_ev");
-  material.loss_join_fitted = table.flag("loss_join_fitted").value_or(false);
-  material.sources = table.text("sources").value_or("");
-  mc::validate(material);
-  return material;
-}
-
-std::vector<mc::Material> read_materials() {
+std::vector<mc::Material> read_builtin_materials() {
   const TomlTable root = TomlTable::parse(materials_toml, "materials.toml");
   root.allow({"material"});
-  std::vector<mc::Material> materials;
-  for (const TomlTable& table : root.tables("material")) materials.push_back(read_material(table));
-  return materials;
+  return read_material_tables(root, {});
+}
+
+const mc::Material& find_in(const std::vector<mc::Material>& materials, const std::string& name,
+                            const std::string& subject) {
+  std::vector<std::string> names;
+  for (const mc::Material& material : materials) {
+    if (material.name == name) return material;
+    names.push_back(material.name);
+  }
+  throw UsageError(subject, fmt::format("there is no material '{}'", name),
+                   fmt::format("Choose one of: {}. Or describe it in a file and add --materials "
+                               "FILE.toml",
+                               join(nearest_first(name, std::move(names)))));
 }
 
 }  // namespace
 
 const std::vector<mc::Material>& builtin_materials() {
-  static const std::vector<mc::Material> materials = read_materials();
+  static const std::vector<mc::Material> materials = read_builtin_materials();
   return materials;
 }
 
 const mc::Material& find_material(const std::string& name, const std::string& subject) {
-  std::vector<std::string> names;
-  for (const mc::Material& material : builtin_materials()) {
-    if (material.name == name) return material;
-    names.push_back(material.name);
+  return find_in(builtin_materials(), name, subject);
+}
+
+MaterialLibrary::MaterialLibrary()
+    : materials_(builtin_materials()), origins_(materials_.size()) {}
+
+const mc::Material& MaterialLibrary::find(const std::string& name,
+                                          const std::string& subject) const {
+  return find_in(materials_, name, subject);
+}
+
+void MaterialLibrary::add(mc::Material material, const std::string& origin,
+                          std::vector<std::string>& notes) {
+  const auto found =
+      std::find_if(materials_.begin(), materials_.end(),
+                   [&](const mc::Material& m) { return m.name == material.name; });
+  if (found == materials_.end()) {
+    materials_.push_back(std::move(material));
+    origins_.push_back(origin);
+    return;
   }
-  throw UsageError(subject, fmt::format("there is no material '{}'", name),
-                   fmt::format("Choose one of: {}", join(nearest_first(name, std::move(names)))));
+  std::string& replaced = origins_[static_cast<std::size_t>(found - materials_.begin())];
+  notes.push_back(fmt::format("{} is as {} says, in place of {}", material.name, origin,
+                              replaced.empty() ? "the built-in one" : "that of " + replaced));
+  *found = std::move(material);
+  replaced = origin;
+}
+
+void MaterialLibrary::read(const std::filesystem::path& path, std::vector<std::string>& notes) {
+  const TomlTable root = TomlTable::parse(read_file(path, max_file_bytes), path.string());
+  root.allow({"material"});
+  if (!root.has("material")) {
+    throw FileError(path.string(), "it holds no material", "Add [[material]] tables");
+  }
+  for (mc::Material& material : read_material_tables(root, builtin_materials())) {
+    add(std::move(material), path.string(), notes);
+  }
 }
 
 }  // namespace surf::io

@@ -7,6 +7,7 @@
 #include <cctype>
 #include <cmath>
 
+#include "sim/material_tables.h"
 #include "sim/scene_parts.h"
 #include "sim/toml_table.h"
 #include "surf/io/files.h"
@@ -124,6 +125,14 @@ void read_simulation(const TomlTable& table, SceneFile& scene) {
   }
 }
 
+void read_materials(const TomlTable& root, const std::filesystem::path& path,
+                    const std::vector<std::filesystem::path>& files, SceneFile& scene) {
+  for (mc::Material& material : read_material_tables(root, builtin_materials())) {
+    scene.materials.add(std::move(material), path.string(), scene.notes);
+  }
+  for (const std::filesystem::path& file : files) scene.materials.read(file, scene.notes);
+}
+
 void read_specimen(const TomlTable& root, SceneParts parts, mc::Specimen& specimen) {
   if (const auto table = root.table("substrate")) specimen.substrate = parts.read_substrate(*table);
   if (const auto table = root.table("height_field")) {
@@ -140,9 +149,11 @@ void read_specimen(const TomlTable& root, SceneParts parts, mc::Specimen& specim
 
 }  // namespace
 
-SceneFile read_scene(const std::filesystem::path& path) {
+SceneFile read_scene(const std::filesystem::path& path,
+                     const std::vector<std::filesystem::path>& material_files) {
   const TomlTable root = TomlTable::parse(read_file(path, max_scene_bytes), path.string());
-  root.allow({"title", "beam", "scan", "simulation", "substrate", "height_field", "body"});
+  root.allow({"title", "beam", "scan", "simulation", "substrate", "height_field", "body",
+              "material"});
   SceneFile scene;
   scene.inputs.push_back(path);
   scene.title = root.text("title").value_or("");
@@ -152,7 +163,9 @@ SceneFile read_scene(const std::filesystem::path& path) {
   }
   if (const auto table = root.table("scan")) scene.scan = read_scan(*table);
   if (const auto table = root.table("simulation")) read_simulation(*table, scene);
+  read_materials(root, path, material_files, scene);
   read_specimen(root, SceneParts(path.parent_path(), scene), scene.specimen);
+  scene.inputs.insert(scene.inputs.end(), material_files.begin(), material_files.end());
   return scene;
 }
 

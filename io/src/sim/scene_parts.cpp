@@ -207,7 +207,7 @@ int SceneParts::material(const TomlTable& table) {
 }
 
 int SceneParts::material(const std::string& name, const std::string& place) {
-  const mc::Material& material = find_material(name, place);
+  const mc::Material& material = scene_.materials.find(name, place);
   auto& materials = scene_.specimen.materials;
   for (std::size_t i = 0; i < materials.size(); ++i) {
     if (materials[i].name == material.name) return static_cast<int>(i);

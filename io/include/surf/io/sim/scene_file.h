@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "surf/io/sim/materials.h"
 #include "surf/mc/beam.h"
 #include "surf/mc/detector.h"
 #include "surf/mc/physics.h"
@@ -34,7 +35,9 @@ struct SceneFile {
   std::optional<std::uint64_t> seed;
   std::optional<double> current_pa, dwell_us;  ///< of the probe; both or none make a dose
   std::vector<mc::Detector> detectors;         ///< besides SE and BSE
-  std::vector<std::filesystem::path> inputs;   ///< files read: the scene itself, then meshes and fields
+  MaterialLibrary materials;                   ///< built-in ones, the scene's own, those of files
+  std::vector<std::filesystem::path> inputs;   ///< files read: the scene itself, then the others
+  std::vector<std::string> notes;              ///< what the user may want to know
 };
 
 /// Reads a scene in TOML. Paths in it are relative to the scene file. Unknown keys are errors, with
@@ -82,7 +85,11 @@ struct SceneFile {
 ///     #                          # base = [0, 0, 0], segments = 64
 ///     # any body is then scaled about the origin, turned about z (counter-clockwise seen from
 ///     # above) and moved, in this order: scale = 1, rotate_z = 0, move = [0, 0, 0]
-SceneFile read_scene(const std::filesystem::path& path);
+///     [[material]]               # the scene's own materials: see MaterialLibrary
+///
+/// `material_files` are read as well; what they say goes before the scene's own materials.
+SceneFile read_scene(const std::filesystem::path& path,
+                     const std::vector<std::filesystem::path>& material_files = {});
 
 /// Whether the name ends in ".toml".
 bool is_scene_file(const std::filesystem::path& path);
