@@ -1,101 +1,96 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Fits E_b (loss_join_ev), the one free parameter of the secondary-electron model, to the geometric
-// mean of the measured SE yields at 1 keV, and prints the yields that follow at other energies.
-//   fit_loss_join MEASUREMENTS.csv [electrons]
+// mean of the measured SE yields at 1 keV, and prints the yields that follow at other energies; then
+// the regression of E_b of all fitted materials on barrier and band gap, which estimates E_b of the
+// others (mc::estimated_loss_join_ev).
+//   fit_loss_join ELECTRONS MEASUREMENTS.csv... [--only NAME]...
+//   e.g. fit_loss_join 200000 data/reference/se_delta_joy2001.csv data/reference/se_yields_further.csv
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
-#include <fstream>
-#include <map>
-#include <sstream>
 #include <string>
 #include <vector>
 
 #include <fmt/core.h>
 
-#include "surf/io/sim/materials.h"
-#include "surf/mc/simulate.h"
+#include "flat_yields.h"
 
 namespace {
 
 using namespace surf;
 
-// Geometric means of the measured yields by element and energy in keV.
-std::map<std::string, std::map<double, double>> read_means(const char* path) {
-  std::ifstream in(path);
-  std::map<std::string, std::map<double, std::vector<double>>> all;
-  std::string line;
-  std::getline(in, line);
-  while (std::getline(in, line)) {
-    std::stringstream fields(line);
-    std::string element, z, energy, yield;
-    std::getline(fields, element, ',');
-    std::getline(fields, z, ',');
-    std::getline(fields, energy, ',');
-    std::getline(fields, yield, ',');
-    // 1.02 keV and the like were meant as the round number beside them.
-    all[element][std::round(std::stod(energy) * 20) / 20].push_back(std::log(std::stod(yield)));
-  }
-  std::map<std::string, std::map<double, double>> means;
-  for (const auto& [element, energies] : all)
-    for (const auto& [energy, logs] : energies) {
-      double sum = 0;
-      for (const double l : logs) sum += l;
-      means[element][energy] = std::exp(sum / static_cast<double>(logs.size()));
-    }
-  return means;
-}
-
-mc::Balance simulate_flat(const mc::Material& material, double energy_ev, std::int64_t electrons) {
-  mc::Specimen specimen;
-  specimen.materials = {material};
-  specimen.substrate = mc::Substrate{};
-  mc::Beam beam;
-  beam.energy_ev = energy_ev;
-  mc::Scan scan;
-  scan.width = scan.height = 1;
-  mc::SimulationOptions options;
-  options.electrons = electrons;
-  return mc::simulate(mc::Scene(specimen, beam, scan), options).balance;
-}
-
-double se_yield(const mc::Balance& b) {
-  return static_cast<double>(b.se) / static_cast<double>(b.incident);
-}
-
 // The yield grows with E_b: bisection.
-double fit(mc::Material material, double target, std::int64_t electrons) {
-  double low = std::fmax(material.barrier_ev, material.work_function_ev) + 1.01, high = 200;
-  while (high - low > 0.02) {
+double fit(mc::Material material, double target, bool with_bse, std::int64_t electrons) {
+  double low = std::fmax(material.barrier_ev, material.work_function_ev) + 1.01, high = 300;
+  while (high - low > 1e-3 * low) {
     material.loss_join_ev = 0.5 * (low + high);
-    (se_yield(simulate_flat(material, 1000, electrons)) < target ? low : high) =
-        material.loss_join_ev;
+    const auto y = bench::simulate_flat(material, 1000, electrons);
+    (y.se.mean + (with_bse ? y.bse.mean : 0) < target ? low : high) = material.loss_join_ev;
   }
   return 0.5 * (low + high);
+}
+
+void print_other_energies(const mc::Material& material, const std::map<double, double>& measured,
+                          bool with_bse, std::int64_t electrons) {
+  for (const auto& [energy, yield] : measured) {
+    if (energy < 0.1) continue;
+    const auto y = bench::simulate_flat(material, energy * 1000, electrons);
+    const double own = y.se.mean + (with_bse ? y.bse.mean : 0);
+    fmt::print("  {:6.2f} keV  {} {:.3f}  measured {:.3f}  ratio {:.2f}  BSE {:.3f}\n", energy,
+               with_bse ? "SE+BSE" : "SE", own, yield, own / yield, y.bse.mean);
+  }
+}
+
+double gap_ev(const mc::Material& m) { return std::fmax(m.work_function_ev - m.barrier_ev, 0); }
+
+// ln E_b against ln (a U0 + b gap): a yield goes as a power of E_b, so relative errors count.
+void print_regression(const std::vector<mc::Material>& materials) {
+  double best = HUGE_VAL, best_a = 0, best_b = 0;
+  for (double a = 4; a < 10; a += 0.01)
+    for (double b = 0; b < 5; b += 0.01) {
+      double sum = 0;
+      for (const mc::Material& m : materials)
+        sum += std::pow(std::log((a * m.barrier_ev + b * gap_ev(m)) / m.loss_join_ev), 2);
+      if (sum < best) best = sum, best_a = a, best_b = b;
+    }
+  fmt::print("E_b = {:.2f} U0 + {:.2f} gap, relative deviations of {:.3f} (rms):\n", best_a, best_b,
+             std::sqrt(best / double(materials.size())));
+  for (const mc::Material& m : materials)
+    fmt::print("  {:10} U0 {:6.2f}  gap {:5.2f}  fitted {:6.1f}  regression {:6.1f}\n", m.name,
+               m.barrier_ev, gap_ev(m), m.loss_join_ev,
+               best_a * m.barrier_ev + best_b * gap_ev(m));
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (argc < 2) {
-    fmt::print(stderr, "usage: fit_loss_join MEASUREMENTS.csv [electrons]\n");
+  if (argc < 3) {
+    fmt::print(stderr, "usage: fit_loss_join ELECTRONS MEASUREMENTS.csv... [--only NAME]...\n");
     return 2;
   }
-  const std::int64_t electrons = argc > 2 ? std::atoll(argv[2]) : 200000;
-  const auto means = read_means(argv[1]);
-  for (mc::Material material : io::builtin_materials()) {
-    const auto measured = means.find(material.name);
-    if (measured == means.end() || !measured->second.contains(1.0)) {
-      fmt::print("{}: no measurements at 1 keV\n", material.name);
-      continue;
-    }
-    material.loss_join_ev = fit(material, measured->second.at(1.0), electrons);
-    fmt::print("{}: E_b = {:.1f} eV\n", material.name, material.loss_join_ev);
-    for (const auto& [energy, yield] : measured->second) {
-      if (energy < 0.1) continue;
-      const mc::Balance b = simulate_flat(material, energy * 1000, electrons / 4);
-      fmt::print("  {:6.2f} keV  SE {:.3f}  measured {:.3f}  ratio {:.2f}  BSE {:.3f}\n", energy,
-                 se_yield(b), yield, se_yield(b) / yield,
-                 static_cast<double>(b.bse) / static_cast<double>(b.incident));
-    }
+  const std::int64_t electrons = std::atoll(argv[1]);
+  std::vector<std::string> files, only;
+  for (int i = 2; i < argc; ++i) {
+    if (std::string(argv[i]) == "--only" && i + 1 < argc) only.push_back(argv[++i]);
+    else files.push_back(argv[i]);
   }
+  const bench::Means means = bench::read_means(files, "delta");
+  std::vector<mc::Material> fitted;
+  for (mc::Material material : io::builtin_materials()) {
+    const bool wanted =
+        only.empty() || std::find(only.begin(), only.end(), material.name) != only.end();
+    std::string key = bench::measured_as(material, means);
+    const bool with_bse = !means.contains(key);
+    if (with_bse) key = "SE+BSE of " + material.name;
+    const auto measured = means.find(key);
+    if (wanted && measured != means.end() && measured->second.contains(1.0)) {
+      material.loss_join_ev = fit(material, measured->second.at(1.0), with_bse, electrons);
+      material.loss_join_fitted = true;
+      fmt::print("{}: E_b = {:.1f} eV\n", material.name, material.loss_join_ev);
+      print_other_energies(material, measured->second, with_bse, electrons / 4);
+    }
+    if (material.loss_join_fitted) fitted.push_back(material);
+    std::fflush(stdout);
+  }
+  print_regression(fitted);
 }

@@ -12,6 +12,13 @@ semsurf_cli_test(help.completion ARGS completion --help STDOUT "Examples:")
 semsurf_cli_test(no_arguments EXIT 2 ARGS simulate STDERR "no specimen")
 
 semsurf_cli_test(materials ARGS materials STDOUT "Si +2\\.33" "Au")
+semsurf_cli_test(materials.all ARGS materials STDOUT "PMMA +1\\.19.*fitted" "Fe +7\\.87.*\\*  estimated" "Si .* fitted")
+semsurf_cli_test(materials.estimated ARGS materials SiO2
+  STDOUT "O, Z = 8, 53\\.2.* 2 per formula unit" "unfitted" "estimated: .*fitted to measured SE")
+semsurf_cli_test(materials.own ARGS materials nitride --materials materials.toml
+  STDOUT "work function W +6\\.3 eV\n    estimated: band gap plus" "N, Z = 7" "estimated: sum of the")
+semsurf_cli_test(materials.own_table ARGS materials --materials materials.toml
+  STDOUT "nitride +3\\.17" "Au +15 " STDERR "note: Au is as materials.toml says, in place of the built-in")
 semsurf_cli_test(materials.one ARGS materials Si STDOUT "Z = 14" "work function" "Mott table +yes")
 
 semsurf_cli_test(info.mesh ARGS info cube.off open.off --unit um
@@ -78,6 +85,14 @@ semsurf_cli_test(simulate.negative_region ARGS simulate cube.off --region -.5,-9
   --electrons 1 --size 4x4 -o image.exr STDERR "one electron" INFO image.exr "scan.center_x_nm +47.75")
 semsurf_cli_test(simulate.nothing_seen ARGS simulate cube.off --region 100,100,120,120
   --size 4x4 --electrons 2 -o image.exr STDERR "outside the specimen" "no pixel")
+semsurf_cli_test(simulate.own_material ARGS simulate cube.off --materials materials.toml
+  --material nitride --substrate Au ${few} -o cube.exr STDERR "Au is as materials.toml says"
+  INFO cube.exr "input.1 +materials.toml sha256 [0-9a-f]+(.|\n)*material.1.estimated.plasmon_ev")
+semsurf_cli_test(simulate.scene_own_material ARGS simulate own_material.toml --substrate brass ${few}
+  -o cube.exr INFO cube.exr "material.1.name +brass(.|\n)*specimen.substrate +brass,")
+semsurf_cli_test(info.own_material ARGS info own_material.toml STDOUT "in brass" "Z = 29: Browning")
+semsurf_cli_test(info.scene_materials ARGS info scene.toml --materials materials.toml
+  STDOUT "in Au" STDERR "Au is as materials.toml says")
 semsurf_cli_test(simulate.scene ARGS simulate scene.toml -o image.exr
   STDOUT "8 x 8 pixels of 10" INFO image.exr "input.2 +cube.off sha256 [0-9a-f]+")
 semsurf_cli_test(simulate.scene_overridden ARGS simulate scene.toml --energy 3keV --size 4x4

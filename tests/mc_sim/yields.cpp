@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
+#include <set>
+#include <string>
 
 #include "csv.h"
 #include "specimens.h"
@@ -67,28 +70,53 @@ TEST(BackscatterYield, OfBrowningAgreesWithTheSameReference) {
   }
 }
 
-// Every energy that was measured is judged; the spread is that of all measurements within 25 % of it
-// in energy, over which eta itself changes little: many energies have a single experiment.
-TEST(BackscatterYield, OfTheFullModelIsWithinTheMeasurements) {
-  for (const char* name : {"Si", "Au"}) {
-    const auto all = measured("bse_eta_joy2001.csv", name, "eta", 300, 30000);
-    for (const auto& [energy, own] : all) {
-      if (energy < 490 || energy > 20500) continue;
-      double low = HUGE_VAL, high = 0;
-      for (const auto& [e, values] : all) {
-        if (e < energy / 1.25 || e > energy * 1.25) continue;
-        for (const double v : values) {
-          low = std::min(low, v);
-          high = std::max(high, v);
-        }
-      }
-      const auto y = test::flat_yields(name, energy, 0, 10000);
-      const double noise = test::z_limit(200) * y.bse.standard_error;
-      EXPECT_GT(y.bse.mean + noise, 0.9 * low) << name << " at " << energy << " eV";
-      EXPECT_LT(y.bse.mean - noise, 1.1 * high) << name << " at " << energy << " eV";
-    }
-  }
+// What one experiment says at an energy: between neighbouring points not more than a factor of two
+// apart, linear in the logarithm of the energy.
+std::optional<double> interpolated(const std::map<double, double>& points, double energy_ev) {
+  const auto above = points.lower_bound(energy_ev);
+  if (above == points.end()) return {};
+  if (above->first < energy_ev * 1.001) return above->second;
+  if (above == points.begin()) return {};
+  const auto below = std::prev(above);
+  if (above->first > 2.001 * below->first) return {};
+  const double f = std::log(energy_ev / below->first) / std::log(above->first / below->first);
+  return below->second + f * (above->second - below->second);
 }
+
+// Every energy that was measured is judged by the spread of all experiments whose curves pass it.
+// Most energies have a point of a single experiment, and experiments differ by up to a factor of two
+// (carbon, where a layer of contamination counts most).
+class BackscatterYieldOf : public testing::TestWithParam<const char*> {};
+
+TEST_P(BackscatterYieldOf, TheFullModelIsWithinTheMeasurements) {
+  const char* const name = GetParam();
+  std::map<std::string, std::map<double, double>> experiments;
+  std::set<double> energies;
+  for (const auto& row : test::read_reference("bse_eta_joy2001.csv")) {
+    if (row.at("element") != name) continue;
+    const double energy = 1000 * test::number(row, "energy_keV");
+    experiments[row.at("set")][energy] = test::number(row, "eta");
+    if (energy >= 490 && energy <= 20500) energies.insert(energy);
+  }
+  for (const double energy : energies) {
+    double low = HUGE_VAL, high = 0;
+    for (const auto& [experiment, points] : experiments) {
+      if (const auto eta = interpolated(points, energy)) {
+        low = std::min(low, *eta);
+        high = std::max(high, *eta);
+      }
+    }
+    // Carbon reflects few: more electrons, so that their noise stays below the 10 %.
+    const auto y = test::flat_yields(name, energy, 0, std::string(name) == "C" ? 30000 : 10000);
+    const double noise = test::z_limit(400) * y.bse.standard_error;
+    EXPECT_GT(y.bse.mean + noise, 0.9 * low) << name << " at " << energy << " eV";
+    EXPECT_LT(y.bse.mean - noise, 1.1 * high) << name << " at " << energy << " eV";
+  }
+  EXPECT_GE(energies.size(), 15u);
+}
+
+INSTANTIATE_TEST_SUITE_P(Elements, BackscatterYieldOf, testing::Values("C", "Al", "Si", "Cu", "Au"),
+                         [](const auto& instance) { return std::string(instance.param); });
 
 TEST(SecondaryYield, OfSiliconIsWithinAFactorOfTwoOfTheMeasurements) {
   double last = 1e9;
@@ -105,12 +133,36 @@ TEST(SecondaryYield, OfSiliconIsWithinAFactorOfTwoOfTheMeasurements) {
 
 // E_b is fitted at 1 keV: data/materials.toml and bench/fit_loss_join.cpp must not drift apart.
 TEST(SecondaryYield, HitsTheMeasurementsItWasFittedTo) {
-  for (const char* name : {"Si", "Al", "Cu", "Au"}) {
-    const auto values = measured("se_delta_joy2001.csv", name, "delta", 975, 1025);
-    ASSERT_EQ(values.size(), 1u);
-    const auto y = test::flat_yields(name, 1000, 0, 40000);
-    test::expect_mean(y.se.mean, y.se.standard_error, geometric_mean(values.begin()->second), 4,
+  int fitted = 0;
+  for (const Material& material : io::builtin_materials()) {
+    if (!material.loss_join_fitted) continue;
+    ++fitted;
+    const std::string name = material.name;
+    const bool joy = name == "Si" || name == "Al" || name == "Cu" || name == "Au";
+    const auto values = measured(joy ? "se_delta_joy2001.csv" : "se_yields_further.csv",
+                                 name == "graphite" ? "C" : name.c_str(), "delta", 975, 1025);
+    ASSERT_EQ(values.size(), 1u) << name;
+    auto y = test::flat_yields(name.c_str(), 1000, 0, 40000);
+    if (name == "PMMA") {   // measured together
+      y.se.mean += y.bse.mean;
+      y.se.standard_error += y.bse.standard_error;
+    }
+    SCOPED_TRACE(name);
+    test::expect_mean(y.se.mean, y.se.standard_error, geometric_mean(values.begin()->second), 7,
                       0.02 * y.se.mean);
+  }
+  EXPECT_EQ(fitted, 7);
+}
+
+// Where nothing was measured E_b is an estimate. Metals and semiconductors, clean and unclean, give
+// 0.3 to 2 at 1 keV. Insulators give more: quartz 2.1 to 4 at 400 eV (CRC Handbook of Chemistry and
+// Physics), from which the universal curve of Lin and Joy makes 1.5 to 2.8 at 1 keV.
+TEST(SecondaryYield, OfEveryMaterialIsPlausible) {
+  for (const Material& material : io::builtin_materials()) {
+    const bool insulator = material.work_function_ev - material.barrier_ev > 4;
+    const auto y = test::flat_yields(material.name.c_str(), 1000, 0, 4000);
+    EXPECT_GT(y.se.mean, 0.3) << material.name;
+    EXPECT_LT(y.se.mean, insulator ? 2.8 : 2.0) << material.name;
   }
 }
 

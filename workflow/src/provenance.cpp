@@ -46,6 +46,9 @@ void add_material(Metadata& out, const std::string& key, const mc::Material& mat
                                 format_exact(c.atomic_weight), format_exact(c.weight_fraction),
                                 format_exact(c.mean_ionization_ev));
   out[key + ".constituents"] = constituents;
+  out[key + ".formula_weight_g_mol"] = format_exact(material.formula_weight_g_mol);
+  for (const mc::EstimatedValue& e : material.estimates)
+    out[key + ".estimated." + e.field] = e.rule;
   if (!material.sources.empty()) out[key + ".sources"] = material.sources;
 }
 

@@ -3,6 +3,8 @@
 
 #include <set>
 
+#include "surf/mc/element.h"
+
 #include "../io_test.h"
 
 namespace surf::io {
@@ -36,6 +38,113 @@ TEST(Materials, UnknownNamesAreAnsweredWithTheNearestFirst) {
   EXPECT_THAT(test::complaint<UsageError>([] { find_material("si", "--material"); }),
               testing::AllOf(HasSubstr("--material: "), HasSubstr("'si'"),
                              HasSubstr("Choose one of: Si")));
+}
+
+TEST(Materials, AreAllThatAreKnown) {
+  std::vector<std::string> names;
+  for (const mc::Material& material : builtin_materials()) names.push_back(material.name);
+  EXPECT_THAT(names, testing::ElementsAre("Si", "SiO2", "C", "graphite", "Al", "Cu", "Au", "Ag", "W",
+                                          "Ge", "Ti", "TiO2", "Cr", "Ni", "Mo", "Pt", "Fe", "Ta",
+                                          "PMMA"));
+}
+
+// Only E_b may be missing in the file, and is not called fitted then.
+TEST(Materials, EstimateNothingButTheJoin) {
+  for (const mc::Material& material : builtin_materials()) {
+    for (const mc::EstimatedValue& e : material.estimates) {
+      const bool follows = e.field == "barrier_ev" && e.rule == "work function less the band gap";
+      EXPECT_TRUE(e.field == "loss_join_ev" || follows) << material.name << ": " << e.field;
+      if (e.field == "loss_join_ev") {
+        EXPECT_FALSE(material.loss_join_fitted) << material.name;
+        EXPECT_THAT(material.sources, HasSubstr("E_b: estimated"));
+      }
+    }
+    for (const mc::Constituent& c : material.constituents) {
+      EXPECT_TRUE(mc::has_mott_table(c.atomic_number)) << material.name;
+      EXPECT_NEAR(c.atomic_weight, mc::element(c.atomic_number).atomic_weight, 0.003);
+      EXPECT_NEAR(c.mean_ionization_ev, mc::mean_ionization_ev(c.atomic_number), 0.1);
+    }
+  }
+}
+
+// The plasmon must be able to free a secondary.
+TEST(Materials, HavePlasmonsAboveTheWorkFunction) {
+  for (const mc::Material& material : builtin_materials())
+    EXPECT_GT(material.plasmon_ev, material.work_function_ev) << material.name;
+}
+
+class MaterialFileTest : public testing::Test {
+ protected:
+  void read(const std::string& text) { library_.read(test::write(path_, text), notes_); }
+
+  template <class E>
+  std::string refused(const std::string& text) {
+    return test::complaint<E>([&] { read(text); });
+  }
+
+  test::TemporaryFolder folder_;
+  std::filesystem::path path_ = folder_.path() / "mine.toml";
+  MaterialLibrary library_;
+  std::vector<std::string> notes_;
+};
+
+const char* const nitride =
+    "[[material]]\nname = \"nitride\"\nformula = \"Si3N4\"\ndensity_g_cm3 = 3.17\n";
+
+TEST_F(MaterialFileTest, AddsMaterialsAndKeepsTheBuiltInOnes) {
+  read(std::string(nitride) + "band_gap_ev = \"0.0053keV\"\n" +
+       "[[material]]\nname = \"brass\"\ndensity_g_cm3 = 8.5\nelements = [{ symbol = \"Cu\", "
+       "weight_fraction = 0.63 }, { Z = 30, weight_fraction = 0.37, A = 65.4, J_ev = 330 }]\n");
+  EXPECT_EQ(library_.all().size(), builtin_materials().size() + 2);
+  EXPECT_DOUBLE_EQ(library_.find("nitride", "test").work_function_ev, 6.3);
+  const mc::Material& brass = library_.find("brass", "test");
+  EXPECT_EQ(brass.constituents[0].atomic_number, 29);
+  EXPECT_EQ(brass.constituents[1].atomic_weight, 65.4);
+  EXPECT_EQ(brass.constituents[1].mean_ionization_ev, 330);
+  EXPECT_EQ(library_.find("Si", "test").density_g_cm3, 2.33);
+  EXPECT_TRUE(notes_.empty());
+  EXPECT_THAT(test::complaint<UsageError>([&] { library_.find("nitrid", "--material"); }),
+              HasSubstr("Choose one of: nitride"));
+}
+
+TEST_F(MaterialFileTest, ReplacesOnesOfTheSameNameAndSaysSo) {
+  read("[[material]]\nname = \"Au\"\nformula = \"Au\"\ndensity_g_cm3 = 15\n");
+  EXPECT_EQ(library_.all().size(), builtin_materials().size());
+  EXPECT_EQ(library_.find("Au", "test").density_g_cm3, 15);
+  EXPECT_EQ(library_.find("Au", "test").barrier_ev, find_material("Au", "test").barrier_ev);
+  ASSERT_EQ(notes_.size(), 1u);
+  EXPECT_THAT(notes_[0], testing::AllOf(HasSubstr("Au is as "), HasSubstr("mine.toml"),
+                                        HasSubstr("in place of the built-in one")));
+  read("[[material]]\nname = \"Au\"\nformula = \"Au\"\ndensity_g_cm3 = 14\n");
+  EXPECT_THAT(notes_.back(), HasSubstr("in place of that of"));
+  EXPECT_EQ(find_material("Au", "test").density_g_cm3, 19.282) << "the built-in one stays";
+}
+
+TEST_F(MaterialFileTest, MistakesAreNamedWithTheirPlace) {
+  EXPECT_THAT(refused<FileError>(std::string(nitride) + "bandgap = 5\n"),
+              testing::AllOf(HasSubstr("line 5, column 1"), HasSubstr("Did you mean 'band_gap_ev'")));
+  EXPECT_THAT(refused<FileError>("[substrate]\n"), HasSubstr("'substrate' is not known"));
+  EXPECT_THAT(refused<FileError>(""), HasSubstr("holds no material"));
+  EXPECT_THAT(refused<FileError>("[[material]]\nformula = \"Si\"\n"), HasSubstr("'name' is missing"));
+  EXPECT_THAT(refused<FileError>("[[material]]\nname = \"a\"\n"),
+              HasSubstr("either 'formula' or 'elements'"));
+  EXPECT_THAT(refused<FileError>("[[material]]\nname = \"a\"\nformula = \"Si\"\nelements = []\n"),
+              HasSubstr("not both"));
+  EXPECT_THAT(refused<FileError>("[[material]]\nname = \"a\"\nformula = \"Si\"\n"),
+              HasSubstr("'density_g_cm3' is missing"));
+  const std::string start = "[[material]]\nname = \"a\"\ndensity_g_cm3 = 1\n";
+  EXPECT_THAT(refused<UsageError>(start + "formula = \"SiQ\""),
+              testing::AllOf(HasSubstr("line 4, material[1].formula"), HasSubstr("'Q'")));
+  EXPECT_THAT(refused<UsageError>(start + "elements = [{ symbol = \"Qq\" }]"), HasSubstr("'Qq'"));
+  EXPECT_THAT(refused<UsageError>(start + "elements = [{ Z = 93 }]"), HasSubstr("no element 93"));
+  EXPECT_THAT(refused<FileError>(start + "elements = [{ weight_fraction = 1 }]"),
+              HasSubstr("either 'Z' or 'symbol'"));
+  EXPECT_THAT(refused<InvalidInput>(start + "formula = \"Si\"\nband_gap_ev = -1"),
+              testing::AllOf(HasSubstr("line 1, material[1]"), HasSubstr("material a"),
+                             HasSubstr("band_gap_ev is -1")));
+  EXPECT_THAT(refused<UsageError>(std::string(nitride) + nitride), HasSubstr("two materials 'nitride'"));
+  EXPECT_THAT(refused<UsageError>("[[material]]\nname = \"\"\nformula = \"Si\"\n"),
+              HasSubstr("name is empty"));
 }
 
 }  // namespace

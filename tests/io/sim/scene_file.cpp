@@ -170,6 +170,26 @@ TEST_F(SceneFileTest, ReadsFieldsFromImages) {
   EXPECT_EQ(read("[height_field]\nmaterial = \"Si\"\nfile = \"f.exr\"").inputs.size(), 2u);
 }
 
+TEST_F(SceneFileTest, HoldsItsOwnMaterialsAndFilesGoBeforeThem) {
+  const std::string text =
+      "[substrate]\nmaterial = \"nitride\"\n[[material]]\nname = \"nitride\"\n"
+      "formula = \"Si3N4\"\ndensity_g_cm3 = 3.17\nband_gap_ev = 5.3\n";
+  const SceneFile scene = read(text);
+  ASSERT_EQ(scene.specimen.materials.size(), 1u);
+  EXPECT_EQ(scene.specimen.materials[0].density_g_cm3, 3.17);
+  EXPECT_EQ(scene.materials.find("nitride", "test").density_g_cm3, 3.17);
+  EXPECT_TRUE(scene.notes.empty());
+
+  const auto file = write(folder_.path() / "mine.toml",
+                          "[[material]]\nname = \"nitride\"\nformula = \"Si3N4\"\n"
+                          "density_g_cm3 = 2.5\nband_gap_ev = 5.3\n");
+  const SceneFile other = read_scene(path_, {file});
+  EXPECT_EQ(other.specimen.materials[0].density_g_cm3, 2.5);
+  EXPECT_EQ(other.inputs, (std::vector{path_, file}));
+  ASSERT_EQ(other.notes.size(), 1u);
+  EXPECT_THAT(other.notes[0], testing::AllOf(HasSubstr("mine.toml"), HasSubstr("scene.toml")));
+}
+
 TEST_F(SceneFileTest, SyntaxErrorsHaveLineAndColumn) {
   EXPECT_THAT(refused<FileError>("title = \"a\"\n[beam\n"),
               HasSubstr("scene.toml, line 2, column"));

@@ -38,8 +38,8 @@ struct MaterialDraft {
 /// Throws InvalidInput, as `validate` does.
 Material complete(const MaterialDraft& draft, std::span<const Material> known = {});
 
-/// E_b where no measured SE yields are at hand: the regression over the fitted materials that
-/// docs/methods/materials.md derives.
+/// E_b where no measured SE yields are at hand: 6.72 U0 + 1.87 gap, the regression over the fitted
+/// materials (bench/fit_loss_join), at least W + 2 eV. The gap is W - U0, 0 for metals.
 double estimated_loss_join_ev(double barrier_ev, double work_function_ev);
 
 }  // namespace surf::mc

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+// Yields of bare half-spaces, and the measured ones to compare with: for fit_loss_join and
+// yields_of_materials.
+
+#include <cmath>
+#include <fstream>
+#include <map>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "surf/io/sim/materials.h"
+#include "surf/mc/element.h"
+#include "surf/mc/simulate.h"
+
+namespace surf::bench {
+
+/// Geometric means of measured values by element and energy in keV.
+using Means = std::map<std::string, std::map<double, double>>;
+
+inline std::vector<std::string> split_csv(const std::string& line) {
+  std::vector<std::string> fields(1);
+  bool quoted = false;
+  for (const char c : line) {
+    if (c == '"') quoted = !quoted;
+    else if (c == ',' && !quoted) fields.emplace_back();
+    else if (c != '\r') fields.back() += c;
+  }
+  return fields;
+}
+
+/// Reads CSV files with the columns element, energy_keV, `column` and perhaps quantity. Where the
+/// quantity is SE+BSE the key is "SE+BSE of ELEMENT".
+inline Means read_means(const std::vector<std::string>& paths, const std::string& column) {
+  std::map<std::string, std::map<double, std::vector<double>>> all;
+  for (const std::string& path : paths) {
+    std::ifstream in(path);
+    std::string line;
+    if (!std::getline(in, line)) throw std::runtime_error(path + ": cannot be read");
+    const std::vector<std::string> names = split_csv(line);
+    while (std::getline(in, line)) {
+      const std::vector<std::string> fields = split_csv(line);
+      std::map<std::string, std::string> row;
+      for (std::size_t i = 0; i < names.size() && i < fields.size(); ++i) row[names[i]] = fields[i];
+      if (!row.contains("element") || !row.contains(column)) continue;
+      const bool both = row["quantity"] == "SE+BSE";
+      // 1.02 keV and the like were meant as the round number beside them.
+      const double energy = std::round(std::stod(row["energy_keV"]) * 20) / 20;
+      all[(both ? "SE+BSE of " : "") + row["element"]][energy].push_back(
+          std::log(std::stod(row[column])));
+    }
+  }
+  Means means;
+  for (const auto& [element, energies] : all)
+    for (const auto& [energy, logs] : energies) {
+      double sum = 0;
+      for (const double l : logs) sum += l;
+      means[element][energy] = std::exp(sum / static_cast<double>(logs.size()));
+    }
+  return means;
+}
+
+/// The key of a material's measurements: its name or, for a pure element in another form, the
+/// element's symbol.
+inline std::string measured_as(const mc::Material& material, const Means& means) {
+  if (means.contains(material.name) || material.constituents.size() != 1) return material.name;
+  return mc::element(material.constituents[0].atomic_number).symbol;
+}
+
+struct FlatYields {
+  mc::Estimate se, bse;
+};
+
+inline FlatYields simulate_flat(const mc::Material& material, double energy_ev,
+                                std::int64_t electrons) {
+  mc::Specimen specimen;
+  specimen.materials = {material};
+  specimen.substrate = mc::Substrate{};
+  mc::Beam beam;
+  beam.energy_ev = energy_ev;
+  mc::Scan scan;
+  scan.width = scan.height = 4;   // units of work for the threads
+  mc::SimulationOptions options;
+  options.electrons = std::max<std::int64_t>(electrons / 16, 1);
+  options.tile_pixels = 1;
+  const auto result = mc::simulate(mc::Scene(specimen, beam, scan), options);
+  mc::PixelTally sum;
+  for (const mc::PixelTally& p : result.pixels.data()) sum += p;
+  return {mc::estimate(sum.primaries, sum.se, sum.se_squared),
+          mc::estimate(sum.primaries, sum.bse, sum.bse_squared)};
+}
+
+}  // namespace surf::bench
