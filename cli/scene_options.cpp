@@ -59,16 +59,17 @@ HeightField read_height_field(const fs::path& path, const SceneOptions& options,
 
 // All bodies of a mesh file; materials that its bodies name and semsurf knows are taken as such.
 void add_mesh_bodies(const std::string& input, std::optional<double> unit_nm,
-                     const std::string& fallback, mc::Specimen& specimen,
+                     const std::string& fallback, io::SceneFile& scene,
                      std::vector<std::string>& notes) {
-  std::vector<io::MeshBody> bodies = io::read_mesh_bodies(input, unit_nm, {fallback, {}, "--material"});
+  std::vector<io::MeshBody> bodies =
+      io::read_mesh_bodies(input, unit_nm, {fallback, {}, "--material"}, scene.materials);
   for (io::MeshBody& body : bodies) {
     const std::string name = bodies.size() == 1 ? input : input + ", " + body.name;
     if (body.is_default && !body.file_material.empty())
       notes.push_back(fmt::format("{}: '{}' is no known material: {}", name, body.file_material,
                                   fallback));
-    specimen.bodies.push_back({name, std::move(body.mesh),
-                               material_index(specimen, body.material, "--material")});
+    const int material = material_index(scene, body.material, "--material");
+    scene.specimen.bodies.push_back({name, std::move(body.mesh), material});
   }
 }
 
@@ -94,7 +95,7 @@ io::SceneFile scene_from_shapes(const SceneOptions& options, std::vector<std::st
       scene.specimen.height_field = mc::HeightFieldBody{
           input, read_height_field(path, options, notes), material, Edge::mirror};
     } else {
-      add_mesh_bodies(input, unit_nm, options.material.value_or("Si"), scene.specimen, notes);
+      add_mesh_bodies(input, unit_nm, options.material.value_or("Si"), scene, notes);
     }
     scene.inputs.push_back(path);
   }

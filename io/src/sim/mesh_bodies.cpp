@@ -15,23 +15,19 @@
 namespace surf::io {
 namespace {
 
-bool is_material(const std::string& name) {
-  try {
-    find_material(name, {});
-    return true;
-  } catch (const UsageError&) {
-    return false;
-  }
+bool is_material(const std::string& name, const MaterialLibrary& library) {
+  const auto& all = library.all();
+  return std::any_of(all.begin(), all.end(), [&](const mc::Material& m) { return m.name == name; });
 }
 
 void check_meaning(const std::vector<NamedMesh>& meshes, const MaterialNames& names,
-                   const std::string& file) {
+                   const MaterialLibrary& library, const std::string& file) {
   std::set<std::string> in_file;
   for (const NamedMesh& mesh : meshes) {
     if (!mesh.material.empty()) in_file.insert(mesh.material);
   }
   for (const auto& [name, material] : names.meaning) {
-    find_material(material, names.subject);
+    library.find(material, names.subject);
     if (in_file.contains(name)) continue;
     throw UsageError(names.subject, fmt::format("{} has no material '{}'", file, name),
                      in_file.empty() ? "Leave it out: the file names no materials"
@@ -41,12 +37,13 @@ void check_meaning(const std::vector<NamedMesh>& meshes, const MaterialNames& na
   }
 }
 
-MeshBody with_material(NamedMesh mesh, const MaterialNames& names) {
+MeshBody with_material(NamedMesh mesh, const MaterialNames& names,
+                       const MaterialLibrary& library) {
   MeshBody body{mesh.name, mesh.material, {}, false, std::move(mesh.mesh)};
   const auto meaning = names.meaning.find(body.file_material);
   if (meaning != names.meaning.end()) {
     body.material = meaning->second;
-  } else if (!body.file_material.empty() && is_material(body.file_material)) {
+  } else if (!body.file_material.empty() && is_material(body.file_material, library)) {
     body.material = body.file_material;
   } else {
     body.material = names.fallback;
@@ -77,12 +74,13 @@ void add_piece(std::vector<MeshBody>& bodies, MeshBody piece) {
 }  // namespace
 
 std::vector<MeshBody> read_mesh_bodies(const std::filesystem::path& path,
-                                       std::optional<double> unit_nm, const MaterialNames& names) {
-  find_material(names.fallback, names.subject);
+                                       std::optional<double> unit_nm, const MaterialNames& names,
+                                       const MaterialLibrary& library) {
+  library.find(names.fallback, names.subject);
   std::vector<NamedMesh> meshes = read_meshes(path, unit_nm);
-  check_meaning(meshes, names, path.string());
+  check_meaning(meshes, names, library, path.string());
   std::vector<MeshBody> bodies;
-  for (NamedMesh& mesh : meshes) add_piece(bodies, with_material(std::move(mesh), names));
+  for (NamedMesh& mesh : meshes) add_piece(bodies, with_material(std::move(mesh), names, library));
   return bodies;
 }
 

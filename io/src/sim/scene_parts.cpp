@@ -272,7 +272,7 @@ std::vector<mc::Body> SceneParts::read_mesh_file(const TomlTable& table) {
     for (const std::string& name : meaning->keys()) names.meaning[name] = *meaning->text(name);
   }
   const std::filesystem::path path = input(table, "mesh");
-  std::vector<MeshBody> read = read_mesh_bodies(path, unit_nm, names);
+  std::vector<MeshBody> read = read_mesh_bodies(path, unit_nm, names, scene_.materials);
   std::vector<mc::Body> bodies;
   for (MeshBody& part : read) {
     const std::string name = read.size() == 1 ? path.filename().string() : part.name;

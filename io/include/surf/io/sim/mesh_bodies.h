@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "surf/io/sim/materials.h"
 #include "surf/mesh/triangle_mesh.h"
 
 namespace surf::io {
@@ -28,11 +29,12 @@ struct MaterialNames {
 };
 
 /// Reads the bodies of a mesh file (see `read_meshes`) and gives each a material: what `meaning`
-/// says of the file's name, else that name itself where semsurf knows such a material, else the
+/// says of the file's name, else that name itself where `library` has such a material, else the
 /// default. Open pieces of one name and material are joined, so that a closed body painted in
-/// several colours is one again. Throws what `read_meshes` and `find_material` throw, and UsageError
+/// several colours is one again. Throws what `read_meshes` and `library.find` throw, and UsageError
 /// for a name in `meaning` that the file does not use.
 std::vector<MeshBody> read_mesh_bodies(const std::filesystem::path& path,
-                                       std::optional<double> unit_nm, const MaterialNames& names);
+                                       std::optional<double> unit_nm, const MaterialNames& names,
+                                       const MaterialLibrary& library = {});
 
 }  // namespace surf::io
