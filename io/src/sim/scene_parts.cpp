@@ -147,7 +147,7 @@ TriangleMesh make_body(const TomlTable& table) {
   const std::string shape = *table.text("shape");
   if (shape == "box") {
     table.allow({"material", "name", "shape", "lower", "upper", "subdivisions", "scale",
-                 "rotate_z", "move"});
+                 "rotate_x", "rotate_y", "rotate_z", "move"});
     table.require("lower", "a box has a lower corner");
     table.require("upper", "a box has an upper corner");
     return make_box(*table.point_nm("lower"), *table.point_nm("upper"),
@@ -155,14 +155,14 @@ TriangleMesh make_body(const TomlTable& table) {
   }
   if (shape == "sphere") {
     table.allow({"material", "name", "shape", "center", "radius", "subdivisions", "scale",
-                 "rotate_z", "move"});
+                 "rotate_x", "rotate_y", "rotate_z", "move"});
     return make_sphere(table.point_nm("center").value_or(Vec3{}),
                        required_length(table, "radius", "a sphere has one"),
                        small_integer(table, "subdivisions", 4));
   }
   if (shape == "cone") {
     table.allow({"material", "name", "shape", "base", "bottom_radius", "top_radius", "height",
-                 "segments", "scale", "rotate_z", "move"});
+                 "segments", "scale", "rotate_x", "rotate_y", "rotate_z", "move"});
     return make_cone(table.point_nm("base").value_or(Vec3{}),
                      required_length(table, "bottom_radius", "a cone has one"),
                      table.length_nm("top_radius").value_or(0),
@@ -172,8 +172,9 @@ TriangleMesh make_body(const TomlTable& table) {
   refuse_shape(table, shape, {"box", "sphere", "cone"});
 }
 
-/// Counter-clockwise seen from above. Quarter turns are exact.
-void rotate_about_z(TriangleMesh& mesh, double angle_deg) {
+/// About x, y or z (axis 0, 1, 2), counter-clockwise seen from the axis's positive end. Quarter
+/// turns are exact.
+void rotate(TriangleMesh& mesh, int axis, double angle_deg) {
   const double turns = std::remainder(angle_deg, 360.0);
   double c = std::cos(turns * degrees_to_radians);
   double s = std::sin(turns * degrees_to_radians);
@@ -181,12 +182,17 @@ void rotate_about_z(TriangleMesh& mesh, double angle_deg) {
     c = std::round(c);
     s = std::round(s);
   }
-  for (Vec3& p : mesh.vertices_nm) p = {c * p.x - s * p.y, s * p.x + c * p.y, p.z};
+  for (Vec3& p : mesh.vertices_nm) {
+    if (axis == 0) p = {p.x, c * p.y - s * p.z, s * p.y + c * p.z};
+    if (axis == 1) p = {s * p.z + c * p.x, p.y, c * p.z - s * p.x};
+    if (axis == 2) p = {c * p.x - s * p.y, s * p.x + c * p.y, p.z};
+  }
 }
 
 void place_body(const TomlTable& table, TriangleMesh& mesh) {
   if (const auto factor = table.number("scale")) transform(mesh, *factor, {});
-  if (const auto angle = table.angle_deg("rotate_z")) rotate_about_z(mesh, *angle);
+  for (const auto& [key, axis] : {std::pair{"rotate_x", 0}, {"rotate_y", 1}, {"rotate_z", 2}})
+    if (const auto angle = table.angle_deg(key)) rotate(mesh, axis, *angle);
   if (const auto offset = table.point_nm("move")) transform(mesh, 1, *offset);
 }
 
@@ -263,7 +269,8 @@ mc::HeightFieldBody SceneParts::read_height_field(const TomlTable& table) {
 }
 
 std::vector<mc::Body> SceneParts::read_mesh_file(const TomlTable& table) {
-  table.allow({"material", "materials", "name", "mesh", "unit", "scale", "rotate_z", "move"});
+  table.allow({"material", "materials", "name", "mesh", "unit", "scale", "rotate_x", "rotate_y",
+               "rotate_z", "move"});
   const auto unit = table.text("unit");
   std::optional<double> unit_nm;
   if (unit) unit_nm = unit_length_nm(*unit, table.place("unit"));

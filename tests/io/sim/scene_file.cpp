@@ -130,6 +130,19 @@ TEST_F(SceneFileTest, ReadsEverything) {
   EXPECT_EQ(scene.inputs, (std::vector{path_, folder_.path() / "tetra.off"}));
 }
 
+TEST_F(SceneFileTest, TurnsBodiesAboutEachAxis) {
+  const auto corner = [&](const char* turns) {
+    return read(std::string("[[body]]\nmaterial = \"Si\"\nshape = \"box\"\nlower = [0, 0, 0]\n"
+                            "upper = [1, 2, 3]\n") + turns).specimen.bodies[0].mesh;
+  };
+  const auto box = [&](const char* turns) { return bounds(corner(turns)); };
+  // x to y to z to x, a quarter turn each.
+  EXPECT_EQ(box("rotate_x = 90\n").upper_nm, (Vec3{1, 0, 2}));
+  EXPECT_EQ(box("rotate_y = 90\n").upper_nm, (Vec3{3, 2, 0}));
+  EXPECT_EQ(box("rotate_z = 90\n").upper_nm, (Vec3{0, 1, 3}));
+  EXPECT_EQ(box("rotate_x = 90\nrotate_z = 90\n").upper_nm, (Vec3{3, 1, 2}));
+}
+
 TEST_F(SceneFileTest, DefaultsAreThoseOfTheLibraries) {
   const SceneFile scene = read(substrate);
   EXPECT_EQ(scene.beam.energy_ev, mc::Beam{}.energy_ev);

@@ -83,8 +83,9 @@ struct SceneFile {
 ///                                # "sphere": radius, center = [0, 0, 0], subdivisions = 4; or
 ///     #                          # "cone": bottom_radius, height, top_radius = 0,
 ///     #                          # base = [0, 0, 0], segments = 64
-///     # any body is then scaled about the origin, turned about z (counter-clockwise seen from
-///     # above) and moved, in this order: scale = 1, rotate_z = 0, move = [0, 0, 0]
+///     # any body is then scaled about the origin, turned about x, y and z (counter-clockwise seen
+///     # from the axis's positive end) and moved, in this order: scale = 1, rotate_x = 0,
+///     # rotate_y = 0, rotate_z = 0, move = [0, 0, 0]
 ///     [[material]]               # the scene's own materials: see MaterialLibrary
 ///
 /// `material_files` are read as well; what they say goes before the scene's own materials.
