@@ -10,6 +10,7 @@
 #include "surf/core/error.h"
 #include "surf/core/units.h"
 #include "surf/io/image_file.h"
+#include "surf/io/mesh_file.h"
 #include "surf/io/sim/materials.h"
 #include "surf/io/sim/mesh_bodies.h"
 
@@ -79,8 +80,7 @@ io::SceneFile scene_from_shapes(const SceneOptions& options, std::vector<std::st
     scene.materials.read(file, scene.notes);
     scene.inputs.push_back(file);
   }
-  const int material =
-      material_index(scene, options.material.value_or("Si"), "--material");
+  const std::string material = options.material.value_or("Si");
   if (!options.material) notes.push_back("no --material is given: Si");
   std::optional<double> unit_nm;
   if (options.unit) unit_nm = parse_unit_nm(*options.unit, "--unit");
@@ -93,11 +93,13 @@ io::SceneFile scene_from_shapes(const SceneOptions& options, std::vector<std::st
       if (scene.specimen.height_field)
         throw UsageError(input, "there is a height field already", "Give one image at most");
       scene.specimen.height_field = mc::HeightFieldBody{
-          input, read_height_field(path, options, notes), material, Edge::mirror};
+          input, read_height_field(path, options, notes),
+          material_index(scene, material, "--material"), Edge::mirror};
+      scene.inputs.push_back(path);
     } else {
-      add_mesh_bodies(input, unit_nm, options.material.value_or("Si"), scene, notes);
+      add_mesh_bodies(input, unit_nm, material, scene, notes);
+      for (auto& file : io::mesh_input_files(path)) scene.inputs.push_back(std::move(file));
     }
-    scene.inputs.push_back(path);
   }
   const bool has_field = scene.specimen.height_field.has_value();
   if (!has_field && (options.pitch || options.z_unit))

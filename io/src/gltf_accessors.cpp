@@ -92,6 +92,14 @@ bool has_scheme(const std::string& uri) {
 
 }  // namespace
 
+fs::path gltf_buffer_file(const fs::path& path, const JsonValue& buffer, const std::string& uri) {
+  if (has_scheme(uri) || uri.starts_with('/') || uri.find('\0') != std::string::npos) {
+    buffer.fail(fmt::format("its data is at '{}', not beside the file", shown(uri)),
+                "Fetch it, and name it relative to the glTF file; or export GLB");
+  }
+  return path.parent_path() / percent_decoded(uri);
+}
+
 struct GltfAccessors::Layout {
   std::uint64_t component = 0;
   std::size_t components = 0;
@@ -107,7 +115,7 @@ struct GltfAccessors::View {
 
 std::string GltfAccessors::load(const JsonValue& buffer, const std::string& uri,
                                 std::uint64_t bytes) const {
-  if (uri.starts_with("data:")) {
+  if (is_data_uri(uri)) {
     const auto comma = uri.find(',');
     const bool is_base64 = comma != std::string::npos && uri.substr(0, comma).ends_with(";base64");
     const auto decoded =
@@ -115,11 +123,7 @@ std::string GltfAccessors::load(const JsonValue& buffer, const std::string& uri,
     if (!decoded) buffer.fail("its data URI is not base64");
     return *decoded;
   }
-  if (has_scheme(uri) || uri.starts_with('/') || uri.find('\0') != std::string::npos) {
-    buffer.fail(fmt::format("its data is at '{}', not beside the file", shown(uri)),
-                "Fetch it, and name it relative to the glTF file; or export GLB");
-  }
-  const fs::path path = path_.parent_path() / percent_decoded(uri);
+  const fs::path path = gltf_buffer_file(path_, buffer, uri);
   std::error_code error;
   if (!fs::is_regular_file(path, error)) {
     buffer.fail(fmt::format("there is no file '{}'", path.string()),

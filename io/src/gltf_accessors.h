@@ -13,6 +13,11 @@
 
 namespace surf::io {
 
+/// The file beside `path` that a buffer's URI names. `buffer` is the place for messages.
+std::filesystem::path gltf_buffer_file(const std::filesystem::path& path, const JsonValue& buffer,
+                                       const std::string& uri);
+inline bool is_data_uri(const std::string& uri) { return uri.starts_with("data:"); }
+
 /// The numbers of a glTF file: its accessors, over views of buffers that lie in the file itself, in
 /// data URIs or in files beside it. Buffers are loaded when first used, so images never are.
 class GltfAccessors {

@@ -67,6 +67,10 @@ Container open_glb(const std::string& file, std::string_view content) {
   return container;
 }
 
+Container open(const std::string& file, std::string_view content) {
+  return is_glb(content) ? open_glb(file, content) : Container{content, {}};
+}
+
 /// Extensions that change nothing about shapes.
 bool is_harmless(const std::string& extension) {
   static constexpr std::array<std::string_view, 7> beginnings{
@@ -238,10 +242,20 @@ class GltfParser {
 
 bool is_glb(std::string_view content) { return content.starts_with("glTF"); }
 
+std::vector<std::filesystem::path> gltf_buffer_files(const std::filesystem::path& path,
+                                                     std::string_view content) {
+  const JsonValue root = JsonValue::parse(path.string(), open(path.string(), content).json);
+  std::vector<std::filesystem::path> files;
+  for (const JsonValue& buffer : root.items("buffers")) {
+    const std::string uri = buffer.text("uri", "");
+    if (!uri.empty() && !is_data_uri(uri)) files.push_back(gltf_buffer_file(path, buffer, uri));
+  }
+  return files;
+}
+
 std::vector<NamedMesh> parse_gltf(const std::filesystem::path& path, std::string_view content) {
   const std::string file = path.string();
-  const Container container =
-      is_glb(content) ? open_glb(file, content) : Container{content, {}};
+  const Container container = open(file, content);
   const JsonValue root = JsonValue::parse(file, container.json);
   check_version(root);
   check_extensions(root);

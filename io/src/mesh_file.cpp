@@ -152,6 +152,15 @@ TriangleMesh read_mesh(const std::filesystem::path& path, std::optional<double> 
   return join(meshes);
 }
 
+std::vector<std::filesystem::path> mesh_input_files(const std::filesystem::path& path) {
+  std::vector<std::filesystem::path> files{path};
+  const std::string content = read_file(path);
+  if (format_of(path, content) == Format::gltf) {
+    for (auto& buffer : gltf_buffer_files(path, content)) files.push_back(std::move(buffer));
+  }
+  return files;
+}
+
 void write_mesh(const std::filesystem::path& path, const TriangleMesh& mesh, double unit_nm) {
   const std::string file = path.string();
   check_known(path);

@@ -23,6 +23,9 @@ TriangleMesh parse_ply(const std::string& file, std::string_view content);
 TriangleMesh parse_off(const std::string& file, std::string_view content);
 /// glTF 2.0 as text or GLB. One mesh per node and material. `path` is where buffers are looked for.
 std::vector<NamedMesh> parse_gltf(const std::filesystem::path& path, std::string_view content);
+/// The files beside it in which its buffers lie.
+std::vector<std::filesystem::path> gltf_buffer_files(const std::filesystem::path& path,
+                                                     std::string_view content);
 
 /// Whether the length is that which the count in a binary STL file demands.
 bool is_binary_stl(std::string_view content);

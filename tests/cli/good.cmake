@@ -43,6 +43,9 @@ semsurf_cli_test(mesh.simplify ARGS mesh "${PROJECT_SOURCE_DIR}/samples/pyramid.
 semsurf_cli_test(mesh.smooth ARGS mesh cube.off --smooth 3 -o cube.ply -q STDOUT "^$" WRITES cube.ply)
 semsurf_cli_test(help.mesh ARGS mesh --help STDOUT "Repair:" "--simplify" "Examples:")
 
+semsurf_cli_test(info.gltf ARGS info two.gltf
+  STDOUT "mesh of 2 bodies" "base, material Au, 12 triangles, 40.* wide, 40.* deep, 20.* high"
+         "cap, material coating, 12 triangles, 16" "shape +closed, 24 triangles" "z 0 to 46 nm")
 semsurf_cli_test(info.scene ARGS info scene.toml
   STDOUT "a cube of gold" "2000 eV" "8 x 8 pixels of 10" "3 per pixel" "in Au" "Joy")
 
@@ -50,6 +53,9 @@ semsurf_cli_test(simulate.mesh ARGS simulate cube.off ${few} -o cube.exr
   STDOUT "8 x 8 pixels" "SE +0\\.[0-9]+ ± 0" "BSE" "primaries +128" "cube.exr"
   STDERR "no --material is given: Si" WRITES cube.exr cube.run.json
   INFO cube.exr "specimen.body.1 +cube.off, Si, 12 triangles")
+semsurf_cli_test(simulate.gltf ARGS simulate two.gltf --material C ${few} -o two.exr
+  STDERR "two.gltf, cap: 'coating' is no known material: C"
+  INFO two.exr "specimen.body.1 +two.gltf, base, Au,(.|\n)*specimen.body.2 +two.gltf, cap, C,")
 semsurf_cli_test(simulate.all_formats ARGS simulate cube.off --material Au ${few}
   -o a/cube.exr -o a/cube.tif -o cube.png --channel BSE
   WRITES a/cube.exr a/cube.tif cube.png a/cube.run.json cube.run.json INFO a/cube.tif "BSE.stderr")

@@ -58,6 +58,7 @@ TEST(GltfFile, ReadsDataUrisAndFilesBesideIt) {
   write(folder.path() / "sub" / "a b.bin", gltf.binary);
   const auto path = write(folder.path() / "f.gltf", gltf.text("sub/a%20b.bin"));
   expect_letter_f(read_mesh(path, 1));
+  EXPECT_EQ(mesh_input_files(path), (std::vector{path, folder.path() / "sub" / "a b.bin"}));
 }
 
 TEST(GltfFile, AUnitIsOneMetreUnlessGiven) {

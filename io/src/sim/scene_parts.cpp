@@ -9,6 +9,7 @@
 #include "sim/suggest.h"
 #include "surf/core/units.h"
 #include "surf/io/image_file.h"
+#include "surf/io/mesh_file.h"
 #include "surf/io/sim/materials.h"
 #include "surf/io/sim/mesh_bodies.h"
 #include "surf/mesh/shapes.h"
@@ -280,6 +281,8 @@ std::vector<mc::Body> SceneParts::read_mesh_file(const TomlTable& table) {
   }
   const std::filesystem::path path = input(table, "mesh");
   std::vector<MeshBody> read = read_mesh_bodies(path, unit_nm, names, scene_.materials);
+  const std::vector<std::filesystem::path> files = mesh_input_files(path);
+  scene_.inputs.insert(scene_.inputs.end(), files.begin() + 1, files.end());
   std::vector<mc::Body> bodies;
   for (MeshBody& part : read) {
     const std::string name = read.size() == 1 ? path.filename().string() : part.name;
@@ -295,12 +298,13 @@ std::vector<mc::Body> SceneParts::read_mesh_file(const TomlTable& table) {
 std::vector<mc::Body> SceneParts::read_bodies(const TomlTable& table) {
   require_one_source(table, "mesh");
   std::vector<mc::Body> bodies;
-  const int default_material = material(table);
+  table.require("material", "every solid has one");
+  find_material(*table.text("material"), table.place("material"));   // known, if not always used
   if (table.has("mesh")) {
     bodies = read_mesh_file(table);
   } else {
     bodies.push_back({table.text("name").value_or(*table.text("shape")),
-                      at_place(table, {}, [&] { return make_body(table); }), default_material});
+                      at_place(table, {}, [&] { return make_body(table); }), material(table)});
   }
   for (mc::Body& body : bodies) {
     at_place(table, {}, [&] { place_body(table, body.mesh); });

@@ -101,6 +101,7 @@ TEST_F(MeshBodies, SceneFilesTakeThemAll) {
   )");
   const mc::Specimen specimen = read_scene(scene_path).specimen;
   ASSERT_EQ(specimen.bodies.size(), 6u);
+  EXPECT_EQ(specimen.materials.size(), 4u) << "each once, none unused";
   const auto expect_body = [&](std::size_t i, const char* name, const char* material) {
     EXPECT_EQ(specimen.bodies[i].name, name);
     EXPECT_EQ(specimen.materials.at(static_cast<std::size_t>(specimen.bodies[i].material)).name,

@@ -40,6 +40,10 @@ TriangleMesh join(const std::vector<NamedMesh>& meshes);
 /// The bodies of the file, joined.
 TriangleMesh read_mesh(const std::filesystem::path& path, std::optional<double> unit_nm = {});
 
+/// The files that `read_mesh` opens for this one: itself, and the buffers beside a glTF file. Throws
+/// what reading would for a file whose JSON is broken.
+std::vector<std::filesystem::path> mesh_input_files(const std::filesystem::path& path);
+
 /// Writes by extension: STL (binary), OBJ, PLY (binary, little-endian, double), OFF or VTP (inline
 /// binary, double), one file unit being `unit_nm` (> 0). Vertices and triangles keep their order. The file appears under its
 /// name only when it is complete.
