@@ -171,6 +171,24 @@ TEST(ImageFileOrientation, TiffPagesDescribeThemselves) {
   EXPECT_FALSE(input->seek_subimage(4, 0));
 }
 
+TEST(ImageFileOrientation, AVtiMayBeginAnywhere) {
+  const TemporaryFolder folder;
+  const auto path = test::write(folder.path() / "a.vti",
+                          "<VTKFile type=\"ImageData\"><ImageData WholeExtent=\"2 3 -1 0 5 5\" "
+                          "Origin=\"10 20 0\" Spacing=\"2 3 1\"><Piece Extent=\"2 3 -1 0 5 5\">"
+                          "<PointData><DataArray type=\"Int16\" Name=\"a\" format=\"ascii\" "
+                          "NumberOfComponents=\"2\">1 -1 2 -2 3 -3 4 -4</DataArray></PointData>"
+                          "</Piece></ImageData></VTKFile>");
+  const Image image = read_image(path);
+  EXPECT_EQ(image.origin_x_nm, 14);
+  EXPECT_EQ(image.origin_y_nm, 17);
+  EXPECT_EQ(image.pitch_y_nm, 3);
+  ASSERT_EQ(image.channels.size(), 2u);
+  EXPECT_EQ(image.channels[1].name, "a.1");
+  EXPECT_EQ(image.channels[0].values(1, 0), 2);
+  EXPECT_EQ(image.channels[1].values(0, 1), -3);
+}
+
 TEST(ImageFileOrientation, VtiStandsInSpace) {
   const TemporaryFolder folder;
   const auto path = folder.path() / "a.vti";
