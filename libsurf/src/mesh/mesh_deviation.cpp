@@ -12,6 +12,7 @@ namespace surf {
 namespace {
 
 constexpr std::size_t block_size = 1024;
+constexpr double default_spacing = 1.5;   // mean edges: the longest side of a typical triangle
 constexpr double max_pieces = 4096;   // along a side: a sample less dense than asked is better than none
 
 double mean_edge(const TriangleMesh& mesh) {
@@ -27,7 +28,7 @@ int pieces(double length_nm, double spacing_nm) {
   return static_cast<int>(std::clamp(std::ceil(length_nm / spacing_nm), 1.0, max_pieces));
 }
 
-/// Corners and points between them, in rows along the longest side.
+/// Points between the corners, in rows along the longest side.
 template <class Visit>
 void visit_samples(const TriangleMesh& mesh, const Triangle& t, double spacing_nm,
                    const Visit& visit) {
@@ -40,10 +41,11 @@ void visit_samples(const TriangleMesh& mesh, const Triangle& t, double spacing_n
   const double longest = length(along);
   const double height = longest > 0 ? length(cross(along, up)) / longest : 0;
   const int rows = pieces(height, spacing_nm);
-  for (int row = 0; row <= rows; ++row) {
+  for (int row = 0; row < rows; ++row) {
     const double share = double(row) / rows;
     const int columns = pieces(longest * (1 - share), spacing_nm);
-    for (int column = 0; column <= (row == rows ? 0 : columns); ++column) {
+    const bool corners = row == 0;   // at both ends, and visited already
+    for (int column = corners; column <= columns - corners; ++column) {
       visit(v[0] + up * share + along * ((1 - share) * column / columns));
     }
   }
@@ -52,18 +54,21 @@ void visit_samples(const TriangleMesh& mesh, const Triangle& t, double spacing_n
 /// Largest distance of samples on `from` from the surface in the tree.
 double largest_distance(const TriangleMesh& from, const TriangleTree& tree, double spacing_nm,
                         int threads) {
-  const std::size_t triangles = from.triangles.size();
-  const std::size_t blocks = (triangles + block_size - 1) / block_size;
+  const std::size_t corners = from.vertices_nm.size();
+  const std::size_t count = corners + from.triangles.size();
+  const std::size_t blocks = (count + block_size - 1) / block_size;
   std::vector<double> largest(blocks, 0);
   parallel_for(blocks, threads, [&](std::size_t block, int) {
     std::uint32_t near = 0;
-    const std::size_t end = std::min(triangles, (block + 1) * block_size);
+    const auto look = [&](const Vec3& p) {
+      const TriangleTree::Closest found = tree.closest(p, near);
+      near = found.triangle;
+      largest[block] = std::max(largest[block], found.distance_nm);
+    };
+    const std::size_t end = std::min(count, (block + 1) * block_size);
     for (std::size_t i = block * block_size; i < end; ++i) {
-      visit_samples(from, from.triangles[i], spacing_nm, [&](const Vec3& p) {
-        const TriangleTree::Closest found = tree.closest(p, near);
-        near = found.triangle;
-        largest[block] = std::max(largest[block], found.distance_nm);
-      });
+      if (i < corners) look(from.vertices_nm[i]);
+      else visit_samples(from, from.triangles[i - corners], spacing_nm, look);
     }
   });
   return largest.empty() ? 0 : *std::ranges::max_element(largest);
@@ -77,10 +82,12 @@ MeshDeviation mesh_deviation(const TriangleMesh& first, const TriangleMesh& seco
   validate(first);
   validate(second);
   MeshDeviation d;
-  d.spacing_nm = options.spacing_nm > 0 ? options.spacing_nm
-                                        : std::min(mean_edge(first), mean_edge(second));
-  d.from_first_nm = largest_distance(first, TriangleTree(second), d.spacing_nm, options.threads);
-  d.from_second_nm = largest_distance(second, TriangleTree(first), d.spacing_nm, options.threads);
+  const TriangleMesh a = merge_equal_vertices(first), b = merge_equal_vertices(second);
+  d.spacing_nm = options.spacing_nm > 0
+                     ? options.spacing_nm
+                     : default_spacing * std::min(mean_edge(a), mean_edge(b));
+  d.from_first_nm = largest_distance(a, TriangleTree(b), d.spacing_nm, options.threads);
+  d.from_second_nm = largest_distance(b, TriangleTree(a), d.spacing_nm, options.threads);
   return d;
 }
 

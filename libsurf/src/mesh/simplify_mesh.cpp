@@ -25,7 +25,8 @@ using HalfedgeMesh = OpenMesh::TriMesh_ArrayKernelT<Traits>;
 using PointNumber = OpenMesh::VPropHandleT<std::uint32_t>;   // a vertex's number in the merged mesh
 using Decimater = OpenMesh::Decimater::DecimaterT<HalfedgeMesh>;
 
-constexpr int bisections = 4;   // of the last halving: the number ends within 3 % of the fewest
+constexpr std::size_t step_down = 4;   // fewer triangles from run to run
+constexpr int bisections = 5;   // of the last step: the number ends within a few per cent of the fewest
 
 /// A halfedge mesh of a merged mesh, cut where more than two triangles meet or disagree; vertices
 /// along cuts and rims are locked: cuts fit together again, rims stay. Coordinates are taken from
@@ -116,7 +117,7 @@ class Descent {
     while (best_.triangles.size() > least) {
       const std::size_t from = best_.triangles.size();
       const std::size_t aim =
-          options_.tolerance_nm > 0 ? std::max(least, from / 2) : options_.triangles;
+          options_.tolerance_nm > 0 ? std::max(least, from / step_down) : options_.triangles;
       if (attempt(aim)) {
         if (best_.triangles.size() + 4 > from || best_.triangles.size() > aim + aim / 4) break;
         continue;

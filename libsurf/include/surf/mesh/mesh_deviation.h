@@ -8,8 +8,8 @@
 namespace surf {
 
 struct MeshDeviationOptions {
-  /// Sample points are at most this far apart on both surfaces; > 0, or 0: the mean edge of the mesh
-  /// with the shorter ones. Corners are always samples.
+  /// Sample points are at most this far apart on both surfaces; > 0, or 0: 1.5 mean edges of the
+  /// mesh with the shorter ones. Corners are always samples.
   double spacing_nm = 0;
   int threads = 0;   ///< 0: one per hardware thread. Does not change the result
 };
