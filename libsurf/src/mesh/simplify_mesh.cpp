@@ -25,11 +25,12 @@ using HalfedgeMesh = OpenMesh::TriMesh_ArrayKernelT<Traits>;
 using PointNumber = OpenMesh::VPropHandleT<std::uint32_t>;   // a vertex's number in the merged mesh
 using Decimater = OpenMesh::Decimater::DecimaterT<HalfedgeMesh>;
 
+constexpr unsigned max_valence = 64;    // beyond it OpenMesh's costs grow with its square
 constexpr std::size_t step_down = 4;   // fewer triangles from run to run
 constexpr int bisections = 5;   // of the last step: the number ends within a few per cent of the fewest
 
 /// A halfedge mesh of a merged mesh, cut where more than two triangles meet or disagree; vertices
-/// along cuts and rims are locked: cuts fit together again, rims stay. Coordinates are taken from
+/// along cuts and rims are locked: cuts fit together again, rims stay; so are hubs of great fans. Coordinates are taken from
 /// `middle`: OpenMesh computes plane equations, which suffer far from the origin.
 HalfedgeMesh to_halfedges(const TriangleMesh& mesh, const Vec3& middle, PointNumber& number) {
   const std::vector<Triangle>& triangles = mesh.triangles;
@@ -66,7 +67,7 @@ HalfedgeMesh to_halfedges(const TriangleMesh& mesh, const Vec3& middle, PointNum
     out.add_face(of_fan[fans.find(side)], of_fan[fans.find(side + 1)], of_fan[fans.find(side + 2)]);
   }
   for (const auto v : out.vertices()) {
-    if (out.is_boundary(v)) out.status(v).set_locked(true);
+    if (out.is_boundary(v) || out.valence(v) > max_valence) out.status(v).set_locked(true);
   }
   out.update_face_normals();
   return out;

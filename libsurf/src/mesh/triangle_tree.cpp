@@ -9,6 +9,7 @@ namespace surf {
 namespace {
 
 constexpr std::uint32_t leaf_size = 4;
+constexpr double negligible = 1e-12;   // of the diagonal: a point that near lies on the surface
 
 double squared(const Vec3& v) { return dot(v, v); }
 
@@ -60,6 +61,8 @@ TriangleTree::TriangleTree(const TriangleMesh& mesh)
   nodes_.reserve(triangles_.size());
   nodes_.emplace_back();
   split(0, 0, static_cast<std::uint32_t>(triangles_.size()), middles);
+  const double diagonal = length(nodes_[0].box.size_nm());
+  negligible_squared_ = negligible * diagonal * negligible * diagonal;
 }
 
 void TriangleTree::split(std::uint32_t node, std::uint32_t first, std::uint32_t count,
@@ -96,7 +99,7 @@ TriangleTree::Closest TriangleTree::closest(const Vec3& p, std::uint32_t start) 
   Entry stack[max_depth];
   int size = 0;
   stack[size++] = {squared_distance(nodes_[0].box, p), 0};
-  while (size > 0) {
+  while (size > 0 && least > negligible_squared_) {
     const Entry entry = stack[--size];
     if (entry.squared >= least) continue;
     const Node& node = nodes_[entry.node];

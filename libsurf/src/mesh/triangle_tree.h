@@ -52,7 +52,8 @@ class TriangleTree {
     double distance_nm;
     std::uint32_t triangle;
   };
-  /// The triangle nearest to `p`. `start` is a guess: any triangle, the nearer the quicker.
+  /// The triangle nearest to `p`; the first one found within 1e-12 of the tree's diagonal will do.
+  /// `start` is a guess: any triangle, the nearer the quicker.
   Closest closest(const Vec3& p, std::uint32_t start = 0) const;
 
   Corners corners(std::uint32_t triangle) const {
@@ -79,6 +80,7 @@ class TriangleTree {
              const std::vector<Vec3>& middles);
 
   const TriangleMesh& mesh_;
+  double negligible_squared_ = 0;
   std::vector<std::uint32_t> triangles_;
   std::vector<Node> nodes_;
 };

@@ -162,6 +162,24 @@ TEST_F(SceneFileTest, ReadsShapesOfFields) {
             make_trench({40, 40, 2}, 5, 10, 0).z_nm);
   EXPECT_EQ(field("shape = \"rough\"\nrms = 1\ncorrelation = 6\nseed = 3").z_nm,
             make_rough({40, 40, 2}, 1, 6, 3).z_nm);
+  EXPECT_EQ(field("shape = \"rough\"\nrms = 1\ncorrelation = 6\nhurst = 0.8\nseed = 3").z_nm,
+            make_self_affine({40, 40, 2}, 1, 6, 0.8, 3).z_nm);
+  EXPECT_EQ(field("shape = \"line\"\nheight = 5\ntop_width = 8\nwall_run = 4").z_nm,
+            make_line({40, 40, 2}, 5, 8, 4).z_nm);
+  EXPECT_EQ(field("shape = \"via\"\nvia_depth = 5\nbottom_width = 8\nwall_run = 4").z_nm,
+            make_via({40, 40, 2}, 5, 8, 4).z_nm);
+  EXPECT_EQ(field("shape = \"step\"\nheight = 5\nwall_run = 4").z_nm,
+            make_step({40, 40, 2}, 5, 4).z_nm);
+  EXPECT_EQ(field("shape = \"grating\"\nheight = 5\nperiod = 20\ntop_width = 6\nwall_run = 4").z_nm,
+            make_grating({40, 40, 2}, 5, 20, 6, 4).z_nm);
+}
+
+TEST_F(SceneFileTest, ReadsCones) {
+  const mc::Body body = read("[[body]]\nmaterial = \"Si\"\nshape = \"cone\"\nbase = [1, 2, 3]\n"
+                             "bottom_radius = 5\ntop_radius = 2\nheight = 7\nsegments = 12")
+                            .specimen.bodies.at(0);
+  EXPECT_EQ(body.name, "cone");
+  EXPECT_EQ(body.mesh.vertices_nm, make_cone({1, 2, 3}, 5, 2, 7, 12).vertices_nm);
 }
 
 TEST_F(SceneFileTest, ReadsFieldsFromImages) {
