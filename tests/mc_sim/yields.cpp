@@ -83,7 +83,8 @@ std::optional<double> interpolated(const std::map<double, double>& points, doubl
   return below->second + f * (above->second - below->second);
 }
 
-// Every energy that was measured (neighbours within 3 % together) is judged by the spread of all experiments whose curves pass it.
+// Every energy that was measured (neighbours within 3 % together) is judged by the spread of all
+// experiments whose curves pass it.
 // Most energies have a point of a single experiment, and experiments differ by up to a factor of two
 // (carbon, where a layer of contamination counts most).
 class BackscatterYieldOf : public testing::TestWithParam<const char*> {};
