@@ -25,6 +25,8 @@ expect "SE1 SE2" simulate --detector SE
 expect "mirror" simulate --edge m
 expect "bash zsh fish" completion ""
 expect "/etc/hostname" simulate -o /etc/hostnam
-expect "Si" materials Si
+expect "Si SiO2" materials Si
+expect "graphite" materials gr
+expect "--materials" materials --ma
 expect "" simulate --energy ""
 exit $status

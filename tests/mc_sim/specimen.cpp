@@ -89,6 +89,9 @@ TEST(Material, RefusesWhatCannotBe) {
   m = io::find_material("Si", "test");
   m.loss_join_ev = 4;
   EXPECT_THROW(validate(m), InvalidInput);
+  m = io::find_material("SiO2", "test");
+  m.formula_weight_g_mol = 0;
+  EXPECT_THROW(validate(m), InvalidInput);
 }
 
 }  // namespace surf::mc

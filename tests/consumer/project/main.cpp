@@ -2,22 +2,20 @@
 // A gold sphere of 50 nm on a 4 x 4 grid at 1 keV: prints the mean yields.
 #include <cstdio>
 
+#include "surf/mc/material_draft.h"
 #include "surf/mc/simulate.h"
 #include "surf/mesh/shapes.h"
 
 int main() {
   using namespace surf;
-  mc::Material gold;
+  mc::MaterialDraft gold;   // what is not given here is estimated
   gold.name = "Au";
   gold.density_g_cm3 = 19.3;
-  gold.constituents = {{.atomic_number = 79, .atomic_weight = 196.97, .mean_ionization_ev = 790}};
+  gold.formula = mc::parse_formula("Au", "gold");
   gold.work_function_ev = 5.1;
-  gold.barrier_ev = 10.6;
-  gold.valence_electrons = 11;
-  gold.loss_join_ev = 300;
 
   mc::Specimen specimen;
-  specimen.materials = {gold};
+  specimen.materials = {mc::complete(gold)};
   specimen.bodies = {{.name = "sphere", .mesh = make_sphere({0, 0, 50}, 50), .material = 0}};
 
   const mc::Beam beam{.energy_ev = 1000};
