@@ -158,7 +158,7 @@ class Completion {
     if (draft_.work_function_ev) {
       w = *draft_.work_function_ev;
     } else if (gap > 0 && draft_.barrier_ev) {
-      estimate("work_function_ev", w, gap + *draft_.barrier_ev, "band gap plus barrier");
+      w = gap + *draft_.barrier_ev;
     } else if (gap > 0) {
       const double affinity = gap < wide_gap_ev ? affinity_of_narrow_gaps_ev
                                                 : affinity_of_wide_gaps_ev;
@@ -178,6 +178,8 @@ class Completion {
     const double w = m_.work_function_ev, gap = draft_.band_gap_ev.value_or(0);
     if (draft_.barrier_ev) {
       u0 = *draft_.barrier_ev;
+    } else if (gap > 0 && draft_.work_function_ev) {
+      u0 = w - gap;
     } else if (gap > 0) {
       estimate("barrier_ev", u0, w - gap, "work function less the band gap");
     } else if (const auto mean = mean_over_atoms(m_, known_, [](const Material& k) {

@@ -84,9 +84,11 @@ TEST(MaterialDraft, TakesTheThirdOfGapBarrierAndWorkFunctionFromTheOtherTwo) {
   d.band_gap_ev = 8.9;
   d.barrier_ev = 1.1;
   EXPECT_DOUBLE_EQ(complete(d).work_function_ev, 10.0);
+  EXPECT_EQ(rule(complete(d), "work_function_ev"), "") << "it follows";
   d.barrier_ev.reset();
   d.work_function_ev = 10;
   EXPECT_NEAR(complete(d).barrier_ev, 1.1, 1e-12);
+  EXPECT_EQ(rule(complete(d), "barrier_ev"), "") << "it follows";
   d.barrier_ev = 1.2;
   EXPECT_THAT(refused(d), HasSubstr("barrier_ev 1.2 is not the work function 10 less"));
 }

@@ -52,12 +52,9 @@ TEST(Materials, AreAllThatAreKnown) {
 TEST(Materials, EstimateNothingButTheJoin) {
   for (const mc::Material& material : builtin_materials()) {
     for (const mc::EstimatedValue& e : material.estimates) {
-      const bool follows = e.field == "barrier_ev" && e.rule == "work function less the band gap";
-      EXPECT_TRUE(e.field == "loss_join_ev" || follows) << material.name << ": " << e.field;
-      if (e.field == "loss_join_ev") {
-        EXPECT_FALSE(material.loss_join_fitted) << material.name;
-        EXPECT_THAT(material.sources, HasSubstr("E_b: estimated"));
-      }
+      EXPECT_EQ(e.field, "loss_join_ev") << material.name;
+      EXPECT_FALSE(material.loss_join_fitted) << material.name;
+      EXPECT_THAT(material.sources, HasSubstr("E_b: estimated"));
     }
     for (const mc::Constituent& c : material.constituents) {
       EXPECT_TRUE(mc::has_mott_table(c.atomic_number)) << material.name;

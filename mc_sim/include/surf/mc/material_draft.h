@@ -25,7 +25,8 @@ struct MaterialDraft {
   std::string sources;
 };
 
-/// The material, with every missing value estimated and listed in `estimates`:
+/// The material, with every missing value estimated and listed in `estimates` (but for the third of
+/// gap, barrier and work function where two are given: it follows):
 /// - valence_electrons: the sum of the elements' own (surf/mc/element.h);
 /// - plasmon_ev: of a free-electron gas of these, 28.816 eV sqrt(n rho / M);
 /// - work_function_ev W: with a gap, gap + barrier, or where that is missing gap + 4 eV below a gap of
