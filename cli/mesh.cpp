@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
 #include <memory>
 
 #include "commands.h"
@@ -94,6 +96,18 @@ void print_repair(const RepairSummary& summary) {
   }
 }
 
+void advise(const RepairSummary& summary) {
+  double longest_nm = 0;
+  for (const OpenHole& hole : summary.open_holes) {
+    if (hole.too_large) longest_nm = std::max(longest_nm, hole.perimeter_nm);
+  }
+  if (longest_nm == 0) return;
+  // Whole nanometres above, or four digits of less.
+  const double enough_nm = longest_nm < 10 ? longest_nm * 1.001 : std::floor(longest_nm) + 1;
+  print_note(fmt::format("--max-hole {}nm would fill the holes left open, were that wanted",
+                         format_exact(enough_nm)));
+}
+
 void print_simplified(const SimplifySummary& s) {
   fmt::print("{:<10} {} triangles to {}, {}\n", "simplify", s.triangles_before, s.triangles_after,
              s.attempts == 0 || s.triangles_after == s.triangles_before
@@ -112,7 +126,10 @@ int work(const Options& o) {
   if (o.repair) {
     RepairSummary summary;
     mesh = repair_mesh(mesh, plan.repair, summary);
-    if (!o.quiet) print_repair(summary);
+    if (!o.quiet) {
+      print_repair(summary);
+      advise(summary);
+    }
   }
   if (plan.smooth.iterations > 0) mesh = smooth_mesh(mesh, plan.smooth);
   if (o.simplify || o.triangles) {

@@ -26,9 +26,9 @@ semsurf_cli_test(info.mesh ARGS info cube.off open.off --unit um
 semsurf_cli_test(info.mesh_faults ARGS info open.off
   STDOUT "open: [0-9]+ boundary edge.* near \\(" "try +semsurf mesh open.off --repair -o open_repaired.ply")
 semsurf_cli_test(info.mesh_too_wide ARGS info cube.off --unit m
-  STDOUT "40.0 m wide; is --unit right. With --unit um it would be 40.0 um")
+  STDOUT "40.0 m wide. is --unit right. With --unit um it would be 40.0 um")
 semsurf_cli_test(info.mesh_too_narrow ARGS info cube.off --unit 0.01nm
-  STDOUT "400 pm wide; is --unit right. With --unit um it would be 40.0 um")
+  STDOUT "400 pm wide. is --unit right. With --unit um it would be 40.0 um")
 
 semsurf_cli_test(mesh.convert ARGS mesh cube.off -o cube.ply
   STDOUT "shape +closed, 12 triangles" "size +40.0 nm wide" WRITES cube.ply INFO cube.ply "40.0 nm wide")
@@ -36,6 +36,8 @@ semsurf_cli_test(mesh.units ARGS mesh cube.off --unit um --scale 0.5 --out-unit 
   STDOUT "20.0 um wide" WRITES cube.stl INFO cube.stl "20.0 um wide")
 semsurf_cli_test(mesh.repair ARGS mesh open.off --repair --max-hole 1um -o closed.obj
   STDOUT "repair +filled 1 hole with" "shape +closed" WRITES closed.obj INFO closed.obj "closed, ")
+semsurf_cli_test(mesh.repair_leaves_open ARGS mesh open.off --repair -o out.ply
+  STDOUT "left open: a hole of 4 edges, 160 nm round" STDERR "--max-hole 161nm would fill" WRITES out.ply)
 semsurf_cli_test(mesh.repair_nothing ARGS mesh cube.off --repair -o cube.off.ply STDOUT "nothing to mend")
 semsurf_cli_test(mesh.open_warns ARGS mesh open.off -o out.ply STDERR "Try --repair" WRITES out.ply)
 semsurf_cli_test(mesh.simplify ARGS mesh "${PROJECT_SOURCE_DIR}/samples/pyramid.stl" --simplify 0.1nm

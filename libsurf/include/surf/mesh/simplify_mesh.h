@@ -27,11 +27,12 @@ struct SimplifySummary {
 
 /// Removes vertices where they matter least (quadric error, Garland and Heckbert 1997,
 /// doi:10.1145/258734.258849), one at a time into a neighbour, so that what remains are vertices of
-/// the original. Faces do not turn over; closedness, components and holes are kept; vertices at rims
-/// and non-manifold edges, and those of more than 64 triangles, stay where they are. With a tolerance, the number of triangles is cut to a
-/// quarter again and again as long as the two-sided deviation from the original, measured anew each time,
-/// allows, and the last step is refined by bisection. What comes back is within the tolerance at
-/// every sample, in the worst case because nothing was removed.
+/// the original. Faces do not turn over; closedness, components and holes are kept. Vertices at rims
+/// and non-manifold edges stay where they are, and so do those of more than 64 triangles. With a
+/// tolerance, the number of triangles is cut to a quarter again and again as long as the two-sided
+/// deviation from the original, measured anew each time, allows, and the last step is refined by
+/// bisection. What comes back is within the tolerance at every sample, in the worst case because
+/// nothing was removed.
 ///
 /// Deterministic. Throws InvalidInput on damaged meshes, UsageError if no limit is given or one is
 /// out of range.
