@@ -28,7 +28,7 @@ semsurf_cli_test(info.mesh_faults ARGS info open.off
 semsurf_cli_test(info.mesh_too_wide ARGS info cube.off --unit m
   STDOUT "40.0 m wide. is --unit right. With --unit um it would be 40.0 um")
 semsurf_cli_test(info.mesh_too_narrow ARGS info cube.off --unit 0.01nm
-  STDOUT "400 pm wide. is --unit right. With --unit um it would be 40.0 um")
+  STDOUT "0.400 nm wide. is --unit right. With --unit um it would be 40.0 um")
 
 semsurf_cli_test(mesh.convert ARGS mesh cube.off -o cube.ply
   STDOUT "shape +closed, 12 triangles" "size +40.0 nm wide" WRITES cube.ply INFO cube.ply "40.0 nm wide")
