@@ -87,10 +87,12 @@ inline FlatYields simulate_flat(const mc::Material& material, double energy_ev,
   options.electrons = std::max<std::int64_t>(electrons / 16, 1);
   options.tile_pixels = 1;
   const auto result = mc::simulate(mc::Scene(specimen, beam, scan), options);
-  mc::PixelTally sum;
-  for (const mc::PixelTally& p : result.pixels.data()) sum += p;
-  return {mc::estimate(sum.primaries, sum.se, sum.se_squared),
-          mc::estimate(sum.primaries, sum.bse, sum.bse_squared)};
+  const auto yield = [&](std::size_t detector) {
+    mc::Counts sum;
+    for (const mc::Counts& c : result.counts[detector].data()) sum += c;
+    return mc::estimate(result.balance.incident, sum);
+  };
+  return {yield(0), yield(1)};
 }
 
 }  // namespace surf::bench
