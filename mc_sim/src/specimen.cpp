@@ -40,7 +40,7 @@ std::string repair_command(const std::string& name) {
       fmt::format("the mesh is open: {} of its edges have a triangle on one side only, the first "
                   "near {}; and it cannot stand for the top of a half-space: {}",
                   report.boundary_edges, place(report.first_boundary_nm), why_no_sheet),
-      repair_command(subject));
+      repair_command(subject) + " (--max-hole LENGTH fills larger holes)");
 }
 
 [[noreturn]] void refuse_unoriented(const std::string& subject, const MeshReport& report) {

@@ -31,7 +31,7 @@ THIRD_PARTY = [
     ("CGAL/*", ["libsurf/src/mesh/cgal_*.cpp"]),
     ("OpenMesh/*", ["libsurf/src/mesh/simplify_mesh.cpp"]),
     ("OpenImageIO/*", ["io/src/raster_file.cpp"]),
-    ("vtk*", ["io/src/vti_file.cpp", "io/src/vtp_*.cpp", "io/src/vtk_support.h"]),
+    ("vtk*", ["io/src/vti_file.cpp", "io/src/vtp_*.cpp", "io/src/vtk_support.h", "io/src/volume_file.cpp"]),
     ("pugixml.hpp", ["io/src/vtk_xml.cpp"]),
     ("zlib.h", ["io/src/vtk_data.cpp"]),
     ("cairo*.h", ["io/src/canvas.cpp"]),

@@ -299,7 +299,7 @@ std::vector<mc::Body> SceneParts::read_bodies(const TomlTable& table) {
   require_one_source(table, "mesh");
   std::vector<mc::Body> bodies;
   table.require("material", "every solid has one");
-  find_material(*table.text("material"), table.place("material"));   // known, if not always used
+  scene_.materials.find(*table.text("material"), table.place("material"));   // known, if not always used
   if (table.has("mesh")) {
     bodies = read_mesh_file(table);
   } else {
