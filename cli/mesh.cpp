@@ -102,10 +102,8 @@ void advise(const RepairSummary& summary) {
     if (hole.too_large) longest_nm = std::max(longest_nm, hole.perimeter_nm);
   }
   if (longest_nm == 0) return;
-  // Whole nanometres above, or four digits of less.
-  const double enough_nm = longest_nm < 10 ? longest_nm * 1.001 : std::floor(longest_nm) + 1;
-  print_note(fmt::format("--max-hole {}nm would fill the holes left open, were that wanted",
-                         format_exact(enough_nm)));
+  print_note(fmt::format("--max-hole {:.4g}nm would fill the holes left open, were that wanted",
+                         1.001 * longest_nm));   // rounding to four digits never goes below it
 }
 
 void print_simplified(const SimplifySummary& s) {
