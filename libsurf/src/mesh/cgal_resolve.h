@@ -12,7 +12,7 @@ namespace surf {
 /// The union of closed bodies with outward normals, each free of self-intersections.
 TriangleMesh unite(const std::vector<TriangleMesh>& bodies);
 
-/// Replaces the surroundings of self-intersections: smoothed, or cut out and filled anew.
+/// The surroundings of self-intersections, cut out and filled anew.
 TriangleMesh mend_self_intersections(const TriangleMesh& mesh);
 
 }  // namespace surf
