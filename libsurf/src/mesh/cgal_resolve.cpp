@@ -14,8 +14,11 @@
 #include <CGAL/Polygon_mesh_processing/repair_self_intersections.h>
 #include <CGAL/Surface_mesh.h>
 
+#include <algorithm>
 #include <array>
 #include <exception>
+#include <numeric>
+#include <tuple>
 
 namespace surf {
 namespace {
@@ -36,6 +39,29 @@ bool to_cgal(const TriangleMesh& mesh, Mesh& out) {
   return true;
 }
 
+// CGAL's order depends on where things lie in memory: vertices are put in the order of their
+// coordinates, triangles in that of their corners, so that results are the same on every run.
+void put_in_order(TriangleMesh& mesh) {
+  const auto less = [&](std::uint32_t a, std::uint32_t b) {
+    const Vec3 &p = mesh.vertices_nm[a], &q = mesh.vertices_nm[b];
+    return std::tie(p.x, p.y, p.z) < std::tie(q.x, q.y, q.z);
+  };
+  std::vector<std::uint32_t> order(mesh.vertices_nm.size()), rank(order.size());
+  std::iota(order.begin(), order.end(), 0u);
+  std::stable_sort(order.begin(), order.end(), less);
+  std::vector<Vec3> vertices;
+  for (std::uint32_t i = 0; i < order.size(); ++i) {
+    rank[order[i]] = i;
+    vertices.push_back(mesh.vertices_nm[order[i]]);
+  }
+  mesh.vertices_nm = std::move(vertices);
+  for (Triangle& t : mesh.triangles) {
+    for (std::uint32_t& corner : t) corner = rank[corner];
+    std::rotate(t.begin(), std::min_element(t.begin(), t.end()), t.end());
+  }
+  std::sort(mesh.triangles.begin(), mesh.triangles.end());
+}
+
 TriangleMesh from_cgal(const Mesh& mesh) {
   TriangleMesh out;
   std::vector<std::uint32_t> number(mesh.number_of_vertices() + mesh.number_of_removed_vertices());
@@ -53,6 +79,7 @@ TriangleMesh from_cgal(const Mesh& mesh) {
     }
     out.triangles.push_back(t);
   }
+  put_in_order(out);
   return out;
 }
 
