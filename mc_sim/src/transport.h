@@ -81,6 +81,21 @@ inline Vec3 deflected(const Vec3& d, double cos_theta, double turn) {
   return out * (1.5 - 0.5 * dot(out, out));   // one Newton step keeps the length at 1
 }
 
+/// Adds an electron that has left for good to the balance (without its energy). `hit`: whether its
+/// primary met the specimen.
+inline TrackKind count_escape(Balance& balance, double energy_ev, const Vec3& direction, bool hit) {
+  if (hit && energy_ev < se_bse_split_ev) {
+    ++balance.se;
+    return TrackKind::se;
+  }
+  if (hit && direction.z >= 0) {
+    ++balance.bse;
+    return TrackKind::bse;
+  }
+  ++balance.transmitted;
+  return TrackKind::transmitted;
+}
+
 /// Stands in where nobody watches.
 struct NoObserver {
   void begin_track(int, int, int, const Vec3&, const Vec3&, double) {}
@@ -105,26 +120,14 @@ class Transport {
   /// counts as `state`'s material says.
   bool run(const Vec3& start, const Vec3& direction, double energy_ev, State state,
            RandomStream& random) {
-    beam_ = direction;
-    steps_ = 0;
-    tracks_ = 0;
     ++balance_.incident;
     balance_.incident_energy.add(energy_ev - barrier_of(geometry_.material(state)));
-    waiting_.clear();
-    Track track{start, direction, energy_ev, state, 0, -1, false};
     hit_ = geometry_.material(state) >= 0;
-    follow(track, random);
-    while (!waiting_.empty()) {
-      track = waiting_.back();
-      waiting_.pop_back();
-      follow(track, random);
-    }
+    follow_all({start, direction, energy_ev, state, 0, -1, false}, direction, random);
     if (!hit_) ++balance_.missed;
-    balance_.steps += steps_;
     return hit_;
   }
 
- private:
   struct Track {
     Vec3 position;
     Vec3 direction;
@@ -134,6 +137,28 @@ class Transport {
     int parent;
     bool turned;   // the primary had, by more than 90 degrees, when this cascade began
   };
+
+  /// Follows an electron inside the specimen that another method gives up, with all that it
+  /// generates. `beam` is its primary's direction at the start.
+  void take_over(const Track& track, const Vec3& beam, RandomStream& random) {
+    hit_ = true;
+    follow_all(track, beam, random);
+  }
+
+ private:
+  void follow_all(Track track, const Vec3& beam, RandomStream& random) {
+    beam_ = beam;
+    steps_ = 0;
+    tracks_ = 0;
+    waiting_.clear();
+    follow(track, random);
+    while (!waiting_.empty()) {
+      track = waiting_.back();
+      waiting_.pop_back();
+      follow(track, random);
+    }
+    balance_.steps += steps_;
+  }
 
   double barrier_of(int material) const {
     return material < 0 ? 0.0 : media_[static_cast<std::size_t>(material)]->barrier_ev();
@@ -246,10 +271,15 @@ class Transport {
   bool add_secondary(const Track& t, const Medium& medium, const ScatterEvent& event,
                      double clear) {
     const double energy = event.secondary_energy_ev;
+    if (energy <= medium.cutoff_ev()) {   // it never was an electron that moves
+      deposited_ += event.energy_loss_ev;
+      watcher_.deposit(t.position, t.position, event.energy_loss_ev);
+      return true;
+    }
     const double total = energy - medium.barrier_ev();
     ++balance_.generated;
     balance_.generated_energy.add(total - event.energy_loss_ev);
-    if (energy <= medium.cutoff_ev() || (drop_unreachable_ && medium.range_nm(energy) < clear)) {
+    if (drop_unreachable_ && medium.range_nm(energy) < clear) {
       ++balance_.absorbed;
       ++balance_.dropped;
       balance_.deposited_energy.add(total);
@@ -270,18 +300,7 @@ class Transport {
 
   bool escape(const Track& t) {
     balance_.escaped_energy.add(t.energy);
-    TrackKind end = TrackKind::transmitted;
-    if (!hit_) {
-      ++balance_.transmitted;   // a primary that met nothing
-    } else if (t.energy < se_bse_split_ev) {
-      end = TrackKind::se;
-      ++balance_.se;
-    } else if (t.direction.z >= 0) {
-      end = TrackKind::bse;
-      ++balance_.bse;
-    } else {
-      ++balance_.transmitted;
-    }
+    const TrackKind end = count_escape(balance_, t.energy, t.direction, hit_);
     if (hit_) detection_.escaped({t.energy, t.direction, t.generation > 0, t.turned});
     watcher_.end_track(end, t.position, t.direction, t.energy);
     return false;

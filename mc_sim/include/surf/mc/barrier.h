@@ -3,7 +3,6 @@
 
 #include <cmath>
 
-#include "surf/core/random.h"
 #include "surf/core/vec3.h"
 #include "surf/mc/physics.h"
 
@@ -24,9 +23,11 @@ inline double transmission(BarrierModel model, double normal_ev, double step_ev)
 
 /// Takes an electron across a potential step, or reflects it; true if it got across. The tangential
 /// momentum is kept: a crossing refracts, a reflection is specular. `normal` is a unit vector of
-/// either sense. The one place where energy changes its zero.
-inline bool cross_barrier(BarrierModel model, const Vec3& normal, double step_ev, Vec3& direction,
-                          double& energy_ev, RandomStream& random) {
+/// either sense. The one place where energy changes its zero. `random.uniform()` gives uniform
+/// numbers in (0, 1).
+template <class Random>
+bool cross_barrier(BarrierModel model, const Vec3& normal, double step_ev, Vec3& direction,
+                   double& energy_ev, Random& random) {
   if (model == BarrierModel::off || step_ev == 0.0) return true;
   const double cosine = dot(direction, normal);
   const double normal_ev = energy_ev * cosine * cosine;

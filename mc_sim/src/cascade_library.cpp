@@ -1,0 +1,205 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "surf/mc/cascade_library.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <fmt/format.h>
+
+#include "cascade_format.h"
+#include "cascade_recorder.h"
+#include "detection.h"
+#include "surf/core/error.h"
+#include "surf/core/parallel.h"
+#include "surf/core/units.h"
+#include "transport.h"
+
+namespace surf::mc {
+
+namespace {
+
+// Changes whenever the packing or the transport's use of random numbers does.
+constexpr int format_version = 1;
+
+// Streams of libraries are apart from those of pixels.
+constexpr std::uint64_t cascade_stream = std::uint64_t{1} << 47;
+
+// One material without any surface.
+struct Endless {
+  using State = int;
+  struct Surface {
+    double distance = 0;
+    Vec3 position, position_ahead, normal;
+    State state_ahead = -1;
+  };
+  int material(State) const { return 0; }
+  double clearance(const Vec3&) const { return std::numeric_limits<double>::infinity(); }
+  double farthest() const { return std::numeric_limits<double>::infinity(); }
+  Crossing crossing(const Vec3&, const Vec3&, double, State&, Surface&) const {
+    return Crossing::none;
+  }
+};
+
+class Maker {
+ public:
+  explicit Maker(const CascadeLibrary& library)
+      : settings_(library.settings()), media_{&library.medium()},
+        recorder_(EnergyCode(library.medium().cutoff_ev(), settings_.start_energy_ev),
+                  library.medium().barrier_ev()),
+        detection_(default_detectors(), {}, false),
+        transport_(endless_, media_, settings_.physics.barrier, false, recorder_, detection_,
+                   balance_) {}
+
+  void make(std::uint64_t number, CascadePage& out) {
+    RandomStream random(settings_.seed, cascade_stream, number);
+    transport_.run({}, {0, 0, -1}, settings_.start_energy_ev, 0, random);
+    out.starts.push_back(static_cast<std::uint32_t>(out.words.size()));
+    recorder_.finish(out.words);
+    balance_ = {};
+  }
+
+ private:
+  const CascadeSettings& settings_;
+  std::vector<const Medium*> media_;
+  Endless endless_;
+  CascadeRecorder recorder_;
+  Detection detection_;
+  Balance balance_;
+  Transport<Endless, CascadeRecorder> transport_;
+};
+
+constexpr std::size_t cascades_per_unit = 128;
+static_assert(CascadeLibrary::page_cascades % cascades_per_unit == 0);
+
+}  // namespace
+
+CascadeLibrary::CascadeLibrary(CascadeSettings settings)
+    : settings_(std::move(settings)),
+      medium_(std::make_shared<Medium>(make_medium(settings_.material, settings_.physics))) {
+  if (!can_replay(settings_.physics))
+    throw UsageError("cascade library", "without continuous loss cascades cannot be stored",
+                     "Choose loss=joy-luo, or direct simulation");
+  if (!(settings_.start_energy_ev > medium_->cutoff_ev()) ||
+      settings_.start_energy_ev > 2 * max_beam_energy_ev)
+    throw UsageError("cascade library",
+                     fmt::format("cascades cannot start at {:g} eV", settings_.start_energy_ev),
+                     fmt::format("Choose an energy above the cutoff of {:g} eV",
+                                 medium_->cutoff_ev()));
+}
+
+std::size_t CascadeLibrary::bytes() const {
+  std::size_t bytes = 0;
+  for (const auto& page : pages_) bytes += page->words.size() * 8 + page->starts.size() * 4;
+  return bytes;
+}
+
+CascadePage CascadeLibrary::make_page(std::size_t number, int threads,
+                                      const CancelToken* cancel) const {
+  threads = resolve_threads(threads);
+  std::vector<CascadePage> parts(page_cascades / cascades_per_unit);
+  std::vector<std::unique_ptr<Maker>> makers(static_cast<std::size_t>(threads));
+  parallel_for(parts.size(), threads, [&](std::size_t unit, int worker) {
+    if (cancel && cancel->cancelled()) return;
+    auto& maker = makers[static_cast<std::size_t>(worker)];
+    if (!maker) maker = std::make_unique<Maker>(*this);
+    for (std::size_t i = 0; i < cascades_per_unit; ++i)
+      maker->make(number * page_cascades + unit * cascades_per_unit + i, parts[unit]);
+  });
+  if (cancel && cancel->cancelled()) return {};
+  CascadePage page;
+  for (const CascadePage& part : parts) {
+    const auto base = static_cast<std::uint32_t>(page.words.size());
+    for (const std::uint32_t start : part.starts) page.starts.push_back(base + start);
+    page.words.insert(page.words.end(), part.words.begin(), part.words.end());
+  }
+  page.starts.push_back(static_cast<std::uint32_t>(page.words.size()));
+  return page;
+}
+
+void CascadeLibrary::add_page(std::shared_ptr<const CascadePage> page) {
+  const auto wrong = [&] {
+    const auto& s = page->starts;
+    if (s.size() != page_cascades + 1 || s.front() != 0 || s.back() != page->words.size())
+      return true;
+    for (std::size_t i = 0; i + 1 < s.size(); ++i)
+      if (s[i + 1] <= s[i] || read_node(&page->words[s[i]]).words != s[i + 1] - s[i]) return true;
+    return false;
+  };
+  if (wrong())
+    throw InvalidInput("cascade library", "this is not a page of cascades", "Build it again");
+  pages_.push_back(std::move(page));
+}
+
+void CascadeLibrary::grow(std::size_t cascades, int threads, const ProgressCallback& progress,
+                          const CancelToken* cancel) {
+  while (this->cascades() < cascades) {
+    CascadePage page = make_page(pages(), threads, cancel);
+    if (cancel && cancel->cancelled()) return;
+    add_page(std::make_shared<const CascadePage>(std::move(page)));
+    if (progress) progress(static_cast<double>(this->cascades()), static_cast<double>(cascades));
+  }
+}
+
+std::string cascade_page_key(const CascadeSettings& s, std::size_t number) {
+  const Material& m = s.material;
+  std::string key = fmt::format(
+      "what = cascades of electrons\nformat = {}\nphysics = {}\ncutoff_ev = {}\n"
+      "start_energy_ev = {}\nseed = {}\npage = {}\ncascades = {}\n",
+      format_version, format_physics(s.physics), format_exact(effective_cutoff_ev(s.physics, m)),
+      format_exact(s.start_energy_ev), s.seed, number, CascadeLibrary::page_cascades);
+  key += fmt::format(
+      "material = {}\ndensity_g_cm3 = {}\nformula_weight_g_mol = {}\nwork_function_ev = {}\n"
+      "barrier_ev = {}\nvalence_electrons = {}\nplasmon_ev = {}\nloss_join_ev = {}\n",
+      m.name, format_exact(m.density_g_cm3), format_exact(m.formula_weight_g_mol),
+      format_exact(m.work_function_ev), format_exact(m.barrier_ev),
+      format_exact(m.valence_electrons), format_exact(m.plasmon_ev), format_exact(m.loss_join_ev));
+  for (const Constituent& c : m.constituents)
+    key += fmt::format("constituent = {} {} {} {}\n", c.atomic_number, format_exact(c.atomic_weight),
+                       format_exact(c.weight_fraction), format_exact(c.mean_ionization_ev));
+  return key;
+}
+
+bool can_replay(const Physics& physics) { return physics.loss != LossModel::none; }
+
+namespace {
+
+// Adds up a node; `primary` collects its depth and extent.
+void survey(const NodeView& view, bool primary, CascadeStatistics& out, double& depth,
+            double& extent) {
+  const PackedNode& node = view.node;
+  for (int i = 0; i < view.children(); ++i)
+    survey(NodeView(view.child(i)), primary && node.level > 0, out, depth, extent);
+  if (node.level > 0) return;
+  out.segments_per_cascade += node.count;
+  out.electrons_per_cascade += view.children();
+  for (int i = 0; primary && i < node.count; ++i) {
+    const PackedVertex v = read_vertex(view.vertex(i));
+    const Vec3 p = Vec3{double(v.x), double(v.y), double(v.z)} * double(power_of_two(node.exponent));
+    depth = std::max(depth, -p.z);
+    extent = std::max(extent, length(p));
+  }
+}
+
+}  // namespace
+
+CascadeStatistics describe(const CascadeLibrary& library, std::size_t cascades) {
+  CascadeStatistics out;
+  out.cascades = std::min(cascades, library.cascades());
+  for (std::size_t i = 0; i < out.cascades; ++i) {
+    const auto words = library.cascade(i);
+    double depth = 0, extent = 0;
+    out.electrons_per_cascade += 1;
+    survey(NodeView(words.data()), true, out, depth, extent);
+    out.primary_depth_nm.push_back(depth);
+    out.primary_extent_nm.push_back(extent);
+    out.bytes_per_cascade += static_cast<double>(words.size_bytes());
+  }
+  const double n = static_cast<double>(std::max<std::size_t>(out.cascades, 1));
+  out.electrons_per_cascade /= n;
+  out.segments_per_cascade /= n;
+  out.bytes_per_cascade /= n;
+  return out;
+}
+
+}  // namespace surf::mc
