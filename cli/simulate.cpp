@@ -56,10 +56,12 @@ void print_summary(const workflow::SimulateJob& job, const workflow::SimulateSum
   }
   if (s.result.dose > 0)
     fmt::print("{:<10} {:.4g} primaries per pixel on average\n", "dose", s.result.dose);
-  const double primaries = double(s.result.balance.incident);
+  const double recalled = double(s.result.recalled);
+  const double primaries = double(s.result.balance.incident) - recalled;
   const double seconds = s.result.seconds;
-  fmt::print("{:<10} {} in {:.1f} s, {} per second on {} threads\n", "primaries",
-             format_count(primaries), seconds, format_count(seconds > 0 ? primaries / seconds : 0),
+  fmt::print("{:<10} {}{} in {:.1f} s, {} per second on {} threads\n", "primaries",
+             recalled > 0 ? format_count(recalled) + " done before, " : "", format_count(primaries),
+             seconds, format_count(seconds > 0 ? primaries / seconds : 0),
              resolve_threads(job.options.threads));
   const char* label = "written";
   for (const auto& path : s.written) {
@@ -91,6 +93,16 @@ workflow::Extras make_extras(const SimulateOptions& o) {
   return extras;
 }
 
+workflow::CheckpointOptions make_checkpoint(const SimulateOptions& o) {
+  workflow::CheckpointOptions checkpoint;
+  checkpoint.restart = o.restart;
+  if (o.checkpoint && *o.checkpoint == "off") checkpoint.wanted = false;
+  else if (o.checkpoint) checkpoint.file = *o.checkpoint;
+  if (o.checkpoint_every)
+    checkpoint.seconds = parse_duration_s(*o.checkpoint_every, "--checkpoint-every");
+  return checkpoint;
+}
+
 workflow::SimulateJob make_job(const SimulateOptions& o, const std::string& command_line) {
   workflow::SimulateJob job;
   // Numbers first: a bad one should not wait for a large mesh to be read.
@@ -114,6 +126,7 @@ workflow::SimulateJob make_job(const SimulateOptions& o, const std::string& comm
   job.options.electrons = job.scene.electrons.value_or(job.options.electrons);
   job.options.spectra = o.spectra;
   job.extras = make_extras(o);
+  job.checkpoint = make_checkpoint(o);
   job.options.seed = o.seed ? seed : job.scene.seed.value_or(job.options.seed);
   job.outputs.assign(o.outputs.begin(), o.outputs.end());
   job.png_channel = o.channel;
@@ -134,6 +147,10 @@ int simulate(const SimulateOptions& options, const std::string& command_line) {
         [&](const std::string& warning) {
           bar.clear();
           print_warning(warning);
+        },
+        [&](const std::string& note) {
+          bar.clear();
+          if (!options.quiet) print_note(note);
         });
   }
   if (!options.quiet) print_summary(job, summary);

@@ -114,6 +114,18 @@ void add_simulation_options(CLI::App& app, SimulateOptions& o) {
       ->type_name("N")->group(group);
 }
 
+void add_long_job_options(CLI::App& app, SimulateOptions& o) {
+  const char* group = "Long jobs: the same command goes on from where it was stopped";
+  app.add_option("--checkpoint", o.checkpoint,
+                 "Where unfinished work is kept (NAME.XXXXXXXX.checkpoint beside the\n"
+                 "first output, X standing for the job), or off")
+      ->type_name("FILE")->group(group);
+  app.add_option("--checkpoint-every", o.checkpoint_every,
+                 "Time between writes (30s); the first is after 10s or less")
+      ->type_name("TIME")->group(group);
+  app.add_flag("--restart", o.restart, "Begin anew, whatever was done before")->group(group);
+}
+
 void add_output_options(CLI::App& app, SimulateOptions& o) {
   const char* group = "Output";
   app.add_option("-o,--output", o.outputs, "Image to write: .exr .tif .png .vti; may be repeated")
@@ -133,6 +145,7 @@ void add_simulate_options(CLI::App& app, SimulateOptions& options) {
   add_scan_options(app, options.scene);
   add_simulation_options(app, options);
   add_detector_options(app, options);
+  add_long_job_options(app, options);
   add_output_options(app, options);
   app.footer(examples);
 }

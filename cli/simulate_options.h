@@ -17,6 +17,8 @@ struct SimulateOptions {
   std::vector<std::string> outputs;
   std::string channel, channels;
   std::optional<std::string> deposit, trajectories, trajectories_at;
+  std::optional<std::string> checkpoint, checkpoint_every;
+  bool restart = false;
   bool spectra = false;
   bool quiet = false;
 };

@@ -83,6 +83,7 @@ void ProgressBar::show(double done, double total) {
   if (!started_) {
     started_ = true;
     start_ = next_ = now;
+    done_at_start_ = done;
   }
   if (now < next_) return;
   next_ = now + update_interval;
@@ -90,8 +91,8 @@ void ProgressBar::show(double done, double total) {
   const double seconds = std::chrono::duration<double>(now - start_).count();
   const double fraction = std::clamp(done / total, 0.0, 1.0);
   std::string numbers = fmt::format(" {:3.0f} %", 100 * fraction);
-  if (seconds > 0 && done > 0) {
-    const double rate = done / seconds;
+  if (seconds > 0 && done > done_at_start_) {
+    const double rate = (done - done_at_start_) / seconds;
     numbers += fmt::format("  {} primaries/s  {} left", format_count(rate),
                            format_duration((total - done) / rate));
   }

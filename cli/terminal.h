@@ -37,6 +37,7 @@ class ProgressBar {
   using Clock = std::chrono::steady_clock;
   bool active_;
   bool started_ = false;
+  double done_at_start_ = 0;   // a resumed job begins in the middle
   Clock::time_point start_, next_;
 };
 

@@ -112,6 +112,14 @@ void Detection::touch(Histogram& histogram, double value) {
   if (i >= 0) touched_.push_back(&histogram.bins[static_cast<std::size_t>(i)]);
 }
 
+std::vector<Spectra> Detection::take_spectra() {
+  std::vector<Spectra> taken = spectra_;
+  for (Spectra& s : spectra_)
+    for (Histogram* h : {&s.energy_ev, &s.polar_deg, &s.azimuth_deg})
+      std::fill(h->bins.begin(), h->bins.end(), Counts{});
+  return taken;
+}
+
 void Detection::end_primary() {
   std::fill(counts_.begin(), counts_.end(), 0);
   if (touched_.empty()) return;

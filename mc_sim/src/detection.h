@@ -33,8 +33,8 @@ class Detection {
   /// Closes the current primary: its spectra are added up, its counts set to 0.
   void end_primary();
 
-  /// Spectra so far; empty without.
-  std::vector<Spectra>& spectra() { return spectra_; }
+  /// Spectra of the primaries since the last call; empty without.
+  std::vector<Spectra> take_spectra();
 
  private:
   struct Compiled {

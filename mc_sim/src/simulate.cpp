@@ -61,8 +61,6 @@ class Worker {
     }
   }
 
-  std::vector<Spectra>& spectra() { return detection_.spectra(); }
-
  private:
   template <class Watcher>
   void run(const WorkUnit& unit, Watcher& watcher, Observer* observer, UnitTally& out) {
@@ -90,6 +88,7 @@ class Worker {
         }
       }
     }
+    out.spectra = detection_.take_spectra();
   }
 
   const Scene::Impl& scene_;
@@ -181,22 +180,32 @@ class Collector {
   }
 
   void add(const WorkUnit& u, const UnitTally& tally) {
+    check_shape(u, tally);
     for (int y = u.y0; y < u.y1; ++y)
       for (int x = u.x0; x < u.x1; ++x) {
         result.pixels(x, y) += tally.pixels(x - u.x0, y - u.y0);
         for (std::size_t d = 0; d < result.counts.size(); ++d)
           result.counts[d](x, y) += tally.counts[d](x - u.x0, y - u.y0);
       }
+    if (result.spectra.empty()) result.spectra = tally.spectra;
+    else
+      for (std::size_t d = 0; d < tally.spectra.size(); ++d) result.spectra[d] += tally.spectra[d];
     result.balance += tally.balance;
   }
 
-  void add(const std::vector<Spectra>& spectra) {
-    if (result.spectra.empty()) result.spectra = spectra;
-    else
-      for (std::size_t d = 0; d < spectra.size(); ++d) result.spectra[d] += spectra[d];
-  }
-
   SimulationResult result;
+
+ private:
+  // A journal may have been kept for something else.
+  void check_shape(const WorkUnit& u, const UnitTally& tally) const {
+    bool fits = tally.counts.size() == result.counts.size() &&
+                tally.pixels.width() == u.x1 - u.x0 && tally.pixels.height() == u.y1 - u.y0 &&
+                (result.spectra.empty() || tally.spectra.size() == result.spectra.size());
+    for (const auto& grid : tally.counts) fits = fits && grid.size() == tally.pixels.size();
+    if (!fits)
+      throw InvalidInput("journal of units", "a unit's tally is of another simulation",
+                         "Begin anew, without the journal");
+  }
 };
 
 }  // namespace
@@ -210,14 +219,16 @@ UnitTally simulate_unit(const Scene& scene, const SimulationOptions& options, co
   UnitTally out;
   Worker worker(scene.impl(), wanted);
   worker.simulate(unit, observer, out);
-  out.spectra = std::move(worker.spectra());
   return out;
 }
 
 SimulationResult simulate(const Scene& scene, const SimulationOptions& options,
                           const ProgressCallback& progress, const CancelToken* cancel,
-                          const ObserverOfThread& observers) {
+                          const ObserverOfThread& observers, UnitJournal* journal) {
   check_options(options);
+  if (journal && observers)
+    throw UsageError("simulate", "observers would not see the units that a journal recalls",
+                     "Leave one of the two out");
   const auto begin = std::chrono::steady_clock::now();
   const Plan plan(scene.scan(), options);
   const int threads = resolve_threads(options.threads);
@@ -232,20 +243,30 @@ SimulationResult simulate(const Scene& scene, const SimulationOptions& options,
   std::mutex merging;
   parallel_for(plan.units(), threads, [&](std::size_t i, int w) {
     if (cancel && cancel->cancelled()) return;
+    const WorkUnit unit = plan.unit(i);
+    UnitTally tally;
+    const auto merge = [&] {
+      collector.add(unit, tally);
+      done += static_cast<double>(tally.balance.incident);
+    };
+    if (journal) {
+      const std::lock_guard lock(merging);
+      if (journal->recall(i, tally)) {
+        collector.result.recalled += tally.balance.incident;
+        merge();
+        return;
+      }
+    }
     auto& bench = benches[static_cast<std::size_t>(w)];
     if (!bench)
       bench = std::make_unique<Bench>(Bench{Worker(scene.impl(), options),
                                             observers ? observers(w) : nullptr});
-    const WorkUnit unit = plan.unit(i);
-    UnitTally tally;
     bench->worker.simulate(unit, bench->observer, tally);
     const std::lock_guard lock(merging);
-    collector.add(unit, tally);
-    done += static_cast<double>(tally.balance.incident);
+    merge();
     if (progress) progress(done, plan.primaries());
+    if (journal) journal->record(i, tally);
   });
-  for (const auto& bench : benches)
-    if (bench) collector.add(bench->worker.spectra());
   SimulationResult& result = collector.result;
   result.complete = done == plan.primaries();
   result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();

@@ -90,7 +90,7 @@ std::string sidecar_text(const SimulateJob& job, const SimulateSummary& summary,
                          const RunRecord& record) {
   const mc::SimulationResult& result = summary.result;
   const mc::Balance& b = result.balance;
-  const double per_second = result.seconds > 0 ? double(b.incident) / result.seconds : 0;
+  const double per_second = result.seconds > 0 ? double(b.incident - result.recalled) / result.seconds : 0;
 
   Json json;
   json["semsurf"] = version();
@@ -106,6 +106,7 @@ std::string sidecar_text(const SimulateJob& job, const SimulateSummary& summary,
   json["end"] = utc(record.end);
   json["seconds"] = result.seconds;
   json["primaries"] = b.incident;
+  json["primaries_from_checkpoint"] = result.recalled;
   json["primaries_per_second"] = per_second;
   json["rays"] = b.rays;
   json["steps"] = b.steps;

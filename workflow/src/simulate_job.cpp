@@ -4,7 +4,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <memory>
 
+#include "checkpoint.h"
 #include "extras.h"
 #include "provenance.h"
 #include "sidecar.h"
@@ -97,6 +99,44 @@ void check_outputs(const SimulateJob& job) {
   }
 }
 
+void check_checkpoint(const SimulateJob& job) {
+  const CheckpointOptions& o = job.checkpoint;
+  if (!(o.seconds > 0))
+    throw UsageError("--checkpoint-every", "it must be above zero", "Write for example 30s");
+  if (!o.wanted || o.file.empty()) return;
+  if (job.extras.deposit_cells > 0)
+    throw UsageError("--checkpoint", "deposited energy cannot be kept on the way",
+                     "Leave out --checkpoint or --deposit");
+  for (const auto* files : {&job.outputs, &job.scene.inputs})
+    for (const fs::path& file : *files)
+      if (same_file(o.file, file))
+        throw UsageError("--checkpoint", o.file.string() + " is an input or output",
+                         "Choose another name");
+  io::check_writable(o.file);
+}
+
+// What went on before, where it can go on.
+std::unique_ptr<Checkpoint> make_checkpoint(const SimulateJob& job,
+                                            const std::map<std::string, std::string>& settings,
+                                            const NoteCallback& note, const WarningCallback& warn) {
+  if (!job.checkpoint.wanted || job.extras.deposit_cells > 0) return nullptr;
+  const auto say = [](const std::string&) {};
+  return std::make_unique<Checkpoint>(job.checkpoint, job.outputs.front(),
+                                      identity_of(job, settings), note ? note : say,
+                                      warn ? warn : say);
+}
+
+// Before anything is written: a full disk should not take the work as well.
+void keep_interrupted(const SimulateJob& job, Checkpoint* checkpoint, const NoteCallback& note) {
+  if (checkpoint && checkpoint->keep()) {
+    if (note)
+      note(fmt::format("what is done is kept in {}; the same command goes on from there",
+                       checkpoint->path().string()));
+  } else if (note && job.extras.deposit_cells > 0) {
+    note("deposited energy is not kept on the way: the same command begins anew");
+  }
+}
+
 Image labelled_image(const SimulateJob& job, const mc::Scene& scene,
                      const SimulateSummary& summary,
                      const std::map<std::string, std::string>& settings) {
@@ -129,7 +169,8 @@ void write_all(const SimulateJob& job, const Image& image, SimulateSummary& summ
 }  // namespace
 
 SimulateSummary run(const SimulateJob& asked, const ProgressCallback& progress,
-                    const CancelToken* cancel, const WarningCallback& warn) {
+                    const CancelToken* cancel, const WarningCallback& warn,
+                    const NoteCallback& tell) {
   RunRecord record;
   record.start = std::chrono::system_clock::now();
   check_options(asked.options);
@@ -138,6 +179,7 @@ SimulateSummary run(const SimulateJob& asked, const ProgressCallback& progress,
   const io::SceneFile& s = job.scene;
 
   check_outputs(job);
+  check_checkpoint(job);
   SimulateSummary summary;
   summary.scan = resolve_scan(s.scan, mc::extent(s.specimen), s.beam);
   check_trajectories(job, summary.scan);
@@ -159,7 +201,13 @@ SimulateSummary run(const SimulateJob& asked, const ProgressCallback& progress,
     deposits.emplace(scene, job.extras.deposit_cells, resolve_threads(job.options.threads));
     observers = [&](int thread) { return deposits->of_thread(thread); };
   }
-  summary.result = mc::simulate(scene, job.options, progress, cancel, observers);
+  const auto checkpoint = make_checkpoint(job, settings, tell, warn);
+  const auto show = [&](double done, double total) {
+    if (checkpoint) checkpoint->expect(total);
+    if (progress) progress(done, total);
+  };
+  summary.result = mc::simulate(scene, job.options, show, cancel, observers, checkpoint.get());
+  if (!summary.result.complete) keep_interrupted(job, checkpoint.get(), tell);
   note(warn_after(summary.result));
 
   const Image image = labelled_image(job, scene, summary, settings);
@@ -173,6 +221,7 @@ SimulateSummary run(const SimulateJob& asked, const ProgressCallback& progress,
   if (job.extras.trajectories > 0) write_trajectories(scene, job, settings);
   for (const fs::path& extra : extra_files(job)) summary.written.push_back(extra);
   write_all(job, image, summary, std::move(record));
+  if (checkpoint && summary.result.complete) checkpoint->finish();
   return summary;
 }
 

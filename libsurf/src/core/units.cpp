@@ -37,6 +37,8 @@ constexpr std::array current_units{Unit{"pA", 1, 1}, Unit{"nA", 1e3, 1}, Unit{"u
                                    Unit{"fA", 1, 1e3}, Unit{"A", 1e12, 1}};
 constexpr std::array time_units{Unit{"us", 1, 1},  Unit{"\u00b5s", 1, 1}, Unit{"\u03bcs", 1, 1},
                                 Unit{"ns", 1, 1e3}, Unit{"ms", 1e3, 1},    Unit{"s", 1e6, 1}};
+constexpr std::array duration_units{Unit{"s", 1, 1}, Unit{"min", 60, 1}, Unit{"h", 3600, 1},
+                                    Unit{"d", 86400, 1}, Unit{"ms", 1, 1e3}};
 
 /// What a message says about a kind of quantity.
 struct Kind {
@@ -57,6 +59,9 @@ constexpr Kind angle_kind{
 constexpr Kind current_kind{"current", "pA",
                             "Write a number and pA, nA, uA, fA or A (bare numbers are pA), for "
                             "example 100pA"};
+constexpr Kind duration_kind{"duration", "s",
+                             "Write a number and s, min, h, d or ms (bare numbers are seconds), for "
+                             "example 5min"};
 constexpr Kind time_kind{"time", "us",
                          "Write a number and us, ns, ms or s (bare numbers are us), for example 10us"};
 
@@ -166,6 +171,12 @@ double parse_time_us(std::string_view text, std::string_view subject) {
   const Quantity q = split(text, subject, time_kind);
   return scaled(q.value, find_unit(time_units, q.unit, subject, time_kind), text, subject,
                 time_kind);
+}
+
+double parse_duration_s(std::string_view text, std::string_view subject) {
+  const Quantity q = split(text, subject, duration_kind);
+  return scaled(q.value, find_unit(duration_units, q.unit, subject, duration_kind), text, subject,
+                duration_kind);
 }
 
 double unit_length_nm(std::string_view unit, std::string_view subject) {

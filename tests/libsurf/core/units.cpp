@@ -106,6 +106,10 @@ TEST(ParseCurrentAndTime, KnowEveryUnit) {
     EXPECT_DOUBLE_EQ(parse_current_pa(text, "--thing"), 100) << text;
   for (const char* text : {"10", "10us", "0.01ms", "1e4ns", "1e-5s", "10\u00b5s"})
     EXPECT_DOUBLE_EQ(parse_time_us(text, "--thing"), 10) << text;
+  for (const char* text : {"7200", "7200s", "120min", "2h", "7.2e6 ms"})
+    EXPECT_DOUBLE_EQ(parse_duration_s(text, "--thing"), 7200) << text;
+  EXPECT_DOUBLE_EQ(parse_duration_s("1d", "--thing"), 86400);
+  EXPECT_THAT(refusal(parse_duration_s, "1us"), HasSubstr("'us' is not a unit of duration"));
   EXPECT_THAT(refusal(parse_current_pa, "1 amp"), HasSubstr("'amp' is not a unit of current"));
   EXPECT_THAT(refusal(parse_time_us, "x"), HasSubstr("'x' is not a time"));
   // 1 nA for 1 us: 6241.5 electrons.

@@ -26,6 +26,9 @@ double parse_current_pa(std::string_view text, std::string_view subject);
 /// "10", "10us", "500ns", "1ms" to us. Bare numbers are us.
 double parse_time_us(std::string_view text, std::string_view subject);
 
+/// "90", "90s", "5min", "2h", "1d", "500ms" to seconds, for waiting. Bare numbers are seconds.
+double parse_duration_s(std::string_view text, std::string_view subject);
+
 /// The nm in one `unit` ("nm", "um", "mm", "m", "pm", "A", "in"). Throws UsageError if unknown.
 double unit_length_nm(std::string_view unit, std::string_view subject);
 

@@ -15,6 +15,7 @@
 #include "surf/mc/scene.h"
 #include "surf/mc/spectra.h"
 #include "surf/mc/tally.h"
+#include "surf/mc/unit_journal.h"
 
 namespace surf::mc {
 
@@ -60,8 +61,10 @@ struct SimulationResult {
   Balance balance;
   double dose = 0;                       ///< as in the options
   std::uint64_t seed = 1;
+  std::int64_t recalled = 0;             ///< primaries among `balance` that a journal knew already
   bool complete = true;          ///< false when cancelled: some pixels have fewer primaries, or none
-  double seconds = 0;            ///< wall time of the simulation, scene building apart
+  double seconds = 0;            ///< wall time of the simulation, scene building and recalled units
+                                 ///< apart
 
   /// Yield of a detector at a pixel, its efficiency included.
   Estimate yield(std::size_t detector, int x, int y) const;
@@ -72,12 +75,14 @@ struct SimulationResult {
 using ObserverOfThread = std::function<Observer*(int thread)>;
 
 /// Simulates the whole scan, in parallel. On cancellation returns what is done.
-/// Progress counts primaries. With `observers` every track is followed to its end, as in
-/// `simulate_unit`.
+/// Progress counts primaries, and is told after each unit that is simulated. With `observers` every track is followed to its end, as in
+/// `simulate_unit`. A `journal` is told of every finished unit and asked for those done before; it
+/// must be of the same scene and options, `tile_pixels` among them. Not both (UsageError).
 SimulationResult simulate(const Scene& scene, const SimulationOptions& options,
                           const ProgressCallback& progress = {},
                           const CancelToken* cancel = nullptr,
-                          const ObserverOfThread& observers = {});
+                          const ObserverOfThread& observers = {},
+                          UnitJournal* journal = nullptr);
 
 /// Per detector the channels NAME and NAME.stderr, in counts per primary; with a dose also
 /// NAME.shot, what a microscope would show: electrons counted over the mean number of primaries.

@@ -17,6 +17,14 @@ class EnergySum {
   EnergySum& operator+=(const EnergySum& b) { sum_ += b.sum_; return *this; }
   double ev() const { return static_cast<double>(sum_) / 65536.0; }
 
+  /// The sum as it is kept, in 2^-16 eV.
+  std::int64_t parts() const { return sum_; }
+  static EnergySum of_parts(std::int64_t parts) {
+    EnergySum e;
+    e.sum_ = parts;
+    return e;
+  }
+
  private:
   std::int64_t sum_ = 0;   // 1e14 eV in all: 3e9 primaries of 30 keV
 };

@@ -35,11 +35,24 @@ struct Extras {
   std::optional<std::pair<double, double>> trajectories_at_nm;
 };
 
+/// How the work of a long job is kept on the way, so that the same job, started again, goes on from
+/// there to the same bytes: the same specimen, settings and program; threads, outputs and their place
+/// may differ. Deposited energy cannot be kept: with `deposit_cells` there is no checkpoint.
+struct CheckpointOptions {
+  bool wanted = true;
+  /// Where to; empty: NAME.FFFFFFFF.checkpoint beside the first output, F made from all that
+  /// determines the result, so that a changed job neither takes nor touches it.
+  std::filesystem::path file;
+  double seconds = 30;           ///< between writes, above 0; the first after 10 s at the latest
+  bool restart = false;          ///< begin anew, whatever there is
+};
+
 /// One simulation from specimen to files.
 struct SimulateJob {
   io::SceneFile scene;                            ///< with the command line's overrides applied
   mc::SimulationOptions options;                  ///< its detectors come before the scene's
   Extras extras;
+  CheckpointOptions checkpoint;
   std::vector<std::filesystem::path> outputs;     ///< formats by extension; at least one
   std::string png_channel;                        ///< for PNG; empty: SE, or SE.shot with a dose
   std::string command_line;                       ///< for the sidecar
@@ -57,10 +70,16 @@ struct SimulateSummary {
 /// simulation.
 using WarningCallback = std::function<void(const std::string&)>;
 
+/// Is told what is good to know and no mistake: that a job is resumed, where its checkpoint is.
+using NoteCallback = std::function<void(const std::string&)>;
+
 /// Checks everything that can be wrong before spending time (targets writable, channel known), then
 /// builds the scene, simulates, and writes every output and its sidecar `NAME.run.json`. When
-/// cancelled the files are written with `partial = true` in their metadata.
+/// cancelled the files are written with `partial = true` in their metadata, and a checkpoint is left
+/// for the same job to go on from; it is deleted when the job is done. One that cannot be gone on from
+/// is a FileError.
 SimulateSummary run(const SimulateJob& job, const ProgressCallback& progress = {},
-                    const CancelToken* cancel = nullptr, const WarningCallback& warn = {});
+                    const CancelToken* cancel = nullptr, const WarningCallback& warn = {},
+                    const NoteCallback& note = {});
 
 }  // namespace surf::workflow

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "surf/mc/simulate.h"
+
+namespace surf::mc {
+
+/// A tally as bytes, to keep or to send: about two bytes per pixel and detector where few electrons
+/// are counted. The same on every machine.
+std::string pack(const UnitTally& tally);
+
+/// The tally that `pack` was given. Throws InvalidInput for bytes that are not one.
+UnitTally unpack(std::string_view bytes);
+
+}  // namespace surf::mc
