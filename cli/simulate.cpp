@@ -25,7 +25,7 @@ struct Yield {
 Yield mean_yield(const mc::SimulationResult& result, std::size_t detector, std::size_t& pixels) {
   double sum = 0, variance = 0;
   pixels = 0;
-  for (int y = 0; y < result.pixels.height(); ++y)
+  for (int y = 0; y < result.pixels.height(); ++y) {
     for (int x = 0; x < result.pixels.width(); ++x) {
       if (result.pixels(x, y).hits == 0) continue;
       const mc::Estimate e = result.yield(detector, x, y);
@@ -33,6 +33,8 @@ Yield mean_yield(const mc::SimulationResult& result, std::size_t detector, std::
       variance += e.standard_error * e.standard_error;
       ++pixels;
     }
+    result.release();
+  }
   if (pixels == 0) return {};
   return {sum / double(pixels), std::sqrt(variance) / double(pixels)};
 }

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "grey_picture.h"
 #include "image_formats.h"
 #include "surf/core/error.h"
 #include "surf/core/units.h"
@@ -70,9 +71,10 @@ bool has_control_character(const std::string& text) {
 }
 
 /// What all formats can hold.
-void check_image(const Image& image, const std::string& file) {
+void check_image(const ImageRows& rows, const std::string& file) {
+  const Image& image = rows.head;
   validate(image, file.c_str());
-  if (image.width() < 1 || image.height() < 1) {
+  if (rows.width < 1 || rows.height < 1) {
     throw InvalidInput(file, "the image has no pixels", "Give it at least one");
   }
   for (const Channel& channel : image.channels) {
@@ -89,70 +91,33 @@ void check_image(const Image& image, const std::string& file) {
   }
 }
 
-struct Stretch {
-  float low = 0;    ///< shown as 0
-  float high = 0;   ///< shown as 255
-};
-
-/// The 0.5 and 99.5 percentiles, or the extremes where these coincide.
-Stretch find_stretch(std::vector<float> values) {
-  if (values.empty()) return {};
-  const auto at = [&](double fraction) {
-    const auto rank = static_cast<std::ptrdiff_t>(
-        std::lround(fraction * static_cast<double>(values.size() - 1)));
-    std::nth_element(values.begin(), values.begin() + rank, values.end());
-    return values[static_cast<std::size_t>(rank)];
-  };
-  const Stretch stretch{at(0.005), at(0.995)};
-  return stretch.high > stretch.low ? stretch : Stretch{at(0), at(1)};
-}
-
-unsigned char grey_of(float value, const Stretch& stretch) {
-  if (!(stretch.high > stretch.low)) return 128;
-  const double scale = double{stretch.high} - double{stretch.low};
-  const double t = (double{value} - double{stretch.low}) / scale;
-  return static_cast<unsigned char>(std::lround(255 * std::clamp(t, 0.0, 1.0)));
-}
-
-void write_grey_picture(const std::filesystem::path& target, const std::string& file,
-                        const Image& image, const Channel& channel) {
-  const Channel* const mask = channel.name == "valid" ? nullptr : image.find("valid");
-  const std::vector<float>& values = channel.values.data();
-  const auto counts = [&](std::size_t i) {
-    return std::isfinite(values[i]) && (!mask || mask->values.data()[i] != 0);
-  };
-  std::vector<float> counted;
-  counted.reserve(values.size());
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    if (counts(i)) counted.push_back(values[i]);
-  }
-  const Stretch stretch = find_stretch(std::move(counted));
-
-  Grid<unsigned char> grey(image.width(), image.height());
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    grey.data()[i] = counts(i) ? grey_of(values[i], stretch) : static_cast<unsigned char>(0);
-  }
-  Image shown = without_channels(image);
-  shown.channels.push_back({channel.name, channel.unit, {}});
-  shown.metadata[stretch_low_key] = format_exact(double{stretch.low});
-  shown.metadata[stretch_high_key] = format_exact(double{stretch.high});
-  write_png(target, file, shown, grey);
+void write_vti_at_once(const std::filesystem::path& target, const std::string& file,
+                       const ImageRows& rows) {
+  write_vti(target, file, to_image(rows));
 }
 
 }  // namespace
 
 void write_image(const std::filesystem::path& path, const Image& image,
                  const ImageWriteOptions& options) {
+  known_format_of(path);
+  validate(image, path.c_str());
+  write_image(path, rows_of(image), options);
+}
+
+void write_image(const std::filesystem::path& path, const ImageRows& rows,
+                 const ImageWriteOptions& options) {
   const std::string file = path.string();
   const Format format = known_format_of(path);
-  check_image(image, file);
-  const Channel& channel = find_channel(image, options.channel, file);
+  check_image(rows, file);
+  const Channel& channel = find_channel(rows.head, options.channel, file);
+  const auto number = static_cast<std::size_t>(&channel - rows.head.channels.data());
   write_atomically(path, [&](const std::filesystem::path& temporary) {
     switch (format) {
-      case Format::exr: write_exr(temporary, file, image); break;
-      case Format::tiff: write_tiff(temporary, file, image); break;
-      case Format::png: write_grey_picture(temporary, file, image, channel); break;
-      case Format::vti: write_vti(temporary, file, image); break;
+      case Format::exr: write_exr(temporary, file, rows); break;
+      case Format::tiff: write_tiff(temporary, file, rows); break;
+      case Format::png: write_grey_picture(temporary, file, rows, number); break;
+      case Format::vti: write_vti_at_once(temporary, file, rows); break;
       case Format::none: break;
     }
   });

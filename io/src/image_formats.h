@@ -2,24 +2,31 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <map>
+#include <span>
 #include <string>
 #include <string_view>
 
 #include "surf/core/image.h"
+#include "surf/core/image_rows.h"
 
 namespace surf::io {
 
 // Behind read_image and write_image: one pair of functions per library. Writers get the name to
 // write to and the name for messages.
 
-void write_exr(const std::filesystem::path& target, const std::string& file, const Image& image);
-void write_tiff(const std::filesystem::path& target, const std::string& file, const Image& image);
+void write_exr(const std::filesystem::path& target, const std::string& file, const ImageRows& rows);
+void write_tiff(const std::filesystem::path& target, const std::string& file,
+                const ImageRows& rows);
 void write_vti(const std::filesystem::path& target, const std::string& file, const Image& image);
 
-/// A picture in grey, 0 is black. `image` gives the text, with the name and unit of one channel.
-void write_png(const std::filesystem::path& target, const std::string& file, const Image& image,
-               const Grid<unsigned char>& grey);
+/// Sets a row of a picture in grey, 0 is black; row 0 is the lowest.
+using GreyRow = std::function<void(int y, std::span<unsigned char> row)>;
+
+/// A picture in grey. `head` gives the text, with the name and unit of one channel.
+void write_png(const std::filesystem::path& target, const std::string& file, const Image& head,
+               int width, int height, const GreyRow& grey);
 
 /// Throws FileError where a TIFF file is cut off, which libtiff takes for missing text and black.
 void check_tiff_structure(const std::filesystem::path& path);

@@ -59,21 +59,24 @@ void set_resolution(OIIO::ImageSpec& spec, const Image& image, double highest) {
   spec.attribute("PixelAspectRatio", static_cast<float>(y) / static_cast<float>(x));
 }
 
-/// Writes the channels interleaved, the top row first.
-void write_rows(OIIO::ImageOutput& output, const std::string& file,
-                const std::vector<const Grid<float>*>& channels) {
-  const int width = channels.front()->width();
-  const int height = channels.front()->height();
-  std::vector<float> rows;
-  for (int first = 0; first < height; first += rows_at_a_time) {
-    const int end = std::min(first + rows_at_a_time, height);
-    rows.clear();
-    for (int row = first; row < end; ++row) {
-      for (int x = 0; x < width; ++x) {
-        for (const Grid<float>* channel : channels) rows.push_back((*channel)(x, height - 1 - row));
+/// Writes channels [first_channel, end_channel) interleaved, the top row first.
+void write_rows(OIIO::ImageOutput& output, const std::string& file, const ImageRows& image,
+                std::size_t first_channel, std::size_t end_channel) {
+  const auto width = static_cast<std::size_t>(image.width);
+  const std::size_t channels = end_channel - first_channel;
+  std::vector<float> row(width);
+  std::vector<float> block;
+  for (int first = 0; first < image.height; first += rows_at_a_time) {
+    const int end = std::min(first + rows_at_a_time, image.height);
+    block.resize(static_cast<std::size_t>(end - first) * width * channels);
+    for (std::size_t c = 0; c < channels; ++c) {
+      std::size_t at = c;
+      for (int y = first; y < end; ++y) {
+        image.read(first_channel + c, image.height - 1 - y, row);
+        for (std::size_t x = 0; x < width; ++x, at += channels) block[at] = row[x];
       }
     }
-    check_written(output.write_scanlines(first, end, 0, OIIO::TypeDesc::FLOAT, rows.data()), output,
+    check_written(output.write_scanlines(first, end, 0, OIIO::TypeDesc::FLOAT, block.data()), output,
                   file);
   }
 }
@@ -204,31 +207,32 @@ std::string raster_library_version() {
   return fmt::format("OpenImageIO {}.{}.{}", v / 10000, v / 100 % 100, v % 100);
 }
 
-void write_exr(const std::filesystem::path& target, const std::string& file, const Image& image) {
+void write_exr(const std::filesystem::path& target, const std::string& file,
+               const ImageRows& rows) {
+  const Image& image = rows.head;
   const auto output = create_output("openexr", file);
-  OIIO::ImageSpec spec(image.width(), image.height(), static_cast<int>(image.channels.size()),
+  OIIO::ImageSpec spec(rows.width, rows.height, static_cast<int>(image.channels.size()),
                        OIIO::TypeDesc::FLOAT);
   spec.channelnames.clear();
-  std::vector<const Grid<float>*> channels;
-  for (const Channel& channel : image.channels) {
-    spec.channelnames.push_back(channel.name);
-    channels.push_back(&channel.values);
-  }
+  for (const Channel& channel : image.channels) spec.channelnames.push_back(channel.name);
   spec.attribute("compression", "zip");
   leave_out_date(spec);
   for (const auto& [key, value] : to_attributes(image)) spec.attribute(key, value);
   check_written(output->open(target.string(), spec), *output, file);
-  write_rows(*output, file, channels);
+  write_rows(*output, file, rows, 0, image.channels.size());
   close_output(*output, file);
 }
 
-void write_tiff(const std::filesystem::path& target, const std::string& file, const Image& image) {
+void write_tiff(const std::filesystem::path& target, const std::string& file,
+                const ImageRows& rows) {
+  const Image& image = rows.head;
   const auto output = create_output("tiff", file);
-  const double bytes = 4.0 * image.width() * image.height() *
+  const double bytes = 4.0 * rows.width * rows.height *
                        static_cast<double>(image.channels.size());
   auto mode = OIIO::ImageOutput::Create;
-  for (const Channel& channel : image.channels) {
-    OIIO::ImageSpec spec(image.width(), image.height(), 1, OIIO::TypeDesc::FLOAT);
+  for (std::size_t c = 0; c < image.channels.size(); ++c) {
+    const Channel& channel = image.channels[c];
+    OIIO::ImageSpec spec(rows.width, rows.height, 1, OIIO::TypeDesc::FLOAT);
     Image page = without_channels(image);
     page.channels.push_back({channel.name, channel.unit, {}});
     spec.attribute("ImageDescription", fmt::format("{}{}={}\n", to_description(page), pages_key,
@@ -238,23 +242,24 @@ void write_tiff(const std::filesystem::path& target, const std::string& file, co
     if (bytes > 4e9) spec.attribute("tiff:bigtiff", 1);
     set_resolution(spec, image, 4e9);
     check_written(output->open(target.string(), spec, mode), *output, file);
-    write_rows(*output, file, {&channel.values});
+    write_rows(*output, file, rows, c, c + 1);
     mode = OIIO::ImageOutput::AppendSubimage;
   }
   close_output(*output, file);
 }
 
 void write_png(const std::filesystem::path& target, const std::string& file, const Image& image,
-               const Grid<unsigned char>& grey) {
+               int width, int height, const GreyRow& grey) {
   const auto output = create_output("png", file);
-  OIIO::ImageSpec spec(grey.width(), grey.height(), 1, OIIO::TypeDesc::UINT8);
+  OIIO::ImageSpec spec(width, height, 1, OIIO::TypeDesc::UINT8);
   spec.attribute("ImageDescription", to_description(image));
   set_resolution(spec, image, 2e7);
   check_written(output->open(target.string(), spec), *output, file);
-  for (int row = 0; row < grey.height(); ++row) {
-    const unsigned char* const values =
-        grey.data().data() + static_cast<std::ptrdiff_t>(grey.height() - 1 - row) * grey.width();
-    check_written(output->write_scanline(row, 0, OIIO::TypeDesc::UINT8, values), *output, file);
+  std::vector<unsigned char> values(static_cast<std::size_t>(width));
+  for (int row = 0; row < height; ++row) {
+    grey(height - 1 - row, values);
+    check_written(output->write_scanline(row, 0, OIIO::TypeDesc::UINT8, values.data()), *output,
+                  file);
   }
   close_output(*output, file);
 }

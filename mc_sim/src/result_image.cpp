@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <functional>
+#include <utility>
+
 #include "dose.h"
 #include "surf/mc/simulate.h"
 
@@ -6,43 +9,62 @@ namespace surf::mc {
 
 namespace {
 
+constexpr std::size_t most_read = std::size_t{32} << 20;   // bytes of tallies between releases
+
+// The channels of a result, each as a function of the pixel.
 class Builder {
  public:
+  using Value = std::function<double(int x, int y)>;
+
   Builder(const SimulationResult& result, const Scan& scan) : result_(result) {
-    image.pitch_x_nm = scan.pixel_x_nm;
-    image.pitch_y_nm = scan.pixel_y_nm;
-    image.origin_x_nm = scan.center_x_nm - 0.5 * (scan.width - 1) * scan.pixel_x_nm;
-    image.origin_y_nm = scan.center_y_nm - 0.5 * (scan.height - 1) * scan.pixel_y_nm;
+    Image& head = rows.head;
+    head.pitch_x_nm = scan.pixel_x_nm;
+    head.pitch_y_nm = scan.pixel_y_nm;
+    head.origin_x_nm = scan.center_x_nm - 0.5 * (scan.width - 1) * scan.pixel_x_nm;
+    head.origin_y_nm = scan.center_y_nm - 0.5 * (scan.height - 1) * scan.pixel_y_nm;
+    rows.width = result.pixels.width();
+    rows.height = result.pixels.height();
   }
 
-  template <class Value>
-  void channel(const std::string& name, const Value& value) {
-    Grid<float> values(result_.pixels.width(), result_.pixels.height());
-    for (int y = 0; y < values.height(); ++y)
-      for (int x = 0; x < values.width(); ++x) values(x, y) = static_cast<float>(value(x, y));
-    image.channels.push_back({name, "1", std::move(values)});
+  void channel(const std::string& name, Value value) {
+    rows.head.channels.push_back({name, "1", {}});
+    values_.push_back(std::move(value));
   }
 
   void detector(std::size_t d) {
-    const Detector& detector = result_.detectors[d];
-    channel(detector.name, [&](int x, int y) { return result_.yield(d, x, y).mean; });
-    channel(detector.name + ".stderr",
-            [&](int x, int y) { return result_.yield(d, x, y).standard_error; });
-    if (result_.dose <= 0) return;
-    channel(detector.name + ".shot", [&](int x, int y) {
+    const SimulationResult& r = result_;
+    const std::string& name = r.detectors[d].name;
+    channel(name, [&r, d](int x, int y) { return r.yield(d, x, y).mean; });
+    channel(name + ".stderr", [&r, d](int x, int y) { return r.yield(d, x, y).standard_error; });
+    if (r.dose <= 0) return;
+    channel(name + ".shot", [&r, d](int x, int y) {
       const auto pixel = static_cast<std::uint64_t>(y) *
-                             static_cast<std::uint64_t>(result_.pixels.width()) +
+                             static_cast<std::uint64_t>(r.pixels.width()) +
                          static_cast<std::uint64_t>(x);
-      const std::int64_t seen = detected(result_.counts[d](x, y).sum, detector.efficiency,
-                                         result_.seed, pixel, d);
-      return static_cast<double>(seen) / result_.dose;
+      const std::int64_t seen = detected(r.counts[d](x, y).sum, r.detectors[d].efficiency, r.seed,
+                                         pixel, d);
+      return static_cast<double>(seen) / r.dose;
     });
   }
 
-  Image image;
+  ImageRows finish() {
+    rows.read = [&r = result_, values = std::move(values_), bytes = std::size_t{0}](
+                    std::size_t channel, int y, std::span<float> row) mutable {
+      for (std::size_t x = 0; x < row.size(); ++x)
+        row[x] = static_cast<float>(values[channel](static_cast<int>(x), y));
+      bytes += row.size() * (sizeof(PixelTally) + sizeof(Counts));
+      if (bytes < most_read) return;
+      r.release();
+      bytes = 0;
+    };
+    return std::move(rows);
+  }
+
+  ImageRows rows;
 
  private:
   const SimulationResult& result_;
+  std::vector<Value> values_;
 };
 
 }  // namespace
@@ -54,11 +76,20 @@ Estimate SimulationResult::yield(std::size_t detector, int x, int y) const {
   return e;
 }
 
-Image make_image(const SimulationResult& result, const Scan& scan) {
+void SimulationResult::release() const {
+  pixels.release();
+  for (const auto& grid : counts) grid.release();
+}
+
+ImageRows make_image_rows(const SimulationResult& result, const Scan& scan) {
   Builder builder(result, scan);
   for (std::size_t d = 0; d < result.detectors.size(); ++d) builder.detector(d);
-  builder.channel("valid", [&](int x, int y) { return result.pixels(x, y).hits > 0 ? 1.0 : 0.0; });
-  return std::move(builder.image);
+  builder.channel("valid", [&r = result](int x, int y) { return r.pixels(x, y).hits > 0 ? 1.0 : 0.0; });
+  return builder.finish();
+}
+
+Image make_image(const SimulationResult& result, const Scan& scan) {
+  return to_image(make_image_rows(result, scan));
 }
 
 }  // namespace surf::mc

@@ -173,8 +173,13 @@ class Collector {
  public:
   Collector(const Scan& scan, const SimulationOptions& options) {
     result.detectors = options.detectors;
-    result.pixels = Grid<PixelTally>(scan.width, scan.height);
-    result.counts.assign(options.detectors.size(), Grid<Counts>(scan.width, scan.height));
+    const auto pixels = static_cast<std::size_t>(scan.width) * static_cast<std::size_t>(scan.height);
+    const std::size_t bytes =
+        pixels * (sizeof(PixelTally) + options.detectors.size() * sizeof(Counts));
+    const std::string folder = bytes > options.tally_memory ? options.scratch_folder : "";
+    result.pixels = LargeGrid<PixelTally>(scan.width, scan.height, folder);
+    for (std::size_t d = 0; d < options.detectors.size(); ++d)
+      result.counts.emplace_back(scan.width, scan.height, folder);
     result.dose = options.dose;
     result.seed = options.seed;
   }
@@ -191,11 +196,18 @@ class Collector {
     else
       for (std::size_t d = 0; d < tally.spectra.size(); ++d) result.spectra[d] += tally.spectra[d];
     result.balance += tally.balance;
+    added_ += tally.pixels.size();
+    if (added_ < most_added) return;
+    result.release();
+    added_ = 0;
   }
 
   SimulationResult result;
 
  private:
+  static constexpr std::size_t most_added = std::size_t{1} << 19;   // pixels between releases
+  std::size_t added_ = 0;
+
   // A journal may have been kept for something else.
   void check_shape(const WorkUnit& u, const UnitTally& tally) const {
     bool fits = tally.counts.size() == result.counts.size() &&

@@ -78,11 +78,22 @@ std::vector<std::string> surface_channels(const Extras& extras) {
   return names;
 }
 
-void add_surface_channels(const mc::Scene& scene, const SimulateJob& job, Image& image) {
+void add_surface_channels(const mc::Scene& scene, const SimulateJob& job, ImageRows& image) {
   const auto names = surface_channels(job.extras);
   if (names.empty()) return;
   const Image view = mc::surface_view(scene, job.options.threads);
-  for (const std::string& name : names) image.channels.push_back(*view.find(name));
+  const auto seen = std::make_shared<Image>();
+  for (const std::string& name : names) {
+    const Channel& channel = *view.find(name);
+    image.head.channels.push_back({channel.name, channel.unit, {}});
+    seen->channels.push_back(channel);
+  }
+  const std::size_t before = image.head.channels.size() - names.size();
+  image.read = [simulated = image.read, before, seen, extra = rows_of(*seen).read](
+                   std::size_t channel, int y, std::span<float> row) {
+    if (channel < before) simulated(channel, y, row);
+    else extra(channel - before, y, row);
+  };
 }
 
 std::string spectra_text(const mc::SimulationResult& result) {

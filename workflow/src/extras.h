@@ -24,7 +24,7 @@ std::vector<std::filesystem::path> extra_files(const SimulateJob& job);
 
 /// Adds the channels of the surface that are wanted. What materials' numbers mean goes into the
 /// metadata.
-void add_surface_channels(const mc::Scene& scene, const SimulateJob& job, Image& image);
+void add_surface_channels(const mc::Scene& scene, const SimulateJob& job, ImageRows& image);
 
 /// The channels that `add_surface_channels` adds.
 std::vector<std::string> surface_channels(const Extras& extras);

@@ -56,6 +56,10 @@ SimulateJob complete(const SimulateJob& job) {
                        "Leave out --electrons, or --current and --dwell");
     out.options.dose = *s.current_pa * *s.dwell_us * electrons_per_pa_us;
   }
+  if (out.options.scratch_folder.empty() && !job.outputs.empty()) {
+    const fs::path folder = job.outputs.front().parent_path();
+    out.options.scratch_folder = folder.empty() ? "." : folder.string();
+  }
   if (out.png_channel.empty()) out.png_channel = out.options.dose > 0 ? "SE.shot" : "SE";
   return out;
 }
@@ -65,8 +69,8 @@ Image image_like_the_result(const SimulateJob& job) {
   mc::SimulationResult result;
   result.detectors = job.options.detectors;
   result.dose = job.options.dose;
-  result.pixels = Grid<mc::PixelTally>(1, 1);
-  result.counts.assign(result.detectors.size(), Grid<mc::Counts>(1, 1));
+  result.pixels = LargeGrid<mc::PixelTally>(1, 1);
+  for (std::size_t d = 0; d < result.detectors.size(); ++d) result.counts.emplace_back(1, 1);
   mc::Scan scan;
   scan.width = scan.height = 1;
   Image image = mc::make_image(result, scan);
@@ -137,18 +141,18 @@ void keep_interrupted(const SimulateJob& job, Checkpoint* checkpoint, const Note
   }
 }
 
-Image labelled_image(const SimulateJob& job, const mc::Scene& scene,
-                     const SimulateSummary& summary,
-                     const std::map<std::string, std::string>& settings) {
-  Image image = mc::make_image(summary.result, summary.scan);
+ImageRows labelled_image(const SimulateJob& job, const mc::Scene& scene,
+                         const SimulateSummary& summary,
+                         const std::map<std::string, std::string>& settings) {
+  ImageRows image = mc::make_image_rows(summary.result, summary.scan);
   add_surface_channels(scene, job, image);
-  for (const auto& [key, value] : settings) image.metadata[key] = value;
-  for (const auto& [key, value] : outcome(summary.result, summary.warnings))
-    image.metadata[key] = value;
+  auto& metadata = image.head.metadata;
+  for (const auto& [key, value] : settings) metadata[key] = value;
+  for (const auto& [key, value] : outcome(summary.result, summary.warnings)) metadata[key] = value;
   return image;
 }
 
-void write_all(const SimulateJob& job, const Image& image, SimulateSummary& summary,
+void write_all(const SimulateJob& job, const ImageRows& image, SimulateSummary& summary,
                RunRecord record) {
   for (const fs::path& output : job.outputs) {
     io::write_image(output, image, {job.png_channel});
@@ -210,10 +214,10 @@ SimulateSummary run(const SimulateJob& asked, const ProgressCallback& progress,
   if (!summary.result.complete) keep_interrupted(job, checkpoint.get(), tell);
   note(warn_after(summary.result));
 
-  const Image image = labelled_image(job, scene, summary, settings);
+  const ImageRows image = labelled_image(job, scene, summary, settings);
   if (deposits) {
     Volume volume = deposits->density(summary.result.balance.incident);
-    volume.metadata = image.metadata;
+    volume.metadata = image.head.metadata;
     io::write_volume(extra_path(job, ".deposit.vti"), volume);
   }
   if (job.options.spectra)

@@ -99,10 +99,8 @@ std::vector<std::string> warn_before(const SimulateJob& job, const mc::Scan& sca
 
 std::vector<std::string> warn_after(const mc::SimulationResult& result) {
   std::vector<std::string> out;
-  const auto& pixels = result.pixels.data();
   const mc::Balance& b = result.balance;
-  if (b.incident > 0 &&
-      std::none_of(pixels.begin(), pixels.end(), [](const auto& p) { return p.hits > 0; }))
+  if (b.incident > 0 && b.missed == b.incident)
     out.push_back("no pixel of the image sees the specimen");
   const double lost = double(b.total_lost());
   if (lost > lost_fraction * double(b.incident + b.generated)) {

@@ -6,6 +6,7 @@
 
 #include "surf/core/height_field.h"
 #include "surf/core/image.h"
+#include "surf/core/image_rows.h"
 
 namespace surf::io {
 
@@ -23,6 +24,12 @@ struct ImageWriteOptions {
 /// Throws FileError, UsageError for an unknown extension or channel, Unsupported where this build
 /// lacks the format.
 void write_image(const std::filesystem::path& path, const Image& image,
+                 const ImageWriteOptions& options = {});
+
+/// The same, with the same bytes, row by row: but for VTI, which needs all values at once, it takes
+/// the memory of 64 rows of all channels. PNG reads its channel three times, TIFF one channel after
+/// the other.
+void write_image(const std::filesystem::path& path, const ImageRows& rows,
                  const ImageWriteOptions& options = {});
 
 /// Throws what `write_image` would for the name, folder or channel, before any work is spent.

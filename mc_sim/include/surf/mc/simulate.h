@@ -7,6 +7,8 @@
 
 #include "surf/core/grid.h"
 #include "surf/core/image.h"
+#include "surf/core/image_rows.h"
+#include "surf/core/large_grid.h"
 #include "surf/core/progress.h"
 #include "surf/mc/beam.h"
 #include "surf/mc/detector.h"
@@ -29,6 +31,10 @@ struct SimulationOptions {
   bool spectra = false;           ///< collect `Spectra` per detector
   int threads = 0;                ///< 0: one per hardware thread. Does not change the result
   int tile_pixels = 1024;         ///< pixels in a unit of work, >= 1. Does not change the result
+  /// Tallies of more bytes than this (16 per pixel, and 16 per pixel and detector) go into scratch
+  /// files in `scratch_folder`; never where that is empty. Does not change the result.
+  std::size_t tally_memory = std::size_t{1} << 30;
+  std::string scratch_folder;
 };
 
 /// A rectangle of pixels and a range of primaries: the unit of work. Tallies of units merge in any
@@ -55,8 +61,8 @@ UnitTally simulate_unit(const Scene& scene, const SimulationOptions& options, co
 
 struct SimulationResult {
   std::vector<Detector> detectors;       ///< as in the options
-  Grid<PixelTally> pixels;
-  std::vector<Grid<Counts>> counts;      ///< per detector
+  LargeGrid<PixelTally> pixels;
+  std::vector<LargeGrid<Counts>> counts; ///< per detector
   std::vector<Spectra> spectra;          ///< per detector, where asked for
   Balance balance;
   double dose = 0;                       ///< as in the options
@@ -68,6 +74,9 @@ struct SimulationResult {
 
   /// Yield of a detector at a pixel, its efficiency included.
   Estimate yield(std::size_t detector, int x, int y) const;
+
+  /// For loops over many pixels: see `LargeGrid::release`.
+  void release() const;
 };
 
 /// The observer of each of the simulating threads, asked for once per thread, 0 to the number of
@@ -89,5 +98,8 @@ SimulationResult simulate(const Scene& scene, const SimulationOptions& options,
 /// Then valid: 1 where the beam meets the specimen and at least one primary was simulated. Placed in
 /// the scan plane.
 Image make_image(const SimulationResult& result, const Scan& scan);
+
+/// The same, row by row. Refers to `result`.
+ImageRows make_image_rows(const SimulationResult& result, const Scan& scan);
 
 }  // namespace surf::mc
