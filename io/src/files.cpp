@@ -21,6 +21,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr const char* temporary_start = ".semsurf-";
+constexpr const char* temporary_end = ".tmp";
+
 using FilePointer = std::unique_ptr<std::FILE, int (*)(std::FILE*)>;
 
 FilePointer open_for_reading(const fs::path& path) {
@@ -82,7 +85,8 @@ class Temporary {
   Temporary(const fs::path& path, const fs::path& target) {
     static std::atomic<unsigned> counter{0};
     for (int attempt = 0; attempt < 1000; ++attempt) {
-      name_ = target.parent_path() / fmt::format(".semsurf-{}-{}.tmp", ::getpid(), counter++);
+      name_ = target.parent_path() / fmt::format(
+          "{}{}-{}{}", temporary_start, ::getpid(), counter++, temporary_end);
       const int file = ::open(name_.c_str(), O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC, 0666);
       if (file >= 0) {
         ::close(file);
@@ -190,6 +194,11 @@ void write_atomically(const fs::path& path,
     fail_writing(path, error.what());
   }
   temporary.rename_to(path, target);
+}
+
+bool is_temporary_name(const fs::path& path) {
+  const std::string name = path.filename().string();
+  return name.starts_with(temporary_start) && name.ends_with(temporary_end);
 }
 
 void write_text(const fs::path& path, const std::string& text) {

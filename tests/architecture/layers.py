@@ -35,6 +35,7 @@ THIRD_PARTY = [
     ("pugixml.hpp", ["io/src/vtk_xml.cpp"]),
     ("zlib.h", ["io/src/vtk_data.cpp"]),
     ("cairo*.h", ["io/src/canvas.cpp"]),
+    ("xxhash.h", ["io/src/cache_entry.cpp"]),
     ("toml++/*", ["io/src/sim/*"]),
     ("nlohmann/*", ["workflow/src/*", "io/src/*"]),
     ("openssl/*", ["io/src/*"]),

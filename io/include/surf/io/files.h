@@ -19,6 +19,10 @@ std::string read_file(const std::filesystem::path& path,
 void write_atomically(const std::filesystem::path& path,
                       const std::function<void(const std::filesystem::path& temporary)>& write);
 
+/// Whether a file has the name of a temporary of `write_atomically`: one that is old was left behind
+/// by a process that was killed.
+bool is_temporary_name(const std::filesystem::path& path);
+
 /// Writes text through `write_atomically`.
 void write_text(const std::filesystem::path& path, const std::string& text);
 
