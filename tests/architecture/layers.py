@@ -50,6 +50,7 @@ THIRD_PARTY = [
     ("fcntl.h", ["*"]),
     ("poll.h", ["*"]),
     ("signal.h", ["*"]),
+    ("spawn.h", ["*"]),
     ("termios.h", ["*"]),
     ("unistd.h", ["*"]),
 ]

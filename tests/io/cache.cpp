@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "surf/io/cache.h"
 
-#include <stdlib.h>
-
 #include "cache_test.h"
+#include "environment.h"
 
 namespace surf::io {
 namespace {
@@ -162,30 +161,6 @@ TEST(Cache, SweepsWhatCrashedWritersLeftBehind) {
   EXPECT_TRUE(std::filesystem::exists(other));
 }
 
-/// Sets variables, or unsets those whose text is null; undone at the end.
-class Environment {
- public:
-  explicit Environment(const std::vector<std::pair<std::string, const char*>>& variables) {
-    for (const auto& [name, text] : variables) {
-      const char* const old = getenv(name.c_str());
-      old_.emplace_back(name, old ? std::optional<std::string>(old) : std::nullopt);
-      set(name, text);
-    }
-  }
-  ~Environment() {
-    for (const auto& [name, text] : old_) set(name, text ? text->c_str() : nullptr);
-  }
-  Environment(const Environment&) = delete;
-  Environment& operator=(const Environment&) = delete;
-
- private:
-  static void set(const std::string& name, const char* text) {
-    if (text) setenv(name.c_str(), text, 1);
-    else unsetenv(name.c_str());
-  }
-  std::vector<std::pair<std::string, std::optional<std::string>>> old_;
-};
-
 TEST(CacheFolder, IsTheFirstThatIsNamed) {
   struct Case { const char *option, *semsurf, *xdg, *home, *expected; };
   for (const Case& c : {Case{"given", "s", "/x", "/h", "given"},
@@ -198,8 +173,8 @@ TEST(CacheFolder, IsTheFirstThatIsNamed) {
                         Case{"off", "s", "/x", "/h", ""},
                         Case{"", "off", "/x", "/h", ""},
                         Case{"given", "off", "/x", "/h", "given"}}) {
-    const Environment environment(
-        {{"SEMSURF_CACHE", c.semsurf}, {"XDG_CACHE_HOME", c.xdg}, {"HOME", c.home}});
+    const test::Environment environment{
+        {"SEMSURF_CACHE", c.semsurf}, {"XDG_CACHE_HOME", c.xdg}, {"HOME", c.home}};
     EXPECT_EQ(cache_folder(c.option), c.expected);
   }
 }

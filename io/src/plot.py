@@ -1,0 +1,235 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Draws the plot that stands on standard input as JSON. Arguments: file, format (png or svg).
+
+Exits with 3 if there is no Matplotlib. plot.cpp writes the JSON and has checked what is in it.
+"""
+import json
+import sys
+
+try:
+    import matplotlib
+    matplotlib.use("Agg")
+    import matplotlib.pyplot as plt
+    from matplotlib import ticker
+except ImportError as error:
+    print(error, file=sys.stderr)
+    sys.exit(3)
+
+# How wide a figure of one, two, three columns is: text is the larger the fewer there are.
+WIDTH_INCH = [8.0, 11.0, 14.0]
+INK = "#222222"
+# Okabe and Ito, "Color universal design" (2008), in an order in which neighbours differ most.
+COLORS = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000", "#8a8a8a"]
+MARKERS = ["o", "s", "^", "D", "v", "P", "X", "p"]
+BAND = "#b8c4d0"
+STYLE = {
+    "font.family": "DejaVu Sans", "font.size": 10, "axes.titlesize": 11, "axes.labelsize": 10.5,
+    "legend.fontsize": 9.5, "figure.titlesize": 13, "text.color": INK, "axes.edgecolor": "#666666",
+    "axes.labelcolor": INK, "xtick.color": "#666666", "ytick.color": "#666666",
+    "xtick.labelcolor": INK, "ytick.labelcolor": INK, "axes.linewidth": 0.8,
+    "axes.spines.top": False, "axes.spines.right": False, "axes.axisbelow": True,
+    "xtick.minor.visible": True, "ytick.minor.visible": True, "axes.unicode_minus": True,
+    "xtick.major.size": 4.5, "ytick.major.size": 4.5, "xtick.minor.size": 2.5,
+    "ytick.minor.size": 2.5, "axes.titleweight": "bold", "figure.titleweight": "bold",
+    "axes.titlelocation": "left", "lines.solid_capstyle": "round", "path.simplify": True,
+    # The same input gives the same bytes, and letters look the same everywhere.
+    "svg.hashsalt": "semsurf", "svg.fonttype": "path",
+}
+
+
+def plain(text):
+    """Text that Matplotlib does not take for a formula."""
+    return text.replace("$", r"\$")
+
+
+def draw_series(axes, series, number):
+    color = COLORS[series["color"] if series["color"] is not None else number % len(COLORS)]
+    marker = MARKERS[number % len(MARKERS)]
+    dash = (0, (5, 2.5)) if series["dashed"] else "-"
+    x, y, error, style = (series[key] for key in ("x", "y", "y_error", "style"))
+    z = 3 + 0.01 * number
+    if style in ("steps", "bars"):
+        filled = style == "bars"
+        # A histogram's floor is zero, which a logarithmic axis does not have.
+        floor = None if axes.get_yscale() == "log" else 0
+        handle = axes.stairs(y, x, baseline=floor, fill=filled, color=color, zorder=z - 0.5,
+                             alpha=0.45 if filled else None, linewidth=1.8, linestyle=dash)
+        if filled:
+            axes.stairs(y, x, baseline=floor, color=color, linewidth=0.9, zorder=z - 0.4)
+        x = [(a + b) / 2 for a, b in zip(x, x[1:])]
+    else:
+        lined, pointed = style != "points", style != "line"
+        handle, = axes.plot(x, y, color=color, linewidth=1.8, zorder=z,
+                            linestyle=dash if lined else "none", marker=marker if pointed else "none",
+                            markersize=6 if style == "points" else 5, markeredgecolor="white",
+                            markeredgewidth=0.7)
+    if error:
+        axes.errorbar(x, y, yerr=error, fmt="none", ecolor=color, elinewidth=1.1, capsize=2.5,
+                      capthick=1.1, alpha=0.8, zorder=z - 0.2)
+    return handle
+
+
+def draw_backdrop(axes, panel):
+    """Bands and reference lines, with what they are called."""
+    named = []
+    for band in panel["bands"]:
+        span = axes.axvspan if band["vertical"] else axes.axhspan
+        handle = span(band["from"], band["to"], color=BAND, alpha=0.4, linewidth=0, zorder=0.5)
+        named.append((handle, band["name"]))
+    for line in panel["references"]:
+        rule = axes.axvline if line["vertical"] else axes.axhline
+        handle = rule(line["at"], color="#555555", linewidth=1.1, linestyle=(0, (2, 2)), zorder=2)
+        named.append((handle, line["name"]))
+    return named
+
+
+def prepare_axis(axes, axis, settings, which):
+    if settings["log"]:
+        # Minor ticks over any number of decades; labels on some of them where there are few.
+        axis.set_minor_locator(ticker.LogLocator(base=10, subs=tuple(range(2, 10)), numticks=99))
+        axis.set_minor_formatter(ticker.LogFormatterSciNotation(minor_thresholds=(1, 0.4)))
+    else:
+        axis.set_minor_locator(ticker.AutoMinorLocator())
+        axis.set_major_formatter(ticker.ScalarFormatter(useMathText=True))
+        axis.get_major_formatter().set_powerlimits((-4, 5))
+    if settings["range"]:
+        (axes.set_xlim if which == "x" else axes.set_ylim)(*settings["range"])
+    axis.set_label_text(plain(settings["label"]))
+    axis.grid(True, which="major", color="#e4e4e4", linewidth=0.8)
+
+
+def points_on(axes, panel):
+    """Places in pixels that hold data: the points, and places on the lines between them."""
+    places = []
+    for series in panel["series"]:
+        x, y = series["x"], series["y"]
+        if len(x) > len(y):
+            corners = [(edge, value) for a, b, value in zip(x, x[1:], y) for edge in (a, b)]
+        else:
+            corners = list(zip(x, y))
+            for (a, b), error in zip(list(corners), series["y_error"]):
+                places.append(axes.transData.transform([(a, b + error)])[0])
+        ends = axes.transData.transform(corners)
+        places.extend(ends)
+        if series["style"] != "points" and len(ends) < 2000:
+            for start, end in zip(ends, ends[1:]):
+                places.extend(start + (end - start) * i / 12 for i in range(1, 12))
+    return [(x, y) for x, y in places if abs(x) < 1e6 and abs(y) < 1e6]
+
+
+def cost(box, places, boxes, room):
+    """How much a text box would cover, or stick out."""
+    covered = sum(box.x0 <= x <= box.x1 and box.y0 <= y <= box.y1 for x, y in places)
+    overlapped = sum(box.overlaps(other) for other in boxes)
+    outside = not (room.x0 <= box.x0 and box.x1 <= room.x1 and room.y0 <= box.y0 and box.y1 <= room.y1)
+    return covered + 10 * overlapped + 40 * outside
+
+
+def draw_notes(axes, panel, places, renderer):
+    """Each beside its point, on the side where it covers least. Returns texts and their boxes."""
+    texts, boxes = [], []
+    sides = [(h, v) for reach in (6, 12, 20)
+             for h, v in ((reach, reach), (-reach, reach), (reach, -reach), (-reach, -reach),
+                          (0, 1.3 * reach), (0, -1.3 * reach), (1.3 * reach, 0), (-1.3 * reach, 0))]
+    for note in panel["notes"]:
+        tried = []
+        for h, v in sides:
+            text = axes.annotate(plain(note["text"]), (note["x"], note["y"]), (h, v),
+                                 textcoords="offset points", fontsize=9, zorder=6,
+                                 ha="left" if h > 0 else "right" if h < 0 else "center",
+                                 va="bottom" if v > 0 else "top" if v < 0 else "center")
+            box = text.get_window_extent(renderer)
+            tried.append((cost(box, places, boxes, axes.bbox), text, box))
+            if tried[-1][0] == 0:
+                break
+        best = min(tried, key=lambda one: one[0])
+        for one in tried:
+            if one is not best:
+                one[1].remove()
+        texts.append(best[1])
+        boxes.append(best[2])
+    return texts, boxes
+
+
+def make_legend(axes, named, **place):
+    # Matplotlib leaves out names that begin with an underscore: set afterwards.
+    legend = axes.legend([handle for handle, _ in named], ["x"] * len(named), framealpha=0.9,
+                         edgecolor="#d0d0d0", borderaxespad=0.6, handlelength=2.2, **place)
+    legend.set_zorder(7)
+    for text, (_, name) in zip(legend.get_texts(), named):
+        text.set_text(plain(name))
+    return legend
+
+
+def fits_inside(axes, named, places, boxes, renderer):
+    """Whether a legend was drawn where it covers nothing."""
+    for place in ("upper right", "upper left", "lower right", "lower left", "center right",
+                  "center left", "upper center", "lower center"):
+        box = make_legend(axes, named, loc=place).get_window_extent(renderer)
+        if cost(box.padded(4), places, boxes, axes.bbox.padded(1)) == 0:
+            return True
+    return False
+
+
+def make_room_above(axes):
+    scale = axes.yaxis.get_transform()
+    low, high = scale.transform(axes.get_ylim())
+    axes.set_ylim(*scale.inverted().transform([low, high + 0.12 * (high - low)]))
+
+
+def place_texts(axes, panel, named, renderer):
+    """Notes and legend. Where the legend would cover something, the y axis grows if it may."""
+    named = [(handle, name) for handle, name in named if name] if panel["legend"] else []
+    attempts = 1 if panel["y"]["range"] else 5
+    for attempt in range(attempts):
+        places = points_on(axes, panel)
+        notes, boxes = draw_notes(axes, panel, places, renderer)
+        if not named or fits_inside(axes, named, places, boxes, renderer):
+            return
+        if attempt + 1 < attempts:
+            for note in notes:
+                note.remove()
+            make_room_above(axes)
+    make_legend(axes, named, loc="upper left", bbox_to_anchor=(1.0, 1.0))
+
+
+def draw(plot, path, kind):
+    matplotlib.rcdefaults()
+    matplotlib.rcParams.update(STYLE)
+    rows, columns = plot["rows"], plot["columns"]
+    inches = WIDTH_INCH[min(columns, len(WIDTH_INCH)) - 1]
+    per_inch = plot["width_px"] / inches
+    figure = plt.figure(figsize=(inches, plot["height_px"] / per_inch), dpi=per_inch,
+                        layout="constrained")
+    figure.get_layout_engine().set(w_pad=0.12, h_pad=0.12)
+    if plot["title"]:
+        figure.suptitle(plain(plot["title"]))
+    panels = []
+    for number, panel in enumerate(plot["panels"]):
+        axes = figure.add_subplot(rows, columns, number + 1)
+        axes.set_title(plain(panel["title"]))
+        if panel["x"]["log"]:
+            axes.set_xscale("log")
+        if panel["y"]["log"]:
+            axes.set_yscale("log", nonpositive="clip")
+        named = [(draw_series(axes, series, n), series["name"])
+                 for n, series in enumerate(panel["series"])]
+        named += draw_backdrop(axes, panel)
+        # Notes widen an axis as points do, and the limits stay once texts are placed.
+        axes.update_datalim([(note["x"], note["y"]) for note in panel["notes"]])
+        axes.autoscale_view()
+        prepare_axis(axes, axes.xaxis, panel["x"], "x")
+        prepare_axis(axes, axes.yaxis, panel["y"], "y")
+        axes.set_xlim(axes.get_xlim())
+        axes.set_ylim(axes.get_ylim())
+        panels.append((axes, panel, named))
+    figure.canvas.draw()   # settles the layout, in which texts are then placed
+    renderer = figure.canvas.get_renderer()
+    for axes, panel, named in panels:
+        place_texts(axes, panel, named, renderer)
+    # Nothing of the clock or the version in the file.
+    metadata = {"Date": None, "Creator": "semsurf"} if kind == "svg" else {"Software": None}
+    figure.savefig(path, format=kind, metadata=metadata)
+
+
+draw(json.load(sys.stdin), sys.argv[1], sys.argv[2])

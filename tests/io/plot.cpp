@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "surf/io/plot.h"
+
+#include <regex>
+
+#include "environment.h"
+#include "io_test.h"
+#include "some_plots.h"
+
+namespace surf::io {
+namespace {
+
+using test::content_of;
+using testing::HasSubstr;
+using testing::Not;
+
+/// Plots need Matplotlib; without it these tests are skipped.
+class PlotFile : public testing::Test {
+ protected:
+  void SetUp() override {
+    Plot plot;
+    plot.panels = {test::yields_panel()};
+    try {
+      write_plot(folder.path() / "probe.png", plot);
+    } catch (const Unsupported& error) {
+      GTEST_SKIP() << error.what();
+    }
+  }
+
+  std::string svg_of(const Plot& plot) {
+    write_plot(folder.path() / "plot.svg", plot);
+    return content_of(folder.path() / "plot.svg");
+  }
+
+  const test::TemporaryFolder folder;
+};
+
+/// Width and height of a PNG, from its header.
+std::pair<unsigned, unsigned> size_of(const std::string& png) {
+  const auto number = [&](std::size_t at) {
+    unsigned value = 0;
+    for (std::size_t i = 0; i < 4; ++i) value = value << 8 | static_cast<unsigned char>(png.at(at + i));
+    return value;
+  };
+  return {number(16), number(20)};
+}
+
+Plot plot_of(std::vector<PlotPanel> panels) {
+  Plot plot;
+  plot.panels = std::move(panels);
+  return plot;
+}
+
+TEST_F(PlotFile, HasTheSizeThatWasAskedFor) {
+  const std::string probe = content_of(folder.path() / "probe.png");
+  EXPECT_TRUE(probe.starts_with("\x89PNG\r\n"));
+  EXPECT_EQ(size_of(probe), std::pair(1200u, 750u));
+  Plot plot = plot_of({test::noise_panel(PlotStyle::bars), test::noise_panel(PlotStyle::steps)});
+  plot.width_px = 801;
+  plot.height_px = 403;
+  write_plot(folder.path() / "two.PNG", plot);
+  EXPECT_EQ(size_of(content_of(folder.path() / "two.PNG")), std::pair(801u, 403u));
+}
+
+TEST_F(PlotFile, HasTheSameBytesForTheSameInput) {
+  Plot plot = plot_of({test::yields_panel(), test::pareto_panel(),
+                       test::noise_panel(PlotStyle::bars), test::noise_panel(PlotStyle::steps)});
+  plot.title = "Four panels";
+  for (const char* const name : {"a.svg", "a.png"}) {
+    write_plot(folder.path() / name, plot);
+    const std::string first = content_of(folder.path() / name);
+    // Neither the user's settings nor the folder matter.
+    test::write(folder.path() / "matplotlibrc", "lines.linewidth: 9\naxes.facecolor: red\n");
+    const test::Environment environment{
+        {"MATPLOTLIBRC", folder.path().c_str()}, {"LC_ALL", "C"}, {"SOURCE_DATE_EPOCH", "1"}};
+    write_plot(folder.path() / "new" / name, plot);
+    EXPECT_TRUE(content_of(folder.path() / "new" / name) == first) << name;
+  }
+  EXPECT_THAT(content_of(folder.path() / "a.svg"), Not(HasSubstr("<dc:date>")));
+  EXPECT_EQ(test::files_in(folder.path() / "new"), 2);
+}
+
+TEST_F(PlotFile, ColoursFollowTheOrderOfTheSeries) {
+  Plot plot = plot_of({test::yields_panel()});
+  const std::string two = svg_of(plot);
+  EXPECT_THAT(two, HasSubstr("#0072b2"));
+  EXPECT_THAT(two, HasSubstr("#d55e00"));
+  plot.panels[0].series[1].color = 2;
+  const std::string chosen = svg_of(plot);
+  EXPECT_THAT(chosen, HasSubstr("#009e73"));
+  EXPECT_THAT(chosen, Not(HasSubstr("#d55e00")));
+}
+
+TEST_F(PlotFile, TakesTextAsItIs) {
+  Plot plot = plot_of({test::yields_panel()});
+  plot.title = "costs $5 and $6, \\frac{1}{2}, 5 % & <b>";
+  plot.panels[0].series[0].name = "_hidden";
+  plot.panels[0].series[1].name = "$x^{";
+  plot.panels[0].notes = {{"two\nlines", 1000, 1}, {"bad \xFF byte", 2000, 1}};
+  const std::string svg = svg_of(plot);
+  EXPECT_THAT(svg, HasSubstr("costs $5 and $6, \\frac{1}{2}, 5 % &amp; &lt;b&gt;"));
+  EXPECT_THAT(svg, HasSubstr("<!-- _hidden -->"));
+  EXPECT_THAT(svg, HasSubstr("<!-- $x^{ -->"));
+}
+
+TEST_F(PlotFile, LegendsListWhatHasAName) {
+  Plot plot = plot_of({test::yields_panel()});
+  const std::string all = svg_of(plot);
+  for (const char* const name : {"SE", "BSE", "one for one", "maximum"}) {
+    EXPECT_THAT(all, HasSubstr(std::string("<!-- ") + name + " -->"));
+  }
+  plot.panels[0].series[1].name = "";
+  EXPECT_THAT(svg_of(plot), Not(HasSubstr("<!-- BSE -->")));
+  plot.panels[0].legend = false;
+  EXPECT_THAT(svg_of(plot), Not(HasSubstr("legend_1")));
+}
+
+struct Box { double x0, y0, x1, y1; };
+
+/// The frame of the legend, in the units of the SVG.
+Box legend_of(const std::string& svg) {
+  Box box{1e9, 1e9, -1e9, -1e9};
+  const std::string rest = svg.substr(svg.find("id=\"legend_1\""));
+  const std::size_t path = rest.find(" d=\"");
+  const std::string outline = rest.substr(path, rest.find('"', path + 4) - path);
+  const std::regex corner("([0-9.]+) ([0-9.]+)");
+  for (std::sregex_iterator i(outline.begin(), outline.end(), corner), end; i != end; ++i) {
+    const double x = std::stod((*i)[1]), y = std::stod((*i)[2]);
+    box = {std::min(box.x0, x), std::min(box.y0, y), std::max(box.x1, x), std::max(box.y1, y)};
+  }
+  return box;
+}
+
+/// Markers of data and of ticks under the legend.
+int covered(const std::string& svg) {
+  const Box box = legend_of(svg);
+  EXPECT_LT(box.x0, box.x1);
+  const std::string before = svg.substr(0, svg.find("id=\"legend_1\""));
+  const std::regex marker("<use [^>]*x=\"([-0-9.]+)\" y=\"([-0-9.]+)\"");
+  int inside = 0;
+  for (std::sregex_iterator i(before.begin(), before.end(), marker), end; i != end; ++i) {
+    const double x = std::stod((*i)[1]), y = std::stod((*i)[2]);
+    inside += box.x0 < x && x < box.x1 && box.y0 < y && y < box.y1;
+  }
+  return inside;
+}
+
+TEST_F(PlotFile, LegendsCoverNoPoints) {
+  // Points everywhere except in one place, and points everywhere.
+  for (const int free : {0, 3, -1}) {
+    PlotSeries series;
+    series.name = "a name of some length";
+    series.style = PlotStyle::points;
+    for (int x = 0; x < 30; ++x) {
+      for (int y = 0; y < 30; ++y) {
+        if (free == (x >= 15 ? 1 : 0) + (y >= 15 ? 2 : 0)) continue;
+        series.x.push_back(x);
+        series.y.push_back(y);
+      }
+    }
+    Plot plot = plot_of({{}});
+    plot.panels[0].series = {series};
+    EXPECT_EQ(covered(svg_of(plot)), 0) << "free corner " << free;
+    plot.panels[0].y.range = PlotAxis::Range{-1, 30};
+    EXPECT_EQ(covered(svg_of(plot)), 0) << "free corner " << free << ", a range that stays";
+  }
+}
+
+}  // namespace
+}  // namespace surf::io
