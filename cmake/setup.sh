@@ -15,7 +15,8 @@ packages=(
   libxxhash-dev                                                   # checksums of cached files
   pkg-config libcairo2-dev fonts-dejavu-core                      # pictures of electron tracks
   paraview-dev python3-paraview mpi-default-dev python3-dev       # VTK: ParaView's own
-  libgtest-dev libgmock-dev python3-matplotlib                    # tests, plots
+  python3-matplotlib                                              # charts
+  libgtest-dev libgmock-dev                                       # tests
 )
 
 say() { printf '==> %s\n' "$*"; }

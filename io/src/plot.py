@@ -10,6 +10,7 @@ try:
     import matplotlib
     matplotlib.use("Agg")
     import matplotlib.pyplot as plt
+    import numpy as np
     from matplotlib import ticker
 except ImportError as error:
     print(error, file=sys.stderr)
@@ -51,7 +52,7 @@ def draw_series(axes, series, number):
     if style in ("steps", "bars"):
         filled = style == "bars"
         # A histogram's floor is zero, which a logarithmic axis does not have.
-        floor = None if axes.get_yscale() == "log" else 0
+        floor = 0 if axes.get_yscale() == "linear" else min(y) / 2 if filled else None
         handle = axes.stairs(y, x, baseline=floor, fill=filled, color=color, zorder=z - 0.5,
                              alpha=0.45 if filled else None, linewidth=1.8, linestyle=dash)
         if filled:
@@ -59,6 +60,7 @@ def draw_series(axes, series, number):
         x = [(a + b) / 2 for a, b in zip(x, x[1:])]
     else:
         lined, pointed = style != "points", style != "line"
+        z += 0.4 if pointed else 0   # lines under points
         handle, = axes.plot(x, y, color=color, linewidth=1.8, zorder=z,
                             linestyle=dash if lined else "none", marker=marker if pointed else "none",
                             markersize=6 if style == "points" else 5, markeredgecolor="white",
@@ -99,27 +101,24 @@ def prepare_axis(axes, axis, settings, which):
 
 
 def points_on(axes, panel):
-    """Places in pixels that hold data: the points, and places on the lines between them."""
+    """Places in pixels that hold data, a row each: the points, and places on lines between them."""
     places = []
     for series in panel["series"]:
-        x, y = series["x"], series["y"]
+        x, y = np.array(series["x"]), np.array(series["y"])
         if len(x) > len(y):
-            corners = [(edge, value) for a, b, value in zip(x, x[1:], y) for edge in (a, b)]
-        else:
-            corners = list(zip(x, y))
-            for (a, b), error in zip(list(corners), series["y_error"]):
-                places.append(axes.transData.transform([(a, b + error)])[0])
-        ends = axes.transData.transform(corners)
-        places.extend(ends)
-        if series["style"] != "points" and len(ends) < 2000:
-            for start, end in zip(ends, ends[1:]):
-                places.extend(start + (end - start) * i / 12 for i in range(1, 12))
-    return [(x, y) for x, y in places if abs(x) < 1e6 and abs(y) < 1e6]
+            x, y = np.repeat(x, 2)[1:-1], np.repeat(y, 2)
+        elif series["y_error"]:
+            places.append(axes.transData.transform(np.stack([x, y + series["y_error"]], axis=1)))
+        ends = axes.transData.transform(np.stack([x, y], axis=1))
+        places.append(ends)
+        if series["style"] != "points":
+            places += [ends[:-1] + np.diff(ends, axis=0) * i / 12 for i in range(1, 12)]
+    return np.concatenate(places)
 
 
 def cost(box, places, boxes, room):
     """How much a text box would cover, or stick out."""
-    covered = sum(box.x0 <= x <= box.x1 and box.y0 <= y <= box.y1 for x, y in places)
+    covered = ((places >= box.min) & (places <= box.max)).all(axis=1).sum()
     overlapped = sum(box.overlaps(other) for other in boxes)
     outside = not (room.x0 <= box.x0 and box.x1 <= room.x1 and room.y0 <= box.y0 and box.y1 <= room.y1)
     return covered + 10 * overlapped + 40 * outside
@@ -128,6 +127,7 @@ def cost(box, places, boxes, room):
 def draw_notes(axes, panel, places, renderer):
     """Each beside its point, on the side where it covers least. Returns texts and their boxes."""
     texts, boxes = [], []
+    room = axes.figure.dpi * 3 / 72   # for a marker's half
     sides = [(h, v) for reach in (6, 12, 20)
              for h, v in ((reach, reach), (-reach, reach), (reach, -reach), (-reach, -reach),
                           (0, 1.3 * reach), (0, -1.3 * reach), (1.3 * reach, 0), (-1.3 * reach, 0))]
@@ -139,7 +139,7 @@ def draw_notes(axes, panel, places, renderer):
                                  ha="left" if h > 0 else "right" if h < 0 else "center",
                                  va="bottom" if v > 0 else "top" if v < 0 else "center")
             box = text.get_window_extent(renderer)
-            tried.append((cost(box, places, boxes, axes.bbox), text, box))
+            tried.append((cost(box.padded(room), places, boxes, axes.bbox), text, box))
             if tried[-1][0] == 0:
                 break
         best = min(tried, key=lambda one: one[0])
@@ -166,7 +166,7 @@ def fits_inside(axes, named, places, boxes, renderer):
     for place in ("upper right", "upper left", "lower right", "lower left", "center right",
                   "center left", "upper center", "lower center"):
         box = make_legend(axes, named, loc=place).get_window_extent(renderer)
-        if cost(box.padded(4), places, boxes, axes.bbox.padded(1)) == 0:
+        if cost(box.padded(axes.figure.dpi * 3 / 72), places, boxes, axes.bbox.padded(1)) == 0:
             return True
     return False
 
@@ -178,19 +178,23 @@ def make_room_above(axes):
 
 
 def place_texts(axes, panel, named, renderer):
-    """Notes and legend. Where the legend would cover something, the y axis grows if it may."""
+    """Notes and legend. Where the legend would cover something, the y axis grows if it may.
+
+    Returns whether all stayed as the layout has settled it.
+    """
     named = [(handle, name) for handle, name in named if name] if panel["legend"] else []
     attempts = 1 if panel["y"]["range"] else 5
     for attempt in range(attempts):
         places = points_on(axes, panel)
         notes, boxes = draw_notes(axes, panel, places, renderer)
         if not named or fits_inside(axes, named, places, boxes, renderer):
-            return
+            return attempt == 0
         if attempt + 1 < attempts:
             for note in notes:
                 note.remove()
             make_room_above(axes)
     make_legend(axes, named, loc="upper left", bbox_to_anchor=(1.0, 1.0))
+    return False
 
 
 def draw(plot, path, kind):
@@ -223,10 +227,11 @@ def draw(plot, path, kind):
         axes.set_xlim(axes.get_xlim())
         axes.set_ylim(axes.get_ylim())
         panels.append((axes, panel, named))
-    figure.canvas.draw()   # settles the layout, in which texts are then placed
+    figure.draw_without_rendering()   # settles the layout, in which texts are then placed
     renderer = figure.canvas.get_renderer()
-    for axes, panel, named in panels:
-        place_texts(axes, panel, named, renderer)
+    settled = [place_texts(axes, panel, named, renderer) for axes, panel, named in panels]
+    if all(settled):
+        figure.set_layout_engine("none")   # laying out takes as long as drawing
     # Nothing of the clock or the version in the file.
     metadata = {"Date": None, "Creator": "semsurf"} if kind == "svg" else {"Software": None}
     figure.savefig(path, format=kind, metadata=metadata)
