@@ -115,8 +115,8 @@ void draw(const std::filesystem::path& target, const std::string& kind, const st
   for (const std::string& python : interpreters()) {
     const ProgramEnd end =
         run_program({python, "-I", "-c", plot_script, target.string(), kind}, input);
-    if (end.started && end.code == 0) return;
-    if (end.started && end.code != no_matplotlib && end.code != 126 && end.code != 127) {
+    if (end.started && end.code == 0 && !std::filesystem::is_empty(target)) return;
+    if (end.started && end.code != no_matplotlib) {
       const std::string line = last_line(end.errors);
       throw FileError(file,
                       fmt::format("drawing it failed ({}: {})", python,
@@ -125,8 +125,7 @@ void draw(const std::filesystem::path& target, const std::string& kind, const st
                       "working Matplotlib");
     }
     tried += fmt::format("{}{} {}", tried.empty() ? "" : ", ", python,
-                         end.started && end.code == no_matplotlib ? "has no Matplotlib"
-                                                                  : "cannot be run");
+                         end.started ? "has no Matplotlib" : "cannot be run");
   }
   throw Unsupported(file, fmt::format("plots are drawn by Python 3 with Matplotlib ({})", tried),
                     "Install it (Debian: apt-get install python3-matplotlib), or name a Python "

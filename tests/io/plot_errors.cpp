@@ -114,6 +114,9 @@ TEST(PlotErrors, WhatThePythonSaysIsPassedOn) {
   const test::TemporaryFolder folder;
   EXPECT_THAT(attempt_with(folder.path(), stand_in(folder.path(), "exit 5")),
               AllOf(HasSubstr("file: "), HasSubstr("exit code 5")));
+  EXPECT_THAT(attempt_with(folder.path(), stand_in(folder.path(), "exit 0")),
+              AllOf(HasSubstr("file: "), HasSubstr("exit code 0")))
+      << "and no picture";
   EXPECT_THAT(attempt_with(folder.path(),
                            stand_in(folder.path(), "echo trace >&2; echo No space >&2; exit 1")),
               AllOf(HasSubstr("file: "), HasSubstr(": No space)")));
