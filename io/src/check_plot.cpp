@@ -15,6 +15,11 @@ bool is_histogram(const PlotSeries& series) {
   return series.style == PlotStyle::steps || series.style == PlotStyle::bars;
 }
 
+/// NaN without its sign, which means nothing.
+std::string text_of(double value) {
+  return std::isnan(value) ? "nan" : fmt::format("{}", value);
+}
+
 /// Checks one panel and says where something is wrong in it.
 class PanelCheck {
  public:
@@ -60,7 +65,7 @@ class PanelCheck {
   static void check_value(double value, const PlotAxis& axis, const std::string& place,
                           const std::string& what) {
     if (!std::isfinite(value)) {
-      fail(place, fmt::format("{} is {}", what, value), "Leave out what is not finite");
+      fail(place, fmt::format("{} is {}", what, text_of(value)), "Leave out what is not finite");
     }
     if (axis.log && value <= 0) {
       fail(place, fmt::format("{} is {}, which a logarithmic axis does not have", what, value),
@@ -87,7 +92,7 @@ class PanelCheck {
     }
     for (std::size_t i = 0; i < series.y_error.size(); ++i) {
       if (series.y_error[i] >= 0 && std::isfinite(series.y_error[i])) continue;
-      fail(place, fmt::format("y_error[{}] is {}", i, series.y_error[i]),
+      fail(place, fmt::format("y_error[{}] is {}", i, text_of(series.y_error[i])),
            "Give finite half lengths, not negative");
     }
     if (series.color && (*series.color < 0 || *series.color > 7)) {

@@ -34,7 +34,7 @@ TEST(PlotErrors, SayWhatIsWrongAndWhere) {
       {[](Plot& p) { p.columns = -1; }, "a.svg", "columns = -1"},
       {[](Plot& p) { p.panels[1].series.clear(); }, "panel 2", "without series"},
       {[](Plot& p) { p.panels[0].series[0] = {}; }, "panel 1, series 1", "no values"},
-      {[&](Plot& p) { p.panels[0].series[0].y[3] = nan; }, first, "y[3] is nan"},
+      {[&](Plot& p) { p.panels[0].series[0].y[3] = -nan; }, first, "y[3] is nan"},
       {[&](Plot& p) { p.panels[0].series[0].x[2] = infinity; }, first, "x[2] is inf"},
       {[](Plot& p) { p.panels[0].series[0].x[0] = 0; }, first, "x[0] is 0, which a logarithmic"},
       {[](Plot& p) { p.panels[1].y.log = true; p.panels[1].series[0].y[5] = 0; }, second,
