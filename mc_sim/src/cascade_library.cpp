@@ -13,6 +13,7 @@
 #include "surf/core/error.h"
 #include "surf/core/parallel.h"
 #include "surf/core/units.h"
+#include "surf/mc/library_source.h"
 #include "transport.h"
 
 namespace surf::mc {
@@ -139,6 +140,16 @@ void CascadeLibrary::grow(std::size_t cascades, int threads, const ProgressCallb
     add_page(std::make_shared<const CascadePage>(std::move(page)));
     if (progress) progress(static_cast<double>(this->cascades()), static_cast<double>(cascades));
   }
+}
+
+std::shared_ptr<const CascadeLibrary> FreshLibraries::library(const CascadeSettings& settings,
+                                                              std::size_t cascades, int threads,
+                                                              const ProgressCallback& progress,
+                                                              const CancelToken* cancel) {
+  auto library = std::make_shared<CascadeLibrary>(settings);
+  library->grow(cascades, threads, progress, cancel);
+  if (cancel && cancel->cancelled()) return nullptr;
+  return library;
 }
 
 std::string cascade_page_key(const CascadeSettings& s, std::size_t number) {

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <memory>
+
+#include "surf/core/progress.h"
+#include "surf/mc/cascade_library.h"
+
+namespace surf::mc {
+
+/// Where simulations get their libraries of cascades from.
+class LibrarySource {
+ public:
+  virtual ~LibrarySource() = default;
+
+  /// A library of at least `cascades` cascades, or null when cancelled. Called from one thread at a
+  /// time. Progress counts cascades.
+  virtual std::shared_ptr<const CascadeLibrary> library(const CascadeSettings& settings,
+                                                        std::size_t cascades, int threads,
+                                                        const ProgressCallback& progress,
+                                                        const CancelToken* cancel) = 0;
+};
+
+/// Makes what is asked for on the spot.
+class FreshLibraries : public LibrarySource {
+ public:
+  std::shared_ptr<const CascadeLibrary> library(const CascadeSettings& settings,
+                                                std::size_t cascades, int threads,
+                                                const ProgressCallback& progress,
+                                                const CancelToken* cancel) override;
+};
+
+}  // namespace surf::mc
