@@ -172,6 +172,92 @@ bool EmbreeScene::nearest(const Vec3& origin, const Vec3& direction, double leng
   return true;
 }
 
+namespace {
+
+// The nearest point of a triangle (Ericson, Real-Time Collision Detection, 5.1.5).
+Vec3 nearest_point(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
+  const Vec3 ab = b - a, ac = c - a, ap = p - a;
+  const double d1 = dot(ab, ap), d2 = dot(ac, ap);
+  if (d1 <= 0 && d2 <= 0) return a;
+  const Vec3 bp = p - b;
+  const double d3 = dot(ab, bp), d4 = dot(ac, bp);
+  if (d3 >= 0 && d4 <= d3) return b;
+  const double vc = d1 * d4 - d3 * d2;
+  if (vc <= 0 && d1 >= 0 && d3 <= 0) return a + ab * (d1 / (d1 - d3));
+  const Vec3 cp = p - c;
+  const double d5 = dot(ab, cp), d6 = dot(ac, cp);
+  if (d6 >= 0 && d5 <= d6) return c;
+  const double vb = d5 * d2 - d1 * d6;
+  if (vb <= 0 && d2 >= 0 && d6 <= 0) return a + ac * (d2 / (d2 - d6));
+  const double va = d3 * d6 - d5 * d4;
+  if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0)
+    return b + (c - b) * ((d4 - d3) / ((d4 - d3) + (d5 - d6)));
+  const double all = 1.0 / (va + vb + vc);
+  return a + ab * (vb * all) + ac * (vc * all);
+}
+
+struct FlatSearch {
+  const TriangleMesh* mesh;
+  const std::vector<std::uint32_t>* shell_of;
+  Vec3 point, normal;
+  double tolerance;
+  double radius;
+  std::int64_t shell;      // -1: none seen yet
+  int looked_at;
+};
+
+constexpr int most_looked_at = 2000;
+
+bool look_at(RTCPointQueryFunctionArguments* args) {
+  FlatSearch& search = *static_cast<FlatSearch*>(args->userPtr);
+  const Triangle& t = search.mesh->triangles[args->primID];
+  const Vec3& a = search.mesh->vertices_nm[t[0]];
+  const Vec3& b = search.mesh->vertices_nm[t[1]];
+  const Vec3& c = search.mesh->vertices_nm[t[2]];
+  const double distance = length(nearest_point(search.point, a, b, c) - search.point);
+  if (distance >= search.radius) return false;
+  const auto off = [&](const Vec3& v) {
+    return std::fabs(dot(v - search.point, search.normal)) > search.tolerance;
+  };
+  const std::uint32_t shell = (*search.shell_of)[args->primID];
+  const bool plain = search.normal == Vec3{} || off(a) || off(b) || off(c) ||
+                     (search.shell >= 0 && search.shell != shell);
+  if (!plain) {
+    search.shell = shell;
+    // Too many to look at: what is known ends here.
+    if (++search.looked_at <= most_looked_at) return false;
+  }
+  search.radius = distance;
+  args->query->radius = static_cast<float>(distance);
+  return true;
+}
+
+}  // namespace
+
+double EmbreeScene::flat_radius(const Vec3& point, const Vec3& normal, double tolerance,
+                                double most, const std::vector<std::uint32_t>& shell_of) const {
+  // Single precision may leave out a triangle at the rim.
+  const double slack = 2 * impl_->start_back;
+  for (double radius = most;; radius *= 0.5) {
+    FlatSearch search{&impl_->mesh, &shell_of, point, normal, tolerance, radius + slack, -1, 0};
+    const Vec3 local = point - impl_->center;
+    RTCPointQuery query{static_cast<float>(local.x), static_cast<float>(local.y),
+                        static_cast<float>(local.z), 0.0f,
+                        static_cast<float>(radius + slack)};
+    RTCPointQueryContext context;
+    rtcInitPointQueryContext(&context);
+    rtcPointQuery(impl_->scene, &query, &context, look_at, &search);
+    if (search.looked_at <= most_looked_at || radius < 1)
+      return std::max(0.0, std::min(search.radius - slack, most));
+  }
+}
+
+double EmbreeScene::highest_along(const Vec3& direction) const {
+  double highest = -HUGE_VAL;
+  for (const Vec3& v : impl_->mesh.vertices_nm) highest = std::max(highest, dot(v, direction));
+  return highest;
+}
+
 std::string ray_tracer_version() {
   return std::to_string(RTC_VERSION_MAJOR) + "." + std::to_string(RTC_VERSION_MINOR) + "." +
          std::to_string(RTC_VERSION_PATCH);

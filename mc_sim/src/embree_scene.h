@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "surf/core/vec3.h"
 #include "surf/mesh/triangle_mesh.h"
@@ -36,6 +37,15 @@ class EmbreeScene {
   /// down what was crossed already. `nudge` displaces the search alone, not the hit.
   bool nearest(const Vec3& origin, const Vec3& direction, double length, Accept accept, void* user,
                Hit& hit, const Vec3& nudge = {}) const;
+
+  /// The largest radius up to `most` within which all triangles about a point lie in the plane through
+  /// it, but for `tolerance`, and belong to one shell; a little smaller where rounding asks for it,
+  /// and where very many triangles would have to be looked at. With a zero normal no triangle does.
+  double flat_radius(const Vec3& point, const Vec3& normal, double tolerance, double most,
+                     const std::vector<std::uint32_t>& shell_of) const;
+
+  /// The largest coordinate of any vertex along a direction.
+  double highest_along(const Vec3& direction) const;
 
   /// How far before its origin a ray starts: 1e-3 nm and the rounding of single precision.
   double tolerance_nm() const;

@@ -93,7 +93,7 @@ void energy(Way& way, EnergySum& sum) {
 template <class Way, class Balance>
 void balance(Way& way, Balance& b) {
   for (auto* count : {&b.incident, &b.missed, &b.generated, &b.se, &b.bse, &b.transmitted,
-                      &b.absorbed, &b.dropped, &b.steps, &b.rays})
+                      &b.absorbed, &b.dropped, &b.steps, &b.rays, &b.handed_over})
     way.number(*count);
   for (auto& count : b.lost) way.number(count);
   for (auto* sum : {&b.incident_energy, &b.generated_energy, &b.escaped_energy,
@@ -101,11 +101,10 @@ void balance(Way& way, Balance& b) {
     energy(way, *sum);
 }
 
-// Without electrons there are no squares to tell.
 template <class Way, class Counts>
 void counts(Way& way, Counts& c) {
   way.number(c.sum);
-  if (c.sum != 0) way.number(c.squares);
+  way.number(c.squares);
 }
 
 template <class Way, class Histogram>
@@ -124,19 +123,28 @@ void walk(Way& way, Tally& t) {
   way.expect(width * height);
   const std::size_t detectors = way.length(t.counts.size());
   way.expect(width * height * detectors);
+  const std::size_t controls = way.length(t.controls.size());
+  way.expect(width * height * controls);
   const std::size_t spectra = way.length(t.spectra.size());
   if constexpr (!std::is_const_v<Tally>) {
     const int w = static_cast<int>(width), h = static_cast<int>(height);
     t.pixels = Grid<PixelTally>(w, h);
     t.counts.assign(detectors, Grid<Counts>(w, h));
+    t.controls.assign(controls, Grid<Control>(w, h));
     t.spectra.resize(spectra);
   }
   for (auto& pixel : t.pixels.data()) {
     way.number(pixel.primaries);
     way.number(pixel.hits);
+    auto model = static_cast<std::int64_t>(pixel.model);
+    way.number(model);
+    if constexpr (!std::is_const_v<Tally>) pixel.model = static_cast<PixelModel>(model);
   }
   for (auto& grid : t.counts)
     for (auto& pixel : grid.data()) counts(way, pixel);
+  for (auto& grid : t.controls)
+    for (auto& c : grid.data())
+      for (auto* value : {&c.mean, &c.standard_error, &c.variance_left}) way.number(*value);
   for (auto& s : t.spectra) {
     histogram(way, s.energy_ev);
     histogram(way, s.polar_deg);

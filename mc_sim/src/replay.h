@@ -69,6 +69,14 @@ class ReplayRandom {
   int left_ = 0;
 };
 
+/// A random azimuth for a primary, in turns.
+inline double azimuth_of(const ReplayedPrimary& primary) {
+  ReplayRandom random;
+  random.begin(primary);
+  random.at(1);   // no vertex comes first in a cascade
+  return random.uniform();
+}
+
 /// Four floats that the processor works on at once: x, y, z and one to spare.
 using Float4 = float __attribute__((vector_size(16)));
 
@@ -108,13 +116,18 @@ inline Rotation turn(const Vec3& from, const Vec3& to) {
   return squared < 1e-24 ? Rotation{} : mirror(between * (1.0 / std::sqrt(squared)));
 }
 
-/// Takes -z to `to` after a turn about z by `azimuth` turns in [0, 1).
+/// Takes -z to `to` by the smallest rotation, after a turn about z by `azimuth` turns in [0, 2).
 inline Rotation beam_frame(const Vec3& to, double azimuth) {
   double s, c;
   sin_cos_turn(azimuth, s, c);
   const auto sine = static_cast<float>(s), cosine = static_cast<float>(c);
   const Rotation about_z{{cosine, sine, 0, 0}, {-sine, cosine, 0, 0}, {0, 0, 1, 0}};
-  return turn({0, 0, -1}, to) * about_z;
+  if (to.z > 0.9) return turn({0, 0, -1}, to) * about_z;   // there is no smallest one straight up
+  const double k = 1.0 / (1.0 - to.z);
+  const Rotation tilt{float4({1 - k * to.x * to.x, -k * to.x * to.y, to.x}),
+                      float4({-k * to.x * to.y, 1 - k * to.y * to.y, to.y}),
+                      float4({-to.x, -to.y, -to.z})};
+  return tilt * about_z;
 }
 
 /// A ball around a point of the surface in which all surface lies in one plane, with matter on one

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <cmath>
 #include <functional>
 #include <utility>
 
@@ -70,7 +71,21 @@ class Builder {
 }  // namespace
 
 Estimate SimulationResult::yield(std::size_t detector, int x, int y) const {
-  Estimate e = estimate(pixels(x, y).primaries, counts[detector](x, y));
+  const std::int64_t n = pixels(x, y).primaries;
+  Estimate e = estimate(n, counts[detector](x, y));
+  if (!controls.empty()) {
+    // The control's mean is over all cascades, the pixel's among them: with the covariance at its
+    // largest the two errors add up to no more than this.
+    const Control& c = controls[detector](x, y);
+    const double common = library_cascades > 0
+                              ? std::sqrt(static_cast<double>(n) /
+                                          static_cast<double>(library_cascades))
+                              : 0;
+    e.mean += c.mean;
+    e.standard_error = std::sqrt(e.standard_error * e.standard_error +
+                                 c.standard_error * c.standard_error +
+                                 2 * common * e.standard_error * c.standard_error);
+  }
   e.mean *= detectors[detector].efficiency;
   e.standard_error *= detectors[detector].efficiency;
   return e;
@@ -79,6 +94,7 @@ Estimate SimulationResult::yield(std::size_t detector, int x, int y) const {
 void SimulationResult::release() const {
   pixels.release();
   for (const auto& grid : counts) grid.release();
+  for (const auto& grid : controls) grid.release();
 }
 
 ImageRows make_image_rows(const SimulationResult& result, const Scan& scan) {

@@ -8,12 +8,11 @@
 
 #include <fmt/format.h>
 
-#include "dose.h"
-#include "forward.h"
-#include "gun.h"
+#include "plane_controls.h"
 #include "scene_impl.h"
 #include "surf/core/error.h"
 #include "surf/core/parallel.h"
+#include "unit_worker.h"
 
 namespace surf::mc {
 
@@ -21,83 +20,6 @@ namespace {
 
 constexpr std::int64_t most_electrons = std::int64_t{1} << 31;
 constexpr double largest_dose = 1e9;
-
-// How many primaries each pixel gets.
-class Share {
- public:
-  Share(const Scan& scan, const SimulationOptions& o)
-      : width_(scan.width), electrons_(o.electrons), dose_(o.dose), seed_(o.seed) {}
-
-  std::int64_t of(int x, int y) const {
-    return dose_ > 0 ? primaries_of_pixel(dose_, seed_, number(x, y)) : electrons_;
-  }
-  std::uint64_t number(int x, int y) const {
-    return static_cast<std::uint64_t>(y) * static_cast<std::uint64_t>(width_) +
-           static_cast<std::uint64_t>(x);
-  }
-
- private:
-  int width_;
-  std::int64_t electrons_;
-  double dose_;
-  std::uint64_t seed_;
-};
-
-// One thread's way through units of work.
-class Worker {
- public:
-  Worker(const Scene::Impl& scene, const SimulationOptions& options)
-      : scene_(scene), options_(options), share_(scene.scan, options), geometry_(scene),
-        gun_(scene.beam, scene.scan, scene.top_nm),
-        detection_(options.detectors, scene.beam, options.spectra) {}
-
-  void simulate(const WorkUnit& unit, Observer* observer, UnitTally& out) {
-    if (observer) {
-      Forward forward{*observer};
-      run(unit, forward, observer, out);
-    } else {
-      NoObserver nobody;
-      run(unit, nobody, nullptr, out);
-    }
-  }
-
- private:
-  template <class Watcher>
-  void run(const WorkUnit& unit, Watcher& watcher, Observer* observer, UnitTally& out) {
-    const int width = unit.x1 - unit.x0, height = unit.y1 - unit.y0;
-    out.pixels = Grid<PixelTally>(width, height);
-    out.counts.assign(options_.detectors.size(), Grid<Counts>(width, height));
-    Transport transport(geometry_, scene_.medium_pointers, scene_.physics.barrier,
-                        observer == nullptr, watcher, detection_, out.balance);
-    for (int y = unit.y0; y < unit.y1; ++y) {
-      for (int x = unit.x0; x < unit.x1; ++x) {
-        PixelTally& pixel = out.pixels(x - unit.x0, y - unit.y0);
-        const std::uint64_t number = share_.number(x, y);
-        const std::int64_t end = std::min(share_.of(x, y), unit.first_electron + unit.electrons);
-        for (std::int64_t e = unit.first_electron; e < end; ++e) {
-          RandomStream random(options_.seed, number, static_cast<std::uint64_t>(e));
-          if (observer) observer->primary(static_cast<std::int64_t>(number), e);
-          const Gun::Start start = gun_.primary(x, y, random);
-          const bool hit = transport.run(start.position, start.direction, scene_.beam.energy_ev, 0,
-                                         random);
-          ++pixel.primaries;
-          pixel.hits += hit ? 1 : 0;
-          for (std::size_t d = 0; d < out.counts.size(); ++d)
-            out.counts[d](x - unit.x0, y - unit.y0).add(detection_.counts()[d]);
-          detection_.end_primary();
-        }
-      }
-    }
-    out.spectra = detection_.take_spectra();
-  }
-
-  const Scene::Impl& scene_;
-  const SimulationOptions& options_;
-  Share share_;
-  SceneGeometry geometry_;
-  Gun gun_;
-  Detection detection_;
-};
 
 void check_unit(const Scan& scan, const WorkUnit& u) {
   if (u.x0 < 0 || u.y0 < 0 || u.x1 > scan.width || u.y1 > scan.height || u.x0 >= u.x1 ||
@@ -118,6 +40,17 @@ void check_options(const SimulationOptions& options) {
   if (options.detectors.empty())
     throw UsageError("detectors", "there are none", "Use SE and BSE");
   validate(options.detectors);
+  if (options.accuracy != 0 && !(options.accuracy >= 1e-4 && options.accuracy <= 1))
+    throw UsageError("--accuracy", fmt::format("{:g} is outside 0.0001 to 1", options.accuracy),
+                     "Ask for 0.01 or 1%, say");
+  if (!(options.accuracy_floor >= 0 && std::isfinite(options.accuracy_floor)))
+    throw UsageError("--accuracy-floor", "it must be zero or more", "Leave it out: 0.002");
+  if (options.accuracy > 0 && (options.dose > 0 || options.spectra))
+    throw UsageError("--accuracy", "pixels then get different numbers of electrons, and spectra or a "
+                                   "dose would mean nothing",
+                     "Give --electrons with --spectra, or --current and --dwell alone");
+  if (options.accuracy > 0 && options.method != Method::replay)
+    throw UsageError("--accuracy", "direct simulation cannot serve it", "Use --method replay");
 }
 
 // Units of work: runs of pixels along a row. Long counts of electrons are split, so that one pixel
@@ -125,6 +58,12 @@ void check_options(const SimulationOptions& options) {
 class Plan {
  public:
   Plan(const Scan& scan, const SimulationOptions& options) : scan_(scan) {
+    if (options.accuracy > 0) {   // a pixel looks at its neighbours within the tile: fixed tiles
+      run_ = height_ = tile;
+      runs_ = (scan.width + tile - 1) / tile;
+      total_ = static_cast<double>(scan.width) * scan.height;
+      return;
+    }
     const Share share(scan, options);
     if (options.dose > 0) {
       for (int y = 0; y < scan.height; ++y)
@@ -143,25 +82,35 @@ class Plan {
     chunks_ = (most_ + most_primaries - 1) / most_primaries;
   }
 
-  double primaries() const { return total_; }
+  /// Of any pixel.
+  std::int64_t most() const { return most_; }
+
+  /// Primaries; with a wanted accuracy, pixels.
+  double total() const { return total_; }
+  double done(const WorkUnit& unit, const UnitTally& tally) const {
+    return height_ == 1 ? static_cast<double>(tally.balance.incident)
+                        : static_cast<double>(unit.x1 - unit.x0) * (unit.y1 - unit.y0);
+  }
 
   std::size_t units() const {
     return static_cast<std::size_t>(chunks_) * static_cast<std::size_t>(runs_) *
-           static_cast<std::size_t>(scan_.height);
+           static_cast<std::size_t>((scan_.height + height_ - 1) / height_);
   }
 
   WorkUnit unit(std::size_t number) const {
     const auto n = static_cast<std::int64_t>(number);
     const std::int64_t first = n % chunks_ * most_primaries;
     const int x = static_cast<int>(n / chunks_ % runs_) * run_;
-    const int y = static_cast<int>(n / chunks_ / runs_);
-    return {x, y, std::min(x + run_, scan_.width), y + 1, first,
+    const int y = static_cast<int>(n / chunks_ / runs_) * height_;
+    return {x, y, std::min(x + run_, scan_.width), std::min(y + height_, scan_.height), first,
             std::min(most_primaries, most_ - first)};
   }
 
  private:
   static constexpr std::int64_t most_primaries = 4096;   // a fraction of a second
+  static constexpr int tile = 32;
   Scan scan_;
+  int height_ = 1;
   std::int64_t most_ = 1;
   double total_ = 0;
   int run_ = 1;
@@ -175,11 +124,17 @@ class Collector {
     result.detectors = options.detectors;
     const auto pixels = static_cast<std::size_t>(scan.width) * static_cast<std::size_t>(scan.height);
     const std::size_t bytes =
-        pixels * (sizeof(PixelTally) + options.detectors.size() * sizeof(Counts));
+        pixels * (sizeof(PixelTally) +
+                  options.detectors.size() *
+                      (sizeof(Counts) + (options.accuracy > 0 ? sizeof(Control) : 0)));
     const std::string folder = bytes > options.tally_memory ? options.scratch_folder : "";
     result.pixels = LargeGrid<PixelTally>(scan.width, scan.height, folder);
     for (std::size_t d = 0; d < options.detectors.size(); ++d)
       result.counts.emplace_back(scan.width, scan.height, folder);
+    for (std::size_t d = 0; options.accuracy > 0 && d < options.detectors.size(); ++d)
+      result.controls.emplace_back(scan.width, scan.height, folder);
+    result.accuracy = options.accuracy;
+    result.accuracy_floor = options.accuracy_floor;
     result.dose = options.dose;
     result.seed = options.seed;
   }
@@ -191,6 +146,8 @@ class Collector {
         result.pixels(x, y) += tally.pixels(x - u.x0, y - u.y0);
         for (std::size_t d = 0; d < result.counts.size(); ++d)
           result.counts[d](x, y) += tally.counts[d](x - u.x0, y - u.y0);
+        for (std::size_t d = 0; d < result.controls.size(); ++d)
+          result.controls[d](x, y) = tally.controls[d](x - u.x0, y - u.y0);
       }
     if (result.spectra.empty()) result.spectra = tally.spectra;
     else
@@ -211,6 +168,7 @@ class Collector {
   // A journal may have been kept for something else.
   void check_shape(const WorkUnit& u, const UnitTally& tally) const {
     bool fits = tally.counts.size() == result.counts.size() &&
+                tally.controls.size() == result.controls.size() &&
                 tally.pixels.width() == u.x1 - u.x0 && tally.pixels.height() == u.y1 - u.y0 &&
                 (result.spectra.empty() || tally.spectra.size() == result.spectra.size());
     for (const auto& grid : tally.counts) fits = fits && grid.size() == tally.pixels.size();
@@ -222,35 +180,109 @@ class Collector {
 
 }  // namespace
 
+namespace {
+
+// What the workers of a simulation share.
+class Workshop {
+ public:
+  // False when cancelled.
+  bool prepare(const Scene& scene, const SimulationOptions& options, LibrarySource* source,
+               std::int64_t most_primaries, const ProgressCallback& progress,
+               const CancelToken* cancel) {
+    scene_ = &scene.impl();
+    options_ = &options;
+    if (options.method == Method::direct) return true;
+    cascades_ = library_size(options, most_primaries);
+    FreshLibraries fresh;
+    for (std::size_t m = 0; m < scene.materials().size(); ++m) {
+      const Medium& medium = *scene_->medium_pointers[m];
+      const CascadeSettings settings{scene.materials()[m], scene.physics(),
+                                     scene.beam().energy_ev + medium.barrier_ev(), options.seed};
+      auto library = (source ? source : &fresh)
+                         ->library(settings, cascades_, options.threads, progress, cancel);
+      if (!library) return false;
+      libraries_.push_back(std::move(library));
+    }
+    if (options.accuracy > 0) controls_.emplace(*scene_, options, libraries_);
+    return true;
+  }
+
+  std::unique_ptr<UnitWorker> worker() {
+    if (options_->method == Method::direct) return make_direct_worker(*scene_, *options_);
+    if (controls_) return make_spending_worker(*scene_, *options_, libraries_, *controls_);
+    return make_replay_worker(*scene_, *options_, libraries_);
+  }
+
+  std::size_t cascades() const { return cascades_; }
+
+ private:
+  const Scene::Impl* scene_ = nullptr;
+  const SimulationOptions* options_ = nullptr;
+  std::size_t cascades_ = 0;
+  Libraries libraries_;
+  std::optional<PlaneControls> controls_;
+};
+
+}  // namespace
+
+std::size_t library_size(const SimulationOptions& options, std::int64_t most_primaries) {
+  // A pixel takes no cascade twice, and shares the smaller part of its cascades with others: of its
+  // variance no more than a quarter is common to all. The means on planes are over all of them.
+  const double wanted = options.accuracy > 0 ? 9 / (options.accuracy * options.accuracy)
+                                             : 4.0 * static_cast<double>(most_primaries);
+  const double pages = std::ceil(std::max(wanted, 1e4) / CascadeLibrary::page_cascades);
+  return static_cast<std::size_t>(pages) * CascadeLibrary::page_cascades;
+}
+
 UnitTally simulate_unit(const Scene& scene, const SimulationOptions& options, const WorkUnit& unit,
                         Observer* observer) {
   check_options(options);
   check_unit(scene.scan(), unit);
   SimulationOptions wanted = options;
   wanted.electrons = unit.first_electron + unit.electrons;
+  wanted.method = Method::direct;
   UnitTally out;
-  Worker worker(scene.impl(), wanted);
-  worker.simulate(unit, observer, out);
+  make_direct_worker(scene.impl(), wanted)->simulate(unit, observer, out);
   return out;
 }
 
 SimulationResult simulate(const Scene& scene, const SimulationOptions& options,
                           const ProgressCallback& progress, const CancelToken* cancel,
-                          const ObserverOfThread& observers, UnitJournal* journal) {
+                          const ObserverOfThread& observers, UnitJournal* journal,
+                          LibrarySource* libraries) {
   check_options(options);
+  if (options.method == Method::replay && observers)
+    throw UsageError("--method replay", "stored cascades show observers nothing between surfaces",
+                     "Use --method direct");
+  if (options.method == Method::replay && !can_replay(scene.physics()))
+    throw UsageError("--method replay", "cascades are joined where energies are equal, which needs "
+                                        "continuous loss",
+                     "Use --method direct, or loss=joy-luo");
   if (journal && observers)
     throw UsageError("simulate", "observers would not see the units that a journal recalls",
                      "Leave one of the two out");
-  const auto begin = std::chrono::steady_clock::now();
+  auto begin = std::chrono::steady_clock::now();
+  const auto seconds = [&] {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  };
   const Plan plan(scene.scan(), options);
   const int threads = resolve_threads(options.threads);
   struct Bench {
-    Worker worker;
+    std::unique_ptr<UnitWorker> worker;
     Observer* observer;
   };
   std::vector<std::unique_ptr<Bench>> benches(static_cast<std::size_t>(threads));
 
   Collector collector(scene.scan(), options);
+  SimulationResult& result = collector.result;
+  Workshop workshop;
+  if (!workshop.prepare(scene, options, libraries, plan.most(), {}, cancel)) {
+    result.complete = false;
+    return std::move(result);
+  }
+  result.library_cascades = workshop.cascades();
+  result.library_seconds = seconds();
+  begin = std::chrono::steady_clock::now();
   double done = 0;
   std::mutex merging;
   parallel_for(plan.units(), threads, [&](std::size_t i, int w) {
@@ -259,7 +291,7 @@ SimulationResult simulate(const Scene& scene, const SimulationOptions& options,
     UnitTally tally;
     const auto merge = [&] {
       collector.add(unit, tally);
-      done += static_cast<double>(tally.balance.incident);
+      done += plan.done(unit, tally);
     };
     if (journal) {
       const std::lock_guard lock(merging);
@@ -271,17 +303,16 @@ SimulationResult simulate(const Scene& scene, const SimulationOptions& options,
     }
     auto& bench = benches[static_cast<std::size_t>(w)];
     if (!bench)
-      bench = std::make_unique<Bench>(Bench{Worker(scene.impl(), options),
+      bench = std::make_unique<Bench>(Bench{workshop.worker(),
                                             observers ? observers(w) : nullptr});
-    bench->worker.simulate(unit, bench->observer, tally);
+    bench->worker->simulate(unit, bench->observer, tally);
     const std::lock_guard lock(merging);
     merge();
-    if (progress) progress(done, plan.primaries());
+    if (progress) progress(done, plan.total());
     if (journal) journal->record(i, tally);
   });
-  SimulationResult& result = collector.result;
-  result.complete = done == plan.primaries();
-  result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  result.complete = done == plan.total();
+  result.seconds = seconds();
   return std::move(result);
 }
 

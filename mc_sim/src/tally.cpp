@@ -38,12 +38,14 @@ Balance& Balance::operator+=(const Balance& b) {
   lost_energy += b.lost_energy;
   steps += b.steps;
   rays += b.rays;
+  handed_over += b.handed_over;
   return *this;
 }
 
 PixelTally& PixelTally::operator+=(const PixelTally& b) {
   primaries += b.primaries;
   hits += b.hits;
+  model = std::max(model, b.model);
   return *this;
 }
 

@@ -13,6 +13,7 @@
 #include "surf/mc/beam.h"
 #include "surf/mc/detector.h"
 #include "surf/mc/observer.h"
+#include "surf/mc/library_source.h"
 #include "surf/mc/physics.h"
 #include "surf/mc/scene.h"
 #include "surf/mc/spectra.h"
@@ -21,11 +22,20 @@
 
 namespace surf::mc {
 
+/// How electrons are simulated. Replay retraces stored cascades; both have the same statistics.
+enum class Method { direct, replay };
+
 struct SimulationOptions {
   std::int64_t electrons = 200;   ///< primaries per pixel, 1 to 2^31
   /// Instead of `electrons`, where above 0: the mean number of primaries of a pixel. Each pixel gets
   /// a number of its own, drawn from the Poisson distribution, as in a microscope. At most 1e9.
   double dose = 0;
+  Method method = Method::direct;
+  /// Instead of `electrons`, where above 0: each pixel gets as many primaries as it takes to bring the
+  /// standard error of every detector down to this share of its mean, 1e-4 to 1. Needs replay.
+  double accuracy = 0;
+  double accuracy_floor = 0.002;  ///< no standard error below this is asked for, >= 0, per primary
+  bool planar_control = true;     ///< with `accuracy`: average the difference to a plane's outcome
   std::uint64_t seed = 1;
   std::vector<Detector> detectors = default_detectors();   ///< at least one; unique names
   bool spectra = false;           ///< collect `Spectra` per detector
@@ -36,6 +46,10 @@ struct SimulationOptions {
   std::size_t tally_memory = std::size_t{1} << 30;
   std::string scratch_folder;
 };
+
+/// How many cascades of each material replay with these options takes, where no pixel has more than
+/// `most_primaries`.
+std::size_t library_size(const SimulationOptions& options, std::int64_t most_primaries);
 
 /// A rectangle of pixels and a range of primaries: the unit of work. Tallies of units merge in any
 /// order to the same result.
@@ -48,6 +62,7 @@ struct WorkUnit {
 struct UnitTally {
   Grid<PixelTally> pixels;               ///< of the unit's rectangle
   std::vector<Grid<Counts>> counts;      ///< per detector
+  std::vector<Grid<Control>> controls;   ///< per detector, with `accuracy`
   std::vector<Spectra> spectra;          ///< per detector, where asked for
   Balance balance;
 };
@@ -63,16 +78,22 @@ struct SimulationResult {
   std::vector<Detector> detectors;       ///< as in the options
   LargeGrid<PixelTally> pixels;
   std::vector<LargeGrid<Counts>> counts; ///< per detector
+  std::vector<LargeGrid<Control>> controls;   ///< per detector, with `accuracy`
   std::vector<Spectra> spectra;          ///< per detector, where asked for
   Balance balance;
   double dose = 0;                       ///< as in the options
   std::uint64_t seed = 1;
+  double accuracy = 0;                   ///< as in the options
+  double accuracy_floor = 0;
+  std::size_t library_cascades = 0;      ///< of each material, with replay
+  double library_seconds = 0;            ///< wall time to get the libraries
   std::int64_t recalled = 0;             ///< primaries among `balance` that a journal knew already
   bool complete = true;          ///< false when cancelled: some pixels have fewer primaries, or none
   double seconds = 0;            ///< wall time of the simulation, scene building and recalled units
                                  ///< apart
 
-  /// Yield of a detector at a pixel, its efficiency included.
+  /// Yield of a detector at a pixel, its efficiency included. With a control the standard error
+  /// includes the library's own share.
   Estimate yield(std::size_t detector, int x, int y) const;
 
   /// For loops over many pixels: see `LargeGrid::release`.
@@ -87,11 +108,13 @@ using ObserverOfThread = std::function<Observer*(int thread)>;
 /// Progress counts primaries, and is told after each unit that is simulated. With `observers` every track is followed to its end, as in
 /// `simulate_unit`. A `journal` is told of every finished unit and asked for those done before; it
 /// must be of the same scene and options, `tile_pixels` among them. Not both (UsageError).
+/// Replay gets its cascades from `libraries` (null: they are made on the spot); it cannot serve
+/// observers, nor physics without continuous loss (UsageError).
 SimulationResult simulate(const Scene& scene, const SimulationOptions& options,
                           const ProgressCallback& progress = {},
                           const CancelToken* cancel = nullptr,
                           const ObserverOfThread& observers = {},
-                          UnitJournal* journal = nullptr);
+                          UnitJournal* journal = nullptr, LibrarySource* libraries = nullptr);
 
 /// Per detector the channels NAME and NAME.stderr, in counts per primary; with a dose also
 /// NAME.shot, what a microscope would show: electrons counted over the mean number of primaries.

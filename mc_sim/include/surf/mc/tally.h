@@ -60,15 +60,26 @@ struct Balance {
 
   std::int64_t steps = 0;          ///< path segments inside matter and in vacuum
   std::int64_t rays = 0;           ///< segments that asked for the surface
+  std::int64_t handed_over = 0;    ///< electrons of replayed primaries that were simulated directly
 
   std::int64_t total_lost() const;
   Balance& operator+=(const Balance& other);
 };
 
+/// What gave a pixel its value.
+enum class PixelModel : std::int64_t {
+  none,         ///< the beam misses everything
+  direct,
+  replay,
+  difference,   ///< replay, as the difference to the outcome on a plane
+  plane,        ///< the surface is proved to be a plane as far as electrons reach
+};
+
 /// What happened to the primaries of one pixel, whatever is detected.
 struct PixelTally {
-  std::int64_t primaries = 0;
+  std::int64_t primaries = 0;      ///< whose counts were kept
   std::int64_t hits = 0;           ///< primaries that met the specimen
+  PixelModel model = PixelModel::none;
 
   PixelTally& operator+=(const PixelTally& other);
 };
@@ -85,6 +96,14 @@ struct Counts {
   }
   Counts& operator+=(const Counts& b) { sum += b.sum; squares += b.squares; return *this; }
   friend bool operator==(const Counts&, const Counts&) = default;
+};
+
+/// What is known of a pixel's yield beside its counts: they are then of the difference to a control,
+/// whose mean this is.
+struct Control {
+  double mean = 0;                 ///< counts per primary; 0 without a control
+  double standard_error = 0;       ///< of it, from the library's size
+  double variance_left = 1;        ///< variance of a primary's counts over what it is without control
 };
 
 /// Counts in bins of equal width from `lower` to `upper`; what lies outside is in no bin.

@@ -1,0 +1,251 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "plane_controls.h"
+#include "replay_site.h"
+#include "subset.h"
+#include "surf/core/random.h"
+#include "unit_worker.h"
+
+namespace surf::mc {
+
+namespace {
+
+constexpr std::int64_t pilot = 24;          // primaries of a pixel that only tell how many it needs
+constexpr int neighbours = 2;               // pixels to each side whose pilots count with its own
+constexpr std::int64_t fewest = 32;         // primaries whose counts are kept
+constexpr double reserve = 1.1;             // of primaries over what the estimate of variance asks for
+constexpr int most_rounds = 4;              // of adding where the estimate turns out short
+
+// What might have been missed: were there a kind of event of which one in m primaries has one, m
+// primaries would have missed it with a probability of 1/e^3 at 3/m (the rule of three). Each would
+// count this many electrons.
+constexpr double unseen = 3, unseen_counts = 1.5;
+
+// The standard library's way to a variance.
+struct Sample {
+  double n = 0, sum = 0, squares = 0;
+  void add(double value) {
+    n += 1;
+    sum += value;
+    squares += value * value;
+  }
+  void operator+=(const Sample& b) {
+    n += b.n;
+    sum += b.sum;
+    squares += b.squares;
+  }
+  double mean() const { return n > 0 ? sum / n : 0; }
+  double variance() const {
+    return n > 1 ? std::max(0.0, (squares - sum * sum / n) / (n - 1)) : 0;
+  }
+};
+
+// With a wanted accuracy each pixel is served until it is reached. A pilot tells how much the counts
+// scatter, by themselves and as differences to the outcome of the same cascades on a plane; then the
+// number of primaries is set, and fresh ones are counted. The pilot's are not: who stops when the
+// dice were good, or goes on because they were bad, gets the mean wrong.
+class SpendingWorker : public UnitWorker {
+ public:
+  SpendingWorker(const Scene::Impl& scene, const SimulationOptions& options,
+                 const Libraries& libraries, PlaneControls& controls)
+      : scene_(scene), options_(options), controls_(controls), replay_(scene, options, libraries),
+        detectors_(options.detectors.size()), cascades_(controls.cascades()) {}
+
+  void simulate(const WorkUnit& unit, Observer*, UnitTally& out) override {
+    clear(out, unit, detectors_);
+    out.controls.assign(detectors_, Grid<Control>(unit.x1 - unit.x0, unit.y1 - unit.y0));
+    replay_.balance() = {};
+    unit_ = unit;
+    sites_.assign(out.pixels.size(), {});
+    for (std::size_t i = 0; i < sites_.size(); ++i) look(i);
+    for (std::size_t i = 0; i < sites_.size(); ++i) choose(i, out);
+    for (std::size_t i = 0; i < sites_.size(); ++i) serve(i, out);
+    out.balance += replay_.balance();
+    out.spectra = replay_.detection().take_spectra();
+  }
+
+ private:
+  struct Pixel {
+    std::uint64_t number = 0;
+    int x = 0, y = 0;
+    ReplaySite site;
+    PlaneControls::Match match;
+    bool plane = false;               // nothing is left to simulate
+    std::vector<Sample> plain, difference;   // pilots, per detector
+    std::uint64_t used = 0;           // cascades taken
+  };
+
+  int width() const { return unit_.x1 - unit_.x0; }
+  int height() const { return unit_.y1 - unit_.y0; }
+
+  void look(std::size_t i) {
+    Pixel& p = sites_[i];
+    p.x = unit_.x0 + static_cast<int>(i) % width();
+    p.y = unit_.y0 + static_cast<int>(i) / width();
+    p.number = static_cast<std::uint64_t>(p.y) * static_cast<std::uint64_t>(scene_.scan.width) +
+               static_cast<std::uint64_t>(p.x);
+    p.site = replay_.site(p.x, p.y, true);
+    p.plain.resize(detectors_);
+    p.difference.resize(detectors_);
+    if (p.site.single && !p.site.hit) return;
+    if (p.site.hit && options_.planar_control) {
+      p.plane = replay_.proved_plane(p.site);
+      p.match = controls_.match(p.site.material, p.site.flat.normal, p.plane);
+    }
+    if (p.plane) return;
+    for (std::int64_t e = 0; e < pilot; ++e)
+      run(p, [&](std::size_t d, int counted, int on_plane) {
+        p.plain[d].add(counted);
+        p.difference[d].add(counted - on_plane);
+      });
+  }
+
+  // One more primary of a pixel; `take` gets the counts and those of its cascade on the plane.
+  template <class Take>
+  bool run(Pixel& p, const Take& take) {
+    replay_.go_to(p.site);
+    const std::uint64_t electron = p.used++;
+    RandomStream own(options_.seed, p.number, subset_stream);
+    const std::uint32_t a = own.bits(), b = own.bits();
+    const std::size_t cascade = Subset(cascades_, a, b)[electron];
+    ReplayedPrimary primary{options_.seed, p.number, electron, cascade, 0};
+    const PlaneControl* control = p.match.control.get();
+    if (control) {
+      // As in the control, so that where the surface is nearly the plane it gives nearly the same.
+      primary.pixel = control->number;
+      primary.electron = cascade;
+      primary.azimuth = PlaneControls::azimuth(options_.seed, cascade) + p.match.azimuth;
+    } else {
+      primary.azimuth = azimuth_of(primary);
+    }
+    Gun::Start start = p.site.middle;
+    if (!p.site.single) {
+      RandomStream random(options_.seed, p.number, electron);
+      start = replay_.gun().primary(p.x, p.y, random);
+    }
+    const bool hit = replay_.run(p.site, start, primary);
+    for (std::size_t d = 0; d < detectors_; ++d)
+      take(d, replay_.detection().counts()[d], control ? control->counts[d][cascade] : 0);
+    replay_.detection().end_primary();
+    return hit;
+  }
+
+  Estimate control_mean(const Pixel& p, std::size_t d) const {
+    if (!p.match.control) return {};
+    return estimate(static_cast<std::int64_t>(cascades_), p.match.control->sums[d]);
+  }
+
+  double target(double mean) const {
+    return std::max(options_.accuracy * mean, options_.accuracy_floor);
+  }
+
+  // How many primaries bring a detector's standard error down to the target.
+  double needed(double variance, double mean, double share) const {
+    const double t = target(mean);
+    const double room = t * t - share * share;
+    return room > 0 ? variance / room : HUGE_VAL;
+  }
+
+  void choose(std::size_t i, UnitTally& out) {
+    Pixel& p = sites_[i];
+    PixelTally& tally = out.pixels.data()[i];
+    if (p.site.single && !p.site.hit) return;
+    if (p.plane) {
+      tally.model = PixelModel::plane;
+      tally.hits = 1;
+      return;
+    }
+    double plain = fewest, difference = fewest;
+    for (std::size_t d = 0; d < detectors_; ++d) {
+      Sample all, left;
+      pool(i, d, all, left);
+      const double more = unseen * unseen_counts * unseen_counts / (all.n * all.n);
+      const double own = p.plain[d].variance();
+      const Estimate control = control_mean(p, d);
+      plain = std::max(plain, needed(std::max(all.variance(), own) + more, all.mean(), 0));
+      if (p.match.control)
+        difference = std::max(
+            difference, needed(std::max(left.variance(), p.difference[d].variance()) + more,
+                               control.mean + left.mean(), control.standard_error));
+    }
+    const bool controlled = p.match.control && difference < plain;
+    tally.model = controlled ? PixelModel::difference : PixelModel::replay;
+    wanted_.resize(sites_.size());
+    wanted_[i] = reserve * (controlled ? difference : plain);
+  }
+
+  // Pilots of a pixel and its neighbours.
+  void pool(std::size_t i, std::size_t d, Sample& all, Sample& left) const {
+    const int x = static_cast<int>(i) % width(), y = static_cast<int>(i) / width();
+    for (int v = std::max(0, y - neighbours); v <= std::min(height() - 1, y + neighbours); ++v)
+      for (int u = std::max(0, x - neighbours); u <= std::min(width() - 1, x + neighbours); ++u) {
+        const Pixel& q = sites_[static_cast<std::size_t>(v) * static_cast<std::size_t>(width()) +
+                                static_cast<std::size_t>(u)];
+        all += q.plain[d];
+        left += q.difference[d];
+      }
+  }
+
+  void serve(std::size_t i, UnitTally& out) {
+    Pixel& p = sites_[i];
+    PixelTally& tally = out.pixels.data()[i];
+    if (tally.model == PixelModel::none) return;
+    const bool controlled = tally.model != PixelModel::replay;
+    for (std::size_t d = 0; d < detectors_; ++d) {
+      Control& c = out.controls[d].data()[i];
+      if (!controlled) continue;
+      const Estimate e = control_mean(p, d);
+      c = {e.mean, e.standard_error, tally.model == PixelModel::plane ? 0.0 : 1.0};
+    }
+    if (tally.model == PixelModel::plane) return;
+    std::vector<Sample> plain(detectors_), kept(detectors_);
+    auto count = static_cast<std::int64_t>(std::min(std::ceil(wanted_[i]), double(cascades_)));
+    for (int round = 0; round < most_rounds; ++round) {
+      for (; tally.primaries < count; ++tally.primaries)
+        tally.hits += run(p, [&](std::size_t d, int counted, int on_plane) {
+          const int value = counted - (controlled ? on_plane : 0);
+          plain[d].add(counted);
+          kept[d].add(value);
+          out.counts[d].data()[i].add(value);
+        }) ? 1 : 0;
+      std::int64_t more = 0;
+      for (std::size_t d = 0; d < detectors_; ++d) {
+        const Control& c = out.controls[d].data()[i];
+        const double n = needed(kept[d].variance(), c.mean + kept[d].mean(), c.standard_error);
+        more = std::max(more, static_cast<std::int64_t>(
+                                  std::min(std::ceil(n * 1.02), double(cascades_))));
+      }
+      if (more <= tally.primaries) break;
+      count = more;
+    }
+    for (std::size_t d = 0; d < detectors_; ++d)
+      if (plain[d].variance() > 0)
+        out.controls[d].data()[i].variance_left = kept[d].variance() / plain[d].variance();
+  }
+
+  static constexpr std::uint64_t subset_stream = std::uint64_t{1} << 42;
+
+  const Scene::Impl& scene_;
+  const SimulationOptions& options_;
+  PlaneControls& controls_;
+  SiteReplay replay_;
+  std::size_t detectors_;
+  std::size_t cascades_;
+  WorkUnit unit_;
+  std::vector<Pixel> sites_;
+  std::vector<double> wanted_;
+};
+
+}  // namespace
+
+std::unique_ptr<UnitWorker> make_spending_worker(const Scene::Impl& scene,
+                                                 const SimulationOptions& options,
+                                                 const Libraries& libraries,
+                                                 PlaneControls& controls) {
+  return std::make_unique<SpendingWorker>(scene, options, libraries, controls);
+}
+
+}  // namespace surf::mc
