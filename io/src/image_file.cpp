@@ -72,7 +72,8 @@ bool has_control_character(const std::string& text) {
 
 /// What all formats can hold.
 void check_image(const ImageRows& rows, const std::string& file) {
-  const Image& image = rows.head;
+  Image image = rows.head;
+  for (Channel& channel : image.channels) channel.values = Grid<float>(1, 1);
   validate(image, file.c_str());
   if (rows.width < 1 || rows.height < 1) {
     throw InvalidInput(file, "the image has no pixels", "Give it at least one");

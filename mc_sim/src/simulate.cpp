@@ -122,12 +122,8 @@ class Collector {
  public:
   Collector(const Scan& scan, const SimulationOptions& options) {
     result.detectors = options.detectors;
-    const auto pixels = static_cast<std::size_t>(scan.width) * static_cast<std::size_t>(scan.height);
-    const std::size_t bytes =
-        pixels * (sizeof(PixelTally) +
-                  options.detectors.size() *
-                      (sizeof(Counts) + (options.accuracy > 0 ? sizeof(Control) : 0)));
-    const std::string folder = bytes > options.tally_memory ? options.scratch_folder : "";
+    const std::string folder =
+        tally_bytes(scan, options) > options.tally_memory ? options.scratch_folder : "";
     result.pixels = LargeGrid<PixelTally>(scan.width, scan.height, folder);
     for (std::size_t d = 0; d < options.detectors.size(); ++d)
       result.counts.emplace_back(scan.width, scan.height, folder);
@@ -232,6 +228,13 @@ std::size_t library_size(const SimulationOptions& options, std::int64_t most_pri
                                              : 4.0 * static_cast<double>(most_primaries);
   const double pages = std::ceil(std::max(wanted, 1e4) / CascadeLibrary::page_cascades);
   return static_cast<std::size_t>(pages) * CascadeLibrary::page_cascades;
+}
+
+std::size_t tally_bytes(const Scan& scan, const SimulationOptions& options) {
+  return static_cast<std::size_t>(scan.width) * static_cast<std::size_t>(scan.height) *
+         (sizeof(PixelTally) +
+          options.detectors.size() *
+              (sizeof(Counts) + (options.accuracy > 0 ? sizeof(Control) : 0)));
 }
 
 UnitTally simulate_unit(const Scene& scene, const SimulationOptions& options, const WorkUnit& unit,

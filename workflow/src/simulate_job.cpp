@@ -119,6 +119,16 @@ void check_checkpoint(const SimulateJob& job) {
   io::check_writable(o.file);
 }
 
+// Only where it is much: where the results of all pixels go until they are written.
+void tell_of_scratch(const SimulateJob& job, const mc::Scan& scan, const NoteCallback& note) {
+  const std::size_t bytes = mc::tally_bytes(scan, job.options);
+  if (note && bytes > job.options.tally_memory)
+    note(fmt::format("{} x {} pixels: {:.3g} GB of intermediate results go to a scratch file in {}, "
+                     "not into memory",
+                     scan.width, scan.height, static_cast<double>(bytes) / 1e9,
+                     job.options.scratch_folder));
+}
+
 // What went on before, where it can go on.
 std::unique_ptr<Checkpoint> make_checkpoint(const SimulateJob& job,
                                             const std::map<std::string, std::string>& settings,
@@ -205,6 +215,7 @@ SimulateSummary run(const SimulateJob& asked, const ProgressCallback& progress,
     deposits.emplace(scene, job.extras.deposit_cells, resolve_threads(job.options.threads));
     observers = [&](int thread) { return deposits->of_thread(thread); };
   }
+  tell_of_scratch(job, summary.scan, tell);
   const auto checkpoint = make_checkpoint(job, settings, tell, warn);
   const auto show = [&](double done, double total) {
     if (checkpoint) checkpoint->expect(total);

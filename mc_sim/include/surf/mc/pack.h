@@ -8,8 +8,8 @@
 
 namespace surf::mc {
 
-/// A tally as bytes, to keep or to send: about two bytes per pixel and detector where few electrons
-/// are counted. The same on every machine.
+/// A tally as bytes, to keep or to send: about four per pixel and four more for each detector. The
+/// same on every machine.
 std::string pack(const UnitTally& tally);
 
 /// The tally that `pack` was given. Throws InvalidInput for bytes that are not one.

@@ -51,6 +51,9 @@ struct SimulationOptions {
 /// `most_primaries`.
 std::size_t library_size(const SimulationOptions& options, std::int64_t most_primaries);
 
+/// Bytes of a result's tallies.
+std::size_t tally_bytes(const Scan& scan, const SimulationOptions& options);
+
 /// A rectangle of pixels and a range of primaries: the unit of work. Tallies of units merge in any
 /// order to the same result.
 struct WorkUnit {
