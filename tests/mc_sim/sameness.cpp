@@ -123,10 +123,9 @@ TEST(Sameness, DroppingWhatCannotReachASurfaceChangesNothing) {
   const Scan scan = square_scan(84, 6);
   const Scene scene(letter_l(), {}, scan);
   SimulationResult full;
-  full.pixels = Grid<PixelTally>(6, 6);
   const UnitTally unit = simulate_unit(scene, test::seeded(2), {0, 0, 6, 6, 0, 400}, &nobody);
   full.detectors = default_detectors();
-  full.counts = unit.counts;
+  full.counts.assign(unit.counts.begin(), unit.counts.end());
   full.pixels = unit.pixels;
   EXPECT_EQ(unit.balance.dropped, 0);
   const auto quick = test::simulate(letter_l(), {}, scan, 400);

@@ -8,6 +8,8 @@
 #include <type_traits>
 #include <vector>
 
+#include "surf/core/grid.h"
+
 namespace surf {
 
 /// Bytes in a nameless file that the system reads and writes as they are used, all zero at first. The
@@ -49,6 +51,10 @@ class LargeGrid {
       data_ = static_cast<T*>(scratch_->data());
     }
   }
+
+  /// A copy, in memory.
+  LargeGrid(const Grid<T>& grid)
+      : width_(grid.width()), height_(grid.height()), values_(grid.data()), data_(values_.data()) {}
 
   int width() const { return width_; }
   int height() const { return height_; }
