@@ -182,14 +182,13 @@ Scene::Scene(const Specimen& specimen, const Beam& beam, const Scan& scan, const
   s.farthest_nm = 1e12;
   if (!all.mesh.triangles.empty()) {
     s.top_nm = std::max(s.top_nm, near.upper_nm.z);
-    s.grid = DistanceGrid(all.mesh, near_scan(near, scan, beam, reach),
-                          options.distance_grid_bytes);
+    s.near = NearField(all.mesh, near_scan(near, scan, beam, reach), options.distance_grid_bytes);
     s.triangles = std::make_unique<EmbreeScene>(all.mesh);
   }
   s.summary.triangles = all.mesh.triangles.size();
   s.summary.shells = s.shells.size();
-  s.summary.grid_cell_nm = s.grid.cell_nm();
-  s.summary.memory_bytes = s.grid.bytes() + s.shell_of.size() * sizeof(std::uint32_t) +
+  s.summary.grid_cell_nm = s.near.cell_nm();
+  s.summary.memory_bytes = s.near.bytes() + s.shell_of.size() * sizeof(std::uint32_t) +
                            (s.triangles ? s.triangles->memory_bytes() : 0);
   s.summary.build_seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();

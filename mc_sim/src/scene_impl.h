@@ -10,8 +10,8 @@
 #include <utility>
 #include <vector>
 
-#include "distance_grid.h"
 #include "embree_scene.h"
+#include "near_field.h"
 #include "surf/mc/medium.h"
 #include "surf/mc/scene.h"
 #include "transport.h"
@@ -44,14 +44,14 @@ struct Scene::Impl {
   std::uint32_t plane_shell = 0;
   std::vector<std::uint32_t> shell_of;     ///< per triangle
   std::unique_ptr<EmbreeScene> triangles;  ///< null for a bare substrate
-  DistanceGrid grid;
+  NearField near;
   double top_nm = 0;                       ///< highest surface
   double bottom_nm = 0;                    ///< lowest surface
   bool half_space = false;                 ///< whether something goes on below without end
   double farthest_nm = 0;                  ///< longer than any path inside the solids
 
   double clearance_nm(const Vec3& p) const {
-    double bound = triangles ? grid.bound_nm(p) : std::numeric_limits<double>::infinity();
+    double bound = triangles ? near.bound_nm(p) : std::numeric_limits<double>::infinity();
     if (plane_nm) bound = std::min(bound, std::fabs(p.z - *plane_nm));
     return bound;
   }

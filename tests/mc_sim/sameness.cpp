@@ -133,7 +133,7 @@ TEST(Sameness, DroppingWhatCannotReachASurfaceChangesNothing) {
   expect_same(quick, full, same_pixel);
 }
 
-TEST(Sameness, TheDistanceGridChangesNothing) {
+TEST(Sameness, TheDistanceBoundsChangeNothing) {
   const Scan scan = square_scan(84, 8);
   SimulationOptions options;
   options.electrons = 400;

@@ -15,16 +15,16 @@ namespace surf::mc {
 
 /// How `Scene` is built.
 struct SceneOptions {
-  /// Memory for the distance grid, bytes (>= 0; 0: no grid, every step asks for the surface). The
-  /// grid holds a lower bound of the distance to the nearest surface; it changes speed, not results.
+  /// Memory for bounds of the distance to the nearest surface, bytes, about (>= 0; 0: none, every
+  /// step asks for the surface). They change speed, not results.
   std::size_t distance_grid_bytes = std::size_t{32} << 20;
 };
 
 struct SceneSummary {
   std::size_t triangles = 0;          ///< as traced (with a height field's continuation)
   std::size_t shells = 0;             ///< connected closed surfaces
-  std::size_t memory_bytes = 0;       ///< triangles, ray-tracing structures and distance grid
-  double grid_cell_nm = 0;            ///< 0 without a grid
+  std::size_t memory_bytes = 0;       ///< triangles, ray-tracing structures, distance bounds
+  double grid_cell_nm = 0;            ///< finest cells of the distance bounds; 0 without
   double build_seconds = 0;
 };
 
@@ -33,7 +33,7 @@ struct SceneSummary {
 class Scene {
  public:
   /// Validates and builds. A height field is continued as far as electrons from the scanned region
-  /// reach, and the distance grid covers that.
+  /// reach, and the distance bounds cover that.
   Scene(const Specimen& specimen, const Beam& beam, const Scan& scan, const Physics& physics = {},
         const SceneOptions& options = {});
   ~Scene();

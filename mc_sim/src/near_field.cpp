@@ -1,0 +1,297 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "near_field.h"
+
+#include <cmath>
+
+#include "face_tree.h"
+#include "surf/core/parallel.h"
+
+namespace surf::mc {
+
+namespace {
+
+constexpr double steps = 32767;
+constexpr double half_diagonal = 0.8660254037844388 * (1 + 1e-6);   // of a cube of edge 1
+// Positions are good to this: hits lie on triangles up to rounding.
+constexpr double slack_nm = 1e-3;
+// Farther surfaces than this many edges count as being so far.
+constexpr double brick_span = 26, cell_span = 16;
+constexpr double smallest_cell_nm = 0.75;
+constexpr double near_nm = 3;            // bricks farther from a surface are not cut,
+constexpr double flat_nm = 0.05;         // nor those that fall no shorter than this
+constexpr double flat_share = 0.15;      // and this share of their distance
+constexpr double slab_edges = 6;         // surfaces farther than this many edges get no slab
+constexpr std::size_t most_bricks = std::size_t{1} << 21;
+// More cells than this would take longer to fill than a coarse surface is worth.
+constexpr double few_cells = 1 << 17, cells_per_triangle = 8;
+
+// The mesh's area within the box, at most.
+double area_within(const TriangleMesh& mesh, const Box& box) {
+  double sum = 0;
+  for (const Triangle& t : mesh.triangles) {
+    Box part;
+    for (const std::uint32_t v : t) part.extend(mesh.vertices_nm[v]);
+    const auto overlap = [&](double Vec3::*x) {
+      return std::min(part.upper_nm.*x, box.upper_nm.*x) - std::max(part.lower_nm.*x, box.lower_nm.*x);
+    };
+    const double x = overlap(&Vec3::x), y = overlap(&Vec3::y), z = overlap(&Vec3::z);
+    if (x < 0 || y < 0 || z < 0) continue;
+    const Vec3& a = mesh.vertices_nm[t[0]];
+    const double area =
+        0.5 * length(cross(mesh.vertices_nm[t[1]] - a, mesh.vertices_nm[t[2]] - a));
+    sum += std::min(area, std::sqrt(x * x * y * y + y * y * z * z + z * z * x * x));
+  }
+  return sum;
+}
+
+}  // namespace
+
+class NearFieldBuilder {
+ public:
+  using Cell = NearField::Cell;
+
+  NearFieldBuilder(const TriangleMesh& mesh, const Box& domain, std::size_t bytes, int threads,
+                   NearField& field)
+      : field_(field), domain_(domain), bytes_(bytes), threads_(threads),
+        most_cells_(std::min(static_cast<double>(bytes) / sizeof(Cell),
+                             few_cells + cells_per_triangle *
+                                             static_cast<double>(mesh.triangles.size()))),
+        cell_(first_cell(area_within(mesh, domain))),
+        widest_(1.5 * cell_),
+        tree_(mesh, grown(domain, (brick_span + 4) * NearField::cut * widest_), threads) {}
+
+  void build() {
+    for (;;) {
+      lay_out();
+      std::vector<std::uint32_t> cut = fill_bricks();
+      const double excess =
+          static_cast<double>(bricks_.size() + cut.size() * in_brick) / most_cells_;
+      if (excess <= 1 || cell_ >= widest_) {
+        // At worst the last bricks stay whole, to be within the memory.
+        cut.resize(std::min(cut.size(), bytes_ / sizeof(Cell) / in_brick));
+        fill_cells(cut);
+        return;
+      }
+      cell_ = std::min(widest_, 1.05 * cell_ * std::cbrt(excess));
+    }
+  }
+
+ private:
+  static constexpr std::size_t in_brick = NearField::cut * NearField::cut * NearField::cut;
+
+  struct Fit {
+    Cell cell;
+    double shortfall_nm;   // at the centre; the slab's thickness where the surface is in the cell
+    double floor_nm;
+  };
+
+  static Box grown(Box box, double by) {
+    box.lower_nm -= Vec3{by, by, by};
+    box.upper_nm += Vec3{by, by, by};
+    return box;
+  }
+
+  double first_cell(double area) const {
+    const Vec3 size = domain_.size_nm();
+    double h = smallest_cell_nm;
+    for (;; h *= 1.05) {
+      const double brick = NearField::cut * h;
+      const double bricks = (size.x / brick + 4) * (size.y / brick + 4) * (size.z / brick + 4);
+      const double cells = area * 2 * (near_nm + 0.5 * brick) / (h * h * h);
+      if (bricks <= most_bricks && 1.25 * bricks + std::min(cells, bricks * in_brick) <= most_cells_)
+        return h;
+      if (bricks <= 65) return h;   // as few as can be
+    }
+  }
+
+  void lay_out() {
+    edge_ = NearField::cut * cell_;
+    const Box box = grown(domain_, 2 * edge_);
+    const Vec3 size = box.size_nm();
+    field_.lower_ = box.lower_nm;
+    field_.bricks_per_nm_ = 1 / edge_;
+    field_.nx_ = static_cast<int>(size.x / edge_) + 1;
+    field_.ny_ = static_cast<int>(size.y / edge_) + 1;
+    field_.nz_ = static_cast<int>(size.z / edge_) + 1;
+    field_.brick_scale_ = static_cast<float>(1 / brick_span);
+    field_.cell_scale_ = static_cast<float>(1 / cell_span);
+    field_.brick_unit_nm_ = static_cast<float>(brick_span * edge_ / steps * (1 - 1e-6));
+    field_.cell_unit_nm_ = static_cast<float>(cell_span * cell_ / steps * (1 - 1e-6));
+    field_.cell_nm_ = cell_;
+  }
+
+  Vec3 brick_lower(int x, int y, int z) const {
+    return field_.lower_ + Vec3{double(x), double(y), double(z)} * edge_;
+  }
+
+  // All bricks whole; the answer are those worth cutting.
+  std::vector<std::uint32_t> fill_bricks() {
+    bricks_.assign(field_.index(0, 0, field_.nz_), {});
+    std::vector<std::uint8_t> wanted(bricks_.size(), 0);
+    const auto ny = static_cast<std::size_t>(field_.ny_);
+    parallel_for(static_cast<std::size_t>(field_.nz_) * ny, threads_, [&](std::size_t row, int) {
+      const int y = static_cast<int>(row % ny), z = static_cast<int>(row / ny);
+      std::uint32_t guess = FaceTree::none;
+      for (int x = 0; x < field_.nx_; ++x) {
+        const Vec3 center = brick_lower(x, y, z) + Vec3{0.5, 0.5, 0.5} * edge_;
+        const Fit fit = fitted(center, edge_, brick_span, guess);
+        const std::size_t i = field_.index(x, y, z);
+        bricks_[i] = fit.cell;
+        wanted[i] = fit.floor_nm < near_nm &&
+                    fit.shortfall_nm > flat_nm + flat_share * fit.floor_nm;
+      }
+    });
+    std::vector<std::uint32_t> cut;
+    for (std::size_t i = 0; i < wanted.size(); ++i)
+      if (wanted[i]) cut.push_back(static_cast<std::uint32_t>(i));
+    return cut;
+  }
+
+  void fill_cells(const std::vector<std::uint32_t>& cut) {
+    field_.bricks_.assign(bricks_.size(), 0);
+    for (const std::uint32_t i : cut) field_.bricks_[i] = NearField::is_cut;
+    std::vector<Cell>& cells = field_.cells_;
+    cells.reserve(bricks_.size() + cut.size() * (in_brick - 1));
+    for (std::size_t i = 0; i < bricks_.size(); ++i) {
+      const auto at = static_cast<std::uint32_t>(cells.size());
+      if (field_.bricks_[i] == 0) {
+        // Far away many neighbours are alike.
+        const bool alike = i > 0 && !(field_.bricks_[i - 1] & NearField::is_cut) &&
+                           same(bricks_[i], bricks_[i - 1]);
+        if (!alike) cells.push_back(bricks_[i]);
+        field_.bricks_[i] = alike ? at - 1 : at;
+      } else {
+        field_.bricks_[i] = at | NearField::is_cut;
+        cells.resize(cells.size() + in_brick);
+      }
+    }
+    bricks_ = {};
+    const auto nx = static_cast<std::uint32_t>(field_.nx_), ny = static_cast<std::uint32_t>(field_.ny_);
+    constexpr std::size_t block = 16;
+    parallel_for((cut.size() + block - 1) / block, threads_, [&](std::size_t b, int) {
+      for (std::size_t k = b * block; k < std::min(cut.size(), (b + 1) * block); ++k) {
+        const std::uint32_t i = cut[k];
+        const Vec3 lower = brick_lower(static_cast<int>(i % nx), static_cast<int>(i / nx % ny),
+                                       static_cast<int>(i / nx / ny));
+        Cell* out = &cells[field_.bricks_[i] & ~NearField::is_cut];
+        std::uint32_t guess = FaceTree::none;
+        for (int z = 0; z < NearField::cut; ++z)
+          for (int y = 0; y < NearField::cut; ++y)
+            for (int x = 0; x < NearField::cut; ++x)
+              *out++ = fitted(lower + Vec3{x + 0.5, y + 0.5, z + 0.5} * cell_, cell_, cell_span,
+                              guess).cell;
+      }
+    });
+  }
+
+  static bool same(const Cell& a, const Cell& b) {
+    return a.n == b.n && a.low == b.low && a.high == b.high && a.reach == b.reach &&
+           a.floor == b.floor;
+  }
+
+  // `guess`: a triangle that is near, or none; left as the nearest.
+  Fit fitted(const Vec3& center, double edge, double span, std::uint32_t& guess) const {
+    const double unit = span * edge / steps, r = half_diagonal * edge, limit = span * edge;
+    FaceTree::Nearest nearest{limit, FaceTree::none, {}};
+    if (guess != FaceTree::none) tree_.improve(center, guess, nearest);
+    tree_.improve(center, nearest);
+    guess = nearest.triangle;
+    const double radius = std::min(nearest.distance + 2 * r, limit) - slack_nm;
+    Fit fit;
+    fit.floor_nm = std::max(0.0, nearest.distance - r);
+    fit.shortfall_nm = 0;
+    fit.cell = {};
+    fit.cell.floor = down((fit.floor_nm - slack_nm) / unit);
+    fit.cell.reach = down((radius - r) / unit);
+    fit.cell.low = 32767;
+    fit.cell.high = -32768;
+    if (!(nearest.distance < slab_edges * edge)) {
+      fit.cell.low = -32768;   // everywhere: the floor is the bound
+      fit.cell.high = 32767;
+      return fit;
+    }
+
+    double best = -1;
+    const auto try_normal = [&](const Vec3& n) {
+      const double size = length(n);
+      if (!(size > 0)) return;
+      const Cell cell = with_slab(fit.cell, center, radius, n * (1 / size), edge, unit,
+                                  0.75 * r - fit.floor_nm);
+      const double sum = mean_bound(cell, 1 / span);
+      if (sum <= best) return;
+      best = sum;
+      fit.cell = cell;
+    };
+    // A thin slab cannot be bettered by much.
+    const auto is_thin = [&] { return best >= 0 && fit.cell.high - fit.cell.low < 0.1 * edge / unit; };
+    if (nearest.distance > 1e-3 * edge) try_normal(center - nearest.point);
+    else try_normal(tree_.normal(nearest.triangle));
+    if (nearest.distance < r && !is_thin()) try_normal(tree_.mean_normal(center, radius));
+    if (best < 0) try_normal({0, 0, 1});
+    const double middle = std::max<double>(-fit.cell.high, fit.cell.low);
+    fit.shortfall_nm = unit * (nearest.distance > r ? nearest.distance / unit - middle
+                                                    : double(fit.cell.high) - fit.cell.low);
+    return fit;
+  }
+
+  static std::uint16_t down(double v) {
+    return static_cast<std::uint16_t>(std::clamp(std::floor(v), 0.0, steps));
+  }
+
+  // `useless`: a slab that holds [-useless, useless] would hardly raise any bound of the cell.
+  Cell with_slab(Cell cell, const Vec3& center, double radius, const Vec3& n, double edge,
+                 double unit, double useless) const {
+    // Towards zero: no longer than 1, so gaps do not come out too large.
+    const double quantised[3] = {std::trunc(n.x * steps), std::trunc(n.y * steps),
+                                 std::trunc(n.z * steps)};
+    for (std::size_t k = 0; k < 3; ++k) cell.n[k] = static_cast<std::int16_t>(quantised[k]);
+    const Vec3 used = Vec3{quantised[0], quantised[1], quantised[2]} * (1 / steps);
+    const FaceTree::Slab slab = tree_.slab(center, radius, used, 0.004 * edge, useless);
+    // Rounding of single precision in units, besides that of positions in nm.
+    const double slack = slack_nm / unit + 0.05;
+    const auto clamped = [](double v) {
+      return static_cast<std::int16_t>(std::clamp(v, -32768.0, steps));
+    };
+    if (slab.low <= slab.high) {
+      cell.low = clamped(std::floor(slab.low / unit - slack));
+      cell.high = clamped(std::ceil(slab.high / unit + slack));
+    }
+    return cell;
+  }
+
+  static double mean_bound(const Cell& cell, double scale) {
+    double sum = 0;
+    for (int i = 0; i < 8; ++i)
+      sum += NearField::bound(cell, i & 1 ? 0.9f : 0.1f, i & 2 ? 0.9f : 0.1f, i & 4 ? 0.9f : 0.1f,
+                              static_cast<float>(scale), 1);
+    return sum;
+  }
+
+  NearField& field_;
+  Box domain_;
+  std::size_t bytes_;
+  int threads_;
+  double most_cells_;
+  double cell_;
+  double widest_;   // that the tree allows for
+  FaceTree tree_;
+  double edge_ = 0;
+  std::vector<Cell> bricks_;
+};
+
+NearField::NearField(const TriangleMesh& mesh, const Box& domain, std::size_t bytes, int threads)
+    : surface_box_(bounds(mesh)) {
+  if (mesh.triangles.empty() || bytes < 4096 || domain.empty()) return;
+  NearFieldBuilder(mesh, domain, bytes, resolve_threads(threads), *this).build();
+}
+
+double NearField::outside_nm(const Vec3& p) const {
+  const double above = p.z - surface_box_.upper_nm.z, below = surface_box_.lower_nm.z - p.z;
+  const double dz = std::max({above, below, 0.0});
+  const double dx = std::max({surface_box_.lower_nm.x - p.x, p.x - surface_box_.upper_nm.x, 0.0});
+  const double dy = std::max({surface_box_.lower_nm.y - p.y, p.y - surface_box_.upper_nm.y, 0.0});
+  const double gap = dx == 0 && dy == 0 ? dz : std::sqrt(dx * dx + dy * dy + dz * dz);
+  return std::max(0.0, gap - slack_nm);
+}
+
+}  // namespace surf::mc
