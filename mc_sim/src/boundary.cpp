@@ -27,6 +27,7 @@ class CustomGeometry {
   int material(State s) const { return s; }
   double clearance(const Vec3& p) const { return specimen_.clearance ? specimen_.clearance(p) : 0; }
   double farthest() const { return 1e12; }
+  bool flies_free(const Vec3&, const Vec3&) const { return false; }
 
   Crossing crossing(const Vec3& start, const Vec3& direction, double length, State& state,
                     Surface& surface) const {

@@ -272,7 +272,7 @@ FaceTree::Slab FaceTree::slab(const Vec3& center, double radius, const Vec3& n, 
     s.high = std::max(s.high, high);
   };
   const auto still = [&](const Entry& e) {
-    const double enough = tolerance + 0.05 * (s.high - s.low);
+    const double enough = tolerance + 0.1 * (s.high - s.low);
     if (e.low < s.low - enough || e.high > s.high + enough) return true;
     extend(e.low, e.high);
     return false;
@@ -323,6 +323,7 @@ FaceTree::Slab FaceTree::slab(const Vec3& center, double radius, const Vec3& n, 
 
 Vec3 FaceTree::mean_normal(const Vec3& center, double radius) const {
   Vec3 sum;
+  int left = 32;   // the nearest ones tell
   const double squared_radius = radius * radius;
   const auto worth = [&](const Vec3&, const Vec3&, Entry& e) {
     e.rank = e.squared;
@@ -342,7 +343,7 @@ Vec3 FaceTree::mean_normal(const Vec3& center, double radius) const {
     const double seen = dot(nearest, nearest);
     if (seen < squared_radius)
       sum += m * (std::min(0.5 * shape.area2, disc) * (1 - seen / squared_radius));
-    return true;
+    return --left > 0;
   };
   walk(center, worth, still, visit);
   return sum;

@@ -42,13 +42,14 @@ class FaceTree {
   };
 
   /// The slab across `n` (length at most 1) of the surface within `radius` of `center`. It may be
-  /// thicker than need be by `tolerance` and 5 %. Once low <= -useless and high >= useless it is
+  /// thicker than need be by `tolerance` and 10 %. Once low <= -useless and high >= useless it is
   /// given up, and holds everything.
   Slab slab(const Vec3& center, double radius, const Vec3& n, double tolerance,
             double useless) const;
 
   /// The sum of the normals of the surface within `radius` of `center`, weighted by about the area
-  /// there; zero where there is nothing, near zero where walls face each other.
+  /// there, over a few dozen triangles; zero where there is nothing, near zero where walls face each
+  /// other. Good for a guess only.
   Vec3 mean_normal(const Vec3& center, double radius) const;
 
   /// The unit normal; zero for a needle, whose plane is not known well.

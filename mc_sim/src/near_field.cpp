@@ -20,10 +20,10 @@ constexpr double smallest_cell_nm = 0.75;
 constexpr double near_nm = 3;            // bricks farther from a surface are not cut,
 constexpr double flat_nm = 0.05;         // nor those that fall no shorter than this
 constexpr double flat_share = 0.15;      // and this share of their distance
-constexpr double slab_edges = 6;         // surfaces farther than this many edges get no slab
+constexpr double slab_edges = 2.5;       // surfaces farther than this many edges get no slab
 constexpr std::size_t most_bricks = std::size_t{1} << 21;
 // More cells than this would take longer to fill than a coarse surface is worth.
-constexpr double few_cells = 1 << 17, cells_per_triangle = 8;
+constexpr double few_cells = 1 << 16, cells_per_triangle = 5, most_cells = 6e5;
 
 // The mesh's area within the box, at most.
 double area_within(const TriangleMesh& mesh, const Box& box) {
@@ -53,9 +53,9 @@ class NearFieldBuilder {
   NearFieldBuilder(const TriangleMesh& mesh, const Box& domain, std::size_t bytes, int threads,
                    NearField& field)
       : field_(field), domain_(domain), bytes_(bytes), threads_(threads),
-        most_cells_(std::min(static_cast<double>(bytes) / sizeof(Cell),
-                             few_cells + cells_per_triangle *
-                                             static_cast<double>(mesh.triangles.size()))),
+        most_cells_(std::min({static_cast<double>(bytes) / sizeof(Cell), most_cells,
+                              few_cells + cells_per_triangle *
+                                              static_cast<double>(mesh.triangles.size())})),
         cell_(first_cell(area_within(mesh, domain))),
         widest_(1.5 * cell_),
         tree_(mesh, grown(domain, (brick_span + 4) * NearField::cut * widest_), threads) {}
@@ -64,8 +64,8 @@ class NearFieldBuilder {
     for (;;) {
       lay_out();
       std::vector<std::uint32_t> cut = fill_bricks();
-      const double excess =
-          static_cast<double>(bricks_.size() + cut.size() * in_brick) / most_cells_;
+      const double excess = static_cast<double>((bricks_.size() + cut.size() * in_brick) *
+                                                sizeof(Cell)) / static_cast<double>(bytes_);
       if (excess <= 1 || cell_ >= widest_) {
         // At worst the last bricks stay whole, to be within the memory.
         cut.resize(std::min(cut.size(), bytes_ / sizeof(Cell) / in_brick));
@@ -205,7 +205,7 @@ class NearFieldBuilder {
     fit.cell.reach = down((radius - r) / unit);
     fit.cell.low = 32767;
     fit.cell.high = -32768;
-    if (!(nearest.distance < slab_edges * edge)) {
+    if (!(nearest.distance < std::max(near_nm, slab_edges * edge))) {
       fit.cell.low = -32768;   // everywhere: the floor is the bound
       fit.cell.high = 32767;
       return fit;
@@ -246,7 +246,7 @@ class NearFieldBuilder {
                                  std::trunc(n.z * steps)};
     for (std::size_t k = 0; k < 3; ++k) cell.n[k] = static_cast<std::int16_t>(quantised[k]);
     const Vec3 used = Vec3{quantised[0], quantised[1], quantised[2]} * (1 / steps);
-    const FaceTree::Slab slab = tree_.slab(center, radius, used, 0.004 * edge, useless);
+    const FaceTree::Slab slab = tree_.slab(center, radius, used, 0.01 * edge, useless);
     // Rounding of single precision in units, besides that of positions in nm.
     const double slack = slack_nm / unit + 0.05;
     const auto clamped = [](double v) {

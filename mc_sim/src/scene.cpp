@@ -19,6 +19,8 @@ namespace {
 // where a track through vacuum gets there it is as good as gone.
 constexpr double apron_in_widths = 20;
 
+constexpr std::size_t sky_columns = 1 << 14;
+
 // All triangles of a scene, with the shell of each.
 struct Assembly {
   TriangleMesh mesh;
@@ -182,13 +184,15 @@ Scene::Scene(const Specimen& specimen, const Beam& beam, const Scan& scan, const
   s.farthest_nm = 1e12;
   if (!all.mesh.triangles.empty()) {
     s.top_nm = std::max(s.top_nm, near.upper_nm.z);
-    s.near = NearField(all.mesh, near_scan(near, scan, beam, reach), options.distance_grid_bytes);
+    const Box domain = near_scan(near, scan, beam, reach);
+    s.near = NearField(all.mesh, domain, options.distance_grid_bytes);
+    s.sky = Sky(all.mesh, domain, sky_columns);
     s.triangles = std::make_unique<EmbreeScene>(all.mesh);
   }
   s.summary.triangles = all.mesh.triangles.size();
   s.summary.shells = s.shells.size();
   s.summary.grid_cell_nm = s.near.cell_nm();
-  s.summary.memory_bytes = s.near.bytes() + s.shell_of.size() * sizeof(std::uint32_t) +
+  s.summary.memory_bytes = s.near.bytes() + s.sky.bytes() + s.shell_of.size() * sizeof(std::uint32_t) +
                            (s.triangles ? s.triangles->memory_bytes() : 0);
   s.summary.build_seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();

@@ -12,6 +12,7 @@
 
 #include "embree_scene.h"
 #include "near_field.h"
+#include "sky.h"
 #include "surf/mc/medium.h"
 #include "surf/mc/scene.h"
 #include "transport.h"
@@ -45,6 +46,7 @@ struct Scene::Impl {
   std::vector<std::uint32_t> shell_of;     ///< per triangle
   std::unique_ptr<EmbreeScene> triangles;  ///< null for a bare substrate
   NearField near;
+  Sky sky;
   double top_nm = 0;                       ///< highest surface
   double bottom_nm = 0;                    ///< lowest surface
   bool half_space = false;                 ///< whether something goes on below without end
@@ -54,6 +56,12 @@ struct Scene::Impl {
     double bound = triangles ? near.bound_nm(p) : std::numeric_limits<double>::infinity();
     if (plane_nm) bound = std::min(bound, std::fabs(p.z - *plane_nm));
     return bound;
+  }
+
+  /// True only where the ray from a point in vacuum meets nothing; cheap.
+  bool flies_free(const Vec3& p, const Vec3& direction) const {
+    if (plane_nm && !(p.z >= *plane_nm && direction.z > 0)) return false;
+    return triangles ? sky.is_free(p, direction) : plane_nm.has_value();
   }
 };
 
@@ -74,6 +82,9 @@ class SceneGeometry {
   int material(State s) const { return states_[static_cast<std::size_t>(s)].material; }
   double clearance(const Vec3& p) const { return scene_.clearance_nm(p); }
   double farthest() const { return scene_.farthest_nm; }
+  bool flies_free(const Vec3& p, const Vec3& direction) const {
+    return scene_.flies_free(p, direction);
+  }
 
   Crossing crossing(const Vec3& start, const Vec3& direction, double length, State& state,
                     Surface& surface);

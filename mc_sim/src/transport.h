@@ -12,6 +12,7 @@
 //     the first place along the path where the material changes; State follows silent crossings
 //     (into a body inside another of the same material)
 //   double farthest() const                   no path inside matter is this long
+//   bool flies_free(p, d) const               true only where a ray through vacuum meets nothing
 
 #include <algorithm>
 #include <cmath>
@@ -179,6 +180,7 @@ class Transport {
   // Straight on through vacuum to the next surface. False when the electron is gone.
   bool fly(Track& t, RandomStream& random) {
     ++steps_;
+    if (geometry_.flies_free(t.position, t.direction)) return escape(t);
     ++balance_.rays;
     typename Geometry::Surface& surface = surface_;
     const Crossing met = geometry_.crossing(t.position, t.direction,

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sky.h"
+
+#include <algorithm>
+
+#include "embree_scene.h"
+#include "statistics.h"
+#include "surf/core/random.h"
+#include "surf/mesh/height_field_mesh.h"
+#include "surf/mesh/shapes.h"
+
+namespace surf::mc {
+
+namespace {
+
+Vec3 isotropic(RandomStream& random) {
+  const double c = 1 - 2 * random.uniform(), f = 6.283185307 * random.uniform();
+  const double s = std::sqrt(1 - c * c);
+  return {s * std::cos(f), s * std::sin(f), c};
+}
+
+// Rays that leave the surface, and rays from anywhere around it; never free where the ray tracer
+// hits. The answer is the share proven of those that leave and are free.
+double share_of_free(const TriangleMesh& mesh, const Box& domain, bool from_tops) {
+  const Sky sky(mesh, domain, 1 << 12);
+  const EmbreeScene rays(mesh);
+  RandomStream random(1, mesh.triangles.size(), 0);
+  const Vec3 size = domain.size_nm();
+  int free = 0, proven = 0;
+  for (int i = 0; i < 200000; ++i) {
+    const Vec3 d = isotropic(random);
+    Vec3 p{domain.lower_nm.x + size.x * random.uniform(), domain.lower_nm.y + size.y * random.uniform(),
+           domain.lower_nm.z - 5 + (size.z + 10) * random.uniform()};
+    const bool leaves = i % 2 == 0;
+    EmbreeScene::Hit hit;
+    const auto any = [](void*, std::uint32_t, double, double) { return true; };
+    // What was left a rounding error ago is not met.
+    const auto ahead = [](void*, std::uint32_t, double, double distance) { return distance > 1e-6; };
+    if (leaves) {
+      p.z = domain.upper_nm.z + 10;
+      if (!rays.nearest(p, {0, 0, -1}, HUGE_VAL, any, nullptr, hit)) continue;
+      p = hit.position;
+      if (from_tops && dot(hit.normal, d) <= 0) continue;
+    }
+    const bool meets = rays.nearest(p, d, HUGE_VAL, ahead, nullptr, hit);
+    const bool says = sky.is_free(p, d);
+    EXPECT_FALSE(says && meets) << p.x << " " << p.y << " " << p.z << ", " << d.x << " " << d.y
+                                << " " << d.z;
+    if (testing::Test::HasFailure()) return 0;
+    if (leaves && d.z > 0 && !meets) {
+      ++free;
+      proven += says;
+    }
+  }
+  const double share = static_cast<double>(proven) / std::max(free, 1);
+  testing::Test::RecordProperty("share_of_" + std::to_string(mesh.triangles.size()),
+                                std::to_string(share));
+  return share;
+}
+
+}  // namespace
+
+TEST(Sky, IsNeverFreeWhereSomethingIsMet) {
+  const HeightField mesa = make_mesa({200, 200, 4}, 60, 60, 8);
+  const double of_mesa =
+      share_of_free(half_space_top(mesa, 4000), bounds(height_field_sheet(mesa)), true);
+  EXPECT_GT(of_mesa, 0.7);
+  const HeightField rough = make_rough({120, 120, 2}, 8, 25, 1);
+  // Hardly any point of it is above all its neighbours, so hardly any ray is proven free.
+  share_of_free(half_space_top(rough, 2000), bounds(height_field_sheet(rough)), true);
+  TriangleMesh cubes = make_box({-50, -50, 0}, {-10, 50, 33.3});
+  const TriangleMesh roof = make_box({20, -30, 40}, {60, 30, 44});
+  const auto base = static_cast<std::uint32_t>(cubes.vertices_nm.size());
+  cubes.vertices_nm.insert(cubes.vertices_nm.end(), roof.vertices_nm.begin(), roof.vertices_nm.end());
+  for (const Triangle& t : roof.triangles)
+    cubes.triangles.push_back({base + t[0], base + t[1], base + t[2]});
+  EXPECT_GT(share_of_free(cubes, bounds(cubes), true), 0.6);
+}
+
+TEST(Sky, AllowsForWhatLiesOutsideItsColumns) {
+  const HeightField mesa = make_mesa({200, 200, 4}, 60, 60, 8);
+  Box part;
+  part.extend(Vec3{50, 20, 0});
+  part.extend(Vec3{95, 90, 60});
+  share_of_free(half_space_top(mesa, 4000), part, true);
+}
+
+TEST(Sky, IsNotFreeBelowARoofNorDownward) {
+  const TriangleMesh roof = make_box({-20, -20, 10}, {20, 20, 12});
+  const Sky sky(roof, bounds(roof), 1 << 10);
+  EXPECT_FALSE(sky.is_free({0, 0, 0}, {0, 0, 1}));
+  EXPECT_FALSE(sky.is_free({0, 0, 20}, {0, 0, -1}));
+  EXPECT_TRUE(sky.is_free({0, 0, 12}, {0, 0, 1}));
+  EXPECT_TRUE(sky.is_free({0, 0, 12}, {0.6, 0, 0.8}));
+}
+
+}  // namespace surf::mc
