@@ -85,6 +85,36 @@ TEST(Sky, AllowsForWhatLiesOutsideItsColumns) {
   share_of_free(half_space_top(mesa, 4000), part, true);
 }
 
+TEST(Sky, KnowsTheWallNextToAPoint) {
+  // Columns of 2 nm, and steep rays that meet a wall in the next one, just below its top.
+  TriangleMesh walls = make_box({-32, -32, 0}, {32, 32, 1});
+  const TriangleMesh box = make_box({-10.1, -10.1, 1}, {10.1, 10.1, 11});
+  const auto base = static_cast<std::uint32_t>(walls.vertices_nm.size());
+  walls.vertices_nm.insert(walls.vertices_nm.end(), box.vertices_nm.begin(), box.vertices_nm.end());
+  for (const Triangle& t : box.triangles)
+    walls.triangles.push_back({base + t[0], base + t[1], base + t[2]});
+  const Sky sky(walls, bounds(walls), 1 << 10);
+  const EmbreeScene rays(walls);
+  RandomStream random(5, 0, 0);
+  int met = 0, free = 0;
+  for (int i = 0; i < 100000; ++i) {
+    const double turn = 6.283185307 * random.uniform();
+    const Vec3 out{std::cos(turn), std::sin(turn), 0};
+    const double far = 10.1 / std::max(std::fabs(out.x), std::fabs(out.y)) + 4 * random.uniform();
+    const Vec3 p = out * far + Vec3{0, 0, 11 - 4 * random.uniform()};
+    const Vec3 d = normalized(isotropic(random) + Vec3{0, 0, 1.5});
+    EmbreeScene::Hit hit;
+    const auto ahead = [](void*, std::uint32_t, double, double distance) { return distance > 1e-6; };
+    const bool meets = rays.nearest(p, d, HUGE_VAL, ahead, nullptr, hit);
+    const bool says = sky.is_free(p, d);
+    ASSERT_FALSE(says && meets) << p.x << " " << p.y << " " << p.z;
+    met += meets;
+    free += says;
+  }
+  EXPECT_GT(met, 1000);
+  EXPECT_GT(free, 100);
+}
+
 TEST(Sky, IsNotFreeBelowARoofNorDownward) {
   const TriangleMesh roof = make_box({-20, -20, 10}, {20, 20, 12});
   const Sky sky(roof, bounds(roof), 1 << 10);
