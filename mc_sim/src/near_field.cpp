@@ -21,6 +21,7 @@ constexpr double near_nm = 3;            // bricks farther from a surface are no
 constexpr double flat_nm = 0.05;         // nor those that fall no shorter than this
 constexpr double flat_share = 0.15;      // and this share of their distance
 constexpr double slab_edges = 2.5;       // surfaces farther than this many edges get no slab
+constexpr double most_in_ball = 1000;    // nor where more triangles would be looked at
 constexpr std::size_t most_bricks = std::size_t{1} << 21;
 // More cells than this would take longer to fill than a coarse surface is worth.
 constexpr double few_cells = 1 << 16, cells_per_triangle = 5, most_cells = 6e5;
@@ -56,9 +57,11 @@ class NearFieldBuilder {
         most_cells_(std::min({static_cast<double>(bytes) / sizeof(Cell), most_cells,
                               few_cells + cells_per_triangle *
                                               static_cast<double>(mesh.triangles.size())})),
-        cell_(first_cell(area_within(mesh, domain))),
+        area_(area_within(mesh, domain)),
+        cell_(first_cell(area_)),
         widest_(1.5 * cell_),
-        tree_(mesh, grown(domain, (brick_span + 4) * NearField::cut * widest_), threads) {}
+        tree_(mesh, grown(domain, (brick_span + 4) * NearField::cut * widest_), threads),
+        per_area_(static_cast<double>(tree_.size()) / std::max(area_, 1e-9)) {}
 
   void build() {
     for (;;) {
@@ -205,7 +208,11 @@ class NearFieldBuilder {
     fit.cell.reach = down((radius - r) / unit);
     fit.cell.low = 32767;
     fit.cell.high = -32768;
-    if (!(nearest.distance < std::max(near_nm, slab_edges * edge))) {
+    const double in_ball =
+        std::min(static_cast<double>(tree_.size()),
+                 per_area_ * 3.14159265 * (radius * radius - nearest.distance * nearest.distance));
+    if (!(nearest.distance < std::max(near_nm, slab_edges * edge)) || in_ball > most_in_ball) {
+      fit.shortfall_nm = r;
       fit.cell.low = -32768;   // everywhere: the floor is the bound
       fit.cell.high = 32767;
       return fit;
@@ -272,9 +279,11 @@ class NearFieldBuilder {
   std::size_t bytes_;
   int threads_;
   double most_cells_;
+  double area_;
   double cell_;
   double widest_;   // that the tree allows for
   FaceTree tree_;
+  double per_area_;   // triangles per nm^2
   double edge_ = 0;
   std::vector<Cell> bricks_;
 };
