@@ -32,6 +32,7 @@ class HalfSpace {
   int material(State s) const { return s == 0 ? -1 : material_; }
   double clearance(const Vec3& p) const { return std::fabs(dot(p, normal_)); }
   double farthest() const { return 1e12; }
+  bool flies_free(const Vec3& p, const Vec3& d) const { return dot(p, normal_) >= 0 && dot(d, normal_) > 0; }
 
   Crossing crossing(const Vec3& start, const Vec3& direction, double most, State& state,
                     Surface& surface) const {

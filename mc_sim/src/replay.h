@@ -285,6 +285,7 @@ class Replay {
   bool fly(Free& e, int generation) {
     for (;;) {
       ++balance_.steps;
+      if (hit_ && geometry_.flies_free(e.position, e.direction)) return escape(e, generation > 0);
       ++balance_.rays;
       const Crossing met = geometry_.crossing(e.position, e.direction,
                                               std::numeric_limits<double>::infinity(), e.state,
