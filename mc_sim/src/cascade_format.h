@@ -8,6 +8,9 @@
 
 namespace surf::mc {
 
+/// Changes whenever the packing or the transport's use of random numbers does.
+inline constexpr int cascade_format_version = 1;
+
 // How a cascade is packed, in words of 8 bytes.
 //
 //   branch    one electron with all that it generates: a node

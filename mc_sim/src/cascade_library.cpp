@@ -4,24 +4,22 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <mutex>
 
 #include <fmt/format.h>
 
+#include "cascade_check.h"
 #include "cascade_format.h"
 #include "cascade_recorder.h"
 #include "detection.h"
 #include "surf/core/error.h"
 #include "surf/core/parallel.h"
-#include "surf/core/units.h"
 #include "surf/mc/library_source.h"
 #include "transport.h"
 
 namespace surf::mc {
 
 namespace {
-
-// Changes whenever the packing or the transport's use of random numbers does.
-constexpr int format_version = 1;
 
 // Streams of libraries are apart from those of pixels.
 constexpr std::uint64_t cascade_stream = std::uint64_t{1} << 47;
@@ -96,9 +94,11 @@ std::size_t CascadeLibrary::bytes() const {
   return bytes;
 }
 
-CascadePage CascadeLibrary::make_page(std::size_t number, int threads,
-                                      const CancelToken* cancel) const {
+CascadePage CascadeLibrary::make_page(std::size_t number, int threads, const CancelToken* cancel,
+                                      const ProgressCallback& progress) const {
   threads = resolve_threads(threads);
+  std::mutex mutex;
+  std::size_t done = 0;   // guarded by it
   std::vector<CascadePage> parts(page_cascades / cascades_per_unit);
   std::vector<std::unique_ptr<Maker>> makers(static_cast<std::size_t>(threads));
   parallel_for(parts.size(), threads, [&](std::size_t unit, int worker) {
@@ -107,6 +107,10 @@ CascadePage CascadeLibrary::make_page(std::size_t number, int threads,
     if (!maker) maker = std::make_unique<Maker>(*this);
     for (std::size_t i = 0; i < cascades_per_unit; ++i)
       maker->make(number * page_cascades + unit * cascades_per_unit + i, parts[unit]);
+    if (!progress) return;
+    const std::lock_guard lock(mutex);
+    done += cascades_per_unit;
+    progress(static_cast<double>(done), static_cast<double>(page_cascades));
   });
   if (cancel && cancel->cancelled()) return {};
   CascadePage page;
@@ -120,26 +124,39 @@ CascadePage CascadeLibrary::make_page(std::size_t number, int threads,
 }
 
 void CascadeLibrary::add_page(std::shared_ptr<const CascadePage> page) {
-  const auto wrong = [&] {
-    const auto& s = page->starts;
-    if (s.size() != page_cascades + 1 || s.front() != 0 || s.back() != page->words.size())
-      return true;
-    for (std::size_t i = 0; i + 1 < s.size(); ++i)
-      if (s[i + 1] <= s[i] || read_node(&page->words[s[i]]).words != s[i + 1] - s[i]) return true;
-    return false;
-  };
-  if (wrong())
+  if (!is_page(*page))
     throw InvalidInput("cascade library", "this is not a page of cascades", "Build it again");
   pages_.push_back(std::move(page));
+}
+
+bool CascadeLibrary::would_make(const CascadePage& page, std::size_t number,
+                                std::size_t sample_bytes) const {
+  Maker maker(*this);
+  CascadePage sample;
+  for (std::size_t i = 0; i < page_cascades && sample.words.size() * 8 < sample_bytes; ++i)
+    maker.make(number * page_cascades + i, sample);
+  return sample.starts.size() <= page.starts.size() && sample.words.size() <= page.words.size() &&
+         std::equal(sample.starts.begin(), sample.starts.end(), page.starts.begin()) &&
+         std::equal(sample.words.begin(), sample.words.end(), page.words.begin());
+}
+
+CascadeLibrary CascadeLibrary::first(std::size_t pages) const {
+  CascadeLibrary library = *this;
+  library.pages_.resize(std::min(pages, pages_.size()));
+  return library;
 }
 
 void CascadeLibrary::grow(std::size_t cascades, int threads, const ProgressCallback& progress,
                           const CancelToken* cancel) {
   while (this->cascades() < cascades) {
-    CascadePage page = make_page(pages(), threads, cancel);
+    const auto done = static_cast<double>(this->cascades());
+    CascadePage page = make_page(pages(), threads, cancel, [&](double of_page, double) {
+      if (progress)
+        progress(std::min(done + of_page, static_cast<double>(cascades)),
+                 static_cast<double>(cascades));
+    });
     if (cancel && cancel->cancelled()) return;
     add_page(std::make_shared<const CascadePage>(std::move(page)));
-    if (progress) progress(static_cast<double>(this->cascades()), static_cast<double>(cascades));
   }
 }
 
@@ -151,25 +168,6 @@ std::shared_ptr<const CascadeLibrary> FreshLibraries::library(const CascadeSetti
   library->grow(cascades, threads, progress, cancel);
   if (cancel && cancel->cancelled()) return nullptr;
   return library;
-}
-
-std::string cascade_page_key(const CascadeSettings& s, std::size_t number) {
-  const Material& m = s.material;
-  std::string key = fmt::format(
-      "what = cascades of electrons\nformat = {}\nphysics = {}\ncutoff_ev = {}\n"
-      "start_energy_ev = {}\nseed = {}\npage = {}\ncascades = {}\n",
-      format_version, format_physics(s.physics), format_exact(effective_cutoff_ev(s.physics, m)),
-      format_exact(s.start_energy_ev), s.seed, number, CascadeLibrary::page_cascades);
-  key += fmt::format(
-      "material = {}\ndensity_g_cm3 = {}\nformula_weight_g_mol = {}\nwork_function_ev = {}\n"
-      "barrier_ev = {}\nvalence_electrons = {}\nplasmon_ev = {}\nloss_join_ev = {}\n",
-      m.name, format_exact(m.density_g_cm3), format_exact(m.formula_weight_g_mol),
-      format_exact(m.work_function_ev), format_exact(m.barrier_ev),
-      format_exact(m.valence_electrons), format_exact(m.plasmon_ev), format_exact(m.loss_join_ev));
-  for (const Constituent& c : m.constituents)
-    key += fmt::format("constituent = {} {} {} {}\n", c.atomic_number, format_exact(c.atomic_weight),
-                       format_exact(c.weight_fraction), format_exact(c.mean_ionization_ev));
-  return key;
 }
 
 bool can_replay(const Physics& physics) { return physics.loss != LossModel::none; }

@@ -5,10 +5,10 @@
 #include <cstdint>
 #include <memory>
 #include <span>
-#include <string>
 #include <vector>
 
 #include "surf/core/progress.h"
+#include "surf/mc/cascade_key.h"
 #include "surf/mc/material.h"
 #include "surf/mc/medium.h"
 #include "surf/mc/physics.h"
@@ -47,11 +47,22 @@ class CascadeLibrary {
   std::size_t bytes() const;
 
   /// A page made from scratch, on `threads` threads (0: one per hardware thread). Empty when
-  /// cancelled.
-  CascadePage make_page(std::size_t number, int threads, const CancelToken* cancel = nullptr) const;
+  /// cancelled. Progress counts the page's cascades.
+  CascadePage make_page(std::size_t number, int threads, const CancelToken* cancel = nullptr,
+                        const ProgressCallback& progress = {}) const;
 
-  /// Takes the next page. Throws InvalidInput where it is not a page.
+  /// Takes the next page. Throws InvalidInput where it is not a page: one that is can be replayed
+  /// safely, wherever it comes from.
   void add_page(std::shared_ptr<const CascadePage> page);
+
+  /// Whether page `number` would begin like this if it were made now: its first cascades, at least
+  /// `sample_bytes` of them, are made again and compared word for word. A page that another version
+  /// of semsurf or another kind of processor has made differs here.
+  bool would_make(const CascadePage& page, std::size_t number,
+                  std::size_t sample_bytes = std::size_t{1} << 15) const;
+
+  /// The same library with its first `pages` pages alone; they are shared, not copied.
+  CascadeLibrary first(std::size_t pages) const;
 
   /// Makes pages until there are at least `cascades`. Progress counts cascades; stops when cancelled.
   void grow(std::size_t cascades, int threads, const ProgressCallback& progress = {},
@@ -69,10 +80,6 @@ class CascadeLibrary {
   std::shared_ptr<const Medium> medium_;
   std::vector<std::shared_ptr<const CascadePage>> pages_;
 };
-
-/// Everything that page `number` of a library depends on, the format's version among it, as lines
-/// of text.
-std::string cascade_page_key(const CascadeSettings& settings, std::size_t number);
 
 /// Whether cascades in this medium can be joined, turned and mirrored: energy falls by continuous
 /// loss alone.

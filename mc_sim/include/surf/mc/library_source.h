@@ -14,8 +14,9 @@ class LibrarySource {
  public:
   virtual ~LibrarySource() = default;
 
-  /// A library of at least `cascades` cascades, or null when cancelled. Called from one thread at a
-  /// time. Progress counts cascades.
+  /// A library of at least `cascades` cascades, with no more pages than that takes, so that what is
+  /// drawn from it does not depend on who asked before; or null when cancelled. Called from one
+  /// thread at a time. Progress counts cascades.
   virtual std::shared_ptr<const CascadeLibrary> library(const CascadeSettings& settings,
                                                         std::size_t cascades, int threads,
                                                         const ProgressCallback& progress,
