@@ -2,6 +2,7 @@
 #include "surf/mc/barrier.h"
 
 #include "statistics.h"
+#include "surf/core/random.h"
 
 namespace surf::mc {
 

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What libraries of cascades cost: for each material and energy the bytes and electrons of a cascade,
+// and the time to make 10,000 on all threads, to check a page, to make its sample, to load it.
+//   bench_library [cascades, default 10000] [MATERIAL...] [keV...]
+#include <chrono>
+#include <cstdlib>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <fmt/core.h>
+
+#include "surf/io/sim/materials.h"
+#include "surf/workflow/libraries.h"
+
+namespace {
+
+using namespace surf;
+
+template <class Work>
+double seconds(const Work& work) {
+  const auto start = std::chrono::steady_clock::now();
+  work();
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+void measure(const std::string& material, double kev, std::size_t cascades) {
+  mc::CascadeSettings settings;
+  settings.material = io::find_material(material, "bench");
+  settings.start_energy_ev = 1000 * kev + settings.material.barrier_ev;
+  const auto folder = std::filesystem::temp_directory_path() / "bench_library.tmp";
+  std::filesystem::remove_all(folder);
+  std::shared_ptr<const mc::CascadeLibrary> library;
+  workflow::CachedLibraries fresh({});
+  const double make = seconds([&] { library = fresh.library(settings, cascades, 0, {}, nullptr); });
+  const double share = double(cascades) / double(library->cascades());   // whole pages are made
+  const auto statistics = mc::describe(*library, cascades);
+
+  workflow::CachedLibraries(folder).library(settings, 1, 0, {}, nullptr);
+  const double load = seconds(
+      [&] { workflow::CachedLibraries(folder).library(settings, 1, 0, {}, nullptr); });
+  mc::CascadeLibrary empty(settings);
+  const mc::CascadePage page = library->make_page(0, 0);
+  const auto shared = std::make_shared<const mc::CascadePage>(page);
+  const double check = seconds([&] { empty.add_page(shared); });
+  const double sample = seconds([&] { empty.would_make(page, 0); });
+  std::filesystem::remove_all(folder);
+  fmt::print("{:8} {:5g} {:12.0f} {:10.1f} {:9.1f} {:11.2f} {:10.1f} {:10.1f} {:10.1f} {:10.1f}\n",
+             material, kev, statistics.bytes_per_cascade, statistics.segments_per_cascade,
+             statistics.electrons_per_cascade, make * share,
+             1e3 * make * share * double(mc::CascadeLibrary::page_cascades) / double(cascades),
+             1e3 * check, 1e3 * sample, 1e3 * load);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  std::size_t cascades = 10000;
+  std::vector<std::string> materials;
+  std::vector<double> energies;
+  for (int i = 1; i < argc; ++i) {
+    const double number = std::atof(argv[i]);
+    if (i == 1 && number > 0) cascades = static_cast<std::size_t>(number);
+    else if (number > 0) energies.push_back(number);
+    else materials.push_back(argv[i]);
+  }
+  if (materials.empty()) materials = {"Si", "Au"};
+  if (energies.empty()) energies = {0.5, 1, 3, 10, 30};
+  fmt::print("{:8} {:>5} {:>12} {:>10} {:>9} {:>11} {:>10} {:>10} {:>10} {:>10}\n", "", "keV",
+             "bytes each", "segments", "electrons", "make all, s", "page, ms", "check, ms",
+             "sample, ms", "load, ms");
+  for (const std::string& material : materials)
+    for (const double kev : energies) measure(material, kev, cascades);
+}
