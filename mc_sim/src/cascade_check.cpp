@@ -21,7 +21,7 @@ class Check {
     if (end - begin < header_words) return false;
     const PackedNode root = read_node(words_ + begin);
     std::uint32_t generated = 0;
-    std::uint16_t energy = root.start.energy;
+    std::uint16_t energy = EnergyCode::energy_part(root.start.energy);
     return node(begin, end, root.level, root.exponent, energy, generated, 0);
   }
 
@@ -35,7 +35,7 @@ class Check {
     const PackedNode& n = view.node;
     if (n.level != level || n.words != end - begin || n.exponent != exponent ||
         n.exponent < finest_exponent || n.exponent > coarsest_exponent ||
-        !(n.generated_ev >= 0 && n.generated_ev < 1e30f) || n.start.energy > energy)
+        !(n.generated_ev >= 0 && n.generated_ev < 1e30f) || EnergyCode::energy_part(n.start.energy) > energy)
       return false;
     if (n.count > (level > 0 ? nodes_per_node : segments_per_node) ||
         (level > 0 ? n.births != 0 || n.count == 0 : n.births >> n.count != 0))
@@ -43,7 +43,7 @@ class Check {
     const auto children = static_cast<std::size_t>(view.children());
     const std::size_t own = header_words + (level > 0 ? 0 : n.count) + children + (children + 1) / 2;
     if (end - begin < own) return false;
-    energy = n.start.energy;
+    energy = EnergyCode::energy_part(n.start.energy);
     std::uint32_t inside = 0;
     const bool sound = level > 0 ? nodes(view, begin + own, end, energy, inside, nested)
                                  : segments(view, begin + own, end, energy, inside, nested);
@@ -68,7 +68,7 @@ class Check {
                 std::uint32_t& generated, int nested) {
     int birth = 0;
     for (int i = 0; i < view.node.count; ++i) {
-      const std::uint16_t here = read_vertex(view.vertex(i)).energy;
+      const std::uint16_t here = EnergyCode::energy_part(read_vertex(view.vertex(i)).energy);
       if (here > energy) return false;
       energy = here;
       if (!(view.node.births & 1u << i)) continue;

@@ -24,7 +24,7 @@ inline constexpr int cascade_format_version = 1;
 // in words from the parent's header, two to a word. Coordinates count from the electron's first
 // point, in units of 2^exponent nm.
 
-/// A point of a track and the energy there (see EnergyCode).
+/// A point of a track, the energy there and what it forgets (see EnergyCode).
 struct PackedVertex {
   std::int16_t x, y, z;
   std::uint16_t energy;
@@ -86,20 +86,26 @@ inline float power_of_two(int exponent) {
   return std::bit_cast<float>(static_cast<std::uint32_t>(127 + exponent) << 23);
 }
 
-/// Energies are packed as the root of what they are above the cutoff: fine where they are small.
+/// Energies are packed as the root of what they are above the cutoff: fine where they are small. The
+/// lowest bit says that the electron was scattered into all directions alike: what comes after does
+/// not remember the direction before.
 class EnergyCode {
  public:
   EnergyCode(double cutoff_ev, double top_ev)
-      : cutoff_ev_(cutoff_ev), per_square_((top_ev - cutoff_ev) / (65535.0 * 65535.0)) {}
+      : cutoff_ev_(cutoff_ev), per_square_((top_ev - cutoff_ev) / (32767.0 * 32767.0)) {}
 
   double decode(std::uint16_t code) const {
-    const double c = code;
+    const double c = code >> 1;
     return cutoff_ev_ + c * c * per_square_;
   }
-  std::uint16_t encode(double energy_ev) const {
+  std::uint16_t encode(double energy_ev, bool forgets) const {
     const double c = std::sqrt(std::fmax(energy_ev - cutoff_ev_, 0.0) / per_square_);
-    return static_cast<std::uint16_t>(std::fmin(c + 0.5, 65535.0));
+    const auto code = static_cast<unsigned>(std::fmin(c + 0.5, 32767.0));
+    return static_cast<std::uint16_t>(code << 1 | (forgets ? 1u : 0u));
   }
+  /// Falls with the energy, whatever is forgotten.
+  static std::uint16_t energy_part(std::uint16_t code) { return static_cast<std::uint16_t>(code >> 1); }
+  static bool forgets(std::uint64_t vertex) { return (vertex >> 48 & 1) != 0; }
 
  private:
   double cutoff_ev_;

@@ -31,7 +31,8 @@ struct CascadeRecorder::Branch {
   PackedVertex vertex(std::size_t i, const EnergyCode& code) const {
     const Vec3 p = (electron.points[i] - electron.points[0]) * (1.0 / double(power_of_two(exponent)));
     const auto round = [](double v) { return static_cast<std::int16_t>(std::lround(v)); };
-    return {round(p.x), round(p.y), round(p.z), code.encode(electron.energies[i])};
+    return {round(p.x), round(p.y), round(p.z),
+            code.encode(electron.energies[i], electron.forgets[i] != 0)};
   }
   Vec3 unpack(const PackedVertex& v) const {
     return origin + Vec3{double(v.x), double(v.y), double(v.z)} * double(power_of_two(exponent));
@@ -46,6 +47,7 @@ void CascadeRecorder::begin_track(int number, int parent, int, const Vec3& posit
   Electron& electron = electrons_[n];
   electron.points.assign(1, position);
   electron.energies.assign(1, energy_ev);
+  electron.forgets.assign(1, 0);
   electron.births.clear();
   if (parent < 0) return;
   // Electrons that wait are followed last in, first out: of one parent's, the latest comes first.
@@ -59,6 +61,7 @@ void CascadeRecorder::segment(const Vec3&, const Vec3& to, double, double energy
   Electron& electron = electrons_[count_ - 1];
   electron.points.push_back(to);
   electron.energies.push_back(energy_to_ev);
+  electron.forgets.push_back(0);
 }
 
 void CascadeRecorder::finish(std::vector<std::uint64_t>& words) {

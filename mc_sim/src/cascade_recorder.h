@@ -20,6 +20,7 @@ class CascadeRecorder {
                    double energy_ev);
   void segment(const Vec3&, const Vec3& to, double, double energy_to_ev, int);
   void deposit(const Vec3&, const Vec3&, double) {}
+  void scattered(bool isotropic) { electrons_[count_ - 1].forgets.back() = isotropic; }
   void end_track(TrackKind, const Vec3&, const Vec3&, double) {}
 
   /// Packs what was watched since the last call and adds it to `words`.
@@ -32,6 +33,7 @@ class CascadeRecorder {
   struct Electron {
     std::vector<Vec3> points;
     std::vector<double> energies;
+    std::vector<char> forgets;      // whether its direction is a new one from this point on
     std::vector<Birth> births;      // last vertex first
     std::size_t unborn = 0;         // vertices before this one may still have a birth
     Box box;                        // of it and all that it generates

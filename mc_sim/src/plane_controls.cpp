@@ -12,7 +12,7 @@ namespace surf::mc {
 
 namespace {
 
-constexpr double step_deg = 2;             // between controls, where azimuths do not count
+constexpr double step_deg = 1;             // between controls, where azimuths do not count
 constexpr double coarse_step_deg = 5;      // where they do
 constexpr double steepest_deg = 86;
 constexpr double exact_steps = 1e9;        // normals that agree to this are one

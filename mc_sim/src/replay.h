@@ -224,6 +224,7 @@ class Replay {
     int generation = 0;  // 0: the primary
     int exponent = 0;    // of the branch's unit
     bool off_plane = false;   // turned or moved other than by mirrors in that plane
+    bool astray = false;      // turned at a surface since it last forgot its direction
 
     void scale(int to) {
       if (to == exponent) return;
@@ -319,7 +320,8 @@ class Replay {
     here_ = e.position;
     remember(NodeView(root));
     Branch branch;
-    branch.scaled = beam_frame(e.direction, primary_.azimuth);
+    home_ = beam_frame(e.direction, primary_.azimuth);
+    branch.scaled = home_;
     branch.state = e.state;
     branch.material = material;
     flat_point_ = float4(flat_.point - here_);
@@ -463,6 +465,7 @@ class Replay {
       }
       if (moved != Moved::no && watching(branch))
         note_turn(vec3(branch.point(vertex) - branch.point(before)));
+      if (branch.astray && EnergyCode::forgets(vertex)) come_home(branch, vertex);
       if (node.births & 1u << i) {
         follow_birth(view, birth, branch, vertex, flat, high);
         ++birth;
@@ -576,6 +579,23 @@ class Replay {
                      mirrored(branch.scaled.z)};
     branch.origin = flat_point_ + mirrored(branch.origin - flat_point_);
     branch.height = -branch.height;
+    branch.astray = true;
+  }
+
+  // Where an electron is scattered into all directions alike, the rest of its branch may lie as it
+  // likes. It lies as in the cascade as it entered, so that a surface that is a little higher or lower
+  // moves it a little, where a mirror would send it elsewhere.
+  void come_home(Branch& branch, std::uint64_t vertex) const {
+    const Float4 here = branch.point(vertex);
+    const float height = branch.height_of(vertex);
+    branch.scaled = home_ * power_of_two(branch.exponent);
+    branch.origin += here - branch.point(vertex);
+    const auto along = [n = flat_normal_](const Float4& v) {
+      return n[0] * v[0] + n[1] * v[1] + n[2] * v[2];
+    };
+    branch.height = Float4{along(branch.scaled.x), along(branch.scaled.y), along(branch.scaled.z), 0};
+    branch.height[3] = height - branch.height_of(vertex);
+    branch.astray = false;
   }
 
   // The rest of the branch goes on from where the electron is, in its direction.
@@ -585,6 +605,7 @@ class Replay {
     branch.scaled = motion * branch.scaled;
     branch.state = e.state;
     branch.off_plane = true;
+    branch.astray = true;
   }
 
   // A segment that may meet surfaces. What happens there moves the rest of the branch.
@@ -654,7 +675,9 @@ class Replay {
                         m.medium->range_nm(e.energy);
     const Vec3 begin = a + along * std::clamp(done, 0.0, whole);
     Branch branch;
-    branch.scaled = beam_frame(e.direction, random_.uniform()) * turn(along, {0, 0, -1});
+    const Rotation before_joining = home_;
+    home_ = beam_frame(e.direction, random_.uniform()) * turn(along, {0, 0, -1});
+    branch.scaled = home_;
     branch.origin = float4(e.position - here_) - branch.scaled(float4(begin));
     branch.state = e.state;
     branch.material = material;
@@ -663,6 +686,7 @@ class Replay {
     cascade_begin_ = root;
     follow(root, branch, false, &middle);
     cascade_begin_ = cascade;
+    home_ = before_joining;
   }
 
   // A material without a library: direct simulation follows the electron and all that it generates.
@@ -714,6 +738,7 @@ class Replay {
   ReplayRandom random_;
   Vec3 beam_;
   Vec3 here_;       // where places count from
+  Rotation home_;   // how the cascade lay when it entered
   bool hit_ = false;
   bool turned_ = false;
   std::int64_t generated_ = 0, left_ = 0, lost_ = 0;

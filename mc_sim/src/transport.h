@@ -102,6 +102,7 @@ struct NoObserver {
   void begin_track(int, int, int, const Vec3&, const Vec3&, double) {}
   void segment(const Vec3&, const Vec3&, double, double, int) {}
   void deposit(const Vec3&, const Vec3&, double) {}
+  void scattered(bool) {}
   void end_track(TrackKind, const Vec3&, const Vec3&, double) {}
 };
 
@@ -261,6 +262,7 @@ class Transport {
       if (event.energy_loss_ev != 0)
         watcher_.deposit(t.position, t.position, event.energy_loss_ev);
     }
+    watcher_.scattered(event.isotropic);
     if (event.isotropic) t.direction = from_axis(event.cos_theta, event.turn);
     else if (event.cos_theta != 1.0)
       t.direction = deflected(t.direction, event.cos_theta, event.turn);
