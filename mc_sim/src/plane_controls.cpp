@@ -171,6 +171,7 @@ std::shared_ptr<const PlaneControl> PlaneControls::make(int material, const Vec3
   int state = 0;
   if (geometry.crossing(against_, beam, HUGE_VAL, state, entry) != Crossing::surface) return control;
   for (std::size_t i = 0; i < cascades_; ++i) {
+    if (i + 1 < cascades_) replay.fetch(material, i + 1);
     replay.run_from(entry, beam, scene_.beam.energy_ev, 0,
                     {options_.seed, number, i, i, azimuth(options_.seed, i)});
     for (std::size_t d = 0; d < detectors; ++d) {

@@ -195,6 +195,12 @@ class Replay {
                                     : 0;
   }
 
+  /// A primary with this cascade will come soon, and enter this material.
+  void fetch(int material, std::size_t cascade) const {
+    const CascadeLibrary* library = media_[static_cast<std::size_t>(material)].library;
+    if (library) library->fetch(cascade);
+  }
+
   /// Electrons handed over to direct simulation so far.
   std::int64_t handed_over() const { return handed_over_; }
 

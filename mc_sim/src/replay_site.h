@@ -39,6 +39,11 @@ class SiteReplay {
   /// The next primaries are at this site.
   void go_to(const ReplaySite& site) { replay_.surroundings(site.flat); }
 
+  /// The primary after the next one at this site replays this cascade.
+  void fetch(const ReplaySite& site, std::size_t cascade) const {
+    if (site.material >= 0) replay_.fetch(site.material, cascade);
+  }
+
   const Gun& gun() const { return gun_; }
   Detection& detection() { return detection_; }
   Balance& balance() { return balance_; }

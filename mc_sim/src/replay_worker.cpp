@@ -51,6 +51,7 @@ class ReplayWorker : public UnitWorker {
       }
       ReplayedPrimary primary{options_.seed, number, electron, subset[electron], 0};
       primary.azimuth = azimuth_of(primary);
+      replay_.fetch(site, subset[electron + 1]);
       pixel.hits += replay_.run(site, start, primary) ? 1 : 0;
       ++pixel.primaries;
       for (std::size_t d = 0; d < out.counts.size(); ++d)

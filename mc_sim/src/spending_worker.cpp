@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdlib>
 
 #include "plane_controls.h"
 #include "replay_site.h"
@@ -76,6 +75,7 @@ class SpendingWorker : public UnitWorker {
     PlaneControls::Match match;
     bool plane = false;               // nothing is left to simulate
     std::vector<Sample> plain, difference;   // pilots, per detector
+    Subset subset{Subset::run, 0, 0};
     std::uint64_t used = 0;           // cascades taken
   };
 
@@ -89,14 +89,18 @@ class SpendingWorker : public UnitWorker {
     p.number = static_cast<std::uint64_t>(p.y) * static_cast<std::uint64_t>(scene_.scan.width) +
                static_cast<std::uint64_t>(p.x);
     p.site = replay_.site(p.x, p.y, true);
+    RandomStream own(options_.seed, p.number, subset_stream);
+    const std::uint32_t a = own.bits(), b = own.bits();
+    p.subset = Subset(cascades_, a, b);
     p.plain.resize(detectors_);
     p.difference.resize(detectors_);
     if (p.site.single && !p.site.hit) return;
     if (p.site.hit && options_.planar_control) {
       p.plane = replay_.proved_plane(p.site);
-      p.match = controls_.match(p.site.material, p.site.flat.normal, getenv("EXACT") ? true : p.plane);
+      p.match = controls_.match(p.site.material, p.site.flat.normal, p.plane);
     }
     if (p.plane) return;
+    replay_.go_to(p.site);
     for (std::int64_t e = 0; e < pilot; ++e)
       run(p, [&](std::size_t d, int counted, int on_plane) {
         p.plain[d].add(counted);
@@ -107,11 +111,9 @@ class SpendingWorker : public UnitWorker {
   // One more primary of a pixel; `take` gets the counts and those of its cascade on the plane.
   template <class Take>
   bool run(Pixel& p, const Take& take) {
-    replay_.go_to(p.site);
     const std::uint64_t electron = p.used++;
-    RandomStream own(options_.seed, p.number, subset_stream);
-    const std::uint32_t a = own.bits(), b = own.bits();
-    const std::size_t cascade = Subset(cascades_, a, b)[electron];
+    const std::size_t cascade = p.subset[electron];
+    replay_.fetch(p.site, p.subset[electron + 1]);
     ReplayedPrimary primary{options_.seed, p.number, electron, cascade, 0};
     const PlaneControl* control = p.match.control.get();
     if (control) {
@@ -203,6 +205,7 @@ class SpendingWorker : public UnitWorker {
     }
     if (tally.model == PixelModel::plane) return;
     std::vector<Sample> plain(detectors_), kept(detectors_);
+    replay_.go_to(p.site);
     auto count = static_cast<std::int64_t>(std::min(std::ceil(wanted_[i]), double(cascades_)));
     for (int round = 0; round < most_rounds; ++round) {
       for (; tally.primaries < count; ++tally.primaries)

@@ -68,6 +68,14 @@ class CascadeLibrary {
   void grow(std::size_t cascades, int threads, const ProgressCallback& progress = {},
             const CancelToken* cancel = nullptr);
 
+  /// Has the beginning of a cascade fetched from memory: it will be asked for soon.
+  void fetch(std::size_t number) const {
+    constexpr std::size_t line_words = 8, lines = 40;
+    const std::span<const std::uint64_t> words = cascade(number);
+    const std::size_t end = words.size() < lines * line_words ? words.size() : lines * line_words;
+    for (std::size_t i = 0; i < end; i += line_words) __builtin_prefetch(words.data() + i);
+  }
+
   /// The words of a cascade, number < cascades().
   std::span<const std::uint64_t> cascade(std::size_t number) const {
     const CascadePage& page = *pages_[number / page_cascades];
