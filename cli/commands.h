@@ -16,6 +16,7 @@ void add_simulate(CLI::App& app, Action& action, const std::string& command_line
 void add_mesh(CLI::App& app, Action& action);
 void add_info(CLI::App& app, Action& action);
 void add_materials(CLI::App& app, Action& action);
+void add_library(CLI::App& app, Action& action);
 void add_completion(CLI::App& app, Action& action);
 
 }  // namespace surf::cli

@@ -33,6 +33,7 @@ struct Command {
   std::string name, description;
   std::vector<Argument> options;
   Argument positional;
+  std::vector<Command> actions;     // subcommands of its own
 };
 
 std::string first_line(std::string text) {
@@ -69,12 +70,17 @@ Argument read_argument(const CLI::Option& option) {
 }
 
 Command read_command(const CLI::App& app) {
-  Command command{app.get_name(), app.get_description(), {}, {}};
+  Command command{app.get_name(), app.get_description(), {}, {}, {}};
   for (const CLI::Option* option : app.get_options()) {
     if (option->nonpositional())
       command.options.push_back(read_argument(*option));
     else
       command.positional = read_argument(*option);
+  }
+  for (const CLI::App* sub : app.get_subcommands(nullptr)) {
+    command.actions.push_back(read_command(*sub));
+    command.positional.values = Values::words;
+    command.positional.words += (command.positional.words.empty() ? "" : " ") + sub->get_name();
   }
   return command;
 }
@@ -95,31 +101,39 @@ std::string bash_values(const Argument& a) {
   return ":";
 }
 
-std::string bash_script(const Command& top, const std::vector<Command>& commands) {
-  std::string names, values, rest;
-  for (const Command& c : commands) {
-    names += (names.empty() ? "" : "|") + c.name;
+// What bash needs of a command, and of its own: which words lead to it, the values of its options,
+// what is offered elsewhere. Inside the script "library build" is called library_build.
+struct BashParts {
+  std::string words, values, rest;
+
+  void add(const Command& c, const std::string& parent) {
+    const std::string name = parent.empty() ? c.name : parent + "_" + c.name;
+    words += fmt::format("      {}:{}) command={} ;;\n", parent, c.name, name);
     for (const Argument& option : c.options) {
       if (!option.takes_value) continue;
       std::string patterns;
-      for (const std::string& name : option.names)
-        patterns += fmt::format("{}{}:{}", patterns.empty() ? "" : "|", c.name, name);
+      for (const std::string& text : option.names)
+        patterns += fmt::format("{}{}:{}", patterns.empty() ? "" : "|", name, text);
       values += fmt::format("    {}) {}; return ;;\n", patterns, bash_values(option));
     }
     rest += fmt::format(
         "    {}) if [[ $cur == -* ]]; then COMPREPLY=($(compgen -W \"{}\" -- \"$cur\"))\n"
         "      else {}; fi ;;\n",
-        c.name, option_names(c), bash_values(c.positional));
+        name, option_names(c), bash_values(c.positional));
+    for (const Command& action : c.actions) add(action, name);
   }
-  std::string words = names;
-  for (char& c : words)
-    if (c == '|') c = ' ';
+};
+
+std::string bash_script(const Command& top) {
+  BashParts parts;
+  for (const Command& c : top.actions) parts.add(c, "");
   return fmt::format(R"(# bash completion for semsurf, made by "semsurf completion bash"
 _semsurf() {{
   local cur=${{COMP_WORDS[COMP_CWORD]}} prev=${{COMP_WORDS[COMP_CWORD-1]}} command= word
   COMPREPLY=()
   for word in "${{COMP_WORDS[@]:1:COMP_CWORD-1}}"; do
-    case $word in {}) command=$word; break ;; esac
+    case $command:$word in
+{}    esac
   done
   case $command:$prev in
 {}  esac
@@ -129,7 +143,8 @@ _semsurf() {{
 }}
 complete -o filenames -F _semsurf semsurf
 )",
-                     names, values, words, option_names(top), rest);
+                     parts.words, parts.values, top.positional.words, option_names(top),
+                     parts.rest);
 }
 
 // Text inside single quotes of zsh's _arguments, or of fish.
@@ -155,73 +170,98 @@ std::string zsh_values(const Argument& a) {
   return ":value: ";
 }
 
-std::string zsh_script(const std::vector<Command>& commands) {
-  std::string names, cases;
-  for (const Command& c : commands) {
-    names += fmt::format("    '{}:{}'\n", c.name, quoted(c.description, ":"));
-    cases += fmt::format("    {}) _arguments", c.name);
+// The body of a function that completes a command's words; $words[1] is the command.
+std::string zsh_body(const Command& c, const std::string& indent) {
+  if (c.actions.empty()) {
+    std::string out = indent + "_arguments";
     for (const Argument& option : c.options)
       for (const std::string& name : option.names)
-        cases += fmt::format(" \\\n      '*{}[{}]{}'", name, quoted(option.description, "[]:"),
-                             option.takes_value ? zsh_values(option) : "");
+        out += fmt::format(" \\\n{}  '*{}[{}]{}'", indent, name,
+                           quoted(option.description, "[]:"),
+                           option.takes_value ? zsh_values(option) : "");
     if (c.positional.takes_value)
-      cases += fmt::format(" \\\n      '*{}'", zsh_values(c.positional));
-    cases += " ;;\n";
+      out += fmt::format(" \\\n{}  '*{}'", indent, zsh_values(c.positional));
+    return out;
   }
+  std::string names, cases;
+  for (const Command& action : c.actions) {
+    names += fmt::format("{}    '{}:{}'\n", indent, action.name, quoted(action.description, ":"));
+    cases += fmt::format("{0}  {1})\n{2} ;;\n", indent, action.name,
+                         zsh_body(action, indent + "    "));
+  }
+  return fmt::format(R"({0}commands=(
+{1}{0})
+{0}if (( CURRENT == 2 )); then
+{0}  _describe command commands
+{0}  return
+{0}fi
+{0}command=$words[2]
+{0}shift words
+{0}(( CURRENT-- ))
+{0}case $command in
+{2}{0}esac)",
+                     indent, names, cases);
+}
+
+std::string zsh_script(const Command& top) {
   return fmt::format(R"(#compdef semsurf
 # zsh completion for semsurf, made by "semsurf completion zsh"
 _semsurf() {{
   local -a commands
-  commands=(
-{}  )
-  if (( CURRENT == 2 )); then
-    _describe command commands
-    return
-  fi
-  local command=$words[2]
-  shift words
-  (( CURRENT-- ))
-  case $command in
-{}  esac
+  local command
+{}
 }}
 if [[ $funcstack[1] == _semsurf ]]; then _semsurf "$@"; else compdef _semsurf semsurf; fi
 )",
-                     names, cases);
+                     zsh_body(top, "  "));
 }
 
-std::string fish_script(const std::vector<Command>& commands) {
-  std::string out = "# fish completion for semsurf, made by \"semsurf completion fish\"\n"
-                    "complete -c semsurf -f\n";
+// `seen`: a condition of fish that holds where this command has been typed.
+void add_fish(const Command& c, const std::string& seen, std::string& out) {
   const auto values = [](const Argument& a) {
     if (a.values == Values::files) return std::string(" -F");
     if (a.values == Values::words) return fmt::format(" -xa '{}'", a.words);
     return std::string(a.takes_value ? " -x" : "");
   };
-  for (const Command& c : commands) {
-    out += fmt::format("complete -c semsurf -n __fish_use_subcommand -a {} -d '{}'\n", c.name,
-                       quoted(c.description, "\\"));
-    const std::string here =
-        fmt::format("complete -c semsurf -n '__fish_seen_subcommand_from {}'", c.name);
-    for (const Argument& option : c.options) {
-      out += here;
-      for (const std::string& name : option.names)
-        out += name.starts_with("--") ? " -l " + name.substr(2) : " -s " + name.substr(1);
-      out += values(option) + fmt::format(" -d '{}'\n", quoted(option.description, "\\"));
-    }
-    if (c.positional.values != Values::none) out += here + values(c.positional) + "\n";
+  const std::string here = fmt::format("complete -c semsurf -n '{}'", seen);
+  for (const Argument& option : c.options) {
+    if (seen.empty()) break;
+    out += here;
+    for (const std::string& name : option.names)
+      out += name.starts_with("--") ? " -l " + name.substr(2) : " -s " + name.substr(1);
+    out += values(option) + fmt::format(" -d '{}'\n", quoted(option.description, "\\"));
   }
+  if (c.actions.empty()) {
+    if (c.positional.values != Values::none) out += here + values(c.positional) + "\n";
+    return;
+  }
+  const std::string none_yet =
+      seen.empty() ? "__fish_use_subcommand"
+                   : fmt::format("'{}; and not __fish_seen_subcommand_from {}'", seen,
+                                 c.positional.words);
+  for (const Command& action : c.actions) {
+    out += fmt::format("complete -c semsurf -n {} -a {} -d '{}'\n", none_yet, action.name,
+                       quoted(action.description, "\\"));
+    add_fish(action, fmt::format("{}{}__fish_seen_subcommand_from {}", seen,
+                                 seen.empty() ? "" : "; and ", action.name), out);
+  }
+}
+
+std::string fish_script(const Command& top) {
+  std::string out = "# fish completion for semsurf, made by \"semsurf completion fish\"\n"
+                    "complete -c semsurf -f\n";
+  add_fish(top, "", out);
   return out;
 }
 
 void print_script(const CLI::App& app, const std::string& shell) {
-  std::vector<Command> commands;
-  for (const CLI::App* sub : app.get_subcommands(nullptr)) commands.push_back(read_command(*sub));
+  const Command top = read_command(app);
   if (shell == "bash")
-    fmt::print("{}", bash_script(read_command(app), commands));
+    fmt::print("{}", bash_script(top));
   else if (shell == "zsh")
-    fmt::print("{}", zsh_script(commands));
+    fmt::print("{}", zsh_script(top));
   else if (shell == "fish")
-    fmt::print("{}", fish_script(commands));
+    fmt::print("{}", fish_script(top));
   else
     throw UsageError("completion", shell.empty() ? "no shell is given" : "unknown shell " + shell,
                      "Choose bash, zsh or fish");

@@ -79,15 +79,17 @@ std::vector<std::string> names_of_options(const CLI::App& app) {
   return names;
 }
 
-// The subcommand that was parsed, else the program.
+// The innermost subcommand that was parsed, else the program.
 const CLI::App& parsed_app(const CLI::App& app) {
   const auto chosen = app.get_subcommands();
-  return chosen.empty() ? app : *chosen.front();
+  return chosen.empty() ? app : parsed_app(*chosen.front());
 }
 
-std::string help_hint(const CLI::App& app, const CLI::App& root) {
-  return &app == &root ? "See semsurf --help"
-                       : fmt::format("See semsurf {} --help", app.get_name());
+std::string help_hint(const CLI::App& app) {
+  std::string words = app.get_name();
+  for (const CLI::App* a = app.get_parent(); a; a = a->get_parent())
+    words = fmt::format("{} {}", a->get_name(), words);
+  return fmt::format("See {} --help", words);
 }
 
 int report_extra(const CLI::App& root) {
@@ -97,13 +99,13 @@ int report_extra(const CLI::App& root) {
   word.resize(std::min(word.find('='), word.size()));
   const bool option = word.starts_with('-');
   std::vector<std::string> candidates = names_of_options(app);
-  if (!option && &app == &root) {
+  if (!option && !app.get_subcommands(nullptr).empty()) {
     candidates.clear();
-    for (const CLI::App* sub : root.get_subcommands(nullptr)) candidates.push_back(sub->get_name());
+    for (const CLI::App* sub : app.get_subcommands(nullptr)) candidates.push_back(sub->get_name());
   }
   const std::string guess = nearest(word, candidates);
   print_error(fmt::format("{}: unknown {}. {}", word, option ? "option" : "command",
-                          guess.empty() ? help_hint(app, root)
+                          guess.empty() ? help_hint(app)
                                         : fmt::format("Did you mean {}?", guess)));
   return exit_usage;
 }
@@ -112,7 +114,7 @@ int report_parse_error(const CLI::App& root, const CLI::ParseError& error) {
   if (error.get_exit_code() == 0) return root.exit(error);   // help and version
   if (dynamic_cast<const CLI::ExtrasError*>(&error)) return report_extra(root);
   const CLI::App& app = parsed_app(root);
-  print_error(fmt::format("{}. {}", error.what(), help_hint(app, root)));
+  print_error(fmt::format("{}. {}", error.what(), help_hint(app)));
   return exit_usage;
 }
 
@@ -144,6 +146,7 @@ int main(int argc, char** argv) {
   add_mesh(app, action);
   add_info(app, action);
   add_materials(app, action);
+  add_library(app, action);
   add_completion(app, action);
 
   try {

@@ -63,6 +63,17 @@ std::string format_count(double count) {
   return fmt::format("{:.{}f}{}", count, power == 0 || count >= 99.95 ? 0 : 1, suffixes[power]);
 }
 
+std::string format_bytes(double bytes) {
+  std::string text = format_count(bytes);
+  if (text.find(' ') == std::string::npos) text += ' ';
+  return text + "B";
+}
+
+std::string format_energy(double energy_ev) {
+  return energy_ev >= 1000 ? fmt::format("{:g} keV", energy_ev / 1000)
+                           : fmt::format("{:g} eV", energy_ev);
+}
+
 std::string format_duration(double seconds) {
   const auto s = static_cast<long long>(std::lround(std::clamp(seconds, 0.0, 1e9)));
   return s < 3600 ? fmt::format("{}:{:02}", s / 60, s % 60)

@@ -16,6 +16,12 @@ void print_note(const std::string& message);
 /// "13.1 M", "950": a count for people.
 std::string format_count(double count);
 
+/// "13.1 MB", "950 B".
+std::string format_bytes(double bytes);
+
+/// "1 keV", "500 eV".
+std::string format_energy(double energy_ev);
+
 /// "0:07", "3:21", "2:05:00".
 std::string format_duration(double seconds);
 

@@ -29,4 +29,9 @@ expect "Si SiO2" materials Si
 expect "graphite" materials gr
 expect "--materials" materials --ma
 expect "" simulate --energy ""
+expect "library" lib
+expect "list build plot remove" library ""
+expect "--physics" library build Si --ph
+expect "Si SiO2" library build Si
+expect "--damaged --dry-run" library remove --d
 exit $status

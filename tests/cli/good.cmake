@@ -8,6 +8,10 @@ semsurf_cli_test(help.simulate ARGS simulate --help
   STDOUT "Specimen:" "Beam:" "Scan:" "Simulation:" "Output:" "bare lengths are nm" "Examples:")
 semsurf_cli_test(help.info ARGS info --help STDOUT "Examples:")
 semsurf_cli_test(help.materials ARGS materials --help STDOUT "Examples:")
+foreach(action list build plot remove)
+  semsurf_cli_test(help.library.${action} ARGS library ${action} --help STDOUT "--cache FOLDER" "Examples:")
+endforeach()
+semsurf_cli_test(help.library ARGS library --help STDOUT "list.*\n.*build" "Examples:" "4 GB")
 semsurf_cli_test(help.completion ARGS completion --help STDOUT "Examples:")
 semsurf_cli_test(no_arguments EXIT 2 ARGS simulate STDERR "no specimen")
 

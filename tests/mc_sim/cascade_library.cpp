@@ -61,6 +61,7 @@ struct Nowhere {
   int material(State) const { return 0; }
   double clearance(const Vec3&) const { return std::numeric_limits<double>::infinity(); }
   double farthest() const { return std::numeric_limits<double>::infinity(); }
+  bool flies_free(const Vec3&, const Vec3&) const { return true; }
   Crossing crossing(const Vec3&, const Vec3&, double, State&, Surface&) const {
     return Crossing::none;
   }

@@ -60,7 +60,8 @@ struct CachedLibraries::Impl {
     auto page = std::make_shared<const mc::CascadePage>(
         library.make_page(number, threads, cancel, progress));
     if (cancel && cancel->cancelled()) return false;
-    cache.store(mc::cascade_page_key(library.settings(), number), page_to_bytes(*page));
+    if (cache.store(mc::cascade_page_key(library.settings(), number), page_to_bytes(*page)))
+      ++pages.stored;
     library.add_page(std::move(page));
     ++pages.made;
     return true;

@@ -38,6 +38,7 @@ class CachedLibraries : public mc::LibrarySource {
   struct Pages {
     std::size_t loaded = 0;   ///< from the cache
     std::size_t made = 0;
+    std::size_t stored = 0;   ///< of those made
   };
   Pages pages() const;
 

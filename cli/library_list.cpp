@@ -1,0 +1,219 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <memory>
+#include <set>
+
+#include "library.h"
+#include "options.h"
+#include "surf/core/error.h"
+#include "surf/core/units.h"
+#include "surf/io/cache.h"
+#include "surf/workflow/library_list.h"
+#include "terminal.h"
+
+namespace surf::cli {
+namespace {
+
+using workflow::LibraryList;
+using workflow::StoredLibrary;
+
+constexpr const char* list_examples = R"(Examples:
+  semsurf library list
+  semsurf library list --check               read every file and compare its checksum
+Of what is damaged or of another version nothing is ever used: it is made again.)";
+
+constexpr const char* remove_examples = R"(Examples:
+  semsurf library remove Si                  silicon at all energies
+  semsurf library remove --energy 5keV       all materials at 5 keV
+  semsurf library remove --all --dry-run     what that would free
+  semsurf library remove --damaged)";
+
+io::Cache open_cache(const LibraryOptions& options) {
+  const auto folder = io::cache_folder(options.cache.value_or(""));
+  if (folder.empty())
+    throw UsageError("--cache", "there is no cache", "Name a folder, or unset SEMSURF_CACHE");
+  return io::Cache(folder);
+}
+
+std::string format_ago(std::filesystem::file_time_type when) {
+  const auto now = std::filesystem::file_time_type::clock::now();
+  const double minutes = std::chrono::duration<double>(now - when).count() / 60;
+  if (minutes < 2) return "just now";
+  if (minutes < 120) return fmt::format("{:.0f} min ago", minutes);
+  if (minutes < 48 * 60) return fmt::format("{:.0f} h ago", minutes / 60);
+  return fmt::format("{:.0f} days ago", minutes / (24 * 60));
+}
+
+// What differs from the defaults.
+std::string format_differences(const mc::CascadePageName& name) {
+  const auto words = [](const mc::Physics& physics) {
+    std::vector<std::string> out;
+    const std::string text = mc::format_physics(physics);
+    for (std::size_t from = 0; from < text.size();) {
+      const std::size_t comma = std::min(text.find(',', from), text.size());
+      out.push_back(text.substr(from, comma - from));
+      from = comma + 1;
+    }
+    return out;
+  };
+  const auto usual = words({});
+  std::string differences;
+  const auto add = [&](const std::string& word) {
+    differences += (differences.empty() ? "" : ",") + word;
+  };
+  for (const std::string& word : words(name.physics))
+    if (std::find(usual.begin(), usual.end(), word) == usual.end()) add(word);
+  if (!name.is_usual_cutoff) add(fmt::format("cutoff={:g}eV", name.physics.cutoff_ev));
+  return differences.empty() ? "default" : differences;
+}
+
+void print_table(const LibraryList& list) {
+  std::size_t material = 8, physics = 7;
+  for (const StoredLibrary& l : list.libraries) {
+    material = std::max(material, l.name.material.size());
+    physics = std::max(physics, format_differences(l.name).size());
+  }
+  fmt::print("{:<{}}  {:>9}  {:<{}}  {:>4}  {:>9}  {:>8}  {:>9}  {:<12}  {}\n", "material",
+             material, "energy", "physics", physics, "seed", "cascades", "size", "kB each",
+             "last used", "state");
+  for (const StoredLibrary& l : list.libraries)
+    fmt::print("{:<{}}  {:>9}  {:<{}}  {:>4}  {:>9}  {:>8}  {:>9.1f}  {:<12}  {}\n", l.name.material,
+               material, format_energy(l.name.beam_energy_ev), format_differences(l.name), physics,
+               l.name.seed, l.cascades, format_bytes(double(l.bytes)),
+               1e-3 * double(l.bytes) / double(std::max<std::size_t>(l.cascades, 1)),
+               format_ago(l.last_used), l.name.is_current ? "good" : "of another version");
+}
+
+int list(const LibraryOptions& options, bool check) {
+  const io::Cache cache = open_cache(options);
+  const LibraryList list = workflow::list_libraries(
+      cache, check ? io::Cache::Check::everything : io::Cache::Check::header);
+  if (list.libraries.empty()) {
+    fmt::print("no libraries in {}\nMake one: semsurf library build Si --energy 1keV\n",
+               cache.folder().string());
+  } else {
+    print_table(list);
+    double bytes = 0;
+    for (const StoredLibrary& l : list.libraries) bytes += double(l.bytes);
+    fmt::print("{} of at most {} in {}\n", format_bytes(bytes),
+               format_bytes(double(io::Cache::default_max_bytes)), cache.folder().string());
+  }
+  if (!list.damaged.empty())
+    print_warning(fmt::format("{} damaged file{} in the cache {} never used. Remove {} with "
+                              "'semsurf library remove --damaged'",
+                              list.damaged.size(), list.damaged.size() == 1 ? "" : "s",
+                              list.damaged.size() == 1 ? "is" : "are",
+                              list.damaged.size() == 1 ? "it" : "them"));
+  return 0;
+}
+
+struct RemoveOptions {
+  LibraryOptions library;
+  bool all = false, damaged = false, dry_run = false;
+};
+
+// Names that no library has are mistakes: the materials themselves may be long gone.
+void check_names(const std::vector<std::string>& wanted, const LibraryList& list) {
+  std::set<std::string> names;
+  for (const StoredLibrary& l : list.libraries) names.insert(l.name.material);
+  for (const std::string& name : wanted) {
+    if (names.contains(name)) continue;
+    const std::string guess = nearest(name, {names.begin(), names.end()});
+    throw UsageError(name, "there is no library of it",
+                     guess.empty() ? "See 'semsurf library list'"
+                                   : fmt::format("Did you mean {}?", guess));
+  }
+}
+
+bool is_wanted(const StoredLibrary& l, const RemoveOptions& o, const std::vector<double>& energies) {
+  const auto contains = [](const auto& all, const auto& one) {
+    return std::find(all.begin(), all.end(), one) != all.end();
+  };
+  if (o.all) return true;
+  if (o.library.materials.empty() && energies.empty()) return false;
+  const auto same = [&](double e) { return std::abs(e - l.name.beam_energy_ev) < 1e-6 * e; };
+  return (o.library.materials.empty() || contains(o.library.materials, l.name.material)) &&
+         (energies.empty() || std::any_of(energies.begin(), energies.end(), same));
+}
+
+int remove(const RemoveOptions& o) {
+  const auto energies =
+      o.library.energy ? parse_energies_ev(*o.library.energy) : std::vector<double>{};
+  const bool some = !o.library.materials.empty() || !energies.empty();
+  if (!some && !o.all && !o.damaged)
+    throw UsageError("library remove", "what to remove is not given",
+                     "Name materials or --energy, or say --all or --damaged");
+  if (some && o.all)
+    throw UsageError("--all", "it is more than what is named", "Leave out one of the two");
+  io::Cache cache = open_cache(o.library);
+  // What is asked for as damaged has to be looked at whole.
+  const LibraryList list = workflow::list_libraries(
+      cache, o.damaged ? io::Cache::Check::everything : io::Cache::Check::header);
+  check_names(o.library.materials, list);
+  std::size_t files = 0, stuck = 0;
+  double bytes = 0;
+  const auto drop = [&](const std::vector<io::CacheEntry>& entries) {
+    for (const io::CacheEntry& entry : entries) {
+      if (!o.dry_run && !cache.remove(entry)) {
+        ++stuck;
+        continue;
+      }
+      ++files;
+      bytes += double(entry.bytes);
+    }
+  };
+  for (const StoredLibrary& l : list.libraries) {
+    if (!is_wanted(l, o, energies)) continue;
+    fmt::print("{}, {} cascades, {}\n", library_title(l.name.material, l.name.beam_energy_ev),
+               l.cascades, format_bytes(double(l.bytes)));
+    drop(l.pages);
+  }
+  if (o.damaged || o.all) drop(list.damaged);
+  if (stuck > 0)
+    throw FileError(cache.folder().string(), fmt::format("{} files cannot be removed", stuck),
+                    "Check the folder's permissions");
+  if (files == 0) fmt::print("nothing to remove in {}\n", cache.folder().string());
+  else
+    fmt::print("{} {} in {} file{}\n", o.dry_run ? "would free" : "freed", format_bytes(bytes),
+               files, files == 1 ? "" : "s");
+  return 0;
+}
+
+}  // namespace
+
+void add_library_list(CLI::App& library, Action& action) {
+  struct Options {
+    LibraryOptions library;
+    bool check = false;
+  };
+  const auto options = std::make_shared<Options>();
+  CLI::App* sub = library.add_subcommand("list", "The libraries in the cache");
+  sub->add_flag("--check", options->check, "Read all of every file, not only its beginning");
+  add_cache_option(*sub, options->library);
+  sub->group("Commands");
+  sub->footer(list_examples);
+  sub->callback([options, &action] {
+    action = [options] { return list(options->library, options->check); };
+  });
+}
+
+void add_library_remove(CLI::App& library, Action& action) {
+  const auto options = std::make_shared<RemoveOptions>();
+  CLI::App* sub = library.add_subcommand("remove", "Remove libraries from the cache");
+  sub->add_option("MATERIAL", options->library.materials, "Those of these materials")
+      ->type_name("MATERIAL");
+  sub->add_option("--energy", options->library.energy, "Those of these beam energies")
+      ->type_name("ENERGY,...");
+  sub->add_flag("--all", options->all, "All, and what is damaged");
+  sub->add_flag("--damaged", options->damaged, "What cannot be used because it is damaged");
+  sub->add_flag("-n,--dry-run", options->dry_run, "Only say what would be removed");
+  add_cache_option(*sub, options->library);
+  sub->group("Commands");
+  sub->footer(remove_examples);
+  sub->callback([options, &action] { action = [options] { return remove(*options); }; });
+}
+
+}  // namespace surf::cli

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include "surf/core/progress.h"
+#include "surf/io/plot.h"
+#include "surf/mc/library_source.h"
+#include "surf/workflow/measured_yields.h"
+
+namespace surf::workflow {
+
+struct LibraryPlotOptions {
+  std::vector<mc::Material> materials;     ///< 1 to 8
+  std::vector<double> energies_ev;         ///< of the beam, at least one, 100 to 30000
+  /// Angles of the beam that yields are shown for, 0 to below 90. Empty: 0, and with one energy 0 to
+  /// 75 in steps of 15.
+  std::vector<double> tilts_deg;
+  mc::Physics physics;
+  std::uint64_t seed = 1;
+  std::size_t cascades = 10240;            ///< in each library, at least 2048
+  int threads = 0;                         ///< 0: one per hardware thread
+  std::vector<MeasuredYield> measured;     ///< shown beside yields at normal incidence
+};
+
+/// What is in libraries and what comes of it: how deep and how far primaries get, against the energy
+/// where there are several, and the yields of flat specimens, replayed from the same libraries, with
+/// their standard errors, against the energy or else the tilt. Nothing when cancelled. Throws
+/// UsageError for options out of range. Progress has no unit.
+std::optional<io::Plot> plot_libraries(const LibraryPlotOptions& options,
+                                       mc::LibrarySource& libraries,
+                                       const ProgressCallback& progress = {},
+                                       const CancelToken* cancel = nullptr);
+
+}  // namespace surf::workflow

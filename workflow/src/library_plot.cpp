@@ -1,0 +1,319 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "surf/workflow/library_plot.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <string>
+
+#include <fmt/format.h>
+
+#include "surf/core/error.h"
+#include "surf/mc/element.h"
+#include "surf/mc/simulate.h"
+
+namespace surf::workflow {
+
+namespace {
+
+constexpr std::size_t most_materials = 8;     // colours
+constexpr std::size_t most_distributions = 8; // in one panel
+constexpr std::size_t bins = 40;
+constexpr double percentile = 0.95;
+
+std::string energy_text(double energy_ev) {
+  return energy_ev >= 1000 ? fmt::format("{:g} keV", energy_ev / 1000)
+                           : fmt::format("{:g} eV", energy_ev);
+}
+
+double mean(const std::vector<double>& values) {
+  double sum = 0;
+  for (const double v : values) sum += v;
+  return sum / static_cast<double>(values.size());
+}
+
+double percentile_of(std::vector<double> values) {
+  const auto at = values.begin() + static_cast<std::ptrdiff_t>(
+                                       percentile * static_cast<double>(values.size() - 1));
+  std::nth_element(values.begin(), at, values.end());
+  return *at;
+}
+
+// What was found out about one material at one energy.
+struct Findings {
+  std::size_t material = 0;
+  double energy_ev = 0;
+  std::vector<double> depth_nm, extent_nm;   // of every primary
+  std::vector<mc::Estimate> se, bse;         // by tilt
+};
+
+class Charts {
+ public:
+  Charts(const LibraryPlotOptions& options, std::vector<double> tilts_deg)
+      : options_(options), tilts_deg_(std::move(tilts_deg)) {}
+
+  std::vector<Findings> findings;
+
+  io::Plot plot() const {
+    io::Plot plot;
+    plot.title = fmt::format("{} cascades of each, {}", options_.cascades,
+                             mc::format_physics(options_.physics));
+    plot.panels.push_back(distribution("How deep primaries get", "greatest depth (nm)",
+                                       &Findings::depth_nm));
+    plot.panels.push_back(distribution("How far primaries get",
+                                       "greatest distance from the start (nm)",
+                                       &Findings::extent_nm));
+    if (several()) plot.panels.push_back(ranges());
+    plot.panels.push_back(yields("Secondary electrons", "SE per primary", &Findings::se, false));
+    plot.panels.push_back(
+        yields("Backscattered electrons", "BSE per primary", &Findings::bse, true));
+    plot.columns = several() ? 3 : 2;
+    return plot;
+  }
+
+ private:
+  bool several() const { return options_.energies_ev.size() > 1; }
+
+  std::string name(const Findings& f) const {
+    const std::string& material = options_.materials[f.material].name;
+    return several() ? fmt::format("{}, {}", material, energy_text(f.energy_ev)) : material;
+  }
+
+  // Few enough to tell apart: of each material the same energies, from first to last.
+  std::vector<const Findings*> chosen() const {
+    const std::size_t energies = options_.energies_ev.size();
+    const std::size_t each =
+        std::clamp(most_distributions / options_.materials.size(), std::size_t{1}, energies);
+    std::vector<const Findings*> out;
+    for (std::size_t m = 0; m < options_.materials.size(); ++m)
+      for (std::size_t i = 0; i < each; ++i)
+        out.push_back(&findings[m * energies +
+                                (each > 1 ? i * (energies - 1) / (each - 1) : energies / 2)]);
+    return out;
+  }
+
+  io::PlotPanel distribution(const char* title, const char* label,
+                             std::vector<double> Findings::* values) const {
+    io::PlotPanel panel;
+    panel.title = title;
+    panel.x.label = label;
+    panel.y.label = fmt::format("% of primaries in a bin");
+    double low = 1e300, high = 0;
+    for (const Findings* f : chosen()) {
+      const auto [least, most] = std::minmax_element((f->*values).begin(), (f->*values).end());
+      low = std::min(low, *least);
+      high = std::max(high, *most);
+    }
+    // Ranges of energies far apart only share a logarithmic axis.
+    double least_mean = 1e300, greatest_mean = 0;
+    for (const Findings* f : chosen()) {
+      least_mean = std::min(least_mean, mean(f->*values));
+      greatest_mean = std::max(greatest_mean, mean(f->*values));
+    }
+    panel.x.log = greatest_mean > 4 * least_mean;
+    low = panel.x.log ? std::max(low, least_mean / 30) : 0;
+    std::vector<double> edges(bins + 1);
+    for (std::size_t i = 0; i <= bins; ++i) {
+      const double share = static_cast<double>(i) / bins;
+      edges[i] = panel.x.log ? low * std::pow(high / low, share) : low + (high - low) * share;
+    }
+    for (const Findings* f : chosen()) {
+      io::PlotSeries series;
+      series.name = name(*f);
+      series.style = io::PlotStyle::steps;
+      series.x = edges;
+      series.y.assign(bins, 0);
+      for (const double v : f->*values) {
+        const auto above = std::upper_bound(edges.begin(), edges.end(), v) - edges.begin();
+        const auto bin = std::clamp<std::ptrdiff_t>(above - 1, 0, bins - 1);
+        series.y[static_cast<std::size_t>(bin)] += 100.0 / static_cast<double>((f->*values).size());
+      }
+      panel.series.push_back(std::move(series));
+    }
+    return panel;
+  }
+
+  io::PlotPanel ranges() const {
+    io::PlotPanel panel;
+    panel.title = "Range of primaries";
+    panel.x.label = "energy (keV)";
+    panel.y.label = "nm";
+    panel.x.log = panel.y.log = true;
+    for (std::size_t m = 0; m < options_.materials.size(); ++m) {
+      io::PlotSeries depth, extent;
+      const std::string& material = options_.materials[m].name;
+      depth.name = material + ", mean depth";
+      extent.name = material + ", 95 % stay within";
+      for (const Findings* f : by_energy(m)) {
+        depth.x.push_back(1e-3 * f->energy_ev);
+        depth.y.push_back(mean(f->depth_nm));
+        extent.y.push_back(percentile_of(f->extent_nm));
+      }
+      extent.x = depth.x;
+      extent.dashed = true;
+      depth.style = extent.style = io::PlotStyle::line_points;
+      depth.color = extent.color = static_cast<int>(m);
+      panel.series.push_back(std::move(depth));
+      panel.series.push_back(std::move(extent));
+    }
+    return panel;
+  }
+
+  std::vector<const Findings*> by_energy(std::size_t material) const {
+    std::vector<const Findings*> out;
+    for (const Findings& f : findings)
+      if (f.material == material) out.push_back(&f);
+    std::sort(out.begin(), out.end(), [](const Findings* a, const Findings* b) {
+      return a->energy_ev < b->energy_ev;
+    });
+    return out;
+  }
+
+  io::PlotPanel yields(const char* title, const char* label,
+                       std::vector<mc::Estimate> Findings::* estimates, bool backscattered) const {
+    io::PlotPanel panel;
+    panel.title = title;
+    panel.x.label = several() ? "energy (keV)" : "tilt (degrees)";
+    panel.x.log = several();
+    panel.y.label = label;
+    for (std::size_t m = 0; m < options_.materials.size(); ++m) {
+      const auto found = by_energy(m);
+      if (several())
+        for (std::size_t t = 0; t < tilts_deg_.size(); ++t) {
+          io::PlotSeries series = empty(m, t == 0);
+          if (tilts_deg_.size() > 1) series.name += fmt::format(", {:g} degrees", tilts_deg_[t]);
+          for (const Findings* f : found) add(series, 1e-3 * f->energy_ev, (f->*estimates)[t]);
+          panel.series.push_back(std::move(series));
+        }
+      else {
+        io::PlotSeries series = empty(m, true);
+        for (std::size_t t = 0; t < tilts_deg_.size(); ++t)
+          add(series, tilts_deg_[t], (found.front()->*estimates)[t]);
+        panel.series.push_back(std::move(series));
+      }
+      io::PlotSeries measured = measurements(m, backscattered);
+      if (!measured.x.empty()) panel.series.push_back(std::move(measured));
+    }
+    return panel;
+  }
+
+  io::PlotSeries empty(std::size_t material, bool solid) const {
+    io::PlotSeries series;
+    series.name = options_.materials[material].name;
+    series.style = io::PlotStyle::line_points;
+    series.color = static_cast<int>(material);
+    series.dashed = !solid;
+    return series;
+  }
+
+  static void add(io::PlotSeries& series, double x, const mc::Estimate& e) {
+    series.x.push_back(x);
+    series.y.push_back(e.mean);
+    series.y_error.push_back(e.standard_error);
+  }
+
+  // Those of normal incidence in the range of energies shown.
+  io::PlotSeries measurements(std::size_t m, bool backscattered) const {
+    io::PlotSeries series;
+    if (std::find(tilts_deg_.begin(), tilts_deg_.end(), 0.0) == tilts_deg_.end()) return series;
+    const mc::Material& material = options_.materials[m];
+    const std::string element = material.constituents.size() == 1
+                                    ? mc::element(material.constituents[0].atomic_number).symbol
+                                    : material.name;
+    const auto [low, high] =
+        std::minmax_element(options_.energies_ev.begin(), options_.energies_ev.end());
+    for (const MeasuredYield& y : options_.measured) {
+      if (y.backscattered != backscattered || (y.material != material.name && y.material != element))
+        continue;
+      if (y.energy_ev < 0.95 * *low || y.energy_ev > 1.05 * *high) continue;
+      series.x.push_back(several() ? 1e-3 * y.energy_ev : 0);
+      series.y.push_back(y.yield);
+    }
+    series.name = material.name + ", measured";
+    series.style = io::PlotStyle::points;
+    series.color = static_cast<int>(m);
+    return series;
+  }
+
+  const LibraryPlotOptions& options_;
+  std::vector<double> tilts_deg_;
+};
+
+void check(const LibraryPlotOptions& o) {
+  if (o.materials.empty() || o.materials.size() > most_materials)
+    throw UsageError("library plot", fmt::format("{} materials do not fit into one chart",
+                                                 o.materials.size()),
+                     "Choose 1 to 8");
+  if (o.energies_ev.empty())
+    throw UsageError("--energy", "there is none", "Give one or several");
+  if (o.cascades < mc::CascadeLibrary::page_cascades)
+    throw UsageError("--cascades", "a library has at least 2048", "Ask for 10000");
+}
+
+// Yields of a flat specimen, on average over all of the library's cascades.
+bool find_yields(const LibraryPlotOptions& o, double tilt_deg, mc::LibrarySource& libraries,
+                 const CancelToken* cancel, Findings& findings) {
+  mc::Specimen specimen;
+  specimen.materials = {o.materials[findings.material]};
+  specimen.substrate = mc::Substrate{};
+  mc::Beam beam;
+  beam.energy_ev = findings.energy_ev;
+  beam.tilt_deg = tilt_deg;
+  mc::Scan scan;
+  scan.width = scan.height = 1;
+  mc::SimulationOptions options;
+  options.method = mc::Method::replay;
+  // For this accuracy as many cascades are used as there are.
+  options.accuracy = 3 / std::sqrt(static_cast<double>(o.cascades) - 0.5);
+  options.seed = o.seed;
+  options.threads = o.threads;
+  const mc::SimulationResult result = mc::simulate(mc::Scene(specimen, beam, scan, o.physics),
+                                                   options, {}, cancel, {}, nullptr, &libraries);
+  if (!result.complete) return false;
+  findings.se.push_back(result.yield(0, 0, 0));
+  findings.bse.push_back(result.yield(1, 0, 0));
+  return true;
+}
+
+std::vector<double> tilts_of(const LibraryPlotOptions& o) {
+  if (!o.tilts_deg.empty()) return o.tilts_deg;
+  if (o.energies_ev.size() > 1) return {0};
+  return {0, 15, 30, 45, 60, 75};
+}
+
+}  // namespace
+
+std::optional<io::Plot> plot_libraries(const LibraryPlotOptions& o, mc::LibrarySource& libraries,
+                                       const ProgressCallback& progress,
+                                       const CancelToken* cancel) {
+  check(o);
+  const std::vector<double> tilts_deg = tilts_of(o);
+  Charts charts(o, tilts_deg);
+  const double total = static_cast<double>(o.materials.size() * o.energies_ev.size());
+  for (std::size_t m = 0; m < o.materials.size(); ++m) {
+    for (const double energy_ev : o.energies_ev) {
+      const auto done = static_cast<double>(charts.findings.size());
+      const mc::Medium medium = mc::make_medium(o.materials[m], o.physics);
+      const auto library = libraries.library(
+          {o.materials[m], o.physics, energy_ev + medium.barrier_ev(), o.seed}, o.cascades,
+          o.threads,
+          [&](double of, double all) {
+            if (progress) progress(done + 0.8 * of / all, total);
+          },
+          cancel);
+      if (!library) return std::nullopt;
+      mc::CascadeStatistics statistics = mc::describe(*library, o.cascades);
+      Findings found;
+      found.material = m;
+      found.energy_ev = energy_ev;
+      found.depth_nm = std::move(statistics.primary_depth_nm);
+      found.extent_nm = std::move(statistics.primary_extent_nm);
+      for (const double tilt_deg : tilts_deg)
+        if (!find_yields(o, tilt_deg, libraries, cancel, found)) return std::nullopt;
+      charts.findings.push_back(std::move(found));
+    }
+  }
+  return charts.plot();
+}
+
+}  // namespace surf::workflow
