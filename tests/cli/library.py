@@ -92,7 +92,7 @@ def rebuilds_what_is_damaged(cache):
 
 
 def keeps_pages_when_interrupted(cache):
-    process = cache.start("build", "Au", "--energy", "1keV", "--cascades", 500_000)
+    process = cache.start("build", "Au", "--energy", "1keV", "--cascades", 150_000)
     deadline = time.monotonic() + TIMEOUT_SECONDS
     while not cache.files() and time.monotonic() < deadline:
         time.sleep(0.02)
