@@ -49,15 +49,17 @@ struct Findings {
 
 class Charts {
  public:
-  Charts(const LibraryPlotOptions& options, std::vector<double> tilts_deg)
-      : options_(options), tilts_deg_(std::move(tilts_deg)) {}
+  Charts(const LibraryPlotOptions& options, std::size_t cascades, std::vector<double> tilts_deg)
+      : options_(options), cascades_(cascades), tilts_deg_(std::move(tilts_deg)) {}
 
   std::vector<Findings> findings;
 
   io::Plot plot() const {
     io::Plot plot;
-    plot.title = fmt::format("{} cascades of each, {}", options_.cascades,
-                             mc::format_physics(options_.physics));
+    plot.title = fmt::format("{} cascades of each", cascades_);
+    if (!several()) plot.title = energy_text(options_.energies_ev.front()) + ", " + plot.title;
+    const std::string physics = mc::format_physics(options_.physics);
+    if (physics != mc::format_physics({})) plot.title += "\n" + physics;
     plot.panels.push_back(distribution("How deep primaries get", "greatest depth (nm)",
                                        &Findings::depth_nm));
     plot.panels.push_back(distribution("How far primaries get",
@@ -73,6 +75,16 @@ class Charts {
 
  private:
   bool several() const { return options_.energies_ev.size() > 1; }
+
+  // A logarithmic axis needs more than a decade, or hardly any number is on it.
+  io::PlotAxis energy_axis() const {
+    const auto [low, high] =
+        std::minmax_element(options_.energies_ev.begin(), options_.energies_ev.end());
+    io::PlotAxis axis;
+    axis.label = "energy (keV)";
+    axis.log = *high > 20 * *low;
+    return axis;
+  }
 
   std::string name(const Findings& f) const {
     const std::string& material = options_.materials[f.material].name;
@@ -125,7 +137,8 @@ class Charts {
       series.y.assign(bins, 0);
       for (const double v : f->*values) {
         const auto above = std::upper_bound(edges.begin(), edges.end(), v) - edges.begin();
-        const auto bin = std::clamp<std::ptrdiff_t>(above - 1, 0, bins - 1);
+        if (above == 0) continue;   // before a logarithmic axis begins
+        const auto bin = std::min<std::ptrdiff_t>(above - 1, bins - 1);
         series.y[static_cast<std::size_t>(bin)] += 100.0 / static_cast<double>((f->*values).size());
       }
       panel.series.push_back(std::move(series));
@@ -136,9 +149,9 @@ class Charts {
   io::PlotPanel ranges() const {
     io::PlotPanel panel;
     panel.title = "Range of primaries";
-    panel.x.label = "energy (keV)";
+    panel.x = energy_axis();
     panel.y.label = "nm";
-    panel.x.log = panel.y.log = true;
+    panel.y.log = true;
     for (std::size_t m = 0; m < options_.materials.size(); ++m) {
       io::PlotSeries depth, extent;
       const std::string& material = options_.materials[m].name;
@@ -173,8 +186,8 @@ class Charts {
                        std::vector<mc::Estimate> Findings::* estimates, bool backscattered) const {
     io::PlotPanel panel;
     panel.title = title;
-    panel.x.label = several() ? "energy (keV)" : "tilt (degrees)";
-    panel.x.log = several();
+    if (several()) panel.x = energy_axis();
+    else panel.x.label = "tilt (degrees)";
     panel.y.label = label;
     for (std::size_t m = 0; m < options_.materials.size(); ++m) {
       const auto found = by_energy(m);
@@ -236,6 +249,7 @@ class Charts {
   }
 
   const LibraryPlotOptions& options_;
+  std::size_t cascades_;
   std::vector<double> tilts_deg_;
 };
 
@@ -246,8 +260,17 @@ void check(const LibraryPlotOptions& o) {
                      "Choose 1 to 8");
   if (o.energies_ev.empty())
     throw UsageError("--energy", "there is none", "Give one or several");
-  if (o.cascades < mc::CascadeLibrary::page_cascades)
-    throw UsageError("--cascades", "a library has at least 2048", "Ask for 10000");
+  if (o.cascades < 1) throw UsageError("--cascades", "there are none", "Ask for 10000");
+}
+
+// Of one pixel, averaged over all of a library of about this size.
+mc::SimulationOptions simulation_of(const LibraryPlotOptions& o) {
+  mc::SimulationOptions options;
+  options.method = mc::Method::replay;
+  options.accuracy = std::min(1.0, 3 / std::sqrt(static_cast<double>(o.cascades)));
+  options.seed = o.seed;
+  options.threads = o.threads;
+  return options;
 }
 
 // Yields of a flat specimen, on average over all of the library's cascades.
@@ -261,14 +284,9 @@ bool find_yields(const LibraryPlotOptions& o, double tilt_deg, mc::LibrarySource
   beam.tilt_deg = tilt_deg;
   mc::Scan scan;
   scan.width = scan.height = 1;
-  mc::SimulationOptions options;
-  options.method = mc::Method::replay;
-  // For this accuracy as many cascades are used as there are.
-  options.accuracy = 3 / std::sqrt(static_cast<double>(o.cascades) - 0.5);
-  options.seed = o.seed;
-  options.threads = o.threads;
-  const mc::SimulationResult result = mc::simulate(mc::Scene(specimen, beam, scan, o.physics),
-                                                   options, {}, cancel, {}, nullptr, &libraries);
+  const mc::SimulationResult result =
+      mc::simulate(mc::Scene(specimen, beam, scan, o.physics), simulation_of(o), {}, cancel, {},
+                   nullptr, &libraries);
   if (!result.complete) return false;
   findings.se.push_back(result.yield(0, 0, 0));
   findings.bse.push_back(result.yield(1, 0, 0));
@@ -288,21 +306,22 @@ std::optional<io::Plot> plot_libraries(const LibraryPlotOptions& o, mc::LibraryS
                                        const CancelToken* cancel) {
   check(o);
   const std::vector<double> tilts_deg = tilts_of(o);
-  Charts charts(o, tilts_deg);
+  const std::size_t cascades = mc::library_size(simulation_of(o), 0);
+  Charts charts(o, cascades, tilts_deg);
   const double total = static_cast<double>(o.materials.size() * o.energies_ev.size());
   for (std::size_t m = 0; m < o.materials.size(); ++m) {
     for (const double energy_ev : o.energies_ev) {
       const auto done = static_cast<double>(charts.findings.size());
       const mc::Medium medium = mc::make_medium(o.materials[m], o.physics);
       const auto library = libraries.library(
-          {o.materials[m], o.physics, energy_ev + medium.barrier_ev(), o.seed}, o.cascades,
+          {o.materials[m], o.physics, energy_ev + medium.barrier_ev(), o.seed}, cascades,
           o.threads,
           [&](double of, double all) {
             if (progress) progress(done + 0.8 * of / all, total);
           },
           cancel);
       if (!library) return std::nullopt;
-      mc::CascadeStatistics statistics = mc::describe(*library, o.cascades);
+      mc::CascadeStatistics statistics = mc::describe(*library, cascades);
       Findings found;
       found.material = m;
       found.energy_ev = energy_ev;

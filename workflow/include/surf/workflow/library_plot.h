@@ -20,7 +20,8 @@ struct LibraryPlotOptions {
   std::vector<double> tilts_deg;
   mc::Physics physics;
   std::uint64_t seed = 1;
-  std::size_t cascades = 10240;            ///< in each library, at least 2048
+  /// In each library, at least 1; a simulation takes 10240 or more (mc::library_size), and so does this.
+  std::size_t cascades = 10240;
   int threads = 0;                         ///< 0: one per hardware thread
   std::vector<MeasuredYield> measured;     ///< shown beside yields at normal incidence
 };
