@@ -9,6 +9,7 @@
 #include "surf/core/error.h"
 #include "surf/io/sim/materials.h"
 #include "surf/mc/simulate.h"
+#include "surf/workflow/libraries.h"
 #include "statistics.h"
 
 namespace surf::workflow {
@@ -27,7 +28,7 @@ LibraryPlotOptions options_of(std::vector<double> energies_ev) {
 }
 
 io::Plot plot_of(const LibraryPlotOptions& options) {
-  mc::FreshLibraries libraries;
+  CachedLibraries libraries({});
   return *plot_libraries(options, libraries);
 }
 
@@ -60,7 +61,7 @@ TEST(LibraryPlot, ShowsRangesAndYieldsAgainstTheEnergy) {
   LibraryPlotOptions options = options_of({400, 100});
   options.measured = {{"Si", 200, 0.8, false}, {"Si", 5000, 0.9, false}};
   double last = 0;
-  mc::FreshLibraries libraries;
+  CachedLibraries libraries({});
   const io::Plot plot = *plot_libraries(options, libraries, [&](double done, double total) {
     EXPECT_LE(last, done);
     EXPECT_LE(done, total);
@@ -82,7 +83,7 @@ TEST(LibraryPlot, ShowsRangesAndYieldsAgainstTheEnergy) {
 }
 
 TEST(LibraryPlot, ShowsTheYieldsOfDirectSimulation) {
-  LibraryPlotOptions options = options_of({500});
+  LibraryPlotOptions options = options_of({300});
   options.materials.pop_back();
   options.tilts_deg = {40};
   const io::Plot plot = plot_of(options);
@@ -90,7 +91,7 @@ TEST(LibraryPlot, ShowsTheYieldsOfDirectSimulation) {
   specimen.materials = options.materials;
   specimen.substrate = mc::Substrate{};
   mc::Beam beam;
-  beam.energy_ev = 500;
+  beam.energy_ev = 300;
   beam.tilt_deg = 40;
   mc::Scan scan;
   scan.width = scan.height = 1;
@@ -105,7 +106,7 @@ TEST(LibraryPlot, ShowsTheYieldsOfDirectSimulation) {
 }
 
 TEST(LibraryPlot, RefusesWhatDoesNotFit) {
-  mc::FreshLibraries libraries;
+  CachedLibraries libraries({});
   LibraryPlotOptions options = options_of({});
   EXPECT_THROW(plot_libraries(options, libraries), UsageError);
   options = options_of({500});
@@ -119,7 +120,7 @@ TEST(LibraryPlot, RefusesWhatDoesNotFit) {
 }
 
 TEST(LibraryPlot, CanBeCancelled) {
-  mc::FreshLibraries libraries;
+  CachedLibraries libraries({});
   CancelToken cancel;
   cancel.cancel();
   EXPECT_FALSE(plot_libraries(options_of({500}), libraries, {}, &cancel));
