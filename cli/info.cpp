@@ -66,6 +66,13 @@ void print_scan(const io::SceneFile& scene) {
                                    *scene.current_pa * *scene.dwell_us * electrons_per_pa_us));
     return;
   }
+  if (scene.accuracy) {
+    print_item("accuracy", fmt::format("{}, but no better than {} per primary",
+                                       format_share(*scene.accuracy),
+                                       scene.accuracy_floor.value_or(
+                                           mc::SimulationOptions{}.accuracy_floor)));
+    return;
+  }
   const auto electrons = scene.electrons.value_or(mc::SimulationOptions{}.electrons);
   print_item("electrons", fmt::format("{} per pixel, {:.4g} million in all", electrons,
                                       1e-6 * double(electrons) * scan.width * scan.height));

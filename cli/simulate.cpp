@@ -1,82 +1,33 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <fmt/format.h>
 
-#include <cmath>
 #include <memory>
+#include <optional>
+#include <utility>
 
 #include "commands.h"
 #include "options.h"
 #include "scene_options.h"
 #include "simulate_options.h"
+#include "simulate_summary.h"
 #include "surf/core/error.h"
-#include "surf/core/parallel.h"
 #include "surf/core/units.h"
+#include "surf/io/cache.h"
+#include "surf/mc/choose_method.h"
 #include "surf/workflow/simulate_job.h"
 #include "terminal.h"
 
 namespace surf::cli {
 namespace {
 
-struct Yield {
-  double mean = 0, standard_error = 0;
-};
-
-// Mean over the pixels that see the specimen; their errors are independent.
-Yield mean_yield(const mc::SimulationResult& result, std::size_t detector, std::size_t& pixels) {
-  double sum = 0, variance = 0;
-  pixels = 0;
-  for (int y = 0; y < result.pixels.height(); ++y) {
-    for (int x = 0; x < result.pixels.width(); ++x) {
-      if (result.pixels(x, y).hits == 0) continue;
-      const mc::Estimate e = result.yield(detector, x, y);
-      sum += e.mean;
-      variance += e.standard_error * e.standard_error;
-      ++pixels;
-    }
-    result.release();
-  }
-  if (pixels == 0) return {};
-  return {sum / double(pixels), std::sqrt(variance) / double(pixels)};
-}
-
-void print_summary(const workflow::SimulateJob& job, const workflow::SimulateSummary& s) {
-  const mc::Scan& scan = s.scan;
-  const std::string pixel = scan.pixel_x_nm == scan.pixel_y_nm
-                                ? format_length(scan.pixel_x_nm)
-                                : format_length(scan.pixel_x_nm) + " x " +
-                                      format_length(scan.pixel_y_nm);
-  fmt::print("{:<10} {} x {} pixels of {}, {} x {}{}\n", "image", scan.width, scan.height, pixel,
-             format_length(scan.width * scan.pixel_x_nm),
-             format_length(scan.height * scan.pixel_y_nm), s.result.complete ? "" : " (partial)");
-  std::size_t pixels = 0;
-  std::size_t width = 10;
-  for (const mc::Detector& d : s.result.detectors) width = std::max(width, d.name.size());
-  for (std::size_t d = 0; d < s.result.detectors.size(); ++d) {
-    const Yield y = mean_yield(s.result, d, pixels);
-    fmt::print("{:<{}} {:.4f} ± {:.4f}{}\n", s.result.detectors[d].name, width, y.mean, y.standard_error,
-               d == 0 ? fmt::format(" per primary, mean over {} pixels", pixels) : "");
-  }
-  if (s.result.dose > 0)
-    fmt::print("{:<10} {:.4g} primaries per pixel on average\n", "dose", s.result.dose);
-  const double recalled = double(s.result.recalled);
-  const double primaries = double(s.result.balance.incident) - recalled;
-  const double seconds = s.result.seconds;
-  fmt::print("{:<10} {}{} in {:.1f} s, {} per second on {} threads\n", "primaries",
-             recalled > 0 ? format_count(recalled) + " done before, " : "", format_count(primaries),
-             seconds, format_count(seconds > 0 ? primaries / seconds : 0),
-             resolve_threads(job.options.threads));
-  const char* label = "written";
-  for (const auto& path : s.written) {
-    fmt::print("{:<10} {}\n", label, path.string());
-    label = "";
-  }
-}
+constexpr int exit_untrustworthy = 4;
+constexpr int exit_interrupted = 130;
 
 workflow::Extras make_extras(const SimulateOptions& o) {
   workflow::Extras extras;
   for (std::size_t from = 0; from < o.channels.size();) {
     const std::size_t comma = std::min(o.channels.find(',', from), o.channels.size());
-    extras.surface.push_back(o.channels.substr(from, comma - from));
+    extras.channels.push_back(o.channels.substr(from, comma - from));
     from = comma + 1;
   }
   if (o.deposit)
@@ -105,6 +56,47 @@ workflow::CheckpointOptions make_checkpoint(const SimulateOptions& o) {
   return checkpoint;
 }
 
+// One of these says how much is simulated, and goes before what the scene file says of it.
+void refuse_two_budgets(const SimulateOptions& o) {
+  const char* first = nullptr;
+  for (const auto& [given, name] :
+       {std::pair{o.electrons.has_value(), "--electrons"},
+        std::pair{o.accuracy.has_value(), "--accuracy"}, std::pair{o.time.has_value(), "--time"},
+        std::pair{o.scene.current || o.scene.dwell, "--current and --dwell"}}) {
+    if (!given) continue;
+    if (first)
+      throw UsageError(first, fmt::format("{} already sets how many primaries there are", name),
+                       "Leave out one of the two");
+    first = name;
+  }
+}
+
+void apply_budget(const SimulateOptions& o, std::int64_t electrons, workflow::SimulateJob& job) {
+  io::SceneFile& scene = job.scene;
+  const bool given = o.electrons || o.accuracy || o.time;
+  if (given) {
+    scene.electrons = std::nullopt;
+    scene.accuracy = std::nullopt;
+    scene.current_pa = scene.dwell_us = std::nullopt;
+  }
+  if (o.scene.current || o.scene.dwell) scene.accuracy = std::nullopt;
+  if (o.electrons) scene.electrons = electrons;
+  if (o.accuracy) scene.accuracy = parse_share(*o.accuracy, "--accuracy");
+  if (o.time) {
+    job.seconds = parse_duration_s(*o.time, "--time");
+    if (!(job.seconds > 0))
+      throw UsageError("--time", "it must be above zero", "Write for example 30s");
+  }
+  if (o.accuracy_floor) {
+    if (!scene.accuracy && !o.time)
+      throw UsageError("--accuracy-floor", "there is no accuracy that it could limit",
+                       "Add --accuracy 1%, or leave it out");
+    scene.accuracy_floor = *o.accuracy_floor == "0"
+                               ? 0 : parse_share(*o.accuracy_floor, "--accuracy-floor");
+  }
+  if (!scene.accuracy && !o.time) scene.accuracy_floor = std::nullopt;
+}
+
 workflow::SimulateJob make_job(const SimulateOptions& o, const std::string& command_line) {
   workflow::SimulateJob job;
   // Numbers first: a bad one should not wait for a large mesh to be read.
@@ -114,18 +106,18 @@ workflow::SimulateJob make_job(const SimulateOptions& o, const std::string& comm
   if (o.threads)
     job.options.threads = static_cast<int>(parse_whole(*o.threads, "--threads", 0, 4096));
 
+  refuse_two_budgets(o);
+  std::optional<std::optional<mc::Method>> method;
+  if (o.method) method = mc::parse_method(*o.method, "--method");
+
   std::vector<std::string> notes;
   if (o.outputs.empty() && !o.scene.inputs.empty())
     throw UsageError("--output", "no output file is given", "Add -o image.exr");
   job.scene = make_scene(o.scene, notes);
-  if (o.electrons) {
-    if (o.scene.current || o.scene.dwell)
-      throw UsageError("--electrons", "current and dwell time give the number of primaries",
-                       "Leave out --electrons, or --current and --dwell");
-    job.scene.electrons = electrons;
-    job.scene.current_pa = job.scene.dwell_us = std::nullopt;
-  }
+  apply_budget(o, electrons, job);
   job.options.electrons = job.scene.electrons.value_or(job.options.electrons);
+  if (method) job.scene.method = *method;
+  job.cache = io::cache_folder(o.cache.value_or(""));
   job.options.spectra = o.spectra;
   job.extras = make_extras(o);
   job.checkpoint = make_checkpoint(o);
@@ -144,8 +136,9 @@ int simulate(const SimulateOptions& options, const std::string& command_line) {
   {
     InterruptGuard interrupts;
     ProgressBar bar(!options.quiet);
+    const char* things = job.scene.accuracy || job.seconds > 0 ? "pixels" : "primaries";
     summary = workflow::run(
-        job, [&](double done, double total) { bar.show(done, total); }, interrupts.token(),
+        job, [&](double done, double total) { bar.show(done, total, things); }, interrupts.token(),
         [&](const std::string& warning) {
           bar.clear();
           print_warning(warning);
@@ -153,10 +146,12 @@ int simulate(const SimulateOptions& options, const std::string& command_line) {
         [&](const std::string& note) {
           bar.clear();
           if (!options.quiet) print_note(note);
-        });
+        },
+        [&](double done, double total) { bar.show(done, total, "cascades"); });
   }
   if (!options.quiet) print_summary(job, summary);
-  return summary.result.complete ? 0 : 130;
+  if (!summary.result.complete) return exit_interrupted;
+  return summary.statistics.missed > 0 ? exit_untrustworthy : 0;
 }
 
 }  // namespace

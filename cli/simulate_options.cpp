@@ -12,10 +12,18 @@ Any two of --size, --pixel-size and --region define the scan. With one the speci
 extent gives the rest; with none it is 256 pixels across the longer side. Numbers given
 here go before those of the scene file.
 
+Channels of --channels: 'electrons' are the primaries that a pixel's value is the mean of.
+'model' is how it got it: 1 direct, 2 replay, 3 difference (replay, as the difference to the
+same cascades on a plane), 4 plane (proved to be flat as far as electrons reach: nothing is
+left to simulate), 0 none. NAME.variance_left is the share of the scatter that is left by 3
+and 4.
+
 Examples:
   semsurf simulate cube.stl --substrate Si --tilt 40 -o cube.exr -o cube.png
   semsurf simulate grain.ply --unit um --material Au --energy 5keV --pixel-size 5nm -o grain.tif
   semsurf simulate samples/mesa80.toml --electrons 1000 --seed 2 -o mesa.vti
+  semsurf simulate samples/mesa80.toml --accuracy 2% --channels model,electrons -o mesa.exr
+  semsurf simulate samples/mesa80.toml --time 30s -o mesa.exr
   semsurf simulate cube.stl --materials mine.toml --material nitride -o nitride.exr
   semsurf simulate afm.tif --pitch 2nm --z-unit 0.1nm --edge mirror -o sem.exr
   semsurf simulate cube.stl --size 64x64 --region -96,-96,96,96 \
@@ -101,6 +109,25 @@ void add_simulation_options(CLI::App& app, SimulateOptions& o) {
   const char* group = "Simulation";
   app.add_option("--electrons", o.electrons, "Primaries per pixel (200)")
       ->type_name("N")->group(group);
+  app.add_option("--accuracy", o.accuracy,
+                 "Instead: as many as each pixel needs to bring the standard error of\n"
+                 "all detectors down to this share of its mean, as 1% or 0.01")
+      ->type_name("SHARE")->group(group);
+  app.add_option("--accuracy-floor", o.accuracy_floor,
+                 "No standard error below this is asked for, counts per primary (0.002)")
+      ->type_name("NUMBER")->group(group);
+  app.add_option("--time", o.time,
+                 "Instead: the accuracy that fits in this time, as 30s; says which, and\n"
+                 "--accuracy with that gives the same bytes")
+      ->type_name("TIME")->group(group);
+  app.add_option("--method", o.method,
+                 "Follow each electron (direct), or retrace stored cascades (replay); both\n"
+                 "have the same statistics (auto: whichever is less work)")
+      ->type_name("auto|direct|replay")->group(group);
+  app.add_option("--cache", o.cache,
+                 "Where libraries of cascades are kept for other runs, or off\n"
+                 "($SEMSURF_CACHE, ~/.cache/semsurf)")
+      ->type_name("FOLDER|off")->group(group);
   app.add_option("--physics", o.scene.physics,
                  "elastic=mott|browning, loss=joy-luo|none, secondaries=on|off,\n"
                  "barrier=quantum|classical|off; any of them, first ones default")
@@ -132,7 +159,8 @@ void add_output_options(CLI::App& app, SimulateOptions& o) {
       ->type_name("FILE")->option_text("FILE")->allow_extra_args(false)->group(group);
   app.add_option("--channel", o.channel, "What PNG files show (SE)")
       ->type_name("SE|SE.stderr|BSE|...|valid")->group(group);
-  app.add_option("--channels", o.channels, "Also what the beam sees: z_nm, normal, material")
+  app.add_option("--channels", o.channels, "Also what the beam sees: z_nm, normal, material; and how it was simulated:\n"
+                 "electrons, model, variance_left (see below)")
       ->type_name("NAME,...")->group(group);
   app.add_flag("-q,--quiet", o.quiet, "Only errors and warnings")->group(group);
 }

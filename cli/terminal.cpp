@@ -88,14 +88,16 @@ void ProgressBar::clear() {
   if (started_) fmt::print(stderr, "\r\033[K");
 }
 
-void ProgressBar::show(double done, double total) {
+void ProgressBar::show(double done, double total, const char* things) {
   if (!active_ || !(total > 0)) return;
   const auto now = Clock::now();
-  if (!started_) {
+  if (!started_ || things_ != things || done < last_done_) {
     started_ = true;
+    things_ = things;
     start_ = next_ = now;
     done_at_start_ = done;
   }
+  last_done_ = done;
   if (now < next_) return;
   next_ = now + update_interval;
 
@@ -104,7 +106,7 @@ void ProgressBar::show(double done, double total) {
   std::string numbers = fmt::format(" {:3.0f} %", 100 * fraction);
   if (seconds > 0 && done > done_at_start_) {
     const double rate = (done - done_at_start_) / seconds;
-    numbers += fmt::format("  {} primaries/s  {} left", format_count(rate),
+    numbers += fmt::format("  {} {}/s  {} left", format_count(rate), things_,
                            format_duration((total - done) / rate));
   }
   const int room = terminal_columns() - static_cast<int>(numbers.size()) - 4;

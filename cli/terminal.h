@@ -25,7 +25,7 @@ std::string format_energy(double energy_ev);
 /// "0:07", "3:21", "2:05:00".
 std::string format_duration(double seconds);
 
-/// A progress bar on stderr: percentage, primaries per second, time left. Silent unless `wanted`
+/// A progress bar on stderr: percentage, things per second, time left. Silent unless `wanted`
 /// and stderr is a terminal. Erased when destroyed.
 class ProgressBar {
  public:
@@ -34,7 +34,8 @@ class ProgressBar {
   ProgressBar(const ProgressBar&) = delete;
   ProgressBar& operator=(const ProgressBar&) = delete;
 
-  void show(double done, double total);
+  /// `things` are what is counted; other things than before begin a new bar.
+  void show(double done, double total, const char* things = "primaries");
 
   /// Makes room for a message; the bar comes back with the next `show`.
   void clear();
@@ -44,6 +45,8 @@ class ProgressBar {
   bool active_;
   bool started_ = false;
   double done_at_start_ = 0;   // a resumed job begins in the middle
+  double last_done_ = 0;
+  std::string things_;
   Clock::time_point start_, next_;
 };
 

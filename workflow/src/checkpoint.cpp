@@ -53,18 +53,18 @@ class Reader {
   std::string_view rest_;
 };
 
-// A batch of units: its first unit, the primaries in it, those of the whole job as a double; then
+// A batch of units: its first unit, the primaries (or pixels) in it, those of the whole job as a double; then
 // each unit's number, size and tally.
 struct BatchHead {
   std::uint64_t first_unit;
-  std::uint64_t primaries;
+  std::uint64_t work;
   double expected;
 };
 
 BatchHead read_head(Reader& reader) {
   BatchHead head{};
   head.first_unit = reader.number();
-  head.primaries = reader.number();
+  head.work = reader.number();
   head.expected = std::bit_cast<double>(reader.number());
   return head;
 }
@@ -92,8 +92,8 @@ std::string date_of(const fs::path& path) {
 }
 
 // "63 %", rounded down: 100 is only said of all.
-std::string share(double primaries, double expected) {
-  return expected > 0 ? fmt::format("{:.0f} %", std::floor(100 * primaries / expected)) : "a part";
+std::string share(double work, double expected) {
+  return expected > 0 ? fmt::format("{:.0f} %", std::floor(100 * work / expected)) : "a part";
 }
 
 bool looks_like_ours(const std::string& name, const std::string& stem) {
@@ -140,12 +140,12 @@ void Checkpoint::resume() {
     throw FileError(name, "is the checkpoint of another job; different: " + what,
                     "Choose another name by --checkpoint FILE, or give up what is in it by --restart");
 
-  double primaries = 0, expected = 0;
+  double work = 0, expected = 0;
   for (auto block = file_.blocks().begin() + 1; block != file_.blocks().end(); ++block) {
     const std::string content = file_.read(*block);
     Reader reader(content);
     const BatchHead head = read_head(reader);
-    primaries += static_cast<double>(head.primaries);
+    work += static_cast<double>(head.work);
     expected = head.expected;
     batches_.push_back({head.first_unit, *block});
   }
@@ -155,7 +155,7 @@ void Checkpoint::resume() {
   if (file_.damaged())
     warn_(name + ": a part of it is damaged or cut off; that part is done again");
   if (batches_.empty()) return;
-  note_(fmt::format("resuming: {} is done, in {} of {}", share(primaries, expected), name,
+  note_(fmt::format("resuming: {} is done, in {} of {}", share(work, expected), name,
                     date_of(path_)));
 }
 
@@ -216,7 +216,9 @@ void Checkpoint::record(std::size_t unit, const mc::UnitTally& tally) {
   put(waiting_, unit);
   put(waiting_, bytes.size());
   waiting_ += bytes;
-  primaries_waiting_ += tally.balance.incident;
+  // With a wanted accuracy nobody knows how many primaries it will take: pixels are counted.
+  work_waiting_ += tally.controls.empty() ? tally.balance.incident
+                                          : static_cast<std::int64_t>(tally.pixels.size());
   if (waiting_.size() < most_waiting && Clock::now() < due_) return;
   const auto begin = Clock::now();
   write();
@@ -230,12 +232,12 @@ bool Checkpoint::write() {
   std::string content;
   content.reserve(waiting_.size() + 24);
   put(content, first_waiting_);
-  put(content, static_cast<std::uint64_t>(primaries_waiting_));
+  put(content, static_cast<std::uint64_t>(work_waiting_));
   put(content, std::bit_cast<std::uint64_t>(expected_));
   content += waiting_;
   // Where it cannot be written these units are done again by a job that resumes; later ones need not.
   waiting_.clear();
-  primaries_waiting_ = 0;
+  work_waiting_ = 0;
   try {
     if (!file_.is_open()) file_.create(path_);
     if (file_.empty()) file_.append(identity_text(identity_));

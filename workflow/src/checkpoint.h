@@ -38,8 +38,8 @@ class Checkpoint : public mc::UnitJournal {
   bool recall(std::size_t unit, mc::UnitTally& tally) override;
   void record(std::size_t unit, const mc::UnitTally& tally) override;
 
-  /// How much work there is in all, in primaries; for messages.
-  void expect(double primaries) { expected_ = primaries; }
+  /// How much work there is in all, in primaries, or in pixels with a wanted accuracy; for messages.
+  void expect(double work) { expected_ = work; }
 
   /// Writes what is not written yet. Whether there is a file now.
   bool keep();
@@ -73,7 +73,7 @@ class Checkpoint : public mc::UnitJournal {
 
   std::string waiting_;                              // records that are not written yet
   std::size_t first_waiting_ = 0;
-  std::int64_t primaries_waiting_ = 0;
+  std::int64_t work_waiting_ = 0;
   Clock::time_point due_;
   bool trouble_ = false;
   bool finished_ = false;

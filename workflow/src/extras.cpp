@@ -2,6 +2,9 @@
 #include "extras.h"
 
 #include <algorithm>
+#include <array>
+#include <functional>
+#include <span>
 
 #include <fmt/format.h>
 
@@ -17,12 +20,80 @@ namespace fs = std::filesystem;
 constexpr int most_trajectories = 100'000;
 constexpr int most_deposit_cells = 1024;
 
-const std::map<std::string, std::vector<std::string>>& surface_quantities() {
-  static const std::map<std::string, std::vector<std::string>> all{
-      {"z_nm", {"z_nm"}},
-      {"normal", {"normal.x", "normal.y", "normal.z"}},
-      {"material", {"material"}}};
+using Quantities = std::map<std::string, std::vector<std::string>>;
+
+const Quantities& surface_quantities() {
+  static const Quantities all{{"z_nm", {"z_nm"}},
+                              {"normal", {"normal.x", "normal.y", "normal.z"}},
+                              {"material", {"material"}}};
   return all;
+}
+
+// How it was simulated; "variance_left" is one channel for each detector.
+constexpr std::array<const char*, 3> simulation_quantities{"electrons", "model", "variance_left"};
+
+bool is_simulation_quantity(const std::string& name) {
+  return std::find(simulation_quantities.begin(), simulation_quantities.end(), name) !=
+         simulation_quantities.end();
+}
+
+void add_once(std::vector<std::string>& names, const std::string& name) {
+  if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+}
+
+std::vector<std::string> surface_channels(const Extras& extras) {
+  std::vector<std::string> names;
+  for (const std::string& wanted : extras.channels)
+    if (!is_simulation_quantity(wanted))
+      for (const std::string& name : surface_quantities().at(wanted)) add_once(names, name);
+  return names;
+}
+
+struct PixelChannel {
+  std::string name;
+  std::function<double(int x, int y)> value;
+};
+
+// Refers to `r`.
+std::vector<PixelChannel> simulation_channels(const Extras& extras, const mc::SimulationResult& r) {
+  std::vector<PixelChannel> out;
+  for (const char* wanted : simulation_quantities) {
+    const std::string name = wanted;
+    if (std::find(extras.channels.begin(), extras.channels.end(), name) == extras.channels.end())
+      continue;
+    if (name == "electrons")
+      out.push_back({name, [&r](int x, int y) { return double(r.pixels(x, y).primaries); }});
+    else if (name == "model")
+      out.push_back({name, [&r](int x, int y) {
+                       const auto& p = r.pixels(x, y);
+                       return p.hits > 0 ? double(static_cast<int>(p.model)) : 0.0;
+                     }});
+    else
+      for (std::size_t d = 0; d < r.detectors.size(); ++d)
+        out.push_back({r.detectors[d].name + "." + name, [&r, d](int x, int y) {
+                         return r.controls.empty() ? 1.0 : r.controls[d](x, y).variance_left;
+                       }});
+  }
+  return out;
+}
+
+std::string model_meanings() {
+  std::string text;
+  for (int i = 0; i < mc::pixel_models; ++i)
+    text += fmt::format("{}{} {}", i == 0 ? "" : ", ", i, mc::name(static_cast<mc::PixelModel>(i)));
+  return text;
+}
+
+// Channels after those that are there, a row at a time.
+void append(ImageRows& image, std::vector<Channel> heads,
+            std::function<void(std::size_t, int, std::span<float>)> read) {
+  const std::size_t before = image.head.channels.size();
+  for (Channel& head : heads) image.head.channels.push_back(std::move(head));
+  image.read = [first = image.read, before, read = std::move(read)](std::size_t channel, int y,
+                                                                    std::span<float> row) {
+    if (channel < before) first(channel, y, row);
+    else read(channel - before, y, row);
+  };
 }
 
 void add_rows(std::string& text, const mc::SimulationResult& result, std::size_t detector,
@@ -45,10 +116,10 @@ fs::path extra_path(const SimulateJob& job, const char* extension) {
 }
 
 void check_extras(const Extras& extras) {
-  for (const std::string& name : extras.surface)
-    if (!surface_quantities().contains(name))
+  for (const std::string& name : extras.channels)
+    if (!surface_quantities().contains(name) && !is_simulation_quantity(name))
       throw UsageError("--channels", fmt::format("there is no '{}'", name),
-                       "Choose among z_nm, normal and material");
+                       "Choose among z_nm, normal, material, electrons, model and variance_left");
   if (extras.deposit_cells < 0 || extras.deposit_cells > most_deposit_cells)
     throw UsageError("--deposit", fmt::format("{} cells are out of range", extras.deposit_cells),
                      "Give 1 to 1024 cells along the longest side");
@@ -70,30 +141,39 @@ std::vector<fs::path> extra_files(const SimulateJob& job) {
   return files;
 }
 
-std::vector<std::string> surface_channels(const Extras& extras) {
-  std::vector<std::string> names;
-  for (const std::string& wanted : extras.surface)
-    for (const std::string& name : surface_quantities().at(wanted))
-      if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+std::vector<std::string> extra_channels(const SimulateJob& job) {
+  std::vector<std::string> names = surface_channels(job.extras);
+  mc::SimulationResult like;
+  like.detectors = job.options.detectors;
+  for (const PixelChannel& c : simulation_channels(job.extras, like)) names.push_back(c.name);
   return names;
 }
 
-void add_surface_channels(const mc::Scene& scene, const SimulateJob& job, ImageRows& image) {
-  const auto names = surface_channels(job.extras);
-  if (names.empty()) return;
-  const Image view = mc::surface_view(scene, job.options.threads);
-  const auto seen = std::make_shared<Image>();
-  for (const std::string& name : names) {
-    const Channel& channel = *view.find(name);
-    image.head.channels.push_back({channel.name, channel.unit, {}});
-    seen->channels.push_back(channel);
+void add_channels(const mc::Scene& scene, const SimulateJob& job, const mc::SimulationResult& result,
+                  ImageRows& image) {
+  if (const auto names = surface_channels(job.extras); !names.empty()) {
+    const Image view = mc::surface_view(scene, job.options.threads);
+    const auto seen = std::make_shared<Image>();
+    for (const std::string& name : names) seen->channels.push_back(*view.find(name));
+    std::vector<Channel> heads;
+    for (const Channel& c : seen->channels) heads.push_back({c.name, c.unit, {}});
+    append(image, std::move(heads),
+           [seen, rows = rows_of(*seen).read](std::size_t channel, int y, std::span<float> row) {
+             rows(channel, y, row);
+           });
   }
-  const std::size_t before = image.head.channels.size() - names.size();
-  image.read = [simulated = image.read, before, seen, extra = rows_of(*seen).read](
-                   std::size_t channel, int y, std::span<float> row) {
-    if (channel < before) simulated(channel, y, row);
-    else extra(channel - before, y, row);
-  };
+  auto channels = simulation_channels(job.extras, result);
+  if (channels.empty()) return;
+  std::vector<Channel> heads;
+  for (const PixelChannel& c : channels) {
+    heads.push_back({c.name, "1", {}});
+    if (c.name == "model") image.head.metadata["model"] = model_meanings();
+  }
+  append(image, std::move(heads),
+         [channels = std::move(channels)](std::size_t channel, int y, std::span<float> row) {
+           for (std::size_t x = 0; x < row.size(); ++x)
+             row[x] = static_cast<float>(channels[channel].value(static_cast<int>(x), y));
+         });
 }
 
 std::string spectra_text(const mc::SimulationResult& result) {

@@ -22,12 +22,13 @@ std::filesystem::path extra_path(const SimulateJob& job, const char* extension);
 /// The files besides the image that a job writes.
 std::vector<std::filesystem::path> extra_files(const SimulateJob& job);
 
-/// Adds the channels of the surface that are wanted. What materials' numbers mean goes into the
-/// metadata.
-void add_surface_channels(const mc::Scene& scene, const SimulateJob& job, ImageRows& image);
+/// Adds the channels that are wanted besides the detectors'. What the numbers of materials and models
+/// mean goes into the metadata. Refers to `result`.
+void add_channels(const mc::Scene& scene, const SimulateJob& job, const mc::SimulationResult& result,
+                  ImageRows& image);
 
-/// The channels that `add_surface_channels` adds.
-std::vector<std::string> surface_channels(const Extras& extras);
+/// The channels that `add_channels` adds.
+std::vector<std::string> extra_channels(const SimulateJob& job);
 
 /// Spectra as CSV: detector, quantity, unit, from, to, yield, standard_error. Yields are counts per
 /// primary in that bin, with the detector's efficiency.

@@ -79,6 +79,7 @@ Identity identity_of(const SimulateJob& job, const std::map<std::string, std::st
   identity[geometry_key] = geometry(job.scene.specimen);
   identity["spectra"] = job.options.spectra ? "yes" : "no";
   identity["tile_pixels"] = std::to_string(job.options.tile_pixels);
+  identity["planar_control"] = job.options.planar_control ? "yes" : "no";
   identity["instruction set"] = instruction_set();
   identity["ray tracer"] = mc::ray_tracer_version();
   identity[program_key] = program();

@@ -124,17 +124,22 @@ Metadata provenance(const SimulateJob& job, const mc::Scan& scan,
     out["beam.current_pa"] = format_exact(*job.scene.current_pa);
     out["beam.dwell_us"] = format_exact(*job.scene.dwell_us);
     out["dose"] = format_exact(job.options.dose);
+  } else if (job.options.accuracy > 0) {
+    out["accuracy"] = format_exact(job.options.accuracy);
+    out["accuracy_floor"] = format_exact(job.options.accuracy_floor);
   } else {
     out["electrons"] = std::to_string(job.options.electrons);
   }
+  out["method"] = mc::name(job.options.method);
   // Where energy is watched tracks are followed to their end, with other random numbers.
   if (job.extras.deposit_cells > 0) out["deposit_cells"] = std::to_string(job.extras.deposit_cells);
   out["seed"] = std::to_string(job.options.seed);
   return out;
 }
 
-Metadata outcome(const mc::SimulationResult& result, const std::vector<std::string>& warnings) {
+Metadata outcome(const SimulateSummary& summary) {
   Metadata out;
+  const mc::SimulationResult& result = summary.result;
   const mc::Balance& b = result.balance;
   out["balance.incident"] = std::to_string(b.incident);
   out["balance.missed"] = std::to_string(b.missed);
@@ -144,9 +149,16 @@ Metadata outcome(const mc::SimulationResult& result, const std::vector<std::stri
   out["balance.transmitted"] = std::to_string(b.transmitted);
   out["balance.absorbed"] = std::to_string(b.absorbed);
   out["balance.lost"] = std::to_string(b.total_lost());
+  if (result.library_cascades > 0) {
+    out["library.cascades"] = std::to_string(result.library_cascades);
+    out["balance.handed_over"] = std::to_string(b.handed_over);
+  }
+  for (int i = 0; i < mc::pixel_models; ++i)
+    if (const auto n = summary.statistics.models[static_cast<std::size_t>(i)])
+      out[fmt::format("pixels.{}", mc::name(static_cast<mc::PixelModel>(i)))] = std::to_string(n);
   if (!result.complete) out["partial"] = "true";
   int number = 0;
-  for (const std::string& warning : warnings) out[fmt::format("warning.{}", ++number)] = warning;
+  for (const std::string& warning : summary.warnings) out[fmt::format("warning.{}", ++number)] = warning;
   return out;
 }
 

@@ -22,8 +22,8 @@ std::vector<InputHash> hash_inputs(const std::vector<std::filesystem::path>& inp
 std::map<std::string, std::string> provenance(const SimulateJob& job, const mc::Scan& scan,
                                               const std::vector<InputHash>& inputs);
 
-/// What a finished simulation adds: its balance, warnings and, when cancelled, that it is partial.
-std::map<std::string, std::string> outcome(const mc::SimulationResult& result,
-                                           const std::vector<std::string>& warnings);
+/// What a finished simulation adds: its balance, libraries, how pixels were simulated, warnings and,
+/// when cancelled, that it is partial.
+std::map<std::string, std::string> outcome(const SimulateSummary& summary);
 
 }  // namespace surf::workflow

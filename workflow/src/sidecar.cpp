@@ -51,6 +51,7 @@ Json balance_json(const mc::Balance& b) {
             {"bse", b.bse},
             {"transmitted", b.transmitted},
             {"absorbed", b.absorbed},
+            {"handed_over", b.handed_over},
             {"lost", lost}}},
           {"energy_ev",
            {{"incident", b.incident_energy.ev()},
@@ -66,6 +67,31 @@ Json scene_json(const mc::SceneSummary& s) {
           {"memory_bytes", s.memory_bytes},
           {"grid_cell_nm", s.grid_cell_nm},
           {"build_seconds", s.build_seconds}};
+}
+
+Json method_json(const SimulateJob& job, const SimulateSummary& s) {
+  Json pixels = Json::object();
+  for (int i = 0; i < mc::pixel_models; ++i)
+    pixels[mc::name(static_cast<mc::PixelModel>(i))] =
+        s.statistics.models[static_cast<std::size_t>(i)];
+  Json json = {{"name", mc::name(job.options.method)},
+               {"reason", s.choice.reason},
+               {"pixels", pixels},
+               {"electrons_per_pixel",
+                {{"mean", s.statistics.mean_electrons},
+                 {"fewest", s.statistics.fewest_electrons},
+                 {"most", s.statistics.most_electrons}}}};
+  if (s.result.library_cascades > 0)
+    json["library"] = {{"cascades", s.result.library_cascades},
+                       {"pages_from_cache", s.pages_loaded},
+                       {"pages_made", s.pages_made},
+                       {"seconds", s.result.library_seconds}};
+  if (s.result.accuracy > 0)
+    json["accuracy"] = {{"asked", s.result.accuracy},
+                        {"pixels_missed", s.statistics.missed},
+                        {"worst", s.statistics.worst}};
+  if (job.seconds > 0) json["seconds_allowed"] = job.seconds;
+  return json;
 }
 
 Json files_json(const RunRecord& record, const char* which) {
@@ -111,6 +137,7 @@ std::string sidecar_text(const SimulateJob& job, const SimulateSummary& summary,
   json["rays"] = b.rays;
   json["steps"] = b.steps;
   json["peak_memory_bytes"] = peak_memory_bytes();
+  json["method"] = method_json(job, summary);
   json["scene"] = scene_json(summary.scene);
   json["balance"] = balance_json(b);
   json["physics"] = Json::object();

@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
+#include <cmath>
 #include <memory>
 
 #include "checkpoint.h"
@@ -16,7 +18,10 @@
 #include "surf/io/files.h"
 #include "surf/io/image_file.h"
 #include "surf/io/volume_file.h"
+#include "surf/mc/choose_method.h"
 #include "surf/mc/scene.h"
+#include "surf/workflow/libraries.h"
+#include "time_budget.h"
 #include "warnings.h"
 
 namespace surf::workflow {
@@ -56,6 +61,14 @@ SimulateJob complete(const SimulateJob& job) {
                        "Leave out --electrons, or --current and --dwell");
     out.options.dose = *s.current_pa * *s.dwell_us * electrons_per_pa_us;
   }
+  if (s.accuracy) out.options.accuracy = *s.accuracy;
+  if (s.accuracy_floor) out.options.accuracy_floor = *s.accuracy_floor;
+  if (job.seconds < 0 || !std::isfinite(job.seconds))
+    throw UsageError("--time", "it must be above zero", "Write for example 30s");
+  if (job.seconds > 0) out.options.accuracy = coarse_accuracy;
+  if (out.options.accuracy > 0 && s.electrons)
+    throw UsageError("--electrons", "a wanted accuracy gives the number of primaries",
+                     "Leave out one of the two");
   if (out.options.scratch_folder.empty() && !job.outputs.empty()) {
     const fs::path folder = job.outputs.front().parent_path();
     out.options.scratch_folder = folder.empty() ? "." : folder.string();
@@ -74,7 +87,7 @@ Image image_like_the_result(const SimulateJob& job) {
   mc::Scan scan;
   scan.width = scan.height = 1;
   Image image = mc::make_image(result, scan);
-  for (const std::string& name : surface_channels(job.extras))
+  for (const std::string& name : extra_channels(job))
     image.channels.push_back({name, "1", Grid<float>(1, 1)});
   return image;
 }
@@ -140,12 +153,97 @@ std::unique_ptr<Checkpoint> make_checkpoint(const SimulateJob& job,
                                       warn ? warn : say);
 }
 
+// 0.013 to "1.3%", as the command line takes it.
+std::string option_text(double accuracy) {
+  std::string text = format_share(accuracy);
+  std::erase(text, ' ');
+  return text;
+}
+
+// The cache's libraries, with the job's own progress.
+class JobLibraries : public mc::LibrarySource {
+ public:
+  JobLibraries(const std::filesystem::path& folder, LibraryCallback progress, NoteCallback note)
+      : kept_(folder), progress_(std::move(progress)), note_(std::move(note)) {}
+
+  std::shared_ptr<const mc::CascadeLibrary> library(const mc::CascadeSettings& settings,
+                                                    std::size_t cascades, int threads,
+                                                    const ProgressCallback&,
+                                                    const CancelToken* cancel) override {
+    auto library = kept_.library(settings, cascades, threads, progress_, cancel);
+    for (const std::string& text : kept_.take_notes())
+      if (note_) note_(text);
+    return library;
+  }
+
+  CachedLibraries::Pages pages() const { return kept_.pages(); }
+
+ private:
+  CachedLibraries kept_;
+  LibraryCallback progress_;
+  NoteCallback note_;
+};
+
+struct Simulation {
+  mc::SimulationResult result;
+  bool final = false;      ///< whether it is what was asked for, not a way to it
+};
+
+double seconds_since(std::chrono::system_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::system_clock::now() - start).count();
+}
+
+// For a time budget: simulates coarsely and sets the accuracy that fits. The result stands where
+// there is nothing better, or where it was cancelled.
+Simulation simulate_coarsely(SimulateJob& job, const mc::Scene& scene, JobLibraries& libraries,
+                             const mc::MethodChoice& choice, const RunRecord& record,
+                             const ProgressCallback& progress, const CancelToken* cancel,
+                             const NoteCallback& note) {
+  Simulation coarse;
+  coarse.result = mc::simulate(scene, job.options, progress, cancel, {}, nullptr, &libraries);
+  const auto say = [&](const std::string& text) {
+    if (note) note(text);
+  };
+  coarse.final = !coarse.result.complete;
+  if (coarse.final) return coarse;
+  const double spent = seconds_since(record.start);
+  TimeBudget budget;
+  budget.seconds_left = job.seconds - spent;
+  budget.materials = scene.materials().size();
+  budget.most_library_cascades = mc::MethodLimits{}.library_bytes /
+                                 (choice.library_bytes / static_cast<double>(choice.cascades));
+  const auto pages = libraries.pages();
+  budget.cascades_made = (pages.made > 0 ? pages.made : pages.loaded) *
+                         mc::CascadeLibrary::page_cascades;
+  job.options.accuracy = accuracy_that_fits(coarse.result, budget);
+  if (job.options.accuracy < coarse_accuracy) {
+    say(fmt::format("{} accuracy fits in {:g} s; --accuracy {} repeats this exactly",
+                    format_share(job.options.accuracy), job.seconds,
+                    option_text(job.options.accuracy)));
+    return coarse;
+  }
+  const std::string again = fmt::format("--accuracy {} repeats this exactly",
+                                        option_text(coarse_accuracy));
+  if (spent > job.seconds)
+    say(fmt::format("{:g} s are too short: even {} accuracy took {:.2g} s; {}", job.seconds,
+                    format_share(coarse_accuracy), spent, again));
+  else
+    say(fmt::format("no better than {} accuracy fits in {:g} s; {}", format_share(coarse_accuracy),
+                    job.seconds, again));
+  coarse.final = true;
+  return coarse;
+}
+
 // Before anything is written: a full disk should not take the work as well.
 void keep_interrupted(const SimulateJob& job, Checkpoint* checkpoint, const NoteCallback& note) {
   if (checkpoint && checkpoint->keep()) {
     if (note)
-      note(fmt::format("what is done is kept in {}; the same command goes on from there",
-                       checkpoint->path().string()));
+      note(fmt::format("what is done is kept in {}; the same command{} goes on from there",
+                       checkpoint->path().string(),
+                       job.seconds > 0
+                           ? fmt::format(" with --accuracy {} in place of --time",
+                                         option_text(job.options.accuracy))
+                           : ""));
   } else if (note && job.extras.deposit_cells > 0) {
     note("deposited energy is not kept on the way: the same command begins anew");
   }
@@ -155,10 +253,10 @@ ImageRows labelled_image(const SimulateJob& job, const mc::Scene& scene,
                          const SimulateSummary& summary,
                          const std::map<std::string, std::string>& settings) {
   ImageRows image = mc::make_image_rows(summary.result, summary.scan);
-  add_surface_channels(scene, job, image);
+  add_channels(scene, job, summary.result, image);
   auto& metadata = image.head.metadata;
   for (const auto& [key, value] : settings) metadata[key] = value;
-  for (const auto& [key, value] : outcome(summary.result, summary.warnings)) metadata[key] = value;
+  for (const auto& [key, value] : outcome(summary)) metadata[key] = value;
   return image;
 }
 
@@ -184,12 +282,12 @@ void write_all(const SimulateJob& job, const ImageRows& image, SimulateSummary& 
 
 SimulateSummary run(const SimulateJob& asked, const ProgressCallback& progress,
                     const CancelToken* cancel, const WarningCallback& warn,
-                    const NoteCallback& tell) {
+                    const NoteCallback& tell, const LibraryCallback& making) {
   RunRecord record;
   record.start = std::chrono::system_clock::now();
   check_options(asked.options);
   check_extras(asked.extras);
-  const SimulateJob job = complete(asked);
+  SimulateJob job = complete(asked);
   const io::SceneFile& s = job.scene;
 
   check_outputs(job);
@@ -207,6 +305,13 @@ SimulateSummary run(const SimulateJob& asked, const ProgressCallback& progress,
     }
   };
   note(warn_before(job, summary.scan));
+  summary.choice = mc::choose_method(scene, job.options, s.method, {job.extras.deposit_cells > 0});
+  job.options.method = summary.choice.method;
+  JobLibraries libraries(job.cache, making, tell);
+  Simulation simulation;
+  if (job.seconds > 0)
+    simulation = simulate_coarsely(job, scene, libraries, summary.choice, record, progress, cancel,
+                                   tell);
   const auto settings = provenance(job, summary.scan, record.inputs);
 
   std::optional<Deposits> deposits;
@@ -216,14 +321,21 @@ SimulateSummary run(const SimulateJob& asked, const ProgressCallback& progress,
     observers = [&](int thread) { return deposits->of_thread(thread); };
   }
   tell_of_scratch(job, summary.scan, tell);
-  const auto checkpoint = make_checkpoint(job, settings, tell, warn);
+  const auto checkpoint =
+      simulation.final ? nullptr : make_checkpoint(job, settings, tell, warn);
   const auto show = [&](double done, double total) {
     if (checkpoint) checkpoint->expect(total);
     if (progress) progress(done, total);
   };
-  summary.result = mc::simulate(scene, job.options, show, cancel, observers, checkpoint.get());
+  if (!simulation.final)
+    simulation.result = mc::simulate(scene, job.options, show, cancel, observers, checkpoint.get(),
+                                     &libraries);
+  summary.result = std::move(simulation.result);
+  summary.pages_loaded = libraries.pages().loaded;
+  summary.pages_made = libraries.pages().made;
+  summary.statistics = mc::summarize(summary.result);
   if (!summary.result.complete) keep_interrupted(job, checkpoint.get(), tell);
-  note(warn_after(summary.result));
+  note(warn_after(summary.result, summary.statistics));
 
   const ImageRows image = labelled_image(job, scene, summary, settings);
   if (deposits) {

@@ -97,7 +97,8 @@ std::vector<std::string> warn_before(const SimulateJob& job, const mc::Scan& sca
   return out;
 }
 
-std::vector<std::string> warn_after(const mc::SimulationResult& result) {
+std::vector<std::string> warn_after(const mc::SimulationResult& result,
+                                    const mc::ResultSummary& summary) {
   std::vector<std::string> out;
   const mc::Balance& b = result.balance;
   if (b.incident > 0 && b.missed == b.incident)
@@ -112,6 +113,12 @@ std::vector<std::string> warn_after(const mc::SimulationResult& result) {
     out.push_back(fmt::format("{} of {} electrons were given up ({}); is the mesh sound?",
                               b.total_lost(), b.incident + b.generated, causes));
   }
+  if (result.complete && summary.missed > 0)
+    out.push_back(fmt::format(
+        "{} of {} pixels ({:.2g} %) did not reach the accuracy of {}; the worst standard error is {:.2g} "
+        "times what was asked for",
+        summary.missed, summary.seen, 100.0 * double(summary.missed) / double(summary.seen),
+        format_share(result.accuracy), summary.worst));
   return out;
 }
 

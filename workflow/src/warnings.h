@@ -12,7 +12,8 @@ namespace surf::workflow {
 /// specimen, numbers that cannot give what was asked.
 std::vector<std::string> warn_before(const SimulateJob& job, const mc::Scan& scan);
 
-/// What a result shows: nothing hit, lost electrons.
-std::vector<std::string> warn_after(const mc::SimulationResult& result);
+/// What a result shows: nothing hit, lost electrons, an accuracy that was not reached.
+std::vector<std::string> warn_after(const mc::SimulationResult& result,
+                                    const mc::ResultSummary& summary);
 
 }  // namespace surf::workflow

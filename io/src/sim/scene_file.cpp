@@ -11,6 +11,7 @@
 #include "sim/scene_parts.h"
 #include "sim/toml_table.h"
 #include "surf/io/files.h"
+#include "surf/mc/choose_method.h"
 
 namespace surf::io {
 namespace {
@@ -94,8 +95,28 @@ ScanRequest read_scan(const TomlTable& table) {
   return scan;
 }
 
+void read_accuracy(const TomlTable& table, SceneFile& scene) {
+  scene.accuracy = table.share("accuracy");
+  scene.accuracy_floor = table.number("accuracy_floor");
+  if (scene.accuracy && !(*scene.accuracy >= 1e-4 && *scene.accuracy <= 1))
+    throw UsageError(table.place("accuracy"), "it is outside 0.01% to 100%",
+                     "Write for example \"1%\"");
+  if (scene.accuracy && scene.electrons)
+    throw UsageError(table.place("accuracy"), "electrons are given as well",
+                     "Leave one of the two out");
+  if (scene.accuracy_floor && !scene.accuracy)
+    throw UsageError(table.place("accuracy_floor"), "there is no accuracy",
+                     "Add accuracy = \"1%\", or leave it out");
+  if (scene.accuracy_floor && !(*scene.accuracy_floor >= 0))
+    throw UsageError(table.place("accuracy_floor"), "it is negative",
+                     "Give electrons per primary, such as 0.002, or 0");
+}
+
 void read_simulation(const TomlTable& table, SceneFile& scene) {
-  table.allow({"electrons", "seed", "physics", "cutoff", "detectors"});
+  table.allow({"electrons", "method", "accuracy", "accuracy_floor", "seed", "physics", "cutoff",
+               "detectors"});
+  if (const auto method = table.text("method"))
+    scene.method = mc::parse_method(*method, table.place("method"));
   if (const auto electrons = table.integer("electrons")) {
     if (*electrons < 1) {
       throw UsageError(table.place("electrons"), fmt::format("it is {}", *electrons),
@@ -103,6 +124,7 @@ void read_simulation(const TomlTable& table, SceneFile& scene) {
     }
     scene.electrons = electrons;
   }
+  read_accuracy(table, scene);
   if (const auto seed = table.integer("seed")) {
     if (*seed < 0) {
       throw UsageError(table.place("seed"), "it is negative", "Give a whole number, 0 or above");

@@ -40,6 +40,7 @@ class TomlTable {
   std::optional<double> angle_deg(std::string_view key) const;
   std::optional<double> current_pa(std::string_view key) const;
   std::optional<double> time_us(std::string_view key) const;
+  std::optional<double> share(std::string_view key) const;
   /// An array of texts, or one text; none where the key is missing.
   std::vector<std::string> texts(std::string_view key) const;
   /// An array of lengths, or a text of lengths separated by `separators`.

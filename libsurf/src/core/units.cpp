@@ -179,6 +179,33 @@ double parse_duration_s(std::string_view text, std::string_view subject) {
                 duration_kind);
 }
 
+double parse_share(std::string_view text, std::string_view subject) {
+  const bool percent = text.ends_with('%');
+  std::string number(text.substr(0, text.size() - (percent ? 1 : 0)));
+  while (number.ends_with(' ')) number.pop_back();
+  // Moving the point in the text, not the number: 1.3% is to be the same as 0.013.
+  if (percent && number.find_first_of("eE") == std::string::npos) number += "e-2";
+  double share = 0;
+  const auto [end, error] = std::from_chars(number.data(), number.data() + number.size(), share);
+  if (error != std::errc{} || end != number.data() + number.size() || !std::isfinite(share) ||
+      !(share > 0))
+    throw UsageError(std::string(subject), fmt::format("'{}' is not a share above 0", text),
+                     "Write for example 1% or 0.01");
+  return share;
+}
+
+std::string format_share(double share) {
+  std::string digits = fmt::format("{}", 100 * share);
+  for (int precision = 1; precision <= 17; ++precision) {
+    const std::string shorter = fmt::format("{:.{}g}", 100 * share, precision);
+    if (shorter.find('e') != std::string::npos) continue;
+    if (parse_share(shorter + "%", "share") != share) continue;
+    digits = shorter;
+    break;
+  }
+  return digits + " %";
+}
+
 double unit_length_nm(std::string_view unit, std::string_view subject) {
   constexpr Kind kind{"length", "", "Give one of nm, um, mm, m, pm, A, in"};
   const Unit& found = find_unit(length_units, unit, subject, kind);

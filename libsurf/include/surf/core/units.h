@@ -29,6 +29,12 @@ double parse_time_us(std::string_view text, std::string_view subject);
 /// "90", "90s", "5min", "2h", "1d", "500ms" to seconds, for waiting. Bare numbers are seconds.
 double parse_duration_s(std::string_view text, std::string_view subject);
 
+/// "1%" or "0.01" to 0.01, the same number for both. Must be finite and above 0.
+double parse_share(std::string_view text, std::string_view subject);
+
+/// 0.013 to "1.3 %", in the fewest digits that `parse_share` reads back as it was.
+std::string format_share(double share);
+
 /// The nm in one `unit` ("nm", "um", "mm", "m", "pm", "A", "in"). Throws UsageError if unknown.
 double unit_length_nm(std::string_view unit, std::string_view subject);
 

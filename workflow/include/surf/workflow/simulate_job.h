@@ -12,6 +12,8 @@
 #include "surf/core/image.h"
 #include "surf/core/progress.h"
 #include "surf/io/sim/scene_file.h"
+#include "surf/mc/choose_method.h"
+#include "surf/mc/result_summary.h"
 #include "surf/mc/simulate.h"
 
 namespace surf::workflow {
@@ -27,8 +29,10 @@ mc::Scan resolve_scan(const io::ScanRequest& request, const Box& specimen_extent
 /// What is wanted besides the image. File names are made from the first output's: for out.exr
 /// out.spectra.csv, out.deposit.vti, out.tracks.vtp and out.tracks.png.
 struct Extras {
-  /// Channels of what the beam sees: "z_nm", "normal" (three channels), "material".
-  std::vector<std::string> surface;
+  /// Channels besides those of the detectors. What the beam sees: "z_nm", "normal" (three channels),
+  /// "material". How it was simulated: "electrons" (per pixel, whose counts were kept), "model" (the
+  /// number of the mc::PixelModel), "variance_left" (one channel for each detector).
+  std::vector<std::string> channels;
   int deposit_cells = 0;        ///< deposited energy on a grid, this many cells along its longest side
   int trajectories = 0;         ///< tracks of this many primaries, at most 100000
   /// Where in the scan plane they land, nm; absent: in the middle of the scan.
@@ -50,7 +54,12 @@ struct CheckpointOptions {
 /// One simulation from specimen to files.
 struct SimulateJob {
   io::SceneFile scene;                            ///< with the command line's overrides applied
-  mc::SimulationOptions options;                  ///< its detectors come before the scene's
+  /// Its detectors come before the scene's. The method is set as the scene says, or chosen
+  /// (mc::choose_method); the scene's accuracy goes before the one here.
+  mc::SimulationOptions options;
+  /// Above 0: the wall time, s, that the job may take. A coarse simulation tells which accuracy fits.
+  double seconds = 0;
+  std::filesystem::path cache;                    ///< where libraries are kept; empty: nowhere
   Extras extras;
   CheckpointOptions checkpoint;
   std::vector<std::filesystem::path> outputs;     ///< formats by extension; at least one
@@ -60,6 +69,9 @@ struct SimulateJob {
 
 struct SimulateSummary {
   mc::SimulationResult result;
+  mc::ResultSummary statistics;                   ///< of the result
+  mc::MethodChoice choice;
+  std::size_t pages_loaded = 0, pages_made = 0;   ///< of libraries, from the cache and not
   mc::Scan scan;
   mc::SceneSummary scene;
   std::vector<std::string> warnings;
@@ -73,13 +85,16 @@ using WarningCallback = std::function<void(const std::string&)>;
 /// Is told what is good to know and no mistake: that a job is resumed, where its checkpoint is.
 using NoteCallback = std::function<void(const std::string&)>;
 
+/// Is told of progress in getting libraries, in cascades.
+using LibraryCallback = ProgressCallback;
+
 /// Checks everything that can be wrong before spending time (targets writable, channel known), then
 /// builds the scene, simulates, and writes every output and its sidecar `NAME.run.json`. When
 /// cancelled the files are written with `partial = true` in their metadata, and a checkpoint is left
 /// for the same job to go on from; it is deleted when the job is done. One that cannot be gone on from
-/// is a FileError.
+/// is a FileError. Progress is in primaries, with a wanted accuracy in pixels.
 SimulateSummary run(const SimulateJob& job, const ProgressCallback& progress = {},
                     const CancelToken* cancel = nullptr, const WarningCallback& warn = {},
-                    const NoteCallback& note = {});
+                    const NoteCallback& note = {}, const LibraryCallback& libraries = {});
 
 }  // namespace surf::workflow

@@ -11,6 +11,7 @@
 #include "surf/mc/beam.h"
 #include "surf/mc/detector.h"
 #include "surf/mc/physics.h"
+#include "surf/mc/simulate.h"
 #include "surf/mc/specimen.h"
 
 namespace surf::io {
@@ -31,7 +32,9 @@ struct SceneFile {
   mc::Beam beam;
   ScanRequest scan;
   mc::Physics physics;
-  std::optional<std::int64_t> electrons;
+  std::optional<std::int64_t> electrons;       ///< this, or `accuracy`, or neither
+  std::optional<mc::Method> method;            ///< absent: semsurf chooses
+  std::optional<double> accuracy, accuracy_floor;   ///< see mc::SimulationOptions
   std::optional<std::uint64_t> seed;
   std::optional<double> current_pa, dwell_us;  ///< of the probe; both or none make a dose
   std::vector<mc::Detector> detectors;         ///< besides SE and BSE
@@ -54,6 +57,8 @@ struct SceneFile {
 ///                                # region = "-96,-96,96,96" or [-96, -96, 96, 96]
 ///     [simulation]
 ///     electrons = 200            # per pixel; seed = 1, physics = "elastic=mott", cutoff = "5eV"
+///                                # or, instead of electrons: accuracy = "1%" (or 0.01), with
+///                                # accuracy_floor = 0.002; method = "auto" | "direct" | "replay"
 ///     detectors = ["SE1", "quadrants", "loss:energy=900eV.."]   # see mc::parse_detectors
 ///     [substrate]
 ///     material = "Si"            # z = 0: the height of its top

@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "simulate_summary.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <string>
+
+#include "surf/core/parallel.h"
+#include "surf/core/units.h"
+#include "terminal.h"
+
+namespace surf::cli {
+namespace {
+
+void print_line(const std::string& label, const std::string& text) {
+  fmt::print("{:<10} {}\n", label, text);
+}
+
+std::string percent(double part, double whole) {
+  const double p = whole > 0 ? 100 * part / whole : 0;
+  return p > 0 && p < 1 ? "< 1 %" : fmt::format("{:.0f} %", p);
+}
+
+void print_image(const workflow::SimulateSummary& s) {
+  const mc::Scan& scan = s.scan;
+  const std::string pixel = scan.pixel_x_nm == scan.pixel_y_nm
+                                ? format_length(scan.pixel_x_nm)
+                                : format_length(scan.pixel_x_nm) + " x " +
+                                      format_length(scan.pixel_y_nm);
+  print_line("image", fmt::format("{} x {} pixels of {}, {} x {}{}", scan.width, scan.height, pixel,
+                                  format_length(scan.width * scan.pixel_x_nm),
+                                  format_length(scan.height * scan.pixel_y_nm),
+                                  s.result.complete ? "" : " (partial)"));
+}
+
+void print_yields(const workflow::SimulateSummary& s) {
+  std::size_t width = 10;
+  for (const mc::Detector& d : s.result.detectors) width = std::max(width, d.name.size());
+  for (std::size_t d = 0; d < s.result.detectors.size(); ++d) {
+    const mc::Estimate& y = s.statistics.yields[d];
+    fmt::print("{:<{}} {:.4f} ± {:.4f}{}\n", s.result.detectors[d].name, width, y.mean,
+               y.standard_error,
+               d == 0 ? fmt::format(" per primary, mean over {} pixels", s.statistics.seen) : "");
+  }
+}
+
+void print_library(const workflow::SimulateSummary& s) {
+  if (s.result.library_cascades == 0) return;
+  const std::string from =
+      s.pages_made == 0 ? "from the cache"
+      : s.pages_loaded == 0
+          ? "made"
+          : fmt::format("{} from the cache, the rest made",
+                        percent(double(s.pages_loaded), double(s.pages_loaded + s.pages_made)));
+  print_line("library", fmt::format("{} cascades of each material, {} in {:.1f} s",
+                                    s.result.library_cascades, from, s.result.library_seconds));
+}
+
+// Which share of the pixels that see the specimen was done how.
+void print_models(const workflow::SimulateSummary& s) {
+  const mc::ResultSummary& r = s.statistics;
+  if (s.result.accuracy <= 0 || r.seen == 0) return;
+  std::string text;
+  for (const auto& [model, words] :
+       {std::pair{mc::PixelModel::plane, "proved planes"},
+        std::pair{mc::PixelModel::difference, "as differences to planes"},
+        std::pair{mc::PixelModel::replay, "by replay alone"}}) {
+    const auto n = r.models[static_cast<std::size_t>(model)];
+    if (n > 0) text += fmt::format("{}{} {}", text.empty() ? "" : ", ",
+                                   percent(double(n), double(r.seen)), words);
+  }
+  print_line("pixels", text);
+}
+
+void print_electrons(const workflow::SimulateSummary& s) {
+  const mc::ResultSummary& r = s.statistics;
+  if (s.result.dose > 0)
+    print_line("dose", fmt::format("{:.4g} primaries per pixel on average", s.result.dose));
+  if (s.result.accuracy <= 0) return;
+  print_line("electrons", fmt::format("{:.3g} per pixel on average, {} to {}", r.mean_electrons,
+                                      r.fewest_electrons, r.most_electrons));
+  print_line("accuracy",
+             r.missed == 0
+                 ? fmt::format("{} reached in every pixel", format_share(s.result.accuracy))
+                 : fmt::format("{} not reached in {} of {} pixels", format_share(s.result.accuracy),
+                               r.missed, r.seen));
+}
+
+void print_speed(const workflow::SimulateJob& job, const workflow::SimulateSummary& s) {
+  const double recalled = double(s.result.recalled);
+  const double primaries = double(s.result.balance.incident) - recalled;
+  const double seconds = s.result.seconds;
+  print_line("primaries",
+             fmt::format("{}{} in {:.1f} s, {} per second on {} threads",
+                         recalled > 0 ? format_count(recalled) + " done before, " : "",
+                         format_count(primaries), seconds,
+                         format_count(seconds > 0 ? primaries / seconds : 0),
+                         resolve_threads(job.options.threads)));
+}
+
+}  // namespace
+
+void print_summary(const workflow::SimulateJob& job, const workflow::SimulateSummary& s) {
+  print_image(s);
+  print_yields(s);
+  print_line("method", fmt::format("{}: {}", mc::name(s.choice.method), s.choice.reason));
+  print_library(s);
+  print_models(s);
+  print_electrons(s);
+  print_speed(job, s);
+  std::string label = "written";
+  for (const auto& path : s.written) {
+    print_line(label, path.string());
+    label.clear();
+  }
+}
+
+}  // namespace surf::cli
