@@ -75,16 +75,6 @@ std::uint64_t parse_seed(std::string_view text, std::string_view subject) {
   return value;
 }
 
-double parse_share(std::string_view text, std::string_view subject) {
-  const bool percent = text.ends_with('%');
-  double value = 0;
-  if (!read_all(text.substr(0, text.size() - percent), value) || !std::isfinite(value) ||
-      !(value > 0))
-    throw UsageError(std::string(subject), fmt::format("'{}' is not a share", text),
-                     "Write 1% or 0.01");
-  return percent ? value / 100 : value;
-}
-
 std::pair<int, int> parse_size(std::string_view text, std::string_view subject) {
   constexpr std::int64_t most = std::numeric_limits<int>::max();
   const auto parts = split(text, "xX");

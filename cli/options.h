@@ -21,9 +21,6 @@ std::int64_t parse_whole(std::string_view text, std::string_view subject, std::i
 /// A seed: any unsigned 64-bit number.
 std::uint64_t parse_seed(std::string_view text, std::string_view subject);
 
-/// "1%" or "0.01" to 0.01: a finite number above 0.
-double parse_share(std::string_view text, std::string_view subject);
-
 /// "256x192", or "256" for a square.
 std::pair<int, int> parse_size(std::string_view text, std::string_view subject);
 

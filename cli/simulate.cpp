@@ -65,8 +65,8 @@ void refuse_two_budgets(const SimulateOptions& o) {
         std::pair{o.scene.current || o.scene.dwell, "--current and --dwell"}}) {
     if (!given) continue;
     if (first)
-      throw UsageError(first, fmt::format("{} already sets how many primaries there are", name),
-                       "Leave out one of the two");
+      throw UsageError(first, fmt::format("with {} there are two ways to say how much is simulated", name),
+                       fmt::format("Leave out {}, or {}", first, name));
     first = name;
   }
 }

@@ -78,7 +78,7 @@ void print_electrons(const workflow::SimulateSummary& s) {
   if (s.result.dose > 0)
     print_line("dose", fmt::format("{:.4g} primaries per pixel on average", s.result.dose));
   if (s.result.accuracy <= 0) return;
-  print_line("electrons", fmt::format("{:.3g} per pixel on average, {} to {}", r.mean_electrons,
+  print_line("electrons", fmt::format("{:.0f} per pixel on average, {} to {}", r.mean_electrons,
                                       r.fewest_electrons, r.most_electrons));
   print_line("accuracy",
              r.missed == 0

@@ -12,6 +12,7 @@
 #include "cascade_check.h"
 #include "cascade_format.h"
 #include "cascade_recorder.h"
+#include "cascade_sample.h"
 #include "detection.h"
 #include "surf/core/error.h"
 #include "surf/core/parallel.h"
@@ -212,6 +213,22 @@ void survey(const NodeView& view, bool primary, CascadeStatistics& out, double& 
 }
 
 }  // namespace
+
+CascadeSample sample_cascades(const CascadeSettings& settings) {
+  constexpr std::size_t fewest = 4, enough_words = (std::size_t{1} << 20) / 8;
+  const CascadeLibrary library(settings);
+  Maker maker(library);
+  CascadePage page;
+  std::size_t made = 0;
+  while (made < fewest || (page.words.size() < enough_words && made < CascadeLibrary::page_cascades))
+    maker.make(made++, page);
+  CascadeStatistics counted;
+  double depth = 0, extent = 0;
+  for (const std::uint32_t start : page.starts)
+    survey(NodeView(page.words.data() + start), false, counted, depth, extent);
+  const auto n = static_cast<double>(made);
+  return {8.0 * static_cast<double>(page.words.size()) / n + 4, counted.segments_per_cascade / n};
+}
 
 CascadeStatistics describe(const CascadeLibrary& library, std::size_t cascades) {
   CascadeStatistics out;

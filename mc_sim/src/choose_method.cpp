@@ -2,41 +2,58 @@
 #include "surf/mc/choose_method.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <utility>
 
 #include <fmt/format.h>
 
+#include "cascade_sample.h"
+#include "scene_impl.h"
 #include "surf/core/error.h"
-#include "surf/mc/cascade_library.h"
 
 namespace surf::mc {
 
 namespace {
 
-// Measured (bench_library, bench_replay), by beam energy in eV. Bytes are the mean of carbon, silicon
-// and gold; the work of making a cascade is in direct primaries, which are given up early where they
-// cannot reach a surface any more: the higher the energy, the earlier.
-struct AtEnergy {
-  double energy_ev, bytes, direct_primaries;
+// The work of a segment when cascades are made and packed, in segments of direct simulation, and what
+// replay saves of a primary's work, at least (bench_replay).
+constexpr double making = 1.5, saved = 0.5;
+
+// Steps that a primary takes in direct simulation, where electrons that cannot reach a surface are
+// given up: over some pixels spread evenly.
+double steps_per_primary(const Scene& scene, const SimulationOptions& options) {
+  constexpr int across = 4;
+  constexpr std::int64_t primaries = 4;
+  SimulationOptions few;
+  few.seed = options.seed;
+  Balance balance;
+  const Scan& scan = scene.scan();
+  for (int j = 0; j < across; ++j)
+    for (int i = 0; i < across; ++i) {
+      const int x = (2 * i + 1) * scan.width / (2 * across);
+      const int y = (2 * j + 1) * scan.height / (2 * across);
+      balance += simulate_unit(scene, few, {x, y, x + 1, y + 1, 0, primaries}).balance;
+    }
+  return static_cast<double>(balance.steps) / static_cast<double>(balance.incident);
+}
+
+struct LibraryWork {
+  double bytes = 0, segments = 0;   // of one cascade of each material
 };
-constexpr std::array<AtEnergy, 5> measured{{{500, 6e3, 4},
-                                            {1000, 13e3, 6},
-                                            {3000, 40e3, 10},
-                                            {10000, 130e3, 20},
-                                            {30000, 400e3, 30}}};
 
-// What replay saves of a primary's work, at least.
-constexpr double saved = 0.5;
+double start_energy_ev(const Scene& scene, std::size_t material) {
+  return scene.beam().energy_ev + scene.impl().medium_pointers[material]->barrier_ev();
+}
 
-double at_energy(double energy_ev, double AtEnergy::*value) {
-  const double e = std::log(energy_ev);
-  std::size_t i = 1;
-  while (i + 1 < measured.size() && energy_ev > measured[i].energy_ev) ++i;
-  const AtEnergy &a = measured[i - 1], &b = measured[i];
-  const double t = (e - std::log(a.energy_ev)) / (std::log(b.energy_ev) - std::log(a.energy_ev));
-  return std::exp(std::log(a.*value) + t * (std::log(b.*value) - std::log(a.*value)));
+LibraryWork library_work(const Scene& scene, const SimulationOptions& options) {
+  LibraryWork work;
+  for (std::size_t m = 0; m < scene.materials().size(); ++m) {
+    const CascadeSample sample = sample_cascades(
+        {scene.materials()[m], scene.physics(), start_energy_ev(scene, m), options.seed});
+    work.bytes += sample.bytes;
+    work.segments += sample.segments;
+  }
+  return work;
 }
 
 std::string count(double n) {
@@ -55,15 +72,23 @@ struct Obstacle {
   std::string reason, remedy;
 };
 
-// Why replay cannot serve at all, if it cannot.
-std::optional<Obstacle> obstacle(const Scene& scene, const MethodChoice& choice,
-                                 const SimulationOptions& options, const MethodLimits& limits) {
+// Why replay cannot serve these physics at all, if it cannot.
+std::optional<Obstacle> obstacle(const Scene& scene, const MethodLimits& limits) {
   if (limits.observed)
     return Obstacle{"deposited energy needs every electron's whole track, which stored cascades do "
                     "not show", "Leave out --deposit"};
   if (!can_replay(scene.physics()))
     return Obstacle{"without continuous loss there is no energy at which cascades could be joined",
                     "Use loss=joy-luo"};
+  for (std::size_t m = 0; m < scene.materials().size(); ++m)
+    if (start_energy_ev(scene, m) <= scene.impl().medium_pointers[m]->cutoff_ev())
+      return Obstacle{"the beam's energy is not above the cutoff: there are no cascades",
+                      "Use a lower --cutoff"};
+  return std::nullopt;
+}
+
+std::optional<Obstacle> too_large(const Scene& scene, const MethodChoice& choice,
+                                  const SimulationOptions& options, const MethodLimits& limits) {
   if (choice.library_bytes <= limits.library_bytes) return std::nullopt;
   return Obstacle{
       fmt::format("{} cascades of {} at {:g} keV take about {:.2g} GB of memory, more than {:.2g}",
@@ -88,16 +113,11 @@ std::optional<Method> parse_method(std::string_view text, std::string_view subje
                    "Choose auto, direct or replay");
 }
 
-double cascade_bytes(double beam_energy_ev) { return at_energy(beam_energy_ev, &AtEnergy::bytes); }
-
 MethodChoice choose_method(const Scene& scene, const SimulationOptions& options,
                            std::optional<Method> asked, const MethodLimits& limits) {
-  const double energy = scene.beam().energy_ev;
-  const auto materials = static_cast<double>(scene.materials().size());
+  const auto materials = scene.materials().size();
   MethodChoice choice;
   choice.cascades = library_size(options, most_primaries(options));
-  choice.library_bytes = materials * static_cast<double>(choice.cascades) * cascade_bytes(energy);
-
   if (asked == Method::direct) {
     if (options.accuracy > 0)
       throw UsageError("--method direct", "only replay can go on until an accuracy is reached",
@@ -105,7 +125,13 @@ MethodChoice choose_method(const Scene& scene, const SimulationOptions& options,
     choice.reason = "as asked for";
     return choice;
   }
-  const auto no_replay = obstacle(scene, choice, options, limits);
+  auto no_replay = obstacle(scene, limits);
+  LibraryWork work;
+  if (!no_replay) {
+    work = library_work(scene, options);
+    choice.library_bytes = static_cast<double>(choice.cascades) * work.bytes;
+    no_replay = too_large(scene, choice, options, limits);
+  }
   if (no_replay && (asked || options.accuracy > 0))
     throw UsageError(asked ? "--method replay" : "--accuracy",
                      (asked ? "" : "it takes replay, but ") + no_replay->reason, no_replay->remedy);
@@ -121,17 +147,16 @@ MethodChoice choose_method(const Scene& scene, const SimulationOptions& options,
   const double primaries = (options.dose > 0 ? options.dose : static_cast<double>(options.electrons)) *
                            static_cast<double>(scene.scan().width) *
                            static_cast<double>(scene.scan().height);
-  const double making = materials * static_cast<double>(choice.cascades) *
-                        at_energy(energy, &AtEnergy::direct_primaries);
-  const bool pays = making < saved * primaries;
+  const bool pays = making * work.segments * static_cast<double>(choice.cascades) <
+                    saved * primaries * steps_per_primary(scene, options);
   choice.method = pays ? Method::replay : Method::direct;
   choice.reason =
       pays ? fmt::format("{} primaries share {} cascades{}", count(primaries),
                          count(static_cast<double>(choice.cascades)),
                          materials > 1 ? " of each material" : "")
-           : fmt::format("{} primaries are too few to make {} cascades for{}", count(primaries),
+           : fmt::format("{} primaries are too few for {} cascades{} to pay off", count(primaries),
                          count(static_cast<double>(choice.cascades)),
-                         materials > 1 ? fmt::format(" in each of {} materials", materials) : "");
+                         materials > 1 ? " of each material" : "");
   return choice;
 }
 

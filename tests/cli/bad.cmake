@@ -26,7 +26,7 @@ semsurf_cli_usage(dose_and_electrons "Leave out --electrons" simulate cube.off -
 semsurf_cli_usage(current_unit "not a unit of current" simulate cube.off --current 1amp --dwell 1us --size 8x8 -o image.exr)
 semsurf_cli_usage(detector "no detector 'ring'" simulate cube.off --detector ring ${image})
 semsurf_cli_usage(detector_twice "given twice" simulate cube.off --detector SE1 --detector SE1 ${image})
-semsurf_cli_usage(surface_channel "z_nm, normal and material" simulate cube.off --channels slope ${image})
+semsurf_cli_usage(surface_channel "z_nm, normal, material, electrons, model and variance_left" simulate cube.off --channels slope ${image})
 semsurf_cli_usage(deposit "--deposit" simulate cube.off --deposit 0 ${image})
 semsurf_cli_usage(trajectories "--trajectories" simulate cube.off --trajectories 1e9 ${image})
 semsurf_cli_usage(trajectories_outside "outside the scan" simulate cube.off --trajectories 2 --trajectories-at 900,0 ${image})

@@ -10,6 +10,7 @@ with "semsurf: error: ". --interrupt sends SIGINT once the program handles it. -
 `PROGRAM info FILE` and looks for REGEX in its output.
 """
 import argparse
+import os
 import pathlib
 import re
 import shutil
@@ -47,7 +48,7 @@ def handles_interrupts(pid):
 
 def run(command, folder, interrupt):
     process = subprocess.Popen(command, cwd=folder, stdin=subprocess.DEVNULL, text=True,
-                               stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+                               env={**os.environ, "SEMSURF_CACHE": "off"}, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
     try:
         if interrupt:
             while process.poll() is None and not handles_interrupts(process.pid):

@@ -109,7 +109,7 @@ TEST(Extras, ADoseReplacesTheNumberOfElectrons) {
 TEST(Extras, RefuseWhatCannotBe) {
   const TemporaryFolder folder;
   SimulateJob job = job_in(folder, "a");
-  job.extras.surface = {"slope"};
+  job.extras.channels = {"slope"};
   EXPECT_THAT(refusal(job), HasSubstr("z_nm, normal and material"));
   job.extras = {{}, 5000, 0, {}};
   EXPECT_THAT(refusal(job), HasSubstr("--deposit"));

@@ -221,6 +221,18 @@ TEST_F(SceneFileTest, HoldsItsOwnMaterialsAndFilesGoBeforeThem) {
   EXPECT_THAT(other.notes[0], testing::AllOf(HasSubstr("mine.toml"), HasSubstr("scene.toml")));
 }
 
+TEST_F(SceneFileTest, SaysHowMuchIsSimulatedAndHow) {
+  const std::string scene = "[substrate]\nmaterial = \"Si\"\n[simulation]\n";
+  SceneFile s = read(scene + "accuracy = \"1.3%\"\naccuracy_floor = 0\nmethod = \"replay\"");
+  EXPECT_EQ(s.accuracy, 0.013);
+  EXPECT_EQ(s.accuracy_floor, 0);
+  EXPECT_EQ(s.method, mc::Method::replay);
+  EXPECT_FALSE(s.electrons);
+  s = read(scene + "accuracy = 0.02\nmethod = \"auto\"");
+  EXPECT_EQ(s.accuracy, 0.02);
+  EXPECT_FALSE(s.method || s.accuracy_floor);
+}
+
 TEST_F(SceneFileTest, SyntaxErrorsHaveLineAndColumn) {
   EXPECT_THAT(refused<FileError>("title = \"a\"\n[beam\n"),
               HasSubstr("scene.toml, line 2, column"));
@@ -273,6 +285,10 @@ TEST_F(SceneFileTest, WrongValuesAreNamedWithTheirPlace) {
   expect("[scan]\nregion = [0, 0, 1]", "scan.region", "3 numbers");
   expect("[scan]\nregion = [0, 0, 0, 1]", "scan.region", "empty");
   expect("[simulation]\nelectrons = 0", "simulation.electrons", "0");
+  expect("[simulation]\nmethod = \"fast\"", "simulation.method", "auto, direct or replay");
+  expect("[simulation]\naccuracy = \"1%\"\nelectrons = 3", "simulation.accuracy", "Leave one");
+  expect("[simulation]\naccuracy = 2", "simulation.accuracy", "100%");
+  expect("[simulation]\naccuracy_floor = 0.1", "simulation.accuracy_floor", "no accuracy");
   expect("[simulation]\nelectrons = 2.5", "simulation.electrons", "whole");
   expect("[simulation]\nseed = -1", "simulation.seed", "negative");
   expect("[simulation]\nphysics = \"elastic=mot\"", "simulation.physics", "mot");

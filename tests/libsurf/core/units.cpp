@@ -164,6 +164,25 @@ TEST(FormatLength, RoundsBeforeItChooses) {
   EXPECT_THROW(format_length(1, 0), UsageError);
 }
 
+TEST(Share, PercentAndNumberAreTheSame) {
+  EXPECT_EQ(parse_share("1%", "x"), 0.01);
+  EXPECT_EQ(parse_share("1.3 %", "x"), 0.013);
+  EXPECT_EQ(parse_share("0.013", "x"), parse_share("1.3%", "x"));
+  for (int i = 1; i < 1000; ++i)
+    EXPECT_EQ(parse_share(std::to_string(i) + "%", "x"), i / 100.0);
+  for (const char* bad : {"", "%", "0", "-1%", "nan", "inf", "1%%", "1 percent", "0x1"})
+    EXPECT_THROW(parse_share(bad, "--accuracy"), UsageError) << bad;
+}
+
+TEST(Share, IsWrittenAsShortAsItReadsBack) {
+  EXPECT_EQ(format_share(0.01), "1 %");
+  EXPECT_EQ(format_share(0.013), "1.3 %");
+  EXPECT_EQ(format_share(0.00025), "0.025 %");
+  EXPECT_EQ(format_share(1), "100 %");
+  for (const double share : {1.0 / 3, 0.07, 0.29, 1e-4})
+    EXPECT_EQ(parse_share(format_share(share), "x"), share);
+}
+
 TEST(FormatExact, ReadsBackExactly) {
   EXPECT_EQ(format_exact(0.1), "0.1");
   EXPECT_EQ(format_exact(1), "1");

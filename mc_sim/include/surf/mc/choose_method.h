@@ -33,13 +33,9 @@ struct MethodChoice {
 /// How electrons of these options are best simulated; `options.method` does not count. With `asked`
 /// it is that, or a UsageError which says why it cannot be; the same where an accuracy is wanted,
 /// which only replay can reach. Else replay where it can serve, its libraries fit into memory, and
-/// they take less work than they save. Work is counted, not timed: the choice is the same on every
-/// machine, with any number of threads and any cache.
+/// they take less work than they save. Work is counted on a few cascades and primaries, not timed: the
+/// choice is the same with any number of threads and any cache.
 MethodChoice choose_method(const Scene& scene, const SimulationOptions& options,
                            std::optional<Method> asked = {}, const MethodLimits& limits = {});
-
-/// Bytes that a cascade takes in a library, about (within a factor of 1.5 for elements from carbon
-/// to gold), from its beam energy, eV.
-double cascade_bytes(double beam_energy_ev);
 
 }  // namespace surf::mc

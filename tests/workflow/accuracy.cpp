@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <gmock/gmock.h>
+
+#include <nlohmann/json.hpp>
+
+#include "small_job.h"
+#include "surf/core/error.h"
+#include "surf/core/units.h"
+#include "surf/io/files.h"
+#include "surf/io/image_file.h"
+#include "temporary_folder.h"
+
+namespace surf::workflow {
+namespace {
+
+using test::TemporaryFolder;
+using testing::HasSubstr;
+
+// Short cascades: 500 eV without secondaries.
+SimulateJob accurate_job(const std::filesystem::path& output) {
+  SimulateJob job = small_job();
+  job.scene.beam.energy_ev = 500;
+  job.scene.physics.secondaries = false;
+  job.scene.accuracy = 0.2;
+  job.scene.accuracy_floor = 0.05;
+  job.extras.channels = {"electrons", "model", "variance_left"};
+  job.outputs = {output};
+  return job;
+}
+
+TEST(Accuracy, SameBytesForAnyThreadsAndCache) {
+  const TemporaryFolder folder;
+  std::string first;
+  for (const auto& [threads, cache] : {std::pair{1, ""}, {3, "cache"}, {2, "cache"}}) {
+    SimulateJob job = accurate_job(folder.path() / (std::to_string(threads) + ".exr"));
+    job.options.threads = threads;
+    if (*cache) job.cache = folder.path() / cache;
+    const SimulateSummary s = run(job);
+    EXPECT_EQ(s.pages_loaded > 0, threads == 2);
+    EXPECT_EQ(s.pages_made > 0, threads != 2);
+    const std::string bytes = bytes_of(job.outputs[0]);
+    if (first.empty()) first = bytes;
+    EXPECT_TRUE(bytes == first) << threads << " threads";
+  }
+}
+
+TEST(Accuracy, IsReachedAndRecorded) {
+  const TemporaryFolder folder;
+  const SimulateJob job = accurate_job(folder.path() / "image.exr");
+  const SimulateSummary s = run(job);
+  EXPECT_EQ(s.statistics.missed, 0);
+  const Image image = io::read_image(job.outputs[0]);
+  EXPECT_EQ(image.metadata.at("accuracy"), "0.2");
+  EXPECT_EQ(image.metadata.at("accuracy_floor"), "0.05");
+  EXPECT_EQ(image.metadata.at("method"), "replay");
+  EXPECT_EQ(image.metadata.at("library.cascades"), "10240");
+  EXPECT_THAT(image.metadata.at("model"), HasSubstr("4 plane"));
+  EXPECT_FALSE(image.metadata.contains("electrons"));
+  const Channel &yield = *image.find("BSE"), &error = *image.find("BSE.stderr");
+  const Channel &electrons = *image.find("electrons"), &model = *image.find("model");
+  for (int y = 0; y < yield.values.height(); ++y)
+    for (int x = 0; x < yield.values.width(); ++x) {
+      EXPECT_LE(error.values(x, y),
+                1.1001 * std::max(0.05f, 0.2f * yield.values(x, y))) << x << ", " << y;
+      EXPECT_GE(model.values(x, y), 2);
+      if (model.values(x, y) != 4) EXPECT_GE(electrons.values(x, y), 32);
+    }
+  ASSERT_NE(image.find("BSE.variance_left"), nullptr);
+  const auto record = nlohmann::json::parse(bytes_of(folder.path() / "image.run.json"));
+  EXPECT_EQ(record["method"]["name"], "replay");
+  EXPECT_EQ(record["method"]["library"]["cascades"], 10240);
+  EXPECT_TRUE(record["balance"]["electrons"].contains("handed_over"));
+}
+
+TEST(Accuracy, TimeFindsOneThatRepeatsExactly) {
+  const TemporaryFolder folder;
+  SimulateJob job = accurate_job(folder.path() / "time.exr");
+  job.scene.accuracy.reset();
+  job.seconds = 3;
+  std::string said;
+  const SimulateSummary s =
+      run(job, {}, nullptr, {}, [&](const std::string& note) { said += note + "\n"; });
+  EXPECT_THAT(said, HasSubstr("repeats"));
+  job.seconds = 0;
+  job.scene.accuracy = s.result.accuracy;
+  job.outputs = {folder.path() / "accuracy.exr"};
+  run(job);
+  EXPECT_TRUE(bytes_of(folder.path() / "time.exr") == bytes_of(folder.path() / "accuracy.exr"));
+}
+
+TEST(Accuracy, TooShortATimeGivesTheCoarseImage) {
+  const TemporaryFolder folder;
+  SimulateJob job = accurate_job(folder.path() / "time.exr");
+  job.seconds = 1e-3;
+  std::string said;
+  const SimulateSummary s =
+      run(job, {}, nullptr, {}, [&](const std::string& note) { said += note + "\n"; });
+  EXPECT_THAT(said, HasSubstr("too short: even 10 % accuracy took"));
+  EXPECT_EQ(s.result.accuracy, 0.1);
+  EXPECT_EQ(io::read_image(job.outputs[0]).metadata.at("accuracy"), "0.1");
+}
+
+TEST(Accuracy, WarnsWhereItIsNotReached) {
+  const TemporaryFolder folder;
+  SimulateJob job = accurate_job(folder.path() / "image.exr");
+  job.scene.accuracy = 1;
+  job.scene.accuracy_floor = 1e-5;   // of a detector that counts next to nothing
+  mc::Detector rare = mc::default_detectors()[1];
+  rare.name = "rare";
+  rare.min_energy_ev = 499.99;
+  job.options.detectors.push_back(rare);
+  const SimulateSummary s = run(job);
+  if (s.statistics.missed > 0) {
+    ASSERT_FALSE(s.warnings.empty());
+    EXPECT_THAT(s.warnings.back(), HasSubstr("did not reach the accuracy of 100 %"));
+    EXPECT_THAT(io::read_image(job.outputs[0]).metadata.at("warning.1"), HasSubstr("did not reach"));
+  } else {
+    EXPECT_TRUE(s.warnings.empty());
+  }
+}
+
+TEST(Accuracy, DepositedEnergyCannotBeHadWithIt) {
+  const TemporaryFolder folder;
+  SimulateJob job = accurate_job(folder.path() / "image.vti");
+  job.extras.deposit_cells = 4;
+  EXPECT_THROW(run(job), UsageError);
+}
+
+}  // namespace
+}  // namespace surf::workflow
