@@ -124,3 +124,21 @@ foreach(sample IN LISTS samples)
     -o image.exr -o image.png WRITES image.exr image.png INFO image.exr "title")
   semsurf_cli_test(sample.${name}.info ARGS info "${sample}" STDOUT "scene" "extent")
 endforeach()
+
+# Replay and accuracy: without secondaries cascades are short.
+set(short --energy 500 --physics secondaries=off)
+semsurf_cli_test(simulate.auto ARGS simulate cube.off --substrate Si ${few} -o image.exr
+  STDOUT "method +direct: 128 primaries are too few for 10.2 thousand cascades"
+  INFO image.exr "method +direct(.|\n)*pixels.direct +64")
+semsurf_cli_test(simulate.replay ARGS simulate cube.off --substrate Si ${few} ${short}
+  --method replay -o image.exr STDOUT "method +replay: as asked for" "library +10240 cascades.*made in"
+  INFO image.exr "balance.handed_over(.|\n)*library.cascades +10240(.|\n)*method +replay")
+semsurf_cli_test(simulate.accuracy ARGS simulate cube.off --substrate Si --size 8x8 ${short}
+  --accuracy 20% --accuracy-floor 0.05 --channels model,electrons,variance_left -o image.exr
+  STDOUT "pixels +.*differences to planes" "electrons +[0-9]+ per pixel on average" "accuracy +20 % reached"
+  INFO image.exr "BSE.variance_left(.|\n)*accuracy_floor +0.05(.|\n)*method +replay")
+semsurf_cli_test(simulate.time ARGS simulate cube.off --substrate Si --size 8x8 ${short}
+  --time 1ms --cache cache -o image.exr STDERR "too short: even 10 % accuracy took" WRITES image.exr
+  INFO image.exr "accuracy +0.1")
+semsurf_cli_test(help.accuracy ARGS simulate --help
+  STDOUT "--accuracy-floor" "--time" "auto.direct.replay" "variance_left is the share")

@@ -5,6 +5,7 @@
 Whatever happens, killed at any time, interrupted, with other threads, with a checkpoint that is cut
 off or damaged, the files in the end have the bytes of an undisturbed run, and no checkpoint is left.
 Checkpoints of other jobs and files of other kinds are never touched."""
+import os
 import pathlib
 import random
 import re
@@ -197,7 +198,25 @@ def off(folder, reference, seconds):
         expect("begins anew" in run.err, f"deposit: says {run.err}")
 
 
+def accuracy(folder, _, __):
+    """Pixels that get as many electrons as they need, of stored cascades."""
+    job = ["simulate", "cube.off", "--material", "Si", "--substrate", "Si", "--size", "96x96",
+           "--energy", "500", "--physics", "secondaries=off", "--accuracy", "6%",
+           "--cache", "cache", "--checkpoint-every", "0.1s"]
+    run = Run(folder, job=job).end()
+    expect(run.code in (0, 4), f"accuracy: exit {run.code}: {run.err}")
+    reference, code = (folder / "image.exr").read_bytes(), run.code
+    run = Run(folder, "--threads", 1, job=job).stop_with_checkpoint(signal.SIGKILL, folder)
+    expect(checkpoints(folder), "accuracy: no checkpoint")
+    run = Run(folder, "--threads", 3, job=job).end()
+    expect(0 < run.share() < 100 and "done before" in run.out, f"accuracy: does not go on: {run.err}")
+    expect(run.code == code, f"accuracy: exit {run.code} instead of {code}")
+    expect((folder / "image.exr").read_bytes() == reference, "accuracy: other bytes")
+    expect(not checkpoints(folder), "accuracy: a checkpoint is left")
+
+
 def main():
+    os.environ["SEMSURF_CACHE"] = "off"
     with tempfile.TemporaryDirectory(prefix="semsurf-test-") as name:
         def fresh(case):
             return pathlib.Path(shutil.copytree(DATA, pathlib.Path(name) / case))
@@ -209,7 +228,8 @@ def main():
         print(f"undisturbed: {seconds:.1f} s\n{run.out}{run.err}")
         reference = {file: (folder / file).read_bytes() for file in OUTPUTS}
         expect_same(folder, reference, "undisturbed")
-        for case in (killed_at_any_time, interrupted, damaged, changed, two_at_once, full_disk, off):
+        for case in (killed_at_any_time, interrupted, damaged, changed, two_at_once, full_disk, off,
+                     accuracy):
             case(fresh(case.__name__), reference, seconds)
     sys.exit(1 if faults else 0)
 
