@@ -63,7 +63,7 @@ TEST(Accuracy, IsReachedAndRecorded) {
       EXPECT_LE(error.values(x, y),
                 1.1001 * std::max(0.05f, 0.2f * yield.values(x, y))) << x << ", " << y;
       EXPECT_GE(model.values(x, y), 2);
-      if (model.values(x, y) != 4) EXPECT_GE(electrons.values(x, y), 32);
+      if (model.values(x, y) != 4) { EXPECT_GE(electrons.values(x, y), 32); }
     }
   ASSERT_NE(image.find("BSE.variance_left"), nullptr);
   const auto record = nlohmann::json::parse(bytes_of(folder.path() / "image.run.json"));
