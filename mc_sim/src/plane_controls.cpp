@@ -165,7 +165,7 @@ std::shared_ptr<const PlaneControl> PlaneControls::make(int material, const Vec3
                                  [](const Detector& d) { return d.origin != Origin::any; });
   Replay<HalfSpace> replay(geometry, scene_.medium_pointers, libraries, scene_.physics.barrier,
                            turns, direct, detection, balance);
-  replay.surroundings({{}, normal, HUGE_VAL, 1, 0});
+  replay.surroundings({{}, normal, HUGE_VAL, true, 1, 0});
   const Vec3 beam = -against_;
   HalfSpace::Surface entry;
   int state = 0;

@@ -137,6 +137,7 @@ struct FlatSurroundings {
   Vec3 point;          ///< on the plane: the ball's centre
   Vec3 normal;         ///< unit, out of the matter
   double radius = 0;   ///< 0: nothing is known
+  bool whole = false;  ///< the ball holds all that starts at the point and stays inside
   State inside{};      ///< of the matter
   State outside{};
 };
@@ -201,9 +202,6 @@ class Replay {
     if (library) library->fetch(cascade);
   }
 
-  /// Electrons handed over to direct simulation so far.
-  std::int64_t handed_over() const { return handed_over_; }
-
  private:
   struct Packed {
     const CascadeLibrary* library;
@@ -229,8 +227,9 @@ class Replay {
     int material = 0;
     int generation = 0;  // 0: the primary
     int exponent = 0;    // of the branch's unit
-    bool off_plane = false;   // turned or moved other than by mirrors in that plane
-    bool astray = false;      // turned at a surface since it last forgot its direction
+    int moves = 0;       // other than mirrors in that plane
+    bool strayed = false;     // came otherwise than through matter from the ball's centre
+    bool mirrored = false;    // or turned at a surface since it last forgot its direction
 
     void scale(int to) {
       if (to == exponent) return;
@@ -331,6 +330,7 @@ class Replay {
     branch.state = e.state;
     branch.material = material;
     flat_point_ = float4(flat_.point - here_);
+    branch.strayed = squared_length(flat_point_) > here_nm * here_nm;
     follow(root, branch, false);
   }
 
@@ -368,17 +368,17 @@ class Replay {
     if (flat) return std::fabs(branch.height_of(sphere)) > radius && !watching(branch);
     const Float4 center = branch.point(sphere);
     if (clearance(center) > radius && !watching(branch)) return true;
-    const double room = flat_.radius - radius;
-    if (!(room > 0) || branch.state != flat_.inside ||
-        squared_length(center - flat_point_) > room * room)
-      return false;
+    if (branch.state != flat_.inside) return false;
+    if (!flat_.whole || branch.strayed) {
+      const double room = flat_.radius - radius;
+      if (!(room > 0) || squared_length(center - flat_point_) > room * room) return false;
+    }
     flat = true;
     const auto along = [n = flat_normal_](const Float4& v) {
       return n[0] * v[0] + n[1] * v[1] + n[2] * v[2];
     };
     branch.height = Float4{along(branch.scaled.x), along(branch.scaled.y), along(branch.scaled.z),
                            along(branch.origin - flat_point_)};
-    branch.off_plane = false;
     return std::fabs(branch.height_of(sphere)) > radius && !watching(branch);
   }
 
@@ -398,8 +398,9 @@ class Replay {
     for (; i < view.node.count; ++i) {
       bool child_flat = flat;
       if (passed_over(branch, view.spheres()[i], child_flat)) continue;
+      const int moves = branch.moves;
       if (!follow(view.child(i), branch, child_flat)) return forget_from(view, i + 1);
-      flat = flat && !branch.off_plane;
+      flat = flat && branch.moves == moves;
     }
     return true;
   }
@@ -471,7 +472,7 @@ class Replay {
       }
       if (moved != Moved::no && watching(branch))
         note_turn(vec3(branch.point(vertex) - branch.point(before)));
-      if (branch.astray && EnergyCode::forgets(vertex)) come_home(branch, vertex);
+      if (branch.mirrored && EnergyCode::forgets(vertex)) come_home(branch, vertex);
       if (node.births & 1u << i) {
         follow_birth(view, birth, branch, vertex, flat, high);
         ++birth;
@@ -565,6 +566,7 @@ class Replay {
     } else if (!fly(e, branch.generation)) {
       return Moved::gone;
     }
+    branch.strayed = true;
     if (geometry_.material(e.state) != branch.material) {
       join(e, branch.generation);
       return Moved::gone;
@@ -585,7 +587,7 @@ class Replay {
                      mirrored(branch.scaled.z)};
     branch.origin = flat_point_ + mirrored(branch.origin - flat_point_);
     branch.height = -branch.height;
-    branch.astray = true;
+    branch.mirrored = true;
   }
 
   // Where an electron is scattered into all directions alike, the rest of its branch may lie as it
@@ -601,7 +603,7 @@ class Replay {
     };
     branch.height = Float4{along(branch.scaled.x), along(branch.scaled.y), along(branch.scaled.z), 0};
     branch.height[3] = height - branch.height_of(vertex);
-    branch.astray = false;
+    branch.mirrored = false;
   }
 
   // The rest of the branch goes on from where the electron is, in its direction.
@@ -610,8 +612,8 @@ class Replay {
     branch.origin = float4(e.position - here_) + motion(branch.origin - float4(met_at - here_));
     branch.scaled = motion * branch.scaled;
     branch.state = e.state;
-    branch.off_plane = true;
-    branch.astray = true;
+    ++branch.moves;
+    branch.mirrored = true;
   }
 
   // A segment that may meet surfaces. What happens there moves the rest of the branch.
@@ -636,7 +638,10 @@ class Replay {
       left -= surface_.distance;
       const Vec3 met_at = surface_.position;
       Free e{met_at, direction, energy, branch.state};
-      if (!pass(e, surface_, branch.generation) && !fly(e, branch.generation)) return Moved::gone;
+      if (!pass(e, surface_, branch.generation)) {
+        if (!fly(e, branch.generation)) return Moved::gone;
+        branch.strayed = true;
+      }
       if (geometry_.material(e.state) != branch.material) {
         join(e, branch.generation);
         return Moved::gone;
@@ -688,6 +693,7 @@ class Replay {
     branch.state = e.state;
     branch.material = material;
     branch.generation = generation;
+    branch.strayed = true;
     const std::uint64_t* const cascade = cascade_begin_;
     cascade_begin_ = root;
     follow(root, branch, false, &middle);
@@ -699,7 +705,7 @@ class Replay {
   void hand_over(const Free& e, int generation) {
     ++left_;
     energy_out_ += e.energy - barrier_of(geometry_.material(e.state));
-    ++handed_over_;
+    ++balance_.handed_over;
     RandomStream random(primary_.seed, primary_.pixel,
                         primary_.electron + hand_over_stream * ++handed_over_here_);
     direct_.take_over({e.position, e.direction, e.energy, e.state, generation, -1, turned_}, beam_,
@@ -723,6 +729,7 @@ class Replay {
     return false;
   }
 
+  static constexpr double here_nm = 0.01;   // nearer than this, two places are one
   static constexpr int most_bounces = 1000;
   static constexpr int most_joined = 2000;
   static constexpr std::uint64_t hand_over_stream = std::uint64_t{1} << 41;
@@ -752,7 +759,6 @@ class Replay {
   const std::uint64_t* cascade_begin_ = nullptr;
   std::uint64_t handed_over_here_ = 0;
   double energy_in_ = 0, energy_out_ = 0, generated_energy_ = 0;
-  std::int64_t handed_over_ = 0;
 };
 
 }  // namespace surf::mc

@@ -44,9 +44,9 @@ ReplaySite SiteReplay::site(int x, int y, bool look_around) {
   site.material = geometry_.material(site.surface.state_ahead);
   if (!look_around) return site;
   const Vec3& n = site.surface.normal;
-  site.flat = {site.surface.position, dot(n, site.middle.direction) > 0 ? -n : n, 0,
+  site.flat = {site.surface.position, dot(n, site.middle.direction) > 0 ? -n : n, 0, false,
                site.surface.state_ahead, site.before};
-  if (site.before == 0) site.flat.radius = flat_radius(site);
+  if (site.before == 0) find_plane(site);
   return site;
 }
 
@@ -55,26 +55,29 @@ double SiteReplay::range_nm(int material) const {
   return medium.range_nm(scene_.beam.energy_ev + medium.barrier_ev());
 }
 
-// Within this distance of the site all surface is one plane, and of one shell.
-double SiteReplay::flat_radius(const ReplaySite& site) const {
-  const FlatSurroundings<SceneGeometry::State>& flat = site.flat;
+// Finds the ball around the site in which all surface is one plane, and of one shell.
+void SiteReplay::find_plane(ReplaySite& site) const {
+  FlatSurroundings<SceneGeometry::State>& flat = site.flat;
   const double most = range_nm(site.material);
-  double radius = most;
+  flat.radius = most;
   bool on_substrate = false;
   if (scene_.plane_nm) {
     const double gap = std::fabs(flat.point.z - *scene_.plane_nm);
     on_substrate = gap < plane_nm && flat.normal.z > 1 - 1e-15;
-    if (!on_substrate) radius = std::min(radius, gap);
+    if (!on_substrate) flat.radius = std::min(flat.radius, gap);
   }
-  if (!scene_.triangles) return on_substrate ? HUGE_VAL : 0;
-  // A plane of triangles right on the substrate's would be two shells in one.
-  radius = scene_.triangles->flat_radius(flat.point, on_substrate ? Vec3{} : flat.normal, plane_nm,
-                                         radius, scene_.shell_of);
-  return radius >= most ? HUGE_VAL : radius;
+  if (!scene_.triangles) {
+    flat.radius = on_substrate ? HUGE_VAL : 0;
+  } else {
+    // A plane of triangles right on the substrate's would be two shells in one.
+    flat.radius = scene_.triangles->flat_radius(flat.point, on_substrate ? Vec3{} : flat.normal,
+                                                plane_nm, flat.radius, scene_.shell_of);
+  }
+  flat.whole = flat.radius >= most;
 }
 
 bool SiteReplay::proved_plane(const ReplaySite& site) {
-  if (!site.single || !std::isinf(site.flat.radius) || scene_.beam.working_distance_nm > 0)
+  if (!site.single || !site.flat.whole || scene_.beam.working_distance_nm > 0)
     return false;
   if (!scene_.triangles) return true;
   // Whoever leaves must not come back: nothing may stand above the plane.

@@ -56,7 +56,7 @@ class SiteReplay {
   double range_nm(int material) const;
 
  private:
-  double flat_radius(const ReplaySite& site) const;
+  void find_plane(ReplaySite& site) const;
 
   const Scene::Impl& scene_;
   SceneGeometry geometry_;
