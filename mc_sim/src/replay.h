@@ -546,9 +546,9 @@ class Replay {
     random_.at(event(view.vertex(segment)));
     const double share = std::clamp(static_cast<double>(-low) / rise, 0.0, 1.0);
     const Float4 from = branch.point(before);
-    const Float4 way = branch.point(vertex) - from;
     const double whole = std::sqrt(squared);
-    const Vec3 direction = vec3(way) * (1.0 / whole);
+    // Of unit length to the last bit, or `move` would mirror what goes on straight.
+    const Vec3 direction = normalized(vec3(branch.scaled(units)));
     const Packed& m = media_[static_cast<std::size_t>(branch.material)];
     Vec3 met_at = here_ + vec3(from) + direction * (share * whole);
     met_at -= flat_.normal * dot(met_at - flat_.point, flat_.normal);
