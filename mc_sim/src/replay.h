@@ -229,7 +229,7 @@ class Replay {
     int exponent = 0;    // of the branch's unit
     int moves = 0;       // other than mirrors in that plane
     bool strayed = false;     // came otherwise than through matter from the ball's centre
-    bool mirrored = false;    // or turned at a surface since it last forgot its direction
+    bool bent = false;        // at a surface, since it last forgot its direction
 
     void scale(int to) {
       if (to == exponent) return;
@@ -472,7 +472,7 @@ class Replay {
       }
       if (moved != Moved::no && watching(branch))
         note_turn(vec3(branch.point(vertex) - branch.point(before)));
-      if (branch.mirrored && EnergyCode::forgets(vertex)) come_home(branch, vertex);
+      if (branch.bent && EnergyCode::forgets(vertex)) come_home(branch, vertex);
       if (node.births & 1u << i) {
         follow_birth(view, birth, branch, vertex, flat, high);
         ++birth;
@@ -587,7 +587,7 @@ class Replay {
                      mirrored(branch.scaled.z)};
     branch.origin = flat_point_ + mirrored(branch.origin - flat_point_);
     branch.height = -branch.height;
-    branch.mirrored = true;
+    branch.bent = true;
   }
 
   // Where an electron is scattered into all directions alike, the rest of its branch may lie as it
@@ -603,7 +603,7 @@ class Replay {
     };
     branch.height = Float4{along(branch.scaled.x), along(branch.scaled.y), along(branch.scaled.z), 0};
     branch.height[3] = height - branch.height_of(vertex);
-    branch.mirrored = false;
+    branch.bent = false;
   }
 
   // The rest of the branch goes on from where the electron is, in its direction.
@@ -613,7 +613,7 @@ class Replay {
     branch.scaled = motion * branch.scaled;
     branch.state = e.state;
     ++branch.moves;
-    branch.mirrored = true;
+    branch.bent = true;
   }
 
   // A segment that may meet surfaces. What happens there moves the rest of the branch.

@@ -2,10 +2,11 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <map>
 #include <memory>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -45,20 +46,26 @@ inline mc::Libraries make_libraries(const mc::Scene& scene, std::uint64_t seed, 
   return libraries;
 }
 
-/// Libraries of so many pages, whatever is asked for.
+/// Libraries of so many pages, whatever is asked for; kept for who asks again. For one physics.
 class SmallLibraries final : public mc::LibrarySource {
  public:
   explicit SmallLibraries(std::size_t pages) : pages_(pages) {}
   std::shared_ptr<const mc::CascadeLibrary> library(const mc::CascadeSettings& settings, std::size_t,
                                                     int threads, const ProgressCallback&,
                                                     const CancelToken*) override {
-    auto library = std::make_shared<mc::CascadeLibrary>(settings);
-    library->grow(pages_ * mc::CascadeLibrary::page_cascades, threads);
-    return library;
+    auto& known = known_[{settings.material.name, settings.start_energy_ev, settings.seed}];
+    if (!known) {
+      auto library = std::make_shared<mc::CascadeLibrary>(settings);
+      library->grow(pages_ * mc::CascadeLibrary::page_cascades, threads);
+      known = std::move(library);
+    }
+    return known;
   }
 
  private:
   std::size_t pages_;
+  std::map<std::tuple<std::string, double, std::uint64_t>,
+           std::shared_ptr<const mc::CascadeLibrary>> known_;
 };
 
 /// What the primaries of one pixel gave, in blocks of equally many: the scatter between blocks tells

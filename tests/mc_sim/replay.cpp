@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// How replay takes cascades, shares them and keeps account.
+#include "replay_test.h"
+#include "subset.h"
+#include "surf/core/error.h"
+#include "surf/core/random.h"
+
+namespace surf::mc {
+
+namespace {
+
+SimulationOptions replaying(std::int64_t electrons) {
+  SimulationOptions options;
+  options.method = Method::replay;
+  options.electrons = electrons;
+  options.threads = 1;
+  return options;
+}
+
+Specimen mesa() {
+  Specimen s = test::flat("Si");
+  s.bodies.push_back({"mesa", test::pillar(40, 30), 0});
+  return s;
+}
+
+Beam slow() {
+  Beam beam;
+  beam.energy_ev = 300;
+  return beam;
+}
+
+std::string refusal(const SimulationOptions& options, const Physics& physics = {},
+                    const ObserverOfThread& observers = {}) {
+  try {
+    simulate(Scene(mesa(), slow(), test::square_scan(40, 2), physics), options, {}, nullptr,
+             observers);
+  } catch (const UsageError& e) {
+    return e.what();
+  }
+  return "";
+}
+
+}  // namespace
+
+TEST(Subset, TakesNoCascadeTwiceBeforeAllWereTaken) {
+  for (const std::uint64_t cascades : {2048u, 10240u})
+    for (const std::uint32_t seed : {0u, 1u, 77u}) {
+      RandomStream random(1, seed, 0);
+      const std::uint32_t a = random.bits(), b = random.bits();
+      const Subset subset(cascades, a, b);
+      std::vector<int> taken(cascades);
+      for (std::uint64_t i = 0; i < cascades; ++i) ++taken[subset[i]];
+      EXPECT_EQ(std::count(taken.begin(), taken.end(), 1), static_cast<std::ptrdiff_t>(cascades));
+      EXPECT_EQ(subset[cascades], subset[0]);
+    }
+}
+
+TEST(Subset, SpreadsPixelsEvenly) {
+  // Over many pixels every run of cascades is taken equally often, and as the second run, too.
+  constexpr std::uint64_t cascades = 2048, runs = cascades / Subset::run;
+  std::vector<std::int64_t> first(runs), tenth(runs);
+  constexpr int pixels = 20000;
+  for (int p = 0; p < pixels; ++p) {
+    RandomStream random(3, static_cast<std::uint64_t>(p), 0);
+    const std::uint32_t a = random.bits(), b = random.bits();
+    const Subset subset(cascades, a, b);
+    ++first[subset[0] / Subset::run];
+    ++tenth[subset[9 * Subset::run] / Subset::run];
+  }
+  const std::vector<double> even(runs, double(pixels) / runs);
+  test::expect_distributed(first, even, 2);
+  test::expect_distributed(tenth, even, 2);
+}
+
+TEST(Replay, GivesTheSameNumbersForAnyThreadsAndTiles) {
+  const Scan scan = test::square_scan(60, 4);
+  const Scene scene(mesa(), slow(), scan);
+  test::SmallLibraries libraries(1);
+  for (const double accuracy : {0.0, 0.3}) {
+    std::vector<SimulationResult> results;
+    for (const auto& [threads, tile] : {std::pair(1, 1), {2, 3}, {3, 1024}}) {
+      SimulationOptions options = replaying(60);
+      options.accuracy = accuracy;
+      options.threads = threads;
+      options.tile_pixels = tile;
+      results.push_back(simulate(scene, options, {}, nullptr, {}, nullptr, &libraries));
+    }
+    for (const SimulationResult& r : results) {
+      for (const char* channel : {"SE", "SE.stderr", "BSE", "BSE.stderr", "valid"})
+        EXPECT_EQ(make_image(r, scan).find(channel)->values,
+                  make_image(results[0], scan).find(channel)->values);
+      EXPECT_EQ(r.balance.deposited_energy.parts(), results[0].balance.deposited_energy.parts());
+      EXPECT_EQ(r.balance.generated_energy.parts(), results[0].balance.generated_energy.parts());
+      EXPECT_EQ(r.balance.incident, results[0].balance.incident);
+      EXPECT_EQ(r.balance.rays, results[0].balance.rays);
+    }
+    test::expect_balanced(results[0].balance);
+  }
+}
+
+// All that a cascade generates is counted, as where every track is followed to its end.
+TEST(Replay, GeneratesAsManySecondariesAsTracksFollowedToTheirEnd) {
+  class Nobody final : public Observer {
+  } nobody;
+  const Scan scan = test::row_of_pixels(0, 15, 3);
+  const Scene scene(mesa(), slow(), scan);
+  SimulationOptions options = replaying(1 << 20);
+  const Libraries libraries = test::make_libraries(scene, 2, 1);
+  options.seed = 2;
+  test::SceneSample replay;
+  test::add_blocks(replay, *make_replay_worker(scene.impl(), options, libraries), scan, 40, 50);
+  test::ZScores scores;
+  for (int x = 0; x < 3; ++x) {
+    test::Sample direct;
+    for (int b = 0; b < 40; ++b)
+      direct.add(static_cast<double>(
+                     simulate_unit(scene, test::seeded(1), {x, 0, x + 1, 1, 50 * b, 50}, &nobody)
+                         .balance.generated) / 50);
+    const test::Sample& generated = replay.pixels[static_cast<std::size_t>(x)].generated;
+    scores.compare(direct.mean(), direct.standard_error(), generated.mean(),
+                   generated.standard_error(), "generated at pixel " + std::to_string(x));
+  }
+  scores.expect_none_large();
+  test::expect_balanced(replay.balance);
+}
+
+// Where a material has no library, direct simulation takes its electrons over.
+TEST(Replay, HandsOverWhereAMaterialHasNoLibrary) {
+  Specimen s = test::flat("Si");
+  s.materials.push_back(io::find_material("Au", "test"));
+  s.bodies.push_back({"sphere", make_sphere({0, 0, 8}, 8, 2), 1});
+  const Scan scan = test::row_of_pixels(0, 6, 3);
+  Beam beam;
+  beam.energy_ev = 600;
+  const Scene scene(s, beam, scan);
+  SimulationOptions options = replaying(1 << 20);
+  options.detectors = parse_detectors("SE1", "test");
+  for (const Detector& d : default_detectors()) options.detectors.push_back(d);
+  for (const Detector& d : parse_detectors("SE2", "test")) options.detectors.push_back(d);
+  test::SceneSample direct;
+  test::add_blocks(direct, *make_direct_worker(scene.impl(), options), scan, 50, 40);
+  for (const std::vector<bool>& with : {std::vector{true, false}, {false, true}}) {
+    const Libraries libraries = test::make_libraries(scene, 5, 1, with);
+    test::SceneSample replay;
+    test::add_blocks(replay, *make_replay_worker(scene.impl(), options, libraries), scan, 40, 50);
+    EXPECT_GT(replay.balance.handed_over, 500);
+    test::expect_balanced(replay.balance);
+    test::expect_same_sample(direct, replay, options.detectors);
+  }
+}
+
+TEST(Replay, RefusesWhatItCannotDo) {
+  using testing::HasSubstr;
+  Physics lossless;
+  lossless.loss = LossModel::none;
+  EXPECT_THAT(refusal(replaying(10), lossless), HasSubstr("continuous loss"));
+  EXPECT_THAT(refusal(replaying(10), {}, [](int) { return nullptr; }), HasSubstr("observers"));
+
+  SimulationOptions accurate = replaying(10);
+  accurate.accuracy = 0.1;
+  SimulationOptions wrong = accurate;
+  wrong.method = Method::direct;
+  EXPECT_THAT(refusal(wrong), HasSubstr("--method replay"));
+  wrong = accurate;
+  wrong.dose = 10;
+  EXPECT_THAT(refusal(wrong), HasSubstr("dose"));
+  wrong = accurate;
+  wrong.spectra = true;
+  EXPECT_THAT(refusal(wrong), HasSubstr("spectra"));
+  for (const double accuracy : {1e-5, 1.5, -0.1}) {
+    wrong.accuracy = accuracy;
+    EXPECT_THAT(refusal(wrong), HasSubstr("outside 0.0001 to 1"));
+  }
+  wrong = accurate;
+  wrong.accuracy_floor = -1;
+  EXPECT_THAT(refusal(wrong), HasSubstr("zero or more"));
+}
+
+}  // namespace surf::mc
