@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What keeps rays away, as JSON: for a cube's top, the thesis's mesa, a rough surface and a sphere on a
 // substrate, at 1 keV and one thread: lookups of the distance bound per second, how far bounds fall
-// short of the distance within 3 nm of the surface, and rays per primary.
+// short of the distance within 3 nm of the surface, and rays per primary. Then what distance bounds
+// of waves over a micron take to build, against the number of triangles.
 //   bench_near_field [output.json]
 #include <chrono>
 #include <cmath>
+#include <ctime>
 #include <cstdint>
 #include <fstream>
 #include <string>
@@ -14,6 +16,7 @@
 #include <nlohmann/json.hpp>
 
 #include "face_tree.h"
+#include "near_field.h"
 #include "surf/core/random.h"
 #include "surf/io/sim/materials.h"
 #include "surf/mc/simulate.h"
@@ -134,6 +137,28 @@ json measure(const Case& c) {
           {"primaries_per_second", n / result.seconds}};
 }
 
+json build(int samples) {
+  HeightField f;
+  const double pitch = 1000.0 / samples;
+  f.z_nm = Grid<double>(samples, samples, 0.0);
+  f.pitch_x_nm = f.pitch_y_nm = pitch;
+  for (int y = 0; y < samples; ++y)
+    for (int x = 0; x < samples; ++x)
+      f.z_nm(x, y) = 10 * std::sin(x * pitch / 14) * std::cos(y * pitch / 11);
+  const TriangleMesh mesh = half_space_top(f, 1000);
+  const Box domain = bounds(height_field_sheet(f));
+  const auto begin = std::chrono::steady_clock::now();
+  const std::clock_t used = std::clock();
+  const mc::NearField field(mesh, domain, std::size_t{32} << 20);
+  const double seconds = seconds_since(begin);
+  return {{"case", "build, waves over a micron"},
+          {"triangles", mesh.triangles.size()},
+          {"cell_nm", field.cell_nm()},
+          {"memory_bytes", field.bytes()},
+          {"seconds", seconds},
+          {"processor_seconds", static_cast<double>(std::clock() - used) / CLOCKS_PER_SEC}};
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -142,6 +167,7 @@ int main(int argc, char** argv) {
   out.push_back(measure(field("mesa", make_mesa({398, 398, 2}, 200, 80, 2), Edge::flat, 192)));
   out.push_back(measure(field("rough", make_rough({254, 254, 2}, 8, 25, 1), Edge::periodic, 200)));
   out.push_back(measure(body("sphere on a substrate", make_sphere({0, 0, 25}, 25, 5), true, 80)));
+  for (const int samples : {200, 707, 2000}) out.push_back(build(samples));
   const std::string text = out.dump(2);
   if (argc < 2) fmt::print("{}\n", text);
   else std::ofstream(argv[1]) << text << "\n";

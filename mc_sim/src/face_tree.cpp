@@ -6,75 +6,14 @@
 #include <limits>
 
 #include "surf/core/parallel.h"
+#include "triangle_shape.h"
 
 namespace surf::mc {
 
 namespace {
 
 constexpr std::size_t leaf_size = 4;
-constexpr double needle = 1e-6;    // width over length of triangles whose plane is not trusted
-constexpr double rounding = 1e-9;  // of what is computed from a ball, relative to its radius
-
-Vec3 nearest_on_segment(const Vec3& a, const Vec3& b) {
-  const Vec3 ab = b - a;
-  const double run = dot(ab, ab);
-  const double t = run > 0 ? std::clamp(-dot(a, ab) / run, 0.0, 1.0) : 0.0;
-  return a + ab * t;
-}
-
-// Twice the area, and the square of the longest side.
-struct Shape {
-  Vec3 across;
-  double area2, longest_squared;
-
-  explicit Shape(const Vec3 (&v)[3]) : across(cross(v[1] - v[0], v[2] - v[0])) {
-    area2 = length(across);
-    const Vec3 e[3] = {v[1] - v[0], v[2] - v[1], v[0] - v[2]};
-    longest_squared = std::max({dot(e[0], e[0]), dot(e[1], e[1]), dot(e[2], e[2])});
-  }
-  bool is_needle() const { return !(area2 > needle * longest_squared); }
-};
-
-// The point of a triangle nearest to 0 (Ericson, Real-Time Collision Detection, 5.1.5).
-Vec3 nearest_of_triangle(const Vec3 (&v)[3]) {
-  const Vec3 ab = v[1] - v[0], ac = v[2] - v[0];
-  const double d1 = -dot(ab, v[0]), d2 = -dot(ac, v[0]);
-  if (d1 <= 0 && d2 <= 0) return v[0];
-  const double d3 = -dot(ab, v[1]), d4 = -dot(ac, v[1]);
-  if (d3 >= 0 && d4 <= d3) return v[1];
-  const double vc = d1 * d4 - d3 * d2;
-  if (vc <= 0 && d1 >= 0 && d3 <= 0) return v[0] + ab * (d1 / (d1 - d3));
-  const double d5 = -dot(ab, v[2]), d6 = -dot(ac, v[2]);
-  if (d6 >= 0 && d5 <= d6) return v[2];
-  const double vb = d5 * d2 - d1 * d6;
-  if (vb <= 0 && d2 >= 0 && d6 <= 0) return v[0] + ac * (d2 / (d2 - d6));
-  const double va = d3 * d6 - d5 * d4;
-  if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0)
-    return v[1] + (v[2] - v[1]) * ((d4 - d3) / ((d4 - d3) + (d5 - d6)));
-  const double scale = 1 / (va + vb + vc);
-  return v[0] + ab * (vb * scale) + ac * (vc * scale);
-}
-
-// At most the distance of 0 from the triangle, and the point that it is taken to.
-double distance_of(const Vec3 (&v)[3], Vec3& point) {
-  const Shape shape(v);
-  if (!shape.is_needle()) {
-    point = nearest_of_triangle(v);
-    return length(point);
-  }
-  // As good as its longest side; what lies beside that is allowed for.
-  int longest = 0;
-  double most = -1;
-  for (int i = 0; i < 3; ++i) {
-    const Vec3 e = v[(i + 1) % 3] - v[i];
-    if (dot(e, e) > most) {
-      most = dot(e, e);
-      longest = i;
-    }
-  }
-  point = nearest_on_segment(v[longest], v[(longest + 1) % 3]);
-  return std::max(0.0, length(point) - needle * std::sqrt(most));
-}
+constexpr double rounding = 1e-9;  // of squares of distances
 
 float outward(double v, bool up) {
   const auto f = static_cast<float>(v);
@@ -194,20 +133,17 @@ void FaceTree::bound(std::size_t node, int level) {
   }
 }
 
-// A node on its way, with its box about the centre asked for.
+// A node on its way, with the square of its box's distance from the centre asked for.
 struct FaceTree::Entry {
-  double squared;      // of the distance of the box
-  double rank;         // lower ones go first
-  double low, high;    // for slabs: what the box may hold across it
+  double squared;
   std::size_t node;
   int level;
 };
 
-// Visits the triangles of the leaves that `worth` lets in, which is asked about every node when it
-// is found, may then rank it, and is asked again by `still` when its turn comes.
-template <class Worth, class Still, class Visit>
-void FaceTree::walk(const Vec3& center, const Worth& worth, const Still& still,
-                    const Visit& visit) const {
+// Visits the triangles of the leaves that are nearer than the root of `reach_squared()`, which may
+// shrink on the way; near ones first.
+template <class Reach, class Visit>
+void FaceTree::walk(const Vec3& center, const Reach& reach_squared, const Visit& visit) const {
   if (faces_.empty()) return;
   const Vec3 c = center - origin_;
   std::array<Entry, 80> stack;
@@ -219,25 +155,22 @@ void FaceTree::walk(const Vec3& center, const Worth& worth, const Still& still,
     const double x = std::max(std::max(0.0, lower.x), -upper.x);
     const double y = std::max(std::max(0.0, lower.y), -upper.y);
     const double z = std::max(std::max(0.0, lower.z), -upper.z);
-    e.squared = (x * x + y * y + z * z) * (1 - rounding);
-    e.node = node;
-    e.level = level;
-    return worth(lower, upper, e);
+    e = {(x * x + y * y + z * z) * (1 - rounding), node, level};
+    return e.squared < reach_squared();
   };
   size += found(0, 0, stack[0]) ? 1 : 0;
   while (size > 0) {
     const Entry e = stack[--size];
-    if (!still(e)) continue;
+    if (!(e.squared < reach_squared())) continue;
     if (e.level == levels_) {
       const Range r = range(e.node, e.level);
-      for (std::size_t i = r.first; i < r.last; ++i)
-        if (!visit(faces_[i])) return;
+      for (std::size_t i = r.first; i < r.last; ++i) visit(faces_[i]);
       continue;
     }
     const std::size_t before = size;
     size += found(2 * e.node + 1, e.level + 1, stack[size]) ? 1 : 0;
     size += found(2 * e.node + 2, e.level + 1, stack[size]) ? 1 : 0;
-    if (size == before + 2 && stack[size - 2].rank < stack[size - 1].rank)
+    if (size == before + 2 && stack[size - 2].squared < stack[size - 1].squared)
       std::swap(stack[size - 2], stack[size - 1]);
   }
 }
@@ -245,115 +178,18 @@ void FaceTree::walk(const Vec3& center, const Worth& worth, const Still& still,
 void FaceTree::improve(const Vec3& p, std::uint32_t triangle, Nearest& best) const {
   Vec3 v[3], point;
   corners(triangle, p, v);
-  const double distance = distance_of(v, point);
+  const double distance = distance_of_triangle(v, TriangleShape(v), point);
   if (distance < best.distance) best = {distance, triangle, p + point};
 }
 
 void FaceTree::improve(const Vec3& p, Nearest& best) const {
-  const auto worth = [&](const Vec3&, const Vec3&, Entry& e) {
-    e.rank = e.squared;
-    return e.squared < best.distance * best.distance;
-  };
-  const auto still = [&](const Entry& e) { return e.squared < best.distance * best.distance; };
-  const auto visit = [&](std::uint32_t triangle) {
-    improve(p, triangle, best);
-    return true;
-  };
-  walk(p, worth, still, visit);
+  walk(p, [&] { return best.distance * best.distance; },
+       [&](std::uint32_t triangle) { improve(p, triangle, best); });
 }
 
-FaceTree::Slab FaceTree::slab(const Vec3& center, double radius, const Vec3& n, double tolerance,
-                              double useless) const {
-  Slab s;
-  const double nn = dot(n, n), reach = radius * (1 + rounding), reach_squared = reach * reach;
-  const double margin = rounding * radius;
-  const auto extend = [&](double low, double high) {
-    s.low = std::min(s.low, low);
-    s.high = std::max(s.high, high);
-  };
-  const auto still = [&](const Entry& e) {
-    const double enough = tolerance + 0.1 * (s.high - s.low);
-    if (e.low < s.low - enough || e.high > s.high + enough) return true;
-    extend(e.low, e.high);
-    return false;
-  };
-  const auto worth = [&](const Vec3& lower, const Vec3& upper, Entry& e) {
-    if (e.squared > reach_squared) return false;
-    e.low = std::max(n.x * (n.x > 0 ? lower.x : upper.x) + n.y * (n.y > 0 ? lower.y : upper.y) +
-                         n.z * (n.z > 0 ? lower.z : upper.z), -reach);
-    e.high = std::min(n.x * (n.x > 0 ? upper.x : lower.x) + n.y * (n.y > 0 ? upper.y : lower.y) +
-                          n.z * (n.z > 0 ? upper.z : lower.z), reach);
-    if (s.low > s.high) {
-      e.rank = e.squared;
-      return true;
-    }
-    // What may make the slab thickest goes first, and the rest is then mostly within it.
-    e.rank = std::min(e.low - s.low, s.high - e.high);
-    return still(e);
-  };
-  const auto visit = [&](std::uint32_t triangle) {
-    Vec3 v[3];
-    corners(triangle, center, v);
-    const double a = dot(n, v[0]), b = dot(n, v[1]), c = dot(n, v[2]);
-    double low = std::min({a, b, c}) - margin, high = std::max({a, b, c}) + margin;
-    if (low >= s.low && high <= s.high) return true;
-    const Shape shape(v);
-    if (!shape.is_needle()) {
-      // What lies both in the ball and in the triangle's plane is a disc.
-      const Vec3 m = shape.across * (1 / shape.area2);
-      const double off = dot(m, v[0]);
-      if (std::fabs(off) > reach) return true;
-      const double nm = dot(n, m);
-      const double wide = std::sqrt(std::max(0.0, reach_squared - off * off)) *
-                          std::sqrt(std::max(0.0, nn - nm * nm));
-      low = std::max(low, off * nm - wide - margin);
-      high = std::min(high, off * nm + wide + margin);
-      if (low >= s.low && high <= s.high) return true;
-    }
-    Vec3 point;
-    if (distance_of(v, point) > reach) return true;
-    extend(low, high);
-    if (!(s.low <= -useless && s.high >= useless)) return true;
-    s = {-HUGE_VAL, HUGE_VAL};
-    return false;
-  };
-  walk(center, worth, still, visit);
-  return s;
-}
-
-Vec3 FaceTree::mean_normal(const Vec3& center, double radius) const {
-  Vec3 sum;
-  int left = 32;   // the nearest ones tell
-  const double squared_radius = radius * radius;
-  const auto worth = [&](const Vec3&, const Vec3&, Entry& e) {
-    e.rank = e.squared;
-    return e.squared <= squared_radius;
-  };
-  const auto still = [](const Entry&) { return true; };
-  const auto visit = [&](std::uint32_t triangle) {
-    Vec3 v[3];
-    corners(triangle, center, v);
-    const Shape shape(v);
-    if (shape.is_needle()) return true;
-    const Vec3 m = shape.across * (1 / shape.area2);
-    const double off = dot(m, v[0]);
-    const double disc = 3.14159265 * (squared_radius - off * off);
-    if (disc <= 0) return true;
-    const Vec3 nearest = nearest_of_triangle(v);
-    const double seen = dot(nearest, nearest);
-    if (seen < squared_radius)
-      sum += m * (std::min(0.5 * shape.area2, disc) * (1 - seen / squared_radius));
-    return --left > 0;
-  };
-  walk(center, worth, still, visit);
-  return sum;
-}
-
-Vec3 FaceTree::normal(std::uint32_t triangle) const {
-  Vec3 v[3];
-  corners(triangle, mesh_.vertices_nm[mesh_.triangles[triangle][0]], v);
-  const Shape shape(v);
-  return shape.is_needle() ? Vec3{} : shape.across * (1 / shape.area2);
+void FaceTree::within(const Vec3& p, double radius, std::vector<std::uint32_t>& out) const {
+  const double squared = radius * radius * (1 + rounding);
+  walk(p, [&] { return squared; }, [&](std::uint32_t triangle) { out.push_back(triangle); });
 }
 
 }  // namespace surf::mc

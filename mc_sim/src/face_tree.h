@@ -12,9 +12,9 @@
 namespace surf::mc {
 
 /// A tree of boxes over those triangles of a mesh that come near a region, for questions about the
-/// surface around a point. Answers are conservative: distances are never too large, slabs never too
-/// thin, by more than rounding (1e-6 nm up to millimetres from the origin). The mesh must outlive
-/// the tree unchanged; questions may be asked from several threads at once.
+/// surface around a point. Answers are conservative: distances are never too large by more than
+/// rounding (1e-6 nm up to millimetres from the origin). The mesh must outlive the tree unchanged;
+/// questions may be asked from several threads at once.
 class FaceTree {
  public:
   static constexpr std::uint32_t none = 0xffffffffu;
@@ -35,25 +35,10 @@ class FaceTree {
   /// The same for one triangle: a good guess makes the search short.
   void improve(const Vec3& p, std::uint32_t triangle, Nearest& best) const;
 
-  /// All x of the surface within a ball fulfil low <= n.(x - center) <= high.
-  struct Slab {
-    double low = HUGE_VAL;
-    double high = -HUGE_VAL;
-  };
+  /// Appends the triangles whose boxes come within `radius` of `p`, in the tree's order.
+  void within(const Vec3& p, double radius, std::vector<std::uint32_t>& out) const;
 
-  /// The slab across `n` (length at most 1) of the surface within `radius` of `center`. It may be
-  /// thicker than need be by `tolerance` and 10 %. Once low <= -useless and high >= useless it is
-  /// given up, and holds everything.
-  Slab slab(const Vec3& center, double radius, const Vec3& n, double tolerance,
-            double useless) const;
-
-  /// The sum of the normals of the surface within `radius` of `center`, weighted by about the area
-  /// there, over a few dozen triangles; zero where there is nothing, near zero where walls face each
-  /// other. Good for a guess only.
-  Vec3 mean_normal(const Vec3& center, double radius) const;
-
-  /// The unit normal; zero for a needle, whose plane is not known well.
-  Vec3 normal(std::uint32_t triangle) const;
+  const TriangleMesh& mesh() const { return mesh_; }
 
  private:
   struct Node {   // about origin_, rounded outward
@@ -74,8 +59,8 @@ class FaceTree {
   void bound(std::size_t node, int level);
 
   struct Entry;
-  template <class Worth, class Still, class Visit>
-  void walk(const Vec3& center, const Worth& worth, const Still& still, const Visit& visit) const;
+  template <class Reach, class Visit>
+  void walk(const Vec3& center, const Reach& reach_squared, const Visit& visit) const;
 
   const TriangleMesh& mesh_;
   Vec3 origin_;

@@ -5,6 +5,7 @@
 
 #include "face_tree.h"
 #include "surf/core/parallel.h"
+#include "surface_list.h"
 
 namespace surf::mc {
 
@@ -20,11 +21,12 @@ constexpr double smallest_cell_nm = 0.75;
 constexpr double near_nm = 3;            // bricks farther from a surface are not cut,
 constexpr double flat_nm = 0.05;         // nor those that fall no shorter than this
 constexpr double flat_share = 0.15;      // and this share of their distance
-constexpr double slab_edges = 2.5;       // surfaces farther than this many edges get no slab
-constexpr double most_in_ball = 1000;    // nor where more triangles would be looked at
+constexpr double slab_edges = 1.5;       // surfaces farther than this many edges get no slab
+constexpr double most_in_brick = 150;    // nor bricks where more triangles would be looked at
+constexpr double small_edges = 0.75;     // triangles up to this many edges stand as their corners
 constexpr std::size_t most_bricks = std::size_t{1} << 21;
 // More cells than this would take longer to fill than a coarse surface is worth.
-constexpr double few_cells = 1 << 16, cells_per_triangle = 5, most_cells = 6e5;
+constexpr double few_cells = 1.5e5, cells_per_triangle = 1.5, most_cells = 4e5;
 
 // The mesh's area within the box, at most.
 double area_within(const TriangleMesh& mesh, const Box& box) {
@@ -116,15 +118,28 @@ class NearFieldBuilder {
     field_.nx_ = static_cast<int>(size.x / edge_) + 1;
     field_.ny_ = static_cast<int>(size.y / edge_) + 1;
     field_.nz_ = static_cast<int>(size.z / edge_) + 1;
-    field_.brick_scale_ = static_cast<float>(1 / brick_span);
-    field_.cell_scale_ = static_cast<float>(1 / cell_span);
-    field_.brick_unit_nm_ = static_cast<float>(brick_span * edge_ / steps * (1 - 1e-6));
-    field_.cell_unit_nm_ = static_cast<float>(cell_span * cell_ / steps * (1 - 1e-6));
+    field_.levels_ = {level(1, brick_span), level(NearField::cut, cell_span)};
     field_.cell_nm_ = cell_;
+  }
+
+  NearField::Level level(int cells, double span) const {
+    const double unit = span * edge_ / cells / steps, r = half_diagonal * steps / span;
+    NearField::Level out;
+    out.cells = static_cast<float>(cells);
+    out.last = cells - 1;
+    out.scale = static_cast<float>(1 / span);
+    out.unit_nm = static_cast<float>(unit * (1 - 1e-6));
+    out.beyond = static_cast<float>(std::floor(r));
+    out.inside = static_cast<float>(std::ceil(r));
+    return out;
   }
 
   Vec3 brick_lower(int x, int y, int z) const {
     return field_.lower_ + Vec3{double(x), double(y), double(z)} * edge_;
+  }
+
+  std::vector<SurfaceList> lists() const {
+    return std::vector<SurfaceList>(static_cast<std::size_t>(threads_), SurfaceList(tree_));
   }
 
   // All bricks whole; the answer are those worth cutting.
@@ -132,12 +147,13 @@ class NearFieldBuilder {
     bricks_.assign(field_.index(0, 0, field_.nz_), {});
     std::vector<std::uint8_t> wanted(bricks_.size(), 0);
     const auto ny = static_cast<std::size_t>(field_.ny_);
-    parallel_for(static_cast<std::size_t>(field_.nz_) * ny, threads_, [&](std::size_t row, int) {
+    std::vector<SurfaceList> surface = lists();
+    parallel_for(static_cast<std::size_t>(field_.nz_) * ny, threads_, [&](std::size_t row, int worker) {
       const int y = static_cast<int>(row % ny), z = static_cast<int>(row / ny);
       std::uint32_t guess = FaceTree::none;
       for (int x = 0; x < field_.nx_; ++x) {
         const Vec3 center = brick_lower(x, y, z) + Vec3{0.5, 0.5, 0.5} * edge_;
-        const Fit fit = fitted(center, edge_, brick_span, guess);
+        const Fit fit = brick(center, surface[static_cast<std::size_t>(worker)], guess);
         const std::size_t i = field_.index(x, y, z);
         bricks_[i] = fit.cell;
         wanted[i] = fit.floor_nm < near_nm &&
@@ -171,73 +187,115 @@ class NearFieldBuilder {
     bricks_ = {};
     const auto nx = static_cast<std::uint32_t>(field_.nx_), ny = static_cast<std::uint32_t>(field_.ny_);
     constexpr std::size_t block = 16;
-    parallel_for((cut.size() + block - 1) / block, threads_, [&](std::size_t b, int) {
+    std::vector<SurfaceList> surface = lists();
+    parallel_for((cut.size() + block - 1) / block, threads_, [&](std::size_t b, int worker) {
       for (std::size_t k = b * block; k < std::min(cut.size(), (b + 1) * block); ++k) {
         const std::uint32_t i = cut[k];
         const Vec3 lower = brick_lower(static_cast<int>(i % nx), static_cast<int>(i / nx % ny),
                                        static_cast<int>(i / nx / ny));
-        Cell* out = &cells[field_.bricks_[i] & ~NearField::is_cut];
-        std::uint32_t guess = FaceTree::none;
-        for (int z = 0; z < NearField::cut; ++z)
-          for (int y = 0; y < NearField::cut; ++y)
-            for (int x = 0; x < NearField::cut; ++x)
-              *out++ = fitted(lower + Vec3{x + 0.5, y + 0.5, z + 0.5} * cell_, cell_, cell_span,
-                              guess).cell;
+        fill(lower + Vec3{0.5, 0.5, 0.5} * edge_, surface[static_cast<std::size_t>(worker)],
+             &cells[field_.bricks_[i] & ~NearField::is_cut]);
       }
     });
   }
 
-  static bool same(const Cell& a, const Cell& b) {
-    return a.n == b.n && a.low == b.low && a.high == b.high && a.reach == b.reach &&
-           a.floor == b.floor;
+  // The cells of a brick, by way of its eighths. Cells that are not near the surface get no slab and
+  // need to know little of it.
+  void fill(const Vec3& center, SurfaceList& surface, Cell* out) const {
+    const auto corner = [](int i) {
+      return Vec3{i & 1 ? 0.5 : -0.5, i & 2 ? 0.5 : -0.5, i & 4 ? 0.5 : -0.5};
+    };
+    const double r = half_diagonal * cell_, asked = slab_within(cell_) + 2 * r + 3 * slack_nm;
+    FaceTree::Nearest nearest;
+    tree_.improve(center, nearest);
+    const double all_covered = std::min(nearest.distance + 8 * r + 4 * slack_nm, asked + 3 * r);
+    surface.collect(center, all_covered, small_edges * cell_);
+    SurfaceList::Part part;
+    for (int e = 0; e < 8; ++e) {
+      const Vec3 middle = corner(e) * (0.5 * edge_);
+      const double part_covered = std::min(all_covered - length(middle), asked + r);
+      const double part_distance =
+          std::max(nearest.distance - length(middle),
+                   std::min(surface.nearest(surface.all(), middle).distance, part_covered));
+      const bool is_far = part_distance - r >= slab_within(cell_);
+      if (!is_far) surface.narrow(surface.all(), middle, part_covered, part);
+      for (int c = 0; c < 8; ++c) {
+        const Vec3 offset = corner(c) * cell_;
+        const int x = 2 * (e & 1) + (c & 1), y = (e & 2) + (c >> 1 & 1), z = (e >> 1 & 2) + (c >> 2);
+        const double at_least = std::max(0.0, part_distance - length(offset));
+        out[(z * NearField::cut + y) * NearField::cut + x] =
+            (is_far ? without_slab(at_least, cell_, cell_span)
+                    : fitted(surface, part, middle + offset, at_least, part_covered - length(offset),
+                             cell_, cell_span)).cell;
+      }
+    }
   }
 
   // `guess`: a triangle that is near, or none; left as the nearest.
-  Fit fitted(const Vec3& center, double edge, double span, std::uint32_t& guess) const {
-    const double unit = span * edge / steps, r = half_diagonal * edge, limit = span * edge;
-    FaceTree::Nearest nearest{limit, FaceTree::none, {}};
+  Fit brick(const Vec3& center, SurfaceList& surface, std::uint32_t& guess) const {
+    const double r = half_diagonal * edge_;
+    FaceTree::Nearest nearest{brick_span * edge_, FaceTree::none, {}};
     if (guess != FaceTree::none) tree_.improve(center, guess, nearest);
     tree_.improve(center, nearest);
     guess = nearest.triangle;
-    const double radius = std::min(nearest.distance + 2 * r, limit) - slack_nm;
-    Fit fit;
-    fit.floor_nm = std::max(0.0, nearest.distance - r);
-    fit.shortfall_nm = 0;
-    fit.cell = {};
-    fit.cell.floor = down((fit.floor_nm - slack_nm) / unit);
-    fit.cell.reach = down((radius - r) / unit);
-    fit.cell.low = 32767;
-    fit.cell.high = -32768;
+    const double d = nearest.distance, covered = d + 2 * r + 4 * slack_nm;
     const double in_ball =
-        std::min(static_cast<double>(tree_.size()),
-                 per_area_ * 3.14159265 * (radius * radius - nearest.distance * nearest.distance));
-    if (!(nearest.distance < std::max(near_nm, slab_edges * edge)) || in_ball > most_in_ball) {
-      fit.shortfall_nm = r;
-      fit.cell.low = -32768;   // everywhere: the floor is the bound
-      fit.cell.high = 32767;
-      return fit;
-    }
+        std::min(static_cast<double>(tree_.size()), per_area_ * 3.14159265 * (covered * covered - d * d));
+    if (d >= slab_within(edge_) || in_ball > most_in_brick)
+      return without_slab(d, edge_, brick_span);
+    surface.collect(center, covered, small_edges * edge_);
+    return fitted(surface, surface.all(), {}, d, covered, edge_, brick_span);
+  }
+
+  static bool same(const Cell& a, const Cell& b) {
+    return a.n == b.n && a.low == b.low && a.high == b.high && a.distance == b.distance;
+  }
+
+  static double slab_within(double edge) { return std::max(near_nm, slab_edges * edge); }
+
+  static Fit without_slab(double distance, double edge, double span) {
+    const double r = half_diagonal * edge;
+    Fit fit;
+    fit.floor_nm = std::max(0.0, distance - r);
+    fit.shortfall_nm = r;
+    fit.cell = {};
+    fit.cell.distance = down((distance - slack_nm) * steps / (span * edge));
+    fit.cell.low = -32768;   // everywhere: the floor is the bound
+    fit.cell.high = 32767;
+    return fit;
+  }
+
+  // For the cell around `center`, from a part of the surface that holds all within `covered` of it;
+  // nothing is nearer than `at_least`.
+  Fit fitted(SurfaceList& surface, const SurfaceList::Part& part, const Vec3& center,
+             double at_least, double covered, double edge, double span) const {
+    const double unit = span * edge / steps, r = half_diagonal * edge;
+    const SurfaceList::Nearest nearest = surface.nearest(part, center);
+    const double d = std::max(at_least, std::min(nearest.distance, covered));
+    Fit fit = without_slab(std::min(d, span * edge), edge, span);
+    const double radius = std::min(d + 2 * r + 2 * slack_nm, covered);
+    if (d >= slab_within(edge) || radius < 2 * r + slack_nm) return fit;
+    const Cell base = fit.cell;
+    surface.look_at(part, center, radius);
 
     double best = -1;
     const auto try_normal = [&](const Vec3& n) {
       const double size = length(n);
       if (!(size > 0)) return;
-      const Cell cell = with_slab(fit.cell, center, radius, n * (1 / size), edge, unit,
-                                  0.75 * r - fit.floor_nm);
-      const double sum = mean_bound(cell, 1 / span);
+      Cell cell = with_slab(base, surface, n * (1 / size), unit);
+      cell.distance = down((radius - 2 * r - slack_nm) / unit);
+      const double sum = mean_bound(cell, edge == edge_ ? field_.levels_[0] : field_.levels_[1]);
       if (sum <= best) return;
       best = sum;
       fit.cell = cell;
     };
     // A thin slab cannot be bettered by much.
     const auto is_thin = [&] { return best >= 0 && fit.cell.high - fit.cell.low < 0.1 * edge / unit; };
-    if (nearest.distance > 1e-3 * edge) try_normal(center - nearest.point);
-    else try_normal(tree_.normal(nearest.triangle));
-    if (nearest.distance < r && !is_thin()) try_normal(tree_.mean_normal(center, radius));
+    try_normal(nearest.away);
+    if (d < r && !is_thin()) try_normal(surface.mean_normal());
     if (best < 0) try_normal({0, 0, 1});
     const double middle = std::max<double>(-fit.cell.high, fit.cell.low);
-    fit.shortfall_nm = unit * (nearest.distance > r ? nearest.distance / unit - middle
-                                                    : double(fit.cell.high) - fit.cell.low);
+    fit.shortfall_nm = unit * (d > r ? d / unit - middle : double(fit.cell.high) - fit.cell.low);
     return fit;
   }
 
@@ -245,20 +303,20 @@ class NearFieldBuilder {
     return static_cast<std::uint16_t>(std::clamp(std::floor(v), 0.0, steps));
   }
 
-  // `useless`: a slab that holds [-useless, useless] would hardly raise any bound of the cell.
-  Cell with_slab(Cell cell, const Vec3& center, double radius, const Vec3& n, double edge,
-                 double unit, double useless) const {
+  static Cell with_slab(Cell cell, SurfaceList& surface, const Vec3& n, double unit) {
     // Towards zero: no longer than 1, so gaps do not come out too large.
     const double quantised[3] = {std::trunc(n.x * steps), std::trunc(n.y * steps),
                                  std::trunc(n.z * steps)};
     for (std::size_t k = 0; k < 3; ++k) cell.n[k] = static_cast<std::int16_t>(quantised[k]);
     const Vec3 used = Vec3{quantised[0], quantised[1], quantised[2]} * (1 / steps);
-    const FaceTree::Slab slab = tree_.slab(center, radius, used, 0.01 * edge, useless);
+    const SurfaceList::Slab slab = surface.slab(used);
     // Rounding of single precision in units, besides that of positions in nm.
     const double slack = slack_nm / unit + 0.05;
     const auto clamped = [](double v) {
       return static_cast<std::int16_t>(std::clamp(v, -32768.0, steps));
     };
+    cell.low = 32767;   // nowhere
+    cell.high = -32768;
     if (slab.low <= slab.high) {
       cell.low = clamped(std::floor(slab.low / unit - slack));
       cell.high = clamped(std::ceil(slab.high / unit + slack));
@@ -266,11 +324,11 @@ class NearFieldBuilder {
     return cell;
   }
 
-  static double mean_bound(const Cell& cell, double scale) {
+  static double mean_bound(const Cell& cell, const NearField::Level& level) {
     double sum = 0;
     for (int i = 0; i < 8; ++i)
       sum += NearField::bound(cell, i & 1 ? 0.9f : 0.1f, i & 2 ? 0.9f : 0.1f, i & 4 ? 0.9f : 0.1f,
-                              static_cast<float>(scale), 1);
+                              level);
     return sum;
   }
 

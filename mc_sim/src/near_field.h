@@ -20,7 +20,7 @@ namespace surf::mc {
 /// n.(x - c) = low and high. The ball has the radius d + 2 r, where d is the distance of c from the
 /// surface and r the distance of the brick's or cell's corners from c; a smaller one would limit the
 /// bound, a larger one would only make the slab thicker. At a point p of the cell the bound is
-///   max(d - r, min(gap between p and the slab, d + r)).
+///   max(0, d - r, min(gap between p and the slab, d + r)).
 /// All numbers are kept in 16 bits, rounded so that the bound stays one.
 class NearField {
  public:
@@ -43,19 +43,17 @@ class NearField {
     if (!(x >= 0 && y >= 0 && z >= 0 && x < nx_ && y < ny_ && z < nz_)) return outside_nm(p);
     const int bx = static_cast<int>(x), by = static_cast<int>(y), bz = static_cast<int>(z);
     const std::uint32_t brick = bricks_[index(bx, by, bz)];
-    float fx = static_cast<float>(x - bx), fy = static_cast<float>(y - by);
-    float fz = static_cast<float>(z - bz);
-    if (!(brick & is_cut)) return bound(cells_[brick], fx, fy, fz, brick_scale_, brick_unit_nm_);
-    fx *= cut;
-    fy *= cut;
-    fz *= cut;
+    const Level& level = levels_[brick >> 31];
+    const float fx = static_cast<float>(x - bx) * level.cells;
+    const float fy = static_cast<float>(y - by) * level.cells;
+    const float fz = static_cast<float>(z - bz) * level.cells;
     // A point a rounding error short of the next brick may come out as in it.
-    const int cx = std::min(static_cast<int>(fx), cut - 1);
-    const int cy = std::min(static_cast<int>(fy), cut - 1);
-    const int cz = std::min(static_cast<int>(fz), cut - 1);
+    const int cx = std::min(static_cast<int>(fx), level.last);
+    const int cy = std::min(static_cast<int>(fy), level.last);
+    const int cz = std::min(static_cast<int>(fz), level.last);
     const Cell& cell = cells_[(brick & ~is_cut) + static_cast<std::uint32_t>((cz * cut + cy) * cut + cx)];
     return bound(cell, fx - static_cast<float>(cx), fy - static_cast<float>(cy),
-                 fz - static_cast<float>(cz), cell_scale_, cell_unit_nm_);
+                 fz - static_cast<float>(cz), level);
   }
 
  private:
@@ -67,20 +65,28 @@ class NearField {
   struct Cell {
     std::array<std::int16_t, 3> n;
     std::int16_t low, high;
-    std::uint16_t reach;   // d + r
-    std::uint16_t floor;   // d - r
-    std::uint16_t spare;
+    std::uint16_t distance;   // d
+  };
+
+  // Whole bricks, and cells.
+  struct Level {
+    float cells = 1;          // along a brick
+    int last = 0;             // of them
+    float scale = 0;          // from n.x in cells to units
+    float unit_nm = 0;
+    float beyond = 0;         // r, rounded down
+    float inside = 0;         // r, rounded up
   };
 
   // `x` etc. are within the cell, 0 to 1.
-  static double bound(const Cell& cell, float x, float y, float z, float scale, float unit_nm) {
-    const float t = scale * (static_cast<float>(cell.n[0]) * (x - 0.5f) +
-                             static_cast<float>(cell.n[1]) * (y - 0.5f) +
-                             static_cast<float>(cell.n[2]) * (z - 0.5f));
+  static double bound(const Cell& cell, float x, float y, float z, const Level& level) {
+    const float t = level.scale * (static_cast<float>(cell.n[0]) * (x - 0.5f) +
+                                   static_cast<float>(cell.n[1]) * (y - 0.5f) +
+                                   static_cast<float>(cell.n[2]) * (z - 0.5f));
+    const float d = static_cast<float>(cell.distance);
     const float gap = std::max(t - static_cast<float>(cell.high), static_cast<float>(cell.low) - t);
-    const float b = std::max(std::min(gap, static_cast<float>(cell.reach)),
-                             static_cast<float>(cell.floor));
-    return static_cast<double>(b * unit_nm);
+    const float b = std::max(std::min(gap, d + level.beyond), std::max(d - level.inside, 0.0f));
+    return static_cast<double>(b * level.unit_nm);
   }
 
   std::size_t index(int x, int y, int z) const {
@@ -93,8 +99,7 @@ class NearField {
   Vec3 lower_;
   double bricks_per_nm_ = 0;
   int nx_ = 0, ny_ = 0, nz_ = 0;
-  float brick_scale_ = 0, cell_scale_ = 0;         // from n.x in cells to units
-  float brick_unit_nm_ = 0, cell_unit_nm_ = 0;
+  std::array<Level, 2> levels_;
   double cell_nm_ = 0;
   Box surface_box_;                                // around all triangles
   std::vector<std::uint32_t> bricks_;

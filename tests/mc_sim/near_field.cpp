@@ -147,6 +147,20 @@ TEST(NearField, HoldsFarFromTheOrigin) {
   EXPECT_LT(expect_bounds(box, bounds(box), memory, 40000).mean_nm, 0.1);
 }
 
+TEST(NearField, HoldsForTrianglesSmallerThanItsCellsAmongLargeOnes) {
+  TriangleMesh mesh = make_sphere({3, 2, 20}, 7, 4);   // sides of half a nanometre
+  const TriangleMesh box = make_box({-60, -60, -20}, {60, 60, 10});
+  const auto base = static_cast<std::uint32_t>(mesh.vertices_nm.size());
+  mesh.vertices_nm.insert(mesh.vertices_nm.end(), box.vertices_nm.begin(), box.vertices_nm.end());
+  for (const Triangle& t : box.triangles)
+    mesh.triangles.push_back({base + t[0], base + t[1], base + t[2]});
+  const Shortfall of_fine = expect_bounds(mesh, bounds(mesh), memory, 5000);
+  EXPECT_LT(of_fine.mean_nm, 0.5);
+  expect_bounds(mesh, bounds(mesh), 1 << 18, 2000);
+  const TriangleMesh coarse = make_sphere({0, 0, 0}, 40, 3);   // sides of 5 nm in cells of about 9
+  expect_bounds(coarse, bounds(coarse), 1 << 16, 5000);
+}
+
 TEST(NearField, HoldsForNeedlesAndTrianglesWithoutArea) {
   TriangleMesh mesh;
   RandomStream random(3, 0, 0);
