@@ -132,6 +132,24 @@ Box near_scan(const Box& surface, const Scan& scan, const Beam& beam, double rea
   return box;
 }
 
+// Drops the triangles that no electron comes near, and says how many.
+std::size_t leave_out_unreachable(Assembly& all, std::optional<double> plane_nm, const Box& near,
+                                  double reach) {
+  const double lowest = near.lower_nm.z, highest = std::max(near.upper_nm.z, plane_nm.value_or(-HUGE_VAL));
+  if (all.shells.size() < 2 || highest - lowest <= reach) return 0;
+  const std::vector<std::uint8_t> felt =
+      felt_triangles(all.mesh, all.shell_of, all.shells, plane_nm, near, reach);
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < felt.size(); ++i) {
+    if (!felt[i]) continue;
+    all.mesh.triangles[kept] = all.mesh.triangles[i];
+    all.shell_of[kept++] = all.shell_of[i];
+  }
+  all.mesh.triangles.resize(kept);
+  all.shell_of.resize(kept);
+  return felt.size() - kept;
+}
+
 }  // namespace
 
 Scene::Scene(const Specimen& specimen, const Beam& beam, const Scan& scan, const Physics& physics,
@@ -147,10 +165,12 @@ Scene::Scene(const Specimen& specimen, const Beam& beam, const Scan& scan, const
   s.physics = physics;
   s.materials = specimen.materials;
   double reach = 0;
+  double farthest_reach = 0;   // an electron may pass through all materials on its way
   for (const Material& m : s.materials) {
     s.media.push_back(make_medium(m, physics));
     const double range = s.media.back().range_nm(beam.energy_ev + s.media.back().barrier_ev());
     reach = std::max(reach, std::min(range, 1e6));
+    farthest_reach += range;
   }
   for (const Medium& m : s.media) s.medium_pointers.push_back(&m);
 
@@ -175,6 +195,8 @@ Scene::Scene(const Specimen& specimen, const Beam& beam, const Scan& scan, const
     }
     near.extend(bounds(body.mesh));
   }
+  if (options.leave_out_unreachable && !near.empty())
+    s.summary.triangles_left_out = leave_out_unreachable(all, s.plane_nm, near, farthest_reach);
   s.shells = std::move(all.shells);
   s.solids = std::move(all.solids);
   s.shell_of = std::move(all.shell_of);

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "embree_scene.h"
+#include "felt.h"
 #include "near_field.h"
 #include "sky.h"
 #include "surf/mc/medium.h"
@@ -18,12 +19,6 @@
 #include "transport.h"
 
 namespace surf::mc {
-
-/// A closed connected surface, or the substrate's plane.
-struct Shell {
-  int solid = 0;      ///< which solid it bounds
-  int sense = 1;      ///< 1: normals point out of what it encloses; -1: a cavity
-};
 
 /// A body, height field or substrate. Later ones win where they overlap.
 struct Solid {

@@ -160,6 +160,28 @@ TEST(Scene, SeesHollowsInBodies) {
   EXPECT_EQ(r.balance.total_lost(), 0);
 }
 
+TEST(Scene, LeavesOutWhatNoElectronReachesAndChangesNothing) {
+  Specimen s = nested();
+  s.bodies.push_back({"block", make_box({-200, -200, -600}, {200, 200, 0}, 4), 0});
+  s.bodies.push_back({"buried", make_box({-50, -50, -400}, {50, 50, -300}, 4), 1});
+  SceneOptions whole;
+  whole.leave_out_unreachable = false;
+  const Scene all(s, {}, square_scan(40, 4), {}, whole), some(s, {}, square_scan(40, 4));
+  EXPECT_EQ(all.summary().triangles_left_out, 0u);
+  EXPECT_GE(some.summary().triangles_left_out, s.bodies[1].mesh.triangles.size());
+  EXPECT_EQ(some.summary().triangles + some.summary().triangles_left_out, all.summary().triangles);
+  const auto nowhere = [](const Vec3&) { return 0; };
+  // Watched, so that no electron is given up early: which ones are depends on the bounds.
+  Inside one(nowhere), other(nowhere);
+  const Balance a = observe(all, one, 20), b = observe(some, other, 20);
+  EXPECT_EQ(one.segments, other.segments);
+  EXPECT_EQ(a.se, b.se);
+  EXPECT_EQ(a.bse, b.bse);
+  EXPECT_EQ(a.absorbed, b.absorbed);
+  EXPECT_EQ(a.escaped_energy.ev(), b.escaped_energy.ev());
+  EXPECT_EQ(a.deposited_energy.ev(), b.deposited_energy.ev());
+}
+
 TEST(Scene, MissesAreMarked) {
   Specimen s = nested();
   s.bodies.push_back({"ball", make_sphere({0, 0, 0}, 10, 3), 0});

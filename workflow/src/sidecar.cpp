@@ -63,6 +63,7 @@ Json balance_json(const mc::Balance& b) {
 
 Json scene_json(const mc::SceneSummary& s) {
   return {{"triangles", s.triangles},
+          {"triangles_left_out", s.triangles_left_out},
           {"shells", s.shells},
           {"memory_bytes", s.memory_bytes},
           {"grid_cell_nm", s.grid_cell_nm},

@@ -18,10 +18,15 @@ struct SceneOptions {
   /// Memory for bounds of the distance to the nearest surface, bytes, about (>= 0; 0: none, every
   /// step asks for the surface). They change speed, not results.
   std::size_t distance_grid_bytes = std::size_t{32} << 20;
+  /// Whether to leave out triangles that neither the beam nor any electron can reach: those farther
+  /// from all vacuum open to the outside than the ranges at beam energy in all materials together.
+  /// It changes no detector's mean or variance.
+  bool leave_out_unreachable = true;
 };
 
 struct SceneSummary {
   std::size_t triangles = 0;          ///< as traced (with a height field's continuation)
+  std::size_t triangles_left_out = 0; ///< besides: out of every electron's reach
   std::size_t shells = 0;             ///< connected closed surfaces
   std::size_t memory_bytes = 0;       ///< triangles, ray-tracing structures, distance bounds
   double grid_cell_nm = 0;            ///< finest cells of the distance bounds; 0 without
