@@ -9,6 +9,7 @@
 #include "surf/io/files.h"
 #include "surf/io/image_file.h"
 #include "temporary_folder.h"
+#include "warnings.h"
 
 namespace surf::workflow {
 namespace {
@@ -101,22 +102,18 @@ TEST(Accuracy, TooShortATimeGivesTheCoarseImage) {
 }
 
 TEST(Accuracy, WarnsWhereItIsNotReached) {
-  const TemporaryFolder folder;
-  SimulateJob job = accurate_job(folder.path() / "image.exr");
-  job.scene.accuracy = 1;
-  job.scene.accuracy_floor = 1e-5;   // of a detector that counts next to nothing
-  mc::Detector rare = mc::default_detectors()[1];
-  rare.name = "rare";
-  rare.min_energy_ev = 499.99;
-  job.options.detectors.push_back(rare);
-  const SimulateSummary s = run(job);
-  if (s.statistics.missed > 0) {
-    ASSERT_FALSE(s.warnings.empty());
-    EXPECT_THAT(s.warnings.back(), HasSubstr("did not reach the accuracy of 100 %"));
-    EXPECT_THAT(io::read_image(job.outputs[0]).metadata.at("warning.1"), HasSubstr("did not reach"));
-  } else {
-    EXPECT_TRUE(s.warnings.empty());
-  }
+  mc::SimulationResult result;
+  result.accuracy = 0.02;
+  mc::ResultSummary summary;
+  summary.seen = 50;
+  EXPECT_THAT(warn_after(result, summary), testing::IsEmpty());
+  summary.missed = 5;
+  summary.worst = 1.5;
+  EXPECT_THAT(warn_after(result, summary),
+              testing::ElementsAre("5 of 50 pixels (10 %) did not reach the accuracy of 2 %; the worst "
+                                   "standard error is 1.5 times what was asked for"));
+  result.complete = false;   // says so itself
+  EXPECT_THAT(warn_after(result, summary), testing::IsEmpty());
 }
 
 TEST(Accuracy, DepositedEnergyCannotBeHadWithIt) {
