@@ -53,7 +53,8 @@ class Reader {
   std::string_view rest_;
 };
 
-// A batch of units: its first unit, the primaries (or pixels) in it, those of the whole job as a double; then
+// A batch of units: its first unit, the primaries (or pixels) in it, those of the whole job as a
+// double; then
 // each unit's number, size and tally.
 struct BatchHead {
   std::uint64_t first_unit;
