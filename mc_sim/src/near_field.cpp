@@ -21,8 +21,8 @@ constexpr double smallest_cell_nm = 0.75;
 constexpr double near_nm = 3;            // bricks farther from a surface are not cut,
 constexpr double flat_nm = 0.05;         // nor those that fall no shorter than this
 constexpr double flat_share = 0.15;      // and this share of their distance
-constexpr double slab_edges = 1.5;       // surfaces farther than this many edges get no slab
-constexpr double most_in_brick = 150;    // nor bricks where more triangles would be looked at
+constexpr double slab_edges = 2.5;       // surfaces farther than this many edges get no slab
+constexpr double most_in_brick = 1500;   // nor bricks where more triangles would be looked at
 constexpr double small_edges = 0.75;     // triangles up to this many edges stand as their corners
 constexpr std::size_t most_bricks = std::size_t{1} << 21;
 // More cells than this would take longer to fill than a coarse surface is worth.
