@@ -109,6 +109,9 @@ void print_summary(const workflow::SimulateJob& job, const workflow::SimulateSum
   print_models(s);
   print_electrons(s);
   print_speed(job, s);
+  if (s.scene.triangles_left_out > 0)
+    print_line("left out", fmt::format("{} triangles that no electron reaches",
+                                       format_count(double(s.scene.triangles_left_out))));
   std::string label = "written";
   for (const auto& path : s.written) {
     print_line(label, path.string());

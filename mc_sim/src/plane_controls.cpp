@@ -166,6 +166,7 @@ std::shared_ptr<const PlaneControl> PlaneControls::make(int material, const Vec3
   Replay<HalfSpace> replay(geometry, scene_.medium_pointers, libraries, scene_.physics.barrier,
                            turns, direct, detection, balance);
   replay.surroundings({{}, normal, HUGE_VAL, true, 1, 0});
+  replay.steady(true);
   const Vec3 beam = -against_;
   HalfSpace::Surface entry;
   int state = 0;

@@ -196,6 +196,10 @@ class Replay {
                                     : 0;
   }
 
+  /// Whether a surface that lies a little otherwise shall change fates little, so that they can be
+  /// compared with those on a plane. It costs time, and changes no statistics.
+  void steady(bool steady) { steady_ = steady; }
+
   /// A primary with this cascade will come soon, and enter this material.
   void fetch(int material, std::size_t cascade) const {
     const CascadeLibrary* library = media_[static_cast<std::size_t>(material)].library;
@@ -472,7 +476,14 @@ class Replay {
       }
       if (moved != Moved::no && watching(branch))
         note_turn(vec3(branch.point(vertex) - branch.point(before)));
-      if (branch.bent && EnergyCode::forgets(vertex)) come_home(branch, vertex);
+      if (branch.bent && steady_ && EnergyCode::forgets(vertex)) {
+        come_home(branch, vertex);
+        if (!flat_.whole || branch.strayed) {   // what comes may leave the surroundings
+          ++branch.moves;
+          flat = false;
+        }
+        to = branch.point(vertex);
+      }
       if (node.births & 1u << i) {
         follow_birth(view, birth, branch, vertex, flat, high);
         ++birth;
@@ -745,6 +756,7 @@ class Replay {
   FlatSurroundings<State> flat_;
   Float4 flat_normal_{}, flat_point_{};
   double flat_step_ev_ = 0;
+  bool steady_ = false;
 
   // Of the current primary:
   ReplayedPrimary primary_;

@@ -31,7 +31,9 @@ SiteReplay::SiteReplay(const Scene::Impl& scene, const SimulationOptions& option
       direct_(geometry_, scene.medium_pointers, scene.physics.barrier, true, nobody_, detection_,
               balance_),
       replay_(geometry_, scene.medium_pointers, pointers(libraries), scene.physics.barrier,
-              any_origin(options.detectors), direct_, detection_, balance_) {}
+              any_origin(options.detectors), direct_, detection_, balance_) {
+  replay_.steady(options.accuracy > 0 && options.planar_control);
+}
 
 ReplaySite SiteReplay::site(int x, int y, bool look_around) {
   ReplaySite site;

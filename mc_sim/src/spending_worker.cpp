@@ -145,10 +145,13 @@ class SpendingWorker : public UnitWorker {
     return std::max(options_.accuracy * mean, options_.accuracy_floor);
   }
 
-  // How many primaries bring a detector's standard error down to the target.
+  // How many primaries bring a detector's standard error down to the target. With n of them and N
+  // cascades behind the control's mean the square of the error is, at most (SimulationResult::yield),
+  //   v / n + share^2 + 2 sqrt(v / N) share.
   double needed(double variance, double mean, double share) const {
     const double t = target(mean);
-    const double room = t * t - share * share;
+    const double room = t * t - share * share -
+                        2 * std::sqrt(variance / static_cast<double>(cascades_)) * share;
     return room > 0 ? variance / room : HUGE_VAL;
   }
 
