@@ -12,10 +12,9 @@
 #include <span>
 #include <vector>
 
-#include <Random123/philox.h>
-
 #include "cascade_format.h"
 #include "detection.h"
+#include "surf/core/random.h"
 #include "surf/core/vec3.h"
 #include "surf/mc/barrier.h"
 #include "surf/mc/cascade_library.h"
@@ -35,7 +34,6 @@ struct ReplayedPrimary {
 
 /// Random numbers of a replayed primary, a function of the primary and of where in the cascade they
 /// are drawn: in two specimens that are nearly alike the same cascade meets nearly the same fate.
-/// Philox4x32 with 7 rounds passes all of BigCrush (doi:10.1145/2063384.2063405).
 class ReplayRandom {
  public:
   void begin(const ReplayedPrimary& p) {
@@ -54,7 +52,7 @@ class ReplayRandom {
 
   double uniform() {
     if (left_ == 0) {
-      block_ = r123::Philox4x32_R<7>{}(counter_, key_);
+      block_ = random_block(key_, counter_);
       ++counter_[0];
       left_ = 4;
     }
@@ -63,9 +61,9 @@ class ReplayRandom {
 
  private:
   static constexpr std::uint32_t first_block = std::uint32_t{1} << 31;   // beyond RandomStream's
-  r123::Philox4x32_R<7>::key_type key_{};
-  r123::Philox4x32_R<7>::ctr_type counter_{};
-  r123::Philox4x32_R<7>::ctr_type block_{};
+  std::array<std::uint32_t, 2> key_{};
+  std::array<std::uint32_t, 4> counter_{};
+  std::array<std::uint32_t, 4> block_{};
   int left_ = 0;
 };
 
@@ -171,7 +169,7 @@ class Replay {
            const ReplayedPrimary& primary) {
     begin(direction, energy_ev, primary);
     Free electron{start, direction, energy_ev, state};
-    if (fly(electron, 0)) enter(electron);
+    if (fly(electron, 0)) enter(electron, surface_.normal);
     end();
     return hit_;
   }
@@ -182,7 +180,8 @@ class Replay {
     begin(direction, energy_ev, primary);
     hit_ = true;
     Free electron{surface.position, direction, energy_ev, state};
-    if (pass(electron, surface, 0) || fly(electron, 0)) enter(electron);
+    if (pass(electron, surface, 0)) enter(electron, surface.normal);
+    else if (fly(electron, 0)) enter(electron, surface_.normal);
     end();
   }
 
@@ -320,13 +319,15 @@ class Replay {
     return geometry_.material(e.state) >= 0;
   }
 
-  void enter(const Free& e) {
+  // A hair inside: where the first scattering is packed into the very point of entry, and that lies on
+  // an edge, what starts there could leave unseen between two faces.
+  void enter(const Free& e, const Vec3& normal) {
     const int material = geometry_.material(e.state);
     const CascadeLibrary* library = media_[static_cast<std::size_t>(material)].library;
     if (!library) return hand_over(e, 0);
     const std::uint64_t* root = library->cascade(primary_.cascade).data();
     cascade_begin_ = root;
-    here_ = e.position;
+    here_ = e.position + normal * (dot(normal, e.direction) > 0 ? inside_nm : -inside_nm);
     remember(NodeView(root));
     Branch branch;
     home_ = beam_frame(e.direction, primary_.azimuth);
@@ -741,6 +742,7 @@ class Replay {
   }
 
   static constexpr double here_nm = 0.01;   // nearer than this, two places are one
+  static constexpr double inside_nm = 1e-4;
   static constexpr int most_bounces = 1000;
   static constexpr int most_joined = 2000;
   static constexpr std::uint64_t hand_over_stream = std::uint64_t{1} << 41;

@@ -19,7 +19,7 @@ namespace surf::test {
 
 struct PackedElectron {
   std::vector<Vec3> points_nm;
-  std::vector<int> energies;                   ///< as packed
+  std::vector<int> energies;                   ///< as packed, without the bit for what is forgotten
   std::map<std::size_t, std::size_t> births;   ///< number of the point to that of the electron
   double unit_nm = 0;
   double blur_nm = 0;                          ///< how far rounding may have moved its points
@@ -27,7 +27,7 @@ struct PackedElectron {
 
 class CascadeReader {
  public:
-  /// `cutoff_ev` and `top_ev` are what the packed energies 0 and 65535 stand for.
+  /// `cutoff_ev` and `top_ev` are what the packed energies 0 and 32767 stand for.
   CascadeReader(std::span<const std::uint64_t> words, double cutoff_ev, double top_ev,
                 double barrier_ev)
       : words_(words), cutoff_ev_(cutoff_ev), top_ev_(top_ev), barrier_ev_(barrier_ev) {
@@ -37,7 +37,7 @@ class CascadeReader {
   std::vector<PackedElectron> electrons;       ///< the primary first
 
   double energy_ev(int packed) const {
-    const double share = packed / 65535.0;
+    const double share = packed / 32767.0;
     return cutoff_ev_ + share * share * (top_ev_ - cutoff_ev_);
   }
 
@@ -79,7 +79,7 @@ class CascadeReader {
     Part part;
     const auto keep = [&](std::uint64_t word) {
       electrons[electron].points_nm.push_back(origin + point(word) * unit);
-      electrons[electron].energies.push_back(static_cast<int>(bits(word, 48, 16)));
+      electrons[electron].energies.push_back(static_cast<int>(bits(word, 49, 15)));
       part.points.push_back(electrons[electron].points_nm.back());
     };
     const std::uint64_t start = words_[at + 2];
@@ -87,7 +87,7 @@ class CascadeReader {
     std::vector<std::size_t> bearing;          // points
     if (electrons[electron].points_nm.empty()) keep(start);
     EXPECT_EQ(electrons[electron].points_nm.back(), origin + point(start) * unit);
-    EXPECT_EQ(electrons[electron].energies.back(), static_cast<int>(bits(start, 48, 16)));
+    EXPECT_EQ(electrons[electron].energies.back(), static_cast<int>(bits(start, 49, 15)));
     part.points.assign(1, origin + point(start) * unit);
     for (std::size_t i = 0; level == 0 && i < count; ++i) {
       keep(words_[next++]);

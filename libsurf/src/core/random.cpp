@@ -7,6 +7,13 @@
 
 namespace surf {
 
+std::array<std::uint32_t, 4> random_block(const std::array<std::uint32_t, 2>& key,
+                                          const std::array<std::uint32_t, 4>& counter) {
+  const auto block = r123::Philox4x32_R<7>{}({{counter[0], counter[1], counter[2], counter[3]}},
+                                             {{key[0], key[1]}});
+  return {block[0], block[1], block[2], block[3]};
+}
+
 RandomStream::RandomStream(std::uint64_t seed, std::uint64_t pixel, std::uint64_t electron) {
   constexpr std::uint64_t limit = std::uint64_t{1} << 48;
   if (pixel >= limit || electron >= limit)

@@ -1,9 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <array>
 #include <cstdint>
 
 namespace surf {
+
+/// Four uniform 32-bit words, a function of key and counter: Philox4x32 with 7 rounds, the fewest that
+/// pass all of BigCrush (Salmon et al., SC11, doi:10.1145/2063384.2063405).
+std::array<std::uint32_t, 4> random_block(const std::array<std::uint32_t, 2>& key,
+                                          const std::array<std::uint32_t, 4>& counter);
 
 /// A stream of random numbers that is a pure function of (seed, pixel, electron): Philox4x32-10
 /// (Salmon et al., SC11, doi:10.1145/2063384.2063405). Threads, tiles and ranks play no part.
