@@ -21,7 +21,7 @@ DATA = pathlib.Path(__file__).parent / "data"
 PROGRAM = pathlib.Path(sys.argv[1]).resolve()
 TIMEOUT_SECONDS = 240
 JOB = ["simulate", "cube.off", "--material", "Si", "--substrate", "Si", "--size", "40x40",
-       "--electrons", "50", "--spectra", "--checkpoint-every", "0.1s"]
+       "--electrons", "50", "--method", "direct", "--spectra", "--checkpoint-every", "0.1s"]
 OUTPUTS = ["image.exr", "image.spectra.csv"]
 
 faults = []

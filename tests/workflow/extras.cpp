@@ -110,7 +110,7 @@ TEST(Extras, RefuseWhatCannotBe) {
   const TemporaryFolder folder;
   SimulateJob job = job_in(folder, "a");
   job.extras.channels = {"slope"};
-  EXPECT_THAT(refusal(job), HasSubstr("z_nm, normal and material"));
+  EXPECT_THAT(refusal(job), HasSubstr("z_nm, normal, material"));
   job.extras = {{}, 5000, 0, {}};
   EXPECT_THAT(refusal(job), HasSubstr("--deposit"));
   job.extras = {{}, 0, -1, {}};
