@@ -23,41 +23,62 @@ class ReplayWorker : public UnitWorker {
   void simulate(const WorkUnit& unit, Observer*, UnitTally& out) override {
     clear(out, unit, options_.detectors.size());
     replay_.balance() = {};
-    for (int y = unit.y0; y < unit.y1; ++y)
-      for (int x = unit.x0; x < unit.x1; ++x) pixel(unit, x, y, out);
+    look(unit);
+    if (pixels_.empty()) return;
+    const std::uint64_t blocks = pixels_.front().subset.blocks();
+    for (std::uint64_t block = 0; block < blocks; ++block)
+      for (std::size_t i = 0; i < pixels_.size(); ++i)
+        serve(pixels_[i], block, static_cast<std::uint64_t>(unit.first_electron),
+              out.pixels.data()[i], i, out);
     out.balance += replay_.balance();
     out.spectra = replay_.detection().take_spectra();
   }
 
  private:
-  void pixel(const WorkUnit& unit, int x, int y, UnitTally& out) {
-    const std::uint64_t number = share_.number(x, y);
-    const std::int64_t end = std::min(share_.of(x, y), unit.first_electron + unit.electrons);
-    const ReplaySite site =
-        replay_.site(x, y, end - unit.first_electron >= worth_looking_around);
-    replay_.go_to(site);
-    // The pixel's own stream has electrons as its last coordinate; this is beyond all of them.
-    RandomStream own(options_.seed, number, subset_stream);
-    const std::uint32_t a = own.bits(), b = own.bits();
-    const Subset subset(cascades_, a, b);
-    PixelTally& pixel = out.pixels(x - unit.x0, y - unit.y0);
-    pixel.model = PixelModel::replay;
-    for (std::int64_t e = unit.first_electron; e < end; ++e) {
-      const auto electron = static_cast<std::uint64_t>(e);
-      Gun::Start start = site.middle;
-      if (!site.single) {
-        RandomStream random(options_.seed, number, electron);
-        start = replay_.gun().primary(x, y, random);
+  struct Pixel {
+    int x, y;
+    std::uint64_t number;
+    std::uint64_t end;        // of its primaries
+    ReplaySite site;
+    Subset subset;
+  };
+
+  void look(const WorkUnit& unit) {
+    pixels_.clear();
+    for (int y = unit.y0; y < unit.y1; ++y)
+      for (int x = unit.x0; x < unit.x1; ++x) {
+        const std::uint64_t number = share_.number(x, y);
+        const std::int64_t end = std::min(share_.of(x, y), unit.first_electron + unit.electrons);
+        // The pixel's own stream has electrons as its last coordinate; this is beyond all of them.
+        RandomStream own(options_.seed, number, subset_stream);
+        const std::uint32_t a = own.bits(), b = own.bits();
+        pixels_.push_back({x, y, number, static_cast<std::uint64_t>(std::max<std::int64_t>(end, 0)),
+                           replay_.site(x, y, end - unit.first_electron >= worth_looking_around),
+                           Subset(cascades_, a, b)});
       }
-      ReplayedPrimary primary{options_.seed, number, electron, subset[electron], 0};
+  }
+
+  // The pixel's primaries with cascades of a block.
+  void serve(const Pixel& p, std::uint64_t block, std::uint64_t first, PixelTally& tally,
+             std::size_t place, UnitTally& out) {
+    bool there = false;
+    p.subset.each_of_block(block, first, p.end, [&](std::uint64_t electron, std::size_t cascade) {
+      if (!there) replay_.go_to(p.site);
+      there = true;
+      Gun::Start start = p.site.middle;
+      if (!p.site.single) {
+        RandomStream random(options_.seed, p.number, electron);
+        start = replay_.gun().primary(p.x, p.y, random);
+      }
+      ReplayedPrimary primary{options_.seed, p.number, electron, cascade, 0};
       primary.azimuth = azimuth_of(primary);
-      replay_.fetch(site, subset[electron + 1]);
-      pixel.hits += replay_.run(site, start, primary) ? 1 : 0;
-      ++pixel.primaries;
+      tally.model = PixelModel::replay;
+      tally.hits += replay_.run(p.site, start, primary) ? 1 : 0;
+      ++tally.primaries;
       for (std::size_t d = 0; d < out.counts.size(); ++d)
-        out.counts[d](x - unit.x0, y - unit.y0).add(replay_.detection().counts()[d]);
+        out.counts[d].data()[place].add(replay_.detection().counts()[d]);
       replay_.detection().end_primary();
-    }
+    });
   }
 
   static constexpr std::uint64_t subset_stream = std::uint64_t{1} << 42;
@@ -66,6 +87,7 @@ class ReplayWorker : public UnitWorker {
   Share share_;
   SiteReplay replay_;
   std::size_t cascades_ = 0;
+  std::vector<Pixel> pixels_;
 };
 
 }  // namespace

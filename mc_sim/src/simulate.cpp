@@ -53,13 +53,14 @@ void check_options(const SimulationOptions& options) {
     throw UsageError("--accuracy", "direct simulation cannot serve it", "Use --method replay");
 }
 
-// Units of work: runs of pixels along a row. Long counts of electrons are split, so that one pixel
+// Units of work: runs of pixels along a row, or tiles where they are replayed. Long counts of electrons are split, so that one pixel
 // can keep all threads busy. Numbered rather than listed: there may be very many.
 class Plan {
  public:
   Plan(const Scan& scan, const SimulationOptions& options) : scan_(scan) {
     if (options.accuracy > 0) {   // a pixel looks at its neighbours within the tile: fixed tiles
       run_ = height_ = tile;
+      by_pixel_ = true;
       runs_ = (scan.width + tile - 1) / tile;
       total_ = static_cast<double>(scan.width) * scan.height;
       return;
@@ -76,10 +77,18 @@ class Plan {
       most_ = options.electrons;
       total_ = static_cast<double>(options.electrons) * scan.width * scan.height;
     }
-    const std::int64_t pixels = std::max<std::int64_t>(1, most_primaries / most_);
-    run_ = static_cast<int>(std::min<std::int64_t>({options.tile_pixels, pixels, scan.width}));
+    std::int64_t pixels = std::max<std::int64_t>(1, chunk_ / most_);
+    std::int64_t longest = scan.width;
+    if (options.method == Method::replay) {   // pixels of a tile share what they read of the library
+      chunk_ = replayed_chunk;
+      pixels = std::clamp<std::int64_t>(4 * chunk_ / most_, 1, tile * tile);
+      longest = std::min(longest, std::int64_t{tile});
+    }
+    pixels = std::min<std::int64_t>(pixels, options.tile_pixels);
+    run_ = static_cast<int>(std::min(pixels, longest));
     runs_ = (scan.width + run_ - 1) / run_;
-    chunks_ = (most_ + most_primaries - 1) / most_primaries;
+    if (options.method == Method::replay) height_ = static_cast<int>(pixels / run_);
+    chunks_ = (most_ + chunk_ - 1) / chunk_;
   }
 
   /// Of any pixel.
@@ -88,8 +97,8 @@ class Plan {
   /// Primaries; with a wanted accuracy, pixels.
   double total() const { return total_; }
   double done(const WorkUnit& unit, const UnitTally& tally) const {
-    return height_ == 1 ? static_cast<double>(tally.balance.incident)
-                        : static_cast<double>(unit.x1 - unit.x0) * (unit.y1 - unit.y0);
+    return by_pixel_ ? static_cast<double>(unit.x1 - unit.x0) * (unit.y1 - unit.y0)
+                     : static_cast<double>(tally.balance.incident);
   }
 
   std::size_t units() const {
@@ -99,17 +108,20 @@ class Plan {
 
   WorkUnit unit(std::size_t number) const {
     const auto n = static_cast<std::int64_t>(number);
-    const std::int64_t first = n % chunks_ * most_primaries;
+    const std::int64_t first = n % chunks_ * chunk_;
     const int x = static_cast<int>(n / chunks_ % runs_) * run_;
     const int y = static_cast<int>(n / chunks_ / runs_) * height_;
     return {x, y, std::min(x + run_, scan_.width), std::min(y + height_, scan_.height), first,
-            std::min(most_primaries, most_ - first)};
+            std::min(chunk_, most_ - first)};
   }
 
  private:
-  static constexpr std::int64_t most_primaries = 4096;   // a fraction of a second
+  static constexpr std::int64_t direct_chunk = 4096;   // primaries: a fraction of a second
+  static constexpr std::int64_t replayed_chunk = 16 * direct_chunk;
   static constexpr int tile = 32;
   Scan scan_;
+  bool by_pixel_ = false;
+  std::int64_t chunk_ = direct_chunk;
   int height_ = 1;
   std::int64_t most_ = 1;
   double total_ = 0;
