@@ -48,6 +48,33 @@ void filter(const RTCFilterFunctionNArguments* args) {
     args->valid[0] = 0;
 }
 
+// In double, on the source triangle, with its barycentric coordinates kept inside.
+EmbreeScene::Hit hit_of(const TriangleMesh& mesh, std::uint32_t triangle, const Vec3& origin,
+                        const Vec3& direction) {
+  const Triangle& t = mesh.triangles[triangle];
+  const Vec3& a = mesh.vertices_nm[t[0]];
+  const Vec3 ab = mesh.vertices_nm[t[1]] - a;
+  const Vec3 ac = mesh.vertices_nm[t[2]] - a;
+  const Vec3 normal = cross(ab, ac);
+  const double determinant = dot(normal, direction);
+  const Vec3 q = cross(origin - a, direction);
+  double u = -dot(ac, q) / determinant;
+  double v = dot(ab, q) / determinant;
+  u = std::clamp(u, 0.0, 1.0);
+  v = std::clamp(v, 0.0, 1.0);
+  if (u + v > 1.0) {
+    const double excess = 0.5 * (u + v - 1.0);
+    u = std::clamp(u - excess, 0.0, 1.0);
+    v = 1.0 - u;
+  }
+  EmbreeScene::Hit hit;
+  hit.triangle = triangle;
+  hit.position = a + ab * u + ac * v;
+  hit.normal = normal * (1.0 / std::sqrt(dot(normal, normal)));
+  hit.distance = std::max(0.0, dot(hit.position - origin, direction));
+  return hit;
+}
+
 }  // namespace
 
 struct EmbreeScene::Impl {
@@ -148,29 +175,65 @@ bool EmbreeScene::nearest(const Vec3& origin, const Vec3& direction, double leng
   rtcIntersect1(impl_->scene, &context.embree, &ray);
   if (ray.hit.geomID == RTC_INVALID_GEOMETRY_ID) return false;
 
-  // In double, on the source triangle, with its barycentric coordinates kept inside.
-  const Triangle& t = impl_->mesh.triangles[ray.hit.primID];
-  const Vec3& a = impl_->mesh.vertices_nm[t[0]];
-  const Vec3 ab = impl_->mesh.vertices_nm[t[1]] - a;
-  const Vec3 ac = impl_->mesh.vertices_nm[t[2]] - a;
-  const Vec3 normal = cross(ab, ac);
-  const double determinant = dot(normal, direction);
-  const Vec3 q = cross(origin - a, direction);
-  double u = -dot(ac, q) / determinant;
-  double v = dot(ab, q) / determinant;
-  u = std::clamp(u, 0.0, 1.0);
-  v = std::clamp(v, 0.0, 1.0);
-  if (u + v > 1.0) {
-    const double excess = 0.5 * (u + v - 1.0);
-    u = std::clamp(u - excess, 0.0, 1.0);
-    v = 1.0 - u;
-  }
-  hit.triangle = ray.hit.primID;
-  hit.position = a + ab * u + ac * v;
-  hit.normal = normal * (1.0 / std::sqrt(dot(normal, normal)));
-  hit.distance = std::max(0.0, dot(hit.position - origin, direction));
+  hit = hit_of(impl_->mesh, ray.hit.primID, origin, direction);
   return true;
 }
+
+bool EmbreeScene::nearest_of(std::span<const std::uint32_t> faces, const Vec3& origin,
+                             const Vec3& direction, double length, Accept accept, void* user,
+                             Hit& hit) const {
+  const TriangleMesh& mesh = impl_->mesh;
+  double nearest = length;
+  bool found = false;
+  for (const std::uint32_t face : faces) {
+    const Triangle& t = mesh.triangles[face];
+    const Vec3 a = mesh.vertices_nm[t[0]] - origin;
+    const Vec3 b = mesh.vertices_nm[t[1]] - origin;
+    const Vec3 c = mesh.vertices_nm[t[2]] - origin;
+    // On which side of each edge the ray passes. Two triangles with a common edge get exactly opposite
+    // answers for it, so nothing slips through between them.
+    const double u = dot(direction, cross(b, c));
+    const double v = dot(direction, cross(c, a));
+    const double w = dot(direction, cross(a, b));
+    if (!((u >= 0 && v >= 0 && w >= 0) || (u <= 0 && v <= 0 && w <= 0))) continue;
+    const Vec3 normal = cross(b - a, c - a);
+    const double along = dot(normal, direction);
+    const double distance = dot(a, normal) / along;
+    // Not where the path lies in the triangle's plane, or the triangle has none.
+    if (!std::isfinite(distance) || distance < -interface_nm || distance > nearest) continue;
+    if (!accept(user, face, along / std::sqrt(dot(normal, normal)), distance)) continue;
+    nearest = distance;
+    hit.triangle = face;
+    found = true;
+  }
+  if (found) hit = hit_of(mesh, hit.triangle, origin, direction);
+  return found;
+}
+
+bool EmbreeScene::within(const Vec3& point, double radius, std::size_t most,
+                         std::vector<std::uint32_t>& out) const {
+  struct Search {
+    std::vector<std::uint32_t>& out;
+    std::size_t most;
+  } search{out, out.size() + most};
+  const Vec3 local = point - impl_->center;
+  RTCPointQuery query{static_cast<float>(local.x), static_cast<float>(local.y),
+                      static_cast<float>(local.z), 0.0f,
+                      static_cast<float>(radius + 2 * impl_->start_back)};
+  RTCPointQueryContext context;
+  rtcInitPointQueryContext(&context);
+  const auto collect = [](RTCPointQueryFunctionArguments* args) {
+    auto& s = *static_cast<Search*>(args->userPtr);
+    s.out.push_back(args->primID);
+    if (s.out.size() <= s.most) return false;
+    args->query->radius = 0;   // enough
+    return true;
+  };
+  rtcPointQuery(impl_->scene, &query, &context, collect, &search);
+  return search.out.size() <= search.most;
+}
+
+const TriangleMesh& EmbreeScene::mesh() const { return impl_->mesh; }
 
 namespace {
 

@@ -4,6 +4,8 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -11,6 +13,9 @@
 #include "surf/mesh/triangle_mesh.h"
 
 namespace surf::mc {
+
+/// All triangles that a path can meet; none: not known.
+using KnownFaces = std::optional<std::span<const std::uint32_t>>;
 
 /// Nearest triangles along rays. Embree proposes hits in single precision, about the mesh's centre;
 /// each one is recomputed in double on the source triangle, to a point exactly on it.
@@ -37,6 +42,17 @@ class EmbreeScene {
   /// down what was crossed already. `nudge` displaces the search alone, not the hit.
   bool nearest(const Vec3& origin, const Vec3& direction, double length, Accept accept, void* user,
                Hit& hit, const Vec3& nudge = {}) const;
+
+  /// The same among `faces` alone, in double throughout: for short ways whose triangles are known.
+  bool nearest_of(std::span<const std::uint32_t> faces, const Vec3& origin, const Vec3& direction,
+                  double length, Accept accept, void* user, Hit& hit) const;
+
+  /// Appends all triangles within `radius` of a point, and maybe some that are not. False, and nothing
+  /// is known, where there would be more than `most`.
+  bool within(const Vec3& point, double radius, std::size_t most,
+              std::vector<std::uint32_t>& out) const;
+
+  const TriangleMesh& mesh() const;
 
   /// The largest radius up to `most` within which all triangles about a point lie in the plane through
   /// it, but for `tolerance`, and belong to one shell; a little smaller where rounding asks for it,

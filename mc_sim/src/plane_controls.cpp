@@ -35,7 +35,7 @@ class HalfSpace {
   bool flies_free(const Vec3& p, const Vec3& d) const { return dot(p, normal_) >= 0 && dot(d, normal_) > 0; }
 
   Crossing crossing(const Vec3& start, const Vec3& direction, double most, State& state,
-                    Surface& surface) const {
+                    Surface& surface, const KnownFaces& = {}) const {
     const double height = dot(start, normal_), rate = dot(direction, normal_);
     if (state == 0 ? rate >= 0 : rate <= 0) return Crossing::none;
     const double distance = std::max(0.0, -height / rate);

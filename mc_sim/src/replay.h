@@ -6,7 +6,6 @@
 // turns and moves it. Statistically nothing distinguishes it from transport.h, whose Geometry it
 // shares.
 
-#include <array>
 #include <cmath>
 #include <limits>
 #include <span>
@@ -14,118 +13,21 @@
 
 #include "cascade_format.h"
 #include "detection.h"
-#include "surf/core/random.h"
+#include "replay_random.h"
+#include "rotation.h"
 #include "surf/core/vec3.h"
 #include "surf/mc/barrier.h"
 #include "surf/mc/cascade_library.h"
 #include "surf/mc/tally.h"
+#include "surface_patch.h"
 #include "transport.h"
 
 namespace surf::mc {
-
-/// Which primary is replayed: what its random numbers depend on, and what it replays.
-struct ReplayedPrimary {
-  std::uint64_t seed = 1;
-  std::uint64_t pixel = 0;       ///< below 2^48, like `electron`
-  std::uint64_t electron = 0;
-  std::size_t cascade = 0;       ///< of the material that it enters
-  double azimuth = 0;            ///< of the cascade about its first direction, in turns, [0, 1)
-};
-
-/// Random numbers of a replayed primary, a function of the primary and of where in the cascade they
-/// are drawn: in two specimens that are nearly alike the same cascade meets nearly the same fate.
-class ReplayRandom {
- public:
-  void begin(const ReplayedPrimary& p) {
-    key_ = {{static_cast<std::uint32_t>(p.seed), static_cast<std::uint32_t>(p.seed >> 32)}};
-    counter_ = {{0, static_cast<std::uint32_t>(p.electron), static_cast<std::uint32_t>(p.pixel),
-                 static_cast<std::uint32_t>(p.pixel >> 32) << 16 |
-                     static_cast<std::uint32_t>(p.electron >> 32)}};
-    at(0);
-  }
-
-  /// From now on draws belong to `event`, counted modulo 2^23.
-  void at(std::uint32_t event) {
-    counter_[0] = first_block | (event << 8 & (first_block - 1));
-    left_ = 0;
-  }
-
-  double uniform() {
-    if (left_ == 0) {
-      block_ = random_block(key_, counter_);
-      ++counter_[0];
-      left_ = 4;
-    }
-    return (block_[static_cast<std::size_t>(--left_)] + 0.5) * 0x1p-32;
-  }
-
- private:
-  static constexpr std::uint32_t first_block = std::uint32_t{1} << 31;   // beyond RandomStream's
-  std::array<std::uint32_t, 2> key_{};
-  std::array<std::uint32_t, 4> counter_{};
-  std::array<std::uint32_t, 4> block_{};
-  int left_ = 0;
-};
-
-/// A random azimuth for a primary, in turns.
-inline double azimuth_of(const ReplayedPrimary& primary) {
-  ReplayRandom random;
-  random.begin(primary);
-  random.at(1);   // no vertex comes first in a cascade
-  return random.uniform();
-}
-
-/// Four floats that the processor works on at once: x, y, z and one to spare.
-using Float4 = float __attribute__((vector_size(16)));
-
-inline Float4 float4(const Vec3& v) {
-  return Float4{static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z), 0};
-}
-inline Vec3 vec3(const Float4& v) { return {v[0], v[1], v[2]}; }
-inline float squared_length(const Float4& v) { return v[0] * v[0] + v[1] * v[1] + v[2] * v[2]; }
 
 /// x, y, z of a packed vertex or sphere.
 inline Float4 coordinates(std::uint64_t word) {
   using Short4 = std::int16_t __attribute__((vector_size(8)));
   return __builtin_convertvector(std::bit_cast<Short4>(word), Float4);
-}
-
-/// A proper or improper rotation, by columns.
-struct Rotation {
-  Float4 x{1, 0, 0, 0}, y{0, 1, 0, 0}, z{0, 0, 1, 0};
-
-  Float4 operator()(const Float4& v) const { return x * v[0] + y * v[1] + z * v[2]; }
-  Rotation operator*(const Rotation& b) const { return {(*this)(b.x), (*this)(b.y), (*this)(b.z)}; }
-  Rotation operator*(float scale) const { return {x * scale, y * scale, z * scale}; }
-};
-
-/// The mirror in a plane with this unit normal.
-inline Rotation mirror(const Vec3& normal) {
-  const Float4 n = float4(normal);
-  const Rotation one;
-  return {one.x - n * (2 * n[0]), one.y - n * (2 * n[1]), one.z - n * (2 * n[2])};
-}
-
-/// Takes the unit vector `from` to `to`, by the mirror in the plane between them: the medium has no
-/// handedness.
-inline Rotation turn(const Vec3& from, const Vec3& to) {
-  const Vec3 between = from - to;
-  const double squared = dot(between, between);
-  return squared < 1e-24 ? Rotation{} : mirror(between * (1.0 / std::sqrt(squared)));
-}
-
-/// Takes -z to `to` by the smallest rotation, after a turn about z by `azimuth` turns in [0, 2).
-inline Rotation beam_frame(const Vec3& to, double azimuth) {
-  double s, c;
-  sin_cos_turn(azimuth, s, c);
-  const auto sine = static_cast<float>(s), cosine = static_cast<float>(c);
-  const Rotation about_z{{cosine, sine, 0, 0}, {-sine, cosine, 0, 0}, {0, 0, 1, 0}};
-  if (to.z > 0.9) return turn({0, 0, -1}, to) * about_z;   // there is no smallest one straight up
-  const double k = 1.0 / (1.0 - to.z);
-  const Rotation tilt{float4({1 - k * to.x * to.x, -k * to.x * to.y, to.x}),
-                      float4({-k * to.x * to.y, 1 - k * to.y * to.y, to.y}),
-                      float4({-to.x, -to.y, -to.z})};
-  return tilt * about_z;
 }
 
 /// A ball around a point of the surface in which all surface lies in one plane, with matter on one
@@ -185,10 +87,13 @@ class Replay {
     end();
   }
 
-  /// What is known of the surface around the next primaries; it changes nothing but time.
-  void surroundings(const FlatSurroundings<State>& flat) {
+  /// What is known of the surface around the next primaries; it changes nothing but time. `patch`:
+  /// null, or one that stays until the next call.
+  void surroundings(const FlatSurroundings<State>& flat, const SurfacePatch* patch = nullptr) {
     flat_ = flat;
-    flat_normal_ = float4(flat.normal);
+    patch_ = patch;
+    frame_ = patch ? patch->frame() : Frame{};
+    flat_normal_ = float4(frame_.direction_in(flat.normal));
     // Nothing is reflected for certain where the barrier is off: it has no step then.
     flat_step_ev_ = flat.radius > 0 ? barrier_of(geometry_.material(flat.inside)) -
                                           barrier_of(geometry_.material(flat.outside))
@@ -221,16 +126,18 @@ class Replay {
     State state;
   };
 
-  // An electron that is followed along its branch. Places count from `here_`.
+  // An electron that is followed along its branch, in `frame_`.
   struct Branch {
     Float4 origin{};     // its first point
-    Rotation scaled;     // from the branch's coordinates to the specimen's axes, nm
+    Rotation scaled;     // from the branch's coordinates, nm
     Float4 height{};     // above the flat surroundings' plane: of the coordinates, and of the origin
+    Float4 rise{};       // the same along the frame's z
     State state{};
     int material = 0;
     int generation = 0;  // 0: the primary
     int exponent = 0;    // of the branch's unit
-    int moves = 0;       // other than mirrors in that plane
+    int changes = 0;     // of how it lies
+    int moves = 0;       // those other than mirrors in that plane
     bool strayed = false;     // came otherwise than through matter from the ball's centre
     bool bent = false;        // at a surface, since it last forgot its direction
 
@@ -240,6 +147,11 @@ class Replay {
       exponent = to;
       scaled = scaled * ratio;
       height = height * Float4{ratio, ratio, ratio, 1};
+      rise = rise * Float4{ratio, ratio, ratio, 1};
+    }
+    void lay() {
+      rise = Float4{scaled.x[2], scaled.y[2], scaled.z[2], origin[2]};
+      ++changes;
     }
     Float4 point(std::uint64_t word) const {
       const Float4 v = coordinates(word);
@@ -249,9 +161,20 @@ class Replay {
       const Float4 v = coordinates(word) * height;
       return v[0] + v[1] + v[2] + height[3];
     }
+    float rise_of(std::uint64_t word) const {
+      const Float4 v = coordinates(word) * rise;
+      return v[0] + v[1] + v[2] + rise[3];
+    }
     float radius(std::uint64_t sphere) const {
       return static_cast<float>(sphere >> 48) * power_of_two(exponent);
     }
+  };
+
+  // What is known of the surface around a part of a branch. Heights are above the flat surroundings'
+  // plane where that is all the surface there is; else along the frame's z.
+  struct Near {
+    bool flat = false;
+    Band band;
   };
 
   // Where in a branch to begin other than at its start: where its energy falls to this.
@@ -327,24 +250,34 @@ class Replay {
     if (!library) return hand_over(e, 0);
     const std::uint64_t* root = library->cascade(primary_.cascade).data();
     cascade_begin_ = root;
-    here_ = e.position + normal * (dot(normal, e.direction) > 0 ? inside_nm : -inside_nm);
+    const Vec3 here = e.position + normal * (dot(normal, e.direction) > 0 ? inside_nm : -inside_nm);
+    if (!patch_) frame_.origin = here;   // where floats are finest
     remember(NodeView(root));
     Branch branch;
-    home_ = beam_frame(e.direction, primary_.azimuth);
+    home_ = rotation_in(frame_, beam_frame(e.direction, primary_.azimuth));
+    beam_in_ = float4(frame_.direction_in(beam_));
+    branch.origin = float4(frame_.in(here));
     branch.scaled = home_;
     branch.state = e.state;
     branch.material = material;
-    flat_point_ = float4(flat_.point - here_);
-    branch.strayed = squared_length(flat_point_) > here_nm * here_nm;
-    follow(root, branch, false);
+    flat_point_ = float4(frame_.in(flat_.point));
+    branch.strayed = squared_length(branch.origin - flat_point_) > here_nm * here_nm;
+    branch.lay();
+    follow(root, branch, {});
   }
 
   void note_turn(const Vec3& direction) {
     if (dot(direction, beam_) < 0) turned_ = true;
   }
+  void note_turn(const Float4& way) {
+    const Float4 along = way * beam_in_;
+    if (along[0] + along[1] + along[2] < 0) turned_ = true;
+  }
 
-  double clearance(const Float4& p) const {
-    return geometry_.clearance({here_.x + p[0], here_.y + p[1], here_.z + p[2]});
+  // Whether no surface comes into a ball.
+  bool is_clear(const Float4& center, float radius) const {
+    if (patch_ && patch_->band(center, radius).is_clear(center[2], radius)) return true;
+    return geometry_.clearance(frame_.out(vec3(center))) > radius;
   }
 
   void remember(const NodeView& view) {
@@ -366,46 +299,61 @@ class Replay {
     return watch_turns_ && branch.generation == 0 && !turned_;
   }
 
-  // Whether all of a sphere stays inside the material. `flat`: the flat surroundings' plane is all the
-  // surface there is; becomes true where the sphere lies in them.
-  bool passed_over(Branch& branch, std::uint64_t sphere, bool& flat) const {
+  // Whether all of a sphere stays inside the material; else `near` is what is known around it.
+  bool passed_over(Branch& branch, std::uint64_t sphere, Near& near) const {
     const float radius = branch.radius(sphere);
-    if (flat) return std::fabs(branch.height_of(sphere)) > radius && !watching(branch);
+    if (near.flat) return std::fabs(branch.height_of(sphere)) > radius && !watching(branch);
+    const float height = branch.rise_of(sphere);
+    if (near.band.is_clear(height, radius)) return !watching(branch);
     const Float4 center = branch.point(sphere);
-    if (clearance(center) > radius && !watching(branch)) return true;
+    if (lies_flat(branch, center, radius)) {
+      near.flat = true;
+      return std::fabs(branch.height_of(sphere)) > radius && !watching(branch);
+    }
+    near.band = {};
+    if (patch_) {
+      near.band = patch_->band(center, radius);
+      if (near.band.is_clear(height, radius)) return !watching(branch);
+      if (near.band.high - near.band.low < radius) return false;   // it is met
+    }
+    return geometry_.clearance(frame_.out(vec3(center))) > radius && !watching(branch);
+  }
+
+  // Whether a sphere lies in the flat surroundings. The branch then gets heights above their plane.
+  bool lies_flat(Branch& branch, const Float4& center, float radius) const {
     if (branch.state != flat_.inside) return false;
     if (!flat_.whole || branch.strayed) {
       const double room = flat_.radius - radius;
       if (!(room > 0) || squared_length(center - flat_point_) > room * room) return false;
     }
-    flat = true;
     const auto along = [n = flat_normal_](const Float4& v) {
       return n[0] * v[0] + n[1] * v[1] + n[2] * v[2];
     };
     branch.height = Float4{along(branch.scaled.x), along(branch.scaled.y), along(branch.scaled.z),
                            along(branch.origin - flat_point_)};
-    return std::fabs(branch.height_of(sphere)) > radius && !watching(branch);
+    return true;
   }
 
   // Follows an electron through a node; false when it is gone. What it then does not generate is
   // taken off the account.
-  bool follow(const std::uint64_t* at, Branch& branch, bool flat, const Middle* middle = nullptr) {
+  bool follow(const std::uint64_t* at, Branch& branch, Near near, const Middle* middle = nullptr) {
     const NodeView view(at);
     branch.scale(view.node.exponent);
-    if (view.node.level == 0) return follow_segments(view, branch, flat, middle);
+    if (view.node.level == 0) return follow_segments(view, branch, near, middle);
     int i = 0;
     if (middle) {
       i = child_at(view, *middle, branch.material);
       for (int k = i + 1; k < view.node.count; ++k) remember(NodeView(view.child(k)));
-      if (!follow(view.child(i), branch, false, middle)) return forget_from(view, i + 1);
+      if (!follow(view.child(i), branch, {}, middle)) return forget_from(view, i + 1);
       ++i;
     }
     for (; i < view.node.count; ++i) {
-      bool child_flat = flat;
-      if (passed_over(branch, view.spheres()[i], child_flat)) continue;
-      const int moves = branch.moves;
-      if (!follow(view.child(i), branch, child_flat)) return forget_from(view, i + 1);
-      flat = flat && branch.moves == moves;
+      Near of_child = near;
+      if (passed_over(branch, view.spheres()[i], of_child)) continue;
+      const int moves = branch.moves, changes = branch.changes;
+      if (!follow(view.child(i), branch, of_child)) return forget_from(view, i + 1);
+      if (branch.moves != moves) near = {};
+      else if (branch.changes != changes) near.band = {};
     }
     return true;
   }
@@ -433,78 +381,71 @@ class Replay {
     return i;
   }
 
-  bool follow_segments(const NodeView& view, Branch& branch, bool flat, const Middle* middle) {
+  bool follow_segments(const NodeView& view, Branch& branch, Near near, const Middle* middle) {
     const PackedNode& node = view.node;
     int i = 0, birth = 0;
     double energy = 0;   // 0: as packed
     std::uint64_t before = std::bit_cast<std::uint64_t>(node.start);
-    Float4 from{};       // not kept up while `flat`
     if (middle) {
       i = segment_at(view, *middle, branch.material);
       birth = std::popcount(node.births & ((1u << i) - 1));
       remember_births(view, birth, branch.material);
       energy = middle->energy;
-      from = float4(middle->position - here_);
-    } else {
-      from = branch.point(before);
     }
-    float low = flat ? branch.height_of(before) : 0;
+    const auto height_of = [&](std::uint64_t word) {
+      return near.flat ? branch.height_of(word) : branch.rise_of(word);
+    };
+    float low = height_of(before);
     for (; i < node.count; ++i) {
       const std::uint64_t vertex = *view.vertex(i);
       Moved moved = Moved::no;
-      float high = 0;
-      Float4 to{};
-      if (flat) {
-        high = branch.height_of(vertex);
-        if (watching(branch)) note_turn(vec3(branch.point(vertex) - branch.point(before)));
+      float high = height_of(vertex);
+      const auto way_from = [&](const Float4& from) { return branch.point(vertex) - from; };
+      if (near.flat) {
+        if (watching(branch)) note_turn(way_from(branch.point(before)));
         if (high > 0) moved = cross_plane(view, i, before, low, high, branch);
-        if (moved == Moved::mirrored) high = -high;
-      } else {
-        to = branch.point(vertex);
-        const Float4 way = to - from;
-        if (watching(branch)) note_turn(vec3(way));
-        const double clear = clearance(from + way * 0.5f);
-        if (4 * clear * clear <= squared_length(way)) {
+      } else if (watching(branch) || middle || !near.band.is_beside(low, high)) {
+        const Float4 from = middle ? float4(frame_.in(middle->position)) : branch.point(before);
+        const Float4 way = way_from(from);
+        if (watching(branch)) note_turn(way);
+        if (!is_clear(from + way * 0.5f, 0.5f * std::sqrt(squared_length(way)))) {
           if (energy == 0) energy = energy_before(view, i, branch.material);
           random_.at(event(view.vertex(i)));
           moved = cross_segment(from, way, energy, branch);
         }
       }
       if (moved == Moved::gone) return forget_births(view, birth, branch.material);
-      if (moved == Moved::yes) {
-        flat = false;
-        to = branch.point(vertex);
-      }
-      if (moved != Moved::no && watching(branch))
-        note_turn(vec3(branch.point(vertex) - branch.point(before)));
-      if (branch.bent && steady_ && EnergyCode::forgets(vertex)) {
+      if (moved == Moved::yes) near = {};
+      if (moved != Moved::no && watching(branch)) note_turn(way_from(branch.point(before)));
+      const bool goes_home = branch.bent && steady_ && EnergyCode::forgets(vertex);
+      if (goes_home) {
         come_home(branch, vertex);
         if (!flat_.whole || branch.strayed) {   // what comes may leave the surroundings
           ++branch.moves;
-          flat = false;
+          near = {};
         }
-        to = branch.point(vertex);
       }
+      if (moved != Moved::no || goes_home) high = height_of(vertex);
       if (node.births & 1u << i) {
-        follow_birth(view, birth, branch, vertex, flat, high);
+        follow_birth(view, birth, branch, vertex, near);
         ++birth;
       }
+      middle = nullptr;
       energy = 0;
       before = vertex;
-      from = to;
       low = high;
     }
     return true;
   }
 
-  void follow_birth(const NodeView& view, int birth, Branch& parent, std::uint64_t vertex, bool flat,
-                    float height) {
-    if (passed_over(parent, view.spheres()[birth], flat)) return;
+  void follow_birth(const NodeView& view, int birth, Branch& parent, std::uint64_t vertex, Near near) {
+    if (passed_over(parent, view.spheres()[birth], near)) return;
     Branch child = parent;
     child.origin = parent.point(vertex);
-    child.height[3] = flat ? parent.height_of(vertex) : height;
+    child.height[3] = parent.height_of(vertex);
+    child.rise[3] = child.origin[2];
     child.generation = parent.generation + 1;
-    follow(view.child(birth), child, flat);
+    follow(view.child(birth), child, near);
   }
 
   void remember_births(const NodeView& view, int birth, int material) {
@@ -560,9 +501,9 @@ class Replay {
     const Float4 from = branch.point(before);
     const double whole = std::sqrt(squared);
     // Of unit length to the last bit, or `move` would mirror what goes on straight.
-    const Vec3 direction = normalized(vec3(branch.scaled(units)));
+    const Vec3 direction = normalized(frame_.direction_out(vec3(branch.scaled(units))));
     const Packed& m = media_[static_cast<std::size_t>(branch.material)];
-    Vec3 met_at = here_ + vec3(from) + direction * (share * whole);
+    Vec3 met_at = frame_.out(vec3(from)) + direction * (share * whole);
     met_at -= flat_.normal * dot(met_at - flat_.point, flat_.normal);
     surface_.distance = share * whole;
     surface_.position = surface_.position_ahead = met_at;
@@ -585,8 +526,8 @@ class Replay {
     }
     move(branch, direction, met_at, e);
     const double left = whole - share * whole;
-    if (left > 0 && cross_segment(float4(e.position - here_), float4(e.direction * left), e.energy,
-                                  branch) == Moved::gone)
+    if (left > 0 && cross_segment(float4(frame_.in(e.position)),
+                                  float4(frame_.direction_in(e.direction) * left), e.energy, branch) == Moved::gone)
       return Moved::gone;
     return Moved::yes;
   }
@@ -600,6 +541,7 @@ class Replay {
     branch.origin = flat_point_ + mirrored(branch.origin - flat_point_);
     branch.height = -branch.height;
     branch.bent = true;
+    branch.lay();
   }
 
   // Where an electron is scattered into all directions alike, the rest of its branch may lie as it
@@ -616,30 +558,66 @@ class Replay {
     branch.height = Float4{along(branch.scaled.x), along(branch.scaled.y), along(branch.scaled.z), 0};
     branch.height[3] = height - branch.height_of(vertex);
     branch.bent = false;
+    branch.lay();
   }
 
   // The rest of the branch goes on from where the electron is, in its direction.
   void move(Branch& branch, const Vec3& direction, const Vec3& met_at, const Free& e) const {
-    const Rotation motion = turn(direction, e.direction);
-    branch.origin = float4(e.position - here_) + motion(branch.origin - float4(met_at - here_));
+    const Rotation motion = turn(frame_.direction_in(direction), frame_.direction_in(e.direction));
+    branch.origin = float4(frame_.in(e.position)) + motion(branch.origin - float4(frame_.in(met_at)));
     branch.scaled = motion * branch.scaled;
     branch.state = e.state;
     ++branch.moves;
     branch.bent = true;
+    branch.lay();
+  }
+
+  // The first surface on a way. Where triangles are many it is looked for bit by bit, each with few of
+  // them.
+  Crossing crossing(const Vec3& from, const Vec3& direction, double left, State& state) {
+    if (patch_) {
+      const Vec3 begin = frame_.in(from), along = frame_.direction_in(direction);
+      double done = 0, bit = left;
+      for (;;) {
+        const Float4 middle = float4(begin + along * (done + 0.5 * bit));
+        const auto radius = static_cast<float>(0.5 * bit);
+        const bool clear = patch_->band(middle, radius).is_clear(middle[2], radius);
+        if (!clear) {
+          const KnownFaces known = patch_->faces(middle, radius);
+          if (!known) {
+            if (bit < shortest_bit_nm) break;
+            bit *= 0.5;
+            continue;
+          }
+          State ahead = state;
+          const Crossing met = geometry_.crossing(from, direction, done + bit, ahead, surface_, known);
+          if (met != Crossing::none) {
+            state = ahead;
+            return met;
+          }
+          if (ahead != state) break;   // between bodies of one material: all faces must be known
+        }
+        done += bit;
+        if (done >= left) return Crossing::none;
+        bit = std::min(2 * bit, left - done);
+      }
+    }
+    if (geometry_.clearance(from + direction * (0.5 * left)) > 0.5 * left) return Crossing::none;
+    ++balance_.rays;
+    return geometry_.crossing(from, direction, left, state, surface_);
   }
 
   // A segment that may meet surfaces. What happens there moves the rest of the branch.
   Moved cross_segment(const Float4& start, const Float4& way, double energy, Branch& branch) {
-    Vec3 from = here_ + vec3(start);
-    Vec3 direction = vec3(way);
+    Vec3 from = frame_.out(vec3(start));
+    Vec3 direction = frame_.direction_out(vec3(way));
     double left = length(direction);
     if (!(left > 0)) return Moved::no;
     direction *= 1.0 / left;
     const Packed& m = media_[static_cast<std::size_t>(branch.material)];
     Moved moved = Moved::no;
     for (int bounces = 0;; ++bounces) {
-      ++balance_.rays;
-      const Crossing met = geometry_.crossing(from, direction, left, branch.state, surface_);
+      const Crossing met = crossing(from, direction, left, branch.state);
       if (met == Crossing::none) return moved;
       if (met == Crossing::wrong_side || bounces > most_bounces) {
         lose(met == Crossing::wrong_side ? LossCause::wrong_side : LossCause::too_many_steps,
@@ -699,16 +677,18 @@ class Replay {
     const Vec3 begin = a + along * std::clamp(done, 0.0, whole);
     Branch branch;
     const Rotation before_joining = home_;
-    home_ = beam_frame(e.direction, random_.uniform()) * turn(along, {0, 0, -1});
+    home_ = rotation_in(frame_, beam_frame(e.direction, random_.uniform())) *
+            turn(along, {0, 0, -1});
     branch.scaled = home_;
-    branch.origin = float4(e.position - here_) - branch.scaled(float4(begin));
+    branch.origin = float4(frame_.in(e.position)) - branch.scaled(float4(begin));
     branch.state = e.state;
     branch.material = material;
     branch.generation = generation;
     branch.strayed = true;
+    branch.lay();
     const std::uint64_t* const cascade = cascade_begin_;
     cascade_begin_ = root;
-    follow(root, branch, false, &middle);
+    follow(root, branch, {}, &middle);
     cascade_begin_ = cascade;
     home_ = before_joining;
   }
@@ -743,6 +723,7 @@ class Replay {
 
   static constexpr double here_nm = 0.01;   // nearer than this, two places are one
   static constexpr double inside_nm = 1e-4;
+  static constexpr double shortest_bit_nm = 0.1;
   static constexpr int most_bounces = 1000;
   static constexpr int most_joined = 2000;
   static constexpr std::uint64_t hand_over_stream = std::uint64_t{1} << 41;
@@ -756,6 +737,7 @@ class Replay {
   std::vector<Packed> media_;
   typename Geometry::Surface surface_;   // scratch
   FlatSurroundings<State> flat_;
+  const SurfacePatch* patch_ = nullptr;
   Float4 flat_normal_{}, flat_point_{};
   double flat_step_ev_ = 0;
   bool steady_ = false;
@@ -764,7 +746,8 @@ class Replay {
   ReplayedPrimary primary_;
   ReplayRandom random_;
   Vec3 beam_;
-  Vec3 here_;       // where places count from
+  Float4 beam_in_{};   // in `frame_`
+  Frame frame_;
   Rotation home_;   // how the cascade lay when it entered
   bool hit_ = false;
   bool turned_ = false;

@@ -11,6 +11,11 @@ namespace {
 // Surfaces are no better known than this; what deviates less from a plane is a plane.
 constexpr double plane_nm = 1e-6;
 
+// Pixels that share a patch: their surfaces are no farther apart and no more turned than this.
+constexpr double shared_nm = 4, shared_cosine = 0.9;
+constexpr int most_shared = 8;           // pixels along a block
+constexpr std::size_t most_patches = 512;
+
 bool any_origin(const std::vector<Detector>& detectors) {
   return std::any_of(detectors.begin(), detectors.end(),
                      [](const Detector& d) { return d.origin != Origin::any; });
@@ -32,10 +37,21 @@ SiteReplay::SiteReplay(const Scene::Impl& scene, const SimulationOptions& option
               balance_),
       replay_(geometry_, scene.medium_pointers, pointers(libraries), scene.physics.barrier,
               any_origin(options.detectors), direct_, detection_, balance_) {
+  const double pixel_nm = std::max({scene.scan.pixel_x_nm, scene.scan.pixel_y_nm, 1e-6});
+  block_ = std::clamp(static_cast<int>(shared_nm / pixel_nm), 1, most_shared);
   replay_.steady(options.accuracy > 0 && options.planar_control);
 }
 
 ReplaySite SiteReplay::site(int x, int y, bool look_around) {
+  ReplaySite site = site_alone(x, y);
+  if (!site.hit || !look_around) return site;
+  if (site.before == 0) find_plane(site);
+  if (!site.flat.whole && scene_.triangles) site.patch = patch(x, y, site);
+  return site;
+}
+
+// What the beam meets first.
+ReplaySite SiteReplay::site_alone(int x, int y) {
   ReplaySite site;
   site.middle = gun_.middle(x, y);
   site.single = scene_.beam.spot_nm == 0 && scene_.beam.convergence_deg == 0;
@@ -44,12 +60,32 @@ ReplaySite SiteReplay::site(int x, int y, bool look_around) {
   site.hit = met == Crossing::surface;
   if (!site.hit) return site;
   site.material = geometry_.material(site.surface.state_ahead);
-  if (!look_around) return site;
   const Vec3& n = site.surface.normal;
   site.flat = {site.surface.position, dot(n, site.middle.direction) > 0 ? -n : n, 0, false,
                site.surface.state_ahead, site.before};
-  if (site.before == 0) find_plane(site);
   return site;
+}
+
+// Neighbours share a patch: that of the pixel in the middle of their block, where the surface there is
+// near enough and about as steep. Which one a pixel gets depends on the scan alone, as the frame's
+// rounding may decide an electron's fate.
+std::shared_ptr<const SurfacePatch> SiteReplay::patch(int x, int y, const ReplaySite& site) {
+  const auto own = [&](const ReplaySite& s) {
+    return std::make_shared<const SurfacePatch>(*scene_.triangles, scene_.plane_nm,
+                                                s.surface.position, s.flat.normal);
+  };
+  if (patches_.size() > most_patches) patches_.clear();
+  const auto [at, is_new] = patches_.try_emplace({x / block_, y / block_});
+  if (is_new) {
+    const ReplaySite middle =
+        site_alone(std::min(x / block_ * block_ + block_ / 2, scene_.scan.width - 1),
+                   std::min(y / block_ * block_ + block_ / 2, scene_.scan.height - 1));
+    if (middle.hit) at->second = {middle.flat.normal, own(middle)};
+  }
+  const BlockPatch& block = at->second;
+  const bool near = block.patch && dot(block.normal, site.flat.normal) > shared_cosine &&
+                    length(block.patch->frame().origin - site.surface.position) < shared_nm;
+  return near ? block.patch : own(site);
 }
 
 double SiteReplay::range_nm(int material) const {

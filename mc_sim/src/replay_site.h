@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <map>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "gun.h"
@@ -20,6 +22,7 @@ struct ReplaySite {
   SceneGeometry::Surface surface;     ///< where it meets it
   FlatSurroundings<SceneGeometry::State> flat;
   int material = -1;                  ///< behind the surface
+  std::shared_ptr<const SurfacePatch> patch;   ///< null where nobody looked, or all is flat
 };
 
 /// Replays primaries in a scene, on one thread.
@@ -37,7 +40,9 @@ class SiteReplay {
   bool run(const ReplaySite& site, const Gun::Start& start, const ReplayedPrimary& primary);
 
   /// The next primaries are at this site.
-  void go_to(const ReplaySite& site) { replay_.surroundings(site.flat); }
+  void go_to(const ReplaySite& site) {
+    replay_.surroundings(site.flat, site.patch.get());
+  }
 
   /// The primary after the next one at this site replays this cascade.
   void fetch(const ReplaySite& site, std::size_t cascade) const {
@@ -56,7 +61,9 @@ class SiteReplay {
   double range_nm(int material) const;
 
  private:
+  ReplaySite site_alone(int x, int y);
   void find_plane(ReplaySite& site) const;
+  std::shared_ptr<const SurfacePatch> patch(int x, int y, const ReplaySite& site);
 
   const Scene::Impl& scene_;
   SceneGeometry geometry_;
@@ -72,6 +79,12 @@ class SiteReplay {
     bool top;
   };
   std::vector<KnownPlane> planes_;
+  struct BlockPatch {
+    Vec3 normal;
+    std::shared_ptr<const SurfacePatch> patch;   // null where the beam meets nothing
+  };
+  int block_;                         // of pixels to a side that may share a patch
+  std::map<std::pair<int, int>, BlockPatch> patches_;
 };
 
 }  // namespace surf::mc

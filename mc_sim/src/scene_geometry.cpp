@@ -74,7 +74,7 @@ bool SceneGeometry::accept(void* user, std::uint32_t triangle, double cosine, do
 }
 
 Crossing SceneGeometry::next_face(const Vec3& start, const Vec3& direction, double length,
-                                  State state, Face& face) {
+                                  State state, const KnownFaces& faces, Face& face) {
   Crossing met = Crossing::none;
   face.distance = length;
   if (scene_.plane_nm && direction.z != 0.0) {
@@ -92,6 +92,18 @@ Crossing SceneGeometry::next_face(const Vec3& start, const Vec3& direction, doub
     }
   }
   if (!scene_.triangles) return met;
+  if (faces) {
+    asking_ = state;
+    wrong_side_at_ = HUGE_VAL;
+    EmbreeScene::Hit hit;
+    const bool found = scene_.triangles->nearest_of(*faces, start, direction, face.distance,
+                                                    &SceneGeometry::accept, this, hit);
+    if (!(wrong_side_at_ < (found ? hit.distance : face.distance))) {
+      if (!found) return met;
+      face = {hit.distance, hit.position, hit.normal, scene_.shell_of[hit.triangle]};
+      return Crossing::surface;
+    }
+  }
   // Embree's robust mode still lets some rays through exactly at an edge. They then meet a surface
   // from behind, and the search is repeated a hair beside.
   static constexpr Vec3 nudges[] = {{0, 0, 0}, {0.1, 0.02, 0.05}, {-0.03, 0.1, -0.06},
@@ -112,12 +124,12 @@ Crossing SceneGeometry::next_face(const Vec3& start, const Vec3& direction, doub
 }
 
 Crossing SceneGeometry::crossing(const Vec3& start, const Vec3& direction, double length,
-                                 State& state, Surface& surface) {
+                                 State& state, Surface& surface, const KnownFaces& faces) {
   Vec3 from = start;
   double done = 0;
   for (int i = 0; i < most_silent_crossings; ++i) {
     Face face;
-    const Crossing met = next_face(from, direction, length - done, state, face);
+    const Crossing met = next_face(from, direction, length - done, state, faces, face);
     if (met != Crossing::surface) return met;
     State ahead = across(state, face.shell);
     surface.distance = done + face.distance;
@@ -129,7 +141,7 @@ Crossing SceneGeometry::crossing(const Vec3& start, const Vec3& direction, doubl
         const double cosine = std::fabs(dot(face.normal, direction));
         Face next;
         if (next_face(face.position, direction, interface_nm / std::max(cosine, 1e-6), ahead,
-                      next) != Crossing::surface)
+                      {}, next) != Crossing::surface)
           break;
         const double steepest = std::max(cosine, std::fabs(dot(next.normal, direction)));
         if (next.distance * steepest > interface_nm) break;

@@ -81,8 +81,9 @@ class SceneGeometry {
     return scene_.flies_free(p, direction);
   }
 
+  /// The first surface between different materials within `length`.
   Crossing crossing(const Vec3& start, const Vec3& direction, double length, State& state,
-                    Surface& surface);
+                    Surface& surface, const KnownFaces& faces = {});
 
  private:
   struct Nesting {
@@ -104,7 +105,7 @@ class SceneGeometry {
   State across(State s, std::uint32_t shell);
   State intern(std::vector<std::uint32_t> inside);
   Crossing next_face(const Vec3& start, const Vec3& direction, double length, State state,
-                     Face& face);
+                     const KnownFaces& faces, Face& face);
   static bool accept(void* self, std::uint32_t triangle, double cosine, double distance);
 
   const Scene::Impl& scene_;
