@@ -10,7 +10,7 @@
 namespace surf::mc {
 
 /// Changes whenever the packing or the transport's use of random numbers does.
-inline constexpr int cascade_format_version = 1;
+inline constexpr int cascade_format_version = 2;
 
 // How a cascade is packed, in words of 8 bytes.
 //

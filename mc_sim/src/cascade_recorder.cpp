@@ -2,6 +2,7 @@
 #include "cascade_recorder.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 namespace surf::mc {
@@ -26,10 +27,11 @@ Vec3 nearest(const Vec3& v) { return {nearest(v.x), nearest(v.y), nearest(v.z)};
 
 // The smallest exponent of units of which no more than largest_coordinate reach that far.
 int exponent_for(double extent_nm) {
-  if (!(extent_nm > 0)) return finest_exponent;
-  int exponent;
-  const double part = std::frexp(extent_nm / largest_coordinate, &exponent);
-  return std::max(part == 0.5 ? exponent - 1 : exponent, finest_exponent);
+  constexpr int mantissa_bits = 52, bias = 1023;
+  const auto bits = std::bit_cast<std::uint64_t>(extent_nm * (1.0 / largest_coordinate));
+  constexpr std::uint64_t mantissa = (std::uint64_t{1} << mantissa_bits) - 1;
+  const int exponent = static_cast<int>((bits + mantissa) >> mantissa_bits) - bias;
+  return std::max(exponent, finest_exponent);
 }
 
 }  // namespace
