@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <mutex>
 
 #include <fmt/format.h>
@@ -15,6 +14,7 @@
 #include "cascade_recorder.h"
 #include "cascade_sample.h"
 #include "detection.h"
+#include "endless.h"
 #include "surf/core/error.h"
 #include "surf/core/parallel.h"
 #include "surf/mc/library_source.h"
@@ -26,23 +26,6 @@ namespace {
 
 // Streams of libraries are apart from those of pixels.
 constexpr std::uint64_t cascade_stream = std::uint64_t{1} << 47;
-
-// One material without any surface.
-struct Endless {
-  using State = int;
-  struct Surface {
-    double distance = 0;
-    Vec3 position, position_ahead, normal;
-    State state_ahead = -1;
-  };
-  int material(State) const { return 0; }
-  double clearance(const Vec3&) const { return std::numeric_limits<double>::infinity(); }
-  double farthest() const { return std::numeric_limits<double>::infinity(); }
-  bool flies_free(const Vec3&, const Vec3&) const { return true; }
-  Crossing crossing(const Vec3&, const Vec3&, double, State&, Surface&) const {
-    return Crossing::none;
-  }
-};
 
 class Maker {
  public:
