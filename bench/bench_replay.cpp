@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // How fast replay is beside direct simulation, as JSON: primaries per second on flat silicon, the
 // thesis's mesa and closed meshes; cost against the number of triangles; time of an image of a rough
-// surface to 1 %; error at equal time against energy; and the floor, the ray tracer's own speed.
+// surface to 1 %; error at equal time against energy; what the choice of a method goes by.
 //   bench_replay [--quick] [--only WORD] [--data FOLDER] [output.json]
+#include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <cstring>
+#include <ctime>
 #include <filesystem>
 #include <fstream>
-#include <optional>
+#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
@@ -16,55 +17,27 @@
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
-#include "surf/core/random.h"
+#include "scenes.h"
 #include "surf/io/mesh_file.h"
 #include "surf/io/sim/materials.h"
 #include "surf/mc/cascade_library.h"
+#include "surf/mc/library_source.h"
 #include "surf/mc/simulate.h"
-#include "surf/mesh/height_field_mesh.h"
-#include "surf/mesh/shapes.h"
 
 namespace {
 
 using namespace surf;
+using bench::beam;
+using bench::view;
 using nlohmann::json;
 
-mc::Specimen silicon() {
-  mc::Specimen s;
-  s.materials = {io::find_material("Si", "bench")};
-  return s;
-}
+mc::Specimen flat() { return bench::flat(bench::only_silicon()); }
+mc::Specimen mesa(double pitch_nm = 2) { return bench::mesa(bench::only_silicon(), pitch_nm); }
 
-mc::Specimen flat() {
-  mc::Specimen s = silicon();
-  s.substrate = mc::Substrate{};
-  return s;
-}
-
-// Seeger's figure 5-6: 79,202 triangles over 398 nm, 200 nm high, 80 nm wide at the top.
-mc::Specimen mesa(double pitch_nm = 2) {
-  mc::Specimen s = silicon();
-  s.height_field =
-      mc::HeightFieldBody{"mesa", make_mesa({398, 398, pitch_nm}, 200, 80, 2), 0, Edge::flat};
-  return s;
-}
-
-// Two crossed waves whose smallest radius of curvature is `radius_nm`.
-mc::Specimen waves(double radius_nm, double pitch_nm) {
-  mc::Specimen s = silicon();
-  const int n = static_cast<int>(600 / pitch_nm) + 1;
-  HeightField f;
-  f.z_nm = Grid<double>(n, n);
-  f.pitch_x_nm = f.pitch_y_nm = pitch_nm;
-  f.origin_x_nm = f.origin_y_nm = -0.5 * (n - 1) * pitch_nm;
-  // Steep enough to be rough: slopes to 30 degrees or so.
-  const double k = 0.5 / radius_nm / 0.5, a = 1 / (k * k * radius_nm);
-  const double wave = k * 2, height = a / 4;
-  for (int y = 0; y < n; ++y)
-    for (int x = 0; x < n; ++x)
-      f.z_nm(x, y) = height * std::sin(wave * f.x_nm(x)) + height * std::sin(wave * 0.9 * f.y_nm(y));
-  s.height_field = mc::HeightFieldBody{"waves", f, 0, Edge::mirror};
-  return s;
+// Gentle waves whose smallest radius of curvature is 250 nm, or 25 nm.
+mc::Specimen waves(double radius_nm) {
+  const bool long_ones = radius_nm > 100;
+  return bench::waves(bench::only_silicon(), long_ones ? 200 : 60, radius_nm, long_ones ? 4 : 1);
 }
 
 mc::Specimen mesh(const std::string& path, double size_nm) {
@@ -79,19 +52,6 @@ mc::Specimen mesh(const std::string& path, double size_nm) {
   }
   s.bodies.push_back({std::filesystem::path(path).stem().string(), m, 0});
   return s;
-}
-
-mc::Scan view(double width_nm, int pixels) {
-  mc::Scan scan;
-  scan.width = scan.height = pixels;
-  scan.pixel_x_nm = scan.pixel_y_nm = width_nm / pixels;
-  return scan;
-}
-
-mc::Beam beam(double energy_ev) {
-  mc::Beam b;
-  b.energy_ev = energy_ev;
-  return b;
 }
 
 json report(const mc::SimulationResult& r) {
@@ -190,6 +150,62 @@ json generation(double energy_ev, int threads) {
           {"electrons", s.electrons_per_cascade}};
 }
 
+// CPU time of this process, so far: other programs do not count.
+double cpu_seconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
+
+// One library, whatever is asked for.
+class Only : public mc::LibrarySource {
+ public:
+  explicit Only(std::shared_ptr<const mc::CascadeLibrary> library) : library_(std::move(library)) {}
+  std::shared_ptr<const mc::CascadeLibrary> library(const mc::CascadeSettings&, std::size_t, int,
+                                                    const ProgressCallback&,
+                                                    const CancelToken*) override {
+    return library_;
+  }
+
+ private:
+  std::shared_ptr<const mc::CascadeLibrary> library_;
+};
+
+// What the choice of a method goes by, on one thread: a segment of a cascade that is made, in steps of
+// direct simulation; and the share of a primary's time that replay saves.
+json choice(double energy_ev) {
+  const mc::Material si = io::find_material("Si", "bench");
+  auto library = std::make_shared<mc::CascadeLibrary>(
+      mc::CascadeSettings{si, {}, energy_ev + si.barrier_ev, 1});
+  double begin = cpu_seconds();
+  library->grow(1, 1);
+  const double made = cpu_seconds() - begin;
+  const double segments = mc::describe(*library, library->cascades()).segments_per_cascade *
+                          static_cast<double>(library->cascades());
+  Only source(library);
+  json out{{"energy_ev", energy_ev}, {"nanoseconds_per_segment_made", 1e9 * made / segments}};
+  for (const auto& [name, specimen] :
+       {std::pair("flat", flat()), std::pair("mesa", mesa()), std::pair("waves 25 nm", waves(25))}) {
+    constexpr int pixels = 32;
+    const mc::Scene scene(specimen, beam(energy_ev), view(192, pixels));
+    mc::SimulationOptions o;
+    o.threads = 1;
+    o.electrons = static_cast<std::int64_t>(std::clamp(2e4 / energy_ev, 1.0, 20.0));
+    begin = cpu_seconds();
+    const mc::Balance b = mc::simulate(scene, o).balance;
+    const double direct = cpu_seconds() - begin;
+    const double per_step = direct / static_cast<double>(b.steps);
+    o.method = mc::Method::replay;
+    const double share = static_cast<double>(o.electrons);
+    o.electrons = 20;
+    begin = cpu_seconds();
+    mc::simulate(scene, o, {}, nullptr, {}, nullptr, &source);
+    const double replay = (cpu_seconds() - begin) * share / static_cast<double>(o.electrons);
+    const double making = made / segments / per_step, saved = 1 - replay / direct;
+    out["scenes"].push_back({{"scene", name}, {"nanoseconds_per_step", 1e9 * per_step},
+                             {"making", making}, {"saved", saved}});
+    fmt::print(stderr, "{} eV, {}: {:.0f} ns per step, making {:.2f}, saved {:.2f}\n", energy_ev, name,
+               1e9 * per_step, making, saved);
+  }
+  return out;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -210,6 +226,9 @@ int main(int argc, char** argv) {
   if (wanted("library"))
     for (const double e : {500.0, 1000.0, 3000.0, 10000.0})
       if (!quick || e <= 1000) out["library"].push_back(generation(e, 2));
+  if (wanted("choice"))
+    for (const double e : {500.0, 1000.0, 3000.0, 10000.0, 30000.0})
+      if (!quick || e <= 3000) out["choice"].push_back(choice(e));
   if (wanted("flat")) out["speed"].push_back(compare("flat", flat(), 100, 1000, sizes, {1, 2}));
   if (wanted("mesa")) out["speed"].push_back(compare("mesa", mesa(), 192, 1000, sizes, {1, 2}));
   if (!data.empty())
@@ -230,13 +249,13 @@ int main(int argc, char** argv) {
       for (const bool bse : {false, true}) {
         const std::string name = fmt::format("rough, radii from {} nm", radius);
         const int pixels = quick ? 64 : 256;
-        out["accuracy"].push_back(to_accuracy(name.c_str(), waves(radius, radius > 100 ? 4 : 1),
+        out["accuracy"].push_back(to_accuracy(name.c_str(), waves(radius),
                                               2.0 * pixels, pixels, 0.01, 1000, true, bse));
       }
   if (wanted("energies"))
     for (const double e : {500.0, 1000.0, 2000.0, 5000.0, 10000.0})
       for (const double radius : {250.0, 25.0}) {
-        const mc::Specimen s = waves(radius, radius > 100 ? 4 : 1);
+        const mc::Specimen s = waves(radius);
         const std::string name = fmt::format("waves {} nm", radius);
         json row = compare(name.c_str(), s, 64, e, {32, 4, 100}, {2});
         row["accuracy"] = to_accuracy(name.c_str(), s, 64, 32, 0.03, e, true, true);

@@ -16,8 +16,8 @@
 #include <nlohmann/json.hpp>
 
 #include "embree_scene.h"
+#include "scenes.h"
 #include "surf/core/random.h"
-#include "surf/io/sim/materials.h"
 #include "surf/mc/boundary.h"
 #include "surf/mc/energy_deposit.h"
 #include "surf/mc/medium.h"
@@ -32,32 +32,11 @@ using nlohmann::json;
 
 constexpr double target_per_thread = 50000;   // primaries per second on the mesa
 
-mc::Specimen silicon() {
-  mc::Specimen specimen;
-  specimen.materials = {io::find_material("Si", "bench"), io::find_material("Au", "bench")};
-  return specimen;
-}
+using bench::silicon;
+using bench::view;
 
-mc::Specimen flat() {
-  mc::Specimen s = silicon();
-  s.substrate = mc::Substrate{};
-  return s;
-}
-
-// Seeger's figure 5-6: 79,202 triangles over 398 nm, 200 nm high, 80 nm wide at the top.
-mc::Specimen mesa(double pitch_nm = 2) {
-  mc::Specimen s = silicon();
-  s.height_field = mc::HeightFieldBody{
-      "mesa", make_mesa({398, 398, pitch_nm}, 200, 80, 2), 0, Edge::flat};
-  return s;
-}
-
-mc::Scan view(double width_nm, int pixels) {
-  mc::Scan scan;
-  scan.width = scan.height = pixels;
-  scan.pixel_x_nm = scan.pixel_y_nm = width_nm / pixels;
-  return scan;
-}
+mc::Specimen flat() { return bench::flat(silicon()); }
+mc::Specimen mesa() { return bench::mesa(silicon()); }
 
 struct Run {
   mc::SimulationResult result;

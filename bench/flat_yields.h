@@ -7,11 +7,11 @@
 #include <cmath>
 #include <fstream>
 #include <map>
-#include <sstream>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
+#include "surf/io/csv_line.h"
 #include "surf/io/sim/materials.h"
 #include "surf/mc/element.h"
 #include "surf/mc/simulate.h"
@@ -21,17 +21,6 @@ namespace surf::bench {
 /// Geometric means of measured values by element and energy in keV.
 using Means = std::map<std::string, std::map<double, double>>;
 
-inline std::vector<std::string> split_csv(const std::string& line) {
-  std::vector<std::string> fields(1);
-  bool quoted = false;
-  for (const char c : line) {
-    if (c == '"') quoted = !quoted;
-    else if (c == ',' && !quoted) fields.emplace_back();
-    else if (c != '\r') fields.back() += c;
-  }
-  return fields;
-}
-
 /// Reads CSV files with the columns element, energy_keV, `column` and perhaps quantity. Where the
 /// quantity is SE+BSE the key is "SE+BSE of ELEMENT".
 inline Means read_means(const std::vector<std::string>& paths, const std::string& column) {
@@ -40,9 +29,9 @@ inline Means read_means(const std::vector<std::string>& paths, const std::string
     std::ifstream in(path);
     std::string line;
     if (!std::getline(in, line)) throw std::runtime_error(path + ": cannot be read");
-    const std::vector<std::string> names = split_csv(line);
+    const std::vector<std::string> names = io::split_csv_line(line);
     while (std::getline(in, line)) {
-      const std::vector<std::string> fields = split_csv(line);
+      const std::vector<std::string> fields = io::split_csv_line(line);
       std::map<std::string, std::string> row;
       for (std::size_t i = 0; i < names.size() && i < fields.size(); ++i) row[names[i]] = fields[i];
       if (!row.contains("element") || !row.contains(column)) continue;

@@ -62,7 +62,7 @@ std::string from_maximum(const std::string& path, const std::string& name, doubl
   std::ifstream in(path);
   std::string out;
   for (std::string line; std::getline(in, line);) {
-    const auto fields = bench::split_csv(line);
+    const auto fields = io::split_csv_line(line);
     if (fields.size() > 2 && fields[0] == name)
       out += fmt::format("{}{:.2f}", out.empty() ? "" : " to ",
                          universal(std::stod(fields[1]), std::stod(fields[2]), kev));

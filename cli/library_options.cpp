@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common_options.h"
 #include "library.h"
 #include "options.h"
 #include "surf/core/error.h"
@@ -62,11 +63,9 @@ void add_library_options(CLI::App& app, LibraryOptions& o) {
       ->type_name("KEY=VALUE,...");
   app.add_option("--cutoff", o.cutoff, "As for simulate")->type_name("ENERGY");
   app.add_option("--seed", o.seed, "As for simulate (1)")->type_name("N");
-  app.add_option("--materials", o.material_files, "Your own materials (TOML); may be repeated")
-      ->type_name("FILE")->option_text("FILE")->allow_extra_args(false);
-  app.add_option("--threads", o.threads, "Does not change the result (one per hardware thread)")
-      ->type_name("N");
-  app.add_flag("-q,--quiet", o.quiet, "Only errors and warnings");
+  add_materials_option(app, o.material_files);
+  add_threads_option(app, o.threads);
+  add_quiet_flag(app, o.quiet);
   add_cache_option(app, o);
 }
 
@@ -92,8 +91,7 @@ LibraryRequest read_library_options(const LibraryOptions& o) {
     throw UsageError("library", "no material is given", "Name one or several, as Si Au");
   request.energies_ev = parse_energies_ev(o.energy.value_or("1keV"));
   request.cascades = number_of_cascades(o);
-  if (o.threads)
-    request.threads = static_cast<int>(parse_whole(*o.threads, "--threads", 0, 4096));
+  request.threads = parse_threads(o.threads);
   request.cache = io::cache_folder(o.cache.value_or(""));
   mc::CascadeSettings settings;
   if (o.seed) settings.seed = parse_seed(*o.seed, "--seed");

@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "commands.h"
+#include "common_options.h"
 #include "surf/core/units.h"
 #include "surf/io/sim/materials.h"
 #include "surf/mc/element.h"
@@ -112,8 +113,7 @@ void add_materials(CLI::App& app, Action& action) {
   const auto options = std::make_shared<Options>();
   CLI::App* sub = app.add_subcommand("materials", "The materials and their numbers");
   sub->add_option("NAME", options->name, "Show this one, with sources")->type_name("MATERIAL");
-  sub->add_option("--materials", options->files, "Your own materials (TOML); may be repeated")
-      ->type_name("FILE")->option_text("FILE")->allow_extra_args(false);
+  add_materials_option(*sub, options->files);
   sub->group("Commands");
   sub->footer(examples);
   sub->callback([options, &action] {

@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "commands.h"
+#include "common_options.h"
 #include "info.h"
 #include "options.h"
 #include "surf/core/error.h"
@@ -190,7 +191,7 @@ void add_mesh(CLI::App& app, Action& action) {
   const char* output = "Output";
   sub->add_option("-o,--output", o->output, "Mesh to write: .stl .obj .ply .off .vtp")
       ->type_name("FILE")->group(output);
-  sub->add_flag("-q,--quiet", o->quiet, "Only errors and warnings")->group(output);
+  add_quiet_flag(*sub, o->quiet)->group(output);
   sub->footer(examples);
   sub->callback([o, &action] { action = [o] { return work(*o); }; });
 }

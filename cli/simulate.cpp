@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "commands.h"
+#include "common_options.h"
 #include "options.h"
 #include "scene_options.h"
 #include "simulate_options.h"
@@ -103,8 +104,7 @@ workflow::SimulateJob make_job(const SimulateOptions& o, const std::string& comm
   const std::int64_t electrons =
       o.electrons ? parse_whole(*o.electrons, "--electrons", 1, std::int64_t{1} << 31) : 0;
   const std::uint64_t seed = o.seed ? parse_seed(*o.seed, "--seed") : 0;
-  if (o.threads)
-    job.options.threads = static_cast<int>(parse_whole(*o.threads, "--threads", 0, 4096));
+  job.options.threads = parse_threads(o.threads);
 
   refuse_two_budgets(o);
   std::optional<std::optional<mc::Method>> method;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "simulate_options.h"
 
+#include "common_options.h"
+
 namespace surf::cli {
 namespace {
 
@@ -37,8 +39,7 @@ void add_specimen_options(CLI::App& app, SceneOptions& o) {
   const char* group = "Specimen";
   app.add_option("--material", o.material, "What meshes and height field are made of (Si)")
       ->type_name("MATERIAL")->group(group);
-  app.add_option("--materials", o.materials, "Your own materials (TOML); may be repeated")
-      ->type_name("FILE")->option_text("FILE")->allow_extra_args(false)->group(group);
+  add_materials_option(app, o.materials)->group(group);
   app.add_option("--unit", o.unit, "Length of one unit of the mesh files (nm; glTF: m)")
       ->type_name("nm|um|mm|m|pm|A|in")->group(group);
   app.add_option("--substrate", o.substrate, "Add a half-space below the bodies")
@@ -137,8 +138,7 @@ void add_simulation_options(CLI::App& app, SimulateOptions& o) {
       ->type_name("ENERGY")->group(group);
   app.add_option("--seed", o.seed, "The same seed gives the same bytes (1)")
       ->type_name("N")->group(group);
-  app.add_option("--threads", o.threads, "Does not change the result (one per hardware thread)")
-      ->type_name("N")->group(group);
+  add_threads_option(app, o.threads)->group(group);
 }
 
 void add_long_job_options(CLI::App& app, SimulateOptions& o) {
@@ -162,7 +162,7 @@ void add_output_options(CLI::App& app, SimulateOptions& o) {
   app.add_option("--channels", o.channels, "Also what the beam sees: z_nm, normal, material; and how it was simulated:\n"
                  "electrons, model, variance_left (see below)")
       ->type_name("NAME,...")->group(group);
-  app.add_flag("-q,--quiet", o.quiet, "Only errors and warnings")->group(group);
+  add_quiet_flag(app, o.quiet)->group(group);
 }
 
 }  // namespace

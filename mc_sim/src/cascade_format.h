@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstdint>
@@ -9,7 +10,7 @@
 namespace surf::mc {
 
 /// Changes whenever the packing or the transport's use of random numbers does.
-inline constexpr int cascade_format_version = 1;
+inline constexpr int cascade_format_version = 2;
 
 // How a cascade is packed, in words of 8 bytes.
 //
@@ -92,15 +93,16 @@ inline float power_of_two(int exponent) {
 class EnergyCode {
  public:
   EnergyCode(double cutoff_ev, double top_ev)
-      : cutoff_ev_(cutoff_ev), per_square_((top_ev - cutoff_ev) / (32767.0 * 32767.0)) {}
+      : cutoff_ev_(cutoff_ev), per_square_((top_ev - cutoff_ev) / (32767.0 * 32767.0)),
+        squares_per_ev_(1.0 / per_square_) {}
 
   double decode(std::uint16_t code) const {
     const double c = code >> 1;
     return cutoff_ev_ + c * c * per_square_;
   }
   std::uint16_t encode(double energy_ev, bool forgets) const {
-    const double c = std::sqrt(std::fmax(energy_ev - cutoff_ev_, 0.0) / per_square_);
-    const auto code = static_cast<unsigned>(std::fmin(c + 0.5, 32767.0));
+    const double c = std::sqrt(std::max(energy_ev - cutoff_ev_, 0.0) * squares_per_ev_);
+    const auto code = static_cast<unsigned>(std::min(c + 0.5, 32767.0));
     return static_cast<std::uint16_t>(code << 1 | (forgets ? 1u : 0u));
   }
   /// Falls with the energy, whatever is forgotten.
@@ -110,6 +112,7 @@ class EnergyCode {
  private:
   double cutoff_ev_;
   double per_square_;
+  double squares_per_ev_;
 };
 
 }  // namespace surf::mc

@@ -2,8 +2,8 @@
 #include "surf/mc/cascade_library.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <limits>
 #include <mutex>
 
 #include <fmt/format.h>
@@ -14,6 +14,7 @@
 #include "cascade_recorder.h"
 #include "cascade_sample.h"
 #include "detection.h"
+#include "endless.h"
 #include "surf/core/error.h"
 #include "surf/core/parallel.h"
 #include "surf/mc/library_source.h"
@@ -25,23 +26,6 @@ namespace {
 
 // Streams of libraries are apart from those of pixels.
 constexpr std::uint64_t cascade_stream = std::uint64_t{1} << 47;
-
-// One material without any surface.
-struct Endless {
-  using State = int;
-  struct Surface {
-    double distance = 0;
-    Vec3 position, position_ahead, normal;
-    State state_ahead = -1;
-  };
-  int material(State) const { return 0; }
-  double clearance(const Vec3&) const { return std::numeric_limits<double>::infinity(); }
-  double farthest() const { return std::numeric_limits<double>::infinity(); }
-  bool flies_free(const Vec3&, const Vec3&) const { return true; }
-  Crossing crossing(const Vec3&, const Vec3&, double, State&, Surface&) const {
-    return Crossing::none;
-  }
-};
 
 class Maker {
  public:
@@ -70,9 +54,6 @@ class Maker {
   Balance balance_;
   Transport<Endless, CascadeRecorder> transport_;
 };
-
-constexpr std::size_t cascades_per_unit = 128;
-static_assert(CascadeLibrary::page_cascades % cascades_per_unit == 0);
 
 }  // namespace
 
@@ -111,37 +92,104 @@ void ask_for_large_pages([[maybe_unused]] void* begin, [[maybe_unused]] std::siz
 
 }  // namespace
 
+namespace {
+
+// Makes pages on some threads. Who finishes a page's last unit puts it together, while the others are
+// at the next page; what units lay in is used again, as getting memory takes as long as filling it.
+class PageMaker {
+ public:
+  PageMaker(const CascadeLibrary& library, std::size_t first_page, std::size_t pages)
+      : library_(library), first_page_(first_page), drafts_(pages) {}
+
+  /// The pages, up to the first that was not finished when cancelled. Progress counts cascades.
+  std::vector<std::shared_ptr<CascadePage>> make(int threads, const CancelToken* cancel,
+                                                 const ProgressCallback& progress) {
+    threads = resolve_threads(threads);
+    std::vector<std::unique_ptr<Maker>> makers(static_cast<std::size_t>(threads));
+    parallel_for(drafts_.size() * units_per_page, threads, [&](std::size_t unit, int worker) {
+      if (cancel && cancel->cancelled()) return;
+      auto& maker = makers[static_cast<std::size_t>(worker)];
+      if (!maker) maker = std::make_unique<Maker>(library_);
+      Draft& draft = drafts_[unit / units_per_page];
+      CascadePage& part = draft.units[unit % units_per_page];
+      part = blank();
+      const std::size_t first = first_page_ * CascadeLibrary::page_cascades + unit * unit_cascades;
+      for (std::size_t i = 0; i < unit_cascades; ++i) maker->make(first + i, part);
+      if (is_last(draft, progress)) finish(draft);
+    });
+    std::vector<std::shared_ptr<CascadePage>> pages;
+    for (Draft& draft : drafts_) {
+      if (!draft.page) break;
+      pages.push_back(std::move(draft.page));
+    }
+    return pages;
+  }
+
+ private:
+  static constexpr std::size_t unit_cascades = 32;
+  static constexpr std::size_t units_per_page = CascadeLibrary::page_cascades / unit_cascades;
+  static_assert(CascadeLibrary::page_cascades % unit_cascades == 0);
+
+  struct Draft {
+    std::array<CascadePage, units_per_page> units;
+    std::size_t done = 0;
+    std::shared_ptr<CascadePage> page;
+  };
+
+  CascadePage blank() {
+    const std::lock_guard lock(mutex_);
+    if (blanks_.empty()) return {};
+    CascadePage blank = std::move(blanks_.back());
+    blanks_.pop_back();
+    return blank;
+  }
+
+  // Counts a unit; whether it was the page's last.
+  bool is_last(Draft& draft, const ProgressCallback& progress) {
+    const std::lock_guard lock(mutex_);
+    cascades_ += unit_cascades;
+    if (progress)
+      progress(static_cast<double>(cascades_),
+               static_cast<double>(drafts_.size() * CascadeLibrary::page_cascades));
+    return ++draft.done == units_per_page;
+  }
+
+  void finish(Draft& draft) {
+    auto page = std::make_shared<CascadePage>();
+    std::size_t words = 0;
+    for (const CascadePage& unit : draft.units) words += unit.words.size();
+    page->words.reserve(words);
+    ask_for_large_pages(page->words.data(), words * sizeof(std::uint64_t));
+    page->starts.reserve(CascadeLibrary::page_cascades + 1);
+    for (const CascadePage& unit : draft.units) {
+      const auto base = static_cast<std::uint32_t>(page->words.size());
+      for (const std::uint32_t start : unit.starts) page->starts.push_back(base + start);
+      page->words.insert(page->words.end(), unit.words.begin(), unit.words.end());
+    }
+    page->starts.push_back(static_cast<std::uint32_t>(page->words.size()));
+    draft.page = std::move(page);
+    const std::lock_guard lock(mutex_);
+    for (CascadePage& unit : draft.units) {
+      unit.words.clear();
+      unit.starts.clear();
+      blanks_.push_back(std::move(unit));
+    }
+  }
+
+  const CascadeLibrary& library_;
+  std::size_t first_page_;
+  std::vector<Draft> drafts_;
+  std::mutex mutex_;                  // of all that follows, and of the drafts' counts
+  std::size_t cascades_ = 0;
+  std::vector<CascadePage> blanks_;   // empty, with memory
+};
+
+}  // namespace
+
 CascadePage CascadeLibrary::make_page(std::size_t number, int threads, const CancelToken* cancel,
                                       const ProgressCallback& progress) const {
-  threads = resolve_threads(threads);
-  std::mutex mutex;
-  std::size_t done = 0;   // guarded by it
-  std::vector<CascadePage> parts(page_cascades / cascades_per_unit);
-  std::vector<std::unique_ptr<Maker>> makers(static_cast<std::size_t>(threads));
-  parallel_for(parts.size(), threads, [&](std::size_t unit, int worker) {
-    if (cancel && cancel->cancelled()) return;
-    auto& maker = makers[static_cast<std::size_t>(worker)];
-    if (!maker) maker = std::make_unique<Maker>(*this);
-    for (std::size_t i = 0; i < cascades_per_unit; ++i)
-      maker->make(number * page_cascades + unit * cascades_per_unit + i, parts[unit]);
-    if (!progress) return;
-    const std::lock_guard lock(mutex);
-    done += cascades_per_unit;
-    progress(static_cast<double>(done), static_cast<double>(page_cascades));
-  });
-  if (cancel && cancel->cancelled()) return {};
-  CascadePage page;
-  std::size_t words = 0;
-  for (const CascadePage& part : parts) words += part.words.size();
-  page.words.reserve(words);
-  ask_for_large_pages(page.words.data(), words * sizeof(std::uint64_t));
-  for (const CascadePage& part : parts) {
-    const auto base = static_cast<std::uint32_t>(page.words.size());
-    for (const std::uint32_t start : part.starts) page.starts.push_back(base + start);
-    page.words.insert(page.words.end(), part.words.begin(), part.words.end());
-  }
-  page.starts.push_back(static_cast<std::uint32_t>(page.words.size()));
-  return page;
+  const auto pages = PageMaker(*this, number, 1).make(threads, cancel, progress);
+  return pages.empty() ? CascadePage{} : std::move(*pages[0]);
 }
 
 void CascadeLibrary::add_page(std::shared_ptr<const CascadePage> page) {
@@ -169,16 +217,16 @@ CascadeLibrary CascadeLibrary::first(std::size_t pages) const {
 
 void CascadeLibrary::grow(std::size_t cascades, int threads, const ProgressCallback& progress,
                           const CancelToken* cancel) {
-  while (this->cascades() < cascades) {
-    const auto done = static_cast<double>(this->cascades());
-    CascadePage page = make_page(pages(), threads, cancel, [&](double of_page, double) {
-      if (progress)
-        progress(std::min(done + of_page, static_cast<double>(cascades)),
-                 static_cast<double>(cascades));
-    });
-    if (cancel && cancel->cancelled()) return;
-    add_page(std::make_shared<const CascadePage>(std::move(page)));
-  }
+  const std::size_t old = this->cascades();
+  if (old >= cascades) return;
+  const std::size_t pages = (cascades - old + page_cascades - 1) / page_cascades;
+  const auto report = [&](double made, double) {
+    progress(std::min(static_cast<double>(old) + made, static_cast<double>(cascades)),
+             static_cast<double>(cascades));
+  };
+  PageMaker maker(*this, this->pages(), pages);
+  for (auto& page : maker.make(threads, cancel, progress ? report : ProgressCallback{}))
+    pages_.push_back(std::move(page));
 }
 
 std::shared_ptr<const CascadeLibrary> FreshLibraries::library(const CascadeSettings& settings,

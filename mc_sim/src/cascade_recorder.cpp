@@ -2,14 +2,15 @@
 #include "cascade_recorder.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 namespace surf::mc {
 
 namespace {
 
-constexpr double largest_coordinate = 32000;   // leaves room for the rounding of those before
-constexpr int finest_exponent = -16;           // 1.5e-5 nm
+constexpr int largest_coordinate = 32000;   // leaves room for the rounding of those before
+constexpr int finest_exponent = -16;        // 1.5e-5 nm
 
 std::size_t segments_of_level(int level) {
   std::size_t n = segments_per_node;
@@ -17,73 +18,91 @@ std::size_t segments_of_level(int level) {
   return n;
 }
 
+// The nearest whole number to -32768 <= v < 32767.
+double nearest(double v) {
+  constexpr int positive = 1 << 15;
+  return static_cast<int>(v + (positive + 0.5)) - positive;
+}
+Vec3 nearest(const Vec3& v) { return {nearest(v.x), nearest(v.y), nearest(v.z)}; }
+
+// The smallest exponent of units of which no more than largest_coordinate reach that far.
+int exponent_for(double extent_nm) {
+  constexpr int mantissa_bits = 52, bias = 1023;
+  const auto bits = std::bit_cast<std::uint64_t>(extent_nm * (1.0 / largest_coordinate));
+  constexpr std::uint64_t mantissa = (std::uint64_t{1} << mantissa_bits) - 1;
+  const int exponent = static_cast<int>((bits + mantissa) >> mantissa_bits) - bias;
+  return std::max(exponent, finest_exponent);
+}
+
 }  // namespace
 
 // An electron on its way into words.
 struct CascadeRecorder::Branch {
-  const Electron& electron;
+  std::size_t first, end;   // of its points
   Vec3 origin;              // its first point, as it will be unpacked
+  double unit_nm;
   int exponent;
-  std::size_t births_left;
+  int next_birth;           // the electron that is born next
 
-  std::size_t segments() const { return electron.points.size() - 1; }
-
-  PackedVertex vertex(std::size_t i, const EnergyCode& code) const {
-    const Vec3 p = (electron.points[i] - electron.points[0]) * (1.0 / double(power_of_two(exponent)));
-    const auto round = [](double v) { return static_cast<std::int16_t>(std::lround(v)); };
-    return {round(p.x), round(p.y), round(p.z),
-            code.encode(electron.energies[i], electron.forgets[i] != 0)};
-  }
-  Vec3 unpack(const PackedVertex& v) const {
-    return origin + Vec3{double(v.x), double(v.y), double(v.z)} * double(power_of_two(exponent));
-  }
+  std::size_t segments() const { return end - first - 1; }
 };
 
 void CascadeRecorder::begin_track(int number, int parent, int, const Vec3& position, const Vec3&,
                                   double energy_ev) {
-  const auto n = static_cast<std::size_t>(number);
-  if (electrons_.size() <= n) electrons_.resize(n + 1);
-  count_ = n + 1;
-  Electron& electron = electrons_[n];
-  electron.points.assign(1, position);
-  electron.energies.assign(1, energy_ev);
-  electron.forgets.assign(1, 0);
-  electron.births.clear();
-  if (parent < 0) return;
-  // Electrons that wait are followed last in, first out: of one parent's, the latest comes first.
-  Electron& from = electrons_[static_cast<std::size_t>(parent)];
-  if (from.births.empty()) from.unborn = from.points.size();
-  while (!(from.points[--from.unborn] == position)) {}
-  from.births.push_back({from.unborn, n});
-}
-
-void CascadeRecorder::segment(const Vec3&, const Vec3& to, double, double energy_to_ev, int) {
-  Electron& electron = electrons_[count_ - 1];
-  electron.points.push_back(to);
-  electron.energies.push_back(energy_to_ev);
-  electron.forgets.push_back(0);
+  if (!electrons_.empty()) electrons_.back().end = points_.size();
+  std::size_t birth = 0;
+  int next = -1;
+  if (parent >= 0) {
+    // Electrons that wait are followed last in, first out: of one parent's, the latest comes first.
+    Electron& from = electrons_[static_cast<std::size_t>(parent)];
+    if (from.first_child < 0) from.unborn = from.end;
+    while (!(points_[--from.unborn].position == position)) {}
+    birth = from.unborn - from.first;
+    next = from.first_child;
+    from.first_child = number;
+  }
+  electrons_.push_back({points_.size(), 0, 0, birth, parent, -1, next, {}});
+  points_.push_back({position, energy_ev, false});
 }
 
 void CascadeRecorder::finish(std::vector<std::uint64_t>& words) {
-  for (std::size_t i = count_; i-- > 0;) {   // children come after their parents
+  if (electrons_.empty()) return;
+  electrons_.back().end = points_.size();
+  measure();
+  vertices_.resize(points_.size());
+  pack_branch(electrons_[0], points_[0].position, words);
+  electrons_.clear();
+  points_.clear();
+  bounds_.clear();
+}
+
+void CascadeRecorder::measure() {
+  for (std::size_t i = electrons_.size(); i-- > 0;) {   // children come after their parents
     Electron& electron = electrons_[i];
-    electron.box = {};
-    for (const Vec3& p : electron.points) electron.box.extend(p);
-    for (const Birth& birth : electron.births) electron.box.extend(electrons_[birth.electron].box);
+    Box box = electron.box;
+    for (std::size_t k = electron.first; k < electron.end; ++k) box.extend(points_[k].position);
+    electron.box = box;
+    if (electron.parent >= 0)
+      electrons_[static_cast<std::size_t>(electron.parent)].box.extend(box);
   }
-  unpacked_.clear();
-  if (count_ > 0) pack_branch(electrons_[0], electrons_[0].points[0], words);
-  count_ = 0;
 }
 
 CascadeRecorder::Packed CascadeRecorder::pack_branch(const Electron& electron, const Vec3& origin,
                                                      std::vector<std::uint64_t>& words) {
-  const Vec3 a = electron.points[0] - electron.box.lower_nm;
-  const Vec3 b = electron.box.upper_nm - electron.points[0];
-  const double extent = std::max({a.x, a.y, a.z, b.x, b.y, b.z});
-  const int exponent = extent > 0 ? static_cast<int>(std::ceil(std::log2(extent / largest_coordinate)))
-                                  : finest_exponent;
-  Branch branch{electron, origin, std::max(exponent, finest_exponent), electron.births.size()};
+  const Vec3 start = points_[electron.first].position;
+  const Vec3 a = start - electron.box.lower_nm;
+  const Vec3 b = electron.box.upper_nm - start;
+  const int exponent = exponent_for(std::max({a.x, a.y, a.z, b.x, b.y, b.z}));
+  Branch branch{electron.first, electron.end, origin, power_of_two(exponent), exponent,
+                electron.first_child};
+  const double per_nm = power_of_two(-exponent);
+  for (std::size_t i = electron.first; i < electron.end; ++i) {
+    Point& p = points_[i];
+    const Vec3 v = nearest((p.position - start) * per_nm);
+    vertices_[i] = {static_cast<std::int16_t>(v.x), static_cast<std::int16_t>(v.y),
+                    static_cast<std::int16_t>(v.z), code_.encode(p.energy_ev, p.forgets)};
+    p.position = origin + v * branch.unit_nm;
+  }
   int level = 0;
   while (segments_of_level(level) < branch.segments()) ++level;
   return pack_node(branch, 0, level, words);
@@ -91,52 +110,55 @@ CascadeRecorder::Packed CascadeRecorder::pack_branch(const Electron& electron, c
 
 CascadeRecorder::Packed CascadeRecorder::pack_node(Branch& branch, std::size_t first, int level,
                                                    std::vector<std::uint64_t>& words) {
-  Packed packed{words.size(), unpacked_.size(), 0, {}};
+  Packed packed{words.size(), bounds_.size(), {}, {}};
   const std::size_t end = std::min(first + segments_of_level(level), branch.segments());
+  const std::size_t start = branch.first + first;
   PackedNode node{};
   node.level = static_cast<std::uint8_t>(level);
   node.exponent = static_cast<std::int8_t>(branch.exponent);
-  node.start = branch.vertex(first, code_);
-  words.resize(packed.word + header_words);
+  node.start = vertices_[start];
+  bounds_.push_back({{}, 0, start, level > 0 ? start : branch.first + end + 1, 0});
 
-  std::size_t children = 0;
+  std::size_t children = 0, own = 0;
   if (level == 0) {
-    node.count = static_cast<std::uint8_t>(end - first);
-    unpacked_.push_back(branch.unpack(node.start));
-    for (std::size_t i = first; i < end; ++i) {
-      const PackedVertex v = branch.vertex(i + 1, code_);
-      words.push_back(std::bit_cast<std::uint64_t>(v));
-      unpacked_.push_back(branch.unpack(v));
-    }
-    while (children < branch.births_left &&
-           branch.electron.births[branch.births_left - 1 - children].vertex <= end)
+    own = end - first;
+    node.count = static_cast<std::uint8_t>(own);
+    for (std::size_t i = start; i <= start + own; ++i) packed.box.extend(points_[i].position);
+    for (int i = branch.next_birth; i >= 0;) {
+      const Electron& electron = electrons_[static_cast<std::size_t>(i)];
+      if (electron.birth > end) break;
+      node.births = static_cast<std::uint8_t>(node.births | 1u << (electron.birth - 1 - first));
       ++children;
+      i = electron.next;
+    }
   } else {
     const std::size_t step = segments_of_level(level - 1);
     children = (end - first + step - 1) / step;
     node.count = static_cast<std::uint8_t>(children);
   }
-  const std::size_t spheres = words.size(), places = spheres + children;
+  const std::size_t spheres = packed.word + header_words + own, places = spheres + children;
   words.resize(places + (children + 1) / 2);
+  if (own > 0)
+    std::memcpy(&words[packed.word + header_words], &vertices_[start + 1], own * sizeof(PackedVertex));
 
   for (std::size_t i = 0; i < children; ++i) {
     Packed child;
     if (level == 0) {
-      const Birth& birth = branch.electron.births[--branch.births_left];
-      node.births = static_cast<std::uint8_t>(node.births | 1u << (birth.vertex - 1 - first));
-      const Electron& electron = electrons_[birth.electron];
-      child = pack_branch(electron, branch.unpack(branch.vertex(birth.vertex, code_)), words);
-      packed.content += {1, electron.energies[0] - barrier_ev_};
+      const Electron& electron = electrons_[static_cast<std::size_t>(branch.next_birth)];
+      branch.next_birth = electron.next;
+      packed.content += {1, points_[electron.first].energy_ev - barrier_ev_};
+      child = pack_branch(electron, points_[branch.first + electron.birth].position, words);
     } else {
       child = pack_node(branch, first + i * segments_of_level(level - 1), level - 1, words);
     }
+    packed.box.extend(child.box);
     packed.content += child.content;
     words[spheres + i] = std::bit_cast<std::uint64_t>(enclose(branch, child));
     const auto place = static_cast<std::uint32_t>(child.word - packed.word);
     std::memcpy(reinterpret_cast<unsigned char*>(&words[places]) + 4 * i, &place, sizeof place);
   }
 
-  packed.end_point = unpacked_.size();
+  bounds_[packed.bound].end = bounds_.size();
   node.words = static_cast<std::uint32_t>(words.size() - packed.word);
   node.generated = packed.content.generated;
   node.generated_ev = static_cast<float>(packed.content.generated_ev);
@@ -144,22 +166,40 @@ CascadeRecorder::Packed CascadeRecorder::pack_node(Branch& branch, std::size_t f
   return packed;
 }
 
-// The sphere about the box of all points, in the branch's units, rounded outward.
-PackedSphere CascadeRecorder::enclose(const Branch& branch, const Packed& packed) const {
-  Box box;
-  for (std::size_t i = packed.first_point; i < packed.end_point; ++i) box.extend(unpacked_[i]);
-  const double unit = power_of_two(branch.exponent);
-  const Vec3 center = (box.center_nm() - branch.origin) * (1.0 / unit);
-  const Vec3 c{std::round(center.x), std::round(center.y), std::round(center.z)};
-  const Vec3 rounded = branch.origin + c * unit;
-  double squared = 0;
-  for (std::size_t i = packed.first_point; i < packed.end_point; ++i) {
-    const Vec3 d = unpacked_[i] - rounded;
-    squared = std::max(squared, dot(d, d));
-  }
+// The sphere about the middle of the box of all points, in the branch's units, rounded outward.
+PackedSphere CascadeRecorder::enclose(const Branch& branch, const Packed& packed) {
+  const Vec3 c = nearest((packed.box.center_nm() - branch.origin) * (1.0 / branch.unit_nm));
+  Bound& bound = bounds_[packed.bound];
+  bound.center = branch.origin + c * branch.unit_nm;
+  bound.radius_nm = farthest(bound.center, packed.bound);
   return {static_cast<std::int16_t>(c.x), static_cast<std::int16_t>(c.y),
           static_cast<std::int16_t>(c.z),
-          static_cast<std::uint16_t>(std::ceil(std::sqrt(squared) / unit + 0.5))};
+          static_cast<std::uint16_t>(std::ceil(bound.radius_nm / branch.unit_nm + 0.5))};
+}
+
+// The distance to the farthest point of what `bound` stands for. What is in it has spheres already:
+// those that do not reach beyond the farthest point so far are passed over.
+double CascadeRecorder::farthest(const Vec3& center, std::size_t bound) const {
+  double squared = 0, distance = 0;
+  const std::size_t end = bounds_[bound].end;
+  for (std::size_t i = bound; i < end;) {
+    const Bound& b = bounds_[i];
+    if (i > bound && distance > b.radius_nm) {
+      const Vec3 d = b.center - center;
+      const double room = distance - b.radius_nm;
+      if (dot(d, d) <= room * room) {
+        i = b.end;
+        continue;
+      }
+    }
+    for (std::size_t k = b.first_point; k < b.end_point; ++k) {
+      const Vec3 d = points_[k].position - center;
+      squared = std::max(squared, dot(d, d));
+    }
+    distance = std::sqrt(squared);
+    ++i;
+  }
+  return distance;
 }
 
 }  // namespace surf::mc

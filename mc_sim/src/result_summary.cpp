@@ -7,6 +7,8 @@
 #include <set>
 #include <utility>
 
+#include "spending.h"
+
 namespace surf::mc {
 
 namespace {
@@ -88,21 +90,19 @@ ResultSummary summarize(const SimulationResult& r) {
 }
 
 double expected_primaries(const SimulationResult& r, double accuracy) {
-  // As the spending worker sets them: a pilot, a few at least, and a little more than it takes.
-  constexpr double pilot = 24, fewest = 32, reserve = 1.1;
   double all = 0;
   for_seen_pixels(r, [&](int x, int y) {
     const PixelTally& p = r.pixels(x, y);
     if (p.model == PixelModel::plane) return;
     const auto n = static_cast<double>(p.primaries);
-    double wanted = fewest;
+    double wanted = fewest_primaries;
     for (std::size_t d = 0; d < r.detectors.size(); ++d) {
       const double efficiency = r.detectors[d].efficiency;
       const double own = estimate(p.primaries, r.counts[d](x, y)).standard_error * efficiency;
       const double t = target(r, d, std::max(0.0, r.yield(d, x, y).mean), accuracy);
       if (t > 0) wanted = std::max(wanted, own * own * n / (t * t));
     }
-    all += pilot + reserve * wanted;
+    all += pilot_primaries + reserve_of_primaries * wanted;
   });
   return all;
 }

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <numeric>
+#include <utility>
 
 #include "scene_impl.h"
 #include "surf/core/units.h"
@@ -59,16 +61,17 @@ std::vector<double> volumes(const TriangleMesh& mesh, const std::vector<std::uin
 }
 
 void add_body(Assembly& all, const Body& body) {
-  const TriangleMesh mesh = merge_equal_vertices(body.mesh);
+  TriangleMesh mesh = merge_equal_vertices(body.mesh);
   const std::vector<std::uint32_t> component = triangle_components(mesh);
-  const std::vector<double> volume = volumes(mesh, component);
+  std::vector<double> volume = volumes(mesh, component);
   // A mesh whose normals all point inward is turned as a whole.
-  double total = 0;
-  for (const double v : volume) total += v;
-  const int turn = total < 0 ? -1 : 1;
+  if (std::accumulate(volume.begin(), volume.end(), 0.0) < 0) {
+    for (Triangle& t : mesh.triangles) std::swap(t[1], t[2]);
+    for (double& v : volume) v = -v;
+  }
   append(all, mesh, component);
   for (const double v : volume)
-    all.shells.push_back({static_cast<int>(all.solids.size()), v * turn < 0 ? -turn : turn});
+    all.shells.push_back({static_cast<int>(all.solids.size()), v < 0 ? -1 : 1});
   all.solids.push_back({body.material});
 }
 

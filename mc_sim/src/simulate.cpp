@@ -200,17 +200,19 @@ class Workshop {
     scene_ = &scene.impl();
     options_ = &options;
     if (options.method == Method::direct) return true;
-    cascades_ = library_size(options, most_primaries);
+    const std::size_t wanted = library_size(options, most_primaries);
     FreshLibraries fresh;
     for (std::size_t m = 0; m < scene.materials().size(); ++m) {
       const Medium& medium = *scene_->medium_pointers[m];
       const CascadeSettings settings{scene.materials()[m], scene.physics(),
                                      scene.beam().energy_ev + medium.barrier_ev(), options.seed};
       auto library = (source ? source : &fresh)
-                         ->library(settings, cascades_, options.threads, progress, cancel);
+                         ->library(settings, wanted, options.threads, progress, cancel);
       if (!library) return false;
       libraries_.push_back(std::move(library));
     }
+    for (const auto& library : libraries_)
+      cascades_ = cascades_ == 0 ? library->cascades() : std::min(cascades_, library->cascades());
     if (options.accuracy > 0) controls_.emplace(*scene_, options, libraries_);
     return true;
   }
@@ -221,6 +223,7 @@ class Workshop {
     return make_replay_worker(*scene_, *options_, libraries_);
   }
 
+  // Of each material, those that there are; 0 without replay.
   std::size_t cascades() const { return cascades_; }
 
  private:

@@ -5,6 +5,7 @@
 
 #include "plane_controls.h"
 #include "replay_site.h"
+#include "spending.h"
 #include "subset.h"
 #include "surf/core/random.h"
 #include "unit_worker.h"
@@ -13,10 +14,7 @@ namespace surf::mc {
 
 namespace {
 
-constexpr std::int64_t pilot = 24;          // primaries of a pixel that only tell how many it needs
 constexpr int neighbours = 2;               // pixels to each side whose pilots count with its own
-constexpr std::int64_t fewest = 32;         // primaries whose counts are kept
-constexpr double reserve = 1.1;             // of primaries over what the estimate of variance asks for
 constexpr int most_rounds = 4;              // of adding where the estimate turns out short
 
 // What might have been missed: were there a kind of event of which one in m primaries has one, m
@@ -24,7 +22,7 @@ constexpr int most_rounds = 4;              // of adding where the estimate turn
 // count this many electrons.
 constexpr double unseen = 3, unseen_counts = 1.5;
 
-// The standard library's way to a variance.
+// Sums of counts, from which come their mean and variance.
 struct Sample {
   double n = 0, sum = 0, squares = 0;
   void add(double value) {
@@ -101,7 +99,7 @@ class SpendingWorker : public UnitWorker {
     }
     if (p.plane) return;
     replay_.go_to(p.site);
-    for (std::int64_t e = 0; e < pilot; ++e)
+    for (std::int64_t e = 0; e < pilot_primaries; ++e)
       run(p, [&](std::size_t d, int counted, int on_plane) {
         p.plain[d].add(counted);
         p.difference[d].add(counted - on_plane);
@@ -164,7 +162,7 @@ class SpendingWorker : public UnitWorker {
       tally.hits = 1;
       return;
     }
-    double plain = fewest, difference = fewest;
+    double plain = fewest_primaries, difference = fewest_primaries;
     for (std::size_t d = 0; d < detectors_; ++d) {
       Sample all, left;
       pool(i, d, all, left);
@@ -180,7 +178,7 @@ class SpendingWorker : public UnitWorker {
     const bool controlled = p.match.control && difference < plain;
     tally.model = controlled ? PixelModel::difference : PixelModel::replay;
     wanted_.resize(sites_.size());
-    wanted_[i] = reserve * (controlled ? difference : plain);
+    wanted_[i] = reserve_of_primaries * (controlled ? difference : plain);
   }
 
   // Pilots of a pixel and its neighbours.

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <ostream>
 #include <random>
 
@@ -11,6 +10,7 @@
 
 #include "cascade_reader.h"
 #include "detection.h"
+#include "endless.h"
 #include "statistics.h"
 #include "surf/core/error.h"
 #include "surf/io/sim/materials.h"
@@ -50,29 +50,13 @@ CascadeReader read(const CascadeLibrary& library, std::size_t number) {
           library.settings().start_energy_ev, library.medium().barrier_ev()};
 }
 
-// One material without any surface, and all tracks of one primary as they happen.
-struct Nowhere {
-  using State = int;
-  struct Surface {
-    double distance = 0;
-    Vec3 position, position_ahead, normal;
-    State state_ahead = -1;
-  };
-  int material(State) const { return 0; }
-  double clearance(const Vec3&) const { return std::numeric_limits<double>::infinity(); }
-  double farthest() const { return std::numeric_limits<double>::infinity(); }
-  bool flies_free(const Vec3&, const Vec3&) const { return true; }
-  Crossing crossing(const Vec3&, const Vec3&, double, State&, Surface&) const {
-    return Crossing::none;
-  }
-};
-
 struct SeenElectron {
   int parent = -1;
   std::vector<Vec3> points_nm;
   std::vector<double> energies_ev;
 };
 
+// Sees all tracks of one primary as they happen.
 struct Witness {
   std::vector<SeenElectron> electrons;
 
@@ -93,11 +77,11 @@ struct Witness {
 Witness witness(const CascadeLibrary& library, std::uint64_t number) {
   const CascadeSettings& s = library.settings();
   const std::vector<const Medium*> media{&library.medium()};
-  Nowhere nowhere;
+  Endless endless;
   Witness seen;
   Detection detection(default_detectors(), {}, false);
   Balance balance;
-  Transport<Nowhere, Witness> transport(nowhere, media, s.physics.barrier, false, seen, detection,
+  Transport<Endless, Witness> transport(endless, media, s.physics.barrier, false, seen, detection,
                                         balance);
   RandomStream random(s.seed, std::uint64_t{1} << 47, number);
   transport.run({}, {0, 0, -1}, s.start_energy_ev, 0, random);

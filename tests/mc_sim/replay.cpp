@@ -4,6 +4,7 @@
 #include "subset.h"
 #include "surf/core/error.h"
 #include "surf/core/random.h"
+#include "surf/mc/library_source.h"
 
 namespace surf::mc {
 
@@ -147,6 +148,24 @@ TEST(Replay, HandsOverWhereAMaterialHasNoLibrary) {
     test::expect_balanced(replay.balance);
     test::expect_same_sample(direct, replay, options.detectors);
   }
+}
+
+// Errors go by it: a library may hold more than was asked for.
+TEST(Replay, ReportsTheCascadesThatThereAre) {
+  class Generous final : public FreshLibraries {
+   public:
+    std::shared_ptr<const CascadeLibrary> library(const CascadeSettings& settings, std::size_t asked,
+                                                  int threads, const ProgressCallback& progress,
+                                                  const CancelToken* cancel) override {
+      return FreshLibraries::library(settings, asked + CascadeLibrary::page_cascades, threads,
+                                     progress, cancel);
+    }
+  } generous;
+  const SimulationOptions options = replaying(10);
+  const Scene scene(mesa(), slow(), test::square_scan(40, 2));
+  const auto r = simulate(scene, options, {}, nullptr, {}, nullptr, &generous);
+  EXPECT_EQ(r.library_cascades, library_size(options, 10) + CascadeLibrary::page_cascades);
+  EXPECT_EQ(simulate(scene, {}).library_cascades, 0u);
 }
 
 TEST(Replay, RefusesWhatItCannotDo) {

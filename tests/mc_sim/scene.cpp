@@ -160,6 +160,29 @@ TEST(Scene, SeesHollowsInBodies) {
   EXPECT_EQ(r.balance.total_lost(), 0);
 }
 
+// `validate` takes such a mesh and says so.
+TEST(Scene, TurnsABodyWhoseNormalsPointInward) {
+  TriangleMesh hollow = make_box({-20, -20, -20}, {20, 20, 20});
+  const TriangleMesh hole = make_box({-10, -10, -10}, {10, 10, 10});
+  for (const Triangle& t : hole.triangles) hollow.triangles.push_back({8 + t[0], 8 + t[2], 8 + t[1]});
+  ASSERT_EQ(hollow.vertices_nm.size(), 8u);
+  hollow.vertices_nm.insert(hollow.vertices_nm.end(), hole.vertices_nm.begin(), hole.vertices_nm.end());
+  for (Triangle& t : hollow.triangles) std::swap(t[1], t[2]);
+  Specimen s = nested();
+  s.bodies.push_back({"hollow", hollow, 1});
+  const Scene scene(s, {}, square_scan(60, 12));
+  Inside observer([&](const Vec3& p) {
+    const double r = std::max({std::fabs(p.x), std::fabs(p.y), std::fabs(p.z)});
+    return r > 10 && r < 20 ? 1 : -1;
+  });
+  const Balance b = observe(scene, observer, 20);
+  EXPECT_EQ(b.total_lost(), 0);
+  expect_balanced(b);
+  EXPECT_GT(b.absorbed, 1000);
+  EXPECT_GT(observer.segments, 10000);
+  EXPECT_LE(observer.wrong, observer.segments / 1000);
+}
+
 TEST(Scene, LeavesOutWhatNoElectronReachesAndChangesNothing) {
   Specimen s = nested();
   s.bodies.push_back({"block", make_box({-200, -200, -600}, {200, 200, 0}, 4), 0});

@@ -3,10 +3,11 @@
 
 #include <fstream>
 #include <map>
-#include <sstream>
 #include <stdexcept>
 #include <string>
 #include <vector>
+
+#include "surf/io/csv_line.h"
 
 namespace surf::test {
 
@@ -14,22 +15,12 @@ namespace surf::test {
 inline std::vector<std::map<std::string, std::string>> read_reference(const std::string& name) {
   std::ifstream in(std::string(SEMSURF_REFERENCE_DATA) + "/" + name);
   if (!in) throw std::runtime_error("no reference data " + name);
-  const auto split = [](const std::string& line) {
-    std::vector<std::string> fields(1);
-    bool quoted = false;
-    for (const char c : line) {
-      if (c == '"') quoted = !quoted;
-      else if (c == ',' && !quoted) fields.emplace_back();
-      else if (c != '\r') fields.back() += c;
-    }
-    return fields;
-  };
   std::string line;
   std::getline(in, line);
-  const auto names = split(line);
+  const auto names = io::split_csv_line(line);
   std::vector<std::map<std::string, std::string>> rows;
   while (std::getline(in, line)) {
-    const auto fields = split(line);
+    const auto fields = io::split_csv_line(line);
     std::map<std::string, std::string> row;
     for (std::size_t i = 0; i < names.size() && i < fields.size(); ++i) row[names[i]] = fields[i];
     rows.push_back(std::move(row));

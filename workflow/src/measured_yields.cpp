@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "surf/core/error.h"
+#include "surf/io/csv_line.h"
 #include "surf/io/files.h"
 
 namespace surf::workflow {
@@ -17,25 +18,14 @@ namespace {
 
 constexpr std::size_t most_bytes = std::size_t{1} << 26;
 
-std::vector<std::string> split(std::string_view line) {
-  std::vector<std::string> fields(1);
-  bool quoted = false;
-  for (const char c : line) {
-    if (c == '"') quoted = !quoted;
-    else if (c == ',' && !quoted) fields.emplace_back();
-    else if (c != '\r') fields.back() += c;
-  }
-  return fields;
-}
-
 class Table {
  public:
   Table(const std::filesystem::path& path, std::string_view names)
-      : path_(path), names_(split(names)) {}
+      : path_(path), names_(io::split_csv_line(names)) {}
 
   bool has(const char* name) const { return column(name) < names_.size(); }
   void read(std::string_view line, std::size_t number) {
-    fields_ = split(line);
+    fields_ = io::split_csv_line(line);
     number_ = number;
   }
   // Empty where the line ends before it.

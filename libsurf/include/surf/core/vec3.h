@@ -47,9 +47,14 @@ struct Box {
   Vec3 size_nm() const { return upper_nm - lower_nm; }
   Vec3 center_nm() const { return (lower_nm + upper_nm) * 0.5; }
 
-  void extend(const Vec3& p) {
-    lower_nm = {std::fmin(lower_nm.x, p.x), std::fmin(lower_nm.y, p.y), std::fmin(lower_nm.z, p.z)};
-    upper_nm = {std::fmax(upper_nm.x, p.x), std::fmax(upper_nm.y, p.y), std::fmax(upper_nm.z, p.z)};
+  /// A coordinate that is not a number changes nothing.
+  void extend(const Vec3& p) {   // std::fmin would be a call into the C library
+    lower_nm.x = p.x < lower_nm.x ? p.x : lower_nm.x;
+    lower_nm.y = p.y < lower_nm.y ? p.y : lower_nm.y;
+    lower_nm.z = p.z < lower_nm.z ? p.z : lower_nm.z;
+    upper_nm.x = p.x > upper_nm.x ? p.x : upper_nm.x;
+    upper_nm.y = p.y > upper_nm.y ? p.y : upper_nm.y;
+    upper_nm.z = p.z > upper_nm.z ? p.z : upper_nm.z;
   }
   void extend(const Box& b) {
     if (b.empty()) return;

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace surf::cli {
+
+// Options that mean the same for several commands, as text; the caller may put each into a group.
+
+CLI::Option* add_materials_option(CLI::App& app, std::vector<std::string>& files);
+CLI::Option* add_threads_option(CLI::App& app, std::optional<std::string>& threads);
+CLI::Option* add_quiet_flag(CLI::App& app, bool& quiet);
+
+/// What --threads says: 0 (one per hardware thread) where it is absent. Throws UsageError.
+int parse_threads(const std::optional<std::string>& text);
+
+}  // namespace surf::cli
