@@ -19,6 +19,12 @@ TEST(TouchingVertices, AreThoseNearTheOthersSurface) {
   }
   const auto none = touching_vertices(box, make_box({1, 1, 4.001}, {9, 9, 9}), 0);
   EXPECT_EQ(std::ranges::count(none, 1), 0);
+  const TriangleMesh roof{{{0, 0, 4.5}, {4, 0, 3.5}, {0, 4, 3.5}}, {{0, 1, 2}}};
+  const auto below = touching_vertices(box, roof, 0.01);
+  for (std::size_t i = 0; i < box.vertices_nm.size(); ++i) {
+    const Vec3& p = box.vertices_nm[i];
+    EXPECT_EQ(below[i], p.z == 4 && p.x + p.y == 2) << p.x << " " << p.y << " " << p.z;
+  }
   EXPECT_THROW(touching_vertices(box, box, -1), UsageError);
   EXPECT_THROW(touching_vertices(box, {}, 1), InvalidInput);
 }
