@@ -114,10 +114,10 @@ json sweep(const char* name, const mc::Specimen& all, const View& view,
   return rows;
 }
 
-std::vector<double> column(const json& rows, const json::json_pointer& key, double least = 0) {
+std::vector<double> column(const json& rows, const json::json_pointer& key) {
   std::vector<double> values;
   for (const json& row : rows)
-    if (row["tolerance_nm"] > 0) values.push_back(std::max(least, row[key].get<double>()));
+    if (row["tolerance_nm"] > 0) values.push_back(row[key].get<double>());
   return values;
 }
 

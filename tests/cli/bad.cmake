@@ -36,7 +36,7 @@ semsurf_cli_usage(accuracy_floor_alone "no accuracy" simulate cube.off --accurac
 semsurf_cli_usage(mesh_tolerance_negative "--mesh-tolerance: '-1nm' is negative.*0.5nm" simulate cube.off --mesh-tolerance -1nm ${image})
 semsurf_cli_usage(mesh_tolerance_nan "--mesh-tolerance" simulate cube.off --mesh-tolerance nan ${image})
 semsurf_cli_usage(mesh_tolerance_unit "--mesh-tolerance.*unit of length" simulate cube.off --mesh-tolerance 1eV ${image})
-semsurf_cli_usage(mesh_tolerance_large "--mesh-tolerance: 1 um leaves nothing of cube.off" simulate cube.off --mesh-tolerance 1um ${image})
+semsurf_cli_usage(mesh_tolerance_large "--mesh-tolerance: 1.00 um leaves nothing of cube.off" simulate cube.off --mesh-tolerance 1um ${image})
 semsurf_cli_usage(time_zero "--time.*above zero" simulate cube.off --time 0s --size 8x8 -o image.exr)
 semsurf_cli_usage(replay_deposit "--method replay.*whole track" simulate cube.off --method replay --deposit 8 --size 8x8 --electrons 2 -o image.vti)
 semsurf_cli_usage(replay_loss "--method replay.*continuous loss" simulate cube.off --method replay --physics loss=none ${image})
