@@ -219,6 +219,7 @@ TEST(SimplifySpecimen, ChangesImagesByLittleForASmallTolerance) {
 SimulateJob rough_job() {
   SimulateJob job = small_job();
   job.scene.specimen = rough();
+  job.scene.specimen.height_field->field = make_rough({30, 30, 0.5}, 2, 8, 7);   // scenes soon built
   return job;
 }
 
