@@ -185,10 +185,12 @@ int main(int argc, char** argv) {
     else files.push_back(argv[i]);
   View view;
   view.pixels = 16;
-  view.electrons = quick ? 200 : 3000;
+  view.electrons = quick ? 700 : 5000;
   view.scan.width = view.scan.height = view.pixels;
   view.scan.pixel_x_nm = view.scan.pixel_y_nm = 12;
-  const std::vector<double> tolerances = {0, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 2};
+  const std::vector<double> tolerances =
+      quick ? std::vector<double>{0, 0.05, 0.2, 0.5, 1, 2}
+            : std::vector<double>{0, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 2};
   json out;
   out["rough"] = sweep("rough", rough(), view, tolerances);
   out["ball"] = sweep("ball", ball(), view, tolerances);

@@ -147,7 +147,7 @@ semsurf_cli_test(simulate.mesh_tolerance ARGS simulate rough.toml ${few} --mesh-
 semsurf_cli_test(simulate.mesh_tolerance_in_scene ARGS simulate rough.toml ${few} -o image.exr
   INFO image.exr "mesh_tolerance_nm +0.2")
 semsurf_cli_test(simulate.mesh_tolerance_gains_nothing ARGS simulate cube.off ${few} --mesh-tolerance 1nm
-  -o image.exr STDERR "cube.off: with --mesh-tolerance 1.00 nm nothing would be gained; it stays as it is"
+  -o image.exr STDERR "cube.off: with --mesh-tolerance 1.00 nm nothing would be gained. it stays as it is"
   STDOUT "simplified +cube.off: as it is")
 semsurf_cli_test(help.mesh_tolerance ARGS simulate --help STDOUT "--mesh-tolerance LENGTH")
 semsurf_cli_test(help.accuracy ARGS simulate --help

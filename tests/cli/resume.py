@@ -217,8 +217,8 @@ def accuracy(folder, _, __):
 
 def tolerance(folder, _, __):
     """Work done within one tolerance of the geometry is not taken for another's."""
-    job = ["simulate", "rough.toml", "--size", "30x30", "--electrons", "60", "--method", "direct",
-           "--checkpoint-every", "0.1s"]
+    job = ["simulate", "rough.toml", "--size", "40x40", "--electrons", "40", "--method", "direct",
+           "--spectra", "--checkpoint-every", "0.1s"]
     file = folder / "mine.checkpoint"
     run = Run(folder, job=job).end()
     reference = (folder / "image.exr").read_bytes()
