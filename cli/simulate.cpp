@@ -98,6 +98,14 @@ void apply_budget(const SimulateOptions& o, std::int64_t electrons, workflow::Si
   if (!scene.accuracy && !o.time) scene.accuracy_floor = std::nullopt;
 }
 
+std::optional<double> parse_tolerance(const SimulateOptions& o) {
+  if (!o.mesh_tolerance) return std::nullopt;
+  const double nm = parse_length_nm(*o.mesh_tolerance, "--mesh-tolerance");
+  if (nm >= 0) return nm;
+  throw UsageError("--mesh-tolerance", fmt::format("'{}' is negative", *o.mesh_tolerance),
+                   "Give 0 or a length such as 0.5nm");
+}
+
 workflow::SimulateJob make_job(const SimulateOptions& o, const std::string& command_line) {
   workflow::SimulateJob job;
   // Numbers first: a bad one should not wait for a large mesh to be read.
@@ -106,6 +114,7 @@ workflow::SimulateJob make_job(const SimulateOptions& o, const std::string& comm
   const std::uint64_t seed = o.seed ? parse_seed(*o.seed, "--seed") : 0;
   job.options.threads = parse_threads(o.threads);
 
+  const std::optional<double> tolerance = parse_tolerance(o);
   refuse_two_budgets(o);
   std::optional<std::optional<mc::Method>> method;
   if (o.method) method = mc::parse_method(*o.method, "--method");
@@ -117,6 +126,7 @@ workflow::SimulateJob make_job(const SimulateOptions& o, const std::string& comm
   apply_budget(o, electrons, job);
   job.options.electrons = job.scene.electrons.value_or(job.options.electrons);
   if (method) job.scene.method = *method;
+  if (tolerance) job.scene.mesh_tolerance_nm = tolerance;
   job.cache = io::cache_folder(o.cache.value_or(""));
   job.options.spectra = o.spectra;
   job.extras = make_extras(o);

@@ -121,6 +121,10 @@ void add_simulation_options(CLI::App& app, SimulateOptions& o) {
                  "Instead: the accuracy that fits in this time, as 30s; says which, and\n"
                  "--accuracy with that gives the same bytes")
       ->type_name("TIME")->group(group);
+  app.add_option("--mesh-tolerance", o.mesh_tolerance,
+                 "Leave out detail of meshes and height fields, moving no surface by more\n"
+                 "than this; says what is gained (0nm: all detail is simulated)")
+      ->type_name("LENGTH")->group(group);
   app.add_option("--method", o.method,
                  "Follow each electron (direct), or retrace stored cascades (replay); both\n"
                  "have the same statistics (auto: whichever is less work)")

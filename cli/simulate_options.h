@@ -13,7 +13,7 @@ namespace surf::cli {
 /// Everything `simulate` is told, as text; absent: not given.
 struct SimulateOptions {
   SceneOptions scene;
-  std::optional<std::string> electrons, accuracy, accuracy_floor, time, method, seed, threads, cache;
+  std::optional<std::string> electrons, accuracy, accuracy_floor, time, mesh_tolerance, method, seed, threads, cache;
   std::vector<std::string> outputs;
   std::string channel, channels;
   std::optional<std::string> deposit, trajectories, trajectories_at;

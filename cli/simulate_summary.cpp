@@ -99,6 +99,16 @@ void print_speed(const workflow::SimulateJob& job, const workflow::SimulateSumma
                          resolve_threads(job.options.threads)));
 }
 
+void print_simplified(const workflow::Simplification& s) {
+  std::string label = "simplified";
+  for (const workflow::SimplifiedBody& body : s.bodies) {
+    print_line(label, workflow::describe(body));
+    label.clear();
+  }
+  if (!s.bodies.empty())
+    print_line("", fmt::format("{} allowed, took {:.1f} s", format_length(s.tolerance_nm), s.seconds));
+}
+
 }  // namespace
 
 void print_summary(const workflow::SimulateJob& job, const workflow::SimulateSummary& s) {
@@ -109,6 +119,7 @@ void print_summary(const workflow::SimulateJob& job, const workflow::SimulateSum
   print_models(s);
   print_electrons(s);
   print_speed(job, s);
+  print_simplified(s.simplification);
   if (s.scene.triangles_left_out > 0)
     print_line("left out", fmt::format("{} triangles that no electron reaches",
                                        format_count(double(s.scene.triangles_left_out))));

@@ -9,6 +9,7 @@
 
 #include "scene_impl.h"
 #include "surf/core/units.h"
+#include "surf/mc/field_in_reach.h"
 #include "surf/mesh/check_mesh.h"
 #include "surf/mesh/height_field_mesh.h"
 #include "surf/mesh/open_sheet.h"
@@ -100,15 +101,7 @@ void add_sheet(Assembly& all, const Body& body, const Scan& scan, double reach) 
 }
 
 void add_height_field(Assembly& all, const HeightFieldBody& body, const Scan& scan, double reach) {
-  const HeightField& f = body.field;
-  // The scan's corners, wherever a tilted beam may bring them, plus the electrons' reach.
-  const double half = 0.5 * std::hypot(scan.width * scan.pixel_x_nm, scan.height * scan.pixel_y_nm);
-  auto margin = [&](double center, double lower, double upper) {
-    return std::max({0.0, lower - (center - half - reach), center + half + reach - upper});
-  };
-  const double mx = margin(scan.center_x_nm, f.x_nm(0), f.x_nm(f.z_nm.width() - 1));
-  const double my = margin(scan.center_y_nm, f.y_nm(0), f.y_nm(f.z_nm.height() - 1));
-  const HeightField wide = extend_height_field(f, mx, my, body.edge);
+  const HeightField wide = field_in_reach(body, scan, reach);
   const double width = std::max(wide.z_nm.width() * wide.pitch_x_nm,
                                 wide.z_nm.height() * wide.pitch_y_nm);
   const TriangleMesh sheet = half_space_top(wide, apron_in_widths * width);
@@ -171,9 +164,8 @@ Scene::Scene(const Specimen& specimen, const Beam& beam, const Scan& scan, const
   double farthest_reach = 0;   // an electron may pass through all materials on its way
   for (const Material& m : s.materials) {
     s.media.push_back(make_medium(m, physics));
-    const double range = s.media.back().range_nm(beam.energy_ev + s.media.back().barrier_ev());
-    reach = std::max(reach, std::min(range, 1e6));
-    farthest_reach += range;
+    reach = std::max(reach, reach_nm(s.media.back(), beam));
+    farthest_reach += s.media.back().range_nm(beam.energy_ev + s.media.back().barrier_ev());
   }
   for (const Medium& m : s.media) s.medium_pointers.push_back(&m);
 

@@ -140,5 +140,15 @@ semsurf_cli_test(simulate.accuracy ARGS simulate cube.off --substrate Si --size 
 semsurf_cli_test(simulate.time ARGS simulate cube.off --substrate Si --size 8x8 ${short}
   --time 1ms --cache cache -o image.exr STDERR "too short: even 10 % accuracy took" WRITES image.exr
   INFO image.exr "accuracy +0.1")
+semsurf_cli_test(simulate.mesh_tolerance ARGS simulate rough.toml ${few} --mesh-tolerance 0.5nm -o image.exr
+  STDOUT "simplified +rough: [0-9]+ triangles to [0-9]+, at most 0\\.[0-9]+ nm off" "0.500 nm allowed, took"
+  STDERR "leaving out detail below 0.500 nm"
+  INFO image.exr "mesh_tolerance_nm +0.5(.|\n)*simplified.1 +rough: ")
+semsurf_cli_test(simulate.mesh_tolerance_in_scene ARGS simulate rough.toml ${few} -o image.exr
+  INFO image.exr "mesh_tolerance_nm +0.2")
+semsurf_cli_test(simulate.mesh_tolerance_gains_nothing ARGS simulate cube.off ${few} --mesh-tolerance 1nm
+  -o image.exr STDERR "cube.off: with --mesh-tolerance 1.00 nm nothing would be gained. it stays as it is"
+  STDOUT "simplified +cube.off: as it is")
+semsurf_cli_test(help.mesh_tolerance ARGS simulate --help STDOUT "--mesh-tolerance LENGTH")
 semsurf_cli_test(help.accuracy ARGS simulate --help
   STDOUT "--accuracy-floor" "--time" "auto.direct.replay" "variance_left is the share")

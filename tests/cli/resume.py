@@ -215,6 +215,23 @@ def accuracy(folder, _, __):
     expect(not checkpoints(folder), "accuracy: a checkpoint is left")
 
 
+def tolerance(folder, _, __):
+    """Work done within one tolerance of the geometry is not taken for another's."""
+    job = ["simulate", "rough.toml", "--size", "40x40", "--electrons", "40", "--method", "direct",
+           "--spectra", "--checkpoint-every", "0.1s"]
+    file = folder / "mine.checkpoint"
+    run = Run(folder, job=job).end()
+    reference = (folder / "image.exr").read_bytes()
+    run = Run(folder, "--checkpoint", file, job=job).stop_with_checkpoint(signal.SIGKILL, folder)
+    for other in ("0.3nm", "0"):
+        run = Run(folder, "--checkpoint", file, "--mesh-tolerance", other, job=job).end()
+        expect(run.code == 3 and "mesh_tolerance_nm 0.2 there" in run.err,
+               f"tolerance {other}: exit {run.code}, {run.err}")
+    run = Run(folder, "--checkpoint", file, job=job).end()
+    expect(run.code == 0 and run.share() > 0, f"tolerance: does not go on: {run.err}")
+    expect((folder / "image.exr").read_bytes() == reference, "tolerance: other bytes")
+
+
 def main():
     os.environ["SEMSURF_CACHE"] = "off"
     with tempfile.TemporaryDirectory(prefix="semsurf-test-") as name:
@@ -229,7 +246,7 @@ def main():
         reference = {file: (folder / file).read_bytes() for file in OUTPUTS}
         expect_same(folder, reference, "undisturbed")
         for case in (killed_at_any_time, interrupted, damaged, changed, two_at_once, full_disk, off,
-                     accuracy):
+                     accuracy, tolerance):
             case(fresh(case.__name__), reference, seconds)
     sys.exit(1 if faults else 0)
 

@@ -130,6 +130,8 @@ Metadata provenance(const SimulateJob& job, const mc::Scan& scan,
   } else {
     out["electrons"] = std::to_string(job.options.electrons);
   }
+  if (const double tolerance = job.scene.mesh_tolerance_nm.value_or(0); tolerance != 0)
+    out["mesh_tolerance_nm"] = format_exact(tolerance);
   out["method"] = mc::name(job.options.method);
   // Where energy is watched tracks are followed to their end, with other random numbers.
   if (job.extras.deposit_cells > 0) out["deposit_cells"] = std::to_string(job.extras.deposit_cells);
@@ -149,6 +151,9 @@ Metadata outcome(const SimulateSummary& summary) {
   out["balance.transmitted"] = std::to_string(b.transmitted);
   out["balance.absorbed"] = std::to_string(b.absorbed);
   out["balance.lost"] = std::to_string(b.total_lost());
+  int body = 0;
+  for (const SimplifiedBody& done : summary.simplification.bodies)
+    out[fmt::format("simplified.{}", ++body)] = describe(done);
   if (result.library_cascades > 0) {
     out["library.cascades"] = std::to_string(result.library_cascades);
     out["balance.handed_over"] = std::to_string(b.handed_over);

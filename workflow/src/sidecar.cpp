@@ -70,6 +70,17 @@ Json scene_json(const mc::SceneSummary& s) {
           {"build_seconds", s.build_seconds}};
 }
 
+Json simplification_json(const Simplification& s) {
+  Json bodies = Json::array();
+  for (const SimplifiedBody& b : s.bodies)
+    bodies.push_back({{"name", b.name},
+                      {"triangles_before", b.triangles_before},
+                      {"triangles_after", b.triangles_after},
+                      {"deviation_nm", b.deviation_nm},
+                      {"kept", b.kept}});
+  return {{"tolerance_nm", s.tolerance_nm}, {"seconds", s.seconds}, {"bodies", bodies}};
+}
+
 Json method_json(const SimulateJob& job, const SimulateSummary& s) {
   Json pixels = Json::object();
   for (int i = 0; i < mc::pixel_models; ++i)
@@ -140,6 +151,8 @@ std::string sidecar_text(const SimulateJob& job, const SimulateSummary& summary,
   json["peak_memory_bytes"] = peak_memory_bytes();
   json["method"] = method_json(job, summary);
   json["scene"] = scene_json(summary.scene);
+  if (summary.simplification.tolerance_nm > 0)
+    json["simplification"] = simplification_json(summary.simplification);
   json["balance"] = balance_json(b);
   json["physics"] = Json::object();
   for (const mc::Material& material : job.scene.specimen.materials)

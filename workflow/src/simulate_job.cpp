@@ -132,6 +132,18 @@ void check_checkpoint(const SimulateJob& job) {
   io::check_writable(o.file);
 }
 
+// What is traced: the specimen, or one of fewer triangles within the tolerance asked for.
+mc::Scene make_scene(const SimulateJob& job, const NoteCallback& tell, SimulateSummary& summary) {
+  const io::SceneFile& s = job.scene;
+  const double tolerance_nm = s.mesh_tolerance_nm.value_or(0);
+  if (tolerance_nm == 0) return mc::Scene(s.specimen, s.beam, summary.scan, s.physics);
+  if (tell) tell(fmt::format("leaving out detail below {}", format_length(tolerance_nm)));
+  const mc::Specimen simple =
+      simplify_specimen(s.specimen, tolerance_nm, s.beam, summary.scan, s.physics,
+                        job.options.threads, summary.simplification);
+  return mc::Scene(simple, s.beam, summary.scan, s.physics);
+}
+
 // Only where it is much: where the results of all pixels go until they are written.
 void tell_of_scratch(const SimulateJob& job, const mc::Scan& scan, const NoteCallback& note) {
   const std::size_t bytes = mc::tally_bytes(scan, job.options);
@@ -296,7 +308,7 @@ SimulateSummary run(const SimulateJob& asked, const ProgressCallback& progress,
   summary.scan = resolve_scan(s.scan, mc::extent(s.specimen), s.beam);
   check_trajectories(job, summary.scan);
   record.inputs = hash_inputs(s.inputs);
-  const mc::Scene scene(s.specimen, s.beam, summary.scan, s.physics);   // validates the specimen
+  const mc::Scene scene = make_scene(job, tell, summary);   // validates the specimen
   summary.scene = scene.summary();
   const auto note = [&](std::vector<std::string> warnings) {
     for (std::string& warning : warnings) {
@@ -305,6 +317,7 @@ SimulateSummary run(const SimulateJob& asked, const ProgressCallback& progress,
     }
   };
   note(warn_before(job, summary.scan));
+  note(warnings_of(s.specimen, summary.simplification));
   summary.choice = mc::choose_method(scene, job.options, s.method, {job.extras.deposit_cells > 0});
   job.options.method = summary.choice.method;
   JobLibraries libraries(job.cache, making, tell);

@@ -113,8 +113,8 @@ void read_accuracy(const TomlTable& table, SceneFile& scene) {
 }
 
 void read_simulation(const TomlTable& table, SceneFile& scene) {
-  table.allow({"electrons", "method", "accuracy", "accuracy_floor", "seed", "physics", "cutoff",
-               "detectors"});
+  table.allow({"electrons", "method", "accuracy", "accuracy_floor", "mesh_tolerance", "seed",
+               "physics", "cutoff", "detectors"});
   if (const auto method = table.text("method"))
     scene.method = mc::parse_method(*method, table.place("method"));
   if (const auto electrons = table.integer("electrons")) {
@@ -125,6 +125,10 @@ void read_simulation(const TomlTable& table, SceneFile& scene) {
     scene.electrons = electrons;
   }
   read_accuracy(table, scene);
+  scene.mesh_tolerance_nm = table.length_nm("mesh_tolerance");
+  if (scene.mesh_tolerance_nm && !(*scene.mesh_tolerance_nm >= 0))
+    throw UsageError(table.place("mesh_tolerance"), "it is negative",
+                     "Give 0 or a length such as \"0.5nm\"");
   if (const auto seed = table.integer("seed")) {
     if (*seed < 0) {
       throw UsageError(table.place("seed"), "it is negative", "Give a whole number, 0 or above");

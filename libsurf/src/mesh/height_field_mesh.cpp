@@ -8,28 +8,13 @@
 #include <limits>
 
 #include "core/argument.h"
+#include "mesh/whole_field.h"
 #include "surf/core/error.h"
 
 namespace surf {
 namespace {
 
 constexpr double max_samples = std::numeric_limits<std::uint32_t>::max() / 2;
-
-void require_no_holes(const HeightField& field) {
-  validate(field);
-  for (int row = 0; row < field.z_nm.height(); ++row) {
-    for (int column = 0; column < field.z_nm.width(); ++column) {
-      if (field.is_valid(column, row)) continue;
-      throw InvalidInput("height field",
-                         fmt::format("the sample at column {}, row {} is invalid", column, row),
-                         "A surface has no holes: fill or crop them first");
-    }
-  }
-  if (static_cast<double>(field.z_nm.size()) > max_samples) {
-    throw Unsupported("height field", fmt::format("it has {} samples", field.z_nm.size()),
-                      "Crop it or lower its resolution");
-  }
-}
 
 /// Triangles over a width x height raster of vertices numbered row by row.
 std::vector<Triangle> raster_triangles(std::uint32_t width, std::uint32_t height) {
@@ -94,6 +79,22 @@ Grid<T> picked(const Grid<T>& grid, const std::vector<int>& columns, const std::
 }
 
 }  // namespace
+
+void require_no_holes(const HeightField& field) {
+  validate(field);
+  for (int row = 0; row < field.z_nm.height(); ++row) {
+    for (int column = 0; column < field.z_nm.width(); ++column) {
+      if (field.is_valid(column, row)) continue;
+      throw InvalidInput("height field",
+                         fmt::format("the sample at column {}, row {} is invalid", column, row),
+                         "A surface has no holes: fill or crop them first");
+    }
+  }
+  if (static_cast<double>(field.z_nm.size()) > max_samples) {
+    throw Unsupported("height field", fmt::format("it has {} samples", field.z_nm.size()),
+                      "Crop it or lower its resolution");
+  }
+}
 
 TriangleMesh height_field_sheet(const HeightField& field) {
   require_no_holes(field);

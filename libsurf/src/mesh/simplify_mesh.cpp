@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <stdexcept>
+#include <tuple>
 
 #include "core/argument.h"
 #include "mesh/disjoint_sets.h"
@@ -29,10 +30,16 @@ constexpr unsigned max_valence = 64;    // beyond it OpenMesh's costs grow with 
 constexpr std::size_t step_down = 4;   // fewer triangles from run to run
 constexpr int bisections = 5;   // of the last step: the number ends within a few per cent of the fewest
 
+bool before(const Vec3& a, const Vec3& b) {
+  return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z);
+}
+
 /// A halfedge mesh of a merged mesh, cut where more than two triangles meet or disagree; vertices
-/// along cuts and rims are locked: cuts fit together again, rims stay; so are hubs of great fans. Coordinates are taken from
-/// `middle`: OpenMesh computes plane equations, which suffer far from the origin.
-HalfedgeMesh to_halfedges(const TriangleMesh& mesh, const Vec3& middle, PointNumber& number) {
+/// along cuts and rims are locked: cuts fit together again, rims stay; so are hubs of great fans and
+/// the places of `fixed`, which is sorted. Coordinates are taken from `middle`: OpenMesh computes
+/// plane equations, which suffer far from the origin.
+HalfedgeMesh to_halfedges(const TriangleMesh& mesh, const Vec3& middle, PointNumber& number,
+                          const std::vector<Vec3>& fixed) {
   const std::vector<Triangle>& triangles = mesh.triangles;
   DisjointSets fans(3 * triangles.size());
   visit_edges(triangles, mesh.vertices_nm.size(), [&](const EdgeUse& edge) {
@@ -67,7 +74,8 @@ HalfedgeMesh to_halfedges(const TriangleMesh& mesh, const Vec3& middle, PointNum
     out.add_face(of_fan[fans.find(side)], of_fan[fans.find(side + 1)], of_fan[fans.find(side + 2)]);
   }
   for (const auto v : out.vertices()) {
-    if (out.is_boundary(v) || out.valence(v) > max_valence) out.status(v).set_locked(true);
+    const bool stays = std::ranges::binary_search(fixed, mesh.vertices_nm[out.property(number, v)], before);
+    if (stays || out.is_boundary(v) || out.valence(v) > max_valence) out.status(v).set_locked(true);
   }
   out.update_face_normals();
   return out;
@@ -87,10 +95,11 @@ TriangleMesh from_halfedges(const HalfedgeMesh& mesh, const PointNumber& number,
 }
 
 /// One run down to a number of triangles, or as near to it as no face turns over.
-TriangleMesh decimated(const TriangleMesh& mesh, std::size_t triangles) {
+TriangleMesh decimated(const TriangleMesh& mesh, std::size_t triangles,
+                       const std::vector<Vec3>& fixed) {
   const Vec3 middle = bounds(mesh).center_nm();
   PointNumber number;
-  HalfedgeMesh work = to_halfedges(mesh, middle, number);
+  HalfedgeMesh work = to_halfedges(mesh, middle, number, fixed);
   Decimater decimater(work);
   OpenMesh::Decimater::ModQuadricT<HalfedgeMesh>::Handle quadric;
   OpenMesh::Decimater::ModNormalFlippingT<HalfedgeMesh>::Handle flipping;
@@ -111,7 +120,10 @@ TriangleMesh decimated(const TriangleMesh& mesh, std::size_t triangles) {
 class Descent {
  public:
   Descent(const TriangleMesh& original, const SimplifyOptions& options, SimplifySummary& summary)
-      : original_(original), options_(options), summary_(summary), best_(original) {}
+      : original_(original), options_(options), summary_(summary), best_(original),
+        fixed_(options.fixed_nm) {
+    std::ranges::sort(fixed_, before);
+  }
 
   TriangleMesh run() {
     const std::size_t least = std::max<std::size_t>(options_.triangles, 4);
@@ -131,7 +143,7 @@ class Descent {
 
  private:
   bool attempt(std::size_t triangles) {
-    TriangleMesh next = decimated(best_, triangles);
+    TriangleMesh next = decimated(best_, triangles, fixed_);
     if (next.triangles.empty() || next.triangles.size() >= best_.triangles.size()) return false;
     ++summary_.attempts;
     const MeshDeviation d = mesh_deviation(original_, next, {.threads = options_.threads});
@@ -153,6 +165,7 @@ class Descent {
   const SimplifyOptions& options_;
   SimplifySummary& summary_;
   TriangleMesh best_;
+  std::vector<Vec3> fixed_;   // sorted
 };
 
 }  // namespace

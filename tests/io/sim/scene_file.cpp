@@ -230,7 +230,8 @@ TEST_F(SceneFileTest, SaysHowMuchIsSimulatedAndHow) {
   EXPECT_FALSE(s.electrons);
   s = read(scene + "accuracy = 0.02\nmethod = \"auto\"");
   EXPECT_EQ(s.accuracy, 0.02);
-  EXPECT_FALSE(s.method || s.accuracy_floor);
+  EXPECT_FALSE(s.method || s.accuracy_floor || s.mesh_tolerance_nm);
+  EXPECT_EQ(read(scene + "mesh_tolerance = \"0.5nm\"").mesh_tolerance_nm, 0.5);
 }
 
 TEST_F(SceneFileTest, SyntaxErrorsHaveLineAndColumn) {
@@ -287,6 +288,7 @@ TEST_F(SceneFileTest, WrongValuesAreNamedWithTheirPlace) {
   expect("[simulation]\nelectrons = 0", "simulation.electrons", "0");
   expect("[simulation]\nmethod = \"fast\"", "simulation.method", "auto, direct or replay");
   expect("[simulation]\naccuracy = \"1%\"\nelectrons = 3", "simulation.accuracy", "Leave one");
+  expect("[simulation]\nmesh_tolerance = -1", "simulation.mesh_tolerance", "0.5nm");
   expect("[simulation]\naccuracy = 2", "simulation.accuracy", "100%");
   expect("[simulation]\naccuracy_floor = 0.1", "simulation.accuracy_floor", "no accuracy");
   expect("[simulation]\nelectrons = 2.5", "simulation.electrons", "whole");

@@ -128,4 +128,19 @@ TEST(SimplifyMesh, RefusesBadArguments) {
   EXPECT_THROW(simplify_mesh({}, {.tolerance_nm = 1}, s), InvalidInput);
 }
 
+TEST(SimplifyMesh, KeepsFixedVertices) {
+  const TriangleMesh ball = make_sphere({1e4, 0, 0}, 20, 4);
+  SimplifyOptions options{.tolerance_nm = 1};
+  for (const Vec3& v : ball.vertices_nm)
+    if (v.z < 0) options.fixed_nm.push_back(v);
+  SimplifySummary s;
+  const TriangleMesh half = simplify_mesh(ball, options, s);
+  const auto below = [](const TriangleMesh& m) {
+    return std::ranges::count_if(m.vertices_nm, [](const Vec3& v) { return v.z < 0; });
+  };
+  EXPECT_EQ(below(half), below(ball));
+  EXPECT_LT(half.triangles.size(), ball.triangles.size() * 2 / 3);
+  EXPECT_TRUE(check_mesh(half).closed_and_oriented);
+}
+
 }  // namespace surf

@@ -15,6 +15,7 @@
 #include "surf/mc/choose_method.h"
 #include "surf/mc/result_summary.h"
 #include "surf/mc/simulate.h"
+#include "surf/workflow/simplify_specimen.h"
 
 namespace surf::workflow {
 
@@ -73,6 +74,7 @@ struct SimulateSummary {
   mc::MethodChoice choice;
   std::size_t pages_loaded = 0, pages_made = 0;   ///< of libraries, from the cache and not
   mc::Scan scan;
+  Simplification simplification;                  ///< with the scene's mesh_tolerance_nm
   mc::SceneSummary scene;
   std::vector<std::string> warnings;
   std::vector<std::filesystem::path> written;     ///< outputs, extras and their .run.json sidecars
@@ -89,7 +91,7 @@ using NoteCallback = std::function<void(const std::string&)>;
 using LibraryCallback = ProgressCallback;
 
 /// Checks everything that can be wrong before spending time (targets writable, channel known), then
-/// builds the scene, simulates, and writes every output and its sidecar `NAME.run.json`. When
+/// simplifies the specimen where that is asked for, builds the scene, simulates, and writes every output and its sidecar `NAME.run.json`. When
 /// cancelled the files are written with `partial = true` in their metadata, and a checkpoint is left
 /// for the same job to go on from; it is deleted when the job is done. One that cannot be gone on from
 /// is a FileError. Progress is in primaries, with a wanted accuracy in pixels.

@@ -35,6 +35,7 @@ struct SceneFile {
   std::optional<std::int64_t> electrons;       ///< this, or `accuracy`, or neither
   std::optional<mc::Method> method;            ///< absent: semsurf chooses
   std::optional<double> accuracy, accuracy_floor;   ///< see mc::SimulationOptions
+  std::optional<double> mesh_tolerance_nm;     ///< what may be simplified; >= 0, 0 or absent: nothing
   std::optional<std::uint64_t> seed;
   std::optional<double> current_pa, dwell_us;  ///< of the probe; both or none make a dose
   std::vector<mc::Detector> detectors;         ///< besides SE and BSE
@@ -59,6 +60,7 @@ struct SceneFile {
 ///     electrons = 200            # per pixel; seed = 1, physics = "elastic=mott", cutoff = "5eV"
 ///                                # or, instead of electrons: accuracy = "1%" (or 0.01), with
 ///                                # accuracy_floor = 0.002; method = "auto" | "direct" | "replay"
+///                                # mesh_tolerance = 0: detail below this length may be left out
 ///     detectors = ["SE1", "quadrants", "loss:energy=900eV.."]   # see mc::parse_detectors
 ///     [substrate]
 ///     material = "Si"            # z = 0: the height of its top

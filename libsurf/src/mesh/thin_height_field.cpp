@@ -1,0 +1,212 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "surf/mesh/thin_height_field.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <queue>
+#include <stdexcept>
+
+#include "core/argument.h"
+#include "mesh/lattice_delaunay.h"
+#include "mesh/whole_field.h"
+
+namespace surf {
+namespace {
+
+std::int64_t floor_divided(std::int64_t a, std::int64_t b) {   // b > 0
+  return a >= 0 ? a / b : -((-a + b - 1) / b);
+}
+
+/// Adds samples to a triangulation until it is within the tolerance.
+class Thinning {
+ public:
+  Thinning(const HeightField& field, double tolerance_nm)
+      : field_(field),
+        tolerance_nm_(tolerance_nm),
+        mesh_(field.z_nm.width(), field.z_nm.height()),
+        used_(field.z_nm.width(), field.z_nm.height()) {
+    for (const LatticePoint p : mesh_.points()) used_(p.x, p.y) = 1;
+    changed_ = {0, 1};
+    renew();
+  }
+
+  void run() {
+    do {
+      insert_worst_samples();
+      mesh_.prefer_rising_diagonals();
+    } while (insert_at_crossings());
+  }
+
+  TriangleMesh mesh() const {
+    TriangleMesh out;
+    out.vertices_nm.reserve(mesh_.points().size());
+    for (const LatticePoint p : mesh_.points())
+      out.vertices_nm.push_back({field_.x_nm(p.x), field_.y_nm(p.y), z(p)});
+    out.triangles = mesh_.triangles();
+    return out;
+  }
+
+  double deviation_nm() const {
+    double largest = crossing_nm_;
+    for (const Worst& w : worst_) largest = std::max(largest, w.error_nm);
+    return largest;
+  }
+
+ private:
+  // The sample over a triangle that is farthest from it.
+  struct Worst {
+    double error_nm = 0;
+    LatticePoint at;
+  };
+  // Triangles change while they wait: entries of another error are out of date.
+  struct Waiting {
+    double error_nm;
+    std::uint32_t triangle;
+    bool operator<(const Waiting& b) const {
+      return error_nm != b.error_nm ? error_nm < b.error_nm : triangle > b.triangle;
+    }
+  };
+
+  double z(LatticePoint p) const { return field_.z_nm(p.x, p.y); }
+
+  Worst worst_of(std::uint32_t triangle) const {
+    const LatticePoint a = mesh_.corner(triangle, 0), b = mesh_.corner(triangle, 1),
+                       c = mesh_.corner(triangle, 2);
+    const auto area = static_cast<double>(doubled_area(a, b, c));
+    const double ab = z(b) - z(a), ac = z(c) - z(a);
+    const double slope_x = (ab * (c.y - a.y) - ac * (b.y - a.y)) / area;
+    const double slope_y = (ac * (b.x - a.x) - ab * (c.x - a.x)) / area;
+    const auto [least_x, most_x] = std::minmax({a.x, b.x, c.x});
+    const auto [least_y, most_y] = std::minmax({a.y, b.y, c.y});
+    Worst worst;
+    for (std::int32_t y = least_y; y <= most_y; ++y) {
+      // Where the row is to the left of all sides: u x + v >= 0, in whole numbers.
+      std::int64_t from = least_x, to = most_x;
+      for (const auto& [p, q] : {std::pair{a, b}, {b, c}, {c, a}}) {
+        const std::int64_t u = std::int64_t{p.y} - q.y;
+        const std::int64_t v = (std::int64_t{q.x} - p.x) * (std::int64_t{y} - p.y) - u * p.x;
+        if (u > 0) from = std::max(from, -floor_divided(v, u));
+        else if (u < 0) to = std::min(to, floor_divided(v, -u));
+        else if (v < 0) to = from - 1;
+      }
+      const double row = z(a) + slope_y * (y - a.y);
+      for (auto x = static_cast<std::int32_t>(from); x <= to; ++x) {
+        const double error = std::abs(row + slope_x * (x - a.x) - field_.z_nm(x, y));
+        if (error > worst.error_nm && !used_(x, y)) worst = {error, {x, y}};
+      }
+    }
+    return worst;
+  }
+
+  void renew() {
+    std::ranges::sort(changed_);
+    changed_.erase(std::unique(changed_.begin(), changed_.end()), changed_.end());
+    worst_.resize(mesh_.triangles().size());
+    for (const std::uint32_t t : changed_) {
+      worst_[t] = worst_of(t);
+      if (worst_[t].error_nm > tolerance_nm_) waiting_.push({worst_[t].error_nm, t});
+    }
+    changed_.clear();
+  }
+
+  void insert(LatticePoint p, std::uint32_t triangle) {
+    used_(p.x, p.y) = 1;
+    mesh_.insert(p, triangle, changed_);
+    renew();
+  }
+
+  void insert_worst_samples() {
+    while (!waiting_.empty()) {
+      const Waiting next = waiting_.top();
+      waiting_.pop();
+      const Worst& worst = worst_[next.triangle];
+      if (worst.error_nm == next.error_nm && !used_(worst.at.x, worst.at.y))
+        insert(worst.at, next.triangle);
+    }
+  }
+
+  /// Calls visit(before, after, share, t) where the line from p to q crosses the line between two
+  /// neighbouring samples, `share` of the way from one to the other and `t` of the way from p to q.
+  template <class Visit>
+  static void visit_crossings(LatticePoint p, LatticePoint q, const Visit& visit) {
+    const std::int64_t dx = std::int64_t{q.x} - p.x, dy = std::int64_t{q.y} - p.y;
+    // Columns (x = k), rows (y = k) and the cells' diagonals (x - y = k).
+    const struct { std::int64_t per, across; LatticePoint step; int kind; } families[] = {
+        {dx, dy, {0, 1}, 0}, {dy, dx, {1, 0}, 1}, {dx - dy, dy, {1, 1}, 2}};
+    for (const auto& f : families) {
+      const std::int64_t count = std::abs(f.per), sign = f.per < 0 ? -1 : 1;
+      for (std::int64_t i = 1; i < count; ++i) {
+        // Along the family's lines, positions are p's plus i * across / count.
+        const std::int64_t moved = i * f.across, whole = floor_divided(moved, count);
+        const std::int64_t rest = moved - whole * count;
+        if (rest == 0) continue;   // at a sample
+        LatticePoint before;
+        if (f.kind == 0) before = {p.x + static_cast<std::int32_t>(sign * i), p.y + static_cast<std::int32_t>(whole)};
+        else if (f.kind == 1) before = {p.x + static_cast<std::int32_t>(whole), p.y + static_cast<std::int32_t>(sign * i)};
+        else before = {p.x + static_cast<std::int32_t>(whole + sign * i), p.y + static_cast<std::int32_t>(whole)};
+        visit(before, LatticePoint{before.x + f.step.x, before.y + f.step.y},
+              static_cast<double>(rest) / static_cast<double>(count),
+              static_cast<double>(i) / static_cast<double>(count));
+      }
+    }
+  }
+
+  // Adds a sample beside every crossing that is off by more than the tolerance; false if none is.
+  bool insert_at_crossings() {
+    struct Site {
+      LatticePoint at;
+      std::uint32_t triangle;
+    };
+    std::vector<Site> sites;
+    crossing_nm_ = 0;
+    for (std::uint32_t side = 0; side < 3 * mesh_.triangles().size(); ++side) {
+      if (mesh_.opposite(side) != LatticeDelaunay::none && mesh_.opposite(side) < side) continue;
+      const LatticePoint p = mesh_.corner(side / 3, side % 3),
+                         q = mesh_.corner(side / 3, (side + 1) % 3);
+      double worst = 0;
+      LatticePoint at;
+      visit_crossings(p, q, [&](LatticePoint before, LatticePoint after, double share, double t) {
+        const double error =
+            std::abs(std::lerp(z(before), z(after), share) - std::lerp(z(p), z(q), t));
+        if (error <= worst) return;
+        worst = error;
+        at = used_(before.x, before.y) ? after : before;
+      });
+      crossing_nm_ = std::max(crossing_nm_, worst);
+      if (worst > tolerance_nm_) sites.push_back({at, side / 3});
+    }
+    const std::size_t before = mesh_.points().size();
+    for (const Site& s : sites)
+      if (!used_(s.at.x, s.at.y)) insert(s.at, mesh_.find(s.at, s.triangle));
+    if (!sites.empty() && mesh_.points().size() == before)
+      throw std::logic_error("thin_height_field: a crossing has no sample to add");
+    return !sites.empty();
+  }
+
+  const HeightField& field_;
+  double tolerance_nm_;
+  LatticeDelaunay mesh_;
+  Grid<unsigned char> used_;
+  std::vector<Worst> worst_;   // of every triangle
+  std::priority_queue<Waiting> waiting_;
+  std::vector<std::uint32_t> changed_;
+  double crossing_nm_ = 0;
+};
+
+}  // namespace
+
+TriangleMesh thin_height_field(const HeightField& field, double tolerance_nm, ThinSummary& summary) {
+  require_not_negative(tolerance_nm, "tolerance");
+  require_no_holes(field);
+  Thinning thinning(field, tolerance_nm);
+  thinning.run();
+  TriangleMesh mesh = thinning.mesh();
+  summary.triangles_before = std::size_t{2} * static_cast<std::size_t>(field.z_nm.width() - 1) *
+                             static_cast<std::size_t>(field.z_nm.height() - 1);
+  summary.triangles_after = mesh.triangles.size();
+  summary.deviation_nm = thinning.deviation_nm();
+  return mesh;
+}
+
+}  // namespace surf
