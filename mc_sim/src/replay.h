@@ -274,10 +274,15 @@ class Replay {
     if (along[0] + along[1] + along[2] < 0) turned_ = true;
   }
 
-  // Whether no surface comes into a ball.
-  bool is_clear(const Float4& center, float radius) const {
-    if (patch_ && patch_->band(center, radius).is_clear(center[2], radius)) return true;
-    return geometry_.clearance(frame_.out(vec3(center))) > radius;
+  // Whether a way meets no surface. What the patch knows of it stays in `crossed_`.
+  bool is_clear(const Float4& from, const Float4& way) {
+    if (patch_) {
+      patch_->crossed(from, from + way, crossed_);
+      if (crossed_.answer != Answer::unknown && crossed_.answer != Answer::crowded)
+        return crossed_.answer == Answer::none;
+    }
+    const double clear = geometry_.clearance(frame_.out(vec3(from + way * 0.5f)));
+    return 4 * clear * clear > static_cast<double>(squared_length(way));
   }
 
   void remember(const NodeView& view) {
@@ -408,10 +413,10 @@ class Replay {
         const Float4 from = middle ? float4(frame_.in(middle->position)) : branch.point(before);
         const Float4 way = way_from(from);
         if (watching(branch)) note_turn(way);
-        if (!is_clear(from + way * 0.5f, 0.5f * std::sqrt(squared_length(way)))) {
+        if (!is_clear(from, way)) {
           if (energy == 0) energy = energy_before(view, i, branch.material);
           random_.at(event(view.vertex(i)));
-          moved = cross_segment(from, way, energy, branch);
+          moved = cross_segment(from, way, energy, branch, true);
         }
       }
       if (moved == Moved::gone) return forget_births(view, birth, branch.material);
@@ -527,7 +532,7 @@ class Replay {
     move(branch, direction, met_at, e);
     const double left = whole - share * whole;
     if (left > 0 && cross_segment(float4(frame_.in(e.position)),
-                                  float4(frame_.direction_in(e.direction) * left), e.energy, branch) == Moved::gone)
+                                  float4(frame_.direction_in(e.direction) * left), e.energy, branch, false) == Moved::gone)
       return Moved::gone;
     return Moved::yes;
   }
@@ -573,24 +578,25 @@ class Replay {
   }
 
   // The first surface on a way. Where triangles are many it is looked for bit by bit, each with few of
-  // them.
-  Crossing crossing(const Vec3& from, const Vec3& direction, double left, State& state) {
+  // them. `asked`: is_clear was asked about just this way.
+  Crossing crossing(const Vec3& from, const Vec3& direction, double left, State& state, bool asked) {
     if (patch_) {
       const Vec3 begin = frame_.in(from), along = frame_.direction_in(direction);
       double done = 0, bit = left;
-      for (;;) {
-        const Float4 middle = float4(begin + along * (done + 0.5 * bit));
-        const auto radius = static_cast<float>(0.5 * bit);
-        const bool clear = patch_->band(middle, radius).is_clear(middle[2], radius);
-        if (!clear) {
-          const KnownFaces known = patch_->faces(middle, radius);
-          if (!known) {
-            if (bit < shortest_bit_nm) break;
-            bit *= 0.5;
-            continue;
-          }
+      for (;; asked = false) {
+        if (!asked)
+          patch_->crossed(float4(begin + along * done), float4(begin + along * (done + bit)), crossed_);
+        if (crossed_.answer == Answer::unknown) break;
+        if (crossed_.answer == Answer::crowded) {
+          if (bit < shortest_bit_nm) break;
+          bit *= 0.5;
+          continue;
+        }
+        if (crossed_.answer == Answer::some) {
           State ahead = state;
-          const Crossing met = geometry_.crossing(from, direction, done + bit, ahead, surface_, known);
+          const Crossing met =
+              geometry_.crossing(from, direction, done + bit, ahead, surface_,
+                                 std::span(crossed_.triangles).first(crossed_.count));
           if (met != Crossing::none) {
             state = ahead;
             return met;
@@ -602,13 +608,15 @@ class Replay {
         bit = std::min(2 * bit, left - done);
       }
     }
-    if (geometry_.clearance(from + direction * (0.5 * left)) > 0.5 * left) return Crossing::none;
+    if (!asked && geometry_.clearance(from + direction * (0.5 * left)) > 0.5 * left)
+      return Crossing::none;
     ++balance_.rays;
     return geometry_.crossing(from, direction, left, state, surface_);
   }
 
   // A segment that may meet surfaces. What happens there moves the rest of the branch.
-  Moved cross_segment(const Float4& start, const Float4& way, double energy, Branch& branch) {
+  Moved cross_segment(const Float4& start, const Float4& way, double energy, Branch& branch,
+                      bool asked) {
     Vec3 from = frame_.out(vec3(start));
     Vec3 direction = frame_.direction_out(vec3(way));
     double left = length(direction);
@@ -617,7 +625,7 @@ class Replay {
     const Packed& m = media_[static_cast<std::size_t>(branch.material)];
     Moved moved = Moved::no;
     for (int bounces = 0;; ++bounces) {
-      const Crossing met = crossing(from, direction, left, branch.state);
+      const Crossing met = crossing(from, direction, left, branch.state, asked && bounces == 0);
       if (met == Crossing::none) return moved;
       if (met == Crossing::wrong_side || bounces > most_bounces) {
         lose(met == Crossing::wrong_side ? LossCause::wrong_side : LossCause::too_many_steps,
@@ -721,6 +729,8 @@ class Replay {
     return false;
   }
 
+  using Answer = SurfacePatch::Crossed::Answer;
+
   static constexpr double here_nm = 0.01;   // nearer than this, two places are one
   static constexpr double inside_nm = 1e-4;
   static constexpr double shortest_bit_nm = 0.1;
@@ -738,6 +748,7 @@ class Replay {
   typename Geometry::Surface surface_;   // scratch
   FlatSurroundings<State> flat_;
   const SurfacePatch* patch_ = nullptr;
+  SurfacePatch::Crossed crossed_;   // scratch
   Float4 flat_normal_{}, flat_point_{};
   double flat_step_ev_ = 0;
   bool steady_ = false;

@@ -72,6 +72,8 @@ class ReplayWorker : public UnitWorker {
       }
       ReplayedPrimary primary{options_.seed, p.number, electron, cascade, 0};
       primary.azimuth = azimuth_of(primary);
+      // Of a run the next one is the neighbour.
+      if (cascade + 1 < cascades_) replay_.fetch(p.site, cascade + 1);
       tally.model = PixelModel::replay;
       tally.hits += replay_.run(p.site, start, primary) ? 1 : 0;
       ++tally.primaries;

@@ -15,7 +15,7 @@ namespace surf::mc {
 /// library block by block, so that the processor's cache holds what they replay.
 class Subset {
  public:
-  static constexpr std::uint64_t run = 32, block = 256;
+  static constexpr std::uint64_t run = 32, block = 64;
   static_assert(CascadeLibrary::page_cascades % block == 0 && block % run == 0);
 
   /// `a` and `b` are random words; `cascades` a multiple of `block`.

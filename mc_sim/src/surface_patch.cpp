@@ -10,7 +10,7 @@ namespace surf::mc {
 
 namespace {
 
-constexpr std::size_t most_triangles = 500;   // about a cube
+constexpr std::size_t most_triangles = 1000;   // about a cube
 constexpr double hair = 1e-4;                 // nm: of rounding, and of paths that begin on a surface
 
 }  // namespace
@@ -33,7 +33,8 @@ class PatchBuilder {
     levels_ = 1 + static_cast<int>(std::lround(std::log2(2 * reach / SurfacePatch::finest_nm)));
     const auto columns = static_cast<std::size_t>(levels_ * across * across);
     bands_.assign(columns, {HUGE_VAL, -HUGE_VAL});
-    patch_.lists_.resize(columns);
+    patch_.lists_.resize(
+        static_cast<std::size_t>(std::min(levels_, SurfacePatch::listing_levels) * across * across));
     for (const std::uint32_t t : known_) add(triangles.mesh(), t);
     if (plane_nm) add_plane(*plane_nm);
     pack();
@@ -42,6 +43,7 @@ class PatchBuilder {
 
  private:
   static constexpr int across = SurfacePatch::across;
+  static constexpr std::uint16_t none = 0xffff;
 
   struct Heights {
     double low, high;
@@ -72,6 +74,7 @@ class PatchBuilder {
     const bool sloped = !shape.is_needle() && std::fabs(shape.across.z) > 0.05 * shape.area2;
     const double by_x = sloped ? -shape.across.x / shape.across.z : 0;
     const double by_y = sloped ? -shape.across.y / shape.across.z : 0;
+    std::uint16_t face = none;
     for (int level = 0; level < levels_; ++level) {
       const double w = width(level), h = half(level);
       if (box.lower_nm.x > h || box.lower_nm.y > h || box.lower_nm.z > h || box.upper_nm.x < -h ||
@@ -99,8 +102,14 @@ class PatchBuilder {
           }
           const std::size_t at = column(x, y, level);
           widen(bands_[at], low, high);
-          if (++patch_.lists_[at].count <= SurfacePatch::most_faces)
-            pairs_.emplace_back(static_cast<std::uint32_t>(at), number);
+          if (at >= patch_.lists_.size() || ++patch_.lists_[at].count > SurfacePatch::most_faces)
+            continue;
+          if (face == none) {
+            face = static_cast<std::uint16_t>(patch_.faces_.size());
+            patch_.faces_.push_back(face_of(v, box, shape));
+            patch_.numbers_.push_back(number);
+          }
+          pairs_.emplace_back(static_cast<std::uint32_t>(at), face);
         }
     }
   }
@@ -148,12 +157,23 @@ class PatchBuilder {
       l.first = next;
       if (l.count <= SurfacePatch::most_faces) next += l.count;
     }
-    patch_.faces_.resize(next);
+    patch_.listed_.resize(next);
     std::vector<std::uint32_t> filled(patch_.lists_.size());
     for (const auto& [at, number] : pairs_) {
       const SurfacePatch::List& l = patch_.lists_[at];
-      if (l.count <= SurfacePatch::most_faces) patch_.faces_[l.first + filled[at]++] = number;
+      if (l.count > SurfacePatch::most_faces) continue;
+      patch_.listed_[l.first + filled[at]++] = number;
     }
+  }
+
+  static SurfacePatch::Face face_of(const Vec3 (&v)[3], const Box& box, const TriangleShape& shape) {
+    SurfacePatch::Face out{Float4{}, {static_cast<float>(box.lower_nm.x), static_cast<float>(box.lower_nm.y),
+                                      static_cast<float>(box.upper_nm.x), static_cast<float>(box.upper_nm.y)}};
+    if (shape.is_needle()) return out;
+    const Vec3 normal = shape.across * (1 / shape.area2);
+    out.plane = float4(normal);
+    out.plane[3] = static_cast<float>(dot(normal, v[0]));
+    return out;
   }
 
   // The endless horizontal surface.
@@ -161,6 +181,9 @@ class PatchBuilder {
     const Frame& f = patch_.frame_;
     const Vec3 up{f.x.z, f.y.z, f.z.z};
     const double gap = z_nm - f.origin.z;
+    patch_.has_level_ = true;
+    patch_.level_ = float4(up);
+    patch_.level_[3] = static_cast<float>(gap);
     for (int level = 0; level < levels_; ++level) {
       const double w = width(level) + hair, h = half(level);
       for (int y = 0; y < across; ++y)
@@ -186,7 +209,7 @@ class PatchBuilder {
   int levels_ = 0;
   std::vector<std::uint32_t> near_, known_;
   std::vector<Heights> bands_;
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs_;   // column, triangle
+  std::vector<std::pair<std::uint32_t, std::uint16_t>> pairs_;   // column, face
 };
 
 SurfacePatch::SurfacePatch(const EmbreeScene& triangles, std::optional<double> plane_nm,
