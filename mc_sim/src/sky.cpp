@@ -59,12 +59,14 @@ class SkyBuilder {
 
   void build(int threads) {
     exact_ = Grid<double>(sky_.nx_, sky_.ny_, -HUGE_VAL);
+    slopes_ = Grid<float>(sky_.nx_, sky_.ny_, 0);
     for (const Triangle& t : mesh_.triangles) raise(t);
     heights_.emplace_back(sky_.nx_, sky_.ny_, nothing);
     for (int y = 0; y < sky_.ny_; ++y)
       for (int x = 0; x < sky_.nx_; ++x) {
         heights_[0](x, y) = upward(exact_(x, y));
         sky_.around_.push_back(around(x, y));
+        sky_.slopes_.push_back(steepest_around(x, y));
       }
     const auto rings = static_cast<int>(Sky::rings);
     while (static_cast<int>(heights_.size()) <= level_of(rings - 1)) heights_.push_back(halved());
@@ -90,6 +92,25 @@ class SkyBuilder {
     return highest;
   }
 
+  // Where all surface faces upward there is one sheet of it, unbroken, and vacuum is above. From there a
+  // ray that rises more steeply than any of it does not meet it.
+  float steepest_around(int x, int y) const {
+    float steepest = 0;
+    for (int v = y - 1; v <= y + 1; ++v)
+      for (int u = x - 1; u <= x + 1; ++u)
+        steepest = std::max(steepest, u >= 0 && v >= 0 && u < sky_.nx_ && v < sky_.ny_
+                                          ? slopes_(u, v) : -nothing);
+    return steepest;
+  }
+
+  static float slope(const Vec3& a, const Vec3& b, const Vec3& c) {
+    const Vec3 normal = cross(b - a, c - a);
+    const double level = length(Vec3{normal.x, normal.y, 0});
+    constexpr double steepest = 20;   // beyond, nothing is gained
+    return normal.z > 0 && level < steepest * normal.z ? upward(level / normal.z * (1 + 1e-6))
+                                                       : -nothing;
+  }
+
   void raise(const Triangle& t) {
     const Vec3 shift{sky_.lower_x_, sky_.lower_y_, 0};
     Vec3 v[3];
@@ -101,6 +122,7 @@ class SkyBuilder {
       box.extend(v[i]);
     }
     const double top = box.upper_nm.z;
+    const float steep = slope(mesh_.vertices_nm[t[0]], mesh_.vertices_nm[t[1]], mesh_.vertices_nm[t[2]]);
     constexpr double hair = 1e-6;   // columns
     if (box.lower_nm.x < 0 || box.lower_nm.y < 0 || box.upper_nm.x > sky_.nx_ ||
         box.upper_nm.y > sky_.ny_)
@@ -114,7 +136,11 @@ class SkyBuilder {
     for (int y = first(box.lower_nm.y, sky_.ny_); y < end(box.upper_nm.y, sky_.ny_); ++y)
       for (int x = first(box.lower_nm.x, sky_.nx_); x < end(box.upper_nm.x, sky_.nx_); ++x) {
         double& height = exact_(x, y);
-        if (height < top && may_overlap(v, x + 0.5, y + 0.5, 0.5 + hair)) height = top;
+        float& slope_here = slopes_(x, y);
+        if ((height < top || slope_here < steep) && may_overlap(v, x + 0.5, y + 0.5, 0.5 + hair)) {
+          height = std::max(height, top);
+          slope_here = std::max(slope_here, steep);
+        }
       }
   }
 
@@ -200,6 +226,7 @@ class SkyBuilder {
   Sky& sky_;
   double outside_ = -HUGE_VAL;
   Grid<double> exact_;
+  Grid<float> slopes_;
   std::vector<Grid<float>> heights_;   // of blocks of 2^level columns
 };
 
