@@ -118,6 +118,37 @@ TEST(Sky, KnowsTheWallNextToAPoint) {
   EXPECT_GT(free, 100);
 }
 
+TEST(Sky, KnowsTheNextToothWithinAColumn) {
+  // Teeth much narrower than columns: by the next column a ray from between them is above all others.
+  HeightField teeth;
+  teeth.pitch_x_nm = teeth.pitch_y_nm = 0.25;
+  teeth.z_nm = Grid<double>(129, 129);
+  for (int y = 0; y < 129; ++y)
+    for (int x = 0; x < 129; ++x) teeth.z_nm(x, y) = 0.5 * std::abs(x % 4 - 2);
+  const TriangleMesh top = height_field_sheet(teeth);
+  const Sky sky(top, bounds(top), 1 << 8);
+  const EmbreeScene rays(top);
+  RandomStream random(6, 0, 0);
+  int met = 0, free = 0;
+  for (int i = 0; i < 100000; ++i) {
+    const auto any = [](void*, std::uint32_t, double, double) { return true; };
+    const auto ahead = [](void*, std::uint32_t, double, double distance) { return distance > 1e-6; };
+    const Vec3 over{8 + 16 * random.uniform(), 8 + 16 * random.uniform(), 5};
+    EmbreeScene::Hit hit;
+    ASSERT_TRUE(rays.nearest(over, {0, 0, -1}, HUGE_VAL, any, nullptr, hit));
+    const Vec3 d = normalized(isotropic(random) + Vec3{0, 0, 1});
+    if (dot(hit.normal, d) <= 0) continue;
+    const Vec3 p = hit.position;
+    const bool meets = rays.nearest(p, d, HUGE_VAL, ahead, nullptr, hit);
+    const bool says = sky.is_free(p, d);
+    ASSERT_FALSE(says && meets) << p.x << " " << p.y << " " << p.z;
+    met += meets;
+    free += says;
+  }
+  EXPECT_GT(met, 10000);
+  EXPECT_GT(free, 10000);
+}
+
 TEST(Sky, IsNotFreeBelowARoofNorDownward) {
   const TriangleMesh roof = make_box({-20, -20, 10}, {20, 20, 12});
   const Sky sky(roof, bounds(roof), 1 << 10);
