@@ -14,8 +14,12 @@ namespace surf::mc {
 
 namespace {
 
+// A plane's error takes no more of the target. Beside steep walls it would, and the difference could not
+// make up for it.
+constexpr double most_share = 0.9;
 constexpr int neighbours = 2;               // pixels to each side whose pilots count with its own
-constexpr int most_rounds = 4;              // of adding where the estimate turns out short
+constexpr int most_rounds = 8;              // of adding where the estimate turns out short,
+constexpr double least_growth = 1.1;        // each by this factor or more
 
 // What might have been missed: were there a kind of event of which one in m primaries has one, m
 // primaries would have missed it with a probability of 1/e^3 at 3/m (the rule of three). Each would
@@ -59,8 +63,10 @@ class SpendingWorker : public UnitWorker {
     unit_ = unit;
     sites_.assign(out.pixels.size(), {});
     for (std::size_t i = 0; i < sites_.size(); ++i) look(i);
+    try_out();
+    wanted_.assign(sites_.size(), 0);
     for (std::size_t i = 0; i < sites_.size(); ++i) choose(i, out);
-    for (std::size_t i = 0; i < sites_.size(); ++i) serve(i, out);
+    serve(out);
     out.balance += replay_.balance();
     out.spectra = replay_.detection().take_spectra();
   }
@@ -72,9 +78,9 @@ class SpendingWorker : public UnitWorker {
     ReplaySite site;
     PlaneControls::Match match;
     bool plane = false;               // nothing is left to simulate
-    std::vector<Sample> plain, difference;   // pilots, per detector
+    std::vector<Sample> plain, difference;   // the pilot's, then those that count; per detector
     Subset subset{Subset::run, 0, 0};
-    std::uint64_t used = 0;           // cascades taken
+    std::uint64_t used = 0, end = 0;  // of its primaries: taken, and to be taken now
   };
 
   int width() const { return unit_.x1 - unit_.x0; }
@@ -97,21 +103,42 @@ class SpendingWorker : public UnitWorker {
       p.plane = replay_.proved_plane(p.site);
       p.match = controls_.match(p.site.material, p.site.flat.normal, p.plane);
     }
-    if (p.plane) return;
-    replay_.go_to(p.site);
-    for (std::int64_t e = 0; e < pilot_primaries; ++e)
-      run(p, [&](std::size_t d, int counted, int on_plane) {
-        p.plain[d].add(counted);
-        p.difference[d].add(counted - on_plane);
-      });
+    if (!p.plane) p.end = pilot_primaries;
   }
 
-  // One more primary of a pixel; `take` gets the counts and those of its cascade on the plane.
+  // Every pixel's primaries up to its `end`, block by block of cascades: what one pixel replays is
+  // still near when the next one comes. take(pixel, hit, detector, counted, on the plane).
   template <class Take>
-  bool run(Pixel& p, const Take& take) {
-    const std::uint64_t electron = p.used++;
-    const std::size_t cascade = p.subset[electron];
-    replay_.fetch(p.site, p.subset[electron + 1]);
+  void replay_all(const Take& take) {
+    const std::uint64_t blocks = cascades_ / Subset::block;
+    for (std::uint64_t block = 0; block < blocks; ++block)
+      for (std::size_t i = 0; i < sites_.size(); ++i) {
+        Pixel& p = sites_[i];
+        bool there = false;
+        p.subset.each_of_block(block, p.used, p.end, [&](std::uint64_t electron, std::size_t cascade) {
+          if (!there) replay_.go_to(p.site);
+          there = true;
+          if (cascade + 1 < cascades_) replay_.fetch(p.site, cascade + 1);
+          run(p, electron, cascade, [&](bool hit, const auto& counts) { take(i, hit, counts); });
+        });
+      }
+    for (Pixel& p : sites_) p.used = std::max(p.used, p.end);
+  }
+
+  void try_out() {
+    replay_all([&](std::size_t i, bool, const auto& counts) {
+      Pixel& p = sites_[i];
+      for (std::size_t d = 0; d < detectors_; ++d) {
+        p.plain[d].add(counts(d).first);
+        p.difference[d].add(counts(d).first - counts(d).second);
+      }
+    });
+  }
+
+  // A primary of a pixel; `take` gets whether it hit, and per detector the counts and those of its
+  // cascade on the plane.
+  template <class Take>
+  void run(Pixel& p, std::uint64_t electron, std::size_t cascade, const Take& take) {
     ReplayedPrimary primary{options_.seed, p.number, electron, cascade, 0};
     const PlaneControl* control = p.match.control.get();
     if (control) {
@@ -128,10 +155,11 @@ class SpendingWorker : public UnitWorker {
       start = replay_.gun().primary(p.x, p.y, random);
     }
     const bool hit = replay_.run(p.site, start, primary);
-    for (std::size_t d = 0; d < detectors_; ++d)
-      take(d, replay_.detection().counts()[d], control ? control->counts[d][cascade] : 0);
+    take(hit, [&](std::size_t d) {
+      return std::pair<int, int>(replay_.detection().counts()[d],
+                                 control ? control->counts[d][cascade] : 0);
+    });
     replay_.detection().end_primary();
-    return hit;
   }
 
   Estimate control_mean(const Pixel& p, std::size_t d) const {
@@ -170,14 +198,15 @@ class SpendingWorker : public UnitWorker {
       const double own = p.plain[d].variance();
       const Estimate control = control_mean(p, d);
       plain = std::max(plain, needed(std::max(all.variance(), own) + more, all.mean(), 0));
-      if (p.match.control)
+      if (p.match.control && control.standard_error > most_share * target(control.mean + left.mean()))
+        difference = HUGE_VAL;
+      else if (p.match.control)
         difference = std::max(
             difference, needed(std::max(left.variance(), p.difference[d].variance()) + more,
                                control.mean + left.mean(), control.standard_error));
     }
     const bool controlled = p.match.control && difference < plain;
     tally.model = controlled ? PixelModel::difference : PixelModel::replay;
-    wanted_.resize(sites_.size());
     wanted_[i] = reserve_of_primaries * (controlled ? difference : plain);
   }
 
@@ -193,42 +222,83 @@ class SpendingWorker : public UnitWorker {
       }
   }
 
-  void serve(std::size_t i, UnitTally& out) {
-    Pixel& p = sites_[i];
-    PixelTally& tally = out.pixels.data()[i];
-    if (tally.model == PixelModel::none) return;
-    const bool controlled = tally.model != PixelModel::replay;
-    for (std::size_t d = 0; d < detectors_; ++d) {
-      Control& c = out.controls[d].data()[i];
-      if (!controlled) continue;
-      const Estimate e = control_mean(p, d);
-      c = {e.mean, e.standard_error, tally.model == PixelModel::plane ? 0.0 : 1.0};
-    }
-    if (tally.model == PixelModel::plane) return;
-    std::vector<Sample> plain(detectors_), kept(detectors_);
-    replay_.go_to(p.site);
-    auto count = static_cast<std::int64_t>(std::min(std::ceil(wanted_[i]), double(cascades_)));
-    for (int round = 0; round < most_rounds; ++round) {
-      for (; tally.primaries < count; ++tally.primaries)
-        tally.hits += run(p, [&](std::size_t d, int counted, int on_plane) {
-          const int value = counted - (controlled ? on_plane : 0);
-          plain[d].add(counted);
-          kept[d].add(value);
-          out.counts[d].data()[i].add(value);
-        }) ? 1 : 0;
-      std::int64_t more = 0;
-      for (std::size_t d = 0; d < detectors_; ++d) {
-        const Control& c = out.controls[d].data()[i];
-        const double n = needed(kept[d].variance(), c.mean + kept[d].mean(), c.standard_error);
-        more = std::max(more, static_cast<std::int64_t>(
-                                  std::min(std::ceil(n * 1.02), double(cascades_))));
+  bool controlled(std::size_t i, const UnitTally& out) const {
+    return out.pixels.data()[i].model == PixelModel::difference;
+  }
+
+  void serve(UnitTally& out) {
+    for (std::size_t i = 0; i < sites_.size(); ++i) {
+      Pixel& p = sites_[i];
+      const PixelModel model = out.pixels.data()[i].model;
+      for (std::size_t d = 0; d < detectors_ && (model == PixelModel::plane || controlled(i, out)); ++d) {
+        const Estimate e = control_mean(p, d);
+        out.controls[d].data()[i] = {e.mean, e.standard_error, model == PixelModel::plane ? 0.0 : 1.0};
       }
-      if (more <= tally.primaries) break;
-      count = more;
+      p.plain.assign(detectors_, {});
+      p.difference.assign(detectors_, {});
+      if (p.end > 0) p.end += primaries(wanted_[i]);
     }
-    for (std::size_t d = 0; d < detectors_; ++d)
-      if (plain[d].variance() > 0)
-        out.controls[d].data()[i].variance_left = kept[d].variance() / plain[d].variance();
+    for (int round = 0; round < most_rounds; ++round) {
+      replay_all([&](std::size_t i, bool hit, const auto& counts) {
+        Pixel& p = sites_[i];
+        PixelTally& tally = out.pixels.data()[i];
+        ++tally.primaries;
+        tally.hits += hit ? 1 : 0;
+        for (std::size_t d = 0; d < detectors_; ++d) {
+          const auto [counted, on_plane] = counts(d);
+          const int value = counted - (controlled(i, out) ? on_plane : 0);
+          p.plain[d].add(counted);
+          p.difference[d].add(value);
+          out.counts[d].data()[i].add(value);
+        }
+      });
+      for (std::size_t i = 0; i < sites_.size(); ++i) ask_for_more(i, out);
+    }
+    for (std::size_t i = 0; i < sites_.size(); ++i)
+      for (std::size_t d = 0; d < detectors_; ++d) {
+        const Pixel& p = sites_[i];
+        if (p.plain[d].variance() > 0)
+          out.controls[d].data()[i].variance_left = p.difference[d].variance() / p.plain[d].variance();
+      }
+  }
+
+  void ask_for_more(std::size_t i, UnitTally& out) {
+    Pixel& p = sites_[i];
+    if (p.end == 0) return;
+    const auto count = p.end - pilot_primaries;
+    double more = 0, plain = 0;
+    for (std::size_t d = 0; d < detectors_; ++d) {
+      const Control& c = out.controls[d].data()[i];
+      more = std::max(more, needed(p.difference[d].variance(), c.mean + p.difference[d].mean(),
+                                   c.standard_error));
+      plain = std::max(plain, needed(p.plain[d].variance(), p.plain[d].mean(), 0));
+    }
+    if (more > static_cast<double>(count) && plain < more && controlled(i, out)) {
+      give_up_control(i, out);
+      more = plain;
+    }
+    if (more > static_cast<double>(count))
+      p.end = pilot_primaries +
+              primaries(std::max(1.02 * more, least_growth * static_cast<double>(count)));
+  }
+
+  // The same primaries count as they are. Beside steep walls the pilot may promise too much.
+  void give_up_control(std::size_t i, UnitTally& out) {
+    Pixel& p = sites_[i];
+    out.pixels.data()[i].model = PixelModel::replay;
+    for (std::size_t d = 0; d < detectors_; ++d) {
+      p.difference[d] = p.plain[d];
+      out.controls[d].data()[i] = {};
+      Counts& counts = out.counts[d].data()[i];
+      counts = {};
+      counts.sum = std::llround(p.plain[d].sum);
+      counts.squares = std::llround(p.plain[d].squares);
+    }
+  }
+
+  // No more than there are cascades.
+  std::uint64_t primaries(double wanted) const {
+    return static_cast<std::uint64_t>(std::min(std::ceil(wanted), static_cast<double>(cascades_)));
   }
 
   static constexpr std::uint64_t subset_stream = std::uint64_t{1} << 42;
