@@ -28,20 +28,29 @@ constexpr double unseen = 3, unseen_counts = 1.5;
 
 // Sums of counts, from which come their mean and variance.
 struct Sample {
-  double n = 0, sum = 0, squares = 0;
+  double n = 0, sum = 0, squares = 0, fourths = 0;
   void add(double value) {
     n += 1;
     sum += value;
     squares += value * value;
+    fourths += value * value * value * value;
   }
   void operator+=(const Sample& b) {
     n += b.n;
     sum += b.sum;
     squares += b.squares;
+    fourths += b.fourths;
   }
   double mean() const { return n > 0 ? sum / n : 0; }
   double variance() const {
     return n > 1 ? std::max(0.0, (squares - sum * sum / n) / (n - 1)) : 0;
+  }
+  // The variance and its own standard error (from the fourth moment about 0: differences to a plane are
+  // mostly 0). Where few primaries make up most of it, it is badly known.
+  double high_variance() const {
+    if (!(n > 1)) return 0;
+    const double v = variance(), second = squares / n;
+    return v + std::sqrt(std::max(0.0, fourths / n - second * second) / n);
   }
 };
 
@@ -269,9 +278,9 @@ class SpendingWorker : public UnitWorker {
     double more = 0, plain = 0;
     for (std::size_t d = 0; d < detectors_; ++d) {
       const Control& c = out.controls[d].data()[i];
-      more = std::max(more, needed(p.difference[d].variance(), c.mean + p.difference[d].mean(),
+      more = std::max(more, needed(p.difference[d].high_variance(), c.mean + p.difference[d].mean(),
                                    c.standard_error));
-      plain = std::max(plain, needed(p.plain[d].variance(), p.plain[d].mean(), 0));
+      plain = std::max(plain, needed(p.plain[d].high_variance(), p.plain[d].mean(), 0));
     }
     if (more > static_cast<double>(count) && plain < more && controlled(i, out)) {
       give_up_control(i, out);

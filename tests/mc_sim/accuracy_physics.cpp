@@ -79,7 +79,7 @@ void expect_well_spent(const Specimen& specimen, const Scan& scan, bool planes =
   Beam beam;
   beam.energy_ev = 400;
   const Scene scene(specimen, beam, scan);
-  const auto truth = reference(scene, 12000);
+  const auto truth = reference(scene, 40000);
   // The reference's own share, were all its errors alike.
   double known = 0;
   int terms = 0;
