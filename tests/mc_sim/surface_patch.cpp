@@ -331,7 +331,7 @@ TEST_P(SurfacePatchOf, KnowsTrianglesThatAreGrazedAtTheirRim) {
     const Vec3 any = isotropic(random);
     const Vec3 along = normalized(any - n * dot(any, n));
     const double length_nm = of_any_size(random, 0.01, 4);
-    const Vec3 way = along * length_nm + n * of_any_size(random, 1e-3, 0.1);
+    const Vec3 way = along * length_nm + n * of_any_size(random, 1e-7, 0.1);
     const Vec3 from = rim - way * random.uniform();
     expect_all_crossed(around, float4(from), float4(from + way), tried);
     if (testing::Test::HasFatalFailure()) return;
