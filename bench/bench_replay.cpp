@@ -144,15 +144,20 @@ json at_equal_time(const json& direct, const json& replay) {
   return out;
 }
 
+// Primaries per pixel.
 struct Sizes {
-  int pixels;
   std::int64_t direct, replay;
 };
 
+// Square, about the origin.
+mc::Scene scene_of(const mc::Specimen& specimen, double width_nm, int pixels, double energy_ev) {
+  return mc::Scene(specimen, beam(energy_ev), view(width_nm, pixels));
+}
+
 // Direct and replay side by side on one scene.
-json compare(const char* name, const mc::Specimen& specimen, double width_nm, double energy_ev,
-             const Sizes& sizes, std::vector<int> threads, KeptLibraries* kept = nullptr) {
-  const mc::Scene scene(specimen, beam(energy_ev), view(width_nm, sizes.pixels));
+json compare(const char* name, const mc::Scene& scene, const Sizes& sizes, std::vector<int> threads,
+             KeptLibraries* kept = nullptr) {
+  const double energy_ev = scene.beam().energy_ev;
   json out{{"scene", name}, {"energy_ev", energy_ev}, {"triangles", scene.summary().triangles},
            {"build_seconds", scene.summary().build_seconds}};
   for (const int t : threads) {
@@ -168,7 +173,9 @@ json compare(const char* name, const mc::Specimen& specimen, double width_nm, do
     row["equal_time"] = at_equal_time(row["direct"], row["replay"]);
     row["gain"] = row["replay"]["primaries_per_second"].get<double>() /
                   row["direct"]["primaries_per_second"].get<double>();
-    fmt::print(stderr, "{} {} eV, {} threads: direct {:.0f}/s, replay {:.0f}/s, for the same error SE {:.1f}, BSE {:.1f} times less time\n",
+    fmt::print(stderr,
+               "{} {} eV, {} threads: direct {:.0f}/s, replay {:.0f}/s, for the same error SE {:.1f}, "
+               "BSE {:.1f} times less time\n",
                name, energy_ev, t, row["direct"]["primaries_per_second"].get<double>(),
                row["replay"]["primaries_per_second"].get<double>(),
                row["equal_time"]["SE"]["gain"].get<double>(),
@@ -179,10 +186,9 @@ json compare(const char* name, const mc::Specimen& specimen, double width_nm, do
 }
 
 // An image to an accuracy: time, electrons, and whether every pixel got there.
-json to_accuracy(const char* name, const mc::Specimen& specimen, double width_nm, int pixels,
-                 double accuracy, double energy_ev, bool control, bool bse, int threads = 0,
-                 KeptLibraries* kept = nullptr) {
-  const mc::Scene scene(specimen, beam(energy_ev), view(width_nm, pixels));
+json to_accuracy(const char* name, const mc::Scene& scene, double accuracy, bool control, bool bse,
+                 int threads = 0, KeptLibraries* kept = nullptr) {
+  const int pixels = scene.scan().width;
   mc::SimulationOptions o;
   o.method = mc::Method::replay;
   o.accuracy = accuracy;
@@ -203,7 +209,7 @@ json to_accuracy(const char* name, const mc::Specimen& specimen, double width_nm
       }
   json out = report(r, kept ? kept->saved_seconds() : 0);
   out["scene"] = name;
-  out["energy_ev"] = energy_ev;
+  out["energy_ev"] = scene.beam().energy_ev;
   out["control"] = control;
   out["detectors"] = bse ? "SE and BSE" : "SE";
   out["accuracy"] = accuracy;
@@ -211,7 +217,7 @@ json to_accuracy(const char* name, const mc::Specimen& specimen, double width_nm
   out["worst_error_over_target"] = worst;
   out["fraction_over_target"] = static_cast<double>(over) / static_cast<double>(all);
   fmt::print(stderr, "{} to {}: {:.1f} s ({:.1f} s library), {:.0f} electrons per pixel, {:.0f}/s, worst {:.3f}\n",
-             name, accuracy, r.seconds, r.library_seconds, out["electrons_per_pixel"].get<double>(),
+             name, accuracy, r.seconds, out["library_seconds"].get<double>(), out["electrons_per_pixel"].get<double>(),
              out["primaries_per_second"].get<double>(), worst);
   return out;
 }
@@ -291,26 +297,24 @@ json choice(double energy_ev) {
 // Waves at one energy: direct simulation, replay, and replay to an accuracy with the planar control.
 struct EnergyRow {
   double energy_ev, accuracy;
+  int pixels;   // across
   Sizes sizes;
 };
 
 std::vector<EnergyRow> energy_rows(bool quick) {
-  const Sizes sizes{24, 60, 200}, slow{24, 8, 100}, few{12, 20, 100};
-  if (quick) return {{500, 0.1, few}, {1000, 0.1, few}, {2000, 0.1, few}};
-  return {{500, 0.1, sizes}, {1000, 0.1, sizes}, {2000, 0.1, sizes}, {5000, 0.1, slow},
-          {10000, 0.1, slow}};
+  if (quick) return {{500, 0.1, 16, {20, 100}}, {1000, 0.1, 16, {20, 100}}, {2000, 0.1, 16, {20, 100}}};
+  return {{500, 0.1, 32, {40, 100}}, {1000, 0.1, 32, {40, 100}}, {2000, 0.1, 32, {40, 100}},
+          {5000, 0.15, 24, {8, 100}}, {10000, 0.15, 24, {8, 100}}};
 }
 
 json at_energy(double radius_nm, const EnergyRow& e, KeptLibraries& kept) {
-  constexpr double width_nm = 64;
-  constexpr int threads = 2;
-  const mc::Specimen s = waves(radius_nm);
+  constexpr int threads = 1;   // an image of a single tile has work for one
+  const mc::Scene scene = scene_of(waves(radius_nm), 64, e.pixels, e.energy_ev);
   const std::string name = fmt::format("waves {} nm", radius_nm);
-  json row = compare(name.c_str(), s, width_nm, e.energy_ev, e.sizes, {threads}, &kept);
+  json row = compare(name.c_str(), scene, e.sizes, {threads}, &kept);
   row["radius_nm"] = radius_nm;
   json& accuracy = row["accuracy"];
-  accuracy = to_accuracy(name.c_str(), s, width_nm, e.sizes.pixels, e.accuracy, e.energy_ev, true, true,
-                         threads, &kept);
+  accuracy = to_accuracy(name.c_str(), scene, e.accuracy, true, true, threads, &kept);
   accuracy["equal_time"] = at_equal_time(row["runs"][0]["direct"], accuracy);
   return row;
 }
@@ -344,7 +348,7 @@ io::PlotPanel panel_of(const json& rows, double radius_nm, bool with_library) {
 
 io::Plot chart_of(const json& rows) {
   io::Plot plot;
-  plot.title = "Replay: time for the same standard error per pixel, silicon, two threads";
+  plot.title = "Replay: time for the same standard error per pixel, silicon, one thread";
   plot.columns = 2;
   for (const bool with_library : {false, true})
     for (const double radius_nm : {250.0, 25.0})
@@ -373,7 +377,7 @@ int main(int argc, char** argv) {
   }
   if (!chart.empty()) io::check_plot_target(chart);
   const int scale = quick ? 4 : 1;
-  const Sizes sizes{128, quick ? 2 : 8, 800 / scale};
+  const Sizes sizes{quick ? 2 : 8, 800 / scale};
   json out;
   if (wanted("library"))
     for (const double e : {500.0, 1000.0, 3000.0, 10000.0})
@@ -381,28 +385,30 @@ int main(int argc, char** argv) {
   if (wanted("choice"))
     for (const double e : {500.0, 1000.0, 3000.0, 10000.0, 30000.0})
       if (!quick || e <= 3000) out["choice"].push_back(choice(e));
-  if (wanted("flat")) out["speed"].push_back(compare("flat", flat(), 100, 1000, sizes, {1, 2}));
-  if (wanted("mesa")) out["speed"].push_back(compare("mesa", mesa(), 192, 1000, sizes, {1, 2}));
+  if (wanted("flat"))
+    out["speed"].push_back(compare("flat", scene_of(flat(), 100, 128, 1000), sizes, {1, 2}));
+  if (wanted("mesa"))
+    out["speed"].push_back(compare("mesa", scene_of(mesa(), 192, 128, 1000), sizes, {1, 2}));
   if (!data.empty())
     for (const char* name : {"bunny", "dragonfly"})
       if (wanted(name))
         for (const auto& entry : std::filesystem::directory_iterator(data))
           if (entry.path().stem().string().starts_with(name)) {
-            out["speed"].push_back(compare(name, mesh(entry.path().string(), 300), 330, 1000,
-                                           {128, sizes.direct, sizes.replay / 4}, {2}));
+            const mc::Scene scene = scene_of(mesh(entry.path().string(), 300), 330, 128, 1000);
+            out["speed"].push_back(compare(name, scene, {sizes.direct, sizes.replay / 4}, {2}));
             break;
           }
   if (wanted("triangles"))
     for (const double pitch : {2.0, 0.2})
       out["triangles"].push_back(
-          compare("mesa", mesa(pitch), 192, 1000, {64, sizes.direct, sizes.replay}, {2}));
+          compare("mesa", scene_of(mesa(pitch), 192, 64, 1000), sizes, {2}));
   if (wanted("rough"))
     for (const double radius : {250.0, 25.0})
       for (const bool bse : {false, true}) {
         const std::string name = fmt::format("rough, radii from {} nm", radius);
         const int pixels = quick ? 64 : 256;
-        out["accuracy"].push_back(to_accuracy(name.c_str(), waves(radius),
-                                              2.0 * pixels, pixels, 0.01, 1000, true, bse));
+        const mc::Scene scene = scene_of(waves(radius), 2.0 * pixels, pixels, 1000);
+        out["accuracy"].push_back(to_accuracy(name.c_str(), scene, 0.01, true, bse));
       }
   if (wanted("energies")) {
     KeptLibraries kept;
