@@ -216,9 +216,10 @@ json to_accuracy(const char* name, const mc::Scene& scene, double accuracy, bool
   out["electrons_per_pixel"] = static_cast<double>(r.balance.incident) / pixels / pixels;
   out["worst_error_over_target"] = worst;
   out["fraction_over_target"] = static_cast<double>(over) / static_cast<double>(all);
-  fmt::print(stderr, "{} to {}: {:.1f} s ({:.1f} s library), {:.0f} electrons per pixel, {:.0f}/s, worst {:.3f}\n",
-             name, accuracy, r.seconds, out["library_seconds"].get<double>(), out["electrons_per_pixel"].get<double>(),
-             out["primaries_per_second"].get<double>(), worst);
+  fmt::print(stderr,
+             "{} to {}: {:.1f} s ({:.1f} s library), {:.0f} electrons per pixel, {:.0f}/s, worst {:.3f}\n",
+             name, accuracy, r.seconds, out["library_seconds"].get<double>(),
+             out["electrons_per_pixel"].get<double>(), out["primaries_per_second"].get<double>(), worst);
   return out;
 }
 
