@@ -190,12 +190,13 @@ bool EmbreeScene::nearest_of(std::span<const std::uint32_t> faces, const Vec3& o
     const Vec3 a = mesh.vertices_nm[t[0]] - origin;
     const Vec3 b = mesh.vertices_nm[t[1]] - origin;
     const Vec3 c = mesh.vertices_nm[t[2]] - origin;
-    // On which side of each edge the ray passes. Two triangles with a common edge get exactly opposite
-    // answers for it, so nothing slips through between them.
+    // On which side of each edge the ray passes, but for rounding: where triangles share an edge or a
+    // corner, one of them at least is met, and nothing slips through.
+    const double rounding = 1e-15 * (dot(a, a) + dot(b, b) + dot(c, c));
     const double u = dot(direction, cross(b, c));
     const double v = dot(direction, cross(c, a));
     const double w = dot(direction, cross(a, b));
-    if (!((u >= 0 && v >= 0 && w >= 0) || (u <= 0 && v <= 0 && w <= 0))) continue;
+    if (std::min({u, v, w}) < -rounding && std::max({u, v, w}) > rounding) continue;
     const Vec3 normal = cross(b - a, c - a);
     const double along = dot(normal, direction);
     const double distance = dot(a, normal) / along;
