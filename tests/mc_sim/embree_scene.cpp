@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include "random_direction.h"
 #include "surf/core/random.h"
 #include "surf/mesh/height_field_mesh.h"
 #include "surf/mesh/shapes.h"
@@ -16,11 +17,7 @@ namespace surf::mc {
 
 namespace {
 
-Vec3 isotropic(RandomStream& random) {
-  const double c = 1 - 2 * random.uniform(), f = 6.283185307 * random.uniform();
-  const double s = std::sqrt(1 - c * c);
-  return {s * std::cos(f), s * std::sin(f), c};
-}
+using test::isotropic;
 
 bool ahead(void*, std::uint32_t, double, double distance) { return distance >= 0; }
 bool inward(void*, std::uint32_t, double cosine, double distance) {

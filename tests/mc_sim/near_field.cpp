@@ -5,6 +5,7 @@
 #include <cstdlib>
 #include <filesystem>
 
+#include "random_direction.h"
 #include "statistics.h"
 #include "surf/core/random.h"
 #include "surf/io/mesh_file.h"
@@ -41,11 +42,7 @@ double distance(const TriangleMesh& mesh, const Vec3& p) {
   return best;
 }
 
-Vec3 isotropic(RandomStream& random) {
-  const double c = 1 - 2 * random.uniform(), f = 6.283185307 * random.uniform();
-  const double s = std::sqrt(1 - c * c);
-  return {s * std::cos(f), s * std::sin(f), c};
-}
+using test::isotropic;
 
 // A point up to `away` from a random triangle.
 Vec3 near_surface(const TriangleMesh& mesh, double away, RandomStream& random) {

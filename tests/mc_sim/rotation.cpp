@@ -3,17 +3,14 @@
 
 #include <gtest/gtest.h>
 
+#include "random_direction.h"
 #include "surf/core/random.h"
 
 namespace surf::mc {
 
 namespace {
 
-Vec3 isotropic(RandomStream& random) {
-  const double c = 1 - 2 * random.uniform(), f = 6.283185307 * random.uniform();
-  const double s = std::sqrt(1 - c * c);
-  return {s * std::cos(f), s * std::sin(f), c};
-}
+using test::isotropic;
 
 void expect_near(const Vec3& a, const Vec3& b, double tolerance) {
   EXPECT_LE(length(a - b), tolerance) << a.x << " " << a.y << " " << a.z << " for " << b.x << " "

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "embree_scene.h"
+#include "random_direction.h"
 #include "statistics.h"
 #include "surf/core/random.h"
 #include "surf/mesh/height_field_mesh.h"
@@ -13,11 +14,7 @@ namespace surf::mc {
 
 namespace {
 
-Vec3 isotropic(RandomStream& random) {
-  const double c = 1 - 2 * random.uniform(), f = 6.283185307 * random.uniform();
-  const double s = std::sqrt(1 - c * c);
-  return {s * std::cos(f), s * std::sin(f), c};
-}
+using test::isotropic;
 
 // Rays that leave the surface, and rays from anywhere around it; never free where the ray tracer
 // hits from outside. The answer is the share proven of those that leave and are free.
