@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "by_blocks.h"
 #include "replay_site.h"
 #include "subset.h"
 #include "surf/core/random.h"
@@ -24,12 +25,10 @@ class ReplayWorker : public UnitWorker {
     clear(out, unit, options_.detectors.size());
     replay_.balance() = {};
     look(unit);
-    if (pixels_.empty()) return;
-    const std::uint64_t blocks = pixels_.front().subset.blocks();
-    for (std::uint64_t block = 0; block < blocks; ++block)
-      for (std::size_t i = 0; i < pixels_.size(); ++i)
-        serve(pixels_[i], block, static_cast<std::uint64_t>(unit.first_electron),
-              out.pixels.data()[i], i, out);
+    by_blocks(pixels_, cascades_, replay_,
+              [&](std::size_t i, std::uint64_t electron, std::size_t cascade) {
+                serve(i, electron, cascade, out);
+              });
     out.balance += replay_.balance();
     out.spectra = replay_.detection().take_spectra();
   }
@@ -38,7 +37,7 @@ class ReplayWorker : public UnitWorker {
   struct Pixel {
     int x, y;
     std::uint64_t number;
-    std::uint64_t end;        // of its primaries
+    std::uint64_t used, end;  // of its primaries: the first, and one past the last
     ReplaySite site;
     Subset subset;
   };
@@ -52,35 +51,29 @@ class ReplayWorker : public UnitWorker {
         // The pixel's own stream has electrons as its last coordinate; this is beyond all of them.
         RandomStream own(options_.seed, number, subset_stream);
         const std::uint32_t a = own.bits(), b = own.bits();
-        pixels_.push_back({x, y, number, static_cast<std::uint64_t>(std::max<std::int64_t>(end, 0)),
+        pixels_.push_back({x, y, number, static_cast<std::uint64_t>(unit.first_electron),
+                           static_cast<std::uint64_t>(std::max<std::int64_t>(end, 0)),
                            replay_.site(x, y, end - unit.first_electron >= worth_looking_around),
                            Subset(cascades_, a, b)});
       }
   }
 
-  // The pixel's primaries with cascades of a block.
-  void serve(const Pixel& p, std::uint64_t block, std::uint64_t first, PixelTally& tally,
-             std::size_t place, UnitTally& out) {
-    bool there = false;
-    p.subset.each_of_block(block, first, p.end, [&](std::uint64_t electron, std::size_t cascade) {
-      if (!there) replay_.go_to(p.site);
-      there = true;
-      Gun::Start start = p.site.middle;
-      if (!p.site.single) {
-        RandomStream random(options_.seed, p.number, electron);
-        start = replay_.gun().primary(p.x, p.y, random);
-      }
-      ReplayedPrimary primary{options_.seed, p.number, electron, cascade, 0};
-      primary.azimuth = azimuth_of(primary);
-      // Of a run the next one is the neighbour.
-      if (cascade + 1 < cascades_) replay_.fetch(p.site, cascade + 1);
-      tally.model = PixelModel::replay;
-      tally.hits += replay_.run(p.site, start, primary) ? 1 : 0;
-      ++tally.primaries;
-      for (std::size_t d = 0; d < out.counts.size(); ++d)
-        out.counts[d].data()[place].add(replay_.detection().counts()[d]);
-      replay_.detection().end_primary();
-    });
+  void serve(std::size_t i, std::uint64_t electron, std::size_t cascade, UnitTally& out) {
+    const Pixel& p = pixels_[i];
+    Gun::Start start = p.site.middle;
+    if (!p.site.single) {
+      RandomStream random(options_.seed, p.number, electron);
+      start = replay_.gun().primary(p.x, p.y, random);
+    }
+    ReplayedPrimary primary{options_.seed, p.number, electron, cascade, 0};
+    primary.azimuth = azimuth_of(primary);
+    PixelTally& tally = out.pixels.data()[i];
+    tally.model = PixelModel::replay;
+    tally.hits += replay_.run(p.site, start, primary) ? 1 : 0;
+    ++tally.primaries;
+    for (std::size_t d = 0; d < out.counts.size(); ++d)
+      out.counts[d].data()[i].add(replay_.detection().counts()[d]);
+    replay_.detection().end_primary();
   }
 
   static constexpr std::uint64_t subset_stream = std::uint64_t{1} << 42;

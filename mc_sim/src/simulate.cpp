@@ -53,8 +53,9 @@ void check_options(const SimulationOptions& options) {
     throw UsageError("--accuracy", "direct simulation cannot serve it", "Use --method replay");
 }
 
-// Units of work: runs of pixels along a row, or tiles where they are replayed. Long counts of electrons are split, so that one pixel
-// can keep all threads busy. Numbered rather than listed: there may be very many.
+// Units of work: runs of pixels along a row, or tiles where they are replayed. Long counts of electrons
+// are split, so that one pixel can keep all threads busy. Numbered rather than listed: there may be
+// very many.
 class Plan {
  public:
   Plan(const Scan& scan, const SimulationOptions& options) : scan_(scan) {

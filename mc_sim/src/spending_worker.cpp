@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 
+#include "by_blocks.h"
 #include "plane_controls.h"
 #include "replay_site.h"
 #include "spending.h"
@@ -115,22 +116,14 @@ class SpendingWorker : public UnitWorker {
     if (!p.plane) p.end = pilot_primaries;
   }
 
-  // Every pixel's primaries up to its `end`, block by block of cascades: what one pixel replays is
-  // still near when the next one comes. take(pixel, hit, detector, counted, on the plane).
+  // Every pixel's primaries up to its `end`. take(pixel, hit, detector, counted, on the plane).
   template <class Take>
   void replay_all(const Take& take) {
-    const std::uint64_t blocks = cascades_ / Subset::block;
-    for (std::uint64_t block = 0; block < blocks; ++block)
-      for (std::size_t i = 0; i < sites_.size(); ++i) {
-        Pixel& p = sites_[i];
-        bool there = false;
-        p.subset.each_of_block(block, p.used, p.end, [&](std::uint64_t electron, std::size_t cascade) {
-          if (!there) replay_.go_to(p.site);
-          there = true;
-          if (cascade + 1 < cascades_) replay_.fetch(p.site, cascade + 1);
-          run(p, electron, cascade, [&](bool hit, const auto& counts) { take(i, hit, counts); });
-        });
-      }
+    by_blocks(sites_, cascades_, replay_,
+              [&](std::size_t i, std::uint64_t electron, std::size_t cascade) {
+                run(sites_[i], electron, cascade,
+                    [&](bool hit, const auto& counts) { take(i, hit, counts); });
+              });
     for (Pixel& p : sites_) p.used = std::max(p.used, p.end);
   }
 

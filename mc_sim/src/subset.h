@@ -22,8 +22,6 @@ class Subset {
   Subset(std::uint64_t cascades, std::uint32_t a, std::uint32_t b)
       : blocks_(cascades / block), first_(blocks_ > 0 ? a % blocks_ : 0), key_(b) {}
 
-  std::uint64_t blocks() const { return blocks_; }
-
   /// The cascade of the pixel's primary `i`.
   std::size_t operator[](std::uint64_t i) const {
     const std::uint64_t turn = i / run;

@@ -32,7 +32,7 @@ TEST(Subset, GivesTheSamePrimariesBlockByBlock) {
                             Range{1000001, 1003000}}) {
         const Subset subset(cascades, a, 3 * a + 5);
         std::set<std::uint64_t> served;
-        for (std::uint64_t b = 0; b < subset.blocks(); ++b)
+        for (std::uint64_t b = 0; b < cascades / Subset::block; ++b)
           subset.each_of_block(b, r.first, r.end, [&](std::uint64_t i, std::size_t cascade) {
             EXPECT_TRUE(served.insert(i).second) << i << " is served twice";
             EXPECT_EQ(cascade, subset[i]) << i << " of " << cascades;
