@@ -69,7 +69,7 @@ class KeptLibraries : public mc::LibrarySource {
                                                     const ProgressCallback& progress,
                                                     const CancelToken* cancel) override {
     Kept& kept = kept_[{settings.start_energy_ev, cascades}];
-    saved_ = kept.seconds;
+    saved_ += kept.seconds;
     if (kept.library) return kept.library;
     const auto begin = std::chrono::steady_clock::now();
     kept.library = fresh_.library(settings, cascades, threads, progress, cancel);
@@ -77,10 +77,13 @@ class KeptLibraries : public mc::LibrarySource {
     return kept.library;
   }
 
-  /// What the last one would have taken; 0 where it was made.
-  double saved_seconds() const { return saved_; }
+  /// What those got since the last call would have taken; 0 for those that were made.
+  double take_saved_seconds() { return std::exchange(saved_, 0.0); }
 
-  void clear() { kept_.clear(); }
+  void clear() {
+    kept_.clear();
+    fresh_ = {};
+  }
 
  private:
   struct Kept {
@@ -169,7 +172,7 @@ json compare(const char* name, const mc::Scene& scene, const Sizes& sizes, std::
     o.electrons = sizes.replay;
     const auto replay = mc::simulate(scene, o, {}, nullptr, {}, nullptr, kept);
     json row{{"threads", t}, {"direct", report(direct)},
-             {"replay", report(replay, kept ? kept->saved_seconds() : 0)}};
+             {"replay", report(replay, kept ? kept->take_saved_seconds() : 0)}};
     row["equal_time"] = at_equal_time(row["direct"], row["replay"]);
     row["gain"] = row["replay"]["primaries_per_second"].get<double>() /
                   row["direct"]["primaries_per_second"].get<double>();
@@ -207,7 +210,7 @@ json to_accuracy(const char* name, const mc::Scene& scene, double accuracy, bool
         over += share > 1;
         ++all;
       }
-  json out = report(r, kept ? kept->saved_seconds() : 0);
+  json out = report(r, kept ? kept->take_saved_seconds() : 0);
   out["scene"] = name;
   out["energy_ev"] = scene.beam().energy_ev;
   out["control"] = control;

@@ -56,8 +56,8 @@ void add_library_options(CLI::App& app, LibraryOptions& o) {
   app.add_option("--cascades", o.cascades, "Primaries in each library, rounded up to whole 2048s")
       ->type_name("N");
   app.add_option("--accuracy", o.accuracy,
-                 "As many as images of this accuracy take: (3/accuracy)^2, not below\n"
-                 "10000, which is what is made where neither is given")
+                 "As many as images of this accuracy begin with: (3/accuracy)^2, not\n"
+                 "below 10000, which is what is made where neither is given")
       ->type_name("SHARE");
   app.add_option("--physics", o.physics, "As for simulate; each choice has libraries of its own")
       ->type_name("KEY=VALUE,...");

@@ -233,10 +233,12 @@ std::shared_ptr<const CascadeLibrary> FreshLibraries::library(const CascadeSetti
                                                               std::size_t cascades, int threads,
                                                               const ProgressCallback& progress,
                                                               const CancelToken* cancel) {
-  auto library = std::make_shared<CascadeLibrary>(settings);
-  library->grow(cascades, threads, progress, cancel);
+  CascadeLibrary& library =
+      kept_.try_emplace(cascade_page_key(settings, 0), settings).first->second;
+  library.grow(cascades, threads, progress, cancel);
   if (cancel && cancel->cancelled()) return nullptr;
-  return library;
+  constexpr std::size_t page = CascadeLibrary::page_cascades;
+  return std::make_shared<const CascadeLibrary>(library.first((cascades + page - 1) / page));
 }
 
 bool can_replay(const Physics& physics) { return physics.loss != LossModel::none; }

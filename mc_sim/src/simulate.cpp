@@ -201,22 +201,36 @@ class Workshop {
     scene_ = &scene.impl();
     options_ = &options;
     if (options.method == Method::direct) return true;
-    const std::size_t wanted = library_size(options, most_primaries);
     FreshLibraries fresh;
-    for (std::size_t m = 0; m < scene.materials().size(); ++m) {
-      const Medium& medium = *scene_->medium_pointers[m];
-      const CascadeSettings settings{scene.materials()[m], scene.physics(),
-                                     scene.beam().energy_ev + medium.barrier_ev(), options.seed};
-      auto library = (source ? source : &fresh)
-                         ->library(settings, wanted, options.threads, progress, cancel);
-      if (!library) return false;
-      libraries_.push_back(std::move(library));
-    }
-    for (const auto& library : libraries_)
-      cascades_ = cascades_ == 0 ? library->cascades() : std::min(cascades_, library->cascades());
-    if (options.accuracy > 0) controls_.emplace(*scene_, options, libraries_);
+    if (!source) source = &fresh;
+    const auto get = [&](std::size_t wanted) {
+      libraries_.clear();
+      cascades_ = 0;
+      for (std::size_t m = 0; m < scene.materials().size(); ++m) {
+        const Medium& medium = *scene_->medium_pointers[m];
+        const CascadeSettings settings{scene.materials()[m], scene.physics(),
+                                       scene.beam().energy_ev + medium.barrier_ev(), options.seed};
+        auto library = source->library(settings, wanted, options.threads, progress, cancel);
+        if (!library) return false;
+        libraries_.push_back(std::move(library));
+      }
+      for (const auto& library : libraries_)
+        cascades_ = cascades_ == 0 ? library->cascades() : std::min(cascades_, library->cascades());
+      return true;
+    };
+    const std::size_t least = library_size(options, most_primaries);
+    if (!get(least)) return false;
+    if (!(options.accuracy > 0)) return true;
+    measure_yields(static_cast<int>(scene.materials().size()));
+    const std::size_t wanted = std::min(library_size(options, most_primaries, yields_),
+                                        cascades_that_fit(options.library_memory));
+    if (wanted > least && !get(wanted)) return false;
+    controls_.emplace(*scene_, options, libraries_);
     return true;
   }
+
+  /// Of each material in each detector, with a wanted accuracy.
+  const std::vector<CascadeYield>& yields() const { return yields_; }
 
   std::unique_ptr<UnitWorker> worker() {
     if (options_->method == Method::direct) return make_direct_worker(*scene_, *options_);
@@ -228,20 +242,55 @@ class Workshop {
   std::size_t cascades() const { return cascades_; }
 
  private:
+  // On the plane where counts scatter most for their mean: the one across the beam.
+  void measure_yields(int materials) {
+    constexpr std::size_t pilot = 5 * CascadeLibrary::page_cascades;
+    Libraries first;
+    for (const auto& library : libraries_)
+      first.push_back(std::make_shared<CascadeLibrary>(
+          library->first(pilot / CascadeLibrary::page_cascades)));
+    PlaneControls controls(*scene_, *options_, first);
+    for (int m = 0; m < materials; ++m) {
+      const auto match = controls.match(m, -direction(scene_->beam), false);
+      for (const Counts& sums : match.control->sums) {
+        const auto n = static_cast<double>(controls.cascades());
+        const Estimate e = estimate(static_cast<std::int64_t>(controls.cascades()), sums);
+        yields_.push_back({e.mean, e.standard_error * e.standard_error * n});
+      }
+    }
+  }
+
+  std::size_t cascades_that_fit(double bytes) const {
+    constexpr std::size_t page = CascadeLibrary::page_cascades;
+    double of_a_page = 0;
+    for (const auto& library : libraries_)
+      of_a_page += static_cast<double>(library->bytes()) / static_cast<double>(library->pages());
+    return static_cast<std::size_t>(bytes / of_a_page) * page;
+  }
+
   const Scene::Impl* scene_ = nullptr;
   const SimulationOptions* options_ = nullptr;
   std::size_t cascades_ = 0;
   Libraries libraries_;
+  std::vector<CascadeYield> yields_;
   std::optional<PlaneControls> controls_;
 };
 
 }  // namespace
 
-std::size_t library_size(const SimulationOptions& options, std::int64_t most_primaries) {
+std::size_t library_size(const SimulationOptions& options, std::int64_t most_primaries,
+                         std::span<const CascadeYield> yields) {
   // A pixel takes no cascade twice, and shares the smaller part of its cascades with others: of its
   // variance no more than a quarter is common to all. The means on planes are over all of them.
-  const double wanted = options.accuracy > 0 ? 9 / (options.accuracy * options.accuracy)
-                                             : 4.0 * static_cast<double>(most_primaries);
+  constexpr double of_the_variance = 0.24;   // a quarter, where a pilot has found it a little low
+  double wanted = static_cast<double>(most_primaries) / of_the_variance;
+  if (options.accuracy > 0) {
+    wanted = 9 / (options.accuracy * options.accuracy);
+    for (const CascadeYield& y : yields) {
+      const double error = std::max(options.accuracy * y.mean, options.accuracy_floor);
+      if (error > 0) wanted = std::max(wanted, y.variance / (of_the_variance * error * error));
+    }
+  }
   const double pages = std::ceil(std::max(wanted, 1e4) / CascadeLibrary::page_cascades);
   return static_cast<std::size_t>(pages) * CascadeLibrary::page_cascades;
 }
@@ -300,6 +349,7 @@ SimulationResult simulate(const Scene& scene, const SimulationOptions& options,
     return std::move(result);
   }
   result.library_cascades = workshop.cascades();
+  result.cascade_yields = workshop.yields();
   result.library_seconds = seconds();
   begin = std::chrono::steady_clock::now();
   double done = 0;

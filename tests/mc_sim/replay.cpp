@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // How replay takes cascades, shares them and keeps account.
+#include <array>
+
 #include "replay_test.h"
 #include "subset.h"
 #include "surf/core/error.h"
@@ -166,6 +168,36 @@ TEST(Replay, ReportsTheCascadesThatThereAre) {
   const auto r = simulate(scene, options, {}, nullptr, {}, nullptr, &generous);
   EXPECT_EQ(r.library_cascades, library_size(options, 10) + CascadeLibrary::page_cascades);
   EXPECT_EQ(simulate(scene, {}).library_cascades, 0u);
+}
+
+TEST(LibrarySize, KeepsTheLibraryToAQuarterOfTheVariance) {
+  SimulationOptions options;
+  EXPECT_GE(library_size(options, 1'000'000), 4'000'000u);
+  options.accuracy = 0.01;
+  const auto share = [&](const CascadeYield& y) {   // of the variance asked for
+    const double error = std::max(options.accuracy * y.mean, options.accuracy_floor);
+    return y.variance / static_cast<double>(library_size(options, 1, std::array{y})) / (error * error);
+  };
+  EXPECT_EQ(library_size(options, 1), library_size(options, 1, std::array{CascadeYield{0, 0}}));
+  for (const CascadeYield& y : {CascadeYield{1.1, 3}, {0.2, 0.16}, {0.01, 0.01}, {5, 100}})
+    EXPECT_LE(share(y), 0.25) << y.mean;
+  EXPECT_GT(share({5, 100}), 0.23);   // and it is no larger than that takes
+  options.accuracy_floor = 0;
+  EXPECT_GT(library_size(options, 1, std::array{CascadeYield{0, 0}}), 0u);
+}
+
+TEST(LibrarySize, GrowsByWhatTheCascadesAreMeasuredToScatterAndFitsIntoMemory) {
+  SimulationOptions options = replaying(10);
+  options.accuracy = 0.03;
+  options.accuracy_floor = 0;
+  options.threads = 1;
+  const Scene scene(mesa(), slow(), test::square_scan(40, 2));
+  const auto grown = simulate(scene, options);
+  ASSERT_EQ(grown.cascade_yields.size(), 2u);   // one material, SE and BSE
+  EXPECT_GT(grown.library_cascades, library_size(options, 1));
+  EXPECT_EQ(grown.library_cascades, library_size(options, 1, grown.cascade_yields));
+  options.library_memory = 0;
+  EXPECT_EQ(simulate(scene, options).library_cascades, library_size(options, 1));
 }
 
 TEST(Replay, RefusesWhatItCannotDo) {

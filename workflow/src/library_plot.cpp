@@ -268,6 +268,7 @@ mc::SimulationOptions simulation_of(const LibraryPlotOptions& o) {
   mc::SimulationOptions options;
   options.method = mc::Method::replay;
   options.accuracy = std::min(1.0, 3 / std::sqrt(static_cast<double>(o.cascades)));
+  options.library_memory = 0;   // no more than that
   options.seed = o.seed;
   options.threads = o.threads;
   return options;

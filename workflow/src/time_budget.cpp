@@ -19,7 +19,8 @@ std::size_t cascades_for(const mc::SimulationResult& result, double accuracy) {
   mc::SimulationOptions options;
   options.detectors = result.detectors;
   options.accuracy = accuracy;
-  return mc::library_size(options, 1);
+  options.accuracy_floor = result.accuracy_floor;
+  return mc::library_size(options, 1, result.cascade_yields);
 }
 
 // Two digits, never better than `accuracy`: "1.3%", read back as the command line does.

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <cstddef>
+#include <map>
 #include <memory>
+#include <string>
 
 #include "surf/core/progress.h"
 #include "surf/mc/cascade_library.h"
@@ -23,13 +25,16 @@ class LibrarySource {
                                                         const CancelToken* cancel) = 0;
 };
 
-/// Makes what is asked for on the spot.
+/// Makes what is asked for on the spot, and keeps it for who asks for more.
 class FreshLibraries : public LibrarySource {
  public:
   std::shared_ptr<const CascadeLibrary> library(const CascadeSettings& settings,
                                                 std::size_t cascades, int threads,
                                                 const ProgressCallback& progress,
                                                 const CancelToken* cancel) override;
+
+ private:
+  std::map<std::string, CascadeLibrary> kept_;   // by the key of their first page
 };
 
 }  // namespace surf::mc

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <span>
 #include <vector>
 
 #include "surf/core/grid.h"
@@ -45,11 +46,20 @@ struct SimulationOptions {
   /// files in `scratch_folder`; never where that is empty. Does not change the result.
   std::size_t tally_memory = std::size_t{1} << 30;
   std::string scratch_folder;
+  /// With `accuracy`, all libraries together grow beyond their least size only up to this many bytes.
+  double library_memory = 2.0 * (1u << 30);
+};
+
+/// What a primary counts on average on a plane across the beam, of one material in one detector.
+struct CascadeYield {
+  double mean = 0, variance = 0;
 };
 
 /// How many cascades of each material replay with these options takes, where no pixel has more than
-/// `most_primaries`.
-std::size_t library_size(const SimulationOptions& options, std::int64_t most_primaries);
+/// `most_primaries`. With a wanted accuracy (3 / accuracy)^2, and where `yields` are known as many as
+/// it takes for the library's share to be a quarter of the variance asked for.
+std::size_t library_size(const SimulationOptions& options, std::int64_t most_primaries,
+                         std::span<const CascadeYield> yields = {});
 
 /// Bytes of a result's tallies.
 std::size_t tally_bytes(const Scan& scan, const SimulationOptions& options);
@@ -89,6 +99,7 @@ struct SimulationResult {
   double accuracy = 0;                   ///< as in the options
   double accuracy_floor = 0;
   std::size_t library_cascades = 0;      ///< of each material, with replay
+  std::vector<CascadeYield> cascade_yields;   ///< with `accuracy`: per material and detector
   double library_seconds = 0;            ///< wall time to get the libraries
   std::int64_t recalled = 0;             ///< primaries among `balance` that a journal knew already
   bool complete = true;          ///< false when cancelled: some pixels have fewer primaries, or none
