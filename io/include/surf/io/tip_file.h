@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <string>
+
+#include "surf/afm/tip.h"
+
+namespace surf::io {
+
+/// Reads a tip from any file of heights. Files hold the structuring function, as `Tip` does, unless
+/// their metadata "tip" says "physical": then the tip's own surface, apex down or up, is turned. The
+/// highest sample becomes 0 and the apex; holes become -infinity.
+/// Throws FileError, InvalidInput where the highest value is found in several places that do not touch.
+Tip read_tip(const std::filesystem::path& path);
+
+/// Writes the structuring function as heights, holes where it is -infinity; metadata "tip" is
+/// "structuring function".
+void write_tip(const std::filesystem::path& path, const Tip& tip,
+               const std::map<std::string, std::string>& metadata = {});
+
+}  // namespace surf::io
