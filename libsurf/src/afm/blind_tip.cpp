@@ -1,0 +1,227 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "surf/afm/blind_tip.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <limits>
+
+#include <fmt/format.h>
+
+#include "explained.h"
+#include "surf/core/error.h"
+#include "surf/core/parallel.h"
+#include "tip_carver.h"
+
+namespace surf {
+
+namespace {
+
+struct Point {
+  std::uint32_t scan;
+  std::int32_t x, y;
+  float misfit;   // how far the scan lies above what the tip can make
+};
+
+void check(const std::vector<HeightField>& scans, const BlindTipOptions& o) {
+  if (scans.empty()) throw UsageError("blind tip", "there is no scan", "Give one or several");
+  for (const HeightField& scan : scans) {
+    validate(scan, "scan");
+    if (scan.pitch_x_nm != scans[0].pitch_x_nm || scan.pitch_y_nm != scans[0].pitch_y_nm)
+      throw InvalidInput("scans", "they differ in pitch", "Give scans of one pixel size");
+    if (o.width > scan.z_nm.width() || o.height > scan.z_nm.height())
+      throw InvalidInput("tip size", fmt::format("{} x {} samples are more than the scan's {} x {}", o.width,
+                                                 o.height, scan.z_nm.width(), scan.z_nm.height()),
+                         "Ask for a smaller tip");
+  }
+  if (o.width < 1 || o.height < 1)
+    throw UsageError("tip size", "a tip needs at least one sample", "Ask for 21 x 21, say");
+  for (const double nm : {o.threshold_nm, o.threshold_y_nm.value_or(0), o.apex_tolerance_nm, o.layer_nm})
+    if (!(nm >= 0 && std::isfinite(nm)))
+      throw UsageError("threshold", fmt::format("{:g} nm is impossible", nm), "Give 0 nm or more");
+  if (!o.start) return;
+  validate(*o.start, "tip to start with");
+  if (o.start->z_nm.width() != o.width || o.start->z_nm.height() != o.height ||
+      o.start->apex_x != o.width / 2 || o.start->apex_y != o.height / 2)
+    throw InvalidInput("tip to start with", "its size or apex is another", "Leave it out");
+}
+
+// Heights about the middle of all scans, so that floats hold them to 1e-7 of the range. `slack_nm` is then
+// more than sums of a few of them can be off: what holds exactly must not fail by rounding.
+std::vector<Grid<float>> rebased(const std::vector<HeightField>& scans, float& slack_nm) {
+  double low = HUGE_VAL, high = -HUGE_VAL;
+  std::vector<Grid<float>> out;
+  for (const HeightField& s : scans)
+    for (int y = 0; y < s.z_nm.height(); ++y)
+      for (int x = 0; x < s.z_nm.width(); ++x)
+        if (s.is_valid(x, y)) {
+          low = std::min(low, s.z_nm(x, y));
+          high = std::max(high, s.z_nm(x, y));
+        }
+  if (low > high) throw InvalidInput("scan", "it has no valid pixel", "Give another");
+  slack_nm = static_cast<float>(0x1p-20 * (high - low));
+  for (const HeightField& s : scans) {
+    Grid<float>& z = out.emplace_back(s.z_nm.width(), s.z_nm.height(), std::numeric_limits<float>::quiet_NaN());
+    for (int y = 0; y < z.height(); ++y)
+      for (int x = 0; x < z.width(); ++x)
+        if (s.is_valid(x, y)) z(x, y) = static_cast<float>(s.z_nm(x, y) - 0.5 * (low + high));
+  }
+  return out;
+}
+
+CarvedTip prepared(const BlindTipOptions& o, float slack_nm) {
+  CarvedTip tip;
+  tip.width = o.width;
+  tip.height = o.height;
+  tip.apex_x = o.width / 2;
+  tip.apex_y = o.height / 2;
+  tip.stride = (o.width + 15) / 16 * 16;
+  const auto count = static_cast<std::size_t>(tip.stride * tip.height);
+  tip.z.assign(count, -std::numeric_limits<float>::infinity());
+  tip.mirrored = tip.z;
+  tip.threshold.assign(count, 0);
+  const double along_y = o.threshold_y_nm.value_or(o.threshold_nm);
+  for (int j = 0; j < tip.height; ++j)
+    for (int i = 0; i < tip.width; ++i) {
+      const auto k = static_cast<std::size_t>(j * tip.stride + i);
+      const double dx = i - tip.apex_x, dy = j - tip.apex_y, r = std::hypot(dx, dy);
+      tip.lower(k, o.start ? static_cast<float>(o.start->z_nm(i, j)) : 0);
+      tip.threshold[k] = static_cast<float>(
+          slack_nm + (r > 0 ? std::hypot(o.threshold_nm * dx / r, along_y * dy / r) : o.threshold_nm));
+    }
+  tip.apex_tolerance = static_cast<float>(o.apex_tolerance_nm) + slack_nm;
+  return tip;
+}
+
+// As in the thesis: none of the eight neighbours is higher, and two at least are lower.
+bool is_local_maximum(const Grid<float>& z, int x, int y) {
+  int lower = 0;
+  for (int j = -1; j <= 1; ++j)
+    for (int i = -1; i <= 1; ++i) {
+      if (!(z(x + i, y + j) <= z(x, y))) return false;
+      lower += z(x + i, y + j) < z(x, y);
+    }
+  return lower >= 2;
+}
+
+class Reconstruction {
+ public:
+  Reconstruction(const std::vector<HeightField>& scans, const BlindTipOptions& options,
+                 BlindTipSummary& summary, const ProgressCallback& progress, const CancelToken* cancel)
+      : options_(options), summary_(summary), progress_(progress), cancel_(cancel),
+        heights_(rebased(scans, slack_nm_)), tip_(prepared(options, slack_nm_)), threads_(resolve_threads(options.threads)),
+        carvers_(static_cast<std::size_t>(threads_)), demands_(static_cast<std::size_t>(threads_)) {
+    for (const Grid<float>& z : heights_) {
+      scans_.emplace_back(z, options.layer_nm, options.width, options.height);
+      tried_.emplace_back(z.width(), z.height());
+    }
+  }
+
+  CarvedTip run() {
+    summary_ = {};
+    // Few points, and nearly all of what there is to learn.
+    std::vector<Point> maxima = points(true);
+    while (!stopped() && carve(maxima)) ++summary_.rounds;
+    for (bool changed = !options_.maxima_only; changed && !stopped();) {
+      std::vector<Point> all = points(false);
+      changed = carve(all);
+      ++summary_.rounds;
+      if (progress_) progress_(summary_.rounds, summary_.rounds + 1);
+    }
+    summary_.end = stopped() ? BlindTipEnd::cancelled : BlindTipEnd::converged;
+    return tip_;
+  }
+
+ private:
+  bool stopped() const { return cancel_ && cancel_->cancelled(); }
+
+  // Those that the tip cannot have made, the worst first.
+  std::vector<Point> points(bool maxima) const {
+    std::vector<Point> out;
+    for (std::size_t s = 0; s < scans_.size(); ++s) {
+      const CarvedScan& scan = scans_[s];
+      const int dx = options_.border ? 1 : tip_.width - 1, dy = options_.border ? 1 : tip_.height - 1;
+      const Grid<float> made = maxima ? Grid<float>() : explained_height(scan, tip_, threads_);
+      for (int y = dy; y < scan.height() - dy; ++y)
+        for (int x = dx; x < scan.width() - dx; ++x) {
+          const float z = scan.bottom(x, y);
+          if (z == -std::numeric_limits<float>::infinity()) continue;
+          if (tried_[s](x, y) == version_) continue;   // on this very tip
+          if (maxima ? is_local_maximum(heights_[s], x, y) : made(x, y) < z)
+            out.push_back({static_cast<std::uint32_t>(s), x, y, maxima ? z : z - made(x, y)});
+        }
+    }
+    std::stable_sort(out.begin(), out.end(), [](const Point& a, const Point& b) { return a.misfit > b.misfit; });
+    return out;
+  }
+
+  // Points in batches that see the same tip: the result is that of any number of threads. True if the tip
+  // has changed by more than rounding.
+  bool carve(const std::vector<Point>& all) {
+    constexpr std::size_t batch = 128, share = 8;
+    bool changed = false;
+    for (std::size_t first = 0; first < all.size() && !stopped(); first += batch) {
+      const std::size_t last = std::min(all.size(), first + batch);
+      for (auto& d : demands_) d.assign(tip_.z.size(), std::numeric_limits<float>::infinity());
+      parallel_for((last - first + share - 1) / share, threads_, [&](std::size_t unit, int worker) {
+        const auto w = static_cast<std::size_t>(worker);
+        for (std::size_t p = first + unit * share; p < std::min(last, first + (unit + 1) * share); ++p)
+          carvers_[w].carve(scans_[all[p].scan], all[p].x, all[p].y, tip_, demands_[w]);
+      });
+      summary_.points += static_cast<std::int64_t>(last - first);
+      for (std::size_t p = first; p < last; ++p) tried_[all[p].scan](all[p].x, all[p].y) = version_;
+      bool lowered = false;
+      for (const auto& demand : demands_)
+        for (std::size_t k = 0; k < demand.size(); ++k)
+          if (demand[k] < tip_.z[k]) {
+            tip_.lower(k, demand[k]);
+            lowered = true;
+          }
+      version_ += lowered;
+      changed = changed || lowered;
+    }
+    return changed;
+  }
+
+  const BlindTipOptions& options_;
+  BlindTipSummary& summary_;
+  const ProgressCallback& progress_;
+  const CancelToken* cancel_;
+  float slack_nm_ = 0;
+  std::vector<Grid<float>> heights_;
+  std::vector<CarvedScan> scans_;
+  CarvedTip tip_;
+  int version_ = 1;                           // of the tip
+  std::vector<Grid<int>> tried_;              // the version that a point was tried on last
+  int threads_;
+  std::vector<TipCarver> carvers_;
+  std::vector<std::vector<float>> demands_;   // per worker
+};
+
+}  // namespace
+
+Tip blind_tip(const std::vector<HeightField>& scans, const BlindTipOptions& options,
+              BlindTipSummary& summary, const ProgressCallback& progress, const CancelToken* cancel) {
+  check(scans, options);
+  const CarvedTip carved = Reconstruction(scans, options, summary, progress, cancel).run();
+  Tip tip;
+  tip.pitch_x_nm = scans[0].pitch_x_nm;
+  tip.pitch_y_nm = scans[0].pitch_y_nm;
+  tip.apex_x = carved.apex_x;
+  tip.apex_y = carved.apex_y;
+  tip.z_nm = Grid<double>(carved.width, carved.height);
+  for (int j = 0; j < carved.height; ++j)
+    for (int i = 0; i < carved.width; ++i) tip.z_nm(i, j) = std::min(0.0f, carved.at(i, j));
+  tip.z_nm(tip.apex_x, tip.apex_y) = 0;
+  return tip;
+}
+
+double tip_volume_nm3(const Tip& tip, double depth_nm) {
+  double sum = 0;
+  double lowest = 0;
+  for (const double z : tip.z_nm.data()) lowest = std::min(lowest, std::max(z, -depth_nm));
+  for (const double z : tip.z_nm.data()) sum += std::max(0.0, z - lowest);
+  return sum * tip.pitch_x_nm * tip.pitch_y_nm;
+}
+
+}  // namespace surf

@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tip_carver.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+// Loops over rows of 16 floats: the compiler makes a version of each for the vectors of several processors.
+#define SURF_VECTORS __attribute__((target_clones("avx512f", "avx2", "default")))
+
+namespace surf {
+
+namespace {
+
+constexpr float infinity = std::numeric_limits<float>::infinity();
+constexpr int lanes = 16;   // of the widest vectors
+
+float largest(const float* of_lanes) { return *std::max_element(of_lanes, of_lanes + lanes); }
+
+// allowed = max(allowed, scan + offset).
+SURF_VECTORS void allow(float* __restrict allowed, const float* __restrict scan, float offset, int rows,
+                        int stride, std::ptrdiff_t scan_stride) {
+  for (int j = 0; j < rows; ++j, allowed += stride, scan += scan_stride)
+    for (int i = 0; i < stride; ++i) {
+      const float v = scan[i] + offset;
+      allowed[i] = v > allowed[i] ? v : allowed[i];
+    }
+}
+
+// The largest of tip - threshold - allowed.
+SURF_VECTORS float excess(const float* __restrict tip, const float* __restrict threshold,
+                          const float* __restrict allowed, int count) {
+  float most[lanes];
+  for (float& m : most) m = -infinity;
+  for (int k = 0; k < count; k += lanes)
+    for (int l = 0; l < lanes; ++l) {
+      const float v = tip[k + l] - threshold[k + l] - allowed[k + l];
+      most[l] = v > most[l] ? v : most[l];   // not where v is NaN
+    }
+  return largest(most);
+}
+
+// ways = tip - here where scan + tip - here >= -tolerance, else -infinity; rows of the scan run downwards.
+SURF_VECTORS void find(float* __restrict ways, const float* __restrict tip, const float* __restrict scan,
+                       float here, float tolerance, int rows, int stride, std::ptrdiff_t scan_stride) {
+  for (int j = 0; j < rows; ++j, ways += stride, tip += stride, scan -= scan_stride)
+    for (int i = 0; i < stride; ++i) {
+      const float offset = tip[i] - here;
+      ways[i] = scan[i] + offset >= -tolerance ? offset : -infinity;
+    }
+}
+
+SURF_VECTORS int number_of(const float* ways, int count) {
+  int number = 0;
+  for (int k = 0; k < count; ++k) number += ways[k] > -infinity;
+  return number;
+}
+
+// The largest of ways + scan.
+SURF_VECTORS float best_of(const float* __restrict ways, const float* __restrict scan, int rows, int stride,
+                           std::ptrdiff_t scan_stride) {
+  float most[lanes];
+  for (float& m : most) m = -infinity;
+  for (int j = 0; j < rows; ++j, ways += stride, scan -= scan_stride)
+    for (int k = 0; k < stride; k += lanes)
+      for (int l = 0; l < lanes; ++l) {
+        const float v = scan[k + l] + ways[k + l];
+        most[l] = v > most[l] ? v : most[l];   // not where v is NaN
+      }
+  return largest(most);
+}
+
+}  // namespace
+
+CarvedScan::CarvedScan(const Grid<float>& heights, double layer, int tip_width, int tip_height)
+    : width_(heights.width()), height_(heights.height()), margin_x_(tip_width + lanes), margin_y_(tip_height),
+      stride_(width_ + 2 * margin_x_) {
+  top_.assign(static_cast<std::size_t>(stride_) * static_cast<std::size_t>(height_ + 2 * margin_y_), infinity);
+  bottom_.assign(top_.size(), -infinity);
+  for (int y = 0; y < height_; ++y)
+    for (int x = 0; x < width_; ++x) {
+      const float z = heights(x, y);
+      if (!std::isfinite(z)) continue;
+      top_[offset(x, y)] = z + static_cast<float>(layer);
+      bottom_[offset(x, y)] = z - static_cast<float>(layer);
+    }
+}
+
+void TipCarver::carve(const CarvedScan& scan, int x, int y, const CarvedTip& tip,
+                      std::vector<float>& demand) {
+  ways_.resize(tip.z.size());
+  find(ways_.data(), tip.mirrored.data(), scan.top(x + tip.apex_x - (tip.width - 1), y + tip.apex_y),
+       scan.bottom(x, y), tip.apex_tolerance, tip.height, tip.stride, scan.stride());
+  const int count = tip.height * tip.stride;
+  allowed_.assign(static_cast<std::size_t>(count), -infinity);
+  const auto try_way = [&](int i, int j, float offset) {   // the tip touches with its sample (i, j)
+    allow(allowed_.data(), scan.top(x - i, y - j), offset, tip.height, tip.stride, scan.stride());
+  };
+  constexpr int few = 24;
+  if (number_of(ways_.data(), count) <= few) {
+    for (int w = 0; w < count; ++w)
+      if (const float offset = ways_[static_cast<std::size_t>(w)]; offset > -infinity)
+        try_way(tip.width - 1 - w % tip.stride, w / tip.stride, offset);
+    for (std::size_t k = 0; k < tip.z.size(); ++k)
+      if (allowed_[k] < tip.z[k] - tip.threshold[k] && allowed_[k] > -infinity)
+        demand[k] = std::min(demand[k], allowed_[k] + tip.threshold[k]);
+    return;
+  }
+  // Of many ways few are needed: the sample that those so far allow the least is given the way that allows
+  // it the most. Where that is not enough, no way is, and its demand is known.
+  for (;;) {
+    const float worst = excess(tip.z.data(), tip.threshold.data(), allowed_.data(), count);
+    if (!(worst > 0)) return;
+    int k = 0;
+    while (!(tip.z[static_cast<std::size_t>(k)] - tip.threshold[static_cast<std::size_t>(k)] -
+             allowed_[static_cast<std::size_t>(k)] == worst))
+      ++k;
+    const int u = k % tip.stride, v = k / tip.stride;
+    const float* around = scan.top(x - (tip.width - 1) + u, y + v);   // of mirrored sample (0, 0)
+    const float best = best_of(ways_.data(), around, tip.height, tip.stride, scan.stride());
+    if (best == -infinity) return;   // no way at all
+    const auto at = static_cast<std::size_t>(k);
+    if (best < tip.z[at] - tip.threshold[at]) {
+      demand[at] = std::min(demand[at], best + tip.threshold[at]);
+      allowed_[at] = infinity;
+      continue;
+    }
+    for (int w = 0;; ++w) {
+      const int i = w % tip.stride, j = w / tip.stride;
+      if (ways_[static_cast<std::size_t>(w)] + around[i - j * scan.stride()] != best) continue;
+      try_way(tip.width - 1 - i, j, ways_[static_cast<std::size_t>(w)]);
+      break;
+    }
+  }
+}
+
+}  // namespace surf
