@@ -61,51 +61,95 @@ NoiseEstimate with_errors(double r0, double alpha, std::size_t samples) {
   return e;
 }
 
-// ---- of an image with structure ----
+// Of an image with structure.
 
-constexpr std::size_t distances = 4;   // k = 1 ... 4
+constexpr std::size_t most_distances = 4;   // k = 1 ... 4
 constexpr int most_bands = 8;
+constexpr double clip = 4;                       // standard deviations
+constexpr double clipped_variance = 0.99893;     // of a normal number within +-4 standard deviations
+constexpr double median_of_normal = 0.67448975019608171;
+constexpr double alpha_limit = 0.9;
 constexpr std::size_t enough_centres = 1'000'000;
 
-struct Bands {
-  std::array<std::vector<std::vector<double>>, distances> of;   // |D_k| by k and band
+using Differences = std::array<double, most_distances>;   // D_k about one sample
+
+struct Centres {
+  std::size_t distances = 0;
+  std::vector<std::vector<Differences>> bands;   // of rows
 };
 
-/// |D_k| about every sample without holes around; rows are skipped where there are more than enough.
-Bands mixed_differences(const HeightField& field) {
-  const int width = field.z_nm.width(), height = field.z_nm.height();
-  const int bands = std::clamp((height - 2) / 2, 1, most_bands);
-  const int every = 1 + static_cast<int>(field.z_nm.size() / enough_centres);
-  Bands out;
-  for (auto& k : out.of) k.resize(static_cast<std::size_t>(bands));
-  for (int y = 1; y + 1 < height; y += every) {
-    const auto band = static_cast<std::size_t>(static_cast<long long>(y - 1) * bands / (height - 2));
+/// False if a hole is too near.
+bool difference(const HeightField& f, int x, int y, std::size_t distances, Differences& d) {
+  constexpr double weight[] = {1, -2, 1};
+  d = {};
+  for (int j = 0; j < 3; ++j) {
+    const int row = y + j - 1;
     for (int k = 1; k <= static_cast<int>(distances); ++k) {
-      for (int x = k; x + k < width; ++x) {
-        double d = 0;
-        bool whole = true;
-        for (int j = -1; j <= 1 && whole; ++j) {
-          whole = field.is_valid(x - k, y + j) && field.is_valid(x, y + j) && field.is_valid(x + k, y + j);
-          const double along = field.z_nm(x - k, y + j) - 2 * field.z_nm(x, y + j) + field.z_nm(x + k, y + j);
-          d += j == 0 ? -2 * along : along;
-        }
-        if (whole) out.of[static_cast<std::size_t>(k - 1)][band].push_back(std::fabs(d));
-      }
+      if (!(f.is_valid(x - k, row) && f.is_valid(x, row) && f.is_valid(x + k, row))) return false;
+      d[static_cast<std::size_t>(k - 1)] +=
+          weight[j] * (f.z_nm(x - k, row) - 2 * f.z_nm(x, row) + f.z_nm(x + k, row));
     }
+  }
+  return true;
+}
+
+/// Rows are skipped where there are more than enough.
+Centres mixed_differences(const HeightField& field) {
+  const int width = field.z_nm.width(), height = field.z_nm.height();
+  Centres out;
+  out.distances = std::min(most_distances, static_cast<std::size_t>((width - 1) / 2));
+  if (out.distances < 2 || height < 3) return out;
+  out.bands.resize(static_cast<std::size_t>(std::clamp((height - 2) / 2, 1, most_bands)));
+  const int every = 1 + static_cast<int>(field.z_nm.size() / enough_centres);
+  const int margin = static_cast<int>(out.distances);
+  for (int y = 1; y + 1 < height; y += every) {
+    auto& band = out.bands[static_cast<std::size_t>(y - 1) * out.bands.size() / static_cast<std::size_t>(height - 2)];
+    Differences d;
+    for (int x = margin; x + margin < width; ++x)
+      if (difference(field, x, y, out.distances, d)) band.push_back(d);
   }
   return out;
 }
 
-/// Variance from the median of |D|, of all bands but one (-1: of all).
-double robust_variance(const std::vector<std::vector<double>>& bands, int without) {
+double variance_from_median(const Centres& centres, std::size_t k) {
   std::vector<double> all;
-  for (int b = 0; b < static_cast<int>(bands.size()); ++b)
-    if (b != without) all.insert(all.end(), bands[static_cast<std::size_t>(b)].begin(), bands[static_cast<std::size_t>(b)].end());
-  if (all.empty()) return 0;
+  for (const auto& band : centres.bands)
+    for (const Differences& d : band) all.push_back(std::fabs(d[k]));
   const auto middle = all.begin() + static_cast<std::ptrdiff_t>(all.size() / 2);
   std::nth_element(all.begin(), middle, all.end());
-  constexpr double median_of_normal = 0.67448975019608171;
-  return (*middle / median_of_normal) * (*middle / median_of_normal);
+  return *middle * *middle / (median_of_normal * median_of_normal);
+}
+
+/// Sums over a band of what is not clipped.
+struct BandSum {
+  Differences squares{};
+  std::size_t count = 0;
+};
+
+Differences variances(const std::vector<BandSum>& sums, std::size_t without) {
+  Differences v{};
+  double count = 0;
+  for (std::size_t b = 0; b < sums.size(); ++b) {
+    if (b == without) continue;
+    count += static_cast<double>(sums[b].count);
+    for (std::size_t k = 0; k < v.size(); ++k) v[k] += sums[b].squares[k];
+  }
+  for (double& each : v) each /= std::max(count, 1.0) * clipped_variance;
+  return v;
+}
+
+std::vector<BandSum> clipped_sums(const Centres& centres, const Differences& variance) {
+  std::vector<BandSum> sums(centres.bands.size());
+  for (std::size_t b = 0; b < sums.size(); ++b) {
+    for (const Differences& d : centres.bands[b]) {
+      bool calm = true;
+      for (std::size_t k = 0; k < centres.distances; ++k) calm &= d[k] * d[k] <= clip * clip * variance[k];
+      if (!calm) continue;
+      ++sums[b].count;
+      for (std::size_t k = 0; k < centres.distances; ++k) sums[b].squares[k] += d[k] * d[k];
+    }
+  }
+  return sums;
 }
 
 /// var D_k / s^2 of an AR(1) process whose rows are independent.
@@ -115,35 +159,34 @@ double expected_variance(double alpha, std::size_t k) {
 }
 
 /// Least squares of the logarithms: on a lattice of alpha, then between its neighbours.
-AfmNoise fit_model(const Bands& d, int without) {
-  std::vector<std::pair<std::size_t, double>> measured;   // k, log of the variance
-  for (std::size_t k = 1; k <= distances; ++k) {
-    const double v = robust_variance(d.of[k - 1], without);
-    if (v > 0) measured.emplace_back(k, std::log(v));
-  }
-  if (measured.empty()) return {0, 0};
-  double log_variance = 0;
+AfmNoise fit_model(const Differences& variance, std::size_t distances) {
+  double log_s2 = 0;
   const auto misfit = [&](double alpha) {
     double sum = 0, squares = 0;
-    for (const auto& [k, v] : measured) {
-      const double difference = v - std::log(expected_variance(alpha, k));
+    for (std::size_t k = 0; k < distances; ++k) {
+      const double difference = std::log(variance[k] / expected_variance(alpha, k + 1));
       sum += difference;
       squares += difference * difference;
     }
-    const double n = static_cast<double>(measured.size());
-    log_variance = sum / n;
+    const double n = static_cast<double>(distances);
+    log_s2 = sum / n;
     return squares - sum * sum / n;
   };
-  double best = 0, least = misfit(0), step = 0.02;
-  if (measured.size() > 1) {
-    for (int i = -48; i <= 49; ++i)
-      if (const double m = misfit(i * step); m < least) least = m, best = i * step;
-    for (; step > 1e-7; step /= 2)
-      for (const double alpha : {best - step / 2, best + step / 2})
-        if (const double m = misfit(alpha); std::fabs(alpha) < highest_alpha && m < least) least = m, best = alpha;
+  for (std::size_t k = 0; k < distances; ++k)
+    if (!(variance[k] > 0)) return {0, 0};
+  double best = 0, least = misfit(0);
+  const auto attempt = [&](double alpha) {
+    if (std::fabs(alpha) > alpha_limit) return;
+    if (const double m = misfit(alpha); m < least) least = m, best = alpha;
+  };
+  for (int i = -18; i <= 18; ++i) attempt(0.05 * i);
+  for (double step = 0.025; step > 1e-7; step /= 2) {
+    const double about = best;
+    attempt(about - step);
+    attempt(about + step);
   }
   misfit(best);
-  return {best, std::exp(log_variance) * (1 - best * best)};
+  return {best, std::exp(log_s2) * (1 - best * best)};
 }
 
 }  // namespace
@@ -167,26 +210,35 @@ NoiseEstimate estimate_flat_noise(const HeightField& field, const FlatNoiseOptio
 
 NoiseEstimate estimate_noise(const HeightField& field) {
   require_field(field, {});
-  const Bands d = mixed_differences(field);
-  NoiseEstimate out;
-  for (const auto& band : d.of[1]) out.samples += band.size();
-  if (out.samples == 0)
+  const Centres centres = mixed_differences(field);
+  std::size_t count = 0;
+  for (const auto& band : centres.bands) count += band.size();
+  if (count == 0)
     throw InvalidInput("noise", "no 5 x 3 samples without holes are there to take differences of",
                        "Use a larger image, or fill its holes");
-  out.noise = fit_model(d, -1);
-  const int bands = static_cast<int>(d.of[0].size());
-  if (bands < 2) return out;
+  const std::size_t none = centres.bands.size();
+  Differences v{};
+  for (std::size_t k = 0; k < centres.distances; ++k) v[k] = variance_from_median(centres, k);
+  std::vector<BandSum> sums;
+  for (int turn = 0; turn < 8; ++turn) {
+    sums = clipped_sums(centres, v);
+    v = variances(sums, none);
+  }
+  NoiseEstimate out;
+  for (const BandSum& sum : sums) out.samples += sum.count;
+  out.noise = fit_model(v, centres.distances);
+  out.alpha_at_limit = std::fabs(out.noise.alpha) > alpha_limit - 1e-3;
   double alpha = 0, innovation = 0, sigma = 0;
-  for (int b = 0; b < bands; ++b) {
-    const AfmNoise part = fit_model(d, b);
+  for (std::size_t b = 0; b < none; ++b) {
+    const AfmNoise part = fit_model(variances(sums, none > 1 ? b : none), centres.distances);
     alpha += std::pow(part.alpha - out.noise.alpha, 2);
     innovation += std::pow(part.innovation_nm2 - out.noise.innovation_nm2, 2);
     sigma += std::pow(std::sqrt(part.variance_nm2()) - out.sigma_nm(), 2);
   }
-  const double spread = (bands - 1) / static_cast<double>(bands);
-  out.alpha_stderr = std::sqrt(spread * alpha);
-  out.innovation_stderr_nm2 = std::sqrt(spread * innovation);
-  out.sigma_stderr_nm = std::sqrt(spread * sigma);
+  const double share = static_cast<double>(none - 1) / static_cast<double>(none);
+  out.alpha_stderr = std::sqrt(share * alpha);
+  out.innovation_stderr_nm2 = std::sqrt(share * innovation);
+  out.sigma_stderr_nm = std::sqrt(share * sigma);
   return out;
 }
 

@@ -13,6 +13,7 @@ struct NoiseEstimate {
   double innovation_stderr_nm2 = 0;
   double sigma_stderr_nm = 0;   ///< of the standard deviation of the noise, sqrt(noise.variance_nm2())
   std::size_t samples = 0;      ///< that the estimate rests on
+  bool alpha_at_limit = false;  ///< of `estimate_noise`: structure looks like noise, see there
   double sigma_nm() const;
 };
 
@@ -35,14 +36,18 @@ NoiseEstimate estimate_flat_noise(const HeightField& field, const FlatNoiseOptio
 
 /// The model of the noise of an image with structure, without levelling. Looks at second differences
 /// across three rows of second differences along rows, D_k = d_y^2 d_x,k^2 z with k = 1 to 4 columns
-/// between, which vanish wherever the surface is a sum of f(x) + y g(x) and the same with x and y exchanged (any tilt, row
-/// offsets, edges along the axes). Their spread is measured by the median of |D_k|, which less than
-/// half of the samples on structure do not ruin, and fitted by 12 s^2 (1 - a^k) (3 - a^k).
+/// between, which vanish wherever the surface is f(x) + y g(x) or f(y) + x g(y) or a sum of such: any
+/// tilt, row offsets, edges along the axes. Places where any |D_k| is above four of its standard deviations
+/// (begun with the median, then repeated) are left out; what remains is fitted by
+/// var D_k = 12 s^2 (1 - a^k) (3 - a^k).
 ///
 /// Structure of the size of a few pixels counts as noise in part, so on rough surfaces the estimate is
-/// too large, never too small but for chance; docs/methods/noise.md tells by how much. Rows are taken as
+/// too large, never too small but for chance; docs/methods/noise.md tells by how much. Differences over so few
+/// columns hardly tell strong correlation from structure: alpha is at most 0.9, and `alpha_at_limit` then says
+/// that structure is likely to dominate. The innovation suffers less from it than sigma. Rows are taken as
 /// independent. Standard errors come from leaving out bands of rows (jackknife). Noiseless heights give
-/// an innovation of 0. Throws InvalidInput if no 5 x 3 samples without holes are there.
+/// an innovation of 0. Throws InvalidInput if no 5 x 3 samples without holes are there (9 x 3 in fields at
+/// least 9 wide).
 NoiseEstimate estimate_noise(const HeightField& field);
 
 }  // namespace surf
