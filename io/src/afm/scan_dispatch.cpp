@@ -1,14 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "scan_dispatch.h"
 
+#include <algorithm>
 #include <array>
 #include <fstream>
+#include <system_error>
+#include <utility>
 
 #include "../lower_extension.h"
+#include "gwyddion_program.h"
 #include "scan_formats.h"
 #include "surf/core/error.h"
 #include "surf/io/files.h"
 #include "surf/io/image_file.h"
+#include "tiff_tags.h"
 
 namespace surf::io {
 namespace {
@@ -20,7 +25,15 @@ struct Format {
 
 // By content. The order matters only where one's mark could begin another's file.
 constexpr std::array formats{
+    Format{is_gwy, parse_gwy},
     Format{is_gsf, parse_gsf},
+    Format{is_nanoscope, parse_nanoscope},
+    Format{is_nid, parse_nid},
+    Format{is_sxm, parse_sxm},
+    Format{is_wsxm, parse_wsxm},
+    Format{is_park_tiff, parse_park},
+    Format{is_jpk, parse_jpk},
+    Format{is_ibw, parse_ibw},
 };
 
 bool is_text_name(const std::filesystem::path& path) {
@@ -36,6 +49,16 @@ bool is_text_name(const std::filesystem::path& path) {
                   "more, or export the scan as .gwy, .gsf or text");
 }
 
+/// False where Gwyddion is not installed.
+bool open_by_gwyddion(const std::filesystem::path& path, ScanFile& opened) {
+  auto converted = convert_by_gwyddion(path);
+  if (!converted) return false;
+  opened.content = std::make_unique<const std::string>(std::move(*converted));
+  opened.scan = parse_gwy(path.string(), *opened.content);
+  opened.scan.format = "read by Gwyddion";
+  return true;
+}
+
 }  // namespace
 
 ScanFile open_scan(const std::filesystem::path& path) {
@@ -45,15 +68,20 @@ ScanFile open_scan(const std::filesystem::path& path) {
   if (content.empty()) throw FileError(file, "the file is empty", "Copy or export it again");
   for (const Format& format : formats) {
     if (!format.is(content)) continue;
-    opened.scan = format.parse(file, content);
-    return opened;
+    try {
+      opened.scan = format.parse(file, content);
+      return opened;
+    } catch (const Unsupported&) {
+      if (!open_by_gwyddion(path, opened)) throw;
+      return opened;
+    }
   }
   if (is_image_file(path)) {
     opened.content.reset();
     opened.scan = parse_image_scan(path);
   } else if (is_text_name(path)) {
     opened.scan = parse_text_scan(file, content);
-  } else {
+  } else if (!open_by_gwyddion(path, opened)) {
     fail_unknown(file);
   }
   return opened;
@@ -61,14 +89,16 @@ ScanFile open_scan(const std::filesystem::path& path) {
 
 bool is_scan_file(const std::filesystem::path& path) {
   if (is_text_name(path)) return true;
-  constexpr std::size_t enough = 1 << 16;
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(path, error)) return false;
+  constexpr std::size_t enough = 4096;
   std::ifstream stream(path, std::ios::binary);
   std::string start(enough, '\0');
   stream.read(start.data(), static_cast<std::streamsize>(start.size()));
   start.resize(static_cast<std::size_t>(stream.gcount()));
-  for (const Format& format : formats)
-    if (format.is(start)) return true;
-  return false;
+  // A TIFF file's marks may lie anywhere.
+  if (is_tiff(start)) start = read_file(path);
+  return std::any_of(formats.begin(), formats.end(), [&](const Format& format) { return format.is(start); });
 }
 
 }  // namespace surf::io

@@ -18,8 +18,35 @@ namespace surf::io {
 bool is_gsf(std::string_view content);
 Scan parse_gsf(const std::string& file, std::string_view content);
 
-/// Matrix or XYZ. `named`: its name says that it is text, so that complaints are about the text.
-bool is_text_scan(std::string_view content);
+/// Gwyddion's own.
+bool is_gwy(std::string_view content);
+Scan parse_gwy(const std::string& file, std::string_view content);
+
+bool is_nanoscope(std::string_view content);
+Scan parse_nanoscope(const std::string& file, std::string_view content);
+
+/// Asylum Research.
+bool is_ibw(std::string_view content);
+Scan parse_ibw(const std::string& file, std::string_view content);
+
+/// Nanosurf.
+bool is_nid(std::string_view content);
+Scan parse_nid(const std::string& file, std::string_view content);
+
+bool is_park_tiff(std::string_view content);
+Scan parse_park(const std::string& file, std::string_view content);
+
+bool is_jpk(std::string_view content);
+Scan parse_jpk(const std::string& file, std::string_view content);
+
+/// Nanonis.
+bool is_sxm(std::string_view content);
+Scan parse_sxm(const std::string& file, std::string_view content);
+
+bool is_wsxm(std::string_view content);
+Scan parse_wsxm(const std::string& file, std::string_view content);
+
+/// Matrix or XYZ.
 Scan parse_text_scan(const std::string& file, std::string_view content);
 
 /// EXR, TIFF, PNG and VTI: semsurf's own, and plain ones.

@@ -51,7 +51,7 @@ void apply_header_line(std::string_view key_text, std::string_view value, TextHe
   if (key == "height conversion factor (-> m)") {
     if (const auto factor = scan_number(value); factor && *factor > 0) {
       header.z_factor = *factor;
-      header.z_unit = "m";
+      header.z_unit.assign(1, 'm');   // GCC 12 warns of a plain assignment
     }
   }
 }
@@ -160,13 +160,6 @@ std::optional<ScanChannel> points(const NumberTable& table, const TextHeader& he
 }
 
 }  // namespace
-
-bool is_text_scan(std::string_view content) {
-  const std::string_view start = content.substr(0, 4096);
-  if (start.find('\0') != std::string_view::npos) return false;
-  const auto is_control = [](unsigned char c) { return c < ' ' && c != '\n' && c != '\r' && c != '\t' && c != '\f'; };
-  return !trimmed(start).empty() && std::none_of(start.begin(), start.end(), is_control);
-}
 
 Scan parse_text_scan(const std::string& file, std::string_view content) {
   const NumberTable table = parse_number_table(file, content);
