@@ -33,7 +33,9 @@ const ScanChannel& choose(const std::string& file, const Scan& scan, const std::
   const auto& all = scan.channels;
   if (all.empty()) throw FileError(file, "there is no image in it", "Give a scan with an image of heights");
   if (wanted.empty()) {
-    const auto found = std::find_if(all.begin(), all.end(), holds_heights);
+    const auto known = [](const ScanChannel& c) { return holds_heights(c) && scan_length_nm(c.z_unit); };
+    auto found = std::find_if(all.begin(), all.end(), known);
+    if (found == all.end()) found = std::find_if(all.begin(), all.end(), holds_heights);
     if (found != all.end()) return *found;
     throw InvalidInput(file, fmt::format("none of its channels holds heights: {}", names_of(scan, false)),
                        "Name one with --channel and give the nm of its unit with --z-unit");

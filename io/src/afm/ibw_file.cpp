@@ -40,7 +40,7 @@ SampleType sample_type(const Bytes& bytes, int type) {
   }
 }
 
-/// What Asylum's channels are in, whose waves say no unit.
+/// What Asylum's channels are in: a wave has one unit for all of them.
 std::string unit_by_name(const std::string& name) {
   const std::string lower = lower_case(name);
   for (const char* word : {"height", "zsensor", "deflection", "amplitude"})
@@ -99,8 +99,8 @@ Scan parse_ibw(const std::string& file, std::string_view content) {
     ScanChannel channel;
     channel.name = clean_text(layer + 1 < labels ? bytes.fixed_text(at + (layer + 1) * label_bytes, label_bytes)
                                                  : bytes.fixed_text(name_at, label_bytes));
-    channel.z_unit = clean_text(bytes.fixed_text(data_unit_at, unit_bytes));
-    if (channel.z_unit.empty()) channel.z_unit = unit_by_name(channel.name);
+    channel.z_unit = unit_by_name(channel.name);
+    if (channel.z_unit.empty()) channel.z_unit = clean_text(bytes.fixed_text(data_unit_at, unit_bytes));
     channel.width = static_cast<int>(width);
     channel.height = static_cast<int>(height);
     channel.pitch_guessed = !unit_nm(0) || !unit_nm(1);

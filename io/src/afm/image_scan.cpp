@@ -21,10 +21,10 @@ std::string format_name(const std::filesystem::path& path) {
   return "TIFF image";
 }
 
-/// A channel of heights has a length's unit; one of counts has unit "1", which says nothing.
-std::string unit_of(const Channel& channel) {
+/// Plain images have no units; in ours "1" is that of counts.
+std::string unit_of(const Channel& channel, bool ours) {
   if (channel.name == "z_nm") return "nm";
-  return channel.unit == "1" ? std::string{} : channel.unit;
+  return channel.unit == "1" && !ours ? std::string{} : channel.unit;
 }
 
 Grid<double> values_of(const Channel& channel, const Channel* valid) {
@@ -50,7 +50,7 @@ Scan parse_image_scan(const std::filesystem::path& path) {
   const Channel* const valid = image->find("valid");
   for (const Channel& channel : image->channels) {
     if (&channel == valid && image->channels.size() > 1) continue;
-    scan.channels.push_back({channel.name, unit_of(channel), image->width(), image->height(),
+    scan.channels.push_back({channel.name, unit_of(channel, !image->metadata.empty()), image->width(), image->height(),
                              placed ? image->pitch_x_nm : 0, placed ? image->pitch_y_nm : 0, false,
                              [image, &channel, valid] { return values_of(channel, valid); }});
   }

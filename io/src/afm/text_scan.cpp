@@ -134,11 +134,13 @@ struct Axis {
   int index(double value) const { return static_cast<int>(std::lround((value - values.front()) / pitch)); }
 };
 
-/// Points on a grid of which at least half are there and none twice; empty where they are none.
+/// Points on a grid of which three of four are there and none twice; empty where they are none.
 std::optional<ScanChannel> points(const NumberTable& table, const TextHeader& header) {
   Axis x, y;
   if (table.columns != 3 || !x.make(table.values, 0) || !y.make(table.values, 1)) return std::nullopt;
-  if (double(x.values.size()) * double(y.values.size()) > 2.0 * double(table.rows)) return std::nullopt;
+  constexpr double share = 0.75, fewest = 4;
+  const double samples = double(x.values.size()) * double(y.values.size());
+  if (double(table.rows) < std::max(share * samples, fewest)) return std::nullopt;
   ScanChannel channel;
   channel.width = static_cast<int>(x.values.size());
   channel.height = static_cast<int>(y.values.size());
@@ -170,6 +172,10 @@ Scan parse_text_scan(const std::string& file, std::string_view content) {
   if (channel) {
     scan.format = "text of x, y, z";
     scan.notes.push_back("y is taken to run down, as Gwyddion writes such text");
+  } else if (lower_case(file).ends_with(".xyz")) {
+    throw FileError(file, fmt::format("its {} rows of {} numbers are no points x, y, z on a regular grid", table.rows,
+                                      table.columns),
+                    "Give every grid point once, or name a matrix .txt");
   } else {
     scan.format = "text matrix";
     channel = matrix(file, table, header, content.size());
