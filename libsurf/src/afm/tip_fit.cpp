@@ -5,8 +5,6 @@
 #include <cmath>
 #include <limits>
 
-#include "afm_likelihood.h"
-
 namespace surf {
 
 namespace {
@@ -162,7 +160,9 @@ void TipFit::pull(Frame& f, std::vector<double>& slope) {
       valid(x, y) = std::isfinite(f.scan[k]) && f.touching[k] >= 0;
       residual(x, y) = valid(x, y) ? f.made[k] - f.scan[k] : 0;
     }
-  misfit_ += afm_misfit(residual, valid, noise_, gradient);
+  log_likelihood(residual, noise_, valid, &gradient);   // its derivative is -R^-1 e
+  for (std::size_t k = 0; k < residual.size(); ++k)
+    misfit_ -= residual.data()[k] * gradient.data()[k];
   surface_slope_.assign(f.surface.size(), 0);
   surface_weight_.assign(f.surface.size(), 0);
   for (int y = 0; y < f.height; ++y)
@@ -170,9 +170,9 @@ void TipFit::pull(Frame& f, std::vector<double>& slope) {
       if (!valid(x, y)) continue;
       const auto s = static_cast<std::size_t>(f.touching[static_cast<std::size_t>(y * f.row + x)]);
       const auto at = static_cast<std::size_t>(surface_at(f, x, y, samples_[s]));
-      surface_slope_[at] += gradient(x, y);
+      surface_slope_[at] -= gradient(x, y);
       surface_weight_[at] += 1;
-      slope[s] += gradient(x, y);
+      slope[s] -= gradient(x, y);
       ++contacts_[s];
     }
   const double curvature = (1 + noise_.alpha * noise_.alpha) / noise_.innovation_nm2;

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <fmt/format.h>
+
+#include "surf/core/error.h"
+#include "surf/core/height_field.h"
+
+namespace surf {
+
+/// Throws InvalidInput unless the field is sound and the mask empty or of its size.
+inline void require_field(const HeightField& field, const Grid<unsigned char>& use) {
+  validate(field);
+  if (use.empty() || (use.width() == field.z_nm.width() && use.height() == field.z_nm.height())) return;
+  throw InvalidInput("mask", fmt::format("it has {} x {} samples, the heights {} x {}", use.width(), use.height(),
+                                         field.z_nm.width(), field.z_nm.height()),
+                     "Give a mask of the same size");
+}
+
+inline bool is_used(const HeightField& field, const Grid<unsigned char>& use, int x, int y) {
+  return field.is_valid(x, y) && (use.empty() || use(x, y));
+}
+
+}  // namespace surf
