@@ -218,9 +218,7 @@ Tip blind_tip(const std::vector<HeightField>& scans, const BlindTipOptions& opti
 
 double tip_volume_nm3(const Tip& tip, double depth_nm) {
   double sum = 0;
-  double lowest = 0;
-  for (const double z : tip.z_nm.data()) lowest = std::min(lowest, std::max(z, -depth_nm));
-  for (const double z : tip.z_nm.data()) sum += std::max(0.0, z - lowest);
+  for (const double z : tip.z_nm.data()) sum += std::max(0.0, z + depth_nm);
   return sum * tip.pitch_x_nm * tip.pitch_y_nm;
 }
 
