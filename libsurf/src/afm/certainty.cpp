@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 #include <fmt/format.h>
@@ -98,15 +99,19 @@ int apex_neighbourhood(const Tip& tip, double tolerance_nm) {
   return std::min(half_side(t.x1 - t.x0 + 1, t.y1 - t.y0 + 1), 100);
 }
 
-/// Marks what touches the tip at an image pixel.
-void mark(const Grid<Quanta>& surface, const TipQuanta& tip, int x, int y, const Touch& t, Quanta least,
+/// Marks, of what may have touched the tip at an image pixel, what fits best.
+void mark(const Grid<Quanta>& surface, const TipQuanta& tip, int x, int y, const Touch& t, Quanta rounding,
           unsigned char level, int left, int below, Grid<unsigned char>& map) {
+  const auto reach = [&](int X, int Y) {
+    return surface(X, Y) + tip.z(x - X + tip.apex_x, y - Y + tip.apex_y);
+  };
+  Quanta best = 2 * max_plus::unknown;
+  for (int Y = t.y0; Y <= t.y1; ++Y)
+    for (int X = t.x0; X <= t.x1; ++X) best = std::max(best, reach(X, Y));
   for (int Y = t.y0; Y <= t.y1; ++Y)
     for (int X = t.x0; X <= t.x1; ++X) {
       unsigned char& here = map(X - left, Y - below);
-      if (here <= level) continue;
-      const Quanta b = tip.z(x - X + tip.apex_x, y - Y + tip.apex_y);
-      if (surface(X, Y) + b >= least) here = level;
+      if (here > level && reach(X, Y) >= best - rounding) here = level;
     }
 }
 
@@ -126,11 +131,13 @@ CertaintyMap certainty_map(const HeightField& image, const Tip& given, const Cer
 
   CertaintyMap out;
   // 32-bit floats, in which most scans are stored, round to 2^-24 of a height.
-  out.tolerance_nm = std::max(2 * options.sigmas * options.noise_nm, 0x1p-22 * largest_height(image) + 4 * quantum);
+  const double rounding_nm = 0x1p-22 * largest_height(image) + 4 * quantum;
+  out.tolerance_nm = std::max(2 * options.sigmas * options.noise_nm, rounding_nm);
   out.neighbourhood = options.neighbourhood >= 0 ? options.neighbourhood
                       : options.noise_nm > 0     ? apex_neighbourhood(tip, out.tolerance_nm)
                                                  : 0;
   const Heights heights = quantise(wide, 1, quantum);
+  const Quanta rounding = static_cast<Quanta>(std::min(rounding_nm / quantum, 0x1p28));
   const double to_least = heights.top - surface.top - std::ceil(out.tolerance_nm / quantum);
   Grid<Quanta> least(wide.z_nm.width(), wide.z_nm.height(), max_plus::unknown);
   for (std::size_t i = 0; i < least.size(); ++i)
@@ -155,7 +162,7 @@ CertaintyMap certainty_map(const HeightField& image, const Tip& given, const Cer
         continue;
       }
       ++out.single;
-      mark(surface.z, b, x, y, t, least(x, y), static_cast<unsigned char>(half), left, below, out.level);
+      mark(surface.z, b, x, y, t, rounding, static_cast<unsigned char>(half), left, below, out.level);
     }
 
   Heights inner{Grid<Quanta>(w, h), surface.top};

@@ -23,7 +23,8 @@ void expect_equal(const HeightField& field, const Grid<double>& expected) {
   for (int y = 0; y < expected.height(); ++y)
     for (int x = 0; x < expected.width(); ++x) {
       ASSERT_EQ(field.is_valid(x, y), std::isfinite(expected(x, y))) << x << ", " << y;
-      if (field.is_valid(x, y)) ASSERT_EQ(field.z_nm(x, y), expected(x, y)) << x << ", " << y;
+      if (!field.is_valid(x, y)) continue;
+      ASSERT_EQ(field.z_nm(x, y), expected(x, y)) << x << ", " << y;
     }
 }
 
@@ -164,7 +165,8 @@ TEST(Morphology, UpsampledIsTheFineOneSampled) {
       for (int y = 0; y < 11; ++y)
         for (int x = 0; x < 14; ++x) {
           ASSERT_EQ(result.is_valid(x, y), full.is_valid(factor * x, factor * y));
-          if (result.is_valid(x, y)) ASSERT_EQ(result.z_nm(x, y), full.z_nm(factor * x, factor * y));
+          if (!result.is_valid(x, y)) continue;
+          ASSERT_EQ(result.z_nm(x, y), full.z_nm(factor * x, factor * y));
         }
     };
     expect_sampled(dilate(field, tip, options), dilate(fine, fine_tip, plain));

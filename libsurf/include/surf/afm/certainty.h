@@ -26,7 +26,7 @@ struct CertaintyMap {
   static constexpr unsigned char uncertain = 255;
 
   /// Per surface sample: `uncertain`, or half the side, in samples, of the smallest square of contacts
-  /// that the sample belongs to. 0: the tip touched here and nowhere else.
+  /// of which it is the best. 0: the tip touched here and nowhere else.
   Grid<unsigned char> level;
 
   HeightField surface;            ///< the erosion, of which this says how good it is
@@ -42,7 +42,7 @@ struct CertaintyMap {
 /// Pingali and Jain's certainty map (1992; thesis, C.2.1) with a tolerance. If the noise is bounded by
 /// b = sigmas noise_nm, an image pixel's true contact is among the samples x with r(x) + T(x1 - x) >=
 /// h(x1) - 2 b, r the erosion, and there r is within b of the surface. If all of them lie close
-/// together, they are certain: within the neighbourhood of each the surface comes as near to r as that.
+/// together, the one that fits best is certain: r is within b of the surface there or at another of them.
 ///
 /// What lies outside the image may have been touched too: r is continued there. Throws InvalidInput as
 /// `erode` does, and for options out of range.
