@@ -11,11 +11,12 @@
 
 namespace surf::io {
 
-/// A height channel of a file.
+/// A channel of a scan file.
 struct HeightChannel {
   std::string name;          ///< as the file calls it
   std::string z_unit;        ///< as the file calls it; empty where it says nothing
   int width = 0, height = 0;
+  bool is_height = true;     ///< a length or not said; false: amplitude, phase, volts ...
 };
 
 struct HeightReadOptions {
@@ -33,14 +34,24 @@ struct HeightFieldFile {
   std::vector<std::string> notes;               ///< what had to be assumed, for the user
 };
 
-/// Reads a height image by content, then by name.
+/// Reads a height image by content, then by name, then through Gwyddion where it is installed: see
+/// docs/methods/afm_files.md. Row 0 is the lowest; the lower-left sample lies at (0, 0) but in files of
+/// semsurf's own, which say where it lies. Missing samples are holes. A channel that is no height is
+/// read only by name and with `z_unit_nm`. What the file says goes before `z_unit_nm` and the pitch.
+/// Throws FileError, Unsupported; InvalidInput where nothing in the file is a height or fewer than 2 x 2
+/// samples are there; UsageError for an unknown channel.
 HeightFieldFile read_height_field(const std::filesystem::path& path,
                                   const HeightReadOptions& options = {});
 
-/// All height channels of a file, in its order.
+/// All channels of a file, in its order, heights or not.
 std::vector<HeightChannel> height_channels(const std::filesystem::path& path);
 
-/// Writes by extension: GSF (32-bit floats), TIFF (32-bit floats, nm), text, VTI.
+/// Whether a file is a scan by its content or has a name of text (.txt, .xyz ...). Images of general
+/// formats (surf/io/image_file.h) count only where they are an instrument's.
+bool is_height_field_file(const std::filesystem::path& path);
+
+/// Writes by extension: GSF (32-bit floats), TIFF and VTI (channel z_nm, 32-bit floats), text (.txt, a
+/// matrix, every digit). Placement and metadata go along; holes are NaN.
 void write_height_field(const std::filesystem::path& path, const HeightField& field,
                         const std::map<std::string, std::string>& metadata = {});
 
