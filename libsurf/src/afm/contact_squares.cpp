@@ -20,28 +20,45 @@ namespace {
 constexpr int block = 32;
 constexpr int far = std::numeric_limits<int>::max();
 
-/// Of the places of a block: the first and last columns and lines of the turned b that touch.
+/// Of the places of a block: the first and last columns and lines of the turned b that touch, columns
+/// counted from the end and from the beginning; 0: none.
 struct Found {
-  std::array<int, block> k0, k1, l0, l1;
-  std::array<int, block> in_line;
+  std::array<int, block> from_end, from_begin, l0, l1;
+  std::array<int, block> in_line;   ///< whether the line at hand touches
 };
 
-SEMSURF_CLONES void find_columns(const Quanta* a, const Quanta* b, int begin, int end, const Quanta* least,
-                                 Found& f) {
-  for (int k = begin; k < end; ++k)
-    for (int i = 0; i < block; ++i) {
-      const int touches = -static_cast<int>(a[k + i] + b[k * block_rows] >= least[i]);
-      f.in_line[i] |= touches;
-      f.k0[i] = std::min(f.k0[i], touches ? k : far);
-      f.k1[i] = std::max(f.k1[i], touches ? k : -1);
+typedef Quanta V [[gnu::vector_size(32)]];
+constexpr int lanes_of_v = 8;
+
+SEMSURF_CLONES void find_columns(const Quanta* a, const Quanta* b, int begin, int end, int width,
+                                 const Quanta* least, Found& f) {
+  for (int i = 0; i < block; i += lanes_of_v) {
+    V asked, in_line, from_end, from_begin;
+    load(asked, least + i);
+    load(in_line, f.in_line.data() + i);
+    load(from_end, f.from_end.data() + i);
+    load(from_begin, f.from_begin.data() + i);
+    for (int k = begin; k < end; ++k) {
+      V sum;
+      load(sum, a + k + i);
+      sum += b[k * block_rows];
+      const V touches = sum >= asked;
+      const V to_end = touches & (width - k), to_begin = touches & (k + 1);
+      in_line |= touches;
+      from_end = to_end > from_end ? to_end : from_end;
+      from_begin = to_begin > from_begin ? to_begin : from_begin;
     }
+    store(f.in_line.data() + i, in_line);
+    store(f.from_end.data() + i, from_end);
+    store(f.from_begin.data() + i, from_begin);
+  }
 }
 
 Found find(const Kernel& b, const Padded& a, int row, int column_block, const Quanta* least) {
   Found f;
-  f.k0.fill(far);
+  f.from_end.fill(0);
+  f.from_begin.fill(0);
   f.l0.fill(far);
-  f.k1.fill(-1);
   f.l1.fill(-1);
   const Quanta lowest_asked = *std::min_element(least, least + block);
   if (lowest_asked == far) return f;
@@ -52,7 +69,8 @@ Found find(const Kernel& b, const Padded& a, int row, int column_block, const Qu
     for (int c = 0; c < b.chunks; ++c) {
       const std::ptrdiff_t line = static_cast<std::ptrdiff_t>(l) * b.chunks;
       if (a.chunk_max[at * b.chunks + c] + b.chunk_max[line + c] < lowest_asked) continue;
-      find_columns(a.row(row + l) + column_block * block, b.line(l), b.chunk_begin[c], b.chunk_begin[c + 1], least, f);
+      find_columns(a.row(row + l) + column_block * block, b.line(l), b.chunk_begin[c], b.chunk_begin[c + 1], b.width,
+                   least, f);
     }
     for (int i = 0; i < block; ++i) {
       if (!f.in_line[i]) continue;
@@ -81,9 +99,10 @@ Grid<Touch> touching(const Grid<Quanta>& a, const Grid<Quanta>& b, int apex_x, i
       }
       const Found f = find(kernel, padded, y, n, asked.data());
       for (int i = 0; i < block && n * block + i < width; ++i) {
-        if (f.k1[i] < 0) continue;
+        if (f.from_begin[i] == 0) continue;
         const int x = n * block + i - left;
-        out(n * block + i, y) = {x + f.k0[i], y - below + f.l0[i], x + f.k1[i], y - below + f.l1[i]};
+        out(n * block + i, y) = {x + b.width() - f.from_end[i], y - below + f.l0[i], x + f.from_begin[i] - 1,
+                                  y - below + f.l1[i]};
       }
     }
   });
