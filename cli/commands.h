@@ -14,6 +14,9 @@ using Action = std::function<int()>;
 // FILE, MATERIAL, or the choices as "a|b|c".
 void add_simulate(CLI::App& app, Action& action, const std::string& command_line);
 void add_mesh(CLI::App& app, Action& action);
+void add_erode(CLI::App& app, Action& action);
+void add_dilate(CLI::App& app, Action& action);
+void add_certainty(CLI::App& app, Action& action);
 void add_info(CLI::App& app, Action& action);
 void add_materials(CLI::App& app, Action& action);
 void add_library(CLI::App& app, Action& action);

@@ -144,6 +144,9 @@ int main(int argc, char** argv) {
   app.allow_windows_style_options(false);
   add_simulate(app, action, quoted_command(argc, argv));
   add_mesh(app, action);
+  add_erode(app, action);
+  add_dilate(app, action);
+  add_certainty(app, action);
   add_info(app, action);
   add_materials(app, action);
   add_library(app, action);

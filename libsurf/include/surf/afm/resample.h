@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "surf/afm/tip.h"
+#include "surf/core/height_field.h"
+
+namespace surf {
+
+/// The tip at another pitch, by bilinear interpolation; the apex stays a sample and the extent does not
+/// grow. A sample is unknown, -infinity, if one of those that it is made of is.
+/// Throws InvalidInput for an invalid tip or a pitch that is not positive and finite or so fine that
+/// there were more than 2^28 samples.
+Tip resampled(const Tip& tip, double pitch_x_nm, double pitch_y_nm);
+
+/// The surface with `factor` samples per pitch, (width - 1) factor + 1 across, by bilinear
+/// interpolation; a sample that is made of a hole is a hole. Throws InvalidInput for a factor outside
+/// [1, 32].
+HeightField upsampled(const HeightField& surface, int factor);
+
+}  // namespace surf

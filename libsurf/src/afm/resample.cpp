@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "surf/afm/resample.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <fmt/format.h>
+
+#include "surf/core/error.h"
+
+namespace surf {
+namespace {
+
+/// Where a new sample lies among the old ones: between `left` and the next, `t` of the way.
+struct Place {
+  int left = 0;
+  double t = 0;
+};
+
+Place place(double at, int count) {
+  const double nearest = std::round(at);
+  if (std::abs(at - nearest) < 1e-9) at = nearest;   // what is meant to be a sample is one
+  const int left = std::clamp(static_cast<int>(std::floor(at)), 0, count - 1);
+  return {left, left == count - 1 ? 0.0 : at - left};
+}
+
+double lerp(double a, double b, double t) { return t == 0 ? a : t == 1 ? b : a + t * (b - a); }
+
+template <class Get>
+double bilinear(const Get& z, const Place& x, const Place& y) {
+  const auto along = [&](int row) {
+    return x.t == 0 ? z(x.left, row) : lerp(z(x.left, row), z(x.left + 1, row), x.t);
+  };
+  const double low = along(y.left);
+  return y.t == 0 ? low : lerp(low, along(y.left + 1), y.t);
+}
+
+/// Samples before and after the apex.
+struct Extent {
+  int before = 0, after = 0;
+};
+
+Extent extent(int count, int apex, double ratio) {
+  const auto fit = [&](int samples) { return static_cast<int>(std::floor(samples / ratio + 1e-9)); };
+  return {fit(apex), fit(count - 1 - apex)};
+}
+
+std::vector<Place> places(const Extent& e, int count, int apex, double ratio) {
+  std::vector<Place> out;
+  for (int k = -e.before; k <= e.after; ++k) out.push_back(place(apex + k * ratio, count));
+  return out;
+}
+
+}  // namespace
+
+Tip resampled(const Tip& tip, double pitch_x_nm, double pitch_y_nm) {
+  validate(tip);
+  for (const double pitch : {pitch_x_nm, pitch_y_nm})
+    if (!(pitch > 0 && std::isfinite(pitch)))
+      throw InvalidInput("tip", fmt::format("it cannot have a pitch of {:g} nm", pitch), "Give one above 0");
+  const int w = tip.z_nm.width(), h = tip.z_nm.height();
+  const double rx = pitch_x_nm / tip.pitch_x_nm, ry = pitch_y_nm / tip.pitch_y_nm;
+  if ((w / rx + 1) * (h / ry + 1) > 0x1p28)
+    throw InvalidInput("tip", fmt::format("{} x {} samples of {:g} nm are too many at a pitch of {:g} nm", w,
+                                          h, tip.pitch_x_nm, pitch_x_nm), "Cut the tip, or use a coarser pitch");
+  const Extent ex = extent(w, tip.apex_x, rx), ey = extent(h, tip.apex_y, ry);
+  const std::vector<Place> xs = places(ex, w, tip.apex_x, rx), ys = places(ey, h, tip.apex_y, ry);
+  Tip out{Grid<double>(static_cast<int>(xs.size()), static_cast<int>(ys.size())), pitch_x_nm, pitch_y_nm,
+          ex.before, ey.before};
+  constexpr double none = -std::numeric_limits<double>::infinity();
+  for (std::size_t y = 0; y < ys.size(); ++y)
+    for (std::size_t x = 0; x < xs.size(); ++x) {
+      const double z = bilinear(tip.z_nm, xs[x], ys[y]);
+      out.z_nm(static_cast<int>(x), static_cast<int>(y)) = std::isnan(z) ? none : z;
+    }
+  return out;
+}
+
+HeightField upsampled(const HeightField& surface, int factor) {
+  validate(surface);
+  if (factor < 1 || factor > 32)
+    throw InvalidInput("upsample", fmt::format("{} is not in 1 to 32", factor), "2 or 3 is usual");
+  if (factor == 1) return surface;
+  const int w = (surface.z_nm.width() - 1) * factor + 1, h = (surface.z_nm.height() - 1) * factor + 1;
+  HeightField out{Grid<double>(w, h), {}, surface.pitch_x_nm / factor, surface.pitch_y_nm / factor,
+                  surface.origin_x_nm, surface.origin_y_nm};
+  if (!surface.valid.empty()) out.valid = Grid<unsigned char>(w, h, 1);
+  const auto sample = [&](int x, int y) {
+    return surface.is_valid(x, y) ? surface.z_nm(x, y) : std::numeric_limits<double>::quiet_NaN();
+  };
+  for (int y = 0; y < h; ++y)
+    for (int x = 0; x < w; ++x) {
+      const double z = bilinear(sample, place(static_cast<double>(x) / factor, surface.z_nm.width()),
+                                place(static_cast<double>(y) / factor, surface.z_nm.height()));
+      if (std::isnan(z)) out.valid(x, y) = 0;
+      else out.z_nm(x, y) = z;
+    }
+  return out;
+}
+
+}  // namespace surf
