@@ -143,6 +143,9 @@ int main(int argc, char** argv) {
   app.footer(examples);
   app.allow_windows_style_options(false);
   add_simulate(app, action, quoted_command(argc, argv));
+  add_level(app, action);
+  add_clean(app, action);
+  add_noise(app, action);
   add_mesh(app, action);
   add_erode(app, action);
   add_dilate(app, action);

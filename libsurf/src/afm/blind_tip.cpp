@@ -216,10 +216,4 @@ Tip blind_tip(const std::vector<HeightField>& scans, const BlindTipOptions& opti
   return tip;
 }
 
-double tip_volume_nm3(const Tip& tip, double depth_nm) {
-  double sum = 0;
-  for (const double z : tip.z_nm.data()) sum += std::max(0.0, z + depth_nm);
-  return sum * tip.pitch_x_nm * tip.pitch_y_nm;
-}
-
 }  // namespace surf

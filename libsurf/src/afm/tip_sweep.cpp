@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "explained.h"
+#include "surf/afm/tip_measure.h"
 #include "surf/core/error.h"
 #include "surf/core/parallel.h"
 

@@ -59,7 +59,4 @@ Tip blind_tip(const std::vector<HeightField>& scans, const BlindTipOptions& opti
               BlindTipSummary& summary, const ProgressCallback& progress = {},
               const CancelToken* cancel = nullptr);
 
-/// Volume of a tip down to `depth_nm` below its apex, nm^3: that of a box where nothing lowers it.
-double tip_volume_nm3(const Tip& tip, double depth_nm);
-
 }  // namespace surf

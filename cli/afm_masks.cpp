@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "afm_masks.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "options.h"
+#include "surf/core/error.h"
+#include "surf/core/units.h"
+#include "surf/io/image_file.h"
+
+namespace surf::cli {
+namespace {
+
+Grid<float> read_mask(const std::string& path, const HeightField& field) {
+  const Image image = io::read_image(path);
+  const Grid<double>& z = field.z_nm;
+  if (image.width() == z.width() && image.height() == z.height()) return image.channels.front().values;
+  throw InvalidInput(path, fmt::format("it has {} x {} pixels, the scan {} x {}", image.width(), image.height(),
+                                       z.width(), z.height()),
+                     "Give a mask of the scan's size");
+}
+
+}  // namespace
+
+void add_mask_input(CLI::App& app, MaskInput& input) {
+  app.add_option("--use", input.use, "Only samples count where this image is not 0: .tif .png .exr .vti")
+      ->type_name("FILE");
+  app.add_option("--exclude", input.exclude, "Samples do not count where this image is not 0")->type_name("FILE");
+}
+
+Grid<unsigned char> read_masks(const MaskInput& input, const HeightField& field) {
+  if (!input.use && !input.exclude) return {};
+  Grid<unsigned char> mask(field.z_nm.width(), field.z_nm.height(), 1);
+  const auto narrow = [&](const std::string& path, bool keep) {
+    const Grid<float> values = read_mask(path, field);
+    for (std::size_t i = 0; i < mask.size(); ++i) mask.data()[i] &= (values.data()[i] != 0) == keep;
+  };
+  if (input.use) narrow(*input.use, true);
+  if (input.exclude) narrow(*input.exclude, false);
+  for (std::size_t i = 0; i < mask.size(); ++i)
+    if (mask.data()[i] && (field.valid.empty() || field.valid.data()[i])) return mask;
+  throw InvalidInput(input.use ? *input.use : *input.exclude, "no sample of the scan remains to count",
+                     "Check which of --use and --exclude is meant");
+}
+
+Grid<unsigned char> parse_mask_region(const std::string& text, const char* subject, const HeightField& field) {
+  const auto r = parse_region(text, subject);
+  Grid<unsigned char> mask(field.z_nm.width(), field.z_nm.height());
+  bool any = false;
+  for (int y = 0; y < mask.height(); ++y) {
+    for (int x = 0; x < mask.width(); ++x) {
+      const double u = field.x_nm(x), v = field.y_nm(y);
+      mask(x, y) = u >= r.x0_nm && u <= r.x1_nm && v >= r.y0_nm && v <= r.y1_nm;
+      any |= mask(x, y) != 0;
+    }
+  }
+  if (any) return mask;
+  throw UsageError(subject, fmt::format("'{}' holds no sample of the scan", text),
+                   fmt::format("The scan reaches from {:.6g},{:.6g} to {:.6g},{:.6g} nm", field.origin_x_nm, field.origin_y_nm,
+                               field.x_nm(mask.width() - 1), field.y_nm(mask.height() - 1)));
+}
+
+void write_mask(const std::string& path, const Grid<unsigned char>& mask, const HeightField& field) {
+  Image image;
+  image.channels.push_back({"mask", "1", Grid<float>(mask.width(), mask.height())});
+  std::copy(mask.data().begin(), mask.data().end(), image.channels.front().values.data().begin());
+  image.pitch_x_nm = field.pitch_x_nm, image.pitch_y_nm = field.pitch_y_nm;
+  image.origin_x_nm = field.origin_x_nm, image.origin_y_nm = field.origin_y_nm;
+  io::write_image(path, image);
+}
+
+}  // namespace surf::cli

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <CLI/App.hpp>
+#include <optional>
+#include <string>
+
+#include "surf/core/height_field.h"
+
+namespace surf::cli {
+
+/// Which samples of a scan decide: images of its size, where what is not 0 counts.
+struct MaskInput {
+  std::optional<std::string> use, exclude;
+};
+
+/// --use and --exclude.
+void add_mask_input(CLI::App& app, MaskInput& input);
+
+/// 1 where a sample decides; empty if neither is given. Throws UsageError, FileError, InvalidInput if a
+/// size differs or nothing remains.
+Grid<unsigned char> read_masks(const MaskInput& input, const HeightField& field);
+
+/// 1 at samples whose centre lies in "X0,Y0,X1,Y1" (nm, in the scan's coordinates). Throws UsageError,
+/// also where there are none.
+Grid<unsigned char> parse_mask_region(const std::string& text, const char* subject, const HeightField& field);
+
+/// As an image of 0 and 1.
+void write_mask(const std::string& path, const Grid<unsigned char>& mask, const HeightField& field);
+
+}  // namespace surf::cli
