@@ -5,10 +5,12 @@
 
 #include <algorithm>
 #include <tuple>
+#include <utility>
 
 #include "options.h"
 #include "surf/core/error.h"
 #include "surf/core/units.h"
+#include "surf/io/height_field_file.h"
 #include "surf/io/image_file.h"
 #include "surf/io/mesh_file.h"
 #include "surf/io/sim/materials.h"
@@ -29,8 +31,13 @@ int material_index(io::SceneFile& scene, const std::string& name, const std::str
   return static_cast<int>(all.size()) - 1;
 }
 
-const Channel& height_channel(const Image& image, const fs::path& path,
+const Channel& height_channel(const Image& image, const fs::path& path, const std::string& wanted,
                               std::vector<std::string>& notes) {
+  if (!wanted.empty()) {
+    if (const Channel* channel = image.find(wanted)) return *channel;
+    throw UsageError("--height-channel", fmt::format("{} has no channel '{}'", path.string(), wanted),
+                     "'semsurf info' lists its channels");
+  }
   for (const char* name : {"z_nm", "z"})
     if (const Channel* channel = image.find(name)) return *channel;
   const Channel& first = image.channels.front();
@@ -40,22 +47,54 @@ const Channel& height_channel(const Image& image, const fs::path& path,
   return first;
 }
 
+struct FieldUnits {
+  std::optional<std::pair<double, double>> pitch_nm;
+  std::optional<double> z_nm;
+};
+
+FieldUnits parse_units(const SceneOptions& options) {
+  FieldUnits units;
+  if (options.pitch) {
+    units.pitch_nm = parse_pixel_size(*options.pitch, "--pitch");
+    if (!(units.pitch_nm->first > 0) || !(units.pitch_nm->second > 0))
+      throw UsageError("--pitch", "it must be above zero", "Write --pitch 2nm");
+  }
+  if (options.z_unit) {
+    units.z_nm = parse_length_nm(*options.z_unit, "--z-unit");
+    if (!(*units.z_nm > 0))
+      throw UsageError("--z-unit", "it must be above zero", "Write --z-unit 0.1nm");
+  }
+  return units;
+}
+
+HeightField read_scan_field(const fs::path& path, const SceneOptions& options, const FieldUnits& units,
+                            std::vector<std::string>& notes) {
+  io::HeightReadOptions read;
+  read.channel = options.height_channel.value_or("");
+  read.z_unit_nm = units.z_nm;
+  if (units.pitch_nm) std::tie(read.pitch_x_nm, read.pitch_y_nm) = *units.pitch_nm;
+  io::HeightFieldFile file = io::read_height_field(path, read);
+  for (const std::string& note : file.notes) notes.push_back(fmt::format("{}: {}", path.string(), note));
+  return std::move(file.field);
+}
+
+HeightField read_image_field(const fs::path& path, const SceneOptions& options, const FieldUnits& units,
+                             std::vector<std::string>& notes) {
+  const Image image = io::read_image(path);
+  const Channel& channel = height_channel(image, path, options.height_channel.value_or(""), notes);
+  return io::to_height_field(image, channel.name, units.z_nm.value_or(1));
+}
+
 HeightField read_height_field(const fs::path& path, const SceneOptions& options,
                               std::vector<std::string>& notes) {
-  Image image = io::read_image(path);
-  if (options.pitch) {
-    const auto [x, y] = parse_pixel_size(*options.pitch, "--pitch");
-    if (!(x > 0) || !(y > 0))
-      throw UsageError("--pitch", "it must be above zero", "Write --pitch 2nm");
-    image.pitch_x_nm = x;
-    image.pitch_y_nm = y;
-    image.origin_x_nm = -0.5 * x * (image.width() - 1);   // as scene files do
-    image.origin_y_nm = -0.5 * y * (image.height() - 1);
-  }
-  const double z_unit_nm = options.z_unit ? parse_length_nm(*options.z_unit, "--z-unit") : 1.0;
-  if (!(z_unit_nm > 0))
-    throw UsageError("--z-unit", "it must be above zero", "Write --z-unit 0.1nm");
-  return io::to_height_field(image, height_channel(image, path, notes).name, z_unit_nm);
+  const FieldUnits units = parse_units(options);
+  HeightField field = io::is_height_field_file(path) ? read_scan_field(path, options, units, notes)
+                                                     : read_image_field(path, options, units, notes);
+  if (!units.pitch_nm) return field;
+  std::tie(field.pitch_x_nm, field.pitch_y_nm) = *units.pitch_nm;
+  field.origin_x_nm = -0.5 * field.pitch_x_nm * (field.z_nm.width() - 1);   // as scene files do
+  field.origin_y_nm = -0.5 * field.pitch_y_nm * (field.z_nm.height() - 1);
+  return field;
 }
 
 // All bodies of a mesh file; materials that its bodies name and semsurf knows are taken as such.
@@ -89,7 +128,7 @@ io::SceneFile scene_from_shapes(const SceneOptions& options, std::vector<std::st
     if (io::is_scene_file(path))
       throw UsageError(input, "a scene file cannot be combined with other inputs",
                        "Add the others to the scene file");
-    if (io::is_image_file(path)) {
+    if (io::is_image_file(path) || io::is_height_field_file(path)) {
       if (scene.specimen.height_field)
         throw UsageError(input, "there is a height field already", "Give one image at most");
       scene.specimen.height_field = mc::HeightFieldBody{
@@ -102,8 +141,9 @@ io::SceneFile scene_from_shapes(const SceneOptions& options, std::vector<std::st
     }
   }
   const bool has_field = scene.specimen.height_field.has_value();
-  if (!has_field && (options.pitch || options.z_unit))
-    throw UsageError(options.pitch ? "--pitch" : "--z-unit", "no input is a height field",
+  if (!has_field && (options.pitch || options.z_unit || options.height_channel))
+    throw UsageError(options.pitch ? "--pitch" : options.z_unit ? "--z-unit" : "--height-channel",
+                     "no input is a height field",
                      "Leave it out, or give an image");
   if (scene.specimen.bodies.empty() && options.unit)
     throw UsageError("--unit", "no input is a mesh", "Leave it out; --z-unit scales heights");
@@ -120,6 +160,7 @@ io::SceneFile scene_from_file(const SceneOptions& options) {
   refuse(options.unit, "--unit");
   refuse(options.pitch, "--pitch");
   refuse(options.z_unit, "--z-unit");
+  refuse(options.height_channel, "--height-channel");
   return io::read_scene(options.inputs.front(),
                         {options.materials.begin(), options.materials.end()});
 }

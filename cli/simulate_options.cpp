@@ -27,6 +27,7 @@ Examples:
   semsurf simulate samples/mesa80.toml --accuracy 2% --channels model,electrons -o mesa.exr
   semsurf simulate samples/mesa80.toml --time 30s -o mesa.exr
   semsurf simulate cube.stl --materials mine.toml --material nitride -o nitride.exr
+  semsurf simulate scan.gwy --height-channel ZSensor -o sem.exr
   semsurf simulate afm.tif --pitch 2nm --z-unit 0.1nm --edge mirror -o sem.exr
   semsurf simulate cube.stl --size 64x64 --region -96,-96,96,96 \
       --physics elastic=browning,secondaries=off -o bse.exr)";
@@ -52,6 +53,9 @@ void add_specimen_options(CLI::App& app, SceneOptions& o) {
       ->type_name("LENGTH")->group(group);
   app.add_option("--z-unit", o.z_unit, "Height of one grey level of a height field (1nm)")
       ->type_name("LENGTH")->group(group);
+  app.add_option("--height-channel", o.height_channel,
+                 "Channel of a height field, by name or number of 'semsurf info' (the first of heights)")
+      ->type_name("NAME")->group(group);
 }
 
 void add_beam_options(CLI::App& app, SceneOptions& o) {

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "read_input.h"
 
+#include <algorithm>
 #include <stdexcept>
+#include <string>
 
 #include "surf/core/error.h"
+#include "surf/io/height_field_file.h"
 #include "surf/io/image_file.h"
 #include "surf/io/mesh_file.h"
 #include "surf/io/sim/scene_file.h"
@@ -20,9 +23,26 @@ void expect_valid(const Data& data) {
   }
 }
 
+/// Every channel as heights; what a file has too much of is left out.
+void read_channels(const std::filesystem::path& path) {
+  constexpr std::size_t most = 8;
+  const std::size_t channels = std::min(io::height_channels(path).size(), most);
+  for (std::size_t i = 1; i <= channels; ++i) expect_valid(io::read_height_field(path, {std::to_string(i), 2.0, {}, {}}).field);
+}
+
+bool is_scan_name(const std::filesystem::path& path) {
+  for (const char* extension : {".gwy", ".gsf", ".spm", ".ibw", ".nid", ".sxm", ".stp", ".jpk"})
+    if (path.extension() == extension) return true;
+  return false;
+}
+
 void read(const std::filesystem::path& path) {
   if (io::is_scene_file(path)) {
     io::read_scene(path);
+  } else if (io::is_height_field_file(path)) {
+    read_channels(path);
+  } else if (is_scan_name(path)) {
+    return;   // its mark is damaged: Gwyddion would be asked, whose process takes long
   } else if (io::is_image_file(path)) {
     expect_valid(io::read_image(path));
   } else {

@@ -57,8 +57,9 @@ Scan parse_sxm(const std::string& file, std::string_view content) {
     if (!x || !y || !(*x > 0) || !(*y > 0)) bytes.fail(fmt::format("its header does not say {}", key));
     return std::pair{*x, *y};
   };
-  const auto [width, height] = two_numbers("SCAN_PIXELS");
-  const auto [size_x, size_y] = two_numbers("SCAN_RANGE");
+  // No structured bindings: Clang 14 cannot take them into lambdas.
+  const auto pixels = two_numbers("SCAN_PIXELS"), size = two_numbers("SCAN_RANGE");
+  const double width = pixels.first, height = pixels.second, size_x = size.first, size_y = size.second;
   check_scan_size(file, width, height, sizeof(float), content.size());
   const auto type = words_of(text("SCANIT_TYPE"));
   if (type.empty() || type[0] != "FLOAT") bytes.fail("its numbers are not of type FLOAT", "Export it as .gsf or text");

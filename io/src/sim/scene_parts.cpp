@@ -8,6 +8,7 @@
 
 #include "sim/suggest.h"
 #include "surf/core/units.h"
+#include "surf/io/height_field_file.h"
 #include "surf/io/image_file.h"
 #include "surf/io/mesh_file.h"
 #include "surf/io/sim/materials.h"
@@ -239,18 +240,31 @@ mc::Substrate SceneParts::read_substrate(const TomlTable& table) {
 HeightField SceneParts::read_field_file(const TomlTable& table) {
   table.allow({"material", "edge", "file", "channel", "pixel_size", "z_unit"});
   const double z_unit_nm = read_z_unit(table);
-  Image image = read_image(input(table, "file"));
+  const auto path = input(table, "file");
   const auto pixel = table.length_nm("pixel_size");
-  if (pixel) {
-    if (!(*pixel > 0)) {
-      throw UsageError(table.place("pixel_size"), "it is not above 0", "Give a positive length");
-    }
-    image.pitch_x_nm = image.pitch_y_nm = *pixel;
+  if (pixel && !(*pixel > 0)) {
+    throw UsageError(table.place("pixel_size"), "it is not above 0", "Give a positive length");
   }
-  HeightField field = at_place(table, "channel", [&] {
-    return to_height_field(image, table.text("channel").value_or(""), z_unit_nm);
-  });
-  if (pixel) center(field);
+  const std::string channel = table.text("channel").value_or("");
+  HeightField field;
+  if (is_height_field_file(path)) {
+    HeightReadOptions options{channel, std::nullopt, pixel, pixel};
+    if (table.has("z_unit")) options.z_unit_nm = z_unit_nm;
+    field = at_place(table, "channel", [&] {
+      HeightFieldFile read = surf::io::read_height_field(path, options);
+      for (const std::string& note : read.notes) {
+        scene_.notes.push_back(path.filename().string() + ": " + note);
+      }
+      return std::move(read.field);
+    });
+  } else {
+    const Image image = read_image(path);
+    field = at_place(table, "channel", [&] { return to_height_field(image, channel, z_unit_nm); });
+  }
+  if (pixel) {
+    field.pitch_x_nm = field.pitch_y_nm = *pixel;
+    center(field);
+  }
   return field;
 }
 

@@ -77,7 +77,8 @@ struct SceneFile {
 ///                                # hurst = 0.8 (0 to 1) self-affine;
 ///                                # all: width = 400, depth = width, pitch = 2 (see FieldExtent)
 ///     # or, instead of shape:
-///     # file = "scan.tif"        # channel: the first; z_unit = "nm" or a length per grey level;
+///     # file = "scan.gwy"        # an image or AFM scan; channel: the first of heights;
+///                                # z_unit = "nm" or a length per grey level, for what does not say;
 ///                                # pixel_size replaces the file's and centres the field on (0, 0)
 ///     [[body]]
 ///     material = "Au"            # name: the file's or the shape's
