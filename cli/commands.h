@@ -23,6 +23,7 @@ void add_certainty(CLI::App& app, Action& action);
 void add_info(CLI::App& app, Action& action);
 void add_materials(CLI::App& app, Action& action);
 void add_library(CLI::App& app, Action& action);
+void add_tip(CLI::App& app, Action& action);
 void add_completion(CLI::App& app, Action& action);
 
 }  // namespace surf::cli

@@ -153,6 +153,7 @@ int main(int argc, char** argv) {
   add_info(app, action);
   add_materials(app, action);
   add_library(app, action);
+  add_tip(app, action);
   add_completion(app, action);
 
   try {
