@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Small files of every format, made by hand: 3 x 4 samples that count up in the order of the file.
-#include <fstream>
-
 #include "../io_test.h"
 #include "surf/io/height_field_file.h"
 
@@ -58,8 +56,10 @@ TEST(SmallScans, AMaskOfGwyddionIsNoHole) {
 
 TEST(SmallScans, OtherFormatsComeThroughGwyddion) {
   const test::TemporaryFolder folder;
-  const auto file = test::write(folder.path() / "surfer.grd",
-                                "DSAA\n3 4\n0 2\n0 3\n0 11\n0 1 2\n3 4 5\n6 7 8\n9 10 11\n");
+  const auto file = test::write(folder.path() / "a.nrrd",
+                                "NRRD0004\ntype: float\ndimension: 2\nsizes: 3 4\nspacings: 2 3\n"
+                                "units: \"um\" \"um\"\nsample units: \"nm\"\nencoding: ascii\n\n"
+                                "0 1 2\n3 4 5\n6 7 8\n9 10 11\n");
   HeightFieldFile read;
   try {
     read = read_height_field(file);
@@ -70,8 +70,9 @@ TEST(SmallScans, OtherFormatsComeThroughGwyddion) {
   EXPECT_EQ(read.format, "read by Gwyddion");
   EXPECT_EQ(read.field.z_nm.width(), 3);
   EXPECT_EQ(read.field.z_nm.height(), 4);
-  EXPECT_EQ(read.field.z_nm(0, 0), 0);
-  EXPECT_EQ(read.field.z_nm(2, 3), 11);
+  EXPECT_NEAR(read.field.pitch_y_nm, 3000, 1e-6);
+  EXPECT_NEAR(read.field.z_nm(0, 3), 0, 1e-9);
+  EXPECT_NEAR(read.field.z_nm(2, 0), 11, 1e-9);
 }
 
 }  // namespace
