@@ -31,7 +31,10 @@ std::string describe_heights(const HeightField& field) {
     }
   }
   std::string text = fmt::format("{:.6g} to {:.6g}, mean {:.6g} nm", lowest, highest, sum / double(count));
-  if (count < field.z_nm.size()) text += fmt::format(", {} holes", field.z_nm.size() - count);
+  if (count < field.z_nm.size()) {
+    const std::size_t holes = field.z_nm.size() - count;
+    text += fmt::format(", {} hole{}", holes, holes == 1 ? "" : "s");
+  }
   return text;
 }
 

@@ -38,7 +38,7 @@ const ScanChannel& choose(const std::string& file, const Scan& scan, const std::
     if (found == all.end()) found = std::find_if(all.begin(), all.end(), holds_heights);
     if (found != all.end()) return *found;
     throw InvalidInput(file, fmt::format("none of its channels holds heights: {}", names_of(scan, false)),
-                       "Name one with --channel and give the nm of its unit with --z-unit");
+                       "Choose one by name, and give the nm of its unit with --z-unit");
   }
   for (const ScanChannel& channel : all)
     if (channel.name == wanted) return channel;

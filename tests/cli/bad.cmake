@@ -91,6 +91,8 @@ semsurf_cli_unusable(output_is_folder "error" simulate cube.off --size 8x8 -o /d
 semsurf_cli_unusable(scene_key "elektrons" simulate misspelt.toml ${image})
 semsurf_cli_unusable(mesh_missing "nowhere.off" mesh nowhere.off -o out.ply)
 semsurf_cli_unusable(mesh_no_triangles "points.off" mesh points.off -o out.ply)
+semsurf_cli_unusable(scan_has_holes "is invalid.*has no holes" simulate scan.txt ${image})
+semsurf_cli_unusable(scan_has_no_heights "volts.txt.*1 Amplitude in V.*--z-unit" simulate volts.txt ${image})
 semsurf_cli_unusable(info_missing "nowhere.exr" info nowhere.exr)
 semsurf_cli_usage(materials_name "Choose one of: nitride" materials nitrid --materials materials.toml)
 semsurf_cli_unusable(materials_missing "nowhere.toml" materials --materials nowhere.toml)

@@ -49,6 +49,11 @@ semsurf_cli_test(mesh.simplify ARGS mesh "${PROJECT_SOURCE_DIR}/samples/pyramid.
 semsurf_cli_test(mesh.smooth ARGS mesh cube.off --smooth 3 -o cube.ply -q STDOUT "^$" WRITES cube.ply)
 semsurf_cli_test(help.mesh ARGS mesh --help STDOUT "Repair:" "--simplify" "Examples:")
 
+semsurf_cli_test(info.scan ARGS info scan.txt
+  STDOUT "heights, text matrix" "4 x 4 pixels of 10.0 nm x 15.0 nm" "1 Height +0 to 2, mean 0.4.* nm, 1 hole")
+semsurf_cli_test(simulate.scan ARGS simulate flat.txt --height-channel Height --material Si --size 4x4
+  --electrons 2 --channels z_nm -o scan.exr WRITES scan.exr INFO scan.exr "z_nm")
+
 semsurf_cli_test(info.gltf ARGS info two.gltf
   STDOUT "mesh of 2 bodies" "base, material Au, 12 triangles, 40.* wide, 40.* deep, 20.* high"
          "cap, material coating, 12 triangles, 16" "shape +closed, 24 triangles" "z 0 to 46 nm")

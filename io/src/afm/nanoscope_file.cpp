@@ -96,11 +96,10 @@ Scale parse_scale(const Bytes& bytes, const std::string& text) {
 
 /// Turns a scale in V into what the sensitivity "V 20.8 nm/V" says.
 void apply_sensitivity(const Section& all, Scale& scale) {
-  std::string_view text = trimmed(text_of(all, "@" + scale.sensitivity));
+  const std::string text = text_of(all, "@" + scale.sensitivity);
   if (scale.sensitivity.empty() || !text.starts_with("V ")) return;
-  const std::string kept(text.substr(2));
   std::string_view unit;
-  const auto factor = leading_number(kept, unit);
+  const auto factor = leading_number(std::string_view(text).substr(2), unit);
   const std::size_t slash = unit.rfind('/');
   if (!factor || slash == std::string_view::npos || slash == 0) return;
   const std::string per = clean_text(unit.substr(slash + 1));

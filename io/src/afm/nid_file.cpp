@@ -92,7 +92,9 @@ Scan parse_nid(const std::string& file, std::string_view content) {
     for (const auto& [key, value] : info->second)
       if (!value.empty()) scan.metadata[clean_text(key)] = clean_text(value);
   constexpr double most = 1000;
-  const Section& list = sections.find("DataSet")->second;
+  const auto found = sections.find("DataSet");
+  if (found == sections.end()) bytes.fail("its header has no list of channels");
+  const Section& list = found->second;
   const double groups = number_of(bytes, list, "GroupCount");
   std::size_t at = end + 2;
   for (int group = 0; group < std::min(groups, most); ++group) {
