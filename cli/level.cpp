@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
 
 #include "afm_masks.h"
@@ -130,9 +131,9 @@ Grid<unsigned char> level(HeightField& field, const Options& o, const Plan& plan
   return s.inliers;
 }
 
-void print_roughness(const char* label, const Roughness& r) {
-  fmt::print("{:<10} Sa {}, Sq {}, Sz {}; of {} samples with a tilt of {:.2g} deg left, without it Sq {}\n", label,
-             format_length(r.sa_nm), format_length(r.sq_nm), format_length(r.sz_nm), r.samples, r.tilt.tilt_deg(),
+void print_roughness(const char* label, const char* part, const Roughness& r) {
+  fmt::print("{:<10} {}: Sa {}, Sq {}, Sz {}; {:.2g} deg of tilt left, without it Sq {}\n", label, part,
+             format_length(r.sa_nm), format_length(r.sq_nm), format_length(r.sz_nm), r.tilt.tilt_deg(),
              format_length(r.sq_levelled_nm));
 }
 
@@ -169,8 +170,8 @@ int work(const Options& o) {
     substrate = level(field, o, plan, use, true);
   }
   if (!o.quiet) {
-    print_roughness("roughness", measure_roughness(field, use));
-    if (o.method == "hough") print_roughness("", measure_roughness(field, substrate));
+    print_roughness("roughness", use.empty() ? "all" : "what counts", measure_roughness(field, use));
+    if (o.method == "hough") print_roughness("", "substrate", measure_roughness(field, substrate));
   }
   if (!o.step.empty()) print_step(field, o.step);
   if (o.mask) write_mask(*o.mask, substrate, field);

@@ -158,20 +158,20 @@ semsurf_cli_test(help.mesh_tolerance ARGS simulate --help STDOUT "--mesh-toleran
 semsurf_cli_test(help.accuracy ARGS simulate --help
   STDOUT "--accuracy-floor" "--time" "auto.direct.replay" "variance_left is the share")
 
-# AFM scans: twelve by ten samples of a tilted plane with a block on it, nm.
+# AFM scans: block.gsf is a tilted plane with a block of 5 nm on it, noisy.gsf AR(1) noise, plane.gsf all equal.
 semsurf_cli_test(help.level ARGS level --help STDOUT "hough" "--rows" "--step" "Examples:")
 semsurf_cli_test(help.clean ARGS clean --help STDOUT "--spikes" "Examples:")
 semsurf_cli_test(help.noise ARGS noise --help STDOUT "--flat" "Examples:")
 semsurf_cli_test(level.hough ARGS level block.gsf -o flat.gsf --mask substrate.tif
-  STDOUT "plane +tilt 5\\.71" "substrate +[78][0-9]\\.[0-9] %" "roughness +Sa" WRITES flat.gsf substrate.tif)
+  STDOUT "plane +tilt 5\\.71" "substrate +[78][0-9]\\.[0-9] %" "roughness +all: Sa" "substrate: Sa" WRITES flat.gsf substrate.tif)
 semsurf_cli_test(level.plane ARGS level block.gsf --method plane -o flat.tif STDOUT "plane +tilt" WRITES flat.tif)
 semsurf_cli_test(level.polynomial ARGS level block.gsf --method polynomial --degree 1 --rows median -o flat.txt
   STDOUT "rows +shifted by" WRITES flat.txt)
 semsurf_cli_test(level.step ARGS level block.gsf --method none --step 0,0,15,45 25,15,45,35
-  STDOUT "step +5(\\.0+)? .* nm, the second region above")
+  STDOUT "step +5\\.00[0-9]* . 0\\.00.* nm, the second region above")
 semsurf_cli_test(clean.all ARGS clean block.gsf --spikes 3:1nm --median 3 --disc --closing 5 -o clean.gsf
   STDOUT "spikes +[0-9]+ of [0-9]+ heights changed" "median " "closing " WRITES clean.gsf)
 semsurf_cli_test(noise.flat ARGS noise noisy.gsf --flat --plot noise.svg
   STDOUT "noise +alpha 0\\.[0-9]+ ± .*sigma" "differences +alpha" "whiteness +along rows p" "normality +p" WRITES noise.svg)
-semsurf_cli_test(noise.none ARGS noise plane.gsf --flat --degree 1 STDERR "no noise at all|p " STDOUT "noise +alpha")
+semsurf_cli_test(noise.none ARGS noise plane.gsf --flat --degree 1 STDERR "no noise at all" STDOUT "noise +alpha")
 semsurf_cli_test(noise.substrate ARGS noise noisy.gsf STDOUT "substrate +[0-9.]+ % of the image")

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <queue>
 
 namespace surf {
@@ -14,30 +15,29 @@ constexpr double most_bins = 1 << 20;
 /// Offsets of all samples for one slope, in bins.
 class Offsets {
  public:
-  explicit Offsets(const Votes& votes) : votes_(votes), residual_(votes.size()) {}
+  explicit Offsets(const Votes& votes) : votes_(votes), residual_(votes.size()), bin_(votes.size()) {}
 
   /// Afterwards the most samples in any slab of half height `half` lie in `most_in(bins_per_slab + 1)`
   /// at most, and in `most_in(bins_per_slab)` at least.
   void fill(double a, double b, double half) {
     const auto fa = static_cast<float>(a), fb = static_cast<float>(b);
-    float lowest = INFINITY, highest = -INFINITY;
-    for (std::size_t i = 0; i < votes_.size(); ++i) {
-      const float r = votes_.z[i] - fa * votes_.u[i] - fb * votes_.v[i];
-      residual_[i] = r;
-      lowest = std::min(lowest, r);
-      highest = std::max(highest, r);
-    }
+    const std::size_t n = votes_.size();
+    for (std::size_t i = 0; i < n; ++i) residual_[i] = votes_.z[i] - fa * votes_.u[i] - fb * votes_.v[i];
+    const auto [lowest, highest] = range();
     lowest_ = lowest;
     height_ = std::max(2 * half / bins_per_slab, (static_cast<double>(highest) - lowest) / most_bins);
-    const auto bins = static_cast<std::size_t>((highest - lowest) / height_) + 2;
-    counts_.assign(bins + bins_per_slab + 1, 0);
+    const auto bins = static_cast<std::int32_t>((highest - lowest) / height_) + 2;
+    counts_.assign(static_cast<std::size_t>(bins) + bins_per_slab + 1, 0);
     const auto per_nm = static_cast<float>(1 / height_);
-    for (const float r : residual_) ++counts_[std::min(bins - 1, static_cast<std::size_t>((r - lowest) * per_nm))];
+    for (std::size_t i = 0; i < n; ++i)
+      bin_[i] = std::min(bins - 1, static_cast<std::int32_t>((residual_[i] - lowest) * per_nm));
+    for (std::size_t i = 0; i < n; ++i) ++counts_[static_cast<std::size_t>(bin_[i])];
   }
 
   /// The most samples in `width` bins beside each other, and the middle of these.
   std::pair<std::size_t, double> most_in(std::size_t width) const {
-    std::size_t sum = 0, most = 0, at = 0;
+    unsigned sum = 0, most = 0;
+    std::size_t at = 0;
     for (std::size_t i = 0; i < counts_.size(); ++i) {
       sum += counts_[i];
       if (i >= width) sum -= counts_[i - width];
@@ -47,8 +47,29 @@ class Offsets {
   }
 
  private:
+  /// In lanes, which a compiler may keep in one vector.
+  std::pair<float, float> range() const {
+    constexpr std::size_t lanes = 16;
+    float low[lanes], high[lanes];
+    std::fill_n(low, lanes, INFINITY);
+    std::fill_n(high, lanes, -INFINITY);
+    const std::size_t whole = residual_.size() / lanes * lanes;
+    for (std::size_t i = 0; i < whole; i += lanes) {
+      for (std::size_t k = 0; k < lanes; ++k) {
+        low[k] = residual_[i + k] < low[k] ? residual_[i + k] : low[k];
+        high[k] = residual_[i + k] > high[k] ? residual_[i + k] : high[k];
+      }
+    }
+    for (std::size_t i = whole; i < residual_.size(); ++i) {
+      low[0] = std::min(low[0], residual_[i]);
+      high[0] = std::max(high[0], residual_[i]);
+    }
+    return {*std::min_element(low, low + lanes), *std::max_element(high, high + lanes)};
+  }
+
   const Votes& votes_;
   std::vector<float> residual_;
+  std::vector<std::int32_t> bin_;
   std::vector<unsigned> counts_;
   double lowest_ = 0, height_ = 1;
 };

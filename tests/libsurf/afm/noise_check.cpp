@@ -60,6 +60,16 @@ TEST(CheckNoise, SeesWhatIsNotNormal) {
   EXPECT_GT(c.along_p, 1e-4);
 }
 
+TEST(CheckNoise, DividesSkewnessAndKurtosisByTheirExactVariances) {
+  Grid<double> e(20, 1);
+  for (int x = 0; x < 20; ++x) e(x, 0) = x * x;
+  const NoiseCheck c = check_noise(e);
+  const double n = 20, of_skewness = 6 * 18 / (21.0 * 23), of_kurtosis = 24 * n * 18 * 17 / (21.0 * 21 * 23 * 25);
+  EXPECT_NEAR(c.jarque_bera, c.skewness * c.skewness / of_skewness +
+                                 std::pow(c.excess_kurtosis + 6 / 21.0, 2) / of_kurtosis, 1e-12);
+  EXPECT_NEAR(c.normal_p, std::exp(-c.jarque_bera / 2), 1e-12);
+}
+
 TEST(CheckNoise, LeavesOutHoles) {
   Grid<double> e = simulate_noise({0, 1}, 64, 64, 1);
   Grid<unsigned char> valid(64, 64, 1);

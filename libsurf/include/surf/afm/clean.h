@@ -39,8 +39,8 @@ struct ClosingOptions {
 };
 
 /// Closing by a flat square (Castle 1998): the lowest of the highest heights around. Pits narrower than
-/// the square in either direction are filled up to their rim, nothing else rises and nothing falls; twice is the same as
-/// once. What is outside the image, and holes, take no part in either step.
+/// the square in either direction are filled up to their rim, nothing else rises and nothing falls; twice
+/// is the same as once. What is outside the image, and holes, take no part in either step.
 /// The time does not grow with the width (van Herk 1992, doi:10.1016/0167-8655(92)90069-C; Gil and Werman
 /// 1993, doi:10.1109/34.211471). Throws InvalidInput, UsageError.
 HeightField flat_closing(const HeightField& field, const ClosingOptions& options, CleanSummary& summary);

@@ -43,7 +43,8 @@ struct HoughSummary {
 /// known, most promising first (branch and bound, Breuel 1992, doi:10.1109/ICPR.1992.201646). So no slope
 /// is missed, whatever the tilt, and boxes end only when they tilt by half the tolerance across the image.
 /// Votes come from up to 4096 samples, one from each of equal blocks at a random place, the same on
-/// every run; planes with 1 % more votes (10 % for the runner-up) may be missed. Then least squares and inliers of all samples take turns until they agree.
+/// every run; planes with 1 % more votes (10 % for the runner-up) may be missed. Then least squares and
+/// inliers of all samples take turns until they agree.
 /// The tolerance is the one, in steps of a factor of two, whose votes are the least likely by chance: the
 /// Kullback-Leibler divergence of the share of inliers from that of evenly spread heights.
 ///
