@@ -96,3 +96,11 @@ semsurf_cli_usage(materials_name "Choose one of: nitride" materials nitrid --mat
 semsurf_cli_unusable(materials_missing "nowhere.toml" materials --materials nowhere.toml)
 semsurf_cli_unusable(materials_scene "is not known at the top. Did you mean 'material'" simulate cube.off --materials own_material.toml ${image})
 semsurf_cli_unusable(no_mott_table "no Mott table for Zn .Z = 30.*elastic=browning" simulate own_material.toml --physics elastic=mott ${image})
+
+semsurf_cli_usage(erode_tip "--tip: no tip is given" erode steps.txt -o surface.gsf)
+semsurf_cli_usage(erode_output "--output: no output file is given" erode steps.txt --tip tip.txt)
+semsurf_cli_usage(erode_upsample "--upsample" erode steps.txt --tip tip.txt --upsample 0 -o surface.gsf)
+semsurf_cli_usage(dilate_distance "--distance: '-1' is below 0" dilate steps.txt --tip tip.txt --distance=-1 -o scan.gsf)
+semsurf_cli_usage(certainty_noise "--noise: '-1nm' is below 0" certainty steps.txt --tip tip.txt --noise=-1nm -o map.png)
+semsurf_cli_usage(certainty_format "map.gsf" certainty steps.txt --tip tip.txt -o map.gsf)
+semsurf_cli_unusable(erode_no_tip "nowhere.gsf" erode steps.txt --tip nowhere.gsf -o surface.gsf)
