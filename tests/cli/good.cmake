@@ -163,9 +163,9 @@ semsurf_cli_test(erode ARGS erode steps.txt --tip tip.txt --upsample 2 --threads
   STDOUT "eroded +heights" WRITES surface.gsf INFO surface.gsf "option.upsample +2")
 semsurf_cli_test(erode.noncontact ARGS erode steps.txt --tip tip.txt --distance 2nm -o surface.txt WRITES surface.txt)
 semsurf_cli_test(erode.resampled ARGS erode steps.txt --pixel-size 0.5nm --tip tip.txt -o surface.gsf
-  STDERR "note: tip.txt: resampled from 5 x 5 pixels of 1 nm to 9 x 9" WRITES surface.gsf)
+  STDERR "note: tip.txt: resampled from 5 x 5 pixels of 1.00 nm to 9 x 9" WRITES surface.gsf)
 semsurf_cli_test(certainty ARGS certainty steps.txt --tip tip.txt --noise 0.05nm -o map.png --surface surface.gsf
-  STDOUT "tolerance +contacts within 0.3 nm" "certain +[0-9.]+ % of the surface" WRITES map.png surface.gsf)
+  STDOUT "tolerance +contacts within 0.300 nm" "certain +[0-9.]+ % of the surface" WRITES map.png surface.gsf)
 semsurf_cli_test(certainty.own_noise ARGS certainty steps.txt --tip tip.txt -o map.vti
   STDERR "a noise of .* is taken from neighbouring pixels" WRITES map.vti)
 semsurf_cli_test(certainty.unexplained ARGS certainty steps.txt --tip tip.txt --noise 0 --neighbourhood 1 -o map.tif
