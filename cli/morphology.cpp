@@ -39,7 +39,7 @@ Noise lowers it: level and clean the scan first.
 
 Examples:
   semsurf erode scan.gsf --tip tip.gsf -o surface.gsf
-  semsurf erode scan.spm --channel Height --tip tip.gsf --upsample 2 -o surface.vti)",
+  semsurf erode scan.spm --channel Height --tip tip.gsf --distance 2nm --upsample 3 -o surface.vti)",
     run_erode};
 
 constexpr Command dilate_command{
@@ -102,7 +102,7 @@ void add(CLI::App& app, Action& action, const Command& command) {
   sub->group("Commands");
   add_scan_input(*sub, o->input);
   add_tip_input(*sub, o->tip);
-  sub->add_option("--upsample", o->upsample, "Interpolate to so many samples per pixel, and sample back (1)")
+  sub->add_option("--upsample", o->upsample, "Of non-contact scans: interpolate to so many samples per pixel (1)")
       ->type_name("N");
   sub->add_option("--distance", o->distance, "That the tip keeps from the surface, of non-contact scans (0nm)")
       ->type_name("LENGTH");

@@ -175,3 +175,20 @@ semsurf_cli_test(noise.flat ARGS noise noisy.gsf --flat --plot noise.svg
   STDOUT "noise +alpha 0\\.[0-9]+ ± .*sigma" "differences +alpha" "whiteness +along rows p" "normality +p" WRITES noise.svg)
 semsurf_cli_test(noise.none ARGS noise plane.gsf --flat --degree 1 STDERR "no noise at all" STDOUT "noise +alpha")
 semsurf_cli_test(noise.substrate ARGS noise noisy.gsf STDOUT "substrate +[0-9.]+ % of the image")
+# AFM: a tip put into a surface and taken out of the scan.
+foreach(command erode dilate certainty)
+  semsurf_cli_test(help.${command} ARGS ${command} --help STDOUT "--tip FILE" "--channel NAME" "Examples:")
+endforeach()
+semsurf_cli_test(dilate ARGS dilate steps.txt --tip tip.txt -o scan.gsf
+  STDOUT "scan +24 x 20 pixels" "tip +5 x 5" "dilated +heights" WRITES scan.gsf)
+semsurf_cli_test(erode ARGS erode steps.txt --tip tip.txt --upsample 2 --threads 2 -o surface.gsf
+  STDOUT "eroded +heights" WRITES surface.gsf INFO surface.gsf "option.upsample +2")
+semsurf_cli_test(erode.noncontact ARGS erode steps.txt --tip tip.txt --distance 2nm -o surface.txt WRITES surface.txt)
+semsurf_cli_test(erode.resampled ARGS erode steps.txt --pixel-size 0.5nm --tip tip.txt -o surface.gsf
+  STDERR "note: tip.txt: resampled from 5 x 5 pixels of 1.00 nm to 9 x 9" WRITES surface.gsf)
+semsurf_cli_test(certainty ARGS certainty steps.txt --tip tip.txt --noise 0.05nm -o map.png --surface surface.gsf
+  STDOUT "tolerance +contacts within 0.300 nm" "certain +[0-9.]+ % of the surface" WRITES map.png surface.gsf)
+semsurf_cli_test(certainty.own_noise ARGS certainty steps.txt --tip tip.txt -o map.vti
+  STDERR "a noise of .* is taken from neighbouring pixels" WRITES map.vti)
+semsurf_cli_test(certainty.unexplained ARGS certainty steps.txt --tip tip.txt --noise 0 --neighbourhood 1 -o map.tif
+  STDERR "cannot have been made by this tip" WRITES map.tif)

@@ -56,89 +56,51 @@ Heights convolve(const Heights& a, const TipQuanta& b, int threads, Contacts* co
   return out;
 }
 
-/// Samples f x - p, f y - q of a fine grid, for each x and y of the coarse one.
-Heights phase(const Heights& fine, int f, int p, int q, int width, int height) {
-  Heights out{Grid<Quanta>(width, height, max_plus::unknown), fine.top};
-  for (int y = 0; y < height; ++y)
-    for (int x = 0; x < width; ++x)
-      if (f * x >= p && f * y >= q) out.z(x, y) = fine.z(f * x - p, f * y - q);
-  return out;
+void check_factor(int upsample) {
+  if (upsample < 1 || upsample > 32)
+    throw InvalidInput("upsample", fmt::format("{} is not in 1 to 32", upsample), "2 or 3 is usual");
 }
 
-/// Samples apex + f u + p of a fine tip.
-TipQuanta phase(const TipQuanta& fine, int f, int p, int q) {
-  const int before_x = fine.apex_x / f, before_y = fine.apex_y / f;
-  const int w = before_x + (fine.z.width() - 1 - fine.apex_x) / f + 1;
-  const int h = before_y + (fine.z.height() - 1 - fine.apex_y) / f + 1;
-  TipQuanta out{Grid<Quanta>(w + 1, h + 1, max_plus::unknown), before_x + 1, before_y + 1};
-  for (int y = 0; y < h + 1; ++y)
-    for (int x = 0; x < w + 1; ++x) {
-      const int X = fine.apex_x + f * (x - out.apex_x) + p, Y = fine.apex_y + f * (y - out.apex_y) + q;
-      if (X >= 0 && Y >= 0 && X < fine.z.width() && Y < fine.z.height()) out.z(x, y) = fine.z(X, Y);
-    }
-  return out;
-}
-
-/// Fine convolution at the coarse samples alone: each offset of the fine tip modulo f meets its own
-/// samples of the fine surface only, so that it is f x f coarse convolutions.
-Heights convolve_fine(const Heights& a, const TipQuanta& b, int f, int width, int height, int threads,
-                      Contacts* contacts) {
-  Heights best{Grid<Quanta>(width, height, max_plus::unknown), a.top};
-  if (contacts) *contacts = {Grid<std::int32_t>(width, height, -1), Grid<std::int32_t>(width, height, -1)};
-  for (int q = 0; q < f; ++q)
-    for (int p = 0; p < f; ++p) {
-      Contacts here;
-      const Heights part = convolve(phase(a, f, p, q, width, height), phase(b, f, p, q), threads,
-                                    contacts ? &here : nullptr);
-      for (std::size_t i = 0; i < part.z.size(); ++i) {
-        if (part.z.data()[i] <= best.z.data()[i]) continue;
-        best.z.data()[i] = part.z.data()[i];
-        if (!contacts) continue;
-        contacts->x.data()[i] = here.x.data()[i] * f - p;
-        contacts->y.data()[i] = here.y.data()[i] * f - q;
-      }
-    }
-  return best;
-}
-
+/// One operation. Between samples surface and tip are bilinear, so their sum is bilinear in u in every
+/// cell and largest at a corner: on a finer grid the samples would come out the same (thesis, C.3).
 HeightField apply(Operation operation, const HeightField& field, const Tip& tip, const char* subject,
                   const MorphologyOptions& o, Contacts* contacts = nullptr) {
   max_plus::check_pair(field, tip, subject);
+  check_factor(o.upsample);
   const double quantum = choose_quantum(field, tip, o), sign = sign_of(operation);
   const int w = field.z_nm.width(), h = field.z_nm.height();
   const Tip used = tip_of(operation, tip);
-  Heights out;
-  if (o.upsample == 1) {
-    out = convolve(quantise(field, sign, quantum), quantise(used, quantum, w, h), o.threads, contacts);
-  } else {
-    const HeightField fine = upsampled(field, o.upsample);
-    const Tip fine_tip = resampled(used, tip.pitch_x_nm / o.upsample, tip.pitch_y_nm / o.upsample);
-    const TipQuanta fine_quanta = quantise(fine_tip, quantum, fine.z_nm.width(), fine.z_nm.height());
-    out = convolve_fine(quantise(fine, sign, quantum), fine_quanta, o.upsample, w, h, o.threads, contacts);
-  }
+  const Heights out =
+      convolve(quantise(field, sign, quantum), quantise(used, quantum, w, h), o.threads, contacts);
   return to_field(out, sign, quantum, field);
+}
+
+/// `work` on what is interpolated to `upsample` samples per pitch, sampled back.
+template <class Work>
+HeightField on_fine_grid(const HeightField& field, const Tip& tip, MorphologyOptions o, const Work& work) {
+  const int f = o.upsample;
+  o.upsample = 1;
+  const HeightField fine =
+      work(upsampled(field, f), resampled(tip, tip.pitch_x_nm / f, tip.pitch_y_nm / f), o);
+  HeightField out = field;
+  out.valid = {};
+  if (!fine.valid.empty()) out.valid = Grid<unsigned char>(field.z_nm.width(), field.z_nm.height());
+  for (int y = 0; y < field.z_nm.height(); ++y)
+    for (int x = 0; x < field.z_nm.width(); ++x) {
+      out.z_nm(x, y) = fine.z_nm(x * f, y * f);
+      if (!out.valid.empty()) out.valid(x, y) = fine.valid(x * f, y * f);
+    }
+  return out;
 }
 
 /// Two operations with one quantum, so that nothing is rounded in between.
 HeightField apply_both(Operation first, const HeightField& field, const Tip& tip, const char* subject,
                        const MorphologyOptions& o) {
   max_plus::check_pair(field, tip, subject);
-  if (o.upsample != 1) {
-    const HeightField fine = upsampled(field, o.upsample);
-    const Tip fine_tip = resampled(tip, tip.pitch_x_nm / o.upsample, tip.pitch_y_nm / o.upsample);
-    MorphologyOptions plain = o;
-    plain.upsample = 1;
-    const HeightField both = apply_both(first, fine, fine_tip, subject, plain);
-    HeightField out = field;
-    out.valid = {};
-    if (!both.valid.empty()) out.valid = Grid<unsigned char>(field.z_nm.width(), field.z_nm.height());
-    for (int y = 0; y < field.z_nm.height(); ++y)
-      for (int x = 0; x < field.z_nm.width(); ++x) {
-        out.z_nm(x, y) = both.z_nm(x * o.upsample, y * o.upsample);
-        if (!out.valid.empty()) out.valid(x, y) = both.valid(x * o.upsample, y * o.upsample);
-      }
-    return out;
-  }
+  if (o.upsample != 1)
+    return on_fine_grid(field, tip, o, [&](const HeightField& f, const Tip& t, const MorphologyOptions& plain) {
+      return apply_both(first, f, t, subject, plain);
+    });
   const double quantum = choose_quantum(field, tip, o);
   const int w = field.z_nm.width(), h = field.z_nm.height();
   const Operation second = first == Operation::dilation ? Operation::erosion : Operation::dilation;
@@ -185,6 +147,9 @@ HeightField closing(const HeightField& surface, const Tip& tip, const Morphology
 Dilation dilate_with_contacts(const HeightField& surface, const Tip& tip, const MorphologyOptions& options) {
   Contacts contacts;
   Dilation out{apply(Operation::dilation, surface, tip, "surface", options, &contacts), {}, {}};
+  for (Grid<std::int32_t>* grid : {&contacts.x, &contacts.y})
+    for (std::int32_t& sample : grid->data())
+      if (sample >= 0) sample *= options.upsample;
   out.contact_x = std::move(contacts.x);
   out.contact_y = std::move(contacts.y);
   return out;
@@ -193,6 +158,10 @@ Dilation dilate_with_contacts(const HeightField& surface, const Tip& tip, const 
 HeightField dilate_noncontact(const HeightField& surface, const Tip& tip, double distance_nm,
                               const MorphologyOptions& options) {
   max_plus::check_pair(surface, tip, "surface");
+  if (options.upsample != 1)
+    return on_fine_grid(surface, tip, options, [&](const HeightField& f, const Tip& t, const MorphologyOptions& o) {
+      return dilate_noncontact(f, t, distance_nm, o);
+    });
   HeightField image = dilate(dilate(surface, hemisphere_for(surface, distance_nm), options), tip, options);
   lift(image, distance_nm);
   return image;
@@ -201,6 +170,10 @@ HeightField dilate_noncontact(const HeightField& surface, const Tip& tip, double
 HeightField erode_noncontact(const HeightField& image, const Tip& tip, double distance_nm,
                              const MorphologyOptions& options) {
   max_plus::check_pair(image, tip, "image");
+  if (options.upsample != 1)
+    return on_fine_grid(image, tip, options, [&](const HeightField& f, const Tip& t, const MorphologyOptions& o) {
+      return erode_noncontact(f, t, distance_nm, o);
+    });
   HeightField surface = erode(erode(image, tip, options), hemisphere_for(image, distance_nm), options);
   lift(surface, -distance_nm);
   return surface;

@@ -157,6 +157,26 @@ TEST(Certainty, NoncontactImagesKeepTheirDistance) {
   EXPECT_LT(judge(certainty_map(image, cone), truth, 2e-5).here, 0.1);
 }
 
+// A spike left of the scan shapes its border; what is certain is right nevertheless.
+TEST(Certainty, WhatTouchedOutsideIsNotTakenForInside) {
+  HeightField whole = specimen();
+  for (int y = 0; y < size; y += 5) whole.z_nm(38, y) = 25;
+  const HeightField image = dilate(whole, cone);
+  HeightField truth{Grid<double>(60, 60), {}, 1, 1, 0, 0}, part = truth;
+  for (int y = 0; y < 60; ++y)
+    for (int x = 0; x < 60; ++x) {
+      truth.z_nm(x, y) = whole.z_nm(x + 40, y + 30);
+      part.z_nm(x, y) = image.z_nm(x + 40, y + 30);
+    }
+  const CertaintyMap map = certainty_map(part, cone);
+  EXPECT_GT(map.certain, 300u);
+  for (int y = 0; y < 60; ++y)
+    for (int x = 0; x < 60; ++x)
+      if (map.level(x, y) != CertaintyMap::uncertain) {
+        EXPECT_NEAR(map.surface.z_nm(x, y), truth.z_nm(x, y), 1e-5) << x << ", " << y;
+      }
+}
+
 TEST(Certainty, UnexplainedPixelsAreCounted) {
   HeightField image = dilate(specimen(), cone);
   image.z_nm(40, 50) += 5;   // sharper than the tip

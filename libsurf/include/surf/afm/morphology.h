@@ -11,7 +11,9 @@ namespace surf {
 /// How dilation, erosion and what is made of them are computed (docs/methods/morphology.md).
 struct MorphologyOptions {
   /// Surface and tip are interpolated bilinearly to this many samples per pitch, and the result is
-  /// sampled back. In [1, 32]; 1: as they are. The time grows with its square.
+  /// sampled back. In [1, 32]; 1: as they are. It changes what is made of two operations (opening,
+  /// closing, non-contact), at a cost that grows with its fourth power; a single one gives exactly the
+  /// same at the samples, at no cost (docs/methods/morphology.md).
   int upsample = 1;
 
   /// Heights are rounded to multiples of it, > 0; then all is exact, so that laws such as "opening
@@ -47,7 +49,6 @@ struct Dilation {
   /// The surface sample that holds the tip, in samples of the surface upsampled by `upsample` (column
   /// f x of it is column x of the surface); -1 in holes. Of several the one whose tip sample lies in the
   /// row nearest the apex, of two rows the lower one; then in the column nearest it, of two the left one.
-  /// With `upsample` above 1 this holds within each of the f x f offsets; the first offset wins.
   Grid<std::int32_t> contact_x, contact_y;
 };
 
