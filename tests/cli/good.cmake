@@ -165,8 +165,8 @@ semsurf_cli_test(help.noise ARGS noise --help STDOUT "--flat" "Examples:")
 semsurf_cli_test(level.hough ARGS level block.gsf -o flat.gsf --mask substrate.tif
   STDOUT "plane +tilt 5\\.71" "substrate +[78][0-9]\\.[0-9] %" "roughness +all: Sa" "substrate: Sa" WRITES flat.gsf substrate.tif)
 semsurf_cli_test(level.plane ARGS level block.gsf --method plane -o flat.tif STDOUT "plane +tilt" WRITES flat.tif)
-semsurf_cli_test(level.polynomial ARGS level block.gsf --method polynomial --degree 1 --rows median -o flat.txt
-  STDOUT "rows +shifted by" WRITES flat.txt)
+semsurf_cli_test(level.polynomial ARGS level block.gsf --method polynomial --degree 1 --rows median -o levelled.txt
+  STDOUT "rows +shifted by" WRITES levelled.txt)
 semsurf_cli_test(level.step ARGS level block.gsf --method none --step 0,0,15,45 25,15,45,35
   STDOUT "step +5\\.00[0-9]* . 0\\.00.* nm, the second region above")
 semsurf_cli_test(clean.all ARGS clean block.gsf --spikes 3:1nm --median 3 --disc --closing 5 -o clean.gsf
@@ -192,3 +192,15 @@ semsurf_cli_test(certainty.own_noise ARGS certainty steps.txt --tip tip.txt -o m
   STDERR "a noise of .* is taken from neighbouring pixels" WRITES map.vti)
 semsurf_cli_test(certainty.unexplained ARGS certainty steps.txt --tip tip.txt --noise 0 --neighbourhood 1 -o map.tif
   STDERR "cannot have been made by this tip" WRITES map.tif)
+# AFM: the tip itself.
+semsurf_cli_test(help.tip ARGS tip --help STDOUT "--answer" "--shape SHAPE" "--also FILE" "Without --threshold")
+semsurf_cli_test(tip.shape ARGS tip --shape cone:5nm,20deg --size 31 -o tip.gsf --plot tip.svg
+  STDOUT "tip +31 x 31 samples" "radius " "half angle " WRITES tip.gsf tip.svg INFO tip.gsf "option.shape +cone:5nm,20deg")
+semsurf_cli_test(tip.sweep ARGS tip steps.txt --size 5 --noise 0.02nm --sweep 0.02nm,0.4nm,5 --plot tip.svg -o tip.gsf
+  STDOUT "noise +" "threshold " WRITES tip.gsf tip.svg)
+semsurf_cli_test(tip.blind ARGS tip steps.txt --size 5 --threshold 0.1nm --apex-tolerance 0.1nm -o tip.gsf
+  STDOUT "tip +5 x 5 samples" WRITES tip.gsf INFO tip.gsf "option.answer +blind")
+semsurf_cli_test(tip.outer ARGS tip steps.txt --size 5 --answer outer --noise 0.05nm,0.5 -o tip.gsf
+  STDOUT "at 95 % an outer bound" STDERR "does not tell the tip's shape" WRITES tip.gsf)
+semsurf_cli_test(tip.best ARGS tip steps.txt --also steps.txt --size 5 --answer best --noise 0.05nm --plot best.png -o tip.gsf
+  STDOUT "fit +misfit" WRITES tip.gsf best.png INFO tip.gsf "option.answer +best estimate")
