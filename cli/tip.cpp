@@ -10,6 +10,7 @@
 #include "common_options.h"
 #include "options.h"
 #include "surf/afm/best_tip.h"
+#include "surf/afm/characterizer.h"
 #include "surf/afm/noise_estimate.h"
 #include "surf/afm/tip_measure.h"
 #include "surf/afm/tip_sweep.h"
@@ -33,15 +34,16 @@ Level the scan first ('semsurf level'). Two other answers, named as such:
       an outer bound: in 95 % of noise draws nowhere sharper than the tip, but blunt
   semsurf tip a.gsf --also b.gsf --also c.gsf --answer best -o tip.gsf
       the most likely tip, from several scans by it, with standard errors; best for noisy frames
-A tip by its shape, or at a threshold of your own:
+A tip by its shape, from the scan of a known surface, or at a threshold of your own:
   semsurf tip --shape cone:10nm,15deg --size 41 --pixel-size 2nm -o tip.gsf
+  semsurf tip grating_scan.gsf --characterizer grating.gsf -o tip.gsf
   semsurf tip scan.gsf --threshold 0.5nm --apex-tolerance 0.5nm -o tip.gsf)";
 
 struct Options {
   ScanInput input;
   std::vector<std::string> also;
   std::optional<std::string> size, answer, threshold, threshold_y, apex_tolerance, layer, sweep, noise;
-  std::optional<std::string> shape, plot, seed, output, threads;
+  std::optional<std::string> shape, characterizer, search, plot, seed, output, threads;
   bool maxima = false, quiet = false;
 };
 
@@ -243,12 +245,39 @@ int by_shape(const Options& o) {
   return 0;
 }
 
+int by_characterizer(const Options& o) {
+  const std::vector<HeightField> scans = read_scans(o);
+  if (scans.size() > 1) throw UsageError("--also", "a characterizer takes one scan", "Leave it out");
+  ScanInput known;
+  known.file = *o.characterizer;
+  CharacterizerOptions options;
+  options.width = options.height = make_plan(o).blind.width;
+  if (o.search) options.search = static_cast<int>(parse_whole(*o.search, "--search", 0, 1000));
+  options.threads = parse_threads(o.threads);
+  const CharacterizedTip found = tip_from_characterizer(scans[0], read_scan(known, o.quiet).field, options);
+  io::write_tip(*o.output, found.tip,
+                provenance_of("tip", {{"answer", "characterizer"}, {"size", fmt::format("{}", options.width)},
+                                       {"search", fmt::format("{}", options.search)}},
+                              {o.input.file, *o.characterizer}));
+  if (o.plot) io::write_plot(*o.plot, tip_plot(found.tip));
+  if (found.offset_at_limit)
+    print_warning(fmt::format("scan and characterizer are {} samples or more apart: crop the scan",
+                              options.search));
+  if (o.quiet) return 0;
+  fmt::print("{:<10} found at sample ({}, {}) of the scan, {} above; residual {}\n", "known", found.offset_x,
+             found.offset_y, format_length(found.offset_z_nm), format_length(found.residual_nm));
+  print_tip(found.tip, std::max(range_of(scans), 1e-9));
+  fmt::print("{:<10} {}\n", "written", *o.output);
+  return 0;
+}
+
 int work(const Options& o) {
   if (!o.output) throw UsageError("--output", "no output file is given", "Add -o tip.gsf");
   io::check_height_field_target(*o.output);
   if (o.plot) io::check_plot_target(*o.plot);
   if (o.shape) return by_shape(o);
   if (o.input.file.empty()) throw UsageError("tip", "no scan is given", "Name a file to read, or --shape");
+  if (o.characterizer) return by_characterizer(o);
   Plan p = make_plan(o);
   const std::vector<HeightField> scans = read_scans(o);
   if (!p.noise && p.answer != Answer::blind) p.noise = noise_of(scans, o.quiet);
@@ -340,6 +369,10 @@ void add_tip(CLI::App& app, Action& action) {
                   "No scan: parabola:RADIUS, cone:RADIUS,ANGLE, pyramid:RADIUS,ANGLE,FACES,\n"
                   "ball:RADIUS or ball:RADIUS,STEM_RADIUS,STEM_ANGLE (angles from the axis)")
       ->type_name("SHAPE")->group(tip);
+  sub->add_option("--characterizer", o->characterizer, "The known surface that the scan shows, as heights")
+      ->type_name("FILE")->group(tip);
+  sub->add_option("--search", o->search, "Samples that scan and characterizer may be apart (10)")
+      ->type_name("N")->group(tip);
   const char* blind = "Blind reconstruction";
   sub->add_option("--threshold", o->threshold, "Lower samples of the tip only by more than this")
       ->type_name("LENGTH")->group(blind);
@@ -350,7 +383,7 @@ void add_tip(CLI::App& app, Action& action) {
   sub->add_option("--layer", o->layer, "Half the height of the layer that the true scan lies in (0nm)")
       ->type_name("LENGTH")->group(blind);
   sub->add_flag("--maxima", o->maxima, "Use local maxima only")->group(blind);
-  sub->add_option("--sweep", o->sweep, "Thresholds to try (0.3 to 12 standard deviations of the noise, 40)")
+  sub->add_option("--sweep", o->sweep, "Thresholds to try (0.3 to 8 standard deviations of the noise, 40)")
       ->type_name("FROM,TO,N")->group(blind);
   sub->add_option("--seed", o->seed, "Of the noise that residuals are compared with (1)")
       ->type_name("N")->group(blind);

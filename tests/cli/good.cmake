@@ -204,3 +204,5 @@ semsurf_cli_test(tip.outer ARGS tip steps.txt --size 5 --answer outer --noise 0.
   STDOUT "at 95 % an outer bound" STDERR "does not tell the tip's shape" WRITES tip.gsf)
 semsurf_cli_test(tip.best ARGS tip steps.txt --also steps.txt --size 5 --answer best --noise 0.05nm --plot best.png -o tip.gsf
   STDOUT "fit +misfit" WRITES tip.gsf best.png INFO tip.gsf "option.answer +best estimate")
+semsurf_cli_test(tip.characterizer ARGS tip steps.txt --characterizer steps.txt --size 3 --search 2 -o tip.gsf
+  STDOUT "known +found at sample" WRITES tip.gsf INFO tip.gsf "option.answer +characterizer")

@@ -3,11 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 
 #include <fmt/format.h>
 
 #include "surf/afm/blind_tip.h"
+#include "surf/afm/tip_measure.h"
 #include "surf/core/error.h"
 #include "surf/core/parallel.h"
 #include "tip_fit.h"
@@ -16,8 +18,13 @@ namespace surf {
 
 namespace {
 
-constexpr int thresholds = 25;                            // of the outer bounds to begin with,
-constexpr double least_sigmas = 2, step_sigmas = 0.25;    // in standard deviations of the noise
+// Of the outer bounds to begin with: thresholds, in standard deviations of the noise; so often so many more,
+// where the volume jumps most; apex tolerances, in thresholds. A larger one gives more accurate fits, or none.
+constexpr int thresholds = 10;
+constexpr double least_sigmas = 2.5, step_sigmas = 0.5;
+constexpr int refinements = 2, between = 3;
+constexpr double tolerances[] = {0.8, 1.25};
+constexpr double hopeless_misfit = 4;   // after a sixteenth of the iterations: the bound is too blunt
 
 void check(const BestTipOptions& o) {
   if (!(std::fabs(o.noise.alpha) < 1 && o.noise.innovation_nm2 > 0 && std::isfinite(o.noise.innovation_nm2)))
@@ -27,6 +34,80 @@ void check(const BestTipOptions& o) {
   if (o.iterations < 1) throw UsageError("iterations", "there are none", "Ask for 100");
 }
 
+struct Start {
+  double threshold_nm = 0, volume_nm3 = 0;
+  Tip tip;
+};
+
+// The broader of the two neighbours whose volumes differ most.
+std::size_t largest_jump(const std::vector<Start>& starts) {
+  std::size_t upper = 0;
+  double most = -1;
+  for (std::size_t k = 0; k + 1 < starts.size(); ++k) {
+    const double drop = starts[k].volume_nm3 - starts[k + 1].volume_nm3;
+    if (drop > most) {
+      most = drop;
+      upper = k;
+    }
+  }
+  return upper;
+}
+
+class OuterBounds {
+ public:
+  OuterBounds(const std::vector<HeightField>& scans, const BestTipOptions& options, const CancelToken* cancel)
+      : scans_(scans), cancel_(cancel) {
+    options_.width = options.width;
+    options_.height = options.height;
+    options_.threads = 1;   // frames are small: whole families of bounds run beside each other
+    double low = HUGE_VAL, high = -HUGE_VAL;
+    for (const HeightField& s : scans)
+      for (int y = 0; y < s.z_nm.height(); ++y)
+        for (int x = 0; x < s.z_nm.width(); ++x)
+          if (s.is_valid(x, y)) {
+            low = std::min(low, s.z_nm(x, y));
+            high = std::max(high, s.z_nm(x, y));
+          }
+    range_nm_ = std::max(high - low, 1e-9);
+  }
+
+  Start at(double threshold_nm, double tolerance, const Start* broader) const {
+    BlindTipOptions o = options_;
+    o.threshold_nm = threshold_nm;
+    o.apex_tolerance_nm = tolerance * threshold_nm;
+    if (broader) o.start = broader->tip;
+    BlindTipSummary ignored;
+    Start start{threshold_nm, 0, blind_tip(scans_, o, ignored, {}, cancel_)};
+    start.volume_nm3 = tip_volume_nm3(start.tip, range_nm_);
+    return start;
+  }
+
+  // By falling threshold; each begins with the one before.
+  template <class Stopped>
+  std::vector<Start> family(double sigma_nm, double tolerance, const Stopped& stopped) const {
+    std::vector<Start> starts;
+    for (int n = thresholds - 1; n >= 0 && !stopped(); --n)
+      starts.push_back(at((least_sigmas + n * step_sigmas) * sigma_nm, tolerance,
+                          starts.empty() ? nullptr : &starts.back()));
+    for (int n = 0; n < refinements && !stopped(); ++n) {
+      const std::size_t upper = largest_jump(starts);
+      const double from = starts[upper].threshold_nm, to = starts[upper + 1].threshold_nm;
+      for (int k = 1; k <= between; ++k) {
+        const std::size_t place = upper + static_cast<std::size_t>(k);
+        Start start = at(from + (to - from) * k / (between + 1), tolerance, &starts[place - 1]);
+        starts.insert(starts.begin() + static_cast<std::ptrdiff_t>(place), std::move(start));
+      }
+    }
+    return starts;
+  }
+
+ private:
+  const std::vector<HeightField>& scans_;
+  const CancelToken* cancel_;
+  BlindTipOptions options_;
+  double range_nm_ = 0;
+};
+
 }  // namespace
 
 Tip best_tip(const std::vector<HeightField>& scans, const BestTipOptions& options,
@@ -34,42 +115,43 @@ Tip best_tip(const std::vector<HeightField>& scans, const BestTipOptions& option
   check(options);
   summary = {};
   const double sigma = std::sqrt(options.noise.variance_nm2());
-  constexpr double total = 3 * thresholds;
+  const OuterBounds bounds(scans, options, cancel);
+  constexpr double families = std::size(tolerances), total = families + 2;
   const auto report = [&](double done) {
     if (progress) progress(done, total);
   };
   const auto stopped = [&] { return cancel && cancel->cancelled(); };
-  BlindTipOptions bound;
-  bound.width = options.width;
-  bound.height = options.height;
-  bound.threads = options.threads;
-  std::vector<Tip> starts;
-  for (int n = thresholds - 1; n >= 0; --n) {   // each begins with that of the threshold above
-    bound.threshold_nm = bound.apex_tolerance_nm = (least_sigmas + n * step_sigmas) * sigma;
-    BlindTipSummary ignored;
-    starts.push_back(blind_tip(scans, bound, ignored, {}, cancel));
-    bound.start = starts.back();
-    summary.candidates.push_back({bound.threshold_nm, 0, 0, 0});
-    report(thresholds - n);
-    if (stopped()) return starts.back();
-  }
+  std::vector<Start> starts;
   const int threads = resolve_threads(options.threads);
-  std::vector<TipFit> fits;
-  for (const Tip& start : starts) fits.emplace_back(scans, options.noise, start);
+  std::vector<std::vector<Start>> by_tolerance(std::size(tolerances));
+  parallel_for(by_tolerance.size(), threads, [&](std::size_t k, int) {
+    by_tolerance[k] = bounds.family(sigma, tolerances[k], stopped);
+  });
+  for (const auto& family : by_tolerance) starts.insert(starts.end(), family.begin(), family.end());
+  report(families);
+  if (stopped()) return starts.empty() ? Tip{} : starts.back().tip;
+  for (const Start& s : starts) summary.candidates.push_back({s.threshold_nm, 0, 0, 0});
+  std::vector<TipFit> fits(starts.size());
   parallel_for(fits.size(), threads, [&](std::size_t k, int) {
     if (stopped()) return;
-    fits[k].iterate(std::max(1, options.iterations / 8));
+    fits[k] = TipFit(scans, options.noise, starts[k].tip);
+    fits[k].iterate(std::max(1, options.iterations / 16));
+    const bool hopeless = fits[k].misfit() > hopeless_misfit;
+    if (!hopeless) fits[k].iterate(std::max(1, options.iterations / 16));
     TipCandidate& c = summary.candidates[k];
-    c = {c.threshold_nm, fits[k].misfit(), fits[k].freedom(), fits[k].risk()};
+    c = {c.threshold_nm, fits[k].misfit(), fits[k].freedom(),
+         hopeless ? fits[k].risk() : fits[k].risk_when_thinned()};
   });
-  report(2 * thresholds);
-  if (stopped()) return starts.back();
+  report(total - 1);
+  if (stopped()) return starts.back().tip;
   // The few best are fitted to the end.
   constexpr std::size_t finalists = 3;
   std::vector<std::size_t> order(fits.size());
   for (std::size_t k = 0; k < order.size(); ++k) order[k] = k;
   std::stable_sort(order.begin(), order.end(),
-                   [&](std::size_t a, std::size_t b) { return fits[a].risk() < fits[b].risk(); });
+                   [&](std::size_t a, std::size_t b) {
+                     return summary.candidates[a].risk < summary.candidates[b].risk;
+                   });
   order.resize(std::min(order.size(), finalists));
   parallel_for(order.size(), threads, [&](std::size_t k, int) {
     if (!stopped()) fits[order[k]].iterate(options.iterations);

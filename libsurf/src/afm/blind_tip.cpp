@@ -141,13 +141,13 @@ class Reconstruction {
     for (std::size_t s = 0; s < scans_.size(); ++s) {
       const CarvedScan& scan = scans_[s];
       const int dx = options_.border ? 1 : tip_.width - 1, dy = options_.border ? 1 : tip_.height - 1;
-      const Grid<float> made = maxima ? Grid<float>() : explained_height(scan, tip_, threads_);
+      const Grid<float> made = explained_height(scan, tip_, threads_);
       for (int y = dy; y < scan.height() - dy; ++y)
         for (int x = dx; x < scan.width() - dx; ++x) {
           const float z = scan.bottom(x, y);
           if (z == -std::numeric_limits<float>::infinity()) continue;
           if (tried_[s](x, y) == version_) continue;   // on this very tip
-          if (maxima ? is_local_maximum(heights_[s], x, y) : made(x, y) < z)
+          if (made(x, y) < z && (!maxima || is_local_maximum(heights_[s], x, y)))
             out.push_back({static_cast<std::uint32_t>(s), x, y, maxima ? z : z - made(x, y)});
         }
     }

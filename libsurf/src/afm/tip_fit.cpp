@@ -209,6 +209,14 @@ void TipFit::iterate(int times) {
   }
 }
 
+double TipFit::risk_when_thinned() const {
+  constexpr int settling = 4;
+  TipFit copy = *this;
+  for (Frame& f : copy.frames_) copy.thin(f);
+  copy.iterate(settling);
+  return copy.risk();
+}
+
 Grid<double> TipFit::standard_errors() const {
   // A pixel in contact tells the sum of the surface and the tip there; with as many free surface pixels as
   // there are, the variance of each is the noise's.

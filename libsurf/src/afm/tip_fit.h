@@ -13,6 +13,8 @@ namespace surf {
 /// as much as the tip.
 class TipFit {
  public:
+  TipFit() = default;
+
   /// Surfaces begin as the scans' erosion by the tip.
   TipFit(const std::vector<HeightField>& scans, const AfmNoise& noise, const Tip& start);
 
@@ -23,6 +25,8 @@ class TipFit {
   double misfit() const { return misfit_; }     ///< per pixel
   double freedom() const { return freedom_; }   ///< touched surface pixels per pixel
   double risk() const { return misfit_ + 2 * freedom_; }
+  /// The same after surface pixels are taken away that gain too little.
+  double risk_when_thinned() const;
   /// Of each sample of the tip, by the number of pixels it touches in: infinity where there is none.
   Grid<double> standard_errors() const;
 
@@ -49,7 +53,7 @@ class TipFit {
 
   AfmNoise noise_;
   Tip tip_;
-  int left_, below_;                   // margins
+  int left_ = 0, below_ = 0;           // margins
   std::vector<Frame> frames_;
   std::vector<Sample> samples_;
   std::vector<double> surface_slope_, surface_weight_;

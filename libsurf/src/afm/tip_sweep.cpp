@@ -176,7 +176,7 @@ TipSweep sweep_tips(const std::vector<HeightField>& scans, const TipSweepOptions
   check(options);
   const double sigma = std::sqrt(options.noise.variance_nm2());
   const bool given = options.most_nm > 0;
-  const double least = given ? options.least_nm : 0.3 * sigma, most = given ? options.most_nm : 12 * sigma;
+  const double least = given ? options.least_nm : 0.3 * sigma, most = given ? options.most_nm : 8 * sigma;
   BlindTipOptions blind = options.blind;
   const double ratio = blind.threshold_y_nm && blind.threshold_nm > 0
                            ? *blind.threshold_y_nm / blind.threshold_nm : 1;

@@ -19,14 +19,14 @@ struct BestTipOptions {
 
 /// A tip that was fitted, from the outer bound at some threshold.
 struct TipCandidate {
-  double threshold_nm = 0;   ///< threshold and apex tolerance of the outer bound
+  double threshold_nm = 0;   ///< of the outer bound
   double misfit = 0;         ///< e' R^-1 e per pixel: below 1 where noise is fitted, too
   double freedom = 0;        ///< surface pixels that are touched, per pixel
   double risk = 0;           ///< misfit + 2 freedom: Stein's estimate of the error, but for a constant
 };
 
 struct BestTipSummary {
-  std::vector<TipCandidate> candidates;   ///< by falling threshold, after the first fit
+  std::vector<TipCandidate> candidates;   ///< after the first fit, by tolerance and falling threshold
   TipCandidate chosen;                    ///< after the last fit
   Grid<double> standard_error_nm;         ///< per sample of the tip; infinity where nothing touched it
   std::int64_t touched = 0;               ///< samples of the tip that touched something
@@ -37,7 +37,8 @@ struct BestTipSummary {
 /// things keep the tip blunt, and neither needs a number set by hand:
 /// - each sample is as likely to be an e-th lower as it is 1 noise standard deviation deeper: a pull that a
 ///   few contacts outweigh, and that raises what nothing touches;
-/// - fits from blind_tip's outer bounds at 25 thresholds of 2 to 8 standard deviations are compared by
+/// - fits from 32 of blind_tip's outer bounds, at thresholds of 2.5 to 7 standard deviations, closer where
+///   the tip's volume jumps, and two apex tolerances, are compared by
 ///   Stein's unbiased risk estimate (Ann. Stat. 9 (1981) 1135), which counts the surface's pixels in use.
 /// The likelihood is followed by scaled gradient steps through the contacts of the dilation.
 /// Several scans by one tip are fitted together; all have one pitch. Throws InvalidInput, UsageError; on
