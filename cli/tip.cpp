@@ -174,12 +174,15 @@ void print_tip(const Tip& tip, double depth_nm) {
   fmt::print("{:<10} {} x {} samples of {}, down to {}\n", "tip", tip.z_nm.width(), tip.z_nm.height(),
              format_length(tip.pitch_x_nm),
              format_length(*std::min_element(tip.z_nm.data().begin(), tip.z_nm.data().end())));
-  const TipMeasures m = measure_tip(tip);
-  fmt::print("{:<10} {} (fitted down to {}, residual {})", "radius", format_length(m.radius_nm),
-             format_length(m.fit_depth_nm), format_length(m.radius_residual_nm));
-  if (m.half_angle_rad)
-    fmt::print(", half angle {:.1f} degrees", *m.half_angle_rad / degrees_to_radians);
-  fmt::print("\n");
+  try {
+    const TipMeasures m = measure_tip(tip);
+    fmt::print("{:<10} {} (fitted down to {}, residual {})", "radius", format_length(m.radius_nm),
+               format_length(m.fit_depth_nm), format_length(m.radius_residual_nm));
+    if (m.half_angle_rad) fmt::print(", half angle {:.1f} degrees", *m.half_angle_rad / degrees_to_radians);
+    fmt::print("\n");
+  } catch (const InvalidInput& e) {   // a flat end, or too few samples
+    fmt::print("{:<10} not known: {}\n", "radius", e.reason());
+  }
   fmt::print("{:<10} {:.4g} nm^3 down to {}\n", "volume", tip_volume_nm3(tip, depth_nm), format_length(depth_nm));
 }
 

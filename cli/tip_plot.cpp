@@ -2,6 +2,7 @@
 #include "tip_plot.h"
 
 #include <cmath>
+#include <string>
 
 #include <fmt/format.h>
 
@@ -61,8 +62,8 @@ io::Plot tip_plot(const TipSweep& sweep) {
   PlotPanel volume, residual;
   volume.title = "volume of the tip";
   volume.y.label = "volume (nm^3)";
-  residual.title = "what the opened scan lacks, over what the noise explains";
-  residual.y = {"times what is expected", true, {}};
+  residual.title = "what the opened scan lacks";
+  residual.y = {"times what the noise explains", true, {}};
   volume.x.label = residual.x.label = "threshold and apex tolerance (nm)";
   PlotSeries v = curve("volume"), rms = curve("root mean square"), peaks = curve("largest 0.1 %");
   for (const SweptTip& t : sweep.curve) {
@@ -92,17 +93,28 @@ io::Plot tip_plot(const Tip& tip, const BestTipSummary& summary) {
   io::Plot plot;
   plot.title = "The most likely tip";
   PlotPanel risk;
+  double tolerance = 0;
   risk.title = "fits from outer bounds";
   risk.x.label = "threshold of the bound (nm)";
-  risk.y.label = "per pixel";
-  PlotSeries misfit = curve("misfit"), freedom = curve("free surface pixels"), sum = curve("risk");
+  risk.y = {"per pixel", true, {}};
   for (const TipCandidate& c : summary.candidates) {
-    for (PlotSeries* s : {&misfit, &freedom, &sum}) s->x.push_back(c.threshold_nm);
-    misfit.y.push_back(c.misfit);
-    freedom.y.push_back(c.freedom);
-    sum.y.push_back(c.risk);
+    if (risk.series.empty() || c.tolerance != tolerance) {   // another family of bounds
+      tolerance = c.tolerance;
+      const int color = static_cast<int>(risk.series.size() / 2);
+      for (const char* what : {"risk", "misfit"}) {
+        PlotSeries s = curve("");
+        s.name = fmt::format("{}, tolerance {:g} x threshold", what, tolerance);
+        s.color = color;
+        s.dashed = std::string(what) == "misfit";
+        risk.series.push_back(std::move(s));
+      }
+    }
+    PlotSeries* last = &risk.series[risk.series.size() - 2];
+    last[0].x.push_back(c.threshold_nm);
+    last[0].y.push_back(c.risk);
+    last[1].x.push_back(c.threshold_nm);
+    last[1].y.push_back(c.misfit);
   }
-  risk.series = {sum, misfit, freedom};
   risk.references.push_back({PlotDirection::vertical, summary.chosen.threshold_nm, "chosen"});
   plot.panels = {risk, profiles(tip, &summary.standard_error_nm)};
   return plot;

@@ -35,7 +35,7 @@ void check(const BestTipOptions& o) {
 }
 
 struct Start {
-  double threshold_nm = 0, volume_nm3 = 0;
+  double threshold_nm = 0, tolerance = 0, volume_nm3 = 0;
   Tip tip;
 };
 
@@ -77,7 +77,7 @@ class OuterBounds {
     o.apex_tolerance_nm = tolerance * threshold_nm;
     if (broader) o.start = broader->tip;
     BlindTipSummary ignored;
-    Start start{threshold_nm, 0, blind_tip(scans_, o, ignored, {}, cancel_)};
+    Start start{threshold_nm, tolerance, 0, blind_tip(scans_, o, ignored, {}, cancel_)};
     start.volume_nm3 = tip_volume_nm3(start.tip, range_nm_);
     return start;
   }
@@ -130,7 +130,7 @@ Tip best_tip(const std::vector<HeightField>& scans, const BestTipOptions& option
   for (const auto& family : by_tolerance) starts.insert(starts.end(), family.begin(), family.end());
   report(families);
   if (stopped()) return starts.empty() ? Tip{} : starts.back().tip;
-  for (const Start& s : starts) summary.candidates.push_back({s.threshold_nm, 0, 0, 0});
+  for (const Start& s : starts) summary.candidates.push_back({s.threshold_nm, s.tolerance, 0, 0, 0});
   std::vector<TipFit> fits(starts.size());
   parallel_for(fits.size(), threads, [&](std::size_t k, int) {
     if (stopped()) return;
@@ -139,7 +139,7 @@ Tip best_tip(const std::vector<HeightField>& scans, const BestTipOptions& option
     const bool hopeless = fits[k].misfit() > hopeless_misfit;
     if (!hopeless) fits[k].iterate(std::max(1, options.iterations / 16));
     TipCandidate& c = summary.candidates[k];
-    c = {c.threshold_nm, fits[k].misfit(), fits[k].freedom(),
+    c = {c.threshold_nm, c.tolerance, fits[k].misfit(), fits[k].freedom(),
          hopeless ? fits[k].risk() : fits[k].risk_when_thinned()};
   });
   report(total - 1);
@@ -161,7 +161,7 @@ Tip best_tip(const std::vector<HeightField>& scans, const BestTipOptions& option
     return fits[a].risk() < fits[b].risk();
   });
   const TipFit& fit = fits[best];
-  summary.chosen = {summary.candidates[best].threshold_nm, fit.misfit(), fit.freedom(), fit.risk()};
+  summary.chosen = {starts[best].threshold_nm, starts[best].tolerance, fit.misfit(), fit.freedom(), fit.risk()};
   summary.standard_error_nm = fit.standard_errors();
   for (const double e : summary.standard_error_nm.data()) summary.touched += std::isfinite(e);
   return fit.tip();

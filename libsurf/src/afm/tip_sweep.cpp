@@ -18,7 +18,8 @@ namespace {
 
 constexpr double peak_share = 1e-3;      // of the residuals
 constexpr double as_near = 1.1;         // times the least excess
-constexpr double too_much = 4;           // even of the least excess
+constexpr double too_much = 6;           // even of the least excess
+constexpr double smooths = 0.6;          // of the most noise that any tip's opening takes away
 constexpr double near_jump = 0.1;        // share of the thresholds between choice and jump that counts as near
 
 void check(const TipSweepOptions& o) {
@@ -202,11 +203,16 @@ TipSweep sweep_tips(const std::vector<HeightField>& scans, const TipSweepOptions
   }
   std::reverse(out.curve.begin(), out.curve.end());
   out.jump = above_the_jump(out.curve);
-  double least_excess = HUGE_VAL;
-  for (const SweptTip& t : out.curve) least_excess = std::min(least_excess, t.excess());
+  // A tip that the noise has made leaves the noise alone: it explains everything, and means nothing.
+  double most_expected = 0, least_excess = HUGE_VAL;
+  for (const SweptTip& t : out.curve) most_expected = std::max(most_expected, t.expected_nm);
+  const auto counts = [&](const SweptTip& t) { return t.expected_nm >= smooths * most_expected; };
+  for (const SweptTip& t : out.curve)
+    if (counts(t)) least_excess = std::min(least_excess, t.excess());
   for (std::size_t k = 0; k < out.curve.size(); ++k) {
-    out.curve[k].consistent = out.curve[k].excess() <= as_near * std::max(1.0, least_excess);
-    if (out.curve[k].consistent) out.chosen = k;
+    SweptTip& t = out.curve[k];
+    t.consistent = counts(t) && t.excess() <= as_near * std::max(1.0, least_excess);
+    if (t.consistent) out.chosen = k;
   }
   if (least_excess > too_much) {
     out.verdict = TipSweepVerdict::none;

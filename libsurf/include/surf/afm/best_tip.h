@@ -20,6 +20,7 @@ struct BestTipOptions {
 /// A tip that was fitted, from the outer bound at some threshold.
 struct TipCandidate {
   double threshold_nm = 0;   ///< of the outer bound
+  double tolerance = 0;      ///< apex tolerance of the bound, in thresholds
   double misfit = 0;         ///< e' R^-1 e per pixel: below 1 where noise is fitted, too
   double freedom = 0;        ///< surface pixels that are touched, per pixel
   double risk = 0;           ///< misfit + 2 freedom: Stein's estimate of the error, but for a constant

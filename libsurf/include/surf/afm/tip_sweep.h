@@ -39,7 +39,7 @@ struct SweptTip {
 enum class TipSweepVerdict {
   clear,         ///< the broadest consistent tip is the one just above the largest jump of volume, or near it
   disagreement,  ///< the broadest consistent tip lies elsewhere: look at the curve
-  none,          ///< no tip explains the scans: even the nearest leaves four times as much as the noise would
+  none,          ///< no tip explains the scans: even the nearest leaves six times as much as the noise would
   cancelled,
 };
 
@@ -54,8 +54,9 @@ struct TipSweep {
 /// (2000) 2385), and opens the scans by each. A tip that is too blunt does not reach into the scans as deep
 /// as it should, one that is too sharp follows the noise, except at a few peaks: both leave more of the scans
 /// than the noise does. What the noise leaves is simulated: it is added to the opening, and that opened
-/// again. Of those tips that come as near to it as any, the broadest is chosen (thesis, 10.1). Thresholds leave
-/// a little more than the noise by themselves. Throws InvalidInput, UsageError.
+/// again. Of those tips that come as near to it as any, the broadest is chosen (thesis, 10.1); tips that
+/// leave the noise in the scan, by less than 0.6 of what the best smoother takes away, do not count. Thresholds
+/// leave a little more than the noise by themselves. Throws InvalidInput, UsageError.
 TipSweep sweep_tips(const std::vector<HeightField>& scans, const TipSweepOptions& options,
                     const ProgressCallback& progress = {}, const CancelToken* cancel = nullptr);
 
