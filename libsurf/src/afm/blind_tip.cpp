@@ -158,7 +158,7 @@ class Reconstruction {
   // Points in batches that see the same tip: the result is that of any number of threads. True if the tip
   // has changed by more than rounding.
   bool carve(const std::vector<Point>& all) {
-    constexpr std::size_t batch = 128, share = 8;
+    constexpr std::size_t batch = 1024, share = 16;
     bool changed = false;
     for (std::size_t first = 0; first < all.size() && !stopped(); first += batch) {
       const std::size_t last = std::min(all.size(), first + batch);

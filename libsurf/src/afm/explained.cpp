@@ -11,19 +11,31 @@ namespace {
 
 constexpr float infinity = std::numeric_limits<float>::infinity();
 
-// out = min(out, in + offset) and max.
+constexpr int together = 4;   // samples of the tip: what is made is loaded and stored once for all
+
+// out(x) = min(out(x), in(x + k) + offset[k] of four).
 __attribute__((target_clones("avx512f", "avx2", "default"))) void lower_to(
-    float* __restrict out, const float* __restrict in, float offset, int count) {
-  for (int i = 0; i < count; ++i) {
-    const float v = in[i] + offset;
-    out[i] = v < out[i] ? v : out[i];
+    float* __restrict out, const float* __restrict in, const float* offset, int count) {
+  const float a = offset[0], b = offset[1], c = offset[2], d = offset[3];
+  for (int x = 0; x < count; ++x) {
+    const float v = in[x] + a, w = in[x + 1] + b, y = in[x + 2] + c, z = in[x + 3] + d;
+    const float vw = w < v ? w : v, yz = z < y ? z : y, least = yz < vw ? yz : vw;
+    out[x] = least < out[x] ? least : out[x];
   }
 }
+
+// out(x) = max(out(x), in(x - k) + offset[k] of four); -infinity + infinity does not count.
 __attribute__((target_clones("avx512f", "avx2", "default"))) void raise_to(
-    float* __restrict out, const float* __restrict in, float offset, int count) {
-  for (int i = 0; i < count; ++i) {
-    const float v = in[i] + offset;
-    out[i] = v > out[i] ? v : out[i];
+    float* __restrict out, const float* __restrict in, const float* offset, int count) {
+  const float a = offset[0], b = offset[1], c = offset[2], d = offset[3];
+  for (int x = 0; x < count; ++x) {
+    float most = out[x];
+    const float v = in[x] + a, w = in[x - 1] + b, y = in[x - 2] + c, z = in[x - 3] + d;
+    most = v > most ? v : most;
+    most = w > most ? w : most;
+    most = y > most ? y : most;
+    most = z > most ? z : most;
+    out[x] = most;
   }
 }
 
@@ -33,36 +45,36 @@ Grid<float> explained_height(const CarvedScan& scan, const CarvedTip& tip, int t
   // The apex may lie outside of the scan by as much as the tip is wide.
   const int w = scan.width() + tip.width - 1, h = scan.height() + tip.height - 1;
   const int left = tip.width - 1 - tip.apex_x, below = tip.height - 1 - tip.apex_y;   // apex at (x - left, y - below)
-  Grid<float> apex(w, h, infinity);
+  const auto offsets = [&](int i, int j, float sign, float* four) {   // beyond the tip those that change nothing
+    for (int k = 0; k < together; ++k) {
+      const auto at = static_cast<std::size_t>(j * tip.stride + i + k);
+      const bool there = i + k < tip.width && tip.z[at] > -infinity;
+      four[k] = !there ? -sign * infinity : sign > 0 ? tip.z[at] : tip.threshold[at] - tip.z[at];
+    }
+  };
+  Grid<float> apex(w + together, h, infinity);   // with a margin on the left
   parallel_for(static_cast<std::size_t>(h), threads, [&](std::size_t row, int) {
     const int y = static_cast<int>(row);
-    float* out = &apex(0, y);
+    float four[together];
     for (int j = 0; j < tip.height; ++j) {
       const int sy = y - below + (j - tip.apex_y);
-      if (sy < 0 || sy >= scan.height()) continue;
-      for (int i = 0; i < tip.width; ++i) {
-        const auto k = static_cast<std::size_t>(j * tip.stride + i);
-        if (tip.z[k] == -infinity) continue;
-        // Only where the scan is: beyond it everything is allowed.
-        const int shift = -left + (i - tip.apex_x);   // scan column of apex column 0
-        const int from = shift < 0 ? -shift : 0;
-        const int to = scan.width() - shift < w ? scan.width() - shift : w;
-        if (to > from)
-          lower_to(out + from, scan.top(from + shift, sy), tip.threshold[k] - tip.z[k], to - from);
+      if (sy < 0 || sy >= scan.height()) continue;   // beyond the scan everything is allowed
+      for (int i = 0; i < tip.width; i += together) {
+        offsets(i, j, -1, four);
+        lower_to(&apex(together, y), scan.top(i - tip.apex_x - left, sy), four, w);
       }
     }
   });
   Grid<float> out(scan.width(), scan.height(), -infinity);
   parallel_for(static_cast<std::size_t>(scan.height()), threads, [&](std::size_t row, int) {
     const int y = static_cast<int>(row);
-    for (int j = 0; j < tip.height; ++j) {
-      const int ay = y - (j - tip.apex_y) + below;
-      for (int i = 0; i < tip.width; ++i) {
-        const float z = tip.at(i, j);
-        if (z == -infinity) continue;
-        raise_to(&out(0, y), &apex(-(i - tip.apex_x) + left, ay), z, scan.width());
+    float four[together];
+    for (int j = 0; j < tip.height; ++j)
+      for (int i = 0; i < tip.width; i += together) {
+        offsets(i, j, 1, four);
+        raise_to(&out(0, y), &apex(together - (i - tip.apex_x) + left, y - (j - tip.apex_y) + below), four,
+                 scan.width());
       }
-    }
   });
   return out;
 }

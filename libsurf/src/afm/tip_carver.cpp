@@ -40,6 +40,18 @@ SURF_VECTORS float excess(const float* __restrict tip, const float* __restrict t
   return largest(most);
 }
 
+// Where the largest of tip - threshold - allowed is.
+SURF_VECTORS int place_of_excess(const float* __restrict tip, const float* __restrict threshold,
+                                 const float* __restrict allowed, float value) {
+  for (int k = 0;; k += lanes) {
+    int equal = 0;
+    for (int l = 0; l < lanes; ++l) equal += tip[k + l] - threshold[k + l] - allowed[k + l] == value;
+    if (equal == 0) continue;
+    while (!(tip[k] - threshold[k] - allowed[k] == value)) ++k;
+    return k;
+  }
+}
+
 // ways = tip - here where scan + tip - here >= -tolerance, else -infinity; rows of the scan run downwards.
 SURF_VECTORS void find(float* __restrict ways, const float* __restrict tip, const float* __restrict scan,
                        float here, float tolerance, int rows, int stride, std::ptrdiff_t scan_stride) {
@@ -68,6 +80,19 @@ SURF_VECTORS float best_of(const float* __restrict ways, const float* __restrict
         most[l] = v > most[l] ? v : most[l];   // not where v is NaN
       }
   return largest(most);
+}
+
+// Where that is.
+SURF_VECTORS int place_of_best(const float* __restrict ways, const float* __restrict scan, int stride,
+                               std::ptrdiff_t scan_stride, float value) {
+  for (int first = 0;; first += stride, scan -= scan_stride)
+    for (int i = 0; i < stride; i += lanes) {
+      int equal = 0;
+      for (int l = 0; l < lanes; ++l) equal += scan[i + l] + ways[first + i + l] == value;
+      if (equal == 0) continue;
+      while (!(scan[i] + ways[first + i] == value)) ++i;
+      return first + i;
+    }
 }
 
 }  // namespace
@@ -111,10 +136,7 @@ void TipCarver::carve(const CarvedScan& scan, int x, int y, const CarvedTip& tip
   for (;;) {
     const float worst = excess(tip.z.data(), tip.threshold.data(), allowed_.data(), count);
     if (!(worst > 0)) return;
-    int k = 0;
-    while (!(tip.z[static_cast<std::size_t>(k)] - tip.threshold[static_cast<std::size_t>(k)] -
-             allowed_[static_cast<std::size_t>(k)] == worst))
-      ++k;
+    const int k = place_of_excess(tip.z.data(), tip.threshold.data(), allowed_.data(), worst);
     const int u = k % tip.stride, v = k / tip.stride;
     const float* around = scan.top(x - (tip.width - 1) + u, y + v);   // of mirrored sample (0, 0)
     const float best = best_of(ways_.data(), around, tip.height, tip.stride, scan.stride());
@@ -125,12 +147,9 @@ void TipCarver::carve(const CarvedScan& scan, int x, int y, const CarvedTip& tip
       allowed_[at] = infinity;
       continue;
     }
-    for (int w = 0;; ++w) {
-      const int i = w % tip.stride, j = w / tip.stride;
-      if (ways_[static_cast<std::size_t>(w)] + around[i - j * scan.stride()] != best) continue;
-      try_way(tip.width - 1 - i, j, ways_[static_cast<std::size_t>(w)]);
-      break;
-    }
+    const int w = place_of_best(ways_.data(), around, tip.stride, scan.stride(), best);
+    if (best == infinity) allowed_[at] = infinity;   // beyond the border: all that is there
+    try_way(tip.width - 1 - w % tip.stride, w / tip.stride, ways_[static_cast<std::size_t>(w)]);
   }
 }
 

@@ -33,7 +33,7 @@ void check(const TipSweepOptions& o) {
   if (!(o.tolerance_per_threshold >= 0 && std::isfinite(o.tolerance_per_threshold)))
     throw UsageError("apex tolerance", "it must be 0 or more", "Give 1 times the threshold");
   if (o.draws < 2 || o.draws > 1000)
-    throw UsageError("draws", "their number must be 2 to 1000", "Ask for 4");
+    throw UsageError("draws", "their number must be 2 to 1000", "Ask for 3");
 }
 
 CarvedTip carved(const Tip& tip) {

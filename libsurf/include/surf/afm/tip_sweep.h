@@ -18,7 +18,7 @@ struct TipSweepOptions {
                                       ///< both 0: 0.3 to 8 standard deviations of the noise
   int thresholds = 40;            ///< 2 to 10000
   double tolerance_per_threshold = 1;   ///< apex tolerance, >= 0; 0 is Villarrubia's algorithm
-  int draws = 4;                  ///< of the noise, to tell what residuals to expect, 2 to 1000
+  int draws = 3;                  ///< of the noise, to tell what residuals to expect, 2 to 1000
   std::uint64_t seed = 1;         ///< of the draws
 };
 
