@@ -4,13 +4,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <limits>
 #include <memory>
+#include <span>
 
 #include "afm_options.h"
 #include "commands.h"
 #include "common_options.h"
 #include "options.h"
+#include "surf/afm/height_range.h"
 #include "surf/core/error.h"
 #include "surf/core/units.h"
 #include "terminal.h"
@@ -62,14 +63,8 @@ double parse_distance(const std::optional<std::string>& text) {
 }
 
 std::string relief(const HeightField& f) {
-  double low = std::numeric_limits<double>::infinity(), high = -low;
-  for (int y = 0; y < f.z_nm.height(); ++y)
-    for (int x = 0; x < f.z_nm.width(); ++x) {
-      if (!f.is_valid(x, y)) continue;
-      low = std::min(low, f.z_nm(x, y));
-      high = std::max(high, f.z_nm(x, y));
-    }
-  return fmt::format("{} to {}", format_length(low), format_length(high));
+  const HeightRange range = height_range(std::span(&f, 1));
+  return fmt::format("{} to {}", format_length(range.low_nm), format_length(range.high_nm));
 }
 
 int work(const Command& command, const Options& o) {

@@ -11,6 +11,7 @@
 #include "options.h"
 #include "surf/afm/best_tip.h"
 #include "surf/afm/characterizer.h"
+#include "surf/afm/height_range.h"
 #include "surf/afm/noise_estimate.h"
 #include "surf/afm/tip_measure.h"
 #include "surf/afm/tip_sweep.h"
@@ -203,18 +204,6 @@ int print_sweep(const TipSweep& sweep, bool quiet) {
   return 4;
 }
 
-double range_of(const std::vector<HeightField>& scans) {
-  double low = HUGE_VAL, high = -HUGE_VAL;
-  for (const HeightField& s : scans)
-    for (int y = 0; y < s.z_nm.height(); ++y)
-      for (int x = 0; x < s.z_nm.width(); ++x)
-        if (s.is_valid(x, y)) {
-          low = std::min(low, s.z_nm(x, y));
-          high = std::max(high, s.z_nm(x, y));
-        }
-  return high - low;
-}
-
 std::map<std::string, std::string> made_by(const Options& o, const Plan& p, const AfmNoise* noise,
                                            double threshold_nm) {
   constexpr const char* answers[] = {"sweep", "outer bound", "best estimate", "blind"};
@@ -269,7 +258,7 @@ int by_characterizer(const Options& o) {
   if (o.quiet) return 0;
   fmt::print("{:<10} found at sample ({}, {}) of the scan, {} above; residual {}\n", "known", found.offset_x,
              found.offset_y, format_length(found.offset_z_nm), format_length(found.residual_nm));
-  print_tip(found.tip, std::max(range_of(scans), 1e-9));
+  print_tip(found.tip, std::max(height_range(scans).span_nm(), 1e-9));
   fmt::print("{:<10} {}\n", "written", *o.output);
   return 0;
 }
@@ -344,7 +333,7 @@ int work(const Options& o) {
   if (o.plot) io::write_plot(*o.plot, plot);
   const double sigma = p.noise ? std::sqrt(p.noise->variance_nm2()) : 0;
   const std::vector<double> open_ways = unconstrained_directions(tip, threshold_nm + 3 * sigma);
-  if (!o.quiet) print_tip(tip, std::max(range_of(scans), 1e-9));
+  if (!o.quiet) print_tip(tip, std::max(height_range(scans).span_nm(), 1e-9));
   if (!open_ways.empty())
     print_warning(fmt::format("the scan does not tell the tip's shape towards {} degrees (counter-clockwise "
                               "from +x): nothing there is steep enough. What is given is the bluntest tip "

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "surf/afm/blind_tip.h"
+#include "surf/afm/height_range.h"
 #include "surf/afm/tip_measure.h"
 #include "surf/core/error.h"
 #include "surf/core/parallel.h"
@@ -60,15 +61,7 @@ class OuterBounds {
     options_.width = options.width;
     options_.height = options.height;
     options_.threads = 1;   // frames are small: whole families of bounds run beside each other
-    double low = HUGE_VAL, high = -HUGE_VAL;
-    for (const HeightField& s : scans)
-      for (int y = 0; y < s.z_nm.height(); ++y)
-        for (int x = 0; x < s.z_nm.width(); ++x)
-          if (s.is_valid(x, y)) {
-            low = std::min(low, s.z_nm(x, y));
-            high = std::max(high, s.z_nm(x, y));
-          }
-    range_nm_ = std::max(high - low, 1e-9);
+    range_nm_ = std::max(height_range(scans).span_nm(), 1e-9);
   }
 
   Start at(double threshold_nm, double tolerance, const Start* broader) const {

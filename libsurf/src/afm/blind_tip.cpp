@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "explained.h"
+#include "surf/afm/height_range.h"
 #include "surf/core/error.h"
 #include "surf/core/parallel.h"
 #include "tip_carver.h"
@@ -49,22 +50,15 @@ void check(const std::vector<HeightField>& scans, const BlindTipOptions& o) {
 // Heights about the middle of all scans, so that floats hold them to 1e-7 of the range. `slack_nm` is then
 // more than sums of a few of them can be off: what holds exactly must not fail by rounding.
 std::vector<Grid<float>> rebased(const std::vector<HeightField>& scans, float& slack_nm) {
-  double low = HUGE_VAL, high = -HUGE_VAL;
+  const HeightRange range = height_range(scans);
+  const double middle_nm = 0.5 * (range.low_nm + range.high_nm);
   std::vector<Grid<float>> out;
-  for (const HeightField& s : scans)
-    for (int y = 0; y < s.z_nm.height(); ++y)
-      for (int x = 0; x < s.z_nm.width(); ++x)
-        if (s.is_valid(x, y)) {
-          low = std::min(low, s.z_nm(x, y));
-          high = std::max(high, s.z_nm(x, y));
-        }
-  if (low > high) throw InvalidInput("scan", "it has no valid pixel", "Give another");
-  slack_nm = static_cast<float>(0x1p-20 * (high - low));
+  slack_nm = static_cast<float>(0x1p-20 * range.span_nm());
   for (const HeightField& s : scans) {
     Grid<float>& z = out.emplace_back(s.z_nm.width(), s.z_nm.height(), std::numeric_limits<float>::quiet_NaN());
     for (int y = 0; y < z.height(); ++y)
       for (int x = 0; x < z.width(); ++x)
-        if (s.is_valid(x, y)) z(x, y) = static_cast<float>(s.z_nm(x, y) - 0.5 * (low + high));
+        if (s.is_valid(x, y)) z(x, y) = static_cast<float>(s.z_nm(x, y) - middle_nm);
   }
   return out;
 }

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "surf/afm/height_range.h"
+
 namespace surf {
 
 namespace {
@@ -36,17 +38,10 @@ TipFit::TipFit(const std::vector<HeightField>& scans, const AfmNoise& noise, con
     : noise_(noise), tip_(start),
       left_(std::max(start.apex_x, start.z_nm.width() - 1 - start.apex_x)),
       below_(std::max(start.apex_y, start.z_nm.height() - 1 - start.apex_y)) {
-  double low = HUGE_VAL, high = -HUGE_VAL;
-  for (const HeightField& s : scans)
-    for (int y = 0; y < s.z_nm.height(); ++y)
-      for (int x = 0; x < s.z_nm.width(); ++x)
-        if (s.is_valid(x, y)) {
-          low = std::min(low, s.z_nm(x, y));
-          high = std::max(high, s.z_nm(x, y));
-        }
+  const HeightRange range = height_range(scans);
   for (int j = 0; j < tip_.z_nm.height(); ++j)
     for (int i = 0; i < tip_.z_nm.width(); ++i)
-      if (tip_.z_nm(i, j) > low - high) samples_.push_back({i, j});
+      if (tip_.z_nm(i, j) > -range.span_nm()) samples_.push_back({i, j});
   for (const HeightField& s : scans) {
     Frame f;
     f.width = s.z_nm.width();
@@ -64,7 +59,7 @@ TipFit::TipFit(const std::vector<HeightField>& scans, const AfmNoise& noise, con
     for (int y = 0; y < f.height; ++y)
       for (int x = 0; x < f.width; ++x) {
         const auto k = static_cast<std::size_t>(y * f.row + x);
-        f.scan[k] = s.is_valid(x, y) ? static_cast<float>(s.z_nm(x, y) - low)
+        f.scan[k] = s.is_valid(x, y) ? static_cast<float>(s.z_nm(x, y) - range.low_nm)
                                      : std::numeric_limits<float>::quiet_NaN();
         if (!s.is_valid(x, y)) continue;
         pixels_ += 1;

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "explained.h"
+#include "surf/afm/height_range.h"
 #include "surf/afm/tip_measure.h"
 #include "surf/core/error.h"
 #include "surf/core/parallel.h"
@@ -73,20 +74,13 @@ class Opener {
  public:
   Opener(const std::vector<HeightField>& scans, const TipSweepOptions& o)
       : options_(o), threads_(resolve_threads(o.blind.threads)) {
-    double low = HUGE_VAL;
-    for (const HeightField& s : scans)
-      for (int y = 0; y < s.z_nm.height(); ++y)
-        for (int x = 0; x < s.z_nm.width(); ++x)
-          if (s.is_valid(x, y)) {
-            low = std::min(low, s.z_nm(x, y));
-            high_ = std::max(high_, s.z_nm(x, y));
-          }
-    range_nm_ = high_ - low;
+    const HeightRange range = height_range(scans);
+    range_nm_ = range.span_nm();
     for (const HeightField& s : scans) {
       Grid<float>& z = heights_.emplace_back(s.z_nm.width(), s.z_nm.height(), NAN);
       for (int y = 0; y < z.height(); ++y)
         for (int x = 0; x < z.width(); ++x)
-          if (s.is_valid(x, y)) z(x, y) = static_cast<float>(s.z_nm(x, y) - low);
+          if (s.is_valid(x, y)) z(x, y) = static_cast<float>(s.z_nm(x, y) - range.low_nm);
     }
     for (int d = 0; d < o.draws; ++d)
       for (std::size_t s = 0; s < heights_.size(); ++s)
@@ -134,7 +128,7 @@ class Opener {
 
   const TipSweepOptions& options_;
   int threads_;
-  double high_ = -HUGE_VAL, range_nm_ = 0;
+  double range_nm_ = 0;
   std::vector<Grid<float>> heights_;
   std::vector<Grid<double>> noise_;   // draw by draw, scan by scan
 };
