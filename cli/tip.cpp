@@ -105,8 +105,9 @@ Plan make_plan(const Options& o) {
   else throw UsageError("--answer", fmt::format("'{}' is none", answer), "Choose sweep, outer, best or blind");
   if (p.answer == Answer::blind && !o.threshold)
     throw UsageError("--threshold", "this answer needs one", "Add --threshold 0.5nm, or leave out --answer");
-  if (p.answer != Answer::blind && (o.threshold || o.maxima || o.apex_tolerance || o.layer))
-    throw UsageError(o.threshold ? "--threshold" : o.maxima ? "--maxima" : o.layer ? "--layer" : "--apex-tolerance",
+  if (p.answer != Answer::blind && (o.threshold || o.threshold_y || o.maxima || o.apex_tolerance || o.layer))
+    throw UsageError(o.threshold ? "--threshold" : o.threshold_y ? "--threshold-y" : o.maxima ? "--maxima"
+                     : o.layer ? "--layer" : "--apex-tolerance",
                      "this answer finds its own", "Leave it out, or --answer");
   if (o.sweep && p.answer != Answer::sweep)
     throw UsageError("--sweep", "this answer does not sweep", "Leave out one of the two");

@@ -42,12 +42,7 @@ void check_range(const std::string& file, const HeightField& field) {
 }
 
 Image image_of(const HeightField& field, const std::map<std::string, std::string>& metadata) {
-  Image image;
-  image.pitch_x_nm = field.pitch_x_nm;
-  image.pitch_y_nm = field.pitch_y_nm;
-  image.origin_x_nm = field.origin_x_nm;
-  image.origin_y_nm = field.origin_y_nm;
-  image.metadata = metadata;
+  Image image = head_of(field, metadata);
   Grid<float> values(field.z_nm.width(), field.z_nm.height());
   for (int y = 0; y < values.height(); ++y)
     for (int x = 0; x < values.width(); ++x)

@@ -132,3 +132,4 @@ semsurf_cli_usage(tip_sweep "--sweep: '1nm' is no sweep" tip steps.txt --sweep 1
 semsurf_cli_usage(tip_shape "--shape: 'spoon:1nm' is no shape" tip --shape spoon:1nm -o tip.gsf)
 semsurf_cli_usage(tip_cone "--shape: cone:5nm,120deg" tip --shape cone:5nm,120deg -o tip.gsf)
 semsurf_cli_unusable(tip_too_large "tip size: 101 x 101 samples are more than the scan's 24 x 20" tip steps.txt --size 101 --threshold 1nm -o tip.gsf)
+semsurf_cli_usage(tip_threshold_y "--threshold-y: this answer finds its own" tip steps.txt --threshold-y 1nm -o tip.gsf)

@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -28,6 +29,19 @@ inline std::string content_of(const std::filesystem::path& path) {
 inline std::ptrdiff_t files_in(const std::filesystem::path& folder) {
   return std::distance(std::filesystem::directory_iterator(folder), {});
 }
+
+/// Files that are not part of the repository, under `root_`; skips where they are not there.
+class RealFiles : public testing::Test {
+ protected:
+  void SetUp() override {
+    const char* const folder = std::getenv("SEMSURF_TEST_DATA");
+    if (!folder || !std::filesystem::exists(folder))
+      GTEST_SKIP() << "SEMSURF_TEST_DATA names no folder: real files are not tested";
+    root_ = folder;
+  }
+
+  std::filesystem::path root_;
+};
 
 /// What the exception of type E that `work` throws says; empty (and a failure) if it throws none.
 template <class E, class Work>

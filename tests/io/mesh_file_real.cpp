@@ -13,14 +13,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-class RealMeshes : public testing::Test {
+class RealMeshes : public test::RealFiles {
  protected:
   void SetUp() override {
-    const char* const folder = std::getenv("SEMSURF_TEST_DATA");
-    if (!folder || !fs::exists(folder)) {
-      GTEST_SKIP() << "SEMSURF_TEST_DATA names no folder: real files are not tested";
-    }
-    root_ = folder;
+    RealFiles::SetUp();
+    if (IsSkipped()) return;
     truth_ = nlohmann::json::parse(read_file(root_ / "truth" / "meshes.json"));
   }
 
@@ -32,7 +29,6 @@ class RealMeshes : public testing::Test {
     return nullptr;
   }
 
-  fs::path root_;
   nlohmann::json truth_;
 };
 

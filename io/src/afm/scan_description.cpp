@@ -3,7 +3,6 @@
 #include "scan_formats.h"
 
 namespace surf::io {
-namespace {
 
 Image head_of(const HeightField& field, const std::map<std::string, std::string>& metadata) {
   Image head;
@@ -14,8 +13,6 @@ Image head_of(const HeightField& field, const std::map<std::string, std::string>
   head.metadata = metadata;
   return head;
 }
-
-}  // namespace
 
 std::string description_of(const HeightField& field, const std::map<std::string, std::string>& metadata) {
   std::string text;

@@ -8,6 +8,7 @@
 
 #include "scan.h"
 #include "surf/core/height_field.h"
+#include "surf/core/image.h"
 
 namespace surf::io {
 
@@ -51,6 +52,9 @@ Scan parse_text_scan(const std::string& file, std::string_view content);
 
 /// EXR, TIFF, PNG and VTI: semsurf's own, and plain ones.
 Scan parse_image_scan(const std::filesystem::path& path);
+
+/// A field's placement and metadata, without its heights.
+Image head_of(const HeightField& field, const std::map<std::string, std::string>& metadata);
 
 /// How a field of ours is described in files: "KEY" to "VALUE" (image_formats.h).
 std::string description_of(const HeightField& field, const std::map<std::string, std::string>& metadata);

@@ -173,8 +173,7 @@ TipSweep sweep_tips(const std::vector<HeightField>& scans, const TipSweepOptions
   const bool given = options.most_nm > 0;
   const double least = given ? options.least_nm : 0.3 * sigma, most = given ? options.most_nm : 8 * sigma;
   BlindTipOptions blind = options.blind;
-  const double ratio = blind.threshold_y_nm && blind.threshold_nm > 0
-                           ? *blind.threshold_y_nm / blind.threshold_nm : 1;
+  blind.threshold_y_nm.reset();
   TipSweep out;
   const Opener opener(scans, options);
   for (int n = options.thresholds - 1; n >= 0; --n) {   // each begins with the tip of the threshold above
@@ -182,7 +181,6 @@ TipSweep sweep_tips(const std::vector<HeightField>& scans, const TipSweepOptions
     swept.threshold_nm = least + (most - least) * n / (options.thresholds - 1);
     blind.threshold_nm = swept.threshold_nm;
     blind.apex_tolerance_nm = options.tolerance_per_threshold * swept.threshold_nm;
-    blind.threshold_y_nm = ratio * swept.threshold_nm;
     BlindTipSummary ignored;
     swept.tip = blind_tip(scans, blind, ignored, {}, cancel);
     if (cancel && cancel->cancelled()) {

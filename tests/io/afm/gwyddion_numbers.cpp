@@ -6,12 +6,9 @@
 // - its heights are quantised to a 10,000th of their range for blind tips;
 // - beyond the border its morphology repeats the edge, ours takes what is known: compared inside only;
 // - its median filter is compared in bench_level alone (docs/methods/levelling.md).
-#include <gtest/gtest.h>
-
 #include <cmath>
-#include <cstdlib>
-#include <filesystem>
 
+#include "../io_test.h"
 #include "surf/afm/background.h"
 #include "surf/afm/blind_tip.h"
 #include "surf/afm/morphology.h"
@@ -21,13 +18,12 @@
 namespace surf::io {
 namespace {
 
-class GwyddionNumbers : public testing::Test {
+class GwyddionNumbers : public test::RealFiles {
  protected:
   void SetUp() override {
-    const char* const folder = std::getenv("SEMSURF_TEST_DATA");
-    if (!folder || !std::filesystem::exists(folder))
-      GTEST_SKIP() << "SEMSURF_TEST_DATA names no folder: real files are not tested";
-    scan_ = read_height_field(std::filesystem::path(folder) / "afm" / "Park_034.gwy").field;
+    RealFiles::SetUp();
+    if (IsSkipped()) return;
+    scan_ = read_height_field(root_ / "afm" / "Park_034.gwy").field;
     scan_.pitch_x_nm = scan_.pitch_y_nm = 1;   // as there: one unit per pixel
   }
 

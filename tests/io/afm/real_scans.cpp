@@ -15,16 +15,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-class RealScans : public testing::Test {
+class RealScans : public test::RealFiles {
  protected:
-  void SetUp() override {
-    const char* const folder = std::getenv("SEMSURF_TEST_DATA");
-    if (!folder || !fs::exists(folder)) {
-      GTEST_SKIP() << "SEMSURF_TEST_DATA names no folder: real files are not tested";
-    }
-    root_ = folder;
-  }
-
   fs::path scan(const std::string& name) const { return root_ / "afm" / name; }
   nlohmann::json facts(const std::string& name) const {
     return nlohmann::json::parse(read_file(root_ / "truth" / (name + ".json")));
@@ -36,8 +28,6 @@ class RealScans : public testing::Test {
     std::memcpy(values.data(), bytes.data(), bytes.size());
     return values;
   }
-
-  fs::path root_;
 };
 
 /// Every pixel, to the last digit of the truth's 32 bits.

@@ -36,8 +36,8 @@ struct BestTipSummary {
 /// The tip and the surfaces that make the scans most likely: scan = dilation of the surface by the tip plus
 /// noise. Surfaces are free, so sharper tips always fit better, noise as well as the surface. Two
 /// things keep the tip blunt, and neither needs a number set by hand:
-/// - each sample is as likely to be an e-th lower as it is 1 noise standard deviation deeper: a pull that a
-///   few contacts outweigh, and that raises what nothing touches;
+/// - a sample is less likely by a factor e for each standard deviation of the noise that it lies deeper: a
+///   pull that a few contacts outweigh, and that raises what nothing touches;
 /// - fits from 32 of blind_tip's outer bounds, at thresholds of 2.5 to 7 standard deviations, closer where
 ///   the tip's volume jumps, and two apex tolerances, are compared by
 ///   Stein's unbiased risk estimate (Ann. Stat. 9 (1981) 1135), which counts the surface's pixels in use.

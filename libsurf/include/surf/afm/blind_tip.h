@@ -45,7 +45,6 @@ struct BlindTipSummary {
   BlindTipEnd end = BlindTipEnd::converged;
   int rounds = 0;                   ///< passes over all scans
   std::int64_t points = 0;          ///< points of the scans that were tried on the tip
-  std::int64_t unexplained = 0;     ///< points that the tip cannot have made within the threshold
 };
 
 /// The largest tip that can have made every point of every scan: the outer bound of the true one where

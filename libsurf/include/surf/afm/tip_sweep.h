@@ -10,8 +10,7 @@
 namespace surf {
 
 struct TipSweepOptions {
-  /// Size, border, start and threads of each reconstruction. Threshold and apex tolerance are the sweep's;
-  /// `threshold_y_nm` keeps its ratio to `threshold_nm`.
+  /// Size, border, start and threads of each reconstruction. Thresholds and apex tolerance are the sweep's.
   BlindTipOptions blind;
   AfmNoise noise;                 ///< of the scans
   double least_nm = 0, most_nm = 0;   ///< thresholds, evenly from one to the other, 0 <= least < most;
@@ -51,12 +50,12 @@ struct TipSweep {
 };
 
 /// Finds the threshold by itself: reconstructs the tip at many (Dongmo et al., J. Vac. Sci. Technol. B 18
-/// (2000) 2385), and opens the scans by each. A tip that is too blunt does not reach into the scans as deep
-/// as it should, one that is too sharp follows the noise, except at a few peaks: both leave more of the scans
-/// than the noise does. What the noise leaves is simulated: it is added to the opening, and that opened
-/// again. Of those tips that come as near to it as any, the broadest is chosen (thesis, 10.1); tips that
-/// leave the noise in the scan, by less than 0.6 of what the best smoother takes away, do not count. Thresholds
-/// leave a little more than the noise by themselves. Throws InvalidInput, UsageError.
+/// (2000) 2385), and opens the scans by each. An opening by too blunt a tip lacks more of the scans than the
+/// noise explains. What that is, is simulated: noise is added to the opening, and that opened again. Of
+/// the tips that come as near to it as any, the broadest is chosen (thesis, 10.1). Tips that noise has
+/// sharpened leave it in the scans: those whose opening takes less than 0.6 of the noise away that the
+/// smoothest takes do not count. Thresholds blunt tips, so a little more than the noise is always lacking.
+/// Throws InvalidInput, UsageError.
 TipSweep sweep_tips(const std::vector<HeightField>& scans, const TipSweepOptions& options,
                     const ProgressCallback& progress = {}, const CancelToken* cancel = nullptr);
 
