@@ -95,7 +95,10 @@ int work(const Options& o) {
       print_note(fmt::format("a noise of {} is taken from neighbouring pixels; --noise says otherwise",
                              format_length(options.noise_nm)));
   }
+  Watched watched(!o.quiet);
+  options.watch = watched.watch();
   const CertaintyMap map = certainty_map(scan.field, tip, options);
+  watched.clear();
   std::map<std::string, std::string> made{{"noise_nm", fmt::format("{}", options.noise_nm)},
                                           {"sigmas", fmt::format("{}", options.sigmas)},
                                           {"neighbourhood_px", fmt::format("{}", map.neighbourhood)},

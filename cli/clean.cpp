@@ -94,21 +94,26 @@ std::map<std::string, std::string> recorded(const Options& o) {
 }
 
 int work(const Options& o) {
-  const Plan plan = make_plan(o);
+  Plan plan = make_plan(o);
   HeightField field = read_scan(o.scan, o.quiet).field;
   CleanSummary summary;
+  Watched watched(!o.quiet);
   const auto report = [&](const char* what) {
+    watched.clear();
     if (!o.quiet) print_summary(what, summary, field);
   };
   if (plan.spikes) {
+    plan.spikes->watch = watched.watch();
     field = median_filter(field, *plan.spikes, summary);
     report("spikes");
   }
   if (plan.median) {
+    plan.median->watch = watched.watch();
     field = median_filter(field, *plan.median, summary);
     report("median");
   }
   if (plan.closing) {
+    plan.closing->watch = watched.watch();
     field = flat_closing(field, *plan.closing, summary);
     report("closing");
   }

@@ -109,7 +109,7 @@ void print_inliers(const HoughSummary& s) {
 
 /// Levels by the method; returns what rows should go by.
 Grid<unsigned char> level(HeightField& field, const Options& o, const Plan& plan, const Grid<unsigned char>& use,
-                          bool report) {
+                          bool report, Watched& watched, const Watch& watch) {
   if (o.method == "none") return use;
   if (o.method == "polynomial") {
     subtract(field, fit_polynomial(field, plan.degree, use));
@@ -121,7 +121,10 @@ Grid<unsigned char> level(HeightField& field, const Options& o, const Plan& plan
     subtract(field, plane);
     return use;
   }
-  const HoughSummary s = find_plane(field, plan.hough, use);
+  HoughOptions hough = plan.hough;
+  hough.watch = watch;
+  const HoughSummary s = find_plane(field, hough, use);
+  watched.clear();
   if (report && !o.quiet) {
     print_plane(s.plane);
     print_inliers(s);
@@ -158,7 +161,9 @@ int work(const Options& o) {
   const Plan plan = make_plan(o);
   HeightField field = read_scan(o.scan, o.quiet).field;
   const Grid<unsigned char> use = read_masks(o.masks, field);
-  Grid<unsigned char> substrate = level(field, o, plan, use, !plan.rows);
+  Watched watched(!o.quiet);
+  Grid<unsigned char> substrate =
+      level(field, o, plan, use, !plan.rows, watched, watched.watch(0, plan.rows ? 0.4 : 0.9));
   if (plan.rows) {
     const RowLevel rows = level_rows(field, *plan.rows, substrate);
     if (!o.quiet) {
@@ -167,7 +172,7 @@ int work(const Options& o) {
                  rows.rows_without_samples
                      ? fmt::format("; {} without a sample to go by, as the nearest", rows.rows_without_samples) : "");
     }
-    substrate = level(field, o, plan, use, true);
+    substrate = level(field, o, plan, use, true, watched, watched.watch(0.5, 0.9));
   }
   if (!o.quiet) {
     print_roughness("roughness", use.empty() ? "all" : "what counts", measure_roughness(field, use));

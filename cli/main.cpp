@@ -21,6 +21,7 @@ using namespace surf::cli;
 
 constexpr int exit_usage = 2;
 constexpr int exit_unusable = 3;
+constexpr int exit_interrupted = 130;
 
 constexpr const char* examples = R"(Examples:
   semsurf simulate cube.stl --material Si --substrate Si --tilt 40 -o cube.exr -o cube.png
@@ -124,6 +125,9 @@ int act(const Action& action) {
   } catch (const UsageError& error) {
     print_error(error.what());
     return exit_usage;
+  } catch (const Interrupted&) {
+    print_note("stopped; nothing was written");
+    return exit_interrupted;
   } catch (const std::bad_alloc&) {
     print_error("memory: there is not enough for this. Use fewer pixels or a smaller mesh");
   } catch (const std::exception& error) {

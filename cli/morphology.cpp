@@ -77,7 +77,10 @@ int work(const Command& command, const Options& o) {
   if (!o.tip) throw UsageError("--tip", "no tip is given", "Add --tip tip.gsf");
   const io::HeightFieldFile scan = read_scan(o.input, o.quiet);
   const Tip tip = read_tip_for(o.tip, scan.field, o.quiet);
+  Watched watched(!o.quiet);
+  options.watch = watched.watch();
   const HeightField result = command.run(scan.field, tip, distance, options);
+  watched.clear();
   std::map<std::string, std::string> made{{"upsample", fmt::format("{}", options.upsample)},
                                           {"distance_nm", fmt::format("{}", distance)}};
   if (!scan.channel.empty()) made["channel"] = scan.channel;

@@ -57,8 +57,9 @@ Findings of_flat_scan(const HeightField& field, const FlatNoiseOptions& options,
 }
 
 Findings of_substrate(const HeightField& field, const FlatNoiseOptions& options, const Grid<unsigned char>& use,
-                      bool quiet) {
+                      bool quiet, Watched& watched) {
   SubstrateNoise s = estimate_substrate_noise(field, options, use);
+  watched.clear();
   if (!quiet)
     fmt::print("{:<12} {:.1f} % of the image; the next plane holds {:.1f} %\n", "substrate", 100 * s.substrate_share,
                100 * s.plane.runner_up_share);
@@ -109,7 +110,9 @@ int work(const Options& o) {
   if (o.plot) io::check_plot_target(*o.plot);
   const HeightField field = read_scan(o.scan, o.quiet).field;
   const Grid<unsigned char> use = read_masks(o.masks, field);
-  const Findings f = o.flat ? of_flat_scan(field, options, use) : of_substrate(field, options, use, o.quiet);
+  Watched watched(!o.quiet);
+  options.watch = watched.watch(0, 0.8);
+  const Findings f = o.flat ? of_flat_scan(field, options, use) : of_substrate(field, options, use, o.quiet, watched);
   print_model("noise", f.estimate);
   if (!o.quiet) print_differences(field);
   if (!(f.estimate.noise.innovation_nm2 > 0)) {

@@ -91,9 +91,10 @@ void ProgressBar::clear() {
 void ProgressBar::show(double done, double total, const char* things) {
   if (!active_ || !(total > 0)) return;
   const auto now = Clock::now();
-  if (!started_ || things_ != things || done < last_done_) {
+  const char* const name = things ? things : "";
+  if (!started_ || things_ != name || done < last_done_) {
     started_ = true;
-    things_ = things;
+    things_ = name;
     start_ = next_ = now;
     done_at_start_ = done;
   }
@@ -106,8 +107,8 @@ void ProgressBar::show(double done, double total, const char* things) {
   std::string numbers = fmt::format(" {:3.0f} %", 100 * fraction);
   if (seconds > 0 && done > done_at_start_) {
     const double rate = (done - done_at_start_) / seconds;
-    numbers += fmt::format("  {} {}/s  {} left", format_count(rate), things_,
-                           format_duration((total - done) / rate));
+    if (things) numbers += fmt::format("  {} {}/s", format_count(rate), things_);
+    numbers += fmt::format("  {} left", format_duration((total - done) / rate));
   }
   const int room = terminal_columns() - static_cast<int>(numbers.size()) - 4;
   const int width = std::clamp(room, 0, 40);
@@ -124,6 +125,11 @@ InterruptGuard::InterruptGuard() {
 InterruptGuard::~InterruptGuard() {
   handle_interrupts(SIG_DFL);
   interrupted_token.store(nullptr);
+}
+
+Watch Watched::watch(double from, double to) {
+  const Watch whole{[this](double done, double total) { bar_.show(done, total, nullptr); }, guard_.token()};
+  return whole.part(from, to);
 }
 
 }  // namespace surf::cli

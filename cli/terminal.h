@@ -34,7 +34,7 @@ class ProgressBar {
   ProgressBar(const ProgressBar&) = delete;
   ProgressBar& operator=(const ProgressBar&) = delete;
 
-  /// `things` are what is counted; other things than before begin a new bar.
+  /// `things` are what is counted, null if it is nothing; other things than before begin a new bar.
   void show(double done, double total, const char* things = "primaries");
 
   /// Makes room for a message; the bar comes back with the next `show`.
@@ -63,6 +63,21 @@ class InterruptGuard {
 
  private:
   CancelToken token_;
+};
+
+/// A bar and Ctrl-C for work that takes a `Watch`. One at a time.
+class Watched {
+ public:
+  explicit Watched(bool bar_wanted) : bar_(bar_wanted) {}
+
+  /// Of the part of the command's work from `from` to `to`, in [0, 1].
+  Watch watch(double from = 0, double to = 1);
+  /// Makes room for a message.
+  void clear() { bar_.clear(); }
+
+ private:
+  InterruptGuard guard_;
+  ProgressBar bar_;
 };
 
 }  // namespace surf::cli

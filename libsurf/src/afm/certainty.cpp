@@ -67,10 +67,11 @@ Tip kept_away(const Tip& tip, double distance_nm, int width, int height) {
   return out;
 }
 
-Heights eroded(const Heights& upside_down, const Tip& tip, double quantum, int threads) {
+Heights eroded(const Heights& upside_down, const Tip& tip, double quantum, int threads,
+               const Watch& watch) {
   const TipQuanta b = quantise(reflected(tip), quantum, upside_down.z.width(), upside_down.z.height());
   Heights out{{}, -upside_down.top};
-  max_plus::convolve(upside_down.z, b.z, b.apex_x, b.apex_y, threads, out.z);
+  max_plus::convolve(upside_down.z, b.z, b.apex_x, b.apex_y, threads, out.z, nullptr, max_plus::Unit::best, watch);
   Quanta top = 0;   // of -z, whose values are from 0 up
   for (const Quanta z : out.z.data())
     if (z >= lowest) top = std::max(top, -z);
@@ -127,7 +128,8 @@ CertaintyMap certainty_map(const HeightField& image, const Tip& given, const Cer
   const int above = std::min(tip.apex_y, h), below = std::min(tip.z_nm.height() - 1 - tip.apex_y, h);
   const HeightField wide = framed(image, left, below, right, above);
   const double quantum = choose_quantum(wide, tip, {});
-  const Heights surface = eroded(quantise(wide, -1, quantum), tip, quantum, options.threads);
+  const Heights surface = eroded(quantise(wide, -1, quantum), tip, quantum, options.threads,
+                                 options.watch.part(0, 0.3));
 
   CertaintyMap out;
   // 32-bit floats, in which most scans are stored, round to 2^-24 of a height.
@@ -145,7 +147,8 @@ CertaintyMap certainty_map(const HeightField& image, const Tip& given, const Cer
       least.data()[i] = static_cast<Quanta>(std::clamp(heights.z.data()[i] + to_least, double{lowest}, 0x1p29));
 
   const TipQuanta b = quantise(tip, quantum, wide.z_nm.width(), wide.z_nm.height());
-  const Grid<Touch> touches = max_plus::touching(surface.z, b.z, b.apex_x, b.apex_y, least, options.threads);
+  const Grid<Touch> touches = max_plus::touching(surface.z, b.z, b.apex_x, b.apex_y, least, options.threads,
+                                                options.watch.part(0.3, 1));
   out.level = Grid<unsigned char>(w, h, CertaintyMap::uncertain);
   for (int y = below; y < below + h; ++y)
     for (int x = left; x < left + w; ++x) {

@@ -16,7 +16,7 @@ namespace surf {
 namespace {
 
 constexpr int largest_radius = 1000;
-constexpr int rows_per_unit = 32;
+constexpr int rows_per_unit = 4;
 constexpr std::uint32_t no_rank = std::numeric_limits<std::uint32_t>::max();
 
 /// Places in order of their heights: a rank for each sample that is not a hole, and the heights by rank.
@@ -148,17 +148,17 @@ class RunningMaximum {
 };
 
 /// The highest in the square about each sample; -infinity takes no part.
-void square_maximum(Grid<double>& grid, int width, int threads) {
+void square_maximum(Grid<double>& grid, int width, int threads, const Watch& watch) {
   const int workers = resolve_threads(threads);
   std::vector<RunningMaximum> runs(static_cast<std::size_t>(workers), RunningMaximum(width));
   const auto columns = static_cast<std::size_t>(grid.width()), rows = static_cast<std::size_t>(grid.height());
   double* const data = grid.data().data();
   parallel_for(rows, workers, [&](std::size_t y, int worker) {
     runs[static_cast<std::size_t>(worker)].run(data + y * columns, columns, 1);
-  });
+  }, watch.part(0, 0.5));
   parallel_for(columns, workers, [&](std::size_t x, int worker) {
     runs[static_cast<std::size_t>(worker)].run(data + x, rows, columns);
-  });
+  }, watch.part(0.5, 1));
 }
 
 }  // namespace
@@ -179,7 +179,7 @@ HeightField median_filter(const HeightField& field, const MedianOptions& o, Clea
                  const int begin = static_cast<int>(unit) * rows_per_unit;
                  for (int y = begin; y < std::min(height, begin + rows_per_unit); ++y)
                    medians[static_cast<std::size_t>(worker)].row(y, &filtered(0, y));
-               });
+               }, o.watch);
   return apply(field, filtered, o.limit_nm, o.fill_holes, summary);
 }
 
@@ -192,10 +192,10 @@ HeightField flat_closing(const HeightField& field, const ClosingOptions& o, Clea
   constexpr double nothing = -std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < field.valid.size(); ++i)
     if (!field.valid.data()[i]) grid.data()[i] = nothing;
-  square_maximum(grid, o.width, o.threads);
+  square_maximum(grid, o.width, o.threads, o.watch.part(0, 0.5));
   // The lowest of heights is minus the highest of minus them; where no height was near, nothing stays.
   for (double& z : grid.data()) z = z == nothing ? nothing : -z;
-  square_maximum(grid, o.width, o.threads);
+  square_maximum(grid, o.width, o.threads, o.watch.part(0.5, 1));
   for (double& z : grid.data()) z = -z;
   return apply(field, grid, 0, o.fill_holes, summary);
 }

@@ -84,7 +84,7 @@ Found find(const Kernel& b, const Padded& a, int row, int column_block, const Qu
 }  // namespace
 
 Grid<Touch> touching(const Grid<Quanta>& a, const Grid<Quanta>& b, int apex_x, int apex_y,
-                     const Grid<Quanta>& least, int threads) {
+                     const Grid<Quanta>& least, int threads, const Watch& watch) {
   const Kernel kernel = make_kernel(b, apex_x, apex_y);
   const Padded padded = make_padded(a, kernel, apex_x, apex_y, Unit::avx2);   // for its block's width alone
   const int width = a.width(), left = b.width() - 1 - apex_x, below = b.height() - 1 - apex_y;
@@ -105,7 +105,7 @@ Grid<Touch> touching(const Grid<Quanta>& a, const Grid<Quanta>& b, int apex_x, i
                                   y - below + f.l1[i]};
       }
     }
-  });
+  }, watch);
   return out;
 }
 

@@ -13,6 +13,6 @@ struct Touch {
 /// For each place: all (i, j) with a(x - (i - apex_x), y - (j - apex_y)) + b(i, j) >= least(x, y).
 /// `least` is `unknown` where nobody asks; a tighter bound there costs less time.
 Grid<Touch> touching(const Grid<Quanta>& a, const Grid<Quanta>& b, int apex_x, int apex_y,
-                     const Grid<Quanta>& least, int threads);
+                     const Grid<Quanta>& least, int threads, const Watch& watch);
 
 }  // namespace surf::max_plus

@@ -109,6 +109,7 @@ Choice choose_tolerance(const Votes& votes, SlopeSearch search, double least, do
   std::vector<SlopedPlane> known;
   for (double tolerance = best.tolerance; tolerance >= least * 0.999; tolerance /= 2) {
     search.tolerance = tolerance;
+    search.watch.report(static_cast<double>(known.size()), static_cast<double>(known.size() + 2));
     bool complete = true;
     const SlopedPlane found = search_slopes(votes, search, known, s.evaluated, complete);
     known.push_back(found);
@@ -144,11 +145,12 @@ Residuals mark_inliers(const HeightField& field, const Grid<unsigned char>& use,
 }
 
 /// Least squares and inliers in turns, as long as the inliers determine a plane and grow in number.
-void refine(const HeightField& field, const Grid<unsigned char>& use, HoughSummary& s) {
+void refine(const HeightField& field, const Grid<unsigned char>& use, const Watch& watch, HoughSummary& s) {
   Grid<unsigned char> mask(field.z_nm.width(), field.z_nm.height());
   Residuals best = mark_inliers(field, use, s.plane, s.tolerance_nm, mask);
   s.inliers = mask;
   for (int turn = 0; turn < most_turns; ++turn) {
+    watch.report(turn, turn + 4);
     Plane plane;
     try {
       plane = fit_plane(field, s.inliers);
@@ -206,7 +208,9 @@ HoughSummary find_plane(const HeightField& field, const HoughOptions& options, c
   const double range = height_range(votes);
   if (!(range > 1e-12 * largest_height(field, use))) return exact_plane(field, use, rough);
   HoughSummary s;
-  SlopeSearch search{.largest_slope = range / (2 * least_share), .slack = slack, .limit = planes_per_search};
+  options.watch.report(0.1, 1);
+  SlopeSearch search{.largest_slope = range / (2 * least_share), .slack = slack, .limit = planes_per_search,
+                     .watch = options.watch.part(0.1, 0.5)};
   Choice choice;
   if (options.tolerance_nm > 0) {
     search.tolerance = choice.tolerance = options.tolerance_nm;
@@ -217,8 +221,9 @@ HoughSummary find_plane(const HeightField& field, const HoughOptions& options, c
   s.tolerance_nm = choice.tolerance;
   s.plane = to_plane(choice.plane, rough, field, frame);
   s.chance_share = std::min(1.0, 2 * choice.tolerance / range);
-  refine(field, use, s);
+  refine(field, use, options.watch.part(0.5, 0.9), s);
 
+  options.watch.report(0.9, 1);
   const Votes rest = away_from(votes, choice.plane, 2 * choice.tolerance);
   search.tolerance = choice.tolerance;
   search.slack = slack_of_runner_up;

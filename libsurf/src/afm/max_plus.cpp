@@ -131,7 +131,7 @@ Padded make_padded(const Grid<Quanta>& a, const Kernel& b, int apex_x, int apex_
 }
 
 void convolve(const Grid<Quanta>& a, const Grid<Quanta>& b, int apex_x, int apex_y, int threads,
-              Grid<Quanta>& sum, Grid<std::int32_t>* contact, Unit unit) {
+              Grid<Quanta>& sum, Grid<std::int32_t>* contact, Unit unit, const Watch& watch) {
   unit = resolve(unit);
   const Kernel kernel = make_kernel(b, apex_x, apex_y);
   const Padded padded = make_padded(a, kernel, apex_x, apex_y, unit);
@@ -163,7 +163,7 @@ void convolve(const Grid<Quanta>& a, const Grid<Quanta>& b, int apex_x, int apex
         const int j = kernel.height - 1 - kernel.row_of_rank[strip.rank[r][x]];
         (*contact)(x, y + r) = i + j * kernel.width;
       }
-  });
+  }, watch);
 }
 
 }  // namespace surf::max_plus

@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "surf/core/grid.h"
+#include "surf/core/progress.h"
 
 namespace surf::max_plus {
 
@@ -25,6 +26,7 @@ bool is_available(Unit unit);
 /// several the one of the row nearest the apex, of two the lower one; then of the column nearest the
 /// apex, of two the left one.
 void convolve(const Grid<Quanta>& a, const Grid<Quanta>& b, int apex_x, int apex_y, int threads,
-              Grid<Quanta>& sum, Grid<std::int32_t>* contact = nullptr, Unit unit = Unit::best);
+              Grid<Quanta>& sum, Grid<std::int32_t>* contact = nullptr, Unit unit = Unit::best,
+              const Watch& watch = {});
 
 }  // namespace surf::max_plus

@@ -40,10 +40,11 @@ enum class Operation { dilation, erosion };
 double sign_of(Operation o) { return o == Operation::dilation ? 1.0 : -1.0; }
 Tip tip_of(Operation o, const Tip& tip) { return o == Operation::dilation ? tip : reflected(tip); }
 
-Heights convolve(const Heights& a, const TipQuanta& b, int threads, Contacts* contacts) {
+Heights convolve(const Heights& a, const TipQuanta& b, int threads, Contacts* contacts, const Watch& watch) {
   Heights out{{}, a.top};
   Grid<std::int32_t> index;
-  max_plus::convolve(a.z, b.z, b.apex_x, b.apex_y, threads, out.z, contacts ? &index : nullptr);
+  max_plus::convolve(a.z, b.z, b.apex_x, b.apex_y, threads, out.z, contacts ? &index : nullptr,
+                     max_plus::Unit::best, watch);
   if (!contacts) return out;
   const int w = a.z.width(), h = a.z.height();
   *contacts = {Grid<std::int32_t>(w, h, -1), Grid<std::int32_t>(w, h, -1)};
@@ -71,7 +72,7 @@ HeightField apply(Operation operation, const HeightField& field, const Tip& tip,
   const int w = field.z_nm.width(), h = field.z_nm.height();
   const Tip used = tip_of(operation, tip);
   const Heights out =
-      convolve(quantise(field, sign, quantum), quantise(used, quantum, w, h), o.threads, contacts);
+      convolve(quantise(field, sign, quantum), quantise(used, quantum, w, h), o.threads, contacts, o.watch);
   return to_field(out, sign, quantum, field);
 }
 
@@ -93,6 +94,11 @@ HeightField on_fine_grid(const HeightField& field, const Tip& tip, MorphologyOpt
   return out;
 }
 
+MorphologyOptions part_of(MorphologyOptions o, double from, double to) {
+  o.watch = o.watch.part(from, to);
+  return o;
+}
+
 /// Two operations with one quantum, so that nothing is rounded in between.
 HeightField apply_both(Operation first, const HeightField& field, const Tip& tip, const char* subject,
                        const MorphologyOptions& o) {
@@ -105,13 +111,14 @@ HeightField apply_both(Operation first, const HeightField& field, const Tip& tip
   const int w = field.z_nm.width(), h = field.z_nm.height();
   const Operation second = first == Operation::dilation ? Operation::erosion : Operation::dilation;
   Heights half = convolve(quantise(field, sign_of(first), quantum), quantise(tip_of(first, tip), quantum, w, h),
-                          o.threads, nullptr);
+                          o.threads, nullptr, o.watch.part(0, 0.5));
   // The other way up, and below 0 again.
   for (Quanta& z : half.z.data())
     if (z >= max_plus::lowest) z = -z;
   half.top = -half.top;
   rebase(half);
-  const Heights out = convolve(half, quantise(tip_of(second, tip), quantum, w, h), o.threads, nullptr);
+  const Heights out = convolve(half, quantise(tip_of(second, tip), quantum, w, h), o.threads, nullptr,
+                               o.watch.part(0.5, 1));
   return to_field(out, sign_of(second), quantum, field);
 }
 
@@ -162,7 +169,8 @@ HeightField dilate_noncontact(const HeightField& surface, const Tip& tip, double
     return on_fine_grid(surface, tip, options, [&](const HeightField& f, const Tip& t, const MorphologyOptions& o) {
       return dilate_noncontact(f, t, distance_nm, o);
     });
-  HeightField image = dilate(dilate(surface, hemisphere_for(surface, distance_nm), options), tip, options);
+  HeightField image = dilate(dilate(surface, hemisphere_for(surface, distance_nm), part_of(options, 0, 0.5)), tip,
+                             part_of(options, 0.5, 1));
   lift(image, distance_nm);
   return image;
 }
@@ -174,7 +182,8 @@ HeightField erode_noncontact(const HeightField& image, const Tip& tip, double di
     return on_fine_grid(image, tip, options, [&](const HeightField& f, const Tip& t, const MorphologyOptions& o) {
       return erode_noncontact(f, t, distance_nm, o);
     });
-  HeightField surface = erode(erode(image, tip, options), hemisphere_for(image, distance_nm), options);
+  HeightField surface = erode(erode(image, tip, part_of(options, 0, 0.5)), hemisphere_for(image, distance_nm),
+                              part_of(options, 0.5, 1));
   lift(surface, -distance_nm);
   return surface;
 }

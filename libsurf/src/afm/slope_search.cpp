@@ -115,6 +115,7 @@ SlopedPlane search_slopes(const Votes& votes, const SlopeSearch& search, const s
       complete = false;
       break;
     }
+    search.watch.check();
     const Box box = open.top();
     open.pop();
     const double half = box.half / 2;

@@ -4,6 +4,8 @@
 #include <cstddef>
 #include <vector>
 
+#include "surf/core/progress.h"
+
 namespace surf {
 
 /// Samples to vote: places in [-1, 1] across the image, heights in nm about a plane that fits roughly.
@@ -23,6 +25,7 @@ struct SlopeSearch {
   double largest_slope = 1;    // nm from the centre to the edge: of |a| and |b|
   double slack = 0;            // share of votes by which a better plane may be missed
   std::size_t limit = 1;       // planes to count at most
+  Watch watch;                 // its token alone
 };
 
 /// The plane with most votes within the tolerance, to within the height of a bin, an eighth of the slab.

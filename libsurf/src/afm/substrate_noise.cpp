@@ -31,7 +31,7 @@ double mark(const HeightField& residual, const Grid<unsigned char>& use, double 
 SubstrateNoise estimate_substrate_noise(const HeightField& field, const FlatNoiseOptions& options,
                                         const Grid<unsigned char>& use) {
   SubstrateNoise out;
-  out.plane = find_plane(field, {}, use);
+  out.plane = find_plane(field, {.watch = options.watch}, use);
   HeightField residual = field;
   subtract(residual, out.plane.plane);
   out.substrate = out.plane.inliers;

@@ -88,4 +88,15 @@ void parallel_for(std::size_t count, int threads,
   queue.rethrow();
 }
 
+void parallel_for(std::size_t count, int threads,
+                  const std::function<void(std::size_t, int)>& work, const Watch& watch) {
+  std::atomic<std::size_t> done{0};
+  parallel_for(count, threads, [&](std::size_t unit, int worker) {
+    watch.check();
+    work(unit, worker);
+    const std::size_t so_far = done.fetch_add(1, std::memory_order_relaxed) + 1;
+    if (worker == 0) watch.report(static_cast<double>(so_far), static_cast<double>(count));
+  });
+}
+
 }  // namespace surf

@@ -5,6 +5,7 @@
 
 #include "surf/afm/tip.h"
 #include "surf/core/height_field.h"
+#include "surf/core/progress.h"
 
 namespace surf {
 
@@ -20,6 +21,7 @@ struct CertaintyOptions {
 
   double distance_nm = 0;  ///< >= 0; of a non-contact image, the distance kept (see dilate_noncontact)
   int threads = 0;         ///< 0: one per hardware thread; the result does not depend on it
+  Watch watch;
 };
 
 struct CertaintyMap {

@@ -4,6 +4,7 @@
 #include <cstddef>
 
 #include "surf/core/height_field.h"
+#include "surf/core/progress.h"
 
 namespace surf {
 
@@ -18,6 +19,7 @@ struct MedianOptions {
   double limit_nm = 0;       ///< >= 0: heights within this of the median stay (Williams 1998); 0: all change
   bool fill_holes = false;   ///< holes with samples in their neighbourhood become its median
   int threads = 0;           ///< 0: one per hardware thread. Same result
+  Watch watch;
 };
 
 struct CleanSummary {
@@ -36,6 +38,7 @@ struct ClosingOptions {
   int width = 3;             ///< samples along each side of the square, odd, 1 to 2001; 1 changes nothing
   bool fill_holes = false;   ///< holes that the closing reaches become its height
   int threads = 0;           ///< 0: one per hardware thread. Same result
+  Watch watch;
 };
 
 /// Closing by a flat square (Castle 1998): the lowest of the highest heights around. Pits narrower than

@@ -5,6 +5,7 @@
 
 #include "surf/afm/background.h"
 #include "surf/core/height_field.h"
+#include "surf/core/progress.h"
 
 namespace surf {
 
@@ -12,6 +13,8 @@ struct HoughOptions {
   /// Half the height of the slab about the plane within which a sample belongs to it; > 0, or 0: chosen
   /// from the heights, at least 2.5 standard deviations of their noise's innovation.
   double tolerance_nm = 0;
+
+  Watch watch;
 };
 
 enum class HoughVerdict {

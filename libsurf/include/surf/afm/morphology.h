@@ -5,6 +5,7 @@
 
 #include "surf/afm/tip.h"
 #include "surf/core/height_field.h"
+#include "surf/core/progress.h"
 
 namespace surf {
 
@@ -23,6 +24,7 @@ struct MorphologyOptions {
   double quantum_nm = 0;
 
   int threads = 0;   ///< 0: one per hardware thread; the result does not depend on it
+  Watch watch;
 };
 
 /// The image that a tip makes of a surface, I(x) = max over u of S(x - u) + T(u) (thesis, Equation C-7).

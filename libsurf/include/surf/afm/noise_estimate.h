@@ -3,6 +3,7 @@
 
 #include "surf/afm/noise.h"
 #include "surf/core/height_field.h"
+#include "surf/core/progress.h"
 
 namespace surf {
 
@@ -21,6 +22,8 @@ struct FlatNoiseOptions {
   /// Degree of the polynomial that is removed first, 0 to 6: 2 removes tilt and bow of the scanner
   /// (thesis, 8.1.1). The heights may be the residuals of a levelled image as well.
   int degree = 2;
+
+  Watch watch;   ///< of `estimate_substrate_noise`: the search for the plane
 };
 
 /// The model of a scan of something flat: alpha = r(1) / r(0) within rows and innovation

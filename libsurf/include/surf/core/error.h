@@ -42,4 +42,10 @@ class Unsupported : public Error {
   using Error::Error;
 };
 
+/// Work was ended by its `CancelToken` and has nothing to show. No fault of anyone: exits with 130.
+class Interrupted : public std::runtime_error {
+ public:
+  Interrupted() : std::runtime_error("interrupted") {}
+};
+
 }  // namespace surf

@@ -4,6 +4,8 @@
 #include <cstddef>
 #include <functional>
 
+#include "surf/core/progress.h"
+
 namespace surf {
 
 /// Threads used for `requested` (0 means one per hardware thread). At least 1.
@@ -15,5 +17,9 @@ int resolve_threads(int requested);
 /// Results must not depend on which worker does a unit: that is the caller's part of "same bytes".
 void parallel_for(std::size_t count, int threads,
                   const std::function<void(std::size_t unit, int worker)>& work);
+
+/// The same, watched: told of the units done from the calling thread alone. Throws Interrupted.
+void parallel_for(std::size_t count, int threads,
+                  const std::function<void(std::size_t unit, int worker)>& work, const Watch& watch);
 
 }  // namespace surf

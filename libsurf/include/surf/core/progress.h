@@ -21,4 +21,18 @@ class CancelToken {
   static_assert(std::atomic<bool>::is_always_lock_free, "needed inside signal handlers");
 };
 
+/// Who watches work that has nothing to show before it is done: told how far it is, and able to end it,
+/// which leaves it by `Interrupted` (error.h).
+struct Watch {
+  ProgressCallback progress;             ///< or nobody is told
+  const CancelToken* cancel = nullptr;   ///< or nobody can end it
+
+  /// Throws Interrupted if the token is set.
+  void check() const;
+  /// `check`, and tells.
+  void report(double done, double total) const;
+  /// For a part of the work: all of it is told as `from` to `to`, in [0, 1].
+  Watch part(double from, double to) const;
+};
+
 }  // namespace surf
