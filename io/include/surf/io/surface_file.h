@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "surf/mesh/surface.h"
+
+namespace surf::io {
+
+/// How much larger than the specimen a file's body is, in formats that carry metres (glTF), their own unit
+/// (3MF) or nothing (STL and OBJ, whose readers take a number for a millimetre). True nanometres vanish
+/// in viewers and fall below the tolerances of CAD kernels. The other formats (VTP, VTM, PLY, OFF) hold nm.
+struct Magnification {
+  double factor = 1e6;           ///< > 0. 1e6: 1 nm becomes 1 mm; 1: true size
+  double z_exaggeration = 1;     ///< > 0: heights are this much larger still, in the formats above only
+};
+
+/// What a format can hold besides triangles.
+struct SurfaceFormat {
+  std::string extension;         ///< ".glb"
+  bool several = false;          ///< several surfaces with their names; else they become one
+  bool scalars = false;
+  bool drape = false;
+  bool tracks = false;
+  bool magnified = false;        ///< `Magnification` is for it; else the file holds nm
+};
+
+/// What is written: .glb, .gltf, .3mf, .stl, .obj, .ply, .off, .vtp, .vtm.
+const std::vector<SurfaceFormat>& surface_formats();
+
+/// The format of that name. Throws what `write_surfaces` would for the name or folder, before any work
+/// is spent.
+const SurfaceFormat& check_surface_target(const std::filesystem::path& path);
+
+/// Writes by extension. What the format cannot hold is left out: ask `check_surface_target` what that is.
+/// Every file says its unit, magnification, exaggeration and metadata, STL in its header of 80 bytes as
+/// far as they fit. Vertices and triangles keep their order. Files appear under their names only when they are
+/// complete, those beside the main one (.mtl, .png, .bin, parts of .vtm) first.
+/// - glTF: y up; float32 nm about the centre of each surface, the centre on its node, the factor on the root node.
+/// - VTP, VTM, OFF: double. PLY: double with float scalars. STL, 3MF: float32.
+/// Throws InvalidInput for a scene that `validate` refuses or that the format cannot hold, UsageError for
+/// an unknown extension or bad magnification, FileError, Unsupported without VTK.
+void write_surfaces(const std::filesystem::path& path, const SurfaceScene& scene,
+                    const Magnification& magnification = {});
+
+/// Reads what `read_meshes` reads, with scalars, drapes, tracks and metadata where the format holds them, in nm:
+/// semsurf's own magnification and exaggeration are undone. One surface per body, names made unique.
+/// Vertices keep the file's order and are not merged, so that scalars fit.
+SurfaceScene read_surfaces(const std::filesystem::path& path, std::optional<double> unit_nm = {});
+
+}  // namespace surf::io
