@@ -155,7 +155,7 @@ SimplifiedBody simplify_field(double tolerance_nm, const mc::Beam& beam, const m
     return done;
   }
   ThinSummary summary;
-  TriangleMesh sheet = thin_height_field(wide, tolerance_nm, summary);
+  TriangleMesh sheet = thin_height_field(wide, {tolerance_nm}, summary);
   if (!gains(summary.triangles_after, summary.triangles_before)) {
     done.kept = "nothing would be gained";
   } else {

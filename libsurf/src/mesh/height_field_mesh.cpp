@@ -10,6 +10,7 @@
 #include "core/argument.h"
 #include "mesh/whole_field.h"
 #include "surf/core/error.h"
+#include "surf/mesh/sheet_solid.h"
 
 namespace surf {
 namespace {
@@ -28,16 +29,6 @@ std::vector<Triangle> raster_triangles(std::uint32_t width, std::uint32_t height
     }
   }
   return triangles;
-}
-
-/// The samples around the sheet, counter-clockwise seen from above, beginning at (0, 0).
-std::vector<std::uint32_t> rim(std::uint32_t width, std::uint32_t height) {
-  std::vector<std::uint32_t> samples;
-  for (std::uint32_t x = 0; x + 1 < width; ++x) samples.push_back(x);
-  for (std::uint32_t y = 0; y + 1 < height; ++y) samples.push_back(y * width + width - 1);
-  for (std::uint32_t x = width - 1; x > 0; --x) samples.push_back((height - 1) * width + x);
-  for (std::uint32_t y = height - 1; y > 0; --y) samples.push_back(y * width);
-  return samples;
 }
 
 int continued_index(int index, int count, Edge edge) {
@@ -168,36 +159,7 @@ TriangleMesh half_space_top(const HeightField& field, double apron_nm) {
 }
 
 TriangleMesh height_field_solid(const HeightField& field, double base_z_nm) {
-  TriangleMesh mesh = height_field_sheet(field);
-  require_finite(base_z_nm, "base");
-  const double lowest = std::ranges::min(field.z_nm.data());
-  if (base_z_nm >= lowest) {
-    throw UsageError("base", fmt::format("{} nm is not below the lowest height, {} nm", base_z_nm,
-                                         lowest),
-                     "Give a lower base");
-  }
-
-  const std::vector<std::uint32_t> upper = rim(static_cast<std::uint32_t>(field.z_nm.width()),
-                                               static_cast<std::uint32_t>(field.z_nm.height()));
-  const auto first_lower = static_cast<std::uint32_t>(mesh.vertices_nm.size());
-  const auto count = static_cast<std::uint32_t>(upper.size());
-  for (const std::uint32_t sample : upper) {
-    Vec3 v = mesh.vertices_nm[sample];
-    v.z = base_z_nm;
-    mesh.vertices_nm.push_back(v);
-  }
-  const std::uint32_t middle = first_lower + count;
-  Vec3 center = (mesh.vertices_nm.front() + mesh.vertices_nm[first_lower - 1]) * 0.5;
-  center.z = base_z_nm;
-  mesh.vertices_nm.push_back(center);
-
-  for (std::uint32_t i = 0; i < count; ++i) {
-    const std::uint32_t next = (i + 1) % count;
-    mesh.triangles.push_back({upper[i], first_lower + i, first_lower + next});
-    mesh.triangles.push_back({upper[i], first_lower + next, upper[next]});
-    mesh.triangles.push_back({middle, first_lower + next, first_lower + i});
-  }
-  return mesh;
+  return sheet_solid(height_field_sheet(field), base_z_nm);
 }
 
 }  // namespace surf

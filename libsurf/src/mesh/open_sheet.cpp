@@ -9,12 +9,11 @@
 
 #include "core/argument.h"
 #include "mesh/boundary.h"
+#include "mesh/rim.h"
 #include "surf/mesh/check_mesh.h"
 
 namespace surf {
 namespace {
-
-double cross_xy(const Vec3& a, const Vec3& b) { return a.x * b.y - a.y * b.x; }
 
 std::string place(const Vec3& p) {
   return fmt::format("({:.6g}, {:.6g}, {:.6g}) nm", p.x, p.y, p.z);
@@ -35,45 +34,8 @@ std::string fault(const MeshReport& r) {
   return "";
 }
 
-/// The centroid of the polygon's area seen from above, and the signed area.
-struct Centroid {
-  double x, y, area;
-};
-
-Centroid centroid(const std::vector<Vec3>& rim) {
-  const Vec3 origin = rim.front();   // far from (0, 0) the area would drown in rounding
-  Centroid c{0, 0, 0};
-  for (std::size_t i = 0; i < rim.size(); ++i) {
-    const Vec3 a = rim[i] - origin;
-    const Vec3 b = rim[(i + 1) % rim.size()] - origin;
-    const double twice = cross_xy(a, b);
-    c.area += 0.5 * twice;
-    c.x += twice * (a.x + b.x) / 6;
-    c.y += twice * (a.y + b.y) / 6;
-  }
-  if (c.area == 0) return c;
-  return {origin.x + c.x / c.area, origin.y + c.y / c.area, c.area};
-}
-
-/// The angles from the centroid that neighbouring rim vertices enclose; empty if the rim, run
-/// counter-clockwise, goes back anywhere or round more than once.
-std::vector<double> angles(const std::vector<Vec3>& rim, const Centroid& c) {
-  std::vector<double> result;
-  double turn = 0;
-  for (std::size_t i = 0; i < rim.size(); ++i) {
-    const Vec3 a = rim[i] - Vec3{c.x, c.y, 0};
-    const Vec3 b = rim[(i + 1) % rim.size()] - Vec3{c.x, c.y, 0};
-    const double angle = std::atan2(cross_xy(a, b), a.x * b.x + a.y * b.y);
-    if (!(angle > 0 && angle < std::numbers::pi)) return {};
-    result.push_back(angle);
-    turn += angle;
-  }
-  if (turn > 3 * std::numbers::pi) return {};
-  return result;
-}
-
 /// Distance from the centroid to the farthest corner of the box, seen from above.
-double reach(const Box& box, const Centroid& c) {
+double reach(const Box& box, const RimCentroid& c) {
   return std::hypot(std::max(c.x - box.lower_nm.x, box.upper_nm.x - c.x),
                     std::max(c.y - box.lower_nm.y, box.upper_nm.y - c.y));
 }
@@ -83,7 +45,7 @@ constexpr double beyond_rim = 0.01;   // of the rim's size: more is not a sheet 
 /// A vertex of the sheet that seen from above lies well outside the rim, or nothing. The rim runs
 /// counter-clockwise about the centroid, `angle` being between neighbours.
 std::optional<Vec3> beyond(const TriangleMesh& mesh, std::uint32_t of_triangle,
-                           const std::vector<Vec3>& rim, const Centroid& c,
+                           const std::vector<Vec3>& rim, const RimCentroid& c,
                            const std::vector<double>& angle) {
   Box box;
   for (const Vec3& v : rim) box.extend(v);
@@ -142,12 +104,12 @@ std::optional<TriangleMesh> extend_open_sheet(const TriangleMesh& mesh, double a
     for (const std::uint32_t v : rim) corners.push_back(result.vertices_nm[v]);
     return corners;
   };
-  const Centroid c = centroid(positions());
+  const RimCentroid c = rim_centroid(positions());
   if (c.area < 0) {
     turn_component(result, loops[0].sides[0] / 3);
     std::ranges::reverse(rim);
   }
-  const std::vector<double> angle = angles(positions(), c);
+  const std::vector<double> angle = star_angles(positions(), c);
   if (angle.empty()) {
     return refuse("seen from above, its rim is not star-shaped about its centroid, " +
                   fmt::format("({:.6g}, {:.6g}) nm", c.x, c.y));

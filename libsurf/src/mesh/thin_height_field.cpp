@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <queue>
 #include <stdexcept>
@@ -10,6 +11,7 @@
 #include "core/argument.h"
 #include "mesh/lattice_delaunay.h"
 #include "mesh/whole_field.h"
+#include "surf/core/error.h"
 
 namespace surf {
 namespace {
@@ -21,9 +23,10 @@ std::int64_t floor_divided(std::int64_t a, std::int64_t b) {   // b > 0
 /// Adds samples to a triangulation until it is within the tolerance.
 class Thinning {
  public:
-  Thinning(const HeightField& field, double tolerance_nm)
+  Thinning(const HeightField& field, const ThinOptions& options)
       : field_(field),
-        tolerance_nm_(tolerance_nm),
+        tolerance_nm_(options.tolerance_nm),
+        limit_(options.triangles ? options.triangles : std::numeric_limits<std::size_t>::max()),
         mesh_(field.z_nm.width(), field.z_nm.height()),
         used_(field.z_nm.width(), field.z_nm.height()) {
     for (const LatticePoint p : mesh_.points()) used_(p.x, p.y) = 1;
@@ -110,6 +113,9 @@ class Thinning {
     changed_.clear();
   }
 
+  // A sample inside makes two triangles more.
+  bool full() const { return mesh_.triangles().size() + 2 > limit_; }
+
   void insert(LatticePoint p, std::uint32_t triangle) {
     used_(p.x, p.y) = 1;
     mesh_.insert(p, triangle, changed_);
@@ -117,7 +123,7 @@ class Thinning {
   }
 
   void insert_worst_samples() {
-    while (!waiting_.empty()) {
+    while (!waiting_.empty() && !full()) {
       const Waiting next = waiting_.top();
       waiting_.pop();
       const Worst& worst = worst_[next.triangle];
@@ -177,8 +183,9 @@ class Thinning {
       if (worst > tolerance_nm_) sites.push_back({at, side / 3});
     }
     const std::size_t before = mesh_.points().size();
+    if (full()) return false;
     for (const Site& s : sites)
-      if (!used_(s.at.x, s.at.y)) insert(s.at, mesh_.find(s.at, s.triangle));
+      if (!used_(s.at.x, s.at.y) && !full()) insert(s.at, mesh_.find(s.at, s.triangle));
     if (!sites.empty() && mesh_.points().size() == before)
       throw std::logic_error("thin_height_field: a crossing has no sample to add");
     return !sites.empty();
@@ -186,6 +193,7 @@ class Thinning {
 
   const HeightField& field_;
   double tolerance_nm_;
+  std::size_t limit_;   // of triangles
   LatticeDelaunay mesh_;
   Grid<unsigned char> used_;
   std::vector<Worst> worst_;   // of every triangle
@@ -196,16 +204,19 @@ class Thinning {
 
 }  // namespace
 
-TriangleMesh thin_height_field(const HeightField& field, double tolerance_nm, ThinSummary& summary) {
-  require_not_negative(tolerance_nm, "tolerance");
+TriangleMesh thin_height_field(const HeightField& field, const ThinOptions& options, ThinSummary& summary) {
+  require_not_negative(options.tolerance_nm, "tolerance");
+  if (options.triangles == 1)
+    throw UsageError("triangles", "one triangle does not fill a rectangle", "Give 2 or more");
   require_no_holes(field);
-  Thinning thinning(field, tolerance_nm);
+  Thinning thinning(field, options);
   thinning.run();
   TriangleMesh mesh = thinning.mesh();
   summary.triangles_before = std::size_t{2} * static_cast<std::size_t>(field.z_nm.width() - 1) *
                              static_cast<std::size_t>(field.z_nm.height() - 1);
   summary.triangles_after = mesh.triangles.size();
   summary.deviation_nm = thinning.deviation_nm();
+  summary.reached = summary.deviation_nm <= options.tolerance_nm;
   return mesh;
 }
 

@@ -64,7 +64,7 @@ TEST(ThinHeightField, StaysWithinTheToleranceEverywhere) {
   std::size_t previous = height_field_sheet(field).triangles.size() + 1;
   for (const double tolerance : {0.02, 0.1, 0.5, 2.0}) {
     ThinSummary s;
-    const TriangleMesh mesh = thin_height_field(field, tolerance, s);
+    const TriangleMesh mesh = thin_height_field(field, {tolerance}, s);
     EXPECT_LE(s.deviation_nm, tolerance);
     const double measured = vertical_deviation(field, mesh);
     EXPECT_LE(measured, s.deviation_nm * (1 + 1e-12)) << "proven for every place, not for samples only";
@@ -83,7 +83,7 @@ TEST(ThinHeightField, GivesASoundSheetOverTheSameRectangle) {
   field.pitch_y_nm = 1.7;
   field.origin_x_nm = 1e5;
   ThinSummary s;
-  const TriangleMesh mesh = thin_height_field(field, 0.3, s);
+  const TriangleMesh mesh = thin_height_field(field, {0.3}, s);
   EXPECT_NEAR(area_from_above(mesh), 81 * 57 * 1.7, 1e-6);
   const MeshReport r = check_mesh(mesh);
   EXPECT_EQ(r.components, 1u);
@@ -103,7 +103,7 @@ TEST(ThinHeightField, LeavesOutWhatIsFlatAndKeepsTheLettersPlace) {
     for (int x = 10; x < 25; ++x)
       if (x < 14 || y >= 21 || (y >= 13 && y < 16 && x < 20)) field.z_nm(x, y) = 10;
   ThinSummary s;
-  const TriangleMesh mesh = thin_height_field(field, 0, s);
+  const TriangleMesh mesh = thin_height_field(field, {0}, s);
   EXPECT_EQ(s.deviation_nm, 0);
   EXPECT_LT(mesh.triangles.size(), s.triangles_before / 2);
   const HeightField back = mesh_height_field(mesh, {.pitch_nm = 1});
@@ -113,13 +113,13 @@ TEST(ThinHeightField, LeavesOutWhatIsFlatAndKeepsTheLettersPlace) {
 
   HeightField flat;
   flat.z_nm = Grid<double>(300, 2);
-  EXPECT_EQ(thin_height_field(flat, 1, s).triangles.size(), 2u);
+  EXPECT_EQ(thin_height_field(flat, {1}, s).triangles.size(), 2u);
 }
 
 TEST(ThinHeightField, GivesTheFieldItselfWhereNothingFits) {
   HeightField field = make_rough({20, 14, 1}, 5, 0.5, 3);
   ThinSummary s;
-  const TriangleMesh mesh = thin_height_field(field, 0, s);
+  const TriangleMesh mesh = thin_height_field(field, {0}, s);
   EXPECT_EQ(mesh.triangles.size(), s.triangles_before);
   EXPECT_EQ(vertical_deviation(field, mesh) > 1e-12, false);
 }
@@ -127,10 +127,40 @@ TEST(ThinHeightField, GivesTheFieldItselfWhereNothingFits) {
 TEST(ThinHeightField, RefusesWhatItCannotTake) {
   HeightField field = rough();
   ThinSummary s;
-  EXPECT_THROW(thin_height_field(field, -1, s), UsageError);
-  EXPECT_THROW(thin_height_field(field, NAN, s), UsageError);
+  EXPECT_THROW(thin_height_field(field, {-1}, s), UsageError);
+  EXPECT_THROW(thin_height_field(field, {NAN}, s), UsageError);
   field.valid = Grid<unsigned char>(field.z_nm.width(), field.z_nm.height());
-  EXPECT_THROW(thin_height_field(field, 1, s), InvalidInput);
+  EXPECT_THROW(thin_height_field(field, {1}, s), InvalidInput);
+}
+
+TEST(ThinHeightField, KeepsToTheTrianglesAllowed) {
+  const HeightField field = rough();
+  double previous = 1e9;
+  for (const std::size_t triangles : {3u, 100u, 1001u, 5000u}) {
+    ThinSummary s;
+    const TriangleMesh mesh = thin_height_field(field, {0, triangles}, s);
+    EXPECT_LE(mesh.triangles.size(), triangles);
+    EXPECT_GE(mesh.triangles.size() + 2, triangles);
+    EXPECT_FALSE(s.reached);
+    EXPECT_GE(s.deviation_nm * (1 + 1e-12), vertical_deviation(field, mesh)) << "proven here too";
+    EXPECT_LT(s.deviation_nm, previous);
+    previous = s.deviation_nm;
+  }
+}
+
+TEST(ThinHeightField, TheFirstOfTwoLimitsCounts) {
+  const HeightField field = rough();
+  ThinSummary s;
+  thin_height_field(field, {2.0, 100'000}, s);
+  EXPECT_TRUE(s.reached);
+  EXPECT_LE(s.deviation_nm, 2.0);
+  EXPECT_EQ(thin_height_field(field, {2.0}, s).triangles.size(), s.triangles_after);
+  thin_height_field(field, {0.02, 50}, s);
+  EXPECT_FALSE(s.reached);
+  EXPECT_GT(s.deviation_nm, 0.02);
+  thin_height_field(field, {0, 1'000'000}, s);
+  EXPECT_TRUE(s.reached) << "all of it: nothing is left out";
+  EXPECT_THROW(thin_height_field(field, {0, 1}, s), UsageError);
 }
 
 }  // namespace surf
