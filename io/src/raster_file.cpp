@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // EXR, TIFF and PNG. The only source that knows OpenImageIO.
+#include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 #include <fmt/format.h>
 
@@ -200,6 +201,20 @@ void close_output(OIIO::ImageOutput& output, const std::string& file) {
   check_written(output.close(), output, file);
 }
 
+void write_png_rows(OIIO::ImageOutput& output, const std::string& target, const std::string& file,
+                    const Image& head, int width, int height, const GreyRow& grey) {
+  OIIO::ImageSpec spec(width, height, 1, OIIO::TypeDesc::UINT8);
+  spec.attribute("ImageDescription", to_description(head));
+  set_resolution(spec, head, 2e7);
+  check_written(output.open(target, spec), output, file);
+  std::vector<unsigned char> values(static_cast<std::size_t>(width));
+  for (int row = 0; row < height; ++row) {
+    grey(height - 1 - row, values);
+    check_written(output.write_scanline(row, 0, OIIO::TypeDesc::UINT8, values.data()), output, file);
+  }
+  close_output(output, file);
+}
+
 }  // namespace
 
 std::string raster_library_version() {
@@ -248,20 +263,20 @@ void write_tiff(const std::filesystem::path& target, const std::string& file,
   close_output(*output, file);
 }
 
-void write_png(const std::filesystem::path& target, const std::string& file, const Image& image,
+void write_png(const std::filesystem::path& target, const std::string& file, const Image& head,
                int width, int height, const GreyRow& grey) {
   const auto output = create_output("png", file);
-  OIIO::ImageSpec spec(width, height, 1, OIIO::TypeDesc::UINT8);
-  spec.attribute("ImageDescription", to_description(image));
-  set_resolution(spec, image, 2e7);
-  check_written(output->open(target.string(), spec), *output, file);
-  std::vector<unsigned char> values(static_cast<std::size_t>(width));
-  for (int row = 0; row < height; ++row) {
-    grey(height - 1 - row, values);
-    check_written(output->write_scanline(row, 0, OIIO::TypeDesc::UINT8, values.data()), *output,
-                  file);
-  }
-  close_output(*output, file);
+  write_png_rows(*output, target.string(), file, head, width, height, grey);
+}
+
+std::string png_content(const std::string& file, const Image& head, int width, int height,
+                        const GreyRow& grey) {
+  std::vector<unsigned char> bytes;
+  OIIO::Filesystem::IOVecOutput memory(bytes);
+  const auto output = create_output("png", file);
+  output->set_ioproxy(&memory);
+  write_png_rows(*output, "memory.png", file, head, width, height, grey);
+  return {bytes.begin(), bytes.end()};
 }
 
 Image read_raster(const std::filesystem::path& path) {

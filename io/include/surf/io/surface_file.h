@@ -48,7 +48,10 @@ void write_surfaces(const std::filesystem::path& path, const SurfaceScene& scene
 
 /// Reads what `read_meshes` reads, with scalars, drapes, tracks and metadata where the format holds them, in nm:
 /// semsurf's own magnification and exaggeration are undone. One surface per body, names made unique.
-/// Vertices keep the file's order and are not merged, so that scalars fit.
+/// Vertices keep the file's order and are not merged, so that scalars fit. `unit_nm` as in `read_meshes`.
+/// Scalars of other programs get names of the form of `VertexScalar` ("Elevation (nm)": elevation_nm); those
+/// with a value that is not finite are left out. Throws what `read_meshes` throws, FileError for a picture
+/// that is missing.
 SurfaceScene read_surfaces(const std::filesystem::path& path, std::optional<double> unit_nm = {});
 
 }  // namespace surf::io
