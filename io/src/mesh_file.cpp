@@ -45,7 +45,6 @@ struct Parsed {
 };
 
 Parsed parse(const std::filesystem::path& path) {
-  constexpr double metre_nm = 1e9;
   const std::string file = path.string();
   const std::string content = read_file(path);
   if (content.empty()) throw FileError(file, "the file is empty", "Export the mesh again");
@@ -54,7 +53,10 @@ Parsed parse(const std::filesystem::path& path) {
     case Format::obj: return {parse_obj(file, content)};
     case Format::ply: return {{{{}, {}, parse_ply(file, content)}}};
     case Format::off: return {{{{}, {}, parse_off(file, content)}}};
-    case Format::gltf: return {parse_gltf(path, content), metre_nm};
+    case Format::gltf: {
+      GltfMeshes found = parse_gltf(path, content);
+      return {std::move(found.meshes), found.unit_nm};
+    }
     case Format::vtp: return {parse_vtp(file, content)};
     case Format::unknown: break;
   }
