@@ -14,17 +14,19 @@
 #include "surf/core/error.h"
 #include "surf/core/units.h"
 #include "surf/io/files.h"
+#include "surface_formats.h"
 #include "vtp_format.h"
 
 namespace surf::io {
 namespace {
 
-enum class Format { stl, obj, ply, off, gltf, vtp, unknown };
+enum class Format { stl, obj, ply, off, gltf, vtp, three_mf, unknown };
 
 /// By content where that is telling, else by name.
 Format format_of(const std::filesystem::path& path, std::string_view content) {
   if (is_glb(content)) return Format::gltf;
   if (is_vtp(content)) return Format::vtp;
+  if (is_3mf(content)) return Format::three_mf;
   if (is_ply(content)) return Format::ply;
   if (is_off(content)) return Format::off;
   if (is_binary_stl(content) || is_text_stl(content)) return Format::stl;
@@ -35,6 +37,7 @@ Format format_of(const std::filesystem::path& path, std::string_view content) {
   if (extension == ".off") return Format::off;
   if (extension == ".glb" || extension == ".gltf") return Format::gltf;
   if (extension == ".vtp") return Format::vtp;
+  if (extension == ".3mf") return Format::three_mf;
   return Format::unknown;
 }
 
@@ -44,7 +47,17 @@ struct Parsed {
   double unit_nm = 1;
 };
 
-Parsed parse(const std::filesystem::path& path) {
+/// In nm, or in units of `unit_nm`.
+std::vector<NamedMesh> parse_3mf(const std::filesystem::path& path, std::string_view content,
+                                 std::optional<double> unit_nm) {
+  std::vector<NamedMesh> meshes;
+  for (Surface& surface : parse_3mf_scene(path, content, unit_nm ? std::optional(1.0) : std::nullopt).surfaces) {
+    meshes.push_back({std::move(surface.name), {}, std::move(surface.mesh)});
+  }
+  return meshes;
+}
+
+Parsed parse(const std::filesystem::path& path, std::optional<double> unit_nm) {
   const std::string file = path.string();
   const std::string content = read_file(path);
   if (content.empty()) throw FileError(file, "the file is empty", "Export the mesh again");
@@ -58,10 +71,11 @@ Parsed parse(const std::filesystem::path& path) {
       return {std::move(found.meshes), found.unit_nm};
     }
     case Format::vtp: return {parse_vtp(file, content)};
+    case Format::three_mf: return {parse_3mf(path, content, unit_nm)};
     case Format::unknown: break;
   }
   throw FileError(file, "neither its content nor its name is that of a mesh format known here",
-                  "Use STL, OBJ, PLY, OFF, glTF or VTP");
+                  "Use STL, OBJ, PLY, OFF, glTF, 3MF or VTP");
 }
 
 void check_unit(double unit_nm, const std::string& file) {
@@ -125,7 +139,7 @@ std::vector<NamedMesh> read_meshes(const std::filesystem::path& path,
                                    std::optional<double> unit_nm) {
   const std::string file = path.string();
   if (unit_nm) check_unit(*unit_nm, file);
-  Parsed parsed = parse(path);
+  Parsed parsed = parse(path, unit_nm);
   const double unit = unit_nm.value_or(parsed.unit_nm);
   std::vector<NamedMesh> meshes;
   for (NamedMesh& found : parsed.meshes) {
@@ -178,7 +192,8 @@ void check_mesh_target(const std::filesystem::path& path) {
 
 bool is_mesh_file(const std::filesystem::path& path) {
   const std::string extension = lower_extension(path);
-  return is_writable_format(extension) || extension == ".glb" || extension == ".gltf";
+  return is_writable_format(extension) || extension == ".glb" || extension == ".gltf" ||
+         extension == ".3mf";
 }
 
 }  // namespace surf::io
