@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <map>
@@ -31,6 +32,13 @@ void write_png(const std::filesystem::path& target, const std::string& file, con
                int width, int height, const GreyRow& grey);
 /// The same as bytes.
 std::string png_content(const std::string& file, const Image& head, int width, int height, const GreyRow& grey);
+
+/// The content of a PNG file of 8 bits in grey, without any text; sample (0, 0) is the lower-left pixel. The
+/// same pixels give the same bytes.
+std::string format_grey_png(const std::string& file, const Grid<std::uint8_t>& grey);
+/// The pixels of a PNG file as 8 bits in grey, colours by their first channel. `content`
+/// is the file's. Throws FileError.
+Grid<std::uint8_t> parse_grey_png(const std::string& file, std::string_view content);
 
 /// Throws FileError where a TIFF file is cut off, which libtiff takes for missing text and black.
 void check_tiff_structure(const std::filesystem::path& path);

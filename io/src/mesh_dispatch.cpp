@@ -10,36 +10,56 @@
 #include "surf/core/error.h"
 #include "surf/core/units.h"
 #include "surf/io/files.h"
+#include "surface_formats.h"
 #include "vtp_format.h"
 
 namespace surf::io {
 namespace {
 
-ParsedFile parse_metres(const std::filesystem::path& path, std::string_view content) {
+/// glTF's shapes alone, with their materials.
+ParsedFile parse_gltf_shapes(const std::filesystem::path& path, std::string_view content) {
   ParsedFile parsed;
-  parsed.note.unit_nm = 1e9;
-  for (NamedMesh& found : parse_gltf(path, content)) {
-    parsed.bodies.push_back({found.material, {.name = found.name, .mesh = std::move(found.mesh)}});
+  GltfMeshes found = parse_gltf(path, content);
+  parsed.note.unit_nm = found.unit_nm;
+  for (NamedMesh& body : found.meshes) {
+    parsed.bodies.push_back({std::move(body.material), {.name = std::move(body.name), .mesh = std::move(body.mesh)}});
   }
   return parsed;
 }
 
-ParsedFile parse(const std::filesystem::path& path, Want want) {
+/// A scene that is in nm already.
+ParsedFile in_nm(SurfaceScene scene) {
+  ParsedFile parsed;
+  for (Surface& surface : scene.surfaces) parsed.bodies.push_back({{}, std::move(surface)});
+  parsed.tracks = std::move(scene.tracks);
+  parsed.note.metadata = std::move(scene.metadata);
+  return parsed;
+}
+
+ParsedFile with_unit(ParsedFile parsed, std::optional<double> unit_nm) {
+  if (unit_nm) parsed.note.unit_nm = *unit_nm;
+  return parsed;
+}
+
+ParsedFile parse(const std::filesystem::path& path, std::optional<double> unit_nm, Want want) {
   const std::string file = path.string();
   const std::string content = read_file(path);
   if (content.empty()) throw FileError(file, "the file is empty", "Export the mesh again");
   switch (mesh_format_of(path, content)) {
-    case MeshFormat::stl: return parse_stl(file, content);
-    case MeshFormat::obj: return parse_obj(path, content, want);
-    case MeshFormat::ply: return parse_ply(file, content, want);
-    case MeshFormat::off: return parse_off(file, content);
-    case MeshFormat::gltf: return parse_metres(path, content);
-    case MeshFormat::vtp: return parse_vtp(file, content, want);
-    case MeshFormat::vtm: return parse_vtm(path, content, want);
+    case MeshFormat::stl: return with_unit(parse_stl(file, content), unit_nm);
+    case MeshFormat::obj: return with_unit(parse_obj(path, content, want), unit_nm);
+    case MeshFormat::ply: return with_unit(parse_ply(file, content, want), unit_nm);
+    case MeshFormat::off: return with_unit(parse_off(file, content), unit_nm);
+    case MeshFormat::gltf:
+      if (want == Want::shapes) return with_unit(parse_gltf_shapes(path, content), unit_nm);
+      return in_nm(parse_gltf_scene(path, content, unit_nm));
+    case MeshFormat::three_mf: return in_nm(parse_3mf_scene(path, content, unit_nm));
+    case MeshFormat::vtp: return with_unit(parse_vtp(file, content, want), unit_nm);
+    case MeshFormat::vtm: return with_unit(parse_vtm(path, content, want), unit_nm);
     case MeshFormat::unknown: break;
   }
   throw FileError(file, "neither its content nor its name is that of a mesh format known here",
-                  "Use STL, OBJ, PLY, OFF, glTF, VTP or VTM");
+                  "Use STL, OBJ, PLY, OFF, glTF, 3MF, VTP or VTM");
 }
 
 void convert_to_nm(TriangleMesh& mesh, const SurfaceNote& note, const std::string& file) {
@@ -62,6 +82,7 @@ void check_unit(double unit_nm, const std::string& file) {
 
 MeshFormat mesh_format_of(const std::filesystem::path& path, std::string_view content) {
   if (is_glb(content)) return MeshFormat::gltf;
+  if (is_3mf(content)) return MeshFormat::three_mf;
   if (is_vtm(content)) return MeshFormat::vtm;
   if (is_vtp(content)) return MeshFormat::vtp;
   if (is_ply(content)) return MeshFormat::ply;
@@ -73,6 +94,7 @@ MeshFormat mesh_format_of(const std::filesystem::path& path, std::string_view co
   if (extension == ".ply") return MeshFormat::ply;
   if (extension == ".off") return MeshFormat::off;
   if (extension == ".glb" || extension == ".gltf") return MeshFormat::gltf;
+  if (extension == ".3mf") return MeshFormat::three_mf;
   if (extension == ".vtp") return MeshFormat::vtp;
   if (extension == ".vtm") return MeshFormat::vtm;
   return MeshFormat::unknown;
@@ -81,8 +103,7 @@ MeshFormat mesh_format_of(const std::filesystem::path& path, std::string_view co
 ParsedFile parse_mesh_file(const std::filesystem::path& path, std::optional<double> unit_nm, Want want) {
   const std::string file = path.string();
   if (unit_nm) check_unit(*unit_nm, file);
-  ParsedFile parsed = parse(path, want);
-  if (unit_nm) parsed.note.unit_nm = *unit_nm;
+  ParsedFile parsed = parse(path, unit_nm, want);
   std::erase_if(parsed.bodies, [](const ParsedBody& body) { return body.surface.mesh.triangles.empty(); });
   if (parsed.bodies.empty()) {
     throw FileError(file, "there are no triangles in it", "Export a surface, not points or an empty scene");

@@ -10,7 +10,7 @@
 
 namespace surf::io {
 
-enum class MeshFormat { stl, obj, ply, off, gltf, vtp, vtm, unknown };
+enum class MeshFormat { stl, obj, ply, off, gltf, three_mf, vtp, vtm, unknown };
 
 /// By content where that is telling, else by name.
 MeshFormat mesh_format_of(const std::filesystem::path& path, std::string_view content);

@@ -55,8 +55,14 @@ void write_mesh(const std::filesystem::path& path, const TriangleMesh& mesh, dou
   const SurfaceFormat& format = surface_format_of(path);
   check_unit(unit_nm, path.string());
   validate(mesh, path.string().c_str());
-  SceneView scene;
   const std::string name = path.stem().string();
+  if (!has_view_writer(format)) {
+    SurfaceScene one;
+    one.surfaces.push_back({name, mesh, {}, {}});
+    write_surfaces(path, one, {.factor = mm_nm / unit_nm});
+    return;
+  }
+  SceneView scene;
   scene.surfaces.push_back({.name = name, .mesh = &mesh, .scalars = {}});
   if (format.magnified) set_magnification(scene.note, mm_nm / unit_nm);
   scene.note.unit_nm = unit_nm;
@@ -66,8 +72,8 @@ void write_mesh(const std::filesystem::path& path, const TriangleMesh& mesh, dou
 void check_mesh_target(const std::filesystem::path& path) { check_surface_target(path); }
 
 bool is_mesh_file(const std::filesystem::path& path) {
-  static constexpr std::array<std::string_view, 8> known{".stl", ".obj", ".ply", ".off",
-                                                         ".glb", ".gltf", ".vtp", ".vtm"};
+  static constexpr std::array<std::string_view, 9> known{".stl", ".obj", ".ply", ".off", ".glb",
+                                                         ".gltf", ".3mf", ".vtp", ".vtm"};
   return std::find(known.begin(), known.end(), lower_extension(path)) != known.end();
 }
 

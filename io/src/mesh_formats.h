@@ -38,8 +38,12 @@ ParsedFile parse_stl(const std::string& file, std::string_view content);
 ParsedFile parse_obj(const std::filesystem::path& path, std::string_view content, Want want);
 ParsedFile parse_ply(const std::string& file, std::string_view content, Want want);
 ParsedFile parse_off(const std::string& file, std::string_view content);
+struct GltfMeshes {
+  std::vector<NamedMesh> meshes;   ///< semsurf's exaggeration of heights undone
+  double unit_nm;                  ///< of a metre, with semsurf's magnification undone
+};
 /// glTF 2.0 as text or GLB. One mesh per node and material. `path` is where buffers are looked for.
-std::vector<NamedMesh> parse_gltf(const std::filesystem::path& path, std::string_view content);
+GltfMeshes parse_gltf(const std::filesystem::path& path, std::string_view content);
 /// The files beside it in which its buffers lie.
 std::vector<std::filesystem::path> gltf_buffer_files(const std::filesystem::path& path,
                                                      std::string_view content);

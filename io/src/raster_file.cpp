@@ -19,6 +19,7 @@ namespace surf::io {
 namespace {
 
 constexpr std::int64_t max_values = std::int64_t{1} << 31;
+constexpr OIIO::imagesize_t max_drape_pixels = OIIO::imagesize_t{1} << 28;
 constexpr int rows_at_a_time = 64;
 constexpr const char* pages_key = "image:pages";
 
@@ -277,6 +278,44 @@ std::string png_content(const std::string& file, const Image& head, int width, i
   output->set_ioproxy(&memory);
   write_png_rows(*output, "memory.png", file, head, width, height, grey);
   return {bytes.begin(), bytes.end()};
+}
+
+std::string format_grey_png(const std::string& file, const Grid<std::uint8_t>& grey) {
+  const auto output = create_output("png", file);
+  std::vector<unsigned char> bytes;
+  OIIO::Filesystem::IOVecOutput target(bytes);
+  OIIO::ImageSpec spec(grey.width(), grey.height(), 1, OIIO::TypeDesc::UINT8);
+  void* const proxy = &target;
+  spec.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);
+  check_written(output->open("picture.png", spec), *output, file);
+  for (int row = 0; row < grey.height(); ++row) {
+    const std::uint8_t* const pixels = &grey(0, grey.height() - 1 - row);
+    check_written(output->write_scanline(row, 0, OIIO::TypeDesc::UINT8, pixels), *output, file);
+  }
+  close_output(*output, file);
+  return {bytes.begin(), bytes.end()};
+}
+
+Grid<std::uint8_t> parse_grey_png(const std::string& file, std::string_view content) {
+  keep_quiet();
+  const auto fail = [&](const std::string& reason) {
+    throw FileError(file, fmt::format("its picture cannot be read: {}", reason), "Export the file again");
+  };
+  OIIO::Filesystem::IOMemReader source(const_cast<char*>(content.data()), content.size());
+  const auto input = OIIO::ImageInput::open("picture.png", nullptr, &source);
+  if (!input) fail(OIIO::geterror());
+  const OIIO::ImageSpec& spec = input->spec();
+  if (spec.width < 1 || spec.height < 1 || spec.image_pixels() > max_drape_pixels) {
+    fail(fmt::format("it has {} by {} pixels", spec.width, spec.height));
+  }
+  Grid<std::uint8_t> grey(spec.width, spec.height);
+  for (int row = 0; row < spec.height; ++row) {
+    std::uint8_t* const pixels = &grey(0, spec.height - 1 - row);
+    if (!input->read_scanlines(0, 0, row, row + 1, 0, 0, 1, OIIO::TypeDesc::UINT8, pixels)) {
+      fail(input->geterror());
+    }
+  }
+  return grey;
 }
 
 Image read_raster(const std::filesystem::path& path) {

@@ -86,6 +86,11 @@ void write_surfaces(const std::filesystem::path& path, const SurfaceScene& scene
   const SurfaceFormat& format = surface_format_of(path);
   check_magnification(magnification, path.string());
   validate(scene, path.string().c_str());
+  if (!has_view_writer(format)) {
+    write_all(format.extension == ".3mf" ? format_3mf(path, scene, magnification)
+                                         : format_gltf(path, scene, magnification));
+    return;
+  }
   SceneView view = view_of(scene);
   if (format.magnified) {
     set_magnification(view.note, magnification.factor);

@@ -30,6 +30,9 @@ constexpr double least_float32 = 1e-30;
 
 const std::vector<Row>& rows() {
   static const std::vector<Row> table{
+      {{".glb", true, true, true, true, true}},
+      {{".gltf", true, true, true, true, true}},
+      {{".3mf", true, false, false, false, true}},
       {{".stl", false, false, false, false, true}, false, least_float32},
       {{".obj", true, false, true, false, true}},
       {{".ply", false, true, false, false, false}},
@@ -121,15 +124,6 @@ void write_content(const std::filesystem::path& temporary, const std::string& co
   if (!stream) throw std::runtime_error(std::strerror(errno));
 }
 
-/// All are whole under temporary names before the first is renamed; the last one is renamed last.
-void write_all(std::span<const OutputFile> files) {
-  if (files.empty()) return;
-  write_atomically(files.back().path, [&](const std::filesystem::path& temporary) {
-    write_content(temporary, files.back().content);
-    write_all(files.first(files.size() - 1));
-  });
-}
-
 }  // namespace
 
 const std::vector<SurfaceFormat>& surface_formats() {
@@ -142,6 +136,18 @@ const std::vector<SurfaceFormat>& surface_formats() {
 }
 
 const SurfaceFormat& surface_format_of(const std::filesystem::path& path) { return row_of(path).format; }
+
+bool has_view_writer(const SurfaceFormat& format) {
+  return format.extension != ".glb" && format.extension != ".gltf" && format.extension != ".3mf";
+}
+
+void write_all(std::span<const OutputFile> files) {
+  if (files.empty()) return;
+  write_atomically(files.back().path, [&](const std::filesystem::path& temporary) {
+    write_content(temporary, files.back().content);
+    write_all(files.first(files.size() - 1));
+  });
+}
 
 void write_view(const std::filesystem::path& path, SceneView scene) {
   const Row& row = row_of(path);

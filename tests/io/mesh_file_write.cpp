@@ -125,7 +125,7 @@ TEST(WriteMesh, RefusesWhatCannotBeReadAgain) {
 TEST(WriteMesh, TargetsAreCheckedEarly) {
   const TemporaryFolder folder;
   const auto& root = folder.path();
-  for (const char* name : {"a.jpg", "a", "a.toml", "a.glb"}) {
+  for (const char* name : {"a.jpg", "a", "a.toml", "a.step"}) {
     EXPECT_THAT(complaint<UsageError>([&] { check_mesh_target(root / name); }),
                 HasSubstr("not written"));
     EXPECT_THAT(complaint<UsageError>([&] {

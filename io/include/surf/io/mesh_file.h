@@ -17,11 +17,11 @@ struct NamedMesh {
   TriangleMesh mesh;
 };
 
-/// Reads STL (text and binary), OBJ, PLY (text and binary), OFF, glTF 2.0 (.gltf and .glb), VTP or VTM
+/// Reads STL (text and binary), OBJ, PLY (text and binary), OFF, glTF 2.0 (.gltf and .glb), 3MF, VTP or VTM
 /// (ParaView), by content and then by name. Polygons are fanned into triangles; equal vertices of a body are
 /// merged. `unit_nm` (> 0) is the length of one file unit. By default it is what semsurf noted in a file that it
-/// wrote, so that its magnification is undone, else 1 nm, as the formats carry none, and 1 m for glTF, whose
-/// specification says so. A unit that is given takes the place of a noted one, a noted z exaggeration being
+/// wrote, so that its magnification is undone, else 1 nm, as the formats carry none, 1 m for glTF, whose
+/// specification says so, and what 3MF files say. A unit that is given takes the place of a noted one, a noted z exaggeration being
 /// undone all the same.
 /// - OBJ: one body per material in use, with the object's name where all its faces lie in one; in files of
 ///   semsurf one per object, without a material.
@@ -31,6 +31,7 @@ struct NamedMesh {
 ///   images not loaded.
 /// - VTP: polygons and strips; one body per text in an array "material" of the cells or points, in files of
 ///   semsurf one per surface.
+/// - 3MF: one body per item of the build, its transforms applied.
 /// - VTM: the bodies of all its VTP files, which lie in or below its folder.
 /// - The others: one body, without a material.
 /// Throws FileError naming the file, the place and the remedy, Unsupported for compressed, skinned
@@ -63,7 +64,7 @@ void write_mesh(const std::filesystem::path& path, const TriangleMesh& mesh, dou
 void check_mesh_target(const std::filesystem::path& path);
 
 /// Whether the name ends in the extension of a mesh format that is read (".stl", ".obj", ".ply",
-/// ".off", ".glb", ".gltf", ".vtp", ".vtm").
+/// ".off", ".glb", ".gltf", ".3mf", ".vtp", ".vtm").
 bool is_mesh_file(const std::filesystem::path& path);
 
 }  // namespace surf::io
