@@ -31,7 +31,8 @@ using GreyRow = std::function<void(int y, std::span<unsigned char> row)>;
 void write_png(const std::filesystem::path& target, const std::string& file, const Image& head,
                int width, int height, const GreyRow& grey);
 /// The same as bytes.
-std::string png_content(const std::string& file, const Image& head, int width, int height, const GreyRow& grey);
+std::string png_content(const std::string& file, const Image& head, int width, int height,
+                        const GreyRow& grey);
 
 /// The content of a PNG file of 8 bits in grey, without any text; sample (0, 0) is the lower-left pixel. The
 /// same pixels give the same bytes.

@@ -22,7 +22,8 @@ ParsedFile parse_gltf_shapes(const std::filesystem::path& path, std::string_view
   GltfMeshes found = parse_gltf(path, content);
   parsed.note.unit_nm = found.unit_nm;
   for (NamedMesh& body : found.meshes) {
-    parsed.bodies.push_back({std::move(body.material), {.name = std::move(body.name), .mesh = std::move(body.mesh)}});
+    parsed.bodies.push_back(
+        {std::move(body.material), {.name = std::move(body.name), .mesh = std::move(body.mesh)}});
   }
   return parsed;
 }
@@ -77,7 +78,8 @@ void convert_to_nm(TriangleMesh& mesh, const SurfaceNote& note, const std::strin
 
 void check_unit(double unit_nm, const std::string& file) {
   if (unit_nm > 0 && std::isfinite(unit_nm)) return;
-  throw UsageError(file, fmt::format("{} nm cannot be the unit of a mesh", unit_nm), "Give a positive length");
+  throw UsageError(file, fmt::format("{} nm cannot be the unit of a mesh", unit_nm),
+                   "Give a positive length");
 }
 
 MeshFormat mesh_format_of(const std::filesystem::path& path, std::string_view content) {

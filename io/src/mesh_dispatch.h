@@ -19,8 +19,8 @@ MeshFormat mesh_format_of(const std::filesystem::path& path, std::string_view co
 void check_unit(double unit_nm, const std::string& file);
 
 /// Reads a file of any format. `unit_nm` takes the place of what the file says. Bodies without triangles are
-/// left out, others have names (the file's, where it gives none) and are in nm. Throws FileError, Unsupported,
-/// UsageError for a unit that is none.
+/// left out, others have names (the file's, where it gives none) and are in nm. Throws FileError,
+/// Unsupported, UsageError for a unit that is none.
 ParsedFile parse_mesh_file(const std::filesystem::path& path, std::optional<double> unit_nm, Want want);
 
 }  // namespace surf::io

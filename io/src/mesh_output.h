@@ -29,8 +29,8 @@ struct SceneView {
   SurfaceNote note;
 };
 
-/// For each scalar that all surfaces have in the same unit: where each has it. Formats that make one of several
-/// surfaces hold these.
+/// For each scalar that all surfaces have in the same unit: where each has it. Formats that make one of
+/// several surfaces hold these.
 std::vector<std::vector<const VertexScalar*>> common_scalars(const SceneView& scene);
 
 // One function per format, behind write_surfaces and write_mesh: the content of the file. The scene is valid,

@@ -42,7 +42,9 @@ SceneView view_of(const SurfaceScene& scene) {
 /// A name that is not yet in `used`: with a number behind it if need be.
 std::string unique_name(const std::string& name, const char* gap, std::set<std::string>& used) {
   std::string unique = name;
-  for (int number = 2; !used.insert(unique).second; ++number) unique = fmt::format("{}{}{}", name, gap, number);
+  for (int number = 2; !used.insert(unique).second; ++number) {
+    unique = fmt::format("{}{}{}", name, gap, number);
+  }
   return unique;
 }
 

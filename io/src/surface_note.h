@@ -14,7 +14,7 @@ namespace surf::io {
 /// What a file of surfaces says about itself in text: in comments (OBJ, PLY, OFF), in a header (STL), in
 /// field data (VTP). Files of other programs have none of it; their numbers are nm.
 struct SurfaceNote {
-  double unit_nm = 1;                                ///< > 0: nm of the specimen that 1 in the file stands for
+  double unit_nm = 1;                                ///< > 0: nm of the specimen that a 1 stands for
   double magnification = 1e6;                        ///< in magnified formats, where unit_nm follows from it
   double z_exaggeration = 1;                         ///< > 0: heights are this much larger still
   std::vector<std::string> names;                    ///< of the surfaces, in the file's order
@@ -51,7 +51,7 @@ void apply_comments(std::string_view content, char mark, const std::string& file
 /// A name on one line as other programs show it: blanks and special characters become '_'.
 std::string plain_name(std::string_view name);
 
-/// The 80 bytes in front of a binary STL file: magnification, exaggeration and as much of the metadata as fits.
+/// The 80 bytes in front of a binary STL file: magnification, exaggeration and what fits of the metadata.
 std::string to_stl_header(const SurfaceNote& note);
 void apply_stl_header(std::string_view header, const std::string& file, SurfaceNote& note);
 

@@ -61,7 +61,8 @@ const Row& row_of(const std::filesystem::path& path) {
                      fmt::format("Use {}", known_extensions()));
   }
   if (found->needs_vtk && !has_vtp_writer()) {
-    throw Unsupported(path.string(), fmt::format("this semsurf was built without VTK, which writes {}", extension),
+    throw Unsupported(path.string(),
+                      fmt::format("this semsurf was built without VTK, which writes {}", extension),
                       "Use .ply, or build with VTK");
   }
   return *found;

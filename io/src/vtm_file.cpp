@@ -82,7 +82,8 @@ bool is_vtm(std::string_view content) {
   return start.find("<VTKFile") != start.npos && start.find(vtm_type) != start.npos;
 }
 
-std::vector<std::filesystem::path> vtm_part_files(const std::filesystem::path& path, std::string_view content) {
+std::vector<std::filesystem::path> vtm_part_files(const std::filesystem::path& path,
+                                                  std::string_view content) {
   std::vector<std::filesystem::path> files;
   for (Block& block : blocks_of(path, content)) files.push_back(std::move(block.file));
   return files;
@@ -129,8 +130,8 @@ std::vector<OutputFile> format_vtm(const std::filesystem::path& path, const Scen
   std::vector<OutputFile> files;
   std::string blocks;
   const auto add = [&](const std::string& name, const std::string& part, std::string content) {
-    blocks += fmt::format("    <DataSet index=\"{}\" name=\"{}\" file=\"{}\"/>\n", files.size(), attribute(name),
-                          attribute(part));
+    blocks += fmt::format("    <DataSet index=\"{}\" name=\"{}\" file=\"{}\"/>\n", files.size(),
+                          attribute(name), attribute(part));
     files.push_back({path.parent_path() / part, std::move(content)});
   };
   for (std::size_t s = 0; s < scene.surfaces.size(); ++s) {

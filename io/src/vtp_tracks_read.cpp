@@ -27,7 +27,8 @@ std::vector<double> numbers(const Element& piece, const char* kind, const char* 
 }
 
 int whole(double value, const Element& piece) {
-  if (!(std::abs(value) <= 0x1p31 - 1) || value != std::floor(value)) piece.fail(fmt::format("{} is not whole", value));
+  const bool is_whole = std::abs(value) <= 0x1p31 - 1 && value == std::floor(value);
+  if (!is_whole) piece.fail(fmt::format("{} is not a whole number", value));
   return static_cast<int>(value);
 }
 
@@ -65,11 +66,15 @@ void read_piece(const Element& piece, std::vector<Track>& tracks) {
     }
     Track track;
     const int what = whole(kind[i], piece);
-    if (what < 0 || what > static_cast<int>(TrackKind::lost)) piece.fail(fmt::format("{} is no kind of track", what));
+    if (what < 0 || what > static_cast<int>(TrackKind::lost)) {
+      piece.fail(fmt::format("{} is no kind of track", what));
+    }
     track.kind = static_cast<TrackKind>(what);
     track.secondary = secondary[i] != 0;
     track.generation = whole(generation[i], piece);
-    if (!(std::abs(electron[i]) <= 0x1p53)) piece.fail(fmt::format("{} is no electron's number", electron[i]));
+    if (!(std::abs(electron[i]) <= 0x1p53)) {
+      piece.fail(fmt::format("{} is no electron's number", electron[i]));
+    }
     track.electron = static_cast<std::int64_t>(electron[i]);
     track.number = whole(number[i], piece);
     track.parent = whole(parent[i], piece);

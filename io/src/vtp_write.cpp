@@ -71,7 +71,9 @@ void add_scalars(vtkPolyData* data, const SceneView& scene) {
     const auto array = point_array(data, name.c_str(), 1);
     array->GetInformation()->Set(vtkDataArray::UNITS_LABEL(), scalar.front()->unit.c_str());
     float* place = array->GetPointer(0);
-    for (const VertexScalar* part : scalar) place = std::copy(part->values.begin(), part->values.end(), place);
+    for (const VertexScalar* part : scalar) {
+      place = std::copy(part->values.begin(), part->values.end(), place);
+    }
     vtkPointData* const points = data->GetPointData();
     points->AddArray(array);
     if (!points->GetScalars() || name == "height") points->SetActiveScalars(name.c_str());

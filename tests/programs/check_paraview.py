@@ -50,6 +50,8 @@ def check_letter(name, got, text, count=1):
     expect(close(got["bounds"], box), f"{name}: the bounds are {got['bounds']}, not {box}", text)
     expect(got["points"] == count * expected["vertices"], f"{name}: {got['points']} points", text)
     expect(got["cells"] == count * expected["triangles"], f"{name}: {got['cells']} cells", text)
+    if name.endswith(".ply"):   # ParaView's reader leaves out what it does not know
+        return
     expect(close(got["arrays"]["height"], [0, 25]), f"{name}: the heights are {got['arrays']['height']}", text)
     expect(close(got["arrays"]["certainty"], [0, 1]), f"{name}: the certainties", text)
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Usage: sample_surfaces FOLDER. Writes a closed letter F of 300 x 250 x 25 nm in every format, as letter.EXT, with
-// a picture, a scalar and electron tracks where the format holds them; letter and a copy of it beside as
+// Usage: sample_surfaces FOLDER. Writes a closed letter F of 300 x 250 x 25 nm in every format, as letter.EXT,
+// with a picture, scalars and electron tracks where the format holds them; the letter and a copy beside it as
 // pair.EXT where it holds several; and expected.json.
 #include <fmt/format.h>
 
@@ -43,10 +43,10 @@ void write_samples(const std::filesystem::path& folder) {
   const TriangleMesh& mesh = one.surfaces[0].mesh;
   const Box box = bounds(mesh);
   io::write_text(folder / "expected.json",
-                 fmt::format("{{\"vertices\": {}, \"triangles\": {}, \"low\": [{}, {}, {}], \"high\": [{}, {}, {}], "
-                             "\"volume\": {}}}\n",
-                             mesh.vertices_nm.size(), mesh.triangles.size(), box.lower_nm.x, box.lower_nm.y, box.lower_nm.z,
-                             box.upper_nm.x, box.upper_nm.y, box.upper_nm.z, 8 * 100 * 50 * 25));
+                 fmt::format("{{\"vertices\": {}, \"triangles\": {}, \"low\": [{}, {}, {}], "
+                             "\"high\": [{}, {}, {}], \"volume\": {}}}\n",
+                             mesh.vertices_nm.size(), mesh.triangles.size(), box.lower_nm.x, box.lower_nm.y,
+                             box.lower_nm.z, box.upper_nm.x, box.upper_nm.y, box.upper_nm.z, 8 * 100 * 50 * 25));
 }
 
 }  // namespace

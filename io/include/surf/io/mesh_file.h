@@ -19,10 +19,10 @@ struct NamedMesh {
 
 /// Reads STL (text and binary), OBJ, PLY (text and binary), OFF, glTF 2.0 (.gltf and .glb), 3MF, VTP or VTM
 /// (ParaView), by content and then by name. Polygons are fanned into triangles; equal vertices of a body are
-/// merged. `unit_nm` (> 0) is the length of one file unit. By default it is what semsurf noted in a file that it
-/// wrote, so that its magnification is undone, else 1 nm, as the formats carry none, 1 m for glTF, whose
-/// specification says so, and what 3MF files say. A unit that is given takes the place of a noted one, a noted z exaggeration being
-/// undone all the same.
+/// merged. `unit_nm` (> 0) is the length of one file unit. By default it is what semsurf noted in a file that
+/// it wrote, so that its magnification is undone, else 1 nm, as the formats carry none, 1 m for glTF, whose
+/// specification says so, and what 3MF files say. A unit that is given takes the place of all these; a noted
+/// z exaggeration is undone all the same.
 /// - OBJ: one body per material in use, with the object's name where all its faces lie in one; in files of
 ///   semsurf one per object, without a material.
 /// - glTF: one body per node and material of the default scene, its transforms applied; a mesh that
@@ -46,14 +46,14 @@ TriangleMesh join(const std::vector<NamedMesh>& meshes);
 /// The bodies of the file, joined.
 TriangleMesh read_mesh(const std::filesystem::path& path, std::optional<double> unit_nm = {});
 
-/// The files that `read_mesh` opens for this one: itself, and the buffers beside a glTF file or blocks of VTM. Throws
-/// what reading would for a file whose JSON is broken.
+/// The files that `read_mesh` opens for this one: itself, and the buffers beside a glTF file or the blocks of a
+/// VTM file. Throws what reading would for a file whose JSON or XML is broken.
 std::vector<std::filesystem::path> mesh_input_files(const std::filesystem::path& path);
 
 /// Writes a mesh alone as `write_surfaces` does, by extension, one file unit being `unit_nm` (> 0). The unit is
 /// noted in the file (in formats of `SurfaceFormat::magnified` as the magnification 1e6 / unit_nm), so that
-/// reading gives nm again. Vertices and triangles keep their order. The file appears under its
-/// name only when it is complete.
+/// reading gives nm again. Vertices and triangles keep their order. The file appears under its name only when
+/// it is complete.
 /// OBJ, PLY, OFF, VTP and VTM keep every digit: with a unit of 1 nm, reading gives the same doubles. STL has
 /// 24 bits per coordinate (0.06 nm at 1 mm) and may so make vertices equal that were not.
 /// Throws InvalidInput for a mesh that `validate` refuses or whose coordinates the format cannot
