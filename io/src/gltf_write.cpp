@@ -292,8 +292,8 @@ class GltfBuilder {
       image.bufferView = add_view(bytes_.add(png));
       image.mimeType = "image/png";
     } else {
-      const std::size_t number = model_.images.size() + 1;
-      const auto name = path_.stem().string() + (number == 1 ? ".png" : fmt::format("_{}.png", number));
+      // Not NAME.png, which may be the picture that is draped.
+      const auto name = fmt::format("{}_drape{}.png", path_.stem().string(), model_.images.size() + 1);
       image.uri = percent_encoded(name);
       files_.push_back({path_.parent_path() / name, std::move(png)});
     }

@@ -150,7 +150,7 @@ TEST(GltfWrite, SaysWhatItHolds) {
   }
   EXPECT_FALSE(attributes.contains("TEXCOORD_0"));
   EXPECT_TRUE(file["meshes"][0]["primitives"][0]["attributes"].contains("TEXCOORD_0"));
-  EXPECT_EQ(file["images"][0]["uri"], "f.png");
+  EXPECT_EQ(file["images"][0]["uri"], "f_drape1.png");
   EXPECT_EQ(file["buffers"][0]["uri"], "f.bin");
   for (const json& material : file["materials"]) EXPECT_TRUE(material["doubleSided"]);
 }
@@ -235,8 +235,8 @@ TEST(GltfWrite, DamagedExtrasAreNamed) {
   bad = good;
   bad["meshes"].back()["extras"]["tracks"]["kind"] = "x";
   EXPECT_THAT(complaint(bad), testing::HasSubstr("kind"));
-  std::filesystem::remove(folder.path() / "f.png");
-  EXPECT_THAT(complaint(good), testing::HasSubstr("f.png"));
+  std::filesystem::remove(folder.path() / "f_drape1.png");
+  EXPECT_THAT(complaint(good), testing::HasSubstr("f_drape1.png"));
 }
 
 TEST(GltfWrite, AttributesOfOthersBecomeScalars) {

@@ -17,15 +17,18 @@ struct NamedMesh {
   TriangleMesh mesh;
 };
 
-/// Reads STL (text and binary), OBJ, PLY (text and binary), OFF, glTF 2.0 (.gltf and .glb) or VTP
+/// Reads STL (text and binary), OBJ, PLY (text and binary), OFF, glTF 2.0 (.gltf and .glb), 3MF or VTP
 /// (ParaView), by content and then by name. Polygons are fanned into triangles; equal vertices of a body are
 /// merged. `unit_nm` (> 0) is the length of one file unit: by default 1 nm, as the formats carry
-/// none, and 1 m for glTF, whose specification says so.
+/// none, 1 m for glTF, whose specification says so, and what a 3MF file says; the magnification and
+/// exaggeration of heights that semsurf notes in these two are undone. A unit that is given takes the place
+/// of the magnification.
 /// - OBJ: one body per material in use, with the object's name where all its faces lie in one.
 /// - glTF: one body per node and material of the default scene, its transforms applied; a mesh that
 ///   several nodes show is repeated. Its y axis, which is up, becomes z: (x, y, z) -> (x, -z, y).
 ///   Buffers are in the file, in data URIs or in files beside it. Points and lines are skipped,
 ///   images not loaded.
+/// - 3MF: one body per mesh of each item to be built, its transforms applied.
 /// - VTP: polygons and strips; one body per text in an array "material" of the cells or points.
 /// - The others: one body, without a material.
 /// Throws FileError naming the file, the place and the remedy, Unsupported for compressed, skinned
@@ -57,7 +60,7 @@ void write_mesh(const std::filesystem::path& path, const TriangleMesh& mesh, dou
 void check_mesh_target(const std::filesystem::path& path);
 
 /// Whether the name ends in the extension of a mesh format that is read (".stl", ".obj", ".ply",
-/// ".off", ".glb", ".gltf", ".vtp").
+/// ".off", ".glb", ".gltf", ".3mf", ".vtp").
 bool is_mesh_file(const std::filesystem::path& path);
 
 }  // namespace surf::io
