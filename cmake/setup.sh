@@ -13,7 +13,7 @@ packages=(
   libtomlplusplus-dev nlohmann-json3-dev libssl-dev               # scene files, records, hashes
   libcli11-dev libfmt-dev                                         # command line, text
   libpugixml-dev zlib1g-dev                                       # VTK's files, 3MF
-  libtinygltf-dev                                                 # glTF written
+  libtinygltf-dev                                                 # glTF
   libxxhash-dev                                                   # checksums of cached files
   pkg-config libcairo2-dev fonts-dejavu-core                      # pictures of electron tracks
   paraview-dev python3-paraview mpi-default-dev python3-dev       # VTK: ParaView's own

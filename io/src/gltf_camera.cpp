@@ -30,12 +30,13 @@ GltfCamera frame_box(const Box& framed, const Box& all, double smallest) {
   const Vec3 up = cross(back, right);
   const Vec3 center = framed.center_nm();
   const double slope = filled * std::tan(yfov / 2);
-  double distance = smallest;
+  double distance = 0;
   for (const Vec3& corner : corners(framed)) {
     const Vec3 p = corner - center;
     const double aside = std::max(std::abs(dot(p, right)), std::abs(dot(p, up)));
     distance = std::max(distance, dot(p, back) + aside / slope);
   }
+  if (!(distance > 0)) distance = smallest;
   double farthest = 0;
   for (const Vec3& corner : corners(all)) farthest = std::max(farthest, length(corner - center));
   // A turn about y by the azimuth after one about x by -elevation.

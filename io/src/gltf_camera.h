@@ -17,7 +17,7 @@ struct GltfCamera {
 
 /// Looks obliquely from above at the middle of `framed`, from as near as shows all of it in a picture that
 /// is at least as wide as high. Draws `all`, too, and from a hundredth to four times the distance. Both in
-/// the scene's frame, not empty; `smallest` (> 0) stands in for a distance where the box has no size.
+/// the scene's frame, not empty; `smallest` (> 0) is the distance where the box has no size.
 GltfCamera frame_box(const Box& framed, const Box& all, double smallest);
 
 }  // namespace surf::io

@@ -98,10 +98,11 @@ class GltfBuilder {
       check_plain_text(value, fmt::format("the metadata '{}'", key), file_);
       metadata[key] = Value(value);
     }
-    return Value(Object{{gltf_unit_key, Value(std::string("nm"))},
-                        {gltf_magnification_key, Value(magnification.factor)},
-                        {gltf_exaggeration_key, Value(magnification.z_exaggeration)},
-                        {gltf_metadata_key, Value(metadata)}});
+    Object own{{gltf_unit_key, Value(std::string("nm"))},
+               {gltf_magnification_key, Value(magnification.factor)},
+               {gltf_exaggeration_key, Value(magnification.z_exaggeration)}};
+    if (!metadata.empty()) own[gltf_metadata_key] = Value(metadata);   // tinygltf writes null for {}
+    return Value(own);
   }
 
   std::size_t expected_size() const {
@@ -291,8 +292,8 @@ class GltfBuilder {
       image.bufferView = add_view(bytes_.add(png));
       image.mimeType = "image/png";
     } else {
-      const std::size_t number = model_.images.size() + 1;
-      const auto name = path_.stem().string() + (number == 1 ? ".png" : fmt::format("_{}.png", number));
+      // Not NAME.png, which may be the picture that is draped.
+      const auto name = fmt::format("{}_drape{}.png", path_.stem().string(), model_.images.size() + 1);
       image.uri = percent_encoded(name);
       files_.push_back({path_.parent_path() / name, std::move(png)});
     }
@@ -360,8 +361,8 @@ class GltfBuilder {
     primitive.attributes[gltf_energy_attribute] = add_floats(energies, TINYGLTF_TYPE_SCALAR, 1);
     primitive.attributes[gltf_material_attribute] = add_floats(materials, TINYGLTF_TYPE_SCALAR, 1);
     primitive.indices = add_indices(ends, points.size());
-    tinygltf::Material material = matte({0, 0, 0});
     const auto& color = track_colors[static_cast<std::size_t>(kind)];
+    tinygltf::Material material = matte(color);   // three.js draws lines in the base colour, unlit
     material.emissiveFactor.assign(color.begin(), color.end());
     primitive.material = add_material(material);
     Object tracks{{"kind", Value(std::string(name_of(kind)))}};

@@ -7,60 +7,70 @@
 
 #include "letter_f_mesh.h"
 #include "some_tracks.h"
-#include "surf/io/image_file.h"
-#include "surf/io/surface_file.h"
 #include "surf/mesh/surface.h"
 
 namespace surf::test {
 
-/// 3 x 4 pixels, no two equal, placed unevenly over the letter.
-inline Drape picture() {
-  Drape drape{"SE in-lens", Grid<std::uint8_t>(3, 4), 1.25, 0.7, 1.0 / 3, 0.25};
-  for (std::size_t i = 0; i < drape.grey.size(); ++i) drape.grey.data()[i] = static_cast<std::uint8_t>(3 + 21 * i);
-  return drape;
-}
-
-/// The letter F at a place of thirds, with two scalars.
-inline Surface letter_surface(const std::string& name, double shift_nm) {
-  Surface surface;
-  surface.name = name;
-  surface.mesh = letter_f_triangles();
-  surface.scalars = {{"certainty", "1", {}}, {"height", "nm", {}}, {"curvature_2", "1/nm", {}}};
-  for (Vec3& v : surface.mesh.vertices_nm) {
-    v = {v.x / 3 + shift_nm, v.y / 7, v.z / 11 + 100.1};
-    surface.scalars[0].values.push_back(static_cast<float>(v.y));
-    surface.scalars[1].values.push_back(static_cast<float>(v.z));
-    surface.scalars[2].values.push_back(static_cast<float>(-1e-7 * v.x));
+/// A sheet of (n + 1)^2 vertices over a square of that many nm, with every scalar that a surface may have.
+inline Surface wavy_sheet(const std::string& name, int n, const Vec3& corner_nm) {
+  Surface surface{name, {}, {{"height", "nm", {}}, {"curvature", "1/nm", {}}, {"certainty", "1", {}}}, {}};
+  for (int y = 0; y <= n; ++y) {
+    for (int x = 0; x <= n; ++x) {
+      const double z = 0.1 * n * std::sin(6.0 * x / n) * std::cos(4.0 * y / n);
+      surface.mesh.vertices_nm.push_back(corner_nm + Vec3{double(x), double(y), z});
+      surface.scalars[0].values.push_back(static_cast<float>(z));
+      surface.scalars[1].values.push_back(static_cast<float>(-z / (n * n) + 1e-30));
+      surface.scalars[2].values.push_back(static_cast<float>(x) / 3.0F);
+    }
+  }
+  const auto vertex = [&](int x, int y) { return static_cast<std::uint32_t>(y * (n + 1) + x); };
+  for (int y = 0; y < n; ++y) {
+    for (int x = 0; x < n; ++x) {
+      surface.mesh.triangles.push_back({vertex(x, y), vertex(x + 1, y), vertex(x + 1, y + 1)});
+      surface.mesh.triangles.push_back({vertex(x, y), vertex(x + 1, y + 1), vertex(x, y + 1)});
+    }
   }
   return surface;
 }
 
-/// Two surfaces, the second with a picture; awkward names and texts.
-inline SurfaceScene two_letters() {
+/// An F in grey, which no flip leaves as it is.
+inline Drape letter_f_drape() {
+  Drape drape{"SE \xC3\xA9", Grid<std::uint8_t>(5, 7, 40), 0.8, 0.6, 0.25, -1e-3};
+  const char* const rows[7] = {".....", ".###.", ".#...", ".##..", ".#...", ".#...", "o...."};
+  for (int y = 0; y < 7; ++y) {
+    for (int x = 0; x < 5; ++x) {
+      if (rows[6 - y][x] == '#') drape.grey(x, y) = 255;
+      if (rows[6 - y][x] == 'o') drape.grey(x, y) = 128;
+    }
+  }
+  return drape;
+}
+
+/// All that a file can hold: bodies, sheets, a drape, tracks and provenance.
+inline SurfaceScene full_scene() {
   SurfaceScene scene;
-  scene.surfaces = {letter_surface("substrate #1, 50 % <\xC3\xA9>", 0), letter_surface("F  on\\ top", 20)};
-  scene.surfaces[1].drape = picture();
+  scene.surfaces.push_back({"F <1> & \"\xC3\xA9\"", letter_f_triangles(), {}, letter_f_drape()});
+  scene.surfaces.push_back(wavy_sheet("waves", 20, {10, -3.7, 1.0 / 3}));
   scene.tracks = two_tracks();
-  scene.metadata = {{"semsurf.version", "1.2"}, {"beam.energy_ev", "1000"}, {"empty", ""},
-                    {"title", "a=b \\ \"c\" <d> & \xC3\xA9 50%41\nsecond line\\"}};
+  for (Track& track : random_walks(10)) scene.tracks.push_back(std::move(track));
+  scene.metadata = {{"semsurf.version", "1.2"}, {"beam.energy_ev", "1000"}, {"note", "a \"b\" <c> &\n\xC3\xA9"}};
   return scene;
 }
 
-inline bool has_vtk() { return io::image_library_versions().find("VTK") != std::string::npos; }
-
-/// The formats that this build writes.
-inline std::vector<io::SurfaceFormat> written_formats() {
-  std::vector<io::SurfaceFormat> formats;
-  for (const io::SurfaceFormat& format : io::surface_formats()) {
-    if (has_vtk() || !format.extension.starts_with(".vt")) formats.push_back(format);
-  }
-  return formats;
+inline SurfaceScene scene_of(Surface surface) {
+  SurfaceScene scene;
+  scene.surfaces.push_back(std::move(surface));
+  return scene;
 }
 
-/// Float32 in the file: nm may be off by half a unit in the last place of the largest coordinate.
-inline bool is_float32(const io::SurfaceFormat& format) {
-  return format.extension == ".stl" || format.extension == ".3mf" || format.extension == ".glb" ||
-         format.extension == ".gltf";
+/// The farthest that a vertex has moved, beside the extent of its surface.
+inline double relative_shift(const Surface& before, const Surface& after) {
+  const Vec3 size = bounds(before.mesh).size_nm();
+  double farthest = 0;
+  for (std::size_t i = 0; i < before.mesh.vertices_nm.size(); ++i) {
+    farthest = std::max(farthest, length(before.mesh.vertices_nm[i] - after.mesh.vertices_nm.at(i)));
+  }
+  return farthest / std::max({size.x, size.y, size.z});
 }
 
 }  // namespace surf::test

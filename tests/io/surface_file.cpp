@@ -2,7 +2,7 @@
 #include "surf/io/surface_file.h"
 
 #include "io_test.h"
-#include "some_surfaces.h"
+#include "surface_scenes.h"
 #include "surf/io/mesh_file.h"
 
 namespace surf::io {

@@ -4,7 +4,7 @@
 #include <limits>
 
 #include "io_test.h"
-#include "some_surfaces.h"
+#include "surface_scenes.h"
 #include "surf/io/mesh_file.h"
 #include "surf/io/surface_file.h"
 

@@ -16,7 +16,7 @@
 #include <vtkXMLPolyDataReader.h>
 
 #include "io_test.h"
-#include "some_surfaces.h"
+#include "surface_scenes.h"
 #include "surf/io/mesh_file.h"
 
 namespace surf::io {

@@ -8,7 +8,7 @@
 #include <exception>
 #include <filesystem>
 
-#include "some_surfaces.h"
+#include "surface_scenes.h"
 #include "surf/io/files.h"
 #include "surf/mesh/measure_mesh.h"
 

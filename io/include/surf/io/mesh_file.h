@@ -31,7 +31,7 @@ struct NamedMesh {
 ///   images not loaded.
 /// - VTP: polygons and strips; one body per text in an array "material" of the cells or points, in files of
 ///   semsurf one per surface.
-/// - 3MF: one body per item of the build, its transforms applied.
+/// - 3MF: one body per mesh of each item to be built, its transforms applied.
 /// - VTM: the bodies of all its VTP files, which lie in or below its folder.
 /// - The others: one body, without a material.
 /// Throws FileError naming the file, the place and the remedy, Unsupported for compressed, skinned
