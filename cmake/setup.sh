@@ -23,7 +23,7 @@ packages=(
 
 # Programs that open what semsurf writes, for the tests labelled `programs`: about 1.5 GB.
 programs=(
-  admesh assimp-utils f3d freecad-python3 blender                 # what opens surfaces
+  admesh assimp-utils f3d freecad-python3 blender python3-numpy   # what opens surfaces
   xvfb xauth                                                      # a screen for those that need one
 )
 

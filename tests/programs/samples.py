@@ -30,7 +30,9 @@ def samples():
 
 def run(command, home=None):
     """The text that a program prints. Fails if it fails."""
-    environment = dict(os.environ, LC_ALL="C.UTF-8")
+    # Blender takes the first Python on the path for its own.
+    path = f"{pathlib.Path(command[0]).parent}:{os.environ.get('PATH', '')}"
+    environment = dict(os.environ, LC_ALL="C.UTF-8", PATH=path)
     if home:
         environment["HOME"] = str(home)
     done = subprocess.run([str(word) for word in command], stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
