@@ -140,7 +140,7 @@ std::string vtp_content(const std::string& file, vtkPolyData* data) {
   writer->SetInputData(data);
   writer->SetDataModeToBinary();   // ParaView 5.11 on Debian 12 cannot read appended data
   writer->WriteToOutputStringOn();
-  writer->SetCompressionLevel(1);   // higher ones take three times as long for a few per cent
+  writer->SetCompressionLevel(1);   // fast rather than small
   if (writer->Write() != 1 || !complaints.text().empty()) {
     throw FileError(file, fmt::format("cannot be written: {}", complaints.text()),
                     "Check the memory, or choose another format");

@@ -12,6 +12,15 @@ def numbers(output, label):
     return [float(word) for word in found.group(1).split()]
 
 
+def extent(path):
+    """The size of what assimp makes of a file. Its own 'info' multiplies nodes in the wrong order."""
+    converted = path.with_suffix(path.suffix + ".converted.obj")
+    run([assimp, "export", path, converted])
+    places = [[float(word) for word in line.split()[1:4]] for line in converted.read_text().splitlines()
+              if line.startswith("v ")]
+    return [max(axis) - min(axis) for axis in zip(*places)]
+
+
 assimp = need("assimp", "assimp-utils")
 with samples() as (folder, expected):
     checked = 0
@@ -22,8 +31,7 @@ with samples() as (folder, expected):
         text = run([assimp, "info", folder / name])
         count = 2 if name.startswith("pair") else 1
         expect(numbers(text, "Faces") == [count * expected["triangles"]], f"{name}: the triangles", text)
-        low, high = numbers(text, "Minimum point"), numbers(text, "Maximum point")
-        size = [h - l for l, h in zip(low, high)]
+        size = extent(folder / name)
         wanted = [h - l for l, h in zip(expected["low"], expected["high"])]
         wanted[0] += 500 * (count - 1)
         if name.endswith((".glb", ".gltf")):   # metres, y up
