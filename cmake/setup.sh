@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Set-up shared by ./run and ./check; source it after setting -euo pipefail. Functions:
 #   setup_packages        installs what is missing of the list below
+#   setup_full            adds to the list the programs that files are tried in
 #   setup_configure       configures the preset `release` into build/, once
-# Both leave everything alone when there is nothing to do.
+# All leave everything alone when there is nothing to do.
 
 packages=(
   cmake g++ ninja-build ccache                                    # build
@@ -11,12 +12,19 @@ packages=(
   libopenimageio-dev openimageio-tools                            # images
   libtomlplusplus-dev nlohmann-json3-dev libssl-dev               # scene files, records, hashes
   libcli11-dev libfmt-dev                                         # command line, text
-  libpugixml-dev zlib1g-dev                                       # VTK's files
+  libpugixml-dev zlib1g-dev                                       # VTK's files, 3MF
+  libtinygltf-dev                                                 # glTF
   libxxhash-dev                                                   # checksums of cached files
   pkg-config libcairo2-dev fonts-dejavu-core                      # pictures of electron tracks
   paraview-dev python3-paraview mpi-default-dev python3-dev       # VTK: ParaView's own
   python3-matplotlib                                              # charts
   libgtest-dev libgmock-dev                                       # tests
+)
+
+# Programs that open what semsurf writes, for the tests labelled `programs`: about 1.5 GB.
+programs=(
+  admesh assimp-utils f3d freecad-python3 blender python3-numpy   # what opens surfaces
+  xvfb xauth                                                      # a screen for those that need one
 )
 
 say() { printf '==> %s\n' "$*"; }
@@ -56,6 +64,8 @@ setup_packages() {
     fail "apt-get install failed, see above. If it says that packages need to be removed: python3-vtk9
        and ParaView's Python cannot live together; remove python3-vtk9 yourself and start again."
 }
+
+setup_full() { packages+=("${programs[@]}"); }
 
 setup_configure() {
   local home fresh=()

@@ -283,4 +283,25 @@ std::vector<std::uint32_t> GltfAccessors::indices(std::uint64_t index) {
   return {numbers.begin(), numbers.end()};
 }
 
+bool GltfAccessors::is_scalar(std::uint64_t index) const {
+  return root_.item("accessors", index).require("type").text() == "SCALAR";
+}
+
+std::vector<float> GltfAccessors::scalars(std::uint64_t index) {
+  const JsonValue accessor = root_.item("accessors", index);
+  if (layout(accessor).components != 1) accessor.fail("one number for each vertex (SCALAR) is expected");
+  const std::vector<double> numbers = values(accessor);
+  std::vector<float> result(numbers.size());
+  for (std::size_t i = 0; i < result.size(); ++i) {
+    result[i] = static_cast<float>(numbers[i]);
+    if (!std::isfinite(result[i])) accessor.fail(fmt::format("value {} is not finite", i));
+  }
+  return result;
+}
+
+std::string GltfAccessors::image(const JsonValue& image) {
+  if (image.find("bufferView")) return std::string(view(image).bytes);
+  return load(image, image.require("uri").text(), 0);
+}
+
 }  // namespace surf::io

@@ -31,6 +31,12 @@ class GltfAccessors {
   std::vector<Vec3> positions(std::uint64_t accessor);
   /// Unsigned whole numbers, one each.
   std::vector<std::uint32_t> indices(std::uint64_t accessor);
+  /// One number each, of any component type, as float32. Finite.
+  std::vector<float> scalars(std::uint64_t accessor);
+  /// Whether an accessor's values are single numbers.
+  bool is_scalar(std::uint64_t accessor) const;
+  /// The bytes of an image in the file, in a data URI or in a file beside it.
+  std::string image(const JsonValue& image);
 
  private:
   struct Layout;   // how the values of an accessor lie in bytes

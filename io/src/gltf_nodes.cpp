@@ -57,16 +57,6 @@ AffineMap local_map(const JsonValue& node) {
            Vec3{shift[0], shift[1], shift[2]}}};
 }
 
-AffineMap product(const AffineMap& outer, const AffineMap& inner) {
-  AffineMap result;
-  for (std::size_t i = 0; i < 3; ++i) {
-    const Vec3& c = inner.columns[i];
-    result.columns[i] = outer.columns[0] * c.x + outer.columns[1] * c.y + outer.columns[2] * c.z;
-  }
-  result.columns[3] = outer(inner.columns[3]);
-  return result;
-}
-
 std::vector<std::uint64_t> node_list(const JsonValue& owner, const std::string& key) {
   std::vector<std::uint64_t> nodes;
   for (const JsonValue& item : owner.items(key)) nodes.push_back(item.whole());

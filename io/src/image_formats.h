@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <map>
@@ -20,6 +21,8 @@ void write_exr(const std::filesystem::path& target, const std::string& file, con
 void write_tiff(const std::filesystem::path& target, const std::string& file,
                 const ImageRows& rows);
 void write_vti(const std::filesystem::path& target, const std::string& file, const Image& image);
+/// The same as bytes.
+std::string vti_content(const std::string& file, const Image& image);
 
 /// Sets a row of a picture in grey, 0 is black; row 0 is the lowest.
 using GreyRow = std::function<void(int y, std::span<unsigned char> row)>;
@@ -27,6 +30,16 @@ using GreyRow = std::function<void(int y, std::span<unsigned char> row)>;
 /// A picture in grey. `head` gives the text, with the name and unit of one channel.
 void write_png(const std::filesystem::path& target, const std::string& file, const Image& head,
                int width, int height, const GreyRow& grey);
+/// The same as bytes.
+std::string png_content(const std::string& file, const Image& head, int width, int height,
+                        const GreyRow& grey);
+
+/// The content of a PNG file of 8 bits in grey, without any text; sample (0, 0) is the lower-left pixel. The
+/// same pixels give the same bytes.
+std::string format_grey_png(const std::string& file, const Grid<std::uint8_t>& grey);
+/// The pixels of a PNG file as 8 bits in grey, colours by their first channel. `content`
+/// is the file's. Throws FileError.
+Grid<std::uint8_t> parse_grey_png(const std::string& file, std::string_view content);
 
 /// Throws FileError where a TIFF file is cut off, which libtiff takes for missing text and black.
 void check_tiff_structure(const std::filesystem::path& path);

@@ -83,6 +83,37 @@ JsonValue JsonValue::item(const std::string& key, std::uint64_t index) const {
   return at((*values)[index], fmt::format("{}[{}]", key, index));
 }
 
+bool JsonValue::is_object() const { return value_->is_object(); }
+
+std::vector<std::string> JsonValue::keys() const {
+  if (!value_->is_object()) fail(fmt::format("an object is expected, not {}", value_->type_name()));
+  std::vector<std::string> keys;
+  for (const auto& [key, value] : value_->items()) keys.push_back(key);
+  return keys;
+}
+
+std::vector<double> JsonValue::numbers(const std::string& key) const {
+  std::vector<double> numbers;
+  const nlohmann::json* const values = array(key);
+  if (!values) return numbers;
+  numbers.reserve(values->size());
+  for (std::size_t i = 0; i < values->size(); ++i) {
+    const double value = (*values)[i].is_number() ? (*values)[i].get<double>() : NAN;
+    if (!std::isfinite(value)) fail(fmt::format("{}[{}]: a finite number is expected", key, i));
+    numbers.push_back(value);
+  }
+  return numbers;
+}
+
+std::map<std::string, std::string> JsonValue::texts(const std::string& key) const {
+  std::map<std::string, std::string> texts;
+  const auto object = find(key);
+  if (!object) return texts;
+  if (!object->is_object()) object->fail("an object is expected");
+  for (const auto& [name, value] : object->value_->items()) texts[name] = object->at(value, name).text();
+  return texts;
+}
+
 double JsonValue::number() const {
   const double value = value_->is_number() ? value_->get<double>() : NAN;
   if (!std::isfinite(value)) fail("a finite number is expected");

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
@@ -28,6 +29,15 @@ class JsonValue {
   /// The item that the whole number `index` names in the array at `key`.
   JsonValue item(const std::string& key, std::uint64_t index) const;
   std::size_t count(const std::string& key) const;
+
+  bool is_object() const;
+  /// The keys of this object, in the order of the alphabet.
+  std::vector<std::string> keys() const;
+
+  /// The finite numbers of the array at `key`; empty where the key is missing.
+  std::vector<double> numbers(const std::string& key) const;
+  /// The texts of the object at `key`, by their keys; empty where the key is missing.
+  std::map<std::string, std::string> texts(const std::string& key) const;
 
   double number() const;
   /// A whole number from 0 to 2^53.

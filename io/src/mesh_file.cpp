@@ -1,141 +1,28 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "surf/io/mesh_file.h"
 
-#include <fmt/format.h>
-
-#include <cmath>
+#include <algorithm>
+#include <array>
 #include <string_view>
 #include <utility>
 
 #include "lower_extension.h"
-#include "mesh_formats.h"
-#include "mesh_output.h"
+#include "mesh_dispatch.h"
 #include "split_mesh.h"
 #include "surf/core/error.h"
-#include "surf/core/units.h"
 #include "surf/io/files.h"
+#include "surface_output.h"
 #include "vtp_format.h"
 
 namespace surf::io {
-namespace {
-
-enum class Format { stl, obj, ply, off, gltf, vtp, unknown };
-
-/// By content where that is telling, else by name.
-Format format_of(const std::filesystem::path& path, std::string_view content) {
-  if (is_glb(content)) return Format::gltf;
-  if (is_vtp(content)) return Format::vtp;
-  if (is_ply(content)) return Format::ply;
-  if (is_off(content)) return Format::off;
-  if (is_binary_stl(content) || is_text_stl(content)) return Format::stl;
-  const std::string extension = lower_extension(path);
-  if (extension == ".stl") return Format::stl;
-  if (extension == ".obj") return Format::obj;
-  if (extension == ".ply") return Format::ply;
-  if (extension == ".off") return Format::off;
-  if (extension == ".glb" || extension == ".gltf") return Format::gltf;
-  if (extension == ".vtp") return Format::vtp;
-  return Format::unknown;
-}
-
-/// The meshes in file units, and the nm of one unit where the format says it.
-struct Parsed {
-  std::vector<NamedMesh> meshes;
-  double unit_nm = 1;
-};
-
-Parsed parse(const std::filesystem::path& path) {
-  constexpr double metre_nm = 1e9;
-  const std::string file = path.string();
-  const std::string content = read_file(path);
-  if (content.empty()) throw FileError(file, "the file is empty", "Export the mesh again");
-  switch (format_of(path, content)) {
-    case Format::stl: return {{{{}, {}, parse_stl(file, content)}}};
-    case Format::obj: return {parse_obj(file, content)};
-    case Format::ply: return {{{{}, {}, parse_ply(file, content)}}};
-    case Format::off: return {{{{}, {}, parse_off(file, content)}}};
-    case Format::gltf: return {parse_gltf(path, content), metre_nm};
-    case Format::vtp: return {parse_vtp(file, content)};
-    case Format::unknown: break;
-  }
-  throw FileError(file, "neither its content nor its name is that of a mesh format known here",
-                  "Use STL, OBJ, PLY, OFF, glTF or VTP");
-}
-
-void check_unit(double unit_nm, const std::string& file) {
-  if (!(unit_nm > 0) || !std::isfinite(unit_nm)) {
-    throw UsageError(file, fmt::format("{} nm cannot be the unit of a mesh", unit_nm),
-                     "Give a positive length");
-  }
-}
-
-bool is_writable_format(const std::string& extension) {
-  return extension == ".stl" || extension == ".obj" || extension == ".ply" ||
-         extension == ".off" || extension == ".vtp";
-}
-
-void check_known(const std::filesystem::path& path) {
-  const std::string extension = lower_extension(path);
-  if (!is_writable_format(extension)) {
-    throw UsageError(path.string(),
-                     fmt::format("meshes are not written as '{}'", path.extension().string()),
-                     "Use .stl, .obj, .ply, .off or .vtp");
-  }
-  if (extension == ".vtp" && !has_vtp_writer()) {
-    throw Unsupported(path.string(), "this semsurf was built without VTK, which writes VTP",
-                      "Use .ply, or build with VTK");
-  }
-}
-
-void check_finite(const TriangleMesh& mesh, double unit_nm, const std::string& file) {
-  for (const Vec3& vertex : mesh.vertices_nm) {
-    if (is_finite(vertex)) continue;
-    throw FileError(file, fmt::format("its coordinates are too large for a unit of {} nm",
-                                      format_exact(unit_nm)),
-                    "Check the unit");
-  }
-}
-
-TriangleMesh in_file_units(TriangleMesh mesh, double unit_nm, const std::string& file) {
-  if (unit_nm == 1) return mesh;
-  for (Vec3& v : mesh.vertices_nm) {
-    v = {v.x / unit_nm, v.y / unit_nm, v.z / unit_nm};
-    if (is_finite(v)) continue;
-    throw InvalidInput(file, fmt::format("its coordinates are too large for a unit of {} nm",
-                                         format_exact(unit_nm)),
-                       "Use a larger unit");
-  }
-  return mesh;
-}
-
-std::string format_mesh(const std::string& file, const std::string& extension,
-                        const TriangleMesh& mesh) {
-  if (extension == ".stl") return format_stl(file, mesh);
-  if (extension == ".obj") return format_obj(mesh);
-  if (extension == ".ply") return format_ply(file, mesh);
-  if (extension == ".vtp") return format_vtp(file, mesh);
-  return format_off(mesh);
-}
-
-}  // namespace
 
 std::vector<NamedMesh> read_meshes(const std::filesystem::path& path,
                                    std::optional<double> unit_nm) {
-  const std::string file = path.string();
-  if (unit_nm) check_unit(*unit_nm, file);
-  Parsed parsed = parse(path);
-  const double unit = unit_nm.value_or(parsed.unit_nm);
   std::vector<NamedMesh> meshes;
-  for (NamedMesh& found : parsed.meshes) {
-    if (found.mesh.triangles.empty()) continue;
-    if (found.name.empty()) found.name = path.stem().string();
-    if (unit != 1) transform(found.mesh, unit, {});
-    check_finite(found.mesh, unit, file);
-    meshes.push_back({found.name, found.material, merge_equal_vertices(found.mesh)});
-  }
-  if (meshes.empty()) {
-    throw FileError(file, "there are no triangles in it",
-                    "Export a surface, not points or an empty scene");
+  for (ParsedBody& body : parse_mesh_file(path, unit_nm, Want::shapes).bodies) {
+    Surface& surface = body.surface;
+    meshes.push_back({std::move(surface.name), std::move(body.material), merge_equal_vertices(surface.mesh)});
+    surface.mesh = {};   // two copies of one body at a time
   }
   return meshes;
 }
@@ -155,28 +42,39 @@ TriangleMesh read_mesh(const std::filesystem::path& path, std::optional<double> 
 std::vector<std::filesystem::path> mesh_input_files(const std::filesystem::path& path) {
   std::vector<std::filesystem::path> files{path};
   const std::string content = read_file(path);
-  if (format_of(path, content) == Format::gltf) {
+  const MeshFormat format = mesh_format_of(path, content);
+  if (format == MeshFormat::gltf) {
     for (auto& buffer : gltf_buffer_files(path, content)) files.push_back(std::move(buffer));
+  } else if (format == MeshFormat::vtm) {
+    for (auto& part : vtm_part_files(path, content)) files.push_back(std::move(part));
   }
   return files;
 }
 
 void write_mesh(const std::filesystem::path& path, const TriangleMesh& mesh, double unit_nm) {
-  const std::string file = path.string();
-  check_known(path);
-  check_unit(unit_nm, file);
-  validate(mesh, file.c_str());
-  write_text(path, format_mesh(file, lower_extension(path), in_file_units(mesh, unit_nm, file)));
+  const SurfaceFormat& format = surface_format_of(path);
+  check_unit(unit_nm, path.string());
+  validate(mesh, path.string().c_str());
+  const std::string name = path.stem().string();
+  if (!has_view_writer(format)) {
+    SurfaceScene one;
+    one.surfaces.push_back({name, mesh, {}, {}});
+    write_surfaces(path, one, {.factor = mm_nm / unit_nm});
+    return;
+  }
+  SceneView scene;
+  scene.surfaces.push_back({.name = name, .mesh = &mesh, .scalars = {}});
+  if (format.magnified) set_magnification(scene.note, mm_nm / unit_nm);
+  scene.note.unit_nm = unit_nm;
+  write_view(path, std::move(scene));
 }
 
-void check_mesh_target(const std::filesystem::path& path) {
-  check_known(path);
-  check_writable(path);
-}
+void check_mesh_target(const std::filesystem::path& path) { check_surface_target(path); }
 
 bool is_mesh_file(const std::filesystem::path& path) {
-  const std::string extension = lower_extension(path);
-  return is_writable_format(extension) || extension == ".glb" || extension == ".gltf";
+  static constexpr std::array<std::string_view, 9> known{".stl", ".obj", ".ply", ".off", ".glb",
+                                                         ".gltf", ".3mf", ".vtp", ".vtm"};
+  return std::find(known.begin(), known.end(), lower_extension(path)) != known.end();
 }
 
 }  // namespace surf::io

@@ -8,21 +8,42 @@
 #include <vector>
 
 #include "surf/io/mesh_file.h"
-#include "surf/mesh/triangle_mesh.h"
+#include "surf/mesh/surface.h"
+#include "surface_note.h"
 
 namespace surf::io {
 
-// One parser per format, behind read_meshes. `file` is the name for messages. The result is in file
-// units, z up, with the file's own vertices (not merged), with indices in range; it may have no
+/// A body in a file, in the file's units and under the file's name, which may be empty.
+struct ParsedBody {
+  std::string material;   ///< what the file calls it; empty where it says nothing
+  Surface surface;        ///< scalars have names of the form that `validate` asks for, and finite values
+};
+
+/// All that a file holds, in its units; what it says of these is in the note.
+struct ParsedFile {
+  std::vector<ParsedBody> bodies;
+  std::vector<Track> tracks;
+  SurfaceNote note;
+};
+
+/// What is wanted of a file: scalars, pictures and tracks take time and can be damaged.
+enum class Want { shapes, everything };
+
+// One parser per format, behind read_meshes and read_surfaces. `file` is the name for messages. The result
+// is z up, with the file's own vertices (not merged), with indices in range; it may have no
 // triangles. Coordinates are finite, but those of glTF may overflow in the scene's transforms.
 
-TriangleMesh parse_stl(const std::string& file, std::string_view content);
-/// One mesh per material in use.
-std::vector<NamedMesh> parse_obj(const std::string& file, std::string_view content);
-TriangleMesh parse_ply(const std::string& file, std::string_view content);
-TriangleMesh parse_off(const std::string& file, std::string_view content);
+ParsedFile parse_stl(const std::string& file, std::string_view content);
+/// One mesh per material in use; of semsurf's own files one per object, with its picture.
+ParsedFile parse_obj(const std::filesystem::path& path, std::string_view content, Want want);
+ParsedFile parse_ply(const std::string& file, std::string_view content, Want want);
+ParsedFile parse_off(const std::string& file, std::string_view content);
+struct GltfMeshes {
+  std::vector<NamedMesh> meshes;   ///< semsurf's exaggeration of heights undone
+  double unit_nm;                  ///< of a metre, with semsurf's magnification undone
+};
 /// glTF 2.0 as text or GLB. One mesh per node and material. `path` is where buffers are looked for.
-std::vector<NamedMesh> parse_gltf(const std::filesystem::path& path, std::string_view content);
+GltfMeshes parse_gltf(const std::filesystem::path& path, std::string_view content);
 /// The files beside it in which its buffers lie.
 std::vector<std::filesystem::path> gltf_buffer_files(const std::filesystem::path& path,
                                                      std::string_view content);

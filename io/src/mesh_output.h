@@ -1,18 +1,57 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <filesystem>
+#include <span>
 #include <string>
+#include <string_view>
+#include <vector>
 
-#include "surf/mesh/triangle_mesh.h"
+#include "surf/core/image.h"
+#include "surf/mesh/surface.h"
+#include "surface_formats.h"
+#include "surface_note.h"
 
 namespace surf::io {
 
-// One function per format, behind write_mesh: the content of the file. `mesh` is valid and in file
-// units, `file` is the name for messages.
+/// A surface as writers see it. Nothing is copied: what it points to outlives it.
+struct SurfaceView {
+  std::string_view name;
+  const TriangleMesh* mesh = nullptr;
+  std::span<const VertexScalar> scalars;
+  const Drape* drape = nullptr;   ///< or nullptr
+};
 
-std::string format_stl(const std::string& file, const TriangleMesh& mesh);
-std::string format_obj(const TriangleMesh& mesh);
-std::string format_ply(const std::string& file, const TriangleMesh& mesh);
-std::string format_off(const TriangleMesh& mesh);
+/// What one file shows, and how its numbers are meant.
+struct SceneView {
+  std::vector<SurfaceView> surfaces;
+  std::span<const Track> tracks;
+  SurfaceNote note;
+};
+
+/// For each scalar that all surfaces have in the same unit: where each has it. Formats that make one of
+/// several surfaces hold these.
+std::vector<std::vector<const VertexScalar*>> common_scalars(const SceneView& scene);
+
+// One function per format, behind write_surfaces and write_mesh: the content of the file. The scene is valid,
+// its numbers fit; what the format cannot hold is left out. `file` is the name for messages.
+
+std::string format_stl(const std::string& file, const SceneView& scene);
+std::string format_ply(const std::string& file, const SceneView& scene);
+std::string format_off(const SceneView& scene);
+std::vector<OutputFile> format_obj(const std::filesystem::path& path, const SceneView& scene);
+
+/// Where the picture shows this place, from 0 (left, below) to 1; beyond the picture its outermost pixels.
+struct TexturePoint {
+  double u = 0;
+  double v = 0;
+};
+TexturePoint texture_point(const Drape& drape, const Vec3& place_nm);
+
+/// The picture as a PNG of 8 bits that says its name and place.
+std::string format_drape(const std::string& file, const Drape& drape);
+Image to_image(const Drape& drape);
+/// From a picture that was written so, PNG or VTI.
+Drape read_drape(const std::filesystem::path& path);
 
 }  // namespace surf::io

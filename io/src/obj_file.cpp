@@ -4,11 +4,14 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <filesystem>
 #include <map>
 #include <utility>
 
 #include "mesh_formats.h"
+#include "mesh_output.h"
 #include "split_mesh.h"
+#include "surf/core/error.h"
 #include "text_scanner.h"
 
 namespace surf::io {
@@ -54,10 +57,11 @@ std::uint32_t corner(TextScanner& scanner, std::string_view word, std::size_t ve
 
 class ObjParser {
  public:
-  ObjParser(const std::string& file, std::string_view content)
-      : scanner_(file, content, {.comment = '#', .continuation = true}) {}
+  /// `by_object`: one part for each object, as semsurf writes surfaces, else for each material.
+  ObjParser(const std::string& file, std::string_view content, bool by_object)
+      : scanner_(file, content, {.comment = '#', .continuation = true}), by_object_(by_object) {}
 
-  std::vector<NamedMesh> parse() {
+  std::vector<ParsedBody> parse() {
     while (scanner_.next_filled_line()) statement(scanner_.word());
     if (highest_ >= mesh_.vertices_nm.size() && !mesh_.triangles.empty()) fail_at_highest();
     return parts();
@@ -77,9 +81,11 @@ class ObjParser {
     } else if (keyword == "f" || keyword == "fo") {
       face();
     } else if (keyword == "usemtl") {
-      use_material(rest_of_line());
+      const std::string material = rest_of_line();
+      if (!by_object_) use_material(material);
     } else if (keyword == "o") {
       object_ = rest_of_line();
+      if (by_object_) begin_object();
     } else if (is_ignored(keyword)) {
       // Continued lines need the scanner's own idea of a line's end.
       while (!scanner_.at_line_end()) scanner_.word();
@@ -138,21 +144,35 @@ class ObjParser {
     current_ = static_cast<std::uint32_t>(entry->second);
   }
 
-  std::vector<NamedMesh> parts() {
+  void begin_object() {
+    parts_.push_back({{}, object_, false});
+    current_ = static_cast<std::uint32_t>(parts_.size() - 1);
+  }
+
+  std::vector<ParsedBody> parts() {
     const auto in_use = [](const Part& part) { return part.has_faces; };
     const auto used = std::count_if(parts_.begin(), parts_.end(), in_use);
-    std::vector<NamedMesh> result;
+    std::vector<ParsedBody> result;
     if (used == 1) {   // the vertices keep their order
       const Part& part = *std::find_if(parts_.begin(), parts_.end(), in_use);
-      result.push_back({part.object, part.material, std::move(mesh_)});
+      result.push_back({part.material, {.name = part.object, .mesh = std::move(mesh_)}});
       return result;
     }
-    std::vector<TriangleMesh> meshes = split_mesh(mesh_, part_of_triangle_, parts_.size());
+    std::vector<TriangleMesh> meshes = split();
     for (std::size_t i = 0; i < parts_.size(); ++i) {
       if (!parts_[i].has_faces) continue;
-      result.push_back({parts_[i].object, parts_[i].material, std::move(meshes[i])});
+      result.push_back({parts_[i].material, {.name = parts_[i].object, .mesh = std::move(meshes[i])}});
     }
     return result;
+  }
+
+  std::vector<TriangleMesh> split() const {
+    if (!by_object_) return split_mesh(mesh_, part_of_triangle_, parts_.size());
+    std::vector<TriangleMesh> meshes;
+    for (MeshPart& part : split_in_order(mesh_, part_of_triangle_, parts_.size())) {
+      meshes.push_back(std::move(part.mesh));
+    }
+    return meshes;
   }
 
   [[noreturn]] void fail_at_highest() {
@@ -162,6 +182,7 @@ class ObjParser {
   }
 
   TextScanner scanner_;
+  bool by_object_;
   TriangleMesh mesh_;
   std::vector<std::uint32_t> corners_;
   std::string object_;
@@ -173,10 +194,34 @@ class ObjParser {
   std::size_t highest_place_ = 0;
 };
 
+/// The picture that the note names for a surface. It lies beside the file.
+Drape find_drape(const std::filesystem::path& path, const std::string& name) {
+  const std::filesystem::path picture(name);
+  if (name.empty() || picture.filename() != picture || name == "." || name == "..") {
+    throw FileError(path.string(), fmt::format("its picture '{}' is not beside the file", shown(name)),
+                    "Write the file again with semsurf");
+  }
+  const std::filesystem::path place = path.parent_path() / picture;
+  std::error_code error;
+  if (!std::filesystem::exists(place, error)) {
+    throw FileError(path.string(), fmt::format("its picture {} is missing", place.string()),
+                    "Put it beside the file, or delete the line with 'surface:drape'");
+  }
+  return read_drape(place);
+}
+
 }  // namespace
 
-std::vector<NamedMesh> parse_obj(const std::string& file, std::string_view content) {
-  return ObjParser(file, content).parse();
+ParsedFile parse_obj(const std::filesystem::path& path, std::string_view content, Want want) {
+  ParsedFile parsed;
+  apply_comments(content, '#', path.string(), parsed.note);
+  parsed.bodies = ObjParser(path.string(), content, parsed.note.is_ours).parse();
+  if (want == Want::shapes || !parsed.note.is_ours) return parsed;
+  for (const auto& [place, picture] : parsed.note.drapes) {
+    if (place >= parsed.bodies.size()) continue;
+    parsed.bodies[place].surface.drape = find_drape(path, picture);
+  }
+  return parsed;
 }
 
 }  // namespace surf::io

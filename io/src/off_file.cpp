@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <fmt/format.h>
 
+#include <utility>
+
 #include "mesh_formats.h"
 #include "text_scanner.h"
 
@@ -81,7 +83,9 @@ bool is_off(std::string_view content) {
   return header_of(TextScanner("", content.substr(0, 4096), off_syntax).word_on_any_line()).present;
 }
 
-TriangleMesh parse_off(const std::string& file, std::string_view content) {
+ParsedFile parse_off(const std::string& file, std::string_view content) {
+  ParsedFile parsed;
+  apply_comments(content, '#', file, parsed.note);
   TextScanner scanner(file, content, off_syntax);
   scanner.next_filled_line();
   const std::size_t start = scanner.position();
@@ -121,7 +125,8 @@ TriangleMesh parse_off(const std::string& file, std::string_view content) {
     scanner.fail(fmt::format("there is more after the {} faces", counts.faces),
                  "Check the counts in the header");
   }
-  return mesh;
+  parsed.bodies.push_back({{}, {.mesh = std::move(mesh)}});
+  return parsed;
 }
 
 }  // namespace surf::io

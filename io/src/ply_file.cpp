@@ -135,14 +135,42 @@ void skip_property(Body& body, const PlyProperty& property) {
   for (std::uint64_t i = 0; i < values; ++i) body.skip(property.type);
 }
 
+/// Properties of vertices that are no scalars of a surface.
+bool has_other_meaning(std::string_view name) {
+  static constexpr std::array<std::string_view, 14> others{"x",  "y",   "z",     "nx",   "ny", "nz", "s",
+                                                           "t",  "u",   "v",     "red",  "green", "blue",
+                                                           "alpha"};
+  return std::find(others.begin(), others.end(), name) != others.end();
+}
+
+/// Which scalar each property is; -1: none.
+std::vector<int> scalar_properties(const PlyElement& element, const SurfaceNote& note, Surface& surface) {
+  std::vector<int> scalar_of;
+  for (const PlyProperty& property : element.properties) {
+    if (property.count_type || has_other_meaning(property.name)) {
+      scalar_of.push_back(-1);
+      continue;
+    }
+    scalar_of.push_back(static_cast<int>(surface.scalars.size()));
+    const auto unit = note.scalar_units.find(property.name);
+    surface.scalars.push_back({property.name, unit == note.scalar_units.end() ? "1" : unit->second, {}});
+    surface.scalars.back().values.reserve(element.count);
+  }
+  return scalar_of;
+}
+
 template <class Body>
-void read_vertices(Body& body, const PlyElement& element, TriangleMesh& mesh) {
+void read_vertices(Body& body, const PlyElement& element, const SurfaceNote& note, Want want,
+                   Surface& surface) {
+  TriangleMesh& mesh = surface.mesh;
   const std::array<int, 3> axes{element.find("x"), element.find("y"), element.find("z")};
   for (const int axis : axes) {
     if (axis < 0 || element.properties[static_cast<std::size_t>(axis)].count_type) {
       body.fail("the vertices lack a property x, y or z");
     }
   }
+  std::vector<int> scalar_of(element.properties.size(), -1);
+  if (want == Want::everything) scalar_of = scalar_properties(element, note, surface);
   mesh.vertices_nm.reserve(element.count);
   for (std::uint64_t i = 0; i < element.count; ++i) {
     body.begin_element(element, i);
@@ -150,6 +178,11 @@ void read_vertices(Body& body, const PlyElement& element, TriangleMesh& mesh) {
     for (int p = 0; p < static_cast<int>(element.properties.size()); ++p) {
       const PlyProperty& property = element.properties[static_cast<std::size_t>(p)];
       const auto axis = std::find(axes.begin(), axes.end(), p) - axes.begin();
+      if (const int scalar = scalar_of[static_cast<std::size_t>(p)]; scalar >= 0) {
+        auto& values = surface.scalars[static_cast<std::size_t>(scalar)].values;
+        values.push_back(static_cast<float>(body.value(property.type)));
+        continue;
+      }
       if (axis == 3) {
         skip_property(body, property);
         continue;
@@ -216,19 +249,19 @@ void skip_element(Body& body, const PlyElement& element) {
 }
 
 template <class Body>
-TriangleMesh read_body(Body body, const PlyHeader& header, std::uint64_t vertices) {
-  TriangleMesh mesh;
+Surface read_body(Body body, const PlyHeader& header, std::uint64_t vertices, Want want) {
+  Surface surface;
   for (const PlyElement& element : header.elements) {
     if (element.name == "vertex") {
-      read_vertices(body, element, mesh);
+      read_vertices(body, element, header.note, want, surface);
     } else if (element.name == "face") {
-      read_faces(body, element, vertices, mesh);
+      read_faces(body, element, vertices, surface.mesh);
     } else {
       skip_element(body, element);
     }
   }
   if (!body.at_end()) body.fail("there is more in the file than its header announces");
-  return mesh;
+  return surface;
 }
 
 const PlyElement& only_element(const std::string& file, const PlyHeader& header,
@@ -254,19 +287,23 @@ bool is_ply(std::string_view content) {
   return content.starts_with("ply\n") || content.starts_with("ply\r");
 }
 
-TriangleMesh parse_ply(const std::string& file, std::string_view content) {
+ParsedFile parse_ply(const std::string& file, std::string_view content, Want want) {
   const PlyHeader header = parse_ply_header(file, content);
   const std::uint64_t vertices = only_element(file, header, "vertex").count;
   only_element(file, header, "face");
   if (vertices > max_mesh_vertices) {
     throw FileError(file, "it has too many vertices", "Simplify the mesh");
   }
+  ParsedFile parsed;
+  parsed.note = header.note;
   if (header.encoding == PlyEncoding::text) {
-    return read_body(TextBody(file, content, header.body), header, vertices);
+    parsed.bodies.push_back({{}, read_body(TextBody(file, content, header.body), header, vertices, want)});
+    return parsed;
   }
-  return read_body(BinaryBody(file, content, header.body,
-                              header.encoding == PlyEncoding::big_endian),
-                   header, vertices);
+  const bool big_endian = header.encoding == PlyEncoding::big_endian;
+  parsed.bodies.push_back(
+      {{}, read_body(BinaryBody(file, content, header.body, big_endian), header, vertices, want)});
+  return parsed;
 }
 
 }  // namespace surf::io

@@ -120,7 +120,13 @@ PlyHeader parse_ply_header(const std::string& file, std::string_view content) {
   for (;;) {
     const std::string_view keyword = scanner.word_on_any_line();
     if (keyword == "comment" || keyword == "obj_info") {
+      const std::size_t start = std::min(scanner.position() + 1, content.size());
       scanner.skip_line();
+      const std::size_t end = std::min(scanner.position(), content.size());
+      if (start < end) {
+        const std::string_view line = content.substr(start, end - start);
+        apply_line(line.substr(0, line.find_first_of("\r\n")), file, header.note);
+      }
     } else if (keyword == "format") {
       header.encoding = parse_format(scanner);
       has_format = true;

@@ -7,6 +7,8 @@
 #include <string_view>
 #include <vector>
 
+#include "surface_note.h"
+
 namespace surf::io {
 
 enum class PlyType { int8, uint8, int16, uint16, int32, uint32, float32, float64 };
@@ -34,6 +36,7 @@ enum class PlyEncoding { text, little_endian, big_endian };
 struct PlyHeader {
   PlyEncoding encoding = PlyEncoding::text;
   std::vector<PlyElement> elements;
+  SurfaceNote note;                    ///< from the comments
   std::size_t body = 0;                ///< offset of the first byte after the header
 };
 

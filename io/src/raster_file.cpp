@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // EXR, TIFF and PNG. The only source that knows OpenImageIO.
+#include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 #include <fmt/format.h>
 
@@ -18,6 +19,7 @@ namespace surf::io {
 namespace {
 
 constexpr std::int64_t max_values = std::int64_t{1} << 31;
+constexpr OIIO::imagesize_t max_drape_pixels = OIIO::imagesize_t{1} << 28;
 constexpr int rows_at_a_time = 64;
 constexpr const char* pages_key = "image:pages";
 
@@ -200,6 +202,20 @@ void close_output(OIIO::ImageOutput& output, const std::string& file) {
   check_written(output.close(), output, file);
 }
 
+void write_png_rows(OIIO::ImageOutput& output, const std::string& target, const std::string& file,
+                    const Image& head, int width, int height, const GreyRow& grey) {
+  OIIO::ImageSpec spec(width, height, 1, OIIO::TypeDesc::UINT8);
+  spec.attribute("ImageDescription", to_description(head));
+  set_resolution(spec, head, 2e7);
+  check_written(output.open(target, spec), output, file);
+  std::vector<unsigned char> values(static_cast<std::size_t>(width));
+  for (int row = 0; row < height; ++row) {
+    grey(height - 1 - row, values);
+    check_written(output.write_scanline(row, 0, OIIO::TypeDesc::UINT8, values.data()), output, file);
+  }
+  close_output(output, file);
+}
+
 }  // namespace
 
 std::string raster_library_version() {
@@ -248,20 +264,58 @@ void write_tiff(const std::filesystem::path& target, const std::string& file,
   close_output(*output, file);
 }
 
-void write_png(const std::filesystem::path& target, const std::string& file, const Image& image,
+void write_png(const std::filesystem::path& target, const std::string& file, const Image& head,
                int width, int height, const GreyRow& grey) {
   const auto output = create_output("png", file);
-  OIIO::ImageSpec spec(width, height, 1, OIIO::TypeDesc::UINT8);
-  spec.attribute("ImageDescription", to_description(image));
-  set_resolution(spec, image, 2e7);
-  check_written(output->open(target.string(), spec), *output, file);
-  std::vector<unsigned char> values(static_cast<std::size_t>(width));
-  for (int row = 0; row < height; ++row) {
-    grey(height - 1 - row, values);
-    check_written(output->write_scanline(row, 0, OIIO::TypeDesc::UINT8, values.data()), *output,
-                  file);
+  write_png_rows(*output, target.string(), file, head, width, height, grey);
+}
+
+std::string png_content(const std::string& file, const Image& head, int width, int height,
+                        const GreyRow& grey) {
+  std::vector<unsigned char> bytes;
+  OIIO::Filesystem::IOVecOutput memory(bytes);
+  const auto output = create_output("png", file);
+  output->set_ioproxy(&memory);
+  write_png_rows(*output, "memory.png", file, head, width, height, grey);
+  return {bytes.begin(), bytes.end()};
+}
+
+std::string format_grey_png(const std::string& file, const Grid<std::uint8_t>& grey) {
+  const auto output = create_output("png", file);
+  std::vector<unsigned char> bytes;
+  OIIO::Filesystem::IOVecOutput target(bytes);
+  OIIO::ImageSpec spec(grey.width(), grey.height(), 1, OIIO::TypeDesc::UINT8);
+  void* const proxy = &target;
+  spec.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);
+  check_written(output->open("picture.png", spec), *output, file);
+  for (int row = 0; row < grey.height(); ++row) {
+    const std::uint8_t* const pixels = &grey(0, grey.height() - 1 - row);
+    check_written(output->write_scanline(row, 0, OIIO::TypeDesc::UINT8, pixels), *output, file);
   }
   close_output(*output, file);
+  return {bytes.begin(), bytes.end()};
+}
+
+Grid<std::uint8_t> parse_grey_png(const std::string& file, std::string_view content) {
+  keep_quiet();
+  const auto fail = [&](const std::string& reason) {
+    throw FileError(file, fmt::format("its picture cannot be read: {}", reason), "Export the file again");
+  };
+  OIIO::Filesystem::IOMemReader source(const_cast<char*>(content.data()), content.size());
+  const auto input = OIIO::ImageInput::open("picture.png", nullptr, &source);
+  if (!input) fail(OIIO::geterror());
+  const OIIO::ImageSpec& spec = input->spec();
+  if (spec.width < 1 || spec.height < 1 || spec.image_pixels() > max_drape_pixels) {
+    fail(fmt::format("it has {} by {} pixels", spec.width, spec.height));
+  }
+  Grid<std::uint8_t> grey(spec.width, spec.height);
+  for (int row = 0; row < spec.height; ++row) {
+    std::uint8_t* const pixels = &grey(0, spec.height - 1 - row);
+    if (!input->read_scanlines(0, 0, row, row + 1, 0, 0, 1, OIIO::TypeDesc::UINT8, pixels)) {
+      fail(input->geterror());
+    }
+  }
+  return grey;
 }
 
 Image read_raster(const std::filesystem::path& path) {

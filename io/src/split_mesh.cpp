@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "split_mesh.h"
 
+#include <algorithm>
+
 namespace surf::io {
 namespace {
 
@@ -37,6 +39,42 @@ std::vector<TriangleMesh> split_mesh(const TriangleMesh& mesh,
     }
     for (const std::uint32_t t : triangles[g]) {
       for (const std::uint32_t corner : mesh.triangles[t]) place[corner] = unused;
+    }
+  }
+  return parts;
+}
+
+std::vector<MeshPart> split_in_order(const TriangleMesh& mesh, const std::vector<std::uint32_t>& group,
+                                     std::size_t groups) {
+  const auto triangles = members(group, groups);
+  const std::size_t n = mesh.vertices_nm.size();
+  std::vector<MeshPart> parts(groups);
+  std::vector<std::uint32_t> last_group(n, unused);   // the latest one that a vertex was given to
+  for (std::size_t g = 0; g < groups; ++g) {
+    for (const std::uint32_t t : triangles[g]) {
+      for (const std::uint32_t corner : mesh.triangles[t]) {
+        if (last_group[corner] == g) continue;
+        last_group[corner] = static_cast<std::uint32_t>(g);
+        parts[g].vertices.push_back(corner);
+      }
+    }
+  }
+  std::uint32_t home = 0;
+  for (std::size_t v = 0; v < n && groups > 0; ++v) {
+    if (last_group[v] == unused) parts[home].vertices.push_back(static_cast<std::uint32_t>(v));
+    else home = last_group[v];
+  }
+  std::vector<std::uint32_t> place(n);
+  for (std::size_t g = 0; g < groups; ++g) {
+    MeshPart& part = parts[g];
+    std::sort(part.vertices.begin(), part.vertices.end());
+    for (const std::uint32_t v : part.vertices) {
+      place[v] = static_cast<std::uint32_t>(part.mesh.vertices_nm.size());
+      part.mesh.vertices_nm.push_back(mesh.vertices_nm[v]);
+    }
+    for (const std::uint32_t t : triangles[g]) {
+      const Triangle& old = mesh.triangles[t];
+      part.mesh.triangles.push_back({place[old[0]], place[old[1]], place[old[2]]});
     }
   }
   return parts;

@@ -127,10 +127,18 @@ bool is_text_stl(std::string_view content) {
          start.find("FACET") != std::string_view::npos;
 }
 
-TriangleMesh parse_stl(const std::string& file, std::string_view content) {
-  if (is_binary_stl(content)) return parse_binary(file, content);
+ParsedFile parse_stl(const std::string& file, std::string_view content) {
+  ParsedFile parsed;
+  if (is_binary_stl(content)) {
+    apply_stl_header(content, file, parsed.note);
+    parsed.bodies.push_back({{}, {.mesh = parse_binary(file, content)}});
+    return parsed;
+  }
   const bool has_zero_bytes = content.substr(0, 4096).find('\0') != std::string_view::npos;
-  if (starts_with_solid(content) && !has_zero_bytes) return parse_text(file, content);
+  if (starts_with_solid(content) && !has_zero_bytes) {
+    parsed.bodies.push_back({{}, {.mesh = parse_text(file, content)}});
+    return parsed;
+  }
   if (content.size() < header_bytes) {
     throw FileError(file, fmt::format("{} bytes are too few for an STL file", content.size()),
                     "It is cut off or something else: copy or export it again");

@@ -19,7 +19,7 @@ struct OutputFile {
   std::string content;
 };
 
-// Writers: `scene` is valid, and holds only what the format can hold.
+// Writers: `scene` is valid; what the format cannot hold is left out.
 std::vector<OutputFile> format_gltf(const std::filesystem::path& path, const SurfaceScene& scene,
                                     const Magnification& magnification);   // .glb and .gltf
 std::vector<OutputFile> format_3mf(const std::filesystem::path& path, const SurfaceScene& scene,

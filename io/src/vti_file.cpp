@@ -34,7 +34,9 @@ bool has_vti() { return true; }
 
 std::string vti_library_version() { return fmt::format("VTK {}", vtkVersion::GetVTKVersion()); }
 
-void write_vti(const std::filesystem::path& target, const std::string& file, const Image& image) {
+namespace {
+
+vtkNew<vtkImageData> to_vtk(const Image& image) {
   vtkNew<vtkImageData> data;
   data->SetDimensions(image.width(), image.height(), 1);
   data->SetOrigin(image.origin_x_nm, image.origin_y_nm, 0);
@@ -42,11 +44,17 @@ void write_vti(const std::filesystem::path& target, const std::string& file, con
   for (const Channel& channel : image.channels) add_channel(data, channel);
   data->GetPointData()->SetActiveScalars(image.channels.front().name.c_str());
   for (const auto& [key, value] : to_attributes(image)) add_text(data->GetFieldData(), key, value);
+  return data;
+}
 
+/// `target` empty: to a string, which is returned.
+std::string write_data(const std::filesystem::path& target, const std::string& file, const Image& image) {
+  const auto data = to_vtk(image);
   VtkComplaints complaints;
   vtkNew<vtkXMLImageDataWriter> writer;
   complaints.listen_to(writer.GetPointer());
-  writer->SetFileName(target.c_str());
+  if (target.empty()) writer->WriteToOutputStringOn();
+  else writer->SetFileName(target.c_str());
   writer->SetInputData(data);
   writer->SetDataModeToBinary();   // ParaView 5.11 on Debian 12 cannot read appended data
   if (writer->Write() != 1 || writer->GetErrorCode() != 0 || !complaints.text().empty()) {
@@ -54,7 +62,16 @@ void write_vti(const std::filesystem::path& target, const std::string& file, con
                                       complaints.text()),
                     "Check the free space, or choose another place");
   }
+  return target.empty() ? writer->GetOutputString() : std::string{};
 }
+
+}  // namespace
+
+void write_vti(const std::filesystem::path& target, const std::string& file, const Image& image) {
+  write_data(target, file, image);
+}
+
+std::string vti_content(const std::string& file, const Image& image) { return write_data({}, file, image); }
 
 }  // namespace surf::io
 
@@ -77,6 +94,8 @@ std::string vti_library_version() { return {}; }
 void write_vti(const std::filesystem::path&, const std::string& file, const Image&) {
   refuse(file);
 }
+
+std::string vti_content(const std::string& file, const Image&) { refuse(file); }
 
 }  // namespace surf::io
 

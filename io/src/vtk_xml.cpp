@@ -120,6 +120,13 @@ std::string VtkXml::Element::attribute(const char* name) const {
   return node_->xml.attribute(name).as_string();
 }
 
+std::string VtkXml::Element::text() const {
+  const std::string_view text = node_->xml.text().get();
+  const std::size_t start = text.find_first_not_of(" \t\r\n");
+  if (start == text.npos) return {};
+  return std::string(text.substr(start, text.find_last_not_of(" \t\r\n") + 1 - start));
+}
+
 std::uint64_t VtkXml::Element::count(const char* name) const {
   const double value = numbers(name, {0})[0];
   if (!(value >= 0 && value <= 0x1p53 && value == std::floor(value))) {

@@ -32,6 +32,8 @@ class VtkXml {
     std::vector<Element> children(const char* name) const;
     std::optional<Element> child(const char* name) const;
     std::string attribute(const char* name) const;
+    /// The text in it, without blanks around it.
+    std::string text() const;
     /// A whole number from 0 to 2^53.
     std::uint64_t count(const char* name) const;
     /// As many numbers as the fallback has.
@@ -58,7 +60,7 @@ class VtkXml {
     std::shared_ptr<const Node> node_;
   };
 
-  /// `type`: "PolyData" or "ImageData". `content` must outlive this.
+  /// `type`: "PolyData", "ImageData" or "vtkMultiBlockDataSet". `content` must outlive this.
   VtkXml(const std::string& file, std::string_view content, const std::string& type);
   ~VtkXml();
 

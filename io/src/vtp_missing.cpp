@@ -15,7 +15,7 @@ namespace {
 
 bool has_vtp_writer() { return false; }
 
-std::string format_vtp(const std::string& file, const TriangleMesh&) { refuse(file); }
+std::string format_vtp(const std::string& file, const SceneView&) { refuse(file); }
 
 std::string format_tracks(const std::string& file, std::span<const Track>,
                           const std::map<std::string, std::string>&) {

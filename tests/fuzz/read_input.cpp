@@ -10,6 +10,7 @@
 #include "surf/io/image_file.h"
 #include "surf/io/mesh_file.h"
 #include "surf/io/sim/scene_file.h"
+#include "surf/io/surface_file.h"
 
 namespace surf::test {
 namespace {
@@ -47,6 +48,7 @@ void read(const std::filesystem::path& path) {
     expect_valid(io::read_image(path));
   } else {
     expect_valid(io::read_mesh(path));
+    expect_valid(io::read_surfaces(path));
   }
 }
 

@@ -85,15 +85,16 @@ TEST(WriteMesh, StlHasOutwardNormalsAndDoesNotLookLikeText) {
   EXPECT_EQ(content.substr(84 + 50, 12), zero + zero + zero) << "a triangle without area";
 }
 
-TEST(WriteMesh, DividesByTheUnit) {
+TEST(WriteMesh, DividesByTheUnitAndSaysSo) {
   const TriangleMesh mesh{{{0, 0, 0}, {2000, 0, 0}, {0, 500, 0}}, {{0, 1, 2}}};
   const TemporaryFolder folder;
   for (const std::string& name : names(true)) {
     SCOPED_TRACE(name);
     write_mesh(folder.path() / name, mesh, 1000);
-    const TriangleMesh read = read_mesh(folder.path() / name);
-    EXPECT_EQ(read.vertices_nm.at(1), (Vec3{2, 0, 0}));
-    EXPECT_EQ(read.vertices_nm.at(2), (Vec3{0, 0.5, 0}));
+    const TriangleMesh numbers = read_mesh(folder.path() / name, 1.0);
+    EXPECT_EQ(numbers.vertices_nm.at(1), (Vec3{2, 0, 0}));
+    EXPECT_EQ(numbers.vertices_nm.at(2), (Vec3{0, 0.5, 0}));
+    EXPECT_EQ(read_mesh(folder.path() / name).vertices_nm, mesh.vertices_nm);
   }
 }
 
@@ -124,7 +125,7 @@ TEST(WriteMesh, RefusesWhatCannotBeReadAgain) {
 TEST(WriteMesh, TargetsAreCheckedEarly) {
   const TemporaryFolder folder;
   const auto& root = folder.path();
-  for (const char* name : {"a.jpg", "a", "a.toml", "a.glb"}) {
+  for (const char* name : {"a.jpg", "a", "a.toml", "a.step"}) {
     EXPECT_THAT(complaint<UsageError>([&] { check_mesh_target(root / name); }),
                 HasSubstr("not written"));
     EXPECT_THAT(complaint<UsageError>([&] {

@@ -40,15 +40,19 @@ const SurfaceFormat& check_surface_target(const std::filesystem::path& path);
 /// far as they fit. Vertices and triangles keep their order. Files appear under their names only when they are
 /// complete, those beside the main one (.mtl, .png, .bin, parts of .vtm) first.
 /// - glTF: y up; float32 nm about the centre of each surface, the centre on its node, the factor on the root node.
-/// - VTP, VTM, OFF: double. PLY: double with float scalars. STL, 3MF: float32.
+/// - VTP, VTM, OBJ, OFF: double. PLY: double with float scalars. STL, 3MF: float32.
+/// Formats without `several` join the surfaces in order and hold the scalars that all have.
 /// Throws InvalidInput for a scene that `validate` refuses or that the format cannot hold, UsageError for
 /// an unknown extension or bad magnification, FileError, Unsupported without VTK.
 void write_surfaces(const std::filesystem::path& path, const SurfaceScene& scene,
                     const Magnification& magnification = {});
 
-/// Reads what `read_meshes` reads, with scalars, drapes, tracks and metadata where the format holds them, in nm:
-/// semsurf's own magnification and exaggeration are undone. One surface per body, names made unique.
-/// Vertices keep the file's order and are not merged, so that scalars fit.
+/// Reads what `read_meshes` reads, with scalars, drapes, tracks and metadata where the format holds them, in
+/// nm: semsurf's own magnification and exaggeration are undone. One surface per body, names made unique.
+/// Vertices keep the file's order and are not merged, so that scalars fit. `unit_nm` as in `read_meshes`.
+/// Scalars of other programs get names of the form of `VertexScalar` ("Elevation (nm)": elevation_nm); those
+/// with a value that is not finite are left out. Throws what `read_meshes` throws, FileError for a picture
+/// that is missing.
 SurfaceScene read_surfaces(const std::filesystem::path& path, std::optional<double> unit_nm = {});
 
 }  // namespace surf::io

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace surf::io {
+
+/// Whether JSON and XML can hold the text as it is: UTF-8 (Unicode, table 3-7) without control characters
+/// but tabs and ends of lines.
+bool is_plain_text(std::string_view text);
+
+/// Throws InvalidInput for text that is not: `what` says which, as "the name of surface 2".
+void check_plain_text(std::string_view text, const std::string& what, const std::string& file);
+
+}  // namespace surf::io

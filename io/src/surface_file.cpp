@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "surf/io/surface_file.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <set>
+#include <string_view>
+#include <utility>
+
+#include "mesh_dispatch.h"
+#include "surf/core/error.h"
+#include "surf/io/files.h"
+#include "surface_output.h"
+
+namespace surf::io {
+namespace {
+
+void check_magnification(const Magnification& magnification, const std::string& file) {
+  const auto check = [&](double value, const char* what) {
+    if (value > 0 && std::isfinite(value)) return;
+    throw UsageError(file, fmt::format("{} cannot be a {}", value, what), "Give a positive number");
+  };
+  check(magnification.factor, "magnification");
+  check(mm_nm / magnification.factor, "unit in nm, which the magnification leads to");
+  check(magnification.z_exaggeration, "z exaggeration");
+}
+
+SceneView view_of(const SurfaceScene& scene) {
+  SceneView view;
+  for (const Surface& surface : scene.surfaces) {
+    view.surfaces.push_back({surface.name, &surface.mesh, surface.scalars,
+                             surface.drape ? &*surface.drape : nullptr});
+  }
+  view.tracks = scene.tracks;
+  view.note.metadata = scene.metadata;
+  return view;
+}
+
+/// A name that is not yet in `used`: with a number behind it if need be.
+std::string unique_name(const std::string& name, const char* gap, std::set<std::string>& used) {
+  std::string unique = name;
+  for (int number = 2; !used.insert(unique).second; ++number) {
+    unique = fmt::format("{}{}{}", name, gap, number);
+  }
+  return unique;
+}
+
+/// What other programs call a scalar, in the form that surfaces have: "Elevation (nm)" is "elevation_nm".
+std::string scalar_name(std::string_view name) {
+  std::string plain;
+  for (const unsigned char c : name) {
+    if (c < 0x80 && std::isalnum(c)) plain += static_cast<char>(std::tolower(c));
+    else if (!plain.empty() && plain.back() != '_') plain += '_';
+  }
+  while (!plain.empty() && plain.back() == '_') plain.pop_back();
+  return plain.empty() || !std::isalpha(static_cast<unsigned char>(plain[0])) ? "scalar_" + plain : plain;
+}
+
+bool has_good_name(const VertexScalar& scalar) {
+  const auto is_good = [](unsigned char c) { return std::islower(c) || std::isdigit(c) || c == '_'; };
+  return !scalar.name.empty() && std::islower(static_cast<unsigned char>(scalar.name[0])) &&
+         std::all_of(scalar.name.begin(), scalar.name.end(), is_good);
+}
+
+void tidy_scalars(Surface& surface) {
+  std::erase_if(surface.scalars, [](const VertexScalar& scalar) {
+    return !std::all_of(scalar.values.begin(), scalar.values.end(), [](float v) { return std::isfinite(v); });
+  });
+  std::set<std::string> used;
+  for (VertexScalar& scalar : surface.scalars) {
+    scalar.name = unique_name(has_good_name(scalar) ? scalar.name : scalar_name(scalar.name), "_", used);
+  }
+}
+
+}  // namespace
+
+const SurfaceFormat& check_surface_target(const std::filesystem::path& path) {
+  const SurfaceFormat& format = surface_format_of(path);
+  check_writable(path);
+  return format;
+}
+
+void write_surfaces(const std::filesystem::path& path, const SurfaceScene& scene,
+                    const Magnification& magnification) {
+  const SurfaceFormat& format = surface_format_of(path);
+  check_magnification(magnification, path.string());
+  validate(scene, path.string().c_str());
+  if (!has_view_writer(format)) {
+    write_all(format.extension == ".3mf" ? format_3mf(path, scene, magnification)
+                                         : format_gltf(path, scene, magnification));
+    return;
+  }
+  SceneView view = view_of(scene);
+  if (format.magnified) {
+    set_magnification(view.note, magnification.factor);
+    view.note.z_exaggeration = magnification.z_exaggeration;
+  }
+  write_view(path, std::move(view));
+}
+
+SurfaceScene read_surfaces(const std::filesystem::path& path, std::optional<double> unit_nm) {
+  ParsedFile parsed = parse_mesh_file(path, unit_nm, Want::everything);
+  SurfaceScene scene;
+  std::set<std::string> used;
+  for (ParsedBody& body : parsed.bodies) {
+    Surface& surface = body.surface;
+    surface.name = unique_name(surface.name, " ", used);
+    tidy_scalars(surface);
+    scene.surfaces.push_back(std::move(surface));
+  }
+  scene.tracks = std::move(parsed.tracks);
+  scene.metadata = std::move(parsed.note.metadata);
+  return scene;
+}
+
+}  // namespace surf::io
