@@ -192,7 +192,9 @@ TEST(GltfWrite, TrianglesWithoutAreaHaveNormals) {
   const SurfaceScene back = round_trip(scene_of(thin));
   EXPECT_EQ(back.surfaces.at(0).mesh.triangles, thin.mesh.triangles);
   Surface point{"point", {{{5, 5, 5}, {5, 5, 5}, {5, 5, 5}}, {{0, 1, 2}}}, {}, {}};
-  EXPECT_EQ(round_trip(scene_of(point)).surfaces.at(0).mesh.vertices_nm, point.mesh.vertices_nm);
+  for (const Vec3& v : round_trip(scene_of(point)).surfaces.at(0).mesh.vertices_nm) {
+    EXPECT_LT(length(v - Vec3{5, 5, 5}), 1e-14);
+  }
 }
 
 TEST(GltfWrite, SameBytes) {
