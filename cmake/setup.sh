@@ -2,7 +2,8 @@
 # Set-up shared by ./run and ./check; source it after setting -euo pipefail. Functions:
 #   setup_packages        installs what is missing of the list below
 #   setup_configure       configures the preset `release` into build/, once
-# Both leave everything alone when there is nothing to do.
+#   setup_web             installs what looks at files in a browser: Chromium, and tests/web/node_modules
+# All leave everything alone when there is nothing to do.
 
 packages=(
   cmake g++ ninja-build ccache                                    # build
@@ -75,4 +76,16 @@ setup_configure() {
     fail "configuring failed, see above."
   fi
   rm -f "$log"
+}
+
+# For `ctest -L web`, which is skipped without it.
+setup_web() {
+  local packages=(nodejs npm chromium)   # in place of the list above
+  setup_packages
+  if [[ tests/web/node_modules/.package-lock.json -nt tests/web/package-lock.json ]]; then
+    return
+  fi
+  say "Installing the packages of tests/web with npm"
+  npm ci --prefix tests/web --no-audit --no-fund --silent ||
+    fail "npm could not install tests/web/package-lock.json, see above. Check the network."
 }
