@@ -80,8 +80,11 @@ setup_configure() {
 
 # For `ctest -L web`, which is skipped without it.
 setup_web() {
-  local packages=(nodejs npm chromium)   # in place of the list above
-  setup_packages
+  local packages=()   # in place of the list above; Node.js may have come from elsewhere, with npm
+  command -v node >/dev/null || packages+=(nodejs)
+  command -v npm >/dev/null || packages+=(npm)
+  command -v chromium >/dev/null || packages+=(chromium)
+  ((${#packages[@]} == 0)) || setup_packages
   if [[ tests/web/node_modules/.package-lock.json -nt tests/web/package-lock.json ]]; then
     return
   fi
