@@ -125,9 +125,11 @@ class ThreeMfParser {
       const std::string prefix(rest.substr(0, blank));
       rest.remove_prefix(std::min(blank + 1, rest.size()));
       if (prefix.empty()) continue;
-      const std::string_view space = model.attribute(("xmlns:" + prefix).c_str()).value();
+      std::string_view space = model.attribute(("xmlns:" + prefix).c_str()).value();
       const bool is_known = space.find("/material/") != space.npos || space.find("/production/") != space.npos;
       if (is_known) continue;
+      constexpr std::string_view usual = "http://schemas.microsoft.com/3dmanufacturing/";
+      if (space.starts_with(usual)) space.remove_prefix(usual.size());
       throw Unsupported(fmt::format("{}, {}", file_, part),
                         fmt::format("it requires the extension '{}', which is not read here",
                                     shown(space.empty() ? std::string_view(prefix) : space)),

@@ -189,10 +189,13 @@ TEST(GltfWrite, AnyExtentAndAnyPlace) {
 
 TEST(GltfWrite, TrianglesWithoutAreaHaveNormals) {
   Surface thin{"thin", {{{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {0, 1, 0}}, {{0, 1, 2}, {1, 1, 1}}}, {}, {}};
-  const SurfaceScene back = round_trip(scene_of(thin));
+  SurfaceScene back = round_trip(scene_of(thin));
   EXPECT_EQ(back.surfaces.at(0).mesh.triangles, thin.mesh.triangles);
   Surface point{"point", {{{5, 5, 5}, {5, 5, 5}, {5, 5, 5}}, {{0, 1, 2}}}, {}, {}};
-  EXPECT_EQ(round_trip(scene_of(point)).surfaces.at(0).mesh.vertices_nm, point.mesh.vertices_nm);
+  back = round_trip(scene_of(point));
+  for (const Vec3& v : back.surfaces.at(0).mesh.vertices_nm) {
+    EXPECT_LT(length(v - Vec3{5, 5, 5}), 1e-14);
+  }
 }
 
 TEST(GltfWrite, SameBytes) {
