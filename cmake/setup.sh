@@ -18,6 +18,8 @@ packages=(
   python3-matplotlib                                              # charts
   libgtest-dev libgmock-dev                                       # tests
 )
+# The pages of semsurf view. Debian's npm conflicts with other packages of Node.js: any that is there will do.
+command -v node >/dev/null && command -v npm >/dev/null || packages+=(nodejs npm)
 
 say() { printf '==> %s\n' "$*"; }
 fail() { printf 'error: %s\n' "$*" >&2; exit 1; }
