@@ -188,7 +188,8 @@ function listen_to_keys({ scene, state, actions, help, stage, picture }) {
 
 read_scene().then((scene) => {
   window.semsurf = start(scene);   // for scripts and tests
-  requestAnimationFrame(() => requestAnimationFrame(() => { document.documentElement.dataset.ready = 'true'; }));
+  requestAnimationFrame(() => requestAnimationFrame(() => { document.documentElement.dataset.ready = 'true';
+    window.semsurf.ready_ms = performance.now(); }));
 }).catch((error) => {
   console.error(error);
   document.getElementById('app').replaceChildren(h('p', { class: 'alone', role: 'alert' }, `The page cannot be shown: ${error.message}.`));

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What is written over the view: ticks of the box, scale bar, legend, the section's line and its ends.
 import { color_table } from './color_maps.js';
-import { length_unit, number, round_down, round_length, ticks, with_unit } from './format.js';
+import { length_unit, number, round_down, round_length, ticks } from './format.js';
 import { box_of_all, swatch_of, visible_surfaces } from './state.js';
 
 export class Overlay {
@@ -33,6 +33,7 @@ export class Overlay {
     pen.lineJoin = 'round';
     const shown = visible_surfaces(this.state, this.stage.data);
     if (shown.length === 0) return;
+    this.taken = [];
     if (this.state.box) this.#axes(pen, box_of_all(shown));
     this.#section(pen);
     this.#scale_bar(pen, width, height);
@@ -47,6 +48,15 @@ export class Overlay {
     pen.strokeText(text, x, y);
     pen.fillStyle = color;
     pen.fillText(text, x, y);
+  }
+
+  /** Writes only where nothing else of the axes is written. */
+  #write_apart(pen, text, x, y, align, color) {
+    const width = pen.measureText(text).width + 6;
+    const left = align === 'left' ? x - 3 : align === 'right' ? x - width + 3 : x - width / 2;
+    if (this.taken.some(([l, t, w]) => left < l + w && l < left + width && Math.abs(y - t) < 15)) return;
+    this.taken.push([left, y, width]);
+    this.#write(pen, text, x, y, align, color);
   }
 
   #axes(pen, { low, high }) {
@@ -74,8 +84,8 @@ export class Overlay {
     const half = [(from[0] + to[0]) / 2, (from[1] + to[1]) / 2];
     if ((half[0] - middle[0]) * out[0] + (half[1] - middle[1]) * out[1] < 0) out = [-out[0], -out[1]];
     const align = out[0] > 0.35 ? 'left' : out[0] < -0.35 ? 'right' : 'center';
-    const room = axis === 2 ? 34 : 62;
-    const values = ticks(low[axis] / size, high[axis] / size, Math.min(axis === 2 ? 5 : 7, length / room));
+    const room = axis === 2 ? 30 : 62;
+    const values = ticks(low[axis] / size, high[axis] / size, Math.min(axis === 2 ? 5 : 7, Math.max(2, length / room)));
     const step = values.length > 1 ? values[1] - values[0] : high[axis] / size;
     let widest = 0;
     pen.strokeStyle = this.quiet;
@@ -89,7 +99,7 @@ export class Overlay {
       pen.moveTo(x, y);
       pen.lineTo(x + 5 * out[0], y + 5 * out[1]);
       pen.stroke();
-      this.#write(pen, text, x + 9 * out[0], y + 11 * out[1], align, this.quiet);
+      this.#write_apart(pen, text, x + 9 * out[0], y + 11 * out[1], align, this.quiet);
     }
     const away = align === 'center' ? 30 : 20 + widest + 6;
     const title = `${name} / ${unit}`;
@@ -164,10 +174,11 @@ export class Overlay {
 
   #legend(pen, width, height) {
     const { state } = this;
-    if (state.scalar === '' || !state.range) return;
-    const { low, high } = state.range;
+    const laid = state.drape && state.drape_share === 1 && this.stage.data.images[state.drape.image].channels[state.drape.channel];
+    if (!laid && (state.scalar === '' || !state.range)) return;
+    const { low, high } = laid || state.range;
     const long = Math.min(220, 0.42 * height), x = width - 30, y = Math.max(70, 0.16 * height);
-    const table = color_table(state.map, state.reversed);
+    const table = laid ? color_table('grey') : color_table(state.map, state.reversed);
     for (let i = 0; i < long; ++i) {
       const c = 4 * Math.round(255 * (1 - i / (long - 1)));
       pen.fillStyle = `rgb(${table[c]},${table[c + 1]},${table[c + 2]})`;
@@ -176,7 +187,7 @@ export class Overlay {
     pen.lineWidth = 1;
     pen.strokeStyle = this.quiet;
     pen.strokeRect(x - 0.5, y - 0.5, 13, long + 1);
-    const [unit, size] = state.unit === 'nm' ? length_unit(Math.max(Math.abs(low), Math.abs(high))) : [state.unit, 1];
+    const [unit, size] = (laid || state).unit === 'nm' ? length_unit(Math.max(Math.abs(low), Math.abs(high))) : [(laid || state).unit, 1];
     const values = ticks(low / size, high / size, long / 40);
     const step = values.length > 1 ? values[1] - values[0] : 1;
     for (const value of values) {
@@ -189,11 +200,8 @@ export class Overlay {
       pen.stroke();
       this.#write(pen, number(value, step), x - 8, at, 'right', this.quiet);
     }
-    const title = unit && unit !== '1' ? `${state.scalar} / ${unit}` : state.scalar;
+    const name = laid ? `${laid.name} laid on` : state.scalar;
+    const title = unit && unit !== '1' ? `${name} / ${unit}` : name;
     this.#write(pen, title, x + 12, y - 16, 'right');
-    if (state.drape && state.drape_share === 1) {
-      const image = this.stage.data.images[state.drape.image];
-      this.#write(pen, with_unit(`${image.channels[state.drape.channel].name} laid on`, ''), x + 12, y + long + 16, 'right');
-    }
   }
 }

@@ -32,12 +32,24 @@ export class ProfileChart {
     this.picture.addEventListener('pointerleave', () => this.held ?? state.set({ cursor: null }));
     state.on(['cursor'], () => this.#show_cursor());
     state.on(['theme'], () => this.draw());
+    state.on(['tool', 'section'], () => this.#lay_out());
   }
 
   show(profiles) {
     this.profiles = profiles;
-    this.element.hidden = !this.state.section;
+    this.#lay_out();
     this.draw();
+  }
+
+  /** There from when the tool is taken up, so that the view does not move under the line. */
+  #lay_out() {
+    this.element.hidden = !this.state.section && this.state.tool !== 'section';
+    this.element.classList.toggle('empty', !this.state.section);
+    if (!this.state.section) {
+      this.picture.replaceChildren();
+      this.differences.textContent = '';
+      this.readout.textContent = 'Drag a line over the surface.';
+    }
   }
 
   draw() {

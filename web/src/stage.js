@@ -128,7 +128,7 @@ export class Stage {
       high_up = Math.max(high_up, Math.abs(p.y));
     }
     const [width, height] = this.size ?? [1, 1];
-    const free_x = Math.max(0.5, 1 - 150 / width), free_y = Math.max(0.5, 1 - 150 / height);   // axes need room
+    const free_x = 1 - Math.min(0.28, 150 / width), free_y = 1 - Math.min(0.32, 150 / height);   // axes need room
     this.#frustum(Math.max(high_up / free_y, wide / free_x * height / width), width / height);
     this.controls.update();
     this.invalidate();
