@@ -20,7 +20,7 @@ export function ticks(low, high, about) {
   if (!(high > low)) return [low];
   const step = round_up((high - low) / Math.max(1, about));
   const values = [];
-  for (let i = Math.ceil(low / step - 1e-9); i * step <= high + 1e-9 * step; ++i) values.push(i * step);
+  for (let i = Math.ceil(low / step - 1e-9); i * step <= high + 1e-9 * step; ++i) values.push(i * step || 0);   // no -0
   return values;
 }
 

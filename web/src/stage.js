@@ -15,6 +15,7 @@ export class Stage {
     this.state = state;
     this.canvas = canvas;
     this.renderer = new WebGLRenderer({ canvas, antialias: true, alpha: true, powerPreference: 'high-performance' });
+    this.renderer.debug.checkShaderErrors = false;   // asking waits for the graphics card
     const all = box_of_all(scene_data.surfaces);
     this.center = all.low.map((low, axis) => (low + all.high[axis]) / 2);
     this.scene = new Scene();
@@ -57,6 +58,7 @@ export class Stage {
     const { state } = this;
     this.table.image.data.set(color_table(state.map, state.reversed));
     this.table.needsUpdate = true;
+    if (state.cut && state.section) this.cut_side = this.#near_side(state.section);
     const styles = getComputedStyle(document.documentElement);
     this.views.forEach((view, i) => {
       view.object.visible = state.visible[i];
@@ -64,12 +66,18 @@ export class Stage {
       view.color_by(state.scalar, state.range, swatch_of(i));
       view.set_opacity(state.opacity[i]);
       view.set_wireframe(state.wireframe, styles.getPropertyValue('--text').trim());
-      view.cut_at(state.cut ? state.section : null);
+      view.cut_at(state.cut ? state.section : null, this.cut_side);
       const image = state.drape && this.data.images[state.drape.image];
       view.lay(image && this.#texture(state.drape), image, state.drape_share);
     });
     this.lines.set_color(styles.getPropertyValue('--line-3d').trim());
     this.invalidate();
+  }
+
+  /** On which side of the section the viewer stands when it is cut. */
+  #near_side({ a, b }) {
+    const [x, y] = this.toward_viewer();
+    return x * (b[1] - a[1]) - y * (b[0] - a[0]) >= 0 ? 1 : -1;
   }
 
   #texture({ image, channel }) {
@@ -86,7 +94,7 @@ export class Stage {
 
   resize() {
     const { clientWidth: width, clientHeight: height } = this.canvas.parentElement;
-    if (width === 0 || height === 0) return;
+    if (width === 0 || height === 0 || (this.size?.[0] === width && this.size[1] === height)) return;
     const half = (this.camera.top - this.camera.bottom) / 2;
     this.size = [width, height];
     this.renderer.setPixelRatio(Math.min(2, devicePixelRatio));
@@ -200,7 +208,7 @@ export class Stage {
     if (!cut || !section) return true;
     const x = from[0] + t * direction[0] + surface.middle[0], y = from[1] + t * direction[1] + surface.middle[1];
     const dx = section.b[0] - section.a[0], dy = section.b[1] - section.a[1];
-    return (x - section.a[0]) * dy - (y - section.a[1]) * dx <= 0;
+    return this.cut_side * ((x - section.a[0]) * dy - (y - section.a[1]) * dx) <= 0;
   }
 
   #picker(index) {

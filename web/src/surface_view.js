@@ -72,11 +72,11 @@ export class SurfaceView {
       1 / (image.size[0] * image.pitch_nm[0]), 1 / (image.size[1] * image.pitch_nm[1]));
   }
 
-  /** Takes away what lies right of the line from a to b; null: nothing. */
-  cut_at(section) {
+  /** Takes away what lies right (side 1) or left (-1) of the line from a to b; null: nothing. */
+  cut_at(section, side) {
     if (!section) return this.material.uniforms.cut.value.set(0, 0, 0);
     const dx = section.b[0] - section.a[0], dy = section.b[1] - section.a[1], length = Math.hypot(dx, dy) || 1;
-    const nx = dy / length, ny = -dx / length;
+    const nx = side * dy / length, ny = -side * dx / length;
     const distance = (section.a[0] - this.surface.middle[0]) * nx + (section.a[1] - this.surface.middle[1]) * ny;
     this.material.uniforms.cut.value.set(nx, ny, distance);
   }
