@@ -28,7 +28,7 @@ export function ticks(low, high, about) {
 export function number(value, resolution) {
   if (!Number.isFinite(value)) return '–';
   const size = Math.abs(value);
-  if (size !== 0 && (size >= 1e7 || size < 1e-5)) return value.toExponential(3).replace('-', '−');
+  if (size >= 1e7 || (size !== 0 && size < 1e-5 && size >= resolution)) return value.toExponential(3).replace('-', '−');
   const decimals = resolution > 0 ? Math.min(8, Math.max(0, Math.ceil(-Math.log10(resolution) - 1e-9))) : 3;
   const text = value.toFixed(decimals);
   return (Number(text) === 0 ? text.replace('-', '') : text).replace('-', '−');

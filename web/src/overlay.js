@@ -41,6 +41,7 @@ export class Overlay {
   }
 
   #write(pen, text, x, y, align, color = this.text) {
+    if (align === 'right') x = Math.max(x, pen.measureText(text).width + 6);   // nothing beyond the left edge
     pen.textAlign = align;
     pen.textBaseline = 'middle';
     pen.lineWidth = 3.5;

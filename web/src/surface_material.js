@@ -41,7 +41,7 @@ void main() {
   bool behind = dot(n, flat_normal) < 0.0;   // the back of the sheet
   if (behind) n = -n;
   // Sharp edges stay sharp: where the smooth normal is far from the face's own, the face's counts.
-  n = normalize(mix(flat_normal, n, smoothstep(0.75, 0.92, dot(n, flat_normal))));
+  n = normalize(mix(flat_normal, n, smoothstep(0.86, 0.97, dot(n, flat_normal))));
   float t = range.y > range.x ? (value - range.x) / (range.y - range.x) : 0.5;
   vec3 c = value > 1e30 ? vec3(0.62) : texture2D(table, vec2((clamp(t, 0.0, 1.0) * 255.0 + 0.5) / 256.0, 0.5)).rgb;
   c = mix(c, own_color, own);
