@@ -11,7 +11,8 @@ export class SectionTool {
     for (const name of ['pointerup', 'pointercancel']) {
       view.addEventListener(name, (event) => this.#up(event), { capture: true });
     }
-    view.addEventListener('pointerleave', () => this.#tell(null));
+    // A finger leaves when it is lifted: what it read stays.
+    view.addEventListener('pointerleave', (event) => event.pointerType === 'mouse' && this.#tell(null));
   }
 
   #place(event) {
