@@ -3,7 +3,6 @@
 #   setup_packages        installs what is missing of the list below
 #   setup_full            adds to the list the programs that files are tried in
 #   setup_configure       configures the preset `release` into build/, once
-#   setup_web             installs what looks at files in a browser: Chromium, and tests/web/node_modules
 # All leave everything alone when there is nothing to do.
 
 packages=(
@@ -21,11 +20,15 @@ packages=(
   python3-matplotlib                                              # charts
   libgtest-dev libgmock-dev                                       # tests
 )
+# The pages of semsurf view. Debian's npm conflicts with other packages of Node.js: any that is there will do.
+command -v node >/dev/null && command -v npm >/dev/null || packages+=(nodejs npm)
 
 # Programs that open what semsurf writes, for the tests labelled `programs`: about 1.5 GB.
 programs=(
   admesh assimp-utils f3d freecad-python3 blender python3-numpy   # what opens surfaces
   xvfb xauth                                                      # a screen for those that need one
+  chromium                                                        # what shows web pages and glTF
+  lib3mf-dev                                                      # the 3MF Consortium's own reader
 )
 
 say() { printf '==> %s\n' "$*"; }
@@ -85,19 +88,4 @@ setup_configure() {
     fail "configuring failed, see above."
   fi
   rm -f "$log"
-}
-
-# For `ctest -L web`, which is skipped without it.
-setup_web() {
-  local packages=()   # in place of the list above; Node.js may have come from elsewhere, with npm
-  command -v node >/dev/null || packages+=(nodejs)
-  command -v npm >/dev/null || packages+=(npm)
-  command -v chromium >/dev/null || packages+=(chromium)
-  ((${#packages[@]} == 0)) || setup_packages
-  if [[ tests/web/node_modules/.package-lock.json -nt tests/web/package-lock.json ]]; then
-    return
-  fi
-  say "Installing the packages of tests/web with npm"
-  npm ci --prefix tests/web --no-audit --no-fund --silent ||
-    fail "npm could not install tests/web/package-lock.json, see above. Check the network."
 }

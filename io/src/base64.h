@@ -11,6 +11,9 @@ namespace surf::io {
 /// text that is not base64.
 std::optional<std::string> decode_base64(std::string_view text);
 
+/// Base64 with padding, in one line.
+std::string encode_base64(std::string_view bytes);
+
 /// Decodes base64 from the front, as much as is asked for. Padding may stand in the middle, where
 /// one encoded piece ends and the next begins.
 class Base64Reader {

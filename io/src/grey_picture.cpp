@@ -133,4 +133,16 @@ void write_grey_picture(const std::filesystem::path& target, const std::string& 
             });
 }
 
+GreyPicture make_grey_picture(const ImageRows& rows, std::size_t channel) {
+  Counted counted(rows, channel);
+  const Stretch stretch = find_stretch(counted);
+  GreyPicture picture{Grid<std::uint8_t>(rows.width, rows.height), stretch.low, stretch.high};
+  for (int y = 0; y < rows.height; ++y) {
+    counted.row(y, [&](std::size_t x, float value, bool counts) {
+      picture.grey(static_cast<int>(x), y) = counts ? grey_of(value, stretch) : std::uint8_t{0};
+    });
+  }
+  return picture;
+}
+
 }  // namespace surf::io

@@ -2,9 +2,11 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <string>
 
+#include "surf/core/grid.h"
 #include "surf/core/image_rows.h"
 
 namespace surf::io {
@@ -14,5 +16,13 @@ namespace surf::io {
 /// three times and keeps a row at a time.
 void write_grey_picture(const std::filesystem::path& target, const std::string& file,
                         const ImageRows& rows, std::size_t channel);
+
+/// The same picture in memory.
+struct GreyPicture {
+  Grid<std::uint8_t> grey;   ///< row 0 is the lowest
+  float low = 0;             ///< shown as 0 ...
+  float high = 0;            ///< ... and as 255; equal where all values are, which are then 128
+};
+GreyPicture make_grey_picture(const ImageRows& rows, std::size_t channel);
 
 }  // namespace surf::io

@@ -33,7 +33,7 @@ THIRD_PARTY = [
     ("OpenImageIO/*", ["io/src/raster_file.cpp"]),
     ("vtk*", ["io/src/vti_file.cpp", "io/src/vtp_*.cpp", "io/src/vtk_support.h", "io/src/volume_file.cpp"]),
     ("pugixml.hpp", ["io/src/vtk_xml.cpp", "io/src/three_mf_file.cpp"]),
-    ("zlib.h", ["io/src/vtk_data.cpp", "io/src/zip_file.cpp"]),
+    ("zlib.h", ["io/src/deflate.cpp", "io/src/vtk_data.cpp", "io/src/zip_file.cpp"]),
     ("tiny_gltf.h", ["io/src/gltf_write.cpp"]),
     ("cairo*.h", ["io/src/canvas.cpp"]),
     ("xxhash.h", ["io/src/cache_entry.cpp"]),

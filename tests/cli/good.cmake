@@ -206,3 +206,16 @@ semsurf_cli_test(tip.best ARGS tip steps.txt --also steps.txt --size 5 --answer 
   STDOUT "fit +misfit" WRITES tip.gsf best.png INFO tip.gsf "option.answer +best estimate")
 semsurf_cli_test(tip.characterizer ARGS tip steps.txt --characterizer steps.txt --size 3 --search 2 -o tip.gsf
   STDOUT "known +found at sample" WRITES tip.gsf INFO tip.gsf "option.answer +characterizer")
+
+if(WEB_PACKAGES)
+  semsurf_cli_test(view ARGS view block.gsf -o page.html
+    STDOUT "surface +block: [0-9]+ x [0-9]+ samples" "written +page.html, [0-9.]+ kB, of these" WRITES page.html)
+  semsurf_cli_test(view.several ARGS view block.gsf block.gsf cube.off two.gltf four.png -o page.html
+    STDOUT "surface +block 2:" "cube: 12 triangles" "cap: 12 triangles" "image +four.png: .*size not known" WRITES page.html)
+  semsurf_cli_test(view.step ARGS view block.gsf --step 2 -o page.html STDERR "note: block.gsf: every second sample of"
+    WRITES page.html)
+  semsurf_cli_test(view.tolerance ARGS view block.gsf --tolerance 0.1nm -o page.html
+    STDERR "triangles instead of [0-9]+, nowhere more than" WRITES page.html)
+  semsurf_cli_test(view.scalar ARGS view block.gsf --scalar plane.gsf --drape plane.gsf -o page.html -q STDOUT "^$" WRITES page.html)
+endif()
+semsurf_cli_test(help.view ARGS view --help STDOUT "--drape" "--scalar" "Examples:")

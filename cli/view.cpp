@@ -1,0 +1,218 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <tuple>
+
+#include "afm_options.h"
+#include "commands.h"
+#include "common_options.h"
+#include "options.h"
+#include "surf/core/error.h"
+#include "surf/core/units.h"
+#include "surf/io/web_page.h"
+#include "terminal.h"
+#include "view_inputs.h"
+#include "view_scalar.h"
+
+namespace surf::cli {
+namespace {
+
+constexpr const char* examples =
+    R"(One HTML file that any browser shows, from disk and without a network: surfaces in 3D, colours by height
+or any scalar, cross-sections with their profiles in nm, SEM images beside and laid on.
+Meshes, scans of every format that semsurf reads, images (EXR, TIFF, PNG, VTI); an image with a channel in nm
+is a surface. FILE:CHANNEL chooses a channel.
+
+Examples:
+  semsurf view scan.gwy -o page.html
+  semsurf view scan.gsf eroded.gsf tip.gsf --scalar certainty.tif:certain -o page.html
+  semsurf view specimen.ply --drape simulated.exr:SE --title "Mesa, 80 deg" -o page.html
+  semsurf view large.gsf --tolerance 0.1nm -o page.html)";
+
+constexpr double heavy_page_bytes = 50e6;
+
+struct Options {
+  std::vector<std::string> files;
+  std::optional<std::string> output, title, drape, unit, pixel_size, tolerance, step;
+  std::vector<std::string> scalars;
+  bool quiet = false;
+};
+
+ViewReading make_reading(const Options& o) {
+  ViewReading r;
+  r.quiet = o.quiet;
+  if (o.unit) r.unit_nm = parse_unit_nm(*o.unit, "--unit");
+  if (o.pixel_size) {
+    const auto [x, y] = parse_pixel_size(*o.pixel_size, "--pixel-size");
+    r.pitch_x_nm = x;
+    r.pitch_y_nm = y;
+  }
+  if (o.tolerance) {
+    r.tolerance_nm = parse_length_nm(*o.tolerance, "--tolerance");
+    if (!(*r.tolerance_nm > 0))
+      throw UsageError("--tolerance", fmt::format("'{}' is not above 0", *o.tolerance), "Give a length, as 0.1nm");
+  }
+  if (o.step) r.step = static_cast<int>(parse_whole(*o.step, "--step", 1, 1000000));
+  return r;
+}
+
+void add_drape(const FileChannel& input, const ViewReading& reading, io::WebPage& page) {
+  io::WebImage picture = read_view_image(input, reading);
+  const std::string channel = input.channel.empty() || !picture.image.find(input.channel)
+                                  ? picture.image.channels.front().name
+                                  : input.channel;
+  if (!picture.has_scale)
+    throw InvalidInput(input.file.string(), "the picture does not say how large its pixels are",
+                       "Give their size with --pixel-size");
+  if (std::none_of(page.surfaces.begin(), page.surfaces.end(),
+                   [&](const io::WebSurface& surface) { return lies_over(picture.image, surface); }))
+    throw InvalidInput(
+        input.file.string(),
+        fmt::format("the picture, x {:.6g} to {:.6g}, y {:.6g} to {:.6g} nm, lies over no surface",
+                    picture.image.origin_x_nm, picture.image.origin_x_nm + picture.image.width() * picture.image.pitch_x_nm,
+                    picture.image.origin_y_nm, picture.image.origin_y_nm + picture.image.height() * picture.image.pitch_y_nm),
+        "Give it without --drape to see it beside them");
+  const auto same = std::find_if(page.images.begin(), page.images.end(), [&](const io::WebImage& image) {
+    return image.name == picture.name && image.has_scale && image.image.find(channel);
+  });
+  page.drape = {static_cast<std::size_t>(same - page.images.begin()), channel};
+  if (same == page.images.end()) page.images.push_back(std::move(picture));
+}
+
+void add_scalar(const FileChannel& input, const ViewReading& reading, io::WebPage& page) {
+  const io::WebImage picture = read_view_image(input, reading);
+  const std::string channel = input.channel.empty() || !picture.image.find(input.channel)
+                                  ? picture.image.channels.front().name
+                                  : input.channel;
+  std::string name = channel;
+  const auto taken = [&](const std::string& wanted) {
+    for (const io::WebSurface& surface : page.surfaces)
+      for (const io::WebScalar& scalar : surface.scalars)
+        if (scalar.name == wanted) return true;
+    return false;
+  };
+  if (taken(name)) name = fmt::format("{} of {}", channel, input.file.stem().string());
+  for (int number = 2; taken(name); ++number)
+    name = fmt::format("{} of {} {}", channel, input.file.stem().string(), number);
+  if (!picture.has_scale)
+    throw InvalidInput(input.file.string(), "the picture does not say how large its pixels are",
+                       "Give their size with --pixel-size");
+  if (add_sampled_scalar(page, picture.image, channel, name) == 0)
+    throw InvalidInput(input.file.string(), fmt::format("'{}' has no value over any surface", channel),
+                       "Give a map of the same place");
+  if (page.scalar.empty()) page.scalar = name;
+}
+
+std::string describe(const io::WebSurface& surface) {
+  std::string text;
+  if (const auto* field = std::get_if<HeightField>(&surface.shape))
+    text = fmt::format("{} x {} samples, {} x {}", field->z_nm.width(), field->z_nm.height(),
+                       format_length((field->z_nm.width() - 1) * field->pitch_x_nm),
+                       format_length((field->z_nm.height() - 1) * field->pitch_y_nm));
+  else
+    text = fmt::format("{} triangles", std::get<TriangleMesh>(surface.shape).triangles.size());
+  for (const io::WebScalar& scalar : surface.scalars) text += ", " + scalar.name;
+  return text;
+}
+
+void report(const io::WebPage& page, const io::WebPageSummary& summary, const std::string& output) {
+  for (const io::WebSurface& surface : page.surfaces)
+    fmt::print("{:<10} {}: {}\n", "surface", surface.name, describe(surface));
+  for (const io::WebImage& image : page.images)
+    fmt::print("{:<10} {}: {} x {} pixels{}\n", "image", image.name, image.image.width(), image.image.height(),
+               image.has_scale ? "" : ", size not known (--pixel-size)");
+  fmt::print("{:<10} {}, {}, of these {} the viewer\n", "written", output, format_bytes(double(summary.bytes)),
+             format_bytes(double(summary.viewer_bytes)));
+}
+
+int work(const Options& o) {
+  if (o.files.empty())
+    throw UsageError("view", "no file is given", "Name scans, meshes or images to show");
+  if (!o.output) throw UsageError("--output", "no output file is given", "Add -o page.html");
+  const ViewReading reading = make_reading(o);
+  io::check_web_page_target(*o.output);
+  std::vector<FileChannel> inputs, scalars;
+  for (const std::string& file : o.files) inputs.push_back(parse_file_channel(file));
+  for (const std::string& file : o.scalars) scalars.push_back(parse_file_channel(file));
+  std::optional<FileChannel> drape;
+  if (o.drape) drape = parse_file_channel(*o.drape);
+
+  InterruptGuard interrupt;
+  ProgressBar bar(!o.quiet);
+  const double steps = 2 * double(inputs.size() + scalars.size());   // reading, then writing
+  double done = 0;
+  const auto goes_on = [&] {
+    bar.show(done++, steps, "files");
+    return !interrupt.token()->cancelled();
+  };
+  constexpr int interrupted = 130;
+  io::WebPage page;
+  page.title = o.title.value_or(inputs.front().file.stem().string());
+  for (const FileChannel& input : inputs) {
+    if (!goes_on()) return interrupted;
+    add_view_input(input, reading, page);
+  }
+  if ((drape || !scalars.empty()) && page.surfaces.empty())
+    throw UsageError(drape ? "--drape" : "--scalar", "there is no surface to lay it on", "Give a scan or a mesh");
+  for (const FileChannel& scalar : scalars) {
+    if (!goes_on()) return interrupted;
+    add_scalar(scalar, reading, page);
+  }
+  if (drape) add_drape(*drape, reading, page);
+
+  std::vector<std::string> read;
+  for (const FileChannel& input : inputs) read.push_back(input.file.string());
+  for (const FileChannel& scalar : scalars) read.push_back(scalar.file.string());
+  if (drape) read.push_back(drape->file.string());
+  std::map<std::string, std::string> settings;
+  if (reading.tolerance_nm) settings["tolerance_nm"] = format_exact(*reading.tolerance_nm);
+  if (reading.step > 1) settings["step"] = std::to_string(reading.step);
+  page.metadata = provenance_of("view", settings, read);
+
+  const auto summary = io::write_web_page(
+      *o.output, page, [&](double part, double total) { bar.show(steps / 2 * (1 + part / total), steps, "files"); },
+      interrupt.token());
+  bar.clear();
+  if (summary.bytes == 0) return interrupted;
+  if (!o.quiet) report(page, summary, *o.output);
+  if (double(summary.bytes) > heavy_page_bytes)
+    print_warning(fmt::format("a page of {} opens slowly. --tolerance 0.1nm leaves out what is flat, --step 2 takes "
+                              "every second sample",
+                              format_bytes(double(summary.bytes))));
+  return 0;
+}
+
+}  // namespace
+
+void add_view(CLI::App& app, Action& action) {
+  const auto o = std::make_shared<Options>();
+  CLI::App* sub = app.add_subcommand("view", "One web page that shows surfaces and images to anybody");
+  sub->group("Commands");
+  sub->add_option("FILES", o->files, "Scans, meshes, images; FILE:CHANNEL chooses a channel")->type_name("FILE");
+  const char* shown = "Shown";
+  sub->add_option("--title", o->title, "Of the page (the first file's name)")->type_name("TEXT")->group(shown);
+  sub->add_option("--drape", o->drape, "An image to lay on the surfaces, FILE or FILE:CHANNEL")
+      ->type_name("FILE")->group(shown);
+  sub->add_option("--scalar", o->scalars, "A map to colour them by, FILE or FILE:CHANNEL; may be repeated")
+      ->type_name("FILE")->option_text("FILE")->allow_extra_args(false)->group(shown);
+  const char* reading = "Reading";
+  sub->add_option("--unit", o->unit, "Length of one unit of meshes (nm; glTF: m)")
+      ->type_name("nm|um|mm|m|pm|A|in")->group(reading);
+  sub->add_option("--pixel-size", o->pixel_size, "Of images and scans that do not say, 2nm or 2nmx3nm")
+      ->type_name("LENGTH")->group(reading);
+  const char* size = "Size";
+  sub->add_option("--tolerance", o->tolerance, "Fewer triangles, nowhere farther off than this")
+      ->type_name("LENGTH")->group(size);
+  sub->add_option("--step", o->step, "Every so many-th sample of height fields (1)")->type_name("N")->group(size);
+  const char* output = "Output";
+  sub->add_option("-o,--output", o->output, "The page: .html")->type_name("FILE")->group(output);
+  add_quiet_flag(*sub, o->quiet)->group(output);
+  sub->footer(examples);
+  sub->callback([o, &action] { action = [o] { return work(*o); }; });
+}
+
+}  // namespace surf::cli
