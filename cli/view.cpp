@@ -73,8 +73,10 @@ void add_drape(const FileChannel& input, const ViewReading& reading, io::WebPage
     throw InvalidInput(
         input.file.string(),
         fmt::format("the picture, x {:.6g} to {:.6g}, y {:.6g} to {:.6g} nm, lies over no surface",
-                    picture.image.origin_x_nm, picture.image.origin_x_nm + picture.image.width() * picture.image.pitch_x_nm,
-                    picture.image.origin_y_nm, picture.image.origin_y_nm + picture.image.height() * picture.image.pitch_y_nm),
+                    picture.image.origin_x_nm,
+                    picture.image.origin_x_nm + picture.image.width() * picture.image.pitch_x_nm,
+                    picture.image.origin_y_nm,
+                    picture.image.origin_y_nm + picture.image.height() * picture.image.pitch_y_nm),
         "Give it without --drape to see it beside them");
   const auto same = std::find_if(page.images.begin(), page.images.end(), [&](const io::WebImage& image) {
     return image.name == picture.name && image.has_scale && image.image.find(channel);

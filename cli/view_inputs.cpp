@@ -268,7 +268,8 @@ void add_view_input(const FileChannel& input, const ViewReading& reading, io::We
   if (io::is_height_field_file(input.file)) return adder.add_scan();
   if (io::is_image_file(input.file)) return adder.add_image();
   if (!input.channel.empty())
-    throw UsageError(input.file.string(), fmt::format("a mesh has no channel '{}'", input.channel), "Name the file alone");
+    throw UsageError(input.file.string(), fmt::format("a mesh has no channel '{}'", input.channel),
+                     "Name the file alone");
   adder.add_meshes();
 }
 

@@ -94,7 +94,7 @@ test('numbers, lengths and ticks read well', () => {
   assert.equal(number(-3.14159, 0.01), '−3.14');
   assert.equal(number(NaN, 1), '–');
   assert.deepEqual([number(-3e-8, 0.01), number(3e-8, 1e-10), number(2.5e7, 1)], ['0.00', '3.000e−8', '2.500e+7']);
-  assert.deepEqual([round_up(3), round_up(0.02), round_down(3), round_down(0.99), round_down(50)], [5, 0.02, 2, 0.5, 50]);
+  assert.deepEqual([round_up(3), round_up(0.02), round_down(3), round_down(0.99), round_down(50), round_down(2.5)], [5, 0.02, 2, 0.5, 50, 2]);
   assert.deepEqual([500, 2000, 1e6, 0.5, 0.05].map(round_length), ['500 nm', '2 µm', '1 mm', '0.5 nm', '50 pm']);
   assert.deepEqual([0.05, 500, 9000, 20000, 5e7].map((nm) => length_unit(nm)[0]), ['pm', 'nm', 'nm', 'µm', 'mm']);
   assert.deepEqual(ticks(0, 1000, 5), [0, 200, 400, 600, 800, 1000]);
