@@ -1,40 +1,49 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
 #include <memory>
 
+#include "afm_options.h"
 #include "commands.h"
 #include "common_options.h"
 #include "info.h"
+#include "mesh_attributes.h"
+#include "mesh_inputs.h"
 #include "options.h"
 #include "surf/core/error.h"
 #include "surf/core/units.h"
 #include "surf/io/mesh_file.h"
-#include "surf/mesh/repair_mesh.h"
-#include "surf/mesh/simplify_mesh.h"
-#include "surf/mesh/smooth_mesh.h"
+#include "surf/io/surface_file.h"
+#include "surf/io/tracks_file.h"
 #include "terminal.h"
 
 namespace surf::cli {
 namespace {
 
 constexpr const char* examples =
-    R"(What is asked for happens in this order: unit, scale, repair, smooth, simplify, out-unit.
-Nothing of it: the mesh is converted. 'semsurf info' says what is wrong with a mesh.
+    R"(Inputs are meshes and scans (FILE:CHANNEL chooses a channel); .glb, .gltf, .3mf, .obj, .vtp and .vtm keep
+several apart. What is asked for happens in this order: unit, scale, repair, smooth, simplify, solid. Nothing of
+it: the mesh is converted. 'semsurf info' says what is wrong with a mesh.
+glTF, 3MF, STL and OBJ show the specimen a million times larger, 1 nm as 1 mm; reading undoes it.
 
 Examples:
+  semsurf mesh scan.gwy --tolerance 0.1nm -o scan.glb
+  semsurf mesh scan.gsf --solid --triangles 200000 -o print.3mf
+  semsurf mesh eroded.gsf --scalar map.tif:certain --drape sem.exr:SE --tracks tracks.vtp -o all.glb
+  semsurf mesh before.gsf after.gsf -o both.vtm
   semsurf mesh part.stl --unit um -o part.ply
   semsurf mesh broken.obj --repair --max-hole 200nm -o sound.stl
-  semsurf mesh scan.ply --simplify 1nm -o small.ply
   semsurf mesh scan.ply --smooth 20 --triangles 50000 --out-unit um -o model.obj)";
 
 struct Options {
-  std::string input;
-  std::optional<std::string> output, unit, out_unit, scale, smooth, simplify, triangles;
+  std::vector<std::string> inputs, scalars;
+  std::optional<std::string> output, unit, z_unit, pixel_size, out_unit, scale, smooth, tolerance, triangles;
   std::optional<std::string> stitch, sliver, max_hole, min_component;
-  bool repair = false, keep_intersections = false, quiet = false;
+  std::optional<std::string> thickness, drape, tracks, magnification, z_exaggeration;
+  bool repair = false, keep_intersections = false, solid = false, true_size = false, plain = false, quiet = false;
 };
 
 double parse_factor(const std::string& text, const char* subject) {
@@ -51,104 +60,180 @@ double parse_distance(const std::string& text, const char* subject, bool zero_to
 
 /// All the numbers, before a large mesh is read.
 struct Plan {
-  std::optional<double> unit_nm;
-  double out_unit_nm = 1, scale = 1;
-  RepairOptions repair;
-  SmoothOptions smooth;
-  SimplifyOptions simplify;
+  io::SurfaceFormat format;
+  MeshWork work;
+  io::Magnification magnification;
+  std::optional<double> out_unit_nm;
+  std::vector<FileChannel> inputs, scalars;
+  std::optional<FileChannel> drape;
 };
 
-Plan make_plan(const Options& o) {
-  if (o.input.empty()) throw UsageError("mesh", "no mesh is given", "Name a file to read");
-  if (!o.output) throw UsageError("--output", "no output file is given", "Add -o mesh.ply");
-  io::check_mesh_target(*o.output);
-  Plan p;
-  if (o.unit) p.unit_nm = parse_unit_nm(*o.unit, "--unit");
-  if (o.out_unit) p.out_unit_nm = parse_unit_nm(*o.out_unit, "--out-unit");
-  if (o.scale) p.scale = parse_factor(*o.scale, "--scale");
-  if (o.stitch) p.repair.stitch_nm = parse_distance(*o.stitch, "--stitch", true);
-  if (o.sliver) p.repair.sliver_nm = parse_distance(*o.sliver, "--sliver", true);
-  if (o.max_hole) p.repair.max_hole_nm = parse_distance(*o.max_hole, "--max-hole", true);
-  if (o.min_component) {
-    p.repair.min_component_nm = parse_distance(*o.min_component, "--min-component", true);
-  }
-  p.repair.resolve_self_intersections = !o.keep_intersections;
-  p.smooth.iterations =
-      o.smooth ? static_cast<int>(parse_whole(*o.smooth, "--smooth", 1, 100000)) : 0;
-  if (o.simplify) p.simplify.tolerance_nm = parse_distance(*o.simplify, "--simplify", false);
-  if (o.triangles) {
-    p.simplify.triangles =
-        static_cast<std::size_t>(parse_whole(*o.triangles, "--triangles", 4, 1'000'000'000));
-  }
+RepairOptions make_repair(const Options& o) {
+  RepairOptions repair;
+  if (o.stitch) repair.stitch_nm = parse_distance(*o.stitch, "--stitch", true);
+  if (o.sliver) repair.sliver_nm = parse_distance(*o.sliver, "--sliver", true);
+  if (o.max_hole) repair.max_hole_nm = parse_distance(*o.max_hole, "--max-hole", true);
+  if (o.min_component) repair.min_component_nm = parse_distance(*o.min_component, "--min-component", true);
+  repair.resolve_self_intersections = !o.keep_intersections;
   const bool for_repair = o.stitch || o.sliver || o.max_hole || o.min_component || o.keep_intersections;
   if (for_repair && !o.repair) {
     throw UsageError(o.max_hole ? "--max-hole" : o.stitch ? "--stitch" : o.sliver ? "--sliver"
                      : o.min_component ? "--min-component" : "--keep-intersections",
                      "it is about repairs, and there are none", "Add --repair");
   }
+  return repair;
+}
+
+MeshWork make_work(const Options& o, const io::SurfaceFormat& format) {
+  MeshWork w;
+  w.quiet = o.quiet;
+  if (o.unit) w.unit_nm = parse_unit_nm(*o.unit, "--unit");
+  if (o.z_unit) w.z_unit_nm = parse_unit_nm(*o.z_unit, "--z-unit");
+  if (o.pixel_size) {
+    const auto [x, y] = parse_pixel_size(*o.pixel_size, "--pixel-size");
+    w.pitch = {x, y};
+  }
+  if (o.scale) w.scale = parse_factor(*o.scale, "--scale");
+  const RepairOptions repair = make_repair(o);
+  if (o.repair) w.repair = repair;
+  w.smooth.iterations = o.smooth ? static_cast<int>(parse_whole(*o.smooth, "--smooth", 1, 100000)) : 0;
+  if (o.tolerance) w.reduce.tolerance_nm = parse_distance(*o.tolerance, "--tolerance", false);
+  if (o.triangles)
+    w.reduce.triangles = static_cast<std::size_t>(parse_whole(*o.triangles, "--triangles", 4, 1'000'000'000));
+  if (o.thickness && !o.solid)
+    throw UsageError("--thickness", "it is that of a solid's base", "Add --solid");
+  if (o.solid) w.solid_nm = o.thickness ? parse_distance(*o.thickness, "--thickness", false) : 0;
+  w.curvature = format.scalars && !o.plain;
+  w.keep_bodies = format.several || format.scalars;
+  return w;
+}
+
+void refuse_what_the_format_lacks(const Options& o, const io::SurfaceFormat& format) {
+  const auto refuse = [&](const char* option, const char* what, bool io::SurfaceFormat::*held) {
+    std::vector<std::string> others;
+    for (const io::SurfaceFormat& f : io::surface_formats())
+      if (f.*held) others.push_back(f.extension);
+    throw UsageError(option, fmt::format("{} files hold no {}", format.extension, what),
+                     fmt::format("Write one of {}", fmt::join(others, " ")));
+  };
+  if (!o.scalars.empty() && !format.scalars) refuse("--scalar", "scalars", &io::SurfaceFormat::scalars);
+  if (o.drape && !format.drape) refuse("--drape", "pictures", &io::SurfaceFormat::drape);
+  if (o.tracks && !format.tracks) refuse("--tracks", "tracks", &io::SurfaceFormat::tracks);
+  const char* const enlarging = o.magnification    ? "--magnification"
+                                : o.true_size      ? "--true-size"
+                                : o.z_exaggeration ? "--z-exaggeration"
+                                                   : nullptr;
+  if (!enlarging) return;
+  if (!format.magnified) refuse(enlarging, "magnification, they hold nm", &io::SurfaceFormat::magnified);
+  if (o.out_unit)
+    throw UsageError(enlarging, "--out-unit says how large the file is already", "Leave one of them out");
+  if (o.magnification && o.true_size)
+    throw UsageError("--true-size", "--magnification says how large the file is already", "Leave one of them out");
+}
+
+Plan make_plan(const Options& o) {
+  if (o.inputs.empty()) throw UsageError("mesh", "no mesh is given", "Name a file to read");
+  if (!o.output) throw UsageError("--output", "no output file is given", "Add -o mesh.ply");
+  Plan p{io::check_surface_target(*o.output), {}, {}, {}, {}, {}, {}};
+  refuse_what_the_format_lacks(o, p.format);
+  p.work = make_work(o, p.format);
+  if (o.out_unit) p.out_unit_nm = parse_unit_nm(*o.out_unit, "--out-unit");
+  if (o.magnification) p.magnification.factor = parse_factor(*o.magnification, "--magnification");
+  if (o.true_size) p.magnification.factor = 1;
+  if (o.z_exaggeration) p.magnification.z_exaggeration = parse_factor(*o.z_exaggeration, "--z-exaggeration");
+  for (const std::string& input : o.inputs) p.inputs.push_back(parse_file_channel(input));
+  for (const std::string& input : o.scalars) p.scalars.push_back(parse_file_channel(input));
+  if (o.drape) p.drape = parse_file_channel(*o.drape);
   return p;
 }
 
-void print_repair(const RepairSummary& summary) {
-  const char* label = "repair";
-  for (const std::string& line : describe(summary)) {
-    fmt::print("{:<10} {}\n", label, line);
-    label = "";
-  }
+std::map<std::string, std::string> provenance(const Options& o, const Plan& p) {
+  std::map<std::string, std::string> made;
+  const auto add = [&](const char* name, const std::optional<std::string>& value) {
+    if (value) made[name] = *value;
+  };
+  add("unit", o.unit), add("z-unit", o.z_unit), add("pixel-size", o.pixel_size), add("scale", o.scale);
+  add("smooth", o.smooth), add("tolerance", o.tolerance), add("triangles", o.triangles);
+  add("stitch", o.stitch), add("sliver", o.sliver), add("max-hole", o.max_hole);
+  add("min-component", o.min_component), add("thickness", o.thickness);
+  if (o.repair) made["repair"] = o.keep_intersections ? "keep-intersections" : "on";
+  if (o.solid) made["solid"] = "on";
+  std::vector<std::string> files;
+  for (const FileChannel& f : p.inputs) files.push_back(f.file.string());
+  for (const FileChannel& f : p.scalars) files.push_back(f.file.string());
+  if (p.drape) files.push_back(p.drape->file.string());
+  if (o.tracks) files.push_back(*o.tracks);
+  return provenance_of("mesh", made, files);
 }
 
-void advise(const RepairSummary& summary) {
-  double longest_nm = 0;
-  for (const OpenHole& hole : summary.open_holes) {
-    if (hole.too_large) longest_nm = std::max(longest_nm, hole.perimeter_nm);
+SurfaceScene make_scene(const Options& o, const Plan& p, Watched& watched) {
+  SurfaceScene scene;
+  for (std::size_t i = 0; i < p.inputs.size(); ++i) {
+    const auto share = static_cast<double>(p.inputs.size());
+    add_mesh_input(p.inputs[i], p.work, watched.watch(static_cast<double>(i) / share, static_cast<double>(i + 1) / share),
+                   scene);
+    watched.clear();
   }
-  if (longest_nm == 0) return;
-  print_note(fmt::format("--max-hole {:.4g}nm would fill the holes left open, were that wanted",
-                         1.001 * longest_nm));   // rounding to four digits never goes below it
+  if (p.format.scalars && !o.plain) add_shape_scalars(scene);
+  for (const FileChannel& input : p.scalars) add_image_scalar(input, p.work.pitch, scene);
+  if (p.drape) add_drape(*p.drape, p.work.pitch, scene);
+  if (!p.format.tracks) scene.tracks.clear();
+  if (o.tracks) scene.tracks = io::read_tracks(*o.tracks);
+  scene.metadata = provenance(o, p);
+  return scene;
 }
 
-void print_simplified(const SimplifySummary& s) {
-  fmt::print("{:<10} {} triangles to {}, {}\n", "simplify", s.triangles_before, s.triangles_after,
-             s.attempts == 0 || s.triangles_after == s.triangles_before
-                 ? "nothing could be removed"
-                 : fmt::format("at most {} apart (original to result {}, back {}), measured every {}",
-                               format_length(s.deviation.largest_nm()),
-                               format_length(s.deviation.from_first_nm),
-                               format_length(s.deviation.from_second_nm),
-                               format_length(s.deviation.spacing_nm)));
+/// "1 nm is 1 mm".
+std::string scale_of(const io::Magnification& m) {
+  std::string text = fmt::format("1 nm is {} in the file", format_length(m.factor));
+  if (m.factor == 1) text = "true size; many programs cannot show or treat anything as small";
+  if (m.z_exaggeration != 1) text += fmt::format(", and heights are {:.6g} times larger still", m.z_exaggeration);
+  return text;
+}
+
+/// Returns whether each surface is closed and oriented.
+bool print_surfaces(const SurfaceScene& scene, bool quiet) {
+  bool sound = true;
+  Box box;
+  for (const Surface& surface : scene.surfaces) {
+    const MeshReport report = check_mesh(surface.mesh);
+    sound = sound && report.closed_and_oriented;
+    box.extend(report.bounds_nm.lower_nm);
+    box.extend(report.bounds_nm.upper_nm);
+    if (quiet) continue;
+    std::string with;
+    for (const VertexScalar& scalar : surface.scalars) with += (with.empty() ? "; with " : ", ") + scalar.name;
+    if (surface.drape) with += (with.empty() ? "; with " : ", ") + fmt::format("the picture {}", surface.drape->name);
+    fmt::print("{:<10} {}{}{}\n", "shape", scene.surfaces.size() > 1 ? surface.name + ": " : "", summary(report), with);
+  }
+  if (!quiet) fmt::print("{:<10} {}\n", "size", format_extent(box));
+  return sound;
+}
+
+void write(const Options& o, const Plan& p, const SurfaceScene& scene) {
+  if (!p.out_unit_nm) return io::write_surfaces(*o.output, scene, p.magnification);
+  if (p.format.magnified) return io::write_surfaces(*o.output, scene, {1e6 / *p.out_unit_nm, 1});
+  std::vector<io::NamedMesh> bodies;
+  for (const Surface& surface : scene.surfaces) bodies.push_back({surface.name, {}, surface.mesh});
+  io::write_mesh(*o.output, io::join(bodies), *p.out_unit_nm);
 }
 
 int work(const Options& o) {
   const Plan plan = make_plan(o);
-  TriangleMesh mesh = io::read_mesh(o.input, plan.unit_nm);
-  if (plan.scale != 1) transform(mesh, plan.scale, {});
-  if (o.repair) {
-    RepairSummary summary;
-    mesh = repair_mesh(mesh, plan.repair, summary);
-    if (!o.quiet) {
-      print_repair(summary);
-      advise(summary);
-    }
-  }
-  if (plan.smooth.iterations > 0) mesh = smooth_mesh(mesh, plan.smooth);
-  if (o.simplify || o.triangles) {
-    SimplifySummary summary;
-    mesh = simplify_mesh(mesh, plan.simplify, summary);
-    if (!o.quiet) print_simplified(summary);
-    if (!summary.reached) {
-      print_warning(fmt::format("--triangles: {} are left; fewer would {}", summary.triangles_after,
-                                o.simplify ? "exceed --simplify" : "turn faces over"));
-    }
-  }
-  io::write_mesh(*o.output, mesh, plan.out_unit_nm);
-  const MeshReport report = check_mesh(mesh);
+  Watched watched(!o.quiet);
+  const SurfaceScene scene = make_scene(o, plan, watched);
+  write(o, plan, scene);
+  const bool sound = print_surfaces(scene, o.quiet);
   if (!o.quiet) {
-    fmt::print("{:<10} {}\n", "shape", summary(report));
-    fmt::print("{:<10} {}\n", "size", format_extent(report.bounds_nm));
+    if (!scene.tracks.empty()) fmt::print("{:<10} {}\n", "tracks", scene.tracks.size());
+    if (plan.format.magnified && !plan.out_unit_nm) fmt::print("{:<10} {}\n", "scale", scale_of(plan.magnification));
     fmt::print("{:<10} {}\n", "written", *o.output);
   }
-  if (!report.closed_and_oriented && !o.repair) {
+  const bool of_meshes = std::ranges::all_of(plan.inputs, [](const FileChannel& f) { return io::is_mesh_file(f.file); });
+  if (!sound && !o.repair && of_meshes) {
     print_warning("the mesh is not closed or not oriented. Try --repair");
+  } else if (!sound && (plan.format.extension == ".stl" || plan.format.extension == ".3mf") && !o.solid) {
+    print_note("an open sheet: slicers and CAD want a body, which --solid makes of it");
   }
   return 0;
 }
@@ -157,13 +242,17 @@ int work(const Options& o) {
 
 void add_mesh(CLI::App& app, Action& action) {
   const auto o = std::make_shared<Options>();
-  CLI::App* sub = app.add_subcommand("mesh", "Convert, repair, smooth and simplify a mesh");
+  CLI::App* sub = app.add_subcommand("mesh", "Meshes and scans to glTF, CAD and ParaView; repair, simplify");
   sub->group("Commands");
-  sub->add_option("INPUT", o->input, "The mesh: STL, OBJ, PLY, OFF, glTF, VTP")->type_name("FILE");
+  sub->add_option("INPUTS", o->inputs, "Meshes (STL, OBJ, PLY, OFF, glTF, 3MF, VTP, VTM) and scans")->type_name("FILE");
   const char* units = "Units";
   sub->add_option("--unit", o->unit, "Length of one unit of the input (nm; glTF: m)")
       ->type_name("nm|um|mm|m|pm|A|in")->group(units);
-  sub->add_option("--out-unit", o->out_unit, "Length of one unit of the output (nm)")
+  sub->add_option("--z-unit", o->z_unit, "Length of one unit of height, of scans that do not say (nm)")
+      ->type_name("LENGTH")->group(units);
+  sub->add_option("--pixel-size", o->pixel_size, "Of scans and pictures that do not say, 2nm or 2nmx3nm (1 nm)")
+      ->type_name("LENGTH")->group(units);
+  sub->add_option("--out-unit", o->out_unit, "Length of one unit of the output, in place of a magnification (nm)")
       ->type_name("nm|um|mm|m|pm|A|in")->group(units);
   sub->add_option("--scale", o->scale, "Multiply all coordinates by this (1)")
       ->type_name("FACTOR")->group(units);
@@ -184,13 +273,29 @@ void add_mesh(CLI::App& app, Action& action) {
   const char* shape = "Shape";
   sub->add_option("--smooth", o->smooth, "Taubin smoothing, this many times")
       ->type_name("N")->group(shape);
-  sub->add_option("--simplify", o->simplify, "Fewer triangles, nowhere farther off than this")
+  sub->add_option("--tolerance,--simplify", o->tolerance, "Fewer triangles, nowhere farther off than this")
       ->type_name("LENGTH")->group(shape);
   sub->add_option("--triangles", o->triangles, "Fewer triangles, down to this many")
       ->type_name("N")->group(shape);
+  sub->add_flag("--solid", o->solid, "Walls and a base under an open sheet: a closed body")->group(shape);
+  sub->add_option("--thickness", o->thickness, "Of the base under the lowest place (5 % of the longer side)")
+      ->type_name("LENGTH")->group(shape);
+  const char* shown = "On the surface";
+  sub->add_option("--scalar", o->scalars, "A map to go along, FILE or FILE:CHANNEL; may be repeated")
+      ->type_name("FILE")->option_text("FILE")->allow_extra_args(false)->group(shown);
+  sub->add_option("--drape", o->drape, "A picture to lay on it, FILE or FILE:CHANNEL")->type_name("FILE")->group(shown);
+  sub->add_option("--tracks", o->tracks, "Paths of electrons, as 'simulate --trajectories' writes them")
+      ->type_name("FILE.vtp")->group(shown);
+  sub->add_flag("--plain", o->plain, "Without height and curvature as scalars")->group(shown);
   const char* output = "Output";
-  sub->add_option("-o,--output", o->output, "Mesh to write: .stl .obj .ply .off .vtp")
-      ->type_name("FILE")->group(output);
+  std::string suffixes;
+  for (const io::SurfaceFormat& format : io::surface_formats()) suffixes += " " + format.extension;
+  sub->add_option("-o,--output", o->output, "To write:" + suffixes)->type_name("FILE")->group(output);
+  sub->add_option("--magnification", o->magnification, "Of glTF, 3MF, STL and OBJ (1e6: 1 nm is 1 mm)")
+      ->type_name("FACTOR")->group(output);
+  sub->add_flag("--true-size", o->true_size, "Magnification 1")->group(output);
+  sub->add_option("--z-exaggeration", o->z_exaggeration, "Heights so much larger still, in these formats (1)")
+      ->type_name("FACTOR")->group(output);
   add_quiet_flag(*sub, o->quiet)->group(output);
   sub->footer(examples);
   sub->callback([o, &action] { action = [o] { return work(*o); }; });

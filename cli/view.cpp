@@ -10,6 +10,7 @@
 #include "afm_options.h"
 #include "commands.h"
 #include "common_options.h"
+#include "image_sampler.h"
 #include "options.h"
 #include "surf/core/error.h"
 #include "surf/core/units.h"
@@ -48,8 +49,7 @@ ViewReading make_reading(const Options& o) {
   if (o.unit) r.unit_nm = parse_unit_nm(*o.unit, "--unit");
   if (o.pixel_size) {
     const auto [x, y] = parse_pixel_size(*o.pixel_size, "--pixel-size");
-    r.pitch_x_nm = x;
-    r.pitch_y_nm = y;
+    r.pitch = {x, y};
   }
   if (o.tolerance) {
     r.tolerance_nm = parse_length_nm(*o.tolerance, "--tolerance");
@@ -61,35 +61,21 @@ ViewReading make_reading(const Options& o) {
 }
 
 void add_drape(const FileChannel& input, const ViewReading& reading, io::WebPage& page) {
-  io::WebImage picture = read_view_image(input, reading);
-  const std::string channel = input.channel.empty() || !picture.image.find(input.channel)
-                                  ? picture.image.channels.front().name
-                                  : input.channel;
-  if (!picture.has_scale)
-    throw InvalidInput(input.file.string(), "the picture does not say how large its pixels are",
-                       "Give their size with --pixel-size");
+  auto [picture, channel] = read_placed_picture(input, reading.pitch);
   if (std::none_of(page.surfaces.begin(), page.surfaces.end(),
                    [&](const io::WebSurface& surface) { return lies_over(picture.image, surface); }))
-    throw InvalidInput(
-        input.file.string(),
-        fmt::format("the picture, x {:.6g} to {:.6g}, y {:.6g} to {:.6g} nm, lies over no surface",
-                    picture.image.origin_x_nm,
-                    picture.image.origin_x_nm + picture.image.width() * picture.image.pitch_x_nm,
-                    picture.image.origin_y_nm,
-                    picture.image.origin_y_nm + picture.image.height() * picture.image.pitch_y_nm),
-        "Give it without --drape to see it beside them");
+    throw InvalidInput(input.file.string(), fmt::format("the picture, {}, lies over no surface", place_of(picture.image)),
+                       "Give it without --drape to see it beside them");
+  const std::string wanted = channel;
   const auto same = std::find_if(page.images.begin(), page.images.end(), [&](const io::WebImage& image) {
-    return image.name == picture.name && image.has_scale && image.image.find(channel);
+    return image.name == picture.name && image.has_scale && image.image.find(wanted);
   });
   page.drape = {static_cast<std::size_t>(same - page.images.begin()), channel};
   if (same == page.images.end()) page.images.push_back(std::move(picture));
 }
 
 void add_scalar(const FileChannel& input, const ViewReading& reading, io::WebPage& page) {
-  const io::WebImage picture = read_view_image(input, reading);
-  const std::string channel = input.channel.empty() || !picture.image.find(input.channel)
-                                  ? picture.image.channels.front().name
-                                  : input.channel;
+  const auto [picture, channel] = read_placed_picture(input, reading.pitch);
   std::string name = channel;
   const auto taken = [&](const std::string& wanted) {
     for (const io::WebSurface& surface : page.surfaces)
@@ -100,9 +86,6 @@ void add_scalar(const FileChannel& input, const ViewReading& reading, io::WebPag
   if (taken(name)) name = fmt::format("{} of {}", channel, input.file.stem().string());
   for (int number = 2; taken(name); ++number)
     name = fmt::format("{} of {} {}", channel, input.file.stem().string(), number);
-  if (!picture.has_scale)
-    throw InvalidInput(input.file.string(), "the picture does not say how large its pixels are",
-                       "Give their size with --pixel-size");
   if (add_sampled_scalar(page, picture.image, channel, name) == 0)
     throw InvalidInput(input.file.string(), fmt::format("'{}' has no value over any surface", channel),
                        "Give a map of the same place");

@@ -6,44 +6,19 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <system_error>
 
 #include "surf/core/error.h"
 #include "surf/core/units.h"
 #include "surf/io/height_field_file.h"
 #include "surf/io/image_file.h"
-#include "surf/io/mesh_file.h"
 #include "surf/io/sim/scene_file.h"
+#include "surf/io/surface_file.h"
 #include "surf/mesh/simplify_mesh.h"
 #include "surf/mesh/thin_height_field.h"
 #include "terminal.h"
 
 namespace surf::cli {
 namespace {
-
-bool is_file(const std::filesystem::path& path) {
-  std::error_code ignored;
-  return std::filesystem::exists(path, ignored);
-}
-
-bool is_colour(const std::string& name) { return name == "R" || name == "G" || name == "B" || name == "A"; }
-
-/// A photograph becomes one picture of its brightness (Rec. 709): three almost equal ones help nobody.
-void join_colours(Image& image) {
-  const Channel *r = image.find("R"), *g = image.find("G"), *b = image.find("B");
-  if (!r || !g || !b) return;
-  Channel grey{"brightness", r->unit, Grid<float>(image.width(), image.height())};
-  for (std::size_t i = 0; i < grey.values.size(); ++i)
-    grey.values.data()[i] =
-        0.2126f * r->values.data()[i] + 0.7152f * g->values.data()[i] + 0.0722f * b->values.data()[i];
-  std::erase_if(image.channels, [](const Channel& channel) { return is_colour(channel.name); });
-  image.channels.insert(image.channels.begin(), std::move(grey));
-}
-
-/// Formats that hold a pitch hold metadata of ours too; a plain picture has neither.
-bool says_its_scale(const Image& image) {
-  return image.pitch_x_nm != 1 || image.pitch_y_nm != 1 || !image.metadata.empty();
-}
 
 const Channel* height_channel(const Image& image, const std::string& wanted) {
   if (!wanted.empty()) {
@@ -53,54 +28,6 @@ const Channel* height_channel(const Image& image, const std::string& wanted) {
   for (const Channel& channel : image.channels)
     if (channel.unit == "nm" && !channel.name.ends_with(".stderr")) return &channel;
   return nullptr;
-}
-
-void check_channel(const Image& image, const FileChannel& input) {
-  if (input.channel.empty() || image.find(input.channel)) return;
-  std::vector<std::string> names;
-  for (const Channel& channel : image.channels) names.push_back(channel.name);
-  throw UsageError(input.file.string(), fmt::format("there is no channel '{}'", input.channel),
-                   fmt::format("Choose one of: {}", fmt::join(names, ", ")));
-}
-
-io::WebImage read_picture(const FileChannel& input, const ViewReading& reading) {
-  io::WebImage picture{input.file.filename().string(), io::read_image(input.file)};
-  join_colours(picture.image);
-  std::erase_if(picture.image.channels, [](const Channel& channel) { return channel.name == "A"; });
-  picture.has_scale = says_its_scale(picture.image);
-  if (!picture.has_scale && reading.pitch_x_nm) {
-    picture.image.pitch_x_nm = *reading.pitch_x_nm;
-    picture.image.pitch_y_nm = *reading.pitch_y_nm;
-    picture.has_scale = true;
-  }
-  check_channel(picture.image, input);
-  return picture;
-}
-
-io::WebImage read_scan_channel(const FileChannel& input, const ViewReading& reading) {
-  const auto channels = io::height_channels(input.file);
-  std::string unit = "nm";
-  for (std::size_t i = 0; i < channels.size(); ++i)
-    if ((channels[i].name == input.channel || std::to_string(i + 1) == input.channel) && !channels[i].is_height)
-      unit = channels[i].z_unit;
-  io::HeightReadOptions options{input.channel, {}, reading.pitch_x_nm, reading.pitch_y_nm};
-  if (unit != "nm") options.z_unit_nm = 1;   // its own unit stays
-  const io::HeightFieldFile file = io::read_height_field(input.file, options);
-  const HeightField& field = file.field;
-  io::WebImage picture{input.file.filename().string(), {}};
-  picture.image.pitch_x_nm = field.pitch_x_nm;
-  picture.image.pitch_y_nm = field.pitch_y_nm;
-  picture.image.origin_x_nm = field.origin_x_nm;
-  picture.image.origin_y_nm = field.origin_y_nm;
-  picture.image.metadata = file.metadata;
-  Channel channel{file.channel.empty() ? "values" : file.channel, unit,
-                  Grid<float>(field.z_nm.width(), field.z_nm.height())};
-  for (int y = 0; y < field.z_nm.height(); ++y)
-    for (int x = 0; x < field.z_nm.width(); ++x)
-      channel.values(x, y) = field.is_valid(x, y) ? static_cast<float>(field.z_nm(x, y))
-                                                  : std::numeric_limits<float>::quiet_NaN();
-  picture.image.channels.push_back(std::move(channel));
-  return picture;
 }
 
 class Adder {
@@ -123,7 +50,7 @@ class Adder {
     }
     if (reading_.tolerance_nm) {
       ThinSummary summary;
-      surface.shape = thin_height_field(field, *reading_.tolerance_nm, summary);
+      surface.shape = thin_height_field(field, {*reading_.tolerance_nm}, summary);
       note(fmt::format("{} triangles instead of {}, nowhere more than {} off", summary.triangles_after,
                        summary.triangles_before, format_length(summary.deviation_nm)));
       surface.metadata["view.deviation_nm"] = format_exact(summary.deviation_nm);
@@ -138,7 +65,7 @@ class Adder {
 
   void add_scan() {
     const io::HeightFieldFile file =
-        io::read_height_field(input_.file, {input_.channel, {}, reading_.pitch_x_nm, reading_.pitch_y_nm});
+        io::read_height_field(input_.file, {input_.channel, {}, reading_.pitch.x_nm, reading_.pitch.y_nm});
     for (const std::string& text : file.notes) note(text);
     std::map<std::string, std::string> metadata = file.metadata;
     metadata["file.format"] = file.format;
@@ -147,28 +74,50 @@ class Adder {
   }
 
   void add_meshes() {
-    std::vector<io::NamedMesh> bodies = io::read_meshes(input_.file, reading_.unit_nm);
-    for (io::NamedMesh& body : bodies) {
+    SurfaceScene scene = io::read_surfaces(input_.file, reading_.unit_nm);
+    for (Surface& body : scene.surfaces) {
+      if (body.drape) add_drape(*body.drape, body.name);
       io::WebSurface surface;
-      surface.name = unique_name(page_, body.name.empty() ? input_.file.stem().string() : body.name);
-      if (!body.material.empty()) surface.metadata["material"] = body.material;
+      surface.name = unique_name(page_, body.name);
+      surface.metadata = scene.metadata;
       surface.metadata["file"] = input_.file.filename().string();
       if (reading_.tolerance_nm) {
         SimplifyOptions options;
         options.tolerance_nm = *reading_.tolerance_nm;
         SimplifySummary summary;
-        body.mesh = simplify_mesh(body.mesh, options, summary);
+        body.mesh = simplify_mesh(merge_equal_vertices(body.mesh), options, summary);
         note(fmt::format("{} triangles instead of {}, at most {} apart", summary.triangles_after,
                          summary.triangles_before, format_length(summary.deviation.largest_nm())));
+        if (!body.scalars.empty())
+          note("with --tolerance its scalars are left out; --scalar lays one on what remains");
+        body.scalars.clear();
         surface.metadata["view.deviation_nm"] = format_exact(summary.deviation.largest_nm());
+      } else if (body.scalars.empty()) {
+        body.mesh = merge_equal_vertices(body.mesh);
       }
       surface.shape = std::move(body.mesh);
+      for (VertexScalar& scalar : body.scalars)
+        if (scalar.name != "height")   // the page has its own
+          surface.scalars.push_back({scalar.name, scalar.unit, std::move(scalar.values)});
       page_.surfaces.push_back(std::move(surface));
     }
   }
 
+  void add_drape(const Drape& drape, const std::string& surface) {
+    io::WebImage picture{fmt::format("picture on {}", surface), {}};
+    Channel channel{drape.name.empty() ? "picture" : drape.name, "1", Grid<float>(drape.grey.width(), drape.grey.height())};
+    std::copy(drape.grey.data().begin(), drape.grey.data().end(), channel.values.data().begin());
+    if (!page_.drape) page_.drape = {page_.images.size(), channel.name};
+    picture.image.channels.push_back(std::move(channel));
+    picture.image.pitch_x_nm = drape.pitch_x_nm;
+    picture.image.pitch_y_nm = drape.pitch_y_nm;
+    picture.image.origin_x_nm = drape.origin_x_nm;
+    picture.image.origin_y_nm = drape.origin_y_nm;
+    page_.images.push_back(std::move(picture));
+  }
+
   void add_image() {
-    io::WebImage picture = read_picture(input_, reading_);
+    io::WebImage picture = read_plain_picture(input_, reading_.pitch);
     if (const Channel* heights = height_channel(picture.image, input_.channel)) {
       std::vector<io::WebScalar> scalars;
       for (const Channel& channel : picture.image.channels) {
@@ -217,14 +166,6 @@ class Adder {
 
 }  // namespace
 
-FileChannel parse_file_channel(const std::string& text) {
-  if (is_file(text)) return {text, {}};
-  const std::size_t colon = text.rfind(':');
-  if (colon != std::string::npos && colon + 1 < text.size() && is_file(text.substr(0, colon)))
-    return {text.substr(0, colon), text.substr(colon + 1)};
-  throw FileError(text, "there is no such file", "Check the name; a channel is given as FILE:CHANNEL");
-}
-
 HeightField every_sample(const HeightField& field, int step) {
   HeightField some;
   const int width = (field.z_nm.width() - 1) / step + 1, height = (field.z_nm.height() - 1) / step + 1;
@@ -245,10 +186,6 @@ HeightField every_sample(const HeightField& field, int step) {
     }
   }
   return some;
-}
-
-io::WebImage read_view_image(const FileChannel& input, const ViewReading& reading) {
-  return io::is_height_field_file(input.file) ? read_scan_channel(input, reading) : read_picture(input, reading);
 }
 
 std::string unique_name(const io::WebPage& page, const std::string& name) {

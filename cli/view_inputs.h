@@ -1,27 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <filesystem>
 #include <optional>
 #include <string>
-#include <vector>
 
+#include "picture_input.h"
 #include "surf/io/web_page.h"
 
 namespace surf::cli {
 
-/// FILE or FILE:CHANNEL.
-struct FileChannel {
-  std::filesystem::path file;
-  std::string channel;   ///< empty: the first
-};
-
-/// A name that is a file stays whole, colons and all. Throws FileError where there is no such file.
-FileChannel parse_file_channel(const std::string& text);
-
 struct ViewReading {
   std::optional<double> unit_nm;        ///< of meshes that do not say
-  std::optional<double> pitch_x_nm, pitch_y_nm;   ///< of scans and pictures that do not say
+  GivenPitch pitch;                     ///< of scans and pictures that do not say
   std::optional<double> tolerance_nm;   ///< height fields and meshes become fewer triangles within it
   int step = 1;                         ///< every so many-th sample of height fields
   bool quiet = false;
@@ -34,10 +24,6 @@ void add_view_input(const FileChannel& input, const ViewReading& reading, io::We
 
 /// Every so many-th sample from the lower-left one on.
 HeightField every_sample(const HeightField& field, int step);
-
-/// A picture, or one channel of a scan in its own unit, as an image. Throws UsageError for a channel that is
-/// not there.
-io::WebImage read_view_image(const FileChannel& input, const ViewReading& reading);
 
 /// "name", "name 2" ...: what no surface of the page is called yet.
 std::string unique_name(const io::WebPage& page, const std::string& name);

@@ -36,14 +36,4 @@ std::string deflate(std::string_view bytes) {
   return result;
 }
 
-std::uint32_t crc_of(std::string_view bytes) {
-  uLong crc = crc32(0, nullptr, 0);
-  while (!bytes.empty()) {
-    const std::string_view now = bytes.substr(0, piece);
-    crc = crc32(crc, reinterpret_cast<const Bytef*>(now.data()), static_cast<uInt>(now.size()));
-    bytes.remove_prefix(now.size());
-  }
-  return static_cast<std::uint32_t>(crc);
-}
-
 }  // namespace surf::io

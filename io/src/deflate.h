@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <cstdint>
 #include <string>
 #include <string_view>
 
@@ -10,8 +9,5 @@ namespace surf::io {
 /// Compressed in zlib's format (RFC 1950), which PNG and browsers know as "deflate". The same bytes give
 /// the same bytes with the same zlib.
 std::string deflate(std::string_view bytes);
-
-/// The checksum of PNG's chunks (CRC-32).
-std::uint32_t crc_of(std::string_view bytes);
 
 }  // namespace surf::io

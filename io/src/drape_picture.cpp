@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "grey_picture.h"
 #include "image_formats.h"
 #include "mesh_output.h"
 #include "surf/core/error.h"
 #include "surf/io/image_file.h"
+#include "surf/io/surface_file.h"
 
 namespace surf::io {
 namespace {
@@ -30,6 +32,13 @@ Image placed(const Drape& drape) {
 }
 
 }  // namespace
+
+Drape make_drape(const Image& image, const std::string& channel) {
+  const auto at = std::ranges::find(image.channels, channel, &Channel::name);
+  const auto number = static_cast<std::size_t>(at - image.channels.begin());
+  return {channel, make_grey_picture(rows_of(image), number).grey, image.pitch_x_nm, image.pitch_y_nm,
+          image.origin_x_nm, image.origin_y_nm};
+}
 
 TexturePoint texture_point(const Drape& drape, const Vec3& place_nm) {
   return {along(place_nm.x, drape.origin_x_nm, drape.pitch_x_nm, drape.grey.width()),

@@ -32,6 +32,10 @@ void write_tracks(const std::filesystem::path& path, std::span<const Track> trac
   write_text(path, format_tracks(file, tracks, metadata));
 }
 
+std::vector<Track> read_tracks(const std::filesystem::path& path) {
+  return parse_tracks(path.string(), read_file(path));
+}
+
 void check_tracks_target(const std::filesystem::path& path) {
   check_name(path);
   check_writable(path);

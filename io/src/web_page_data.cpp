@@ -12,7 +12,7 @@
 #include "base64.h"
 #include "deflate.h"
 #include "grey_picture.h"
-#include "png_bytes.h"
+#include "image_formats.h"
 
 namespace surf::io {
 namespace {
@@ -123,7 +123,7 @@ json describe(const WebImage& image, WebBlobs& blobs) {
     const Channel& channel = image.image.channels[c];
     if (channel.name == "valid") continue;
     const GreyPicture picture = make_grey_picture(rows, c);
-    json of_channel = blobs.add_png(png_bytes(picture.grey));
+    json of_channel = blobs.add_png(format_grey_png(image.name, picture.grey));
     of_channel["name"] = channel.name;
     of_channel["unit"] = channel.unit;
     of_channel["low"] = picture.low;

@@ -27,6 +27,7 @@ class Thinning {
       : field_(field),
         tolerance_nm_(options.tolerance_nm),
         limit_(options.triangles ? options.triangles : std::numeric_limits<std::size_t>::max()),
+        watch_(options.watch),
         mesh_(field.z_nm.width(), field.z_nm.height()),
         used_(field.z_nm.width(), field.z_nm.height()) {
     for (const LatticePoint p : mesh_.points()) used_(p.x, p.y) = 1;
@@ -122,9 +123,17 @@ class Thinning {
     renew();
   }
 
+  // Triangles grow in number about as one over the error.
+  void report(double error_nm) const {
+    if (mesh_.triangles().size() % 1024 > 1) return;
+    const double by_number = static_cast<double>(mesh_.triangles().size()) / static_cast<double>(limit_);
+    watch_.report(std::min(1.0, std::max(by_number, tolerance_nm_ / error_nm)), 1);
+  }
+
   void insert_worst_samples() {
     while (!waiting_.empty() && !full()) {
       const Waiting next = waiting_.top();
+      report(next.error_nm);
       waiting_.pop();
       const Worst& worst = worst_[next.triangle];
       if (worst.error_nm == next.error_nm && !used_(worst.at.x, worst.at.y))
@@ -194,6 +203,7 @@ class Thinning {
   const HeightField& field_;
   double tolerance_nm_;
   std::size_t limit_;   // of triangles
+  const Watch& watch_;
   LatticeDelaunay mesh_;
   Grid<unsigned char> used_;
   std::vector<Worst> worst_;   // of every triangle

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "surf/core/image.h"
 #include "surf/mesh/surface.h"
 
 namespace surf::io {
@@ -34,6 +35,10 @@ const std::vector<SurfaceFormat>& surface_formats();
 /// The format of that name. Throws what `write_surfaces` would for the name or folder, before any work
 /// is spent.
 const SurfaceFormat& check_surface_target(const std::filesystem::path& path);
+
+/// A channel of an image as a picture to lay on a surface: stretched to 256 greys between its 0.5 and 99.5
+/// percentiles, pixels that are not finite or not valid black. The channel must be there.
+Drape make_drape(const Image& image, const std::string& channel);
 
 /// Writes by extension. What the format cannot hold is left out: ask `check_surface_target` what that is.
 /// Every file says its unit, magnification, exaggeration and metadata, STL in its header of 80 bytes as

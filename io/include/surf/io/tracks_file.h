@@ -5,6 +5,7 @@
 #include <map>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "surf/core/track.h"
 
@@ -20,6 +21,9 @@ namespace surf::io {
 /// Unsupported where this build lacks VTK.
 void write_tracks(const std::filesystem::path& path, std::span<const Track> tracks,
                   const std::map<std::string, std::string>& metadata = {});
+
+/// Reads what `write_tracks` wrote. Throws FileError.
+std::vector<Track> read_tracks(const std::filesystem::path& path);
 
 /// Throws what `write_tracks` would for the name or folder, before any work is spent.
 void check_tracks_target(const std::filesystem::path& path);

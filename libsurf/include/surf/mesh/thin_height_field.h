@@ -4,6 +4,7 @@
 #include <cstddef>
 
 #include "surf/core/height_field.h"
+#include "surf/core/progress.h"
 #include "surf/mesh/triangle_mesh.h"
 
 namespace surf {
@@ -11,6 +12,7 @@ namespace surf {
 struct ThinOptions {
   double tolerance_nm = 0;     ///< >= 0
   std::size_t triangles = 0;   ///< at most so many, >= 2, whatever the tolerance; 0: no such limit
+  Watch watch;
 };
 
 struct ThinSummary {

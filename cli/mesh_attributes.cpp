@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "mesh_attributes.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+
+#include "image_sampler.h"
+#include "surf/core/error.h"
+#include "surf/io/surface_file.h"
+#include "surf/mesh/vertex_curvature.h"
+
+namespace surf::cli {
+namespace {
+
+bool has(const Surface& surface, const std::string& name) {
+  return std::ranges::any_of(surface.scalars, [&](const VertexScalar& s) { return s.name == name; });
+}
+
+/// "SE.stderr" is "se_stderr".
+std::string scalar_name(const std::string& channel) {
+  std::string name;
+  for (const char c : channel) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (byte < 0x80 && std::isalnum(byte)) name += static_cast<char>(std::tolower(byte));
+    else if (!name.empty() && name.back() != '_') name += '_';
+  }
+  while (!name.empty() && name.back() == '_') name.pop_back();
+  return name.empty() || !std::isalpha(static_cast<unsigned char>(name[0])) ? "channel_" + name : name;
+}
+
+}  // namespace
+
+void add_shape_scalars(SurfaceScene& scene) {
+  for (Surface& surface : scene.surfaces) {
+    if (!has(surface, "height")) {
+      VertexScalar height{"height", "nm", {}};
+      for (const Vec3& v : surface.mesh.vertices_nm) height.values.push_back(static_cast<float>(v.z));
+      surface.scalars.insert(surface.scalars.begin(), std::move(height));
+    }
+    if (!has(surface, "curvature"))
+      surface.scalars.insert(surface.scalars.begin() + 1, {"curvature", "1/nm", mean_curvature(surface.mesh)});
+  }
+}
+
+void add_image_scalar(const FileChannel& input, const GivenPitch& pitch, SurfaceScene& scene) {
+  const auto [picture, channel] = read_placed_picture(input, pitch);
+  const ImageSampler sampler(picture.image, channel);
+  const std::string name = scalar_name(channel);
+  for (Surface& surface : scene.surfaces) {
+    if (has(surface, name))
+      throw UsageError("--scalar", fmt::format("'{}' has a scalar '{}' already", surface.name, name),
+                       "Give the channel another name, or leave it out");
+    VertexScalar scalar{name, picture.image.find(channel)->unit, {}};
+    if (scalar.unit.empty()) scalar.unit = std::string("1");
+    for (const Vec3& v : surface.mesh.vertices_nm) {
+      const float value = sampler.at(v.x, v.y);
+      if (!std::isfinite(value))
+        throw InvalidInput(input.file.string(),
+                           fmt::format("'{}' says nothing at ({:.6g}, {:.6g}) nm, where '{}' has a vertex", channel,
+                                       v.x, v.y, surface.name),
+                           fmt::format("Give a map without holes of all of the surface; this one is {}",
+                                       place_of(picture.image)));
+      scalar.values.push_back(value);
+    }
+    surface.scalars.push_back(std::move(scalar));
+  }
+}
+
+void add_drape(const FileChannel& input, const GivenPitch& pitch, SurfaceScene& scene) {
+  const auto [picture, channel] = read_placed_picture(input, pitch);
+  const Drape drape = io::make_drape(picture.image, channel);
+  bool used = false;
+  for (Surface& surface : scene.surfaces) {
+    const auto lies_under = [&](const Vec3& v) { return covers(picture.image, v.x, v.y); };
+    if (std::ranges::none_of(surface.mesh.vertices_nm, lies_under)) continue;
+    surface.drape = drape;
+    used = true;
+  }
+  if (!used)
+    throw InvalidInput(input.file.string(),
+                       fmt::format("the picture, {}, lies over no surface", place_of(picture.image)),
+                       "Give one of the same place");
+}
+
+}  // namespace surf::cli

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "picture_input.h"
+#include "surf/mesh/surface.h"
+
+namespace surf::cli {
+
+/// "height" and "curvature" (surf/mesh/vertex_curvature.h) for every surface that does not have them. The
+/// curvature of what `solid` adds is 0.
+void add_shape_scalars(SurfaceScene& scene);
+
+/// A channel of an image or scan as a scalar of every surface. Throws InvalidInput where it is not known under some
+/// vertex of one, UsageError for a name that is taken.
+void add_image_scalar(const FileChannel& input, const GivenPitch& pitch, SurfaceScene& scene);
+
+/// A picture onto every surface that it lies over. Throws InvalidInput if there is none.
+void add_drape(const FileChannel& input, const GivenPitch& pitch, SurfaceScene& scene);
+
+}  // namespace surf::cli

@@ -1,0 +1,181 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "mesh_inputs.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "surf/core/error.h"
+#include "surf/core/units.h"
+#include "surf/io/height_field_file.h"
+#include "surf/io/image_file.h"
+#include "surf/io/mesh_file.h"
+#include "surf/io/surface_file.h"
+#include "surf/mesh/height_field_mesh.h"
+#include "surf/mesh/sheet_solid.h"
+#include "surf/mesh/thin_height_field.h"
+#include "surf/mesh/vertex_curvature.h"
+#include "terminal.h"
+
+namespace surf::cli {
+namespace {
+
+constexpr double base_share = 0.05;   // of the longer side, under the lowest place
+
+void print_repair(const RepairSummary& summary) {
+  const char* label = "repair";
+  for (const std::string& line : describe(summary)) {
+    fmt::print("{:<10} {}\n", label, line);
+    label = "";
+  }
+}
+
+void advise(const RepairSummary& summary) {
+  double longest_nm = 0;
+  for (const OpenHole& hole : summary.open_holes) {
+    if (hole.too_large) longest_nm = std::max(longest_nm, hole.perimeter_nm);
+  }
+  if (longest_nm == 0) return;
+  print_note(fmt::format("--max-hole {:.4g}nm would fill the holes left open, were that wanted",
+                         1.001 * longest_nm));   // rounding to four digits never goes below it
+}
+
+void print_simplified(const SimplifySummary& s) {
+  fmt::print("{:<10} {} triangles to {}, {}\n", "simplify", s.triangles_before, s.triangles_after,
+             s.attempts == 0 || s.triangles_after == s.triangles_before
+                 ? "nothing could be removed"
+                 : fmt::format("at most {} apart (original to result {}, back {}), measured every {}",
+                               format_length(s.deviation.largest_nm()),
+                               format_length(s.deviation.from_first_nm),
+                               format_length(s.deviation.from_second_nm),
+                               format_length(s.deviation.spacing_nm)));
+}
+
+std::string unique_name(const SurfaceScene& scene, const std::string& name) {
+  std::string unique = name;
+  const auto is_taken = [&](const Surface& surface) { return surface.name == unique; };
+  for (int number = 2; std::ranges::any_of(scene.surfaces, is_taken); ++number)
+    unique = fmt::format("{} {}", name, number);
+  return unique;
+}
+
+/// One input on its way to surfaces.
+class Treatment {
+ public:
+  Treatment(const FileChannel& input, const MeshWork& work, const Watch& watch, SurfaceScene& scene)
+      : input_(input), work_(work), watch_(watch), scene_(scene) {}
+
+  void scan() {
+    if (work_.repair || work_.smooth.iterations > 0)
+      throw UsageError(work_.repair ? "--repair" : "--smooth",
+                       fmt::format("{} is a scan, not a mesh", input_.file.string()),
+                       "Treat scans with 'semsurf clean' and 'semsurf level'");
+    const io::HeightFieldFile file = io::read_height_field(
+        input_.file, {input_.channel, work_.z_unit_nm, work_.pitch.x_nm, work_.pitch.y_nm});
+    if (!work_.quiet)
+      for (const std::string& note : file.notes) print_note(fmt::format("{}: {}", input_.file.string(), note));
+    Surface surface;
+    surface.name = input_.file.stem().string();
+    surface.mesh = work_.reduces() ? thinned(file.field) : height_field_sheet(file.field);
+    if (work_.scale != 1) transform(surface.mesh, work_.scale, {});
+    add(std::move(surface));
+  }
+
+  void mesh() {
+    if (!input_.channel.empty())
+      throw UsageError(input_.file.string(), fmt::format("a mesh has no channel '{}'", input_.channel),
+                       "Name the file alone");
+    const bool changes = work_.repair || work_.smooth.iterations > 0 || work_.reduces();
+    if (changes || !work_.keep_bodies) return whole_mesh();
+    SurfaceScene read = io::read_surfaces(input_.file, work_.unit_nm);
+    for (Surface& surface : read.surfaces) {
+      std::erase_if(surface.scalars, [](const VertexScalar& s) { return s.name == "height" || s.name == "curvature"; });
+      if (surface.scalars.empty()) surface.mesh = merge_equal_vertices(surface.mesh);
+      if (work_.scale != 1) enlarge(surface);
+      add(std::move(surface));
+    }
+    if (work_.scale == 1) std::ranges::move(read.tracks, std::back_inserter(scene_.tracks));
+  }
+
+ private:
+  TriangleMesh thinned(const HeightField& field) {
+    ThinSummary s;
+    TriangleMesh mesh = thin_height_field(
+        field, {work_.reduce.tolerance_nm / work_.scale, work_.reduce.triangles, watch_}, s);
+    if (!work_.quiet)
+      fmt::print("{:<10} {} triangles to {}, nowhere more than {} above or below (proven)\n", "simplify",
+                 s.triangles_before, s.triangles_after, format_length(s.deviation_nm * work_.scale));
+    if (work_.reduce.tolerance_nm > 0 && !s.reached)
+      print_warning(fmt::format("--triangles: with {} of them the surface is {} off, more than --tolerance",
+                                s.triangles_after, format_length(s.deviation_nm * work_.scale)));
+    return mesh;
+  }
+
+  void whole_mesh() {
+    Surface surface;
+    surface.name = input_.file.stem().string();
+    surface.mesh = io::read_mesh(input_.file, work_.unit_nm);
+    TriangleMesh& mesh = surface.mesh;
+    if (work_.scale != 1) transform(mesh, work_.scale, {});
+    if (work_.repair) {
+      RepairSummary summary;
+      mesh = repair_mesh(mesh, *work_.repair, summary);
+      if (!work_.quiet) {
+        print_repair(summary);
+        advise(summary);
+      }
+    }
+    watch_.check();
+    if (work_.smooth.iterations > 0) mesh = smooth_mesh(mesh, work_.smooth);
+    watch_.check();
+    if (work_.reduces()) {
+      SimplifySummary summary;
+      mesh = simplify_mesh(mesh, work_.reduce, summary);
+      if (!work_.quiet) print_simplified(summary);
+      if (!summary.reached)
+        print_warning(fmt::format("--triangles: {} are left; fewer would {}", summary.triangles_after,
+                                  work_.reduce.tolerance_nm > 0 ? "exceed --tolerance" : "turn faces over"));
+    }
+    add(std::move(surface));
+  }
+
+  void enlarge(Surface& surface) const {
+    transform(surface.mesh, work_.scale, {});
+    if (!surface.drape) return;
+    for (double* nm : {&surface.drape->pitch_x_nm, &surface.drape->pitch_y_nm, &surface.drape->origin_x_nm,
+                       &surface.drape->origin_y_nm})
+      *nm *= work_.scale;
+  }
+
+  void add(Surface surface) {
+    if (work_.solid_nm) {
+      const Box box = bounds(surface.mesh);
+      const Vec3 size = box.size_nm();
+      const double depth = *work_.solid_nm > 0 ? *work_.solid_nm : base_share * std::max(size.x, size.y);
+      if (work_.curvature) surface.scalars.push_back({"curvature", "1/nm", mean_curvature(surface.mesh)});
+      surface.mesh = sheet_solid(surface.mesh, box.lower_nm.z - depth);
+      for (VertexScalar& scalar : surface.scalars)   // of the walls' feet nothing is known
+        scalar.values.resize(surface.mesh.vertices_nm.size(), 0);
+      if (!work_.quiet)
+        fmt::print("{:<10} walls, and a base {} under the lowest place\n", "solid", format_length(depth));
+    }
+    surface.name = unique_name(scene_, surface.name);
+    scene_.surfaces.push_back(std::move(surface));
+  }
+
+  const FileChannel& input_;
+  const MeshWork& work_;
+  const Watch& watch_;
+  SurfaceScene& scene_;
+};
+
+}  // namespace
+
+void add_mesh_input(const FileChannel& input, const MeshWork& work, const Watch& watch, SurfaceScene& scene) {
+  watch.check();
+  Treatment treatment(input, work, watch, scene);
+  if (io::is_height_field_file(input.file) || io::is_image_file(input.file)) treatment.scan();
+  else treatment.mesh();
+}
+
+}  // namespace surf::cli
