@@ -8,6 +8,7 @@
 #include "surf/core/units.h"
 #include "surf/io/image_file.h"
 #include "surf/io/mesh_file.h"
+#include "surf/io/surface_file.h"
 #include "surf/mesh/check_mesh.h"
 #include "surf/mesh/open_sheet.h"
 
@@ -86,6 +87,33 @@ void print_channel(const Channel& channel, std::size_t label_width) {
   print_item(fmt::format("{:<{}}", channel.name, label_width), text);
 }
 
+void print_how_made(const std::map<std::string, std::string>& metadata) {
+  if (metadata.empty()) return;
+  fmt::print("  how it was made\n");
+  std::size_t longest = 0;
+  for (const auto& item : metadata) longest = std::max(longest, item.first.size());
+  for (const auto& [key, value] : metadata) fmt::print("    {:<{}}  {}\n", key, longest, value);
+}
+
+/// What a mesh file says besides its triangles.
+void print_attributes(const SurfaceScene& scene) {
+  for (const Surface& surface : scene.surfaces) {
+    const std::string of = scene.surfaces.size() > 1 ? " of " + surface.name : "";
+    for (const VertexScalar& scalar : surface.scalars) {
+      const auto [low, high] = std::ranges::minmax(scalar.values);
+      print_item("scalar", fmt::format("{}{}, {:.6g} to {:.6g}{}", scalar.name, of, low, high,
+                                       scalar.unit.empty() || scalar.unit == "1" ? "" : " " + scalar.unit));
+    }
+    if (surface.drape)
+      print_item("picture", fmt::format("{}{}, {} x {} pixels of {} x {}", surface.drape->name, of,
+                                        surface.drape->grey.width(), surface.drape->grey.height(),
+                                        format_length(surface.drape->pitch_x_nm),
+                                        format_length(surface.drape->pitch_y_nm)));
+  }
+  if (!scene.tracks.empty()) print_item("tracks", std::to_string(scene.tracks.size()));
+  print_how_made(scene.metadata);
+}
+
 }  // namespace
 
 void print_mesh(const std::filesystem::path& path, std::optional<double> unit_nm) {
@@ -105,6 +133,7 @@ void print_mesh(const std::filesystem::path& path, std::optional<double> unit_nm
   const std::string extension = path.extension().string();
   const double file_unit_nm = extension == ".glb" || extension == ".gltf" ? 1e9 : 1;
   print_mesh_warnings(report, mesh, path, unit_nm.value_or(file_unit_nm));
+  print_attributes(io::read_surfaces(path, unit_nm));
 }
 
 void print_image(const std::filesystem::path& path) {
@@ -122,12 +151,7 @@ void print_image(const std::filesystem::path& path) {
   for (const Channel& channel : image.channels)
     label_width = std::max(label_width, channel.name.size());
   for (const Channel& channel : image.channels) print_channel(channel, label_width);
-  if (image.metadata.empty()) return;
-  fmt::print("  how it was made\n");
-  std::size_t longest = 0;
-  for (const auto& item : image.metadata) longest = std::max(longest, item.first.size());
-  for (const auto& [key, value] : image.metadata)
-    fmt::print("    {:<{}}  {}\n", key, longest, value);
+  print_how_made(image.metadata);
 }
 
 }  // namespace surf::cli

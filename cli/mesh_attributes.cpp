@@ -48,11 +48,14 @@ void add_shape_scalars(SurfaceScene& scene) {
 void add_image_scalar(const FileChannel& input, const GivenPitch& pitch, SurfaceScene& scene) {
   const auto [picture, channel] = read_placed_picture(input, pitch);
   const ImageSampler sampler(picture.image, channel);
-  const std::string name = scalar_name(channel);
+  const auto is_taken = [&](const std::string& name) {
+    return std::ranges::any_of(scene.surfaces, [&](const Surface& surface) { return has(surface, name); });
+  };
+  std::string name = scalar_name(channel);
+  if (is_taken(name)) name = scalar_name(channel + " of " + input.file.stem().string());
+  const std::string base = name;
+  for (int number = 2; is_taken(name); ++number) name = fmt::format("{}_{}", base, number);
   for (Surface& surface : scene.surfaces) {
-    if (has(surface, name))
-      throw UsageError("--scalar", fmt::format("'{}' has a scalar '{}' already", surface.name, name),
-                       "Give the channel another name, or leave it out");
     VertexScalar scalar{name, picture.image.find(channel)->unit, {}};
     if (scalar.unit.empty()) scalar.unit = std::string("1");
     for (const Vec3& v : surface.mesh.vertices_nm) {

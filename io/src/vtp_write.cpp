@@ -34,6 +34,8 @@ void add_triangles(vtkPolyData* data, const SceneView& scene) {
   points->SetDataTypeToDouble();
   points->SetNumberOfPoints(static_cast<vtkIdType>(vertices));
   vtkNew<vtkCellArray> polygons;
+  // Half the bytes to compress, and to read.
+  if (3 * triangles < (std::size_t{1} << 31) && vertices < (std::size_t{1} << 31)) polygons->Use32BitStorage();
   polygons->AllocateExact(static_cast<vtkIdType>(triangles), static_cast<vtkIdType>(3 * triangles));
   vtkNew<vtkIntArray> surfaces;
   surfaces->SetName("surface");

@@ -47,6 +47,24 @@ semsurf_cli_test(mesh.open_warns ARGS mesh open.off -o out.ply STDERR "Try --rep
 semsurf_cli_test(mesh.simplify ARGS mesh "${PROJECT_SOURCE_DIR}/samples/pyramid.stl" --simplify 0.1nm
   -o small.ply STDOUT "simplify +[0-9]+ triangles to [0-9]+" WRITES small.ply)
 semsurf_cli_test(mesh.smooth ARGS mesh cube.off --smooth 3 -o cube.ply -q STDOUT "^$" WRITES cube.ply)
+semsurf_cli_test(mesh.scan ARGS mesh block.gsf --tolerance 0.1nm -o block.glb
+  STDOUT "nowhere more than .* \\(proven\\)" "with height, curvature" "scale +1 nm is 1.00 mm" WRITES block.glb
+  INFO block.glb "scalar +curvature, (.|\n)*command +mesh(.|\n)*option.tolerance +0.1nm")
+semsurf_cli_test(mesh.scan_to_count ARGS mesh steps.txt --triangles 100 -o steps.ply
+  STDOUT "simplify +[0-9]+ triangles to (99|100)," WRITES steps.ply)
+semsurf_cli_test(mesh.scan_missed ARGS mesh steps.txt --triangles 20 --tolerance 0.001nm -o steps.ply
+  STDERR "more than --tolerance" WRITES steps.ply)
+semsurf_cli_test(mesh.solid ARGS mesh block.gsf --solid --thickness 7nm -o block.stl
+  STDOUT "a base 7.00 nm under" "shape +closed" WRITES block.stl INFO block.stl "closed, ")
+semsurf_cli_test(mesh.open_sheet ARGS mesh block.gsf -o block.3mf STDERR "which --solid makes of it" WRITES block.3mf)
+semsurf_cli_test(mesh.on_the_surface ARGS mesh block.gsf --scalar block.gsf --drape block.gsf -o block.glb
+  STDOUT "with height, curvature, height_of_block, the picture" WRITES block.glb INFO block.glb "picture +")
+semsurf_cli_test(mesh.several ARGS mesh block.gsf steps.txt cube.off -o all.vtm
+  STDOUT "shape +block: " "shape +steps: " "shape +cube: closed" WRITES all.vtm INFO all.vtm "mesh of 3 bodies")
+semsurf_cli_test(mesh.true_size ARGS mesh cube.off --true-size --z-exaggeration 5 -o cube.glb
+  STDOUT "scale +true size.*5 times larger still" WRITES cube.glb INFO cube.glb "40.0 nm wide, 40.0 nm deep, 40.0 nm high")
+semsurf_cli_test(mesh.magnified ARGS mesh cube.off --magnification 1e3 -o cube.stl
+  STDOUT "1 nm is 1.00 um in the file" WRITES cube.stl INFO cube.stl "40.0 nm wide")
 semsurf_cli_test(help.mesh ARGS mesh --help STDOUT "Repair:" "--simplify" "Examples:")
 
 semsurf_cli_test(info.scan ARGS info scan.txt

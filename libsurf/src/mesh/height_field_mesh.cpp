@@ -78,7 +78,7 @@ void require_no_holes(const HeightField& field) {
       if (field.is_valid(column, row)) continue;
       throw InvalidInput("height field",
                          fmt::format("the sample at column {}, row {} is invalid", column, row),
-                         "A surface has no holes: fill or crop them first");
+                         "A surface has no holes: fill them (semsurf clean --closing 9 --fill-holes) or crop");
     }
   }
   if (static_cast<double>(field.z_nm.size()) > max_samples) {
