@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "surf/afm/morphology.h"
@@ -210,6 +211,38 @@ TEST(BlindTip, HolesAllowEverything) {
   const Tip tip = estimate(scan, options(0, 0));
   EXPECT_LT(sharper_by(tip, truth), 1e-4);
   EXPECT_LT(sharper_by(tip, whole), 1e-4);
+}
+
+// The corners of a block have five lower neighbours, the rim of a pit of one sample has one.
+TEST(BlindTip, MaximaHaveTwoLowerNeighboursAtLeast) {
+  HeightField block;
+  block.z_nm = Grid<double>(40, 40);
+  for (int y = 19; y <= 21; ++y)
+    for (int x = 19; x <= 21; ++x) block.z_nm(x, y) = 5;
+  BlindTipOptions o = options(0, 0);
+  o.maxima_only = true;
+  EXPECT_NEAR(estimate(block, o).z_nm(radius + 3, radius), -5, 1e-4);
+  HeightField pit;
+  pit.z_nm = Grid<double>(40, 40);
+  pit.z_nm(20, 20) = -5;
+  const Tip tip = estimate(pit, o);
+  for (const double z : tip.z_nm.data()) EXPECT_EQ(z, 0);
+}
+
+TEST(BlindTip, WithoutTheBorderOnlyPointsCountWhoseTipLiesWithin) {
+  const auto lowest = [](int x, bool border) {
+    HeightField spike;
+    spike.z_nm = Grid<double>(40, 40);
+    spike.z_nm(x, 20) = 5;
+    BlindTipOptions o = options(0, 0);
+    o.border = border;
+    const Tip tip = estimate(spike, o);
+    return *std::min_element(tip.z_nm.data().begin(), tip.z_nm.data().end());
+  };
+  EXPECT_NEAR(lowest(20, true), -5, 1e-4);
+  EXPECT_NEAR(lowest(20, false), -5, 1e-4);
+  EXPECT_LT(lowest(2 * radius - 1, true), -4);
+  EXPECT_EQ(lowest(2 * radius - 1, false), 0) << "the tip may have reached over the border";
 }
 
 TEST(BlindTip, RefusesWhatCannotBe) {

@@ -24,11 +24,11 @@ struct ThinSummary {
   bool reached = true;                ///< within the tolerance; else the limit came first
 };
 
-/// An open sheet of fewer triangles over the same rectangle, nowhere farther than the tolerance
-/// above or below `height_field_sheet`, or as near as it comes to that with the triangles allowed. It has one height over every place as the field has,
-/// so that it cannot pass through itself; its corners are samples of the field, the field's four
-/// corners among them. The rim is thinned like the rest, within the rectangle's sides. A tolerance
-/// of 0 leaves out what is exactly flat.
+/// An open sheet of fewer triangles over the same rectangle, nowhere farther than the tolerance above or
+/// below `height_field_sheet`, or as near as it comes to that with the triangles allowed. It has one height
+/// over every place as the field has, so that it cannot pass through itself; its corners are samples of the
+/// field, the field's four corners among them. The rim is thinned like the rest, within the rectangle's
+/// sides. A tolerance of 0 leaves out what is exactly flat.
 ///
 /// Samples are added where the surface is farthest off (greedy insertion, Garland and Heckbert 1995,
 /// CMU-CS-95-181) to a Delaunay triangulation of sample positions in exact arithmetic. The difference
@@ -36,7 +36,8 @@ struct ThinSummary {
 /// both are looked at, and samples added until all of them fit. A million samples take 1 to 30 s, the
 /// more the more triangles stay, and up to 0.2 GB. Deterministic.
 ///
-/// Throws InvalidInput on a damaged field or one with invalid samples, UsageError on bad options.
+/// Throws InvalidInput on a damaged field or one with invalid samples, UsageError on bad options,
+/// Interrupted.
 TriangleMesh thin_height_field(const HeightField& field, const ThinOptions& options, ThinSummary& summary);
 
 }  // namespace surf
