@@ -83,10 +83,11 @@ SEMSURF_INLINE void load(V& v, const Quanta* p) {
   __builtin_memcpy(&v, p, sizeof v);
 }
 
-/// Keeps the compiler from loading v a second time where it is used twice: loads are what is short.
+/// Keeps GCC from loading v a second time where it is used twice: loads are what is short. Clang does not
+/// allow it for vectors that the file's own target lacks.
 template <class V>
 SEMSURF_INLINE void keep([[maybe_unused]] V& v) {
-#ifdef __x86_64__
+#if defined(__x86_64__) && !defined(__clang__)
   asm("" : "+v"(v));
 #endif
 }

@@ -18,7 +18,11 @@ namespace {
 SEMSURF_STRIPS(portable, 16, )
 #ifdef __x86_64__
 SEMSURF_STRIPS(avx2, 32, [[gnu::target("avx2")]])
+#ifdef __clang__   // which knows no preference here
+SEMSURF_STRIPS(avx512, 64, [[gnu::target("avx512f,avx512bw,avx512vl")]])
+#else
 SEMSURF_STRIPS(avx512, 64, [[gnu::target("avx512f,avx512bw,avx512vl,prefer-vector-width=512")]])
+#endif
 #endif
 
 }  // namespace

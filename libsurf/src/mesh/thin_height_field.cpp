@@ -16,6 +16,9 @@
 namespace surf {
 namespace {
 
+constexpr int most_searches = 8;
+constexpr double close_enough = 1.02;
+
 std::int64_t floor_divided(std::int64_t a, std::int64_t b) {   // b > 0
   return a >= 0 ? a / b : -((-a + b - 1) / b);
 }
@@ -23,11 +26,11 @@ std::int64_t floor_divided(std::int64_t a, std::int64_t b) {   // b > 0
 /// Adds samples to a triangulation until it is within the tolerance.
 class Thinning {
  public:
-  Thinning(const HeightField& field, const ThinOptions& options)
+  Thinning(const HeightField& field, double tolerance_nm, std::size_t limit, const Watch& watch)
       : field_(field),
-        tolerance_nm_(options.tolerance_nm),
-        limit_(options.triangles ? options.triangles : std::numeric_limits<std::size_t>::max()),
-        watch_(options.watch),
+        tolerance_nm_(tolerance_nm),
+        limit_(limit),
+        watch_(watch),
         mesh_(field.z_nm.width(), field.z_nm.height()),
         used_(field.z_nm.width(), field.z_nm.height()) {
     for (const LatticePoint p : mesh_.points()) used_(p.x, p.y) = 1;
@@ -51,8 +54,11 @@ class Thinning {
     return out;
   }
 
-  double deviation_nm() const {
-    double largest = crossing_nm_;
+  double deviation_nm() const { return std::max(crossing_nm_, sample_deviation_nm()); }
+
+  /// At samples alone.
+  double sample_deviation_nm() const {
+    double largest = 0;
     for (const Worst& w : worst_) largest = std::max(largest, w.error_nm);
     return largest;
   }
@@ -212,6 +218,32 @@ class Thinning {
   double crossing_nm_ = 0;
 };
 
+struct Thinned {
+  TriangleMesh mesh;
+  double deviation_nm = 0, sample_deviation_nm = 0;
+};
+
+Thinned thin(const HeightField& field, double tolerance_nm, std::size_t limit, const Watch& watch) {
+  Thinning thinning(field, tolerance_nm, limit, watch);
+  thinning.run();
+  return {thinning.mesh(), thinning.deviation_nm(), thinning.sample_deviation_nm()};
+}
+
+/// The best of so many triangles: samples alone would be served first, and edges between them left far off. So
+/// the least tolerance that they allow is searched.
+Thinned thin_to_limit(const HeightField& field, const ThinOptions& o) {
+  Thinned best = thin(field, o.tolerance_nm, o.triangles, o.watch.part(0, 0.3));
+  double low = std::max(o.tolerance_nm, best.sample_deviation_nm);
+  for (int step = 0; step < most_searches && best.deviation_nm > close_enough * low; ++step) {
+    const double tolerance = low > 0 ? std::sqrt(low * best.deviation_nm) : best.deviation_nm / 4;
+    const double share = 0.7 / most_searches;
+    Thinned here = thin(field, tolerance, o.triangles, o.watch.part(0.3 + share * step, 0.3 + share * (step + 1)));
+    if (here.deviation_nm > tolerance) low = tolerance;
+    if (here.deviation_nm < best.deviation_nm) best = std::move(here);
+  }
+  return best;
+}
+
 }  // namespace
 
 TriangleMesh thin_height_field(const HeightField& field, const ThinOptions& options, ThinSummary& summary) {
@@ -219,15 +251,15 @@ TriangleMesh thin_height_field(const HeightField& field, const ThinOptions& opti
   if (options.triangles == 1)
     throw UsageError("triangles", "one triangle does not fill a rectangle", "Give 2 or more");
   require_no_holes(field);
-  Thinning thinning(field, options);
-  thinning.run();
-  TriangleMesh mesh = thinning.mesh();
+  Thinned thinned = options.triangles
+                        ? thin_to_limit(field, options)
+                        : thin(field, options.tolerance_nm, std::numeric_limits<std::size_t>::max(), options.watch);
   summary.triangles_before = std::size_t{2} * static_cast<std::size_t>(field.z_nm.width() - 1) *
                              static_cast<std::size_t>(field.z_nm.height() - 1);
-  summary.triangles_after = mesh.triangles.size();
-  summary.deviation_nm = thinning.deviation_nm();
+  summary.triangles_after = thinned.mesh.triangles.size();
+  summary.deviation_nm = thinned.deviation_nm;
   summary.reached = summary.deviation_nm <= options.tolerance_nm;
-  return mesh;
+  return std::move(thinned.mesh);
 }
 
 }  // namespace surf
