@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "surf/afm/morphology.h"
@@ -70,6 +71,35 @@ TEST(TipSweep, FindsAThresholdWhoseTipIsAmongTheBest) {
   EXPECT_LE(rms_error(chosen.tip, truth(), 5), 1.5 * best);
   EXPECT_GT(rms_error(sweep.curve.front().tip, truth(), 5), 3 * best);   // too sharp
   EXPECT_GT(rms_error(sweep.curve.back().tip, truth(), 5), 1.5 * best);   // too blunt
+}
+
+TEST(TipSweep, TheWorseOfAllAndOfTheLargestResidualsDecides) {
+  SweptTip t;
+  EXPECT_EQ(t.excess(), 0) << "nothing is left";
+  t.residual_nm = 1, t.peaks_nm = 6, t.expected_peaks_nm = 2;
+  EXPECT_EQ(t.excess(), HUGE_VAL) << "and nothing was expected";
+  t.expected_nm = 1;
+  EXPECT_EQ(t.excess(), 3);
+  t.expected_nm = 0.25;
+  EXPECT_EQ(t.excess(), 4);
+}
+
+// Sharp tips made of noise leave the noise in the opening: little is expected to be lacking, and little is.
+TEST(TipSweep, TipsThatLeaveTheNoiseInDoNotCount) {
+  HeightField flat;
+  flat.z_nm = simulate_noise({0, sigma_nm * sigma_nm}, 96, 96, 7);
+  const TipSweep sweep = sweep_tips({flat}, options());
+  double most_expected = 0, least_excess = HUGE_VAL;
+  for (const SweptTip& t : sweep.curve) most_expected = std::max(most_expected, t.expected_nm);
+  int left_out = 0;
+  for (const SweptTip& t : sweep.curve) {
+    const bool smooths = t.expected_nm >= 0.6 * most_expected;
+    if (smooths) least_excess = std::min(least_excess, t.excess());
+    EXPECT_TRUE(smooths || !t.consistent) << t.threshold_nm;
+  }
+  for (const SweptTip& t : sweep.curve)
+    left_out += t.expected_nm < 0.6 * most_expected && t.excess() <= 1.1 * std::max(1.0, least_excess);
+  EXPECT_GT(left_out, 0) << "else this scan does not show it";
 }
 
 TEST(TipSweep, DoesNotDependOnThreads) {

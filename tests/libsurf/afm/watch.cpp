@@ -43,6 +43,7 @@ std::vector<Operation> operations() {
   const auto morphology = [](auto run) {
     return [run](const HeightField& f, const Watch& watch) {
       MorphologyOptions o;
+      o.threads = 1;   // of several, the calling one may come to no unit at all
       o.watch = watch;
       return run(f, o).z_nm;
     };
@@ -62,6 +63,7 @@ std::vector<Operation> operations() {
       {"certainty",
        [](const HeightField& f, const Watch& watch) {
          CertaintyOptions o;
+         o.threads = 1;
          o.watch = watch;
          return certainty_map(f, tip(), o).surface.z_nm;
        }},
@@ -69,6 +71,7 @@ std::vector<Operation> operations() {
        [](const HeightField& f, const Watch& watch) {
          CleanSummary ignored;
          MedianOptions o;
+         o.threads = 1;
          o.watch = watch;
          return median_filter(f, o, ignored).z_nm;
        }},
@@ -76,6 +79,7 @@ std::vector<Operation> operations() {
        [](const HeightField& f, const Watch& watch) {
          CleanSummary ignored;
          ClosingOptions o;
+         o.threads = 1;
          o.watch = watch;
          return flat_closing(f, o, ignored).z_nm;
        }},
