@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <chrono>
 #include <thread>
 #include <utility>
 #include <vector>
@@ -43,7 +44,8 @@ TEST(WatchedParallelFor, TellsFromTheCallingThreadAlone) {
     const std::thread::id caller = std::this_thread::get_id();
     double last = 0;
     std::size_t calls = 0;
-    parallel_for(50, threads, [](std::size_t, int) {}, {[&](double done, double total) {
+    const auto work = [](std::size_t, int) { std::this_thread::sleep_for(std::chrono::microseconds(200)); };
+    parallel_for(50, threads, work, {[&](double done, double total) {
                    EXPECT_EQ(std::this_thread::get_id(), caller);
                    EXPECT_EQ(total, 50);
                    EXPECT_GT(done, last);
