@@ -94,7 +94,7 @@ class Treatment {
       if (work_.scale != 1) enlarge(surface);
       add(std::move(surface));
     }
-    if (work_.scale == 1) std::ranges::move(read.tracks, std::back_inserter(scene_.tracks));
+    add_tracks(std::move(read.tracks));
   }
 
  private:
@@ -114,7 +114,7 @@ class Treatment {
   void whole_mesh() {
     Surface surface;
     surface.name = input_.file.stem().string();
-    surface.mesh = io::read_mesh(input_.file, work_.unit_nm);
+    surface.mesh = joined();
     TriangleMesh& mesh = surface.mesh;
     if (work_.scale != 1) transform(mesh, work_.scale, {});
     if (work_.repair) {
@@ -137,6 +137,30 @@ class Treatment {
                                   work_.reduce.tolerance_nm > 0 ? "exceed --tolerance" : "turn faces over"));
     }
     add(std::move(surface));
+  }
+
+  /// All bodies of the file, without what lies on them.
+  TriangleMesh joined() {
+    SurfaceScene read = io::read_surfaces(input_.file, work_.unit_nm);
+    const auto carries = [](const Surface& s) {
+      return s.drape || std::ranges::any_of(s.scalars, [](const VertexScalar& scalar) {
+        return scalar.name != "height" && scalar.name != "curvature";
+      });
+    };
+    if (work_.keep_bodies && !work_.quiet && std::ranges::any_of(read.surfaces, carries))
+      print_note(fmt::format("{}: its scalars and pictures are left out, as its vertices change; --scalar and --drape "
+                             "lay them on what is made", input_.file.string()));
+    std::vector<io::NamedMesh> bodies;
+    for (Surface& body : read.surfaces) bodies.push_back({body.name, {}, std::move(body.mesh)});
+    add_tracks(std::move(read.tracks));
+    return io::join(bodies);
+  }
+
+  void add_tracks(std::vector<Track> tracks) {
+    for (Track& track : tracks) {
+      for (Vec3& point : track.points_nm) point *= work_.scale;
+      scene_.tracks.push_back(std::move(track));
+    }
   }
 
   void enlarge(Surface& surface) const {

@@ -61,6 +61,9 @@ semsurf_cli_test(mesh.on_the_surface ARGS mesh block.gsf --scalar block.gsf --dr
   STDOUT "with height, curvature, height_of_block, the picture" WRITES block.glb INFO block.glb "picture +")
 semsurf_cli_test(mesh.several ARGS mesh block.gsf steps.txt cube.off -o all.vtm
   STDOUT "shape +block: " "shape +steps: " "shape +cube: closed" WRITES all.vtm INFO all.vtm "mesh of 3 bodies")
+semsurf_cli_test(mesh.loses_scalars ARGS mesh certain.ply --triangles 8 -o few.ply
+  STDERR "its scalars and pictures are left out" WRITES few.ply)
+semsurf_cli_test(mesh.keeps_scalars ARGS mesh certain.ply -o same.vtp STDOUT "with height, curvature, certain" WRITES same.vtp)
 semsurf_cli_test(mesh.true_size ARGS mesh cube.off --true-size --z-exaggeration 5 -o cube.glb
   STDOUT "scale +true size.*5 times larger still" WRITES cube.glb INFO cube.glb "40.0 nm wide, 40.0 nm deep, 40.0 nm high")
 semsurf_cli_test(mesh.magnified ARGS mesh cube.off --magnification 1e3 -o cube.stl

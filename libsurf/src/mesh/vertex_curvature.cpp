@@ -90,7 +90,8 @@ Net make_net(const TriangleMesh& mesh, const Weld& weld) {
   return net;
 }
 
-/// The points up to two edges away, itself included, each once.
+/// The points up to two edges away, itself included, each once; of the second those alone that face its way,
+/// not the other side of something thin.
 void collect(const Net& net, std::uint32_t point, std::vector<std::uint32_t>& out) {
   const auto add_neighbours = [&](std::uint32_t p) {
     for (std::size_t i = net.neighbours.begin[p]; i < net.neighbours.begin[p + 1]; ++i)
@@ -98,8 +99,12 @@ void collect(const Net& net, std::uint32_t point, std::vector<std::uint32_t>& ou
   };
   out.assign(1, point);
   add_neighbours(point);
-  const std::size_t first_ring = out.size();
-  for (std::size_t i = 1; i < first_ring; ++i) add_neighbours(out[i]);
+  const std::size_t near = out.size();
+  for (std::size_t i = 1; i < near; ++i) add_neighbours(out[i]);
+  const auto far = out.begin() + static_cast<std::ptrdiff_t>(near);
+  out.erase(std::remove_if(far, out.end(),
+                           [&](std::uint32_t q) { return !(dot(net.normal[q], net.normal[point]) > 0); }),
+            out.end());
   std::ranges::sort(out);
   out.erase(std::unique(out.begin(), out.end()), out.end());
 }

@@ -88,6 +88,12 @@ TEST(MeanCurvature, IsFiniteWhereVerticesAreTooFewOrDegenerate) {
   }
 }
 
+TEST(MeanCurvature, DoesNotLookAtTheOtherSide) {
+  HeightField f{Grid<double>(2, 2, 1.0), {}, 1, 1, 0, 0};
+  for (const float h : mean_curvature(height_field_solid(f, 0))) EXPECT_GE(h, -1e-6) << "a cube is convex";
+  EXPECT_GT(mean_curvature(height_field_solid(f, 0))[0], 0.3);
+}
+
 TEST(MeanCurvature, TurnsWithTheMesh) {
   const HeightField f = make_rough({40, 30, 1}, 2, 5, 8);
   TriangleMesh mesh = height_field_sheet(f);
