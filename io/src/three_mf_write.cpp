@@ -14,28 +14,11 @@
 #include "surf/mesh/check_mesh.h"
 #include "surface_formats.h"
 #include "three_mf_names.h"
+#include "xml_text.h"
 #include "zip_file.h"
 
 namespace surf::io {
 namespace {
-
-/// The text of an attribute or element.
-std::string escaped(std::string_view text) {
-  std::string result;
-  for (const char c : text) {
-    switch (c) {
-      case '&': result += "&amp;"; break;
-      case '<': result += "&lt;"; break;
-      case '>': result += "&gt;"; break;
-      case '"': result += "&quot;"; break;
-      case '\t': result += "&#9;"; break;   // attributes lose these otherwise
-      case '\n': result += "&#10;"; break;
-      case '\r': result += "&#13;"; break;
-      default: result += c;
-    }
-  }
-  return result;
-}
 
 class ThreeMfBuilder {
  public:
@@ -110,7 +93,7 @@ class ThreeMfBuilder {
   }
 
   void add_metadata(const char* name, const std::string& value) {
-    text_ += fmt::format("<metadata name=\"{}\">{}</metadata>\n", name, escaped(value));
+    text_ += fmt::format("<metadata name=\"{}\">{}</metadata>\n", name, xml_escaped(value));
   }
 
   Vec3 in_units(const Vec3& p) const {
@@ -122,7 +105,7 @@ class ThreeMfBuilder {
     // An open sheet is a surface; a model is a body (4.1).
     const char* const type = check_mesh(surface.mesh).closed_and_oriented ? "model" : "surface";
     text_ += fmt::format("<object id=\"{}\" type=\"{}\" name=\"{}\">\n<mesh>\n<vertices>\n", id, type,
-                         escaped(surface.name));
+                         xml_escaped(surface.name));
     for (const Vec3& v : surface.mesh.vertices_nm) {
       const Vec3 p = in_units(v - center);
       const auto x = static_cast<float>(p.x), y = static_cast<float>(p.y), z = static_cast<float>(p.z);

@@ -11,6 +11,7 @@
 #include "text_scanner.h"
 #include "vtk_xml.h"
 #include "vtp_format.h"
+#include "xml_text.h"
 
 namespace surf::io {
 namespace {
@@ -21,21 +22,6 @@ constexpr const char* vtm_type = "vtkMultiBlockDataSet";
 constexpr const char* tracks_block = "electron tracks";
 constexpr const char* tracks_file = "_tracks.vtp";   // behind the stem
 constexpr std::string_view drape_of = "drape of ";   // a block's name: this and that of the surface's block
-
-/// Text as a value of an attribute; characters that XML cannot hold become '_'.
-std::string attribute(std::string_view text) {
-  std::string result;
-  for (const char c : text) {
-    switch (c) {
-      case '&': result += "&amp;"; break;
-      case '<': result += "&lt;"; break;
-      case '>': result += "&gt;"; break;
-      case '"': result += "&quot;"; break;
-      default: result += static_cast<unsigned char>(c) < 0x20 || c == 0x7f ? '_' : c;
-    }
-  }
-  return result;
-}
 
 struct Block {
   std::string name;
@@ -131,7 +117,7 @@ std::vector<OutputFile> format_vtm(const std::filesystem::path& path, const Scen
   std::string blocks;
   const auto add = [&](const std::string& name, const std::string& part, std::string content) {
     blocks += fmt::format("    <DataSet index=\"{}\" name=\"{}\" file=\"{}\"/>\n", files.size(),
-                          attribute(name), attribute(part));
+                          xml_escaped(name), xml_escaped(part));
     files.push_back({path.parent_path() / part, std::move(content)});
   };
   for (std::size_t s = 0; s < scene.surfaces.size(); ++s) {
