@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 
 #include "image_sampler.h"
@@ -17,18 +16,6 @@ namespace {
 
 bool has(const Surface& surface, const std::string& name) {
   return std::ranges::any_of(surface.scalars, [&](const VertexScalar& s) { return s.name == name; });
-}
-
-/// "SE.stderr" is "se_stderr".
-std::string scalar_name(const std::string& channel) {
-  std::string name;
-  for (const char c : channel) {
-    const auto byte = static_cast<unsigned char>(c);
-    if (byte < 0x80 && std::isalnum(byte)) name += static_cast<char>(std::tolower(byte));
-    else if (!name.empty() && name.back() != '_') name += '_';
-  }
-  while (!name.empty() && name.back() == '_') name.pop_back();
-  return name.empty() || !std::isalpha(static_cast<unsigned char>(name[0])) ? "channel_" + name : name;
 }
 
 }  // namespace

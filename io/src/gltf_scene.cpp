@@ -98,7 +98,7 @@ class SceneParser {
     if (const auto extras = extra(body.instance->mesh, gltf_scalars_key)) {
       for (const JsonValue& item : body.instance->mesh.require("extras").items(gltf_scalars_key)) {
         const std::string name = item.require("name").text();
-        if (scalar_name(name) != name) item.fail("its name is not one that a scalar can have");
+        if (!is_scalar_name(name)) item.fail("its name is not one that a scalar can have");
         scalars.push_back({item.require("attribute").text(), {name, item.require("unit").text(), {}}});
       }
       return scalars;

@@ -4,15 +4,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
-#include <set>
-#include <string_view>
 #include <utility>
 
 #include "mesh_dispatch.h"
 #include "surf/core/error.h"
 #include "surf/io/files.h"
+#include "surface_names.h"
 #include "surface_output.h"
 
 namespace surf::io {
@@ -39,40 +37,12 @@ SceneView view_of(const SurfaceScene& scene) {
   return view;
 }
 
-/// A name that is not yet in `used`: with a number behind it if need be.
-std::string unique_name(const std::string& name, const char* gap, std::set<std::string>& used) {
-  std::string unique = name;
-  for (int number = 2; !used.insert(unique).second; ++number) {
-    unique = fmt::format("{}{}{}", name, gap, number);
-  }
-  return unique;
-}
-
-/// What other programs call a scalar, in the form that surfaces have: "Elevation (nm)" is "elevation_nm".
-std::string scalar_name(std::string_view name) {
-  std::string plain;
-  for (const unsigned char c : name) {
-    if (c < 0x80 && std::isalnum(c)) plain += static_cast<char>(std::tolower(c));
-    else if (!plain.empty() && plain.back() != '_') plain += '_';
-  }
-  while (!plain.empty() && plain.back() == '_') plain.pop_back();
-  return plain.empty() || !std::isalpha(static_cast<unsigned char>(plain[0])) ? "scalar_" + plain : plain;
-}
-
-bool has_good_name(const VertexScalar& scalar) {
-  const auto is_good = [](unsigned char c) { return std::islower(c) || std::isdigit(c) || c == '_'; };
-  return !scalar.name.empty() && std::islower(static_cast<unsigned char>(scalar.name[0])) &&
-         std::all_of(scalar.name.begin(), scalar.name.end(), is_good);
-}
-
 void tidy_scalars(Surface& surface) {
   std::erase_if(surface.scalars, [](const VertexScalar& scalar) {
     return !std::all_of(scalar.values.begin(), scalar.values.end(), [](float v) { return std::isfinite(v); });
   });
-  std::set<std::string> used;
-  for (VertexScalar& scalar : surface.scalars) {
-    scalar.name = unique_name(has_good_name(scalar) ? scalar.name : scalar_name(scalar.name), "_", used);
-  }
+  UniqueNames unique("_");
+  for (VertexScalar& scalar : surface.scalars) scalar.name = unique(scalar_name(scalar.name));
 }
 
 }  // namespace
@@ -104,10 +74,10 @@ void write_surfaces(const std::filesystem::path& path, const SurfaceScene& scene
 SurfaceScene read_surfaces(const std::filesystem::path& path, std::optional<double> unit_nm) {
   ParsedFile parsed = parse_mesh_file(path, unit_nm, Want::everything);
   SurfaceScene scene;
-  std::set<std::string> used;
+  UniqueNames unique;
   for (ParsedBody& body : parsed.bodies) {
     Surface& surface = body.surface;
-    surface.name = unique_name(surface.name, " ", used);
+    surface.name = unique(surface.name);
     tidy_scalars(surface);
     scene.surfaces.push_back(std::move(surface));
   }

@@ -3,35 +3,26 @@
 
 #include <set>
 #include <string>
+#include <utility>
 
 namespace surf::io {
 
-/// Gives names that were not given before: "tip", "tip 2", "tip 3".
+/// Gives names that were not given before: "tip", "tip 2", "tip 3", with `gap` before the number.
 class UniqueNames {
  public:
+  explicit UniqueNames(std::string gap = " ") : gap_(std::move(gap)) {}
+
   std::string operator()(const std::string& name) {
     std::string candidate = name;
     for (int number = 2; !given_.insert(candidate).second; ++number) {
-      candidate = name + " " + std::to_string(number);
+      candidate = name + gap_ + std::to_string(number);
     }
     return candidate;
   }
 
  private:
+  std::string gap_;
   std::set<std::string> given_;
 };
-
-/// The nearest name that a scalar may have: "_HEIGHT NM" becomes "height_nm".
-inline std::string scalar_name(const std::string& text) {
-  std::string name;
-  for (const char c : text) {
-    const bool is_upper = c >= 'A' && c <= 'Z';
-    const bool is_letter = is_upper || (c >= 'a' && c <= 'z');
-    if (name.empty() && !is_letter) continue;   // a letter comes first
-    const bool is_digit = c >= '0' && c <= '9';
-    name += is_upper ? static_cast<char>(c - 'A' + 'a') : is_letter || is_digit ? c : '_';
-  }
-  return name.empty() ? "value" : name;
-}
 
 }  // namespace surf::io

@@ -12,11 +12,9 @@
 namespace surf {
 namespace {
 
-bool is_scalar_name(const std::string& name) {
-  const auto lower = [](char c) { return c >= 'a' && c <= 'z'; };
-  const auto rest = [&](char c) { return lower(c) || (c >= '0' && c <= '9') || c == '_'; };
-  return !name.empty() && lower(name.front()) && std::all_of(name.begin(), name.end(), rest);
-}
+bool is_lower(char c) { return c >= 'a' && c <= 'z'; }
+bool is_upper(char c) { return c >= 'A' && c <= 'Z'; }
+bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
 void validate_scalars(const Surface& surface, const char* subject) {
   std::set<std::string_view> names;
@@ -61,6 +59,24 @@ void validate_drape(const Surface& surface, const char* subject) {
 }
 
 }  // namespace
+
+bool is_scalar_name(std::string_view name) {
+  return !name.empty() && is_lower(name.front()) &&
+         std::ranges::all_of(name, [](char c) { return is_lower(c) || is_digit(c) || c == '_'; });
+}
+
+std::string scalar_name(std::string_view name) {
+  if (is_scalar_name(name)) return std::string(name);
+  std::string plain;
+  for (const char c : name) {
+    if (is_upper(c)) plain += static_cast<char>(c - 'A' + 'a');
+    else if (is_lower(c) || is_digit(c)) plain += c;
+    else if (!plain.empty() && plain.back() != '_') plain += '_';
+  }
+  while (!plain.empty() && plain.back() == '_') plain.pop_back();
+  if (plain.empty()) return "scalar";
+  return is_digit(plain.front()) ? "scalar_" + plain : plain;
+}
 
 void validate(const SurfaceScene& scene, const char* subject) {
   if (scene.surfaces.empty()) {

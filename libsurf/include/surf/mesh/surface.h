@@ -5,6 +5,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "surf/core/grid.h"
@@ -15,10 +16,16 @@ namespace surf {
 
 /// One number for each vertex of a mesh.
 struct VertexScalar {
-  std::string name;            ///< lower-case letters, digits and '_', a letter first: "height", "certainty"
+  std::string name;            ///< as `is_scalar_name` says: "height", "certainty"
   std::string unit;            ///< "nm", "1/nm"; "1" for plain numbers
   std::vector<float> values;   ///< one per vertex, finite
 };
+
+/// Lower-case letters, digits and '_', a letter first.
+bool is_scalar_name(std::string_view name);
+/// What others call a number, in that form: "Elevation (nm)" is "elevation_nm", "_HEIGHT NM" "height_nm",
+/// "2nd" "scalar_2nd". Names of that form stay.
+std::string scalar_name(std::string_view name);
 
 /// A grey picture laid on a surface from straight above: each vertex shows the pixel over its x and y.
 /// Places beyond the picture show its nearest edge.
