@@ -1,17 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "surf/core/edge.h"
 #include "surf/core/height_field.h"
 #include "surf/mesh/triangle_mesh.h"
 
 namespace surf {
-
-/// How a height field goes on beyond its samples.
-enum class Edge {
-  mirror,    ///< reflected about its outermost samples
-  flat,      ///< the outermost height goes on
-  periodic,  ///< repeated; the period is the number of samples times the pitch
-};
 
 /// The open sheet of triangles over the samples, normals up. Each cell is split from lower-left to
 /// upper-right. Throws InvalidInput where samples are invalid (a hole has no height).

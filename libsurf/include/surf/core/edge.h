@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+namespace surf {
+
+/// How a height field goes on beyond its samples.
+enum class Edge {
+  mirror,    ///< reflected about its outermost samples
+  flat,      ///< the outermost height goes on
+  periodic,  ///< repeated; the period is the number of samples times the pitch
+};
+
+}  // namespace surf
