@@ -20,7 +20,7 @@ void add_mesh(CLI::App& app, Action& action);
 void add_erode(CLI::App& app, Action& action);
 void add_dilate(CLI::App& app, Action& action);
 void add_certainty(CLI::App& app, Action& action);
-void add_train(CLI::App& app, Action& action, const std::string& command_line);
+void add_train(CLI::App& app, Action& action);
 void add_predict(CLI::App& app, Action& action);
 void add_info(CLI::App& app, Action& action);
 void add_materials(CLI::App& app, Action& action);

@@ -35,8 +35,8 @@ void print_training(const workflow::TrainJob& job, const workflow::TrainSummary&
   print_line("written", job.output.string());
 }
 
-int train(const TrainOptions& options, const std::string& command_line) {
-  const workflow::TrainJob job = make_train_job(options, command_line);
+int train(const TrainOptions& options) {
+  const workflow::TrainJob job = make_train_job(options);
   workflow::TrainSummary summary;
   {
     InterruptGuard interrupts;
@@ -67,14 +67,12 @@ int train(const TrainOptions& options, const std::string& command_line) {
 
 }  // namespace
 
-void add_train(CLI::App& app, Action& action, const std::string& command_line) {
+void add_train(CLI::App& app, Action& action) {
   const auto options = std::make_shared<TrainOptions>();
   CLI::App* sub = app.add_subcommand("train", "A fast model of SEM images, learnt from simulated or real ones");
   sub->group("Commands");
   add_train_options(*sub, *options);
-  sub->callback([options, &action, command_line] {
-    action = [options, command_line] { return train(*options, command_line); };
-  });
+  sub->callback([options, &action] { action = [options] { return train(*options); }; });
 }
 
 }  // namespace surf::cli

@@ -165,6 +165,26 @@ void add_inputs(const TrainOptions& o, workflow::TrainJob& job) {
   if (!o.quiet) print_note(fmt::format("no --pixel-size is given: {}, as {}", format_length(job.pixel_nm), o.heights.front()));
 }
 
+/// The command without what does not change the model: threads, cache, the output's place, folders.
+std::string telling_command(const TrainOptions& o) {
+  std::string text = "semsurf train";
+  const auto file = [](const std::string& name) { return std::filesystem::path(name).filename().string(); };
+  for (const std::string& name : o.heights) text += " " + file(name);
+  for (const auto& [files, option] : {std::pair{&o.images, "--images"}, std::pair{&o.signals, "--signal"},
+                                      std::pair{&o.materials, "--materials"}})
+    for (const std::string& name : *files) text += fmt::format(" {} {}", option, file(name));
+  for (const auto& [value, option] :
+       {std::pair{&o.material, "--material"}, std::pair{&o.energy, "--energy"}, std::pair{&o.spot, "--spot"},
+        std::pair{&o.pixel_size, "--pixel-size"}, std::pair{&o.model, "--model"}, std::pair{&o.scales, "--scales"},
+        std::pair{&o.cut_off, "--cut-off"}, std::pair{&o.surfaces, "--surfaces"},
+        std::pair{&o.surface_size, "--surface-size"}, std::pair{&o.hold_out, "--hold-out"}, std::pair{&o.edge, "--edge"},
+        std::pair{&o.height_channel, "--height-channel"}, std::pair{&o.pitch, "--pitch"}, std::pair{&o.z_unit, "--z-unit"},
+        std::pair{&o.electrons, "--electrons"}, std::pair{&o.accuracy, "--accuracy"}, std::pair{&o.physics, "--physics"},
+        std::pair{&o.cutoff, "--cutoff"}, std::pair{&o.seed, "--seed"}})
+    if (value->has_value()) text += fmt::format(" {} {}", option, **value);
+  return text + (o.multi_resolution ? " --multi-resolution" : "");
+}
+
 std::string kinds_to_choose() {
   std::string names;
   for (const workflow::LearnableKind& kind : workflow::learnable_kinds()) names += (names.empty() ? "" : "|") + kind.name;
@@ -180,7 +200,7 @@ std::string kinds_in_words() {
 
 }  // namespace
 
-workflow::TrainJob make_train_job(const TrainOptions& o, const std::string& command_line) {
+workflow::TrainJob make_train_job(const TrainOptions& o) {
   workflow::TrainJob job;
   if (!o.output) throw UsageError("--output", "no output file is given", "Add -o model.json");
   job.output = *o.output;
@@ -196,7 +216,7 @@ workflow::TrainJob make_train_job(const TrainOptions& o, const std::string& comm
   add_inputs(o, job);
   add_images(o, job);
   job.cache = io::cache_folder(o.cache.value_or(""));
-  job.command_line = command_line;
+  job.command_line = telling_command(o);
   return job;
 }
 

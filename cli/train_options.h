@@ -24,6 +24,6 @@ struct TrainOptions {
 void add_train_options(CLI::App& app, TrainOptions& options);
 
 /// The job; numbers are looked at before files are read. Throws UsageError, FileError.
-workflow::TrainJob make_train_job(const TrainOptions& options, const std::string& command_line);
+workflow::TrainJob make_train_job(const TrainOptions& options);
 
 }  // namespace surf::cli

@@ -64,7 +64,7 @@ struct TrainJob {
   std::filesystem::path cache;           ///< as in SimulateJob
   LearnOptions learn;
   std::filesystem::path output;          ///< the model, .json
-  std::string command_line;              ///< for the record
+  std::string command_line;              ///< for the record: what changes the model only
 };
 
 struct TrainListener {
