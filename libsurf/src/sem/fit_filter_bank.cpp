@@ -82,7 +82,8 @@ Rows collect(const TrainingImage& image, const Block& block, int columns,
   return rows;
 }
 
-Triangles reduce(const TrainingImage& image, const Rows& rows) {
+/// With `misfit`, the variance of each channel that is not noise, pixels weigh 1 / (standard error^2 + misfit).
+Triangles reduce(const TrainingImage& image, const Rows& rows, const std::vector<double>& misfit) {
   Triangles result;
   result.pixels = static_cast<std::int64_t>(rows.pixels.size());
   const Eigen::Index count = rows.outputs.rows(), outputs = rows.outputs.cols();
@@ -92,7 +93,10 @@ Triangles reduce(const TrainingImage& image, const Rows& rows) {
     weighted << rows.outputs, VectorXd::Zero(count);
     for (Eigen::Index i = 0; i < count; ++i) {
       weighted(i, outputs) = image.images[c].data()[rows.pixels[i]];
-      if (!image.standard_errors.empty()) weighted.row(i) /= image.standard_errors[c].data()[rows.pixels[i]];
+      if (!misfit.empty() && !image.standard_errors.empty()) {
+        const double error = image.standard_errors[c].data()[rows.pixels[i]];
+        weighted.row(i) /= std::sqrt(error * error + misfit[c]);
+      }
     }
     result.channels.push_back(triangle(weighted));
   }
@@ -101,7 +105,8 @@ Triangles reduce(const TrainingImage& image, const Rows& rows) {
   return result;
 }
 
-Triangles reduce(const std::vector<TrainingImage>& images, const FilterBankParameters& bank, int threads) {
+Triangles reduce(const std::vector<TrainingImage>& images, const FilterBankParameters& bank, int threads,
+                 const std::vector<double>& misfit) {
   Triangles sum;
   sum.channels.resize(images.front().images.size());
   for (const TrainingImage& image : images) {
@@ -111,7 +116,7 @@ Triangles reduce(const std::vector<TrainingImage>& images, const FilterBankParam
     // Merged in the order of the blocks, whichever thread was first.
     std::vector<Triangles> parts(engine.blocks(field.z_nm).size());
     engine.invariants(field.z_nm, [&](std::size_t i, const Block& block, int columns, const auto& scales) {
-      parts[i] = reduce(image, collect(image, block, columns, scales));
+      parts[i] = reduce(image, collect(image, block, columns, scales), misfit);
     });
     for (const Triangles& part : parts) {
       if (part.pixels == 0) continue;
@@ -180,6 +185,15 @@ double solve(const MatrixXd& weighted, const Components& components, FilterBankC
   return condition;
 }
 
+void solve(const std::vector<MatrixXd>& weighted, const Components& components, FilterBankFit& fit) {
+  fit.condition_number = 0;
+  for (std::size_t c = 0; c < weighted.size(); ++c) {
+    FilterBankChannel& channel = fit.parameters.channels[c];
+    channel = {channel.name, 0, {}, {}, {}};
+    fit.condition_number = std::max(fit.condition_number, solve(weighted[c], components, channel));
+  }
+}
+
 void warn(FilterBankFit& fit, std::int64_t pixels) {
   if (fit.components == 0)
     fit.warnings.push_back("The surfaces have no relief to learn from: the model is a constant. "
@@ -215,17 +229,23 @@ FilterBankFit fit_filter_bank(const std::vector<TrainingImage>& images, const st
   make_filter_bank({}, bank);   // throws where something is out of range
   for (const TrainingImage& image : images) check_span(image.field);
 
-  const Triangles sum = reduce(images, bank, options.threads);
+  const Triangles sum = reduce(images, bank, options.threads, {});
   if (sum.pixels == 0) throw InvalidInput("training", "no pixel is used", "Mark some as used");
   const Components components = principal_components(sum.outputs, sum.pixels, options.eigenvalue_cutoff);
   fit.eigenvalues = components.eigenvalues;
   fit.components = static_cast<int>(components.directions.cols());
-  for (std::size_t c = 0; c < channels.size(); ++c) {
-    bank.channels[c] = {channels[c], 0, {}, {}, {}};
-    fit.condition_number = std::max(fit.condition_number, solve(sum.channels[c], components, bank.channels[c]));
+  solve(sum.channels, components, fit);
+  fit.residuals = residuals_of(*make_filter_bank({}, bank), images, options.threads);
+  const bool known_errors = std::any_of(images.begin(), images.end(), [](const TrainingImage& image) {
+    return !image.standard_errors.empty();
+  });
+  if (known_errors) {
+    std::vector<double> misfit;
+    for (const ModelResidual& r : fit.residuals) misfit.push_back(r.rms * r.rms);
+    solve(reduce(images, bank, options.threads, misfit).channels, components, fit);
+    fit.residuals = residuals_of(*make_filter_bank({}, bank), images, options.threads);
   }
   warn(fit, sum.pixels);
-  fit.residuals = residuals_of(*make_filter_bank({}, bank), images, options.threads);
   return fit;
 }
 

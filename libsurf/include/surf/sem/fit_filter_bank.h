@@ -34,9 +34,11 @@ struct FilterBankFit {
 };
 
 /// Learns a filter bank from images (thesis, 6.6): principal components of its outputs at all used pixels,
-/// weighted linear least squares of each channel (weights are 1 / standard error^2, all alike where there
-/// are none), and the coefficients folded back to slopes and curvatures. Images are gone through block by
-/// block; nothing grows with their size but a triangle of 33 x 33 numbers per 5000 pixels or so.
+/// weighted linear least squares of each channel, and the coefficients folded back to slopes and
+/// curvatures. A pixel weighs 1 / (standard error^2 + misfit^2), where the misfit is what a first fit with
+/// all weights alike leaves beyond the noise: weights by the noise alone would spend the model's freedom on
+/// dark pixels, whose noise is least, and it would be worse on others (docs/methods/filter_bank.md). Without
+/// standard errors all pixels weigh alike. Images are gone through block by block; nothing grows with their size but a triangle of 33 x 33 numbers per 5000 pixels or so.
 /// Throws InvalidInput for images that cannot be used or names that do not fit their channels, UsageError
 /// for a cut-off that is not a number >= 0.
 FilterBankFit fit_filter_bank(const std::vector<TrainingImage>& images, const std::vector<std::string>& channels,
