@@ -8,6 +8,7 @@
 packages=(
   cmake g++ ninja-build ccache                                    # build
   libembree-dev librandom123-dev                                  # ray tracing, random numbers
+  libeigen3-dev                                                   # least squares
   libcgal-dev libopenmesh-dev                                     # mesh repair and simplification
   libopenimageio-dev openimageio-tools                            # images
   libtomlplusplus-dev nlohmann-json3-dev libssl-dev               # scene files, records, hashes

@@ -42,6 +42,7 @@ THIRD_PARTY = [
     ("openssl/*", ["io/src/*"]),
     ("CLI/*", ["cli/*"]),
     ("Random123/*", ["libsurf/src/core/random.cpp"]),
+    ("Eigen/*", ["libsurf/src/sem/fit_filter_bank.cpp"]),
     ("tbb/*", ["libsurf/src/core/parallel.cpp"]),
     ("oneapi/*", ["libsurf/src/core/parallel.cpp"]),
     ("fmt/*", ["*"]),

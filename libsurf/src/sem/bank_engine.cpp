@@ -139,7 +139,7 @@ void BankEngine<T>::invariants(const Grid<double>& z_nm, const Sink& sink) const
       scales[s].resize(static_cast<std::size_t>(block.rows) * 3 * pass_.columns());
       pass_.loops().invariants(pass_.fit(s, scratch), block.rows, scales[s].data());
     }
-    sink(block, pass_.columns(), scales);
+    sink(i, block, pass_.columns(), scales);
   });
 }
 

@@ -20,10 +20,15 @@ class BankEngine {
   Grid<double> gradient(const Grid<double>& z_nm, const ModelImages& weights) const;
   ModelImages change(const Grid<double>& z_nm, const Grid<double>& dz_nm) const;
 
-  /// Told, from several threads, of all invariants at a block: for every scale its slope, largest and
+  std::vector<facet::Block> blocks(const Grid<double>& z_nm) const {
+    return pass_.blocks(z_nm.width(), z_nm.height());
+  }
+
+  /// Told, from several threads, of all invariants at block i: for every scale its slope, largest and
   /// smallest principal curvature, row by row and `columns` each.
   using Sink =
-      std::function<void(const facet::Block& block, int columns, const std::vector<AlignedVector<T>>& scales)>;
+      std::function<void(std::size_t i, const facet::Block& block, int columns,
+                                  const std::vector<AlignedVector<T>>& scales)>;
   void invariants(const Grid<double>& z_nm, const Sink& sink) const;
 
  private:
