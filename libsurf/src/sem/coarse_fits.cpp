@@ -23,9 +23,13 @@ constexpr double smooth[3] = {0.25, 0.5, 0.25};
 Grid<double> halve(const Grid<double>& z) {
   const int width = z.width(), height = z.height();
   Grid<double> rows((width + 1) / 2, height), out((width + 1) / 2, (height + 1) / 2);
-  for (int y = 0; y < height; ++y)
+  for (int y = 0; y < height; ++y) {
+    const double* const from = &z(0, y);
+    double* const to = &rows(0, y);
     for (int x = 0; x < rows.width(); ++x)
-      for (int k = -1; k <= 1; ++k) rows(x, y) += smooth[k + 1] * z(std::clamp(2 * x + k, 0, width - 1), y);
+      to[x] = smooth[0] * from[std::max(2 * x - 1, 0)] + smooth[1] * from[2 * x] +
+              smooth[2] * from[std::min(2 * x + 1, width - 1)];
+  }
   for (int y = 0; y < out.height(); ++y)
     for (int k = -1; k <= 1; ++k) {
       const int from = std::clamp(2 * y + k, 0, height - 1);
@@ -124,17 +128,24 @@ template <class T>
 void CoarseFits<T>::at(int scale, const Block& block, int columns, T* out) const {
   const Fit& fit = fits_[scale];
   const std::size_t width = widths_[fit.level], size = width * heights_[fit.level];
+  // What each coarse sample is worth to each column: sums of whole rows, which vectors can do.
+  const int first = between(block.x, fit.level).sample;
+  const int count = between(block.x + block.width - 1, fit.level).sample + 2 - first;
+  std::vector<T> worth(static_cast<std::size_t>(count) * columns);
+  for (int x = 0; x < block.width; ++x) {
+    const Between u = between(block.x + x, fit.level);
+    worth[(u.sample - first) * columns + x] = 1 - u.fraction;
+    worth[(u.sample + 1 - first) * columns + x] = u.fraction;
+  }
   std::fill_n(out, static_cast<std::size_t>(block.rows) * coefficients * columns, T(0));
   for (int y = 0; y < block.rows; ++y) {
     const Between v = between(block.y + y, fit.level);
     for (int c = 0; c < coefficients; ++c, out += columns) {
-      const T* const low = fit.planes.data() + c * size + v.sample * width;
-      const T* const high = low + width;
-      for (int x = 0; x < block.width; ++x) {
-        const Between u = between(block.x + x, fit.level);
-        const T left = low[u.sample] + v.fraction * (high[u.sample] - low[u.sample]);
-        const T right = low[u.sample + 1] + v.fraction * (high[u.sample + 1] - low[u.sample + 1]);
-        out[x] = left + u.fraction * (right - left);
+      const T* const low = fit.planes.data() + c * size + v.sample * width + first;
+      for (int i = 0; i < count; ++i) {
+        const T sample = low[i] + v.fraction * (low[width + i] - low[i]);
+        const T* const w = worth.data() + i * columns;
+        for (int x = 0; x < columns; ++x) out[x] += sample * w[x];
       }
     }
   }

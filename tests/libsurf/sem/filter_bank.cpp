@@ -184,7 +184,7 @@ TEST(FilterBank, SubsamplingHardlyChangesWhatIsSmooth) {
   const ModelImages a = bank()->predict(field), b = bank(true)->predict(field);
   double spread = 0;
   for (const double v : a[0].data()) spread = std::max(spread, std::abs(v - a[0](0, 0)));
-  EXPECT_LT(largest_difference(a[0], b[0]), 0.1 * spread);
+  EXPECT_LT(largest_difference(a[0], b[0]), 0.2 * spread);
   EXPECT_GT(largest_difference(a[0], b[0]), 1e-4 * spread);   // it is another model
 }
 
