@@ -10,16 +10,56 @@ namespace surf {
 
 using facet::Block;
 
+namespace {
+
+bool is_fine(const FilterBankParameters& parameters, const FacetScale& scale) {
+  return !parameters.multi_resolution || facet::halvings(scale) == 0;
+}
+
+std::vector<FacetScale> fine_scales(const FilterBankParameters& parameters) {
+  std::vector<FacetScale> scales;
+  for (const FacetScale& scale : parameters.scales)
+    if (is_fine(parameters, scale)) scales.push_back(scale);
+  return scales;
+}
+
+}  // namespace
+
 template <class T>
 BankEngine<T>::BankEngine(const FilterBankParameters& parameters, double pitch_x_nm, double pitch_y_nm,
                           const ModelOptions& options)
-    : parameters_(parameters), options_(options), pass_(parameters.scales, pitch_x_nm, pitch_y_nm) {
+    : parameters_(parameters), options_(options), pitch_x_nm_(pitch_x_nm), pitch_y_nm_(pitch_y_nm),
+      pass_(fine_scales(parameters), pitch_x_nm, pitch_y_nm) {
   options_.threads = resolve_threads(options.threads);
   for (std::size_t i = 0; i < parameters.scales.size(); ++i) {
+    const bool fine = is_fine(parameters, parameters.scales[i]);
+    fine_of_.push_back(fine ? static_cast<int>(scale_of_.size()) : -1);
+    if (fine) scale_of_.push_back(static_cast<int>(i));
     auto& weights = weights_.emplace_back();
     for (const FilterBankChannel& c : parameters.channels)
       weights.push_back({T(c.slope[i]), T(c.max_curvature[i]), T(c.min_curvature[i])});
   }
+}
+
+template <class T>
+facet::CoarseFits<T> BankEngine<T>::coarse_fits(const Grid<double>& z_nm) const {
+  facet::CoarseFits<T> coarse(parameters_.multi_resolution ? parameters_.scales : std::vector<FacetScale>(),
+                              pitch_x_nm_, pitch_y_nm_);
+  coarse.load(z_nm, options_.edge, options_.threads);
+  return coarse;
+}
+
+template <class T>
+const T* BankEngine<T>::fit(int scale, const facet::CoarseFits<T>& coarse, const Block& block, Scratch& s) const {
+  if (fine_of_[scale] >= 0) return pass_.fit(fine_of_[scale], s.fine);
+  s.coarse.resize(static_cast<std::size_t>(block.rows) * facet::coefficients * pass_.columns());
+  coarse.at(scale, block, pass_.columns(), s.coarse.data());
+  return s.coarse.data();
+}
+
+template <class T>
+facet::Floors<T> BankEngine<T>::floors(int scale, const facet::CoarseFits<T>& coarse, const Scratch& s) const {
+  return fine_of_[scale] >= 0 ? pass_.floors(fine_of_[scale], s.fine) : coarse.floors(scale);
 }
 
 template <class T>
@@ -42,6 +82,7 @@ template <class T>
 ModelImages BankEngine<T>::predict(const Grid<double>& z_nm) const {
   ModelImages images = blank(z_nm, true);
   const int channels = static_cast<int>(images.size());
+  const facet::CoarseFits<T> coarse = coarse_fits(z_nm);
   const std::vector<Block> blocks = pass_.blocks(z_nm.width(), z_nm.height());
   struct Worker {
     Scratch scratch;
@@ -52,9 +93,9 @@ ModelImages BankEngine<T>::predict(const Grid<double>& z_nm) const {
     const Block& block = blocks[i];
     auto& [scratch, sum] = workers[w];
     sum.assign(static_cast<std::size_t>(channels) * block.rows * pass_.columns(), T(0));
-    pass_.load(z_nm, options_.edge, block, scratch);
-    for (int s = 0; s < pass_.scales(); ++s)
-      pass_.loops().combine(pass_.fit(s, scratch), block.rows, weights_[s].data(), channels, sum.data());
+    pass_.load(z_nm, options_.edge, block, scratch.fine);
+    for (int s = 0; s < scales(); ++s)
+      pass_.loops().combine(fit(s, coarse, block, scratch), block.rows, weights_[s].data(), channels, sum.data());
     add(block, sum, 1, images);
   });
   return images;
@@ -78,19 +119,41 @@ Grid<double> BankEngine<T>::gradient(const Grid<double>& z_nm, const ModelImages
       for (int y = 0; y < block.rows; ++y, to += columns)
         for (int x = 0; x < block.width; ++x) to[x] = T(image(block.x + x, block.y + y) / unit);
   });
+  const facet::CoarseFits<T> coarse = coarse_fits(z_nm);
   std::vector<Scratch> workers(options_.threads);
-  const auto source = [&](int w, int scale, const Block& column, T* out) {
+  const auto pull_back = [&](int scale, std::size_t i, Scratch& scratch, T* out) {
+    const T* const k = fit(scale, coarse, blocks[i], scratch);
+    pass_.loops().pull_back(k, blocks[i].rows, floors(scale, coarse, scratch), weights_[scale].data(), channels,
+                            block_weights[i].data(), out);
+  };
+  const auto source = [&](int w, int fine, const Block& column, T* out) {
     for (std::size_t part = 0; part < parts; ++part) {
       const std::size_t i = column.x / columns * parts + part;
-      const Block& block = blocks[i];
-      pass_.load(z_nm, options_.edge, block, workers[w], scale);
-      const T* const k = pass_.fit(scale, workers[w]);
-      pass_.loops().pull_back(k, block.rows, pass_.floors(scale, workers[w]), weights_[scale].data(), channels,
-                              block_weights[i].data(),
-                              out + static_cast<std::ptrdiff_t>(block.y) * facet::coefficients * columns);
+      pass_.load(z_nm, options_.edge, blocks[i], workers[w].fine, fine);
+      pull_back(scale_of_[fine], i, workers[w],
+                out + static_cast<std::ptrdiff_t>(blocks[i].y) * facet::coefficients * columns);
     }
   };
   pass_.transpose(options_.edge, options_.threads, source, unit, gradient);
+  if (!parameters_.multi_resolution) return gradient;
+
+  std::vector<AlignedVector<T>> planes(scales());
+  std::vector<AlignedVector<T>> outs(options_.threads);
+  const std::size_t width = z_nm.width(), size = z_nm.size();
+  for (int s = 0; s < scales(); ++s) {
+    if (fine_of_[s] >= 0) continue;
+    planes[s].resize(facet::coefficients * size);
+    parallel_for(blocks.size(), options_.threads, [&](std::size_t i, int w) {
+      const Block& block = blocks[i];
+      outs[w].resize(static_cast<std::size_t>(block.rows) * facet::coefficients * columns);
+      pull_back(s, i, workers[w], outs[w].data());
+      const T* from = outs[w].data();
+      for (int y = 0; y < block.rows; ++y)
+        for (int c = 0; c < facet::coefficients; ++c, from += columns)
+          std::copy_n(from, block.width, planes[s].data() + c * size + (block.y + y) * width + block.x);
+    });
+  }
+  coarse.transpose(planes, options_.edge, options_.threads, unit, gradient);
   return gradient;
 }
 
@@ -102,6 +165,7 @@ ModelImages BankEngine<T>::change(const Grid<double>& z_nm, const Grid<double>& 
   Grid<double> direction = dz_nm;
   for (double& dz : direction.data()) dz /= unit;
   const int channels = static_cast<int>(images.size());
+  const facet::CoarseFits<T> coarse = coarse_fits(z_nm), coarse_direction = coarse_fits(direction);
   const std::vector<Block> blocks = pass_.blocks(z_nm.width(), z_nm.height());
   struct Worker {
     Scratch at, along;
@@ -112,11 +176,13 @@ ModelImages BankEngine<T>::change(const Grid<double>& z_nm, const Grid<double>& 
     const Block& block = blocks[i];
     auto& [at, along, sum] = workers[w];
     sum.assign(static_cast<std::size_t>(channels) * block.rows * pass_.columns(), T(0));
-    pass_.load(z_nm, options_.edge, block, at);
-    pass_.load(direction, options_.edge, block, along);
-    for (int s = 0; s < pass_.scales(); ++s)
-      pass_.loops().push_forward(pass_.fit(s, at), pass_.fit(s, along), block.rows, pass_.floors(s, at),
+    pass_.load(z_nm, options_.edge, block, at.fine);
+    pass_.load(direction, options_.edge, block, along.fine);
+    for (int s = 0; s < scales(); ++s) {
+      const T* const k = fit(s, coarse, block, at);
+      pass_.loops().push_forward(k, fit(s, coarse_direction, block, along), block.rows, floors(s, coarse, at),
                                  weights_[s].data(), channels, sum.data());
+    }
     add(block, sum, unit, images);
   });
   return images;
@@ -124,22 +190,23 @@ ModelImages BankEngine<T>::change(const Grid<double>& z_nm, const Grid<double>& 
 
 template <class T>
 void BankEngine<T>::invariants(const Grid<double>& z_nm, const Sink& sink) const {
+  const facet::CoarseFits<T> coarse = coarse_fits(z_nm);
   const std::vector<Block> blocks = pass_.blocks(z_nm.width(), z_nm.height());
   struct Worker {
     Scratch scratch;
-    std::vector<AlignedVector<T>> scales;
+    std::vector<AlignedVector<T>> invariants;
   };
   std::vector<Worker> workers(options_.threads);
   parallel_for(blocks.size(), options_.threads, [&](std::size_t i, int w) {
     const Block& block = blocks[i];
-    auto& [scratch, scales] = workers[w];
-    scales.resize(pass_.scales());
-    pass_.load(z_nm, options_.edge, block, scratch);
-    for (int s = 0; s < pass_.scales(); ++s) {
-      scales[s].resize(static_cast<std::size_t>(block.rows) * 3 * pass_.columns());
-      pass_.loops().invariants(pass_.fit(s, scratch), block.rows, scales[s].data());
+    auto& [scratch, found] = workers[w];
+    found.resize(scales());
+    pass_.load(z_nm, options_.edge, block, scratch.fine);
+    for (int s = 0; s < scales(); ++s) {
+      found[s].resize(static_cast<std::size_t>(block.rows) * 3 * pass_.columns());
+      pass_.loops().invariants(fit(s, coarse, block, scratch), block.rows, found[s].data());
     }
-    sink(i, block, pass_.columns(), scales);
+    sink(i, block, pass_.columns(), found);
   });
 }
 

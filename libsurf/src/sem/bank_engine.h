@@ -3,6 +3,7 @@
 
 #include <functional>
 
+#include "coarse_fits.h"
 #include "facet_pass.h"
 #include "surf/sem/filter_bank.h"
 #include "surf/sem/image_model.h"
@@ -32,12 +33,23 @@ class BankEngine {
   void invariants(const Grid<double>& z_nm, const Sink& sink) const;
 
  private:
-  using Scratch = typename facet::FacetPass<T>::Scratch;
+  /// What a worker needs to fit a block at all scales, some of them on coarser heights.
+  struct Scratch {
+    typename facet::FacetPass<T>::Scratch fine;
+    AlignedVector<T> coarse;
+  };
+  facet::CoarseFits<T> coarse_fits(const Grid<double>& z_nm) const;
+  const T* fit(int scale, const facet::CoarseFits<T>& coarse, const facet::Block& block, Scratch& scratch) const;
+  facet::Floors<T> floors(int scale, const facet::CoarseFits<T>& coarse, const Scratch& scratch) const;
+  int scales() const { return static_cast<int>(fine_of_.size()); }
   ModelImages blank(const Grid<double>& z_nm, bool with_offset) const;
   void add(const facet::Block& block, const AlignedVector<T>& sum, double unit, ModelImages& images) const;
 
   const FilterBankParameters& parameters_;
   ModelOptions options_;
+  double pitch_x_nm_, pitch_y_nm_;
+  std::vector<int> fine_of_;       ///< [scale]: its index in pass_, or -1 where heights are subsampled
+  std::vector<int> scale_of_;      ///< back
   facet::FacetPass<T> pass_;
   std::vector<std::vector<facet::Weights<T>>> weights_;   ///< [scale][channel]
 };
