@@ -250,7 +250,7 @@ semsurf_cli_test(train.own_surfaces ARGS train --material Si --energy 1keV ${sma
   WRITES si.json si.training/blocks.exr INFO si.json "command +semsurf train --material Si --energy 1keV")
 semsurf_cli_test(train.hold_out ARGS train ${small_model} --hold-out 1 -o si.json
   STDOUT "blocks-rough .held out." "all held out" STDERR "no --material is given: Si" WRITES si.json
-  INFO si.json "1 surface, 256 pixels; 1 held out")
+  INFO si.json "1 surface, 256 pixels. 1 held out")
 semsurf_cli_test(train.heights ARGS train block.gsf --electrons 2 --model ikeuchi-secant -q -o block.json
   STDOUT "^$" WRITES block.json block.training/block.exr INFO block.json "gives SE and BSE")
 semsurf_cli_test(train.signal ARGS train four.txt --pitch 3nm --signal four.png --model secant -o four.json
@@ -258,7 +258,7 @@ semsurf_cli_test(train.signal ARGS train four.txt --pitch 3nm --signal four.png 
 semsurf_cli_test(train.interrupted EXIT 130 INTERRUPT ARGS train --pixel-size 3nm --electrons 100000 --model secant -o si.json
   STDERR "stopped: there is no model yet.*same command goes on")
 semsurf_cli_test(predict.scan ARGS predict steps.txt --pitch 3nm --model secant.json --material Si --energy 1keV -o image.exr -o image.png
-  STDOUT "model +slope; gives SE and BSE" "image +[0-9]+ x [0-9]+ pixels of 3.00 nm" "SE +[0-9.]+ to"
+  STDOUT "model +slope. gives SE and BSE" "image +[0-9]+ x [0-9]+ pixels of 3.00 nm" "SE +[0-9.]+ to"
   WRITES image.exr image.png INFO image.exr "model +secant.json sha256")
 semsurf_cli_test(predict.scene ARGS predict "${PROJECT_SOURCE_DIR}/samples/mesa80.toml" --model secant.json --resample -o mesa.vti
   STDERR "are resampled to" WRITES mesa.vti)

@@ -10,7 +10,7 @@
 #include "surf/core/error.h"
 #include "surf/core/units.h"
 #include "surf/io/model_file.h"
-#include "surf/sem/model_residual.h"
+#include "surf/sem/fit_filter_bank.h"
 #include "surf/workflow/version.h"
 #include "training_data.h"
 
@@ -69,31 +69,25 @@ std::map<std::string, std::string> notes_of(const TrainJob& job) {
   return notes;
 }
 
-/// What the finished model makes of every surface.
-void judge_all(const TrainJob& job, const std::vector<TrainingSurface>& surfaces,
-               const std::vector<TrainingImage>& images, std::size_t learnt, TrainedModel& model) {
-  const auto usable = make_model(model);
-  ResidualSum on_learnt(usable->channels()), on_held_out(usable->channels());
-  for (std::size_t i = 0; i < images.size(); ++i) {
-    const bool held_out = i >= learnt;
-    const ModelImages predicted = usable->predict(images[i].field, {images[i].edge, job.simulation.threads});
-    ResidualSum alone(usable->channels());
-    alone.add(predicted, images[i]);
-    (held_out ? on_held_out : on_learnt).add(predicted, images[i]);
+/// What the finished model makes of images, those at `first` and on.
+std::vector<TrainingScene> judge(const TrainJob& job, const ImageModel& model,
+                                 const std::vector<TrainingSurface>& surfaces, std::size_t first,
+                                 const std::vector<TrainingImage>& images, bool held_out) {
+  std::vector<TrainingScene> scenes;
+  for (std::size_t k = 0; k < images.size(); ++k) {
+    const std::size_t i = first + k;
     TrainingScene scene;
     scene.name = surfaces[i].name;
     scene.sha256 = surfaces[i].sha256;
-    scene.width = images[i].field.z_nm.width();
-    scene.height = images[i].field.z_nm.height();
+    scene.width = images[k].field.z_nm.width();
+    scene.height = images[k].field.z_nm.height();
     const bool counted = surfaces[i].image.empty() && !(job.simulation.accuracy > 0);
     scene.electrons = counted ? job.simulation.electrons : 0;
     scene.held_out = held_out;
-    scene.residuals = alone.residuals();
-    model.record.scenes.push_back(std::move(scene));
-    if (!held_out) model.record.range = united(model.record.range, surface_range(images[i].field));
+    scene.residuals = residuals_of(model, {images[k]}, job.simulation.threads);
+    scenes.push_back(std::move(scene));
   }
-  model.record.residuals = on_learnt.residuals();
-  if (learnt < images.size()) model.record.held_out_residuals = on_held_out.residuals();
+  return scenes;
 }
 
 }  // namespace
@@ -114,17 +108,28 @@ TrainSummary run(const TrainJob& job, const TrainListener& listener) {
   std::vector<TrainingImage> images = read_images(job, surfaces, simulated);
   validate(images);
   const std::size_t learnt = images.size() - static_cast<std::size_t>(job.held_out);
-  const std::vector<TrainingImage> lessons(images.begin(), images.begin() + static_cast<std::ptrdiff_t>(learnt));
+  const auto split = images.begin() + static_cast<std::ptrdiff_t>(learnt);
+  const std::vector<TrainingImage> held_out(split, images.end());
+  images.erase(split, images.end());
   TrainedModel& model = summary.model;
   model.scope = {job.pixel_nm, job.material.name, job.energy_ev, job.spot_nm};
-  Learnt result = learner.learn({job, model.scope, channels_of(job), lessons, listener});
+  Learnt result = learner.learn({job, model.scope, channels_of(job), images, listener});
   model.parameters = std::move(result.parameters);
   model.record.condition_number = result.condition_number;
   model.record.warnings = std::move(result.warnings);
   model.record.notes = notes_of(job);
   model.record.notes["model"] = learner.name;
   for (auto& [key, value] : result.notes) model.record.notes[key] = value;
-  judge_all(job, surfaces, images, learnt, model);
+  TrainingRecord& record = model.record;
+  for (const TrainingImage& image : images) record.range = united(record.range, surface_range(image.field));
+  const auto usable = make_model(model);
+  record.residuals = residuals_of(*usable, images, job.simulation.threads);
+  record.scenes = judge(job, *usable, surfaces, 0, images, false);
+  if (!held_out.empty()) {
+    record.held_out_residuals = residuals_of(*usable, held_out, job.simulation.threads);
+    for (TrainingScene& scene : judge(job, *usable, surfaces, learnt, held_out, true))
+      record.scenes.push_back(std::move(scene));
+  }
   for (const std::string& warning : model.record.warnings)
     if (listener.warn) listener.warn(warning);
   if (listener.cancel && listener.cancel->cancelled()) {

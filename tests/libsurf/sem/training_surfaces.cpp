@@ -52,7 +52,9 @@ TEST(TrainingSurfaces, DependOnTheSeedAndOnNothingElse) {
   for (std::size_t i = 0; i < a.size(); ++i) {
     EXPECT_EQ(a[i].field.z_nm, b[i].field.z_nm);
     EXPECT_NE(a[i].field.z_nm, other[i].field.z_nm);
-    if (i < fewer.size()) EXPECT_EQ(a[i].field.z_nm, fewer[i].field.z_nm);
+    if (i < fewer.size()) {
+      EXPECT_EQ(a[i].field.z_nm, fewer[i].field.z_nm);
+    }
   }
   EXPECT_EQ(a[12].name, a[0].name + "-2");
 }
