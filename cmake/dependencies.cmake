@@ -5,6 +5,7 @@ find_path(RANDOM123_INCLUDE_DIR Random123/philox.h REQUIRED)
 find_package(CGAL 5.5 REQUIRED)
 # CONFIG: CGAL brings a FindOpenMesh of its own.
 find_package(OpenMesh REQUIRED CONFIG)
+find_package(Eigen3 3.4 REQUIRED NO_MODULE)
 find_package(embree 3 REQUIRED)
 find_package(OpenImageIO REQUIRED)
 # Debian's target names an OpenCV include folder that its package does not bring.

@@ -30,6 +30,7 @@ THIRD_PARTY = [
     ("embree*/*", ["mc_sim/src/embree_scene.cpp"]),
     ("CGAL/*", ["libsurf/src/mesh/cgal_*.cpp"]),
     ("OpenMesh/*", ["libsurf/src/mesh/simplify_mesh.cpp"]),
+    ("Eigen/*", ["libsurf/src/sem/calibration.cpp"]),
     ("OpenImageIO/*", ["io/src/raster_file.cpp"]),
     ("vtk*", ["io/src/vti_file.cpp", "io/src/vtp_*.cpp", "io/src/vtk_support.h", "io/src/volume_file.cpp"]),
     ("pugixml.hpp", ["io/src/vtk_xml.cpp", "io/src/three_mf_file.cpp"]),
