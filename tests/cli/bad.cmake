@@ -147,6 +147,18 @@ semsurf_cli_usage(tip_shape "--shape: 'spoon:1nm' is no shape" tip --shape spoon
 semsurf_cli_usage(tip_cone "--shape: cone:5nm,120deg" tip --shape cone:5nm,120deg -o tip.gsf)
 semsurf_cli_unusable(tip_too_large "tip size: 101 x 101 samples are more than the scan's 24 x 20" tip steps.txt --size 101 --threshold 1nm -o tip.gsf)
 semsurf_cli_usage(tip_threshold_y "--threshold-y: this answer finds its own" tip steps.txt --threshold-y 1nm -o tip.gsf)
+# SEM: calibration.
+semsurf_cli_usage(calibrate_image "calibrate: no image is given" calibrate --images four.png -o fit.json)
+semsurf_cli_usage(calibrate_images "--images: there is nothing to compare with" calibrate four.png -o fit.json)
+semsurf_cli_usage(calibrate_output "--output: no output file is given" calibrate four.png --images four.png)
+semsurf_cli_usage(calibrate_channel "it has no channel SE or BSE" calibrate four.png --pixel-size 1nm --images four.png -o fit.json)
+semsurf_cli_usage(calibrate_fit "has no channel 'TE'.*Choose of: L" calibrate four.png --pixel-size 1nm --images four.png --fit TE -o fit.json)
+semsurf_cli_usage(calibrate_ratio "it is of two channels, not of 1" calibrate four.png --pixel-size 1nm --images four.png --fit L --ratio 2 -o fit.json)
+semsurf_cli_usage(calibrate_range "--range: '0nm' is not above 0" calibrate four.png --images four.png --range 0nm -o fit.json)
+semsurf_cli_usage(calibrate_white "--white: it is not above --black" calibrate four.png --images four.png --black 9 --white 3 -o fit.json)
+semsurf_cli_unusable(calibrate_scale "Give their size with --pixel-size" calibrate four.png --images four.png -o fit.json)
+semsurf_cli_unusable(calibrate_size "register and resample one first" calibrate steps.txt --images four.png -o fit.json)
+semsurf_cli_unusable(calibrate_pitch "its pixels are 2 x 2 nm.*register" calibrate four.png --pixel-size 2nm --images four.png --fit L -o fit.json)
 
 if(WEB_PACKAGES)
   semsurf_cli_usage(view_nothing "no file is given" view -o page.html)

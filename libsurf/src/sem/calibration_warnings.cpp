@@ -115,7 +115,8 @@ void judge(Calibration& c, const CalibrationImages& images, const CalibrationOpt
   const Grid<double> fit = calibrated_image(c, images.simulated);
   judge_level(c, images.real, fit, weights, false);
   judge_level(c, images.real, fit, weights, true);
-  if (c.residual_correlation > strong_correlation)
+  // What rounding leaves has structure, too.
+  if (c.residual_correlation > strong_correlation && 1 - c.explained > 1e-10)
     c.warnings.push_back(fmt::format("residuals of neighbouring pixels have a correlation of {:.2f}: the model is off "
                                      "in places, and the standard errors, which take pixels as independent, are too "
                                      "small", c.residual_correlation));

@@ -53,7 +53,7 @@ TEST(Calibrate, RecoversKnownGains) {
   EXPECT_NEAR(c.offset, -14, 1e-9);
   EXPECT_NEAR(c.residual_rms, 0, 1e-9);
   EXPECT_NEAR(c.explained, 1, 1e-12);
-  EXPECT_NEAR(c.condition_number, std::sqrt(1.6 / 0.4), 0.15);
+  EXPECT_NEAR(c.condition_number, std::sqrt(1.6 / 0.4), 0.25);
   EXPECT_EQ(c.pixels, 1200);
 }
 
