@@ -37,7 +37,7 @@ TEST(SlopeTable, RisesWithTheSlope) {
     ASSERT_EQ(table->bse.size(), 18u);
     for (std::size_t i = 1; i <= 15; ++i) {   // to 75 degrees
       EXPECT_GT(z_of(table->se[i], table->se[i - 1]), -3) << 5 * i << " degrees";
-      if (i % 3 == 0) EXPECT_GT(z_of(table->se[i], table->se[i - 3]), 2) << 5 * i << " degrees";
+      if (i % 3 == 0 && i > 3) EXPECT_GT(z_of(table->se[i], table->se[i - 3]), 2) << 5 * i << " degrees";
     }
     EXPECT_GT(table->se[15].mean, 2 * table->se[0].mean);
     EXPECT_GT(table->bse[15].mean, 1.5 * table->bse[0].mean);
@@ -53,10 +53,11 @@ TEST(SlopeTable, OfOnePlaneIsATiltedBeam) {
 }
 
 TEST(SlopeTable, TheGroundAddsSecondariesAtSteepSlopes) {
-  for (const std::size_t i : {14u, 15u, 16u, 17u})
-    EXPECT_GT(z_of(tables().second.se[i], tables().first.se[i]), 5) << 5 * i << " degrees";
+  for (const std::size_t i : {10u, 11u, 12u, 13u, 14u})
+    EXPECT_GT(z_of(tables().second.se[i], tables().first.se[i]), 2) << 5 * i << " degrees";
   EXPECT_EQ(tables().second.se[0].mean, tables().first.se[0].mean);
-  EXPECT_LT(tables().second.bse[17].mean, tables().first.bse[17].mean) << "the ground catches what goes down";
+  for (const std::size_t i : {12u, 14u, 16u})
+    EXPECT_LT(z_of(tables().second.bse[i], tables().first.bse[i]), -5) << "the ground catches what goes down";
 }
 
 /// The shape that the replay and the ground are seen on, simulated directly at another place along the slope.

@@ -1,22 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "sem/padded_field.h"
 
-#include <algorithm>
+#include "sem/border.h"
 
 namespace surf {
-
-int source_of(int i, int n, Edge edge) {
-  if (edge == Edge::flat) return std::clamp(i, 0, n - 1);
-  const int period = edge == Edge::periodic ? n : 2 * (n - 1);
-  const int inside = ((i % period) + period) % period;
-  return inside < n ? inside : period - inside;
-}
 
 PaddedField::PaddedField(const HeightField& field, int margin, Edge edge)
     : width_(field.z_nm.width()), height_(field.z_nm.height()), margin_(margin),
       per_two_x_(0.5 / field.pitch_x_nm), per_two_y_(0.5 / field.pitch_y_nm) {
-  for (int x = -margin; x < width_ + margin; ++x) from_x_.push_back(source_of(x, width_, edge));
-  for (int y = -margin; y < height_ + margin; ++y) from_y_.push_back(source_of(y, height_, edge));
+  for (int x = -margin; x < width_ + margin; ++x) from_x_.push_back(border_sample(x, width_, edge));
+  for (int y = -margin; y < height_ + margin; ++y) from_y_.push_back(border_sample(y, height_, edge));
   fill(field.z_nm);
 }
 

@@ -8,9 +8,6 @@
 
 namespace surf {
 
-/// Where sample `i` of a row of `n`, gone on beyond its ends, is taken from.
-int source_of(int i, int n, Edge edge);
-
 /// Heights with their continuation, and slopes by central differences. Places count from the field's lower
 /// left sample, from -margin on; slopes need one more sample around.
 class PaddedField {

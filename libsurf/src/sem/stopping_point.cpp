@@ -8,12 +8,12 @@
 
 #include "sem/ring_shares.h"
 #include "sem/window_model.h"
+#include "surf/core/error.h"
 
 namespace surf {
 namespace {
 
 constexpr int most_bins = 4096;
-constexpr std::size_t most_channels = 8;
 
 [[noreturn]] void refuse(const std::string& reason, const char* remedy) {
   throw InvalidInput("stopping-point model", reason, remedy);
@@ -26,14 +26,19 @@ void check(const ModelScope& scope, const StoppingPointParameters& p) {
     refuse("a step of its table is not above 0 or its lowest height not finite", "Make the table again");
   if (p.rings < 1 || p.rings > most_bins || p.heights < 2 || p.heights > most_bins)
     refuse(fmt::format("its table has {} rings of {} heights", p.rings, p.heights), "Make the table again");
-  if (p.channels.empty() || p.channels.size() > most_channels)
-    refuse(fmt::format("it has {} channels", p.channels.size()), "Give 1 to 8");
   for (const StoppingPointChannel& c : p.channels) {
     if (c.density_per_nm.size() != static_cast<std::size_t>(p.rings) * static_cast<std::size_t>(p.heights))
       refuse(fmt::format("channel '{}' has {} numbers, not {} x {}", c.name, c.density_per_nm.size(), p.rings,
                          p.heights), "Make the table again");
     if (!std::ranges::all_of(c.density_per_nm, [](double d) { return std::isfinite(d) && d >= 0; }))
       refuse(fmt::format("channel '{}' has densities below 0 or not finite", c.name), "Make the table again");
+    // Else the density would jump, and the image have a kink.
+    for (std::size_t k = 0; k < static_cast<std::size_t>(p.rings); ++k) {
+      const auto heights = static_cast<std::size_t>(p.heights);
+      if (c.density_per_nm[k * heights] != 0 || c.density_per_nm[(k + 1) * heights - 1] != 0)
+        refuse(fmt::format("channel '{}' does not begin and end with 0 in each ring", c.name),
+               "Make the table wider");
+    }
   }
   const double reach = p.rings * p.ring_nm / scope.pixel_nm;
   if (reach > most_stopping_columns)
@@ -98,8 +103,6 @@ class Columns {
     }
     for (std::size_t c = 0; c < across * across; ++c) {
       Node* node = table.nodes.data() + c * heights_;
-      // The density falls to 0 beyond its ends at once: the outermost numbers have to be 0.
-      node[0].density = node[heights_ - 1].density = 0;
       for (std::size_t i = heights_ - 1; i-- > 0;)
         node[i].above = node[i + 1].above + 0.5 * step_ * (node[i].density + node[i + 1].density);
     }
@@ -116,9 +119,10 @@ class Columns {
 
 std::shared_ptr<const ImageModel> make_stopping_point(const ModelScope& scope,
                                                       const StoppingPointParameters& parameters) {
-  check(scope, parameters);
   std::vector<std::string> names;
   for (const StoppingPointChannel& c : parameters.channels) names.push_back(c.name);
+  check_channels(names, "stopping-point model");
+  check(scope, parameters);
   return std::make_shared<WindowModel<Columns>>(scope, std::move(names),
                                                 std::make_shared<const Columns>(scope, parameters));
 }

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <algorithm>
 #include <memory>
+#include <string>
 #include <utility>
 #include <vector>
 
+#include "sem/model_input.h"
 #include "sem/padded_field.h"
-#include "surf/core/error.h"
 #include "surf/core/parallel.h"
 #include "surf/sem/image_model.h"
 
@@ -14,8 +16,8 @@
 // there), then a function of that sum. A Kernel has
 //   int reach() const                               columns to each side
 //   std::size_t channels() const
-//   Term term(channel, dx, dy, dz_nm, slope_x, slope_y) const      with its derivatives
-//   Signal signal(channel, sum) const                              with its derivative
+//   WindowTerm term(channel, dx, dy, dz_nm, slope_x, slope_y) const      with its derivatives
+//   WindowSignal signal(channel, sum) const                              with its derivative
 
 namespace surf {
 
@@ -46,9 +48,7 @@ class WindowLinearization final : public Linearization {
   ModelImages take_images() { return std::move(images_); }
 
   Grid<double> gradient(const ModelImages& weights) const override {
-    if (weights.size() != images_.size())
-      throw InvalidInput("weights", "there is not one image per channel", "Give one for each");
-    for (const auto& w : weights) check_size(w);
+    check_weights(weights, kernel_->channels(), images_.front());
     // Every place asks the pixels around it, those beyond the edge too: no two threads write to one place.
     Grid<double> z = field_.none(), slope_x = z, slope_y = z;
     const int reach = kernel_->reach();
@@ -69,7 +69,7 @@ class WindowLinearization final : public Linearization {
   }
 
   ModelImages change(const Grid<double>& dz_nm) const override {
-    check_size(dz_nm);
+    check_change(dz_nm, images_.front());
     const PaddedField step = field_.like(dz_nm);
     ModelImages out(images_.size(), Grid<double>(field_.width(), field_.height()));
     const int reach = kernel_->reach();
@@ -93,11 +93,6 @@ class WindowLinearization final : public Linearization {
   template <class Work>
   void rows(int count, const Work& work) const {
     parallel_for(static_cast<std::size_t>(count), threads_, [&](std::size_t y, int) { work(static_cast<int>(y)); });
-  }
-
-  void check_size(const Grid<double>& g) const {
-    if (g.width() != field_.width() || g.height() != field_.height())
-      throw InvalidInput("image", "it has another size than the height field", "Give one of its size");
   }
 
   WindowTerm term(std::size_t c, int x, int y, int dx, int dy) const {

@@ -12,7 +12,7 @@ namespace surf {
 /// A neighbourhood of the cubic facet model (thesis, 6.4 and appendix D).
 struct FacetScale {
   int size = 5;             ///< samples across, odd, 5 to 255
-  double sigma_px = 0.6;    ///< standard deviation of the Gaussian weights, > 0; 0: uniform weights
+  double sigma_px = 0.6;    ///< standard deviation of the Gaussian weights, 0.3 to 1000; 0: uniform weights
 
   friend bool operator==(const FacetScale&, const FacetScale&) = default;
 };

@@ -27,6 +27,7 @@ struct ModelScope {
 struct ModelOptions {
   Edge edge = Edge::mirror;   ///< how the heights go on outside the field
   int threads = 0;            ///< 0: one per hardware thread. Does not change the result
+  bool double_precision = false;   ///< compute in double where a model computes in float: slower, to check with
 };
 
 /// A model at one surface: its images there, and how they change with the heights. J is the matrix of

@@ -21,7 +21,7 @@ struct StoppingPointChannel {
   StoppingRule rule = StoppingRule::counted;
   /// Stopping points per primary and nm of height, in rings about the beam: ring k reaches from k ring_nm
   /// to (k + 1) ring_nm. Row-major, rings rows of `heights` numbers at lowest_nm, lowest_nm + height_step_nm
-  /// ...; between them linear, beyond them 0. All >= 0.
+  /// ...; between them linear. All >= 0; the first and the last of each ring are 0.
   std::vector<double> density_per_nm;
 };
 

@@ -21,7 +21,8 @@ enum class SlopeSpecimen {
   /// the ground and may set free more. The beam lands three ranges from the foot, and the slope ends in a
   /// horizontal plane three ranges above it, out of its sight. So far from both edges nothing depends on where
   /// it lands: the shape has no length of its own. Nearer to the foot, within the range, ground and slope are
-  /// one corner, which is no matter of slope.
+  /// one corner, which is no matter of slope. Beyond 80 degrees the ground catches as many secondaries as it
+  /// sets free.
   two_planes,
 };
 

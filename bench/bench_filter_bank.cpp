@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// How fast images are predicted, with and without their gradient, beside what the vector unit can do at most.
+//   bench_filter_bank [runs, default 31]
+// Times are medians, CPU seconds of one thread. Operations are counted as the passes do them on a field
+// without a border: for each pixel and scale 11 one-dimensional passes of a multiply-add per pair of
+// samples, and the sums and differences of the pairs; a transposed pass does the same.
+#include <time.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include <fmt/core.h>
+
+#include "surf/core/random.h"
+#include "surf/sem/filter_bank.h"
+#include "surf/sem/slope_model.h"
+
+namespace {
+
+using namespace surf;
+
+double cpu_seconds() {
+  timespec t;
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+}
+
+template <class Work>
+double median(int runs, const Work& work) {
+  std::vector<double> seconds;
+  for (int i = 0; i < runs; ++i) {
+    const double start = cpu_seconds();
+    work();
+    seconds.push_back(cpu_seconds() - start);
+  }
+  std::nth_element(seconds.begin(), seconds.begin() + runs / 2, seconds.end());
+  return seconds[runs / 2];
+}
+
+// Multiply-adds and additions on nothing but registers, as many of one as of the other, 10^9 single-precision
+// operations per second (a multiply-add is one).
+#define PEAK(name, bytes, target)                                                      \
+  target double name() {                                                               \
+    typedef float V [[gnu::vector_size(bytes)]];                                       \
+    V sum[7] = {}, product[7] = {}, b = V{} + 1e-9F;                                   \
+    constexpr long steps = 4'000'000;                                                  \
+    const double start = cpu_seconds();                                                \
+    for (long i = 0; i < steps; ++i)                                                   \
+      for (int j = 0; j < 7; ++j) {                                                    \
+        sum[j] = sum[j] + b;                                                           \
+        product[j] = product[j] * b + b;                                               \
+        asm volatile("" : "+v"(sum[j]), "+v"(product[j]));                             \
+      }                                                                                \
+    return 1e-9 * steps * 14 * (bytes / 4) / (cpu_seconds() - start);                  \
+  }
+#ifdef __x86_64__
+PEAK(peak_portable, 16, )
+PEAK(peak_avx2, 32, [[gnu::target("avx2,fma")]])
+PEAK(peak_avx512, 64, [[gnu::target("avx512f,fma,prefer-vector-width=512")]])
+
+double peak() {
+  double most = 0;   // of several: the machine may be doing other things
+  for (int i = 0; i < 7; ++i)
+    most = std::max(most, __builtin_cpu_supports("avx512f") ? peak_avx512()
+                          : __builtin_cpu_supports("avx2") ? peak_avx2() : peak_portable());
+  return most;
+}
+#else
+double peak() { return std::numeric_limits<double>::quiet_NaN(); }
+#endif
+
+HeightField rough(int n) {
+  HeightField f{Grid<double>(n, n), {}, 2, 2, 0, 0};
+  RandomStream random(1, 0, 0);
+  for (int y = 0; y < n; ++y)
+    for (int x = 0; x < n; ++x)
+      f.z_nm(x, y) = 10 * std::sin(0.05 * x) * std::cos(0.07 * y) + random.uniform();
+  return f;
+}
+
+FilterBankParameters bank(const std::vector<FacetScale>& scales, bool multi_resolution = false) {
+  FilterBankParameters p{scales, multi_resolution, {}};
+  for (const char* name : {"SE", "BSE"})
+    p.channels.push_back({name, 0.1, std::vector<double>(scales.size(), 0.1),
+                          std::vector<double>(scales.size(), 0.2), std::vector<double>(scales.size(), 0.3)});
+  return p;
+}
+
+double operations(const std::vector<FacetScale>& scales) {
+  double count = 0;
+  for (const FacetScale& scale : scales) count += 20.0 * (scale.size / 2) + 9;
+  return count;
+}
+
+struct Row {
+  double value = 0, both = 0;
+};
+
+Row measure(const ImageModel& model, const HeightField& field, int runs) {
+  const ModelOptions one{.threads = 1};
+  Row row;
+  row.value = median(runs, [&] { model.predict(field, one); });
+  ModelImages weights(model.channels().size(), Grid<double>(field.z_nm.width(), field.z_nm.height(), 0.5));
+  row.both = median(runs, [&] { model.linearize(field, one)->gradient(weights); });
+  return row;
+}
+
+void print(const std::string& name, const Row& row, double pixels, double per_pixel, double peak) {
+  const auto part = [&](double seconds, double count) { return 100e-9 * count * pixels / seconds / peak; };
+  fmt::print("{:<34} {:9.2f} {:8.1f} {:6.0f}% {:9.2f} {:8.1f} {:6.0f}%\n", name, 1e3 * row.value,
+             1e9 * row.value / pixels, part(row.value, per_pixel), 1e3 * row.both, 1e9 * row.both / pixels,
+             part(row.both, 3 * per_pixel));
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const int runs = argc > 1 ? std::max(1, std::atoi(argv[1])) : 31;
+  const std::vector<FacetScale> all = thesis_scales();
+  const double per_pixel = operations(all), most = peak();
+  fmt::print("{:.0f} operations a pixel for ten scales; peak {:.0f} 10^9/s: {:.1f} ms at least for 300 x 300\n\n",
+             per_pixel, most, 1e-6 * per_pixel * 90000 / most);
+  fmt::print("{:<34} {:>9} {:>8} {:>7} {:>9} {:>8} {:>7}\n", "SE and BSE, one thread", "value", "", "", "gradient", "", "");
+  fmt::print("{:<34} {:>9} {:>8} {:>7} {:>9} {:>8} {:>7}\n", "", "ms", "ns/pixel", "of peak", "too, ms", "ns/pixel", "of peak");
+
+  const HeightField field = rough(300);
+  const auto full = make_filter_bank({}, bank(all));
+  print("300 x 300, ten scales", measure(*full, field, runs), 90000, per_pixel, most);
+  for (const FacetScale& scale : all)
+    print(fmt::format("  {} x {} alone", scale.size, scale.size),
+          measure(*make_filter_bank({}, bank({scale})), field, runs), 90000, operations({scale}), most);
+  print("  multi-resolution", measure(*make_filter_bank({}, bank(all, true)), field, runs), 90000, per_pixel, most);
+  SlopeModelParameters slopes{SlopeForm::table, 5, {5, 0.6}, {}};
+  for (const char* name : {"SE", "BSE"}) slopes.channels.push_back({name, 1, std::vector<double>(18, 1.0)});
+  print("  table of the slope", measure(*make_slope_model({}, slopes), field, runs), 90000, operations({{5, 0.6}}), most);
+  slopes.form = SlopeForm::secant;
+  print("  secant", measure(*make_slope_model({}, slopes), field, runs), 90000, operations({{5, 0.6}}), most);
+  for (int n = 128; n <= 4096; n *= 2) {
+    const HeightField large = rough(n);
+    const double pixels = static_cast<double>(n) * n;
+    print(fmt::format("{} x {}", n, n), measure(*full, large, std::clamp(runs * 300 / n, 1, runs)), pixels, per_pixel,
+          most);
+  }
+}

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <functional>
+
+#include "facet_pass.h"
+#include "surf/sem/filter_bank.h"
+#include "surf/sem/image_model.h"
+
+namespace surf {
+
+/// A filter bank's passes in float or double. Parameters and fields have been checked.
+template <class T>
+class BankEngine {
+ public:
+  BankEngine(const FilterBankParameters& parameters, double pitch_x_nm, double pitch_y_nm,
+             const ModelOptions& options);
+
+  ModelImages predict(const Grid<double>& z_nm) const;
+  Grid<double> gradient(const Grid<double>& z_nm, const ModelImages& weights) const;
+  ModelImages change(const Grid<double>& z_nm, const Grid<double>& dz_nm) const;
+
+  /// Told, from several threads, of all invariants at a block: for every scale its slope, largest and
+  /// smallest principal curvature, row by row and `columns` each.
+  using Sink = std::function<void(const facet::Block& block, int columns, const std::vector<std::vector<T>>& scales)>;
+  void invariants(const Grid<double>& z_nm, const Sink& sink) const;
+
+ private:
+  using Scratch = typename facet::FacetPass<T>::Scratch;
+  ModelImages blank(const Grid<double>& z_nm, bool with_offset) const;
+  void add(const facet::Block& block, const std::vector<T>& sum, double unit, ModelImages& images) const;
+
+  const FilterBankParameters& parameters_;
+  ModelOptions options_;
+  facet::FacetPass<T> pass_;
+  std::vector<std::vector<facet::Weights<T>>> weights_;   ///< [scale][channel]
+};
+
+extern template class BankEngine<float>;
+extern template class BankEngine<double>;
+
+/// `work(engine)` with an engine of the precision that the options ask for.
+template <class Work>
+auto run_bank(const FilterBankParameters& parameters, double pitch_x_nm, double pitch_y_nm,
+              const ModelOptions& options, const Work& work) {
+  if (options.double_precision) return work(BankEngine<double>(parameters, pitch_x_nm, pitch_y_nm, options));
+  return work(BankEngine<float>(parameters, pitch_x_nm, pitch_y_nm, options));
+}
+
+}  // namespace surf

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "facet_units.h"
+
+#include "facet_loops.h"
+
+// One body for each vector unit, chosen when the program runs.
+namespace surf::facet {
+namespace {
+
+#define SEMSURF_LOOPS(name, bytes, target)                                                                   \
+  template <class T>                                                                                         \
+  struct name {                                                                                              \
+    using L = Loops<T, bytes>;                                                                               \
+    target static void across(const T* z, std::ptrdiff_t stride, int rows, const AcrossTap<T>* taps,         \
+                              int radius, T* out) {                                                          \
+      L::across(z, stride, rows, taps, radius, out);                                                         \
+    }                                                                                                        \
+    target static void along(const T* const* row, int rows, const AlongTap<T>* taps, int radius, T* out) {   \
+      L::along(row, rows, taps, radius, out);                                                                \
+    }                                                                                                        \
+    target static void along_transposed(const T* const* row, int rows, const AlongTap<T>* taps, int radius,  \
+                                        T* const* out, std::ptrdiff_t plane) {                               \
+      L::along_transposed(row, rows, taps, radius, out, plane);                                              \
+    }                                                                                                        \
+    target static void across_transposed(const T* moment, std::ptrdiff_t plane, int count,                   \
+                                         const AcrossTap<T>* taps, int radius, T* out) {                     \
+      L::across_transposed(moment, plane, count, taps, radius, out);                                         \
+    }                                                                                                        \
+    target static void invariants(const T* k, int rows, T* out) { L::invariants(k, rows, out); }             \
+    target static void combine(const T* k, int rows, const Weights<T>* weights, int channels, T* sum) {      \
+      L::combine(k, rows, weights, channels, sum);                                                           \
+    }                                                                                                        \
+    target static void pull_back(const T* k, int rows, const Floors<T>& floors, const Weights<T>* weights,   \
+                                 int channels, const T* weight, T* out) {                                    \
+      L::pull_back(k, rows, floors, weights, channels, weight, out);                                         \
+    }                                                                                                        \
+    target static void push_forward(const T* k, const T* dk, int rows, const Floors<T>& floors,              \
+                                    const Weights<T>* weights, int channels, T* sum) {                       \
+      L::push_forward(k, dk, rows, floors, weights, channels, sum);                                          \
+    }                                                                                                        \
+    target static T largest(const T* values, std::ptrdiff_t count) { return L::largest(values, count); }     \
+    static constexpr Operations<T> all{L::columns, across,    along,        along_transposed, across_transposed,\
+                                       invariants, combine,   pull_back,    push_forward,     largest};      \
+  };
+
+SEMSURF_LOOPS(Portable, 16, )
+#ifdef __x86_64__
+SEMSURF_LOOPS(Avx2, 32, [[gnu::target("avx2,fma")]])
+#ifdef __clang__   // which knows no preference here
+SEMSURF_LOOPS(Avx512, 64, [[gnu::target("avx512f,avx512bw,avx512vl,avx512dq,fma")]])
+#else
+SEMSURF_LOOPS(Avx512, 64, [[gnu::target("avx512f,avx512bw,avx512vl,avx512dq,fma,prefer-vector-width=512")]])
+#endif
+#endif
+
+bool is_available(Unit unit) {
+#ifdef __x86_64__
+  if (unit == Unit::avx512)
+    return __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512vl") &&
+           __builtin_cpu_supports("avx512dq");
+  if (unit == Unit::avx2) return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
+#endif
+  return unit == Unit::portable;
+}
+
+}  // namespace
+
+Unit resolve(Unit unit) {
+  if (unit != Unit::best) return is_available(unit) ? unit : Unit::portable;
+  return is_available(Unit::avx512) ? Unit::avx512 : is_available(Unit::avx2) ? Unit::avx2 : Unit::portable;
+}
+
+template <class T>
+const Operations<T>& operations(Unit unit) {
+#ifdef __x86_64__
+  switch (resolve(unit)) {
+    case Unit::avx512: return Avx512<T>::all;
+    case Unit::avx2: return Avx2<T>::all;
+    default: break;
+  }
+#endif
+  (void)unit;
+  return Portable<T>::all;
+}
+
+template const Operations<float>& operations<float>(Unit);
+template const Operations<double>& operations<double>(Unit);
+
+}  // namespace surf::facet

@@ -1,0 +1,203 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "surf/sem/slope_model.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "facet_kernels.h"
+#include "facet_pass.h"
+#include "model_input.h"
+#include "slope_curve.h"
+#include "surf/core/parallel.h"
+
+namespace surf {
+namespace {
+
+using facet::Block;
+
+struct Slopes {
+  std::vector<FacetScale> scale;
+  std::vector<SlopeCurve> channels;
+};
+
+template <class T>
+class SlopeEngine {
+ public:
+  SlopeEngine(const Slopes& slopes, double pitch_x_nm, double pitch_y_nm, const ModelOptions& options)
+      : slopes_(slopes), options_(options), pass_(slopes.scale, pitch_x_nm, pitch_y_nm) {
+    options_.threads = resolve_threads(options.threads);
+  }
+
+  ModelImages predict(const Grid<double>& z_nm) const {
+    ModelImages images = blank(z_nm);
+    const std::vector<Block> blocks = pass_.blocks(z_nm.width(), z_nm.height());
+    std::vector<Scratch> workers(options_.threads);
+    parallel_for(blocks.size(), options_.threads, [&](std::size_t i, int w) {
+      const T* k = fit(z_nm, blocks[i], workers[w]);
+      each_pixel(blocks[i], k, [&](int x, int y, const T* p) {
+        const double slope = std::hypot(double(p[0]), double(p[pass_.columns()]));
+        for (std::size_t c = 0; c < images.size(); ++c) images[c](x, y) = slopes_.channels[c].at(slope).yield;
+      });
+    });
+    return images;
+  }
+
+  Grid<double> gradient(const Grid<double>& z_nm, const ModelImages& weights) const {
+    Grid<double> gradient(z_nm.width(), z_nm.height());
+    double unit = 0;
+    for (const Grid<double>& image : weights) unit = std::max(unit, magnitude(image.data()));
+    if (unit == 0) return gradient;
+    const int columns = pass_.columns();
+    const std::vector<Block> blocks = pass_.blocks(z_nm.width(), z_nm.height());
+    const std::size_t parts = blocks.size() / ((z_nm.width() + columns - 1) / columns);
+    std::vector<Scratch> workers(options_.threads);
+    pass_.transpose(options_.edge, options_.threads, [&](int w, int, const Block& column, T* out) {
+      std::fill_n(out, static_cast<std::size_t>(column.rows) * facet::coefficients * columns, T(0));
+      for (std::size_t part = 0; part < parts; ++part) {
+        const Block& block = blocks[column.x / columns * parts + part];
+        const T* k = fit(z_nm, block, workers[w]);
+        const double floor = pass_.floors(0, workers[w]).slope;
+        T* const to = out + static_cast<std::ptrdiff_t>(block.y) * facet::coefficients * columns;
+        each_pixel(block, k, [&](int x, int y, const T* p) {
+          const double k2 = p[0], k3 = p[columns], slope = std::hypot(k2, k3);
+          if (slope <= floor) return;   // the mean of the one-sided derivatives of a length is 0
+          double sum = 0;
+          for (std::size_t c = 0; c < weights.size(); ++c)
+            sum += weights[c](x, y) / unit * slopes_.channels[c].at(slope).derivative;
+          to[p - k] = T(sum * (k2 / slope));
+          to[p - k + columns] = T(sum * (k3 / slope));
+        });
+      }
+    }, unit, gradient);
+    return gradient;
+  }
+
+  ModelImages change(const Grid<double>& z_nm, const Grid<double>& dz_nm) const {
+    ModelImages images = blank(z_nm);
+    const double unit = magnitude(dz_nm.data());
+    if (unit == 0) return images;
+    Grid<double> direction = dz_nm;
+    for (double& dz : direction.data()) dz /= unit;
+    const std::vector<Block> blocks = pass_.blocks(z_nm.width(), z_nm.height());
+    std::vector<Scratch> at(options_.threads), along(options_.threads);
+    parallel_for(blocks.size(), options_.threads, [&](std::size_t i, int w) {
+      const T* const k = fit(z_nm, blocks[i], at[w]);
+      const T* const dk = fit(direction, blocks[i], along[w]);
+      const double floor = pass_.floors(0, at[w]).slope;
+      each_pixel(blocks[i], k, [&](int x, int y, const T* p) {
+        const double k2 = p[0], k3 = p[pass_.columns()], slope = std::hypot(k2, k3);
+        if (slope <= floor) return;
+        const T* const d = dk + (p - k);
+        const double rise = (k2 / slope) * d[0] + (k3 / slope) * d[pass_.columns()];
+        for (std::size_t c = 0; c < images.size(); ++c)
+          images[c](x, y) = unit * rise * slopes_.channels[c].at(slope).derivative;
+      });
+    });
+    return images;
+  }
+
+ private:
+  using Scratch = typename facet::FacetPass<T>::Scratch;
+
+  ModelImages blank(const Grid<double>& z_nm) const {
+    return ModelImages(slopes_.channels.size(), Grid<double>(z_nm.width(), z_nm.height()));
+  }
+
+  const T* fit(const Grid<double>& z_nm, const Block& block, Scratch& scratch) const {
+    pass_.load(z_nm, options_.edge, block, scratch);
+    return pass_.fit(0, scratch);
+  }
+
+  template <class Work>
+  void each_pixel(const Block& block, const T* k, const Work& work) const {
+    for (int y = 0; y < block.rows; ++y, k += facet::coefficients * pass_.columns())
+      for (int x = 0; x < block.width; ++x) work(block.x + x, block.y + y, k + x);
+  }
+
+  const Slopes& slopes_;
+  ModelOptions options_;
+  facet::FacetPass<T> pass_;
+};
+
+template <class Work>
+auto run(const Slopes& slopes, double pitch_x_nm, double pitch_y_nm, const ModelOptions& options, const Work& work) {
+  if (options.double_precision) return work(SlopeEngine<double>(slopes, pitch_x_nm, pitch_y_nm, options));
+  return work(SlopeEngine<float>(slopes, pitch_x_nm, pitch_y_nm, options));
+}
+
+class LinearSlopeModel final : public Linearization {
+  template <class Work>
+  auto with_engine(const Work& work) const {
+    return run(*slopes_, pitch_x_nm_, pitch_y_nm_, options_, work);
+  }
+
+ public:
+  LinearSlopeModel(std::shared_ptr<const Slopes> slopes, const HeightField& field, const ModelOptions& options)
+      : slopes_(std::move(slopes)), options_(options), z_nm_(field.z_nm), pitch_x_nm_(field.pitch_x_nm),
+        pitch_y_nm_(field.pitch_y_nm) {
+    images_ = with_engine([&](const auto& engine) { return engine.predict(z_nm_); });
+  }
+
+  const ModelImages& images() const override { return images_; }
+
+  Grid<double> gradient(const ModelImages& weights) const override {
+    check_weights(weights, images_.size(), z_nm_);
+    return with_engine([&](const auto& engine) { return engine.gradient(z_nm_, weights); });
+  }
+
+  ModelImages change(const Grid<double>& dz_nm) const override {
+    check_change(dz_nm, z_nm_);
+    return with_engine([&](const auto& engine) { return engine.change(z_nm_, dz_nm); });
+  }
+
+ private:
+  std::shared_ptr<const Slopes> slopes_;
+  ModelOptions options_;
+  Grid<double> z_nm_;
+  double pitch_x_nm_, pitch_y_nm_;
+  ModelImages images_;
+};
+
+class SlopeModel final : public ImageModel {
+ public:
+  SlopeModel(const ModelScope& scope, const SlopeModelParameters& parameters) : scope_(scope) {
+    auto slopes = std::make_shared<Slopes>();
+    facet_kernel(parameters.facet, 1);   // throws where it is out of range
+    slopes->scale = {parameters.facet};
+    for (const SlopeChannel& channel : parameters.channels) {
+      names_.push_back(channel.name);
+      slopes->channels.emplace_back(parameters, channel);
+    }
+    check_channels(names_, "slope model");
+    slopes_ = std::move(slopes);
+  }
+
+  const std::vector<std::string>& channels() const override { return names_; }
+  const ModelScope& scope() const override { return scope_; }
+
+  ModelImages predict(const HeightField& field, const ModelOptions& options) const override {
+    check_field(scope_, field);
+    check_span(field);
+    return run(*slopes_, field.pitch_x_nm, field.pitch_y_nm, options,
+               [&](const auto& engine) { return engine.predict(field.z_nm); });
+  }
+
+  std::unique_ptr<Linearization> linearize(const HeightField& field, const ModelOptions& options) const override {
+    check_field(scope_, field);
+    check_span(field);
+    return std::make_unique<LinearSlopeModel>(slopes_, field, options);
+  }
+
+ private:
+  ModelScope scope_;
+  std::shared_ptr<const Slopes> slopes_;
+  std::vector<std::string> names_;
+};
+
+}  // namespace
+
+std::shared_ptr<const ImageModel> make_slope_model(const ModelScope& scope, const SlopeModelParameters& parameters) {
+  return std::make_shared<SlopeModel>(scope, parameters);
+}
+
+}  // namespace surf
