@@ -8,10 +8,10 @@
 namespace surf {
 
 std::vector<RingPoint> ring_points(int k, double ring_nm, double pixel_nm) {
-  // A quarter of a pixel apart or nearer, and at least 3 x 8 in an octant.
-  const double outer = (k + 1) * ring_nm, spacing = 0.25 * pixel_nm;
+  // A sixteenth of a pixel apart or nearer, and at least 3 x 8 in an octant.
+  const double outer = (k + 1) * ring_nm, spacing = pixel_nm / 16;
   const int radii = std::clamp(static_cast<int>(std::ceil(ring_nm / spacing)), 3, 64);
-  const int angles = std::clamp(static_cast<int>(std::ceil(outer * std::numbers::pi / 4 / spacing)), 8, 1024);
+  const int angles = std::clamp(static_cast<int>(std::ceil(outer * std::numbers::pi / 4 / spacing)), 8, 4096);
   std::vector<RingPoint> points;
   for (int i = 0; i < radii; ++i) {
     const double t = (i + 0.5) / radii;   // of the ring's area

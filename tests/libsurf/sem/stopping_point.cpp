@@ -73,15 +73,23 @@ TEST(StoppingPoint, GivesWhatStopsAboveAFlatSurface) {
   }
 }
 
-TEST(StoppingPoint, PitsGiveMoreAndStayFinite) {
-  HeightField pit = test::sampled(21, 21, pitch, [](int x, int y) { return x == 10 && y == 10 ? -1e4 : 0.0; });
-  const ModelImages images = model(-1)->predict(pit);
-  EXPECT_GT(images[0](10, 10), 2 * images[0](0, 0));
-  EXPECT_GT(images[1](10, 10), images[1](0, 0));
-  test::expect_finite(*model(-1), pit, Edge::mirror);
-  pit.z_nm(10, 10) = 1e4;
-  test::expect_finite(*model(-1), pit, Edge::mirror);
-  EXPECT_NEAR(model()->predict(pit)[0](10, 10), 0, 0.2);
+TEST(StoppingPoint, SpikesGiveMoreThanPitsAndAllIsFinite) {
+  const auto with = [](double z_nm) {
+    return test::sampled(21, 21, pitch, [&](int x, int y) { return x == 10 && y == 10 ? z_nm : 0.0; });
+  };
+  const ModelImages spike = model()->predict(with(1e4)), pit = model()->predict(with(-1e4));
+  for (std::size_t c = 0; c < 2; ++c) {
+    EXPECT_GT(spike[c](10, 10), 2 * spike[c](0, 0));
+    EXPECT_LT(pit[c](10, 10), 0.2 * pit[c](0, 0));
+  }
+  for (const double z : {1e4, -1e4, 1e150}) test::expect_finite(*model(), with(z), Edge::mirror);
+}
+
+TEST(StoppingPoint, GoesOnByItsTangentWhereAllComesBack) {
+  // The whole bell lies above: I is far beyond 1/2.
+  const ModelImages images = model(6)->predict(test::sampled(5, 5, pitch, [](int, int) { return 0.0; }));
+  ASSERT_GT(images[0](2, 2), 0.5);
+  EXPECT_DOUBLE_EQ(images[1](2, 2), 4 * images[0](2, 2) - 1);
 }
 
 TEST(StoppingPoint, HasExactDerivatives) {

@@ -37,7 +37,7 @@ struct StoppingPointParameters {
 /// A channel is a function of I, the number of stopping points above the surface: the sum over all pixels
 /// around of those in the pixel's column above its height, which is taken as level in itself.
 /// With `reflected` the signal is I / (1 - I) up to I = 1/2, where a surface would give back all it gets, and
-/// goes on by its tangent, 4 I - 1, so that deep pits stay finite; there it means nothing.
+/// goes on by its tangent, 4 I - 1, so that thin spikes stay finite; there it means nothing.
 ///
 /// It knows of no electron that leaves and enters again, and counts those that are past the surface though in
 /// matter they could not have come there. The scope needs a pixel size, and the rings may reach
