@@ -20,6 +20,8 @@ void add_mesh(CLI::App& app, Action& action);
 void add_erode(CLI::App& app, Action& action);
 void add_dilate(CLI::App& app, Action& action);
 void add_certainty(CLI::App& app, Action& action);
+void add_train(CLI::App& app, Action& action);
+void add_predict(CLI::App& app, Action& action);
 void add_info(CLI::App& app, Action& action);
 void add_materials(CLI::App& app, Action& action);
 void add_library(CLI::App& app, Action& action);

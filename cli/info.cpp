@@ -13,6 +13,7 @@
 #include "surf/io/height_field_file.h"
 #include "surf/io/image_file.h"
 #include "surf/io/mesh_file.h"
+#include "surf/io/model_file.h"
 #include "surf/io/sim/scene_file.h"
 #include "surf/workflow/simulate_job.h"
 
@@ -23,6 +24,7 @@ constexpr const char* examples = R"(Examples:
   semsurf info part.stl --unit um      is it closed, how large is it
   semsurf info out/cube.exr            channels, and every setting that made the image
   semsurf info scan.gwy                channels, pixels, heights and what the microscope noted
+  semsurf info si-1keV-3nm.json        what a model is for, and how far it is off
   semsurf info samples/mesa80.toml     specimen, scan and physics in words)";
 
 std::string join(const std::vector<std::string>& words) {
@@ -100,6 +102,7 @@ void print_scene(const std::filesystem::path& path,
 void print_info(const std::filesystem::path& path, std::optional<double> unit_nm,
                 const std::vector<std::filesystem::path>& material_files) {
   if (io::is_scene_file(path)) return print_scene(path, material_files);
+  if (io::is_model_file(path)) return print_model(path);
   if (io::is_height_field_file(path)) return print_height_file(path);
   if (io::is_image_file(path)) return print_image(path);
   print_mesh(path, unit_nm);
@@ -130,8 +133,8 @@ void add_info(CLI::App& app, Action& action) {
     std::vector<std::string> materials;
   };
   const auto options = std::make_shared<Options>();
-  CLI::App* sub = app.add_subcommand("info", "What is in meshes, images, AFM scans and scene files");
-  sub->add_option("FILE", options->files, "Meshes, images, AFM scans or scenes")->type_name("FILE");
+  CLI::App* sub = app.add_subcommand("info", "What is in meshes, images, AFM scans, models and scene files");
+  sub->add_option("FILE", options->files, "Meshes, images, AFM scans, models or scenes")->type_name("FILE");
   sub->add_option("--unit", options->unit, "Length of one unit of the mesh files (nm; glTF: m)")
       ->type_name("nm|um|mm|m|pm|A|in");
   sub->add_option("--materials", options->materials,
@@ -142,7 +145,7 @@ void add_info(CLI::App& app, Action& action) {
   sub->callback([options, &action] {
     action = [options] {
       if (options->files.empty())
-        throw UsageError("info", "no file is given", "Give meshes, images, AFM scans or scene files");
+        throw UsageError("info", "no file is given", "Give meshes, images, AFM scans, models or scene files");
       std::optional<double> unit_nm;
       if (options->unit) unit_nm = parse_unit_nm(*options->unit, "--unit");
       for (const std::string& file : options->files)

@@ -19,6 +19,7 @@ std::string format_extent(const Box& box);
 /// Without a unit: as the format says, else nm.
 void print_mesh(const std::filesystem::path& path, std::optional<double> unit_nm);
 void print_image(const std::filesystem::path& path);
+void print_model(const std::filesystem::path& path);
 void print_height_file(const std::filesystem::path& path);
 
 }  // namespace surf::cli

@@ -154,6 +154,8 @@ int main(int argc, char** argv) {
   add_erode(app, action);
   add_dilate(app, action);
   add_certainty(app, action);
+  add_train(app, action);
+  add_predict(app, action);
   add_info(app, action);
   add_materials(app, action);
   add_library(app, action);

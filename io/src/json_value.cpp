@@ -85,6 +85,8 @@ JsonValue JsonValue::item(const std::string& key, std::uint64_t index) const {
 
 bool JsonValue::is_object() const { return value_->is_object(); }
 
+bool JsonValue::is_text() const { return value_->is_string(); }
+
 std::vector<std::string> JsonValue::keys() const {
   if (!value_->is_object()) fail(fmt::format("an object is expected, not {}", value_->type_name()));
   std::vector<std::string> keys;

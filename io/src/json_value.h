@@ -31,6 +31,7 @@ class JsonValue {
   std::size_t count(const std::string& key) const;
 
   bool is_object() const;
+  bool is_text() const;
   /// The keys of this object, in the order of the alphabet.
   std::vector<std::string> keys() const;
 

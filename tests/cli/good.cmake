@@ -246,3 +246,28 @@ if(WEB_PACKAGES)
   semsurf_cli_test(view.scalar ARGS view block.gsf --scalar plane.gsf --drape plane.gsf -o page.html -q STDOUT "^$" WRITES page.html)
 endif()
 semsurf_cli_test(help.view ARGS view --help STDOUT "--drape" "--scalar" "Examples:")
+
+# A model on two small surfaces, and what is made of it.
+set(small_model --pixel-size 3nm --surfaces 2 --surface-size 16 --electrons 2 --model secant)
+semsurf_cli_test(help.train ARGS train --help STDOUT "What the model is for:" "Kinds of models" "Examples:")
+semsurf_cli_test(help.predict ARGS predict --help STDOUT "--model FILE.json" "Examples:")
+semsurf_cli_test(train.own_surfaces ARGS train --material Si --energy 1keV ${small_model} -o si.json
+  STDOUT "for +Si, 1 keV, pixels of 3.00 nm" "2 simulated, 0 there before, in si.training" "all learnt from .* %"
+  WRITES si.json si.training/blocks.exr INFO si.json "command +semsurf train --material Si --energy 1keV")
+semsurf_cli_test(train.hold_out ARGS train ${small_model} --hold-out 1 -o si.json
+  STDOUT "blocks-rough .held out." "all held out" STDERR "no --material is given: Si" WRITES si.json
+  INFO si.json "1 surface, 256 pixels; 1 held out")
+semsurf_cli_test(train.heights ARGS train block.gsf --electrons 2 --model ikeuchi-secant -q -o block.json
+  STDOUT "^$" WRITES block.json block.training/block.exr INFO block.json "gives SE and BSE")
+semsurf_cli_test(train.signal ARGS train four.txt --pitch 3nm --signal four.png --model secant -o four.json
+  STDOUT "gives signal" WRITES four.json)
+semsurf_cli_test(train.interrupted EXIT 130 INTERRUPT ARGS train --pixel-size 3nm --electrons 100000 --model secant -o si.json
+  STDERR "stopped: there is no model yet.*same command goes on")
+semsurf_cli_test(predict.scan ARGS predict steps.txt --pitch 3nm --model secant.json --material Si --energy 1keV -o image.exr -o image.png
+  STDOUT "model +slope; gives SE and BSE" "image +[0-9]+ x [0-9]+ pixels of 3.00 nm" "SE +[0-9.]+ to"
+  WRITES image.exr image.png INFO image.exr "model +secant.json sha256")
+semsurf_cli_test(predict.scene ARGS predict "${PROJECT_SOURCE_DIR}/samples/mesa80.toml" --model secant.json --resample -o mesa.vti
+  STDERR "are resampled to" WRITES mesa.vti)
+semsurf_cli_test(predict.steep ARGS predict steps.txt --pitch 3nm --z-unit 20nm --model secant.json -q -o image.tif
+  STDOUT "^$" STDERR "warning: .* steeper than the 70 degrees" WRITES image.tif)
+semsurf_cli_test(info.model ARGS info secant.json STDOUT "image model" "for +Si, 1 keV" "warning +few pixels" "all learnt from")

@@ -9,6 +9,7 @@
 #include "surf/io/height_field_file.h"
 #include "surf/io/image_file.h"
 #include "surf/io/mesh_file.h"
+#include "surf/io/model_file.h"
 #include "surf/io/sim/scene_file.h"
 #include "surf/io/surface_file.h"
 
@@ -40,6 +41,8 @@ bool is_scan_name(const std::filesystem::path& path) {
 void read(const std::filesystem::path& path) {
   if (io::is_scene_file(path)) {
     io::read_scene(path);
+  } else if (path.extension() == ".json") {
+    io::read_model(path);
   } else if (io::is_height_field_file(path)) {
     read_channels(path);
   } else if (is_scan_name(path)) {

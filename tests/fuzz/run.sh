@@ -11,7 +11,7 @@ seconds=$2
 shift 2
 formats=("$@")
 if ((${#formats[@]} == 0)); then
-  formats=(stl obj ply off gltf glb 3mf vtp vti toml exr tif png gwy gsf spm ibw nid sxm stp jpk txt xyz)
+  formats=(stl obj ply off gltf glb 3mf vtp vti toml exr tif png json gwy gsf spm ibw nid sxm stp jpk txt xyz)
 fi
 
 found=0

@@ -99,4 +99,31 @@ HeightField upsampled(const HeightField& surface, int factor) {
   return out;
 }
 
+HeightField resampled(const HeightField& surface, double pitch_nm) {
+  validate(surface);
+  const double rx = pitch_nm / surface.pitch_x_nm, ry = pitch_nm / surface.pitch_y_nm;
+  if (!(pitch_nm > 0 && std::isfinite(pitch_nm)))
+    throw InvalidInput("height field", fmt::format("it cannot have a pitch of {:g} nm", pitch_nm),
+                       "Give one above 0");
+  const double across = std::floor((surface.z_nm.width() - 1) / rx + 1e-9) + 1;
+  const double down = std::floor((surface.z_nm.height() - 1) / ry + 1e-9) + 1;
+  if (across < 2 || down < 2 || across * down > 0x1p28)
+    throw InvalidInput("height field",
+                       fmt::format("at a pitch of {:g} nm it has {:g} x {:g} samples", pitch_nm, across, down),
+                       "2 x 2 to 2^28 are possible: choose another pitch");
+  const int w = static_cast<int>(across), h = static_cast<int>(down);
+  HeightField out{Grid<double>(w, h), {}, pitch_nm, pitch_nm, surface.origin_x_nm, surface.origin_y_nm};
+  if (!surface.valid.empty()) out.valid = Grid<unsigned char>(w, h, 1);
+  const auto sample = [&](int x, int y) {
+    return surface.is_valid(x, y) ? surface.z_nm(x, y) : std::numeric_limits<double>::quiet_NaN();
+  };
+  for (int y = 0; y < h; ++y)
+    for (int x = 0; x < w; ++x) {
+      const double z = bilinear(sample, place(x * rx, surface.z_nm.width()), place(y * ry, surface.z_nm.height()));
+      if (std::isnan(z)) out.valid(x, y) = 0;
+      else out.z_nm(x, y) = z;
+    }
+  return out;
+}
+
 }  // namespace surf

@@ -31,7 +31,7 @@ ModelImages BankEngine<T>::blank(const Grid<double>& z_nm, bool with_offset) con
 }
 
 template <class T>
-void BankEngine<T>::add(const Block& block, const std::vector<T>& sum, double unit, ModelImages& images) const {
+void BankEngine<T>::add(const Block& block, const AlignedVector<T>& sum, double unit, ModelImages& images) const {
   const T* from = sum.data();
   for (Grid<double>& image : images)
     for (int y = 0; y < block.rows; ++y, from += pass_.columns())
@@ -45,7 +45,7 @@ ModelImages BankEngine<T>::predict(const Grid<double>& z_nm) const {
   const std::vector<Block> blocks = pass_.blocks(z_nm.width(), z_nm.height());
   struct Worker {
     Scratch scratch;
-    std::vector<T> sum;
+    AlignedVector<T> sum;
   };
   std::vector<Worker> workers(options_.threads);
   parallel_for(blocks.size(), options_.threads, [&](std::size_t i, int w) {
@@ -69,23 +69,24 @@ Grid<double> BankEngine<T>::gradient(const Grid<double>& z_nm, const ModelImages
   const int channels = static_cast<int>(weights.size()), columns = pass_.columns();
   const std::vector<Block> blocks = pass_.blocks(z_nm.width(), z_nm.height());
   const std::size_t parts = blocks.size() / ((z_nm.width() + columns - 1) / columns);
-  struct Worker {
-    Scratch scratch;
-    std::vector<T> weights;
-  };
-  std::vector<Worker> workers(options_.threads);
+  std::vector<AlignedVector<T>> block_weights(blocks.size());
+  parallel_for(blocks.size(), options_.threads, [&](std::size_t i, int) {
+    const Block& block = blocks[i];
+    block_weights[i].resize(static_cast<std::size_t>(channels) * block.rows * columns);
+    T* to = block_weights[i].data();
+    for (const Grid<double>& image : weights)
+      for (int y = 0; y < block.rows; ++y, to += columns)
+        for (int x = 0; x < block.width; ++x) to[x] = T(image(block.x + x, block.y + y) / unit);
+  });
+  std::vector<Scratch> workers(options_.threads);
   const auto source = [&](int w, int scale, const Block& column, T* out) {
-    auto& [scratch, weight] = workers[w];
     for (std::size_t part = 0; part < parts; ++part) {
-      const Block& block = blocks[column.x / columns * parts + part];
-      weight.assign(static_cast<std::size_t>(channels) * block.rows * columns, T(0));
-      T* to = weight.data();
-      for (const Grid<double>& image : weights)
-        for (int y = 0; y < block.rows; ++y, to += columns)
-          for (int x = 0; x < block.width; ++x) to[x] = T(image(block.x + x, block.y + y) / unit);
-      pass_.load(z_nm, options_.edge, block, scratch, scale);
-      pass_.loops().pull_back(pass_.fit(scale, scratch), block.rows, pass_.floors(scale, scratch),
-                              weights_[scale].data(), channels, weight.data(),
+      const std::size_t i = column.x / columns * parts + part;
+      const Block& block = blocks[i];
+      pass_.load(z_nm, options_.edge, block, workers[w], scale);
+      const T* const k = pass_.fit(scale, workers[w]);
+      pass_.loops().pull_back(k, block.rows, pass_.floors(scale, workers[w]), weights_[scale].data(), channels,
+                              block_weights[i].data(),
                               out + static_cast<std::ptrdiff_t>(block.y) * facet::coefficients * columns);
     }
   };
@@ -104,7 +105,7 @@ ModelImages BankEngine<T>::change(const Grid<double>& z_nm, const Grid<double>& 
   const std::vector<Block> blocks = pass_.blocks(z_nm.width(), z_nm.height());
   struct Worker {
     Scratch at, along;
-    std::vector<T> sum;
+    AlignedVector<T> sum;
   };
   std::vector<Worker> workers(options_.threads);
   parallel_for(blocks.size(), options_.threads, [&](std::size_t i, int w) {
@@ -126,7 +127,7 @@ void BankEngine<T>::invariants(const Grid<double>& z_nm, const Sink& sink) const
   const std::vector<Block> blocks = pass_.blocks(z_nm.width(), z_nm.height());
   struct Worker {
     Scratch scratch;
-    std::vector<std::vector<T>> scales;
+    std::vector<AlignedVector<T>> scales;
   };
   std::vector<Worker> workers(options_.threads);
   parallel_for(blocks.size(), options_.threads, [&](std::size_t i, int w) {

@@ -22,13 +22,14 @@ class BankEngine {
 
   /// Told, from several threads, of all invariants at a block: for every scale its slope, largest and
   /// smallest principal curvature, row by row and `columns` each.
-  using Sink = std::function<void(const facet::Block& block, int columns, const std::vector<std::vector<T>>& scales)>;
+  using Sink =
+      std::function<void(const facet::Block& block, int columns, const std::vector<AlignedVector<T>>& scales)>;
   void invariants(const Grid<double>& z_nm, const Sink& sink) const;
 
  private:
   using Scratch = typename facet::FacetPass<T>::Scratch;
   ModelImages blank(const Grid<double>& z_nm, bool with_offset) const;
-  void add(const facet::Block& block, const std::vector<T>& sum, double unit, ModelImages& images) const;
+  void add(const facet::Block& block, const AlignedVector<T>& sum, double unit, ModelImages& images) const;
 
   const FilterBankParameters& parameters_;
   ModelOptions options_;

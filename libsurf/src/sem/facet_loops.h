@@ -20,13 +20,24 @@ struct Loops {
 
   SEMSURF_INLINE static void load(V& v, const T* p) { __builtin_memcpy(&v, p, sizeof v); }
   SEMSURF_INLINE static void store(T* p, const V& v) { __builtin_memcpy(p, &v, sizeof v); }
-  SEMSURF_INLINE static void add(T* p, const V& v) {
+  SEMSURF_INLINE static void increase(T* p, const V& v) {
     V sum;
     load(sum, p);
     store(p, sum + v);
   }
 
-  SEMSURF_INLINE static void across(const T* z, std::ptrdiff_t stride, int rows, const AcrossTap<T>* taps,
+
+  /// Both for a sum and a difference. Keeps GCC from loading b a second time: loads are what is short. Clang
+  /// does not allow it for vectors that the file's own target lacks.
+  SEMSURF_INLINE static void load_pair(V& a, V& b, const T* p, const T* q) {
+    load(a, p);
+    load(b, q);
+#if defined(__x86_64__) && !defined(__clang__)
+    asm("" : "+v"(b));
+#endif
+  }
+
+  SEMSURF_INLINE static void across(const T* z, std::ptrdiff_t stride, int rows, const Tap<T>* taps,
                                     int radius, T* out) {
     for (int y = 0; y < rows; ++y, z += stride, out += moments * columns) {
       V m0[vectors], m1[vectors], m2[vectors], m3[vectors];
@@ -38,11 +49,10 @@ struct Loops {
         m1[v] = m3[v] = V{};
       }
       for (int k = 1; k <= radius; ++k) {
-        const AcrossTap<T> t = taps[k];
+        const Tap<T> t = taps[k];
         for (int v = 0; v < vectors; ++v) {
           V right, left;
-          load(right, z + v * lanes + k);
-          load(left, z + v * lanes - k);
+          load_pair(right, left, z + v * lanes + k, z + v * lanes - k);
           const V sum = right + left, difference = right - left;
           m0[v] += sum * t.e0;
           m1[v] += difference * t.o1;
@@ -59,45 +69,42 @@ struct Loops {
     }
   }
 
-  SEMSURF_INLINE static void along(const T* const* row, int rows, const AlongTap<T>* taps, int radius, T* out) {
+  SEMSURF_INLINE static void along(const T* const* row, int rows, const Tap<T>* taps, int radius,
+                                   const Scaling<T>& scaling, T* out) {
     for (int y = 0; y < rows; ++y, ++row, out += coefficients * columns) {
       V k2[vectors], k3[vectors], k4[vectors], k5[vectors], k6[vectors];
       for (int v = 0; v < vectors; ++v) {
         const T* const c = row[0] + v * lanes;
-        V m;
-        load(m, c);
-        k4[v] = m * taps[0].e2;
-        load(m, c + columns);
-        k3[v] = m * taps[0].e2_mix;
-        load(m, c + 2 * columns);
-        k6[v] = m * taps[0].e0;
-        load(m, c + 3 * columns);
-        k3[v] += m * taps[0].e0;
+        V m0, m1, m2, m3;
+        load(m0, c);
+        load(m1, c + columns);
+        load(m2, c + 2 * columns);
+        load(m3, c + 3 * columns);
+        k4[v] = m0 * taps[0].e2;
+        k3[v] = m1 * taps[0].e2 + m3 * taps[0].e0;
+        k6[v] = m2 * taps[0].e0;
         k2[v] = k5[v] = V{};
       }
       for (int k = 1; k <= radius; ++k) {
         const T *const up = row[k], *const down = row[-k];
-        const AlongTap<T>& t = taps[k];
+        const Tap<T> t = taps[k];
         for (int v = 0; v < vectors; ++v) {
           V a, b;
-          load(a, up + v * lanes);
-          load(b, down + v * lanes);
+          load_pair(a, b, up + v * lanes, down + v * lanes);
           k4[v] += (a + b) * t.e2;
           k2[v] += (a - b) * t.o3;
         }
         for (int v = 0; v < vectors; ++v) {
           V a, b;
-          load(a, up + columns + v * lanes);
-          load(b, down + columns + v * lanes);
-          k3[v] += (a + b) * t.e2_mix;
+          load_pair(a, b, up + columns + v * lanes, down + columns + v * lanes);
+          k3[v] += (a + b) * t.e2;
           k5[v] += (a - b) * t.o1;
         }
         for (int v = 0; v < vectors; ++v) {
           V a, b;
-          load(a, up + 2 * columns + v * lanes);
-          load(b, down + 2 * columns + v * lanes);
+          load_pair(a, b, up + 2 * columns + v * lanes, down + 2 * columns + v * lanes);
           k6[v] += (a + b) * t.e0;
-          k2[v] += (a - b) * t.o1_mix;
+          k2[v] += (a - b) * t.o1;
         }
         for (int v = 0; v < vectors; ++v) {
           V a, b;
@@ -110,37 +117,38 @@ struct Loops {
         store(out + v * lanes, k2[v]);
         store(out + columns + v * lanes, k3[v]);
         store(out + 2 * columns + v * lanes, k4[v]);
-        store(out + 3 * columns + v * lanes, k5[v]);
-        store(out + 4 * columns + v * lanes, k6[v]);
+        store(out + 3 * columns + v * lanes, k5[v] * scaling.k5);
+        store(out + 4 * columns + v * lanes, k6[v] * scaling.k6);
       }
     }
   }
 
-  SEMSURF_INLINE static void along_transposed(const T* const* row, int rows, const AlongTap<T>* taps,
-                                              int radius, T* const* out, std::ptrdiff_t plane) {
+  SEMSURF_INLINE static void along_transposed(const T* const* row, int rows, const Tap<T>* taps, int begin,
+                                              int radius, bool add, T* const* out, std::ptrdiff_t plane) {
     for (int y = 0; y < rows; ++y, ++row) {
+      T* const to = out[y];
       V m0[vectors], m1[vectors], m2[vectors], m3[vectors];
       for (int v = 0; v < vectors; ++v) {
         const T* const c = row[0] + v * lanes;
-        V g;
-        load(g, c + columns);
-        m3[v] = g * taps[0].e0;
-        m1[v] = g * taps[0].e2_mix;
-        load(g, c + 2 * columns);
-        m0[v] = g * taps[0].e2;
-        load(g, c + 4 * columns);
-        m2[v] = g * taps[0].e0;
+        V g3, g4, g6;
+        load(g3, c + columns);
+        load(g4, c + 2 * columns);
+        load(g6, c + 4 * columns);
+        m0[v] = g4 * taps[0].e2;
+        m1[v] = g3 * taps[0].e2;
+        m2[v] = g6 * taps[0].e0;
+        m3[v] = g3 * taps[0].e0;
       }
-      for (int k = 1; k <= radius; ++k) {
+      for (int k = begin; k <= radius; ++k) {
         const T *const up = row[k], *const down = row[-k];
-        const AlongTap<T>& t = taps[k];
+        const Tap<T> t = taps[k];
         for (int v = 0; v < vectors; ++v) {
           V a, b;
           load(a, up + v * lanes);
           load(b, down + v * lanes);
           const V difference = b - a;   // odd factors change their sign
           m0[v] += difference * t.o3;
-          m2[v] += difference * t.o1_mix;
+          m2[v] += difference * t.o1;
         }
         for (int v = 0; v < vectors; ++v) {
           V a, b;
@@ -148,7 +156,7 @@ struct Loops {
           load(b, down + columns + v * lanes);
           const V sum = a + b;
           m3[v] += sum * t.e0;
-          m1[v] += sum * t.e2_mix;
+          m1[v] += sum * t.e2;
         }
         for (int v = 0; v < vectors; ++v) {
           V a, b;
@@ -169,18 +177,25 @@ struct Loops {
           m2[v] += (a + b) * t.e0;
         }
       }
-      T* const to = out[y];
       for (int v = 0; v < vectors; ++v) {
-        add(to + v * lanes, m0[v]);
-        add(to + plane + v * lanes, m1[v]);
-        add(to + 2 * plane + v * lanes, m2[v]);
-        add(to + 3 * plane + v * lanes, m3[v]);
+        T* const p = to + v * lanes;
+        if (add) {
+          increase(p, m0[v]);
+          increase(p + plane, m1[v]);
+          increase(p + 2 * plane, m2[v]);
+          increase(p + 3 * plane, m3[v]);
+        } else {
+          store(p, m0[v]);
+          store(p + plane, m1[v]);
+          store(p + 2 * plane, m2[v]);
+          store(p + 3 * plane, m3[v]);
+        }
       }
     }
   }
 
   SEMSURF_INLINE static void across_transposed(const T* moment, std::ptrdiff_t plane, int count,
-                                               const AcrossTap<T>* taps, int radius, T* out) {
+                                               const Tap<T>* taps, int radius, T* out) {
     for (int x = 0; x < count; x += columns) {
       const T* const c = moment + x;
       V sum[vectors];
@@ -193,7 +208,7 @@ struct Loops {
       // Two sums each, so that they need not wait for one another.
       V odd[vectors] = {};
       for (int k = 1; k <= radius; ++k) {
-        const AcrossTap<T> t = taps[k];
+        const Tap<T> t = taps[k];
         for (int v = 0; v < vectors; ++v) {
           const T* const p = c + v * lanes;
           V a, b;
@@ -211,100 +226,124 @@ struct Loops {
           odd[v] += (b - a) * t.o3;
         }
       }
-      for (int v = 0; v < vectors; ++v) add(out + x + v * lanes, sum[v] + odd[v]);
+      for (int v = 0; v < vectors; ++v) increase(out + x + v * lanes, sum[v] + odd[v]);
     }
   }
 
-  SEMSURF_INLINE static T root(T x) {
-    if constexpr (sizeof(T) == sizeof(float)) return __builtin_sqrtf(x);
-    else return __builtin_sqrt(x);
+  SEMSURF_INLINE static void take_root(V& x) {
+    T each[lanes];
+    __builtin_memcpy(each, &x, sizeof x);
+    for (T& value : each) {
+      if constexpr (sizeof(T) == sizeof(float)) value = __builtin_sqrtf(value);
+      else value = __builtin_sqrt(value);
+    }
+    __builtin_memcpy(&x, each, sizeof x);
   }
 
   /// 1 / root, and 0 where the root is 0: the mean of the one-sided derivatives of a length is 0 there.
-  SEMSURF_INLINE static T inverse(T length, T floor) { return length > floor ? 1 / length : T(0); }
+  SEMSURF_INLINE static void invert(V& length, T floor) { length = length > floor ? 1 / length : V{}; }
+
+  /// The coefficients of some pixels, and the roots of their invariants.
+  struct Pixels {
+    V k2, k3, k4, k5, k6;
+
+    [[gnu::always_inline]] explicit Pixels(const T* k) {
+      load(k2, k);
+      load(k3, k + columns);
+      load(k4, k + 2 * columns);
+      load(k5, k + 3 * columns);
+      load(k6, k + 4 * columns);
+    }
+    SEMSURF_INLINE void roots(V& slope, V& half_difference) const {
+      slope = k2 * k2 + k3 * k3;
+      half_difference = (k6 - k4) * (k6 - k4) + k5 * k5;
+      take_root(slope);
+      take_root(half_difference);
+    }
+  };
+
+  /// Adds a channel's share of a scale.
+  SEMSURF_INLINE static void add_channels(const V& slope, const V& mean, const V& half, const Weights<T>* weights,
+                                          int channels, std::ptrdiff_t plane, T* sum) {
+    for (int c = 0; c < channels; ++c) {
+      const Weights<T> w = weights[c];
+      increase(sum + c * plane, slope * w.slope + mean * (w.max_curvature + w.min_curvature) +
+                                    half * (w.max_curvature - w.min_curvature));
+    }
+  }
 
   SEMSURF_INLINE static void invariants(const T* k, int rows, T* out) {
     for (int y = 0; y < rows; ++y, k += coefficients * columns, out += 3 * columns)
-      for (int x = 0; x < columns; ++x) {
-        const T k2 = k[x], k3 = k[columns + x], k4 = k[2 * columns + x], k5 = k[3 * columns + x],
-                k6 = k[4 * columns + x];
-        const T mean = k6 + k4, half = root((k6 - k4) * (k6 - k4) + k5 * k5);
-        out[x] = root(k2 * k2 + k3 * k3);
-        out[columns + x] = mean + half;
-        out[2 * columns + x] = mean - half;
+      for (int x = 0; x < columns; x += lanes) {
+        const Pixels p(k + x);
+        const V mean = p.k6 + p.k4;
+        V slope, half;
+        p.roots(slope, half);
+        store(out + x, slope);
+        store(out + columns + x, mean + half);
+        store(out + 2 * columns + x, mean - half);
       }
   }
 
   SEMSURF_INLINE static void combine(const T* k, int rows, const Weights<T>* weights, int channels, T* sum) {
     const std::ptrdiff_t plane = static_cast<std::ptrdiff_t>(rows) * columns;
-    for (int y = 0; y < rows; ++y, k += coefficients * columns, sum += columns) {
-      T slope[columns], mean[columns], half[columns];
-      for (int x = 0; x < columns; ++x) {
-        const T k2 = k[x], k3 = k[columns + x], k4 = k[2 * columns + x], k5 = k[3 * columns + x],
-                k6 = k[4 * columns + x];
-        slope[x] = root(k2 * k2 + k3 * k3);
-        mean[x] = k6 + k4;
-        half[x] = root((k6 - k4) * (k6 - k4) + k5 * k5);
+    for (int y = 0; y < rows; ++y, k += coefficients * columns, sum += columns)
+      for (int x = 0; x < columns; x += lanes) {
+        const Pixels p(k + x);
+        V slope, half;
+        p.roots(slope, half);
+        add_channels(slope, p.k6 + p.k4, half, weights, channels, plane, sum + x);
       }
-      for (int c = 0; c < channels; ++c) {
-        const T a = weights[c].slope, b = weights[c].max_curvature + weights[c].min_curvature,
-                d = weights[c].max_curvature - weights[c].min_curvature;
-        T* const to = sum + c * plane;
-        for (int x = 0; x < columns; ++x) to[x] += a * slope[x] + b * mean[x] + d * half[x];
-      }
-    }
   }
 
-  SEMSURF_INLINE static void pull_back(const T* k, int rows, const Floors<T>& floors,
-                                       const Weights<T>* weights, int channels, const T* weight, T* out) {
+  SEMSURF_INLINE static void pull_back(const T* k, int rows, const Floors<T>& floors, const Weights<T>* weights,
+                                       int channels, const T* weight, T* out) {
     const std::ptrdiff_t plane = static_cast<std::ptrdiff_t>(rows) * columns;
-    for (int y = 0; y < rows; ++y, k += coefficients * columns, out += coefficients * columns, weight += columns) {
-      T a[columns] = {}, b[columns] = {}, d[columns] = {};
-      for (int c = 0; c < channels; ++c) {
-        const T wa = weights[c].slope, wb = weights[c].max_curvature + weights[c].min_curvature,
-                wd = weights[c].max_curvature - weights[c].min_curvature;
-        const T* const w = weight + c * plane;
-        for (int x = 0; x < columns; ++x) {
-          a[x] += wa * w[x];
-          b[x] += wb * w[x];
-          d[x] += wd * w[x];
+    for (int y = 0; y < rows; ++y, k += coefficients * columns, out += coefficients * columns, weight += columns)
+      for (int x = 0; x < columns; x += lanes) {
+        V slope = {}, mean = {}, half = {};
+        for (int c = 0; c < channels; ++c) {
+          const Weights<T> f = weights[c];
+          V w;
+          load(w, weight + c * plane + x);
+          slope += w * f.slope;
+          mean += w * (f.max_curvature + f.min_curvature);
+          half += w * (f.max_curvature - f.min_curvature);
         }
+        const Pixels p(k + x);
+        V length, difference;
+        p.roots(length, difference);
+        invert(length, floors.slope);
+        invert(difference, floors.curvature);
+        slope *= length;
+        half *= difference;
+        const V tilt = half * (p.k6 - p.k4);
+        store(out + x, slope * p.k2);
+        store(out + columns + x, slope * p.k3);
+        store(out + 2 * columns + x, mean - tilt);
+        store(out + 3 * columns + x, half * p.k5);
+        store(out + 4 * columns + x, mean + tilt);
       }
-      for (int x = 0; x < columns; ++x) {
-        const T k2 = k[x], k3 = k[columns + x], k4 = k[2 * columns + x], k5 = k[3 * columns + x],
-                k6 = k[4 * columns + x];
-        const T slope = a[x] * inverse(root(k2 * k2 + k3 * k3), floors.slope);
-        const T half = d[x] * inverse(root((k6 - k4) * (k6 - k4) + k5 * k5), floors.curvature);
-        out[x] = slope * k2;
-        out[columns + x] = slope * k3;
-        out[2 * columns + x] = b[x] - half * (k6 - k4);
-        out[3 * columns + x] = half * k5;
-        out[4 * columns + x] = b[x] + half * (k6 - k4);
-      }
-    }
   }
 
   SEMSURF_INLINE static void push_forward(const T* k, const T* dk, int rows, const Floors<T>& floors,
                                           const Weights<T>* weights, int channels, T* sum) {
     const std::ptrdiff_t plane = static_cast<std::ptrdiff_t>(rows) * columns;
-    for (int y = 0; y < rows; ++y, k += coefficients * columns, dk += coefficients * columns, sum += columns) {
-      T slope[columns], mean[columns], half[columns];
-      for (int x = 0; x < columns; ++x) {
-        const T k2 = k[x], k3 = k[columns + x], k4 = k[2 * columns + x], k5 = k[3 * columns + x],
-                k6 = k[4 * columns + x];
-        const T d4 = dk[2 * columns + x], d6 = dk[4 * columns + x];
-        slope[x] = (k2 * dk[x] + k3 * dk[columns + x]) * inverse(root(k2 * k2 + k3 * k3), floors.slope);
-        mean[x] = d6 + d4;
-        half[x] = ((k6 - k4) * (d6 - d4) + k5 * dk[3 * columns + x]) *
-                  inverse(root((k6 - k4) * (k6 - k4) + k5 * k5), floors.curvature);
+    for (int y = 0; y < rows; ++y, k += coefficients * columns, dk += coefficients * columns, sum += columns)
+      for (int x = 0; x < columns; x += lanes) {
+        const Pixels p(k + x), d(dk + x);
+        V slope, half;
+        p.roots(slope, half);
+        invert(slope, floors.slope);
+        invert(half, floors.curvature);
+        slope *= p.k2 * d.k2 + p.k3 * d.k3;
+        half *= (p.k6 - p.k4) * (d.k6 - d.k4) + p.k5 * d.k5;
+        add_channels(slope, d.k6 + d.k4, half, weights, channels, plane, sum + x);
       }
-      for (int c = 0; c < channels; ++c) {
-        const T a = weights[c].slope, b = weights[c].max_curvature + weights[c].min_curvature,
-                d = weights[c].max_curvature - weights[c].min_curvature;
-        T* const to = sum + c * plane;
-        for (int x = 0; x < columns; ++x) to[x] += a * slope[x] + b * mean[x] + d * half[x];
-      }
-    }
+  }
+
+  SEMSURF_INLINE static void relative(const double* z, int count, double level, T* out) {
+    for (int i = 0; i < count; ++i) out[i] = static_cast<T>(z[i] - level);
   }
 
   SEMSURF_INLINE static T largest(const T* values, std::ptrdiff_t count) {

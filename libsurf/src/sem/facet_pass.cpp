@@ -35,14 +35,14 @@ FacetPass<T>::FacetPass(const std::vector<FacetScale>& scales, double pitch_x_nm
     const FacetKernel x = facet_kernel(scale, pitch_x_nm), y = facet_kernel(scale, pitch_y_nm);
     Kernel& kernel = kernels_.emplace_back();
     kernel.radius = x.radius;
+    kernel.scaling = {T(-1 / y.mix), T(-1 / x.mix)};
     kernel.slope_noise = slope_noise(x, y) + slope_noise(y, x);
     kernel.curvature_noise = sum_of_magnitudes(x.e2) + sum_of_magnitudes(y.e2) +
                              sum_of_magnitudes(x.o1) * sum_of_magnitudes(y.o1);
     radius_ = std::max(radius_, x.radius);
     for (int u = 0; u <= x.radius; ++u) {
-      kernel.across.push_back({T(x.e0[u]), T(x.o1[u]), T(x.e2[u]), T(x.o3[u])});
-      kernel.along.push_back({T(y.e2[u]), T(y.o3[u]), T(-x.mix * y.o1[u]), T(y.e0[u]), T(-y.mix * y.e2[u]),
-                              T(y.o1[u])});
+      kernel.across.push_back({T(x.e0[u]), T(-y.mix * x.o1[u]), T(-x.mix * x.e2[u]), T(x.o3[u])});
+      kernel.along.push_back({T(y.e0[u]), T(y.o1[u]), T(y.e2[u]), T(y.o3[u])});
     }
   }
 }
@@ -91,7 +91,8 @@ template <class T>
 void FacetPass<T>::fill_tile(const Grid<double>& z_nm, Edge edge, Scratch& s) const {
   const int width = z_nm.width(), stride = columns() + 2 * s.radius;
   const std::size_t samples = s.rows.size() * static_cast<std::size_t>(stride);
-  s.tile.assign((samples / columns() + 1) * columns(), T(0));   // whole vectors
+  s.tile.resize((samples / columns() + 1) * columns());   // whole vectors
+  std::fill(s.tile.begin() + static_cast<std::ptrdiff_t>(samples), s.tile.end(), T(0));
   const double level = z_nm(s.block.x + s.block.width / 2, s.block.y + s.block.rows / 2);
   const int first = s.block.x - s.radius;
   const int begin = std::clamp(-first, 0, stride), end = std::clamp(width - first, begin, stride);
@@ -99,7 +100,7 @@ void FacetPass<T>::fill_tile(const Grid<double>& z_nm, Edge edge, Scratch& s) co
     T* const out = s.tile.data() + i * stride;
     const double* const z = &z_nm(0, s.rows[i]);
     for (int x = 0; x < begin; ++x) out[x] = T(z[border_sample(first + x, width, edge)] - level);
-    for (int x = begin; x < end; ++x) out[x] = T(z[first + x] - level);
+    loops_->relative(z + first + begin, end - begin, level, out + begin);
     for (int x = end; x < stride; ++x) out[x] = T(z[border_sample(first + x, width, edge)] - level);
   }
 }
@@ -131,7 +132,7 @@ const T* FacetPass<T>::fit(int scale, Scratch& s) const {
   loops_->across(s.tile.data() + s.radius, columns() + 2 * s.radius, s.tile_rows[kernel.radius],
                  kernel.across.data(), kernel.radius, s.moments.data());
   loops_->along(s.pointers.data() + s.radius, s.block.rows, kernel.along.data(), kernel.radius,
-                s.coefficients.data());
+                kernel.scaling, s.coefficients.data());
   return s.coefficients.data();
 }
 
@@ -143,24 +144,35 @@ Floors<T> FacetPass<T>::floors(int scale, const Scratch& s) const {
 }
 
 template <class T>
+void FacetPass<T>::scale_weights(const Scaling<T>& scaling, int height, AlignedVector<T>& weights) const {
+  T* row = weights.data();
+  for (int y = 0; y < height; ++y, row += coefficients * columns())
+    for (int x = 0; x < columns(); ++x) {
+      row[3 * columns() + x] *= scaling.k5;
+      row[4 * columns() + x] *= scaling.k6;
+    }
+}
+
+template <class T>
 void FacetPass<T>::transpose(Edge edge, int threads, const Source& source, double unit,
                              Grid<double>& gradient) const {
   const int width = gradient.width(), height = gradient.height(), wide = columns();
   const int strips = (width + wide - 1) / wide;
   // Moments of a row, one plane after the other, with zeros to both sides; and the sums of the rows with
   // what falls outside the field, which is folded back at the end.
-  const std::ptrdiff_t plane = std::ptrdiff_t{strips} * wide + 4 * radius_ + 2 * wide;
+  const std::ptrdiff_t margin = (2 * radius_ + wide - 1) / wide * wide;   // strips begin at cache lines
+  const std::ptrdiff_t plane = std::ptrdiff_t{strips} * wide + 2 * margin + wide;
   const std::ptrdiff_t out_stride = std::ptrdiff_t{strips} * wide + 2 * radius_ + wide;
-  std::vector<T> planes(static_cast<std::size_t>(height * moments * plane));
-  std::vector<T> sums(static_cast<std::size_t>(height * out_stride));
+  AlignedVector<T> planes(static_cast<std::size_t>(height * moments * plane));
+  AlignedVector<T> sums(static_cast<std::size_t>(height * out_stride));
   struct Worker {
-    std::vector<T> weights;
+    AlignedVector<T> weights;
     std::vector<const T*> rows;
     std::vector<T*> out;
   };
   threads = resolve_threads(threads);
   std::vector<Worker> workers(threads);
-  const std::vector<T> nothing(coefficients * wide);
+  const AlignedVector<T> nothing(coefficients * wide);
 
   for (int scale = 0; scale < scales(); ++scale) {
     const Kernel& kernel = kernels_[scale];
@@ -170,23 +182,27 @@ void FacetPass<T>::transpose(Edge edge, int threads, const Source& source, doubl
       const int x = static_cast<int>(strip) * wide;
       worker.weights.resize(static_cast<std::size_t>(height) * coefficients * wide);
       source(w, scale, {x, 0, std::min(wide, width - x), height}, worker.weights.data());
+      scale_weights(kernel.scaling, height, worker.weights);
       worker.rows.assign(height + 4 * r, nothing.data());
       worker.out.resize(height + 2 * r);
+      const T** const rows = worker.rows.data() + 2 * r;
+      T** const to = worker.out.data() + r;
       for (int y = 0; y < height; ++y)
-        worker.rows[2 * r + y] = worker.weights.data() + static_cast<std::ptrdiff_t>(y) * coefficients * wide;
+        rows[y] = worker.weights.data() + static_cast<std::ptrdiff_t>(y) * coefficients * wide;
       for (int y = -r; y < height + r; ++y)
-        worker.out[y + r] = planes.data() + border_sample(y, height, edge) * moments * plane + 2 * radius_ + x;
-      for (int y = 0; y < height; ++y)
-        for (int m = 0; m < moments; ++m) std::fill_n(worker.out[y + r] + m * plane, wide, T(0));
-      loops_->along_transposed(worker.rows.data() + r, height + 2 * r, kernel.along.data(), r,
-                               worker.out.data(), plane);
+        to[y] = planes.data() + border_sample(y, height, edge) * moments * plane + margin + x;
+      loops_->along_transposed(rows, height, kernel.along.data(), 1, r, false, to, plane);
+      // Outside the field nothing is nearer than the field.
+      for (int out = 1; out <= r; ++out)
+        for (const int y : {-out, height - 1 + out})
+          loops_->along_transposed(rows + y, 1, kernel.along.data(), out, r, true, to + y, plane);
     });
     const int count = (strips * wide + 2 * r + wide - 1) / wide * wide;
     constexpr int rows_at_once = 8;
     parallel_for((height + rows_at_once - 1) / rows_at_once, threads, [&](std::size_t part, int) {
       const int begin = static_cast<int>(part) * rows_at_once, end = std::min(height, begin + rows_at_once);
       for (int y = begin; y < end; ++y)
-        loops_->across_transposed(planes.data() + y * moments * plane + 2 * radius_ - r, plane, count,
+        loops_->across_transposed(planes.data() + y * moments * plane + margin - r, plane, count,
                                   kernel.across.data(), r, sums.data() + y * out_stride + radius_ - r);
     });
   }

@@ -5,6 +5,7 @@
 #include <functional>
 #include <vector>
 
+#include "aligned.h"
 #include "facet_units.h"
 #include "surf/core/edge.h"
 #include "surf/core/grid.h"
@@ -38,7 +39,7 @@ class FacetPass {
   struct Scratch {
     Block block;
     int radius = 0;
-    std::vector<T> tile, moments, coefficients;
+    AlignedVector<T> tile, moments, coefficients;
     std::vector<int> rows, index, tile_rows;
     std::vector<const T*> pointers;
   };
@@ -65,12 +66,13 @@ class FacetPass {
  private:
   struct Kernel {
     int radius;
-    std::vector<AcrossTap<T>> across;
-    std::vector<AlongTap<T>> along;
+    std::vector<Tap<T>> across, along;
+    Scaling<T> scaling;
     double slope_noise, curvature_noise;   ///< sums of the magnitudes of all factors
   };
   void list_rows(int height, Edge edge, Scratch& scratch) const;
   void fill_tile(const Grid<double>& z_nm, Edge edge, Scratch& scratch) const;
+  void scale_weights(const Scaling<T>& scaling, int height, AlignedVector<T>& weights) const;
 
   std::vector<Kernel> kernels_;
   int radius_ = 0;   ///< the largest

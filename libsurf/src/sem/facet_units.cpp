@@ -11,19 +11,20 @@ namespace {
   template <class T>                                                                                         \
   struct name {                                                                                              \
     using L = Loops<T, bytes>;                                                                               \
-    target static void across(const T* z, std::ptrdiff_t stride, int rows, const AcrossTap<T>* taps,         \
-                              int radius, T* out) {                                                          \
+    target static void across(const T* z, std::ptrdiff_t stride, int rows, const Tap<T>* taps, int radius,   \
+                              T* out) {                                                                      \
       L::across(z, stride, rows, taps, radius, out);                                                         \
     }                                                                                                        \
-    target static void along(const T* const* row, int rows, const AlongTap<T>* taps, int radius, T* out) {   \
-      L::along(row, rows, taps, radius, out);                                                                \
+    target static void along(const T* const* row, int rows, const Tap<T>* taps, int radius,                  \
+                             const Scaling<T>& scaling, T* out) {                                            \
+      L::along(row, rows, taps, radius, scaling, out);                                                       \
     }                                                                                                        \
-    target static void along_transposed(const T* const* row, int rows, const AlongTap<T>* taps, int radius,  \
-                                        T* const* out, std::ptrdiff_t plane) {                               \
-      L::along_transposed(row, rows, taps, radius, out, plane);                                              \
+    target static void along_transposed(const T* const* row, int rows, const Tap<T>* taps, int begin,        \
+                                        int radius, bool add, T* const* out, std::ptrdiff_t plane) {         \
+      L::along_transposed(row, rows, taps, begin, radius, add, out, plane);                                  \
     }                                                                                                        \
     target static void across_transposed(const T* moment, std::ptrdiff_t plane, int count,                   \
-                                         const AcrossTap<T>* taps, int radius, T* out) {                     \
+                                         const Tap<T>* taps, int radius, T* out) {                           \
       L::across_transposed(moment, plane, count, taps, radius, out);                                         \
     }                                                                                                        \
     target static void invariants(const T* k, int rows, T* out) { L::invariants(k, rows, out); }             \
@@ -39,8 +40,11 @@ namespace {
       L::push_forward(k, dk, rows, floors, weights, channels, sum);                                          \
     }                                                                                                        \
     target static T largest(const T* values, std::ptrdiff_t count) { return L::largest(values, count); }     \
-    static constexpr Operations<T> all{L::columns, across,    along,        along_transposed, across_transposed,\
-                                       invariants, combine,   pull_back,    push_forward,     largest};      \
+    target static void relative(const double* z, int count, double level, T* out) {                          \
+      L::relative(z, count, level, out);                                                                     \
+    }                                                                                                        \
+    static constexpr Operations<T> all{L::columns, across,  along,     along_transposed, across_transposed,  \
+                                       invariants, combine, pull_back, push_forward, relative, largest};     \
   };
 
 SEMSURF_LOOPS(Portable, 16, )

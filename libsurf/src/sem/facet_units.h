@@ -10,21 +10,17 @@ enum class Unit { best, portable, avx2, avx512 };
 
 Unit resolve(Unit unit);   ///< never `best`, always available
 
-/// Factors along one axis at an offset: see FacetKernel.
+/// Factors along one axis at an offset: see FacetKernel. Across, o1 is times -mix_y and e2 times -mix_x, so
+/// that the five coefficients need the four plain factors only.
 template <class T>
-struct AcrossTap {
+struct Tap {
   T e0, o1, e2, o3;
 };
 
-/// Factors of the other axis, as the five coefficients need them.
+/// What undoes that: K5 and K6 are multiplied by these.
 template <class T>
-struct AlongTap {
-  T e2;       ///< K4 of moment 0
-  T o3;       ///< K2 of moment 0
-  T o1_mix;   ///< -mix_x o1: K2 of moment 2
-  T e0;       ///< K3 of moment 3, K6 of moment 2
-  T e2_mix;   ///< -mix_y e2: K3 of moment 1
-  T o1;       ///< K5 of moment 1
+struct Scaling {
+  T k5, k6;
 };
 
 /// A row of a block has its moments (4: of e0, o1, e2, o3) or its coefficients (5: K2 to K6) one after
@@ -49,18 +45,19 @@ struct Operations {
   int columns;
 
   /// Moments of `rows` rows; `z` is the first one's first column, with samples to both sides.
-  void (*across)(const T* z, std::ptrdiff_t stride, int rows, const AcrossTap<T>* taps, int radius, T* out);
+  void (*across)(const T* z, std::ptrdiff_t stride, int rows, const Tap<T>* taps, int radius, T* out);
 
   /// Coefficients of `rows` rows from the moments of the rows around: row[y + k] for k up to +-radius.
-  void (*along)(const T* const* row, int rows, const AlongTap<T>* taps, int radius, T* out);
+  void (*along)(const T* const* row, int rows, const Tap<T>* taps, int radius, const Scaling<T>& scaling, T* out);
 
-  /// The transpose of `along`: from weights of coefficients to weights of moments. Adds to out[y].
-  void (*along_transposed)(const T* const* row, int rows, const AlongTap<T>* taps, int radius,
+  /// The transpose of `along`, from weights of coefficients, K5's and K6's scaled, to weights of moments that
+  /// are `plane` apart: into out[y], or to what is there. Taps from `begin`, at least 1, on; the centre always.
+  void (*along_transposed)(const T* const* row, int rows, const Tap<T>* taps, int begin, int radius, bool add,
                            T* const* out, std::ptrdiff_t plane);
 
   /// The transpose of `across` for one row: adds to out[0 .. count), count a multiple of columns. The four
   /// moments are `plane` apart.
-  void (*across_transposed)(const T* moment, std::ptrdiff_t plane, int count, const AcrossTap<T>* taps,
+  void (*across_transposed)(const T* moment, std::ptrdiff_t plane, int count, const Tap<T>* taps,
                             int radius, T* out);
 
   /// Slope and principal curvatures of `rows` rows: 3 x columns each.
@@ -76,6 +73,9 @@ struct Operations {
   /// Adds to sum[channel][row][column] how the channels change as the coefficients change by `dk`.
   void (*push_forward)(const T* k, const T* dk, int rows, const Floors<T>& floors, const Weights<T>* weights,
                        int channels, T* sum);
+
+  /// Heights relative to a level.
+  void (*relative)(const double* z, int count, double level, T* out);
 
   /// The largest magnitude of some values, a multiple of the lanes of a vector.
   T (*largest)(const T* values, std::ptrdiff_t count);

@@ -16,7 +16,7 @@ constexpr double pixel_tolerance = 1e-3;
 bool alike(double a, double b) { return std::abs(a - b) <= pixel_tolerance * b; }
 
 void check_number(double model, double wanted, const char* what, const char* unit) {
-  if (model == 0 || wanted == 0 || alike(wanted, model)) return;
+  if (wanted == 0 || alike(wanted, model)) return;
   throw UsageError("model", fmt::format("was made for {} of {} {}, the image is of {} {}", what,
                                         format_exact(model), unit, format_exact(wanted), unit),
                    "Use a model made for these conditions, or train one: semsurf train");
@@ -49,8 +49,8 @@ void check_conditions(const ModelScope& scope, const ModelScope& wanted) {
   if (!scope.material.empty() && !wanted.material.empty() && scope.material != wanted.material)
     throw UsageError("model", fmt::format("was made for {}, the image is of {}", scope.material, wanted.material),
                      "Use a model made for this material, or train one: semsurf train");
-  check_number(scope.pixel_nm, wanted.pixel_nm, "pixels", "nm");
-  check_number(scope.energy_ev, wanted.energy_ev, "a beam", "eV");
+  if (scope.pixel_nm != 0) check_number(scope.pixel_nm, wanted.pixel_nm, "pixels", "nm");
+  if (scope.energy_ev != 0) check_number(scope.energy_ev, wanted.energy_ev, "a beam", "eV");
   check_number(scope.spot_nm, wanted.spot_nm, "a spot", "nm");
 }
 

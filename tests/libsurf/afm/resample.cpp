@@ -56,4 +56,26 @@ TEST(Upsampled, InterpolatesAndSpreadsHoles) {
   EXPECT_THROW(upsampled(field, 33), InvalidInput);
 }
 
+TEST(ResampledField, KeepsPlanesAndItsPlace) {
+  HeightField field{Grid<double>(11, 7), {}, 2, 4, 5, 6};
+  for (int y = 0; y < 7; ++y)
+    for (int x = 0; x < 11; ++x) field.z_nm(x, y) = 3 * field.x_nm(x) - field.y_nm(y);
+  for (const double pitch : {0.7, 2.0, 3.0, 8.0}) {
+    const HeightField out = resampled(field, pitch);
+    EXPECT_EQ(out.z_nm.width(), static_cast<int>(20 / pitch + 1e-9) + 1);
+    EXPECT_EQ(out.z_nm.height(), static_cast<int>(24 / pitch + 1e-9) + 1);
+    EXPECT_EQ(out.origin_x_nm, 5);
+    for (int y = 0; y < out.z_nm.height(); ++y)
+      for (int x = 0; x < out.z_nm.width(); ++x)
+        EXPECT_NEAR(out.z_nm(x, y), 3 * out.x_nm(x) - out.y_nm(y), 1e-9);
+  }
+}
+
+TEST(ResampledField, SpreadsHolesAndRefuses) {
+  HeightField field{Grid<double>(3, 2), Grid<unsigned char>(3, 2, 1), 2, 2, 0, 0};
+  field.valid(2, 1) = 0;
+  EXPECT_EQ(resampled(field, 1).valid.data(), (std::vector<unsigned char>{1, 1, 1, 1, 1, 1, 1, 1, 0, 0, 1, 1, 1, 0, 0}));
+  for (const double bad : {0.0, -1.0, std::nan(""), 5.0, 1e-6}) EXPECT_THROW(resampled(field, bad), InvalidInput);
+}
+
 }  // namespace surf

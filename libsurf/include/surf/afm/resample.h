@@ -17,4 +17,11 @@ Tip resampled(const Tip& tip, double pitch_x_nm, double pitch_y_nm);
 /// [1, 32].
 HeightField upsampled(const HeightField& surface, int factor);
 
+/// The surface at another, square pitch, by bilinear interpolation: the first sample stays where it is,
+/// and as many follow as lie within the old ones; a sample that is made of a hole is a hole. Nothing is
+/// averaged: with a coarser pitch detail in between is passed over. Throws InvalidInput for a pitch that
+/// is not positive and finite, or so coarse or so fine that fewer than 2 x 2 or more than 2^28 samples
+/// were left.
+HeightField resampled(const HeightField& surface, double pitch_nm);
+
 }  // namespace surf

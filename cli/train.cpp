@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <fmt/format.h>
+
+#include <memory>
+
+#include "commands.h"
+#include "model_tables.h"
+#include "surf/workflow/train_job.h"
+#include "terminal.h"
+#include "train_options.h"
+
+namespace surf::cli {
+namespace {
+
+constexpr int exit_interrupted = 130;
+
+void print_line(const std::string& label, const std::string& text) { fmt::print("{:<10} {}\n", label, text); }
+
+void print_training(const workflow::TrainJob& job, const workflow::TrainSummary& s) {
+  const TrainedModel& model = s.model;
+  print_line("model", format_model(model));
+  print_line("for", format_scope(model.scope));
+  if (!s.images.empty())
+    print_line("images", fmt::format("{} simulated, {} there before, in {}", s.images_made, s.images_found,
+                                     s.images.string()));
+  print_line("range", format_range(model.record.range));
+  if (model.record.condition_number != 0)
+    print_line("condition", fmt::format("{:.3g}", model.record.condition_number));
+  std::string label = "off by";
+  for (const std::string& line : residual_table(model.record)) {
+    print_line(label, line);
+    label.clear();
+  }
+  print_line("", "in % of the mean signal; rms without the images' noise, mean with it");
+  print_line("written", job.output.string());
+}
+
+int train(const TrainOptions& options) {
+  const workflow::TrainJob job = make_train_job(options);
+  workflow::TrainSummary summary;
+  {
+    InterruptGuard interrupts;
+    ProgressBar bar(!options.quiet);
+    workflow::TrainListener listener;
+    listener.pixels = [&](double done, double total) { bar.show(done, total, "pixels"); };
+    listener.cascades = [&](double done, double total) { bar.show(done, total, "cascades"); };
+    listener.warn = [&](const std::string& warning) {
+      bar.clear();
+      print_warning(warning);
+    };
+    listener.note = [&](const std::string& note) {
+      bar.clear();
+      if (!options.quiet) print_note(note);
+    };
+    listener.cancel = interrupts.token();
+    summary = workflow::run(job, listener);
+  }
+  if (!summary.complete) {
+    print_note(fmt::format("stopped: there is no model yet. What is simulated is kept in {}; the same command goes on "
+                           "from there",
+                           summary.images.string()));
+    return exit_interrupted;
+  }
+  if (!options.quiet) print_training(job, summary);
+  return 0;
+}
+
+}  // namespace
+
+void add_train(CLI::App& app, Action& action) {
+  const auto options = std::make_shared<TrainOptions>();
+  CLI::App* sub = app.add_subcommand("train", "A fast model of SEM images, learnt from simulated or real ones");
+  sub->group("Commands");
+  add_train_options(*sub, *options);
+  sub->callback([options, &action] { action = [options] { return train(*options); }; });
+}
+
+}  // namespace surf::cli

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <variant>
+
+#include "json_value.h"
+#include "surf/sem/trained_model.h"
+
+namespace surf::io {
+
+using ModelParameters = decltype(TrainedModel::parameters);
+
+/// How the parameters of one kind of model lie in a file.
+struct ModelKind {
+  const char* name;
+  bool (*is)(const ModelParameters& parameters);
+  nlohmann::ordered_json (*write)(const ModelParameters& parameters);   ///< of this kind only
+  ModelParameters (*read)(const JsonValue& parameters);
+};
+
+// One source file each. A new kind: its file, a line here and one in model_file.cpp.
+extern const ModelKind slope_model_kind;
+extern const ModelKind filter_bank_kind;
+
+template <class Parameters>
+bool holds(const ModelParameters& parameters) {
+  return std::holds_alternative<Parameters>(parameters);
+}
+
+}  // namespace surf::io

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+
+#include "json_value.h"
+#include "surf/sem/trained_model.h"
+
+namespace surf::io {
+
+/// Where a model comes from, as its file tells it.
+nlohmann::ordered_json record_json(const TrainingRecord& record);
+TrainingRecord record_of(const JsonValue& value);
+
+}  // namespace surf::io

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+
+#include "surf/core/height_field.h"
+#include "surf/core/random.h"
+
+namespace surf {
+
+/// Draws and adds random features to square fields about (0, 0). What is drawn depends on the seed and
+/// the number of the surface only.
+class TrainingShapes {
+ public:
+  TrainingShapes(double pixel_nm, int size_px, std::uint64_t seed, int surface);
+
+  /// A level field.
+  HeightField flat() const;
+
+  /// Blocks and discs that rise from 0, the higher ones on top, some on the shoulders of others.
+  HeightField blocks(int count, double highest_nm);
+  /// Bumps and dimples of Gaussian profile, as wide as 2 to 12 pixels, -1.5 to 2 times as high.
+  HeightField bumps(int count);
+  /// Parallel lines in any direction, 3 to 16 pixels wide, 5 to 25 apart.
+  HeightField lines(double highest_nm);
+  /// Square pyramids with sides of 10 to 80 degrees.
+  HeightField pyramids(int count, double highest_nm);
+  /// See make_rough, make_self_affine. Lengths that the field is too small for are cut down.
+  HeightField rough(double rms_nm, double correlation_nm);
+  HeightField self_affine(double rms_nm, double correlation_nm, double hurst);
+
+ private:
+  double uniform(double from, double to);
+  std::uint64_t seed();
+  double shortened(double correlation_nm) const;
+
+  double pixel_nm_;
+  int size_px_;
+  double half_nm_;
+  RandomStream random_;
+};
+
+}  // namespace surf

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "surf/core/height_field.h"
+#include "surf/core/image.h"
+#include "surf/sem/surface_range.h"
+#include "surf/sem/trained_model.h"
+#include "surf/workflow/simulate_job.h"
+
+namespace surf::workflow {
+
+/// An image from heights and a model, in place of a simulation.
+struct PredictJob {
+  std::filesystem::path model;             ///< its file
+  HeightField field;
+  std::filesystem::path input;             ///< the file that the heights are from
+  Edge edge = Edge::mirror;
+  bool resample = false;                   ///< heights of another pitch are resampled, not refused
+  ModelScope wanted;                       ///< what it must have been trained for; empty and 0: whatever
+  int threads = 0;
+  std::vector<std::filesystem::path> outputs;   ///< formats by extension; at least one
+  std::string png_channel;                 ///< for PNG; empty: the first
+};
+
+struct PredictSummary {
+  TrainedModel model;
+  Image image;                             ///< as it was written
+  SurfaceRange range;                      ///< of the heights, at the model's pixel
+  double seconds = 0;                      ///< of the prediction alone
+  std::vector<std::string> warnings;
+};
+
+/// Checks model and outputs, predicts and writes. The image has a channel for each of the model's, in
+/// counts per primary, placed as the heights are, and says which model of which hash made it. Warns
+/// where the surface is steeper than any that the model has learnt from.
+/// Throws UsageError where the model was trained for anything else than what is wanted, InvalidInput and
+/// FileError.
+PredictSummary run(const PredictJob& job, const NoteCallback& note = {});
+
+}  // namespace surf::workflow

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "surf/core/edge.h"
+#include "surf/core/height_field.h"
+#include "surf/core/progress.h"
+#include "surf/mc/material.h"
+#include "surf/mc/physics.h"
+#include "surf/mc/simulate.h"
+#include "surf/sem/trained_model.h"
+#include "surf/workflow/simulate_job.h"
+
+namespace surf::workflow {
+
+/// A surface to learn on.
+struct TrainingInput {
+  std::string name;                ///< for messages and the record, as "scan.gwy"
+  HeightField field;               ///< of any pitch up to twice the model's pixel
+  std::string sha256;              ///< of its file; empty: of its heights
+  std::filesystem::path image;     ///< of it; empty: it is simulated
+};
+
+/// What learning is told besides surfaces and images. Each kind of model takes what concerns it.
+struct LearnOptions {
+  /// Kinds as `learnable_kinds` lists them.
+  std::string kind = "filter-bank";
+  std::vector<FacetScale> scales;            ///< of a filter bank; empty: the thesis's ten
+  bool multi_resolution = false;             ///< see FilterBankParameters
+  std::optional<double> cut_off;             ///< of the eigenvalues of a filter bank's outputs
+};
+
+/// A kind of model that can be learnt, for people.
+struct LearnableKind {
+  std::string name;   ///< as the command line takes it
+  std::string what;   ///< one line, no full stop
+};
+std::vector<LearnableKind> learnable_kinds();
+
+/// A model from surfaces to its file.
+struct TrainJob {
+  std::vector<TrainingInput> inputs;     ///< none: `surfaces` of the program's own (training_surfaces.h)
+  int surfaces = 12;
+  int surface_px = 96;
+  Edge edge = Edge::mirror;              ///< how surfaces go on outside
+  int held_out = 0;                      ///< the last so many surfaces only judge the model
+
+  /// The images are of a real microscope, in one channel of this name, in any unit; empty: they are as
+  /// `simulate` writes them, with SE, BSE and, where they are there, SE.stderr and BSE.stderr.
+  std::string signal;
+
+  double pixel_nm = 0;                   ///< of the model, > 0
+  mc::Material material;
+  double energy_ev = 1000, spot_nm = 0;
+  mc::Physics physics;
+  /// Electrons or accuracy, seed and threads; each image has a seed of its own, counted on from this.
+  mc::SimulationOptions simulation;
+  std::filesystem::path cache;           ///< as in SimulateJob
+  LearnOptions learn;
+  std::filesystem::path output;          ///< the model, .json
+  std::string command_line;              ///< for the record: what changes the model only
+};
+
+struct TrainListener {
+  ProgressCallback pixels;               ///< of all images that have to be simulated
+  LibraryCallback cascades;
+  WarningCallback warn;
+  NoteCallback note;
+  const CancelToken* cancel = nullptr;
+};
+
+struct TrainSummary {
+  bool complete = true;                  ///< false when cancelled: there is no model yet
+  TrainedModel model;
+  int images_found = 0;                  ///< of the simulated ones, there before
+  int images_made = 0;
+  std::filesystem::path images;          ///< the folder that they are in; empty if none were needed
+};
+
+/// Checks everything that can be wrong before time is spent, makes the images that are not given, learns
+/// the model, judges it on every surface, and writes it. A simulated image is NAME.training/SURFACE.exr
+/// beside NAME.json, with its heights in channel z_nm; one that is there already, of the same surface and
+/// settings and made by the same program, is used again, and one that was interrupted is gone on with.
+/// So the same job, started again, goes on to the same bytes.
+///
+/// Surfaces of another pitch are resampled to `pixel_nm` by bilinear interpolation, which is noted.
+/// Throws UsageError, InvalidInput (also for surfaces more than twice as coarse), FileError.
+TrainSummary run(const TrainJob& job, const TrainListener& listener = {});
+
+}  // namespace surf::workflow

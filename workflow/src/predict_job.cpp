@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "surf/workflow/predict_job.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "surf/afm/resample.h"
+#include "surf/core/error.h"
+#include "surf/core/units.h"
+#include "surf/io/files.h"
+#include "surf/io/image_file.h"
+#include "surf/io/model_file.h"
+#include "surf/workflow/version.h"
+
+namespace surf::workflow {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double much = 0.001;   // share of the samples that is worth a warning
+
+void check_outputs(const PredictJob& job, const Image& like) {
+  if (job.outputs.empty()) throw UsageError("--output", "no output file is given", "Add -o image.exr");
+  std::error_code ignored;
+  for (const fs::path& output : job.outputs) {
+    for (const fs::path& input : {job.input, job.model})
+      if (fs::equivalent(output, input, ignored))
+        throw UsageError("--output", fmt::format("{} is an input", output.string()), "Choose another name");
+    if (std::count(job.outputs.begin(), job.outputs.end(), output) > 1)
+      throw UsageError("--output", fmt::format("{} is given twice", output.string()), "Leave one out");
+    io::check_image_target(output, &like, {job.png_channel});
+    io::check_writable(output);
+  }
+}
+
+const char* name_of(Edge edge) {
+  return edge == Edge::mirror ? "mirror" : edge == Edge::flat ? "flat" : "periodic";
+}
+
+HeightField at_pixel(const PredictJob& job, double pixel_nm, const NoteCallback& note) {
+  const bool other = pixel_nm > 0 && (job.field.pitch_x_nm != pixel_nm || job.field.pitch_y_nm != pixel_nm);
+  if (!job.resample || !other) return job.field;
+  HeightField field = resampled(job.field, pixel_nm);
+  if (note)
+    note(fmt::format("{}: {} x {} samples of {} are resampled to {} x {} of {}", job.input.string(),
+                     job.field.z_nm.width(), job.field.z_nm.height(), format_length(job.field.pitch_x_nm),
+                     field.z_nm.width(), field.z_nm.height(), format_length(pixel_nm)));
+  return field;
+}
+
+Image image_of(const PredictJob& job, const TrainedModel& model, const HeightField& field,
+               const std::vector<std::string>& channels) {
+  Image image;
+  image.pitch_x_nm = field.pitch_x_nm;
+  image.pitch_y_nm = field.pitch_y_nm;
+  image.origin_x_nm = field.origin_x_nm;
+  image.origin_y_nm = field.origin_y_nm;
+  for (const std::string& name : channels)
+    image.channels.push_back({name, "1", Grid<float>(field.z_nm.width(), field.z_nm.height())});
+  auto& made = image.metadata;
+  made["semsurf.version"] = version();
+  made["command"] = "predict";
+  made["edge"] = name_of(job.edge);
+  made["input.1"] = fmt::format("{} sha256 {}", job.input.filename().string(), io::sha256_of_file(job.input));
+  made["model"] = fmt::format("{} sha256 {}", job.model.filename().string(), io::sha256_of_file(job.model));
+  made["model.kind"] = io::kind_of(model);
+  if (!model.scope.material.empty()) made["material.1.name"] = model.scope.material;
+  if (model.scope.energy_ev > 0) made["beam.energy_ev"] = format_exact(model.scope.energy_ev);
+  made["beam.spot_nm"] = format_exact(model.scope.spot_nm);
+  return image;
+}
+
+void fill(Image& image, const ModelImages& predicted) {
+  for (std::size_t c = 0; c < predicted.size(); ++c)
+    std::transform(predicted[c].data().begin(), predicted[c].data().end(), image.channels[c].values.data().begin(),
+                   [](double value) { return static_cast<float>(value); });
+}
+
+std::vector<std::string> warnings_of(const TrainedModel& model, const HeightField& field) {
+  std::vector<std::string> warnings;
+  const double steepest = model.record.range.slope_deg_max;
+  const double share = steepest > 0 ? share_steeper(field, steepest) : 0;
+  if (share > much)
+    warnings.push_back(fmt::format("{} of the surface is steeper than the {:.0f} degrees that the model has learnt "
+                                   "from at most: there its image is a guess. Train a model on such surfaces",
+                                   format_share(std::round(1000 * share) / 1000), steepest));
+  return warnings;
+}
+
+}  // namespace
+
+PredictSummary run(const PredictJob& job, const NoteCallback& note) {
+  PredictSummary summary;
+  summary.model = io::read_model(job.model);
+  const ModelScope& scope = summary.model.scope;
+  check_conditions(scope, job.wanted);
+  const auto model = make_model(summary.model);
+  const HeightField field = at_pixel(job, scope.pixel_nm, note);
+  check_field(scope, field, job.input.string().c_str());
+  summary.image = image_of(job, summary.model, field, model->channels());
+  check_outputs(job, summary.image);
+  const auto start = std::chrono::steady_clock::now();
+  fill(summary.image, model->predict(field, {job.edge, job.threads}));
+  summary.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  summary.range = surface_range(field);
+  summary.warnings = warnings_of(summary.model, field);
+  for (const fs::path& output : job.outputs) io::write_image(output, summary.image, {job.png_channel});
+  return summary;
+}
+
+}  // namespace surf::workflow

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "surf/sem/training_image.h"
+#include "surf/workflow/train_job.h"
+
+namespace surf::workflow {
+
+/// A surface at the model's pixel size, and where its image is or will be.
+struct TrainingSurface {
+  std::string name;
+  HeightField field;
+  std::string sha256;
+  std::filesystem::path image;     ///< given; empty: it is to be simulated
+};
+
+/// The job's own surfaces or the program's, resampled where they have to be, with unique names.
+std::vector<TrainingSurface> gather_surfaces(const TrainJob& job, const NoteCallback& note);
+
+/// The channels that are learnt: SE and BSE, or the one signal.
+std::vector<std::string> channels_of(const TrainJob& job);
+
+/// The image in a file, pixel on sample of the surface. Throws FileError for channels that are missing,
+/// InvalidInput for another size or pixel, or where no pixel can be used.
+TrainingImage read_training_image(const TrainingSurface& surface, const std::filesystem::path& image,
+                                  const TrainJob& job);
+
+/// NAME.training for NAME.json.
+std::filesystem::path image_folder(const TrainJob& job);
+
+struct SimulatedImages {
+  std::vector<std::filesystem::path> files;   ///< of each surface that has none of its own, else empty
+  int found = 0, made = 0;
+  bool complete = true;
+};
+
+/// Simulates what is not there yet.
+SimulatedImages simulate_images(const TrainJob& job, const std::vector<TrainingSurface>& surfaces,
+                                const TrainListener& listener);
+
+}  // namespace surf::workflow

@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <fmt/format.h>
+
+#include <set>
+
+#include "job_identity.h"
+#include "provenance.h"
+#include "surf/core/error.h"
+#include "surf/io/image_file.h"
+#include "training_data.h"
+
+namespace surf::workflow {
+namespace {
+
+namespace fs = std::filesystem;
+
+SimulateJob simulation_of(const TrainJob& job, const TrainingSurface& surface, std::size_t number,
+                          const fs::path& output) {
+  SimulateJob out;
+  io::SceneFile& scene = out.scene;
+  scene.specimen.materials = {job.material};
+  scene.specimen.height_field = mc::HeightFieldBody{surface.name, surface.field, 0, job.edge};
+  scene.beam.energy_ev = job.energy_ev;
+  scene.beam.spot_nm = job.spot_nm;
+  scene.scan.width = surface.field.z_nm.width();
+  scene.scan.height = surface.field.z_nm.height();
+  scene.scan.pixel_x_nm = surface.field.pitch_x_nm;
+  scene.scan.pixel_y_nm = surface.field.pitch_y_nm;
+  scene.physics = job.physics;
+  out.options = job.simulation;
+  out.options.seed += number;   // the libraries' own chance errors then differ from image to image
+  out.cache = job.cache;
+  out.extras.channels = {"z_nm"};
+  out.outputs = {output};
+  out.command_line = job.command_line;
+  const mc::Scan scan = resolve_scan(scene.scan, mc::extent(scene.specimen), scene.beam);
+  scene.title = fmt::format("training surface {}, {}", surface.name,
+                            fingerprint(identity_of(out, provenance(out, scan, {}))).substr(0, 32));
+  return out;
+}
+
+/// Whether the file holds the finished image of the job.
+bool is_there(const SimulateJob& job) {
+  const fs::path& file = job.outputs.front();
+  std::error_code ignored;
+  if (!fs::is_regular_file(file, ignored)) return false;
+  try {
+    const Image image = io::read_image(file);
+    const auto title = image.metadata.find("title");
+    return title != image.metadata.end() && title->second == job.scene.title && !image.metadata.contains("partial");
+  } catch (const Error&) {
+    return false;   // damaged: it is made again
+  }
+}
+
+std::string counted(std::size_t count, const char* thing) {
+  return fmt::format("{} {}{}", count, thing, count == 1 ? "" : "s");
+}
+
+void tell_what_is_there(const std::vector<SimulateJob>& all, std::size_t missing, std::size_t unusable,
+                        const fs::path& folder, const NoteCallback& note) {
+  if (!note) return;
+  const std::size_t found = all.size() - missing;
+  if (found > 0) note(fmt::format("{} of {} are there already, in {}", found, counted(all.size(), "image"), folder.string()));
+  if (unusable > 0)
+    note(fmt::format("{} there made otherwise, by another build or unfinished, and will be replaced",
+                     unusable == 1 ? "1 image is" : fmt::format("{} images are", unusable)));
+}
+
+}  // namespace
+
+fs::path image_folder(const TrainJob& job) {
+  fs::path folder = job.output;
+  folder.replace_extension(".training");
+  return folder;
+}
+
+SimulatedImages simulate_images(const TrainJob& job, const std::vector<TrainingSurface>& surfaces,
+                                const TrainListener& listener) {
+  SimulatedImages out;
+  out.files.resize(surfaces.size());
+  const fs::path folder = image_folder(job);
+  std::vector<SimulateJob> all, missing;
+  std::size_t unusable = 0;
+  double total = 0, done_before = 0;
+  for (std::size_t i = 0; i < surfaces.size(); ++i) {
+    if (!surfaces[i].image.empty()) continue;
+    out.files[i] = folder / (surfaces[i].name + ".exr");
+    all.push_back(simulation_of(job, surfaces[i], i, out.files[i]));
+    if (is_there(all.back())) continue;
+    std::error_code ignored;
+    if (fs::exists(out.files[i], ignored)) ++unusable;
+    missing.push_back(all.back());
+    total += static_cast<double>(surfaces[i].field.z_nm.size());
+  }
+  out.found = static_cast<int>(all.size() - missing.size());
+  tell_what_is_there(all, missing.size(), unusable, folder, listener.note);
+  std::set<std::string> warned;
+  const auto warn = [&](const std::string& warning) {
+    if (warned.insert(warning).second && listener.warn) listener.warn(warning);
+  };
+  for (const SimulateJob& simulation : missing) {
+    const auto pixels = static_cast<double>(simulation.scene.specimen.height_field->field.z_nm.size());
+    const auto show = [&](double done, double of) {
+      if (listener.pixels && of > 0) listener.pixels(done_before + pixels * done / of, total);
+    };
+    const SimulateSummary summary = run(simulation, show, listener.cancel, warn, {}, listener.cascades);
+    if (!summary.result.complete) {
+      out.complete = false;
+      return out;
+    }
+    done_before += pixels;
+    ++out.made;
+  }
+  return out;
+}
+
+}  // namespace surf::workflow
