@@ -6,8 +6,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <locale>
 #include <memory>
+#include <optional>
 #include <sstream>
+#include <utility>
 #include <tuple>
 
 #include "afm_masks.h"
@@ -21,6 +24,7 @@
 #include "surf/io/calibration_file.h"
 #include "surf/io/files.h"
 #include "surf/io/image_file.h"
+#include "surf/io/model_file.h"
 #include "terminal.h"
 
 namespace surf::cli {
@@ -38,12 +42,13 @@ Exit code 4: the gains cannot be trusted, and the warnings say why.
 
 Examples:
   semsurf calibrate sem.tif --pixel-size 3nm --images simulated.exr -o calibration.json --residual residual.exr
+  semsurf calibrate sem.tif surface.gsf --model si-1keV-3nm.json --folded sem-si-1keV-3nm.json -o calibration.json
   semsurf calibrate sem.tif:2 --images simulated.exr --fit SE --offset 12 -o calibration.json
   semsurf calibrate sem.png --pixel-size 2nm --images simulated.exr --ratio 0.4 --white 255 -o calibration.json)";
 
 struct Options {
-  std::string image;
-  std::optional<std::string> pixel_size, images, fit, ratio, offset, black, white, range, output, residual;
+  std::string image, heights;
+  std::optional<std::string> pixel_size, images, model, edge, folded, threads, fit, ratio, offset, black, white, range, output, residual;
   MaskInput masks;
   bool quiet = false;
 };
@@ -53,6 +58,7 @@ struct Plan {
   CalibrationOptions options;
   std::vector<std::string> channels;   // to fit; empty: SE and BSE, those that are there
   GivenPitch pitch;
+  ModelOptions model;
   double range_nm = 0;
 };
 
@@ -77,11 +83,20 @@ std::vector<std::string> split_names(const std::string& text) {
 
 Plan make_plan(const Options& o) {
   if (o.image.empty()) throw UsageError("calibrate", "no image is given", "Name the image of a microscope");
-  if (!o.images)
-    throw UsageError("--images", "there is nothing to compare with", "Add --images simulated.exr");
+  if (!o.images && !o.model)
+    throw UsageError("--images", "there is nothing to compare with",
+                     "Add --images simulated.exr, or HEIGHTS with --model MODEL.json");
+  if (o.images && o.model) throw UsageError("--model", "simulated images are given, too", "Leave one of them out");
+  if (o.model.has_value() == o.heights.empty())
+    throw UsageError("HEIGHTS", o.model ? "a model needs the surface" : "simulated images need no surface",
+                     o.model ? "Name heights, pixel on pixel with IMAGE" : "Leave it out, or give --model instead");
+  if (o.folded && !o.model) throw UsageError("--folded", "there is no model to fold into", "Add --model MODEL.json");
   if (!o.output && !o.residual)
     throw UsageError("--output", "no output file is given", "Add -o calibration.json");
   Plan p;
+  p.model.threads = parse_threads(o.threads);
+  if (o.edge) p.model.edge = parse_edge(*o.edge, "--edge");
+  if (o.folded) io::check_model_target(*o.folded);
   if (o.output) io::check_writable(*o.output);
   if (o.residual) io::check_image_target(*o.residual);
   if (o.pixel_size) std::tie(p.pitch.x_nm, p.pitch.y_nm) = parse_pixel_size(*o.pixel_size, "--pixel-size");
@@ -99,14 +114,15 @@ Plan make_plan(const Options& o) {
 }
 
 void check_same_pixels(const Image& real, const Image& simulated, const Options& o) {
+  const std::string& other = o.images ? *o.images : o.heights;
   constexpr const char* remedy = "They have to show the same surface pixel on pixel: register and resample one first";
   if (real.width() != simulated.width() || real.height() != simulated.height())
     throw InvalidInput(o.image, fmt::format("it has {} x {} pixels, {} has {} x {}", real.width(), real.height(),
-                                            *o.images, simulated.width(), simulated.height()), remedy);
+                                            other, simulated.width(), simulated.height()), remedy);
   const auto differ = [](double a, double b) { return std::fabs(a - b) > same_pitch * b; };
   if (differ(real.pitch_x_nm, simulated.pitch_x_nm) || differ(real.pitch_y_nm, simulated.pitch_y_nm))
     throw InvalidInput(o.image, fmt::format("its pixels are {:.6g} x {:.6g} nm, those of {} {:.6g} x {:.6g} nm",
-                                            real.pitch_x_nm, real.pitch_y_nm, *o.images, simulated.pitch_x_nm,
+                                            real.pitch_x_nm, real.pitch_y_nm, other, simulated.pitch_x_nm,
                                             simulated.pitch_y_nm), remedy);
 }
 
@@ -139,6 +155,34 @@ void add_channels(CalibrationImages& images, const Image& simulated, const Plan&
     images.channels.push_back(name);
     images.simulated.push_back(values(simulated, *channel));
   }
+}
+
+Image predicted(const Options& o, const Plan& p, const TrainedModel& trained) {
+  const io::HeightFieldFile scan = io::read_height_field(o.heights, {{}, {}, p.pitch.x_nm, p.pitch.y_nm});
+  if (!o.quiet)
+    for (const std::string& note : scan.notes) print_note(fmt::format("{}: {}", o.heights, note));
+  check_field(trained.scope, scan.field, o.heights.c_str());
+  const auto model = make_model(trained);
+  const ModelImages images = model->predict(scan.field, p.model);
+  Image out;
+  out.pitch_x_nm = scan.field.pitch_x_nm, out.pitch_y_nm = scan.field.pitch_y_nm;
+  for (std::size_t c = 0; c < images.size(); ++c) {
+    out.channels.push_back({model->channels()[c], "1", Grid<float>(images[c].width(), images[c].height())});
+    for (std::size_t i = 0; i < images[c].size(); ++i)
+      out.channels.back().values.data()[i] = static_cast<float>(images[c].data()[i]);
+  }
+  return out;
+}
+
+/// A filter bank in the image's own units.
+void write_folded(const std::string& path, TrainedModel trained, const Calibration& c,
+                  const std::map<std::string, std::string>& made) {
+  trained.parameters = fold(c, std::get<FilterBankParameters>(trained.parameters));
+  trained.record.residuals.clear();   // they are of the channels before
+  trained.record.held_out_residuals.clear();
+  for (TrainingScene& scene : trained.record.scenes) scene.residuals.clear();
+  for (const auto& [key, value] : made) trained.record.notes["calibration." + key] = value;
+  io::write_model(path, trained);
 }
 
 Image read_real(const Options& o, const Plan& p, Grid<double>& real) {
@@ -201,7 +245,7 @@ std::map<std::string, std::string> recorded(const Options& o) {
     if (value) r[name] = *value;
   };
   add("pixel-size", o.pixel_size), add("fit", o.fit), add("ratio", o.ratio), add("offset", o.offset);
-  add("black", o.black), add("white", o.white), add("range", o.range);
+  add("black", o.black), add("white", o.white), add("range", o.range), add("edge", o.edge);
   return r;
 }
 
@@ -209,25 +253,31 @@ int work(const Options& o) {
   const Plan plan = make_plan(o);
   CalibrationImages images;
   const Image real = read_real(o, plan, images.real);
-  const Image simulated = io::read_image(*o.images);
+  std::optional<TrainedModel> model;
+  if (o.model) model = io::read_model(*o.model);
+  if (o.folded && !std::holds_alternative<FilterBankParameters>(model->parameters))
+    throw UsageError("--folded", "gains fold into filter banks only", "Keep the calibration beside the model");
+  const Image simulated = model ? predicted(o, plan, *model) : io::read_image(*o.images);
   check_same_pixels(real, simulated, o);
-  add_channels(images, simulated, plan, *o.images);
+  add_channels(images, simulated, plan, model ? *o.model : *o.images);
   HeightField place;
   place.z_nm = images.real;
   place.pitch_x_nm = real.pitch_x_nm, place.pitch_y_nm = real.pitch_y_nm;
   place.origin_x_nm = real.origin_x_nm, place.origin_y_nm = real.origin_y_nm;
   images.used = read_masks(o.masks, place);
   const Calibration c = calibrate(images, plan.options);
-  std::vector<std::string> inputs{parse_file_channel(o.image).file.string(), *o.images};
-  for (const auto& mask : {o.masks.use, o.masks.exclude})
-    if (mask) inputs.push_back(*mask);
+  std::vector<std::string> inputs{parse_file_channel(o.image).file.string()};
+  if (o.model) inputs.push_back(o.heights);
+  for (const auto& input : {o.images, o.model, o.masks.use, o.masks.exclude})
+    if (input) inputs.push_back(*input);
   const auto made = provenance_of("calibrate", recorded(o), inputs);
   if (!o.quiet) print_fit(c);
   for (const std::string& warning : c.warnings) print_warning(warning);
   if (o.residual) write_residual(*o.residual, real, images, c, plan.range_nm, made);
   if (o.output) io::write_calibration(*o.output, {c, plan.range_nm, made});
+  if (o.folded) write_folded(*o.folded, *model, c, made);
   if (!o.quiet)
-    for (const auto& file : {o.output, o.residual})
+    for (const auto& file : {o.output, o.residual, o.folded})
       if (file) fmt::print("{:<10} {}\n", "written", *file);
   return c.outcome == CalibrationOutcome::trusted ? 0 : exit_untrustworthy;
 }
@@ -239,9 +289,13 @@ void add_calibrate(CLI::App& app, Action& action) {
   CLI::App* sub = app.add_subcommand("calibrate", "Gains and offset that turn simulated images into a real one");
   sub->group("Commands");
   sub->add_option("IMAGE", o->image, "The image of a microscope")->type_name("FILE");
+  sub->add_option("HEIGHTS", o->heights, "With --model: the surface that IMAGE shows")->type_name("FILE");
   sub->add_option("--images", o->images, "Simulated images of the same surface, as of 'semsurf simulate'")
       ->type_name("FILE");
-  sub->add_option("--pixel-size", o->pixel_size, "Of an IMAGE that does not say, 2nm or 2nmx3nm")->type_name("LENGTH");
+  sub->add_option("--model", o->model, "Instead: a model that images HEIGHTS, as of 'semsurf train'")
+      ->type_name("FILE.json");
+  sub->add_option("--edge", o->edge, "How HEIGHTS go on outside (mirror)")->type_name("mirror|flat|periodic");
+  sub->add_option("--pixel-size", o->pixel_size, "Of files that do not say, 2nm or 2nmx3nm")->type_name("LENGTH");
   const char* fitting = "Fit";
   sub->add_option("--fit", o->fit, "Which simulated channels (SE,BSE, those that are there)")
       ->type_name("NAMES")->group(fitting);
@@ -260,6 +314,9 @@ void add_calibrate(CLI::App& app, Action& action) {
   sub->add_option("-o,--output", o->output, "The calibration: .json")->type_name("FILE")->group(output);
   sub->add_option("--residual", o->residual, "The fit and what it leaves: .exr .tif .vti .png")
       ->type_name("FILE")->group(output);
+  sub->add_option("--folded", o->folded, "The model with gains and offset in its coefficients (filter banks): .json")
+      ->type_name("FILE.json")->group(output);
+  add_threads_option(*sub, o->threads)->group(output);
   add_quiet_flag(*sub, o->quiet)->group(output);
   sub->footer(examples);
   sub->callback([o, &action] { action = [o] { return work(*o); }; });

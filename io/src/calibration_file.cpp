@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "json_value.h"
+#include "model/json_text.h"
 #include "surf/core/error.h"
 #include "surf/io/files.h"
 
@@ -65,7 +66,7 @@ void write_calibration(const std::filesystem::path& path, const CalibrationFile&
   if (file.range_nm > 0) json["range_nm"] = file.range_nm;
   json["warnings"] = c.warnings;
   json["notes"] = file.notes;
-  write_text(path, json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
+  write_text(path, json_text(json));
 }
 
 CalibrationFile read_calibration(const std::filesystem::path& path) {

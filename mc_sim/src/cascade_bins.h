@@ -47,6 +47,8 @@ inline void check_table(const CascadeLibrary& library, const CascadeTableOptions
   if (options.rings < 1 || options.rings > 1024 || options.heights < 2 || options.heights > 1024)
     throw UsageError("cascade table", fmt::format("{} rings of {} heights", options.rings, options.heights),
                      "Give 1 to 1024 rings and 2 to 1024 heights");
+  if (!(std::isfinite(options.flat_se_yield) && options.flat_se_yield >= 0))
+    throw UsageError("cascade table", "the yield of level ground is below 0 or not finite", "Give 0 or above");
   if (library.cascades() == 0) throw InvalidInput("cascade table", "the library is empty", "Let it grow first");
 }
 

@@ -30,6 +30,17 @@ struct Fill {
   }
 };
 
+/// Level ground gives the sum of what lies above 0, between heights in proportion.
+void scale_to(double yield, StoppingPointParameters& table) {
+  std::vector<double>& density = table.channels[0].density_per_nm;
+  const auto ground = static_cast<std::size_t>(-table.lowest_nm / table.height_step_nm + 0.5);
+  const auto heights = static_cast<std::size_t>(table.heights);
+  double above = 0;
+  for (std::size_t i = 0; i < density.size(); ++i)
+    above += i % heights < ground ? 0 : density[i] * table.height_step_nm * (i % heights == ground ? 0.5 : 1);
+  for (double& d : density) d *= above > 0 ? yield / above : 1;
+}
+
 }  // namespace
 
 StoppingPointParameters stopping_points(const CascadeLibrary& library, const CascadeTableOptions& options) {
@@ -42,6 +53,7 @@ StoppingPointParameters stopping_points(const CascadeLibrary& library, const Cas
   table.channels = {{"SE", StoppingRule::counted, none}, {"BSE", StoppingRule::reflected, none}};
   Fill fill{table, 1 / (static_cast<double>(library.cascades()) * table.height_step_nm)};
   walk_all(library, fill);
+  if (options.flat_se_yield > 0) scale_to(options.flat_se_yield, table);
   return table;
 }
 

@@ -150,6 +150,10 @@ semsurf_cli_usage(tip_threshold_y "--threshold-y: this answer finds its own" tip
 # SEM: calibration.
 semsurf_cli_usage(calibrate_image "calibrate: no image is given" calibrate --images four.png -o fit.json)
 semsurf_cli_usage(calibrate_images "--images: there is nothing to compare with" calibrate four.png -o fit.json)
+semsurf_cli_usage(calibrate_both "--model: simulated images are given, too" calibrate four.png four.txt --images four.png --model secant.json -o fit.json)
+semsurf_cli_usage(calibrate_no_heights "HEIGHTS: a model needs the surface" calibrate four.png --model secant.json -o fit.json)
+semsurf_cli_usage(calibrate_folded "gains fold into filter banks only" calibrate four.png four.txt --pixel-size 3nm --model secant.json --folded folded.json -o fit.json)
+semsurf_cli_unusable(calibrate_model_pitch "the model was made for 3 nm" calibrate four.png four.txt --pixel-size 2nm --model secant.json -o fit.json)
 semsurf_cli_usage(calibrate_output "--output: no output file is given" calibrate four.png --images four.png)
 semsurf_cli_usage(calibrate_channel "it has no channel SE or BSE" calibrate four.png --pixel-size 1nm --images four.png -o fit.json)
 semsurf_cli_usage(calibrate_fit "has no channel 'TE'.*Choose of: L" calibrate four.png --pixel-size 1nm --images four.png --fit TE -o fit.json)

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "surf/core/grid.h"
+#include "surf/sem/filter_bank.h"
 #include "surf/sem/image_model.h"
-#include "surf/sem/trained_model.h"
 
 namespace surf {
 

@@ -9,6 +9,10 @@ namespace surf::mc {
 struct CascadeTableOptions {
   int rings = 48;      ///< about the beam, as far as anything is found, 1 to 1024
   int heights = 96;    ///< steps from the lowest to the highest of it, 2 to 1024
+  /// Of stopping points alone, where above 0: SE is scaled so that level ground gives this yield. Without it
+  /// the channel counts all secondaries that stop above, those included that start there: ten to a hundred
+  /// times what leaves a surface.
+  double flat_se_yield = 0;
 };
 
 /// Where the electrons of all cascades of a library stop: the channels BSE, of primaries (rule `reflected`), and
