@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <fmt/format.h>
+
 #include <nlohmann/json.hpp>
 
 #include "model/model_kinds.h"
@@ -25,7 +27,7 @@ ModelParameters read(const JsonValue& value) {
     c.name = item.require("name").text();
     const JsonValue rule = item.require("rule");
     if (rule.text() == "reflected") c.rule = StoppingRule::reflected;
-    else if (rule.text() != "counted") rule.fail("there is no rule '" + rule.text() + "'");
+    else if (rule.text() != "counted") rule.fail(fmt::format("there is no rule '{}'", rule.text()));
     item.require("density_per_nm");
     c.density_per_nm = item.numbers("density_per_nm");
     p.channels.push_back(std::move(c));

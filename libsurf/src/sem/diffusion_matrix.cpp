@@ -29,7 +29,8 @@ void check(const ModelScope& scope, const DiffusionMatrixParameters& p) {
     refuse("a step of its table is not above 0 or its lowest height not finite", "Make the table again");
   if (p.rings < 1 || p.rings > most_bins || p.heights < 2 || p.heights > most_bins)
     refuse(fmt::format("its table has {} rings of {} heights", p.rings, p.heights), "Make the table again");
-  const std::size_t numbers = static_cast<std::size_t>(p.rings) * static_cast<std::size_t>(p.heights) * diffusion_moments;
+  const std::size_t bins = static_cast<std::size_t>(p.rings) * static_cast<std::size_t>(p.heights);
+  const std::size_t numbers = bins * diffusion_moments;
   for (const DiffusionMatrixChannel& c : p.channels) {
     if (c.moments_per_nm2.size() != numbers)
       refuse(fmt::format("channel '{}' has {} numbers, not {}", c.name, c.moments_per_nm2.size(), numbers),

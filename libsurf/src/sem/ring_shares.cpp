@@ -18,7 +18,8 @@ std::vector<RingPoint> ring_points(int k, double ring_nm, double pixel_nm) {
     const double r = ring_nm * std::sqrt((1 - t) * k * k + t * (k + 1.0) * (k + 1.0));
     for (int j = 0; j < angles; ++j) {
       const double angle = (j + 0.5) / angles * std::numbers::pi / 4, c = std::cos(angle), s = std::sin(angle);
-      const int u = static_cast<int>(std::floor(r * c / pixel_nm + 0.5)), v = static_cast<int>(std::floor(r * s / pixel_nm + 0.5));
+      const int u = static_cast<int>(std::floor(r * c / pixel_nm + 0.5));
+      const int v = static_cast<int>(std::floor(r * s / pixel_nm + 0.5));
       for (const int sx : {1, -1})
         for (const int sy : {1, -1}) {
           points.push_back({sx * u, sy * v, sx * c, sy * s});

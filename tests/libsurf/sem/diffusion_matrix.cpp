@@ -35,7 +35,8 @@ DiffusionMatrixParameters bell(const std::vector<std::array<double, diffusion_mo
   return p;
 }
 
-const std::array<double, diffusion_moments> isotropic{0, 0, 1.0 / 3, 1.0 / 3, 1.0 / 3, 0}, upward{0.2, 0.7, 0.3, 0.2, 0.5, 0.1};
+const std::array<double, diffusion_moments> isotropic{0, 0, 1.0 / 3, 1.0 / 3, 1.0 / 3, 0};
+const std::array<double, diffusion_moments> upward{0.2, 0.7, 0.3, 0.2, 0.5, 0.1};
 
 std::shared_ptr<const ImageModel> model() {
   return make_diffusion_matrix({.pixel_nm = pitch}, bell({isotropic, upward}));
@@ -55,7 +56,6 @@ TEST(DiffusionMatrix, AddsUpTheFluxThroughAFlatSurface) {
 }
 
 TEST(DiffusionMatrix, GrowsWithTheAreaOfFacets) {
-  // Along y, so that the slope is the same everywhere and heights differ: few enough to stay in the bell's middle.
   const auto tilted = [](double slope) {
     return test::sampled(30, 30, pitch, [&](int x, int) { return slope * pitch * x; });
   };
