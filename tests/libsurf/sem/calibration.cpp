@@ -79,6 +79,18 @@ TEST(Calibrate, StandardErrorsCoverTheTruth) {
   test::expect_mean(across.mean(), across.standard_error(), 0, 5);
 }
 
+TEST(Calibrate, TheOffsetOfACentredChannelIsAMean) {
+  CalibrationImages images = two_channels(20, 20, 0.5);
+  images.channels = {"SE"};
+  images.simulated.resize(1);
+  for (std::size_t i = 0; i < 400; ++i) images.simulated[0].data()[i] = i % 2 ? 1 : -1;
+  RandomStream random(4, 0, 0);
+  for (double& e : images.real.data()) e = normal(random);
+  const Calibration c = calibrate(images);
+  EXPECT_NEAR(c.offset_stderr(), c.residual_rms * std::sqrt(400.0 / 398) / 20, 1e-12);
+  EXPECT_NEAR(c.gain_stderr(0), c.offset_stderr(), 1e-12);
+}
+
 TEST(Calibrate, WeightsCountNoisyPixelsLess) {
   CalibrationImages images = two_channels(40, 40, 0.3);
   expose(images, 100, 200, 5, 1, 3);
