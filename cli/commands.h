@@ -26,6 +26,7 @@ void add_info(CLI::App& app, Action& action);
 void add_materials(CLI::App& app, Action& action);
 void add_library(CLI::App& app, Action& action);
 void add_tip(CLI::App& app, Action& action);
+void add_calibrate(CLI::App& app, Action& action);
 void add_view(CLI::App& app, Action& action);
 void add_completion(CLI::App& app, Action& action);
 

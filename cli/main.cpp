@@ -160,6 +160,7 @@ int main(int argc, char** argv) {
   add_materials(app, action);
   add_library(app, action);
   add_tip(app, action);
+  add_calibrate(app, action);
   add_view(app, action);
   add_completion(app, action);
 

@@ -2,10 +2,11 @@
 find_package(Threads REQUIRED)
 find_package(fmt REQUIRED)
 find_path(RANDOM123_INCLUDE_DIR Random123/philox.h REQUIRED)
-find_path(EIGEN_INCLUDE_DIR Eigen/Dense PATH_SUFFIXES eigen3 REQUIRED)
 find_package(CGAL 5.5 REQUIRED)
 # CONFIG: CGAL brings a FindOpenMesh of its own.
 find_package(OpenMesh REQUIRED CONFIG)
+find_package(Eigen3 3.4 REQUIRED NO_MODULE)
+find_package(Ceres 2.1 REQUIRED)
 find_package(embree 3 REQUIRED)
 find_package(OpenImageIO REQUIRED)
 # Debian's target names an OpenCV include folder that its package does not bring.

@@ -8,8 +8,8 @@
 packages=(
   cmake g++ ninja-build ccache                                    # build
   libembree-dev librandom123-dev                                  # ray tracing, random numbers
-  libeigen3-dev                                                   # least squares
   libcgal-dev libopenmesh-dev                                     # mesh repair and simplification
+  libeigen3-dev libceres-dev                                      # least squares, learning networks
   libopenimageio-dev openimageio-tools                            # images
   libtomlplusplus-dev nlohmann-json3-dev libssl-dev               # scene files, records, hashes
   libcli11-dev libfmt-dev                                         # command line, text

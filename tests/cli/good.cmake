@@ -227,6 +227,16 @@ semsurf_cli_test(tip.best ARGS tip steps.txt --also steps.txt --size 5 --answer 
   STDOUT "fit +misfit" WRITES tip.gsf best.png INFO tip.gsf "option.answer +best estimate")
 semsurf_cli_test(tip.characterizer ARGS tip steps.txt --characterizer steps.txt --size 3 --search 2 -o tip.gsf
   STDOUT "known +found at sample" WRITES tip.gsf INFO tip.gsf "option.answer +characterizer")
+# SEM: a model's images against a microscope's.
+semsurf_cli_test(help.calibrate ARGS calibrate --help STDOUT "--images FILE" "--range LENGTH" "Exit code 4" "Examples:")
+semsurf_cli_test(calibrate ARGS calibrate four.png --pixel-size 1nm --images four.png --fit L --range 2nm -o fit.json --residual fit.exr
+  STDOUT "gain L +1 ± " "condition +1" "100\\.00 % of the variance" WRITES fit.json fit.exr INFO fit.exr "calibrated")
+semsurf_cli_test(calibrate.model EXIT 4 ARGS calibrate steps.txt steps.txt --pixel-size 3nm --model secant.json -o fit.json
+  STDERR "cannot be told apart: SE and BSE have a correlation of 1\\.0000.*fix the ratio" STDOUT "condition +infinite" WRITES fit.json)
+semsurf_cli_test(calibrate.ratio ARGS calibrate four.png four.txt --pixel-size 3nm --model secant.json --ratio 0.5 -q -o fit.json
+  WRITES fit.json)
+semsurf_cli_test(calibrate.doubtful EXIT 4 ARGS calibrate four.png --pixel-size 1nm --images four.png --fit L --offset 1000 -o fit.json
+  STDERR "the gain of L is below 0" STDOUT "offset +1000\n" WRITES fit.json)
 
 if(WEB_PACKAGES)
   semsurf_cli_test(view ARGS view block.gsf -o page.html

@@ -20,7 +20,8 @@ constexpr const char* format_name = "semsurf image model";
 constexpr std::uint64_t version = 1;
 constexpr std::size_t max_bytes = std::size_t{256} << 20;
 
-constexpr const ModelKind* kinds[] = {&filter_bank_kind, &slope_model_kind};
+constexpr const ModelKind* kinds[] = {&filter_bank_kind, &slope_model_kind, &stopping_point_kind,
+                                      &diffusion_matrix_kind};
 
 const ModelKind& kind_for(const ModelParameters& parameters) {
   for (const ModelKind* kind : kinds)

@@ -13,6 +13,14 @@ std::shared_ptr<const ImageModel> make(const ModelScope& scope, const FilterBank
   return make_filter_bank(scope, parameters);
 }
 
+std::shared_ptr<const ImageModel> make(const ModelScope& scope, const StoppingPointParameters& parameters) {
+  return make_stopping_point(scope, parameters);
+}
+
+std::shared_ptr<const ImageModel> make(const ModelScope& scope, const DiffusionMatrixParameters& parameters) {
+  return make_diffusion_matrix(scope, parameters);
+}
+
 }  // namespace
 
 std::shared_ptr<const ImageModel> make_model(const TrainedModel& trained) {

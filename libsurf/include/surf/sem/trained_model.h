@@ -8,9 +8,11 @@
 #include <variant>
 #include <vector>
 
+#include "surf/sem/diffusion_matrix.h"
 #include "surf/sem/filter_bank.h"
 #include "surf/sem/image_model.h"
 #include "surf/sem/slope_model.h"
+#include "surf/sem/stopping_point.h"
 #include "surf/sem/surface_range.h"
 
 namespace surf {
@@ -50,7 +52,8 @@ struct TrainingRecord {
 /// Everything that a model file holds.
 struct TrainedModel {
   ModelScope scope;
-  std::variant<SlopeModelParameters, FilterBankParameters> parameters;
+  std::variant<SlopeModelParameters, FilterBankParameters, StoppingPointParameters, DiffusionMatrixParameters>
+      parameters;
   TrainingRecord record;
 };
 

@@ -1,0 +1,325 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "surf/sem/calibration.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <locale>
+#include <memory>
+#include <optional>
+#include <sstream>
+#include <utility>
+#include <tuple>
+
+#include "afm_masks.h"
+#include "afm_options.h"
+#include "commands.h"
+#include "common_options.h"
+#include "options.h"
+#include "picture_input.h"
+#include "surf/core/error.h"
+#include "surf/core/units.h"
+#include "surf/io/calibration_file.h"
+#include "surf/io/files.h"
+#include "surf/io/image_file.h"
+#include "surf/io/model_file.h"
+#include "terminal.h"
+
+namespace surf::cli {
+namespace {
+
+constexpr int exit_untrustworthy = 4;
+constexpr double same_pitch = 1e-3;   // relative: as models ask of fields
+
+constexpr const char* examples =
+    R"(IMAGE and the simulated images show the same surface, pixel on pixel. FILE:CHANNEL names a channel of an image.
+Fits IMAGE = gain_SE * SE + gain_BSE * BSE + offset by least squares. The residual image has the channels
+calibrated (the fit), residual (IMAGE less that), valid, and gain with --range: there IMAGE and the fit are
+compared up to a gain that varies slowly, the ratio of their means over squares of twice that range.
+Exit code 4: the gains cannot be trusted, and the warnings say why.
+
+Examples:
+  semsurf calibrate sem.tif --pixel-size 3nm --images simulated.exr -o calibration.json --residual residual.exr
+  semsurf calibrate sem.tif surface.gsf --model si-1keV-3nm.json --folded sem-si-1keV-3nm.json -o calibration.json
+  semsurf calibrate sem.tif:2 --images simulated.exr --fit SE --offset 12 -o calibration.json
+  semsurf calibrate sem.png --pixel-size 2nm --images simulated.exr --ratio 0.4 --white 255 -o calibration.json)";
+
+struct Options {
+  std::string image, heights;
+  std::optional<std::string> pixel_size, images, model, edge, folded, threads, fit, ratio, offset, black, white, range, output, residual;
+  MaskInput masks;
+  bool quiet = false;
+};
+
+/// Everything that can be wrong before a file is read.
+struct Plan {
+  CalibrationOptions options;
+  std::vector<std::string> channels;   // to fit; empty: SE and BSE, those that are there
+  GivenPitch pitch;
+  ModelOptions model;
+  double range_nm = 0;
+};
+
+double parse_number(const std::string& text, const char* subject) {
+  std::istringstream in(text);
+  in.imbue(std::locale::classic());
+  double value = 0;
+  if (in >> value && in.peek() == std::istringstream::traits_type::eof() && std::isfinite(value)) return value;
+  throw UsageError(subject, fmt::format("'{}' is no number", text), "Give a finite number, as 12.5");
+}
+
+std::vector<std::string> split_names(const std::string& text) {
+  std::vector<std::string> names;
+  std::istringstream in(text);
+  for (std::string name; std::getline(in, name, ',');) {
+    if (name.empty() || std::ranges::count(names, name))
+      throw UsageError("--fit", fmt::format("'{}' names a channel twice, or none", text), "Give names, as SE,BSE");
+    names.push_back(name);
+  }
+  return names;
+}
+
+Plan make_plan(const Options& o) {
+  if (o.image.empty()) throw UsageError("calibrate", "no image is given", "Name the image of a microscope");
+  if (!o.images && !o.model)
+    throw UsageError("--images", "there is nothing to compare with",
+                     "Add --images simulated.exr, or HEIGHTS with --model MODEL.json");
+  if (o.images && o.model) throw UsageError("--model", "simulated images are given, too", "Leave one of them out");
+  if (o.model.has_value() == o.heights.empty())
+    throw UsageError("HEIGHTS", o.model ? "a model needs the surface" : "simulated images need no surface",
+                     o.model ? "Name heights, pixel on pixel with IMAGE" : "Leave it out, or give --model instead");
+  if (o.folded && !o.model) throw UsageError("--folded", "there is no model to fold into", "Add --model MODEL.json");
+  if (!o.output && !o.residual)
+    throw UsageError("--output", "no output file is given", "Add -o calibration.json");
+  Plan p;
+  p.model.threads = parse_threads(o.threads);
+  if (o.edge) p.model.edge = parse_edge(*o.edge, "--edge");
+  if (o.folded) io::check_model_target(*o.folded);
+  if (o.output) io::check_writable(*o.output);
+  if (o.residual) io::check_image_target(*o.residual);
+  if (o.pixel_size) std::tie(p.pitch.x_nm, p.pitch.y_nm) = parse_pixel_size(*o.pixel_size, "--pixel-size");
+  if (o.fit) p.channels = split_names(*o.fit);
+  if (o.ratio) p.options.ratios = {1, parse_number(*o.ratio, "--ratio")};
+  if (o.offset) p.options.offset = parse_number(*o.offset, "--offset");
+  if (o.black) p.options.black = parse_number(*o.black, "--black");
+  if (o.white) p.options.white = parse_number(*o.white, "--white");
+  if (!(p.options.black < p.options.white))
+    throw UsageError("--white", "it is not above --black", "Exchange the two levels");
+  if (!o.range) return p;
+  p.range_nm = parse_length_nm(*o.range, "--range");
+  if (!(p.range_nm > 0)) throw UsageError("--range", fmt::format("'{}' is not above 0", *o.range), "Give a length, as 500nm");
+  return p;
+}
+
+void check_same_pixels(const Image& real, const Image& simulated, const Options& o) {
+  const std::string& other = o.images ? *o.images : o.heights;
+  constexpr const char* remedy = "They have to show the same surface pixel on pixel: register and resample one first";
+  if (real.width() != simulated.width() || real.height() != simulated.height())
+    throw InvalidInput(o.image, fmt::format("it has {} x {} pixels, {} has {} x {}", real.width(), real.height(),
+                                            other, simulated.width(), simulated.height()), remedy);
+  const auto differ = [](double a, double b) { return std::fabs(a - b) > same_pitch * b; };
+  if (differ(real.pitch_x_nm, simulated.pitch_x_nm) || differ(real.pitch_y_nm, simulated.pitch_y_nm))
+    throw InvalidInput(o.image, fmt::format("its pixels are {:.6g} x {:.6g} nm, those of {} {:.6g} x {:.6g} nm",
+                                            real.pitch_x_nm, real.pitch_y_nm, other, simulated.pitch_x_nm,
+                                            simulated.pitch_y_nm), remedy);
+}
+
+Grid<double> values(const Image& image, const Channel& channel) {
+  const Channel* valid = image.find("valid");
+  Grid<double> out(image.width(), image.height());
+  for (std::size_t i = 0; i < out.size(); ++i)
+    out.data()[i] = valid && valid->values.data()[i] == 0 ? NAN : double{channel.values.data()[i]};
+  return out;
+}
+
+void add_channels(CalibrationImages& images, const Image& simulated, const Plan& p, const std::string& file) {
+  std::vector<std::string> wanted = p.channels;
+  if (wanted.empty())
+    for (const char* usual : {"SE", "BSE"})
+      if (simulated.find(usual)) wanted.emplace_back(usual);
+  if (wanted.empty())
+    throw UsageError(file, "it has no channel SE or BSE", "Say which of its channels to fit with --fit");
+  if (!p.options.ratios.empty() && wanted.size() != 2)
+    throw UsageError("--ratio", fmt::format("it is of two channels, not of {}", wanted.size()),
+                     "Fit two channels, or leave it out");
+  for (const std::string& name : wanted) {
+    const Channel* channel = simulated.find(name);
+    if (!channel) {
+      std::vector<std::string> names;
+      for (const Channel& c : simulated.channels) names.push_back(c.name);
+      throw UsageError("--fit", fmt::format("{} has no channel '{}'", file, name),
+                       fmt::format("Choose of: {}", fmt::join(names, ", ")));
+    }
+    images.channels.push_back(name);
+    images.simulated.push_back(values(simulated, *channel));
+  }
+}
+
+Image predicted(const Options& o, const Plan& p, const TrainedModel& trained) {
+  const io::HeightFieldFile scan = io::read_height_field(o.heights, {{}, {}, p.pitch.x_nm, p.pitch.y_nm});
+  if (!o.quiet)
+    for (const std::string& note : scan.notes) print_note(fmt::format("{}: {}", o.heights, note));
+  check_field(trained.scope, scan.field, o.heights.c_str());
+  const auto model = make_model(trained);
+  const ModelImages images = model->predict(scan.field, p.model);
+  Image out;
+  out.pitch_x_nm = scan.field.pitch_x_nm, out.pitch_y_nm = scan.field.pitch_y_nm;
+  for (std::size_t c = 0; c < images.size(); ++c) {
+    out.channels.push_back({model->channels()[c], "1", Grid<float>(images[c].width(), images[c].height())});
+    for (std::size_t i = 0; i < images[c].size(); ++i)
+      out.channels.back().values.data()[i] = static_cast<float>(images[c].data()[i]);
+  }
+  return out;
+}
+
+/// A filter bank in the image's own units.
+void write_folded(const std::string& path, TrainedModel trained, const Calibration& c,
+                  const std::map<std::string, std::string>& made) {
+  trained.parameters = fold(c, std::get<FilterBankParameters>(trained.parameters));
+  trained.record.residuals.clear();   // they are of the channels before
+  trained.record.held_out_residuals.clear();
+  for (TrainingScene& scene : trained.record.scenes) scene.residuals.clear();
+  for (const auto& [key, value] : made) trained.record.notes["calibration." + key] = value;
+  io::write_model(path, trained);
+}
+
+Image read_real(const Options& o, const Plan& p, Grid<double>& real) {
+  const FileChannel input = parse_file_channel(o.image);
+  io::WebImage picture = read_picture(input, p.pitch);
+  if (!picture.has_scale)
+    throw InvalidInput(o.image, "it does not say how large its pixels are", "Give their size with --pixel-size");
+  const Channel* channel = input.channel.empty() ? &picture.image.channels.front() : picture.image.find(input.channel);
+  if (!channel) channel = &picture.image.channels.front();   // by number
+  real = values(picture.image, *channel);
+  return std::move(picture.image);
+}
+
+void write_residual(const std::string& path, const Image& like, const CalibrationImages& images,
+                    const Calibration& c, double range_nm, const std::map<std::string, std::string>& made) {
+  Grid<double> fit = calibrated_image(c, images.simulated);
+  SlowGain slow;
+  if (range_nm > 0) {
+    slow = slow_gain(images.real, fit, static_cast<int>(std::min(range_nm / like.pitch_x_nm, 1e9)),
+                     static_cast<int>(std::min(range_nm / like.pitch_y_nm, 1e9)), images.used);
+    if (slow.unknown)
+      print_warning(fmt::format("{} pixels have nothing around them to take a gain from: they are not valid in {}",
+                                slow.unknown, path));
+    for (std::size_t i = 0; i < fit.size(); ++i) fit.data()[i] *= slow.gain.data()[i];
+  }
+  Image out;
+  out.pitch_x_nm = like.pitch_x_nm, out.pitch_y_nm = like.pitch_y_nm;
+  out.origin_x_nm = like.origin_x_nm, out.origin_y_nm = like.origin_y_nm;
+  out.metadata = made;
+  const Grid<float> none(like.width(), like.height());
+  out.channels = {{"calibrated", "1", none}, {"residual", "1", none}, {"valid", "1", none}};
+  if (range_nm > 0) out.channels.push_back({"gain", "1", none});
+  for (std::size_t i = 0; i < fit.size(); ++i) {
+    const bool known = range_nm <= 0 || slow.known.data()[i];
+    if (!known || !std::isfinite(fit.data()[i]) || !std::isfinite(images.real.data()[i])) continue;
+    out.channels[0].values.data()[i] = static_cast<float>(fit.data()[i]);
+    out.channels[1].values.data()[i] = static_cast<float>(images.real.data()[i] - fit.data()[i]);
+    out.channels[2].values.data()[i] = 1;
+    if (range_nm > 0) out.channels[3].values.data()[i] = static_cast<float>(slow.gain.data()[i]);
+  }
+  io::write_image(path, out);
+}
+
+void print_fit(const Calibration& c) {
+  const bool known = c.outcome != CalibrationOutcome::undetermined;
+  for (std::size_t i = 0; i < c.channels.size(); ++i)
+    fmt::print("{:<10} {:.6g}{}\n", "gain " + c.channels[i], c.gains[i],
+               known ? fmt::format(" ± {:.2g}", c.gain_stderr(i)) : ", one of many");
+  fmt::print("{:<10} {:.6g}{}\n", "offset", c.offset,
+             c.offset_stderr() == 0 ? "" : known ? fmt::format(" ± {:.2g}", c.offset_stderr()) : ", one of many");
+  fmt::print("{:<10} {}\n", "condition", known ? fmt::format("{:.4g}", c.condition_number) : "infinite");
+  fmt::print("{:<10} {:.4g} rms, {:.2f} % of the variance explained; correlation of neighbours {:.2f}\n", "residual",
+             c.residual_rms, 100 * c.explained, c.residual_correlation);
+  fmt::print("{:<10} {}{}\n", "pixels", c.pixels, c.saturated ? fmt::format("; {} saturated ones left out", c.saturated) : "");
+}
+
+std::map<std::string, std::string> recorded(const Options& o) {
+  std::map<std::string, std::string> r;
+  const auto add = [&](const char* name, const std::optional<std::string>& value) {
+    if (value) r[name] = *value;
+  };
+  add("pixel-size", o.pixel_size), add("fit", o.fit), add("ratio", o.ratio), add("offset", o.offset);
+  add("black", o.black), add("white", o.white), add("range", o.range), add("edge", o.edge);
+  return r;
+}
+
+int work(const Options& o) {
+  const Plan plan = make_plan(o);
+  CalibrationImages images;
+  const Image real = read_real(o, plan, images.real);
+  std::optional<TrainedModel> model;
+  if (o.model) model = io::read_model(*o.model);
+  if (o.folded && !std::holds_alternative<FilterBankParameters>(model->parameters))
+    throw UsageError("--folded", "gains fold into filter banks only", "Keep the calibration beside the model");
+  const Image simulated = model ? predicted(o, plan, *model) : io::read_image(*o.images);
+  check_same_pixels(real, simulated, o);
+  add_channels(images, simulated, plan, model ? *o.model : *o.images);
+  HeightField place;
+  place.z_nm = images.real;
+  place.pitch_x_nm = real.pitch_x_nm, place.pitch_y_nm = real.pitch_y_nm;
+  place.origin_x_nm = real.origin_x_nm, place.origin_y_nm = real.origin_y_nm;
+  images.used = read_masks(o.masks, place);
+  const Calibration c = calibrate(images, plan.options);
+  std::vector<std::string> inputs{parse_file_channel(o.image).file.string()};
+  if (o.model) inputs.push_back(o.heights);
+  for (const auto& input : {o.images, o.model, o.masks.use, o.masks.exclude})
+    if (input) inputs.push_back(*input);
+  const auto made = provenance_of("calibrate", recorded(o), inputs);
+  if (!o.quiet) print_fit(c);
+  for (const std::string& warning : c.warnings) print_warning(warning);
+  if (o.residual) write_residual(*o.residual, real, images, c, plan.range_nm, made);
+  if (o.output) io::write_calibration(*o.output, {c, plan.range_nm, made});
+  if (o.folded) write_folded(*o.folded, *model, c, made);
+  if (!o.quiet)
+    for (const auto& file : {o.output, o.residual, o.folded})
+      if (file) fmt::print("{:<10} {}\n", "written", *file);
+  return c.outcome == CalibrationOutcome::trusted ? 0 : exit_untrustworthy;
+}
+
+}  // namespace
+
+void add_calibrate(CLI::App& app, Action& action) {
+  const auto o = std::make_shared<Options>();
+  CLI::App* sub = app.add_subcommand("calibrate", "Gains and offset that turn simulated images into a real one");
+  sub->group("Commands");
+  sub->add_option("IMAGE", o->image, "The image of a microscope")->type_name("FILE");
+  sub->add_option("HEIGHTS", o->heights, "With --model: the surface that IMAGE shows")->type_name("FILE");
+  sub->add_option("--images", o->images, "Simulated images of the same surface, as of 'semsurf simulate'")
+      ->type_name("FILE");
+  sub->add_option("--model", o->model, "Instead: a model that images HEIGHTS, as of 'semsurf train'")
+      ->type_name("FILE.json");
+  sub->add_option("--edge", o->edge, "How HEIGHTS go on outside (mirror)")->type_name("mirror|flat|periodic");
+  sub->add_option("--pixel-size", o->pixel_size, "Of files that do not say, 2nm or 2nmx3nm")->type_name("LENGTH");
+  const char* fitting = "Fit";
+  sub->add_option("--fit", o->fit, "Which simulated channels (SE,BSE, those that are there)")
+      ->type_name("NAMES")->group(fitting);
+  sub->add_option("--ratio", o->ratio, "Gain of the second channel over the first's, where it is known")
+      ->type_name("NUMBER")->group(fitting);
+  sub->add_option("--offset", o->offset, "What the image shows without a signal, where it is known")
+      ->type_name("NUMBER")->group(fitting);
+  sub->add_option("--black", o->black, "Levels from here down are saturated and left out")
+      ->type_name("NUMBER")->group(fitting);
+  sub->add_option("--white", o->white, "Levels from here up are saturated and left out")
+      ->type_name("NUMBER")->group(fitting);
+  add_mask_input(*sub, o->masks);
+  const char* output = "Output";
+  sub->add_option("--range", o->range, "Half the width of squares over which the gain may vary (it is constant)")
+      ->type_name("LENGTH")->group(output);
+  sub->add_option("-o,--output", o->output, "The calibration: .json")->type_name("FILE")->group(output);
+  sub->add_option("--residual", o->residual, "The fit and what it leaves: .exr .tif .vti .png")
+      ->type_name("FILE")->group(output);
+  sub->add_option("--folded", o->folded, "The model with gains and offset in its coefficients (filter banks): .json")
+      ->type_name("FILE.json")->group(output);
+  add_threads_option(*sub, o->threads)->group(output);
+  add_quiet_flag(*sub, o->quiet)->group(output);
+  sub->footer(examples);
+  sub->callback([o, &action] { action = [o] { return work(*o); }; });
+}
+
+}  // namespace surf::cli
