@@ -78,6 +78,41 @@ HeightField TrainingShapes::blocks(int count, double highest_nm) {
   return field;
 }
 
+HeightField TrainingShapes::island(double highest_nm) {
+  HeightField field = flat();
+  const double p = pixel_nm_, widest = std::min(14 * p, 0.4 * half_nm_);
+  const int count = uniform(0, 1) < 0.5 ? 1 : 2;
+  for (int i = 0; i < count; ++i) {
+    Block block{};
+    block.x_nm = uniform(-0.5, 0.5) * half_nm_;
+    block.y_nm = uniform(-0.5, 0.5) * half_nm_;
+    block.half_width_nm = uniform(2 * p, widest);
+    block.half_depth_nm = uniform(2 * p, widest);
+    block.turn = uniform(0, 2) < 1 ? uniform(0, std::numbers::pi) : 0;
+    block.run_nm = run();
+    block.height_nm = uniform(0.2 * highest_nm, highest_nm);
+    block.round = uniform(0, 1) < 0.3;
+    change(field, [&](double x, double y, double z) { return std::max(z, block.at(x, y)); });
+  }
+  return field;
+}
+
+HeightField TrainingShapes::line(double highest_nm) {
+  const double turn = uniform(0, std::numbers::pi), c = std::cos(turn), s = std::sin(turn);
+  const double at = uniform(-0.4, 0.4) * half_nm_, half = uniform(2, 10) * pixel_nm_, wall = run();
+  const double height = uniform(0.2 * highest_nm, highest_nm);
+  HeightField field = flat();
+  change(field, [&](double x, double y, double) {
+    return height * std::clamp(1 - (std::abs(x * c + y * s - at) - half) / wall, 0.0, 1.0);
+  });
+  return field;
+}
+
+double TrainingShapes::run() {
+  constexpr double pixels[] = {1, 2, 3, 5};
+  return pixels[std::min(3, static_cast<int>(uniform(0, 4)))] * pixel_nm_;
+}
+
 HeightField TrainingShapes::bumps(int count) {
   HeightField field = flat();
   for (int i = 0; i < count; ++i) {

@@ -19,10 +19,14 @@ class TrainingShapes {
 
   /// Blocks and discs that rise from 0, the higher ones on top, some on the shoulders of others.
   HeightField blocks(int count, double highest_nm);
+  /// One or two of them near the middle.
+  HeightField island(double highest_nm);
   /// Bumps and dimples of Gaussian profile, as wide as 2 to 12 pixels, -1.5 to 2 times as high.
   HeightField bumps(int count);
   /// Parallel lines in any direction, 3 to 16 pixels wide, 5 to 25 apart.
   HeightField lines(double highest_nm);
+  /// One line.
+  HeightField line(double highest_nm);
   /// Square pyramids with sides of 10 to 80 degrees.
   HeightField pyramids(int count, double highest_nm);
   /// See make_rough, make_self_affine. Lengths that the field is too small for are cut down.
@@ -31,6 +35,7 @@ class TrainingShapes {
 
  private:
   double uniform(double from, double to);
+  double run();   ///< of a wall
   std::uint64_t seed();
   double shortened(double correlation_nm) const;
 

@@ -34,17 +34,20 @@ struct Kind {
 
 constexpr Kind kinds[] = {
     {"blocks", [](TrainingShapes& t, const Scale& s) { return t.blocks(14, 30 * s.height); }},
+    {"island", [](TrainingShapes& t, const Scale& s) { return t.island(40 * s.height); }},
     {"blocks-rough",
      [](TrainingShapes& t, const Scale& s) {
        HeightField z = t.blocks(22, 45 * s.height);
        return sum(std::move(z), t.rough(0.5 * s.height, 20 * s.pixel + 4));
      }},
     {"pits", [](TrainingShapes& t, const Scale& s) { return sum(t.flat(), t.blocks(14, 40 * s.height), -1); }},
+    {"hole", [](TrainingShapes& t, const Scale& s) { return sum(t.flat(), t.island(40 * s.height), -1); }},
     {"rough-fine", [](TrainingShapes& t, const Scale& s) { return t.rough(3 * s.pixel + 1, 15 * s.pixel + 4); }},
     {"rough", [](TrainingShapes& t, const Scale& s) { return t.rough(10 * s.pixel + 2, 30 * s.pixel + 6); }},
     {"rough-coarse", [](TrainingShapes& t, const Scale& s) { return t.rough(20 * s.pixel + 4, 60 * s.pixel + 10); }},
     {"self-affine",
      [](TrainingShapes& t, const Scale& s) { return t.self_affine(8 * s.pixel + 3, 40 * s.pixel + 10, 0.7); }},
+    {"line", [](TrainingShapes& t, const Scale& s) { return t.line(40 * s.height); }},
     {"bumps", [](TrainingShapes& t, const Scale&) { return t.bumps(40); }},
     {"lines", [](TrainingShapes& t, const Scale& s) { return t.lines(40 * s.height); }},
     {"blocks-self-affine",
@@ -53,6 +56,7 @@ constexpr Kind kinds[] = {
        return sum(std::move(z), t.self_affine(2 * s.height, 20 * s.pixel + 5, 0.8));
      }},
     {"pyramids", [](TrainingShapes& t, const Scale& s) { return t.pyramids(25, 60 * s.height); }},
+    {"low-island", [](TrainingShapes& t, const Scale& s) { return t.island(25 * s.height); }},
     {"blocks-bumps",
      [](TrainingShapes& t, const Scale& s) {
        HeightField z = t.blocks(30, 25 * s.height);

@@ -19,7 +19,7 @@ struct FacetNetworkFitOptions {
   /// scales and bands that are not given.
   double range_nm = 30;
   std::vector<int> hidden{32};         ///< units of each hidden layer, 0 to 3 layers of 1 to 256
-  int iterations = 1200;               ///< of the optimiser at most, in all, 1 to 100,000
+  int iterations = 600;                ///< of the optimiser at most, in all, 1 to 100,000
   /// How strongly large weights are held back, >= 0: the sum of their squares times this is added to the
   /// mean square of the residuals in units of their standard deviation.
   double decay = 1e-4;
@@ -34,7 +34,8 @@ struct FacetNetworkFitOptions {
 /// The thesis's neighbourhoods with a sigma of at most 0.65 times the range, at least four.
 std::vector<FacetScale> network_scales(double pixel_nm, double range_nm);
 
-/// Four bands of distances, up to 4/3 of the range.
+/// Six bands of distances, up to 16/3 of the range: farther than electrons get inside, because what stands
+/// there still catches those that have left.
 std::vector<double> network_sky_edges(double range_nm);
 
 struct FacetNetworkFit {
