@@ -362,6 +362,29 @@ struct Loops {
       }
   }
 
+  /// arctan of x >= 0, to 2e-16 (the rational function of Moshier's Cephes library; fractions turn x to below
+  /// 0.66). Without branches, so that vectors can do it.
+  SEMSURF_INLINE static double arc_tangent(double x) {
+    const bool large = x > 2.414213562373095, middle = x > 0.66;
+    const double u = (large ? -1 : middle ? x - 1 : x) / (large ? x : middle ? x + 1 : 1), v = u * u;
+    const double p = (((-0.8750608600031904 * v - 16.15753718733365) * v - 75.00855792314705) * v -
+                      122.8866684490136) * v - 64.85021904942025;
+    const double q = ((((v + 24.85846490142306) * v + 165.0270098316988) * v + 432.8810604912903) * v +
+                      485.3903996359137) * v + 194.5506571482614;
+    return (large ? 1.5707963267948966 : middle ? 0.7853981633974483 : 0) + (u + u * v * p / q);
+  }
+
+  SEMSURF_INLINE static void angles(const T* k, int rows, double* tangent, double* secant, double* angle) {
+    for (int y = 0; y < rows; ++y, k += coefficients * columns)
+      for (int x = 0; x < columns; ++x) {
+        const double k2 = k[x], k3 = k[columns + x], square = k2 * k2 + k3 * k3, slope = __builtin_sqrt(square);
+        const int i = y * columns + x;
+        tangent[i] = slope;
+        secant[i] = __builtin_sqrt(1 + square);
+        angle[i] = arc_tangent(slope);
+      }
+  }
+
   SEMSURF_INLINE static void relative(const double* z, int count, double level, T* out) {
     for (int i = 0; i < count; ++i) out[i] = static_cast<T>(z[i] - level);
   }

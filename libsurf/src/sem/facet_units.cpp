@@ -43,13 +43,16 @@ namespace {
                                     const Weights<T>* weights, int channels, T* sum) {                       \
       L::push_forward(k, dk, rows, floors, weights, channels, sum);                                          \
     }                                                                                                        \
+    target static void angles(const T* k, int rows, double* tangent, double* secant, double* angle) {        \
+      L::angles(k, rows, tangent, secant, angle);                                                            \
+    }                                                                                                        \
     target static T largest(const T* values, std::ptrdiff_t count) { return L::largest(values, count); }     \
     target static void relative(const double* z, int count, double level, T* out) {                          \
       L::relative(z, count, level, out);                                                                     \
     }                                                                                                        \
     static constexpr Operations<T> all{L::columns, across,    along,     along_transposed, turn,             \
                                        across_transposed,      invariants, combine, pull_back, push_forward, \
-                                       relative,   largest};                                                 \
+                                       angles,    relative,    largest};                                     \
   };
 
 SEMSURF_LOOPS(Portable, 16, )

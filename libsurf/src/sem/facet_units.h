@@ -79,6 +79,9 @@ struct Operations {
   void (*push_forward)(const T* k, const T* dk, int rows, const Floors<T>& floors, const Weights<T>* weights,
                        int channels, T* sum);
 
+  /// Tangent (the slope), secant and angle, radians, between the normals and the vertical: `columns` a row each.
+  void (*angles)(const T* k, int rows, double* tangent, double* secant, double* angle);
+
   /// Heights relative to a level.
   void (*relative)(const double* z, int count, double level, T* out);
 
