@@ -385,6 +385,58 @@ struct Loops {
       }
   }
 
+  SEMSURF_INLINE static void spread(const T* samples, int count, const T* worth, T* out) {
+    V sum[vectors] = {};
+    for (int i = 0; i < count; ++i)
+      for (int v = 0; v < vectors; ++v) {
+        V w;
+        load(w, worth + i * columns + v * lanes);
+        sum[v] += w * samples[i];
+      }
+    for (int v = 0; v < vectors; ++v) store(out + v * lanes, sum[v]);
+  }
+
+  SEMSURF_INLINE static void spread_transposed(const T* weight, int count, const T* worth, T* samples) {
+    for (int i = 0; i < count; ++i) {
+      V products = {};
+      for (int v = 0; v < vectors; ++v) {
+        V a, b;
+        load_pair(a, b, weight + v * lanes, worth + i * columns + v * lanes);
+        products += a * b;
+      }
+      T sum = 0;
+      for (int j = 0; j < lanes; ++j) sum += products[j];
+      samples[i] += sum;
+    }
+  }
+
+  SEMSURF_INLINE static void between_rows(const T* samples, int first, int step, int rows, T* out) {
+    constexpr int size = coefficients * columns;
+    for (int y = 0; y < rows; ++y, out += size) {
+      const T* const low = samples + (first + y) / step * size;
+      const T fraction = static_cast<T>((first + y) % step) / static_cast<T>(step);
+      for (int x = 0; x < size; x += lanes) {
+        V a, b;
+        load_pair(a, b, low + x, low + size + x);
+        store(out + x, a + (b - a) * fraction);
+      }
+    }
+  }
+
+  SEMSURF_INLINE static void between_rows_transposed(const T* weight, int first, int step, int rows, T* samples) {
+    constexpr int size = coefficients * columns;
+    for (int y = 0; y < rows; ++y, weight += size) {
+      T* const low = samples + (first + y) / step * size;
+      const T fraction = static_cast<T>((first + y) % step) / static_cast<T>(step);
+      for (int x = 0; x < size; x += lanes) {
+        V w;
+        load(w, weight + x);
+        increase(low + size + x, w * fraction);
+        increase(low + x, w * (1 - fraction));
+      }
+    }
+  }
+
   SEMSURF_INLINE static void relative(const double* z, int count, double level, T* out) {
     for (int i = 0; i < count; ++i) out[i] = static_cast<T>(z[i] - level);
   }

@@ -46,13 +46,26 @@ namespace {
     target static void angles(const T* k, int rows, double* tangent, double* secant, double* angle) {        \
       L::angles(k, rows, tangent, secant, angle);                                                            \
     }                                                                                                        \
+    target static void spread(const T* samples, int count, const T* worth, T* out) {                         \
+      L::spread(samples, count, worth, out);                                                                 \
+    }                                                                                                        \
+    target static void spread_transposed(const T* weight, int count, const T* worth, T* samples) {           \
+      L::spread_transposed(weight, count, worth, samples);                                                   \
+    }                                                                                                        \
+    target static void between_rows(const T* samples, int first, int step, int rows, T* out) {               \
+      L::between_rows(samples, first, step, rows, out);                                                      \
+    }                                                                                                        \
+    target static void between_rows_transposed(const T* weight, int first, int step, int rows, T* samples) { \
+      L::between_rows_transposed(weight, first, step, rows, samples);                                        \
+    }                                                                                                        \
     target static T largest(const T* values, std::ptrdiff_t count) { return L::largest(values, count); }     \
     target static void relative(const double* z, int count, double level, T* out) {                          \
       L::relative(z, count, level, out);                                                                     \
     }                                                                                                        \
     static constexpr Operations<T> all{L::columns, across,    along,     along_transposed, turn,             \
                                        across_transposed,      invariants, combine, pull_back, push_forward, \
-                                       angles,    relative,    largest};                                     \
+                                       angles,    spread,   spread_transposed, between_rows,                 \
+                                       between_rows_transposed, relative, largest};                          \
   };
 
 SEMSURF_LOOPS(Portable, 16, )

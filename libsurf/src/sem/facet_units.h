@@ -82,6 +82,16 @@ struct Operations {
   /// Tangent (the slope), secant and angle, radians, between the normals and the vertical: `columns` a row each.
   void (*angles)(const T* k, int rows, double* tangent, double* secant, double* angle);
 
+  /// A row of `columns` values out of `count` samples, each worth[sample][column]; and the transpose, which adds
+  /// to the samples.
+  void (*spread)(const T* samples, int count, const T* worth, T* out);
+  void (*spread_transposed)(const T* weight, int count, const T* worth, T* samples);
+
+  /// Rows of coefficients interpolated between rows that are `step` of them apart: row y lies first + y behind the
+  /// first sample. And the transpose, which adds to the samples.
+  void (*between_rows)(const T* samples, int first, int step, int rows, T* out);
+  void (*between_rows_transposed)(const T* weight, int first, int step, int rows, T* samples);
+
   /// Heights relative to a level.
   void (*relative)(const double* z, int count, double level, T* out);
 
