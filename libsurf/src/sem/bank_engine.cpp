@@ -109,7 +109,7 @@ Grid<double> BankEngine<T>::gradient(const Grid<double>& z_nm, const ModelImages
   if (unit == 0) return gradient;
   const int channels = static_cast<int>(weights.size()), columns = pass_.columns();
   const std::vector<Block> blocks = pass_.blocks(z_nm.width(), z_nm.height());
-  const std::size_t parts = blocks.size() / ((z_nm.width() + columns - 1) / columns);
+  const std::size_t strips = (z_nm.width() + columns - 1) / columns;
   std::vector<AlignedVector<T>> block_weights(blocks.size());
   parallel_for(blocks.size(), options_.threads, [&](std::size_t i, int) {
     const Block& block = blocks[i];
@@ -122,8 +122,7 @@ Grid<double> BankEngine<T>::gradient(const Grid<double>& z_nm, const ModelImages
   const facet::CoarseFits<T> coarse = coarse_fits(z_nm);
   std::vector<Scratch> workers(options_.threads);
   const auto pull_back = [&](int w, int scale, const Block& column, T* out) {
-    for (std::size_t part = 0; part < parts; ++part) {
-      const std::size_t i = column.x / columns * parts + part;
+    for (std::size_t i = column.x / columns; i < blocks.size(); i += strips) {
       Scratch& scratch = workers[w];
       if (fine_of_[scale] >= 0) pass_.load(z_nm, options_.edge, blocks[i], scratch.fine, fine_of_[scale]);
       const T* const k = fit(scale, coarse, blocks[i], scratch);

@@ -51,12 +51,11 @@ template <class T>
 std::vector<Block> FacetPass<T>::blocks(int width, int height) const {
   const int parts = (height + most_rows - 1) / most_rows;
   std::vector<Block> blocks;
-  for (int x = 0; x < width; x += columns())
-    for (int part = 0; part < parts; ++part) {
-      const int y = static_cast<int>(std::int64_t{height} * part / parts);
-      const int end = static_cast<int>(std::int64_t{height} * (part + 1) / parts);
-      blocks.push_back({x, y, std::min(columns(), width - x), end - y});
-    }
+  for (int part = 0; part < parts; ++part) {
+    const int y = static_cast<int>(std::int64_t{height} * part / parts);
+    const int end = static_cast<int>(std::int64_t{height} * (part + 1) / parts);
+    for (int x = 0; x < width; x += columns()) blocks.push_back({x, y, std::min(columns(), width - x), end - y});
+  }
   return blocks;
 }
 
@@ -220,8 +219,10 @@ void FacetPass<T>::transpose(Edge edge, int threads, const Source& source, doubl
     parallel_for(strips, threads, [&](std::size_t strip, int w) {
       const int x = static_cast<int>(strip) * wide;
       const Block column{x, 0, std::min(wide, width - x), height};
-      weights[w].assign(static_cast<std::size_t>(height + 1) * row_size + 2 * outside, T(0));
+      weights[w].resize(static_cast<std::size_t>(height + 1) * row_size + 2 * outside);
       T* const inside = weights[w].data() + outside;
+      std::fill_n(weights[w].begin(), outside, T(0));
+      std::fill_n(inside + height * row_size, outside + row_size, T(0));
       source(w, scale, column, inside);
       scale_weights(kernel.scaling, height, inside);
       transpose_along(kernel, edge, column, inside, planes.data(), plane);

@@ -33,6 +33,7 @@ class FacetPass {
   int scales() const { return static_cast<int>(kernels_.size()); }
   int columns() const { return loops_->columns; }
   const Operations<T>& loops() const { return *loops_; }
+  /// From left to right, then upwards: neighbours look at the same heights.
   std::vector<Block> blocks(int width, int height) const;
 
   /// A worker's memory: the heights around a block, and what its fits need. It fits any block in turn.

@@ -52,12 +52,12 @@ class SlopeEngine {
     if (unit == 0) return gradient;
     const int columns = pass_.columns();
     const std::vector<Block> blocks = pass_.blocks(z_nm.width(), z_nm.height());
-    const std::size_t parts = blocks.size() / ((z_nm.width() + columns - 1) / columns);
+    const std::size_t strips = (z_nm.width() + columns - 1) / columns;
     std::vector<Worker> workers(options_.threads);
     pass_.transpose(options_.edge, options_.threads, [&](int w, int, const Block& column, T* out) {
       std::fill_n(out, static_cast<std::size_t>(column.rows) * facet::coefficients * columns, T(0));
-      for (std::size_t part = 0; part < parts; ++part) {
-        const Block& block = blocks[column.x / columns * parts + part];
+      for (std::size_t i = column.x / columns; i < blocks.size(); i += strips) {
+        const Block& block = blocks[i];
         const T* k = fit(z_nm, block, workers[w].scratch);
         const double floor = pass_.floors(0, workers[w].scratch).slope;
         measure(k, block, workers[w]);
