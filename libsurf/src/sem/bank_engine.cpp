@@ -53,7 +53,7 @@ template <class T>
 const T* BankEngine<T>::fit(int scale, const facet::CoarseFits<T>& coarse, const Block& block, Scratch& s) const {
   if (fine_of_[scale] >= 0) return pass_.fit(fine_of_[scale], s.fine);
   s.coarse.resize(static_cast<std::size_t>(block.rows) * facet::coefficients * pass_.columns());
-  coarse.at(scale, block, pass_.columns(), s.coarse.data());
+  coarse.at(scale, block, pass_.columns(), s.between, s.coarse.data());
   return s.coarse.data();
 }
 
@@ -109,7 +109,7 @@ Grid<double> BankEngine<T>::gradient(const Grid<double>& z_nm, const ModelImages
   if (unit == 0) return gradient;
   const int channels = static_cast<int>(weights.size()), columns = pass_.columns();
   const std::vector<Block> blocks = pass_.blocks(z_nm.width(), z_nm.height());
-  const std::size_t parts = blocks.size() / ((z_nm.width() + columns - 1) / columns);
+  const std::size_t strips = (z_nm.width() + columns - 1) / columns;
   std::vector<AlignedVector<T>> block_weights(blocks.size());
   parallel_for(blocks.size(), options_.threads, [&](std::size_t i, int) {
     const Block& block = blocks[i];
@@ -121,39 +121,20 @@ Grid<double> BankEngine<T>::gradient(const Grid<double>& z_nm, const ModelImages
   });
   const facet::CoarseFits<T> coarse = coarse_fits(z_nm);
   std::vector<Scratch> workers(options_.threads);
-  const auto pull_back = [&](int scale, std::size_t i, Scratch& scratch, T* out) {
-    const T* const k = fit(scale, coarse, blocks[i], scratch);
-    pass_.loops().pull_back(k, blocks[i].rows, floors(scale, coarse, scratch), weights_[scale].data(), channels,
-                            block_weights[i].data(), out);
-  };
-  const auto source = [&](int w, int fine, const Block& column, T* out) {
-    for (std::size_t part = 0; part < parts; ++part) {
-      const std::size_t i = column.x / columns * parts + part;
-      pass_.load(z_nm, options_.edge, blocks[i], workers[w].fine, fine);
-      pull_back(scale_of_[fine], i, workers[w],
-                out + static_cast<std::ptrdiff_t>(blocks[i].y) * facet::coefficients * columns);
+  const auto pull_back = [&](int w, int scale, const Block& column, T* out) {
+    for (std::size_t i = column.x / columns; i < blocks.size(); i += strips) {
+      Scratch& scratch = workers[w];
+      if (fine_of_[scale] >= 0) pass_.load(z_nm, options_.edge, blocks[i], scratch.fine, fine_of_[scale]);
+      const T* const k = fit(scale, coarse, blocks[i], scratch);
+      pass_.loops().pull_back(k, blocks[i].rows, floors(scale, coarse, scratch), weights_[scale].data(), channels,
+                              block_weights[i].data(),
+                              out + static_cast<std::ptrdiff_t>(blocks[i].y) * facet::coefficients * columns);
     }
   };
-  pass_.transpose(options_.edge, options_.threads, source, unit, gradient);
-  if (!parameters_.multi_resolution) return gradient;
-
-  std::vector<AlignedVector<T>> planes(scales());
-  std::vector<AlignedVector<T>> outs(options_.threads);
-  const std::size_t width = z_nm.width(), size = z_nm.size();
-  for (int s = 0; s < scales(); ++s) {
-    if (fine_of_[s] >= 0) continue;
-    planes[s].resize(facet::coefficients * size);
-    parallel_for(blocks.size(), options_.threads, [&](std::size_t i, int w) {
-      const Block& block = blocks[i];
-      outs[w].resize(static_cast<std::size_t>(block.rows) * facet::coefficients * columns);
-      pull_back(s, i, workers[w], outs[w].data());
-      const T* from = outs[w].data();
-      for (int y = 0; y < block.rows; ++y)
-        for (int c = 0; c < facet::coefficients; ++c, from += columns)
-          std::copy_n(from, block.width, planes[s].data() + c * size + (block.y + y) * width + block.x);
-    });
-  }
-  coarse.transpose(planes, options_.edge, options_.threads, unit, gradient);
+  pass_.transpose(options_.edge, options_.threads,
+                  [&](int w, int fine, const Block& column, T* out) { pull_back(w, scale_of_[fine], column, out); },
+                  unit, gradient);
+  coarse.transpose(pull_back, columns, options_.edge, options_.threads, unit, gradient);
   return gradient;
 }
 

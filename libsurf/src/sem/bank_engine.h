@@ -36,7 +36,7 @@ class BankEngine {
   /// What a worker needs to fit a block at all scales, some of them on coarser heights.
   struct Scratch {
     typename facet::FacetPass<T>::Scratch fine;
-    AlignedVector<T> coarse;
+    AlignedVector<T> coarse, between;
   };
   facet::CoarseFits<T> coarse_fits(const Grid<double>& z_nm) const;
   const T* fit(int scale, const facet::CoarseFits<T>& coarse, const facet::Block& block, Scratch& scratch) const;

@@ -19,37 +19,42 @@ FacetScale halved(const FacetScale& scale, int times) {
 
 constexpr double smooth[3] = {0.25, 0.5, 0.25};
 
-/// Every other sample, smoothed; along x, then along y.
-Grid<double> halve(const Grid<double>& z) {
-  const int width = z.width(), height = z.height();
-  Grid<double> rows((width + 1) / 2, height), out((width + 1) / 2, (height + 1) / 2);
-  for (int y = 0; y < height; ++y) {
-    const double* const from = &z(0, y);
-    double* const to = &rows(0, y);
-    for (int x = 0; x < rows.width(); ++x)
-      to[x] = smooth[0] * from[std::max(2 * x - 1, 0)] + smooth[1] * from[2 * x] +
-              smooth[2] * from[std::min(2 * x + 1, width - 1)];
+/// Which samples of a line stand for those from one before its first to one behind its last.
+std::vector<int> neighbours(int count) {
+  std::vector<int> from;
+  for (int i = -1; i <= count; ++i) from.push_back(std::clamp(i, 0, count - 1));
+  return from;
+}
+
+/// Every other sample, smoothed, less a level. Sample i of a line is from[i + 1].
+Grid<double> halve(const Grid<double>& z, const std::vector<int>& from_x, const std::vector<int>& from_y,
+                   double level) {
+  Grid<double> out(static_cast<int>(from_x.size() - 1) / 2, static_cast<int>(from_y.size() - 1) / 2);
+  std::vector<double> line(z.width());
+  for (int y = 0; y < out.height(); ++y) {
+    const double *const a = &z(0, from_y[2 * y]), *const b = &z(0, from_y[2 * y + 1]), *const c = &z(0, from_y[2 * y + 2]);
+    for (int x = 0; x < z.width(); ++x)
+      line[x] = smooth[0] * (a[x] - level) + smooth[1] * (b[x] - level) + smooth[2] * (c[x] - level);
+    for (int x = 0; x < out.width(); ++x)
+      out(x, y) = smooth[0] * line[from_x[2 * x]] + smooth[1] * line[from_x[2 * x + 1]] +
+                  smooth[2] * line[from_x[2 * x + 2]];
   }
-  for (int y = 0; y < out.height(); ++y)
-    for (int k = -1; k <= 1; ++k) {
-      const int from = std::clamp(2 * y + k, 0, height - 1);
-      for (int x = 0; x < out.width(); ++x) out(x, y) += smooth[k + 1] * rows(x, from);
-    }
   return out;
 }
 
 /// The transpose: adds to z.
-void halve_transposed(const Grid<double>& out, Grid<double>& z) {
-  const int width = z.width(), height = z.height();
-  Grid<double> rows(out.width(), height);
-  for (int y = 0; y < out.height(); ++y)
-    for (int k = -1; k <= 1; ++k) {
-      const int to = std::clamp(2 * y + k, 0, height - 1);
-      for (int x = 0; x < out.width(); ++x) rows(x, to) += smooth[k + 1] * out(x, y);
+void halve_transposed(const Grid<double>& out, const std::vector<int>& from_x, const std::vector<int>& from_y,
+                      Grid<double>& z) {
+  std::vector<double> line(z.width());
+  for (int y = 0; y < out.height(); ++y) {
+    std::fill(line.begin(), line.end(), 0.0);
+    for (int x = 0; x < out.width(); ++x)
+      for (int k = 0; k < 3; ++k) line[from_x[2 * x + k]] += smooth[k] * out(x, y);
+    for (int k = 0; k < 3; ++k) {
+      double* const to = &z(0, from_y[2 * y + k]);
+      for (int x = 0; x < z.width(); ++x) to[x] += smooth[k] * line[x];
     }
-  for (int y = 0; y < height; ++y)
-    for (int x = 0; x < rows.width(); ++x)
-      for (int k = -1; k <= 1; ++k) z(std::clamp(2 * x + k, 0, width - 1), y) += smooth[k + 1] * rows(x, y);
+  }
 }
 
 }  // namespace
@@ -68,6 +73,7 @@ CoarseFits<T>::CoarseFits(const std::vector<FacetScale>& scales, double pitch_x_
     if (fit.level == 0) continue;
     const int step = 1 << fit.level;
     const FacetScale coarse = halved(scale, fit.level);
+    fit.radius = coarse.size / 2;
     fit.pass.emplace_back(std::vector{coarse}, pitch_x_nm * step, pitch_y_nm * step);
     levels_ = std::max(levels_, fit.level);
     margin_ = std::max(margin_, (coarse.size / 2 + 3) * step);   // the fit, smoothing and interpolation
@@ -77,128 +83,161 @@ CoarseFits<T>::CoarseFits(const std::vector<FacetScale>& scales, double pitch_x_
 }
 
 template <class T>
-typename CoarseFits<T>::Between CoarseFits<T>::between(int pixel, int level) const {
-  const int step = 1 << level, i = pixel + margin_;
-  return {i / step, T(i % step) / T(step)};
+std::vector<int> CoarseFits<T>::continued(int count, Edge edge) const {
+  std::vector<int> from;
+  for (int i = -margin_ - 1; i <= count + margin_; ++i) from.push_back(border_sample(i, count, edge));
+  return from;
+}
+
+/// The samples that a field of so many is interpolated from, and those that their fits look at.
+template <class T>
+typename CoarseFits<T>::Range CoarseFits<T>::range(const Fit& fit, int count) const {
+  const int step = 1 << fit.level, first = margin_ / step - fit.radius;
+  return {first, (margin_ + count - 1) / step + 2 + fit.radius - first};
 }
 
 template <class T>
 void CoarseFits<T>::load(const Grid<double>& z_nm, Edge edge, int threads) {
   if (levels_ == 0) return;
-  const int width = z_nm.width(), height = z_nm.height();
-  Grid<double> z(width + 2 * margin_, height + 2 * margin_);
-  for (int y = 0; y < z.height(); ++y) {
-    const int row = border_sample(y - margin_, height, edge);
-    for (int x = 0; x < z.width(); ++x)   // relative to a height: smoothing would round what is constant
-      z(x, y) = z_nm(border_sample(x - margin_, width, edge), row) - z_nm(0, 0);
-  }
-  widths_ = {z.width()};
-  heights_ = {z.height()};
   threads = resolve_threads(threads);
+  // Relative to a height: smoothing would round what is constant.
+  Grid<double> z = halve(z_nm, continued(z_nm.width(), edge), continued(z_nm.height(), edge), z_nm(0, 0));
   for (int level = 1; level <= levels_; ++level) {
-    z = halve(z);
-    widths_.push_back(z.width());
-    heights_.push_back(z.height());
-    for (Fit& fit : fits_) {
-      if (fit.level != level) continue;
-      const FacetPass<T>& pass = fit.pass[0];
-      const std::size_t size = z.size();
-      fit.planes.assign(coefficients * size, T(0));
-      const std::vector<Block> blocks = pass.blocks(z.width(), z.height());
-      std::vector<typename FacetPass<T>::Scratch> workers(threads);
-      std::vector<Floors<T>> floors(blocks.size());
-      parallel_for(blocks.size(), threads, [&](std::size_t i, int w) {
-        const Block& block = blocks[i];
-        pass.load(z, Edge::flat, block, workers[w]);
-        const T* k = pass.fit(0, workers[w]);
-        floors[i] = pass.floors(0, workers[w]);
-        for (int y = 0; y < block.rows; ++y)
-          for (int c = 0; c < coefficients; ++c, k += pass.columns())
-            std::copy_n(k, block.width,
-                        fit.planes.data() + c * size + static_cast<std::size_t>(block.y + y) * z.width() + block.x);
-      });
-      fit.floors = {};
-      for (const Floors<T>& f : floors)
-        fit.floors = {std::max(fit.floors.slope, f.slope), std::max(fit.floors.curvature, f.curvature)};
-    }
+    if (level > 1) z = halve(z, neighbours(z.width()), neighbours(z.height()), 0);
+    for (Fit& fit : fits_)
+      if (fit.level == level) fit_level(z, z_nm.width(), z_nm.height(), threads, fit);
   }
 }
 
 template <class T>
-void CoarseFits<T>::at(int scale, const Block& block, int columns, T* out) const {
-  const Fit& fit = fits_[scale];
-  const std::size_t width = widths_[fit.level], size = width * heights_[fit.level];
-  // What each coarse sample is worth to each column: sums of whole rows, which vectors can do.
-  const int first = between(block.x, fit.level).sample;
-  const int count = between(block.x + block.width - 1, fit.level).sample + 2 - first;
-  std::vector<T> worth(static_cast<std::size_t>(count) * columns);
+void CoarseFits<T>::fit_level(const Grid<double>& z, int width, int height, int threads, Fit& fit) const {
+  const Range x = range(fit, width), y = range(fit, height);
+  Grid<double> part(x.count, y.count);
+  for (int row = 0; row < y.count; ++row) std::copy_n(&z(x.first, y.first + row), x.count, &part(0, row));
+  const FacetPass<T>& pass = fit.pass[0];
+  fit.width = x.count;
+  fit.planes.resize(coefficients * part.size());
+  const std::vector<Block> blocks = pass.blocks(x.count, y.count);
+  std::vector<typename FacetPass<T>::Scratch> workers(threads);
+  std::vector<Floors<T>> floors(blocks.size());
+  parallel_for(blocks.size(), threads, [&](std::size_t i, int w) {
+    const Block& block = blocks[i];
+    pass.load(part, Edge::flat, block, workers[w]);
+    const T* k = pass.fit(0, workers[w]);
+    floors[i] = pass.floors(0, workers[w]);
+    for (int row = block.y; row < block.y + block.rows; ++row)
+      for (int c = 0; c < coefficients; ++c, k += pass.columns())
+        std::copy_n(k, block.width,
+                    fit.planes.data() + (static_cast<std::size_t>(row) * coefficients + c) * x.count + block.x);
+  });
+  fit.floors = {};
+  for (const Floors<T>& f : floors)
+    fit.floors = {std::max(fit.floors.slope, f.slope), std::max(fit.floors.curvature, f.curvature)};
+}
+
+/// What coarse samples are worth to the pixels of a block.
+template <class T>
+typename CoarseFits<T>::Worth CoarseFits<T>::worth(const Fit& fit, const Block& block, int columns) const {
+  const int step = 1 << fit.level, first = (block.x + margin_) / step;
+  Worth worth;
+  worth.first = first - range(fit, 1).first;
+  worth.count = (block.x + block.width - 1 + margin_) / step + 2 - first;
+  worth.of.assign(static_cast<std::size_t>(worth.count) * columns, T(0));
   for (int x = 0; x < block.width; ++x) {
-    const Between u = between(block.x + x, fit.level);
-    worth[(u.sample - first) * columns + x] = 1 - u.fraction;
-    worth[(u.sample + 1 - first) * columns + x] = u.fraction;
+    const int i = block.x + x + margin_, sample = i / step - first;
+    const T fraction = T(i % step) / T(step);
+    worth.of[sample * columns + x] = 1 - fraction;
+    worth.of[(sample + 1) * columns + x] = fraction;
   }
-  std::fill_n(out, static_cast<std::size_t>(block.rows) * coefficients * columns, T(0));
-  for (int y = 0; y < block.rows; ++y) {
-    const Between v = between(block.y + y, fit.level);
-    for (int c = 0; c < coefficients; ++c, out += columns) {
-      const T* const low = fit.planes.data() + c * size + v.sample * width + first;
-      for (int i = 0; i < count; ++i) {
-        const T sample = low[i] + v.fraction * (low[width + i] - low[i]);
-        const T* const w = worth.data() + i * columns;
-        for (int x = 0; x < columns; ++x) out[x] += sample * w[x];
-      }
-    }
-  }
+  return worth;
 }
 
 template <class T>
-void CoarseFits<T>::transpose(std::vector<Planes>& weights, Edge edge, int threads, double unit,
+typename CoarseFits<T>::Range CoarseFits<T>::rows_of(const Fit& fit, const Block& block) const {
+  const int step = 1 << fit.level, first = (block.y + margin_) / step;
+  return {first - range(fit, 1).first, (block.y + block.rows - 1 + margin_) / step + 2 - first};
+}
+
+template <class T>
+void CoarseFits<T>::at(int scale, const Block& block, int columns, AlignedVector<T>& memory, T* out) const {
+  const Fit& fit = fits_[scale];
+  const Operations<T>& loops = fit.pass[0].loops();
+  const Worth of = worth(fit, block, columns);
+  const Range rows = rows_of(fit, block);
+  memory.resize(static_cast<std::size_t>(rows.count) * coefficients * columns);
+  const T* from = fit.planes.data() + static_cast<std::size_t>(rows.first) * coefficients * fit.width + of.first;
+  for (int i = 0; i < rows.count * coefficients; ++i, from += fit.width)
+    loops.spread(from, of.count, of.of.data(), memory.data() + static_cast<std::ptrdiff_t>(i) * columns);
+  const int step = 1 << fit.level;
+  loops.between_rows(memory.data(), (block.y + margin_) % step, step, block.rows, out);
+}
+
+template <class T>
+void CoarseFits<T>::transpose(const Source& source, int columns, Edge edge, int threads, double unit,
                               Grid<double>& gradient) const {
   if (levels_ == 0) return;
   const int width = gradient.width(), height = gradient.height();
-  std::vector<Grid<double>> levels;
-  for (int level = 0; level <= levels_; ++level) levels.emplace_back(widths_[level], heights_[level]);
-  for (std::size_t s = 0; s < fits_.size(); ++s) {
-    const Fit& fit = fits_[s];
-    if (fit.level == 0 || weights[s].empty()) continue;
-    const int coarse_width = widths_[fit.level], coarse_height = heights_[fit.level];
-    const std::size_t size = static_cast<std::size_t>(coarse_width) * coarse_height;
-    Planes coarse(coefficients * size, T(0));
-    // Each plane by itself, so that the order of the sums does not depend on threads.
-    parallel_for(coefficients, threads, [&](std::size_t c, int) {
-      const T* from = weights[s].data() + c * static_cast<std::size_t>(width) * height;
-      std::vector<T> row(coarse_width);
-      for (int y = 0; y < height; ++y, from += width) {
-        std::fill(row.begin(), row.end(), T(0));
-        for (int x = 0; x < width; ++x) {
-          const Between u = between(x, fit.level);
-          row[u.sample] += (1 - u.fraction) * from[x];
-          row[u.sample + 1] += u.fraction * from[x];
-        }
-        const Between v = between(y, fit.level);
-        T* const low = coarse.data() + c * size + static_cast<std::size_t>(v.sample) * coarse_width;
-        for (int x = 0; x < coarse_width; ++x) {
-          low[x] += (1 - v.fraction) * row[x];
-          low[coarse_width + x] += v.fraction * row[x];
-        }
-      }
-    });
-    const FacetPass<T>& pass = fit.pass[0];
-    pass.transpose(Edge::flat, threads, [&](int, int, const Block& column, T* out) {
-      for (int y = 0; y < column.rows; ++y)
-        for (int c = 0; c < coefficients; ++c, out += pass.columns()) {
-          std::fill_n(out, pass.columns(), T(0));
-          std::copy_n(coarse.data() + c * size + static_cast<std::size_t>(y) * coarse_width + column.x, column.width,
-                      out);
-        }
-    }, unit, levels[fit.level]);
+  const std::vector<int> from_x = continued(width, edge), from_y = continued(height, edge);
+  std::vector<Grid<double>> levels{{}};
+  for (int w = width + 2 * margin_, h = height + 2 * margin_; static_cast<int>(levels.size()) <= levels_;) {
+    w = (w + 1) / 2;
+    h = (h + 1) / 2;
+    levels.emplace_back(w, h);
   }
-  for (int level = levels_; level > 0; --level) halve_transposed(levels[level], levels[level - 1]);
-  for (int y = 0; y < levels[0].height(); ++y) {
-    const int row = border_sample(y - margin_, height, edge);
-    for (int x = 0; x < levels[0].width(); ++x)
-      gradient(border_sample(x - margin_, width, edge), row) += levels[0](x, y);
+  for (std::size_t s = 0; s < fits_.size(); ++s)
+    if (fits_[s].level > 0)
+      transpose_fit(static_cast<int>(s), source, columns, threads, unit, width, height, levels[fits_[s].level]);
+  for (int level = levels_; level > 1; --level) {
+    Grid<double>& finer = levels[level - 1];
+    halve_transposed(levels[level], neighbours(finer.width()), neighbours(finer.height()), finer);
   }
+  halve_transposed(levels[1], from_x, from_y, gradient);
+}
+
+template <class T>
+void CoarseFits<T>::transpose_fit(int scale, const Source& source, int columns, int threads, double unit, int width,
+                                  int height, Grid<double>& level) const {
+  const Fit& fit = fits_[scale];
+  const FacetPass<T>& pass = fit.pass[0];
+  const Operations<T>& loops = pass.loops();
+  const Range x = range(fit, width), y = range(fit, height);
+  const int strips = (width + columns - 1) / columns, step = 1 << fit.level;
+  const Range rows = rows_of(fit, {0, 0, width, height});
+  threads = resolve_threads(threads);
+  // Each strip by itself, so that the order of the sums does not depend on threads.
+  std::vector<AlignedVector<T>> found(strips);
+  std::vector<Worth> worths(strips);
+  std::vector<AlignedVector<T>> weights(threads), samples(threads);
+  parallel_for(strips, threads, [&](std::size_t strip, int w) {
+    const int left = static_cast<int>(strip) * columns;
+    const Block column{left, 0, std::min(columns, width - left), height};
+    weights[w].resize(static_cast<std::size_t>(height) * coefficients * columns);
+    source(w, scale, column, weights[w].data());
+    samples[w].assign(static_cast<std::size_t>(rows.count) * coefficients * columns, T(0));
+    loops.between_rows_transposed(weights[w].data(), margin_ % step, step, height, samples[w].data());
+    const Worth& of = worths[strip] = worth(fit, column, columns);
+    found[strip].assign(static_cast<std::size_t>(rows.count) * coefficients * of.count, T(0));
+    for (int i = 0; i < rows.count * coefficients; ++i)
+      loops.spread_transposed(samples[w].data() + static_cast<std::ptrdiff_t>(i) * columns, of.count, of.of.data(),
+                              found[strip].data() + static_cast<std::ptrdiff_t>(i) * of.count);
+  });
+  Planes coarse(static_cast<std::size_t>(y.count) * coefficients * x.count, T(0));
+  for (int strip = 0; strip < strips; ++strip) {
+    const T* from = found[strip].data();
+    T* to = coarse.data() + static_cast<std::size_t>(rows.first) * coefficients * x.count + worths[strip].first;
+    for (int i = 0; i < rows.count * coefficients; ++i, to += x.count)
+      for (int j = 0; j < worths[strip].count; ++j) to[j] += *from++;
+  }
+  Grid<double> part(x.count, y.count);
+  pass.transpose(Edge::flat, threads, [&](int, int, const Block& column, T* out) {
+    const T* from = coarse.data() + column.x;
+    for (int i = 0; i < column.rows * coefficients; ++i, out += pass.columns(), from += x.count) {
+      std::fill_n(out, pass.columns(), T(0));
+      std::copy_n(from, column.width, out);
+    }
+  }, unit, part);
+  for (int row = 0; row < y.count; ++row)
+    for (int i = 0; i < x.count; ++i) level(x.first + i, y.first + row) += part(i, row);
 }
 
 template class CoarseFits<float>;

@@ -25,33 +25,42 @@ class CoarseFits {
   bool has(int scale) const { return fits_[scale].level > 0; }
   void load(const Grid<double>& z_nm, Edge edge, int threads);
 
-  /// A scale's coefficients at a block's pixels, row by row, `columns` apart; 0 beyond its width.
-  void at(int scale, const Block& block, int columns, T* coefficients) const;
+  /// A scale's coefficients at a block's pixels, row by row, `columns` (those of FacetPass) apart; 0 beyond its
+  /// width.
+  void at(int scale, const Block& block, int columns, AlignedVector<T>& memory, T* coefficients) const;
   const Floors<T>& floors(int scale) const { return fits_[scale].floors; }
 
-  /// Weights of the coefficients at all pixels of the field: planes K2 to K6, each row by row.
-  using Planes = AlignedVector<T>;
-  /// The transpose of load and `at` for weights[scale], empty where there are none: adds to `gradient`, times
-  /// `unit`.
-  void transpose(std::vector<Planes>& weights, Edge edge, int threads, double unit, Grid<double>& gradient) const;
+  /// The transpose of load and `at` for all scales that are halved: adds to `gradient`, times `unit`.
+  using Source = typename FacetPass<T>::Source;
+  void transpose(const Source& source, int columns, Edge edge, int threads, double unit,
+                 Grid<double>& gradient) const;
 
  private:
+  using Planes = AlignedVector<T>;
   struct Fit {
-    int level = 0;
+    int level = 0, radius = 0;
     std::vector<FacetPass<T>> pass;   ///< one, of the halved scale
-    Planes planes;
+    int width = 0;                    ///< of its samples
+    Planes planes;                    ///< K2 to K6 row by row
     Floors<T> floors;
   };
-  /// Where a pixel lies between a level's samples.
-  struct Between {
-    int sample;
-    T fraction;
+  struct Range {
+    int first, count;
   };
-  Between between(int pixel, int level) const;
+  struct Worth {
+    int first, count;      ///< samples of the fit
+    AlignedVector<T> of;   ///< [sample][column]
+  };
+  std::vector<int> continued(int count, Edge edge) const;
+  Range range(const Fit& fit, int count) const;
+  Range rows_of(const Fit& fit, const Block& block) const;
+  Worth worth(const Fit& fit, const Block& block, int columns) const;
+  void fit_level(const Grid<double>& z, int width, int height, int threads, Fit& fit) const;
+  void transpose_fit(int scale, const Source& source, int columns, int threads, double unit, int width, int height,
+                     Grid<double>& level) const;
 
   std::vector<Fit> fits_;
   int levels_ = 0, margin_ = 0;
-  std::vector<int> widths_, heights_;   ///< of each level
 };
 
 extern template class CoarseFits<float>;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <utility>
+
 #include "facet_units.h"
 
 // Compiled once for each vector unit. Everything is inlined into functions that are compiled for it, and
@@ -8,6 +10,7 @@
 namespace surf::facet {
 
 #define SEMSURF_INLINE [[gnu::always_inline]] inline
+#define SEMSURF_INLINE_LAMBDA __attribute__((always_inline))
 
 /// Vectors that are made together: what is broadcast serves them all, and all sums stay in registers.
 inline constexpr int vectors = 2;
@@ -69,165 +72,182 @@ struct Loops {
     }
   }
 
-  SEMSURF_INLINE static void along(const T* const* row, int rows, const Tap<T>* taps, int radius,
+  /// A vector of two neighbouring rows of results, which share all but one of the rows that they look at to
+  /// each side.
+  struct Rows {
+    V row[2] = {};
+
+    SEMSURF_INLINE void operator+=(const Rows& other) {
+      row[0] += other.row[0];
+      row[1] += other.row[1];
+    }
+    SEMSURF_INLINE void operator-=(const Rows& other) {
+      row[0] -= other.row[0];
+      row[1] -= other.row[1];
+    }
+  };
+
+  SEMSURF_INLINE static Rows times(const T* p, std::ptrdiff_t stride, T factor) {
+    Rows rows;
+    load_pair(rows.row[0], rows.row[1], p, p + stride);
+    rows.row[0] *= factor;
+    rows.row[1] *= factor;
+    return rows;
+  }
+
+  /// use(tap, k % 2, row, above, below) with what lies k rows above and below both rows, for k from `begin` on.
+  /// Each vector is loaded once: what is new beside one row lies beside the other a step later.
+  template <class Use>
+  SEMSURF_INLINE static void each_pair(const T* p, std::ptrdiff_t stride, const Tap<T>* taps, int begin, int radius,
+                                       const Use& use) {
+    V above[2], below[2];
+    load_pair(above[0], below[0], p + begin * stride, p + (1 - begin) * stride);
+    const auto step = [&](int k, int phase) SEMSURF_INLINE_LAMBDA {
+      load_pair(above[1 - phase], below[1 - phase], p + (k + 1) * stride, p - k * stride);
+      use(taps[k], phase, 0, above[phase], below[1 - phase]);
+      use(taps[k], phase, 1, above[1 - phase], below[phase]);
+    };
+    int k = begin;
+    for (; k < radius; k += 2) {
+      step(k, 0);
+      step(k + 1, 1);
+    }
+    if (k == radius) step(k, 0);
+  }
+
+  /// Sums (sign 1) or differences of samples above and below, filtered by a factor. In two halves, so that sums
+  /// need not wait for one another.
+  template <auto Factor, int Sign>
+  SEMSURF_INLINE static Rows filtered(const T* p, std::ptrdiff_t stride, const Tap<T>* taps, int begin, int radius) {
+    Rows half[2];
+    each_pair(p, stride, taps, begin, radius,
+              [&](const Tap<T>& t, int phase, int row, const V& above, const V& below) SEMSURF_INLINE_LAMBDA {
+                half[phase].row[row] += (Sign > 0 ? above + below : above - below) * (t.*Factor);
+              });
+    half[0] += half[1];
+    return half[0];
+  }
+
+  /// The same by two factors; adds to `first` and `second`.
+  template <auto First, int FirstSign, auto Second, int SecondSign>
+  SEMSURF_INLINE static void add_filtered(const T* p, std::ptrdiff_t stride, const Tap<T>* taps, int begin,
+                                          int radius, Rows& first, Rows& second) {
+    Rows a[2], b[2];
+    each_pair(p, stride, taps, begin, radius,
+              [&](const Tap<T>& t, int phase, int row, const V& above, const V& below) SEMSURF_INLINE_LAMBDA {
+                a[phase].row[row] += (FirstSign > 0 ? above + below : above - below) * (t.*First);
+                b[phase].row[row] += (SecondSign > 0 ? above + below : above - below) * (t.*Second);
+              });
+    a[0] += a[1];
+    b[0] += b[1];
+    first += a[0];
+    second += b[0];
+  }
+
+  SEMSURF_INLINE static void store_rows(T* p, std::ptrdiff_t stride, const Rows& rows, T factor = 1) {
+    store(p, rows.row[0] * factor);
+    store(p + stride, rows.row[1] * factor);
+  }
+
+  SEMSURF_INLINE static void along(const T* moment, int rows, const Tap<T>* taps, int radius,
                                    const Scaling<T>& scaling, T* out) {
-    for (int y = 0; y < rows; ++y, ++row, out += coefficients * columns) {
-      V k2[vectors], k3[vectors], k4[vectors], k5[vectors], k6[vectors];
-      for (int v = 0; v < vectors; ++v) {
-        const T* const c = row[0] + v * lanes;
-        V m0, m1, m2, m3;
-        load(m0, c);
-        load(m1, c + columns);
-        load(m2, c + 2 * columns);
-        load(m3, c + 3 * columns);
-        k4[v] = m0 * taps[0].e2;
-        k3[v] = m1 * taps[0].e2 + m3 * taps[0].e0;
-        k6[v] = m2 * taps[0].e0;
-        k2[v] = k5[v] = V{};
+    using F = Tap<T>;
+    constexpr std::ptrdiff_t stride = moments * columns, out_stride = coefficients * columns;
+    const F& t = taps[0];
+    for (int y = 0; y < rows; y += 2, moment += 2 * stride, out += 2 * out_stride)
+      for (int x = 0; x < columns; x += lanes) {
+        const T *const m0 = moment + x, *const m1 = m0 + columns, *const m2 = m1 + columns, *const m3 = m2 + columns;
+        Rows k2, k4 = times(m0, stride, t.e2);
+        add_filtered<&F::e2, 1, &F::o3, -1>(m0, stride, taps, 1, radius, k4, k2);
+        store_rows(out + x + 2 * columns, out_stride, k4);
+        Rows k6 = times(m2, stride, t.e0);
+        add_filtered<&F::e0, 1, &F::o1, -1>(m2, stride, taps, 1, radius, k6, k2);
+        store_rows(out + x, out_stride, k2);
+        store_rows(out + x + 4 * columns, out_stride, k6, scaling.k6);
+        Rows k5, k3 = times(m1, stride, t.e2);
+        add_filtered<&F::e2, 1, &F::o1, -1>(m1, stride, taps, 1, radius, k3, k5);
+        store_rows(out + x + 3 * columns, out_stride, k5, scaling.k5);
+        k3 += times(m3, stride, t.e0);
+        k3 += filtered<&F::e0, 1>(m3, stride, taps, 1, radius);
+        store_rows(out + x + columns, out_stride, k3);
       }
-      for (int k = 1; k <= radius; ++k) {
-        const T *const up = row[k], *const down = row[-k];
-        const Tap<T> t = taps[k];
-        for (int v = 0; v < vectors; ++v) {
-          V a, b;
-          load_pair(a, b, up + v * lanes, down + v * lanes);
-          k4[v] += (a + b) * t.e2;
-          k2[v] += (a - b) * t.o3;
-        }
-        for (int v = 0; v < vectors; ++v) {
-          V a, b;
-          load_pair(a, b, up + columns + v * lanes, down + columns + v * lanes);
-          k3[v] += (a + b) * t.e2;
-          k5[v] += (a - b) * t.o1;
-        }
-        for (int v = 0; v < vectors; ++v) {
-          V a, b;
-          load_pair(a, b, up + 2 * columns + v * lanes, down + 2 * columns + v * lanes);
-          k6[v] += (a + b) * t.e0;
-          k2[v] += (a - b) * t.o1;
-        }
-        for (int v = 0; v < vectors; ++v) {
-          V a, b;
-          load(a, up + 3 * columns + v * lanes);
-          load(b, down + 3 * columns + v * lanes);
-          k3[v] += (a + b) * t.e0;
-        }
+  }
+
+  SEMSURF_INLINE static void along_transposed(const T* weight, int rows, const Tap<T>* taps, int begin, int radius,
+                                              bool add, T* const* out, std::ptrdiff_t plane) {
+    using F = Tap<T>;
+    constexpr std::ptrdiff_t stride = coefficients * columns;
+    const F& t = taps[0];
+    for (int y = 0; y < rows; y += 2, weight += 2 * stride, out += 2)
+      for (int x = 0; x < columns; x += lanes) {
+        const auto put = [&](std::ptrdiff_t at, const Rows& moment) SEMSURF_INLINE_LAMBDA {
+          for (int row = 0; row < 2 && y + row < rows; ++row) {
+            if (add) increase(out[row] + at + x, moment.row[row]);
+            else store(out[row] + at + x, moment.row[row]);
+          }
+        };
+        const T *const g2 = weight + x, *const g3 = g2 + columns, *const g4 = g3 + columns, *const g5 = g4 + columns,
+                *const g6 = g5 + columns;
+        // Odd factors change their sign.
+        Rows odd0, odd2;
+        add_filtered<&F::o3, -1, &F::o1, -1>(g2, stride, taps, begin, radius, odd0, odd2);
+        Rows m0 = times(g4, stride, t.e2);
+        m0 += filtered<&F::e2, 1>(g4, stride, taps, begin, radius);
+        m0 -= odd0;
+        put(0, m0);
+        Rows m2 = times(g6, stride, t.e0);
+        m2 += filtered<&F::e0, 1>(g6, stride, taps, begin, radius);
+        m2 -= odd2;
+        put(2 * plane, m2);
+        Rows m1 = times(g3, stride, t.e2), m3 = times(g3, stride, t.e0);
+        add_filtered<&F::e0, 1, &F::e2, 1>(g3, stride, taps, begin, radius, m3, m1);
+        put(3 * plane, m3);
+        m1 -= filtered<&F::o1, -1>(g5, stride, taps, begin, radius);
+        put(plane, m1);
       }
-      for (int v = 0; v < vectors; ++v) {
-        store(out + v * lanes, k2[v]);
-        store(out + columns + v * lanes, k3[v]);
-        store(out + 2 * columns + v * lanes, k4[v]);
-        store(out + 3 * columns + v * lanes, k5[v] * scaling.k5);
-        store(out + 4 * columns + v * lanes, k6[v] * scaling.k6);
-      }
+  }
+
+  /// Rows become columns: in log2(lanes) steps that exchange halves of pairs, quarters, and so on.
+  template <int Step, int... I>
+  SEMSURF_INLINE static void exchange(V& a, V& b, std::integer_sequence<int, I...>) {
+    const V low = __builtin_shufflevector(a, b, (I & Step ? lanes + I - Step : I)...);
+    b = __builtin_shufflevector(a, b, (I & Step ? lanes + I : I + Step)...);
+    a = low;
+  }
+  template <int Step = lanes / 2>
+  SEMSURF_INLINE static void transpose(V (&rows)[lanes]) {
+    if constexpr (Step > 0) {
+      for (int i = 0; i < lanes; ++i)
+        if (!(i & Step)) exchange<Step>(rows[i], rows[i + Step], std::make_integer_sequence<int, lanes>());
+      transpose<Step / 2>(rows);
     }
   }
 
-  SEMSURF_INLINE static void along_transposed(const T* const* row, int rows, const Tap<T>* taps, int begin,
-                                              int radius, bool add, T* const* out, std::ptrdiff_t plane) {
-    for (int y = 0; y < rows; ++y, ++row) {
-      T* const to = out[y];
-      V m0[vectors], m1[vectors], m2[vectors], m3[vectors];
-      for (int v = 0; v < vectors; ++v) {
-        const T* const c = row[0] + v * lanes;
-        V g3, g4, g6;
-        load(g3, c + columns);
-        load(g4, c + 2 * columns);
-        load(g6, c + 4 * columns);
-        m0[v] = g4 * taps[0].e2;
-        m1[v] = g3 * taps[0].e2;
-        m2[v] = g6 * taps[0].e0;
-        m3[v] = g3 * taps[0].e0;
+  SEMSURF_INLINE static void turn(const T* plane, std::ptrdiff_t stride, int count, std::ptrdiff_t out_stride, T* out) {
+    for (int x = 0; x < count; x += lanes)
+      for (int part = 0; part < vectors; ++part) {
+        V rows[lanes];
+        for (int i = 0; i < lanes; ++i) load(rows[i], plane + (part * lanes + i) * stride + x);
+        transpose(rows);
+        for (int i = 0; i < lanes; ++i) store(out + (x + i) * out_stride + part * lanes, rows[i]);
       }
-      for (int k = begin; k <= radius; ++k) {
-        const T *const up = row[k], *const down = row[-k];
-        const Tap<T> t = taps[k];
-        for (int v = 0; v < vectors; ++v) {
-          V a, b;
-          load(a, up + v * lanes);
-          load(b, down + v * lanes);
-          const V difference = b - a;   // odd factors change their sign
-          m0[v] += difference * t.o3;
-          m2[v] += difference * t.o1;
-        }
-        for (int v = 0; v < vectors; ++v) {
-          V a, b;
-          load(a, up + columns + v * lanes);
-          load(b, down + columns + v * lanes);
-          const V sum = a + b;
-          m3[v] += sum * t.e0;
-          m1[v] += sum * t.e2;
-        }
-        for (int v = 0; v < vectors; ++v) {
-          V a, b;
-          load(a, up + 2 * columns + v * lanes);
-          load(b, down + 2 * columns + v * lanes);
-          m0[v] += (a + b) * t.e2;
-        }
-        for (int v = 0; v < vectors; ++v) {
-          V a, b;
-          load(a, up + 3 * columns + v * lanes);
-          load(b, down + 3 * columns + v * lanes);
-          m1[v] += (b - a) * t.o1;
-        }
-        for (int v = 0; v < vectors; ++v) {
-          V a, b;
-          load(a, up + 4 * columns + v * lanes);
-          load(b, down + 4 * columns + v * lanes);
-          m2[v] += (a + b) * t.e0;
-        }
-      }
-      for (int v = 0; v < vectors; ++v) {
-        T* const p = to + v * lanes;
-        if (add) {
-          increase(p, m0[v]);
-          increase(p + plane, m1[v]);
-          increase(p + 2 * plane, m2[v]);
-          increase(p + 3 * plane, m3[v]);
-        } else {
-          store(p, m0[v]);
-          store(p + plane, m1[v]);
-          store(p + 2 * plane, m2[v]);
-          store(p + 3 * plane, m3[v]);
-        }
-      }
-    }
   }
 
-  SEMSURF_INLINE static void across_transposed(const T* moment, std::ptrdiff_t plane, int count,
-                                               const Tap<T>* taps, int radius, T* out) {
-    for (int x = 0; x < count; x += columns) {
-      const T* const c = moment + x;
-      V sum[vectors];
-      for (int v = 0; v < vectors; ++v) {
-        V m0, m2;
-        load(m0, c + v * lanes);
-        load(m2, c + 2 * plane + v * lanes);
-        sum[v] = m0 * taps[0].e0 + m2 * taps[0].e2;
+  SEMSURF_INLINE static void across_transposed(const T* moment, int count, const Tap<T>* taps, int radius, T* sum) {
+    using F = Tap<T>;
+    constexpr std::ptrdiff_t stride = moments * columns;
+    for (int i = 0; i < count; i += 2, moment += 2 * stride, sum += 2 * columns)
+      for (int x = 0; x < columns; x += lanes) {
+        const T *const m0 = moment + x, *const m1 = m0 + columns, *const m2 = m1 + columns, *const m3 = m2 + columns;
+        Rows total = times(m0, stride, taps[0].e0);
+        total += times(m2, stride, taps[0].e2);
+        total += filtered<&F::e0, 1>(m0, stride, taps, 1, radius);
+        total += filtered<&F::e2, 1>(m2, stride, taps, 1, radius);
+        total -= filtered<&F::o1, -1>(m1, stride, taps, 1, radius);
+        total -= filtered<&F::o3, -1>(m3, stride, taps, 1, radius);
+        increase(sum + x, total.row[0]);
+        increase(sum + columns + x, total.row[1]);
       }
-      // Two sums each, so that they need not wait for one another.
-      V odd[vectors] = {};
-      for (int k = 1; k <= radius; ++k) {
-        const Tap<T> t = taps[k];
-        for (int v = 0; v < vectors; ++v) {
-          const T* const p = c + v * lanes;
-          V a, b;
-          load(a, p + k);
-          load(b, p - k);
-          sum[v] += (a + b) * t.e0;
-          load(a, p + plane + k);
-          load(b, p + plane - k);
-          odd[v] += (b - a) * t.o1;
-          load(a, p + 2 * plane + k);
-          load(b, p + 2 * plane - k);
-          sum[v] += (a + b) * t.e2;
-          load(a, p + 3 * plane + k);
-          load(b, p + 3 * plane - k);
-          odd[v] += (b - a) * t.o3;
-        }
-      }
-      for (int v = 0; v < vectors; ++v) increase(out + x + v * lanes, sum[v] + odd[v]);
-    }
   }
 
   SEMSURF_INLINE static void take_root(V& x) {
@@ -340,6 +360,81 @@ struct Loops {
         half *= (p.k6 - p.k4) * (d.k6 - d.k4) + p.k5 * d.k5;
         add_channels(slope, d.k6 + d.k4, half, weights, channels, plane, sum + x);
       }
+  }
+
+  /// arctan of x >= 0, to 2e-16 (the rational function of Moshier's Cephes library; fractions turn x to below
+  /// 0.66). Without branches, so that vectors can do it.
+  SEMSURF_INLINE static double arc_tangent(double x) {
+    const bool large = x > 2.414213562373095, middle = x > 0.66;
+    const double u = (large ? -1 : middle ? x - 1 : x) / (large ? x : middle ? x + 1 : 1), v = u * u;
+    const double p = (((-0.8750608600031904 * v - 16.15753718733365) * v - 75.00855792314705) * v -
+                      122.8866684490136) * v - 64.85021904942025;
+    const double q = ((((v + 24.85846490142306) * v + 165.0270098316988) * v + 432.8810604912903) * v +
+                      485.3903996359137) * v + 194.5506571482614;
+    return (large ? 1.5707963267948966 : middle ? 0.7853981633974483 : 0) + (u + u * v * p / q);
+  }
+
+  SEMSURF_INLINE static void angles(const T* k, int rows, double* tangent, double* secant, double* angle) {
+    for (int y = 0; y < rows; ++y, k += coefficients * columns)
+      for (int x = 0; x < columns; ++x) {
+        const double k2 = k[x], k3 = k[columns + x], square = k2 * k2 + k3 * k3, slope = __builtin_sqrt(square);
+        const int i = y * columns + x;
+        tangent[i] = slope;
+        secant[i] = __builtin_sqrt(1 + square);
+        angle[i] = arc_tangent(slope);
+      }
+  }
+
+  SEMSURF_INLINE static void spread(const T* samples, int count, const T* worth, T* out) {
+    V sum[vectors] = {};
+    for (int i = 0; i < count; ++i)
+      for (int v = 0; v < vectors; ++v) {
+        V w;
+        load(w, worth + i * columns + v * lanes);
+        sum[v] += w * samples[i];
+      }
+    for (int v = 0; v < vectors; ++v) store(out + v * lanes, sum[v]);
+  }
+
+  SEMSURF_INLINE static void spread_transposed(const T* weight, int count, const T* worth, T* samples) {
+    for (int i = 0; i < count; ++i) {
+      V products = {};
+      for (int v = 0; v < vectors; ++v) {
+        V a, b;
+        load_pair(a, b, weight + v * lanes, worth + i * columns + v * lanes);
+        products += a * b;
+      }
+      T sum = 0;
+      for (int j = 0; j < lanes; ++j) sum += products[j];
+      samples[i] += sum;
+    }
+  }
+
+  SEMSURF_INLINE static void between_rows(const T* samples, int first, int step, int rows, T* out) {
+    constexpr int size = coefficients * columns;
+    for (int y = 0; y < rows; ++y, out += size) {
+      const T* const low = samples + (first + y) / step * size;
+      const T fraction = static_cast<T>((first + y) % step) / static_cast<T>(step);
+      for (int x = 0; x < size; x += lanes) {
+        V a, b;
+        load_pair(a, b, low + x, low + size + x);
+        store(out + x, a + (b - a) * fraction);
+      }
+    }
+  }
+
+  SEMSURF_INLINE static void between_rows_transposed(const T* weight, int first, int step, int rows, T* samples) {
+    constexpr int size = coefficients * columns;
+    for (int y = 0; y < rows; ++y, weight += size) {
+      T* const low = samples + (first + y) / step * size;
+      const T fraction = static_cast<T>((first + y) % step) / static_cast<T>(step);
+      for (int x = 0; x < size; x += lanes) {
+        V w;
+        load(w, weight + x);
+        increase(low + size + x, w * fraction);
+        increase(low + x, w * (1 - fraction));
+      }
+    }
   }
 
   SEMSURF_INLINE static void relative(const double* z, int count, double level, T* out) {

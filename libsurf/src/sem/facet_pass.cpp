@@ -51,12 +51,11 @@ template <class T>
 std::vector<Block> FacetPass<T>::blocks(int width, int height) const {
   const int parts = (height + most_rows - 1) / most_rows;
   std::vector<Block> blocks;
-  for (int x = 0; x < width; x += columns())
-    for (int part = 0; part < parts; ++part) {
-      const int y = static_cast<int>(std::int64_t{height} * part / parts);
-      const int end = static_cast<int>(std::int64_t{height} * (part + 1) / parts);
-      blocks.push_back({x, y, std::min(columns(), width - x), end - y});
-    }
+  for (int part = 0; part < parts; ++part) {
+    const int y = static_cast<int>(std::int64_t{height} * part / parts);
+    const int end = static_cast<int>(std::int64_t{height} * (part + 1) / parts);
+    for (int x = 0; x < width; x += columns()) blocks.push_back({x, y, std::min(columns(), width - x), end - y});
+  }
   return blocks;
 }
 
@@ -124,15 +123,24 @@ void FacetPass<T>::load(const Grid<double>& z_nm, Edge edge, const Block& block,
 template <class T>
 const T* FacetPass<T>::fit(int scale, Scratch& s) const {
   const Kernel& kernel = kernels_[scale];
-  s.moments.resize(s.rows.size() * moments * columns());
-  s.coefficients.resize(static_cast<std::size_t>(s.block.rows) * coefficients * columns());
-  s.pointers.resize(s.index.size());
-  for (std::size_t i = 0; i < s.index.size(); ++i)
-    s.pointers[i] = s.moments.data() + static_cast<std::size_t>(s.index[i]) * moments * columns();
-  loops_->across(s.tile.data() + s.radius, columns() + 2 * s.radius, s.tile_rows[kernel.radius],
-                 kernel.across.data(), kernel.radius, s.moments.data());
-  loops_->along(s.pointers.data() + s.radius, s.block.rows, kernel.along.data(), kernel.radius,
-                kernel.scaling, s.coefficients.data());
+  const int rows = s.block.rows, r = kernel.radius, stride = columns() + 2 * s.radius;
+  const std::size_t row_size = static_cast<std::size_t>(moments) * columns();
+  s.coefficients.resize(static_cast<std::size_t>(rows + 1) * coefficients * columns());
+  // Rows in their order, one more for their pairs, and what lies outside the block as it is listed.
+  s.moments.resize((rows + 2 * r + 1 + s.tile_rows[r] - rows) * row_size);
+  T* const inside = s.moments.data() + r * row_size;
+  T* const outside = inside + (rows + r + 1) * row_size;
+  const T* const tile = s.tile.data() + s.radius;
+  loops_->across(tile, stride, rows, kernel.across.data(), r, inside);
+  loops_->across(tile + static_cast<std::ptrdiff_t>(rows) * stride, stride, s.tile_rows[r] - rows,
+                 kernel.across.data(), r, outside);
+  for (int out = 1; out <= r; ++out)
+    for (const int y : {-out, rows - 1 + out}) {
+      const int at = s.index[s.radius + y];
+      std::copy_n(at < rows ? inside + at * row_size : outside + (at - rows) * row_size, row_size,
+                  inside + y * static_cast<std::ptrdiff_t>(row_size));
+    }
+  loops_->along(inside, rows, kernel.along.data(), r, kernel.scaling, s.coefficients.data());
   return s.coefficients.data();
 }
 
@@ -144,8 +152,7 @@ Floors<T> FacetPass<T>::floors(int scale, const Scratch& s) const {
 }
 
 template <class T>
-void FacetPass<T>::scale_weights(const Scaling<T>& scaling, int height, AlignedVector<T>& weights) const {
-  T* row = weights.data();
+void FacetPass<T>::scale_weights(const Scaling<T>& scaling, int height, T* row) const {
   for (int y = 0; y < height; ++y, row += coefficients * columns())
     for (int x = 0; x < columns(); ++x) {
       row[3 * columns() + x] *= scaling.k5;
@@ -153,62 +160,86 @@ void FacetPass<T>::scale_weights(const Scaling<T>& scaling, int height, AlignedV
     }
 }
 
+/// Weights of moments at all pixels of a column from weights of coefficients; what rows outside the field would
+/// get goes to those that stand for them.
+template <class T>
+void FacetPass<T>::transpose_along(const Kernel& kernel, Edge edge, const Block& column, const T* weights, T* planes,
+                                   std::ptrdiff_t plane) const {
+  const int r = kernel.radius, height = column.rows;
+  const std::ptrdiff_t row_size = static_cast<std::ptrdiff_t>(coefficients) * columns();
+  std::vector<T*> rows(height + 2 * r);
+  T** const to = rows.data() + r;
+  for (int y = -r; y < height + r; ++y)
+    to[y] = planes + border_sample(y, height, edge) * moments * plane + column.x;
+  const Tap<T>* const taps = kernel.along.data();
+  loops_->along_transposed(weights, height, taps, 1, r, false, to, plane);
+  // Outside the field nothing is nearer than the field.
+  for (int out = 1; out <= r; out += 2) {
+    const int count = std::min(2, r + 1 - out);
+    for (const int y : {1 - out - count, height - 1 + out})
+      loops_->along_transposed(weights + y * row_size, count, taps, out, r, true, to + y, plane);
+  }
+}
+
+/// Adds what some rows' weights of moments give the heights to `sums`, from `radius_` columns left of the field on;
+/// `turned` is memory for the moments.
+template <class T>
+void FacetPass<T>::transpose_across(const Kernel& kernel, int width, const T* planes, std::ptrdiff_t plane,
+                                    AlignedVector<T>& turned, T* sums) const {
+  const int r = kernel.radius, wide = columns();
+  const std::ptrdiff_t stride = static_cast<std::ptrdiff_t>(moments) * wide, before = 2 * r * stride;
+  turned.resize(2 * before + (plane + 1) * stride);
+  std::fill_n(turned.begin(), before, T(0));
+  std::fill(turned.begin() + before + plane * stride, turned.end(), T(0));
+  for (int m = 0; m < moments; ++m)
+    loops_->turn(planes + m * plane, moments * plane, static_cast<int>(plane), stride,
+                 turned.data() + before + m * wide);
+  loops_->across_transposed(turned.data() + r * stride, width + 2 * r, kernel.across.data(), r,
+                            sums + std::ptrdiff_t{radius_ - r} * wide);
+}
+
 template <class T>
 void FacetPass<T>::transpose(Edge edge, int threads, const Source& source, double unit,
                              Grid<double>& gradient) const {
   const int width = gradient.width(), height = gradient.height(), wide = columns();
-  const int strips = (width + wide - 1) / wide;
-  // Moments of a row, one plane after the other, with zeros to both sides; and the sums of the rows with
-  // what falls outside the field, which is folded back at the end.
-  const std::ptrdiff_t margin = (2 * radius_ + wide - 1) / wide * wide;   // strips begin at cache lines
-  const std::ptrdiff_t plane = std::ptrdiff_t{strips} * wide + 2 * margin + wide;
-  const std::ptrdiff_t out_stride = std::ptrdiff_t{strips} * wide + 2 * radius_ + wide;
-  AlignedVector<T> planes(static_cast<std::size_t>(height * moments * plane));
-  AlignedVector<T> sums(static_cast<std::size_t>(height * out_stride));
-  struct Worker {
-    AlignedVector<T> weights;
-    std::vector<const T*> rows;
-    std::vector<T*> out;
-  };
+  const int strips = (width + wide - 1) / wide, groups = (height + wide - 1) / wide;
+  // Moments of a row, one plane after the other; and sums of as many rows as strips are wide, turned, with what falls
+  // outside the field, which is folded back at the end.
+  const std::ptrdiff_t plane = std::ptrdiff_t{strips} * wide;
+  const std::ptrdiff_t group_size = std::ptrdiff_t{wide} * moments * plane;
+  const std::ptrdiff_t sum_size = (std::ptrdiff_t{width} + 2 * radius_ + 1) * wide;
+  AlignedVector<T> planes(static_cast<std::size_t>(groups * group_size));
+  AlignedVector<T> sums(static_cast<std::size_t>(groups * sum_size));
   threads = resolve_threads(threads);
-  std::vector<Worker> workers(threads);
-  const AlignedVector<T> nothing(coefficients * wide);
+  std::vector<AlignedVector<T>> weights(threads), turned(threads);
 
   for (int scale = 0; scale < scales(); ++scale) {
     const Kernel& kernel = kernels_[scale];
-    const int r = kernel.radius;
+    const std::ptrdiff_t row_size = std::ptrdiff_t{coefficients} * wide, outside = 2 * kernel.radius * row_size;
     parallel_for(strips, threads, [&](std::size_t strip, int w) {
-      Worker& worker = workers[w];
       const int x = static_cast<int>(strip) * wide;
-      worker.weights.resize(static_cast<std::size_t>(height) * coefficients * wide);
-      source(w, scale, {x, 0, std::min(wide, width - x), height}, worker.weights.data());
-      scale_weights(kernel.scaling, height, worker.weights);
-      worker.rows.assign(height + 4 * r, nothing.data());
-      worker.out.resize(height + 2 * r);
-      const T** const rows = worker.rows.data() + 2 * r;
-      T** const to = worker.out.data() + r;
-      for (int y = 0; y < height; ++y)
-        rows[y] = worker.weights.data() + static_cast<std::ptrdiff_t>(y) * coefficients * wide;
-      for (int y = -r; y < height + r; ++y)
-        to[y] = planes.data() + border_sample(y, height, edge) * moments * plane + margin + x;
-      loops_->along_transposed(rows, height, kernel.along.data(), 1, r, false, to, plane);
-      // Outside the field nothing is nearer than the field.
-      for (int out = 1; out <= r; ++out)
-        for (const int y : {-out, height - 1 + out})
-          loops_->along_transposed(rows + y, 1, kernel.along.data(), out, r, true, to + y, plane);
+      const Block column{x, 0, std::min(wide, width - x), height};
+      weights[w].resize(static_cast<std::size_t>(height + 1) * row_size + 2 * outside);
+      T* const inside = weights[w].data() + outside;
+      std::fill_n(weights[w].begin(), outside, T(0));
+      std::fill_n(inside + height * row_size, outside + row_size, T(0));
+      source(w, scale, column, inside);
+      scale_weights(kernel.scaling, height, inside);
+      transpose_along(kernel, edge, column, inside, planes.data(), plane);
     });
-    const int count = (strips * wide + 2 * r + wide - 1) / wide * wide;
-    constexpr int rows_at_once = 8;
-    parallel_for((height + rows_at_once - 1) / rows_at_once, threads, [&](std::size_t part, int) {
-      const int begin = static_cast<int>(part) * rows_at_once, end = std::min(height, begin + rows_at_once);
-      for (int y = begin; y < end; ++y)
-        loops_->across_transposed(planes.data() + y * moments * plane + margin - r, plane, count,
-                                  kernel.across.data(), r, sums.data() + y * out_stride + radius_ - r);
+    parallel_for(groups, threads, [&](std::size_t group, int w) {
+      transpose_across(kernel, width, planes.data() + group * group_size, plane, turned[w],
+                       sums.data() + group * sum_size);
     });
   }
-  for (int y = 0; y < height; ++y)
-    for (int x = -radius_; x < width + radius_; ++x)
-      gradient(border_sample(x, width, edge), y) += unit * sums[y * out_stride + radius_ + x];
+  parallel_for(groups, threads, [&](std::size_t group, int) {
+    const T* from = sums.data() + group * sum_size;
+    const int y = static_cast<int>(group) * wide, rows = std::min(wide, height - y);
+    for (int x = -radius_; x < width + radius_; ++x, from += wide) {
+      const int column = border_sample(x, width, edge);
+      for (int i = 0; i < rows; ++i) gradient(column, y + i) += unit * from[i];
+    }
+  });
 }
 
 template class FacetPass<float>;

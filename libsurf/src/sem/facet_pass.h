@@ -33,6 +33,7 @@ class FacetPass {
   int scales() const { return static_cast<int>(kernels_.size()); }
   int columns() const { return loops_->columns; }
   const Operations<T>& loops() const { return *loops_; }
+  /// From left to right, then upwards: neighbours look at the same heights.
   std::vector<Block> blocks(int width, int height) const;
 
   /// A worker's memory: the heights around a block, and what its fits need. It fits any block in turn.
@@ -41,7 +42,6 @@ class FacetPass {
     int radius = 0;
     AlignedVector<T> tile, moments, coefficients;
     std::vector<int> rows, index, tile_rows;
-    std::vector<const T*> pointers;
   };
 
   /// Takes up the heights around a block for fits at all scales, or at one. `z_nm` is finite.
@@ -72,7 +72,11 @@ class FacetPass {
   };
   void list_rows(int height, Edge edge, Scratch& scratch) const;
   void fill_tile(const Grid<double>& z_nm, Edge edge, Scratch& scratch) const;
-  void scale_weights(const Scaling<T>& scaling, int height, AlignedVector<T>& weights) const;
+  void scale_weights(const Scaling<T>& scaling, int height, T* weights) const;
+  void transpose_along(const Kernel& kernel, Edge edge, const Block& column, const T* weights, T* planes,
+                       std::ptrdiff_t plane) const;
+  void transpose_across(const Kernel& kernel, int width, const T* planes, std::ptrdiff_t plane,
+                        AlignedVector<T>& turned, T* sums) const;
 
   std::vector<Kernel> kernels_;
   int radius_ = 0;   ///< the largest

@@ -15,17 +15,21 @@ namespace {
                               T* out) {                                                                      \
       L::across(z, stride, rows, taps, radius, out);                                                         \
     }                                                                                                        \
-    target static void along(const T* const* row, int rows, const Tap<T>* taps, int radius,                  \
+    target static void along(const T* moment, int rows, const Tap<T>* taps, int radius,                      \
                              const Scaling<T>& scaling, T* out) {                                            \
-      L::along(row, rows, taps, radius, scaling, out);                                                       \
+      L::along(moment, rows, taps, radius, scaling, out);                                                    \
     }                                                                                                        \
-    target static void along_transposed(const T* const* row, int rows, const Tap<T>* taps, int begin,        \
+    target static void along_transposed(const T* weight, int rows, const Tap<T>* taps, int begin,            \
                                         int radius, bool add, T* const* out, std::ptrdiff_t plane) {         \
-      L::along_transposed(row, rows, taps, begin, radius, add, out, plane);                                  \
+      L::along_transposed(weight, rows, taps, begin, radius, add, out, plane);                               \
     }                                                                                                        \
-    target static void across_transposed(const T* moment, std::ptrdiff_t plane, int count,                   \
-                                         const Tap<T>* taps, int radius, T* out) {                           \
-      L::across_transposed(moment, plane, count, taps, radius, out);                                         \
+    target static void turn(const T* plane, std::ptrdiff_t stride, int count, std::ptrdiff_t out_stride,     \
+                            T* out) {                                                                        \
+      L::turn(plane, stride, count, out_stride, out);                                                        \
+    }                                                                                                        \
+    target static void across_transposed(const T* moment, int count, const Tap<T>* taps, int radius,         \
+                                         T* sum) {                                                           \
+      L::across_transposed(moment, count, taps, radius, sum);                                                \
     }                                                                                                        \
     target static void invariants(const T* k, int rows, T* out) { L::invariants(k, rows, out); }             \
     target static void combine(const T* k, int rows, const Weights<T>* weights, int channels, T* sum) {      \
@@ -39,12 +43,29 @@ namespace {
                                     const Weights<T>* weights, int channels, T* sum) {                       \
       L::push_forward(k, dk, rows, floors, weights, channels, sum);                                          \
     }                                                                                                        \
+    target static void angles(const T* k, int rows, double* tangent, double* secant, double* angle) {        \
+      L::angles(k, rows, tangent, secant, angle);                                                            \
+    }                                                                                                        \
+    target static void spread(const T* samples, int count, const T* worth, T* out) {                         \
+      L::spread(samples, count, worth, out);                                                                 \
+    }                                                                                                        \
+    target static void spread_transposed(const T* weight, int count, const T* worth, T* samples) {           \
+      L::spread_transposed(weight, count, worth, samples);                                                   \
+    }                                                                                                        \
+    target static void between_rows(const T* samples, int first, int step, int rows, T* out) {               \
+      L::between_rows(samples, first, step, rows, out);                                                      \
+    }                                                                                                        \
+    target static void between_rows_transposed(const T* weight, int first, int step, int rows, T* samples) { \
+      L::between_rows_transposed(weight, first, step, rows, samples);                                        \
+    }                                                                                                        \
     target static T largest(const T* values, std::ptrdiff_t count) { return L::largest(values, count); }     \
     target static void relative(const double* z, int count, double level, T* out) {                          \
       L::relative(z, count, level, out);                                                                     \
     }                                                                                                        \
-    static constexpr Operations<T> all{L::columns, across,  along,     along_transposed, across_transposed,  \
-                                       invariants, combine, pull_back, push_forward, relative, largest};     \
+    static constexpr Operations<T> all{L::columns, across,    along,     along_transposed, turn,             \
+                                       across_transposed,      invariants, combine, pull_back, push_forward, \
+                                       angles,    spread,   spread_transposed, between_rows,                 \
+                                       between_rows_transposed, relative, largest};                          \
   };
 
 SEMSURF_LOOPS(Portable, 16, )

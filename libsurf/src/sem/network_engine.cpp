@@ -196,11 +196,10 @@ Grid<double> NetworkEngine<T>::gradient(const Grid<double>& z_nm, const ModelIma
     }
   }
 
-  const std::size_t parts = blocks.size() / ((z_nm.width() + columns - 1) / columns);
+  const std::size_t strips = (z_nm.width() + columns - 1) / columns;
   const auto source = [&](int w, int scale, const Block& column, T* out) {
     Worker& worker = workers[w];
-    for (std::size_t part = 0; part < parts; ++part) {
-      const std::size_t i = column.x / columns * parts + part;
+    for (std::size_t i = column.x / columns; i < blocks.size(); i += strips) {
       pass_.load(z_nm, options_.edge, blocks[i], worker.scratch, scale);
       loops_->facets_back(pass_.fit(scale, worker.scratch), blocks[i].rows, lengths_[scale],
                           given[i].inputs.data() + scale * network::facet_inputs * columns, stride,

@@ -15,7 +15,7 @@ namespace {
 // Ikeuchi's constants (1981; thesis, 2.2.4.1), fitted to secondary electron images.
 constexpr double exponential_rate = 1.0, secant_angle = 0.8, mixed_part = 0.5;
 constexpr double degree = std::numbers::pi / 180;
-const double mixed_end = std::tan(70 * degree);
+const double mixed_end = std::tan(70 * degree), held_secant = 1 / std::cos(70 * degree);
 
 constexpr double most_yield = 1e12;
 
@@ -37,49 +37,86 @@ void check(const SlopeModelParameters& p, const SlopeChannel& channel) {
       throw InvalidInput(name, fmt::format("its table holds {}", yield), "All yields must be finite");
 }
 
-}  // namespace
-
-SlopeCurve::SlopeCurve(const SlopeModelParameters& p, const SlopeChannel& channel)
-    : form_(p.form), flat_yield_(channel.flat_yield), step_rad_(p.table_step_deg * degree),
-      yields_(channel.yields) {
-  check(p, channel);
-}
-
-SlopeCurve::Value SlopeCurve::relative(double slope) const {
-  const double secant = std::hypot(1, slope), cosine = 1 / secant;
-  switch (form_) {
-    case SlopeForm::ikeuchi_exponential: {
-      // d cos / d slope = -slope cos^3
-      const double value = std::exp(exponential_rate * (1 - cosine));
-      return {value, value * exponential_rate * slope * cosine * cosine * cosine};
-    }
-    case SlopeForm::ikeuchi_secant: {
-      const double angle = secant_angle * std::atan(slope), value = 1 / std::cos(angle);
-      return {value, value * std::tan(angle) * secant_angle * cosine * cosine};
-    }
-    case SlopeForm::ikeuchi_mixed: {
-      const double held = std::min(slope, mixed_end), rise = mixed_part * held / std::hypot(1, held);
-      return {1 - mixed_part + mixed_part * std::hypot(1, held),
-              slope < mixed_end ? rise : slope > mixed_end ? 0 : rise / 2};
-    }
-    default: return {secant, slope * cosine};
+/// Yields relative to those of a surface across the beam; of all forms but tables.
+void relative_yields(SlopeForm form, const SlopeRow& row, double* out) {
+  const auto each = [&](const auto& yield) {
+    for (int i = 0; i < row.count; ++i) out[i] = yield(row.secant[i], row.angle[i]);
+  };
+  switch (form) {
+    case SlopeForm::ikeuchi_exponential:
+      return each([](double secant, double) { return std::exp(exponential_rate * (1 - 1 / secant)); });
+    case SlopeForm::ikeuchi_secant:
+      return each([](double, double angle) { return 1 / std::cos(secant_angle * angle); });
+    case SlopeForm::ikeuchi_mixed:
+      return each([](double secant, double) { return 1 - mixed_part + mixed_part * std::min(secant, held_secant); });
+    default: return each([](double secant, double) { return secant; });
   }
 }
 
-SlopeCurve::Value SlopeCurve::from_table(double slope) const {
-  const double position = std::atan(slope) / step_rad_;
-  const int last = static_cast<int>(yields_.size()) - 2;
-  const int i = std::min(static_cast<int>(position), last);
-  const double line = yields_[i + 1] - yields_[i];
-  double steepness = line;
-  if (i > 0 && position == i) steepness = (line + yields_[i] - yields_[i - 1]) / 2;
-  return {yields_[i] + (position - i) * line, steepness / step_rad_ / (1 + slope * slope)};
+/// Their derivatives by the slope; that of the angle is cos^2.
+double relative_derivative(SlopeForm form, double slope, double secant, double angle) {
+  const double cosine = 1 / secant;
+  switch (form) {
+    case SlopeForm::ikeuchi_exponential:
+      return std::exp(exponential_rate * (1 - cosine)) * exponential_rate * slope * cosine * cosine * cosine;
+    case SlopeForm::ikeuchi_secant:
+      return std::tan(secant_angle * angle) / std::cos(secant_angle * angle) * secant_angle * cosine * cosine;
+    case SlopeForm::ikeuchi_mixed: {
+      const double rise = mixed_part * slope * cosine;
+      return slope < mixed_end ? rise : slope > mixed_end ? 0 : rise / 2;
+    }
+    default: return slope * cosine;
+  }
 }
 
-SlopeCurve::Value SlopeCurve::at(double slope) const {
-  if (form_ == SlopeForm::table) return from_table(slope);
-  const Value value = relative(slope);
-  return {flat_yield_ * value.yield, flat_yield_ * value.derivative};
+}  // namespace
+
+SlopeCurves::SlopeCurves(const SlopeModelParameters& p) : form_(p.form), step_rad_(p.table_step_deg * degree) {
+  for (const SlopeChannel& channel : p.channels) {
+    check(p, channel);
+    flat_yields_.push_back(channel.flat_yield);
+    tables_.push_back(channel.yields);
+  }
+}
+
+void SlopeCurves::times_flat_yields(int count, double* const* out) const {
+  for (std::size_t c = channels(); c-- > 0;)   // the first one last: it holds what all are multiples of
+    for (int i = 0; i < count; ++i) out[c][i] = flat_yields_[c] * out[0][i];
+}
+
+void SlopeCurves::yields(const SlopeRow& row, double* const* out) const {
+  if (form_ != SlopeForm::table) {
+    relative_yields(form_, row, out[0]);
+    return times_flat_yields(row.count, out);
+  }
+  for (std::size_t c = 0; c < channels(); ++c) {
+    const double* const table = tables_[c].data();
+    const int last = static_cast<int>(tables_[c].size()) - 2;
+    for (int i = 0; i < row.count; ++i) {
+      const double position = row.angle[i] / step_rad_;
+      const int at = std::min(static_cast<int>(position), last);
+      out[c][i] = table[at] + (position - at) * (table[at + 1] - table[at]);
+    }
+  }
+}
+
+void SlopeCurves::derivatives(const SlopeRow& row, double* const* out) const {
+  if (form_ != SlopeForm::table) {
+    for (int i = 0; i < row.count; ++i)
+      out[0][i] = relative_derivative(form_, row.tangent[i], row.secant[i], row.angle[i]);
+    return times_flat_yields(row.count, out);
+  }
+  for (std::size_t c = 0; c < channels(); ++c) {
+    const double* const table = tables_[c].data();
+    const int last = static_cast<int>(tables_[c].size()) - 2;
+    for (int i = 0; i < row.count; ++i) {
+      const double position = row.angle[i] / step_rad_;
+      const int at = std::min(static_cast<int>(position), last);
+      double line = table[at + 1] - table[at];
+      if (at > 0 && position == at) line = (line + table[at] - table[at - 1]) / 2;
+      out[c][i] = line / step_rad_ / (row.secant[i] * row.secant[i]);
+    }
+  }
 }
 
 }  // namespace surf

@@ -7,25 +7,31 @@
 
 namespace surf {
 
-/// A slope model's yield and its derivative by the slope, tan theta >= 0. At a kink the derivative is the mean
-/// of those to both sides.
-class SlopeCurve {
+/// Slopes of some pixels: tan theta >= 0, sec theta, and theta in radians.
+struct SlopeRow {
+  const double *tangent, *secant, *angle;
+  int count;
+};
+
+/// A slope model's yields and their derivatives by the slope, tan theta. At a kink the derivative is the mean
+/// of those to both sides. What channels have in common is computed once.
+class SlopeCurves {
  public:
   /// Throws InvalidInput for parameters out of range.
-  SlopeCurve(const SlopeModelParameters& parameters, const SlopeChannel& channel);
+  explicit SlopeCurves(const SlopeModelParameters& parameters);
 
-  struct Value {
-    double yield = 0, derivative = 0;
-  };
-  Value at(double slope) const;
+  std::size_t channels() const { return tables_.size(); }
+  /// Into out[channel][pixel].
+  void yields(const SlopeRow& row, double* const* out) const;
+  void derivatives(const SlopeRow& row, double* const* out) const;
 
  private:
-  Value relative(double slope) const;
-  Value from_table(double slope) const;
+  void times_flat_yields(int count, double* const* out) const;
 
   SlopeForm form_;
-  double flat_yield_, step_rad_;
-  std::vector<double> yields_;
+  double step_rad_;
+  std::vector<double> flat_yields_;
+  std::vector<std::vector<double>> tables_;
 };
 
 }  // namespace surf

@@ -17,7 +17,7 @@ using facet::Block;
 
 struct Slopes {
   std::vector<FacetScale> scale;
-  std::vector<SlopeCurve> channels;
+  SlopeCurves curves;
 };
 
 template <class T>
@@ -31,13 +31,16 @@ class SlopeEngine {
   ModelImages predict(const Grid<double>& z_nm) const {
     ModelImages images = blank(z_nm);
     const std::vector<Block> blocks = pass_.blocks(z_nm.width(), z_nm.height());
-    std::vector<Scratch> workers(options_.threads);
+    std::vector<Worker> workers(options_.threads);
     parallel_for(blocks.size(), options_.threads, [&](std::size_t i, int w) {
-      const T* k = fit(z_nm, blocks[i], workers[w]);
-      each_pixel(blocks[i], k, [&](int x, int y, const T* p) {
-        const double slope = std::hypot(double(p[0]), double(p[pass_.columns()]));
-        for (std::size_t c = 0; c < images.size(); ++c) images[c](x, y) = slopes_.channels[c].at(slope).yield;
-      });
+      const Block& block = blocks[i];
+      Worker& worker = workers[w];
+      measure(fit(z_nm, block, worker.scratch), block, worker);
+      std::vector<double*> to(images.size());
+      for (int y = 0; y < block.rows; ++y) {
+        for (std::size_t c = 0; c < images.size(); ++c) to[c] = &images[c](block.x, block.y + y);
+        slopes_.curves.yields(worker.row(y, pass_.columns(), block.width), to.data());
+      }
     });
     return images;
   }
@@ -49,24 +52,28 @@ class SlopeEngine {
     if (unit == 0) return gradient;
     const int columns = pass_.columns();
     const std::vector<Block> blocks = pass_.blocks(z_nm.width(), z_nm.height());
-    const std::size_t parts = blocks.size() / ((z_nm.width() + columns - 1) / columns);
-    std::vector<Scratch> workers(options_.threads);
+    const std::size_t strips = (z_nm.width() + columns - 1) / columns;
+    std::vector<Worker> workers(options_.threads);
     pass_.transpose(options_.edge, options_.threads, [&](int w, int, const Block& column, T* out) {
       std::fill_n(out, static_cast<std::size_t>(column.rows) * facet::coefficients * columns, T(0));
-      for (std::size_t part = 0; part < parts; ++part) {
-        const Block& block = blocks[column.x / columns * parts + part];
-        const T* k = fit(z_nm, block, workers[w]);
-        const double floor = pass_.floors(0, workers[w]).slope;
-        T* const to = out + static_cast<std::ptrdiff_t>(block.y) * facet::coefficients * columns;
-        each_pixel(block, k, [&](int x, int y, const T* p) {
-          const double k2 = p[0], k3 = p[columns], slope = std::hypot(k2, k3);
-          if (slope <= floor) return;   // the mean of the one-sided derivatives of a length is 0
-          double sum = 0;
-          for (std::size_t c = 0; c < weights.size(); ++c)
-            sum += weights[c](x, y) / unit * slopes_.channels[c].at(slope).derivative;
-          to[p - k] = T(sum * (k2 / slope));
-          to[p - k + columns] = T(sum * (k3 / slope));
-        });
+      for (std::size_t i = column.x / columns; i < blocks.size(); i += strips) {
+        const Block& block = blocks[i];
+        const T* k = fit(z_nm, block, workers[w].scratch);
+        const double floor = pass_.floors(0, workers[w].scratch).slope;
+        measure(k, block, workers[w]);
+        T* to = out + static_cast<std::ptrdiff_t>(block.y) * facet::coefficients * columns;
+        for (int y = 0; y < block.rows; ++y, k += facet::coefficients * columns, to += facet::coefficients * columns) {
+          const SlopeRow row = workers[w].row(y, columns, block.width);
+          const std::vector<double*>& derivatives = derivatives_at(row, workers[w]);
+          for (int x = 0; x < block.width; ++x) {
+            if (row.tangent[x] <= floor) continue;   // the mean of the one-sided derivatives of a length is 0
+            double sum = 0;
+            for (std::size_t c = 0; c < weights.size(); ++c)
+              sum += weights[c](block.x + x, block.y + y) / unit * derivatives[c][x];
+            to[x] = T(sum * (k[x] / row.tangent[x]));
+            to[x + columns] = T(sum * (k[x + columns] / row.tangent[x]));
+          }
+        }
       }
     }, unit, gradient);
     return gradient;
@@ -78,29 +85,46 @@ class SlopeEngine {
     if (unit == 0) return images;
     Grid<double> direction = dz_nm;
     for (double& dz : direction.data()) dz /= unit;
+    const int columns = pass_.columns();
     const std::vector<Block> blocks = pass_.blocks(z_nm.width(), z_nm.height());
-    std::vector<Scratch> at(options_.threads), along(options_.threads);
+    std::vector<Worker> workers(options_.threads);
+    std::vector<Scratch> along(options_.threads);
     parallel_for(blocks.size(), options_.threads, [&](std::size_t i, int w) {
-      const T* const k = fit(z_nm, blocks[i], at[w]);
-      const T* const dk = fit(direction, blocks[i], along[w]);
-      const double floor = pass_.floors(0, at[w]).slope;
-      each_pixel(blocks[i], k, [&](int x, int y, const T* p) {
-        const double k2 = p[0], k3 = p[pass_.columns()], slope = std::hypot(k2, k3);
-        if (slope <= floor) return;
-        const T* const d = dk + (p - k);
-        const double rise = (k2 / slope) * d[0] + (k3 / slope) * d[pass_.columns()];
-        for (std::size_t c = 0; c < images.size(); ++c)
-          images[c](x, y) = unit * rise * slopes_.channels[c].at(slope).derivative;
-      });
+      const Block& block = blocks[i];
+      const T* k = fit(z_nm, block, workers[w].scratch);
+      const T* d = fit(direction, block, along[w]);
+      const double floor = pass_.floors(0, workers[w].scratch).slope;
+      measure(k, block, workers[w]);
+      for (int y = 0; y < block.rows; ++y, k += facet::coefficients * columns, d += facet::coefficients * columns) {
+        const SlopeRow row = workers[w].row(y, columns, block.width);
+        const std::vector<double*>& derivatives = derivatives_at(row, workers[w]);
+        for (int x = 0; x < block.width; ++x) {
+          const double slope = row.tangent[x];
+          if (slope <= floor) continue;
+          const double rise = (k[x] / slope) * d[x] + (k[x + columns] / slope) * d[x + columns];
+          for (std::size_t c = 0; c < images.size(); ++c)
+            images[c](block.x + x, block.y + y) = unit * rise * derivatives[c][x];
+        }
+      }
     });
     return images;
   }
 
  private:
   using Scratch = typename facet::FacetPass<T>::Scratch;
+  struct Worker {
+    Scratch scratch;
+    AlignedVector<double> tangent, secant, angle, derivatives;
+    std::vector<double*> channels;   ///< into derivatives
+
+    SlopeRow row(int y, int columns, int width) const {
+      const std::ptrdiff_t at = std::ptrdiff_t{y} * columns;
+      return {tangent.data() + at, secant.data() + at, angle.data() + at, width};
+    }
+  };
 
   ModelImages blank(const Grid<double>& z_nm) const {
-    return ModelImages(slopes_.channels.size(), Grid<double>(z_nm.width(), z_nm.height()));
+    return ModelImages(slopes_.curves.channels(), Grid<double>(z_nm.width(), z_nm.height()));
   }
 
   const T* fit(const Grid<double>& z_nm, const Block& block, Scratch& scratch) const {
@@ -108,10 +132,19 @@ class SlopeEngine {
     return pass_.fit(0, scratch);
   }
 
-  template <class Work>
-  void each_pixel(const Block& block, const T* k, const Work& work) const {
-    for (int y = 0; y < block.rows; ++y, k += facet::coefficients * pass_.columns())
-      for (int x = 0; x < block.width; ++x) work(block.x + x, block.y + y, k + x);
+  void measure(const T* k, const Block& block, Worker& worker) const {
+    const std::size_t count = static_cast<std::size_t>(block.rows) * pass_.columns();
+    for (AlignedVector<double>* values : {&worker.tangent, &worker.secant, &worker.angle}) values->resize(count);
+    pass_.loops().angles(k, block.rows, worker.tangent.data(), worker.secant.data(), worker.angle.data());
+  }
+
+  const std::vector<double*>& derivatives_at(const SlopeRow& row, Worker& worker) const {
+    const std::size_t channels = slopes_.curves.channels();
+    worker.derivatives.resize(channels * pass_.columns());
+    worker.channels.resize(channels);
+    for (std::size_t c = 0; c < channels; ++c) worker.channels[c] = worker.derivatives.data() + c * pass_.columns();
+    slopes_.curves.derivatives(row, worker.channels.data());
+    return worker.channels;
   }
 
   const Slopes& slopes_;
@@ -161,13 +194,9 @@ class LinearSlopeModel final : public Linearization {
 class SlopeModel final : public ImageModel {
  public:
   SlopeModel(const ModelScope& scope, const SlopeModelParameters& parameters) : scope_(scope) {
-    auto slopes = std::make_shared<Slopes>();
     facet_kernel(parameters.facet, 1);   // throws where it is out of range
-    slopes->scale = {parameters.facet};
-    for (const SlopeChannel& channel : parameters.channels) {
-      names_.push_back(channel.name);
-      slopes->channels.emplace_back(parameters, channel);
-    }
+    auto slopes = std::make_shared<Slopes>(Slopes{{parameters.facet}, SlopeCurves(parameters)});
+    for (const SlopeChannel& channel : parameters.channels) names_.push_back(channel.name);
     check_channels(names_, "slope model");
     slopes_ = std::move(slopes);
   }

@@ -115,6 +115,13 @@ TEST(FilterBank, LinearizationIsExactOnRoughAndSteepSurfaces) {
     }
 }
 
+// Blocks above one another, and an odd number of rows and columns.
+TEST(FilterBank, GradientIsTheTransposeOnTallAndWideFields) {
+  for (const bool multi : {false, true})
+    for (const auto& [width, height] : {std::pair{41, 701}, {333, 39}})
+      expect_adjoint(*bank(multi), rough_field(width, height), Edge::mirror, 1e-12);
+}
+
 // Where roots are zero the one-sided derivatives differ: their mean is what central differences give.
 TEST(FilterBank, LinearizationIsFiniteAndTheMeanOfBothSidesWhereRootsAreZero) {
   const HeightField flat = sampled(40, 40, 2, [](int, int) { return 7.0; });
