@@ -62,14 +62,6 @@ struct Plan {
   double range_nm = 0;
 };
 
-double parse_number(const std::string& text, const char* subject) {
-  std::istringstream in(text);
-  in.imbue(std::locale::classic());
-  double value = 0;
-  if (in >> value && in.peek() == std::istringstream::traits_type::eof() && std::isfinite(value)) return value;
-  throw UsageError(subject, fmt::format("'{}' is no number", text), "Give a finite number, as 12.5");
-}
-
 std::vector<std::string> split_names(const std::string& text) {
   std::vector<std::string> names;
   std::istringstream in(text);

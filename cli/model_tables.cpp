@@ -33,14 +33,50 @@ std::string line_of(const Row& row, const std::vector<std::size_t>& widths) {
   return line;
 }
 
-std::string details(const TrainedModel& model) {
-  if (const auto* bank = std::get_if<FilterBankParameters>(&model.parameters); bank && !bank->scales.empty()) {
-    const auto [low, high] = std::minmax_element(bank->scales.begin(), bank->scales.end(),
-                                                 [](const auto& a, const auto& b) { return a.size < b.size; });
-    return fmt::format(", {} neighbourhood{} of {} to {} samples{}", bank->scales.size(), bank->scales.size() == 1 ? "" : "s",
-                       low->size, high->size, bank->multi_resolution ? ", multi-resolution" : "");
+std::string counted(std::size_t count, const char* thing) {
+  return fmt::format("{} {}{}", count, thing, count == 1 ? "" : "s");
+}
+
+std::string neighbourhoods(const std::vector<FacetScale>& scales) {
+  if (scales.empty()) return "";
+  const auto [low, high] = std::ranges::minmax(scales, {}, &FacetScale::size);
+  return fmt::format(", {} of {} to {} samples", counted(scales.size(), "neighbourhood"), low.size, high.size);
+}
+
+std::string table_size(double ring_nm, int rings, double step_nm, int heights) {
+  return fmt::format(", {} rings of {} x {} heights of {}", rings, format_length(ring_nm), heights, format_length(step_nm));
+}
+
+// One overload per kind of model: what is worth telling besides its name.
+std::string details(const FilterBankParameters& p) {
+  return neighbourhoods(p.scales) + (p.multi_resolution ? ", multi-resolution" : "");
+}
+
+std::string details(const FacetNetworkParameters& p) {
+  std::string text = neighbourhoods(p.scales);
+  if (p.sky_edges_nm.size() > 1)
+    text += fmt::format(", sky in {} to {}", counted(p.sky_edges_nm.size() - 1, "band"), format_length(p.sky_edges_nm.back()));
+  std::vector<int> hidden;
+  std::size_t numbers = 0;
+  for (const DenseLayer& layer : p.layers) {
+    hidden.push_back(layer.outputs);
+    numbers += layer.weights.size() + layer.biases.size();
   }
-  return "";
+  hidden.pop_back();   // the channels
+  if (!hidden.empty()) text += fmt::format(", {} hidden units", fmt::join(hidden, " and "));
+  return text + ", " + counted(numbers, "number");
+}
+
+std::string details(const SlopeModelParameters& p) {
+  return p.form == SlopeForm::table ? fmt::format(", a table in steps of {:g} degrees", p.table_step_deg) : "";
+}
+
+std::string details(const StoppingPointParameters& p) {
+  return table_size(p.ring_nm, p.rings, p.height_step_nm, p.heights);
+}
+
+std::string details(const DiffusionMatrixParameters& p) {
+  return table_size(p.ring_nm, p.rings, p.height_step_nm, p.heights);
 }
 
 }  // namespace
@@ -55,23 +91,33 @@ std::string format_scope(const ModelScope& scope) {
 }
 
 std::string format_model(const TrainedModel& model) {
-  return fmt::format("{}{}; gives {}", io::kind_of(model), details(model), fmt::join(make_model(model)->channels(), " and "));
+  return fmt::format("{}{}; gives {}", io::kind_of(model),
+                     std::visit([](const auto& parameters) { return details(parameters); }, model.parameters),
+                     fmt::join(make_model(model)->channels(), " and "));
+}
+
+std::size_t learnt_from(const TrainingRecord& record) {
+  return static_cast<std::size_t>(
+      std::ranges::count_if(record.scenes, [](const TrainingScene& scene) { return !scene.held_out; }));
 }
 
 std::vector<std::string> residual_table(const TrainingRecord& record) {
+  // A model that has learnt from no images may still have been judged on some.
+  const auto& columns = record.residuals.empty() ? record.held_out_residuals : record.residuals;
+  if (columns.empty()) return {};
   std::vector<Row> rows(1, Row{"surface"});
-  for (const ModelResidual& r : record.residuals)
+  for (const ModelResidual& r : columns)
     for (const std::string& column : {r.channel, std::string("rms off"), std::string("mean off")}) rows[0].push_back(column);
   for (const TrainingScene& scene : record.scenes) {
-    if (scene.residuals.size() != record.residuals.size()) continue;
+    if (scene.residuals.size() != columns.size()) continue;
     rows.push_back({scene.name + (scene.held_out ? " (held out)" : "")});
     add_numbers(rows.back(), scene.residuals);
   }
-  rows.push_back({"all learnt from"});
-  add_numbers(rows.back(), record.residuals);
-  if (record.held_out_residuals.size() == record.residuals.size() && !record.residuals.empty()) {
-    rows.push_back({"all held out"});
-    add_numbers(rows.back(), record.held_out_residuals);
+  for (const auto& [name, residuals] : {std::pair{"all learnt from", &record.residuals},
+                                        std::pair{"all held out", &record.held_out_residuals}}) {
+    if (residuals->size() != columns.size()) continue;
+    rows.push_back({name});
+    add_numbers(rows.back(), *residuals);
   }
   std::vector<std::size_t> widths(rows[0].size());
   for (const Row& row : rows)

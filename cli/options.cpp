@@ -66,6 +66,13 @@ std::int64_t parse_whole(std::string_view text, std::string_view subject, std::i
   return value;
 }
 
+double parse_number(std::string_view text, std::string_view subject) {
+  double value = 0;
+  if (!read_all(text, value) || !std::isfinite(value))
+    throw UsageError(std::string(subject), fmt::format("'{}' is no number", text), "Give a finite number, as 12.5");
+  return value;
+}
+
 std::uint64_t parse_seed(std::string_view text, std::string_view subject) {
   std::uint64_t value = 0;
   if (!read_all(text, value))

@@ -18,6 +18,9 @@ namespace surf::cli {
 std::int64_t parse_whole(std::string_view text, std::string_view subject, std::int64_t lowest,
                          std::int64_t highest);
 
+/// A finite number.
+double parse_number(std::string_view text, std::string_view subject);
+
 /// A seed: any unsigned 64-bit number.
 std::uint64_t parse_seed(std::string_view text, std::string_view subject);
 

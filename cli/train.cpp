@@ -23,7 +23,7 @@ void print_training(const workflow::TrainJob& job, const workflow::TrainSummary&
   if (!s.images.empty())
     print_line("images", fmt::format("{} simulated, {} there before, in {}", s.images_made, s.images_found,
                                      s.images.string()));
-  print_line("range", format_range(model.record.range));
+  if (learnt_from(model.record) > 0) print_line("range", format_range(model.record.range));
   if (model.record.condition_number != 0)
     print_line("condition", fmt::format("{:.3g}", model.record.condition_number));
   std::string label = "off by";
@@ -31,7 +31,7 @@ void print_training(const workflow::TrainJob& job, const workflow::TrainSummary&
     print_line(label, line);
     label.clear();
   }
-  print_line("", "in % of the mean signal; rms without the images' noise, mean with it");
+  if (label.empty()) print_line("", "in % of the mean signal; rms without the images' noise, mean with it");
   print_line("written", job.output.string());
 }
 
@@ -44,6 +44,7 @@ int train(const TrainOptions& options) {
     workflow::TrainListener listener;
     listener.pixels = [&](double done, double total) { bar.show(done, total, "pixels"); };
     listener.cascades = [&](double done, double total) { bar.show(done, total, "cascades"); };
+    listener.learning = [&](double done, double total) { bar.show(done, total, nullptr); };
     listener.warn = [&](const std::string& warning) {
       bar.clear();
       print_warning(warning);
@@ -56,9 +57,11 @@ int train(const TrainOptions& options) {
     summary = workflow::run(job, listener);
   }
   if (!summary.complete) {
-    print_note(fmt::format("stopped: there is no model yet. What is simulated is kept in {}; the same command goes on "
-                           "from there",
-                           summary.images.string()));
+    print_note(summary.images.empty()
+                   ? "stopped: there is no model yet"
+                   : fmt::format("stopped: there is no model yet. What is simulated is kept in {}; the same command goes "
+                                 "on from there",
+                                 summary.images.string()));
     return exit_interrupted;
   }
   if (!options.quiet) print_training(job, summary);

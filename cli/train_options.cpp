@@ -19,6 +19,7 @@
 #include "surf/io/model_file.h"
 #include "surf/io/sim/materials.h"
 #include "terminal.h"
+#include "train_model_options.h"
 
 namespace surf::cli {
 namespace {
@@ -27,6 +28,7 @@ constexpr const char* examples =
     R"(Without HEIGHTS the model learns on surfaces of semsurf's own: blocks, pits, rough ones, bumps, lines,
 pyramids. Without images they are simulated, into NAME.training beside NAME.json: stop when you like,
 the same command goes on from there, and images that are there already are used again.
+Kinds that need no images are only judged on them, where HEIGHTS or --surfaces ask for some.
 The table at the end says how far the model is off on each surface, the images' noise subtracted; with
 --hold-out N on the last N, which it has not seen.
 
@@ -36,7 +38,8 @@ Examples:
   semsurf train scan.gwy other.gsf --material Au --energy 5keV --pixel-size 2nm -o gold.json
   semsurf train a.gsf b.gsf --images a.exr --images b.exr --pixel-size 3nm -o si.json
   semsurf train known.gsf --signal sem.tif --material Si --energy 1keV -o our-sem.json
-  semsurf train --pixel-size 3nm --model secant -o secant.json)";
+  semsurf train --pixel-size 3nm --model filter-bank -o bank.json
+  semsurf train --pixel-size 3nm --model slope-table --surfaces 12 -o slopes.json)";
 
 std::optional<double> pitch_of(const TrainOptions& o) {
   if (!o.pitch) return std::nullopt;
@@ -79,24 +82,6 @@ void add_images(const TrainOptions& o, workflow::TrainJob& job) {
     job.signal = channel;
     job.inputs[i].image = input.file;
   }
-}
-
-std::vector<FacetScale> parse_scales(const std::string& text) {
-  const std::vector<FacetScale> all = thesis_scales();
-  std::vector<FacetScale> scales;
-  for (std::size_t from = 0; from <= text.size();) {
-    const std::size_t comma = std::min(text.find(',', from), text.size());
-    const auto size = parse_whole(text.substr(from, comma - from), "--scales", 5, 255);
-    const auto known = std::find_if(all.begin(), all.end(), [&](const FacetScale& s) { return s.size == size; });
-    if (known == all.end()) {
-      std::string sizes;
-      for (const FacetScale& s : all) sizes += fmt::format("{}{}", sizes.empty() ? "" : ",", s.size);
-      throw UsageError("--scales", fmt::format("there is no neighbourhood of {} samples", size), "Choose among " + sizes);
-    }
-    scales.push_back(*known);
-    from = comma + 1;
-  }
-  return scales;
 }
 
 void add_budget(const TrainOptions& o, workflow::TrainJob& job) {
@@ -176,26 +161,16 @@ std::string telling_command(const TrainOptions& o) {
   for (const auto& [value, option] :
        {std::pair{&o.material, "--material"}, std::pair{&o.energy, "--energy"}, std::pair{&o.spot, "--spot"},
         std::pair{&o.pixel_size, "--pixel-size"}, std::pair{&o.model, "--model"}, std::pair{&o.scales, "--scales"},
-        std::pair{&o.cut_off, "--cut-off"}, std::pair{&o.surfaces, "--surfaces"},
+        std::pair{&o.cut_off, "--cut-off"}, std::pair{&o.hidden, "--hidden"},
+        std::pair{&o.iterations, "--iterations"}, std::pair{&o.decay, "--decay"},
+        std::pair{&o.tolerance, "--tolerance"}, std::pair{&o.table_electrons, "--table-electrons"},
+        std::pair{&o.surfaces, "--surfaces"},
         std::pair{&o.surface_size, "--surface-size"}, std::pair{&o.hold_out, "--hold-out"}, std::pair{&o.edge, "--edge"},
         std::pair{&o.height_channel, "--height-channel"}, std::pair{&o.pitch, "--pitch"}, std::pair{&o.z_unit, "--z-unit"},
         std::pair{&o.electrons, "--electrons"}, std::pair{&o.accuracy, "--accuracy"}, std::pair{&o.physics, "--physics"},
         std::pair{&o.cutoff, "--cutoff"}, std::pair{&o.seed, "--seed"}})
     if (value->has_value()) text += fmt::format(" {} {}", option, **value);
   return text + (o.multi_resolution ? " --multi-resolution" : "");
-}
-
-std::string kinds_to_choose() {
-  std::string names;
-  for (const workflow::LearnableKind& kind : workflow::learnable_kinds()) names += (names.empty() ? "" : "|") + kind.name;
-  return names;
-}
-
-std::string kinds_in_words() {
-  std::string text = "Kinds of models (--model):\n";
-  for (const workflow::LearnableKind& kind : workflow::learnable_kinds())
-    text += fmt::format("  {:<20}  {}\n", kind.name, kind.what);
-  return text + "\n";
 }
 
 }  // namespace
@@ -206,11 +181,8 @@ workflow::TrainJob make_train_job(const TrainOptions& o) {
   job.output = *o.output;
   io::check_model_target(job.output);
   add_budget(o, job);
+  add_model(o, job);
   add_surfaces(o, job);
-  if (o.model) job.learn.kind = *o.model;
-  if (o.scales) job.learn.scales = parse_scales(*o.scales);
-  job.learn.multi_resolution = o.multi_resolution;
-  if (o.cut_off) job.learn.cut_off = *o.cut_off == "0" ? 0 : parse_share(*o.cut_off, "--cut-off");
   if (o.edge) job.edge = parse_edge(*o.edge, "--edge");
   add_conditions(o, job);
   add_inputs(o, job);
@@ -224,7 +196,7 @@ void add_train_options(CLI::App& app, TrainOptions& o) {
   app.add_option("HEIGHTS", o.heights, "Surfaces to learn on: scans and images of heights (semsurf's own)")
       ->type_name("FILE");
   const char* surfaces = "Surfaces";
-  app.add_option("--surfaces", o.surfaces, "How many of semsurf's own; there are 12 kinds (12)")
+  app.add_option("--surfaces", o.surfaces, "How many of semsurf's own; there are 12 kinds (12; 0 if no images are needed)")
       ->type_name("N")->group(surfaces);
   app.add_option("--surface-size", o.surface_size, "Pixels across each of them (96)")->type_name("N")->group(surfaces);
   app.add_option("--hold-out", o.hold_out, "Judge the model on the last N surfaces, without learning from them (0)")
@@ -250,15 +222,7 @@ void add_train_options(CLI::App& app, TrainOptions& o) {
   app.add_option("--spot", o.spot, "Standard deviation of the Gaussian spot (0nm)")->type_name("LENGTH")->group(conditions);
   app.add_option("--pixel-size", o.pixel_size, "Of the images, square (that of the first of HEIGHTS)")
       ->type_name("LENGTH")->group(conditions);
-  const char* model = "Model";
-  app.add_option("--model", o.model, "Its kind (filter-bank)")
-      ->type_name(kinds_to_choose())->group(model);
-  app.add_option("--scales", o.scales, "Of a filter bank: samples across its neighbourhoods, as 5,7,11 (all ten)")
-      ->type_name("N,N...")->group(model);
-  app.add_option("--cut-off", o.cut_off, "Of a filter bank: components of a smaller eigenvalue are left out")
-      ->type_name("NUMBER")->group(model);
-  app.add_flag("--multi-resolution", o.multi_resolution, "Of a filter bank: wide neighbourhoods on fewer samples")
-      ->group(model);
+  add_train_model_options(app, o);
   const char* simulation = "Simulation of missing images";
   app.add_option("--electrons", o.electrons, "Primaries per pixel (400)")->type_name("N")->group(simulation);
   app.add_option("--accuracy", o.accuracy, "Instead: as many as bring standard errors down to this, as 3%")

@@ -17,7 +17,8 @@ struct TrainOptions {
   std::optional<std::string> material, energy, spot, pixel_size, physics, cutoff;
   std::optional<std::string> surfaces, surface_size, hold_out;
   std::optional<std::string> electrons, accuracy, seed, threads, cache;
-  std::optional<std::string> model, scales, cut_off, output;
+  std::optional<std::string> model, scales, cut_off, hidden, iterations, decay, tolerance;
+  std::optional<std::string> table_electrons, output;
   bool multi_resolution = false, quiet = false;
 };
 

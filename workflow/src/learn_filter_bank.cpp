@@ -12,7 +12,8 @@
 namespace surf::workflow {
 namespace {
 
-void check(const LearnOptions& o) {
+void check(const TrainJob& job) {
+  const LearnOptions& o = job.learn;
   if (o.cut_off && !(*o.cut_off >= 0 && std::isfinite(*o.cut_off)))
     throw UsageError("--cut-off", fmt::format("{} is not a number of 0 or above", *o.cut_off), "Write for example 0.1");
 }
@@ -36,6 +37,6 @@ Learnt learn(const Lesson& lesson) {
 }  // namespace
 
 const Learner filter_bank_learner{"filter-bank", "gradient and curvatures at ten scales, combined (thesis, chapter 6)",
-                                  check, learn};
+                                  {"--scales", "--multi-resolution", "--cut-off"}, check, learn};
 
 }  // namespace surf::workflow

@@ -43,12 +43,13 @@ Learnt learn_form(const Lesson& lesson) {
 
 }  // namespace
 
-const Learner secant_learner{"secant", "1 / cos of the slope (Jones 1994)", nullptr, learn_form<SlopeForm::secant>};
-const Learner ikeuchi_exponential_learner{"ikeuchi-exponential", "exp(1 - cos) of the slope (Ikeuchi 1981)", nullptr,
+const Learner secant_learner{"secant", "1 / cos of the slope (Jones 1994)", {}, nullptr,
+                             learn_form<SlopeForm::secant>};
+const Learner ikeuchi_exponential_learner{"ikeuchi-exponential", "exp(1 - cos) of the slope (Ikeuchi 1981)", {}, nullptr,
                                           learn_form<SlopeForm::ikeuchi_exponential>};
-const Learner ikeuchi_secant_learner{"ikeuchi-secant", "1 / cos of 0.8 times the slope (Ikeuchi 1981)", nullptr,
+const Learner ikeuchi_secant_learner{"ikeuchi-secant", "1 / cos of 0.8 times the slope (Ikeuchi 1981)", {}, nullptr,
                                      learn_form<SlopeForm::ikeuchi_secant>};
-const Learner ikeuchi_mixed_learner{"ikeuchi-mixed", "half constant, half 1 / cos of the slope (Ikeuchi 1981)", nullptr,
+const Learner ikeuchi_mixed_learner{"ikeuchi-mixed", "half constant, half 1 / cos of the slope (Ikeuchi 1981)", {}, nullptr,
                                     learn_form<SlopeForm::ikeuchi_mixed>};
 
 }  // namespace surf::workflow

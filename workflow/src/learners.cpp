@@ -3,41 +3,74 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <utility>
+
 #include "surf/core/error.h"
 
 namespace surf::workflow {
 namespace {
 
-constexpr const Learner* all[] = {&filter_bank_learner, &secant_learner, &ikeuchi_exponential_learner,
+constexpr const Learner* all[] = {&facet_network_learner, &filter_bank_learner, &slope_table_learner,
+                                  &slope_table_two_planes_learner, &stopping_points_learner,
+                                  &diffusion_matrix_learner, &secant_learner, &ikeuchi_exponential_learner,
                                   &ikeuchi_secant_learner, &ikeuchi_mixed_learner};
 
-// Of a filter bank, which a kind that takes none of them must refuse.
-void refuse_options(const LearnOptions& o) {
-  const char* const given = !o.scales.empty() ? "--scales" : o.multi_resolution ? "--multi-resolution"
-                            : o.cut_off ? "--cut-off" : nullptr;
-  if (given)
-    throw UsageError(given, fmt::format("a model '{}' has none", o.kind), "Leave it out, or add --model filter-bank");
+bool takes(const Learner& learner, std::string_view option) {
+  return std::ranges::find(learner.options, option) != learner.options.end();
+}
+
+void refuse_options(const Learner& learner, const LearnOptions& o) {
+  const std::pair<bool, const char*> options[] = {{!o.scales.empty(), "--scales"},
+                                                  {o.multi_resolution, "--multi-resolution"},
+                                                  {o.cut_off.has_value(), "--cut-off"},
+                                                  {o.hidden.has_value(), "--hidden"},
+                                                  {o.iterations.has_value(), "--iterations"},
+                                                  {o.decay.has_value(), "--decay"},
+                                                  {o.tolerance.has_value(), "--tolerance"},
+                                                  {o.table_electrons.has_value(), "--table-electrons"}};
+  for (const auto& [given, option] : options) {
+    if (!given || takes(learner, option)) continue;
+    const auto other = std::ranges::find_if(all, [&](const Learner* l) { return takes(*l, option); });
+    throw UsageError(option, fmt::format("a model '{}' has none", learner.name),
+                     fmt::format("Leave it out, or add --model {}", (*other)->name));
+  }
+}
+
+// What only images would be for.
+void refuse_learning_from_images(const Learner& learner, const TrainJob& job) {
+  if (job.held_out > 0)
+    throw UsageError("--hold-out", fmt::format("a model '{}' learns from no surface: all of them only judge it", learner.name),
+                     "Leave it out");
+  if (!job.signal.empty())
+    throw UsageError("--signal", fmt::format("a model '{}' gives SE and BSE, not what a microscope makes of them", learner.name),
+                     "Leave it out; 'semsurf calibrate' compares the two");
+  const std::int64_t electrons = job.learn.table_electrons.value_or(2);
+  if (electrons < 2 || electrons > std::int64_t{1} << 31)
+    throw UsageError("--table-electrons", fmt::format("{} electrons make no table", electrons), "Give 2 to 2^31");
 }
 
 }  // namespace
 
-const Learner& learner_of(const LearnOptions& options) {
+const Learner& learner_of(const TrainJob& job) {
   std::string names;
   for (const Learner* learner : all) {
-    if (options.kind == learner->name) {
-      learner->check ? learner->check(options) : refuse_options(options);
+    if (job.learn.kind == learner->name) {
+      refuse_options(*learner, job.learn);
+      if (!learner->needs_images) refuse_learning_from_images(*learner, job);
+      if (learner->check) learner->check(job);
       return *learner;
     }
     names += fmt::format("{}{}", names.empty() ? "" : ", ", learner->name);
   }
-  throw UsageError("--model", fmt::format("there is no kind '{}'", options.kind), fmt::format("Choose one of {}", names));
+  throw UsageError("--model", fmt::format("there is no kind '{}'", job.learn.kind), fmt::format("Choose one of {}", names));
 }
 
 std::span<const Learner* const> learners() { return all; }
 
 std::vector<LearnableKind> learnable_kinds() {
   std::vector<LearnableKind> kinds;
-  for (const Learner* learner : all) kinds.push_back({learner->name, learner->what});
+  for (const Learner* learner : all) kinds.push_back({learner->name, learner->what, learner->needs_images});
   return kinds;
 }
 

@@ -4,6 +4,7 @@
 #include <map>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "surf/sem/training_image.h"
@@ -16,8 +17,11 @@ struct Lesson {
   const TrainJob& job;
   ModelScope scope;
   std::vector<std::string> channels;
-  const std::vector<TrainingImage>& images;   ///< at least one; those held out are not among them
+  const std::vector<TrainingImage>& images;   ///< without those held out; none for kinds that need none
   const TrainListener& listener;
+
+  /// For the whole of learning.
+  Watch watch() const { return {listener.learning, listener.cancel}; }
 };
 
 struct Learnt {
@@ -31,18 +35,23 @@ struct Learnt {
 struct Learner {
   const char* name;
   const char* what;
-  /// Throws UsageError for options that do not concern the kind or are out of range: before any time is
-  /// spent. Null: none of LearnOptions concern it.
-  void (*check)(const LearnOptions& options);
-  Learnt (*learn)(const Lesson& lesson);
+  /// Which of LearnOptions concern it, as the command line calls them. Others are refused.
+  std::vector<std::string_view> options;
+  /// Throws UsageError for what is out of range or cannot be had with this kind: before any time is spent.
+  /// Null: there is no such thing.
+  void (*check)(const TrainJob& job);
+  Learnt (*learn)(const Lesson& lesson);   ///< throws Interrupted
+  bool needs_images = true;
 };
 
 // A new kind: its source file, a line here and one in learners.cpp.
-extern const Learner filter_bank_learner;
+extern const Learner facet_network_learner, filter_bank_learner;
 extern const Learner secant_learner, ikeuchi_exponential_learner, ikeuchi_secant_learner, ikeuchi_mixed_learner;
+extern const Learner slope_table_learner, slope_table_two_planes_learner;
+extern const Learner stopping_points_learner, diffusion_matrix_learner;
 
-/// Throws UsageError, naming all, for a kind that is not known or options that do not concern it.
-const Learner& learner_of(const LearnOptions& options);
+/// Throws UsageError, naming all, for a kind that is not known or what it cannot be learnt with.
+const Learner& learner_of(const TrainJob& job);
 
 std::span<const Learner* const> learners();
 

@@ -10,6 +10,7 @@
 
 #include "checkpoint.h"
 #include "extras.h"
+#include "job_libraries.h"
 #include "provenance.h"
 #include "sidecar.h"
 #include "surf/core/error.h"
@@ -20,7 +21,6 @@
 #include "surf/io/volume_file.h"
 #include "surf/mc/choose_method.h"
 #include "surf/mc/scene.h"
-#include "surf/workflow/libraries.h"
 #include "time_budget.h"
 #include "warnings.h"
 
@@ -171,30 +171,6 @@ std::string option_text(double accuracy) {
   std::erase(text, ' ');
   return text;
 }
-
-// The cache's libraries, with the job's own progress.
-class JobLibraries : public mc::LibrarySource {
- public:
-  JobLibraries(const std::filesystem::path& folder, LibraryCallback progress, NoteCallback note)
-      : kept_(folder), progress_(std::move(progress)), note_(std::move(note)) {}
-
-  std::shared_ptr<const mc::CascadeLibrary> library(const mc::CascadeSettings& settings,
-                                                    std::size_t cascades, int threads,
-                                                    const ProgressCallback&,
-                                                    const CancelToken* cancel) override {
-    auto library = kept_.library(settings, cascades, threads, progress_, cancel);
-    for (const std::string& text : kept_.take_notes())
-      if (note_) note_(text);
-    return library;
-  }
-
-  CachedLibraries::Pages pages() const { return kept_.pages(); }
-
- private:
-  CachedLibraries kept_;
-  LibraryCallback progress_;
-  NoteCallback note_;
-};
 
 struct Simulation {
   mc::SimulationResult result;

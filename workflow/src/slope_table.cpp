@@ -23,9 +23,9 @@ constexpr double floor_in_ranges = 40;
 constexpr std::size_t se = 0, bse = 1;   // of the default detectors
 
 void check(const SlopeTableOptions& o) {
-  if (!(o.step_deg > 0 && o.step_deg <= o.last_deg && o.last_deg <= steepest_deg))
+  if (!(o.step_deg > 0 && std::isfinite(o.step_deg) && o.last_deg >= 0 && o.last_deg <= steepest_deg))
     throw UsageError("slope table", fmt::format("angles to {:g} in steps of {:g} degrees", o.last_deg, o.step_deg),
-                     fmt::format("Give steps above 0 and a last angle from one step to {:g}", steepest_deg));
+                     fmt::format("Give steps above 0 and a last angle from 0 to {:g}", steepest_deg));
   if (o.electrons < 2)
     throw UsageError("slope table", fmt::format("{} electrons have no standard error", o.electrons), "Give 2 or more");
 }

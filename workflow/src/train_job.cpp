@@ -17,11 +17,19 @@
 namespace surf::workflow {
 namespace {
 
-void check_numbers(const TrainJob& job) {
+constexpr int usual_surfaces = 12;
+
+/// How many surfaces of the program's own there are to be.
+int own_surfaces(const TrainJob& job, const Learner& learner) {
+  if (!job.inputs.empty()) return 0;
+  return job.surfaces.value_or(learner.needs_images ? usual_surfaces : 0);
+}
+
+void check_numbers(const TrainJob& job, int own) {
   if (!(job.pixel_nm > 0 && std::isfinite(job.pixel_nm)))
     throw UsageError("--pixel-size", "it must be above zero", "Give the model's pixel size, as 3nm");
-  const int surfaces = job.inputs.empty() ? job.surfaces : static_cast<int>(job.inputs.size());
-  if (job.held_out < 0 || job.held_out >= surfaces)
+  const int surfaces = own + static_cast<int>(job.inputs.size());
+  if (job.held_out < 0 || (job.held_out > 0 && job.held_out >= surfaces))
     throw UsageError("--hold-out", fmt::format("{} of {} surfaces leave none to learn on", job.held_out, surfaces),
                      "Give fewer, or more surfaces");
   if (job.inputs.empty() && !job.signal.empty())
@@ -53,15 +61,13 @@ std::vector<TrainingImage> read_images(const TrainJob& job, const std::vector<Tr
   return images;
 }
 
-std::map<std::string, std::string> notes_of(const TrainJob& job) {
+std::map<std::string, std::string> notes_of(const TrainJob& job, const std::vector<TrainingSurface>& surfaces) {
   std::map<std::string, std::string> notes{{"semsurf.version", version()}};
   if (!job.command_line.empty()) notes["command"] = job.command_line;
+  if (surfaces.empty()) return notes;
   notes["edge"] = job.edge == Edge::mirror ? "mirror" : job.edge == Edge::flat ? "flat" : "periodic";
-  const bool all_given = !job.inputs.empty() && std::all_of(job.inputs.begin(), job.inputs.end(), [](const auto& input) {
-    return !input.image.empty();
-  });
   if (job.inputs.empty()) notes["surfaces"] = fmt::format("semsurf's own, {} pixels across", job.surface_px);
-  if (all_given) return notes;
+  if (std::ranges::none_of(surfaces, [](const TrainingSurface& surface) { return surface.image.empty(); })) return notes;
   notes["physics"] = mc::format_physics(job.physics);
   notes["seed"] = std::to_string(job.simulation.seed);
   if (job.simulation.accuracy > 0) notes["accuracy"] = format_exact(job.simulation.accuracy);
@@ -90,12 +96,29 @@ std::vector<TrainingScene> judge(const TrainJob& job, const ImageModel& model,
   return scenes;
 }
 
+/// What surfaces and images say of a finished model. Surfaces are in the order of the images.
+void complete_record(const TrainJob& job, const std::vector<TrainingSurface>& surfaces,
+                     const std::vector<TrainingImage>& learnt, const std::vector<TrainingImage>& held_out,
+                     TrainedModel& model) {
+  TrainingRecord& record = model.record;
+  for (const TrainingImage& image : learnt) record.range = united(record.range, surface_range(image.field));
+  const auto usable = make_model(model);
+  if (!learnt.empty()) record.residuals = residuals_of(*usable, learnt, job.simulation.threads);
+  if (!held_out.empty()) record.held_out_residuals = residuals_of(*usable, held_out, job.simulation.threads);
+  record.scenes = judge(job, *usable, surfaces, 0, learnt, false);
+  for (TrainingScene& scene : judge(job, *usable, surfaces, learnt.size(), held_out, true))
+    record.scenes.push_back(std::move(scene));
+}
+
+bool is_cancelled(const TrainListener& listener) { return listener.cancel && listener.cancel->cancelled(); }
+
 }  // namespace
 
 TrainSummary run(const TrainJob& job, const TrainListener& listener) {
-  const Learner& learner = learner_of(job.learn);
-  check_numbers(job);
-  const std::vector<TrainingSurface> surfaces = gather_surfaces(job, listener.note);
+  const Learner& learner = learner_of(job);
+  const int own = own_surfaces(job, learner);
+  check_numbers(job, own);
+  const std::vector<TrainingSurface> surfaces = gather_surfaces(job, own, listener.note);
   check_target(job, surfaces);
   TrainSummary summary;
   const SimulatedImages simulated = simulate_images(job, surfaces, listener);
@@ -106,37 +129,30 @@ TrainSummary run(const TrainJob& job, const TrainListener& listener) {
   if (!summary.complete) return summary;
 
   std::vector<TrainingImage> images = read_images(job, surfaces, simulated);
-  validate(images);
-  const std::size_t learnt = images.size() - static_cast<std::size_t>(job.held_out);
+  if (!images.empty()) validate(images);
+  const std::size_t learnt = learner.needs_images ? images.size() - static_cast<std::size_t>(job.held_out) : 0;
   const auto split = images.begin() + static_cast<std::ptrdiff_t>(learnt);
   const std::vector<TrainingImage> held_out(split, images.end());
   images.erase(split, images.end());
   TrainedModel& model = summary.model;
   model.scope = {job.pixel_nm, job.material.name, job.energy_ev, job.spot_nm};
-  Learnt result = learner.learn({job, model.scope, channels_of(job), images, listener});
-  model.parameters = std::move(result.parameters);
-  model.record.condition_number = result.condition_number;
-  model.record.warnings = std::move(result.warnings);
-  model.record.notes = notes_of(job);
-  model.record.notes["model"] = learner.name;
-  for (auto& [key, value] : result.notes) model.record.notes[key] = value;
-  TrainingRecord& record = model.record;
-  for (const TrainingImage& image : images) record.range = united(record.range, surface_range(image.field));
-  const auto usable = make_model(model);
-  record.residuals = residuals_of(*usable, images, job.simulation.threads);
-  record.scenes = judge(job, *usable, surfaces, 0, images, false);
-  if (!held_out.empty()) {
-    record.held_out_residuals = residuals_of(*usable, held_out, job.simulation.threads);
-    for (TrainingScene& scene : judge(job, *usable, surfaces, learnt, held_out, true))
-      record.scenes.push_back(std::move(scene));
-  }
-  for (const std::string& warning : model.record.warnings)
-    if (listener.warn) listener.warn(warning);
-  if (listener.cancel && listener.cancel->cancelled()) {
+  try {
+    Learnt result = learner.learn({job, model.scope, channels_of(job), images, listener});
+    model.parameters = std::move(result.parameters);
+    model.record.condition_number = result.condition_number;
+    model.record.warnings = std::move(result.warnings);
+    model.record.notes = notes_of(job, surfaces);
+    model.record.notes["model"] = learner.name;
+    for (auto& [key, value] : result.notes) model.record.notes[key] = value;
+  } catch (const Interrupted&) {
     summary.complete = false;
     return summary;
   }
-  io::write_model(job.output, model);
+  complete_record(job, surfaces, images, held_out, model);
+  for (const std::string& warning : model.record.warnings)
+    if (listener.warn) listener.warn(warning);
+  summary.complete = !is_cancelled(listener);
+  if (summary.complete) io::write_model(job.output, model);
   return summary;
 }
 

@@ -85,7 +85,7 @@ Grid<float> even_errors(const Grid<float>& errors, const Grid<unsigned char>& us
 
 }  // namespace
 
-std::vector<TrainingSurface> gather_surfaces(const TrainJob& job, const NoteCallback& note) {
+std::vector<TrainingSurface> gather_surfaces(const TrainJob& job, int own, const NoteCallback& note) {
   std::vector<TrainingSurface> surfaces;
   std::set<std::string> taken;
   for (const TrainingInput& input : job.inputs) {
@@ -93,8 +93,8 @@ std::vector<TrainingSurface> gather_surfaces(const TrainJob& job, const NoteCall
     std::string hash = input.sha256.empty() ? hash_of(field) : input.sha256;
     surfaces.push_back({unique(stem_of(input.name), taken), std::move(field), std::move(hash), input.image});
   }
-  if (!job.inputs.empty()) return surfaces;
-  for (NamedSurface& made : training_surfaces({job.pixel_nm, job.surface_px, job.surfaces, job.simulation.seed})) {
+  if (own == 0) return surfaces;
+  for (NamedSurface& made : training_surfaces({job.pixel_nm, job.surface_px, own, job.simulation.seed})) {
     std::string hash = hash_of(made.field);
     surfaces.push_back({made.name, std::move(made.field), std::move(hash), {}});
   }

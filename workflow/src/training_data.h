@@ -18,8 +18,9 @@ struct TrainingSurface {
   std::filesystem::path image;     ///< given; empty: it is to be simulated
 };
 
-/// The job's own surfaces or the program's, resampled where they have to be, with unique names.
-std::vector<TrainingSurface> gather_surfaces(const TrainJob& job, const NoteCallback& note);
+/// The job's own surfaces or, where it has none, so many of the program's; resampled where they have to be, with
+/// unique names.
+std::vector<TrainingSurface> gather_surfaces(const TrainJob& job, int own, const NoteCallback& note);
 
 /// The channels that are learnt: SE and BSE, or the one signal.
 std::vector<std::string> channels_of(const TrainJob& job);

@@ -52,17 +52,23 @@ class Writer {
 
   static std::string one_line(const Json& json, const std::string& place) {
     std::string line = json.is_array() ? "[" : "{";
-    for (const auto& item : json.items())
-      line += (line.size() > 1 ? ", " : "") + (json.is_array() ? "" : key(item.key())) +
-              plain(item.value(), step(place, item.key(), json.is_array()));
-    return line + (json.is_array() ? "]" : "}");
+    for (const auto& item : json.items()) {
+      if (line.size() > 1) line += ", ";
+      if (!json.is_array()) line += key(item.key());
+      line += plain(item.value(), step(place, item.key(), json.is_array()));
+    }
+    line += json.is_array() ? ']' : '}';
+    return line;
   }
 
   static bool fits(const Json& json, std::size_t indent, const std::string& place) {
     return json.size() <= 40 && indent + one_line(json, place).size() <= widest;
   }
 
-  void new_line(std::size_t indent) { text_ += "\n" + std::string(indent, ' '); }
+  void new_line(std::size_t indent) {
+    text_ += '\n';
+    text_.append(indent, ' ');
+  }
 
   /// As many values in a line as fit.
   void write_wrapped(const Json& json, std::size_t indent, const std::string& place) {

@@ -20,13 +20,13 @@ constexpr const char* format_name = "semsurf image model";
 constexpr std::uint64_t version = 1;
 constexpr std::size_t max_bytes = std::size_t{256} << 20;
 
-constexpr const ModelKind* kinds[] = {&filter_bank_kind, &slope_model_kind, &stopping_point_kind,
-                                      &diffusion_matrix_kind};
+constexpr const ModelKind* kinds[] = {&facet_network_kind, &filter_bank_kind, &slope_model_kind,
+                                      &stopping_point_kind, &diffusion_matrix_kind};
 
 const ModelKind& kind_for(const ModelParameters& parameters) {
   for (const ModelKind* kind : kinds)
     if (kind->is(parameters)) return *kind;
-  throw Unsupported("model", "files cannot hold its kind", "Write a filter bank");
+  throw Unsupported("model", "files cannot hold its kind", "Write a facet network");
 }
 
 const ModelKind& kind_for(const JsonValue& value) {

@@ -20,6 +20,7 @@ struct ModelKind {
 };
 
 // One source file each. A new kind: its file, a line here and one in model_file.cpp.
+extern const ModelKind facet_network_kind;
 extern const ModelKind slope_model_kind;
 extern const ModelKind filter_bank_kind;
 extern const ModelKind stopping_point_kind;

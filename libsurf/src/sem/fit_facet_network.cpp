@@ -21,7 +21,9 @@ constexpr const char* subject = "training";
 constexpr double widest_sigma = 0.65, sky_limits[] = {0, 0.13, 0.33, 0.67, 1.33, 2.67, 5.33};
 constexpr std::size_t fewest_scales = 4;
 
-void check(const FacetNetworkFitOptions& o) {
+}  // namespace
+
+void validate(const FacetNetworkFitOptions& o) {
   const auto refuse = [](const char* name, double value, const char* range) {
     throw UsageError("training", fmt::format("{} is {}", name, value), fmt::format("Give {}", range));
   };
@@ -33,6 +35,8 @@ void check(const FacetNetworkFitOptions& o) {
   if (!(o.decay >= 0 && o.decay < 1e6)) refuse("the decay", o.decay, "a number not below 0");
   if (!(o.tolerance >= 0 && o.tolerance <= 1)) refuse("the tolerance", o.tolerance, "0 to 1");
 }
+
+namespace {
 
 /// Pixels that are used: inputs of the network, signals in units of the channels' means, and what share of
 /// the mean signal is variance, image by image.
@@ -190,7 +194,7 @@ std::vector<double> network_sky_edges(double range_nm) {
 
 FacetNetworkFit fit_facet_network(const std::vector<TrainingImage>& images, const std::vector<std::string>& channels,
                                   const FacetNetworkFitOptions& options) {
-  check(options);
+  validate(options);
   validate(images);
   const double pixel_nm = pixel_of(images);
   FacetNetworkFit fit;

@@ -21,6 +21,10 @@ std::shared_ptr<const ImageModel> make(const ModelScope& scope, const DiffusionM
   return make_diffusion_matrix(scope, parameters);
 }
 
+std::shared_ptr<const ImageModel> make(const ModelScope& scope, const FacetNetworkParameters& parameters) {
+  return make_facet_network(scope, parameters);
+}
+
 }  // namespace
 
 std::shared_ptr<const ImageModel> make_model(const TrainedModel& trained) {

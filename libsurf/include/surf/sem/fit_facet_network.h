@@ -31,6 +31,9 @@ struct FacetNetworkFitOptions {
   Watch watch;                         ///< throws Interrupted
 };
 
+/// Throws UsageError for options out of range.
+void validate(const FacetNetworkFitOptions& options);
+
 /// The thesis's neighbourhoods with a sigma of at most 0.65 times the range, at least four.
 std::vector<FacetScale> network_scales(double pixel_nm, double range_nm);
 

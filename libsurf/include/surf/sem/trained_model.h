@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "surf/sem/diffusion_matrix.h"
+#include "surf/sem/facet_network.h"
 #include "surf/sem/filter_bank.h"
 #include "surf/sem/image_model.h"
 #include "surf/sem/slope_model.h"
@@ -52,7 +53,8 @@ struct TrainingRecord {
 /// Everything that a model file holds.
 struct TrainedModel {
   ModelScope scope;
-  std::variant<SlopeModelParameters, FilterBankParameters, StoppingPointParameters, DiffusionMatrixParameters>
+  std::variant<SlopeModelParameters, FilterBankParameters, StoppingPointParameters, DiffusionMatrixParameters,
+               FacetNetworkParameters>
       parameters;
   TrainingRecord record;
 };

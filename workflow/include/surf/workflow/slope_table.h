@@ -29,7 +29,7 @@ enum class SlopeSpecimen {
 struct SlopeTableOptions {
   SlopeSpecimen specimen = SlopeSpecimen::two_planes;
   double step_deg = 5;              ///< between angles, which begin at 0; > 0
-  double last_deg = 85;             ///< no angle beyond it; step_deg to 89
+  double last_deg = 85;             ///< no angle beyond it, 0 to 89
   std::int64_t electrons = 31000;   ///< per angle, 2 to 2^31: the thesis's number
   std::uint64_t seed = 1;
   mc::Physics physics;
@@ -49,7 +49,7 @@ struct SlopeTable {
 SlopeTable make_slope_table(const mc::Material& material, double energy_ev, const SlopeTableOptions& options = {},
                             mc::LibrarySource* libraries = nullptr);
 
-/// A slope model with the channels SE and BSE of the table.
+/// A slope model with the channels SE and BSE of the table, of two angles or more.
 SlopeModelParameters to_slope_model(const SlopeTable& table);
 
 }  // namespace surf::workflow

@@ -30,23 +30,31 @@ struct TrainingInput {
 /// What learning is told besides surfaces and images. Each kind of model takes what concerns it.
 struct LearnOptions {
   /// Kinds as `learnable_kinds` lists them.
-  std::string kind = "filter-bank";
-  std::vector<FacetScale> scales;            ///< of a filter bank; empty: the thesis's ten
+  std::string kind = "facet-network";
+  /// Of a filter bank or a facet network; empty: the thesis's ten, of a network those within the electrons' range.
+  std::vector<FacetScale> scales;
   bool multi_resolution = false;             ///< see FilterBankParameters
   std::optional<double> cut_off;             ///< of the eigenvalues of a filter bank's outputs
+  std::optional<std::vector<int>> hidden;    ///< of a facet network, this and the next: see FacetNetworkFitOptions
+  std::optional<int> iterations;
+  std::optional<double> decay, tolerance;
+  /// Primaries that a table is made of: at each angle of slopes (31000), or in all (10240, rounded up to pages
+  /// of a library of cascades).
+  std::optional<std::int64_t> table_electrons;
 };
 
 /// A kind of model that can be learnt, for people.
 struct LearnableKind {
   std::string name;   ///< as the command line takes it
   std::string what;   ///< one line, no full stop
+  bool needs_images = true;   ///< else images only judge it
 };
 std::vector<LearnableKind> learnable_kinds();
 
 /// A model from surfaces to its file.
 struct TrainJob {
   std::vector<TrainingInput> inputs;     ///< none: `surfaces` of the program's own (training_surfaces.h)
-  int surfaces = 12;
+  std::optional<int> surfaces;           ///< absent: 12, or none for kinds that need no images
   int surface_px = 96;
   Edge edge = Edge::mirror;              ///< how surfaces go on outside
   int held_out = 0;                      ///< the last so many surfaces only judge the model
@@ -70,6 +78,7 @@ struct TrainJob {
 struct TrainListener {
   ProgressCallback pixels;               ///< of all images that have to be simulated
   LibraryCallback cascades;
+  ProgressCallback learning;             ///< once the images are there
   WarningCallback warn;
   NoteCallback note;
   const CancelToken* cancel = nullptr;
@@ -80,14 +89,15 @@ struct TrainSummary {
   TrainedModel model;
   int images_found = 0;                  ///< of the simulated ones, there before
   int images_made = 0;
-  std::filesystem::path images;          ///< the folder that they are in; empty if none were needed
+  std::filesystem::path images;          ///< the folder that they are in; empty if none were simulated
 };
 
 /// Checks everything that can be wrong before time is spent, makes the images that are not given, learns
 /// the model, judges it on every surface, and writes it. A simulated image is NAME.training/SURFACE.exr
 /// beside NAME.json, with its heights in channel z_nm; one that is there already, of the same surface and
 /// settings and made by the same program, is used again, and one that was interrupted is gone on with.
-/// So the same job, started again, goes on to the same bytes.
+/// So the same job, started again, goes on to the same bytes. Kinds that need no images are made from the
+/// material, the energy and the physics: what surfaces there are only judge them, all as held out.
 ///
 /// Surfaces of another pitch are resampled to `pixel_nm` by bilinear interpolation, which is noted.
 /// Throws UsageError, InvalidInput (also for surfaces more than twice as coarse), FileError.
