@@ -88,7 +88,7 @@ void add_budget(const TrainOptions& o, workflow::TrainJob& job) {
   if (o.electrons && o.accuracy)
     throw UsageError("--electrons", "with --accuracy there are two ways to say how much is simulated",
                      "Leave out one of the two");
-  job.simulation.electrons = o.electrons ? parse_whole(*o.electrons, "--electrons", 1, std::int64_t{1} << 31) : 400;
+  job.simulation.electrons = o.electrons ? parse_whole(*o.electrons, "--electrons", 1, std::int64_t{1} << 31) : 150;
   if (o.accuracy) {
     job.simulation.accuracy = parse_share(*o.accuracy, "--accuracy");
     job.simulation.method = mc::Method::replay;
@@ -187,7 +187,7 @@ workflow::TrainJob make_train_job(const TrainOptions& o) {
   add_conditions(o, job);
   add_inputs(o, job);
   add_images(o, job);
-  job.cache = io::cache_folder(o.cache.value_or(""));
+  job.cache = o.cache ? io::cache_folder(*o.cache) : std::filesystem::path();
   job.command_line = telling_command(o);
   return job;
 }
@@ -196,9 +196,9 @@ void add_train_options(CLI::App& app, TrainOptions& o) {
   app.add_option("HEIGHTS", o.heights, "Surfaces to learn on: scans and images of heights (semsurf's own)")
       ->type_name("FILE");
   const char* surfaces = "Surfaces";
-  app.add_option("--surfaces", o.surfaces, "How many of semsurf's own; there are 12 kinds (12; 0 if no images are needed)")
+  app.add_option("--surfaces", o.surfaces, "How many of semsurf's own; there are 16 kinds (48; 0 if no images are needed)")
       ->type_name("N")->group(surfaces);
-  app.add_option("--surface-size", o.surface_size, "Pixels across each of them (96)")->type_name("N")->group(surfaces);
+  app.add_option("--surface-size", o.surface_size, "Pixels across each of them (64)")->type_name("N")->group(surfaces);
   app.add_option("--hold-out", o.hold_out, "Judge the model on the last N surfaces, without learning from them (0)")
       ->type_name("N")->group(surfaces);
   app.add_option("--edge", o.edge, "How surfaces go on outside (mirror)")
@@ -224,7 +224,7 @@ void add_train_options(CLI::App& app, TrainOptions& o) {
       ->type_name("LENGTH")->group(conditions);
   add_train_model_options(app, o);
   const char* simulation = "Simulation of missing images";
-  app.add_option("--electrons", o.electrons, "Primaries per pixel (400)")->type_name("N")->group(simulation);
+  app.add_option("--electrons", o.electrons, "Primaries per pixel (150)")->type_name("N")->group(simulation);
   app.add_option("--accuracy", o.accuracy, "Instead: as many as bring standard errors down to this, as 3%")
       ->type_name("SHARE")->group(simulation);
   app.add_option("--physics", o.physics,
@@ -233,7 +233,7 @@ void add_train_options(CLI::App& app, TrainOptions& o) {
       ->type_name("KEY=VALUE,...")->group(simulation);
   app.add_option("--cutoff", o.cutoff, "Where tracking stops (at the barrier)")->type_name("ENERGY")->group(simulation);
   app.add_option("--seed", o.seed, "Of surfaces and simulations (1)")->type_name("N")->group(simulation);
-  app.add_option("--cache", o.cache, "Where libraries of cascades are kept, or off ($SEMSURF_CACHE, ~/.cache/semsurf)")
+  app.add_option("--cache", o.cache, "Where libraries of cascades are kept: every image has its own of 115 MB or so (off)")
       ->type_name("FOLDER|off")->group(simulation);
   app.add_option("-o,--output", o.output, "The model, .json")->type_name("FILE");
   add_threads_option(app, o.threads);

@@ -54,8 +54,8 @@ std::vector<LearnableKind> learnable_kinds();
 /// A model from surfaces to its file.
 struct TrainJob {
   std::vector<TrainingInput> inputs;     ///< none: `surfaces` of the program's own (training_surfaces.h)
-  std::optional<int> surfaces;           ///< absent: 12, or none for kinds that need no images
-  int surface_px = 96;
+  std::optional<int> surfaces;           ///< absent: 48, or none for kinds that need no images
+  int surface_px = 64;
   Edge edge = Edge::mirror;              ///< how surfaces go on outside
   int held_out = 0;                      ///< the last so many surfaces only judge the model
 
