@@ -126,14 +126,15 @@ Grid<double> BankEngine<T>::gradient(const Grid<double>& z_nm, const ModelImages
       Scratch& scratch = workers[w];
       if (fine_of_[scale] >= 0) pass_.load(z_nm, options_.edge, blocks[i], scratch.fine, fine_of_[scale]);
       const T* const k = fit(scale, coarse, blocks[i], scratch);
-      pass_.loops().pull_back(k, blocks[i].rows, floors(scale, coarse, scratch), weights_[scale].data(), channels,
-                              block_weights[i].data(),
+      pass_.loops().pull_back(k, blocks[i].rows, floors(scale, coarse, scratch), weights_[scale].data(),
+                              channels, block_weights[i].data(),
                               out + static_cast<std::ptrdiff_t>(blocks[i].y) * facet::coefficients * columns);
     }
   };
-  pass_.transpose(options_.edge, options_.threads,
-                  [&](int w, int fine, const Block& column, T* out) { pull_back(w, scale_of_[fine], column, out); },
-                  unit, gradient);
+  pass_.transpose(
+      options_.edge, options_.threads,
+      [&](int w, int fine, const Block& column, T* out) { pull_back(w, scale_of_[fine], column, out); }, unit,
+      gradient);
   coarse.transpose(pull_back, columns, options_.edge, options_.threads, unit, gradient);
   return gradient;
 }

@@ -32,7 +32,8 @@ Grid<double> halve(const Grid<double>& z, const std::vector<int>& from_x, const 
   Grid<double> out(static_cast<int>(from_x.size() - 1) / 2, static_cast<int>(from_y.size() - 1) / 2);
   std::vector<double> line(z.width());
   for (int y = 0; y < out.height(); ++y) {
-    const double *const a = &z(0, from_y[2 * y]), *const b = &z(0, from_y[2 * y + 1]), *const c = &z(0, from_y[2 * y + 2]);
+    const double *const a = &z(0, from_y[2 * y]), *const b = &z(0, from_y[2 * y + 1]),
+                        *const c = &z(0, from_y[2 * y + 2]);
     for (int x = 0; x < z.width(); ++x)
       line[x] = smooth[0] * (a[x] - level) + smooth[1] * (b[x] - level) + smooth[2] * (c[x] - level);
     for (int x = 0; x < out.width(); ++x)
@@ -127,8 +128,9 @@ void CoarseFits<T>::fit_level(const Grid<double>& z, int width, int height, int 
     floors[i] = pass.floors(0, workers[w]);
     for (int row = block.y; row < block.y + block.rows; ++row)
       for (int c = 0; c < coefficients; ++c, k += pass.columns())
-        std::copy_n(k, block.width,
-                    fit.planes.data() + (static_cast<std::size_t>(row) * coefficients + c) * x.count + block.x);
+        std::copy_n(
+            k, block.width,
+            fit.planes.data() + (static_cast<std::size_t>(row) * coefficients + c) * x.count + block.x);
   });
   fit.floors = {};
   for (const Floors<T>& f : floors)
@@ -165,7 +167,8 @@ void CoarseFits<T>::at(int scale, const Block& block, int columns, AlignedVector
   const Worth of = worth(fit, block, columns);
   const Range rows = rows_of(fit, block);
   memory.resize(static_cast<std::size_t>(rows.count) * coefficients * columns);
-  const T* from = fit.planes.data() + static_cast<std::size_t>(rows.first) * coefficients * fit.width + of.first;
+  const T* from =
+      fit.planes.data() + static_cast<std::size_t>(rows.first) * coefficients * fit.width + of.first;
   for (int i = 0; i < rows.count * coefficients; ++i, from += fit.width)
     loops.spread(from, of.count, of.of.data(), memory.data() + static_cast<std::ptrdiff_t>(i) * columns);
   const int step = 1 << fit.level;
@@ -186,7 +189,8 @@ void CoarseFits<T>::transpose(const Source& source, int columns, Edge edge, int 
   }
   for (std::size_t s = 0; s < fits_.size(); ++s)
     if (fits_[s].level > 0)
-      transpose_fit(static_cast<int>(s), source, columns, threads, unit, width, height, levels[fits_[s].level]);
+      transpose_fit(static_cast<int>(s), source, columns, threads, unit, width, height,
+                    levels[fits_[s].level]);
   for (int level = levels_; level > 1; --level) {
     Grid<double>& finer = levels[level - 1];
     halve_transposed(levels[level], neighbours(finer.width()), neighbours(finer.height()), finer);
@@ -195,8 +199,8 @@ void CoarseFits<T>::transpose(const Source& source, int columns, Edge edge, int 
 }
 
 template <class T>
-void CoarseFits<T>::transpose_fit(int scale, const Source& source, int columns, int threads, double unit, int width,
-                                  int height, Grid<double>& level) const {
+void CoarseFits<T>::transpose_fit(int scale, const Source& source, int columns, int threads, double unit,
+                                  int width, int height, Grid<double>& level) const {
   const Fit& fit = fits_[scale];
   const FacetPass<T>& pass = fit.pass[0];
   const Operations<T>& loops = pass.loops();
@@ -218,13 +222,14 @@ void CoarseFits<T>::transpose_fit(int scale, const Source& source, int columns, 
     const Worth& of = worths[strip] = worth(fit, column, columns);
     found[strip].assign(static_cast<std::size_t>(rows.count) * coefficients * of.count, T(0));
     for (int i = 0; i < rows.count * coefficients; ++i)
-      loops.spread_transposed(samples[w].data() + static_cast<std::ptrdiff_t>(i) * columns, of.count, of.of.data(),
-                              found[strip].data() + static_cast<std::ptrdiff_t>(i) * of.count);
+      loops.spread_transposed(samples[w].data() + static_cast<std::ptrdiff_t>(i) * columns, of.count,
+                              of.of.data(), found[strip].data() + static_cast<std::ptrdiff_t>(i) * of.count);
   });
   Planes coarse(static_cast<std::size_t>(y.count) * coefficients * x.count, T(0));
   for (int strip = 0; strip < strips; ++strip) {
     const T* from = found[strip].data();
-    T* to = coarse.data() + static_cast<std::size_t>(rows.first) * coefficients * x.count + worths[strip].first;
+    T* to =
+        coarse.data() + static_cast<std::size_t>(rows.first) * coefficients * x.count + worths[strip].first;
     for (int i = 0; i < rows.count * coefficients; ++i, to += x.count)
       for (int j = 0; j < worths[strip].count; ++j) to[j] += *from++;
   }

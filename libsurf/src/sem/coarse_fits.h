@@ -25,8 +25,8 @@ class CoarseFits {
   bool has(int scale) const { return fits_[scale].level > 0; }
   void load(const Grid<double>& z_nm, Edge edge, int threads);
 
-  /// A scale's coefficients at a block's pixels, row by row, `columns` (those of FacetPass) apart; 0 beyond its
-  /// width.
+  /// A scale's coefficients at a block's pixels, row by row, `columns` (those of FacetPass) apart; 0 beyond
+  /// its width.
   void at(int scale, const Block& block, int columns, AlignedVector<T>& memory, T* coefficients) const;
   const Floors<T>& floors(int scale) const { return fits_[scale].floors; }
 
@@ -56,8 +56,8 @@ class CoarseFits {
   Range rows_of(const Fit& fit, const Block& block) const;
   Worth worth(const Fit& fit, const Block& block, int columns) const;
   void fit_level(const Grid<double>& z, int width, int height, int threads, Fit& fit) const;
-  void transpose_fit(int scale, const Source& source, int columns, int threads, double unit, int width, int height,
-                     Grid<double>& level) const;
+  void transpose_fit(int scale, const Source& source, int columns, int threads, double unit, int width,
+                     int height, Grid<double>& level) const;
 
   std::vector<Fit> fits_;
   int levels_ = 0, margin_ = 0;

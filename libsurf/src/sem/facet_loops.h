@@ -95,11 +95,11 @@ struct Loops {
     return rows;
   }
 
-  /// use(tap, k % 2, row, above, below) with what lies k rows above and below both rows, for k from `begin` on.
-  /// Each vector is loaded once: what is new beside one row lies beside the other a step later.
+  /// use(tap, k % 2, row, above, below) with what lies k rows above and below both rows, for k from `begin`
+  /// on. Each vector is loaded once: what is new beside one row lies beside the other a step later.
   template <class Use>
-  SEMSURF_INLINE static void each_pair(const T* p, std::ptrdiff_t stride, const Tap<T>* taps, int begin, int radius,
-                                       const Use& use) {
+  SEMSURF_INLINE static void each_pair(const T* p, std::ptrdiff_t stride, const Tap<T>* taps, int begin,
+                                       int radius, const Use& use) {
     V above[2], below[2];
     load_pair(above[0], below[0], p + begin * stride, p + (1 - begin) * stride);
     const auto step = [&](int k, int phase) SEMSURF_INLINE_LAMBDA {
@@ -115,10 +115,11 @@ struct Loops {
     if (k == radius) step(k, 0);
   }
 
-  /// Sums (sign 1) or differences of samples above and below, filtered by a factor. In two halves, so that sums
-  /// need not wait for one another.
+  /// Sums (sign 1) or differences of samples above and below, filtered by a factor. In two halves, so that
+  /// sums need not wait for one another.
   template <auto Factor, int Sign>
-  SEMSURF_INLINE static Rows filtered(const T* p, std::ptrdiff_t stride, const Tap<T>* taps, int begin, int radius) {
+  SEMSURF_INLINE static Rows filtered(const T* p, std::ptrdiff_t stride, const Tap<T>* taps, int begin,
+                                      int radius) {
     Rows half[2];
     each_pair(p, stride, taps, begin, radius,
               [&](const Tap<T>& t, int phase, int row, const V& above, const V& below) SEMSURF_INLINE_LAMBDA {
@@ -156,7 +157,8 @@ struct Loops {
     const F& t = taps[0];
     for (int y = 0; y < rows; y += 2, moment += 2 * stride, out += 2 * out_stride)
       for (int x = 0; x < columns; x += lanes) {
-        const T *const m0 = moment + x, *const m1 = m0 + columns, *const m2 = m1 + columns, *const m3 = m2 + columns;
+        const T *const m0 = moment + x, *const m1 = m0 + columns, *const m2 = m1 + columns,
+                       *const m3 = m2 + columns;
         Rows k2, k4 = times(m0, stride, t.e2);
         add_filtered<&F::e2, 1, &F::o3, -1>(m0, stride, taps, 1, radius, k4, k2);
         store_rows(out + x + 2 * columns, out_stride, k4);
@@ -173,8 +175,8 @@ struct Loops {
       }
   }
 
-  SEMSURF_INLINE static void along_transposed(const T* weight, int rows, const Tap<T>* taps, int begin, int radius,
-                                              bool add, T* const* out, std::ptrdiff_t plane) {
+  SEMSURF_INLINE static void along_transposed(const T* weight, int rows, const Tap<T>* taps, int begin,
+                                              int radius, bool add, T* const* out, std::ptrdiff_t plane) {
     using F = Tap<T>;
     constexpr std::ptrdiff_t stride = coefficients * columns;
     const F& t = taps[0];
@@ -186,8 +188,8 @@ struct Loops {
             else store(out[row] + at + x, moment.row[row]);
           }
         };
-        const T *const g2 = weight + x, *const g3 = g2 + columns, *const g4 = g3 + columns, *const g5 = g4 + columns,
-                *const g6 = g5 + columns;
+        const T *const g2 = weight + x, *const g3 = g2 + columns, *const g4 = g3 + columns,
+                       *const g5 = g4 + columns, *const g6 = g5 + columns;
         // Odd factors change their sign.
         Rows odd0, odd2;
         add_filtered<&F::o3, -1, &F::o1, -1>(g2, stride, taps, begin, radius, odd0, odd2);
@@ -223,7 +225,8 @@ struct Loops {
     }
   }
 
-  SEMSURF_INLINE static void turn(const T* plane, std::ptrdiff_t stride, int count, std::ptrdiff_t out_stride, T* out) {
+  SEMSURF_INLINE static void turn(const T* plane, std::ptrdiff_t stride, int count, std::ptrdiff_t out_stride,
+                                  T* out) {
     for (int x = 0; x < count; x += lanes)
       for (int part = 0; part < vectors; ++part) {
         V rows[lanes];
@@ -233,12 +236,14 @@ struct Loops {
       }
   }
 
-  SEMSURF_INLINE static void across_transposed(const T* moment, int count, const Tap<T>* taps, int radius, T* sum) {
+  SEMSURF_INLINE static void across_transposed(const T* moment, int count, const Tap<T>* taps, int radius,
+                                               T* sum) {
     using F = Tap<T>;
     constexpr std::ptrdiff_t stride = moments * columns;
     for (int i = 0; i < count; i += 2, moment += 2 * stride, sum += 2 * columns)
       for (int x = 0; x < columns; x += lanes) {
-        const T *const m0 = moment + x, *const m1 = m0 + columns, *const m2 = m1 + columns, *const m3 = m2 + columns;
+        const T *const m0 = moment + x, *const m1 = m0 + columns, *const m2 = m1 + columns,
+                       *const m3 = m2 + columns;
         Rows total = times(m0, stride, taps[0].e0);
         total += times(m2, stride, taps[0].e2);
         total += filtered<&F::e0, 1>(m0, stride, taps, 1, radius);
@@ -377,7 +382,8 @@ struct Loops {
   SEMSURF_INLINE static void angles(const T* k, int rows, double* tangent, double* secant, double* angle) {
     for (int y = 0; y < rows; ++y, k += coefficients * columns)
       for (int x = 0; x < columns; ++x) {
-        const double k2 = k[x], k3 = k[columns + x], square = k2 * k2 + k3 * k3, slope = __builtin_sqrt(square);
+        const double k2 = k[x], k3 = k[columns + x], square = k2 * k2 + k3 * k3,
+                     slope = __builtin_sqrt(square);
         const int i = y * columns + x;
         tangent[i] = slope;
         secant[i] = __builtin_sqrt(1 + square);
@@ -423,7 +429,8 @@ struct Loops {
     }
   }
 
-  SEMSURF_INLINE static void between_rows_transposed(const T* weight, int first, int step, int rows, T* samples) {
+  SEMSURF_INLINE static void between_rows_transposed(const T* weight, int first, int step, int rows,
+                                                     T* samples) {
     constexpr int size = coefficients * columns;
     for (int y = 0; y < rows; ++y, weight += size) {
       T* const low = samples + (first + y) / step * size;

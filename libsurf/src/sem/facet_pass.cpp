@@ -54,7 +54,8 @@ std::vector<Block> FacetPass<T>::blocks(int width, int height) const {
   for (int part = 0; part < parts; ++part) {
     const int y = static_cast<int>(std::int64_t{height} * part / parts);
     const int end = static_cast<int>(std::int64_t{height} * (part + 1) / parts);
-    for (int x = 0; x < width; x += columns()) blocks.push_back({x, y, std::min(columns(), width - x), end - y});
+    for (int x = 0; x < width; x += columns())
+      blocks.push_back({x, y, std::min(columns(), width - x), end - y});
   }
   return blocks;
 }
@@ -160,11 +161,11 @@ void FacetPass<T>::scale_weights(const Scaling<T>& scaling, int height, T* row) 
     }
 }
 
-/// Weights of moments at all pixels of a column from weights of coefficients; what rows outside the field would
-/// get goes to those that stand for them.
+/// Weights of moments at all pixels of a column from weights of coefficients; what rows outside the field
+/// would get goes to those that stand for them.
 template <class T>
-void FacetPass<T>::transpose_along(const Kernel& kernel, Edge edge, const Block& column, const T* weights, T* planes,
-                                   std::ptrdiff_t plane) const {
+void FacetPass<T>::transpose_along(const Kernel& kernel, Edge edge, const Block& column, const T* weights,
+                                   T* planes, std::ptrdiff_t plane) const {
   const int r = kernel.radius, height = column.rows;
   const std::ptrdiff_t row_size = static_cast<std::ptrdiff_t>(coefficients) * columns();
   std::vector<T*> rows(height + 2 * r);
@@ -181,8 +182,8 @@ void FacetPass<T>::transpose_along(const Kernel& kernel, Edge edge, const Block&
   }
 }
 
-/// Adds what some rows' weights of moments give the heights to `sums`, from `radius_` columns left of the field on;
-/// `turned` is memory for the moments.
+/// Adds what some rows' weights of moments give the heights to `sums`, from `radius_` columns left of the
+/// field on; `turned` is memory for the moments.
 template <class T>
 void FacetPass<T>::transpose_across(const Kernel& kernel, int width, const T* planes, std::ptrdiff_t plane,
                                     AlignedVector<T>& turned, T* sums) const {
@@ -203,8 +204,8 @@ void FacetPass<T>::transpose(Edge edge, int threads, const Source& source, doubl
                              Grid<double>& gradient) const {
   const int width = gradient.width(), height = gradient.height(), wide = columns();
   const int strips = (width + wide - 1) / wide, groups = (height + wide - 1) / wide;
-  // Moments of a row, one plane after the other; and sums of as many rows as strips are wide, turned, with what falls
-  // outside the field, which is folded back at the end.
+  // Moments of a row, one plane after the other; and sums of as many rows as strips are wide, turned, with
+  // what falls outside the field, which is folded back at the end.
   const std::ptrdiff_t plane = std::ptrdiff_t{strips} * wide;
   const std::ptrdiff_t group_size = std::ptrdiff_t{wide} * moments * plane;
   const std::ptrdiff_t sum_size = (std::ptrdiff_t{width} + 2 * radius_ + 1) * wide;
@@ -215,7 +216,8 @@ void FacetPass<T>::transpose(Edge edge, int threads, const Source& source, doubl
 
   for (int scale = 0; scale < scales(); ++scale) {
     const Kernel& kernel = kernels_[scale];
-    const std::ptrdiff_t row_size = std::ptrdiff_t{coefficients} * wide, outside = 2 * kernel.radius * row_size;
+    const std::ptrdiff_t row_size = std::ptrdiff_t{coefficients} * wide,
+                         outside = 2 * kernel.radius * row_size;
     parallel_for(strips, threads, [&](std::size_t strip, int w) {
       const int x = static_cast<int>(strip) * wide;
       const Block column{x, 0, std::min(wide, width - x), height};

@@ -47,8 +47,8 @@ struct Operations {
   /// Moments of `rows` rows; `z` is the first one's first column, with samples to both sides.
   void (*across)(const T* z, std::ptrdiff_t stride, int rows, const Tap<T>* taps, int radius, T* out);
 
-  // Rows are filtered in pairs: where their number is odd, one more lies behind what is read (its values do not
-  // matter), and there is room for one more result.
+  // Rows are filtered in pairs: where their number is odd, one more lies behind what is read (its values do
+  // not matter), and there is room for one more result.
 
   /// Coefficients of `rows` rows from the moments of theirs and of `radius` rows before and behind.
   void (*along)(const T* moment, int rows, const Tap<T>* taps, int radius, const Scaling<T>& scaling, T* out);
@@ -58,7 +58,8 @@ struct Operations {
   void (*along_transposed)(const T* weight, int rows, const Tap<T>* taps, int begin, int radius, bool add,
                            T* const* out, std::ptrdiff_t plane);
 
-  /// Turns `columns` rows of a plane by their diagonal: out[x * out_stride + y]. `count` is a multiple of columns.
+  /// Turns `columns` rows of a plane by their diagonal: out[x * out_stride + y]. `count` is a multiple of
+  /// columns.
   void (*turn)(const T* plane, std::ptrdiff_t stride, int count, std::ptrdiff_t out_stride, T* out);
 
   /// The transpose of `across` for `columns` rows at once, whose moments have been turned: at every x one
@@ -79,16 +80,17 @@ struct Operations {
   void (*push_forward)(const T* k, const T* dk, int rows, const Floors<T>& floors, const Weights<T>* weights,
                        int channels, T* sum);
 
-  /// Tangent (the slope), secant and angle, radians, between the normals and the vertical: `columns` a row each.
+  /// Tangent (the slope), secant and angle, radians, between the normals and the vertical: `columns` a row
+  /// each.
   void (*angles)(const T* k, int rows, double* tangent, double* secant, double* angle);
 
-  /// A row of `columns` values out of `count` samples, each worth[sample][column]; and the transpose, which adds
-  /// to the samples.
+  /// A row of `columns` values out of `count` samples, each worth[sample][column]; and the transpose, which
+  /// adds to the samples.
   void (*spread)(const T* samples, int count, const T* worth, T* out);
   void (*spread_transposed)(const T* weight, int count, const T* worth, T* samples);
 
-  /// Rows of coefficients interpolated between rows that are `step` of them apart: row y lies first + y behind the
-  /// first sample. And the transpose, which adds to the samples.
+  /// Rows of coefficients interpolated between rows that are `step` of them apart: row y lies first + y
+  /// behind the first sample. And the transpose, which adds to the samples.
   void (*between_rows)(const T* samples, int first, int step, int rows, T* out);
   void (*between_rows_transposed)(const T* weight, int first, int step, int rows, T* samples);
 

@@ -48,7 +48,8 @@ void relative_yields(SlopeForm form, const SlopeRow& row, double* out) {
     case SlopeForm::ikeuchi_secant:
       return each([](double, double angle) { return 1 / std::cos(secant_angle * angle); });
     case SlopeForm::ikeuchi_mixed:
-      return each([](double secant, double) { return 1 - mixed_part + mixed_part * std::min(secant, held_secant); });
+      return each(
+          [](double secant, double) { return 1 - mixed_part + mixed_part * std::min(secant, held_secant); });
     default: return each([](double secant, double) { return secant; });
   }
 }
@@ -71,7 +72,8 @@ double relative_derivative(SlopeForm form, double slope, double secant, double a
 
 }  // namespace
 
-SlopeCurves::SlopeCurves(const SlopeModelParameters& p) : form_(p.form), step_rad_(p.table_step_deg * degree) {
+SlopeCurves::SlopeCurves(const SlopeModelParameters& p)
+    : form_(p.form), step_rad_(p.table_step_deg * degree) {
   for (const SlopeChannel& channel : p.channels) {
     check(p, channel);
     flat_yields_.push_back(channel.flat_yield);

@@ -62,7 +62,8 @@ class SlopeEngine {
         const double floor = pass_.floors(0, workers[w].scratch).slope;
         measure(k, block, workers[w]);
         T* to = out + static_cast<std::ptrdiff_t>(block.y) * facet::coefficients * columns;
-        for (int y = 0; y < block.rows; ++y, k += facet::coefficients * columns, to += facet::coefficients * columns) {
+        for (int y = 0; y < block.rows;
+             ++y, k += facet::coefficients * columns, to += facet::coefficients * columns) {
           const SlopeRow row = workers[w].row(y, columns, block.width);
           const std::vector<double*>& derivatives = derivatives_at(row, workers[w]);
           for (int x = 0; x < block.width; ++x) {
@@ -95,7 +96,8 @@ class SlopeEngine {
       const T* d = fit(direction, block, along[w]);
       const double floor = pass_.floors(0, workers[w].scratch).slope;
       measure(k, block, workers[w]);
-      for (int y = 0; y < block.rows; ++y, k += facet::coefficients * columns, d += facet::coefficients * columns) {
+      for (int y = 0; y < block.rows;
+           ++y, k += facet::coefficients * columns, d += facet::coefficients * columns) {
         const SlopeRow row = workers[w].row(y, columns, block.width);
         const std::vector<double*>& derivatives = derivatives_at(row, workers[w]);
         for (int x = 0; x < block.width; ++x) {
@@ -134,7 +136,8 @@ class SlopeEngine {
 
   void measure(const T* k, const Block& block, Worker& worker) const {
     const std::size_t count = static_cast<std::size_t>(block.rows) * pass_.columns();
-    for (AlignedVector<double>* values : {&worker.tangent, &worker.secant, &worker.angle}) values->resize(count);
+    for (AlignedVector<double>* values : {&worker.tangent, &worker.secant, &worker.angle})
+      values->resize(count);
     pass_.loops().angles(k, block.rows, worker.tangent.data(), worker.secant.data(), worker.angle.data());
   }
 
@@ -142,7 +145,8 @@ class SlopeEngine {
     const std::size_t channels = slopes_.curves.channels();
     worker.derivatives.resize(channels * pass_.columns());
     worker.channels.resize(channels);
-    for (std::size_t c = 0; c < channels; ++c) worker.channels[c] = worker.derivatives.data() + c * pass_.columns();
+    for (std::size_t c = 0; c < channels; ++c)
+      worker.channels[c] = worker.derivatives.data() + c * pass_.columns();
     slopes_.curves.derivatives(row, worker.channels.data());
     return worker.channels;
   }
