@@ -263,9 +263,9 @@ semsurf_cli_test(train.hold_out ARGS train ${small_model} --hold-out 1 -o si.jso
   INFO si.json "1 surface, 256 pixels. 1 held out")
 semsurf_cli_test(train.network ARGS train --pixel-size 3nm --surfaces 2 --surface-size 16 --electrons 2 --hidden 3,2 --iterations 9 --decay 1e-3 --tolerance 5% -o si.json
   STDOUT "facet network, [0-9]+ neighbourhoods of 5 to [0-9]+ samples, sky in 4 bands to 42.3 nm, 3 and 2 hidden units, [0-9]+ numbers"
-  WRITES si.json INFO si.json "cost +[0-9].*model +facet-network")
+  WRITES si.json INFO si.json "cost +[0-9]")
 semsurf_cli_test(train.slope_table ARGS train --pixel-size 3nm --model slope-table-two-planes --table-electrons 50 -o si.json
-  STDOUT "slope, a table in steps of 5 degrees. gives SE and BSE" WRITES si.json INFO si.json "learnt on +no images.*50 at each angle")
+  STDOUT "slope, a table in steps of 5 degrees. gives SE and BSE" WRITES si.json INFO si.json "50 at each angle")
 semsurf_cli_test(train.slope_table_judged ARGS train --pixel-size 3nm --model slope-table --table-electrons 50 --surfaces 2 --surface-size 16 --electrons 2 -o si.json
   STDOUT "2 simulated, 0 there before" "blocks .held out." "all held out" WRITES si.json INFO si.json "no images. 2 held out")
 semsurf_cli_test(train.stopping_points ARGS train --pixel-size 3nm --model stopping-points --table-electrons 50 -o si.json
