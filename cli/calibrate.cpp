@@ -6,18 +6,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <locale>
 #include <memory>
 #include <optional>
-#include <sstream>
 #include <utility>
-#include <tuple>
 
 #include "afm_masks.h"
 #include "afm_options.h"
+#include "calibrate_options.h"
 #include "commands.h"
-#include "common_options.h"
-#include "options.h"
 #include "picture_input.h"
 #include "surf/core/error.h"
 #include "surf/core/units.h"
@@ -33,79 +29,7 @@ namespace {
 constexpr int exit_untrustworthy = 4;
 constexpr double same_pitch = 1e-3;   // relative: as models ask of fields
 
-constexpr const char* examples =
-    R"(IMAGE and the simulated images show the same surface, pixel on pixel. FILE:CHANNEL names a channel of an image.
-Fits IMAGE = gain_SE * SE + gain_BSE * BSE + offset by least squares. The residual image has the channels
-calibrated (the fit), residual (IMAGE less that), valid, and gain with --range: there IMAGE and the fit are
-compared up to a gain that varies slowly, the ratio of their means over squares of twice that range.
-Exit code 4: the gains cannot be trusted, and the warnings say why.
-
-Examples:
-  semsurf calibrate sem.tif --pixel-size 3nm --images simulated.exr -o calibration.json --residual residual.exr
-  semsurf calibrate sem.tif surface.gsf --model si-1keV-3nm.json --folded sem-si-1keV-3nm.json -o calibration.json
-  semsurf calibrate sem.tif:2 --images simulated.exr --fit SE --offset 12 -o calibration.json
-  semsurf calibrate sem.png --pixel-size 2nm --images simulated.exr --ratio 0.4 --white 255 -o calibration.json)";
-
-struct Options {
-  std::string image, heights;
-  std::optional<std::string> pixel_size, images, model, edge, folded, threads, fit, ratio, offset, black, white, range, output, residual;
-  MaskInput masks;
-  bool quiet = false;
-};
-
-/// Everything that can be wrong before a file is read.
-struct Plan {
-  CalibrationOptions options;
-  std::vector<std::string> channels;   // to fit; empty: SE and BSE, those that are there
-  GivenPitch pitch;
-  ModelOptions model;
-  double range_nm = 0;
-};
-
-std::vector<std::string> split_names(const std::string& text) {
-  std::vector<std::string> names;
-  std::istringstream in(text);
-  for (std::string name; std::getline(in, name, ',');) {
-    if (name.empty() || std::ranges::count(names, name))
-      throw UsageError("--fit", fmt::format("'{}' names a channel twice, or none", text), "Give names, as SE,BSE");
-    names.push_back(name);
-  }
-  return names;
-}
-
-Plan make_plan(const Options& o) {
-  if (o.image.empty()) throw UsageError("calibrate", "no image is given", "Name the image of a microscope");
-  if (!o.images && !o.model)
-    throw UsageError("--images", "there is nothing to compare with",
-                     "Add --images simulated.exr, or HEIGHTS with --model MODEL.json");
-  if (o.images && o.model) throw UsageError("--model", "simulated images are given, too", "Leave one of them out");
-  if (o.model.has_value() == o.heights.empty())
-    throw UsageError("HEIGHTS", o.model ? "a model needs the surface" : "simulated images need no surface",
-                     o.model ? "Name heights, pixel on pixel with IMAGE" : "Leave it out, or give --model instead");
-  if (o.folded && !o.model) throw UsageError("--folded", "there is no model to fold into", "Add --model MODEL.json");
-  if (!o.output && !o.residual)
-    throw UsageError("--output", "no output file is given", "Add -o calibration.json");
-  Plan p;
-  p.model.threads = parse_threads(o.threads);
-  if (o.edge) p.model.edge = parse_edge(*o.edge, "--edge");
-  if (o.folded) io::check_model_target(*o.folded);
-  if (o.output) io::check_writable(*o.output);
-  if (o.residual) io::check_image_target(*o.residual);
-  if (o.pixel_size) std::tie(p.pitch.x_nm, p.pitch.y_nm) = parse_pixel_size(*o.pixel_size, "--pixel-size");
-  if (o.fit) p.channels = split_names(*o.fit);
-  if (o.ratio) p.options.ratios = {1, parse_number(*o.ratio, "--ratio")};
-  if (o.offset) p.options.offset = parse_number(*o.offset, "--offset");
-  if (o.black) p.options.black = parse_number(*o.black, "--black");
-  if (o.white) p.options.white = parse_number(*o.white, "--white");
-  if (!(p.options.black < p.options.white))
-    throw UsageError("--white", "it is not above --black", "Exchange the two levels");
-  if (!o.range) return p;
-  p.range_nm = parse_length_nm(*o.range, "--range");
-  if (!(p.range_nm > 0)) throw UsageError("--range", fmt::format("'{}' is not above 0", *o.range), "Give a length, as 500nm");
-  return p;
-}
-
-void check_same_pixels(const Image& real, const Image& simulated, const Options& o) {
+void check_same_pixels(const Image& real, const Image& simulated, const CalibrateOptions& o) {
   const std::string& other = o.images ? *o.images : o.heights;
   constexpr const char* remedy = "They have to show the same surface pixel on pixel: register and resample one first";
   if (real.width() != simulated.width() || real.height() != simulated.height())
@@ -126,7 +50,7 @@ Grid<double> values(const Image& image, const Channel& channel) {
   return out;
 }
 
-void add_channels(CalibrationImages& images, const Image& simulated, const Plan& p, const std::string& file) {
+void add_channels(CalibrationImages& images, const Image& simulated, const CalibratePlan& p, const std::string& file) {
   std::vector<std::string> wanted = p.channels;
   if (wanted.empty())
     for (const char* usual : {"SE", "BSE"})
@@ -149,7 +73,7 @@ void add_channels(CalibrationImages& images, const Image& simulated, const Plan&
   }
 }
 
-Image predicted(const Options& o, const Plan& p, const TrainedModel& trained) {
+Image predicted(const CalibrateOptions& o, const CalibratePlan& p, const TrainedModel& trained) {
   const io::HeightFieldFile scan = io::read_height_field(o.heights, {{}, {}, p.pitch.x_nm, p.pitch.y_nm});
   if (!o.quiet)
     for (const std::string& note : scan.notes) print_note(fmt::format("{}: {}", o.heights, note));
@@ -177,7 +101,7 @@ void write_folded(const std::string& path, TrainedModel trained, const Calibrati
   io::write_model(path, trained);
 }
 
-Image read_real(const Options& o, const Plan& p, Grid<double>& real) {
+Image read_real(const CalibrateOptions& o, const CalibratePlan& p, Grid<double>& real) {
   const FileChannel input = parse_file_channel(o.image);
   io::WebImage picture = read_picture(input, p.pitch);
   if (!picture.has_scale)
@@ -231,18 +155,8 @@ void print_fit(const Calibration& c) {
   fmt::print("{:<10} {}{}\n", "pixels", c.pixels, c.saturated ? fmt::format("; {} saturated ones left out", c.saturated) : "");
 }
 
-std::map<std::string, std::string> recorded(const Options& o) {
-  std::map<std::string, std::string> r;
-  const auto add = [&](const char* name, const std::optional<std::string>& value) {
-    if (value) r[name] = *value;
-  };
-  add("pixel-size", o.pixel_size), add("fit", o.fit), add("ratio", o.ratio), add("offset", o.offset);
-  add("black", o.black), add("white", o.white), add("range", o.range), add("edge", o.edge);
-  return r;
-}
-
-int work(const Options& o) {
-  const Plan plan = make_plan(o);
+int work(const CalibrateOptions& o) {
+  const CalibratePlan plan = make_calibrate_plan(o);
   CalibrationImages images;
   const Image real = read_real(o, plan, images.real);
   std::optional<TrainedModel> model;
@@ -277,40 +191,10 @@ int work(const Options& o) {
 }  // namespace
 
 void add_calibrate(CLI::App& app, Action& action) {
-  const auto o = std::make_shared<Options>();
+  const auto o = std::make_shared<CalibrateOptions>();
   CLI::App* sub = app.add_subcommand("calibrate", "Gains and offset that turn simulated images into a real one");
   sub->group("Commands");
-  sub->add_option("IMAGE", o->image, "The image of a microscope")->type_name("FILE");
-  sub->add_option("HEIGHTS", o->heights, "With --model: the surface that IMAGE shows")->type_name("FILE");
-  sub->add_option("--images", o->images, "Simulated images of the same surface, as of 'semsurf simulate'")
-      ->type_name("FILE");
-  sub->add_option("--model", o->model, "Instead: a model that images HEIGHTS, as of 'semsurf train'")
-      ->type_name("FILE.json");
-  sub->add_option("--edge", o->edge, "How HEIGHTS go on outside (mirror)")->type_name("mirror|flat|periodic");
-  sub->add_option("--pixel-size", o->pixel_size, "Of files that do not say, 2nm or 2nmx3nm")->type_name("LENGTH");
-  const char* fitting = "Fit";
-  sub->add_option("--fit", o->fit, "Which simulated channels (SE,BSE, those that are there)")
-      ->type_name("NAMES")->group(fitting);
-  sub->add_option("--ratio", o->ratio, "Gain of the second channel over the first's, where it is known")
-      ->type_name("NUMBER")->group(fitting);
-  sub->add_option("--offset", o->offset, "What the image shows without a signal, where it is known")
-      ->type_name("NUMBER")->group(fitting);
-  sub->add_option("--black", o->black, "Levels from here down are saturated and left out")
-      ->type_name("NUMBER")->group(fitting);
-  sub->add_option("--white", o->white, "Levels from here up are saturated and left out")
-      ->type_name("NUMBER")->group(fitting);
-  add_mask_input(*sub, o->masks);
-  const char* output = "Output";
-  sub->add_option("--range", o->range, "Half the width of squares over which the gain may vary (it is constant)")
-      ->type_name("LENGTH")->group(output);
-  sub->add_option("-o,--output", o->output, "The calibration: .json")->type_name("FILE")->group(output);
-  sub->add_option("--residual", o->residual, "The fit and what it leaves: .exr .tif .vti .png")
-      ->type_name("FILE")->group(output);
-  sub->add_option("--folded", o->folded, "The model with gains and offset in its coefficients (filter banks): .json")
-      ->type_name("FILE.json")->group(output);
-  add_threads_option(*sub, o->threads)->group(output);
-  add_quiet_flag(*sub, o->quiet)->group(output);
-  sub->footer(examples);
+  add_calibrate_options(*sub, *o);
   sub->callback([o, &action] { action = [o] { return work(*o); }; });
 }
 

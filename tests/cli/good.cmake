@@ -261,6 +261,17 @@ semsurf_cli_test(train.own_surfaces ARGS train --material Si --energy 1keV ${sma
 semsurf_cli_test(train.hold_out ARGS train ${small_model} --hold-out 1 -o si.json
   STDOUT "blocks-rough .held out." "all held out" STDERR "no --material is given: Si" WRITES si.json
   INFO si.json "1 surface, 256 pixels. 1 held out")
+semsurf_cli_test(train.network ARGS train --pixel-size 3nm --surfaces 2 --surface-size 16 --electrons 2 --hidden 3,2 --iterations 9 --decay 1e-3 --tolerance 5% -o si.json
+  STDOUT "facet network, [0-9]+ neighbourhoods of 5 to [0-9]+ samples, sky in 4 bands to 42.3 nm, 3 and 2 hidden units, [0-9]+ numbers"
+  WRITES si.json INFO si.json "cost +[0-9]")
+semsurf_cli_test(train.slope_table ARGS train --pixel-size 3nm --model slope-table-two-planes --table-electrons 50 -o si.json
+  STDOUT "slope, a table in steps of 5 degrees. gives SE and BSE" WRITES si.json INFO si.json "50 at each angle")
+semsurf_cli_test(train.slope_table_judged ARGS train --pixel-size 3nm --model slope-table --table-electrons 50 --surfaces 2 --surface-size 16 --electrons 2 -o si.json
+  STDOUT "2 simulated, 0 there before" "blocks .held out." "all held out" WRITES si.json INFO si.json "no images. 2 held out")
+semsurf_cli_test(train.stopping_points ARGS train --pixel-size 3nm --model stopping-points --table-electrons 50 -o si.json
+  STDOUT "stopping points, 48 rings of" WRITES si.json INFO si.json "table.flat_se")
+semsurf_cli_test(train.diffusion_matrix ARGS train --pixel-size 3nm --model diffusion-matrix --table-electrons 50 -q -o si.json
+  STDOUT "^$" WRITES si.json INFO si.json "diffusion matrix, 48 rings of")
 semsurf_cli_test(train.heights ARGS train block.gsf --electrons 2 --model ikeuchi-secant -q -o block.json
   STDOUT "^$" WRITES block.json block.training/block.exr INFO block.json "gives SE and BSE")
 semsurf_cli_test(train.signal ARGS train four.txt --pitch 3nm --signal four.png --model secant -o four.json

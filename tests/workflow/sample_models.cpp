@@ -28,7 +28,7 @@ std::vector<fs::path> models() {
 }
 
 /// As many pixels in the middle are compared: whole ones on both sides of the middle, as the field has.
-int compared(int samples) { return samples - 2 * (samples / 4); }
+int compared(int size) { return size - 2 * (size / 4); }
 
 /// The middle of the mesa of samples/ at a model's pixel, simulated with few electrons under the model's conditions.
 Image simulated(const TrainedModel& model, const HeightField& field) {

@@ -175,7 +175,7 @@ TEST_F(TrainJobTest, RefusesWhatCannotBeLearntBeforeTimeIsSpent) {
     spoil(job);
     EXPECT_THAT([&] { train(job); }, testing::ThrowsMessage<Error>(HasSubstr(words)));
   };
-  expect("there is no kind 'neural'. Choose one of filter-bank", [](TrainJob& j) { j.learn.kind = "neural"; });
+  expect("there is no kind 'neural'. Choose one of facet-network, filter-bank", [](TrainJob& j) { j.learn.kind = "neural"; });
   expect("--cut-off", [](TrainJob& j) { j.learn.cut_off = 0.1; });
   expect("leave none to learn on", [](TrainJob& j) { j.held_out = 1; });
   expect("--pixel-size", [](TrainJob& j) { j.pixel_nm = 0; });

@@ -52,13 +52,15 @@ TEST(ImageModel, SaysHowToFillMaskedSamples) {
 TEST(ImageModel, NamesBothConditions) {
   const ModelScope scope{3, "Si", 1000, 0};
   EXPECT_NO_THROW(check_conditions(scope, {}));
-  EXPECT_NO_THROW(check_conditions(scope, {3, "Si", 1000.5, 2}));
+  EXPECT_NO_THROW(check_conditions(scope, {3, "Si", 1000.5, 0}));
   std::string text = message<UsageError>([&] { check_conditions(scope, {3, "Au", 0, 0}); });
   EXPECT_SAYS(text, "made for Si");
   EXPECT_SAYS(text, "of Au");
   text = message<UsageError>([&] { check_conditions(scope, {3, "Si", 5000, 0}); });
   EXPECT_SAYS(text, "1000 eV");
   EXPECT_SAYS(text, "5000 eV");
+  text = message<UsageError>([&] { check_conditions(scope, {3, "Si", 1000, 2}); });   // a point, not any spot
+  EXPECT_SAYS(text, "a spot of 0 nm");
   text = message<UsageError>([&] { check_conditions({0, "", 0, 1}, {0, "", 0, 2}); });
   EXPECT_SAYS(text, "1 nm");
   EXPECT_SAYS(text, "2 nm");
