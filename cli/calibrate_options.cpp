@@ -36,7 +36,8 @@ std::vector<std::string> split_names(const std::string& text) {
   std::istringstream in(text);
   for (std::string name; std::getline(in, name, ',');) {
     if (name.empty() || std::ranges::count(names, name))
-      throw UsageError("--fit", fmt::format("'{}' names a channel twice, or none", text), "Give names, as SE,BSE");
+      throw UsageError("--fit", fmt::format("'{}' names a channel twice, or none", text),
+                       "Give names, as SE,BSE");
     names.push_back(name);
   }
   return names;
@@ -49,11 +50,14 @@ CalibratePlan make_calibrate_plan(const CalibrateOptions& o) {
   if (!o.images && !o.model)
     throw UsageError("--images", "there is nothing to compare with",
                      "Add --images simulated.exr, or HEIGHTS with --model MODEL.json");
-  if (o.images && o.model) throw UsageError("--model", "simulated images are given, too", "Leave one of them out");
+  if (o.images && o.model)
+    throw UsageError("--model", "simulated images are given, too", "Leave one of them out");
   if (o.model.has_value() == o.heights.empty())
-    throw UsageError("HEIGHTS", o.model ? "a model needs the surface" : "simulated images need no surface",
-                     o.model ? "Name heights, pixel on pixel with IMAGE" : "Leave it out, or give --model instead");
-  if (o.folded && !o.model) throw UsageError("--folded", "there is no model to fold into", "Add --model MODEL.json");
+    throw UsageError(
+        "HEIGHTS", o.model ? "a model needs the surface" : "simulated images need no surface",
+        o.model ? "Name heights, pixel on pixel with IMAGE" : "Leave it out, or give --model instead");
+  if (o.folded && !o.model)
+    throw UsageError("--folded", "there is no model to fold into", "Add --model MODEL.json");
   if (!o.output && !o.residual)
     throw UsageError("--output", "no output file is given", "Add -o calibration.json");
   CalibratePlan p;
@@ -72,7 +76,8 @@ CalibratePlan make_calibrate_plan(const CalibrateOptions& o) {
     throw UsageError("--white", "it is not above --black", "Exchange the two levels");
   if (!o.range) return p;
   p.range_nm = parse_length_nm(*o.range, "--range");
-  if (!(p.range_nm > 0)) throw UsageError("--range", fmt::format("'{}' is not above 0", *o.range), "Give a length, as 500nm");
+  if (!(p.range_nm > 0))
+    throw UsageError("--range", fmt::format("'{}' is not above 0", *o.range), "Give a length, as 500nm");
   return p;
 }
 
@@ -94,7 +99,8 @@ void add_calibrate_options(CLI::App& app, CalibrateOptions& o) {
   app.add_option("--model", o.model, "Instead: a model that images HEIGHTS, as of 'semsurf train'")
       ->type_name("FILE.json");
   app.add_option("--edge", o.edge, "How HEIGHTS go on outside (mirror)")->type_name("mirror|flat|periodic");
-  app.add_option("--pixel-size", o.pixel_size, "Of files that do not say, 2nm or 2nmx3nm")->type_name("LENGTH");
+  app.add_option("--pixel-size", o.pixel_size, "Of files that do not say, 2nm or 2nmx3nm")
+      ->type_name("LENGTH");
   const char* fitting = "Fit";
   app.add_option("--fit", o.fit, "Which simulated channels (SE,BSE, those that are there)")
       ->type_name("NAMES")->group(fitting);
@@ -108,13 +114,17 @@ void add_calibrate_options(CLI::App& app, CalibrateOptions& o) {
       ->type_name("NUMBER")->group(fitting);
   add_mask_input(app, o.masks);
   const char* output = "Output";
-  app.add_option("--range", o.range, "Half the width of squares over which the gain may vary (it is constant)")
-      ->type_name("LENGTH")->group(output);
+  app.add_option("--range", o.range,
+                 "Half the width of squares over which the gain may vary (it is constant)")
+      ->type_name("LENGTH")
+      ->group(output);
   app.add_option("-o,--output", o.output, "The calibration: .json")->type_name("FILE")->group(output);
   app.add_option("--residual", o.residual, "The fit and what it leaves: .exr .tif .vti .png")
       ->type_name("FILE")->group(output);
-  app.add_option("--folded", o.folded, "The model with gains and offset in its coefficients (filter banks): .json")
-      ->type_name("FILE.json")->group(output);
+  app.add_option("--folded", o.folded,
+                 "The model with gains and offset in its coefficients (filter banks): .json")
+      ->type_name("FILE.json")
+      ->group(output);
   add_threads_option(app, o.threads)->group(output);
   add_quiet_flag(app, o.quiet)->group(output);
   app.footer(examples);

@@ -70,7 +70,8 @@ TEST_F(FacetNetworkFile, ComesBackToTheLastBit) {
   const TrainedModel back = read_model(file_);
   EXPECT_EQ(kind_of(back), "facet network");
   EXPECT_EQ(back.scope, model.scope);
-  const auto &a = std::get<FacetNetworkParameters>(model.parameters), &b = std::get<FacetNetworkParameters>(back.parameters);
+  const auto &a = std::get<FacetNetworkParameters>(model.parameters),
+             &b = std::get<FacetNetworkParameters>(back.parameters);
   EXPECT_EQ(b.scales, a.scales);
   expect_same_bits(b.sky_edges_nm, a.sky_edges_nm);
   ASSERT_EQ(b.layers.size(), a.layers.size());
@@ -91,16 +92,18 @@ TEST_F(FacetNetworkFile, ComesBackToTheLastBit) {
 }
 
 TEST_F(FacetNetworkFile, NamesWhatIsMissing) {
-  for (const char* key : {"scales", "size", "sigma_px", "sky_edges_nm", "channels", "name", "scale", "layers", "inputs",
-                          "outputs", "weights", "biases"})
-    EXPECT_THAT(complaint(std::string("\"") + key + "\":", "\"gone\":"), HasSubstr(std::string("'") + key + "' is missing"));
+  for (const char* key : {"scales", "size", "sigma_px", "sky_edges_nm", "channels", "name", "scale", "layers",
+                          "inputs", "outputs", "weights", "biases"})
+    EXPECT_THAT(complaint(std::string("\"") + key + "\":", "\"gone\":"),
+                HasSubstr(std::string("'") + key + "' is missing"));
 }
 
 TEST_F(FacetNetworkFile, RefusesParametersThatNoNetworkHas) {
   EXPECT_THAT(complaint("\"size\": 5", "\"size\": 6"), HasSubstr("parameters"));
   EXPECT_THAT(complaint("\"inputs\": 13", "\"inputs\": 12"), HasSubstr("layer 1 goes from 12 to 3"));
   EXPECT_THAT(complaint("\"outputs\": 3", "\"outputs\": 4"), HasSubstr("39 weights and 3 biases"));
-  EXPECT_THAT(complaint("\"outputs\": 3", "\"outputs\": 1e15"), HasSubstr("layers[0].outputs: it is too large"));
+  EXPECT_THAT(complaint("\"outputs\": 3", "\"outputs\": 1e15"),
+              HasSubstr("layers[0].outputs: it is too large"));
   EXPECT_THAT(complaint("\"outputs\": 3", "\"outputs\": -3"), HasSubstr("layers[0].outputs"));
   EXPECT_THAT(complaint("4.1", "-4.1"), HasSubstr("a limit of its sky bands is -4.1"));
   EXPECT_THAT(complaint("\"BSE\"", "\"SE\""), HasSubstr("SE"));

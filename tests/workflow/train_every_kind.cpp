@@ -157,7 +157,8 @@ TEST_F(TrainEveryKind, RefusesWhatDoesNotConcernAKind) {
     EXPECT_THAT([&] { run(job); }, testing::ThrowsMessage<UsageError>(HasSubstr(words))) << words;
   };
   expect("secant", "--hidden: a model 'secant' has none", [](TrainJob& j) { j.learn.hidden = {4}; });
-  expect("filter-bank", "--iterations: a model 'filter-bank' has none", [](TrainJob& j) { j.learn.iterations = 4; });
+  expect("filter-bank", "--iterations: a model 'filter-bank' has none",
+         [](TrainJob& j) { j.learn.iterations = 4; });
   expect("filter-bank", "--decay", [](TrainJob& j) { j.learn.decay = 0; });
   expect("slope-table", "--tolerance", [](TrainJob& j) { j.learn.tolerance = 0; });
   expect("secant", "add --model slope-table", [](TrainJob& j) { j.learn.table_electrons = 100; });

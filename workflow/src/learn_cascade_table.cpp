@@ -19,15 +19,19 @@ void check(const TrainJob& job) {
   if (job.spot_nm > 0)
     throw UsageError("--spot", fmt::format("a model '{}' knows of no spot", job.learn.kind), "Leave it out");
   if (!mc::can_replay(job.physics))
-    throw UsageError("--physics", fmt::format("a model '{}' is made of cascades, which need continuous loss", job.learn.kind),
-                     "Choose loss=joy-luo");
+    throw UsageError(
+        "--physics",
+        fmt::format("a model '{}' is made of cascades, which need continuous loss", job.learn.kind),
+        "Choose loss=joy-luo");
 }
 
-std::shared_ptr<const mc::CascadeLibrary> library_of(const TrainJob& job, JobLibraries& libraries, const Watch& watch) {
+std::shared_ptr<const mc::CascadeLibrary> library_of(const TrainJob& job, JobLibraries& libraries,
+                                                     const Watch& watch) {
   const double barrier_ev = mc::make_medium(job.material, job.physics).barrier_ev();
-  auto library = libraries.library({job.material, job.physics, job.energy_ev + barrier_ev, job.simulation.seed},
-                                   static_cast<std::size_t>(job.learn.table_electrons.value_or(usual_cascades)),
-                                   job.simulation.threads, {}, watch.cancel);
+  auto library =
+      libraries.library({job.material, job.physics, job.energy_ev + barrier_ev, job.simulation.seed},
+                        static_cast<std::size_t>(job.learn.table_electrons.value_or(usual_cascades)),
+                        job.simulation.threads, {}, watch.cancel);
   if (!library) throw Interrupted();
   return library;
 }
@@ -70,9 +74,13 @@ Learnt learn_diffusion_matrix(const Lesson& lesson) {
 
 }  // namespace
 
-const Learner stopping_points_learner{"stopping-points", "electrons that would stop above the surface (Aristov 1991); no images needed",
-                                      {"--table-electrons"}, check, learn_stopping_points, false};
-const Learner diffusion_matrix_learner{"diffusion-matrix", "their flux through facets (Desai, Czyzewski 1990); no images needed",
-                                       {"--table-electrons"}, check, learn_diffusion_matrix, false};
+const Learner stopping_points_learner{
+    "stopping-points",     "electrons that would stop above the surface (Aristov 1991); no images needed",
+    {"--table-electrons"}, check,
+    learn_stopping_points, false};
+const Learner diffusion_matrix_learner{
+    "diffusion-matrix",     "their flux through facets (Desai, Czyzewski 1990); no images needed",
+    {"--table-electrons"},  check,
+    learn_diffusion_matrix, false};
 
 }  // namespace surf::workflow

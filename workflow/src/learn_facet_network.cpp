@@ -41,7 +41,10 @@ Learnt learn(const Lesson& lesson) {
 
 }  // namespace
 
-const Learner facet_network_learner{"facet-network", "a small network on what the filter bank sees and on the sky in view",
-                                    {"--scales", "--hidden", "--iterations", "--decay", "--tolerance"}, check, learn};
+const Learner facet_network_learner{"facet-network",
+                                    "a small network on what the filter bank sees and on the sky in view",
+                                    {"--scales", "--hidden", "--iterations", "--decay", "--tolerance"},
+                                    check,
+                                    learn};
 
 }  // namespace surf::workflow

@@ -42,9 +42,18 @@ Learnt learn(const Lesson& lesson) {
 
 }  // namespace
 
-const Learner slope_table_learner{"slope-table", "yields of tilted planes (thesis, appendix E.1); simulated, no images needed",
-                                  {"--table-electrons"}, nullptr, learn<SlopeSpecimen::single_plane>, false};
-const Learner slope_table_two_planes_learner{"slope-table-two-planes", "the same beside level ground; no images needed",
-                                             {"--table-electrons"}, nullptr, learn<SlopeSpecimen::two_planes>, false};
+const Learner slope_table_learner{
+    "slope-table",
+    "yields of tilted planes (thesis, appendix E.1); simulated, no images needed",
+    {"--table-electrons"},
+    nullptr,
+    learn<SlopeSpecimen::single_plane>,
+    false};
+const Learner slope_table_two_planes_learner{"slope-table-two-planes",
+                                             "the same beside level ground; no images needed",
+                                             {"--table-electrons"},
+                                             nullptr,
+                                             learn<SlopeSpecimen::two_planes>,
+                                             false};
 
 }  // namespace surf::workflow

@@ -40,14 +40,19 @@ void refuse_options(const Learner& learner, const LearnOptions& o) {
 // What only images would be for.
 void refuse_learning_from_images(const Learner& learner, const TrainJob& job) {
   if (job.held_out > 0)
-    throw UsageError("--hold-out", fmt::format("a model '{}' learns from no surface: all of them only judge it", learner.name),
-                     "Leave it out");
+    throw UsageError(
+        "--hold-out",
+        fmt::format("a model '{}' learns from no surface: all of them only judge it", learner.name),
+        "Leave it out");
   if (!job.signal.empty())
-    throw UsageError("--signal", fmt::format("a model '{}' gives SE and BSE, not what a microscope makes of them", learner.name),
-                     "Leave it out; 'semsurf calibrate' compares the two");
+    throw UsageError(
+        "--signal",
+        fmt::format("a model '{}' gives SE and BSE, not what a microscope makes of them", learner.name),
+        "Leave it out; 'semsurf calibrate' compares the two");
   const std::int64_t electrons = job.learn.table_electrons.value_or(2);
   if (electrons < 2 || electrons > std::int64_t{1} << 31)
-    throw UsageError("--table-electrons", fmt::format("{} electrons make no table", electrons), "Give 2 to 2^31");
+    throw UsageError("--table-electrons", fmt::format("{} electrons make no table", electrons),
+                     "Give 2 to 2^31");
 }
 
 }  // namespace
@@ -63,7 +68,8 @@ const Learner& learner_of(const TrainJob& job) {
     }
     names += fmt::format("{}{}", names.empty() ? "" : ", ", learner->name);
   }
-  throw UsageError("--model", fmt::format("there is no kind '{}'", job.learn.kind), fmt::format("Choose one of {}", names));
+  throw UsageError("--model", fmt::format("there is no kind '{}'", job.learn.kind),
+                   fmt::format("Choose one of {}", names));
 }
 
 std::span<const Learner* const> learners() { return all; }
