@@ -20,6 +20,7 @@ constexpr const char* subject = "training";
 // without them level ground came out 2 % too dark where training surfaces are crowded.
 constexpr double widest_sigma = 0.65, sky_limits[] = {0, 0.13, 0.33, 0.67, 1.33, 2.67, 5.33};
 constexpr std::size_t fewest_scales = 4;
+constexpr double farthest_px = 128;   // of the sky: fields are continued by as much
 
 }  // namespace
 
@@ -186,9 +187,12 @@ std::vector<FacetScale> network_scales(double pixel_nm, double range_nm) {
   return scales;
 }
 
-std::vector<double> network_sky_edges(double range_nm) {
+std::vector<double> network_sky_edges(double pixel_nm, double range_nm) {
   std::vector<double> edges;
-  for (const double limit : sky_limits) edges.push_back(limit * range_nm);
+  for (const double limit : sky_limits) {
+    edges.push_back(std::min(limit * range_nm, farthest_px * pixel_nm));
+    if (edges.back() == farthest_px * pixel_nm) break;
+  }
   return edges;
 }
 
@@ -200,7 +204,7 @@ FacetNetworkFit fit_facet_network(const std::vector<TrainingImage>& images, cons
   FacetNetworkFit fit;
   FacetNetworkParameters& p = fit.parameters;
   p.scales = options.scales.empty() ? network_scales(pixel_nm, options.range_nm) : options.scales;
-  p.sky_edges_nm = options.sky_edges_nm.empty() ? network_sky_edges(options.range_nm) : options.sky_edges_nm;
+  p.sky_edges_nm = options.sky_edges_nm.empty() ? network_sky_edges(pixel_nm, options.range_nm) : options.sky_edges_nm;
   for (const std::string& name : channels) p.channels.push_back({name, 1});
   if (images.front().images.size() != channels.size())
     throw InvalidInput(subject, fmt::format("there are {} images of each surface for {} channels",

@@ -234,13 +234,15 @@ TrainerResult train_network(const TrainerData& data, const TrainerOptions& optio
   constexpr double shares[] = {0.15, 0.25, 0.6};
   for (const double share : shares) {
     if (share != shares[0]) cost->weigh(numbers.data());
-    solver.max_num_iterations = std::max(1, static_cast<int>(std::lround(share * options.iterations)));
-    Teller teller(options.watch, result.iterations, options.iterations + 3);
+    solver.max_num_iterations = share == shares[2] ? options.iterations - result.iterations
+                                                    : static_cast<int>(share * options.iterations);
+    if (solver.max_num_iterations == 0) continue;
+    Teller teller(options.watch, result.iterations, options.iterations);
     solver.callbacks = {&teller};
     ceres::GradientProblemSolver::Summary summary;
     ceres::Solve(solver, problem, numbers.data(), &summary);
     if (teller.interrupted) std::rethrow_exception(teller.interrupted);
-    result.iterations += static_cast<int>(summary.iterations.size());
+    result.iterations += std::max(0, static_cast<int>(summary.iterations.size()) - 1);   // the first is none
   }
   double total = 0;
   cost->Evaluate(numbers.data(), &total, nullptr);

@@ -21,6 +21,16 @@ using namespace surf::test;
 
 constexpr Edge edges[] = {Edge::mirror, Edge::flat, Edge::periodic};
 
+TEST(FitFacetNetwork, LooksNoFartherThanPixelsAllow) {
+  EXPECT_EQ(network_sky_edges(1, 9000), (std::vector<double>{0, 128}));
+  const std::vector<double> edges = network_sky_edges(3, 30);
+  ASSERT_EQ(edges.size(), 7U);
+  EXPECT_NEAR(edges.back(), 160, 0.2);
+  EXPECT_EQ(network_scales(1, 30).size(), 10U);
+  EXPECT_EQ(network_scales(3, 30).size(), 7U);
+  EXPECT_EQ(network_scales(10, 5).size(), 4U);
+}
+
 DenseLayer random_layer(int inputs, int outputs, RandomStream& random) {
   DenseLayer layer{inputs, outputs, {}, {}};
   for (int i = 0; i < inputs * outputs; ++i) layer.weights.push_back(2 * random.uniform() - 1);
@@ -279,6 +289,7 @@ TEST(FitFacetNetwork, LearnsWhatALinearBankCannotAndSaysHowFarItIsOff) {
   const FacetNetworkFit fit = fit_facet_network(images, {"SE", "BSE"}, quick());
   ASSERT_EQ(fit.residuals.size(), 2U);
   EXPECT_EQ(fit.parameters.channels[1].name, "BSE");
+  EXPECT_LE(fit.iterations, 150);
   EXPECT_NEAR(fit.cost, 1, 0.25);   // residuals are noise, and what the model is given to miss by
   const auto bank = fit_filter_bank(images, {"SE", "BSE"});
   const auto held = taught_by(Teacher(), 77, 1e-6);

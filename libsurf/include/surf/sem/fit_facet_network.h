@@ -38,8 +38,8 @@ void validate(const FacetNetworkFitOptions& options);
 std::vector<FacetScale> network_scales(double pixel_nm, double range_nm);
 
 /// Six bands of distances, up to 16/3 of the range: farther than electrons get inside, because what stands
-/// there still catches those that have left.
-std::vector<double> network_sky_edges(double range_nm);
+/// there still catches those that have left. At most 128 pixels, which leaves out bands of long ranges.
+std::vector<double> network_sky_edges(double pixel_nm, double range_nm);
 
 struct FacetNetworkFit {
   FacetNetworkParameters parameters;
