@@ -262,7 +262,7 @@ semsurf_cli_test(train.hold_out ARGS train ${small_model} --hold-out 1 -o si.jso
   STDOUT "blocks-rough .held out." "all held out" STDERR "no --material is given: Si" WRITES si.json
   INFO si.json "1 surface, 256 pixels. 1 held out")
 semsurf_cli_test(train.network ARGS train --pixel-size 3nm --surfaces 2 --surface-size 16 --electrons 2 --hidden 3,2 --iterations 9 --decay 1e-3 --tolerance 5% -o si.json
-  STDOUT "facet network, [0-9]+ neighbourhoods of 5 to [0-9]+ samples, sky in 4 bands to 42.3 nm, 3 and 2 hidden units, [0-9]+ numbers"
+  STDOUT "facet network, [0-9]+ neighbourhoods of 5 to [0-9]+ samples, sky in 6 bands to 169 nm, 3 and 2 hidden units, [0-9]+ numbers"
   WRITES si.json INFO si.json "cost +[0-9]")
 semsurf_cli_test(train.slope_table ARGS train --pixel-size 3nm --model slope-table-two-planes --table-electrons 50 -o si.json
   STDOUT "slope, a table in steps of 5 degrees. gives SE and BSE" WRITES si.json INFO si.json "50 at each angle")
