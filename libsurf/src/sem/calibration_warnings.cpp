@@ -67,19 +67,20 @@ void judge_channels(Calibration& c, const CalibrationImages& images, const Calib
 
 void judge_gains(Calibration& c) {
   if (c.outcome == CalibrationOutcome::undetermined) return;
+  std::size_t vague = 0;
   for (std::size_t i = 0; i < c.gains.size(); ++i) {
     const double gain = c.gains[i], error = c.gain_stderr(i);
-    if (gain < 0) {
+    if (gain < -least_gain_in_stderrs * error) {
+      c.outcome = CalibrationOutcome::doubtful;
       c.warnings.push_back(fmt::format("the gain of {} is below 0, which no detector has: the image may be inverted "
                                        "or not registered, or the other channel has taken over", c.channels[i]));
     } else if (gain < least_gain_in_stderrs * error || gain == 0) {
+      vague += 1;   // a detector that does not see a channel is no fault
       c.warnings.push_back(fmt::format("the gain of {} is {:.3g} with a standard error of {:.2g}: it may be 0",
                                        c.channels[i], gain, error));
-    } else {
-      continue;
     }
-    c.outcome = CalibrationOutcome::doubtful;
   }
+  if (vague == c.gains.size()) c.outcome = CalibrationOutcome::doubtful;
 }
 
 /// Pixels at the lowest or the highest level where the fit is no constant: cut off, most likely.

@@ -41,7 +41,7 @@ void check_field(const ModelScope& scope, const HeightField& field, const char* 
                        "Resample the heights, or train a model for such samples on square ones");
   throw InvalidInput(subject,
                      fmt::format("is sampled every {} nm, the model was made for {} nm", format_exact(x), model),
-                     fmt::format("Resample the heights to {} nm, or train a model for {} nm", model,
+                     fmt::format("Resample the heights to {} nm (semsurf predict --resample), or train a model for {} nm", model,
                                  format_exact(x)));
 }
 

@@ -185,9 +185,14 @@ TEST(Calibrate, WarnsOfNegativeAndOfVagueGains) {
   Calibration c = calibrate(images);
   EXPECT_EQ(c.outcome, CalibrationOutcome::doubtful);
   EXPECT_THAT(c.warnings.at(0), HasSubstr("the gain of BSE is below 0"));
-  expose(images, 100, 1, 5, 3, 3);
+  // A detector may not see a channel: that is said, and the other one's gain stands.
+  expose(images, 100, 0, 5, 3, 3);
   c = calibrate(images);
-  EXPECT_EQ(c.outcome, CalibrationOutcome::doubtful);
+  EXPECT_EQ(c.outcome, CalibrationOutcome::trusted);
+  EXPECT_THAT(c.warnings.at(0), HasSubstr("it may be 0"));
+  // An image that shows none of them.
+  expose(images, 0.01, 0.01, 5, 3, 3);
+  EXPECT_EQ(calibrate(images).outcome, CalibrationOutcome::doubtful);
 }
 
 TEST(Calibrate, WarnsOfPilesButNotOfFlatGround) {
