@@ -259,7 +259,7 @@ semsurf_cli_test(train.own_surfaces ARGS train --material Si --energy 1keV ${sma
   STDOUT "for +Si, 1 keV, pixels of 3.00 nm" "2 simulated, 0 there before, in si.training" "all learnt from .* %"
   WRITES si.json si.training/blocks.exr INFO si.json "command +semsurf train --material Si --energy 1keV")
 semsurf_cli_test(train.hold_out ARGS train ${small_model} --hold-out 1 -o si.json
-  STDOUT "blocks-rough .held out." "all held out" STDERR "no --material is given: Si" WRITES si.json
+  STDOUT "island .held out." "all held out" STDERR "no --material is given: Si" WRITES si.json
   INFO si.json "1 surface, 256 pixels. 1 held out")
 semsurf_cli_test(train.network ARGS train --pixel-size 3nm --surfaces 2 --surface-size 16 --electrons 2 --hidden 3,2 --iterations 9 --decay 1e-3 --tolerance 5% -o si.json
   STDOUT "facet network, [0-9]+ neighbourhoods of 5 to [0-9]+ samples, sky in 6 bands to 169 nm, 3 and 2 hidden units, [0-9]+ numbers"
