@@ -28,7 +28,7 @@ struct NetworkEngine<T>::Worker {
   typename facet::FacetPass<T>::Scratch scratch, along;
   AlignedVector<T> inputs;            // [row][input][column]
   AlignedVector<T> values, slopes;    // of the units at a row
-  AlignedVector<T> in, out, work;
+  AlignedVector<T> in, out, work, along_sky;
 };
 
 template <class T>
@@ -163,6 +163,7 @@ Grid<double> NetworkEngine<T>::gradient(const Grid<double>& z_nm, const ModelIma
       worker.slopes.resize(worker.values.size());
       worker.work.resize(2 * static_cast<std::size_t>(widest_) * columns);
       worker.out.assign(static_cast<std::size_t>(columns) * weights.size(), T(0));
+      worker.along_sky.resize(planes.samples.size() * columns);
       mine.inputs.resize(static_cast<std::size_t>(block.rows * stride));
       mine.tile.assign(static_cast<std::size_t>(tile_stride * (block.rows + 2 * reach)), T(0));
       for (int y = 0; y < block.rows; ++y) {
@@ -179,7 +180,8 @@ Grid<double> NetworkEngine<T>::gradient(const Grid<double>& z_nm, const ModelIma
           loops_->sky_back(planes.heights.at(block.x, block.y + y), planes.samples.data(),
                            static_cast<int>(planes.samples.size()), view_.bands(),
                            back + pass_.scales() * network::facet_inputs * columns,
-                           mine.tile.data() + (y + reach) * tile_stride + reach, to.data());
+                           mine.tile.data() + (y + reach) * tile_stride + reach, to.data(),
+                           worker.along_sky.data());
       }
     });
     for (std::size_t i = first; i < end; ++i) {

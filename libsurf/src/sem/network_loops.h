@@ -18,6 +18,12 @@ struct Loops {
     else return __builtin_sqrt(x);
   }
 
+  /// max(x, 0), without a comparison, which would keep loops from being made into vectors.
+  SURF_ALWAYS static T positive(T x) {
+    if constexpr (sizeof(T) == sizeof(float)) return T(0.5) * (x + __builtin_fabsf(x));
+    else return T(0.5) * (x + __builtin_fabs(x));
+  }
+
   /// What a scale's inputs are made of, at a pixel.
   struct Facet {
     T gg, r, mean, mean_r, split, difference, along, along_r;   // r: fourth roots of 1 + square
@@ -112,7 +118,7 @@ struct Loops {
       const T* const far = z + a.offset;
       T *const mean = out + 2 * a.band * columns, *const square = mean + columns;
       for (int x = 0; x < columns; ++x) {
-        const T e = (far[x] - z[x]) * a.per_distance, s = e / root(1 + e * e), up = s > 0 ? s : T(0);
+        const T e = (far[x] - z[x]) * a.per_distance, s = e / root(1 + e * e), up = positive(s);
         mean[x] += a.weight * s;
         square[x] += a.weight * s * s;
         seen[x] *= 1 - hidden_sky * up * up;
@@ -126,7 +132,7 @@ struct Loops {
   }
 
   SURF_ALWAYS static void sky_back(const T* z, const SkySample<T>* samples, int count, int bands,
-                                   const T* weight, T* dz, const std::ptrdiff_t* to) {
+                                   const T* weight, T* dz, const std::ptrdiff_t* to, T* work) {
     const T* const open = weight + 2 * bands * columns;
     for (int first = 0; first < count;) {
       T seen[columns];
@@ -137,7 +143,7 @@ struct Loops {
         last = a.last;
         const T* const far = z + a.offset;
         for (int x = 0; x < columns; ++x) {
-          const T e = (far[x] - z[x]) * a.per_distance, s = e / root(1 + e * e), up = s > 0 ? s : T(0);
+          const T e = (far[x] - z[x]) * a.per_distance, s = e / root(1 + e * e), up = positive(s);
           seen[x] *= 1 - hidden_sky * up * up;
         }
       }
@@ -145,18 +151,30 @@ struct Loops {
         const SkySample<T>& a = samples[i];
         const T* const far = z + a.offset;
         const T *const mean = weight + 2 * a.band * columns, *const square = mean + columns;
-        T* const out = dz + to[i];
+        T* const change = work + i * columns;
         for (int x = 0; x < columns; ++x) {
           const T e = (far[x] - z[x]) * a.per_distance, r = 1 / root(1 + e * e), s = e * r,
-                  up = s > 0 ? s : T(0);
+                  up = positive(s);
           const T ds = a.weight * (mean[x] + 2 * s * square[x]) -
                        seen[x] * 2 * hidden_sky * up / (1 - hidden_sky * up * up);
-          const T change = ds * r * r * r * a.per_distance;
-          out[x] += change;
-          dz[x] -= change;
+          change[x] = ds * r * r * r * a.per_distance;
         }
       }
       first = end;
+    }
+    // Samples of a direction lie in few rows and overlap: what was just written would be waited for. So one of
+    // each direction after the other.
+    const int apart = count / 16;
+    for (int start = 0; start < apart; ++start)
+      for (int i = start; i < count; i += apart) {
+        const T* const change = work + i * columns;
+        T* const out = dz + to[i];
+        for (int x = 0; x < columns; ++x) out[x] += change[x];
+      }
+    for (int x = 0; x < columns; ++x) {
+      T sum = 0;
+      for (int i = 0; i < count; ++i) sum += work[i * columns + x];
+      dz[x] -= sum;
     }
   }
 
@@ -171,7 +189,7 @@ struct Loops {
       const T *const far = z + a.offset, *const dfar = dz + a.offset;
       T *const mean = out + 2 * a.band * columns, *const square = mean + columns;
       for (int x = 0; x < columns; ++x) {
-        const T e = (far[x] - z[x]) * a.per_distance, r = 1 / root(1 + e * e), s = e * r, up = s > 0 ? s : T(0);
+        const T e = (far[x] - z[x]) * a.per_distance, r = 1 / root(1 + e * e), s = e * r, up = positive(s);
         const T ds = (dfar[x] - dz[x]) * a.per_distance * r * r * r, left = 1 - hidden_sky * up * up;
         mean[x] += a.weight * ds;
         square[x] += a.weight * 2 * s * ds;

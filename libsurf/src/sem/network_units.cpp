@@ -28,8 +28,8 @@ namespace {
       L::sky(z, samples, count, bands, out);                                                                 \
     }                                                                                                        \
     target static void sky_back(const T* z, Samples samples, int count, int bands, const T* weight, T* dz,   \
-                                const std::ptrdiff_t* to) {                                                  \
-      L::sky_back(z, samples, count, bands, weight, dz, to);                                                 \
+                                const std::ptrdiff_t* to, T* work) {                                         \
+      L::sky_back(z, samples, count, bands, weight, dz, to, work);                                                 \
     }                                                                                                        \
     target static void sky_change(const T* z, const T* dz, Samples samples, int count, int bands, T* out) {  \
       L::sky_change(z, dz, samples, count, bands, out);                                                      \

@@ -44,9 +44,9 @@ struct Operations {
 
   /// Inputs of a row from the heights `z` at its first pixel: mean and mean square of each band, the sky.
   void (*sky)(const T* z, const SkySample<T>* samples, int count, int bands, T* out);
-  /// Adds to `dz`, which lies as `z` does, the weights of the heights.
+  /// Adds the weights of the heights to `dz`, where sample i lies at to[i]; `work` holds a row for each sample.
   void (*sky_back)(const T* z, const SkySample<T>* samples, int count, int bands, const T* weight, T* dz,
-                   const std::ptrdiff_t* to);
+                   const std::ptrdiff_t* to, T* work);
   void (*sky_change)(const T* z, const T* dz, const SkySample<T>* samples, int count, int bands, T* out);
 
   /// Values and slopes of all units, layer after layer, from a row of inputs.
