@@ -19,7 +19,7 @@ namespace {
 using namespace surf;
 using namespace surf::test;
 
-constexpr Edge edges[] = {Edge::mirror, Edge::flat, Edge::periodic};
+constexpr Edge all_edges[] = {Edge::mirror, Edge::flat, Edge::periodic};
 
 TEST(FitFacetNetwork, LooksNoFartherThanPixelsAllow) {
   EXPECT_EQ(network_sky_edges(1, 9000), (std::vector<double>{0, 128}));
@@ -136,7 +136,7 @@ TEST(FacetNetwork, TurnsWithTheSurface) {
   const HeightField field = rough_field(40, 33);
   HeightField other = field;
   other.z_nm = turned(field.z_nm);
-  for (const Edge edge : edges) {
+  for (const Edge edge : all_edges) {
     const ModelImages a = network()->predict(field, {.edge = edge, .double_precision = true});
     const ModelImages b = network()->predict(other, {.edge = edge, .double_precision = true});
     for (std::size_t ch = 0; ch < a.size(); ++ch) EXPECT_LT(largest_difference(turned(a[ch]), b[ch]), 1e-11);
@@ -174,7 +174,7 @@ TEST(FacetNetwork, LinearizationIsExact) {
   for (const auto& hidden : {std::vector<int>{}, {7}, {11, 6}})
     for (const bool sky : {true, false}) {
       const auto model = network(some_network(hidden, sky));
-      for (const Edge edge : edges) {
+      for (const Edge edge : all_edges) {
         SCOPED_TRACE(std::to_string(hidden.size()) + " hidden layers, edge " + std::to_string(int(edge)));
         expect_exact_derivatives(*model, rough_field(37, 29), edge, 1e-4, 1e-6);
         expect_exact_derivatives(*model, rough_field(37, 29, 2, 60), edge, 1e-4, 1e-5);
@@ -190,7 +190,7 @@ TEST(FacetNetwork, LinearizationIsExact) {
 
 TEST(FacetNetwork, SmallFieldsAreContinuedAsOftenAsItTakes) {
   for (const auto& [width, height] : {std::pair{2, 2}, {4, 4}, {3, 50}, {50, 2}})
-    for (const Edge edge : edges) {
+    for (const Edge edge : all_edges) {
       const HeightField field = rough_field(width, height);
       expect_finite(*network(), field, edge);
       expect_exact_derivatives(*network(), field, edge, 1e-4, 1e-5);
