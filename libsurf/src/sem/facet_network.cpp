@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "engine_model.h"
 #include "facet_kernels.h"
 #include "model_input.h"
 #include "network_engine.h"
@@ -60,75 +61,14 @@ void check(const FacetNetworkParameters& p) {
                          fmt::format("It lies above 0, up to {:g}", most));
 }
 
-template <class Work>
-auto run_network(const FacetNetworkParameters& parameters, double pitch_nm, const ModelOptions& options,
-                 const Work& work) {
-  if (options.double_precision) return work(NetworkEngine<double>(parameters, pitch_nm, options));
-  return work(NetworkEngine<float>(parameters, pitch_nm, options));
-}
-
-class LinearFacetNetwork final : public Linearization {
- public:
-  LinearFacetNetwork(std::shared_ptr<const FacetNetworkParameters> parameters, const HeightField& field,
-                     const ModelOptions& options)
-      : parameters_(std::move(parameters)), options_(options), z_nm_(field.z_nm), pitch_nm_(field.pitch_x_nm),
-        images_(run_network(*parameters_, pitch_nm_, options_,
-                            [&](const auto& engine) { return engine.predict(z_nm_); })) {}
-
-  const ModelImages& images() const override { return images_; }
-
-  Grid<double> gradient(const ModelImages& weights) const override {
-    check_weights(weights, images_.size(), z_nm_);
-    return run_network(*parameters_, pitch_nm_, options_,
-                       [&](const auto& engine) { return engine.gradient(z_nm_, weights); });
+struct FacetNetwork {
+  using Parameters = FacetNetworkParameters;
+  template <class Work>
+  static auto run(const Parameters& parameters, double pitch_nm, double, const ModelOptions& options,
+                  const Work& work) {
+    if (options.double_precision) return work(NetworkEngine<double>(parameters, pitch_nm, options));
+    return work(NetworkEngine<float>(parameters, pitch_nm, options));
   }
-
-  ModelImages change(const Grid<double>& dz_nm) const override {
-    check_change(dz_nm, z_nm_);
-    return run_network(*parameters_, pitch_nm_, options_,
-                       [&](const auto& engine) { return engine.change(z_nm_, dz_nm); });
-  }
-
- private:
-  std::shared_ptr<const FacetNetworkParameters> parameters_;
-  ModelOptions options_;
-  Grid<double> z_nm_;
-  double pitch_nm_;
-  ModelImages images_;
-};
-
-class FacetNetwork final : public ImageModel {
- public:
-  FacetNetwork(const ModelScope& scope, const FacetNetworkParameters& parameters)
-      : scope_(scope), parameters_(std::make_shared<FacetNetworkParameters>(parameters)) {
-    for (const auto& channel : parameters.channels) names_.push_back(channel.name);
-    check_channels(names_, subject);
-    check(parameters);
-    if (!(scope.pixel_nm > 0 && scope.pixel_nm < 1e6))
-      throw InvalidInput(subject, fmt::format("its pixels are {} nm", scope.pixel_nm),
-                         "A network is learnt for one pixel size; name it");
-  }
-
-  const std::vector<std::string>& channels() const override { return names_; }
-  const ModelScope& scope() const override { return scope_; }
-
-  ModelImages predict(const HeightField& field, const ModelOptions& options) const override {
-    check_field(scope_, field);
-    check_span(field);
-    return run_network(*parameters_, field.pitch_x_nm, options,
-                       [&](const auto& engine) { return engine.predict(field.z_nm); });
-  }
-
-  std::unique_ptr<Linearization> linearize(const HeightField& field, const ModelOptions& options) const override {
-    check_field(scope_, field);
-    check_span(field);
-    return std::make_unique<LinearFacetNetwork>(parameters_, field, options);
-  }
-
- private:
-  ModelScope scope_;
-  std::shared_ptr<const FacetNetworkParameters> parameters_;
-  std::vector<std::string> names_;
 };
 
 }  // namespace
@@ -140,7 +80,14 @@ int network_inputs(const FacetNetworkParameters& parameters) {
 
 std::shared_ptr<const ImageModel> make_facet_network(const ModelScope& scope,
                                                      const FacetNetworkParameters& parameters) {
-  return std::make_shared<FacetNetwork>(scope, parameters);
+  std::vector<std::string> names;
+  for (const auto& channel : parameters.channels) names.push_back(channel.name);
+  check_channels(names, subject);
+  check(parameters);
+  if (!(scope.pixel_nm > 0 && scope.pixel_nm < 1e6))
+    throw InvalidInput(subject, fmt::format("its pixels are {} nm", scope.pixel_nm),
+                       "A network is learnt for one pixel size; name it");
+  return std::make_shared<EngineModel<FacetNetwork>>(scope, std::move(names), parameters);
 }
 
 }  // namespace surf

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "bank_engine.h"
+#include "engine_model.h"
 #include "facet_kernels.h"
 #include "model_input.h"
 #include "surf/core/error.h"
@@ -40,69 +41,13 @@ void check(const FilterBankParameters& parameters) {
   }
 }
 
-class LinearFilterBank final : public Linearization {
+struct FilterBank {
+  using Parameters = FilterBankParameters;
   template <class Work>
-  auto with_engine(const Work& work) const {
-    return run_bank(*parameters_, pitch_x_nm_, pitch_y_nm_, options_, work);
+  static auto run(const Parameters& parameters, double pitch_x_nm, double pitch_y_nm, const ModelOptions& options,
+                  const Work& work) {
+    return run_bank(parameters, pitch_x_nm, pitch_y_nm, options, work);
   }
-
- public:
-  LinearFilterBank(std::shared_ptr<const FilterBankParameters> parameters, const HeightField& field,
-                   const ModelOptions& options)
-      : parameters_(std::move(parameters)), options_(options), z_nm_(field.z_nm),
-        pitch_x_nm_(field.pitch_x_nm), pitch_y_nm_(field.pitch_y_nm) {
-    images_ = with_engine([&](const auto& engine) { return engine.predict(z_nm_); });
-  }
-
-  const ModelImages& images() const override { return images_; }
-
-  Grid<double> gradient(const ModelImages& weights) const override {
-    check_weights(weights, images_.size(), z_nm_);
-    return with_engine([&](const auto& engine) { return engine.gradient(z_nm_, weights); });
-  }
-
-  ModelImages change(const Grid<double>& dz_nm) const override {
-    check_change(dz_nm, z_nm_);
-    return with_engine([&](const auto& engine) { return engine.change(z_nm_, dz_nm); });
-  }
-
- private:
-  std::shared_ptr<const FilterBankParameters> parameters_;
-  ModelOptions options_;
-  Grid<double> z_nm_;   // the derivatives are made anew from it: as fast as to read them, and a tenth the memory
-  double pitch_x_nm_, pitch_y_nm_;
-  ModelImages images_;
-};
-
-class FilterBank final : public ImageModel {
- public:
-  FilterBank(const ModelScope& scope, const FilterBankParameters& parameters)
-      : scope_(scope), parameters_(std::make_shared<FilterBankParameters>(parameters)) {
-    for (const FilterBankChannel& channel : parameters.channels) names_.push_back(channel.name);
-    check_channels(names_, "filter bank");
-    check(parameters);
-  }
-
-  const std::vector<std::string>& channels() const override { return names_; }
-  const ModelScope& scope() const override { return scope_; }
-
-  ModelImages predict(const HeightField& field, const ModelOptions& options) const override {
-    check_field(scope_, field);
-    check_span(field);
-    return run_bank(*parameters_, field.pitch_x_nm, field.pitch_y_nm, options,
-                    [&](const auto& engine) { return engine.predict(field.z_nm); });
-  }
-
-  std::unique_ptr<Linearization> linearize(const HeightField& field, const ModelOptions& options) const override {
-    check_field(scope_, field);
-    check_span(field);
-    return std::make_unique<LinearFilterBank>(parameters_, field, options);
-  }
-
- private:
-  ModelScope scope_;
-  std::shared_ptr<const FilterBankParameters> parameters_;
-  std::vector<std::string> names_;
 };
 
 }  // namespace
@@ -113,7 +58,11 @@ std::vector<FacetScale> thesis_scales() {
 }
 
 std::shared_ptr<const ImageModel> make_filter_bank(const ModelScope& scope, const FilterBankParameters& parameters) {
-  return std::make_shared<FilterBank>(scope, parameters);
+  std::vector<std::string> names;
+  for (const FilterBankChannel& channel : parameters.channels) names.push_back(channel.name);
+  check_channels(names, "filter bank");
+  check(parameters);
+  return std::make_shared<EngineModel<FilterBank>>(scope, std::move(names), parameters);
 }
 
 }  // namespace surf

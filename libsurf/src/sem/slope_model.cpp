@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine_model.h"
 #include "facet_kernels.h"
 #include "facet_pass.h"
 #include "model_input.h"
@@ -156,81 +157,25 @@ class SlopeEngine {
   facet::FacetPass<T> pass_;
 };
 
-template <class Work>
-auto run(const Slopes& slopes, double pitch_x_nm, double pitch_y_nm, const ModelOptions& options, const Work& work) {
-  if (options.double_precision) return work(SlopeEngine<double>(slopes, pitch_x_nm, pitch_y_nm, options));
-  return work(SlopeEngine<float>(slopes, pitch_x_nm, pitch_y_nm, options));
-}
-
-class LinearSlopeModel final : public Linearization {
+struct SlopeModel {
+  using Parameters = Slopes;
   template <class Work>
-  auto with_engine(const Work& work) const {
-    return run(*slopes_, pitch_x_nm_, pitch_y_nm_, options_, work);
+  static auto run(const Parameters& slopes, double pitch_x_nm, double pitch_y_nm, const ModelOptions& options,
+                  const Work& work) {
+    if (options.double_precision) return work(SlopeEngine<double>(slopes, pitch_x_nm, pitch_y_nm, options));
+    return work(SlopeEngine<float>(slopes, pitch_x_nm, pitch_y_nm, options));
   }
-
- public:
-  LinearSlopeModel(std::shared_ptr<const Slopes> slopes, const HeightField& field, const ModelOptions& options)
-      : slopes_(std::move(slopes)), options_(options), z_nm_(field.z_nm), pitch_x_nm_(field.pitch_x_nm),
-        pitch_y_nm_(field.pitch_y_nm) {
-    images_ = with_engine([&](const auto& engine) { return engine.predict(z_nm_); });
-  }
-
-  const ModelImages& images() const override { return images_; }
-
-  Grid<double> gradient(const ModelImages& weights) const override {
-    check_weights(weights, images_.size(), z_nm_);
-    return with_engine([&](const auto& engine) { return engine.gradient(z_nm_, weights); });
-  }
-
-  ModelImages change(const Grid<double>& dz_nm) const override {
-    check_change(dz_nm, z_nm_);
-    return with_engine([&](const auto& engine) { return engine.change(z_nm_, dz_nm); });
-  }
-
- private:
-  std::shared_ptr<const Slopes> slopes_;
-  ModelOptions options_;
-  Grid<double> z_nm_;
-  double pitch_x_nm_, pitch_y_nm_;
-  ModelImages images_;
-};
-
-class SlopeModel final : public ImageModel {
- public:
-  SlopeModel(const ModelScope& scope, const SlopeModelParameters& parameters) : scope_(scope) {
-    facet_kernel(parameters.facet, 1);   // throws where it is out of range
-    auto slopes = std::make_shared<Slopes>(Slopes{{parameters.facet}, SlopeCurves(parameters)});
-    for (const SlopeChannel& channel : parameters.channels) names_.push_back(channel.name);
-    check_channels(names_, "slope model");
-    slopes_ = std::move(slopes);
-  }
-
-  const std::vector<std::string>& channels() const override { return names_; }
-  const ModelScope& scope() const override { return scope_; }
-
-  ModelImages predict(const HeightField& field, const ModelOptions& options) const override {
-    check_field(scope_, field);
-    check_span(field);
-    return run(*slopes_, field.pitch_x_nm, field.pitch_y_nm, options,
-               [&](const auto& engine) { return engine.predict(field.z_nm); });
-  }
-
-  std::unique_ptr<Linearization> linearize(const HeightField& field, const ModelOptions& options) const override {
-    check_field(scope_, field);
-    check_span(field);
-    return std::make_unique<LinearSlopeModel>(slopes_, field, options);
-  }
-
- private:
-  ModelScope scope_;
-  std::shared_ptr<const Slopes> slopes_;
-  std::vector<std::string> names_;
 };
 
 }  // namespace
 
 std::shared_ptr<const ImageModel> make_slope_model(const ModelScope& scope, const SlopeModelParameters& parameters) {
-  return std::make_shared<SlopeModel>(scope, parameters);
+  facet_kernel(parameters.facet, 1);   // throws where it is out of range
+  Slopes slopes{{parameters.facet}, SlopeCurves(parameters)};
+  std::vector<std::string> names;
+  for (const SlopeChannel& channel : parameters.channels) names.push_back(channel.name);
+  check_channels(names, "slope model");
+  return std::make_shared<EngineModel<SlopeModel>>(scope, std::move(names), std::move(slopes));
 }
 
 }  // namespace surf
