@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "cubic_sample.h"
+#include "core/cubic_sample.h"
 #include "surf/afm/resample.h"
 #include "surf/core/error.h"
 #include "surf/core/parallel.h"
@@ -35,8 +35,8 @@ int floor_div(int a, int b) { return a >= 0 ? a / b : -((b - 1 - a) / b); }
 AfmTerm::AfmTerm(const AfmData& data, const HeightField& outside, const SurfaceFrame& frame,
                  const Affine& surface_to_afm, int threads)
     : image_(data.image), noise_(data.noise), factor_(data.upsample), frame_(frame), threads_(resolve_threads(threads)) {
-  tip_ = factor_ == 1 ? data.tip : resampled(data.tip, data.tip.pitch_x_nm / factor_, data.tip.pitch_y_nm / factor_);
-  outside_ = upsampled(outside, factor_).z_nm;
+  tip_ = smoothly_upsampled(data.tip, factor_);
+  outside_ = smoothly_upsampled(outside, factor_).z_nm;
   const int w = image_.z_nm.width(), h = image_.z_nm.height();
   used_ = Grid<unsigned char>(w, h);
   spans_.assign(h, {w, -1});

@@ -100,7 +100,8 @@ DescentReport descend(const Objective& objective, Unknowns& at, double sigma_px,
   report.iterations = static_cast<int>(summary.iterations.size()) - 1;
   report.evaluations = problem->evaluations;
   const Objective::State state = objective.evaluate(at);
-  for (const double g : basis.transpose(objective.gradient(at, state).z_nm).data())
+  const Grid<double> gradient = basis.transpose(objective.gradient(at, state).z_nm);
+  for (const double g : gradient.data())
     report.gradient_norm = std::max(report.gradient_norm, std::fabs(g));
   report.ended = summary.termination_type == ceres::USER_SUCCESS || summary.termination_type == ceres::CONVERGENCE
                      ? "converged"

@@ -22,7 +22,7 @@ void lines(int count, int threads, const Work& work) {
 struct Padded {
   std::vector<double> z;
   int reach, count;
-  Padded(int reach, int count) : z(count + 2 * reach), reach(reach), count(count) {}
+  Padded(int beyond, int samples) : z(samples + 2 * beyond), reach(beyond), count(samples) {}
   template <class Get>
   void load(const Get& get) {
     for (int i = -reach; i < count + reach; ++i) z[i + reach] = get(border_sample(i, count, Edge::mirror));

@@ -160,4 +160,38 @@ Step Preconditioner::solve(const Step& r) const {
   return out;
 }
 
+Grid<double> Preconditioner::variances_nm2() const {
+  const Matrix lower = parts_->heights.matrixL();
+  const int n = static_cast<int>(lower.cols());
+  const auto* const start = lower.outerIndexPtr();
+  const auto* const row = lower.innerIndexPtr();
+  const double* const l = lower.valuePtr();   // the first of each column is on the diagonal
+  std::vector<double> z(static_cast<std::size_t>(lower.nonZeros()));   // the inverse, where L has entries
+  std::vector<int> place(n, -1);   // of a row among the column's entries
+  for (int j = n - 1; j >= 0; --j) {
+    const int begin = start[j], end = start[j + 1];
+    for (int e = begin; e < end; ++e) place[row[e]] = e;
+    // z_ij = - sum over k of l_kj / l_jj z_ik, over the entries k below the diagonal; z_ik is in column min(i, k).
+    for (int e = begin + 1; e < end; ++e) {
+      const int k = row[e];
+      const double share = l[e] / l[begin];
+      for (int s = start[k]; s < start[k + 1]; ++s) {
+        const int at = place[row[s]];
+        if (at < 0) continue;
+        z[at] -= share * z[s];
+        if (at != e) z[e] -= l[at] / l[begin] * z[s];
+      }
+    }
+    double diagonal = 1 / (l[begin] * l[begin]);
+    for (int e = begin + 1; e < end; ++e) diagonal -= l[e] / l[begin] * z[e];
+    z[begin] = diagonal;
+    for (int e = begin; e < end; ++e) place[row[e]] = -1;
+  }
+  // The factor's order is the permuted one.
+  Grid<double> out(parts_->width, parts_->height);
+  const auto& order = parts_->heights.permutationP().indices();
+  for (int i = 0; i < n; ++i) out.data()[i] = z[start[order.size() > 0 ? order[i] : i]];
+  return out;
+}
+
 }  // namespace surf::reconstruction

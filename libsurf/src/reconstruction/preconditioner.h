@@ -20,6 +20,10 @@ class Preconditioner {
   void factor(const Objective& objective, const Unknowns& at, const Objective::State& state);
   Step solve(const Step& residual) const;
 
+  /// The diagonal of its inverse for the heights: their variances if it were the posterior's precision. Exact, in
+  /// about the time of a factorisation (Takahashi's recursion; Erisman and Tinney 1975, doi:10.1145/360680.360704).
+  Grid<double> variances_nm2() const;
+
  private:
   struct Parts;
   std::unique_ptr<Parts> parts_;

@@ -9,6 +9,7 @@
 #include "descent.h"
 #include "gaussian_basis.h"
 #include "gauss_newton.h"
+#include "posterior.h"
 #include "start.h"
 #include "surf/core/error.h"
 
@@ -214,9 +215,35 @@ class Work {
       out.simulated_sem = cut(s.sem->simulated);
       out.sem_residual = cut(sem_white(s));
     }
+    if (options_.uncertainty) {
+      const Posterior p = posterior(objective_, at_, options_.probes, options_.seed, options_.threads, options_.watch);
+      out.deviation_nm = cut(p.deviation_nm);
+      out.held_by = cut(p.held_by);
+    }
     return out;
   }
 
+ public:
+  double noise_floor_nm(const HeightField& truth, int draws) {
+    const SurfaceFrame& f = objective_.frame;
+    const int w = f.width - 2 * margin_, h = f.height - 2 * margin_;
+    if (truth.z_nm.width() != w || truth.z_nm.height() != h)
+      throw InvalidInput("truth", fmt::format("it has {} x {} samples, the surface {} x {}", truth.z_nm.width(),
+                                              truth.z_nm.height(), w, h), "Give it on the surface's samples");
+    for (int y = 0; y < h; ++y)
+      for (int x = 0; x < w; ++x) at_.z_nm(x + margin_, y + margin_) = truth.z_nm(x, y);
+    const Objective::State s = objective_.evaluate(at_);
+    Preconditioner m;
+    m.factor(objective_, at_, s);
+    double sum = 0;
+    for (int d = 0; d < draws; ++d) {
+      const Grid<double> e = cut(linear_error(objective_, at_, s, m, options_.seed + static_cast<std::uint64_t>(d), options_.watch));
+      for (const double v : e.data()) sum += v * v / (static_cast<double>(e.size()) * draws);
+    }
+    return std::sqrt(sum);
+  }
+
+ private:
   const AfmData* afm_;
   const SemData* sem_;
   const ReconstructionOptions& options_;
@@ -243,6 +270,12 @@ Reconstruction reconstruct(const AfmData* afm, const SemData* sem, const Reconst
                            ReconstructionJournal* journal) {
   check(afm, sem, options);
   return Work(afm, sem, options).run(journal);
+}
+
+double noise_floor_nm(const AfmData* afm, const SemData* sem, const HeightField& truth, const ReconstructionOptions& options,
+                      int draws) {
+  check(afm, sem, options);
+  return Work(afm, sem, options).noise_floor_nm(truth, draws);
 }
 
 }  // namespace surf

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <deque>
 
-#include "cubic_sample.h"
+#include "core/cubic_sample.h"
 #include "surf/afm/morphology.h"
 
 namespace surf::reconstruction {

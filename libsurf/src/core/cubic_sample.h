@@ -6,7 +6,7 @@
 
 #include "surf/core/grid.h"
 
-namespace surf::reconstruction {
+namespace surf {
 
 /// A place between samples, and the weights of the 4 x 4 samples around it: cubic convolution (Keys 1981,
 /// doi:10.1109/TASSP.1981.1163711), which reproduces parabolas and has continuous derivatives. Beyond the
@@ -56,4 +56,4 @@ struct CubicSample {
   }
 };
 
-}  // namespace surf::reconstruction
+}  // namespace surf
