@@ -197,7 +197,7 @@ void add_train_options(CLI::App& app, TrainOptions& o) {
   app.add_option("HEIGHTS", o.heights, "Surfaces to learn on: scans and images of heights (semsurf's own)")
       ->type_name("FILE");
   const char* surfaces = "Surfaces";
-  app.add_option("--surfaces", o.surfaces, "How many of semsurf's own; there are 16 kinds (48; 0 if no images are needed)")
+  app.add_option("--surfaces", o.surfaces, "How many of semsurf's own; there are 20 kinds (60; 0 if no images are needed)")
       ->type_name("N")->group(surfaces);
   app.add_option("--surface-size", o.surface_size, "Pixels across each of them (64)")->type_name("N")->group(surfaces);
   app.add_option("--hold-out", o.hold_out, "Judge the model on the last N surfaces, without learning from them (0)")

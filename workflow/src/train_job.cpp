@@ -17,7 +17,7 @@
 namespace surf::workflow {
 namespace {
 
-constexpr int usual_surfaces = 48;
+constexpr int usual_surfaces = 60;
 
 /// How many surfaces of the program's own there are to be.
 int own_surfaces(const TrainJob& job, const Learner& learner) {

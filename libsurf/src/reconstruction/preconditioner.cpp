@@ -6,46 +6,43 @@
 #include <vector>
 
 #include <Eigen/Cholesky>
-#include <Eigen/SparseCholesky>
+#include <cholmod.h>
+
+#include "surf/core/error.h"
 
 namespace surf::reconstruction {
 namespace {
 
-using Matrix = Eigen::SparseMatrix<double>;
-
-/// Lower triangles of a 5 x 5 stencil, gathered row by row: coefficient of (x, y) with (x + dx, y + dy), of
-/// which half the 25 come later in row-major order.
+/// Upper triangles of a 5 x 5 stencil, gathered row by row: coefficients of (x, y) with those before it in row-major
+/// order, and with itself.
 class StencilMatrix {
  public:
   StencilMatrix(int width, int height) : width_(width), values_(static_cast<std::size_t>(width) * height * slots) {}
 
   void add(int x0, int y0, int x1, int y1, double v) {
-    if (y1 < y0 || (y1 == y0 && x1 < x0)) {
+    if (y1 > y0 || (y1 == y0 && x1 > x0)) {
       std::swap(x0, x1);
       std::swap(y0, y1);
     }
-    values_[(static_cast<std::size_t>(y0) * width_ + x0) * slots + (y1 - y0) * 5 + (x1 - x0) + 2] += v;
+    values_[(static_cast<std::size_t>(y0) * width_ + x0) * slots + (y1 - y0 + 2) * 5 + (x1 - x0) + 2] += v;
   }
 
-  Matrix matrix() const {
-    const int n = static_cast<int>(values_.size() / slots);
-    Matrix m(n, n);
-    std::vector<int> counts(n);
-    for (int k = 0; k < n; ++k)
-      counts[k] = static_cast<int>(std::count_if(&values_[std::size_t(k) * slots], &values_[std::size_t(k) * slots] + slots,
-                                                 [](double v) { return v != 0; }));
-    m.reserve(counts);
-    for (int k = 0; k < n; ++k)
-      for (int s = 2; s < slots; ++s) {
-        const double v = values_[static_cast<std::size_t>(k) * slots + s];
-        if (v != 0) m.insert(k + (s / 5) * width_ + s % 5 - 2, k) = v;
-      }
-    m.makeCompressed();
-    return m;
+  int samples() const { return static_cast<int>(values_.size() / slots); }
+
+  /// Calls entry(row, value) for the column's entries, rows rising, the diagonal last. All that lie in the field
+  /// are there, so that the pattern does not depend on the values.
+  template <class Entry>
+  void for_each_in_column(int k, const Entry& entry) const {
+    const int x = k % width_, y = k / width_;
+    for (int s = 0; s < slots; ++s) {
+      const int u = x + s % 5 - 2, v = y + s / 5 - 2;
+      if (u < 0 || u >= width_ || v < 0) continue;
+      entry(v * width_ + u, values_[static_cast<std::size_t>(k) * slots + s]);
+    }
   }
 
  private:
-  static constexpr int slots = 15;   // rows dy = 0, 1, 2 of dx = -2 .. 2; the first two never come
+  static constexpr int slots = 13;   // two rows of five before, and three of its own
   int width_;
   std::vector<double> values_;
 };
@@ -68,11 +65,52 @@ struct Corners {
 }  // namespace
 
 struct Preconditioner::Parts {
-  Eigen::SimplicialLLT<Matrix, Eigen::Lower, Eigen::AMDOrdering<int>> heights;
-  Eigen::Index nonzeros = -1;
+  cholmod_common common;
+  cholmod_factor* factor = nullptr;
+  cholmod_dense *x = nullptr, *y = nullptr, *e = nullptr;   // of solve, kept
   Eigen::LDLT<Eigen::MatrixXd> map, mixture;
   int width = 0, height = 0;
   bool has_map = false, has_mixture = false;
+
+  Parts() {
+    cholmod_start(&common);
+    common.print = 0;
+    common.supernodal = CHOLMOD_SUPERNODAL;
+    // Nested dissection first: a field's factor is a third smaller than with minimum degree.
+    common.nmethods = 1;
+    common.method[0].ordering = CHOLMOD_METIS;
+    common.postorder = 1;
+  }
+  Parts(const Parts&) = delete;
+  Parts& operator=(const Parts&) = delete;
+  ~Parts() {
+    cholmod_free_factor(&factor, &common);
+    for (cholmod_dense** d : {&x, &y, &e}) cholmod_free_dense(d, &common);
+    cholmod_finish(&common);
+  }
+
+  void compute(const StencilMatrix& m) {
+    const int n = m.samples();
+    cholmod_sparse* a = cholmod_allocate_sparse(n, n, static_cast<std::size_t>(n) * 13, true, true, 1, CHOLMOD_REAL, &common);
+    if (!a) throw Error("reconstruct", "there is not enough memory for a surface of this size", "Cut the image");
+    auto* start = static_cast<int*>(a->p);
+    auto* row = static_cast<int*>(a->i);
+    auto* value = static_cast<double*>(a->x);
+    int at = 0;
+    for (int k = 0; k < n; ++k) {
+      start[k] = at;
+      m.for_each_in_column(k, [&](int r, double v) {
+        row[at] = r;
+        value[at++] = v;
+      });
+    }
+    start[n] = at;
+    if (!factor) factor = cholmod_analyze(a, &common);
+    cholmod_factorize(a, factor, &common);
+    cholmod_free_sparse(&a, &common);
+    if (common.status != CHOLMOD_OK)
+      throw InvalidInput("reconstruct", "the surface is not determined", "Give an AFM image, or a stronger prior");
+  }
 };
 
 Preconditioner::Preconditioner() : parts_(std::make_unique<Parts>()) {}
@@ -104,10 +142,7 @@ void Preconditioner::factor(const Objective& o, const Unknowns& at, const Object
           m.add(k.x + a % 2, k.y + a / 2, k.x + b % 2, k.y + b / 2, q * k.w[a] * k.w[b]);
     }
   }
-  const Matrix matrix = m.matrix();
-  if (matrix.nonZeros() != parts_->nonzeros) parts_->heights.analyzePattern(matrix);
-  parts_->nonzeros = matrix.nonZeros();
-  parts_->heights.factorize(matrix);
+  parts_->compute(m);
 
   // Map and mixture: their own blocks.
   if (parts_->has_map) {
@@ -147,9 +182,17 @@ void Preconditioner::factor(const Objective& o, const Unknowns& at, const Object
 
 Step Preconditioner::solve(const Step& r) const {
   Step out;
-  const Eigen::Map<const Eigen::VectorXd> z(r.z_nm.data().data(), static_cast<Eigen::Index>(r.z_nm.size()));
+  std::vector<double> right = r.z_nm.data();
+  cholmod_dense b{};
+  b.nrow = b.d = b.nzmax = right.size();
+  b.ncol = 1;
+  b.x = right.data();
+  b.xtype = CHOLMOD_REAL;
+  b.dtype = CHOLMOD_DOUBLE;
+  cholmod_solve2(CHOLMOD_A, parts_->factor, &b, nullptr, &parts_->x, nullptr, &parts_->y, &parts_->e, &parts_->common);
   out.z_nm = Grid<double>(parts_->width, parts_->height);
-  Eigen::Map<Eigen::VectorXd>(out.z_nm.data().data(), z.size()) = parts_->heights.solve(z);
+  const auto* const x = static_cast<const double*>(parts_->x->x);
+  std::copy(x, x + right.size(), out.z_nm.data().begin());
   if (parts_->has_map)
     Eigen::Map<Eigen::VectorXd>(out.map.data(), map_numbers) =
         parts_->map.solve(Eigen::Map<const Eigen::VectorXd>(r.map.data(), map_numbers));
@@ -161,12 +204,14 @@ Step Preconditioner::solve(const Step& r) const {
 }
 
 Grid<double> Preconditioner::variances_nm2() const {
-  const Matrix lower = parts_->heights.matrixL();
-  const int n = static_cast<int>(lower.cols());
-  const auto* const start = lower.outerIndexPtr();
-  const auto* const row = lower.innerIndexPtr();
-  const double* const l = lower.valuePtr();   // the first of each column is on the diagonal
-  std::vector<double> z(static_cast<std::size_t>(lower.nonZeros()));   // the inverse, where L has entries
+  // Column by column, the diagonal first.
+  cholmod_factor* f = cholmod_copy_factor(parts_->factor, &parts_->common);
+  cholmod_change_factor(CHOLMOD_REAL, true, false, true, true, f, &parts_->common);
+  const int n = static_cast<int>(f->n);
+  const auto* const start = static_cast<const int*>(f->p);
+  const auto* const row = static_cast<const int*>(f->i);
+  const auto* const l = static_cast<const double*>(f->x);
+  std::vector<double> z(static_cast<std::size_t>(start[n]));   // the inverse, where L has entries
   std::vector<int> place(n, -1);   // of a row among the column's entries
   for (int j = n - 1; j >= 0; --j) {
     const int begin = start[j], end = start[j + 1];
@@ -187,10 +232,10 @@ Grid<double> Preconditioner::variances_nm2() const {
     z[begin] = diagonal;
     for (int e = begin; e < end; ++e) place[row[e]] = -1;
   }
-  // The factor's order is the permuted one.
   Grid<double> out(parts_->width, parts_->height);
-  const auto& order = parts_->heights.permutationP().indices();
-  for (int i = 0; i < n; ++i) out.data()[i] = z[start[order.size() > 0 ? order[i] : i]];
+  const auto* const order = static_cast<const int*>(f->Perm);   // of the factor's rows
+  for (int i = 0; i < n; ++i) out.data()[order[i]] = z[start[i]];
+  cholmod_free_factor(&f, &parts_->common);
   return out;
 }
 

@@ -57,7 +57,7 @@ std::vector<LearnableKind> learnable_kinds();
 /// A model from surfaces to its file.
 struct TrainJob {
   std::vector<TrainingInput> inputs;     ///< none: `surfaces` of the program's own (training_surfaces.h)
-  std::optional<int> surfaces;           ///< absent: 48, or none for kinds that need no images
+  std::optional<int> surfaces;           ///< absent: 60, or none for kinds that need no images
   int surface_px = 64;
   Edge edge = Edge::mirror;              ///< how surfaces go on outside
   /// Surfaces are simulated with so many samples per pixel, smooth between them, 1 to 8: what lies within a pixel
