@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <cstdio>
-#include <cstdlib>
 
 #include "preconditioner.h"
 
@@ -106,7 +104,6 @@ DescentReport gauss_newton(const Objective& o, Unknowns& at, const DescentOption
       else if (ratio > 0.75 && in.at_border) radius *= 2;
       if (in.promised < options.tolerance) break;
     }
-    if (std::getenv("GN")) std::printf("  it %d f %.2f (afm %.1f sem %.1f prior %.1f) fell %.3f radius %.3g products %d\n", report.iterations, state.value(), state.afm_value, state.sem_value, state.prior_value, fell, radius, report.products), std::fflush(stdout);
     if (!accepted || fell < options.tolerance) {
       report.ended = "converged";
       break;

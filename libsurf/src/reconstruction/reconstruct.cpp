@@ -159,6 +159,8 @@ class Work {
     DescentReport d;
     if (newton) {
       if (first) at_.z_nm = GaussianBasis(1.5, options_.threads).sum(at_.z_nm);
+      objective_.prior = CurvaturePrior(objective_.frame.pitch_nm, curvature_ * sigma_px * sigma_px);
+      if (sigma_px > 1) o.tolerance *= 100;
       fit_few(objective_, at_, watch);
       d = gauss_newton(objective_, at_, o);
     } else {
@@ -258,7 +260,7 @@ class Work {
 }  // namespace
 
 std::vector<double> default_scales_px(ReconstructionMethod method, int width, int height) {
-  if (method == ReconstructionMethod::gauss_newton) return {1};
+  if (method == ReconstructionMethod::gauss_newton) return {5, 2.2, 1};
   std::vector<double> scales;
   const double widest = std::min(60.0, std::min(width, height) / 3.0);
   for (double s = 60; s > 0.38; s /= 1.875)
