@@ -30,11 +30,11 @@ std::string hash_of(const std::vector<T>& values) {
 
 std::string text_of(const std::vector<double>& values) {
   std::string text;
-  for (const double value : values) text += (text.empty() ? "" : ",") + format_exact(value);
+  for (const double value : values) text += fmt::format("{}{}", text.empty() ? "" : ",", format_exact(value));
   return text;
 }
 
-std::string text_of(const Affine& m) { return text_of({m.xx, m.xy, m.x0, m.yx, m.yy, m.y0}); }
+std::string map_text(const Affine& m) { return text_of({m.xx, m.xy, m.x0, m.yx, m.yy, m.y0}); }
 
 /// All that the states of the reconstruction depend on.
 Identity identity_of(const ReconstructJob& job, const AfmData* afm, const SemData* sem, const StoredModel* model) {
@@ -62,7 +62,7 @@ Identity identity_of(const ReconstructJob& job, const AfmData* afm, const SemDat
     id["gains"] = text_of(sem->gains);
     id["offset"] = format_exact(sem->offset);
     id["SEM noise"] = text_of({sem->noise.slope, sem->noise.intercept, sem->noise.least_variance});
-    id["transform"] = text_of(sem->sem_to_afm);
+    id["transform"] = map_text(sem->sem_to_afm);
   }
   return id;
 }
@@ -157,7 +157,9 @@ ReconstructSummary run(const ReconstructJob& job, const ChainListener& listener)
     image = job.sem->image;
     s.saturated = leave_out_saturated(image);
     if (s.saturated > 0 && told.note) told.note(fmt::format("SEM: {} saturated pixels are left out", s.saturated));
-    s.model = model_of(job.model, image, told);
+    ModelRequest request = job.model;
+    if (request.folder.empty()) request.folder = job.folder;   // without a cache
+    s.model = model_of(request, image, told);
   }
   if (job.afm) s.afm = prepare(*job.afm, threads, told);
   if (job.afm && job.sem) {

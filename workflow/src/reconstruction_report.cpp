@@ -21,7 +21,7 @@ using Json = nlohmann::ordered_json;
 
 std::string list_of(const std::vector<double>& values) {
   std::string text;
-  for (const double value : values) text += (text.empty() ? "" : ",") + format_exact(value);
+  for (const double value : values) text += fmt::format("{}{}", text.empty() ? "" : ",", format_exact(value));
   return text;
 }
 
@@ -201,7 +201,7 @@ std::string reconstruction_report(const ReconstructJob& job, const ReconstructSu
   Json json;
   json["semsurf"] = version();
   json["libraries"] = library_versions();
-  json["command"] = quoted(job.command);
+  json["command"] = job.command_line;
   json["repeat"] = quoted(repeating_command(job, s, afm, sem));
   json["verdict"] = name(s.verdict);
   json["reasons"] = s.reasons;

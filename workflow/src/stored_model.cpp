@@ -103,6 +103,9 @@ StoredModel find_model(const ModelRequest& r, const TrainListener& listener) {
   if (!r.file.empty()) return load(r.file, r);
   if (r.material.name.empty())
     throw UsageError("--material", "it is missing, and so is --model", "Say what the specimen is made of, as --material Si");
+  if (r.folder.empty())
+    throw UsageError("--model", "it is missing, and there is no cache to keep a trained one in",
+                     "Train one with 'semsurf train', or name a folder with --cache");
   const auto note = [&](const std::string& text) {
     if (listener.note) listener.note(text);
   };

@@ -32,8 +32,8 @@ struct ReconstructJob {
   std::optional<HeightField> truth;              ///< in the SEM's frame, or the scan's without an SEM image: to compare with
   std::filesystem::path truth_file;
   std::filesystem::path folder;                  ///< of the result; made where it is missing
-  std::vector<std::string> command;              ///< the command's words as given, for the record
-  std::vector<std::string> fixed_options;        ///< those of them that say what to do with the inputs, with their values
+  std::string command_line;                      ///< as given, for the record
+  std::vector<std::string> fixed_options;        ///< what it says of how inputs are read and prepared: options and values
   bool picture = true;                           ///< panel.png, which needs Python with Matplotlib
 };
 

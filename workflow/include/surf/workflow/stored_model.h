@@ -38,7 +38,7 @@ struct StoredModel {
   bool made = false;               ///< it was trained just now
 };
 
-/// The name that a trained model is kept by: SI-1keV-10nm-HASH.json, the hash of all that it depends on: material,
+/// The name that a trained model is kept by: si-1000ev-10nm-HASH.json, the hash of all that it depends on: material,
 /// energy, spot, pixel, physics, learning and the version of semsurf.
 std::string kept_name(const ModelRequest& request);
 
