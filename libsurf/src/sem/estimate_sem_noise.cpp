@@ -15,7 +15,7 @@ namespace {
 constexpr double cut = 3.5;                    // standard errors from the line
 constexpr double most_saturated = 0.005;       // share of a block's pixels
 constexpr double core_share = 0.3;             // of the blocks, to find where they crowd
-constexpr double lower_cut = 4, upper_cut = 2; // standard deviations of slow shares
+constexpr double lower_cut = 4, upper_cut = 1; // standard deviations of slow shares
 constexpr int wanted_blocks = 20;
 constexpr int least_blocks = 5;
 
@@ -25,35 +25,55 @@ double middle(std::vector<double> values) {
   return *at;
 }
 
-/// Flat blocks crowd at the slow share of the noise, with structure above them. Where they crowd is the
-/// middle of the narrowest interval with a share of all; how narrowly, what lies below it tells.
-std::vector<char> choose_flat(const std::vector<FlatSample>& samples, bool& clear) {
-  std::vector<double> sorted;
-  for (const FlatSample& s : samples)
-    if (s.squares > 0) sorted.push_back(slow_share(s));
-  std::vector<char> flat(samples.size(), 0);
-  if (sorted.empty()) return flat;
-  std::ranges::sort(sorted);
+/// What choosing tells of a block.
+enum Flatness : char { structured, flat, typical };
+
+struct Crowd {
+  double centre = 0, deviation = 0;
+};
+
+/// Flat blocks crowd at the slow share of the noise, with structure above them. Where they crowd is about the
+/// narrowest interval with a share of all; how narrowly, what lies below it tells.
+Crowd find_crowd(const std::vector<double>& sorted) {
   const std::size_t n = sorted.size();
   const std::size_t core = std::clamp<std::size_t>(static_cast<std::size_t>(core_share * static_cast<double>(n)),
                                                    std::min<std::size_t>(n, 4), n);
   std::size_t best = 0;
   for (std::size_t i = 0; i + core <= n; ++i)
     if (sorted[i + core - 1] - sorted[i] < sorted[best + core - 1] - sorted[best]) best = i;
-  const double centre = sorted[best + core / 2];
-  std::vector<double> below;
-  for (const double share : sorted)
-    if (share <= centre) below.push_back(centre - share);
-  const double deviation = std::max(1.4826 * middle(below), 1e-6);
+  Crowd crowd{sorted[best + core / 2], 0};
+  for (int i = 0; i < 5; ++i) {
+    std::vector<double> below, near;
+    for (const double share : sorted)
+      if (share <= crowd.centre) below.push_back(crowd.centre - share);
+    crowd.deviation = std::max(1.4826 * middle(below), 1e-6);
+    for (const double share : sorted)
+      if (std::fabs(share - crowd.centre) <= 1.5 * crowd.deviation) near.push_back(share);
+    crowd.centre = middle(near);
+  }
+  return crowd;
+}
+
+/// Blocks below the upper cut are flat. Of these the typical ones are as far from the crowd's centre on either
+/// side: the others' correlations would be too small.
+std::vector<char> choose_flat(const std::vector<FlatSample>& samples, bool& clear) {
+  std::vector<double> sorted;
+  for (const FlatSample& s : samples)
+    if (s.squares > 0) sorted.push_back(slow_share(s));
+  std::vector<char> chosen(samples.size(), structured);
+  if (sorted.empty()) return chosen;
+  std::ranges::sort(sorted);
+  const Crowd crowd = find_crowd(sorted);
   for (std::size_t i = 0; i < samples.size(); ++i) {
-    const double from = slow_share(samples[i]) - centre;
-    flat[i] = samples[i].squares > 0 && from >= -lower_cut * deviation && from <= upper_cut * deviation;
+    const double from = (slow_share(samples[i]) - crowd.centre) / crowd.deviation;
+    if (samples[i].squares > 0 && from >= -lower_cut && from <= upper_cut)
+      chosen[i] = from >= -upper_cut ? typical : flat;
   }
   // White noise scatters by sqrt(2 * 3.46 / n) of its share: 3.46 is the sum of squares of the weights in
   // `slow_share` but the first.
-  const double expected = centre * std::sqrt(2 * 3.46 / static_cast<double>(samples.front().pixels));
-  clear = deviation < 2.5 * expected;
-  return flat;
+  const double expected = crowd.centre * std::sqrt(2 * 3.46 / static_cast<double>(samples.front().pixels));
+  clear = crowd.deviation < 2.5 * expected;
+  return chosen;
 }
 
 Grid<unsigned char> unsaturated(const PlacedImage& image, const Saturation& saturated) {
@@ -88,7 +108,7 @@ FlatSamples blocks_of(const PlacedImage& image, const Grid<unsigned char>& good,
 
 struct Chosen {
   FlatSamples flat;
-  std::vector<char> used;
+  std::vector<char> used;   // Flatness
 };
 
 /// The largest blocks of which enough are flat.
@@ -101,7 +121,7 @@ Chosen find_flat(const PlacedImage& image, const Grid<unsigned char>& good, cons
     any = any || std::ranges::any_of(c.flat.samples, [](const FlatSample& s) { return s.squares > 0; });
     bool clear = false;
     if (!c.flat.samples.empty()) c.used = choose_flat(c.flat.samples, clear);
-    const auto found = std::ranges::count(c.used, 1);
+    const auto found = std::ranges::count_if(c.used, [](char f) { return f != structured; });
     if (found < (side == sides.back() ? least_blocks : wanted_blocks)) continue;
     e.blocks = static_cast<int>(c.flat.samples.size());
     if (!clear)
@@ -136,7 +156,7 @@ Chosen given_regions(const PlacedImage& image, const Grid<unsigned char>& good, 
     if (!(c.flat.samples.back().squares > 0))
       throw InvalidInput(subject, "there is no noise in it", "Give a region that is not saturated or synthetic");
   }
-  c.used.assign(c.flat.samples.size(), 1);
+  c.used.assign(c.flat.samples.size(), typical);
   return c;
 }
 
@@ -153,6 +173,24 @@ double kurtosis_of(const Chosen& c) {
   return weight > 0 ? sum / weight : 0;
 }
 
+/// The line, given the variance of each place as far as it is known, for the correlation.
+void fit(const Chosen& c, const std::vector<double>& variances, const SemNoiseOptions& options, SemNoiseEstimate& e) {
+  const LagSums correlation = pooled_correlation(c.flat, variances);
+  set_correlation(correlation, e);
+  e.excess_kurtosis = kurtosis_of(c);
+  const double spread = std::max(2 * e.correlation_squares + e.excess_kurtosis, 0.2);
+  std::vector<VariancePoint> points;
+  e.points.clear();
+  for (std::size_t i = 0; i < c.used.size(); ++i) {
+    if (!c.used[i]) continue;
+    const FlatSample& s = c.flat.samples[i];
+    const double variance = variance_of(s, c.flat.responses[static_cast<std::size_t>(s.geometry)], correlation);
+    points.push_back({s.mean, variance, 2 * static_cast<double>(s.pixels - c.flat.coefficients()) / spread});
+    e.points.push_back({s.region, s.pixels, s.mean, variance, 0, true});
+  }
+  set_line(points, options.least_share, options.regions.empty() ? cut : 0, e);
+}
+
 }  // namespace
 
 SemNoiseEstimate estimate_sem_noise(const PlacedImage& image, const SemNoiseOptions& options) {
@@ -162,19 +200,16 @@ SemNoiseEstimate estimate_sem_noise(const PlacedImage& image, const SemNoiseOpti
   const Saturation saturated = find_saturation(image.values, image.valid, options, e);
   const Grid<unsigned char> good = unsaturated(image, saturated);
   const Chosen c = options.regions.empty() ? find_flat(image, good, options, e) : given_regions(image, good, options);
-  const LagSums correlation = pooled_correlation(c.flat, c.used);
-  set_correlation(correlation, e);
-  e.excess_kurtosis = kurtosis_of(c);
-  const double spread = std::max(2 * e.correlation_squares + e.excess_kurtosis, 0.2);
-  std::vector<VariancePoint> points;
-  for (std::size_t i = 0; i < c.used.size(); ++i) {
+  // A place over its own variance makes the correlation a little too small: the second time over the line's.
+  std::vector<double> variances(c.used.size(), 0);
+  for (std::size_t i = 0; i < variances.size(); ++i)
+    if (c.used[i] == typical) variances[i] = c.flat.samples[i].squares / static_cast<double>(c.flat.samples[i].pixels);
+  fit(c, variances, options, e);
+  for (std::size_t i = 0, point = 0; i < variances.size(); ++i) {
     if (!c.used[i]) continue;
-    const FlatSample& s = c.flat.samples[i];
-    const double variance = variance_of(s, c.flat.responses[static_cast<std::size_t>(s.geometry)], correlation);
-    points.push_back({s.mean, variance, 2 * static_cast<double>(s.pixels - c.flat.coefficients()) / spread});
-    e.points.push_back({s.region, s.pixels, s.mean, variance, 0, true});
+    variances[i] = e.points[point++].used && c.used[i] == typical ? e.noise.variance(c.flat.samples[i].mean) : 0;
   }
-  set_line(points, options.least_share, options.regions.empty() ? cut : 0, e);
+  fit(c, variances, options, e);
   set_off_line_share(image.values, image.valid, e);
   add_warnings(e);
   return e;

@@ -141,17 +141,16 @@ bool FlatSamples::add(const PixelRectangle& r) {
   return true;
 }
 
-LagSums pooled_correlation(const FlatSamples& flat, const std::vector<char>& used) {
+LagSums pooled_correlation(const FlatSamples& flat, const std::vector<double>& variances) {
   Eigen::Matrix<double, lag_count, lag_count> response = decltype(response)::Zero();
   Eigen::Matrix<double, lag_count, 1> products = decltype(products)::Zero();
   LagSums pairs{};
   for (std::size_t i = 0; i < flat.samples.size(); ++i) {
     const FlatSample& s = flat.samples[i];
-    if (!used[i] || !(s.squares > 0)) continue;
+    if (!(variances[i] > 0)) continue;
     const LagResponse& r = flat.responses[static_cast<std::size_t>(s.geometry)];
-    const double variance = s.squares / static_cast<double>(s.pixels);   // each place counts alike
     for (std::size_t h = 0; h < lag_count; ++h) {
-      products[static_cast<Eigen::Index>(h)] += s.products[h] / variance;
+      products[static_cast<Eigen::Index>(h)] += s.products[h] / variances[i];
       pairs[h] += s.pairs[h];
       for (std::size_t k = 0; k < lag_count; ++k)
         response(static_cast<Eigen::Index>(h), static_cast<Eigen::Index>(k)) += r[h * lag_count + k];

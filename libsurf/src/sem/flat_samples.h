@@ -65,9 +65,9 @@ class FlatSamples {
   Basis basis_;
 };
 
-/// The noise's correlation at each lag, 1 first, from residuals of many places. What is within four standard
-/// errors of 0 is 0.
-LagSums pooled_correlation(const FlatSamples& flat, const std::vector<char>& used);
+/// The noise's correlation at each lag, 1 first, from residuals of many places, each over its `variances` (one
+/// per sample; 0: it does not count). What is within four standard errors of 0 is 0.
+LagSums pooled_correlation(const FlatSamples& flat, const std::vector<double>& variances);
 
 /// Variance of the noise in a place, free of what the polynomial took.
 double variance_of(const FlatSample& sample, const LagResponse& response, const LagSums& correlation);

@@ -15,6 +15,7 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr int off_line_block = 4;
+constexpr double least_spread = 10;      // variance of the means over that of their noise: a slope 10 % too small
 constexpr double least_correlation_sum = 1.0 / 25;   // 25 pixels enter it
 
 double median_variance(const std::vector<VariancePoint>& points) {
@@ -33,6 +34,19 @@ Range means_of(const std::vector<VariancePoint>& points, const std::vector<char>
   for (std::size_t i = 0; i < points.size(); ++i)
     if (used[i]) r.least = std::min(r.least, points[i].mean), r.largest = std::max(r.largest, points[i].mean);
   return r;
+}
+
+/// Whether means differ by more than their noise: else a slope would be that of mean on variance by chance.
+bool spread_is_real(const SemNoiseEstimate& e, const std::vector<char>& used) {
+  double n = 0, mean = 0, squares = 0, error = 0;
+  for (std::size_t i = 0; i < used.size(); ++i) {
+    if (!used[i]) continue;
+    const NoisePoint& p = e.points[i];
+    const double from = p.mean - mean;
+    n += 1, mean += from / n, squares += from * (p.mean - mean);
+    error += p.variance * e.correlation_sum / static_cast<double>(p.pixels);
+  }
+  return squares > least_spread * error;
 }
 
 }  // namespace
@@ -82,7 +96,7 @@ void set_correlation(const LagSums& correlation, SemNoiseEstimate& e) {
 void test_line(const std::vector<VariancePoint>& points, const VarianceLine& line, double parameters,
                SemNoiseEstimate& e) {
   double count = -parameters;
-  e.chi_squared = 0;
+  e.chi_squared = 0, e.pixels = 0;
   for (std::size_t i = 0; i < points.size(); ++i) {
     e.points[i].used = line.used[i] != 0;
     const double v = e.noise.variance(points[i].mean);
@@ -110,7 +124,7 @@ void set_line(const std::vector<VariancePoint>& points, double least_share, doub
   const double middle = 0.5 * (means.least + means.largest);
   // Half the range of means times the slope's error: how much less is known of an end than of the middle.
   const double unknown = std::sqrt(line.covariance[0]) * 0.5 * (means.largest - means.least);
-  e.slope_known = line.covariance[0] > 0 && unknown <= 0.5 * std::fabs(line.slope * middle + line.intercept);
+  e.slope_known = line.covariance[0] > 0 && spread_is_real(e, line.used) && unknown <= 0.5 * std::fabs(line.slope * middle + line.intercept);
   if (!e.slope_known) {
     options.constant = true;
     line = fit_variance_line(points, options);

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "surf/sem/sem_noise.h"
+
 namespace surf {
 namespace {
 
@@ -13,39 +15,48 @@ constexpr int most_steps = 200;
 constexpr double first_cut = 6;
 
 struct Sums {
-  double weight = 0, mean = 0, variance = 0;   // of means and variances: weighted averages
+  double weight = 0, mean = 0, response = 0;   // of means and responses: weighted averages
   double xx = 0, xy = 0;                       // about them
 };
 
-template <class Weight>
-Sums sums(const std::vector<VariancePoint>& points, const std::vector<char>& used, const Weight& weight) {
+struct Working {
+  double weight = 0, response = 0;
+};
+
+template <class Work>
+Sums sums(const std::vector<VariancePoint>& points, const std::vector<char>& used, const Work& work) {
   Sums s;
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (!used[i]) continue;
-    const double w = weight(points[i]);
-    s.weight += w, s.mean += w * points[i].mean, s.variance += w * points[i].variance;
+    const auto [w, response] = work(points[i]);
+    s.weight += w, s.mean += w * points[i].mean, s.response += w * response;
   }
-  s.mean /= s.weight, s.variance /= s.weight;
+  if (!(s.weight > 0)) return s;
+  s.mean /= s.weight, s.response /= s.weight;
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (!used[i]) continue;
-    const double w = weight(points[i]), dx = points[i].mean - s.mean;
-    s.xx += w * dx * dx, s.xy += w * dx * (points[i].variance - s.variance);
+    const auto [w, response] = work(points[i]);
+    const double dx = points[i].mean - s.mean;
+    s.xx += w * dx * dx, s.xy += w * dx * (response - s.response);
   }
   return s;
 }
 
-double at(const VarianceLine& line, double mean) { return line.slope * mean + line.intercept; }
+SemNoise noise_of(const VarianceLine& line, double floor) { return {line.slope, line.intercept, floor}; }
 
-/// One weighted least-squares fit, with the weights of the line as it is.
+/// One step of Fisher scoring. Where the variance has left the line, only what it still follows of it counts.
 void step(const std::vector<VariancePoint>& points, const VarianceLineOptions& o, VarianceLine& line) {
-  const VarianceLine old = line;
-  const Sums s = sums(points, line.used, [&](const VariancePoint& p) {
-    const double v = std::max(at(old, p.mean), o.floor);
-    return p.freedom / (2 * v * v);
+  const SemNoise old = noise_of(line, o.floor);
+  const Sums s = sums(points, line.used, [&](const VariancePoint& p) -> Working {
+    const double on_line = old.slope * p.mean + old.intercept, v = old.variance(p.mean);
+    const double follows = std::clamp(on_line / (2 * o.floor), 0.0, 1.0);
+    if (follows <= 0) return {};
+    return {p.freedom * follows * follows / (2 * v * v), on_line + (p.variance - v) / follows};
   });
+  if (!(s.weight > 0)) return;
   const bool sloped = !o.constant && s.xx > 1e-14 * s.weight * s.mean * s.mean && s.xx > 0;
   line.slope = sloped ? s.xy / s.xx : 0;
-  line.intercept = s.variance - line.slope * s.mean;
+  line.intercept = s.response - line.slope * s.mean;
   const double vs = sloped ? 1 / s.xx : 0;
   line.covariance = {vs, -s.mean * vs, -s.mean * vs, 1 / s.weight + s.mean * s.mean * vs};
 }
@@ -105,14 +116,15 @@ VarianceLine fit_variance_line(const std::vector<VariancePoint>& points, const V
     const VarianceLine old = line;
     if (robust) {
       for (std::size_t k = 0; k < points.size(); ++k)
-        line.used[k] = std::fabs(score(points[k], std::max(at(line, points[k].mean), o.floor))) <= cut;
+        line.used[k] = std::fabs(score(points[k], noise_of(line, o.floor).variance(points[k].mean))) <= cut;
       if (std::ranges::count(line.used, 1) < 3) line.used.assign(points.size(), 1);
     }
     step(points, o, line);
     double largest = o.floor, change = 0;
     for (const VariancePoint& p : points) {
-      largest = std::max(largest, std::fabs(at(line, p.mean)));
-      change = std::max(change, std::fabs(at(line, p.mean) - at(old, p.mean)));
+      const double v = noise_of(line, o.floor).variance(p.mean);
+      largest = std::max(largest, v);
+      change = std::max(change, std::fabs(v - noise_of(old, o.floor).variance(p.mean)));
     }
     const bool cut_reached = !robust || cut <= o.cut;
     cut = std::max(o.cut, 0.85 * cut);
@@ -122,24 +134,25 @@ VarianceLine fit_variance_line(const std::vector<VariancePoint>& points, const V
 }
 
 double curvature_score(const std::vector<VariancePoint>& points, const VarianceLine& line, double floor) {
-  const auto weight = [&](const VariancePoint& p) {
-    const double v = std::max(at(line, p.mean), floor);
-    return p.freedom / (2 * v * v);
+  const SemNoise noise = noise_of(line, floor);
+  const auto work = [&](const VariancePoint& p) -> Working {
+    const double v = noise.variance(p.mean);
+    return {p.freedom / (2 * v * v), p.variance - v};
   };
-  const Sums s = sums(points, line.used, weight);
+  const Sums s = sums(points, line.used, work);
   if (!(s.xx > 0)) return 0;
   const double scale = std::sqrt(s.xx / s.weight);
   double w1 = 0, w2 = 0, w3 = 0, w4 = 0;   // sums of weight times powers of the standardised mean
   const auto each = [&](const auto& visit) {
     for (std::size_t i = 0; i < points.size(); ++i)
-      if (line.used[i]) visit(points[i], weight(points[i]), (points[i].mean - s.mean) / scale);
+      if (line.used[i]) visit(work(points[i]), (points[i].mean - s.mean) / scale);
   };
-  each([&](const VariancePoint&, double w, double x) { w1 += w, w2 += w * x * x, w3 += w * x * x * x; });
+  each([&](const Working& w, double x) { w1 += w.weight, w2 += w.weight * x * x, w3 += w.weight * x * x * x; });
   double xy = 0;
   // The square less what a line says of it.
-  each([&](const VariancePoint& p, double w, double x) {
+  each([&](const Working& w, double x) {
     const double square = x * x - w2 / w1 - w3 / w2 * x;
-    w4 += w * square * square, xy += w * square * (p.variance - at(line, p.mean));
+    w4 += w.weight * square * square, xy += w.weight * square * w.response;
   });
   return w4 > 1e-9 * w1 ? xy / std::sqrt(w4) : 0;
 }

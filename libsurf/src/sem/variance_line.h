@@ -20,12 +20,12 @@ struct VarianceLine {
 
 struct VarianceLineOptions {
   bool constant = false;    ///< slope 0
-  double floor = 0;         ///< > 0: smaller values of the line weigh as this one
+  double floor = 1e-12;     ///< SemNoise::least_variance, > 0
   double cut = 0;           ///< points beyond so many standard errors are left out; 0: all count
 };
 
 /// The most likely line through variances whose errors are those of chi-squared: weights freedom / (2 v^2) with
-/// v of the line itself, iterated. With `cut` it begins at the line through medians of groups of points, so
+/// v of the line itself, iterated; where the variance leaves the line (SemNoise), the likelihood's. With `cut` it begins at the line through medians of groups of points, so
 /// that up to half of them may be far too large. At least one point; with one mean only the slope is 0.
 VarianceLine fit_variance_line(const std::vector<VariancePoint>& points, const VarianceLineOptions& options);
 

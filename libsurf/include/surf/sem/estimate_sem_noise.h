@@ -47,8 +47,8 @@ struct SemNoiseEstimate {
   SemNoise noise;
   /// Of slope and intercept, row-major; enlarged by `dispersion` where that is above 1.
   std::array<double, 4> covariance{};
-  /// False: all means are so alike that the line's variance at either end of them is not known to a factor of
-  /// two; `noise` is a constant then, and the slope's variance in `covariance` is 0.
+  /// False: the means differ by hardly more than their noise, or the variance at either end of them is not
+  /// known to half its size; `noise` is a constant then, and the slope's variance in `covariance` is 0.
   bool slope_known = true;
   std::vector<NoisePoint> points;            ///< by rows of the image; by mean where a model gave the means
   /// Of the used points about the line, each as a standard normal number (Wilson and Hilferty 1931), the
@@ -63,8 +63,8 @@ struct SemNoiseEstimate {
   /// SemNoise leaves it.
   double off_line_share = 0;
   double correlation_x = 0, correlation_y = 0;   ///< of the noise of neighbours; 0 for a pixel's own
-  /// Sums of the noise's correlation, and of its square, over all distances up to two pixels: 1 for independent
-  /// pixels. n pixels are worth n / `correlation_sum` for a mean and n / `correlation_squares` for a variance.
+  /// Sums of the noise's correlation (1/25 at least), and of its square, over all distances up to two pixels: 1
+  /// for independent pixels. n pixels are worth n / `correlation_sum` for a mean and n / `correlation_squares` for a variance.
   double correlation_sum = 1, correlation_squares = 1;
   double excess_kurtosis = 0;                ///< of the noise; 0 if normal
   double quantum = 0;                        ///< step of the grey levels, 0: none. It adds quantum^2 / 12
