@@ -84,9 +84,8 @@ void take_preparation(const ChainOptions& o, workflow::AfmInput& afm) {
   if (o.seed) p.seed = parse_seed(*o.seed, "--seed");
 }
 
-io::LandmarkFrame frame_of(const Grid<double>& values, double pitch_x, double pitch_y, double x, double y) {
-  return {values.width(), values.height(), pitch_x, pitch_y, x, y};
-}
+/// Where the samples of a scan lie, for its pixels.
+PlacedImage place_of(const HeightField& f) { return {f.z_nm, f.valid, f.pitch_x_nm, f.pitch_y_nm, f.origin_x_nm, f.origin_y_nm}; }
 
 }  // namespace
 
@@ -142,9 +141,7 @@ workflow::PoseOptions pose_options(const ChainOptions& o, const HeightField& afm
     throw UsageError("--landmarks-only", "there are no landmarks", "Add --landmarks FILE.csv");
   pose.landmarks_only = o.landmarks_only;
   if (o.landmarks) {
-    pose.landmarks = io::read_landmarks(
-        *o.landmarks, frame_of(sem.values, sem.pitch_x_nm, sem.pitch_y_nm, sem.origin_x_nm, sem.origin_y_nm),
-        frame_of(afm.z_nm, afm.pitch_x_nm, afm.pitch_y_nm, afm.origin_x_nm, afm.origin_y_nm));
+    pose.landmarks = io::read_landmarks(*o.landmarks, sem, place_of(afm));
     fit_landmarks(pose.landmarks);   // complains of too few, or on a line, before any work
   }
   return pose;

@@ -286,3 +286,12 @@ semsurf_cli_test(predict.scene ARGS predict "${PROJECT_SOURCE_DIR}/samples/mesa8
 semsurf_cli_test(predict.steep ARGS predict steps.txt --pitch 3nm --z-unit 20nm --model secant.json -q -o image.tif
   STDOUT "^$" STDERR "warning: .* steeper than the 70 degrees" WRITES image.tif)
 semsurf_cli_test(info.model ARGS info secant.json STDOUT "image model" "for +Si, 1 keV" "warning +few pixels" "all learnt from")
+
+# Registration and reconstruction; tests/cli/reconstruct.py has more.
+semsurf_cli_test(help.register ARGS register --help STDOUT "AFM scan" "Registration:" "ambiguous" "Examples:")
+semsurf_cli_test(help.reconstruct ARGS reconstruct --help
+  STDOUT "Inputs:" "SEM image:" "Registration:" "Reconstruction:" "Output:" "Exit code 4" "Examples:")
+semsurf_cli_test(reconstruct.afm_only ARGS reconstruct --afm steps.txt --afm-pixel-size 3nm --no-level --tip tip.txt
+  --afm-noise 0.5,0.01 --no-picture --threads 1 -o result/
+  STDOUT "-log L AFM" "held by +AFM" "written +result/surface.vti"
+  WRITES result/surface.vti result/surface.gsf result/surface.glb result/simulated_afm.vti result/tip.txt result/history.csv result/report.json)
