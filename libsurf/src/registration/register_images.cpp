@@ -20,10 +20,10 @@ namespace surf {
 namespace {
 
 // How many places are followed how far. The true one is nearly always among the first ten of the search.
-constexpr std::size_t places_searched = 160, places_coarse = 32, places_fine = 10, places_sharp = 5;
+constexpr std::size_t places_searched = 120, places_coarse = 24, places_fine = 8, places_sharp = 3;
 constexpr Effort coarse_effort{3, 8}, fine_effort{6, 12};
 constexpr double sharp_blur_px = 2;    // from here on every pixel counts, and costs
-constexpr double probe_blur_px = 3;
+constexpr double probe_blur_px = 3, widest_result_px = 4;
 constexpr double probes_px[] = {-8, -4, 4, 8};
 constexpr double rival_apart_px = 1;   // nearer than this it is the same place
 constexpr double chance_odds = 1000;
@@ -138,7 +138,7 @@ class Registrar {
     const BlurLevel finer = blurred_by(0.5 * pitch_);
     refine(trials, finer, RegistrationObjective::correlation, coarse_effort, options_, options_.watch.part(0.65, 0.7));
     prune(trials, finer, frame_, options_, 0.5 * pitch_, places_fine);
-    for (Trial& trial : trials) trial.steps.clear();
+    for (Trial& trial : trials) trial.steps.clear(), trial.places.clear();
     return trials;
   }
 
@@ -153,22 +153,43 @@ class Registrar {
 
   bool by_correlation() const { return options_.objective == RegistrationObjective::correlation; }
 
-  double error_of(const Trial& trial) {
-    const BlurLevel& last = level(options_.blurs_px.back());
+  double error_of(const Place& trial) {
+    const BlurLevel& last = level(blur_);
     if (by_correlation()) return score_error(last, trial.corners);
     // 2 N I is noncentral chi-squared, of variance 8 N I.
     const double n = static_cast<double>(trial.samples) * independent_share(last, trial.corners);
     return n > 0 ? std::sqrt(unit_score_error_of_information * std::max(trial.score, 1 / n) / n) : 1;
   }
 
-  Uncertainty known(const Trial& trial) {
-    const BlurLevel& last = level(options_.blurs_px.back());
+  Uncertainty known(const Place& trial) {
+    const BlurLevel& last = level(blur_);
     if (by_correlation()) return uncertainty_of(last, trial.corners);
     Uncertainty u = uncertainty_from(information_covariance(last, options_.mutual_information, trial.corners,
                                                             independent_share(last, trial.corners)),
                                      last, trial.corners);
     u.score = error_of(trial);
     return u;
+  }
+
+  /// Noise hides sharp detail, and blur hides sharp edges: the map is taken from the blur where it is known
+  /// best. All trials go back to it.
+  Uncertainty choose_blur(std::vector<Trial>& trials) {
+    const Trial best = trials.front();
+    std::optional<Uncertainty> least;
+    std::size_t chosen = best.steps.size() - 1;
+    for (std::size_t i = 0; i < best.steps.size(); ++i) {
+      const bool last = i + 1 == best.steps.size();
+      if (!last && (best.steps[i].blur_px > widest_result_px || !best.places[i].settled)) continue;
+      if (last && least && !best.places[i].settled) continue;
+      blur_ = best.steps[i].blur_px;
+      const Uncertainty u = known(static_cast<const Place&>(best.places[i]));
+      if (least && u.place_px >= least->place_px) continue;
+      least = u;
+      chosen = i;
+    }
+    blur_ = best.steps[chosen].blur_px;
+    for (Trial& trial : trials) static_cast<Place&>(trial) = Place(trial.places[chosen]);
+    return *least;
   }
 
   /// Other optima along the motions that are known least: on patterns that slide or repeat they are as good.
@@ -185,8 +206,8 @@ class Registrar {
       prune(probes, at, frame_, options_, rival_apart_px, places_sharp);
     };
     std::vector<double> blurs;
-    for (const double blur : options_.blurs_px)
-      if (blur <= probe_blur_px || blur == options_.blurs_px.back()) blurs.push_back(blur);
+    for (const RegistrationStep& step : best.steps)
+      if (step.blur_px <= std::max(probe_blur_px, blur_) && step.blur_px >= blur_) blurs.push_back(step.blur_px);
     for (const double blur : blurs) {
       refine(probes, level(blur), options_.objective, fine_effort, options_, {{}, options_.watch.cancel});
       drop_same(level(blur), rival_apart_px);
@@ -205,17 +226,18 @@ class Registrar {
     Evidence evidence;
     evidence.searched = !options_.start;
     evidence.rival_sigmas = options_.rival_sigmas;
-    const BlurLevel& last = level(options_.blurs_px.back());
     if (trials.empty() || trials.front().samples == 0 || !(trials.front().evidence > 0)) {
       evidence.any_place = false;
       if (options_.start) r.sem_to_afm = *options_.start;
       judge(r, evidence);
       return r;
     }
+    const Uncertainty u = choose_blur(trials);
     const Trial best = trials.front();
-    const Uncertainty u = known(best);
     r.sem_to_afm = frame_.affine(best.corners);
     r.score = best.score;
+    r.blur_px = blur_;
+    const BlurLevel& last = level(blur_);
     r.covariance = affine_covariance(frame_, u.covariance);
     r.stderr_px = u.place_px;
     r.overlap = static_cast<double>(best.samples) / static_cast<double>(last.samples.size());
@@ -269,6 +291,7 @@ class Registrar {
   CornerFrame frame_;
   std::map<double, std::unique_ptr<BlurLevel>> levels_;
   double pitch_ = 0, chance_evidence_ = 0;
+  double blur_ = 0;   // of the result
   std::vector<Trial> coarse_;
 };
 

@@ -131,7 +131,15 @@ SmoothImage::Value SmoothImage::at(double x, double y) const {
 }
 
 double SmoothImage::value(double x, double y) const {
-  return at(x, y).value;
+  const double u = std::clamp(column(x), 0.0, coefficients_.width() - 3.0), v = std::clamp(row(y), 0.0, coefficients_.height() - 3.0);
+  const int i = std::min(static_cast<int>(u), coefficients_.width() - 4), j = std::min(static_cast<int>(v), coefficients_.height() - 4);
+  const Weights across = weights_of(u - i), up = weights_of(v - j);
+  double sum = 0;
+  for (int k = 0; k < 4; ++k) {
+    const double* const c = &coefficients_(i, j + k);
+    sum += up.value[k] * (across.value[0] * c[0] + across.value[1] * c[1] + across.value[2] * c[2] + across.value[3] * c[3]);
+  }
+  return sum;
 }
 
 }  // namespace surf

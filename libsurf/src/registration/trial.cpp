@@ -41,6 +41,7 @@ void refine_one(Trial& trial, const BlurLevel& level, RegistrationObjective obje
   const std::vector<std::size_t> overlap = overlap_of(level, trial.corners);
   if (!overlap.empty()) step.moved_px = distance_px(before, trial.corners, moments_of(level, overlap));
   trial.steps.push_back(step);
+  trial.places.push_back(trial);
 }
 
 }  // namespace

@@ -8,14 +8,19 @@
 
 namespace surf {
 
-/// One place that is followed from blur to blur.
-struct Trial {
+/// A place, and how well the images agree there.
+struct Place {
   Corners corners{};
   double score = 0;
   double evidence = 0;     ///< log-likelihood ratio against chance, samples taken as independent
   std::size_t samples = 0; ///< that overlap
   bool settled = false;
+};
+
+/// One place that is followed from blur to blur.
+struct Trial : Place {
   std::vector<RegistrationStep> steps;
+  std::vector<Place> places;   ///< after each step
 };
 
 /// How hard to try at one blur.

@@ -124,6 +124,29 @@ void fill(Uncertainty& u, const Matrix6& h, const Matrix6& pull_variance, const 
     for (Eigen::Index j = 0; j < 6; ++j) u.covariance[static_cast<std::size_t>(6 * i + j)] = of_corners(i, j);
 }
 
+/// Variance of the sum of pulls: each block's as if the map had been found without it, or blocks that hold
+/// it alone, the few ends of lines, would seem to agree with themselves.
+Matrix6 jackknifed(const Blocks& blocks, const Columns& jacobian, const Eigen::VectorXd& residual) {
+  std::vector<Vector6> pulls(blocks.count, Vector6::Zero());
+  std::vector<Matrix6> parts(blocks.count, Matrix6::Zero());
+  for (Eigen::Index k = 0; k < jacobian.rows(); ++k) {
+    const std::size_t b = blocks.of_sample[static_cast<std::size_t>(k)];
+    pulls[b] += residual[k] * jacobian.row(k).transpose();
+    parts[b].noalias() += jacobian.row(k).transpose() * jacobian.row(k);
+  }
+  Matrix6 all = Matrix6::Zero(), variance = Matrix6::Zero();
+  for (const Matrix6& part : parts) all += part;
+  if (!(all.trace() > 0)) return variance;
+  all.diagonal().array() += 1e-9 * all.trace();
+  const Matrix6 inverse = all.inverse();
+  for (std::size_t b = 0; b < blocks.count; ++b) {
+    const Matrix6 rest = Matrix6::Identity() - parts[b] * inverse;
+    const Vector6 pull = rest.fullPivLu().solve(pulls[b]);
+    if (pull.allFinite()) variance += pull * pull.transpose();
+  }
+  return variance;
+}
+
 double own_length(const BlurLevel& level, const Corners& corners) {
   const Correlation correlation(level, corners);
   Eigen::VectorXd residual(static_cast<Eigen::Index>(correlation.size()));
@@ -171,9 +194,7 @@ Uncertainty uncertainty_of(const BlurLevel& level, const Corners& corners) {
     }
   h = (0.5 * (h + h.transpose())).eval();
 
-  for (Eigen::Index k = 0; k < n; ++k) jacobian.row(k) *= residual[k];   // the pulls
-  fill(u, h, n > 0 ? Matrix6(variance_of(blocks, jacobian, 6)) : Matrix6(Matrix6::Zero()),
-       moments_of(level, correlation.overlap()));
+  fill(u, h, jackknifed(blocks, jacobian, residual), moments_of(level, correlation.overlap()));
   return u;
 }
 

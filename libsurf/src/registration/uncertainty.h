@@ -8,8 +8,8 @@ namespace surf {
 /// How far the largest correlation is known. The corners solve "sum of each sample's pull = 0"; their
 /// covariance is H^-1 V H^-1 with H the derivative of the sum (by central differences of the exact
 /// gradient, so that noise in the AFM's image is not taken for structure) and V the pull's variance, from
-/// sums over blocks as large as the residuals are correlated: the "sandwich" of M-estimates (Huber 1967;
-/// blocks: Conley 1999, doi:10.1016/S0304-4076(98)00084-0).
+/// sums over blocks as large as the residuals are correlated, each as if left out of the fit: the "sandwich" of
+/// M-estimates (blocks: Conley 1999, doi:10.1016/S0304-4076(98)00084-0) with the jackknife's weights.
 struct Uncertainty {
   std::array<double, 36> covariance{};   ///< of the corners, SEM pixels squared
   double place_px = 0;         ///< root mean square over the overlap of the place's standard error

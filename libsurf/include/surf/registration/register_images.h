@@ -79,7 +79,8 @@ struct RegistrationStep {
 struct Registration {
   RegistrationVerdict verdict = RegistrationVerdict::unconverged;
   Affine sem_to_afm;
-  double score = 0;                        ///< correlation in [-1, 1], or mutual information in nats, at the last blur
+  double score = 0;                        ///< correlation in [-1, 1], or mutual information in nats, at `blur_px`
+  double blur_px = 0;                      ///< of both images: of the finest ones, where the map is known best
   std::array<double, 36> covariance{};     ///< of xx xy x0 yx yy y0, row-major
   double stderr_px = 0;                    ///< root mean square over the overlap of the place's standard error
   double overlap = 0;                      ///< share of the SEM's pixels that lie in the AFM's image
