@@ -31,22 +31,23 @@ constexpr double degree = std::numbers::pi / 180;
 constexpr int fine = 3;                   // samples of the true surface per AFM sample
 constexpr int per_pixel = 2;              // samples of the simulated surface per SEM pixel
 constexpr double beyond_nm = 300;         // that the simulated surface goes on beyond the image
-constexpr std::size_t cascades = 40960;   // of the library: pixels share 0.5 % of their variance, and 0.7 % of gain
+constexpr std::size_t fewest_cascades = 2048;
 
 constexpr const char* files[] = {"afm.gsf", "sem.tif", "truth.gsf", "truth_tip.gsf", "truth_sem.exr", "truth.json"};
 
 /// A library that is larger than so few primaries per pixel call for: its own chance error is common to all pixels.
 class LargeLibraries : public mc::LibrarySource {
  public:
-  explicit LargeLibraries(mc::LibrarySource& source) : source_(&source) {}
+  LargeLibraries(mc::LibrarySource& source, std::size_t cascades) : source_(&source), cascades_(cascades) {}
   std::shared_ptr<const mc::CascadeLibrary> library(const mc::CascadeSettings& settings, std::size_t wanted,
                                                     int threads, const ProgressCallback& progress,
                                                     const CancelToken* cancel) override {
-    return source_->library(settings, std::max(wanted, cascades), threads, progress, cancel);
+    return source_->library(settings, std::max(wanted, cascades_), threads, progress, cancel);
   }
 
  private:
   mc::LibrarySource* source_;
+  std::size_t cascades_;
 };
 
 const SampleScene& find_scene(const std::string& name) {
@@ -60,6 +61,9 @@ void check(const SampleJob& job) {
     throw UsageError("--size", fmt::format("{} x {} pixels", job.width, job.height), "Give 16 to 4096 each way");
   if (job.electrons < 1 || job.electrons > std::int64_t{1} << 31)
     throw UsageError("--electrons", fmt::format("{} is out of range", job.electrons), "Give 1 to 2e9 per pixel");
+  if (job.cascades < fewest_cascades)
+    throw UsageError("sample", fmt::format("{} cascades are too few", job.cascades),
+                     fmt::format("Give {} or more", fewest_cascades));
   for (const char* name : files) io::check_writable(job.folder / name);
 }
 
@@ -278,7 +282,7 @@ SampleSummary run(const SampleJob& job, const ProgressCallback& progress, const 
   options.seed = job.seed;
   options.threads = job.threads;
   JobLibraries kept(job.cache, libraries, note);
-  LargeLibraries source(kept);
+  LargeLibraries source(kept, job.cascades);
   const mc::Scene monte_carlo = monte_carlo_scene(job, scene, surface);
   const mc::SimulationResult result = mc::simulate(monte_carlo, options, progress, cancel, {}, nullptr, &source);
   if (!result.complete) {
