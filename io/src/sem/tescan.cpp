@@ -33,14 +33,14 @@ std::size_t little(std::string_view bytes) {
 }  // namespace
 
 SemHeader parse_tescan_tag(std::string_view tag, SemSize size) {
-  // Blocks of a length in four bytes, which counts itself, a kind in two, and the rest: a picture, then texts.
-  constexpr std::size_t length_bytes = 4, head_bytes = 6;
+  // Blocks of a length in four bytes, then a kind in two and the rest, which it counts: a picture, then texts.
+  constexpr std::size_t length_bytes = 4, head_bytes = 6, kind_bytes = head_bytes - length_bytes;
   constexpr std::size_t picture = 1;
   Settings settings;
   while (tag.size() >= head_bytes) {
     const std::size_t told = little(tag.substr(0, length_bytes));
-    const std::size_t length = told - std::min(told, length_bytes);
-    const std::size_t kind = little(tag.substr(length_bytes, head_bytes - length_bytes));
+    const std::size_t length = told - std::min(told, kind_bytes);
+    const std::size_t kind = little(tag.substr(length_bytes, kind_bytes));
     tag.remove_prefix(head_bytes);
     if (length > tag.size()) break;
     if (kind != picture) settings.merge(parse_settings(tag.substr(0, length)));

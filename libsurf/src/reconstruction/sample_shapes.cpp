@@ -33,10 +33,12 @@ double blurred_strip(double x_nm, double half_width_nm, double blur_nm) {
 
 Stroke::Stroke(Point2 start, double heading_deg, double width_nm, double blur_nm,
                const std::vector<StrokePiece>& pieces)
-    : half_width_nm_(0.5 * width_nm), blur_nm_(blur_nm) {
+    : half_width_nm_(0.5 * width_nm), blur_nm_(blur_nm), start_(start),
+      reach_nm_(half_width_nm_ + reach_in_blurs * blur_nm) {
   double heading = heading_deg * degree;
   for (const StrokePiece& step : pieces) {
     const double turn = step.turn_deg * degree;
+    reach_nm_ += step.length_nm;
     Piece piece;
     piece.ends[0] = start;
     if (turn == 0) {
@@ -75,6 +77,8 @@ double Stroke::distance(const Piece& piece, Point2 p) {
 }
 
 double Stroke::operator()(Point2 p) const {
+  const Point2 q = minus(p, start_);
+  if (dot(q, q) > reach_nm_ * reach_nm_) return 0;
   double nearest = std::numeric_limits<double>::infinity();
   for (const Piece& piece : pieces_) nearest = std::min(nearest, distance(piece, p));
   return blurred_strip(nearest, half_width_nm_, blur_nm_);
@@ -97,8 +101,9 @@ Island::Island(Point2 centre, double radius_nm, std::vector<double> amplitudes, 
 
 double Island::operator()(Point2 p) const {
   const Point2 q = minus(p, centre_);
+  const double reach_nm = 2 * radius_nm_ + reach_in_blurs * blur_nm_;
+  if (dot(q, q) > reach_nm * reach_nm) return 0;
   const double r = std::hypot(q.x, q.y);
-  if (r > 2 * radius_nm_ + reach_in_blurs * blur_nm_) return 0;
   const double angle = std::atan2(q.y, q.x);
   double share = 1, slope = 0;
   for (std::size_t i = 0; i < amplitudes_.size(); ++i) {

@@ -36,6 +36,8 @@ class Stroke {
 
   std::vector<Piece> pieces_;
   double half_width_nm_, blur_nm_;
+  Point2 start_;
+  double reach_nm_;   // from there; 0 beyond
 };
 
 /// A rectangle about `centre`, turned.

@@ -117,7 +117,7 @@ TEST_F(SemFileTest, BelievesZeissWhereItSpeaksOfTheImage) {
 }
 
 std::string tescan_block(const TiffMaker& tiff, unsigned kind, const std::string& data) {
-  return tiff.number(static_cast<unsigned>(data.size()) + 4, 4) + tiff.number(kind, 2) + data;
+  return tiff.number(static_cast<unsigned>(data.size()) + 2, 4) + tiff.number(kind, 2) + data;
 }
 
 TEST_F(SemFileTest, ReadsTescan) {
