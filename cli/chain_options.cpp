@@ -195,7 +195,7 @@ void add_chain_inputs(CLI::App& app, ChainOptions& o) {
       ->type_name("LENGTH")->group(inputs);
   app.add_option("--afm-pixel-size", o.afm_pixel_size, "Of scans that do not say, 2nm or 2nmx3nm (1 nm)")
       ->type_name("LENGTH")->group(inputs);
-  app.add_option("--sem-channel", o.sem_channel, "Channel of the SEM image, by name or number (the first)")
+  app.add_option("--sem-channel", o.sem_channel, "Channel of the SEM image, by name (the first)")
       ->type_name("NAME")->group(inputs);
   app.add_option("--sem-pixel-size", o.sem_pixel_size, "Of the SEM image (from the microscope's metadata)")
       ->type_name("LENGTH")->group(inputs);

@@ -29,6 +29,7 @@ void add_register(CLI::App& app, Action& action);
 void add_reconstruct(CLI::App& app, Action& action, const std::string& command_line);
 void add_tip(CLI::App& app, Action& action);
 void add_calibrate(CLI::App& app, Action& action);
+void add_sample(CLI::App& app, Action& action);
 void add_view(CLI::App& app, Action& action);
 void add_completion(CLI::App& app, Action& action);
 

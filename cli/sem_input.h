@@ -15,7 +15,7 @@ struct SemInputText {
 };
 
 /// Reads it and prints what had to be assumed, unless `quiet`. Throws UsageError, FileError, InvalidInput where the
-/// pixel size is not known.
+/// pixel size is not known (also UsageError).
 PlacedImage read_sem_input(const SemInputText& input, bool quiet);
 
 }  // namespace surf::cli
