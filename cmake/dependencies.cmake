@@ -23,6 +23,8 @@ find_package(CLI11 REQUIRED)
 find_package(PkgConfig REQUIRED)
 pkg_check_modules(CAIRO REQUIRED IMPORTED_TARGET cairo cairo-svg cairo-pdf)
 pkg_check_modules(XXHASH REQUIRED IMPORTED_TARGET libxxhash)
+pkg_check_modules(FFTW REQUIRED IMPORTED_TARGET fftw3f)
+pkg_check_modules(NLOPT REQUIRED IMPORTED_TARGET nlopt)
 # Benchmarks compare with Gwyddion's library where it is installed. Debian's file names an include folder
 # that its package does not bring.
 pkg_check_modules(GWYDDION QUIET IMPORTED_TARGET gwyddion)

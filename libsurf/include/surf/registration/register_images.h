@@ -18,8 +18,27 @@ enum class RegistrationObjective {
   mutual_information,   ///< any relation of intensities (thesis, appendix F)
 };
 
+/// How wide bins of intensities are, for N values (thesis, appendix F).
+enum class BinRule {
+  interquartile,   ///< 2 IQR N^-1/3 (Freedman and Diaconis)
+  deviation,       ///< 3.49 sigma N^-1/3 (Scott)
+};
+
+enum class EntropyEstimate {
+  histogram,
+  parzen,   ///< densities by Gaussian windows, as wide as the rule's bins, from half of the samples and averaged
+            ///< over the other half
+};
+
+struct MutualInformationOptions {
+  EntropyEstimate estimate = EntropyEstimate::histogram;
+  BinRule bins = BinRule::interquartile;
+  bool partial_volume = true;   ///< a place between samples counts for all four; false: for its own intensity
+};
+
 struct RegistrationOptions {
   RegistrationObjective objective = RegistrationObjective::correlation;
+  MutualInformationOptions mutual_information;   ///< unused with correlation
 
   /// Standard deviations of the blur of both images, in SEM pixels, in the order of use (thesis, 7.2.5).
   std::vector<double> blurs_px = {8, 5, 4, 3, 2, 1, 0};
@@ -60,7 +79,8 @@ struct RegistrationStep {
 struct Registration {
   RegistrationVerdict verdict = RegistrationVerdict::unconverged;
   Affine sem_to_afm;
-  double score = 0;                        ///< correlation in [-1, 1], or mutual information in nats, unblurred
+  double score = 0;                        ///< correlation in [-1, 1], or mutual information in nats, at `blur_px`
+  double blur_px = 0;                      ///< of both images: of the finest ones, where the map is known best
   std::array<double, 36> covariance{};     ///< of xx xy x0 yx yy y0, row-major
   double stderr_px = 0;                    ///< root mean square over the overlap of the place's standard error
   double overlap = 0;                      ///< share of the SEM's pixels that lie in the AFM's image

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <array>
+
+#include "surf/core/affine.h"
+#include "surf/core/placed_image.h"
+
+namespace surf {
+
+/// An affine map as three landmarks, like the thesis (7.2.1): where the SEM image's lower left, lower right
+/// and upper left corners lie in the AFM's frame, x0 y0 x1 y1 x2 y2. All six have the same scale. Lengths in
+/// registration's sources are SEM pixels, about the middle of each image.
+using Corners = std::array<double, 6>;
+
+/// Weights of the three corners at a place of the SEM image; they add up to 1.
+using Shares = std::array<double, 3>;
+
+/// Means of products of shares over the places that matter: what turns corners into a root mean square.
+using Moments = std::array<std::array<double, 3>, 3>;
+
+class CornerFrame {
+ public:
+  CornerFrame(const PlacedImage& sem, const PlacedImage& afm);
+
+  Corners corners(const Affine& sem_to_afm) const;
+  Affine affine(const Corners& corners) const;
+  Shares shares(double column, double row) const {
+    const double s = column / (width_ - 1), t = row / (height_ - 1);
+    return {1 - s - t, s, t};
+  }
+
+  double pixel_nm() const { return pixel_nm_; }   ///< the geometric mean of both pitches
+  Point2 sem_middle_nm() const { return sem_middle_; }
+  Point2 afm_middle_nm() const { return afm_middle_; }
+
+ private:
+  int width_, height_;
+  double pixel_nm_;
+  Point2 sem_middle_, afm_middle_;
+  std::array<Point2, 3> corners_nm_;
+};
+
+/// Where a place of the SEM image goes.
+inline Point2 place(const Corners& c, const Shares& w) {
+  return {w[0] * c[0] + w[1] * c[2] + w[2] * c[4], w[0] * c[1] + w[1] * c[3] + w[2] * c[5]};
+}
+
+/// Root mean square distance of where two maps bring the places that the moments are of.
+double distance_px(const Corners& a, const Corners& b, const Moments& moments);
+
+}  // namespace surf

@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "registration/correlation.h"
+
+#include <ceres/tiny_solver.h>
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+
+namespace surf {
+namespace {
+
+constexpr std::size_t fewest_samples = 24;
+constexpr double settled_px = 2e-3;
+
+double normalise(std::vector<double>& v) {
+  double mean = 0, sum = 0;
+  for (const double x : v) mean += x;
+  mean /= static_cast<double>(v.size());
+  for (double& x : v) x -= mean, sum += x * x;
+  const double norm = std::sqrt(sum);
+  // What rounding leaves of one colour is no structure.
+  if (!(norm > 1e-12 * (std::abs(mean) + 1e-300) * std::sqrt(static_cast<double>(v.size())))) {
+    std::fill(v.begin(), v.end(), 0.0);
+    return 0;
+  }
+  for (double& x : v) x /= norm;
+  return norm;
+}
+
+/// As the solver asks for it.
+struct Misfit {
+  using Scalar = double;
+  enum { NUM_RESIDUALS = Eigen::Dynamic, NUM_PARAMETERS = 6 };
+
+  const Correlation& correlation;
+  int& evaluations;
+
+  int NumResiduals() const { return static_cast<int>(correlation.size()); }
+  bool operator()(const double* corners, double* residuals, double* jacobian) const {
+    ++evaluations;
+    correlation.evaluate(corners, residuals, jacobian);
+    return true;
+  }
+};
+
+}  // namespace
+
+Correlation::Correlation(const BlurLevel& level, const Corners& corners)
+    : level_(level), overlap_(overlap_of(level, corners)) {
+  a_.reserve(overlap_.size());
+  for (const std::size_t i : overlap_) a_.push_back(level.samples[i].value);
+  if (!a_.empty()) normalise(a_);
+}
+
+double Correlation::evaluate(const double* at, double* residuals, double* jacobian) const {
+  const std::size_t n = size();
+  const Corners corners{at[0], at[1], at[2], at[3], at[4], at[5]};
+  std::vector<double> b(n), dx(jacobian ? n : 0), dy(jacobian ? n : 0);
+  for (std::size_t k = 0; k < n; ++k) {
+    const Point2 p = place(corners, level_.samples[overlap_[k]].shares);
+    const SmoothImage::Value v = level_.afm.at(p.x, p.y);
+    b[k] = v.value;
+    if (jacobian) dx[k] = v.dx, dy[k] = v.dy;
+  }
+  const double norm = normalise(b);
+  double r = 0;
+  for (std::size_t k = 0; k < n; ++k) r += a_[k] * b[k];
+  const double rising = std::max(0.0, r);
+  for (std::size_t k = 0; k < n; ++k) residuals[k] = a_[k] - rising * b[k];
+  if (!jacobian) return r;
+  for (std::size_t p = 0; p < 6; ++p) {
+    double* const column = jacobian + p * n;
+    if (norm == 0 || r <= 0) {
+      std::fill_n(column, n, 0.0);
+      continue;
+    }
+    const std::vector<double>& slope = p % 2 == 0 ? dx : dy;
+    double mean = 0, along_b = 0;
+    for (std::size_t k = 0; k < n; ++k) {
+      column[k] = slope[k] * level_.samples[overlap_[k]].shares[p / 2] / norm;
+      mean += column[k];
+    }
+    mean /= static_cast<double>(n);
+    for (std::size_t k = 0; k < n; ++k) {
+      column[k] -= mean;
+      along_b += column[k] * b[k];
+    }
+    double along_a = 0;
+    for (std::size_t k = 0; k < n; ++k) {
+      column[k] -= along_b * b[k];   // how the normalised b changes
+      along_a += column[k] * a_[k];
+    }
+    for (std::size_t k = 0; k < n; ++k) column[k] = -r * column[k] - along_a * b[k];
+  }
+  return r;
+}
+
+CorrelationFit fit_correlation(const BlurLevel& level, const Corners& start, int rounds, int iterations) {
+  CorrelationFit fit;
+  fit.corners = start;
+  ceres::TinySolver<Misfit> solver;
+  solver.options.max_num_iterations = iterations;
+  solver.options.function_tolerance = 1e-11;
+  solver.options.gradient_tolerance = 1e-11;
+  solver.options.parameter_tolerance = 1e-7;
+  for (int round = 0; round < rounds && !fit.settled; ++round) {
+    const Correlation correlation(level, fit.corners);
+    if (correlation.size() < fewest_samples) break;
+    const Misfit misfit{correlation, fit.evaluations};
+    Eigen::Matrix<double, 6, 1> x = Eigen::Map<const Eigen::Matrix<double, 6, 1>>(fit.corners.data());
+    solver.Solve(misfit, &x);
+    if (!x.allFinite()) break;
+    double moved = 0;
+    for (Eigen::Index i = 0; i < 6; ++i) {
+      moved = std::max(moved, std::abs(x[i] - fit.corners[static_cast<std::size_t>(i)]));
+      fit.corners[static_cast<std::size_t>(i)] = x[i];
+    }
+    fit.settled = moved < settled_px * std::max(1, level.stride);
+  }
+  fit.agreement = agreement_of(level, fit.corners);
+  return fit;
+}
+
+}  // namespace surf

@@ -1,0 +1,310 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "surf/registration/register_images.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <memory>
+
+#include "registration/mutual_information.h"
+#include "registration/pose_search.h"
+#include "registration/trial.h"
+#include "registration/uncertainty.h"
+#include "registration/verdict.h"
+#include "surf/core/error.h"
+#include "surf/core/units.h"
+
+namespace surf {
+namespace {
+
+// How many places are followed how far. The true one is nearly always among the first ten of the search.
+constexpr std::size_t places_searched = 120, places_coarse = 24, places_fine = 8, places_sharp = 3;
+constexpr Effort coarse_effort{3, 8}, fine_effort{6, 12};
+constexpr double sharp_blur_px = 2;    // from here on every pixel counts, and costs
+constexpr double probe_blur_px = 3, widest_result_px = 4;
+constexpr double probes_px[] = {-8, -4, 4, 8};
+constexpr double rival_apart_px = 1;   // nearer than this it is the same place
+constexpr double chance_odds = 1000;
+constexpr double unit_score_error_of_information = 2;
+
+void require(bool good, const char* subject, const std::string& value, const char* remedy) {
+  if (!good) throw UsageError(subject, fmt::format("{} is out of range", value), remedy);
+}
+
+void validate(const RegistrationOptions& o) {
+  require(!o.blurs_px.empty() && o.blurs_px.size() <= 100, "blurs", fmt::format("a number of {}", o.blurs_px.size()),
+          "Give 1 to 100");
+  for (const double blur : o.blurs_px)
+    require(blur >= 0 && blur <= 1000, "blur", format_exact(blur) + " px", "Give 0 to 1000 pixels");
+  require(o.least_scale > 0 && o.least_scale <= o.largest_scale && std::isfinite(o.largest_scale) &&
+              o.largest_scale <= 10 * o.least_scale, "scales",
+          fmt::format("{} to {}", format_exact(o.least_scale), format_exact(o.largest_scale)),
+          "Give numbers above 0, the largest at most ten times the least");
+  require(o.largest_shear >= 0 && o.largest_shear <= 1, "largest shear", format_exact(o.largest_shear), "Give 0 to 1");
+  require(o.least_overlap > 0 && o.least_overlap <= 1, "least overlap", format_exact(o.least_overlap),
+          "Give a share above 0, at most 1");
+  require(o.rival_sigmas >= 0 && std::isfinite(o.rival_sigmas), "rival sigmas", format_exact(o.rival_sigmas),
+          "Give 0 or more");
+  if (!o.start) return;
+  const Affine& m = *o.start;
+  for (const double v : {m.xx, m.xy, m.x0, m.yx, m.yy, m.y0})
+    require(std::isfinite(v), "start", format_exact(v), "Give six finite numbers");
+  require(m.determinant() != 0, "start", "a map of the plane onto a line", "Give one that can be turned back");
+}
+
+void require_colours(const PlacedImage& image, const char* subject) {
+  double least = 0, largest = 0;
+  std::size_t count = 0;
+  for (int y = 0; y < image.values.height(); ++y)
+    for (int x = 0; x < image.values.width(); ++x) {
+      if (!image.is_valid(x, y)) continue;
+      const double v = image.values(x, y);
+      least = count == 0 ? v : std::min(least, v);
+      largest = count == 0 ? v : std::max(largest, v);
+      ++count;
+    }
+  if (count == 0) throw InvalidInput(subject, "no pixel of it is valid", "Give an image with valid pixels");
+  if (!(largest - least > 1e-12 * std::max(std::abs(least), std::abs(largest))))
+    throw InvalidInput(subject, "it is of one colour", "Give an image that shows something");
+}
+
+/// Steepness, which is where it is whatever the intensities mean.
+PlacedImage edges_of(const PlacedImage& image, double blur_px, double pixel_nm) {
+  PlacedImage edges = image;
+  const SmoothImage smooth(image, image.pitch_x_nm / pixel_nm, image.pitch_y_nm / pixel_nm, blur_px);
+  for (int y = 0; y < image.values.height(); ++y)
+    for (int x = 0; x < image.values.width(); ++x) {
+      const SmoothImage::Value v = smooth.at(x * image.pitch_x_nm / pixel_nm - smooth.half_width(),
+                                             y * image.pitch_y_nm / pixel_nm - smooth.half_height());
+      edges.values(x, y) = std::hypot(v.dx, v.dy);
+    }
+  return edges;
+}
+
+class Registrar {
+ public:
+  Registrar(const PlacedImage& sem, const PlacedImage& afm, const RegistrationOptions& options)
+      : sem_(sem), afm_(afm), options_(options), frame_(sem, afm) {}
+
+  Registration run() {
+    std::vector<Trial> trials = options_.start ? from_start() : from_search();
+    const bool searched = !options_.start;
+    std::size_t done = 0;
+    const Watch fine = options_.watch.part(searched ? 0.7 : 0, 0.95);
+    const std::vector<double> blurs = blurs_to_use();
+    for (const double blur : blurs) {
+      const Watch of_blur = fine.part(double(done) / double(blurs.size()), double(done + 1) / double(blurs.size()));
+      refine(trials, level(blur), options_.objective, fine_effort, options_, of_blur);
+      ++done;
+      if (searched)
+        prune(trials, level(blur), frame_, options_, std::max(rival_apart_px, 0.5 * blur), blur <= sharp_blur_px ? places_sharp : places_fine);
+    }
+    return conclude(std::move(trials));
+  }
+
+ private:
+  const BlurLevel& level(double blur) {
+    std::unique_ptr<BlurLevel>& made = levels_[blur];
+    if (!made) made = std::make_unique<BlurLevel>(sem_, afm_, frame_, blur);
+    return *made;
+  }
+
+  std::vector<Trial> from_start() {
+    Trial trial;
+    trial.corners = frame_.corners(*options_.start);
+    return {trial};
+  }
+
+  std::vector<Trial> from_search() {
+    pitch_ = search_pitch_px(sem_);
+    // Steepness stands in where intensities may be related in any way.
+    const bool steep = options_.objective == RegistrationObjective::mutual_information;
+    const PlacedImage sem = steep ? edges_of(sem_, 0.7 * pitch_, frame_.pixel_nm()) : PlacedImage{};
+    const PlacedImage afm = steep ? edges_of(afm_, 0.7 * pitch_, frame_.pixel_nm()) : PlacedImage{};
+    const auto blurred_by = [&](double blur) { return BlurLevel(steep ? sem : sem_, steep ? afm : afm_, frame_, blur); };
+    const BlurLevel coarse = blurred_by(pitch_);
+    const PoseSearch search = search_poses(coarse, pitch_, options_, places_searched, options_.watch.part(0, 0.5));
+    chance_evidence_ = chance_bound(search.best_of_pose, chance_odds);
+    std::vector<Trial> trials;
+    for (const PoseSearch::Candidate& candidate : search.candidates) {
+      trials.emplace_back();
+      trials.back().corners = candidate.corners;
+    }
+    refine(trials, coarse, RegistrationObjective::correlation, coarse_effort, options_, options_.watch.part(0.5, 0.65));
+    prune(trials, coarse, frame_, options_, pitch_, places_coarse);
+    for (const Trial& trial : trials) coarse_.push_back(trial);
+    const BlurLevel finer = blurred_by(0.5 * pitch_);
+    refine(trials, finer, RegistrationObjective::correlation, coarse_effort, options_, options_.watch.part(0.65, 0.7));
+    prune(trials, finer, frame_, options_, 0.5 * pitch_, places_fine);
+    for (Trial& trial : trials) trial.steps.clear(), trial.places.clear();
+    return trials;
+  }
+
+  /// A start that was searched for is better than blurs wider than the search's would leave it.
+  std::vector<double> blurs_to_use() const {
+    if (options_.start) return options_.blurs_px;
+    std::vector<double> blurs;
+    for (const double blur : options_.blurs_px)
+      if (blur <= pitch_ || blur == options_.blurs_px.back()) blurs.push_back(blur);
+    return blurs;
+  }
+
+  bool by_correlation() const { return options_.objective == RegistrationObjective::correlation; }
+
+  double error_of(const Place& trial) {
+    const BlurLevel& last = level(blur_);
+    if (by_correlation()) return score_error(last, trial.corners);
+    // 2 N I is noncentral chi-squared, of variance 8 N I.
+    const double n = static_cast<double>(trial.samples) * independent_share(last, trial.corners);
+    return n > 0 ? std::sqrt(unit_score_error_of_information * std::max(trial.score, 1 / n) / n) : 1;
+  }
+
+  Uncertainty known(const Place& trial) {
+    const BlurLevel& last = level(blur_);
+    if (by_correlation()) return uncertainty_of(last, trial.corners);
+    Uncertainty u = uncertainty_from(information_covariance(last, options_.mutual_information, trial.corners,
+                                                            independent_share(last, trial.corners)),
+                                     last, trial.corners);
+    u.score = error_of(trial);
+    return u;
+  }
+
+  /// Noise hides sharp detail, and blur hides sharp edges: the map is taken from the blur where it is known
+  /// best. All trials go back to it.
+  Uncertainty choose_blur(std::vector<Trial>& trials) {
+    const Trial best = trials.front();
+    std::optional<Uncertainty> least;
+    std::size_t chosen = best.steps.size() - 1;
+    for (std::size_t i = 0; i < best.steps.size(); ++i) {
+      const bool last = i + 1 == best.steps.size();
+      if (!last && (best.steps[i].blur_px > widest_result_px || !best.places[i].settled)) continue;
+      if (last && least && !best.places[i].settled) continue;
+      blur_ = best.steps[i].blur_px;
+      const Uncertainty u = known(static_cast<const Place&>(best.places[i]));
+      if (least && u.place_px >= least->place_px) continue;
+      least = u;
+      chosen = i;
+    }
+    blur_ = best.steps[chosen].blur_px;
+    for (Trial& trial : trials) static_cast<Place&>(trial) = Place(trial.places[chosen]);
+    return *least;
+  }
+
+  /// Other optima along the motions that are known least: on patterns that slide or repeat they are as good.
+  std::vector<Trial> probe(const Trial& best, const Uncertainty& u) {
+    std::vector<Trial> probes;
+    for (const Corners& motion : u.loosest)
+      for (const double far : probes_px) {
+        probes.emplace_back();
+        for (std::size_t i = 0; i < 6; ++i) probes.back().corners[i] = best.corners[i] + far * motion[i];
+      }
+    const auto drop_same = [&](const BlurLevel& at, double apart) {
+      const Moments moments = moments_of(at, overlap_of(at, best.corners));
+      std::erase_if(probes, [&](const Trial& t) { return distance_px(t.corners, best.corners, moments) < apart; });
+      prune(probes, at, frame_, options_, rival_apart_px, places_sharp);
+    };
+    std::vector<double> blurs;
+    for (const RegistrationStep& step : best.steps)
+      if (step.blur_px <= std::max(probe_blur_px, blur_) && step.blur_px >= blur_) blurs.push_back(step.blur_px);
+    for (const double blur : blurs) {
+      refine(probes, level(blur), options_.objective, fine_effort, options_, {{}, options_.watch.cancel});
+      drop_same(level(blur), rival_apart_px);
+      // What is clearly worse is no rival, and need not be followed to the end.
+      const BlurLevel& at = level(blur);
+      if (by_correlation() && blur == blurs.front() && !probes.empty()) {
+        const double here = agreement_of(at, best.corners).correlation, error = score_error(at, best.corners);
+        std::erase_if(probes, [&](const Trial& t) { return here - t.score > 2 * options_.rival_sigmas * error; });
+      }
+    }
+    return probes;
+  }
+
+  Registration conclude(std::vector<Trial> trials) {
+    Registration r;
+    Evidence evidence;
+    evidence.searched = !options_.start;
+    evidence.rival_sigmas = options_.rival_sigmas;
+    if (trials.empty() || trials.front().samples == 0 || !(trials.front().evidence > 0)) {
+      evidence.any_place = false;
+      if (options_.start) r.sem_to_afm = *options_.start;
+      judge(r, evidence);
+      return r;
+    }
+    const Uncertainty u = choose_blur(trials);
+    const Trial best = trials.front();
+    r.sem_to_afm = frame_.affine(best.corners);
+    r.score = best.score;
+    r.blur_px = blur_;
+    const BlurLevel& last = level(blur_);
+    r.covariance = affine_covariance(frame_, u.covariance);
+    r.stderr_px = u.place_px;
+    r.overlap = static_cast<double>(best.samples) / static_cast<double>(last.samples.size());
+    r.steps = best.steps;
+
+    std::vector<Trial> others(trials.begin() + 1, trials.end());
+    const std::vector<Trial> probes = probe(best, u);
+    others.insert(others.end(), probes.begin(), probes.end());
+    const Moments moments = moments_of(last, overlap_of(last, best.corners));
+    std::stable_sort(others.begin(), others.end(), [](const Trial& a, const Trial& b) { return a.score > b.score; });
+    std::vector<Corners> known_rivals;
+    for (const Trial& other : others) {
+      const double distance = distance_px(other.corners, best.corners, moments);
+      if (distance < rival_apart_px) continue;
+      if (std::any_of(known_rivals.begin(), known_rivals.end(),
+                      [&](const Corners& c) { return distance_px(c, other.corners, moments) < rival_apart_px; }))
+        continue;
+      if (best.score - other.score > options_.rival_sigmas * std::hypot(u.score, error_of(other))) continue;
+      known_rivals.push_back(other.corners);
+      r.rivals.push_back({frame_.affine(other.corners), other.score, distance});
+    }
+
+    evidence.settled = best.settled;
+    evidence.within_limits = options_.start ? true : within_limits(best.corners, last, frame_, options_);
+    evidence.score = best.score;
+    evidence.score_error = u.score;
+    evidence.loosest_px = u.loosest_px;
+    evidence.chance_evidence = chance_evidence_;
+    // The place that won may not be the one that led when all was coarse.
+    for (const Trial& trial : coarse_)
+      if (distance_px(trial.corners, best.corners, moments) < 2 * pitch_)
+        evidence.coarse_evidence = std::max(evidence.coarse_evidence, trial.evidence * samples_ratio(trial));
+    judge(r, evidence);
+    options_.watch.report(1, 1);
+    return r;
+  }
+
+  /// The search counts samples of the AFM's frame at its pitch; a refined place those of the SEM's.
+  double samples_ratio(const Trial& trial) const {
+    const Corners& c = trial.corners;
+    const double area = std::abs((c[2] - c[0]) * (c[5] - c[1]) - (c[3] - c[1]) * (c[4] - c[0]));
+    const double nodes = area / (pitch_ * pitch_);
+    const int stride = std::max(1, static_cast<int>(std::lround(pitch_)));
+    const double samples = double(sem_.values.width()) * sem_.values.height() / (double(stride) * stride);
+    return nodes / samples;
+  }
+
+  const PlacedImage& sem_;
+  const PlacedImage& afm_;
+  const RegistrationOptions& options_;
+  CornerFrame frame_;
+  std::map<double, std::unique_ptr<BlurLevel>> levels_;
+  double pitch_ = 0, chance_evidence_ = 0;
+  double blur_ = 0;   // of the result
+  std::vector<Trial> coarse_;
+};
+
+}  // namespace
+
+Registration register_images(const PlacedImage& sem, const PlacedImage& simulated, const RegistrationOptions& options) {
+  validate(sem, "SEM image");
+  validate(simulated, "simulated image");
+  validate(options);
+  require_colours(sem, "SEM image");
+  require_colours(simulated, "simulated image");
+  options.watch.check();
+  return Registrar(sem, simulated, options).run();
+}
+
+}  // namespace surf

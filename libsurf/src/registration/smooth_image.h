@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <algorithm>
+
+#include "surf/core/grid.h"
+#include "surf/core/placed_image.h"
+
+namespace surf {
+
+/// An image after a Gaussian blur of `blur_x`, `blur_y` samples (0: none), what is not valid taking no part:
+/// values where anything valid is near, their mean elsewhere.
+Grid<double> blurred(const PlacedImage& image, double blur_x, double blur_y);
+
+/// An image between its samples: a cubic spline, whose slopes have no kinks that would hold an optimum at
+/// the samples (Unser 1999, doi:10.1109/79.799930).
+class SmoothImage {
+ public:
+  struct Value {
+    double value = 0, dx = 0, dy = 0;   ///< slopes per sample
+  };
+
+  SmoothImage() = default;
+  /// Places in x and y are (column - middle) * step; blurs in the unit of `step`.
+  SmoothImage(const PlacedImage& image, double step_x, double step_y, double blur);
+
+  /// Whether the place lies between valid samples.
+  bool holds(double x, double y) const {
+    const double u = column(x), v = row(y);
+    if (!(u >= 0 && v >= 0 && u <= coefficients_.width() - 3 && v <= coefficients_.height() - 3)) return false;
+    return safe_.empty() || safe_(static_cast<int>(u), static_cast<int>(v)) != 0;
+  }
+
+  /// At a place; beyond the image as at its edge. Slopes per unit of x and y.
+  Value at(double x, double y) const;
+  double value(double x, double y) const;
+
+  const Grid<double>& samples() const { return samples_; }   ///< blurred
+  const Grid<unsigned char>& safe() const { return safe_; }  ///< cells between valid samples, or empty: all
+  double column(double x) const { return x / step_x_ + middle_x_; }
+  double row(double y) const { return y / step_y_ + middle_y_; }
+  double half_width() const { return middle_x_ * step_x_; }
+  double half_height() const { return middle_y_ * step_y_; }
+
+ private:
+  double step_x_ = 1, step_y_ = 1, middle_x_ = 0, middle_y_ = 0;
+  Grid<double> samples_;
+  Grid<double> coefficients_;   // one more on each side
+  Grid<unsigned char> safe_;
+};
+
+}  // namespace surf

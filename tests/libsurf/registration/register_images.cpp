@@ -1,0 +1,241 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "surf/registration/register_images.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <limits>
+
+#include "registration/correlation.h"
+#include "registration/mutual_information.h"
+#include "surf/core/error.h"
+#include "surf/core/random.h"
+
+namespace surf {
+namespace {
+
+/// Spots of many sizes, the same for the same seed, as a function of the place.
+class Spots {
+ public:
+  explicit Spots(std::uint64_t seed, double half = 160) {
+    RandomStream random(seed, 1, 1);
+    const auto between = [&](double a, double b) { return a + (b - a) * random.uniform(); };
+    for (int i = 0; i < 260; ++i)
+      spots_.push_back({between(-half, half), between(-half, half), between(3, 9), between(-1, 1.5)});
+  }
+  double operator()(double x, double y) const {
+    double sum = 0;
+    for (const auto& [cx, cy, s, a] : spots_) sum += a * std::exp(-0.5 * ((x - cx) * (x - cx) + (y - cy) * (y - cy)) / (s * s));
+    return sum;
+  }
+
+ private:
+  struct Spot {
+    double x, y, size, height;
+  };
+  std::vector<Spot> spots_;
+};
+
+using Scene = std::function<double(double, double)>;
+
+PlacedImage image_of(const Scene& scene, const Affine& map, int w, int h, double pitch, double noise, std::uint64_t seed) {
+  PlacedImage image{Grid<double>(w, h), {}, pitch, pitch, -0.5 * (w - 1) * pitch, -0.5 * (h - 1) * pitch};
+  for (int y = 0; y < h; ++y)
+    for (int x = 0; x < w; ++x) {
+      RandomStream random(seed, static_cast<std::uint64_t>(y), static_cast<std::uint64_t>(x));
+      double sum = -6;
+      for (int i = 0; i < 12; ++i) sum += random.uniform();
+      const Point2 p = map(image.place_nm(x, y));
+      image.values(x, y) = 3 + scene(p.x, p.y) + noise * sum;
+    }
+  return image;
+}
+
+Affine random_map(std::uint64_t seed) {
+  RandomStream random(seed, 5, 5);
+  const auto between = [&](double a, double b) { return a + (b - a) * random.uniform(); };
+  return make_affine({between(-3.1, 3.1), between(0.8, 1.25), between(0.8, 1.25), between(-0.05, 0.05), between(-12, 12), between(-12, 12)});
+}
+
+double error_px(const Affine& a, const Affine& b, int w, int h) {
+  double sum = 0;
+  for (int y = 0; y < h; y += 4)
+    for (int x = 0; x < w; x += 4) {
+      const Point2 p{x - 0.5 * (w - 1), y - 0.5 * (h - 1)}, q = a(p), r = b(p);
+      sum += ((q.x - r.x) * (q.x - r.x) + (q.y - r.y) * (q.y - r.y)) / std::ceil(w / 4.0) / std::ceil(h / 4.0);
+    }
+  return std::sqrt(sum);
+}
+
+TEST(RegisterImages, FindsRandomMapsWithoutAStart) {
+  double z2 = 0;
+  constexpr int maps = 20;
+  for (std::uint64_t seed = 1; seed <= maps; ++seed) {
+    const Spots spots(seed);
+    const Affine truth = random_map(seed);
+    const PlacedImage sem = image_of(spots, truth, 90, 70, 1, 0.3, 2 * seed), afm = image_of(spots, {}, 70, 70, 1.25, 0.03, 2 * seed + 1);
+    const Registration r = register_images(sem, afm);
+    EXPECT_EQ(r.verdict, RegistrationVerdict::verified) << seed << ": " << r.reason;
+    const double error = error_px(r.sem_to_afm, truth, 90, 70);
+    EXPECT_LT(error, 0.3) << seed;
+    z2 += error * error / (r.stderr_px * r.stderr_px) / maps;
+  }
+  // The standard error is neither far too small nor far too large.
+  EXPECT_GT(z2, 0.3);
+  EXPECT_LT(z2, 3);
+}
+
+TEST(RegisterImages, MutualInformationFindsInvertedImages) {
+  const Spots spots(3);
+  const Affine truth = make_affine({0.4, 1.1, 0.95, 0.02, 4, -3});
+  const PlacedImage sem = image_of([&](double x, double y) { return -std::tanh(spots(x, y)); }, truth, 90, 70, 1, 0.1, 1);
+  const PlacedImage afm = image_of(spots, {}, 90, 90, 1, 0.02, 2);
+  for (const EntropyEstimate estimate : {EntropyEstimate::histogram, EntropyEstimate::parzen}) {
+    RegistrationOptions options;
+    options.objective = RegistrationObjective::mutual_information;
+    options.mutual_information.estimate = estimate;
+    const Registration r = register_images(sem, afm, options);
+    EXPECT_LT(error_px(r.sem_to_afm, truth, 90, 70), 0.5) << r.reason;
+    EXPECT_GT(r.score, 0.2);
+  }
+}
+
+TEST(RegisterImages, BeginsAtAStartThatIsGivenAndLooksPastHoles) {
+  const Spots spots(4);
+  const Affine truth = make_affine({2, 0.9, 1.05, -0.03, 3, 5});
+  PlacedImage sem = image_of(spots, truth, 90, 70, 1, 0.1, 1), afm = image_of(spots, {}, 90, 90, 1, 0.02, 2);
+  sem.valid = Grid<unsigned char>(90, 70, 1);
+  for (int y = 20; y < 35; ++y)
+    for (int x = 10; x < 40; ++x) sem.valid(x, y) = 0, sem.values(x, y) = std::numeric_limits<double>::quiet_NaN();
+  RegistrationOptions options;
+  options.start = make_affine({2.03, 0.93, 1.03, -0.03, 1, 7});
+  const Registration r = register_images(sem, afm, options);
+  EXPECT_EQ(r.verdict, RegistrationVerdict::verified) << r.reason;
+  EXPECT_LT(error_px(r.sem_to_afm, truth, 90, 70), 0.3);
+  EXPECT_EQ(r.steps.size(), options.blurs_px.size());
+}
+
+TEST(RegisterImages, IsAmbiguousWhereTheSceneRepeatsOrSlides) {
+  const Scene grating = [](double x, double) { return std::cos(x / 3); };
+  const Scene dots = [](double x, double y) { return std::pow(std::cos(x / 5) * std::cos(y / 5), 2); };
+  const Scene line = [](double x, double) { return std::exp(-x * x / 50); };
+  for (const Scene& scene : {grating, dots, line}) {
+    const Registration r = register_images(image_of(scene, make_affine({0.3, 1, 1, 0, 2, 3}), 80, 70, 1, 0.1, 1), image_of(scene, {}, 80, 80, 1, 0.05, 2));
+    EXPECT_NE(r.verdict, RegistrationVerdict::verified) << r.reason;
+    EXPECT_NE(r.verdict, RegistrationVerdict::unrelated) << r.reason;
+  }
+}
+
+TEST(RegisterImages, DoesNotAcceptImagesOfDifferentPlaces) {
+  for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+    const Registration r = register_images(image_of(Spots(seed), {}, 80, 70, 1, 0.3, 1), image_of(Spots(seed + 50), {}, 80, 80, 1, 0.03, 2));
+    EXPECT_NE(r.verdict, RegistrationVerdict::verified) << r.reason;
+  }
+  RegistrationOptions options;
+  options.start = Affine{1, 0, 1e5, 0, 1, 0};
+  const Registration apart = register_images(image_of(Spots(1), {}, 80, 70, 1, 0.3, 1), image_of(Spots(1), {}, 80, 80, 1, 0.03, 2), options);
+  EXPECT_EQ(apart.verdict, RegistrationVerdict::unrelated);
+}
+
+TEST(RegisterImages, GivesTheSameForAnyThreadCount) {
+  const Spots spots(6);
+  const PlacedImage sem = image_of(spots, random_map(6), 70, 60, 1, 0.3, 1), afm = image_of(spots, {}, 70, 70, 1, 0.03, 2);
+  RegistrationOptions one, three;
+  one.threads = 1, three.threads = 3;
+  const Registration a = register_images(sem, afm, one), b = register_images(sem, afm, three);
+  EXPECT_EQ(a.sem_to_afm, b.sem_to_afm);
+  EXPECT_EQ(a.covariance, b.covariance);
+  EXPECT_EQ(a.reason, b.reason);
+}
+
+TEST(RegisterImages, RefusesWhatItCannotUse) {
+  const Spots spots(7);
+  const PlacedImage good = image_of(spots, {}, 40, 40, 1, 0.1, 1);
+  PlacedImage flat = good, holed = good, broken = good;
+  flat.values = Grid<double>(40, 40, 7);
+  holed.valid = Grid<unsigned char>(40, 40, 0);
+  broken.values(3, 3) = std::numeric_limits<double>::quiet_NaN();
+  for (const PlacedImage& bad : {flat, holed, broken}) {
+    EXPECT_THROW(register_images(bad, good), InvalidInput);
+    EXPECT_THROW(register_images(good, bad), InvalidInput);
+  }
+  RegistrationOptions options;
+  options.blurs_px = {};
+  EXPECT_THROW(register_images(good, good, options), UsageError);
+  options.blurs_px = {-1};
+  EXPECT_THROW(register_images(good, good, options), UsageError);
+  options = {};
+  options.least_overlap = 0;
+  EXPECT_THROW(register_images(good, good, options), UsageError);
+  options = {};
+  options.start = Affine{1, 1, 0, 1, 1, 0};
+  EXPECT_THROW(register_images(good, good, options), UsageError);
+}
+
+TEST(RegisterImages, SaturatedAndTinyImagesEndInAVerdict) {
+  PlacedImage saturated{Grid<double>(60, 60, 255), {}, 1, 1, 0, 0};
+  saturated.values(30, 30) = 254;
+  const PlacedImage other = image_of(Spots(8), {}, 60, 60, 1, 0.1, 1), tiny = image_of(Spots(8), {}, 3, 2, 1, 0.1, 1);
+  for (const PlacedImage& bad : {saturated, tiny}) {
+    const Registration r = register_images(bad, other), s = register_images(other, bad);
+    EXPECT_NE(r.verdict, RegistrationVerdict::verified);
+    EXPECT_NE(s.verdict, RegistrationVerdict::verified);
+    EXPECT_FALSE(r.reason.empty());
+    for (const double v : r.covariance) EXPECT_TRUE(std::isfinite(v));
+  }
+}
+
+TEST(RegisterImages, IsInterrupted) {
+  CancelToken cancel;
+  RegistrationOptions options;
+  options.watch.cancel = &cancel;
+  options.watch.progress = [&](double, double) { cancel.cancel(); };
+  const PlacedImage image = image_of(Spots(9), {}, 40, 40, 1, 0.1, 1);
+  EXPECT_THROW(register_images(image, image, options), Interrupted);
+}
+
+TEST(Correlation, DerivativesAreThoseOfDifferences) {
+  const Spots spots(2);
+  const PlacedImage sem = image_of(spots, {}, 40, 30, 1, 0.1, 1), afm = image_of(spots, {}, 40, 40, 1.3, 0.1, 2);
+  const CornerFrame frame(sem, afm);
+  const BlurLevel level(sem, afm, frame, 1);
+  Corners c = frame.corners(make_affine({0.1, 1.02, 0.97, 0.01, 1.3, -0.4}));
+  const Correlation correlation(level, c);
+  const std::size_t n = correlation.size();
+  std::vector<double> r(n), jacobian(6 * n), above(n), below(n);
+  ASSERT_GT(correlation.evaluate(c.data(), r.data(), jacobian.data()), 0.1);
+  constexpr double step = 1e-5;
+  for (std::size_t p = 0; p < 6; ++p) {
+    Corners up = c, down = c;
+    up[p] += step, down[p] -= step;
+    correlation.evaluate(up.data(), above.data(), nullptr);
+    correlation.evaluate(down.data(), below.data(), nullptr);
+    for (std::size_t k = 0; k < n; k += 7) EXPECT_NEAR(jacobian[p * n + k], (above[k] - below[k]) / (2 * step), 1e-7);
+  }
+}
+
+TEST(MutualInformation, IsThatOfTheTable) {
+  // Two values of either, independent, then the same: 0 and log 2.
+  const std::vector<double> a = {0, 0, 1, 1}, b = {0, 1, 0, 1};
+  MutualInformationOptions options;
+  options.bins = BinRule::deviation;
+  JointHistogram apart(a, b, options), same(a, a, options);
+  for (std::size_t i = 0; i < 4; ++i) {
+    apart.add(apart.bin_a(a[i]), apart.bin_b(b[i]), 1);
+    same.add(same.bin_a(a[i]), same.bin_b(a[i]), 1);
+  }
+  EXPECT_NEAR(apart.information(), 0, 1e-12);
+  EXPECT_NEAR(same.information(), std::log(2), 1e-12);
+}
+
+TEST(MutualInformation, BinsFollowTheirRules) {
+  std::vector<double> values;
+  for (int i = 0; i <= 1000; ++i) values.push_back(i);
+  EXPECT_NEAR(bin_width(values, BinRule::interquartile), 2 * 500 / std::cbrt(1001), 1e-9);
+  EXPECT_NEAR(bin_width(values, BinRule::deviation), 3.49 * std::sqrt(1001.0 * 1001 / 12) / std::cbrt(1001), 0.01);
+  EXPECT_EQ(bin_width({3, 3, 3}, BinRule::interquartile), 0);
+}
+
+}  // namespace
+}  // namespace surf
