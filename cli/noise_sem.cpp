@@ -91,8 +91,8 @@ void print_estimate(const SemNoiseEstimate& e) {
   fmt::print("{:<12} {} used, {} left out{}; {} pixels\n", "flat places", used, static_cast<std::int64_t>(e.points.size()) - used,
              e.blocks ? fmt::format(", of {} blocks", e.blocks) : "", e.pixels);
   if (e.degrees > 0)
-    fmt::print("{:<12} chi-squared {:.4g} with {} degrees of freedom, {}; bend z = {:.1f}\n", "line", e.chi_squared,
-               e.degrees, e.p < 1e-4 ? "p < 0.0001" : fmt::format("p = {:.4f}", e.p), e.curvature_z);
+    fmt::print("{:<12} chi-squared {:.4g} with {} degrees of freedom, {}; bend {:.1f} % (z = {:.1f})\n", "line", e.chi_squared,
+               e.degrees, e.p < 1e-4 ? "p < 0.0001" : fmt::format("p = {:.4f}", e.p), 100 * e.bend, e.curvature_z);
   fmt::print("{:<12} {:.3f} along rows, {:.3f} across; a mean counts 1 pixel in {:.3g}, a variance 1 in {:.3g}\n",
              "correlation", e.correlation_x, e.correlation_y, e.correlation_sum, e.correlation_squares);
   fmt::print("{:<12} excess kurtosis {:.3f}\n", "normality", e.excess_kurtosis);
