@@ -27,6 +27,7 @@ void add_materials(CLI::App& app, Action& action);
 void add_library(CLI::App& app, Action& action);
 void add_tip(CLI::App& app, Action& action);
 void add_calibrate(CLI::App& app, Action& action);
+void add_sample(CLI::App& app, Action& action);
 void add_view(CLI::App& app, Action& action);
 void add_completion(CLI::App& app, Action& action);
 

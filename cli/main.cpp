@@ -161,6 +161,7 @@ int main(int argc, char** argv) {
   add_library(app, action);
   add_tip(app, action);
   add_calibrate(app, action);
+  add_sample(app, action);
   add_view(app, action);
   add_completion(app, action);
 

@@ -286,3 +286,12 @@ semsurf_cli_test(predict.scene ARGS predict "${PROJECT_SOURCE_DIR}/samples/mesa8
 semsurf_cli_test(predict.steep ARGS predict steps.txt --pitch 3nm --z-unit 20nm --model secant.json -q -o image.tif
   STDOUT "^$" STDERR "warning: .* steeper than the 70 degrees" WRITES image.tif)
 semsurf_cli_test(info.model ARGS info secant.json STDOUT "image model" "for +Si, 1 keV" "warning +few pixels" "all learnt from")
+
+semsurf_cli_test(help.sample ARGS sample --help STDOUT "nist0523-thick" "Examples:" "truth")
+semsurf_cli_test(sample.list ARGS sample --list STDOUT "nist0523-thick.*100 nm high" "terrain")
+semsurf_cli_test(sample.small ARGS sample islands --size 24x16 --electrons 1 --cache off -o made
+  STDOUT "SEM +24 x 16 pixels of 1 primaries" "truth.json"
+  WRITES made/afm.gsf made/sem.tif made/truth.gsf made/truth_tip.gsf made/truth_sem.exr made/truth.json)
+semsurf_cli_test(info.sem_image ARGS info fei.tif
+  STDOUT "SEM image, Thermo/FEI, Teneo" "4 x 3 pixels of 7.5" "energy +2 keV" "detector +ETD" "Beam.HV +2000"
+  STDERR "note: the databar, the lowest 1 rows, is left out")
