@@ -183,7 +183,7 @@ void add_warnings(SemNoiseEstimate& e) {
     warn(fmt::format("{} pixels are saturated (black {}, white {}): what is there of them is not noise, and they are "
                      "left out",
                      e.black + e.white, e.black, e.white));
-  const bool bends = std::fabs(e.curvature_z) > 4 && e.bend > 0.05;
+  const bool bends = std::fabs(e.curvature_z) > 4 && e.bend > 0.1;
   if (bends)
     warn(fmt::format("the variances do not lie on a line: a parabola is up to {:.0f} % off it (z = {:.1f}). A gamma or "
                      "another processing of the grey levels is likely",
