@@ -12,6 +12,7 @@
 #include "sem_noise_plot.h"
 #include "surf/core/error.h"
 #include "surf/core/units.h"
+#include "surf/io/sem_file.h"
 #include "surf/sem/estimate_sem_noise.h"
 #include "terminal.h"
 
@@ -23,29 +24,25 @@ struct SemPicture {
   bool has_scale = false;
 };
 
-SemPicture read_sem_picture(const SemNoiseInput& input) {
-  GivenPitch given;
-  if (input.pixel_size) {
-    std::tie(given.x_nm, given.y_nm) = parse_pixel_size(*input.pixel_size, "--pixel-size");
-    if (!(*given.x_nm > 0 && *given.y_nm > 0)) throw UsageError("--pixel-size", "it is not above 0", "Write 2nm");
+/// Noise is the same for pixels of any size, so that pictures need not say theirs.
+SemPicture read_sem_picture(const SemNoiseInput& input, bool quiet) {
+  const FileChannel name = parse_file_channel(*input.image);
+  io::SemReadOptions options;
+  options.channel = name.channel;
+  if (input.pixel_size) std::tie(options.pixel_x_nm, options.pixel_y_nm) = parse_pixel_size(*input.pixel_size, "--pixel-size");
+  io::SemFile file;
+  bool has_scale = true;
+  try {
+    file = io::read_sem_image(name.file, options);
+  } catch (const UsageError&) {
+    if (input.pixel_size) throw;
+    has_scale = false;
+    options.pixel_x_nm = options.pixel_y_nm = 1;
+    file = io::read_sem_image(name.file, options);   // says again what else is wrong
   }
-  const FileChannel file = parse_file_channel(*input.image);
-  const io::WebImage picture = read_picture(file, given);
-  const Image& from = picture.image;
-  const Channel* channel = file.channel.empty() ? nullptr : from.find(file.channel);
-  if (!channel) channel = &from.channels.front();
-  SemPicture out;
-  out.has_scale = picture.has_scale;
-  PlacedImage& image = out.image;
-  image.pitch_x_nm = from.pitch_x_nm, image.pitch_y_nm = from.pitch_y_nm;
-  image.origin_x_nm = from.origin_x_nm, image.origin_y_nm = from.origin_y_nm;
-  image.values = Grid<double>(from.width(), from.height());
-  image.valid = Grid<unsigned char>(from.width(), from.height(), 1);
-  for (std::size_t i = 0; i < image.values.size(); ++i) {
-    image.valid.data()[i] = std::isfinite(channel->values.data()[i]);
-    image.values.data()[i] = image.valid.data()[i] ? channel->values.data()[i] : 0;
-  }
-  return out;
+  if (!quiet)
+    for (const std::string& note : file.notes) print_note(fmt::format("{}: {}", name.file.string(), note));
+  return {std::move(file.image), has_scale};
 }
 
 bool has_unit(const std::string& text) {
@@ -91,8 +88,8 @@ void print_estimate(const SemNoiseEstimate& e) {
   fmt::print("{:<12} {} used, {} left out{}; {} pixels\n", "flat places", used, static_cast<std::int64_t>(e.points.size()) - used,
              e.blocks ? fmt::format(", of {} blocks", e.blocks) : "", e.pixels);
   if (e.degrees > 0)
-    fmt::print("{:<12} chi-squared {:.4g} with {} degrees of freedom, {}; bend z = {:.1f}\n", "line", e.chi_squared,
-               e.degrees, e.p < 1e-4 ? "p < 0.0001" : fmt::format("p = {:.4f}", e.p), e.curvature_z);
+    fmt::print("{:<12} chi-squared {:.4g} with {} degrees of freedom, {}; bend {:.1f} % (z = {:.1f})\n", "line", e.chi_squared,
+               e.degrees, e.p < 1e-4 ? "p < 0.0001" : fmt::format("p = {:.4f}", e.p), 100 * e.bend, e.curvature_z);
   fmt::print("{:<12} {:.3f} along rows, {:.3f} across; a mean counts 1 pixel in {:.3g}, a variance 1 in {:.3g}\n",
              "correlation", e.correlation_x, e.correlation_y, e.correlation_sum, e.correlation_squares);
   fmt::print("{:<12} excess kurtosis {:.3f}\n", "normality", e.excess_kurtosis);
@@ -127,7 +124,7 @@ void require_sem(const SemNoiseInput& input) {
 int print_sem_noise(const SemNoiseInput& input, const std::optional<std::string>& plot, bool quiet) {
   SemNoiseOptions options = make_options(input);
   if (plot) io::check_plot_target(*plot);
-  const SemPicture picture = read_sem_picture(input);
+  const SemPicture picture = read_sem_picture(input, quiet);
   for (const std::string& text : input.regions) options.regions.push_back(parse_rectangle(text, picture));
   const SemNoiseEstimate e = estimate_sem_noise(picture.image, options);
   print_estimate(e);

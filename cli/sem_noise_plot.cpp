@@ -10,18 +10,39 @@ namespace surf::cli {
 namespace {
 
 constexpr int line_samples = 100;
+constexpr std::size_t most_points = 60, groups = 30;
+
+struct Bar {
+  double mean = 0, variance = 0, error = 0;
+};
+
+/// Too many points hide each other and the line: weighted means of those of neighbouring means then.
+std::vector<Bar> bars_of(const SemNoiseEstimate& e) {
+  std::vector<NoisePoint> used;
+  for (const NoisePoint& p : e.points)
+    if (p.used && p.variance_stderr > 0) used.push_back(p);
+  std::ranges::stable_sort(used, {}, &NoisePoint::mean);
+  const std::size_t n = used.size(), bars = n > most_points ? groups : n;
+  std::vector<Bar> out(bars);
+  for (std::size_t b = 0; b < bars; ++b) {
+    double weights = 0;
+    for (std::size_t i = b * n / bars; i < (b + 1) * n / bars; ++i) {
+      const double w = 1 / (used[i].variance_stderr * used[i].variance_stderr);
+      weights += w, out[b].mean += w * used[i].mean, out[b].variance += w * used[i].variance;
+    }
+    out[b].mean /= weights, out[b].variance /= weights, out[b].error = 1 / std::sqrt(weights);
+  }
+  return out;
+}
 
 io::PlotPanel variances(const SemNoiseEstimate& e) {
-  io::PlotSeries used{.name = "flat places", .style = io::PlotStyle::points, .color = 0};
-  io::PlotSeries left_out{.name = "left out", .style = io::PlotStyle::points, .color = 5};
-  double least = e.least_mean, largest = e.largest_mean;
-  for (const NoisePoint& p : e.points) {
-    io::PlotSeries& to = p.used ? used : left_out;
-    to.x.push_back(p.mean);
-    to.y.push_back(p.variance);
-    to.y_error.push_back(p.variance_stderr);
-    least = std::min(least, p.mean), largest = std::max(largest, p.mean);
-  }
+  const std::vector<Bar> bars = bars_of(e);
+  const auto count = std::ranges::count_if(e.points, [](const NoisePoint& p) { return p.used; });
+  io::PlotSeries used{.name = count > static_cast<std::int64_t>(bars.size()) ? fmt::format("{} flat places, averaged", count)
+                                                                             : "flat places",
+                      .style = io::PlotStyle::points, .color = 0};
+  for (const Bar& b : bars) used.x.push_back(b.mean), used.y.push_back(b.variance), used.y_error.push_back(b.error);
+  const double least = e.least_mean, largest = e.largest_mean;
   io::PlotSeries line{.name = fmt::format("{:.4g} mean {} {:.4g}", e.noise.slope, e.noise.intercept < 0 ? "-" : "+",
                                           std::fabs(e.noise.intercept)),
                       .color = 1};
@@ -39,7 +60,6 @@ io::PlotPanel variances(const SemNoiseEstimate& e) {
   panel.x.label = "mean (grey levels)";
   panel.y.label = "variance (grey levels²)";
   if (!used.x.empty()) panel.series.push_back(used);
-  if (!left_out.x.empty()) panel.series.push_back(left_out);
   panel.series.insert(panel.series.end(), {line, above, below});
   return panel;
 }

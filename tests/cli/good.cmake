@@ -195,6 +195,13 @@ semsurf_cli_test(clean.all ARGS clean block.gsf --spikes 3:1nm --median 3 --disc
 semsurf_cli_test(noise.flat ARGS noise noisy.gsf --flat --plot noise.svg
   STDOUT "noise +alpha 0\\.[0-9]+ ± .*sigma" "differences +alpha" "whiteness +along rows p" "normality +p" WRITES noise.svg)
 semsurf_cli_test(noise.none ARGS noise plane.gsf --flat --degree 1 STDERR "no noise at all" STDOUT "noise +alpha")
+semsurf_cli_test(noise.help_of_all ARGS noise --help STDOUT "SEM image" "--region" "Simulated counts" "--trials")
+semsurf_cli_test(noise.sem ARGS noise --sem steps_of_grey.tif --plot noise.svg
+  STDOUT "noise +variance = " "flat places +[0-9]+ used" "correlation +-?0\\.[0-9]+ along rows" WRITES noise.svg)
+semsurf_cli_test(noise.sem_region ARGS noise --sem steps_of_grey.tif --region 4,4,28,28 --region 36,4,60,28 --region 68,36,92,60
+  STDOUT "flat places +3 used")
+semsurf_cli_test(noise.counts ARGS noise --counts scene.toml --electrons 1,5 --trials 200 --at 0,0 --csv counts.csv --plot counts.svg
+  STDOUT "200 trials" "SE of 5 +.*mean" "log-normal, median" WRITES counts.csv counts.svg)
 semsurf_cli_test(noise.substrate ARGS noise noisy.gsf STDOUT "substrate +[0-9.]+ % of the image")
 # AFM: a tip put into a surface and taken out of the scan.
 foreach(command erode dilate certainty)

@@ -210,7 +210,7 @@ SemNoiseEstimate estimate_sem_noise(const PlacedImage& image, const SemNoiseOpti
     variances[i] = e.points[point++].used && c.used[i] == typical ? e.noise.variance(c.flat.samples[i].mean) : 0;
   }
   fit(c, variances, options, e);
-  set_off_line_share(image.values, image.valid, e);
+  set_off_line_share(image.values, good, e);
   add_warnings(e);
   return e;
 }

@@ -40,6 +40,8 @@ double quantum_of(const std::vector<Level>& levels) {
     pixels += levels[i].pixels;
   }
   if (pixels < 2 * static_cast<std::int64_t>(levels.size())) return 0;
+  const double range = levels.back().value - levels.front().value;
+  step = range / std::round(range / step);   // of levels that were rounded themselves
   for (const Level& level : levels) {
     const double steps = (level.value - levels.front().value) / step;
     if (std::fabs(steps - std::round(steps)) > 1e-3) return 0;

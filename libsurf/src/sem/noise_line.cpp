@@ -112,8 +112,10 @@ void test_line(const std::vector<VariancePoint>& points, const VarianceLine& lin
   e.dispersion = e.degrees > 0 ? e.chi_squared / e.degrees : 1;
   const Range means = means_of(points, line.used);
   e.least_mean = means.least, e.largest_mean = means.largest;
-  if (e.degrees > 1)
-    e.curvature_z = curvature_score(points, line, e.noise.least_variance) / std::sqrt(std::max(e.dispersion, 1.0));
+  if (e.degrees < 2) return;
+  const Curvature curvature = fit_curvature(points, line, e.noise.least_variance);
+  e.curvature_z = curvature.z / std::sqrt(std::max(e.dispersion, 1.0));
+  e.bend = curvature.departure;
 }
 
 void set_line(const std::vector<VariancePoint>& points, double least_share, double cut, SemNoiseEstimate& e) {
@@ -181,14 +183,15 @@ void add_warnings(SemNoiseEstimate& e) {
     warn(fmt::format("{} pixels are saturated (black {}, white {}): what is there of them is not noise, and they are "
                      "left out",
                      e.black + e.white, e.black, e.white));
-  if (e.degrees > 1 && e.p < 1e-3)
-    warn(std::fabs(e.curvature_z) > 3
-             ? fmt::format("the variances do not lie on a line (they bend: z = {:.1f}): a gamma or another "
-                           "processing of the grey levels is likely",
-                           e.curvature_z)
-             : fmt::format("the variances scatter {:.2g} times as much about the line as their own errors say: not "
-                           "all places are flat, or the noise is uneven; standard errors are enlarged by it",
-                           std::sqrt(e.dispersion)));
+  const bool bends = std::fabs(e.curvature_z) > 4 && e.bend > 0.1;
+  if (bends)
+    warn(fmt::format("the variances do not lie on a line: a parabola is up to {:.0f} % off it (z = {:.1f}). A gamma or "
+                     "another processing of the grey levels is likely",
+                     100 * e.bend, e.curvature_z));
+  if (!bends && e.degrees > 1 && e.p < 1e-3)
+    warn(fmt::format("the variances scatter {:.2g} times as much about the line as their own errors say: not all "
+                     "places are flat, or the noise is uneven; standard errors are enlarged by it",
+                     std::sqrt(e.dispersion)));
 }
 
 }  // namespace surf

@@ -133,14 +133,14 @@ VarianceLine fit_variance_line(const std::vector<VariancePoint>& points, const V
   return line;
 }
 
-double curvature_score(const std::vector<VariancePoint>& points, const VarianceLine& line, double floor) {
+Curvature fit_curvature(const std::vector<VariancePoint>& points, const VarianceLine& line, double floor) {
   const SemNoise noise = noise_of(line, floor);
   const auto work = [&](const VariancePoint& p) -> Working {
     const double v = noise.variance(p.mean);
     return {p.freedom / (2 * v * v), p.variance - v};
   };
   const Sums s = sums(points, line.used, work);
-  if (!(s.xx > 0)) return 0;
+  if (!(s.xx > 0)) return {};
   const double scale = std::sqrt(s.xx / s.weight);
   double w1 = 0, w2 = 0, w3 = 0, w4 = 0;   // sums of weight times powers of the standardised mean
   const auto each = [&](const auto& visit) {
@@ -148,13 +148,18 @@ double curvature_score(const std::vector<VariancePoint>& points, const VarianceL
       if (line.used[i]) visit(work(points[i]), (points[i].mean - s.mean) / scale);
   };
   each([&](const Working& w, double x) { w1 += w.weight, w2 += w.weight * x * x, w3 += w.weight * x * x * x; });
-  double xy = 0;
   // The square less what a line says of it.
+  const auto square = [&](double x) { return x * x - w2 / w1 - w3 / w2 * x; };
+  double xy = 0, least = 0, largest = 0;
   each([&](const Working& w, double x) {
-    const double square = x * x - w2 / w1 - w3 / w2 * x;
-    w4 += w.weight * square * square, xy += w.weight * square * w.response;
+    w4 += w.weight * square(x) * square(x), xy += w.weight * square(x) * w.response;
+    least = std::min(least, x), largest = std::max(largest, x);
   });
-  return w4 > 1e-9 * w1 ? xy / std::sqrt(w4) : 0;
+  if (!(w4 > 1e-9 * w1)) return {};
+  Curvature c{xy / std::sqrt(w4), 0};
+  for (const double x : {least, 0.5 * (least + largest), largest})
+    c.departure = std::max(c.departure, std::fabs(xy / w4 * square(x)) / noise.variance(s.mean + scale * x));
+  return c;
 }
 
 }  // namespace surf

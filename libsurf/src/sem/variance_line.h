@@ -32,8 +32,11 @@ VarianceLine fit_variance_line(const std::vector<VariancePoint>& points, const V
 /// How far a variance is from the one expected, as a standard normal number (Wilson and Hilferty 1931).
 double score(const VariancePoint& point, double expected);
 
-/// The coefficient of a parabola that is fitted in place of the line, over its standard error; 0 where it
-/// cannot be told.
-double curvature_score(const std::vector<VariancePoint>& points, const VarianceLine& line, double floor);
+/// Of a parabola that is fitted in place of the line; 0 where it cannot be told.
+struct Curvature {
+  double z = 0;           ///< its coefficient over the standard error
+  double departure = 0;   ///< the most it is off the line at either end or the middle, over the line's variance there
+};
+Curvature fit_curvature(const std::vector<VariancePoint>& points, const VarianceLine& line, double floor);
 
 }  // namespace surf

@@ -21,7 +21,7 @@ const SemNoise true_noise{0.6, 5, 1e-3};
 
 void expect_finite(const SemNoiseEstimate& e) {
   for (const double v : {e.noise.slope, e.noise.intercept, e.noise.least_variance, e.covariance[0], e.covariance[1],
-                         e.covariance[3], e.chi_squared, e.p, e.dispersion, e.curvature_z, e.least_mean, e.largest_mean,
+                         e.covariance[3], e.chi_squared, e.p, e.dispersion, e.curvature_z, e.bend, e.least_mean, e.largest_mean,
                          e.off_line_share, e.correlation_x, e.correlation_y, e.correlation_sum, e.correlation_squares,
                          e.excess_kurtosis, e.quantum})
     EXPECT_TRUE(std::isfinite(v));
@@ -88,6 +88,15 @@ TEST(EstimateSemNoise, ChoosingBlocksDoesNotBiasFlatImages) {
   test::expect_mean(ratio.mean(), ratio.standard_error(), 1, 2);
   test::expect_mean(z.mean(), z.standard_error(), 0, 2);
   test::expect_distributed(counts, std::vector<double>(10, images / 10.0), 2);
+}
+
+TEST(EstimateSemNoise, AGammaIsSeen) {
+  Grid<double> image = test::draw(test::plateaus(480, 360), true_noise, 1);
+  for (double& v : image.data()) v = 255 * std::pow(std::fmax(v, 0) / 255, 0.5);
+  const SemNoiseEstimate e = estimate_sem_noise(test::placed(image));
+  expect_finite(e);
+  EXPECT_THAT(e.warnings, Not(IsEmpty()));
+  EXPECT_LT(e.noise.slope, 0.1);   // the law is lost
 }
 
 TEST(EstimateSemNoise, RegionsOfAUser) {

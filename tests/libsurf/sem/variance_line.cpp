@@ -32,7 +32,7 @@ TEST(VarianceLine, IsUnbiasedWithItsErrors) {
     slope.add((l.slope - 0.5) / std::sqrt(l.covariance[0]));
     intercept.add((l.intercept - 3) / std::sqrt(l.covariance[3]));
     scatter.add(std::pow((l.slope - 0.5) / std::sqrt(l.covariance[0]), 2));
-    curvature.add(curvature_score(some_points(60, i), l, 1e-3));
+    curvature.add(fit_curvature(some_points(60, i), l, 1e-3).z);
   }
   test::expect_mean(slope.mean(), slope.standard_error(), 0, 4);
   test::expect_mean(intercept.mean(), intercept.standard_error(), 0, 4);
@@ -54,7 +54,14 @@ TEST(VarianceLine, LeavesOutWhatIsFarTooLarge) {
 
 TEST(VarianceLine, SeesABend) {
   const std::vector<VariancePoint> points = some_points(60, 2, 0.01);
-  EXPECT_GT(curvature_score(points, fit_variance_line(points, {false, 1e-3, 0}), 1e-3), 5);
+  const VarianceLine line = fit_variance_line(points, {false, 1e-3, 0});
+  const Curvature c = fit_curvature(points, line, 1e-3);
+  EXPECT_GT(c.z, 5);
+  // The parabola is 0.01 (x - 55)^2: seen from the best line, about a third of its height at the ends.
+  EXPECT_GT(c.departure, 0.1);
+  EXPECT_LT(c.departure, 1);
+  const std::vector<VariancePoint> straight = some_points(60, 2);
+  EXPECT_LT(fit_curvature(straight, fit_variance_line(straight, {false, 1e-3, 0}), 1e-3).departure, 0.15);
 }
 
 TEST(VarianceLine, OnePointOrOneMeanGivesAConstant) {
@@ -116,6 +123,12 @@ TEST(GreyLevels, FindsStepsAndPiles) {
   Grid<double> sixteen = test::rounded(smooth, 80, 110);
   for (double& v : sixteen.data()) v *= 257.0 / 65535;
   EXPECT_NEAR(grey_levels(sixteen, {}).quantum, 257.0 / 65535, 1e-12);
+  Grid<double> sums = test::rounded(smooth, 0, 255);   // a palette's grey as a mixture of its three colours
+  for (double& v : sums.data()) {
+    const auto f = static_cast<float>(v);
+    v = 0.2126f * f + 0.7152f * f + 0.0722f * f;
+  }
+  EXPECT_NEAR(grey_levels(sums, {}).quantum, 1, 1e-5);
   EXPECT_TRUE(grey_levels(sixteen, {}).black && grey_levels(sixteen, {}).white);
 }
 

@@ -56,8 +56,9 @@ struct SemNoiseEstimate {
   double chi_squared = 0, p = 1;
   int degrees = 0;
   double dispersion = 1;         ///< chi_squared / degrees; 1 without any
-  /// Of a parabola through the points, over its standard error (enlarged as above): beyond 3 the law bends.
-  double curvature_z = 0;
+  /// Of a parabola through the points, over its standard error (enlarged as above): beyond 4 the law bends. And
+  /// by how much: the most the parabola is off the line, over the line's variance there.
+  double curvature_z = 0, bend = 0;
   double least_mean = 0, largest_mean = 0;   ///< of the used points: beyond them the line is a guess
   /// Share of the image, by the means of 4 x 4 pixels, where the line is below twice the least variance, so that
   /// SemNoise leaves it.
