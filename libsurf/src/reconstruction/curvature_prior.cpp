@@ -77,6 +77,19 @@ double CurvaturePrior::evaluate(const Grid<double>& z, Grid<double>* gradient, G
   return 0.5 * (degrees + 1) * sum;
 }
 
+Grid<double> CurvaturePrior::squared_curvature(const Grid<double>& z) const {
+  Grid<double> c2;
+  evaluate(z, nullptr, &c2);
+  for (double& v : c2.data()) v = (degrees + 1) / v - degrees * curvature_ * curvature_;
+  return c2;
+}
+
+Grid<double> CurvaturePrior::weights_of(const Grid<double>& squared_curvature) const {
+  Grid<double> w = squared_curvature;
+  for (double& v : w.data()) v = (degrees + 1) / (degrees * curvature_ * curvature_ + v);
+  return w;
+}
+
 void CurvaturePrior::add_product(const Grid<double>& weight, const Grid<double>& dz, Grid<double>& out) const {
   Differences d(dz, pitch_nm_);
   const int w = dz.width(), h = dz.height();

@@ -19,6 +19,11 @@ class CurvaturePrior {
   /// The prior's term. `gradient` (if given) gets its derivative added; `weights` that of each sample's c^2 / 2.
   double evaluate(const Grid<double>& z_nm, Grid<double>* gradient, Grid<double>* weights) const;
 
+  /// c^2 of each sample.
+  Grid<double> squared_curvature(const Grid<double>& z_nm) const;
+  /// What `evaluate` gives as weights, of curvatures whose squares are these.
+  Grid<double> weights_of(const Grid<double>& squared_curvature) const;
+
   /// out += the quadratic form of these weights, times dz.
   void add_product(const Grid<double>& weights, const Grid<double>& dz_nm, Grid<double>& out) const;
 

@@ -112,7 +112,7 @@ DescentReport descend(const Objective& objective, Unknowns& at, double sigma_px,
 
 void fit_few(const Objective& o, Unknowns& at, const Watch& watch) {
   const int of_map = o.afm && o.fit_map ? map_numbers : 0;
-  const int of_mixture = o.sem && o.fit_mixture ? static_cast<int>(o.sem->channels()) + 1 : 0, n = of_map + of_mixture;
+  const int of_mixture = o.sem && o.fit_mixture ? 2 : 0, n = of_map + of_mixture;
   if (n == 0) return;
   Objective::State state = o.evaluate(at);
   double damping = 1e-6;
@@ -138,7 +138,7 @@ void fit_few(const Objective& o, Unknowns& at, const Watch& watch) {
     }
     if (of_mixture) {
       const auto value = [&](int c, std::size_t p) {
-        return c + 1 < of_mixture ? state.sem->linear->images()[c].data()[p] : 1.0;
+        return c == 0 ? state.sem->simulated.data()[p] - at.mixture.back() : 1.0;
       };
       for (std::size_t p = 0; p < state.sem->pull.size(); ++p)
         for (int i = 0; i < of_mixture; ++i) {

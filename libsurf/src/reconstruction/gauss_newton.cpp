@@ -10,6 +10,9 @@
 namespace surf::reconstruction {
 namespace {
 
+/// Products that take about the time of a factorisation.
+constexpr int worth_a_factor = 4;
+
 double largest(const Grid<double>& g) {
   double most = 0;
   for (const double v : g.data()) most = std::max(most, std::fabs(v));
@@ -78,11 +81,14 @@ DescentReport gauss_newton(const Objective& o, Unknowns& at, const DescentOption
   Preconditioner m;
   double radius = std::numeric_limits<double>::infinity();
   report.ended = "iterations";
+  bool stale = true;
+  int fresh_products = 0;
   while (report.iterations < options.iterations) {
     options.watch.check();
     const Step gradient = o.gradient(at, state);
     report.gradient_norm = largest(gradient.z_nm);
-    m.factor(o, at, state);
+    // Weights change little at the end: a factor is kept until the steps take more than it would.
+    if (stale) m.factor(o, at, state);
     ++report.iterations;
     const double before = state.value();
     bool accepted = false;
@@ -90,6 +96,8 @@ DescentReport gauss_newton(const Objective& o, Unknowns& at, const DescentOption
     for (int tries = 0; tries < 12 && !accepted; ++tries) {
       const Inner in = steihaug(o, at, state, m, gradient, radius, 0.1, options.most_products, options.watch);
       report.products += in.products;
+      if (stale) fresh_products = in.products;
+      stale = in.products > fresh_products + worth_a_factor || in.at_border;
       const Unknowns next = o.moved(at, in.step);
       Objective::State there = o.evaluate(next);
       ++report.evaluations;

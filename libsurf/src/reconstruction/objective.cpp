@@ -37,7 +37,7 @@ Objective::State Objective::evaluate(const Unknowns& at) const {
 }
 
 Step Objective::zero() const {
-  return {Grid<double>(frame.width, frame.height), {}, std::vector<double>(sem ? sem->channels() + 1 : 0)};
+  return {Grid<double>(frame.width, frame.height), {}, {}};
 }
 
 Step Objective::gradient(const Unknowns& at, const State& s) const {
@@ -71,8 +71,10 @@ Unknowns Objective::moved(const Unknowns& at, const Step& step) const {
   Unknowns next = at;
   for (std::size_t i = 0; i < next.z_nm.size(); ++i) next.z_nm.data()[i] += step.z_nm.data()[i];
   if (afm && fit_map) next.surface_to_afm = afm->moved(at.surface_to_afm, step.map);
-  if (fit_mixture)
-    for (std::size_t i = 0; i < next.mixture.size(); ++i) next.mixture[i] += step.mixture[i];
+  if (fit_mixture) {
+    for (std::size_t c = 0; c + 1 < next.mixture.size(); ++c) next.mixture[c] *= 1 + step.mixture[0];
+    next.mixture.back() += step.mixture[1];
+  }
   return next;
 }
 

@@ -22,7 +22,7 @@ struct Unknowns {
 struct Step {
   Grid<double> z_nm;
   MapChange map{};                   ///< all 0 where the map is not fitted
-  std::vector<double> mixture;       ///< likewise
+  MixtureChange mixture{};           ///< likewise
 };
 double dot(const Step& a, const Step& b);
 void add(Step& to, double factor, const Step& step);

@@ -9,6 +9,8 @@
 namespace surf::reconstruction {
 namespace {
 
+constexpr int cheap_draws = 48;
+constexpr int rounds = 4;
 constexpr double around_px = 3;   // over which the ratio of variances is averaged
 
 /// What noise of both images does to the gradient: normal with the precision that they bring.
@@ -64,10 +66,30 @@ Step solve(const Objective& o, const Unknowns& at, const Objective::State& state
 }
 
 Posterior posterior(const Objective& o, const Unknowns& at, int draws, std::uint64_t seed, int threads, const Watch& watch) {
-  const Objective::State state = o.evaluate(at);
+  Objective::State state = o.evaluate(at);
+  const Grid<double> found = o.prior.squared_curvature(at.z_nm);
   Preconditioner m;
-  m.factor(o, at, state);
-  const Grid<double> without_sem = m.variances_nm2();
+  Grid<double> without_sem;
+  for (int round = 0; round < rounds; ++round) {
+    m.factor(o, at, state);
+    without_sem = Grid<double>(o.frame.width, o.frame.height);
+    Grid<double> unsure(o.frame.width, o.frame.height);   // the variance of the curvature
+    for (int d = 0; d < cheap_draws; ++d) {
+      watch.check();
+      NormalNumbers normal(seed + static_cast<std::uint64_t>(d), 3);
+      Grid<double> white(o.frame.width, o.frame.height);
+      for (double& v : white.data()) v = normal();
+      const Grid<double> x = m.draw_nm(white), c2 = o.prior.squared_curvature(x);
+      for (std::size_t i = 0; i < x.size(); ++i) {
+        without_sem.data()[i] += x.data()[i] * x.data()[i] / cheap_draws;
+        unsure.data()[i] += c2.data()[i] / cheap_draws;
+      }
+    }
+    if (round + 1 == rounds) break;
+    for (std::size_t i = 0; i < unsure.size(); ++i) unsure.data()[i] += found.data()[i];
+    state.prior_weights = o.prior.weights_of(unsure);
+  }
+  without_sem = GaussianBasis(0.8, threads).sum(without_sem);
   Grid<double> drawn(o.frame.width, o.frame.height);
   for (int d = 0; d < draws; ++d) {
     watch.report(d, draws);
@@ -78,10 +100,16 @@ Posterior posterior(const Objective& o, const Unknowns& at, int draws, std::uint
   }
   const GaussianBasis around(around_px, threads);
   const Grid<double> mean = around.sum(drawn), expected = around.sum(without_sem);
+  // The prior's pull, which no draw of noise shows: where to the surface would go without it, to first order.
+  Step pull = o.zero();
+  o.prior.evaluate(at.z_nm, &pull.z_nm, nullptr);
+  Grid<double> bias = solve(o, at, state, m, pull, 0.05, watch).z_nm;
+  for (double& b : bias.data()) b *= b;
+  bias = around.sum(bias);
   Posterior out{Grid<double>(o.frame.width, o.frame.height), Grid<unsigned char>(o.frame.width, o.frame.height)};
   for (std::size_t i = 0; i < drawn.size(); ++i) {
     const double ratio = mean.data()[i] / expected.data()[i];
-    out.deviation_nm.data()[i] = std::sqrt(without_sem.data()[i] * ratio);
+    out.deviation_nm.data()[i] = std::sqrt(without_sem.data()[i] * ratio + bias.data()[i]);
     if (o.sem && ratio < 0.5) out.held_by.data()[i] = 2;
   }
   if (o.afm)

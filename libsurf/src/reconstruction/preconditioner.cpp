@@ -111,6 +111,21 @@ struct Preconditioner::Parts {
     if (common.status != CHOLMOD_OK)
       throw InvalidInput("reconstruct", "the surface is not determined", "Give an AFM image, or a stronger prior");
   }
+
+  /// The system of that kind (see cholmod_solve) with this right side.
+  Grid<double> solved(int system, const Grid<double>& right) {
+    std::vector<double> numbers = right.data();
+    cholmod_dense b{};
+    b.nrow = b.d = b.nzmax = numbers.size();
+    b.ncol = 1;
+    b.x = numbers.data();
+    b.xtype = CHOLMOD_REAL;
+    b.dtype = CHOLMOD_DOUBLE;
+    cholmod_solve2(system, factor, &b, nullptr, &x, nullptr, &y, &e, &common);
+    Grid<double> out(width, height);
+    std::copy_n(static_cast<const double*>(x->x), numbers.size(), out.data().begin());
+    return out;
+  }
 };
 
 Preconditioner::Preconditioner() : parts_(std::make_unique<Parts>()) {}
@@ -163,18 +178,14 @@ void Preconditioner::factor(const Objective& o, const Unknowns& at, const Object
   }
   parts_->has_mixture = o.sem && o.fit_mixture;
   if (parts_->has_mixture) {
-    const std::size_t n = o.sem->channels() + 1;
-    Eigen::MatrixXd block = Eigen::MatrixXd::Zero(n, n);
-    const auto column = [&](std::size_t c, std::size_t i) {
-      return c + 1 < n ? s.sem->linear->images()[c].data()[i] : 1.0;
-    };
-    for (std::size_t a = 0; a < n; ++a)
-      for (std::size_t b = a; b < n; ++b) {
-        double sum = 0;
-        for (std::size_t i = 0; i < s.sem->information.size(); ++i)
-          sum += s.sem->information.data()[i] * column(a, i) * column(b, i);
-        block(a, b) = block(b, a) = sum;
-      }
+    Eigen::MatrixXd block = Eigen::MatrixXd::Zero(2, 2);
+    for (std::size_t i = 0; i < s.sem->information.size(); ++i) {
+      const double q = s.sem->information.data()[i], gain = s.sem->simulated.data()[i] - at.mixture.back();
+      block(0, 0) += q * gain * gain;
+      block(0, 1) += q * gain;
+      block(1, 1) += q;
+    }
+    block(1, 0) = block(0, 1);
     block.diagonal().array() *= 1 + 1e-9;
     parts_->mixture.compute(block);
   }
@@ -182,61 +193,20 @@ void Preconditioner::factor(const Objective& o, const Unknowns& at, const Object
 
 Step Preconditioner::solve(const Step& r) const {
   Step out;
-  std::vector<double> right = r.z_nm.data();
-  cholmod_dense b{};
-  b.nrow = b.d = b.nzmax = right.size();
-  b.ncol = 1;
-  b.x = right.data();
-  b.xtype = CHOLMOD_REAL;
-  b.dtype = CHOLMOD_DOUBLE;
-  cholmod_solve2(CHOLMOD_A, parts_->factor, &b, nullptr, &parts_->x, nullptr, &parts_->y, &parts_->e, &parts_->common);
-  out.z_nm = Grid<double>(parts_->width, parts_->height);
-  const auto* const x = static_cast<const double*>(parts_->x->x);
-  std::copy(x, x + right.size(), out.z_nm.data().begin());
+  out.z_nm = parts_->solved(CHOLMOD_A, r.z_nm);
   if (parts_->has_map)
     Eigen::Map<Eigen::VectorXd>(out.map.data(), map_numbers) =
         parts_->map.solve(Eigen::Map<const Eigen::VectorXd>(r.map.data(), map_numbers));
-  out.mixture.assign(r.mixture.size(), 0);
   if (parts_->has_mixture)
-    Eigen::Map<Eigen::VectorXd>(out.mixture.data(), static_cast<Eigen::Index>(r.mixture.size())) =
-        parts_->mixture.solve(Eigen::Map<const Eigen::VectorXd>(r.mixture.data(), static_cast<Eigen::Index>(r.mixture.size())));
+    Eigen::Map<Eigen::Vector2d>(out.mixture.data()) =
+        parts_->mixture.solve(Eigen::Map<const Eigen::Vector2d>(r.mixture.data()));
   return out;
 }
 
-Grid<double> Preconditioner::variances_nm2() const {
-  // Column by column, the diagonal first.
-  cholmod_factor* f = cholmod_copy_factor(parts_->factor, &parts_->common);
-  cholmod_change_factor(CHOLMOD_REAL, true, false, true, true, f, &parts_->common);
-  const int n = static_cast<int>(f->n);
-  const auto* const start = static_cast<const int*>(f->p);
-  const auto* const row = static_cast<const int*>(f->i);
-  const auto* const l = static_cast<const double*>(f->x);
-  std::vector<double> z(static_cast<std::size_t>(start[n]));   // the inverse, where L has entries
-  std::vector<int> place(n, -1);   // of a row among the column's entries
-  for (int j = n - 1; j >= 0; --j) {
-    const int begin = start[j], end = start[j + 1];
-    for (int e = begin; e < end; ++e) place[row[e]] = e;
-    // z_ij = - sum over k of l_kj / l_jj z_ik, over the entries k below the diagonal; z_ik is in column min(i, k).
-    for (int e = begin + 1; e < end; ++e) {
-      const int k = row[e];
-      const double share = l[e] / l[begin];
-      for (int s = start[k]; s < start[k + 1]; ++s) {
-        const int at = place[row[s]];
-        if (at < 0) continue;
-        z[at] -= share * z[s];
-        if (at != e) z[e] -= l[at] / l[begin] * z[s];
-      }
-    }
-    double diagonal = 1 / (l[begin] * l[begin]);
-    for (int e = begin + 1; e < end; ++e) diagonal -= l[e] / l[begin] * z[e];
-    z[begin] = diagonal;
-    for (int e = begin; e < end; ++e) place[row[e]] = -1;
-  }
-  Grid<double> out(parts_->width, parts_->height);
-  const auto* const order = static_cast<const int*>(f->Perm);   // of the factor's rows
-  for (int i = 0; i < n; ++i) out.data()[order[i]] = z[start[i]];
-  cholmod_free_factor(&f, &parts_->common);
-  return out;
+Grid<double> Preconditioner::draw_nm(const Grid<double>& normal) const {
+  // A = P^T L L^T P: L^-T turns white numbers into such of covariance (L L^T)^-1, P^T puts them back in order.
+  const Grid<double> turned = parts_->solved(CHOLMOD_Lt, normal);
+  return parts_->solved(CHOLMOD_Pt, turned);
 }
 
 }  // namespace surf::reconstruction

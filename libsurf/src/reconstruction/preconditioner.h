@@ -20,9 +20,8 @@ class Preconditioner {
   void factor(const Objective& objective, const Unknowns& at, const Objective::State& state);
   Step solve(const Step& residual) const;
 
-  /// The diagonal of its inverse for the heights: their variances if it were the posterior's precision. Exact, in
-  /// about the time of a factorisation (Takahashi's recursion; Erisman and Tinney 1975, doi:10.1145/360680.360704).
-  Grid<double> variances_nm2() const;
+  /// A draw of heights whose covariance is its inverse, made of independent standard normal numbers, one per sample.
+  Grid<double> draw_nm(const Grid<double>& normal) const;
 
  private:
   struct Parts;

@@ -122,7 +122,7 @@ class Work {
       if (const auto found = journal->found()) take(*found);
     for (std::size_t i = reports_.size(); i < scales.size(); ++i) {
       options_.watch.report(static_cast<double>(i), static_cast<double>(scales.size()));
-      scale(scales[i], i == 0, options_.watch.part(double(i) / scales.size(), double(i + 1) / scales.size()));
+      scale(scales[i], i == 0, i + 1 == scales.size(), options_.watch.part(double(i) / scales.size(), double(i + 1) / scales.size()));
       if (journal) journal->keep(state());
     }
     return result();
@@ -139,6 +139,7 @@ class Work {
       at_.mixture.push_back(s.offset);
     }
     reports_ = s.scales;
+    converged_ = reports_.empty() || reports_.back().ended == "converged";
   }
 
   ReconstructionState state() const {
@@ -150,17 +151,17 @@ class Work {
     return s;
   }
 
-  void scale(double sigma_px, bool first, const Watch& watch) {
+  void scale(double sigma_px, bool first, bool last, const Watch& watch) {
     DescentOptions o;
     const bool newton = options_.method == ReconstructionMethod::gauss_newton;
     o.iterations = options_.iterations > 0 ? options_.iterations : newton ? 40 : 200;
-    o.tolerance = (options_.tolerance > 0 ? options_.tolerance : 1e-5) * static_cast<double>(pixels());
+    o.tolerance = (options_.tolerance > 0 ? options_.tolerance : 5e-5) * static_cast<double>(pixels());
     o.watch = watch;
     DescentReport d;
     if (newton) {
       if (first) at_.z_nm = GaussianBasis(1.5, options_.threads).sum(at_.z_nm);
       objective_.prior = CurvaturePrior(objective_.frame.pitch_nm, curvature_ * sigma_px * sigma_px);
-      if (sigma_px > 1) o.tolerance *= 100;
+      if (!last) o.tolerance *= 20;
       fit_few(objective_, at_, watch);
       d = gauss_newton(objective_, at_, o);
     } else {
@@ -172,6 +173,7 @@ class Work {
                   d.ended, {}, {}};
     if (s.afm) r.afm_residual = judge(afm_white(s), objective_.afm->used());
     if (s.sem) r.sem_residual = judge(sem_white(s), objective_.sem->used());
+    converged_ = d.ended == "converged";
     reports_.push_back(r);
   }
 
@@ -184,6 +186,20 @@ class Work {
   }
   Grid<double> sem_white(const Objective::State& s) const {
     return whiten(objective_.sem->image(), s.sem->simulated, objective_.sem->noise(), objective_.sem->used());
+  }
+
+  void add_warnings(Reconstruction& out) const {
+    if (!converged_) out.warnings.push_back("the last scale ended before it settled: give more iterations");
+    if (reports_.empty()) return;
+    const auto judge_image = [&](const ResidualReport& r, const char* image) {
+      if (r.pixels == 0 || r.like_noise) return;
+      out.warnings.push_back(fmt::format(
+          "what is left of the {} image does not look like its noise (deviation {:.2f} of 1, neighbours' correlation {:.2f} "
+          "along and {:.2f} across rows): look at its residual for what no surface explains",
+          image, r.deviation, r.along, r.across));
+    };
+    judge_image(reports_.back().afm_residual, "AFM");
+    judge_image(reports_.back().sem_residual, "SEM");
   }
 
   template <class T>
@@ -202,6 +218,8 @@ class Work {
     out.start = cut_field(start_);
     out.sem_to_afm = at_.surface_to_afm;
     out.scales = reports_;
+    out.converged = converged_;
+    add_warnings(out);
     const ReconstructionState last = state();
     out.gains = last.gains;
     out.offset = last.offset;
@@ -254,13 +272,14 @@ class Work {
   Unknowns at_;
   Grid<double> start_;
   double curvature_ = 1e-3;
+  bool converged_ = true;
   std::vector<ScaleReport> reports_;
 };
 
 }  // namespace
 
 std::vector<double> default_scales_px(ReconstructionMethod method, int width, int height) {
-  if (method == ReconstructionMethod::gauss_newton) return {5, 2.2, 1};
+  if (method == ReconstructionMethod::gauss_newton) return {5, 1.4};
   std::vector<double> scales;
   const double widest = std::min(60.0, std::min(width, height) / 3.0);
   for (double s = 60; s > 0.38; s /= 1.875)

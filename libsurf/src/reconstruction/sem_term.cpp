@@ -33,7 +33,7 @@ SemTerm::State SemTerm::evaluate(const Grid<double>& z, const std::vector<double
 }
 
 void SemTerm::add_gradient(const State& s, const std::vector<double>& mixture, const Grid<double>& weights,
-                           Grid<double>& out, std::vector<double>* by_mixture) const {
+                           Grid<double>& out, MixtureChange* by_mixture) const {
   ModelImages w;
   for (std::size_t c = 0; c < channels_; ++c) {
     w.push_back(weights);
@@ -42,21 +42,20 @@ void SemTerm::add_gradient(const State& s, const std::vector<double>& mixture, c
   const Grid<double> gradient = s.linear->gradient(w);
   for (std::size_t i = 0; i < out.size(); ++i) out.data()[i] += gradient.data()[i];
   if (!by_mixture) return;
-  for (std::size_t c = 0; c <= channels_; ++c) {
-    double sum = 0;
-    for (std::size_t i = 0; i < out.size(); ++i)
-      sum += weights.data()[i] * (c < channels_ ? s.linear->images()[c].data()[i] : 1);
-    (*by_mixture)[c] += sum;
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    (*by_mixture)[0] += weights.data()[i] * (s.simulated.data()[i] - mixture[channels_]);
+    (*by_mixture)[1] += weights.data()[i];
   }
 }
 
 Grid<double> SemTerm::change(const State& s, const std::vector<double>& mixture, const Grid<double>& dz,
-                             const std::vector<double>& mixture_change) const {
+                             const MixtureChange& mixture_change) const {
   const ModelImages d = s.linear->change(dz);
-  Grid<double> out(frame_.width, frame_.height, mixture_change[channels_]);
+  Grid<double> out(frame_.width, frame_.height, mixture_change[1]);
   for (std::size_t c = 0; c < channels_; ++c)
-    for (std::size_t i = 0; i < out.size(); ++i)
-      out.data()[i] += mixture[c] * d[c].data()[i] + mixture_change[c] * s.linear->images()[c].data()[i];
+    for (std::size_t i = 0; i < out.size(); ++i) out.data()[i] += mixture[c] * d[c].data()[i];
+  for (std::size_t i = 0; i < out.size(); ++i)
+    out.data()[i] += mixture_change[0] * (s.simulated.data()[i] - mixture[channels_]);
   return out;
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <array>
 #include <memory>
 #include <vector>
 
@@ -8,6 +9,10 @@
 #include "surface_frame.h"
 
 namespace surf::reconstruction {
+
+/// A change of gains and offset: the share by which all gains grow, and that of the offset. The gains keep their
+/// ratios: channels are so alike that their gains would trade what the model is off by (docs/methods/calibration.md).
+using MixtureChange = std::array<double, 2>;
 
 /// The SEM image, given a surface: the model's channels, mixed, and the negative log-likelihood (thesis, 9.2.2).
 class SemTerm {
@@ -26,12 +31,12 @@ class SemTerm {
   /// `mixture`: a gain for each channel and the offset.
   State evaluate(const Grid<double>& z_nm, const std::vector<double>& mixture) const;
 
-  /// out += J^T w; `mixture` gets the derivatives by gains and offset, if given.
+  /// out += J^T w; `by_mixture` gets the derivatives by MixtureChange, if given.
   void add_gradient(const State& state, const std::vector<double>& mixture, const Grid<double>& weights,
-                    Grid<double>& out, std::vector<double>* by_mixture) const;
+                    Grid<double>& out, MixtureChange* by_mixture) const;
   /// J (dz, change of the mixture).
   Grid<double> change(const State& state, const std::vector<double>& mixture, const Grid<double>& dz_nm,
-                      const std::vector<double>& mixture_change) const;
+                      const MixtureChange& mixture_change) const;
 
   std::size_t channels() const { return channels_; }
   const Grid<double>& image() const { return image_; }           ///< on the surface's samples

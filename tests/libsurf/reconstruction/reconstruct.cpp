@@ -3,19 +3,222 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <functional>
+
 #include "small_scene.h"
+#include "surf/core/error.h"
 
 namespace surf {
 namespace {
 
-TEST(Reconstruct, BothImagesGiveTheSurfaceBetterThanTheScanAlone) {
+ReconstructionOptions quick() {
+  ReconstructionOptions o;
+  o.uncertainty = false;
+  return o;
+}
+
+bool is_finite(const Grid<double>& grid) {
+  return std::all_of(grid.data().begin(), grid.data().end(), [](double v) { return std::isfinite(v); });
+}
+
+TEST(Reconstruct, BothImagesGiveTheSurfaceFarBetterThanErosion) {
   const test::SmallScene scene;
-  const Reconstruction both = reconstruct(&scene.afm, &scene.sem);
-  EXPECT_LT(scene.rms_error(both.surface), 0.6 * scene.rms_error(both.start));
-  std::printf("start %.3f both %.3f\n", scene.rms_error(both.start), scene.rms_error(both.surface));
-  for (const ScaleReport& s : both.scales)
-    std::printf("  %.3g afm %.1f sem %.1f prior %.1f it %d ev %d pr %d %s | %.3f %.3f\n", s.sigma_px, s.afm, s.sem, s.prior, s.iterations,
-                s.evaluations, s.products, s.ended.c_str(), s.afm_residual.deviation, s.sem_residual.deviation);
+  const Reconstruction r = reconstruct(&scene.afm, &scene.sem, quick());
+  EXPECT_LT(scene.rms_error(r.surface), 0.5 * scene.rms_error(r.start));
+  EXPECT_TRUE(r.converged);
+  EXPECT_EQ(r.scales.size(), 2u);
+  EXPECT_GT(r.scales.back().afm_residual.pixels, 256);
+  EXPECT_NEAR(r.scales.back().sem_residual.deviation, 1, 0.1);
+}
+
+TEST(Reconstruct, ErrorIsWithinTwiceWhatNoiseLeaves) {
+  const test::SmallScene scene;
+  const double floor = noise_floor_nm(&scene.afm, &scene.sem, scene.truth, quick());
+  EXPECT_GT(floor, 0.1);
+  EXPECT_LT(scene.rms_error(reconstruct(&scene.afm, &scene.sem, quick()).surface), 2 * floor);
+}
+
+TEST(Reconstruct, FindsTheMapThatIsOffByAPixel) {
+  test::SmallScene scene;
+  const Affine truth = scene.sem.sem_to_afm;
+  scene.sem.sem_to_afm.x0 += 6;
+  scene.sem.sem_to_afm.y0 -= 5;
+  const Reconstruction r = reconstruct(&scene.afm, &scene.sem, quick());
+  const Point2 is = r.sem_to_afm({0, 0}), should = truth({0, 0});
+  EXPECT_LT(std::hypot(is.x - should.x, is.y - should.y), 2.5);
+}
+
+TEST(Reconstruct, FindsGainsThatAreOffByATenth) {
+  test::SmallScene scene;
+  scene.sem.gains[0] *= 1.1;
+  scene.sem.offset -= 10;
+  const Reconstruction r = reconstruct(&scene.afm, &scene.sem, quick());
+  EXPECT_NEAR(r.gains[0] + r.offset, 120, 1.5);   // a plain's brightness
+}
+
+TEST(Reconstruct, WorksWithEitherImageAlone) {
+  const test::SmallScene scene;
+  const Reconstruction afm = reconstruct(&scene.afm, nullptr, quick());
+  EXPECT_EQ(afm.surface.z_nm.width(), scene.afm.image.z_nm.width());
+  EXPECT_TRUE(is_finite(afm.surface.z_nm));
+  EXPECT_TRUE(afm.simulated_sem.empty());
+  EXPECT_NEAR(afm.scales.back().afm_residual.deviation, 1, 0.25);
+  const Reconstruction sem = reconstruct(nullptr, &scene.sem, quick());
+  EXPECT_EQ(sem.surface.z_nm.width(), scene.truth.z_nm.width());
+  EXPECT_TRUE(is_finite(sem.surface.z_nm));
+  EXPECT_TRUE(sem.simulated_afm.z_nm.empty());
+}
+
+TEST(Reconstruct, DescentsReachTheSameFromTheThesissScales) {
+  const test::SmallScene scene;
+  for (const ReconstructionMethod method : {ReconstructionMethod::conjugate_gradients, ReconstructionMethod::lbfgs}) {
+    ReconstructionOptions o = quick();
+    o.method = method;
+    o.scales_px = {8, 4, 2, 1, 0.5};
+    o.iterations = 60;
+    const Reconstruction r = reconstruct(&scene.afm, &scene.sem, o);
+    EXPECT_EQ(r.scales.size(), 5u);
+    EXPECT_LT(scene.rms_error(r.surface), 0.8 * scene.rms_error(r.start));
+    // Each scale goes on from the last: the objective falls.
+    const ScaleReport &a = r.scales.front(), &b = r.scales.back();
+    EXPECT_LT(b.afm + b.sem + b.prior, a.afm + a.sem + a.prior);
+  }
+}
+
+TEST(Reconstruct, DeviationsHoldTheErrors) {
+  // Over three draws of the noise. Of normal errors two thirds and 95 % lie within one and two deviations.
+  double within = 0, within_two = 0, count = 0;
+  for (const std::uint64_t seed : {5, 6, 7}) {
+    const test::SmallScene scene(seed);
+    const Reconstruction r = reconstruct(&scene.afm, &scene.sem);
+    for (std::size_t i = 0; i < r.deviation_nm.size(); ++i) {
+      ASSERT_GT(r.deviation_nm.data()[i], 0);
+      const double z = std::fabs(r.surface.z_nm.data()[i] - scene.truth.z_nm.data()[i]) / r.deviation_nm.data()[i];
+      within += z < 1;
+      within_two += z < 2;
+      ++count;
+    }
+  }
+  // Its edges are rounder and its curvature more even than the prior expects, so errors are larger than that; on the sample
+  // scenes 0.56 and 0.84 lie within (docs/methods/reconstruction.md).
+  EXPECT_GT(within / count, 0.3);
+  EXPECT_LT(within / count, 0.85);
+  EXPECT_GT(within_two / count, 0.55);
+}
+
+TEST(Reconstruct, DoesNotDependOnThreads) {
+  const test::SmallScene scene;
+  ReconstructionOptions one = quick(), three = quick();
+  one.iterations = three.iterations = 3;
+  one.threads = 1;
+  three.threads = 3;
+  EXPECT_EQ(reconstruct(&scene.afm, &scene.sem, one).surface.z_nm, reconstruct(&scene.afm, &scene.sem, three).surface.z_nm);
+}
+
+class Journal final : public ReconstructionJournal {
+ public:
+  std::optional<ReconstructionState> found() override { return kept; }
+  void keep(const ReconstructionState& state) override {
+    kept = state;
+    ++times;
+  }
+  std::optional<ReconstructionState> kept;
+  int times = 0;
+};
+
+TEST(Reconstruct, GoesOnFromAJournalToTheSameBits) {
+  const test::SmallScene scene;
+  ReconstructionOptions o = quick();
+  o.scales_px = {5, 2, 1};
+  o.iterations = 4;
+  const Reconstruction whole = reconstruct(&scene.afm, &scene.sem, o);
+  Journal journal;
+  CancelToken cancel;
+  ReconstructionOptions ended = o;
+  ended.watch.cancel = &cancel;
+  ended.watch.progress = [&](double, double) {
+    if (journal.times == 2) cancel.cancel();
+  };
+  EXPECT_THROW(reconstruct(&scene.afm, &scene.sem, ended, &journal), Interrupted);
+  EXPECT_EQ(journal.times, 2);
+  const Reconstruction rest = reconstruct(&scene.afm, &scene.sem, o, &journal);
+  EXPECT_EQ(journal.times, 3);
+  EXPECT_EQ(rest.surface.z_nm, whole.surface.z_nm);
+  EXPECT_EQ(rest.sem_to_afm, whole.sem_to_afm);
+  EXPECT_EQ(rest.gains, whole.gains);
+}
+
+TEST(Reconstruct, FlatAndSaturatedImagesGiveFiniteSurfaces) {
+  test::SmallScene scene;
+  for (double& v : scene.sem.image.values.data()) v = 120;
+  EXPECT_TRUE(is_finite(reconstruct(&scene.afm, &scene.sem, quick()).surface.z_nm));
+  for (double& v : scene.sem.image.values.data()) v = 255;
+  EXPECT_TRUE(is_finite(reconstruct(&scene.afm, &scene.sem, quick()).surface.z_nm));
+  for (double& z : scene.afm.image.z_nm.data()) z = 4;
+  EXPECT_TRUE(is_finite(reconstruct(&scene.afm, nullptr, quick()).surface.z_nm));
+  // A noise line that is negative everywhere leaves its least variance.
+  scene.sem.noise = {0.5, -1000, 4};
+  EXPECT_TRUE(is_finite(reconstruct(&scene.afm, &scene.sem, quick()).surface.z_nm));
+}
+
+TEST(Reconstruct, FlagsAnImageThatNoSurfaceExplains) {
+  test::SmallScene scene;
+  for (int y = 0; y < scene.sem.image.values.height(); ++y)
+    for (int x = 0; x < scene.sem.image.values.width(); ++x)
+      if ((x / 4 + y / 4) % 2 == 0) scene.sem.image.values(x, y) -= 60;   // darker than any slope can be
+  const Reconstruction r = reconstruct(&scene.afm, &scene.sem, quick());
+  EXPECT_FALSE(r.scales.back().sem_residual.like_noise);
+  EXPECT_FALSE(r.warnings.empty());
+}
+
+TEST(Reconstruct, RefusesWhatCannotBe) {
+  const test::SmallScene scene;
+  EXPECT_THROW(reconstruct(nullptr, nullptr), InvalidInput);
+  const auto refused = [&](const std::function<void(AfmData&, SemData&)>& change) {
+    AfmData afm = scene.afm;
+    SemData sem = scene.sem;
+    change(afm, sem);
+    EXPECT_THROW(reconstruct(&afm, &sem, quick()), Error);
+  };
+  refused([](AfmData&, SemData& s) { s.sem_to_afm.x0 += 1e5; });   // no overlap
+  refused([](AfmData&, SemData& s) { s.sem_to_afm = {0, 0, 0, 0, 0, 0}; });
+  refused([](AfmData&, SemData& s) { s.gains = {}; });
+  refused([](AfmData&, SemData& s) { s.model = nullptr; });
+  refused([](AfmData&, SemData& s) { s.noise.least_variance = 0; });
+  refused([](AfmData&, SemData& s) { s.image.values(3, 3) = NAN; });
+  refused([](AfmData& a, SemData&) { a.noise.alpha = 1; });
+  refused([](AfmData& a, SemData&) { a.upsample = 9; });
+  refused([](AfmData& a, SemData&) { a.image.z_nm(2, 2) = INFINITY; });
+  refused([](AfmData& a, SemData&) { a.tip.pitch_x_nm = 7; });
+  ReconstructionOptions o = quick();
+  o.scales_px = {1, 2};
+  EXPECT_THROW(reconstruct(&scene.afm, &scene.sem, o), UsageError);
+}
+
+TEST(Reconstruct, ATipWiderThanTheScanIsTakenOrRefused) {
+  test::SmallScene scene;
+  scene.afm.tip = parabolic_tip(80, {20, 20, 101, 101});
+  const Reconstruction r = reconstruct(&scene.afm, &scene.sem, quick());
+  EXPECT_TRUE(is_finite(r.surface.z_nm));
+}
+
+TEST(Reconstruct, HolesInBothImagesPlayNoPart) {
+  test::SmallScene scene;
+  const auto hide = [](auto& image, auto& values) {
+    image.valid = Grid<unsigned char>(values.width(), values.height(), 1);
+    for (int y = 10; y < 16; ++y)
+      for (int x = 12; x < 20; ++x) {
+        image.valid(x, y) = 0;
+        values(x, y) = NAN;
+      }
+  };
+  hide(scene.sem.image, scene.sem.image.values);
+  hide(scene.afm.image, scene.afm.image.z_nm);
+  const Reconstruction r = reconstruct(&scene.afm, &scene.sem, quick());
+  EXPECT_TRUE(is_finite(r.surface.z_nm));
+  EXPECT_EQ(r.afm_used(13, 12), 0);
+  EXPECT_LT(scene.rms_error(r.surface), scene.rms_error(r.start));
 }
 
 }  // namespace

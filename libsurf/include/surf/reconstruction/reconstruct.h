@@ -46,21 +46,22 @@ enum class ReconstructionMethod {
 struct ReconstructionOptions {
   ReconstructionMethod method = ReconstructionMethod::gauss_newton;
 
-  /// Standard deviations of the Gaussians that the surface is a sum of, in pixels of the surface, falling.
-  /// Empty: the method's own (`default_scales_px`).
+  /// Of the descents: standard deviations of the Gaussians that the surface is a sum of, in pixels of the surface, falling.
+  /// Of Gauss-Newton, whose unknowns are the heights: the prior's curvature is multiplied by a scale's square, so that
+  /// wide ones come first as a smooth surface. Empty: the method's own (`default_scales_px`).
   std::vector<double> scales_px;
   int iterations = 0;            ///< of each scale, at most; 0: the method's own
   double tolerance = 0;          ///< > 0: a scale ends when an iteration lowers the objective by less than this
                                  ///< per pixel; 0: the method's own
 
-  /// Prior: standard deviation of the surface's second derivative, 1 / nm, that is expected where no image
-  /// says anything; 0: estimated from the AFM image.
+  /// Prior: the scale of the surface's second derivative, 1 / nm, Student's t with one degree of freedom; 0: 1e-3, of
+  /// a radius of a micrometre. It is multiplied by the scale's square, see above, 2e-3 at the end.
   double curvature_prior_per_nm = 0;
 
   bool refine_transform = true;    ///< the map is fitted further with the surface
-  bool refine_calibration = true;  ///< and so are gains and offset
+  bool refine_calibration = true;  ///< and so are the offset and a factor of all gains
   bool uncertainty = true;         ///< compute `deviation_nm`
-  int probes = 16;                 ///< random vectors that the uncertainty is estimated from, >= 2
+  int probes = 6;                  ///< draws that the uncertainty is estimated from, >= 2
   std::uint64_t seed = 1;          ///< of these
   int threads = 0;                 ///< 0: one per hardware thread. Does not change the result
   Watch watch;
@@ -113,7 +114,7 @@ struct Reconstruction {
   Grid<double> simulated_sem;       ///< on the surface's samples. Empty without SEM
   Grid<double> sem_residual;        ///< whitened
 
-  Grid<double> deviation_nm;        ///< standard deviation of each height, linearised; empty if not asked for
+  Grid<double> deviation_nm;        ///< of each height, linearised: noise and the prior's pull; empty if not asked for
   /// What holds each height: 1 the tip touched it, 2 the SEM image halves its prior's variance at least; both: 3;
   /// 0: nothing but its neighbours and the prior.
   Grid<unsigned char> held_by;

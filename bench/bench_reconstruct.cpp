@@ -1,0 +1,196 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// How far reconstructions are off and what they cost, on folders that `semsurf sample` made:
+//   bench_reconstruct MODEL.json FOLDER ... [--methods]
+// Tip, map, noise and gains are the true ones, so that it is the reconstruction that is judged; `semsurf reconstruct --truth`
+// judges the whole chain. With --methods the thesis's descents run beside Gauss-Newton, from the same start.
+#include <fmt/format.h>
+
+#include <chrono>
+#include <cmath>
+#include <fstream>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "objective.h"
+#include "preconditioner.h"
+#include "start.h"
+#include "surf/io/height_field_file.h"
+#include "surf/io/image_file.h"
+#include "surf/io/model_file.h"
+#include "surf/io/tip_file.h"
+#include "surf/sem/estimate_sem_noise.h"
+
+namespace {
+
+using namespace surf;
+
+double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
+
+template <class Work>
+double seconds(const Work& work) {
+  double best = 1e300;
+  for (int i = 0; i < 5; ++i) {
+    const double begin = now();
+    work();
+    best = std::min(best, now() - begin);
+  }
+  return best;
+}
+
+struct Scene {
+  AfmData afm;
+  SemData sem;
+  HeightField truth;
+};
+
+Scene read(const std::string& folder, const std::shared_ptr<const ImageModel>& model) {
+  Scene s;
+  nlohmann::json t;
+  std::ifstream(folder + "/truth.json") >> t;
+  const auto& a = t["afm"];
+  const auto slope = [&](const char* key) { return std::tan(a[key].get<double>() * std::numbers::pi / 180); };
+  s.afm.image = io::read_height_field(folder + "/afm.gsf").field;
+  HeightField& h = s.afm.image;
+  for (int y = 0; y < h.z_nm.height(); ++y)
+    for (int x = 0; x < h.z_nm.width(); ++x)
+      h.z_nm(x, y) -= a["offset_nm"].get<double>() + slope("tilt_x_deg") * h.x_nm(x) + slope("tilt_y_deg") * h.y_nm(y);
+  s.afm.tip = io::read_tip(folder + "/truth_tip.gsf");
+  s.afm.noise = {a["noise"]["alpha"], a["noise"]["innovation_nm2"]};
+  const Image image = io::read_image(folder + "/sem.tif");
+  s.sem.image = {Grid<double>(image.width(), image.height()), {}, image.pitch_x_nm, image.pitch_y_nm, image.origin_x_nm,
+                 image.origin_y_nm};
+  const auto& values = image.channels.front().values.data();
+  std::copy(values.begin(), values.end(), s.sem.image.values.data().begin());
+  const auto m = t["sem_to_afm"].get<std::vector<double>>();
+  s.sem.sem_to_afm = {m[0], m[1], m[2], m[3], m[4], m[5]};
+  s.sem.model = model;
+  for (const std::string& channel : model->channels()) s.sem.gains.push_back(t["sem"]["gains"].value(channel, 0.0));
+  s.sem.offset = t["sem"]["offset"];
+  s.truth = io::read_height_field(folder + "/truth.gsf").field;
+  Grid<double> mean(image.width(), image.height(), s.sem.offset);
+  const ModelImages made = model->predict(s.truth);
+  for (std::size_t c = 0; c < made.size(); ++c)
+    for (std::size_t i = 0; i < mean.size(); ++i) mean.data()[i] += s.sem.gains[c] * made[c].data()[i];
+  s.sem.noise = fit_sem_noise(s.sem.image.values, mean, {}).noise;
+  return s;
+}
+
+double rms(const HeightField& surface, const HeightField& truth) {
+  double sum = 0;
+  for (std::size_t i = 0; i < truth.z_nm.size(); ++i) {
+    const double d = surface.z_nm.data()[i] - truth.z_nm.data()[i];
+    sum += d * d;
+  }
+  return std::sqrt(sum / static_cast<double>(truth.z_nm.size()));
+}
+
+/// The AFM-only reconstruction on the SEM's samples.
+HeightField in_sem_frame(const HeightField& surface, const Scene& s) {
+  const PlacedImage& i = s.sem.image;
+  HeightField out = s.truth;
+  out.z_nm = reconstruction::on_frame(surface, {i.values.width(), i.values.height(), i.pitch_x_nm, i.origin_x_nm, i.origin_y_nm},
+                                      s.sem.sem_to_afm);
+  return out;
+}
+
+void print_costs(const Scene& s) {
+  using namespace reconstruction;
+  const SurfaceFrame frame = frame_of(&s.afm, &s.sem, 12);
+  Objective o{{}, {}, CurvaturePrior(frame.pitch_nm, 2e-3), frame, true, true, 0, {}};
+  const HeightField outside = eroded(s.afm, 0);
+  o.afm.emplace(s.afm, outside, frame, s.sem.sem_to_afm, 0);
+  o.sem.emplace(s.sem, frame, 12, 12, 0);
+  Unknowns at{on_frame(outside, frame, s.sem.sem_to_afm), s.sem.sem_to_afm, s.sem.gains};
+  at.mixture.push_back(s.sem.offset);
+  const Objective::State state = o.evaluate(at);
+  const Step g = o.gradient(at, state);
+  Preconditioner m;
+  m.factor(o, at, state);
+  const double value = seconds([&] { o.evaluate(at); }), gradient = seconds([&] { o.gradient(at, state); });
+  const double product = seconds([&] { o.product(at, state, g); }), factor = seconds([&] { m.factor(o, at, state); });
+  const double model = seconds([&] { s.sem.model->predict(frame.field(at.z_nm)); });
+  fmt::print("  costs       objective {:.0f} ms, gradient {:.0f} ms, second derivative times a vector {:.0f} ms, factor {:.0f} ms, "
+             "its solution {:.0f} ms; the SEM model alone {:.0f} ms, {:.0f} samples\n",
+             1e3 * value, 1e3 * gradient, 1e3 * product, 1e3 * factor, 1e3 * seconds([&] { m.solve(g); }), 1e3 * model,
+             1.0 * static_cast<double>(at.z_nm.size()));
+}
+
+struct Run {
+  Reconstruction result;
+  double seconds = 0;
+};
+
+Run run(const Scene& s, bool afm, bool sem, const ReconstructionOptions& o) {
+  const double begin = now();
+  Run r{reconstruct(afm ? &s.afm : nullptr, sem ? &s.sem : nullptr, o), 0};
+  r.seconds = now() - begin;
+  return r;
+}
+
+void print_run(const char* label, const Run& r, double error, double start, double floor) {
+  int evaluations = 0, products = 0, iterations = 0;
+  for (const ScaleReport& s : r.result.scales) {
+    evaluations += s.evaluations;
+    products += s.products;
+    iterations += s.iterations;
+  }
+  fmt::print("  {:<11} rms {:.2f} nm = {:.2f} floors, squares {:.3f} of the eroded scan's; {:.1f} s, {} iterations, {} objectives, {} "
+             "products, {}\n",
+             label, error, error / floor, error * error / (start * start), r.seconds, iterations, evaluations, products,
+             r.result.scales.back().ended);
+}
+
+double judge(const std::string& folder, const std::shared_ptr<const ImageModel>& model, bool methods) {
+  const Scene s = read(folder, model);
+  ReconstructionOptions o;
+  o.uncertainty = false;
+  const double floor = noise_floor_nm(&s.afm, &s.sem, s.truth, o);
+  const Run both = run(s, true, true, o), afm = run(s, true, false, o);
+  const double start = rms(both.result.start, s.truth), alone = rms(in_sem_frame(afm.result.surface, s), s.truth);
+  fmt::print("{}\n  eroded scan rms {:.2f} nm; the floor, of noise and prior at the truth, {:.2f} nm\n", folder, start, floor);
+  print_run("AFM alone", afm, alone, start, floor);
+  print_run("AFM and SEM", both, rms(both.result.surface, s.truth), start, floor);
+  if (methods)
+    for (const auto& [method, name] : {std::pair{ReconstructionMethod::conjugate_gradients, "CG, thesis"},
+                                       std::pair{ReconstructionMethod::lbfgs, "L-BFGS"}}) {
+      o.method = method;
+      const Run r = run(s, true, true, o);
+      print_run(name, r, rms(r.result.surface, s.truth), start, floor);
+    }
+  o = {};
+  const Run with = run(s, true, true, o);
+  double one = 0, two = 0;
+  const auto n = static_cast<double>(s.truth.z_nm.size());
+  for (std::size_t i = 0; i < s.truth.z_nm.size(); ++i) {
+    const double z = std::fabs(with.result.surface.z_nm.data()[i] - s.truth.z_nm.data()[i]) / with.result.deviation_nm.data()[i];
+    one += (z < 1) / n;
+    two += (z < 2) / n;
+  }
+  fmt::print("  deviations  {:.2f} within one, {:.2f} within two; {:.1f} s with them\n", one, two, with.seconds);
+  print_costs(s);
+  return rms(both.result.surface, s.truth) / floor;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  std::vector<std::string> folders;
+  bool methods = false;
+  for (int i = 2; i < argc; ++i) {
+    if (std::string(argv[i]) == "--methods") methods = true;
+    else folders.emplace_back(argv[i]);
+  }
+  if (folders.empty()) {
+    fmt::print(stderr, "bench_reconstruct MODEL.json FOLDER ... [--methods]\n");
+    return 2;
+  }
+  fmt::print("The thesis's ratios of squares (table 10-1): 0.114, 0.397, 0.414, 0.133, 0.049, in 3.5 to 6 hours\n");
+  const auto model = surf::make_model(surf::io::read_model(argv[1]));
+  double worst = 0;
+  for (const std::string& folder : folders) worst = std::max(worst, judge(folder, model, methods));
+  fmt::print("worst: {:.2f} floors\n", worst);
+  return 0;
+}
