@@ -208,9 +208,10 @@ void add_preparation_options(CLI::App& app, ChainOptions& o) {
   app.add_option("--level-degree", o.level_degree, "Of the polynomial, 0 to 6 (2)")->type_name("N")->group(group);
   app.add_flag("--no-level", o.no_level, "The scan is level")->group(group);
   app.add_option("--rows", o.rows, "Take off steps between scan lines, too")->type_name("median|difference")->group(group);
-  app.add_option("--tip", o.tip, "A file, or a shape as in 'semsurf tip': cone:10nm,15deg (found blindly)")
+  app.add_option("--tip", o.tip, "A file, or a shape as in 'semsurf tip': cone:10nm,15deg (found blindly,\n"
+                                 "taken as round)")
       ->type_name("FILE")->option_text("FILE|SHAPE")->group(group);
-  app.add_option("--tip-size", o.tip_size, "Samples across the tip, odd (as many as the scan can tell)")
+  app.add_option("--tip-size", o.tip_size, "Samples across a blind tip of any shape, odd (a round one)")
       ->type_name("N")->group(group);
   app.add_option("--afm-noise", o.afm_noise, "Correlation of neighbours and variance of the innovation in nm^2\n"
                                              "(estimated, as 'semsurf noise' does)")

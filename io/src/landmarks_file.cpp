@@ -18,8 +18,11 @@ namespace surf::io {
 namespace {
 
 constexpr std::array<const char*, 4> names = {"sem_x", "sem_y", "afm_x", "afm_y"};
-constexpr const char* remedy = "The first line names the columns sem_x_nm,sem_y_nm,afm_x_nm,afm_y_nm, or ..._px; "
-                               "every other line holds one pair";
+constexpr std::array<const char*, 4> from_top = {"sem_col_px", "sem_row_px", "afm_col_px", "afm_row_px"};
+constexpr const char* remedy = "The first line names the columns sem_x_nm,sem_y_nm,afm_x_nm,afm_y_nm, or ..._px, or as viewers "
+                               "count, sem_col_px,sem_row_px; every other line holds one pair";
+
+enum class Unit { nm, px, px_from_top };
 
 std::string trimmed(const std::string& text) {
   const auto first = text.find_first_not_of(" \t");
@@ -28,7 +31,7 @@ std::string trimmed(const std::string& text) {
 
 struct Column {
   std::size_t index;
-  bool pixels;
+  Unit unit;
 };
 using Columns = std::array<Column, 4>;
 
@@ -63,18 +66,19 @@ class Reader {
     std::array<std::optional<Column>, 4> found;
     for (std::size_t f = 0; f < fields.size(); ++f)
       for (std::size_t i = 0; i < names.size(); ++i)
-        for (const bool pixels : {false, true}) {
-          if (trimmed(fields[f]) != std::string(names[i]) + (pixels ? "_px" : "_nm")) continue;
+        for (const Unit unit : {Unit::nm, Unit::px, Unit::px_from_top}) {
+          const std::string name = unit == Unit::px_from_top ? from_top[i] : std::string(names[i]) + (unit == Unit::px ? "_px" : "_nm");
+          if (trimmed(fields[f]) != name) continue;
           if (found[i]) fail(fmt::format("there are two columns of {}", names[i]));
-          found[i] = Column{f, pixels};
+          found[i] = Column{f, unit};
         }
     Columns columns{};
     for (std::size_t i = 0; i < names.size(); ++i) {
-      if (!found[i]) fail(fmt::format("there is no column {}_nm or {}_px", names[i], names[i]));
+      if (!found[i]) fail(fmt::format("there is no column {}_nm, {}_px or {}", names[i], names[i], from_top[i]));
       columns[i] = *found[i];
     }
     for (const std::size_t i : {std::size_t{0}, std::size_t{2}})
-      if (columns[i].pixels != columns[i + 1].pixels) fail(fmt::format("{} and {} are in different units", names[i], names[i + 1]));
+      if (columns[i].unit != columns[i + 1].unit) fail(fmt::format("{} and {} are in different units", names[i], names[i + 1]));
     return columns;
   }
 
@@ -92,7 +96,8 @@ class Reader {
   LandmarkPair pair_of(const std::vector<std::string>& fields, const Columns& columns) const {
     const auto point = [&](std::size_t i, const PlacedImage& image) -> Point2 {
       const double x = number_of(fields, columns, i), y = number_of(fields, columns, i + 1);
-      return columns[i].pixels ? image.place_nm(x, y) : Point2{x, y};
+      if (columns[i].unit == Unit::nm) return {x, y};
+      return image.place_nm(x, columns[i].unit == Unit::px ? y : image.values.height() - 1 - y);
     };
     return {point(0, sem_), point(2, afm_)};
   }

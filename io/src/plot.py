@@ -108,14 +108,15 @@ def draw_image(axes, image):
     if kind == "relief":
         known = np.where(np.isfinite(values), values, low)
         light = mpl_colors.LightSource(azdeg=315, altdeg=45)
-        lit = light.shade(known, plt.get_cmap(name), norm=norm, blend_mode="soft", dx=dx, dy=-dy,
+        lit = light.shade(known, plt.get_cmap(name), norm=norm, blend_mode="overlay", dx=dx, dy=-dy,
                           vert_exag=image["lit_per_unit"])
         lit[~np.isfinite(values)] = 1
         axes.imshow(lit, **place)
     else:
         axes.imshow(values, cmap=name, norm=norm, **place)
     axes.set_aspect("equal")
-    bar = axes.figure.colorbar(mapped, ax=axes, shrink=0.9, aspect=18, pad=0.015)
+    # Beside the picture, not the cell, which a picture of another shape does not fill.
+    bar = axes.figure.colorbar(mapped, cax=axes.inset_axes([1.02, 0, 0.03, 1]))
     bar.set_label(plain(image["label"]))
     bar.outline.set_linewidth(0.6)
     bar.ax.minorticks_off()

@@ -46,6 +46,14 @@ TEST_F(LandmarksFile, PutsPixelsWhereTheirImageIs) {
   EXPECT_EQ(pairs[1].afm_nm, (Point2{7, 8}));
 }
 
+TEST_F(LandmarksFile, CountsRowsFromTheTopAsViewersDo) {
+  const auto pairs = read("sem_col_px,sem_row_px,afm_x_px,afm_y_px\n1,0,0,3\n0,3,0,0\n");
+  EXPECT_EQ(pairs[0].sem_nm, (Point2{12, 29}));   // the top row of four
+  EXPECT_EQ(pairs[1].sem_nm, (Point2{10, 20}));
+  EXPECT_EQ(pairs[0].afm_nm, (Point2{-1, 13}));
+  EXPECT_THAT(failure("sem_x_px,sem_row_px,afm_x_nm,afm_y_nm\n"), HasSubstr("different units"));
+}
+
 TEST_F(LandmarksFile, SaysWhereItIsWrong) {
   const std::string head = "sem_x_nm,sem_y_nm,afm_x_nm,afm_y_nm\n";
   EXPECT_THAT(failure(head + "1,2,3,4\n1,2,three,4\n"), HasSubstr("line 3: afm_x is 'three'"));

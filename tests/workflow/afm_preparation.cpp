@@ -3,6 +3,7 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "surf/afm/morphology.h"
@@ -36,7 +37,6 @@ TEST(AfmPreparation, FindsLevelNoiseAndTip) {
   EXPECT_NEAR(p.noise.alpha, 0.6, 0.05);
   EXPECT_NEAR(p.noise.innovation_nm2, 0.02, 0.004);
   EXPECT_FALSE(p.tip_given);
-  EXPECT_GE(p.tip.z_nm.width(), 13);
   EXPECT_NEAR(p.eroded().z_nm(5, 5), 0, 1.5);
   const double at_wall = p.image.z_nm(36, 40) - p.eroded().z_nm(36, 40);
   EXPECT_GT(at_wall, 2);   // the tip's flank is gone
@@ -56,9 +56,20 @@ TEST(AfmPreparation, TakesWhatIsGiven) {
   EXPECT_EQ(p.tip.pitch_x_nm, pitch);
 }
 
-TEST(AfmPreparation, BlunterTipsNeedMoreSamples) {
-  const AfmNoise noise{0.6, 0.02};
-  EXPECT_LT(choose_tip_size(scan(5), noise), choose_tip_size(scan(120), noise));
+double half_width_nm(const Tip& tip, double depth_nm) {
+  for (int x = tip.apex_x; x < tip.z_nm.width(); ++x)
+    if (tip.z_nm(x, tip.apex_y) < -depth_nm) return (x - tip.apex_x) * tip.pitch_x_nm;
+  return 1e9;
+}
+
+TEST(AfmPreparation, BlunterScansHaveBlunterRoundTips) {
+  const PreparedAfm sharp = prepare_afm(scan(5)), blunt = prepare_afm(scan(60));
+  EXPECT_TRUE(sharp.tip_round);
+  EXPECT_LE(half_width_nm(sharp.tip, 20), half_width_nm(blunt.tip, 20));
+  EXPECT_LE(std::ranges::min(sharp.tip.z_nm.data()), -50);   // down the whole relief
+  AfmPreparationOptions free;
+  free.tip_size = 13;
+  EXPECT_FALSE(prepare_afm(scan(5), free).tip_round);
 }
 
 TEST(AfmPreparation, RefusesWhatCannotBe) {

@@ -11,6 +11,7 @@
 #include "surf/afm/hough_plane.h"
 #include "surf/afm/morphology.h"
 #include "surf/afm/resample.h"
+#include "surf/afm/round_tip.h"
 #include "surf/afm/substrate_noise.h"
 #include "surf/afm/tip_sweep.h"
 #include "surf/core/error.h"
@@ -20,7 +21,10 @@ namespace surf::workflow {
 namespace {
 
 constexpr double same_pitch = 1e-6;   // relative
-constexpr int tip_sizes[] = {9, 13, 19, 27, 39, 57};
+constexpr int tip_sizes[] = {5, 7, 9, 11, 13, 19, 27, 39, 57};
+constexpr int enough = 9;             // samples that are tried in any case
+constexpr double told_share = 0.1;    // of the directions that a round tip goes by
+constexpr double noise_span = 6;      // standard deviations of noise in the range of heights
 
 /// Takes off what the method says; returns what rows should go by.
 Grid<unsigned char> level(HeightField& field, const AfmPreparationOptions& o, PreparedAfm& prepared, bool last,
@@ -100,26 +104,22 @@ BlindTipOptions blind_options(int size, int threads) {
   return blind;
 }
 
-void find_tip(PreparedAfm& prepared, const AfmPreparationOptions& o) {
-  if (o.tip) {
-    validate(*o.tip, "--tip");
-    prepared.tip = of_pitch(*o.tip, prepared.image);
-    prepared.tip_given = true;
-    return;
-  }
-  const int size = o.tip_size ? o.tip_size
-                              : choose_tip_size(prepared.image, prepared.noise, o.threads, o.watch.part(0.15, 0.3));
+TipSweep swept(const HeightField& image, const AfmNoise& noise, int size, const AfmPreparationOptions& o, const Watch& watch) {
   TipSweepOptions sweep;
   sweep.blind = blind_options(size, o.threads);
-  sweep.noise = prepared.noise;
+  sweep.noise = noise;
   sweep.seed = o.seed;
-  const Watch watch = o.watch.part(0.3, 0.95);
-  TipSweep found = sweep_tips({prepared.image}, sweep, watch.progress, watch.cancel);
+  TipSweep found = sweep_tips({image}, sweep, watch.progress, watch.cancel);
   if (found.verdict == TipSweepVerdict::cancelled) throw Interrupted();
+  return found;
+}
+
+void find_free_tip(PreparedAfm& prepared, const AfmPreparationOptions& o, const Watch& watch) {
+  TipSweep found = swept(prepared.image, prepared.noise, o.tip_size, o, watch);
   SweptTip& chosen = found.curve[found.chosen];
   prepared.tip_threshold_nm = chosen.threshold_nm;
   prepared.tip = std::move(chosen.tip);
-  prepared.notes.push_back(fmt::format("tip of {} x {} samples, found blindly at a threshold of {}", size, size,
+  prepared.notes.push_back(fmt::format("tip of {} x {} samples, found blindly at a threshold of {}", o.tip_size, o.tip_size,
                                        format_length(prepared.tip_threshold_nm)));
   if (found.verdict == TipSweepVerdict::none)
     prepared.warnings.push_back(fmt::format("no tip explains the scan: {:.1f} times what the noise leaves is left at best. "
@@ -134,38 +134,56 @@ void find_tip(PreparedAfm& prepared, const AfmPreparationOptions& o) {
                                             "taken as the bluntest possible, and walls as steep as they can be", open.size()));
 }
 
-}  // namespace
-
-int choose_tip_size(const HeightField& image, const AfmNoise& noise, int threads, const Watch& watch) {
-  const double tolerance = 0.5 * std::sqrt(noise.variance_nm2());
-  const int most = std::max(3, std::min(image.z_nm.width(), image.z_nm.height()) / 3);
-  HeightField before;
-  int size = 0;
-  for (const int next : tip_sizes) {
-    if (next > most) break;
-    watch.report(next, tip_sizes[std::size(tip_sizes) - 1]);
-    BlindTipOptions blind = blind_options(next, threads);
-    blind.maxima_only = true;
-    blind.threshold_nm = blind.apex_tolerance_nm =
-        outer_threshold_nm(noise, static_cast<double>(image.z_nm.size()), double(next) * next);
-    BlindTipSummary summary;
-    const Tip tip = blind_tip({image}, blind, summary, {}, watch.cancel);
-    watch.check();
-    MorphologyOptions morphology;
-    morphology.threads = threads;
-    HeightField eroded = erode(image, tip, morphology);
-    if (size > 0) {
-      double sum = 0;
-      for (std::size_t i = 0; i < eroded.z_nm.size(); ++i)
-        if (eroded.valid.empty() || eroded.valid.data()[i])
-          sum += std::pow(eroded.z_nm.data()[i] - before.z_nm.data()[i], 2);
-      if (std::sqrt(sum / static_cast<double>(eroded.z_nm.size())) < tolerance) return size;
-    }
-    before = std::move(eroded);
-    size = next;
+void find_round_tip(PreparedAfm& prepared, const AfmPreparationOptions& o, const Watch& watch) {
+  const HeightField& image = prepared.image;
+  const int shorter = std::min(image.z_nm.width(), image.z_nm.height());
+  const double relief = height_range({&image, 1}).span_nm() - noise_span * std::sqrt(prepared.noise.variance_nm2());
+  if (!(relief > 0))
+    throw InvalidInput("AFM scan", "its relief is no higher than its noise, so it tells nothing of the tip",
+                       "Give --tip, or another scan");
+  std::vector<std::vector<double>> told;
+  int widest = 0;
+  bool explained = false;
+  constexpr auto sizes = static_cast<double>(std::size(tip_sizes));
+  for (std::size_t i = 0; i < std::size(tip_sizes); ++i) {
+    const int size = tip_sizes[i];
+    if (size > (told.empty() ? shorter : shorter / 3)) break;
+    const TipSweep found = swept(image, prepared.noise, size, o, watch.part(double(i) / sizes, double(i + 1) / sizes));
+    const SweptTip& chosen = found.curve[found.chosen];
+    explained = explained || found.verdict != TipSweepVerdict::none;
+    widest = size;
+    prepared.tip_threshold_nm = chosen.threshold_nm;
+    told.push_back(round_profile_nm(chosen.tip, told_share));
+    prepared.tip = tip_below(told, image.pitch_x_nm, image.pitch_y_nm, relief, shorter / 2);
+    if (size >= enough && std::max(prepared.tip.z_nm.width(), prepared.tip.z_nm.height()) <= size + 2) break;
   }
-  return size > 0 ? size : most - (most % 2 == 0);
+  if (told.empty())
+    throw InvalidInput("AFM scan", fmt::format("it has {} x {} samples, too few to find a tip in", image.z_nm.width(),
+                                               image.z_nm.height()), "Give --tip");
+  prepared.tip_round = true;
+  if (!explained)
+    prepared.warnings.push_back("no tip explains the scan: more than noise is left at best. Check --level-method, --rows and "
+                                "--afm-noise, or give --tip");
+  prepared.notes.push_back(fmt::format("round tip of {} x {} samples, from what blind ones of up to {} samples tell",
+                                       prepared.tip.z_nm.width(), prepared.tip.z_nm.height(), widest));
+  if (!(std::ranges::min(prepared.tip.z_nm.data()) < 0))
+    prepared.warnings.push_back("the scan tells nothing of its tip, which is taken as flat. Give --tip if you know it");
 }
+
+void find_tip(PreparedAfm& prepared, const AfmPreparationOptions& o) {
+  const Watch watch = o.watch.part(0.15, 0.95);
+  if (o.tip) {
+    validate(*o.tip, "--tip");
+    prepared.tip = of_pitch(*o.tip, prepared.image);
+    prepared.tip_given = true;
+  } else if (o.tip_size) {
+    find_free_tip(prepared, o, watch);
+  } else {
+    find_round_tip(prepared, o, watch);
+  }
+}
+
+}  // namespace
 
 PreparedAfm prepare_afm(const HeightField& scan, const AfmPreparationOptions& o) {
   validate(scan, "AFM scan");

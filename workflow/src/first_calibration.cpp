@@ -18,6 +18,7 @@ namespace {
 constexpr double telling_share = 1e-3;    // of the pixels, at one value
 constexpr double telling_step = 3;        // times as many as at the next value
 constexpr double least_overlap_px = 256;
+constexpr double changed = 0.1;           // of a gain or of the noise's variance
 
 struct Extreme {
   double value = 0;
@@ -79,14 +80,11 @@ Grid<double> weights_of(const Grid<double>& mean, const SemNoise& noise) {
 
 Calibration fitted(const CalibrationImages& images, FirstCalibration& first) {
   Calibration fit = calibrate(images);
-  const bool below = std::ranges::any_of(fit.gains, [](double g) { return !(g >= 0); });
-  if (fit.channels.size() > 1 && (below || fit.outcome == CalibrationOutcome::undetermined)) {
+  first.tied = fit.channels.size() > 1 && fit.outcome != CalibrationOutcome::trusted;
+  if (first.tied) {
     CalibrationOptions one;
     one.ratios.assign(fit.channels.size(), 1);
     fit = calibrate(images, one);
-    const std::string warning = "the channels of the model cannot be told apart in the SEM image, so all have one gain; "
-                                "say --gains if you know them";
-    if (std::ranges::find(first.warnings, warning) == first.warnings.end()) first.warnings.push_back(warning);
   }
   if (std::ranges::all_of(fit.gains, [](double g) { return !(g > 0); }))
     throw InvalidInput("SEM image", "it is darker where the simulated image is brighter, so the two do not show the same",
@@ -166,6 +164,41 @@ FirstCalibration calibrate_first(const PlacedImage& sem, const HeightField* erod
     }
   }
   return first;
+}
+
+bool calibrate_again(const PlacedImage& sem, const HeightField& surface, const ImageModel& model, bool fix_gains,
+                     bool fix_noise, int threads, FirstCalibration& first) {
+  ModelOptions options;
+  options.threads = threads;
+  const FirstCalibration before = first;
+  CalibrationImages images;
+  images.real = sem.values;
+  images.used = sem.valid;
+  images.channels = model.channels();
+  images.simulated = model.predict(surface, options);
+  Grid<double> mean = mean_of(images.simulated, first.gains, first.offset);
+  if (!fix_gains) {
+    images.weights = weights_of(mean, first.noise);
+    first.fit = fitted(images, first);
+    first.gains = first.fit->gains;
+    first.offset = first.fit->offset;
+    mean = mean_of(images.simulated, first.gains, first.offset);
+  }
+  if (!fix_noise) {
+    first.noise = fit_sem_noise(images.real, mean, images.used).noise;
+    first.noise_from = "what a first reconstruction leaves of the image";
+    first.warnings.clear();   // of the noise before
+  }
+  const auto differs = [](double a, double b) { return std::abs(a - b) > changed * std::max(std::abs(a), std::abs(b)); };
+  bool differ = first.tied != before.tied;
+  for (std::size_t c = 0; c < first.gains.size(); ++c) differ = differ || differs(first.gains[c], before.gains[c]);
+  std::vector<double> levels = mean.data();
+  for (const double share : {0.1, 0.5, 0.9}) {
+    const auto at = levels.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(levels.size() - 1));
+    std::nth_element(levels.begin(), at, levels.end());
+    differ = differ || differs(first.noise.variance(*at), before.noise.variance(*at));
+  }
+  return differ;
 }
 
 }  // namespace surf::workflow

@@ -23,15 +23,22 @@ struct FirstCalibration {
   std::optional<Calibration> fit;        ///< absent: given
   SemNoise noise;
   std::string noise_from;
+  bool tied = false;                     ///< the channels cannot be told apart: their gains are kept equal
   double overlap = 1;                    ///< share of the SEM pixels that lie on the scan
   std::vector<std::string> warnings;
 };
 
 /// The image that the model predicts of the eroded scan where the map lays it, against the real one; weights from the
-/// noise. Gains that come out below 0 are fitted again as one for all channels. Without `eroded` the calibration must be
+/// noise. Gains that come out below 0 or doubtful are fitted again as one for all channels. Without `eroded` the calibration must be
 /// given. Throws InvalidInput where the images do not overlap, or the real one has nothing of the simulated one.
 FirstCalibration calibrate_first(const PlacedImage& sem, const HeightField* eroded, const ImageModel& model,
                                  const Affine& sem_to_afm, const std::optional<GivenCalibration>& given,
                                  const std::optional<SemNoise>& noise, int threads);
+
+/// Both again, from a surface in the SEM's frame that is nearer to the true one than the eroded scan: the noise from what
+/// the surface leaves of the image, so that it holds at all grey levels and what the model is off by counts. What is
+/// given (`fix_gains`, `fix_noise`) stays. Returns whether anything changed by more than a tenth.
+bool calibrate_again(const PlacedImage& sem, const HeightField& surface, const ImageModel& model, bool fix_gains,
+                     bool fix_noise, int threads, FirstCalibration& first);
 
 }  // namespace surf::workflow

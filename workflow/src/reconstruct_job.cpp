@@ -23,6 +23,9 @@
 namespace surf::workflow {
 namespace {
 
+constexpr int coarse_iterations = 12;   // of each scale of a reconstruction to calibrate with
+constexpr double least_deviation = 0.9, largest_deviation = 1.15, largest_correlation = 0.1;   // of whitened residuals
+
 template <class T>
 std::string hash_of(const std::vector<T>& values) {
   return io::sha256_of(std::as_bytes(std::span(values)));
@@ -37,9 +40,8 @@ std::string text_of(const std::vector<double>& values) {
 std::string map_text(const Affine& m) { return text_of({m.xx, m.xy, m.x0, m.yx, m.yy, m.y0}); }
 
 /// All that the states of the reconstruction depend on.
-Identity identity_of(const ReconstructJob& job, const AfmData* afm, const SemData* sem, const StoredModel* model) {
+Identity identity_of(const ReconstructionOptions& o, const AfmData* afm, const SemData* sem, const StoredModel* model) {
   Identity id{{"semsurf", version()}, {"program", program_hash()}, {"instruction set", instruction_set()}};
-  const ReconstructionOptions& o = job.options;
   id["method"] = name(o.method);
   id["scales"] = text_of(o.scales_px);
   id["iterations"] = std::to_string(o.iterations);
@@ -87,17 +89,23 @@ std::string seen(const ResidualReport& r) {
                      r.mean, r.deviation, r.along, r.across);
 }
 
+/// Stricter than chance alone: what is wrong by less changes heights by less than their standard deviations.
+bool like_noise(const ResidualReport& r) {
+  return r.like_noise && r.deviation >= least_deviation && r.deviation <= largest_deviation &&
+         std::max(std::abs(r.along), std::abs(r.across)) <= largest_correlation;
+}
+
 /// What speaks against trusting the result.
 std::vector<std::string> reasons_of(const ReconstructSummary& s) {
   std::vector<std::string> reasons;
   const Reconstruction& r = s.result;
-  if (!r.converged) reasons.push_back("the optimiser had not settled at the last scale: allow it more --iterations");
+  if (!r.converged || (!r.scales.empty() && r.scales.back().ended == "iterations")) reasons.push_back("the optimiser had not settled at the last scale: allow it more --iterations");
   if (!r.scales.empty()) {
     const ScaleReport& last = r.scales.back();
-    if (last.afm_residual.pixels > 0 && !last.afm_residual.like_noise)
+    if (last.afm_residual.pixels > 0 && !like_noise(last.afm_residual))
       reasons.push_back(fmt::format("what is left of the AFM scan does not look like noise ({}): check the tip and the "
                                     "scan's noise", seen(last.afm_residual)));
-    if (last.sem_residual.pixels > 0 && !last.sem_residual.like_noise)
+    if (last.sem_residual.pixels > 0 && !like_noise(last.sem_residual))
       reasons.push_back(fmt::format("what is left of the SEM image does not look like noise ({}): check the registration, "
                                     "the model and the calibration", seen(last.sem_residual)));
   }
@@ -130,21 +138,49 @@ class Warnings {
   ChainListener told_;
 };
 
-/// The SEM image, calibrated and with its noise.
-SemData sem_data(const ReconstructJob& job, ReconstructSummary& s, const PlacedImage& image, const ChainListener& told) {
+/// The SEM image, calibrated and with its noise. Both are found twice where there is a scan: the eroded scan is too
+/// broad where it matters, so a first, coarse reconstruction stands in for it (at most `rounds` times).
+SemData sem_data(const ReconstructJob& job, ReconstructSummary& s, const PlacedImage& image, const AfmData* afm,
+                 const ChainListener& told) {
   begin(told, "calibration");
+  constexpr int rounds = 2;
   const HeightField* eroded = s.afm ? &s.afm->eroded() : nullptr;
   const Affine map = s.pose ? s.pose->sem_to_afm : Affine{};
-  FirstCalibration first = calibrate_first(image, eroded, *s.model->model, map, job.calibration, job.sem_noise,
-                                           job.options.threads);
+  const int threads = job.options.threads;
+  FirstCalibration first = calibrate_first(image, eroded, *s.model->model, map, job.calibration, job.sem_noise, threads);
+  const auto data = [&] { return SemData{image, s.model->model, first.gains, first.offset, first.noise, map}; };
+  for (int round = 0; afm && !(job.calibration && job.sem_noise) && round < rounds; ++round) {
+    ReconstructionOptions coarse;
+    coarse.scales_px = {default_scales_px(coarse.method, image.values.width(), image.values.height()).front()};
+    coarse.iterations = coarse_iterations;
+    coarse.refine_calibration = !first.tied && !job.calibration;
+    coarse.refine_transform = job.options.refine_transform;
+    coarse.curvature_prior_per_nm = job.options.curvature_prior_per_nm;
+    coarse.uncertainty = false;
+    coarse.threads = threads;
+    coarse.watch = watch_of(told).part(double(round) / rounds, double(round + 1) / rounds);
+    const SemData sem = data();
+    const Reconstruction r = reconstruct(afm, &sem, coarse);
+    if (!calibrate_again(image, r.surface, *s.model->model, job.calibration.has_value(), job.sem_noise.has_value(), threads, first)) break;
+  }
   for (const std::string& warning : first.warnings) told.warn(warning);
+  if (first.tied)
+    told.warn("the channels of the model cannot be told apart in the SEM image, so all have one gain; say --gains if you "
+              "know them");
+  s.gains_tied = first.tied;
   s.calibration = first.fit;
   s.sem_noise = first.noise;
   s.sem_noise_from = first.noise_from;
-  return {image, s.model->model, first.gains, first.offset, first.noise, map};
+  return data();
 }
 
 }  // namespace
+
+ReconstructionOptions options_of(const ReconstructJob& job, const ReconstructSummary& s) {
+  ReconstructionOptions o = job.options;
+  if (s.gains_tied) o.refine_calibration = false;   // it would go where the channels cannot be told apart
+  return o;
+}
 
 ReconstructSummary run(const ReconstructJob& job, const ChainListener& listener) {
   check(job);
@@ -175,20 +211,20 @@ ReconstructSummary run(const ReconstructJob& job, const ChainListener& listener)
   }
   std::optional<AfmData> afm;
   std::optional<SemData> sem;
-  if (job.sem) sem = sem_data(job, s, image, told);
   if (job.afm) afm = AfmData{s.afm->image, s.afm->tip, s.afm->noise, job.upsample};
+  if (job.sem) sem = sem_data(job, s, image, afm ? &*afm : nullptr, told);
 
   begin(told, "reconstruction");
   std::filesystem::create_directories(job.folder);
   const AfmData* afm_data = afm ? &*afm : nullptr;
   const SemData* sem_data = sem ? &*sem : nullptr;
   ReconstructionCheckpoint checkpoint(job.folder / "checkpoint",
-                                      identity_of(job, afm_data, sem_data, s.model ? &*s.model : nullptr), told.note);
+                                      identity_of(options_of(job, s), afm_data, sem_data, s.model ? &*s.model : nullptr), told.note);
   if (const auto state = checkpoint.found()) {
     s.resumed = true;
     if (told.note) told.note(fmt::format("{} scales are done already: going on from there", state->scales.size()));
   }
-  ReconstructionOptions options = job.options;
+  ReconstructionOptions options = options_of(job, s);
   options.watch = watch_of(told);
   s.result = reconstruct(afm_data, sem_data, options, &checkpoint);
   for (const std::string& warning : s.result.warnings) told.warn(warning);

@@ -142,6 +142,17 @@ Identity identity_in(const std::string& block) {
   return identity;
 }
 
+/// Does what may fail, with a remedy for people who did not choose the file.
+template <class Work>
+void with_remedy(Work work) {
+  try {
+    work();
+  } catch (const FileError& error) {
+    throw FileError(error.subject(), error.reason(), "Check the folder and the free space, wait if another run is at work there, "
+                                                     "or name another folder by -o");
+  }
+}
+
 }  // namespace
 
 std::string pack(const ReconstructionState& state) {
@@ -170,7 +181,9 @@ std::optional<ReconstructionState> unpack(const std::string& bytes) {
 
 ReconstructionCheckpoint::ReconstructionCheckpoint(const std::filesystem::path& path, const Identity& identity,
                                                    const NoteCallback& note) {
-  if (!file_.open(path)) file_.create(path);
+  with_remedy([&] {
+    if (!file_.open(path)) file_.create(path);
+  });
   if (!file_.blocks().empty()) {
     const Identity there = identity_in(file_.read(file_.blocks().front()));
     if (there == identity) return;
@@ -188,6 +201,8 @@ std::optional<ReconstructionState> ReconstructionCheckpoint::found() {
   return std::nullopt;
 }
 
-void ReconstructionCheckpoint::keep(const ReconstructionState& state) { file_.append(pack(state)); }
+void ReconstructionCheckpoint::keep(const ReconstructionState& state) {
+  with_remedy([&] { file_.append(pack(state)); });
+}
 
 }  // namespace surf::workflow

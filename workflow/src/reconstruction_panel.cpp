@@ -142,7 +142,7 @@ io::Plot reconstruction_panel(const ReconstructJob& job, const ReconstructSummar
   if (afm) {
     const HeightField& scan = afm->image;
     PlotPanel input = picture("AFM scan, levelled", on_samples(scan, scan.z_nm, scan.valid), PlotColors::relief, "nm");
-    PlotPanel simulated = picture("AFM scan, simulated from the surface",
+    PlotPanel simulated = picture("AFM scan, simulated",
                                   on_samples(scan, r.simulated_afm.z_nm, r.simulated_afm.valid), PlotColors::relief, "nm");
     PlotPanel residual = residual_panel("AFM residual, whitened", on_samples(scan, r.afm_residual, r.afm_used));
     if (sem)
@@ -154,15 +154,17 @@ io::Plot reconstruction_panel(const ReconstructJob& job, const ReconstructSummar
   if (sem) {
     const PlacedImage& image = sem->image;
     first.push_back(picture("SEM image", image, PlotColors::grey, "grey level"));
-    PlotPanel simulated = picture("SEM image, simulated from the surface", on_samples(r.surface, r.simulated_sem),
+    PlotPanel simulated = picture("SEM image, simulated", on_samples(r.surface, r.simulated_sem),
                                   PlotColors::grey, "grey level");
     second.push_back(std::move(simulated));
     third.push_back(residual_panel("SEM residual, whitened", on_samples(r.surface, r.sem_residual, image.valid)));
   }
   first.push_back(picture("surface", on_samples(r.surface, r.surface.z_nm, r.surface.valid), PlotColors::relief, "nm"));
   if (!r.deviation_nm.empty())
-    second.push_back(picture("standard deviation of the heights", on_samples(r.surface, r.deviation_nm, r.surface.valid),
+    second.push_back(picture("standard deviation", on_samples(r.surface, r.deviation_nm, r.surface.valid),
                              PlotColors::heights, "nm"));
+  else
+    second.push_back(picture("eroded scan", on_samples(r.start, r.start.z_nm, r.start.valid), PlotColors::relief, "nm"));
   std::optional<HeightField> truth, scan;
   if (job.truth) truth = truth_on(r.surface, *job.truth);
   if (truth && s.truth) {
@@ -171,10 +173,14 @@ io::Plot reconstruction_panel(const ReconstructJob& job, const ReconstructSummar
       error.data()[i] = truth->valid.data()[i] ? error.data()[i] - truth->z_nm.data()[i] - s.truth->offset_nm : blank;
     third.push_back(picture("surface less truth", on_samples(r.surface, std::move(error)), PlotColors::difference, "nm"));
   } else if (!r.held_by.empty()) {
-    PlotPanel held = picture("held by: 1 AFM, 2 SEM, 3 both, 0 neighbours", on_samples(r.surface, as_numbers(r.held_by)),
+    PlotPanel held = picture("held by 1 AFM, 2 SEM, 3 both", on_samples(r.surface, as_numbers(r.held_by)),
                              PlotColors::heights, "");
     held.image->range = io::PlotAxis::Range{0, 3};
     third.push_back(std::move(held));
+  } else {
+    Grid<double> change = r.surface.z_nm;
+    for (std::size_t i = 0; i < change.size(); ++i) change.data()[i] -= r.start.z_nm.data()[i];
+    third.push_back(picture("surface less eroded scan", on_samples(r.surface, std::move(change)), PlotColors::difference, "nm"));
   }
   io::Plot plot;
   plot.title = title_of(job, s);

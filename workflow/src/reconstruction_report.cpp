@@ -64,7 +64,7 @@ Json afm_json(const ReconstructJob& job, const PreparedAfm& p, const AfmData& af
     json["noise"]["alpha_stderr"] = number(p.noise_estimate->alpha_stderr);
     json["noise"]["innovation_stderr_nm2"] = number(p.noise_estimate->innovation_stderr_nm2);
   }
-  json["tip"] = {{"from", p.tip_given ? "given" : "blind reconstruction"},
+  json["tip"] = {{"from", p.tip_given ? "given" : p.tip_round ? "blind reconstruction, taken as round" : "blind reconstruction"},
                  {"samples", {p.tip.z_nm.width(), p.tip.z_nm.height()}}};
   if (!p.tip_given) json["tip"]["threshold_nm"] = p.tip_threshold_nm;
   json["certainty"] = {{"tolerance_nm", p.certainty.tolerance_nm},
@@ -87,7 +87,7 @@ Json sem_json(const ReconstructJob& job, const ReconstructSummary& s, const SemD
   json["model"] = {{"file", s.model->file.filename().string()}, {"sha256", s.model->sha256},
                    {"kind", io::kind_of(s.model->trained)}, {"material", scope.material}, {"energy_ev", scope.energy_ev},
                    {"spot_nm", scope.spot_nm}, {"pixel_nm", scope.pixel_nm}, {"channels", s.model->model->channels()}};
-  json["calibration"] = {{"from", s.calibration ? "the eroded scan" : "given"}, {"gains", sem.gains}, {"offset", sem.offset}};
+  json["calibration"] = {{"from", s.calibration ? "the images" : "given"}, {"one_gain_for_all", s.gains_tied}, {"gains", sem.gains}, {"offset", sem.offset}};
   if (s.calibration) {
     Json& c = json["calibration"];
     c["residual_rms"] = number(s.calibration->residual_rms);
@@ -159,7 +159,7 @@ Json held_json(const Grid<unsigned char>& held_by) {
 
 std::vector<std::string> repeating_command(const ReconstructJob& job, const ReconstructSummary& s, const AfmData* afm,
                                            const SemData* sem) {
-  const ReconstructionOptions& o = job.options;
+  const ReconstructionOptions o = options_of(job, s);
   std::vector<std::string> words{"semsurf", "reconstruct"};
   const auto add = [&](const std::string& option, const std::string& value) { words.insert(words.end(), {option, value}); };
   if (afm) add("--afm", job.afm->file.string());
@@ -209,7 +209,7 @@ std::string reconstruction_report(const ReconstructJob& job, const ReconstructSu
   if (afm) json["afm"] = afm_json(job, *s.afm, *afm);
   if (sem) json["sem"] = sem_json(job, s, *sem);
   if (s.pose) json["registration"] = pose_json(job, s);
-  json["options"] = options_json(job.options, r);
+  json["options"] = options_json(options_of(job, s), r);
   json["surface"] = {{"pixels", {r.surface.z_nm.width(), r.surface.z_nm.height()}},
                      {"pitch_nm", {r.surface.pitch_x_nm, r.surface.pitch_y_nm}}, {"converged", r.converged}};
   if (!r.held_by.empty()) json["surface"]["held_by"] = held_json(r.held_by);

@@ -29,7 +29,7 @@ struct AfmPreparationOptions {
   std::optional<RowMethod> rows;      ///< steps between scan lines are taken off too
   std::optional<AfmNoise> noise;
   std::optional<Tip> tip;             ///< of any pitch
-  int tip_size = 0;                   ///< samples across the tip that is searched for, odd; 0: chosen
+  int tip_size = 0;                   ///< samples across a tip of any shape, odd; 0: a round one is searched for
   std::uint64_t seed = 1;             ///< of the noise that tips are judged by
   int threads = 0;                    ///< 0: one per hardware thread. Does not change the result
   Watch watch;
@@ -43,7 +43,8 @@ struct PreparedAfm {
   std::optional<NoiseEstimate> noise_estimate;   ///< absent: it was given
   Tip tip;                            ///< of the image's pitch
   bool tip_given = false;
-  double tip_threshold_nm = 0;        ///< of the blind reconstruction
+  bool tip_round = false;             ///< it was taken as round
+  double tip_threshold_nm = 0;        ///< of the blind reconstruction, else 0
   CertaintyMap certainty;             ///< and in it the eroded scan
   std::vector<std::string> notes;     ///< what was done, for people
   std::vector<std::string> warnings;  ///< what may have gone wrong, and what to do about it
@@ -54,14 +55,11 @@ struct PreparedAfm {
 /// The first half of the chain (thesis, figure 1-3): level, noise, tip, erosion, certainty.
 ///
 /// The noise is that of the substrate, or where there is no clear one that of the differences between rows and
-/// columns. The tip is Villarrubia's, at the threshold that the noise explains (`sweep_tips`), of `tip_size` samples
-/// or of as many as it takes until a wider one erodes the scan no differently.
+/// columns. The tip is Villarrubia's, at the threshold that the noise explains (`sweep_tips`), of `tip_size`
+/// samples; else the round one below all that blind tips of 5, 7, 9, 11, 13, 19 ... 57 samples tell in the tenth of
+/// directions where they tell most (`tip_below`), until they are as wide as the tip is at the scan's full relief: straight
+/// lines and plateaus leave a tip of any shape open in most directions.
 /// Throws InvalidInput for scans without relief or noise, UsageError for options out of range, Interrupted.
 PreparedAfm prepare_afm(const HeightField& scan, const AfmPreparationOptions& options = {});
-
-/// The samples across that a tip needs to be all that a scan of this noise can tell of it: 9, 13, 19 ... 57, odd,
-/// the first whose next one's outer bound changes the erosion by less than half the noise's standard deviation (root
-/// mean square). At most a third of the scan's shorter side.
-int choose_tip_size(const HeightField& image, const AfmNoise& noise, int threads = 0, const Watch& watch = {});
 
 }  // namespace surf::workflow

@@ -60,7 +60,8 @@ struct ReconstructSummary {
   std::optional<PreparedAfm> afm;
   std::optional<StoredModel> model;
   std::optional<Pose> pose;
-  std::optional<Calibration> calibration;        ///< the first; absent: given
+  std::optional<Calibration> calibration;        ///< that the reconstruction begins with; absent: given
+  bool gains_tied = false;                       ///< the channels cannot be told apart: one gain for all, not refined
   std::optional<SemNoise> sem_noise;
   std::string sem_noise_from;                    ///< where it comes from, in words
   std::int64_t saturated = 0;                    ///< SEM pixels left out
@@ -77,6 +78,9 @@ struct ReconstructSummary {
 /// transform.json and registration.png.
 /// Throws UsageError, InvalidInput, FileError, Unsupported, Interrupted.
 ReconstructSummary run(const ReconstructJob& job, const ChainListener& listener = {});
+
+/// As the reconstruction runs with: gains that are tied are not refined.
+ReconstructionOptions options_of(const ReconstructJob& job, const ReconstructSummary& summary);
 
 /// "sound", "flagged" or "not registered".
 const char* name(ReconstructionVerdict verdict);
