@@ -25,8 +25,11 @@ void add_predict(CLI::App& app, Action& action);
 void add_info(CLI::App& app, Action& action);
 void add_materials(CLI::App& app, Action& action);
 void add_library(CLI::App& app, Action& action);
+void add_register(CLI::App& app, Action& action);
+void add_reconstruct(CLI::App& app, Action& action, const std::string& command_line);
 void add_tip(CLI::App& app, Action& action);
 void add_calibrate(CLI::App& app, Action& action);
+void add_sample(CLI::App& app, Action& action);
 void add_view(CLI::App& app, Action& action);
 void add_completion(CLI::App& app, Action& action);
 

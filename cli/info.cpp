@@ -14,6 +14,7 @@
 #include "surf/io/image_file.h"
 #include "surf/io/mesh_file.h"
 #include "surf/io/model_file.h"
+#include "surf/io/sem_file.h"
 #include "surf/io/sim/scene_file.h"
 #include "surf/workflow/simulate_job.h"
 
@@ -104,6 +105,7 @@ void print_info(const std::filesystem::path& path, std::optional<double> unit_nm
   if (io::is_scene_file(path)) return print_scene(path, material_files);
   if (io::is_model_file(path)) return print_model(path);
   if (io::is_height_field_file(path)) return print_height_file(path);
+  if (io::is_sem_image_file(path)) return print_sem_image(path);
   if (io::is_image_file(path)) return print_image(path);
   print_mesh(path, unit_nm);
 }

@@ -20,6 +20,8 @@ std::string format_extent(const Box& box);
 void print_mesh(const std::filesystem::path& path, std::optional<double> unit_nm);
 void print_image(const std::filesystem::path& path);
 void print_model(const std::filesystem::path& path);
+/// What a microscope wrote: surf/io/sem_file.h.
+void print_sem_image(const std::filesystem::path& path);
 void print_height_file(const std::filesystem::path& path);
 
 }  // namespace surf::cli

@@ -161,6 +161,9 @@ int main(int argc, char** argv) {
   add_library(app, action);
   add_tip(app, action);
   add_calibrate(app, action);
+  add_register(app, action);
+  add_reconstruct(app, action, quoted_command(argc, argv));
+  add_sample(app, action);
   add_view(app, action);
   add_completion(app, action);
 

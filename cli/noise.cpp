@@ -8,7 +8,9 @@
 #include "afm_options.h"
 #include "commands.h"
 #include "common_options.h"
+#include "noise_counts.h"
 #include "noise_plot.h"
+#include "noise_sem.h"
 #include "options.h"
 #include "surf/afm/noise_check.h"
 #include "surf/afm/substrate_noise.h"
@@ -20,19 +22,28 @@ namespace surf::cli {
 namespace {
 
 constexpr const char* examples =
-    R"(The model is e(t) = alpha e(t - 1) + v(t) along scan lines, each line a new draw. It is estimated from the
+    R"(INPUT is an AFM scan. The model is e(t) = alpha e(t - 1) + v(t) along scan lines, each line a new draw. It is estimated from the
 substrate, the plane that most of the image lies on, or with --flat from all of it. 'differences' is the
 estimate without levelling, from what neighbouring rows and columns do not share: it is too large on rough
 surfaces. Whiteness and normality are those of what the model leaves; with many samples small deviations are
 significant, so look at the correlations too.
+--sem: an SEM image. The model is independent normal pixels whose variance is a line of their mean. Blocks
+without structure are found, or given by --region; the test says whether their variances lie on a line.
+--counts: a scene. Few primaries at one point, many times over; Poisson, log-normal and normal distributions
+are fitted to the electrons counted and tested.
 
 Examples:
   semsurf noise mica.gwy --flat --plot noise.svg
-  semsurf noise scan.gsf --exclude particles.png)";
+  semsurf noise scan.gsf --exclude particles.png
+  semsurf noise --sem image.tif --plot noise.svg
+  semsurf noise --sem image.tif --region 10,20,110,90 --region 300,40,380,120 --region 40,300,140,380
+  semsurf noise --counts samples/rough.toml --at 20,-35 --electrons 1,20,100 --plot counts.svg --csv counts.csv)";
 
 struct Options {
   ScanInput scan;
   MaskInput masks;
+  SemNoiseInput sem;
+  CountsInput counts;
   std::optional<std::string> plot, degree, lags;
   bool flat = false, quiet = false;
 };
@@ -102,7 +113,21 @@ void print_check(const NoiseCheck& c) {
              c.excess_kurtosis);
 }
 
-int work(const Options& o) {
+/// Which of its three uses the command has.
+void refuse_mixtures(const Options& o) {
+  const int uses = !o.scan.file.empty() + o.sem.image.has_value() + o.counts.scene.has_value();
+  if (uses > 1)
+    throw UsageError("noise", "more than one of INPUT, --sem and --counts is given", "Run it once for each");
+  require_sem(o.sem);
+  require_counts(o.counts);
+  if (!o.sem.image && !o.counts.scene) return;
+  const char* other = o.flat ? "--flat" : o.degree ? "--degree" : o.lags ? "--lags" : o.scan.channel ? "--channel"
+                      : o.scan.z_unit ? "--z-unit" : o.masks.use ? "--use" : o.masks.exclude ? "--exclude"
+                      : o.counts.scene && o.scan.pixel_size ? "--pixel-size" : nullptr;
+  if (other) throw UsageError(other, "it is of AFM scans", "Leave it out, or name a scan");
+}
+
+int of_scan(const Options& o) {
   if (o.scan.file.empty()) throw UsageError("noise", "no scan is given", "Name a file to read");
   FlatNoiseOptions options;
   if (o.degree) options.degree = static_cast<int>(parse_whole(*o.degree, "--degree", 0, 6));
@@ -130,20 +155,31 @@ int work(const Options& o) {
   return 0;
 }
 
+int work(const Options& o) {
+  refuse_mixtures(o);
+  if (o.counts.scene) return print_counts(o.counts, o.plot, o.quiet);
+  if (!o.sem.image) return of_scan(o);
+  SemNoiseInput sem = o.sem;
+  sem.pixel_size = o.scan.pixel_size;
+  return print_sem_noise(sem, o.plot, o.quiet);
+}
+
 }  // namespace
 
 void add_noise(CLI::App& app, Action& action) {
   const auto o = std::make_shared<Options>();
-  CLI::App* sub = app.add_subcommand("noise", "The noise of an AFM scan: correlation, size, and whether the model fits");
+  CLI::App* sub = app.add_subcommand("noise", "The noise of an AFM scan, an SEM image or simulated counts, and whether the model fits");
   sub->group("Commands");
   add_scan_input(*sub, o->scan);
-  const char* noise = "Noise";
+  const char* noise = "AFM scan";
   sub->add_flag("--flat", o->flat, "All of the scan is flat: a calibration scan, as of mica")->group(noise);
   sub->add_option("--degree", o->degree, "Of the polynomial taken off first, 0 to 6 (2)")->type_name("N")->group(noise);
   sub->add_option("--lags", o->lags, "Whiteness is tested up to this distance (10)")->type_name("N")->group(noise);
   add_mask_input(*sub, o->masks);
+  add_sem_noise_options(*sub, o->sem);
+  add_counts_options(*sub, o->counts);
   const char* output = "Output";
-  sub->add_option("--plot", o->plot, "Autocovariance and density: .svg .png")->type_name("FILE")->group(output);
+  sub->add_option("--plot", o->plot, "What was found, as a chart: .svg .png")->type_name("FILE")->group(output);
   add_quiet_flag(*sub, o->quiet)->group(output);
   sub->footer(examples);
   sub->callback([o, &action] { action = [o] { return work(*o); }; });

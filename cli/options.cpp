@@ -73,6 +73,12 @@ double parse_number(std::string_view text, std::string_view subject) {
   return value;
 }
 
+std::vector<double> parse_numbers(std::string_view text, std::string_view subject) {
+  std::vector<double> numbers;
+  for (const std::string_view part : split(text, ",")) numbers.push_back(parse_number(part, subject));
+  return numbers;
+}
+
 std::uint64_t parse_seed(std::string_view text, std::string_view subject) {
   std::uint64_t value = 0;
   if (!read_all(text, value))

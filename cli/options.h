@@ -21,6 +21,9 @@ std::int64_t parse_whole(std::string_view text, std::string_view subject, std::i
 /// A finite number.
 double parse_number(std::string_view text, std::string_view subject);
 
+/// Finite numbers, one or more, with commas between them.
+std::vector<double> parse_numbers(std::string_view text, std::string_view subject);
+
 /// A seed: any unsigned 64-bit number.
 std::uint64_t parse_seed(std::string_view text, std::string_view subject);
 

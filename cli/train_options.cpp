@@ -103,6 +103,7 @@ void add_surfaces(const TrainOptions& o, workflow::TrainJob& job) {
       throw UsageError(option, "it is about semsurf's own surfaces, and HEIGHTS are given", "Leave it out");
   if (o.surfaces) job.surfaces = static_cast<int>(parse_whole(*o.surfaces, "--surfaces", 1, 1000));
   if (o.surface_size) job.surface_px = static_cast<int>(parse_whole(*o.surface_size, "--surface-size", 16, 4096));
+  if (o.fine) job.fine = static_cast<int>(parse_whole(*o.fine, "--fine", 1, 8));
   if (o.hold_out) job.held_out = static_cast<int>(parse_whole(*o.hold_out, "--hold-out", 0, 1000));
 }
 
@@ -165,7 +166,7 @@ std::string telling_command(const TrainOptions& o) {
         std::pair{&o.iterations, "--iterations"}, std::pair{&o.decay, "--decay"},
         std::pair{&o.tolerance, "--tolerance"}, std::pair{&o.table_electrons, "--table-electrons"},
         std::pair{&o.surfaces, "--surfaces"},
-        std::pair{&o.surface_size, "--surface-size"}, std::pair{&o.hold_out, "--hold-out"}, std::pair{&o.edge, "--edge"},
+        std::pair{&o.surface_size, "--surface-size"}, std::pair{&o.hold_out, "--hold-out"}, std::pair{&o.fine, "--fine"}, std::pair{&o.edge, "--edge"},
         std::pair{&o.height_channel, "--height-channel"}, std::pair{&o.pitch, "--pitch"}, std::pair{&o.z_unit, "--z-unit"},
         std::pair{&o.electrons, "--electrons"}, std::pair{&o.accuracy, "--accuracy"}, std::pair{&o.physics, "--physics"},
         std::pair{&o.cutoff, "--cutoff"}, std::pair{&o.seed, "--seed"}})
@@ -196,10 +197,13 @@ void add_train_options(CLI::App& app, TrainOptions& o) {
   app.add_option("HEIGHTS", o.heights, "Surfaces to learn on: scans and images of heights (semsurf's own)")
       ->type_name("FILE");
   const char* surfaces = "Surfaces";
-  app.add_option("--surfaces", o.surfaces, "How many of semsurf's own; there are 16 kinds (48; 0 if no images are needed)")
+  app.add_option("--surfaces", o.surfaces, "How many of semsurf's own; there are 20 kinds (60; 0 if no images are needed)")
       ->type_name("N")->group(surfaces);
   app.add_option("--surface-size", o.surface_size, "Pixels across each of them (64)")->type_name("N")->group(surfaces);
   app.add_option("--hold-out", o.hold_out, "Judge the model on the last N surfaces, without learning from them (0)")
+      ->type_name("N")->group(surfaces);
+  app.add_option("--fine", o.fine, "Simulate with N samples per pixel, smooth between them (so many that they are at most a\n"
+                                   "fifth of the electrons' range apart)")
       ->type_name("N")->group(surfaces);
   app.add_option("--edge", o.edge, "How surfaces go on outside (mirror)")
       ->type_name("mirror|flat|periodic")->group(surfaces);

@@ -15,7 +15,7 @@ struct TrainOptions {
   std::vector<std::string> heights, images, signals, materials;
   std::optional<std::string> height_channel, z_unit, pitch, edge;
   std::optional<std::string> material, energy, spot, pixel_size, physics, cutoff;
-  std::optional<std::string> surfaces, surface_size, hold_out;
+  std::optional<std::string> surfaces, surface_size, hold_out, fine;
   std::optional<std::string> electrons, accuracy, seed, threads, cache;
   std::optional<std::string> model, scales, cut_off, hidden, iterations, decay, tolerance;
   std::optional<std::string> table_electrons, output;

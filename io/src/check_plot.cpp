@@ -26,7 +26,8 @@ class PanelCheck {
   PanelCheck(const PlotPanel& panel, std::string place) : panel_(panel), place_(std::move(place)) {}
 
   void check() const {
-    if (panel_.series.empty()) fail(place_, "a panel without series cannot be drawn", "Add one");
+    if (panel_.series.empty() && !panel_.image) fail(place_, "a panel without series cannot be drawn", "Add one");
+    if (panel_.image) check_image(*panel_.image);
     check_range(panel_.x, "x");
     check_range(panel_.y, "y");
     for (std::size_t i = 0; i < panel_.series.size(); ++i) {
@@ -81,6 +82,19 @@ class PanelCheck {
     if (!(axis.range->from < axis.range->to)) fail(place, "it is empty", "Give from < to");
   }
 
+  void check_image(const PlotImage& image) const {
+    const std::string place = fmt::format("{}, image", place_);
+    if (image.values.empty()) fail(place, "it has no samples", "Leave it out");
+    for (const double length : {image.pitch_x, image.pitch_y, image.lit_per_unit})
+      if (!(length > 0) || !std::isfinite(length))
+        fail(place, fmt::format("its pitch or scale is {}", text_of(length)), "Give lengths above 0");
+    for (const double origin : {image.origin_x, image.origin_y})
+      if (!std::isfinite(origin)) fail(place, "its origin is not finite", "Give its place");
+    if (panel_.x.log || panel_.y.log) fail(place, "its axes are logarithmic", "Use linear ones");
+    if (image.range && !(image.range->from < image.range->to && std::isfinite(image.range->to - image.range->from)))
+      fail(place, "its range of colours is empty", "Give from < to");
+  }
+
   void check_series(const PlotSeries& series, const std::string& place) const {
     if (series.y.empty()) fail(place, "it has no values", "Give at least one, or leave it out");
     check_lengths(series, place);
@@ -106,6 +120,8 @@ class PanelCheck {
       fail(place, fmt::format("it has {} x for {} y", series.x.size(), series.y.size()),
            fmt::format("Give {}{}", expected, is_histogram(series) ? ", the edges of the bins" : ""));
     }
+    if (series.style == PlotStyle::band && series.y_error.empty())
+      fail(place, "it is a band without y_error", "Give its half width at each x");
     if (!series.y_error.empty() && series.y_error.size() != series.y.size()) {
       fail(place, fmt::format("it has {} y_error for {} y", series.y_error.size(), series.y.size()),
            "Give none or one for each");
@@ -136,6 +152,7 @@ void check_plot(const Plot& plot, const std::string& file) {
   if (plot.height_px != 0) check_size(plot.height_px, 200, 10000, "height_px", file);
   if (plot.columns != 0) check_size(plot.columns, 1, 100, "columns", file);
   for (std::size_t i = 0; i < plot.panels.size(); ++i) {
+    check_size(plot.panels[i].columns, 1, 100, "columns of a panel", file);
     PanelCheck(plot.panels[i], fmt::format("{}, panel {}", file, i + 1)).check();
   }
 }

@@ -44,6 +44,9 @@ Grid<std::uint8_t> parse_grey_png(const std::string& file, std::string_view cont
 /// Throws FileError where a TIFF file is cut off, which libtiff takes for missing text and black.
 void check_tiff_structure(const std::filesystem::path& path);
 
+/// Bits of each number of the first page; 0: floats. Throws FileError.
+int raster_bits(const std::filesystem::path& path);
+
 /// EXR, TIFF and PNG.
 Image read_raster(const std::filesystem::path& path);
 Image read_vti(const std::filesystem::path& path);

@@ -4,9 +4,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstdint>
 #include <cstdlib>
 #include <nlohmann/json.hpp>
 
+#include "base64.h"
 #include "check_plot.h"
 #include "lower_extension.h"
 #include "plot_script.h"
@@ -36,14 +40,52 @@ const char* name_of(PlotStyle style) {
     case PlotStyle::line_points: return "line_points";
     case PlotStyle::steps: return "steps";
     case PlotStyle::bars: return "bars";
+    case PlotStyle::band: return "band";
   }
   return "line";
 }
 
+json json_of(const std::optional<PlotAxis::Range>& range) {
+  return range ? json{range->from, range->to} : json();
+}
+
 json json_of(const PlotAxis& axis) {
-  json range;
-  if (axis.range) range = {axis.range->from, axis.range->to};
-  return {{"label", axis.label}, {"log", axis.log}, {"range", range}};
+  return {{"label", axis.label}, {"log", axis.log}, {"range", json_of(axis.range)}};
+}
+
+const char* name_of(PlotColors colors) {
+  switch (colors) {
+    case PlotColors::grey: return "grey";
+    case PlotColors::heights: return "heights";
+    case PlotColors::relief: return "relief";
+    case PlotColors::difference: return "difference";
+  }
+  return "grey";
+}
+
+/// Values as floats in base64, less their middle, which keeps digits of heights far from 0.
+json json_of(const std::optional<PlotImage>& image) {
+  if (!image) return {};
+  const auto& data = image->values.data();
+  const auto finite = std::find_if(data.begin(), data.end(), [](double v) { return std::isfinite(v); });
+  const double middle = finite == data.end() ? 0 : *finite;
+  std::string bytes;
+  bytes.reserve(4 * data.size());
+  for (const double value : data) {
+    // Lowest byte first, on any machine.
+    const auto bits = std::bit_cast<std::uint32_t>(static_cast<float>(value - middle));
+    for (int shift = 0; shift < 32; shift += 8) bytes += static_cast<char>(bits >> shift & 0xff);
+  }
+  return {{"width", image->values.width()},
+          {"height", image->values.height()},
+          {"values", encode_base64(bytes)},
+          {"middle", middle},
+          {"pitch", {image->pitch_x, image->pitch_y}},
+          {"origin", {image->origin_x, image->origin_y}},
+          {"colors", name_of(image->colors)},
+          {"range", json_of(image->range)},
+          {"label", image->label},
+          {"lit_per_unit", image->lit_per_unit}};
 }
 
 json json_of(const PlotSeries& series) {
@@ -76,19 +118,26 @@ json json_of(const PlotPanel& panel) {
   }
   return {{"title", panel.title}, {"x", json_of(panel.x)}, {"y", json_of(panel.y)},
           {"series", series},     {"notes", notes},        {"references", references},
-          {"bands", bands},       {"legend", panel.legend}};
+          {"bands", bands},       {"legend", panel.legend},   {"image", json_of(panel.image)}};
 }
 
 json json_of(const Plot& plot) {
   const int count = static_cast<int>(plot.panels.size());
   // Four panels look better as two by two.
   const int columns = std::min(count, plot.columns > 0 ? plot.columns : count == 4 ? 2 : 3);
-  const int rows = (count + columns - 1) / columns;
+  int cell = 0;   // the next free one, by rows
+  json panels = json::array();
+  for (const PlotPanel& panel : plot.panels) {
+    const int span = std::min(panel.columns, columns);
+    if (cell % columns + span > columns) cell += columns - cell % columns;
+    panels.push_back(json_of(panel));
+    panels.back()["cells"] = {cell + 1, cell + span};
+    cell += span;
+  }
+  const int rows = (cell + columns - 1) / columns;
   // The height of a row as a share of the width.
   const double height = columns == 1 ? 0.625 : columns == 2 ? 0.43 : 0.33;
   const double automatic = std::clamp(plot.width_px * height * rows, 200.0, 10000.0);
-  json panels = json::array();
-  for (const PlotPanel& panel : plot.panels) panels.push_back(json_of(panel));
   return {{"title", plot.title},
           {"panels", panels},
           {"rows", rows},

@@ -3,6 +3,7 @@
 
 Exits with 3 if there is no Matplotlib. plot.cpp writes the JSON and has checked what is in it.
 """
+import base64
 import json
 import sys
 
@@ -11,6 +12,7 @@ try:
     matplotlib.use("Agg")
     import matplotlib.pyplot as plt
     import numpy as np
+    from matplotlib import colors as mpl_colors
     from matplotlib import ticker
 except ImportError as error:
     print(error, file=sys.stderr)
@@ -58,6 +60,10 @@ def draw_series(axes, series, number):
         if filled:
             axes.stairs(y, x, baseline=floor, color=color, linewidth=0.9, zorder=z - 0.4)
         x = [(a + b) / 2 for a, b in zip(x, x[1:])]
+    elif style == "band":
+        low, high = ([a + sign * b for a, b in zip(y, error)] for sign in (-1, 1))
+        error = None
+        handle = axes.fill_between(x, low, high, color=color, alpha=0.25, linewidth=0, zorder=z - 0.6)
     else:
         lined, pointed = style != "points", style != "line"
         z += 0.4 if pointed else 0   # lines under points
@@ -69,6 +75,50 @@ def draw_series(axes, series, number):
         axes.errorbar(x, y, yerr=error, fmt="none", ecolor=color, elinewidth=1.1, capsize=2.5,
                       capthick=1.1, alpha=0.8, zorder=z - 0.2)
     return handle
+
+
+def values_of(image):
+    flat = np.frombuffer(base64.b64decode(image["values"]), dtype="<f4").astype(float) + image["middle"]
+    return flat.reshape(image["height"], image["width"])
+
+
+def color_range(image, values):
+    if image["range"]:
+        return image["range"]
+    finite = values[np.isfinite(values)]
+    if not finite.size:
+        return 0.0, 1.0
+    low, high = np.percentile(finite, [0.5, 99.5])
+    if image["colors"] == "difference":
+        high = max(abs(low), abs(high))
+        low = -high
+    return (low, high) if high > low else (low - 0.5, high + 0.5)
+
+
+def draw_image(axes, image):
+    values = values_of(image)
+    low, high = color_range(image, values)
+    (dx, dy), (x, y) = image["pitch"], image["origin"]
+    kind = image["colors"]
+    name = {"grey": "gray", "heights": "cividis", "relief": "cividis", "difference": "RdBu_r"}[kind]
+    norm = mpl_colors.Normalize(low, high)
+    place = {"extent": (x - dx / 2, x + (values.shape[1] - 0.5) * dx, y - dy / 2, y + (values.shape[0] - 0.5) * dy),
+             "origin": "lower", "interpolation": "nearest", "zorder": 1}
+    mapped = plt.cm.ScalarMappable(norm, name)
+    if kind == "relief":
+        known = np.where(np.isfinite(values), values, low)
+        light = mpl_colors.LightSource(azdeg=315, altdeg=45)
+        lit = light.shade(known, plt.get_cmap(name), norm=norm, blend_mode="soft", dx=dx, dy=-dy,
+                          vert_exag=image["lit_per_unit"])
+        lit[~np.isfinite(values)] = 1
+        axes.imshow(lit, **place)
+    else:
+        axes.imshow(values, cmap=name, norm=norm, **place)
+    axes.set_aspect("equal")
+    bar = axes.figure.colorbar(mapped, ax=axes, shrink=0.9, aspect=18, pad=0.015)
+    bar.set_label(plain(image["label"]))
+    bar.outline.set_linewidth(0.6)
+    bar.ax.minorticks_off()
 
 
 def draw_backdrop(axes, panel):
@@ -85,7 +135,7 @@ def draw_backdrop(axes, panel):
     return named
 
 
-def prepare_axis(axes, axis, settings, which):
+def prepare_axis(axes, axis, settings, which, pictured):
     if settings["log"]:
         # Minor ticks over any number of decades; labels on some of them where there are few.
         axis.set_minor_locator(ticker.LogLocator(base=10, subs=tuple(range(2, 10)), numticks=99))
@@ -97,12 +147,13 @@ def prepare_axis(axes, axis, settings, which):
     if settings["range"]:
         (axes.set_xlim if which == "x" else axes.set_ylim)(*settings["range"])
     axis.set_label_text(plain(settings["label"]))
-    axis.grid(True, which="major", color="#e4e4e4", linewidth=0.8)
+    if not pictured:
+        axis.grid(True, which="major", color="#e4e4e4", linewidth=0.8)
 
 
 def points_on(axes, panel):
     """Places in pixels that hold data, a row each: the points, and places on lines between them."""
-    places = []
+    places = [np.empty((0, 2))]
     for series in panel["series"]:
         x, y = np.array(series["x"]), np.array(series["y"])
         if len(x) > len(y):
@@ -209,21 +260,23 @@ def draw(plot, path, kind):
     if plot["title"]:
         figure.suptitle(plain(plot["title"]))
     panels = []
-    for number, panel in enumerate(plot["panels"]):
-        axes = figure.add_subplot(rows, columns, number + 1)
+    for panel in plot["panels"]:
+        axes = figure.add_subplot(rows, columns, tuple(panel["cells"]))
         axes.set_title(plain(panel["title"]))
         if panel["x"]["log"]:
             axes.set_xscale("log")
         if panel["y"]["log"]:
             axes.set_yscale("log", nonpositive="clip")
+        if panel["image"]:
+            draw_image(axes, panel["image"])
         named = [(draw_series(axes, series, n), series["name"])
                  for n, series in enumerate(panel["series"])]
         named += draw_backdrop(axes, panel)
         # Notes widen an axis as points do, and the limits stay once texts are placed.
         axes.update_datalim([(note["x"], note["y"]) for note in panel["notes"]])
         axes.autoscale_view()
-        prepare_axis(axes, axes.xaxis, panel["x"], "x")
-        prepare_axis(axes, axes.yaxis, panel["y"], "y")
+        prepare_axis(axes, axes.xaxis, panel["x"], "x", panel["image"])
+        prepare_axis(axes, axes.yaxis, panel["y"], "y", panel["image"])
         axes.set_xlim(axes.get_xlim())
         axes.set_ylim(axes.get_ylim())
         panels.append((axes, panel, named))

@@ -318,6 +318,15 @@ Grid<std::uint8_t> parse_grey_png(const std::string& file, std::string_view cont
   return grey;
 }
 
+int raster_bits(const std::filesystem::path& path) {
+  keep_quiet();
+  const auto input = OIIO::ImageInput::open(path.string());
+  if (!input) throw FileError(path.string(), "cannot be read as an image: " + OIIO::geterror(), "Check its content");
+  const OIIO::ImageSpec& spec = input->spec();
+  if (spec.format.is_floating_point()) return 0;
+  return spec.get_int_attribute("oiio:BitsPerSample", static_cast<int>(8 * spec.format.size()));
+}
+
 Image read_raster(const std::filesystem::path& path) {
   const std::string file = path.string();
   keep_quiet();

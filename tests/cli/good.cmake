@@ -195,6 +195,13 @@ semsurf_cli_test(clean.all ARGS clean block.gsf --spikes 3:1nm --median 3 --disc
 semsurf_cli_test(noise.flat ARGS noise noisy.gsf --flat --plot noise.svg
   STDOUT "noise +alpha 0\\.[0-9]+ ± .*sigma" "differences +alpha" "whiteness +along rows p" "normality +p" WRITES noise.svg)
 semsurf_cli_test(noise.none ARGS noise plane.gsf --flat --degree 1 STDERR "no noise at all" STDOUT "noise +alpha")
+semsurf_cli_test(noise.help_of_all ARGS noise --help STDOUT "SEM image" "--region" "Simulated counts" "--trials")
+semsurf_cli_test(noise.sem ARGS noise --sem steps_of_grey.tif --plot noise.svg
+  STDOUT "noise +variance = " "flat places +[0-9]+ used" "correlation +-?0\\.[0-9]+ along rows" WRITES noise.svg)
+semsurf_cli_test(noise.sem_region ARGS noise --sem steps_of_grey.tif --region 4,4,28,28 --region 36,4,60,28 --region 68,36,92,60
+  STDOUT "flat places +3 used")
+semsurf_cli_test(noise.counts ARGS noise --counts scene.toml --electrons 1,5 --trials 200 --at 0,0 --csv counts.csv --plot counts.svg
+  STDOUT "200 trials" "SE of 5 +.*mean" "log-normal, median" WRITES counts.csv counts.svg)
 semsurf_cli_test(noise.substrate ARGS noise noisy.gsf STDOUT "substrate +[0-9.]+ % of the image")
 # AFM: a tip put into a surface and taken out of the scan.
 foreach(command erode dilate certainty)
@@ -286,3 +293,21 @@ semsurf_cli_test(predict.scene ARGS predict "${PROJECT_SOURCE_DIR}/samples/mesa8
 semsurf_cli_test(predict.steep ARGS predict steps.txt --pitch 3nm --z-unit 20nm --model secant.json -q -o image.tif
   STDOUT "^$" STDERR "warning: .* steeper than the 70 degrees" WRITES image.tif)
 semsurf_cli_test(info.model ARGS info secant.json STDOUT "image model" "for +Si, 1 keV" "warning +few pixels" "all learnt from")
+
+# Registration and reconstruction; tests/cli/reconstruct.py has more.
+semsurf_cli_test(help.register ARGS register --help STDOUT "AFM scan" "Registration:" "ambiguous" "Examples:")
+semsurf_cli_test(help.reconstruct ARGS reconstruct --help
+  STDOUT "Inputs:" "SEM image:" "Registration:" "Reconstruction:" "Output:" "Exit code 4" "Examples:")
+semsurf_cli_test(reconstruct.afm_only ARGS reconstruct --afm steps.txt --afm-pixel-size 3nm --no-level --tip tip.txt
+  --afm-noise 0.5,0.01 --no-picture --threads 1 -o result/
+  STDOUT "-log L AFM" "held by +AFM" "written +result/surface.vti"
+  WRITES result/surface.vti result/surface.gsf result/surface.glb result/simulated_afm.vti result/tip.txt result/history.csv result/report.json)
+
+semsurf_cli_test(help.sample ARGS sample --help STDOUT "nist0523-thick" "Examples:" "truth")
+semsurf_cli_test(sample.list ARGS sample --list STDOUT "nist0523-thick.*100 nm high" "terrain")
+semsurf_cli_test(sample.small ARGS sample islands --size 24x16 --electrons 1 --cache off -o made
+  STDOUT "SEM +24 x 16 pixels of 1 primaries" "truth.json"
+  WRITES made/afm.gsf made/sem.tif made/truth.gsf made/truth_tip.gsf made/truth_sem.exr made/truth.json)
+semsurf_cli_test(info.sem_image ARGS info fei.tif
+  STDOUT "SEM image, Thermo/FEI, Teneo" "4 x 3 pixels of 7.5" "energy +2 keV" "detector +ETD" "Beam.HV +2000"
+  STDERR "note: the databar, the lowest 1 rows, is left out")

@@ -10,6 +10,7 @@
 #include "surf/io/image_file.h"
 #include "surf/io/mesh_file.h"
 #include "surf/io/model_file.h"
+#include "surf/io/sem_file.h"
 #include "surf/io/sim/scene_file.h"
 #include "surf/io/surface_file.h"
 
@@ -49,6 +50,10 @@ void read(const std::filesystem::path& path) {
     return;   // its mark is damaged: Gwyddion would be asked, whose process takes long
   } else if (io::is_image_file(path)) {
     expect_valid(io::read_image(path));
+    io::is_sem_image_file(path);
+    io::SemReadOptions options;
+    options.pixel_x_nm = 1;
+    expect_valid(io::read_sem_image(path, options).image);
   } else {
     expect_valid(io::read_mesh(path));
     expect_valid(io::read_surfaces(path));

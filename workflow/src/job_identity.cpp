@@ -39,8 +39,6 @@ std::string geometry(const mc::Specimen& specimen) {
   return hash_of(hashes);
 }
 
-// Another build may round differently. Where the system does not show the program's own file,
-// versions must do.
 const std::string& program() {
   static const std::string hash = [] {
     try {
@@ -52,7 +50,10 @@ const std::string& program() {
   return hash;
 }
 
-// What the ray tracer chooses its code by.
+}  // namespace
+
+const std::string& program_hash() { return program(); }
+
 std::string instruction_set() {
 #if defined(__x86_64__)
   if (__builtin_cpu_supports("avx512f")) return "x86-64 with AVX-512";
@@ -64,6 +65,8 @@ std::string instruction_set() {
   return "unknown";
 #endif
 }
+
+namespace {
 
 std::string shown(const Identity& identity, const std::string& key) {
   const auto found = identity.find(key);

@@ -17,7 +17,7 @@
 namespace surf::workflow {
 namespace {
 
-constexpr int usual_surfaces = 48;
+constexpr int usual_surfaces = 60;
 
 /// How many surfaces of the program's own there are to be.
 int own_surfaces(const TrainJob& job, const Learner& learner) {
@@ -66,6 +66,7 @@ std::map<std::string, std::string> notes_of(const TrainJob& job, const std::vect
   if (!job.command_line.empty()) notes["command"] = job.command_line;
   if (surfaces.empty()) return notes;
   notes["edge"] = job.edge == Edge::mirror ? "mirror" : job.edge == Edge::flat ? "flat" : "periodic";
+  if (samples_per_pixel(job) > 1) notes["samples_per_pixel"] = std::to_string(samples_per_pixel(job));
   if (job.inputs.empty()) notes["surfaces"] = fmt::format("semsurf's own, {} pixels across", job.surface_px);
   if (std::ranges::none_of(surfaces, [](const TrainingSurface& surface) { return surface.image.empty(); })) return notes;
   notes["physics"] = mc::format_physics(job.physics);

@@ -1,12 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
 #include <set>
 
 #include "job_identity.h"
 #include "provenance.h"
+#include "surf/afm/resample.h"
 #include "surf/core/error.h"
 #include "surf/io/image_file.h"
+#include "surf/mc/electron_range.h"
 #include "training_data.h"
 
 namespace surf::workflow {
@@ -19,7 +23,8 @@ SimulateJob simulation_of(const TrainJob& job, const TrainingSurface& surface, s
   SimulateJob out;
   io::SceneFile& scene = out.scene;
   scene.specimen.materials = {job.material};
-  scene.specimen.height_field = mc::HeightFieldBody{surface.name, surface.field, 0, job.edge};
+  scene.specimen.height_field =
+      mc::HeightFieldBody{surface.name, smoothly_upsampled(surface.field, samples_per_pixel(job)), 0, job.edge};
   scene.beam.energy_ev = job.energy_ev;
   scene.beam.spot_nm = job.spot_nm;
   scene.scan.width = surface.field.z_nm.width();
@@ -69,6 +74,12 @@ void tell_what_is_there(const std::vector<SimulateJob>& all, std::size_t missing
 
 }  // namespace
 
+int samples_per_pixel(const TrainJob& job) {
+  if (job.fine > 0) return job.fine;
+  const double range_nm = mc::kanaya_okayama_range_nm(job.material, job.energy_ev);
+  return std::clamp(static_cast<int>(std::ceil(5 * job.pixel_nm / range_nm)), 1, 8);
+}
+
 fs::path image_folder(const TrainJob& job) {
   fs::path folder = job.output;
   folder.replace_extension(".training");
@@ -81,6 +92,7 @@ SimulatedImages simulate_images(const TrainJob& job, const std::vector<TrainingS
   out.files.resize(surfaces.size());
   const fs::path folder = image_folder(job);
   std::vector<SimulateJob> all, missing;
+  std::vector<double> pixels_missing;
   std::size_t unusable = 0;
   double total = 0, done_before = 0;
   for (std::size_t i = 0; i < surfaces.size(); ++i) {
@@ -91,7 +103,8 @@ SimulatedImages simulate_images(const TrainJob& job, const std::vector<TrainingS
     std::error_code ignored;
     if (fs::exists(out.files[i], ignored)) ++unusable;
     missing.push_back(all.back());
-    total += static_cast<double>(surfaces[i].field.z_nm.size());
+    pixels_missing.push_back(static_cast<double>(surfaces[i].field.z_nm.size()));
+    total += pixels_missing.back();
   }
   out.found = static_cast<int>(all.size() - missing.size());
   tell_what_is_there(all, missing.size(), unusable, folder, listener.note);
@@ -99,8 +112,9 @@ SimulatedImages simulate_images(const TrainJob& job, const std::vector<TrainingS
   const auto warn = [&](const std::string& warning) {
     if (warned.insert(warning).second && listener.warn) listener.warn(warning);
   };
-  for (const SimulateJob& simulation : missing) {
-    const auto pixels = static_cast<double>(simulation.scene.specimen.height_field->field.z_nm.size());
+  for (std::size_t i = 0; i < missing.size(); ++i) {
+    const SimulateJob& simulation = missing[i];
+    const double pixels = pixels_missing[i];
     const auto show = [&](double done, double of) {
       if (listener.pixels && of > 0) listener.pixels(done_before + pixels * done / of, total);
     };

@@ -23,6 +23,10 @@ std::optional<double> TiffTag::number(std::size_t index) const {
     case 1: return values_.number<std::uint8_t>(at, order_);
     case 3: return values_.number<std::uint16_t>(at, order_);
     case 4: return values_.number<std::uint32_t>(at, order_);
+    case 5: {
+      const double above = values_.number<std::uint32_t>(at, order_), below = values_.number<std::uint32_t>(at + 4, order_);
+      return below > 0 ? std::optional(above / below) : std::nullopt;
+    }
     case 6: return values_.number<std::int8_t>(at, order_);
     case 8: return values_.number<std::int16_t>(at, order_);
     case 9: return values_.number<std::int32_t>(at, order_);

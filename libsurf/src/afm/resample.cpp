@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "core/cubic_sample.h"
 #include "surf/core/error.h"
 
 namespace surf {
@@ -96,6 +97,50 @@ HeightField upsampled(const HeightField& surface, int factor) {
       if (std::isnan(z)) out.valid(x, y) = 0;
       else out.z_nm(x, y) = z;
     }
+  return out;
+}
+
+namespace {
+
+/// Whether the samples that a cubic takes are all finite.
+bool is_whole(const CubicSample& at, const Grid<double>& z) {
+  for (const int row : at.row)
+    for (const int column : at.column)
+      if (!std::isfinite(z(column, row))) return false;
+  return true;
+}
+
+/// Replaces the bilinear samples of `fine` by cubic ones where the coarse ones around are all known.
+void smooth_over(const Grid<double>& coarse, int factor, Grid<double>& fine) {
+  for (int y = 0; y < fine.height(); ++y)
+    for (int x = 0; x < fine.width(); ++x) {
+      if (x % factor == 0 && y % factor == 0) continue;
+      const CubicSample at(static_cast<double>(x) / factor, static_cast<double>(y) / factor, coarse.width(), coarse.height());
+      if (is_whole(at, coarse)) fine(x, y) = at.value(coarse);
+    }
+}
+
+}  // namespace
+
+HeightField smoothly_upsampled(const HeightField& surface, int factor) {
+  HeightField out = upsampled(surface, factor);
+  Grid<double> coarse = surface.z_nm;
+  for (std::size_t i = 0; i < coarse.size(); ++i)
+    if (!surface.valid.empty() && !surface.valid.data()[i]) coarse.data()[i] = std::numeric_limits<double>::quiet_NaN();
+  smooth_over(coarse, factor, out.z_nm);
+  return out;
+}
+
+Tip smoothly_upsampled(const Tip& tip, int factor) {
+  validate(tip);
+  if (factor < 1 || factor > 32)
+    throw InvalidInput("upsample", fmt::format("{} is not in 1 to 32", factor), "2 or 3 is usual");
+  Tip out = resampled(tip, tip.pitch_x_nm / factor, tip.pitch_y_nm / factor);
+  if (factor == 1 || out.z_nm.width() != (tip.z_nm.width() - 1) * factor + 1 ||
+      out.z_nm.height() != (tip.z_nm.height() - 1) * factor + 1)
+    return out;
+  smooth_over(tip.z_nm, factor, out.z_nm);
+  for (double& z : out.z_nm.data()) z = std::min(z, 0.0);
   return out;
 }
 

@@ -108,6 +108,37 @@ HeightField TrainingShapes::line(double highest_nm) {
   return field;
 }
 
+HeightField TrainingShapes::outline() {
+  const double length = uniform(8, 22) * pixel_nm_, level = uniform(-0.6, 0.9);
+  HeightField field = rough(1, length);
+  const Grid<double> z = field.z_nm;
+  const int last = size_px_ - 1;
+  for (int y = 0; y <= last; ++y)
+    for (int x = 0; x <= last; ++x) {
+      const int l = std::max(x - 1, 0), r = std::min(x + 1, last), b = std::max(y - 1, 0), t = std::min(y + 1, last);
+      const double slope = std::hypot((z(r, y) - z(l, y)) / (r - l), (z(x, t) - z(x, b)) / (t - b)) / pixel_nm_;
+      // Where the field is level there is no outline near.
+      field.z_nm(x, y) = (z(x, y) - level) / std::hypot(slope, 0.2 / length);
+    }
+  return field;
+}
+
+HeightField TrainingShapes::pattern(double highest_nm) {
+  const double height = uniform(0.2 * highest_nm, highest_nm), blur = uniform(0.7, 3) * pixel_nm_;
+  HeightField field = outline();
+  for (double& z : field.z_nm.data()) z = 0.5 * height * (1 + std::erf(z / (std::numbers::sqrt2 * blur)));
+  return field;
+}
+
+HeightField TrainingShapes::trace(double highest_nm) {
+  const double height = uniform(0.2 * highest_nm, highest_nm), blur = uniform(0.7, 3) * pixel_nm_;
+  const double half = uniform(1.5, 8) * pixel_nm_;
+  HeightField field = outline();
+  for (double& z : field.z_nm.data())
+    z = 0.5 * height * (std::erf((half - z) / (std::numbers::sqrt2 * blur)) + std::erf((half + z) / (std::numbers::sqrt2 * blur)));
+  return field;
+}
+
 double TrainingShapes::run() {
   constexpr double pixels[] = {1, 2, 3, 5};
   return pixels[std::min(3, static_cast<int>(uniform(0, 4)))] * pixel_nm_;

@@ -27,6 +27,10 @@ class TrainingShapes {
   HeightField lines(double highest_nm);
   /// One line.
   HeightField line(double highest_nm);
+  /// Plateaus of winding outline that fill a half, more or less; their sides are error functions.
+  HeightField pattern(double highest_nm);
+  /// Lines of even width, 3 to 16 pixels, that wind across the field, with such sides.
+  HeightField trace(double highest_nm);
   /// Square pyramids with sides of 10 to 80 degrees.
   HeightField pyramids(int count, double highest_nm);
   /// See make_rough, make_self_affine. Lengths that the field is too small for are cut down.
@@ -35,6 +39,8 @@ class TrainingShapes {
 
  private:
   double uniform(double from, double to);
+  /// Distance from the winding outline of a random field, nm; above 0 inside.
+  HeightField outline();
   double run();   ///< of a wall
   std::uint64_t seed();
   double shortened(double correlation_nm) const;

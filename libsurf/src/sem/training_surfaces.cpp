@@ -62,6 +62,10 @@ constexpr Kind kinds[] = {
        HeightField z = t.blocks(30, 25 * s.height);
        return sum(std::move(z), t.bumps(15), 0.4);
      }},
+    {"pattern", [](TrainingShapes& t, const Scale& s) { return t.pattern(45 * s.height); }},
+    {"trace", [](TrainingShapes& t, const Scale& s) { return t.trace(45 * s.height); }},
+    {"pits-pattern", [](TrainingShapes& t, const Scale& s) { return sum(t.flat(), t.trace(30 * s.height), -1); }},
+    {"low-pattern", [](TrainingShapes& t, const Scale& s) { return t.pattern(25 * s.height); }},
 };
 static_assert(std::size(kinds) == training_surface_kinds);
 

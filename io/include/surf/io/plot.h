@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "surf/core/grid.h"
+
 namespace surf::io {
 
 /// All text is plain: UTF-8, no markup; "\n" begins a new line.
@@ -22,6 +24,7 @@ enum class PlotStyle {
   line_points,
   steps,        ///< a histogram's outline: x holds the edges of the bins
   bars,         ///< the same, filled
+  band,         ///< what lies within y_error of y, shaded
 };
 
 /// Values to draw. Colours and markers follow the order of the series; the colours can be told apart
@@ -58,14 +61,34 @@ struct PlotBand {
   std::string name;          ///< in the legend; empty: not listed there
 };
 
+enum class PlotColors {
+  grey,        ///< low dark, high light
+  heights,     ///< perceptually even, dark blue to yellow
+  relief,      ///< heights, lit from the upper left; `lit_per_unit` says how steep they are
+  difference,  ///< 0 white, below blue, above red; the range is made symmetric
+};
+
+/// A picture on the axes: a grid of values in colours, with a scale beside it. Both axes have one scale.
+struct PlotImage {
+  Grid<double> values;              ///< sample (0, 0) lower-left; what is not finite stays blank
+  double pitch_x = 1, pitch_y = 1;  ///< > 0, in the axes' unit
+  double origin_x = 0, origin_y = 0;   ///< centre of sample (0, 0)
+  PlotColors colors = PlotColors::grey;
+  std::optional<PlotAxis::Range> range;   ///< of the colours; by default the 0.5 and 99.5 percentiles
+  std::string label;                ///< of the colours, with the unit
+  double lit_per_unit = 1;          ///< of relief: the axes' unit in one unit of the values, > 0
+};
+
 struct PlotPanel {
   std::string title;
   PlotAxis x, y;
-  std::vector<PlotSeries> series;   ///< at least one
+  std::optional<PlotImage> image;   ///< under everything else
+  std::vector<PlotSeries> series;   ///< at least one where there is no image
   std::vector<PlotNote> notes;
   std::vector<PlotReference> references;
   std::vector<PlotBand> bands;
   bool legend = true;   ///< where it covers least, else beside the panel; none without names
+  int columns = 1;      ///< of the plot's that it takes; it begins a new row where too few are left
 };
 
 struct Plot {

@@ -17,6 +17,14 @@ Tip resampled(const Tip& tip, double pitch_x_nm, double pitch_y_nm);
 /// [1, 32].
 HeightField upsampled(const HeightField& surface, int factor);
 
+/// The same, smoothly: by cubic convolution (Keys 1981, doi:10.1109/TASSP.1981.1163711), whose slopes are
+/// continuous and which reproduces parabolas; bilinear where one of the 16 samples around is a hole.
+HeightField smoothly_upsampled(const HeightField& surface, int factor);
+
+/// A tip with `factor` samples per pitch, likewise; the apex stays the highest sample, at 0. Throws InvalidInput
+/// for an invalid tip and a factor outside [1, 32].
+Tip smoothly_upsampled(const Tip& tip, int factor);
+
 /// The surface at another, square pitch, by bilinear interpolation: the first sample stays where it is,
 /// and as many follow as lie within the old ones; a sample that is made of a hole is a hole. Nothing is
 /// averaged: with a coarser pitch detail in between is passed over. Throws InvalidInput for a pitch that

@@ -132,4 +132,11 @@ std::vector<double> default_scales_px(ReconstructionMethod method, int width, in
 Reconstruction reconstruct(const AfmData* afm, const SemData* sem, const ReconstructionOptions& options = {},
                            ReconstructionJournal* journal = nullptr);
 
+/// The root-mean-square error of heights, nm, that noise and the prior alone would leave: of one linear step at the true
+/// surface, for data whose noise is as described and whose models, map and tip are right; the mean over `draws` of
+/// the noise. `truth` is on the surface's samples (the SEM's pixels, or the AFM's samples without one). A mean
+/// difference counts, as the AFM image knows the height. Throws as `reconstruct`.
+double noise_floor_nm(const AfmData* afm, const SemData* sem, const HeightField& truth,
+                      const ReconstructionOptions& options = {}, int draws = 2);
+
 }  // namespace surf

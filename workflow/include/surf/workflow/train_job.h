@@ -27,6 +27,9 @@ struct TrainingInput {
   std::filesystem::path image;     ///< of it; empty: it is simulated
 };
 
+/// The samples per pixel that a job simulates with: its own, or by the range of Kanaya and Okayama.
+int samples_per_pixel(const struct TrainJob& job);
+
 /// What learning is told besides surfaces and images. Each kind of model takes what concerns it.
 struct LearnOptions {
   /// Kinds as `learnable_kinds` lists them.
@@ -54,9 +57,13 @@ std::vector<LearnableKind> learnable_kinds();
 /// A model from surfaces to its file.
 struct TrainJob {
   std::vector<TrainingInput> inputs;     ///< none: `surfaces` of the program's own (training_surfaces.h)
-  std::optional<int> surfaces;           ///< absent: 48, or none for kinds that need no images
+  std::optional<int> surfaces;           ///< absent: 60, or none for kinds that need no images
   int surface_px = 64;
   Edge edge = Edge::mirror;              ///< how surfaces go on outside
+  /// Surfaces are simulated with so many samples per pixel, smooth between them, 1 to 8: what lies within a pixel
+  /// counts where pixels are not small against the electrons' range. 0: so many that samples are at most a
+  /// fifth of it apart.
+  int fine = 0;
   int held_out = 0;                      ///< the last so many surfaces only judge the model
 
   /// The images are of a real microscope, in one channel of this name, in any unit; empty: they are as

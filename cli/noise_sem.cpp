@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "noise_sem.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+
+#include "options.h"
+#include "picture_input.h"
+#include "sem_noise_plot.h"
+#include "surf/core/error.h"
+#include "surf/core/units.h"
+#include "surf/io/sem_file.h"
+#include "surf/sem/estimate_sem_noise.h"
+#include "terminal.h"
+
+namespace surf::cli {
+namespace {
+
+struct SemPicture {
+  PlacedImage image;
+  bool has_scale = false;
+};
+
+/// Noise is the same for pixels of any size, so that pictures need not say theirs.
+SemPicture read_sem_picture(const SemNoiseInput& input, bool quiet) {
+  const FileChannel name = parse_file_channel(*input.image);
+  io::SemReadOptions options;
+  options.channel = name.channel;
+  if (input.pixel_size) std::tie(options.pixel_x_nm, options.pixel_y_nm) = parse_pixel_size(*input.pixel_size, "--pixel-size");
+  io::SemFile file;
+  bool has_scale = true;
+  try {
+    file = io::read_sem_image(name.file, options);
+  } catch (const UsageError&) {
+    if (input.pixel_size) throw;
+    has_scale = false;
+    options.pixel_x_nm = options.pixel_y_nm = 1;
+    file = io::read_sem_image(name.file, options);   // says again what else is wrong
+  }
+  if (!quiet)
+    for (const std::string& note : file.notes) print_note(fmt::format("{}: {}", name.file.string(), note));
+  return {std::move(file.image), has_scale};
+}
+
+bool has_unit(const std::string& text) {
+  return std::ranges::any_of(text, [](unsigned char c) { return std::isalpha(c) && c != 'e' && c != 'E'; });
+}
+
+/// Bare numbers are pixels from the upper-left corner, as image viewers show them; with a unit they are
+/// lengths from the image's origin, up.
+PixelRectangle parse_rectangle(const std::string& text, const SemPicture& picture) {
+  const PlacedImage& image = picture.image;
+  const io::ScanRequest::Region r = parse_region(text, "--region");
+  const auto whole = [](double v) { return static_cast<int>(std::clamp(std::round(v), -1e9, 1e9)); };
+  if (!has_unit(text)) {
+    const int height = image.values.height();
+    return {whole(r.x0_nm), height - whole(r.y1_nm), whole(r.x1_nm), height - whole(r.y0_nm)};
+  }
+  if (!picture.has_scale)
+    throw UsageError("--region", "the image does not say how large its pixels are",
+                     "Add --pixel-size, or give the region in pixels");
+  const auto column = [&](double x) { return whole((x - image.origin_x_nm) / image.pitch_x_nm + 0.5); };
+  const auto row = [&](double y) { return whole((y - image.origin_y_nm) / image.pitch_y_nm + 0.5); };
+  return {column(r.x0_nm), row(r.y0_nm), column(r.x1_nm), row(r.y1_nm)};
+}
+
+SemNoiseOptions make_options(const SemNoiseInput& input) {
+  SemNoiseOptions options;
+  if (input.block) options.block_px = static_cast<int>(parse_whole(*input.block, "--block", 6, 64));
+  if (input.black) options.black = parse_number(*input.black, "--black");
+  if (input.white) options.white = parse_number(*input.white, "--white");
+  return options;
+}
+
+void print_estimate(const SemNoiseEstimate& e) {
+  if (e.slope_known)
+    fmt::print("{:<12} variance = ({:.4g} ± {:.1g}) mean {} ({:.4g} ± {:.1g})\n", "noise", e.noise.slope,
+               e.slope_stderr(), e.noise.intercept < 0 ? "-" : "+", std::fabs(e.noise.intercept), e.intercept_stderr());
+  else
+    fmt::print("{:<12} variance = {:.4g} ± {:.1g}\n", "noise", e.noise.intercept, e.intercept_stderr());
+  for (const double mean : {e.least_mean, e.largest_mean})
+    fmt::print("{:<12} at mean {:.4g}: {:.4g} ± {:.1g}, signal to noise {:.3g}\n", "", mean, std::sqrt(e.noise.variance(mean)),
+               e.variance_stderr(mean) / (2 * std::sqrt(e.noise.variance(mean))), mean / std::sqrt(e.noise.variance(mean)));
+  const auto used = std::ranges::count_if(e.points, [](const NoisePoint& p) { return p.used; });
+  fmt::print("{:<12} {} used, {} left out{}; {} pixels\n", "flat places", used, static_cast<std::int64_t>(e.points.size()) - used,
+             e.blocks ? fmt::format(", of {} blocks", e.blocks) : "", e.pixels);
+  if (e.degrees > 0)
+    fmt::print("{:<12} chi-squared {:.4g} with {} degrees of freedom, {}; bend {:.1f} % (z = {:.1f})\n", "line", e.chi_squared,
+               e.degrees, e.p < 1e-4 ? "p < 0.0001" : fmt::format("p = {:.4f}", e.p), 100 * e.bend, e.curvature_z);
+  fmt::print("{:<12} {:.3f} along rows, {:.3f} across; a mean counts 1 pixel in {:.3g}, a variance 1 in {:.3g}\n",
+             "correlation", e.correlation_x, e.correlation_y, e.correlation_sum, e.correlation_squares);
+  fmt::print("{:<12} excess kurtosis {:.3f}\n", "normality", e.excess_kurtosis);
+  if (e.quantum > 0)
+    fmt::print("{:<12} in steps of {:g}, which is {:.2g} of the variance\n", "grey levels", e.quantum,
+               e.quantum * e.quantum / 12);
+}
+
+}  // namespace
+
+void add_sem_noise_options(CLI::App& app, SemNoiseInput& input) {
+  const char* group = "SEM image";
+  app.add_option("--sem", input.image, "The noise of this SEM image, FILE or FILE:CHANNEL")->type_name("FILE")->group(group);
+  app.add_option("--region", input.regions,
+                 "A flat place X0,Y0,X1,Y1: pixels from the upper left, or lengths with units; may be repeated "
+                 "(flat blocks are found)")
+      ->type_name("RECTANGLE")->option_text("RECTANGLE")->allow_extra_args(false)->group(group);
+  app.add_option("--block", input.block, "Side of the blocks, 6 to 64 pixels (16, 12 or 8)")->type_name("N")->group(group);
+  app.add_option("--black", input.black, "Pixels at or below this level are saturated (found)")
+      ->type_name("LEVEL")->group(group);
+  app.add_option("--white", input.white, "Pixels at or above this level are saturated (found)")
+      ->type_name("LEVEL")->group(group);
+}
+
+void require_sem(const SemNoiseInput& input) {
+  if (input.image) return;
+  const char* given = !input.regions.empty() ? "--region" : input.block ? "--block" : input.black ? "--black"
+                      : input.white ? "--white" : nullptr;
+  if (given) throw UsageError(given, "it is of SEM images, and none is given", "Add --sem image.tif, or leave it out");
+}
+
+int print_sem_noise(const SemNoiseInput& input, const std::optional<std::string>& plot, bool quiet) {
+  SemNoiseOptions options = make_options(input);
+  if (plot) io::check_plot_target(*plot);
+  const SemPicture picture = read_sem_picture(input, quiet);
+  for (const std::string& text : input.regions) options.regions.push_back(parse_rectangle(text, picture));
+  const SemNoiseEstimate e = estimate_sem_noise(picture.image, options);
+  print_estimate(e);
+  for (const std::string& warning : e.warnings) print_warning(warning);
+  if (!plot) return 0;
+  io::write_plot(*plot, plot_sem_noise(e, picture.image.values.width(), picture.image.values.height()));
+  if (!quiet) fmt::print("{:<12} {}\n", "written", *plot);
+  return 0;
+}
+
+}  // namespace surf::cli

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <CLI/App.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace surf::cli {
+
+/// `semsurf noise --sem`: the noise of one SEM image.
+struct SemNoiseInput {
+  std::optional<std::string> image, pixel_size, block, black, white;
+  std::vector<std::string> regions;
+};
+
+void add_sem_noise_options(CLI::App& app, SemNoiseInput& input);
+
+/// Throws UsageError if one of them is given without --sem.
+void require_sem(const SemNoiseInput& input);
+
+int print_sem_noise(const SemNoiseInput& input, const std::optional<std::string>& plot, bool quiet);
+
+}  // namespace surf::cli

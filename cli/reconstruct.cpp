@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+#include "chain_progress.h"
+#include "commands.h"
+#include "reconstruct_options.h"
+#include "surf/core/error.h"
+#include "surf/core/units.h"
+#include "terminal.h"
+
+namespace surf::cli {
+namespace {
+
+constexpr int exit_untrustworthy = 4;
+constexpr int exit_interrupted = 130;
+
+using workflow::ReconstructionVerdict;
+
+void line(const std::string& label, const std::string& text) { fmt::print("{:<10} {}\n", label, text); }
+
+void print_residual(const char* label, const ResidualReport& r) {
+  if (r.pixels == 0) return;
+  line(label, fmt::format("residuals: mean {:.3f}, deviation {:.3f}, correlation {:.3f} along and {:.3f} across rows{}", r.mean,
+                          r.deviation, r.along, r.across, r.like_noise ? "" : ": not like noise"));
+}
+
+void print_scales(const std::vector<ScaleReport>& scales) {
+  if (scales.empty()) return;
+  line("scales", fmt::format("{:>9} {:>12} {:>12} {:>12} {:>6}  {}", "sigma/px", "-log L AFM", "-log L SEM", "prior", "steps", "ended"));
+  for (const ScaleReport& s : scales)
+    line("", fmt::format("{:>9.3g} {:>12.5g} {:>12.5g} {:>12.5g} {:>6}  {}", s.sigma_px, s.afm, s.sem, s.prior, s.iterations, s.ended));
+}
+
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+void print_surface(const Reconstruction& r) {
+  const HeightField& f = r.surface;
+  std::string text = fmt::format("{} x {} samples of {}", f.z_nm.width(), f.z_nm.height(), format_length(f.pitch_x_nm));
+  if (!r.deviation_nm.empty())
+    text += fmt::format("; standard deviation of a height {} (median)", format_length(median(r.deviation_nm.data())));
+  line("surface", text);
+  if (r.held_by.empty()) return;
+  const auto share = [&](unsigned char what) {
+    return 100.0 * static_cast<double>(std::ranges::count(r.held_by.data(), what)) / static_cast<double>(r.held_by.size());
+  };
+  line("held by", fmt::format("AFM {:.0f} %, SEM {:.0f} %, both {:.0f} %, neighbours only {:.0f} %", share(1), share(2), share(3),
+                              share(0)));
+}
+
+void print_summary(const workflow::ReconstructSummary& s, const workflow::ReconstructJob& job) {
+  if (s.pose) print_pose(*s.pose, job.sem->image.pitch_x_nm);
+  if (s.verdict == ReconstructionVerdict::not_registered) return;
+  if (s.sem_noise)
+    line("SEM noise", fmt::format("variance = {:.4g} level {:+.4g}, from {}", s.sem_noise->slope, s.sem_noise->intercept, s.sem_noise_from));
+  if (job.sem) {
+    std::string gains;
+    for (std::size_t c = 0; c < s.result.gains.size(); ++c)
+      gains += fmt::format("{}{} {:.5g}", c ? ", " : "", s.model->model->channels()[c], s.result.gains[c]);
+    line("gains", fmt::format("{}; offset {:.5g}", gains, s.result.offset));
+  }
+  print_scales(s.result.scales);
+  if (!s.result.scales.empty()) {
+    print_residual("AFM", s.result.scales.back().afm_residual);
+    print_residual("SEM", s.result.scales.back().sem_residual);
+  }
+  print_surface(s.result);
+  if (s.truth) {
+    line("truth", fmt::format("{:.3g} nm rms off, {:.3g} nm before ({:.3f} of the squared error); mean difference {:.3g} nm taken off",
+                              s.truth->rms_nm, s.truth->start_rms_nm,
+                              std::pow(s.truth->rms_nm / std::max(s.truth->start_rms_nm, 1e-300), 2), s.truth->offset_nm));
+    if (s.truth->coverage_2 > 0)
+      line("", fmt::format("{:.1f} % within one, {:.1f} % within two standard deviations", 100 * s.truth->coverage_1,
+                           100 * s.truth->coverage_2));
+  }
+  std::string label = "written";
+  for (const auto& file : s.written) {
+    line(label, file.string());
+    label.clear();
+  }
+}
+
+void explain(const workflow::ReconstructSummary& s, const workflow::ReconstructJob& job) {
+  for (const std::string& reason : s.reasons) print_warning(reason);
+  if (s.verdict == ReconstructionVerdict::not_registered)
+    print_note(fmt::format("nothing was reconstructed. Look at {}, give --landmarks or --transform, or go on all the same with "
+                           "--accept-registration", (job.folder / "registration.png").string()));
+}
+
+int work(const ReconstructOptions& o, const std::string& command_line) {
+  workflow::ReconstructJob job = make_reconstruct_job(o);
+  job.command_line = command_line;
+  workflow::ReconstructSummary s;
+  try {
+    ChainProgress progress(o.chain.quiet);
+    s = workflow::run(job, progress.listener());
+  } catch (const Interrupted&) {
+    print_note("stopped: there is no result yet. The same command goes on from what is done");
+    return exit_interrupted;
+  }
+  if (!o.chain.quiet) print_summary(s, job);
+  explain(s, job);
+  return s.verdict == ReconstructionVerdict::sound ? 0 : exit_untrustworthy;
+}
+
+}  // namespace
+
+void add_reconstruct(CLI::App& app, Action& action, const std::string& command_line) {
+  const auto o = std::make_shared<ReconstructOptions>();
+  CLI::App* sub = app.add_subcommand("reconstruct", "The surface that makes an AFM scan and an SEM image most likely");
+  sub->group("Commands");
+  add_reconstruct_options(*sub, *o);
+  sub->callback([o, &action, command_line] { action = [o, command_line] { return work(*o, command_line); }; });
+}
+
+}  // namespace surf::cli

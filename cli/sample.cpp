@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <fmt/format.h>
+
+#include <memory>
+#include <optional>
+
+#include "commands.h"
+#include "common_options.h"
+#include "options.h"
+#include "surf/core/error.h"
+#include "surf/io/cache.h"
+#include "surf/workflow/sample_job.h"
+#include "terminal.h"
+
+namespace surf::cli {
+namespace {
+
+constexpr int exit_interrupted = 130;
+
+constexpr const char* examples =
+    R"(A scan by a dull tip and an SEM image of a surface that is known at every place, with noise, tilt and an
+unknown map between the two: something to reconstruct, and to judge a reconstruction by. Files whose
+names have "truth" in them hold what it has to find out.
+
+Examples:
+  semsurf sample --list
+  semsurf sample nist0523-thick -o thick
+  semsurf sample terrain --electrons 50 --seed 2 -o noisy)";
+
+struct Options {
+  std::string name;
+  std::optional<std::string> folder, size, electrons, seed, threads;
+  std::string cache;
+  bool list = false, quiet = false;
+};
+
+int list_samples() {
+  for (const workflow::SampleScene& scene : workflow::sample_scenes())
+    fmt::print("{:<16} {}\n", scene.name, scene.what);
+  return 0;
+}
+
+workflow::SampleJob make_job(const Options& o) {
+  workflow::SampleJob job;
+  if (o.name.empty())
+    throw UsageError("NAME", "no sample is named", "Choose one that 'semsurf sample --list' shows");
+  if (!o.folder) throw UsageError("--output", "no folder is given", "Add -o FOLDER");
+  job.name = o.name;
+  job.folder = *o.folder;
+  if (o.size) std::tie(job.width, job.height) = parse_size(*o.size, "--size");
+  if (o.electrons) job.electrons = parse_whole(*o.electrons, "--electrons", 1, std::int64_t{1} << 31);
+  if (o.seed) job.seed = parse_seed(*o.seed, "--seed");
+  job.threads = parse_threads(o.threads);
+  job.cache = io::cache_folder(o.cache);
+  return job;
+}
+
+void print_line(const std::string& label, const std::string& text) { fmt::print("{:<10} {}\n", label, text); }
+
+int sample(const Options& o) {
+  if (o.list) return list_samples();
+  const workflow::SampleJob job = make_job(o);
+  workflow::SampleSummary s;
+  {
+    InterruptGuard interrupts;
+    ProgressBar bar(!o.quiet);
+    s = workflow::run(
+        job, [&](double done, double total) { bar.show(done, total); }, interrupts.token(),
+        [&](double done, double total) { bar.show(done, total, "cascades"); },
+        [&](const std::string& note) {
+          bar.clear();
+          if (!o.quiet) print_note(note);
+        });
+  }
+  if (!s.complete) {
+    print_note("stopped; nothing was written");
+    return exit_interrupted;
+  }
+  if (o.quiet) return 0;
+  print_line("AFM", fmt::format("{} x {} samples", s.afm_width, s.afm_height));
+  print_line("SEM", fmt::format("{} x {} pixels of {} primaries, in {:.3g} s", job.width, job.height,
+                                job.electrons, s.seconds));
+  std::string label = "written";
+  for (const auto& file : s.written) {
+    print_line(label, file.string());
+    label.clear();
+  }
+  return 0;
+}
+
+}  // namespace
+
+void add_sample(CLI::App& app, Action& action) {
+  const auto o = std::make_shared<Options>();
+  CLI::App* sub = app.add_subcommand("sample", "A scan and an SEM image of a known surface, to try a reconstruction on");
+  sub->group("Commands");
+  sub->add_option("NAME", o->name, "Which one")->type_name("nist0523-thick|nist0523-thin|pads|islands|terrain");
+  sub->add_flag("--list", o->list, "Say what there is");
+  sub->add_option("-o,--output", o->folder, "Where the files go")->type_name("FOLDER");
+  const char* making = "Making";
+  sub->add_option("--electrons", o->electrons, "Primaries per pixel of the SEM image (200)")->type_name("N")->group(making);
+  sub->add_option("--size", o->size, "Pixels of the SEM image, the middle of the view (456x172)")
+      ->type_name("WxH")->group(making);
+  sub->add_option("--seed", o->seed, "Of all chance (1)")->type_name("N")->group(making);
+  sub->add_option("--cache", o->cache, "Where libraries of cascades are kept, 'off' for nowhere\n"
+                                       "($SEMSURF_CACHE, ~/.cache/semsurf)")
+      ->type_name("FOLDER|off")->group(making);
+  add_threads_option(*sub, o->threads)->group(making);
+  add_quiet_flag(*sub, o->quiet)->group(making);
+  sub->footer(examples);
+  sub->callback([o, &action] { action = [o] { return sample(*o); }; });
+}
+
+}  // namespace surf::cli

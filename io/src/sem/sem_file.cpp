@@ -1,0 +1,196 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "surf/io/sem_file.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <charconv>
+
+#include "../image_formats.h"
+#include "../lower_extension.h"
+#include "sem_header.h"
+#include "sem_pixels.h"
+#include "surf/core/error.h"
+#include "surf/io/files.h"
+#include "surf/io/image_file.h"
+
+namespace surf::io {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int tag_comment = 40092;   // Windows' "XPComment", in UTF-16
+constexpr std::array tags_fei{34682, 34680};
+constexpr int tag_zeiss = 34118, tag_tescan = 50431;
+constexpr std::size_t most_text = std::size_t{1} << 20;   // of a file beside an image
+
+/// The pages of a TIFF file; none for others.
+std::vector<TiffPage> pages_of(const std::string& file, const std::string& content) {
+  if (!is_tiff(content)) return {};
+  return parse_tiff_pages(Bytes(file, content));
+}
+
+std::optional<SemHeader> header_in(const TiffPage& page, SemSize size) {
+  for (const int tag : tags_fei)
+    if (const TiffTag* const found = page.find(tag)) return parse_fei(found->bytes().text(), size);
+  if (const TiffTag* const found = page.find(tag_zeiss)) return parse_zeiss(found->bytes().text(), size);
+  if (const TiffTag* const found = page.find(tag_tescan)) return parse_tescan_tag(found->bytes().text(), size);
+  return std::nullopt;
+}
+
+std::string text_at(const fs::path& path) {
+  std::error_code ignored;
+  if (!fs::is_regular_file(path, ignored) || fs::file_size(path, ignored) > most_text) return {};
+  return decoded_text(read_file(path, most_text));
+}
+
+std::optional<SemHeader> header_beside(const fs::path& path, SemSize size) {
+  for (const char* extension : {".txt", ".TXT"}) {
+    fs::path beside = path;
+    const std::string text = text_at(beside.replace_extension(extension));
+    if (is_jeol_text(text)) return parse_jeol(text, size);
+    if (is_hitachi_text(text)) return parse_hitachi(text, size);
+  }
+  // image.tif has image-tif.hdr.
+  std::string extension = path.extension().string();
+  if (!extension.empty()) extension.front() = '-';
+  const std::string text = text_at(path.parent_path() / (path.stem().string() + extension + ".hdr"));
+  if (text.find("PixelSizeX") != std::string::npos) return parse_tescan_text(text, size);
+  return std::nullopt;
+}
+
+std::optional<SemHeader> header_in_comment(const TiffPage& page, SemSize size) {
+  const TiffTag* const comment = page.find(tag_comment);
+  if (!comment) return std::nullopt;
+  SemHeader header = parse_hitachi(decoded_utf16(comment->bytes().text()), size);
+  return header.pixel_x_nm > 0 ? std::optional(header) : std::nullopt;
+}
+
+std::optional<SemHeader> find_header(const fs::path& path, const std::vector<TiffPage>& pages, SemSize size) {
+  std::optional<SemHeader> header;
+  if (!pages.empty()) header = header_in(pages.front(), size);
+  if (!header) header = header_beside(path, size);
+  if (!header && !pages.empty()) header = header_in_comment(pages.front(), size);
+  return header;
+}
+
+std::optional<double> number_in(const std::map<std::string, std::string>& metadata, const char* key) {
+  const auto found = metadata.find(key);
+  if (found == metadata.end()) return std::nullopt;
+  double value = 0;
+  const std::string& text = found->second;
+  const bool good = std::from_chars(text.data(), text.data() + text.size(), value).ec == std::errc{};
+  return good && std::isfinite(value) ? std::optional(value) : std::nullopt;
+}
+
+/// Of an image that this program, or another user of this library, has written.
+std::optional<SemHeader> header_of_ours(const Image& image) {
+  const bool ours = image.metadata.contains("semsurf.version") || image.pitch_x_nm != 1 || image.pitch_y_nm != 1;
+  if (!ours) return std::nullopt;
+  SemHeader header;
+  header.format = "semsurf";
+  set_pixel(header, image.pitch_x_nm, image.pitch_y_nm, "the file");
+  header.energy_ev = positive(number_in(image.metadata, "beam.energy_ev"));
+  header.tilt_deg = number_in(image.metadata, "beam.tilt_deg");
+  header.metadata = image.metadata;
+  return header;
+}
+
+template <class T>
+void cut_rows(Grid<T>& grid, int rows) {
+  if (grid.empty()) return;
+  Grid<T> rest(grid.width(), grid.height() - rows);
+  std::copy(grid.data().begin() + std::ptrdiff_t{rows} * grid.width(), grid.data().end(), rest.data().begin());
+  grid = std::move(rest);
+}
+
+void check(const SemReadOptions& options) {
+  for (const auto& size : {options.pixel_x_nm, options.pixel_y_nm})
+    if (size && !(*size > 0 && std::isfinite(*size)))
+      throw UsageError("SEM pixel size", fmt::format("{:g} nm", *size), "It has to be above 0");
+}
+
+void set_pitch(SemFile& out, const SemHeader& header, const SemReadOptions& options, const std::string& file) {
+  const auto given = [](const std::optional<double>& a, const std::optional<double>& b) { return a ? a : b; };
+  const auto x = given(options.pixel_x_nm, options.pixel_y_nm), y = given(options.pixel_y_nm, options.pixel_x_nm);
+  if (!x && !(header.pixel_x_nm > 0))
+    throw UsageError(file, header.format.empty()
+                               ? "nothing in it, or beside it, says how large its pixels are"
+                               : fmt::format("what {} wrote of it does not say how large its pixels are", header.format),
+                     "Add --sem-pixel-size 2nm, with the size at the specimen");
+  out.image.pitch_x_nm = x.value_or(header.pixel_x_nm);
+  out.image.pitch_y_nm = y.value_or(header.pixel_y_nm);
+  out.pixel_from = x ? "given" : header.pixel_from;
+  constexpr double same = 1e-3;
+  if (x && header.pixel_x_nm > 0 && std::abs(*x / header.pixel_x_nm - 1) > same)
+    out.notes.push_back(fmt::format("the pixel size given, {:.6g} nm, goes before the file's own, {:.6g} nm", *x,
+                                    header.pixel_x_nm));
+}
+
+}  // namespace
+
+SemFile read_sem_image(const fs::path& path, const SemReadOptions& options) {
+  check(options);
+  const std::string file = path.string();
+  const bool vti = lower_extension(path) == ".vti";
+  const std::string content = vti ? std::string() : read_file(path);
+  const std::vector<TiffPage> pages = pages_of(file, content);
+
+  SemPixels pixels;
+  Image image;
+  if (!pages.empty() && options.channel.empty()) pixels = palette_pixels(pages.front(), Bytes(file, content));
+  if (pixels.values.empty()) {
+    image = vti ? read_image(path) : read_raster(path);
+    pixels = grey_pixels(image, options.channel, file);
+    if (!vti) pixels.bits = raster_bits(path);
+  }
+  const SemSize size{pixels.values.width(), pixels.values.height()};
+
+  std::optional<SemHeader> header = find_header(path, pages, size);
+  if (!header && !pages.empty()) header = described_pixel(pages.front());
+  if (!header && image.width() > 0) header = header_of_ours(image);
+  if (!header) header.emplace();
+
+  SemFile out;
+  out.format = header->format.empty() ? "image" : header->format;
+  out.channel = pixels.channel;
+  out.bits = pixels.bits;
+  out.notes = header->notes;
+  out.notes.insert(out.notes.end(), pixels.notes.begin(), pixels.notes.end());
+  set_pitch(out, *header, options, file);
+  out.image.values = std::move(pixels.values);
+  out.image.valid = std::move(pixels.valid);
+  out.image.origin_x_nm = image.origin_x_nm;
+  out.image.origin_y_nm = image.origin_y_nm;
+  out.databar_rows = header->databar_rows;
+  if (out.databar_rows > 0 && !options.keep_databar) {
+    cut_rows(out.image.values, out.databar_rows);
+    cut_rows(out.image.valid, out.databar_rows);
+    out.notes.push_back(fmt::format("the databar, the lowest {} rows, is left out", out.databar_rows));
+  }
+  out.energy_ev = header->energy_ev;
+  out.working_distance_nm = header->working_distance_nm;
+  out.tilt_deg = header->tilt_deg;
+  out.detector = header->detector;
+  out.instrument = header->instrument;
+  out.metadata = std::move(header->metadata);
+  validate(out.image, file.c_str());
+  return out;
+}
+
+bool is_sem_image_file(const fs::path& path) {
+  constexpr std::array extensions{".tif", ".tiff", ".png", ".jpg", ".jpeg", ".bmp"};
+  std::error_code ignored;
+  if (std::find(extensions.begin(), extensions.end(), lower_extension(path)) == extensions.end()) return false;
+  if (!fs::is_regular_file(path, ignored)) return false;
+  try {
+    const std::string content = read_file(path);
+    return find_header(path, pages_of(path.string(), content), {2, 2}).has_value();
+  } catch (const FileError&) {
+    return false;   // whoever reads it says why
+  }
+}
+
+}  // namespace surf::io

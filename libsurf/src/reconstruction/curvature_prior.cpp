@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "curvature_prior.h"
+
+#include <cmath>
+
+namespace surf::reconstruction {
+namespace {
+
+/// Second differences over the pitch squared: along x and y at samples, mixed in the cell up and right.
+struct Differences {
+  Grid<double> xx, yy, xy;
+
+  Differences(const Grid<double>& z, double pitch_nm)
+      : xx(z.width(), z.height()), yy(z.width(), z.height()), xy(z.width(), z.height()) {
+    const double f = 1 / (pitch_nm * pitch_nm);
+    const int w = z.width(), h = z.height();
+    for (int y = 0; y < h; ++y)
+      for (int x = 0; x < w; ++x) {
+        if (x > 0 && x + 1 < w) xx(x, y) = f * (z(x - 1, y) - 2 * z(x, y) + z(x + 1, y));
+        if (y > 0 && y + 1 < h) yy(x, y) = f * (z(x, y - 1) - 2 * z(x, y) + z(x, y + 1));
+        if (x + 1 < w && y + 1 < h) xy(x, y) = f * (z(x, y) - z(x + 1, y) - z(x, y + 1) + z(x + 1, y + 1));
+      }
+  }
+
+  /// The transpose.
+  void scatter(double pitch_nm, Grid<double>& out) const {
+    const double f = 1 / (pitch_nm * pitch_nm);
+    const int w = xx.width(), h = xx.height();
+    for (int y = 0; y < h; ++y)
+      for (int x = 0; x < w; ++x) {
+        double sum = -2 * (xx(x, y) + yy(x, y)) + xy(x, y);
+        if (x > 0) sum += xx(x - 1, y) - xy(x - 1, y);
+        if (x + 1 < w) sum += xx(x + 1, y);
+        if (y > 0) sum += yy(x, y - 1) - xy(x, y - 1);
+        if (y + 1 < h) sum += yy(x, y + 1);
+        if (x > 0 && y > 0) sum += xy(x - 1, y - 1);
+        out(x, y) += f * sum;
+      }
+  }
+};
+
+double squared(double v) { return v * v; }
+
+}  // namespace
+
+double CurvaturePrior::evaluate(const Grid<double>& z, Grid<double>* gradient, Grid<double>* weights) const {
+  Differences d(z, pitch_nm_);
+  const int w = z.width(), h = z.height();
+  const double scale = degrees * curvature_ * curvature_;
+  Grid<double> wanted;
+  Grid<double>& weight = weights ? *weights : wanted;
+  weight = Grid<double>(w, h);
+  double sum = 0;
+  for (int y = 0; y < h; ++y) {
+    double line = 0;
+    for (int x = 0; x < w; ++x) {
+      // Of the four cells around a sample each holds z_xy: half of twice their mean square.
+      double mixed = squared(d.xy(x, y));
+      if (x > 0) mixed += squared(d.xy(x - 1, y));
+      if (y > 0) mixed += squared(d.xy(x, y - 1));
+      if (x > 0 && y > 0) mixed += squared(d.xy(x - 1, y - 1));
+      const double c2 = squared(d.xx(x, y)) + squared(d.yy(x, y)) + 0.5 * mixed;
+      line += std::log1p(c2 / scale);
+      weight(x, y) = (degrees + 1) / (scale + c2);
+    }
+    sum += line;
+  }
+  if (gradient) {
+    for (int y = 0; y < h; ++y)
+      for (int x = 0; x < w; ++x) {
+        d.xx(x, y) *= weight(x, y);
+        d.yy(x, y) *= weight(x, y);
+        if (x + 1 < w && y + 1 < h) d.xy(x, y) *= cell_weight(weight, x, y);
+      }
+    d.scatter(pitch_nm_, *gradient);
+  }
+  return 0.5 * (degrees + 1) * sum;
+}
+
+void CurvaturePrior::add_product(const Grid<double>& weight, const Grid<double>& dz, Grid<double>& out) const {
+  Differences d(dz, pitch_nm_);
+  const int w = dz.width(), h = dz.height();
+  for (int y = 0; y < h; ++y)
+    for (int x = 0; x < w; ++x) {
+      d.xx(x, y) *= weight(x, y);
+      d.yy(x, y) *= weight(x, y);
+      if (x + 1 < w && y + 1 < h) d.xy(x, y) *= cell_weight(weight, x, y);
+    }
+  d.scatter(pitch_nm_, out);
+}
+
+}  // namespace surf::reconstruction

@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "descent.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/Dense>
+#include <ceres/gradient_problem.h>
+#include <ceres/gradient_problem_solver.h>
+
+#include "gaussian_basis.h"
+#include "surf/core/error.h"
+
+namespace surf::reconstruction {
+namespace {
+
+class Problem final : public ceres::FirstOrderFunction {
+ public:
+  Problem(const Objective& objective, const Unknowns& base, const GaussianBasis& basis, const Watch& watch)
+      : objective_(objective), base_(base), basis_(basis), watch_(watch) {}
+
+  bool Evaluate(const double* coefficients, double* cost, double* gradient) const override {
+    watch_.check();
+    ++evaluations;
+    const Unknowns at = surface_of(coefficients);
+    const Objective::State state = objective_.evaluate(at);
+    *cost = state.value();
+    if (gradient) {
+      const Grid<double> g = basis_.transpose(objective_.gradient(at, state).z_nm);
+      std::copy(g.data().begin(), g.data().end(), gradient);
+    }
+    return std::isfinite(*cost);
+  }
+  int NumParameters() const override { return static_cast<int>(base_.z_nm.size()); }
+
+  Unknowns surface_of(const double* coefficients) const {
+    Grid<double> c(base_.z_nm.width(), base_.z_nm.height());
+    std::copy(coefficients, coefficients + c.size(), c.data().begin());
+    Unknowns at = base_;
+    const Grid<double> h = basis_.sum(c);
+    for (std::size_t i = 0; i < h.size(); ++i) at.z_nm.data()[i] += h.data()[i];
+    return at;
+  }
+
+  mutable int evaluations = 0;
+
+ private:
+  const Objective& objective_;
+  const Unknowns& base_;
+  const GaussianBasis& basis_;
+  const Watch& watch_;
+};
+
+/// Ends when an iteration lowers the objective by less than the tolerance.
+class Settled final : public ceres::IterationCallback {
+ public:
+  explicit Settled(double tolerance) : tolerance_(tolerance) {}
+  ceres::CallbackReturnType operator()(const ceres::IterationSummary& s) override {
+    if (s.iteration > 0 && s.cost_change < tolerance_ && ++slow_ >= 3) return ceres::SOLVER_TERMINATE_SUCCESSFULLY;
+    if (s.cost_change >= tolerance_) slow_ = 0;
+    return ceres::SOLVER_CONTINUE;
+  }
+
+ private:
+  double tolerance_;
+  int slow_ = 0;
+};
+
+}  // namespace
+
+DescentReport descend(const Objective& objective, Unknowns& at, double sigma_px, bool first, ReconstructionMethod method,
+                      const DescentOptions& options, int threads) {
+  const GaussianBasis basis(sigma_px, threads);
+  Unknowns base = at;
+  std::vector<double> coefficients(at.z_nm.size(), 0.0);
+  if (first) {
+    coefficients = basis.deconvolved(basis.sum(at.z_nm), 0.01, 200).data();
+    std::fill(base.z_nm.data().begin(), base.z_nm.data().end(), 0.0);
+  }
+  auto* problem = new Problem(objective, base, basis, options.watch);
+  const ceres::GradientProblem owner(problem);
+  ceres::GradientProblemSolver::Options solver;
+  solver.line_search_direction_type = method == ReconstructionMethod::lbfgs ? ceres::LBFGS : ceres::NONLINEAR_CONJUGATE_GRADIENT;
+  solver.nonlinear_conjugate_gradient_type = ceres::POLAK_RIBIERE;
+  solver.line_search_type = ceres::WOLFE;
+  solver.max_num_iterations = options.iterations;
+  solver.function_tolerance = 0;
+  solver.parameter_tolerance = 0;
+  solver.gradient_tolerance = 1e-12;
+  solver.max_num_line_search_step_size_iterations = 30;
+  solver.logging_type = ceres::SILENT;
+  solver.update_state_every_iteration = false;
+  Settled settled(options.tolerance);
+  solver.callbacks.push_back(&settled);
+  ceres::GradientProblemSolver::Summary summary;
+  ceres::Solve(solver, owner, coefficients.data(), &summary);
+  at = problem->surface_of(coefficients.data());
+
+  DescentReport report;
+  report.iterations = static_cast<int>(summary.iterations.size()) - 1;
+  report.evaluations = problem->evaluations;
+  const Objective::State state = objective.evaluate(at);
+  const Grid<double> gradient = basis.transpose(objective.gradient(at, state).z_nm);
+  for (const double g : gradient.data())
+    report.gradient_norm = std::max(report.gradient_norm, std::fabs(g));
+  report.ended = summary.termination_type == ceres::USER_SUCCESS || summary.termination_type == ceres::CONVERGENCE
+                     ? "converged"
+                 : summary.termination_type == ceres::NO_CONVERGENCE ? "iterations"
+                                                                     : "line search";
+  return report;
+}
+
+void fit_few(const Objective& o, Unknowns& at, const Watch& watch) {
+  const int of_map = o.afm && o.fit_map ? map_numbers : 0;
+  const int of_mixture = o.sem && o.fit_mixture ? static_cast<int>(o.sem->channels()) + 1 : 0, n = of_map + of_mixture;
+  if (n == 0) return;
+  Objective::State state = o.evaluate(at);
+  double damping = 1e-6;
+  for (int iteration = 0; iteration < 20; ++iteration) {
+    watch.check();
+    // Images of a unit change of each number; the SEM's need no derivative by heights.
+    Eigen::MatrixXd a = Eigen::MatrixXd::Zero(n, n);
+    Eigen::VectorXd g = Eigen::VectorXd::Zero(n);
+    if (of_map) {
+      const Grid<double> none(o.frame.width, o.frame.height);
+      std::vector<Grid<double>> change, weighed;
+      for (int k = 0; k < map_numbers; ++k) {
+        MapChange unit{};
+        unit[k] = 1;
+        change.push_back(o.afm->change(*state.afm, at.z_nm, none, unit));
+        weighed.push_back(o.afm->precision(change.back()));
+      }
+      for (int i = 0; i < map_numbers; ++i)
+        for (std::size_t p = 0; p < change[i].size(); ++p) {
+          g(i) += change[i].data()[p] * state.afm->pull.data()[p];
+          for (int k = 0; k < map_numbers; ++k) a(i, k) += change[i].data()[p] * weighed[k].data()[p];
+        }
+    }
+    if (of_mixture) {
+      const auto value = [&](int c, std::size_t p) {
+        return c + 1 < of_mixture ? state.sem->linear->images()[c].data()[p] : 1.0;
+      };
+      for (std::size_t p = 0; p < state.sem->pull.size(); ++p)
+        for (int i = 0; i < of_mixture; ++i) {
+          g(of_map + i) += state.sem->pull.data()[p] * value(i, p);
+          for (int k = 0; k < of_mixture; ++k)
+            a(of_map + i, of_map + k) += state.sem->information.data()[p] * value(i, p) * value(k, p);
+        }
+    }
+    bool better = false;
+    double fell = 0;
+    for (int tries = 0; tries < 8 && !better; ++tries) {
+      Eigen::MatrixXd damped = a;
+      damped.diagonal().array() = a.diagonal().array() * (1 + damping) + 1e-12;
+      const Eigen::VectorXd d = damped.ldlt().solve(-g);
+      Step step = o.zero();
+      for (int k = 0; k < of_map; ++k) step.map[k] = d(k);
+      for (int k = 0; k < of_mixture; ++k) step.mixture[k] = d(of_map + k);
+      const Unknowns next = o.moved(at, step);
+      Objective::State there = o.evaluate(next);
+      fell = state.value() - there.value();
+      if (fell > 0) {
+        at = next;
+        state = std::move(there);
+        better = true;
+        damping *= 0.1;
+      } else {
+        damping = std::max(damping * 10, 1e-4);
+      }
+    }
+    if (!better || fell < 0.1) return;
+  }
+}
+
+}  // namespace surf::reconstruction

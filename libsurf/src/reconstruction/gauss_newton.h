@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <string>
+
+#include "objective.h"
+#include "surf/core/progress.h"
+
+namespace surf::reconstruction {
+
+struct DescentOptions {
+  int iterations = 50;
+  double tolerance = 1;      ///< nats: ends when an iteration lowers the objective by less
+  int most_products = 60;    ///< of an iteration
+  Watch watch;
+};
+
+struct DescentReport {
+  int iterations = 0, evaluations = 0, products = 0;
+  double gradient_norm = 0;
+  std::string ended;
+};
+
+/// Gauss-Newton with a trust region: each step by preconditioned conjugate gradients (Steihaug 1983,
+/// doi:10.1137/0720042).
+DescentReport gauss_newton(const Objective& objective, Unknowns& at, const DescentOptions& options);
+
+}  // namespace surf::reconstruction

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "objective.h"
+
+namespace surf::reconstruction {
+
+double dot(const Step& a, const Step& b) {
+  double sum = 0;
+  for (std::size_t i = 0; i < a.z_nm.size(); ++i) sum += a.z_nm.data()[i] * b.z_nm.data()[i];
+  for (std::size_t i = 0; i < a.map.size(); ++i) sum += a.map[i] * b.map[i];
+  for (std::size_t i = 0; i < a.mixture.size(); ++i) sum += a.mixture[i] * b.mixture[i];
+  return sum;
+}
+
+void add(Step& to, double factor, const Step& step) {
+  for (std::size_t i = 0; i < to.z_nm.size(); ++i) to.z_nm.data()[i] += factor * step.z_nm.data()[i];
+  for (std::size_t i = 0; i < to.map.size(); ++i) to.map[i] += factor * step.map[i];
+  for (std::size_t i = 0; i < to.mixture.size(); ++i) to.mixture[i] += factor * step.mixture[i];
+}
+
+Objective::State Objective::evaluate(const Unknowns& at) const {
+  State s;
+  if (afm) {
+    s.afm = afm->evaluate(at.z_nm, at.surface_to_afm);
+    s.afm_value = s.afm->value;
+  }
+  if (sem) {
+    s.sem = sem->evaluate(at.z_nm, at.mixture);
+    s.sem_value = s.sem->value;
+  }
+  s.prior_value = prior.evaluate(at.z_nm, nullptr, &s.prior_weights);
+  if (anchor_per_nm2 > 0)
+    for (std::size_t i = 0; i < start.size(); ++i) {
+      const double d = at.z_nm.data()[i] - start.data()[i];
+      s.prior_value += 0.5 * anchor_per_nm2 * d * d;
+    }
+  return s;
+}
+
+Step Objective::zero() const {
+  return {Grid<double>(frame.width, frame.height), {}, std::vector<double>(sem ? sem->channels() + 1 : 0)};
+}
+
+Step Objective::gradient(const Unknowns& at, const State& s) const {
+  Step g = zero();
+  if (afm) afm->add_gradient(*s.afm, at.z_nm, s.afm->pull, g.z_nm, fit_map ? &g.map : nullptr);
+  if (sem) sem->add_gradient(*s.sem, at.mixture, s.sem->pull, g.z_nm, fit_mixture ? &g.mixture : nullptr);
+  prior.evaluate(at.z_nm, &g.z_nm, nullptr);
+  if (anchor_per_nm2 > 0)
+    for (std::size_t i = 0; i < start.size(); ++i)
+      g.z_nm.data()[i] += anchor_per_nm2 * (at.z_nm.data()[i] - start.data()[i]);
+  return g;
+}
+
+Step Objective::product(const Unknowns& at, const State& s, const Step& v) const {
+  Step out = zero();
+  if (afm)
+    afm->add_gradient(*s.afm, at.z_nm, afm->precision(afm->change(*s.afm, at.z_nm, v.z_nm, v.map)), out.z_nm,
+                      fit_map ? &out.map : nullptr);
+  if (sem) {
+    Grid<double> change = sem->change(*s.sem, at.mixture, v.z_nm, v.mixture);
+    for (std::size_t i = 0; i < change.size(); ++i) change.data()[i] *= s.sem->information.data()[i];
+    sem->add_gradient(*s.sem, at.mixture, change, out.z_nm, fit_mixture ? &out.mixture : nullptr);
+  }
+  prior.add_product(s.prior_weights, v.z_nm, out.z_nm);
+  if (anchor_per_nm2 > 0)
+    for (std::size_t i = 0; i < start.size(); ++i) out.z_nm.data()[i] += anchor_per_nm2 * v.z_nm.data()[i];
+  return out;
+}
+
+Unknowns Objective::moved(const Unknowns& at, const Step& step) const {
+  Unknowns next = at;
+  for (std::size_t i = 0; i < next.z_nm.size(); ++i) next.z_nm.data()[i] += step.z_nm.data()[i];
+  if (afm && fit_map) next.surface_to_afm = afm->moved(at.surface_to_afm, step.map);
+  if (fit_mixture)
+    for (std::size_t i = 0; i < next.mixture.size(); ++i) next.mixture[i] += step.mixture[i];
+  return next;
+}
+
+}  // namespace surf::reconstruction

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "posterior.h"
+
+#include <cmath>
+
+#include "afm/normal_numbers.h"
+#include "gaussian_basis.h"
+
+namespace surf::reconstruction {
+namespace {
+
+constexpr double around_px = 3;   // over which the ratio of variances is averaged
+
+/// What noise of both images does to the gradient: normal with the precision that they bring.
+Step data_pull(const Objective& o, const Unknowns& at, const Objective::State& s, std::uint64_t seed) {
+  Step r = o.zero();
+  if (o.afm) {
+    const Grid<double> e = simulate_noise(o.afm->noise(), s.afm->residual.width(), s.afm->residual.height(), seed);
+    o.afm->add_gradient(*s.afm, at.z_nm, o.afm->precision(e), r.z_nm, o.fit_map ? &r.map : nullptr);
+  }
+  if (o.sem) {
+    NormalNumbers normal(seed, 1);
+    Grid<double> w(o.frame.width, o.frame.height);
+    for (std::size_t i = 0; i < w.size(); ++i) w.data()[i] = std::sqrt(s.sem->information.data()[i]) * normal();
+    o.sem->add_gradient(*s.sem, at.mixture, w, r.z_nm, o.fit_mixture ? &r.mixture : nullptr);
+  }
+  return r;
+}
+
+/// The same of the prior.
+void add_prior_pull(const Objective& o, const Objective::State& s, std::uint64_t seed, Step& r) {
+  NormalNumbers normal(seed, 2);
+  o.prior.for_each_difference(s.prior_weights, [&](int x, int y, int count, const int* dx, const int* dy,
+                                                   const double* c, double weight) {
+    const double n = std::sqrt(weight) * normal();
+    for (int k = 0; k < count; ++k) r.z_nm(x + dx[k], y + dy[k]) += n * c[k];
+  });
+  if (o.anchor_per_nm2 > 0)
+    for (double& v : r.z_nm.data()) v += std::sqrt(o.anchor_per_nm2) * normal();
+}
+
+}  // namespace
+
+Step solve(const Objective& o, const Unknowns& at, const Objective::State& state, const Preconditioner& m,
+           const Step& right, double reduction, const Watch& watch) {
+  Step x = o.zero(), r = right, z = m.solve(r), p = z;
+  double rz = dot(r, z);
+  const double begin = rz;
+  for (int i = 0; i < 500 && rz > reduction * reduction * begin; ++i) {
+    watch.check();
+    const Step ap = o.product(at, state, p);
+    const double alpha = rz / dot(p, ap);
+    if (!(alpha > 0)) break;
+    add(x, alpha, p);
+    add(r, -alpha, ap);
+    z = m.solve(r);
+    const double next = dot(r, z), beta = next / rz;
+    Step q = z;
+    add(q, beta, p);
+    p = std::move(q);
+    rz = next;
+  }
+  return x;
+}
+
+Posterior posterior(const Objective& o, const Unknowns& at, int draws, std::uint64_t seed, int threads, const Watch& watch) {
+  const Objective::State state = o.evaluate(at);
+  Preconditioner m;
+  m.factor(o, at, state);
+  const Grid<double> without_sem = m.variances_nm2();
+  Grid<double> drawn(o.frame.width, o.frame.height);
+  for (int d = 0; d < draws; ++d) {
+    watch.report(d, draws);
+    Step r = data_pull(o, at, state, seed + static_cast<std::uint64_t>(d));
+    add_prior_pull(o, state, seed + static_cast<std::uint64_t>(d), r);
+    const Step x = solve(o, at, state, m, r, 0.05, watch);
+    for (std::size_t i = 0; i < drawn.size(); ++i) drawn.data()[i] += x.z_nm.data()[i] * x.z_nm.data()[i] / draws;
+  }
+  const GaussianBasis around(around_px, threads);
+  const Grid<double> mean = around.sum(drawn), expected = around.sum(without_sem);
+  Posterior out{Grid<double>(o.frame.width, o.frame.height), Grid<unsigned char>(o.frame.width, o.frame.height)};
+  for (std::size_t i = 0; i < drawn.size(); ++i) {
+    const double ratio = mean.data()[i] / expected.data()[i];
+    out.deviation_nm.data()[i] = std::sqrt(without_sem.data()[i] * ratio);
+    if (o.sem && ratio < 0.5) out.held_by.data()[i] = 2;
+  }
+  if (o.afm)
+    for (const Contact& c : state.afm->contacts)
+      if (c.inside) out.held_by(static_cast<int>(c.x + 0.5), static_cast<int>(c.y + 0.5)) |= 1;
+  return out;
+}
+
+Grid<double> linear_error(const Objective& o, const Unknowns& at, const Objective::State& state, const Preconditioner& m,
+                          std::uint64_t seed, const Watch& watch) {
+  Step r = data_pull(o, at, state, seed);
+  Step prior = o.zero();
+  o.prior.evaluate(at.z_nm, &prior.z_nm, nullptr);
+  add(r, -1, prior);
+  return solve(o, at, state, m, r, 0.01, watch).z_nm;
+}
+
+}  // namespace surf::reconstruction

@@ -1,0 +1,283 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "surf/reconstruction/reconstruct.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "descent.h"
+#include "gaussian_basis.h"
+#include "gauss_newton.h"
+#include "posterior.h"
+#include "start.h"
+#include "surf/core/error.h"
+
+namespace surf {
+namespace {
+
+using namespace reconstruction;
+
+constexpr int least_pixels = 256;   // 16 x 16 in common
+
+void check(const AfmData* afm, const SemData* sem, const ReconstructionOptions& o) {
+  if (!afm && !sem) throw InvalidInput("reconstruct", "neither an AFM nor an SEM image is given", "Give one or both");
+  if (afm) {
+    validate(afm->image, "AFM image");
+    validate(afm->tip, "tip");
+    validate(afm->noise, "AFM noise");
+    if (afm->upsample < 1 || afm->upsample > 8)
+      throw UsageError("upsample", fmt::format("{} is not in 1 to 8", afm->upsample), "3 is usual");
+  }
+  if (sem) {
+    validate(sem->image, "SEM image");
+    validate(sem->noise);
+    if (!sem->model) throw InvalidInput("SEM image", "there is no model of it", "Train or load one");
+    if (sem->gains.size() != sem->model->channels().size())
+      throw InvalidInput("SEM image", "there is not one gain for each channel of the model", "Calibrate the model");
+    if (std::fabs(sem->image.pitch_x_nm / sem->image.pitch_y_nm - 1) > 1e-3)
+      throw InvalidInput("SEM image", "its pixels are not square", "Resample it");
+    const double scene = sem->model->scope().pixel_nm;
+    if (scene > 0 && std::fabs(scene / sem->image.pitch_x_nm - 1) > 1e-3)
+      throw InvalidInput("SEM image", fmt::format("its pixels are {} nm wide, the model's {} nm", sem->image.pitch_x_nm, scene),
+                         "Train a model for this pixel size");
+    inverse(sem->sem_to_afm);
+  }
+  for (std::size_t i = 0; i < o.scales_px.size(); ++i)
+    if (!(o.scales_px[i] > 0.2 && o.scales_px[i] <= 1000) || (i > 0 && o.scales_px[i] >= o.scales_px[i - 1]))
+      throw UsageError("scales", "scales must fall, from at most 1000 to more than 0.2 pixels", "As 16,8,4,2,1");
+  if (o.iterations < 0 || o.tolerance < 0 || o.curvature_prior_per_nm < 0 || o.probes < 2)
+    throw UsageError("reconstruct", "an option is out of range", "See the help for ranges");
+}
+
+ResidualReport judge(const Grid<double>& white, const Grid<unsigned char>& used) {
+  ResidualReport r;
+  double sum = 0, squares = 0, along = 0, across = 0;
+  std::int64_t pairs_along = 0, pairs_across = 0;
+  const auto counts = [&](int x, int y) { return used.empty() || used(x, y) != 0; };
+  for (int y = 0; y < white.height(); ++y)
+    for (int x = 0; x < white.width(); ++x) {
+      if (!counts(x, y)) continue;
+      ++r.pixels;
+      sum += white(x, y);
+      squares += white(x, y) * white(x, y);
+      if (x > 0 && counts(x - 1, y)) {
+        along += white(x, y) * white(x - 1, y);
+        ++pairs_along;
+      }
+      if (y > 0 && counts(x, y - 1)) {
+        across += white(x, y) * white(x, y - 1);
+        ++pairs_across;
+      }
+    }
+  if (r.pixels < 2) return r;
+  const double n = static_cast<double>(r.pixels), variance = squares / n;
+  r.mean = sum / n;
+  r.deviation = std::sqrt(std::max(squares / n - r.mean * r.mean, 0.0));
+  if (variance > 0 && pairs_along > 0) r.along = along / static_cast<double>(pairs_along) / variance;
+  if (variance > 0 && pairs_across > 0) r.across = across / static_cast<double>(pairs_across) / variance;
+  // What chance allows, and what is too small to matter.
+  const double chance = 5 / std::sqrt(n);
+  r.like_noise = std::fabs(r.mean) < 0.1 + chance && r.deviation > 0.8 - chance && r.deviation < 1.15 + chance &&
+                 std::fabs(r.along) < 0.1 + chance && std::fabs(r.across) < 0.1 + chance;
+  return r;
+}
+
+/// The reconstruction as it goes.
+class Work {
+ public:
+  Work(const AfmData* afm, const SemData* sem, const ReconstructionOptions& options)
+      : afm_(afm), sem_(sem), options_(options), margin_(sem && afm ? margin_of(*sem) : 0),
+        objective_{{}, {}, CurvaturePrior(1, 1), frame_of(afm, sem, margin_), false, false, 0, {}} {
+    const SurfaceFrame& frame = objective_.frame;
+    at_.surface_to_afm = sem ? sem->sem_to_afm : Affine{};
+    at_.z_nm = Grid<double>(frame.width, frame.height);
+    if (afm) {
+      const HeightField outside = eroded(*afm, options.threads);
+      at_.z_nm = on_frame(outside, frame, at_.surface_to_afm);
+      objective_.afm.emplace(*afm, outside, frame, at_.surface_to_afm, options.threads);
+      if (objective_.afm->used_pixels() < least_pixels)
+        throw InvalidInput("registration", fmt::format("{} AFM pixels lie in the SEM image", objective_.afm->used_pixels()),
+                           "The images must overlap by 256 pixels at least: check the transform and the pixel sizes");
+    } else {
+      objective_.anchor_per_nm2 = 1e-6;
+      objective_.start = at_.z_nm;
+    }
+    start_ = at_.z_nm;
+    if (sem) {
+      objective_.sem.emplace(*sem, frame, margin_, margin_, options.threads);
+      at_.mixture = sem->gains;
+      at_.mixture.push_back(sem->offset);
+    }
+    objective_.fit_map = afm && sem && options.refine_transform;
+    objective_.fit_mixture = sem && options.refine_calibration;
+    curvature_ = options.curvature_prior_per_nm > 0 ? options.curvature_prior_per_nm : 1e-3;
+    objective_.prior = CurvaturePrior(frame.pitch_nm, curvature_);
+  }
+
+  Reconstruction run(ReconstructionJournal* journal) {
+    const std::vector<double> scales = options_.scales_px.empty()
+        ? default_scales_px(options_.method, objective_.frame.width, objective_.frame.height) : options_.scales_px;
+    if (journal)
+      if (const auto found = journal->found()) take(*found);
+    for (std::size_t i = reports_.size(); i < scales.size(); ++i) {
+      options_.watch.report(static_cast<double>(i), static_cast<double>(scales.size()));
+      scale(scales[i], i == 0, options_.watch.part(double(i) / scales.size(), double(i + 1) / scales.size()));
+      if (journal) journal->keep(state());
+    }
+    return result();
+  }
+
+ private:
+  static int margin_of(const SemData&) { return 12; }
+
+  void take(const ReconstructionState& s) {
+    at_.z_nm = s.surface.z_nm;
+    at_.surface_to_afm = s.sem_to_afm;
+    if (sem_) {
+      at_.mixture = s.gains;
+      at_.mixture.push_back(s.offset);
+    }
+    reports_ = s.scales;
+  }
+
+  ReconstructionState state() const {
+    ReconstructionState s{objective_.frame.field(at_.z_nm), at_.surface_to_afm, {}, 0, reports_};
+    if (sem_) {
+      s.gains.assign(at_.mixture.begin(), at_.mixture.end() - 1);
+      s.offset = at_.mixture.back();
+    }
+    return s;
+  }
+
+  void scale(double sigma_px, bool first, const Watch& watch) {
+    DescentOptions o;
+    const bool newton = options_.method == ReconstructionMethod::gauss_newton;
+    o.iterations = options_.iterations > 0 ? options_.iterations : newton ? 40 : 200;
+    o.tolerance = (options_.tolerance > 0 ? options_.tolerance : 1e-5) * static_cast<double>(pixels());
+    o.watch = watch;
+    DescentReport d;
+    if (newton) {
+      if (first) at_.z_nm = GaussianBasis(1.5, options_.threads).sum(at_.z_nm);
+      objective_.prior = CurvaturePrior(objective_.frame.pitch_nm, curvature_ * sigma_px * sigma_px);
+      if (sigma_px > 1) o.tolerance *= 100;
+      fit_few(objective_, at_, watch);
+      d = gauss_newton(objective_, at_, o);
+    } else {
+      d = descend(objective_, at_, sigma_px, first, options_.method, o, options_.threads);
+      fit_few(objective_, at_, watch);
+    }
+    const Objective::State s = objective_.evaluate(at_);
+    ScaleReport r{sigma_px, s.afm_value, s.sem_value, s.prior_value, d.gradient_norm, d.iterations, d.evaluations, d.products,
+                  d.ended, {}, {}};
+    if (s.afm) r.afm_residual = judge(afm_white(s), objective_.afm->used());
+    if (s.sem) r.sem_residual = judge(sem_white(s), objective_.sem->used());
+    reports_.push_back(r);
+  }
+
+  std::int64_t pixels() const {
+    return (objective_.afm ? objective_.afm->used_pixels() : 0) + (objective_.sem ? objective_.sem->used_pixels() : 0);
+  }
+
+  Grid<double> afm_white(const Objective::State& s) const {
+    return whiten(s.afm->residual, afm_->noise, objective_.afm->used());
+  }
+  Grid<double> sem_white(const Objective::State& s) const {
+    return whiten(objective_.sem->image(), s.sem->simulated, objective_.sem->noise(), objective_.sem->used());
+  }
+
+  template <class T>
+  Grid<T> cut(const Grid<T>& grid) const {
+    const SurfaceFrame& f = objective_.frame;
+    return cut_out(grid, margin_, margin_, f.width - 2 * margin_, f.height - 2 * margin_);
+  }
+  HeightField cut_field(const Grid<double>& z) const {
+    const SurfaceFrame& f = objective_.frame;
+    return {cut(z), {}, f.pitch_nm, f.pitch_nm, f.origin_x_nm + margin_ * f.pitch_nm, f.origin_y_nm + margin_ * f.pitch_nm};
+  }
+
+  Reconstruction result() {
+    Reconstruction out;
+    out.surface = cut_field(at_.z_nm);
+    out.start = cut_field(start_);
+    out.sem_to_afm = at_.surface_to_afm;
+    out.scales = reports_;
+    const ReconstructionState last = state();
+    out.gains = last.gains;
+    out.offset = last.offset;
+    const Objective::State s = objective_.evaluate(at_);
+    if (s.afm) {
+      out.simulated_afm = afm_->image;
+      out.simulated_afm.z_nm = s.afm->simulated;
+      out.simulated_afm.valid = objective_.afm->used();
+      out.afm_used = objective_.afm->used();
+      out.afm_residual = afm_white(s);
+    }
+    if (s.sem) {
+      out.simulated_sem = cut(s.sem->simulated);
+      out.sem_residual = cut(sem_white(s));
+    }
+    if (options_.uncertainty) {
+      const Posterior p = posterior(objective_, at_, options_.probes, options_.seed, options_.threads, options_.watch);
+      out.deviation_nm = cut(p.deviation_nm);
+      out.held_by = cut(p.held_by);
+    }
+    return out;
+  }
+
+ public:
+  double noise_floor_nm(const HeightField& truth, int draws) {
+    const SurfaceFrame& f = objective_.frame;
+    const int w = f.width - 2 * margin_, h = f.height - 2 * margin_;
+    if (truth.z_nm.width() != w || truth.z_nm.height() != h)
+      throw InvalidInput("truth", fmt::format("it has {} x {} samples, the surface {} x {}", truth.z_nm.width(),
+                                              truth.z_nm.height(), w, h), "Give it on the surface's samples");
+    for (int y = 0; y < h; ++y)
+      for (int x = 0; x < w; ++x) at_.z_nm(x + margin_, y + margin_) = truth.z_nm(x, y);
+    const Objective::State s = objective_.evaluate(at_);
+    Preconditioner m;
+    m.factor(objective_, at_, s);
+    double sum = 0;
+    for (int d = 0; d < draws; ++d) {
+      const Grid<double> e = cut(linear_error(objective_, at_, s, m, options_.seed + static_cast<std::uint64_t>(d), options_.watch));
+      for (const double v : e.data()) sum += v * v / (static_cast<double>(e.size()) * draws);
+    }
+    return std::sqrt(sum);
+  }
+
+ private:
+  const AfmData* afm_;
+  const SemData* sem_;
+  const ReconstructionOptions& options_;
+  int margin_;
+  Objective objective_;
+  Unknowns at_;
+  Grid<double> start_;
+  double curvature_ = 1e-3;
+  std::vector<ScaleReport> reports_;
+};
+
+}  // namespace
+
+std::vector<double> default_scales_px(ReconstructionMethod method, int width, int height) {
+  if (method == ReconstructionMethod::gauss_newton) return {5, 2.2, 1};
+  std::vector<double> scales;
+  const double widest = std::min(60.0, std::min(width, height) / 3.0);
+  for (double s = 60; s > 0.38; s /= 1.875)
+    if (s <= widest) scales.push_back(s);
+  return scales;
+}
+
+Reconstruction reconstruct(const AfmData* afm, const SemData* sem, const ReconstructionOptions& options,
+                           ReconstructionJournal* journal) {
+  check(afm, sem, options);
+  return Work(afm, sem, options).run(journal);
+}
+
+double noise_floor_nm(const AfmData* afm, const SemData* sem, const HeightField& truth, const ReconstructionOptions& options,
+                      int draws) {
+  check(afm, sem, options);
+  return Work(afm, sem, options).noise_floor_nm(truth, draws);
+}
+
+}  // namespace surf

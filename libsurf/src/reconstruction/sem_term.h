@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "surf/reconstruction/reconstruct.h"
+#include "surface_frame.h"
+
+namespace surf::reconstruction {
+
+/// The SEM image, given a surface: the model's channels, mixed, and the negative log-likelihood (thesis, 9.2.2).
+class SemTerm {
+ public:
+  /// Pixel (0, 0) of the image lies on sample (`left`, `below`) of the surface.
+  SemTerm(const SemData& data, const SurfaceFrame& frame, int left, int below, int threads);
+
+  struct State {
+    std::unique_ptr<Linearization> linear;
+    Grid<double> simulated;     ///< on the surface's samples; of the image's unit
+    Grid<double> pull;          ///< derivative of the term by each simulated pixel, 0 where not used
+    Grid<double> information;   ///< expected second derivative by it
+    double value = 0;
+  };
+
+  /// `mixture`: a gain for each channel and the offset.
+  State evaluate(const Grid<double>& z_nm, const std::vector<double>& mixture) const;
+
+  /// out += J^T w; `mixture` gets the derivatives by gains and offset, if given.
+  void add_gradient(const State& state, const std::vector<double>& mixture, const Grid<double>& weights,
+                    Grid<double>& out, std::vector<double>* by_mixture) const;
+  /// J (dz, change of the mixture).
+  Grid<double> change(const State& state, const std::vector<double>& mixture, const Grid<double>& dz_nm,
+                      const std::vector<double>& mixture_change) const;
+
+  std::size_t channels() const { return channels_; }
+  const Grid<double>& image() const { return image_; }           ///< on the surface's samples
+  const Grid<unsigned char>& used() const { return used_; }
+  std::int64_t used_pixels() const { return used_pixels_; }
+  const SemNoise& noise() const { return noise_; }
+
+ private:
+  Grid<double> mixed(const ModelImages& images, const std::vector<double>& mixture) const;
+
+  std::shared_ptr<const ImageModel> model_;
+  SurfaceFrame frame_;
+  SemNoise noise_;
+  ModelOptions options_;
+  std::size_t channels_ = 0;
+  Grid<double> image_;
+  Grid<unsigned char> used_;
+  std::int64_t used_pixels_ = 0;
+};
+
+}  // namespace surf::reconstruction

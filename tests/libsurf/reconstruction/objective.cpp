@@ -1,0 +1,224 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "objective.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "gaussian_basis.h"
+#include "preconditioner.h"
+#include "small_scene.h"
+#include "start.h"
+#include "surf/core/random.h"
+
+namespace surf::reconstruction {
+namespace {
+
+enum class Images { both, afm, sem };
+
+Objective make_objective(const test::SmallScene& scene, Images which) {
+  const bool with_afm = which != Images::sem, with_sem = which != Images::afm;
+  Objective o{{}, {}, CurvaturePrior(10, 2e-3), frame_of(&scene.afm, &scene.sem, 4), with_afm && with_sem, with_sem, 0, {}};
+  if (with_afm) o.afm.emplace(scene.afm, eroded(scene.afm, 1), o.frame, scene.sem.sem_to_afm, 1);
+  if (with_sem) o.sem.emplace(scene.sem, o.frame, 4, 4, 1);
+  if (!with_afm) {
+    o.anchor_per_nm2 = 1e-3;
+    o.start = Grid<double>(o.frame.width, o.frame.height, 7);
+  }
+  return o;
+}
+
+Unknowns start_at(const test::SmallScene& scene, const Objective& o) {
+  Unknowns at{on_frame(eroded(scene.afm, 1), o.frame, scene.sem.sem_to_afm), scene.sem.sem_to_afm, {}};
+  if (o.sem) at.mixture = {90, 25};
+  // An eroded scan touches the tip in several places at once, where there is no derivative.
+  RandomStream random(31, 0, 0);
+  for (double& z : at.z_nm.data()) z += random.uniform();
+  return at;
+}
+
+Step random_step(const Objective& o, std::uint64_t seed, double heights = 1) {
+  RandomStream random(seed, 3, 0);
+  Step s = o.zero();
+  for (double& v : s.z_nm.data()) v = heights * (2 * random.uniform() - 1);
+  if (o.fit_map)
+    for (double& v : s.map) v = 2 * random.uniform() - 1;
+  if (o.fit_mixture)
+    for (double& v : s.mixture) v = 2 * random.uniform() - 1;
+  return s;
+}
+
+/// The derivative along a direction against central differences. Contacts that move within the step bend the
+/// objective, so the step is small; they are found in single precision, so that it must not be too small.
+void expect_gradient(const Objective& o, const Unknowns& at, const Step& direction, double tolerance) {
+  const Step g = o.gradient(at, o.evaluate(at));
+  const double step = 3e-4;
+  Step up = o.zero(), down = o.zero();
+  add(up, step, direction);
+  add(down, -step, direction);
+  const double difference =
+      (o.evaluate(o.moved(at, up)).value() - o.evaluate(o.moved(at, down)).value()) / (2 * step);
+  EXPECT_NEAR(dot(g, direction), difference, tolerance * (std::fabs(difference) + 1));
+}
+
+TEST(Objective, GradientIsThatOfCentralDifferencesWithEachImageAndBoth) {
+  const test::SmallScene scene;
+  for (const Images which : {Images::both, Images::afm, Images::sem}) {
+    const Objective o = make_objective(scene, which);
+    const Unknowns at = start_at(scene, o);
+    for (const std::uint64_t seed : {1, 2, 3}) expect_gradient(o, at, random_step(o, seed), 5e-3);
+  }
+}
+
+TEST(Objective, GradientHoldsForEachNumberOfMapAndMixtureAlone) {
+  const test::SmallScene scene;
+  const Objective o = make_objective(scene, Images::both);
+  const Unknowns at = start_at(scene, o);
+  for (int k = 0; k < map_numbers; ++k) {
+    Step s = o.zero();
+    s.map[k] = 1;
+    expect_gradient(o, at, s, 5e-3);
+  }
+  for (int k = 0; k < 2; ++k) {
+    Step s = o.zero();
+    s.mixture[k] = 1;
+    expect_gradient(o, at, s, 1e-5);
+  }
+}
+
+TEST(Objective, GradientHoldsOnAPlaneWhereAllContactsTie) {
+  test::SmallScene scene;
+  for (double& z : scene.afm.image.z_nm.data()) z = 3;
+  // A flat tip: every one of its samples touches.
+  for (double& z : scene.afm.tip.z_nm.data()) z = 0;
+  const Objective o = make_objective(scene, Images::both);
+  Unknowns at = start_at(scene, o);
+  for (double& z : at.z_nm.data()) z = 2;
+  Step lift = o.zero();
+  for (double& z : lift.z_nm.data()) z = 1;
+  expect_gradient(o, at, lift, 1e-4);
+  const Step g = o.gradient(at, o.evaluate(at));
+  for (const double v : g.z_nm.data()) ASSERT_TRUE(std::isfinite(v));
+}
+
+TEST(Objective, ProductIsSymmetricAndThatOfTheJacobians) {
+  const test::SmallScene scene;
+  for (const Images which : {Images::both, Images::afm, Images::sem}) {
+    const Objective o = make_objective(scene, which);
+    const Unknowns at = start_at(scene, o);
+    const Objective::State s = o.evaluate(at);
+    const Step a = random_step(o, 4), b = random_step(o, 5);
+    const Step pa = o.product(at, s, a), pb = o.product(at, s, b);
+    const double scale = std::sqrt(std::fabs(dot(a, pa) * dot(b, pb)));
+    EXPECT_NEAR(dot(a, pb), dot(b, pa), 1e-5 * scale);
+    EXPECT_GT(dot(a, pa), 0);
+  }
+}
+
+TEST(Objective, ProductPredictsTheGradientOfWhatIsQuadratic) {
+  // Without SEM, with contacts that stay and the prior's weights held, the objective is quadratic.
+  const test::SmallScene scene;
+  const Objective o = make_objective(scene, Images::afm);
+  const Unknowns at = start_at(scene, o);
+  const Objective::State s = o.evaluate(at);
+  Step d = random_step(o, 6, 1e-7);
+  const Step p = o.product(at, s, d);
+  const Unknowns there = o.moved(at, d);
+  Step g = o.gradient(there, o.evaluate(there));
+  add(g, -1, o.gradient(at, s));
+  // The prior's true second derivative differs from its bound: compare the AFM's part.
+  Objective no_prior = o;
+  no_prior.prior = CurvaturePrior(10, 1e9);
+  Step g2 = no_prior.gradient(there, no_prior.evaluate(there));
+  add(g2, -1, no_prior.gradient(at, no_prior.evaluate(at)));
+  const Step p2 = no_prior.product(at, no_prior.evaluate(at), d);
+  EXPECT_NEAR(dot(g2, g2), dot(p2, p2), 1e-3 * dot(p2, p2));
+  EXPECT_LT(dot(d, g), dot(d, p) * 1.001);
+}
+
+TEST(Objective, LiftingSurfaceAndScanTogetherChangesNothing) {
+  test::SmallScene scene;
+  const Objective o = make_objective(scene, Images::both);
+  Unknowns at = start_at(scene, o);
+  const double before = o.evaluate(at).value();
+  for (double& z : scene.afm.image.z_nm.data()) z += 1000;
+  const Objective lifted = make_objective(scene, Images::both);
+  for (double& z : at.z_nm.data()) z += 1000;
+  EXPECT_NEAR(lifted.evaluate(at).value(), before, 1e-6 * before);
+}
+
+TEST(Objective, DilationIsThatOfTheLibrary) {
+  // Identity map, one sample per pitch, surface on the AFM's samples: the plain dilation.
+  test::SmallScene scene;
+  scene.afm.upsample = 1;
+  const SurfaceFrame frame = frame_of(&scene.afm, nullptr, 0);
+  const AfmTerm term(scene.afm, eroded(scene.afm, 1), frame, {}, 1);
+  Grid<double> z(frame.width, frame.height);
+  RandomStream random(9, 0, 0);
+  for (double& v : z.data()) v = 30 * random.uniform();
+  HeightField surface = scene.afm.image;
+  surface.z_nm = z;
+  const Grid<double> expected = dilate(surface, scene.afm.tip).z_nm, got = term.evaluate(z, {}).simulated;
+  for (std::size_t i = 0; i < got.size(); ++i) ASSERT_NEAR(got.data()[i], expected.data()[i], 1e-5);
+}
+
+TEST(Preconditioner, SolvesTheMatrixThatItHolds) {
+  // With white noise, contacts on samples and no SEM it is the second derivative itself.
+  test::SmallScene scene;
+  scene.afm.upsample = 1;
+  scene.afm.noise = {0, 0.5};
+  Objective o{{}, {}, CurvaturePrior(20, 2e-3), frame_of(&scene.afm, nullptr, 0), false, false, 0, {}};
+  o.afm.emplace(scene.afm, eroded(scene.afm, 1), o.frame, Affine{}, 1);
+  const Unknowns at{eroded(scene.afm, 1).z_nm, {}, {}};
+  const Objective::State s = o.evaluate(at);
+  Preconditioner m;
+  m.factor(o, at, s);
+  const Step v = random_step(o, 8), back = m.solve(o.product(at, s, v));
+  for (std::size_t i = 0; i < v.z_nm.size(); ++i) ASSERT_NEAR(back.z_nm.data()[i], v.z_nm.data()[i], 1e-5);
+}
+
+TEST(Preconditioner, VariancesAreTheDiagonalOfTheInverse) {
+  const test::SmallScene scene(5, 24, 18);
+  const Objective o = make_objective(scene, Images::both);
+  const Unknowns at = start_at(scene, o);
+  Preconditioner m;
+  m.factor(o, at, o.evaluate(at));
+  const Grid<double> variances = m.variances_nm2();
+  for (std::size_t i = 0; i < variances.size(); i += 37) {
+    Step unit = o.zero();
+    unit.z_nm.data()[i] = 1;
+    const double expected = m.solve(unit).z_nm.data()[i];
+    ASSERT_NEAR(variances.data()[i], expected, 1e-9 * expected);
+  }
+}
+
+TEST(GaussianBasis, TransposeIsExactAndConstantsStay) {
+  for (const double sigma : {0.39, 2.0, 9.0}) {
+    const GaussianBasis basis(sigma, 2);
+    Grid<double> a(23, 17), b(23, 17);
+    RandomStream random(1, 0, 0);
+    for (double& v : a.data()) v = random.uniform();
+    for (double& v : b.data()) v = random.uniform();
+    const Grid<double> ga = basis.sum(a), gb = basis.transpose(b);
+    double left = 0, right = 0;
+    for (std::size_t i = 0; i < a.size(); ++i) {
+      left += ga.data()[i] * b.data()[i];
+      right += a.data()[i] * gb.data()[i];
+    }
+    EXPECT_NEAR(left, right, 1e-10 * left);
+    const Grid<double> level = basis.sum(Grid<double>(23, 17, 4));
+    for (const double v : level.data()) ASSERT_NEAR(v, 4, 1e-12);
+  }
+}
+
+TEST(GaussianBasis, DeconvolutionGivesBackWhatWasBlurred) {
+  const GaussianBasis basis(2, 1);
+  Grid<double> z(40, 30);
+  for (int y = 0; y < 30; ++y)
+    for (int x = 0; x < 40; ++x) z(x, y) = 10 * std::sin(0.2 * x) + 5 * std::cos(0.25 * y);
+  const Grid<double> blurred = basis.sum(z), again = basis.sum(basis.deconvolved(blurred, 1e-4, 500));
+  for (std::size_t i = 0; i < z.size(); ++i) ASSERT_NEAR(again.data()[i], blurred.data()[i], 1e-3);
+}
+
+}  // namespace
+}  // namespace surf::reconstruction

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "surf/workflow/afm_preparation.h"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+
+#include "surf/afm/morphology.h"
+#include "surf/afm/tip_shapes.h"
+#include "surf/core/error.h"
+#include "surf/mesh/shapes.h"
+
+namespace surf::workflow {
+namespace {
+
+constexpr double pitch = 5;
+
+/// Blocks on a tilted plane, by a dull tip, with noise.
+HeightField scan(double radius_nm) {
+  HeightField field = make_mesa({495, 395, pitch}, 60, 120, 15);
+  const HeightField other = make_mesa({495, 395, pitch}, 60, 60, 15);
+  for (int y = 0; y < field.z_nm.height(); ++y)
+    for (int x = 0; x < field.z_nm.width() - 35; ++x)
+      field.z_nm(x, y) = std::max(field.z_nm(x, y), other.z_nm(x + 35, y));
+  field = dilate(field, conical_tip(radius_nm, 0.35, {pitch, pitch, 25, 25}));
+  const Grid<double> noise = simulate_noise({0.6, 0.02}, field.z_nm.width(), field.z_nm.height(), 2);
+  for (int y = 0; y < field.z_nm.height(); ++y)
+    for (int x = 0; x < field.z_nm.width(); ++x)
+      field.z_nm(x, y) += noise(x, y) + 0.01 * field.x_nm(x) + 300;
+  return field;
+}
+
+TEST(AfmPreparation, FindsLevelNoiseAndTip) {
+  const PreparedAfm p = prepare_afm(scan(30));
+  EXPECT_NEAR(p.tilt_deg, std::atan(0.01) * 180 / 3.14159265, 0.01);
+  EXPECT_NEAR(p.noise.alpha, 0.6, 0.05);
+  EXPECT_NEAR(p.noise.innovation_nm2, 0.02, 0.004);
+  EXPECT_FALSE(p.tip_given);
+  EXPECT_GE(p.tip.z_nm.width(), 13);
+  EXPECT_NEAR(p.eroded().z_nm(5, 5), 0, 1.5);
+  const double at_wall = p.image.z_nm(36, 40) - p.eroded().z_nm(36, 40);
+  EXPECT_GT(at_wall, 2);   // the tip's flank is gone
+}
+
+TEST(AfmPreparation, TakesWhatIsGiven) {
+  AfmPreparationOptions o;
+  o.level = LevelMethod::none;
+  o.noise = AfmNoise{0.1, 0.3};
+  o.tip = conical_tip(30, 0.35, {2 * pitch, 2 * pitch, 9, 9});
+  const HeightField as_read = scan(30);
+  const PreparedAfm p = prepare_afm(as_read, o);
+  EXPECT_EQ(p.image.z_nm, as_read.z_nm);
+  EXPECT_EQ(p.noise.innovation_nm2, 0.3);
+  EXPECT_TRUE(p.tip_given);
+  EXPECT_EQ(p.tip.z_nm.width(), 17);   // at the scan's pitch
+  EXPECT_EQ(p.tip.pitch_x_nm, pitch);
+}
+
+TEST(AfmPreparation, BlunterTipsNeedMoreSamples) {
+  const AfmNoise noise{0.6, 0.02};
+  EXPECT_LT(choose_tip_size(scan(5), noise), choose_tip_size(scan(120), noise));
+}
+
+TEST(AfmPreparation, RefusesWhatCannotBe) {
+  AfmPreparationOptions even, wide;
+  even.tip_size = 8;
+  EXPECT_THROW(prepare_afm(scan(5), even), UsageError);
+  wide.tip_size = 99;
+  EXPECT_THROW(prepare_afm(scan(5), wide), UsageError);
+  HeightField quiet = make_mesa({495, 395, pitch}, 60, 120, 15);
+  EXPECT_THROW(prepare_afm(quiet), InvalidInput);   // no noise to judge tips by
+}
+
+}  // namespace
+}  // namespace surf::workflow

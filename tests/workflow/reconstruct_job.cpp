@@ -1,0 +1,270 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "surf/workflow/reconstruct_job.h"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "compare_truth.h"
+#include "first_calibration.h"
+#include "reconstruction_checkpoint.h"
+#include "sem_frame.h"
+#include "small_job.h"
+#include "surf/afm/morphology.h"
+#include "surf/afm/tip_shapes.h"
+#include "surf/core/error.h"
+#include "surf/core/random.h"
+#include "surf/io/files.h"
+#include "surf/io/height_field_file.h"
+#include "surf/io/model_file.h"
+#include "surf/mesh/shapes.h"
+#include "temporary_folder.h"
+
+namespace surf::workflow {
+namespace {
+
+using testing::Contains;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::ThrowsMessage;
+
+constexpr Affine shift{1, 0, 60, 0, 1, 45};   // of the SEM image in the scan
+constexpr double pitch = 5;
+
+/// A hilly place, seen by a dull tip and by a model of 1 / cos with known gains; the SEM image shows the middle of it.
+class ReconstructJobTest : public testing::Test {
+ protected:
+  ReconstructJobTest() {
+    TrainedModel model;
+    model.scope = {pitch, "Si", 1000, 0};
+    model.parameters = SlopeModelParameters{SlopeForm::secant, 5, {5, 0.6}, {{"SE", 0.9, {}}, {"BSE", 0.2, {}}}};
+    model.record.range.slope_deg_max = 80;
+    io::write_model(path("si.json"), model);
+    HeightField truth = make_rough({395, 295, pitch}, 10, 40, 3);
+    truth.origin_x_nm = truth.origin_y_nm = 0;
+    const AfmNoise noise{0.5, 0.05};
+    HeightField scan = dilate(truth, conical_tip(20, 0.4, {pitch, pitch, 9, 9}));
+    const Grid<double> added = simulate_noise(noise, scan.z_nm.width(), scan.z_nm.height(), 5);
+    for (std::size_t i = 0; i < added.size(); ++i) scan.z_nm.data()[i] += added.data()[i];
+    truth_ = truth;
+    job_.afm = AfmInput{scan, path("scan.txt"), {}};
+    io::write_height_field(path("scan.txt"), scan);
+    job_.afm->preparation.level = LevelMethod::none;
+    job_.afm->preparation.noise = noise;
+    job_.afm->preparation.tip = conical_tip(20, 0.4, {pitch, pitch, 9, 9});
+    job_.sem = SemInput{sem_image(io::read_model(path("si.json"))), path("sem.txt")};
+    io::write_text(path("sem.txt"), "the image");
+    job_.model.file = path("si.json");
+    job_.pose.transform = shift;
+    job_.sem_noise = SemNoise{0, 4, 1e-3};
+    job_.folder = path("result");
+    job_.picture = false;
+    job_.upsample = 1;
+    job_.options.scales_px = {4, 1};
+    job_.options.iterations = 8;
+    job_.options.probes = 2;
+    job_.options.threads = 1;
+  }
+
+  PlacedImage sem_image(const TrainedModel& trained) const {
+    const ModelImages images = make_model(trained)->predict(truth_);
+    PlacedImage sem;
+    sem.pitch_x_nm = sem.pitch_y_nm = pitch;
+    sem.values = Grid<double>(50, 40);
+    const Grid<double> noise = simulate_noise({0, 4}, 50, 40, 9);
+    for (int y = 0; y < 40; ++y)
+      for (int x = 0; x < 50; ++x)
+        sem.values(x, y) = 100 * images[0](x + 12, y + 9) + 100 * images[1](x + 12, y + 9) + 20 + noise(x, y);
+    return sem;
+  }
+
+  std::filesystem::path path(const char* name) const { return folder_.path() / name; }
+  nlohmann::json report(const char* folder) const {
+    return nlohmann::json::parse(io::read_file(path(folder) / "report.json"));
+  }
+
+  test::TemporaryFolder folder_;
+  HeightField truth_;
+  ReconstructJob job_;
+};
+
+/// Ends the run once a scale is done.
+ChainListener stopping(CancelToken& token, const std::filesystem::path& checkpoint) {
+  ChainListener listener;
+  listener.cancel = &token;
+  listener.progress = [&token, checkpoint, least = std::uintmax_t{0}](double, double) mutable {
+    std::error_code none;
+    const auto size = std::filesystem::file_size(checkpoint, none);
+    if (!none && least == 0) least = size;
+    if (!none && size > least + 10000) token.cancel();
+  };
+  return listener;
+}
+
+TEST_F(ReconstructJobTest, FindsTheSurfaceAndSaysHow) {
+  HeightField truth = truth_;
+  truth.origin_x_nm = -shift.x0, truth.origin_y_nm = -shift.y0;   // in the SEM's frame
+  job_.truth = truth;
+  job_.truth_file = path("scan.txt");
+  const ReconstructSummary s = run(job_);
+  ASSERT_TRUE(s.truth.has_value());
+  EXPECT_LT(s.truth->rms_nm, s.truth->start_rms_nm);
+  for (const char* name : {"surface.vti", "surface.gsf", "surface.glb", "simulated_afm.vti", "simulated_sem.vti", "history.csv",
+                           "transform.json", "tip.txt", "model.json", "report.json"})
+    EXPECT_THAT(s.written, Contains(job_.folder / name));
+  EXPECT_FALSE(std::filesystem::exists(job_.folder / "checkpoint"));
+  const auto json = report("result");
+  EXPECT_EQ(json["sem"]["noise"]["intercept"], 4);
+  EXPECT_THAT(json["repeat"].get<std::string>(), HasSubstr("--transform 1,0,60,0,1,45"));
+  EXPECT_EQ(json["scales"].size(), 2u);
+}
+
+TEST_F(ReconstructJobTest, GoesOnToTheSameBytes) {
+  run(job_);
+  const std::string wanted = io::read_file(job_.folder / "surface.vti");
+  job_.folder = path("stopped");
+  CancelToken token;
+  EXPECT_THROW(run(job_, stopping(token, job_.folder / "checkpoint")), Interrupted);
+  ASSERT_TRUE(std::filesystem::exists(job_.folder / "checkpoint"));
+  const ReconstructSummary s = run(job_);
+  EXPECT_TRUE(s.resumed);
+  EXPECT_EQ(io::read_file(job_.folder / "surface.vti"), wanted);
+  EXPECT_EQ(io::read_file(job_.folder / "history.csv"), io::read_file(path("result") / "history.csv"));
+}
+
+TEST_F(ReconstructJobTest, DoesNotGoOnWithAnotherJob) {
+  CancelToken token;
+  EXPECT_THROW(run(job_, stopping(token, job_.folder / "checkpoint")), Interrupted);
+  job_.options.curvature_prior_per_nm = 0.02;
+  std::string said;
+  ChainListener listener;
+  listener.note = [&](const std::string& note) { said += note + "\n"; };
+  EXPECT_FALSE(run(job_, listener).resumed);
+  EXPECT_THAT(said, HasSubstr("prior 0 there and 0.02 here"));
+}
+
+TEST_F(ReconstructJobTest, OneImageIsEnough) {
+  ReconstructJob afm = job_;
+  afm.sem.reset();
+  afm.folder = path("afm");
+  EXPECT_THAT(run(afm).result.simulated_sem.data(), IsEmpty());
+  EXPECT_FALSE(report("afm").contains("sem"));
+  ReconstructJob sem = job_;
+  sem.afm.reset();
+  sem.folder = path("sem");
+  EXPECT_THAT([&] { run(sem); }, ThrowsMessage<UsageError>(HasSubstr("--gains")));
+  sem.calibration = {{100, 100}, 20};
+  run(sem);
+  EXPECT_FALSE(report("sem").contains("afm"));
+}
+
+TEST_F(ReconstructJobTest, ImagesThatSayNothingAreRefused) {
+  ReconstructJob job = job_;
+  job.sem->image.values = Grid<double>(50, 40, 7);
+  EXPECT_THAT([&] { run(job); }, ThrowsMessage<InvalidInput>(HasSubstr("all its pixels that count have one value")));
+  job = job_;
+  job.pose.transform = Affine{1, 0, 9000, 0, 1, 0};
+  EXPECT_THAT([&] { run(job); }, ThrowsMessage<InvalidInput>(HasSubstr("lies on the AFM scan")));
+  job = job_;
+  job.afm->scan.z_nm = Grid<double>(job.afm->scan.z_nm.width(), job.afm->scan.z_nm.height(), 3);
+  EXPECT_THAT([&] { run(job); }, ThrowsMessage<InvalidInput>(HasSubstr("all its heights are the same")));
+  job = job_;
+  job.afm->preparation.tip = conical_tip(20, 0.4, {pitch, pitch, 201, 201});
+  EXPECT_THAT([&] { run(job); }, ThrowsMessage<InvalidInput>(HasSubstr("wider than the scan")));
+  job = job_;
+  for (double& v : job.sem->image.values.data()) v = -v;
+  EXPECT_THAT([&] { run(job); }, ThrowsMessage<InvalidInput>(HasSubstr("darker where the simulated image is brighter")));
+  EXPECT_FALSE(std::filesystem::exists(job_.folder / "report.json"));
+}
+
+TEST(FirstCalibration, LeavesOutSaturatedPixelsOnly) {
+  PlacedImage image;
+  image.values = Grid<double>(64, 64);
+  for (std::size_t i = 0; i < image.values.size(); ++i) image.values.data()[i] = static_cast<double>(i % 251);
+  EXPECT_EQ(leave_out_saturated(image), 0);
+  for (std::size_t i = 0; i < 600; ++i) image.values.data()[i] = 255;
+  EXPECT_EQ(leave_out_saturated(image), 600);
+  EXPECT_FALSE(image.is_valid(3, 0));
+  EXPECT_TRUE(image.is_valid(3, 63));
+  PlacedImage flat;
+  flat.values = Grid<double>(8, 8, 4);
+  EXPECT_EQ(leave_out_saturated(flat), 0);
+}
+
+TEST(ReconstructionCheckpoint, AStateComesBackToTheLastBit) {
+  ReconstructionState state;
+  state.surface.z_nm = Grid<double>(3, 2);
+  state.surface.z_nm.data() = {1.0 / 3, -0.0, 5e-324, 1e300, 2, 3};
+  state.surface.valid = Grid<unsigned char>(3, 2, 1);
+  state.surface.pitch_x_nm = 0.1;
+  state.sem_to_afm = {1, 2, 3, 4, 5, 6};
+  state.gains = {0.1, 0.2};
+  state.offset = -7;
+  state.scales.resize(2);
+  state.scales[1].ended = "converged";
+  state.scales[1].products = 12;
+  state.scales[1].sem_residual.like_noise = false;
+  const std::string bytes = pack(state);
+  const auto back = unpack(bytes);
+  ASSERT_TRUE(back.has_value());
+  EXPECT_EQ(pack(*back), bytes);
+  EXPECT_EQ(back->surface.z_nm, state.surface.z_nm);
+  EXPECT_TRUE(std::signbit(back->surface.z_nm(1, 0)));
+  EXPECT_EQ(back->scales[1].ended, "converged");
+  EXPECT_FALSE(back->scales[1].sem_residual.like_noise);
+  for (std::size_t size = 0; size < bytes.size(); ++size) EXPECT_FALSE(unpack(bytes.substr(0, size)).has_value()) << size;
+  EXPECT_FALSE(unpack(bytes + "x").has_value());
+}
+
+TEST(SemFrame, InterpolatesWhereTheMapSays) {
+  HeightField plane;
+  plane.z_nm = Grid<double>(10, 8);
+  plane.pitch_x_nm = 2, plane.pitch_y_nm = 3, plane.origin_x_nm = 5;
+  for (int y = 0; y < 8; ++y)
+    for (int x = 0; x < 10; ++x) plane.z_nm(x, y) = 0.5 * plane.x_nm(x) - 0.25 * plane.y_nm(y);
+  PlacedImage sem;
+  sem.values = Grid<double>(30, 30);
+  const Affine map{0.6, -0.2, 6, 0.3, 0.5, 1};
+  const SurfaceUnderSem under = surface_under_sem(plane, sem, map);
+  int known = 0;
+  for (int y = 0; y < 30; ++y)
+    for (int x = 0; x < 30; ++x) {
+      const Point2 p = map({double(x), double(y)});
+      const bool inside = p.x >= 5 && p.x <= 23 && p.y >= 0 && p.y <= 21;
+      EXPECT_EQ(under.known(x, y) != 0, inside);
+      if (!inside) continue;
+      ++known;
+      EXPECT_NEAR(under.surface.z_nm(x, y), 0.5 * p.x - 0.25 * p.y, 1e-12);
+    }
+  EXPECT_DOUBLE_EQ(under.overlap, known / 900.0);
+}
+
+TEST(SemFrame, HolesTakeTheHeightOfTheirNeighbours) {
+  HeightField field;
+  field.z_nm = Grid<double>(3, 2);
+  field.z_nm.data() = {1, 99, 3, 1, 99, 3};
+  field.valid = Grid<unsigned char>(3, 2);
+  field.valid.data() = {1, 0, 1, 1, 0, 1};
+  const HeightField whole = with_holes_filled(field);
+  EXPECT_THAT(whole.z_nm.data(), ElementsAre(1, 2, 3, 1, 2, 3));
+  EXPECT_TRUE(whole.valid.empty());
+}
+
+TEST(CompareTruth, TakesOffTheMeanAndCountsWhatIsCovered) {
+  Reconstruction r;
+  r.surface = make_rough({60, 60, 3}, 4, 9, 1);
+  r.start = r.surface;
+  HeightField truth = r.surface;
+  for (std::size_t i = 0; i < truth.z_nm.size(); ++i) truth.z_nm.data()[i] += 5 + (i % 2 ? 1 : -1);
+  r.deviation_nm = Grid<double>(truth.z_nm.width(), truth.z_nm.height(), 0.75);
+  const TruthReport report = compare_with_truth(r, truth);
+  EXPECT_NEAR(report.rms_nm, 1, 0.01);
+  EXPECT_NEAR(report.offset_nm, -5, 0.01);
+  EXPECT_LT(report.coverage_1, 0.01);
+  EXPECT_GT(report.coverage_2, 0.99);
+}
+
+}  // namespace
+}  // namespace surf::workflow

@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "surf/workflow/sample_job.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "small_job.h"
+#include "surf/core/error.h"
+#include "surf/io/height_field_file.h"
+#include "surf/io/image_file.h"
+#include "surf/io/tip_file.h"
+#include "surf/reconstruction/sample_surfaces.h"
+#include "temporary_folder.h"
+
+namespace surf::workflow {
+namespace {
+
+namespace fs = std::filesystem;
+
+SampleJob small(const std::string& name, const fs::path& folder) {
+  SampleJob job;
+  job.name = name;
+  job.folder = folder;
+  job.width = 40;
+  job.height = 24;
+  job.electrons = 3;
+  job.cascades = 2048;
+  job.threads = 2;
+  return job;
+}
+
+TEST(SampleJob, HasASceneForEverySurface) {
+  std::set<std::string> names;
+  for (const SampleScene& scene : sample_scenes()) names.insert(scene.name);
+  for (const SampleSurface& surface : sample_surfaces()) EXPECT_TRUE(names.contains(surface.name));
+}
+
+TEST(SampleJob, SaysWhatIsTrue) {
+  for (const SampleScene& scene : sample_scenes()) {
+    SCOPED_TRACE(scene.name);
+    const test::TemporaryFolder folder;
+    const SampleSummary summary = run(small(scene.name, folder.path()));
+    ASSERT_TRUE(summary.complete);
+    EXPECT_EQ(summary.written.size(), 6u);
+    const auto truth = nlohmann::json::parse(bytes_of(folder.path() / "truth.json"));
+    const HeightField scan = io::read_height_field(folder.path() / "afm.gsf").field;
+    const HeightField surface = io::read_height_field(folder.path() / "truth.gsf").field;
+    const Image sem = io::read_image(folder.path() / "sem.tif"), yields = io::read_image(folder.path() / "truth_sem.exr");
+
+    EXPECT_EQ(surface.pitch_x_nm, 10);
+    EXPECT_EQ(sem.pitch_x_nm, 10);
+    EXPECT_EQ(scan.pitch_x_nm, 20);
+    EXPECT_EQ(sem.origin_x_nm, 0);
+    EXPECT_EQ(scan.origin_x_nm, 0);
+    const Grid<float>& signal = sem.find("signal")->values;
+    const double expected = 900 * double{yields.find("SE")->values(7, 5)} + 300 * double{yields.find("BSE")->values(7, 5)} + 120;
+    EXPECT_NEAR(signal(7, 5), expected, 1e-3 * expected);
+
+    // Through the map, without tilt and offset, the scan lies on or above the surface, which it touches somewhere.
+    const auto m = truth.at("sem_to_afm").get<std::vector<double>>();
+    const Affine map{m[0], m[1], m[2], m[3], m[4], m[5]};
+    EXPECT_EQ(map, summary.sem_to_afm);
+    const double per_degree = std::acos(-1.0) / 180;
+    double least = 1e9, most = -1e9;
+    for (int y = 0; y < surface.z_nm.height(); ++y)
+      for (int x = 0; x < surface.z_nm.width(); ++x) {
+        const Point2 p = map({surface.x_nm(x), surface.y_nm(y)});
+        const int column = static_cast<int>(std::lround(p.x / 20)), row = static_cast<int>(std::lround(p.y / 20));
+        ASSERT_GE(std::min(column, row), 14);   // the margins
+        ASSERT_LT(column, scan.z_nm.width() - 14);
+        ASSERT_LT(row, scan.z_nm.height() - 14);
+        if (std::hypot(p.x - column * 20, p.y - row * 20) > 1.5) continue;
+        const double level = std::tan(scene.tilt_x_deg * per_degree) * column * 20 +
+                             std::tan(scene.tilt_y_deg * per_degree) * row * 20 + scene.afm_offset_nm;
+        const double above = scan.z_nm(column, row) - level - surface.z_nm(x, y);
+        least = std::min(least, above), most = std::max(most, above);
+      }
+    constexpr double noise_and_place = 7;   // 4 standard deviations, and 1.5 nm along a wall
+    EXPECT_GT(least, -noise_and_place);
+    EXPECT_LT(least, noise_and_place);
+    EXPECT_LT(most, 120);
+    EXPECT_EQ(io::read_tip(folder.path() / "truth_tip.gsf").pitch_x_nm, 20);
+  }
+}
+
+TEST(SampleJob, DependsOnTheSeedAndNotOnThreads) {
+  const test::TemporaryFolder a, b, c;
+  SampleJob job = small("pads", a.path());
+  run(job);
+  job.folder = b.path(), job.threads = 1;
+  run(job);
+  job.folder = c.path(), job.seed = 2;
+  run(job);
+  for (const char* name : {"afm.gsf", "sem.tif", "truth.gsf", "truth_tip.gsf", "truth_sem.exr", "truth.json"})
+    EXPECT_EQ(bytes_of(a.path() / name), bytes_of(b.path() / name)) << name;
+  for (const char* name : {"afm.gsf", "sem.tif", "truth_sem.exr"})
+    EXPECT_NE(bytes_of(a.path() / name), bytes_of(c.path() / name)) << name;
+}
+
+TEST(SampleJob, LeavesNothingWhenCancelledOrRefused) {
+  const test::TemporaryFolder folder;
+  CancelToken cancel;
+  cancel.cancel();
+  EXPECT_FALSE(run(small("islands", folder.path()), {}, &cancel).complete);
+  SampleJob job = small("islands", folder.path());
+  job.width = 8;
+  EXPECT_THROW(run(job), UsageError);
+  job = small("islands", folder.path());
+  job.electrons = 0;
+  EXPECT_THROW(run(job), UsageError);
+  EXPECT_THROW(run(small("island", folder.path())), UsageError);
+  EXPECT_TRUE(fs::is_empty(folder.path()));
+}
+
+}  // namespace
+}  // namespace surf::workflow

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "surf/afm/certainty.h"
+#include "surf/afm/noise_estimate.h"
+#include "surf/afm/row_level.h"
+#include "surf/afm/tip.h"
+#include "surf/core/height_field.h"
+#include "surf/core/progress.h"
+
+namespace surf::workflow {
+
+enum class LevelMethod {
+  hough,        ///< the plane that most of the scan lies on
+  plane,        ///< the mean plane
+  polynomial,   ///< of `degree`
+  none,         ///< the scan is level
+};
+
+/// What is done to a scan before anything is made of it. What is not given is found.
+struct AfmPreparationOptions {
+  LevelMethod level = LevelMethod::hough;
+  int degree = 2;                     ///< of the polynomial, 0 to 6
+  std::optional<RowMethod> rows;      ///< steps between scan lines are taken off too
+  std::optional<AfmNoise> noise;
+  std::optional<Tip> tip;             ///< of any pitch
+  int tip_size = 0;                   ///< samples across the tip that is searched for, odd; 0: chosen
+  std::uint64_t seed = 1;             ///< of the noise that tips are judged by
+  int threads = 0;                    ///< 0: one per hardware thread. Does not change the result
+  Watch watch;
+};
+
+/// A scan ready for use, and all that was found of it on the way.
+struct PreparedAfm {
+  HeightField image;                  ///< levelled; the substrate, where one was found, is at 0
+  double tilt_deg = 0;                ///< that was taken off
+  AfmNoise noise;
+  std::optional<NoiseEstimate> noise_estimate;   ///< absent: it was given
+  Tip tip;                            ///< of the image's pitch
+  bool tip_given = false;
+  double tip_threshold_nm = 0;        ///< of the blind reconstruction
+  CertaintyMap certainty;             ///< and in it the eroded scan
+  std::vector<std::string> notes;     ///< what was done, for people
+  std::vector<std::string> warnings;  ///< what may have gone wrong, and what to do about it
+
+  const HeightField& eroded() const { return certainty.surface; }
+};
+
+/// The first half of the chain (thesis, figure 1-3): level, noise, tip, erosion, certainty.
+///
+/// The noise is that of the substrate, or where there is no clear one that of the differences between rows and
+/// columns. The tip is Villarrubia's, at the threshold that the noise explains (`sweep_tips`), of `tip_size` samples
+/// or of as many as it takes until a wider one erodes the scan no differently.
+/// Throws InvalidInput for scans without relief or noise, UsageError for options out of range, Interrupted.
+PreparedAfm prepare_afm(const HeightField& scan, const AfmPreparationOptions& options = {});
+
+/// The samples across that a tip needs to be all that a scan of this noise can tell of it: 9, 13, 19 ... 57, odd,
+/// the first whose next one's outer bound changes the erosion by less than half the noise's standard deviation (root
+/// mean square). At most a third of the scan's shorter side.
+int choose_tip_size(const HeightField& image, const AfmNoise& noise, int threads = 0, const Watch& watch = {});
+
+}  // namespace surf::workflow

@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "chain_steps.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "sem_frame.h"
+#include "surf/afm/resample.h"
+#include "surf/core/error.h"
+#include "surf/core/units.h"
+
+namespace surf::workflow {
+namespace {
+
+constexpr double square = 1e-3;   // relative: as models ask of fields
+
+TrainListener training_listener(const ChainListener& l) {
+  TrainListener t;
+  t.pixels = t.cascades = t.learning = l.progress;
+  t.note = l.note;
+  t.warn = l.warn;
+  t.cancel = l.cancel;
+  return t;
+}
+
+}  // namespace
+
+Watch watch_of(const ChainListener& l) { return {l.progress, l.cancel}; }
+
+void begin(const ChainListener& l, const char* stage) {
+  if (l.cancel && l.cancel->cancelled()) throw Interrupted();
+  if (l.stage) l.stage(stage);
+}
+
+PreparedAfm prepare(const AfmInput& afm, int threads, const ChainListener& listener) {
+  begin(listener, "AFM scan");
+  AfmPreparationOptions options = afm.preparation;
+  options.threads = threads;
+  options.watch = watch_of(listener);
+  PreparedAfm prepared = prepare_afm(afm.scan, options);
+  for (const std::string& note : prepared.notes)
+    if (listener.note) listener.note("AFM: " + note);
+  for (const std::string& warning : prepared.warnings)
+    if (listener.warn) listener.warn("AFM: " + warning);
+  return prepared;
+}
+
+StoredModel model_of(ModelRequest request, const PlacedImage& sem, const ChainListener& listener) {
+  begin(listener, "model");
+  if (std::abs(sem.pitch_x_nm - sem.pitch_y_nm) > square * sem.pitch_x_nm)
+    throw InvalidInput("SEM image", fmt::format("its pixels are {:.6g} x {:.6g} nm, and models are for square ones",
+                                                sem.pitch_x_nm, sem.pitch_y_nm),
+                       "Resample it to square pixels, or correct --sem-pixel-size");
+  request.pixel_nm = sem.pitch_x_nm;
+  return find_model(request, training_listener(listener));
+}
+
+PlacedImage simulated_view(const HeightField& surface, const ImageModel& model, double pixel_nm, int threads) {
+  const HeightField fine = resampled(surface, pixel_nm);
+  ModelOptions options;
+  options.threads = threads;
+  const ModelImages images = model.predict(with_holes_filled(fine), options);
+  PlacedImage view;
+  view.values = images.front();
+  for (std::size_t c = 1; c < images.size(); ++c)
+    for (std::size_t i = 0; i < view.values.size(); ++i) view.values.data()[i] += images[c].data()[i];
+  view.valid = fine.valid;
+  view.pitch_x_nm = fine.pitch_x_nm, view.pitch_y_nm = fine.pitch_y_nm;
+  view.origin_x_nm = fine.origin_x_nm, view.origin_y_nm = fine.origin_y_nm;
+  return view;
+}
+
+Pose pose_of(const PoseOptions& o, const PreparedAfm& afm, const PlacedImage& sem, const StoredModel& model, int threads,
+             const ChainListener& listener) {
+  begin(listener, "registration");
+  Pose pose;
+  pose.simulated = simulated_view(afm.eroded(), *model.model, sem.pitch_x_nm, threads);
+  if (o.transform) {
+    pose.sem_to_afm = *o.transform;
+    return pose;
+  }
+  RegistrationOptions options = o.registration;
+  if (!o.landmarks.empty()) {
+    pose.landmarks = fit_landmarks(o.landmarks);
+    pose.sem_to_afm = pose.landmarks->sem_to_afm;
+    options.start = pose.sem_to_afm;
+    if (listener.note)
+      listener.note(fmt::format("landmarks: {} pairs fit to {} rms", o.landmarks.size(), format_length(pose.landmarks->rms_nm)));
+    if (o.landmarks_only) return pose;
+  }
+  options.threads = threads;
+  options.watch = watch_of(listener);
+  pose.registration = register_images(sem, pose.simulated, options);
+  pose.sem_to_afm = pose.registration->sem_to_afm;
+  return pose;
+}
+
+const char* name(RegistrationVerdict verdict) {
+  switch (verdict) {
+    case RegistrationVerdict::verified: return "verified";
+    case RegistrationVerdict::ambiguous: return "ambiguous";
+    case RegistrationVerdict::unconverged: return "unconverged";
+    case RegistrationVerdict::unrelated: break;
+  }
+  return "unrelated";
+}
+
+}  // namespace surf::workflow

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "surf/workflow/register_job.h"
+
+namespace surf::workflow {
+
+// The steps that registration and reconstruction share, each a stage of the listener.
+
+Watch watch_of(const ChainListener& listener);
+void begin(const ChainListener& listener, const char* stage);
+
+/// With the scan's notes and warnings handed on.
+PreparedAfm prepare(const AfmInput& afm, int threads, const ChainListener& listener);
+
+/// Of the SEM image's pixels, which must be square.
+StoredModel model_of(ModelRequest request, const PlacedImage& sem, const ChainListener& listener);
+
+Pose pose_of(const PoseOptions& options, const PreparedAfm& afm, const PlacedImage& sem, const StoredModel& model,
+             int threads, const ChainListener& listener);
+
+}  // namespace surf::workflow

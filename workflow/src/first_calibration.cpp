@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "first_calibration.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "sem_frame.h"
+#include "surf/core/error.h"
+#include "surf/core/units.h"
+#include "surf/sem/estimate_sem_noise.h"
+
+namespace surf::workflow {
+namespace {
+
+constexpr double telling_share = 1e-3;    // of the pixels, at one value
+constexpr double telling_step = 3;        // times as many as at the next value
+constexpr double least_overlap_px = 256;
+
+struct Extreme {
+  double value = 0;
+  std::int64_t count = 0, next = 0;   // at it, and at the value next to it
+};
+
+Extreme extreme(const PlacedImage& image, bool largest) {
+  std::vector<double> values;
+  for (int y = 0; y < image.values.height(); ++y)
+    for (int x = 0; x < image.values.width(); ++x)
+      if (image.is_valid(x, y)) values.push_back(largest ? -image.values(x, y) : image.values(x, y));
+  Extreme e;
+  if (values.empty()) return e;
+  std::ranges::sort(values);
+  const auto second = std::ranges::upper_bound(values, values.front());
+  e.count = second - values.begin();
+  if (second != values.end()) e.next = std::ranges::upper_bound(second, values.end(), *second) - second;
+  e.value = largest ? -values.front() : values.front();
+  return e;
+}
+
+/// The mean that gains and offset give.
+Grid<double> mean_of(const ModelImages& predicted, const std::vector<double>& gains, double offset) {
+  Grid<double> mean(predicted.front().width(), predicted.front().height(), offset);
+  for (std::size_t c = 0; c < predicted.size(); ++c)
+    for (std::size_t i = 0; i < mean.size(); ++i) mean.data()[i] += gains[c] * predicted[c].data()[i];
+  return mean;
+}
+
+double variance_of(const Grid<double>& values, const Grid<unsigned char>& used) {
+  double sum = 0, squared = 0, count = 0;
+  for (std::size_t i = 0; i < values.size(); ++i)
+    if (used.data()[i]) sum += values.data()[i], squared += values.data()[i] * values.data()[i], ++count;
+  return count > 1 ? std::max(squared / count - sum / count * (sum / count), 0.0) : 0;
+}
+
+/// From flat places, where there are some.
+void find_noise(const PlacedImage& sem, const std::optional<SemNoise>& given, FirstCalibration& first) {
+  if (given) {
+    validate(*given, "--sem-noise");
+    first.noise = *given;
+    first.noise_from = "given";
+    return;
+  }
+  try {
+    const SemNoiseEstimate estimate = estimate_sem_noise(sem);
+    first.noise = estimate.noise;
+    first.noise_from = fmt::format("{} flat places of the image", std::ranges::count_if(estimate.points, &NoisePoint::used));
+    first.warnings = estimate.warnings;
+  } catch (const InvalidInput&) {   // no flat places: from residuals then
+  }
+}
+
+Grid<double> weights_of(const Grid<double>& mean, const SemNoise& noise) {
+  Grid<double> weights = mean;
+  for (double& w : weights.data()) w = 1 / noise.variance(w);
+  return weights;
+}
+
+Calibration fitted(const CalibrationImages& images, FirstCalibration& first) {
+  Calibration fit = calibrate(images);
+  const bool below = std::ranges::any_of(fit.gains, [](double g) { return !(g >= 0); });
+  if (fit.channels.size() > 1 && (below || fit.outcome == CalibrationOutcome::undetermined)) {
+    CalibrationOptions one;
+    one.ratios.assign(fit.channels.size(), 1);
+    fit = calibrate(images, one);
+    const std::string warning = "the channels of the model cannot be told apart in the SEM image, so all have one gain; "
+                                "say --gains if you know them";
+    if (std::ranges::find(first.warnings, warning) == first.warnings.end()) first.warnings.push_back(warning);
+  }
+  if (std::ranges::all_of(fit.gains, [](double g) { return !(g > 0); }))
+    throw InvalidInput("SEM image", "it is darker where the simulated image is brighter, so the two do not show the same",
+                       "Check the registration (semsurf register --picture), the material and the energy, or give --gains");
+  return fit;
+}
+
+}  // namespace
+
+std::int64_t leave_out_saturated(PlacedImage& image) {
+  std::int64_t left_out = 0;
+  const auto share = telling_share * static_cast<double>(image.values.size());
+  for (const bool largest : {false, true}) {
+    const Extreme e = extreme(image, largest);
+    if (e.next == 0 || static_cast<double>(e.count) <= share || static_cast<double>(e.count) <= telling_step * double(e.next))
+      continue;
+    if (image.valid.empty()) image.valid = Grid<unsigned char>(image.values.width(), image.values.height(), 1);
+    for (std::size_t i = 0; i < image.values.size(); ++i)
+      if (image.valid.data()[i] && image.values.data()[i] == e.value) {
+        image.valid.data()[i] = 0;
+        ++left_out;
+      }
+  }
+  return left_out;
+}
+
+FirstCalibration calibrate_first(const PlacedImage& sem, const HeightField* eroded, const ImageModel& model,
+                                 const Affine& sem_to_afm, const std::optional<GivenCalibration>& given,
+                                 const std::optional<SemNoise>& noise, int threads) {
+  FirstCalibration first;
+  const std::size_t channels = model.channels().size();
+  if (given && given->gains.size() != channels)
+    throw UsageError("--gains", fmt::format("{} are given, and the model has {} channels", given->gains.size(), channels),
+                     "Give one for each of the model's channels, 0 for those that the image has nothing of");
+  CalibrationImages images;
+  images.real = sem.values;
+  images.used = sem.valid.empty() ? Grid<unsigned char>(sem.values.width(), sem.values.height(), 1) : sem.valid;
+  if (!(variance_of(images.real, images.used) > 0))
+    throw InvalidInput("SEM image", "all its pixels that count have one value",
+                       "Give an image that shows something, and is not saturated");
+  find_noise(sem, noise, first);
+  if (given) {
+    first.gains = given->gains;
+    first.offset = given->offset;
+  }
+  if (!eroded && first.noise_from.empty())
+    throw UsageError("--sem-noise", "it is missing, and the SEM image has no flat places to take it from",
+                     "Say what 'semsurf noise' finds on another image, as --sem-noise 1.2,30");
+  if (eroded) {
+    const SurfaceUnderSem under = surface_under_sem(*eroded, sem, sem_to_afm);
+    first.overlap = under.overlap;
+    if (under.overlap * static_cast<double>(sem.values.size()) < least_overlap_px)
+      throw InvalidInput("SEM image", fmt::format("only {:.2g} % of it lies on the AFM scan", 100 * under.overlap),
+                         "Check the transform, landmarks and pixel sizes: the images have to overlap");
+    ModelOptions options;
+    options.threads = threads;
+    const ModelImages predicted = model.predict(under.surface, options);
+    for (std::size_t i = 0; i < images.used.size(); ++i) images.used.data()[i] &= under.known.data()[i];
+    if (!given) {
+      images.channels = model.channels();
+      images.simulated = predicted;
+      first.fit = fitted(images, first);
+      if (!first.noise_from.empty()) {
+        images.weights = weights_of(mean_of(predicted, first.fit->gains, first.fit->offset), first.noise);
+        first.fit = fitted(images, first);
+      }
+      first.gains = first.fit->gains;
+      first.offset = first.fit->offset;
+    }
+    if (first.noise_from.empty()) {
+      const SemNoiseEstimate estimate =
+          fit_sem_noise(images.real, mean_of(predicted, first.gains, first.offset), images.used);
+      first.noise = estimate.noise;
+      first.noise_from = "the residuals of the first calibration";
+      first.warnings.push_back("the SEM image has no flat places, so its noise is taken from what the eroded scan does not "
+                               "explain, which is too large. Say --sem-noise if you know it");
+    }
+  }
+  return first;
+}
+
+}  // namespace surf::workflow

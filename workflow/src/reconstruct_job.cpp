@@ -1,0 +1,223 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "surf/workflow/reconstruct_job.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <span>
+
+#include "chain_steps.h"
+#include "compare_truth.h"
+#include "first_calibration.h"
+#include "job_identity.h"
+#include "reconstruction_checkpoint.h"
+#include "reconstruction_output.h"
+#include "registration_picture.h"
+#include "surf/core/error.h"
+#include "surf/core/units.h"
+#include "surf/io/files.h"
+#include "surf/io/plot.h"
+#include "surf/io/transform_file.h"
+#include "surf/workflow/version.h"
+
+namespace surf::workflow {
+namespace {
+
+template <class T>
+std::string hash_of(const std::vector<T>& values) {
+  return io::sha256_of(std::as_bytes(std::span(values)));
+}
+
+std::string text_of(const std::vector<double>& values) {
+  std::string text;
+  for (const double value : values) text += fmt::format("{}{}", text.empty() ? "" : ",", format_exact(value));
+  return text;
+}
+
+std::string map_text(const Affine& m) { return text_of({m.xx, m.xy, m.x0, m.yx, m.yy, m.y0}); }
+
+/// All that the states of the reconstruction depend on.
+Identity identity_of(const ReconstructJob& job, const AfmData* afm, const SemData* sem, const StoredModel* model) {
+  Identity id{{"semsurf", version()}, {"program", program_hash()}, {"instruction set", instruction_set()}};
+  const ReconstructionOptions& o = job.options;
+  id["method"] = name(o.method);
+  id["scales"] = text_of(o.scales_px);
+  id["iterations"] = std::to_string(o.iterations);
+  id["tolerance"] = format_exact(o.tolerance);
+  id["prior"] = format_exact(o.curvature_prior_per_nm);
+  id["fit"] = fmt::format("transform {}, calibration {}", o.refine_transform, o.refine_calibration);
+  if (afm) {
+    const HeightField& f = afm->image;
+    id["scan"] = hash_of(f.z_nm.data()) + hash_of(f.valid.data()) +
+                 text_of({f.pitch_x_nm, f.pitch_y_nm, f.origin_x_nm, f.origin_y_nm});
+    id["tip"] = hash_of(afm->tip.z_nm.data()) + fmt::format(" {} {}", afm->tip.apex_x, afm->tip.apex_y);
+    id["AFM noise"] = text_of({afm->noise.alpha, afm->noise.innovation_nm2});
+    id["upsampling"] = std::to_string(afm->upsample);
+  }
+  if (sem) {
+    const PlacedImage& image = sem->image;
+    id["SEM image"] = hash_of(image.values.data()) + hash_of(image.valid.data()) +
+                      text_of({image.pitch_x_nm, image.pitch_y_nm, image.origin_x_nm, image.origin_y_nm});
+    id["model"] = model->sha256;
+    id["gains"] = text_of(sem->gains);
+    id["offset"] = format_exact(sem->offset);
+    id["SEM noise"] = text_of({sem->noise.slope, sem->noise.intercept, sem->noise.least_variance});
+    id["transform"] = map_text(sem->sem_to_afm);
+  }
+  return id;
+}
+
+void check(const ReconstructJob& job) {
+  if (!job.afm && !job.sem)
+    throw UsageError("reconstruct", "neither a scan nor an SEM image is given", "Add --afm scan.gwy, --sem image.tif, or both");
+  if (job.folder.empty()) throw UsageError("--output", "no folder for the result is given", "Add -o result");
+  std::error_code ignored;
+  if (std::filesystem::exists(job.folder, ignored) && !std::filesystem::is_directory(job.folder, ignored))
+    throw UsageError("--output", fmt::format("{} is no folder", job.folder.string()), "Name a folder for all results, as -o result");
+  if (!job.afm && !job.calibration)
+    throw UsageError("--gains", "without a scan there is nothing to calibrate with", "Say --gains and --offset, or give --afm");
+  if (job.upsample < 1 || job.upsample > 8)
+    throw UsageError("--upsample", fmt::format("{} is out of range", job.upsample), "Give a whole number from 1 to 8");
+  if (job.sem) validate(job.sem->image, "SEM image");
+  if (job.picture) io::check_plot_target(job.folder / "panel.png");
+}
+
+std::string seen(const ResidualReport& r) {
+  return fmt::format("mean {:.2f}, standard deviation {:.2f}, correlation of neighbours {:.2f} along and {:.2f} across rows",
+                     r.mean, r.deviation, r.along, r.across);
+}
+
+/// What speaks against trusting the result.
+std::vector<std::string> reasons_of(const ReconstructSummary& s) {
+  std::vector<std::string> reasons;
+  const Reconstruction& r = s.result;
+  if (!r.converged) reasons.push_back("the optimiser had not settled at the last scale: allow it more --iterations");
+  if (!r.scales.empty()) {
+    const ScaleReport& last = r.scales.back();
+    if (last.afm_residual.pixels > 0 && !last.afm_residual.like_noise)
+      reasons.push_back(fmt::format("what is left of the AFM scan does not look like noise ({}): check the tip and the "
+                                    "scan's noise", seen(last.afm_residual)));
+    if (last.sem_residual.pixels > 0 && !last.sem_residual.like_noise)
+      reasons.push_back(fmt::format("what is left of the SEM image does not look like noise ({}): check the registration, "
+                                    "the model and the calibration", seen(last.sem_residual)));
+  }
+  if (s.pose && !s.pose->verified())
+    reasons.push_back(fmt::format("the registration is {} and was accepted all the same", name(s.pose->registration->verdict)));
+  return reasons;
+}
+
+void keep_registration(const ReconstructJob& job, const ReconstructSummary& s) {
+  io::TransformFile file;
+  file.sem_to_afm = s.pose->sem_to_afm;
+  file.verified = s.pose->verified();
+  if (s.pose->registration)
+    file.verdict = fmt::format("{}: {}", name(s.pose->registration->verdict), s.pose->registration->reason);
+  io::write_transform(job.folder / "transform.json", file);
+}
+
+/// Watches a step of the chain for a job.
+class Warnings {
+ public:
+  Warnings(const ChainListener& listener, ReconstructSummary& summary) : told_(listener) {
+    told_.warn = [&listener, &summary](const std::string& warning) {
+      summary.warnings.push_back(warning);
+      if (listener.warn) listener.warn(warning);
+    };
+  }
+  const ChainListener& listener() const { return told_; }
+
+ private:
+  ChainListener told_;
+};
+
+/// The SEM image, calibrated and with its noise.
+SemData sem_data(const ReconstructJob& job, ReconstructSummary& s, const PlacedImage& image, const ChainListener& told) {
+  begin(told, "calibration");
+  const HeightField* eroded = s.afm ? &s.afm->eroded() : nullptr;
+  const Affine map = s.pose ? s.pose->sem_to_afm : Affine{};
+  FirstCalibration first = calibrate_first(image, eroded, *s.model->model, map, job.calibration, job.sem_noise,
+                                           job.options.threads);
+  for (const std::string& warning : first.warnings) told.warn(warning);
+  s.calibration = first.fit;
+  s.sem_noise = first.noise;
+  s.sem_noise_from = first.noise_from;
+  return {image, s.model->model, first.gains, first.offset, first.noise, map};
+}
+
+}  // namespace
+
+ReconstructSummary run(const ReconstructJob& job, const ChainListener& listener) {
+  check(job);
+  ReconstructSummary s;
+  const Warnings warnings(listener, s);
+  const ChainListener& told = warnings.listener();
+  const int threads = job.options.threads;
+  PlacedImage image;
+  if (job.sem) {
+    image = job.sem->image;
+    s.saturated = leave_out_saturated(image);
+    if (s.saturated > 0 && told.note) told.note(fmt::format("SEM: {} saturated pixels are left out", s.saturated));
+    ModelRequest request = job.model;
+    if (request.folder.empty()) request.folder = job.folder;   // without a cache
+    s.model = model_of(request, image, told);
+  }
+  if (job.afm) s.afm = prepare(*job.afm, threads, told);
+  if (job.afm && job.sem) {
+    s.pose = pose_of(job.pose, *s.afm, image, *s.model, threads, told);
+    if (!s.pose->verified() && !job.pose.accept_unverified) {
+      keep_registration(job, s);
+      if (job.picture)
+        io::write_plot(job.folder / "registration.png", registration_picture(image, s.pose->simulated, s.pose->sem_to_afm));
+      s.verdict = ReconstructionVerdict::not_registered;
+      s.reasons = {fmt::format("the registration is {}: {}", name(s.pose->registration->verdict), s.pose->registration->reason)};
+      return s;
+    }
+  }
+  std::optional<AfmData> afm;
+  std::optional<SemData> sem;
+  if (job.sem) sem = sem_data(job, s, image, told);
+  if (job.afm) afm = AfmData{s.afm->image, s.afm->tip, s.afm->noise, job.upsample};
+
+  begin(told, "reconstruction");
+  std::filesystem::create_directories(job.folder);
+  const AfmData* afm_data = afm ? &*afm : nullptr;
+  const SemData* sem_data = sem ? &*sem : nullptr;
+  ReconstructionCheckpoint checkpoint(job.folder / "checkpoint",
+                                      identity_of(job, afm_data, sem_data, s.model ? &*s.model : nullptr), told.note);
+  if (const auto state = checkpoint.found()) {
+    s.resumed = true;
+    if (told.note) told.note(fmt::format("{} scales are done already: going on from there", state->scales.size()));
+  }
+  ReconstructionOptions options = job.options;
+  options.watch = watch_of(told);
+  s.result = reconstruct(afm_data, sem_data, options, &checkpoint);
+  for (const std::string& warning : s.result.warnings) told.warn(warning);
+  if (job.truth) s.truth = compare_with_truth(s.result, *job.truth);
+  s.reasons = reasons_of(s);
+  if (!s.reasons.empty()) s.verdict = ReconstructionVerdict::flagged;
+
+  begin(told, "writing");
+  s.written = write_reconstruction(job, s, afm_data, sem_data);
+  checkpoint.remove();
+  return s;
+}
+
+const char* name(ReconstructionVerdict verdict) {
+  switch (verdict) {
+    case ReconstructionVerdict::sound: return "sound";
+    case ReconstructionVerdict::flagged: return "flagged";
+    case ReconstructionVerdict::not_registered: break;
+  }
+  return "not registered";
+}
+
+const char* name(ReconstructionMethod method) {
+  switch (method) {
+    case ReconstructionMethod::gauss_newton: return "gauss-newton";
+    case ReconstructionMethod::conjugate_gradients: return "conjugate-gradients";
+    case ReconstructionMethod::lbfgs: break;
+  }
+  return "lbfgs";
+}
+
+}  // namespace surf::workflow

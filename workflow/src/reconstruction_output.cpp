@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "reconstruction_output.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "reconstruction_panel.h"
+#include "reconstruction_report.h"
+#include "surf/core/units.h"
+#include "surf/io/files.h"
+#include "surf/io/height_field_file.h"
+#include "surf/io/image_file.h"
+#include "surf/io/model_file.h"
+#include "surf/io/plot.h"
+#include "surf/io/surface_file.h"
+#include "surf/io/tip_file.h"
+#include "surf/io/transform_file.h"
+#include "surf/mesh/height_field_mesh.h"
+#include "surf/workflow/version.h"
+
+namespace surf::workflow {
+namespace {
+
+namespace fs = std::filesystem;
+using Metadata = std::map<std::string, std::string>;
+
+/// What made a file: the same for a run that is repeated from the report.
+Metadata made_by(const ReconstructJob& job) {
+  Metadata made{{"semsurf.version", version()}, {"command", "reconstruct"}};
+  int number = 0;
+  const auto add = [&](const fs::path& file) {
+    made[fmt::format("input.{}", ++number)] =
+        fmt::format("{} sha256 {}", file.filename().string(), io::sha256_of_file(file));
+  };
+  if (job.afm) add(job.afm->file);
+  if (job.sem) add(job.sem->file);
+  return made;
+}
+
+template <class T>
+Channel channel(const std::string& name, const std::string& unit, const Grid<T>& values) {
+  Channel c{name, unit, Grid<float>(values.width(), values.height())};
+  std::ranges::transform(values.data(), c.values.data().begin(), [](T v) { return static_cast<float>(v); });
+  return c;
+}
+
+/// A mask, or 1 everywhere.
+Channel valid_channel(const Grid<unsigned char>& valid, int width, int height) {
+  return channel("valid", "1", valid.empty() ? Grid<unsigned char>(width, height, 1) : valid);
+}
+
+Image placed_like(double pitch_x, double pitch_y, double origin_x, double origin_y, const Metadata& made) {
+  Image image;
+  image.pitch_x_nm = pitch_x, image.pitch_y_nm = pitch_y;
+  image.origin_x_nm = origin_x, image.origin_y_nm = origin_y;
+  image.metadata = made;
+  return image;
+}
+
+Image placed_like(const HeightField& f, const Metadata& made) {
+  return placed_like(f.pitch_x_nm, f.pitch_y_nm, f.origin_x_nm, f.origin_y_nm, made);
+}
+
+/// Certainty of the scan at the surface's samples: 1 where the eroded scan is the surface, 0 where it may lie above.
+Grid<unsigned char> certain_on(const HeightField& surface, const CertaintyMap& map, const Affine& to_afm) {
+  Grid<unsigned char> certain(surface.z_nm.width(), surface.z_nm.height());
+  const HeightField& scan = map.surface;
+  for (int y = 0; y < certain.height(); ++y)
+    for (int x = 0; x < certain.width(); ++x) {
+      const Point2 p = to_afm({surface.x_nm(x), surface.y_nm(y)});
+      const double column = std::round((p.x - scan.origin_x_nm) / scan.pitch_x_nm);
+      const double row = std::round((p.y - scan.origin_y_nm) / scan.pitch_y_nm);
+      if (!(column >= 0 && row >= 0 && column < scan.z_nm.width() && row < scan.z_nm.height())) continue;
+      certain(x, y) = map.level(static_cast<int>(column), static_cast<int>(row)) != CertaintyMap::uncertain;
+    }
+  return certain;
+}
+
+/// The surface with all that is known of its heights.
+Image surface_image(const ReconstructSummary& s, const Metadata& made) {
+  const Reconstruction& r = s.result;
+  Image image = placed_like(r.surface, made);
+  image.channels.push_back(channel("z_nm", "nm", r.surface.z_nm));
+  if (!r.deviation_nm.empty()) image.channels.push_back(channel("deviation_nm", "nm", r.deviation_nm));
+  if (!r.held_by.empty()) image.channels.push_back(channel("held_by", "1", r.held_by));
+  if (s.afm)
+    image.channels.push_back(channel("certain", "1", certain_on(r.surface, s.afm->certainty, s.pose ? r.sem_to_afm : Affine{})));
+  if (!r.start.z_nm.empty() && r.start.z_nm.size() == r.surface.z_nm.size())
+    image.channels.push_back(channel("start_nm", "nm", r.start.z_nm));
+  image.channels.push_back(valid_channel(r.surface.valid, r.surface.z_nm.width(), r.surface.z_nm.height()));
+  return image;
+}
+
+SurfaceScene surface_scene(const Reconstruction& r, const Metadata& made) {
+  SurfaceScene scene;
+  scene.metadata = made;
+  Surface surface;
+  surface.name = "reconstruction";
+  surface.mesh = height_field_sheet(r.surface);
+  const auto scalar = [&](const std::string& name, const std::string& unit, const auto& values) {
+    VertexScalar v{name, unit, {}};
+    for (const auto value : values.data()) v.values.push_back(static_cast<float>(value));
+    surface.scalars.push_back(std::move(v));
+  };
+  if (!r.deviation_nm.empty()) scalar("deviation", "nm", r.deviation_nm);
+  scalar("height", "nm", r.surface.z_nm);
+  if (!r.held_by.empty()) scalar("held_by", "1", r.held_by);
+  scene.surfaces.push_back(std::move(surface));
+  return scene;
+}
+
+Image afm_image(const Reconstruction& r, const AfmData& afm, const Metadata& made) {
+  Image image = placed_like(afm.image, made);
+  image.channels = {channel("simulated_nm", "nm", r.simulated_afm.z_nm), channel("scan_nm", "nm", afm.image.z_nm),
+                    channel("residual", "1", r.afm_residual), channel("used", "1", r.afm_used),
+                    valid_channel(r.simulated_afm.valid, afm.image.z_nm.width(), afm.image.z_nm.height())};
+  return image;
+}
+
+Image sem_image(const Reconstruction& r, const SemData& sem, const Metadata& made) {
+  Image image = placed_like(r.surface, made);
+  image.channels = {channel("simulated", "1", r.simulated_sem), channel("sem", "1", sem.image.values),
+                    channel("residual", "1", r.sem_residual),
+                    valid_channel(sem.image.valid, r.simulated_sem.width(), r.simulated_sem.height())};
+  return image;
+}
+
+void append(std::string& line, const ResidualReport& r) {
+  line += fmt::format(",{},{},{},{},{}", format_exact(r.mean), format_exact(r.deviation), format_exact(r.along),
+                      format_exact(r.across), r.like_noise ? 1 : 0);
+}
+
+}  // namespace
+
+std::string history_text(const std::vector<ScaleReport>& scales) {
+  std::string text = "sigma_px,afm,sem,prior,gradient_norm,iterations,evaluations,products,ended";
+  for (const char* image : {"afm", "sem"})
+    for (const char* what : {"mean", "deviation", "along", "across", "like_noise"}) text += fmt::format(",{}_{}", image, what);
+  text += '\n';
+  for (const ScaleReport& s : scales) {
+    std::string line = fmt::format("{},{},{},{},{},{},{},{},{}", format_exact(s.sigma_px), format_exact(s.afm),
+                                   format_exact(s.sem), format_exact(s.prior), format_exact(s.gradient_norm), s.iterations,
+                                   s.evaluations, s.products, s.ended);
+    append(line, s.afm_residual);
+    append(line, s.sem_residual);
+    text += line + "\n";
+  }
+  return text;
+}
+
+std::vector<fs::path> write_reconstruction(const ReconstructJob& job, const ReconstructSummary& s, const AfmData* afm,
+                                           const SemData* sem) {
+  const Reconstruction& r = s.result;
+  const Metadata made = made_by(job);
+  std::vector<fs::path> written;
+  const auto file = [&](const char* name) {
+    written.push_back(job.folder / name);
+    return written.back();
+  };
+  io::write_image(file("surface.vti"), surface_image(s, made));
+  io::write_height_field(file("surface.gsf"), r.surface, made);
+  io::write_surfaces(file("surface.glb"), surface_scene(r, made));
+  if (afm) {
+    io::write_image(file("simulated_afm.vti"), afm_image(r, *afm, made));
+    io::write_tip(file("tip.txt"), afm->tip, {{"semsurf.version", version()}});
+  }
+  if (sem) {
+    io::write_image(file("simulated_sem.vti"), sem_image(r, *sem, made));
+    io::write_model(file("model.json"), s.model->trained);
+  }
+  if (afm && sem) {
+    io::TransformFile transform;
+    transform.sem_to_afm = r.sem_to_afm;
+    transform.verified = s.pose->verified();
+    transform.verdict = "as it is after the reconstruction";
+    io::write_transform(file("transform.json"), transform);
+  }
+  io::write_text(file("history.csv"), history_text(r.scales));
+  if (job.picture) io::write_plot(file("panel.png"), reconstruction_panel(job, s, afm, sem));
+  io::write_text(file("report.json"), reconstruction_report(job, s, afm, sem));
+  return written;
+}
+
+}  // namespace surf::workflow

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "surf/workflow/register_job.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "chain_steps.h"
+#include "registration_picture.h"
+#include "surf/core/error.h"
+#include "surf/core/units.h"
+#include "surf/io/files.h"
+#include "surf/io/plot.h"
+#include "surf/io/transform_file.h"
+#include "surf/workflow/version.h"
+
+namespace surf::workflow {
+namespace {
+
+std::string hash_line(const std::filesystem::path& file) {
+  return fmt::format("{} sha256 {}", file.filename().string(), io::sha256_of_file(file));
+}
+
+io::TransformFile transform_file(const RegisterJob& job, const RegisterSummary& s) {
+  io::TransformFile file;
+  file.sem_to_afm = s.pose.sem_to_afm;
+  file.verified = s.pose.verified();
+  file.notes = {{"semsurf.version", version()}, {"command", "register"}, {"afm", hash_line(job.afm.file)},
+                {"sem", hash_line(job.sem.file)},
+                {"model", fmt::format("{} sha256 {}", s.model.file.filename().string(), s.model.sha256)}};
+  if (!s.pose.registration) return file;
+  const Registration& r = *s.pose.registration;
+  file.verdict = fmt::format("{}: {}", name(r.verdict), r.reason);
+  file.notes["score"] = format_exact(r.score);
+  file.notes["stderr_px"] = format_exact(r.stderr_px);
+  file.notes["overlap"] = format_exact(r.overlap);
+  return file;
+}
+
+}  // namespace
+
+RegisterSummary run(const RegisterJob& job, const ChainListener& listener) {
+  validate(job.sem.image, "SEM image");
+  if (!job.transform.empty()) io::check_writable(job.transform);
+  if (!job.picture.empty()) io::check_plot_target(job.picture);
+  RegisterSummary s;
+  s.model = model_of(job.model, job.sem.image, listener);
+  s.afm = prepare(job.afm, job.threads, listener);
+  s.pose = pose_of(job.pose, s.afm, job.sem.image, s.model, job.threads, listener);
+  if (!job.transform.empty()) io::write_transform(job.transform, transform_file(job, s));
+  if (!job.picture.empty())
+    io::write_plot(job.picture, registration_picture(job.sem.image, s.pose.simulated, s.pose.sem_to_afm));
+  return s;
+}
+
+}  // namespace surf::workflow
