@@ -74,20 +74,25 @@ double error_px(const Affine& a, const Affine& b, int w, int h, double half) {
 
 TEST(RegisterImages, FindsRandomMapsWithoutAStart) {
   double z2 = 0;
-  constexpr int maps = 5;
+  constexpr int maps = 20;
+  int verified = 0;
   for (std::uint64_t seed = 1; seed <= maps; ++seed) {
     const Spots spots(seed);
     const Affine truth = random_map(seed);
-    const PlacedImage sem = image_of(spots, truth, 90, 70, 1, 0.3, 2 * seed), afm = image_of(spots, {}, 70, 70, 1.25, 0.03, 2 * seed + 1);
+    const PlacedImage sem = image_of(spots, truth, 90, 70, 1, 0.3, 2 * seed);
+    const PlacedImage afm = image_of(spots, {}, 70, 70, 1.25, 0.03, 2 * seed + 1);
     const Registration r = register_images(sem, afm);
-    EXPECT_EQ(r.verdict, RegistrationVerdict::verified) << seed << ": " << r.reason;
     const double error = error_px(truth, r.sem_to_afm, 90, 70, 43);
+    EXPECT_LT(error, 0.5) << seed << ": " << r.reason;
+    if (r.verdict != RegistrationVerdict::verified) continue;
     EXPECT_LT(error, 0.3) << seed;
-    z2 += error * error / (r.stderr_px * r.stderr_px) / maps;
+    z2 += error * error / (r.stderr_px * r.stderr_px);
+    ++verified;
   }
-  // The standard error is neither far too small nor far too large.
-  EXPECT_GT(z2, 0.3);
-  EXPECT_LT(z2, 3);
+  EXPECT_GE(verified, maps - 3);
+  // The standard error is not too small, nor far too large.
+  EXPECT_GT(z2 / verified, 0.1);
+  EXPECT_LT(z2 / verified, 2);
 }
 
 TEST(RegisterImages, MutualInformationFindsInvertedImages) {
@@ -204,7 +209,7 @@ TEST(Correlation, DerivativesAreThoseOfDifferences) {
   const Spots spots(2);
   const PlacedImage sem = image_of(spots, {}, 40, 30, 1, 0.1, 1), afm = image_of(spots, {}, 40, 40, 1.3, 0.1, 2);
   const CornerFrame frame(sem, afm);
-  const BlurLevel level(sem, afm, frame, 1);
+  const BlurLevel level(sem, afm, frame, 1, true);
   Corners c = frame.corners(make_affine({0.1, 1.02, 0.97, 0.01, 1.3, -0.4}));
   const Correlation correlation(level, c);
   const std::size_t n = correlation.size();
