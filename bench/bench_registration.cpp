@@ -1,17 +1,24 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // How well images are registered from no landmarks: random affine maps (any turn, scales 0.8 to 1.25 along each
 // axis, shear up to 5 %, overlap from 50 %) of random surfaces.
-//   bench_registration MODEL.json [COUNT [SEED [mi]]]
-// MODEL.json: a fast model, samples/si-1keV-3nm.json. COUNT (300): maps of surfaces with a pose that can be known,
-// half of 456 x 172 and half of 300 x 300 SEM pixels; a fifth as many of each pattern that repeats or slides, and of
-// images that show different places. SEED (1). `mi`: by mutual information. How the images are made: registration_scenes.h.
+//   bench_registration MODEL.json RESULTS.csv FROM TO
+// MODEL.json: a fast model, samples/si-1keV-3nm.json. RESULTS.csv: what it appends to, one line a pair of images;
+// pairs that are there already are not done again, so that 0 300 can be measured in parts. FROM, TO: numbers of
+// maps, TO not among them. Each number is a surface whose pose can be known, of five kinds in turn and of
+// 456 x 172 and 300 x 300 SEM pixels in turn; each fifth number also one of every pattern that repeats or
+// slides, and images that show different places. At the end it sums up all that RESULTS.csv holds. How the
+// images are made: registration_scenes.h.
 // error: root mean square over the overlap of where SEM pixels are put less where they belong, SEM pixels.
-// z: error over its own standard error; a mean square of 1 says that the standard error is right.
+// z: error over its own standard error; a mean square of 1 says that the standard error is right, less that it
+// is too large. seconds: of all threads.
 #include <algorithm>
-#include <ctime>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <ctime>
+#include <fstream>
+#include <map>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -56,96 +63,130 @@ double upper_limit(int k, int n) {
   return high;
 }
 
-/// Of all threads.
-double cpu_s() {
-  return double(std::clock()) / CLOCKS_PER_SEC;
-}
+constexpr Pattern knowable[] = {Pattern::blocks, Pattern::bumps, Pattern::pits, Pattern::rough,
+                                Pattern::lines_with_ends};
+constexpr Pattern open[] = {Pattern::grating, Pattern::dots, Pattern::single_line, Pattern::unrelated};
+constexpr const char* verdicts[] = {"verified", "ambiguous", "unconverged", "unrelated"};
 
-const char* name_of(RegistrationVerdict v) {
-  constexpr const char* names[] = {"verified", "ambiguous", "unconverged", "unrelated"};
-  return names[static_cast<int>(v)];
-}
+/// One pair of images, as a line of the file has it.
+struct Row {
+  int number = 0, pattern = 0, verdict = 0, rivals = 0;
+  double overlap = 0, error_px = 0, stderr_px = 0, blur_px = 0, score = 0, seconds = 0;
 
-struct Tally {
-  int count = 0, verdicts[4] = {}, wrong = 0, off = 0, with_rivals = 0;
-  std::vector<double> errors, seconds, zs, stderrs;
-  int lost = 0;   // not accepted, and not near the truth either
-
-  void print(const char* what) {
-    const auto quantile = [](std::vector<double> v, double share) {
-      if (v.empty()) return 0.0;
-      std::sort(v.begin(), v.end());
-      return v[static_cast<std::size_t>(share * double(v.size() - 1))];
-    };
-    double z2 = 0;
-    for (const double z : zs) z2 += z * z / double(std::max<std::size_t>(1, zs.size()));
-    fmt::print("{:<16} {:4}  verified {:4} ambiguous {:4} unconverged {:3} unrelated {:3} | error median {:.3f} p95 {:.3f} "
-               "max {:.3f} | stderr median {:.3f} z^2 {:.2f} | over 0.3 px {:2} over 1 px {:2} lost {:2} | s median {:.2f} max {:.2f}\n",
-               what, count, verdicts[0], verdicts[1], verdicts[2], verdicts[3], quantile(errors, 0.5), quantile(errors, 0.95),
-               quantile(errors, 1), quantile(stderrs, 0.5), z2, off, wrong, lost, quantile(seconds, 0.5), quantile(seconds, 1));
-  }
-  void add(const Tally& o) {
-    count += o.count;
-    for (int i = 0; i < 4; ++i) verdicts[i] += o.verdicts[i];
-    wrong += o.wrong, off += o.off, lost += o.lost, with_rivals += o.with_rivals;
-    errors.insert(errors.end(), o.errors.begin(), o.errors.end());
-    seconds.insert(seconds.end(), o.seconds.begin(), o.seconds.end());
-    zs.insert(zs.end(), o.zs.begin(), o.zs.end());
-    stderrs.insert(stderrs.end(), o.stderrs.begin(), o.stderrs.end());
-  }
+  bool verified() const { return verdict == static_cast<int>(RegistrationVerdict::verified); }
 };
+
+std::vector<Row> read_rows(const std::string& path) {
+  std::vector<Row> rows;
+  std::ifstream file(path);
+  for (std::string line; std::getline(file, line);) {
+    std::replace(line.begin(), line.end(), ',', ' ');
+    std::istringstream in(line);
+    Row r;
+    if (in >> r.number >> r.pattern >> r.verdict >> r.rivals >> r.overlap >> r.error_px >> r.stderr_px >> r.blur_px >>
+        r.score >> r.seconds)
+      rows.push_back(r);
+  }
+  return rows;
+}
+
+Row measure(const std::shared_ptr<const ImageModel>& model, int number, Pattern pattern) {
+  SceneMaker maker(model, 1000003 + 100000 * static_cast<std::uint64_t>(pattern) + static_cast<std::uint64_t>(number));
+  const RegistrationScene scene =
+      number % 2 == 0 ? maker.make(pattern, 456, 172, 0.5) : maker.make(pattern, 300, 300, 0.5);
+  const std::clock_t start = std::clock();
+  const Registration r = register_images(scene.sem, scene.simulated);
+  const double seconds = double(std::clock() - start) / CLOCKS_PER_SEC;
+  fmt::print("  {} {} {} error {:.3f}: {}\n", number, surf::name_of(pattern), verdicts[static_cast<int>(r.verdict)],
+             error_px(scene, r.sem_to_afm), r.reason);
+  return {number, static_cast<int>(pattern), static_cast<int>(r.verdict), static_cast<int>(r.rivals.size()),
+          scene.overlap, error_px(scene, r.sem_to_afm), r.stderr_px, r.blur_px, r.score, seconds};
+}
+
+double quantile(std::vector<double> v, double share) {
+  if (v.empty()) return 0;
+  std::sort(v.begin(), v.end());
+  return v[static_cast<std::size_t>(share * double(v.size() - 1))];
+}
+
+void print(const char* what, const std::vector<Row>& rows) {
+  if (rows.empty()) return;
+  int counts[4] = {}, with_rivals = 0, over_third = 0, over_one = 0, near = 0;
+  std::vector<double> errors, stderrs, seconds;
+  double z2 = 0;
+  for (const Row& r : rows) {
+    ++counts[r.verdict];
+    with_rivals += r.rivals > 0;
+    seconds.push_back(r.seconds);
+    near += !r.verified() && r.error_px <= 1;
+    if (!r.verified()) continue;
+    errors.push_back(r.error_px);
+    stderrs.push_back(r.stderr_px);
+    z2 += r.error_px * r.error_px / (r.stderr_px * r.stderr_px);
+    over_third += r.error_px > 0.3;
+    over_one += r.error_px > 1;
+  }
+  fmt::print("{:<16} {:4}:", what, rows.size());
+  for (int i = 0; i < 4; ++i) fmt::print(" {} {}", verdicts[i], counts[i]);
+  fmt::print(" (rivals {}, within 1 px though not verified {})\n", with_rivals, near);
+  if (!errors.empty())
+    fmt::print("{:22} verified: error median {:.3f} p95 {:.3f} max {:.3f}, over 0.3 px {}, over 1 px {}; stderr median "
+               "{:.3f}, z^2 {:.2f}\n",
+               "", quantile(errors, 0.5), quantile(errors, 0.95), quantile(errors, 1), over_third, over_one,
+               quantile(stderrs, 0.5), z2 / double(errors.size()));
+  fmt::print("{:22} seconds: median {:.2f} max {:.2f}\n", "", quantile(seconds, 0.5), quantile(seconds, 1));
+}
+
+void sum_up(const std::vector<Row>& rows) {
+  const auto of = [&](auto&& wanted) {
+    std::vector<Row> some;
+    std::copy_if(rows.begin(), rows.end(), std::back_inserter(some), wanted);
+    return some;
+  };
+  const auto is = [](const Row& r, Pattern p) { return r.pattern == static_cast<int>(p); };
+  const auto is_open = [&](const Row& r) {
+    return std::any_of(std::begin(open), std::end(open), [&](Pattern p) { return is(r, p); });
+  };
+  for (const auto& patterns : {std::vector<Pattern>(std::begin(knowable), std::end(knowable)),
+                               std::vector<Pattern>(std::begin(open), std::end(open))})
+    for (const Pattern p : patterns) print(surf::name_of(p), of([&](const Row& r) { return is(r, p); }));
+  const std::vector<Row> with = of([&](const Row& r) { return !is_open(r); }), without = of(is_open);
+  print("with a pose", with);
+  print("without a pose", without);
+  for (const double limit : {0.3, 1.0}) {
+    const auto wrong = std::count_if(with.begin(), with.end(), [&](const Row& r) { return r.verified() && r.error_px > limit; });
+    fmt::print("verified and off by more than {} px: {} of {}, 95 % upper limit {:.2f} %\n", limit, wrong, with.size(),
+               100 * upper_limit(static_cast<int>(wrong), static_cast<int>(with.size())));
+  }
+  const auto wrong = std::count_if(without.begin(), without.end(), [](const Row& r) { return r.verified(); });
+  fmt::print("without a pose and verified: {} of {}, 95 % upper limit {:.2f} %\n", wrong, without.size(),
+             100 * upper_limit(static_cast<int>(wrong), static_cast<int>(without.size())));
+}
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (argc < 2) return fmt::print(stderr, "bench_registration MODEL.json [COUNT [SEED [mi]]]\n"), 2;
-  const int wanted = argc > 2 ? std::atoi(argv[2]) : 300;
-  const std::uint64_t seed = argc > 3 ? std::strtoull(argv[3], nullptr, 10) : 1;
+  if (argc != 5) return fmt::print(stderr, "bench_registration MODEL.json RESULTS.csv FROM TO\n"), 2;
   const auto model = make_model(io::read_model(argv[1]));
-  RegistrationOptions options;
-  if (argc > 4 && std::string(argv[4]) == "mi") options.objective = RegistrationObjective::mutual_information;
-  const bool verbose = std::getenv("VERBOSE") != nullptr;
-
-  const auto run = [&](Pattern pattern, int count, std::uint64_t first) {
-    Tally tally;
-    for (int i = 0; i < count; ++i) {
-      SceneMaker maker(model, seed * 1000003 + first + static_cast<std::uint64_t>(i));
-      const RegistrationScene scene = i % 2 == 0 ? maker.make(pattern, 456, 172, 0.5) : maker.make(pattern, 300, 300, 0.5);
-      const double start = cpu_s();
-      const Registration r = register_images(scene.sem, scene.simulated, options);
-      tally.seconds.push_back(cpu_s() - start);
-      ++tally.count;
-      ++tally.verdicts[static_cast<int>(r.verdict)];
-      const double error = error_px(scene, r.sem_to_afm);
-      if (r.verdict == RegistrationVerdict::verified) {
-        tally.errors.push_back(error);
-        tally.stderrs.push_back(r.stderr_px);
-        tally.zs.push_back(error / r.stderr_px);
-        tally.off += error > 0.3;
-        tally.wrong += error > 1;
-      } else if (error > 1) {
-        ++tally.lost;
-      }
-      tally.with_rivals += !r.rivals.empty();
-      if (verbose)
-        fmt::print("  {} {} {} overlap {:.2f} error {:.3f} stderr {:.3f} blur {} score {:.3f} rivals {} {:.2f} s: {}\n", surf::name_of(pattern), i,
-                   name_of(r.verdict), scene.overlap, error, r.stderr_px, r.blur_px, r.score, r.rivals.size(), tally.seconds.back(), r.reason);
-      std::fflush(stdout);
-    }
-    tally.print(surf::name_of(pattern));
-    return tally;
+  const std::string path = argv[2];
+  std::vector<Row> rows = read_rows(path);
+  const auto add = [&](int number, Pattern pattern) {
+    if (std::any_of(rows.begin(), rows.end(), [&](const Row& r) {
+          return r.number == number && r.pattern == static_cast<int>(pattern);
+        }))
+      return;
+    const Row r = measure(model, number, pattern);
+    rows.push_back(r);
+    std::ofstream file(path, std::ios::app);
+    if (rows.size() == 1) file << "number,pattern,verdict,rivals,overlap,error_px,stderr_px,blur_px,score,seconds\n";
+    file << fmt::format("{},{},{},{},{:.4f},{:.4f},{:.4f},{},{:.5f},{:.3f}\n", r.number, r.pattern, r.verdict, r.rivals,
+                        r.overlap, r.error_px, r.stderr_px, r.blur_px, r.score, r.seconds);
+    std::fflush(stdout);
   };
-
-  constexpr Pattern knowable[] = {Pattern::blocks, Pattern::bumps, Pattern::pits, Pattern::rough, Pattern::lines_with_ends};
-  constexpr Pattern open[] = {Pattern::grating, Pattern::dots, Pattern::single_line, Pattern::unrelated};
-  Tally all, none;
-  for (std::size_t p = 0; p < std::size(knowable); ++p)
-    all.add(run(knowable[p], (wanted + 4 - static_cast<int>(p)) / 5, 100000 * p));
-  all.print("with a pose");
-  const int false_ones = all.off;
-  fmt::print("accepted {:.1f} %; accepted and off by more than 0.3 px: {} of {}, 95 % upper limit {:.2f} %\n",
-             100.0 * all.verdicts[0] / std::max(1, all.count), false_ones, all.count, 100 * upper_limit(false_ones, all.count));
-  for (std::size_t p = 0; p < std::size(open); ++p) none.add(run(open[p], (wanted + 4) / 5, 1000000 + 100000 * p));
-  fmt::print("without a pose: accepted {} of {}, 95 % upper limit {:.2f} %; with rivals {}\n", none.verdicts[0], none.count,
-             100 * upper_limit(none.verdicts[0], std::max(1, none.count)), none.with_rivals);
+  for (int number = std::atoi(argv[3]); number < std::atoi(argv[4]); ++number) {
+    add(number, knowable[number % std::size(knowable)]);
+    if (number % std::size(knowable) == 0)
+      for (const Pattern pattern : open) add(number, pattern);
+  }
+  sum_up(rows);
 }

@@ -3,7 +3,7 @@
 
 #include <ceres/tiny_solver.h>
 
-#include <Eigen/Core>
+#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 
@@ -12,6 +12,13 @@ namespace {
 
 constexpr std::size_t fewest_samples = 24;
 constexpr double settled_px = 2e-3;
+constexpr double difference_px = 0.05;
+constexpr double least_stiffness = 1e-6;   // over the largest: what is softer is left alone
+constexpr double longest_step_px = 1;
+
+using Matrix6 = Eigen::Matrix<double, 6, 6>;
+using Vector6 = Eigen::Matrix<double, 6, 1>;
+using Columns = Eigen::Matrix<double, Eigen::Dynamic, 6>;
 
 double normalise(std::vector<double>& v) {
   double mean = 0, sum = 0;
@@ -96,7 +103,102 @@ double Correlation::evaluate(const double* at, double* residuals, double* jacobi
   return r;
 }
 
-CorrelationFit fit_correlation(const BlurLevel& level, const Corners& start, int rounds, int iterations) {
+Corners Correlation::gradient(const Corners& corners) const {
+  const std::size_t n = size();
+  std::vector<SmoothImage::Value> v(n);
+  double mean = 0;
+  for (std::size_t k = 0; k < n; ++k) {
+    const Point2 p = place(corners, level_.samples[overlap_[k]].shares);
+    v[k] = level_.afm.at(p.x, p.y);
+    mean += v[k].value;
+  }
+  mean /= static_cast<double>(n);
+  double ab = 0, bb = 0;
+  for (std::size_t k = 0; k < n; ++k) {
+    v[k].value -= mean;
+    ab += a_[k] * v[k].value;
+    bb += v[k].value * v[k].value;
+  }
+  Corners sum{};
+  if (!(ab > 0)) return sum;
+  const double slope = ab / bb;
+  for (std::size_t k = 0; k < n; ++k) {
+    const double left = a_[k] - slope * v[k].value;
+    const Shares& shares = level_.samples[overlap_[k]].shares;
+    for (std::size_t i = 0; i < 3; ++i) {
+      sum[2 * i] -= left * v[k].dx * shares[i];
+      sum[2 * i + 1] -= left * v[k].dy * shares[i];
+    }
+  }
+  for (double& g : sum) g *= slope;
+  return sum;
+}
+
+Slopes slopes_at(const Correlation& correlation, const Corners& corners) {
+  Matrix6 h;
+  for (std::size_t p = 0; p < 6; ++p) {
+    Corners above = corners, below = corners;
+    above[p] += difference_px;
+    below[p] -= difference_px;
+    const Corners up = correlation.gradient(above), down = correlation.gradient(below);
+    for (std::size_t i = 0; i < 6; ++i)
+      h(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(p)) = (up[i] - down[i]) / (2 * difference_px);
+  }
+  h = (0.5 * (h + h.transpose())).eval();   // but for rounding it is symmetric
+  Slopes slopes{correlation.gradient(corners), {}};
+  std::copy_n(h.data(), 36, slopes.second.begin());
+  return slopes;
+}
+
+namespace {
+
+/// Newton's steps. With noise in the AFM's image the product of slopes is far too stiff along motions that
+/// little holds, and Levenberg and Marquardt's method crawls.
+class Newton {
+ public:
+  /// Returns how far it went, pixels.
+  double step(const BlurLevel& level, Corners& corners, int& evaluations) {
+    const Correlation correlation(level, corners);
+    if (correlation.size() < fewest_samples) return 0;
+    if (!fresh_enough_) {
+      const Slopes slopes = slopes_at(correlation, corners);
+      eigen_.compute(Matrix6(Eigen::Map<const Matrix6>(slopes.second.data())));
+      evaluations += 12;
+    }
+    const Corners gradient = correlation.gradient(corners);
+    const Vector6 pull = eigen_.eigenvectors().transpose() * Eigen::Map<const Vector6>(gradient.data());
+    const Vector6& stiffness = eigen_.eigenvalues();
+    Vector6 along = Vector6::Zero();
+    for (Eigen::Index i = 0; i < 6; ++i)
+      if (stiffness[i] > least_stiffness * stiffness[5]) along[i] = -pull[i] / stiffness[i];
+    Vector6 step = eigen_.eigenvectors() * along;
+    double length = step.cwiseAbs().maxCoeff();
+    if (!(length > 0)) return 0;
+    if (length > longest_step_px) step *= longest_step_px / length, length = longest_step_px;
+
+    std::vector<double> residual(correlation.size());
+    const double here = correlation.evaluate(corners.data(), residual.data(), nullptr);
+    evaluations += 2;
+    fresh_enough_ = length < 0.25 * longest_step_px;
+    for (int half = 0; half < 6; ++half, step *= 0.5, length *= 0.5, ++evaluations, fresh_enough_ = false) {
+      Corners next = corners;
+      for (std::size_t i = 0; i < 6; ++i) next[i] += step[static_cast<Eigen::Index>(i)];
+      if (correlation.evaluate(next.data(), residual.data(), nullptr) < here) continue;
+      corners = next;
+      return length;
+    }
+    return 0;
+  }
+
+ private:
+  Eigen::SelfAdjointEigenSolver<Matrix6> eigen_;
+  bool fresh_enough_ = false;   // the last step changed the stiffness little
+};
+
+}  // namespace
+
+CorrelationFit fit_correlation(const BlurLevel& level, const Corners& start, int rounds, int iterations,
+                               int newton_steps) {
   CorrelationFit fit;
   fit.corners = start;
   ceres::TinySolver<Misfit> solver;
@@ -118,6 +220,9 @@ CorrelationFit fit_correlation(const BlurLevel& level, const Corners& start, int
     }
     fit.settled = moved < settled_px * std::max(1, level.stride);
   }
+  Newton newton;
+  for (int step = 0; step < newton_steps && (step == 0 || !fit.settled); ++step)
+    fit.settled = newton.step(level, fit.corners, fit.evaluations) < settled_px * std::max(1, level.stride);
   fit.agreement = agreement_of(level, fit.corners);
   return fit;
 }

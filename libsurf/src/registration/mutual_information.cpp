@@ -44,7 +44,8 @@ std::vector<double> afm_values_of(const BlurLevel& level) {
   std::vector<double> values;
   const Grid<double>& grid = level.afm.samples();
   for (std::size_t i = 0; i < grid.size(); i += std::max<std::size_t>(1, grid.size() / std::max<std::size_t>(1, level.samples.size())))
-    if (level.afm.safe().empty() || level.afm.safe().data()[i]) values.push_back(grid.data()[i]);
+    if (level.afm.is_valid(static_cast<int>(i) % grid.width(), static_cast<int>(i) / grid.width()))
+      values.push_back(grid.data()[i]);
   return values;
 }
 

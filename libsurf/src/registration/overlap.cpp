@@ -6,17 +6,18 @@
 
 namespace surf {
 
-BlurLevel::BlurLevel(const PlacedImage& sem_image, const PlacedImage& afm_image, const CornerFrame& frame, double blur)
+BlurLevel::BlurLevel(const PlacedImage& sem_image, const PlacedImage& afm_image, const CornerFrame& frame,
+                     double blur, bool whole)
     : blur_px(blur), stride(std::max(1, static_cast<int>(std::lround(blur)))),
       sem_step_x(sem_image.pitch_x_nm / frame.pixel_nm()), sem_step_y(sem_image.pitch_y_nm / frame.pixel_nm()),
-      sem(sem_image, sem_step_x, sem_step_y, blur),
-      afm(afm_image, afm_image.pitch_x_nm / frame.pixel_nm(), afm_image.pitch_y_nm / frame.pixel_nm(), blur) {
+      sem(sem_image, sem_step_x, sem_step_y, blur, whole),
+      afm(afm_image, afm_image.pitch_x_nm / frame.pixel_nm(), afm_image.pitch_y_nm / frame.pixel_nm(), blur, whole) {
   // Small images keep enough samples to tell six numbers from.
   const int w = sem_image.values.width(), h = sem_image.values.height();
   stride = std::clamp(std::min(w, h) / 12, 1, stride);
   for (int y = (h - 1) % stride / 2; y < h; y += stride)
     for (int x = (w - 1) % stride / 2; x < w; x += stride)
-      if (sem_image.is_valid(x, y)) samples.push_back({frame.shares(x, y), sem.samples()(x, y), x, y});
+      if (sem.is_valid(x, y)) samples.push_back({frame.shares(x, y), sem.samples()(x, y), x, y});
 }
 
 std::vector<std::size_t> overlap_of(const BlurLevel& level, const Corners& corners) {

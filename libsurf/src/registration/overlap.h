@@ -10,7 +10,8 @@ namespace surf {
 
 /// One blur of both images: the SEM's at some of its pixels, the AFM's everywhere.
 struct BlurLevel {
-  BlurLevel(const PlacedImage& sem, const PlacedImage& afm, const CornerFrame& frame, double blur_px);
+  /// `whole`: as SmoothImage has it, for both images.
+  BlurLevel(const PlacedImage& sem, const PlacedImage& afm, const CornerFrame& frame, double blur_px, bool whole);
 
   struct Sample {
     Shares shares;

@@ -21,10 +21,12 @@ namespace {
 
 // How many places are followed how far. The true one is nearly always among the first ten of the search.
 constexpr std::size_t places_searched = 120, places_coarse = 24, places_fine = 8, places_sharp = 3;
-constexpr Effort coarse_effort{3, 8}, fine_effort{6, 12};
+constexpr Effort coarse_effort{3, 8, 0}, fine_effort{6, 12, 0};
+constexpr Effort sharp_effort{1, 4, 10};   // noise is in the slopes: see Newton's steps
 constexpr double sharp_blur_px = 2;    // from here on every pixel counts, and costs
-constexpr double probe_blur_px = 3, widest_result_px = 4;
+constexpr double probe_blur_px = 3, widest_result_px = 2, slip_blur_px = 2;
 constexpr double probes_px[] = {-8, -4, 4, 8};
+constexpr double narrow_share = 0.04;  // of a side: a blur that leaves out less than a sixth of it
 constexpr double rival_apart_px = 1;   // nearer than this it is the same place
 constexpr double chance_odds = 1000;
 constexpr double unit_score_error_of_information = 2;
@@ -47,6 +49,8 @@ void validate(const RegistrationOptions& o) {
           "Give a share above 0, at most 1");
   require(o.rival_sigmas >= 0 && std::isfinite(o.rival_sigmas), "rival sigmas", format_exact(o.rival_sigmas),
           "Give 0 or more");
+  require(o.largest_stderr_px > 0, "largest standard error", format_exact(o.largest_stderr_px) + " px",
+          "Give more than 0 pixels");
   if (!o.start) return;
   const Affine& m = *o.start;
   for (const double v : {m.xx, m.xy, m.x0, m.yx, m.yy, m.y0})
@@ -83,6 +87,10 @@ PlacedImage edges_of(const PlacedImage& image, double blur_px, double pixel_nm) 
   return edges;
 }
 
+const Effort& effort_at(double blur_px) {
+  return blur_px < sharp_blur_px ? sharp_effort : fine_effort;
+}
+
 class Registrar {
  public:
   Registrar(const PlacedImage& sem, const PlacedImage& afm, const RegistrationOptions& options)
@@ -96,10 +104,12 @@ class Registrar {
     const std::vector<double> blurs = blurs_to_use();
     for (const double blur : blurs) {
       const Watch of_blur = fine.part(double(done) / double(blurs.size()), double(done + 1) / double(blurs.size()));
-      refine(trials, level(blur), options_.objective, fine_effort, options_, of_blur);
+      refine(trials, level(blur), options_.objective, effort_at(blur), options_, of_blur);
       ++done;
-      if (searched)
-        prune(trials, level(blur), frame_, options_, std::max(rival_apart_px, 0.5 * blur), blur <= sharp_blur_px ? places_sharp : places_fine);
+      if (!searched) continue;
+      prune(trials, level(blur), frame_, options_, std::max(rival_apart_px, 0.5 * blur),
+            blur <= sharp_blur_px ? places_sharp : places_fine);
+      if (blur <= probe_blur_px && trials.size() > 1) drop_hopeless(trials, level(blur), trials.front().corners);
     }
     return conclude(std::move(trials));
   }
@@ -107,8 +117,15 @@ class Registrar {
  private:
   const BlurLevel& level(double blur) {
     std::unique_ptr<BlurLevel>& made = levels_[blur];
-    if (!made) made = std::make_unique<BlurLevel>(sem_, afm_, frame_, blur);
+    if (!made) made = std::make_unique<BlurLevel>(sem_, afm_, frame_, blur, is_narrow(blur));
     return *made;
+  }
+
+  /// Against both images, so that enough is left within their borders.
+  bool is_narrow(double blur) const {
+    const double sides[] = {sem_.values.width() * sem_.pitch_x_nm, sem_.values.height() * sem_.pitch_y_nm,
+                            afm_.values.width() * afm_.pitch_x_nm, afm_.values.height() * afm_.pitch_y_nm};
+    return blur * frame_.pixel_nm() <= narrow_share * *std::min_element(std::begin(sides), std::end(sides));
   }
 
   std::vector<Trial> from_start() {
@@ -123,7 +140,7 @@ class Registrar {
     const bool steep = options_.objective == RegistrationObjective::mutual_information;
     const PlacedImage sem = steep ? edges_of(sem_, 0.7 * pitch_, frame_.pixel_nm()) : PlacedImage{};
     const PlacedImage afm = steep ? edges_of(afm_, 0.7 * pitch_, frame_.pixel_nm()) : PlacedImage{};
-    const auto blurred_by = [&](double blur) { return BlurLevel(steep ? sem : sem_, steep ? afm : afm_, frame_, blur); };
+    const auto blurred_by = [&](double blur) { return BlurLevel(steep ? sem : sem_, steep ? afm : afm_, frame_, blur, false); };
     const BlurLevel coarse = blurred_by(pitch_);
     const PoseSearch search = search_poses(coarse, pitch_, options_, places_searched, options_.watch.part(0, 0.5));
     chance_evidence_ = chance_bound(search.best_of_pose, chance_odds);
@@ -163,7 +180,10 @@ class Registrar {
 
   Uncertainty known(const Place& trial) {
     const BlurLevel& last = level(blur_);
-    if (by_correlation()) return uncertainty_of(last, trial.corners);
+    if (by_correlation()) {
+      const EdgeSlip slip = edge_slip(level(std::max(blur_, slip_blur_px)), trial.corners);
+      return uncertainty_of(last, trial.corners, slip);
+    }
     Uncertainty u = uncertainty_from(information_covariance(last, options_.mutual_information, trial.corners,
                                                             independent_share(last, trial.corners)),
                                      last, trial.corners);
@@ -171,8 +191,8 @@ class Registrar {
     return u;
   }
 
-  /// Noise hides sharp detail, and blur hides sharp edges: the map is taken from the blur where it is known
-  /// best. All trials go back to it.
+  /// Sharp images show what differs least from a tip's doing, blurred ones have less noise: the map is taken
+  /// from the blur where it is known best. All trials go back to it.
   Uncertainty choose_blur(std::vector<Trial>& trials) {
     const Trial best = trials.front();
     std::optional<Uncertainty> least;
@@ -192,6 +212,14 @@ class Registrar {
     return *least;
   }
 
+  /// What is clearly worse than the best is no rival, and need not be followed to the end.
+  void drop_hopeless(std::vector<Trial>& trials, const BlurLevel& at, const Corners& best) const {
+    if (!by_correlation()) return;
+    const double here = agreement_of(at, best).correlation;
+    const double error = score_error(at, best);
+    std::erase_if(trials, [&](const Trial& t) { return here - t.score > 2 * options_.rival_sigmas * error; });
+  }
+
   /// Other optima along the motions that are known least: on patterns that slide or repeat they are as good.
   std::vector<Trial> probe(const Trial& best, const Uncertainty& u) {
     std::vector<Trial> probes;
@@ -209,14 +237,9 @@ class Registrar {
     for (const RegistrationStep& step : best.steps)
       if (step.blur_px <= std::max(probe_blur_px, blur_) && step.blur_px >= blur_) blurs.push_back(step.blur_px);
     for (const double blur : blurs) {
-      refine(probes, level(blur), options_.objective, fine_effort, options_, {{}, options_.watch.cancel});
+      refine(probes, level(blur), options_.objective, effort_at(blur), options_, {{}, options_.watch.cancel});
       drop_same(level(blur), rival_apart_px);
-      // What is clearly worse is no rival, and need not be followed to the end.
-      const BlurLevel& at = level(blur);
-      if (by_correlation() && blur == blurs.front() && !probes.empty()) {
-        const double here = agreement_of(at, best.corners).correlation, error = score_error(at, best.corners);
-        std::erase_if(probes, [&](const Trial& t) { return here - t.score > 2 * options_.rival_sigmas * error; });
-      }
+      if (blur == blurs.front() && !probes.empty()) drop_hopeless(probes, level(blur), best.corners);
     }
     return probes;
   }
@@ -240,7 +263,8 @@ class Registrar {
     const BlurLevel& last = level(blur_);
     r.covariance = affine_covariance(frame_, u.covariance);
     r.stderr_px = u.place_px;
-    r.overlap = static_cast<double>(best.samples) / static_cast<double>(last.samples.size());
+    const BlurLevel& all = level(0);
+    r.overlap = static_cast<double>(overlap_of(all, best.corners).size()) / static_cast<double>(all.samples.size());
     r.steps = best.steps;
 
     std::vector<Trial> others(trials.begin() + 1, trials.end());
@@ -265,6 +289,7 @@ class Registrar {
     evidence.score = best.score;
     evidence.score_error = u.score;
     evidence.loosest_px = u.loosest_px;
+    evidence.largest_stderr_px = options_.largest_stderr_px;
     evidence.chance_evidence = chance_evidence_;
     // The place that won may not be the one that led when all was coarse.
     for (const Trial& trial : coarse_)

@@ -8,6 +8,8 @@
 namespace surf {
 namespace {
 
+constexpr double whole_share = 0.975;   // two standard deviations from a straight border
+
 std::vector<double> gaussian(double sigma) {
   std::vector<double> taps{1};
   if (sigma <= 0) return taps;
@@ -69,7 +71,7 @@ Weights weights_of(double t) {
 
 }  // namespace
 
-Grid<double> blurred(const PlacedImage& image, double blur_x, double blur_y) {
+Grid<double> blurred(const PlacedImage& image, double blur_x, double blur_y, Grid<double>* seen) {
   const int w = image.values.width(), h = image.values.height();
   double sum = 0, count = 0;
   Grid<double> values = image.values, weight(w, h, 1);
@@ -86,12 +88,22 @@ Grid<double> blurred(const PlacedImage& image, double blur_x, double blur_y) {
   weight = convolved(convolved(weight, across, true), up, false);
   for (std::size_t i = 0; i < values.size(); ++i)
     values.data()[i] = mean + (weight.data()[i] > 1e-12 ? values.data()[i] / weight.data()[i] : 0);
+  if (!seen) return values;
+  const auto sum_of = [](const std::vector<double>& taps) {
+    double all = -taps.front();
+    for (const double tap : taps) all += 2 * tap;
+    return all;
+  };
+  *seen = weight;
+  for (double& share : seen->data()) share /= sum_of(across) * sum_of(up);
   return values;
 }
 
-SmoothImage::SmoothImage(const PlacedImage& image, double step_x, double step_y, double blur)
+SmoothImage::SmoothImage(const PlacedImage& image, double step_x, double step_y, double blur, bool whole)
     : step_x_(step_x), step_y_(step_y), middle_x_(0.5 * (image.values.width() - 1)),
-      middle_y_(0.5 * (image.values.height() - 1)), samples_(blurred(image, blur / step_x, blur / step_y)) {
+      middle_y_(0.5 * (image.values.height() - 1)), valid_(image.valid) {
+  Grid<double> seen;
+  samples_ = blurred(image, blur / step_x, blur / step_y, whole ? &seen : nullptr);
   const int w = samples_.width(), h = samples_.height();
   Grid<double> c = samples_;
   for (int y = 0; y < h; ++y) to_coefficients(&c(0, y), w, 1);
@@ -101,12 +113,17 @@ SmoothImage::SmoothImage(const PlacedImage& image, double step_x, double step_y,
   for (int y = -1; y <= h; ++y)
     for (int x = -1; x <= w; ++x)
       coefficients_(x + 1, y + 1) = c(x < 0 ? 1 : x == w ? w - 2 : x, y < 0 ? 1 : y == h ? h - 2 : y);
-  if (image.valid.empty()) return;
+  if (whole && blur > 0) {
+    valid_ = Grid<unsigned char>(w, h, 0);
+    for (int y = 0; y < h; ++y)
+      for (int x = 0; x < w; ++x) valid_(x, y) = image.is_valid(x, y) && seen(x, y) >= whole_share;
+  }
+  if (valid_.empty()) return;
   safe_ = Grid<unsigned char>(w, h, 0);
   for (int y = 0; y < h; ++y)
     for (int x = 0; x < w; ++x) {
       const int right = std::min(x + 1, w - 1), above = std::min(y + 1, h - 1);
-      safe_(x, y) = image.is_valid(x, y) && image.is_valid(right, y) && image.is_valid(x, above) && image.is_valid(right, above);
+      safe_(x, y) = is_valid(x, y) && is_valid(right, y) && is_valid(x, above) && is_valid(right, above);
     }
 }
 

@@ -9,8 +9,9 @@
 namespace surf {
 
 /// An image after a Gaussian blur of `blur_x`, `blur_y` samples (0: none), what is not valid taking no part:
-/// values where anything valid is near, their mean elsewhere.
-Grid<double> blurred(const PlacedImage& image, double blur_x, double blur_y);
+/// values where anything valid is near, their mean elsewhere. `seen`, where wanted, becomes the share of each
+/// blur's weight that lay on valid samples, 0 to 1.
+Grid<double> blurred(const PlacedImage& image, double blur_x, double blur_y, Grid<double>* seen = nullptr);
 
 /// An image between its samples: a cubic spline, whose slopes have no kinks that would hold an optimum at
 /// the samples (Unser 1999, doi:10.1109/79.799930).
@@ -21,8 +22,10 @@ class SmoothImage {
   };
 
   SmoothImage() = default;
-  /// Places in x and y are (column - middle) * step; blurs in the unit of `step`.
-  SmoothImage(const PlacedImage& image, double step_x, double step_y, double blur);
+  /// Places in x and y are (column - middle) * step; blurs in the unit of `step`. With `whole`, samples whose
+  /// blur reached beyond the image or into what is not valid do not count as valid: what is left of it there lies
+  /// farther inside than the sample.
+  SmoothImage(const PlacedImage& image, double step_x, double step_y, double blur, bool whole = false);
 
   /// Whether the place lies between valid samples.
   bool holds(double x, double y) const {
@@ -36,7 +39,7 @@ class SmoothImage {
   double value(double x, double y) const;
 
   const Grid<double>& samples() const { return samples_; }   ///< blurred
-  const Grid<unsigned char>& safe() const { return safe_; }  ///< cells between valid samples, or empty: all
+  bool is_valid(int column, int row) const { return valid_.empty() || valid_(column, row) != 0; }
   double column(double x) const { return x / step_x_ + middle_x_; }
   double row(double y) const { return y / step_y_ + middle_y_; }
   double half_width() const { return middle_x_ * step_x_; }
@@ -46,7 +49,7 @@ class SmoothImage {
   double step_x_ = 1, step_y_ = 1, middle_x_ = 0, middle_y_ = 0;
   Grid<double> samples_;
   Grid<double> coefficients_;   // one more on each side
-  Grid<unsigned char> safe_;
+  Grid<unsigned char> valid_, safe_;   // samples, and cells between four valid ones; empty: all
 };
 
 }  // namespace surf

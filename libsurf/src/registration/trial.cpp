@@ -19,7 +19,8 @@ void refine_one(Trial& trial, const BlurLevel& level, RegistrationObjective obje
   const Corners before = trial.corners;
   RegistrationStep step{level.blur_px, 0, 0, 0};
   if (objective == RegistrationObjective::correlation) {
-    const CorrelationFit fit = fit_correlation(level, trial.corners, effort.rounds, effort.iterations);
+    const CorrelationFit fit = fit_correlation(level, trial.corners, effort.rounds, effort.iterations,
+                                               effort.newton_steps);
     trial.corners = fit.corners;
     trial.score = fit.agreement.correlation;
     trial.evidence = fit.agreement.evidence();

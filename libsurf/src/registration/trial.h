@@ -26,6 +26,7 @@ struct Trial : Place {
 /// How hard to try at one blur.
 struct Effort {
   int rounds = 6, iterations = 15;
+  int newton_steps = 0;
 };
 
 /// Refines all trials at a level, with the objective that is given.

@@ -13,10 +13,10 @@ using Matrix6 = Eigen::Matrix<double, 6, 6>;
 using Vector6 = Eigen::Matrix<double, 6, 1>;
 using Columns = Eigen::Matrix<double, Eigen::Dynamic, 6>;
 
-constexpr double difference_px = 0.05;
 constexpr int fewest_blocks = 40;
 constexpr double unknown_px = 1e3;   // standard error of a motion that nothing holds
 constexpr int farthest_lag = 24;
+constexpr double edge_block_px = 16;   // a wall, but not both walls of a line
 
 /// Integral of the residuals' autocorrelation along rows and columns, samples, up to where it ends.
 double correlation_length(const BlurLevel& level, const Correlation& correlation, const Eigen::VectorXd& residual) {
@@ -57,11 +57,11 @@ struct Blocks {
   int side = 1;   // samples
 };
 
-Blocks blocks_for(const BlurLevel& level, const Correlation& correlation, double length) {
+Blocks blocks_of(const BlurLevel& level, const Correlation& correlation, int wanted_side) {
   Blocks blocks;
   const double n = static_cast<double>(correlation.size());
   const int largest = std::max(1, static_cast<int>(std::sqrt(n / fewest_blocks)));
-  blocks.side = std::clamp(static_cast<int>(std::ceil(2 + 6 * length)), 1, largest);
+  blocks.side = std::clamp(wanted_side, 1, largest);
   std::map<std::pair<int, int>, std::size_t> numbers;
   for (const std::size_t i : correlation.overlap()) {
     const auto& s = level.samples[i];
@@ -70,6 +70,14 @@ Blocks blocks_for(const BlurLevel& level, const Correlation& correlation, double
   }
   blocks.count = numbers.size();
   return blocks;
+}
+
+int side_for(double length) {
+  return static_cast<int>(std::ceil(2 + 6 * length));
+}
+
+Blocks blocks_for(const BlurLevel& level, const Correlation& correlation, double length) {
+  return blocks_of(level, correlation, side_for(length));
 }
 
 /// Variance of a sum of parts whose blocks are independent, with what the `spent` numbers took of it.
@@ -147,6 +155,27 @@ Matrix6 jackknifed(const Blocks& blocks, const Columns& jacobian, const Eigen::V
   return variance;
 }
 
+/// Slopes of the AFM's image over its norm and times the correlation, so that a motion of the place changes
+/// the residual by minus them: the Jacobian's columns of three corners that move together.
+Eigen::Matrix<double, Eigen::Dynamic, 2> along_axes(const Columns& jacobian) {
+  Eigen::Matrix<double, Eigen::Dynamic, 2> g(jacobian.rows(), 2);
+  g.col(0) = jacobian.col(0) + jacobian.col(2) + jacobian.col(4);
+  g.col(1) = jacobian.col(1) + jacobian.col(3) + jacobian.col(5);
+  return g;
+}
+
+/// Variance of the sum of pulls where each block is displaced as a whole, on its own, by `slip_px` along each axis.
+Matrix6 displaced(const Blocks& blocks, const Columns& jacobian, double slip_px) {
+  using Couple = Eigen::Matrix<double, 6, 2>;
+  const Eigen::Matrix<double, Eigen::Dynamic, 2> g = along_axes(jacobian);
+  std::vector<Couple> couples(blocks.count, Couple::Zero());
+  for (Eigen::Index k = 0; k < jacobian.rows(); ++k)
+    couples[blocks.of_sample[static_cast<std::size_t>(k)]].noalias() += jacobian.row(k).transpose() * g.row(k);
+  Matrix6 variance = Matrix6::Zero();
+  for (const Couple& c : couples) variance += c * c.transpose();
+  return slip_px * slip_px * variance;
+}
+
 double own_length(const BlurLevel& level, const Corners& corners) {
   const Correlation correlation(level, corners);
   Eigen::VectorXd residual(static_cast<Eigen::Index>(correlation.size()));
@@ -170,31 +199,48 @@ double score_error(const BlurLevel& level, const Corners& corners) {
   return score_error(blocks, correlation, residual, r);
 }
 
-Uncertainty uncertainty_of(const BlurLevel& level, const Corners& corners) {
+EdgeSlip edge_slip(const BlurLevel& level, const Corners& corners) {
+  const Correlation correlation(level, corners);
+  const auto n = static_cast<Eigen::Index>(correlation.size());
+  if (n == 0) return {};
+  Eigen::VectorXd residual(n);
+  Columns jacobian(n, 6);
+  correlation.evaluate(corners.data(), residual.data(), jacobian.data());
+  const Blocks blocks = blocks_of(level, correlation, std::max(1, static_cast<int>(edge_block_px / level.stride)));
+  const Eigen::Matrix<double, Eigen::Dynamic, 2> g = along_axes(jacobian);
+  std::vector<Eigen::Vector2d> pulls(blocks.count, Eigen::Vector2d::Zero());
+  std::vector<Eigen::Matrix2d> stiffness(blocks.count, Eigen::Matrix2d::Zero());
+  for (Eigen::Index k = 0; k < n; ++k) {
+    const std::size_t b = blocks.of_sample[static_cast<std::size_t>(k)];
+    pulls[b] += residual[k] * g.row(k).transpose();
+    stiffness[b].noalias() += g.row(k).transpose() * g.row(k);
+  }
+  double pulled = 0, stiff = 0;
+  for (std::size_t b = 0; b < blocks.count; ++b) pulled += pulls[b].squaredNorm(), stiff += stiffness[b].squaredNorm();
+  EdgeSlip slip;
+  if (stiff > 0) slip.px = std::sqrt(pulled / stiff);
+  slip.reach_px = side_for(correlation_length(level, correlation, residual)) * level.stride;
+  return slip;
+}
+
+Uncertainty uncertainty_of(const BlurLevel& level, const Corners& corners, const EdgeSlip& slip) {
   Uncertainty u;
   const Correlation correlation(level, corners);
   const auto n = static_cast<Eigen::Index>(correlation.size());
   Eigen::VectorXd residual(n);
   Columns jacobian(n, 6);
   const double r = n > 0 ? correlation.evaluate(corners.data(), residual.data(), jacobian.data()) : 0;
-  const Blocks blocks = blocks_for(level, correlation, n > 0 ? correlation_length(level, correlation, residual) : 0);
+  const int own_side = n > 0 ? side_for(correlation_length(level, correlation, residual)) : 1;
+  const Blocks blocks = blocks_of(level, correlation, std::max(own_side, slip.reach_px / level.stride));
+  Matrix6 h = Matrix6::Zero();
+  if (n > 0) h = Eigen::Map<const Matrix6>(slopes_at(correlation, corners).second.data());
+  const Moments moments = moments_of(level, correlation.overlap());
+  fill(u, h, jackknifed(blocks, jacobian, residual), moments);
+  Uncertainty by_slip;
+  fill(by_slip, h, displaced(blocks, jacobian, slip.px), moments);
+  if (by_slip.place_px > u.place_px) u = by_slip;
   u.block_px = blocks.side * level.stride;
   u.score = n > 0 ? score_error(blocks, correlation, residual, r) : 1;
-
-  // The derivative of the gradient, symmetric but for rounding.
-  Matrix6 h = Matrix6::Zero();
-  Eigen::VectorXd other(n);
-  Columns slopes(n, 6);
-  for (Eigen::Index p = 0; p < 6 && n > 0; ++p)
-    for (const double side : {1.0, -1.0}) {
-      Corners moved = corners;
-      moved[static_cast<std::size_t>(p)] += side * difference_px;
-      correlation.evaluate(moved.data(), other.data(), slopes.data());
-      h.col(p) += side / (2 * difference_px) * slopes.transpose() * other;
-    }
-  h = (0.5 * (h + h.transpose())).eval();
-
-  fill(u, h, jackknifed(blocks, jacobian, residual), moments_of(level, correlation.overlap()));
   return u;
 }
 

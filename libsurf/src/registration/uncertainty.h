@@ -19,8 +19,20 @@ struct Uncertainty {
   double block_px = 1;         ///< side of the blocks
 };
 
-/// At an optimum; `corners` are what `fit_correlation` gave.
-Uncertainty uncertainty_of(const BlurLevel& level, const Corners& corners);
+/// How far edges lie from where the other image has them once the images are laid on each other: what a tip
+/// does to walls and ends, which no amount of pixels averages away.
+struct EdgeSlip {
+  double px = 0;      ///< root mean square along each axis, of places weighed by how well they show it
+  int reach_px = 0;   ///< side of blocks that are displaced on their own
+};
+
+/// From blocks a few pixels wide at a level that is blurred enough for noise not to matter.
+EdgeSlip edge_slip(const BlurLevel& level, const Corners& corners);
+
+/// At an optimum; `corners` are what `fit_correlation` gave. V is the larger one of that from the residuals
+/// and that of blocks displaced by the slip: where few edges hold a motion, they agree with a map that was
+/// fitted to them, and only what edges do elsewhere tells how far to trust them.
+Uncertainty uncertainty_of(const BlurLevel& level, const Corners& corners, const EdgeSlip& slip);
 
 /// The same of an estimate by likelihood: `information` is the negative second derivative of its logarithm.
 /// `score` is left 0.

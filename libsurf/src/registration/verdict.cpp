@@ -55,6 +55,11 @@ void judge(Registration& r, const Evidence& e) {
     r.reason = fmt::format("Another place, {:.3g} SEM pixels away, fits nearly as well (score {:.4g} against {:.4g}): {} such. "
                            "Give landmarks that say which, or larger images",
                            r.rivals.front().distance_px, r.rivals.front().score, r.score, r.rivals.size());
+  } else if (r.stderr_px > e.largest_stderr_px) {
+    r.verdict = RegistrationVerdict::ambiguous;
+    r.reason = fmt::format("Too few edges hold the place, which is known to {:.2g} SEM pixels only, where {:.2g} are wanted. "
+                           "Give images that show more, landmarks, or allow a larger standard error",
+                           r.stderr_px, e.largest_stderr_px);
   } else {
     r.verdict = RegistrationVerdict::verified;
     r.reason = fmt::format("Converged to {:.2g} SEM pixels; no other place comes within {:.3g} standard errors of its score",

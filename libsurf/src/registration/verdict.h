@@ -14,7 +14,7 @@ struct Evidence {
   double coarse_evidence = 0;    ///< of the best place, as coarse as the search was
   double chance_evidence = 0;    ///< what chance reaches once in a thousand such searches
   double loosest_px = 0;         ///< standard error along the motion that is known least
-  double rival_sigmas = 4;
+  double largest_stderr_px = 0, rival_sigmas = 4;   ///< the options'
 };
 
 /// Sets verdict and reason; `rivals` must be filled in.

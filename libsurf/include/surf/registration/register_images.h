@@ -52,6 +52,9 @@ struct RegistrationOptions {
   /// A second optimum whose score is closer to the best than so many of its standard errors is a rival.
   double rival_sigmas = 4;
 
+  /// A place whose standard error is larger, SEM pixels, root mean square over the overlap, is ambiguous.
+  double largest_stderr_px = 0.4;
+
   int threads = 0;                 ///< 0: one per hardware thread. Does not change the result
   Watch watch;
 };
@@ -82,7 +85,8 @@ struct Registration {
   double score = 0;                        ///< correlation in [-1, 1], or mutual information in nats, at `blur_px`
   double blur_px = 0;                      ///< of both images: of the finest ones, where the map is known best
   std::array<double, 36> covariance{};     ///< of xx xy x0 yx yy y0, row-major
-  double stderr_px = 0;                    ///< root mean square over the overlap of the place's standard error
+  double stderr_px = 0;                    ///< root mean square over the overlap of the place's standard error, with
+                                           ///< what a tip does to edges: rather too large than too small
   double overlap = 0;                      ///< share of the SEM's pixels that lie in the AFM's image
   std::vector<RegistrationRival> rivals;   ///< best first
   std::vector<RegistrationStep> steps;
