@@ -234,7 +234,8 @@ void add_model_request(CLI::App& app, ChainOptions& o) {
 void add_pose_options(CLI::App& app, ChainOptions& o) {
   const char* group = "Registration";
   app.add_option("--landmarks", o.landmarks, "Places seen in both images, to start from: CSV with a first line\n"
-                                             "sem_x_px,sem_y_px,afm_x_px,afm_y_px, or _nm (none are needed)")
+                                             "sem_x_px,sem_y_px,afm_x_px,afm_y_px, or _nm, or sem_col_px,sem_row_px\n"
+                                             "counted from the top left (none are needed)")
       ->type_name("FILE.csv")->group(group);
   app.add_flag("--landmarks-only", o.landmarks_only, "The landmarks' map is not refined by the images")->group(group);
   app.add_option("--objective", o.objective, "What is largest where the images agree (correlation)")
