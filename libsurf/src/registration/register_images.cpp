@@ -26,7 +26,7 @@ constexpr Effort sharp_effort{1, 4, 10};   // noise is in the slopes: see Newton
 constexpr double sharp_blur_px = 2;    // from here on every pixel counts, and costs
 constexpr double probe_blur_px = 3, widest_result_px = 2, slip_blur_px = 2;
 constexpr double probes_px[] = {-8, -4, 4, 8};
-constexpr double narrow_share = 0.04;  // of a side: a blur that leaves out less than a sixth of it
+constexpr double narrow_share = 0;   // of a side: up to this blur what borders blur into is left out; 0.04 made errors larger
 constexpr double rival_apart_px = 1;   // nearer than this it is the same place
 constexpr double chance_odds = 1000;
 constexpr double unit_score_error_of_information = 2;
