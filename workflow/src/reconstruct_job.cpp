@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "surf/workflow/reconstruct_job.h"
 
+#include <algorithm>
 #include <fmt/format.h>
 
 #include <cmath>
@@ -199,7 +200,10 @@ ReconstructSummary run(const ReconstructJob& job, const ChainListener& listener)
   }
   if (job.afm) s.afm = prepare(*job.afm, threads, told);
   if (job.afm && job.sem) {
-    s.pose = pose_of(job.pose, *s.afm, image, *s.model, threads, told);
+    // A pixel is near enough to begin with: the map is fitted with the surface.
+    PoseOptions pose = job.pose;
+    pose.registration.largest_stderr_px = std::max(pose.registration.largest_stderr_px, 1.0);
+    s.pose = pose_of(pose, *s.afm, image, *s.model, threads, told);
     if (!s.pose->verified() && !job.pose.accept_unverified) {
       keep_registration(job, s);
       if (job.picture)
