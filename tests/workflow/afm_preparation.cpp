@@ -38,8 +38,6 @@ TEST(AfmPreparation, FindsLevelNoiseAndTip) {
   EXPECT_NEAR(p.noise.innovation_nm2, 0.02, 0.004);
   EXPECT_FALSE(p.tip_given);
   EXPECT_NEAR(p.eroded().z_nm(5, 5), 0, 1.5);
-  const double at_wall = p.image.z_nm(36, 40) - p.eroded().z_nm(36, 40);
-  EXPECT_GT(at_wall, 2);   // the tip's flank is gone
 }
 
 TEST(AfmPreparation, TakesWhatIsGiven) {
@@ -56,20 +54,37 @@ TEST(AfmPreparation, TakesWhatIsGiven) {
   EXPECT_EQ(p.tip.pitch_x_nm, pitch);
 }
 
-double half_width_nm(const Tip& tip, double depth_nm) {
-  for (int x = tip.apex_x; x < tip.z_nm.width(); ++x)
-    if (tip.z_nm(x, tip.apex_y) < -depth_nm) return (x - tip.apex_x) * tip.pitch_x_nm;
-  return 1e9;
+/// Two narrow walls that cross, which tell their tip.
+HeightField walls(double radius_nm) {
+  HeightField f{Grid<double>(70, 60), {}, pitch, pitch};
+  for (int y = 0; y < 60; ++y)
+    for (int x = 0; x < 70; ++x) f.z_nm(x, y) = std::abs(x - 25) < 2 || std::abs(y - 35) < 2 ? 40 : 0;
+  f = dilate(f, conical_tip(radius_nm, 0.35, {pitch, pitch, 25, 25}));
+  const Grid<double> noise = simulate_noise({0.6, 0.02}, 70, 60, 4);
+  for (std::size_t i = 0; i < noise.size(); ++i) f.z_nm.data()[i] += noise.data()[i];
+  return f;
 }
 
-TEST(AfmPreparation, BlunterScansHaveBlunterRoundTips) {
-  const PreparedAfm sharp = prepare_afm(scan(5)), blunt = prepare_afm(scan(60));
-  EXPECT_TRUE(sharp.tip_round);
-  EXPECT_LE(half_width_nm(sharp.tip, 20), half_width_nm(blunt.tip, 20));
-  EXPECT_LE(std::ranges::min(sharp.tip.z_nm.data()), -50);   // down the whole relief
+TEST(AfmPreparation, TipsAreRoundUnlessASizeIsSaid) {
+  const HeightField seen = walls(30);
+  const PreparedAfm p = prepare_afm(seen);
+  EXPECT_TRUE(p.tip_round);
+  const Tip truth = conical_tip(30, 0.35, {pitch, pitch, 13, 13});
+  for (int r = 1; r <= 3 && p.tip.apex_x + r < p.tip.z_nm.width(); ++r) {
+    EXPECT_LT(p.tip.z_nm(p.tip.apex_x + r, p.tip.apex_y), 0) << r;
+    EXPECT_GT(p.tip.z_nm(p.tip.apex_x + r, p.tip.apex_y), truth.z_nm(8 + r, 6)) << r;   // narrower by less than two samples
+  }
+  EXPECT_LE(std::ranges::min(p.tip.z_nm.data()), -35);   // down the relief
+  EXPECT_GT(p.image.z_nm(30, 15) - p.eroded().z_nm(30, 15), 2);   // beside a wall the tip's flank is gone
   AfmPreparationOptions free;
-  free.tip_size = 13;
-  EXPECT_FALSE(prepare_afm(scan(5), free).tip_round);
+  free.tip_size = 9;
+  EXPECT_EQ(prepare_afm(seen, free).tip.z_nm.width(), 9);
+}
+
+TEST(AfmPreparation, AScanThatTellsNothingOfItsTipIsTheSurface) {
+  const PreparedAfm p = prepare_afm(scan(5));   // corners square to the pixel bound no tip
+  EXPECT_EQ(p.tip.z_nm.width(), 1);
+  EXPECT_THAT(p.warnings, testing::Contains(testing::HasSubstr("taken as sharp")));
 }
 
 TEST(AfmPreparation, RefusesWhatCannotBe) {

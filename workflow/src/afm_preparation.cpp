@@ -24,6 +24,7 @@ constexpr double same_pitch = 1e-6;   // relative
 constexpr int tip_sizes[] = {5, 7, 9, 11, 13, 19, 27, 39, 57};
 constexpr int enough = 9;             // samples that are tried in any case
 constexpr double told_share = 0.1;    // of the directions that a round tip goes by
+constexpr double told_deviations = 3;  // of noise: a tip no deeper is told by noise alone
 constexpr double noise_span = 6;      // standard deviations of noise in the range of heights
 
 /// Takes off what the method says; returns what rows should go by.
@@ -164,10 +165,15 @@ void find_round_tip(PreparedAfm& prepared, const AfmPreparationOptions& o, const
   if (!explained)
     prepared.warnings.push_back("no tip explains the scan: more than noise is left at best. Check --level-method, --rows and "
                                 "--afm-noise, or give --tip");
+  const double noise = told_deviations * std::sqrt(prepared.noise.variance_nm2());
+  if (std::ranges::none_of(told, [&](const auto& profile) { return profile.back() < -noise; })) {
+    prepared.tip = {Grid<double>(1, 1), image.pitch_x_nm, image.pitch_y_nm, 0, 0};
+    prepared.warnings.push_back("the scan tells nothing of its tip, which is taken as sharp, so that the scan is the surface. "
+                                "Give --tip if you know it");
+    return;
+  }
   prepared.notes.push_back(fmt::format("round tip of {} x {} samples, from what blind ones of up to {} samples tell",
                                        prepared.tip.z_nm.width(), prepared.tip.z_nm.height(), widest));
-  if (!(std::ranges::min(prepared.tip.z_nm.data()) < 0))
-    prepared.warnings.push_back("the scan tells nothing of its tip, which is taken as flat. Give --tip if you know it");
 }
 
 void find_tip(PreparedAfm& prepared, const AfmPreparationOptions& o) {

@@ -32,19 +32,20 @@ double height_at(const Tip& t, double u, double v) {
 std::vector<double> round_profile_nm(const Tip& t, double share) {
   validate(t);
   if (!(share >= 0 && share <= 1)) throw UsageError("share of directions", fmt::format("{} is not in 0 to 1", share), "0.1 is usual");
-  const double across = t.pitch_x_nm * std::min(t.apex_x, t.z_nm.width() - 1 - t.apex_x);
-  const double along = t.pitch_y_nm * std::min(t.apex_y, t.z_nm.height() - 1 - t.apex_y);
   const double step = std::min(t.pitch_x_nm, t.pitch_y_nm);
+  const auto rank = static_cast<std::size_t>(std::lround(share * (directions - 1)));
+  const auto inside = [](double at, int samples) { return at > -rounding && at < samples - 1 + rounding; };
   std::vector<double> profile{0.0};
-  for (double radius = step; radius <= std::min(across, along) * (1 + rounding); radius = step * static_cast<double>(profile.size())) {
+  for (double radius = step;; radius = step * static_cast<double>(profile.size())) {
     std::vector<double> heights;
     for (int k = 0; k < directions; ++k) {
       const double angle = 2 * std::numbers::pi * k / directions;
-      heights.push_back(height_at(t, t.apex_x + radius * std::cos(angle) / t.pitch_x_nm, t.apex_y + radius * std::sin(angle) / t.pitch_y_nm));
+      const double u = t.apex_x + radius * std::cos(angle) / t.pitch_x_nm, v = t.apex_y + radius * std::sin(angle) / t.pitch_y_nm;
+      if (inside(u, t.z_nm.width()) && inside(v, t.z_nm.height())) heights.push_back(height_at(t, u, v));
     }
-    const auto rank = heights.begin() + static_cast<std::ptrdiff_t>(std::lround(share * (directions - 1)));
-    std::nth_element(heights.begin(), rank, heights.end());
-    profile.push_back(*rank);
+    if (heights.size() <= rank) break;
+    std::nth_element(heights.begin(), heights.begin() + static_cast<std::ptrdiff_t>(rank), heights.end());
+    profile.push_back(heights[rank]);
   }
   return profile;
 }

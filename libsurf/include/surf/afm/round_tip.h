@@ -8,7 +8,7 @@
 namespace surf {
 
 /// How high a tip is at 0, 1, 2 ... steps of the finer pitch from its apex, nm: what a `share` in [0, 1] of the directions
-/// around it lie below. As far as the nearest border. Throws InvalidInput for an invalid tip, UsageError for a share out
+/// around it lie below. As far as so many have samples: into the corners, which tell of tips between square plateaus. Throws InvalidInput for an invalid tip, UsageError for a share out
 /// of range.
 std::vector<double> round_profile_nm(const Tip& tip, double share);
 

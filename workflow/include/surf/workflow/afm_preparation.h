@@ -58,7 +58,7 @@ struct PreparedAfm {
 /// columns. The tip is Villarrubia's, at the threshold that the noise explains (`sweep_tips`), of `tip_size`
 /// samples; else the round one below all that blind tips of 5, 7, 9, 11, 13, 19 ... 57 samples tell in the tenth of
 /// directions where they tell most (`tip_below`), until they are as wide as the tip is at the scan's full relief: straight
-/// lines and plateaus leave a tip of any shape open in most directions.
+/// lines and plateaus leave a tip of any shape open in most directions. Where they tell nothing it is one sample, sharp.
 /// Throws InvalidInput for scans without relief or noise, UsageError for options out of range, Interrupted.
 PreparedAfm prepare_afm(const HeightField& scan, const AfmPreparationOptions& options = {});
 
