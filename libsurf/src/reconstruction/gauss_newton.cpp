@@ -36,12 +36,14 @@ Inner steihaug(const Objective& o, const Unknowns& at, const Objective::State& s
   add(p, -1, z);
   double rz = dot(r, z);
   const double begin = rz;
+  if (!(rz > 0)) return in;   // nothing pulls: as at a level surface, where a model has no slope
   double dd = 0, dp = 0, pp = rz;   // products in the norm of M: of the step, the step and the direction, the direction
   while (in.products < most) {
     watch.check();
     const Step ap = o.product(at, state, p);
     ++in.products;
     const double curvature = dot(p, ap);
+    if (!(curvature > 0) && !std::isfinite(radius)) return in;   // within rounding of nothing
     const double alpha = rz / curvature;
     const double next = dd + 2 * alpha * dp + alpha * alpha * pp;
     if (!(curvature > 0) || next >= radius * radius) {

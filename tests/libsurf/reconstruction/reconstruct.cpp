@@ -162,6 +162,17 @@ TEST(Reconstruct, FlatAndSaturatedImagesGiveFiniteSurfaces) {
   EXPECT_TRUE(is_finite(reconstruct(&scene.afm, &scene.sem, quick()).surface.z_nm));
 }
 
+TEST(Reconstruct, StaysWhereNothingPulls) {
+  // A level surface explains a level image, and a model of the slope has no derivative there.
+  test::SmallScene scene;
+  for (double& v : scene.sem.image.values.data()) v = 120;
+  ReconstructionOptions o;
+  o.refine_calibration = false;
+  const Reconstruction r = reconstruct(nullptr, &scene.sem, o);
+  for (const double z : r.surface.z_nm.data()) ASSERT_EQ(z, 0);
+  EXPECT_TRUE(is_finite(r.deviation_nm));
+}
+
 TEST(Reconstruct, FlagsAnImageThatNoSurfaceExplains) {
   test::SmallScene scene;
   for (int y = 0; y < scene.sem.image.values.height(); ++y)
