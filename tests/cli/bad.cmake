@@ -224,7 +224,7 @@ semsurf_cli_unusable(info_broken_model "scope.pixel_nm: a finite number" info br
 
 # Registration and reconstruction. One scan stands for both images.
 set(scan_options --afm-pixel-size 3nm --no-level --tip tip.txt --afm-noise 0.5,0.01)
-set(pair --afm steps.txt --sem steps.txt --sem-pixel-size 3nm ${scan_options} --model secant.json)
+set(pair --afm steps.txt --sem steps_of_grey.tif --sem-pixel-size 3nm ${scan_options} --model secant.json)
 semsurf_cli_usage(reconstruct_nothing "neither a scan nor an SEM image" reconstruct -o result)
 semsurf_cli_usage(reconstruct_output "--output: no folder" reconstruct ${pair})
 semsurf_cli_usage(reconstruct_material "--material: it is missing, and so is --model" reconstruct --sem four.png -o result)
@@ -244,12 +244,12 @@ semsurf_cli_usage(reconstruct_levels "--no-level: with --level-method there are 
 semsurf_cli_usage(reconstruct_level_method "no method 'flat'" reconstruct --afm steps.txt --level-method flat -o result)
 semsurf_cli_usage(register_none "AFM: no scan is given" register)
 semsurf_cli_usage(register_one "SEM: no SEM image is given" register steps.txt)
-semsurf_cli_usage(register_objective "no objective 'both'" register steps.txt steps.txt --sem-pixel-size 3nm ${scan_options} --model secant.json --objective both)
-semsurf_cli_usage(register_landmarks_only "--landmarks-only: there are no landmarks" register steps.txt steps.txt --sem-pixel-size 3nm ${scan_options} --model secant.json --landmarks-only)
-semsurf_cli_unusable(register_landmarks "lie on a|on one line|on a line" register steps.txt steps.txt --sem-pixel-size 3nm ${scan_options} --model secant.json --landmarks landmarks_line.csv)
+semsurf_cli_usage(register_objective "no objective 'both'" register steps.txt steps_of_grey.tif --sem-pixel-size 3nm ${scan_options} --model secant.json --objective both)
+semsurf_cli_usage(register_landmarks_only "--landmarks-only: there are no landmarks" register steps.txt steps_of_grey.tif --sem-pixel-size 3nm ${scan_options} --model secant.json --landmarks-only)
+semsurf_cli_unusable(register_landmarks "lie on a|on one line|on a line" register steps.txt steps_of_grey.tif --sem-pixel-size 3nm ${scan_options} --model secant.json --landmarks landmarks_line.csv)
 semsurf_cli_usage(register_pixel_size "pixel" register steps.txt four.png ${scan_options} --model secant.json)
 semsurf_cli_unusable(register_model_pixel "secant.json: it is for pixels of 3 nm" register steps.txt four.png --sem-pixel-size 5nm ${scan_options} --model secant.json)
-semsurf_cli_unusable(register_wide_tip "--tip: it is 41 x 41 samples, wider than the scan" register steps.txt steps.txt --sem-pixel-size 3nm --afm-pixel-size 3nm --no-level --afm-noise 0.5,0.01 --tip cone:5nm,20deg --tip-size 41 --model secant.json)
+semsurf_cli_unusable(register_wide_tip "--tip: it is 41 x 41 samples, wider than the scan" register steps.txt steps_of_grey.tif --sem-pixel-size 3nm --afm-pixel-size 3nm --no-level --afm-noise 0.5,0.01 --tip cone:5nm,20deg --tip-size 41 --model secant.json)
 semsurf_cli_unusable(reconstruct_no_overlap "lies on the AFM scan" reconstruct ${pair} --transform 1,0,90000,0,1,0 --no-picture -o result)
 
 semsurf_cli_usage(sample_name "tarrain: there is no such sample. Choose one of nist0523-thick" sample tarrain -o made)

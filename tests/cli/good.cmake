@@ -299,7 +299,7 @@ semsurf_cli_test(help.register ARGS register --help STDOUT "AFM scan" "Registrat
 semsurf_cli_test(help.reconstruct ARGS reconstruct --help
   STDOUT "Inputs:" "SEM image:" "Registration:" "Reconstruction:" "Output:" "Exit code 4" "Examples:")
 semsurf_cli_test(reconstruct.afm_only ARGS reconstruct --afm steps.txt --afm-pixel-size 3nm --no-level --tip tip.txt
-  --afm-noise 0.5,0.01 --no-picture --threads 1 -o result/
+  --afm-noise 0.5,0.01 --no-picture --threads 1 -o result/ EXIT 4
   STDOUT "-log L AFM" "held by +AFM" "written +result/surface.vti"
   WRITES result/surface.vti result/surface.gsf result/surface.glb result/simulated_afm.vti result/tip.txt result/history.csv result/report.json)
 
