@@ -249,7 +249,7 @@ semsurf_cli_usage(register_landmarks_only "--landmarks-only: there are no landma
 semsurf_cli_unusable(register_landmarks "lie on a|on one line|on a line" register steps.txt steps_of_grey.tif --sem-pixel-size 3nm ${scan_options} --model secant.json --landmarks landmarks_line.csv)
 semsurf_cli_usage(register_pixel_size "pixel" register steps.txt four.png ${scan_options} --model secant.json)
 semsurf_cli_unusable(register_model_pixel "secant.json: it is for pixels of 3 nm" register steps.txt four.png --sem-pixel-size 5nm ${scan_options} --model secant.json)
-semsurf_cli_unusable(register_wide_tip "--tip: it is 41 x 41 samples, wider than the scan" register steps.txt steps_of_grey.tif --sem-pixel-size 3nm --afm-pixel-size 3nm --no-level --afm-noise 0.5,0.01 --tip cone:5nm,20deg --tip-size 41 --model secant.json)
+semsurf_cli_usage(register_wide_tip "--tip-size: 41 samples, but the scan has 24 x 20" register steps.txt steps_of_grey.tif --sem-pixel-size 3nm --afm-pixel-size 3nm --no-level --afm-noise 0.5,0.01 --tip cone:5nm,20deg --tip-size 41 --model secant.json)
 semsurf_cli_unusable(reconstruct_no_overlap "lies on the AFM scan" reconstruct ${pair} --transform 1,0,90000,0,1,0 --no-picture -o result)
 
 semsurf_cli_usage(sample_name "tarrain: there is no such sample. Choose one of nist0523-thick" sample tarrain -o made)
