@@ -100,13 +100,20 @@ async function drag_section(page, from, to, f) {
   await page.click('#tool-section');
   await still(page);
   const a = await project(page, ...from, f(...from)), b = await project(page, ...to, f(...to));
-  await page.mouse.move(...a);
-  await page.mouse.down();
-  await page.mouse.move((a[0] + b[0]) / 2, (a[1] + b[1]) / 2, { steps: 4 });
-  await page.mouse.move(...b, { steps: 4 });
-  await page.mouse.up();
-  await still(page);
-  const section = await page.evaluate(() => window.semsurf.state.section);
+  // A browser that is short of time may drop moves, as a hand would then drag again.
+  let section = null;
+  for (let tries = 0; tries < 3 && !section; ++tries) {
+    await page.mouse.move(...a);
+    await page.mouse.down();
+    await page.mouse.move((a[0] + b[0]) / 2, (a[1] + b[1]) / 2, { steps: 4 });
+    await page.mouse.move(...b, { steps: 4 });
+    await page.mouse.up();
+    await still(page);
+    for (let wait = 0; wait < 20 && !section; ++wait) {
+      section = await page.evaluate(() => window.semsurf.state.section);
+      if (!section) await new Promise((done) => setTimeout(done, 100));
+    }
+  }
   assert.ok(section, 'a drag draws a section');
   const pixel = await page.evaluate(() => 1 / window.semsurf.stage.pixels_per_nm());
   for (const axis of [0, 1]) {
