@@ -11,7 +11,7 @@ namespace surf::reconstruction {
 namespace {
 
 /// Products that take about the time of a factorisation.
-constexpr int worth_a_factor = 4;
+constexpr int worth_a_factor = 12;
 
 double largest(const Grid<double>& g) {
   double most = 0;
@@ -99,7 +99,7 @@ DescentReport gauss_newton(const Objective& o, Unknowns& at, const DescentOption
       const Inner in = steihaug(o, at, state, m, gradient, radius, 0.1, options.most_products, options.watch);
       report.products += in.products;
       if (stale) fresh_products = in.products;
-      stale = in.products > fresh_products + worth_a_factor || in.at_border;
+      stale = in.products > fresh_products + worth_a_factor;
       const Unknowns next = o.moved(at, in.step);
       Objective::State there = o.evaluate(next);
       ++report.evaluations;
