@@ -107,14 +107,16 @@ void print_costs(const Scene& s) {
   at.mixture.push_back(s.sem.offset);
   const Objective::State state = o.evaluate(at);
   const Step g = o.gradient(at, state);
-  Preconditioner m;
+  Preconditioner m(Preconditioner::usual_tile_px, 0);
   m.factor(o, at, state);
   const double value = seconds([&] { o.evaluate(at); }), gradient = seconds([&] { o.gradient(at, state); });
   const double product = seconds([&] { o.product(at, state, g); }), factor = seconds([&] { m.factor(o, at, state); });
+  const SemTerm::Near near = o.sem->near(*state.sem, at.mixture);
+  const double sparse = seconds([&] { o.product(at, state, g, &near); }), made = seconds([&] { o.sem->near(*state.sem, at.mixture); });
   const double model = seconds([&] { s.sem.model->predict(frame.field(at.z_nm)); });
-  fmt::print("  costs       objective {:.0f} ms, gradient {:.0f} ms, second derivative times a vector {:.0f} ms, factor {:.0f} ms, "
+  fmt::print("  costs       objective {:.0f} ms, gradient {:.0f} ms, second derivative times a vector {:.0f} ms, sparse {:.0f} ms (made in {:.0f} ms), factor {:.0f} ms, "
              "its solution {:.0f} ms; the SEM model alone {:.0f} ms, {:.0f} samples\n",
-             1e3 * value, 1e3 * gradient, 1e3 * product, 1e3 * factor, 1e3 * seconds([&] { m.solve(g); }), 1e3 * model,
+             1e3 * value, 1e3 * gradient, 1e3 * product, 1e3 * sparse, 1e3 * made, 1e3 * factor, 1e3 * seconds([&] { m.solve(g); }), 1e3 * model,
              1.0 * static_cast<double>(at.z_nm.size()));
 }
 

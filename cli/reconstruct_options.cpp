@@ -179,7 +179,7 @@ void add_reconstruct_options(CLI::App& app, ReconstructOptions& o) {
   app.add_option("--tolerance", o.tolerance, "Per pixel: a scale ends when an iteration gains less (the method's own)")
       ->type_name("NUMBER")->group(optimiser);
   app.add_option("--prior", o.prior, "Expected second derivative of the surface where no image says\n"
-                                     "anything, 1/nm (from the scan)")
+                                     "anything, 1/nm (0.001, more on rough ground)")
       ->type_name("NUMBER")->group(optimiser);
   app.add_option("--upsample", o.upsample, "Samples of the dilation in each of the scan's pixels, 1 to 8 (3)")
       ->type_name("N")->group(optimiser);

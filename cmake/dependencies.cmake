@@ -9,7 +9,8 @@ find_package(Eigen3 3.4 REQUIRED NO_MODULE)
 find_package(Ceres 2.1 REQUIRED)
 find_path(CHOLMOD_INCLUDE_DIR cholmod.h PATH_SUFFIXES suitesparse REQUIRED)
 find_library(CHOLMOD_LIBRARY cholmod REQUIRED)
-# Named itself, and before Ceres, which may bring a slower BLAS. The serial one gives the same bytes on any number of cores.
+# Named itself, and before Ceres, which may bring a slower BLAS. sparse_factor.cpp
+# keeps it to one thread; the serial build is not safe to call from several, and leaves the other cores idle.
 find_library(OPENBLAS_LIBRARY openblas REQUIRED)
 find_package(embree 3 REQUIRED)
 find_package(OpenImageIO REQUIRED)

@@ -10,7 +10,7 @@ packages=(
   libembree-dev librandom123-dev                                  # ray tracing, random numbers
   libcgal-dev libopenmesh-dev                                     # mesh repair and simplification
   libeigen3-dev libceres-dev                                      # least squares, learning networks
-  libsuitesparse-dev libopenblas-serial-dev                       # factoring sparse matrices
+  libsuitesparse-dev libopenblas-pthread-dev                      # factoring sparse matrices
   libfftw3-dev libnlopt-dev                                       # registering images
   libopenimageio-dev openimageio-tools                            # images
   libtomlplusplus-dev nlohmann-json3-dev libssl-dev               # scene files, records, hashes

@@ -37,7 +37,7 @@ THIRD_PARTY = [
                  "libsurf/src/sem/network_trainer.cpp"]),
     ("ceres/*", ["libsurf/src/reconstruction/descent.cpp", "libsurf/src/registration/correlation.cpp",
                  "libsurf/src/sem/fit_log_normal.cpp", "libsurf/src/sem/network_trainer.cpp"]),
-    ("cholmod.h", ["libsurf/src/reconstruction/preconditioner.cpp"]),
+    ("cholmod.h", ["libsurf/src/reconstruction/sparse_factor.cpp"]),
     ("fftw3.h", ["libsurf/src/registration/shift_search.cpp"]),
     ("nlopt.h", ["libsurf/src/registration/mutual_information.cpp"]),
     ("OpenImageIO/*", ["io/src/raster_file.cpp"]),

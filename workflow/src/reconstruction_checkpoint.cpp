@@ -91,7 +91,7 @@ ResidualReport read_residual(Reader& in) {
 }
 
 void write(Writer& out, const ScaleReport& s) {
-  for (const double value : {s.sigma_px, s.afm, s.sem, s.prior, s.gradient_norm}) out.number(value);
+  for (const double value : {s.sigma_px, s.curvature_prior_per_nm, s.afm, s.sem, s.prior, s.gradient_norm}) out.number(value);
   for (const int value : {s.iterations, s.evaluations, s.products}) out.whole(static_cast<std::uint64_t>(value));
   out.text(s.ended);
   write(out, s.afm_residual);
@@ -100,7 +100,7 @@ void write(Writer& out, const ScaleReport& s) {
 
 ScaleReport read_scale(Reader& in) {
   ScaleReport s;
-  for (double* value : {&s.sigma_px, &s.afm, &s.sem, &s.prior, &s.gradient_norm}) *value = in.number();
+  for (double* value : {&s.sigma_px, &s.curvature_prior_per_nm, &s.afm, &s.sem, &s.prior, &s.gradient_norm}) *value = in.number();
   for (int* value : {&s.iterations, &s.evaluations, &s.products}) *value = in.small();
   s.ended = in.text();
   s.afm_residual = read_residual(in);

@@ -136,12 +136,13 @@ void append(std::string& line, const ResidualReport& r) {
 }  // namespace
 
 std::string history_text(const std::vector<ScaleReport>& scales) {
-  std::string text = "sigma_px,afm,sem,prior,gradient_norm,iterations,evaluations,products,ended";
+  std::string text = "sigma_px,curvature_prior_per_nm,afm,sem,prior,gradient_norm,iterations,evaluations,products,ended";
   for (const char* image : {"afm", "sem"})
     for (const char* what : {"mean", "deviation", "along", "across", "like_noise"}) text += fmt::format(",{}_{}", image, what);
   text += '\n';
   for (const ScaleReport& s : scales) {
-    std::string line = fmt::format("{},{},{},{},{},{},{},{},{}", format_exact(s.sigma_px), format_exact(s.afm),
+    std::string line = fmt::format("{},{},{},{},{},{},{},{},{},{}", format_exact(s.sigma_px),
+                                   format_exact(s.curvature_prior_per_nm), format_exact(s.afm),
                                    format_exact(s.sem), format_exact(s.prior), format_exact(s.gradient_norm), s.iterations,
                                    s.evaluations, s.products, s.ended);
     append(line, s.afm_residual);

@@ -13,7 +13,7 @@ namespace surf::workflow {
 std::vector<std::filesystem::path> write_reconstruction(const ReconstructJob& job, const ReconstructSummary& summary,
                                                         const AfmData* afm, const SemData* sem);
 
-/// The scales as a table: sigma_px, afm, sem, prior, gradient_norm, iterations, evaluations, products, ended, and of
+/// The scales as a table: sigma_px, curvature_prior_per_nm, afm, sem, prior, gradient_norm, iterations, evaluations, products, ended, and of
 /// each image's whitened residuals mean, deviation, along, across, like_noise.
 std::string history_text(const std::vector<ScaleReport>& scales);
 

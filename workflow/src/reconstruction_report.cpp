@@ -130,7 +130,7 @@ Json residual_json(const ResidualReport& r) {
 Json scales_json(const std::vector<ScaleReport>& scales) {
   Json list = Json::array();
   for (const ScaleReport& s : scales)
-    list.push_back({{"sigma_px", s.sigma_px}, {"afm", number(s.afm)}, {"sem", number(s.sem)}, {"prior", number(s.prior)},
+    list.push_back({{"sigma_px", s.sigma_px}, {"curvature_prior_per_nm", s.curvature_prior_per_nm}, {"afm", number(s.afm)}, {"sem", number(s.sem)}, {"prior", number(s.prior)},
                     {"gradient_norm", number(s.gradient_norm)}, {"iterations", s.iterations},
                     {"evaluations", s.evaluations}, {"products", s.products}, {"ended", s.ended},
                     {"afm_residual", residual_json(s.afm_residual)}, {"sem_residual", residual_json(s.sem_residual)}});

@@ -77,6 +77,22 @@ double CurvaturePrior::evaluate(const Grid<double>& z, Grid<double>* gradient, G
   return 0.5 * (degrees + 1) * sum;
 }
 
+double CurvaturePrior::likely_curvature_per_nm(const Grid<double>& z) const {
+  const Grid<double> c2 = squared_curvature(z);
+  const auto too_stiff = [&](double curvature) {
+    double sum = 0;
+    for (const double c : c2.data()) sum += c / (degrees * curvature * curvature + c);
+    return sum > static_cast<double>(c2.size()) / (degrees + 1);
+  };
+  double low = 1e-9, high = 2e-9;
+  while (too_stiff(high)) high *= 2;
+  while (high > 1.001 * low) {
+    const double middle = std::sqrt(low * high);
+    (too_stiff(middle) ? low : high) = middle;
+  }
+  return high;
+}
+
 Grid<double> CurvaturePrior::squared_curvature(const Grid<double>& z) const {
   Grid<double> c2;
   evaluate(z, nullptr, &c2);

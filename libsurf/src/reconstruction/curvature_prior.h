@@ -16,8 +16,16 @@ class CurvaturePrior {
 
   CurvaturePrior(double pitch_nm, double curvature_per_nm) : pitch_nm_(pitch_nm), curvature_(curvature_per_nm) {}
 
-  /// The prior's term. `gradient` (if given) gets its derivative added; `weights` that of each sample's c^2 / 2.
+  /// The prior's term. `gradient` (if given) gets its derivative added; `weights` that of each sample's c^2 /
+  /// 2.
   double evaluate(const Grid<double>& z_nm, Grid<double>* gradient, Grid<double>* weights) const;
+
+  double curvature_per_nm() const { return curvature_; }
+
+  /// The scale under which heights are most likely: as the density of all curvatures goes with the number of
+  /// samples' power of it, the mean of c^2 / (degrees curvature^2 + c^2) is 1 / (degrees + 1) there. About
+  /// the median curvature: next to nothing where most of the specimen is plateaus. 1e-9 at least.
+  double likely_curvature_per_nm(const Grid<double>& z_nm) const;
 
   /// c^2 of each sample.
   Grid<double> squared_curvature(const Grid<double>& z_nm) const;

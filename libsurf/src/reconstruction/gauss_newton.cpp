@@ -27,12 +27,23 @@ struct Inner {
   bool at_border = false;
 };
 
-/// Minimises g.d + d.A d / 2 within a ball of the preconditioner's norm.
-Inner steihaug(const Objective& o, const Unknowns& at, const Objective::State& state, const Preconditioner& m,
-               const Step& gradient, double radius, double reduction, int most, const Watch& watch) {
+/// The objective about a place, g.d + d.A d / 2.
+struct Quadratic {
+  const Objective& objective;
+  const Unknowns& at;
+  const Objective::State& state;
+  const SemTerm::Near& near;
+  Step gradient;
+
+  Step product(const Step& v) const { return objective.product(at, state, v, &near); }
+};
+
+/// Minimises it within a ball of the preconditioner's norm, until the residual is `reduction` of what it was.
+Inner steihaug(const Quadratic& q, const Preconditioner& m, double radius, double reduction, int most,
+               const Watch& watch) {
   Inner in;
-  in.step = o.zero();
-  Step r = gradient, z = m.solve(r), p = o.zero();
+  in.step = q.objective.zero();
+  Step r = q.gradient, z = m.solve(r), p = in.step;
   add(p, -1, z);
   double rz = dot(r, z);
   const double begin = rz;
@@ -40,7 +51,7 @@ Inner steihaug(const Objective& o, const Unknowns& at, const Objective::State& s
   double dd = 0, dp = 0, pp = rz;   // products in the norm of M: of the step, the step and the direction, the direction
   while (in.products < most) {
     watch.check();
-    const Step ap = o.product(at, state, p);
+    const Step ap = q.product(p);
     ++in.products;
     const double curvature = dot(p, ap);
     if (!(curvature > 0) && !std::isfinite(radius)) return in;   // within rounding of nothing
@@ -62,10 +73,10 @@ Inner steihaug(const Objective& o, const Unknowns& at, const Objective::State& s
     const double rz_next = dot(r, z);
     if (rz_next <= reduction * reduction * begin) break;
     const double beta = rz_next / rz;
-    Step q = o.zero();
-    add(q, -1, z);
-    add(q, beta, p);
-    p = std::move(q);
+    Step next_p = q.objective.zero();
+    add(next_p, -1, z);
+    add(next_p, beta, p);
+    p = std::move(next_p);
     dp = beta * (dp + alpha * pp);
     pp = rz_next + beta * beta * pp;
     rz = rz_next;
@@ -80,23 +91,28 @@ DescentReport gauss_newton(const Objective& o, Unknowns& at, const DescentOption
   DescentReport report;
   Objective::State state = o.evaluate(at);
   ++report.evaluations;
-  Preconditioner m;
+  Preconditioner m(Preconditioner::usual_tile_px, options.threads);
+  SemTerm::Near near;
   double radius = std::numeric_limits<double>::infinity();
   report.ended = "iterations";
   bool stale = true;
   int fresh_products = 0;
   while (report.iterations < options.iterations) {
     options.watch.check();
-    const Step gradient = o.gradient(at, state);
-    report.gradient_norm = largest(gradient.z_nm);
-    // Weights change little at the end: a factor is kept until the steps take more than it would.
-    if (stale) m.factor(o, at, state);
+    // Little changes at the end: what the quadratic is made of is kept until its steps take more than making
+    // it would.
+    if (stale) {
+      m.factor(o, at, state);
+      if (o.sem) near = o.sem->near(*state.sem, at.mixture);
+    }
+    const Quadratic quadratic{o, at, state, near, o.gradient(at, state)};
+    report.gradient_norm = largest(quadratic.gradient.z_nm);
     ++report.iterations;
     const double before = state.value();
     bool accepted = false;
     double fell = 0;
     for (int tries = 0; tries < 12 && !accepted; ++tries) {
-      const Inner in = steihaug(o, at, state, m, gradient, radius, 0.1, options.most_products, options.watch);
+      const Inner in = steihaug(quadratic, m, radius, 0.1, options.most_products, options.watch);
       report.products += in.products;
       if (stale) fresh_products = in.products;
       stale = in.products > fresh_products + worth_a_factor;

@@ -43,7 +43,7 @@ Step Objective::zero() const {
 Step Objective::gradient(const Unknowns& at, const State& s) const {
   Step g = zero();
   if (afm) afm->add_gradient(*s.afm, at.z_nm, s.afm->pull, g.z_nm, fit_map ? &g.map : nullptr);
-  if (sem) sem->add_gradient(*s.sem, at.mixture, s.sem->pull, g.z_nm, fit_mixture ? &g.mixture : nullptr);
+  if (sem) sem->add_gradient(*s.sem, at.mixture, s.sem->pull, nullptr, g.z_nm, fit_mixture ? &g.mixture : nullptr);
   prior.evaluate(at.z_nm, &g.z_nm, nullptr);
   if (anchor_per_nm2 > 0)
     for (std::size_t i = 0; i < start.size(); ++i)
@@ -51,15 +51,15 @@ Step Objective::gradient(const Unknowns& at, const State& s) const {
   return g;
 }
 
-Step Objective::product(const Unknowns& at, const State& s, const Step& v) const {
+Step Objective::product(const Unknowns& at, const State& s, const Step& v, const SemTerm::Near* near) const {
   Step out = zero();
   if (afm)
     afm->add_gradient(*s.afm, at.z_nm, afm->precision(afm->change(*s.afm, at.z_nm, v.z_nm, v.map)), out.z_nm,
                       fit_map ? &out.map : nullptr);
   if (sem) {
-    Grid<double> change = sem->change(*s.sem, at.mixture, v.z_nm, v.mixture);
+    Grid<double> change = sem->change(*s.sem, at.mixture, v.z_nm, v.mixture, near);
     for (std::size_t i = 0; i < change.size(); ++i) change.data()[i] *= s.sem->information.data()[i];
-    sem->add_gradient(*s.sem, at.mixture, change, out.z_nm, fit_mixture ? &out.mixture : nullptr);
+    sem->add_gradient(*s.sem, at.mixture, change, near, out.z_nm, fit_mixture ? &out.mixture : nullptr);
   }
   prior.add_product(s.prior_weights, v.z_nm, out.z_nm);
   if (anchor_per_nm2 > 0)

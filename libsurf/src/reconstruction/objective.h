@@ -50,8 +50,9 @@ class Objective {
   State evaluate(const Unknowns& at) const;
   Step gradient(const Unknowns& at, const State& state) const;
   /// The Gauss-Newton second derivative times v: J^T (precision or information) J, and the prior's with its
-  /// weights held, which bounds it from above. Positive semidefinite.
-  Step product(const Unknowns& at, const State& state, const Step& v) const;
+  /// weights held, which bounds it from above. Positive semidefinite. `near`, if given, stands for the SEM's
+  /// J, at a third of the price.
+  Step product(const Unknowns& at, const State& state, const Step& v, const SemTerm::Near* near = nullptr) const;
   Unknowns moved(const Unknowns& at, const Step& step) const;
   Step zero() const;
 };

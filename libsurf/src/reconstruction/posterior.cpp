@@ -9,12 +9,14 @@
 namespace surf::reconstruction {
 namespace {
 
-constexpr int cheap_draws = 48;
-constexpr int rounds = 4;
+constexpr int rounds = 3;
+constexpr int cheap_draws[rounds] = {12, 12, 48};
 constexpr double around_px = 3;   // over which the ratio of variances is averaged
 
-/// What noise of both images does to the gradient: normal with the precision that they bring.
-Step data_pull(const Objective& o, const Unknowns& at, const Objective::State& s, std::uint64_t seed) {
+/// What noise of both images does to the gradient: normal with the precision that they bring. `near`: see
+/// SemTerm::Near; null: the SEM's own.
+Step data_pull(const Objective& o, const Unknowns& at, const Objective::State& s, const SemTerm::Near* near,
+               std::uint64_t seed) {
   Step r = o.zero();
   if (o.afm) {
     const Grid<double> e = simulate_noise(o.afm->noise(), s.afm->residual.width(), s.afm->residual.height(), seed);
@@ -24,7 +26,7 @@ Step data_pull(const Objective& o, const Unknowns& at, const Objective::State& s
     NormalNumbers normal(seed, 1);
     Grid<double> w(o.frame.width, o.frame.height);
     for (std::size_t i = 0; i < w.size(); ++i) w.data()[i] = std::sqrt(s.sem->information.data()[i]) * normal();
-    o.sem->add_gradient(*s.sem, at.mixture, w, r.z_nm, o.fit_mixture ? &r.mixture : nullptr);
+    o.sem->add_gradient(*s.sem, at.mixture, w, near, r.z_nm, o.fit_mixture ? &r.mixture : nullptr);
   }
   return r;
 }
@@ -41,16 +43,17 @@ void add_prior_pull(const Objective& o, const Objective::State& s, std::uint64_t
     for (double& v : r.z_nm.data()) v += std::sqrt(o.anchor_per_nm2) * normal();
 }
 
-}  // namespace
-
-Step solve(const Objective& o, const Unknowns& at, const Objective::State& state, const Preconditioner& m,
-           const Step& right, double reduction, const Watch& watch) {
+/// x with A x = r by preconditioned conjugate gradients, until the residual, in the preconditioner's norm, is
+/// `reduction` of what it was. `product` is A.
+template <class Product>
+Step solve(const Objective& o, const Product& product, const Preconditioner& m, const Step& right, double reduction,
+           const Watch& watch) {
   Step x = o.zero(), r = right, z = m.solve(r), p = z;
   double rz = dot(r, z);
   const double begin = rz;
   for (int i = 0; i < 500 && rz > reduction * reduction * begin; ++i) {
     watch.check();
-    const Step ap = o.product(at, state, p);
+    const Step ap = product(p);
     const double alpha = rz / dot(p, ap);
     if (!(alpha > 0)) break;
     add(x, alpha, p);
@@ -65,37 +68,31 @@ Step solve(const Objective& o, const Unknowns& at, const Objective::State& state
   return x;
 }
 
+}  // namespace
+
 Posterior posterior(const Objective& o, const Unknowns& at, int draws, std::uint64_t seed, int threads, const Watch& watch) {
   Objective::State state = o.evaluate(at);
   const Grid<double> found = o.prior.squared_curvature(at.z_nm);
-  Preconditioner m;
+  const SemTerm::Near near = o.sem ? o.sem->near(*state.sem, at.mixture) : SemTerm::Near();
+  const auto product = [&](const Step& v) { return o.product(at, state, v, &near); };
+  Preconditioner m(Preconditioner::usual_tile_px, threads);
   Grid<double> without_sem;
   for (int round = 0; round < rounds; ++round) {
     m.factor(o, at, state);
-    without_sem = Grid<double>(o.frame.width, o.frame.height);
-    Grid<double> unsure(o.frame.width, o.frame.height);   // the variance of the curvature
-    for (int d = 0; d < cheap_draws; ++d) {
-      watch.check();
-      NormalNumbers normal(seed + static_cast<std::uint64_t>(d), 3);
-      Grid<double> white(o.frame.width, o.frame.height);
-      for (double& v : white.data()) v = normal();
-      const Grid<double> x = m.draw_nm(white), c2 = o.prior.squared_curvature(x);
-      for (std::size_t i = 0; i < x.size(); ++i) {
-        without_sem.data()[i] += x.data()[i] * x.data()[i] / cheap_draws;
-        unsure.data()[i] += c2.data()[i] / cheap_draws;
-      }
-    }
+    Preconditioner::Variances drawn = m.variances(o.prior, cheap_draws[round], seed, watch);
+    without_sem = std::move(drawn.height_nm2);
     if (round + 1 == rounds) break;
-    for (std::size_t i = 0; i < unsure.size(); ++i) unsure.data()[i] += found.data()[i];
-    state.prior_weights = o.prior.weights_of(unsure);
+    Grid<double>& curvature = drawn.curvature_per_nm2;   // uncertain and found, squared
+    for (std::size_t i = 0; i < curvature.size(); ++i) curvature.data()[i] += found.data()[i];
+    state.prior_weights = o.prior.weights_of(curvature);
   }
   without_sem = GaussianBasis(0.8, threads).sum(without_sem);
   Grid<double> drawn(o.frame.width, o.frame.height);
   for (int d = 0; d < draws; ++d) {
-    watch.report(d, draws);
-    Step r = data_pull(o, at, state, seed + static_cast<std::uint64_t>(d));
+    watch.report(draws + d, 2 * draws);
+    Step r = data_pull(o, at, state, &near, seed + static_cast<std::uint64_t>(d));
     add_prior_pull(o, state, seed + static_cast<std::uint64_t>(d), r);
-    const Step x = solve(o, at, state, m, r, 0.05, watch);
+    const Step x = solve(o, product, m, r, 0.05, watch);
     for (std::size_t i = 0; i < drawn.size(); ++i) drawn.data()[i] += x.z_nm.data()[i] * x.z_nm.data()[i] / draws;
   }
   const GaussianBasis around(around_px, threads);
@@ -103,7 +100,7 @@ Posterior posterior(const Objective& o, const Unknowns& at, int draws, std::uint
   // The prior's pull, which no draw of noise shows: where to the surface would go without it, to first order.
   Step pull = o.zero();
   o.prior.evaluate(at.z_nm, &pull.z_nm, nullptr);
-  Grid<double> bias = solve(o, at, state, m, pull, 0.05, watch).z_nm;
+  Grid<double> bias = solve(o, product, m, pull, 0.05, watch).z_nm;
   for (double& b : bias.data()) b *= b;
   bias = around.sum(bias);
   Posterior out{Grid<double>(o.frame.width, o.frame.height), Grid<unsigned char>(o.frame.width, o.frame.height)};
@@ -120,11 +117,11 @@ Posterior posterior(const Objective& o, const Unknowns& at, int draws, std::uint
 
 Grid<double> linear_error(const Objective& o, const Unknowns& at, const Objective::State& state, const Preconditioner& m,
                           std::uint64_t seed, const Watch& watch) {
-  Step r = data_pull(o, at, state, seed);
+  Step r = data_pull(o, at, state, nullptr, seed);
   Step prior = o.zero();
   o.prior.evaluate(at.z_nm, &prior.z_nm, nullptr);
   add(r, -1, prior);
-  return solve(o, at, state, m, r, 0.01, watch).z_nm;
+  return solve(o, [&](const Step& v) { return o.product(at, state, v); }, m, r, 0.01, watch).z_nm;
 }
 
 }  // namespace surf::reconstruction

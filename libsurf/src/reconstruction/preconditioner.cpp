@@ -3,49 +3,18 @@
 
 #include <algorithm>
 #include <cmath>
-#include <vector>
 
 #include <Eigen/Cholesky>
-#include <cholmod.h>
 
-#include "surf/core/error.h"
+#include "afm/normal_numbers.h"
+#include "surf/core/parallel.h"
 
 namespace surf::reconstruction {
 namespace {
 
-/// Upper triangles of a 5 x 5 stencil, gathered row by row: coefficients of (x, y) with those before it in row-major
-/// order, and with itself.
-class StencilMatrix {
- public:
-  StencilMatrix(int width, int height) : width_(width), values_(static_cast<std::size_t>(width) * height * slots) {}
-
-  void add(int x0, int y0, int x1, int y1, double v) {
-    if (y1 > y0 || (y1 == y0 && x1 > x0)) {
-      std::swap(x0, x1);
-      std::swap(y0, y1);
-    }
-    values_[(static_cast<std::size_t>(y0) * width_ + x0) * slots + (y1 - y0 + 2) * 5 + (x1 - x0) + 2] += v;
-  }
-
-  int samples() const { return static_cast<int>(values_.size() / slots); }
-
-  /// Calls entry(row, value) for the column's entries, rows rising, the diagonal last. All that lie in the field
-  /// are there, so that the pattern does not depend on the values.
-  template <class Entry>
-  void for_each_in_column(int k, const Entry& entry) const {
-    const int x = k % width_, y = k / width_;
-    for (int s = 0; s < slots; ++s) {
-      const int u = x + s % 5 - 2, v = y + s / 5 - 2;
-      if (u < 0 || u >= width_ || v < 0) continue;
-      entry(v * width_ + u, values_[static_cast<std::size_t>(k) * slots + s]);
-    }
-  }
-
- private:
-  static constexpr int slots = 13;   // two rows of five before, and three of its own
-  int width_;
-  std::vector<double> values_;
-};
+/// Samples that neighbouring tiles reach into each other: three times as far as a contact's height carries in
+/// a plain.
+constexpr int overlap_px = 10;
 
 /// Bilinear weights of a place, inside the samples.
 struct Corners {
@@ -62,80 +31,7 @@ struct Corners {
   }
 };
 
-}  // namespace
-
-struct Preconditioner::Parts {
-  cholmod_common common;
-  cholmod_factor* factor = nullptr;
-  cholmod_dense *x = nullptr, *y = nullptr, *e = nullptr;   // of solve, kept
-  Eigen::LDLT<Eigen::MatrixXd> map, mixture;
-  int width = 0, height = 0;
-  bool has_map = false, has_mixture = false;
-
-  Parts() {
-    cholmod_start(&common);
-    common.print = 0;
-    common.supernodal = CHOLMOD_SUPERNODAL;
-    // Nested dissection first: a field's factor is a third smaller than with minimum degree.
-    common.nmethods = 1;
-    common.method[0].ordering = CHOLMOD_METIS;
-    common.postorder = 1;
-  }
-  Parts(const Parts&) = delete;
-  Parts& operator=(const Parts&) = delete;
-  ~Parts() {
-    cholmod_free_factor(&factor, &common);
-    for (cholmod_dense** d : {&x, &y, &e}) cholmod_free_dense(d, &common);
-    cholmod_finish(&common);
-  }
-
-  void compute(const StencilMatrix& m) {
-    const int n = m.samples();
-    cholmod_sparse* a = cholmod_allocate_sparse(n, n, static_cast<std::size_t>(n) * 13, true, true, 1, CHOLMOD_REAL, &common);
-    if (!a) throw Error("reconstruct", "there is not enough memory for a surface of this size", "Cut the image");
-    auto* start = static_cast<int*>(a->p);
-    auto* row = static_cast<int*>(a->i);
-    auto* value = static_cast<double*>(a->x);
-    int at = 0;
-    for (int k = 0; k < n; ++k) {
-      start[k] = at;
-      m.for_each_in_column(k, [&](int r, double v) {
-        row[at] = r;
-        value[at++] = v;
-      });
-    }
-    start[n] = at;
-    if (!factor) factor = cholmod_analyze(a, &common);
-    cholmod_factorize(a, factor, &common);
-    cholmod_free_sparse(&a, &common);
-    if (common.status != CHOLMOD_OK)
-      throw InvalidInput("reconstruct", "the surface is not determined", "Give an AFM image, or a stronger prior");
-  }
-
-  /// The system of that kind (see cholmod_solve) with this right side.
-  Grid<double> solved(int system, const Grid<double>& right) {
-    std::vector<double> numbers = right.data();
-    cholmod_dense b{};
-    b.nrow = b.d = b.nzmax = numbers.size();
-    b.ncol = 1;
-    b.x = numbers.data();
-    b.xtype = CHOLMOD_REAL;
-    b.dtype = CHOLMOD_DOUBLE;
-    cholmod_solve2(system, factor, &b, nullptr, &x, nullptr, &y, &e, &common);
-    Grid<double> out(width, height);
-    std::copy_n(static_cast<const double*>(x->x), numbers.size(), out.data().begin());
-    return out;
-  }
-};
-
-Preconditioner::Preconditioner() : parts_(std::make_unique<Parts>()) {}
-Preconditioner::~Preconditioner() = default;
-
-void Preconditioner::factor(const Objective& o, const Unknowns& at, const Objective::State& s) {
-  const int w = o.frame.width, h = o.frame.height;
-  parts_->width = w;
-  parts_->height = h;
-  StencilMatrix m(w, h);
+void add_prior(const Objective& o, const Objective::State& s, StencilMatrix& m) {
   o.prior.for_each_difference(s.prior_weights, [&](int x, int y, int count, const int* dx, const int* dy, const double* c,
                                                    double weight) {
     for (int a = 0; a < count; ++a)
@@ -144,23 +40,84 @@ void Preconditioner::factor(const Objective& o, const Unknowns& at, const Object
   double largest = 0;
   for (const double p : s.prior_weights.data()) largest = std::max(largest, p);
   const double ground = o.anchor_per_nm2 + 1e-12 * largest * std::pow(o.frame.pitch_nm, -4);
-  for (int y = 0; y < h; ++y)
-    for (int x = 0; x < w; ++x) m.add(x, y, x, y, ground);
-  parts_->has_map = o.afm && o.fit_map;
-  if (o.afm) {
-    const double q = (1 - o.afm->noise().alpha * o.afm->noise().alpha) / o.afm->noise().innovation_nm2;
-    for (const Contact& c : s.afm->contacts) {
-      if (!c.inside) continue;
-      const Corners k(c, w, h);
-      for (int a = 0; a < 4; ++a)
-        for (int b = a; b < 4; ++b)
-          m.add(k.x + a % 2, k.y + a / 2, k.x + b % 2, k.y + b / 2, q * k.w[a] * k.w[b]);
-    }
+  for (int y = 0; y < m.height(); ++y)
+    for (int x = 0; x < m.width(); ++x) m.add(x, y, x, y, ground);
+}
+
+void add_contacts(const Objective& o, const Objective::State& s, StencilMatrix& m) {
+  const double q = (1 - o.afm->noise().alpha * o.afm->noise().alpha) / o.afm->noise().innovation_nm2;
+  for (const Contact& c : s.afm->contacts) {
+    if (!c.inside) continue;
+    const Corners k(c, m.width(), m.height());
+    for (int a = 0; a < 4; ++a)
+      for (int b = a; b < 4; ++b) m.add(k.x + a % 2, k.y + a / 2, k.x + b % 2, k.y + b / 2, q * k.w[a] * k.w[b]);
   }
-  parts_->compute(m);
+}
+
+/// Samples [begin, end) of a tile along one axis, with those it shares with its neighbours, and its weights
+/// there.
+struct Span {
+  int begin = 0, end = 0, own_begin = 0, own_end = 0;
+  std::vector<double> weights;
+};
+
+/// Equal parts of an axis, each reaching into its neighbours, with weights that add up to 1.
+std::vector<Span> spans(int samples, int tile) {
+  const int count = tile > 0 ? std::max(1, static_cast<int>(std::lround(samples / static_cast<double>(tile)))) : 1;
+  std::vector<Span> out;
+  for (int i = 0; i < count; ++i) {
+    const bool first = i == 0, last = i + 1 == count;
+    const auto cut = [&](int k) { return static_cast<int>(static_cast<std::int64_t>(samples) * k / count); };
+    Span s{first ? 0 : cut(i) - overlap_px, last ? samples : cut(i + 1) + overlap_px, cut(i), cut(i + 1), {}};
+    for (int x = s.begin; x < s.end; ++x) {
+      double weight = 1;
+      if (!first) weight = std::min(weight, (x + 0.5 - s.begin) / (2 * overlap_px));
+      if (!last) weight = std::min(weight, (s.end - x - 0.5) / (2 * overlap_px));
+      s.weights.push_back(weight);
+    }
+    out.push_back(std::move(s));
+  }
+  return out;
+}
+
+}  // namespace
+
+struct Preconditioner::Blocks {
+  Eigen::LDLT<Eigen::MatrixXd> map, mixture;
+  bool has_map = false, has_mixture = false;
+};
+
+Preconditioner::Preconditioner(int tile_px, int threads)
+    : tile_px_(tile_px), threads_(resolve_threads(threads)), blocks_(std::make_unique<Blocks>()) {}
+Preconditioner::~Preconditioner() = default;
+
+void Preconditioner::make_tiles(int width, int height) {
+  // Wide enough that a sample lies in two tiles along an axis at most.
+  const int tile = tile_px_ > 0 ? std::max(tile_px_, 4 * overlap_px) : 0;
+  for (const Span& v : spans(height, tile))
+    for (const Span& u : spans(width, tile)) {
+      Tile t{{u.begin, v.begin, u.end, v.end}, {u.own_begin, v.own_begin, u.own_end, v.own_end},
+             Grid<double>(u.end - u.begin, v.end - v.begin), {}};
+      for (int y = 0; y < t.share.height(); ++y)
+        for (int x = 0; x < t.share.width(); ++x) t.share(x, y) = std::sqrt(u.weights[x] * v.weights[y]);
+      tiles_.push_back(std::move(t));
+    }
+}
+
+void Preconditioner::factor(const Objective& o, const Unknowns& at, const Objective::State& s) {
+  const int w = o.frame.width, h = o.frame.height;
+  StencilMatrix m(w, h);
+  add_prior(o, s, m);
+  if (o.afm) add_contacts(o, s, m);
+  if (tiles_.empty()) make_tiles(w, h);
+  const OneBlasThread alone;
+  parallel_for(tiles_.size(), std::min(threads_, OneBlasThread::most_at_once()),
+               [&](std::size_t i, int) { tiles_[i].factor.compute(m, tiles_[i].area); });
 
   // Map and mixture: their own blocks.
-  if (parts_->has_map) {
+  Blocks& few = *blocks_;
+  few.has_map = o.afm && o.fit_map;
+  if (few.has_map) {
     Eigen::MatrixXd block(map_numbers, map_numbers);
     for (int k = 0; k < map_numbers; ++k) {
       MapChange unit{};
@@ -174,10 +131,10 @@ void Preconditioner::factor(const Objective& o, const Unknowns& at, const Object
     block = 0.5 * (block + block.transpose()).eval();
     block.diagonal().array() *= 1 + 1e-9;
     block.diagonal().array() += 1e-12;
-    parts_->map.compute(block);
+    few.map.compute(block);
   }
-  parts_->has_mixture = o.sem && o.fit_mixture;
-  if (parts_->has_mixture) {
+  few.has_mixture = o.sem && o.fit_mixture;
+  if (few.has_mixture) {
     Eigen::MatrixXd block = Eigen::MatrixXd::Zero(2, 2);
     for (std::size_t i = 0; i < s.sem->information.size(); ++i) {
       const double q = s.sem->information.data()[i], gain = s.sem->simulated.data()[i] - at.mixture.back();
@@ -187,26 +144,69 @@ void Preconditioner::factor(const Objective& o, const Unknowns& at, const Object
     }
     block(1, 0) = block(0, 1);
     block.diagonal().array() *= 1 + 1e-9;
-    parts_->mixture.compute(block);
+    few.mixture.compute(block);
   }
 }
 
 Step Preconditioner::solve(const Step& r) const {
+  const OneBlasThread alone;
   Step out;
-  out.z_nm = parts_->solved(CHOLMOD_A, r.z_nm);
-  if (parts_->has_map)
+  if (tiles_.size() == 1) {
+    out.z_nm = tiles_.front().factor.solve(r.z_nm);
+  } else {
+    std::vector<Grid<double>> parts(tiles_.size());
+    parallel_for(tiles_.size(), std::min(threads_, OneBlasThread::most_at_once()), [&](std::size_t i, int) {
+      const Tile& t = tiles_[i];
+      Grid<double> right(t.area.width(), t.area.height());
+      for (int y = 0; y < right.height(); ++y)
+        for (int x = 0; x < right.width(); ++x)
+          right(x, y) = t.share(x, y) * r.z_nm(x + t.area.x_begin, y + t.area.y_begin);
+      parts[i] = t.factor.solve(right);
+    });
+    out.z_nm = Grid<double>(r.z_nm.width(), r.z_nm.height());
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+      const Tile& t = tiles_[i];
+      for (int y = 0; y < parts[i].height(); ++y)
+        for (int x = 0; x < parts[i].width(); ++x)
+          out.z_nm(x + t.area.x_begin, y + t.area.y_begin) += t.share(x, y) * parts[i](x, y);
+    }
+  }
+  if (blocks_->has_map)
     Eigen::Map<Eigen::VectorXd>(out.map.data(), map_numbers) =
-        parts_->map.solve(Eigen::Map<const Eigen::VectorXd>(r.map.data(), map_numbers));
-  if (parts_->has_mixture)
+        blocks_->map.solve(Eigen::Map<const Eigen::VectorXd>(r.map.data(), map_numbers));
+  if (blocks_->has_mixture)
     Eigen::Map<Eigen::Vector2d>(out.mixture.data()) =
-        parts_->mixture.solve(Eigen::Map<const Eigen::Vector2d>(r.mixture.data()));
+        blocks_->mixture.solve(Eigen::Map<const Eigen::Vector2d>(r.mixture.data()));
   return out;
 }
 
-Grid<double> Preconditioner::draw_nm(const Grid<double>& normal) const {
-  // A = P^T L L^T P: L^-T turns white numbers into such of covariance (L L^T)^-1, P^T puts them back in order.
-  const Grid<double> turned = parts_->solved(CHOLMOD_Lt, normal);
-  return parts_->solved(CHOLMOD_Pt, turned);
+Preconditioner::Variances Preconditioner::variances(const CurvaturePrior& prior, int draws, std::uint64_t seed,
+                                                    const Watch& watch) const {
+  const OneBlasThread alone;
+  int width = 0, height = 0;
+  for (const Tile& t : tiles_) {
+    width = std::max(width, t.area.x_end);
+    height = std::max(height, t.area.y_end);
+  }
+  Variances out{Grid<double>(width, height), Grid<double>(width, height)};
+  parallel_for(tiles_.size(), std::min(threads_, OneBlasThread::most_at_once()), [&](std::size_t i, int) {
+    const Tile& t = tiles_[i];
+    NormalNumbers normal(seed, 3 + i);
+    for (int d = 0; d < draws; ++d) {
+      if (watch.cancel && watch.cancel->cancelled()) return;
+      Grid<double> white(t.area.width(), t.area.height());
+      for (double& v : white.data()) v = normal();
+      const Grid<double> z = t.factor.draw(white), curvature = prior.squared_curvature(z);
+      for (int y = t.own.y_begin; y < t.own.y_end; ++y)
+        for (int x = t.own.x_begin; x < t.own.x_end; ++x) {
+          const int u = x - t.area.x_begin, v = y - t.area.y_begin;
+          out.height_nm2(x, y) += z(u, v) * z(u, v) / draws;
+          out.curvature_per_nm2(x, y) += curvature(u, v) / draws;
+        }
+    }
+  });
+  watch.check();
+  return out;
 }
 
 }  // namespace surf::reconstruction

@@ -19,6 +19,9 @@ namespace {
 using namespace reconstruction;
 
 constexpr int least_pixels = 256;   // 16 x 16 in common
+constexpr double coarsely = 20;     // times the tolerance, where the prior is still to change
+constexpr double rough_looseness = 3;   // times the likely curvature: what neither image holds is not white
+constexpr double worth_loosening = 1.3;
 
 void check(const AfmData* afm, const SemData* sem, const ReconstructionOptions& o) {
   if (!afm && !sem) throw InvalidInput("reconstruct", "neither an AFM nor an SEM image is given", "Give one or both");
@@ -112,7 +115,7 @@ class Work {
     objective_.fit_map = afm && sem && options.refine_transform;
     objective_.fit_mixture = sem && options.refine_calibration;
     curvature_ = options.curvature_prior_per_nm > 0 ? options.curvature_prior_per_nm : 1e-3;
-    objective_.prior = CurvaturePrior(frame.pitch_nm, curvature_);
+    set_prior(curvature_);
   }
 
   Reconstruction run(ReconstructionJournal* journal) {
@@ -139,6 +142,7 @@ class Work {
       at_.mixture.push_back(s.offset);
     }
     reports_ = s.scales;
+    if (!reports_.empty()) set_prior(reports_.back().curvature_prior_per_nm);
     converged_ = reports_.empty() || reports_.back().ended == "converged";
   }
 
@@ -154,27 +158,63 @@ class Work {
   void scale(double sigma_px, bool first, bool last, const Watch& watch) {
     DescentOptions o;
     const bool newton = options_.method == ReconstructionMethod::gauss_newton;
-    o.iterations = options_.iterations > 0 ? options_.iterations : newton ? 40 : 200;
-    o.tolerance = (options_.tolerance > 0 ? options_.tolerance : 5e-5) * static_cast<double>(pixels());
+    o.iterations = options_.iterations > 0 ? options_.iterations : newton ? 60 : 200;
+    o.tolerance = (options_.tolerance > 0 ? options_.tolerance : newton ? 5e-4 : 5e-5) * static_cast<double>(pixels());
+    o.threads = options_.threads;
     o.watch = watch;
     DescentReport d;
     if (newton) {
       if (first) at_.z_nm = GaussianBasis(1.5, options_.threads).sum(at_.z_nm);
-      objective_.prior = CurvaturePrior(objective_.frame.pitch_nm, curvature_ * sigma_px * sigma_px);
-      if (!last) o.tolerance *= 20;
+      set_prior(curvature_ * sigma_px * sigma_px);
       fit_few(objective_, at_, watch);
-      d = gauss_newton(objective_, at_, o);
+      const double settled = o.tolerance;
+      const int most = o.iterations;
+      const auto go_on = [&] {
+        o.iterations = most - d.iterations;
+        continue_with(d, gauss_newton(objective_, at_, o));
+      };
+      o.tolerance *= coarsely;
+      go_on();
+      if (last) {
+        while (d.iterations < most && options_.curvature_prior_per_nm == 0 && loosen_prior()) go_on();
+        o.tolerance = settled;
+        go_on();
+      }
     } else {
       d = descend(objective_, at_, sigma_px, first, options_.method, o, options_.threads);
       fit_few(objective_, at_, watch);
     }
     const Objective::State s = objective_.evaluate(at_);
-    ScaleReport r{sigma_px, s.afm_value, s.sem_value, s.prior_value, d.gradient_norm, d.iterations, d.evaluations, d.products,
+    ScaleReport r{sigma_px, objective_.prior.curvature_per_nm(), s.afm_value, s.sem_value, s.prior_value, d.gradient_norm, d.iterations, d.evaluations, d.products,
                   d.ended, {}, {}};
     if (s.afm) r.afm_residual = judge(afm_white(s), objective_.afm->used());
     if (s.sem) r.sem_residual = judge(sem_white(s), objective_.sem->used());
     converged_ = d.ended == "converged";
     reports_.push_back(r);
+  }
+
+  void set_prior(double curvature_per_nm) {
+    objective_.prior = CurvaturePrior(objective_.frame.pitch_nm, curvature_per_nm);
+  }
+
+  /// Rough ground bends everywhere; a prior for plateaus and edges would pull it flat. Where a surface that
+  /// was made under this prior bends more than that at half its samples, it gets one that only holds what the
+  /// images do not. False if nothing was to be done. A surface never bends more than the true one under a
+  /// prior that is too stiff, so that a specimen of plateaus is not taken for rough ground.
+  bool loosen_prior() {
+    const double likely = objective_.prior.likely_curvature_per_nm(at_.z_nm), now = objective_.prior.curvature_per_nm();
+    rough_ = rough_ || likely > now;
+    if (!rough_ || rough_looseness * likely < worth_loosening * now) return false;
+    set_prior(rough_looseness * likely);
+    return true;
+  }
+
+  static void continue_with(DescentReport& d, const DescentReport& next) {
+    d.iterations += next.iterations;
+    d.evaluations += next.evaluations;
+    d.products += next.products;
+    d.gradient_norm = next.gradient_norm;
+    d.ended = next.ended;
   }
 
   std::int64_t pixels() const {
@@ -252,8 +292,13 @@ class Work {
                                               truth.z_nm.height(), w, h), "Give it on the surface's samples");
     for (int y = 0; y < h; ++y)
       for (int x = 0; x < w; ++x) at_.z_nm(x + margin_, y + margin_) = truth.z_nm(x, y);
+    if (options_.method == ReconstructionMethod::gauss_newton) {
+      const double scale = options_.scales_px.empty() ? default_scales_px(options_.method, f.width, f.height).back() : options_.scales_px.back();
+      set_prior(curvature_ * scale * scale);
+    }
+    if (options_.curvature_prior_per_nm == 0) loosen_prior();
     const Objective::State s = objective_.evaluate(at_);
-    Preconditioner m;
+    Preconditioner m(Preconditioner::usual_tile_px, options_.threads);
     m.factor(objective_, at_, s);
     double sum = 0;
     for (int d = 0; d < draws; ++d) {
@@ -272,7 +317,7 @@ class Work {
   Unknowns at_;
   Grid<double> start_;
   double curvature_ = 1e-3;
-  bool converged_ = true;
+  bool converged_ = true, rough_ = false;
   std::vector<ScaleReport> reports_;
 };
 

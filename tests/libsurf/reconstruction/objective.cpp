@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 
 #include "afm/normal_numbers.h"
 #include "gaussian_basis.h"
@@ -172,7 +173,7 @@ TEST(Preconditioner, SolvesTheMatrixThatItHolds) {
   o.afm.emplace(scene.afm, eroded(scene.afm, 1), o.frame, Affine{}, 1);
   const Unknowns at{eroded(scene.afm, 1).z_nm, {}, {}};
   const Objective::State s = o.evaluate(at);
-  Preconditioner m;
+  Preconditioner m(0, 0);
   m.factor(o, at, s);
   const Step v = random_step(o, 8), back = m.solve(o.product(at, s, v));
   for (std::size_t i = 0; i < v.z_nm.size(); ++i) ASSERT_NEAR(back.z_nm.data()[i], v.z_nm.data()[i], 1e-5);
@@ -182,17 +183,10 @@ TEST(Preconditioner, DrawsHaveItsInverseAsCovariance) {
   const test::SmallScene scene(5, 24, 18);
   const Objective o = make_objective(scene, Images::both);
   const Unknowns at = start_at(scene, o);
-  Preconditioner m;
+  Preconditioner m(0, 0);
   m.factor(o, at, o.evaluate(at));
   constexpr int draws = 2000;
-  Grid<double> squares(o.frame.width, o.frame.height);
-  NormalNumbers normal(5, 1);
-  for (int d = 0; d < draws; ++d) {
-    Grid<double> white(o.frame.width, o.frame.height);
-    for (double& v : white.data()) v = normal();
-    const Grid<double> x = m.draw_nm(white);
-    for (std::size_t i = 0; i < x.size(); ++i) squares.data()[i] += x.data()[i] * x.data()[i] / draws;
-  }
+  const Grid<double> squares = m.variances(o.prior, draws, 5, {}).height_nm2;
   for (std::size_t i = 0; i < squares.size(); i += 37) {
     Step unit = o.zero();
     unit.z_nm.data()[i] = 1;
@@ -200,6 +194,81 @@ TEST(Preconditioner, DrawsHaveItsInverseAsCovariance) {
     // The variance of a variance of so many draws; 23 comparisons.
     ASSERT_NEAR(squares.data()[i], expected, 4.6 * std::sqrt(2.0 / draws) * expected) << i;
   }
+}
+
+TEST(Preconditioner, TilesAreSymmetricAndDoNotDependOnThreads) {
+  const test::SmallScene scene(5, 112, 90);
+  const Objective o = make_objective(scene, Images::both);
+  const Unknowns at = start_at(scene, o);
+  const Objective::State s = o.evaluate(at);
+  Preconditioner one(48, 1), three(48, 3), whole(0, 1);
+  for (Preconditioner* m : {&one, &three, &whole}) m->factor(o, at, s);
+  const Step u = random_step(o, 1), v = random_step(o, 2), mu = one.solve(u), mv = one.solve(v);
+  EXPECT_NEAR(dot(u, mv), dot(mu, v), 1e-9 * std::fabs(dot(u, mu)));
+  EXPECT_GT(dot(u, mu), 0);
+  EXPECT_EQ(three.solve(u).z_nm.data(), mu.z_nm.data());
+  // Where what it is asked is smooth it answers nearly as the whole matrix does, seams included.
+  Step pull = o.zero();
+  for (int y = 0; y < o.frame.height; ++y)
+    for (int x = 0; x < o.frame.width; ++x) pull.z_nm(x, y) = std::sin(0.3 * x) * std::cos(0.2 * y);
+  const Grid<double> tiled = one.solve(pull).z_nm, exact = whole.solve(pull).z_nm;
+  double off = 0, all = 0;
+  for (std::size_t i = 0; i < exact.size(); ++i) {
+    off += std::pow(tiled.data()[i] - exact.data()[i], 2);
+    all += std::pow(exact.data()[i], 2);
+  }
+  EXPECT_LT(off, 0.01 * all);
+}
+
+TEST(SemTerm, NearDoesToWavesOfTwelveSamplesWhatTheModelDoes) {
+  const test::SmallScene scene;
+  const Objective o = make_objective(scene, Images::sem);
+  const Unknowns at = start_at(scene, o);
+  const Objective::State s = o.evaluate(at);
+  const SemTerm::Near near = o.sem->near(*s.sem, at.mixture);
+  for (const bool along_x : {true, false}) {
+    Grid<double> wave(o.frame.width, o.frame.height);
+    for (int y = 0; y < wave.height(); ++y)
+      for (int x = 0; x < wave.width(); ++x) wave(x, y) = std::cos(std::numbers::pi / 6 * (along_x ? x : y) + 0.7);
+    const Grid<double> exact = o.sem->change(*s.sem, at.mixture, wave, {}), sparse = o.sem->change(*s.sem, at.mixture, wave, {}, &near);
+    double size = 0;
+    for (const double v : exact.data()) size = std::max(size, std::fabs(v));
+    for (int y = 1; y + 1 < wave.height(); ++y)
+      for (int x = 1; x + 1 < wave.width(); ++x) ASSERT_NEAR(sparse(x, y), exact(x, y), 1e-6 * size) << x << " " << y;
+  }
+}
+
+TEST(SemTerm, NearsTransposeIsExact) {
+  const test::SmallScene scene;
+  const Objective o = make_objective(scene, Images::both);
+  const Unknowns at = start_at(scene, o);
+  const Objective::State s = o.evaluate(at);
+  const SemTerm::Near near = o.sem->near(*s.sem, at.mixture);
+  const Step u = random_step(o, 3), v = random_step(o, 4);
+  const Grid<double> ju = o.sem->change(*s.sem, at.mixture, u.z_nm, u.mixture, &near);
+  Step back = o.zero();
+  o.sem->add_gradient(*s.sem, at.mixture, v.z_nm, &near, back.z_nm, &back.mixture);
+  double left = 0, right = 0;
+  for (std::size_t i = 0; i < ju.size(); ++i) left += v.z_nm.data()[i] * ju.data()[i];
+  for (std::size_t i = 0; i < ju.size(); ++i) right += back.z_nm.data()[i] * u.z_nm.data()[i];
+  for (std::size_t i = 0; i < u.mixture.size(); ++i) right += back.mixture[i] * u.mixture[i];
+  EXPECT_NEAR(left, right, 1e-9 * std::fabs(left));
+  const Step a = o.product(at, s, u, &near), b = o.product(at, s, v, &near);
+  EXPECT_NEAR(dot(v, a), dot(u, b), 1e-9 * std::fabs(dot(u, a)));
+  EXPECT_GT(dot(u, a), 0);
+}
+
+TEST(CurvaturePrior, LikelyCurvatureIsThatOfHalfTheSamples) {
+  Grid<double> bowl(60, 50), half = bowl;
+  for (int y = 0; y < 50; ++y)
+    for (int x = 0; x < 60; ++x) {
+      bowl(x, y) = 0.5 * 3e-3 * 100 * (x - 30) * (x - 30);
+      half(x, y) = x < 20 ? bowl(x, y) : bowl(20, y) - 3 * (x - 20);
+    }
+  const CurvaturePrior prior(10, 1e-3);
+  EXPECT_NEAR(prior.likely_curvature_per_nm(bowl), 3e-3, 1.5e-4);   // rows at the border have no second difference
+  EXPECT_LT(prior.likely_curvature_per_nm(half), 1e-8);
+  EXPECT_LE(prior.likely_curvature_per_nm(Grid<double>(60, 50)), 2e-9);
 }
 
 TEST(GaussianBasis, TransposeIsExactAndConstantsStay) {

@@ -107,6 +107,18 @@ TEST(Reconstruct, DeviationsHoldTheErrors) {
   EXPECT_GT(within_two / count, 0.55);
 }
 
+TEST(Reconstruct, RoughGroundMayBendMoreThanPlateaus) {
+  const test::SmallScene rough(5, 56, 40, 1, test::rough_height), plateau;
+  ReconstructionOptions stiff = quick();
+  stiff.curvature_prior_per_nm = 1e-3;
+  const Reconstruction free = reconstruct(&rough.afm, &rough.sem, quick()), held = reconstruct(&rough.afm, &rough.sem, stiff);
+  EXPECT_GT(free.scales.back().curvature_prior_per_nm, 1e-2);
+  EXPECT_LT(rough.rms_error(free.surface), 0.8 * rough.rms_error(held.surface));
+  EXPECT_LT(rough.rms_error(free.surface), rough.rms_error(free.start));
+  EXPECT_NEAR(held.scales.back().curvature_prior_per_nm, 1.96e-3, 1e-9);
+  EXPECT_NEAR(reconstruct(&plateau.afm, &plateau.sem, quick()).scales.back().curvature_prior_per_nm, 1.96e-3, 1e-9);
+}
+
 TEST(Reconstruct, DoesNotDependOnThreads) {
   const test::SmallScene scene;
   ReconstructionOptions one = quick(), three = quick();

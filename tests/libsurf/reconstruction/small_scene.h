@@ -20,17 +20,24 @@ inline double small_height(Point2 p) {
   return 80 * block - 25 * dimple;
 }
 
-/// Both images of it, an SEM image by a model of the slope, with noise of their kinds.
+/// Ground that bends everywhere.
+inline double rough_height(Point2 p) {
+  return 12 * std::sin(0.031 * p.x + 0.3 + std::sin(0.011 * p.y)) + 12 * std::sin(0.027 * p.y + 0.9 * std::sin(0.013 * p.x)) +
+         4 * std::sin(0.061 * (p.x - p.y));
+}
+
+/// Both images of such a surface, an SEM image by a model of the slope, with noise of their kinds.
 struct SmallScene {
   AfmData afm;
   SemData sem;
   HeightField truth;   ///< on the SEM's pixels
 
-  explicit SmallScene(std::uint64_t seed = 5, int width = 56, int height = 40, double noise = 1) {
+  explicit SmallScene(std::uint64_t seed = 5, int width = 56, int height = 40, double noise = 1,
+                      double (*height_nm)(Point2) = small_height) {
     const double pitch = 10;
     truth = {Grid<double>(width, height), {}, pitch, pitch, -0.5 * (width - 1) * pitch, -0.5 * (height - 1) * pitch};
     for (int y = 0; y < height; ++y)
-      for (int x = 0; x < width; ++x) truth.z_nm(x, y) = small_height({truth.x_nm(x), truth.y_nm(y)});
+      for (int x = 0; x < width; ++x) truth.z_nm(x, y) = height_nm({truth.x_nm(x), truth.y_nm(y)});
 
     SlopeModelParameters p;
     SlopeChannel channel;
@@ -56,7 +63,7 @@ struct SmallScene {
                      -0.5 * (n - 1) * afm_pitch, -0.5 * (m - 1) * afm_pitch};
     const Affine back = inverse(sem.sem_to_afm);
     for (int y = 0; y < fine.z_nm.height(); ++y)
-      for (int x = 0; x < fine.z_nm.width(); ++x) fine.z_nm(x, y) = small_height(back({fine.x_nm(x), fine.y_nm(y)}));
+      for (int x = 0; x < fine.z_nm.width(); ++x) fine.z_nm(x, y) = height_nm(back({fine.x_nm(x), fine.y_nm(y)}));
     const Tip blunt = parabolic_tip(80, {afm_pitch / f, afm_pitch / f, 31, 31});
     const HeightField image = dilate(fine, blunt);
     afm.image = {Grid<double>(n, m), {}, afm_pitch, afm_pitch, fine.origin_x_nm, fine.origin_y_nm};

@@ -18,7 +18,8 @@
 
 namespace surf {
 
-/// A levelled scan, and what is known of how it came about: image = dilation of the surface by the tip + noise.
+/// A levelled scan, and what is known of how it came about: image = dilation of the surface by the tip +
+/// noise.
 struct AfmData {
   HeightField image;
   Tip tip;              ///< of the image's pitch
@@ -46,16 +47,18 @@ enum class ReconstructionMethod {
 struct ReconstructionOptions {
   ReconstructionMethod method = ReconstructionMethod::gauss_newton;
 
-  /// Of the descents: standard deviations of the Gaussians that the surface is a sum of, in pixels of the surface, falling.
-  /// Of Gauss-Newton, whose unknowns are the heights: the prior's curvature is multiplied by a scale's square, so that
-  /// wide ones come first as a smooth surface. Empty: the method's own (`default_scales_px`).
+  /// Of the descents: standard deviations of the Gaussians that the surface is a sum of, in pixels of the
+  /// surface, falling. Of Gauss-Newton, whose unknowns are the heights: the prior's curvature is multiplied
+  /// by a scale's square, so that wide ones come first as a smooth surface. Empty: the method's own
+  /// (`default_scales_px`).
   std::vector<double> scales_px;
   int iterations = 0;            ///< of each scale, at most; 0: the method's own
   double tolerance = 0;          ///< > 0: a scale ends when an iteration lowers the objective by less than this
                                  ///< per pixel; 0: the method's own
 
-  /// Prior: the scale of the surface's second derivative, 1 / nm, Student's t with one degree of freedom; 0: 1e-3, of
-  /// a radius of a micrometre. It is multiplied by the scale's square, see above, 2e-3 at the end.
+  /// Prior: the scale of the surface's second derivative, 1 / nm, Student's t with one degree of freedom,
+  /// multiplied by the scale's square, see above. 0: 1e-3, so 2e-3 at the end, and what the surface itself
+  /// makes most likely where that is more, as on rough ground, which bends everywhere.
   double curvature_prior_per_nm = 0;
 
   bool refine_transform = true;    ///< the map is fitted further with the surface
@@ -77,6 +80,7 @@ struct ResidualReport {
 
 struct ScaleReport {
   double sigma_px = 0;
+  double curvature_prior_per_nm = 0;    ///< that the scale ended with
   double afm = 0, sem = 0, prior = 0;   ///< terms of the objective: negative log-likelihoods, without constants
   double gradient_norm = 0;             ///< largest component, per coefficient
   int iterations = 0, evaluations = 0, products = 0;   ///< of objective and gradient; of a Hessian and a vector
@@ -115,8 +119,8 @@ struct Reconstruction {
   Grid<double> sem_residual;        ///< whitened
 
   Grid<double> deviation_nm;        ///< of each height, linearised: noise and the prior's pull; empty if not asked for
-  /// What holds each height: 1 the tip touched it, 2 the SEM image halves its prior's variance at least; both: 3;
-  /// 0: nothing but its neighbours and the prior.
+  /// What holds each height: 1 the tip touched it, 2 the SEM image halves its prior's variance at least;
+  /// both: 3; 0: nothing but its neighbours and the prior.
   Grid<unsigned char> held_by;
   std::vector<ScaleReport> scales;
   bool converged = true;
@@ -128,15 +132,16 @@ struct Reconstruction {
 std::vector<double> default_scales_px(ReconstructionMethod method, int width, int height);
 
 /// The surface that makes both images, or the one that is there, most likely (thesis, chapter 9;
-/// docs/methods/reconstruction.md). Throws InvalidInput for impossible data, or where the images do not overlap
-/// by 16 pixels, UsageError for options out of range, Interrupted.
+/// docs/methods/reconstruction.md). Throws InvalidInput for impossible data, or where the images do not
+/// overlap by 16 pixels, UsageError for options out of range, Interrupted.
 Reconstruction reconstruct(const AfmData* afm, const SemData* sem, const ReconstructionOptions& options = {},
                            ReconstructionJournal* journal = nullptr);
 
-/// The root-mean-square error of heights, nm, that noise and the prior alone would leave: of one linear step at the true
-/// surface, for data whose noise is as described and whose models, map and tip are right; the mean over `draws` of
-/// the noise. `truth` is on the surface's samples (the SEM's pixels, or the AFM's samples without one). A mean
-/// difference counts, as the AFM image knows the height. Throws as `reconstruct`.
+/// The root-mean-square error of heights, nm, that noise and the prior alone would leave: of one linear step
+/// at the true surface, for data whose noise is as described and whose models, map and tip are right; the
+/// mean over `draws` of the noise. `truth` is on the surface's samples (the SEM's pixels, or the AFM's
+/// samples without one). A mean difference counts, as the AFM image knows the height. Throws as
+/// `reconstruct`.
 double noise_floor_nm(const AfmData* afm, const SemData* sem, const HeightField& truth,
                       const ReconstructionOptions& options = {}, int draws = 2);
 
