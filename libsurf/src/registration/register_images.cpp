@@ -107,7 +107,6 @@ class Registrar {
       refine(trials, level(blur), options_.objective, effort_at(blur), options_, of_blur);
       ++done;
       if (!searched) continue;
-      if (by_correlation()) note_score(trials);
       prune(trials, level(blur), frame_, options_, std::max(rival_apart_px, 0.5 * blur),
             blur <= sharp_blur_px ? places_sharp : places_fine);
       hold(trials, blur);
@@ -156,7 +155,6 @@ class Registrar {
     }
     const BlurLevel finer = blurred_by(0.5 * pitch_);
     refine(trials, finer, RegistrationObjective::correlation, coarse_effort, options_, options_.watch.part(0.65, 0.7));
-    note_score(trials);
     prune(trials, finer, frame_, options_, 0.5 * pitch_, places_fine);
     hold(trials, 0.5 * pitch_);
     for (Trial& trial : trials) trial.steps.clear(), trial.places.clear();
@@ -168,10 +166,8 @@ class Registrar {
     if (trials.empty()) return;
     held_ = {trials.begin(), trials.begin() + static_cast<std::ptrdiff_t>(std::min(places_sharp, trials.size()))};
     held_blur_ = blur;
-  }
-
-  void note_score(const std::vector<Trial>& trials) {
-    for (const Trial& trial : trials) best_correlation_ = std::max(best_correlation_, trial.score);
+    if (blur == pitch_ || !by_correlation()) return;
+    for (const Trial& trial : held_) best_correlation_ = std::max(best_correlation_, trial.score);
   }
 
   /// More than chance allows while all was coarse, or so well when it was sharper that chance is out of question:

@@ -3,13 +3,16 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <numbers>
 
 #include "registration/correlation.h"
 #include "registration/mutual_information.h"
+#include "registration/verdict.h"
 #include "surf/core/error.h"
 #include "surf/core/random.h"
 
@@ -205,10 +208,29 @@ TEST(RegisterImages, IsAmbiguousWhereTheSceneRepeatsOrSlides) {
   }
 }
 
+TEST(RegisterImages, AFineGratingIsAmbiguousAndHasItsRivals) {
+  const Scene fine = [](double x, double) { return std::cos(2 * std::numbers::pi * x / 8); };
+  const Registration r = register_images(image_of(fine, make_affine({0.3, 1, 1, 0, 2, 3}), 240, 100, 1, 0.1, 1),
+                                         image_of(fine, {}, 150, 150, 1, 0.05, 2));
+  EXPECT_EQ(r.verdict, RegistrationVerdict::ambiguous) << r.reason;
+  EXPECT_GT(r.score, 0.5);
+  EXPECT_GT(r.stderr_px, 1);
+  EXPECT_FALSE(r.rivals.empty());
+}
+
+TEST(RegisterImages, DoesNotAcceptAScaleBeyondItsLimits) {
+  const Spots spots(5);
+  RegistrationOptions options;
+  options.least_scale = 0.9, options.largest_scale = 1;
+  const Registration r = register_images(image_of(spots, make_affine({0.3, 1.1, 1.1, 0, 2, 3}), 90, 70, 1, 0.1, 1),
+                                         image_of(spots, {}, 90, 90, 1.25, 0.03, 2), options);
+  EXPECT_NE(r.verdict, RegistrationVerdict::verified) << r.reason;
+}
+
 TEST(RegisterImages, DoesNotAcceptImagesOfDifferentPlaces) {
   for (std::uint64_t seed = 1; seed <= 4; ++seed) {
     const Registration r = register_images(image_of(Spots(seed), {}, 80, 70, 1, 0.3, 1), image_of(Spots(seed + 50), {}, 80, 80, 1, 0.03, 2));
-    EXPECT_NE(r.verdict, RegistrationVerdict::verified) << r.reason;
+    EXPECT_EQ(r.verdict, RegistrationVerdict::unrelated) << r.reason;
   }
   RegistrationOptions options;
   options.start = Affine{1, 0, 1e5, 0, 1, 0};
@@ -271,6 +293,61 @@ TEST(RegisterImages, IsInterrupted) {
   options.watch.progress = [&](double, double) { cancel.cancel(); };
   const PlacedImage image = image_of(Spots(9), {}, 40, 40, 1, 0.1, 1);
   EXPECT_THROW(register_images(image, image, options), Interrupted);
+}
+
+TEST(Verdict, SaysWhatIsAmissBeforeItAccepts) {
+  using enum RegistrationVerdict;
+  Evidence good;
+  good.searched = true;
+  good.coarse_evidence = good.best_coarse_evidence = 100;
+  good.chance_evidence = 50;
+  good.loosest_px = 0.2;
+  good.largest_stderr_px = 0.4;
+  const auto verdict_of = [](const Evidence& evidence, std::size_t rivals = 0, double stderr_px = 0.1) {
+    Registration r;
+    r.stderr_px = stderr_px;
+    r.rivals.resize(rivals);
+    judge(r, evidence);
+    EXPECT_FALSE(r.reason.empty());
+    return r.verdict;
+  };
+  EXPECT_EQ(verdict_of(good), verified);
+  EXPECT_EQ(verdict_of(good, 1), ambiguous);
+  EXPECT_EQ(verdict_of(good, 0, 0.5), ambiguous);
+  Evidence bad = good;
+  bad.any_place = false;
+  EXPECT_EQ(verdict_of(bad), unrelated);
+  bad = good, bad.related = false;
+  EXPECT_EQ(verdict_of(bad), unrelated);
+  bad = good, bad.slid_off = true;
+  EXPECT_EQ(verdict_of(bad), ambiguous);
+  bad = good, bad.loosest_px = 1.1;
+  EXPECT_EQ(verdict_of(bad), ambiguous);
+  bad = good, bad.coarse_evidence = 40;   // another place agreed while all was coarse, this one did not
+  EXPECT_EQ(verdict_of(bad), ambiguous);
+  bad = good, bad.settled = false;
+  EXPECT_EQ(verdict_of(bad), unconverged);
+  bad = good, bad.within_limits = false;
+  EXPECT_EQ(verdict_of(bad), unconverged);
+  bad = good, bad.searched = false, bad.score = 0.5, bad.score_error = 0.1;
+  EXPECT_EQ(verdict_of(bad), unrelated);
+  bad.score_error = 0.05;
+  EXPECT_EQ(verdict_of(bad), verified);
+}
+
+TEST(Verdict, ChanceIsExceededOnceInSoManySearches) {
+  // The best of 500 values that follow Gumbel's law: in one of 20 searches it is above the bound of that odds.
+  constexpr int searches = 2000, poses = 500;
+  int above = 0;
+  for (int search = 0; search < searches; ++search) {
+    RandomStream random(12, static_cast<std::uint64_t>(search), 1);
+    std::vector<double> best;
+    for (int i = 0; i < poses; ++i) best.push_back(70 - 9 * std::log(-std::log(random.uniform())));
+    std::sort(best.begin(), best.end());
+    above += best.back() > chance_bound(best, 20);
+  }
+  // 100 by the law, give or take four and a half standard deviations.
+  EXPECT_NEAR(above, 0.05 * searches, 45);
 }
 
 TEST(Correlation, DerivativesAreThoseOfDifferences) {
