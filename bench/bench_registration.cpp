@@ -210,9 +210,11 @@ int main(int argc, char** argv) {
     const Row r = measure(model, number, pattern);
     rows.push_back(r);
     std::ofstream file(path, std::ios::app);
-    if (rows.size() == 1) file << "number,pattern,verdict,rivals,overlap,error_px,corner_px,stderr_px,blur_px,score,seconds\n";
-    file << fmt::format("{},{},{},{},{:.4f},{:.4f},{:.4f},{:.4f},{},{:.5f},{:.3f}\n", r.number, r.pattern, r.verdict,
-                        r.rivals, r.overlap, r.error_px, r.corner_px, r.stderr_px, r.blur_px, r.score, r.seconds);
+    if (rows.size() == 1)
+      file << "number,pattern,verdict,rivals,overlap,error_px,corner_px,stderr_px,blur_px,score,seconds\n";
+    file << fmt::format("{},{},{},{},{:.4f},{:.4f},{:.4f},{:.4f},{},{:.5f},{:.3f}\n", r.number, r.pattern,
+                        r.verdict, r.rivals, r.overlap, r.error_px, r.corner_px, r.stderr_px, r.blur_px, r.score,
+                        r.seconds);
     std::fflush(stdout);
   };
   for (int number = std::atoi(argv[3]); number < std::atoi(argv[4]); ++number) {

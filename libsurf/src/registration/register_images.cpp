@@ -134,7 +134,9 @@ class Registrar {
     const bool steep = options_.objective == RegistrationObjective::mutual_information;
     const PlacedImage sem = steep ? edges_of(sem_, 0.7 * pitch_, frame_.pixel_nm()) : PlacedImage{};
     const PlacedImage afm = steep ? edges_of(afm_, 0.7 * pitch_, frame_.pixel_nm()) : PlacedImage{};
-    const auto blurred_by = [&](double blur) { return BlurLevel(steep ? sem : sem_, steep ? afm : afm_, frame_, blur); };
+    const auto blurred_by = [&](double blur) {
+      return BlurLevel(steep ? sem : sem_, steep ? afm : afm_, frame_, blur);
+    };
     const BlurLevel coarse = blurred_by(pitch_);
     const PoseSearch search = search_poses(coarse, pitch_, options_, places_searched, options_.watch.part(0, 0.5));
     chance_evidence_ = chance_bound(search.best_of_pose, chance_odds);
@@ -161,17 +163,22 @@ class Registrar {
     return trials;
   }
 
-  /// The best places that lay within the limits at last, should all leave them.
+  /// The best places that lay within the limits at last, should all leave them; not the worst ones that are left
+  /// when those that agreed have gone.
   void hold(const std::vector<Trial>& trials, double blur) {
     if (trials.empty()) return;
-    held_ = {trials.begin(), trials.begin() + static_cast<std::ptrdiff_t>(std::min(places_sharp, trials.size()))};
+    std::vector<Trial> best = trials;
+    std::stable_sort(best.begin(), best.end(), [](const Trial& a, const Trial& b) { return a.score > b.score; });
+    best.resize(std::min(places_sharp, best.size()));
+    if (!held_.empty() && best.front().score < 0.5 * held_.front().score) return;
+    held_ = std::move(best);
     held_blur_ = blur;
     if (blur == pitch_ || !by_correlation()) return;
     for (const Trial& trial : held_) best_correlation_ = std::max(best_correlation_, trial.score);
   }
 
-  /// More than chance allows while all was coarse, or so well when it was sharper that chance is out of question:
-  /// a fine pattern is not there to be seen while all is coarse.
+  /// More than chance allows while all was coarse, or so well when it was sharper that chance is out of
+  /// question: a fine pattern is not there to be seen while all is coarse.
   bool are_related() const {
     return best_coarse_evidence_ >= chance_evidence_ || best_correlation_ > sure_correlation;
   }
@@ -267,8 +274,8 @@ class Registrar {
     return probes;
   }
 
-  /// Every place left the limits of the search: what slides is of no place, and those from which it slid are as good
-  /// as any.
+  /// Every place left the limits of the search: what slides is of no place, and those from which it slid are
+  /// as good as any.
   Registration slid_off(Evidence evidence) {
     blur_ = held_blur_;
     Registration r;

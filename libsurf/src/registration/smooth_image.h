@@ -22,8 +22,8 @@ class SmoothImage {
 
   SmoothImage() = default;
   /// Places in x and y are (column - middle) * step; blurs in the unit of `step`. Samples whose blur reaches
-  /// beyond the image count too, though what is left of it there lies a little farther inside: the rim holds turns
-  /// and scales best, and errors are larger without it.
+  /// beyond the image count too, though what is left of it there lies a little farther inside: the rim holds
+  /// turns and scales best, and errors are larger without it.
   SmoothImage(const PlacedImage& image, double step_x, double step_y, double blur);
 
   /// Whether the place lies between valid samples.
