@@ -7,11 +7,11 @@
 namespace surf {
 
 BlurLevel::BlurLevel(const PlacedImage& sem_image, const PlacedImage& afm_image, const CornerFrame& frame,
-                     double blur, bool whole)
+                     double blur)
     : blur_px(blur), stride(std::max(1, static_cast<int>(std::lround(blur)))),
       sem_step_x(sem_image.pitch_x_nm / frame.pixel_nm()), sem_step_y(sem_image.pitch_y_nm / frame.pixel_nm()),
-      sem(sem_image, sem_step_x, sem_step_y, blur, whole),
-      afm(afm_image, afm_image.pitch_x_nm / frame.pixel_nm(), afm_image.pitch_y_nm / frame.pixel_nm(), blur, whole) {
+      sem(sem_image, sem_step_x, sem_step_y, blur),
+      afm(afm_image, afm_image.pitch_x_nm / frame.pixel_nm(), afm_image.pitch_y_nm / frame.pixel_nm(), blur) {
   // Small images keep enough samples to tell six numbers from.
   const int w = sem_image.values.width(), h = sem_image.values.height();
   stride = std::clamp(std::min(w, h) / 12, 1, stride);

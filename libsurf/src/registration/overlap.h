@@ -10,8 +10,7 @@ namespace surf {
 
 /// One blur of both images: the SEM's at some of its pixels, the AFM's everywhere.
 struct BlurLevel {
-  /// `whole`: as SmoothImage has it, for both images.
-  BlurLevel(const PlacedImage& sem, const PlacedImage& afm, const CornerFrame& frame, double blur_px, bool whole);
+  BlurLevel(const PlacedImage& sem, const PlacedImage& afm, const CornerFrame& frame, double blur_px);
 
   struct Sample {
     Shares shares;

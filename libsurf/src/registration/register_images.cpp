@@ -26,9 +26,9 @@ constexpr Effort sharp_effort{1, 4, 10};   // noise is in the slopes: see Newton
 constexpr double sharp_blur_px = 2;    // from here on every pixel counts, and costs
 constexpr double probe_blur_px = 3, widest_result_px = 2, slip_blur_px = 2;
 constexpr double probes_px[] = {-8, -4, 4, 8};
-constexpr double narrow_share = 0;   // of a side: up to this blur what borders blur into is left out; 0.04 made errors larger
 constexpr double rival_apart_px = 1;   // nearer than this it is the same place
 constexpr double chance_odds = 1000;
+constexpr double sure_correlation = 0.5;   // of images that overlap by a third and more
 constexpr double unit_score_error_of_information = 2;
 
 void require(bool good, const char* subject, const std::string& value, const char* remedy) {
@@ -109,6 +109,7 @@ class Registrar {
       if (!searched) continue;
       prune(trials, level(blur), frame_, options_, std::max(rival_apart_px, 0.5 * blur),
             blur <= sharp_blur_px ? places_sharp : places_fine);
+      hold(trials, blur);
       if (blur <= probe_blur_px && trials.size() > 1) drop_hopeless(trials, level(blur), trials.front().corners);
     }
     return conclude(std::move(trials));
@@ -117,15 +118,8 @@ class Registrar {
  private:
   const BlurLevel& level(double blur) {
     std::unique_ptr<BlurLevel>& made = levels_[blur];
-    if (!made) made = std::make_unique<BlurLevel>(sem_, afm_, frame_, blur, is_narrow(blur));
+    if (!made) made = std::make_unique<BlurLevel>(sem_, afm_, frame_, blur);
     return *made;
-  }
-
-  /// Against both images, so that enough is left within their borders.
-  bool is_narrow(double blur) const {
-    const double sides[] = {sem_.values.width() * sem_.pitch_x_nm, sem_.values.height() * sem_.pitch_y_nm,
-                            afm_.values.width() * afm_.pitch_x_nm, afm_.values.height() * afm_.pitch_y_nm};
-    return blur * frame_.pixel_nm() <= narrow_share * *std::min_element(std::begin(sides), std::end(sides));
   }
 
   std::vector<Trial> from_start() {
@@ -140,7 +134,9 @@ class Registrar {
     const bool steep = options_.objective == RegistrationObjective::mutual_information;
     const PlacedImage sem = steep ? edges_of(sem_, 0.7 * pitch_, frame_.pixel_nm()) : PlacedImage{};
     const PlacedImage afm = steep ? edges_of(afm_, 0.7 * pitch_, frame_.pixel_nm()) : PlacedImage{};
-    const auto blurred_by = [&](double blur) { return BlurLevel(steep ? sem : sem_, steep ? afm : afm_, frame_, blur, false); };
+    const auto blurred_by = [&](double blur) {
+      return BlurLevel(steep ? sem : sem_, steep ? afm : afm_, frame_, blur);
+    };
     const BlurLevel coarse = blurred_by(pitch_);
     const PoseSearch search = search_poses(coarse, pitch_, options_, places_searched, options_.watch.part(0, 0.5));
     chance_evidence_ = chance_bound(search.best_of_pose, chance_odds);
@@ -148,15 +144,43 @@ class Registrar {
     for (const PoseSearch::Candidate& candidate : search.candidates) {
       trials.emplace_back();
       trials.back().corners = candidate.corners;
+      trials.back().score = agreement_of(coarse, candidate.corners).correlation;
+      best_coarse_evidence_ = std::max(best_coarse_evidence_, candidate.evidence);
     }
+    hold(trials, pitch_);
     refine(trials, coarse, RegistrationObjective::correlation, coarse_effort, options_, options_.watch.part(0.5, 0.65));
     prune(trials, coarse, frame_, options_, pitch_, places_coarse);
-    for (const Trial& trial : trials) coarse_.push_back(trial);
+    hold(trials, pitch_);
+    for (const Trial& trial : trials) {
+      coarse_.push_back(trial);
+      best_coarse_evidence_ = std::max(best_coarse_evidence_, trial.evidence * samples_ratio(trial));
+    }
     const BlurLevel finer = blurred_by(0.5 * pitch_);
     refine(trials, finer, RegistrationObjective::correlation, coarse_effort, options_, options_.watch.part(0.65, 0.7));
     prune(trials, finer, frame_, options_, 0.5 * pitch_, places_fine);
+    hold(trials, 0.5 * pitch_);
     for (Trial& trial : trials) trial.steps.clear(), trial.places.clear();
     return trials;
+  }
+
+  /// The best places that lay within the limits at last, should all leave them; not the worst ones that are left
+  /// when those that agreed have gone.
+  void hold(const std::vector<Trial>& trials, double blur) {
+    if (trials.empty()) return;
+    std::vector<Trial> best = trials;
+    std::stable_sort(best.begin(), best.end(), [](const Trial& a, const Trial& b) { return a.score > b.score; });
+    best.resize(std::min(places_sharp, best.size()));
+    if (!held_.empty() && best.front().score < 0.5 * held_.front().score) return;
+    held_ = std::move(best);
+    held_blur_ = blur;
+    if (blur == pitch_ || !by_correlation()) return;
+    for (const Trial& trial : held_) best_correlation_ = std::max(best_correlation_, trial.score);
+  }
+
+  /// More than chance allows while all was coarse, or so well when it was sharper that chance is out of
+  /// question: a fine pattern is not there to be seen while all is coarse.
+  bool are_related() const {
+    return best_coarse_evidence_ >= chance_evidence_ || best_correlation_ > sure_correlation;
   }
 
   /// A start that was searched for is better than blurs wider than the search's would leave it.
@@ -220,14 +244,20 @@ class Registrar {
     std::erase_if(trials, [&](const Trial& t) { return here - t.score > 2 * options_.rival_sigmas * error; });
   }
 
-  /// Other optima along the motions that are known least: on patterns that slide or repeat they are as good.
-  std::vector<Trial> probe(const Trial& best, const Uncertainty& u) {
-    std::vector<Trial> probes;
+  /// Places to either side along the motions that are known least.
+  static std::vector<Trial> displaced(const Trial& best, const Uncertainty& u) {
+    std::vector<Trial> moved;
     for (const Corners& motion : u.loosest)
       for (const double far : probes_px) {
-        probes.emplace_back();
-        for (std::size_t i = 0; i < 6; ++i) probes.back().corners[i] = best.corners[i] + far * motion[i];
+        moved.emplace_back();
+        for (std::size_t i = 0; i < 6; ++i) moved.back().corners[i] = best.corners[i] + far * motion[i];
       }
+    return moved;
+  }
+
+  /// Other optima along those motions: on patterns that slide or repeat they are as good.
+  std::vector<Trial> probe(const Trial& best, const Uncertainty& u) {
+    std::vector<Trial> probes = displaced(best, u);
     const auto drop_same = [&](const BlurLevel& at, double apart) {
       const Moments moments = moments_of(at, overlap_of(at, best.corners));
       std::erase_if(probes, [&](const Trial& t) { return distance_px(t.corners, best.corners, moments) < apart; });
@@ -244,11 +274,50 @@ class Registrar {
     return probes;
   }
 
+  /// Every place left the limits of the search: what slides is of no place, and those from which it slid are
+  /// as good as any.
+  Registration slid_off(Evidence evidence) {
+    blur_ = held_blur_;
+    Registration r;
+    const Trial& best = held_.front();
+    const Uncertainty u = known(best);
+    r.sem_to_afm = frame_.affine(best.corners);
+    r.score = best.score;
+    r.blur_px = blur_;
+    r.covariance = affine_covariance(frame_, u.covariance);
+    r.stderr_px = u.place_px;
+    r.overlap = overlap_at(best.corners);
+    const Moments moments = moments_of(level(blur_), overlap_of(level(blur_), best.corners));
+    const auto add_rival = [&](const Corners& corners, double score) {
+      r.rivals.push_back({frame_.affine(corners), score, distance_px(corners, best.corners, moments)});
+    };
+    for (std::size_t i = 1; i < held_.size(); ++i) add_rival(held_[i].corners, held_[i].score);
+    if (by_correlation())
+      for (const Trial& moved : displaced(best, u)) {
+        const double score = agreement_of(level(blur_), moved.corners).correlation;
+        if (best.score - score <= options_.rival_sigmas * u.score) add_rival(moved.corners, score);
+      }
+    std::stable_sort(r.rivals.begin(), r.rivals.end(),
+                     [](const RegistrationRival& a, const RegistrationRival& b) { return a.score > b.score; });
+    evidence.slid_off = true;
+    judge(r, evidence);
+    return r;
+  }
+
+  double overlap_at(const Corners& corners) {
+    const BlurLevel& all = level(0);
+    return static_cast<double>(overlap_of(all, corners).size()) / static_cast<double>(all.samples.size());
+  }
+
   Registration conclude(std::vector<Trial> trials) {
     Registration r;
     Evidence evidence;
     evidence.searched = !options_.start;
     evidence.rival_sigmas = options_.rival_sigmas;
+    evidence.chance_evidence = chance_evidence_;
+    evidence.best_coarse_evidence = best_coarse_evidence_;
+    evidence.related = are_related();
+    if (trials.empty() && evidence.related && !held_.empty()) return slid_off(evidence);
     if (trials.empty() || trials.front().samples == 0 || !(trials.front().evidence > 0)) {
       evidence.any_place = false;
       if (options_.start) r.sem_to_afm = *options_.start;
@@ -263,8 +332,7 @@ class Registrar {
     const BlurLevel& last = level(blur_);
     r.covariance = affine_covariance(frame_, u.covariance);
     r.stderr_px = u.place_px;
-    const BlurLevel& all = level(0);
-    r.overlap = static_cast<double>(overlap_of(all, best.corners).size()) / static_cast<double>(all.samples.size());
+    r.overlap = overlap_at(best.corners);
     r.steps = best.steps;
 
     std::vector<Trial> others(trials.begin() + 1, trials.end());
@@ -290,7 +358,6 @@ class Registrar {
     evidence.score_error = u.score;
     evidence.loosest_px = u.loosest_px;
     evidence.largest_stderr_px = options_.largest_stderr_px;
-    evidence.chance_evidence = chance_evidence_;
     // The place that won may not be the one that led when all was coarse.
     for (const Trial& trial : coarse_)
       if (distance_px(trial.corners, best.corners, moments) < 2 * pitch_)
@@ -315,9 +382,10 @@ class Registrar {
   const RegistrationOptions& options_;
   CornerFrame frame_;
   std::map<double, std::unique_ptr<BlurLevel>> levels_;
-  double pitch_ = 0, chance_evidence_ = 0;
+  double pitch_ = 0, chance_evidence_ = 0, best_coarse_evidence_ = 0, best_correlation_ = 0;
   double blur_ = 0;   // of the result
-  std::vector<Trial> coarse_;
+  std::vector<Trial> coarse_, held_;
+  double held_blur_ = 0;
 };
 
 }  // namespace

@@ -8,8 +8,6 @@
 namespace surf {
 namespace {
 
-constexpr double whole_share = 0.975;   // two standard deviations from a straight border
-
 std::vector<double> gaussian(double sigma) {
   std::vector<double> taps{1};
   if (sigma <= 0) return taps;
@@ -71,7 +69,7 @@ Weights weights_of(double t) {
 
 }  // namespace
 
-Grid<double> blurred(const PlacedImage& image, double blur_x, double blur_y, Grid<double>* seen) {
+Grid<double> blurred(const PlacedImage& image, double blur_x, double blur_y) {
   const int w = image.values.width(), h = image.values.height();
   double sum = 0, count = 0;
   Grid<double> values = image.values, weight(w, h, 1);
@@ -88,22 +86,13 @@ Grid<double> blurred(const PlacedImage& image, double blur_x, double blur_y, Gri
   weight = convolved(convolved(weight, across, true), up, false);
   for (std::size_t i = 0; i < values.size(); ++i)
     values.data()[i] = mean + (weight.data()[i] > 1e-12 ? values.data()[i] / weight.data()[i] : 0);
-  if (!seen) return values;
-  const auto sum_of = [](const std::vector<double>& taps) {
-    double all = -taps.front();
-    for (const double tap : taps) all += 2 * tap;
-    return all;
-  };
-  *seen = weight;
-  for (double& share : seen->data()) share /= sum_of(across) * sum_of(up);
   return values;
 }
 
-SmoothImage::SmoothImage(const PlacedImage& image, double step_x, double step_y, double blur, bool whole)
+SmoothImage::SmoothImage(const PlacedImage& image, double step_x, double step_y, double blur)
     : step_x_(step_x), step_y_(step_y), middle_x_(0.5 * (image.values.width() - 1)),
       middle_y_(0.5 * (image.values.height() - 1)), valid_(image.valid) {
-  Grid<double> seen;
-  samples_ = blurred(image, blur / step_x, blur / step_y, whole ? &seen : nullptr);
+  samples_ = blurred(image, blur / step_x, blur / step_y);
   const int w = samples_.width(), h = samples_.height();
   Grid<double> c = samples_;
   for (int y = 0; y < h; ++y) to_coefficients(&c(0, y), w, 1);
@@ -113,11 +102,6 @@ SmoothImage::SmoothImage(const PlacedImage& image, double step_x, double step_y,
   for (int y = -1; y <= h; ++y)
     for (int x = -1; x <= w; ++x)
       coefficients_(x + 1, y + 1) = c(x < 0 ? 1 : x == w ? w - 2 : x, y < 0 ? 1 : y == h ? h - 2 : y);
-  if (whole && blur > 0) {
-    valid_ = Grid<unsigned char>(w, h, 0);
-    for (int y = 0; y < h; ++y)
-      for (int x = 0; x < w; ++x) valid_(x, y) = image.is_valid(x, y) && seen(x, y) >= whole_share;
-  }
   if (valid_.empty()) return;
   safe_ = Grid<unsigned char>(w, h, 0);
   for (int y = 0; y < h; ++y)

@@ -9,9 +9,8 @@
 namespace surf {
 
 /// An image after a Gaussian blur of `blur_x`, `blur_y` samples (0: none), what is not valid taking no part:
-/// values where anything valid is near, their mean elsewhere. `seen`, where wanted, becomes the share of each
-/// blur's weight that lay on valid samples, 0 to 1.
-Grid<double> blurred(const PlacedImage& image, double blur_x, double blur_y, Grid<double>* seen = nullptr);
+/// values where anything valid is near, their mean elsewhere.
+Grid<double> blurred(const PlacedImage& image, double blur_x, double blur_y);
 
 /// An image between its samples: a cubic spline, whose slopes have no kinks that would hold an optimum at
 /// the samples (Unser 1999, doi:10.1109/79.799930).
@@ -22,10 +21,10 @@ class SmoothImage {
   };
 
   SmoothImage() = default;
-  /// Places in x and y are (column - middle) * step; blurs in the unit of `step`. With `whole`, samples whose
-  /// blur reached beyond the image or into what is not valid do not count as valid: what is left of it there lies
-  /// farther inside than the sample.
-  SmoothImage(const PlacedImage& image, double step_x, double step_y, double blur, bool whole = false);
+  /// Places in x and y are (column - middle) * step; blurs in the unit of `step`. Samples whose blur reaches
+  /// beyond the image count too, though what is left of it there lies a little farther inside: the rim holds
+  /// turns and scales best, and errors are larger without it.
+  SmoothImage(const PlacedImage& image, double step_x, double step_y, double blur);
 
   /// Whether the place lies between valid samples.
   bool holds(double x, double y) const {

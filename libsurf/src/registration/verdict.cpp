@@ -29,17 +29,21 @@ void judge(Registration& r, const Evidence& e) {
     r.verdict = RegistrationVerdict::unrelated;
     r.reason = "Nowhere do enough of both images overlap and agree. Check that they show the same place and that pixel "
                "sizes are right, or give landmarks";
+  } else if (e.slid_off) {
+    r.verdict = RegistrationVerdict::ambiguous;
+    r.reason = "The images slide on each other: whatever fits slides beyond the limits of scale, shear or overlap. Give "
+               "images with ends or corners of what they show, or landmarks";
   } else if (!e.settled) {
     r.verdict = RegistrationVerdict::unconverged;
     r.reason = "The optimiser did not settle. Give landmarks nearer to the truth, or blurs that begin wider";
   } else if (!e.within_limits) {
     r.verdict = RegistrationVerdict::unconverged;
     r.reason = "It settled at a limit of scale, shear or overlap. Check pixel sizes, widen the limits, or give landmarks";
-  } else if (e.searched && e.coarse_evidence < e.chance_evidence) {
+  } else if (e.searched && !e.related) {
     r.verdict = RegistrationVerdict::unrelated;
     r.reason = fmt::format("The best place found agrees no better than chance allows (evidence {:.3g} of the {:.3g} that "
                            "wrong places reach). Check that both images show the same place, or give landmarks",
-                           e.coarse_evidence, e.chance_evidence);
+                           e.best_coarse_evidence, e.chance_evidence);
   } else if (!e.searched && e.score < least_sigmas * e.score_error) {
     r.verdict = RegistrationVerdict::unrelated;
     r.reason = fmt::format("The images do not agree there: the score is {:.3g} with a standard error of {:.2g}. Check the "
@@ -55,6 +59,11 @@ void judge(Registration& r, const Evidence& e) {
     r.reason = fmt::format("Another place, {:.3g} SEM pixels away, fits nearly as well (score {:.4g} against {:.4g}): {} such. "
                            "Give landmarks that say which, or larger images",
                            r.rivals.front().distance_px, r.rivals.front().score, r.score, r.rivals.size());
+  } else if (e.searched && e.coarse_evidence < e.chance_evidence) {
+    r.verdict = RegistrationVerdict::ambiguous;
+    r.reason = fmt::format("While both images were coarse this place agreed no better than chance allows (evidence {:.3g} of "
+                           "{:.3g}): what agrees may repeat. Give landmarks, or larger images",
+                           e.coarse_evidence, e.chance_evidence);
   } else if (r.stderr_px > e.largest_stderr_px) {
     r.verdict = RegistrationVerdict::ambiguous;
     r.reason = fmt::format("Too few edges hold the place, which is known to {:.2g} SEM pixels only, where {:.2g} are wanted. "

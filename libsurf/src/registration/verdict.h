@@ -11,7 +11,10 @@ struct Evidence {
   bool searched = false;         ///< else it began where it was told to
   bool settled = true, within_limits = true;
   double score = 0, score_error = 0;
+  bool slid_off = false;         ///< every place that fitted left the limits while it was refined
   double coarse_evidence = 0;    ///< of the best place, as coarse as the search was
+  double best_coarse_evidence = 0;   ///< of any place: patterns that slide end far from where they began
+  bool related = true;           ///< some place agreed better than chance, whether or not it is the best one
   double chance_evidence = 0;    ///< what chance reaches once in a thousand such searches
   double loosest_px = 0;         ///< standard error along the motion that is known least
   double largest_stderr_px = 0, rival_sigmas = 4;   ///< the options'
