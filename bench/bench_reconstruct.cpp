@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // How far reconstructions are off and what they cost, on folders that `semsurf sample` made:
-//   bench_reconstruct MODEL.json FOLDER ... [--methods]
+//   bench_reconstruct MODEL.json FOLDER ... [--methods CHART.svg]
 // Tip, map, noise and gains are the true ones, so that it is the reconstruction that is judged; `semsurf reconstruct --truth`
-// judges the whole chain. With --methods the thesis's descents run beside Gauss-Newton, from the same start.
+// judges the whole chain. With --methods the thesis's descents run beside Gauss-Newton, from the same start, and error
+// is drawn against time, a point for each scale.
 #include <fmt/format.h>
 
 #include <chrono>
 #include <cmath>
+#include <filesystem>
 #include <fstream>
 #include <numbers>
 #include <string>
@@ -20,6 +22,7 @@
 #include "surf/io/height_field_file.h"
 #include "surf/io/image_file.h"
 #include "surf/io/model_file.h"
+#include "surf/io/plot.h"
 #include "surf/io/tip_file.h"
 #include "surf/sem/estimate_sem_noise.h"
 
@@ -114,20 +117,45 @@ void print_costs(const Scene& s) {
   const SemTerm::Near near = o.sem->near(*state.sem, at.mixture);
   const double sparse = seconds([&] { o.product(at, state, g, &near); }), made = seconds([&] { o.sem->near(*state.sem, at.mixture); });
   const double model = seconds([&] { s.sem.model->predict(frame.field(at.z_nm)); });
-  fmt::print("  costs       objective {:.0f} ms, gradient {:.0f} ms, second derivative times a vector {:.0f} ms, sparse {:.0f} ms (made in {:.0f} ms), factor {:.0f} ms, "
+  fmt::print("  costs: objective {:.0f} ms, gradient {:.0f} ms, second derivative times a vector {:.0f} ms, sparse {:.0f} ms (made in {:.0f} ms), factor {:.0f} ms, "
              "its solution {:.0f} ms; the SEM model alone {:.0f} ms, {:.0f} samples\n",
              1e3 * value, 1e3 * gradient, 1e3 * product, 1e3 * sparse, 1e3 * made, 1e3 * factor, 1e3 * seconds([&] { m.solve(g); }), 1e3 * model,
              1.0 * static_cast<double>(at.z_nm.size()));
 }
+
+/// When which scale ended, and how far its surface was off.
+class Clock : public ReconstructionJournal {
+ public:
+  explicit Clock(const HeightField& truth) : truth_(truth), begin_(now()) {}
+  std::optional<ReconstructionState> found() override { return {}; }
+  void keep(const ReconstructionState& state) override {
+    const double asked = now();
+    const int margin = (state.surface.z_nm.width() - truth_.z_nm.width()) / 2;
+    double sum = 0;
+    for (int y = 0; y < truth_.z_nm.height(); ++y)
+      for (int x = 0; x < truth_.z_nm.width(); ++x) {
+        const double d = state.surface.z_nm(x + margin, y + margin) - truth_.z_nm(x, y);
+        sum += d * d;
+      }
+    seconds.push_back(asked - begin_);
+    rms_nm.push_back(std::sqrt(sum / static_cast<double>(truth_.z_nm.size())));
+    begin_ += now() - asked;
+  }
+  std::vector<double> seconds, rms_nm;
+
+ private:
+  const HeightField& truth_;
+  double begin_;
+};
 
 struct Run {
   Reconstruction result;
   double seconds = 0;
 };
 
-Run run(const Scene& s, bool afm, bool sem, const ReconstructionOptions& o) {
+Run run(const Scene& s, bool afm, bool sem, const ReconstructionOptions& o, ReconstructionJournal* journal = nullptr) {
   const double begin = now();
-  Run r{reconstruct(afm ? &s.afm : nullptr, sem ? &s.sem : nullptr, o), 0};
+  Run r{reconstruct(afm ? &s.afm : nullptr, sem ? &s.sem : nullptr, o, journal), 0};
   r.seconds = now() - begin;
   return r;
 }
@@ -139,13 +167,13 @@ void print_run(const char* label, const Run& r, double error, double start, doub
     products += s.products;
     iterations += s.iterations;
   }
-  fmt::print("  {:<11} rms {:.2f} nm = {:.2f} floors, squares {:.3f} of the eroded scan's; {:.1f} s, {} iterations, {} objectives, {} "
+  fmt::print("  {:<28} rms {:.2f} nm = {:.2f} floors, squares {:.3f} of the eroded scan's; {:.1f} s, {} iterations, {} objectives, {} "
              "products, {}\n",
              label, error, error / floor, error * error / (start * start), r.seconds, iterations, evaluations, products,
              r.result.scales.back().ended);
 }
 
-double judge(const std::string& folder, const std::shared_ptr<const ImageModel>& model, bool methods) {
+double judge(const std::string& folder, const std::shared_ptr<const ImageModel>& model, io::Plot* methods) {
   const Scene s = read(folder, model);
   ReconstructionOptions o;
   o.uncertainty = false;
@@ -155,13 +183,23 @@ double judge(const std::string& folder, const std::shared_ptr<const ImageModel>&
   fmt::print("{}\n  eroded scan rms {:.2f} nm; the floor, of noise and prior at the truth, {:.2f} nm\n", folder, start, floor);
   print_run("AFM alone", afm, alone, start, floor);
   print_run("AFM and SEM", both, rms(both.result.surface, s.truth), start, floor);
-  if (methods)
-    for (const auto& [method, name] : {std::pair{ReconstructionMethod::conjugate_gradients, "CG, thesis"},
+  if (methods) {
+    io::PlotPanel panel;
+    panel.title = std::filesystem::path(folder).filename().string();
+    panel.x = {"time on this machine (s)", true, {}};
+    panel.y = {"root-mean-square error (nm)", true, {}};
+    panel.references = {{io::PlotDirection::horizontal, start, "eroded scan"}, {io::PlotDirection::horizontal, floor, "floor"}};
+    for (const auto& [method, name] : {std::pair{ReconstructionMethod::gauss_newton, "Gauss-Newton"},
+                                       std::pair{ReconstructionMethod::conjugate_gradients, "conjugate gradients (thesis)"},
                                        std::pair{ReconstructionMethod::lbfgs, "L-BFGS"}}) {
       o.method = method;
-      const Run r = run(s, true, true, o);
+      Clock clock(s.truth);
+      const Run r = run(s, true, true, o, &clock);
       print_run(name, r, rms(r.result.surface, s.truth), start, floor);
+      panel.series.push_back({name, clock.seconds, clock.rms_nm, {}, io::PlotStyle::line_points});
     }
+    methods->panels.push_back(std::move(panel));
+  }
   o = {};
   const Run with = run(s, true, true, o);
   double one = 0, two = 0;
@@ -171,7 +209,7 @@ double judge(const std::string& folder, const std::shared_ptr<const ImageModel>&
     one += (z < 1) / n;
     two += (z < 2) / n;
   }
-  fmt::print("  deviations  {:.2f} within one, {:.2f} within two; {:.1f} s with them\n", one, two, with.seconds);
+  fmt::print("  deviations: {:.2f} within one, {:.2f} within two; {:.1f} s with them\n", one, two, with.seconds);
   print_costs(s);
   return rms(both.result.surface, s.truth) / floor;
 }
@@ -180,19 +218,22 @@ double judge(const std::string& folder, const std::shared_ptr<const ImageModel>&
 
 int main(int argc, char** argv) {
   std::vector<std::string> folders;
-  bool methods = false;
+  std::string chart;
   for (int i = 2; i < argc; ++i) {
-    if (std::string(argv[i]) == "--methods") methods = true;
+    if (std::string(argv[i]) == "--methods" && i + 1 < argc) chart = argv[++i];
     else folders.emplace_back(argv[i]);
   }
   if (folders.empty()) {
-    fmt::print(stderr, "bench_reconstruct MODEL.json FOLDER ... [--methods]\n");
+    fmt::print(stderr, "bench_reconstruct MODEL.json FOLDER ... [--methods CHART.svg]\n");
     return 2;
   }
+  if (!chart.empty()) io::check_plot_target(chart);
   fmt::print("The thesis's ratios of squares (table 10-1): 0.114, 0.397, 0.414, 0.133, 0.049, in 3.5 to 6 hours\n");
   const auto model = surf::make_model(surf::io::read_model(argv[1]));
+  io::Plot methods;
   double worst = 0;
-  for (const std::string& folder : folders) worst = std::max(worst, judge(folder, model, methods));
+  for (const std::string& folder : folders) worst = std::max(worst, judge(folder, model, chart.empty() ? nullptr : &methods));
   fmt::print("worst: {:.2f} floors\n", worst);
+  if (!chart.empty()) io::write_plot(chart, methods);
   return 0;
 }

@@ -161,6 +161,16 @@ TEST(Reconstruct, GoesOnFromAJournalToTheSameBits) {
   EXPECT_EQ(rest.gains, whole.gains);
 }
 
+TEST(Reconstruct, DeviationsDoNotDependOnWhereItWasInterrupted) {
+  // Killed when all scales were done: the prior that the last one ended with holds for the deviations, too.
+  const test::SmallScene rough(5, 56, 40, 1, test::rough_height);
+  Journal journal;
+  const Reconstruction whole = reconstruct(&rough.afm, &rough.sem, {}, &journal);
+  const Reconstruction again = reconstruct(&rough.afm, &rough.sem, {}, &journal);
+  EXPECT_EQ(again.surface.z_nm, whole.surface.z_nm);
+  EXPECT_EQ(again.deviation_nm, whole.deviation_nm);
+}
+
 TEST(Reconstruct, FlatAndSaturatedImagesGiveFiniteSurfaces) {
   test::SmallScene scene;
   for (double& v : scene.sem.image.values.data()) v = 120;
