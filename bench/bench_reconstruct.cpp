@@ -183,6 +183,10 @@ double judge(const std::string& folder, const std::shared_ptr<const ImageModel>&
   fmt::print("{}\n  eroded scan rms {:.2f} nm; the floor, of noise and prior at the truth, {:.2f} nm\n", folder, start, floor);
   print_run("AFM alone", afm, alone, start, floor);
   print_run("AFM and SEM", both, rms(both.result.surface, s.truth), start, floor);
+  o.refine_calibration = false;
+  const Run held = run(s, true, true, o);
+  print_run("both, gains held", held, rms(held.result.surface, s.truth), start, floor);
+  o.refine_calibration = true;
   if (methods) {
     io::PlotPanel panel;
     panel.title = std::filesystem::path(folder).filename().string();
