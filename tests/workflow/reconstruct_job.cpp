@@ -12,12 +12,14 @@
 #include "sem_frame.h"
 #include "small_job.h"
 #include "surf/afm/morphology.h"
+#include "surf/afm/round_tip.h"
 #include "surf/afm/tip_shapes.h"
 #include "surf/core/error.h"
 #include "surf/core/random.h"
 #include "surf/io/files.h"
 #include "surf/io/height_field_file.h"
 #include "surf/io/model_file.h"
+#include "surf/io/tip_file.h"
 #include "surf/mesh/shapes.h"
 #include "temporary_folder.h"
 
@@ -134,6 +136,63 @@ TEST_F(ReconstructJobTest, GoesOnToTheSameBytes) {
   EXPECT_EQ(io::read_file(job_.folder / "history.csv"), io::read_file(path("result") / "history.csv"));
 }
 
+TEST_F(ReconstructJobTest, TheTipIsFittedWhereItWasFoundBlindlyOrAsked) {
+  ReconstructSummary s;
+  s.afm.emplace();
+  EXPECT_TRUE(options_of(job_, s).refine_tip);
+  s.afm->tip_given = true;
+  EXPECT_FALSE(options_of(job_, s).refine_tip);
+  job_.refine_tip = true;
+  EXPECT_TRUE(options_of(job_, s).refine_tip);
+  job_.options.method = ReconstructionMethod::lbfgs;
+  EXPECT_FALSE(options_of(job_, s).refine_tip);
+  job_.options.method = ReconstructionMethod::gauss_newton;
+  job_.sem.reset();
+  EXPECT_FALSE(options_of(job_, s).refine_tip);
+}
+
+TEST_F(ReconstructJobTest, AFittedTipIsWrittenAndFoundAgain) {
+  for (double& z : job_.afm->preparation.tip->z_nm.data()) z *= 0.7;
+  job_.refine_tip = true;
+  const ReconstructSummary s = run(job_);
+  for (const char* name : {"tip.txt", "first_tip.txt"}) EXPECT_THAT(s.written, Contains(job_.folder / name));
+  const Tip first = io::read_tip(job_.folder / "first_tip.txt"), last = io::read_tip(job_.folder / "tip.txt");
+  EXPECT_EQ(first.z_nm, s.afm->tip.z_nm);
+  EXPECT_EQ(last.z_nm, s.result.tip.z_nm);
+  EXPECT_NE(last.z_nm, first.z_nm);
+  const auto tip = report("result")["afm"]["tip"];
+  EXPECT_EQ(tip["fitted"], true);
+  EXPECT_EQ(tip["profile_step_nm"], pitch);
+  EXPECT_EQ(tip["profile_nm"][3], round_profile_nm(first, 0.5)[3]);
+  EXPECT_EQ(tip["profile_at_the_end_nm"][3], round_profile_nm(last, 0.5)[3]);
+  EXPECT_THAT(report("result")["repeat"].get<std::string>(), HasSubstr("first_tip.txt --refine-tip"));
+  // As the report says it is repeated: begun with the first tip.
+  ReconstructJob again = job_;
+  again.afm->preparation.tip = first;
+  again.calibration = {s.calibration->gains, s.calibration->offset};
+  again.options.refine_calibration = options_of(job_, s).refine_calibration;
+  again.folder = path("again");
+  run(again);
+  EXPECT_EQ(io::read_file(path("again") / "surface.vti"), io::read_file(job_.folder / "surface.vti"));
+  EXPECT_EQ(io::read_file(path("again") / "tip.txt"), io::read_file(job_.folder / "tip.txt"));
+  // Stopped after a scale, it goes on with the tip of that scale.
+  again.folder = path("stopped");
+  CancelToken token;
+  EXPECT_THROW(run(again, stopping(token, again.folder / "checkpoint")), Interrupted);
+  EXPECT_TRUE(run(again).resumed);
+  EXPECT_EQ(io::read_file(path("stopped") / "surface.vti"), io::read_file(job_.folder / "surface.vti"));
+  EXPECT_EQ(io::read_file(path("stopped") / "tip.txt"), io::read_file(job_.folder / "tip.txt"));
+}
+
+TEST_F(ReconstructJobTest, AKeptTipIsWrittenOnce) {
+  const ReconstructSummary s = run(job_);
+  EXPECT_EQ(io::read_tip(job_.folder / "tip.txt").z_nm, s.afm->tip.z_nm);
+  EXPECT_FALSE(std::filesystem::exists(job_.folder / "first_tip.txt"));
+  EXPECT_EQ(report("result")["afm"]["tip"]["fitted"], false);
+  EXPECT_FALSE(report("result")["afm"]["tip"].contains("profile_at_the_end_nm"));
+  EXPECT_THAT(report("result")["repeat"].get<std::string>(), HasSubstr("/tip.txt --keep-tip"));
+}
+
 TEST_F(ReconstructJobTest, DoesNotGoOnWithAnotherJob) {
   CancelToken token;
   EXPECT_THROW(run(job_, stopping(token, job_.folder / "checkpoint")), Interrupted);
@@ -202,6 +261,7 @@ TEST(ReconstructionCheckpoint, AStateComesBackToTheLastBit) {
   state.sem_to_afm = {1, 2, 3, 4, 5, 6};
   state.gains = {0.1, 0.2};
   state.offset = -7;
+  state.tip_change = {0.25, -0.5};
   state.scales.resize(2);
   state.scales[1].ended = "converged";
   state.scales[1].products = 12;
@@ -212,6 +272,7 @@ TEST(ReconstructionCheckpoint, AStateComesBackToTheLastBit) {
   EXPECT_EQ(pack(*back), bytes);
   EXPECT_EQ(back->surface.z_nm, state.surface.z_nm);
   EXPECT_TRUE(std::signbit(back->surface.z_nm(1, 0)));
+  EXPECT_EQ(back->tip_change, state.tip_change);
   EXPECT_EQ(back->scales[1].ended, "converged");
   EXPECT_FALSE(back->scales[1].sem_residual.like_noise);
   for (std::size_t size = 0; size < bytes.size(); ++size) EXPECT_FALSE(unpack(bytes.substr(0, size)).has_value()) << size;

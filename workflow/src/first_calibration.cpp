@@ -5,12 +5,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <initializer_list>
 #include <limits>
 
 #include "sem_frame.h"
 #include "surf/core/error.h"
 #include "surf/core/units.h"
 #include "surf/sem/estimate_sem_noise.h"
+#include "surf/sem/noise_of_residuals.h"
 
 namespace surf::workflow {
 namespace {
@@ -18,6 +20,7 @@ namespace {
 constexpr double telling_share = 1e-3;    // of the pixels, at one value
 constexpr double telling_step = 3;        // times as many as at the next value
 constexpr double least_overlap_px = 256;
+constexpr double most_of_model = 3;       // variance of noise and of what a model is off by, over that of noise
 constexpr double changed = 0.1;           // of a gain or of the noise's variance
 
 struct Extreme {
@@ -55,6 +58,17 @@ double variance_of(const Grid<double>& values, const Grid<unsigned char>& used) 
   return count > 1 ? std::max(squared / count - sum / count * (sum / count), 0.0) : 0;
 }
 
+/// Values that these shares of the image lie below.
+std::vector<double> levels_of(const Grid<double>& image, std::initializer_list<double> shares) {
+  std::vector<double> values = image.data(), levels;
+  for (const double share : shares) {
+    const auto at = values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
+    std::nth_element(values.begin(), at, values.end());
+    levels.push_back(*at);
+  }
+  return levels;
+}
+
 /// From flat places, where there are some.
 void find_noise(const PlacedImage& sem, const std::optional<SemNoise>& given, FirstCalibration& first) {
   if (given) {
@@ -90,6 +104,27 @@ Calibration fitted(const CalibrationImages& images, FirstCalibration& first) {
     throw InvalidInput("SEM image", "it is darker where the simulated image is brighter, so the two do not show the same",
                        "Check the registration (semsurf register --picture), the material and the energy, or give --gains");
   return fit;
+}
+
+/// What a coarse reconstruction leaves: noise, and what model and surface are off by, most of it on walls. A line through
+/// squared residuals follows a few bright walls, or is so uncertain for their sake that it is level. So the line is that of
+/// differences between neighbours, times one factor for all that is left; beyond `most_of_model` it is the surface.
+SemNoise noise_left(const CalibrationImages& images, const Grid<double>& mean) {
+  SemNoise noise;
+  try {
+    noise = noise_of_residuals(images.real, mean, images.used);
+  } catch (const InvalidInput&) {   // too small, or noise finer than the grey levels
+    return fit_sem_noise(images.real, mean, images.used).noise;
+  }
+  const Grid<double> white = whiten(images.real, mean, noise, images.used);
+  double squares = 0, count = 0;
+  for (std::size_t i = 0; i < white.size(); ++i) {
+    if (!images.used.empty() && !images.used.data()[i]) continue;
+    squares += white.data()[i] * white.data()[i];
+    ++count;
+  }
+  const double factor = std::clamp(squares / count, 1.0, most_of_model);
+  return {factor * noise.slope, factor * noise.intercept, factor * noise.least_variance};
 }
 
 }  // namespace
@@ -185,19 +220,15 @@ bool calibrate_again(const PlacedImage& sem, const HeightField& surface, const I
     mean = mean_of(images.simulated, first.gains, first.offset);
   }
   if (!fix_noise) {
-    first.noise = fit_sem_noise(images.real, mean, images.used).noise;
+    first.noise = noise_left(images, mean);
     first.noise_from = "what a first reconstruction leaves of the image";
     first.warnings.clear();   // of the noise before
   }
   const auto differs = [](double a, double b) { return std::abs(a - b) > changed * std::max(std::abs(a), std::abs(b)); };
   bool differ = first.tied != before.tied;
   for (std::size_t c = 0; c < first.gains.size(); ++c) differ = differ || differs(first.gains[c], before.gains[c]);
-  std::vector<double> levels = mean.data();
-  for (const double share : {0.1, 0.5, 0.9}) {
-    const auto at = levels.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(levels.size() - 1));
-    std::nth_element(levels.begin(), at, levels.end());
-    differ = differ || differs(first.noise.variance(*at), before.noise.variance(*at));
-  }
+  for (const double level : levels_of(mean, {0.1, 0.5, 0.9}))
+    differ = differ || differs(first.noise.variance(level), before.noise.variance(level));
   return differ;
 }
 

@@ -68,9 +68,9 @@ struct Preconditioner::Parts {
   cholmod_common common;
   cholmod_factor* factor = nullptr;
   cholmod_dense *x = nullptr, *y = nullptr, *e = nullptr;   // of solve, kept
-  Eigen::LDLT<Eigen::MatrixXd> map, mixture;
+  Eigen::LDLT<Eigen::MatrixXd> map, mixture, tip;
   int width = 0, height = 0;
-  bool has_map = false, has_mixture = false;
+  bool has_map = false, has_mixture = false, has_tip = false;
 
   Parts() {
     cholmod_start(&common);
@@ -176,6 +176,22 @@ void Preconditioner::factor(const Objective& o, const Unknowns& at, const Object
     block.diagonal().array() += 1e-12;
     parts_->map.compute(block);
   }
+  parts_->has_tip = o.afm && o.fit_tip;
+  if (parts_->has_tip) {
+    Eigen::MatrixXd block(tip_numbers, tip_numbers);
+    const Grid<double> none(w, h);
+    Grid<double> unused(w, h);
+    for (int k = 0; k < tip_numbers; ++k) {
+      TipChange unit{}, column{};
+      unit[k] = 1;
+      o.afm->add_gradient(*s.afm, at.z_nm, o.afm->precision(o.afm->change(*s.afm, at.z_nm, none, {}, unit)), unused, nullptr,
+                          &column);
+      for (int i = 0; i < tip_numbers; ++i) block(i, k) = column[i];
+    }
+    block = 0.5 * (block + block.transpose()).eval();
+    block.diagonal().array() += o.tip_precision;
+    parts_->tip.compute(block);
+  }
   parts_->has_mixture = o.sem && o.fit_mixture;
   if (parts_->has_mixture) {
     Eigen::MatrixXd block = Eigen::MatrixXd::Zero(2, 2);
@@ -200,6 +216,9 @@ Step Preconditioner::solve(const Step& r) const {
   if (parts_->has_mixture)
     Eigen::Map<Eigen::Vector2d>(out.mixture.data()) =
         parts_->mixture.solve(Eigen::Map<const Eigen::Vector2d>(r.mixture.data()));
+  if (parts_->has_tip)
+    Eigen::Map<Eigen::VectorXd>(out.tip.data(), tip_numbers) =
+        parts_->tip.solve(Eigen::Map<const Eigen::VectorXd>(r.tip.data(), tip_numbers));
   return out;
 }
 
