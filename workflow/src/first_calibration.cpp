@@ -20,7 +20,6 @@ namespace {
 constexpr double telling_share = 1e-3;    // of the pixels, at one value
 constexpr double telling_step = 3;        // times as many as at the next value
 constexpr double least_overlap_px = 256;
-constexpr double most_of_model = 3;       // variance of noise and of what a model is off by, over that of noise
 constexpr double changed = 0.1;           // of a gain or of the noise's variance
 
 struct Extreme {
@@ -106,25 +105,15 @@ Calibration fitted(const CalibrationImages& images, FirstCalibration& first) {
   return fit;
 }
 
-/// What a coarse reconstruction leaves: noise, and what model and surface are off by, most of it on walls. A line through
+/// What a coarse reconstruction leaves is noise, and what model and surface are off by, most of it on walls. A line through
 /// squared residuals follows a few bright walls, or is so uncertain for their sake that it is level. So the line is that of
-/// differences between neighbours, times one factor for all that is left; beyond `most_of_model` it is the surface.
+/// differences between neighbours.
 SemNoise noise_left(const CalibrationImages& images, const Grid<double>& mean) {
-  SemNoise noise;
   try {
-    noise = noise_of_residuals(images.real, mean, images.used);
+    return noise_of_residuals(images.real, mean, images.used);
   } catch (const InvalidInput&) {   // too small, or noise finer than the grey levels
     return fit_sem_noise(images.real, mean, images.used).noise;
   }
-  const Grid<double> white = whiten(images.real, mean, noise, images.used);
-  double squares = 0, count = 0;
-  for (std::size_t i = 0; i < white.size(); ++i) {
-    if (!images.used.empty() && !images.used.data()[i]) continue;
-    squares += white.data()[i] * white.data()[i];
-    ++count;
-  }
-  const double factor = std::clamp(squares / count, 1.0, most_of_model);
-  return {factor * noise.slope, factor * noise.intercept, factor * noise.least_variance};
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 #include "preconditioner.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <vector>
 
@@ -62,6 +63,12 @@ struct Corners {
   }
 };
 
+double product(const Grid<double>& a, const Grid<double>& b) {
+  double sum = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) sum += a.data()[i] * b.data()[i];
+  return sum;
+}
+
 }  // namespace
 
 struct Preconditioner::Parts {
@@ -70,6 +77,7 @@ struct Preconditioner::Parts {
   cholmod_dense *x = nullptr, *y = nullptr, *e = nullptr;   // of solve, kept
   Eigen::LDLT<Eigen::MatrixXd> map, mixture, tip;
   int width = 0, height = 0;
+  std::array<Grid<double>, tip_numbers> follows;   // how the surface gives way to the tip
   bool has_map = false, has_mixture = false, has_tip = false;
 
   Parts() {
@@ -176,20 +184,28 @@ void Preconditioner::factor(const Objective& o, const Unknowns& at, const Object
     block.diagonal().array() += 1e-12;
     parts_->map.compute(block);
   }
+  // The tip with the surface: what one takes off a contact the other can give back, so that its own block alone would leave a
+  // long valley. Eliminated exactly, with the contacts as above.
   parts_->has_tip = o.afm && o.fit_tip;
   if (parts_->has_tip) {
-    Eigen::MatrixXd block(tip_numbers, tip_numbers);
-    const Grid<double> none(w, h);
-    Grid<double> unused(w, h);
-    for (int k = 0; k < tip_numbers; ++k) {
-      TipChange unit{}, column{};
-      unit[k] = 1;
-      o.afm->add_gradient(*s.afm, at.z_nm, o.afm->precision(o.afm->change(*s.afm, at.z_nm, none, {}, unit)), unused, nullptr,
-                          &column);
-      for (int i = 0; i < tip_numbers; ++i) block(i, k) = column[i];
+    const double q = (1 - o.afm->noise().alpha * o.afm->noise().alpha) / o.afm->noise().innovation_nm2;
+    Eigen::MatrixXd block = o.tip_precision * Eigen::MatrixXd::Identity(tip_numbers, tip_numbers);
+    std::array<Grid<double>, tip_numbers> coupling;
+    coupling.fill(Grid<double>(w, h));
+    for (const Contact& c : s.afm->contacts) {
+      if (c.tip_sample < 0) continue;
+      const TipChange& d = s.afm->by_tip[c.tip_sample];
+      for (int i = 0; i < tip_numbers; ++i)
+        for (int k = 0; k < tip_numbers; ++k) block(i, k) += q * d[i] * d[k];
+      if (!c.inside) continue;
+      const Corners at_surface(c, w, h);
+      for (int k = 0; k < tip_numbers; ++k)
+        for (int a = 0; a < 4; ++a) coupling[k](at_surface.x + a % 2, at_surface.y + a / 2) += q * at_surface.w[a] * d[k];
     }
+    for (int k = 0; k < tip_numbers; ++k) parts_->follows[k] = parts_->solved(CHOLMOD_A, coupling[k]);
+    for (int i = 0; i < tip_numbers; ++i)
+      for (int k = 0; k < tip_numbers; ++k) block(i, k) -= product(coupling[i], parts_->follows[k]);
     block = 0.5 * (block + block.transpose()).eval();
-    block.diagonal().array() += o.tip_precision;
     parts_->tip.compute(block);
   }
   parts_->has_mixture = o.sem && o.fit_mixture;
@@ -216,9 +232,15 @@ Step Preconditioner::solve(const Step& r) const {
   if (parts_->has_mixture)
     Eigen::Map<Eigen::Vector2d>(out.mixture.data()) =
         parts_->mixture.solve(Eigen::Map<const Eigen::Vector2d>(r.mixture.data()));
-  if (parts_->has_tip)
-    Eigen::Map<Eigen::VectorXd>(out.tip.data(), tip_numbers) =
-        parts_->tip.solve(Eigen::Map<const Eigen::VectorXd>(r.tip.data(), tip_numbers));
+  if (parts_->has_tip) {
+    Eigen::VectorXd right = Eigen::Map<const Eigen::VectorXd>(r.tip.data(), tip_numbers);
+    for (int k = 0; k < tip_numbers; ++k) right(k) -= product(parts_->follows[k], r.z_nm);
+    const Eigen::VectorXd tip = parts_->tip.solve(right);
+    for (int k = 0; k < tip_numbers; ++k) {
+      out.tip[k] = tip(k);
+      for (std::size_t i = 0; i < out.z_nm.size(); ++i) out.z_nm.data()[i] -= tip(k) * parts_->follows[k].data()[i];
+    }
+  }
   return out;
 }
 

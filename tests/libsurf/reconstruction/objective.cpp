@@ -185,15 +185,20 @@ TEST(Preconditioner, SolvesTheMatrixThatItHolds) {
   o.afm.emplace(scene.afm, eroded(scene.afm, 1), o.frame, Affine{}, 1);
   const Unknowns at{eroded(scene.afm, 1).z_nm, {}, {}};
   const Objective::State s = o.evaluate(at);
-  Preconditioner m;
-  m.factor(o, at, s);
-  const Step v = random_step(o, 8), back = m.solve(o.product(at, s, v));
-  for (std::size_t i = 0; i < v.z_nm.size(); ++i) ASSERT_NEAR(back.z_nm.data()[i], v.z_nm.data()[i], 1e-5);
+  for (const bool fit_tip : {false, true}) {
+    o.fit_tip = fit_tip;
+    Preconditioner m;
+    m.factor(o, at, s);
+    const Step v = random_step(o, 8), back = m.solve(o.product(at, s, v));
+    for (std::size_t i = 0; i < v.z_nm.size(); ++i) ASSERT_NEAR(back.z_nm.data()[i], v.z_nm.data()[i], 1e-5);
+    for (int k = 0; k < tip_numbers; ++k) ASSERT_NEAR(back.tip[k], v.tip[k], 1e-5);
+  }
 }
 
 TEST(Preconditioner, DrawsHaveItsInverseAsCovariance) {
   const test::SmallScene scene(5, 24, 18);
-  const Objective o = make_objective(scene, Images::both);
+  Objective o = make_objective(scene, Images::both);
+  o.fit_tip = false;   // draws hold it
   const Unknowns at = start_at(scene, o);
   Preconditioner m;
   m.factor(o, at, o.evaluate(at));
