@@ -70,8 +70,8 @@ TEST(Reconstruct, FindsATipThatIsTooBluntOrTooSharp) {
     o.refine_tip = true;
     const Reconstruction r = reconstruct(&scene.afm, &scene.sem, o);
     EXPECT_NO_THROW(validate(r.tip));
-    // Begun 20 % off; where it touches walls, 40 to 80 nm from the apex, it ends 5 to 6 % too sharp from either side: smooth
-    // surfaces are likelier, and sharp tips leave them.
+    // Begun 20 % off; where it touches walls, 40 to 80 nm from the apex, it ends within some percent and the noise from
+    // either side.
     const std::vector<double> is = round_profile_nm(r.tip, 0.5), should = round_profile_nm(truth, 0.5);
     for (const int step : {2, 3, 4}) EXPECT_NEAR(is[step], should[step], 0.07 * -should[step] + 0.5) << step;
     EXPECT_LT(scene.rms_error(r.surface), 0.8 * scene.rms_error(kept.surface));
