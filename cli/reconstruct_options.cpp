@@ -120,6 +120,10 @@ void take_reconstruction(const ReconstructOptions& o, workflow::ReconstructJob& 
   if (o.probes) r.probes = static_cast<int>(parse_whole(*o.probes, "--probes", 2, 100000));
   r.refine_transform = !o.fixed_transform;
   r.refine_calibration = !o.fixed_calibration;
+  if (o.keep_tip && o.refine_tip) throw UsageError("--keep-tip", "with --refine-tip it contradicts itself", "Leave one of them out");
+  if (o.refine_tip && r.method != ReconstructionMethod::gauss_newton)
+    throw UsageError("--refine-tip", "only Gauss-Newton fits the tip", "Leave out --method, or --refine-tip");
+  if (o.keep_tip || o.refine_tip) job.refine_tip = o.refine_tip;
   r.uncertainty = !o.no_uncertainty;
   if (o.chain.seed) r.seed = parse_seed(*o.chain.seed, "--seed");
   r.threads = parse_threads(o.chain.threads);
@@ -185,6 +189,8 @@ void add_reconstruct_options(CLI::App& app, ReconstructOptions& o) {
       ->type_name("N")->group(optimiser);
   app.add_flag("--fixed-transform", o.fixed_transform, "The map is not fitted further with the surface")->group(optimiser);
   app.add_flag("--fixed-calibration", o.fixed_calibration, "Nor are gains and offset")->group(optimiser);
+  app.add_flag("--keep-tip", o.keep_tip, "Nor is the tip that was found in the scan")->group(optimiser);
+  app.add_flag("--refine-tip", o.refine_tip, "The tip is fitted with the surface, even the one of --tip")->group(optimiser);
   app.add_flag("--no-uncertainty", o.no_uncertainty, "Without standard deviations of the heights, which take a while")
       ->group(optimiser);
   app.add_option("--probes", o.probes, "Random vectors that the uncertainty is estimated from (16)")->type_name("N")->group(optimiser);

@@ -18,6 +18,7 @@ struct ReconstructOptions {
   std::optional<std::string> method, scales, iterations, tolerance, prior, upsample, probes;
   std::optional<std::string> output, truth;
   bool accept_registration = false, fixed_transform = false, fixed_calibration = false, no_uncertainty = false;
+  bool keep_tip = false, refine_tip = false;
   bool no_picture = false;
 };
 

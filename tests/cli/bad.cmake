@@ -236,6 +236,8 @@ semsurf_cli_usage(reconstruct_transform "--transform: it maps the plane onto a l
 semsurf_cli_usage(reconstruct_transform_alone "--transform: there is one image only" reconstruct --afm steps.txt --transform 1,0,0,0,1,0 -o result)
 semsurf_cli_usage(reconstruct_scales "--scales: '2,4' does not fall" reconstruct ${pair} --scales 2,4 -o result)
 semsurf_cli_usage(reconstruct_method "no method 'newton'" reconstruct ${pair} --method newton -o result)
+semsurf_cli_usage(reconstruct_both_tips "--keep-tip: with --refine-tip" reconstruct ${pair} --keep-tip --refine-tip -o result)
+semsurf_cli_usage(reconstruct_refine_tip "--refine-tip: only Gauss-Newton" reconstruct ${pair} --refine-tip --method lbfgs -o result)
 semsurf_cli_usage(reconstruct_prior "--prior: '0' is not above 0" reconstruct ${pair} --prior 0 -o result)
 semsurf_cli_usage(reconstruct_upsample "--upsample" reconstruct ${pair} --upsample 9 -o result)
 semsurf_cli_usage(reconstruct_afm_noise "--afm-noise: '1,1' is no noise" reconstruct --afm steps.txt --afm-noise 1,1 -o result)

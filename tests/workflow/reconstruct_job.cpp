@@ -3,7 +3,9 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <cmath>
+#include <functional>
 #include <nlohmann/json.hpp>
 
 #include "compare_truth.h"
@@ -12,13 +14,16 @@
 #include "sem_frame.h"
 #include "small_job.h"
 #include "surf/afm/morphology.h"
+#include "surf/afm/round_tip.h"
 #include "surf/afm/tip_shapes.h"
 #include "surf/core/error.h"
 #include "surf/core/random.h"
 #include "surf/io/files.h"
 #include "surf/io/height_field_file.h"
 #include "surf/io/model_file.h"
+#include "surf/io/tip_file.h"
 #include "surf/mesh/shapes.h"
+#include "surf/sem/slope_model.h"
 #include "temporary_folder.h"
 
 namespace surf::workflow {
@@ -134,6 +139,63 @@ TEST_F(ReconstructJobTest, GoesOnToTheSameBytes) {
   EXPECT_EQ(io::read_file(job_.folder / "history.csv"), io::read_file(path("result") / "history.csv"));
 }
 
+TEST_F(ReconstructJobTest, TheTipIsFittedWhereItWasFoundBlindlyOrAsked) {
+  ReconstructSummary s;
+  s.afm.emplace();
+  EXPECT_TRUE(options_of(job_, s).refine_tip);
+  s.afm->tip_given = true;
+  EXPECT_FALSE(options_of(job_, s).refine_tip);
+  job_.refine_tip = true;
+  EXPECT_TRUE(options_of(job_, s).refine_tip);
+  job_.options.method = ReconstructionMethod::lbfgs;
+  EXPECT_FALSE(options_of(job_, s).refine_tip);
+  job_.options.method = ReconstructionMethod::gauss_newton;
+  job_.sem.reset();
+  EXPECT_FALSE(options_of(job_, s).refine_tip);
+}
+
+TEST_F(ReconstructJobTest, AFittedTipIsWrittenAndFoundAgain) {
+  for (double& z : job_.afm->preparation.tip->z_nm.data()) z *= 0.7;
+  job_.refine_tip = true;
+  const ReconstructSummary s = run(job_);
+  for (const char* name : {"tip.txt", "first_tip.txt"}) EXPECT_THAT(s.written, Contains(job_.folder / name));
+  const Tip first = io::read_tip(job_.folder / "first_tip.txt"), last = io::read_tip(job_.folder / "tip.txt");
+  EXPECT_EQ(first.z_nm, s.afm->tip.z_nm);
+  EXPECT_EQ(last.z_nm, s.result.tip.z_nm);
+  EXPECT_NE(last.z_nm, first.z_nm);
+  const auto tip = report("result")["afm"]["tip"];
+  EXPECT_EQ(tip["fitted"], true);
+  EXPECT_EQ(tip["profile_step_nm"], pitch);
+  EXPECT_EQ(tip["profile_nm"][3], round_profile_nm(first, 0.5)[3]);
+  EXPECT_EQ(tip["profile_at_the_end_nm"][3], round_profile_nm(last, 0.5)[3]);
+  EXPECT_THAT(report("result")["repeat"].get<std::string>(), HasSubstr("first_tip.txt --refine-tip"));
+  // As the report says it is repeated: begun with the first tip.
+  ReconstructJob again = job_;
+  again.afm->preparation.tip = first;
+  again.calibration = {s.calibration->gains, s.calibration->offset};
+  again.options.refine_calibration = options_of(job_, s).refine_calibration;
+  again.folder = path("again");
+  run(again);
+  EXPECT_EQ(io::read_file(path("again") / "surface.vti"), io::read_file(job_.folder / "surface.vti"));
+  EXPECT_EQ(io::read_file(path("again") / "tip.txt"), io::read_file(job_.folder / "tip.txt"));
+  // Stopped after a scale, it goes on with the tip of that scale.
+  again.folder = path("stopped");
+  CancelToken token;
+  EXPECT_THROW(run(again, stopping(token, again.folder / "checkpoint")), Interrupted);
+  EXPECT_TRUE(run(again).resumed);
+  EXPECT_EQ(io::read_file(path("stopped") / "surface.vti"), io::read_file(job_.folder / "surface.vti"));
+  EXPECT_EQ(io::read_file(path("stopped") / "tip.txt"), io::read_file(job_.folder / "tip.txt"));
+}
+
+TEST_F(ReconstructJobTest, AKeptTipIsWrittenOnce) {
+  const ReconstructSummary s = run(job_);
+  EXPECT_EQ(io::read_tip(job_.folder / "tip.txt").z_nm, s.afm->tip.z_nm);
+  EXPECT_FALSE(std::filesystem::exists(job_.folder / "first_tip.txt"));
+  EXPECT_EQ(report("result")["afm"]["tip"]["fitted"], false);
+  EXPECT_FALSE(report("result")["afm"]["tip"].contains("profile_at_the_end_nm"));
+  EXPECT_THAT(report("result")["repeat"].get<std::string>(), HasSubstr("/tip.txt --keep-tip"));
+}
+
 TEST_F(ReconstructJobTest, DoesNotGoOnWithAnotherJob) {
   CancelToken token;
   EXPECT_THROW(run(job_, stopping(token, job_.folder / "checkpoint")), Interrupted);
@@ -143,6 +205,52 @@ TEST_F(ReconstructJobTest, DoesNotGoOnWithAnotherJob) {
   listener.note = [&](const std::string& note) { said += note + "\n"; };
   EXPECT_FALSE(run(job_, listener).resumed);
   EXPECT_THAT(said, HasSubstr("tolerance 0 there and 0.002 here"));
+}
+
+TEST_F(ReconstructJobTest, AnyOtherInputBeginsAnew) {
+  const auto checkpoint = job_.folder / "checkpoint";
+  job_.calibration = {{100, 100}, 20};
+  CancelToken first;
+  EXPECT_THROW(run(job_, stopping(first, checkpoint)), Interrupted);
+  const std::function<void(ReconstructJob&)> changes[] = {
+      [](ReconstructJob& j) { j.afm->preparation.noise->innovation_nm2 *= 1.01; },
+      [](ReconstructJob& j) { j.afm->preparation.tip->z_nm(0, 0) -= 1; },
+      [](ReconstructJob& j) { j.afm->scan.z_nm(9, 9) += 0.01; },
+      [](ReconstructJob& j) { j.upsample = 2; },
+      [](ReconstructJob& j) { j.refine_tip = true; },
+      [](ReconstructJob& j) { j.sem->image.values(3, 3) += 1; },
+      [](ReconstructJob& j) { j.sem_noise->intercept = 5; },
+      [](ReconstructJob& j) { j.calibration->offset = 21; },
+      [](ReconstructJob& j) { j.calibration->gains[1] = 90; },
+      [](ReconstructJob& j) { j.pose.transform->x0 += 1; },
+      [](ReconstructJob& j) { j.options.curvature_prior_per_nm = 0.01; },
+      [](ReconstructJob& j) { j.options.refine_transform = false; },
+  };
+  int number = 0;
+  for (const auto& change : changes) {
+    SCOPED_TRACE(number++);
+    ReconstructJob other = job_;
+    change(other);
+    CancelToken token;
+    ChainListener listener;
+    listener.cancel = &token;
+    listener.note = [&](const std::string& note) {
+      if (note.find("begun anew") != std::string::npos) token.cancel();
+    };
+    EXPECT_THROW(run(other, listener), Interrupted);
+  }
+}
+
+TEST_F(ReconstructJobTest, WhatSpeaksAgainstAResultIsSaid) {
+  job_.options.iterations = 1;
+  job_.afm->preparation.noise = AfmNoise{0.5, 0.005};   // a tenth of it
+  job_.sem_noise = SemNoise{0, 0.4, 1e-3};
+  job_.options.uncertainty = false;
+  const ReconstructSummary s = run(job_);
+  EXPECT_EQ(s.verdict, ReconstructionVerdict::flagged);
+  EXPECT_EQ(report("result")["verdict"], "flagged");
+  EXPECT_THAT(s.reasons, ElementsAre(HasSubstr("had not settled"), HasSubstr("the AFM scan does not look like noise"),
+                                     HasSubstr("the SEM image does not look like noise")));
 }
 
 TEST_F(ReconstructJobTest, OneImageIsEnough) {
@@ -202,6 +310,7 @@ TEST(ReconstructionCheckpoint, AStateComesBackToTheLastBit) {
   state.sem_to_afm = {1, 2, 3, 4, 5, 6};
   state.gains = {0.1, 0.2};
   state.offset = -7;
+  state.tip_change = {0.25, -0.5};
   state.scales.resize(2);
   state.scales[1].ended = "converged";
   state.scales[1].products = 12;
@@ -212,10 +321,73 @@ TEST(ReconstructionCheckpoint, AStateComesBackToTheLastBit) {
   EXPECT_EQ(pack(*back), bytes);
   EXPECT_EQ(back->surface.z_nm, state.surface.z_nm);
   EXPECT_TRUE(std::signbit(back->surface.z_nm(1, 0)));
+  EXPECT_EQ(back->tip_change, state.tip_change);
   EXPECT_EQ(back->scales[1].ended, "converged");
   EXPECT_FALSE(back->scales[1].sem_residual.like_noise);
   for (std::size_t size = 0; size < bytes.size(); ++size) EXPECT_FALSE(unpack(bytes.substr(0, size)).has_value()) << size;
   EXPECT_FALSE(unpack(bytes + "x").has_value());
+}
+
+TEST(ReconstructionCheckpoint, GivesBackTheLastStateOfTheSameJob) {
+  const test::TemporaryFolder folder;
+  const auto file = folder.path() / "checkpoint";
+  ReconstructionState state;
+  state.surface.z_nm = Grid<double>(3, 2);
+  {
+    ReconstructionCheckpoint checkpoint(file, {{"scan", "a"}}, {});
+    EXPECT_FALSE(checkpoint.found().has_value());
+    for (const double offset : {1, 2, 3}) {
+      state.offset = offset;
+      checkpoint.keep(state);
+    }
+  }
+  {
+    ReconstructionCheckpoint same(file, {{"scan", "a"}}, {});
+    ASSERT_TRUE(same.found().has_value());
+    EXPECT_EQ(same.found()->offset, 3);
+  }
+  std::string said;
+  ReconstructionCheckpoint other(file, {{"scan", "b"}}, [&](const std::string& note) { said = note; });
+  EXPECT_THAT(said, HasSubstr("scan a there and b here"));
+  EXPECT_FALSE(other.found().has_value());
+}
+
+/// A plain with bright stripes, and what a model makes of it that knows the stripes badly.
+TEST(FirstCalibration, NoiseIsALineThatWallsDoNotBend) {
+  const SlopeModelParameters form{SlopeForm::secant, 5, {5, 0.6}, {{"SE", 0.9, {}}}};
+  const auto model = make_slope_model({}, form);
+  HeightField surface;
+  surface.z_nm = Grid<double>(160, 120);
+  surface.pitch_x_nm = surface.pitch_y_nm = 5;
+  for (int y = 0; y < 120; ++y)
+    for (int x = 0; x < 160; ++x) surface.z_nm(x, y) = 20 * std::sin(0.1 * x) + (x % 40 < 20 ? 0 : 15);
+  const Grid<double> truth = model->predict(surface).front();
+  PlacedImage sem;
+  sem.values = Grid<double>(160, 120);
+  sem.pitch_x_nm = sem.pitch_y_nm = 5;
+  const SemNoise noise{9, -300, 1};
+  RandomStream random(3, 1, 0);
+  for (std::size_t i = 0; i < truth.size(); ++i) {
+    const double mean = 100 * truth.data()[i] + 20;
+    const double normal = std::sqrt(-2 * std::log(random.uniform())) * std::cos(6.283185307179586 * random.uniform());
+    sem.values.data()[i] = mean + std::sqrt(noise.variance(mean)) * normal;
+  }
+  FirstCalibration first;
+  first.gains = {100};
+  first.offset = 20;
+  first.noise = {0, 500, 1};
+  HeightField rough = surface;
+  for (int y = 0; y < 120; ++y)
+    for (int x = 0; x < 160; ++x) rough.z_nm(x, y) -= x % 40 < 20 ? 0 : 3;   // walls 12 nm high, not 15
+  EXPECT_TRUE(calibrate_again(sem, rough, *model, true, false, 1, first));
+  std::vector<double> levels = sem.values.data();
+  for (const double share : {0.2, 0.5, 0.8}) {
+    std::ranges::nth_element(levels, levels.begin() + static_cast<std::ptrdiff_t>(share * double(levels.size())));
+    const double level = levels[static_cast<std::size_t>(share * double(levels.size()))];
+    EXPECT_GT(first.noise.variance(level), 0.8 * noise.variance(level)) << level;
+    EXPECT_LT(first.noise.variance(level), 3.2 * noise.variance(level)) << level;
+  }
+  EXPECT_GT(first.noise.slope, 4);
 }
 
 TEST(SemFrame, InterpolatesWhereTheMapSays) {

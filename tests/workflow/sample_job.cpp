@@ -98,6 +98,11 @@ TEST(SampleJob, DependsOnTheSeedAndNotOnThreads) {
     EXPECT_EQ(bytes_of(a.path() / name), bytes_of(b.path() / name)) << name;
   for (const char* name : {"afm.gsf", "sem.tif", "truth_sem.exr"})
     EXPECT_NE(bytes_of(a.path() / name), bytes_of(c.path() / name)) << name;
+  // Not only for the seed that is written in them.
+  const auto heights = [](const fs::path& file) { return io::read_height_field(file).field.z_nm; };
+  const auto signal = [](const fs::path& file) { return io::read_image(file).find("signal")->values; };
+  EXPECT_NE(heights(a.path() / "afm.gsf"), heights(c.path() / "afm.gsf"));
+  EXPECT_NE(signal(a.path() / "sem.tif"), signal(c.path() / "sem.tif"));
 }
 
 TEST(SampleJob, LeavesNothingWhenCancelledOrRefused) {

@@ -5,12 +5,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <initializer_list>
 #include <limits>
 
 #include "sem_frame.h"
 #include "surf/core/error.h"
 #include "surf/core/units.h"
 #include "surf/sem/estimate_sem_noise.h"
+#include "surf/sem/noise_of_residuals.h"
 
 namespace surf::workflow {
 namespace {
@@ -55,6 +57,17 @@ double variance_of(const Grid<double>& values, const Grid<unsigned char>& used) 
   return count > 1 ? std::max(squared / count - sum / count * (sum / count), 0.0) : 0;
 }
 
+/// Values that these shares of the image lie below.
+std::vector<double> levels_of(const Grid<double>& image, std::initializer_list<double> shares) {
+  std::vector<double> values = image.data(), levels;
+  for (const double share : shares) {
+    const auto at = values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
+    std::nth_element(values.begin(), at, values.end());
+    levels.push_back(*at);
+  }
+  return levels;
+}
+
 /// From flat places, where there are some.
 void find_noise(const PlacedImage& sem, const std::optional<SemNoise>& given, FirstCalibration& first) {
   if (given) {
@@ -90,6 +103,17 @@ Calibration fitted(const CalibrationImages& images, FirstCalibration& first) {
     throw InvalidInput("SEM image", "it is darker where the simulated image is brighter, so the two do not show the same",
                        "Check the registration (semsurf register --picture), the material and the energy, or give --gains");
   return fit;
+}
+
+/// What a coarse reconstruction leaves is noise, and what model and surface are off by, most of it on walls. A line through
+/// squared residuals follows a few bright walls, or is so uncertain for their sake that it is level. So the line is that of
+/// differences between neighbours.
+SemNoise noise_left(const CalibrationImages& images, const Grid<double>& mean) {
+  try {
+    return noise_of_residuals(images.real, mean, images.used);
+  } catch (const InvalidInput&) {   // too small, or noise finer than the grey levels
+    return fit_sem_noise(images.real, mean, images.used).noise;
+  }
 }
 
 }  // namespace
@@ -185,19 +209,15 @@ bool calibrate_again(const PlacedImage& sem, const HeightField& surface, const I
     mean = mean_of(images.simulated, first.gains, first.offset);
   }
   if (!fix_noise) {
-    first.noise = fit_sem_noise(images.real, mean, images.used).noise;
+    first.noise = noise_left(images, mean);
     first.noise_from = "what a first reconstruction leaves of the image";
     first.warnings.clear();   // of the noise before
   }
   const auto differs = [](double a, double b) { return std::abs(a - b) > changed * std::max(std::abs(a), std::abs(b)); };
   bool differ = first.tied != before.tied;
   for (std::size_t c = 0; c < first.gains.size(); ++c) differ = differ || differs(first.gains[c], before.gains[c]);
-  std::vector<double> levels = mean.data();
-  for (const double share : {0.1, 0.5, 0.9}) {
-    const auto at = levels.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(levels.size() - 1));
-    std::nth_element(levels.begin(), at, levels.end());
-    differ = differ || differs(first.noise.variance(*at), before.noise.variance(*at));
-  }
+  for (const double level : levels_of(mean, {0.1, 0.5, 0.9}))
+    differ = differ || differs(first.noise.variance(level), before.noise.variance(level));
   return differ;
 }
 

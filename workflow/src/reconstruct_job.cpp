@@ -48,7 +48,7 @@ Identity identity_of(const ReconstructionOptions& o, const AfmData* afm, const S
   id["iterations"] = std::to_string(o.iterations);
   id["tolerance"] = format_exact(o.tolerance);
   id["prior"] = format_exact(o.curvature_prior_per_nm);
-  id["fit"] = fmt::format("transform {}, calibration {}", o.refine_transform, o.refine_calibration);
+  id["fit"] = fmt::format("transform {}, calibration {}, tip {}", o.refine_transform, o.refine_calibration, o.refine_tip);
   if (afm) {
     const HeightField& f = afm->image;
     id["scan"] = hash_of(f.z_nm.data()) + hash_of(f.valid.data()) +
@@ -156,6 +156,7 @@ SemData sem_data(const ReconstructJob& job, ReconstructSummary& s, const PlacedI
     coarse.iterations = coarse_iterations;
     coarse.refine_calibration = !first.tied && !job.calibration;
     coarse.refine_transform = job.options.refine_transform;
+    coarse.refine_tip = options_of(job, s).refine_tip;
     coarse.curvature_prior_per_nm = job.options.curvature_prior_per_nm;
     coarse.uncertainty = false;
     coarse.threads = threads;
@@ -180,6 +181,8 @@ SemData sem_data(const ReconstructJob& job, ReconstructSummary& s, const PlacedI
 ReconstructionOptions options_of(const ReconstructJob& job, const ReconstructSummary& s) {
   ReconstructionOptions o = job.options;
   if (s.gains_tied) o.refine_calibration = false;   // it would go where the channels cannot be told apart
+  o.refine_tip = job.afm && job.sem && o.method == ReconstructionMethod::gauss_newton &&
+                 job.refine_tip.value_or(s.afm && !s.afm->tip_given);
   return o;
 }
 

@@ -14,7 +14,7 @@
 namespace surf::workflow {
 namespace {
 
-constexpr char mark[] = "semsurf reconstruction 1\n";
+constexpr char mark[] = "semsurf reconstruction 2\n";
 
 /// Numbers as 8 bytes each, lowest first.
 class Writer {
@@ -161,6 +161,7 @@ std::string pack(const ReconstructionState& state) {
   const Affine& m = state.sem_to_afm;
   for (const double value : {m.xx, m.xy, m.x0, m.yx, m.yy, m.y0, state.offset}) out.number(value);
   out.numbers(state.gains);
+  out.numbers(state.tip_change);
   out.whole(state.scales.size());
   for (const ScaleReport& scale : state.scales) write(out, scale);
   return std::move(out.bytes);
@@ -173,6 +174,7 @@ std::optional<ReconstructionState> unpack(const std::string& bytes) {
   Affine& m = state.sem_to_afm;
   for (double* value : {&m.xx, &m.xy, &m.x0, &m.yx, &m.yy, &m.y0, &state.offset}) *value = in.number();
   state.gains = in.numbers();
+  state.tip_change = in.numbers();
   const std::uint64_t scales = in.whole();
   for (std::uint64_t i = 0; in.good() && i < scales; ++i) state.scales.push_back(read_scale(in));
   if (!in.finished() || state.surface.z_nm.empty()) return std::nullopt;

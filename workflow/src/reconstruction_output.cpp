@@ -166,7 +166,8 @@ std::vector<fs::path> write_reconstruction(const ReconstructJob& job, const Reco
   io::write_surfaces(file("surface.glb"), surface_scene(r, made));
   if (afm) {
     io::write_image(file("simulated_afm.vti"), afm_image(r, *afm, made));
-    io::write_tip(file("tip.txt"), afm->tip, {{"semsurf.version", version()}});
+    io::write_tip(file("tip.txt"), r.tip, {{"semsurf.version", version()}});
+    if (options_of(job, s).refine_tip) io::write_tip(file("first_tip.txt"), afm->tip, {{"semsurf.version", version()}});
   }
   if (sem) {
     io::write_image(file("simulated_sem.vti"), sem_image(r, *sem, made));

@@ -9,6 +9,7 @@
 #include <cstring>
 #include <nlohmann/json.hpp>
 
+#include "surf/afm/round_tip.h"
 #include "surf/core/units.h"
 #include "surf/io/files.h"
 #include "surf/io/model_file.h"
@@ -53,7 +54,15 @@ Json map_json(const Affine& m) {
           {"shift_nm", {parts.shift_x_nm, parts.shift_y_nm}}};
 }
 
-Json afm_json(const ReconstructJob& job, const PreparedAfm& p, const AfmData& afm) {
+/// Heights at 0, 1, 2 ... steps from the apex, the median over all directions; as far as the tip has samples there.
+Json profile_json(const Tip& tip) {
+  Json list = Json::array();
+  for (const double z : round_profile_nm(tip, 0.5)) list.push_back(number(z));
+  return list;
+}
+
+Json afm_json(const ReconstructJob& job, const ReconstructSummary& s, const AfmData& afm) {
+  const PreparedAfm& p = *s.afm;
   Json json = file_json(job.afm->file);
   json["pixels"] = {afm.image.z_nm.width(), afm.image.z_nm.height()};
   json["pitch_nm"] = {afm.image.pitch_x_nm, afm.image.pitch_y_nm};
@@ -67,6 +76,10 @@ Json afm_json(const ReconstructJob& job, const PreparedAfm& p, const AfmData& af
   json["tip"] = {{"from", p.tip_given ? "given" : p.tip_round ? "blind reconstruction, taken as round" : "blind reconstruction"},
                  {"samples", {p.tip.z_nm.width(), p.tip.z_nm.height()}}};
   if (!p.tip_given) json["tip"]["threshold_nm"] = p.tip_threshold_nm;
+  json["tip"]["fitted"] = options_of(job, s).refine_tip;
+  json["tip"]["profile_step_nm"] = std::min(p.tip.pitch_x_nm, p.tip.pitch_y_nm);
+  json["tip"]["profile_nm"] = profile_json(p.tip);
+  if (options_of(job, s).refine_tip) json["tip"]["profile_at_the_end_nm"] = profile_json(s.result.tip);
   json["certainty"] = {{"tolerance_nm", p.certainty.tolerance_nm},
                        {"certain_share", double(p.certainty.certain) / double(std::max<std::size_t>(p.certainty.surface_samples, 1))},
                        {"image_pixels", p.certainty.image_pixels}, {"single", p.certainty.single},
@@ -142,7 +155,7 @@ Json options_json(const ReconstructionOptions& o, const Reconstruction& r) {
   for (const ScaleReport& s : r.scales) scales.push_back(s.sigma_px);
   return {{"method", name(o.method)}, {"scales_px", scales}, {"iterations", o.iterations}, {"tolerance", o.tolerance},
           {"curvature_prior_per_nm", o.curvature_prior_per_nm}, {"refine_transform", o.refine_transform},
-          {"refine_calibration", o.refine_calibration}, {"uncertainty", o.uncertainty}, {"probes", o.probes},
+          {"refine_calibration", o.refine_calibration}, {"refine_tip", o.refine_tip}, {"uncertainty", o.uncertainty}, {"probes", o.probes},
           {"seed", o.seed}};
 }
 
@@ -166,7 +179,8 @@ std::vector<std::string> repeating_command(const ReconstructJob& job, const Reco
   if (sem) add("--sem", job.sem->file.string());
   words.insert(words.end(), job.fixed_options.begin(), job.fixed_options.end());
   if (afm) {
-    add("--tip", (job.folder / "tip.txt").string());
+    add("--tip", (job.folder / (o.refine_tip ? "first_tip.txt" : "tip.txt")).string());
+    words.emplace_back(o.refine_tip ? "--refine-tip" : "--keep-tip");
     add("--afm-noise", list_of({afm->noise.alpha, afm->noise.innovation_nm2}));
     add("--upsample", std::to_string(afm->upsample));
   }
@@ -206,7 +220,7 @@ std::string reconstruction_report(const ReconstructJob& job, const ReconstructSu
   json["verdict"] = name(s.verdict);
   json["reasons"] = s.reasons;
   json["warnings"] = s.warnings;
-  if (afm) json["afm"] = afm_json(job, *s.afm, *afm);
+  if (afm) json["afm"] = afm_json(job, s, *afm);
   if (sem) json["sem"] = sem_json(job, s, *sem);
   if (s.pose) json["registration"] = pose_json(job, s);
   json["options"] = options_json(options_of(job, s), r);

@@ -34,9 +34,9 @@ int floor_div(int a, int b) { return a >= 0 ? a / b : -((b - 1 - a) / b); }
 
 AfmTerm::AfmTerm(const AfmData& data, const HeightField& outside, const SurfaceFrame& frame,
                  const Affine& surface_to_afm, int threads)
-    : image_(data.image), noise_(data.noise), factor_(data.upsample), frame_(frame), threads_(resolve_threads(threads)) {
-  tip_ = smoothly_upsampled(data.tip, factor_);
-  outside_ = smoothly_upsampled(outside, factor_).z_nm;
+    : image_(data.image), noise_(data.noise), first_tip_(data.tip), tip_(smoothly_upsampled(data.tip, data.upsample)),
+      family_(tip_), factor_(data.upsample), frame_(frame), threads_(resolve_threads(threads)) {
+  set_outside(outside);
   const int w = image_.z_nm.width(), h = image_.z_nm.height();
   used_ = Grid<unsigned char>(w, h);
   spans_.assign(h, {w, -1});
@@ -63,6 +63,8 @@ AfmTerm::AfmTerm(const AfmData& data, const HeightField& outside, const SurfaceF
   reach_nm_ = std::max({right - left, high - low, frame_.pitch_nm}) / 2;
 }
 
+void AfmTerm::set_outside(const HeightField& outside) { outside_ = smoothly_upsampled(outside, factor_).z_nm; }
+
 /// From the AFM's frame to samples of the surface.
 Affine AfmTerm::to_samples(const Affine& surface_to_afm) const {
   const double f = 1 / frame_.pitch_nm;
@@ -83,8 +85,9 @@ Affine AfmTerm::moved(const Affine& surface_to_afm, const MapChange& c) const {
   return inverse(compose({p, 0, frame_.origin_x_nm, 0, p, frame_.origin_y_nm}, m));
 }
 
-AfmTerm::State AfmTerm::evaluate(const Grid<double>& z, const Affine& surface_to_afm) const {
+AfmTerm::State AfmTerm::evaluate(const Grid<double>& z, const Affine& surface_to_afm, const TipChange& tip_change) const {
   State s;
+  const Tip tip = family_.changed(tip_, tip_change, &s.by_tip);
   const int w = image_.z_nm.width(), h = image_.z_nm.height();
   s.simulated = Grid<double>(w, h);
   s.residual = Grid<double>(w, h);
@@ -94,7 +97,7 @@ AfmTerm::State AfmTerm::evaluate(const Grid<double>& z, const Affine& surface_to
     return s;
   }
   const Affine map = to_samples(surface_to_afm);
-  const int f = factor_, tw = tip_.z_nm.width(), th = tip_.z_nm.height();
+  const int f = factor_, tw = tip.z_nm.width(), th = tip.z_nm.height();
   const double step_x = image_.pitch_x_nm / f, step_y = image_.pitch_y_nm / f;
 
   // Fine samples that the tip can reach from the used pixels: columns [begin, begin + f plane), rows likewise.
@@ -104,8 +107,8 @@ AfmTerm::State AfmTerm::evaluate(const Grid<double>& z, const Affine& surface_to
     first_column = std::min(first_column, span[0]);
     last_column = std::max(last_column, span[1]);
   }
-  const int right_of = tip_.apex_x, left_of = tw - 1 - tip_.apex_x;   // of a pixel, in fine samples
-  const int above = tip_.apex_y, below = th - 1 - tip_.apex_y;
+  const int right_of = tip.apex_x, left_of = tw - 1 - tip.apex_x;   // of a pixel, in fine samples
+  const int above = tip.apex_y, below = th - 1 - tip.apex_y;
   const int first_plane = floor_div(f * first_column - left_of, f), last_plane = floor_div(f * last_column + right_of, f);
   const int plane = last_plane - first_plane + 1;
   const int begin_row = f * first_row_ - below, rows = f * last_row_ + above - begin_row + 1;
@@ -160,12 +163,12 @@ AfmTerm::State AfmTerm::evaluate(const Grid<double>& z, const Affine& surface_to
     made.assign(count, deepest);
     touching.assign(count, -1);
     for (int j = 0; j < th; ++j) {
-      const int row = f * y - (j - tip_.apex_y) - begin_row;
+      const int row = f * y - (j - tip.apex_y) - begin_row;
       for (int k = 0; k < tw; ++k) {
-        const float offset = static_cast<float>(tip_.z_nm(k, j));
+        const float offset = static_cast<float>(tip.z_nm(k, j));
         // So deep that even the highest of the row stays below what the apex makes of the lowest.
         if (offset + highest[row] < floor) continue;
-        const int column = f * left - (k - tip_.apex_x) - f * first_plane;
+        const int column = f * left - (k - tip.apex_x) - f * first_plane;
         raise(made.data(), touching.data(),
               fine.data() + (static_cast<std::size_t>(row) * f + column % f) * stride + column / f, offset, j * tw + k, count);
       }
@@ -174,11 +177,12 @@ AfmTerm::State AfmTerm::evaluate(const Grid<double>& z, const Affine& surface_to
       const int x = left + c;
       if (!used_(x, y) || touching[c] < 0) continue;
       const int j = touching[c] / tw, k = touching[c] % tw;
-      const int global = f * x - (k - tip_.apex_x), global_row = f * y - (j - tip_.apex_y);
+      const int global = f * x - (k - tip.apex_x), global_row = f * y - (j - tip.apex_y);
       const int column = global - f * first_plane, row = global_row - begin_row;
-      s.simulated(x, y) = heights(column, row) + tip_.z_nm(k, j);
+      s.simulated(x, y) = heights(column, row) + tip.z_nm(k, j);
       s.residual(x, y) = image_.z_nm(x, y) - s.simulated(x, y);
       Contact& contact = s.contacts[static_cast<std::size_t>(y) * w + x];
+      contact.tip_sample = touching[c];
       contact.inside = inside(column, row);
       const Point2 nm{image_.origin_x_nm + global * step_x, image_.origin_y_nm + global_row * step_y}, p = map(nm);
       contact.x = p.x;
@@ -193,10 +197,12 @@ AfmTerm::State AfmTerm::evaluate(const Grid<double>& z, const Affine& surface_to
 }
 
 void AfmTerm::add_gradient(const State& s, const Grid<double>& z, const Grid<double>& weights, Grid<double>& out,
-                           MapChange* map) const {
+                           MapChange* map, TipChange* tip) const {
   for (std::size_t i = 0; i < s.contacts.size(); ++i) {
     const Contact& c = s.contacts[i];
     const double weight = weights.data()[i];
+    if (tip && c.tip_sample >= 0)
+      for (int k = 0; k < tip_numbers; ++k) (*tip)[k] += weight * s.by_tip[c.tip_sample][k];
     if (!c.inside || weight == 0) continue;
     const CubicSample at(c.x, c.y, frame_.width, frame_.height);
     at.scatter(weight, out);
@@ -211,14 +217,19 @@ void AfmTerm::add_gradient(const State& s, const Grid<double>& z, const Grid<dou
   }
 }
 
-Grid<double> AfmTerm::change(const State& s, const Grid<double>& z, const Grid<double>& dz, const MapChange& map) const {
+Grid<double> AfmTerm::change(const State& s, const Grid<double>& z, const Grid<double>& dz, const MapChange& map,
+                             const TipChange& tip) const {
   Grid<double> out(image_.z_nm.width(), image_.z_nm.height());
   const bool moves = std::any_of(map.begin(), map.end(), [](double m) { return m != 0; });
   for (std::size_t i = 0; i < s.contacts.size(); ++i) {
     const Contact& c = s.contacts[i];
+    double v = 0;
+    if (c.tip_sample >= 0)
+      for (int k = 0; k < tip_numbers; ++k) v += tip[k] * s.by_tip[c.tip_sample][k];
+    out.data()[i] = v;
     if (!c.inside) continue;
     const CubicSample at(c.x, c.y, frame_.width, frame_.height);
-    double v = at.value(dz);
+    v += at.value(dz);
     if (moves)
       v += at.slope_x(z) * (map[0] + map[1] * c.from_middle_x + map[2] * c.from_middle_y) +
            at.slope_y(z) * (map[3] + map[4] * c.from_middle_x + map[5] * c.from_middle_y);

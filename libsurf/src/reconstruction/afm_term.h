@@ -6,6 +6,7 @@
 
 #include "surf/reconstruction/reconstruct.h"
 #include "surface_frame.h"
+#include "tip_family.h"
 
 namespace surf::reconstruction {
 
@@ -14,6 +15,7 @@ struct Contact {
   double x = 0, y = 0;            ///< surface samples
   std::uint8_t inside = 0;        ///< 0: it touches outside of the surface, which no height changes
   double from_middle_x = 0, from_middle_y = 0;   ///< of the contact, in reaches: see MapChange
+  std::int32_t tip_sample = -1;   ///< which of the tip's, row-major; -1: none, as for pixels that play no part
 };
 
 /// The scan, given a surface: dilation of its samples by the tip, and the negative log-likelihood of what is
@@ -30,21 +32,28 @@ class AfmTerm {
     Grid<double> residual;        ///< image - simulated, 0 where not used
     Grid<double> pull;            ///< derivative of the term by each simulated pixel
     std::vector<Contact> contacts;
+    std::vector<TipChange> by_tip;   ///< derivatives of the tip's samples
     double value = 0;
   };
 
-  State evaluate(const Grid<double>& z_nm, const Affine& surface_to_afm) const;
+  State evaluate(const Grid<double>& z_nm, const Affine& surface_to_afm, const TipChange& tip = {}) const;
 
-  /// The transpose: out += J^T w for pixels' weights w; `map` gets the derivatives by MapChange, if given.
+  /// The transpose: out += J^T w for pixels' weights w; `map` and `tip` get the derivatives by these, if given.
   void add_gradient(const State& state, const Grid<double>& z_nm, const Grid<double>& weights, Grid<double>& out,
-                    MapChange* map) const;
-  /// J (dz, map).
-  Grid<double> change(const State& state, const Grid<double>& z_nm, const Grid<double>& dz_nm,
-                      const MapChange& map) const;
+                    MapChange* map, TipChange* tip = nullptr) const;
+  /// J (dz, map, tip).
+  Grid<double> change(const State& state, const Grid<double>& z_nm, const Grid<double>& dz_nm, const MapChange& map,
+                      const TipChange& tip = {}) const;
   /// The precision of the noise times v: what the second derivative by the simulated pixels is.
   Grid<double> precision(const Grid<double>& v) const;
 
   Affine moved(const Affine& surface_to_afm, const MapChange& change) const;
+
+  bool tip_can_change() const { return family_.can_change(); }
+  /// The tip on the scan's samples.
+  Tip tip(const TipChange& change) const { return family_.changed(first_tip_, change); }
+  /// Heights beyond the surface, as for the constructor: those of the scan eroded by another tip.
+  void set_outside(const HeightField& outside);
 
   const Grid<unsigned char>& used() const { return used_; }
   std::int64_t used_pixels() const { return used_pixels_; }
@@ -55,7 +64,9 @@ class AfmTerm {
 
   HeightField image_;
   AfmNoise noise_;
-  Tip tip_;                 // on the fine samples
+  Tip first_tip_;           // on the scan's samples
+  Tip tip_;                 // the same on the fine ones
+  TipFamily family_;
   int factor_;
   SurfaceFrame frame_;
   Grid<double> outside_;    // on the fine samples

@@ -1,13 +1,21 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "objective.h"
 
+#include <algorithm>
+
 namespace surf::reconstruction {
+namespace {
+
+constexpr double largest_tip_change = 2;   // a factor of 7.4 of its slope
+
+}  // namespace
 
 double dot(const Step& a, const Step& b) {
   double sum = 0;
   for (std::size_t i = 0; i < a.z_nm.size(); ++i) sum += a.z_nm.data()[i] * b.z_nm.data()[i];
   for (std::size_t i = 0; i < a.map.size(); ++i) sum += a.map[i] * b.map[i];
   for (std::size_t i = 0; i < a.mixture.size(); ++i) sum += a.mixture[i] * b.mixture[i];
+  for (std::size_t i = 0; i < a.tip.size(); ++i) sum += a.tip[i] * b.tip[i];
   return sum;
 }
 
@@ -15,12 +23,13 @@ void add(Step& to, double factor, const Step& step) {
   for (std::size_t i = 0; i < to.z_nm.size(); ++i) to.z_nm.data()[i] += factor * step.z_nm.data()[i];
   for (std::size_t i = 0; i < to.map.size(); ++i) to.map[i] += factor * step.map[i];
   for (std::size_t i = 0; i < to.mixture.size(); ++i) to.mixture[i] += factor * step.mixture[i];
+  for (std::size_t i = 0; i < to.tip.size(); ++i) to.tip[i] += factor * step.tip[i];
 }
 
 Objective::State Objective::evaluate(const Unknowns& at) const {
   State s;
   if (afm) {
-    s.afm = afm->evaluate(at.z_nm, at.surface_to_afm);
+    s.afm = afm->evaluate(at.z_nm, at.surface_to_afm, at.tip);
     s.afm_value = s.afm->value;
   }
   if (sem) {
@@ -33,6 +42,8 @@ Objective::State Objective::evaluate(const Unknowns& at) const {
       const double d = at.z_nm.data()[i] - start.data()[i];
       s.prior_value += 0.5 * anchor_per_nm2 * d * d;
     }
+  if (fit_tip)
+    for (const double t : at.tip) s.prior_value += 0.5 * tip_precision * t * t;
   return s;
 }
 
@@ -42,20 +53,23 @@ Step Objective::zero() const {
 
 Step Objective::gradient(const Unknowns& at, const State& s) const {
   Step g = zero();
-  if (afm) afm->add_gradient(*s.afm, at.z_nm, s.afm->pull, g.z_nm, fit_map ? &g.map : nullptr);
+  if (afm)
+    afm->add_gradient(*s.afm, at.z_nm, s.afm->pull, g.z_nm, fit_map ? &g.map : nullptr, fit_tip ? &g.tip : nullptr);
   if (sem) sem->add_gradient(*s.sem, at.mixture, s.sem->pull, nullptr, g.z_nm, fit_mixture ? &g.mixture : nullptr);
   prior.evaluate(at.z_nm, &g.z_nm, nullptr);
   if (anchor_per_nm2 > 0)
     for (std::size_t i = 0; i < start.size(); ++i)
       g.z_nm.data()[i] += anchor_per_nm2 * (at.z_nm.data()[i] - start.data()[i]);
+  if (fit_tip)
+    for (int k = 0; k < tip_numbers; ++k) g.tip[k] += tip_precision * at.tip[k];
   return g;
 }
 
 Step Objective::product(const Unknowns& at, const State& s, const Step& v, const SemTerm::Near* near) const {
   Step out = zero();
   if (afm)
-    afm->add_gradient(*s.afm, at.z_nm, afm->precision(afm->change(*s.afm, at.z_nm, v.z_nm, v.map)), out.z_nm,
-                      fit_map ? &out.map : nullptr);
+    afm->add_gradient(*s.afm, at.z_nm, afm->precision(afm->change(*s.afm, at.z_nm, v.z_nm, v.map, v.tip)), out.z_nm,
+                      fit_map ? &out.map : nullptr, fit_tip ? &out.tip : nullptr);
   if (sem) {
     Grid<double> change = sem->change(*s.sem, at.mixture, v.z_nm, v.mixture, near);
     for (std::size_t i = 0; i < change.size(); ++i) change.data()[i] *= s.sem->information.data()[i];
@@ -64,6 +78,8 @@ Step Objective::product(const Unknowns& at, const State& s, const Step& v, const
   prior.add_product(s.prior_weights, v.z_nm, out.z_nm);
   if (anchor_per_nm2 > 0)
     for (std::size_t i = 0; i < start.size(); ++i) out.z_nm.data()[i] += anchor_per_nm2 * v.z_nm.data()[i];
+  if (fit_tip)
+    for (int k = 0; k < tip_numbers; ++k) out.tip[k] += tip_precision * v.tip[k];
   return out;
 }
 
@@ -75,6 +91,8 @@ Unknowns Objective::moved(const Unknowns& at, const Step& step) const {
     for (std::size_t c = 0; c + 1 < next.mixture.size(); ++c) next.mixture[c] *= 1 + step.mixture[0];
     next.mixture.back() += step.mixture[1];
   }
+  if (fit_tip)   // within what a tip may be: a long step must not end at no number
+    for (int k = 0; k < tip_numbers; ++k) next.tip[k] = std::clamp(at.tip[k] + step.tip[k], -largest_tip_change, largest_tip_change);
   return next;
 }
 

@@ -16,6 +16,7 @@ struct Unknowns {
   Grid<double> z_nm;                 ///< on the surface's samples
   Affine surface_to_afm;
   std::vector<double> mixture;       ///< a gain for each channel and the offset; empty without SEM
+  TipChange tip{};                   ///< from the tip that is given
 };
 
 /// A change of it, or a derivative by it.
@@ -23,6 +24,7 @@ struct Step {
   Grid<double> z_nm;
   MapChange map{};                   ///< all 0 where the map is not fitted
   MixtureChange mixture{};           ///< likewise
+  TipChange tip{};                   ///< likewise
 };
 double dot(const Step& a, const Step& b);
 void add(Step& to, double factor, const Step& step);
@@ -38,6 +40,9 @@ class Objective {
   /// Precision of a height, 1 / nm^2, that keeps a surface in place that no AFM image holds: about `start`.
   double anchor_per_nm2 = 0;
   Grid<double> start;
+  /// The tip is fitted, about the one that is given. Where nothing speaks for another its slope is right within a third.
+  bool fit_tip = false;
+  double tip_precision = 9;
 
   struct State {
     std::optional<AfmTerm::State> afm;

@@ -20,7 +20,8 @@ Step data_pull(const Objective& o, const Unknowns& at, const Objective::State& s
   Step r = o.zero();
   if (o.afm) {
     const Grid<double> e = simulate_noise(o.afm->noise(), s.afm->residual.width(), s.afm->residual.height(), seed);
-    o.afm->add_gradient(*s.afm, at.z_nm, o.afm->precision(e), r.z_nm, o.fit_map ? &r.map : nullptr);
+    o.afm->add_gradient(*s.afm, at.z_nm, o.afm->precision(e), r.z_nm, o.fit_map ? &r.map : nullptr,
+                        o.fit_tip ? &r.tip : nullptr);
   }
   if (o.sem) {
     NormalNumbers normal(seed, 1);
@@ -41,6 +42,8 @@ void add_prior_pull(const Objective& o, const Objective::State& s, std::uint64_t
   });
   if (o.anchor_per_nm2 > 0)
     for (double& v : r.z_nm.data()) v += std::sqrt(o.anchor_per_nm2) * normal();
+  if (o.fit_tip)
+    for (double& v : r.tip) v += std::sqrt(o.tip_precision) * normal();
 }
 
 /// x with A x = r by preconditioned conjugate gradients, until the residual, in the preconditioner's norm, is

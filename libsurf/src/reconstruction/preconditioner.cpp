@@ -2,9 +2,11 @@
 #include "preconditioner.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
 
 #include "afm/normal_numbers.h"
 #include "surf/core/parallel.h"
@@ -54,6 +56,18 @@ void add_contacts(const Objective& o, const Objective::State& s, StencilMatrix& 
   }
 }
 
+double product(const Grid<double>& a, const Grid<double>& b) {
+  double sum = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) sum += a.data()[i] * b.data()[i];
+  return sum;
+}
+
+/// The symmetric matrix nearest to one whose eigenvalues are `least` or more.
+Eigen::MatrixXd at_least(const Eigen::MatrixXd& m, double least) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> parts(0.5 * (m + m.transpose()));
+  return parts.eigenvectors() * parts.eigenvalues().cwiseMax(least).asDiagonal() * parts.eigenvectors().transpose();
+}
+
 /// Samples [begin, end) of a tile along one axis, with those it shares with its neighbours, and its weights
 /// there.
 struct Span {
@@ -83,9 +97,38 @@ std::vector<Span> spans(int samples, int tile) {
 }  // namespace
 
 struct Preconditioner::Blocks {
-  Eigen::LDLT<Eigen::MatrixXd> map, mixture;
-  bool has_map = false, has_mixture = false;
+  Eigen::LDLT<Eigen::MatrixXd> map, mixture, tip;
+  std::array<Grid<double>, tip_numbers> follows;   // how the surface gives way to the tip
+  bool has_map = false, has_mixture = false, has_tip = false;
+
+  void eliminate_tip(const Objective& o, const Objective::State& s, const Preconditioner& surface);
 };
+
+/// The tip with the surface: what one takes off a contact the other can give back, so that a block of its own would leave
+/// a long valley. Tiles are no exact inverse, so that the rest could fall below what the tip's prior leaves.
+void Preconditioner::Blocks::eliminate_tip(const Objective& o, const Objective::State& s, const Preconditioner& surface) {
+  const int w = o.frame.width, h = o.frame.height;
+  const double q = (1 - o.afm->noise().alpha * o.afm->noise().alpha) / o.afm->noise().innovation_nm2;
+  Eigen::MatrixXd block = o.tip_precision * Eigen::MatrixXd::Identity(tip_numbers, tip_numbers);
+  std::array<Step, tip_numbers> coupling;
+  coupling.fill(o.zero());
+  for (const Contact& c : s.afm->contacts) {
+    if (c.tip_sample < 0) continue;
+    const TipChange& d = s.afm->by_tip[c.tip_sample];
+    for (int i = 0; i < tip_numbers; ++i)
+      for (int k = 0; k < tip_numbers; ++k) block(i, k) += q * d[i] * d[k];
+    if (!c.inside) continue;
+    const Corners at(c, w, h);
+    for (int k = 0; k < tip_numbers; ++k)
+      for (int a = 0; a < 4; ++a) coupling[k].z_nm(at.x + a % 2, at.y + a / 2) += q * at.w[a] * d[k];
+  }
+  has_tip = false;
+  for (int k = 0; k < tip_numbers; ++k) follows[k] = surface.solve(coupling[k]).z_nm;
+  has_tip = true;
+  for (int i = 0; i < tip_numbers; ++i)
+    for (int k = 0; k < tip_numbers; ++k) block(i, k) -= product(coupling[i].z_nm, follows[k]);
+  tip.compute(at_least(block, o.tip_precision));
+}
 
 Preconditioner::Preconditioner(int tile_px, int threads)
     : tile_px_(tile_px), threads_(resolve_threads(threads)), blocks_(std::make_unique<Blocks>()) {}
@@ -146,6 +189,8 @@ void Preconditioner::factor(const Objective& o, const Unknowns& at, const Object
     block.diagonal().array() *= 1 + 1e-9;
     few.mixture.compute(block);
   }
+  few.has_tip = false;
+  if (o.afm && o.fit_tip) few.eliminate_tip(o, s, *this);
 }
 
 Step Preconditioner::solve(const Step& r) const {
@@ -177,6 +222,15 @@ Step Preconditioner::solve(const Step& r) const {
   if (blocks_->has_mixture)
     Eigen::Map<Eigen::Vector2d>(out.mixture.data()) =
         blocks_->mixture.solve(Eigen::Map<const Eigen::Vector2d>(r.mixture.data()));
+  if (blocks_->has_tip) {
+    Eigen::VectorXd right = Eigen::Map<const Eigen::VectorXd>(r.tip.data(), tip_numbers);
+    for (int k = 0; k < tip_numbers; ++k) right(k) -= product(blocks_->follows[k], r.z_nm);
+    const Eigen::VectorXd tip = blocks_->tip.solve(right);
+    for (int k = 0; k < tip_numbers; ++k) {
+      out.tip[k] = tip(k);
+      for (std::size_t i = 0; i < out.z_nm.size(); ++i) out.z_nm.data()[i] -= tip(k) * blocks_->follows[k].data()[i];
+    }
+  }
   return out;
 }
 

@@ -114,6 +114,8 @@ class Work {
     }
     objective_.fit_map = afm && sem && options.refine_transform;
     objective_.fit_mixture = sem && options.refine_calibration;
+    objective_.fit_tip = afm && sem && options.refine_tip && options.method == ReconstructionMethod::gauss_newton &&
+                         objective_.afm->tip_can_change();
     curvature_ = options.curvature_prior_per_nm > 0 ? options.curvature_prior_per_nm : 1e-3;
     set_prior(curvature_);
   }
@@ -137,6 +139,8 @@ class Work {
   void take(const ReconstructionState& s) {
     at_.z_nm = s.surface.z_nm;
     at_.surface_to_afm = s.sem_to_afm;
+    std::copy_n(s.tip_change.begin(), std::min(s.tip_change.size(), at_.tip.size()), at_.tip.begin());
+    erode_again();
     if (sem_) {
       at_.mixture = s.gains;
       at_.mixture.push_back(s.offset);
@@ -152,7 +156,17 @@ class Work {
       s.gains.assign(at_.mixture.begin(), at_.mixture.end() - 1);
       s.offset = at_.mixture.back();
     }
+    if (objective_.fit_tip) s.tip_change.assign(at_.tip.begin(), at_.tip.end());
     return s;
+  }
+
+  /// What stands beyond the surface is the scan less the tip as it is now: a scan that was eroded by a blunter one would
+  /// hold the tip back, as dilation of it by a sharper one is lower than the scan.
+  void erode_again() {
+    if (!objective_.fit_tip) return;
+    AfmData now = *afm_;
+    now.tip = objective_.afm->tip(at_.tip);
+    objective_.afm->set_outside(eroded(now, options_.threads));
   }
 
   void scale(double sigma_px, bool first, bool last, const Watch& watch) {
@@ -184,6 +198,7 @@ class Work {
       d = descend(objective_, at_, sigma_px, first, options_.method, o, options_.threads);
       fit_few(objective_, at_, watch);
     }
+    erode_again();
     const Objective::State s = objective_.evaluate(at_);
     ScaleReport r{sigma_px, objective_.prior.curvature_per_nm(), s.afm_value, s.sem_value, s.prior_value, d.gradient_norm, d.iterations, d.evaluations, d.products,
                   d.ended, {}, {}};
@@ -265,6 +280,7 @@ class Work {
     out.offset = last.offset;
     const Objective::State s = objective_.evaluate(at_);
     if (s.afm) {
+      out.tip = objective_.afm->tip(at_.tip);
       out.simulated_afm = afm_->image;
       out.simulated_afm.z_nm = s.afm->simulated;
       out.simulated_afm.valid = objective_.afm->used();

@@ -27,12 +27,14 @@ Objective make_objective(const test::SmallScene& scene, Images which) {
     o.anchor_per_nm2 = 1e-3;
     o.start = Grid<double>(o.frame.width, o.frame.height, 7);
   }
+  o.fit_tip = with_afm;
   return o;
 }
 
 Unknowns start_at(const test::SmallScene& scene, const Objective& o) {
   Unknowns at{on_frame(eroded(scene.afm, 1), o.frame, scene.sem.sem_to_afm), scene.sem.sem_to_afm, {}};
   if (o.sem) at.mixture = {90, 25};
+  if (o.fit_tip) at.tip = {0.2, -0.1, 0.15, 0.05, -0.2, 0.1, 0.3};
   // An eroded scan touches the tip in several places at once, where there is no derivative.
   RandomStream random(31, 0, 0);
   for (double& z : at.z_nm.data()) z += random.uniform();
@@ -47,6 +49,8 @@ Step random_step(const Objective& o, std::uint64_t seed, double heights = 1) {
     for (double& v : s.map) v = 2 * random.uniform() - 1;
   if (o.fit_mixture)
     for (double& v : s.mixture) v = 2 * random.uniform() - 1;
+  if (o.fit_tip)
+    for (double& v : s.tip) v = heights * (2 * random.uniform() - 1);
   return s;
 }
 
@@ -72,7 +76,7 @@ TEST(Objective, GradientIsThatOfCentralDifferencesWithEachImageAndBoth) {
   }
 }
 
-TEST(Objective, GradientHoldsForEachNumberOfMapAndMixtureAlone) {
+TEST(Objective, GradientHoldsForEachNumberOfMapMixtureAndTipAlone) {
   const test::SmallScene scene;
   const Objective o = make_objective(scene, Images::both);
   const Unknowns at = start_at(scene, o);
@@ -85,6 +89,11 @@ TEST(Objective, GradientHoldsForEachNumberOfMapAndMixtureAlone) {
     Step s = o.zero();
     s.mixture[k] = 1;
     expect_gradient(o, at, s, 1e-5);
+  }
+  for (int k = 0; k < tip_numbers; ++k) {
+    Step s = o.zero();
+    s.tip[k] = 1;
+    expect_gradient(o, at, s, 5e-3);
   }
 }
 
@@ -124,6 +133,7 @@ TEST(Objective, ProductPredictsTheGradientOfWhatIsQuadratic) {
   const Unknowns at = start_at(scene, o);
   const Objective::State s = o.evaluate(at);
   Step d = random_step(o, 6, 1e-7);
+  d.tip = {};   // an exponential, not linear
   const Step p = o.product(at, s, d);
   const Unknowns there = o.moved(at, d);
   Step g = o.gradient(there, o.evaluate(there));
@@ -160,8 +170,11 @@ TEST(Objective, DilationIsThatOfTheLibrary) {
   for (double& v : z.data()) v = 30 * random.uniform();
   HeightField surface = scene.afm.image;
   surface.z_nm = z;
-  const Grid<double> expected = dilate(surface, scene.afm.tip).z_nm, got = term.evaluate(z, {}).simulated;
-  for (std::size_t i = 0; i < got.size(); ++i) ASSERT_NEAR(got.data()[i], expected.data()[i], 1e-5);
+  for (const TipChange& change : {TipChange{}, TipChange{0.3, 0.2, -0.2, 0.1, 0.4, -0.1, 0.2}}) {
+    const Grid<double> expected = dilate(surface, term.tip(change)).z_nm, got = term.evaluate(z, {}, change).simulated;
+    for (std::size_t i = 0; i < got.size(); ++i) ASSERT_NEAR(got.data()[i], expected.data()[i], 1e-5);
+  }
+  EXPECT_EQ(term.tip({}).z_nm, scene.afm.tip.z_nm);
 }
 
 TEST(Preconditioner, SolvesTheMatrixThatItHolds) {
@@ -173,15 +186,20 @@ TEST(Preconditioner, SolvesTheMatrixThatItHolds) {
   o.afm.emplace(scene.afm, eroded(scene.afm, 1), o.frame, Affine{}, 1);
   const Unknowns at{eroded(scene.afm, 1).z_nm, {}, {}};
   const Objective::State s = o.evaluate(at);
-  Preconditioner m(0, 0);
-  m.factor(o, at, s);
-  const Step v = random_step(o, 8), back = m.solve(o.product(at, s, v));
-  for (std::size_t i = 0; i < v.z_nm.size(); ++i) ASSERT_NEAR(back.z_nm.data()[i], v.z_nm.data()[i], 1e-5);
+  for (const bool fit_tip : {false, true}) {
+    o.fit_tip = fit_tip;
+    Preconditioner m(0, 0);
+    m.factor(o, at, s);
+    const Step v = random_step(o, 8), back = m.solve(o.product(at, s, v));
+    for (std::size_t i = 0; i < v.z_nm.size(); ++i) ASSERT_NEAR(back.z_nm.data()[i], v.z_nm.data()[i], 1e-5);
+    for (int k = 0; k < tip_numbers; ++k) ASSERT_NEAR(back.tip[k], v.tip[k], 1e-5);
+  }
 }
 
 TEST(Preconditioner, DrawsHaveItsInverseAsCovariance) {
   const test::SmallScene scene(5, 24, 18);
-  const Objective o = make_objective(scene, Images::both);
+  Objective o = make_objective(scene, Images::both);
+  o.fit_tip = false;   // draws hold it
   const Unknowns at = start_at(scene, o);
   Preconditioner m(0, 0);
   m.factor(o, at, o.evaluate(at));

@@ -7,6 +7,7 @@
 #include <functional>
 
 #include "small_scene.h"
+#include "surf/afm/round_tip.h"
 #include "surf/core/error.h"
 
 namespace surf {
@@ -55,6 +56,45 @@ TEST(Reconstruct, FindsGainsThatAreOffByATenth) {
   scene.sem.offset -= 10;
   const Reconstruction r = reconstruct(&scene.afm, &scene.sem, quick());
   EXPECT_NEAR(r.gains[0] + r.offset, 120, 1.5);   // a plain's brightness
+}
+
+TEST(Reconstruct, FindsATipThatIsTooBluntOrTooSharp) {
+  for (const double factor : {0.8, 1.2}) {
+    SCOPED_TRACE(factor);
+    test::SmallScene scene;
+    const Tip truth = scene.afm.tip;
+    for (double& z : scene.afm.tip.z_nm.data()) z *= factor;
+    const Reconstruction kept = reconstruct(&scene.afm, &scene.sem, quick());
+    EXPECT_EQ(kept.tip.z_nm, scene.afm.tip.z_nm);
+    ReconstructionOptions o = quick();
+    o.refine_tip = true;
+    const Reconstruction r = reconstruct(&scene.afm, &scene.sem, o);
+    EXPECT_NO_THROW(validate(r.tip));
+    // Begun 20 % off; where it touches walls, 40 to 80 nm from the apex, it ends within some percent and the noise from
+    // either side.
+    const std::vector<double> is = round_profile_nm(r.tip, 0.5), should = round_profile_nm(truth, 0.5);
+    for (const int step : {2, 3, 4}) EXPECT_NEAR(is[step], should[step], 0.07 * -should[step] + 0.5) << step;
+    EXPECT_LT(scene.rms_error(r.surface), 0.8 * scene.rms_error(kept.surface));
+  }
+}
+
+TEST(Reconstruct, OneImageAloneLeavesTheTip) {
+  const test::SmallScene scene;
+  ReconstructionOptions o = quick();
+  o.refine_tip = true;
+  EXPECT_EQ(reconstruct(&scene.afm, nullptr, o).tip.z_nm, scene.afm.tip.z_nm);
+  EXPECT_TRUE(reconstruct(nullptr, &scene.sem, o).tip.z_nm.empty());
+}
+
+TEST(Reconstruct, ATipWithoutAnyShapeStaysAsItIs) {
+  test::SmallScene scene;
+  ReconstructionOptions o = quick();
+  o.refine_tip = true;
+  o.iterations = 3;
+  scene.afm.tip = {Grid<double>(1, 1), 20, 20, 0, 0};
+  EXPECT_EQ(reconstruct(&scene.afm, &scene.sem, o).tip.z_nm, scene.afm.tip.z_nm);
+  scene.afm.tip = {Grid<double>(3, 3), 20, 20, 1, 1};
+  EXPECT_EQ(reconstruct(&scene.afm, &scene.sem, o).tip.z_nm, scene.afm.tip.z_nm);
 }
 
 TEST(Reconstruct, WorksWithEitherImageAlone) {
@@ -144,6 +184,7 @@ TEST(Reconstruct, GoesOnFromAJournalToTheSameBits) {
   ReconstructionOptions o = quick();
   o.scales_px = {5, 2, 1};
   o.iterations = 4;
+  o.refine_tip = true;
   const Reconstruction whole = reconstruct(&scene.afm, &scene.sem, o);
   Journal journal;
   CancelToken cancel;
@@ -159,6 +200,12 @@ TEST(Reconstruct, GoesOnFromAJournalToTheSameBits) {
   EXPECT_EQ(rest.surface.z_nm, whole.surface.z_nm);
   EXPECT_EQ(rest.sem_to_afm, whole.sem_to_afm);
   EXPECT_EQ(rest.gains, whole.gains);
+  EXPECT_EQ(rest.tip.z_nm, whole.tip.z_nm);
+  EXPECT_EQ(rest.simulated_afm.z_nm, whole.simulated_afm.z_nm);
+  // Nothing is left to do: even what stands beyond the surface is as it was.
+  const Reconstruction done = reconstruct(&scene.afm, &scene.sem, o, &journal);
+  EXPECT_EQ(journal.times, 3);
+  EXPECT_EQ(done.simulated_afm.z_nm, whole.simulated_afm.z_nm);
 }
 
 TEST(Reconstruct, DeviationsDoNotDependOnWhereItWasInterrupted) {

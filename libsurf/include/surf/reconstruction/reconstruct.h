@@ -63,6 +63,9 @@ struct ReconstructionOptions {
 
   bool refine_transform = true;    ///< the map is fitted further with the surface
   bool refine_calibration = true;  ///< and so are the offset and a factor of all gains
+  /// The tip is fitted, too, from the one that is given: seven factors of its slope, between the apex and the rim. Of
+  /// Gauss-Newton with both images; the SEM image tells how far the tip kept off the walls, which no scan alone does.
+  bool refine_tip = false;
   bool uncertainty = true;         ///< compute `deviation_nm`
   int probes = 6;                  ///< draws that the uncertainty is estimated from, >= 2
   std::uint64_t seed = 1;          ///< of these
@@ -95,6 +98,7 @@ struct ReconstructionState {
   std::vector<double> gains;
   double offset = 0;
   std::vector<ScaleReport> scales;      ///< those done
+  std::vector<double> tip_change;       ///< of the tip from the one given; empty: not fitted
 };
 
 /// Who keeps states, so that an interrupted run goes on: told after each scale.
@@ -110,6 +114,7 @@ struct Reconstruction {
   Affine sem_to_afm;
   std::vector<double> gains;
   double offset = 0;
+  Tip tip;                          ///< as fitted, else as given, on the AFM's samples; empty without AFM
   HeightField start;                ///< what it began with: the eroded scan on the surface's samples
 
   HeightField simulated_afm;        ///< on the AFM's samples; holes where the surface does not reach. Empty without AFM

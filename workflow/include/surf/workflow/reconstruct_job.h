@@ -28,7 +28,8 @@ struct ReconstructJob {
   std::optional<GivenCalibration> calibration;   ///< needed without a scan, which it is fitted with otherwise
   std::optional<SemNoise> sem_noise;             ///< absent: estimated
   int upsample = 3;                              ///< of the scan, see AfmData
-  ReconstructionOptions options;                 ///< its threads are for all steps
+  std::optional<bool> refine_tip;                ///< fit the tip with the surface; absent: if it was found blindly
+  ReconstructionOptions options;                 ///< its threads are for all steps; `refine_tip` is as above
   std::optional<HeightField> truth;              ///< in the SEM's frame, or the scan's without an SEM image: to compare with
   std::filesystem::path truth_file;
   std::filesystem::path folder;                  ///< of the result; made where it is missing
@@ -72,14 +73,14 @@ struct ReconstructSummary {
 };
 
 /// Does it all and writes into `folder`: surface.vti, .gsf and .glb, simulated_afm.vti, simulated_sem.vti, history.csv,
-/// transform.json, tip.txt, model.json, report.json, panel.png. While it works a file `checkpoint` there holds what is done after
+/// transform.json, tip.txt (and first_tip.txt where it was fitted), model.json, report.json, panel.png. While it works a file `checkpoint` there holds what is done after
 /// each scale: the same job, started again, goes on from it to the same bytes, whether it was cancelled (Interrupted is
 /// thrown) or killed. One of another job is begun anew. Nothing is written where the registration is not verified, but
 /// transform.json and registration.png.
 /// Throws UsageError, InvalidInput, FileError, Unsupported, Interrupted.
 ReconstructSummary run(const ReconstructJob& job, const ChainListener& listener = {});
 
-/// As the reconstruction runs with: gains that are tied are not refined.
+/// As the reconstruction runs with: gains that are tied are not refined, a tip that was found blindly is.
 ReconstructionOptions options_of(const ReconstructJob& job, const ReconstructSummary& summary);
 
 /// "sound", "flagged" or "not registered".
