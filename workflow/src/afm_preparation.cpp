@@ -10,6 +10,7 @@
 #include "surf/afm/height_range.h"
 #include "surf/afm/hough_plane.h"
 #include "surf/afm/morphology.h"
+#include "surf/afm/noise_check.h"
 #include "surf/afm/resample.h"
 #include "surf/afm/round_tip.h"
 #include "surf/afm/substrate_noise.h"
@@ -25,6 +26,7 @@ constexpr int tip_sizes[] = {5, 7, 9, 11, 13, 19, 27, 39, 57};
 constexpr int enough = 9;             // samples that are tried in any case
 constexpr double told_share = 0.1;    // of the directions that a round tip goes by
 constexpr double told_deviations = 3;  // of noise: a tip no deeper is told by noise alone
+constexpr double ground_correlation = 0.5;   // of whitened neighbours in two rows
 constexpr double noise_span = 6;      // standard deviations of noise in the range of heights
 
 /// Takes off what the method says; returns what rows should go by.
@@ -66,6 +68,15 @@ void level_scan(PreparedAfm& prepared, const AfmPreparationOptions& o) {
   level(prepared.image, o, prepared, true, o.watch.part(0.05, 0.1));
 }
 
+/// Noise knows nothing of the row before: where a "substrate" goes on from row to row it is rough ground.
+bool is_ground(const SubstrateNoise& found) {
+  const Grid<double> white = whiten(found.residual_nm, found.estimate.noise, found.substrate);
+  NoiseCheckOptions options;
+  options.lags = 1;
+  const NoiseCheck check = check_noise(white, found.substrate, options);
+  return !check.across.empty() && check.across.front().correlation > ground_correlation;
+}
+
 void find_noise(PreparedAfm& prepared, const AfmPreparationOptions& o) {
   if (o.noise) {
     validate(*o.noise, "--afm-noise");
@@ -75,7 +86,7 @@ void find_noise(PreparedAfm& prepared, const AfmPreparationOptions& o) {
   FlatNoiseOptions flat;
   flat.watch = o.watch.part(0.1, 0.15);
   const SubstrateNoise substrate = estimate_substrate_noise(prepared.image, flat);
-  const bool clear = substrate.plane.verdict == HoughVerdict::clear;
+  const bool clear = substrate.plane.verdict == HoughVerdict::clear && !is_ground(substrate);
   const NoiseEstimate estimate = clear ? substrate.estimate : estimate_noise(prepared.image);
   prepared.noise = estimate.noise;
   prepared.noise_estimate = estimate;
