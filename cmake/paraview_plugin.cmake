@@ -1,4 +1,4 @@
-# The ParaView plugin: build/lib/semsurf_paraview/semsurf/semsurf.so, and the same below the prefix. PV_PLUGIN_PATH is
+# The ParaView plugin: build/lib/semsurf_paraview/semsurf_paraview.so, and the same below the prefix. PV_PLUGIN_PATH is
 # that folder; semsurf's own libraries are inside the file, so that it may be moved.
 if(NOT SEMSURF_PARAVIEW)
   return()
@@ -17,9 +17,8 @@ paraview_plugin_scan(
   HIDE_PLUGINS_FROM_CACHE ON)
 paraview_plugin_build(
   PLUGINS ${paraview_plugins}
-  LIBRARY_SUBDIRECTORY semsurf_paraview
   INSTALL_HEADERS OFF
   ADD_INSTALL_RPATHS OFF
   DISABLE_XML_DOCUMENTATION ON)   # that needs Qt; the texts are in the plugin all the same
 unset(BUILD_SHARED_LIBS)
-set(SEMSURF_PARAVIEW_FOLDER "${CMAKE_BINARY_DIR}/${CMAKE_INSTALL_LIBDIR}/semsurf_paraview/semsurf")
+set(SEMSURF_PARAVIEW_FOLDER "${CMAKE_BINARY_DIR}/${CMAKE_INSTALL_LIBDIR}/semsurf_paraview")

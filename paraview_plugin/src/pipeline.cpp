@@ -12,7 +12,7 @@
 #include <vtkTable.h>
 
 #include <algorithm>
-#include <cstring>
+#include <string>
 
 #include "surf/core/error.h"
 
@@ -101,8 +101,9 @@ vtkDataArray* chosen_array(vtkAlgorithm* self, int index, vtkImageData* image) {
   const char* const name = wish->Has(vtkDataObject::FIELD_NAME()) ? wish->Get(vtkDataObject::FIELD_NAME()) : nullptr;
   if (name && *name) {
     if (vtkDataArray* const array = arrays->GetArray(name)) return array;
-    throw InvalidInput("Scalars", fmt::format("the input has no array '{}' at its points", name),
-                       "Choose one that it has");
+    // ParaView's word for a choice not made: the property's default, the index.
+    if (name != std::to_string(index)) throw InvalidInput("Scalars", fmt::format("the input has no array '{}' at its points", name),
+                                                           "Choose one that it has");
   }
   if (vtkDataArray* const shown = arrays->GetScalars()) return shown;
   for (int i = 0; i < arrays->GetNumberOfArrays(); ++i) {
