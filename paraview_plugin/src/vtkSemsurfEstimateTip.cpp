@@ -98,12 +98,23 @@ int vtkSemsurfEstimateTip::FillOutputPortInformation(int port, vtkInformation* i
   return 1;
 }
 
+void vtkSemsurfEstimateTip::Check() const {
+  if (this->TipSize < 1 || this->TipSize > 1001 || this->TipSize % 2 == 0)
+    throw UsageError("Tip Size", fmt::format("{} is no odd number from 1 to 1001, so that there is no middle for the "
+                                           "apex", this->TipSize), "Give 21 where in doubt");
+  if (this->Answer < Sweep || this->Answer > Blind)
+    throw UsageError("Answer", fmt::format("there is no answer {}", this->Answer), "Choose 0 to 3");
+  if (this->Threshold < 0 || this->ApexTolerance < 0 || this->Noise < 0)
+    throw UsageError(this->Noise < 0 ? "Noise" : this->Threshold < 0 ? "Threshold" : "Apex Tolerance",
+                     "it is below 0", "Give a length in nm, or 0");
+  if (!(std::abs(this->NoiseCorrelation) < 1))
+    throw UsageError("Noise Correlation", fmt::format("{} is not between -1 and 1", this->NoiseCorrelation), "Give 0");
+}
+
 int vtkSemsurfEstimateTip::RequestInformation(vtkInformation*, vtkInformationVector** inputs,
                                               vtkInformationVector* outputs) {
   return pv::attempt(this, [&] {
-    if (this->TipSize < 1 || this->TipSize > 1001 || this->TipSize % 2 == 0)
-      throw UsageError("Tip Size", fmt::format("{} is no odd number from 1 to 1001, so that there is no middle for the "
-                                               "apex", this->TipSize), "Give 21 where in doubt");
+    this->Check();
     double pitch[3] = {1, 1, 1};
     inputs[0]->GetInformationObject(0)->Get(vtkDataObject::SPACING(), pitch);
     const int samples = std::max(this->TipSize, 2), apex = this->TipSize / 2;
@@ -114,13 +125,7 @@ int vtkSemsurfEstimateTip::RequestInformation(vtkInformation*, vtkInformationVec
 
 int vtkSemsurfEstimateTip::RequestData(vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs) {
   return pv::attempt(this, [&] {
-    if (this->Answer < Sweep || this->Answer > Blind)
-      throw UsageError("Answer", fmt::format("there is no answer {}", this->Answer), "Choose 0 to 3");
-    if (this->Threshold < 0 || this->ApexTolerance < 0 || this->Noise < 0)
-      throw UsageError(this->Noise < 0 ? "Noise" : this->Threshold < 0 ? "Threshold" : "Apex Tolerance",
-                       "it is below 0", "Give a length in nm, or 0");
-    if (!(std::abs(this->NoiseCorrelation) < 1))
-      throw UsageError("Noise Correlation", fmt::format("{} is not between -1 and 1", this->NoiseCorrelation), "Give 0");
+    this->Check();
     std::string name;
     const std::vector<HeightField> scans{this->Heights(inputs, name)};
     vtkNew<vtkTable> table;

@@ -29,6 +29,8 @@ class VTKSEMSURF_EXPORT vtkSemsurfEstimateTip : public vtkSemsurfImageFilter {
   int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
 
  private:
+  void Check() const;
+
   int Answer = Sweep;
   int TipSize = 21;
   double Threshold = 0.5;

@@ -20,12 +20,16 @@ vtkStandardNewMacro(vtkSemsurfTipSource);
 
 using namespace surf;
 
+void vtkSemsurfTipSource::Check() const {
+  if (this->Samples < 3 || this->Samples > 4001 || this->Samples % 2 == 0)
+    throw UsageError("Samples", fmt::format("{} is no odd number from 3 to 4001, so that there is no middle for the "
+                                            "apex", this->Samples), "Give 41 where in doubt");
+  if (!(this->Pitch > 0)) throw UsageError("Pitch", fmt::format("{} nm are not above 0", this->Pitch), "Give a length");
+}
+
 int vtkSemsurfTipSource::RequestInformation(vtkInformation*, vtkInformationVector**, vtkInformationVector* outputs) {
   return pv::attempt(this, [&] {
-    if (this->Samples < 3 || this->Samples > 4001 || this->Samples % 2 == 0)
-      throw UsageError("Samples", fmt::format("{} is no odd number from 3 to 4001, so that there is no middle for the "
-                                              "apex", this->Samples), "Give 41 where in doubt");
-    if (!(this->Pitch > 0)) throw UsageError("Pitch", fmt::format("{} nm are not above 0", this->Pitch), "Give a length");
+    this->Check();
     const double corner = -(this->Samples / 2) * this->Pitch;
     pv::announce(outputs->GetInformationObject(0),
                  {this->Samples, this->Samples, this->Pitch, this->Pitch, corner, corner});
@@ -34,6 +38,7 @@ int vtkSemsurfTipSource::RequestInformation(vtkInformation*, vtkInformationVecto
 
 int vtkSemsurfTipSource::RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector* outputs) {
   return pv::attempt(this, [&] {
+    this->Check();
     const TipSampling sampling{this->Pitch, this->Pitch, this->Samples, this->Samples};
     const double half_angle = this->HalfAngle * degrees_to_radians;
     Tip tip;
@@ -51,7 +56,9 @@ int vtkSemsurfTipSource::RequestData(vtkInformation*, vtkInformationVector**, vt
         break;
       }
       case Ball:
-        tip = ball_tip(this->Radius, this->StemRadius, this->StemHalfAngle * degrees_to_radians, sampling);
+        // On a cylinder, which is never seen, any radius does.
+        tip = ball_tip(this->Radius, this->StemRadius > 0 ? this->StemRadius : 0.5 * this->Radius,
+                       this->StemRadius > 0 ? this->StemHalfAngle * degrees_to_radians : 0, sampling);
         break;
       default: throw UsageError("Shape", fmt::format("there is no shape {}", this->Shape), "Choose 0 to 3");
     }

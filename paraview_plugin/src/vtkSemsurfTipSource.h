@@ -29,6 +29,8 @@ class VTKSEMSURF_EXPORT vtkSemsurfTipSource : public vtkImageAlgorithm {
   int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
 
  private:
+  void Check() const;
+
   int Shape = Cone;
   double Radius = 10;
   double HalfAngle = 15;

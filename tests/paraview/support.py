@@ -19,7 +19,6 @@ SOURCE = pathlib.Path(os.environ["SEMSURF_SOURCE"])
 DATA = SOURCE / "tests" / "cli" / "data"
 FOLDER = pathlib.Path(tempfile.mkdtemp(prefix="semsurf_paraview_"))
 atexit.register(shutil.rmtree, FOLDER, True)
-SKIP = 77
 
 
 def expect(condition, message):
@@ -30,7 +29,7 @@ def expect(condition, message):
 def fetch(source, port=0):
     """The data of an output, computed anew where something changed."""
     source.UpdatePipeline()
-    return servermanager.Fetch(servermanager.OutputPort(source, port))
+    return servermanager.Fetch(source, idx=port)
 
 
 def array(data, name):
