@@ -13,6 +13,7 @@
 
 #include <algorithm>
 #include <string>
+#include <vector>
 
 #include "surf/core/error.h"
 
@@ -64,6 +65,11 @@ void give(vtkInformation* output, vtkImageData* whole) {
   image->Crop(asked);
 }
 
+int announce_pieces(vtkInformation* output) {
+  output->Set(vtkAlgorithm::CAN_HANDLE_PIECE_REQUEST(), 1);
+  return 1;
+}
+
 bool is_first_piece(vtkInformation* output) {
   return !output->Has(Pipeline::UPDATE_PIECE_NUMBER()) || output->Get(Pipeline::UPDATE_PIECE_NUMBER()) == 0;
 }
@@ -98,19 +104,27 @@ vtkPolyData* surface_input(vtkInformationVector** inputs, int port) {
 vtkDataArray* chosen_array(vtkAlgorithm* self, int index, vtkImageData* image) {
   vtkPointData* const arrays = image->GetPointData();
   vtkInformation* const wish = self->GetInputArrayInformation(index);
-  const char* const name = wish->Has(vtkDataObject::FIELD_NAME()) ? wish->Get(vtkDataObject::FIELD_NAME()) : nullptr;
-  if (name && *name) {
-    if (vtkDataArray* const array = arrays->GetArray(name)) return array;
-    // ParaView's word for a choice not made: the property's default, the index.
-    if (name != std::to_string(index)) throw InvalidInput("Scalars", fmt::format("the input has no array '{}' at its points", name),
-                                                           "Choose one that it has");
-  }
-  if (vtkDataArray* const shown = arrays->GetScalars()) return shown;
+  const char* const given = wish->Has(vtkDataObject::FIELD_NAME()) ? wish->Get(vtkDataObject::FIELD_NAME()) : nullptr;
+  const std::string name = given ? given : "";
+  if (vtkDataArray* const array = arrays->GetArray(name.c_str())) return array;
+  std::vector<vtkDataArray*> candidates;
+  std::string names;
   for (int i = 0; i < arrays->GetNumberOfArrays(); ++i) {
     vtkDataArray* const array = arrays->GetArray(i);
-    if (array && array->GetNumberOfComponents() == 1) return array;
+    if (!array || !array->GetName() || array->GetNumberOfComponents() != 1) continue;
+    if (std::string(array->GetName()) == mask_name) continue;
+    candidates.push_back(array);
+    names += std::string(names.empty() ? "'" : ", '") + array->GetName() + "'";
   }
-  return nullptr;
+  // A script's filter takes names from the active source at first, whatever its input is.
+  if (candidates.size() == 1) return candidates.front();
+  // A choice not made is empty, or the property's default, the index.
+  const bool is_chosen = !name.empty() && name != std::to_string(index);
+  if (is_chosen && !candidates.empty())
+    throw InvalidInput("Scalars", fmt::format("the input has no array '{}' at its points", name),
+                       fmt::format("Choose one of {}", names));
+  if (vtkDataArray* const shown = arrays->GetScalars()) return shown;
+  return candidates.empty() ? nullptr : candidates.front();
 }
 
 }  // namespace surf::pv

@@ -24,6 +24,9 @@ void request_whole(vtkInformationVector** inputs, int ports);
 /// For RequestInformation: what an image output is going to be.
 void announce(vtkInformation* output, const Frame& frame);
 
+/// For RequestInformation: a surface or table that knows of pieces, so that it is made anew when another is asked for.
+int announce_pieces(vtkInformation* output);
+
 /// The piece of `whole` that was asked for, as the output. Field data goes along.
 void give(vtkInformation* output, vtkImageData* whole);
 /// All of it to the first piece, nothing to the others.
@@ -36,8 +39,9 @@ bool is_first_piece(vtkInformation* output);
 vtkImageData* image_input(vtkInformationVector** inputs, int port, const char* subject);
 vtkPolyData* surface_input(vtkInformationVector** inputs, int port);
 
-/// The array that was chosen, or else the one that is shown (a filter made before its input was read has chosen
-/// none), or else the first with one number per point. Nullptr if there is none.
+/// The array that was chosen; the only one there is; or else the one that is shown, where none was chosen, as a
+/// filter made before its input was read has not. Nullptr if there is none with one number per point. Throws
+/// InvalidInput where the chosen one is not among several.
 vtkDataArray* chosen_array(vtkAlgorithm* self, int index, vtkImageData* image);
 
 }  // namespace surf::pv

@@ -120,6 +120,7 @@ int vtkSemsurfEstimateTip::RequestInformation(vtkInformation*, vtkInformationVec
     const int samples = std::max(this->TipSize, 2), apex = this->TipSize / 2;
     pv::announce(outputs->GetInformationObject(0),
                  {samples, samples, pitch[0], pitch[1], -apex * pitch[0], -apex * pitch[1]});
+    pv::announce_pieces(outputs->GetInformationObject(1));
   });
 }
 

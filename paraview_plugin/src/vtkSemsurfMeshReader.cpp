@@ -48,6 +48,11 @@ void vtkSemsurfMeshReader::SetFileName(const char* name) {
   this->Modified();
 }
 
+int vtkSemsurfMeshReader::RequestInformation(vtkInformation*, vtkInformationVector**,
+                                             vtkInformationVector* outputs) {
+  return pv::announce_pieces(outputs->GetInformationObject(0));
+}
+
 int vtkSemsurfMeshReader::RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector* outputs) {
   return pv::attempt(this, [&] {
     vtkInformation* const output = outputs->GetInformationObject(0);

@@ -21,6 +21,7 @@ class VTKSEMSURF_EXPORT vtkSemsurfMeshReader : public vtkPolyDataAlgorithm {
 
  protected:
   vtkSemsurfMeshReader() { this->SetNumberOfInputPorts(0); }
+  int RequestInformation(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
   int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
 
  private:

@@ -74,6 +74,12 @@ int vtkSemsurfNoise::FillInputPortInformation(int, vtkInformation* info) {
   return 1;
 }
 
+int vtkSemsurfNoise::RequestInformation(vtkInformation*, vtkInformationVector**,
+                                        vtkInformationVector* outputs) {
+  pv::announce_pieces(outputs->GetInformationObject(0));
+  return pv::announce_pieces(outputs->GetInformationObject(1));
+}
+
 int vtkSemsurfNoise::RequestUpdateExtent(vtkInformation*, vtkInformationVector** inputs, vtkInformationVector*) {
   pv::request_whole(inputs, 1);
   return 1;

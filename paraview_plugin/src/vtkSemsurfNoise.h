@@ -20,6 +20,7 @@ class VTKSEMSURF_EXPORT vtkSemsurfNoise : public vtkTableAlgorithm {
   vtkSemsurfNoise() { this->SetNumberOfInputPorts(1); this->SetNumberOfOutputPorts(2); }
   int FillInputPortInformation(int port, vtkInformation* info) override;
   int RequestUpdateExtent(vtkInformation*, vtkInformationVector** inputs, vtkInformationVector*) override;
+  int RequestInformation(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
   int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
 
  private:

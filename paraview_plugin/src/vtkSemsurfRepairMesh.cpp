@@ -62,6 +62,12 @@ int vtkSemsurfRepairMesh::FillOutputPortInformation(int port, vtkInformation* in
   return 1;
 }
 
+int vtkSemsurfRepairMesh::RequestInformation(vtkInformation*, vtkInformationVector**,
+                                             vtkInformationVector* outputs) {
+  pv::announce_pieces(outputs->GetInformationObject(0));
+  return pv::announce_pieces(outputs->GetInformationObject(1));
+}
+
 int vtkSemsurfRepairMesh::RequestUpdateExtent(vtkInformation*, vtkInformationVector** inputs, vtkInformationVector*) {
   pv::request_whole(inputs, 1);
   return 1;

@@ -18,6 +18,11 @@ vtkStandardNewMacro(vtkSemsurfSampleBody);
 
 using namespace surf;
 
+int vtkSemsurfSampleBody::RequestInformation(vtkInformation*, vtkInformationVector**,
+                                             vtkInformationVector* outputs) {
+  return pv::announce_pieces(outputs->GetInformationObject(0));
+}
+
 int vtkSemsurfSampleBody::RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector* outputs) {
   return pv::attempt(this, [&] {
     vtkInformation* const output = outputs->GetInformationObject(0);

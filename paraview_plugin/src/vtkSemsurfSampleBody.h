@@ -24,6 +24,7 @@ class VTKSEMSURF_EXPORT vtkSemsurfSampleBody : public vtkPolyDataAlgorithm {
 
  protected:
   vtkSemsurfSampleBody() { this->SetNumberOfInputPorts(0); }
+  int RequestInformation(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
   int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
 
  private:

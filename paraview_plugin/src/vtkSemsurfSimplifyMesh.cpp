@@ -18,6 +18,11 @@ vtkStandardNewMacro(vtkSemsurfSimplifyMesh);
 
 using namespace surf;
 
+int vtkSemsurfSimplifyMesh::RequestInformation(vtkInformation*, vtkInformationVector**,
+                                               vtkInformationVector* outputs) {
+  return pv::announce_pieces(outputs->GetInformationObject(0));
+}
+
 int vtkSemsurfSimplifyMesh::RequestUpdateExtent(vtkInformation*, vtkInformationVector** inputs,
                                                 vtkInformationVector*) {
   pv::request_whole(inputs, 1);

@@ -29,6 +29,11 @@ int vtkSemsurfToSurface::FillInputPortInformation(int, vtkInformation* info) {
   return 1;
 }
 
+int vtkSemsurfToSurface::RequestInformation(vtkInformation*, vtkInformationVector**,
+                                            vtkInformationVector* outputs) {
+  return pv::announce_pieces(outputs->GetInformationObject(0));
+}
+
 int vtkSemsurfToSurface::RequestUpdateExtent(vtkInformation*, vtkInformationVector** inputs, vtkInformationVector*) {
   pv::request_whole(inputs, 1);
   return 1;

@@ -23,6 +23,7 @@ class VTKSEMSURF_EXPORT vtkSemsurfToSurface : public vtkPolyDataAlgorithm {
   vtkSemsurfToSurface() = default;
   int FillInputPortInformation(int port, vtkInformation* info) override;
   int RequestUpdateExtent(vtkInformation*, vtkInformationVector** inputs, vtkInformationVector*) override;
+  int RequestInformation(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
   int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
 
  private:

@@ -26,9 +26,10 @@ def rows_equal_the_command():
 
 
 def refuses_what_is_wrong():
-    level = simple.LevelScan(Input=scan(), Scalars=["POINTS", "nothing"])
-    refuses(level, "Scalars", "no array 'nothing'")
-    level.Scalars = ["POINTS", ""]
+    first = simple.LevelScan(Input=scan())   # its output has the substrate, too
+    level = simple.LevelScan(Input=first, Scalars=["POINTS", "nothing"])
+    refuses(level, "Scalars", "no array 'nothing'", "one of 'Height', 'substrate'")
+    level.Scalars = ["POINTS", "Height"]
     quiet(level)
     refuses(simple.LevelScan(Input=simple.Wavelet()), "Input", "21 layers along z")
 
@@ -45,4 +46,15 @@ def tells_and_aborts():
     same(array(fetch(level), "z_nm"), whole, "after an abort")
 
 
-run(equals_the_command, rows_equal_the_command, refuses_what_is_wrong, tells_and_aborts)
+def arrays_are_found():
+    """However a filter was made: ParaView takes the first choice from the active source, not from the input."""
+    semsurf("level", DATA / "block.gsf", "-o", "level.txt")
+    want = matrix(FOLDER / "level.txt")
+    same(array(quiet(simple.LevelScan(Input=scan())), "Height"), want, "before its input was read")
+    other = simple.SampleSurface()
+    other.UpdatePipeline()
+    same(array(quiet(simple.LevelScan(Input=scan())), "Height"), want, "made while another source is active")
+    same(array(quiet(simple.LevelScan(scan())), "Height"), want, "with its input as an argument")
+
+
+run(equals_the_command, arrays_are_found, rows_equal_the_command, refuses_what_is_wrong, tells_and_aborts)
