@@ -41,7 +41,7 @@ void do_job(Run& run, const std::function<void(const Watch&)>& job) {
   run.ended.notify_one();
 }
 
-}  // namespace
+}   // namespace
 
 int attempt(vtkAlgorithm* self, const std::function<void()>& request) {
   try {
@@ -50,7 +50,8 @@ int attempt(vtkAlgorithm* self, const std::function<void()>& request) {
   } catch (const Interrupted&) {
     return 1;
   } catch (const std::bad_alloc&) {
-    vtkErrorWithObjectMacro(self, << "memory: there is not enough for this. Use fewer samples or a smaller mesh");
+    vtkErrorWithObjectMacro(
+        self, << "memory: there is not enough for this. Use fewer samples or a smaller mesh");
   } catch (const std::exception& error) {
     vtkErrorWithObjectMacro(self, << error.what());
   }
@@ -80,4 +81,4 @@ void work(vtkAlgorithm* self, const std::function<void(const Watch&)>& job) {
 
 void warn(vtkAlgorithm* self, const std::string& text) { vtkWarningWithObjectMacro(self, << text); }
 
-}  // namespace surf::pv
+}   // namespace surf::pv

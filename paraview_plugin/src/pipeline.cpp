@@ -22,7 +22,7 @@ namespace {
 
 using Pipeline = vtkStreamingDemandDrivenPipeline;
 
-}  // namespace
+}   // namespace
 
 void request_whole(vtkInformationVector** inputs, int ports) {
   for (int port = 0; port < ports; ++port) {
@@ -104,7 +104,8 @@ vtkPolyData* surface_input(vtkInformationVector** inputs, int port) {
 vtkDataArray* chosen_array(vtkAlgorithm* self, int index, vtkImageData* image) {
   vtkPointData* const arrays = image->GetPointData();
   vtkInformation* const wish = self->GetInputArrayInformation(index);
-  const char* const given = wish->Has(vtkDataObject::FIELD_NAME()) ? wish->Get(vtkDataObject::FIELD_NAME()) : nullptr;
+  const char* const given =
+      wish->Has(vtkDataObject::FIELD_NAME()) ? wish->Get(vtkDataObject::FIELD_NAME()) : nullptr;
   const std::string name = given ? given : "";
   if (vtkDataArray* const array = arrays->GetArray(name.c_str())) return array;
   std::vector<vtkDataArray*> candidates;
@@ -127,4 +128,4 @@ vtkDataArray* chosen_array(vtkAlgorithm* self, int index, vtkImageData* image) {
   return candidates.empty() ? nullptr : candidates.front();
 }
 
-}  // namespace surf::pv
+}   // namespace surf::pv

@@ -13,7 +13,7 @@ class VTKSEMSURF_EXPORT vtkSemsurfCertainty : public vtkSemsurfImageFilter {
   vtkSetMacro(Noise, double);   ///< nm, standard deviation; below 0: from neighbouring pixels
   vtkSetMacro(Sigmas, double);
   vtkSetMacro(Neighbourhood, int);   ///< samples; -1: from the tip's apex
-  vtkSetMacro(Distance, double);   ///< nm
+  vtkSetMacro(Distance, double);     ///< nm
 
  protected:
   vtkSemsurfCertainty() { this->SetNumberOfInputPorts(2); }

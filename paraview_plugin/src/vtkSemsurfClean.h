@@ -11,7 +11,7 @@ class VTKSEMSURF_EXPORT vtkSemsurfClean : public vtkSemsurfImageFilter {
   vtkTypeMacro(vtkSemsurfClean, vtkSemsurfImageFilter);
 
   vtkSetMacro(RemoveSpikes, bool);
-  vtkSetMacro(SpikeWidth, int);   ///< samples, odd
+  vtkSetMacro(SpikeWidth, int);      ///< samples, odd
   vtkSetMacro(SpikeLimit, double);   ///< nm; 0: six standard deviations of the pixels' noise
   vtkSetMacro(MedianFilter, bool);
   vtkSetMacro(MedianWidth, int);   ///< samples, odd

@@ -40,10 +40,12 @@ AfmNoise noise_of(const HeightField& scan, std::vector<std::string>& warnings) {
   AfmNoise noise{e.noise.alpha, 0};
   noise.innovation_nm2 = e.noise.variance_nm2() * (1 - noise.alpha * noise.alpha);
   if (!(noise.innovation_nm2 > 0))
-    throw InvalidInput("Input", "it has no noise that could be estimated", "Set Noise, or the Answer 'At threshold'");
+    throw InvalidInput("Input", "it has no noise that could be estimated",
+                       "Set Noise, or the Answer 'At threshold'");
   if (e.alpha_at_limit)
-    warnings.push_back("the noise can hardly be told from the structure and may be less: set Noise, which 'Noise Model' "
-                       "finds on a flat scan");
+    warnings.push_back(
+        "the noise can hardly be told from the structure and may be less: set Noise, which 'Noise Model' "
+        "finds on a flat scan");
   return noise;
 }
 
@@ -55,7 +57,9 @@ std::vector<double> column_of(const std::vector<Row>& rows, const Value& value) 
 }
 
 void add_curve(vtkTable* table, const TipSweep& sweep) {
-  const auto add = [&](const char* name, auto value) { pv::add_column(table, name, column_of(sweep.curve, value)); };
+  const auto add = [&](const char* name, auto value) {
+    pv::add_column(table, name, column_of(sweep.curve, value));
+  };
   add("threshold_nm", [](const SweptTip& t) { return t.threshold_nm; });
   add("volume_nm3", [](const SweptTip& t) { return t.volume_nm3; });
   add("residual_nm", [](const SweptTip& t) { return t.residual_nm; });
@@ -83,15 +87,19 @@ void add_candidates(vtkTable* table, const BestTipSummary& summary) {
 std::vector<std::string> doubts(const TipSweep& sweep) {
   const SweptTip& c = sweep.curve[sweep.chosen];
   if (sweep.verdict == TipSweepVerdict::disagreement)
-    return {fmt::format("the volume jumps at a threshold of {:.4g} nm, but the residuals choose {:.4g} nm: look at the "
-                        "curve, output 2", sweep.curve[sweep.jump].threshold_nm, c.threshold_nm)};
+    return {fmt::format(
+        "the volume jumps at a threshold of {:.4g} nm, but the residuals choose {:.4g} nm: look at the "
+        "curve, output 2",
+        sweep.curve[sweep.jump].threshold_nm, c.threshold_nm)};
   if (sweep.verdict == TipSweepVerdict::none)
-    return {fmt::format("no tip explains the scan: {:.1f} times what the noise leaves is left at best. Is it level, is "
-                        "Noise right, is Tip Size large enough?", c.excess())};
+    return {fmt::format(
+        "no tip explains the scan: {:.1f} times what the noise leaves is left at best. Is it level, is "
+        "Noise right, is Tip Size large enough?",
+        c.excess())};
   return {};
 }
 
-}  // namespace
+}   // namespace
 
 int vtkSemsurfEstimateTip::FillOutputPortInformation(int port, vtkInformation* info) {
   info->Set(vtkDataObject::DATA_TYPE_NAME(), port == 0 ? "vtkImageData" : "vtkTable");
@@ -100,15 +108,21 @@ int vtkSemsurfEstimateTip::FillOutputPortInformation(int port, vtkInformation* i
 
 void vtkSemsurfEstimateTip::Check() const {
   if (this->TipSize < 1 || this->TipSize > 1001 || this->TipSize % 2 == 0)
-    throw UsageError("Tip Size", fmt::format("{} is no odd number from 1 to 1001, so that there is no middle for the "
-                                           "apex", this->TipSize), "Give 21 where in doubt");
+    throw UsageError("Tip Size",
+                     fmt::format("{} is no odd number from 1 to 1001, so that there is no middle for the "
+                                 "apex",
+                                 this->TipSize),
+                     "Give 21 where in doubt");
   if (this->Answer < Sweep || this->Answer > Blind)
     throw UsageError("Answer", fmt::format("there is no answer {}", this->Answer), "Choose 0 to 3");
   if (this->Threshold < 0 || this->ApexTolerance < 0 || this->Noise < 0)
-    throw UsageError(this->Noise < 0 ? "Noise" : this->Threshold < 0 ? "Threshold" : "Apex Tolerance",
+    throw UsageError(this->Noise < 0       ? "Noise"
+                     : this->Threshold < 0 ? "Threshold"
+                                           : "Apex Tolerance",
                      "it is below 0", "Give a length in nm, or 0");
   if (!(std::abs(this->NoiseCorrelation) < 1))
-    throw UsageError("Noise Correlation", fmt::format("{} is not between -1 and 1", this->NoiseCorrelation), "Give 0");
+    throw UsageError("Noise Correlation", fmt::format("{} is not between -1 and 1", this->NoiseCorrelation),
+                     "Give 0");
 }
 
 int vtkSemsurfEstimateTip::RequestInformation(vtkInformation*, vtkInformationVector** inputs,
@@ -124,7 +138,8 @@ int vtkSemsurfEstimateTip::RequestInformation(vtkInformation*, vtkInformationVec
   });
 }
 
-int vtkSemsurfEstimateTip::RequestData(vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs) {
+int vtkSemsurfEstimateTip::RequestData(vtkInformation*, vtkInformationVector** inputs,
+                                       vtkInformationVector* outputs) {
   return pv::attempt(this, [&] {
     this->Check();
     std::string name;
@@ -136,12 +151,17 @@ int vtkSemsurfEstimateTip::RequestData(vtkInformation*, vtkInformationVector** i
       BlindTipOptions blind{.width = this->TipSize, .height = this->TipSize};
       if (this->Answer != Blind) {
         const double alpha = this->NoiseCorrelation, sigma = this->Noise;
-        noise = sigma > 0 ? AfmNoise{alpha, sigma * sigma * (1 - alpha * alpha)} : noise_of(scans[0], found.warnings);
+        noise = sigma > 0 ? AfmNoise{alpha, sigma * sigma * (1 - alpha * alpha)}
+                          : noise_of(scans[0], found.warnings);
       }
       if (this->Answer == Sweep) {
-        const TipSweep sweep = sweep_tips(scans, {.blind = blind, .noise = noise, .least_nm = this->ThresholdRange[0],
-                                                  .most_nm = this->ThresholdRange[1], .thresholds = this->Thresholds,
-                                                  .seed = static_cast<std::uint64_t>(this->Seed)},
+        const TipSweep sweep = sweep_tips(scans,
+                                          {.blind = blind,
+                                           .noise = noise,
+                                           .least_nm = this->ThresholdRange[0],
+                                           .most_nm = this->ThresholdRange[1],
+                                           .thresholds = this->Thresholds,
+                                           .seed = static_cast<std::uint64_t>(this->Seed)},
                                           watch.progress, watch.cancel);
         watch.check();
         found.tip = sweep.curve[sweep.chosen].tip;
@@ -150,8 +170,8 @@ int vtkSemsurfEstimateTip::RequestData(vtkInformation*, vtkInformationVector** i
         add_curve(table, sweep);
       } else if (this->Answer == Best) {
         BestTipSummary summary;
-        found.tip = best_tip(scans, {.width = this->TipSize, .height = this->TipSize, .noise = noise}, summary,
-                             watch.progress, watch.cancel);
+        found.tip = best_tip(scans, {.width = this->TipSize, .height = this->TipSize, .noise = noise},
+                             summary, watch.progress, watch.cancel);
         watch.check();
         found.threshold_nm = summary.chosen.threshold_nm;
         add_candidates(table, summary);

@@ -4,8 +4,8 @@
 
 #include "vtkSemsurfImageFilter.h"
 
-/// The tip that made a scan, as `semsurf tip` finds it. Output 0 is the tip, output 1 a table: the curve of thresholds
-/// of a sweep, the candidates of the best tip, else how the tip was found.
+/// The tip that made a scan, as `semsurf tip` finds it. Output 0 is the tip, output 1 a table: the curve of
+/// thresholds of a sweep, the candidates of the best tip, else how the tip was found.
 class VTKSEMSURF_EXPORT vtkSemsurfEstimateTip : public vtkSemsurfImageFilter {
  public:
   static vtkSemsurfEstimateTip* New();
@@ -13,12 +13,12 @@ class VTKSEMSURF_EXPORT vtkSemsurfEstimateTip : public vtkSemsurfImageFilter {
 
   enum Answers { Sweep, OuterBound, Best, Blind };
   vtkSetMacro(Answer, int);
-  vtkSetMacro(TipSize, int);   ///< samples across, odd
-  vtkSetMacro(Threshold, double);   ///< nm, of Blind
-  vtkSetMacro(ApexTolerance, double);   ///< nm, of Blind
-  vtkSetMacro(Noise, double);   ///< nm, standard deviation; 0: from the scan
+  vtkSetMacro(TipSize, int);               ///< samples across, odd
+  vtkSetMacro(Threshold, double);          ///< nm, of Blind
+  vtkSetMacro(ApexTolerance, double);      ///< nm, of Blind
+  vtkSetMacro(Noise, double);              ///< nm, standard deviation; 0: from the scan
   vtkSetMacro(NoiseCorrelation, double);   ///< of neighbours along rows, in (-1, 1), where Noise is given
-  vtkSetMacro(Thresholds, int);   ///< of the sweep
+  vtkSetMacro(Thresholds, int);            ///< of the sweep
   vtkSetVector2Macro(ThresholdRange, double);   ///< nm; both 0: from the noise
   vtkSetMacro(Seed, int);
 

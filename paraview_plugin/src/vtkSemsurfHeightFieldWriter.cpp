@@ -18,6 +18,7 @@ int vtkSemsurfHeightFieldWriter::FillInputPortInformation(int, vtkInformation* i
 
 void vtkSemsurfHeightFieldWriter::WriteFile() {
   auto* const image = vtkImageData::SafeDownCast(this->GetInput());
-  io::write_height_field(this->FileName, pv::to_height_field(image, pv::chosen_array(this, 0, image), "Input"),
+  io::write_height_field(this->FileName,
+                         pv::to_height_field(image, pv::chosen_array(this, 0, image), "Input"),
                          pv::texts_of(image));
 }

@@ -26,8 +26,8 @@ HeightField vtkSemsurfImageFilter::Heights(vtkInformationVector** inputs, std::s
   return field;
 }
 
-vtkSmartPointer<vtkImageData> vtkSemsurfImageFilter::WithHeights(vtkInformationVector** inputs, HeightField field,
-                                                                 const std::string& name) {
+vtkSmartPointer<vtkImageData> vtkSemsurfImageFilter::WithHeights(vtkInformationVector** inputs,
+                                                                 HeightField field, const std::string& name) {
   vtkImageData* const input = pv::image_input(inputs, 0, "Input");
   auto image = pv::make_image_like(input);
   image->GetPointData()->ShallowCopy(input->GetPointData());

@@ -7,14 +7,14 @@
 
 #include <string>
 
-#include "vtkSemsurfModule.h"
+#include <vtkSemsurfModule.h>
 
 namespace surf {
 struct HeightField;
 }
 
-/// What filters from one height field to images of the same samples share: they ask for all of every input. Input
-/// array 0 are the heights; outputs keep the input's other arrays.
+/// What filters from one height field to images of the same samples share: they ask for all of every input.
+/// Input array 0 are the heights; outputs keep the input's other arrays.
 class VTKSEMSURF_EXPORT vtkSemsurfImageFilter : public vtkImageAlgorithm {
  public:
   vtkAbstractTypeMacro(vtkSemsurfImageFilter, vtkImageAlgorithm);

@@ -24,20 +24,24 @@ namespace {
 
 std::string doubt(const HoughSummary& s) {
   if (s.verdict == HoughVerdict::contested)
-    return fmt::format("no plane holds a clear majority: another one, {:.3g} nm {} at the centre, holds {:.1f} % of the "
-                       "image. Crop the image, or choose another Method",
-                       std::fabs(s.runner_up.height_nm - s.plane.height_nm),
-                       s.runner_up.height_nm > s.plane.height_nm ? "higher" : "lower", 100 * s.runner_up_share);
+    return fmt::format(
+        "no plane holds a clear majority: another one, {:.3g} nm {} at the centre, holds {:.1f} % of the "
+        "image. Crop the image, or choose another Method",
+        std::fabs(s.runner_up.height_nm - s.plane.height_nm),
+        s.runner_up.height_nm > s.plane.height_nm ? "higher" : "lower", 100 * s.runner_up_share);
   if (s.verdict == HoughVerdict::weak)
-    return fmt::format("no plane stands out: the best one holds {:.1f} % of the image, chance alone {:.1f} %. The Method "
-                       "'Mean plane' may be what is wanted", 100 * s.inlier_share, 100 * s.chance_share);
+    return fmt::format(
+        "no plane stands out: the best one holds {:.1f} % of the image, chance alone {:.1f} %. The Method "
+        "'Mean plane' may be what is wanted",
+        100 * s.inlier_share, 100 * s.chance_share);
   return {};
 }
 
-}  // namespace
+}   // namespace
 
 /// Returns what rows should go by: the substrate, or nothing.
-Grid<unsigned char> vtkSemsurfLevel::TakeOff(HeightField& field, const Watch& watch, std::string& warning) const {
+Grid<unsigned char> vtkSemsurfLevel::TakeOff(HeightField& field, const Watch& watch,
+                                             std::string& warning) const {
   switch (this->Method) {
     case None: return {};
     case LeastSquares: subtract(field, fit_plane(field)); return {};
@@ -52,7 +56,8 @@ Grid<unsigned char> vtkSemsurfLevel::TakeOff(HeightField& field, const Watch& wa
   }
 }
 
-int vtkSemsurfLevel::RequestData(vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs) {
+int vtkSemsurfLevel::RequestData(vtkInformation*, vtkInformationVector** inputs,
+                                 vtkInformationVector* outputs) {
   return pv::attempt(this, [&] {
     if (this->Rows < Keep || this->Rows > Difference)
       throw UsageError("Rows", fmt::format("there is no method {}", this->Rows), "Choose 0 to 2");

@@ -8,9 +8,10 @@ namespace surf {
 struct Watch;
 template <class T>
 class Grid;
-}  // namespace surf
+}   // namespace surf
 
-/// Takes the plane of the substrate, another background, or steps between scan lines off, as `semsurf level` does.
+/// Takes the plane of the substrate, another background, or steps between scan lines off, as `semsurf level`
+/// does.
 class VTKSEMSURF_EXPORT vtkSemsurfLevel : public vtkSemsurfImageFilter {
  public:
   static vtkSemsurfLevel* New();
@@ -28,7 +29,8 @@ class VTKSEMSURF_EXPORT vtkSemsurfLevel : public vtkSemsurfImageFilter {
   int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
 
  private:
-  surf::Grid<unsigned char> TakeOff(surf::HeightField& field, const surf::Watch& watch, std::string& warning) const;
+  surf::Grid<unsigned char> TakeOff(surf::HeightField& field, const surf::Watch& watch,
+                                    std::string& warning) const;
 
   int Method = Hough;
   double Tolerance = 0;

@@ -29,8 +29,10 @@ namespace {
 /// Appends; keeps the scalars that both have. Returns the triangles that came.
 void append(Surface& all, Surface more) {
   const auto first = static_cast<std::uint32_t>(all.mesh.vertices_nm.size());
-  all.mesh.vertices_nm.insert(all.mesh.vertices_nm.end(), more.mesh.vertices_nm.begin(), more.mesh.vertices_nm.end());
-  for (Triangle t : more.mesh.triangles) all.mesh.triangles.push_back({first + t[0], first + t[1], first + t[2]});
+  all.mesh.vertices_nm.insert(all.mesh.vertices_nm.end(), more.mesh.vertices_nm.begin(),
+                              more.mesh.vertices_nm.end());
+  for (Triangle t : more.mesh.triangles)
+    all.mesh.triangles.push_back({first + t[0], first + t[1], first + t[2]});
   std::erase_if(all.scalars, [&](VertexScalar& scalar) {
     const auto same = std::ranges::find(more.scalars, scalar.name, &VertexScalar::name);
     if (same == more.scalars.end()) return true;
@@ -39,7 +41,7 @@ void append(Surface& all, Surface more) {
   });
 }
 
-}  // namespace
+}   // namespace
 
 void vtkSemsurfMeshReader::SetFileName(const char* name) {
   const std::string value = name ? name : "";
@@ -53,12 +55,14 @@ int vtkSemsurfMeshReader::RequestInformation(vtkInformation*, vtkInformationVect
   return pv::announce_pieces(outputs->GetInformationObject(0));
 }
 
-int vtkSemsurfMeshReader::RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector* outputs) {
+int vtkSemsurfMeshReader::RequestData(vtkInformation*, vtkInformationVector**,
+                                      vtkInformationVector* outputs) {
   return pv::attempt(this, [&] {
     vtkInformation* const output = outputs->GetInformationObject(0);
     if (!pv::is_first_piece(output)) return;
     if (this->FileName.empty()) throw UsageError("FileName", "no file is named", "Name one");
-    if (this->Unit < 0) throw UsageError("Unit", fmt::format("{} nm are below 0", this->Unit), "Give 0 for the file's own");
+    if (this->Unit < 0)
+      throw UsageError("Unit", fmt::format("{} nm are below 0", this->Unit), "Give 0 for the file's own");
     Surface all;
     std::vector<int> numbers;
     std::map<std::string, std::string> texts;
@@ -70,8 +74,10 @@ int vtkSemsurfMeshReader::RequestData(vtkInformation*, vtkInformationVector**, v
       for (std::size_t i = 0; i < scene.surfaces.size(); ++i) {
         numbers.insert(numbers.end(), scene.surfaces[i].mesh.triangles.size(), static_cast<int>(i));
         texts[fmt::format("surface:{}", i)] = scene.surfaces[i].name;
-        if (i == 0) all = std::move(scene.surfaces[i]);
-        else append(all, std::move(scene.surfaces[i]));
+        if (i == 0)
+          all = std::move(scene.surfaces[i]);
+        else
+          append(all, std::move(scene.surfaces[i]));
       }
     });
     const auto data = pv::to_vtk(std::move(all));

@@ -6,10 +6,10 @@
 
 #include <string>
 
-#include "vtkSemsurfModule.h"
+#include <vtkSemsurfModule.h>
 
-/// Meshes in nm, of all formats that surf/io/surface_file.h reads: the bodies of a file as one data set, told apart by
-/// the cells' array "surface".
+/// Meshes in nm, of all formats that surf/io/surface_file.h reads: the bodies of a file as one data set, told
+/// apart by the cells' array "surface".
 class VTKSEMSURF_EXPORT vtkSemsurfMeshReader : public vtkPolyDataAlgorithm {
  public:
   static vtkSemsurfMeshReader* New();

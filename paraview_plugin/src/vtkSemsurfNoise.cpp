@@ -29,7 +29,7 @@ struct Findings {
   NoiseEstimate estimate;
   Grid<unsigned char> samples;   // that the estimate rests on
   Grid<double> residual_nm;
-  double share = 1;              // of the image
+  double share = 1;   // of the image
   bool clear = true;
 };
 
@@ -39,7 +39,8 @@ Findings of_flat_scan(const HeightField& field, const FlatNoiseOptions& options)
   HeightField residual = field;
   subtract(residual, fit_polynomial(field, options.degree));
   f.residual_nm = std::move(residual.z_nm);
-  f.samples = field.valid.empty() ? Grid<unsigned char>(field.z_nm.width(), field.z_nm.height(), 1) : field.valid;
+  f.samples =
+      field.valid.empty() ? Grid<unsigned char>(field.z_nm.width(), field.z_nm.height(), 1) : field.valid;
   return f;
 }
 
@@ -67,7 +68,7 @@ void add_correlations(vtkTable* table, const NoiseCheck& check) {
   pv::add_column(table, "z", std::move(z));
 }
 
-}  // namespace
+}   // namespace
 
 int vtkSemsurfNoise::FillInputPortInformation(int, vtkInformation* info) {
   info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkImageData");
@@ -80,12 +81,14 @@ int vtkSemsurfNoise::RequestInformation(vtkInformation*, vtkInformationVector**,
   return pv::announce_pieces(outputs->GetInformationObject(1));
 }
 
-int vtkSemsurfNoise::RequestUpdateExtent(vtkInformation*, vtkInformationVector** inputs, vtkInformationVector*) {
+int vtkSemsurfNoise::RequestUpdateExtent(vtkInformation*, vtkInformationVector** inputs,
+                                         vtkInformationVector*) {
   pv::request_whole(inputs, 1);
   return 1;
 }
 
-int vtkSemsurfNoise::RequestData(vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs) {
+int vtkSemsurfNoise::RequestData(vtkInformation*, vtkInformationVector** inputs,
+                                 vtkInformationVector* outputs) {
   return pv::attempt(this, [&] {
     if (this->Lags < 1 || this->Lags > 1000)
       throw UsageError("Lags", fmt::format("{} is not in 1 to 1000", this->Lags), "Give 10 where in doubt");
@@ -97,22 +100,30 @@ int vtkSemsurfNoise::RequestData(vtkInformation*, vtkInformationVector** inputs,
       const FlatNoiseOptions options{this->Degree, watch.part(0, 0.9)};
       f = this->Flat ? of_flat_scan(field, options) : of_substrate(field, options);
       if (f.estimate.noise.innovation_nm2 > 0)
-        check = check_noise(whiten(f.residual_nm, f.estimate.noise, f.samples), f.samples, {.lags = this->Lags});
+        check =
+            check_noise(whiten(f.residual_nm, f.estimate.noise, f.samples), f.samples, {.lags = this->Lags});
     });
     if (!f.clear)
-      pv::warn(this, "no plane holds a clear majority of the image, so there may be no substrate to take the noise from: "
-                     "crop the image, or turn Flat on for a flat scan");
+      pv::warn(this,
+               "no plane holds a clear majority of the image, so there may be no substrate to take the noise "
+               "from: "
+               "crop the image, or turn Flat on for a flat scan");
     if (!(f.estimate.noise.innovation_nm2 > 0))
       pv::warn(this, "there is no noise at all in these heights: they may be simulated or filtered");
     const NoiseEstimate& e = f.estimate;
     vtkNew<vtkTable> quantities, correlations;
-    pv::add_quantities(quantities, {{"alpha", e.noise.alpha}, {"alpha_stderr", e.alpha_stderr},
-                                    {"sigma_nm", e.sigma_nm()}, {"sigma_stderr_nm", e.sigma_stderr_nm},
+    pv::add_quantities(quantities, {{"alpha", e.noise.alpha},
+                                    {"alpha_stderr", e.alpha_stderr},
+                                    {"sigma_nm", e.sigma_nm()},
+                                    {"sigma_stderr_nm", e.sigma_stderr_nm},
                                     {"innovation_nm2", e.noise.innovation_nm2},
                                     {"innovation_stderr_nm2", e.innovation_stderr_nm2},
-                                    {"samples", static_cast<double>(e.samples)}, {"substrate_share", f.share},
-                                    {"whiteness_along_p", check.along_p}, {"whiteness_across_p", check.across_p},
-                                    {"normality_p", check.normal_p}, {"skewness", check.skewness},
+                                    {"samples", static_cast<double>(e.samples)},
+                                    {"substrate_share", f.share},
+                                    {"whiteness_along_p", check.along_p},
+                                    {"whiteness_across_p", check.across_p},
+                                    {"normality_p", check.normal_p},
+                                    {"skewness", check.skewness},
                                     {"excess_kurtosis", check.excess_kurtosis}});
     add_correlations(correlations, check);
     pv::give(outputs->GetInformationObject(0), quantities);

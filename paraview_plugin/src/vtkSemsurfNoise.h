@@ -4,20 +4,24 @@
 
 #include <vtkTableAlgorithm.h>
 
-#include "vtkSemsurfModule.h"
+#include <vtkSemsurfModule.h>
 
-/// The noise of a scan along its lines, as `semsurf noise` finds it: a table of quantities, and one of correlations.
+/// The noise of a scan along its lines, as `semsurf noise` finds it: a table of quantities, and one of
+/// correlations.
 class VTKSEMSURF_EXPORT vtkSemsurfNoise : public vtkTableAlgorithm {
  public:
   static vtkSemsurfNoise* New();
   vtkTypeMacro(vtkSemsurfNoise, vtkTableAlgorithm);
 
-  vtkSetMacro(Flat, bool);   ///< all of the scan is flat
+  vtkSetMacro(Flat, bool);    ///< all of the scan is flat
   vtkSetMacro(Degree, int);   ///< of the polynomial taken off
   vtkSetMacro(Lags, int);
 
  protected:
-  vtkSemsurfNoise() { this->SetNumberOfInputPorts(1); this->SetNumberOfOutputPorts(2); }
+  vtkSemsurfNoise() {
+    this->SetNumberOfInputPorts(1);
+    this->SetNumberOfOutputPorts(2);
+  }
   int FillInputPortInformation(int port, vtkInformation* info) override;
   int RequestUpdateExtent(vtkInformation*, vtkInformationVector** inputs, vtkInformationVector*) override;
   int RequestInformation(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;

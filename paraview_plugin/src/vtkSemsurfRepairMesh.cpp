@@ -55,7 +55,7 @@ void add_report(vtkTable* table, const RepairSummary& s) {
 
 std::optional<double> unless_negative(double nm) { return nm < 0 ? std::nullopt : std::optional(nm); }
 
-}  // namespace
+}   // namespace
 
 int vtkSemsurfRepairMesh::FillOutputPortInformation(int port, vtkInformation* info) {
   info->Set(vtkDataObject::DATA_TYPE_NAME(), port == 0 ? "vtkPolyData" : "vtkTable");
@@ -68,16 +68,19 @@ int vtkSemsurfRepairMesh::RequestInformation(vtkInformation*, vtkInformationVect
   return pv::announce_pieces(outputs->GetInformationObject(1));
 }
 
-int vtkSemsurfRepairMesh::RequestUpdateExtent(vtkInformation*, vtkInformationVector** inputs, vtkInformationVector*) {
+int vtkSemsurfRepairMesh::RequestUpdateExtent(vtkInformation*, vtkInformationVector** inputs,
+                                              vtkInformationVector*) {
   pv::request_whole(inputs, 1);
   return 1;
 }
 
-int vtkSemsurfRepairMesh::RequestData(vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs) {
+int vtkSemsurfRepairMesh::RequestData(vtkInformation*, vtkInformationVector** inputs,
+                                      vtkInformationVector* outputs) {
   return pv::attempt(this, [&] {
     if (!pv::is_first_piece(outputs->GetInformationObject(0))) return;
     if (this->Sliver < 0 || this->MinimumComponent < 0)
-      throw UsageError(this->Sliver < 0 ? "Sliver" : "Minimum Component", "it is below 0", "Give a length in nm, or 0");
+      throw UsageError(this->Sliver < 0 ? "Sliver" : "Minimum Component", "it is below 0",
+                       "Give a length in nm, or 0");
     vtkPolyData* const input = pv::surface_input(inputs, 0);
     const TriangleMesh mesh = pv::to_mesh(input, "Input");
     TriangleMesh mended;
@@ -89,16 +92,21 @@ int vtkSemsurfRepairMesh::RequestData(vtkInformation*, vtkInformationVector** in
             find_self_intersections(mesh).pairs.size();
         return;
       }
-      mended = repair_mesh(mesh, {.stitch_nm = unless_negative(this->Stitch), .sliver_nm = this->Sliver,
-                                  .max_hole_nm = unless_negative(this->MaximumHole),
-                                  .min_component_nm = this->MinimumComponent,
-                                  .resolve_self_intersections = this->ResolveIntersections}, summary);
+      mended = repair_mesh(mesh,
+                           {.stitch_nm = unless_negative(this->Stitch),
+                            .sliver_nm = this->Sliver,
+                            .max_hole_nm = unless_negative(this->MaximumHole),
+                            .min_component_nm = this->MinimumComponent,
+                            .resolve_self_intersections = this->ResolveIntersections},
+                           summary);
     });
     vtkNew<vtkTable> table;
     add_report(table, summary);
     // Unchanged, it keeps what lies on it.
-    if (summary.changed) pv::give(outputs->GetInformationObject(0), pv::to_vtk(std::move(mended)));
-    else pv::give(outputs->GetInformationObject(0), input);
+    if (summary.changed)
+      pv::give(outputs->GetInformationObject(0), pv::to_vtk(std::move(mended)));
+    else
+      pv::give(outputs->GetInformationObject(0), input);
     pv::give(outputs->GetInformationObject(1), table);
   });
 }

@@ -4,18 +4,19 @@
 
 #include <vtkPolyDataAlgorithm.h>
 
-#include "vtkSemsurfModule.h"
+#include <vtkSemsurfModule.h>
 
-/// What is wrong with a mesh, and a mended one. Output 0 is the mesh, output 1 a table: counts before and after.
+/// What is wrong with a mesh, and a mended one. Output 0 is the mesh, output 1 a table: counts before and
+/// after.
 class VTKSEMSURF_EXPORT vtkSemsurfRepairMesh : public vtkPolyDataAlgorithm {
  public:
   static vtkSemsurfRepairMesh* New();
   vtkTypeMacro(vtkSemsurfRepairMesh, vtkPolyDataAlgorithm);
 
   vtkSetMacro(Repair, bool);
-  vtkSetMacro(Stitch, double);   ///< nm; below 0: 1e-6 of the diagonal
-  vtkSetMacro(Sliver, double);   ///< nm
-  vtkSetMacro(MaximumHole, double);   ///< nm of rim; below 0: the component's diagonal
+  vtkSetMacro(Stitch, double);             ///< nm; below 0: 1e-6 of the diagonal
+  vtkSetMacro(Sliver, double);             ///< nm
+  vtkSetMacro(MaximumHole, double);        ///< nm of rim; below 0: the component's diagonal
   vtkSetMacro(MinimumComponent, double);   ///< nm
   vtkSetMacro(ResolveIntersections, bool);
 

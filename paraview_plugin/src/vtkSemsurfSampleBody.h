@@ -4,7 +4,7 @@
 
 #include <vtkPolyDataAlgorithm.h>
 
-#include "vtkSemsurfModule.h"
+#include <vtkSemsurfModule.h>
 
 /// Closed bodies (surf/mesh/shapes.h). Lengths in nm.
 class VTKSEMSURF_EXPORT vtkSemsurfSampleBody : public vtkPolyDataAlgorithm {
@@ -15,11 +15,11 @@ class VTKSEMSURF_EXPORT vtkSemsurfSampleBody : public vtkPolyDataAlgorithm {
   enum Shapes { Box, Sphere, Cone };
   vtkSetMacro(Shape, int);
   vtkSetVector3Macro(Size, double);   ///< nm, of the box
-  vtkSetMacro(Radius, double);   ///< nm, of the sphere, or of the cone's foot
-  vtkSetMacro(TopRadius, double);   ///< nm, of the cone
-  vtkSetMacro(ConeHeight, double);   ///< nm
-  vtkSetMacro(Subdivisions, int);   ///< of box or sphere
-  vtkSetMacro(Segments, int);   ///< of the cone
+  vtkSetMacro(Radius, double);        ///< nm, of the sphere, or of the cone's foot
+  vtkSetMacro(TopRadius, double);     ///< nm, of the cone
+  vtkSetMacro(ConeHeight, double);    ///< nm
+  vtkSetMacro(Subdivisions, int);     ///< of box or sphere
+  vtkSetMacro(Segments, int);         ///< of the cone
   vtkSetVector3Macro(Base, double);   ///< nm: the middle of where it stands
 
  protected:

@@ -25,11 +25,12 @@ int samples_along(double length_nm, double pitch_nm, const char* property) {
   constexpr double most = 16384;
   const double count = std::round(length_nm / pitch_nm) + 1;
   if (pitch_nm > 0 && count >= 2 && count <= most) return static_cast<int>(count);
-  throw UsageError(property, fmt::format("{} nm at a Pitch of {} nm are no 2 to {} samples", length_nm, pitch_nm, most),
+  throw UsageError(property,
+                   fmt::format("{} nm at a Pitch of {} nm are no 2 to {} samples", length_nm, pitch_nm, most),
                    "Change it, or Pitch");
 }
 
-}  // namespace
+}   // namespace
 
 int vtkSemsurfSampleSurface::RequestInformation(vtkInformation*, vtkInformationVector**,
                                                 vtkInformationVector* outputs) {
@@ -50,7 +51,8 @@ HeightField vtkSemsurfSampleSurface::Make(const FieldExtent& extent) const {
     case Line: return make_line(extent, this->FeatureHeight, this->FeatureWidth, this->WallRun);
     case Via: return make_via(extent, this->FeatureHeight, this->FeatureWidth, this->WallRun);
     case Step: return make_step(extent, this->FeatureHeight, this->WallRun);
-    case Grating: return make_grating(extent, this->FeatureHeight, this->Period, this->FeatureWidth, this->WallRun);
+    case Grating:
+      return make_grating(extent, this->FeatureHeight, this->Period, this->FeatureWidth, this->WallRun);
     case Rough: return make_rough(extent, this->RmsHeight, this->CorrelationLength, seed);
     case SelfAffine:
       return make_self_affine(extent, this->RmsHeight, this->CorrelationLength, this->HurstExponent, seed);
@@ -58,7 +60,8 @@ HeightField vtkSemsurfSampleSurface::Make(const FieldExtent& extent) const {
   }
 }
 
-int vtkSemsurfSampleSurface::RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector* outputs) {
+int vtkSemsurfSampleSurface::RequestData(vtkInformation*, vtkInformationVector**,
+                                         vtkInformationVector* outputs) {
   return pv::attempt(this, [&] {
     HeightField field;
     pv::work(this, [&](const Watch&) { field = this->Make({this->Width, this->Depth, this->Pitch}); });

@@ -4,12 +4,12 @@
 
 #include <vtkImageAlgorithm.h>
 
-#include "vtkSemsurfModule.h"
+#include <vtkSemsurfModule.h>
 
 namespace surf {
 struct HeightField;
 struct FieldExtent;
-}  // namespace surf
+}   // namespace surf
 
 /// Specimens as height fields (surf/mesh/shapes.h). Lengths in nm.
 class VTKSEMSURF_EXPORT vtkSemsurfSampleSurface : public vtkImageAlgorithm {

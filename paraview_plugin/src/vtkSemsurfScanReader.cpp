@@ -41,11 +41,13 @@ struct vtkSemsurfScanReader::Contents {
   Key key;
   std::vector<Channel> channels;
   int width = 0, height = 0;
-  std::size_t first = 0;       // of the channels: the one that says where the scan lies
-  io::HeightFieldFile head;    // that channel
+  std::size_t first = 0;      // of the channels: the one that says where the scan lies
+  io::HeightFieldFile head;   // that channel
 };
 
-vtkSemsurfScanReader::vtkSemsurfScanReader() : Scan(std::make_unique<Contents>()) { this->SetNumberOfInputPorts(0); }
+vtkSemsurfScanReader::vtkSemsurfScanReader() : Scan(std::make_unique<Contents>()) {
+  this->SetNumberOfInputPorts(0);
+}
 vtkSemsurfScanReader::~vtkSemsurfScanReader() = default;
 
 vtkDataArraySelection* vtkSemsurfScanReader::GetChannelSelection() { return this->Scan->selection; }
@@ -83,17 +85,18 @@ io::HeightReadOptions options_for(int number, double z_unit_nm, const double* pi
 std::string unique_name(std::set<std::string>& taken, const std::string& name) {
   std::string candidate = name.empty() ? pv::heights_name : name;
   const std::string base = candidate;
-  for (int number = 2; !taken.insert(candidate).second; ++number) candidate = fmt::format("{} {}", base, number);
+  for (int number = 2; !taken.insert(candidate).second; ++number)
+    candidate = fmt::format("{} {}", base, number);
   return candidate;
 }
 
-}  // namespace
+}   // namespace
 
 void vtkSemsurfScanReader::ReadHead() {
   if (this->FileName.empty()) throw UsageError("FileName", "no file is named", "Name a scan");
   std::error_code unreadable;   // then reading says what is wrong
-  const Contents::Key key{this->FileName, std::filesystem::last_write_time(this->FileName, unreadable), this->ZUnit,
-                          this->PixelSize[0], this->PixelSize[1]};
+  const Contents::Key key{this->FileName, std::filesystem::last_write_time(this->FileName, unreadable),
+                          this->ZUnit, this->PixelSize[0], this->PixelSize[1]};
   Contents& scan = *this->Scan;
   if (!scan.channels.empty() && scan.key == key) return;
   scan.channels.clear();
@@ -118,12 +121,12 @@ void vtkSemsurfScanReader::ReadHead() {
     }
     const int here = static_cast<int>(i) + 1;
     if (here == number) scan.first = scan.channels.size();
-    scan.channels.push_back({unique_name(names, all[i].name), here, all[i].is_height,
-                             all[i].is_height ? "nm" : all[i].z_unit});
+    scan.channels.push_back(
+        {unique_name(names, all[i].name), here, all[i].is_height, all[i].is_height ? "nm" : all[i].z_unit});
   }
   if (!left_out.empty())
-    pv::warn(this, fmt::format("{}: left out, as they have another size than '{}': {}", this->FileName, first->name,
-                               left_out));
+    pv::warn(this, fmt::format("{}: left out, as they have another size than '{}': {}", this->FileName,
+                               first->name, left_out));
   // Those of another file go; what the user chose of the same names stays.
   std::set<std::string> here;
   for (const auto& channel : scan.channels) here.insert(channel.name);
@@ -133,25 +136,31 @@ void vtkSemsurfScanReader::ReadHead() {
   scan.key = key;
 }
 
-int vtkSemsurfScanReader::RequestInformation(vtkInformation*, vtkInformationVector**, vtkInformationVector* outputs) {
+int vtkSemsurfScanReader::RequestInformation(vtkInformation*, vtkInformationVector**,
+                                             vtkInformationVector* outputs) {
   return pv::attempt(this, [&] {
     this->ReadHead();
-    pv::announce(outputs->GetInformationObject(0), pv::frame_of(this->Scan->head.field.z_nm, this->Scan->head.field));
+    pv::announce(outputs->GetInformationObject(0),
+                 pv::frame_of(this->Scan->head.field.z_nm, this->Scan->head.field));
   });
 }
 
-int vtkSemsurfScanReader::RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector* outputs) {
+int vtkSemsurfScanReader::RequestData(vtkInformation*, vtkInformationVector**,
+                                      vtkInformationVector* outputs) {
   return pv::attempt(this, [&] {
     this->ReadHead();
     const Contents& scan = *this->Scan;
     const auto image = pv::make_image(pv::frame_of(scan.head.field.z_nm, scan.head.field));
     std::vector<io::HeightFieldFile> read(scan.channels.size());
-    const auto wanted = [&](std::size_t i) { return scan.selection->ArrayIsEnabled(scan.channels[i].name.c_str()); };
+    const auto wanted = [&](std::size_t i) {
+      return scan.selection->ArrayIsEnabled(scan.channels[i].name.c_str());
+    };
     pv::work(this, [&](const Watch& watch) {
       for (std::size_t i = 0; i < read.size(); ++i) {
         watch.report(double(i), double(read.size()));
         if (!wanted(i)) continue;
-        if (i == scan.first) read[i] = scan.head;
+        if (i == scan.first)
+          read[i] = scan.head;
         else
           read[i] = io::read_height_field(
               this->FileName, options_for(scan.channels[i].number,
@@ -162,7 +171,8 @@ int vtkSemsurfScanReader::RequestData(vtkInformation*, vtkInformationVector**, v
     for (std::size_t i = 0; i < read.size(); ++i) {
       if (!wanted(i)) continue;
       pv::add_heights(image, std::move(read[i].field), scan.channels[i].name);
-      pv::set_unit(image->GetPointData()->GetArray(scan.channels[i].name.c_str()), scan.channels[i].unit.c_str());
+      pv::set_unit(image->GetPointData()->GetArray(scan.channels[i].name.c_str()),
+                   scan.channels[i].unit.c_str());
       if (shown.empty() || i == scan.first) shown = scan.channels[i].name;
     }
     if (!shown.empty()) image->GetPointData()->SetActiveScalars(shown.c_str());

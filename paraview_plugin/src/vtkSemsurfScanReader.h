@@ -7,7 +7,7 @@
 #include <memory>
 #include <string>
 
-#include "vtkSemsurfModule.h"
+#include <vtkSemsurfModule.h>
 
 class vtkDataArraySelection;
 

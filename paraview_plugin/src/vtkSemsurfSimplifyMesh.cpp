@@ -29,7 +29,8 @@ int vtkSemsurfSimplifyMesh::RequestUpdateExtent(vtkInformation*, vtkInformationV
   return 1;
 }
 
-int vtkSemsurfSimplifyMesh::RequestData(vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs) {
+int vtkSemsurfSimplifyMesh::RequestData(vtkInformation*, vtkInformationVector** inputs,
+                                        vtkInformationVector* outputs) {
   return pv::attempt(this, [&] {
     vtkInformation* const output = outputs->GetInformationObject(0);
     if (!pv::is_first_piece(output)) return;
@@ -38,7 +39,8 @@ int vtkSemsurfSimplifyMesh::RequestData(vtkInformation*, vtkInformationVector** 
     if (this->Limit != ByTriangles && !(this->Tolerance >= 0))
       throw UsageError("Tolerance", fmt::format("{} nm are below 0", this->Tolerance), "Give a length, or 0");
     if (this->Limit != ByTolerance && this->Triangles < 4)
-      throw UsageError("Triangles", fmt::format("{} are too few for a body", this->Triangles), "Give 4 or more");
+      throw UsageError("Triangles", fmt::format("{} are too few for a body", this->Triangles),
+                       "Give 4 or more");
     // Corners at equal places are one, or seams would keep all of theirs.
     const TriangleMesh mesh = merge_equal_vertices(pv::to_mesh(pv::surface_input(inputs, 0), "Input"));
     constexpr double share = 1e-3;   // of the diagonal: no difference to be seen

@@ -4,7 +4,7 @@
 
 #include <vtkPolyDataAlgorithm.h>
 
-#include "vtkSemsurfModule.h"
+#include <vtkSemsurfModule.h>
 
 /// Fewer triangles within a tolerance, or down to a number (surf/mesh/simplify_mesh.h).
 class VTKSEMSURF_EXPORT vtkSemsurfSimplifyMesh : public vtkPolyDataAlgorithm {

@@ -20,7 +20,8 @@ int vtkSemsurfSurfaceWriter::FillInputPortInformation(int, vtkInformation* info)
 
 void vtkSemsurfSurfaceWriter::WriteFile() {
   if (!(this->Magnification > 0) || !(this->ZExaggeration > 0))
-    throw UsageError(this->Magnification > 0 ? "Z Exaggeration" : "Magnification", "it is not above 0", "Give 1");
+    throw UsageError(this->Magnification > 0 ? "Z Exaggeration" : "Magnification", "it is not above 0",
+                     "Give 1");
   auto* const data = vtkPolyData::SafeDownCast(this->GetInput());
   SurfaceScene scene;
   scene.surfaces.push_back(pv::to_surface(data, "Input"));

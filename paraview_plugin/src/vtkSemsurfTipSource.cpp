@@ -22,12 +22,17 @@ using namespace surf;
 
 void vtkSemsurfTipSource::Check() const {
   if (this->Samples < 3 || this->Samples > 4001 || this->Samples % 2 == 0)
-    throw UsageError("Samples", fmt::format("{} is no odd number from 3 to 4001, so that there is no middle for the "
-                                            "apex", this->Samples), "Give 41 where in doubt");
-  if (!(this->Pitch > 0)) throw UsageError("Pitch", fmt::format("{} nm are not above 0", this->Pitch), "Give a length");
+    throw UsageError("Samples",
+                     fmt::format("{} is no odd number from 3 to 4001, so that there is no middle for the "
+                                 "apex",
+                                 this->Samples),
+                     "Give 41 where in doubt");
+  if (!(this->Pitch > 0))
+    throw UsageError("Pitch", fmt::format("{} nm are not above 0", this->Pitch), "Give a length");
 }
 
-int vtkSemsurfTipSource::RequestInformation(vtkInformation*, vtkInformationVector**, vtkInformationVector* outputs) {
+int vtkSemsurfTipSource::RequestInformation(vtkInformation*, vtkInformationVector**,
+                                            vtkInformationVector* outputs) {
   return pv::attempt(this, [&] {
     this->Check();
     const double corner = -(this->Samples / 2) * this->Pitch;
@@ -47,7 +52,8 @@ int vtkSemsurfTipSource::RequestData(vtkInformation*, vtkInformationVector**, vt
       case Parabola: tip = parabolic_tip(this->Radius, sampling); break;
       case Pyramid: {
         if (this->Faces < 3 || this->Faces > 100)
-          throw UsageError("Faces", fmt::format("{} is not in 3 to 100", this->Faces), "Give 4 where in doubt");
+          throw UsageError("Faces", fmt::format("{} is not in 3 to 100", this->Faces),
+                           "Give 4 where in doubt");
         PyramidShape shape;
         shape.radius_nm = this->Radius;
         shape.rotation_rad = this->Rotation * degrees_to_radians;

@@ -4,7 +4,7 @@
 
 #include <vtkImageAlgorithm.h>
 
-#include "vtkSemsurfModule.h"
+#include <vtkSemsurfModule.h>
 
 /// Tips by their shape (surf/afm/tip_shapes.h): the structuring function about its apex at (0, 0).
 class VTKSEMSURF_EXPORT vtkSemsurfTipSource : public vtkImageAlgorithm {
@@ -14,14 +14,14 @@ class VTKSEMSURF_EXPORT vtkSemsurfTipSource : public vtkImageAlgorithm {
 
   enum Shapes { Cone, Parabola, Pyramid, Ball };
   vtkSetMacro(Shape, int);
-  vtkSetMacro(Radius, double);   ///< nm
+  vtkSetMacro(Radius, double);      ///< nm
   vtkSetMacro(HalfAngle, double);   ///< degrees from the axis
   vtkSetMacro(Faces, int);
-  vtkSetMacro(Rotation, double);   ///< degrees
-  vtkSetMacro(StemRadius, double);   ///< nm
+  vtkSetMacro(Rotation, double);        ///< degrees
+  vtkSetMacro(StemRadius, double);      ///< nm
   vtkSetMacro(StemHalfAngle, double);   ///< degrees
-  vtkSetMacro(Samples, int);   ///< across, odd
-  vtkSetMacro(Pitch, double);   ///< nm
+  vtkSetMacro(Samples, int);            ///< across, odd
+  vtkSetMacro(Pitch, double);           ///< nm
 
  protected:
   vtkSemsurfTipSource() { this->SetNumberOfInputPorts(0); }

@@ -4,7 +4,7 @@
 
 #include <vtkImageAlgorithm.h>
 
-#include "vtkSemsurfModule.h"
+#include <vtkSemsurfModule.h>
 
 /// A surface seen from above, on a grid (surf/mesh/mesh_height_field.h).
 class VTKSEMSURF_EXPORT vtkSemsurfToHeightField : public vtkImageAlgorithm {
@@ -12,7 +12,7 @@ class VTKSEMSURF_EXPORT vtkSemsurfToHeightField : public vtkImageAlgorithm {
   static vtkSemsurfToHeightField* New();
   vtkTypeMacro(vtkSemsurfToHeightField, vtkImageAlgorithm);
 
-  vtkSetMacro(Samples, int);   ///< along the longer side
+  vtkSetMacro(Samples, int);    ///< along the longer side
   vtkSetMacro(Pitch, double);   ///< nm; 0: from Samples
 
  protected:

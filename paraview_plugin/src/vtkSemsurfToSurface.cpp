@@ -34,12 +34,14 @@ int vtkSemsurfToSurface::RequestInformation(vtkInformation*, vtkInformationVecto
   return pv::announce_pieces(outputs->GetInformationObject(0));
 }
 
-int vtkSemsurfToSurface::RequestUpdateExtent(vtkInformation*, vtkInformationVector** inputs, vtkInformationVector*) {
+int vtkSemsurfToSurface::RequestUpdateExtent(vtkInformation*, vtkInformationVector** inputs,
+                                             vtkInformationVector*) {
   pv::request_whole(inputs, 1);
   return 1;
 }
 
-int vtkSemsurfToSurface::RequestData(vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs) {
+int vtkSemsurfToSurface::RequestData(vtkInformation*, vtkInformationVector** inputs,
+                                     vtkInformationVector* outputs) {
   return pv::attempt(this, [&] {
     vtkInformation* const output = outputs->GetInformationObject(0);
     if (!pv::is_first_piece(output)) return;
@@ -56,9 +58,11 @@ int vtkSemsurfToSurface::RequestData(vtkInformation*, vtkInformationVector** inp
     ThinSummary summary;
     pv::work(this, [&](const Watch& watch) {
       surface.mesh = this->Simplify
-                         ? thin_height_field(field, {.tolerance_nm = this->Tolerance,
-                                                     .triangles = static_cast<std::size_t>(this->MaximumTriangles),
-                                                     .watch = watch.part(0, 0.8)}, summary)
+                         ? thin_height_field(field,
+                                             {.tolerance_nm = this->Tolerance,
+                                              .triangles = static_cast<std::size_t>(this->MaximumTriangles),
+                                              .watch = watch.part(0, 0.8)},
+                                             summary)
                          : height_field_sheet(field);
       watch.report(0.8, 1);
       // Of the sheet: at walls and corners it would be infinite.

@@ -4,16 +4,17 @@
 
 #include <vtkPolyDataAlgorithm.h>
 
-#include "vtkSemsurfModule.h"
+#include <vtkSemsurfModule.h>
 
-/// Triangles over the samples of a height field, thinned or with walls and a base, as `semsurf mesh` makes them.
+/// Triangles over the samples of a height field, thinned or with walls and a base, as `semsurf mesh` makes
+/// them.
 class VTKSEMSURF_EXPORT vtkSemsurfToSurface : public vtkPolyDataAlgorithm {
  public:
   static vtkSemsurfToSurface* New();
   vtkTypeMacro(vtkSemsurfToSurface, vtkPolyDataAlgorithm);
 
   vtkSetMacro(Simplify, bool);
-  vtkSetMacro(Tolerance, double);   ///< nm
+  vtkSetMacro(Tolerance, double);       ///< nm
   vtkSetMacro(MaximumTriangles, int);   ///< 0: no limit
   vtkSetMacro(Solid, bool);
   vtkSetMacro(Thickness, double);   ///< nm of the base; 0: 5 % of the longer side

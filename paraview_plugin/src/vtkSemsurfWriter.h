@@ -6,7 +6,7 @@
 
 #include <string>
 
-#include "vtkSemsurfModule.h"
+#include <vtkSemsurfModule.h>
 
 /// What semsurf's writers share: of several ranks, which all have the whole, the first one writes.
 class VTKSEMSURF_EXPORT vtkSemsurfWriter : public vtkWriter {

@@ -15,8 +15,8 @@
 
 namespace surf::pv {
 
-/// An array of VTK's, of class `Array`, over the memory of a vector that it has taken over: nothing is copied.
-/// `Owner` is what the memory belongs to, `values` and `count` what of it the array shows.
+/// An array of VTK's, of class `Array`, over the memory of a vector that it has taken over: nothing is
+/// copied. `Owner` is what the memory belongs to, `values` and `count` what of it the array shows.
 template <class Array, class Owner>
 class TakenArray : public Array {
  public:
@@ -50,4 +50,4 @@ void set_unit(vtkDataArray* array, const char* unit);
 /// The values of an array with one component as doubles, converted if they are something else.
 std::vector<double> values_of(vtkDataArray* array);
 
-}  // namespace surf::pv
+}   // namespace surf::pv

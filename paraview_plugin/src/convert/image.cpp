@@ -33,13 +33,16 @@ void check_plain(vtkImageData* image, const char* subject) {
 
 void check_array(vtkImageData* image, vtkDataArray* array, const char* subject) {
   if (!array)
-    throw InvalidInput(subject, "it has no numbers at its points", "Choose an array of the points under Scalars");
+    throw InvalidInput(subject, "it has no numbers at its points",
+                       "Choose an array of the points under Scalars");
   const std::string name = array->GetName() ? array->GetName() : "";
   if (array->GetNumberOfComponents() != 1)
-    throw InvalidInput(subject, fmt::format("'{}' has {} numbers at each point", name, array->GetNumberOfComponents()),
+    throw InvalidInput(subject,
+                       fmt::format("'{}' has {} numbers at each point", name, array->GetNumberOfComponents()),
                        "Choose an array with one");
   if (array->GetNumberOfTuples() != image->GetNumberOfPoints())
-    throw InvalidInput(subject, fmt::format("'{}' is not of the points", name), "Choose an array of the points");
+    throw InvalidInput(subject, fmt::format("'{}' is not of the points", name),
+                       "Choose an array of the points");
 }
 
 /// Takes what is not finite, or masked, out of the values; the mask is empty if there are no holes.
@@ -50,7 +53,8 @@ Grid<unsigned char> take_holes(vtkImageData* image, vtkDataArray* values_array, 
                       mask->GetNumberOfTuples() == image->GetNumberOfPoints();
   bool holes = false;
   for (std::size_t i = 0; i < values.size(); ++i) {
-    const bool hole = !std::isfinite(values.data()[i]) || (masked && mask->GetComponent(vtkIdType(i), 0) == 0);
+    const bool hole =
+        !std::isfinite(values.data()[i]) || (masked && mask->GetComponent(vtkIdType(i), 0) == 0);
     if (!hole) continue;
     valid.data()[i] = 0;
     values.data()[i] = 0;
@@ -95,7 +99,7 @@ void add(vtkImageData* image, Grid<T> values, const std::string& name, const cha
   image->GetPointData()->AddArray(array);
 }
 
-}  // namespace
+}   // namespace
 
 Frame frame_of(vtkImageData* image, const char* subject) {
   check_plain(image, subject);
@@ -104,7 +108,7 @@ Frame frame_of(vtkImageData* image, const char* subject) {
   image->GetExtent(extent);
   image->GetSpacing(spacing);
   image->GetOrigin(origin);
-  return {extent[1] - extent[0] + 1, extent[3] - extent[2] + 1, spacing[0], spacing[1],
+  return {extent[1] - extent[0] + 1,          extent[3] - extent[2] + 1,         spacing[0], spacing[1],
           origin[0] + extent[0] * spacing[0], origin[1] + extent[2] * spacing[1]};
 }
 
@@ -196,9 +200,10 @@ std::map<std::string, std::string> texts_of(vtkDataObject* data) {
   vtkFieldData* const fields = data->GetFieldData();
   for (int i = 0; i < fields->GetNumberOfArrays(); ++i) {
     auto* const array = vtkStringArray::SafeDownCast(fields->GetAbstractArray(i));
-    if (array && array->GetName() && array->GetNumberOfValues() == 1) texts[array->GetName()] = array->GetValue(0);
+    if (array && array->GetName() && array->GetNumberOfValues() == 1)
+      texts[array->GetName()] = array->GetValue(0);
   }
   return texts;
 }
 
-}  // namespace surf::pv
+}   // namespace surf::pv

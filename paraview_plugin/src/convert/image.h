@@ -17,8 +17,8 @@ class vtkDataObject;
 namespace surf::pv {
 
 // VTK's images and semsurf's agree in their order: sample (0, 0) is the lower-left one, x runs fastest. Only
-// names differ: a point of an image at z = 0 is a sample, and a hole is NaN. `subject` names the input in errors.
-// Into semsurf values are copied once, as a Grid owns its own; out of it memory is handed over.
+// names differ: a point of an image at z = 0 is a sample, and a hole is NaN. `subject` names the input in
+// errors. Into semsurf values are copied once, as a Grid owns its own; out of it memory is handed over.
 
 inline constexpr const char* heights_name = "z_nm";   // as in files that semsurf writes
 inline constexpr const char* mask_name = "valid";     // 0 in holes; there if there are any
@@ -36,8 +36,8 @@ struct Frame {
 Frame frame_of(vtkImageData* image, const char* subject);
 template <class Placed>   // HeightField, PlacedImage
 Frame frame_of(const Grid<double>& values, const Placed& placed) {
-  return {values.width(), values.height(), placed.pitch_x_nm, placed.pitch_y_nm, placed.origin_x_nm,
-          placed.origin_y_nm};
+  return {values.width(),    values.height(),    placed.pitch_x_nm,
+          placed.pitch_y_nm, placed.origin_x_nm, placed.origin_y_nm};
 }
 
 /// Without arrays, extent beginning at 0.
@@ -64,4 +64,4 @@ vtkSmartPointer<vtkImageData> to_vtk(Image image);
 void add_texts(vtkDataObject* data, const std::map<std::string, std::string>& texts);
 std::map<std::string, std::string> texts_of(vtkDataObject* data);
 
-}  // namespace surf::pv
+}   // namespace surf::pv

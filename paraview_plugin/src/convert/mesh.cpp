@@ -35,8 +35,10 @@ std::vector<Vec3> vertices_of(vtkPolyData* data) {
       value += 3;
     }
   };
-  if (auto* doubles = vtkDoubleArray::FastDownCast(points)) copy(doubles->GetPointer(0));
-  else if (auto* floats = vtkFloatArray::FastDownCast(points)) copy(floats->GetPointer(0));
+  if (auto* doubles = vtkDoubleArray::FastDownCast(points))
+    copy(doubles->GetPointer(0));
+  else if (auto* floats = vtkFloatArray::FastDownCast(points))
+    copy(floats->GetPointer(0));
   else
     for (std::size_t i = 0; i < vertices.size(); ++i) {
       double p[3];
@@ -69,7 +71,8 @@ std::vector<Triangle> triangles_of(vtkPolyData* data) {
   });
   for_each_cell(data->GetStrips(), [&](vtkIdType count, const vtkIdType* p) {
     for (vtkIdType k = 2; k < count; ++k)   // every second one runs the other way
-      triangles.push_back(k % 2 == 0 ? triangle(p[k - 2], p[k - 1], p[k]) : triangle(p[k - 1], p[k - 2], p[k]));
+      triangles.push_back(k % 2 == 0 ? triangle(p[k - 2], p[k - 1], p[k])
+                                     : triangle(p[k - 1], p[k - 2], p[k]));
   });
   return triangles;
 }
@@ -79,12 +82,13 @@ std::string unit_of(vtkDataArray* array) {
   return keys->Has(vtkDataArray::UNITS_LABEL()) ? keys->Get(vtkDataArray::UNITS_LABEL()) : "1";
 }
 
-}  // namespace
+}   // namespace
 
 TriangleMesh to_mesh(vtkPolyData* data, const char* subject) {
   // A triangle's corners are 32-bit numbers, and VTK's are signed.
   if (data->GetNumberOfPoints() > vtkIdType{1} << 31)
-    throw InvalidInput(subject, fmt::format("it has {} points", data->GetNumberOfPoints()), "Simplify it first");
+    throw InvalidInput(subject, fmt::format("it has {} points", data->GetNumberOfPoints()),
+                       "Simplify it first");
   TriangleMesh mesh{vertices_of(data), triangles_of(data)};
   if (mesh.triangles.empty())
     throw InvalidInput(subject, "it has no polygons", "Give a surface: 'Extract Surface' makes one of cells");
@@ -120,12 +124,13 @@ vtkSmartPointer<vtkPolyData> to_vtk(TriangleMesh mesh) {
   const auto points = vtkSmartPointer<vtkPoints>::New();
   points->SetDataTypeToDouble();
   points->SetData(TakenArray<vtkDoubleArray, Vertices>::make<double>(
-      std::move(mesh.vertices_nm), [](Vertices& v) { return reinterpret_cast<double*>(v.data()); }, values, 3));
+      std::move(mesh.vertices_nm), [](Vertices& v) { return reinterpret_cast<double*>(v.data()); }, values,
+      3));
   const auto polygons = vtkSmartPointer<vtkCellArray>::New();
   polygons->SetData(take_array<vtkTypeInt32Array>(std::move(starts), ""),
                     TakenArray<vtkTypeInt32Array, Triangles>::make<std::int32_t>(
-                        std::move(mesh.triangles), [](Triangles& t) { return reinterpret_cast<std::int32_t*>(t.data()); },
-                        corners, 1));
+                        std::move(mesh.triangles),
+                        [](Triangles& t) { return reinterpret_cast<std::int32_t*>(t.data()); }, corners, 1));
   auto data = vtkSmartPointer<vtkPolyData>::New();
   data->SetPoints(points);
   data->SetPolys(polygons);
@@ -144,4 +149,4 @@ vtkSmartPointer<vtkPolyData> to_vtk(Surface surface) {
   return data;
 }
 
-}  // namespace surf::pv
+}   // namespace surf::pv

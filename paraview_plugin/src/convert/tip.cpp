@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "convert/tip.h"
 
-
 #include <algorithm>
 #include <cmath>
 
@@ -28,4 +27,4 @@ vtkSmartPointer<vtkImageData> to_vtk(const Tip& tip) {
   return image;
 }
 
-}  // namespace surf::pv
+}   // namespace surf::pv

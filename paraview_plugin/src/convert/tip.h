@@ -16,4 +16,4 @@ Tip to_tip_for(vtkImageData* image, vtkDataArray* heights, const HeightField& sc
 /// The structuring function about (0, 0), NaN where the tip has no sample.
 vtkSmartPointer<vtkImageData> to_vtk(const Tip& tip);
 
-}  // namespace surf::pv
+}   // namespace surf::pv
