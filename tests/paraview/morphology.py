@@ -80,6 +80,8 @@ def found_tips_equal_the_command():
         return fetch(source, 1)
     check({"Answer": "At threshold", "Threshold": 0.2, "ApexTolerance": 0.1}, "--threshold", "0.2nm",
           "--apex-tolerance", "0.1nm")
+    check({"Answer": "At threshold", "Threshold": 0, "ApexTolerance": 0.8}, "--threshold", "0nm",
+          "--apex-tolerance", "0.8nm")
     check({"Answer": "Outer bound", "Noise": 0.1}, "--answer", "outer", "--noise", "0.1nm")
     curve = check({"Noise": 0.1, "Thresholds": 10, "ThresholdRange": [0.03, 0.8]}, "--noise", "0.1nm",
                   "--sweep", "0.03nm,0.8nm,10")

@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Two and three ranks give the bytes of one: images in pieces, surfaces and tables from the first rank alone."""
 import filecmp
+import json
 import os
+import pathlib
 import shutil
 import subprocess
 import sys
@@ -32,6 +34,11 @@ def pipelines():
 
 def save(folder):
     images, surfaces = pipelines()
+    counts = {}
+    for name, image in images.items():
+        image.UpdatePipeline()
+        counts[name] = image.GetDataInformation().GetNumberOfPoints()
+    pathlib.Path(folder, "counts.json").write_text(json.dumps(counts))
     for name, image in images.items():
         simple.SaveData(f"{folder}/{name}.pvti", proxy=image, DataMode="Binary")
     for name, surface in surfaces.items():
@@ -82,6 +89,9 @@ def equal_to_one_rank():
                 expect(got.GetNumberOfCells() == want.GetNumberOfCells() > 0, f"{name}: cells on {ranks} ranks")
             else:
                 expect(filecmp.cmp(several / name, one / name, shallow=False), f"{name} differs on {ranks} ranks")
+        counts, whole = (json.loads((folder / "counts.json").read_text()) for folder in (several, one))
+        for name, count in counts.items():   # pieces share a row of points
+            expect(count < 1.5 * whole[name], f"{name}: {count} points on {ranks} ranks, {whole[name]} on one")
         pieces = len(list((several / "level").glob("*.vti")))
         expect(pieces == ranks, f"the image is in {pieces} pieces of {ranks}")
 
