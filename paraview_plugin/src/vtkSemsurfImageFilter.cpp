@@ -4,6 +4,8 @@
 #include <vtkDataArray.h>
 #include <vtkFieldData.h>
 #include <vtkImageData.h>
+#include <vtkInformation.h>
+#include <vtkInformationVector.h>
 #include <vtkPointData.h>
 
 #include <utility>
@@ -11,6 +13,13 @@
 #include "pipeline.h"
 
 using namespace surf;
+
+/// Samples as of the input, and pieces of them: else every rank would be asked for all.
+int vtkSemsurfImageFilter::RequestInformation(vtkInformation*, vtkInformationVector**,
+                                              vtkInformationVector* outputs) {
+  outputs->GetInformationObject(0)->Set(vtkAlgorithm::CAN_PRODUCE_SUB_EXTENT(), 1);
+  return 1;
+}
 
 int vtkSemsurfImageFilter::RequestUpdateExtent(vtkInformation*, vtkInformationVector** inputs,
                                                vtkInformationVector*) {

@@ -20,6 +20,7 @@ class VTKSEMSURF_EXPORT vtkSemsurfImageFilter : public vtkImageAlgorithm {
   vtkAbstractTypeMacro(vtkSemsurfImageFilter, vtkImageAlgorithm);
 
  protected:
+  int RequestInformation(vtkInformation*, vtkInformationVector**, vtkInformationVector* outputs) override;
   int RequestUpdateExtent(vtkInformation*, vtkInformationVector** inputs, vtkInformationVector*) override;
 
   /// The chosen heights of input 0, and how they are called.
