@@ -172,10 +172,17 @@ std::string ranges_of(const std::vector<double>& degrees) {
   return text;
 }
 
+// Of the samples that the tip has; above 0 for all but a flat one.
+double depth_of(const Tip& tip) {
+  double lowest = 0;
+  for (const double z : tip.z_nm.data())
+    if (std::isfinite(z)) lowest = std::min(lowest, z);
+  return -lowest;
+}
+
 void print_tip(const Tip& tip, double depth_nm) {
   fmt::print("{:<10} {} x {} samples of {}, down to {}\n", "tip", tip.z_nm.width(), tip.z_nm.height(),
-             format_length(tip.pitch_x_nm),
-             format_length(*std::min_element(tip.z_nm.data().begin(), tip.z_nm.data().end())));
+             format_length(tip.pitch_x_nm), format_length(-depth_of(tip)));
   try {
     const TipMeasures m = measure_tip(tip);
     fmt::print("{:<10} {} (fitted down to {}, residual {})", "radius", format_length(m.radius_nm),
@@ -233,7 +240,7 @@ int by_shape(const Options& o) {
   io::write_tip(*o.output, tip, provenance_of("tip", {{"shape", *o.shape}}, {}));
   if (o.plot) io::write_plot(*o.plot, tip_plot(tip));
   if (o.quiet) return 0;
-  print_tip(tip, -*std::min_element(tip.z_nm.data().begin(), tip.z_nm.data().end()));
+  print_tip(tip, depth_of(tip));
   fmt::print("{:<10} {}\n", "written", *o.output);
   return 0;
 }

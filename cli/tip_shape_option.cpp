@@ -49,7 +49,8 @@ Tip parse_tip_shape(const std::string& shape, const std::string& size,
       pyramid.face_angles_rad.assign(static_cast<std::size_t>(parse_whole(words[2], "--shape", 3, 100)), angle(1));
       return pyramidal_tip(pyramid, sampling);
     }
-    if (kind == "ball" && words.size() == 1) return ball_tip(length(0), 0, 0, sampling);
+    if (kind == "ball" && words.size() == 1)   // on a cylinder, which is never seen
+      return ball_tip(length(0), 0.5 * length(0), 0, sampling);
     if (kind == "ball" && words.size() == 3) return ball_tip(length(0), length(1), angle(2), sampling);
   } catch (const InvalidInput& e) {
     throw UsageError("--shape", fmt::format("{}: {}", shape, e.reason()), e.remedy());

@@ -30,9 +30,9 @@ install(FILES "${CMAKE_BINARY_DIR}/completions/semsurf.fish"
 install(FILES LICENSE README.md CHANGELOG.md DESTINATION "${CMAKE_INSTALL_DOCDIR}")
 
 install(EXPORT semsurfTargets NAMESPACE semsurf:: DESTINATION "${SEMSURF_PACKAGE_DIR}")
-set(SEMSURF_PARAVIEW OFF)
+set(SEMSURF_VTK_OF_PARAVIEW OFF)
 if(SEMSURF_VTK AND ParaView_FOUND)
-  set(SEMSURF_PARAVIEW ON)
+  set(SEMSURF_VTK_OF_PARAVIEW ON)
 endif()
 configure_package_config_file(cmake/semsurfConfig.cmake.in
   "${CMAKE_BINARY_DIR}/semsurfConfig.cmake" INSTALL_DESTINATION "${SEMSURF_PACKAGE_DIR}")

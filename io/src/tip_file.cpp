@@ -117,25 +117,25 @@ bool named_apex(const std::string& text, const std::vector<Place>& places, Place
 
 }  // namespace
 
-Tip read_tip(const std::filesystem::path& path) {
-  const std::string file = path.string();
-  HeightFieldFile read = read_height_field(path);
-  const std::string kind = text_of(read.metadata, tip_key);
+Tip to_tip(HeightField field, const std::map<std::string, std::string>& metadata, const std::string& subject) {
+  const std::string kind = text_of(metadata, tip_key);
   const bool physical = kind == "physical";
-  const double sign = physical && points_down(read.field) ? -1 : 1;
+  const double sign = physical && points_down(field) ? -1 : 1;
   Tip tip;
-  tip.pitch_x_nm = read.field.pitch_x_nm;
-  tip.pitch_y_nm = read.field.pitch_y_nm;
-  tip.z_nm = std::move(read.field.z_nm);
+  tip.pitch_x_nm = field.pitch_x_nm;
+  tip.pitch_y_nm = field.pitch_y_nm;
+  tip.z_nm = std::move(field.z_nm);
   for (int y = 0; y < tip.z_nm.height(); ++y)
     for (int x = 0; x < tip.z_nm.width(); ++x)
-      tip.z_nm(x, y) = read.field.is_valid(x, y) ? sign * tip.z_nm(x, y) : nothing;
+      tip.z_nm(x, y) = field.is_valid(x, y) ? sign * tip.z_nm(x, y) : nothing;
+  const bool empty = std::ranges::all_of(tip.z_nm.data(), [](double z) { return z == nothing; });
+  if (empty) throw InvalidInput(subject, "it has no samples, only holes", "Give a tip with at least an apex");
   const std::vector<Place> places = highest(tip.z_nm);
   Place apex = middle_of(places);
-  if (!named_apex(text_of(read.metadata, apex_key), places, apex) && !touch(places, tip.z_nm)) {
-    throw InvalidInput(file, fmt::format("its highest value is found in {} places that do not touch, as at ({}, {}) "
-                                         "and ({}, {}): no apex can be told", places.size(), places.front().x,
-                                         places.front().y, places.back().x, places.back().y),
+  if (!named_apex(text_of(metadata, apex_key), places, apex) && !touch(places, tip.z_nm)) {
+    throw InvalidInput(subject, fmt::format("its highest value is found in {} places that do not touch, as at ({}, {}) "
+                                            "and ({}, {}): no apex can be told", places.size(), places.front().x,
+                                            places.front().y, places.back().x, places.back().y),
                        "Give a tip with one apex");
   }
   const double top = tip.z_nm(apex.x, apex.y);
@@ -143,16 +143,21 @@ Tip read_tip(const std::filesystem::path& path) {
   tip.apex_x = apex.x;
   tip.apex_y = apex.y;
   if (physical) tip = reflected(tip);
-  validate(tip, file.c_str());
+  validate(tip, subject.c_str());
   return tip;
 }
 
-void write_tip(const std::filesystem::path& path, const Tip& tip,
-               const std::map<std::string, std::string>& metadata) {
-  validate(tip, path.string().c_str());
-  // Files of heights have at least 2 x 2 samples: a narrower tip gets samples that it does not have.
+Tip read_tip(const std::filesystem::path& path) {
+  HeightFieldFile read = read_height_field(path);
+  return to_tip(std::move(read.field), read.metadata, path.string());
+}
+
+TipHeights to_heights(const Tip& tip, const char* subject) {
+  validate(tip, subject);
+  // Fields of heights have at least 2 x 2 samples: a narrower tip gets samples that it does not have.
   const int w = std::max(tip.z_nm.width(), 2), h = std::max(tip.z_nm.height(), 2);
-  HeightField field;
+  TipHeights heights;
+  HeightField& field = heights.field;
   field.pitch_x_nm = tip.pitch_x_nm;
   field.pitch_y_nm = tip.pitch_y_nm;
   field.origin_x_nm = -tip.apex_x * tip.pitch_x_nm;
@@ -169,10 +174,15 @@ void write_tip(const std::filesystem::path& path, const Tip& tip,
     }
   }
   if (!whole) field.valid = std::move(valid);
-  auto all = metadata;
-  all[tip_key] = "structuring function";
-  all[apex_key] = fmt::format("{} {}", tip.apex_x, tip.apex_y);
-  write_height_field(path, field, all);
+  heights.metadata = {{tip_key, "structuring function"}, {apex_key, fmt::format("{} {}", tip.apex_x, tip.apex_y)}};
+  return heights;
+}
+
+void write_tip(const std::filesystem::path& path, const Tip& tip,
+               const std::map<std::string, std::string>& metadata) {
+  TipHeights heights = to_heights(tip, path.string().c_str());
+  heights.metadata.insert(metadata.begin(), metadata.end());
+  write_height_field(path, heights.field, heights.metadata);
 }
 
 }  // namespace surf::io

@@ -21,6 +21,7 @@ PARTS = {
     "workflow": (["workflow/*"], {"surf", "mc", "io", "io_sim"}),
     "cli": (["cli/*"], {"surf", "mc", "io", "io_sim", "workflow"}),
     "samples": (["samples/*"], {"surf", "mc", "io", "io_sim", "workflow"}),
+    "paraview_plugin": (["paraview_plugin/*"], {"surf", "mc", "io", "io_sim", "workflow"}),
 }
 # Whose header "surf/..." is. First match.
 OWNERS = [("surf/io/sim/", "io_sim"), ("surf/io/", "io"), ("surf/mc/", "mc"),
@@ -41,7 +42,8 @@ THIRD_PARTY = [
     ("fftw3.h", ["libsurf/src/registration/shift_search.cpp"]),
     ("nlopt.h", ["libsurf/src/registration/mutual_information.cpp"]),
     ("OpenImageIO/*", ["io/src/raster_file.cpp"]),
-    ("vtk*", ["io/src/vti_file.cpp", "io/src/vtp_*.cpp", "io/src/vtk_support.h", "io/src/volume_file.cpp"]),
+    ("vtk*", ["io/src/vti_file.cpp", "io/src/vtp_*.cpp", "io/src/vtk_support.h", "io/src/volume_file.cpp",
+              "paraview_plugin/*"]),
     ("pugixml.hpp", ["io/src/vtk_xml.cpp", "io/src/three_mf_file.cpp"]),
     ("zlib.h", ["io/src/deflate.cpp", "io/src/vtk_data.cpp", "io/src/zip_file.cpp"]),
     ("tiny_gltf.h", ["io/src/gltf_write.cpp"]),
@@ -65,8 +67,8 @@ THIRD_PARTY = [
     ("termios.h", ["*"]),
     ("unistd.h", ["*"]),
 ]
-SOURCE_FOLDERS = ["libsurf", "mc_sim", "io", "workflow", "cli", "samples"]
-SPDX_FOLDERS = SOURCE_FOLDERS + ["tests", "bench", "cmake", "docs", "paraview_plugin"]
+SOURCE_FOLDERS = ["libsurf", "mc_sim", "io", "workflow", "cli", "samples", "paraview_plugin"]
+SPDX_FOLDERS = SOURCE_FOLDERS + ["tests", "bench", "cmake", "docs"]
 SPDX_SUFFIXES = {".cpp", ".h", ".py", ".sh"}
 SPDX_LINE = "SPDX-License-Identifier: GPL-3.0-or-later"
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]', re.MULTILINE)

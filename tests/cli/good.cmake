@@ -222,6 +222,7 @@ semsurf_cli_test(certainty.unexplained ARGS certainty steps.txt --tip tip.txt --
   STDERR "cannot have been made by this tip" WRITES map.tif)
 # AFM: the tip itself.
 semsurf_cli_test(help.tip ARGS tip --help STDOUT "--answer" "--shape SHAPE" "--also FILE" "Without --threshold")
+semsurf_cli_test(tip.ball ARGS tip --shape ball:5nm --size 15 -o tip.gsf STDOUT "15 x 15 samples" "down to -5.00 nm" WRITES tip.gsf)
 semsurf_cli_test(tip.shape ARGS tip --shape cone:5nm,20deg --size 31 -o tip.gsf --plot tip.svg
   STDOUT "tip +31 x 31 samples" "radius " "half angle " WRITES tip.gsf tip.svg INFO tip.gsf "option.shape +cone:5nm,20deg")
 semsurf_cli_test(tip.sweep ARGS tip steps.txt --size 5 --noise 0.02nm --sweep 0.02nm,0.4nm,5 --plot tip.svg -o tip.gsf

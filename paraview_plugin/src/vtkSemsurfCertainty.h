@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#ifndef vtkSemsurfCertainty_h
+#define vtkSemsurfCertainty_h
+
+#include "vtkSemsurfImageFilter.h"
+
+/// Where the eroded scan is the surface, as `semsurf certainty` says. Input 0 is the scan, input 1 the tip.
+class VTKSEMSURF_EXPORT vtkSemsurfCertainty : public vtkSemsurfImageFilter {
+ public:
+  static vtkSemsurfCertainty* New();
+  vtkTypeMacro(vtkSemsurfCertainty, vtkSemsurfImageFilter);
+
+  vtkSetMacro(Noise, double);   ///< nm, standard deviation; below 0: from neighbouring pixels
+  vtkSetMacro(Sigmas, double);
+  vtkSetMacro(Neighbourhood, int);   ///< samples; -1: from the tip's apex
+  vtkSetMacro(Distance, double);     ///< nm
+
+ protected:
+  vtkSemsurfCertainty() { this->SetNumberOfInputPorts(2); }
+  int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
+
+ private:
+  double Noise = -1;
+  double Sigmas = 3;
+  int Neighbourhood = -1;
+  double Distance = 0;
+};
+
+#endif

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#ifndef vtkSemsurfImageFilter_h
+#define vtkSemsurfImageFilter_h
+
+#include <vtkImageAlgorithm.h>
+#include <vtkSmartPointer.h>
+
+#include <string>
+
+#include <vtkSemsurfModule.h>
+
+namespace surf {
+struct HeightField;
+}
+
+/// What filters from one height field to images of the same samples share: they ask for all of every input.
+/// Input array 0 are the heights; outputs keep the input's other arrays.
+class VTKSEMSURF_EXPORT vtkSemsurfImageFilter : public vtkImageAlgorithm {
+ public:
+  vtkAbstractTypeMacro(vtkSemsurfImageFilter, vtkImageAlgorithm);
+
+ protected:
+  int RequestInformation(vtkInformation*, vtkInformationVector**, vtkInformationVector* outputs) override;
+  int RequestUpdateExtent(vtkInformation*, vtkInformationVector** inputs, vtkInformationVector*) override;
+
+  /// The chosen heights of input 0, and how they are called.
+  surf::HeightField Heights(vtkInformationVector** inputs, std::string& name);
+  /// Input 0 with other heights of that name, and without the mask of the old ones.
+  vtkSmartPointer<vtkImageData> WithHeights(vtkInformationVector** inputs, surf::HeightField field,
+                                            const std::string& name);
+};
+
+#endif

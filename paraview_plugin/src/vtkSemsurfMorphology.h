@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#ifndef vtkSemsurfMorphology_h
+#define vtkSemsurfMorphology_h
+
+#include "vtkSemsurfImageFilter.h"
+
+/// What a tip makes of a surface, and back (surf/afm/morphology.h). Input 0 are the heights, input 1 the tip.
+class VTKSEMSURF_EXPORT vtkSemsurfMorphology : public vtkSemsurfImageFilter {
+ public:
+  static vtkSemsurfMorphology* New();
+  vtkTypeMacro(vtkSemsurfMorphology, vtkSemsurfImageFilter);
+
+  enum Operations { Erode, Dilate, Open, Close };
+  vtkSetMacro(Operation, int);
+  vtkSetMacro(Distance, double);   ///< nm that the tip keeps away, of non-contact scans
+  vtkSetMacro(Upsample, int);
+
+ protected:
+  vtkSemsurfMorphology() { this->SetNumberOfInputPorts(2); }
+  int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
+
+ private:
+  int Operation = Erode;
+  double Distance = 0;
+  int Upsample = 1;
+};
+
+#endif

@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "vtkSemsurfRepairMesh.h"
+
+#include <fmt/format.h>
+#include <vtkInformation.h>
+#include <vtkInformationVector.h>
+#include <vtkNew.h>
+#include <vtkObjectFactory.h>
+#include <vtkTable.h>
+
+#include <optional>
+#include <utility>
+
+#include "attempt.h"
+#include "convert/mesh.h"
+#include "convert/table.h"
+#include "pipeline.h"
+#include "surf/core/error.h"
+#include "surf/mesh/repair_mesh.h"
+#include "surf/mesh/self_intersections.h"
+
+vtkStandardNewMacro(vtkSemsurfRepairMesh);
+
+using namespace surf;
+
+namespace {
+
+void add_report(vtkTable* table, const RepairSummary& s) {
+  std::vector<std::string> names;
+  std::vector<double> before, after;
+  const auto add = [&](const char* name, auto value) {
+    names.push_back(name);
+    before.push_back(static_cast<double>(value(s.before)));
+    after.push_back(static_cast<double>(value(s.after)));
+  };
+  add("vertices", [](const MeshReport& r) { return r.vertices; });
+  add("triangles", [](const MeshReport& r) { return r.triangles; });
+  add("degenerate_triangles", [](const MeshReport& r) { return r.degenerate_triangles; });
+  add("duplicate_triangles", [](const MeshReport& r) { return r.duplicate_triangles; });
+  add("boundary_edges", [](const MeshReport& r) { return r.boundary_edges; });
+  add("nonmanifold_edges", [](const MeshReport& r) { return r.nonmanifold_edges; });
+  add("nonmanifold_vertices", [](const MeshReport& r) { return r.nonmanifold_vertices; });
+  add("inconsistent_edges", [](const MeshReport& r) { return r.inconsistent_edges; });
+  add("components", [](const MeshReport& r) { return r.components; });
+  add("closed_and_oriented", [](const MeshReport& r) { return r.closed_and_oriented ? 1 : 0; });
+  add("area_nm2", [](const MeshReport& r) { return r.area_nm2; });
+  add("signed_volume_nm3", [](const MeshReport& r) { return r.signed_volume_nm3; });
+  names.push_back("self_intersections");
+  before.push_back(static_cast<double>(s.self_intersections_before));
+  after.push_back(static_cast<double>(s.self_intersections_after));
+  pv::add_column(table, "quantity", names);
+  pv::add_column(table, "before", std::move(before));
+  pv::add_column(table, "after", std::move(after));
+}
+
+std::optional<double> unless_negative(double nm) { return nm < 0 ? std::nullopt : std::optional(nm); }
+
+}   // namespace
+
+int vtkSemsurfRepairMesh::FillOutputPortInformation(int port, vtkInformation* info) {
+  info->Set(vtkDataObject::DATA_TYPE_NAME(), port == 0 ? "vtkPolyData" : "vtkTable");
+  return 1;
+}
+
+int vtkSemsurfRepairMesh::RequestInformation(vtkInformation*, vtkInformationVector**,
+                                             vtkInformationVector* outputs) {
+  pv::announce_pieces(outputs->GetInformationObject(0));
+  return pv::announce_pieces(outputs->GetInformationObject(1));
+}
+
+int vtkSemsurfRepairMesh::RequestUpdateExtent(vtkInformation*, vtkInformationVector** inputs,
+                                              vtkInformationVector*) {
+  pv::request_whole(inputs, 1);
+  return 1;
+}
+
+int vtkSemsurfRepairMesh::RequestData(vtkInformation*, vtkInformationVector** inputs,
+                                      vtkInformationVector* outputs) {
+  return pv::attempt(this, [&] {
+    if (!pv::is_first_piece(outputs->GetInformationObject(0))) return;
+    if (this->Sliver < 0 || this->MinimumComponent < 0)
+      throw UsageError(this->Sliver < 0 ? "Sliver" : "Minimum Component", "it is below 0",
+                       "Give a length in nm, or 0");
+    vtkPolyData* const input = pv::surface_input(inputs, 0);
+    const TriangleMesh mesh = pv::to_mesh(input, "Input");
+    TriangleMesh mended;
+    RepairSummary summary;
+    pv::work(this, [&](const Watch&) {
+      if (!this->Repair) {
+        summary.before = summary.after = check_mesh(mesh);
+        summary.self_intersections_before = summary.self_intersections_after =
+            find_self_intersections(mesh).pairs.size();
+        return;
+      }
+      mended = repair_mesh(mesh,
+                           {.stitch_nm = unless_negative(this->Stitch),
+                            .sliver_nm = this->Sliver,
+                            .max_hole_nm = unless_negative(this->MaximumHole),
+                            .min_component_nm = this->MinimumComponent,
+                            .resolve_self_intersections = this->ResolveIntersections},
+                           summary);
+    });
+    vtkNew<vtkTable> table;
+    add_report(table, summary);
+    // Unchanged, it keeps what lies on it.
+    if (summary.changed)
+      pv::give(outputs->GetInformationObject(0), pv::to_vtk(std::move(mended)));
+    else
+      pv::give(outputs->GetInformationObject(0), input);
+    pv::give(outputs->GetInformationObject(1), table);
+  });
+}

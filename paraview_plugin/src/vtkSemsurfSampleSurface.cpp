@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "vtkSemsurfSampleSurface.h"
+
+#include <fmt/format.h>
+#include <vtkInformation.h>
+#include <vtkInformationVector.h>
+#include <vtkObjectFactory.h>
+
+#include <cmath>
+#include <cstdint>
+#include <utility>
+
+#include "attempt.h"
+#include "pipeline.h"
+#include "surf/core/error.h"
+#include "surf/mesh/shapes.h"
+
+vtkStandardNewMacro(vtkSemsurfSampleSurface);
+
+namespace {
+
+using namespace surf;
+
+int samples_along(double length_nm, double pitch_nm, const char* property) {
+  constexpr double most = 16384;
+  const double count = std::round(length_nm / pitch_nm) + 1;
+  if (pitch_nm > 0 && count >= 2 && count <= most) return static_cast<int>(count);
+  throw UsageError(property,
+                   fmt::format("{} nm at a Pitch of {} nm are no 2 to {} samples", length_nm, pitch_nm, most),
+                   "Change it, or Pitch");
+}
+
+}   // namespace
+
+int vtkSemsurfSampleSurface::RequestInformation(vtkInformation*, vtkInformationVector**,
+                                                vtkInformationVector* outputs) {
+  return pv::attempt(this, [&] {
+    const int width = samples_along(this->Width, this->Pitch, "Width");
+    const int height = samples_along(this->Depth, this->Pitch, "Depth");
+    pv::announce(outputs->GetInformationObject(0),
+                 {width, height, this->Pitch, this->Pitch, -0.5 * (width - 1) * this->Pitch,
+                  -0.5 * (height - 1) * this->Pitch});
+  });
+}
+
+HeightField vtkSemsurfSampleSurface::Make(const FieldExtent& extent) const {
+  const auto seed = static_cast<std::uint64_t>(this->Seed);
+  switch (this->Shape) {
+    case Mesa: return make_mesa(extent, this->FeatureHeight, this->FeatureWidth, this->WallRun);
+    case Trench: return make_trench(extent, this->FeatureHeight, this->FeatureWidth, this->WallRun);
+    case Line: return make_line(extent, this->FeatureHeight, this->FeatureWidth, this->WallRun);
+    case Via: return make_via(extent, this->FeatureHeight, this->FeatureWidth, this->WallRun);
+    case Step: return make_step(extent, this->FeatureHeight, this->WallRun);
+    case Grating:
+      return make_grating(extent, this->FeatureHeight, this->Period, this->FeatureWidth, this->WallRun);
+    case Rough: return make_rough(extent, this->RmsHeight, this->CorrelationLength, seed);
+    case SelfAffine:
+      return make_self_affine(extent, this->RmsHeight, this->CorrelationLength, this->HurstExponent, seed);
+    default: throw UsageError("Shape", fmt::format("there is no shape {}", this->Shape), "Choose 0 to 7");
+  }
+}
+
+int vtkSemsurfSampleSurface::RequestData(vtkInformation*, vtkInformationVector**,
+                                         vtkInformationVector* outputs) {
+  return pv::attempt(this, [&] {
+    HeightField field;
+    pv::work(this, [&](const Watch&) { field = this->Make({this->Width, this->Depth, this->Pitch}); });
+    pv::give(outputs->GetInformationObject(0), pv::to_vtk(std::move(field)));
+  });
+}

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "vtkSemsurfWriter.h"
+
+#include <vtkErrorCode.h>
+#include <vtkInformation.h>
+#include <vtkMultiProcessController.h>
+#include <vtkStreamingDemandDrivenPipeline.h>
+
+#include "attempt.h"
+#include "pipeline.h"
+
+void vtkSemsurfWriter::SetFileName(const char* name) {
+  const std::string value = name ? name : "";
+  if (value == this->FileName) return;
+  this->FileName = value;
+  this->Modified();
+}
+
+vtkTypeBool vtkSemsurfWriter::ProcessRequest(vtkInformation* request, vtkInformationVector** inputs,
+                                             vtkInformationVector* outputs) {
+  if (!request->Has(vtkStreamingDemandDrivenPipeline::REQUEST_UPDATE_EXTENT()))
+    return this->Superclass::ProcessRequest(request, inputs, outputs);
+  surf::pv::request_whole(inputs, this->GetNumberOfInputPorts());
+  return 1;
+}
+
+void vtkSemsurfWriter::WriteData() {
+  auto* const ranks = vtkMultiProcessController::GetGlobalController();
+  if (ranks && ranks->GetLocalProcessId() != 0) return;
+  if (!surf::pv::attempt(this, [&] { this->WriteFile(); })) this->SetErrorCode(vtkErrorCode::UnknownError);
+}

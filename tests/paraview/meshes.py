@@ -1,0 +1,117 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Surfaces made, mended, thinned, written and read are the commands'."""
+from support import DATA, FOLDER, array, column, expect, fetch, numpy, quiet, refuses, run, same, semsurf, servermanager, \
+    simple, vtk_to_numpy
+
+
+def scan():
+    return simple.AFMScanReader(FileName=str(DATA / "block.gsf"))
+
+
+def points(data):
+    return vtk_to_numpy(data.GetPoints().GetData())
+
+
+def corners(data):
+    return vtk_to_numpy(data.GetPolys().GetConnectivityArray()).reshape(-1, 3)
+
+
+def read(name):
+    return fetch(simple.SurfaceMeshReader(FileName=str(FOLDER / name)))
+
+
+def surfaces_equal_the_command():
+    for properties, options in [({}, []), ({"Simplify": 1}, ["--tolerance", "0.1nm"]), ({"Solid": 1}, ["--solid"]),
+                                ({"Solid": 1, "Thickness": 3}, ["--solid", "--thickness", "3nm"])]:
+        semsurf("mesh", DATA / "block.gsf", *options, "-o", "surface.ply")
+        got, want = quiet(simple.HeightFieldtoSurface(Input=scan(), **properties)), read("surface.ply")
+        same(points(got), points(want), f"{properties}: points")
+        same(corners(got), corners(want), f"{properties}: triangles")
+        for name in ("height", "curvature"):
+            same(array(got, name), array(want, name), f"{properties}: {name}")
+
+
+def there_and_back():
+    scan_data = fetch(scan())
+    surface = simple.HeightFieldtoSurface(Input=scan())
+    back = quiet(simple.SurfacetoHeightField(Input=surface, Pitch=1))
+    off = array(back, "z_nm") - array(scan_data, "Height")
+    expect(numpy.abs(off).max() < 1e-12, f"heights are {numpy.abs(off).max()} nm off")
+    sphere = quiet(simple.SurfacetoHeightField(Input=simple.SampleBody(Shape="Sphere", Radius=50), Samples=101))
+    expect(sphere.GetDimensions() == (101, 101, 1), f"samples: {sphere.GetDimensions()}")
+    expect(numpy.isnan(array(sphere, "z_nm")[0, 0]) and array(sphere, "valid")[0, 0] == 0, "corners are holes")
+    expect(abs(numpy.nanmax(array(sphere, "z_nm")) - 100) < 0.5, "its top")
+
+
+def mending_equals_the_command():
+    damaged = simple.Clip(Input=simple.SampleBody(Shape="Sphere", Radius=50))
+    damaged.ClipType.Origin, damaged.ClipType.Normal = [0, 0, 98], [0, 0, 1]
+    surface = simple.ExtractSurface(Input=damaged)
+    simple.SaveData(str(FOLDER / "open.off"), proxy=surface)
+    mended = simple.CheckandRepairMesh(Input=surface)
+    semsurf("mesh", "open.off", "--repair", "-o", "mended.off")
+    want = read("mended.off")
+    got = quiet(mended)
+    expect(len(corners(got)) == len(corners(want)), f"{len(corners(got))} triangles, not {len(corners(want))}")
+    table = quiet(mended, 1)
+    row = column(table, "quantity").index("boundary_edges")
+    expect(column(table, "before")[row] > 10 and column(table, "after")[row] == 0, "the hole is filled")
+    mended.Repair = 0
+    expect(column(fetch(mended, 1), "after")[row] == column(table, "before")[row], "counting changes nothing")
+
+
+def thinning_equals_the_command():
+    body = simple.SampleBody(Shape="Sphere", Radius=50, Subdivisions=4)
+    simple.SaveData(str(FOLDER / "sphere.off"), proxy=body)
+    semsurf("mesh", "sphere.off", "--tolerance", "1nm", "-o", "thin.off")
+    got, want = quiet(simple.SimplifyMesh(Input=body, Tolerance=1)), read("thin.off")
+    same(corners(got), corners(want), "triangles")
+    same(points(got), points(want), "points")
+    few = quiet(simple.SimplifyMesh(Input=body, Limit="Triangles", Triangles=100))
+    expect(few.GetNumberOfPolys() <= 100, f"{few.GetNumberOfPolys()} triangles")
+
+
+def files_are_read_back():
+    surface = simple.HeightFieldtoSurface(Input=scan())
+    want = fetch(surface)
+    for name, exact in [("all.glb", False), ("all.gltf", False), ("all.3mf", False), ("all.off", True)]:
+        simple.SaveData(str(FOLDER / name), proxy=surface)
+        got = read(name)
+        expect(got.GetNumberOfPoints() == want.GetNumberOfPoints(), f"{name}: {got.GetNumberOfPoints()} points")
+        expect(numpy.allclose(points(got), points(want), rtol=0, atol=0 if exact else 1e-5), f"{name}: places")
+        if name != "all.3mf" and name != "all.off":
+            expect(numpy.allclose(array(got, "curvature"), array(want, "curvature"), atol=1e-6), f"{name}: curvature")
+    simple.SaveData(str(FOLDER / "true.glb"), proxy=surface, Magnification=1)
+    expect(numpy.allclose(points(read("true.glb")), points(want), atol=1e-5), "true size")
+    simple.SaveData(str(FOLDER / "saved.gsf"), proxy=scan())
+    expect((FOLDER / "saved.gsf").stat().st_size > 12000, "saved by extension")
+    for name in ("heights.gsf", "heights.txt"):   # by extension, text goes to ParaView's own writer
+        servermanager.writers.HeightFieldWriter(Input=scan(), FileName=str(FOLDER / name)).UpdatePipeline()
+        back = fetch(simple.AFMScanReader(FileName=str(FOLDER / name)))
+        original = fetch(scan())
+        same(array(back, back.GetPointData().GetScalars().GetName()),
+             array(original, original.GetPointData().GetScalars().GetName()), name)
+
+
+def vtk_files_are_inline():
+    """Debian's ParaView reads appended data as nothing."""
+    surface = simple.HeightFieldtoSurface(Input=scan())
+    simple.SaveData(str(FOLDER / "inline.vtp"), proxy=surface, DataMode="Binary")
+    expect(fetch(simple.XMLPolyDataReader(FileName=[str(FOLDER / "inline.vtp")])).GetNumberOfPoints() == 3000, "VTP")
+    semsurf("mesh", DATA / "block.gsf", "-o", "ours.vtp")
+    expect(fetch(simple.XMLPolyDataReader(FileName=[str(FOLDER / "ours.vtp")])).GetNumberOfPoints() == 3000, "ours")
+
+
+def wrong_properties_are_refused():
+    surface = simple.HeightFieldtoSurface(Input=scan())
+    refuses(simple.HeightFieldtoSurface(Input=scan(), Simplify=1, Tolerance=-1), "Tolerance", "below 0")
+    refuses(simple.SimplifyMesh(Input=surface, Limit="Triangles", Triangles=3), "Triangles", "too few")
+    refuses(simple.SurfacetoHeightField(Input=surface, Samples=1), "Samples", "2 to 16384")
+    refuses(simple.CheckandRepairMesh(Input=surface, Sliver=-1), "Sliver", "below 0")
+    refuses(simple.SimplifyMesh(Input=simple.Line()), "Input", "no polygons")
+    refuses(simple.HeightFieldtoSurface(Input=simple.SurfacetoHeightField(
+        Input=simple.SampleBody(Shape="Sphere"), Samples=20)), "height field", "hole")
+
+
+run(surfaces_equal_the_command, there_and_back, mending_equals_the_command, thinning_equals_the_command,
+    files_are_read_back, vtk_files_are_inline, wrong_properties_are_refused)

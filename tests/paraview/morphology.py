@@ -1,0 +1,117 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What is made of scans with a tip is what the commands make."""
+from support import DATA, FOLDER, abort_and_rerun, array, column, expect, fetch, matrix, numpy, progress_of, quiet, \
+    refuses, run, same, semsurf, simple, text
+
+
+def scan():
+    return simple.AFMScanReader(FileName=str(DATA / "noisy.gsf"))
+
+
+def heights(source):
+    data = quiet(source)
+    return array(data, data.GetPointData().GetScalars().GetName())
+
+
+def tip():
+    return simple.AFMTip(Radius=5, HalfAngle=20, Samples=9, Pitch=1)
+
+
+def tips_equal_the_command():
+    for shape, properties in {"cone:5nm,20deg": {}, "parabola:5nm": {"Shape": "Parabola"},
+                              "pyramid:5nm,20deg,3": {"Shape": "Pyramid", "Faces": 3}, "ball:3nm": {"Shape": "Ball", "Radius": 3}}.items():
+        semsurf("tip", "--shape", shape, "--size", 9, "--pixel-size", "1nm", "-o", "tip.txt")
+        source = tip()
+        for name, value in properties.items():
+            setattr(source, name, value)
+        data = quiet(source)
+        same(array(data, "z_nm"), matrix(FOLDER / "tip.txt"), shape)
+        expect(data.GetBounds()[0:4] == (-4, 4, -4, 4), f"the apex is at (0, 0): {data.GetBounds()}")
+        expect(text(data, "tip") == "structuring function", "it says what it is")
+
+
+def morphology_equals_the_command():
+    semsurf("tip", "--shape", "cone:5nm,20deg", "--size", 9, "--pixel-size", "1nm", "-o", "tip.txt")
+    for command, make in {"erode": simple.ErodebyTip, "dilate": simple.DilatebyTip}.items():
+        semsurf(command, DATA / "noisy.gsf", "--tip", "tip.txt", "-o", "out.txt")
+        same(heights(make(Input=scan(), Tip=tip())), matrix(FOLDER / "out.txt"), command)
+        semsurf(command, DATA / "noisy.gsf", "--tip", "tip.txt", "--distance", "2nm", "--upsample", 2, "-o", "out.txt")
+        same(heights(make(Input=scan(), Tip=tip(), Distance=2, Upsample=2)), matrix(FOLDER / "out.txt"), command)
+    plain = heights(scan())
+    expect((heights(simple.OpenbyTip(Input=scan(), Tip=tip())) <= plain + 1e-6).all(), "an opening is never above")
+    expect((heights(simple.ClosebyTip(Input=scan(), Tip=tip())) >= plain - 1e-6).all(), "a closing is never below")
+
+
+def tips_are_resampled():
+    coarse = simple.AFMTip(Radius=5, HalfAngle=20, Samples=5, Pitch=2)
+    semsurf("tip", "--shape", "cone:5nm,20deg", "--size", 5, "--pixel-size", "2nm", "-o", "coarse.txt")
+    semsurf("erode", DATA / "noisy.gsf", "--tip", "coarse.txt", "-o", "out.txt")
+    same(heights(simple.ErodebyTip(Input=scan(), Tip=coarse)), matrix(FOLDER / "out.txt"), "a coarser tip")
+
+
+def certainty_equals_the_command():
+    semsurf("tip", "--shape", "cone:5nm,20deg", "--size", 9, "--pixel-size", "1nm", "-o", "tip.txt")
+    semsurf("certainty", DATA / "noisy.gsf", "--tip", "tip.txt", "-o", "map.tif", "--surface", "out.txt", "-q")
+    source = simple.CertaintyMap(Input=scan(), Tip=tip())
+    data = fetch(source)
+    same(array(data, "Height"), matrix(FOLDER / "out.txt"), "surface")
+    want = simple.SEMImageReader(FileName=str(FOLDER / "map.tif"), Channel="certain")
+    same(array(data, "certain").astype(float), array(fetch(want), "certain"), "certain")
+    want.Channel = "radius_px"
+    same(array(data, "radius_px").astype(float), array(fetch(want), "radius_px"), "radius")
+
+
+def cleaning_equals_the_command():
+    def check(properties, *options):
+        semsurf("clean", DATA / "noisy.gsf", *options, "-o", "out.txt")
+        same(heights(simple.CleanScan(Input=scan(), **properties)), matrix(FOLDER / "out.txt"), f"{properties}")
+    check({"SpikeLimit": 0.1}, "--spikes", "3:0.1nm")
+    check({"RemoveSpikes": 0, "MedianFilter": 1, "MedianWidth": 5, "Disc": 1}, "--median", 5, "--disc")
+    check({"RemoveSpikes": 0, "Closing": 1, "ClosingWidth": 5}, "--closing", 5)
+    plain = heights(scan())
+    expect(numpy.array_equal(heights(simple.CleanScan(Input=scan(), RemoveSpikes=0)), plain), "nothing to do changes nothing")
+
+
+def found_tips_equal_the_command():
+    def check(properties, *options):
+        semsurf("tip", DATA / "noisy.gsf", "--size", 5, *options, "-o", "tip.txt")
+        source = simple.EstimateTip(Input=scan(), TipSize=5, **properties)
+        same(array(fetch(source), "z_nm"), matrix(FOLDER / "tip.txt"), f"{properties}")
+        return fetch(source, 1)
+    how = check({"Answer": "At threshold", "Threshold": 0.2, "ApexTolerance": 0.1}, "--threshold", "0.2nm",
+                "--apex-tolerance", "0.1nm")
+    # This scan's tip does not depend on it.
+    expect(column(how, "value")[column(how, "quantity").index("apex_tolerance_nm")] == 0.1, "the apex tolerance")
+    check({"Answer": "Outer bound", "Noise": 0.1}, "--answer", "outer", "--noise", "0.1nm")
+    curve = check({"Noise": 0.1, "Thresholds": 10, "ThresholdRange": [0.03, 0.8]}, "--noise", "0.1nm",
+                  "--sweep", "0.03nm,0.8nm,10")
+    expect(curve.GetNumberOfRows() == 10 and column(curve, "chosen").sum() == 1, "a curve with the choice")
+    candidates = check({"Answer": "Best", "Noise": 0.1}, "--answer", "best", "--noise", "0.1nm")
+    expect((column(candidates, "risk") > 0).all(), "the candidates")
+
+
+def wrong_properties_are_refused():
+    refuses(simple.EstimateTip(Input=scan(), TipSize=4), "Tip Size", "odd")
+    refuses(simple.CleanScan(Input=scan(), MedianWidth=4), "Median Width", "Give 5")
+    refuses(simple.ErodebyTip(Input=scan(), Tip=tip(), Distance=-1), "Distance", "below 0")
+    refuses(simple.CertaintyMap(Input=scan(), Tip=tip(), Sigmas=0), "Sigmas")
+    refuses(simple.ErodebyTip(Input=scan(), Tip=simple.AFMTip(Samples=4)), "Samples", "odd")
+    two = simple.SampleSurface(Shape="Grating", Width=100, Depth=100, FeatureHeight=10, Period=40, FeatureWidth=4, WallRun=4)
+    refuses(simple.ErodebyTip(Input=scan(), Tip=two), "Tip", "places that do not touch")
+
+
+def progress_and_abort():
+    large = simple.SampleSurface(Shape="Rough", Width=1022, Depth=1022)
+    blunt = simple.AFMTip(Radius=60, Samples=61)
+    erode = simple.ErodebyTip(Input=large, Tip=blunt, Distance=4, Upsample=2)
+    expect(len(progress_of(erode)) > 3, "there is progress")
+    whole = array(fetch(erode), "z_nm").copy()
+    erode.Upsample = 3
+    erode.Upsample = 2
+    same(array(abort_and_rerun(erode), "z_nm"), whole, "after an abort")
+    sweep = simple.EstimateTip(Input=simple.SampleSurface(Shape="Rough", Width=300, Depth=300), Noise=0.3)
+    expect(len(progress_of(sweep)) > 3, "the sweep tells its progress")
+
+
+run(tips_equal_the_command, morphology_equals_the_command, tips_are_resampled, certainty_equals_the_command,
+    cleaning_equals_the_command, found_tips_equal_the_command, wrong_properties_are_refused, progress_and_abort)
