@@ -22,29 +22,6 @@ struct Pose {
   double xx, xy, yx, yy;   // SEM to AFM
 };
 
-/// Values at a pitch, about their mean and over their deviation.
-template <class ValueAt, class HoldsAt>
-MaskedGrid sampled(int width, int height, const ValueAt& value_at, const HoldsAt& holds_at) {
-  MaskedGrid grid{Grid<float>(width, height), Grid<float>(width, height)};
-  double sum = 0, squares = 0, count = 0;
-  for (int y = 0; y < height; ++y)
-    for (int x = 0; x < width; ++x) {
-      if (!holds_at(x, y)) continue;
-      const double v = value_at(x, y);
-      grid.mask(x, y) = 1;
-      grid.values(x, y) = static_cast<float>(v);
-      sum += v;
-      squares += v * v;
-      count += 1;
-    }
-  if (count == 0) return grid;
-  const double mean = sum / count, deviation = std::sqrt(std::max(0.0, squares / count - mean * mean));
-  const double scale = deviation > 1e-9 * std::abs(mean) ? 1 / deviation : 0;
-  for (std::size_t i = 0; i < grid.values.size(); ++i)
-    grid.values.data()[i] = grid.mask.data()[i] != 0 ? static_cast<float>((grid.values.data()[i] - mean) * scale) : 0.0F;
-  return grid;
-}
-
 int steps_for(double range, double step) {
   return std::max(1, static_cast<int>(std::ceil(range / step)));
 }

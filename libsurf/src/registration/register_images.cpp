@@ -10,6 +10,7 @@
 
 #include "registration/mutual_information.h"
 #include "registration/pose_search.h"
+#include "registration/repeats.h"
 #include "registration/trial.h"
 #include "registration/uncertainty.h"
 #include "registration/verdict.h"
@@ -20,7 +21,8 @@ namespace surf {
 namespace {
 
 // How many places are followed how far. The true one is nearly always among the first ten of the search.
-constexpr std::size_t places_searched = 120, places_coarse = 24, places_fine = 8, places_sharp = 3;
+constexpr std::size_t places_searched = 120, places_coarse = 24, places_fine = 8, places_sharp = 3,
+                      places_repeated = 6;
 constexpr Effort coarse_effort{3, 8, 0}, fine_effort{6, 12, 0};
 constexpr Effort sharp_effort{1, 4, 10};   // noise is in the slopes: see Newton's steps
 constexpr double sharp_blur_px = 2;    // from here on every pixel counts, and costs
@@ -255,9 +257,17 @@ class Registrar {
     return moved;
   }
 
-  /// Other optima along those motions: on patterns that slide or repeat they are as good.
+  /// Other optima along those motions, and where the scan looks like itself: on patterns that slide or repeat
+  /// they are as good. Which place of a lattice is meant a start that is given says.
   std::vector<Trial> probe(const Trial& best, const Uncertainty& u) {
     std::vector<Trial> probes = displaced(best, u);
+    if (!options_.start) {
+      const BlurLevel& smooth = level(std::max(blur_, slip_blur_px));
+      for (const Corners& corners : repeats_of(smooth, best.corners, places_repeated)) {
+        probes.emplace_back();
+        probes.back().corners = corners;
+      }
+    }
     const auto drop_same = [&](const BlurLevel& at, double apart) {
       const Moments moments = moments_of(at, overlap_of(at, best.corners));
       std::erase_if(probes, [&](const Trial& t) { return distance_px(t.corners, best.corners, moments) < apart; });

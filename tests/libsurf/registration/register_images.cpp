@@ -12,6 +12,7 @@
 
 #include "registration/correlation.h"
 #include "registration/mutual_information.h"
+#include "registration/repeats.h"
 #include "registration/verdict.h"
 #include "surf/core/error.h"
 #include "surf/core/random.h"
@@ -233,6 +234,66 @@ TEST(RegisterImages, AFineGratingIsAmbiguousAndHasItsRivals) {
     EXPECT_GT(r.stderr_px, 0.2);
     EXPECT_FALSE(r.rivals.empty());
   }
+}
+
+/// Discs on a square lattice.
+Scene lattice_of(double period) {
+  return [period](double x, double y) {
+    return 1 / (1 + std::exp(4 * (std::hypot(std::remainder(x, period), std::remainder(y, period)) - 0.27 * period)));
+  };
+}
+
+TEST(RegisterImages, FindsTheRivalsOfALatticeTooFineForTheSearch) {
+  // What is broad finds the place and the search has no other; sharp images show mostly what repeats.
+  constexpr double period = 12;
+  const Scene dots = lattice_of(period);
+  const Affine truth = make_affine({0.7, 1.05, 0.95, 0.02, 20, -15});
+  for (const std::uint64_t seed : {5, 6}) {
+    const Spots spots(seed);
+    const Scene scene = [&](double x, double y) { return dots(x, y) + 0.4 * spots(x / 5, y / 5); };
+    const PlacedImage sem = image_of(scene, truth, 300, 180, 1, 0.7, 1), afm = image_of(scene, {}, 185, 185, 1.25, 0.03, 2);
+    const Registration r = register_images(sem, afm);
+    EXPECT_EQ(r.verdict, RegistrationVerdict::ambiguous) << r.reason;
+    EXPECT_FALSE(r.rivals.empty());
+    for (const RegistrationRival& rival : r.rivals) {
+      const Point2 here = r.sem_to_afm({0, 0}), there = rival.sem_to_afm({0, 0});
+      EXPECT_NEAR(std::remainder(there.x - here.x, period), 0, 1);
+      EXPECT_NEAR(std::remainder(there.y - here.y, period), 0, 1);
+      EXPECT_GT(rival.distance_px, 0.8 * period);
+    }
+    // Landmarks say which, with blurs that leave the pattern there.
+    RegistrationOptions options;
+    options.blurs_px = {3, 2, 1, 0};
+    options.start = make_affine({0.705, 1.05, 0.945, 0.02, 21, -16});
+    const Registration led = register_images(sem, afm, options);
+    EXPECT_EQ(led.verdict, RegistrationVerdict::verified) << led.reason;
+    EXPECT_LT(error_px(truth, led.sem_to_afm, 300, 180, 115), 0.3);
+  }
+}
+
+TEST(Repeats, AreOtherPlacesOfALatticeAndNoneOfSpots) {
+  const Affine map = make_affine({0.3, 1.1, 0.9, 0.03, 7, -4});
+  const auto repeats_in = [&](const Scene& scene, Corners& best) {
+    const PlacedImage sem = image_of(scene, map, 90, 70, 1, 0.3, 1), afm = image_of(scene, {}, 80, 70, 1.25, 0.03, 2);
+    const CornerFrame frame(sem, afm);
+    best = frame.corners(map);
+    return repeats_of({sem, afm, frame, 2}, best, 4);
+  };
+  Corners best;
+  const std::vector<Corners> repeats = repeats_in(lattice_of(14), best);
+  ASSERT_EQ(repeats.size(), 4U);
+  for (const Corners& c : repeats) {
+    const double x = c[0] - best[0], y = c[1] - best[1];
+    EXPECT_GT(std::hypot(x, y), 13);
+    EXPECT_LT(std::hypot(x, y), 45);
+    EXPECT_NEAR(std::remainder(x, 14), 0, 0.6);
+    EXPECT_NEAR(std::remainder(y, 14), 0, 0.6);
+    for (std::size_t i = 2; i < 6; i += 2) {
+      EXPECT_NEAR(c[i] - best[i], x, 1e-9);
+      EXPECT_NEAR(c[i + 1] - best[i + 1], y, 1e-9);
+    }
+  }
+  EXPECT_TRUE(repeats_in(Spots(3), best).empty());
 }
 
 TEST(RegisterImages, DoesNotAcceptAScaleBeyondItsLimits) {
