@@ -234,7 +234,6 @@ ReconstructSummary run(const ReconstructJob& job, const ChainListener& listener)
   ReconstructionOptions options = options_of(job, s);
   options.watch = watch_of(told);
   s.result = reconstruct(afm_data, sem_data, options, &checkpoint);
-  for (const std::string& warning : s.result.warnings) told.warn(warning);
   if (job.truth) s.truth = compare_with_truth(s.result, *job.truth);
   s.reasons = reasons_of(s);
   if (!s.reasons.empty()) s.verdict = ReconstructionVerdict::flagged;
