@@ -24,8 +24,8 @@ std::vector<double> height_profile(const TriangleMesh& mesh, Point2 from_nm, Poi
   MeshHeightFieldOptions options;
   options.pitch_nm = length / (samples - 1);
   options.region_nm.emplace();
-  options.region_nm->extend({0, 0, 0});
-  options.region_nm->extend({length, options.pitch_nm, 0});
+  options.region_nm->extend(Vec3{0, 0, 0});
+  options.region_nm->extend(Vec3{length, options.pitch_nm, 0});
   const HeightField field = mesh_height_field(turned, options);
   std::vector<double> heights(static_cast<std::size_t>(samples), std::numeric_limits<double>::quiet_NaN());
   for (int i = 0; i < samples && i < field.z_nm.width(); ++i)
