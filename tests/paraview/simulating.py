@@ -80,8 +80,9 @@ def tracks_and_detectors():
 
 
 def needs_update(source):
-    source.UpdatePropertyInformation()
-    return source.NeedsUpdate
+    needs = source.SMProxy.GetProperty("NeedsUpdate")
+    source.SMProxy.UpdatePropertyInformation(needs)
+    return needs.GetElement(0)
 
 
 def live_images_refine():
