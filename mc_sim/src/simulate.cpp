@@ -12,6 +12,7 @@
 #include "scene_impl.h"
 #include "surf/core/error.h"
 #include "surf/core/parallel.h"
+#include "surf/mc/unit_plan.h"
 #include "unit_worker.h"
 
 namespace surf::mc {
@@ -53,115 +54,13 @@ void check_options(const SimulationOptions& options) {
     throw UsageError("--accuracy", "direct simulation cannot serve it", "Use --method replay");
 }
 
-// Units of work: runs of pixels along a row, or tiles where they are replayed. Long counts of electrons
-// are split, so that one pixel can keep all threads busy. Numbered rather than listed: there may be
-// very many.
-class Plan {
- public:
-  Plan(const Scan& scan, const SimulationOptions& options) : scan_(scan) {
-    if (options.accuracy > 0) {   // a pixel looks at its neighbours within the tile: fixed tiles
-      run_ = height_ = tile;
-      by_pixel_ = true;
-      runs_ = (scan.width + tile - 1) / tile;
-      total_ = static_cast<double>(scan.width) * scan.height;
-      return;
-    }
-    const Share share(scan, options);
-    if (options.dose > 0) {
-      for (int y = 0; y < scan.height; ++y)
-        for (int x = 0; x < scan.width; ++x) {
-          const std::int64_t n = share.of(x, y);
-          most_ = std::max(most_, n);
-          total_ += static_cast<double>(n);
-        }
-    } else {
-      most_ = options.electrons;
-      total_ = static_cast<double>(options.electrons) * scan.width * scan.height;
-    }
-    std::int64_t pixels = std::max<std::int64_t>(1, chunk_ / most_);
-    std::int64_t longest = scan.width;
-    if (options.method == Method::replay) {   // pixels of a tile share what they read of the library
-      chunk_ = replayed_chunk;
-      pixels = std::clamp<std::int64_t>(4 * chunk_ / most_, 1, tile * tile);
-      longest = std::min(longest, std::int64_t{tile});
-    }
-    pixels = std::min<std::int64_t>(pixels, options.tile_pixels);
-    run_ = static_cast<int>(std::min(pixels, longest));
-    runs_ = (scan.width + run_ - 1) / run_;
-    if (options.method == Method::replay) height_ = static_cast<int>(pixels / run_);
-    chunks_ = (most_ + chunk_ - 1) / chunk_;
-  }
-
-  /// Of any pixel.
-  std::int64_t most() const { return most_; }
-
-  /// Primaries; with a wanted accuracy, pixels.
-  double total() const { return total_; }
-  double done(const WorkUnit& unit, const UnitTally& tally) const {
-    return by_pixel_ ? static_cast<double>(unit.x1 - unit.x0) * (unit.y1 - unit.y0)
-                     : static_cast<double>(tally.balance.incident);
-  }
-
-  std::size_t units() const {
-    return static_cast<std::size_t>(chunks_) * static_cast<std::size_t>(runs_) *
-           static_cast<std::size_t>((scan_.height + height_ - 1) / height_);
-  }
-
-  WorkUnit unit(std::size_t number) const {
-    const auto n = static_cast<std::int64_t>(number);
-    const std::int64_t first = n % chunks_ * chunk_;
-    const int x = static_cast<int>(n / chunks_ % runs_) * run_;
-    const int y = static_cast<int>(n / chunks_ / runs_) * height_;
-    return {x, y, std::min(x + run_, scan_.width), std::min(y + height_, scan_.height), first,
-            std::min(chunk_, most_ - first)};
-  }
-
- private:
-  static constexpr std::int64_t direct_chunk = 4096;   // primaries: a fraction of a second
-  static constexpr std::int64_t replayed_chunk = 16 * direct_chunk;
-  static constexpr int tile = 32;
-  Scan scan_;
-  bool by_pixel_ = false;
-  std::int64_t chunk_ = direct_chunk;
-  int height_ = 1;
-  std::int64_t most_ = 1;
-  double total_ = 0;
-  int run_ = 1;
-  std::int64_t runs_ = 1, chunks_ = 1;
-};
-
-// The scan's tallies, merged from units as they come: sums are whole numbers, so order is nothing.
+// Merges units as they come. Large tallies go back to the disk now and then.
 class Collector {
  public:
-  Collector(const Scan& scan, const SimulationOptions& options) {
-    result.detectors = options.detectors;
-    const std::string folder =
-        tally_bytes(scan, options) > options.tally_memory ? options.scratch_folder : "";
-    result.pixels = LargeGrid<PixelTally>(scan.width, scan.height, folder);
-    for (std::size_t d = 0; d < options.detectors.size(); ++d)
-      result.counts.emplace_back(scan.width, scan.height, folder);
-    for (std::size_t d = 0; options.accuracy > 0 && d < options.detectors.size(); ++d)
-      result.controls.emplace_back(scan.width, scan.height, folder);
-    result.accuracy = options.accuracy;
-    result.accuracy_floor = options.accuracy_floor;
-    result.dose = options.dose;
-    result.seed = options.seed;
-  }
+  Collector(const Scan& scan, const SimulationOptions& options) : result(empty_result(scan, options)) {}
 
   void add(const WorkUnit& u, const UnitTally& tally) {
-    check_shape(u, tally);
-    for (int y = u.y0; y < u.y1; ++y)
-      for (int x = u.x0; x < u.x1; ++x) {
-        result.pixels(x, y) += tally.pixels(x - u.x0, y - u.y0);
-        for (std::size_t d = 0; d < result.counts.size(); ++d)
-          result.counts[d](x, y) += tally.counts[d](x - u.x0, y - u.y0);
-        for (std::size_t d = 0; d < result.controls.size(); ++d)
-          result.controls[d](x, y) = tally.controls[d](x - u.x0, y - u.y0);
-      }
-    if (result.spectra.empty()) result.spectra = tally.spectra;
-    else
-      for (std::size_t d = 0; d < tally.spectra.size(); ++d) result.spectra[d] += tally.spectra[d];
-    result.balance += tally.balance;
+    merge(result, u, tally);
     added_ += tally.pixels.size();
     if (added_ < most_added) return;
     result.release();
@@ -173,23 +72,7 @@ class Collector {
  private:
   static constexpr std::size_t most_added = std::size_t{1} << 19;   // pixels between releases
   std::size_t added_ = 0;
-
-  // A journal may have been kept for something else.
-  void check_shape(const WorkUnit& u, const UnitTally& tally) const {
-    bool fits = tally.counts.size() == result.counts.size() &&
-                tally.controls.size() == result.controls.size() &&
-                tally.pixels.width() == u.x1 - u.x0 && tally.pixels.height() == u.y1 - u.y0 &&
-                (result.spectra.empty() || tally.spectra.size() == result.spectra.size());
-    for (const auto& grid : tally.counts) fits = fits && grid.size() == tally.pixels.size();
-    if (!fits)
-      throw InvalidInput("journal of units", "a unit's tally is of another simulation",
-                         "Begin anew, without the journal");
-  }
 };
-
-}  // namespace
-
-namespace {
 
 // What the workers of a simulation share.
 class Workshop {
@@ -333,7 +216,7 @@ SimulationResult simulate(const Scene& scene, const SimulationOptions& options,
   const auto seconds = [&] {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   };
-  const Plan plan(scene.scan(), options);
+  const UnitPlan plan(scene.scan(), options);
   const int threads = resolve_threads(options.threads);
   struct Bench {
     std::unique_ptr<UnitWorker> worker;

@@ -79,7 +79,9 @@ void fill(Image& image, const ModelImages& predicted) {
                    [](double value) { return static_cast<float>(value); });
 }
 
-std::vector<std::string> warnings_of(const TrainedModel& model, const HeightField& field) {
+}  // namespace
+
+std::vector<std::string> prediction_warnings(const TrainedModel& model, const HeightField& field) {
   std::vector<std::string> warnings;
   const double steepest = model.record.range.slope_deg_max;
   const double share = steepest > 0 ? share_steeper(field, steepest) : 0;
@@ -89,8 +91,6 @@ std::vector<std::string> warnings_of(const TrainedModel& model, const HeightFiel
                                    format_share(std::round(1000 * share) / 1000), steepest));
   return warnings;
 }
-
-}  // namespace
 
 PredictSummary run(const PredictJob& job, const NoteCallback& note) {
   PredictSummary summary;
@@ -106,7 +106,7 @@ PredictSummary run(const PredictJob& job, const NoteCallback& note) {
   fill(summary.image, model->predict(field, {job.edge, job.threads}));
   summary.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   summary.range = surface_range(field);
-  summary.warnings = warnings_of(summary.model, field);
+  summary.warnings = prediction_warnings(summary.model, field);
   for (const fs::path& output : job.outputs) io::write_image(output, summary.image, {job.png_channel});
   return summary;
 }

@@ -73,7 +73,6 @@ Identity identity_of(const ReconstructionOptions& o, const AfmData* afm, const S
 void check(const ReconstructJob& job) {
   if (!job.afm && !job.sem)
     throw UsageError("reconstruct", "neither a scan nor an SEM image is given", "Add --afm scan.gwy, --sem image.tif, or both");
-  if (job.folder.empty()) throw UsageError("--output", "no folder for the result is given", "Add -o result");
   std::error_code ignored;
   if (std::filesystem::exists(job.folder, ignored) && !std::filesystem::is_directory(job.folder, ignored))
     throw UsageError("--output", fmt::format("{} is no folder", job.folder.string()), "Name a folder for all results, as -o result");
@@ -82,7 +81,7 @@ void check(const ReconstructJob& job) {
   if (job.upsample < 1 || job.upsample > 8)
     throw UsageError("--upsample", fmt::format("{} is out of range", job.upsample), "Give a whole number from 1 to 8");
   if (job.sem) validate(job.sem->image, "SEM image");
-  if (job.picture) io::check_plot_target(job.folder / "panel.png");
+  if (job.picture && !job.folder.empty()) io::check_plot_target(job.folder / "panel.png");
 }
 
 std::string seen(const ResidualReport& r) {
@@ -115,13 +114,16 @@ std::vector<std::string> reasons_of(const ReconstructSummary& s) {
   return reasons;
 }
 
-void keep_registration(const ReconstructJob& job, const ReconstructSummary& s) {
+void keep_registration(const ReconstructJob& job, const ReconstructSummary& s, const PlacedImage& image) {
+  if (job.folder.empty()) return;
   io::TransformFile file;
   file.sem_to_afm = s.pose->sem_to_afm;
   file.verified = s.pose->verified();
   if (s.pose->registration)
     file.verdict = fmt::format("{}: {}", name(s.pose->registration->verdict), s.pose->registration->reason);
   io::write_transform(job.folder / "transform.json", file);
+  if (job.picture)
+    io::write_plot(job.folder / "registration.png", registration_picture(image, s.pose->simulated, s.pose->sem_to_afm));
 }
 
 /// Watches a step of the chain for a job.
@@ -208,9 +210,7 @@ ReconstructSummary run(const ReconstructJob& job, const ChainListener& listener)
     pose.registration.largest_stderr_px = std::max(pose.registration.largest_stderr_px, 1.0);
     s.pose = pose_of(pose, *s.afm, image, *s.model, threads, told);
     if (!s.pose->verified() && !job.pose.accept_unverified) {
-      keep_registration(job, s);
-      if (job.picture)
-        io::write_plot(job.folder / "registration.png", registration_picture(image, s.pose->simulated, s.pose->sem_to_afm));
+      keep_registration(job, s, image);
       s.verdict = ReconstructionVerdict::not_registered;
       s.reasons = {fmt::format("the registration is {}: {}", name(s.pose->registration->verdict), s.pose->registration->reason)};
       return s;
@@ -222,25 +222,28 @@ ReconstructSummary run(const ReconstructJob& job, const ChainListener& listener)
   if (job.sem) sem = sem_data(job, s, image, afm ? &*afm : nullptr, told);
 
   begin(told, "reconstruction");
-  std::filesystem::create_directories(job.folder);
   const AfmData* afm_data = afm ? &*afm : nullptr;
   const SemData* sem_data = sem ? &*sem : nullptr;
-  ReconstructionCheckpoint checkpoint(job.folder / "checkpoint",
-                                      identity_of(options_of(job, s), afm_data, sem_data, s.model ? &*s.model : nullptr), told.note);
-  if (const auto state = checkpoint.found()) {
-    s.resumed = true;
-    if (told.note) told.note(fmt::format("{} scales are done already: going on from there", state->scales.size()));
+  std::optional<ReconstructionCheckpoint> checkpoint;
+  if (!job.folder.empty()) {
+    std::filesystem::create_directories(job.folder);
+    checkpoint.emplace(job.folder / "checkpoint",
+                       identity_of(options_of(job, s), afm_data, sem_data, s.model ? &*s.model : nullptr), told.note);
+    if (const auto state = checkpoint->found()) {
+      s.resumed = true;
+      if (told.note) told.note(fmt::format("{} scales are done already: going on from there", state->scales.size()));
+    }
   }
   ReconstructionOptions options = options_of(job, s);
   options.watch = watch_of(told);
-  s.result = reconstruct(afm_data, sem_data, options, &checkpoint);
+  s.result = reconstruct(afm_data, sem_data, options, checkpoint ? &*checkpoint : nullptr);
   if (job.truth) s.truth = compare_with_truth(s.result, *job.truth);
   s.reasons = reasons_of(s);
   if (!s.reasons.empty()) s.verdict = ReconstructionVerdict::flagged;
-
+  if (!checkpoint) return s;
   begin(told, "writing");
   s.written = write_reconstruction(job, s, afm_data, sem_data);
-  checkpoint.remove();
+  checkpoint->remove();
   return s;
 }
 

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "surf/workflow/trajectories.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -34,10 +36,10 @@ Pixel pixel_at(const mc::Scan& scan, const std::optional<std::pair<double, doubl
   return {static_cast<int>(x), static_cast<int>(y)};
 }
 
-std::vector<Track> record(const mc::Scene& scene, const SimulateJob& job, const Pixel& p,
-                          int primaries, double exit_nm) {
+std::vector<Track> record(const mc::Scene& scene, std::uint64_t seed, const Pixel& p, int primaries,
+                          double exit_nm) {
   mc::SimulationOptions options;
-  options.seed = job.options.seed;
+  options.seed = seed;
   mc::TrackRecorder recorder(exit_nm);
   mc::simulate_unit(scene, options, {p.x, p.y, p.x + 1, p.y + 1, 0, primaries}, &recorder);
   return std::move(recorder.tracks);
@@ -90,15 +92,22 @@ void check_trajectories(const SimulateJob& job, const mc::Scan& scan) {
   if (job.extras.trajectories > 0) pixel_at(scan, job.extras.trajectories_at_nm);
 }
 
+Trajectories record_trajectories(const mc::Scene& scene, std::uint64_t seed, int primaries,
+                                 const std::optional<std::pair<double, double>>& at_nm) {
+  const mc::Scan& scan = scene.scan();
+  const Pixel pixel = pixel_at(scan, at_nm);
+  Trajectories t;
+  t.inside_nm = longest_side(box_inside(record(scene, seed, pixel, std::min(primaries, probe_primaries), 0)));
+  t.exit_nm = t.inside_nm > 0 ? exit_share * t.inside_nm : scan.width * scan.pixel_x_nm;
+  t.tracks = record(scene, seed, pixel, primaries, t.exit_nm);
+  return t;
+}
+
 void write_trajectories(const mc::Scene& scene, const SimulateJob& job,
                         const std::map<std::string, std::string>& settings) {
-  const mc::Scan& scan = scene.scan();
-  const Pixel pixel = pixel_at(scan, job.extras.trajectories_at_nm);
   const int primaries = job.extras.trajectories;
-  const double inside = longest_side(
-      box_inside(record(scene, job, pixel, std::min(primaries, probe_primaries), 0)));
-  const double exit_nm = inside > 0 ? exit_share * inside : scan.width * scan.pixel_x_nm;
-  const std::vector<Track> tracks = record(scene, job, pixel, primaries, exit_nm);
+  const auto [tracks, inside, exit_nm] =
+      record_trajectories(scene, job.options.seed, primaries, job.extras.trajectories_at_nm);
 
   io::write_tracks(extra_path(job, ".tracks.vtp"), tracks, settings);
   io::TrackPictureOptions picture;

@@ -41,4 +41,7 @@ struct PredictSummary {
 /// FileError.
 PredictSummary run(const PredictJob& job, const NoteCallback& note = {});
 
+/// What should be known of a prediction of these heights: whether they are steeper than any that the model has learnt from.
+std::vector<std::string> prediction_warnings(const TrainedModel& model, const HeightField& field);
+
 }  // namespace surf::workflow

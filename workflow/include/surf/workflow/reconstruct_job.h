@@ -32,7 +32,7 @@ struct ReconstructJob {
   ReconstructionOptions options;                 ///< its threads are for all steps; `refine_tip` is as above
   std::optional<HeightField> truth;              ///< in the SEM's frame, or the scan's without an SEM image: to compare with
   std::filesystem::path truth_file;
-  std::filesystem::path folder;                  ///< of the result; made where it is missing
+  std::filesystem::path folder;                  ///< of the result; made where it is missing. Empty: no files are written
   std::string command_line;                      ///< as given, for the record
   std::vector<std::string> fixed_options;        ///< what it says of how inputs are read and prepared: options and values
   bool picture = true;                           ///< panel.png, which needs Python with Matplotlib

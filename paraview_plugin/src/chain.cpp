@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "chain.h"
+
+#include <fmt/format.h>
+#include <vtkPolyData.h>
+
+#include <algorithm>
+#include <memory>
+
+#include "surf/core/error.h"
+#include "surf/io/cache.h"
+#include "surf/io/sim/materials.h"
+
+namespace surf::pv {
+
+workflow::ModelRequest model_request(const std::string& file, const std::string& material, double energy_ev, double spot_nm) {
+  workflow::ModelRequest request;
+  request.file = file;
+  const std::filesystem::path cache = io::cache_folder();
+  if (!cache.empty()) request.folder = cache / "models";
+  if (!file.empty()) return request;
+  if (material.empty()) throw UsageError("Model File", "no model is named, nor a material", "Give one of the two");
+  if (cache.empty()) throw UsageError("Model File", "none is named, and there is no cache to keep one in", "Name one");
+  request.material = io::find_material(material, "Material");
+  request.energy_ev = energy_ev;
+  request.spot_nm = spot_nm;
+  request.spot_given = true;
+  return request;
+}
+
+std::vector<LandmarkPair> landmarks_of(vtkPolyData* sem, vtkPolyData* afm) {
+  const vtkIdType of_sem = sem ? sem->GetNumberOfPoints() : 0, of_afm = afm ? afm->GetNumberOfPoints() : 0;
+  if (of_sem != of_afm)
+    throw UsageError("SEM Landmarks", fmt::format("there are {}, and {} AFM Landmarks", of_sem, of_afm),
+                     "Give the same places in both, in the same order, or none");
+  std::vector<LandmarkPair> pairs;
+  for (vtkIdType i = 0; i < of_sem; ++i) {
+    double s[3], a[3];
+    sem->GetPoint(i, s);
+    afm->GetPoint(i, a);
+    pairs.push_back({{s[0], s[1]}, {a[0], a[1]}});
+  }
+  if (!pairs.empty()) fit_landmarks(pairs);   // complains of too few, or on a line, before any work
+  return pairs;
+}
+
+workflow::ChainListener listen(const Watch& watch, int stages, std::vector<std::string>& warnings) {
+  workflow::ChainListener listener;
+  const auto begun = std::make_shared<int>(0);
+  const auto tell = [watch, stages, begun](double share) {
+    if (watch.progress) watch.progress(std::min(*begun - 1 + share, double(stages)), stages);
+  };
+  listener.stage = [begun, tell](const std::string&) {
+    ++*begun;
+    tell(0);
+  };
+  listener.progress = [tell](double done, double total) { tell(total > 0 ? std::clamp(done / total, 0.0, 1.0) : 0); };
+  listener.warn = [&warnings](const std::string& text) { warnings.push_back(text); };
+  listener.cancel = watch.cancel;
+  return listener;
+}
+
+}  // namespace surf::pv

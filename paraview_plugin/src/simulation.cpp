@@ -1,0 +1,362 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "simulation.h"
+
+#include <vtkCommunicator.h>
+#include <vtkMultiProcessController.h>
+
+#include <algorithm>
+#include <chrono>
+#include <condition_variable>
+#include <cstring>
+#include <exception>
+#include <map>
+#include <mutex>
+#include <string_view>
+#include <thread>
+#include <utility>
+
+#include "attempt.h"
+#include "surf/core/error.h"
+#include "surf/core/parallel.h"
+#include "surf/io/cache.h"
+#include "surf/mc/choose_method.h"
+#include "surf/mc/pack.h"
+#include "surf/mc/unit_plan.h"
+#include "surf/workflow/libraries.h"
+
+namespace surf::pv {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr double scene_share = 0.02, library_share = 0.3;   // of the progress
+
+/// The cache's libraries, which tell of their making.
+class Libraries final : public mc::LibrarySource {
+ public:
+  explicit Libraries(Watch watch) : kept_(io::cache_folder()), watch_(std::move(watch)) {}
+
+  std::shared_ptr<const mc::CascadeLibrary> library(const mc::CascadeSettings& settings, std::size_t cascades, int threads,
+                                                    const ProgressCallback&, const CancelToken* cancel) override {
+    return kept_.library(settings, cascades, threads, watch_.progress, cancel);
+  }
+
+ private:
+  workflow::CachedLibraries kept_;
+  Watch watch_;
+};
+
+/// Leaves to each rank every so many-eth unit: neighbours take alike long.
+class ShareOfRank final : public mc::UnitJournal {
+ public:
+  ShareOfRank(const mc::Scan& scan, const mc::SimulationOptions& options, int rank, int ranks)
+      : plan_(scan, options), options_(options), rank_(rank), ranks_(ranks) {}
+
+  bool recall(std::size_t unit, mc::UnitTally& tally) override {
+    if (static_cast<int>(unit % static_cast<std::size_t>(ranks_)) == rank_) return false;
+    tally = mc::empty_tally(plan_.unit(unit), options_);
+    return true;
+  }
+
+  void record(std::size_t unit, const mc::UnitTally& tally) override {
+    const std::string packed = mc::pack(tally);
+    const std::uint64_t head[2] = {unit, packed.size()};
+    bytes.append(reinterpret_cast<const char*>(head), sizeof head);
+    bytes += packed;
+  }
+
+  std::string bytes;   // of the units done here
+
+ private:
+  mc::UnitPlan plan_;
+  const mc::SimulationOptions& options_;
+  int rank_, ranks_;
+};
+
+/// Knows what all ranks have done.
+class AllRanks final : public mc::UnitJournal {
+ public:
+  explicit AllRanks(std::string_view bytes) {
+    while (bytes.size() >= sizeof(std::uint64_t[2])) {
+      std::uint64_t head[2];
+      std::memcpy(head, bytes.data(), sizeof head);
+      units_[head[0]] = bytes.substr(sizeof head, head[1]);
+      bytes.remove_prefix(sizeof head + head[1]);
+    }
+  }
+
+  bool recall(std::size_t unit, mc::UnitTally& tally) override {
+    const auto found = units_.find(unit);
+    if (found == units_.end()) return false;
+    tally = mc::unpack(found->second);
+    return true;
+  }
+  void record(std::size_t, const mc::UnitTally&) override {}
+
+ private:
+  std::map<std::uint64_t, std::string_view> units_;
+};
+
+std::string gather(vtkMultiProcessController* ranks, const std::string& own) {
+  const auto count = static_cast<std::size_t>(ranks->GetNumberOfProcesses());
+  const auto length = static_cast<vtkIdType>(own.size());
+  std::vector<vtkIdType> lengths(count), starts(count, 0);
+  ranks->AllGather(&length, lengths.data(), 1);
+  for (std::size_t i = 1; i < count; ++i) starts[i] = starts[i - 1] + lengths[i - 1];
+  std::string all(static_cast<std::size_t>(starts.back() + lengths.back()), '\0');
+  ranks->AllGatherV(own.data(), all.data(), length, lengths.data(), starts.data());
+  return all;
+}
+
+/// Does a part of the work that all ranks do, and fails on all if it fails or is aborted on one: who went on alone would
+/// wait for the others for ever.
+void together(vtkMultiProcessController* ranks, const std::function<void()>& part) {
+  std::exception_ptr error;
+  try {
+    part();
+  } catch (...) {
+    error = std::current_exception();
+  }
+  int failed = error ? 1 : 0, any = failed;
+  if (ranks) ranks->AllReduce(&failed, &any, 1, vtkCommunicator::MAX_OP);
+  if (error) std::rethrow_exception(error);
+  if (any) throw Interrupted();
+}
+
+mc::Scene make_scene(const SimulationPlan& plan) { return {plan.specimen, plan.beam, plan.scan, plan.physics}; }
+
+mc::SimulationOptions chosen_options(const SimulationPlan& plan, const mc::Scene& scene) {
+  mc::SimulationOptions options = plan.options;
+  options.method = mc::choose_method(scene, options, plan.method).method;
+  return options;
+}
+
+std::vector<Track> tracks_of(const SimulationPlan& plan, const mc::Scene& scene) {
+  if (plan.trajectories == 0) return {};
+  return workflow::record_trajectories(scene, plan.options.seed, plan.trajectories).tracks;
+}
+
+}  // namespace
+
+Simulated simulate(vtkAlgorithm* self, const SimulationPlan& plan, vtkMultiProcessController* ranks) {
+  Simulated done;
+  std::optional<mc::Scene> scene;
+  mc::SimulationOptions options;
+  std::optional<Libraries> libraries;
+  std::optional<ShareOfRank> share;
+  together(ranks, [&] {
+    work(self, [&](const Watch& watch) {
+      scene.emplace(make_scene(plan));
+      watch.report(scene_share, 1);
+      options = chosen_options(plan, *scene);
+      if (ranks)
+        share.emplace(plan.scan, options, ranks->GetLocalProcessId(), ranks->GetNumberOfProcesses());
+      libraries.emplace(watch.part(scene_share, library_share));
+      const bool made = options.method == mc::Method::replay;
+      const Watch rest = watch.part(made ? library_share : scene_share, 1);
+      done.result = mc::simulate(*scene, options, rest.progress, watch.cancel, {}, share ? &*share : nullptr, &*libraries);
+      watch.check();
+      done.tracks = tracks_of(plan, *scene);
+    });
+  });
+  if (!ranks) return done;
+  const std::string all = gather(ranks, share->bytes);
+  together(ranks, [&] {
+    work(self, [&](const Watch& watch) {
+      AllRanks journal(all);
+      done.result = mc::simulate(*scene, options, {}, watch.cancel, {}, &journal, &*libraries);
+    });
+  });
+  return done;
+}
+
+struct LiveSimulation::Shared {
+  explicit Shared(SimulationPlan p) : plan(std::move(p)) {
+    coarse_options = plan.options;
+    coarse_options.accuracy = coarse_options.dose = 0;
+    coarse_options.electrons = coarse_electrons;
+    coarse = mc::empty_result(plan.scan, coarse_options);
+    fine = mc::empty_result(plan.scan, plan.options);
+    thread = std::thread([this] { run(); });
+  }
+
+  void run();
+  void look_coarsely(const mc::Scene& scene);
+  void tell() {
+    news = true;
+    told.notify_all();
+  }
+
+  static constexpr int coarse_electrons = 8;
+  static constexpr int coarsest = 8;            // places along the longer side, doubled again and again
+  static constexpr std::chrono::milliseconds coarse_time{600};
+
+  SimulationPlan plan;
+  mc::SimulationOptions coarse_options;
+  CancelToken cancel;
+
+  // Guarded by `mutex`.
+  mutable std::mutex mutex;
+  mutable std::condition_variable told;
+  mc::SimulationResult coarse, fine;            // the pixels done
+  std::vector<int> strides;                     // of the coarse ones, falling
+  std::vector<Track> tracks;
+  std::exception_ptr error;
+  bool coarse_done = false, has_fine = false, news = false, ended = false, looked_at = false;
+
+  std::thread thread;                           // last: it uses the others
+};
+
+namespace {
+
+/// Merges the units that are done into what is shown.
+class Shown final : public mc::UnitJournal {
+ public:
+  Shown(const mc::Scan& scan, const mc::SimulationOptions& options,
+        std::function<void(const mc::WorkUnit&, const mc::UnitTally&)> show)
+      : plan_(scan, options), show_(std::move(show)) {}
+
+  bool recall(std::size_t, mc::UnitTally&) override { return false; }
+  void record(std::size_t unit, const mc::UnitTally& tally) override { show_(plan_.unit(unit), tally); }
+
+ private:
+  mc::UnitPlan plan_;
+  std::function<void(const mc::WorkUnit&, const mc::UnitTally&)> show_;
+};
+
+}  // namespace
+
+/// Electrons in few pixels, then in those between, as far as the time goes. They are those of a direct simulation.
+void LiveSimulation::Shared::look_coarsely(const mc::Scene& scene) {
+  const auto end = Clock::now() + coarse_time;
+  const int longer = std::max(plan.scan.width, plan.scan.height);
+  for (int places = coarsest;; places *= 2) {
+    const int stride = std::max(1, longer / places);
+    const int columns = (plan.scan.width + stride - 1) / stride, rows = (plan.scan.height + stride - 1) / stride;
+    {
+      const std::lock_guard lock(mutex);
+      if (strides.empty() || strides.back() != stride) strides.push_back(stride);
+    }
+    parallel_for(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows), plan.options.threads,
+                 [&](std::size_t i, int) {
+                   if (cancel.cancelled() || Clock::now() > end) return;
+                   const int x = static_cast<int>(i) % columns * stride, y = static_cast<int>(i) / columns * stride;
+                   const mc::WorkUnit unit{x, y, x + 1, y + 1, 0, coarse_electrons};
+                   {
+                     const std::lock_guard lock(mutex);
+                     if (coarse.pixels(x, y).primaries > 0) return;   // done with a larger stride
+                   }
+                   const mc::UnitTally tally = mc::simulate_unit(scene, coarse_options, unit);
+                   const std::lock_guard lock(mutex);
+                   mc::merge(coarse, unit, tally);
+                 });
+    const std::lock_guard lock(mutex);
+    tell();
+    if (stride == 1 || cancel.cancelled() || Clock::now() > end) return;
+  }
+}
+
+void LiveSimulation::Shared::run() {
+  try {
+    const mc::Scene scene = make_scene(plan);
+    look_coarsely(scene);
+    {
+      const std::lock_guard lock(mutex);
+      coarse_done = true;
+      tell();
+    }
+    if (!cancel.cancelled()) {
+      const mc::SimulationOptions options = chosen_options(plan, scene);
+      Libraries libraries({{}, &cancel});
+      Shown shown(plan.scan, options, [this](const mc::WorkUnit& unit, const mc::UnitTally& tally) {
+        const std::lock_guard lock(mutex);
+        mc::merge(fine, unit, tally);
+        has_fine = true;
+        tell();
+      });
+      mc::SimulationResult result = mc::simulate(scene, options, {}, &cancel, {}, &shown, &libraries);
+      std::vector<Track> paths = cancel.cancelled() ? std::vector<Track>() : tracks_of(plan, scene);
+      const std::lock_guard lock(mutex);
+      fine = std::move(result);
+      tracks = std::move(paths);
+    }
+  } catch (...) {
+    const std::lock_guard lock(mutex);
+    error = std::current_exception();
+  }
+  const std::lock_guard lock(mutex);
+  ended = true;
+  tell();
+}
+
+LiveSimulation::LiveSimulation(SimulationPlan plan) : shared_(std::make_unique<Shared>(std::move(plan))) {}
+
+LiveSimulation::~LiveSimulation() {
+  shared_->cancel.cancel();
+  shared_->thread.join();
+}
+
+bool LiveSimulation::has_news() const {
+  const std::lock_guard lock(shared_->mutex);
+  return shared_->news;
+}
+
+bool LiveSimulation::ended() const {
+  const std::lock_guard lock(shared_->mutex);
+  return shared_->ended;
+}
+
+void LiveSimulation::wait(double seconds, const CancelToken& cancel) const {
+  using namespace std::chrono_literals;
+  const Shared& s = *shared_;
+  const auto end = Clock::now() + std::chrono::duration<double>(seconds);
+  std::unique_lock lock(s.mutex);
+  const bool first = !s.looked_at;
+  while (!cancel.cancelled() && !s.ended) {
+    if (s.news && (!first || s.coarse_done || Clock::now() > end)) return;
+    if (!first && Clock::now() > end) return;
+    s.told.wait_for(lock, 50ms);
+  }
+}
+
+LiveSimulation::View LiveSimulation::look() {
+  const mc::Scan& scan = shared_->plan.scan;
+  const std::lock_guard lock(shared_->mutex);
+  if (shared_->error) std::rethrow_exception(shared_->error);
+  shared_->news = false;
+  shared_->looked_at = true;
+  View view;
+  view.tracks = shared_->tracks;
+  view.image = mc::make_image(shared_->fine, scan);
+  view.state = shared_->ended ? "done" : shared_->has_fine ? "refining" : "coarse";
+  // A copy: the tallies go on growing.
+  view.result = mc::empty_result(scan, shared_->coarse_options);
+  const mc::SimulationResult& r = shared_->fine;
+  view.result.accuracy = r.accuracy, view.result.accuracy_floor = r.accuracy_floor, view.result.dose = r.dose;
+  view.result.balance = r.balance;
+  std::ranges::copy(r.pixels.data(), view.result.pixels.data().begin());
+  for (std::size_t d = 0; d < r.counts.size(); ++d)
+    std::ranges::copy(r.counts[d].data(), view.result.counts[d].data().begin());
+  for (const auto& controls : r.controls) {
+    view.result.controls.emplace_back(scan.width, scan.height);
+    std::ranges::copy(controls.data(), view.result.controls.back().data().begin());
+  }
+  view.result.library_cascades = r.library_cascades;
+  view.result.cascade_yields = r.cascade_yields;
+  if (shared_->ended) return view;
+  const Image coarse = mc::make_image(shared_->coarse, scan);
+  for (int y = 0; y < scan.height; ++y)
+    for (int x = 0; x < scan.width; ++x) {
+      if (r.pixels(x, y).primaries > 0 || r.pixels(x, y).hits > 0) continue;
+      for (auto stride = shared_->strides.rbegin(); stride != shared_->strides.rend(); ++stride) {
+        const int u = x - x % *stride, v = y - y % *stride;
+        if (shared_->coarse.pixels(u, v).primaries == 0) continue;
+        for (Channel& channel : view.image.channels)
+          if (const Channel* of_coarse = coarse.find(channel.name)) channel.values(x, y) = of_coarse->values(u, v);
+        break;
+      }
+    }
+  return view;
+}
+
+}  // namespace surf::pv

@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "vtkSemsurfReconstruct.h"
+
+#include <fmt/format.h>
+#include <vtkDataArray.h>
+#include <vtkImageData.h>
+#include <vtkInformation.h>
+#include <vtkInformationVector.h>
+#include <vtkNew.h>
+#include <vtkObjectFactory.h>
+#include <vtkPointData.h>
+#include <vtkPolyData.h>
+#include <vtkStreamingDemandDrivenPipeline.h>
+#include <vtkTable.h>
+
+#include <optional>
+#include <utility>
+
+#include "attempt.h"
+#include "chain.h"
+#include "convert/mesh.h"
+#include "convert/table.h"
+#include "convert/tip.h"
+#include "convert/transform.h"
+#include "labels.h"
+#include "pipeline.h"
+#include "surf/core/error.h"
+#include "surf/mesh/height_field_mesh.h"
+#include "surf/workflow/reconstruct_job.h"
+
+vtkStandardNewMacro(vtkSemsurfReconstruct);
+
+using namespace surf;
+
+namespace {
+
+using Pipeline = vtkStreamingDemandDrivenPipeline;
+
+void announce_like(vtkInformation* output, vtkInformation* input) {
+  for (auto* const key : {Pipeline::WHOLE_EXTENT()}) output->CopyEntry(input, key);
+  for (auto* const key : {vtkDataObject::SPACING(), vtkDataObject::ORIGIN()}) output->CopyEntry(input, key);
+  output->Set(vtkAlgorithm::CAN_PRODUCE_SUB_EXTENT(), 1);
+}
+
+Surface surface_of(const Reconstruction& r) {
+  Surface surface;
+  surface.name = "reconstruction";
+  surface.mesh = height_field_sheet(r.surface);
+  const auto add = [&](const char* name, const char* unit, const auto& grid) {
+    VertexScalar scalar{name, unit, {}};
+    for (const auto value : grid.data()) scalar.values.push_back(static_cast<float>(value));
+    surface.scalars.push_back(std::move(scalar));
+  };
+  add("height", "nm", r.surface.z_nm);
+  if (!r.deviation_nm.empty()) add("deviation", "nm", r.deviation_nm);
+  if (!r.held_by.empty()) add("held_by", "1", r.held_by);
+  return surface;
+}
+
+void fill_history(vtkTable* table, const std::vector<ScaleReport>& scales) {
+  const auto add = [&](const char* name, auto value) {
+    std::vector<double> column;
+    for (const ScaleReport& s : scales) column.push_back(static_cast<double>(value(s)));
+    pv::add_column(table, name, std::move(column));
+  };
+  add("sigma_px", [](const ScaleReport& s) { return s.sigma_px; });
+  add("afm", [](const ScaleReport& s) { return s.afm; });
+  add("sem", [](const ScaleReport& s) { return s.sem; });
+  add("prior", [](const ScaleReport& s) { return s.prior; });
+  add("gradient_norm", [](const ScaleReport& s) { return s.gradient_norm; });
+  add("iterations", [](const ScaleReport& s) { return s.iterations; });
+  add("evaluations", [](const ScaleReport& s) { return s.evaluations; });
+  add("products", [](const ScaleReport& s) { return s.products; });
+  add("afm_deviation", [](const ScaleReport& s) { return s.afm_residual.deviation; });
+  add("sem_deviation", [](const ScaleReport& s) { return s.sem_residual.deviation; });
+  std::vector<std::string> ended;
+  for (const ScaleReport& s : scales) ended.push_back(s.ended);
+  pv::add_column(table, "ended", ended);
+}
+
+}  // namespace
+
+int vtkSemsurfReconstruct::FillInputPortInformation(int port, vtkInformation* info) {
+  info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), port > 2 ? "vtkPolyData" : "vtkImageData");
+  if (port > 0) info->Set(vtkAlgorithm::INPUT_IS_OPTIONAL(), 1);
+  return 1;
+}
+
+int vtkSemsurfReconstruct::FillOutputPortInformation(int port, vtkInformation* info) {
+  info->Set(vtkDataObject::DATA_TYPE_NAME(), port == 1 ? "vtkPolyData" : port == 4 ? "vtkTable" : "vtkImageData");
+  return 1;
+}
+
+/// The surface and the SEM's residual lie on the SEM's pixels, the scan's on its own.
+int vtkSemsurfReconstruct::RequestInformation(vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs) {
+  vtkInformation* const afm = inputs[0]->GetInformationObject(0);
+  vtkInformation* const sem = inputs[1]->GetNumberOfInformationObjects() > 0 ? inputs[1]->GetInformationObject(0) : afm;
+  announce_like(outputs->GetInformationObject(0), sem);
+  announce_like(outputs->GetInformationObject(2), afm);
+  announce_like(outputs->GetInformationObject(3), sem);
+  return 1;
+}
+
+int vtkSemsurfReconstruct::RequestData(vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs) {
+  return pv::attempt(this, [&] {
+    pv::with_labels([&] {
+      const auto choose = [](int value, int most, const char* property) {
+        if (value < 0 || value > most)
+          throw UsageError(property, fmt::format("there is no {}", value), fmt::format("Choose 0 to {}", most));
+      };
+      choose(this->Level, 3, "Level");
+      choose(this->Method, 2, "Method");
+      workflow::ReconstructJob job;
+      job.picture = false;
+      job.upsample = this->Upsample;
+      job.options.method = static_cast<ReconstructionMethod>(this->Method);
+      job.options.iterations = this->Iterations;
+      job.options.uncertainty = this->Uncertainty;
+      std::string name;
+      job.afm.emplace();
+      job.afm->scan = this->Heights(inputs, name);
+      job.afm->preparation.level = static_cast<workflow::LevelMethod>(this->Level);
+      if (vtkImageData* const tip = pv::image_input(inputs, 2, "Tip"))
+        job.afm->preparation.tip = pv::to_tip(tip, pv::chosen_array(this, 2, tip), "Tip");
+      if (vtkImageData* const sem = pv::image_input(inputs, 1, "SEM")) {
+        job.sem.emplace();
+        job.sem->image = pv::to_placed_image(sem, pv::chosen_array(this, 1, sem), "SEM");
+        job.model = pv::model_request(this->ModelFile, this->Material, this->Energy, this->Spot);
+        job.pose.landmarks = pv::landmarks_of(pv::surface_input(inputs, 4), pv::surface_input(inputs, 3));
+        if (this->UseTransform) job.pose.transform = pv::to_affine(this->Transform);
+        job.pose.accept_unverified = this->AcceptRegistration;
+      }
+      std::vector<std::string> warnings;
+      std::optional<workflow::ReconstructSummary> s;
+      pv::work(this, [&](const Watch& watch) { s = workflow::run(job, pv::listen(watch, job.sem ? 5 : 2, warnings)); });
+      for (const std::string& warning : warnings) pv::warn(this, warning);
+      if (s->verdict == workflow::ReconstructionVerdict::not_registered)
+        throw InvalidInput("SEM", s->reasons.at(0), "Give landmarks, set Transform, or Accept Registration");
+      for (const std::string& reason : s->reasons) pv::warn(this, reason);
+      Reconstruction& r = s->result;
+      const std::map<std::string, std::string> texts{{"verdict", workflow::name(s->verdict)},
+                                                     {pv::transform_text, pv::text_of(r.sem_to_afm)}};
+      pv::give(outputs->GetInformationObject(1), pv::to_vtk(surface_of(r)));
+      vtkNew<vtkTable> history;
+      fill_history(history, r.scales);
+      pv::give(outputs->GetInformationObject(4), history);
+      // Like the inputs, so that pieces of them are the pieces that were announced.
+      const auto afm = pv::make_image_like(pv::image_input(inputs, 0, "Input"));
+      const auto surface = pv::make_image_like(pv::image_input(inputs, job.sem ? 1 : 0, "SEM"));
+      if (!r.afm_residual.empty()) {
+        pv::add_values(afm, std::move(r.afm_residual), "residual", "1");
+        pv::add_values(afm, std::move(r.afm_used), "used", "1");
+        pv::add_heights(afm, std::move(r.simulated_afm), "simulated_nm");
+        afm->GetPointData()->SetActiveScalars("residual");
+      }
+      if (!r.sem_residual.empty()) {
+        const auto sem = pv::make_image_like(surface);
+        pv::add_values(sem, std::move(r.sem_residual), "residual", "1");
+        pv::add_values(sem, std::move(r.simulated_sem), "simulated", "1");
+        sem->GetPointData()->SetActiveScalars("residual");
+        pv::give(outputs->GetInformationObject(3), sem);
+      }
+      if (!r.deviation_nm.empty()) pv::add_values(surface, std::move(r.deviation_nm), "deviation_nm", "nm");
+      if (!r.held_by.empty()) pv::add_values(surface, std::move(r.held_by), "held_by", "1");
+      if (r.start.z_nm.size() == r.surface.z_nm.size()) pv::add_values(surface, std::move(r.start.z_nm), "start_nm", "nm");
+      pv::add_heights(surface, std::move(r.surface));
+      pv::add_texts(surface, texts);
+      pv::give(outputs->GetInformationObject(0), surface);
+      pv::give(outputs->GetInformationObject(2), afm);
+    });
+  });
+}
