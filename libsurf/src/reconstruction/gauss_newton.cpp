@@ -13,6 +13,9 @@ namespace {
 /// Products that take about the time of a factorisation.
 constexpr int worth_a_factor = 12;
 
+/// Of half a scale: progress is told as if that many were always to come.
+constexpr int usual_iterations = 10;
+
 double largest(const Grid<double>& g) {
   double most = 0;
   for (const double v : g.data()) most = std::max(most, std::fabs(v));
@@ -98,7 +101,7 @@ DescentReport gauss_newton(const Objective& o, Unknowns& at, const DescentOption
   bool stale = true;
   int fresh_products = 0;
   while (report.iterations < options.iterations) {
-    options.watch.check();
+    options.watch.report(report.iterations, report.iterations + usual_iterations);
     // Little changes at the end: what the quadratic is made of is kept until its steps take more than making
     // it would.
     if (stale) {

@@ -19,6 +19,7 @@ namespace {
 using namespace reconstruction;
 
 constexpr int least_pixels = 256;   // 16 x 16 in common
+constexpr double share_of_scales = 0.75;   // of the time, deviations take the rest
 constexpr double coarsely = 20;     // times the tolerance, where the prior is still to change
 constexpr double rough_looseness = 3;   // times the likely curvature: what neither image holds is not white
 constexpr double worth_loosening = 1.3;
@@ -126,8 +127,9 @@ class Work {
     if (journal)
       if (const auto found = journal->found()) take(*found);
     for (std::size_t i = reports_.size(); i < scales.size(); ++i) {
-      options_.watch.report(static_cast<double>(i), static_cast<double>(scales.size()));
-      scale(scales[i], i == 0, i + 1 == scales.size(), options_.watch.part(double(i) / scales.size(), double(i + 1) / scales.size()));
+      const double share = (options_.uncertainty ? share_of_scales : 1) / static_cast<double>(scales.size());
+      const auto done = static_cast<double>(i);
+      scale(scales[i], i == 0, i + 1 == scales.size(), options_.watch.part(done * share, (done + 1) * share));
       if (journal) journal->keep(state());
     }
     return result();
@@ -170,6 +172,7 @@ class Work {
   }
 
   void scale(double sigma_px, bool first, bool last, const Watch& watch) {
+    watch.report(0, 1);
     DescentOptions o;
     const bool newton = options_.method == ReconstructionMethod::gauss_newton;
     o.iterations = options_.iterations > 0 ? options_.iterations : newton ? 60 : 200;
@@ -183,16 +186,17 @@ class Work {
       fit_few(objective_, at_, watch);
       const double settled = o.tolerance;
       const int most = o.iterations;
-      const auto go_on = [&] {
+      const auto go_on = [&](double from, double to) {
         o.iterations = most - d.iterations;
+        o.watch = watch.part(from, to);
         continue_with(d, gauss_newton(objective_, at_, o));
       };
       o.tolerance *= coarsely;
-      go_on();
+      go_on(0, last ? 0.5 : 1);
       if (last) {
-        while (d.iterations < most && options_.curvature_prior_per_nm == 0 && loosen_prior()) go_on();
+        while (d.iterations < most && options_.curvature_prior_per_nm == 0 && loosen_prior()) go_on(0.5, 0.5);
         o.tolerance = settled;
-        go_on();
+        go_on(0.5, 1);
       }
     } else {
       d = descend(objective_, at_, sigma_px, first, options_.method, o, options_.threads);
@@ -292,7 +296,8 @@ class Work {
       out.sem_residual = cut(sem_white(s));
     }
     if (options_.uncertainty) {
-      const Posterior p = posterior(objective_, at_, options_.probes, options_.seed, options_.threads, options_.watch);
+      const Posterior p = posterior(objective_, at_, options_.probes, options_.seed, options_.threads,
+                                    options_.watch.part(share_of_scales, 1));
       out.deviation_nm = cut(p.deviation_nm);
       out.held_by = cut(p.held_by);
     }
