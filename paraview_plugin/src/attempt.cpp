@@ -2,6 +2,8 @@
 #include "attempt.h"
 
 #include <vtkAlgorithm.h>
+#include <vtkInformation.h>
+#include <vtkInformationDoubleKey.h>
 
 #include <atomic>
 #include <chrono>
@@ -18,6 +20,10 @@ namespace {
 
 using namespace std::chrono_literals;
 
+/// Made with the plugin, so that Python finds it by name (vtkInformationKeyLookup) before any work is done.
+vtkInformationDoubleKey* const library_seconds =
+    vtkInformationDoubleKey::MakeKey("LIBRARY_SECONDS", "vtkSemsurf");
+
 /// What the two threads share.
 struct Run {
   std::atomic<double> share{0};   // of the work that is done
@@ -26,10 +32,12 @@ struct Run {
   std::condition_variable ended;
   bool done = false;
   std::exception_ptr error;
+  double seconds = 0;   // that the job took
 };
 
 void do_job(Run& run, const std::function<void(const Watch&)>& job) {
   std::exception_ptr error;
+  const auto start = std::chrono::steady_clock::now();
   try {
     job({[&run](double done, double total) { run.share.store(total > 0 ? done / total : 0); }, &run.cancel});
   } catch (...) {
@@ -37,6 +45,7 @@ void do_job(Run& run, const std::function<void(const Watch&)>& job) {
   }
   const std::lock_guard lock(run.mutex);
   run.error = error;
+  run.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   run.done = true;
   run.ended.notify_one();
 }
@@ -75,6 +84,7 @@ void work(vtkAlgorithm* self, const std::function<void(const Watch&)>& job) {
   }
   lock.unlock();
   worker.join();
+  self->GetInformation()->Set(library_seconds, run.seconds);
   if (run.error) std::rethrow_exception(run.error);
   if (run.cancel.cancelled()) throw Interrupted();
 }

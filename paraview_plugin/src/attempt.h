@@ -17,6 +17,8 @@ int attempt(vtkAlgorithm* self, const std::function<void()>& request);
 /// Long work of the libraries, on a thread of its own. The calling one, which must be ParaView's, tells of
 /// the progress and asks every 50 ms whether to abort; then the work's token is cancelled. Returns when the
 /// work has ended, throws what it throws, and Interrupted where it ended for the token without saying so.
+/// How long the work took is left in the algorithm's information under LIBRARY_SECONDS of vtkSemsurf, for
+/// bench/bench_paraview.py.
 void work(vtkAlgorithm* self, const std::function<void(const Watch& watch)>& job);
 
 /// A line in ParaView's messages that is no error: what had to be assumed, what may be wrong.

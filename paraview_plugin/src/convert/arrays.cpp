@@ -13,8 +13,7 @@ void set_unit(vtkDataArray* array, const char* unit) {
   array->GetInformation()->Set(vtkDataArray::UNITS_LABEL(), unit);
 }
 
-std::vector<double> values_of(vtkDataArray* array) {
-  std::vector<double> values(static_cast<std::size_t>(array->GetNumberOfTuples()));
+void copy_values(vtkDataArray* array, std::vector<double>& values) {
   if (auto* doubles = vtkDoubleArray::FastDownCast(array)) {
     std::copy_n(doubles->GetPointer(0), values.size(), values.begin());
   } else if (auto* floats = vtkFloatArray::FastDownCast(array)) {
@@ -23,6 +22,11 @@ std::vector<double> values_of(vtkDataArray* array) {
     const auto range = vtk::DataArrayValueRange<1>(array);
     std::copy(range.begin(), range.end(), values.begin());
   }
+}
+
+std::vector<double> values_of(vtkDataArray* array) {
+  std::vector<double> values(static_cast<std::size_t>(array->GetNumberOfTuples()));
+  copy_values(array, values);
   return values;
 }
 

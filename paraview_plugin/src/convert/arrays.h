@@ -49,5 +49,7 @@ void set_unit(vtkDataArray* array, const char* unit);
 
 /// The values of an array with one component as doubles, converted if they are something else.
 std::vector<double> values_of(vtkDataArray* array);
+/// The same into memory that is there already, as many as the array has.
+void copy_values(vtkDataArray* array, std::vector<double>& values);
 
 }   // namespace surf::pv

@@ -47,20 +47,19 @@ void check_array(vtkImageData* image, vtkDataArray* array, const char* subject) 
 
 /// Takes what is not finite, or masked, out of the values; the mask is empty if there are no holes.
 Grid<unsigned char> take_holes(vtkImageData* image, vtkDataArray* values_array, Grid<double>& values) {
-  Grid<unsigned char> valid(values.width(), values.height(), 1);
+  Grid<unsigned char> valid;
   vtkDataArray* const mask = image->GetPointData()->GetArray(mask_name);
   const bool masked = mask && mask != values_array && mask->GetNumberOfComponents() == 1 &&
                       mask->GetNumberOfTuples() == image->GetNumberOfPoints();
-  bool holes = false;
   for (std::size_t i = 0; i < values.size(); ++i) {
     const bool hole =
         !std::isfinite(values.data()[i]) || (masked && mask->GetComponent(vtkIdType(i), 0) == 0);
     if (!hole) continue;
+    if (valid.empty()) valid = {values.width(), values.height(), 1};
     valid.data()[i] = 0;
     values.data()[i] = 0;
-    holes = true;
   }
-  return holes ? std::move(valid) : Grid<unsigned char>{};
+  return valid;
 }
 
 template <class Placed>
@@ -76,7 +75,7 @@ Placed placed(const Frame& f) {
 Grid<double> read_values(vtkImageData* image, vtkDataArray* array, const Frame& frame, const char* subject) {
   check_array(image, array, subject);
   Grid<double> values(frame.width, frame.height);
-  values.data() = values_of(array);
+  copy_values(array, values.data());
   return values;
 }
 
