@@ -144,6 +144,7 @@ def abort_and_rerun(source, after=0.02, port=0):
         if caller.GetProgress() >= after:
             caller.SetAbortExecuteAndUpdateTime()
     tag = observed.AddObserver("ProgressEvent", stop)
+    observed.Modified()   # what is up to date would not run
     with messages() as said:
         source.UpdatePipeline()
     observed.RemoveObserver(tag)
