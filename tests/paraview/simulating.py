@@ -3,7 +3,7 @@
 import time
 
 from support import DATA, FOLDER, abort_and_rerun, array, column, expect, fetch, numpy, progress_of, quiet, refuses, run, \
-    same, semsurf, simple, text, vtk_to_numpy
+    same, semsurf, simple, text, touch, vtk_to_numpy
 
 CHANNELS = ["SE", "SE.stderr", "BSE", "BSE.stderr", "valid"]
 
@@ -102,7 +102,7 @@ def live_images_refine():
         if not needs_update(source):
             time.sleep(0.02)
             continue
-        source.GetClientSideObject().Modified()   # as ParaView does it
+        touch(source)
         data = fetch(source)
         states.append(text(data, "state"))
     expect(len(states) > 2, f"there are steps: {states}")

@@ -136,6 +136,12 @@ def progress_of(source):
     return told
 
 
+def touch(source):
+    """Makes what is up to date run again, as ParaView does it with live sources."""
+    source.GetClientSideObject().Modified()
+    source.SMProxy.MarkModified(source.SMProxy)
+
+
 def abort_and_rerun(source, after=0.02, port=0):
     """Aborted from its own progress or, without one, at once; then run again, which gives the whole result."""
     observed = source.GetClientSideObject()
@@ -144,7 +150,7 @@ def abort_and_rerun(source, after=0.02, port=0):
         if caller.GetProgress() >= after:
             caller.SetAbortExecuteAndUpdateTime()
     tag = observed.AddObserver("ProgressEvent", stop)
-    observed.Modified()   # what is up to date would not run
+    touch(source)
     with messages() as said:
         source.UpdatePipeline()
     observed.RemoveObserver(tag)
@@ -153,7 +159,7 @@ def abort_and_rerun(source, after=0.02, port=0):
     rows = data.GetNumberOfRows() if data.IsA("vtkTable") else data.GetNumberOfPoints()
     expect(rows == 0, "there is a result in spite of the abort")
     observed.SetAbortExecute(0)
-    observed.Modified()
+    touch(source)
     return fetch(source, port)
 
 
