@@ -16,6 +16,7 @@
 #include <utility>
 
 #include "attempt.h"
+#include "convert/digest.h"
 #include "convert/specimen.h"
 #include "convert/table.h"
 #include "convert/tracks.h"
@@ -35,8 +36,7 @@ using namespace surf;
 
 struct vtkSemsurfSimulate::State {
   std::string settings;             // that the plan is of
-  vtkDataObject* input = nullptr;   // to compare only
-  vtkMTimeType time = 0;
+  std::uint64_t input = 0;          // its digest
   bool planned = false;
   pv::SimulationPlan plan;
   std::unique_ptr<pv::LiveSimulation> live;   // of this plan
@@ -156,7 +156,8 @@ void vtkSemsurfSimulate::Plan(vtkDataObject* input) {
   auto* const image = vtkImageData::SafeDownCast(input);
   vtkDataArray* const heights = image ? pv::chosen_array(this, 0, image) : nullptr;
   if (heights && heights->GetName()) settings += heights->GetName();
-  if (k.planned && k.settings == settings && k.input == input && k.time == input->GetUpdateTime()) return;
+  const std::uint64_t digest = pv::digest(input);
+  if (k.planned && k.settings == settings && k.input == digest) return;
   k.live.reset();
   k.planned = false;
   this->Check();
@@ -192,8 +193,7 @@ void vtkSemsurfSimulate::Plan(vtkDataObject* input) {
   plan.trajectories = this->Trajectories;
   k.plan = std::move(plan);
   k.settings = std::move(settings);
-  k.input = input;
-  k.time = input->GetUpdateTime();
+  k.input = digest;
   k.planned = true;
 }
 
