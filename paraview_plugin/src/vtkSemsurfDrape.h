@@ -4,7 +4,7 @@
 
 #include <vtkPolyDataAlgorithm.h>
 
-#include "vtkSemsurfModule.h"
+#include <vtkSemsurfModule.h>
 
 /// Lays an image (input 1, array 0) on a surface (input 0) from straight above: as numbers and as texture coordinates.
 class VTKSEMSURF_EXPORT vtkSemsurfDrape : public vtkPolyDataAlgorithm {

@@ -4,7 +4,7 @@
 
 #include <vtkTableAlgorithm.h>
 
-#include "vtkSemsurfModule.h"
+#include <vtkSemsurfModule.h>
 
 /// What a scan (input 0), an SEM image (input 1) and a surface (input 2) show along one line of the scan's frame.
 class VTKSEMSURF_EXPORT vtkSemsurfLineProfile : public vtkTableAlgorithm {

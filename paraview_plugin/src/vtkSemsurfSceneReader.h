@@ -6,7 +6,7 @@
 
 #include <string>
 
-#include "vtkSemsurfModule.h"
+#include <vtkSemsurfModule.h>
 
 /// Scene files (surf/io/sim/scene_file.h): a block for the height field and for each body, with their materials.
 class VTKSEMSURF_EXPORT vtkSemsurfSceneReader : public vtkMultiBlockDataSetAlgorithm {

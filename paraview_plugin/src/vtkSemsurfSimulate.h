@@ -7,7 +7,7 @@
 #include <memory>
 #include <string>
 
-#include "vtkSemsurfModule.h"
+#include <vtkSemsurfModule.h>
 
 /// SEM images by Monte Carlo, as `semsurf simulate`. The input is a surface, an image of heights, or blocks of them. Output
 /// 0 is the image, output 1 the tracks of a few electrons, output 2 a table of the detectors.
