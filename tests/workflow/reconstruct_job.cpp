@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <memory>
 #include <nlohmann/json.hpp>
 
 #include "compare_truth.h"
@@ -99,11 +100,12 @@ class ReconstructJobTest : public testing::Test {
 ChainListener stopping(CancelToken& token, const std::filesystem::path& checkpoint) {
   ChainListener listener;
   listener.cancel = &token;
-  listener.progress = [&token, checkpoint, least = std::uintmax_t{0}](double, double) mutable {
+  // Parts of the work have copies of this.
+  listener.progress = [&token, checkpoint, first = std::make_shared<std::uintmax_t>(0)](double, double) {
     std::error_code none;
     const auto size = std::filesystem::file_size(checkpoint, none);
-    if (!none && least == 0) least = size;
-    if (!none && size > least + 10000) token.cancel();
+    if (!none && *first == 0) *first = size;
+    if (!none && size > *first + 10000) token.cancel();
   };
   return listener;
 }

@@ -347,7 +347,8 @@ class Work {
 std::vector<double> default_scales_px(ReconstructionMethod method, int width, int height) {
   if (method == ReconstructionMethod::gauss_newton) return {5, 1.4};
   std::vector<double> scales;
-  const double widest = std::min(60.0, std::min(width, height) / 3.0);
+  // Jones's schedule from where descents get through: begun at 60 pixels they stall far off (docs/methods/reconstruction.md).
+  const double widest = std::min(10.0, std::min(width, height) / 3.0);
   for (double s = 60; s > 0.38; s /= 1.875)
     if (s <= widest) scales.push_back(s);
   return scales;

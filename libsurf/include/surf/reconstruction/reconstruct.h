@@ -132,8 +132,8 @@ struct Reconstruction {
   std::vector<std::string> warnings;   ///< for people; not empty: look before you trust the result
 };
 
-/// The method's own scales for a surface so many samples across: the thesis's, 60 to 0.39 pixels, for the
-/// descents (Jones 1994), fewer for Gauss-Newton.
+/// The method's own scales for a surface so many samples across: for the descents those of the thesis's schedule, 60 to
+/// 0.39 pixels (Jones 1994), that are below 10, fewer for Gauss-Newton.
 std::vector<double> default_scales_px(ReconstructionMethod method, int width, int height);
 
 /// The surface that makes both images, or the one that is there, most likely (thesis, chapter 9;
