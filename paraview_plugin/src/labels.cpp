@@ -12,7 +12,8 @@ namespace surf::pv {
 namespace {
 
 /// What a property is called that is not called as the option is.
-const std::map<std::string, std::string> other_names{{"materials", "Material File"}, {"size", "Pixels"}};
+const std::map<std::string, std::string> other_names{
+    {"materials", "Material File"}, {"size", "Pixels"}, {"output", "Model File"}};
 
 std::string label_of(const std::string& option) {
   if (const auto other = other_names.find(option); other != other_names.end()) return other->second;

@@ -82,9 +82,9 @@ void give(vtkInformation* output, vtkTable* whole) {
   if (is_first_piece(output)) vtkTable::GetData(output)->ShallowCopy(whole);
 }
 
-vtkImageData* image_input(vtkInformationVector** inputs, int port, const char* subject) {
-  if (inputs[port]->GetNumberOfInformationObjects() == 0) return nullptr;
-  vtkInformation* const info = inputs[port]->GetInformationObject(0);
+vtkImageData* image_input(vtkInformationVector** inputs, int port, const char* subject, int which) {
+  if (inputs[port]->GetNumberOfInformationObjects() <= which) return nullptr;
+  vtkInformation* const info = inputs[port]->GetInformationObject(which);
   vtkImageData* const image = vtkImageData::GetData(info);
   if (!image || !info->Has(Pipeline::WHOLE_EXTENT())) return image;
   int whole[6], has[6];

@@ -36,8 +36,8 @@ void give(vtkInformation* output, vtkTable* whole);
 /// Whether this is the first piece: else there is no need to compute what only that one gives.
 bool is_first_piece(vtkInformation* output);
 
-/// The input of a port, or nullptr if nothing is connected. Throws InvalidInput if an image is not whole.
-vtkImageData* image_input(vtkInformationVector** inputs, int port, const char* subject);
+/// An input of a port, or nullptr if nothing is connected. Throws InvalidInput if an image is not whole.
+vtkImageData* image_input(vtkInformationVector** inputs, int port, const char* subject, int which = 0);
 vtkPolyData* surface_input(vtkInformationVector** inputs, int port);
 
 /// The array that was chosen; the only one there is; or else the one that is shown, where none was chosen, as

@@ -147,6 +147,22 @@ TEST_F(TrainJobTest, LearnsFromGivenImages) {
   EXPECT_EQ(summary.model.record.scenes[0].name, "scan");
 }
 
+TEST_F(TrainJobTest, LearnsTheSameFromAnImageAsFromItsFile) {
+  TrainJob job = own_training(path("si.json"), 3);
+  write_image_of(job.inputs[0].field, path("image.exr"), {"SE", "BSE"});
+  job.inputs[0].image = path("image.exr");
+  train(job);
+  const std::string of_file = bytes_of(path("si.json"));
+  job.inputs[0].image.clear();
+  job.inputs[0].pixels = std::make_shared<Image>(io::read_image(path("image.exr")));
+  EXPECT_EQ(train(job).images_made, 0);
+  EXPECT_EQ(bytes_of(path("si.json")), of_file);
+  Image narrow = *job.inputs[0].pixels;
+  for (Channel& channel : narrow.channels) channel.values = Grid<float>(9, 16);
+  job.inputs[0].pixels = std::make_shared<Image>(narrow);
+  EXPECT_THAT([&] { train(job); }, testing::ThrowsMessage<InvalidInput>(HasSubstr("the image of scan: it has 9 x 16")));
+}
+
 TEST_F(TrainJobTest, LearnsFromTheOneSignalOfAMicroscope) {
   TrainJob job = own_training(path("si.json"), 3);
   write_image_of(job.inputs[0].field, path("sem.tif"), {"InLens"});

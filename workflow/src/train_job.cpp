@@ -36,7 +36,7 @@ void check_numbers(const TrainJob& job, int own) {
     throw UsageError("--signal", "an image is learnt together with the surface that it shows", "Name its HEIGHTS");
   if (!job.signal.empty())
     for (const TrainingInput& input : job.inputs)
-      if (input.image.empty())
+      if (!input.has_image())
         throw UsageError("--signal", fmt::format("there is no image of {}", input.name), "Give one for each of the HEIGHTS");
 }
 
@@ -52,7 +52,7 @@ std::vector<TrainingImage> read_images(const TrainJob& job, const std::vector<Tr
                                        const SimulatedImages& simulated) {
   std::vector<TrainingImage> images;
   for (std::size_t i = 0; i < surfaces.size(); ++i) {
-    const auto& file = surfaces[i].image.empty() ? simulated.files[i] : surfaces[i].image;
+    const auto& file = surfaces[i].has_image() ? surfaces[i].image : simulated.files[i];
     images.push_back(read_training_image(surfaces[i], file, job));
   }
   // Weights of some images beside none of others would mean nothing.
@@ -68,7 +68,7 @@ std::map<std::string, std::string> notes_of(const TrainJob& job, const std::vect
   notes["edge"] = job.edge == Edge::mirror ? "mirror" : job.edge == Edge::flat ? "flat" : "periodic";
   if (samples_per_pixel(job) > 1) notes["samples_per_pixel"] = std::to_string(samples_per_pixel(job));
   if (job.inputs.empty()) notes["surfaces"] = fmt::format("semsurf's own, {} pixels across", job.surface_px);
-  if (std::ranges::none_of(surfaces, [](const TrainingSurface& surface) { return surface.image.empty(); })) return notes;
+  if (std::ranges::all_of(surfaces, &TrainingSurface::has_image)) return notes;
   notes["physics"] = mc::format_physics(job.physics);
   notes["seed"] = std::to_string(job.simulation.seed);
   if (job.simulation.accuracy > 0) notes["accuracy"] = format_exact(job.simulation.accuracy);
@@ -88,7 +88,7 @@ std::vector<TrainingScene> judge(const TrainJob& job, const ImageModel& model,
     scene.sha256 = surfaces[i].sha256;
     scene.width = images[k].field.z_nm.width();
     scene.height = images[k].field.z_nm.height();
-    const bool counted = surfaces[i].image.empty() && !(job.simulation.accuracy > 0);
+    const bool counted = !surfaces[i].has_image() && !(job.simulation.accuracy > 0);
     scene.electrons = counted ? job.simulation.electrons : 0;
     scene.held_out = held_out;
     scene.residuals = residuals_of(model, {images[k]}, job.simulation.threads);

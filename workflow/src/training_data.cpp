@@ -91,7 +91,8 @@ std::vector<TrainingSurface> gather_surfaces(const TrainJob& job, int own, const
   for (const TrainingInput& input : job.inputs) {
     HeightField field = at_pixel(input, job.pixel_nm, note);
     std::string hash = input.sha256.empty() ? hash_of(field) : input.sha256;
-    surfaces.push_back({unique(stem_of(input.name), taken), std::move(field), std::move(hash), input.image});
+    surfaces.push_back({unique(stem_of(input.name), taken), std::move(field), std::move(hash), input.image,
+                        input.pixels});
   }
   if (own == 0) return surfaces;
   for (NamedSurface& made : training_surfaces({job.pixel_nm, job.surface_px, own, job.simulation.seed})) {
@@ -107,16 +108,17 @@ std::vector<std::string> channels_of(const TrainJob& job) {
 }
 
 TrainingImage read_training_image(const TrainingSurface& surface, const fs::path& file, const TrainJob& job) {
-  const Image image = io::read_image(file);
+  const Image image = surface.pixels ? *surface.pixels : io::read_image(file);
+  const std::string subject = surface.pixels ? fmt::format("the image of {}", surface.name) : file.string();
   const HeightField& field = surface.field;
   const int w = field.z_nm.width(), h = field.z_nm.height();
   if (image.width() != w || image.height() != h)
-    throw InvalidInput(file.string(), fmt::format("it has {} x {} pixels, the surface {} {} x {} samples",
+    throw InvalidInput(subject, fmt::format("it has {} x {} pixels, the surface {} {} x {} samples",
                                                   image.width(), image.height(), surface.name, w, h),
                        "Give an image with one pixel on each sample of the surface: crop or register it first");
   const bool simulated = job.signal.empty();
   if (simulated && (!is_pitch(image.pitch_x_nm, job.pixel_nm) || !is_pitch(image.pitch_y_nm, job.pixel_nm)))
-    throw InvalidInput(file.string(), fmt::format("its pixels are {}, the model's {}", format_length(image.pitch_x_nm),
+    throw InvalidInput(subject, fmt::format("its pixels are {}, the model's {}", format_length(image.pitch_x_nm),
                                                   format_length(job.pixel_nm)),
                        "Give an image of the model's pixel size");
   TrainingImage out;
@@ -130,7 +132,7 @@ TrainingImage read_training_image(const TrainingSurface& surface, const fs::path
   for (const std::string& name : wanted) {
     const Channel* channel = image.find(name);
     if (!channel)
-      throw FileError(file.string(), fmt::format("it has no channel '{}'", name),
+      throw FileError(subject, fmt::format("it has no channel '{}'", name),
                       simulated ? "Give an image with SE and BSE, or --signal for that of a microscope"
                                 : "'semsurf info' lists its channels: --signal FILE:CHANNEL");
     for (std::size_t i = 0; i < out.used.size(); ++i)
@@ -144,7 +146,7 @@ TrainingImage read_training_image(const TrainingSurface& surface, const fs::path
       if (!std::isfinite(errors->values.data()[i])) out.used.data()[i] = 0;
   }
   if (std::find(out.used.data().begin(), out.used.data().end(), 1) == out.used.data().end())
-    throw InvalidInput(file.string(), "none of its pixels has a value", "Give an image of the surface");
+    throw InvalidInput(subject, "none of its pixels has a value", "Give an image of the surface");
   for (const std::string& name : wanted)
     if (const Channel* errors = image.find(name + ".stderr"))
       if (Grid<float> even = even_errors(errors->values, out.used); !even.empty())

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -15,7 +16,11 @@ struct TrainingSurface {
   std::string name;
   HeightField field;
   std::string sha256;
-  std::filesystem::path image;     ///< given; empty: it is to be simulated
+  /// The image that is given, in a file or as it is. Neither: it is to be simulated.
+  std::filesystem::path image;
+  std::shared_ptr<const Image> pixels = nullptr;
+
+  bool has_image() const { return !image.empty() || pixels; }
 };
 
 /// The job's own surfaces or, where it has none, so many of the program's; resampled where they have to be, with
@@ -25,9 +30,9 @@ std::vector<TrainingSurface> gather_surfaces(const TrainJob& job, int own, const
 /// The channels that are learnt: SE and BSE, or the one signal.
 std::vector<std::string> channels_of(const TrainJob& job);
 
-/// The image in a file, pixel on sample of the surface. Throws FileError for channels that are missing,
+/// The image that is given or the one in a file, pixel on sample of the surface. Throws FileError for channels that are missing,
 /// InvalidInput for another size or pixel, or where no pixel can be used.
-TrainingImage read_training_image(const TrainingSurface& surface, const std::filesystem::path& image,
+TrainingImage read_training_image(const TrainingSurface& surface, const std::filesystem::path& file,
                                   const TrainJob& job);
 
 /// NAME.training for NAME.json.

@@ -96,7 +96,7 @@ SimulatedImages simulate_images(const TrainJob& job, const std::vector<TrainingS
   std::size_t unusable = 0;
   double total = 0, done_before = 0;
   for (std::size_t i = 0; i < surfaces.size(); ++i) {
-    if (!surfaces[i].image.empty()) continue;
+    if (surfaces[i].has_image()) continue;
     out.files[i] = folder / (surfaces[i].name + ".exr");
     all.push_back(simulation_of(job, surfaces[i], i, out.files[i]));
     if (is_there(all.back())) continue;

@@ -8,6 +8,7 @@
 #include <vtkPointData.h>
 #include <vtkStringArray.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -139,6 +140,23 @@ PlacedImage to_placed_image(vtkImageData* image, vtkDataArray* values, const cha
   PlacedImage result = placed<PlacedImage>(frame);
   result.values = read_values(image, values, frame, subject);
   result.valid = take_holes(image, values, result.values);
+  validate(result, subject);
+  return result;
+}
+
+Image to_image(vtkImageData* image, const char* subject) {
+  const Frame frame = frame_of(image, subject);
+  Image result = placed<Image>(frame);
+  std::vector<double> values;
+  for (int i = 0; i < image->GetPointData()->GetNumberOfArrays(); ++i) {
+    vtkDataArray* const array = image->GetPointData()->GetArray(i);
+    if (!array || !array->GetName() || array->GetNumberOfComponents() != 1) continue;
+    values.resize(static_cast<std::size_t>(array->GetNumberOfTuples()));
+    copy_values(array, values);
+    Channel channel{array->GetName(), "1", Grid<float>(frame.width, frame.height)};
+    std::ranges::transform(values, channel.values.data().begin(), [](double v) { return static_cast<float>(v); });
+    result.channels.push_back(std::move(channel));
+  }
   validate(result, subject);
   return result;
 }

@@ -49,6 +49,9 @@ vtkSmartPointer<vtkImageData> make_image_like(vtkImageData* image);
 HeightField to_height_field(vtkImageData* image, vtkDataArray* heights, const char* subject);
 PlacedImage to_placed_image(vtkImageData* image, vtkDataArray* values, const char* subject);
 
+/// All arrays of points with one number each, as channels.
+Image to_image(vtkImageData* image, const char* subject);
+
 /// Adds the heights, and the mask if there are holes; they become what is shown.
 void add_heights(vtkImageData* image, HeightField field, const std::string& name = heights_name);
 void add_values(vtkImageData* image, Grid<double> values, const std::string& name, const char* unit);

@@ -4,12 +4,14 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "surf/core/edge.h"
 #include "surf/core/height_field.h"
+#include "surf/core/image.h"
 #include "surf/core/progress.h"
 #include "surf/mc/material.h"
 #include "surf/mc/physics.h"
@@ -24,7 +26,11 @@ struct TrainingInput {
   std::string name;                ///< for messages and the record, as "scan.gwy"
   HeightField field;               ///< of any pitch up to twice the model's pixel
   std::string sha256;              ///< of its file; empty: of its heights
-  std::filesystem::path image;     ///< of it; empty: it is simulated
+  /// The image of it, in a file or as it is. Neither: it is simulated.
+  std::filesystem::path image;
+  std::shared_ptr<const Image> pixels = nullptr;
+
+  bool has_image() const { return !image.empty() || pixels; }
 };
 
 /// The samples per pixel that a job simulates with: its own, or by the range of Kanaya and Okayama.

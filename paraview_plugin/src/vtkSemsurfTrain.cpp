@@ -1,0 +1,248 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "vtkSemsurfTrain.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <vtkImageData.h>
+#include <vtkInformation.h>
+#include <vtkInformationVector.h>
+#include <vtkNew.h>
+#include <vtkObjectFactory.h>
+#include <vtkTable.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <iterator>
+#include <memory>
+#include <utility>
+
+#include "attempt.h"
+#include "convert/image.h"
+#include "labels.h"
+#include "pipeline.h"
+#include "surf/core/error.h"
+#include "surf/core/units.h"
+#include "surf/io/sim/materials.h"
+#include "training.h"
+
+vtkStandardNewMacro(vtkSemsurfTrain);
+
+using namespace surf;
+
+namespace {
+
+constexpr const char* edges[] = {"mirror", "flat", "periodic"};
+// In the order of the XML's entries.
+constexpr const char* kinds[] = {"facet-network", "filter-bank", "slope-table", "slope-table-two-planes",
+                                 "stopping-points", "diffusion-matrix", "secant", "ikeuchi-exponential",
+                                 "ikeuchi-secant", "ikeuchi-mixed"};
+
+void need(bool good, const char* property, const std::string& reason, const char* remedy) {
+  if (!good) throw UsageError(property, reason, remedy);
+}
+
+void need_within(int value, int low, int high, const char* property) {
+  if (value < low || value > high)
+    throw UsageError(property, fmt::format("{} is not in {} to {}", value, low, high), "Choose among these");
+}
+
+std::vector<FacetScale> scales_of(const std::vector<int>& sizes) {
+  const std::vector<FacetScale> all = thesis_scales();
+  std::vector<FacetScale> scales;
+  for (const int size : sizes) {
+    const auto known = std::ranges::find(all, size, &FacetScale::size);
+    if (known == all.end()) {
+      std::vector<int> known_sizes;
+      std::ranges::transform(all, std::back_inserter(known_sizes), &FacetScale::size);
+      throw UsageError("Scales", fmt::format("there is no neighbourhood of {} samples", size),
+                       fmt::format("Choose among {}", fmt::join(known_sizes, ", ")));
+    }
+    scales.push_back(*known);
+  }
+  return scales;
+}
+
+}  // namespace
+
+vtkSemsurfTrain::vtkSemsurfTrain() {
+  this->SetNumberOfInputPorts(2);
+  this->SetNumberOfOutputPorts(2);
+}
+
+void vtkSemsurfTrain::AddScale(int samples) {
+  this->Scales.push_back(samples);
+  this->Modified();
+}
+
+void vtkSemsurfTrain::RemoveAllScales() {
+  this->Scales.clear();
+  this->Modified();
+}
+
+void vtkSemsurfTrain::AddHidden(int units) {
+  this->Hidden.push_back(units);
+  this->Modified();
+}
+
+void vtkSemsurfTrain::RemoveAllHidden() {
+  this->Hidden.clear();
+  this->Modified();
+}
+
+int vtkSemsurfTrain::FillInputPortInformation(int, vtkInformation* info) {
+  info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkImageData");
+  info->Set(vtkAlgorithm::INPUT_IS_REPEATABLE(), 1);
+  info->Set(vtkAlgorithm::INPUT_IS_OPTIONAL(), 1);
+  return 1;
+}
+
+int vtkSemsurfTrain::RequestInformation(vtkInformation*, vtkInformationVector**, vtkInformationVector* outputs) {
+  for (int port = 0; port < 2; ++port) pv::announce_pieces(outputs->GetInformationObject(port));
+  return 1;
+}
+
+int vtkSemsurfTrain::RequestUpdateExtent(vtkInformation*, vtkInformationVector** inputs, vtkInformationVector*) {
+  pv::request_whole(inputs, 2);
+  return 1;
+}
+
+void vtkSemsurfTrain::AddModel(workflow::TrainJob& job) const {
+  workflow::LearnOptions& learn = job.learn;
+  need_within(this->Model, 0, static_cast<int>(std::size(kinds)) - 1, "Model");
+  learn.kind = kinds[this->Model];
+  learn.scales = scales_of(this->Scales);
+  learn.multi_resolution = this->MultiResolution;
+  if (this->CutOff >= 0) learn.cut_off = this->CutOff;
+  // One 0 is a network without hidden layers.
+  if (!this->Hidden.empty()) learn.hidden = this->Hidden == std::vector{0} ? std::vector<int>() : this->Hidden;
+  for (const int units : learn.hidden.value_or(std::vector<int>())) need_within(units, 1, 256, "Hidden");
+  need(this->Hidden.size() <= 3, "Hidden", fmt::format("{} hidden layers are too many", this->Hidden.size()),
+       "Give 1 to 3, or one 0 for none");
+  if (this->Iterations > 0) learn.iterations = this->Iterations;
+  if (this->Decay >= 0) learn.decay = this->Decay;
+  if (this->Tolerance >= 0) learn.tolerance = this->Tolerance;
+  if (this->TableElectrons > 0) learn.table_electrons = this->TableElectrons;
+}
+
+void vtkSemsurfTrain::AddInputs(vtkInformationVector** inputs, workflow::TrainJob& job) {
+  const int surfaces = inputs[0]->GetNumberOfInformationObjects(), images = inputs[1]->GetNumberOfInformationObjects();
+  need(images == 0 || images == surfaces, "Images", fmt::format("there are {} of {} surfaces", images, surfaces),
+       "Give one for each, in the same order, or none");
+  need(this->Signal.empty() || images > 0, "Signal", "there are no Images that it could be of",
+       "Leave it empty, or give one for each surface");
+  job.signal = this->Signal;
+  for (int i = 0; i < surfaces; ++i) {
+    workflow::TrainingInput input;
+    input.name = fmt::format("surface-{}", i + 1);
+    vtkImageData* const heights = pv::image_input(inputs, 0, "Input", i);
+    input.field = pv::to_height_field(heights, pv::chosen_array(this, 0, heights), input.name.c_str());
+    if (images > 0)
+      input.pixels = std::make_shared<Image>(pv::to_image(pv::image_input(inputs, 1, "Images", i), "Images"));
+    job.inputs.push_back(std::move(input));
+  }
+  job.pixel_nm = this->PixelSize;
+  if (surfaces == 0 || this->PixelSize != 0) return;
+  const HeightField& first = job.inputs.front().field;
+  need(first.pitch_x_nm == first.pitch_y_nm, "Pixel Size", "the samples of the first surface are not square",
+       "Say how large the model's pixels are, as 3");
+  job.pixel_nm = first.pitch_x_nm;
+}
+
+/// As a command line says it that gives the same file.
+std::string vtkSemsurfTrain::Command(const workflow::TrainJob& job) const {
+  std::string text = "semsurf train";
+  const auto add = [&text](const char* option, const std::string& value) { text += fmt::format(" {} {}", option, value); };
+  const workflow::LearnOptions& learn = job.learn;
+  for (const workflow::TrainingInput& input : job.inputs) text += " " + input.name;
+  for (const workflow::TrainingInput& input : job.inputs)
+    if (input.pixels) add(job.signal.empty() ? "--images" : "--signal", input.name);
+  if (!this->MaterialFile.empty()) add("--materials", std::filesystem::path(this->MaterialFile).filename().string());
+  add("--material", this->Material);
+  add("--energy", format_exact(job.energy_ev) + "eV");
+  if (job.spot_nm > 0) add("--spot", format_exact(job.spot_nm) + "nm");
+  add("--pixel-size", format_exact(job.pixel_nm) + "nm");
+  add("--model", learn.kind);
+  if (!this->Scales.empty()) add("--scales", fmt::format("{}", fmt::join(this->Scales, ",")));
+  if (learn.cut_off) add("--cut-off", format_exact(*learn.cut_off));
+  if (learn.hidden) add("--hidden", fmt::format("{}", fmt::join(this->Hidden, ",")));
+  if (learn.iterations) add("--iterations", std::to_string(*learn.iterations));
+  if (learn.decay) add("--decay", format_exact(*learn.decay));
+  if (learn.tolerance) add("--tolerance", format_exact(*learn.tolerance));
+  if (learn.table_electrons) add("--table-electrons", std::to_string(*learn.table_electrons));
+  if (job.surfaces) add("--surfaces", std::to_string(*job.surfaces));
+  if (job.inputs.empty() && job.surface_px != 64) add("--surface-size", std::to_string(job.surface_px));
+  if (job.held_out > 0) add("--hold-out", std::to_string(job.held_out));
+  if (job.fine > 0) add("--fine", std::to_string(job.fine));
+  if (this->Edge > 0) add("--edge", edges[this->Edge]);
+  if (job.simulation.accuracy > 0) add("--accuracy", format_exact(job.simulation.accuracy));
+  else if (job.simulation.electrons != 150) add("--electrons", std::to_string(job.simulation.electrons));
+  if (!this->Physics.empty()) add("--physics", this->Physics);
+  if (job.simulation.seed != 1) add("--seed", std::to_string(job.simulation.seed));
+  return text + (learn.multi_resolution ? " --multi-resolution" : "");
+}
+
+workflow::TrainJob vtkSemsurfTrain::Job(vtkInformationVector** inputs) {
+  need(!this->ModelFile.empty(), "Model File", "no file is named for the model", "Name one that ends in .json");
+  need_within(this->Edge, 0, 2, "Edge");
+  need_within(this->Budget, 0, 1, "Budget");
+  need(this->Seed >= 0, "Seed", fmt::format("{} is below 0", this->Seed), "Give 1");
+  need(this->Budget == 1 || this->Electrons >= 1, "Electrons", fmt::format("{} are too few", this->Electrons),
+       "Give 1 or more per pixel");
+  need(this->Budget == 0 || (this->Accuracy >= 1e-4 && this->Accuracy <= 1), "Accuracy",
+       fmt::format("{} is not in 0.0001 to 1", this->Accuracy), "Give 0.03 for 3 %");
+  need(this->PixelSize >= 0 && std::isfinite(this->PixelSize), "Pixel Size", "it is below 0", "Give 3 where in doubt");
+  need_within(this->Surfaces, 0, 1000, "Surfaces");
+  need_within(this->SurfaceSize, 16, 4096, "Surface Size");
+  need_within(this->HoldOut, 0, 1000, "Hold Out");
+  need_within(this->Fine, 0, 8, "Fine");
+  workflow::TrainJob job;
+  job.output = this->ModelFile;
+  need(job.output.extension() == ".json", "Model File", fmt::format("{} does not end in .json", this->ModelFile),
+       "Name one that does");
+  this->AddModel(job);
+  if (this->Surfaces > 0) job.surfaces = this->Surfaces;
+  job.surface_px = this->SurfaceSize;
+  job.held_out = this->HoldOut;
+  job.fine = this->Fine;
+  job.edge = static_cast<surf::Edge>(this->Edge);
+  job.simulation.seed = static_cast<std::uint64_t>(this->Seed);
+  job.simulation.electrons = this->Electrons;
+  if (this->Budget == 1) {
+    job.simulation.accuracy = this->Accuracy;
+    job.simulation.method = mc::Method::replay;
+  }
+  io::MaterialLibrary materials;
+  std::vector<std::string> notes;
+  if (!this->MaterialFile.empty()) materials.read(this->MaterialFile, notes);
+  job.material = materials.find(this->Material, "Material");
+  job.energy_ev = this->Energy;
+  job.spot_nm = this->Spot;
+  need(job.energy_ev >= mc::min_beam_energy_ev && job.energy_ev <= mc::max_beam_energy_ev, "Energy",
+       fmt::format("{} eV are not in 100 to 30000", job.energy_ev), "Give 1000 for 1 keV");
+  need(job.spot_nm >= 0, "Spot", fmt::format("{} nm are below 0", job.spot_nm), "Give 0 for a point");
+  if (!this->Physics.empty()) mc::parse_physics(this->Physics, job.physics);
+  this->AddInputs(inputs, job);
+  need(job.pixel_nm > 0, "Pixel Size", "it is 0, and there is no surface to take it from", "Give 3 where in doubt");
+  job.command_line = this->Command(job);
+  return job;
+}
+
+int vtkSemsurfTrain::RequestData(vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs) {
+  // One rank writes the file and the images.
+  if (!pv::is_first_piece(outputs->GetInformationObject(0))) return 1;
+  return pv::attempt(this, [&] {
+    pv::with_labels([&] {
+      const workflow::TrainJob job = this->Job(inputs);
+      std::vector<std::string> notes;
+      workflow::TrainSummary summary;
+      pv::work(this, [&](const Watch& watch) { summary = pv::train(job, watch, notes); });
+      for (const std::string& warning : summary.model.record.warnings) pv::warn(this, warning);
+      vtkNew<vtkTable> errors, model;
+      pv::fill_errors(errors, summary.model.record);
+      pv::fill_model(model, job, summary, notes);
+      pv::give(outputs->GetInformationObject(0), errors);
+      pv::give(outputs->GetInformationObject(1), model);
+    });
+  });
+}
