@@ -174,7 +174,7 @@ SurfaceScene make_scene(const Options& o, const Plan& p, Watched& watched) {
                    scene);
     watched.clear();
   }
-  if (p.format.scalars && !o.plain) add_shape_scalars(scene);
+  if (p.format.scalars && !o.plain) add_shape_scalars(scene, watched.watch());
   for (const FileChannel& input : p.scalars) add_image_scalar(input, p.work.pitch, scene);
   if (p.drape) add_drape(*p.drape, p.work.pitch, scene);
   if (!p.format.tracks) scene.tracks.clear();

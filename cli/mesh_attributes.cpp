@@ -20,7 +20,7 @@ bool has(const Surface& surface, const std::string& name) {
 
 }  // namespace
 
-void add_shape_scalars(SurfaceScene& scene) {
+void add_shape_scalars(SurfaceScene& scene, const Watch& watch) {
   for (Surface& surface : scene.surfaces) {
     if (!has(surface, "height")) {
       VertexScalar height{"height", "nm", {}};
@@ -28,7 +28,7 @@ void add_shape_scalars(SurfaceScene& scene) {
       surface.scalars.insert(surface.scalars.begin(), std::move(height));
     }
     if (!has(surface, "curvature"))
-      surface.scalars.insert(surface.scalars.begin() + 1, {"curvature", "1/nm", mean_curvature(surface.mesh)});
+      surface.scalars.insert(surface.scalars.begin() + 1, {"curvature", "1/nm", mean_curvature(surface.mesh, 0, watch)});
   }
 }
 

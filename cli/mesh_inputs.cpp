@@ -119,7 +119,9 @@ class Treatment {
     if (work_.scale != 1) transform(mesh, work_.scale, {});
     if (work_.repair) {
       RepairSummary summary;
-      mesh = repair_mesh(mesh, *work_.repair, summary);
+      RepairOptions repair = *work_.repair;
+      repair.watch = watch_;
+      mesh = repair_mesh(mesh, repair, summary);
       if (!work_.quiet) {
         print_repair(summary);
         advise(summary);
@@ -130,7 +132,9 @@ class Treatment {
     watch_.check();
     if (work_.reduces()) {
       SimplifySummary summary;
-      mesh = simplify_mesh(mesh, work_.reduce, summary);
+      SimplifyOptions reduce = work_.reduce;
+      reduce.watch = watch_;
+      mesh = simplify_mesh(mesh, reduce, summary);
       if (!work_.quiet) print_simplified(summary);
       if (!summary.reached)
         print_warning(fmt::format("--triangles: {} are left; fewer would {}", summary.triangles_after,
@@ -176,8 +180,8 @@ class Treatment {
       const Box box = bounds(surface.mesh);
       const Vec3 size = box.size_nm();
       const double depth = *work_.solid_nm > 0 ? *work_.solid_nm : base_share * std::max(size.x, size.y);
-      if (work_.curvature) surface.scalars.push_back({"curvature", "1/nm", mean_curvature(surface.mesh)});
-      surface.mesh = sheet_solid(surface.mesh, box.lower_nm.z - depth);
+      if (work_.curvature) surface.scalars.push_back({"curvature", "1/nm", mean_curvature(surface.mesh, 0, watch_)});
+      surface.mesh = sheet_solid(surface.mesh, box.lower_nm.z - depth, watch_);
       for (VertexScalar& scalar : surface.scalars)   // of the walls' feet nothing is known
         scalar.values.resize(surface.mesh.vertices_nm.size(), 0);
       if (!work_.quiet)

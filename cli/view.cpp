@@ -118,7 +118,7 @@ int work(const Options& o) {
   if (o.files.empty())
     throw UsageError("view", "no file is given", "Name scans, meshes or images to show");
   if (!o.output) throw UsageError("--output", "no output file is given", "Add -o page.html");
-  const ViewReading reading = make_reading(o);
+  ViewReading reading = make_reading(o);
   io::check_web_page_target(*o.output);
   std::vector<FileChannel> inputs, scalars;
   for (const std::string& file : o.files) inputs.push_back(parse_file_channel(file));
@@ -127,6 +127,7 @@ int work(const Options& o) {
   if (o.drape) drape = parse_file_channel(*o.drape);
 
   InterruptGuard interrupt;
+  reading.watch.cancel = interrupt.token();
   ProgressBar bar(!o.quiet);
   const double steps = 2 * double(inputs.size() + scalars.size());   // reading, then writing
   double done = 0;

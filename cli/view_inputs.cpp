@@ -50,7 +50,7 @@ class Adder {
     }
     if (reading_.tolerance_nm) {
       ThinSummary summary;
-      surface.shape = thin_height_field(field, {*reading_.tolerance_nm}, summary);
+      surface.shape = thin_height_field(field, {.tolerance_nm = *reading_.tolerance_nm, .watch = reading_.watch}, summary);
       note(fmt::format("{} triangles instead of {}, nowhere more than {} off", summary.triangles_after,
                        summary.triangles_before, format_length(summary.deviation_nm)));
       surface.metadata["view.deviation_nm"] = format_exact(summary.deviation_nm);
@@ -84,6 +84,7 @@ class Adder {
       if (reading_.tolerance_nm) {
         SimplifyOptions options;
         options.tolerance_nm = *reading_.tolerance_nm;
+        options.watch = reading_.watch;
         SimplifySummary summary;
         body.mesh = simplify_mesh(merge_equal_vertices(body.mesh), options, summary);
         note(fmt::format("{} triangles instead of {}, at most {} apart", summary.triangles_after,

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "picture_input.h"
+#include "surf/core/progress.h"
 #include "surf/io/web_page.h"
 
 namespace surf::cli {
@@ -15,6 +16,7 @@ struct ViewReading {
   std::optional<double> tolerance_nm;   ///< height fields and meshes become fewer triangles within it
   int step = 1;                         ///< every so many-th sample of height fields
   bool quiet = false;
+  Watch watch;                          ///< of what lasts; is told nothing
 };
 
 /// Adds what the file holds to the page: height fields, bodies of a mesh file, pictures. An image with a

@@ -91,7 +91,7 @@ struct EmbreeScene::Impl {
   }
 };
 
-EmbreeScene::EmbreeScene(const TriangleMesh& mesh) : impl_(std::make_unique<Impl>()) {
+EmbreeScene::EmbreeScene(const TriangleMesh& mesh, const Watch& watch) : impl_(std::make_unique<Impl>()) {
   impl_->mesh = mesh;
   const Box box = bounds(mesh);
   impl_->center = box.center_nm();
@@ -130,7 +130,18 @@ EmbreeScene::EmbreeScene(const TriangleMesh& mesh) : impl_(std::make_unique<Impl
   rtcCommitGeometry(geometry);
   rtcAttachGeometry(impl_->scene, geometry);
   rtcReleaseGeometry(geometry);
+  watch.check();
+  // From any of Embree's threads: progress is not passed on.
+  rtcSetSceneProgressMonitorFunction(
+      impl_->scene,
+      [](void* token, double) {
+        const auto* const cancel = static_cast<const CancelToken*>(token);
+        return !cancel || !cancel->cancelled();
+      },
+      const_cast<CancelToken*>(watch.cancel));
   rtcCommitScene(impl_->scene);
+  watch.check();
+  rtcSetSceneProgressMonitorFunction(impl_->scene, nullptr, nullptr);   // the token may go before the scene
   if (rtcGetDeviceError(impl_->device) != RTC_ERROR_NONE)
     throw InvalidInput("ray tracing", "Embree could not build the scene (out of memory?)",
                        "Simplify the mesh");

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "surf/core/progress.h"
 #include "surf/core/vec3.h"
 #include "surf/mesh/triangle_mesh.h"
 
@@ -32,7 +33,7 @@ class EmbreeScene {
   /// normal, never 0; `distance` is to the triangle's plane, in double: negative behind the origin.
   using Accept = bool (*)(void* user, std::uint32_t triangle, double cosine, double distance);
 
-  explicit EmbreeScene(const TriangleMesh& mesh);
+  explicit EmbreeScene(const TriangleMesh& mesh, const Watch& watch = {});   ///< throws Interrupted
   ~EmbreeScene();
   EmbreeScene(const EmbreeScene&) = delete;
   EmbreeScene& operator=(const EmbreeScene&) = delete;

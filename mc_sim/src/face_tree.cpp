@@ -23,7 +23,7 @@ float outward(double v, bool up) {
 
 }  // namespace
 
-FaceTree::FaceTree(const TriangleMesh& mesh, const Box& region, int threads) : mesh_(mesh) {
+FaceTree::FaceTree(const TriangleMesh& mesh, const Box& region, int threads, const Watch& watch) : mesh_(mesh) {
   origin_ = region.center_nm();
   for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
     const Triangle& t = mesh.triangles[i];
@@ -34,7 +34,7 @@ FaceTree::FaceTree(const TriangleMesh& mesh, const Box& region, int threads) : m
     };
     if (!apart(&Vec3::x) && !apart(&Vec3::y) && !apart(&Vec3::z)) faces_.push_back(i);
   }
-  if (!faces_.empty()) build(threads);
+  if (!faces_.empty()) build(threads, watch);
 }
 
 void FaceTree::corners(std::uint32_t triangle, const Vec3& about, Vec3 (&out)[3]) const {
@@ -42,7 +42,7 @@ void FaceTree::corners(std::uint32_t triangle, const Vec3& about, Vec3 (&out)[3]
   for (std::size_t i = 0; i < 3; ++i) out[i] = mesh_.vertices_nm[t[i]] - about;
 }
 
-void FaceTree::build(int threads) {
+void FaceTree::build(int threads, const Watch& watch) {
   struct Item {
     std::array<float, 3> middle;
     std::uint32_t triangle;
@@ -58,7 +58,7 @@ void FaceTree::build(int threads) {
       items[i] = {{static_cast<float>(sum.x), static_cast<float>(sum.y), static_cast<float>(sum.z)},
                   faces_[i]};
     }
-  });
+  }, watch);
   nodes_.resize((std::size_t{2} << levels_) - 1);
   const auto split = [&](std::size_t node, int level) {
     const Range all = range(node, level), half = range(2 * node + 1, level + 1);
@@ -84,7 +84,7 @@ void FaceTree::build(int threads) {
   for (int level = 0; level < top; ++level)
     parallel_for(std::size_t{1} << level, threads, [&](std::size_t k, int) {
       split((std::size_t{1} << level) - 1 + k, level);
-    });
+    }, watch);
   parallel_for(std::size_t{1} << top, threads, [&](std::size_t k, int) {
     for (int level = top; level <= levels_; ++level) {
       const std::size_t wide = std::size_t{1} << (level - top);
@@ -103,7 +103,7 @@ void FaceTree::build(int threads) {
       const std::size_t first = (std::size_t{1} << level) - 1 + k * wide;
       for (std::size_t node = first; node < first + wide; ++node) bound(node, level);
     }
-  });
+  }, watch);
   for (std::size_t node = (std::size_t{1} << top) - 1; node-- > 0;) bound(node, -1);
 }
 

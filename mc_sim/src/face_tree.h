@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "surf/core/progress.h"
 #include "surf/core/vec3.h"
 #include "surf/mesh/triangle_mesh.h"
 
@@ -19,8 +20,8 @@ class FaceTree {
  public:
   static constexpr std::uint32_t none = 0xffffffffu;
 
-  /// Holds the triangles whose boxes touch `region`.
-  FaceTree(const TriangleMesh& mesh, const Box& region, int threads);
+  /// Holds the triangles whose boxes touch `region`. Throws Interrupted.
+  FaceTree(const TriangleMesh& mesh, const Box& region, int threads, const Watch& watch = {});
 
   std::size_t size() const { return faces_.size(); }
 
@@ -55,7 +56,7 @@ class FaceTree {
     return {faces_.size() * k >> level, faces_.size() * (k + 1) >> level};
   }
   void corners(std::uint32_t triangle, const Vec3& about, Vec3 (&out)[3]) const;
-  void build(int threads);
+  void build(int threads, const Watch& watch);
   void bound(std::size_t node, int level);
 
   struct Entry;

@@ -50,7 +50,7 @@ class Boxes {
 
   // Marks what is matter, region by region of boxes that nothing touches.
   void find_matter(const std::vector<std::uint32_t>& shell_of, const std::vector<Shell>& shells,
-                   std::optional<double> plane) {
+                   std::optional<double> plane, const Watch& watch) {
     std::vector<std::vector<std::size_t>> regions;
     for (std::size_t i = 0; i < state_.size(); ++i)
       if (!(state_[i] & (touched | seen))) regions.push_back(region(i));
@@ -58,9 +58,11 @@ class Boxes {
       return a.size() > b.size() || (a.size() == b.size() && a[0] < b[0]);
     });
     const double affordable = most_angles / static_cast<double>(mesh_.triangles.size());
-    for (std::size_t k = 0; k < regions.size() && static_cast<double>(k) < std::max(affordable, 2.0); ++k)
+    for (std::size_t k = 0; k < regions.size() && static_cast<double>(k) < std::max(affordable, 2.0); ++k) {
+      watch.check();
       if (is_matter(middle(regions[k][0]), shell_of, shells))
         for (const std::size_t i : regions[k]) state_[i] |= matter;
+    }
     if (!plane) return;
     for (int z = 0; z < n_[2]; ++z)
       if (lower_.z + (z + 1) * edge_ <= *plane)
@@ -232,14 +234,17 @@ std::vector<std::uint8_t> felt_triangles(const TriangleMesh& mesh,
                                          const std::vector<std::uint32_t>& shell_of,
                                          const std::vector<Shell>& shells,
                                          std::optional<double> plane_nm, const Box& domain,
-                                         double reach_nm) {
+                                         double reach_nm, const Watch& watch) {
   const std::vector<std::uint8_t> all(mesh.triangles.size(), 1);
   // One shell alone has nothing within it.
   if (shells.size() < 2 || domain.empty() || !std::isfinite(reach_nm)) return all;
   Boxes boxes(mesh, domain);
   if (!boxes.touch()) return all;
-  boxes.find_matter(shell_of, shells, plane_nm);
+  watch.check();
+  boxes.find_matter(shell_of, shells, plane_nm, watch);
+  watch.check();
   boxes.flood();
+  watch.check();
   return boxes.within(reach_nm);
 }
 

@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "surf/core/progress.h"
 #include "surf/core/vec3.h"
 #include "surf/mesh/triangle_mesh.h"
 
@@ -20,11 +21,11 @@ struct Shell {
 /// 0. The answer errs towards 1: space is cut into boxes, and one counts as matter only where no
 /// triangle touches it and its middle is within a solid, or where all of it is below `plane_nm`.
 /// What is not matter and hangs together with the rim of `domain` may be vacuum open to the outside.
-/// Triangles that reach beyond `domain` are always 1.
+/// Triangles that reach beyond `domain` are always 1. Throws Interrupted.
 std::vector<std::uint8_t> felt_triangles(const TriangleMesh& mesh,
                                          const std::vector<std::uint32_t>& shell_of,
                                          const std::vector<Shell>& shells,
                                          std::optional<double> plane_nm, const Box& domain,
-                                         double reach_nm);
+                                         double reach_nm, const Watch& watch = {});
 
 }  // namespace surf::mc

@@ -54,15 +54,15 @@ class NearFieldBuilder {
   using Cell = NearField::Cell;
 
   NearFieldBuilder(const TriangleMesh& mesh, const Box& domain, std::size_t bytes, int threads,
-                   NearField& field)
-      : field_(field), domain_(domain), bytes_(bytes), threads_(threads),
+                   const Watch& watch, NearField& field)
+      : watch_{{}, watch.cancel}, field_(field), domain_(domain), bytes_(bytes), threads_(threads),
         most_cells_(std::min({static_cast<double>(bytes) / sizeof(Cell), most_cells,
                               few_cells + cells_per_triangle *
                                               static_cast<double>(mesh.triangles.size())})),
         area_(area_within(mesh, domain)),
         cell_(first_cell(area_)),
         widest_(1.5 * cell_),
-        tree_(mesh, grown(domain, (brick_span + 4) * NearField::cut * widest_), threads),
+        tree_(mesh, grown(domain, (brick_span + 4) * NearField::cut * widest_), threads, watch_),
         per_area_(static_cast<double>(tree_.size()) / std::max(area_, 1e-9)) {}
 
   void build() {
@@ -159,7 +159,7 @@ class NearFieldBuilder {
         wanted[i] = fit.floor_nm < near_nm &&
                     fit.shortfall_nm > flat_nm + flat_share * fit.floor_nm;
       }
-    });
+    }, watch_);
     std::vector<std::uint32_t> cut;
     for (std::size_t i = 0; i < wanted.size(); ++i)
       if (wanted[i]) cut.push_back(static_cast<std::uint32_t>(i));
@@ -196,7 +196,7 @@ class NearFieldBuilder {
         fill(lower + Vec3{0.5, 0.5, 0.5} * edge_, surface[static_cast<std::size_t>(worker)],
              &cells[field_.bricks_[i] & ~NearField::is_cut]);
       }
-    });
+    }, watch_);
   }
 
   // The cells of a brick, by way of its eighths. Cells that are not near the surface get no slab and
@@ -332,6 +332,7 @@ class NearFieldBuilder {
     return sum;
   }
 
+  const Watch watch_;   // tells nobody; first: the tree below is built with it
   NearField& field_;
   Box domain_;
   std::size_t bytes_;
@@ -346,10 +347,11 @@ class NearFieldBuilder {
   std::vector<Cell> bricks_;
 };
 
-NearField::NearField(const TriangleMesh& mesh, const Box& domain, std::size_t bytes, int threads)
+NearField::NearField(const TriangleMesh& mesh, const Box& domain, std::size_t bytes, int threads,
+                     const Watch& watch)
     : surface_box_(bounds(mesh)) {
   if (mesh.triangles.empty() || bytes < 4096 || domain.empty()) return;
-  NearFieldBuilder(mesh, domain, bytes, resolve_threads(threads), *this).build();
+  NearFieldBuilder(mesh, domain, bytes, resolve_threads(threads), watch, *this).build();
 }
 
 double NearField::outside_nm(const Vec3& p) const {

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "surf/core/progress.h"
 #include "surf/core/vec3.h"
 #include "surf/mesh/triangle_mesh.h"
 
@@ -29,7 +30,9 @@ class NearField {
   /// Covers `domain` and a little around it with about `bytes` of memory (>= 0; 0: only points
   /// outside the box of all triangles get a bound). Triangles may lie anywhere.
   /// `threads` >= 0; 0: one per hardware thread. The result does not depend on it.
-  NearField(const TriangleMesh& mesh, const Box& domain, std::size_t bytes, int threads = 0);
+  /// Throws Interrupted.
+  NearField(const TriangleMesh& mesh, const Box& domain, std::size_t bytes, int threads = 0,
+            const Watch& watch = {});
 
   double cell_nm() const { return cell_nm_; }   ///< the smallest cells; 0 without any
   std::size_t bytes() const {

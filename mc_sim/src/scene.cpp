@@ -130,11 +130,11 @@ Box near_scan(const Box& surface, const Scan& scan, const Beam& beam, double rea
 
 // Drops the triangles that no electron comes near, and says how many.
 std::size_t leave_out_unreachable(Assembly& all, std::optional<double> plane_nm, const Box& near,
-                                  double reach) {
+                                  double reach, const Watch& watch) {
   const double lowest = near.lower_nm.z, highest = std::max(near.upper_nm.z, plane_nm.value_or(-HUGE_VAL));
   if (all.shells.size() < 2 || highest - lowest <= reach) return 0;
   const std::vector<std::uint8_t> felt =
-      felt_triangles(all.mesh, all.shell_of, all.shells, plane_nm, near, reach);
+      felt_triangles(all.mesh, all.shell_of, all.shells, plane_nm, near, reach, watch);
   std::size_t kept = 0;
   for (std::size_t i = 0; i < felt.size(); ++i) {
     if (!felt[i]) continue;
@@ -154,7 +154,9 @@ Scene::Scene(const Specimen& specimen, const Beam& beam, const Scan& scan, const
   const auto begin = std::chrono::steady_clock::now();
   validate(beam);
   validate(scan);
-  validate(specimen);
+  const Watch& watch = options.watch;
+  watch.check();
+  validate(specimen, watch.part(0, 0.1));
   Impl& s = *impl_;
   s.beam = beam;
   s.scan = scan;
@@ -182,7 +184,8 @@ Scene::Scene(const Specimen& specimen, const Beam& beam, const Scan& scan, const
     near.extend(bounds(all.mesh));
   }
   for (const Body& body : specimen.bodies) {
-    if (is_sheet(body)) {
+    watch.check();
+    if (is_sheet(body, {{}, watch.cancel})) {
       add_sheet(all, body, scan, reach);
       s.half_space = true;
     } else {
@@ -191,7 +194,7 @@ Scene::Scene(const Specimen& specimen, const Beam& beam, const Scan& scan, const
     near.extend(bounds(body.mesh));
   }
   if (options.leave_out_unreachable && !near.empty())
-    s.summary.triangles_left_out = leave_out_unreachable(all, s.plane_nm, near, farthest_reach);
+    s.summary.triangles_left_out = leave_out_unreachable(all, s.plane_nm, near, farthest_reach, watch);
   s.shells = std::move(all.shells);
   s.solids = std::move(all.solids);
   s.shell_of = std::move(all.shell_of);
@@ -202,9 +205,12 @@ Scene::Scene(const Specimen& specimen, const Beam& beam, const Scan& scan, const
   if (!all.mesh.triangles.empty()) {
     s.top_nm = std::max(s.top_nm, near.upper_nm.z);
     const Box domain = near_scan(near, scan, beam, reach);
-    s.near = NearField(all.mesh, domain, options.distance_grid_bytes);
-    s.sky = Sky(all.mesh, domain, sky_columns);
-    s.triangles = std::make_unique<EmbreeScene>(all.mesh);
+    watch.report(0.3, 1);
+    s.near = NearField(all.mesh, domain, options.distance_grid_bytes, 0, watch.part(0.3, 0.7));
+    watch.report(0.7, 1);
+    s.sky = Sky(all.mesh, domain, sky_columns, 0, watch);
+    watch.report(0.8, 1);
+    s.triangles = std::make_unique<EmbreeScene>(all.mesh, watch.part(0.8, 1));
   }
   s.summary.triangles = all.mesh.triangles.size();
   s.summary.shells = s.shells.size();

@@ -57,10 +57,14 @@ class SkyBuilder {
     sky.ny_ = static_cast<int>(size.y / width) + 1;
   }
 
-  void build(int threads) {
+  void build(int threads, const Watch& watch) {
     exact_ = Grid<double>(sky_.nx_, sky_.ny_, -HUGE_VAL);
     slopes_ = Grid<float>(sky_.nx_, sky_.ny_, 0);
-    for (const Triangle& t : mesh_.triangles) raise(t);
+    constexpr std::size_t between_looks = 65536;
+    for (std::size_t t = 0; t < mesh_.triangles.size(); ++t) {
+      if (t % between_looks == 0) watch.check();
+      raise(mesh_.triangles[t]);
+    }
     heights_.emplace_back(sky_.nx_, sky_.ny_, nothing);
     for (int y = 0; y < sky_.ny_; ++y)
       for (int x = 0; x < sky_.nx_; ++x) {
@@ -72,7 +76,10 @@ class SkyBuilder {
     while (static_cast<int>(heights_.size()) <= level_of(rings - 1)) heights_.push_back(halved());
     sky_.heights_.assign(static_cast<std::size_t>(sky_.nx_) * static_cast<std::size_t>(sky_.ny_) *
                              Sky::sectors * Sky::rings, upward(outside_));
-    for (int ring = 0; ring < rings - 1; ++ring) fill(ring, threads);   // the last one is outside
+    for (int ring = 0; ring < rings - 1; ++ring) {   // the last one is outside
+      watch.check();
+      fill(ring, threads);
+    }
   }
 
  private:
@@ -230,11 +237,11 @@ class SkyBuilder {
   std::vector<Grid<float>> heights_;   // of blocks of 2^level columns
 };
 
-Sky::Sky(const TriangleMesh& mesh, const Box& domain, std::size_t columns, int threads) {
+Sky::Sky(const TriangleMesh& mesh, const Box& domain, std::size_t columns, int threads, const Watch& watch) {
   if (mesh.triangles.empty()) return;
   top_nm_ = bounds(mesh).upper_nm.z;
   if (columns == 0 || domain.empty()) return;
-  SkyBuilder(mesh, domain, columns, *this).build(resolve_threads(threads));
+  SkyBuilder(mesh, domain, columns, *this).build(resolve_threads(threads), watch);
 }
 
 }  // namespace surf::mc

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "surf/core/progress.h"
 #include "surf/core/vec3.h"
 #include "surf/mesh/triangle_mesh.h"
 
@@ -22,8 +23,9 @@ class Sky {
   Sky() = default;
 
   /// Columns over `domain`, at most about `columns` of them (>= 0; 0: only what is above everything
-  /// is free). Triangles may lie anywhere.
-  Sky(const TriangleMesh& mesh, const Box& domain, std::size_t columns, int threads = 0);
+  /// is free). Triangles may lie anywhere. Throws Interrupted.
+  Sky(const TriangleMesh& mesh, const Box& domain, std::size_t columns, int threads = 0,
+      const Watch& watch = {});
 
   std::size_t bytes() const {
     return around_.size() * sizeof(double) + (heights_.size() + slopes_.size()) * sizeof(float);

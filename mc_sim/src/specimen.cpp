@@ -54,10 +54,10 @@ std::string repair_command(const std::string& name) {
       repair_command(subject));
 }
 
-void check_body(const Body& body) {
+void check_body(const Body& body, const Watch& watch) {
   const std::string subject = body.name.empty() ? "body" : body.name;
   validate(body.mesh, subject.c_str());
-  const MeshReport report = check_mesh(body.mesh);
+  const MeshReport report = check_mesh(body.mesh, watch);
   if (report.boundary_edges > 0) {
     std::string reason;
     if (!extend_open_sheet(body.mesh, 1, reason)) refuse_open(subject, report, reason);
@@ -76,9 +76,10 @@ void check_body(const Body& body) {
 
 }  // namespace
 
-bool is_sheet(const Body& body) { return check_mesh(body.mesh).boundary_edges > 0; }
+bool is_sheet(const Body& body, const Watch& watch) { return check_mesh(body.mesh, watch).boundary_edges > 0; }
 
-void validate(const Specimen& specimen) {
+void validate(const Specimen& specimen, const Watch& watch) {
+  const Watch silent{{}, watch.cancel};
   for (const Material& m : specimen.materials) validate(m);
   if (!specimen.substrate && !specimen.height_field && specimen.bodies.empty())
     throw InvalidInput("specimen", "there is nothing in it", "Add a mesh, a field or a substrate");
@@ -94,7 +95,7 @@ void validate(const Specimen& specimen) {
   }
   for (const Body& body : specimen.bodies) {
     check_material(specimen, body.material, body.name.empty() ? "body" : body.name);
-    check_body(body);
+    check_body(body, silent);
   }
 }
 

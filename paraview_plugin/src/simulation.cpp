@@ -123,7 +123,9 @@ void together(vtkMultiProcessController* ranks, const std::function<void()>& par
   if (any) throw Interrupted();
 }
 
-mc::Scene make_scene(const SimulationPlan& plan) { return {plan.specimen, plan.beam, plan.scan, plan.physics}; }
+mc::Scene make_scene(const SimulationPlan& plan, const Watch& watch) {
+  return {plan.specimen, plan.beam, plan.scan, plan.physics, {.watch = watch}};
+}
 
 mc::SimulationOptions chosen_options(const SimulationPlan& plan, const mc::Scene& scene) {
   mc::SimulationOptions options = plan.options;
@@ -146,7 +148,7 @@ Simulated simulate(vtkAlgorithm* self, const SimulationPlan& plan, vtkMultiProce
   std::optional<ShareOfRank> share;
   together(ranks, [&] {
     work(self, [&](const Watch& watch) {
-      scene.emplace(make_scene(plan));
+      scene.emplace(make_scene(plan, watch.part(0, scene_share)));
       watch.report(scene_share, 1);
       options = chosen_options(plan, *scene);
       if (ranks)
@@ -258,7 +260,7 @@ void LiveSimulation::Shared::look_coarsely(const mc::Scene& scene) {
 
 void LiveSimulation::Shared::run() {
   try {
-    const mc::Scene scene = make_scene(plan);
+    const mc::Scene scene = make_scene(plan, {{}, &cancel});
     look_coarsely(scene);
     {
       const std::lock_guard lock(mutex);

@@ -85,11 +85,11 @@ int vtkSemsurfRepairMesh::RequestData(vtkInformation*, vtkInformationVector** in
     const TriangleMesh mesh = pv::to_mesh(input, "Input");
     TriangleMesh mended;
     RepairSummary summary;
-    pv::work(this, [&](const Watch&) {
+    pv::work(this, [&](const Watch& watch) {
       if (!this->Repair) {
-        summary.before = summary.after = check_mesh(mesh);
+        summary.before = summary.after = check_mesh(mesh, watch.part(0, 0.3));
         summary.self_intersections_before = summary.self_intersections_after =
-            find_self_intersections(mesh).pairs.size();
+            find_self_intersections(mesh, {.watch = watch.part(0.3, 1)}).pairs.size();
         return;
       }
       mended = repair_mesh(mesh,
@@ -97,7 +97,8 @@ int vtkSemsurfRepairMesh::RequestData(vtkInformation*, vtkInformationVector** in
                             .sliver_nm = this->Sliver,
                             .max_hole_nm = unless_negative(this->MaximumHole),
                             .min_component_nm = this->MinimumComponent,
-                            .resolve_self_intersections = this->ResolveIntersections},
+                            .resolve_self_intersections = this->ResolveIntersections,
+                            .watch = watch},
                            summary);
     });
     vtkNew<vtkTable> table;

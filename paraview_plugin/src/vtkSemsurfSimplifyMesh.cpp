@@ -50,7 +50,10 @@ int vtkSemsurfSimplifyMesh::RequestData(vtkInformation*, vtkInformationVector** 
     if (this->Limit != ByTolerance) options.triangles = static_cast<std::size_t>(this->Triangles);
     SimplifySummary summary;
     TriangleMesh simple;
-    pv::work(this, [&](const Watch&) { simple = simplify_mesh(mesh, options, summary); });
+    pv::work(this, [&](const Watch& watch) {
+      options.watch = watch;
+      simple = simplify_mesh(mesh, options, summary);
+    });
     if (!summary.reached)
       pv::warn(this, fmt::format("Triangles: {} are left; fewer would {}", summary.triangles_after,
                                  options.tolerance_nm > 0 ? "exceed Tolerance" : "turn faces over"));

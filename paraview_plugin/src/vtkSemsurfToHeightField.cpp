@@ -64,8 +64,8 @@ int vtkSemsurfToHeightField::RequestData(vtkInformation*, vtkInformationVector**
     const TriangleMesh mesh = pv::to_mesh(pv::surface_input(inputs, 0), "Input");
     const Vec3 size = bounds(mesh).size_nm();
     HeightField field;
-    pv::work(this, [&](const Watch&) {
-      field = mesh_height_field(mesh, {.pitch_nm = this->PitchFor(size.x, size.y)});
+    pv::work(this, [&](const Watch& watch) {
+      field = mesh_height_field(mesh, {.pitch_nm = this->PitchFor(size.x, size.y), .watch = watch});
     });
     pv::give(outputs->GetInformationObject(0), pv::to_vtk(std::move(field)));
   });

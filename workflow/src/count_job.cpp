@@ -61,7 +61,7 @@ std::pair<mc::Beam, mc::Scan> aim(const CountJob& job) {
 CountSummary run(const CountJob& job, const Watch& watch) {
   check(job);
   const auto [beam, scan] = aim(job);
-  const mc::Scene scene(job.scene.specimen, beam, scan, job.scene.physics);
+  const mc::Scene scene(job.scene.specimen, beam, scan, job.scene.physics, {.watch = {{}, watch.cancel}});
   CountSummary summary;
   const Vec3 point{scan.center_x_nm, scan.center_y_nm, scan.center_z_nm}, d = mc::direction(beam);
   if (!scene.first_surface(point - d * above_nm, d, summary.hit_nm))

@@ -94,17 +94,17 @@ bool something_stands_on(const HeightField& field, const std::vector<mc::Body>& 
 }
 
 // Why a simplified mesh cannot stand for the original; empty if it can.
-std::string fault(const TriangleMesh& simple, const TriangleMesh& original, int threads) {
-  const MeshReport now = check_mesh(simple), before = check_mesh(original);
+std::string fault(const TriangleMesh& simple, const TriangleMesh& original, int threads, const Watch& watch) {
+  const MeshReport now = check_mesh(simple, watch), before = check_mesh(original, watch);
   if (now.boundary_edges > 0) {
     std::string reason;
     if (before.boundary_edges == 0 || !extend_open_sheet(simple, 1, reason)) return "it would be open";
   } else if (!now.closed_and_oriented || !(now.signed_volume_nm3 * before.signed_volume_nm3 > 0)) {
     return "it would have no inside";
   }
-  const SelfIntersections crossings = find_self_intersections(simple, {.threads = threads});
+  const SelfIntersections crossings = find_self_intersections(simple, {.threads = threads, .watch = watch});
   if (crossings.pairs.empty() ||
-      crossings.pairs.size() <= find_self_intersections(original, {.threads = threads}).pairs.size())
+      crossings.pairs.size() <= find_self_intersections(original, {.threads = threads, .watch = watch}).pairs.size())
     return "";
   return fmt::format("it would pass through itself near ({:g}, {:g}, {:g}) nm", crossings.first_nm.x,
                      crossings.first_nm.y, crossings.first_nm.z);
@@ -115,12 +115,12 @@ bool gains(std::size_t after, std::size_t before) {
 }
 
 SimplifiedBody simplify_body(const mc::Specimen& specimen, std::size_t number, double tolerance_nm,
-                             int threads, mc::Body& body) {
+                             int threads, const Watch& watch, mc::Body& body) {
   SimplifiedBody done;
   done.name = name_of(body);
   done.triangles_before = done.triangles_after = body.mesh.triangles.size();
   SimplifyOptions options{.tolerance_nm = tolerance_nm, .fixed_nm = contacts(specimen, number),
-                          .threads = threads};
+                          .threads = threads, .watch = watch};
   for (int i = 0; i < attempts; ++i, options.tolerance_nm /= 2) {
     SimplifySummary summary;
     TriangleMesh simple = simplify_mesh(body.mesh, options, summary);
@@ -128,7 +128,7 @@ SimplifiedBody simplify_body(const mc::Specimen& specimen, std::size_t number, d
       if (done.kept.empty()) done.kept = "nothing would be gained";
       return done;
     }
-    done.kept = fault(simple, body.mesh, threads);
+    done.kept = fault(simple, body.mesh, threads, {{}, watch.cancel});
     if (!done.kept.empty()) continue;
     done.triangles_after = summary.triangles_after;
     done.deviation_nm = summary.deviation.largest_nm();
@@ -139,7 +139,7 @@ SimplifiedBody simplify_body(const mc::Specimen& specimen, std::size_t number, d
 }
 
 SimplifiedBody simplify_field(double tolerance_nm, const mc::Beam& beam, const mc::Scan& scan,
-                              const mc::Physics& physics, mc::Specimen& specimen) {
+                              const mc::Physics& physics, const Watch& watch, mc::Specimen& specimen) {
   const mc::HeightFieldBody& body = *specimen.height_field;
   double reach = 0;
   for (const mc::Material& m : specimen.materials)
@@ -155,7 +155,7 @@ SimplifiedBody simplify_field(double tolerance_nm, const mc::Beam& beam, const m
     return done;
   }
   ThinSummary summary;
-  TriangleMesh sheet = thin_height_field(wide, {tolerance_nm}, summary);
+  TriangleMesh sheet = thin_height_field(wide, {.tolerance_nm = tolerance_nm, .watch = watch}, summary);
   if (!gains(summary.triangles_after, summary.triangles_before)) {
     done.kept = "nothing would be gained";
   } else {
@@ -171,7 +171,8 @@ SimplifiedBody simplify_field(double tolerance_nm, const mc::Beam& beam, const m
 
 mc::Specimen simplify_specimen(const mc::Specimen& specimen, double tolerance_nm,
                                const mc::Beam& beam, const mc::Scan& scan,
-                               const mc::Physics& physics, int threads, Simplification& out) {
+                               const mc::Physics& physics, int threads, Simplification& out,
+                               const Watch& watch) {
   const auto begin = std::chrono::steady_clock::now();
   mc::validate(specimen);
   check_tolerance(specimen, tolerance_nm);
@@ -179,9 +180,10 @@ mc::Specimen simplify_specimen(const mc::Specimen& specimen, double tolerance_nm
   out.tolerance_nm = tolerance_nm;
   mc::Specimen simple = specimen;
   for (std::size_t i = 0; i < specimen.bodies.size(); ++i)
-    out.bodies.push_back(simplify_body(specimen, i, tolerance_nm, threads, simple.bodies[i]));
+    out.bodies.push_back(simplify_body(specimen, i, tolerance_nm, threads,
+                                       {{}, watch.cancel}, simple.bodies[i]));
   if (specimen.height_field)
-    out.bodies.insert(out.bodies.begin(), simplify_field(tolerance_nm, beam, scan, physics, simple));
+    out.bodies.insert(out.bodies.begin(), simplify_field(tolerance_nm, beam, scan, physics, watch, simple));
   out.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return simple;
 }

@@ -133,15 +133,17 @@ void check_checkpoint(const SimulateJob& job) {
 }
 
 // What is traced: the specimen, or one of fewer triangles within the tolerance asked for.
-mc::Scene make_scene(const SimulateJob& job, const NoteCallback& tell, SimulateSummary& summary) {
+mc::Scene make_scene(const SimulateJob& job, const NoteCallback& tell, const CancelToken* cancel,
+                     SimulateSummary& summary) {
   const io::SceneFile& s = job.scene;
   const double tolerance_nm = s.mesh_tolerance_nm.value_or(0);
-  if (tolerance_nm == 0) return mc::Scene(s.specimen, s.beam, summary.scan, s.physics);
+  const Watch watch{{}, cancel};
+  if (tolerance_nm == 0) return mc::Scene(s.specimen, s.beam, summary.scan, s.physics, {.watch = watch});
   if (tell) tell(fmt::format("leaving out detail below {}", format_length(tolerance_nm)));
   const mc::Specimen simple =
       simplify_specimen(s.specimen, tolerance_nm, s.beam, summary.scan, s.physics,
-                        job.options.threads, summary.simplification);
-  return mc::Scene(simple, s.beam, summary.scan, s.physics);
+                        job.options.threads, summary.simplification, watch);
+  return mc::Scene(simple, s.beam, summary.scan, s.physics, {.watch = watch});
 }
 
 // Only where it is much: where the results of all pixels go until they are written.
@@ -284,7 +286,7 @@ SimulateSummary run(const SimulateJob& asked, const ProgressCallback& progress,
   summary.scan = resolve_scan(s.scan, mc::extent(s.specimen), s.beam);
   check_trajectories(job, summary.scan);
   record.inputs = hash_inputs(s.inputs);
-  const mc::Scene scene = make_scene(job, tell, summary);   // validates the specimen
+  const mc::Scene scene = make_scene(job, tell, cancel, summary);   // validates the specimen
   summary.scene = scene.summary();
   const auto note = [&](std::vector<std::string> warnings) {
     for (std::string& warning : warnings) {

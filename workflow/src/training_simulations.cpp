@@ -118,8 +118,14 @@ SimulatedImages simulate_images(const TrainJob& job, const std::vector<TrainingS
     const auto show = [&](double done, double of) {
       if (listener.pixels && of > 0) listener.pixels(done_before + pixels * done / of, total);
     };
-    const SimulateSummary summary = run(simulation, show, listener.cancel, warn, {}, listener.cascades);
-    if (!summary.result.complete) {
+    const bool complete = [&] {
+      try {
+        return run(simulation, show, listener.cancel, warn, {}, listener.cascades).result.complete;
+      } catch (const Interrupted&) {   // before there was anything to keep
+        return false;
+      }
+    }();
+    if (!complete) {
       out.complete = false;
       return out;
     }

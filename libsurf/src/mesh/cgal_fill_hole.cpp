@@ -7,12 +7,23 @@
 #include <algorithm>
 #include <exception>
 
+#include "surf/core/error.h"
+
 namespace surf {
 namespace {
 
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 
 constexpr std::size_t max_corners_of_cubic_search = 300;
+
+/// Looks at the token between the steps of a search.
+struct Looks : CGAL::Polygon_mesh_processing::Hole_filling::Default_visitor {
+  const Watch* watch;
+  void start_quadratic_phase(std::size_t) const { watch->check(); }
+  void quadratic_step() const { watch->check(); }
+  void start_cubic_phase(int) const { watch->check(); }
+  void cubic_step() const { watch->check(); }
+};
 
 /// Whether one of the triangles runs from corner `a` to corner `b`.
 bool runs(const std::vector<Triangle>& triangles, std::uint32_t a, std::uint32_t b) {
@@ -23,7 +34,7 @@ bool runs(const std::vector<Triangle>& triangles, std::uint32_t a, std::uint32_t
 
 }  // namespace
 
-std::vector<Triangle> span_polygon(const std::vector<Vec3>& corners) {
+std::vector<Triangle> span_polygon(const std::vector<Vec3>& corners, const Watch& watch) {
   const auto count = static_cast<std::uint32_t>(corners.size());
   if (count == 3) return {{0, 1, 2}};
   std::vector<Kernel::Point_3> points;
@@ -32,7 +43,10 @@ std::vector<Triangle> span_polygon(const std::vector<Vec3>& corners) {
   try {
     CGAL::Polygon_mesh_processing::triangulate_hole_polyline(
         points, std::back_inserter(found),
-        CGAL::parameters::do_not_use_cubic_algorithm(count > max_corners_of_cubic_search));
+        CGAL::parameters::do_not_use_cubic_algorithm(count > max_corners_of_cubic_search)
+            .visitor(Looks{{}, &watch}));
+  } catch (const Interrupted&) {
+    throw;
   } catch (const std::exception&) {
     return {};   // corners on a line, for example
   }

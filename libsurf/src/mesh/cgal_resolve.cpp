@@ -20,12 +20,31 @@
 #include <numeric>
 #include <tuple>
 
+#include "surf/core/error.h"
+
 namespace surf {
 namespace {
 
 namespace pmp = CGAL::Polygon_mesh_processing;
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 using Mesh = CGAL::Surface_mesh<Kernel::Point_3>;
+
+// CGAL tells of its steps: those that can last look at the token.
+struct Corefining : pmp::Corefinement::Default_visitor<Mesh> {
+  explicit Corefining(const Watch& w) : watch(&w) {}
+  const Watch* watch;
+  void progress_filtering_intersections(double) const { watch->check(); }
+  void edge_face_intersections_step() const { watch->check(); }
+  void intersection_of_coplanar_faces_step() const { watch->check(); }
+  void triangulating_faces_step() const { watch->check(); }
+  void build_output_step() const { watch->check(); }
+};
+
+struct Mending : pmp::experimental::Remove_self_intersection_default_visitor<Mesh> {
+  const Watch* watch;
+  void start_iteration() const { watch->check(); }
+  void start_component_handling() const { watch->check(); }
+};
 
 /// Points that several fans share become several vertices. False if it cannot be a manifold.
 bool to_cgal(const TriangleMesh& mesh, Mesh& out) {
@@ -85,10 +104,11 @@ TriangleMesh from_cgal(const Mesh& mesh) {
 
 }  // namespace
 
-TriangleMesh unite(const std::vector<TriangleMesh>& bodies) {
+TriangleMesh unite(const std::vector<TriangleMesh>& bodies, const Watch& watch) {
   try {
     Mesh sum;
     for (const TriangleMesh& body : bodies) {
+      watch.check();
       Mesh next;
       if (!to_cgal(body, next)) return {};
       if (sum.is_empty()) {
@@ -97,23 +117,27 @@ TriangleMesh unite(const std::vector<TriangleMesh>& bodies) {
       }
       Mesh united;
       if (!pmp::corefine_and_compute_union(sum, next, united,
-                                           pmp::parameters::throw_on_self_intersection(true))) {
+                                           pmp::parameters::throw_on_self_intersection(true).visitor(Corefining(watch)))) {
         return {};
       }
       sum = united;
     }
     return from_cgal(sum);
+  } catch (const Interrupted&) {
+    throw;
   } catch (const std::exception&) {
     return {};
   }
 }
 
-TriangleMesh mend_self_intersections(const TriangleMesh& mesh) {
+TriangleMesh mend_self_intersections(const TriangleMesh& mesh, const Watch& watch) {
   try {
     Mesh mended;
     if (!to_cgal(mesh, mended)) return {};
-    pmp::experimental::remove_self_intersections(mended, CGAL::parameters::preserve_genus(false));
+    pmp::experimental::remove_self_intersections(mended, CGAL::parameters::preserve_genus(false).visitor(Mending{{}, &watch}));
     return from_cgal(mended);
+  } catch (const Interrupted&) {
+    throw;
   } catch (const std::exception&) {
     return {};
   }

@@ -74,8 +74,10 @@ class Fans {
   DisjointSets sets_;
 };
 
+constexpr std::size_t edges_between_looks = std::size_t{1} << 16;
+
 void count_edges(const TriangleMesh& mesh, const Weld& weld,
-                 const std::vector<Triangle>& triangles, MeshReport& report) {
+                 const std::vector<Triangle>& triangles, const Watch& watch, MeshReport& report) {
   bool balanced = true;
   std::size_t edges = 0;
   Fans fans(3 * triangles.size());
@@ -83,7 +85,7 @@ void count_edges(const TriangleMesh& mesh, const Weld& weld,
     return mesh.vertices_nm[weld.first_vertex[point]];
   };
   visit_edges(triangles, weld.points(), [&](const EdgeUse& edge) {
-    ++edges;
+    if (++edges % edges_between_looks == 0) watch.check();
     fans.join(triangles, edge);
     const std::size_t forward = count_forward(triangles, edge);
     const std::size_t backward = edge.uses() - forward;
@@ -141,19 +143,24 @@ std::string at(const Vec3& p) {
 
 }  // namespace
 
-MeshReport check_mesh(const TriangleMesh& mesh) {
+MeshReport check_mesh(const TriangleMesh& mesh, const Watch& watch) {
   MeshReport report;
   report.triangles = mesh.triangles.size();
   report.bounds_nm = bounds(mesh);
   if (mesh.triangles.empty()) return report;
   validate(mesh);
+  watch.check();
 
   const Weld weld = weld_equal_vertices(mesh);
+  watch.report(0.2, 1);
   const std::vector<Triangle> triangles = welded_triangles(mesh, weld);
   report.vertices = weld.points();
   measure(mesh, triangles, report);
-  count_edges(mesh, weld, triangles, report);
+  watch.report(0.3, 1);
+  count_edges(mesh, weld, triangles, watch, report);
+  watch.report(0.8, 1);
   count_duplicates(mesh, weld, triangles, report);
+  watch.report(0.9, 1);
   DisjointSets sets = connect(triangles, weld.points());
   for (std::uint32_t p = 0; p < weld.points(); ++p) report.components += sets.find(p) == p;
   return report;

@@ -53,7 +53,7 @@ void visit_samples(const TriangleMesh& mesh, const Triangle& t, double spacing_n
 
 /// Largest distance of samples on `from` from the surface in the tree.
 double largest_distance(const TriangleMesh& from, const TriangleTree& tree, double spacing_nm,
-                        int threads) {
+                        int threads, const Watch& watch) {
   const std::size_t corners = from.vertices_nm.size();
   const std::size_t count = corners + from.triangles.size();
   const std::size_t blocks = (count + block_size - 1) / block_size;
@@ -70,7 +70,7 @@ double largest_distance(const TriangleMesh& from, const TriangleTree& tree, doub
       if (i < corners) look(from.vertices_nm[i]);
       else visit_samples(from, from.triangles[i - corners], spacing_nm, look);
     }
-  });
+  }, watch);
   return largest.empty() ? 0 : *std::ranges::max_element(largest);
 }
 
@@ -82,12 +82,19 @@ MeshDeviation mesh_deviation(const TriangleMesh& first, const TriangleMesh& seco
   validate(first);
   validate(second);
   MeshDeviation d;
+  const Watch& watch = options.watch;
+  watch.check();
   const TriangleMesh a = merge_equal_vertices(first), b = merge_equal_vertices(second);
   d.spacing_nm = options.spacing_nm > 0
                      ? options.spacing_nm
                      : default_spacing * std::min(mean_edge(a), mean_edge(b));
-  d.from_first_nm = largest_distance(a, TriangleTree(b), d.spacing_nm, options.threads);
-  d.from_second_nm = largest_distance(b, TriangleTree(a), d.spacing_nm, options.threads);
+  const auto from = [&](const TriangleMesh& one, const TriangleMesh& other, double begin) {
+    watch.report(begin, 1);
+    const TriangleTree tree(other, watch);
+    return largest_distance(one, tree, d.spacing_nm, options.threads, watch.part(begin + 0.1, begin + 0.5));
+  };
+  d.from_first_nm = from(a, b, 0);
+  d.from_second_nm = from(b, a, 0.5);
   return d;
 }
 

@@ -84,6 +84,7 @@ void raise(HeightField& field, const Vec3& a, const Vec3& b, const Vec3& c, int 
 HeightField mesh_height_field(const TriangleMesh& mesh, const MeshHeightFieldOptions& options) {
   require_positive(options.pitch_nm, "pitch");
   validate(mesh);
+  options.watch.report(0, 1);
   HeightField field = empty_field(mesh, options);
   const int height = field.z_nm.height();
   parallel_for(static_cast<std::size_t>((height + rows_per_unit - 1) / rows_per_unit),
@@ -93,7 +94,7 @@ HeightField mesh_height_field(const TriangleMesh& mesh, const MeshHeightFieldOpt
     for (const auto& [a, b, c] : mesh.triangles) {
       raise(field, mesh.vertices_nm[a], mesh.vertices_nm[b], mesh.vertices_nm[c], first, last);
     }
-  });
+  }, options.watch);
   std::size_t covered = 0;
   Grid<unsigned char> valid(field.z_nm.width(), height, 1);
   for (std::size_t i = 0; i < valid.size(); ++i) {

@@ -85,12 +85,12 @@ bool is_lone_triangle(const TriangleMesh& mesh, const BoundaryLoop& loop) {
 
 /// Triangles that answer the loop's sides; vertices they need are added to the mesh.
 std::vector<Triangle> patch_for(TriangleMesh& mesh, const BoundaryLoop& loop,
-                                const Occupied& occupied) {
+                                const Occupied& occupied, const Watch& watch) {
   if (is_lone_triangle(mesh, loop)) return {};
   const std::vector<std::uint32_t> rim(loop.points.rbegin(), loop.points.rend());
   std::vector<Vec3> corners;
   for (const std::uint32_t p : rim) corners.push_back(mesh.vertices_nm[p]);
-  std::vector<Triangle> patch = span_polygon(corners);
+  std::vector<Triangle> patch = span_polygon(corners, watch);
   for (Triangle& t : patch) t = {rim[t[0]], rim[t[1]], rim[t[2]]};
   if (!patch.empty() && !occupied.meets(patch, loop)) return patch;
   // A star about the middle has no edges that could be there already.
@@ -108,7 +108,7 @@ std::vector<Triangle> patch_for(TriangleMesh& mesh, const BoundaryLoop& loop,
 }  // namespace
 
 std::size_t fill_holes(TriangleMesh& mesh, std::optional<double> max_hole_nm,
-                       std::size_t& fill_triangles) {
+                       std::size_t& fill_triangles, const Watch& watch) {
   const std::vector<BoundaryLoop> loops =
       boundary_loops(mesh.triangles, mesh.vertices_nm.size());
   if (loops.empty()) return 0;
@@ -116,8 +116,9 @@ std::size_t fill_holes(TriangleMesh& mesh, std::optional<double> max_hole_nm,
   Occupied occupied(mesh, loops);
   std::size_t filled = 0;
   for (const BoundaryLoop& loop : loops) {
+    watch.check();
     if (perimeter(mesh, loop) > max_hole_nm.value_or(diagonal[loop.sides[0] / 3])) continue;
-    const std::vector<Triangle> patch = patch_for(mesh, loop, occupied);
+    const std::vector<Triangle> patch = patch_for(mesh, loop, occupied, watch);
     if (patch.empty()) continue;
     occupied.add(patch);
     mesh.triangles.insert(mesh.triangles.end(), patch.begin(), patch.end());

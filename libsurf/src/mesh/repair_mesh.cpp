@@ -40,17 +40,20 @@ bool no_worse(const MeshReport& now, const MeshReport& before) {
 /// The mesh while it is mended, and what `check_mesh` says of it.
 class Work {
  public:
-  explicit Work(TriangleMesh mesh) : mesh_(std::move(mesh)), report_(check_mesh(mesh_)) {}
+  Work(TriangleMesh mesh, const Watch& watch)
+      : watch_(&watch), mesh_(std::move(mesh)), report_(check_mesh(mesh_, *watch_)) {}
 
   const TriangleMesh& mesh() const { return mesh_; }
   const MeshReport& report() const { return report_; }
 
   /// Does a step and keeps its result unless that is worse; returns what the step counted.
   std::size_t step(const std::function<std::size_t(TriangleMesh&)>& work) {
+    watch_->check();
     TriangleMesh next = mesh_;
     const std::size_t count = work(next);
+    watch_->check();
     if (count == 0) return 0;
-    const MeshReport report = check_mesh(next);
+    const MeshReport report = check_mesh(next, *watch_);
     if (!no_worse(report, report_)) return 0;
     mesh_ = std::move(next);
     report_ = report;
@@ -58,6 +61,7 @@ class Work {
   }
 
  private:
+  const Watch* watch_;   // is told nothing
   TriangleMesh mesh_;
   MeshReport report_;
 };
@@ -70,7 +74,7 @@ bool fits_in(const Box& inner, const Box& outer) {
 }
 
 /// The bodies that pass through each other become one; the rest of the mesh stays as it is.
-TriangleMesh united(const TriangleMesh& mesh, const SelfIntersections& crossings) {
+TriangleMesh united(const TriangleMesh& mesh, const SelfIntersections& crossings, const Watch& watch) {
   const std::vector<std::uint32_t> component = triangle_components(mesh);
   std::vector<unsigned char> crosses;
   crosses.assign(*std::ranges::max_element(component) + 1, 0);
@@ -92,10 +96,10 @@ TriangleMesh united(const TriangleMesh& mesh, const SelfIntersections& crossings
   }
   for (TriangleMesh& body : bodies) {
     body = merge_equal_vertices(body);
-    const MeshReport r = check_mesh(body);
+    const MeshReport r = check_mesh(body, watch);
     if (!r.closed_and_oriented || r.signed_volume_nm3 <= 0) return {};
   }
-  const TriangleMesh sum = unite(bodies);
+  const TriangleMesh sum = unite(bodies, watch);
   if (sum.triangles.empty()) return {};
   const auto first = static_cast<std::uint32_t>(rest.vertices_nm.size());
   rest.vertices_nm.insert(rest.vertices_nm.end(), sum.vertices_nm.begin(), sum.vertices_nm.end());
@@ -104,29 +108,30 @@ TriangleMesh united(const TriangleMesh& mesh, const SelfIntersections& crossings
 }
 
 /// Takes a mended mesh over where it is better and still the same body.
-bool adopt(TriangleMesh& mesh, SelfIntersections& found, TriangleMesh mended, int threads) {
+bool adopt(TriangleMesh& mesh, SelfIntersections& found, TriangleMesh mended, int threads, const Watch& watch) {
   if (mended.triangles.empty()) return false;
   mended = merge_equal_vertices(mended);
   remove_degenerate(mended, 0);
   if (mended.triangles.empty()) return false;
-  const MeshReport before = check_mesh(mesh);
-  const MeshReport now = check_mesh(mended);
+  const MeshReport before = check_mesh(mesh, watch);
+  const MeshReport now = check_mesh(mended, watch);
   if (!no_worse(now, before) || now.degenerate_triangles > before.degenerate_triangles) return false;
   if (!fits_in(now.bounds_nm, before.bounds_nm)) return false;
   if (now.area_nm2 < size_kept * before.area_nm2 && !before.closed_and_oriented) return false;
   if (now.signed_volume_nm3 < size_kept * before.signed_volume_nm3) return false;
-  SelfIntersections left = find_self_intersections(mended, {.threads = threads});
+  SelfIntersections left = find_self_intersections(mended, {.threads = threads, .watch = watch});
   if (left.pairs.size() >= found.pairs.size()) return false;
   mesh = std::move(mended);
   found = std::move(left);
   return true;
 }
 
-std::size_t resolve(TriangleMesh& mesh, SelfIntersections& found, int threads) {
+std::size_t resolve(TriangleMesh& mesh, SelfIntersections& found, int threads, const Watch& watch) {
   if (found.pairs.size() > max_mended_pairs) return 0;
   const std::size_t before = found.pairs.size();
-  if (check_mesh(mesh).closed_and_oriented) adopt(mesh, found, united(mesh, found), threads);
-  if (!found.pairs.empty()) adopt(mesh, found, mend_self_intersections(mesh), threads);
+  if (check_mesh(mesh, watch).closed_and_oriented)
+    adopt(mesh, found, united(mesh, found, watch), threads, watch);
+  if (!found.pairs.empty()) adopt(mesh, found, mend_self_intersections(mesh, watch), threads, watch);
   return before - found.pairs.size();
 }
 
@@ -157,11 +162,14 @@ TriangleMesh repair_mesh(const TriangleMesh& mesh, const RepairOptions& options,
   check_options(options);
   validate(mesh);
   summary = {};
-  summary.before = check_mesh(mesh);
+  const Watch& watch = options.watch;
+  const Watch silent{{}, watch.cancel};
+  summary.before = check_mesh(mesh, watch.part(0, 0.15));
 
   TriangleMesh merged = merge_equal_vertices(mesh);
   summary.merged_vertices = count_used_vertices(mesh) - merged.vertices_nm.size();
-  Work work(std::move(merged));
+  Work work(std::move(merged), silent);
+  watch.report(0.25, 1);
   const auto open = [&] { return work.report().boundary_edges > 0; };
   if (open()) {
     const double diagonal = length(work.report().bounds_nm.size_nm());
@@ -175,6 +183,7 @@ TriangleMesh repair_mesh(const TriangleMesh& mesh, const RepairOptions& options,
       work = std::move(stitched);
     }
   }
+  watch.report(0.35, 1);
   const auto clean = [&] {
     summary.removed_degenerate +=
         work.step([&](TriangleMesh& m) { return remove_degenerate(m, options.sliver_nm); });
@@ -183,23 +192,27 @@ TriangleMesh repair_mesh(const TriangleMesh& mesh, const RepairOptions& options,
     }
   };
   clean();
+  watch.report(0.45, 1);
   if (work.report().doubled_directed_edges > 0) summary.turned_triangles += work.step(orient);
   summary.dropped_components =
       work.step([&](TriangleMesh& m) { return drop_components(m, options.min_component_nm); });
   if (!work.report().closed_and_oriented) {
     std::size_t triangles = 0;
     summary.filled_holes = work.step(
-        [&](TriangleMesh& m) { return fill_holes(m, options.max_hole_nm, triangles); });
+        [&](TriangleMesh& m) { return fill_holes(m, options.max_hole_nm, triangles, silent); });
     if (summary.filled_holes > 0) summary.fill_triangles = triangles;
     clean();
   }
+  watch.report(0.55, 1);
   summary.turned_triangles += work.step(turn_outward);
 
-  SelfIntersections found = find_self_intersections(work.mesh(), {.threads = options.threads});
+  SelfIntersections found =
+      find_self_intersections(work.mesh(), {.threads = options.threads, .watch = watch.part(0.6, 0.8)});
   summary.self_intersections_before = found.pairs.size();
   if (!found.pairs.empty() && options.resolve_self_intersections) {
-    work.step([&](TriangleMesh& m) { return resolve(m, found, options.threads); });
+    work.step([&](TriangleMesh& m) { return resolve(m, found, options.threads, silent); });
   }
+  watch.report(0.9, 1);
   summary.self_intersections_after = found.pairs.size();
   summary.first_self_intersection_nm = found.first_nm;
 
@@ -214,7 +227,7 @@ TriangleMesh repair_mesh(const TriangleMesh& mesh, const RepairOptions& options,
     return mesh;
   }
   TriangleMesh result = merge_equal_vertices(work.mesh());
-  summary.after = check_mesh(result);
+  summary.after = check_mesh(result, watch.part(0.95, 1));
   return result;
 }
 

@@ -70,7 +70,9 @@ SelfIntersections find_self_intersections(const TriangleMesh& mesh,
                                           const SelfIntersectionOptions& options) {
   if (options.limit == 0) throw UsageError("limit", "is 0", "Give 1 or more");
   validate(mesh);
-  const TriangleTree tree(mesh);
+  const Watch& watch = options.watch;
+  watch.check();
+  const TriangleTree tree(mesh, watch);
   const std::size_t triangles = mesh.triangles.size();
   const Meeting meet(tree, welded_triangles(mesh, weld_equal_vertices(mesh)));
   std::vector<unsigned char> flat(triangles);
@@ -79,8 +81,10 @@ SelfIntersections find_self_intersections(const TriangleMesh& mesh,
     for (std::size_t t = b * block_size; t < end; ++t) {
       flat[t] = is_degenerate(tree.corners(static_cast<std::uint32_t>(t)));
     }
-  });
+  }, Watch{{}, watch.cancel});
 
+  constexpr double searching_from = 0.2;   // of the progress
+  watch.report(searching_from, 1);
   SelfIntersections result;
   std::vector<std::vector<Pair>> found;
   const std::size_t round = blocks_a_round * block_size;
@@ -99,7 +103,9 @@ SelfIntersections find_self_intersections(const TriangleMesh& mesh,
         if (found[b].size() >= options.limit) break;
       }
       std::ranges::sort(found[b]);
-    });
+    }, Watch{{}, watch.cancel});
+    const double done = static_cast<double>(std::min(begin + round, triangles)) / static_cast<double>(triangles);
+    watch.report(searching_from + (1 - searching_from) * done, 1);
     for (const std::vector<Pair>& pairs : found) {
       result.pairs.insert(result.pairs.end(), pairs.begin(), pairs.end());
     }

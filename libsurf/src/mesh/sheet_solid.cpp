@@ -24,8 +24,8 @@ constexpr std::uint32_t none = 0xffffffffu;
   throw InvalidInput("sheet", reason, "Walls and a base need an open sheet that lies like a landscape");
 }
 
-void check_sheet(const TriangleMesh& sheet) {
-  const MeshReport r = check_mesh(sheet);
+void check_sheet(const TriangleMesh& sheet, const Watch& watch) {
+  const MeshReport r = check_mesh(sheet, watch);
   if (r.boundary_edges == 0) refuse("it is closed already");
   if (r.nonmanifold_edges > 0) refuse("more than two triangles meet at an edge");
   if (r.inconsistent_edges > 0) refuse("triangles are turned against each other");
@@ -50,19 +50,21 @@ void check_no_overhang(const TriangleMesh& sheet) {
 
 }  // namespace
 
-TriangleMesh sheet_solid(const TriangleMesh& sheet, double base_z_nm) {
+TriangleMesh sheet_solid(const TriangleMesh& sheet, double base_z_nm, const Watch& watch) {
   validate(sheet, "sheet");
-  check_sheet(sheet);
+  check_sheet(sheet, watch.part(0, 0.7));
   check_base(sheet, base_z_nm);
   const Weld weld = weld_equal_vertices(sheet);
   std::vector<BoundaryLoop> rims = boundary_loops(welded_triangles(sheet, weld), weld.points());
   for (BoundaryLoop& rim : rims)
     for (std::uint32_t& point : rim.points) point = weld.first_vertex[point];
+  watch.report(0.8, 1);
   TriangleMesh solid = sheet;
   for (Triangle& t : solid.triangles)
     for (std::uint32_t& v : t) v = weld.first_vertex[weld.point[v]];
   const std::size_t sheet_triangles = solid.triangles.size();
 
+  watch.report(0.9, 1);
   std::vector<std::uint32_t> below(solid.vertices_nm.size(), none);
   const auto add_below = [&](std::uint32_t vertex) {
     if (below[vertex] != none) return;

@@ -7,6 +7,7 @@
 #include <OpenMesh/Tools/Decimater/ModQuadricT.hh>
 
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 #include <tuple>
 
@@ -28,6 +29,7 @@ using Decimater = OpenMesh::Decimater::DecimaterT<HalfedgeMesh>;
 
 constexpr unsigned max_valence = 64;    // beyond it OpenMesh's costs grow with its square
 constexpr std::size_t step_down = 4;   // fewer triangles from run to run
+constexpr Side sides_between_looks = 3 * 16384;
 constexpr int bisections = 5;   // of the last step: the number ends within a few per cent of the fewest
 
 bool before(const Vec3& a, const Vec3& b) {
@@ -39,7 +41,7 @@ bool before(const Vec3& a, const Vec3& b) {
 /// the places of `fixed`, which is sorted. Coordinates are taken from `middle`: OpenMesh computes
 /// plane equations, which suffer far from the origin.
 HalfedgeMesh to_halfedges(const TriangleMesh& mesh, const Vec3& middle, PointNumber& number,
-                          const std::vector<Vec3>& fixed) {
+                          const std::vector<Vec3>& fixed, const Watch& watch) {
   const std::vector<Triangle>& triangles = mesh.triangles;
   DisjointSets fans(3 * triangles.size());
   visit_edges(triangles, mesh.vertices_nm.size(), [&](const EdgeUse& edge) {
@@ -48,6 +50,7 @@ HalfedgeMesh to_halfedges(const TriangleMesh& mesh, const Vec3& middle, PointNum
     fans.unite(a, next_side(b));
     fans.unite(next_side(a), b);
   });
+  watch.check();
   HalfedgeMesh out;
   out.add_property(number);
   out.request_face_normals();
@@ -70,6 +73,7 @@ HalfedgeMesh to_halfedges(const TriangleMesh& mesh, const Vec3& middle, PointNum
     of_point[point] = of_fan[fan];
   }
   for (Side side = 0; side < 3 * triangles.size(); side += 3) {
+    if (side % sides_between_looks == 0) watch.check();
     if (has_repeated_corner(triangles[side / 3])) continue;
     out.add_face(of_fan[fans.find(side)], of_fan[fans.find(side + 1)], of_fan[fans.find(side + 2)]);
   }
@@ -94,12 +98,42 @@ TriangleMesh from_halfedges(const HalfedgeMesh& mesh, const PointNumber& number,
   return out;
 }
 
+/// Allows all; it is asked before every vertex that may go, and told of every one that has gone.
+template <class MeshT>   // as the macro wants it
+class Looking : public OpenMesh::Decimater::ModBaseT<MeshT> {
+ public:
+  DECIMATING_MODULE(Looking, MeshT, Looking);
+
+  explicit Looking(MeshT& mesh) : Base(mesh, true) {}
+
+  void watch(const Watch& watch, double vertices_to_go) {
+    watch_ = &watch;
+    to_go_ = vertices_to_go;
+  }
+
+  float collapse_priority(const CollapseInfo&) override {
+    if (++asked_ % between_looks == 0) watch_->check();
+    return Base::LEGAL_COLLAPSE;
+  }
+
+  void postprocess_collapse(const CollapseInfo&) override {
+    if (++gone_ % between_looks == 0) watch_->report(std::min(double(gone_), to_go_), to_go_);
+  }
+
+ private:
+  static constexpr std::size_t between_looks = 2048;   // a millisecond or so
+  const Watch* watch_ = nullptr;
+  double to_go_ = 1;
+  std::size_t asked_ = 0, gone_ = 0;
+};
+
 /// One run down to a number of triangles, or as near to it as no face turns over.
 TriangleMesh decimated(const TriangleMesh& mesh, std::size_t triangles,
-                       const std::vector<Vec3>& fixed) {
+                       const std::vector<Vec3>& fixed, const Watch& watch) {
   const Vec3 middle = bounds(mesh).center_nm();
   PointNumber number;
-  HalfedgeMesh work = to_halfedges(mesh, middle, number, fixed);
+  watch.check();
+  HalfedgeMesh work = to_halfedges(mesh, middle, number, fixed, watch);
   Decimater decimater(work);
   OpenMesh::Decimater::ModQuadricT<HalfedgeMesh>::Handle quadric;
   OpenMesh::Decimater::ModNormalFlippingT<HalfedgeMesh>::Handle flipping;
@@ -107,10 +141,16 @@ TriangleMesh decimated(const TriangleMesh& mesh, std::size_t triangles,
   decimater.module(quadric).unset_max_err();
   decimater.add(flipping);
   decimater.module(flipping).set_max_normal_deviation(90);
+  Looking<HalfedgeMesh>::Handle looking;
+  decimater.add(looking);
+  const double faces_to_go = static_cast<double>(mesh.triangles.size()) - static_cast<double>(triangles);
+  decimater.module(looking).watch(watch, std::max(1.0, 0.5 * faces_to_go));   // a vertex has two
+  watch.check();
   if (!decimater.initialize()) {
     throw std::logic_error("simplify_mesh: the decimater refuses its modules");
   }
   decimater.decimate_to_faces(0, triangles);
+  watch.check();
   work.garbage_collection();
   return merge_equal_vertices(from_halfedges(work, number, mesh));
 }
@@ -143,10 +183,13 @@ class Descent {
 
  private:
   bool attempt(std::size_t triangles) {
-    TriangleMesh next = decimated(best_, triangles, fixed_);
+    // How many attempts there will be is not known: each gets half of what is left.
+    const double from = 1 - std::pow(0.5, tries_), to = 1 - std::pow(0.5, ++tries_);
+    const Watch watch = options_.watch.part(from, to);
+    TriangleMesh next = decimated(best_, triangles, fixed_, watch.part(0, 0.7));
     if (next.triangles.empty() || next.triangles.size() >= best_.triangles.size()) return false;
     ++summary_.attempts;
-    const MeshDeviation d = mesh_deviation(original_, next, {.threads = options_.threads});
+    const MeshDeviation d = mesh_deviation(original_, next, {.threads = options_.threads, .watch = watch.part(0.7, 1)});
     if (options_.tolerance_nm > 0 && !(d.largest_nm() <= options_.tolerance_nm)) return false;
     best_ = std::move(next);
     summary_.deviation = d;
@@ -166,6 +209,7 @@ class Descent {
   SimplifySummary& summary_;
   TriangleMesh best_;
   std::vector<Vec3> fixed_;   // sorted
+  int tries_ = 0;
 };
 
 }  // namespace
@@ -180,6 +224,7 @@ TriangleMesh simplify_mesh(const TriangleMesh& mesh, const SimplifyOptions& opti
   validate(mesh);
   summary = {};
   summary.triangles_before = mesh.triangles.size();
+  options.watch.check();
   const TriangleMesh original = merge_equal_vertices(mesh);
   TriangleMesh result = Descent(original, options, summary).run();
   summary.triangles_after = result.triangles.size();

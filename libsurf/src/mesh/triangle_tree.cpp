@@ -9,6 +9,7 @@ namespace surf {
 namespace {
 
 constexpr std::uint32_t leaf_size = 4;
+constexpr std::uint32_t watched_size = 4096;   // triangles: less is a matter of milliseconds
 constexpr double negligible = 1e-12;   // of the diagonal: a point that near lies on the surface
 
 double squared(const Vec3& v) { return dot(v, v); }
@@ -53,20 +54,21 @@ Vec3 closest_point(const Corners& t, const Vec3& p) {
   return t.a + ab * (vb * scale) + ac * (vc * scale);
 }
 
-TriangleTree::TriangleTree(const TriangleMesh& mesh)
+TriangleTree::TriangleTree(const TriangleMesh& mesh, const Watch& watch)
     : mesh_(mesh), triangles_(mesh.triangles.size()) {
   std::iota(triangles_.begin(), triangles_.end(), 0u);
   std::vector<Vec3> middles(triangles_.size());
   for (std::uint32_t t = 0; t < middles.size(); ++t) middles[t] = box_of(t).center_nm();
   nodes_.reserve(triangles_.size());
   nodes_.emplace_back();
-  split(0, 0, static_cast<std::uint32_t>(triangles_.size()), middles);
+  split(0, 0, static_cast<std::uint32_t>(triangles_.size()), middles, watch);
   const double diagonal = length(nodes_[0].box.size_nm());
   negligible_squared_ = negligible * diagonal * negligible * diagonal;
 }
 
 void TriangleTree::split(std::uint32_t node, std::uint32_t first, std::uint32_t count,
-                         const std::vector<Vec3>& middles) {
+                         const std::vector<Vec3>& middles, const Watch& watch) {
+  if (count > watched_size) watch.check();
   if (count <= leaf_size) {
     for (std::uint32_t i = first; i < first + count; ++i) nodes_[node].box.extend(box_of(triangles_[i]));
     nodes_[node].first = first;
@@ -83,8 +85,8 @@ void TriangleTree::split(std::uint32_t node, std::uint32_t first, std::uint32_t 
   const auto children = static_cast<std::uint32_t>(nodes_.size());
   nodes_[node].first = children;
   nodes_.resize(nodes_.size() + 2);
-  split(children, first, count / 2, middles);
-  split(children + 1, first + count / 2, count - count / 2, middles);
+  split(children, first, count / 2, middles, watch);
+  split(children + 1, first + count / 2, count - count / 2, middles, watch);
   nodes_[node].box = nodes_[children].box;
   nodes_[node].box.extend(nodes_[children + 1].box);
 }

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "surf/core/progress.h"
 #include "surf/mesh/triangle_mesh.h"
 
 namespace surf {
@@ -23,10 +24,10 @@ struct Corners {
 Vec3 closest_point(const Corners& t, const Vec3& p);
 
 /// A tree of boxes over the triangles of a mesh, which must outlive it unchanged. Building takes
-/// O(n log n); queries may run at once from several threads.
+/// O(n log n) and may throw Interrupted; queries may run at once from several threads.
 class TriangleTree {
  public:
-  explicit TriangleTree(const TriangleMesh& mesh);
+  explicit TriangleTree(const TriangleMesh& mesh, const Watch& watch = {});
 
   /// Calls visit(triangle) for every triangle whose box meets `box`.
   template <class Visit>
@@ -77,7 +78,7 @@ class TriangleTree {
     std::uint32_t count = 0;   ///< of its triangles; 0 in inner nodes
   };
   void split(std::uint32_t node, std::uint32_t first, std::uint32_t count,
-             const std::vector<Vec3>& middles);
+             const std::vector<Vec3>& middles, const Watch& watch);
 
   const TriangleMesh& mesh_;
   double negligible_squared_ = 0;

@@ -129,10 +129,13 @@ double curvature_at(const Net& net, std::uint32_t point, std::vector<std::uint32
 
 }  // namespace
 
-std::vector<float> mean_curvature(const TriangleMesh& mesh, int threads) {
+std::vector<float> mean_curvature(const TriangleMesh& mesh, int threads, const Watch& watch) {
   validate(mesh);
+  watch.report(0.05, 1);
   const Weld weld = weld_equal_vertices(mesh);
+  watch.report(0.1, 1);
   const Net net = make_net(mesh, weld);
+  watch.report(0.3, 1);
   const int workers = resolve_threads(threads);
   std::vector<std::vector<std::uint32_t>> scratch(static_cast<std::size_t>(workers));
   std::vector<float> of_point(weld.points());
@@ -141,7 +144,7 @@ std::vector<float> mean_curvature(const TriangleMesh& mesh, int threads) {
     for (std::size_t p = unit * points_per_unit; p < end; ++p)
       of_point[p] = static_cast<float>(
           curvature_at(net, static_cast<std::uint32_t>(p), scratch[static_cast<std::size_t>(worker)]));
-  });
+  }, watch.part(0.3, 1));
   std::vector<float> result(mesh.vertices_nm.size(), 0);
   for (std::size_t v = 0; v < result.size(); ++v)
     if (weld.point[v] != Weld::unused) result[v] = of_point[weld.point[v]];

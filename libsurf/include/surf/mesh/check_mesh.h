@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "surf/core/progress.h"
 #include "surf/mesh/triangle_mesh.h"
 
 namespace surf {
@@ -37,8 +38,8 @@ struct MeshReport {
   bool closed_and_oriented = false;
 };
 
-/// Examines the mesh in O(n log n). Corners at exactly equal coordinates count as one vertex.
-MeshReport check_mesh(const TriangleMesh& mesh);
+/// Examines the mesh in O(n log n). Corners at exactly equal coordinates count as one vertex. Throws Interrupted.
+MeshReport check_mesh(const TriangleMesh& mesh, const Watch& watch = {});
 
 /// The component (see MeshReport::components) of every triangle: numbers from 0, in the order of
 /// first appearance.

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "surf/core/progress.h"
 #include "surf/mesh/triangle_mesh.h"
 
 namespace surf {
@@ -12,6 +13,7 @@ struct MeshDeviationOptions {
   /// mesh with the shorter ones. Corners are always samples.
   double spacing_nm = 0;
   int threads = 0;   ///< 0: one per hardware thread. Does not change the result
+  Watch watch;
 };
 
 /// Largest distances between two surfaces (Hausdorff), found at sample points.
@@ -24,7 +26,7 @@ struct MeshDeviation {
   double largest_nm() const { return std::max(from_first_nm, from_second_nm); }
 };
 
-/// Measures how far two surfaces are from each other. Throws InvalidInput on damaged meshes.
+/// Measures how far two surfaces are from each other. Throws InvalidInput on damaged meshes, Interrupted.
 MeshDeviation mesh_deviation(const TriangleMesh& first, const TriangleMesh& second,
                              const MeshDeviationOptions& options = {});
 

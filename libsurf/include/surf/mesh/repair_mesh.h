@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "surf/core/progress.h"
 #include "surf/mesh/check_mesh.h"
 #include "surf/mesh/triangle_mesh.h"
 
@@ -29,6 +30,7 @@ struct RepairOptions {
 
   bool resolve_self_intersections = true;   ///< false: they are counted only
   int threads = 0;                          ///< 0: one per hardware thread; same result
+  Watch watch;
 };
 
 /// A hole that was left open.
@@ -69,7 +71,7 @@ struct RepairSummary {
 /// faults comes back unchanged. What could not be mended is in the summary.
 ///
 /// Deterministic. Seconds for a million triangles, if there are few self-intersections.
-/// Throws InvalidInput on damaged meshes (`validate`), UsageError on options out of range.
+/// Throws InvalidInput on damaged meshes (`validate`), UsageError on options out of range, Interrupted.
 TriangleMesh repair_mesh(const TriangleMesh& mesh, const RepairOptions& options,
                          RepairSummary& summary);
 

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "surf/core/progress.h"
 #include "surf/mesh/triangle_mesh.h"
 
 namespace surf {
@@ -14,6 +15,7 @@ struct SelfIntersectionOptions {
   /// Pairs after which the search stops, >= 1. 1 only answers whether there are any.
   std::size_t limit = 100000;
   int threads = 0;   ///< 0: one per hardware thread. Does not change the result
+  Watch watch;
 };
 
 /// Where a surface passes through itself or lies on itself.
@@ -29,7 +31,7 @@ struct SelfIntersections {
 /// other, those that share a corner if they meet elsewhere. Corners at exactly equal coordinates
 /// are one; triangles without area are left out (see MeshReport::degenerate_triangles). Takes
 /// seconds for a million triangles. Throws InvalidInput on damaged meshes, UsageError if the limit
-/// is 0.
+/// is 0, Interrupted.
 SelfIntersections find_self_intersections(const TriangleMesh& mesh,
                                           const SelfIntersectionOptions& options = {});
 

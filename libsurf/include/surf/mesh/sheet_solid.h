@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "surf/core/progress.h"
 #include "surf/mesh/triangle_mesh.h"
 
 namespace surf {
@@ -12,7 +13,7 @@ namespace surf {
 /// The base is a fan where the sheet has one rim that is star-shaped seen from above; else, with holes or a
 /// ragged rim, it is the sheet itself laid flat, which must then nowhere overhang. Throws InvalidInput on
 /// damaged meshes, closed ones, those not manifold or consistently oriented, and overhangs (of the second
-/// kind); UsageError on a bad base.
-TriangleMesh sheet_solid(const TriangleMesh& sheet, double base_z_nm);
+/// kind); UsageError on a bad base, Interrupted.
+TriangleMesh sheet_solid(const TriangleMesh& sheet, double base_z_nm, const Watch& watch = {});
 
 }  // namespace surf

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "surf/core/progress.h"
 #include "surf/mesh/mesh_deviation.h"
 #include "surf/mesh/triangle_mesh.h"
 
@@ -17,6 +18,7 @@ struct SimplifyOptions {
   std::size_t triangles = 0;
   std::vector<Vec3> fixed_nm;   ///< vertices at exactly these places stay where they are
   int threads = 0;   ///< of the measurement; 0: one per hardware thread. Same result
+  Watch watch;
 };
 
 struct SimplifySummary {
@@ -37,7 +39,7 @@ struct SimplifySummary {
 /// nothing was removed.
 ///
 /// Deterministic. Throws InvalidInput on damaged meshes, UsageError if no limit is given or one is
-/// out of range.
+/// out of range, Interrupted.
 TriangleMesh simplify_mesh(const TriangleMesh& mesh, const SimplifyOptions& options,
                            SimplifySummary& summary);
 

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "surf/core/progress.h"
 #include "surf/core/vec3.h"
 #include "surf/mc/beam.h"
 #include "surf/mc/physics.h"
@@ -22,6 +23,7 @@ struct SceneOptions {
   /// from all vacuum open to the outside than the ranges at beam energy in all materials together.
   /// It changes no detector's mean or variance.
   bool leave_out_unreachable = true;
+  Watch watch;
 };
 
 struct SceneSummary {
@@ -38,7 +40,7 @@ struct SceneSummary {
 class Scene {
  public:
   /// Validates and builds. A height field is continued as far as electrons from the scanned region
-  /// reach, and the distance bounds cover that.
+  /// reach, and the distance bounds cover that. Throws Interrupted.
   Scene(const Specimen& specimen, const Beam& beam, const Scan& scan, const Physics& physics = {},
         const SceneOptions& options = {});
   ~Scene();

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "surf/core/height_field.h"
+#include "surf/core/progress.h"
 #include "surf/mc/material.h"
 #include "surf/mesh/height_field_mesh.h"
 #include "surf/mesh/triangle_mesh.h"
@@ -45,11 +46,11 @@ struct Specimen {
 };
 
 /// Whether a body is an open sheet.
-bool is_sheet(const Body& body);
+bool is_sheet(const Body& body, const Watch& watch = {});
 
 /// Checks materials, indices, meshes (closed, or sheets; consistently oriented) and the field.
 /// Throws InvalidInput with the place of the first fault. At least one solid is needed.
-void validate(const Specimen& specimen);
+void validate(const Specimen& specimen, const Watch& watch = {});
 
 /// The box around bodies and height field; for a bare substrate 1000 nm around its origin.
 /// z runs from the lowest to the highest surface.

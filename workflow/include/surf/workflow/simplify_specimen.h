@@ -36,10 +36,11 @@ struct Simplification {
 /// tried with a quarter of the tolerance at last, would open, turn over or pass through itself.
 ///
 /// `threads` (0: one per hardware thread) do not change the result. Throws UsageError if the
-/// tolerance is not above 0 and finite or a body is no thicker than it, and as mc::validate does.
+/// tolerance is not above 0 and finite or a body is no thicker than it, and as mc::validate does, Interrupted.
 mc::Specimen simplify_specimen(const mc::Specimen& specimen, double tolerance_nm,
                                const mc::Beam& beam, const mc::Scan& scan,
-                               const mc::Physics& physics, int threads, Simplification& out);
+                               const mc::Physics& physics, int threads, Simplification& out,
+                               const Watch& watch = {});
 
 /// What the user should know of it: bodies that stay as they are, and a relief that vanishes.
 std::vector<std::string> warnings_of(const mc::Specimen& specimen, const Simplification& done);

@@ -93,7 +93,8 @@ using LibraryCallback = ProgressCallback;
 /// Checks everything that can be wrong before spending time (targets writable, channel known), then
 /// simplifies the specimen where that is asked for, builds the scene, simulates, and writes every output and its sidecar `NAME.run.json`. When
 /// cancelled the files are written with `partial = true` in their metadata, and a checkpoint is left
-/// for the same job to go on from; it is deleted when the job is done. One that cannot be gone on from
+/// for the same job to go on from; it is deleted when the job is done. Cancelled before there is anything to write
+/// it throws Interrupted. One that cannot be gone on from
 /// is a FileError. Progress is in primaries, with a wanted accuracy in pixels.
 SimulateSummary run(const SimulateJob& job, const ProgressCallback& progress = {},
                     const CancelToken* cancel = nullptr, const WarningCallback& warn = {},
