@@ -199,7 +199,7 @@ void vtkSemsurfSimulate::Plan(vtkDataObject* input) {
 
 /// How large the image becomes depends on the specimen, so that has to be made before anything is said of it.
 int vtkSemsurfSimulate::RequestInformation(vtkInformation*, vtkInformationVector**, vtkInformationVector* outputs) {
-  return pv::attempt(this, [&] {
+  return pv::attempt_information(this, outputs, [&] {
     pv::with_labels([&] {
       int port = 0;
       vtkAlgorithm* const producer = this->GetInputAlgorithm(0, 0, port);

@@ -36,7 +36,7 @@ double vtkSemsurfToHeightField::PitchFor(double width_nm, double depth_nm) const
 /// How large the image becomes depends on the surface, so that has to be made before anything is said of it.
 int vtkSemsurfToHeightField::RequestInformation(vtkInformation*, vtkInformationVector**,
                                                 vtkInformationVector* outputs) {
-  return pv::attempt(this, [&] {
+  return pv::attempt_information(this, outputs, [&] {
     int port = 0;
     vtkAlgorithm* const producer = this->GetInputAlgorithm(0, 0, port);
     producer->UpdatePiece(0, 1, 0);

@@ -3,8 +3,8 @@
 import os
 import pathlib
 
-from support import DATA, FOLDER, SOURCE, array, expect, fetch, matrix, messages, numpy, quiet, refuses, run, same, \
-    semsurf, simple
+from support import DATA, FOLDER, SOURCE, array, expect, fetch, matrix, messages, numpy, quiet, refuses, refuses_until, \
+    run, same, semsurf, simple
 
 REAL = pathlib.Path(os.environ.get("SEMSURF_TEST_DATA", "/nowhere"))
 
@@ -58,7 +58,8 @@ def sem_images_have_their_place():
 
 
 def wrong_files_are_refused():
-    refuses(simple.AFMScanReader(FileName=str(FOLDER / "missing.gsf")), "missing.gsf")
+    refuses_until(simple.AFMScanReader(FileName=str(FOLDER / "missing.gsf")), ["missing.gsf"],
+                  FileName=str(DATA / "block.gsf"))
     (FOLDER / "empty.gsf").write_text("")
     refuses(simple.AFMScanReader(FileName=str(FOLDER / "empty.gsf")), "empty.gsf", "empty")
     refuses(simple.SurfaceMeshReader(FileName=str(FOLDER / "missing.off")), "missing.off")

@@ -2,8 +2,8 @@
 """Simulated images are the command's to the last bit, whether made at once, live, or of several bodies."""
 import time
 
-from support import DATA, FOLDER, abort_and_rerun, array, column, expect, fetch, numpy, progress_of, quiet, refuses, run, \
-    same, semsurf, simple, text, touch, vtk_to_numpy
+from support import DATA, FOLDER, abort_and_rerun, array, column, expect, fetch, numpy, progress_of, quiet, refuses, \
+    refuses_until, run, same, semsurf, simple, text, touch, vtk_to_numpy
 
 CHANNELS = ["SE", "SE.stderr", "BSE", "BSE.stderr", "valid"]
 
@@ -127,6 +127,7 @@ def wrong_properties_are_refused():
     wrong("Tilt", "90", Tilt=95)
     wrong("Region", "empty", Region=[5, 0, 1, 1])
     refuses(simple.SimulateSEM(Input=simple.Line()), "Input", "no surface")
+    refuses_until(simple.SimulateSEM(Input=simple.SampleSurface(), Pixels=8, Electrons=1, Energy=50), ["Energy"], Energy=1000)
 
 
 def progress_and_abort():
