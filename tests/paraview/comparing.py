@@ -52,6 +52,11 @@ def predictions_equal_the_command():
     for name in ("SE", "BSE"):
         same(array(data, name), channel(name), name)
     expect(text(data, "material.1.name") == "Si", "it says what it holds for")
+    for edge in ("flat", "periodic"):
+        semsurf("predict", DATA / "block.gsf", "--model", MODEL, "--resample", "--edge", edge, "-o", "out.tif", "-q")
+        got = array(fetch(simple.PredictSEM(Input=scan(), ModelFile=str(MODEL), Edge=edge.capitalize())), "SE")
+        same(got, channel("SE"), edge)
+        expect((got != array(data, "SE")).any(), f"{edge} changes nothing")
 
 
 def images_are_draped():

@@ -26,6 +26,17 @@ def expect(condition, message):
         raise AssertionError(message)
 
 
+def each(cases, check):
+    """All cases, so that one that fails hides no other."""
+    failed = []
+    for case in cases:
+        try:
+            check(*case)
+        except AssertionError as error:
+            failed.append(f"{case[0]}: {str(error)[:300]}")
+    expect(not failed, "\n".join(failed))
+
+
 def fetch(source, port=0):
     """The data of an output, computed anew where something changed."""
     source.UpdatePipeline()
