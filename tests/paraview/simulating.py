@@ -65,10 +65,13 @@ def every_property_is_the_option():
           ({"Budget": "Accuracy", "Accuracy": 0.5, "AccuracyFloor": 0.3}, "--size", "10x10", "--accuracy", "50%",
            "--accuracy-floor", "0.3")], check)
     scan = simple.AFMScanReader(FileName=str(DATA / "block.gsf"))
-    height = fetch(simple.SimulateSEM(Input=scan, Pixels=20, Electrons=5)).GetDimensions()[1]
+    mirrored = fetch(simple.SimulateSEM(Input=scan, Pixels=20, Electrons=5, Tilt=60))
+    width, height, _ = mirrored.GetDimensions()
     for edge in ("flat", "periodic"):
-        wanted = command(DATA / "block.gsf", "--size", f"20x{height}", "--electrons", 5, "--edge", edge, "--tilt", "60deg")
-        same_as(fetch(simple.SimulateSEM(Input=scan, Pixels=20, Electrons=5, Edge=edge.capitalize(), Tilt=60)), wanted, edge)
+        wanted = command(DATA / "block.gsf", "--size", f"{width}x{height}", "--electrons", 5, "--edge", edge, "--tilt", "60deg")
+        data = fetch(simple.SimulateSEM(Input=scan, Pixels=20, Electrons=5, Edge=edge.capitalize(), Tilt=60))
+        same_as(data, wanted, edge)
+        expect((array(data, "SE") != array(mirrored, "SE")).any(), f"{edge} changes nothing")
 
 
 def heights_equal_the_command():
