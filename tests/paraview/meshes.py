@@ -3,7 +3,7 @@
 import json
 
 from support import DATA, FOLDER, array, column, each, expect, fetch, numpy, quiet, refuses, refuses_until, run, same, \
-    semsurf, servermanager, simple, vtk_to_numpy
+    semsurf, servermanager, simple, text, vtk_to_numpy
 
 
 def scan():
@@ -134,6 +134,14 @@ def files_are_read_back():
         expect(numpy.allclose(points(got), points(want), rtol=0, atol=0 if exact else 1e-5), f"{name}: places")
         if name != "all.3mf" and name != "all.off":
             expect(numpy.allclose(array(got, "curvature"), array(want, "curvature"), atol=1e-6), f"{name}: curvature")
+    thin = simple.SimplifyMesh(Input=surface, Tolerance=1)
+    simple.SaveData(str(FOLDER / "thin.glb"), proxy=thin)
+    expect(float(text(fetch(thin), "deviation_nm")) > 0, "what is said of it")
+    expect(text(read("thin.glb"), "deviation_nm") == text(fetch(thin), "deviation_nm"), "goes along into the file")
+    tip = simple.AFMTip(Samples=9)
+    servermanager.writers.HeightFieldWriter(Input=tip, FileName=str(FOLDER / "tip.gsf")).UpdatePipeline()
+    back = fetch(simple.AFMScanReader(FileName=str(FOLDER / "tip.gsf")))
+    expect(text(back, "tip") == text(fetch(tip), "tip") == "structuring function", "and of heights")
     simple.SaveData(str(FOLDER / "true.glb"), proxy=surface, Magnification=1)
     expect(numpy.allclose(points(read("true.glb")), points(want), atol=1e-5), "true size")
     # What semsurf reads it undoes; the bytes are the command's.
