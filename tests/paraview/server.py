@@ -86,7 +86,7 @@ class Server:
     def serve(self, name, *args, code=0):
         """Runs a client to its end; returns what it printed."""
         done = subprocess.run(["pvpython", __file__, name, str(self.port), *map(str, args)], cwd=FOLDER, text=True,
-                              stdout=subprocess.PIPE, stderr=subprocess.STDOUT, timeout=60)
+                              stdout=subprocess.PIPE, stderr=subprocess.STDOUT, timeout=120)
         expect(done.returncode == code, f"the client {name} ends with {done.returncode}\n{done.stdout}\nserver:\n{self.said()}")
         return done.stdout
 
