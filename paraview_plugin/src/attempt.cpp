@@ -4,6 +4,8 @@
 #include <vtkAlgorithm.h>
 #include <vtkInformation.h>
 #include <vtkInformationDoubleKey.h>
+#include <vtkInformationVector.h>
+#include <vtkStreamingDemandDrivenPipeline.h>
 
 #include <atomic>
 #include <chrono>
@@ -64,6 +66,15 @@ int attempt(vtkAlgorithm* self, const std::function<void()>& request) {
   } catch (const std::exception& error) {
     vtkErrorWithObjectMacro(self, << error.what());
   }
+  return 0;
+}
+
+int attempt_information(vtkAlgorithm* self, vtkInformationVector* outputs,
+                        const std::function<void()>& request) {
+  if (attempt(self, request)) return 1;
+  const int nothing[6] = {0, -1, 0, -1, 0, -1};
+  for (int port = 0; port < outputs->GetNumberOfInformationObjects(); ++port)
+    outputs->GetInformationObject(port)->Set(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), nothing, 6);
   return 0;
 }
 

@@ -27,7 +27,7 @@ std::string label_of(const std::string& option) {
 
 /// With every option in it as a property.
 std::string labelled(const std::string& text) {
-  static const std::regex option("(^|[ ,])--([a-z]+(-[a-z]+)*)");
+  static const std::regex option("(^|[ ,(])--([a-z]+(-[a-z]+)*)");
   std::string out;
   auto from = text.begin();
   for (std::sregex_iterator found(text.begin(), text.end(), option), none; found != none; ++found) {

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "vtkSemsurfDrape.h"
 
+#include <fmt/format.h>
 #include <vtkInformation.h>
 #include <vtkInformationVector.h>
 #include <vtkNew.h>
 #include <vtkObjectFactory.h>
 #include <vtkPointData.h>
 
+#include <cmath>
 #include <utility>
 #include <vector>
 
@@ -49,6 +51,9 @@ int vtkSemsurfDrape::RequestData(vtkInformation*, vtkInformationVector** inputs,
         if (i % 65536 == 0) watch.report(static_cast<double>(i), static_cast<double>(count));
         double p[3];
         surface->GetPoint(static_cast<vtkIdType>(i), p);
+        if (!std::isfinite(p[0] + p[1] + p[2]))
+          throw InvalidInput("Input", fmt::format("point {} has no place: ({}, {}, {})", i, p[0], p[1], p[2]),
+                             "'Clean to Grid', 'Threshold' or 'Clip' takes such points out");
         const Point2 q = to_image({p[0], p[1]});
         values[i] = static_cast<float>(sample_image(image, q));
         // A texture's corners are the outer edges of its pixels.

@@ -127,7 +127,7 @@ void vtkSemsurfEstimateTip::Check() const {
 
 int vtkSemsurfEstimateTip::RequestInformation(vtkInformation*, vtkInformationVector** inputs,
                                               vtkInformationVector* outputs) {
-  return pv::attempt(this, [&] {
+  return pv::attempt_information(this, outputs, [&] {
     this->Check();
     double pitch[3] = {1, 1, 1};
     inputs[0]->GetInformationObject(0)->Get(vtkDataObject::SPACING(), pitch);

@@ -43,7 +43,7 @@ void vtkSemsurfImageReader::ReadOnce() {
 
 int vtkSemsurfImageReader::RequestInformation(vtkInformation*, vtkInformationVector**,
                                               vtkInformationVector* outputs) {
-  return pv::attempt(this, [&] {
+  return pv::attempt_information(this, outputs, [&] {
     this->ReadOnce();
     pv::announce(outputs->GetInformationObject(0), pv::frame_of(this->File->image, this->FileName.c_str()));
   });

@@ -42,7 +42,7 @@ HeightField vtkSemsurfPredict::AtPixel(const HeightField& field, double pixel_nm
 
 /// The image has the model's pixels: as many as resampling gives.
 int vtkSemsurfPredict::RequestInformation(vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs) {
-  return pv::attempt(this, [&] {
+  return pv::attempt_information(this, outputs, [&] {
     vtkInformation* const input = inputs[0]->GetInformationObject(0);
     int extent[6] = {0, -1, 0, -1, 0, -1};
     double spacing[3] = {1, 1, 1}, origin[3] = {0, 0, 0};
@@ -53,7 +53,9 @@ int vtkSemsurfPredict::RequestInformation(vtkInformation*, vtkInformationVector*
     like.z_nm = Grid<double>(extent[1] - extent[0] + 1, extent[3] - extent[2] + 1);
     like.pitch_x_nm = spacing[0], like.pitch_y_nm = spacing[1];
     like.origin_x_nm = origin[0] + extent[0] * spacing[0], like.origin_y_nm = origin[1] + extent[2] * spacing[1];
-    like = this->AtPixel(like, read(this->ModelFile).scope.pixel_nm);
+    const ModelScope scope = read(this->ModelFile).scope;
+    like = this->AtPixel(like, scope.pixel_nm);
+    check_field(scope, like, "Input");
     pv::announce(outputs->GetInformationObject(0), pv::frame_of(like.z_nm, like));
   });
 }

@@ -30,16 +30,19 @@ int samples_along(double length_nm, double pitch_nm, const char* property) {
                    "Change it, or Pitch");
 }
 
+pv::Frame frame_of(const FieldExtent& extent) {
+  const int width = samples_along(extent.width_nm, extent.pitch_nm, "Width");
+  const int height = samples_along(extent.depth_nm, extent.pitch_nm, "Depth");
+  return {width, height, extent.pitch_nm, extent.pitch_nm, -0.5 * (width - 1) * extent.pitch_nm,
+          -0.5 * (height - 1) * extent.pitch_nm};
+}
+
 }   // namespace
 
 int vtkSemsurfSampleSurface::RequestInformation(vtkInformation*, vtkInformationVector**,
                                                 vtkInformationVector* outputs) {
-  return pv::attempt(this, [&] {
-    const int width = samples_along(this->Width, this->Pitch, "Width");
-    const int height = samples_along(this->Depth, this->Pitch, "Depth");
-    pv::announce(outputs->GetInformationObject(0),
-                 {width, height, this->Pitch, this->Pitch, -0.5 * (width - 1) * this->Pitch,
-                  -0.5 * (height - 1) * this->Pitch});
+  return pv::attempt_information(this, outputs, [&] {
+    pv::announce(outputs->GetInformationObject(0), frame_of({this->Width, this->Depth, this->Pitch}));
   });
 }
 
@@ -63,8 +66,10 @@ HeightField vtkSemsurfSampleSurface::Make(const FieldExtent& extent) const {
 int vtkSemsurfSampleSurface::RequestData(vtkInformation*, vtkInformationVector**,
                                          vtkInformationVector* outputs) {
   return pv::attempt(this, [&] {
+    const FieldExtent extent{this->Width, this->Depth, this->Pitch};
+    frame_of(extent);   // complains of what cannot be sampled
     HeightField field;
-    pv::work(this, [&](const Watch&) { field = this->Make({this->Width, this->Depth, this->Pitch}); });
+    pv::work(this, [&](const Watch&) { field = this->Make(extent); });
     pv::give(outputs->GetInformationObject(0), pv::to_vtk(std::move(field)));
   });
 }

@@ -138,7 +138,7 @@ void vtkSemsurfScanReader::ReadHead() {
 
 int vtkSemsurfScanReader::RequestInformation(vtkInformation*, vtkInformationVector**,
                                              vtkInformationVector* outputs) {
-  return pv::attempt(this, [&] {
+  return pv::attempt_information(this, outputs, [&] {
     this->ReadHead();
     pv::announce(outputs->GetInformationObject(0),
                  pv::frame_of(this->Scan->head.field.z_nm, this->Scan->head.field));

@@ -43,6 +43,8 @@ int vtkSemsurfSimplifyMesh::RequestData(vtkInformation*, vtkInformationVector** 
                        "Give 4 or more");
     // Corners at equal places are one, or seams would keep all of theirs.
     const TriangleMesh mesh = merge_equal_vertices(pv::to_mesh(pv::surface_input(inputs, 0), "Input"));
+    if (!(length(bounds(mesh).size_nm()) > 0))
+      throw InvalidInput("Input", "all its corners lie at one place", "Give a surface");
     constexpr double share = 1e-3;   // of the diagonal: no difference to be seen
     SimplifyOptions options;
     if (this->Limit != ByTriangles)

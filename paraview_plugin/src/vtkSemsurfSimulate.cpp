@@ -125,7 +125,16 @@ void vtkSemsurfSimulate::Check() const {
   };
   need(this->Energy >= mc::min_beam_energy_ev && this->Energy <= mc::max_beam_energy_ev, "Energy",
        fmt::format("{} eV are not in 100 to 30000", this->Energy), "Give 1000 for 1 keV");
-  need(this->Spot >= 0, "Spot", fmt::format("{} nm are below 0", this->Spot), "Give 0 for a point");
+  constexpr double most_nm = 1e9;   // rays that begin farther away than this miss by rounding
+  need(this->Spot >= 0 && this->Spot <= most_nm, "Spot", fmt::format("{} nm are not in 0 to {}", this->Spot, most_nm),
+       "Give 0 for a point");
+  for (const auto& [name, value] : {std::pair{"Substrate Top", this->SubstrateTop}, {"Focus", this->Focus},
+                                    {"Working Distance", this->WorkingDistance}})
+    need(std::abs(value) <= most_nm, name, fmt::format("{} nm are not in -{} to {}", value, most_nm, most_nm), "Give 0");
+  for (const double edge : this->Region)
+    need(std::abs(edge) <= most_nm, "Region", fmt::format("{} nm are not in -{} to {}", edge, most_nm, most_nm),
+         "Give 0 0 0 0 for all of the specimen");
+  need(std::isfinite(this->PixelSize), "Pixel Size", "it is no number", "Give 0 to go by Pixels");
   need(this->PixelSize >= 0, "Pixel Size", fmt::format("{} nm are below 0", this->PixelSize), "Give 0 to go by Pixels");
   need(this->PixelSize > 0 || (this->Pixels >= 1 && this->Pixels <= 16384), "Pixels",
        fmt::format("{} is not in 1 to 16384", this->Pixels), "Give 256 where in doubt");
@@ -199,7 +208,7 @@ void vtkSemsurfSimulate::Plan(vtkDataObject* input) {
 
 /// How large the image becomes depends on the specimen, so that has to be made before anything is said of it.
 int vtkSemsurfSimulate::RequestInformation(vtkInformation*, vtkInformationVector**, vtkInformationVector* outputs) {
-  return pv::attempt(this, [&] {
+  return pv::attempt_information(this, outputs, [&] {
     pv::with_labels([&] {
       int port = 0;
       vtkAlgorithm* const producer = this->GetInputAlgorithm(0, 0, port);

@@ -33,7 +33,7 @@ void vtkSemsurfTipSource::Check() const {
 
 int vtkSemsurfTipSource::RequestInformation(vtkInformation*, vtkInformationVector**,
                                             vtkInformationVector* outputs) {
-  return pv::attempt(this, [&] {
+  return pv::attempt_information(this, outputs, [&] {
     this->Check();
     const double corner = -(this->Samples / 2) * this->Pitch;
     pv::announce(outputs->GetInformationObject(0),

@@ -26,17 +26,28 @@ int vtkSemsurfToHeightField::FillInputPortInformation(int, vtkInformation* info)
 }
 
 double vtkSemsurfToHeightField::PitchFor(double width_nm, double depth_nm) const {
-  if (this->Pitch > 0) return this->Pitch;
-  if (this->Samples < 2 || this->Samples > 16384)
-    throw UsageError("Samples", fmt::format("{} is not in 2 to 16384", this->Samples),
-                     "Give 256 where in doubt");
-  return std::max(width_nm, depth_nm) / (this->Samples - 1);
+  if (!(width_nm > 0 && depth_nm > 0 && std::isfinite(width_nm + depth_nm)))
+    throw InvalidInput("Input", fmt::format("seen from above it is {} x {} nm large", width_nm, depth_nm),
+                       "Give a surface that covers an area: 'Transform' turns it");
+  constexpr int most = 16384;
+  if (this->Pitch == 0) {
+    if (this->Samples < 2 || this->Samples > most)
+      throw UsageError("Samples", fmt::format("{} is not in 2 to {}", this->Samples, most),
+                       "Give 256 where in doubt");
+    return std::max(width_nm, depth_nm) / (this->Samples - 1);
+  }
+  if (!(this->Pitch > 0 && this->Pitch <= 2 * std::min(width_nm, depth_nm) &&
+        this->Pitch * (most - 1) >= std::max(width_nm, depth_nm)))
+    throw UsageError("Pitch", fmt::format("with {} nm there are no 2 to {} samples across {:.4g} x {:.4g} nm",
+                                          this->Pitch, most, width_nm, depth_nm),
+                     "Give 0 to go by Samples");
+  return this->Pitch;
 }
 
 /// How large the image becomes depends on the surface, so that has to be made before anything is said of it.
 int vtkSemsurfToHeightField::RequestInformation(vtkInformation*, vtkInformationVector**,
                                                 vtkInformationVector* outputs) {
-  return pv::attempt(this, [&] {
+  return pv::attempt_information(this, outputs, [&] {
     int port = 0;
     vtkAlgorithm* const producer = this->GetInputAlgorithm(0, 0, port);
     producer->UpdatePiece(0, 1, 0);

@@ -54,6 +54,9 @@ def registration_equals_the_command():
     same([values[k] for k in ("xx", "xy", "x0_nm", "yx", "yy", "y0_nm")], want["sem_to_afm"], "the transform")
     expect(bool(values["verified"]) == want["verified"], "the verdict")
     image = fetch(source)
+    both = [(a - a[seen].mean()) / a[seen].std() for a in (array(image, "sem"), array(image, "simulated"))
+            for seen in [numpy.isfinite(array(image, "sem") + array(image, "simulated"))]]
+    expect(numpy.allclose(array(image, "blend"), 0.5 * (both[0] + both[1]), equal_nan=True), "half of each")
     expect(text(image, "sem_to_afm") == text(table, "sem_to_afm"), "the transform goes along")
     expect(numpy.isfinite(array(image, "blend")).mean() > 0.8, "both images, blended")
     sem_part, model_part = array(image, "sem"), array(image, "simulated")
@@ -61,11 +64,16 @@ def registration_equals_the_command():
     expect(numpy.corrcoef(sem_part[both], model_part[both])[0, 1] > 0.5, "the images lie on each other")
 
 
+PLACES = [(20, 30), (150, 40), (70, 160), (180, 170)]
+
+
+def marks(of):
+    return simple.PolyLineSource(Points=[v for x, y in of for v in (x, y, 0)])
+
+
 def landmarks_make_the_map():
-    places = [[20, 30, 0], [150, 40, 0], [70, 160, 0], [180, 170, 0]]
-    moved = [[x + 6, y - 3, 0] for x, y, _ in places]
-    def points(of):
-        return simple.PolyLineSource(Points=[v for p in of for v in p])
+    places, points = PLACES, marks
+    moved = [(x + 6, y - 3) for x, y in places]
     common = dict(Input=scan(), SEM=sem(), Tip=tip(), ModelFile=str(MODEL), Level="None", LandmarksOnly=1)
     source = simple.RegisterAFMandSEM(SEMLandmarks=points(places), AFMLandmarks=points(moved), **common)
     table = fetch(source, 1)
@@ -102,6 +110,21 @@ def reconstruction_equals_the_command():
     same(again, got, "after an abort")
 
 
+def landmarks_and_methods_reach_the_reconstruction():
+    """By conjugate gradients, from landmarks alone, without deviations: as the command does it."""
+    places, moved = PLACES, [(x + 6, y - 3) for x, y in PLACES]
+    (FOLDER / "pairs.csv").write_text("sem_x_nm,sem_y_nm,afm_x_nm,afm_y_nm\n" +
+                                      "".join(f"{a},{b},{c},{d}\n" for (a, b), (c, d) in zip(places, moved)))
+    semsurf("reconstruct", "--afm", "scan.txt", "--sem", "sem.tif", *CHAIN, "--landmarks", "pairs.csv", "--accept-registration",
+            "--no-picture", "--no-uncertainty", "--method", "conjugate-gradients", "--iterations", 3, "-o", "second", "-q", code=None)
+    source = simple.Reconstruct(Input=scan(), SEM=sem(), Tip=tip(), ModelFile=str(MODEL), Level="None", AcceptRegistration=1,
+                                SEMLandmarks=marks(places), AFMLandmarks=marks(moved), Iterations=3, Uncertainty=0,
+                                Method="Conjugate gradients")
+    want = fetch(simple.XMLImageDataReader(FileName=[str(FOLDER / "second" / "surface.vti")]))
+    same(array(fetch(source), "z_nm").astype(numpy.float32), array(want, "z_nm"), "the surface")
+    expect(fetch(source).GetPointData().GetArray("deviation_nm") is None, "no deviations")
+
+
 def scans_alone_are_reconstructed():
     source = simple.Reconstruct(Input=scan(), Tip=tip(), Level="None", Iterations=2, Uncertainty=0)
     expect(array(fetch(source), "z_nm").shape == (SIZE, SIZE), "on the scan's samples")
@@ -120,6 +143,16 @@ def calibration_equals_the_command():
          [c["gain"] for c in want["channels"]] + [want["offset"]["value"]], "gains and offset")
     image = fetch(source)
     expect(numpy.allclose(array(image, "calibrated") + array(image, "residual"), array(fetch(sem()), sem_name())), "the fit")
+    for properties, options in [({"FixOffset": 1, "Offset": 90}, ["--offset", 90]),
+                                ({"Saturation": 1, "Black": 120, "White": 700}, ["--black", 120, "--white", 700]),
+                                ({"Channels": "SE"}, ["--fit", "SE"])]:
+        semsurf("calibrate", "sem.tif", "--pixel-size", "3nm", "--images", "truth.tif", *options, "-o", "fit.json", "-q", code=None)
+        want = json.loads((FOLDER / "fit.json").read_text())
+        table = fetch(simple.CalibrateSEM(Input=sem(), Simulated=predicted, **properties), 1)
+        got = dict(zip(column(table, "quantity"), column(table, "value")))
+        expect(got["gain SE"] != values["gain SE"], f"{properties} change nothing")
+        same([got[f"gain {c['name']}"] for c in want["channels"]] + [got["offset"]],
+             [c["gain"] for c in want["channels"]] + [want["offset"]["value"]], f"{properties}")
     refuses(simple.CalibrateSEM(Input=sem(), Simulated=predicted, Channels="SE, XX"), "Channels", "'XX'")
     refuses(simple.CalibrateSEM(Input=simple.SampleSurface(), Simulated=predicted), "Simulated", "pixels")
 
@@ -136,5 +169,6 @@ def wrong_properties_are_refused():
 
 
 make_files()
-run(registration_equals_the_command, landmarks_make_the_map, reconstruction_equals_the_command, scans_alone_are_reconstructed,
+run(registration_equals_the_command, landmarks_make_the_map, reconstruction_equals_the_command,
+    landmarks_and_methods_reach_the_reconstruction, scans_alone_are_reconstructed,
     calibration_equals_the_command, wrong_properties_are_refused)

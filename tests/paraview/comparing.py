@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Scenes, predictions, and what lays images on surfaces and beside them."""
-from support import DATA, FOLDER, SOURCE, array, column, expect, fetch, numpy, quiet, refuses, run, same, semsurf, simple, \
-    text, vtk_to_numpy
+from support import DATA, FOLDER, SOURCE, array, column, expect, fetch, numpy, quiet, refuses, refuses_until, run, \
+    same, semsurf, simple, text, vtk_to_numpy
 
 MODEL = SOURCE / "samples" / "si-1keV-3nm.json"
 
@@ -52,6 +52,11 @@ def predictions_equal_the_command():
     for name in ("SE", "BSE"):
         same(array(data, name), channel(name), name)
     expect(text(data, "material.1.name") == "Si", "it says what it holds for")
+    for edge in ("flat", "periodic"):
+        semsurf("predict", DATA / "block.gsf", "--model", MODEL, "--resample", "--edge", edge, "-o", "out.tif", "-q")
+        got = array(fetch(simple.PredictSEM(Input=scan(), ModelFile=str(MODEL), Edge=edge.capitalize())), "SE")
+        same(got, channel("SE"), edge)
+        expect((got != array(data, "SE")).any(), f"{edge} changes nothing")
 
 
 def images_are_draped():
@@ -91,8 +96,8 @@ def profiles_show_all():
 
 
 def wrong_properties_are_refused():
-    refuses(simple.PredictSEM(Input=scan()), "Model File", "no model")
-    refuses(simple.PredictSEM(Input=scan(), ModelFile=str(MODEL), Resample=0), "Input", "3 nm")
+    refuses_until(simple.PredictSEM(Input=scan()), ["Model File", "no model"], ModelFile=str(MODEL))
+    refuses_until(simple.PredictSEM(Input=scan(), ModelFile=str(MODEL), Resample=0), ["Input", "3 nm"], Resample=1)
     refuses(simple.LineProfile(Input=scan(), Samples=1), "Samples", "2 to 1000000")
     refuses(simple.DrapeImageonSurface(Input=simple.SampleBody(), Image=scan(), Transform=[0] * 6), "Transform")
     (FOLDER / "bad.toml").write_text("[beem]\n")

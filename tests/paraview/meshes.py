@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Surfaces made, mended, thinned, written and read are the commands'."""
-from support import DATA, FOLDER, array, column, expect, fetch, numpy, quiet, refuses, run, same, semsurf, servermanager, \
-    simple, vtk_to_numpy
+import json
+
+from support import DATA, FOLDER, array, column, each, expect, fetch, numpy, quiet, refuses, refuses_until, run, same, \
+    semsurf, servermanager, simple, text, vtk_to_numpy
 
 
 def scan():
@@ -60,6 +62,41 @@ def mending_equals_the_command():
     expect(column(fetch(mended, 1), "after")[row] == column(table, "before")[row], "counting changes nothing")
 
 
+def every_repair_is_the_option():
+    """A mesh with each of the faults: a part too small, a flat triangle, a gap, a hole."""
+    corners_of = numpy.array([[x, y, z] for z in (0, 40) for y in (0, 40) for x in (0, 40)], float)
+    faces = [(0, 2, 3, 1), (4, 5, 7, 6), (0, 1, 5, 4), (2, 6, 7, 3), (0, 4, 6, 2), (1, 3, 7, 5)]
+    points_, cells = [], []
+
+    def add(face, shift=(0, 0, 0), size=1):
+        first = len(points_)
+        points_.extend(size * corners_of[k] + numpy.array(shift) for k in face)
+        cells.append([first + k for k in range(len(face))])
+    for number, face in enumerate(faces):
+        if number != 1:                        # a hole on top
+            add(face, (0.3 if number == 5 else 0, 0, 0))   # and a gap
+        add(face, (100, 0, 0), 0.05)           # a small part
+    first = len(points_)
+    points_.extend(numpy.array(p, float) for p in ((300, 0, 0), (310, 0, 0), (305, 0.01, 0), (305, -20, 0)))
+    cells.extend([[first, first + 1, first + 2], [first + 1, first, first + 3]])   # a sliver
+    lines = ["OFF", f"{len(points_)} {len(cells)} 0", *(" ".join(map(repr, map(float, p))) for p in points_),
+             *(f"{len(c)} {' '.join(map(str, c))}" for c in cells)]
+    (FOLDER / "faulty.off").write_text("\n".join(lines) + "\n")
+    reader = simple.SurfaceMeshReader(FileName=str(FOLDER / "faulty.off"))
+    seen = set()
+
+    def check(properties, *options):
+        semsurf("mesh", "faulty.off", "--repair", *options, "-o", "whole.off")
+        got, want = fetch(simple.CheckandRepairMesh(Input=reader, **properties)), read("whole.off")
+        same(points(got), points(want), "points")
+        same(corners(got), corners(want), "triangles")
+        result = points(got).tobytes() + corners(got).tobytes()
+        expect(result not in seen, "it changes nothing")
+        seen.add(result)
+    each([({},), ({"Stitch": 0.5}, "--stitch", "0.5nm"), ({"MaximumHole": 1000}, "--max-hole", "1um"),
+          ({"MinimumComponent": 10}, "--min-component", "10nm"), ({"Sliver": 0.1}, "--sliver", "0.1nm")], check)
+
+
 def thinning_equals_the_command():
     body = simple.SampleBody(Shape="Sphere", Radius=50, Subdivisions=4)
     simple.SaveData(str(FOLDER / "sphere.off"), proxy=body)
@@ -69,6 +106,22 @@ def thinning_equals_the_command():
     same(points(got), points(want), "points")
     few = quiet(simple.SimplifyMesh(Input=body, Limit="Triangles", Triangles=100))
     expect(few.GetNumberOfPolys() <= 100, f"{few.GetNumberOfPolys()} triangles")
+    both = quiet(simple.SimplifyMesh(Input=body, Limit="Both", Triangles=600, Tolerance=3))
+    semsurf("mesh", "sphere.off", "--tolerance", "3nm", "--triangles", 600, "-o", "both.off")
+    same(points(both), points(read("both.off")), "with both limits")
+    expect(both.GetNumberOfPolys() > fetch(simple.SimplifyMesh(Input=body, Tolerance=3)).GetNumberOfPolys(),
+           "the number is reached first")
+
+
+def extremes(path):
+    """Of the positions that a glTF file says, and what its nodes make of them."""
+    content = path.read_bytes()
+    length = int.from_bytes(content[12:16], "little")
+    said = json.loads(content[20:20 + length])
+    place = said["meshes"][0]["primitives"][0]["attributes"]["POSITION"]
+    accessor = said["accessors"][place]
+    return [*accessor["min"], *accessor["max"],
+            *[v for node in said["nodes"] for key in ("scale", "matrix", "translation") for v in node.get(key, [])]]
 
 
 def files_are_read_back():
@@ -81,8 +134,26 @@ def files_are_read_back():
         expect(numpy.allclose(points(got), points(want), rtol=0, atol=0 if exact else 1e-5), f"{name}: places")
         if name != "all.3mf" and name != "all.off":
             expect(numpy.allclose(array(got, "curvature"), array(want, "curvature"), atol=1e-6), f"{name}: curvature")
+    thin = simple.SimplifyMesh(Input=surface, Tolerance=1)
+    simple.SaveData(str(FOLDER / "thin.glb"), proxy=thin)
+    expect(float(text(fetch(thin), "deviation_nm")) > 0, "what is said of it")
+    expect(text(read("thin.glb"), "deviation_nm") == text(fetch(thin), "deviation_nm"), "goes along into the file")
+    tip = simple.AFMTip(Samples=9)
+    servermanager.writers.HeightFieldWriter(Input=tip, FileName=str(FOLDER / "tip.gsf")).UpdatePipeline()
+    back = fetch(simple.AFMScanReader(FileName=str(FOLDER / "tip.gsf")))
+    expect(text(back, "tip") == text(fetch(tip), "tip") == "structuring function", "and of heights")
     simple.SaveData(str(FOLDER / "true.glb"), proxy=surface, Magnification=1)
     expect(numpy.allclose(points(read("true.glb")), points(want), atol=1e-5), "true size")
+    # What semsurf reads it undoes; the bytes are the command's.
+    semsurf("mesh", DATA / "block.gsf", "-o", "block.ply")
+    block = simple.SurfaceMeshReader(FileName=str(FOLDER / "block.ply"))
+    for name, properties, options in [("a", {}, []), ("b", {"Magnification": 1000}, ["--magnification", 1000]),
+                                      ("c", {"ZExaggeration": 3}, ["--z-exaggeration", 3])]:
+        simple.SaveData(str(FOLDER / f"{name}1.off.glb"), proxy=block, **properties)
+        semsurf("mesh", DATA / "block.gsf", *options, "-o", f"{name}2.off.glb")
+        ours, theirs = ((FOLDER / f"{name}{k}.off.glb").stat().st_size for k in (1, 2))
+        bounds = [extremes(FOLDER / f"{name}{k}.off.glb") for k in (1, 2)]
+        same(bounds[0], bounds[1], f"{properties}: the extremes in the file, {ours} and {theirs} bytes")
     simple.SaveData(str(FOLDER / "saved.gsf"), proxy=scan())
     expect((FOLDER / "saved.gsf").stat().st_size > 12000, "saved by extension")
     for name in ("heights.gsf", "heights.txt"):   # by extension, text goes to ParaView's own writer
@@ -106,12 +177,12 @@ def wrong_properties_are_refused():
     surface = simple.HeightFieldtoSurface(Input=scan())
     refuses(simple.HeightFieldtoSurface(Input=scan(), Simplify=1, Tolerance=-1), "Tolerance", "below 0")
     refuses(simple.SimplifyMesh(Input=surface, Limit="Triangles", Triangles=3), "Triangles", "too few")
-    refuses(simple.SurfacetoHeightField(Input=surface, Samples=1), "Samples", "2 to 16384")
+    refuses_until(simple.SurfacetoHeightField(Input=surface, Samples=1), ["Samples", "2 to 16384"], Samples=20)
     refuses(simple.CheckandRepairMesh(Input=surface, Sliver=-1), "Sliver", "below 0")
     refuses(simple.SimplifyMesh(Input=simple.Line()), "Input", "no polygons")
     refuses(simple.HeightFieldtoSurface(Input=simple.SurfacetoHeightField(
         Input=simple.SampleBody(Shape="Sphere"), Samples=20)), "height field", "hole")
 
 
-run(surfaces_equal_the_command, there_and_back, mending_equals_the_command, thinning_equals_the_command,
+run(surfaces_equal_the_command, there_and_back, mending_equals_the_command, every_repair_is_the_option, thinning_equals_the_command,
     files_are_read_back, vtk_files_are_inline, wrong_properties_are_refused)

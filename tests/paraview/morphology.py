@@ -1,7 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What is made of scans with a tip is what the commands make."""
+import time
+
+from vtkmodules.vtkCommonCore import vtkInformationKeyLookup
+
 from support import DATA, FOLDER, abort_and_rerun, array, column, expect, fetch, matrix, numpy, progress_of, quiet, \
-    refuses, run, same, semsurf, simple, text
+    refuses, refuses_until, run, same, semsurf, simple, text
 
 
 def scan():
@@ -38,6 +42,12 @@ def morphology_equals_the_command():
         semsurf(command, DATA / "noisy.gsf", "--tip", "tip.txt", "--distance", "2nm", "--upsample", 2, "-o", "out.txt")
         same(heights(make(Input=scan(), Tip=tip(), Distance=2, Upsample=2)), matrix(FOLDER / "out.txt"), command)
     plain = heights(scan())
+    for make, commands in {simple.OpenbyTip: ["erode", "dilate"], simple.ClosebyTip: ["dilate", "erode"]}.items():
+        semsurf(commands[0], DATA / "noisy.gsf", "--tip", "tip.txt", "-o", "half.txt")
+        semsurf(commands[1], "half.txt", "--tip", "tip.txt", "-o", "out.txt")
+        got = heights(make(Input=scan(), Tip=tip()))
+        same(got, matrix(FOLDER / "out.txt"), f"{commands}")
+        expect(numpy.abs(got - plain).max() > 0.1, f"{commands} change something")
     expect((heights(simple.OpenbyTip(Input=scan(), Tip=tip())) <= plain + 1e-6).all(), "an opening is never above")
     expect((heights(simple.ClosebyTip(Input=scan(), Tip=tip())) >= plain - 1e-6).all(), "a closing is never below")
 
@@ -91,11 +101,13 @@ def found_tips_equal_the_command():
 
 
 def wrong_properties_are_refused():
-    refuses(simple.EstimateTip(Input=scan(), TipSize=4), "Tip Size", "odd")
+    refuses_until(simple.EstimateTip(Input=scan(), TipSize=4), ["Tip Size", "odd"], TipSize=5)
     refuses(simple.CleanScan(Input=scan(), MedianWidth=4), "Median Width", "Give 5")
     refuses(simple.ErodebyTip(Input=scan(), Tip=tip(), Distance=-1), "Distance", "below 0")
     refuses(simple.CertaintyMap(Input=scan(), Tip=tip(), Sigmas=0), "Sigmas")
     refuses(simple.ErodebyTip(Input=scan(), Tip=simple.AFMTip(Samples=4)), "Samples", "odd")
+    refuses_until(simple.AFMTip(Samples=4), ["Samples", "odd"], Samples=9)
+    refuses_until(simple.SampleSurface(Width=0), ["Width", "samples"], Width=20)
     two = simple.SampleSurface(Shape="Grating", Width=100, Depth=100, FeatureHeight=10, Period=40, FeatureWidth=4, WallRun=4)
     refuses(simple.ErodebyTip(Input=scan(), Tip=two), "Tip", "places that do not touch")
 
@@ -103,15 +115,59 @@ def wrong_properties_are_refused():
 def progress_and_abort():
     large = simple.SampleSurface(Shape="Rough", Width=1022, Depth=1022)
     blunt = simple.AFMTip(Radius=60, Samples=61)
-    erode = simple.ErodebyTip(Input=large, Tip=blunt, Distance=4, Upsample=2)
+    erode = simple.ErodebyTip(Input=large, Tip=blunt, Distance=4, Upsample=4)
     expect(len(progress_of(erode)) > 3, "there is progress")
     whole = array(fetch(erode), "z_nm").copy()
     erode.Upsample = 3
-    erode.Upsample = 2
+    erode.Upsample = 4
     same(array(abort_and_rerun(erode), "z_nm"), whole, "after an abort")
     sweep = simple.EstimateTip(Input=simple.SampleSurface(Shape="Rough", Width=300, Depth=300), Noise=0.3)
     expect(len(progress_of(sweep)) > 3, "the sweep tells its progress")
 
 
+def the_library_tells_its_time():
+    """bench/bench_paraview.py takes the plugin's own share from it."""
+    key = vtkInformationKeyLookup.Find("LIBRARY_SECONDS", "vtkSemsurf")
+    expect(key is not None, "the key is there")
+    large = simple.SampleSurface(Shape="Rough", Width=600, Depth=600)
+    large.UpdatePipeline()
+    erode = simple.ErodebyTip(Input=large, Tip=simple.AFMTip(Radius=60, Samples=61), Distance=4)
+    seconds = []
+    for upsample in (4, 1):
+        erode.Upsample = upsample
+        begin = time.perf_counter()
+        erode.UpdatePipeline()
+        wall = time.perf_counter() - begin
+        seconds.append(erode.GetClientSideObject().GetInformation().Get(key))
+        expect(0 < seconds[-1] <= wall, f"{seconds[-1]} s of the library in {wall} s")
+    expect(seconds[1] < seconds[0], f"the time is that of the last update: {seconds}")
+
+
+def measured_noise_equals_the_command():
+    """To the digits that it prints."""
+    for properties, options in [({}, []), ({"Flat": 1, "Degree": 3}, ["--flat", "--degree", 3]), ({"Lags": 3}, ["--lags", 3])]:
+        printed = semsurf("noise", DATA / "noisy.gsf", *options)
+        source = simple.NoiseModel(Input=scan(), **properties)
+        table, lags = fetch(source), fetch(source, 1)
+        v = dict(zip(column(table, "quantity"), column(table, "value")))
+        largest = {}
+        for row, direction in enumerate(column(lags, "direction")):
+            found = [column(lags, name)[row] for name in ("correlation", "lag", "z")]
+            if direction not in largest or abs(found[0]) > abs(largest[direction][0]):
+                largest[direction] = found
+        along, across = (f"largest correlation {c:.4f} at lag {lag} (z {z:.1f})"
+                         for c, lag, z in (largest["along"], largest["across"]))
+        for line in [f"alpha {v['alpha']:.4f} ± {v['alpha_stderr']:.1g}, sigma {v['sigma_nm']:.4g} ± {v['sigma_stderr_nm']:.1g}"
+                     f" nm, innovation {v['innovation_nm2']:.4g} ± {v['innovation_stderr_nm2']:.1g} nm^2",
+                     f"along rows p = {v['whiteness_along_p']:.4f}: {along}",
+                     f"across rows p = {v['whiteness_across_p']:.4f}: {across}",
+                     f"p = {v['normality_p']:.4f}: skewness {v['skewness']:.3f}, excess kurtosis {v['excess_kurtosis']:.3f}"]:
+            expect(line in printed, f"{properties}: '{line}' is not in\n{printed}")
+        if not properties:
+            expect(f"{100 * v['substrate_share']:.1f} % of the image" in printed, f"the substrate of\n{printed}")
+        expect(max(column(lags, "lag")) == properties.get("Lags", 10), "as many lags as were asked for")
+
+
 run(tips_equal_the_command, morphology_equals_the_command, tips_are_resampled, certainty_equals_the_command,
-    cleaning_equals_the_command, found_tips_equal_the_command, wrong_properties_are_refused, progress_and_abort)
+    cleaning_equals_the_command, found_tips_equal_the_command, wrong_properties_are_refused, progress_and_abort,
+    the_library_tells_its_time, measured_noise_equals_the_command)

@@ -8,7 +8,7 @@ import shutil
 import subprocess
 import sys
 
-from support import DATA, FOLDER, array, expect, fetch, run, same, simple
+from support import DATA, FOLDER, array, expect, fetch, run, same, simple, vtk_to_numpy
 
 
 def pipelines():
@@ -26,6 +26,7 @@ def pipelines():
               "found": simple.EstimateTip(Input=scan, TipSize=5, Noise=0.1, Thresholds=6)}
     sheet = simple.HeightFieldtoSurface(Input=images["level"], Simplify=1)
     images["seen"] = simple.SurfacetoHeightField(Input=sheet, Samples=40)
+    images["sem"] = simple.SimulateSEM(Input=sheet, Pixels=24, Electrons=4)
     surfaces = {"sheet": sheet, "body": simple.SampleBody(Shape="Sphere"),
                 "thin": simple.SimplifyMesh(Input=simple.SampleBody(Shape="Sphere"), Tolerance=1),
                 "mended": simple.CheckandRepairMesh(Input=sheet)}
@@ -60,40 +61,56 @@ def run_with(ranks):
     return folder
 
 
-def equal_to_one_rank():
-    for tool in ("mpirun", "pvbatch"):
+def need(*tools):
+    """Ends as skipped where a program is not there."""
+    for tool in tools:
         if not shutil.which(tool):
             print(f"skipped: {tool} is not there")
             sys.stdout.flush()
             os._exit(77)
+
+
+def written(folder):
+    """The names of what was saved; all of it is there."""
+    names = sorted(p.name for p in folder.iterdir() if p.suffix in (".pvti", ".pvtp", ".glb", ".gsf", ".csv"))
+    expect(len(names) == 13 + 8 + 2, f"what was written: {names}")
+    return names
+
+
+def compare(several, one, ranks):
+    """What that many ranks have saved with what one has."""
+    expect(written(several) == written(one), f"{ranks} ranks write {written(several)}")
+    for name in written(one):
+        if name.endswith(".pvti"):
+            reader = simple.XMLPartitionedImageDataReader
+            got, want = (fetch(reader(FileName=[str(folder / name)])) for folder in (several, one))
+            expect(want.GetNumberOfPoints() > 0 and got.GetExtent() == want.GetExtent(),
+                   f"{name}: {got.GetExtent()} on {ranks} ranks, {want.GetExtent()} on one")
+            arrays = want.GetPointData()
+            expect(arrays.GetNumberOfArrays() > 0, f"{name} has arrays")
+            for i in range(arrays.GetNumberOfArrays()):
+                key = arrays.GetArrayName(i)
+                same(array(got, key), array(want, key), f"{name}, {key}, {ranks} ranks")
+        elif name.endswith(".pvtp"):
+            reader = simple.XMLPartitionedPolydataReader
+            got, want = (fetch(reader(FileName=[str(folder / name)])) for folder in (several, one))
+            expect(got.GetNumberOfPoints() == want.GetNumberOfPoints() > 0, f"{name}: points on {ranks} ranks")
+            expect(got.GetNumberOfCells() == want.GetNumberOfCells() > 0, f"{name}: cells on {ranks} ranks")
+            same(*(vtk_to_numpy(data.GetPoints().GetData()) for data in (got, want)), f"{name}, {ranks} ranks")
+        else:
+            expect(filecmp.cmp(several / name, one / name, shallow=False), f"{name} differs on {ranks} ranks")
+    counts, whole = (json.loads((folder / "counts.json").read_text()) for folder in (several, one))
+    for name, count in counts.items():   # pieces share a row of points
+        expect(count < 1.5 * whole[name], f"{name}: {count} points on {ranks} ranks, {whole[name]} on one")
+    pieces = len(list((several / "level").glob("*.vti")))
+    expect(pieces == ranks, f"the image is in {pieces} pieces of {ranks}")
+
+
+def equal_to_one_rank():
+    need("mpirun", "pvbatch")
     one = run_with(1)
-    names = sorted(p.name for p in one.iterdir() if p.suffix in (".pvti", ".pvtp", ".glb", ".gsf", ".csv"))
-    expect(len(names) == 12 + 8 + 2, f"what was written: {names}")
     for ranks in (2, 3):
-        several = run_with(ranks)
-        for name in names:
-            if name.endswith(".pvti"):
-                reader = simple.XMLPartitionedImageDataReader
-                got, want = (fetch(reader(FileName=[str(folder / name)])) for folder in (several, one))
-                expect(want.GetNumberOfPoints() > 0 and got.GetExtent() == want.GetExtent(),
-                       f"{name}: {got.GetExtent()} on {ranks} ranks, {want.GetExtent()} on one")
-                arrays = want.GetPointData()
-                expect(arrays.GetNumberOfArrays() > 0, f"{name} has arrays")
-                for i in range(arrays.GetNumberOfArrays()):
-                    key = arrays.GetArrayName(i)
-                    same(array(got, key), array(want, key), f"{name}, {key}, {ranks} ranks")
-            elif name.endswith(".pvtp"):
-                reader = simple.XMLPartitionedPolydataReader
-                got, want = (fetch(reader(FileName=[str(folder / name)])) for folder in (several, one))
-                expect(got.GetNumberOfPoints() == want.GetNumberOfPoints() > 0, f"{name}: points on {ranks} ranks")
-                expect(got.GetNumberOfCells() == want.GetNumberOfCells() > 0, f"{name}: cells on {ranks} ranks")
-            else:
-                expect(filecmp.cmp(several / name, one / name, shallow=False), f"{name} differs on {ranks} ranks")
-        counts, whole = (json.loads((folder / "counts.json").read_text()) for folder in (several, one))
-        for name, count in counts.items():   # pieces share a row of points
-            expect(count < 1.5 * whole[name], f"{name}: {count} points on {ranks} ranks, {whole[name]} on one")
-        pieces = len(list((several / "level").glob("*.vti")))
-        expect(pieces == ranks, f"the image is in {pieces} pieces of {ranks}")
+        compare(run_with(ranks), one, ranks)
 
 
 if __name__ == "__main__":

@@ -3,8 +3,8 @@
 import os
 import pathlib
 
-from support import DATA, FOLDER, SOURCE, array, expect, fetch, matrix, messages, numpy, quiet, refuses, run, same, \
-    semsurf, simple
+from support import DATA, FOLDER, SOURCE, array, expect, fetch, matrix, messages, numpy, quiet, refuses, refuses_until, \
+    run, same, semsurf, simple
 
 REAL = pathlib.Path(os.environ.get("SEMSURF_TEST_DATA", "/nowhere"))
 
@@ -57,8 +57,21 @@ def sem_images_have_their_place():
     refuses(simple.SEMImageReader(FileName=str(FOLDER / "sem.tif"), Channel="nothing"), "nothing")
 
 
+def units_and_parts_are_read():
+    (FOLDER / "one.off").write_text("OFF\n3 1 0\n0 0 0\n1 0 0\n0 2 0\n3 0 1 2\n")
+    data = fetch(simple.SurfaceMeshReader(FileName=str(FOLDER / "one.off"), Unit=1000))
+    expect(data.GetBounds()[:4] == (0, 1000, 0, 2000), f"in um: {data.GetBounds()}")
+    numpy.savetxt(FOLDER / "units.txt", letter_f())
+    heights = fetch(simple.AFMScanReader(FileName=str(FOLDER / "units.txt"), HeightUnit=5))
+    same(array(heights, heights.GetPointData().GetScalars().GetName()), 5 * letter_f()[::-1], "in units of 5 nm")
+    semsurf("simulate", SOURCE / "samples" / "flat.toml", "--size", "6x4", "--electrons", 1, "-o", "size.tif", "-q")
+    sizes = fetch(simple.SEMImageReader(FileName=str(FOLDER / "size.tif"), PixelSize=[7, 9])).GetSpacing()
+    expect(sizes[:2] == (7, 9), f"{sizes}")
+
+
 def wrong_files_are_refused():
-    refuses(simple.AFMScanReader(FileName=str(FOLDER / "missing.gsf")), "missing.gsf")
+    refuses_until(simple.AFMScanReader(FileName=str(FOLDER / "missing.gsf")), ["missing.gsf"],
+                  FileName=str(DATA / "block.gsf"))
     (FOLDER / "empty.gsf").write_text("")
     refuses(simple.AFMScanReader(FileName=str(FOLDER / "empty.gsf")), "empty.gsf", "empty")
     refuses(simple.SurfaceMeshReader(FileName=str(FOLDER / "missing.off")), "missing.off")
@@ -99,5 +112,6 @@ def real_scans_are_the_commands():
         same(array(data, data.GetPointData().GetScalars().GetName()), matrix(FOLDER / "real.txt"), path.name)
 
 
-run(the_letter_stands_upright, scans_are_in_nm, holes_are_marked, sem_images_have_their_place, wrong_files_are_refused,
+run(the_letter_stands_upright, scans_are_in_nm, holes_are_marked, sem_images_have_their_place, units_and_parts_are_read,
+    wrong_files_are_refused,
     a_file_that_changes_is_read_again, channels_can_be_chosen, real_scans_are_the_commands)

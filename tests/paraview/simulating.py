@@ -2,8 +2,8 @@
 """Simulated images are the command's to the last bit, whether made at once, live, or of several bodies."""
 import time
 
-from support import DATA, FOLDER, abort_and_rerun, array, column, expect, fetch, numpy, progress_of, quiet, refuses, run, \
-    same, semsurf, simple, text, touch, vtk_to_numpy
+from support import DATA, FOLDER, abort_and_rerun, array, column, each, expect, fetch, numpy, progress_of, quiet, refuses, \
+    refuses_until, run, same, semsurf, simple, text, touch, vtk_to_numpy
 
 CHANNELS = ["SE", "SE.stderr", "BSE", "BSE.stderr", "valid"]
 
@@ -44,6 +44,36 @@ def images_equal_the_command():
     expect(array(data, "SE.stderr").max() > 0, "there are standard errors")
 
 
+def every_property_is_the_option():
+    """Each changes the image, and to what the command's option makes of it."""
+    simple.SaveData(str(FOLDER / "small.off"), proxy=sphere())
+    size = ["--size", "10x10", "--electrons", 4]
+    plain = command("small.off", "--substrate", "Si", *size)
+
+    def check(properties, *options):
+        wanted = command("small.off", *([] if "Substrate" in properties else ["--substrate", "Si"]),
+                         *([] if "--accuracy" in options else size if "--region" not in options else size[2:]), *options)
+        given = {"Pixels": 10, "Electrons": 4, "Substrate": "Si", **properties}
+        same_as(fetch(simple.SimulateSEM(Input=sphere(), **given)), wanted, "it is not the command's")
+        expect(wanted["SE"].shape != plain["SE"].shape or (wanted["SE"] != plain["SE"]).any() or
+               (wanted["SE.stderr"] != plain["SE.stderr"]).any(), "it changes nothing")
+    each([({"Spot": 20}, "--spot", "20nm"), ({"Tilt": 30, "Azimuth": 50}, "--tilt", "30deg", "--azimuth", "50deg"),
+          ({"Convergence": 5, "Focus": 100}, "--convergence", "5deg", "--focus", "100nm"),
+          ({"WorkingDistance": 500}, "--working-distance", "500nm"), ({"SubstrateTop": 30}, "--substrate-z", "30nm"),
+          ({"Physics": "elastic=browning,secondaries=off"}, "--physics", "elastic=browning,secondaries=off"),
+          ({"Region": [-20, -40, 40, 10], "PixelSize": 5}, "--region", "-20,-40,40,10", "--pixel-size", "5nm"),
+          ({"Budget": "Accuracy", "Accuracy": 0.5, "AccuracyFloor": 0.3}, "--size", "10x10", "--accuracy", "50%",
+           "--accuracy-floor", "0.3")], check)
+    scan = simple.AFMScanReader(FileName=str(DATA / "block.gsf"))
+    mirrored = fetch(simple.SimulateSEM(Input=scan, Pixels=20, Electrons=5, Tilt=60))
+    width, height, _ = mirrored.GetDimensions()
+    for edge in ("flat", "periodic"):
+        wanted = command(DATA / "block.gsf", "--size", f"{width}x{height}", "--electrons", 5, "--edge", edge, "--tilt", "60deg")
+        data = fetch(simple.SimulateSEM(Input=scan, Pixels=20, Electrons=5, Edge=edge.capitalize(), Tilt=60))
+        same_as(data, wanted, edge)
+        expect((array(data, "SE") != array(mirrored, "SE")).any(), f"{edge} changes nothing")
+
+
 def heights_equal_the_command():
     scan = simple.AFMScanReader(FileName=str(DATA / "block.gsf"))
     data = quiet(simple.SimulateSEM(Input=scan, Pixels=20, Electrons=5))
@@ -73,7 +103,16 @@ def tracks_and_detectors():
     expect(names[:3] == ["SE", "BSE", "SE1"] and len(names) == 7, f"{names}")
     yields = column(table, "yield")
     expect(abs(yields[1] - yields[3:].sum()) < 1e-12, "four quadrants make BSE")
-    quadrants = array(fetch(source), "BSE-left")
+    image = fetch(source)
+    errors = column(table, "standard_error")
+    for name, mean, error in zip(names, yields, errors):
+        pixels = array(image, name)[array(image, "valid") > 0].astype(float)
+        expect(abs(pixels.mean() - mean) < 1e-4 * mean, f"the yield of {name} is {mean}, the image's mean {pixels.mean()}")
+        expect(0 < error < 0.5 * mean, f"the standard error of {name}: {error} of {mean}")
+    ways = [lines.GetCell(i).GetPointIds() for i in range(lines.GetNumberOfCells())]
+    ends = [(energies[way.GetId(0)], energies[way.GetId(way.GetNumberOfIds() - 1)]) for way in ways if way.GetNumberOfIds() > 3]
+    expect(sum(begin > end for begin, end in ends) > len(ends) / 2 > 5, "electrons lose energy on their way")
+    quadrants = array(image, "BSE-left")
     expect(quadrants.shape == (16, 16), "an image for each")
     source.Trajectories = 0
     expect(fetch(source, 1).GetNumberOfPoints() == 0, "no tracks unless asked for")
@@ -127,6 +166,7 @@ def wrong_properties_are_refused():
     wrong("Tilt", "90", Tilt=95)
     wrong("Region", "empty", Region=[5, 0, 1, 1])
     refuses(simple.SimulateSEM(Input=simple.Line()), "Input", "no surface")
+    refuses_until(simple.SimulateSEM(Input=simple.SampleSurface(), Pixels=8, Electrons=1, Energy=50), ["Energy"], Energy=1000)
 
 
 def progress_and_abort():
@@ -138,5 +178,5 @@ def progress_and_abort():
     same(array(abort_and_rerun(source, 0.1), "SE"), whole, "after an abort")
 
 
-run(images_equal_the_command, heights_equal_the_command, bodies_have_materials, tracks_and_detectors, live_images_refine,
+run(images_equal_the_command, every_property_is_the_option, heights_equal_the_command, bodies_have_materials, tracks_and_detectors, live_images_refine,
     wrong_properties_are_refused, progress_and_abort)

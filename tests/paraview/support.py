@@ -26,6 +26,17 @@ def expect(condition, message):
         raise AssertionError(message)
 
 
+def each(cases, check):
+    """All cases, so that one that fails hides no other."""
+    failed = []
+    for case in cases:
+        try:
+            check(*case)
+        except AssertionError as error:
+            failed.append(f"{case[0]}: {str(error)[:300]}")
+    expect(not failed, "\n".join(failed))
+
+
 def fetch(source, port=0):
     """The data of an output, computed anew where something changed."""
     source.UpdatePipeline()
@@ -101,7 +112,7 @@ def messages():
 
 
 def refuses(source, *words, port=0):
-    """The filter has no result and says why; then, with what was wrong undone, it may be used again."""
+    """The filter has no result and says why."""
     with messages() as said:
         try:
             source.UpdatePipeline()
@@ -113,6 +124,17 @@ def refuses(source, *words, port=0):
     expect(count == 0 and rows == 0, f"there is a result in spite of the error: {count} points, {rows} rows")
     for word in words:
         expect(word in said[0], f"'{word}' is not in the message:\n{said[0]}")
+
+
+def refuses_until(source, words, **good):
+    """Refused as it is; with these properties it gives a result, and nothing more is said of what was wrong."""
+    refuses(source, *words)
+    with messages() as said:
+        for name, value in good.items():
+            setattr(source, name, value)
+        source.UpdatePipeline()
+    expect("ERR" not in said[0], f"put right, ParaView complains:\n{said[0]}")
+    expect(source.GetDataInformation().GetNumberOfPoints() > 0, f"no result with {good}")
 
 
 def quiet(source, port=0):

@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <string>
 
 #include "convert/arrays.h"
 #include "surf/core/error.h"
@@ -34,8 +35,8 @@ void check_plain(vtkImageData* image, const char* subject) {
 
 void check_array(vtkImageData* image, vtkDataArray* array, const char* subject) {
   if (!array)
-    throw InvalidInput(subject, "it has no numbers at its points",
-                       "Choose an array of the points under Scalars");
+    throw InvalidInput(subject, "it has no array of one number at each of its points",
+                       "'Cell Data to Point Data' makes one of cells, 'Calculator' of vectors");
   const std::string name = array->GetName() ? array->GetName() : "";
   if (array->GetNumberOfComponents() != 1)
     throw InvalidInput(subject,
@@ -44,6 +45,19 @@ void check_array(vtkImageData* image, vtkDataArray* array, const char* subject) 
   if (array->GetNumberOfTuples() != image->GetNumberOfPoints())
     throw InvalidInput(subject, fmt::format("'{}' is not of the points", name),
                        "Choose an array of the points");
+}
+
+/// What cannot be a scan in nm, so that nothing is computed of lengths in m or of numbers that mean something else.
+void check_lengths(const HeightField& field, const std::string& name, const char* subject) {
+  constexpr double least_pitch_nm = 1e-6, most_height_nm = 1e12;
+  const double pitch = std::min(field.pitch_x_nm, field.pitch_y_nm);
+  if (pitch < least_pitch_nm)
+    throw InvalidInput(subject, fmt::format("its points are {:.3g} nm apart, which no scan is", pitch),
+                       "Lengths are nm: multiply Spacing and heights by 1e9 if they are m");
+  for (const double z : field.z_nm.data())
+    if (std::abs(z) > most_height_nm)
+      throw InvalidInput(subject, fmt::format("'{}' holds {:.3g}, which is no height in nm", name, z),
+                         "Choose another array under Scalars, or make holes of such points (NaN)");
 }
 
 /// Takes what is not finite, or masked, out of the values; the mask is empty if there are no holes.
@@ -132,6 +146,7 @@ HeightField to_height_field(vtkImageData* image, vtkDataArray* heights, const ch
   field.z_nm = read_values(image, heights, frame, subject);
   field.valid = take_holes(image, heights, field.z_nm);
   validate(field, subject);
+  check_lengths(field, heights->GetName() ? heights->GetName() : "", subject);
   return field;
 }
 

@@ -93,6 +93,11 @@ TriangleMesh to_mesh(vtkPolyData* data, const char* subject) {
   if (mesh.triangles.empty())
     throw InvalidInput(subject, "it has no polygons", "Give a surface: 'Extract Surface' makes one of cells");
   validate(mesh, subject);
+  constexpr double most_nm = 1e12;
+  for (const Vec3& v : mesh.vertices_nm)
+    if (const double far = std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}); far > most_nm)
+      throw InvalidInput(subject, fmt::format("it reaches as far as {:.3g} nm", far),
+                         "Lengths are nm: 'Transform' scales and moves it");
   return mesh;
 }
 
