@@ -29,6 +29,7 @@ command -v node >/dev/null && command -v npm >/dev/null || packages+=(nodejs npm
 # Programs that open what semsurf writes, for the tests labelled `programs`: about 1.5 GB.
 programs=(
   admesh assimp-utils f3d freecad-python3 blender python3-numpy   # what opens surfaces
+  paraview                                                        # the plugin with the mouse
   xvfb xauth                                                      # a screen for those that need one
   chromium                                                        # what shows web pages and glTF
   lib3mf-dev                                                      # the 3MF Consortium's own reader

@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""From an AFM scan to a surface, in ParaView.
+"""From an AFM scan to a surface and its SEM image, in ParaView: what the mouse does in tests/paraview/gui.
 
     PV_PLUGIN_PATH=build/lib/semsurf_paraview pvpython samples/paraview_pipeline.py [SCAN] [OUT]
 
-Without a scan one is made: a grating, seen with a blunt tip. In OUT (out/) are then surface.glb and surface.gsf.
+Without a scan one is made: a grating, seen with a blunt tip. In OUT (out/) are then surface.glb and
+surface.gsf, and the simulated image as sem.vti.
 """
 import pathlib
 import sys
@@ -26,9 +27,14 @@ tip = simple.EstimateTip(Input=level, Answer="At threshold", Threshold=0, ApexTo
 eroded = simple.ErodebyTip(Input=level, Tip=tip)
 certain = simple.CertaintyMap(Input=level, Tip=tip)
 surface = simple.HeightFieldtoSurface(Input=eroded, Simplify=1, Tolerance=0.1)
+# Few pixels and electrons, so that it takes seconds; 256 and 200 without saying anything.
+sem = simple.SimulateSEM(Input=surface, Materials="Si", Energy=1000, Pixels=64, Electrons=20)
 
 simple.SaveData(str(out / "surface.glb"), proxy=surface)
 simple.SaveData(str(out / "surface.gsf"), proxy=eroded)
+simple.SaveData(str(out / "sem.vti"), proxy=sem, DataMode="Binary")   # not appended: docs/paraview.md
 certain.UpdatePipeline()
 low, high = servermanager.Fetch(certain).GetPointData().GetArray("z_nm" if not scan_file else 0).GetRange()
 print(f"{servermanager.Fetch(surface).GetNumberOfCells()} triangles, heights {low:.4g} to {high:.4g} nm")
+low, high = servermanager.Fetch(sem).GetPointData().GetArray("SE").GetRange()
+print(f"SE yields {low:.3g} to {high:.3g} per electron")

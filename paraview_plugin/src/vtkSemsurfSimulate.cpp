@@ -278,4 +278,9 @@ int vtkSemsurfSimulate::RequestData(vtkInformation*, vtkInformationVector** inpu
   });
 }
 
-bool vtkSemsurfSimulate::GetNeedsUpdate() { return this->Live && this->Kept->live && this->Kept->live->has_news(); }
+/// Asked by ParaView's timer of live sources, which then marks what follows as modified, but not this.
+bool vtkSemsurfSimulate::GetNeedsUpdate() {
+  const bool news = this->Live && this->Kept->live && this->Kept->live->has_news();
+  if (news) this->Modified();
+  return news;
+}

@@ -15,6 +15,11 @@ def the_documented_script_runs():
     got = fetch(simple.AFMScanReader(FileName=str(FOLDER / "out" / "surface.gsf")))
     heights = array(got, got.GetPointData().GetScalars().GetName())
     expect(heights.shape == (101, 201) and 29 < numpy.ptp(heights) < 31, f"{heights.shape}, {numpy.ptp(heights)} nm")
+    seen = fetch(simple.XMLImageDataReader(FileName=[str(FOLDER / "out" / "sem.vti")]))
+    yields = array(seen, "SE")
+    # Edges are brighter than what is flat.
+    expect(yields.shape == (32, 64) and 0.3 < yields.mean() < 2 and yields.max() > 2 * numpy.median(yields),
+           f"{yields.shape}, {yields.mean()} on average, {numpy.median(yields)} in the middle, {yields.max()}")
     expect(fetch(simple.SurfaceMeshReader(FileName=str(FOLDER / "out" / "surface.glb"))).GetNumberOfPoints() > 100, "glTF")
 
 
