@@ -50,8 +50,6 @@ void check_options(const SimulationOptions& options) {
     throw UsageError("--accuracy", "pixels then get different numbers of electrons, and spectra or a "
                                    "dose would mean nothing",
                      "Give --electrons with --spectra, or --current and --dwell alone");
-  if (options.accuracy > 0 && options.method != Method::replay)
-    throw UsageError("--accuracy", "direct simulation cannot serve it", "Use --method replay");
 }
 
 // Merges units as they come. Large tallies go back to the disk now and then.
@@ -116,7 +114,9 @@ class Workshop {
   const std::vector<CascadeYield>& yields() const { return yields_; }
 
   std::unique_ptr<UnitWorker> worker() {
-    if (options_->method == Method::direct) return make_direct_worker(*scene_, *options_);
+    if (options_->method == Method::direct)
+      return options_->accuracy > 0 ? make_direct_spending_worker(*scene_, *options_)
+                                    : make_direct_worker(*scene_, *options_);
     if (controls_) return make_spending_worker(*scene_, *options_, libraries_, *controls_);
     return make_replay_worker(*scene_, *options_, libraries_);
   }
@@ -192,6 +192,7 @@ UnitTally simulate_unit(const Scene& scene, const SimulationOptions& options, co
   SimulationOptions wanted = options;
   wanted.electrons = unit.first_electron + unit.electrons;
   wanted.method = Method::direct;
+  wanted.accuracy = 0;
   UnitTally out;
   make_direct_worker(scene.impl(), wanted)->simulate(unit, observer, out);
   return out;
@@ -209,6 +210,9 @@ SimulationResult simulate(const Scene& scene, const SimulationOptions& options,
     throw UsageError("--method replay", "cascades are joined where energies are equal, which needs "
                                         "continuous loss",
                      "Use --method direct, or loss=joy-luo");
+  if (options.accuracy > 0 && observers)
+    throw UsageError("--accuracy", "what observers see would be of more primaries in some pixels than in others",
+                     "Give --electrons instead");
   if (journal && observers)
     throw UsageError("simulate", "observers would not see the units that a journal recalls",
                      "Leave one of the two out");

@@ -33,7 +33,7 @@ struct SimulationOptions {
   double dose = 0;
   Method method = Method::direct;
   /// Instead of `electrons`, where above 0: each pixel gets as many primaries as it takes to bring the
-  /// standard error of every detector down to this share of its mean, 1e-4 to 1. Needs replay.
+  /// standard error of every detector down to this share of its mean, 1e-4 to 1.
   double accuracy = 0;
   double accuracy_floor = 0.002;  ///< no standard error below this is asked for, >= 0, per primary
   bool planar_control = true;     ///< with `accuracy`: average the difference to a plane's outcome
