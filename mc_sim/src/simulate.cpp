@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "plane_controls.h"
+#include "replay_site.h"
 #include "scene_impl.h"
 #include "surf/core/error.h"
 #include "surf/core/parallel.h"
@@ -72,6 +73,9 @@ class Collector {
   std::size_t added_ = 0;
 };
 
+// A pilot finds a variance a little low at times.
+constexpr double all_of_the_variance = 0.9;
+
 // What the workers of a simulation share.
 class Workshop {
  public:
@@ -103,7 +107,8 @@ class Workshop {
     if (!get(least)) return false;
     if (!(options.accuracy > 0)) return true;
     measure_yields(static_cast<int>(scene.materials().size()));
-    const std::size_t wanted = std::min(library_size(options, most_primaries, yields_),
+    const double share = options.planar_control && only_planes() ? all_of_the_variance : usual_share_of_variance;
+    const std::size_t wanted = std::min(library_size(options, most_primaries, yields_, share),
                                         cascades_that_fit(options.library_memory));
     if (wanted > least && !get(wanted)) return false;
     controls_.emplace(*scene_, options, libraries_);
@@ -143,6 +148,18 @@ class Workshop {
     }
   }
 
+  // Whether every pixel is proved to be a plane, so that nothing but the library's error is in it. Ends at
+  // the first that is not.
+  bool only_planes() const {
+    SiteReplay replay(*scene_, *options_, libraries_);
+    for (int y = 0; y < scene_->scan.height; ++y)
+      for (int x = 0; x < scene_->scan.width; ++x) {
+        const ReplaySite site = replay.site(x, y, true);
+        if (!site.single || (site.hit && !replay.proved_plane(site))) return false;
+      }
+    return true;
+  }
+
   std::size_t cascades_that_fit(double bytes) const {
     constexpr std::size_t page = CascadeLibrary::page_cascades;
     double of_a_page = 0;
@@ -162,10 +179,7 @@ class Workshop {
 }  // namespace
 
 std::size_t library_size(const SimulationOptions& options, std::int64_t most_primaries,
-                         std::span<const CascadeYield> yields) {
-  // A pixel takes no cascade twice, and shares the smaller part of its cascades with others: of its
-  // variance no more than a quarter is common to all. The means on planes are over all of them.
-  constexpr double of_the_variance = 0.24;   // a quarter, where a pilot has found it a little low
+                         std::span<const CascadeYield> yields, double of_the_variance) {
   double wanted = static_cast<double>(most_primaries) / of_the_variance;
   if (options.accuracy > 0) {
     wanted = 9 / (options.accuracy * options.accuracy);
