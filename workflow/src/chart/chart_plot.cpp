@@ -44,8 +44,8 @@ Look look_of(const std::string& family) {
   if (family == "direct-accuracy") return {"direct, to an accuracy", 0, line_points, true};
   if (family == "replay") return {"replay", 1, line_points, false};
   if (family == "accuracy-without-planes") return {"replay, to an accuracy", 1, line_points, true};
-  if (family == "accuracy") return {"the same with planes", 3, line_points, true};
-  if (family == "mesh-tolerance") return {"the same, detail left out", 2, points, false};
+  if (family == "accuracy") return {"replay with planes, to an accuracy", 3, line_points, true};
+  if (family == "mesh-tolerance") return {"the same without fine detail", 2, points, false};
   if (family == "facet-network") return {"facet network", 5, points, false};
   if (family == "filter-bank") return {"filter banks", 4, points, false};
   return {"slopes, stopping points, flux", 7, points, false};
@@ -58,6 +58,8 @@ io::PlotPanel panel(const ChartSummary& summary, std::size_t channel, bool prepa
   panel.x = {prepared ? "time of the image alone (s)" : "time with scene, library, training (s)", true, {}};
   panel.y = {fmt::format("rms error of {} (%)", name), true, {}};
   const std::vector<Place> all = places(summary, channel, prepared);
+  const auto [low, high] = std::minmax_element(all.begin(), all.end(), [](const Place& a, const Place& b) { return a.error < b.error; });
+  panel.y.range = io::PlotAxis::Range{low->error / 1.8, high->error * 1.8};
   std::vector<Look> looks;
   for (const Place& p : all) {
     const Look look = look_of(p.point->family);
