@@ -175,6 +175,7 @@ void add_chart(CLI::App& app, Action& action, const std::string& command_line) {
   add_specimen_options(*sub, options->scene);
   add_beam_options(*sub, options->scene);
   add_scan_options(*sub, options->scene);
+  add_physics_options(*sub, options->scene);
   add_options(*sub, *options);
   sub->footer(footer());
   sub->callback([options, &action, command_line] {

@@ -64,4 +64,15 @@ void add_scan_options(CLI::App& app, SceneOptions& o) {
       ->type_name("X0,Y0,X1,Y1")->group(group);
 }
 
+void add_physics_options(CLI::App& app, SceneOptions& o) {
+  const char* group = "Simulation";
+  app.add_option("--physics", o.physics,
+                 "elastic=mott|browning, loss=joy-luo|none, secondaries=on|off,\n"
+                 "barrier=quantum|classical|off; any of them, first ones default")
+      ->type_name("KEY=VALUE,...")->group(group);
+  app.add_option("--cutoff", o.cutoff,
+                 "Where tracking stops (the surface barrier; 50eV without secondaries)")
+      ->type_name("ENERGY")->group(group);
+}
+
 }  // namespace surf::cli

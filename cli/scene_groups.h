@@ -12,5 +12,6 @@ namespace surf::cli {
 void add_specimen_options(CLI::App& app, SceneOptions& options);
 void add_beam_options(CLI::App& app, SceneOptions& options);
 void add_scan_options(CLI::App& app, SceneOptions& options);
+void add_physics_options(CLI::App& app, SceneOptions& options);
 
 }  // namespace surf::cli

@@ -79,13 +79,7 @@ void add_simulation_options(CLI::App& app, SimulateOptions& o) {
                  "Where libraries of cascades are kept for other runs, or off\n"
                  "($SEMSURF_CACHE, ~/.cache/semsurf)")
       ->type_name("FOLDER|off")->group(group);
-  app.add_option("--physics", o.scene.physics,
-                 "elastic=mott|browning, loss=joy-luo|none, secondaries=on|off,\n"
-                 "barrier=quantum|classical|off; any of them, first ones default")
-      ->type_name("KEY=VALUE,...")->group(group);
-  app.add_option("--cutoff", o.scene.cutoff,
-                 "Where tracking stops (the surface barrier; 50eV without secondaries)")
-      ->type_name("ENERGY")->group(group);
+  add_physics_options(app, o.scene);
   app.add_option("--seed", o.seed, "The same seed gives the same bytes (1)")
       ->type_name("N")->group(group);
   add_threads_option(app, o.threads)->group(group);
