@@ -47,6 +47,10 @@ void add_beam_options(CLI::App& app, SceneOptions& o) {
   app.add_option("--working-distance", o.working_distance,
                  "From the scan plane to the lens, for perspective (parallel beams)")
       ->type_name("LENGTH")->group(group);
+}
+
+void add_dose_options(CLI::App& app, SceneOptions& o) {
+  const char* group = "Beam";
   app.add_option("--current", o.current,
                  "With --dwell instead of --electrons: the shot noise of a microscope,\n"
                  "in channels NAME.shot")

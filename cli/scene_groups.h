@@ -11,6 +11,8 @@ namespace surf::cli {
 
 void add_specimen_options(CLI::App& app, SceneOptions& options);
 void add_beam_options(CLI::App& app, SceneOptions& options);
+/// Current and dwell time, in the beam's group: right after `add_beam_options`.
+void add_dose_options(CLI::App& app, SceneOptions& options);
 void add_scan_options(CLI::App& app, SceneOptions& options);
 void add_physics_options(CLI::App& app, SceneOptions& options);
 

@@ -114,6 +114,7 @@ void add_output_options(CLI::App& app, SimulateOptions& o) {
 void add_simulate_options(CLI::App& app, SimulateOptions& options) {
   add_specimen_options(app, options.scene);
   add_beam_options(app, options.scene);
+  add_dose_options(app, options.scene);
   add_scan_options(app, options.scene);
   add_simulation_options(app, options);
   add_detector_options(app, options);

@@ -266,6 +266,5 @@ semsurf_cli_usage(chart_methods "'fast' is none of them. Choose of default, dire
 semsurf_cli_usage(chart_accuracy "--accuracy: 0.5 is outside" chart ${flat} --accuracy 50% -o chart)
 semsurf_cli_usage(chart_reference "--reference: 0.9 % is not well below the finest accuracy, 1 %" chart ${flat} --reference 0.9% -o chart)
 semsurf_cli_usage(chart_compared "--compared" chart ${flat} --compared 3 -o chart)
-semsurf_cli_usage(chart_dose "with a current and a dwell time" chart ${flat} --current 100pA --dwell 1us -o chart)
 semsurf_cli_usage(chart_none "none of them can be had" chart ${flat} --methods mesh-tolerance -o chart)
 semsurf_cli_unusable(chart_over_a_file "block.gsf" chart ${flat} --quick -o block.gsf)
