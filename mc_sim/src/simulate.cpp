@@ -182,7 +182,7 @@ std::size_t library_size(const SimulationOptions& options, std::int64_t most_pri
                          std::span<const CascadeYield> yields, double of_the_variance) {
   double wanted = static_cast<double>(most_primaries) / of_the_variance;
   if (options.accuracy > 0) {
-    wanted = 9 / (options.accuracy * options.accuracy);
+    wanted = 4 / (options.accuracy * options.accuracy);
     for (const CascadeYield& y : yields) {
       const double error = std::max(options.accuracy * y.mean, options.accuracy_floor);
       if (error > 0) wanted = std::max(wanted, y.variance / (of_the_variance * error * error));

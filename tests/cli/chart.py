@@ -47,7 +47,7 @@ with tempfile.TemporaryDirectory(prefix="semsurf-test-") as name:
     expect(ended == 0, "the undisturbed chart failed", err)
     for text in ("replay", "rms errors", "reference: ", "--accuracy 10 %", "written chart/chart.svg"):
         expect(text in out, text, "is not in", out)
-    for file in ("chart.svg", "chart.png", "chart.csv", "chart.json", "reference.exr"):
+    for file in ("chart.svg", "chart.png", "chart.csv", "chart.json", "reference/1.exr"):
         expect((folders[0] / "chart" / file).stat().st_size > 100, file, "is not there")
     report = json.loads((folders[0] / "chart" / "chart.json").read_text())
     expect(len(report["points"]) == len(figures(folders[0])) / 2, "chart.json and chart.csv disagree")

@@ -95,7 +95,7 @@ TEST(ChartJob, EveryMethodIsThereAndMoreElectronsAreMoreAccurate) {
   }
   ASSERT_EQ(s.choices.size(), 2u);
   for (const ChartChoice& c : s.choices) EXPECT_TRUE(c.met) << c.accuracy;
-  for (const char* name : {"chart.csv", "chart.json", "chart.svg", "chart.png", "reference.exr"})
+  for (const char* name : {"chart.csv", "chart.json", "chart.svg", "chart.png", "reference/1.exr"})
     EXPECT_GT(fs::file_size(folder.path() / name), 100u) << name;
 }
 

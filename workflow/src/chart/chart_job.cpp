@@ -73,29 +73,57 @@ std::vector<double> accuracies_of(const ChartJob& job) {
   return out;
 }
 
-SimulateJob reference_job(const ChartJob& job, const ComparedPixels& pixels, const mc::Scan& scan) {
-  SimulateJob out;
-  out.scene = job.scene;
-  out.scene.scan = request_for(pixels, scan);
-  out.scene.electrons.reset();
-  out.scene.method.reset();
-  out.scene.mesh_tolerance_nm.reset();
-  out.scene.detectors.clear();
-  out.scene.accuracy = job.reference_accuracy;
-  const double floor = job.scene.accuracy_floor.value_or(mc::SimulationOptions{}.accuracy_floor);
-  out.scene.accuracy_floor = floor * job.reference_accuracy / job.finest;
-  out.options.seed = job.seed + other_seed;
-  out.options.threads = job.threads;
-  out.outputs = {job.folder / "reference.exr"};
-  out.command_line = job.command_line;
-  title_by_identity(out, "reference of a chart");
+// So fine that libraries of cascades take too much memory: several images with libraries of their own, their mean.
+constexpr double finest_at_once = 0.007;
+
+std::vector<SimulateJob> reference_jobs(const ChartJob& job, const ComparedPixels& pixels, const mc::Scan& scan) {
+  const int parts = std::max(1, static_cast<int>(std::ceil(std::pow(finest_at_once / job.reference_accuracy, 2) - 1e-9)));
+  std::vector<SimulateJob> out;
+  for (int i = 0; i < parts; ++i) {
+    SimulateJob part;
+    part.scene = job.scene;
+    part.scene.scan = request_for(pixels, scan);
+    part.scene.electrons.reset();
+    part.scene.method.reset();
+    part.scene.mesh_tolerance_nm.reset();
+    part.scene.detectors.clear();
+    part.scene.accuracy = job.reference_accuracy * std::sqrt(parts);
+    const double floor = job.scene.accuracy_floor.value_or(mc::SimulationOptions{}.accuracy_floor);
+    part.scene.accuracy_floor = floor * *part.scene.accuracy / job.finest;
+    part.options.seed = job.seed + other_seed + static_cast<std::uint64_t>(i);
+    part.options.threads = job.threads;
+    part.outputs = {job.folder / "reference" / fmt::format("{}.exr", i + 1)};
+    part.command_line = job.command_line;
+    title_by_identity(part, "reference of a chart");
+    out.push_back(std::move(part));
+  }
   return out;
 }
 
+Image mean_of(const std::vector<SimulateJob>& parts) {
+  Image mean = io::read_image(parts.front().outputs.front());
+  const auto n = static_cast<float>(parts.size());
+  for (std::size_t i = 1; i < parts.size(); ++i) {
+    const Image other = io::read_image(parts[i].outputs.front());
+    for (Channel& channel : mean.channels) {
+      const bool error = channel.name.ends_with(".stderr");
+      const Grid<float>& more = other.find(channel.name)->values;
+      for (std::size_t k = 0; k < more.size(); ++k) {
+        float& value = channel.values.data()[k];
+        value = error ? std::hypot(value, more.data()[k]) : value + more.data()[k];
+      }
+    }
+  }
+  for (Channel& channel : mean.channels)
+    for (float& value : channel.values.data()) value /= n;
+  return mean;
+}
+
 // Of all that errors depend on: a point of another job counts no more.
-std::string identity(const ChartJob& job, const SimulateJob& reference, const std::vector<double>& accuracies) {
-  Identity id{{"reference", reference.scene.title},
-              {"title", reference.scene.title},
+std::string identity(const ChartJob& job, const std::vector<SimulateJob>& reference,
+                     const std::vector<double>& accuracies) {
+  Identity id{{"reference", reference.front().scene.title},
+              {"parts", std::to_string(reference.size())},
               {"seed", std::to_string(job.seed)},
               {"quick", job.quick ? "yes" : "no"},
               {"training", fmt::format("{} {} {}", job.surfaces, job.surface_px, job.training_electrons)}};
@@ -175,7 +203,7 @@ ChartSummary run(const ChartJob& asked, const ChartListener& listener) {
   for (const char* name : {"chart.svg", "chart.png"}) io::check_plot_target(job.folder / name);
   const ComparedPixels pixels = choose_pixels(setting.scan, job.compared_pixels);
   summary.compared = pixels.width * pixels.height;
-  const SimulateJob making = reference_job(job, pixels, setting.scan);
+  const std::vector<SimulateJob> making = reference_jobs(job, pixels, setting.scan);
   const std::string id = identity(job, making, setting.accuracies);
 
   ChartMethods all = list_simulations(setting);
@@ -194,20 +222,23 @@ ChartSummary run(const ChartJob& asked, const ChartListener& listener) {
       if (listener.progress && total > 0) listener.progress(before + weight * done / total, 2 * count);
     };
   };
-  if (!is_finished(making)) {
-    const SimulateSummary made = run(making, show(count), listener.cancel, listener.warn, listener.note);
-    if (!made.result.complete) {
-      summary.complete = false;
-      return summary;
+  for (const SimulateJob& part : making) {
+    const double share = count / static_cast<double>(making.size());
+    if (!is_finished(part)) {
+      const SimulateSummary made = run(part, show(share), listener.cancel, listener.warn, listener.note);
+      if (!made.result.complete) {
+        summary.complete = false;
+        return summary;
+      }
     }
+    before += share;
   }
-  const Reference reference = read_reference(
-      io::read_image(making.outputs.front()), pixels,
-      job.scene.accuracy_floor.value_or(mc::SimulationOptions{}.accuracy_floor));
+  const Reference reference =
+      read_reference(mean_of(making), pixels, job.scene.accuracy_floor.value_or(mc::SimulationOptions{}.accuracy_floor));
   setting.reference = &reference;
   for (const ComparedChannel& c : reference.channels)
     summary.reference.push_back({c.name, image_error(c.values, {}, c.values, c.standard_errors)});
-  before = count;
+  
   for (const ChartMethod& method : all.methods) {
     const fs::path file = job.folder / "points" / (method.id + ".json");
     std::optional<ChartPoint> point = read_point(file, id);

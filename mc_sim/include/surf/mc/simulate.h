@@ -61,7 +61,7 @@ struct CascadeYield {
 inline constexpr double usual_share_of_variance = 0.24;
 
 /// How many cascades of each material replay with these options takes, where no pixel has more than
-/// `most_primaries`. With a wanted accuracy (3 / accuracy)^2, and where `yields` are known as many as
+/// `most_primaries`. With a wanted accuracy (2 / accuracy)^2, the least that any use can be made of, and where `yields` are known as many as
 /// it takes for the library's share to be `share` of the variance asked for, 0 to 1.
 std::size_t library_size(const SimulationOptions& options, std::int64_t most_primaries,
                          std::span<const CascadeYield> yields = {}, double share = usual_share_of_variance);

@@ -109,7 +109,7 @@ struct ChartListener {
 ///   chart.csv          a line for each point and channel
 ///   chart.json         the same, with choices and what was left out
 ///   chart.svg, .png    time against error
-///   reference.exr      the reference's pixels
+///   reference/N.exr    the reference's pixels, of which it is the mean
 ///   points/ID.json     each point, from which the same job goes on
 ///   models/            fast models, and images that they learn from
 /// The same job gives the same numbers again, but for times and memory. Points of another job in the
