@@ -13,6 +13,7 @@ using Action = std::function<int()>;
 // Each adds a subcommand that sets `action`. Options' type names say how to complete their values:
 // FILE, MATERIAL, or the choices as "a|b|c".
 void add_simulate(CLI::App& app, Action& action, const std::string& command_line);
+void add_chart(CLI::App& app, Action& action, const std::string& command_line);
 void add_level(CLI::App& app, Action& action);
 void add_clean(CLI::App& app, Action& action);
 void add_noise(CLI::App& app, Action& action);

@@ -147,6 +147,7 @@ int main(int argc, char** argv) {
   app.footer(examples);
   app.allow_windows_style_options(false);
   add_simulate(app, action, quoted_command(argc, argv));
+  add_chart(app, action, quoted_command(argc, argv));
   add_level(app, action);
   add_clean(app, action);
   add_noise(app, action);

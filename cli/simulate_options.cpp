@@ -2,6 +2,7 @@
 #include "simulate_options.h"
 
 #include "common_options.h"
+#include "scene_groups.h"
 
 namespace surf::cli {
 namespace {
@@ -32,56 +33,6 @@ Examples:
   semsurf simulate cube.stl --size 64x64 --region -96,-96,96,96 \
       --physics elastic=browning,secondaries=off -o bse.exr)";
 
-void add_specimen_options(CLI::App& app, SceneOptions& o) {
-  app.add_option("INPUT", o.inputs,
-                 "Meshes (STL, OBJ, PLY, OFF, glTF, VTP), a height field (EXR, TIFF,\n"
-                 "PNG, VTI) or one scene file (TOML)")
-      ->type_name("FILE");
-  const char* group = "Specimen";
-  app.add_option("--material", o.material, "What meshes and height field are made of (Si)")
-      ->type_name("MATERIAL")->group(group);
-  add_materials_option(app, o.materials)->group(group);
-  app.add_option("--unit", o.unit, "Length of one unit of the mesh files (nm; glTF: m)")
-      ->type_name("nm|um|mm|m|pm|A|in")->group(group);
-  app.add_option("--substrate", o.substrate, "Add a half-space below the bodies")
-      ->type_name("MATERIAL")->group(group);
-  app.add_option("--substrate-z", o.substrate_z, "Height of its top (0nm)")
-      ->type_name("LENGTH")->group(group);
-  app.add_option("--edge", o.edge, "How a height field goes on outside (mirror)")
-      ->type_name("mirror|flat|periodic")->group(group);
-  app.add_option("--pitch", o.pitch, "Sample distance of a height field (as its file says, or 1nm)")
-      ->type_name("LENGTH")->group(group);
-  app.add_option("--z-unit", o.z_unit, "Height of one grey level of a height field (1nm)")
-      ->type_name("LENGTH")->group(group);
-  app.add_option("--height-channel", o.height_channel,
-                 "Channel of a height field, by name or number of 'semsurf info' (the first of heights)")
-      ->type_name("NAME")->group(group);
-}
-
-void add_beam_options(CLI::App& app, SceneOptions& o) {
-  const char* group = "Beam";
-  app.add_option("--energy", o.energy, "100eV to 30keV (1keV)")->type_name("ENERGY")->group(group);
-  app.add_option("--tilt", o.tilt, "Angle of the beam from straight down, below 90deg (0deg)")
-      ->type_name("ANGLE")->group(group);
-  app.add_option("--azimuth", o.azimuth, "Where the tilt turns to: 0 is +x, 90deg is +y (0deg)")
-      ->type_name("ANGLE")->group(group);
-  app.add_option("--spot", o.spot, "Standard deviation of the Gaussian spot (0nm)")
-      ->type_name("LENGTH")->group(group);
-  app.add_option("--convergence", o.convergence, "Half angle of the beam's cone, as 5mrad (0)")
-      ->type_name("ANGLE")->group(group);
-  app.add_option("--focus", o.focus, "How far above the scan plane the cone's tip is (0nm)")
-      ->type_name("LENGTH")->group(group);
-  app.add_option("--working-distance", o.working_distance,
-                 "From the scan plane to the lens, for perspective (parallel beams)")
-      ->type_name("LENGTH")->group(group);
-  app.add_option("--current", o.current,
-                 "With --dwell instead of --electrons: the shot noise of a microscope,\n"
-                 "in channels NAME.shot")
-      ->type_name("CURRENT")->group(group);
-  app.add_option("--dwell", o.dwell, "Time spent on a pixel, as 1us")
-      ->type_name("TIME")->group(group);
-}
-
 void add_detector_options(CLI::App& app, SimulateOptions& o) {
   const char* group = "Detectors, besides SE and BSE";
   app.add_option("--detector", o.scene.detectors,
@@ -99,15 +50,6 @@ void add_detector_options(CLI::App& app, SimulateOptions& o) {
       ->type_name("N")->group(group);
   app.add_option("--trajectories-at", o.trajectories_at, "Where they land (the scan's middle)")
       ->type_name("X,Y")->group(group);
-}
-
-void add_scan_options(CLI::App& app, SceneOptions& o) {
-  const char* group = "Scan";
-  app.add_option("--size", o.size, "Pixels, as 256x192")->type_name("WxH")->group(group);
-  app.add_option("--pixel-size", o.pixel_size, "Width and height of a pixel, as 2nm")
-      ->type_name("LENGTH")->group(group);
-  app.add_option("--region", o.region, "Outer pixel edges, as -96,-96,96,96")
-      ->type_name("X0,Y0,X1,Y1")->group(group);
 }
 
 void add_simulation_options(CLI::App& app, SimulateOptions& o) {
@@ -137,13 +79,7 @@ void add_simulation_options(CLI::App& app, SimulateOptions& o) {
                  "Where libraries of cascades are kept for other runs, or off\n"
                  "($SEMSURF_CACHE, ~/.cache/semsurf)")
       ->type_name("FOLDER|off")->group(group);
-  app.add_option("--physics", o.scene.physics,
-                 "elastic=mott|browning, loss=joy-luo|none, secondaries=on|off,\n"
-                 "barrier=quantum|classical|off; any of them, first ones default")
-      ->type_name("KEY=VALUE,...")->group(group);
-  app.add_option("--cutoff", o.scene.cutoff,
-                 "Where tracking stops (the surface barrier; 50eV without secondaries)")
-      ->type_name("ENERGY")->group(group);
+  add_physics_options(app, o.scene);
   app.add_option("--seed", o.seed, "The same seed gives the same bytes (1)")
       ->type_name("N")->group(group);
   add_threads_option(app, o.threads)->group(group);
@@ -178,6 +114,7 @@ void add_output_options(CLI::App& app, SimulateOptions& o) {
 void add_simulate_options(CLI::App& app, SimulateOptions& options) {
   add_specimen_options(app, options.scene);
   add_beam_options(app, options.scene);
+  add_dose_options(app, options.scene);
   add_scan_options(app, options.scene);
   add_simulation_options(app, options);
   add_detector_options(app, options);

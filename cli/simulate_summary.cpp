@@ -57,18 +57,22 @@ void print_library(const workflow::SimulateSummary& s) {
                                     s.result.library_cascades, from, s.result.library_seconds));
 }
 
-// Which share of the pixels that see the specimen was done how.
+// Which share of the pixels that see the specimen was done how, and which of the electrons went there.
 void print_models(const workflow::SimulateSummary& s) {
   const mc::ResultSummary& r = s.statistics;
   if (s.result.accuracy <= 0 || r.seen == 0) return;
+  const double all = r.mean_electrons * double(r.seen);
   std::string text;
   for (const auto& [model, words] :
-       {std::pair{mc::PixelModel::plane, "proved planes"},
+       {std::pair{mc::PixelModel::plane, "proved planes, which take no electrons"},
         std::pair{mc::PixelModel::difference, "as differences to planes"},
-        std::pair{mc::PixelModel::replay, "by replay alone"}}) {
+        std::pair{mc::PixelModel::replay, "by replay alone"},
+        std::pair{mc::PixelModel::direct, "directly"}}) {
     const auto n = r.models[static_cast<std::size_t>(model)];
-    if (n > 0) text += fmt::format("{}{} {}", text.empty() ? "" : ", ",
-                                   percent(double(n), double(r.seen)), words);
+    if (n == 0) continue;
+    text += fmt::format("{}{} {}", text.empty() ? "" : ", ", percent(double(n), double(r.seen)), words);
+    const auto electrons = r.electrons[static_cast<std::size_t>(model)];
+    if (electrons > 0) text += fmt::format(" ({} of the electrons)", percent(double(electrons), all));
   }
   print_line("pixels", text);
 }
@@ -121,8 +125,9 @@ void print_summary(const workflow::SimulateJob& job, const workflow::SimulateSum
   print_speed(job, s);
   print_simplified(s.simplification);
   if (s.scene.triangles_left_out > 0)
-    print_line("left out", fmt::format("{} triangles that no electron reaches",
-                                       format_count(double(s.scene.triangles_left_out))));
+    print_line("triangles", fmt::format("{} that electrons can reach; {} left out",
+                                        format_count(double(s.scene.triangles)),
+                                        format_count(double(s.scene.triangles_left_out))));
   std::string label = "written";
   for (const auto& path : s.written) {
     print_line(label, path.string());

@@ -9,6 +9,7 @@
 
 #include "cascade_sample.h"
 #include "scene_impl.h"
+#include "spending.h"
 #include "surf/core/error.h"
 
 namespace surf::mc {
@@ -20,22 +21,52 @@ namespace {
 // by 0.60 to 0.97, so 1.5 to 2.5, from 0.5 to 10 keV; 3.7 at 30 keV (bench_replay --only choice).
 constexpr double making_by_saving = 2.5;
 
-// Steps that a primary takes in direct simulation, where electrons that cannot reach a surface are
-// given up: over some pixels spread evenly.
-double steps_per_primary(const Scene& scene, const SimulationOptions& options) {
+// Primaries of a pixel that foretell how many an accuracy takes.
+constexpr std::int64_t tried_for_accuracy = 64;
+
+// How many primaries bring the only pixel of a tally to the wanted accuracy, the pilot's included.
+double primaries_needed(const SimulationOptions& options, const UnitTally& tally) {
+  const auto n = static_cast<double>(tally.pixels.data().front().primaries);
+  double most = fewest_primaries;
+  for (const Grid<Counts>& counts : tally.counts) {
+    Sample s;
+    s.n = n;
+    s.sum = static_cast<double>(counts.data().front().sum);
+    s.squares = static_cast<double>(counts.data().front().squares);
+    const double error = wanted_error(options, s.mean());
+    if (error > 0) most = std::max(most, s.variance() / (error * error));
+  }
+  return pilot_primaries + reserve_of_primaries * most;
+}
+
+// What some pixels, spread evenly, tell of direct simulation.
+struct DirectWork {
+  double steps = 0;       // of a primary, where electrons that cannot reach a surface are given up
+  double primaries = 0;   // of a pixel, on average
+};
+
+// With a wanted accuracy from the scatter of a few primaries more.
+DirectWork direct_work(const Scene& scene, const SimulationOptions& options) {
   constexpr int across = 4;
-  constexpr std::int64_t primaries = 4;
+  const bool accurate = options.accuracy > 0;
   SimulationOptions few;
   few.seed = options.seed;
+  few.detectors = options.detectors;
   Balance balance;
+  DirectWork work;
   const Scan& scan = scene.scan();
   for (int j = 0; j < across; ++j)
     for (int i = 0; i < across; ++i) {
       const int x = (2 * i + 1) * scan.width / (2 * across);
       const int y = (2 * j + 1) * scan.height / (2 * across);
-      balance += simulate_unit(scene, few, {x, y, x + 1, y + 1, 0, primaries}).balance;
+      const UnitTally tally =
+          simulate_unit(scene, few, {x, y, x + 1, y + 1, 0, accurate ? tried_for_accuracy : 4});
+      balance += tally.balance;
+      if (accurate) work.primaries += primaries_needed(options, tally) / (across * across);
     }
-  return static_cast<double>(balance.steps) / static_cast<double>(balance.incident);
+  work.steps = static_cast<double>(balance.steps) / static_cast<double>(balance.incident);
+  if (!accurate) work.primaries = options.dose > 0 ? options.dose : static_cast<double>(options.electrons);
+  return work;
 }
 
 struct LibraryWork {
@@ -119,10 +150,10 @@ MethodChoice choose_method(const Scene& scene, const SimulationOptions& options,
   const auto materials = scene.materials().size();
   MethodChoice choice;
   choice.cascades = library_size(options, most_primaries(options));
+  if (options.accuracy > 0 && limits.observed)
+    throw UsageError("--accuracy", "deposited energy would be of more primaries in some pixels than in others",
+                     "Leave out --deposit, or give --electrons instead of the accuracy");
   if (asked == Method::direct) {
-    if (options.accuracy > 0)
-      throw UsageError("--method direct", "only replay can go on until an accuracy is reached",
-                       "Leave out --method, or give --electrons instead of the accuracy");
     choice.reason = "as asked for";
     return choice;
   }
@@ -133,31 +164,29 @@ MethodChoice choose_method(const Scene& scene, const SimulationOptions& options,
     choice.library_bytes = static_cast<double>(choice.cascades) * work.bytes;
     no_replay = too_large(scene, choice, options, limits);
   }
-  if (no_replay && (asked || options.accuracy > 0))
-    throw UsageError(asked ? "--method replay" : "--accuracy",
-                     (asked ? "" : "it takes replay, but ") + no_replay->reason, no_replay->remedy);
+  if (no_replay && asked) throw UsageError("--method replay", no_replay->reason, no_replay->remedy);
   if (no_replay) {
     choice.reason = no_replay->reason;
     return choice;
   }
-  if (asked || options.accuracy > 0) {
+  if (asked) {
     choice.method = Method::replay;
-    choice.reason = asked ? "as asked for" : "the one that can go on until an accuracy is reached";
+    choice.reason = "as asked for";
     return choice;
   }
-  const double primaries = (options.dose > 0 ? options.dose : static_cast<double>(options.electrons)) *
-                           static_cast<double>(scene.scan().width) *
+  const DirectWork direct = direct_work(scene, options);
+  const double primaries = direct.primaries * static_cast<double>(scene.scan().width) *
                            static_cast<double>(scene.scan().height);
-  const bool pays = making_by_saving * work.segments * static_cast<double>(choice.cascades) <
-                    primaries * steps_per_primary(scene, options);
+  const bool pays =
+      making_by_saving * work.segments * static_cast<double>(choice.cascades) < primaries * direct.steps;
   choice.method = pays ? Method::replay : Method::direct;
-  choice.reason =
-      pays ? fmt::format("{} primaries share {} cascades{}", count(primaries),
-                         count(static_cast<double>(choice.cascades)),
-                         materials > 1 ? " of each material" : "")
-           : fmt::format("{} primaries are too few for {} cascades{} to pay off", count(primaries),
-                         count(static_cast<double>(choice.cascades)),
-                         materials > 1 ? " of each material" : "");
+  const std::string these = fmt::format(
+      "{}{} primaries{}", options.accuracy > 0 ? "about " : "", count(primaries),
+      options.accuracy > 0 ? " for this accuracy" : "");
+  const std::string those = fmt::format("{} cascades{}", count(static_cast<double>(choice.cascades)),
+                                        materials > 1 ? " of each material" : "");
+  choice.reason = pays ? fmt::format("{} share {}", these, those)
+                       : fmt::format("{} are too few for {} to pay off", these, those);
   return choice;
 }
 

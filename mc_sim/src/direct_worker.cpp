@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
 
+#include "direct_primaries.h"
 #include "forward.h"
-#include "gun.h"
-#include "scene_impl.h"
 #include "unit_worker.h"
 
 namespace surf::mc {
@@ -13,9 +12,7 @@ namespace {
 class DirectWorker : public UnitWorker {
  public:
   DirectWorker(const Scene::Impl& scene, const SimulationOptions& options)
-      : scene_(scene), options_(options), share_(scene.scan, options), geometry_(scene),
-        gun_(scene.beam, scene.scan, scene.top_nm),
-        detection_(options.detectors, scene.beam, options.spectra) {}
+      : detectors_(options.detectors.size()), share_(scene.scan, options), primaries_(scene, options) {}
 
   void simulate(const WorkUnit& unit, Observer* observer, UnitTally& out) override {
     if (observer) {
@@ -30,9 +27,8 @@ class DirectWorker : public UnitWorker {
  private:
   template <class Watcher>
   void run(const WorkUnit& unit, Watcher& watcher, Observer* observer, UnitTally& out) {
-    clear(out, unit, options_.detectors.size());
-    Transport transport(geometry_, scene_.medium_pointers, scene_.physics.barrier,
-                        observer == nullptr, watcher, detection_, out.balance);
+    clear(out, unit, detectors_);
+    auto transport = primaries_.transport(watcher, observer == nullptr, out.balance);
     for (int y = unit.y0; y < unit.y1; ++y) {
       for (int x = unit.x0; x < unit.x1; ++x) {
         PixelTally& pixel = out.pixels(x - unit.x0, y - unit.y0);
@@ -40,28 +36,21 @@ class DirectWorker : public UnitWorker {
         const std::uint64_t number = share_.number(x, y);
         const std::int64_t end = std::min(share_.of(x, y), unit.first_electron + unit.electrons);
         for (std::int64_t e = unit.first_electron; e < end; ++e) {
-          RandomStream random(options_.seed, number, static_cast<std::uint64_t>(e));
           if (observer) observer->primary(static_cast<std::int64_t>(number), e);
-          const Gun::Start start = gun_.primary(x, y, random);
-          const bool hit = transport.run(start.position, start.direction, scene_.beam.energy_ev, 0,
-                                         random);
+          const bool hit = primaries_.run(
+              transport, x, y, number, static_cast<std::uint64_t>(e),
+              [&](std::size_t d, int counted) { out.counts[d](x - unit.x0, y - unit.y0).add(counted); });
           ++pixel.primaries;
           pixel.hits += hit ? 1 : 0;
-          for (std::size_t d = 0; d < out.counts.size(); ++d)
-            out.counts[d](x - unit.x0, y - unit.y0).add(detection_.counts()[d]);
-          detection_.end_primary();
         }
       }
     }
-    out.spectra = detection_.take_spectra();
+    out.spectra = primaries_.detection().take_spectra();
   }
 
-  const Scene::Impl& scene_;
-  const SimulationOptions& options_;
+  std::size_t detectors_;
   Share share_;
-  SceneGeometry geometry_;
-  Gun gun_;
-  Detection detection_;
+  DirectPrimaries primaries_;
 };
 
 }  // namespace

@@ -62,6 +62,7 @@ ResultSummary summarize(const SimulationResult& r) {
     ++s.seen;
     --unseen_by_model;
     ++s.models[static_cast<std::size_t>(p.model)];
+    s.electrons[static_cast<std::size_t>(p.model)] += p.primaries;
     s.mean_electrons += static_cast<double>(p.primaries);
     s.fewest_electrons = std::min(s.fewest_electrons, p.primaries);
     s.most_electrons = std::max(s.most_electrons, p.primaries);

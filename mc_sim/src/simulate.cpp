@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "plane_controls.h"
+#include "replay_site.h"
 #include "scene_impl.h"
 #include "surf/core/error.h"
 #include "surf/core/parallel.h"
@@ -50,8 +51,6 @@ void check_options(const SimulationOptions& options) {
     throw UsageError("--accuracy", "pixels then get different numbers of electrons, and spectra or a "
                                    "dose would mean nothing",
                      "Give --electrons with --spectra, or --current and --dwell alone");
-  if (options.accuracy > 0 && options.method != Method::replay)
-    throw UsageError("--accuracy", "direct simulation cannot serve it", "Use --method replay");
 }
 
 // Merges units as they come. Large tallies go back to the disk now and then.
@@ -73,6 +72,9 @@ class Collector {
   static constexpr std::size_t most_added = std::size_t{1} << 19;   // pixels between releases
   std::size_t added_ = 0;
 };
+
+// A pilot finds a variance a little low at times.
+constexpr double all_of_the_variance = 0.9;
 
 // What the workers of a simulation share.
 class Workshop {
@@ -105,7 +107,8 @@ class Workshop {
     if (!get(least)) return false;
     if (!(options.accuracy > 0)) return true;
     measure_yields(static_cast<int>(scene.materials().size()));
-    const std::size_t wanted = std::min(library_size(options, most_primaries, yields_),
+    const double share = options.planar_control && only_planes() ? all_of_the_variance : usual_share_of_variance;
+    const std::size_t wanted = std::min(library_size(options, most_primaries, yields_, share),
                                         cascades_that_fit(options.library_memory));
     if (wanted > least && !get(wanted)) return false;
     controls_.emplace(*scene_, options, libraries_);
@@ -116,7 +119,9 @@ class Workshop {
   const std::vector<CascadeYield>& yields() const { return yields_; }
 
   std::unique_ptr<UnitWorker> worker() {
-    if (options_->method == Method::direct) return make_direct_worker(*scene_, *options_);
+    if (options_->method == Method::direct)
+      return options_->accuracy > 0 ? make_direct_spending_worker(*scene_, *options_)
+                                    : make_direct_worker(*scene_, *options_);
     if (controls_) return make_spending_worker(*scene_, *options_, libraries_, *controls_);
     return make_replay_worker(*scene_, *options_, libraries_);
   }
@@ -143,6 +148,18 @@ class Workshop {
     }
   }
 
+  // Whether every pixel is proved to be a plane, so that nothing but the library's error is in it. Ends at
+  // the first that is not.
+  bool only_planes() const {
+    SiteReplay replay(*scene_, *options_, libraries_);
+    for (int y = 0; y < scene_->scan.height; ++y)
+      for (int x = 0; x < scene_->scan.width; ++x) {
+        const ReplaySite site = replay.site(x, y, true);
+        if (!site.single || (site.hit && !replay.proved_plane(site))) return false;
+      }
+    return true;
+  }
+
   std::size_t cascades_that_fit(double bytes) const {
     constexpr std::size_t page = CascadeLibrary::page_cascades;
     double of_a_page = 0;
@@ -162,13 +179,10 @@ class Workshop {
 }  // namespace
 
 std::size_t library_size(const SimulationOptions& options, std::int64_t most_primaries,
-                         std::span<const CascadeYield> yields) {
-  // A pixel takes no cascade twice, and shares the smaller part of its cascades with others: of its
-  // variance no more than a quarter is common to all. The means on planes are over all of them.
-  constexpr double of_the_variance = 0.24;   // a quarter, where a pilot has found it a little low
+                         std::span<const CascadeYield> yields, double of_the_variance) {
   double wanted = static_cast<double>(most_primaries) / of_the_variance;
   if (options.accuracy > 0) {
-    wanted = 9 / (options.accuracy * options.accuracy);
+    wanted = 4 / (options.accuracy * options.accuracy);
     for (const CascadeYield& y : yields) {
       const double error = std::max(options.accuracy * y.mean, options.accuracy_floor);
       if (error > 0) wanted = std::max(wanted, y.variance / (of_the_variance * error * error));
@@ -192,6 +206,7 @@ UnitTally simulate_unit(const Scene& scene, const SimulationOptions& options, co
   SimulationOptions wanted = options;
   wanted.electrons = unit.first_electron + unit.electrons;
   wanted.method = Method::direct;
+  wanted.accuracy = 0;
   UnitTally out;
   make_direct_worker(scene.impl(), wanted)->simulate(unit, observer, out);
   return out;
@@ -209,6 +224,9 @@ SimulationResult simulate(const Scene& scene, const SimulationOptions& options,
     throw UsageError("--method replay", "cascades are joined where energies are equal, which needs "
                                         "continuous loss",
                      "Use --method direct, or loss=joy-luo");
+  if (options.accuracy > 0 && observers)
+    throw UsageError("--accuracy", "what observers see would be of more primaries in some pixels than in others",
+                     "Give --electrons instead");
   if (journal && observers)
     throw UsageError("simulate", "observers would not see the units that a journal recalls",
                      "Leave one of the two out");

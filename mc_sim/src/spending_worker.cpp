@@ -18,42 +18,6 @@ namespace {
 // A plane's error takes no more of the target. Beside steep walls it would, and the difference could not
 // make up for it.
 constexpr double most_share = 0.9;
-constexpr int neighbours = 2;               // pixels to each side whose pilots count with its own
-constexpr int most_rounds = 8;              // of adding where the estimate turns out short,
-constexpr double least_growth = 1.1;        // each by this factor or more
-
-// What might have been missed: were there a kind of event of which one in m primaries has one, m
-// primaries would have missed it with a probability of 1/e^3 at 3/m (the rule of three). Each would
-// count this many electrons.
-constexpr double unseen = 3, unseen_counts = 1.5;
-
-// Sums of counts, from which come their mean and variance.
-struct Sample {
-  double n = 0, sum = 0, squares = 0, fourths = 0;
-  void add(double value) {
-    n += 1;
-    sum += value;
-    squares += value * value;
-    fourths += value * value * value * value;
-  }
-  void operator+=(const Sample& b) {
-    n += b.n;
-    sum += b.sum;
-    squares += b.squares;
-    fourths += b.fourths;
-  }
-  double mean() const { return n > 0 ? sum / n : 0; }
-  double variance() const {
-    return n > 1 ? std::max(0.0, (squares - sum * sum / n) / (n - 1)) : 0;
-  }
-  // The variance and its own standard error (from the fourth moment about 0: differences to a plane are
-  // mostly 0). Where few primaries make up most of it, it is badly known.
-  double high_variance() const {
-    if (!(n > 1)) return 0;
-    const double v = variance(), second = squares / n;
-    return v + std::sqrt(std::max(0.0, fourths / n - second * second) / n);
-  }
-};
 
 // With a wanted accuracy each pixel is served until it is reached. A pilot tells how much the counts
 // scatter, by themselves and as differences to the outcome of the same cascades on a plane; then the
@@ -169,15 +133,11 @@ class SpendingWorker : public UnitWorker {
     return estimate(static_cast<std::int64_t>(cascades_), p.match.control->sums[d]);
   }
 
-  double target(double mean) const {
-    return std::max(options_.accuracy * mean, options_.accuracy_floor);
-  }
-
   // How many primaries bring a detector's standard error down to the target. With n of them and N
   // cascades behind the control's mean the square of the error is, at most (SimulationResult::yield),
   //   v / n + share^2 + 2 sqrt(v / N) share.
   double needed(double variance, double mean, double share) const {
-    const double t = target(mean);
+    const double t = wanted_error(options_, mean);
     const double room = t * t - share * share -
                         2 * std::sqrt(variance / static_cast<double>(cascades_)) * share;
     return room > 0 ? variance / room : HUGE_VAL;
@@ -196,11 +156,11 @@ class SpendingWorker : public UnitWorker {
     for (std::size_t d = 0; d < detectors_; ++d) {
       Sample all, left;
       pool(i, d, all, left);
-      const double more = unseen * unseen_counts * unseen_counts / (all.n * all.n);
+      const double more = all.unseen_variance();
       const double own = p.plain[d].variance();
       const Estimate control = control_mean(p, d);
       plain = std::max(plain, needed(std::max(all.variance(), own) + more, all.mean(), 0));
-      if (p.match.control && control.standard_error > most_share * target(control.mean + left.mean()))
+      if (p.match.control && control.standard_error > most_share * wanted_error(options_, control.mean + left.mean()))
         difference = HUGE_VAL;
       else if (p.match.control)
         difference = std::max(
@@ -214,14 +174,10 @@ class SpendingWorker : public UnitWorker {
 
   // Pilots of a pixel and its neighbours.
   void pool(std::size_t i, std::size_t d, Sample& all, Sample& left) const {
-    const int x = static_cast<int>(i) % width(), y = static_cast<int>(i) / width();
-    for (int v = std::max(0, y - neighbours); v <= std::min(height() - 1, y + neighbours); ++v)
-      for (int u = std::max(0, x - neighbours); u <= std::min(width() - 1, x + neighbours); ++u) {
-        const Pixel& q = sites_[static_cast<std::size_t>(v) * static_cast<std::size_t>(width()) +
-                                static_cast<std::size_t>(u)];
-        all += q.plain[d];
-        left += q.difference[d];
-      }
+    for_pilots_near(i, width(), height(), [&](std::size_t k) {
+      all += sites_[k].plain[d];
+      left += sites_[k].difference[d];
+    });
   }
 
   bool controlled(std::size_t i, const UnitTally& out) const {

@@ -34,7 +34,9 @@ std::unique_ptr<UnitWorker> make_direct_worker(const Scene::Impl& scene,
 std::unique_ptr<UnitWorker> make_replay_worker(const Scene::Impl& scene,
                                                const SimulationOptions& options,
                                                const Libraries& libraries);
-/// For `accuracy`: pixels of a unit are served as they need.
+/// For `accuracy`, these two: pixels of a unit are served as they need.
+std::unique_ptr<UnitWorker> make_direct_spending_worker(const Scene::Impl& scene,
+                                                        const SimulationOptions& options);
 std::unique_ptr<UnitWorker> make_spending_worker(const Scene::Impl& scene,
                                                  const SimulationOptions& options,
                                                  const Libraries& libraries,

@@ -65,18 +65,16 @@ TEST(ChooseMethod, WhatReplayCannotServeIsDirect) {
     const MethodChoice choice = choose_method(c.scene, {}, {}, c.limits);
     EXPECT_EQ(choice.method, Method::direct) << c.reason;
     EXPECT_THAT(choice.reason, HasSubstr(c.reason));
+    try {
+      choose_method(c.scene, {}, Method::replay, c.limits);
+      ADD_FAILURE() << c.reason << ": no error";
+    } catch (const UsageError& error) {
+      EXPECT_THAT(error.what(), HasSubstr(c.reason));
+    }
     SimulationOptions accurate;
     accurate.accuracy = 0.1;
-    for (const auto& [options, asked] :
-         {std::pair{SimulationOptions{}, std::optional(Method::replay)},
-          std::pair{accurate, std::optional<Method>()}}) {
-      try {
-        choose_method(c.scene, options, asked, c.limits);
-        ADD_FAILURE() << c.reason << ": no error";
-      } catch (const UsageError& error) {
-        EXPECT_THAT(error.what(), HasSubstr(c.reason));
-      }
-    }
+    if (c.limits.observed) EXPECT_THROW(choose_method(c.scene, accurate, {}, c.limits), UsageError);
+    else EXPECT_EQ(choose_method(c.scene, accurate, {}, c.limits).method, Method::direct) << c.reason;
   }
 }
 
@@ -84,10 +82,25 @@ TEST(ChooseMethod, WhatIsAskedForIsTaken) {
   const Scene scene = scene_of(4);
   EXPECT_EQ(choose_method(scene, {}, Method::replay).method, Method::replay);
   EXPECT_EQ(choose_method(scene_of(400), {}, Method::direct).method, Method::direct);
+}
+
+TEST(ChooseMethod, AnAccuracyTakesReplayWhereItsPrimariesAreMany) {
   SimulationOptions accurate;
   accurate.accuracy = 0.1;
-  EXPECT_EQ(choose_method(scene, accurate).method, Method::replay);
-  EXPECT_THROW(choose_method(scene, accurate, Method::direct), UsageError);
+  const Scene few = scene_of(3), many = scene_of(100);
+  const MethodChoice direct = choose_method(few, accurate), replay = choose_method(many, accurate);
+  EXPECT_EQ(direct.method, Method::direct);
+  EXPECT_THAT(direct.reason, HasSubstr("for this accuracy are too few for 10.2 thousand"));
+  EXPECT_EQ(replay.method, Method::replay);
+  EXPECT_THAT(replay.reason, HasSubstr("for this accuracy share 10.2 thousand"));
+  // The number foretold is near the number spent.
+  accurate.method = Method::direct;
+  const SimulationResult spent = simulate(few, accurate);
+  double told = 0;
+  ASSERT_EQ(std::sscanf(direct.reason.c_str(), "about %lf", &told), 1);
+  if (direct.reason.find("thousand") != std::string::npos) told *= 1e3;
+  EXPECT_NEAR(told, static_cast<double>(spent.balance.incident), 0.6 * told);
+  EXPECT_EQ(choose_method(many, accurate, Method::direct).method, Method::direct);
 }
 
 TEST(ChooseMethod, EstimatesTheSizeOfALibrary) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <gmock/gmock.h>
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "small_job.h"
@@ -17,13 +18,14 @@ namespace {
 using test::TemporaryFolder;
 using testing::HasSubstr;
 
-// Short cascades: 500 eV without secondaries.
+// Short cascades: 500 eV without secondaries. So few primaries would be followed directly.
 SimulateJob accurate_job(const std::filesystem::path& output) {
   SimulateJob job = small_job();
   job.scene.beam.energy_ev = 500;
   job.scene.physics.secondaries = false;
   job.scene.accuracy = 0.2;
   job.scene.accuracy_floor = 0.05;
+  job.scene.method = mc::Method::replay;
   job.extras.channels = {"electrons", "model", "variance_left"};
   job.outputs = {output};
   return job;
@@ -71,6 +73,25 @@ TEST(Accuracy, IsReachedAndRecorded) {
   EXPECT_EQ(record["method"]["name"], "replay");
   EXPECT_EQ(record["method"]["library"]["cascades"], 10240);
   EXPECT_TRUE(record["balance"]["electrons"].contains("handed_over"));
+}
+
+TEST(Accuracy, FewPrimariesAreFollowedDirectly) {
+  const TemporaryFolder folder;
+  SimulateJob job = accurate_job(folder.path() / "1.exr");
+  job.scene.method.reset();
+  const SimulateSummary s = run(job);
+  EXPECT_EQ(s.choice.method, mc::Method::direct);
+  EXPECT_EQ(s.statistics.missed, 0);
+  EXPECT_EQ(s.statistics.models[static_cast<std::size_t>(mc::PixelModel::direct)], s.statistics.seen);
+  EXPECT_EQ(s.statistics.electrons[static_cast<std::size_t>(mc::PixelModel::direct)],
+            std::llround(s.statistics.mean_electrons * static_cast<double>(s.statistics.seen)));
+  const Image image = io::read_image(job.outputs[0]);
+  EXPECT_EQ(image.metadata.at("method"), "direct");
+  EXPECT_EQ(image.metadata.at("accuracy"), "0.2");
+  job.options.threads = 3;
+  job.outputs = {folder.path() / "3.exr"};
+  run(job);
+  EXPECT_TRUE(bytes_of(folder.path() / "1.exr") == bytes_of(folder.path() / "3.exr"));
 }
 
 TEST(Accuracy, TimeFindsOneThatRepeatsExactly) {

@@ -303,6 +303,10 @@ SimulateSummary run(const SimulateJob& asked, const ProgressCallback& progress,
   if (job.seconds > 0)
     simulation = simulate_coarsely(job, scene, libraries, summary.choice, record, progress, cancel,
                                    tell);
+  if (job.seconds > 0 && !simulation.final) {   // as with --accuracy and that number
+    summary.choice = mc::choose_method(scene, job.options, s.method, {job.extras.deposit_cells > 0});
+    job.options.method = summary.choice.method;
+  }
   const auto settings = provenance(job, summary.scan, record.inputs);
 
   std::optional<Deposits> deposits;

@@ -35,7 +35,7 @@ std::vector<std::string> channels_of(const TrainJob& job);
 TrainingImage read_training_image(const TrainingSurface& surface, const std::filesystem::path& file,
                                   const TrainJob& job);
 
-/// NAME.training for NAME.json.
+/// The job's own, or NAME.training for NAME.json.
 std::filesystem::path image_folder(const TrainJob& job);
 
 struct SimulatedImages {

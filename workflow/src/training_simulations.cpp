@@ -5,11 +5,9 @@
 #include <cmath>
 #include <set>
 
-#include "job_identity.h"
-#include "provenance.h"
+#include "finished_image.h"
 #include "surf/afm/resample.h"
 #include "surf/core/error.h"
-#include "surf/io/image_file.h"
 #include "surf/mc/electron_range.h"
 #include "training_data.h"
 
@@ -38,24 +36,8 @@ SimulateJob simulation_of(const TrainJob& job, const TrainingSurface& surface, s
   out.extras.channels = {"z_nm"};
   out.outputs = {output};
   out.command_line = job.command_line;
-  const mc::Scan scan = resolve_scan(scene.scan, mc::extent(scene.specimen), scene.beam);
-  scene.title = fmt::format("training surface {}, {}", surface.name,
-                            fingerprint(identity_of(out, provenance(out, scan, {}))).substr(0, 32));
+  title_by_identity(out, "training surface " + surface.name);
   return out;
-}
-
-/// Whether the file holds the finished image of the job.
-bool is_there(const SimulateJob& job) {
-  const fs::path& file = job.outputs.front();
-  std::error_code ignored;
-  if (!fs::is_regular_file(file, ignored)) return false;
-  try {
-    const Image image = io::read_image(file);
-    const auto title = image.metadata.find("title");
-    return title != image.metadata.end() && title->second == job.scene.title && !image.metadata.contains("partial");
-  } catch (const Error&) {
-    return false;   // damaged: it is made again
-  }
 }
 
 std::string counted(std::size_t count, const char* thing) {
@@ -81,6 +63,7 @@ int samples_per_pixel(const TrainJob& job) {
 }
 
 fs::path image_folder(const TrainJob& job) {
+  if (!job.images.empty()) return job.images;
   fs::path folder = job.output;
   folder.replace_extension(".training");
   return folder;
@@ -99,7 +82,7 @@ SimulatedImages simulate_images(const TrainJob& job, const std::vector<TrainingS
     if (surfaces[i].has_image()) continue;
     out.files[i] = folder / (surfaces[i].name + ".exr");
     all.push_back(simulation_of(job, surfaces[i], i, out.files[i]));
-    if (is_there(all.back())) continue;
+    if (is_finished(all.back())) continue;
     std::error_code ignored;
     if (fs::exists(out.files[i], ignored)) ++unusable;
     missing.push_back(all.back());

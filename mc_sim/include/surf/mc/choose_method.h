@@ -31,10 +31,11 @@ struct MethodChoice {
 };
 
 /// How electrons of these options are best simulated; `options.method` does not count. With `asked`
-/// it is that, or a UsageError which says why it cannot be; the same where an accuracy is wanted,
-/// which only replay can reach. Else replay where it can serve, its libraries fit into memory, and
-/// they take less work than they save. Work is counted on a few cascades and primaries, not timed: the
-/// choice is the same with any number of threads and any cache.
+/// it is that, or a UsageError which says why it cannot be. Else replay where it can serve, its
+/// libraries fit into memory, and they take less work than they save. Work is counted on a few cascades
+/// and primaries, not timed: the choice is the same with any number of threads and any cache. With a
+/// wanted accuracy those few primaries also tell how many it takes. Where observers will watch there
+/// can be none: a UsageError.
 MethodChoice choose_method(const Scene& scene, const SimulationOptions& options,
                            std::optional<Method> asked = {}, const MethodLimits& limits = {});
 

@@ -18,7 +18,9 @@ struct ResultSummary {
   std::int64_t pixels = 0;                          ///< of the scan
   std::int64_t seen = 0;                            ///< that see the specimen
   std::array<std::int64_t, pixel_models> models{};  ///< pixels by `PixelModel`
-  /// Primaries whose counts were kept, over the pixels that see the specimen; 0 where it is a plane.
+  /// Primaries whose counts were kept, of the pixels of each `PixelModel`.
+  std::array<std::int64_t, pixel_models> electrons{};
+  /// The same, over the pixels that see the specimen; 0 where it is a plane.
   double mean_electrons = 0;
   std::int64_t fewest_electrons = 0, most_electrons = 0;
   /// Per detector the yield's mean over those pixels. Its standard error takes the share that comes

@@ -33,7 +33,7 @@ struct SimulationOptions {
   double dose = 0;
   Method method = Method::direct;
   /// Instead of `electrons`, where above 0: each pixel gets as many primaries as it takes to bring the
-  /// standard error of every detector down to this share of its mean, 1e-4 to 1. Needs replay.
+  /// standard error of every detector down to this share of its mean, 1e-4 to 1.
   double accuracy = 0;
   double accuracy_floor = 0.002;  ///< no standard error below this is asked for, >= 0, per primary
   bool planar_control = true;     ///< with `accuracy`: average the difference to a plane's outcome
@@ -55,11 +55,16 @@ struct CascadeYield {
   double mean = 0, variance = 0;
 };
 
+/// The part of a wanted variance that a library's own share may take. A pixel takes no cascade twice, and
+/// shares the smaller part of its cascades with others: no more than a quarter is common to all. The
+/// means on planes are over all of them. (A pilot finds a variance a little low at times.)
+inline constexpr double usual_share_of_variance = 0.24;
+
 /// How many cascades of each material replay with these options takes, where no pixel has more than
-/// `most_primaries`. With a wanted accuracy (3 / accuracy)^2, and where `yields` are known as many as
-/// it takes for the library's share to be a quarter of the variance asked for.
+/// `most_primaries`. With a wanted accuracy (2 / accuracy)^2, the least that any use can be made of, and where `yields` are known as many as
+/// it takes for the library's share to be `share` of the variance asked for, 0 to 1.
 std::size_t library_size(const SimulationOptions& options, std::int64_t most_primaries,
-                         std::span<const CascadeYield> yields = {});
+                         std::span<const CascadeYield> yields = {}, double share = usual_share_of_variance);
 
 /// Bytes of a result's tallies.
 std::size_t tally_bytes(const Scan& scan, const SimulationOptions& options);

@@ -85,6 +85,8 @@ struct TrainJob {
   std::filesystem::path cache;           ///< as in SimulateJob
   LearnOptions learn;
   std::filesystem::path output;          ///< the model, .json
+  /// Folder of the simulated images, which trainings of other kinds may share; empty: NAME.training beside NAME.json.
+  std::filesystem::path images;
   std::string command_line;              ///< for the record: what changes the model only
 };
 

@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "surf/workflow/chart_job.h"
+
+#include <fmt/format.h>
+
+#include <memory>
+#include <optional>
+
+#include "commands.h"
+#include "common_options.h"
+#include "options.h"
+#include "scene_groups.h"
+#include "surf/core/error.h"
+#include "surf/core/units.h"
+#include "terminal.h"
+
+namespace surf::cli {
+namespace {
+
+constexpr int exit_interrupted = 130;
+
+constexpr const char* examples =
+    R"(Writes chart.svg, chart.png, chart.csv and chart.json into the folder. Stop when you like: the same
+command goes on from there. Errors are relative to each pixel of the reference (down to a tenth of
+the mean), root mean square; the reference is Monte Carlo with a third of the finest accuracy, on
+pixels spread evenly over the image.
+
+Examples:
+  semsurf chart samples/mesa80.toml -o mesa-chart
+  semsurf chart samples/flat.toml --quick -o flat-chart
+  semsurf chart scan.gwy --material Si --pixel-size 3nm --methods replay,accuracy,facet-network -o chart
+  semsurf chart cube.stl --substrate Si --tilt 40 --accuracy 2% -o cube-chart)";
+
+struct Options {
+  SceneOptions scene;
+  std::optional<std::string> output, accuracy, reference, compared, most, surfaces, surface_px, seed, threads, methods;
+  bool quick = false, quiet = false;
+};
+
+std::vector<std::string> words(const std::string& text) {
+  std::vector<std::string> out;
+  for (std::size_t from = 0; from <= text.size();) {
+    const std::size_t comma = std::min(text.find(',', from), text.size());
+    out.push_back(text.substr(from, comma - from));
+    from = comma + 1;
+  }
+  return out;
+}
+
+workflow::ChartJob make_job(const Options& o, const std::string& command_line) {
+  workflow::ChartJob job;
+  if (o.accuracy) job.finest = parse_share(*o.accuracy, "--accuracy");
+  if (o.reference) job.reference_accuracy = parse_share(*o.reference, "--reference");
+  if (o.compared) job.compared_pixels = static_cast<int>(parse_whole(*o.compared, "--compared", 16, 1 << 24));
+  if (o.most) job.most_primaries = static_cast<double>(parse_whole(*o.most, "--most", 100'000, std::int64_t{1} << 50));
+  if (o.surfaces) job.surfaces = static_cast<int>(parse_whole(*o.surfaces, "--surfaces", 2, 10000));
+  if (o.surface_px) job.surface_px = static_cast<int>(parse_whole(*o.surface_px, "--surface-size", 16, 4096));
+  if (o.seed) job.seed = parse_seed(*o.seed, "--seed");
+  if (o.methods) job.families = words(*o.methods);
+  job.threads = parse_threads(o.threads);
+  job.quick = o.quick;
+  if (!o.output) throw UsageError("--output", "no folder is given", "Add -o chart");
+  job.folder = *o.output;
+  job.command_line = command_line;
+  std::vector<std::string> notes;
+  job.scene = make_scene(o.scene, notes);
+  if (!o.quiet)
+    for (const std::string& note : notes) print_note(note);
+  return job;
+}
+
+std::string percent(double share) { return fmt::format("{:.2g} %", 100 * share); }
+
+std::string errors_of(const workflow::ChartPoint& p) {
+  std::string text;
+  for (const workflow::ChartChannel& c : p.channels) text += fmt::format("  {} {:>7}", c.name, percent(c.error.rms));
+  return text;
+}
+
+std::string time_text(double seconds) {
+  return seconds >= 0.995 ? fmt::format("{:.3g} s", seconds) : fmt::format("{:.3g} ms", 1e3 * seconds);
+}
+
+void print_point(const workflow::ChartPoint& p) {
+  fmt::print("{:<24} {:<38} {:>8} + {:<8}{}\n", p.family, p.setting, time_text(p.run_s), time_text(p.preparation_s),
+             errors_of(p));
+}
+
+void print_choices(const workflow::ChartSummary& s) {
+  for (const workflow::ChartChoice& c : s.choices) {
+    std::string text = c.reason;
+    if (c.id.empty()) text += "; it is not on the chart";
+    else if (c.fastest.empty()) text += "; no method on the chart met it";
+    else
+      text += fmt::format("; {}, {:.2f} times as long as the fastest that does, {}", c.met ? "met" : "NOT met", c.ratio,
+                          c.fastest);
+    fmt::print("{:<15} {}\n", fmt::format("--accuracy {}", format_share(c.accuracy)), text);
+  }
+}
+
+int chart(const Options& o, const std::string& command_line) {
+  const workflow::ChartJob job = make_job(o, command_line);
+  workflow::ChartSummary s;
+  {
+    InterruptGuard interrupts;
+    ProgressBar bar(!o.quiet);
+    bool headed = false;
+    workflow::ChartListener listener;
+    listener.progress = [&](double done, double total) { bar.show(done, total, nullptr); };
+    listener.point = [&](const workflow::ChartPoint& p) {
+      if (o.quiet) return;
+      bar.clear();
+      if (!headed) fmt::print("{:<24} {:<38} {:>8} + {:<8}  rms errors\n", "method", "setting", "image", "before it");
+      headed = true;
+      print_point(p);
+      std::fflush(stdout);
+    };
+    listener.warn = [&](const std::string& text) {
+      bar.clear();
+      print_warning(text);
+    };
+    listener.note = [&](const std::string& text) {
+      bar.clear();
+      if (!o.quiet) print_note(text);
+    };
+    listener.cancel = interrupts.token();
+    s = workflow::run(job, listener);
+  }
+  if (!s.complete) {
+    print_note(fmt::format("stopped: what is done is kept in {}; the same command goes on from there", job.folder.string()));
+    return exit_interrupted;
+  }
+  if (o.quiet) return 0;
+  if (s.found > 0) fmt::print("{} points were there before\n", s.found);
+  for (const std::string& text : s.left_out) fmt::print("left out: {}\n", text);
+  std::string floor;
+  for (const workflow::ChartChannel& c : s.reference)
+    floor += fmt::format("{}{} {}", floor.empty() ? "" : ", ", c.name, percent(c.error.reference_noise));
+  fmt::print("reference: {} pixels, its noise {}\n", s.compared, floor);
+  print_choices(s);
+  for (const auto& path : s.written) fmt::print("written {}\n", path.string());
+  return 0;
+}
+
+void add_options(CLI::App& app, Options& o) {
+  const char* group = "Chart";
+  app.add_option("-o,--output", o.output, "Folder for the chart and what it is made from")->type_name("FOLDER")->group(group);
+  app.add_flag("--quick", o.quick, "Few settings of each method, a finest accuracy of 3%, small trainings")->group(group);
+  std::string families = "Only these of the methods below, with commas between them";
+  app.add_option("--methods", o.methods, families)->type_name("NAME,...")->group(group);
+  app.add_option("--accuracy", o.accuracy, "The finest that methods are asked for, 0.1% to 10% (1%)")->type_name("SHARE")->group(group);
+  app.add_option("--reference", o.reference, "Accuracy of the reference (a third of the finest)")->type_name("SHARE")->group(group);
+  app.add_option("--compared", o.compared, "About how many pixels the reference has (1000)")->type_name("N")->group(group);
+  app.add_option("--most", o.most, "Settings with more primaries in the whole image are left out, direct\n"
+                                   "ones with more than a twentieth of it (3e8; with --quick 5e6)")->type_name("N")->group(group);
+  app.add_option("--surfaces", o.surfaces, "Surfaces that fast models learn on (20)")->type_name("N")->group(group);
+  app.add_option("--surface-size", o.surface_px, "Pixels across each of them (64)")->type_name("N")->group(group);
+  app.add_option("--seed", o.seed, "The same seed gives the same numbers, but for times (1)")->type_name("N")->group(group);
+  add_threads_option(app, o.threads)->group(group);
+  add_quiet_flag(app, o.quiet)->group(group);
+}
+
+std::string footer() {
+  std::string text = "Methods (--methods):\n";
+  for (const workflow::ChartFamily& f : workflow::chart_families()) text += fmt::format("  {:<24}{}\n", f.name, f.what);
+  return text + "\n" + examples;
+}
+
+}  // namespace
+
+void add_chart(CLI::App& app, Action& action, const std::string& command_line) {
+  const auto options = std::make_shared<Options>();
+  CLI::App* sub = app.add_subcommand("chart", "Time against error of every method, on a scene of yours");
+  sub->group("Commands");
+  add_specimen_options(*sub, options->scene);
+  add_beam_options(*sub, options->scene);
+  add_scan_options(*sub, options->scene);
+  add_physics_options(*sub, options->scene);
+  add_options(*sub, *options);
+  sub->footer(footer());
+  sub->callback([options, &action, command_line] {
+    action = [options, command_line] { return chart(*options, command_line); };
+  });
+}
+
+}  // namespace surf::cli

@@ -1,0 +1,282 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "surf/workflow/chart_job.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "../finished_image.h"
+#include "../job_identity.h"
+#include "chart_files.h"
+#include "chart_methods.h"
+#include "chart_plot.h"
+#include "compared_pixels.h"
+#include "peak_memory.h"
+#include "surf/core/error.h"
+#include "surf/core/units.h"
+#include "surf/io/files.h"
+#include "surf/io/image_file.h"
+#include "surf/io/plot.h"
+#include "surf/mc/choose_method.h"
+#include "surf/mc/scene.h"
+#include "surf/workflow/train_job.h"
+
+namespace surf::workflow {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Of the reference's seed: its libraries are then no other point's.
+constexpr std::uint64_t other_seed = 1'000'003;
+
+ChartJob complete(const ChartJob& asked) {
+  ChartJob job = asked;
+  if (!(job.finest >= 0.001 && job.finest <= 0.1))
+    throw UsageError("--accuracy", fmt::format("{:g} is outside 0.1 % to 10 %", job.finest), "Ask for 1%, say");
+  if (job.quick) {
+    job.finest = std::max(job.finest, 0.03);
+    job.most_primaries = std::min(job.most_primaries, 5e6);
+    job.compared_pixels = std::min(job.compared_pixels, 400);
+  }
+  if (job.reference_accuracy == 0) job.reference_accuracy = job.finest / 3;
+  if (!(job.reference_accuracy >= 1e-4 && job.reference_accuracy <= 0.5 * job.finest))
+    throw UsageError("--reference", fmt::format("{} is not well below the finest accuracy, {}",
+                                                format_share(job.reference_accuracy), format_share(job.finest)),
+                     "Give at most half of it, and 0.01% at least");
+  if (job.compared_pixels < 16)
+    throw UsageError("--compared", fmt::format("{} pixels are too few", job.compared_pixels), "Give 16 or more");
+  if (!(job.most_primaries >= 1e5))
+    throw UsageError("--most", fmt::format("{:g} primaries are too few", job.most_primaries), "Give 1e5 or more");
+  if (job.surfaces < 2 || job.surface_px < 16)
+    throw UsageError("--surfaces, --surface-size", "models learn from 2 surfaces of 16 pixels at least", "Give more");
+  for (const std::string& family : job.families) {
+    const auto& all = chart_families();
+    if (std::none_of(all.begin(), all.end(), [&](const ChartFamily& f) { return f.name == family; })) {
+      std::string names;
+      for (const ChartFamily& f : all) names += (names.empty() ? "" : ", ") + f.name;
+      throw UsageError("--methods", fmt::format("'{}' is none of them", family), "Choose of " + names);
+    }
+  }
+  if (job.folder.empty()) throw UsageError("--output", "no folder is given", "Add -o chart");
+  if (job.scene.current_pa || job.scene.dwell_us)
+    throw UsageError("scene", "with a current and a dwell time pixels get random numbers of electrons",
+                     "Leave both out: the chart compares numbers of electrons");
+  return job;
+}
+
+std::vector<double> accuracies_of(const ChartJob& job) {
+  std::vector<double> out;
+  for (const double a : job.quick ? std::vector<double>{0.1, 0.03} : std::vector<double>{0.1, 0.05, 0.03, 0.02, 0.01})
+    if (a > job.finest * (1 + 1e-9)) out.push_back(a);
+  out.push_back(job.finest);
+  return out;
+}
+
+// So fine that libraries of cascades take too much memory: several images with libraries of their own, their mean.
+constexpr double finest_at_once = 0.007;
+
+std::vector<SimulateJob> reference_jobs(const ChartJob& job, const ComparedPixels& pixels, const mc::Scan& scan) {
+  const int parts = std::max(1, static_cast<int>(std::ceil(std::pow(finest_at_once / job.reference_accuracy, 2) - 1e-9)));
+  std::vector<SimulateJob> out;
+  for (int i = 0; i < parts; ++i) {
+    SimulateJob part;
+    part.scene = job.scene;
+    part.scene.scan = request_for(pixels, scan);
+    part.scene.electrons.reset();
+    part.scene.method.reset();
+    part.scene.mesh_tolerance_nm.reset();
+    part.scene.detectors.clear();
+    part.scene.accuracy = job.reference_accuracy * std::sqrt(parts);
+    const double floor = job.scene.accuracy_floor.value_or(mc::SimulationOptions{}.accuracy_floor);
+    part.scene.accuracy_floor = floor * *part.scene.accuracy / job.finest;
+    part.options.seed = job.seed + other_seed + static_cast<std::uint64_t>(i);
+    part.options.threads = job.threads;
+    part.outputs = {job.folder / "reference" / fmt::format("{}.exr", i + 1)};
+    part.command_line = job.command_line;
+    title_by_identity(part, "reference of a chart");
+    out.push_back(std::move(part));
+  }
+  return out;
+}
+
+Image mean_of(const std::vector<SimulateJob>& parts) {
+  Image mean = io::read_image(parts.front().outputs.front());
+  const auto n = static_cast<float>(parts.size());
+  for (std::size_t i = 1; i < parts.size(); ++i) {
+    const Image other = io::read_image(parts[i].outputs.front());
+    for (Channel& channel : mean.channels) {
+      const bool error = channel.name.ends_with(".stderr");
+      const Grid<float>& more = other.find(channel.name)->values;
+      for (std::size_t k = 0; k < more.size(); ++k) {
+        float& value = channel.values.data()[k];
+        value = error ? std::hypot(value, more.data()[k]) : value + more.data()[k];
+      }
+    }
+  }
+  for (Channel& channel : mean.channels)
+    for (float& value : channel.values.data()) value /= n;
+  return mean;
+}
+
+// Of all that errors depend on: a point of another job counts no more.
+std::string identity(const ChartJob& job, const std::vector<SimulateJob>& reference,
+                     const std::vector<double>& accuracies) {
+  Identity id{{"reference", reference.front().scene.title},
+              {"parts", std::to_string(reference.size())},
+              {"seed", std::to_string(job.seed)},
+              {"quick", job.quick ? "yes" : "no"},
+              {"training", fmt::format("{} {} {}", job.surfaces, job.surface_px, job.training_electrons)}};
+  if (job.scene.electrons) id["electrons"] = std::to_string(*job.scene.electrons);
+  if (job.scene.accuracy) id["accuracy"] = format_exact(*job.scene.accuracy);
+  if (job.scene.mesh_tolerance_nm) id["tolerance"] = format_exact(*job.scene.mesh_tolerance_nm);
+  if (job.scene.method) id["method"] = mc::name(*job.scene.method);
+  for (const double a : accuracies) id["accuracies"] += format_exact(a) + " ";
+  return fingerprint(id).substr(0, 32);
+}
+
+std::vector<ChartChoice> choices_of(const ChartSetting& setting, const std::vector<ChartPoint>& points) {
+  std::vector<ChartChoice> out;
+  const ChartJob& job = setting.job;
+  const mc::Scene scene(job.scene.specimen, job.scene.beam, setting.scan, job.scene.physics);
+  for (std::size_t i = 0; i < setting.accuracies.size(); ++i) {
+    mc::SimulationOptions options;
+    options.accuracy = setting.accuracies[i];
+    options.seed = job.seed;
+    if (job.scene.accuracy_floor) options.accuracy_floor = *job.scene.accuracy_floor;
+    const mc::MethodChoice choice = mc::choose_method(scene, options);
+    ChartChoice c;
+    c.accuracy = options.accuracy;
+    c.reason = fmt::format("{}: {}", mc::name(choice.method), choice.reason);
+    const std::string id = id_of_accuracy(choice.method, options.planar_control, options.accuracy);
+    const ChartPoint *chosen = nullptr, *fastest = nullptr;
+    for (const ChartPoint& p : points) {
+      if (p.id == id) chosen = &p;
+      if (p.targets[i].met && (!fastest || p.total_s() < fastest->total_s())) fastest = &p;
+    }
+    if (chosen) {
+      c.id = id;
+      c.met = chosen->targets[i].met;
+    }
+    if (fastest) c.fastest = fastest->id;
+    if (chosen && fastest) c.ratio = chosen->total_s() / fastest->total_s();
+    out.push_back(std::move(c));
+  }
+  return out;
+}
+
+}  // namespace
+
+const std::vector<ChartFamily>& chart_families() {
+  static const std::vector<ChartFamily> families = [] {
+    std::vector<ChartFamily> all{
+        {"default", "what 'semsurf simulate' does with the scene, nothing else being said", true},
+        {"direct", "each electron followed, the same number for each pixel", true},
+        {"replay", "stored cascades retraced, the same number for each pixel", true},
+        {"accuracy", "replay, as many electrons as each pixel needs, with planes as controls", true},
+        {"accuracy-without-planes", "the same without planes", true},
+        {"direct-accuracy", "the same with electrons that are followed", true},
+        {"mesh-tolerance", "a height field simplified, at one accuracy", true}};
+    for (const LearnableKind& kind : learnable_kinds()) all.push_back({kind.name, kind.what, false});
+    return all;
+  }();
+  return families;
+}
+
+bool wants(const ChartJob& job, const std::string& family) {
+  return job.families.empty() ||
+         std::find(job.families.begin(), job.families.end(), family) != job.families.end();
+}
+
+double ChartPoint::worst_rms() const {
+  double worst = 0;
+  for (const ChartChannel& c : channels) worst = std::max(worst, c.error.rms);
+  return worst;
+}
+
+ChartSummary run(const ChartJob& asked, const ChartListener& listener) {
+  const ChartJob job = complete(asked);
+  ChartSummary summary;
+  ChartSetting setting{job, resolve_scan(job.scene.scan, mc::extent(job.scene.specimen), job.scene.beam), nullptr,
+                       accuracies_of(job)};
+  for (const char* name : {"chart.csv", "chart.json"}) io::check_writable(job.folder / name);
+  for (const char* name : {"chart.svg", "chart.png"}) io::check_plot_target(job.folder / name);
+  const ComparedPixels pixels = choose_pixels(setting.scan, job.compared_pixels);
+  summary.compared = pixels.width * pixels.height;
+  const std::vector<SimulateJob> making = reference_jobs(job, pixels, setting.scan);
+  const std::string id = identity(job, making, setting.accuracies);
+
+  ChartMethods all = list_simulations(setting);
+  ChartMethods models = list_models(setting);
+  std::move(models.methods.begin(), models.methods.end(), std::back_inserter(all.methods));
+  summary.left_out = std::move(all.left_out);
+  summary.left_out.insert(summary.left_out.end(), models.left_out.begin(), models.left_out.end());
+  if (all.methods.empty())
+    throw UsageError("--methods", "none of them can be had with this scene", "Leave it out for all that can");
+
+  // The reference counts as much as all points together: it takes the most electrons.
+  const auto count = static_cast<double>(all.methods.size());
+  double before = 0;
+  const auto show = [&](double weight) -> ProgressCallback {
+    return [&listener, &before, weight, count](double done, double total) {
+      if (listener.progress && total > 0) listener.progress(before + weight * done / total, 2 * count);
+    };
+  };
+  for (const SimulateJob& part : making) {
+    const double share = count / static_cast<double>(making.size());
+    if (!is_finished(part)) {
+      const SimulateSummary made = run(part, show(share), listener.cancel, listener.warn, listener.note);
+      if (!made.result.complete) {
+        summary.complete = false;
+        return summary;
+      }
+    }
+    before += share;
+  }
+  const Reference reference =
+      read_reference(mean_of(making), pixels, job.scene.accuracy_floor.value_or(mc::SimulationOptions{}.accuracy_floor));
+  setting.reference = &reference;
+  for (const ComparedChannel& c : reference.channels)
+    summary.reference.push_back({c.name, image_error(c.values, {}, c.values, c.standard_errors)});
+  
+  for (const ChartMethod& method : all.methods) {
+    const fs::path file = job.folder / "points" / (method.id + ".json");
+    std::optional<ChartPoint> point = read_point(file, id);
+    if (point) {
+      ++summary.found;
+    } else {
+      if (listener.cancel && listener.cancel->cancelled()) {
+        summary.complete = false;
+        break;
+      }
+      point = ChartPoint{method.id, method.family, method.setting};
+      point->is_default = method.is_default;
+      try {
+        const PeakMemory memory;
+        method.run(setting, show(1), listener.cancel, *point);
+        point->peak_bytes = memory.bytes();
+      } catch (const Interrupted&) {
+        summary.complete = false;
+        break;
+      }
+      write_point(file, *point, id);
+      if (listener.point) listener.point(*point);
+    }
+    summary.points.push_back(std::move(*point));
+    before += 1;
+    if (listener.progress) listener.progress(before, 2 * count);
+  }
+  if (!summary.complete) return summary;
+  summary.choices = choices_of(setting, summary.points);
+  io::write_text(job.folder / "chart.csv", csv_text(summary));
+  io::write_text(job.folder / "chart.json", json_text(job, summary));
+  summary.written = {job.folder / "chart.csv", job.folder / "chart.json"};
+  const io::Plot plot = chart_plot(job, summary);
+  for (const char* name : {"chart.svg", "chart.png"}) {
+    io::write_plot(job.folder / name, plot);
+    summary.written.push_back(job.folder / name);
+  }
+  return summary;
+}
+
+}  // namespace surf::workflow
