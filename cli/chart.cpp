@@ -102,13 +102,17 @@ void print_choices(const workflow::ChartSummary& s) {
 
 // Options of scenes say nothing of samples, and the other way round.
 void check_options(const CLI::App& app, bool sample) {
-  constexpr std::array of_both{"INPUT", "--output", "--methods", "--quick", "--seed", "--threads", "--quiet", "--help"};
+  constexpr std::array of_both{"--output", "--methods", "--quick", "--seed", "--threads", "--quiet"};
   constexpr std::array of_samples{"--draws", "--model"};
-  const auto is_in = [](const auto& names, const std::string& name) { return std::ranges::find(names, name) != names.end(); };
+  const auto is_in = [](const auto& names, const std::string& name) {
+    return std::ranges::find(names, name) != names.end();
+  };
   for (const CLI::Option* option : app.get_options()) {
     const std::string name = option->get_name();
-    if (option->count() == 0 || option->get_positional() || is_in(of_both, name) || is_in(of_samples, name) == sample) continue;
-    throw UsageError(name, sample ? "it says nothing of a folder that 'semsurf sample' made" : "it is for a folder that 'semsurf sample' made",
+    if (option->count() == 0 || option->get_positional() || is_in(of_both, name)) continue;
+    if (is_in(of_samples, name) == sample) continue;
+    throw UsageError(name, sample ? "it says nothing of a folder that 'semsurf sample' made"
+                                  : "it is for a folder that 'semsurf sample' made",
                      "Leave it out");
   }
 }
@@ -203,7 +207,8 @@ std::string footer() {
 
 void add_chart(CLI::App& app, Action& action, const std::string& command_line) {
   const auto options = std::make_shared<Options>();
-  CLI::App* sub = app.add_subcommand("chart", "Time against error of every method, on a scene or a sample of yours");
+  CLI::App* sub =
+      app.add_subcommand("chart", "Time against error of every method, on a scene or a sample of yours");
   sub->group("Commands");
   add_specimen_options(*sub, options->scene);
   add_beam_options(*sub, options->scene);

@@ -39,12 +39,15 @@ std::string time_text(double seconds) {
 
 std::string offset_text(const workflow::RegistrationPoint& p) {
   if (p.any_start) return "no start";
-  return p.offset_deg > 0 ? fmt::format("{:g} degrees off", p.offset_deg) : fmt::format("{:g} pixels off", p.offset_px);
+  return p.offset_deg > 0 ? fmt::format("{:g} degrees off", p.offset_deg)
+                          : fmt::format("{:g} pixels off", p.offset_px);
 }
 
 void print_registration(const workflow::RegistrationPoint& p) {
-  std::string text = fmt::format("{:<20} {:<16} {:>3} of {} right, {} wrong", p.family, offset_text(p), p.right, p.draws, p.wrong);
-  if (p.verified > 0) text += fmt::format("; {:.2f} px off (median), {:.2f} at most", p.median_px, p.largest_px);
+  std::string text = fmt::format("{:<20} {:<16} {:>3} of {} right, {} wrong", p.family, offset_text(p),
+                                 p.right, p.draws, p.wrong);
+  if (p.verified > 0)
+    text += fmt::format("; {:.2f} px off (median), {:.2f} at most", p.median_px, p.largest_px);
   fmt::print("{}; {} each\n", text, time_text(p.median_s));
 }
 
@@ -65,22 +68,29 @@ void print_ranges(const workflow::ChainChartSummary& s) {
     std::string text = range_text(r.px, r.px_open, "pixels");
     const std::string turn = range_text(r.deg, r.deg_open, "degrees");
     if (!turn.empty()) text += (text.empty() ? "" : ", ") + turn;
-    fmt::print("{:<20} captures from {}\n", r.family, text.empty() ? "none of the offsets that were tried" : text);
+    fmt::print("{:<20} captures from {}\n", r.family,
+               text.empty() ? "none of the offsets that were tried" : text);
   }
 }
 
-}  // namespace
+}   // namespace
 
 void add_chart_sample_options(CLI::App& app, ChartSampleOptions& o) {
   const char* group = "Chart of a sample";
-  app.add_option("--draws", o.draws, "Registrations of each way and offset (10; with --quick 3)")->type_name("N")->group(group);
-  app.add_option("--model", o.model, "The fast model of SEM images (one that was kept is taken, else one is\n"
-                                     "trained and kept)")->type_name("FILE.json")->group(group);
+  app.add_option("--draws", o.draws, "Registrations of each way and offset (10; with --quick 3)")
+      ->type_name("N")
+      ->group(group);
+  app.add_option("--model", o.model,
+                 "The fast model of SEM images (one that was kept is taken, else one is\n"
+                 "trained and kept)")
+      ->type_name("FILE.json")
+      ->group(group);
 }
 
 std::string chart_sample_methods() {
   std::string text;
-  for (const workflow::ChainFamily& f : workflow::chain_chart_families()) text += fmt::format("  {:<24}{}\n", f.name, f.what);
+  for (const workflow::ChainFamily& f : workflow::chain_chart_families())
+    text += fmt::format("  {:<24}{}\n", f.name, f.what);
   return text;
 }
 
@@ -98,21 +108,26 @@ int chart_sample(const ChartSampleOptions& o, const std::string& command_line) {
       print();
       std::fflush(stdout);
     };
-    listener.registration = [&](const workflow::RegistrationPoint& p) { tell([&] { print_registration(p); }); };
-    listener.reconstruction = [&](const workflow::ReconstructionPoint& p) { tell([&] { print_reconstruction(p); }); };
+    listener.registration = [&](const workflow::RegistrationPoint& p) {
+      tell([&] { print_registration(p); });
+    };
+    listener.reconstruction = [&](const workflow::ReconstructionPoint& p) {
+      tell([&] { print_reconstruction(p); });
+    };
     listener.warn = [&](const std::string& text) {
       bar.clear();
       print_warning(text);
     };
     listener.note = [&](const std::string& text) { tell([&] { print_note(text); }); };
     listener.cancel = interrupts.token();
-    tell([&] {
-      print_note(fmt::format("{} is a sample whose truth is known: registration and reconstruction are charted", o.sample));
-    });
+    if (workflow::is_sample(o.sample))
+      listener.note(fmt::format(
+          "{} is a sample whose truth is known: registration and reconstruction are charted", o.sample));
     s = workflow::run(job, listener);
   }
   if (!s.complete) {
-    print_note(fmt::format("stopped: what is done is kept in {}; the same command goes on from there", job.folder.string()));
+    print_note(fmt::format("stopped: what is done is kept in {}; the same command goes on from there",
+                           job.folder.string()));
     return exit_interrupted;
   }
   if (o.quiet) return 0;
@@ -120,9 +135,10 @@ int chart_sample(const ChartSampleOptions& o, const std::string& command_line) {
   for (const std::string& text : s.left_out) fmt::print("left out: {}\n", text);
   print_ranges(s);
   if (!s.reconstructions.empty())
-    fmt::print("the eroded scan is {:.3g} nm off; noise and prior alone leave {:.3g} nm\n", s.eroded_nm, s.floor_nm);
+    fmt::print("the eroded scan is {:.3g} nm off; noise and prior alone leave {:.3g} nm\n", s.eroded_nm,
+               s.floor_nm);
   for (const auto& path : s.written) fmt::print("written {}\n", path.string());
   return 0;
 }
 
-}  // namespace surf::cli
+}   // namespace surf::cli

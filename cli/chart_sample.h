@@ -23,4 +23,4 @@ std::string chart_sample_methods();
 /// Registration and reconstruction of a folder that `semsurf sample` made: the exit code.
 int chart_sample(const ChartSampleOptions& options, const std::string& command_line);
 
-}  // namespace surf::cli
+}   // namespace surf::cli

@@ -15,4 +15,4 @@ std::vector<std::string> parse_names(std::string_view text) {
   return out;
 }
 
-}  // namespace surf::cli
+}   // namespace surf::cli

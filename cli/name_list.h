@@ -10,4 +10,4 @@ namespace surf::cli {
 /// What stands between commas, empty names too.
 std::vector<std::string> parse_names(std::string_view text);
 
-}  // namespace surf::cli
+}   // namespace surf::cli

@@ -87,7 +87,8 @@ TEST_F(ChainChart, ShowsEveryMethodInASaneOrder) {
   std::set<std::string> families;
   for (const RegistrationPoint& p : s.registrations) families.insert(p.family);
   for (const ChainFamily& f : chain_chart_families())
-    EXPECT_EQ(f.registers ? families.contains(f.name) : reconstructions.contains(f.name), f.name != "chain") << f.name;
+    EXPECT_EQ(f.registers ? families.contains(f.name) : reconstructions.contains(f.name), f.name != "chain")
+        << f.name;
 
   for (const RegistrationPoint& p : s.registrations) {
     EXPECT_EQ(p.draws, 2) << p.id;
@@ -168,7 +169,8 @@ TEST_F(ChainChart, DrawsAreAsFarOffAsTheySay) {
   double landmarks = 0;
   constexpr int draws = 200;
   for (int i = 0; i < draws; ++i) {
-    const RegistrationDraw shifted = draw_registration(sample, 8, 0, 1, i), turned = draw_registration(sample, 0, 5, 1, i);
+    const RegistrationDraw shifted = draw_registration(sample, 8, 0, 1, i),
+                           turned = draw_registration(sample, 0, 5, 1, i);
     // In the scan's frame lengths are 1.01 to 1.035 of the SEM's.
     EXPECT_NEAR(registration_error_px(truth, shifted.start, shifted.sem, everywhere), 8, 0.3);
     EXPECT_EQ(shifted.sem.values.width(), 95);
@@ -183,7 +185,8 @@ TEST_F(ChainChart, DrawsAreAsFarOffAsTheySay) {
     }
     // Both are of one place.
     const Point2 first = shifted.sem.place_nm(0, 0);
-    const int x = static_cast<int>(std::lround(first.x / 10)), y = static_cast<int>(std::lround(first.y / 10));
+    const int x = static_cast<int>(std::lround(first.x / 10)),
+              y = static_cast<int>(std::lround(first.y / 10));
     EXPECT_EQ(shifted.sem.values(3, 5), sample.sem.image.values(x + 3, y + 5));
   }
   EXPECT_NEAR(std::sqrt(landmarks / (4 * draws)) / 10, 8, 0.6);
@@ -212,8 +215,9 @@ RegistrationPoint registered(const char* family, double px, double deg, int righ
 }
 
 TEST(CaptureRange, EndsWhereSuccessDoes) {
-  const std::vector<RegistrationPoint> points{registered("a", 4, 0, 9), registered("a", 2, 0, 10), registered("a", 8, 0, 8),
-                                              registered("a", 16, 0, 10), registered("a", 0, 5, 10), registered("b", 2, 0, 8)};
+  const std::vector<RegistrationPoint> points{registered("a", 4, 0, 9),  registered("a", 2, 0, 10),
+                                              registered("a", 8, 0, 8),  registered("a", 16, 0, 10),
+                                              registered("a", 0, 5, 10), registered("b", 2, 0, 8)};
   const CaptureRange a = capture_range(points, "a"), b = capture_range(points, "b");
   EXPECT_EQ(a.px, 4);
   EXPECT_FALSE(a.px_open);
@@ -260,7 +264,8 @@ TEST_F(ChainChart, SaysWhatIsWrongBeforeAnyWork) {
   refused("without truth.json", [&](ChainChartJob& j) { j.sample = folder.path(); });
   refused("semsurf sample", [&](ChainChartJob& j) { j.sample = folder.path(); });
   refused("--draws", [](ChainChartJob& j) { j.draws = -1; });
-  refused("'replay' is none of those for samples. Choose of correlation", [](ChainChartJob& j) { j.families = {"replay"}; });
+  refused("'replay' is none of those for samples. Choose of correlation",
+          [](ChainChartJob& j) { j.families = {"replay"}; });
   refused("with --quick the chain is left out", [](ChainChartJob& j) { j.families = {"chain"}; });
   refused("no folder is given", [](ChainChartJob& j) { j.folder.clear(); });
   refused("sample's own folder", [](ChainChartJob& j) { j.folder = j.sample; });
@@ -273,5 +278,5 @@ TEST_F(ChainChart, SaysWhatIsWrongBeforeAnyWork) {
   EXPECT_FALSE(fs::exists(good.folder));
 }
 
-}  // namespace
-}  // namespace surf::workflow
+}   // namespace
+}   // namespace surf::workflow

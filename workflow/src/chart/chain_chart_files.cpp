@@ -14,16 +14,26 @@ using Json = nlohmann::ordered_json;
 Json number_or_null(const std::optional<double>& value) { return value ? Json(*value) : Json(); }
 
 Json to_json(const CaptureRange& r) {
-  return {{"family", r.family}, {"any_start", r.any_start}, {"px", number_or_null(r.px)}, {"px_or_more", r.px_open},
-          {"deg", number_or_null(r.deg)}, {"deg_or_more", r.deg_open}, {"median_s", r.median_s}};
+  return {{"family", r.family},      {"any_start", r.any_start},     {"px", number_or_null(r.px)},
+          {"px_or_more", r.px_open}, {"deg", number_or_null(r.deg)}, {"deg_or_more", r.deg_open},
+          {"median_s", r.median_s}};
 }
 
-}  // namespace
+}   // namespace
 
 Json to_json(const RegistrationPoint& p) {
-  return {{"id", p.id}, {"family", p.family}, {"offset_px", p.offset_px}, {"offset_deg", p.offset_deg},
-          {"any_start", p.any_start}, {"draws", p.draws}, {"verified", p.verified}, {"right", p.right},
-          {"wrong", p.wrong}, {"median_px", p.median_px}, {"largest_px", p.largest_px}, {"median_s", p.median_s}};
+  return {{"id", p.id},
+          {"family", p.family},
+          {"offset_px", p.offset_px},
+          {"offset_deg", p.offset_deg},
+          {"any_start", p.any_start},
+          {"draws", p.draws},
+          {"verified", p.verified},
+          {"right", p.right},
+          {"wrong", p.wrong},
+          {"median_px", p.median_px},
+          {"largest_px", p.largest_px},
+          {"median_s", p.median_s}};
 }
 
 void from_json(const Json& j, RegistrationPoint& p) {
@@ -42,9 +52,17 @@ void from_json(const Json& j, RegistrationPoint& p) {
 }
 
 Json to_json(const ReconstructionPoint& p) {
-  Json j{{"id", p.id}, {"family", p.family}, {"setting", p.setting}, {"default", p.is_default},
-         {"preparation_s", p.preparation_s}, {"peak_bytes", p.peak_bytes}, {"iterations", p.iterations},
-         {"evaluations", p.evaluations}, {"products", p.products}, {"ended", p.ended}, {"steps", Json::array()}};
+  Json j{{"id", p.id},
+         {"family", p.family},
+         {"setting", p.setting},
+         {"default", p.is_default},
+         {"preparation_s", p.preparation_s},
+         {"peak_bytes", p.peak_bytes},
+         {"iterations", p.iterations},
+         {"evaluations", p.evaluations},
+         {"products", p.products},
+         {"ended", p.ended},
+         {"steps", Json::array()}};
   for (const ReconstructionStep& s : p.steps)
     j["steps"].push_back({{"sigma_px", s.sigma_px}, {"run_s", s.run_s}, {"rms_nm", s.rms_nm}});
   return j;
@@ -66,22 +84,25 @@ void from_json(const Json& j, ReconstructionPoint& p) {
 }
 
 std::string registration_csv(const ChainChartSummary& summary) {
-  std::string text = "id,family,offset_px,offset_deg,draws,verified,right,wrong,median_px,largest_px,median_s\n";
+  std::string text =
+      "id,family,offset_px,offset_deg,draws,verified,right,wrong,median_px,largest_px,median_s\n";
   for (const RegistrationPoint& p : summary.registrations)
     text += fmt::format("{},{},{},{},{},{},{},{},{:.6g},{:.6g},{:.4g}\n", p.id, p.family,
                         p.any_start ? "" : fmt::format("{:g}", p.offset_px),
-                        p.any_start ? "" : fmt::format("{:g}", p.offset_deg), p.draws, p.verified, p.right, p.wrong,
-                        p.median_px, p.largest_px, p.median_s);
+                        p.any_start ? "" : fmt::format("{:g}", p.offset_deg), p.draws, p.verified, p.right,
+                        p.wrong, p.median_px, p.largest_px, p.median_s);
   return text;
 }
 
 std::string reconstruction_csv(const ChainChartSummary& summary) {
-  std::string text = "id,family,setting,sigma_px,run_s,preparation_s,peak_mb,rms_nm,over_eroded,over_floor,default\n";
+  std::string text =
+      "id,family,setting,sigma_px,run_s,preparation_s,peak_mb,rms_nm,over_eroded,over_floor,default\n";
   for (const ReconstructionPoint& p : summary.reconstructions)
     for (const ReconstructionStep& s : p.steps)
-      text += fmt::format("{},{},\"{}\",{:.6g},{:.4g},{:.4g},{:.4g},{:.6g},{:.6g},{:.6g},{}\n", p.id, p.family, p.setting,
-                          s.sigma_px, s.run_s, p.preparation_s, p.peak_bytes / 1e6, s.rms_nm,
-                          s.rms_nm / summary.eroded_nm, s.rms_nm / summary.floor_nm, p.is_default ? 1 : 0);
+      text +=
+          fmt::format("{},{},\"{}\",{:.6g},{:.4g},{:.4g},{:.4g},{:.6g},{:.6g},{:.6g},{}\n", p.id, p.family,
+                      p.setting, s.sigma_px, s.run_s, p.preparation_s, p.peak_bytes / 1e6, s.rms_nm,
+                      s.rms_nm / summary.eroded_nm, s.rms_nm / summary.floor_nm, p.is_default ? 1 : 0);
   return text;
 }
 
@@ -104,9 +125,12 @@ std::string chain_json(const ChainChartJob& job, const ChainChartSummary& summar
   for (const CaptureRange& r : summary.ranges) j["capture_ranges"].push_back(to_json(r));
   for (const ReconstructionPoint& p : summary.reconstructions) j["reconstructions"].push_back(to_json(p));
   for (const ThesisPoint& t : thesis_points)
-    j["thesis"].push_back({{"test", t.test}, {"afm_squares", t.afm_squares}, {"both_squares", t.both_squares},
-                           {"hours", t.hours}, {"source", thesis_source}});
+    j["thesis"].push_back({{"test", t.test},
+                           {"afm_squares", t.afm_squares},
+                           {"both_squares", t.both_squares},
+                           {"hours", t.hours},
+                           {"source", thesis_source}});
   return j.dump(1) + "\n";
 }
 
-}  // namespace surf::workflow
+}   // namespace surf::workflow

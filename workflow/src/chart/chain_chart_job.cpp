@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <span>
 
-#include "../compare_truth.h"
 #include "../chain_steps.h"
+#include "../compare_truth.h"
 #include "../job_identity.h"
 #include "../sem_frame.h"
 #include "chain_chart_files.h"
@@ -35,13 +35,15 @@ ChainChartJob complete(const ChainChartJob& asked) {
   ChainChartJob job = asked;
   if (job.draws == 0) job.draws = job.quick ? quick_draws : usual_draws;
   if (job.draws < 1 || job.draws > most_draws)
-    throw UsageError("--draws", fmt::format("{} is out of range", job.draws), fmt::format("Give 1 to {}", most_draws));
+    throw UsageError("--draws", fmt::format("{} is out of range", job.draws),
+                     fmt::format("Give 1 to {}", most_draws));
   const auto& all = chain_chart_families();
   for (const std::string& family : job.families)
     if (std::none_of(all.begin(), all.end(), [&](const ChainFamily& f) { return f.name == family; })) {
       std::string names;
       for (const ChainFamily& f : all) names += (names.empty() ? "" : ", ") + f.name;
-      throw UsageError("--methods", fmt::format("'{}' is none of those for samples", family), "Choose of " + names);
+      throw UsageError("--methods", fmt::format("'{}' is none of those for samples", family),
+                       "Choose of " + names);
     }
   if (job.folder.empty()) throw UsageError("--output", "no folder is given", "Add -o chart");
   std::error_code ignored;
@@ -53,9 +55,13 @@ ChainChartJob complete(const ChainChartJob& asked) {
 // Of all that figures depend on: a point of another job counts no more.
 std::string identity_of(const ChainSetting& setting) {
   const ChainChartJob& job = setting.job;
-  Identity id{{"semsurf", version()}, {"program", program_hash()}, {"instruction set", instruction_set()},
-              {"model", setting.model.sha256}, {"seed", std::to_string(job.seed)},
-              {"draws", std::to_string(job.draws)}, {"quick", job.quick ? "yes" : "no"}};
+  Identity id{{"semsurf", version()},
+              {"program", program_hash()},
+              {"instruction set", instruction_set()},
+              {"model", setting.model.sha256},
+              {"seed", std::to_string(job.seed)},
+              {"draws", std::to_string(job.draws)},
+              {"quick", job.quick ? "yes" : "no"}};
   for (const char* name : {"afm.gsf", "sem.tif", "truth.gsf", "truth_tip.gsf", "truth.json"})
     id[name] = io::sha256_of_file(job.sample / name);
   return fingerprint(id).substr(0, 32);
@@ -75,8 +81,13 @@ StoredModel find_model(const ChainChartJob& job, const SampleTruth& sample, cons
 
 class Runner {
  public:
-  Runner(const ChainSetting& setting, const ChainChartListener& listener, double total, ChainChartSummary& summary)
-      : setting_(setting), listener_(listener), identity_(identity_of(setting)), total_(total), summary_(summary) {}
+  Runner(const ChainSetting& setting, const ChainChartListener& listener, double total,
+         ChainChartSummary& summary)
+      : setting_(setting),
+        listener_(listener),
+        identity_(identity_of(setting)),
+        total_(total),
+        summary_(summary) {}
 
   Watch watch() const {
     Watch watch;
@@ -89,7 +100,8 @@ class Runner {
 
   /// False when cancelled. What cannot be had of this sample is left out.
   template <class Point>
-  bool run(const ChainMethod<Point>& method, const std::function<void(const Point&)>& tell, std::vector<Point>& points) {
+  bool run(const ChainMethod<Point>& method, const std::function<void(const Point&)>& tell,
+           std::vector<Point>& points) {
     const fs::path file = file_of(method.point.id);
     if (const auto json = kept_point(file, identity_)) {
       Point point;
@@ -182,7 +194,7 @@ void write(const ChainChartJob& job, ChainChartSummary& s) {
   }
 }
 
-}  // namespace
+}   // namespace
 
 const std::vector<ChainFamily>& chain_chart_families() {
   static const std::vector<ChainFamily> families{
@@ -202,7 +214,8 @@ const std::vector<ChainFamily>& chain_chart_families() {
 }
 
 bool wants(const ChainChartJob& job, const std::string& family) {
-  return job.families.empty() || std::find(job.families.begin(), job.families.end(), family) != job.families.end();
+  return job.families.empty() ||
+         std::find(job.families.begin(), job.families.end(), family) != job.families.end();
 }
 
 ChainChartSummary run(const ChainChartJob& asked, const ChainChartListener& listener) {
@@ -211,8 +224,10 @@ ChainChartSummary run(const ChainChartJob& asked, const ChainChartListener& list
   const auto registrations = list_registrations(job);
   const auto reconstructions = list_reconstructions(job);
   if (registrations.empty() && reconstructions.empty())
-    throw UsageError("--methods", "with --quick the chain is left out", "Leave out --quick, or ask for others too");
-  if (job.quick && wants(job, "chain")) summary.left_out.push_back("chain: with --quick it would take too long");
+    throw UsageError("--methods", "with --quick the chain is left out",
+                     "Leave out --quick, or ask for others too");
+  if (job.quick && wants(job, "chain"))
+    summary.left_out.push_back("chain: with --quick it would take too long");
   SampleTruth sample = read_sample(job.sample);
   summary.sample = sample.name;
   io::check_writable(job.folder / "chart.json");
@@ -243,20 +258,23 @@ ChainChartSummary run(const ChainChartJob& asked, const ChainChartListener& list
   SurfaceUnderSem under = surface_under_sem(eroded, sample.sem.image, sample.sem.sem_to_afm);
   under.surface.valid = under.known;
   summary.eroded_nm = rms_off(under.surface, sample.truth);
-  const ChainSetting setting{job, std::move(sample), std::move(model), std::move(eroded), std::move(simulated)};
+  const ChainSetting setting{job, std::move(sample), std::move(model), std::move(eroded),
+                             std::move(simulated)};
 
   Runner runner(setting, listener, total, summary);
   for (const auto& method : registrations)
     if (summary.complete) summary.complete = runner.run(method, listener.registration, summary.registrations);
   if (!reconstructions.empty() && summary.complete) summary.complete = runner.find_floor();
   for (const auto& method : reconstructions)
-    if (summary.complete) summary.complete = runner.run(method, listener.reconstruction, summary.reconstructions);
+    if (summary.complete)
+      summary.complete = runner.run(method, listener.reconstruction, summary.reconstructions);
   if (!summary.complete) return summary;
   for (const ChainFamily& family : chain_chart_families())
-    if (std::ranges::any_of(summary.registrations, [&](const RegistrationPoint& p) { return p.family == family.name; }))
+    if (std::ranges::any_of(summary.registrations,
+                            [&](const RegistrationPoint& p) { return p.family == family.name; }))
       summary.ranges.push_back(capture_range(summary.registrations, family.name));
   write(job, summary);
   return summary;
 }
 
-}  // namespace surf::workflow
+}   // namespace surf::workflow

@@ -79,7 +79,8 @@ io::PlotPanel range_panel(const ChainChartSummary& summary, std::optional<double
   return panel;
 }
 
-io::PlotPanel success_panel(const ChainChartSummary& summary, double RegistrationPoint::*offset, const char* unit) {
+io::PlotPanel success_panel(const ChainChartSummary& summary, double RegistrationPoint::*offset,
+                            const char* unit) {
   io::PlotPanel panel;
   panel.title = "Success";
   panel.x = {fmt::format("offset of the start or of each landmark ({})", unit), true, {}};
@@ -88,7 +89,8 @@ io::PlotPanel success_panel(const ChainChartSummary& summary, double Registratio
     io::PlotSeries series = series_of(family, io::PlotStyle::line_points);
     for (const RegistrationPoint& p : summary.registrations)
       if (p.family == family) {
-        if (p.any_start) panel.references.push_back({io::PlotDirection::horizontal, 100 * p.share(), "search, no start"});
+        if (p.any_start)
+          panel.references.push_back({io::PlotDirection::horizontal, 100 * p.share(), "search, no start"});
         else if (p.*offset > 0) {
           series.x.push_back(p.*offset);
           series.y.push_back(100 * p.share());
@@ -108,7 +110,8 @@ io::PlotPanel error_panel(const ChainChartSummary& summary, bool relative) {
   const double unit = relative ? summary.eroded_nm : 1;
   std::vector<Trade> trades;
   for (const ReconstructionPoint& p : summary.reconstructions) {
-    io::PlotSeries series = series_of(p.family, p.steps.size() > 1 ? io::PlotStyle::line_points : io::PlotStyle::points);
+    io::PlotSeries series =
+        series_of(p.family, p.steps.size() > 1 ? io::PlotStyle::line_points : io::PlotStyle::points);
     if (std::ranges::any_of(panel.series, [&](const io::PlotSeries& s) { return s.name == series.name; }))
       series.name.clear();   // one line of the legend for all settings
     for (const ReconstructionStep& s : p.steps) {
@@ -121,7 +124,8 @@ io::PlotPanel error_panel(const ChainChartSummary& summary, bool relative) {
   }
   panel.series.push_back(front_series(trades));
   if (summary.floor_nm > 0)
-    panel.references.push_back({io::PlotDirection::horizontal, summary.floor_nm / unit, "floor: noise and prior"});
+    panel.references.push_back(
+        {io::PlotDirection::horizontal, summary.floor_nm / unit, "floor: noise and prior"});
   if (!relative) {
     panel.references.push_back({io::PlotDirection::horizontal, summary.eroded_nm, "eroded scan"});
     return panel;
@@ -141,18 +145,20 @@ io::PlotPanel error_panel(const ChainChartSummary& summary, bool relative) {
   return panel;
 }
 
-}  // namespace
+}   // namespace
 
 io::Plot registration_plot(const ChainChartSummary& summary) {
   io::Plot plot;
   plot.title = fmt::format("{}: how far off registration may begin ({} draws each)", summary.sample,
                            summary.registrations.front().draws);
   const auto drawn = [](const io::PlotPanel& p) { return !p.series.empty(); };
-  for (io::PlotPanel& panel : std::vector<io::PlotPanel>{
-           range_panel(summary, &CaptureRange::px, &CaptureRange::px_open, &RegistrationPoint::offset_px, "SEM pixels"),
-           success_panel(summary, &RegistrationPoint::offset_px, "SEM pixels"),
-           range_panel(summary, &CaptureRange::deg, &CaptureRange::deg_open, &RegistrationPoint::offset_deg, "degrees"),
-           success_panel(summary, &RegistrationPoint::offset_deg, "degrees")})
+  for (io::PlotPanel& panel :
+       std::vector<io::PlotPanel>{range_panel(summary, &CaptureRange::px, &CaptureRange::px_open,
+                                              &RegistrationPoint::offset_px, "SEM pixels"),
+                                  success_panel(summary, &RegistrationPoint::offset_px, "SEM pixels"),
+                                  range_panel(summary, &CaptureRange::deg, &CaptureRange::deg_open,
+                                              &RegistrationPoint::offset_deg, "degrees"),
+                                  success_panel(summary, &RegistrationPoint::offset_deg, "degrees")})
     if (drawn(panel)) plot.panels.push_back(std::move(panel));
   if (plot.panels.empty()) {   // the search alone: its success over its time
     io::PlotPanel panel;
@@ -179,4 +185,4 @@ io::Plot reconstruction_plot(const ChainChartSummary& summary) {
   return plot;
 }
 
-}  // namespace surf::workflow
+}   // namespace surf::workflow

@@ -32,4 +32,4 @@ std::optional<Json> read_json(const std::filesystem::path& path) {
   return std::nullopt;   // damaged: made again
 }
 
-}  // namespace surf::workflow
+}   // namespace surf::workflow

@@ -66,15 +66,19 @@ void measure(Data data, ReconstructionOptions options, const ChainSetting& setti
   options.watch = watch;
   Steps steps(sample.truth, point.steps);
   // The scan alone is reconstructed on its own samples: only the end is brought over to the truth's.
-  const Reconstruction r = reconstruct(data == Data::sem ? nullptr : &sample.afm, data == Data::afm ? nullptr : &sample.sem,
-                                       options, data == Data::afm ? nullptr : &steps);
+  const Reconstruction r =
+      reconstruct(data == Data::sem ? nullptr : &sample.afm, data == Data::afm ? nullptr : &sample.sem,
+                  options, data == Data::afm ? nullptr : &steps);
   const double run_s = steps.seconds();
   count(r, point);
   const double sigma_px = r.scales.empty() ? 0 : r.scales.back().sigma_px;
-  const ReconstructionStep end{sigma_px, run_s,
-                               data == Data::afm ? rms_under_sem(r.surface, sample) : rms_off(r.surface, sample.truth)};
-  if (point.steps.empty()) point.steps.push_back(end);
-  else point.steps.back() = end;   // the last scale's, with what follows it
+  const ReconstructionStep end{
+      sigma_px, run_s,
+      data == Data::afm ? rms_under_sem(r.surface, sample) : rms_off(r.surface, sample.truth)};
+  if (point.steps.empty())
+    point.steps.push_back(end);
+  else
+    point.steps.back() = end;   // the last scale's, with what follows it
 }
 
 void erode_alone(const ChainSetting& setting, const Watch& watch, ReconstructionPoint& point) {
@@ -114,11 +118,11 @@ void whole_chain(const ChainSetting& setting, const Watch& watch, Reconstruction
     throw InvalidInput("chain", s.reasons.front(), "Nothing was reconstructed");
   point.preparation_s = prepared_s;
   count(s.result, point);
-  point.steps = {{s.result.scales.empty() ? 0 : s.result.scales.back().sigma_px, seconds_since(begin) - prepared_s,
-                  s.truth->rms_nm}};
+  point.steps = {{s.result.scales.empty() ? 0 : s.result.scales.back().sigma_px,
+                  seconds_since(begin) - prepared_s, s.truth->rms_nm}};
 }
 
-}  // namespace
+}   // namespace
 
 std::vector<ChainMethod<ReconstructionPoint>> list_reconstructions(const ChainChartJob& job) {
   using Run = std::function<void(const ChainSetting&, const Watch&, ReconstructionPoint&)>;
@@ -131,8 +135,8 @@ std::vector<ChainMethod<ReconstructionPoint>> list_reconstructions(const ChainCh
     point.setting = text;
     out.push_back({std::move(point), std::move(run)});
   };
-  const auto both = [&](ReconstructionMethod method, const std::string& id, const std::string& text, int iterations,
-                        double tolerance) {
+  const auto both = [&](ReconstructionMethod method, const std::string& id, const std::string& text,
+                        int iterations, double tolerance) {
     ReconstructionOptions o;
     o.method = method;
     o.iterations = iterations;
@@ -145,12 +149,14 @@ std::vector<ChainMethod<ReconstructionPoint>> list_reconstructions(const ChainCh
   ReconstructionOptions one;
   if (job.quick) one.iterations = 5;
   const std::string limit = job.quick ? ", 5 iterations a scale" : "";
-  add("afm", "afm", "Gauss-Newton" + limit, [one](const ChainSetting& s, const Watch& watch, ReconstructionPoint& p) {
-    measure(Data::afm, one, s, watch, p);
-  });
-  add("sem", "sem", "Gauss-Newton" + limit, [one](const ChainSetting& s, const Watch& watch, ReconstructionPoint& p) {
-    measure(Data::sem, one, s, watch, p);
-  });
+  add("afm", "afm", "Gauss-Newton" + limit,
+      [one](const ChainSetting& s, const Watch& watch, ReconstructionPoint& p) {
+        measure(Data::afm, one, s, watch, p);
+      });
+  add("sem", "sem", "Gauss-Newton" + limit,
+      [one](const ChainSetting& s, const Watch& watch, ReconstructionPoint& p) {
+        measure(Data::sem, one, s, watch, p);
+      });
   using enum ReconstructionMethod;
   if (job.quick) {
     both(gauss_newton, "gauss-newton-5", "5 iterations a scale", 5, 0);
@@ -163,11 +169,11 @@ std::vector<ChainMethod<ReconstructionPoint>> list_reconstructions(const ChainCh
   both(gauss_newton, "gauss-newton", "tolerance 0.0005", 0, 0);
   for (const auto method : {conjugate_gradients, lbfgs})
     for (const int iterations : {10, 50, 200})
-      both(method, fmt::format("{}-{}", name(method), iterations), fmt::format("{} iterations a scale", iterations),
-           iterations, 0);
+      both(method, fmt::format("{}-{}", name(method), iterations),
+           fmt::format("{} iterations a scale", iterations), iterations, 0);
   add("chain", "chain", "tip, noise, map and gains found, too", whole_chain);
   if (!out.empty() && out.back().point.family == "chain") out.back().point.is_default = true;
   return out;
 }
 
-}  // namespace surf::workflow
+}   // namespace surf::workflow

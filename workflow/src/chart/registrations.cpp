@@ -18,15 +18,16 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr double degree = std::numbers::pi / 180;
-constexpr double part = 0.85;            // of the image's sides that a draw sees
-constexpr double captured = 0.9;         // of the draws
+constexpr double part = 0.85;                   // of the image's sides that a draw sees
+constexpr double captured = 0.9;                // of the draws
 constexpr std::uint64_t draw_stream = 0x9e57;   // apart from all other uses of the seed
 
 enum class Way { correlation, mutual_information, search, landmarks, landmarks_only };
 
 // Half normal numbers by Box and Muller.
 Point2 normal_pair(RandomStream& random) {
-  const double r = std::sqrt(-2 * std::log(random.uniform())), angle = 2 * std::numbers::pi * random.uniform();
+  const double r = std::sqrt(-2 * std::log(random.uniform())),
+               angle = 2 * std::numbers::pi * random.uniform();
   return {r * std::cos(angle), r * std::sin(angle)};
 }
 
@@ -53,7 +54,8 @@ double median(std::vector<double> values) {
 }
 
 // The map, if it is to be trusted.
-std::optional<Affine> registered(Way way, const ChainSetting& setting, const RegistrationDraw& draw, const Watch& watch) {
+std::optional<Affine> registered(Way way, const ChainSetting& setting, const RegistrationDraw& draw,
+                                 const Watch& watch) {
   RegistrationOptions options;
   options.threads = setting.job.threads;
   options.watch = watch;
@@ -78,10 +80,12 @@ void measure(Way way, const ChainSetting& setting, const Watch& watch, Registrat
     const RegistrationDraw draw =
         draw_registration(setting.sample, point.offset_px, point.offset_deg, setting.job.seed, i);
     const auto begin = Clock::now();
-    const auto map = registered(way, setting, draw, watch.part(double(i) / point.draws, double(i + 1) / point.draws));
+    const auto map =
+        registered(way, setting, draw, watch.part(double(i) / point.draws, double(i + 1) / point.draws));
     times.push_back(std::chrono::duration<double>(Clock::now() - begin).count());
     if (!map) continue;
-    const double off = registration_error_px(setting.sample.sem.sem_to_afm, *map, draw.sem, setting.simulated);
+    const double off =
+        registration_error_px(setting.sample.sem.sem_to_afm, *map, draw.sem, setting.simulated);
     errors.push_back(off);
     ++point.verified;
     ++(off <= right_px ? point.right : point.wrong);
@@ -91,7 +95,7 @@ void measure(Way way, const ChainSetting& setting, const Watch& watch, Registrat
   point.median_s = median(times);
 }
 
-}  // namespace
+}   // namespace
 
 double registration_error_px(const Affine& truth, const Affine& found, const PlacedImage& sem,
                              const PlacedImage& simulated) {
@@ -101,7 +105,8 @@ double registration_error_px(const Affine& truth, const Affine& found, const Pla
   for (int y = 0; y < sem.values.height(); y += 3)
     for (int x = 0; x < sem.values.width(); x += 3) {
       const Point2 p = sem.place_nm(x, y), a = truth(p), b = found(p);
-      if (a.x < simulated.origin_x_nm || a.y < simulated.origin_y_nm || a.x > last.x || a.y > last.y) continue;
+      if (a.x < simulated.origin_x_nm || a.y < simulated.origin_y_nm || a.x > last.x || a.y > last.y)
+        continue;
       const double dx = a.x - b.x, dy = a.y - b.y;
       sum += dx * dx + dy * dy;
       ++count;
@@ -109,8 +114,8 @@ double registration_error_px(const Affine& truth, const Affine& found, const Pla
   return std::sqrt(sum / count) / sem.pitch_x_nm;
 }
 
-RegistrationDraw draw_registration(const SampleTruth& sample, double offset_px, double offset_deg, std::uint64_t seed,
-                                   int number) {
+RegistrationDraw draw_registration(const SampleTruth& sample, double offset_px, double offset_deg,
+                                   std::uint64_t seed, int number) {
   RandomStream random(seed, draw_stream, static_cast<std::uint64_t>(number));
   const PlacedImage& whole = sample.sem.image;
   const auto size = [](int all) { return static_cast<int>(std::lround(part * all)); };
@@ -132,7 +137,8 @@ RegistrationDraw draw_registration(const SampleTruth& sample, double offset_px, 
   for (const double u : {0.1, 0.8})
     for (const double v : {0.1, 0.8}) {
       const double du = 0.1 * random.uniform(), dv = 0.1 * random.uniform();
-      const Point2 place = draw.sem.place_nm((u + du) * (width - 1), (v + dv) * (height - 1)), error = normal_pair(random);
+      const Point2 place = draw.sem.place_nm((u + du) * (width - 1), (v + dv) * (height - 1)),
+                   error = normal_pair(random);
       const double each = offset_px * pixel / std::numbers::sqrt2;
       draw.pairs.push_back({{place.x + each * error.x, place.y + each * error.y}, truth(place)});
     }
@@ -140,7 +146,8 @@ RegistrationDraw draw_registration(const SampleTruth& sample, double offset_px, 
 }
 
 std::vector<ChainMethod<RegistrationPoint>> list_registrations(const ChainChartJob& job) {
-  const std::vector<double> shifts = job.quick ? std::vector<double>{4, 16} : std::vector<double>{2, 4, 8, 16, 32, 64};
+  const std::vector<double> shifts =
+      job.quick ? std::vector<double>{4, 16} : std::vector<double>{2, 4, 8, 16, 32, 64};
   const std::vector<double> turns = job.quick ? std::vector<double>{} : std::vector<double>{2, 5, 10, 20};
   std::vector<ChainMethod<RegistrationPoint>> out;
   const auto add = [&](const std::string& family, Way way, double px, double deg) {
@@ -148,7 +155,9 @@ std::vector<ChainMethod<RegistrationPoint>> list_registrations(const ChainChartJ
     RegistrationPoint point;
     point.family = family;
     point.any_start = way == Way::search;
-    point.id = point.any_start ? family : deg > 0 ? fmt::format("{}-{:g}deg", family, deg) : fmt::format("{}-{:g}px", family, px);
+    point.id = point.any_start ? family
+               : deg > 0       ? fmt::format("{}-{:g}deg", family, deg)
+                               : fmt::format("{}-{:g}px", family, px);
     point.offset_px = px;
     point.offset_deg = deg;
     out.push_back({std::move(point), [way](const ChainSetting& s, const Watch& watch, RegistrationPoint& p) {
@@ -160,7 +169,8 @@ std::vector<ChainMethod<RegistrationPoint>> list_registrations(const ChainChartJ
     for (const double px : shifts) add(family, way, px, 0);
     for (const double deg : turns) add(family, way, 0, deg);
   }
-  for (const auto& [family, way] : {std::pair{"landmarks", Way::landmarks}, std::pair{"landmarks-only", Way::landmarks_only}}) {
+  for (const auto& [family, way] :
+       {std::pair{"landmarks", Way::landmarks}, std::pair{"landmarks-only", Way::landmarks_only}}) {
     if (way == Way::landmarks_only)   // what is a tenth of a pixel off is right to begin with
       for (const double px : {0.1, 0.3, 1.0}) add(family, way, px, 0);
     for (const double px : shifts) add(family, way, px, 0);
@@ -201,4 +211,4 @@ CaptureRange capture_range(const std::vector<RegistrationPoint>& points, const s
   return range;
 }
 
-}  // namespace surf::workflow
+}   // namespace surf::workflow

@@ -26,8 +26,12 @@ constexpr double degree = std::numbers::pi / 180;
 constexpr const char* remedy = "Make the sample again: semsurf sample pads -o pads";
 
 PlacedImage placed(const Image& image) {
-  PlacedImage out{Grid<double>(image.width(), image.height()), {}, image.pitch_x_nm, image.pitch_y_nm,
-                  image.origin_x_nm, image.origin_y_nm};
+  PlacedImage out{Grid<double>(image.width(), image.height()),
+                  {},
+                  image.pitch_x_nm,
+                  image.pitch_y_nm,
+                  image.origin_x_nm,
+                  image.origin_y_nm};
   std::ranges::copy(image.channels.front().values.data(), out.values.data().begin());
   return out;
 }
@@ -44,15 +48,17 @@ void read_truth(const Json& t, SampleTruth& s) {
   s.sem.sem_to_afm = {m.at(0), m.at(1), m.at(2), m.at(3), m.at(4), m.at(5)};
   const Json& afm = t.at("afm");
   s.afm.noise = {afm.at("noise").at("alpha"), afm.at("noise").at("innovation_nm2")};
-  const double offset_nm = afm.at("offset_nm"), along_x = std::tan(afm.at("tilt_x_deg").get<double>() * degree),
+  const double offset_nm = afm.at("offset_nm"),
+               along_x = std::tan(afm.at("tilt_x_deg").get<double>() * degree),
                along_y = std::tan(afm.at("tilt_y_deg").get<double>() * degree);
   s.afm.image = s.scan;
   HeightField& h = s.afm.image;
   for (int y = 0; y < h.z_nm.height(); ++y)
-    for (int x = 0; x < h.z_nm.width(); ++x) h.z_nm(x, y) -= offset_nm + along_x * h.x_nm(x) + along_y * h.y_nm(y);
+    for (int x = 0; x < h.z_nm.width(); ++x)
+      h.z_nm(x, y) -= offset_nm + along_x * h.x_nm(x) + along_y * h.y_nm(y);
 }
 
-}  // namespace
+}   // namespace
 
 bool is_sample(const fs::path& folder) {
   std::error_code ignored;
@@ -61,7 +67,8 @@ bool is_sample(const fs::path& folder) {
 
 SampleTruth read_sample(const fs::path& folder) {
   if (!is_sample(folder))
-    throw UsageError(folder.string(), "it is a folder without truth.json: errors need a truth, which is known of samples only",
+    throw UsageError(folder.string(),
+                     "it is a folder without truth.json: errors need a truth, which is known of samples only",
                      "Make one with 'semsurf sample pads -o pads', and chart that");
   SampleTruth s;
   s.scan = io::read_height_field(folder / "afm.gsf").field;
@@ -72,13 +79,15 @@ SampleTruth read_sample(const fs::path& folder) {
   if (s.truth.z_nm.width() != image.width() || s.truth.z_nm.height() != image.height())
     throw InvalidInput((folder / "truth.gsf").string(),
                        fmt::format("it has {} x {} samples, and sem.tif {} x {} pixels", s.truth.z_nm.width(),
-                                   s.truth.z_nm.height(), image.width(), image.height()), remedy);
+                                   s.truth.z_nm.height(), image.width(), image.height()),
+                       remedy);
   s.afm.tip = io::read_tip(folder / "truth_tip.gsf");
   s.json = io::read_file(folder / "truth.json");
   try {
     read_truth(Json::parse(s.json), s);
   } catch (const std::exception& e) {
-    throw FileError((folder / "truth.json").string(), fmt::format("it does not say what is true: {}", e.what()), remedy);
+    throw FileError((folder / "truth.json").string(),
+                    fmt::format("it does not say what is true: {}", e.what()), remedy);
   }
   return s;
 }
@@ -97,4 +106,4 @@ void give_model(SampleTruth& s, const std::shared_ptr<const ImageModel>& model, 
   s.sem.noise = fit_sem_noise(s.sem.image.values, mean, {}).noise;
 }
 
-}  // namespace surf::workflow
+}   // namespace surf::workflow

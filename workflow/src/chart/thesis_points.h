@@ -6,11 +6,11 @@
 namespace surf::workflow {
 
 /// What the thesis measured (table 10-1): sums of squared height differences of the eroded scan and of the
-/// reconstruction from scan and SEM image, and the time of the latter on a 1.3 GHz Pentium M. Its surfaces are others
-/// and its heights' number is not told, so that only the ratio can be compared.
+/// reconstruction from scan and SEM image, and the time of the latter on a 1.3 GHz Pentium M. Its surfaces
+/// are others and its heights' number is not told, so that only the ratio can be compared.
 struct ThesisPoint {
   const char* test;
-  bool real;             ///< against the eroded scan of a sharper tip; else against the true surface
+  bool real;   ///< against the eroded scan of a sharper tip; else against the true surface
   double afm_squares, both_squares;
   double hours;
 
@@ -29,4 +29,4 @@ inline constexpr ThesisPoint thesis_points[] = {
     {"synthetic data test 5", false, 0.536e6, 0.0261e6, 3.5},
 };
 
-}  // namespace surf::workflow
+}   // namespace surf::workflow
