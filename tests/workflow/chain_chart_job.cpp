@@ -48,7 +48,7 @@ class ChainChart : public testing::Test {
     job.folder = folder;
     job.model = fs::path(SEMSURF_SAMPLES) / "si-1keV-10nm.json";
     job.quick = true;
-    job.draws = 2;
+    job.draws = 1;
     job.threads = 2;
     return job;
   }
@@ -91,12 +91,12 @@ TEST_F(ChainChart, ShowsEveryMethodInASaneOrder) {
         << f.name;
 
   for (const RegistrationPoint& p : s.registrations) {
-    EXPECT_EQ(p.draws, 2) << p.id;
+    EXPECT_EQ(p.draws, 1) << p.id;
     EXPECT_EQ(p.right + p.wrong, p.verified) << p.id;
     EXPECT_GT(p.median_s, 0) << p.id;
   }
-  EXPECT_EQ(registrations.at("landmarks-only-0.1px")->right, 2);
-  EXPECT_EQ(registrations.at("landmarks-only-16px")->wrong, 2);
+  EXPECT_EQ(registrations.at("landmarks-only-0.1px")->right, 1);
+  EXPECT_EQ(registrations.at("landmarks-only-16px")->wrong, 1);
   EXPECT_LT(registrations.at("landmarks-4px")->largest_px, 1);   // refined, it is nearer than they are
 
   EXPECT_NEAR(reconstructions.at("erosion")->steps[0].rms_nm, s.eroded_nm, 1e-12);
