@@ -9,22 +9,15 @@
 #include <chrono>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
-#include <numbers>
 #include <string>
 #include <vector>
 
-#include <nlohmann/json.hpp>
-
 #include "objective.h"
 #include "preconditioner.h"
+#include "sample_truth.h"
 #include "start.h"
-#include "surf/io/height_field_file.h"
-#include "surf/io/image_file.h"
 #include "surf/io/model_file.h"
 #include "surf/io/plot.h"
-#include "surf/io/tip_file.h"
-#include "surf/sem/estimate_sem_noise.h"
 
 namespace {
 
@@ -43,41 +36,11 @@ double seconds(const Work& work) {
   return best;
 }
 
-struct Scene {
-  AfmData afm;
-  SemData sem;
-  HeightField truth;
-};
+using Scene = workflow::SampleTruth;
 
 Scene read(const std::string& folder, const std::shared_ptr<const ImageModel>& model) {
-  Scene s;
-  nlohmann::json t;
-  std::ifstream(folder + "/truth.json") >> t;
-  const auto& a = t["afm"];
-  const auto slope = [&](const char* key) { return std::tan(a[key].get<double>() * std::numbers::pi / 180); };
-  s.afm.image = io::read_height_field(folder + "/afm.gsf").field;
-  HeightField& h = s.afm.image;
-  for (int y = 0; y < h.z_nm.height(); ++y)
-    for (int x = 0; x < h.z_nm.width(); ++x)
-      h.z_nm(x, y) -= a["offset_nm"].get<double>() + slope("tilt_x_deg") * h.x_nm(x) + slope("tilt_y_deg") * h.y_nm(y);
-  s.afm.tip = io::read_tip(folder + "/truth_tip.gsf");
-  s.afm.noise = {a["noise"]["alpha"], a["noise"]["innovation_nm2"]};
-  const Image image = io::read_image(folder + "/sem.tif");
-  s.sem.image = {Grid<double>(image.width(), image.height()), {}, image.pitch_x_nm, image.pitch_y_nm, image.origin_x_nm,
-                 image.origin_y_nm};
-  const auto& values = image.channels.front().values.data();
-  std::copy(values.begin(), values.end(), s.sem.image.values.data().begin());
-  const auto m = t["sem_to_afm"].get<std::vector<double>>();
-  s.sem.sem_to_afm = {m[0], m[1], m[2], m[3], m[4], m[5]};
-  s.sem.model = model;
-  for (const std::string& channel : model->channels()) s.sem.gains.push_back(t["sem"]["gains"].value(channel, 0.0));
-  s.sem.offset = t["sem"]["offset"];
-  s.truth = io::read_height_field(folder + "/truth.gsf").field;
-  Grid<double> mean(image.width(), image.height(), s.sem.offset);
-  const ModelImages made = model->predict(s.truth);
-  for (std::size_t c = 0; c < made.size(); ++c)
-    for (std::size_t i = 0; i < mean.size(); ++i) mean.data()[i] += s.sem.gains[c] * made[c].data()[i];
-  s.sem.noise = fit_sem_noise(s.sem.image.values, mean, {}).noise;
+  Scene s = workflow::read_sample(folder);
+  workflow::give_model(s, model);
   return s;
 }
 

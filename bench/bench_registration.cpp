@@ -25,6 +25,7 @@
 
 #include <fmt/core.h>
 
+#include "chain_methods.h"
 #include "registration_scenes.h"
 #include "surf/io/model_file.h"
 #include "surf/registration/register_images.h"
@@ -39,20 +40,7 @@ double distance_px(const RegistrationScene& scene, const Affine& found, Point2 s
 }
 
 double error_px(const RegistrationScene& scene, const Affine& found) {
-  const PlacedImage& sem = scene.sem;
-  const PlacedImage& afm = scene.simulated;
-  const Point2 last = afm.place_nm(afm.values.width() - 1, afm.values.height() - 1);
-  double sum = 0;
-  int count = 0;
-  for (int y = 0; y < sem.values.height(); y += 3)
-    for (int x = 0; x < sem.values.width(); x += 3) {
-      const Point2 p = sem.place_nm(x, y), a = scene.truth(p);
-      if (a.x < afm.origin_x_nm || a.y < afm.origin_y_nm || a.x > last.x || a.y > last.y) continue;
-      const double d = distance_px(scene, found, p);
-      sum += d * d;
-      ++count;
-    }
-  return std::sqrt(sum / count);
+  return workflow::registration_error_px(scene.truth, found, scene.sem, scene.simulated);
 }
 
 double corner_px(const RegistrationScene& scene, const Affine& found) {

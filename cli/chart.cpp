@@ -3,15 +3,21 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
+#include <filesystem>
 #include <memory>
 #include <optional>
 
+#include "chart_sample.h"
 #include "commands.h"
 #include "common_options.h"
+#include "name_list.h"
 #include "options.h"
 #include "scene_groups.h"
 #include "surf/core/error.h"
 #include "surf/core/units.h"
+#include "surf/workflow/chain_chart_job.h"
 #include "terminal.h"
 
 namespace surf::cli {
@@ -25,27 +31,23 @@ command goes on from there. Errors are relative to each pixel of the reference (
 the mean), root mean square; the reference is Monte Carlo with a third of the finest accuracy, on
 pixels spread evenly over the image.
 
+Of a folder that 'semsurf sample' made, registration and reconstruction are charted instead: how far off
+a start may be, and error against time. Files are registration.csv, .svg, .png, reconstruction.csv,
+.svg, .png and chart.json.
+
 Examples:
   semsurf chart samples/mesa80.toml -o mesa-chart
   semsurf chart samples/flat.toml --quick -o flat-chart
   semsurf chart scan.gwy --material Si --pixel-size 3nm --methods replay,accuracy,facet-network -o chart
-  semsurf chart cube.stl --substrate Si --tilt 40 --accuracy 2% -o cube-chart)";
+  semsurf chart cube.stl --substrate Si --tilt 40 --accuracy 2% -o cube-chart
+  semsurf sample pads -o pads && semsurf chart pads --model samples/si-1keV-10nm.json -o pads-chart)";
 
 struct Options {
   SceneOptions scene;
+  ChartSampleOptions sample;
   std::optional<std::string> output, accuracy, reference, compared, most, surfaces, surface_px, seed, threads, methods;
   bool quick = false, quiet = false;
 };
-
-std::vector<std::string> words(const std::string& text) {
-  std::vector<std::string> out;
-  for (std::size_t from = 0; from <= text.size();) {
-    const std::size_t comma = std::min(text.find(',', from), text.size());
-    out.push_back(text.substr(from, comma - from));
-    from = comma + 1;
-  }
-  return out;
-}
 
 workflow::ChartJob make_job(const Options& o, const std::string& command_line) {
   workflow::ChartJob job;
@@ -56,7 +58,7 @@ workflow::ChartJob make_job(const Options& o, const std::string& command_line) {
   if (o.surfaces) job.surfaces = static_cast<int>(parse_whole(*o.surfaces, "--surfaces", 2, 10000));
   if (o.surface_px) job.surface_px = static_cast<int>(parse_whole(*o.surface_px, "--surface-size", 16, 4096));
   if (o.seed) job.seed = parse_seed(*o.seed, "--seed");
-  if (o.methods) job.families = words(*o.methods);
+  if (o.methods) job.families = parse_names(*o.methods);
   job.threads = parse_threads(o.threads);
   job.quick = o.quick;
   if (!o.output) throw UsageError("--output", "no folder is given", "Add -o chart");
@@ -96,6 +98,40 @@ void print_choices(const workflow::ChartSummary& s) {
                           c.fastest);
     fmt::print("{:<15} {}\n", fmt::format("--accuracy {}", format_share(c.accuracy)), text);
   }
+}
+
+// Options of scenes say nothing of samples, and the other way round.
+void check_options(const CLI::App& app, bool sample) {
+  constexpr std::array of_both{"--output", "--methods", "--quick", "--seed", "--threads", "--quiet"};
+  constexpr std::array of_samples{"--draws", "--model"};
+  const auto is_in = [](const auto& names, const std::string& name) {
+    return std::ranges::find(names, name) != names.end();
+  };
+  for (const CLI::Option* option : app.get_options()) {
+    const std::string name = option->get_name();
+    if (option->count() == 0 || option->get_positional() || is_in(of_both, name)) continue;
+    if (is_in(of_samples, name) == sample) continue;
+    throw UsageError(name, sample ? "it says nothing of a folder that 'semsurf sample' made"
+                                  : "it is for a folder that 'semsurf sample' made",
+                     "Leave it out");
+  }
+}
+
+bool is_folder(const Options& o) {
+  std::error_code ignored;
+  return o.scene.inputs.size() == 1 && std::filesystem::is_directory(o.scene.inputs.front(), ignored);
+}
+
+int chart_folder(const Options& o, const std::string& command_line) {
+  ChartSampleOptions sample = o.sample;
+  sample.sample = o.scene.inputs.front();
+  sample.output = o.output;
+  sample.methods = o.methods;
+  sample.seed = o.seed;
+  sample.threads = o.threads;
+  sample.quick = o.quick;
+  sample.quiet = o.quiet;
+  return chart_sample(sample, command_line);
 }
 
 int chart(const Options& o, const std::string& command_line) {
@@ -161,8 +197,9 @@ void add_options(CLI::App& app, Options& o) {
 }
 
 std::string footer() {
-  std::string text = "Methods (--methods):\n";
+  std::string text = "Methods for scenes (--methods):\n";
   for (const workflow::ChartFamily& f : workflow::chart_families()) text += fmt::format("  {:<24}{}\n", f.name, f.what);
+  text += "\nMethods for folders of 'semsurf sample':\n" + chart_sample_methods();
   return text + "\n" + examples;
 }
 
@@ -170,16 +207,23 @@ std::string footer() {
 
 void add_chart(CLI::App& app, Action& action, const std::string& command_line) {
   const auto options = std::make_shared<Options>();
-  CLI::App* sub = app.add_subcommand("chart", "Time against error of every method, on a scene of yours");
+  CLI::App* sub =
+      app.add_subcommand("chart", "Time against error of every method, on a scene or a sample of yours");
   sub->group("Commands");
   add_specimen_options(*sub, options->scene);
   add_beam_options(*sub, options->scene);
   add_scan_options(*sub, options->scene);
   add_physics_options(*sub, options->scene);
   add_options(*sub, *options);
+  add_chart_sample_options(*sub, options->sample);
   sub->footer(footer());
-  sub->callback([options, &action, command_line] {
-    action = [options, command_line] { return chart(*options, command_line); };
+  sub->callback([options, sub, &action, command_line] {
+    action = [options, sub, command_line] {
+      const bool folder = is_folder(*options);
+      if (!folder) check_options(*sub, false);
+      else if (workflow::is_sample(options->scene.inputs.front())) check_options(*sub, true);
+      return folder ? chart_folder(*options, command_line) : chart(*options, command_line);
+    };
   });
 }
 

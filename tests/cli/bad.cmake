@@ -256,6 +256,9 @@ semsurf_cli_unusable(reconstruct_no_overlap "lies on the AFM scan" reconstruct $
 
 semsurf_cli_usage(sample_name "tarrain: there is no such sample. Choose one of nist0523-thick" sample tarrain -o made)
 semsurf_cli_usage(sample_none "no sample is named" sample -o made)
+semsurf_cli_usage(chart_folder "without truth.json.*semsurf sample" chart . -o chart)
+semsurf_cli_usage(chart_scene_draws "--draws: it is for a folder that 'semsurf sample' made" chart cube.off --draws 3 -o chart)
+semsurf_cli_usage(chart_scene_methods "'landmarks' is none of them" chart cube.off --material Si --methods landmarks -o chart)
 semsurf_cli_usage(sample_folder "no folder is given" sample pads)
 semsurf_cli_usage(sample_size "8 x 8 pixels" sample pads --size 8x8 -o made)
 semsurf_cli_usage(sample_electrons "--electrons" sample pads --electrons 0 -o made)

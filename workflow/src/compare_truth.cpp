@@ -61,6 +61,10 @@ HeightField truth_on(const HeightField& surface, const HeightField& truth) {
   return under.surface;
 }
 
+double rms_off(const HeightField& surface, const HeightField& truth) {
+  return differences(surface, truth_on(surface, truth)).rms;
+}
+
 TruthReport compare_with_truth(const Reconstruction& result, const HeightField& truth) {
   const HeightField there = truth_on(result.surface, truth);
   Differences d = differences(result.surface, there);

@@ -12,4 +12,7 @@ TruthReport compare_with_truth(const Reconstruction& result, const HeightField& 
 /// The true heights on the samples of a surface, of the same frame; not valid beyond them.
 HeightField truth_on(const HeightField& surface, const HeightField& truth);
 
+/// Root mean square of what they differ by at places of the surface that both know, the mean difference taken off.
+double rms_off(const HeightField& surface, const HeightField& truth);
+
 }  // namespace surf::workflow

@@ -5,7 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "surf/core/error.h"
+#include "kept_point.h"
 #include "surf/io/files.h"
 #include "surf/workflow/version.h"
 
@@ -63,29 +63,18 @@ ChartPoint point_of(const Json& j) {
   return p;
 }
 
-std::optional<Json> read_json(const std::filesystem::path& path) {
-  std::error_code ignored;
-  if (!std::filesystem::is_regular_file(path, ignored)) return std::nullopt;
-  try {
-    return Json::parse(io::read_file(path));
-  } catch (const Json::exception&) {
-  } catch (const FileError&) {
-  }
-  return std::nullopt;   // damaged: made again
-}
-
 std::string quoted(const std::string& text) { return '"' + text + '"'; }
 
 }  // namespace
 
 void write_point(const std::filesystem::path& path, const ChartPoint& point, const std::string& identity) {
-  io::write_text(path, Json{{"job", identity}, {"point", to_json(point)}}.dump(1) + "\n");
+  keep_point(path, identity, to_json(point));
 }
 
 std::optional<ChartPoint> read_point(const std::filesystem::path& path, const std::string& identity) {
-  const auto json = read_json(path);
+  const auto json = kept_point(path, identity);
   try {
-    if (json && json->at("job") == identity) return point_of(json->at("point"));
+    if (json) return point_of(*json);
   } catch (const Json::exception&) {
   }
   return std::nullopt;

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "pareto.h"
+#include "plot_parts.h"
 #include "surf/core/units.h"
 
 namespace surf::workflow {
@@ -82,18 +82,7 @@ io::PlotPanel panel(const ChartSummary& summary, std::size_t channel, bool prepa
   }
   std::vector<Trade> trades;
   for (const Place& p : all) trades.push_back({p.time, p.error});
-  io::PlotSeries front;
-  front.name = "Pareto front";
-  front.color = 6;
-  front.style = io::PlotStyle::line;
-  for (const std::size_t i : pareto_front(trades)) {
-    if (!front.x.empty()) {   // steps: between two of them the earlier one's error is to be had
-      front.x.push_back(all[i].time);
-      front.y.push_back(front.y.back());
-    }
-    front.x.push_back(all[i].time);
-    front.y.push_back(all[i].error);
-  }
+  io::PlotSeries front = front_series(trades);
   if (!front.x.empty()) panel.series.push_back(std::move(front));
   for (const Place& p : all)
     if (p.point->is_default) panel.notes.push_back({"the scene's default", p.time, p.error});

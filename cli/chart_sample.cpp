@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "chart_sample.h"
+
+#include <fmt/format.h>
+
+#include "common_options.h"
+#include "name_list.h"
+#include "options.h"
+#include "surf/core/error.h"
+#include "surf/io/cache.h"
+#include "surf/workflow/chain_chart_job.h"
+#include "terminal.h"
+
+namespace surf::cli {
+namespace {
+
+constexpr int exit_interrupted = 130;
+
+workflow::ChainChartJob make_job(const ChartSampleOptions& o, const std::string& command_line) {
+  workflow::ChainChartJob job;
+  job.sample = o.sample;
+  if (!o.output) throw UsageError("--output", "no folder is given", "Add -o chart");
+  job.folder = *o.output;
+  if (o.methods) job.families = parse_names(*o.methods);
+  if (o.draws) job.draws = static_cast<int>(parse_whole(*o.draws, "--draws", 1, 1000));
+  if (o.seed) job.seed = parse_seed(*o.seed, "--seed");
+  if (o.model) job.model = *o.model;
+  job.threads = parse_threads(o.threads);
+  job.quick = o.quick;
+  const std::filesystem::path cache = io::cache_folder("");
+  job.models = cache.empty() ? job.folder / "models" : cache / "models";
+  job.command_line = command_line;
+  return job;
+}
+
+std::string time_text(double seconds) {
+  return seconds >= 0.995 ? fmt::format("{:.3g} s", seconds) : fmt::format("{:.3g} ms", 1e3 * seconds);
+}
+
+std::string offset_text(const workflow::RegistrationPoint& p) {
+  if (p.any_start) return "no start";
+  return p.offset_deg > 0 ? fmt::format("{:g} degrees off", p.offset_deg)
+                          : fmt::format("{:g} pixels off", p.offset_px);
+}
+
+void print_registration(const workflow::RegistrationPoint& p) {
+  std::string text = fmt::format("{:<20} {:<16} {:>3} of {} right, {} wrong", p.family, offset_text(p),
+                                 p.right, p.draws, p.wrong);
+  if (p.verified > 0)
+    text += fmt::format("; {:.2f} px off (median), {:.2f} at most", p.median_px, p.largest_px);
+  fmt::print("{}; {} each\n", text, time_text(p.median_s));
+}
+
+void print_reconstruction(const workflow::ReconstructionPoint& p) {
+  std::string text = fmt::format("{:<20} {:<38} {:>8}", p.family, p.setting, time_text(p.steps.back().run_s));
+  if (p.preparation_s > 0) text += fmt::format(" + {}", time_text(p.preparation_s));
+  fmt::print("{}  {:.3g} nm\n", text, p.steps.back().rms_nm);
+}
+
+std::string range_text(const std::optional<double>& range, bool open, const char* unit) {
+  if (!range) return {};
+  return fmt::format("{:g} {}{}", *range, unit, open ? " or more" : "");
+}
+
+void print_ranges(const workflow::ChainChartSummary& s) {
+  for (const workflow::CaptureRange& r : s.ranges) {
+    if (r.any_start) continue;
+    std::string text = range_text(r.px, r.px_open, "pixels");
+    const std::string turn = range_text(r.deg, r.deg_open, "degrees");
+    if (!turn.empty()) text += (text.empty() ? "" : ", ") + turn;
+    fmt::print("{:<20} captures from {}\n", r.family,
+               text.empty() ? "none of the offsets that were tried" : text);
+  }
+}
+
+}   // namespace
+
+void add_chart_sample_options(CLI::App& app, ChartSampleOptions& o) {
+  const char* group = "Chart of a sample";
+  app.add_option("--draws", o.draws, "Registrations of each way and offset (10; with --quick 3)")
+      ->type_name("N")
+      ->group(group);
+  app.add_option("--model", o.model,
+                 "The fast model of SEM images (one that was kept is taken, else one is\n"
+                 "trained and kept)")
+      ->type_name("FILE.json")
+      ->group(group);
+}
+
+std::string chart_sample_methods() {
+  std::string text;
+  for (const workflow::ChainFamily& f : workflow::chain_chart_families())
+    text += fmt::format("  {:<24}{}\n", f.name, f.what);
+  return text;
+}
+
+int chart_sample(const ChartSampleOptions& o, const std::string& command_line) {
+  const workflow::ChainChartJob job = make_job(o, command_line);
+  workflow::ChainChartSummary s;
+  {
+    InterruptGuard interrupts;
+    ProgressBar bar(!o.quiet);
+    workflow::ChainChartListener listener;
+    listener.progress = [&](double done, double total) { bar.show(done, total, nullptr); };
+    const auto tell = [&](const auto& print) {
+      if (o.quiet) return;
+      bar.clear();
+      print();
+      std::fflush(stdout);
+    };
+    listener.registration = [&](const workflow::RegistrationPoint& p) {
+      tell([&] { print_registration(p); });
+    };
+    listener.reconstruction = [&](const workflow::ReconstructionPoint& p) {
+      tell([&] { print_reconstruction(p); });
+    };
+    listener.warn = [&](const std::string& text) {
+      bar.clear();
+      print_warning(text);
+    };
+    listener.note = [&](const std::string& text) { tell([&] { print_note(text); }); };
+    listener.cancel = interrupts.token();
+    if (workflow::is_sample(o.sample))
+      listener.note(fmt::format(
+          "{} is a sample whose truth is known: registration and reconstruction are charted", o.sample));
+    s = workflow::run(job, listener);
+  }
+  if (!s.complete) {
+    print_note(fmt::format("stopped: what is done is kept in {}; the same command goes on from there",
+                           job.folder.string()));
+    return exit_interrupted;
+  }
+  if (o.quiet) return 0;
+  if (s.found > 0) fmt::print("{} points were there before\n", s.found);
+  for (const std::string& text : s.left_out) fmt::print("left out: {}\n", text);
+  print_ranges(s);
+  if (!s.reconstructions.empty())
+    fmt::print("the eroded scan is {:.3g} nm off; noise and prior alone leave {:.3g} nm\n", s.eroded_nm,
+               s.floor_nm);
+  for (const auto& path : s.written) fmt::print("written {}\n", path.string());
+  return 0;
+}
+
+}   // namespace surf::cli
