@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Where methods fail (docs/limits.md): runs sweeps and writes their figures and charts.
-//   bench_limits [NAME ...] [--out FOLDER] [--list]
-// Without names all of them; FOLDER is docs/limits by default.
+//   bench_limits [NAME ...] [--out FOLDER] [--draw] [--list]
+// Without names all of them; FOLDER is docs/limits by default. With --draw charts of the figures that are there.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -20,6 +20,7 @@ int main(int argc, char** argv) {
   using namespace surf;
   std::filesystem::path folder = "docs/limits";
   std::vector<std::string> names;
+  bool draw = false;
   for (int i = 1; i < argc; ++i) {
     const std::string word = argv[i];
     if (word == "--list") {
@@ -27,6 +28,7 @@ int main(int argc, char** argv) {
       return 0;
     }
     if (word == "--out" && i + 1 < argc) folder = argv[++i];
+    else if (word == "--draw") draw = true;
     else names.push_back(word);
   }
   for (const std::string& name : names)
@@ -37,6 +39,11 @@ int main(int argc, char** argv) {
   try {
     for (const limits::Sweep& sweep : limits::sweeps()) {
       if (!names.empty() && std::find(names.begin(), names.end(), sweep.name) == names.end()) continue;
+      const std::filesystem::path csv = folder / (sweep.name + ".csv"), svg = folder / (sweep.name + ".svg");
+      if (draw) {
+        io::write_plot(svg, sweep.plot(limits::from_csv(io::read_file(csv), csv.string())));
+        continue;
+      }
       const auto start = std::chrono::steady_clock::now();
       limits::Table table{sweep.columns, {}};
       for (const double value : sweep.values) {
@@ -48,8 +55,8 @@ int main(int argc, char** argv) {
         std::fflush(stdout);
         table.rows.push_back(std::move(row));
       }
-      io::write_text(folder / (sweep.name + ".csv"), limits::to_csv(table));
-      io::write_plot(folder / (sweep.name + ".svg"), sweep.plot(table));
+      io::write_text(csv, limits::to_csv(table));
+      io::write_plot(svg, sweep.plot(table));
       fmt::print("{}: {:.1f} s\n", sweep.name,
                  std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
     }
