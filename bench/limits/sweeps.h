@@ -6,16 +6,28 @@
 namespace surf::limits {
 
 // Each in the file of its name.
+Sweep accuracy_memory();
 Sweep bank_cutoff();
+Sweep choice_of_method();
+Sweep coincident_faces();
+Sweep deep_trench();
 Sweep energy_range();
+Sweep far_origin();
+Sweep flipped_normals();
+Sweep grazing_incidence();
+Sweep mesh_holes();
+Sweep mesh_tolerance();
 Sweep off_pixel_size();
 Sweep off_training_sizes();
 Sweep off_training_slopes();
 Sweep one_sided_detector();
+Sweep slivers();
+Sweep thin_features();
 Sweep tip_threshold();
 Sweep tip_two_peaks();
 Sweep training_pixels();
 Sweep trench_width();
+Sweep wall_angle();
 Sweep wrong_energy();
 
 }  // namespace surf::limits

@@ -44,8 +44,8 @@ Gun::Gun(const Beam& beam, const Scan& scan, double top_nm)
       const double polar = std::acos(-d.z) + beam.convergence_deg * degrees_to_radians;
       if (std::cos(polar) < shallowest_cosine)
         throw UsageError("--tilt",
-                         "with its cone and perspective part of the beam would come from the side or "
-                         "from below",
+                         "part of the beam, with its cone and perspective, would come from below or less than "
+                         "0.06 degrees above the horizon",
                          "Choose a smaller tilt or convergence, or a longer working distance");
     }
 }

@@ -71,6 +71,11 @@ TEST(Gun, RefusesBeamsFromBelowOrFromTheSide) {
   beam.tilt_deg = 85;
   beam.convergence_deg = 6;
   EXPECT_THROW(Gun(beam, test::square_scan(10, 1), 100), UsageError);
+  beam.convergence_deg = 0;
+  beam.tilt_deg = 89.9;
+  EXPECT_NO_THROW(Gun(beam, test::square_scan(10, 1), 100));
+  beam.tilt_deg = 89.95;
+  EXPECT_THROW(Gun(beam, test::square_scan(10, 1), 100), UsageError);
 }
 
 // With perspective the walls of a box that face outward are seen; without they are not.

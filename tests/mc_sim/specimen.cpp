@@ -61,6 +61,11 @@ TEST(Specimen, RefusesMixedOrientation) {
   EXPECT_THAT(complaint(with(mesh)), HasSubstr("face opposite ways"));
 }
 
+TEST(Specimen, RefusesBodiesThinnerThanInterfaces) {
+  EXPECT_EQ(complaint(with(make_box({0, 0, 0}, {10, 10, 0.011}))), "");
+  EXPECT_THAT(complaint(with(make_box({0, 0, 0}, {10, 10, 0.009}))), HasSubstr("only 0.009 nm thick"));
+}
+
 TEST(Specimen, RefusesNaNEmptinessAndWrongNumbers) {
   TriangleMesh mesh = make_box({0, 0, 0}, {10, 10, 10});
   mesh.vertices_nm[2].y = std::numeric_limits<double>::quiet_NaN();

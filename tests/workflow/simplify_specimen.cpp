@@ -167,6 +167,12 @@ TEST(SimplifySpecimen, RefusesTolerancesThatCannotBeMeant) {
   EXPECT_THROW(simplified(rough(), 60, done), UsageError);
   simplified(rough(), 30, done);
   EXPECT_THAT(warnings_of(rough(), done), ElementsAre(HasSubstr("may vanish")));
+  // A plane through the middle is within half of the relief.
+  const auto [low, high] = std::ranges::minmax(rough().height_field->field.z_nm.data());
+  simplified(rough(), 0.51 * (high - low), done);
+  EXPECT_THAT(warnings_of(rough(), done), ElementsAre(HasSubstr("may vanish")));
+  simplified(rough(), 0.49 * (high - low), done);
+  EXPECT_THAT(warnings_of(rough(), done), IsEmpty());
   mc::Specimen bare = silicon();
   bare.substrate = mc::Substrate{};
   simplified(bare, 1, done);

@@ -47,6 +47,17 @@ TEST(Warnings, TellOfUnlikelySizes) {
   }
 }
 
+TEST(Warnings, TellOfSpecimensSoFarAwayThatTheyLoseDigits) {
+  for (const double offset_nm : {1e10, 1e12}) {
+    SimulateJob job = small_job();
+    job.scene.specimen.substrate.reset();
+    transform(job.scene.specimen.bodies[0].mesh, 1, {offset_nm, 0, 0});
+    scan_about(job, offset_nm);
+    const auto far = Contains(HasSubstr("coordinates are 0.0002 nm apart"));
+    EXPECT_THAT(warnings_of(job), offset_nm > 1e11 ? testing::Matcher<std::vector<std::string>>(far) : IsEmpty()) << offset_nm;
+  }
+}
+
 TEST(Warnings, TellOfBodiesUnderTheSubstrate) {
   SimulateJob job = small_job();
   job.scene.specimen.substrate->top_nm = 100;

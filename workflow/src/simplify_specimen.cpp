@@ -198,8 +198,8 @@ std::vector<std::string> warnings_of(const mc::Specimen& specimen, const Simplif
                                 format_length(done.tolerance_nm), body.kept));
   if (!specimen.height_field) return out;
   const double relief = relief_nm(specimen.height_field->field);
-  if (relief > 0 && relief <= done.tolerance_nm)
-    out.push_back(fmt::format("{}: its whole relief, {}, is within {} and may vanish",
+  if (relief > 0 && relief <= 2 * done.tolerance_nm)   // a plane through its middle would do
+    out.push_back(fmt::format("{}: its whole relief, {}, is within twice {} and may vanish",
                               name_of(*specimen.height_field), format_length(relief),
                               format_length(done.tolerance_nm)));
   return out;

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "surf/core/units.h"
 
@@ -14,6 +15,7 @@ namespace {
 constexpr double widest_nm = 1e9;        // a metre: no specimen chamber is wider
 constexpr double narrowest_nm = 0.1;     // an atom
 constexpr double finest_pixel_nm = 1e-3; // surfaces are no better than this
+constexpr double coarsest_nm = 1e-4;      // of coordinates: a tenth of the distance at which faces are one
 constexpr double lost_fraction = 1e-6;
 
 // Six times the volume, about a corner of the mesh so that a far specimen loses no digits.
@@ -49,6 +51,13 @@ void warn_about_size(const Box& extent, std::vector<std::string>& out) {
   const double widest = std::max({size.x, size.y, size.z});
   if (widest > widest_nm || widest < narrowest_nm)
     out.push_back(fmt::format("the specimen is {} wide; is --unit right?", format_length(widest)));
+  double farthest = 0;
+  for (const Vec3& p : {extent.lower_nm, extent.upper_nm})
+    farthest = std::max({farthest, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
+  const double step = farthest * std::numeric_limits<double>::epsilon();
+  if (step > coarsest_nm)
+    out.push_back(fmt::format("the specimen lies {} from the origin, where coordinates are {:.1g} nm apart; move it closer",
+                              format_length(farthest), step));
 }
 
 void warn_about_scan(const mc::Specimen& specimen, const Box& extent, const mc::Beam& beam,
