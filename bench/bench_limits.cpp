@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Where methods fail (docs/limits.md): runs sweeps and writes their figures and charts.
-//   bench_limits [NAME ...] [--out FOLDER] [--list]
-// Without names all of them; FOLDER is docs/limits by default.
+//   bench_limits [NAME ...] [--out FOLDER] [--list] [--draw]
+// Without names all of them; FOLDER is docs/limits by default. --draw draws the charts of figures that are there.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -20,6 +20,7 @@ int main(int argc, char** argv) {
   using namespace surf;
   std::filesystem::path folder = "docs/limits";
   std::vector<std::string> names;
+  bool only_draw = false;
   for (int i = 1; i < argc; ++i) {
     const std::string word = argv[i];
     if (word == "--list") {
@@ -27,6 +28,7 @@ int main(int argc, char** argv) {
       return 0;
     }
     if (word == "--out" && i + 1 < argc) folder = argv[++i];
+    else if (word == "--draw") only_draw = true;
     else names.push_back(word);
   }
   for (const std::string& name : names)
@@ -37,6 +39,12 @@ int main(int argc, char** argv) {
   try {
     for (const limits::Sweep& sweep : limits::sweeps()) {
       if (!names.empty() && std::find(names.begin(), names.end(), sweep.name) == names.end()) continue;
+      if (only_draw) {
+        const auto figures = folder / (sweep.name + ".csv");
+        const limits::Table there = limits::from_csv(io::read_file(figures), figures.string());
+        io::write_plot(folder / (sweep.name + ".svg"), sweep.plot(there));
+        continue;
+      }
       const auto start = std::chrono::steady_clock::now();
       limits::Table table{sweep.columns, {}};
       for (const double value : sweep.values) {

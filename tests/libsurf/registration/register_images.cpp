@@ -220,6 +220,52 @@ TEST(RegisterImages, FindsTheRivalsOfALatticeTooFineForTheSearch) {
   }
 }
 
+TEST(RegisterImages, SaysThatLandmarksOnALatticeMustBeRightToHalfAPeriod) {
+  // Led to the next dot it cannot know better, as landmarks say which place is meant.
+  const Spots spots(5);
+  const Scene dots = lattice_of(12);
+  const Affine truth = make_affine({0.3, 1, 1, 0, 4, -3});
+  RegistrationOptions options;
+  options.blurs_px = {3, 2, 1, 0};
+  options.start = compose(Affine{1, 0, 12, 0, 1, 0}, truth);
+  const auto reason_of = [&](const Scene& scene) {
+    const Registration r = register_images(image_of(scene, truth, 100, 80, 1, 0.3, 1), image_of(scene, {}, 110, 110, 1, 0.03, 2), options);
+    EXPECT_EQ(r.verdict, RegistrationVerdict::verified) << r.reason;
+    return r.reason;
+  };
+  EXPECT_NE(reason_of(dots).find("repeats 1"), std::string::npos);
+  options.start = truth;
+  EXPECT_EQ(reason_of(spots).find("repeats"), std::string::npos);
+}
+
+TEST(RegisterImages, DoesNotAcceptAStartThatIsTooFarOff) {
+  for (const std::uint64_t seed : {1, 2, 3}) {
+    const Spots spots(seed);
+    const Affine truth = random_map(seed);
+    const PlacedImage sem = image_of(spots, truth, 120, 90, 1, 0.3, 1), afm = image_of(spots, {}, 120, 120, 1, 0.03, 2);
+    RegistrationOptions options;
+    for (const Affine& off : {Affine{1, 0, 50, 0, 1, 0}, make_affine({1.5, 1, 1, 0, 0, 0})}) {
+      options.start = compose(truth, off);
+      const Registration r = register_images(sem, afm, options);
+      EXPECT_NE(r.verdict, RegistrationVerdict::verified) << r.reason;
+    }
+  }
+}
+
+TEST(RegisterImages, AsksForTheOverlapThatIsWanted) {
+  // A quarter in common: found when that is allowed.
+  const Spots spots(2);
+  const Affine truth{1, 0, 90, 0, 1, 0};
+  const PlacedImage sem = image_of(spots, truth, 120, 100, 1, 0.3, 1), afm = image_of(spots, {}, 120, 100, 1, 0.03, 2);
+  RegistrationOptions options;
+  options.least_scale = 0.95, options.largest_scale = 1.05, options.largest_shear = 0.02;
+  EXPECT_NE(register_images(sem, afm, options).verdict, RegistrationVerdict::verified);
+  options.least_overlap = 0.1;
+  const Registration r = register_images(sem, afm, options);
+  EXPECT_EQ(r.verdict, RegistrationVerdict::verified) << r.reason;
+  EXPECT_NEAR(r.overlap, 0.25, 0.02);
+}
+
 TEST(Repeats, AreOtherPlacesOfALatticeAndNoneOfSpots) {
   const Affine map = make_affine({0.3, 1.1, 0.9, 0.03, 7, -4});
   const auto repeats_in = [&](const Scene& scene, Corners& best) {
