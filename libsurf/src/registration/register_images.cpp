@@ -238,6 +238,16 @@ class Registrar {
     return *least;
   }
 
+  /// How far off the nearest place is where the scan looks like itself, SEM pixels; 0: there is none.
+  double repeat_px(const Trial& best, const Moments& moments) {
+    double nearest = 0;
+    for (const Corners& c : repeats_of(level(std::max(blur_, slip_blur_px)), best.corners, places_repeated)) {
+      const double distance = distance_px(c, best.corners, moments);
+      if (nearest == 0 || distance < nearest) nearest = distance;
+    }
+    return nearest;
+  }
+
   /// What is clearly worse than the best is no rival, and need not be followed to the end.
   void drop_hopeless(std::vector<Trial>& trials, const BlurLevel& at, const Corners& best) const {
     if (!by_correlation()) return;
@@ -372,6 +382,7 @@ class Registrar {
     for (const Trial& trial : coarse_)
       if (distance_px(trial.corners, best.corners, moments) < 2 * pitch_)
         evidence.coarse_evidence = std::max(evidence.coarse_evidence, trial.evidence * samples_ratio(trial));
+    if (options_.start) evidence.repeat_px = repeat_px(best, moments);
     judge(r, evidence);
     options_.watch.report(1, 1);
     return r;

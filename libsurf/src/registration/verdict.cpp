@@ -73,6 +73,9 @@ void judge(Registration& r, const Evidence& e) {
     r.verdict = RegistrationVerdict::verified;
     r.reason = fmt::format("Converged to {:.2g} SEM pixels; no other place comes within {:.3g} standard errors of its score",
                            r.stderr_px, e.rival_sigmas);
+    if (e.repeat_px > 0)
+      r.reason += fmt::format(". The scan repeats {:.3g} SEM pixels away, and it is the start that says which place is "
+                              "meant: landmarks have to be right to half of that", e.repeat_px);
   }
 }
 

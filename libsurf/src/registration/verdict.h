@@ -17,6 +17,7 @@ struct Evidence {
   bool related = true;           ///< some place agreed better than chance, whether or not it is the best one
   double chance_evidence = 0;    ///< what chance reaches once in a thousand such searches
   double loosest_px = 0;         ///< standard error along the motion that is known least
+  double repeat_px = 0;          ///< from a start: to the nearest place where the scan looks alike; 0: there is none
   double largest_stderr_px = 0, rival_sigmas = 4;   ///< the options'
 };
 

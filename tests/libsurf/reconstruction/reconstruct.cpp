@@ -252,6 +252,58 @@ TEST(Reconstruct, FlagsAnImageThatNoSurfaceExplains) {
   EXPECT_FALSE(r.warnings.empty());
 }
 
+TEST(Reconstruct, FlagsNoiseThatIsToldWrong) {
+  for (const double factor : {0.3, 3.0}) {
+    test::SmallScene scene;
+    SemNoise& noise = scene.sem.noise;
+    noise = {factor * noise.slope, factor * noise.intercept, factor * noise.least_variance};
+    EXPECT_FALSE(reconstruct(&scene.afm, &scene.sem, quick()).warnings.empty()) << factor;
+  }
+}
+
+TEST(Reconstruct, FlagsGainsThatAreHeldAndWrong) {
+  test::SmallScene scene;
+  scene.sem.gains = {150};
+  scene.sem.offset = -30;
+  ReconstructionOptions o = quick();
+  EXPECT_TRUE(reconstruct(&scene.afm, &scene.sem, o).warnings.empty());
+  o.refine_calibration = false;
+  EXPECT_FALSE(reconstruct(&scene.afm, &scene.sem, o).warnings.empty());
+}
+
+TEST(Reconstruct, FlagsAMapThatIsTooFarOff) {
+  test::SmallScene scene;
+  scene.sem.sem_to_afm.x0 += 120;
+  EXPECT_FALSE(reconstruct(&scene.afm, &scene.sem, quick()).warnings.empty());
+}
+
+TEST(Reconstruct, FlagsASurfaceThatIsLeftTooSmooth) {
+  const test::SmallScene scene;
+  ReconstructionOptions o = quick();
+  o.method = ReconstructionMethod::lbfgs;
+  o.scales_px = {15};
+  o.iterations = 60;
+  EXPECT_FALSE(reconstruct(&scene.afm, &scene.sem, o).warnings.empty());
+}
+
+TEST(Reconstruct, SaysWhatTheTipDoesNotTouchAndTheSemHolds) {
+  // A trench 90 nm wide and 60 nm deep, under a tip of 80 nm.
+  const test::SmallScene scene(5, 56, 32, 1, [](Point2 p) {
+    const auto edge = [](double d) { return 0.5 * (1 + std::erf(d / 18)); };
+    return 60 * (1 - edge(p.x + 45) * edge(45 - p.x));
+  });
+  const Reconstruction both = reconstruct(&scene.afm, &scene.sem);
+  double untouched = 0, seen = 0, count = 0;
+  for (int y = 4; y < 28; ++y)
+    for (int x = 24; x < 32; ++x) {
+      untouched += (both.held_by(x, y) & 1) == 0;
+      seen += (both.held_by(x, y) & 2) != 0;
+      ++count;
+    }
+  EXPECT_GT(untouched / count, 0.95);
+  EXPECT_GT(seen / count, 0.95);
+}
+
 TEST(Reconstruct, RefusesWhatCannotBe) {
   const test::SmallScene scene;
   EXPECT_THROW(reconstruct(nullptr, nullptr), InvalidInput);

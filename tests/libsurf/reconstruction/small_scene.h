@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cmath>
+#include <functional>
 #include <memory>
 
 #include "surf/afm/morphology.h"
@@ -33,7 +34,7 @@ struct SmallScene {
   HeightField truth;   ///< on the SEM's pixels
 
   explicit SmallScene(std::uint64_t seed = 5, int width = 56, int height = 40, double noise = 1,
-                      double (*height_nm)(Point2) = small_height) {
+                      const std::function<double(Point2)>& height_nm = small_height) {
     const double pitch = 10;
     truth = {Grid<double>(width, height), {}, pitch, pitch, -0.5 * (width - 1) * pitch, -0.5 * (height - 1) * pitch};
     for (int y = 0; y < height; ++y)

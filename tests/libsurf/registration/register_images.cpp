@@ -10,6 +10,7 @@
 #include <limits>
 #include <numbers>
 
+#include "made_images.h"
 #include "registration/correlation.h"
 #include "registration/mutual_information.h"
 #include "registration/repeats.h"
@@ -20,61 +21,16 @@
 namespace surf {
 namespace {
 
-/// Spots of many sizes, the same for the same seed, as a function of the place.
-class Spots {
- public:
-  explicit Spots(std::uint64_t seed, double half = 160) {
-    RandomStream random(seed, 1, 1);
-    const auto between = [&](double a, double b) { return a + (b - a) * random.uniform(); };
-    for (int i = 0; i < 260; ++i)
-      spots_.push_back({between(-half, half), between(-half, half), between(3, 9), between(-1, 1.5)});
-  }
-  double operator()(double x, double y) const {
-    double sum = 0;
-    for (const auto& [cx, cy, s, a] : spots_) sum += a * std::exp(-0.5 * ((x - cx) * (x - cx) + (y - cy) * (y - cy)) / (s * s));
-    return sum;
-  }
-
- private:
-  struct Spot {
-    double x, y, size, height;
-  };
-  std::vector<Spot> spots_;
-};
-
-using Scene = std::function<double(double, double)>;
-
-PlacedImage image_of(const Scene& scene, const Affine& map, int w, int h, double pitch, double noise, std::uint64_t seed) {
-  PlacedImage image{Grid<double>(w, h), {}, pitch, pitch, -0.5 * (w - 1) * pitch, -0.5 * (h - 1) * pitch};
-  for (int y = 0; y < h; ++y)
-    for (int x = 0; x < w; ++x) {
-      RandomStream random(seed, static_cast<std::uint64_t>(y), static_cast<std::uint64_t>(x));
-      double sum = -6;
-      for (int i = 0; i < 12; ++i) sum += random.uniform();
-      const Point2 p = map(image.place_nm(x, y));
-      image.values(x, y) = 3 + scene(p.x, p.y) + noise * sum;
-    }
-  return image;
-}
+using test::error_px;
+using test::image_of;
+using test::lattice_of;
+using test::Scene;
+using test::Spots;
 
 Affine random_map(std::uint64_t seed) {
   RandomStream random(seed, 5, 5);
   const auto between = [&](double a, double b) { return a + (b - a) * random.uniform(); };
   return make_affine({between(-3.1, 3.1), between(0.8, 1.25), between(0.8, 1.25), between(-0.05, 0.05), between(-12, 12), between(-12, 12)});
-}
-
-/// Over the SEM's pixels that lie in an image of `half` nm about the middle.
-double error_px(const Affine& a, const Affine& b, int w, int h, double half) {
-  double sum = 0;
-  int count = 0;
-  for (int y = 0; y < h; y += 3)
-    for (int x = 0; x < w; x += 3) {
-      const Point2 p{x - 0.5 * (w - 1), y - 0.5 * (h - 1)}, q = a(p), r = b(p);
-      if (std::abs(q.x) > half || std::abs(q.y) > half) continue;
-      sum += (q.x - r.x) * (q.x - r.x) + (q.y - r.y) * (q.y - r.y);
-      ++count;
-    }
-  return count ? std::sqrt(sum / count) : 1e9;
 }
 
 /// Whether a place of the SEM image lies in an image of `half` nm about the middle, and where.
@@ -236,13 +192,6 @@ TEST(RegisterImages, AFineGratingIsAmbiguousAndHasItsRivals) {
   }
 }
 
-/// Discs on a square lattice.
-Scene lattice_of(double period) {
-  return [period](double x, double y) {
-    return 1 / (1 + std::exp(4 * (std::hypot(std::remainder(x, period), std::remainder(y, period)) - 0.27 * period)));
-  };
-}
-
 TEST(RegisterImages, FindsTheRivalsOfALatticeTooFineForTheSearch) {
   // What is broad finds the place and the search has no other; sharp images show mostly what repeats.
   constexpr double period = 12;
@@ -269,6 +218,52 @@ TEST(RegisterImages, FindsTheRivalsOfALatticeTooFineForTheSearch) {
     EXPECT_EQ(led.verdict, RegistrationVerdict::verified) << led.reason;
     EXPECT_LT(error_px(truth, led.sem_to_afm, 300, 180, 115), 0.3);
   }
+}
+
+TEST(RegisterImages, SaysThatLandmarksOnALatticeMustBeRightToHalfAPeriod) {
+  // Led to the next dot it cannot know better, as landmarks say which place is meant.
+  const Spots spots(5);
+  const Scene dots = lattice_of(12);
+  const Affine truth = make_affine({0.3, 1, 1, 0, 4, -3});
+  RegistrationOptions options;
+  options.blurs_px = {3, 2, 1, 0};
+  options.start = compose(Affine{1, 0, 12, 0, 1, 0}, truth);
+  const auto reason_of = [&](const Scene& scene) {
+    const Registration r = register_images(image_of(scene, truth, 100, 80, 1, 0.3, 1), image_of(scene, {}, 110, 110, 1, 0.03, 2), options);
+    EXPECT_EQ(r.verdict, RegistrationVerdict::verified) << r.reason;
+    return r.reason;
+  };
+  EXPECT_NE(reason_of(dots).find("repeats 1"), std::string::npos);
+  options.start = truth;
+  EXPECT_EQ(reason_of(spots).find("repeats"), std::string::npos);
+}
+
+TEST(RegisterImages, DoesNotAcceptAStartThatIsTooFarOff) {
+  for (const std::uint64_t seed : {1, 2, 3}) {
+    const Spots spots(seed);
+    const Affine truth = random_map(seed);
+    const PlacedImage sem = image_of(spots, truth, 120, 90, 1, 0.3, 1), afm = image_of(spots, {}, 120, 120, 1, 0.03, 2);
+    RegistrationOptions options;
+    for (const Affine& off : {Affine{1, 0, 50, 0, 1, 0}, make_affine({1.5, 1, 1, 0, 0, 0})}) {
+      options.start = compose(truth, off);
+      const Registration r = register_images(sem, afm, options);
+      EXPECT_NE(r.verdict, RegistrationVerdict::verified) << r.reason;
+    }
+  }
+}
+
+TEST(RegisterImages, AsksForTheOverlapThatIsWanted) {
+  // A quarter in common: found when that is allowed.
+  const Spots spots(2);
+  const Affine truth{1, 0, 90, 0, 1, 0};
+  const PlacedImage sem = image_of(spots, truth, 120, 100, 1, 0.3, 1), afm = image_of(spots, {}, 120, 100, 1, 0.03, 2);
+  RegistrationOptions options;
+  options.least_scale = 0.95, options.largest_scale = 1.05, options.largest_shear = 0.02;
+  EXPECT_NE(register_images(sem, afm, options).verdict, RegistrationVerdict::verified);
+  options.least_overlap = 0.1;
+  const Registration r = register_images(sem, afm, options);
+  EXPECT_EQ(r.verdict, RegistrationVerdict::verified) << r.reason;
+  EXPECT_NEAR(r.overlap, 0.25, 0.02);
 }
 
 TEST(Repeats, AreOtherPlacesOfALatticeAndNoneOfSpots) {
