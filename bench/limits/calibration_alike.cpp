@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// SE and BSE more and more alike: what the gains are off by for noise and for a model that is off, and what is said.
+// SE and BSE more and more alike: what the gains are off by for noise and for a model that is off, and what
+// is said.
 #include <cmath>
 #include <numbers>
 
@@ -58,8 +59,8 @@ std::vector<double> at(double unlike) {
       for (int y = 0; y < height; ++y)
         for (int x = 0; x < width; ++x) {
           const double wrong = off ? 0.02 * std::sin(0.2 * x + phase) * std::sin(0.23 * y + 2 * phase) : 0;
-          images.real(x, y) = se_gain * images.simulated[0](x, y) * (1 + wrong) + bse_gain * images.simulated[1](x, y) -
-                              14 + added(x, y);
+          images.real(x, y) = se_gain * images.simulated[0](x, y) * (1 + wrong) +
+                              bse_gain * images.simulated[1](x, y) - 14 + added(x, y);
         }
       const Calibration free = calibrate(images);
       const double error = free.gains[1] / bse_gain - 1;
@@ -78,32 +79,46 @@ std::vector<double> at(double unlike) {
       }
     }
   }
-  return {std::isfinite(condition) ? condition : NAN, std::sqrt(squares[0]), std::isfinite(stderr_sum) ? stderr_sum : NAN,
-          std::sqrt(squares[1]), std::sqrt(squares[2]), doubtful / draws, warned / draws};
+  return {std::isfinite(condition) ? condition : NAN,
+          std::sqrt(squares[0]),
+          std::isfinite(stderr_sum) ? stderr_sum : NAN,
+          std::sqrt(squares[1]),
+          std::sqrt(squares[2]),
+          doubtful / draws,
+          warned / draws};
 }
 
 io::Plot plot(const Table& t) {
   io::Plot out;
   const io::PlotAxis x{"1 - correlation of SE and BSE", true, {}};
   out.title = "Calibration with SE and BSE more and more alike";
-  io::PlotPanel errors = panel(t, "grey levels have noise of 3", x, {"relative error of the BSE's gain (rms of 50)", true, {}},
-                               {{"error_noise", "noise alone"}, {"standard_error", "standard error that is given", true},
-                                {"error_model", "SE of the model off by 2 % in places"},
-                                {"error_ratio", "the same, ratio of the gains told"}});
-  io::PlotPanel said = panel(t, "what is said", x, {"share of 50 fits, model off", false, io::PlotAxis::Range{-0.04, 1.04}},
-                             {{"doubtful", "doubtful"}, {"warned", "any warning", true}});
+  io::PlotPanel errors =
+      panel(t, "grey levels have noise of 3", x, {"relative error of the BSE's gain (rms of 50)", true, {}},
+            {{"error_noise", "noise alone"},
+             {"standard_error", "standard error that is given", true},
+             {"error_model", "SE of the model off by 2 % in places"},
+             {"error_ratio", "the same, ratio of the gains told"}});
+  io::PlotPanel said =
+      panel(t, "what is said", x, {"share of 50 fits, model off", false, io::PlotAxis::Range{-0.04, 1.04}},
+            {{"doubtful", "doubtful"}, {"warned", "any warning", true}});
   for (io::PlotPanel* p : {&errors, &said})
     p->references.push_back({io::PlotDirection::vertical, 1 - 0.99778, "condition number 30"});
   out.panels = {errors, said};
   return out;
 }
 
-}  // namespace
+}   // namespace
 
 Sweep calibration_alike() {
-  return {"calibration_alike", "gains of SE and BSE that are more and more alike",
-          {"unlike", "condition", "error_noise", "standard_error", "error_model", "error_ratio", "doubtful", "warned"},
-          {1, 0.3, 0.1, 0.03, 0.01, 0.005, 0.003, 0.002, 0.001, 3e-4, 1e-4, 1e-5}, at, 0.002, 1e-6, plot};
+  return {"calibration_alike",
+          "gains of SE and BSE that are more and more alike",
+          {"unlike", "condition", "error_noise", "standard_error", "error_model", "error_ratio", "doubtful",
+           "warned"},
+          {1, 0.3, 0.1, 0.03, 0.01, 0.005, 0.003, 0.002, 0.001, 3e-4, 1e-4, 1e-5},
+          at,
+          0.002,
+          1e-6,
+          plot};
 }
 
-}  // namespace surf::limits
+}   // namespace surf::limits

@@ -19,7 +19,8 @@ std::vector<double> at(double factor) {
     o.uncertainty = false;
     o.refine_calibration = fitted;
     const Reconstruction r = reconstruct(&scene.afm, &scene.sem, o);
-    row.insert(row.end(), {scene.rms_error(r.surface), r.scales.back().sem_residual.deviation, r.warnings.empty() ? 0.0 : 1.0});
+    row.insert(row.end(), {scene.rms_error(r.surface), r.scales.back().sem_residual.deviation,
+                           r.warnings.empty() ? 0.0 : 1.0});
     if (fitted) row.push_back(r.gains[0] / 100);
   }
   return row;
@@ -29,18 +30,27 @@ io::Plot plot(const Table& t) {
   const io::PlotAxis x{"gain given / true gain", false, {}};
   io::Plot out;
   out.title = "Reconstruction from gains that are wrong";
-  out.panels = {panel(t, "", x, {"error of the surface, rms (nm)", false, {}}, {{"fitted_nm", "fitted with the surface"}, {"held_nm", "held", true}}),
-                panel(t, "", x, {"left of the SEM image, in sigma of its noise", false, {}}, {{"fitted_left", "fitted"}, {"held_left", "held", true}}),
-                panel(t, "", x, {"warned", false, io::PlotAxis::Range{-0.04, 1.04}}, {{"fitted_warned", "fitted"}, {"held_warned", "held", true}})};
+  out.panels = {panel(t, "", x, {"error of the surface, rms (nm)", false, {}},
+                      {{"fitted_nm", "fitted with the surface"}, {"held_nm", "held", true}}),
+                panel(t, "", x, {"left of the SEM image, in sigma of its noise", false, {}},
+                      {{"fitted_left", "fitted"}, {"held_left", "held", true}}),
+                panel(t, "", x, {"warned", false, io::PlotAxis::Range{-0.04, 1.04}},
+                      {{"fitted_warned", "fitted"}, {"held_warned", "held", true}})};
   return out;
 }
 
-}  // namespace
+}   // namespace
 
 Sweep reconstruction_gains() {
-  return {"reconstruction_gains", "reconstruction from gains that are wrong by a factor",
-          {"factor", "fitted_nm", "fitted_left", "fitted_warned", "gain_fitted", "held_nm", "held_left", "held_warned"},
-          {0.3, 0.5, 0.7, 0.85, 0.95, 1, 1.05, 1.15, 1.4, 2, 3}, at, 1.4, 1e-4, plot};
+  return {"reconstruction_gains",
+          "reconstruction from gains that are wrong by a factor",
+          {"factor", "fitted_nm", "fitted_left", "fitted_warned", "gain_fitted", "held_nm", "held_left",
+           "held_warned"},
+          {0.3, 0.5, 0.7, 0.85, 0.95, 1, 1.05, 1.15, 1.4, 2, 3},
+          at,
+          1.4,
+          1e-4,
+          plot};
 }
 
-}  // namespace surf::limits
+}   // namespace surf::limits

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A model that is not the specimen's: walls that brighten with slope otherwise than it says, as of another material or
-// energy, and brightness that drifts over the image.
+// A model that is not the specimen's: walls that brighten with slope otherwise than it says, as of another
+// material or energy, and brightness that drifts over the image.
 #include <cmath>
 #include <functional>
 
@@ -10,7 +10,8 @@
 namespace surf::limits {
 namespace {
 
-/// `brightness`: the specimen's, relative to level ground, at a pixel where the model says `se`; x, y across the image.
+/// `brightness`: the specimen's, relative to level ground, at a pixel where the model says `se`; x, y across
+/// the image.
 std::vector<double> outcomes(const std::function<double(double se, double x, double y)>& brightness) {
   test::SmallScene scene;
   const Grid<double> se = scene.sem.model->predict(scene.truth)[0];
@@ -26,8 +27,9 @@ std::vector<double> outcomes(const std::function<double(double se, double x, dou
     double within = 0;
     for (std::size_t i = 0; i < r.deviation_nm.size(); ++i)
       within += std::abs(r.surface.z_nm.data()[i] - scene.truth.z_nm.data()[i]) < r.deviation_nm.data()[i];
-    row.insert(row.end(), {scene.rms_error(r.surface), r.scales.back().sem_residual.deviation,
-                           within / static_cast<double>(r.deviation_nm.size()), r.warnings.empty() ? 0.0 : 1.0});
+    row.insert(row.end(),
+               {scene.rms_error(r.surface), r.scales.back().sem_residual.deviation,
+                within / static_cast<double>(r.deviation_nm.size()), r.warnings.empty() ? 0.0 : 1.0});
   }
   // The scan alone, on the same samples: a gain of 0 leaves the SEM image without a say.
   scene.sem.gains = {0};
@@ -46,15 +48,17 @@ std::vector<double> at_drift(double drift) {
 }
 
 std::vector<std::string> columns(const char* first) {
-  return {first, "fitted_nm", "fitted_left", "fitted_within", "fitted_warned",
-          "held_nm", "held_left", "held_within", "held_warned", "afm_nm"};
+  return {first,     "fitted_nm", "fitted_left", "fitted_within", "fitted_warned",
+          "held_nm", "held_left", "held_within", "held_warned",   "afm_nm"};
 }
 
 io::Plot plot(const Table& t, const std::string& title, const io::PlotAxis& x) {
   io::Plot out;
   out.title = title;
   out.panels = {panel(t, "", x, {"error of the surface, rms (nm)", false, {}},
-                      {{"fitted_nm", "gains fitted with the surface"}, {"held_nm", "gains held"}, {"afm_nm", "AFM alone", true}}),
+                      {{"fitted_nm", "gains fitted with the surface"},
+                       {"held_nm", "gains held"},
+                       {"afm_nm", "AFM alone", true}}),
                 panel(t, "", x, {"share of heights within one deviation", false, io::PlotAxis::Range{0, 1}},
                       {{"fitted_within", "gains fitted"}, {"held_within", "gains held"}}),
                 panel(t, "", x, {"warned", false, io::PlotAxis::Range{-0.04, 1.04}},
@@ -62,20 +66,34 @@ io::Plot plot(const Table& t, const std::string& title, const io::PlotAxis& x) {
   return out;
 }
 
-}  // namespace
+}   // namespace
 
 Sweep reconstruction_material() {
-  return {"reconstruction_material", "reconstruction with a model of another material or energy", columns("power"),
-          {0.5, 0.7, 0.8, 0.9, 0.95, 1, 1.05, 1.1, 1.2, 1.3, 1.5}, at_power, 1.1, 1e-4, [](const Table& t) {
-            return plot(t, "Walls that brighten otherwise than the model says", {"true brightness is the model's to the power of", false, {}});
+  return {"reconstruction_material",
+          "reconstruction with a model of another material or energy",
+          columns("power"),
+          {0.5, 0.7, 0.8, 0.9, 0.95, 1, 1.05, 1.1, 1.2, 1.3, 1.5},
+          at_power,
+          1.1,
+          1e-4,
+          [](const Table& t) {
+            return plot(t, "Walls that brighten otherwise than the model says",
+                        {"true brightness is the model's to the power of", false, {}});
           }};
 }
 
 Sweep reconstruction_drift() {
-  return {"reconstruction_drift", "reconstruction of an image whose brightness drifts", columns("drift"),
-          {0, 0.005, 0.01, 0.02, 0.03, 0.05, 0.1, 0.2, 0.3}, at_drift, 0.05, 1e-4, [](const Table& t) {
-            return plot(t, "Brightness that drifts over the image", {"amplitude of the drift, share of brightness", false, {}});
+  return {"reconstruction_drift",
+          "reconstruction of an image whose brightness drifts",
+          columns("drift"),
+          {0, 0.005, 0.01, 0.02, 0.03, 0.05, 0.1, 0.2, 0.3},
+          at_drift,
+          0.05,
+          1e-4,
+          [](const Table& t) {
+            return plot(t, "Brightness that drifts over the image",
+                        {"amplitude of the drift, share of brightness", false, {}});
           }};
 }
 
-}  // namespace surf::limits
+}   // namespace surf::limits

@@ -29,7 +29,8 @@ std::vector<double> at_last(double scale_px) {
   for (double s = 8; s > 1.01 * scale_px; s /= 2) falling.push_back(s);
   falling.push_back(scale_px);
   const End descent = end_of(scene, ReconstructionMethod::lbfgs, falling);
-  return {newton.error_nm, newton.sem_deviation, newton.warned, descent.error_nm, descent.sem_deviation, descent.warned};
+  return {newton.error_nm,  newton.sem_deviation,  newton.warned,
+          descent.error_nm, descent.sem_deviation, descent.warned};
 }
 
 std::vector<double> at_first(double scale_px) {
@@ -39,8 +40,10 @@ std::vector<double> at_first(double scale_px) {
   std::vector<double> halved, jump{scale_px};
   for (double s = scale_px; s > 0.75; s /= 2) halved.push_back(s);
   halved.push_back(0.5);
-  if (scale_px > 0.5) jump.push_back(0.5);
-  else halved = {scale_px};
+  if (scale_px > 0.5)
+    jump.push_back(0.5);
+  else
+    halved = {scale_px};
   const End n = end_of(scene, ReconstructionMethod::gauss_newton, newton);
   const End h = end_of(scene, ReconstructionMethod::lbfgs, halved);
   const End j = end_of(scene, ReconstructionMethod::lbfgs, jump);
@@ -66,26 +69,38 @@ io::Plot plot_first(const Table& t) {
   io::Plot out;
   out.title = "Where the schedule of scales begins";
   out.panels = {panel(t, "", x, {"error of the surface, rms (nm)", true, {}},
-                      {{"newton_nm", "Gauss-Newton, then 1.4"}, {"halved_nm", "L-BFGS, halved to 0.5"},
+                      {{"newton_nm", "Gauss-Newton, then 1.4"},
+                       {"halved_nm", "L-BFGS, halved to 0.5"},
                        {"jump_nm", "L-BFGS, then 0.5 at once", true}}),
                 panel(t, "", x, {"warned", false, io::PlotAxis::Range{-0.04, 1.04}},
-                      {{"newton_warned", "Gauss-Newton"}, {"halved_warned", "L-BFGS, halved"},
+                      {{"newton_warned", "Gauss-Newton"},
+                       {"halved_warned", "L-BFGS, halved"},
                        {"jump_warned", "L-BFGS, at once", true}})};
   return out;
 }
 
-}  // namespace
+}   // namespace
 
 Sweep reconstruction_last_scale() {
-  return {"reconstruction_last_scale", "reconstruction with a last scale that is too fine or too coarse",
+  return {"reconstruction_last_scale",
+          "reconstruction with a last scale that is too fine or too coarse",
           {"scale_px", "newton_nm", "newton_left", "newton_warned", "lbfgs_nm", "lbfgs_left", "lbfgs_warned"},
-          {0.25, 0.5, 0.7, 1, 1.4, 2, 3, 5, 8, 15, 30}, at_last, 5, 1e-4, plot_last};
+          {0.25, 0.5, 0.7, 1, 1.4, 2, 3, 5, 8, 15, 30},
+          at_last,
+          5,
+          1e-4,
+          plot_last};
 }
 
 Sweep reconstruction_first_scale() {
-  return {"reconstruction_first_scale", "reconstruction with a first scale that is too fine or too coarse",
+  return {"reconstruction_first_scale",
+          "reconstruction with a first scale that is too fine or too coarse",
           {"scale_px", "newton_nm", "newton_warned", "halved_nm", "halved_warned", "jump_nm", "jump_warned"},
-          {0.5, 1, 2, 4, 8, 15, 30, 60}, at_first, 30, 1e-4, plot_first};
+          {0.5, 1, 2, 4, 8, 15, 30, 60},
+          at_first,
+          30,
+          1e-4,
+          plot_first};
 }
 
-}  // namespace surf::limits
+}   // namespace surf::limits

@@ -15,7 +15,8 @@ struct Inside {
 };
 
 /// Over the trench, walls and all, less the rows at the borders.
-Inside inside(const test::SmallScene& scene, const Reconstruction& r, const HeightField& surface, double width_nm) {
+Inside inside(const test::SmallScene& scene, const Reconstruction& r, const HeightField& surface,
+              double width_nm) {
   Inside sum;
   double count = 0;
   const HeightField& truth = scene.truth;
@@ -31,8 +32,8 @@ Inside inside(const test::SmallScene& scene, const Reconstruction& r, const Heig
       sum.held_by_nothing += held == 0;
       count += 1;
     }
-  return {std::sqrt(sum.error_nm / count), std::sqrt(sum.deviation_nm / count), sum.touched / count, sum.seen / count,
-          sum.held_by_nothing / count};
+  return {std::sqrt(sum.error_nm / count), std::sqrt(sum.deviation_nm / count), sum.touched / count,
+          sum.seen / count, sum.held_by_nothing / count};
 }
 
 std::vector<double> at(double width_nm) {
@@ -47,11 +48,19 @@ std::vector<double> at(double width_nm) {
   ReconstructionOptions o;
   o.refine_transform = o.refine_calibration = false;
   const Reconstruction alone = reconstruct(&scene.afm, &blind, o);
-  const Inside b = inside(scene, both, both.surface, width_nm), a = inside(scene, alone, alone.surface, width_nm);
+  const Inside b = inside(scene, both, both.surface, width_nm),
+               a = inside(scene, alone, alone.surface, width_nm);
   const Inside start = inside(scene, both, both.start, width_nm);
   const auto& left = both.scales.back();
-  return {b.touched, start.error_nm, a.error_nm, a.deviation_nm, b.error_nm, b.deviation_nm, b.seen,
-          b.held_by_nothing, left.afm_residual.like_noise && left.sem_residual.like_noise ? 0.0 : 1.0};
+  return {b.touched,
+          start.error_nm,
+          a.error_nm,
+          a.deviation_nm,
+          b.error_nm,
+          b.deviation_nm,
+          b.seen,
+          b.held_by_nothing,
+          left.afm_residual.like_noise && left.sem_residual.like_noise ? 0.0 : 1.0};
 }
 
 io::Plot plot(const Table& t) {
@@ -59,24 +68,33 @@ io::Plot plot(const Table& t) {
   io::Plot out;
   out.title = "What the tip does not touch: the floor of a trench (tip radius 80 nm)";
   out.panels = {panel(t, "", x, {"in the trench, rms (nm)", true, {}},
-                      {{"start_nm", "error of the eroded scan"}, {"afm_nm", "error, AFM alone"},
-                       {"afm_deviation_nm", "deviation that it gives", true}, {"both_nm", "error, both images"},
+                      {{"start_nm", "error of the eroded scan"},
+                       {"afm_nm", "error, AFM alone"},
+                       {"afm_deviation_nm", "deviation that it gives", true},
+                       {"both_nm", "error, both images"},
                        {"both_deviation_nm", "deviation that they give", true}}),
                 panel(t, "", x, {"share of the trench", false, io::PlotAxis::Range{-0.04, 1.04}},
-                      {{"touched", "touched by the tip"}, {"both_seen", "held by the SEM image"},
-                       {"both_held_by_nothing", "held by nothing", true}, {"warned", "warned"}})};
+                      {{"touched", "touched by the tip"},
+                       {"both_seen", "held by the SEM image"},
+                       {"both_held_by_nothing", "held by nothing", true},
+                       {"warned", "warned"}})};
   // One contact for each of the scan's pixels, of which there is one for four of the SEM's.
   out.panels[1].references.push_back({io::PlotDirection::horizontal, 0.25, "touched everywhere"});
   return out;
 }
 
-}  // namespace
+}   // namespace
 
 Sweep reconstruction_untouched() {
-  return {"reconstruction_untouched", "a trench that narrows until the tip does not touch its floor",
-          {"width_nm", "touched", "start_nm", "afm_nm", "afm_deviation_nm", "both_nm",
-           "both_deviation_nm", "both_seen", "both_held_by_nothing", "warned"},
-          {50, 70, 90, 110, 130, 150, 180, 220, 260, 320}, at, 130, 1e-4, plot};
+  return {"reconstruction_untouched",
+          "a trench that narrows until the tip does not touch its floor",
+          {"width_nm", "touched", "start_nm", "afm_nm", "afm_deviation_nm", "both_nm", "both_deviation_nm",
+           "both_seen", "both_held_by_nothing", "warned"},
+          {50, 70, 90, 110, 130, 150, 180, 220, 260, 320},
+          at,
+          130,
+          1e-4,
+          plot};
 }
 
-}  // namespace surf::limits
+}   // namespace surf::limits

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Landmarks that are read off inexactly: how wrong four of them may be for the registration to find the place.
+// Landmarks that are read off inexactly: how wrong four of them may be for the registration to find the
+// place.
 #include <cmath>
 #include <numbers>
 
@@ -26,17 +27,24 @@ std::vector<double> at(double off_px) {
 io::Plot plot(const Table& t) {
   io::Plot out;
   out.title = "Registration from four landmarks that are off";
-  out.panels = {panel_of_starts(t, "80 x 60 SEM pixels apart", {"standard deviation of a landmark (SEM pixels)", false, {}})};
+  out.panels = {panel_of_starts(t, "80 x 60 SEM pixels apart",
+                                {"standard deviation of a landmark (SEM pixels)", false, {}})};
   return out;
 }
 
-}  // namespace
+}   // namespace
 
 Sweep registration_landmarks() {
   std::vector<std::string> columns = columns_from_starts();
   columns.insert(columns.begin(), "off_px");
-  return {"registration_landmarks", "registration from four landmarks that are off by some pixels each", columns,
-          {0, 3, 6, 10, 15, 20, 30}, at, 10, 1e-6, plot};
+  return {"registration_landmarks",
+          "registration from four landmarks that are off by some pixels each",
+          columns,
+          {0, 3, 6, 10, 15, 20, 30},
+          at,
+          10,
+          1e-6,
+          plot};
 }
 
-}  // namespace surf::limits
+}   // namespace surf::limits

@@ -42,21 +42,30 @@ io::Plot plot(const Table& t) {
   io::Plot out;
   out.title = "Landmarks on a lattice, dots 12 SEM pixels apart";
   out.panels = {panel(t, "usual blurs, 8 to 0 pixels", x, y,
-                      {{"verified_right", "right, verified"}, {"verified_wrong", "WRONG, verified"},
-                       {"ambiguous", "ambiguous"}, {"refused", "unconverged or unrelated"}}),
+                      {{"verified_right", "right, verified"},
+                       {"verified_wrong", "WRONG, verified"},
+                       {"ambiguous", "ambiguous"},
+                       {"refused", "unconverged or unrelated"}}),
                 panel(t, "blurs 3, 2, 1, 0: the pattern is seen", x, y,
-                      {{"narrow_right", "right, verified"}, {"narrow_wrong", "WRONG, verified"},
-                       {"narrow_ambiguous", "ambiguous"}, {"narrow_refused", "unconverged or unrelated"}})};
+                      {{"narrow_right", "right, verified"},
+                       {"narrow_wrong", "WRONG, verified"},
+                       {"narrow_ambiguous", "ambiguous"},
+                       {"narrow_refused", "unconverged or unrelated"}})};
   return out;
 }
 
-}  // namespace
+}   // namespace
 
 Sweep registration_lattice() {
-  return {"registration_lattice", "registration of a lattice from landmarks that are off",
-          {"off_px", "verified_right", "verified_wrong", "ambiguous", "refused", "narrow_right", "narrow_wrong",
-           "narrow_ambiguous", "narrow_refused"},
-          {0, 2, 4, 5, 6, 7, 8, 10, 12, 18}, at, 7, 1e-6, plot};
+  return {"registration_lattice",
+          "registration of a lattice from landmarks that are off",
+          {"off_px", "verified_right", "verified_wrong", "ambiguous", "refused", "narrow_right",
+           "narrow_wrong", "narrow_ambiguous", "narrow_refused"},
+          {0, 2, 4, 5, 6, 7, 8, 10, 12, 18},
+          at,
+          7,
+          1e-6,
+          plot};
 }
 
-}  // namespace surf::limits
+}   // namespace surf::limits

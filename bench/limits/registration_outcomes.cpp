@@ -24,14 +24,17 @@ std::vector<double> registered_from(const std::function<Affine(const Affine&, Ra
 }
 
 std::vector<std::string> columns_from_starts() {
-  return {"verified_right", "verified_wrong", "ambiguous", "refused", "narrow_verified_right", "narrow_verified_wrong"};
+  return {"verified_right", "verified_wrong",        "ambiguous",
+          "refused",        "narrow_verified_right", "narrow_verified_wrong"};
 }
 
 io::PlotPanel panel_of_starts(const Table& t, const std::string& title, const io::PlotAxis& x) {
   return panel(t, title, x, {"share of 12 scenes", false, io::PlotAxis::Range{-0.04, 1.04}},
-               {{"verified_right", "right, verified"}, {"verified_wrong", "WRONG, verified"},
-                {"ambiguous", "ambiguous"}, {"refused", "unconverged or unrelated"},
+               {{"verified_right", "right, verified"},
+                {"verified_wrong", "WRONG, verified"},
+                {"ambiguous", "ambiguous"},
+                {"refused", "unconverged or unrelated"},
                 {"narrow_verified_right", "right, verified; blurs 2, 1, 0 px only", true}});
 }
 
-}  // namespace surf::limits
+}   // namespace surf::limits

@@ -29,7 +29,9 @@ class Outcomes {
   double verified_wrong() const { return verified_wrong_ / all_; }
 
   /// Verified though right, verified though wrong, ambiguous, and called unconverged or unrelated.
-  std::vector<double> shares() const { return {verified_right(), verified_wrong(), ambiguous_ / all_, refused_ / all_}; }
+  std::vector<double> shares() const {
+    return {verified_right(), verified_wrong(), ambiguous_ / all_, refused_ / all_};
+  }
 
  private:
   static constexpr double right_px = 1;
@@ -55,10 +57,10 @@ struct SpotScene {
   double error_px(const Affine& map) const { return test::error_px(truth, map, width, height, 0.5 * scan); }
 };
 
-/// Registers scenes from starts that are wrong: `start` makes one of the truth and a stream of random numbers.
-/// With the usual blurs first, then with none wider than two pixels.
+/// Registers scenes from starts that are wrong: `start` makes one of the truth and a stream of random
+/// numbers. With the usual blurs first, then with none wider than two pixels.
 std::vector<double> registered_from(const std::function<Affine(const Affine& truth, RandomStream&)>& start);
 std::vector<std::string> columns_from_starts();
 io::PlotPanel panel_of_starts(const Table& t, const std::string& title, const io::PlotAxis& x);
 
-}  // namespace surf::limits
+}   // namespace surf::limits

@@ -18,17 +18,24 @@ std::vector<double> at(double off_deg) {
 io::Plot plot(const Table& t) {
   io::Plot out;
   out.title = "Registration from a start that is turned";
-  out.panels = {panel_of_starts(t, "120 x 90 SEM pixels, spots 3 to 9 pixels wide", {"start turned by (degrees)", false, {}})};
+  out.panels = {panel_of_starts(t, "120 x 90 SEM pixels, spots 3 to 9 pixels wide",
+                                {"start turned by (degrees)", false, {}})};
   return out;
 }
 
-}  // namespace
+}   // namespace
 
 Sweep registration_turn() {
   std::vector<std::string> columns = columns_from_starts();
   columns.insert(columns.begin(), "off_deg");
-  return {"registration_turn", "registration from a start that is turned by some degrees", columns,
-          {0, 5, 10, 15, 20, 25, 30, 40, 60, 90, 180}, at, 20, 1e-6, plot};
+  return {"registration_turn",
+          "registration from a start that is turned by some degrees",
+          columns,
+          {0, 5, 10, 15, 20, 25, 30, 40, 60, 90, 180},
+          at,
+          20,
+          1e-6,
+          plot};
 }
 
-}  // namespace surf::limits
+}   // namespace surf::limits
