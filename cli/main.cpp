@@ -9,6 +9,7 @@
 #include <new>
 
 #include "commands.h"
+#include "mpi_team.h"
 #include "options.h"
 #include "surf/core/error.h"
 #include "surf/workflow/version.h"
@@ -136,9 +137,10 @@ int act(const Action& action) {
   return exit_unusable;
 }
 
-}  // namespace
+// These do their work together with others; anything else is done by the leader alone.
+bool is_shared(const std::string& command) { return command == "simulate" || command == "sweep"; }
 
-int main(int argc, char** argv) {
+int run(int argc, char** argv) {
   Action action;
   CLI::App app("Scanning electron microscope images of surfaces, by Monte Carlo simulation",
                "semsurf");
@@ -148,6 +150,8 @@ int main(int argc, char** argv) {
   app.allow_windows_style_options(false);
   add_simulate(app, action, quoted_command(argc, argv));
   add_chart(app, action, quoted_command(argc, argv));
+  add_sweep(app, action, quoted_command(argc, argv));
+  add_join(app, action);
   add_level(app, action);
   add_clean(app, action);
   add_noise(app, action);
@@ -177,5 +181,26 @@ int main(int argc, char** argv) {
     fmt::print(stderr, "{}", app.help());
     return exit_usage;
   }
+  const std::string command = app.get_subcommands().front()->get_name();
+  if (team() && !is_shared(command)) {
+    if (!team()->leads()) return 0;
+    print_note(fmt::format("'semsurf {}' is the work of one process: {} others have nothing to do", command,
+                           team()->size() - 1));
+  }
   return act(action);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    join_team();
+  } catch (const Error& error) {
+    print_error(error.what());
+    return exit_unusable;
+  }
+  if (team() && !team()->leads()) be_silent();
+  const int code = run(argc, argv);
+  leave_team();
+  return code;
 }

@@ -33,12 +33,17 @@ Examples:
   semsurf simulate cube.stl --size 64x64 --region -96,-96,96,96 \
       --physics elastic=browning,secondaries=off -o bse.exr)";
 
-void add_detector_options(CLI::App& app, SimulateOptions& o) {
-  const char* group = "Detectors, besides SE and BSE";
+constexpr const char* detectors = "Detectors, besides SE and BSE";
+
+void add_detector_option(CLI::App& app, SimulateOptions& o) {
   app.add_option("--detector", o.scene.detectors,
                  "One of these, changed after a colon (side:axis=60deg/90deg), or one\n"
                  "of your own (loss:energy=900eV..,cone=30deg); may be repeated")
-      ->type_name("SE1|SE2|quadrants|annular|in-lens|side")->allow_extra_args(false)->group(group);
+      ->type_name("SE1|SE2|quadrants|annular|in-lens|side")->allow_extra_args(false)->group(detectors);
+}
+
+void add_record_options(CLI::App& app, SimulateOptions& o) {
+  const char* group = detectors;
   app.add_flag("--spectra", o.spectra, "Energies and angles per detector: NAME.spectra.csv")
       ->group(group);
   app.add_option("--deposit", o.deposit,
@@ -97,19 +102,35 @@ void add_long_job_options(CLI::App& app, SimulateOptions& o) {
   app.add_flag("--restart", o.restart, "Begin anew, whatever was done before")->group(group);
 }
 
-void add_output_options(CLI::App& app, SimulateOptions& o) {
+void add_channel_options(CLI::App& app, SimulateOptions& o) {
   const char* group = "Output";
-  app.add_option("-o,--output", o.outputs, "Image to write: .exr .tif .png .vti; may be repeated")
-      ->type_name("FILE")->option_text("FILE")->allow_extra_args(false)->group(group);
   app.add_option("--channel", o.channel, "What PNG files show (SE)")
       ->type_name("SE|SE.stderr|BSE|...|valid")->group(group);
   app.add_option("--channels", o.channels, "Also what the beam sees: z_nm, normal, material; and how it was simulated:\n"
                  "electrons, model, variance_left (see below)")
       ->type_name("NAME,...")->group(group);
+}
+
+void add_output_options(CLI::App& app, SimulateOptions& o) {
+  const char* group = "Output";
+  app.add_option("-o,--output", o.outputs, "Image to write: .exr .tif .png .vti; may be repeated")
+      ->type_name("FILE")->option_text("FILE")->allow_extra_args(false)->group(group);
+  add_channel_options(app, o);
   add_quiet_flag(app, o.quiet)->group(group);
 }
 
 }  // namespace
+
+void add_simulate_settings(CLI::App& app, SimulateOptions& options) {
+  add_specimen_options(app, options.scene);
+  add_beam_options(app, options.scene);
+  add_dose_options(app, options.scene);
+  add_scan_options(app, options.scene);
+  add_simulation_options(app, options);
+  add_detector_option(app, options);
+  add_channel_options(app, options);
+  add_quiet_flag(app, options.quiet)->group("Output");
+}
 
 void add_simulate_options(CLI::App& app, SimulateOptions& options) {
   add_specimen_options(app, options.scene);
@@ -117,7 +138,8 @@ void add_simulate_options(CLI::App& app, SimulateOptions& options) {
   add_dose_options(app, options.scene);
   add_scan_options(app, options.scene);
   add_simulation_options(app, options);
-  add_detector_options(app, options);
+  add_detector_option(app, options);
+  add_record_options(app, options);
   add_long_job_options(app, options);
   add_output_options(app, options);
   app.footer(examples);

@@ -23,6 +23,10 @@ struct SimulateOptions {
   bool quiet = false;
 };
 
+/// Declares specimen, beam, scan and how it is simulated, with their help: all but outputs, what else is recorded and
+/// checkpoints.
+void add_simulate_settings(CLI::App& app, SimulateOptions& options);
+
 /// Declares them all, with their help.
 void add_simulate_options(CLI::App& app, SimulateOptions& options);
 

@@ -19,7 +19,10 @@ constexpr int exit_interrupted = 130;
 
 std::atomic<CancelToken*> interrupted_token{nullptr};
 
+bool silent = false;
+
 void print_line(const char* kind, const std::string& message) {
+  if (silent) return;
   fmt::print(stderr, "semsurf: {}: {}\n", kind, message);
 }
 
@@ -48,6 +51,8 @@ void handle_interrupts(void (*handler)(int)) {
 }
 
 }  // namespace
+
+void be_silent() { silent = true; }
 
 void print_error(const std::string& message) { print_line("error", message); }
 void print_warning(const std::string& message) { print_line("warning", message); }
@@ -80,7 +85,7 @@ std::string format_duration(double seconds) {
                   : fmt::format("{}:{:02}:{:02}", s / 3600, s / 60 % 60, s % 60);
 }
 
-ProgressBar::ProgressBar(bool wanted) : active_(wanted && isatty(STDERR_FILENO)) {}
+ProgressBar::ProgressBar(bool wanted) : active_(wanted && !silent && isatty(STDERR_FILENO)) {}
 
 ProgressBar::~ProgressBar() { clear(); }
 

@@ -13,6 +13,9 @@ void print_error(const std::string& message);
 void print_warning(const std::string& message);
 void print_note(const std::string& message);
 
+/// From now on none of these says anything, nor does a progress bar: another process does.
+void be_silent();
+
 /// "13.1 M", "950": a count for people.
 std::string format_count(double count);
 

@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <chrono>
+#include <exception>
 #include <mutex>
 #include <optional>
+#include <thread>
 
 #include <fmt/format.h>
 
@@ -13,6 +15,7 @@
 #include "scene_impl.h"
 #include "surf/core/error.h"
 #include "surf/core/parallel.h"
+#include "surf/mc/crew.h"
 #include "surf/mc/unit_plan.h"
 #include "unit_worker.h"
 
@@ -176,6 +179,130 @@ class Workshop {
   std::optional<PlaneControls> controls_;
 };
 
+// Units as they are finished, and who is told of them.
+struct Merging {
+  const UnitPlan& plan;
+  Collector& collector;
+  const ProgressCallback& progress;
+  UnitJournal* journal;
+  double done = 0;
+  std::mutex mutex{};
+
+  void add(std::size_t number, const UnitTally& tally) {
+    const WorkUnit unit = plan.unit(number);
+    collector.add(unit, tally);
+    done += plan.done(unit, tally);
+  }
+  /// Whether the journal knew it.
+  bool recall(std::size_t number) {
+    UnitTally tally;
+    if (!journal || !journal->recall(number, tally)) return false;
+    collector.result.recalled += tally.balance.incident;
+    add(number, tally);
+    return true;
+  }
+  void give(std::size_t number, const UnitTally& tally) {
+    add(number, tally);
+    if (progress) progress(done, plan.total());
+    if (journal) journal->record(number, tally);
+  }
+};
+
+// What a thread works with, made when it first has something to do.
+struct Bench {
+  std::unique_ptr<UnitWorker> worker;
+  Observer* observer;
+};
+using Benches = std::vector<std::unique_ptr<Bench>>;
+
+Bench& bench_of(Benches& benches, int thread, Workshop& workshop, const ObserverOfThread& observers) {
+  auto& bench = benches[static_cast<std::size_t>(thread)];
+  if (!bench) bench = std::make_unique<Bench>(Bench{workshop.worker(), observers ? observers(thread) : nullptr});
+  return *bench;
+}
+
+void run_all(const UnitPlan& plan, Workshop& workshop, int threads, const ObserverOfThread& observers,
+             Merging& merging, const CancelToken* cancel) {
+  Benches benches(static_cast<std::size_t>(threads));
+  parallel_for(plan.units(), threads, [&](std::size_t i, int w) {
+    if (cancel && cancel->cancelled()) return;
+    if (merging.journal) {
+      const std::lock_guard lock(merging.mutex);
+      if (merging.recall(i)) return;
+    }
+    Bench& bench = bench_of(benches, w, workshop, observers);
+    UnitTally tally;
+    bench.worker->simulate(plan.unit(i), bench.observer, tally);
+    const std::lock_guard lock(merging.mutex);
+    merging.give(i, tally);
+  });
+}
+
+// Threads of this process take units until there are none.
+void take_and_give(const UnitPlan& plan, Workshop& workshop, int threads, const TakeUnit& take, const GiveTally& give) {
+  Benches benches(static_cast<std::size_t>(threads));
+  parallel_for(static_cast<std::size_t>(threads), threads, [&](std::size_t, int w) {
+    while (const auto number = take()) {
+      UnitTally tally;
+      bench_of(benches, w, workshop, {}).worker->simulate(plan.unit(*number), nullptr, tally);
+      give(*number, tally);
+    }
+  });
+}
+
+// The same units, whoever does them: they merge to the same result.
+void share(Crew& crew, const UnitPlan& plan, Workshop& workshop, int threads, Merging& merging,
+           const CancelToken* cancel) {
+  if (!crew.leads()) {
+    crew.follow([&](const TakeUnit& take, const GiveTally& give) {
+      take_and_give(plan, workshop, threads, take, give);
+    }, threads, cancel);
+    return;
+  }
+  std::size_t next = 0;
+  bool ended = false;   // an error on either side: the other takes no more
+  const TakeUnit take = [&]() -> std::optional<std::size_t> {
+    const std::lock_guard lock(merging.mutex);
+    while (!ended && next < plan.units() && !(cancel && cancel->cancelled()))
+      if (const std::size_t number = next++; !merging.recall(number)) return number;
+    return std::nullopt;
+  };
+  const GiveTally give = [&](std::size_t number, const UnitTally& tally) {
+    const std::lock_guard lock(merging.mutex);
+    merging.give(number, tally);
+  };
+  const auto end = [&] {
+    const std::lock_guard lock(merging.mutex);
+    ended = true;
+  };
+  std::exception_ptr own, of_crew;
+  {
+    // The crew is led from here: its messages may have to come from the thread that began.
+    const std::jthread at_work([&] {
+      try {
+        take_and_give(plan, workshop, threads, take, give);
+      } catch (...) {
+        own = std::current_exception();
+        end();
+      }
+    });
+    try {
+      crew.lead(take, give, cancel);
+    } catch (...) {
+      of_crew = std::current_exception();
+      end();
+    }
+  }
+  if (own) std::rethrow_exception(own);
+  if (of_crew) std::rethrow_exception(of_crew);
+}
+
+Scan one_pixel() {
+  Scan scan;
+  scan.width = scan.height = 1;
+  return scan;
+}
+
 }  // namespace
 
 std::size_t library_size(const SimulationOptions& options, std::int64_t most_primaries,
@@ -215,7 +342,7 @@ UnitTally simulate_unit(const Scene& scene, const SimulationOptions& options, co
 SimulationResult simulate(const Scene& scene, const SimulationOptions& options,
                           const ProgressCallback& progress, const CancelToken* cancel,
                           const ObserverOfThread& observers, UnitJournal* journal,
-                          LibrarySource* libraries) {
+                          LibrarySource* libraries, Crew* crew) {
   check_options(options);
   if (options.method == Method::replay && observers)
     throw UsageError("--method replay", "stored cascades show observers nothing between surfaces",
@@ -227,6 +354,8 @@ SimulationResult simulate(const Scene& scene, const SimulationOptions& options,
   if (options.accuracy > 0 && observers)
     throw UsageError("--accuracy", "what observers see would be of more primaries in some pixels than in others",
                      "Give --electrons instead");
+  if (crew && observers)
+    throw UsageError("--deposit", "each of several processes would see a part of it", "Run it in one process");
   if (journal && observers)
     throw UsageError("simulate", "observers would not see the units that a journal recalls",
                      "Leave one of the two out");
@@ -235,14 +364,8 @@ SimulationResult simulate(const Scene& scene, const SimulationOptions& options,
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   };
   const UnitPlan plan(scene.scan(), options);
-  const int threads = resolve_threads(options.threads);
-  struct Bench {
-    std::unique_ptr<UnitWorker> worker;
-    Observer* observer;
-  };
-  std::vector<std::unique_ptr<Bench>> benches(static_cast<std::size_t>(threads));
-
-  Collector collector(scene.scan(), options);
+  // Who follows has nothing to collect: its memory need not hold the image.
+  Collector collector(crew && !crew->leads() ? one_pixel() : scene.scan(), options);
   SimulationResult& result = collector.result;
   Workshop workshop;
   if (!workshop.prepare(scene, options, libraries, plan.most(), {}, cancel)) {
@@ -253,35 +376,10 @@ SimulationResult simulate(const Scene& scene, const SimulationOptions& options,
   result.cascade_yields = workshop.yields();
   result.library_seconds = seconds();
   begin = std::chrono::steady_clock::now();
-  double done = 0;
-  std::mutex merging;
-  parallel_for(plan.units(), threads, [&](std::size_t i, int w) {
-    if (cancel && cancel->cancelled()) return;
-    const WorkUnit unit = plan.unit(i);
-    UnitTally tally;
-    const auto merge = [&] {
-      collector.add(unit, tally);
-      done += plan.done(unit, tally);
-    };
-    if (journal) {
-      const std::lock_guard lock(merging);
-      if (journal->recall(i, tally)) {
-        collector.result.recalled += tally.balance.incident;
-        merge();
-        return;
-      }
-    }
-    auto& bench = benches[static_cast<std::size_t>(w)];
-    if (!bench)
-      bench = std::make_unique<Bench>(Bench{workshop.worker(),
-                                            observers ? observers(w) : nullptr});
-    bench->worker->simulate(unit, bench->observer, tally);
-    const std::lock_guard lock(merging);
-    merge();
-    if (progress) progress(done, plan.total());
-    if (journal) journal->record(i, tally);
-  });
-  result.complete = done == plan.total();
+  Merging merging{plan, collector, progress, journal};
+  if (crew) share(*crew, plan, workshop, resolve_threads(options.threads), merging, cancel);
+  else run_all(plan, workshop, resolve_threads(options.threads), observers, merging, cancel);
+  result.complete = merging.done == plan.total() || (crew && !crew->leads());
   result.seconds = seconds();
   return std::move(result);
 }

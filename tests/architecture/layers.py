@@ -53,6 +53,7 @@ THIRD_PARTY = [
     ("nlohmann/*", ["workflow/src/*", "io/src/*"]),
     ("openssl/*", ["io/src/*"]),
     ("CLI/*", ["cli/*"]),
+    ("mpi.h", ["cli/mpi_team.cpp"]),
     ("Random123/*", ["libsurf/src/core/random.cpp"]),
     ("tbb/*", ["libsurf/src/core/parallel.cpp"]),
     ("oneapi/*", ["libsurf/src/core/parallel.cpp"]),

@@ -106,6 +106,22 @@ Json method_json(const SimulateJob& job, const SimulateSummary& s) {
   return json;
 }
 
+// What the leader did itself is what nobody else did.
+Json team_json(const SimulateSummary& s, int threads) {
+  Json ranks = Json::array();
+  std::int64_t others = 0;
+  for (const TeamMember& m : s.team) others += m.primaries;
+  for (const TeamMember& m : s.team)
+    ranks.push_back({{"rank", m.rank},
+                     {"host", m.host},
+                     {"threads", m.rank == 0 ? threads : m.threads},
+                     {"units", m.units},
+                     {"primaries", m.rank == 0 ? s.result.balance.incident - s.result.recalled - others : m.primaries},
+                     {"waiting_seconds", m.waiting_s},
+                     {"bytes_sent", m.bytes_sent}});
+  return ranks;
+}
+
 Json files_json(const RunRecord& record, const char* which) {
   Json files = Json::array();
   if (std::string(which) == "inputs")
@@ -139,6 +155,7 @@ std::string sidecar_text(const SimulateJob& job, const SimulateSummary& summary,
   json["outputs"] = files_json(record, "outputs");
   json["host"] = host_name();
   json["threads"] = resolve_threads(job.options.threads);
+  if (!summary.team.empty()) json["ranks"] = team_json(summary, resolve_threads(job.options.threads));
   json["tile_pixels"] = job.options.tile_pixels;
   json["start"] = utc(record.start);
   json["end"] = utc(record.end);

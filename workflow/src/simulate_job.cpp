@@ -19,6 +19,7 @@
 #include "surf/io/files.h"
 #include "surf/io/image_file.h"
 #include "surf/io/volume_file.h"
+#include "team_libraries.h"
 #include "surf/mc/choose_method.h"
 #include "surf/mc/scene.h"
 #include "time_budget.h"
@@ -185,12 +186,13 @@ double seconds_since(std::chrono::system_clock::time_point start) {
 
 // For a time budget: simulates coarsely and sets the accuracy that fits. The result stands where
 // there is nothing better, or where it was cancelled.
-Simulation simulate_coarsely(SimulateJob& job, const mc::Scene& scene, JobLibraries& libraries,
-                             const mc::MethodChoice& choice, const RunRecord& record,
-                             const ProgressCallback& progress, const CancelToken* cancel,
-                             const NoteCallback& note) {
+Simulation find_accuracy(SimulateJob& job, const mc::Scene& scene, mc::LibrarySource& libraries,
+                         const JobLibraries& kept, const mc::MethodChoice& choice, const RunRecord& record,
+                         const ProgressCallback& progress, const CancelToken* cancel, const NoteCallback& note,
+                         Team* team) {
   Simulation coarse;
-  coarse.result = mc::simulate(scene, job.options, progress, cancel, {}, nullptr, &libraries);
+  coarse.result = mc::simulate(scene, job.options, progress, cancel, {}, nullptr, &libraries, team);
+  if (!leads(team)) return coarse;   // counts nothing
   const auto say = [&](const std::string& text) {
     if (note) note(text);
   };
@@ -202,7 +204,7 @@ Simulation simulate_coarsely(SimulateJob& job, const mc::Scene& scene, JobLibrar
   budget.materials = scene.materials().size();
   budget.most_library_cascades = mc::MethodLimits{}.library_bytes /
                                  (choice.library_bytes / static_cast<double>(choice.cascades));
-  const auto pages = libraries.pages();
+  const auto pages = kept.pages();
   budget.cascades_made = (pages.made > 0 ? pages.made : pages.loaded) *
                          mc::CascadeLibrary::page_cascades;
   job.options.accuracy = accuracy_that_fits(coarse.result, budget);
@@ -221,6 +223,21 @@ Simulation simulate_coarsely(SimulateJob& job, const mc::Scene& scene, JobLibrar
     say(fmt::format("no better than {} accuracy fits in {:g} s; {}", format_share(coarse_accuracy),
                     job.seconds, again));
   coarse.final = true;
+  return coarse;
+}
+
+// The same for all of a team: who leads has seen the counts.
+Simulation simulate_coarsely(SimulateJob& job, const mc::Scene& scene, mc::LibrarySource& libraries,
+                             const JobLibraries& kept, const mc::MethodChoice& choice, const RunRecord& record,
+                             const ProgressCallback& progress, const CancelToken* cancel, const NoteCallback& note,
+                             Team* team) {
+  Simulation coarse =
+      find_accuracy(job, scene, libraries, kept, choice, record, progress, cancel, note, team);
+  if (!team) return coarse;
+  std::string found = fmt::format("{} {}", coarse.final ? 1 : 0, format_exact(job.options.accuracy));
+  team->broadcast(found);
+  coarse.final = found[0] == '1';
+  job.options.accuracy = std::stod(found.substr(2));
   return coarse;
 }
 
@@ -272,37 +289,47 @@ void write_all(const SimulateJob& job, const ImageRows& image, SimulateSummary& 
 
 SimulateSummary run(const SimulateJob& asked, const ProgressCallback& progress,
                     const CancelToken* cancel, const WarningCallback& warn,
-                    const NoteCallback& tell, const LibraryCallback& making) {
+                    const NoteCallback& tell, const LibraryCallback& making, Team* team) {
   RunRecord record;
   record.start = std::chrono::system_clock::now();
-  check_options(asked.options);
-  check_extras(asked.extras);
-  SimulateJob job = complete(asked);
-  const io::SceneFile& s = job.scene;
-
-  check_outputs(job);
-  check_checkpoint(job);
+  SimulateJob job;
   SimulateSummary summary;
-  summary.scan = resolve_scan(s.scan, mc::extent(s.specimen), s.beam);
-  check_trajectories(job, summary.scan);
-  record.inputs = hash_inputs(s.inputs);
-  const mc::Scene scene = make_scene(job, tell, cancel, summary);   // validates the specimen
-  summary.scene = scene.summary();
+  std::optional<mc::Scene> ready;
   const auto note = [&](std::vector<std::string> warnings) {
     for (std::string& warning : warnings) {
       if (warn) warn(warning);
       summary.warnings.push_back(std::move(warning));
     }
   };
-  note(warn_before(job, summary.scan));
-  note(warnings_of(s.specimen, summary.simplification));
-  summary.choice = mc::choose_method(scene, job.options, s.method, {job.extras.deposit_cells > 0});
-  job.options.method = summary.choice.method;
-  JobLibraries libraries(job.cache, making, tell);
+  together(team, [&] {
+    check_options(asked.options);
+    check_extras(asked.extras);
+    if (team && asked.extras.deposit_cells > 0)
+      throw UsageError("--deposit", "each of several processes would see a part of it", "Run it in one process");
+    job = complete(asked);
+    if (leads(team)) {   // who follows writes nothing
+      check_outputs(job);
+      check_checkpoint(job);
+    }
+    summary.scan = resolve_scan(job.scene.scan, mc::extent(job.scene.specimen), job.scene.beam);
+    check_trajectories(job, summary.scan);
+    record.inputs = hash_inputs(job.scene.inputs);
+    ready.emplace(make_scene(job, tell, cancel, summary));   // validates the specimen
+    summary.scene = ready->summary();
+    note(warn_before(job, summary.scan));
+    note(warnings_of(job.scene.specimen, summary.simplification));
+    summary.choice = mc::choose_method(*ready, job.options, job.scene.method, {job.extras.deposit_cells > 0});
+    job.options.method = summary.choice.method;
+  });
+  const mc::Scene& scene = *ready;
+  const io::SceneFile& s = job.scene;
+  JobLibraries kept(job.cache, making, tell);
+  std::optional<TeamLibraries> of_team;
+  if (team) of_team.emplace(*team, kept);
+  mc::LibrarySource& libraries = team ? static_cast<mc::LibrarySource&>(*of_team) : kept;
   Simulation simulation;
   if (job.seconds > 0)
-    simulation = simulate_coarsely(job, scene, libraries, summary.choice, record, progress, cancel,
-                                   tell);
+    simulation = simulate_coarsely(job, scene, libraries, kept, summary.choice, record, progress, cancel, tell, team);
   if (job.seconds > 0 && !simulation.final) {   // as with --accuracy and that number
     summary.choice = mc::choose_method(scene, job.options, s.method, {job.extras.deposit_cells > 0});
     job.options.method = summary.choice.method;
@@ -316,18 +343,22 @@ SimulateSummary run(const SimulateJob& asked, const ProgressCallback& progress,
     observers = [&](int thread) { return deposits->of_thread(thread); };
   }
   tell_of_scratch(job, summary.scan, tell);
-  const auto checkpoint =
-      simulation.final ? nullptr : make_checkpoint(job, settings, tell, warn);
+  std::unique_ptr<Checkpoint> checkpoint;
+  together(team, [&] {
+    if (!simulation.final && leads(team)) checkpoint = make_checkpoint(job, settings, tell, warn);
+  });
   const auto show = [&](double done, double total) {
     if (checkpoint) checkpoint->expect(total);
     if (progress) progress(done, total);
   };
   if (!simulation.final)
     simulation.result = mc::simulate(scene, job.options, show, cancel, observers, checkpoint.get(),
-                                     &libraries);
+                                     &libraries, team);
   summary.result = std::move(simulation.result);
-  summary.pages_loaded = libraries.pages().loaded;
-  summary.pages_made = libraries.pages().made;
+  if (!leads(team)) return summary;
+  if (team) summary.team = team->members();
+  summary.pages_loaded = kept.pages().loaded;
+  summary.pages_made = kept.pages().made;
   summary.statistics = mc::summarize(summary.result);
   if (!summary.result.complete) keep_interrupted(job, checkpoint.get(), tell);
   note(warn_after(summary.result, summary.statistics));

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "surf/core/parallel.h"
 
+#if defined(__linux__)
+#include <sched.h>
+#endif
+
 #include <algorithm>
 #include <atomic>
 #include <exception>
@@ -66,6 +70,11 @@ int resolve_threads(int requested) {
                      "Give 1 or more, or 0 for one per hardware thread");
   }
   if (requested > 0) return requested;
+#if defined(__linux__)
+  // Starters of MPI programs and batch systems leave a process fewer processors than there are.
+  cpu_set_t allowed;
+  if (sched_getaffinity(0, sizeof allowed, &allowed) == 0 && CPU_COUNT(&allowed) > 0) return CPU_COUNT(&allowed);
+#endif
   return std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
 }
 

@@ -43,6 +43,7 @@ class CascadeLibrary {
   const CascadeSettings& settings() const { return settings_; }
   const Medium& medium() const { return *medium_; }
   std::size_t pages() const { return pages_.size(); }
+  const CascadePage& page(std::size_t number) const { return *pages_.at(number); }
   std::size_t cascades() const { return pages_.size() * page_cascades; }
   std::size_t bytes() const;
 

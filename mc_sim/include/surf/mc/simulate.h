@@ -123,17 +123,23 @@ struct SimulationResult {
 /// threads less one. They must outlive the simulation.
 using ObserverOfThread = std::function<Observer*(int thread)>;
 
+class Crew;
+
 /// Simulates the whole scan, in parallel. On cancellation returns what is done.
 /// Progress counts primaries, and is told after each unit that is simulated. With `observers` every track is followed to its end, as in
 /// `simulate_unit`. A `journal` is told of every finished unit and asked for those done before; it
 /// must be of the same scene and options, `tile_pixels` among them. Not both (UsageError).
 /// Replay gets its cascades from `libraries` (null: they are made on the spot); it cannot serve
-/// observers, nor physics without continuous loss (UsageError).
+/// observers, nor physics without continuous loss (UsageError). With a `crew` units are shared with other
+/// processes, all of which call this: the result is the leader's, others return one that counts nothing and
+/// is complete. Bytes are the same with and without. No observers then (UsageError); only the leader's
+/// journal is used.
 SimulationResult simulate(const Scene& scene, const SimulationOptions& options,
                           const ProgressCallback& progress = {},
                           const CancelToken* cancel = nullptr,
                           const ObserverOfThread& observers = {},
-                          UnitJournal* journal = nullptr, LibrarySource* libraries = nullptr);
+                          UnitJournal* journal = nullptr, LibrarySource* libraries = nullptr,
+                          Crew* crew = nullptr);
 
 /// Per detector the channels NAME and NAME.stderr, in counts per primary; with a dose also
 /// NAME.shot, what a microscope would show: electrons counted over the mean number of primaries.

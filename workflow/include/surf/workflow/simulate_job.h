@@ -16,6 +16,7 @@
 #include "surf/mc/result_summary.h"
 #include "surf/mc/simulate.h"
 #include "surf/workflow/simplify_specimen.h"
+#include "surf/workflow/team.h"
 
 namespace surf::workflow {
 
@@ -78,6 +79,7 @@ struct SimulateSummary {
   mc::SceneSummary scene;
   std::vector<std::string> warnings;
   std::vector<std::filesystem::path> written;     ///< outputs, extras and their .run.json sidecars
+  std::vector<TeamMember> team;                   ///< who did how much; none without a team
 };
 
 /// Is told of every warning as soon as it is known: what looks like a mistake comes before the
@@ -96,8 +98,12 @@ using LibraryCallback = ProgressCallback;
 /// for the same job to go on from; it is deleted when the job is done. Cancelled before there is anything to write
 /// it throws Interrupted. One that cannot be gone on from
 /// is a FileError. Progress is in primaries, with a wanted accuracy in pixels.
+///
+/// With a `team` all of it call this with the same job, and share its units of work; the leader writes and tells, and its
+/// summary is the true one. Bytes are those of one process. Deposited energy cannot be had so (UsageError).
 SimulateSummary run(const SimulateJob& job, const ProgressCallback& progress = {},
                     const CancelToken* cancel = nullptr, const WarningCallback& warn = {},
-                    const NoteCallback& note = {}, const LibraryCallback& libraries = {});
+                    const NoteCallback& note = {}, const LibraryCallback& libraries = {},
+                    Team* team = nullptr);
 
 }  // namespace surf::workflow

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "surf/workflow/team.h"
+
+namespace surf::cli {
+
+/// Joins the processes that `mpirun` or `srun` has started together; nothing of MPI is touched where this one was started
+/// alone. Called once, by main. Throws Unsupported if there are several and this program was built without MPI.
+void join_team();
+
+/// The team, or null where there is none.
+workflow::Team* team();
+
+/// Ends MPI, or the whole job where others can no longer be heard.
+void leave_team();
+
+}  // namespace surf::cli

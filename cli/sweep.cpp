@@ -1,0 +1,272 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "surf/workflow/sweep_job.h"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <cmath>
+#include <map>
+#include <memory>
+
+#include "commands.h"
+#include "mpi_team.h"
+#include "options.h"
+#include "simulate_job_options.h"
+#include "simulate_options.h"
+#include "surf/core/error.h"
+#include "terminal.h"
+
+namespace surf::cli {
+namespace {
+
+constexpr int exit_untrustworthy = 4;
+constexpr int exit_interrupted = 130;
+constexpr std::size_t most_runs = 1'000'000, most_tried = 100;
+
+constexpr const char* examples =
+    R"(What can be varied: energy, tilt, azimuth, spot, convergence, focus, working-distance, current,
+electrons, accuracy, mesh-tolerance, seed, material, pixel-size, physics, cutoff, method. Values are
+those of the options of the same name: a list with commas, or FROM:TO:STEP.
+
+FOLDER gets an image for each combination, named by its values, and sweep.csv with their mean
+yields. Stop when you like: the same command goes on from there. --part 3/16 does every 16th run
+from the third on: a job array does all parts, and 'semsurf join' makes the table.
+All other options are those of 'semsurf simulate'.
+
+Examples:
+  semsurf sweep samples/mesa80.toml --vary energy=500eV,1keV,2keV --vary tilt=0deg:60deg:5deg -o mesa
+  semsurf sweep samples/flat.toml --vary tilt=0:80:10 --accuracy 2% -o yields
+  semsurf sweep samples/mesa80.toml --vary seed=1:16:1 --part 3/16 -o mesa; semsurf join mesa
+  mpirun -n 4 semsurf sweep samples/mesa80.toml --vary tilt=0deg:60deg:5deg -o mesa)";
+
+struct Options {
+  SimulateOptions simulate;
+  std::vector<std::string> vary;
+  std::optional<std::string> output, part;
+  std::vector<std::string> formats;
+};
+
+using Field = std::optional<std::string> SimulateOptions::*;
+using SceneField = std::optional<std::string> SceneOptions::*;
+
+void set(SimulateOptions& o, const std::string& name, const std::string& value) {
+  static const std::map<std::string, Field> own{
+      {"electrons", &SimulateOptions::electrons}, {"accuracy", &SimulateOptions::accuracy},
+      {"mesh-tolerance", &SimulateOptions::mesh_tolerance}, {"seed", &SimulateOptions::seed},
+      {"method", &SimulateOptions::method}};
+  static const std::map<std::string, SceneField> scene{
+      {"energy", &SceneOptions::energy}, {"tilt", &SceneOptions::tilt}, {"azimuth", &SceneOptions::azimuth},
+      {"spot", &SceneOptions::spot}, {"convergence", &SceneOptions::convergence}, {"focus", &SceneOptions::focus},
+      {"working-distance", &SceneOptions::working_distance}, {"current", &SceneOptions::current},
+      {"material", &SceneOptions::material}, {"pixel-size", &SceneOptions::pixel_size},
+      {"physics", &SceneOptions::physics}, {"cutoff", &SceneOptions::cutoff}};
+  if (const auto found = own.find(name); found != own.end()) {
+    o.*found->second = value;
+  } else if (const auto of_scene = scene.find(name); of_scene != scene.end()) {
+    o.scene.*of_scene->second = value;
+  } else {
+    std::vector<std::string> names;
+    for (const auto& [known, field] : own) names.push_back(known);
+    for (const auto& [known, field] : scene) names.push_back(known);
+    const std::string guess = nearest(name, names);
+    throw UsageError("--vary", fmt::format("'{}' cannot be varied", name),
+                     guess.empty() ? "'semsurf sweep --help' lists what can" : fmt::format("Did you mean {}?", guess));
+  }
+}
+
+struct Number {
+  double value = 0;
+  std::string unit;
+};
+
+Number number(const std::string& text, const std::string& subject) {
+  Number out;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), out.value);
+  if (error != std::errc() || !std::isfinite(out.value))
+    throw UsageError(subject, fmt::format("'{}' is not a number with a unit", text), "Write 0deg:60deg:5deg, say");
+  out.unit.assign(end, text.data() + text.size());
+  return out;
+}
+
+// FROM:TO:STEP, the last included where a whole number of steps leads there.
+std::vector<std::string> range(const std::string& text, const std::string& subject) {
+  const std::size_t a = text.find(':'), b = text.find(':', a + 1);
+  if (b == std::string::npos || text.find(':', b + 1) != std::string::npos)
+    throw UsageError(subject, fmt::format("'{}' is no range", text), "Write FROM:TO:STEP, as 0deg:60deg:5deg");
+  const Number from = number(text.substr(0, a), subject), to = number(text.substr(a + 1, b - a - 1), subject),
+               step = number(text.substr(b + 1), subject);
+  if (from.unit != to.unit || from.unit != step.unit)
+    throw UsageError(subject, fmt::format("'{}' mixes units", text), "Give all three of the range the same one");
+  const double count = (to.value - from.value) / step.value;
+  if (!(count >= 0) || !std::isfinite(count) || count > double(most_runs))
+    throw UsageError(subject, fmt::format("'{}' does not lead from the first to the second", text),
+                     "Give a step of the right sign, and at most a million of them");
+  std::vector<std::string> out;
+  for (int i = 0; i <= static_cast<int>(std::floor(count * (1 + 1e-12) + 1e-9)); ++i)
+    out.push_back(fmt::format("{:.12g}{}", from.value + i * step.value, from.unit));
+  return out;
+}
+
+struct Axis {
+  std::string name;
+  std::vector<std::string> values;
+};
+
+Axis parse_axis(const std::string& text) {
+  const std::size_t equals = text.find('=');
+  if (equals == std::string::npos || equals == 0 || equals + 1 == text.size())
+    throw UsageError("--vary", fmt::format("'{}' names no values", text), "Write NAME=VALUE,VALUE or NAME=FROM:TO:STEP");
+  Axis axis{text.substr(0, equals), {}};
+  const std::string subject = "--vary " + axis.name, values = text.substr(equals + 1);
+  for (std::size_t from = 0; from <= values.size();) {
+    const std::size_t comma = std::min(values.find(',', from), values.size());
+    const std::string value = values.substr(from, comma - from);
+    if (value.empty()) throw UsageError(subject, "a value is empty", "Leave out the comma");
+    if (value.find(':') == std::string::npos) axis.values.push_back(value);
+    else for (std::string& one : range(value, subject)) axis.values.push_back(std::move(one));
+    from = comma + 1;
+  }
+  return axis;
+}
+
+// "energy_500eV,tilt_5deg": what no file system minds.
+std::string file_name(const std::vector<Axis>& axes, const std::vector<std::string>& values) {
+  std::string name;
+  for (std::size_t i = 0; i < axes.size(); ++i) {
+    std::string value = values[i];
+    for (char& c : value)
+      if (!std::isalnum(static_cast<unsigned char>(c)) && c != '.' && c != '-' && c != '%') c = '_';
+    name += fmt::format("{}{}_{}", i ? "," : "", axes[i].name, value);
+  }
+  return name;
+}
+
+void parse_part(const std::string& text, workflow::SweepJob& job) {
+  const std::size_t slash = text.find('/');
+  if (slash == std::string::npos) throw UsageError("--part", fmt::format("'{}' is no part", text), "Write 3/16 for the third of 16");
+  job.parts = static_cast<int>(parse_whole(text.substr(slash + 1), "--part", 1, 1'000'000));
+  job.part = static_cast<int>(parse_whole(text.substr(0, slash), "--part", 1, job.parts));
+}
+
+workflow::SweepJob make_sweep(const Options& o, const std::string& command_line) {
+  workflow::SweepJob job;
+  if (!o.output) throw UsageError("--output", "no folder is given", "Add -o sweep");
+  if (o.vary.empty()) throw UsageError("--vary", "nothing varies", "Add --vary energy=500eV,1keV, say");
+  job.folder = *o.output;
+  job.command_line = command_line;
+  if (o.part) parse_part(*o.part, job);
+  std::vector<Axis> axes;
+  std::size_t runs = 1;
+  for (const std::string& text : o.vary) {
+    axes.push_back(parse_axis(text));
+    for (std::size_t i = 0; i + 1 < axes.size(); ++i)
+      if (axes[i].name == axes.back().name)
+        throw UsageError("--vary", fmt::format("'{}' is given twice", axes.back().name), "Put its values into one list");
+    job.axes.push_back(axes.back().name);
+    runs *= axes.back().values.size();
+    if (runs > most_runs) throw UsageError("--vary", "these are more than a million runs", "Give fewer values");
+  }
+  const std::vector<std::string> formats = o.formats.empty() ? std::vector<std::string>{"exr"} : o.formats;
+  for (std::size_t number = 0; number < runs; ++number) {
+    workflow::SweepRun run;
+    std::size_t rest = number;
+    run.values.resize(axes.size());
+    for (std::size_t a = axes.size(); a-- > 0;) {   // the last axis is the fastest
+      run.values[a] = axes[a].values[rest % axes[a].values.size()];
+      rest /= axes[a].values.size();
+    }
+    SimulateOptions options = o.simulate;
+    options.quiet = true;
+    for (std::size_t a = 0; a < axes.size(); ++a) set(options, axes[a].name, run.values[a]);
+    for (const std::string& format : formats)
+      options.outputs.push_back((job.folder / (file_name(axes, run.values) + "." + format)).string());
+    run.make = [options, command_line] { return make_simulate_job(options, command_line); };
+    job.runs.push_back(std::move(run));
+  }
+  // A mistake in the last value should not wait for all the others, unless they are very many.
+  if (runs <= most_tried)
+    for (const workflow::SweepRun& run : job.runs) run.make();
+  else
+    job.runs.back().make();
+  return job;
+}
+
+int sweep(const Options& o, const std::string& command_line) {
+  workflow::SweepJob job;
+  workflow::together(team(), [&] { job = make_sweep(o, command_line); });
+  workflow::SweepSummary s;
+  const bool quiet = o.simulate.quiet || !workflow::leads(team());
+  {
+    InterruptGuard interrupts;
+    ProgressBar bar(!quiet);
+    workflow::SweepListener listener;
+    listener.progress = [&](double done, double total) { bar.show(done, total, nullptr); };
+    listener.done = [&](std::size_t run, const workflow::SimulateSummary& made) {
+      if (quiet) return;
+      bar.clear();
+      std::string line = fmt::format("{:>5}/{}", run + 1, job.runs.size());
+      for (const std::string& value : job.runs[run].values) line += fmt::format("  {:>8}", value);
+      for (std::size_t d = 0; d < made.result.detectors.size(); ++d)
+        line += fmt::format("  {} {:.4f} ± {:.4f}", made.result.detectors[d].name, made.statistics.yields[d].mean,
+                            made.statistics.yields[d].standard_error);
+      fmt::print("{}\n", line);
+      std::fflush(stdout);
+    };
+    listener.warn = [&](const std::string& text) {
+      bar.clear();
+      print_warning(text);
+    };
+    listener.note = [&](const std::string& text) {
+      bar.clear();
+      if (!quiet) print_note(text);
+    };
+    listener.cancel = interrupts.token();
+    s = workflow::run(job, listener, team());
+  }
+  if (!s.complete) {
+    print_note(fmt::format("stopped after {} runs, kept in {}; the same command goes on from there", s.done, job.folder.string()));
+    return exit_interrupted;
+  }
+  if (!quiet) {
+    if (s.found > 0) fmt::print("{} runs were there before\n", s.found);
+    fmt::print("written {}\n", s.table.string());
+  }
+  return s.untrustworthy > 0 ? exit_untrustworthy : 0;
+}
+
+}  // namespace
+
+void add_sweep(CLI::App& app, Action& action, const std::string& command_line) {
+  const auto options = std::make_shared<Options>();
+  CLI::App* sub = app.add_subcommand("sweep", "Simulations over a grid of settings: energies, tilts, focus ...");
+  sub->group("Commands");
+  const char* group = "Sweep";
+  sub->add_option("--vary", options->vary, "What varies, as energy=500eV,1keV or tilt=0deg:60deg:5deg; may be\nrepeated: all combinations")
+      ->type_name("NAME=VALUES")->allow_extra_args(false)->group(group);
+  sub->add_option("-o,--output", options->output, "Folder of the images and the table")->type_name("FOLDER")->group(group);
+  sub->add_option("--format", options->formats, "Of the images, instead of exr; may be repeated")->type_name("exr|tif|png|vti")
+      ->allow_extra_args(false)->group(group);
+  sub->add_option("--part", options->part, "Only part K of N: the third of 16 is 3/16")->type_name("K/N")->group(group);
+  add_simulate_settings(*sub, options->simulate);
+  sub->footer(examples);
+  sub->callback([options, &action, command_line] {
+    action = [options, command_line] { return sweep(*options, command_line); };
+  });
+}
+
+void add_join(CLI::App& app, Action& action) {
+  const auto folders = std::make_shared<std::vector<std::string>>();
+  CLI::App* sub = app.add_subcommand("join", "One table from the parts of a sweep");
+  sub->group("Commands");
+  sub->add_option("FOLDER", *folders, "Where 'semsurf sweep --part' wrote to, one or several")->type_name("FOLDER");
+  sub->footer("Writes sweep.csv into the first folder.\n\nExample:\n  semsurf join mesa");
+  sub->callback([folders, &action] {
+    action = [folders] {
+      const auto table = workflow::join_sweep({folders->begin(), folders->end()});
+      fmt::print("written {}\n", table.string());
+      return 0;
+    };
+  });
+}
+
+}  // namespace surf::cli

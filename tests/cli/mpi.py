@@ -1,0 +1,168 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""mpi.py PROGRAM SAMPLES MPIRUN: several processes give the bytes of one, and go on from what a dead one has left."""
+import json
+import os
+import pathlib
+import random
+import re
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+
+PROGRAM, SAMPLES = (pathlib.Path(word).resolve() for word in sys.argv[1:3])
+MPIRUN = [sys.argv[3], "--allow-run-as-root", "--oversubscribe", "--mca", "btl_base_warn_component_unused", "0"]
+MARK = f"SEMSURF_MPI_TEST={os.getpid()}"
+os.environ["SEMSURF_CACHE"] = "off"
+# This may itself run below mpirun, which its variables would give away.
+for name in [name for name in os.environ if name.startswith(("OMPI_", "PMIX_", "PRTE_", "PMI_"))]:
+    del os.environ[name]
+name, _, value = MARK.partition("=")
+os.environ[name] = value
+
+
+def start(folder, ranks, words):
+    together = [*MPIRUN, "-n", str(ranks)] if ranks else []
+    return subprocess.Popen([*together, PROGRAM, *words], cwd=folder, stdin=subprocess.DEVNULL, text=True,
+                            stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+
+
+def run(folder, ranks, words):
+    process = start(folder, ranks, words)
+    out, err = process.communicate(timeout=280)
+    return process.returncode, out, err
+
+
+def expect(truth, *what):
+    if not truth:
+        sys.exit(" ".join(map(str, what)))
+
+
+def pids():
+    """Of the program's processes that this test has started, by rank."""
+    found = {}
+    for folder in pathlib.Path("/proc").iterdir():
+        try:
+            if folder.name.isdigit() and (folder / "exe").resolve() == PROGRAM:
+                environment = (folder / "environ").read_bytes().decode(errors="replace").split("\0")
+                rank = [text for text in environment if text.startswith("OMPI_COMM_WORLD_RANK=")]
+                if MARK in environment and rank:
+                    found[int(rank[0].partition("=")[2])] = int(folder.name)
+        except OSError:
+            pass
+    return found
+
+
+def sameness(folder):
+    jobs = {"direct": ["--method", "direct", "--electrons", "12"], "replay": ["--method", "replay", "--electrons", "40"],
+            "accuracy": ["--method", "replay", "--accuracy", "20%", "--channels", "electrons,model"],
+            "direct_accuracy": ["--method", "direct", "--accuracy", "50%"]}
+    for job, options in jobs.items():
+        words = ["simulate", SAMPLES / "cube.toml", "--size", "40x40", "--threads", "1", *options]
+        code, _, err = run(folder, 0, [*words, "-o", f"{job}.exr"])
+        expect(code == 0, job, "failed alone:", err)
+        for ranks in (1, 2, 3, 4) if job == "replay" else (3,):
+            code, out, err = run(folder, ranks, [*words, "-o", f"{job}_{ranks}.exr"])
+            expect(code == 0, job, "failed with", ranks, "ranks:", err)
+            expect(out.count("written") == 1, job, "was not told once:", out)
+            expect((folder / f"{job}_{ranks}.exr").read_bytes() == (folder / f"{job}.exr").read_bytes(),
+                   job, "gave other bytes with", ranks, "ranks")
+            record = json.loads((folder / f"{job}_{ranks}.run.json").read_text())
+            if ranks == 1:
+                expect("ranks" not in record, "one process made a team")
+                continue
+            expect([r["rank"] for r in record["ranks"]] == list(range(ranks)), record["ranks"])
+            expect(sum(r["primaries"] for r in record["ranks"]) == record["primaries"], record["ranks"])
+            expect(all(r["threads"] == 1 and r["host"] for r in record["ranks"][1:]), record["ranks"])
+            expect(sum(r["units"] for r in record["ranks"][1:]) > 0, "nobody helped", record["ranks"])
+
+
+def errors(folder):
+    for words, code, text in ((["simulate", SAMPLES / "cube.toml", "--electrons", "0", "-o", "x.exr"], 2, "--electrons"),
+                              (["simulate", "none.toml", "-o", "x.exr"], 3, "none.toml"),
+                              (["simulate", SAMPLES / "cube.toml", "-o", "x.gif"], 2, "x.gif"),
+                              (["simulate", SAMPLES / "cube.toml", "--deposit", "8", "-o", "x.exr"], 2, "--deposit")):
+        ended, _, err = run(folder, 2, words)
+        expect(ended == code, words, "ended with", ended, err)
+        expect(err.count("semsurf: error") == 1 and text in err, words, "said", err)
+    expect(not list(folder.glob("x.*")), "something was written")
+    # What several cannot share one does.
+    code, out, err = run(folder, 2, ["info", SAMPLES / "cube.toml"])
+    expect(code == 0 and out.count("100 nm cube") == 1 and "one process" in err, out, err)
+
+
+def faults(folder):
+    words = ["simulate", SAMPLES / "mesa80.toml", "--method", "direct", "--electrons", "60", "--size", "48x48",
+             "--threads", "1", "--checkpoint-every", "0.2s"]
+    code, _, err = run(folder, 0, [*words, "-o", "whole.exr"])
+    expect(code == 0, err)
+    chance = random.Random(11)
+    for number, (ranks, victim, sign) in enumerate(((2, 1, signal.SIGKILL), (3, 2, signal.SIGKILL), (2, 0, signal.SIGKILL),
+                                                    (2, None, signal.SIGTERM))):
+        output = f"fault_{number}.exr"
+        process = start(folder, ranks, [*words, "-o", output])
+        # The checkpoint begins after a tenth of its time at the earliest: something is there to go on from.
+        limit = time.monotonic() + 120
+        while process.poll() is None and time.monotonic() < limit and not list(folder.glob(f"fault_{number}.*.checkpoint")):
+            time.sleep(0.02)
+        expect(process.poll() is None, "it was over before anybody died:", process.communicate())
+        time.sleep(chance.uniform(0, 0.5))
+        if victim is None:
+            process.send_signal(sign)
+        else:
+            there = pids()
+            expect(victim in there, "rank", victim, "is not among", there)
+            os.kill(there[victim], sign)
+        _, err = process.communicate(timeout=120)
+        expect(process.returncode != 0, "nobody noticed that rank", victim, "died")
+        expect(not (folder / output).exists() or json.loads((folder / f"fault_{number}.run.json").read_text())["complete"] is False,
+               "an image was left as if it were whole")
+        expect(list(folder.glob(f"fault_{number}.*.checkpoint")), "no checkpoint was left:", err)
+        code, out, err = run(folder, 4 - ranks, [*words, "-o", output])
+        expect(code == 0, "it could not be resumed:", err)
+        expect(re.search("done before", out), "it began anew:", out, err)
+        expect((folder / output).read_bytes() == (folder / "whole.exr").read_bytes(), "fault", number, "changed the bytes")
+    limit = time.monotonic() + 20
+    while pids() and time.monotonic() < limit:
+        time.sleep(0.1)
+    expect(not pids(), "processes are left")
+
+
+def sweeps(folder):
+    words = ["sweep", SAMPLES / "flat.toml", "--vary", "energy=500eV,1keV", "--vary", "tilt=0deg:60deg:30deg", "--size", "8x8",
+             "--electrons", "20", "--threads", "1"]
+    code, out, err = run(folder, 0, [*words, "-o", "alone"])
+    expect(code == 0 and out.count("SE ") == 6, out, err)
+    table = (folder / "alone" / "sweep.csv").read_text()
+    code, out, err = run(folder, 3, [*words, "-o", "together"])
+    expect(code == 0 and (folder / "together" / "sweep.csv").read_text() == table, "several ranks gave another table", err)
+    for part in (1, 3):
+        code, _, err = run(folder, 0, [*words, "--part", f"{part}/3", "-o", "parts"])
+        expect(code == 0, err)
+    code, _, err = run(folder, 0, ["join", "parts"])
+    expect(code == 3 and "2 of 6 runs are missing: 2, 5" in err, err)
+    code, _, err = run(folder, 0, [*words, "--part", "2/3", "-o", "elsewhere"])
+    expect(code == 0, err)
+    code, _, err = run(folder, 0, ["join", "parts", "elsewhere"])
+    expect(code == 0 and (folder / "parts" / "sweep.csv").read_text() == table, "the parts are not the whole", err)
+    code, out, err = run(folder, 0, [*words, "-o", "alone"])
+    expect(code == 0 and "6 runs were there before" in out, out, err)
+    code, out, err = run(folder, 0, [*words, "--seed", "2", "-o", "alone"])
+    expect(code == 0 and "there before" not in out, out, err)
+    code, _, err = run(folder, 0, ["join", "alone", "parts"])
+    expect(code == 0, "two runs of one sweep were refused", err)
+    for bad, text in ((["--vary", "tilt=0deg:60:5deg"], "mixes units"), (["--vary", "tlt=1"], "Did you mean tilt"),
+                      (["--vary", "energy"], "names no values"), (["--vary", "tilt=0,95"], "--tilt"),
+                      (["--vary", "seed=1,2", "--part", "3/2"], "--part"), (["--vary", "tilt=5:0:1"], "does not lead")):
+        code, _, err = run(folder, 0, ["sweep", SAMPLES / "flat.toml", *bad, "-o", "bad"])
+        expect(code == 2 and text in err, bad, "said", err)
+    expect(not (folder / "bad").exists(), "something was written")
+
+
+with tempfile.TemporaryDirectory(prefix="semsurf-test-") as place:
+    for case in sys.argv[4:] or ("sameness", "errors", "sweeps", "faults"):
+        folder = pathlib.Path(place) / case
+        folder.mkdir()
+        globals()[case](folder)

@@ -1,0 +1,197 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "surf/workflow/sweep_job.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <span>
+
+#include "job_identity.h"
+#include "provenance.h"
+#include "surf/core/error.h"
+#include "surf/core/units.h"
+#include "surf/io/files.h"
+
+namespace surf::workflow {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+std::string hash_of(const std::string& text) { return io::sha256_of(std::as_bytes(std::span(text))).substr(0, 32); }
+
+// Of which sweep a record is: its axes and all values.
+std::string sweep_identity(const SweepJob& job) {
+  std::string text = fmt::format("{}\n", fmt::join(job.axes, " "));
+  for (const SweepRun& run : job.runs) text += fmt::format("{}\n", fmt::join(run.values, " "));
+  return hash_of(text);
+}
+
+std::string run_identity(const SimulateJob& job) {
+  const mc::Scan scan = resolve_scan(job.scene.scan, mc::extent(job.scene.specimen), job.scene.beam);
+  Identity identity = identity_of(job, provenance(job, scan, {}));
+  if (job.scene.accuracy) identity["accuracy"] = format_exact(*job.scene.accuracy);
+  if (job.scene.method) identity["method"] = mc::name(*job.scene.method);
+  for (const mc::Detector& d : job.scene.detectors) identity["detectors"] += mc::format_detector(d) + " ";
+  for (const auto& output : job.outputs) identity["outputs"] += output.filename().string() + " ";
+  for (const std::string& channel : job.extras.channels) identity["channels"] += channel + " ";
+  return fingerprint(identity);
+}
+
+fs::path record_path(const fs::path& folder, std::size_t number) {
+  return folder / "records" / fmt::format("{}.json", number + 1);
+}
+
+std::optional<Json> read_record(const fs::path& path) {
+  std::error_code ignored;
+  if (!fs::is_regular_file(path, ignored)) return std::nullopt;
+  try {
+    return Json::parse(io::read_file(path));
+  } catch (const Json::exception&) {
+    return std::nullopt;   // damaged: done again
+  }
+}
+
+bool is_done(const fs::path& folder, std::size_t number, const SimulateJob& run, const std::string& sweep) {
+  const auto record = read_record(record_path(folder, number));
+  if (!record || record->value("sweep", "") != sweep || record->value("run", "") != run_identity(run)) return false;
+  std::error_code ignored;
+  return std::all_of(run.outputs.begin(), run.outputs.end(),
+                     [&](const fs::path& output) { return fs::is_regular_file(output, ignored); });
+}
+
+void write_record(const SweepJob& job, std::size_t number, const SimulateJob& run, const std::string& sweep,
+                  const SimulateSummary& s) {
+  Json record{{"sweep", sweep}, {"run", run_identity(run)}, {"number", number + 1}, {"of", job.runs.size()},
+              {"axes", job.axes}, {"values", job.runs[number].values}, {"file", run.outputs.front().filename().string()},
+              {"missed", s.statistics.missed}};
+  for (std::size_t d = 0; d < s.result.detectors.size(); ++d)
+    record["yields"].push_back({{"detector", s.result.detectors[d].name},
+                                {"mean", s.statistics.yields[d].mean},
+                                {"standard_error", s.statistics.yields[d].standard_error}});
+  io::write_text(record_path(job.folder, number), record.dump(1) + "\n");
+}
+
+std::string quoted(const std::string& text) {
+  return text.find(',') == std::string::npos ? text : '"' + text + '"';
+}
+
+// Records of one sweep, by number.
+std::string table_of(const std::map<std::size_t, Json>& records) {
+  if (records.empty()) return "";
+  const Json& first = records.begin()->second;
+  std::string text = "run";
+  for (const auto& axis : first["axes"]) text += fmt::format(",{}", axis.get<std::string>());
+  text += ",file";
+  for (const auto& yield : first["yields"]) {
+    const std::string name = yield["detector"];
+    text += fmt::format(",{0},{0}.stderr", name);
+  }
+  text += ",pixels_missed\n";
+  for (const auto& [number, record] : records) {
+    text += std::to_string(number);
+    for (const auto& value : record["values"]) text += fmt::format(",{}", quoted(value.get<std::string>()));
+    text += fmt::format(",{}", quoted(record["file"].get<std::string>()));
+    for (const auto& yield : record["yields"])
+      text += fmt::format(",{:.9g},{:.4g}", yield["mean"].get<double>(), yield["standard_error"].get<double>());
+    text += fmt::format(",{}\n", record["missed"].get<std::int64_t>());
+  }
+  return text;
+}
+
+}  // namespace
+
+SweepSummary run(const SweepJob& job, const SweepListener& listener, Team* team) {
+  if (job.runs.empty()) throw UsageError("--vary", "there is nothing to run", "Give --vary energy=500eV,1keV, say");
+  if (job.parts < 1 || job.part < 1 || job.part > job.parts)
+    throw UsageError("--part", fmt::format("{}/{} is no part", job.part, job.parts), "Write 3/16 for the third of 16");
+  const std::string sweep = sweep_identity(job);
+  SweepSummary summary;
+  summary.table = job.folder / (job.parts == 1 ? std::string("sweep.csv")
+                                               : fmt::format("sweep.{}-of-{}.csv", job.part, job.parts));
+  if (leads(team)) io::check_writable(summary.table);
+  std::vector<std::size_t> mine;
+  for (std::size_t i = static_cast<std::size_t>(job.part) - 1; i < job.runs.size(); i += static_cast<std::size_t>(job.parts))
+    mine.push_back(i);
+  for (std::size_t k = 0; k < mine.size(); ++k) {
+    const std::size_t number = mine[k];
+    SimulateJob simulation;
+    // Whoever leads has looked: others may see the folder later than it.
+    std::string there = "no";
+    together(team, [&] {
+      simulation = job.runs[number].make();
+      if (leads(team) && is_done(job.folder, number, simulation, sweep)) there = "yes";
+    });
+    if (team) team->broadcast(there);
+    if (there == "yes") {
+      ++summary.found;
+      ++summary.done;
+      continue;
+    }
+    const auto show = [&](double done, double total) {
+      if (listener.progress && total > 0)
+        listener.progress(static_cast<double>(k) + done / total, static_cast<double>(mine.size()));
+    };
+    const SimulateSummary s = run(simulation, show, listener.cancel, listener.warn, listener.note, {}, team);
+    std::string complete = s.result.complete ? "yes" : "no";
+    if (team) team->broadcast(complete);
+    if (complete == "no") {
+      summary.complete = false;
+      return summary;
+    }
+    ++summary.done;
+    if (!leads(team)) continue;
+    write_record(job, number, simulation, sweep, s);
+    if (s.statistics.missed > 0) ++summary.untrustworthy;
+    if (listener.done) listener.done(number, s);
+  }
+  if (!leads(team)) return summary;
+  std::map<std::size_t, Json> records;
+  for (const std::size_t number : mine) records[number + 1] = *read_record(record_path(job.folder, number));
+  io::write_text(summary.table, table_of(records));
+  return summary;
+}
+
+fs::path join_sweep(const std::vector<fs::path>& folders) {
+  if (folders.empty()) throw UsageError("FOLDER", "no folder is named", "Name those that 'semsurf sweep --part' wrote to");
+  std::map<std::size_t, Json> records;
+  std::string sweep, from;
+  std::size_t all = 0;
+  for (const fs::path& folder : folders) {
+    std::error_code ignored;
+    if (!fs::is_directory(folder / "records", ignored))
+      throw FileError(folder.string(), "there are no records of a sweep", "Name a folder that 'semsurf sweep' wrote to");
+    for (const auto& entry : fs::directory_iterator(folder / "records")) {
+      const auto record = read_record(entry.path());
+      if (!record || !record->contains("sweep")) continue;
+      if (sweep.empty()) {
+        sweep = (*record)["sweep"];
+        all = (*record)["of"];
+        from = folder.string();
+      }
+      if ((*record)["sweep"] != sweep)
+        throw InvalidInput(folder.string(), fmt::format("it holds another sweep than {}", from),
+                           "Join the parts of one sweep: the same --vary in the same order");
+      records[(*record)["number"]] = *record;
+    }
+  }
+  std::vector<std::size_t> missing;
+  for (std::size_t i = 1; i <= all; ++i)
+    if (!records.contains(i)) missing.push_back(i);
+  if (missing.empty() && !records.empty()) {
+    const fs::path table = folders.front() / "sweep.csv";
+    io::write_text(table, table_of(records));
+    return table;
+  }
+  const std::size_t shown = std::min<std::size_t>(missing.size(), 10);
+  throw InvalidInput(from.empty() ? folders.front().string() : from,
+                     fmt::format("{} of {} runs are missing: {}{}", missing.size(), all,
+                                 fmt::join(std::span(missing).first(shown), ", "), shown < missing.size() ? " ..." : ""),
+                     "Run their parts again, which does only those, or name their folders too");
+}
+
+}  // namespace surf::workflow
