@@ -40,6 +40,7 @@ class DirectWorker : public UnitWorker {
         const std::uint64_t number = share_.number(x, y);
         const std::int64_t end = std::min(share_.of(x, y), unit.first_electron + unit.electrons);
         for (std::int64_t e = unit.first_electron; e < end; ++e) {
+          check();
           RandomStream random(options_.seed, number, static_cast<std::uint64_t>(e));
           if (observer) observer->primary(static_cast<std::int64_t>(number), e);
           const Gun::Start start = gun_.primary(x, y, random);

@@ -104,11 +104,11 @@ class Workshop {
     const std::size_t least = library_size(options, most_primaries);
     if (!get(least)) return false;
     if (!(options.accuracy > 0)) return true;
-    measure_yields(static_cast<int>(scene.materials().size()));
+    measure_yields(static_cast<int>(scene.materials().size()), cancel);
     const std::size_t wanted = std::min(library_size(options, most_primaries, yields_),
                                         cascades_that_fit(options.library_memory));
     if (wanted > least && !get(wanted)) return false;
-    controls_.emplace(*scene_, options, libraries_);
+    controls_.emplace(*scene_, options, libraries_, cancel);
     return true;
   }
 
@@ -126,13 +126,13 @@ class Workshop {
 
  private:
   // On the plane where counts scatter most for their mean: the one across the beam.
-  void measure_yields(int materials) {
+  void measure_yields(int materials, const CancelToken* cancel) {
     constexpr std::size_t pilot = 5 * CascadeLibrary::page_cascades;
     Libraries first;
     for (const auto& library : libraries_)
       first.push_back(std::make_shared<CascadeLibrary>(
           library->first(pilot / CascadeLibrary::page_cascades)));
-    PlaneControls controls(*scene_, *options_, first);
+    PlaneControls controls(*scene_, *options_, first, cancel);
     for (int m = 0; m < materials; ++m) {
       const auto match = controls.match(m, -direction(scene_->beam), false);
       for (const Counts& sums : match.control->sums) {
@@ -227,7 +227,14 @@ SimulationResult simulate(const Scene& scene, const SimulationOptions& options,
   Collector collector(scene.scan(), options);
   SimulationResult& result = collector.result;
   Workshop workshop;
-  if (!workshop.prepare(scene, options, libraries, plan.most(), {}, cancel)) {
+  const auto ready = [&] {
+    try {
+      return workshop.prepare(scene, options, libraries, plan.most(), {}, cancel);
+    } catch (const Interrupted&) {
+      return false;
+    }
+  };
+  if (!ready()) {
     result.complete = false;
     return std::move(result);
   }
@@ -257,7 +264,12 @@ SimulationResult simulate(const Scene& scene, const SimulationOptions& options,
     if (!bench)
       bench = std::make_unique<Bench>(Bench{workshop.worker(),
                                             observers ? observers(w) : nullptr});
-    bench->worker->simulate(unit, bench->observer, tally);
+    bench->worker->cancel = observers ? nullptr : cancel;   // what they have seen of a unit has to count
+    try {
+      bench->worker->simulate(unit, bench->observer, tally);
+    } catch (const Interrupted&) {
+      return;   // the unit is left out, and done anew by who resumes
+    }
     const std::lock_guard lock(merging);
     merge();
     if (progress) progress(done, plan.total());
