@@ -48,6 +48,7 @@ class DirectSpendingWorker : public UnitWorker {
   template <class Loop, class Keep>
   void follow(Loop& transport, Pixel& p, std::int64_t primaries, PixelTally* tally, const Keep& keep) {
     for (const std::int64_t end = p.used + primaries; p.used < end; ++p.used) {
+      check();
       const bool hit = primaries_.run(transport, p.x, p.y, share_.number(p.x, p.y),
                                       static_cast<std::uint64_t>(p.used), [&](std::size_t d, int counted) {
                                         p.counted[d].add(counted);

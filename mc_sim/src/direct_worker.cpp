@@ -36,6 +36,7 @@ class DirectWorker : public UnitWorker {
         const std::uint64_t number = share_.number(x, y);
         const std::int64_t end = std::min(share_.of(x, y), unit.first_electron + unit.electrons);
         for (std::int64_t e = unit.first_electron; e < end; ++e) {
+          check();
           if (observer) observer->primary(static_cast<std::int64_t>(number), e);
           const bool hit = primaries_.run(
               transport, x, y, number, static_cast<std::uint64_t>(e),

@@ -70,8 +70,8 @@ struct PlaneControls::Slot {
 };
 
 PlaneControls::PlaneControls(const Scene::Impl& scene, const SimulationOptions& options,
-                             const Libraries& libraries)
-    : scene_(scene), options_(options), libraries_(libraries),
+                             const Libraries& libraries, const CancelToken* cancel)
+    : scene_(scene), options_(options), libraries_(libraries), cancel_(cancel),
       axial_(axial(scene, options.detectors)), against_(-direction(scene.beam)) {
   // The smallest rotation of x and y with -z onto the beam.
   const double k = 1.0 / (1.0 + against_.z);
@@ -172,6 +172,7 @@ std::shared_ptr<const PlaneControl> PlaneControls::make(int material, const Vec3
   int state = 0;
   if (geometry.crossing(against_, beam, HUGE_VAL, state, entry) != Crossing::surface) return control;
   for (std::size_t i = 0; i < cascades_; ++i) {
+    if (cancel_ && cancel_->cancelled()) throw Interrupted();
     if (i + 1 < cascades_) replay.fetch(material, i + 1);
     replay.run_from(entry, beam, scene_.beam.energy_ev, 0,
                     {options_.seed, number, i, i, azimuth(options_.seed, i)});

@@ -28,7 +28,7 @@ struct PlaneControl {
 class PlaneControls {
  public:
   PlaneControls(const Scene::Impl& scene, const SimulationOptions& options,
-                const Libraries& libraries);
+                const Libraries& libraries, const CancelToken* cancel);
   ~PlaneControls();
 
   /// The control for a surface of this material and outward normal, and the azimuth, in turns, by
@@ -38,6 +38,7 @@ class PlaneControls {
     std::shared_ptr<const PlaneControl> control;
     double azimuth = 0;
   };
+  /// Throws Interrupted.
   Match match(int material, const Vec3& normal, bool exact);
 
   /// Cascades of a library.
@@ -55,6 +56,7 @@ class PlaneControls {
   const Scene::Impl& scene_;
   const SimulationOptions& options_;
   const Libraries& libraries_;
+  const CancelToken* cancel_;        // or null; making a control lasts seconds
   bool axial_;                       // detectors and beam do not care for azimuths
   Vec3 across_, up_, against_;       // the beam's frame; `against_` points back at the gun
   std::size_t cascades_ = 0;

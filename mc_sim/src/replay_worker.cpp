@@ -59,6 +59,7 @@ class ReplayWorker : public UnitWorker {
   }
 
   void serve(std::size_t i, std::uint64_t electron, std::size_t cascade, UnitTally& out) {
+    check();
     const Pixel& p = pixels_[i];
     Gun::Start start = p.site.middle;
     if (!p.site.single) {

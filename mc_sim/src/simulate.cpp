@@ -109,12 +109,12 @@ class Workshop {
     const std::size_t least = library_size(options, most_primaries);
     if (!get(least)) return false;
     if (!(options.accuracy > 0)) return true;
-    measure_yields(static_cast<int>(scene.materials().size()));
+    measure_yields(static_cast<int>(scene.materials().size()), cancel);
     const double share = options.planar_control && only_planes() ? all_of_the_variance : usual_share_of_variance;
     const std::size_t wanted = std::min(library_size(options, most_primaries, yields_, share),
                                         cascades_that_fit(options.library_memory));
     if (wanted > least && !get(wanted)) return false;
-    controls_.emplace(*scene_, options, libraries_);
+    controls_.emplace(*scene_, options, libraries_, cancel);
     return true;
   }
 
@@ -134,13 +134,13 @@ class Workshop {
 
  private:
   // On the plane where counts scatter most for their mean: the one across the beam.
-  void measure_yields(int materials) {
+  void measure_yields(int materials, const CancelToken* cancel) {
     constexpr std::size_t pilot = 5 * CascadeLibrary::page_cascades;
     Libraries first;
     for (const auto& library : libraries_)
       first.push_back(std::make_shared<CascadeLibrary>(
           library->first(pilot / CascadeLibrary::page_cascades)));
-    PlaneControls controls(*scene_, *options_, first);
+    PlaneControls controls(*scene_, *options_, first, cancel);
     for (int m = 0; m < materials; ++m) {
       const auto match = controls.match(m, -direction(scene_->beam), false);
       for (const Counts& sums : match.control->sums) {
@@ -231,20 +231,32 @@ void run_all(const UnitPlan& plan, Workshop& workshop, int threads, const Observ
       if (merging.recall(i)) return;
     }
     Bench& bench = bench_of(benches, w, workshop, observers);
+    bench.worker->cancel = observers ? nullptr : cancel;   // what they have seen of a unit has to count
     UnitTally tally;
-    bench.worker->simulate(plan.unit(i), bench.observer, tally);
+    try {
+      bench.worker->simulate(plan.unit(i), bench.observer, tally);
+    } catch (const Interrupted&) {
+      return;   // the unit is left out, and done anew by who resumes
+    }
     const std::lock_guard lock(merging.mutex);
     merging.give(i, tally);
   });
 }
 
 // Threads of this process take units until there are none.
-void take_and_give(const UnitPlan& plan, Workshop& workshop, int threads, const TakeUnit& take, const GiveTally& give) {
+void take_and_give(const UnitPlan& plan, Workshop& workshop, int threads, const CancelToken* cancel,
+                   const TakeUnit& take, const GiveTally& give) {
   Benches benches(static_cast<std::size_t>(threads));
   parallel_for(static_cast<std::size_t>(threads), threads, [&](std::size_t, int w) {
     while (const auto number = take()) {
+      UnitWorker& worker = *bench_of(benches, w, workshop, {}).worker;
+      worker.cancel = cancel;
       UnitTally tally;
-      bench_of(benches, w, workshop, {}).worker->simulate(plan.unit(*number), nullptr, tally);
+      try {
+        worker.simulate(plan.unit(*number), nullptr, tally);
+      } catch (const Interrupted&) {
+        return;   // as in run_all
+      }
       give(*number, tally);
     }
   });
@@ -255,7 +267,7 @@ void share(Crew& crew, const UnitPlan& plan, Workshop& workshop, int threads, Me
            const CancelToken* cancel) {
   if (!crew.leads()) {
     crew.follow([&](const TakeUnit& take, const GiveTally& give) {
-      take_and_give(plan, workshop, threads, take, give);
+      take_and_give(plan, workshop, threads, cancel, take, give);
     }, threads, cancel);
     return;
   }
@@ -280,7 +292,7 @@ void share(Crew& crew, const UnitPlan& plan, Workshop& workshop, int threads, Me
     // The crew is led from here: its messages may have to come from the thread that began.
     const std::jthread at_work([&] {
       try {
-        take_and_give(plan, workshop, threads, take, give);
+        take_and_give(plan, workshop, threads, cancel, take, give);
       } catch (...) {
         own = std::current_exception();
         end();
@@ -368,7 +380,14 @@ SimulationResult simulate(const Scene& scene, const SimulationOptions& options,
   Collector collector(crew && !crew->leads() ? one_pixel() : scene.scan(), options);
   SimulationResult& result = collector.result;
   Workshop workshop;
-  if (!workshop.prepare(scene, options, libraries, plan.most(), {}, cancel)) {
+  const auto ready = [&] {
+    try {
+      return workshop.prepare(scene, options, libraries, plan.most(), {}, cancel);
+    } catch (const Interrupted&) {
+      return false;
+    }
+  };
+  if (!ready()) {
     result.complete = false;
     return std::move(result);
   }

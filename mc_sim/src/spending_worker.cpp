@@ -61,6 +61,7 @@ class SpendingWorker : public UnitWorker {
   int height() const { return unit_.y1 - unit_.y0; }
 
   void look(std::size_t i) {
+    check();   // the first pixel on a plane waits for its control
     Pixel& p = sites_[i];
     p.x = unit_.x0 + static_cast<int>(i) % width();
     p.y = unit_.y0 + static_cast<int>(i) / width();
@@ -105,6 +106,7 @@ class SpendingWorker : public UnitWorker {
   // cascade on the plane.
   template <class Take>
   void run(Pixel& p, std::uint64_t electron, std::size_t cascade, const Take& take) {
+    check();
     ReplayedPrimary primary{options_.seed, p.number, electron, cascade, 0};
     const PlaneControl* control = p.match.control.get();
     if (control) {

@@ -7,6 +7,8 @@
 #include <vector>
 
 #include "dose.h"
+#include "surf/core/error.h"
+#include "surf/core/progress.h"
 #include "surf/mc/cascade_library.h"
 #include "surf/mc/observer.h"
 #include "surf/mc/scene.h"
@@ -22,8 +24,16 @@ class UnitWorker {
  public:
   virtual ~UnitWorker() = default;
 
-  /// `out` is empty at first. `observer` may be null.
+  /// `out` is empty at first. `observer` may be null. Throws Interrupted, with `out` of no use.
   virtual void simulate(const WorkUnit& unit, Observer* observer, UnitTally& out) = 0;
+
+  /// Looked at with each primary: a unit takes seconds where electrons are fast. May be null.
+  const CancelToken* cancel = nullptr;
+
+ protected:
+  void check() const {
+    if (cancel && cancel->cancelled()) throw Interrupted();
+  }
 };
 
 /// Libraries by material; null where electrons are followed directly.

@@ -38,20 +38,26 @@ std::string labelled(const std::string& text) {
   return out.append(from, text.end());
 }
 
+std::string named(const std::string& subject, const Labels& names) {
+  for (const auto& [beginning, label] : names)
+    if (subject.starts_with(beginning)) return label;
+  return labelled(subject);
+}
+
 template <class Kind>
-[[noreturn]] void again(const Kind& error) {
-  throw Kind(labelled(error.subject()), labelled(error.reason()), labelled(error.remedy()));
+[[noreturn]] void again(const Kind& error, const Labels& names) {
+  throw Kind(named(error.subject(), names), labelled(error.reason()), labelled(error.remedy()));
 }
 
 }  // namespace
 
-void with_labels(const std::function<void()>& request) {
+void with_labels(const std::function<void()>& request, const Labels& names) {
   try {
     request();
   } catch (const UsageError& error) {
-    again(error);
+    again(error, names);
   } catch (const InvalidInput& error) {
-    again(error);
+    again(error, names);
   }
 }
 

@@ -16,6 +16,7 @@
 #include <utility>
 
 #include "attempt.h"
+#include "checks.h"
 #include "convert/table.h"
 #include "labels.h"
 #include "pipeline.h"
@@ -76,6 +77,11 @@ int vtkSemsurfCalibrate::RequestData(vtkInformation*, vtkInformationVector** inp
       }
       images.real = std::move(real.values);
       CalibrationOptions options;
+      pv::need_number(this->Offset, "Offset");
+      pv::need_number(this->Black, "Black");
+      pv::need_number(this->White, "White");
+      if (this->Saturation && this->Black >= this->White)
+        throw UsageError("White", fmt::format("{} is not above Black, {}", this->White, this->Black), "Give 255, say");
       if (this->FixOffset) options.offset = this->Offset;
       if (this->Saturation) options.black = this->Black, options.white = this->White;
       Calibration c;

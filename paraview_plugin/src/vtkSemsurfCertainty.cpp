@@ -8,9 +8,11 @@
 #include <vtkObjectFactory.h>
 #include <vtkPointData.h>
 
+#include <cmath>
 #include <utility>
 
 #include "attempt.h"
+#include "checks.h"
 #include "convert/tip.h"
 #include "pipeline.h"
 #include "surf/afm/certainty.h"
@@ -41,10 +43,10 @@ void add_map(vtkImageData* image, const Grid<unsigned char>& level) {
 int vtkSemsurfCertainty::RequestData(vtkInformation*, vtkInformationVector** inputs,
                                      vtkInformationVector* outputs) {
   return pv::attempt(this, [&] {
-    if (!(this->Sigmas > 0))
+    pv::need_number(this->Noise, "Noise");
+    if (!(this->Sigmas > 0 && std::isfinite(this->Sigmas)))
       throw UsageError("Sigmas", fmt::format("{} is not above 0", this->Sigmas), "Give 3");
-    if (this->Distance < 0)
-      throw UsageError("Distance", fmt::format("{} nm are below 0", this->Distance), "Give a length, or 0");
+    pv::need_length(this->Distance, "Distance");
     if (this->Neighbourhood < -1 || this->Neighbourhood > 100)
       throw UsageError("Neighbourhood", fmt::format("{} is not in -1 to 100", this->Neighbourhood),
                        "Give -1");

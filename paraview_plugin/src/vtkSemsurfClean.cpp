@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "attempt.h"
+#include "checks.h"
 #include "pipeline.h"
 #include "surf/afm/certainty.h"
 #include "surf/afm/clean.h"
@@ -38,9 +39,7 @@ int vtkSemsurfClean::RequestData(vtkInformation*, vtkInformationVector** inputs,
     const int spikes = checked_width(this->SpikeWidth, "Spike Width");
     const int median = checked_width(this->MedianWidth, "Median Width");
     const int closing = checked_width(this->ClosingWidth, "Closing Width");
-    if (this->SpikeLimit < 0)
-      throw UsageError("Spike Limit", fmt::format("{} nm are below 0", this->SpikeLimit),
-                       "Give a length, or 0");
+    pv::need_length(this->SpikeLimit, "Spike Limit");
     std::string name;
     HeightField field = this->Heights(inputs, name);
     pv::work(this, [&](const Watch& watch) {

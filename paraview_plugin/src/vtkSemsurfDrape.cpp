@@ -8,6 +8,7 @@
 #include <vtkObjectFactory.h>
 #include <vtkPointData.h>
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 #include <vector>
@@ -28,6 +29,20 @@ int vtkSemsurfDrape::FillInputPortInformation(int port, vtkInformation* info) {
   info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), port == 0 ? "vtkPolyData" : "vtkImageData");
   return 1;
 }
+
+namespace {
+
+/// Pixels reach half a pixel beyond their centres: there, at the image's rim, the nearest one holds.
+Point2 onto_centres(const PlacedImage& image, Point2 place_nm) {
+  const auto along = [](double nm, double origin_nm, double pitch_nm, int count) {
+    const double at = (nm - origin_nm) / pitch_nm, last = count - 1;
+    return at < -0.5 || at > last + 0.5 ? nm : origin_nm + std::clamp(at, 0.0, last) * pitch_nm;
+  };
+  return {along(place_nm.x, image.origin_x_nm, image.pitch_x_nm, image.values.width()),
+          along(place_nm.y, image.origin_y_nm, image.pitch_y_nm, image.values.height())};
+}
+
+}  // namespace
 
 int vtkSemsurfDrape::RequestUpdateExtent(vtkInformation*, vtkInformationVector** inputs, vtkInformationVector*) {
   pv::request_whole(inputs, 2);
@@ -55,7 +70,7 @@ int vtkSemsurfDrape::RequestData(vtkInformation*, vtkInformationVector** inputs,
           throw InvalidInput("Input", fmt::format("point {} has no place: ({}, {}, {})", i, p[0], p[1], p[2]),
                              "'Clean to Grid', 'Threshold' or 'Clip' takes such points out");
         const Point2 q = to_image({p[0], p[1]});
-        values[i] = static_cast<float>(sample_image(image, q));
+        values[i] = static_cast<float>(sample_image(image, onto_centres(image, q)));
         // A texture's corners are the outer edges of its pixels.
         places[2 * i] = static_cast<float>(((q.x - image.origin_x_nm) / image.pitch_x_nm + 0.5) / image.values.width());
         places[2 * i + 1] = static_cast<float>(((q.y - image.origin_y_nm) / image.pitch_y_nm + 0.5) / image.values.height());

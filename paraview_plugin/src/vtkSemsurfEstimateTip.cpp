@@ -14,6 +14,7 @@
 #include <utility>
 
 #include "attempt.h"
+#include "checks.h"
 #include "convert/table.h"
 #include "convert/tip.h"
 #include "pipeline.h"
@@ -115,11 +116,14 @@ void vtkSemsurfEstimateTip::Check() const {
                      "Give 21 where in doubt");
   if (this->Answer < Sweep || this->Answer > Blind)
     throw UsageError("Answer", fmt::format("there is no answer {}", this->Answer), "Choose 0 to 3");
-  if (this->Threshold < 0 || this->ApexTolerance < 0 || this->Noise < 0)
-    throw UsageError(this->Noise < 0       ? "Noise"
-                     : this->Threshold < 0 ? "Threshold"
-                                           : "Apex Tolerance",
-                     "it is below 0", "Give a length in nm, or 0");
+  pv::need_length(this->Noise, "Noise");
+  pv::need_length(this->Threshold, "Threshold");
+  pv::need_length(this->ApexTolerance, "Apex Tolerance");
+  for (const double nm : this->ThresholdRange) pv::need_length(nm, "Threshold Range");
+  if (this->ThresholdRange[1] != 0 && this->ThresholdRange[0] >= this->ThresholdRange[1])
+    throw UsageError("Threshold Range", fmt::format("{} to {} nm is no range", this->ThresholdRange[0], this->ThresholdRange[1]),
+                     "Give the least and the most, or 0 for both");
+  pv::need_within(this->Thresholds, 2, 10000, "Thresholds");
   if (!(std::abs(this->NoiseCorrelation) < 1))
     throw UsageError("Noise Correlation", fmt::format("{} is not between -1 and 1", this->NoiseCorrelation),
                      "Give 0");
@@ -144,6 +148,9 @@ int vtkSemsurfEstimateTip::RequestData(vtkInformation*, vtkInformationVector** i
     this->Check();
     std::string name;
     const std::vector<HeightField> scans{this->Heights(inputs, name)};
+    if (const auto& z = scans[0].z_nm; this->TipSize > std::min(z.width(), z.height()))
+      throw UsageError("Tip Size", fmt::format("{} samples are more than the scan's {} x {}", this->TipSize, z.width(), z.height()),
+                       "Give fewer");
     vtkNew<vtkTable> table;
     Found found;
     AfmNoise noise{0, 0};

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "attempt.h"
+#include "checks.h"
 #include "pipeline.h"
 #include "surf/afm/hough_plane.h"
 #include "surf/afm/row_level.h"
@@ -61,6 +62,8 @@ int vtkSemsurfLevel::RequestData(vtkInformation*, vtkInformationVector** inputs,
   return pv::attempt(this, [&] {
     if (this->Rows < Keep || this->Rows > Difference)
       throw UsageError("Rows", fmt::format("there is no method {}", this->Rows), "Choose 0 to 2");
+    if (this->Method == Hough) pv::need_length(this->Tolerance, "Tolerance");
+    if (this->Method == Polynomial) pv::need_within(this->Degree, 0, 6, "Degree");
     std::string name, warning;
     HeightField field = this->Heights(inputs, name);
     Grid<unsigned char> substrate;

@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "attempt.h"
+#include "checks.h"
 #include "convert/mesh.h"
 #include "convert/table.h"
 #include "convert/transform.h"
@@ -42,6 +43,10 @@ int vtkSemsurfLineProfile::RequestData(vtkInformation*, vtkInformationVector** i
     if (!pv::is_first_piece(output)) return;
     if (this->Samples < 2 || this->Samples > 1000000)
       throw UsageError("Samples", fmt::format("{} is not in 2 to 1000000", this->Samples), "Give 500 where in doubt");
+    for (int i = 0; i < 3; ++i) {
+      pv::need_number(this->Point1[i], "Point1");
+      pv::need_number(this->Point2[i], "Point2");
+    }
     const Affine to_sem = inverse(pv::to_affine(this->Transform));
     vtkImageData* const scan_image = pv::image_input(inputs, 0, "Input");
     vtkDataArray* const scan_array = pv::chosen_array(this, 0, scan_image);

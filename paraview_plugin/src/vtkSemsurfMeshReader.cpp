@@ -14,6 +14,7 @@
 #include <utility>
 
 #include "attempt.h"
+#include "checks.h"
 #include "convert/arrays.h"
 #include "convert/mesh.h"
 #include "pipeline.h"
@@ -61,8 +62,7 @@ int vtkSemsurfMeshReader::RequestData(vtkInformation*, vtkInformationVector**,
     vtkInformation* const output = outputs->GetInformationObject(0);
     if (!pv::is_first_piece(output)) return;
     if (this->FileName.empty()) throw UsageError("FileName", "no file is named", "Name one");
-    if (this->Unit < 0)
-      throw UsageError("Unit", fmt::format("{} nm are below 0", this->Unit), "Give 0 for the file's own");
+    pv::need_length(this->Unit, "Unit");
     Surface all;
     std::vector<int> numbers;
     std::map<std::string, std::string> texts;

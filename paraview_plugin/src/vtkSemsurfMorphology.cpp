@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "attempt.h"
+#include "checks.h"
 #include "convert/tip.h"
 #include "pipeline.h"
 #include "surf/afm/morphology.h"
@@ -25,8 +26,7 @@ int vtkSemsurfMorphology::RequestData(vtkInformation*, vtkInformationVector** in
     if (this->Upsample < 1 || this->Upsample > 32)
       throw UsageError("Upsample", fmt::format("{} is not in 1 to 32", this->Upsample),
                        "Give 1 where in doubt");
-    if (this->Distance < 0)
-      throw UsageError("Distance", fmt::format("{} nm are below 0", this->Distance), "Give a length, or 0");
+    pv::need_length(this->Distance, "Distance");
     std::string name;
     HeightField field = this->Heights(inputs, name);
     vtkImageData* const tip_image = pv::image_input(inputs, 1, "Tip");

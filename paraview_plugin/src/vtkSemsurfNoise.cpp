@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "attempt.h"
+#include "checks.h"
 #include "convert/table.h"
 #include "pipeline.h"
 #include "surf/afm/noise_check.h"
@@ -92,6 +93,7 @@ int vtkSemsurfNoise::RequestData(vtkInformation*, vtkInformationVector** inputs,
   return pv::attempt(this, [&] {
     if (this->Lags < 1 || this->Lags > 1000)
       throw UsageError("Lags", fmt::format("{} is not in 1 to 1000", this->Lags), "Give 10 where in doubt");
+    pv::need_within(this->Degree, 0, 6, "Degree");
     vtkImageData* const image = pv::image_input(inputs, 0, "Input");
     const HeightField field = pv::to_height_field(image, pv::chosen_array(this, 0, image), "Input");
     Findings f;

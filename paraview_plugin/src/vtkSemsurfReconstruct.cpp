@@ -17,6 +17,7 @@
 #include <utility>
 
 #include "attempt.h"
+#include "checks.h"
 #include "chain.h"
 #include "convert/mesh.h"
 #include "convert/table.h"
@@ -110,6 +111,8 @@ int vtkSemsurfReconstruct::RequestData(vtkInformation*, vtkInformationVector** i
       };
       choose(this->Level, 3, "Level");
       choose(this->Method, 2, "Method");
+      pv::need_within(this->Iterations, 0, 1000000, "Iterations");
+      pv::need_within(this->Upsample, 1, 8, "Upsample");
       workflow::ReconstructJob job;
       job.picture = false;
       job.upsample = this->Upsample;

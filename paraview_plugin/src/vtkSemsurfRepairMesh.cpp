@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "attempt.h"
+#include "checks.h"
 #include "convert/mesh.h"
 #include "convert/table.h"
 #include "pipeline.h"
@@ -78,9 +79,10 @@ int vtkSemsurfRepairMesh::RequestData(vtkInformation*, vtkInformationVector** in
                                       vtkInformationVector* outputs) {
   return pv::attempt(this, [&] {
     if (!pv::is_first_piece(outputs->GetInformationObject(0))) return;
-    if (this->Sliver < 0 || this->MinimumComponent < 0)
-      throw UsageError(this->Sliver < 0 ? "Sliver" : "Minimum Component", "it is below 0",
-                       "Give a length in nm, or 0");
+    pv::need_length(this->Sliver, "Sliver");
+    pv::need_length(this->MinimumComponent, "Minimum Component");
+    pv::need_number(this->Stitch, "Stitch");
+    pv::need_number(this->MaximumHole, "Maximum Hole");
     vtkPolyData* const input = pv::surface_input(inputs, 0);
     const TriangleMesh mesh = pv::to_mesh(input, "Input");
     TriangleMesh mended;

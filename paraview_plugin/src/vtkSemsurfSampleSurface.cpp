@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "attempt.h"
+#include "labels.h"
 #include "pipeline.h"
 #include "surf/core/error.h"
 #include "surf/mesh/shapes.h"
@@ -69,7 +70,11 @@ int vtkSemsurfSampleSurface::RequestData(vtkInformation*, vtkInformationVector**
     const FieldExtent extent{this->Width, this->Depth, this->Pitch};
     frame_of(extent);   // complains of what cannot be sampled
     HeightField field;
-    pv::work(this, [&](const Watch&) { field = this->Make(extent); });
+    pv::with_labels([&] { pv::work(this, [&](const Watch&) { field = this->Make(extent); }); },
+                    {{"height of", "Feature Height"}, {"depth of", "Feature Height"}, {"top width", "Feature Width"},
+                     {"bottom width", "Feature Width"}, {"wall run", "Wall Run"}, {"period", "Period"},
+                     {"rms height", "Rms Height"}, {"correlation length", "Correlation Length"},
+                     {"Hurst exponent", "Hurst Exponent"}});
     pv::give(outputs->GetInformationObject(0), pv::to_vtk(std::move(field)));
   });
 }

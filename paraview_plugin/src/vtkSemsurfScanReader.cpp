@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "attempt.h"
+#include "checks.h"
 #include "convert/arrays.h"
 #include "pipeline.h"
 #include "surf/core/error.h"
@@ -94,6 +95,8 @@ std::string unique_name(std::set<std::string>& taken, const std::string& name) {
 
 void vtkSemsurfScanReader::ReadHead() {
   if (this->FileName.empty()) throw UsageError("FileName", "no file is named", "Name a scan");
+  pv::need_length(this->ZUnit, "Z Unit");
+  for (const double nm : this->PixelSize) pv::need_length(nm, "Pixel Size");
   std::error_code unreadable;   // then reading says what is wrong
   const Contents::Key key{this->FileName, std::filesystem::last_write_time(this->FileName, unreadable),
                           this->ZUnit, this->PixelSize[0], this->PixelSize[1]};

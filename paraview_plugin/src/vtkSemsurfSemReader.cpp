@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "attempt.h"
+#include "checks.h"
 #include "convert/image.h"
 #include "surf/io/sem_file.h"
 
@@ -22,6 +23,7 @@ void vtkSemsurfSemReader::SetChannel(const char* name) {
 }
 
 vtkSmartPointer<vtkImageData> vtkSemsurfSemReader::Read() {
+  for (const double nm : this->PixelSize) pv::need_length(nm, "Pixel Size");
   io::SemReadOptions options{.channel = this->Channel, .keep_databar = this->KeepDatabar};
   if (this->PixelSize[0] > 0) options.pixel_x_nm = this->PixelSize[0];
   if (this->PixelSize[1] > 0) options.pixel_y_nm = this->PixelSize[1];

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "attempt.h"
+#include "checks.h"
 #include "convert/mesh.h"
 #include "pipeline.h"
 #include "surf/core/error.h"
@@ -36,8 +37,7 @@ int vtkSemsurfSimplifyMesh::RequestData(vtkInformation*, vtkInformationVector** 
     if (!pv::is_first_piece(output)) return;
     if (this->Limit < ByTolerance || this->Limit > ByBoth)
       throw UsageError("Limit", fmt::format("there is no limit {}", this->Limit), "Choose 0 to 2");
-    if (this->Limit != ByTriangles && !(this->Tolerance >= 0))
-      throw UsageError("Tolerance", fmt::format("{} nm are below 0", this->Tolerance), "Give a length, or 0");
+    if (this->Limit != ByTriangles) pv::need_length(this->Tolerance, "Tolerance");
     if (this->Limit != ByTolerance && this->Triangles < 4)
       throw UsageError("Triangles", fmt::format("{} are too few for a body", this->Triangles),
                        "Give 4 or more");

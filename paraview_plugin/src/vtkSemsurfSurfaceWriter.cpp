@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "vtkSemsurfSurfaceWriter.h"
 
+#include <fmt/format.h>
 #include <vtkInformation.h>
 #include <vtkObjectFactory.h>
+
+#include <cmath>
+#include <utility>
 
 #include "convert/image.h"
 #include "convert/mesh.h"
@@ -19,9 +23,8 @@ int vtkSemsurfSurfaceWriter::FillInputPortInformation(int, vtkInformation* info)
 }
 
 void vtkSemsurfSurfaceWriter::WriteFile() {
-  if (!(this->Magnification > 0) || !(this->ZExaggeration > 0))
-    throw UsageError(this->Magnification > 0 ? "Z Exaggeration" : "Magnification", "it is not above 0",
-                     "Give 1");
+  for (const auto& [value, label] : {std::pair{this->Magnification, "Magnification"}, {this->ZExaggeration, "Z Exaggeration"}})
+    if (!(value > 0 && std::isfinite(value))) throw UsageError(label, fmt::format("it is {}, not above 0", value), "Give 1");
   auto* const data = vtkPolyData::SafeDownCast(this->GetInput());
   SurfaceScene scene;
   scene.surfaces.push_back(pv::to_surface(data, "Input"));

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "attempt.h"
+#include "checks.h"
 #include "convert/tip.h"
 #include "pipeline.h"
 #include "surf/afm/tip_shapes.h"
@@ -27,8 +28,15 @@ void vtkSemsurfTipSource::Check() const {
                                  "apex",
                                  this->Samples),
                      "Give 41 where in doubt");
-  if (!(this->Pitch > 0))
-    throw UsageError("Pitch", fmt::format("{} nm are not above 0", this->Pitch), "Give a length");
+  pv::need_positive(this->Pitch, "Pitch");
+  pv::need_positive(this->Radius, "Radius");
+  pv::need_number(this->Rotation, "Rotation");
+  pv::need_length(this->StemRadius, "Stem Radius");
+  const auto need_angle = [](double deg, const char* label) {
+    if (!(deg >= 0 && deg < 90)) throw UsageError(label, fmt::format("{} degrees are not in 0 to 90", deg), "Give 15, say");
+  };
+  need_angle(this->HalfAngle, "Half Angle");
+  need_angle(this->StemHalfAngle, "Stem Half Angle");
 }
 
 int vtkSemsurfTipSource::RequestInformation(vtkInformation*, vtkInformationVector**,

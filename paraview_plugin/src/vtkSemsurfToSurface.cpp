@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "attempt.h"
+#include "checks.h"
 #include "convert/mesh.h"
 #include "pipeline.h"
 #include "surf/core/error.h"
@@ -45,13 +46,11 @@ int vtkSemsurfToSurface::RequestData(vtkInformation*, vtkInformationVector** inp
   return pv::attempt(this, [&] {
     vtkInformation* const output = outputs->GetInformationObject(0);
     if (!pv::is_first_piece(output)) return;
-    if (this->Simplify && !(this->Tolerance >= 0))
-      throw UsageError("Tolerance", fmt::format("{} nm are below 0", this->Tolerance), "Give a length, or 0");
+    if (this->Simplify) pv::need_length(this->Tolerance, "Tolerance");
     if (this->Simplify && (this->MaximumTriangles < 0 || this->MaximumTriangles == 1))
       throw UsageError("Maximum Triangles", fmt::format("{} is not 0, nor 2 or more", this->MaximumTriangles),
                        "Give 0 for no limit");
-    if (this->Thickness < 0)
-      throw UsageError("Thickness", fmt::format("{} nm are below 0", this->Thickness), "Give a length, or 0");
+    pv::need_length(this->Thickness, "Thickness");
     vtkImageData* const image = pv::image_input(inputs, 0, "Input");
     const HeightField field = pv::to_height_field(image, pv::chosen_array(this, 0, image), "Input");
     Surface surface;

@@ -18,6 +18,7 @@
 #include <utility>
 
 #include "attempt.h"
+#include "checks.h"
 #include "convert/image.h"
 #include "labels.h"
 #include "pipeline.h"
@@ -29,6 +30,7 @@
 vtkStandardNewMacro(vtkSemsurfTrain);
 
 using namespace surf;
+using pv::need_within;
 
 namespace {
 
@@ -40,11 +42,6 @@ constexpr const char* kinds[] = {"facet-network", "filter-bank", "slope-table", 
 
 void need(bool good, const char* property, const std::string& reason, const char* remedy) {
   if (!good) throw UsageError(property, reason, remedy);
-}
-
-void need_within(int value, int low, int high, const char* property) {
-  if (value < low || value > high)
-    throw UsageError(property, fmt::format("{} is not in {} to {}", value, low, high), "Choose among these");
 }
 
 std::vector<FacetScale> scales_of(const std::vector<int>& sizes) {
@@ -119,6 +116,8 @@ void vtkSemsurfTrain::AddModel(workflow::TrainJob& job) const {
   for (const int units : learn.hidden.value_or(std::vector<int>())) need_within(units, 1, 256, "Hidden");
   need(this->Hidden.size() <= 3, "Hidden", fmt::format("{} hidden layers are too many", this->Hidden.size()),
        "Give 1 to 3, or one 0 for none");
+  for (const auto& [value, label] : {std::pair{this->Decay, "Decay"}, {this->Tolerance, "Tolerance"}, {this->CutOff, "Cut Off"}})
+    pv::need_number(value, label);
   if (this->Iterations > 0) learn.iterations = this->Iterations;
   if (this->Decay >= 0) learn.decay = this->Decay;
   if (this->Tolerance >= 0) learn.tolerance = this->Tolerance;
@@ -220,7 +219,7 @@ workflow::TrainJob vtkSemsurfTrain::Job(vtkInformationVector** inputs) {
   job.spot_nm = this->Spot;
   need(job.energy_ev >= mc::min_beam_energy_ev && job.energy_ev <= mc::max_beam_energy_ev, "Energy",
        fmt::format("{} eV are not in 100 to 30000", job.energy_ev), "Give 1000 for 1 keV");
-  need(job.spot_nm >= 0, "Spot", fmt::format("{} nm are below 0", job.spot_nm), "Give 0 for a point");
+  pv::need_length(job.spot_nm, "Spot");
   if (!this->Physics.empty()) mc::parse_physics(this->Physics, job.physics);
   this->AddInputs(inputs, job);
   need(job.pixel_nm > 0, "Pixel Size", "it is 0, and there is no surface to take it from", "Give 3 where in doubt");

@@ -264,7 +264,7 @@ semsurf_cli_usage(sample_size "8 x 8 pixels" sample pads --size 8x8 -o made)
 semsurf_cli_usage(sample_electrons "--electrons" sample pads --electrons 0 -o made)
 
 set(flat "${PROJECT_SOURCE_DIR}/samples/flat.toml")
-semsurf_cli_usage(chart_folder "no folder is given" chart ${flat})
+semsurf_cli_usage(chart_no_folder "no folder is given" chart ${flat})
 semsurf_cli_usage(chart_methods "'fast' is none of them. Choose of default, direct, replay" chart ${flat} --methods replay,fast -o chart)
 semsurf_cli_usage(chart_accuracy "--accuracy: 0.5 is outside" chart ${flat} --accuracy 50% -o chart)
 semsurf_cli_usage(chart_reference "--reference: 0.9 % is not well below the finest accuracy, 1 %" chart ${flat} --reference 0.9% -o chart)

@@ -94,6 +94,46 @@ TEST(UnitJournal, IsAskedInTheOrderOfUnits) {
   EXPECT_TRUE(std::is_sorted(journal.asked.begin(), journal.asked.end()));
 }
 
+/// Cancels where a unit is about to begin.
+class Stopping : public Memory {
+ public:
+  bool recall(std::size_t unit, UnitTally& tally) override {
+    if (unit == 7) cancel.cancel();
+    return Memory::recall(unit, tally);
+  }
+  CancelToken cancel;
+};
+
+TEST(UnitJournal, IsNotToldOfUnitsThatWereAbandonedAndGetsThemLater) {
+  const Scene scene = small_scene();
+  for (const auto& [method, accuracy] : {std::pair{Method::direct, 0.0}, {Method::replay, 0.0}, {Method::replay, 0.9}}) {
+    SimulationOptions options = with_spectra(1);
+    options.method = method;
+    options.accuracy = accuracy;
+    options.spectra = accuracy == 0;
+    options.planar_control = false;   // nor would there be anything left to simulate on a plane
+    const SimulationResult plain = simulate(scene, options);
+    Stopping journal;
+    const SimulationResult stopped = simulate(scene, options, {}, &journal.cancel, {}, &journal);
+    EXPECT_FALSE(stopped.complete);
+    EXPECT_EQ(journal.units.size(), 7u) << "the unit that had begun is left out";
+    expect_same(simulate(scene, options, {}, nullptr, {}, &journal), plain);
+  }
+}
+
+TEST(UnitJournal, WhatObserversHaveSeenOfAUnitCounts) {
+  struct Stop : Observer {
+    void primary(std::int64_t, std::int64_t) override {
+      if (++seen == 4) cancel.cancel();
+    }
+    CancelToken cancel;
+    std::int64_t seen = 0;
+  } observer;
+  const SimulationResult r = simulate(small_scene(), with_spectra(1), {}, &observer.cancel, [&](int) { return &observer; });
+  EXPECT_FALSE(r.complete);
+  EXPECT_EQ(r.balance.incident, observer.seen);
+}
+
 TEST(UnitJournal, OfAnotherSimulationIsRefused) {
   const Scene scene = small_scene();
   Memory journal;

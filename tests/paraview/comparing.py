@@ -73,6 +73,10 @@ def images_are_draped():
     got, want = array(moved, name).reshape(height, width), array(heights, name).astype(numpy.float32)
     same(got[:, 1:], want[:, :-1], "moved to the right by a sample")
     expect(numpy.isnan(got[:, 0]).all(), "nothing lies left of it")
+    rim = quiet(simple.DrapeImageonSurface(Input=surface, Image=scan(), Transform=[1, 0, 0.4 * pitch, 0, 1, -0.4 * pitch]))
+    got = array(rim, name).reshape(height, width)
+    expect(numpy.isfinite(got).all(), "half a pixel beyond the centres still belongs to the image")
+    expect(got[-1, 0] == want[-1, 0], f"the corner is its pixel's: {got[-1, 0]}, {want[-1, 0]}")
 
 
 def profiles_show_all():

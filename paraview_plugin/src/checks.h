@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+namespace surf::pv {
+
+// What properties may be. Each throws UsageError by the property's label: ranges in the XML bind the panel alone,
+// scripts and state files set what they like.
+
+/// Neither NaN nor infinite.
+void need_number(double value, const char* label);
+/// A number, 0 or more, nm.
+void need_length(double nm, const char* label);
+/// A number above 0, nm.
+void need_positive(double nm, const char* label);
+void need_within(int value, int low, int high, const char* label);
+
+}  // namespace surf::pv
