@@ -16,6 +16,9 @@
 namespace surf::pv {
 
 workflow::ModelRequest model_request(const std::string& file, const std::string& material, double energy_ev, double spot_nm) {
+  if (!(energy_ev >= mc::min_beam_energy_ev && energy_ev <= mc::max_beam_energy_ev))
+    throw UsageError("Energy", fmt::format("{} eV are not in 100 to 30000", energy_ev), "Give 1000 for 1 keV");
+  need_length(spot_nm, "Spot");
   workflow::ModelRequest request;
   request.file = file;
   const std::filesystem::path cache = io::cache_folder();
@@ -24,9 +27,6 @@ workflow::ModelRequest model_request(const std::string& file, const std::string&
   if (material.empty()) throw UsageError("Model File", "no model is named, nor a material", "Give one of the two");
   if (cache.empty()) throw UsageError("Model File", "none is named, and there is no cache to keep one in", "Name one");
   request.material = io::find_material(material, "Material");
-  if (!(energy_ev >= mc::min_beam_energy_ev && energy_ev <= mc::max_beam_energy_ev))
-    throw UsageError("Energy", fmt::format("{} eV are not in 100 to 30000", energy_ev), "Give 1000 for 1 keV");
-  need_length(spot_nm, "Spot");
   request.energy_ev = energy_ev;
   request.spot_nm = spot_nm;
   request.spot_given = true;

@@ -15,12 +15,15 @@ void need_number(double value, const char* label) {
 
 void need_length(double nm, const char* label) {
   need_number(nm, label);
+  constexpr double most_nm = 1e9;
+  if (nm > most_nm)
+    throw UsageError(label, fmt::format("{} nm are more than {}, a metre", nm, most_nm), "Give a length in nm");
   if (nm < 0) throw UsageError(label, fmt::format("{} nm are below 0", nm), "Give a length, or 0");
 }
 
 void need_positive(double nm, const char* label) {
-  need_number(nm, label);
-  if (!(nm > 0)) throw UsageError(label, fmt::format("{} nm are not above 0", nm), "Give a length");
+  need_length(nm, label);
+  if (nm == 0) throw UsageError(label, "0 nm are not above 0", "Give a length");
 }
 
 void need_within(int value, int low, int high, const char* label) {

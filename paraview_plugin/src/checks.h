@@ -8,9 +8,9 @@ namespace surf::pv {
 
 /// Neither NaN nor infinite.
 void need_number(double value, const char* label);
-/// A number, 0 or more, nm.
+/// A number, 0 to 1e9, nm: squares of more than a metre would no longer be told from others.
 void need_length(double nm, const char* label);
-/// A number above 0, nm.
+/// The same, above 0.
 void need_positive(double nm, const char* label);
 void need_within(int value, int low, int high, const char* label);
 

@@ -8,7 +8,6 @@
 #include <vtkObjectFactory.h>
 #include <vtkPointData.h>
 
-#include <cmath>
 #include <utility>
 
 #include "attempt.h"
@@ -44,8 +43,8 @@ int vtkSemsurfCertainty::RequestData(vtkInformation*, vtkInformationVector** inp
                                      vtkInformationVector* outputs) {
   return pv::attempt(this, [&] {
     pv::need_number(this->Noise, "Noise");
-    if (!(this->Sigmas > 0 && std::isfinite(this->Sigmas)))
-      throw UsageError("Sigmas", fmt::format("{} is not above 0", this->Sigmas), "Give 3");
+    if (!(this->Sigmas > 0 && this->Sigmas <= 1e6))
+      throw UsageError("Sigmas", fmt::format("{} is not above 0, up to 1e6", this->Sigmas), "Give 3");
     pv::need_length(this->Distance, "Distance");
     if (this->Neighbourhood < -1 || this->Neighbourhood > 100)
       throw UsageError("Neighbourhood", fmt::format("{} is not in -1 to 100", this->Neighbourhood),

@@ -18,6 +18,7 @@
 #include <utility>
 
 #include "attempt.h"
+#include "checks.h"
 #include "chain.h"
 #include "convert/table.h"
 #include "convert/tip.h"
@@ -94,6 +95,7 @@ int vtkSemsurfRegister::RequestData(vtkInformation*, vtkInformationVector** inpu
     pv::with_labels([&] {
       if (this->Level < 0 || this->Level > 3)
         throw UsageError("Level", fmt::format("there is no method {}", this->Level), "Choose 0 to 3");
+      pv::need_within(this->Objective, 0, 1, "Objective");
       workflow::RegisterJob job;
       std::string name;
       job.afm.scan = this->Heights(inputs, name);

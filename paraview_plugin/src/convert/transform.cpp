@@ -3,12 +3,18 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "surf/core/error.h"
 #include "surf/core/units.h"
 
 namespace surf::pv {
 
 Affine to_affine(const double v[6]) {
+  constexpr double most = 1e9;   // nm: what lies farther away is no image's
+  for (int i = 0; i < 6; ++i)
+    if (!(std::abs(v[i]) <= most))
+      throw UsageError("Transform", fmt::format("{} is no number within +-{}", v[i], most), "Give 1 0 0 0 1 0 for none");
   const Affine map{v[0], v[1], v[2], v[3], v[4], v[5]};
   try {
     inverse(map);
