@@ -184,10 +184,10 @@ workflow::SweepJob make_sweep(const Options& o, const std::string& command_line)
     job.runs.push_back(std::move(run));
   }
   // A mistake in the last value should not wait for all the others, unless they are very many.
-  if (runs <= most_tried)
-    for (const workflow::SweepRun& run : job.runs) run.make();
-  else
-    job.runs.back().make();
+  for (std::size_t i = 0; i < runs; i = runs <= most_tried || i + 1 == runs ? i + 1 : runs - 1) {
+    const workflow::SimulateJob tried = job.runs[i].make();
+    workflow::resolve_scan(tried.scene.scan, mc::extent(tried.scene.specimen), tried.scene.beam);
+  }
   return job;
 }
 
