@@ -33,7 +33,7 @@ std::vector<double> at(double above_surface_deg) {
 
 io::Plot plot(const Table& t) {
   io::Plot out;
-  out.title = "A beam that grazes flat silicon, 300 eV: nobody is lost, less than 0.06 degrees is refused";
+  out.title = "A beam that grazes flat silicon, 300 eV";
   io::PlotPanel p = panel(t, "", {"angle between beam and surface (degrees)", true, {}},
                           {"electrons per primary", false, {}},
                           {{"se", "SE, direct"}, {"se_replay", "SE, replay", true}, {"bse", "BSE, direct"},

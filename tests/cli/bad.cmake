@@ -31,7 +31,6 @@ semsurf_cli_usage(method "auto, direct or replay" simulate cube.off --method fas
 semsurf_cli_usage(two_budgets "two ways.*Leave out --electrons, or --accuracy" simulate cube.off --accuracy 1% ${image})
 semsurf_cli_usage(accuracy_and_time "Leave out --accuracy, or --time" simulate cube.off --accuracy 1% --time 3s --size 8x8 -o image.exr)
 semsurf_cli_usage(accuracy "--accuracy: '1 percent' is not a share" simulate cube.off --accuracy "1 percent" --size 8x8 -o image.exr)
-semsurf_cli_usage(accuracy_direct "only replay" simulate cube.off --accuracy 5% --method direct --size 8x8 -o image.exr)
 semsurf_cli_usage(accuracy_floor_alone "no accuracy" simulate cube.off --accuracy-floor 0.1 ${image})
 semsurf_cli_usage(mesh_tolerance_negative "--mesh-tolerance: '-1nm' is negative.*0.5nm" simulate cube.off --mesh-tolerance -1nm ${image})
 semsurf_cli_usage(mesh_tolerance_nan "--mesh-tolerance" simulate cube.off --mesh-tolerance nan ${image})

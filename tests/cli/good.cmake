@@ -160,9 +160,12 @@ semsurf_cli_test(simulate.replay ARGS simulate cube.off --substrate Si ${few} ${
   --method replay -o image.exr STDOUT "method +replay: as asked for" "library +10240 cascades.*made in"
   INFO image.exr "balance.handed_over(.|\n)*library.cascades +10240(.|\n)*method +replay")
 semsurf_cli_test(simulate.accuracy ARGS simulate cube.off --substrate Si --size 8x8 ${short}
-  --accuracy 20% --accuracy-floor 0.05 --channels model,electrons,variance_left -o image.exr
+  --accuracy 20% --accuracy-floor 0.05 --method replay --channels model,electrons,variance_left -o image.exr
   STDOUT "pixels +.*differences to planes" "electrons +[0-9]+ per pixel on average" "accuracy +20 % reached"
   INFO image.exr "BSE.variance_left(.|\n)*accuracy_floor +0.05(.|\n)*method +replay")
+semsurf_cli_test(simulate.accuracy_direct ARGS simulate cube.off --substrate Si --size 8x8 ${short}
+  --accuracy 20% --accuracy-floor 0.05 -o image.exr
+  STDOUT "method +direct: about .* are too few for" "pixels +100 % directly" "accuracy +20 % reached" WRITES image.exr)
 semsurf_cli_test(simulate.time ARGS simulate cube.off --substrate Si --size 8x8 ${short}
   --time 1ms --cache cache -o image.exr STDERR "too short: even 10 % accuracy took" WRITES image.exr
   INFO image.exr "accuracy +0.1")
