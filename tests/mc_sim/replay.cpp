@@ -211,7 +211,7 @@ TEST(Replay, RefusesWhatItCannotDo) {
   accurate.accuracy = 0.1;
   SimulationOptions wrong = accurate;
   wrong.method = Method::direct;
-  EXPECT_THAT(refusal(wrong), HasSubstr("--method replay"));
+  EXPECT_THAT(refusal(wrong, {}, [](int) { return nullptr; }), HasSubstr("more primaries in some pixels"));
   wrong = accurate;
   wrong.dose = 10;
   EXPECT_THAT(refusal(wrong), HasSubstr("dose"));
