@@ -56,7 +56,7 @@ void add_library_options(CLI::App& app, LibraryOptions& o) {
   app.add_option("--cascades", o.cascades, "Primaries in each library, rounded up to whole 2048s")
       ->type_name("N");
   app.add_option("--accuracy", o.accuracy,
-                 "As many as images of this accuracy begin with: (3/accuracy)^2, not\n"
+                 "As many as images of this accuracy begin with: (2/accuracy)^2, not\n"
                  "below 10000, which is what is made where neither is given")
       ->type_name("SHARE");
   app.add_option("--physics", o.physics, "As for simulate; each choice has libraries of its own")
