@@ -22,7 +22,7 @@ using Clock = std::chrono::steady_clock;
 // A twentieth: about how much slower direct simulation is, so that all points take about as long.
 constexpr double direct_share = 1.0 / 20;
 // What is over sooner is repeated: one measurement says little then.
-constexpr double short_s = 1;
+constexpr double short_s = 0.5;
 constexpr int repeats = 3;
 
 double seconds_since(Clock::time_point start) {
