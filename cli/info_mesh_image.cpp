@@ -137,16 +137,24 @@ void print_mesh(const std::filesystem::path& path, std::optional<double> unit_nm
 }
 
 void print_image(const std::filesystem::path& path) {
-  const Image image = io::read_image(path);
+  constexpr std::int64_t most_pixels = std::int64_t{1} << 25;   // larger ones are looked at in a smaller size
+  const io::ImageLevel read = io::read_image_within(path, most_pixels);
+  const Image& image = read.image;
+  const double scale = std::ldexp(1.0, read.level);
+  const double pitch_x_nm = image.pitch_x_nm / scale, pitch_y_nm = image.pitch_y_nm / scale;
   fmt::print("{}: image\n", path.string());
-  print_item("size", fmt::format("{} x {} pixels of {} x {}, {} x {}", image.width(),
-                                 image.height(), format_length(image.pitch_x_nm),
-                                 format_length(image.pitch_y_nm),
-                                 format_length(image.width() * image.pitch_x_nm),
-                                 format_length(image.height() * image.pitch_y_nm)));
-  print_item("origin", fmt::format("lower-left pixel's centre at {}, {} nm",
-                                   format_exact(image.origin_x_nm),
-                                   format_exact(image.origin_y_nm)));
+  print_item("size", fmt::format("{} x {} pixels of {} x {}, {} x {}", read.whole.width, read.whole.height,
+                                 format_length(pitch_x_nm), format_length(pitch_y_nm),
+                                 format_length(read.whole.width * pitch_x_nm),
+                                 format_length(read.whole.height * pitch_y_nm)));
+  if (read.levels > 1)
+    print_item("pyramid", fmt::format("{} sizes{}", read.levels,
+                                      read.level == 0 ? ""
+                                                      : fmt::format("; values below are of {} x {} means", image.width(),
+                                                                    image.height())));
+  if (read.level == 0)
+    print_item("origin", fmt::format("lower-left pixel's centre at {}, {} nm", format_exact(image.origin_x_nm),
+                                     format_exact(image.origin_y_nm)));
   std::size_t label_width = 0;
   for (const Channel& channel : image.channels)
     label_width = std::max(label_width, channel.name.size());

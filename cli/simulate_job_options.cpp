@@ -131,6 +131,7 @@ workflow::SimulateJob make_simulate_job(const SimulateOptions& o, const std::str
   job.options.seed = o.seed ? seed : job.scene.seed.value_or(job.options.seed);
   job.outputs.assign(o.outputs.begin(), o.outputs.end());
   job.png_channel = o.channel;
+  job.layout = o.layout == "rows" ? io::Layout::rows : o.layout == "tiles" ? io::Layout::tiles : io::Layout::automatic;
   job.command_line = command_line;
   if (!o.quiet)
     for (const std::string& note : notes) print_note(note);

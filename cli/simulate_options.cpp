@@ -116,6 +116,10 @@ void add_output_options(CLI::App& app, SimulateOptions& o) {
   app.add_option("-o,--output", o.outputs, "Image to write: .exr .tif .png .vti; may be repeated")
       ->type_name("FILE")->option_text("FILE")->allow_extra_args(false)->group(group);
   add_channel_options(app, o);
+  app.add_option("--layout", o.layout,
+                 "EXR and TIFF in rows, or in tiles with smaller sizes for viewing (auto:\n"
+                 "tiles above 64 million pixels)")
+      ->type_name("auto|rows|tiles")->check(CLI::IsMember({"auto", "rows", "tiles"}))->group(group);
   add_quiet_flag(app, o.quiet)->group(group);
 }
 

@@ -15,7 +15,7 @@ struct SimulateOptions {
   SceneOptions scene;
   std::optional<std::string> electrons, accuracy, accuracy_floor, time, mesh_tolerance, method, seed, threads, cache;
   std::vector<std::string> outputs;
-  std::string channel, channels;
+  std::string channel, channels, layout = "auto";
   std::optional<std::string> deposit, trajectories, trajectories_at;
   std::optional<std::string> checkpoint, checkpoint_every;
   bool restart = false;

@@ -92,6 +92,11 @@ void check_image(const ImageRows& rows, const std::string& file) {
   }
 }
 
+bool in_tiles(const ImageRows& rows, const ImageWriteOptions& options) {
+  if (options.layout != Layout::automatic) return options.layout == Layout::tiles;
+  return std::int64_t{rows.width} * rows.height > most_pixels_in_rows;
+}
+
 void write_vti_at_once(const std::filesystem::path& target, const std::string& file,
                        const ImageRows& rows) {
   write_vti(target, file, to_image(rows));
@@ -114,9 +119,16 @@ void write_image(const std::filesystem::path& path, const ImageRows& rows,
   const Channel& channel = find_channel(rows.head, options.channel, file);
   const auto number = static_cast<std::size_t>(&channel - rows.head.channels.data());
   write_atomically(path, [&](const std::filesystem::path& temporary) {
+    const bool tiles = in_tiles(rows, options);
     switch (format) {
-      case Format::exr: write_exr(temporary, file, rows); break;
-      case Format::tiff: write_tiff(temporary, file, rows); break;
+      case Format::exr:
+        if (tiles) write_tiled_exr(temporary, file, rows, options.labels);
+        else write_exr(temporary, file, rows);
+        break;
+      case Format::tiff:
+        if (tiles) write_tiled_tiff(temporary, file, rows, options.labels);
+        else write_tiff(temporary, file, rows);
+        break;
       case Format::png: write_grey_picture(temporary, file, rows, number); break;
       case Format::vti: write_vti_at_once(temporary, file, rows); break;
       case Format::none: break;
@@ -131,17 +143,49 @@ void check_image_target(const std::filesystem::path& path, const Image* image,
   check_writable(path);
 }
 
-Image read_image(const std::filesystem::path& path) {
+namespace {
+
+Format readable_format_of(const std::filesystem::path& path) {
   const Format format = known_format_of(path, Use::read);
   // Complains about missing files and folders in our words, not a library's.
   if (!std::filesystem::is_regular_file(path)) read_file(path, 0);
-  Image image = format == Format::vti ? read_vti(path) : read_raster(path);
+  return format;
+}
+
+}  // namespace
+
+Image read_image(const std::filesystem::path& path, int level) {
+  const Format format = readable_format_of(path);
+  const bool vti = format == Format::vti;
+  const int levels = level == 0 ? 1 : vti ? 1 : static_cast<int>(raster_sizes(path).size());
+  if (level < 0 || level >= levels)
+    throw UsageError(path.string(), fmt::format("there is no level {}", level),
+                     levels == 1 ? std::string("It has no pyramid: leave the level out")
+                                 : fmt::format("Choose one of 0 to {}", levels - 1));
+  Image image = vti ? read_vti(path) : read_raster(path, level);
   try {
     validate(image, path.string().c_str());
   } catch (const InvalidInput& error) {
     throw FileError(error.subject(), error.reason(), error.remedy());
   }
   return image;
+}
+
+ImageLevel read_image_within(const std::filesystem::path& path, std::int64_t most_pixels) {
+  ImageLevel out;
+  if (readable_format_of(path) != Format::vti) {
+    const std::vector<ImageSize> sizes = raster_sizes(path);
+    out.levels = static_cast<int>(sizes.size());
+    out.whole = sizes.front();
+    const auto pixels = [&](int level) {
+      const ImageSize& size = sizes[static_cast<std::size_t>(level)];
+      return std::int64_t{size.width} * size.height;
+    };
+    while (out.level + 1 < out.levels && pixels(out.level) > most_pixels) ++out.level;
+  }
+  out.image = read_image(path, out.level);
+  if (out.level == 0) out.whole = {out.image.width(), out.image.height()};
+  return out;
 }
 
 bool is_image_file(const std::filesystem::path& path) { return format_of(path) != Format::none; }

@@ -8,9 +8,11 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "surf/core/image.h"
 #include "surf/core/image_rows.h"
+#include "surf/io/image_file.h"
 
 namespace surf::io {
 
@@ -20,6 +22,11 @@ namespace surf::io {
 void write_exr(const std::filesystem::path& target, const std::string& file, const ImageRows& rows);
 void write_tiff(const std::filesystem::path& target, const std::string& file,
                 const ImageRows& rows);
+/// In tiles, and in smaller sizes as well; of channels named in `labels` see Pyramid.
+void write_tiled_exr(const std::filesystem::path& target, const std::string& file, const ImageRows& rows,
+                     std::span<const std::string> labels);
+void write_tiled_tiff(const std::filesystem::path& target, const std::string& file, const ImageRows& rows,
+                      std::span<const std::string> labels);
 void write_vti(const std::filesystem::path& target, const std::string& file, const Image& image);
 /// The same as bytes.
 std::string vti_content(const std::string& file, const Image& image);
@@ -47,8 +54,10 @@ void check_tiff_structure(const std::filesystem::path& path);
 /// Bits of each number of the first page; 0: floats. Throws FileError.
 int raster_bits(const std::filesystem::path& path);
 
-/// EXR, TIFF and PNG.
-Image read_raster(const std::filesystem::path& path);
+/// EXR, TIFF and PNG; of files that have several sizes, `level` 0 is the largest.
+Image read_raster(const std::filesystem::path& path, int level = 0);
+/// Pixels of all sizes.
+std::vector<ImageSize> raster_sizes(const std::filesystem::path& path);
 Image read_vti(const std::filesystem::path& path);
 
 /// Whether this build can write VTI.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// EXR, TIFF and PNG. The only source that knows OpenImageIO.
+// EXR, TIFF and PNG.
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 #include <fmt/format.h>
@@ -13,6 +13,8 @@
 #include <vector>
 
 #include "image_formats.h"
+#include "pyramid.h"
+#include "raster_output.h"
 #include "surf/core/error.h"
 
 namespace surf::io {
@@ -21,45 +23,6 @@ namespace {
 constexpr std::int64_t max_values = std::int64_t{1} << 31;
 constexpr OIIO::imagesize_t max_drape_pixels = OIIO::imagesize_t{1} << 28;
 constexpr int rows_at_a_time = 64;
-constexpr const char* pages_key = "image:pages";
-
-/// Debian's OpenImageIO prints notes for its developers otherwise.
-void keep_quiet() {
-  [[maybe_unused]] static const bool done = OIIO::attribute("debug", 0);
-}
-
-std::unique_ptr<OIIO::ImageOutput> create_output(const char* format, const std::string& file) {
-  keep_quiet();
-  std::unique_ptr<OIIO::ImageOutput> output = OIIO::ImageOutput::create(format);
-  if (!output) {
-    throw Unsupported(file, fmt::format("OpenImageIO cannot write {} here ({})", format,
-                                        OIIO::geterror()),
-                      "Choose another format");
-  }
-  return output;
-}
-
-/// OpenImageIO gives files without a date the present one. A date that is no text is left out.
-void leave_out_date(OIIO::ImageSpec& spec) { spec.attribute("DateTime", 0); }
-
-void check_written(bool done, OIIO::ImageOutput& output, const std::string& file) {
-  if (done) return;
-  throw FileError(file, fmt::format("cannot be written: {}", output.geterror()),
-                  "Check the free space, or choose another format or place");
-}
-
-/// Pixels per centimetre, where the format's tags can hold that.
-void set_resolution(OIIO::ImageSpec& spec, const Image& image, double highest) {
-  constexpr double nm_per_cm = 1e7;
-  const double x = nm_per_cm / image.pitch_x_nm;
-  const double y = nm_per_cm / image.pitch_y_nm;
-  if (std::min(x, y) < 1 || std::max(x, y) > highest) return;
-  spec.attribute("ResolutionUnit", "cm");
-  spec.attribute("XResolution", static_cast<float>(x));
-  spec.attribute("YResolution", static_cast<float>(y));
-  // Without it OpenImageIO makes both resolutions equal.
-  spec.attribute("PixelAspectRatio", static_cast<float>(y) / static_cast<float>(x));
-}
 
 /// Writes channels [first_channel, end_channel) interleaved, the top row first.
 void write_rows(OIIO::ImageOutput& output, const std::string& file, const ImageRows& image,
@@ -100,7 +63,7 @@ std::vector<float> read_values(OIIO::ImageInput& input, const std::string& file)
   std::vector<float> values(static_cast<std::size_t>(spec.width) *
                             static_cast<std::size_t>(spec.height) *
                             static_cast<std::size_t>(spec.nchannels));
-  if (!input.read_image(input.current_subimage(), 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT,
+  if (!input.read_image(input.current_subimage(), input.current_miplevel(), 0, spec.nchannels, OIIO::TypeDesc::FLOAT,
                         values.data())) {
     throw FileError(file, fmt::format("its pixels cannot be read: {}", input.geterror()),
                     "It is cut off or damaged: copy or write it again");
@@ -170,15 +133,57 @@ Image read_page(OIIO::ImageInput& input, const std::string& file) {
   return page;
 }
 
-/// How many pages semsurf wrote; 1 for files of others.
-int page_count(const OIIO::ImageSpec& spec) {
+/// A number that semsurf wrote into the text of a page; 1 in files of others.
+int number_of(const OIIO::ImageSpec& spec, const char* key) {
   const Attributes attributes = attributes_of(spec);
-  const auto found = attributes.find(pages_key);
-  int pages = 1;
-  if (found != attributes.end()) {
-    std::from_chars(found->second.data(), found->second.data() + found->second.size(), pages);
+  const auto found = attributes.find(key);
+  int number = 1;
+  if (found != attributes.end())
+    std::from_chars(found->second.data(), found->second.data() + found->second.size(), number);
+  return number;
+}
+
+/// What pages there are, of which a TIFF file of ours says more than a plain one.
+struct Pages {
+  int channels = 1;   ///< pages of the image itself
+  int levels = 1;
+  bool mip = false;   ///< whether levels are levels for OpenImageIO, too, or pages after those of the image
+
+  int of(int channel, int level) const {
+    return mip || level == 0 ? channel : channels + channel * (levels - 1) + level - 1;
   }
+};
+
+Pages pages_of(OIIO::ImageInput& input) {
+  Pages pages;
+  pages.mip = std::string_view(input.format_name()) == "openexr";
+  pages.channels = number_of(input.spec(), pages_key);
+  if (!pages.mip) {
+    pages.levels = std::clamp(number_of(input.spec(), levels_key), 1, 32);
+    return pages;
+  }
+  while (input.seek_subimage(0, pages.levels)) ++pages.levels;
+  input.seek_subimage(0, 0);
   return pages;
+}
+
+void go_to(OIIO::ImageInput& input, const std::string& file, const Pages& pages, int channel, int level) {
+  if (input.seek_subimage(pages.of(channel, level), pages.mip ? level : 0)) return;
+  throw FileError(file, fmt::format("page {} of {} is missing", pages.of(channel, level) + 1, pages.channels * (pages.mip ? 1 : pages.levels)),
+                  "It is cut off or damaged: copy or write it again");
+}
+
+std::unique_ptr<OIIO::ImageInput> open_raster(const std::filesystem::path& path) {
+  keep_quiet();
+  OIIO::ImageSpec config;
+  config.attribute("oiio:UnassociatedAlpha", 1);
+  auto input = OIIO::ImageInput::open(path.string(), &config);
+  if (!input) {
+    throw FileError(path.string(), fmt::format("cannot be read as an image: {}", OIIO::geterror()),
+                    "Check that its content fits its name, or write it again");
+  }
+  if (std::string_view(input->format_name()) == "tiff") check_tiff_structure(path);
+  return input;
 }
 
 /// From grey levels back to values, as well as eight bits allow.
@@ -196,10 +201,6 @@ void undo_stretch(Image& image) {
   for (float& value : image.channels.front().values.data()) {
     value = static_cast<float>(low + (high - low) * double{value} / 255);
   }
-}
-
-void close_output(OIIO::ImageOutput& output, const std::string& file) {
-  check_written(output.close(), output, file);
 }
 
 void write_png_rows(OIIO::ImageOutput& output, const std::string& target, const std::string& file,
@@ -327,29 +328,32 @@ int raster_bits(const std::filesystem::path& path) {
   return spec.get_int_attribute("oiio:BitsPerSample", static_cast<int>(8 * spec.format.size()));
 }
 
-Image read_raster(const std::filesystem::path& path) {
+Image read_raster(const std::filesystem::path& path, int level) {
   const std::string file = path.string();
-  keep_quiet();
-  OIIO::ImageSpec config;
-  config.attribute("oiio:UnassociatedAlpha", 1);
-  const auto input = OIIO::ImageInput::open(file, &config);
-  if (!input) {
-    throw FileError(file, fmt::format("cannot be read as an image: {}", OIIO::geterror()),
-                    "Check that its content fits its name, or write it again");
-  }
-  if (std::string_view(input->format_name()) == "tiff") check_tiff_structure(path);
-  const int pages = page_count(input->spec());
-  Image image = read_page(*input, file);
-  if (std::string_view(input->format_name()) == "png") undo_stretch(image);
-  for (int next = 1; next < pages; ++next) {
-    if (!input->seek_subimage(next, 0)) {
-      throw FileError(file, fmt::format("page {} of {} is missing", next + 1, pages),
-                      "It is cut off or damaged: copy or write it again");
-    }
+  const auto input = open_raster(path);
+  const Pages pages = pages_of(*input);
+  const int height = input->spec().height;
+  Image image;
+  for (int channel = 0; channel < pages.channels; ++channel) {
+    go_to(*input, file, pages, channel, level);
     Image page = read_page(*input, file);
-    std::move(page.channels.begin(), page.channels.end(), std::back_inserter(image.channels));
+    if (channel == 0) image = std::move(page);
+    else std::move(page.channels.begin(), page.channels.end(), std::back_inserter(image.channels));
   }
+  if (std::string_view(input->format_name()) == "png") undo_stretch(image);
+  if (pages.mip) image = placed_at_level(std::move(image), height, level);   // its text is that of the whole file
   return image;
+}
+
+std::vector<ImageSize> raster_sizes(const std::filesystem::path& path) {
+  const auto input = open_raster(path);
+  const Pages pages = pages_of(*input);
+  std::vector<ImageSize> sizes;
+  for (int level = 0; level < pages.levels; ++level) {
+    go_to(*input, path.string(), pages, 0, level);
+    sizes.push_back({input->spec().width, input->spec().height});
+  }
+  return sizes;
 }
 
 }  // namespace surf::io

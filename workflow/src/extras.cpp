@@ -141,6 +141,8 @@ std::vector<fs::path> extra_files(const SimulateJob& job) {
   return files;
 }
 
+std::vector<std::string> label_channels() { return {"material", "model", "valid"}; }
+
 std::vector<std::string> extra_channels(const SimulateJob& job) {
   std::vector<std::string> names = surface_channels(job.extras);
   mc::SimulationResult like;
@@ -152,15 +154,11 @@ std::vector<std::string> extra_channels(const SimulateJob& job) {
 void add_channels(const mc::Scene& scene, const SimulateJob& job, const mc::SimulationResult& result,
                   ImageRows& image) {
   if (const auto names = surface_channels(job.extras); !names.empty()) {
-    const Image view = mc::surface_view(scene, job.options.threads);
-    const auto seen = std::make_shared<Image>();
-    for (const std::string& name : names) seen->channels.push_back(*view.find(name));
-    std::vector<Channel> heads;
-    for (const Channel& c : seen->channels) heads.push_back({c.name, c.unit, {}});
-    append(image, std::move(heads),
-           [seen, rows = rows_of(*seen).read](std::size_t channel, int y, std::span<float> row) {
-             rows(channel, y, row);
-           });
+    const double bytes = 4.0 * static_cast<double>(names.size()) * static_cast<double>(result.pixels.size());
+    const bool large = bytes > static_cast<double>(job.options.tally_memory);
+    ImageRows seen = mc::surface_view_rows(scene, names, job.options.threads,
+                                           large ? job.options.scratch_folder : std::string());
+    append(image, std::move(seen.head.channels), std::move(seen.read));
   }
   auto channels = simulation_channels(job.extras, result);
   if (channels.empty()) return;
@@ -170,9 +168,10 @@ void add_channels(const mc::Scene& scene, const SimulateJob& job, const mc::Simu
     if (c.name == "model") image.head.metadata["model"] = model_meanings();
   }
   append(image, std::move(heads),
-         [channels = std::move(channels)](std::size_t channel, int y, std::span<float> row) {
+         [channels = std::move(channels), &result](std::size_t channel, int y, std::span<float> row) {
            for (std::size_t x = 0; x < row.size(); ++x)
              row[x] = static_cast<float>(channels[channel].value(static_cast<int>(x), y));
+           if (y % 64 == 0) result.release();
          });
 }
 

@@ -27,6 +27,9 @@ std::vector<std::filesystem::path> extra_files(const SimulateJob& job);
 void add_channels(const mc::Scene& scene, const SimulateJob& job, const mc::SimulationResult& result,
                   ImageRows& image);
 
+/// Those among them whose values are numbers of something.
+std::vector<std::string> label_channels();
+
 /// The channels that `add_channels` adds.
 std::vector<std::string> extra_channels(const SimulateJob& job);
 

@@ -270,7 +270,7 @@ ImageRows labelled_image(const SimulateJob& job, const mc::Scene& scene,
 void write_all(const SimulateJob& job, const ImageRows& image, SimulateSummary& summary,
                RunRecord record) {
   for (const fs::path& output : job.outputs) {
-    io::write_image(output, image, {job.png_channel});
+    io::write_image(output, image, {job.png_channel, job.layout, label_channels()});
     summary.written.push_back(output);
   }
   record.end = std::chrono::system_clock::now();

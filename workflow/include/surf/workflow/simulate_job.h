@@ -11,6 +11,7 @@
 
 #include "surf/core/image.h"
 #include "surf/core/progress.h"
+#include "surf/io/image_file.h"
 #include "surf/io/sim/scene_file.h"
 #include "surf/mc/choose_method.h"
 #include "surf/mc/result_summary.h"
@@ -66,6 +67,7 @@ struct SimulateJob {
   CheckpointOptions checkpoint;
   std::vector<std::filesystem::path> outputs;     ///< formats by extension; at least one
   std::string png_channel;                        ///< for PNG; empty: SE, or SE.shot with a dose
+  io::Layout layout = io::Layout::automatic;      ///< of EXR and TIFF
   std::string command_line;                       ///< for the sidecar
 };
 

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "surf/core/image_rows.h"
+#include "surf/core/large_grid.h"
+#include "surf/io/image_file.h"
+
+namespace surf::io {
+
+/// The sizes of an image and of its halves, rounded up, until neither side is longer than `smallest`.
+std::vector<ImageSize> pyramid_sizes(int width, int height, int smallest);
+
+/// Placement of level `level` of an image of `height` pixels: its pixels are 2^level times as large, and the
+/// upper left corner stays where it is.
+Image placed_at_level(Image image, int height, int level);
+
+/// An image in ever smaller sizes, each value the mean of the up to four finite ones below it; of labels (names of
+/// materials, as numbers) the first of them. Rows are counted from the top here, as in files.
+class Pyramid {
+ public:
+  /// What takes more than some hundred MB goes into scratch files in `scratch_folder`.
+  Pyramid(const ImageRows& image, std::span<const std::string> labels, int smallest, const std::string& scratch_folder);
+
+  /// Of the image itself: `rows` of a channel from row `first` on, which is even; an even number of them, or the last.
+  void add(std::size_t channel, int first, std::span<const float> rows);
+
+  /// Once all rows of all channels were added.
+  void finish();
+
+  /// The image is level 0.
+  int levels() const { return static_cast<int>(sizes_.size()); }
+  ImageSize size(int level) const { return sizes_[static_cast<std::size_t>(level)]; }
+
+  /// A row of a level above 0.
+  std::span<const float> row(int level, std::size_t channel, int y) const;
+  /// See LargeGrid.
+  void release() const;
+
+ private:
+  using Level = std::vector<LargeGrid<float>>;   // by channel
+
+  Level make_level(ImageSize size) const;
+
+  std::vector<ImageSize> sizes_;
+  std::vector<bool> is_label_;
+  std::string scratch_folder_;
+  std::vector<Level> levels_;                    // from level 1 on
+};
+
+}  // namespace surf::io
