@@ -4,10 +4,12 @@
 #include <memory>
 
 #include "commands.h"
+#include "dry_run_summary.h"
 #include "mpi_team.h"
 #include "simulate_job_options.h"
 #include "simulate_options.h"
 #include "simulate_summary.h"
+#include "surf/workflow/dry_run.h"
 #include "surf/workflow/simulate_job.h"
 #include "terminal.h"
 
@@ -16,8 +18,32 @@ namespace {
 
 constexpr int exit_untrustworthy = 4;
 constexpr int exit_interrupted = 130;
+constexpr double pilot_seconds = 10;
+
+// Who leads says it; it is alone in this.
+int try_out(const SimulateOptions& options, const std::string& command_line) {
+  if (!workflow::leads(team())) return 0;
+  const workflow::SimulateJob job = make_simulate_job(options, command_line);
+  workflow::DryRun run;
+  {
+    InterruptGuard interrupts;
+    ProgressBar bar(!options.quiet);
+    run = workflow::dry_run(
+        job, team() ? team()->size() : 1, pilot_seconds, [&](double done, double total) { bar.show(done, total); },
+        interrupts.token(),
+        [&](const std::string& note) {
+          bar.clear();
+          if (!options.quiet) print_note(note);
+        },
+        [&](double done, double total) { bar.show(done, total, "cascades"); });
+  }
+  for (const std::string& warning : run.warnings) print_warning(warning);
+  print_dry_run(run);
+  return 0;
+}
 
 int simulate(const SimulateOptions& options, const std::string& command_line) {
+  if (options.dry_run) return try_out(options, command_line);
   workflow::SimulateJob job;
   workflow::together(team(), [&] { job = make_simulate_job(options, command_line); });
   workflow::SimulateSummary summary;

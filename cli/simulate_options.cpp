@@ -100,6 +100,10 @@ void add_long_job_options(CLI::App& app, SimulateOptions& o) {
                  "Time between writes (30s); the first is after 10s or less")
       ->type_name("TIME")->group(group);
   app.add_flag("--restart", o.restart, "Begin anew, whatever was done before")->group(group);
+  app.add_flag("--dry-run", o.dry_run,
+               "Simulate a part for ten seconds, and tell what the whole will take: rays,\n"
+               "time, memory and disk. Writes nothing but libraries")
+      ->group(group);
 }
 
 void add_channel_options(CLI::App& app, SimulateOptions& o) {

@@ -19,6 +19,7 @@ struct SimulateOptions {
   std::optional<std::string> deposit, trajectories, trajectories_at;
   std::optional<std::string> checkpoint, checkpoint_every;
   bool restart = false;
+  bool dry_run = false;
   bool spectra = false;
   bool quiet = false;
 };

@@ -2,6 +2,8 @@
 #include "plane_controls.h"
 
 #include <algorithm>
+#include <atomic>
+#include <chrono>
 #include <cmath>
 
 #include "replay.h"
@@ -16,6 +18,8 @@ constexpr double step_deg = 1;             // between controls, where azimuths d
 constexpr double coarse_step_deg = 5;      // where they do
 constexpr double steepest_deg = 86;
 constexpr double exact_steps = 1e9;        // normals that agree to this are one
+
+thread_local double spent_here = 0;        // seconds
 
 // Everything below a plane through the origin.
 class HalfSpace {
@@ -66,6 +70,7 @@ bool axial(const Scene::Impl& scene, const std::vector<Detector>& detectors) {
 
 struct PlaneControls::Slot {
   std::once_flag made;
+  std::atomic<bool> ready = false;
   std::shared_ptr<const PlaneControl> control;
 };
 
@@ -88,7 +93,14 @@ double PlaneControls::azimuth(std::uint64_t seed, std::size_t cascade) {
   return azimuth_of({seed, azimuths, cascade, cascade, 0});
 }
 
-PlaneControls::Match PlaneControls::match(int material, const Vec3& normal, bool exact) {
+PlaneControls::Made PlaneControls::made() const {
+  const std::lock_guard lock(mutex_);
+  return made_;
+}
+
+double PlaneControls::seconds_of_this_thread() { return spent_here; }
+
+PlaneControls::Place PlaneControls::place(int material, const Vec3& normal, bool exact) const {
   const double cosine = std::clamp(dot(normal, against_), -1.0, 1.0);
   const double polar = std::acos(cosine) / degrees_to_radians;
   const double turn = std::atan2(dot(normal, up_), dot(normal, across_)) / (2 * std::numbers::pi);
@@ -101,16 +113,15 @@ PlaneControls::Match PlaneControls::match(int material, const Vec3& normal, bool
            against_ * std::cos(polar_deg * degrees_to_radians);
   };
 
-  std::tuple<int, std::int64_t, std::int64_t, std::int64_t> key;
-  Vec3 plane;
-  Match out;
+  Place out;
+  auto& [key, plane, turned] = out;
   if (exact) {
     plane = axial_ ? normalized(across_ * std::sqrt(std::max(0.0, 1 - cosine * cosine)) +
                                 against_ * cosine)
                    : normal;
     key = {material, std::llround(plane.x * exact_steps), std::llround(plane.y * exact_steps),
            std::llround(plane.z * exact_steps)};
-    if (axial_) out.azimuth = azimuth;
+    if (axial_) turned = azimuth;
   } else {
     const double step = axial_ ? step_deg : coarse_step_deg;
     const auto i = std::llround(std::min(polar, steepest_deg) / step);
@@ -122,24 +133,43 @@ PlaneControls::Match PlaneControls::match(int material, const Vec3& normal, bool
     const auto j = axial_ ? 0 : std::llround(azimuth * double(sectors)) % sectors;
     plane = at(double(i) * step, axial_ ? 0 : double(j) / double(sectors));
     key = {-1 - material, i, j, 0};
-    if (axial_) out.azimuth = azimuth;
+    if (axial_) turned = azimuth;
   }
+  return out;
+}
 
+PlaneControls::Match PlaneControls::match(int material, const Vec3& normal, bool exact) {
+  const Place where = place(material, normal, exact);
+  Match out;
+  out.azimuth = where.azimuth;
   std::shared_ptr<Slot> slot;
   {
     const std::lock_guard lock(mutex_);
-    auto& known = slots_[key];
+    auto& known = slots_[where.key];
     if (!known) known = std::make_shared<Slot>();
     slot = known;
   }
+  if (slot->ready) {
+    out.control = slot->control;
+    return out;
+  }
+  const auto begin = std::chrono::steady_clock::now();
+  const auto seconds = [&] {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  };
   std::call_once(slot->made, [&] {
     // A number that depends on the plane alone, not on who asks first.
-    const auto [a, b, c, d] = key;
+    const auto [a, b, c, d] = where.key;
     std::uint64_t number = std::uint64_t{1} << 45;
     for (const std::int64_t v : {std::int64_t{a}, b, c, d})
       number ^= (static_cast<std::uint64_t>(v) * 0x9e3779b97f4a7c15u + (number << 6)) >> 20;
-    slot->control = make(material, plane, number & ((std::uint64_t{1} << 47) - 1));
+    slot->control = make(material, where.plane, number & ((std::uint64_t{1} << 47) - 1));
+    slot->ready = true;
+    const std::lock_guard lock(mutex_);
+    ++made_.planes;
+    made_.seconds += seconds();
   });
+  spent_here += seconds();
   out.control = slot->control;
   return out;
 }

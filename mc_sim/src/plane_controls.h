@@ -5,6 +5,7 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <tuple>
 #include <vector>
 
 #include "surf/core/vec3.h"
@@ -44,12 +45,32 @@ class PlaneControls {
   /// Cascades of a library.
   std::size_t cascades() const { return cascades_; }
 
+  /// Stands for the control that `match` would give.
+  using Key = std::tuple<int, std::int64_t, std::int64_t, std::int64_t>;
+  Key key(int material, const Vec3& normal, bool exact) const { return place(material, normal, exact).key; }
+
+  /// Controls made so far, and the wall time of that on the threads that made them.
+  struct Made {
+    std::size_t planes = 0;
+    double seconds = 0;
+  };
+  Made made() const;
+  /// Wall time that the calling thread has spent in making controls, or waiting for one that another made: not the
+  /// work of the pixel that happened to be first.
+  static double seconds_of_this_thread();
+
   /// A cascade's azimuth, in turns, about the beam in its control.
   static double azimuth(std::uint64_t seed, std::size_t cascade);
 
  private:
   struct Slot;
+  struct Place {
+    Key key;
+    Vec3 plane;          ///< the control's normal
+    double azimuth = 0;  ///< as in Match
+  };
 
+  Place place(int material, const Vec3& normal, bool exact) const;
   std::shared_ptr<const PlaneControl> make(int material, const Vec3& normal,
                                            std::uint64_t number) const;
 
@@ -60,8 +81,9 @@ class PlaneControls {
   bool axial_;                       // detectors and beam do not care for azimuths
   Vec3 across_, up_, against_;       // the beam's frame; `against_` points back at the gun
   std::size_t cascades_ = 0;
-  std::mutex mutex_;
-  std::map<std::tuple<int, std::int64_t, std::int64_t, std::int64_t>, std::shared_ptr<Slot>> slots_;
+  mutable std::mutex mutex_;
+  Made made_;
+  std::map<Key, std::shared_ptr<Slot>> slots_;
 };
 
 }  // namespace surf::mc

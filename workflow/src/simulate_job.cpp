@@ -9,10 +9,12 @@
 #include <memory>
 
 #include "checkpoint.h"
+#include "disk_needs.h"
 #include "extras.h"
 #include "job_libraries.h"
 #include "provenance.h"
 #include "sidecar.h"
+#include "simulation_setup.h"
 #include "surf/core/error.h"
 #include "surf/core/parallel.h"
 #include "surf/core/units.h"
@@ -29,123 +31,6 @@ namespace surf::workflow {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr std::int64_t max_electrons = std::int64_t{1} << 31;
-
-void check_options(const mc::SimulationOptions& options) {
-  if (options.electrons < 1 || options.electrons > max_electrons)
-    throw UsageError("--electrons", fmt::format("{} is out of range", options.electrons),
-                     "Give 1 to 2147483648 electrons per pixel");
-  if (options.threads < 0)
-    throw UsageError("--threads", fmt::format("{} is out of range", options.threads),
-                     "Give 1 or more, or 0 for one per hardware thread");
-  if (options.tile_pixels < 1)
-    throw UsageError("tile_pixels", fmt::format("{} is out of range", options.tile_pixels),
-                     "Give 1 or more");
-}
-
-// The job with everything in its options that the simulator has to know.
-SimulateJob complete(const SimulateJob& job) {
-  SimulateJob out = job;
-  const io::SceneFile& s = job.scene;
-  for (const mc::Detector& d : s.detectors) out.options.detectors.push_back(d);
-  mc::validate(out.options.detectors);
-  if (s.current_pa.has_value() != s.dwell_us.has_value())
-    throw UsageError(s.current_pa ? "--current" : "--dwell", "the other of the two is missing",
-                     "Current and dwell time together make the dose of a pixel: give both");
-  if (s.current_pa) {
-    if (!(*s.current_pa > 0 && *s.dwell_us > 0))
-      throw UsageError("--current, --dwell", "they must be above zero",
-                       "Write for example --current 100pA --dwell 1us");
-    if (s.electrons)
-      throw UsageError("--electrons", "current and dwell time give the number of primaries",
-                       "Leave out --electrons, or --current and --dwell");
-    out.options.dose = *s.current_pa * *s.dwell_us * electrons_per_pa_us;
-  }
-  if (s.accuracy) out.options.accuracy = *s.accuracy;
-  if (s.accuracy_floor) out.options.accuracy_floor = *s.accuracy_floor;
-  if (job.seconds < 0 || !std::isfinite(job.seconds))
-    throw UsageError("--time", "it must be above zero", "Write for example 30s");
-  if (job.seconds > 0) out.options.accuracy = coarse_accuracy;
-  if (out.options.accuracy > 0 && s.electrons)
-    throw UsageError("--electrons", "a wanted accuracy gives the number of primaries",
-                     "Leave out one of the two");
-  if (out.options.scratch_folder.empty() && !job.outputs.empty()) {
-    const fs::path folder = job.outputs.front().parent_path();
-    out.options.scratch_folder = folder.empty() ? "." : folder.string();
-  }
-  if (out.png_channel.empty()) out.png_channel = out.options.dose > 0 ? "SE.shot" : "SE";
-  return out;
-}
-
-// An image as the simulator makes them, small, to ask whether channels are known.
-Image image_like_the_result(const SimulateJob& job) {
-  mc::SimulationResult result;
-  result.detectors = job.options.detectors;
-  result.dose = job.options.dose;
-  result.pixels = LargeGrid<mc::PixelTally>(1, 1);
-  for (std::size_t d = 0; d < result.detectors.size(); ++d) result.counts.emplace_back(1, 1);
-  mc::Scan scan;
-  scan.width = scan.height = 1;
-  Image image = mc::make_image(result, scan);
-  for (const std::string& name : extra_channels(job))
-    image.channels.push_back({name, "1", Grid<float>(1, 1)});
-  return image;
-}
-
-bool same_file(const fs::path& a, const fs::path& b) {
-  std::error_code ignored;
-  return fs::weakly_canonical(a, ignored) == fs::weakly_canonical(b, ignored);
-}
-
-void check_outputs(const SimulateJob& job) {
-  if (job.outputs.empty())
-    throw UsageError("--output", "no output file is given", "Add -o image.exr");
-  const Image image = image_like_the_result(job);
-  for (const fs::path& extra : extra_files(job)) io::check_writable(extra);
-  for (std::size_t i = 0; i < job.outputs.size(); ++i) {
-    const fs::path& output = job.outputs[i];
-    io::check_image_target(output, &image, {job.png_channel});
-    io::check_writable(output);
-    io::check_writable(sidecar_path(output));
-    for (std::size_t j = 0; j < i; ++j)
-      if (same_file(output, job.outputs[j]))
-        throw UsageError("--output", output.string() + " is given twice", "Leave one out");
-    for (const fs::path& input : job.scene.inputs)
-      if (same_file(output, input))
-        throw UsageError("--output", output.string() + " is an input", "Choose another name");
-  }
-}
-
-void check_checkpoint(const SimulateJob& job) {
-  const CheckpointOptions& o = job.checkpoint;
-  if (!(o.seconds > 0))
-    throw UsageError("--checkpoint-every", "it must be above zero", "Write for example 30s");
-  if (!o.wanted || o.file.empty()) return;
-  if (job.extras.deposit_cells > 0)
-    throw UsageError("--checkpoint", "deposited energy cannot be kept on the way",
-                     "Leave out --checkpoint or --deposit");
-  for (const auto* files : {&job.outputs, &job.scene.inputs})
-    for (const fs::path& file : *files)
-      if (same_file(o.file, file))
-        throw UsageError("--checkpoint", o.file.string() + " is an input or output",
-                         "Choose another name");
-  io::check_writable(o.file);
-}
-
-// What is traced: the specimen, or one of fewer triangles within the tolerance asked for.
-mc::Scene make_scene(const SimulateJob& job, const NoteCallback& tell, const CancelToken* cancel,
-                     SimulateSummary& summary) {
-  const io::SceneFile& s = job.scene;
-  const double tolerance_nm = s.mesh_tolerance_nm.value_or(0);
-  const Watch watch{{}, cancel};
-  if (tolerance_nm == 0) return mc::Scene(s.specimen, s.beam, summary.scan, s.physics, {.watch = watch});
-  if (tell) tell(fmt::format("leaving out detail below {}", format_length(tolerance_nm)));
-  const mc::Specimen simple =
-      simplify_specimen(s.specimen, tolerance_nm, s.beam, summary.scan, s.physics,
-                        job.options.threads, summary.simplification, watch);
-  return mc::Scene(simple, s.beam, summary.scan, s.physics, {.watch = watch});
-}
 
 // Only where it is much: where the results of all pixels go until they are written.
 void tell_of_scratch(const SimulateJob& job, const mc::Scan& scan, const NoteCallback& note) {
@@ -241,7 +126,7 @@ Simulation simulate_coarsely(SimulateJob& job, const mc::Scene& scene, mc::Libra
   return coarse;
 }
 
-// Before anything is written: a full disk should not take the work as well.
+// Where the job goes on from, when it did not come to its end or to its files.
 void keep_interrupted(const SimulateJob& job, Checkpoint* checkpoint, const NoteCallback& note) {
   if (checkpoint && checkpoint->keep()) {
     if (note)
@@ -317,6 +202,9 @@ SimulateSummary run(const SimulateJob& asked, const ProgressCallback& progress,
     ready.emplace(make_scene(job, tell, cancel, summary));   // validates the specimen
     summary.scene = ready->summary();
     note(warn_before(job, summary.scan));
+    // Of this machine today: it is not for the record.
+    if (leads(team) && warn)
+      for (const std::string& warning : warn_of_full_disks(disk_needs(job, summary.scan))) warn(warning);
     note(warnings_of(job.scene.specimen, summary.simplification));
     summary.choice = mc::choose_method(*ready, job.options, job.scene.method, {job.extras.deposit_cells > 0});
     job.options.method = summary.choice.method;
@@ -360,20 +248,27 @@ SimulateSummary run(const SimulateJob& asked, const ProgressCallback& progress,
   summary.pages_loaded = kept.pages().loaded;
   summary.pages_made = kept.pages().made;
   summary.statistics = mc::summarize(summary.result);
+  // Before anything is written, for the same reason as below.
   if (!summary.result.complete) keep_interrupted(job, checkpoint.get(), tell);
   note(warn_after(summary.result, summary.statistics));
 
-  const ImageRows image = labelled_image(job, scene, summary, settings);
-  if (deposits) {
-    Volume volume = deposits->density(summary.result.balance.incident);
-    volume.metadata = image.head.metadata;
-    io::write_volume(extra_path(job, ".deposit.vti"), volume);
+  try {
+    const ImageRows image = labelled_image(job, scene, summary, settings);
+    if (deposits) {
+      Volume volume = deposits->density(summary.result.balance.incident);
+      volume.metadata = image.head.metadata;
+      io::write_volume(extra_path(job, ".deposit.vti"), volume);
+    }
+    if (job.options.spectra)
+      io::write_text(extra_path(job, ".spectra.csv"), spectra_text(summary.result));
+    if (job.extras.trajectories > 0) write_trajectories(scene, job, settings);
+    for (const fs::path& extra : extra_files(job)) summary.written.push_back(extra);
+    write_all(job, image, summary, std::move(record));
+  } catch (const Error&) {
+    // A full disk, say: it should not take the work as well.
+    if (summary.result.complete) keep_interrupted(job, checkpoint.get(), tell);
+    throw;
   }
-  if (job.options.spectra)
-    io::write_text(extra_path(job, ".spectra.csv"), spectra_text(summary.result));
-  if (job.extras.trajectories > 0) write_trajectories(scene, job, settings);
-  for (const fs::path& extra : extra_files(job)) summary.written.push_back(extra);
-  write_all(job, image, summary, std::move(record));
   if (checkpoint && summary.result.complete) checkpoint->finish();
   return summary;
 }

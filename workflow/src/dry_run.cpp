@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "surf/workflow/dry_run.h"
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <fstream>
+
+#include "disk_needs.h"
+#include "extras.h"
+#include "job_libraries.h"
+#include "simulation_setup.h"
+#include "surf/core/error.h"
+#include "surf/core/parallel.h"
+#include "time_budget.h"
+#include "warnings.h"
+
+namespace surf::workflow {
+namespace {
+
+// Bytes of a line such as "VmRSS:  1234 kB"; 0 where there is none.
+double kilobytes_of(const char* file, const std::string& key) {
+  std::ifstream in(file);
+  for (std::string line; std::getline(in, line);)
+    if (line.compare(0, key.size(), key) == 0) return 1024 * std::stod(line.substr(key.size()));
+  return 0;
+}
+
+// Beyond what scene and libraries take.
+std::vector<MemoryNeed> memory_of_results(const SimulateJob& job, const mc::Scan& scan) {
+  std::vector<MemoryNeed> needs;
+  const double pixels = static_cast<double>(scan.width) * scan.height;
+  const auto limit = static_cast<double>(job.options.tally_memory);
+  const auto tallies = static_cast<double>(mc::tally_bytes(scan, job.options));
+  constexpr double part_of_a_scratch_file = 32e6;
+  needs.push_back({"tallies", tallies > limit ? part_of_a_scratch_file : tallies});
+  const auto channels = static_cast<double>(image_like_the_result(job).channels.size());
+  double writing = 256 * 4 * channels * scan.width;
+  for (const auto& output : job.outputs) {
+    std::string extension = output.extension().string();
+    std::ranges::transform(extension, extension.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    if (extension == ".vti") writing = std::max(writing, 8 * channels * pixels);
+  }
+  if (!job.extras.channels.empty()) writing += std::min(limit, 4 * static_cast<double>(extra_channels(job).size()) * pixels);
+  needs.push_back({"writing", writing});
+  return needs;
+}
+
+}  // namespace
+
+DryRun dry_run(const SimulateJob& asked, int ranks, double seconds, const ProgressCallback& progress,
+               const CancelToken* cancel, const NoteCallback& note, const LibraryCallback& making) {
+  check_options(asked.options);
+  check_extras(asked.extras);
+  SimulateJob job = complete(asked);
+  check_outputs(job);
+  check_checkpoint(job);
+  SimulateSummary summary;
+  DryRun out;
+  out.scan = summary.scan = resolve_scan(job.scene.scan, mc::extent(job.scene.specimen), job.scene.beam);
+  check_trajectories(job, out.scan);
+  const mc::Scene scene = make_scene(job, note, cancel, summary);
+  out.scene = scene.summary();
+  out.warnings = warn_before(job, out.scan);
+  out.choice = mc::choose_method(scene, job.options, job.scene.method, {job.extras.deposit_cells > 0});
+  job.options.method = out.choice.method;
+  JobLibraries libraries(job.cache, making, note);
+  out.pilot = mc::run_pilot(scene, job.options, seconds, &libraries, progress, cancel);
+  if (!out.pilot.complete) throw Interrupted();
+  out.threads = resolve_threads(job.options.threads);
+  out.ranks = ranks;
+  out.expected_s = job.seconds > 0 ? job.seconds : out.pilot.expected_s / ranks;
+  out.standard_error_s = job.seconds > 0 ? 0 : out.pilot.standard_error_s / ranks;
+
+  const double now = kilobytes_of("/proc/self/status", "VmRSS:");
+  const auto library_bytes = static_cast<double>(out.pilot.library_bytes);
+  const auto scene_bytes = static_cast<double>(out.scene.memory_bytes);
+  out.memory = {{"ray tracing", scene_bytes}, {"libraries", library_bytes}};
+  out.memory.push_back({"specimen and program", std::max(0.0, now - scene_bytes - library_bytes)});
+  for (const MemoryNeed& need : memory_of_results(job, out.scan)) out.memory.push_back(need);
+  for (const MemoryNeed& need : out.memory) out.memory_bytes += need.bytes;
+  out.memory_bytes = std::max(out.memory_bytes, kilobytes_of("/proc/self/status", "VmHWM:"));   // of reading
+  out.memory_there = kilobytes_of("/proc/meminfo", "MemTotal:");
+  out.disk = disk_needs(job, out.scan, out.pilot.packed_bytes);
+  for (std::string& warning : warn_of_full_disks(out.disk)) out.warnings.push_back(std::move(warning));
+  return out;
+}
+
+}  // namespace surf::workflow

@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "simulation_setup.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "extras.h"
+#include "sidecar.h"
+#include "surf/core/error.h"
+#include "surf/core/units.h"
+#include "surf/io/files.h"
+#include "surf/io/image_file.h"
+#include "time_budget.h"
+
+namespace surf::workflow {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::int64_t max_electrons = std::int64_t{1} << 31;
+
+bool same_file(const fs::path& a, const fs::path& b) {
+  std::error_code ignored;
+  return fs::weakly_canonical(a, ignored) == fs::weakly_canonical(b, ignored);
+}
+
+}  // namespace
+
+void check_options(const mc::SimulationOptions& options) {
+  if (options.electrons < 1 || options.electrons > max_electrons)
+    throw UsageError("--electrons", fmt::format("{} is out of range", options.electrons),
+                     "Give 1 to 2147483648 electrons per pixel");
+  if (options.threads < 0)
+    throw UsageError("--threads", fmt::format("{} is out of range", options.threads),
+                     "Give 1 or more, or 0 for one per hardware thread");
+  if (options.tile_pixels < 1)
+    throw UsageError("tile_pixels", fmt::format("{} is out of range", options.tile_pixels),
+                     "Give 1 or more");
+}
+
+SimulateJob complete(const SimulateJob& job) {
+  SimulateJob out = job;
+  const io::SceneFile& s = job.scene;
+  for (const mc::Detector& d : s.detectors) out.options.detectors.push_back(d);
+  mc::validate(out.options.detectors);
+  if (s.current_pa.has_value() != s.dwell_us.has_value())
+    throw UsageError(s.current_pa ? "--current" : "--dwell", "the other of the two is missing",
+                     "Current and dwell time together make the dose of a pixel: give both");
+  if (s.current_pa) {
+    if (!(*s.current_pa > 0 && *s.dwell_us > 0))
+      throw UsageError("--current, --dwell", "they must be above zero",
+                       "Write for example --current 100pA --dwell 1us");
+    if (s.electrons)
+      throw UsageError("--electrons", "current and dwell time give the number of primaries",
+                       "Leave out --electrons, or --current and --dwell");
+    out.options.dose = *s.current_pa * *s.dwell_us * electrons_per_pa_us;
+  }
+  if (s.accuracy) out.options.accuracy = *s.accuracy;
+  if (s.accuracy_floor) out.options.accuracy_floor = *s.accuracy_floor;
+  if (job.seconds < 0 || !std::isfinite(job.seconds))
+    throw UsageError("--time", "it must be above zero", "Write for example 30s");
+  if (job.seconds > 0) out.options.accuracy = coarse_accuracy;
+  if (out.options.accuracy > 0 && s.electrons)
+    throw UsageError("--electrons", "a wanted accuracy gives the number of primaries",
+                     "Leave out one of the two");
+  if (out.options.scratch_folder.empty() && !job.outputs.empty()) {
+    const fs::path folder = job.outputs.front().parent_path();
+    out.options.scratch_folder = folder.empty() ? "." : folder.string();
+  }
+  if (out.png_channel.empty()) out.png_channel = out.options.dose > 0 ? "SE.shot" : "SE";
+  return out;
+}
+
+Image image_like_the_result(const SimulateJob& job) {
+  mc::SimulationResult result;
+  result.detectors = job.options.detectors;
+  result.dose = job.options.dose;
+  result.pixels = LargeGrid<mc::PixelTally>(1, 1);
+  for (std::size_t d = 0; d < result.detectors.size(); ++d) result.counts.emplace_back(1, 1);
+  mc::Scan scan;
+  scan.width = scan.height = 1;
+  Image image = mc::make_image(result, scan);
+  for (const std::string& name : extra_channels(job))
+    image.channels.push_back({name, "1", Grid<float>(1, 1)});
+  return image;
+}
+
+void check_outputs(const SimulateJob& job) {
+  if (job.outputs.empty())
+    throw UsageError("--output", "no output file is given", "Add -o image.exr");
+  const Image image = image_like_the_result(job);
+  for (const fs::path& extra : extra_files(job)) io::check_writable(extra);
+  for (std::size_t i = 0; i < job.outputs.size(); ++i) {
+    const fs::path& output = job.outputs[i];
+    io::check_image_target(output, &image, {job.png_channel});
+    io::check_writable(output);
+    io::check_writable(sidecar_path(output));
+    for (std::size_t j = 0; j < i; ++j)
+      if (same_file(output, job.outputs[j]))
+        throw UsageError("--output", output.string() + " is given twice", "Leave one out");
+    for (const fs::path& input : job.scene.inputs)
+      if (same_file(output, input))
+        throw UsageError("--output", output.string() + " is an input", "Choose another name");
+  }
+}
+
+void check_checkpoint(const SimulateJob& job) {
+  const CheckpointOptions& o = job.checkpoint;
+  if (!(o.seconds > 0))
+    throw UsageError("--checkpoint-every", "it must be above zero", "Write for example 30s");
+  if (!o.wanted || o.file.empty()) return;
+  if (job.extras.deposit_cells > 0)
+    throw UsageError("--checkpoint", "deposited energy cannot be kept on the way",
+                     "Leave out --checkpoint or --deposit");
+  for (const auto* files : {&job.outputs, &job.scene.inputs})
+    for (const fs::path& file : *files)
+      if (same_file(o.file, file))
+        throw UsageError("--checkpoint", o.file.string() + " is an input or output",
+                         "Choose another name");
+  io::check_writable(o.file);
+}
+
+mc::Scene make_scene(const SimulateJob& job, const NoteCallback& tell, const CancelToken* cancel,
+                     SimulateSummary& summary) {
+  const io::SceneFile& s = job.scene;
+  const double tolerance_nm = s.mesh_tolerance_nm.value_or(0);
+  const Watch watch{{}, cancel};
+  if (tolerance_nm == 0) return mc::Scene(s.specimen, s.beam, summary.scan, s.physics, {.watch = watch});
+  if (tell) tell(fmt::format("leaving out detail below {}", format_length(tolerance_nm)));
+  const mc::Specimen simple =
+      simplify_specimen(s.specimen, tolerance_nm, s.beam, summary.scan, s.physics,
+                        job.options.threads, summary.simplification, watch);
+  return mc::Scene(simple, s.beam, summary.scan, s.physics, {.watch = watch});
+}
+
+}  // namespace surf::workflow

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What happens before a simulation begins, for whoever simulates or only says what it would take.
+#pragma once
+
+#include "surf/mc/scene.h"
+#include "surf/workflow/simulate_job.h"
+
+namespace surf::workflow {
+
+/// Throws UsageError for numbers out of range.
+void check_options(const mc::SimulationOptions& options);
+
+/// The job with everything in its options that the simulator has to know. Throws UsageError.
+SimulateJob complete(const SimulateJob& job);
+
+/// An image of one pixel with the channels of the result.
+Image image_like_the_result(const SimulateJob& job);
+
+/// Whether everything can be written, of a complete job. Throws UsageError, FileError.
+void check_outputs(const SimulateJob& job);
+void check_checkpoint(const SimulateJob& job);
+
+/// What is traced: the specimen, or one of fewer triangles within the tolerance asked for. `summary` has the scan, and
+/// gets what was left out.
+mc::Scene make_scene(const SimulateJob& job, const NoteCallback& tell, const CancelToken* cancel,
+                     SimulateSummary& summary);
+
+}  // namespace surf::workflow
