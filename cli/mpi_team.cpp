@@ -17,10 +17,12 @@
 #include <condition_variable>
 #include <cstdint>
 #include <cstring>
+#include <ctime>
 #include <deque>
 #include <exception>
 #include <mutex>
 #include <optional>
+#include <sstream>
 #include <thread>
 
 #include "surf/mc/pack.h"
@@ -60,6 +62,22 @@ constexpr auto nap = std::chrono::microseconds(200);
 constexpr auto patience = std::chrono::milliseconds(700);
 
 double seconds(Clock::duration d) { return std::chrono::duration<double>(d).count(); }
+
+// Adds to a sum what this thread has computed meanwhile: waiting for others costs nothing.
+class ThreadTime {
+ public:
+  explicit ThreadTime(double& sum) : sum_(sum), start_(now()) {}
+  ~ThreadTime() { sum_ += now() - start_; }
+
+ private:
+  static double now() {
+    timespec t{};
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+    return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+  }
+  double& sum_;
+  double start_;
+};
 
 std::string host() {
   char name[MPI_MAX_PROCESSOR_NAME];
@@ -113,6 +131,7 @@ class MpiTeam : public workflow::Team {
   }
 
   void lead(const mc::TakeUnit& take, const mc::GiveTally& give, const CancelToken* cancel) override {
+    const ThreadTime time(own().messaging_s);
     int at_work = size_ - 1;
     std::string trouble;
     Clock::time_point stopped{};
@@ -169,6 +188,7 @@ class MpiTeam : public workflow::Team {
         }
         desk.leave();
       });
+      const ThreadTime time(own().messaging_s);
       serve(desk, cancel);
     }
     if (!error && cancel && cancel->cancelled()) error = std::make_exception_ptr(Interrupted());
@@ -185,8 +205,10 @@ class MpiTeam : public workflow::Team {
       send(text, failed, 0);
       std::rethrow_exception(error);
     }
-    send(std::to_string(me.threads) + " " + std::to_string(me.waiting_s) + " " + std::to_string(me.bytes_sent) + " " + me.host,
-         finished, 0);
+    std::string sums = std::to_string(me.threads);
+    for (const double seconds : {me.waiting_s, me.messaging_s}) sums += " " + std::to_string(seconds);
+    for (const std::int64_t count : {me.bytes_sent, me.messages}) sums += " " + std::to_string(count);
+    send(sums + " " + me.host, finished, 0);
   }
 
  private:
@@ -289,6 +311,7 @@ class MpiTeam : public workflow::Team {
 
   void send(const std::string& bytes, Tag tag, int to) {
     MPI_Send(bytes.data(), static_cast<int>(bytes.size()), MPI_CHAR, to, tag, MPI_COMM_WORLD);
+    ++own().messages;
     if (to == 0) own().bytes_sent += static_cast<std::int64_t>(bytes.size());
   }
 
@@ -307,13 +330,10 @@ class MpiTeam : public workflow::Team {
   }
 
   static void note_member(const std::string& text, workflow::TeamMember& member) {
-    std::size_t at = 0;
-    member.threads = std::stoi(text, &at);
-    std::string rest = text.substr(at);
-    member.waiting_s = std::stod(rest, &at);
-    rest = rest.substr(at);
-    member.bytes_sent = std::stoll(rest, &at);
-    member.host = rest.substr(at + 1);
+    std::istringstream in(text);
+    in >> member.threads >> member.waiting_s >> member.messaging_s >> member.bytes_sent >> member.messages;
+    in.ignore();
+    std::getline(in, member.host);
   }
 
   workflow::TeamMember& own() { return members_[static_cast<std::size_t>(rank_)]; }
