@@ -8,7 +8,7 @@ Each repeat runs one process with two threads, two ranks with a thread each, bou
 one thread, in an order that changes, from a warm cache of cascades. Compared is the time of the simulation proper
 (NAME.run.json): scenes, libraries, writing and the start-up of mpirun are apart. Then two ranks at units of work so
 small that the leader has no time left (`stress`): what it costs for each unit, for bench/scale_model.
-Writes mpi.csv (every run), stress.csv and mpi.json (the summary and the machine); prints tables. --scale 0.2 for a trial,
+Writes mpi.csv (every run) and mpi.json (what bench/scale_model takes from it); prints tables. --scale 0.2 for a trial,
 --tables prints those of the figures that are there.
 """
 import argparse
@@ -37,6 +37,8 @@ CASES = {
     "accuracy_flat": ("flat.toml", ["--method", "replay", "--accuracy", "5%"], "--size", 512),
     "accuracy_mesh": ("mesa80.toml", ["--method", "replay", "--accuracy", "10%"], "--size", 224),
 }
+# The other rank has many threads on its processor, and so many units in hand: nothing but the leader holds it up.
+MANY = 32
 MODES = {"threads_2": ([], 2), "ranks_2": (RANKS_BOUND, 1), "alone": ([*MPIRUN, "--bind-to", "none", "-n", "1"], 1)}
 
 # A row of pixels is a unit of work here, a primary a pixel. Beams that meet nothing take a tenth of a microsecond: units
@@ -59,10 +61,13 @@ STRESS = [("empty", 1, 400000), ("empty", 4, 400000), ("empty", 16, 300000), ("e
 
 def run(folder, mode, words):
     """One run: the figures of a line of mpi.csv."""
-    start, threads = MODES[mode]
     name = folder / "run.exr"
-    command = [*start, str(ROOT / "build/bin/semsurf"), "simulate", *map(str, words), "--threads", str(threads),, "-o",
-               str(name)]
+    job = [str(ROOT / "build/bin/semsurf"), "simulate", *map(str, words), "-o", str(name), "--threads"]
+    if mode == "stress":
+        command = [*RANKS_BOUND[:-2], "-n", "1", *job, "1", ":", "-n", "1", *job, str(MANY)]
+    else:
+        start, threads = MODES[mode]
+        command = [*start, *job, str(threads)]
     begin = time.monotonic()
     process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
     said = process.stdout.read()
@@ -108,12 +113,15 @@ def summary(runs):
         out[case] = {
             "repeats": len(over),
             "seconds": {mode: quartiles([float(r["seconds"]) for r in rows if r["mode"] == mode]) for mode in MODES},
+            "units": statistics.median(int(r["primaries"]) * int(r["units_of_others"]) / max(1, int(r["primaries_of_others"]))
+                                       for r in ranks),
             "overhead": statistics.median(over), "overhead_95": interval(over),
             "processor_overhead": statistics.median(paired(rows, "processor_s")),
             "beside_simulation_s": {m: statistics.median(float(r["wall_s"]) - float(r["seconds"]) for r in rows if r["mode"] == m)
                                     for m in MODES},
             "bytes_per_unit": per_unit("bytes"), "messages_per_unit": per_unit("messages"), "waiting_ms_per_unit": 1e3 * per_unit("waiting_s"),
             "units_of_rank_1": statistics.median(int(r["units_of_others"]) for r in ranks),
+            "leader_share": statistics.median(float(r["messaging_of_leader_s"]) / float(r["seconds"]) for r in ranks),
             "messaging_share": statistics.median((float(r["messaging_s"]) + float(r["messaging_of_leader_s"])) / (2 * float(r["seconds"]))
                                                  for r in ranks)}
     return out
@@ -130,10 +138,9 @@ def tables(out):
               f"{100 * s['messaging_share']:.2f} % | {s['bytes_per_unit']:.0f} | {s['waiting_ms_per_unit']:.2f} | {s['units_of_rank_1']:.0f} |")
     print("\n| stress | pixels per unit | alone, us per unit | two ranks, us per unit | leader's messaging, us per unit | bytes per unit |")
     print("|---|---|---|---|---|---|")
-    with open(out / "stress.csv", newline="") as file:
-        for row in csv.DictReader(file):
-            print(f"| {row['scene']} | {row['pixels_per_unit']} | {float(row['alone_us']):.1f} | {float(row['ranks_2_us']):.1f} | "
-                  f"{float(row['serving_us']):.1f} | {float(row['bytes_per_unit']):.0f} |")
+    for row in figures["stress"]:
+        print(f"| {row['scene']} | {row['pixels_per_unit']} | {row['alone_us']:.1f} | {row['ranks_2_us']:.1f} | "
+              f"{row['serving_us']:.1f} | {row['bytes_per_unit']:.0f} |")
 
 
 def stress(folder, scale, repeats):
@@ -147,10 +154,10 @@ def stress(folder, scale, repeats):
         alone, ranks = [], []
         for _ in range(repeats):
             alone.append(run(folder, "alone", words))
-            ranks.append(run(folder, "ranks_2", words))
+            ranks.append(run(folder, "stress", words))
         middle = lambda runs, figure: statistics.median(figure(r) for r in runs)
         # Wants of units and their answers are part of what a unit of somebody else costs.
-        rows.append({"scene": scene, "pixels_per_unit": pixels, "units": height,
+        rows.append({"scene": scene, "pixels_per_unit": pixels, "units": height, "threads_of_rank_1": MANY,
                      "alone_us": 1e6 * middle(alone, lambda r: r["seconds"]) / height,
                      "ranks_2_us": 1e6 * middle(ranks, lambda r: r["seconds"]) / height,
                      "units_of_rank_1": middle(ranks, lambda r: r["units_of_others"]),
@@ -169,6 +176,13 @@ def write_rows(path, rows):
         writer.writeheader()
         for row in rows:
             writer.writerow({key: f"{value:.7g}" if isinstance(value, float) else value for key, value in row.items()})
+
+
+def machine(load, asked):
+    model = [line.partition(":")[2].strip() for line in open("/proc/cpuinfo") if line.startswith("model name")]
+    said = subprocess.run(["mpirun", "--version"], capture_output=True, text=True).stdout
+    return {"processor": model[0] if model else platform.machine(), "processors": os.cpu_count(), "load_before": load,
+            "scale": asked.scale, "repeats": asked.repeats, "mpirun": said.split("\n")[0]}
 
 
 def main():
@@ -199,14 +213,15 @@ def main():
                     runs.append({"case": case, "repeat": repeat, **run(folder, mode, words)})
                     print(*(f"{key}={value:.4g}" if isinstance(value, float) else f"{key}={value}" for key, value in runs[-1].items()),
                           flush=True)
+        there = asked.out / "mpi.json"
+        figures = json.loads(there.read_text()) if there.exists() else {"cases": {}, "stress": []}
         if runs:
             write_rows(asked.out / "mpi.csv", runs)
-            model = [line.partition(":")[2].strip() for line in open("/proc/cpuinfo") if line.startswith("model name")]
-            facts = {"processor": model[0] if model else platform.machine(), "processors": os.cpu_count(), "load_before": load,
-                     "scale": asked.scale, "mpirun": subprocess.run(["mpirun", "--version"], capture_output=True, text=True).stdout.split("\n")[0]}
-            (asked.out / "mpi.json").write_text(json.dumps({"machine": facts, "cases": summary(runs)}, indent=1) + "\n")
+            figures["cases"] = summary(runs)
         if "stress" in asked.only:
-            write_rows(asked.out / "stress.csv", stress(folder, asked.scale, max(1, asked.repeats // 2)))
+            figures["stress"] = stress(folder, asked.scale, max(1, asked.repeats // 2))
+        figures["machine"] = machine(load, asked)
+        there.write_text(json.dumps(figures, indent=1) + "\n")
     tables(asked.out)
 
 

@@ -28,17 +28,24 @@ double mean(const std::vector<double>& values) {
   return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
 }
 
-// Looking for messages takes this share of a processor from each rank that has nothing else to do for them.
-double slowed(const Messages& m, int threads) { return 1 / (1 - std::min(0.9, m.poll_s / (m.nap_s * threads))); }
+// The leader's own units, by looking for messages.
+double slowed(const Messages& m, const Machines& machines) {
+  return machines.ranks > 1 ? 1 / (1 - m.looking_share / machines.threads) : 1;
+}
+
+// Naps double: the last is half of the time without a message, and one comes in its middle.
+double asleep_s(const Messages& m, double without_s) {
+  return std::clamp((without_s + m.shortest_nap_s) / 2, m.shortest_nap_s, m.longest_nap_s) / 2;
+}
 
 class Run {
  public:
   Run(const UnitCosts& costs, const Messages& messages, const Machines& machines, std::int64_t units)
-      : costs_(costs), m_(messages), threads_(machines.threads), left_(units),
+      : costs_(costs), m_(messages), threads_(machines.threads), of_helper_(machines.threads * machines.crowd), crowd_(machines.crowd), left_(units), slow_(slowed(messages, machines)),
         helpers_(static_cast<std::size_t>(machines.ranks)) {
     for (int t = 0; t < threads_; ++t) begin_own(0);
     for (int r = 1; r < machines.ranks; ++r) {
-      helpers_[static_cast<std::size_t>(r)].idle = threads_;
+      helpers_[static_cast<std::size_t>(r)].idle = of_helper_;
       ask(r, 0);
     }
   }
@@ -58,7 +65,7 @@ class Run {
  private:
   struct Helper {
     int idle = 0, in_hand = 0;
-    double idle_since_s = 0;
+    double idle_since_s = 0, asked_s = 0;
     bool asked = false, closed = false;
   };
 
@@ -84,19 +91,18 @@ class Run {
         left_ -= given;
         of_others_ += given;
         const double sent_s = serve(e.at_s, 2 * m_.leader_s);
-        events_.push({sent_s + m_.latency_s + m_.nap_s / 2, e.rank, given, Kind::answer, given < e.count});
+        const double there_s = sent_s + m_.latency_s;
+        const double lag_s = asleep_s(m_, there_s - helpers_[static_cast<std::size_t>(e.rank)].asked_s);
+        events_.push({there_s + lag_s, e.rank, given, Kind::answer, given < e.count});
         break;
       }
       case Kind::answer: {
         Helper& h = helpers_[static_cast<std::size_t>(e.rank)];
         h.asked = false;
-        h.closed = e.last;
         h.in_hand += e.count;
-        while (h.idle > 0 && h.in_hand > 0) {
-          waiting_s_ += e.at_s - h.idle_since_s;
-          --h.idle;
-          begin(e.rank, e.at_s);
-        }
+        count_waiting(h, e.at_s);
+        h.closed = e.last;
+        for (; h.idle > 0 && h.in_hand > 0; --h.idle) begin(e.rank, e.at_s);
         ask(e.rank, e.at_s);
         break;
       }
@@ -110,37 +116,43 @@ class Run {
     }
     if (left_ == 0) return;
     --left_;
-    events_.push({at_s + (duration() + costs_.merge_s) * slowed(m_, threads_), 0, thread, Kind::own_unit});
+    events_.push({at_s + (duration() + costs_.merge_s) * slow_, 0, thread, Kind::own_unit});
   }
 
   void begin(int rank, double at_s) {
     --helpers_[static_cast<std::size_t>(rank)].in_hand;
-    const double works_s = duration() + costs_.pack_s + m_.follower_s / threads_;
-    events_.push({at_s + works_s * slowed(m_, threads_), rank, 0, Kind::unit});
+    const double works_s = duration() + costs_.pack_s + m_.follower_s;
+    events_.push({at_s + crowd_ * works_s, rank, 0, Kind::unit});
   }
 
   void finish(int rank, double at_s) {
     Helper& h = helpers_[static_cast<std::size_t>(rank)];
-    events_.push({at_s + m_.nap_s / 2 + m_.latency_s, rank, 0, Kind::tally});
+    events_.push({at_s + m_.latency_s, rank, 0, Kind::tally});
     if (h.in_hand > 0) begin(rank, at_s);
     else {
+      count_waiting(h, at_s);
       ++h.idle;
-      h.idle_since_s = at_s;   // of one thread after the other: the last one's is right for one thread
     }
     ask(rank, at_s);
   }
 
+  void count_waiting(Helper& h, double at_s) {
+    if (!h.closed) waiting_s_ += h.idle * (at_s - h.idle_since_s);
+    h.idle_since_s = at_s;
+  }
+
   void ask(int rank, double at_s) {
     Helper& h = helpers_[static_cast<std::size_t>(rank)];
-    if (h.asked || h.closed || h.in_hand >= threads_) return;
+    if (h.asked || h.closed || h.in_hand >= of_helper_) return;
     h.asked = true;
-    events_.push({at_s + m_.nap_s / 2 + m_.latency_s, rank, 2 * threads_ - h.in_hand, Kind::wants});
+    h.asked_s = at_s;
+    events_.push({at_s + m_.latency_s, rank, 2 * of_helper_ - h.in_hand, Kind::wants});
   }
 
   // The leader's one thread for messages, which shares processors with those that simulate. When it is done.
   double serve(double at_s, double processor_s) {
     const bool asleep = at_s > free_s_;
-    const double begin_s = asleep ? at_s + m_.nap_s / 2 : free_s_;
+    const double begin_s = asleep ? at_s + asleep_s(m_, at_s - free_s_) : free_s_;
     const double clock_s = left_ > 0 ? processor_s * (threads_ + 1) / threads_ : processor_s;
     free_s_ = begin_s + clock_s;
     served_s_ += clock_s;
@@ -158,8 +170,9 @@ class Run {
   static constexpr double shortest_s = 1e-4;
   const UnitCosts& costs_;
   const Messages& m_;
-  int threads_;
+  int threads_, of_helper_, crowd_;
   std::int64_t left_;
+  double slow_;
   std::vector<Helper> helpers_;
   std::vector<double> seen_busy_;   // by thread of the leader
   std::priority_queue<Event, std::vector<Event>, Later> events_;
@@ -198,11 +211,10 @@ Sharing simulate_sharing(const UnitCosts& costs, const Messages& messages, const
 
 Sharing bound_sharing(const UnitCosts& costs, const Messages& m, const Machines& machines, std::int64_t units) {
   const double unit_s = mean(costs.durations_s);
-  const double slow = slowed(m, machines.threads);
-  const double own = machines.threads / ((unit_s + costs.merge_s) * slow);
+  const double own = machines.threads / ((unit_s + costs.merge_s) * slowed(m, machines));
   const double others = (machines.ranks - 1.0) * machines.threads /
-                        ((unit_s + costs.pack_s + m.follower_s / machines.threads) * slow);
-  const double serves = machines.threads / (machines.threads + 1.0) / service_s(costs, m, machines.threads);
+                        (unit_s + costs.pack_s + m.follower_s);
+  const double serves = machines.threads / (machines.threads + 1.0) / service_s(costs, m, machines.threads * machines.crowd);
   const double by_others = std::min(others, serves);
   // Serving takes processor time from the leader's own units.
   const double lost = by_others / serves / (machines.threads + 1.0);

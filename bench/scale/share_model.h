@@ -20,13 +20,15 @@ struct Messages {
   double follower_s = 0;             ///< of who follows
   double latency_s = 0;              ///< on the way
   double bytes_per_s = 1e9;          ///< into the leader
-  double nap_s = 2.6e-4;             ///< how long a side sleeps that finds no message
-  double poll_s = 0;                 ///< processor time of looking for one, once a nap
+  double shortest_nap_s = 1e-4;      ///< a side that finds no message sleeps, twice as long each time, but no longer than ...
+  double longest_nap_s = 5e-3;
+  double looking_share = 0;          ///< of a processor of the leader's, for looking for messages
 };
 
 struct Machines {
   int ranks = 1;
   int threads = 1;                   ///< of each rank, as many as it has processors
+  int crowd = 1;                     ///< times as many of those who follow, for tests: each takes as many times longer
 };
 
 struct Sharing {
