@@ -191,8 +191,8 @@ limits::Table measure_costs(const fs::path& folder, bool quick) {
   };
   for (const std::int64_t electrons : {100, 1000}) {
     for (const std::int64_t primaries : {4096, 16384, 65536})
-      add(false, electrons, simulate_directly(scene, electrons, static_cast<int>(primaries / electrons), quick ? 6 : 40));
-    add(true, electrons, simulate_by_replay(electrons, quick ? 128 : 320, libraries));
+      add(false, electrons, simulate_directly(scene, electrons, static_cast<int>(primaries / electrons), quick ? 3 : 40));
+    add(true, electrons, simulate_by_replay(electrons, quick ? 64 : 256, libraries));
   }
   return table;
 }
