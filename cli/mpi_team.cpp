@@ -17,10 +17,13 @@
 #include <condition_variable>
 #include <cstdint>
 #include <cstring>
+#include <ctime>
 #include <deque>
 #include <exception>
+#include <list>
 #include <mutex>
 #include <optional>
+#include <sstream>
 #include <thread>
 
 #include "surf/mc/pack.h"
@@ -54,12 +57,37 @@ enum Tag : int { wants = 1, tally, finished, failed, units };
 
 constexpr std::uint64_t no_more = ~std::uint64_t{0};
 constexpr std::size_t largest_part = std::size_t{1} << 30;   // MPI counts in int
-constexpr auto nap = std::chrono::microseconds(200);
+// Looking for messages costs tens of microseconds: the longer none has come, the longer it waits for the next. A unit of work
+// takes longer than this, and others ask for more before they have none.
+constexpr std::chrono::microseconds shortest_nap(50), longest_nap(5000);
+constexpr std::chrono::microseconds longest_nap_sending(1000);   // large messages need both sides awake
+constexpr auto between_looks = std::chrono::milliseconds(20);   // at whether the job is cancelled
 // After the leader was told to stop, how long it waits for what others have begun. Starters of MPI kill
 // everybody a second or so after one has died.
 constexpr auto patience = std::chrono::milliseconds(700);
 
+void sleep_longer(std::chrono::microseconds& nap, std::chrono::microseconds longest = longest_nap) {
+  std::this_thread::sleep_for(nap);
+  nap = std::min(2 * nap, longest);
+}
+
 double seconds(Clock::duration d) { return std::chrono::duration<double>(d).count(); }
+
+// Adds to a sum what this thread has computed meanwhile: waiting for others costs nothing.
+class ThreadTime {
+ public:
+  explicit ThreadTime(double& sum) : sum_(sum), start_(now()) {}
+  ~ThreadTime() { sum_ += now() - start_; }
+
+ private:
+  static double now() {
+    timespec t{};
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+    return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+  }
+  double& sum_;
+  double start_;
+};
 
 std::string host() {
   char name[MPI_MAX_PROCESSOR_NAME];
@@ -113,9 +141,11 @@ class MpiTeam : public workflow::Team {
   }
 
   void lead(const mc::TakeUnit& take, const mc::GiveTally& give, const CancelToken* cancel) override {
+    const ThreadTime time(own().messaging_s);
     int at_work = size_ - 1;
     std::string trouble;
     Clock::time_point stopped{};
+    auto nap = shortest_nap;
     while (at_work > 0) {
       MPI_Status status;
       int there = 0;
@@ -128,9 +158,10 @@ class MpiTeam : public workflow::Team {
             return;
           }
         }
-        std::this_thread::sleep_for(nap);
+        sleep_longer(nap);
         continue;
       }
+      nap = shortest_nap;
       const std::string bytes = receive(status);
       workflow::TeamMember& member = members_[static_cast<std::size_t>(status.MPI_SOURCE)];
       switch (status.MPI_TAG) {
@@ -149,7 +180,9 @@ class MpiTeam : public workflow::Team {
           break;
         default: break;
       }
+      all_sent();
     }
+    wait_until_sent();
     if (!trouble.empty() && !(cancel && cancel->cancelled()))
       throw InvalidInput("team", trouble, "Look at that machine, and start the same command again");
   }
@@ -169,6 +202,7 @@ class MpiTeam : public workflow::Team {
         }
         desk.leave();
       });
+      const ThreadTime time(own().messaging_s);
       serve(desk, cancel);
     }
     if (!error && cancel && cancel->cancelled()) error = std::make_exception_ptr(Interrupted());
@@ -183,17 +217,21 @@ class MpiTeam : public workflow::Team {
       } catch (...) {
       }
       send(text, failed, 0);
+      wait_until_sent();
       std::rethrow_exception(error);
     }
-    send(std::to_string(me.threads) + " " + std::to_string(me.waiting_s) + " " + std::to_string(me.bytes_sent) + " " + me.host,
-         finished, 0);
+    std::ostringstream sums;
+    sums << me.threads << ' ' << me.waiting_s << ' ' << me.messaging_s << ' ' << me.bytes_sent << ' ' << me.messages << ' ' << me.host;
+    send(sums.str(), finished, 0);
+    wait_until_sent();
   }
 
  private:
   // Between the thread that sends and receives and those that simulate.
   struct Desk {
     std::mutex mutex;
-    std::condition_variable changed;
+    std::condition_variable changed;   // for those who simulate
+    std::condition_variable news;      // for the other
     std::deque<std::size_t> in;
     std::deque<std::pair<std::size_t, std::string>> out;
     bool closed = false, left = false;
@@ -207,21 +245,27 @@ class MpiTeam : public workflow::Team {
       if (in.empty()) return std::nullopt;
       const std::size_t unit = in.front();
       in.pop_front();
+      news.notify_one();
       return unit;
     }
     void give(std::size_t unit, std::string bytes) {
       const std::lock_guard lock(mutex);
       out.emplace_back(unit, std::move(bytes));
+      news.notify_one();
     }
     void leave() {
       const std::lock_guard lock(mutex);
       left = true;
+      news.notify_one();
     }
+    bool has_few(std::size_t threads) const { return !closed && !left && in.size() < threads; }
   };
 
   // Asks for units before they run out, and sends tallies.
   void serve(Desk& desk, const CancelToken* cancel) {
     bool asked = false;
+    auto nap = shortest_nap;
+    const auto threads = static_cast<std::size_t>(std::max(1, own().threads));
     for (;;) {
       if (cancel && cancel->cancelled()) {
         const std::lock_guard lock(desk.mutex);
@@ -236,8 +280,7 @@ class MpiTeam : public workflow::Team {
         const std::lock_guard lock(desk.mutex);
         done.swap(desk.out);
         all_done = desk.left;
-        const auto threads = static_cast<std::size_t>(std::max(1, own().threads));
-        ask = !asked && !desk.closed && !desk.left && desk.in.size() < threads;
+        ask = !asked && desk.has_few(threads);
         want = 2 * threads - desk.in.size();
       }
       for (const auto& [unit, bytes] : done) {
@@ -251,6 +294,7 @@ class MpiTeam : public workflow::Team {
         std::memcpy(message.data(), &want, sizeof want);
         send(message, wants, 0);
         asked = true;
+        nap = shortest_nap;
       }
       MPI_Status status;
       int there = 0;
@@ -267,12 +311,18 @@ class MpiTeam : public workflow::Team {
         desk.changed.notify_all();
         continue;
       }
-      if (all_done && !asked) {
-        const std::lock_guard lock(desk.mutex);
-        if (desk.out.empty()) return;
+      if (!done.empty()) {
+        nap = shortest_nap;
         continue;
       }
-      if (done.empty()) std::this_thread::sleep_for(nap);
+      const bool sent = all_sent();
+      if (all_done && !asked) return;   // the rest is waited for with what is said last
+      if (asked || !sent) {
+        sleep_longer(nap, sent ? longest_nap : longest_nap_sending);
+        continue;
+      }
+      std::unique_lock lock(desk.mutex);   // nothing comes that was not asked for
+      desk.news.wait_for(lock, between_looks, [&] { return !desk.out.empty() || desk.left || desk.has_few(threads); });
     }
   }
 
@@ -287,9 +337,26 @@ class MpiTeam : public workflow::Team {
     send(std::string(reinterpret_cast<const char*>(numbers.data()), numbers.size() * sizeof(std::uint64_t)), units, to);
   }
 
-  void send(const std::string& bytes, Tag tag, int to) {
-    MPI_Send(bytes.data(), static_cast<int>(bytes.size()), MPI_CHAR, to, tag, MPI_COMM_WORLD);
+  // Does not wait for the other side, which may be asleep: MPI would look for it all the while.
+  void send(std::string bytes, Tag tag, int to) {
+    ++own().messages;
     if (to == 0) own().bytes_sent += static_cast<std::int64_t>(bytes.size());
+    sending_.push_back({MPI_REQUEST_NULL, std::move(bytes)});
+    const std::string& kept = sending_.back().bytes;
+    MPI_Isend(kept.data(), static_cast<int>(kept.size()), MPI_CHAR, to, tag, MPI_COMM_WORLD, &sending_.back().request);
+  }
+
+  bool all_sent() {
+    std::erase_if(sending_, [](Sending& message) {
+      int done = 0;
+      MPI_Test(&message.request, &done, MPI_STATUS_IGNORE);
+      return done != 0;
+    });
+    return sending_.empty();
+  }
+
+  void wait_until_sent() {
+    for (auto nap = shortest_nap; !all_sent();) sleep_longer(nap, longest_nap_sending);
   }
 
   static std::string receive(const MPI_Status& status) {
@@ -307,17 +374,19 @@ class MpiTeam : public workflow::Team {
   }
 
   static void note_member(const std::string& text, workflow::TeamMember& member) {
-    std::size_t at = 0;
-    member.threads = std::stoi(text, &at);
-    std::string rest = text.substr(at);
-    member.waiting_s = std::stod(rest, &at);
-    rest = rest.substr(at);
-    member.bytes_sent = std::stoll(rest, &at);
-    member.host = rest.substr(at + 1);
+    std::istringstream in(text);
+    in >> member.threads >> member.waiting_s >> member.messaging_s >> member.bytes_sent >> member.messages;
+    in.ignore();
+    std::getline(in, member.host);
   }
 
   workflow::TeamMember& own() { return members_[static_cast<std::size_t>(rank_)]; }
 
+  struct Sending {
+    MPI_Request request;
+    std::string bytes;
+  };
+  std::list<Sending> sending_;   // their places stay as they are
   int rank_ = 0, size_ = 1;
   bool deaf_ = false;
   std::vector<workflow::TeamMember> members_;

@@ -77,6 +77,9 @@ def sameness(folder):
             expect(sum(r["primaries"] for r in record["ranks"]) == record["primaries"], record["ranks"])
             expect(all(r["threads"] == 1 and r["host"] for r in record["ranks"][1:]), record["ranks"])
             expect(sum(r["units"] for r in record["ranks"][1:]) > 0, "nobody helped", record["ranks"])
+            # A tally for each unit, sent before the record is.
+            expect(all(r["messages"] > r["units"] for r in record["ranks"][1:]), record["ranks"])
+            expect(all(r["messages"] > 0 and 0 < r["messaging_seconds"] < 60 for r in record["ranks"]), record["ranks"])
 
 
 def errors(folder):

@@ -118,7 +118,9 @@ Json team_json(const SimulateSummary& s, int threads) {
                      {"units", m.units},
                      {"primaries", m.rank == 0 ? s.result.balance.incident - s.result.recalled - others : m.primaries},
                      {"waiting_seconds", m.waiting_s},
-                     {"bytes_sent", m.bytes_sent}});
+                     {"bytes_sent", m.bytes_sent},
+                     {"messages", m.messages},
+                     {"messaging_seconds", m.messaging_s}});
   return ranks;
 }
 

@@ -19,6 +19,8 @@ struct TeamMember {
   std::int64_t primaries = 0;
   double waiting_s = 0;          ///< of all its threads, for units
   std::int64_t bytes_sent = 0;   ///< to the leader
+  std::int64_t messages = 0;     ///< sent: to the leader, or by it
+  double messaging_s = 0;        ///< processor time of the thread that talks to the others, the leader's merging included
 };
 
 /// Processes that do one job together, each of which calls the same functions in the same order. Rank 0 leads: it
