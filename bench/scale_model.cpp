@@ -34,7 +34,11 @@ struct Network {
 };
 constexpr Network networks[] = {{"10 GbE", 30e-6, 1.1e9, 5e-6}, {"100 Gb/s", 2e-6, 11e9, 0.5e-6}};
 
-double at(const limits::Table& table, std::size_t row, const std::string& column) { return table.column(column).at(row); }
+double at(const limits::Table& table, std::size_t row, const std::string& column) {
+  const auto found = std::ranges::find(table.columns, column);
+  if (found == table.columns.end()) throw InvalidInput(column, "there is no such column", "Measure again, by --measure");
+  return table.rows.at(row).at(static_cast<std::size_t>(found - table.columns.begin()));
+}
 
 UnitCosts costs_of(const limits::Table& table, std::size_t row) {
   UnitCosts out;
