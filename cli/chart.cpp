@@ -32,6 +32,9 @@ command goes on from there. Errors are relative to each pixel of the reference (
 the mean), root mean square; the reference is Monte Carlo with a third of the finest accuracy, on
 pixels spread evenly over the image.
 
+Under mpirun processes share the reference and the images that models learn from; one of them times the
+points, while the others wait.
+
 Of a folder that 'semsurf sample' made, registration and reconstruction are charted instead: how far off
 a start may be, and error against time. Files are registration.csv, .svg, .png, reconstruction.csv,
 .svg, .png and chart.json.

@@ -199,8 +199,9 @@ int main(int argc, char** argv) {
     print_error(error.what());
     return exit_unusable;
   }
-  if (team() && !team()->leads()) be_silent();
+  const bool follows = team() && !team()->leads();
+  if (follows) be_silent();
   const int code = run(argc, argv);
   leave_team();
-  return code;
+  return follows ? 0 : code;   // mpirun hands on the code of whoever ends first
 }

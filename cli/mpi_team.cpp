@@ -84,6 +84,7 @@ class MpiTeam : public workflow::Team {
 
   ~MpiTeam() override {
     if (deaf_) MPI_Abort(MPI_COMM_WORLD, 130);   // who does not answer would be waited for
+    await([](MPI_Request* r) { MPI_Ibarrier(MPI_COMM_WORLD, r); });   // more quietly than MPI_Finalize
     MPI_Finalize();
   }
 
