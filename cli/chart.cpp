@@ -12,6 +12,7 @@
 #include "chart_sample.h"
 #include "commands.h"
 #include "common_options.h"
+#include "mpi_team.h"
 #include "name_list.h"
 #include "options.h"
 #include "scene_groups.h"
@@ -30,6 +31,9 @@ constexpr const char* examples =
 command goes on from there. Errors are relative to each pixel of the reference (down to a tenth of
 the mean), root mean square; the reference is Monte Carlo with a third of the finest accuracy, on
 pixels spread evenly over the image.
+
+Under mpirun processes share the reference and the images that models learn from; one of them times the
+points, while the others wait.
 
 Of a folder that 'semsurf sample' made, registration and reconstruction are charted instead: how far off
 a start may be, and error against time. Files are registration.csv, .svg, .png, reconstruction.csv,
@@ -123,6 +127,7 @@ bool is_folder(const Options& o) {
 }
 
 int chart_folder(const Options& o, const std::string& command_line) {
+  if (leave_to_leader("chart FOLDER")) return 0;
   ChartSampleOptions sample = o.sample;
   sample.sample = o.scene.inputs.front();
   sample.output = o.output;
@@ -135,7 +140,8 @@ int chart_folder(const Options& o, const std::string& command_line) {
 }
 
 int chart(const Options& o, const std::string& command_line) {
-  const workflow::ChartJob job = make_job(o, command_line);
+  workflow::ChartJob job;
+  workflow::together(team(), [&] { job = make_job(o, command_line); });
   workflow::ChartSummary s;
   {
     InterruptGuard interrupts;
@@ -160,8 +166,9 @@ int chart(const Options& o, const std::string& command_line) {
       if (!o.quiet) print_note(text);
     };
     listener.cancel = interrupts.token();
-    s = workflow::run(job, listener);
+    s = workflow::run(job, listener, team());
   }
+  if (!workflow::leads(team())) return 0;
   if (!s.complete) {
     print_note(fmt::format("stopped: what is done is kept in {}; the same command goes on from there", job.folder.string()));
     return exit_interrupted;

@@ -3,6 +3,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <cstring>
 #include <memory>
@@ -138,7 +139,10 @@ int act(const Action& action) {
 }
 
 // These do their work together with others; anything else is done by the leader alone.
-bool is_shared(const std::string& command) { return command == "simulate" || command == "sweep"; }
+bool is_shared(const std::string& command) {
+  constexpr std::array shared{"simulate", "sweep", "train", "chart"};
+  return std::ranges::find(shared, command) != shared.end();
+}
 
 int run(int argc, char** argv) {
   Action action;
@@ -182,11 +186,7 @@ int run(int argc, char** argv) {
     return exit_usage;
   }
   const std::string command = app.get_subcommands().front()->get_name();
-  if (team() && !is_shared(command)) {
-    if (!team()->leads()) return 0;
-    print_note(fmt::format("'semsurf {}' is the work of one process: {} others have nothing to do", command,
-                           team()->size() - 1));
-  }
+  if (!is_shared(command) && leave_to_leader(command)) return 0;
   return act(action);
 }
 
@@ -199,8 +199,9 @@ int main(int argc, char** argv) {
     print_error(error.what());
     return exit_unusable;
   }
-  if (team() && !team()->leads()) be_silent();
+  const bool follows = team() && !team()->leads();
+  if (follows) be_silent();
   const int code = run(argc, argv);
   leave_team();
-  return code;
+  return follows ? 0 : code;   // mpirun hands on the code of whoever ends first
 }

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "mpi_team.h"
 
+#include <fmt/format.h>
+
 #include <cstdlib>
 #include <memory>
 #include <string>
 
 #include "surf/core/error.h"
+#include "terminal.h"
 
 #if defined(SEMSURF_MPI)
 #define OMPI_SKIP_MPICXX 1
@@ -25,8 +28,6 @@
 #include <optional>
 #include <sstream>
 #include <thread>
-
-#include "surf/mc/pack.h"
 #endif
 
 namespace surf::cli {
@@ -51,7 +52,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-// From those who follow: how many units they want, tallies, that they have no more, what went wrong.
+// From those who follow: how many units they want, what became of them, that they have no more, what went wrong.
 // From the leader: numbers of units.
 enum Tag : int { wants = 1, tally, finished, failed, units };
 
@@ -62,6 +63,7 @@ constexpr std::size_t largest_part = std::size_t{1} << 30;   // MPI counts in in
 constexpr std::chrono::microseconds shortest_nap(50), longest_nap(5000);
 constexpr std::chrono::microseconds longest_nap_sending(1000);   // large messages need both sides awake
 constexpr auto between_looks = std::chrono::milliseconds(20);   // at whether the job is cancelled
+constexpr auto awake = std::chrono::milliseconds(1);
 // After the leader was told to stop, how long it waits for what others have begun. Starters of MPI kill
 // everybody a second or so after one has died.
 constexpr auto patience = std::chrono::milliseconds(700);
@@ -110,6 +112,7 @@ class MpiTeam : public workflow::Team {
 
   ~MpiTeam() override {
     if (deaf_) MPI_Abort(MPI_COMM_WORLD, 130);   // who does not answer would be waited for
+    await([](MPI_Request* r) { MPI_Ibarrier(MPI_COMM_WORLD, r); });   // more quietly than MPI_Finalize
     MPI_Finalize();
   }
 
@@ -118,32 +121,38 @@ class MpiTeam : public workflow::Team {
   std::vector<workflow::TeamMember> members() const override { return members_; }
 
   void broadcast(std::string& bytes) override {
+    if (deaf_) return;
     std::uint64_t length = bytes.size();
-    MPI_Bcast(&length, 1, MPI_UINT64_T, 0, MPI_COMM_WORLD);
+    await([&](MPI_Request* r) { MPI_Ibcast(&length, 1, MPI_UINT64_T, 0, MPI_COMM_WORLD, r); });
     bytes.resize(length);
-    for (std::size_t from = 0; from < length; from += largest_part)
-      MPI_Bcast(bytes.data() + from, static_cast<int>(std::min<std::size_t>(largest_part, length - from)), MPI_CHAR, 0,
-                MPI_COMM_WORLD);
+    for (std::size_t from = 0; from < length; from += largest_part) {
+      const int part = static_cast<int>(std::min<std::size_t>(largest_part, length - from));
+      await([&](MPI_Request* r) { MPI_Ibcast(bytes.data() + from, part, MPI_CHAR, 0, MPI_COMM_WORLD, r); });
+    }
   }
 
   std::vector<std::string> exchange(const std::string& text) override {
-    const int length = static_cast<int>(std::min(text.size(), std::size_t{1} << 16));
     const auto count = static_cast<std::size_t>(size_);
+    if (deaf_) return std::vector<std::string>(count);
+    const int length = static_cast<int>(std::min(text.size(), std::size_t{1} << 16));
     std::vector<int> lengths(count), starts(count, 0);
-    MPI_Allgather(&length, 1, MPI_INT, lengths.data(), 1, MPI_INT, MPI_COMM_WORLD);
+    await([&](MPI_Request* r) { MPI_Iallgather(&length, 1, MPI_INT, lengths.data(), 1, MPI_INT, MPI_COMM_WORLD, r); });
     for (std::size_t i = 1; i < count; ++i) starts[i] = starts[i - 1] + lengths[i - 1];
     std::string all(static_cast<std::size_t>(starts.back() + lengths.back()), '\0');
-    MPI_Allgatherv(text.data(), length, MPI_CHAR, all.data(), lengths.data(), starts.data(), MPI_CHAR, MPI_COMM_WORLD);
+    await([&](MPI_Request* r) {
+      MPI_Iallgatherv(text.data(), length, MPI_CHAR, all.data(), lengths.data(), starts.data(), MPI_CHAR, MPI_COMM_WORLD, r);
+    });
     std::vector<std::string> out;
     for (std::size_t i = 0; i < count; ++i)
       out.push_back(all.substr(static_cast<std::size_t>(starts[i]), static_cast<std::size_t>(lengths[i])));
     return out;
   }
 
-  void lead(const mc::TakeUnit& take, const mc::GiveTally& give, const CancelToken* cancel) override {
+  void lead(const mc::TakeUnit& take, const mc::GiveUnit& give, const CancelToken* cancel) override {
     const ThreadTime time(own().messaging_s);
     int at_work = size_ - 1;
     std::string trouble;
+    std::exception_ptr thrown;   // what `give` has thrown: others are told to end before anything else
     Clock::time_point stopped{};
     auto nap = shortest_nap;
     while (at_work > 0) {
@@ -165,12 +174,16 @@ class MpiTeam : public workflow::Team {
       const std::string bytes = receive(status);
       workflow::TeamMember& member = members_[static_cast<std::size_t>(status.MPI_SOURCE)];
       switch (status.MPI_TAG) {
-        case wants: hand_out(take, trouble.empty() ? number(bytes, 0) : 0, status.MPI_SOURCE); break;
+        case wants: hand_out(take, trouble.empty() && !thrown ? number(bytes, 0) : 0, status.MPI_SOURCE); break;
         case tally: {
-          const mc::UnitTally done = mc::unpack(std::string_view(bytes).substr(sizeof(std::uint64_t)));
+          const auto primaries = static_cast<std::int64_t>(number(bytes, 1));
           ++member.units;
-          member.primaries += done.balance.incident;
-          give(number(bytes, 0), done);
+          member.primaries += primaries;
+          try {
+            if (!thrown) give({number(bytes, 0), primaries, bytes.substr(2 * sizeof(std::uint64_t)), status.MPI_SOURCE});
+          } catch (...) {
+            thrown = std::current_exception();
+          }
           break;
         }
         case failed: trouble = "rank " + std::to_string(status.MPI_SOURCE) + ": " + bytes; [[fallthrough]];
@@ -183,20 +196,21 @@ class MpiTeam : public workflow::Team {
       all_sent();
     }
     wait_until_sent();
+    if (thrown) std::rethrow_exception(thrown);
     if (!trouble.empty() && !(cancel && cancel->cancelled()))
       throw InvalidInput("team", trouble, "Look at that machine, and start the same command again");
   }
 
-  void follow(const std::function<void(const mc::TakeUnit&, const mc::GiveTally&)>& work, int threads,
+  void follow(const std::function<void(const mc::TakeUnit&, const mc::GiveUnit&)>& work, int threads, int ahead,
               const CancelToken* cancel) override {
     Desk desk;
+    desk.ahead = static_cast<std::size_t>(ahead);
     own().threads = threads;
     std::exception_ptr error;
     {
       const std::jthread at_work([&] {
         try {
-          work([&] { return desk.take(); },
-               [&](std::size_t unit, const mc::UnitTally& done) { desk.give(unit, mc::pack(done)); });
+          work([&] { return desk.take(); }, [&](mc::FinishedUnit unit) { desk.give(std::move(unit)); });
         } catch (...) {
           error = std::current_exception();
         }
@@ -233,14 +247,18 @@ class MpiTeam : public workflow::Team {
     std::condition_variable changed;   // for those who simulate
     std::condition_variable news;      // for the other
     std::deque<std::size_t> in;
-    std::deque<std::pair<std::size_t, std::string>> out;
+    std::deque<mc::FinishedUnit> out;
+    std::size_t ahead = 0, takers = 0;   // takers: who wait for a unit
     bool closed = false, left = false;
     double waiting_s = 0;
 
     std::optional<std::size_t> take() {
       std::unique_lock lock(mutex);
       const auto start = Clock::now();
+      ++takers;
+      news.notify_one();
       changed.wait(lock, [&] { return closed || !in.empty(); });
+      --takers;
       waiting_s += seconds(Clock::now() - start);
       if (in.empty()) return std::nullopt;
       const std::size_t unit = in.front();
@@ -248,9 +266,9 @@ class MpiTeam : public workflow::Team {
       news.notify_one();
       return unit;
     }
-    void give(std::size_t unit, std::string bytes) {
+    void give(mc::FinishedUnit unit) {
       const std::lock_guard lock(mutex);
-      out.emplace_back(unit, std::move(bytes));
+      out.push_back(std::move(unit));
       news.notify_one();
     }
     void leave() {
@@ -258,14 +276,14 @@ class MpiTeam : public workflow::Team {
       left = true;
       news.notify_one();
     }
-    bool has_few(std::size_t threads) const { return !closed && !left && in.size() < threads; }
+    std::size_t enough() const { return std::max(ahead, takers); }
+    bool has_few() const { return !closed && !left && in.size() < enough(); }
   };
 
   // Asks for units before they run out, and sends tallies.
   void serve(Desk& desk, const CancelToken* cancel) {
     bool asked = false;
     auto nap = shortest_nap;
-    const auto threads = static_cast<std::size_t>(std::max(1, own().threads));
     for (;;) {
       if (cancel && cancel->cancelled()) {
         const std::lock_guard lock(desk.mutex);
@@ -273,21 +291,19 @@ class MpiTeam : public workflow::Team {
         desk.in.clear();
         desk.changed.notify_all();
       }
-      std::deque<std::pair<std::size_t, std::string>> done;
+      std::deque<mc::FinishedUnit> done;
       bool all_done = false, ask = false;
       std::uint64_t want = 0;
       {
         const std::lock_guard lock(desk.mutex);
         done.swap(desk.out);
         all_done = desk.left;
-        ask = !asked && desk.has_few(threads);
-        want = 2 * threads - desk.in.size();
+        ask = !asked && desk.has_few();
+        want = desk.enough() + desk.ahead - desk.in.size();
       }
-      for (const auto& [unit, bytes] : done) {
-        std::string message(sizeof(std::uint64_t), '\0');
-        const std::uint64_t n = unit;
-        std::memcpy(message.data(), &n, sizeof n);
-        send(message + bytes, tally, 0);
+      for (const mc::FinishedUnit& unit : done) {
+        const std::uint64_t head[] = {unit.number, static_cast<std::uint64_t>(unit.primaries)};
+        send(std::string(reinterpret_cast<const char*>(head), sizeof head) + unit.bytes, tally, 0);
       }
       if (ask) {
         std::string message(sizeof want, '\0');
@@ -322,7 +338,24 @@ class MpiTeam : public workflow::Team {
         continue;
       }
       std::unique_lock lock(desk.mutex);   // nothing comes that was not asked for
-      desk.news.wait_for(lock, between_looks, [&] { return !desk.out.empty() || desk.left || desk.has_few(threads); });
+      desk.news.wait_for(lock, between_looks, [&] { return !desk.out.empty() || desk.left || desk.has_few(); });
+    }
+  }
+
+  // Waits for a collective call without keeping a processor busy, as MPI's own waiting does: the leader may be at work
+  // for minutes. What comes at once is not slept over.
+  template <class Begin>
+  static void await(const Begin& begin) {
+    MPI_Request request;
+    begin(&request);
+    const auto start = Clock::now();
+    for (;;) {
+      int done = 0;
+      MPI_Test(&request, &done, MPI_STATUS_IGNORE);
+      if (done) return;
+      const auto waited = Clock::now() - start;
+      if (waited < awake) std::this_thread::yield();
+      else std::this_thread::sleep_for(std::min<Clock::duration>(waited / 20, longest_nap));
     }
   }
 
@@ -406,6 +439,15 @@ void join_team() {
 #endif
 
 workflow::Team* team() { return joined.get(); }
+
+bool leave_to_leader(const std::string& command) {
+  if (!joined) return false;
+  if (!joined->leads()) return true;
+  const int others = joined->size() - 1;
+  print_note(fmt::format("'semsurf {}' is the work of one process: {} other{} nothing to do", command, others,
+                         others == 1 ? " has" : "s have"));
+  return false;
+}
 
 void leave_team() { joined.reset(); }
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <string>
+
 #include "surf/workflow/team.h"
 
 namespace surf::cli {
@@ -11,6 +13,9 @@ void join_team();
 
 /// The team, or null where there is none.
 workflow::Team* team();
+
+/// For work that is not shared: whether it is for another process to do. The leader says that it is alone with it.
+bool leave_to_leader(const std::string& command);
 
 /// Ends MPI, or the whole job where others can no longer be heard.
 void leave_team();

@@ -30,7 +30,8 @@ those of the options of the same name: a list with commas, or FROM:TO:STEP.
 
 FOLDER gets an image for each combination, named by its values, and sweep.csv with their mean
 yields. Stop when you like: the same command goes on from there. --part 3/16 does every 16th run
-from the third on: a job array does all parts, and 'semsurf join' makes the table.
+from the third on: a job array does all parts, and 'semsurf join' makes the table. Under mpirun each
+process does whole runs, and they share large ones.
 All other options are those of 'semsurf simulate'.
 
 Examples:
@@ -201,14 +202,13 @@ int sweep(const Options& o, const std::string& command_line) {
     ProgressBar bar(!quiet);
     workflow::SweepListener listener;
     listener.progress = [&](double done, double total) { bar.show(done, total, nullptr); };
-    listener.done = [&](std::size_t run, const workflow::SimulateSummary& made) {
+    listener.done = [&](std::size_t run, const std::vector<workflow::SweepYield>& yields) {
       if (quiet) return;
       bar.clear();
       std::string line = fmt::format("{:>5}/{}", run + 1, job.runs.size());
       for (const std::string& value : job.runs[run].values) line += fmt::format("  {:>8}", value);
-      for (std::size_t d = 0; d < made.result.detectors.size(); ++d)
-        line += fmt::format("  {} {:.4f} ± {:.4f}", made.result.detectors[d].name, made.statistics.yields[d].mean,
-                            made.statistics.yields[d].standard_error);
+      for (const workflow::SweepYield& y : yields)
+        line += fmt::format("  {} {:.4f} ± {:.4f}", y.detector, y.mean, y.standard_error);
       fmt::print("{}\n", line);
       std::fflush(stdout);
     };

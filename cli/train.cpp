@@ -5,6 +5,7 @@
 
 #include "commands.h"
 #include "model_tables.h"
+#include "mpi_team.h"
 #include "surf/workflow/train_job.h"
 #include "terminal.h"
 #include "train_options.h"
@@ -36,7 +37,8 @@ void print_training(const workflow::TrainJob& job, const workflow::TrainSummary&
 }
 
 int train(const TrainOptions& options) {
-  const workflow::TrainJob job = make_train_job(options);
+  workflow::TrainJob job;
+  workflow::together(team(), [&] { job = make_train_job(options); });
   workflow::TrainSummary summary;
   {
     InterruptGuard interrupts;
@@ -54,8 +56,9 @@ int train(const TrainOptions& options) {
       if (!options.quiet) print_note(note);
     };
     listener.cancel = interrupts.token();
-    summary = workflow::run(job, listener);
+    summary = workflow::run(job, listener, team());
   }
+  if (!workflow::leads(team())) return 0;
   if (!summary.complete) {
     print_note(summary.images.empty()
                    ? "stopped: there is no model yet"

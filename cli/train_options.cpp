@@ -27,7 +27,8 @@ namespace {
 constexpr const char* examples =
     R"(Without HEIGHTS the model learns on surfaces of semsurf's own: blocks, pits, rough ones, bumps, lines,
 pyramids. Without images they are simulated, into NAME.training beside NAME.json: stop when you like,
-the same command goes on from there, and images that are there already are used again.
+the same command goes on from there, and images that are there already are used again. Under mpirun each
+process simulates whole images, and one learns from them.
 Kinds that need no images are only judged on them, where HEIGHTS or --surfaces ask for some.
 The table at the end says how far the model is off on each surface, the images' noise subtracted; with
 --hold-out N on the last N, which it has not seen.
@@ -39,6 +40,7 @@ Examples:
   semsurf train a.gsf b.gsf --images a.exr --images b.exr --pixel-size 3nm -o si.json
   semsurf train known.gsf --signal sem.tif --material Si --energy 1keV -o our-sem.json
   semsurf train --pixel-size 3nm --model filter-bank -o bank.json
+  mpirun -n 4 semsurf train --pixel-size 3nm --threads 4 -o si.json
   semsurf train --pixel-size 3nm --model slope-table --surfaces 12 -o slopes.json)";
 
 std::optional<double> pitch_of(const TrainOptions& o) {

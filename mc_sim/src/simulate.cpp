@@ -15,6 +15,7 @@
 #include "surf/core/error.h"
 #include "surf/core/parallel.h"
 #include "surf/mc/crew.h"
+#include "surf/mc/pack.h"
 #include "surf/mc/unit_plan.h"
 #include "unit_worker.h"
 #include "workshop.h"
@@ -114,6 +115,8 @@ void run_all(const UnitPlan& plan, Workshop& workshop, int threads, const Observ
   });
 }
 
+using GiveTally = std::function<void(std::size_t number, const UnitTally& tally)>;
+
 // Threads of this process take units until there are none.
 void take_and_give(const UnitPlan& plan, Workshop& workshop, int threads, const CancelToken* cancel,
                    const TakeUnit& take, const GiveTally& give) {
@@ -137,9 +140,11 @@ void take_and_give(const UnitPlan& plan, Workshop& workshop, int threads, const 
 void share(Crew& crew, const UnitPlan& plan, Workshop& workshop, int threads, Merging& merging,
            const CancelToken* cancel) {
   if (!crew.leads()) {
-    crew.follow([&](const TakeUnit& take, const GiveTally& give) {
-      take_and_give(plan, workshop, threads, cancel, take, give);
-    }, threads, cancel);
+    crew.follow([&](const TakeUnit& take, const GiveUnit& give) {
+      take_and_give(plan, workshop, threads, cancel, take, [&](std::size_t number, const UnitTally& tally) {
+        give({number, tally.balance.incident, pack(tally)});
+      });
+    }, threads, threads, cancel);
     return;
   }
   std::size_t next = 0;
@@ -170,7 +175,7 @@ void share(Crew& crew, const UnitPlan& plan, Workshop& workshop, int threads, Me
       }
     });
     try {
-      crew.lead(take, give, cancel);
+      crew.lead(take, [&](const FinishedUnit& unit) { give(unit.number, unpack(unit.bytes)); }, cancel);
     } catch (...) {
       of_crew = std::current_exception();
       end();

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 """mpi.py PROGRAM SAMPLES MPIRUN: several processes give the bytes of one, and go on from what a dead one has left."""
+import csv
 import json
 import os
 import pathlib
@@ -139,8 +140,13 @@ def sweeps(folder):
     code, out, err = run(folder, 0, [*words, "-o", "alone"])
     expect(code == 0 and out.count("/6 ") == 6, out, err)
     table = (folder / "alone" / "sweep.csv").read_text()
-    code, out, err = run(folder, 3, [*words, "-o", "together"])
-    expect(code == 0 and (folder / "together" / "sweep.csv").read_text() == table, "several ranks gave another table", err)
+    for ranks in (2, 3):
+        code, out, err = run(folder, ranks, [*words, "-o", f"together{ranks}"])
+        expect(code == 0 and out.count("/6 ") == 6, ranks, "ranks told something else:", out, err)
+        same_files(folder / f"together{ranks}", folder / "alone")
+        tallies = json.loads((folder / f"together{ranks}" / "sweep.run.json").read_text())["ranks"]
+        expect(sum(r["whole_runs"] for r in tallies) == 6 and all(r["whole_runs"] > 0 for r in tallies), tallies)
+        expect(sum(r["primaries"] for r in tallies) == 6 * 64 * 20, tallies)
     for part in (1, 3):
         code, _, err = run(folder, 0, [*words, "--part", f"{part}/3", "-o", "parts"])
         expect(code == 0, err)
@@ -164,8 +170,91 @@ def sweeps(folder):
     expect(not (folder / "bad").exists(), "something was written")
 
 
+def same_files(folder, alone, but=()):
+    """Of all that is written but what tells of the run."""
+    def results(place):
+        return {str(file.relative_to(place)): file.read_bytes() for file in place.rglob("*")
+                if file.is_file() and not file.name.endswith(".run.json") and file.name not in but}
+    wanted, found = results(alone), results(folder)
+    expect(sorted(found) == sorted(wanted), "there are other files in", folder, sorted(found), sorted(wanted))
+    for name, data in wanted.items():
+        expect(found[name] == data, name, "has other bytes in", folder)
+
+
+TRAINING = ["train", "--material", "Si", "--energy", "500eV", "--pixel-size", "3nm", "--model", "secant", "--threads", "1"]
+
+
+def trainings(folder):
+    words = [*TRAINING, "--surfaces", "4", "--surface-size", "16", "--electrons", "4"]
+    for place in ("alone", "2", "3"):
+        (folder / place).mkdir()
+    code, _, err = run(folder / "alone", 0, [*words, "-o", "m.json"])
+    expect(code == 0, err)
+    expect(not (folder / "alone" / "m.run.json").exists(), "one process made a team")
+    for ranks in (2, 3):
+        code, out, err = run(folder / str(ranks), ranks, [*words, "-o", "m.json"])
+        expect(code == 0 and out.count("written") == 1 and "4 simulated" in out, out, err)
+        same_files(folder / str(ranks), folder / "alone")
+        tallies = json.loads((folder / str(ranks) / "m.run.json").read_text())["ranks"]
+        expect(sum(r["primaries"] for r in tallies) == 4 * 256 * 4, tallies)
+        expect(all(r["whole_runs"] > 0 for r in tallies), "somebody had nothing to do:", tallies)
+    code, out, err = run(folder / "3", 2, [*words, "-o", "m.json"])
+    expect(code == 0 and "0 simulated, 4 there before" in out, out, err)
+    for bad, code, text in ((["--surfaces", "2", "--hold-out", "2"], 2, "--hold-out"), (["--model", "none"], 2, "--model"),
+                            (["none.gsf"], 3, "none.gsf")):
+        ended, _, err = run(folder, 2, [*TRAINING, *bad, "-o", "bad.json"])
+        expect(ended == code and err.count("semsurf: error") == 1 and text in err, bad, "ended with", ended, err)
+    expect(not list(folder.glob("bad*")), "something was written")
+
+
+def training_faults(folder):
+    words = [*TRAINING, "--surfaces", "6", "--surface-size", "24", "--electrons", "60"]
+    for place in ("alone", "team"):
+        (folder / place).mkdir()
+    code, _, err = run(folder / "alone", 0, [*words, "-o", "m.json"])
+    expect(code == 0, err)
+    for ranks, victim in ((3, 2), (2, 0)):
+        before = len(list((folder / "team").rglob("*.exr")))
+        process = start(folder / "team", ranks, [*words, "-o", "m.json"])
+        limit = time.monotonic() + 120
+        while process.poll() is None and time.monotonic() < limit and len(list((folder / "team").rglob("*.exr"))) <= before:
+            time.sleep(0.02)
+        there = pids()
+        expect(process.poll() is None and victim in there, "it was over before anybody died", there)
+        os.kill(there[victim], signal.SIGKILL)
+        _, err = process.communicate(timeout=120)
+        expect(process.returncode != 0, "nobody noticed that rank", victim, "died")
+        expect(not (folder / "team" / "m.json").exists(), "a model was made of what was there")
+    code, out, err = run(folder / "team", 2, [*words, "-o", "m.json"])
+    expect(code == 0 and re.search("[1-6] there before", out), "it began anew:", out, err)
+    for name in ["m.json", *(f"m.training/{file.name}" for file in (folder / "alone" / "m.training").glob("*.exr"))]:
+        expect((folder / "team" / name).read_bytes() == (folder / "alone" / name).read_bytes(), name, "has other bytes")
+
+
+def charts(folder):
+    words = ["chart", SAMPLES / "flat.toml", "--size", "16x16", "--energy", "500eV", "--physics", "secondaries=off", "--quick",
+             "--reference", "1.5%", "--methods", "default,secant", "--threads", "1"]
+    code, _, err = run(folder, 0, [*words, "-o", "alone"])
+    expect(code == 0, err)
+
+    def figures(place):
+        rows = list(csv.reader((folder / place / "chart.csv").read_text().splitlines()))
+        return [row[:4] + row[7:] for row in rows]   # without times and memory
+    code, out, err = run(folder, 3, [*words, "-o", "together"])
+    expect(code == 0 and out.count("chart.csv") == 1, out, err)
+    expect(figures("together") == figures("alone"), "three ranks gave other figures")
+    expect(len(figures("alone")) == 5, figures("alone"))
+    for part in ("reference", "models/images"):
+        same_files(folder / "together" / part, folder / "alone" / part, but=["seconds.json"])
+    record = json.loads((folder / "together" / "chart.run.json").read_text())
+    expect(len(record["ranks"]) == 3 and sum(r["whole_runs"] for r in record["ranks"]) == 4, record)
+    (folder / "empty").mkdir()
+    code, _, err = run(folder, 2, ["chart", "empty", "-o", "other"])
+    expect(code != 0 and "one process" in err and err.count("semsurf: error") == 1, code, err)
+
+
 with tempfile.TemporaryDirectory(prefix="semsurf-test-") as place:
-    for case in sys.argv[4:] or ("sameness", "errors", "sweeps", "faults"):
+    for case in sys.argv[4:] or ("sameness", "errors", "sweeps", "faults", "trainings", "training_faults", "charts"):
         folder = pathlib.Path(place) / case
         folder.mkdir()
         globals()[case](folder)

@@ -5,6 +5,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <chrono>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -12,6 +13,8 @@
 
 #include "job_identity.h"
 #include "provenance.h"
+#include "run_many.h"
+#include "sidecar.h"
 #include "surf/core/error.h"
 #include "surf/core/units.h"
 #include "surf/io/files.h"
@@ -56,16 +59,18 @@ std::optional<Json> read_record(const fs::path& path) {
   }
 }
 
-bool is_done(const fs::path& folder, std::size_t number, const SimulateJob& run, const std::string& sweep) {
+bool is_done(const fs::path& folder, std::size_t number, const SweepRun& what, const std::string& sweep) {
   const auto record = read_record(record_path(folder, number));
-  if (!record || record->value("sweep", "") != sweep || record->value("run", "") != run_identity(run)) return false;
+  if (!record || record->value("sweep", "") != sweep) return false;
+  const SimulateJob run = what.make();
+  if (record->value("run", "") != run_identity(run)) return false;
   std::error_code ignored;
   return std::all_of(run.outputs.begin(), run.outputs.end(),
                      [&](const fs::path& output) { return fs::is_regular_file(output, ignored); });
 }
 
-void write_record(const SweepJob& job, std::size_t number, const SimulateJob& run, const std::string& sweep,
-                  const SimulateSummary& s) {
+std::string record_of(const SweepJob& job, std::size_t number, const SimulateJob& run, const std::string& sweep,
+                      const SimulateSummary& s) {
   Json record{{"sweep", sweep}, {"run", run_identity(run)}, {"number", number + 1}, {"of", job.runs.size()},
               {"axes", job.axes}, {"values", job.runs[number].values}, {"file", run.outputs.front().filename().string()},
               {"missed", s.statistics.missed}};
@@ -73,7 +78,7 @@ void write_record(const SweepJob& job, std::size_t number, const SimulateJob& ru
     record["yields"].push_back({{"detector", s.result.detectors[d].name},
                                 {"mean", s.statistics.yields[d].mean},
                                 {"standard_error", s.statistics.yields[d].standard_error}});
-  io::write_text(record_path(job.folder, number), record.dump(1) + "\n");
+  return record.dump(1) + "\n";
 }
 
 std::string quoted(const std::string& text) {
@@ -103,9 +108,34 @@ std::string table_of(const std::map<std::size_t, Json>& records) {
   return text;
 }
 
+// Of a team whoever leads has looked: others may see the folder later than it.
+std::vector<std::size_t> find_missing(const SweepJob& job, const std::vector<std::size_t>& mine, const std::string& sweep,
+                                      Team* team) {
+  std::string letters(mine.size(), '-');
+  together(team, [&] {
+    if (!leads(team)) return;
+    for (std::size_t k = 0; k < mine.size(); ++k)
+      if (is_done(job.folder, mine[k], job.runs[mine[k]], sweep)) letters[k] = '+';
+  });
+  if (team) team->broadcast(letters);
+  std::vector<std::size_t> missing;
+  for (std::size_t k = 0; k < mine.size(); ++k)
+    if (letters[k] == '-') missing.push_back(mine[k]);
+  return missing;
+}
+
+// What the first tells of all: their size.
+void describe(const SimulateJob& first, ManyRuns& runs) {
+  const mc::Scan scan = resolve_scan(first.scene.scan, mc::extent(first.scene.specimen), first.scene.beam);
+  runs.tiles = tiles_of(scan);
+  runs.pixels = static_cast<double>(scan.width) * scan.height;
+  runs.threads = first.options.threads;
+}
+
 }  // namespace
 
 SweepSummary run(const SweepJob& job, const SweepListener& listener, Team* team) {
+  const auto start = std::chrono::steady_clock::now();
   if (job.runs.empty()) throw UsageError("--vary", "there is nothing to run", "Give --vary energy=500eV,1keV, say");
   if (job.parts < 1 || job.part < 1 || job.part > job.parts)
     throw UsageError("--part", fmt::format("{}/{} is no part", job.part, job.parts), "Write 3/16 for the third of 16");
@@ -113,46 +143,53 @@ SweepSummary run(const SweepJob& job, const SweepListener& listener, Team* team)
   SweepSummary summary;
   summary.table = job.folder / (job.parts == 1 ? std::string("sweep.csv")
                                                : fmt::format("sweep.{}-of-{}.csv", job.part, job.parts));
-  if (leads(team)) io::check_writable(summary.table);
+  together(team, [&] {
+    if (leads(team)) io::check_writable(summary.table);
+  });
   std::vector<std::size_t> mine;
   for (std::size_t i = static_cast<std::size_t>(job.part) - 1; i < job.runs.size(); i += static_cast<std::size_t>(job.parts))
     mine.push_back(i);
-  for (std::size_t k = 0; k < mine.size(); ++k) {
-    const std::size_t number = mine[k];
-    SimulateJob simulation;
-    // Whoever leads has looked: others may see the folder later than it.
-    std::string there = "no";
-    together(team, [&] {
-      simulation = job.runs[number].make();
-      if (leads(team) && is_done(job.folder, number, simulation, sweep)) there = "yes";
-    });
-    if (team) team->broadcast(there);
-    if (there == "yes") {
-      ++summary.found;
-      ++summary.done;
-      continue;
-    }
-    const auto show = [&](double done, double total) {
-      if (listener.progress && total > 0)
-        listener.progress(static_cast<double>(k) + done / total, static_cast<double>(mine.size()));
-    };
-    const SimulateSummary s = run(simulation, show, listener.cancel, listener.warn, listener.note, {}, team);
-    std::string complete = s.result.complete ? "yes" : "no";
-    if (team) team->broadcast(complete);
-    if (complete == "no") {
-      summary.complete = false;
-      return summary;
-    }
+  const std::vector<std::size_t> missing = find_missing(job, mine, sweep, team);
+  summary.found = summary.done = mine.size() - missing.size();
+  ManyRuns runs;
+  runs.weights.assign(missing.size(), 1);
+  runs.make = [&](std::size_t i) { return job.runs[missing[i]].make(); };
+  runs.outcome = [&](std::size_t i, const SimulateJob& run, const SimulateSummary& s) {
+    return record_of(job, missing[i], run, sweep, s);
+  };
+  runs.finished = [&](std::size_t i, const std::string& text) {
+    io::write_text(record_path(job.folder, missing[i]), text);
+    const Json record = Json::parse(text);
+    if (record["missed"] > 0) ++summary.untrustworthy;
     ++summary.done;
-    if (!leads(team)) continue;
-    write_record(job, number, simulation, sweep, s);
-    if (s.statistics.missed > 0) ++summary.untrustworthy;
-    if (listener.done) listener.done(number, s);
-  }
-  if (!leads(team)) return summary;
-  std::map<std::size_t, Json> records;
-  for (const std::size_t number : mine) records[number + 1] = *read_record(record_path(job.folder, number));
-  io::write_text(summary.table, table_of(records));
+    std::vector<SweepYield> yields;
+    for (const Json& y : record["yields"]) yields.push_back({y["detector"], y["mean"], y["standard_error"]});
+    if (listener.done) listener.done(missing[i], yields);
+  };
+  runs.folder = job.folder;
+  together(team, [&] {
+    if (!missing.empty()) describe(job.runs[missing.front()].make(), runs);
+  });
+  runs.progress = [&](double done, double) {
+    if (listener.progress)
+      listener.progress(static_cast<double>(summary.found) + done, static_cast<double>(mine.size()));
+  };
+  runs.warn = listener.warn;
+  runs.note = listener.note;
+  runs.cancel = listener.cancel;
+  const ManyDone done = run_many(runs, team);
+  summary.complete = done.complete;
+  if (!summary.complete) return summary;
+  together(team, [&] {
+    if (!leads(team)) return;
+    std::map<std::size_t, Json> records;
+    for (const std::size_t number : mine) records[number + 1] = *read_record(record_path(job.folder, number));
+    io::write_text(summary.table, table_of(records));
+    const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
+    if (team)
+      io::write_text(sidecar_path(summary.table),
+                     team_record(*team, done, seconds.count(), runs.threads, job.command_line));
+  });
   return summary;
 }
 

@@ -4,11 +4,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 
 #include "learners.h"
+#include "sidecar.h"
 #include "surf/core/error.h"
 #include "surf/core/units.h"
+#include "surf/io/files.h"
 #include "surf/io/model_file.h"
 #include "surf/sem/fit_filter_bank.h"
 #include "surf/workflow/version.h"
@@ -113,22 +116,9 @@ void complete_record(const TrainJob& job, const std::vector<TrainingSurface>& su
 
 bool is_cancelled(const TrainListener& listener) { return listener.cancel && listener.cancel->cancelled(); }
 
-}  // namespace
-
-TrainSummary run(const TrainJob& job, const TrainListener& listener) {
-  const Learner& learner = learner_of(job);
-  const int own = own_surfaces(job, learner);
-  check_numbers(job, own);
-  const std::vector<TrainingSurface> surfaces = gather_surfaces(job, own, listener.note);
-  check_target(job, surfaces);
-  TrainSummary summary;
-  const SimulatedImages simulated = simulate_images(job, surfaces, listener);
-  summary.images_found = simulated.found;
-  summary.images_made = simulated.made;
-  summary.complete = simulated.complete;
-  if (simulated.found + simulated.made > 0 || !simulated.complete) summary.images = image_folder(job);
-  if (!summary.complete) return summary;
-
+/// From images to the model's file. `complete` is false when cancelled.
+void learn(const TrainJob& job, const Learner& learner, const std::vector<TrainingSurface>& surfaces,
+           const SimulatedImages& simulated, const TrainListener& listener, TrainSummary& summary) {
   std::vector<TrainingImage> images = read_images(job, surfaces, simulated);
   if (!images.empty()) validate(images);
   const std::size_t learnt = learner.needs_images ? images.size() - static_cast<std::size_t>(job.held_out) : 0;
@@ -147,13 +137,43 @@ TrainSummary run(const TrainJob& job, const TrainListener& listener) {
     for (auto& [key, value] : result.notes) model.record.notes[key] = value;
   } catch (const Interrupted&) {
     summary.complete = false;
-    return summary;
+    return;
   }
   complete_record(job, surfaces, images, held_out, model);
   for (const std::string& warning : model.record.warnings)
     if (listener.warn) listener.warn(warning);
   summary.complete = !is_cancelled(listener);
   if (summary.complete) io::write_model(job.output, model);
+}
+
+}  // namespace
+
+TrainSummary run(const TrainJob& job, const TrainListener& listener, Team* team) {
+  const auto start = std::chrono::steady_clock::now();
+  const Learner* learner = nullptr;
+  std::vector<TrainingSurface> surfaces;
+  together(team, [&] {
+    learner = &learner_of(job);
+    const int own = own_surfaces(job, *learner);
+    check_numbers(job, own);
+    surfaces = gather_surfaces(job, own, listener.note);
+    if (leads(team)) check_target(job, surfaces);
+  });
+  TrainSummary summary;
+  const SimulatedImages simulated = simulate_images(job, surfaces, listener, team);
+  summary.images_found = simulated.found;
+  summary.images_made = simulated.made;
+  summary.complete = simulated.runs.complete;
+  if (simulated.found + simulated.made > 0 || !summary.complete) summary.images = image_folder(job);
+  if (!summary.complete) return summary;
+  together(team, [&] {
+    if (!leads(team)) return;
+    learn(job, *learner, surfaces, simulated, listener, summary);
+    const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
+    if (team && summary.complete)
+      io::write_text(sidecar_path(job.output),
+                     team_record(*team, simulated.runs, seconds.count(), job.simulation.threads, job.command_line));
+  });
   return summary;
 }
 

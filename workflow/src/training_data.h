@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "run_many.h"
 #include "surf/sem/training_image.h"
 #include "surf/workflow/train_job.h"
 
@@ -41,11 +42,12 @@ std::filesystem::path image_folder(const TrainJob& job);
 struct SimulatedImages {
   std::vector<std::filesystem::path> files;   ///< of each surface that has none of its own, else empty
   int found = 0, made = 0;
-  bool complete = true;
+  ManyDone runs;                              ///< those that were made, and whether all were
 };
 
-/// Simulates what is not there yet.
+/// Simulates what is not there yet. Of a team each process simulates whole images, into a folder that all see; few that are
+/// left over they share, unless each is to be `whole`. The leader's counts are the true ones.
 SimulatedImages simulate_images(const TrainJob& job, const std::vector<TrainingSurface>& surfaces,
-                                const TrainListener& listener);
+                                const TrainListener& listener, Team* team = nullptr, bool whole = false);
 
 }  // namespace surf::workflow

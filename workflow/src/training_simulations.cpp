@@ -3,9 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <set>
 
 #include "finished_image.h"
+#include "run_many.h"
 #include "surf/afm/resample.h"
 #include "surf/core/error.h"
 #include "surf/mc/electron_range.h"
@@ -44,14 +46,43 @@ std::string counted(std::size_t count, const char* thing) {
   return fmt::format("{} {}{}", count, thing, count == 1 ? "" : "s");
 }
 
-void tell_what_is_there(const std::vector<SimulateJob>& all, std::size_t missing, std::size_t unusable,
-                        const fs::path& folder, const NoteCallback& note) {
+void tell_what_is_there(std::size_t all, std::size_t missing, std::size_t unusable, const fs::path& folder,
+                        const NoteCallback& note) {
   if (!note) return;
-  const std::size_t found = all.size() - missing;
-  if (found > 0) note(fmt::format("{} of {} are there already, in {}", found, counted(all.size(), "image"), folder.string()));
+  const std::size_t found = all - missing;
+  if (found > 0) note(fmt::format("{} of {} are there already, in {}", found, counted(all, "image"), folder.string()));
   if (unusable > 0)
     note(fmt::format("{} there made otherwise, by another build or unfinished, and will be replaced",
                      unusable == 1 ? "1 image is" : fmt::format("{} images are", unusable)));
+}
+
+constexpr char there = '+', not_there = '-';
+
+// A letter for each. Of a team whoever leads has looked: others may see the folder later than it.
+std::string what_is_missing(const std::vector<SimulateJob>& all, const fs::path& folder, const NoteCallback& note,
+                            Team* team) {
+  std::string letters;
+  together(team, [&] {
+    if (!leads(team)) return;
+    std::size_t missing = 0, unusable = 0;
+    for (const SimulateJob& simulation : all) {
+      const bool found = is_finished(simulation);
+      letters += found ? there : not_there;
+      std::error_code ignored;
+      if (!found) ++missing;
+      if (!found && fs::exists(simulation.outputs.front(), ignored)) ++unusable;
+    }
+    tell_what_is_there(all.size(), missing, unusable, folder, note);
+  });
+  if (team) team->broadcast(letters);
+  return letters;
+}
+
+mc::Scan scan_of(const TrainingSurface& surface) {
+  mc::Scan scan;
+  scan.width = surface.field.z_nm.width();
+  scan.height = surface.field.z_nm.height();
+  return scan;
 }
 
 }  // namespace
@@ -70,51 +101,50 @@ fs::path image_folder(const TrainJob& job) {
 }
 
 SimulatedImages simulate_images(const TrainJob& job, const std::vector<TrainingSurface>& surfaces,
-                                const TrainListener& listener) {
+                                const TrainListener& listener, Team* team, bool whole) {
   SimulatedImages out;
   out.files.resize(surfaces.size());
   const fs::path folder = image_folder(job);
-  std::vector<SimulateJob> all, missing;
-  std::vector<double> pixels_missing;
-  std::size_t unusable = 0;
-  double total = 0, done_before = 0;
+  std::vector<SimulateJob> all;
+  std::vector<const TrainingSurface*> shown;
   for (std::size_t i = 0; i < surfaces.size(); ++i) {
     if (surfaces[i].has_image()) continue;
     out.files[i] = folder / (surfaces[i].name + ".exr");
     all.push_back(simulation_of(job, surfaces[i], i, out.files[i]));
-    if (is_finished(all.back())) continue;
-    std::error_code ignored;
-    if (fs::exists(out.files[i], ignored)) ++unusable;
-    missing.push_back(all.back());
-    pixels_missing.push_back(static_cast<double>(surfaces[i].field.z_nm.size()));
-    total += pixels_missing.back();
+    shown.push_back(&surfaces[i]);
   }
-  out.found = static_cast<int>(all.size() - missing.size());
-  tell_what_is_there(all, missing.size(), unusable, folder, listener.note);
+  const std::string wanted = what_is_missing(all, folder, listener.note, team);
+  std::vector<SimulateJob> missing;
+  ManyRuns runs;
+  runs.tiles = std::numeric_limits<std::size_t>::max();
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (wanted[i] == there) continue;
+    const mc::Scan scan = scan_of(*shown[i]);
+    const double pixels = static_cast<double>(scan.width) * scan.height;
+    missing.push_back(std::move(all[i]));
+    runs.weights.push_back(pixels);
+    runs.tiles = std::min(runs.tiles, tiles_of(scan));
+    runs.pixels = std::max(runs.pixels, pixels);
+  }
+  out.found = static_cast<int>(wanted.size() - missing.size());
   std::set<std::string> warned;
-  const auto warn = [&](const std::string& warning) {
+  runs.make = [&](std::size_t i) { return missing[i]; };
+  runs.finished = [&](std::size_t, const std::string&) { ++out.made; };
+  runs.folder = folder;
+  runs.whole = whole;
+  runs.threads = job.simulation.threads;
+  runs.progress = listener.pixels;
+  runs.cascades = listener.cascades;
+  runs.warn = [&](const std::string& warning) {
     if (warned.insert(warning).second && listener.warn) listener.warn(warning);
   };
-  for (std::size_t i = 0; i < missing.size(); ++i) {
-    const SimulateJob& simulation = missing[i];
-    const double pixels = pixels_missing[i];
-    const auto show = [&](double done, double of) {
-      if (listener.pixels && of > 0) listener.pixels(done_before + pixels * done / of, total);
-    };
-    const bool complete = [&] {
-      try {
-        return run(simulation, show, listener.cancel, warn, {}, listener.cascades).result.complete;
-      } catch (const Interrupted&) {   // before there was anything to keep
-        return false;
-      }
-    }();
-    if (!complete) {
-      out.complete = false;
-      return out;
-    }
-    done_before += pixels;
-    ++out.made;
-  }
+  runs.cancel = listener.cancel;
+  out.runs = run_many(runs, team);
+  if (!team || !out.runs.complete) return out;
+  together(team, [&] {
+    if (!team->leads()) return;
+    for (const SimulateJob& made : missing) await_file(made.outputs.front(), [&] { return is_finished(made); });
+  });
   return out;
 }
 

@@ -4,7 +4,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <chrono>
 #include <cmath>
+#include <iterator>
 
 #include "../finished_image.h"
 #include "../job_identity.h"
@@ -165,6 +168,113 @@ std::vector<ChartChoice> choices_of(const ChartSetting& setting, const std::vect
   return out;
 }
 
+fs::path point_file(const ChartJob& job, const ChartMethod& method) {
+  return job.folder / "points" / (method.id + ".json");
+}
+
+// Before any point is timed. Without a team they come with the first point that needs them.
+ManyDone make_images_for(const ChartSetting& setting, const std::vector<ChartMethod>& methods, const std::string& id,
+                         const ProgressCallback& progress, const CancelToken* cancel, Team& team) {
+  std::string wanted = "no";
+  for (const ChartMethod& method : methods)   // whoever leads has them
+    if (method.needs_images && !read_point(point_file(setting.job, method), id)) wanted = "yes";
+  team.broadcast(wanted);
+  return wanted == "yes" ? make_images(setting, progress, cancel, &team) : ManyDone{};
+}
+
+// Of all points and before them; the reference counts as much as all together: it takes the most electrons.
+class Course {
+ public:
+  Course(const ChartListener& listener, double points) : listener_(listener), points_(points) {}
+
+  ProgressCallback show(double weight) {
+    return [this, weight](double done, double total) {
+      if (listener_.progress && total > 0) listener_.progress(before_ + weight * done / total, 2 * points_);
+    };
+  }
+  ProgressCallback show_reference() { return show(points_); }
+  void end_reference() { before_ = points_; }
+  void end_point() {
+    before_ += 1;
+    if (listener_.progress) listener_.progress(before_, 2 * points_);
+  }
+
+ private:
+  const ChartListener& listener_;
+  double points_, before_ = 0;
+};
+
+ManyDone make_reference(const ChartJob& job, const std::vector<SimulateJob>& parts, const mc::Scan& scan,
+                        const ChartListener& listener, Course& course, Team* team) {
+  std::string letters;   // whoever leads has looked
+  for (const SimulateJob& part : parts) letters += leads(team) && is_finished(part) ? '+' : '-';
+  if (team) team->broadcast(letters);
+  std::vector<const SimulateJob*> missing;
+  for (std::size_t i = 0; i < parts.size(); ++i)
+    if (letters[i] == '-') missing.push_back(&parts[i]);
+  ManyRuns runs;
+  runs.weights.assign(missing.size(), 1);
+  runs.make = [&](std::size_t i) { return *missing[i]; };
+  runs.folder = job.folder / "reference";
+  runs.tiles = tiles_of(scan);
+  runs.pixels = static_cast<double>(scan.width) * scan.height;
+  runs.threads = job.threads;
+  runs.progress = course.show_reference();
+  runs.warn = listener.warn;
+  runs.note = listener.note;
+  runs.cancel = listener.cancel;
+  const ManyDone done = run_many(runs, team);
+  course.end_reference();
+  if (!team || !done.complete) return done;
+  together(team, [&] {
+    if (!team->leads()) return;
+    for (const SimulateJob* part : missing) await_file(part->outputs.front(), [&] { return is_finished(*part); });
+  });
+  return done;
+}
+
+// Runs what is not there yet.
+void make_points(const ChartSetting& setting, const std::vector<ChartMethod>& methods, const std::string& id,
+                 const ChartListener& listener, Course& course, ChartSummary& summary) {
+  for (const ChartMethod& method : methods) {
+    const fs::path file = point_file(setting.job, method);
+    std::optional<ChartPoint> point = read_point(file, id);
+    if (point) {
+      ++summary.found;
+    } else {
+      if (listener.cancel && listener.cancel->cancelled()) {
+        summary.complete = false;
+        return;
+      }
+      point = ChartPoint{method.id, method.family, method.setting};
+      point->is_default = method.is_default;
+      try {
+        const PeakMemory memory;
+        method.run(setting, course.show(1), listener.cancel, *point);
+        point->peak_bytes = memory.bytes();
+      } catch (const Interrupted&) {
+        summary.complete = false;
+        return;
+      }
+      write_point(file, *point, id);
+      if (listener.point) listener.point(*point);
+    }
+    summary.points.push_back(std::move(*point));
+    course.end_point();
+  }
+}
+
+void write_chart(const ChartJob& job, ChartSummary& summary) {
+  io::write_text(job.folder / "chart.csv", csv_text(summary));
+  io::write_text(job.folder / "chart.json", json_text(job, summary));
+  summary.written = {job.folder / "chart.csv", job.folder / "chart.json"};
+  const io::Plot plot = chart_plot(job, summary);
+  for (const char* name : {"chart.svg", "chart.png"}) {
+    io::write_plot(job.folder / name, plot);
+    summary.written.push_back(job.folder / name);
+  }
+}
+
 }  // namespace
 
 const std::vector<ChartFamily>& chart_families() {
@@ -194,88 +304,62 @@ double ChartPoint::worst_rms() const {
   return worst;
 }
 
-ChartSummary run(const ChartJob& asked, const ChartListener& listener) {
-  const ChartJob job = complete(asked);
+ChartSummary run(const ChartJob& asked, const ChartListener& listener, Team* team) {
+  const auto start = std::chrono::steady_clock::now();
+  ChartJob job;
+  together(team, [&] { job = complete(asked); });
   ChartSummary summary;
-  ChartSetting setting{job, resolve_scan(job.scene.scan, mc::extent(job.scene.specimen), job.scene.beam), nullptr,
-                       accuracies_of(job)};
-  for (const char* name : {"chart.csv", "chart.json"}) io::check_writable(job.folder / name);
-  for (const char* name : {"chart.svg", "chart.png"}) io::check_plot_target(job.folder / name);
-  const ComparedPixels pixels = choose_pixels(setting.scan, job.compared_pixels);
-  summary.compared = pixels.width * pixels.height;
-  const std::vector<SimulateJob> making = reference_jobs(job, pixels, setting.scan);
-  const std::string id = identity(job, making, setting.accuracies);
-
-  ChartMethods all = list_simulations(setting);
-  ChartMethods models = list_models(setting);
-  std::move(models.methods.begin(), models.methods.end(), std::back_inserter(all.methods));
-  summary.left_out = std::move(all.left_out);
-  summary.left_out.insert(summary.left_out.end(), models.left_out.begin(), models.left_out.end());
-  if (all.methods.empty())
-    throw UsageError("--methods", "none of them can be had with this scene", "Leave it out for all that can");
-
-  // The reference counts as much as all points together: it takes the most electrons.
-  const auto count = static_cast<double>(all.methods.size());
-  double before = 0;
-  const auto show = [&](double weight) -> ProgressCallback {
-    return [&listener, &before, weight, count](double done, double total) {
-      if (listener.progress && total > 0) listener.progress(before + weight * done / total, 2 * count);
-    };
-  };
-  for (const SimulateJob& part : making) {
-    const double share = count / static_cast<double>(making.size());
-    if (!is_finished(part)) {
-      const SimulateSummary made = run(part, show(share), listener.cancel, listener.warn, listener.note);
-      if (!made.result.complete) {
-        summary.complete = false;
-        return summary;
-      }
+  ChartSetting setting{job, {}, nullptr, accuracies_of(job)};
+  ComparedPixels pixels;
+  std::vector<SimulateJob> parts;
+  std::string id;
+  std::vector<ChartMethod> methods;   // where the team is led
+  together(team, [&] {
+    setting.scan = resolve_scan(job.scene.scan, mc::extent(job.scene.specimen), job.scene.beam);
+    pixels = choose_pixels(setting.scan, job.compared_pixels);
+    summary.compared = pixels.width * pixels.height;
+    parts = reference_jobs(job, pixels, setting.scan);
+    id = identity(job, parts, setting.accuracies);
+    if (!leads(team)) return;
+    for (const char* name : {"chart.csv", "chart.json"}) io::check_writable(job.folder / name);
+    for (const char* name : {"chart.svg", "chart.png"}) io::check_plot_target(job.folder / name);
+    for (ChartMethods& list : std::array{list_simulations(setting), list_models(setting)}) {
+      std::ranges::move(list.methods, std::back_inserter(methods));
+      std::ranges::move(list.left_out, std::back_inserter(summary.left_out));
     }
-    before += share;
+    if (methods.empty())
+      throw UsageError("--methods", "none of them can be had with this scene", "Leave it out for all that can");
+  });
+
+  Course course(listener, static_cast<double>(methods.size()));
+  mc::Scan compared;
+  compared.width = pixels.width;
+  compared.height = pixels.height;
+  ManyDone done = make_reference(job, parts, compared, listener, course, team);
+  try {
+    if (team && done.complete) done.add(make_images_for(setting, methods, id, course.show(1), listener.cancel, *team));
+  } catch (const Interrupted&) {
+    done.complete = false;
   }
-  const Reference reference =
-      read_reference(mean_of(making), pixels, job.scene.accuracy_floor.value_or(mc::SimulationOptions{}.accuracy_floor));
-  setting.reference = &reference;
-  for (const ComparedChannel& c : reference.channels)
-    summary.reference.push_back({c.name, image_error(c.values, {}, c.values, c.standard_errors)});
-  
-  for (const ChartMethod& method : all.methods) {
-    const fs::path file = job.folder / "points" / (method.id + ".json");
-    std::optional<ChartPoint> point = read_point(file, id);
-    if (point) {
-      ++summary.found;
-    } else {
-      if (listener.cancel && listener.cancel->cancelled()) {
-        summary.complete = false;
-        break;
-      }
-      point = ChartPoint{method.id, method.family, method.setting};
-      point->is_default = method.is_default;
-      try {
-        const PeakMemory memory;
-        method.run(setting, show(1), listener.cancel, *point);
-        point->peak_bytes = memory.bytes();
-      } catch (const Interrupted&) {
-        summary.complete = false;
-        break;
-      }
-      write_point(file, *point, id);
-      if (listener.point) listener.point(*point);
-    }
-    summary.points.push_back(std::move(*point));
-    before += 1;
-    if (listener.progress) listener.progress(before, 2 * count);
-  }
+  summary.complete = done.complete;
   if (!summary.complete) return summary;
-  summary.choices = choices_of(setting, summary.points);
-  io::write_text(job.folder / "chart.csv", csv_text(summary));
-  io::write_text(job.folder / "chart.json", json_text(job, summary));
-  summary.written = {job.folder / "chart.csv", job.folder / "chart.json"};
-  const io::Plot plot = chart_plot(job, summary);
-  for (const char* name : {"chart.svg", "chart.png"}) {
-    io::write_plot(job.folder / name, plot);
-    summary.written.push_back(job.folder / name);
-  }
+
+  together(team, [&] {
+    if (!leads(team)) return;
+    const Reference reference = read_reference(
+        mean_of(parts), pixels, job.scene.accuracy_floor.value_or(mc::SimulationOptions{}.accuracy_floor));
+    setting.reference = &reference;
+    for (const ComparedChannel& c : reference.channels)
+      summary.reference.push_back({c.name, image_error(c.values, {}, c.values, c.standard_errors)});
+    make_points(setting, methods, id, listener, course, summary);
+    if (!summary.complete) return;
+    summary.choices = choices_of(setting, summary.points);
+    write_chart(job, summary);
+    const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
+    if (team)
+      io::write_text(job.folder / "chart.run.json",
+                     team_record(*team, done, seconds.count(), job.threads, job.command_line));
+  });
   return summary;
 }
 

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "../run_many.h"
 #include "compared_pixels.h"
 #include "surf/mc/beam.h"
 #include "surf/workflow/chart_job.h"
@@ -25,6 +26,7 @@ struct ChartMethod {
   bool is_default = false;
   /// Fills in the point's times, primaries, channels and targets. Throws Interrupted.
   std::function<void(const ChartSetting&, const ProgressCallback&, const CancelToken*, ChartPoint&)> run;
+  bool needs_images = false;   ///< those of make_images
 };
 
 struct ChartMethods {
@@ -40,6 +42,11 @@ std::string id_of_accuracy(mc::Method method, bool planar_control, double accura
 
 /// By the models that `train` makes, where they hold for the scene.
 ChartMethods list_models(const ChartSetting& setting);
+
+/// The images that models learn from, once for all of them. Keeps how long they took: each is simulated by one process, so
+/// that a team's times mean the same. Throws Interrupted, on all of a team.
+ManyDone make_images(const ChartSetting& setting, const ProgressCallback& progress, const CancelToken* cancel,
+                     Team* team);
 
 /// Whether the job asks for a family.
 bool wants(const ChartJob& job, const std::string& family);

@@ -8,6 +8,7 @@
 #include <optional>
 #include <vector>
 
+#include "../training_data.h"
 #include "chart_files.h"
 #include "chart_methods.h"
 #include "surf/core/error.h"
@@ -108,23 +109,14 @@ TrainJob training(const ChartSetting& setting, const LearnOptions& learn, const 
   return out;
 }
 
-// The images that models learn from, once for all of them, and how long they took.
-double make_images(const ChartSetting& setting, const ProgressCallback& progress, const CancelToken* cancel) {
+// The least that asks for the images: all kinds share them.
+TrainJob training_of_images(const ChartSetting& setting) {
   LearnOptions least;
   least.kind = "secant";
-  const TrainJob job = training(setting, least, "secant");
-  const fs::path times = job.images / "seconds.json";
-  double seconds = read_seconds(times);
-  const auto start = Clock::now();
-  TrainListener listener;
-  listener.pixels = progress;
-  listener.cancel = cancel;
-  const TrainSummary done = run(job, listener);
-  if (done.images_made > 0) seconds = (done.images_found > 0 ? seconds : 0) + seconds_since(start);
-  if (done.images_made > 0) write_seconds(times, seconds);
-  if (!done.complete) throw Interrupted();
-  return seconds;
+  return training(setting, least, "secant");
 }
+
+fs::path times_of_images(const TrainJob& job) { return job.images / "seconds.json"; }
 
 void predict(const LearnOptions& learn, const std::string& id, bool needs_images, const ChartSetting& setting,
              const ProgressCallback& progress, const CancelToken* cancel, ChartPoint& point) {
@@ -133,7 +125,11 @@ void predict(const LearnOptions& learn, const std::string& id, bool needs_images
       if (progress && total > 0) progress(from + (to - from) * done / total, 1);
     };
   };
-  double preparation_s = needs_images ? make_images(setting, part(0, 0.5), cancel) : 0;
+  double preparation_s = 0;
+  if (needs_images) {
+    make_images(setting, part(0, 0.5), cancel, nullptr);
+    preparation_s = read_seconds(times_of_images(training_of_images(setting)));
+  }
   TrainJob job = training(setting, learn, id);
   if (!needs_images) job.surfaces = 0;
   TrainListener listener;
@@ -179,6 +175,24 @@ std::vector<FacetScale> first_scales(int count, bool uniform) {
 
 }  // namespace
 
+ManyDone make_images(const ChartSetting& setting, const ProgressCallback& progress, const CancelToken* cancel,
+                     Team* team) {
+  const TrainJob job = training_of_images(setting);
+  std::vector<TrainingSurface> surfaces;
+  together(team, [&] { surfaces = gather_surfaces(job, *job.surfaces, {}); });
+  TrainListener listener;
+  listener.pixels = progress;
+  listener.cancel = cancel;
+  const SimulatedImages done = simulate_images(job, surfaces, listener, team, true);
+  together(team, [&] {
+    const fs::path times = times_of_images(job);
+    if (leads(team) && done.made > 0)
+      write_seconds(times, (done.found > 0 ? read_seconds(times) : 0) + done.runs.seconds);
+  });
+  if (!done.runs.complete) throw Interrupted();
+  return done.runs;
+}
+
 ChartMethods list_models(const ChartSetting& setting) {
   const ChartJob& job = setting.job;
   ChartMethods out;
@@ -198,6 +212,7 @@ ChartMethods list_models(const ChartSetting& setting) {
                                            const CancelToken* cancel, ChartPoint& point) {
       predict(learn, id, needs_images, s, progress, cancel, point);
     };
+    method.needs_images = needs_images;
     out.methods.push_back(std::move(method));
   };
   const auto kind = [](const char* name) {

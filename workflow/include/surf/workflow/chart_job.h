@@ -114,6 +114,10 @@ struct ChartListener {
 ///   models/            fast models, and images that they learn from
 /// The same job gives the same numbers again, but for times and memory. Points of another job in the
 /// folder are run again. Throws UsageError, FileError, and what simulations and trainings throw.
-ChartSummary run(const ChartJob& job, const ChartListener& listener = {});
+///
+/// With a `team` all of it call this with the same job, and share the reference and the images that models learn from.
+/// Points, whose times are to mean the same, are the leader's alone, which has the true summary; the others wait meanwhile.
+/// Who did how much is in chart.run.json.
+ChartSummary run(const ChartJob& job, const ChartListener& listener = {}, Team* team = nullptr);
 
 }  // namespace surf::workflow

@@ -33,9 +33,15 @@ struct SweepSummary {
   std::filesystem::path table;       ///< sweep.csv, or that of the part
 };
 
+/// Of a run's image.
+struct SweepYield {
+  std::string detector;
+  double mean = 0, standard_error = 0;
+};
+
 struct SweepListener {
   ProgressCallback progress;         ///< in runs, fractions included
-  std::function<void(std::size_t run, const SimulateSummary&)> done;
+  std::function<void(std::size_t run, const std::vector<SweepYield>&)> done;
   WarningCallback warn;
   NoteCallback note;
   const CancelToken* cancel = nullptr;
@@ -45,6 +51,10 @@ struct SweepListener {
 /// the mean yield with its standard error. What a run gave is kept in records/N.json of the folder; a run that was done
 /// before with the same settings by the same program is not repeated. With one part the table is sweep.csv, else
 /// sweep.K-of-N.csv, to be joined. Throws UsageError, FileError and what simulations throw.
+///
+/// With a `team` all of it call this with the same job: each process does whole runs, into a folder that all see, or they
+/// share large ones. The leader writes records and table, which are those of one process, and who did how much to
+/// sweep.run.json.
 SweepSummary run(const SweepJob& job, const SweepListener& listener = {}, Team* team = nullptr);
 
 /// Puts the records of all parts, in one folder or in several, together to sweep.csv in the first of them. Returns its path.

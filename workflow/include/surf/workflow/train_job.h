@@ -116,6 +116,9 @@ struct TrainSummary {
 ///
 /// Surfaces of another pitch are resampled to `pixel_nm` by bilinear interpolation, which is noted.
 /// Throws UsageError, InvalidInput (also for surfaces more than twice as coarse), FileError.
-TrainSummary run(const TrainJob& job, const TrainListener& listener = {});
+///
+/// With a `team` all of it call this with the same job, and simulate images, whole ones, into a folder that all see; the
+/// leader learns, while the others wait, and tells in NAME.run.json who did how much. Bytes are those of one process.
+TrainSummary run(const TrainJob& job, const TrainListener& listener = {}, Team* team = nullptr);
 
 }  // namespace surf::workflow
