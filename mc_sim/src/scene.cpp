@@ -32,9 +32,15 @@ struct Assembly {
   std::vector<Solid> solids;
 };
 
-void append(Assembly& all, const TriangleMesh& mesh, const std::vector<std::uint32_t>& component) {
+void append(Assembly& all, TriangleMesh mesh, std::vector<std::uint32_t> component) {
   const auto base = static_cast<std::uint32_t>(all.mesh.vertices_nm.size());
   const auto first_shell = static_cast<std::uint32_t>(all.shells.size());
+  if (base == 0) {   // mostly there is only one
+    all.mesh = std::move(mesh);
+    all.shell_of = std::move(component);
+    for (std::uint32_t& shell : all.shell_of) shell += first_shell;
+    return;
+  }
   all.mesh.vertices_nm.insert(all.mesh.vertices_nm.end(), mesh.vertices_nm.begin(),
                               mesh.vertices_nm.end());
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
@@ -63,14 +69,14 @@ std::vector<double> volumes(const TriangleMesh& mesh, const std::vector<std::uin
 
 void add_body(Assembly& all, const Body& body) {
   TriangleMesh mesh = merge_equal_vertices(body.mesh);
-  const std::vector<std::uint32_t> component = triangle_components(mesh);
+  std::vector<std::uint32_t> component = triangle_components(mesh);
   std::vector<double> volume = volumes(mesh, component);
   // A mesh whose normals all point inward is turned as a whole.
   if (std::accumulate(volume.begin(), volume.end(), 0.0) < 0) {
     for (Triangle& t : mesh.triangles) std::swap(t[1], t[2]);
     for (double& v : volume) v = -v;
   }
-  append(all, mesh, component);
+  append(all, std::move(mesh), std::move(component));
   for (const double v : volume)
     all.shells.push_back({static_cast<int>(all.solids.size()), v < 0 ? -1 : 1});
   all.solids.push_back({body.material});
@@ -85,8 +91,8 @@ void add_sheet(Assembly& all, const Body& body, const Scan& scan, double reach) 
   const double apron = apron_in_widths * std::max(size.x, size.y) + reach + half +
                        std::hypot(away.x, away.y);
   std::string reason;
-  const TriangleMesh mesh = *extend_open_sheet(body.mesh, apron, reason);   // validated
-  const std::vector<std::uint32_t> component = triangle_components(mesh);
+  TriangleMesh mesh = *extend_open_sheet(body.mesh, apron, reason);   // validated
+  std::vector<std::uint32_t> component = triangle_components(mesh);
   const std::vector<double> volume = volumes(mesh, component);
   // The apron's vertices come last: what holds the last one is the sheet.
   const auto last = static_cast<std::uint32_t>(mesh.vertices_nm.size() - 1);
@@ -94,18 +100,20 @@ void add_sheet(Assembly& all, const Body& body, const Scan& scan, double reach) 
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i)
     for (const std::uint32_t v : mesh.triangles[i])
       if (v == last) sheet = component[i];
-  append(all, mesh, component);
+  append(all, std::move(mesh), std::move(component));
   for (std::uint32_t c = 0; c < volume.size(); ++c)
     all.shells.push_back({static_cast<int>(all.solids.size()), c != sheet && volume[c] < 0 ? -1 : 1});
   all.solids.push_back({body.material});
 }
 
 void add_height_field(Assembly& all, const HeightFieldBody& body, const Scan& scan, double reach) {
-  const HeightField wide = field_in_reach(body, scan, reach);
+  HeightField wide = field_in_reach(body, scan, reach);
   const double width = std::max(wide.z_nm.width() * wide.pitch_x_nm,
                                 wide.z_nm.height() * wide.pitch_y_nm);
-  const TriangleMesh sheet = half_space_top(wide, apron_in_widths * width);
-  append(all, sheet, std::vector<std::uint32_t>(sheet.triangles.size(), 0));
+  TriangleMesh sheet = half_space_top(wide, apron_in_widths * width);
+  wide = {};
+  std::vector<std::uint32_t> component(sheet.triangles.size(), 0);
+  append(all, std::move(sheet), std::move(component));
   all.shells.push_back({static_cast<int>(all.solids.size()), 1});
   all.solids.push_back({body.material});
 }
@@ -156,7 +164,8 @@ Scene::Scene(const Specimen& specimen, const Beam& beam, const Scan& scan, const
   validate(scan);
   const Watch& watch = options.watch;
   watch.check();
-  validate(specimen, watch.part(0, 0.1));
+  const std::vector<BodyFacts> found =
+      options.facts ? *options.facts : validate(specimen, watch.part(0, 0.1));
   Impl& s = *impl_;
   s.beam = beam;
   s.scan = scan;
@@ -183,21 +192,21 @@ Scene::Scene(const Specimen& specimen, const Beam& beam, const Scan& scan, const
     add_height_field(all, *specimen.height_field, scan, reach);
     near.extend(bounds(all.mesh));
   }
-  for (const Body& body : specimen.bodies) {
+  for (std::size_t i = 0; i < specimen.bodies.size(); ++i) {
+    const Body& body = specimen.bodies[i];
     watch.check();
-    if (is_sheet(body, {{}, watch.cancel})) {
+    if (found[i].is_sheet) {
       add_sheet(all, body, scan, reach);
       s.half_space = true;
     } else {
       add_body(all, body);
     }
-    near.extend(bounds(body.mesh));
+    near.extend(found[i].box);
   }
   if (options.leave_out_unreachable && !near.empty())
     s.summary.triangles_left_out = leave_out_unreachable(all, s.plane_nm, near, farthest_reach, watch);
   s.shells = std::move(all.shells);
   s.solids = std::move(all.solids);
-  s.shell_of = std::move(all.shell_of);
   s.top_nm = s.plane_nm.value_or(near.empty() ? 0.0 : near.upper_nm.z);
   s.bottom_nm = near.empty() ? s.top_nm : std::min(near.lower_nm.z, s.plane_nm.value_or(HUGE_VAL));
   s.half_space = s.half_space || specimen.substrate || specimen.height_field;
@@ -210,9 +219,11 @@ Scene::Scene(const Specimen& specimen, const Beam& beam, const Scan& scan, const
     watch.report(0.7, 1);
     s.sky = Sky(all.mesh, domain, sky_columns, 0, watch);
     watch.report(0.8, 1);
-    s.triangles = std::make_unique<EmbreeScene>(all.mesh, watch.part(0.8, 1));
+    SceneMesh mesh = make_scene_mesh(std::move(all.mesh), std::move(all.shell_of));
+    s.shell_of = mesh.shell_of;
+    s.triangles = std::make_unique<EmbreeScene>(std::move(mesh), watch.part(0.8, 1));
   }
-  s.summary.triangles = all.mesh.triangles.size();
+  s.summary.triangles = s.shell_of.size();
   s.summary.shells = s.shells.size();
   s.summary.grid_cell_nm = s.near.cell_nm();
   s.summary.memory_bytes = s.near.bytes() + s.sky.bytes() + s.shell_of.size() * sizeof(std::uint32_t) +

@@ -13,6 +13,7 @@
 #include "job_libraries.h"
 #include "provenance.h"
 #include "sidecar.h"
+#include "specimen_facts.h"
 #include "surf/core/error.h"
 #include "surf/core/parallel.h"
 #include "surf/core/units.h"
@@ -45,9 +46,8 @@ void check_options(const mc::SimulationOptions& options) {
 }
 
 // The job with everything in its options that the simulator has to know.
-SimulateJob complete(const SimulateJob& job) {
-  SimulateJob out = job;
-  const io::SceneFile& s = job.scene;
+SimulateJob complete(SimulateJob out) {
+  const io::SceneFile& s = out.scene;
   for (const mc::Detector& d : s.detectors) out.options.detectors.push_back(d);
   mc::validate(out.options.detectors);
   if (s.current_pa.has_value() != s.dwell_us.has_value())
@@ -64,14 +64,14 @@ SimulateJob complete(const SimulateJob& job) {
   }
   if (s.accuracy) out.options.accuracy = *s.accuracy;
   if (s.accuracy_floor) out.options.accuracy_floor = *s.accuracy_floor;
-  if (job.seconds < 0 || !std::isfinite(job.seconds))
+  if (out.seconds < 0 || !std::isfinite(out.seconds))
     throw UsageError("--time", "it must be above zero", "Write for example 30s");
-  if (job.seconds > 0) out.options.accuracy = coarse_accuracy;
+  if (out.seconds > 0) out.options.accuracy = coarse_accuracy;
   if (out.options.accuracy > 0 && s.electrons)
     throw UsageError("--electrons", "a wanted accuracy gives the number of primaries",
                      "Leave out one of the two");
-  if (out.options.scratch_folder.empty() && !job.outputs.empty()) {
-    const fs::path folder = job.outputs.front().parent_path();
+  if (out.options.scratch_folder.empty() && !out.outputs.empty()) {
+    const fs::path folder = out.outputs.front().parent_path();
     out.options.scratch_folder = folder.empty() ? "." : folder.string();
   }
   if (out.png_channel.empty()) out.png_channel = out.options.dose > 0 ? "SE.shot" : "SE";
@@ -134,12 +134,13 @@ void check_checkpoint(const SimulateJob& job) {
 }
 
 // What is traced: the specimen, or one of fewer triangles within the tolerance asked for.
-mc::Scene make_scene(const SimulateJob& job, const NoteCallback& tell, const CancelToken* cancel,
-                     SimulateSummary& summary) {
+mc::Scene make_scene(const SimulateJob& job, const SpecimenFacts& facts, const NoteCallback& tell,
+                     const CancelToken* cancel, SimulateSummary& summary) {
   const io::SceneFile& s = job.scene;
   const double tolerance_nm = s.mesh_tolerance_nm.value_or(0);
   const Watch watch{{}, cancel};
-  if (tolerance_nm == 0) return mc::Scene(s.specimen, s.beam, summary.scan, s.physics, {.watch = watch});
+  if (tolerance_nm == 0)
+    return mc::Scene(s.specimen, s.beam, summary.scan, s.physics, {.facts = &facts.bodies, .watch = watch});
   if (tell) tell(fmt::format("leaving out detail below {}", format_length(tolerance_nm)));
   const mc::Specimen simple =
       simplify_specimen(s.specimen, tolerance_nm, s.beam, summary.scan, s.physics,
@@ -287,13 +288,14 @@ void write_all(const SimulateJob& job, const ImageRows& image, SimulateSummary& 
 
 }  // namespace
 
-SimulateSummary run(const SimulateJob& asked, const ProgressCallback& progress,
+SimulateSummary run(SimulateJob asked, const ProgressCallback& progress,
                     const CancelToken* cancel, const WarningCallback& warn,
                     const NoteCallback& tell, const LibraryCallback& making, Team* team) {
   RunRecord record;
   record.start = std::chrono::system_clock::now();
   SimulateJob job;
   SimulateSummary summary;
+  SpecimenFacts facts;
   std::optional<mc::Scene> ready;
   const auto note = [&](std::vector<std::string> warnings) {
     for (std::string& warning : warnings) {
@@ -306,17 +308,19 @@ SimulateSummary run(const SimulateJob& asked, const ProgressCallback& progress,
     check_extras(asked.extras);
     if (team && asked.extras.deposit_cells > 0)
       throw UsageError("--deposit", "each of several processes would see a part of it", "Run it in one process");
-    job = complete(asked);
+    job = complete(std::move(asked));
     if (leads(team)) {   // who follows writes nothing
       check_outputs(job);
       check_checkpoint(job);
     }
-    summary.scan = resolve_scan(job.scene.scan, mc::extent(job.scene.specimen), job.scene.beam);
+    facts.extent = mc::extent(job.scene.specimen);
+    summary.scan = resolve_scan(job.scene.scan, facts.extent, job.scene.beam);
     check_trajectories(job, summary.scan);
     record.inputs = hash_inputs(job.scene.inputs);
-    ready.emplace(make_scene(job, tell, cancel, summary));   // validates the specimen
+    facts.bodies = mc::validate(job.scene.specimen, {{}, cancel});
+    ready.emplace(make_scene(job, facts, tell, cancel, summary));
     summary.scene = ready->summary();
-    note(warn_before(job, summary.scan));
+    note(warn_before(job, facts, summary.scan));
     note(warnings_of(job.scene.specimen, summary.simplification));
     summary.choice = mc::choose_method(*ready, job.options, job.scene.method, {job.extras.deposit_cells > 0});
     job.options.method = summary.choice.method;

@@ -23,6 +23,8 @@ struct SceneOptions {
   /// from all vacuum open to the outside than the ranges at beam energy in all materials together.
   /// It changes no detector's mean or variance.
   bool leave_out_unreachable = true;
+  /// What `validate` has said of the specimen; null: it is asked.
+  const std::vector<BodyFacts>* facts = nullptr;
   Watch watch;
 };
 

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <vector>
+
+#include "surf/mc/specimen.h"
+
+namespace surf::workflow {
+
+/// What a job has to know of its specimen's shapes besides tracing them.
+struct SpecimenFacts {
+  Box extent;                          ///< mc::extent
+  std::vector<mc::BodyFacts> bodies;   ///< mc::validate
+};
+
+}  // namespace surf::workflow
