@@ -10,6 +10,7 @@
 #include "simulate_options.h"
 #include "simulate_summary.h"
 #include "surf/workflow/simulate_job.h"
+#include "surf/workflow/specimen_reader.h"
 #include "terminal.h"
 
 namespace surf::cli {
@@ -20,7 +21,10 @@ constexpr int exit_interrupted = 130;
 
 int simulate(const SimulateOptions& options, const std::string& command_line) {
   workflow::SimulateJob job;
-  workflow::together(team(), [&] { job = make_simulate_job(options, command_line); });
+  workflow::together(team(), [&] {
+    job = make_simulate_job(options, command_line,
+                            workflow::specimen_reader(workflow::node_of(team())));
+  });
   const int threads = job.options.threads;
   workflow::SimulateSummary summary;
   {

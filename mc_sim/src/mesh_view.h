@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "surf/core/vec3.h"
+#include "surf/mc/node_memory.h"
 #include "surf/mesh/triangle_mesh.h"
 
 namespace surf::mc {
@@ -38,5 +39,9 @@ struct SceneMesh {
 
 /// `shell_of` may be empty where nobody asks for it.
 SceneMesh make_scene_mesh(TriangleMesh mesh, std::vector<std::uint32_t> shell_of);
+
+/// The same in memory that the processes of a machine share: called by all, what is given is asked of
+/// the first alone.
+SceneMesh share_scene_mesh(NodeMemory& node, TriangleMesh mesh, std::vector<std::uint32_t> shell_of);
 
 }  // namespace surf::mc

@@ -134,18 +134,25 @@ void check_checkpoint(const SimulateJob& job) {
 }
 
 // What is traced: the specimen, or one of fewer triangles within the tolerance asked for.
-mc::Scene make_scene(const SimulateJob& job, const SpecimenFacts& facts, const NoteCallback& tell,
-                     const CancelToken* cancel, SimulateSummary& summary) {
+mc::Scene make_scene(const SimulateJob& job, const SpecimenFacts& facts, mc::NodeMemory* node,
+                     const NoteCallback& tell, const CancelToken* cancel, SimulateSummary& summary) {
   const io::SceneFile& s = job.scene;
   const double tolerance_nm = s.mesh_tolerance_nm.value_or(0);
   const Watch watch{{}, cancel};
   if (tolerance_nm == 0)
-    return mc::Scene(s.specimen, s.beam, summary.scan, s.physics, {.facts = &facts.bodies, .watch = watch});
+    return mc::Scene(s.specimen, s.beam, summary.scan, s.physics,
+                     {.facts = &facts.bodies, .node = node, .watch = watch});
   if (tell) tell(fmt::format("leaving out detail below {}", format_length(tolerance_nm)));
-  const mc::Specimen simple =
-      simplify_specimen(s.specimen, tolerance_nm, s.beam, summary.scan, s.physics,
-                        job.options.threads, summary.simplification, watch);
-  return mc::Scene(simple, s.beam, summary.scan, s.physics, {.watch = watch});
+  mc::Specimen simple;
+  std::vector<mc::BodyFacts> of_simple;
+  once_per_node(node, [&] {
+    simple = simplify_specimen(s.specimen, tolerance_nm, s.beam, summary.scan, s.physics,
+                               job.options.threads, summary.simplification, watch);
+    of_simple = mc::validate(simple, watch);
+    return std::string();
+  });
+  if (node && !node->is_first()) simple = s.specimen;
+  return mc::Scene(simple, s.beam, summary.scan, s.physics, {.facts = &of_simple, .node = node, .watch = watch});
 }
 
 // Only where it is much: where the results of all pixels go until they are written.
@@ -313,12 +320,18 @@ SimulateSummary run(SimulateJob asked, const ProgressCallback& progress,
       check_outputs(job);
       check_checkpoint(job);
     }
-    facts.extent = mc::extent(job.scene.specimen);
+    if (leads(team)) record.inputs = hash_inputs(job.scene.inputs);
+  });
+  mc::NodeMemory* const node = node_of(team);
+  together(team, [&] {
+    facts = facts_of(job.scene.specimen, node, {{}, cancel});
     summary.scan = resolve_scan(job.scene.scan, facts.extent, job.scene.beam);
     check_trajectories(job, summary.scan);
-    record.inputs = hash_inputs(job.scene.inputs);
-    facts.bodies = mc::validate(job.scene.specimen, {{}, cancel});
-    ready.emplace(make_scene(job, facts, tell, cancel, summary));
+    if (node && !node->is_first())
+      for (mc::Body& body : job.scene.specimen.bodies) body.mesh = {};   // the first one's are traced
+    ready.emplace(make_scene(job, facts, node, tell, cancel, summary));
+  });
+  together(team, [&] {
     summary.scene = ready->summary();
     note(warn_before(job, facts, summary.scan));
     note(warnings_of(job.scene.specimen, summary.simplification));
@@ -338,7 +351,7 @@ SimulateSummary run(SimulateJob asked, const ProgressCallback& progress,
     summary.choice = mc::choose_method(scene, job.options, s.method, {job.extras.deposit_cells > 0});
     job.options.method = summary.choice.method;
   }
-  const auto settings = provenance(job, summary.scan, record.inputs);
+  const auto settings = leads(team) ? provenance(job, summary.scan, record.inputs) : std::map<std::string, std::string>();
 
   std::optional<Deposits> deposits;
   mc::ObserverOfThread observers;

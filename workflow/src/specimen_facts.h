@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "surf/mc/node_memory.h"
 #include "surf/mc/specimen.h"
 
 namespace surf::workflow {
@@ -12,5 +13,8 @@ struct SpecimenFacts {
   Box extent;                          ///< mc::extent
   std::vector<mc::BodyFacts> bodies;   ///< mc::validate
 };
+
+/// Validates the specimen; on a machine of several processes the first one does, for all.
+SpecimenFacts facts_of(const mc::Specimen& specimen, mc::NodeMemory* node, const Watch& watch);
 
 }  // namespace surf::workflow
