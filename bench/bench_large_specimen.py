@@ -64,8 +64,8 @@ def shares(program, mesh, ranks, folder):
     checkpoint = folder / "ranks.checkpoint"
     checkpoint.unlink(missing_ok=True)
     process = subprocess.Popen(["mpirun", "--allow-run-as-root", "--oversubscribe", "-n", str(ranks), program, "simulate", mesh,
-                                "--material", "Si", "--method", "direct", "--size", "24x24", "--region=100,100,160,160",
-                                "--electrons", "2000000", "--threads", "1", "-q", "--checkpoint", checkpoint,
+                                "--material", "Si", "--method", "direct", "--size", "400x400", "--region=100,100,160,160",
+                                "--electrons", "240", "--threads", "1", "-q", "--checkpoint", checkpoint,
                                 "--checkpoint-every", "0.2s", "-o", folder / "ranks.exr"],
                                env={**os.environ, name: value}, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
     while process.poll() is None and not checkpoint.exists():

@@ -173,7 +173,7 @@ def write_field(path, side):
 
 def shares(folder, words, ranks):
     """Of memory (proportional: what n hold counts for each as 1/n), bytes by rank, while it simulates."""
-    process = start(folder, ranks, [*words, "--electrons", "2000000", "--checkpoint-every", "0.2s", "-o", f"long_{ranks}.exr"])
+    process = start(folder, ranks, [*words, "--size", "400x400", "--electrons", "240", "--checkpoint-every", "0.2s", "-o", f"long_{ranks}.exr"])
     limit = time.monotonic() + 200
     while process.poll() is None and time.monotonic() < limit and not list(folder.glob(f"long_{ranks}.*.checkpoint")):
         time.sleep(0.05)
@@ -188,13 +188,15 @@ def shares(folder, words, ranks):
 
 
 def memory(folder):
-    write_field(folder / "field.gsf", 500)
-    code, _, err = run(folder, 0, ["mesh", "field.gsf", "--solid", "--plain", "-q", "-o", "solid.ply"])
-    expect(code == 0, err)
-    words = ["simulate", "solid.ply", "--material", "Si", "--method", "direct", "--size", "24x24",
-             "--region=100,100,160,160", "--threads", "1"]
-    for tolerance in ("0", "0.2nm"):
-        of_job = [*words, "--electrons", "8", "--mesh-tolerance", tolerance]
+    for name, side in (("small", 60), ("solid", 500)):
+        write_field(folder / "field.gsf", side)
+        code, _, err = run(folder, 0, ["mesh", "field.gsf", "--solid", "--plain", "-q", "-o", f"{name}.ply"])
+        expect(code == 0, err)
+    words = ["simulate", "solid.ply", "--material", "Si", "--method", "direct", "--region=100,100,160,160",
+             "--threads", "1"]
+    for name, tolerance in (("solid", "0"), ("small", "0.2nm")):
+        of_job = ["simulate", f"{name}.ply", "--material", "Si", "--method", "direct", "--threads", "1", "--size", "24x24",
+                  "--electrons", "8", "--mesh-tolerance", tolerance]
         for ranks in (0, 3):
             code, _, err = run(folder, ranks, [*of_job, "-o", f"{ranks}.exr"])
             expect(code == 0, ranks, "ranks:", err)

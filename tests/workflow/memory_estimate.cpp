@@ -65,7 +65,7 @@ TEST_F(MemoryEstimateTest, RefusesWhatDoesNotFit) {
   EXPECT_THAT([] { require_memory("large.ply", {100'000'000}); },
               testing::ThrowsMessage<InvalidInput>(
                   testing::AllOf(HasSubstr("large.ply"), HasSubstr("100 million triangles"),
-                                 HasSubstr("1.0 GB are there by SEMSURF_MEMORY"))));
+                                 HasSubstr("1.00 GB are there by SEMSURF_MEMORY"))));
   setenv("SEMSURF_MEMORY", "off", 1);
   EXPECT_NO_THROW(require_memory("large.ply", {1'000'000'000}));
   for (const char* bad : {"", "much", "-1GB", "0", "5 apples", "1e300GB"}) {

@@ -25,9 +25,9 @@ namespace fs = std::filesystem;
 constexpr double per_body = 58;           // as read 24, as traced 24 + 6 in single precision, shells 4
 constexpr double per_field = 46;          // a grid is smaller
 constexpr double per_soup = 165;          // while STL is read: the file, corners, who is who
-constexpr double per_built_tree = 106;    // Embree's while it is built; half of it stays
+constexpr double per_built_tree = 100;    // Embree's while it is built; half of it stays
 constexpr double per_faces = 48, per_faces_and_thread = 4;   // distance bounds, while they are made
-constexpr std::size_t program_bytes = std::size_t{90} << 20;
+constexpr std::size_t program_bytes = std::size_t{180} << 20;
 constexpr double share_to_take = 0.97;    // of what there is
 
 constexpr std::size_t no_limit = std::numeric_limits<std::size_t>::max();
@@ -137,7 +137,7 @@ std::optional<TriangleCount> triangles_in(const fs::path& path) {
   std::string extension = path.extension().string();
   std::transform(extension.begin(), extension.end(), extension.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  if (extension == ".obj" || extension == ".off") return about(45, TriangleSource::mesh);
+  if (extension == ".obj" || extension == ".off") return about(38, TriangleSource::mesh);
   if (extension == ".vtp" || extension == ".vtm") return about(30, TriangleSource::mesh);
   if (extension == ".3mf") return about(8, TriangleSource::mesh);   // packed
   return about(18, TriangleSource::mesh);   // glTF
@@ -175,7 +175,7 @@ void require_memory(const std::string& subject, const TriangleCount& count, cons
   if (there.bytes == no_limit || needed <= share_to_take * static_cast<double>(there.bytes)) return;
   throw InvalidInput(
       subject,
-      fmt::format("{:.3g} million triangles need about {:.1f} GB of memory{}, and {:.1f} GB are {}",
+      fmt::format("{:.3g} million triangles need about {:.2f} GB of memory{}, and {:.2f} GB are {}",
                   static_cast<double>(count.triangles) / 1e6, needed / 1e9,
                   use.processes > 1 ? fmt::format(" for {} processes", use.processes) : "",
                   static_cast<double>(there.bytes) / 1e9, there.limit),
