@@ -173,7 +173,7 @@ def write_field(path, side):
 
 def shares(folder, words, ranks):
     """Of memory (proportional: what n hold counts for each as 1/n), bytes by rank, while it simulates."""
-    process = start(folder, ranks, [*words, "--size", "400x400", "--electrons", "240", "--checkpoint-every", "0.2s", "-o", f"long_{ranks}.exr"])
+    process = start(folder, ranks if ranks > 1 else 0, [*words, "--size", "400x400", "--electrons", "240", "--checkpoint-every", "0.2s", "-o", f"long_{ranks}.exr"])
     limit = time.monotonic() + 200
     while process.poll() is None and time.monotonic() < limit and not list(folder.glob(f"long_{ranks}.*.checkpoint")):
         time.sleep(0.05)
