@@ -19,6 +19,7 @@
 #include "surf/core/error.h"
 #include "surf/core/units.h"
 #include "surf/workflow/chain_chart_job.h"
+#include "surf/workflow/specimen_reader.h"
 #include "terminal.h"
 
 namespace surf::cli {
@@ -69,7 +70,7 @@ workflow::ChartJob make_job(const Options& o, const std::string& command_line) {
   job.folder = *o.output;
   job.command_line = command_line;
   std::vector<std::string> notes;
-  job.scene = make_scene(o.scene, notes);
+  job.scene = make_scene(o.scene, notes, workflow::specimen_reader());
   if (!o.quiet)
     for (const std::string& note : notes) print_note(note);
   return job;

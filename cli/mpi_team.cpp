@@ -16,15 +16,18 @@
 #include <mpi.h>
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <condition_variable>
 #include <cstdint>
+#include <cstdio>
 #include <cstring>
 #include <ctime>
 #include <deque>
 #include <exception>
 #include <list>
 #include <mutex>
+#include <new>
 #include <optional>
 #include <sstream>
 #include <thread>
@@ -98,6 +101,93 @@ std::string host() {
   return {name, static_cast<std::size_t>(length)};
 }
 
+// The processes of one machine: memory from MPI's windows, or a copy for each where they cannot be had.
+class MpiNode : public mc::NodeMemory {
+ public:
+  MpiNode() {
+    MPI_Comm_split_type(MPI_COMM_WORLD, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &comm_);
+    MPI_Comm_set_errhandler(comm_, MPI_ERRORS_RETURN);
+    MPI_Comm_rank(comm_, &rank_);
+    MPI_Comm_size(comm_, &size_);
+  }
+  // By all at once.
+  void leave() {
+    for (Window& w : windows_) MPI_Win_free(&w.window);
+    MPI_Comm_free(&comm_);
+  }
+
+  bool is_first() const override { return rank_ == 0; }
+  int processes() const override { return size_; }
+
+  void tell(std::string& bytes) override {
+    std::uint64_t length = bytes.size();
+    MPI_Bcast(&length, 1, MPI_UINT64_T, 0, comm_);
+    bytes.resize(length);
+    broadcast(bytes.data(), length);
+  }
+
+  std::shared_ptr<std::byte> allocate(std::size_t bytes) override {
+    free_unused();
+    Window w;
+    void* mine = nullptr;
+    const auto size = static_cast<MPI_Aint>(is_first() ? bytes + alignment : 0);
+    int good = MPI_Win_allocate_shared(size, 1, MPI_INFO_NULL, comm_, &mine, &w.window) == MPI_SUCCESS;
+    const bool made = good;
+    MPI_Allreduce(MPI_IN_PLACE, &good, 1, MPI_INT, MPI_MIN, comm_);
+    if (!good) {
+      if (made) MPI_Win_free(&w.window);
+      if (is_first() && !copied_)
+        std::fprintf(stderr, "semsurf: note: no memory to share (is /dev/shm full?): each process has its own copy\n");
+      copied_ = true;
+      return {static_cast<std::byte*>(::operator new(bytes, std::align_val_t{alignment})),
+              [](std::byte* p) { ::operator delete(p, std::align_val_t{alignment}); }};
+    }
+    MPI_Aint whole = 0;
+    int unit = 1;
+    MPI_Win_shared_query(w.window, 0, &whole, &unit, &mine);
+    w.held = std::make_shared<std::atomic<bool>>(true);
+    const auto at = (reinterpret_cast<std::uintptr_t>(mine) + alignment - 1) / alignment * alignment;
+    windows_.push_back(w);
+    return {reinterpret_cast<std::byte*>(at), [held = w.held](std::byte*) { *held = false; }};
+  }
+
+  void share(std::byte* memory, std::size_t bytes) override {
+    if (copied_) return broadcast(reinterpret_cast<char*>(memory), bytes);
+    std::atomic_thread_fence(std::memory_order_seq_cst);
+    MPI_Barrier(comm_);
+    std::atomic_thread_fence(std::memory_order_seq_cst);
+  }
+
+ private:
+  static constexpr std::size_t alignment = 64;
+  struct Window {
+    MPI_Win window = MPI_WIN_NULL;
+    std::shared_ptr<std::atomic<bool>> held;
+  };
+
+  void broadcast(char* bytes, std::size_t length) {
+    for (std::size_t from = 0; from < length; from += largest_part)
+      MPI_Bcast(bytes + from, static_cast<int>(std::min(largest_part, length - from)), MPI_CHAR, 0, comm_);
+  }
+
+  // Windows are freed by all together: those that nobody holds any more.
+  void free_unused() {
+    std::vector<Window> kept;
+    for (Window& w : windows_) {
+      int held = *w.held;
+      MPI_Allreduce(MPI_IN_PLACE, &held, 1, MPI_INT, MPI_MAX, comm_);
+      if (held) kept.push_back(w);
+      else MPI_Win_free(&w.window);
+    }
+    windows_ = std::move(kept);
+  }
+
+  MPI_Comm comm_ = MPI_COMM_NULL;
+  int rank_ = 0, size_ = 1;
+  bool copied_ = false;   // the same for all
+  std::vector<Window> windows_;
+};
+
 class MpiTeam : public workflow::Team {
  public:
   MpiTeam() {
@@ -108,10 +198,12 @@ class MpiTeam : public workflow::Team {
     members_.resize(static_cast<std::size_t>(size_));
     for (int r = 0; r < size_; ++r) members_[static_cast<std::size_t>(r)].rank = r;
     own().host = host();
+    node_.emplace();
   }
 
   ~MpiTeam() override {
     if (deaf_) MPI_Abort(MPI_COMM_WORLD, 130);   // who does not answer would be waited for
+    node_->leave();
     await([](MPI_Request* r) { MPI_Ibarrier(MPI_COMM_WORLD, r); });   // more quietly than MPI_Finalize
     MPI_Finalize();
   }
@@ -119,6 +211,7 @@ class MpiTeam : public workflow::Team {
   int rank() const override { return rank_; }
   int size() const override { return size_; }
   std::vector<workflow::TeamMember> members() const override { return members_; }
+  mc::NodeMemory* node() override { return node_->processes() > 1 ? &*node_ : nullptr; }
 
   void broadcast(std::string& bytes) override {
     if (deaf_) return;
@@ -422,6 +515,7 @@ class MpiTeam : public workflow::Team {
   std::list<Sending> sending_;   // their places stay as they are
   int rank_ = 0, size_ = 1;
   bool deaf_ = false;
+  std::optional<MpiNode> node_;
   std::vector<workflow::TeamMember> members_;
 };
 

@@ -99,10 +99,10 @@ HeightField read_height_field(const fs::path& path, const SceneOptions& options,
 
 // All bodies of a mesh file; materials that its bodies name and semsurf knows are taken as such.
 void add_mesh_bodies(const std::string& input, std::optional<double> unit_nm,
-                     const std::string& fallback, io::SceneFile& scene,
+                     const std::string& fallback, const io::BodyReader& read, io::SceneFile& scene,
                      std::vector<std::string>& notes) {
   std::vector<io::MeshBody> bodies =
-      io::read_mesh_bodies(input, unit_nm, {fallback, {}, "--material"}, scene.materials);
+      read(input, unit_nm, {fallback, {}, "--material"}, scene.materials);
   for (io::MeshBody& body : bodies) {
     const std::string name = bodies.size() == 1 ? input : input + ", " + body.name;
     if (body.is_default && !body.file_material.empty())
@@ -113,7 +113,8 @@ void add_mesh_bodies(const std::string& input, std::optional<double> unit_nm,
   }
 }
 
-io::SceneFile scene_from_shapes(const SceneOptions& options, std::vector<std::string>& notes) {
+io::SceneFile scene_from_shapes(const SceneOptions& options, const io::BodyReader& read,
+                                std::vector<std::string>& notes) {
   io::SceneFile scene;
   for (const std::string& file : options.materials) {
     scene.materials.read(file, scene.notes);
@@ -136,7 +137,7 @@ io::SceneFile scene_from_shapes(const SceneOptions& options, std::vector<std::st
           material_index(scene, material, "--material"), Edge::mirror};
       scene.inputs.push_back(path);
     } else {
-      add_mesh_bodies(input, unit_nm, material, scene, notes);
+      add_mesh_bodies(input, unit_nm, material, read, scene, notes);
       for (auto& file : io::mesh_input_files(path)) scene.inputs.push_back(std::move(file));
     }
   }
@@ -150,7 +151,7 @@ io::SceneFile scene_from_shapes(const SceneOptions& options, std::vector<std::st
   return scene;
 }
 
-io::SceneFile scene_from_file(const SceneOptions& options) {
+io::SceneFile scene_from_file(const SceneOptions& options, const io::BodyReader& read) {
   const auto refuse = [](const std::optional<std::string>& value, const char* option) {
     if (value)
       throw UsageError(option, "a scene file says this for each of its parts",
@@ -162,7 +163,7 @@ io::SceneFile scene_from_file(const SceneOptions& options) {
   refuse(options.z_unit, "--z-unit");
   refuse(options.height_channel, "--height-channel");
   return io::read_scene(options.inputs.front(),
-                        {options.materials.begin(), options.materials.end()});
+                        {options.materials.begin(), options.materials.end()}, read);
 }
 
 void apply_specimen(const SceneOptions& options, io::SceneFile& scene) {
@@ -234,14 +235,15 @@ void apply_scan(const SceneOptions& options, io::ScanRequest& scan) {
 
 }  // namespace
 
-io::SceneFile make_scene(const SceneOptions& options, std::vector<std::string>& notes) {
+io::SceneFile make_scene(const SceneOptions& options, std::vector<std::string>& notes,
+                         const io::BodyReader& read) {
   if (options.inputs.empty())
     throw UsageError("simulate", "no specimen is given",
                      "Give a mesh, a height field or a scene file, as in 'semsurf simulate "
                      "cube.stl -o cube.exr'");
   const bool from_file = options.inputs.size() == 1 && io::is_scene_file(options.inputs.front());
   io::SceneFile scene =
-      from_file ? scene_from_file(options) : scene_from_shapes(options, notes);
+      from_file ? scene_from_file(options, read) : scene_from_shapes(options, read, notes);
   notes.insert(notes.end(), scene.notes.begin(), scene.notes.end());
   apply_specimen(options, scene);
   apply_beam(options, scene.beam);

@@ -22,7 +22,8 @@ struct SceneOptions {
 };
 
 /// A scene file with the command line's overrides, or a scene made of meshes and one height field.
-/// Assumptions that the user may want to know are added to `notes`.
-io::SceneFile make_scene(const SceneOptions& options, std::vector<std::string>& notes);
+/// Assumptions that the user may want to know are added to `notes`. Meshes are read by `read`.
+io::SceneFile make_scene(const SceneOptions& options, std::vector<std::string>& notes,
+                         const io::BodyReader& read);
 
 }  // namespace surf::cli

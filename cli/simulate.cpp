@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <memory>
+#include <utility>
 
 #include "commands.h"
 #include "dry_run_summary.h"
@@ -11,6 +12,7 @@
 #include "simulate_summary.h"
 #include "surf/workflow/dry_run.h"
 #include "surf/workflow/simulate_job.h"
+#include "surf/workflow/specimen_reader.h"
 #include "terminal.h"
 
 namespace surf::cli {
@@ -45,14 +47,18 @@ int try_out(const SimulateOptions& options, const std::string& command_line) {
 int simulate(const SimulateOptions& options, const std::string& command_line) {
   if (options.dry_run) return try_out(options, command_line);
   workflow::SimulateJob job;
-  workflow::together(team(), [&] { job = make_simulate_job(options, command_line); });
+  workflow::together(team(), [&] {
+    job = make_simulate_job(options, command_line,
+                            workflow::specimen_reader(workflow::node_of(team())));
+  });
+  const int threads = job.options.threads;
   workflow::SimulateSummary summary;
   {
     InterruptGuard interrupts;
     ProgressBar bar(!options.quiet);
     const char* things = job.scene.accuracy || job.seconds > 0 ? "pixels" : "primaries";
     summary = workflow::run(
-        job, [&](double done, double total) { bar.show(done, total, things); }, interrupts.token(),
+        std::move(job), [&](double done, double total) { bar.show(done, total, things); }, interrupts.token(),
         [&](const std::string& warning) {
           bar.clear();
           print_warning(warning);
@@ -64,7 +70,7 @@ int simulate(const SimulateOptions& options, const std::string& command_line) {
         [&](double done, double total) { bar.show(done, total, "cascades"); }, team());
   }
   if (!workflow::leads(team())) return 0;
-  if (!options.quiet) print_summary(job, summary);
+  if (!options.quiet) print_summary(threads, summary);
   if (!summary.result.complete) return exit_interrupted;
   return summary.statistics.missed > 0 ? exit_untrustworthy : 0;
 }

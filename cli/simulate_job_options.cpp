@@ -103,7 +103,8 @@ std::optional<double> parse_tolerance(const SimulateOptions& o) {
 
 }  // namespace
 
-workflow::SimulateJob make_simulate_job(const SimulateOptions& o, const std::string& command_line) {
+workflow::SimulateJob make_simulate_job(const SimulateOptions& o, const std::string& command_line,
+                                       const io::BodyReader& read) {
   workflow::SimulateJob job;
   // Numbers first: a bad one should not wait for a large mesh to be read.
   const std::int64_t electrons =
@@ -119,7 +120,7 @@ workflow::SimulateJob make_simulate_job(const SimulateOptions& o, const std::str
   std::vector<std::string> notes;
   if (o.outputs.empty() && !o.scene.inputs.empty())
     throw UsageError("--output", "no output file is given", "Add -o image.exr");
-  job.scene = make_scene(o.scene, notes);
+  job.scene = make_scene(o.scene, notes, read);
   apply_budget(o, electrons, job);
   job.options.electrons = job.scene.electrons.value_or(job.options.electrons);
   if (method) job.scene.method = *method;

@@ -10,6 +10,7 @@ namespace surf::cli {
 
 /// What the options of `simulate` ask for. Notes go to the user unless they are quiet. Throws UsageError, FileError and
 /// InvalidInput.
-workflow::SimulateJob make_simulate_job(const SimulateOptions& options, const std::string& command_line);
+workflow::SimulateJob make_simulate_job(const SimulateOptions& options, const std::string& command_line,
+                                       const io::BodyReader& read);
 
 }  // namespace surf::cli

@@ -91,7 +91,7 @@ void print_electrons(const workflow::SimulateSummary& s) {
                                r.missed, r.seen));
 }
 
-void print_speed(const workflow::SimulateJob& job, const workflow::SimulateSummary& s) {
+void print_speed(int threads, const workflow::SimulateSummary& s) {
   const double recalled = double(s.result.recalled);
   const double primaries = double(s.result.balance.incident) - recalled;
   const double seconds = s.result.seconds;
@@ -100,7 +100,7 @@ void print_speed(const workflow::SimulateJob& job, const workflow::SimulateSumma
                          recalled > 0 ? format_count(recalled) + " done before, " : "",
                          format_count(primaries), seconds,
                          format_count(seconds > 0 ? primaries / seconds : 0),
-                         resolve_threads(job.options.threads)));
+                         resolve_threads(threads)));
 }
 
 void print_simplified(const workflow::Simplification& s) {
@@ -115,14 +115,14 @@ void print_simplified(const workflow::Simplification& s) {
 
 }  // namespace
 
-void print_summary(const workflow::SimulateJob& job, const workflow::SimulateSummary& s) {
+void print_summary(int threads, const workflow::SimulateSummary& s) {
   print_image(s);
   print_yields(s);
   print_line("method", fmt::format("{}: {}", mc::name(s.choice.method), s.choice.reason));
   print_library(s);
   print_models(s);
   print_electrons(s);
-  print_speed(job, s);
+  print_speed(threads, s);
   print_simplified(s.simplification);
   if (s.scene.triangles_left_out > 0)
     print_line("triangles", fmt::format("{} that electrons can reach; {} left out",

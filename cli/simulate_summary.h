@@ -5,7 +5,7 @@
 
 namespace surf::cli {
 
-/// What was simulated, how, and what came out, for people.
-void print_summary(const workflow::SimulateJob& job, const workflow::SimulateSummary& summary);
+/// What was simulated, how, and what came out, for people. `threads`: as asked for, 0 for all.
+void print_summary(int threads, const workflow::SimulateSummary& summary);
 
 }  // namespace surf::cli

@@ -14,6 +14,7 @@
 #include "simulate_job_options.h"
 #include "simulate_options.h"
 #include "surf/core/error.h"
+#include "surf/workflow/specimen_reader.h"
 #include "terminal.h"
 
 namespace surf::cli {
@@ -181,7 +182,10 @@ workflow::SweepJob make_sweep(const Options& o, const std::string& command_line)
     for (std::size_t a = 0; a < axes.size(); ++a) set(options, axes[a].name, run.values[a]);
     for (const std::string& format : formats)
       options.outputs.push_back((job.folder / (file_name(axes, run.values) + "." + format)).string());
-    run.make = [options, command_line] { return make_simulate_job(options, command_line); };
+    // Each process looks at every specimen, so each reads them; they are shared when they are traced.
+    run.make = [options, command_line] {
+      return make_simulate_job(options, command_line, workflow::specimen_reader());
+    };
     job.runs.push_back(std::move(run));
   }
   // A mistake in the last value should not wait for all the others, unless they are very many.

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <fstream>
 #include <string_view>
 #include <utility>
 
@@ -15,6 +16,21 @@
 #include "vtp_format.h"
 
 namespace surf::io {
+namespace {
+
+std::string file_head(const std::filesystem::path& path, std::size_t bytes) {
+  std::ifstream in(path, std::ios::binary);
+  std::string head(bytes, '\0');
+  in.read(head.data(), static_cast<std::streamsize>(bytes));
+  head.resize(static_cast<std::size_t>(in.gcount()));
+  return head;
+}
+
+bool may_name_others(MeshFormat format) {
+  return format == MeshFormat::gltf || format == MeshFormat::vtm || format == MeshFormat::unknown;
+}
+
+}  // namespace
 
 std::vector<NamedMesh> read_meshes(const std::filesystem::path& path,
                                    std::optional<double> unit_nm) {
@@ -41,7 +57,10 @@ TriangleMesh read_mesh(const std::filesystem::path& path, std::optional<double> 
 
 std::vector<std::filesystem::path> mesh_input_files(const std::filesystem::path& path) {
   std::vector<std::filesystem::path> files{path};
-  const std::string content = read_file(path);
+  // Only files that name others are read whole, and few of those are large.
+  std::string content = file_head(path, 65536);
+  if (!may_name_others(mesh_format_of(path, content))) return files;
+  content = read_file(path);
   const MeshFormat format = mesh_format_of(path, content);
   if (format == MeshFormat::gltf) {
     for (auto& buffer : gltf_buffer_files(path, content)) files.push_back(std::move(buffer));

@@ -21,14 +21,14 @@ constexpr double interface_nm = 1e-3;
 
 struct Context {
   RTCIntersectContext embree;   // first: Embree hands its address back
-  const TriangleMesh* mesh;
+  const MeshView* mesh;
   Vec3 origin;
   Vec3 direction;
   EmbreeScene::Accept accept;
   void* user;
 };
 
-Vec3 area_normal(const TriangleMesh& mesh, std::uint32_t triangle) {
+Vec3 area_normal(const MeshView& mesh, std::uint32_t triangle) {
   const Triangle& t = mesh.triangles[triangle];
   const Vec3& a = mesh.vertices_nm[t[0]];
   return cross(mesh.vertices_nm[t[1]] - a, mesh.vertices_nm[t[2]] - a);
@@ -49,7 +49,7 @@ void filter(const RTCFilterFunctionNArguments* args) {
 }
 
 // In double, on the source triangle, with its barycentric coordinates kept inside.
-EmbreeScene::Hit hit_of(const TriangleMesh& mesh, std::uint32_t triangle, const Vec3& origin,
+EmbreeScene::Hit hit_of(const MeshView& mesh, std::uint32_t triangle, const Vec3& origin,
                         const Vec3& direction) {
   const Triangle& t = mesh.triangles[triangle];
   const Vec3& a = mesh.vertices_nm[t[0]];
@@ -80,7 +80,8 @@ EmbreeScene::Hit hit_of(const TriangleMesh& mesh, std::uint32_t triangle, const 
 struct EmbreeScene::Impl {
   RTCDevice device = nullptr;
   RTCScene scene = nullptr;
-  TriangleMesh mesh;
+  SceneMesh all;   // outlives the scene, which reads it
+  MeshView mesh;
   Vec3 center;
   double start_back = interface_nm;
   std::atomic<std::ptrdiff_t> bytes{0};
@@ -91,10 +92,15 @@ struct EmbreeScene::Impl {
   }
 };
 
-EmbreeScene::EmbreeScene(const TriangleMesh& mesh, const Watch& watch) : impl_(std::make_unique<Impl>()) {
-  impl_->mesh = mesh;
+EmbreeScene::EmbreeScene(TriangleMesh mesh, const Watch& watch)
+    : EmbreeScene(make_scene_mesh(std::move(mesh), {}), watch) {}
+
+EmbreeScene::EmbreeScene(SceneMesh all, const Watch& watch) : impl_(std::make_unique<Impl>()) {
+  impl_->all = std::move(all);
+  impl_->mesh = impl_->all.mesh;
+  const MeshView& mesh = impl_->mesh;
   const Box box = bounds(mesh);
-  impl_->center = box.center_nm();
+  impl_->center = impl_->all.center;
   const Vec3 half = box.size_nm() * 0.5;
   const double largest = std::max({half.x, half.y, half.z});
   impl_->start_back =
@@ -114,19 +120,11 @@ EmbreeScene::EmbreeScene(const TriangleMesh& mesh, const Watch& watch) : impl_(s
                    static_cast<RTCSceneFlags>(RTC_SCENE_FLAG_ROBUST |
                                               RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION));
   RTCGeometry geometry = rtcNewGeometry(impl_->device, RTC_GEOMETRY_TYPE_TRIANGLE);
-  auto* vertices = static_cast<float*>(
-      rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
-                              3 * sizeof(float), mesh.vertices_nm.size()));
-  for (const Vec3& v : mesh.vertices_nm) {
-    const Vec3 local = v - impl_->center;
-    *vertices++ = static_cast<float>(local.x);
-    *vertices++ = static_cast<float>(local.y);
-    *vertices++ = static_cast<float>(local.z);
-  }
-  auto* indices = static_cast<std::uint32_t*>(
-      rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
-                              3 * sizeof(std::uint32_t), mesh.triangles.size()));
-  for (const Triangle& t : mesh.triangles) indices = std::copy(t.begin(), t.end(), indices);
+  rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
+                             impl_->all.local.data(), 0, 3 * sizeof(float),
+                             mesh.vertices_nm.size());
+  rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
+                             mesh.triangles.data(), 0, sizeof(Triangle), mesh.triangles.size());
   rtcCommitGeometry(geometry);
   rtcAttachGeometry(impl_->scene, geometry);
   rtcReleaseGeometry(geometry);
@@ -153,8 +151,8 @@ double EmbreeScene::tolerance_nm() const { return impl_->start_back; }
 
 std::size_t EmbreeScene::memory_bytes() const {
   return static_cast<std::size_t>(impl_->bytes.load()) +
-         impl_->mesh.vertices_nm.size() * sizeof(Vec3) +
-         impl_->mesh.triangles.size() * sizeof(Triangle);
+         impl_->mesh.vertices_nm.size_bytes() + impl_->mesh.triangles.size_bytes() +
+         impl_->all.local.size_bytes();
 }
 
 bool EmbreeScene::nearest(const Vec3& origin, const Vec3& direction, double length, Accept accept,
@@ -193,7 +191,7 @@ bool EmbreeScene::nearest(const Vec3& origin, const Vec3& direction, double leng
 bool EmbreeScene::nearest_of(std::span<const std::uint32_t> faces, const Vec3& origin,
                              const Vec3& direction, double length, Accept accept, void* user,
                              Hit& hit) const {
-  const TriangleMesh& mesh = impl_->mesh;
+  const MeshView& mesh = impl_->mesh;
   double nearest = length;
   bool found = false;
   for (const std::uint32_t face : faces) {
@@ -245,7 +243,7 @@ bool EmbreeScene::within(const Vec3& point, double radius, std::size_t most,
   return search.out.size() <= search.most;
 }
 
-const TriangleMesh& EmbreeScene::mesh() const { return impl_->mesh; }
+const MeshView& EmbreeScene::mesh() const { return impl_->mesh; }
 
 namespace {
 
@@ -272,8 +270,8 @@ Vec3 nearest_point(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
 }
 
 struct FlatSearch {
-  const TriangleMesh* mesh;
-  const std::vector<std::uint32_t>* shell_of;
+  const MeshView* mesh;
+  std::span<const std::uint32_t> shell_of;
   Vec3 point, normal;
   double tolerance;
   double radius;
@@ -294,7 +292,7 @@ bool look_at(RTCPointQueryFunctionArguments* args) {
   const auto off = [&](const Vec3& v) {
     return std::fabs(dot(v - search.point, search.normal)) > search.tolerance;
   };
-  const std::uint32_t shell = (*search.shell_of)[args->primID];
+  const std::uint32_t shell = search.shell_of[args->primID];
   const bool plain = search.normal == Vec3{} || off(a) || off(b) || off(c) ||
                      (search.shell >= 0 && search.shell != shell);
   if (!plain) {
@@ -310,11 +308,11 @@ bool look_at(RTCPointQueryFunctionArguments* args) {
 }  // namespace
 
 double EmbreeScene::flat_radius(const Vec3& point, const Vec3& normal, double tolerance,
-                                double most, const std::vector<std::uint32_t>& shell_of) const {
+                                double most, std::span<const std::uint32_t> shell_of) const {
   // Single precision may leave out a triangle at the rim.
   const double slack = 2 * impl_->start_back;
   for (double radius = most;; radius *= 0.5) {
-    FlatSearch search{&impl_->mesh, &shell_of, point, normal, tolerance, radius + slack, -1, 0};
+    FlatSearch search{&impl_->mesh, shell_of, point, normal, tolerance, radius + slack, -1, 0};
     const Vec3 local = point - impl_->center;
     RTCPointQuery query{static_cast<float>(local.x), static_cast<float>(local.y),
                         static_cast<float>(local.z), 0.0f,

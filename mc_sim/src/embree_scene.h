@@ -9,9 +9,9 @@
 #include <string>
 #include <vector>
 
+#include "mesh_view.h"
 #include "surf/core/progress.h"
 #include "surf/core/vec3.h"
-#include "surf/mesh/triangle_mesh.h"
 
 namespace surf::mc {
 
@@ -33,7 +33,8 @@ class EmbreeScene {
   /// normal, never 0; `distance` is to the triangle's plane, in double: negative behind the origin.
   using Accept = bool (*)(void* user, std::uint32_t triangle, double cosine, double distance);
 
-  explicit EmbreeScene(const TriangleMesh& mesh, const Watch& watch = {});   ///< throws Interrupted
+  explicit EmbreeScene(SceneMesh mesh, const Watch& watch = {});   ///< throws Interrupted
+  explicit EmbreeScene(TriangleMesh mesh, const Watch& watch = {});
   ~EmbreeScene();
   EmbreeScene(const EmbreeScene&) = delete;
   EmbreeScene& operator=(const EmbreeScene&) = delete;
@@ -53,13 +54,13 @@ class EmbreeScene {
   bool within(const Vec3& point, double radius, std::size_t most,
               std::vector<std::uint32_t>& out) const;
 
-  const TriangleMesh& mesh() const;
+  const MeshView& mesh() const;
 
   /// The largest radius up to `most` within which all triangles about a point lie in the plane through
   /// it, but for `tolerance`, and belong to one shell; a little smaller where rounding asks for it,
   /// and where very many triangles would have to be looked at. With a zero normal no triangle does.
   double flat_radius(const Vec3& point, const Vec3& normal, double tolerance, double most,
-                     const std::vector<std::uint32_t>& shell_of) const;
+                     std::span<const std::uint32_t> shell_of) const;
 
   /// The largest coordinate of any vertex along a direction.
   double highest_along(const Vec3& direction) const;

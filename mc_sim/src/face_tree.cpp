@@ -23,7 +23,7 @@ float outward(double v, bool up) {
 
 }  // namespace
 
-FaceTree::FaceTree(const TriangleMesh& mesh, const Box& region, int threads, const Watch& watch) : mesh_(mesh) {
+FaceTree::FaceTree(const MeshView& mesh, const Box& region, int threads, const Watch& watch) : mesh_(mesh) {
   origin_ = region.center_nm();
   for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
     const Triangle& t = mesh.triangles[i];

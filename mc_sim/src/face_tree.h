@@ -6,9 +6,9 @@
 #include <cstdint>
 #include <vector>
 
+#include "mesh_view.h"
 #include "surf/core/progress.h"
 #include "surf/core/vec3.h"
-#include "surf/mesh/triangle_mesh.h"
 
 namespace surf::mc {
 
@@ -21,7 +21,7 @@ class FaceTree {
   static constexpr std::uint32_t none = 0xffffffffu;
 
   /// Holds the triangles whose boxes touch `region`. Throws Interrupted.
-  FaceTree(const TriangleMesh& mesh, const Box& region, int threads, const Watch& watch = {});
+  FaceTree(const MeshView& mesh, const Box& region, int threads, const Watch& watch = {});
 
   std::size_t size() const { return faces_.size(); }
 
@@ -39,7 +39,7 @@ class FaceTree {
   /// Appends the triangles whose boxes come within `radius` of `p`, in the tree's order.
   void within(const Vec3& p, double radius, std::vector<std::uint32_t>& out) const;
 
-  const TriangleMesh& mesh() const { return mesh_; }
+  const MeshView& mesh() const { return mesh_; }
 
  private:
   struct Node {   // about origin_, rounded outward
@@ -63,7 +63,7 @@ class FaceTree {
   template <class Reach, class Visit>
   void walk(const Vec3& center, const Reach& reach_squared, const Visit& visit) const;
 
-  const TriangleMesh& mesh_;
+  const MeshView mesh_;
   Vec3 origin_;
   int levels_ = 0;                      // leaves are at this level
   std::vector<std::uint32_t> faces_;

@@ -24,7 +24,7 @@ double turns(const Vec3& a, const Vec3& b, const Vec3& c) {
 
 class Boxes {
  public:
-  Boxes(const TriangleMesh& mesh, const Box& domain) : mesh_(mesh) {
+  Boxes(const MeshView& mesh, const Box& domain) : mesh_(mesh) {
     const Vec3 size = domain.size_nm();
     const double longest = std::max({size.x, size.y, size.z, 1e-3});
     edge_ = std::max(std::cbrt(size.x * size.y * size.z / most_boxes), longest / 256);
@@ -49,7 +49,7 @@ class Boxes {
   }
 
   // Marks what is matter, region by region of boxes that nothing touches.
-  void find_matter(const std::vector<std::uint32_t>& shell_of, const std::vector<Shell>& shells,
+  void find_matter(std::span<const std::uint32_t> shell_of, const std::vector<Shell>& shells,
                    std::optional<double> plane, const Watch& watch) {
     std::vector<std::vector<std::size_t>> regions;
     for (std::size_t i = 0; i < state_.size(); ++i)
@@ -181,7 +181,7 @@ class Boxes {
   }
 
   // Whether a solid holds `p`: more of its outer shells than of its cavities are around it.
-  bool is_matter(const Vec3& p, const std::vector<std::uint32_t>& shell_of,
+  bool is_matter(const Vec3& p, std::span<const std::uint32_t> shell_of,
                  const std::vector<Shell>& shells) const {
     std::vector<double> around(shells.size(), 0.0);
     for (std::size_t i = 0; i < mesh_.triangles.size(); ++i) {
@@ -221,7 +221,7 @@ class Boxes {
     return squared;
   }
 
-  const TriangleMesh& mesh_;
+  const MeshView mesh_;
   double edge_ = 1;
   Vec3 lower_;
   int n_[3];
@@ -230,8 +230,8 @@ class Boxes {
 
 }  // namespace
 
-std::vector<std::uint8_t> felt_triangles(const TriangleMesh& mesh,
-                                         const std::vector<std::uint32_t>& shell_of,
+std::vector<std::uint8_t> felt_triangles(const MeshView& mesh,
+                                         std::span<const std::uint32_t> shell_of,
                                          const std::vector<Shell>& shells,
                                          std::optional<double> plane_nm, const Box& domain,
                                          double reach_nm, const Watch& watch) {

@@ -3,11 +3,12 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
+#include "mesh_view.h"
 #include "surf/core/progress.h"
 #include "surf/core/vec3.h"
-#include "surf/mesh/triangle_mesh.h"
 
 namespace surf::mc {
 
@@ -22,8 +23,8 @@ struct Shell {
 /// triangle touches it and its middle is within a solid, or where all of it is below `plane_nm`.
 /// What is not matter and hangs together with the rim of `domain` may be vacuum open to the outside.
 /// Triangles that reach beyond `domain` are always 1. Throws Interrupted.
-std::vector<std::uint8_t> felt_triangles(const TriangleMesh& mesh,
-                                         const std::vector<std::uint32_t>& shell_of,
+std::vector<std::uint8_t> felt_triangles(const MeshView& mesh,
+                                         std::span<const std::uint32_t> shell_of,
                                          const std::vector<Shell>& shells,
                                          std::optional<double> plane_nm, const Box& domain,
                                          double reach_nm, const Watch& watch = {});

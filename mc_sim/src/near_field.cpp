@@ -29,7 +29,7 @@ constexpr std::size_t most_bricks = std::size_t{1} << 21;
 constexpr double few_cells = 1.5e5, cells_per_triangle = 1.5, most_cells = 4e5;
 
 // The mesh's area within the box, at most.
-double area_within(const TriangleMesh& mesh, const Box& box) {
+double area_within(const MeshView& mesh, const Box& box) {
   double sum = 0;
   for (const Triangle& t : mesh.triangles) {
     Box part;
@@ -53,7 +53,7 @@ class NearFieldBuilder {
  public:
   using Cell = NearField::Cell;
 
-  NearFieldBuilder(const TriangleMesh& mesh, const Box& domain, std::size_t bytes, int threads,
+  NearFieldBuilder(const MeshView& mesh, const Box& domain, std::size_t bytes, int threads,
                    const Watch& watch, NearField& field)
       : watch_{{}, watch.cancel}, field_(field), domain_(domain), bytes_(bytes), threads_(threads),
         most_cells_(std::min({static_cast<double>(bytes) / sizeof(Cell), most_cells,
@@ -347,7 +347,7 @@ class NearFieldBuilder {
   std::vector<Cell> bricks_;
 };
 
-NearField::NearField(const TriangleMesh& mesh, const Box& domain, std::size_t bytes, int threads,
+NearField::NearField(const MeshView& mesh, const Box& domain, std::size_t bytes, int threads,
                      const Watch& watch)
     : surface_box_(bounds(mesh)) {
   if (mesh.triangles.empty() || bytes < 4096 || domain.empty()) return;

@@ -7,9 +7,9 @@
 #include <cstdint>
 #include <vector>
 
+#include "mesh_view.h"
 #include "surf/core/progress.h"
 #include "surf/core/vec3.h"
-#include "surf/mesh/triangle_mesh.h"
 
 namespace surf::mc {
 
@@ -31,7 +31,7 @@ class NearField {
   /// outside the box of all triangles get a bound). Triangles may lie anywhere.
   /// `threads` >= 0; 0: one per hardware thread. The result does not depend on it.
   /// Throws Interrupted.
-  NearField(const TriangleMesh& mesh, const Box& domain, std::size_t bytes, int threads = 0,
+  NearField(const MeshView& mesh, const Box& domain, std::size_t bytes, int threads = 0,
             const Watch& watch = {});
 
   double cell_nm() const { return cell_nm_; }   ///< the smallest cells; 0 without any

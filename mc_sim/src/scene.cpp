@@ -4,12 +4,16 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <cstring>
+#include <exception>
 #include <numeric>
 #include <utility>
 
 #include "scene_impl.h"
+#include "surf/core/error.h"
 #include "surf/core/units.h"
 #include "surf/mc/field_in_reach.h"
+#include "surf/mc/node_memory.h"
 #include "surf/mesh/check_mesh.h"
 #include "surf/mesh/height_field_mesh.h"
 #include "surf/mesh/open_sheet.h"
@@ -32,9 +36,15 @@ struct Assembly {
   std::vector<Solid> solids;
 };
 
-void append(Assembly& all, const TriangleMesh& mesh, const std::vector<std::uint32_t>& component) {
+void append(Assembly& all, TriangleMesh mesh, std::vector<std::uint32_t> component) {
   const auto base = static_cast<std::uint32_t>(all.mesh.vertices_nm.size());
   const auto first_shell = static_cast<std::uint32_t>(all.shells.size());
+  if (base == 0) {   // mostly there is only one
+    all.mesh = std::move(mesh);
+    all.shell_of = std::move(component);
+    for (std::uint32_t& shell : all.shell_of) shell += first_shell;
+    return;
+  }
   all.mesh.vertices_nm.insert(all.mesh.vertices_nm.end(), mesh.vertices_nm.begin(),
                               mesh.vertices_nm.end());
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
@@ -63,14 +73,14 @@ std::vector<double> volumes(const TriangleMesh& mesh, const std::vector<std::uin
 
 void add_body(Assembly& all, const Body& body) {
   TriangleMesh mesh = merge_equal_vertices(body.mesh);
-  const std::vector<std::uint32_t> component = triangle_components(mesh);
+  std::vector<std::uint32_t> component = triangle_components(mesh);
   std::vector<double> volume = volumes(mesh, component);
   // A mesh whose normals all point inward is turned as a whole.
   if (std::accumulate(volume.begin(), volume.end(), 0.0) < 0) {
     for (Triangle& t : mesh.triangles) std::swap(t[1], t[2]);
     for (double& v : volume) v = -v;
   }
-  append(all, mesh, component);
+  append(all, std::move(mesh), std::move(component));
   for (const double v : volume)
     all.shells.push_back({static_cast<int>(all.solids.size()), v < 0 ? -1 : 1});
   all.solids.push_back({body.material});
@@ -85,8 +95,8 @@ void add_sheet(Assembly& all, const Body& body, const Scan& scan, double reach) 
   const double apron = apron_in_widths * std::max(size.x, size.y) + reach + half +
                        std::hypot(away.x, away.y);
   std::string reason;
-  const TriangleMesh mesh = *extend_open_sheet(body.mesh, apron, reason);   // validated
-  const std::vector<std::uint32_t> component = triangle_components(mesh);
+  TriangleMesh mesh = *extend_open_sheet(body.mesh, apron, reason);   // validated
+  std::vector<std::uint32_t> component = triangle_components(mesh);
   const std::vector<double> volume = volumes(mesh, component);
   // The apron's vertices come last: what holds the last one is the sheet.
   const auto last = static_cast<std::uint32_t>(mesh.vertices_nm.size() - 1);
@@ -94,18 +104,20 @@ void add_sheet(Assembly& all, const Body& body, const Scan& scan, double reach) 
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i)
     for (const std::uint32_t v : mesh.triangles[i])
       if (v == last) sheet = component[i];
-  append(all, mesh, component);
+  append(all, std::move(mesh), std::move(component));
   for (std::uint32_t c = 0; c < volume.size(); ++c)
     all.shells.push_back({static_cast<int>(all.solids.size()), c != sheet && volume[c] < 0 ? -1 : 1});
   all.solids.push_back({body.material});
 }
 
 void add_height_field(Assembly& all, const HeightFieldBody& body, const Scan& scan, double reach) {
-  const HeightField wide = field_in_reach(body, scan, reach);
+  HeightField wide = field_in_reach(body, scan, reach);
   const double width = std::max(wide.z_nm.width() * wide.pitch_x_nm,
                                 wide.z_nm.height() * wide.pitch_y_nm);
-  const TriangleMesh sheet = half_space_top(wide, apron_in_widths * width);
-  append(all, sheet, std::vector<std::uint32_t>(sheet.triangles.size(), 0));
+  TriangleMesh sheet = half_space_top(wide, apron_in_widths * width);
+  wide = {};
+  std::vector<std::uint32_t> component(sheet.triangles.size(), 0);
+  append(all, std::move(sheet), std::move(component));
   all.shells.push_back({static_cast<int>(all.solids.size()), 1});
   all.solids.push_back({body.material});
 }
@@ -146,6 +158,98 @@ std::size_t leave_out_unreachable(Assembly& all, std::optional<double> plane_nm,
   return felt.size() - kept;
 }
 
+// An assembly, and what else the scene has to know of it.
+struct Surfaces : Assembly {
+  Box near;                    // the surface without aprons
+  std::size_t left_out = 0;
+  bool half_space = false;
+  bool has_triangles = false;
+};
+
+Surfaces assemble(const Specimen& specimen, const std::vector<BodyFacts>& found, const Scan& scan,
+                  double reach, double farthest_reach, const SceneOptions& options) {
+  Surfaces all;
+  std::optional<double> plane_nm;
+  if (specimen.substrate) {
+    plane_nm = specimen.substrate->top_nm;
+    all.shells.push_back({0, 1});
+    all.solids.push_back({specimen.substrate->material});
+  }
+  if (specimen.height_field) {
+    add_height_field(all, *specimen.height_field, scan, reach);
+    all.near.extend(bounds(all.mesh));
+  }
+  all.half_space = specimen.substrate || specimen.height_field;
+  for (std::size_t i = 0; i < specimen.bodies.size(); ++i) {
+    options.watch.check();
+    const Body& body = specimen.bodies[i];
+    if (found[i].is_sheet) {
+      add_sheet(all, body, scan, reach);
+      all.half_space = true;
+    } else {
+      add_body(all, body);
+    }
+    all.near.extend(found[i].box);
+  }
+  if (options.leave_out_unreachable && !all.near.empty())
+    all.left_out = leave_out_unreachable(all, plane_nm, all.near, farthest_reach, options.watch);
+  all.has_triangles = !all.mesh.triangles.empty();
+  return all;
+}
+
+template <class T>
+void put(std::string& text, const T* values, std::size_t count) {
+  text.append(reinterpret_cast<const char*>(values), count * sizeof(T));
+}
+
+template <class T>
+void get(const std::string& text, std::size_t& at, T* values, std::size_t count) {
+  std::memcpy(values, text.data() + at, count * sizeof(T));
+  at += count * sizeof(T);
+}
+
+struct Told {
+  Box near;
+  std::uint64_t left_out = 0, shells = 0, solids = 0;
+  bool half_space = false, has_triangles = false;
+};
+
+// The first process of a machine makes it, and tells the others all but the triangles.
+template <class Make>
+void assemble_together(NodeMemory& node, Surfaces& all, const Make& make) {
+  std::string text;
+  if (node.is_first()) {
+    try {
+      all = make();
+    } catch (const std::exception& e) {
+      text = std::string("!") + e.what();
+      node.tell(text);
+      throw;
+    }
+    const Told told{all.near, all.left_out, all.shells.size(), all.solids.size(), all.half_space,
+                    all.has_triangles};
+    text = " ";
+    put(text, &told, 1);
+    put(text, all.shells.data(), all.shells.size());
+    put(text, all.solids.data(), all.solids.size());
+  }
+  node.tell(text);
+  if (node.is_first()) return;
+  if (text[0] != ' ')
+    throw InvalidInput("specimen", "another process of this machine says: " + text.substr(1), "See there");
+  std::size_t at = 1;
+  Told told;
+  get(text, at, &told, 1);
+  all.near = told.near;
+  all.left_out = told.left_out;
+  all.half_space = told.half_space;
+  all.has_triangles = told.has_triangles;
+  all.shells.resize(told.shells);
+  all.solids.resize(told.solids);
+  get(text, at, all.shells.data(), all.shells.size());
+  get(text, at, all.solids.data(), all.solids.size());
+}
+
 }  // namespace
 
 Scene::Scene(const Specimen& specimen, const Beam& beam, const Scan& scan, const Physics& physics,
@@ -155,8 +259,13 @@ Scene::Scene(const Specimen& specimen, const Beam& beam, const Scan& scan, const
   validate(beam);
   validate(scan);
   const Watch& watch = options.watch;
-  watch.check();
-  validate(specimen, watch.part(0, 0.1));
+  if (!options.node) watch.check();   // who left now would be waited for
+  const std::vector<BodyFacts>* found = options.facts;
+  std::vector<BodyFacts> own;
+  if (!found && (!options.node || options.node->is_first())) {
+    own = validate(specimen, watch.part(0, 0.1));
+    found = &own;
+  }
   Impl& s = *impl_;
   s.beam = beam;
   s.scan = scan;
@@ -171,48 +280,37 @@ Scene::Scene(const Specimen& specimen, const Beam& beam, const Scan& scan, const
   }
   for (const Medium& m : s.media) s.medium_pointers.push_back(&m);
 
-  Assembly all;
-  Box near;   // the surface without aprons
   if (specimen.substrate) {
     s.plane_nm = specimen.substrate->top_nm;
     s.plane_shell = 0;
-    all.shells.push_back({0, 1});
-    all.solids.push_back({specimen.substrate->material});
   }
-  if (specimen.height_field) {
-    add_height_field(all, *specimen.height_field, scan, reach);
-    near.extend(bounds(all.mesh));
-  }
-  for (const Body& body : specimen.bodies) {
-    watch.check();
-    if (is_sheet(body, {{}, watch.cancel})) {
-      add_sheet(all, body, scan, reach);
-      s.half_space = true;
-    } else {
-      add_body(all, body);
-    }
-    near.extend(bounds(body.mesh));
-  }
-  if (options.leave_out_unreachable && !near.empty())
-    s.summary.triangles_left_out = leave_out_unreachable(all, s.plane_nm, near, farthest_reach, watch);
+  Surfaces all;
+  if (!options.node) all = assemble(specimen, *found, scan, reach, farthest_reach, options);
+  else assemble_together(*options.node, all,
+                         [&] { return assemble(specimen, *found, scan, reach, farthest_reach, options); });
+  const Box& near = all.near;
+  s.summary.triangles_left_out = all.left_out;
   s.shells = std::move(all.shells);
   s.solids = std::move(all.solids);
-  s.shell_of = std::move(all.shell_of);
   s.top_nm = s.plane_nm.value_or(near.empty() ? 0.0 : near.upper_nm.z);
   s.bottom_nm = near.empty() ? s.top_nm : std::min(near.lower_nm.z, s.plane_nm.value_or(HUGE_VAL));
-  s.half_space = s.half_space || specimen.substrate || specimen.height_field;
+  s.half_space = all.half_space;
   s.farthest_nm = 1e12;
-  if (!all.mesh.triangles.empty()) {
+  if (all.has_triangles) {
     s.top_nm = std::max(s.top_nm, near.upper_nm.z);
+    SceneMesh mesh = options.node
+                         ? share_scene_mesh(*options.node, std::move(all.mesh), std::move(all.shell_of))
+                         : make_scene_mesh(std::move(all.mesh), std::move(all.shell_of));
+    s.shell_of = mesh.shell_of;
     const Box domain = near_scan(near, scan, beam, reach);
     watch.report(0.3, 1);
-    s.near = NearField(all.mesh, domain, options.distance_grid_bytes, 0, watch.part(0.3, 0.7));
+    s.near = NearField(mesh.mesh, domain, options.distance_grid_bytes, 0, watch.part(0.3, 0.7));
     watch.report(0.7, 1);
-    s.sky = Sky(all.mesh, domain, sky_columns, 0, watch);
+    s.sky = Sky(mesh.mesh, domain, sky_columns, 0, watch);
     watch.report(0.8, 1);
-    s.triangles = std::make_unique<EmbreeScene>(all.mesh, watch.part(0.8, 1));
+    s.triangles = std::make_unique<EmbreeScene>(std::move(mesh), watch.part(0.8, 1));
   }
-  s.summary.triangles = all.mesh.triangles.size();
+  s.summary.triangles = s.shell_of.size();
   s.summary.shells = s.shells.size();
   s.summary.grid_cell_nm = s.near.cell_nm();
   s.summary.memory_bytes = s.near.bytes() + s.sky.bytes() + s.shell_of.size() * sizeof(std::uint32_t) +

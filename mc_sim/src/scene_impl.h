@@ -7,6 +7,7 @@
 #include <limits>
 #include <memory>
 #include <optional>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -38,8 +39,8 @@ struct Scene::Impl {
   std::vector<Shell> shells;
   std::optional<double> plane_nm;          ///< top of the substrate
   std::uint32_t plane_shell = 0;
-  std::vector<std::uint32_t> shell_of;     ///< per triangle
-  std::unique_ptr<EmbreeScene> triangles;  ///< null for a bare substrate
+  std::span<const std::uint32_t> shell_of; ///< per triangle
+  std::unique_ptr<EmbreeScene> triangles;  ///< null for a bare substrate; holds what is per triangle
   NearField near;
   Sky sky;
   double top_nm = 0;                       ///< highest surface

@@ -43,7 +43,7 @@ bool may_overlap(const Vec3 (&v)[3], double x, double y, double half) {
 
 class SkyBuilder {
  public:
-  SkyBuilder(const TriangleMesh& mesh, const Box& domain, std::size_t columns, Sky& sky)
+  SkyBuilder(const MeshView& mesh, const Box& domain, std::size_t columns, Sky& sky)
       : mesh_(mesh), sky_(sky) {
     const Vec3 size = domain.size_nm();
     const double longest = std::max({size.x, size.y, 1e-3});
@@ -229,7 +229,7 @@ class SkyBuilder {
     });
   }
 
-  const TriangleMesh& mesh_;
+  const MeshView mesh_;
   Sky& sky_;
   double outside_ = -HUGE_VAL;
   Grid<double> exact_;
@@ -237,7 +237,7 @@ class SkyBuilder {
   std::vector<Grid<float>> heights_;   // of blocks of 2^level columns
 };
 
-Sky::Sky(const TriangleMesh& mesh, const Box& domain, std::size_t columns, int threads, const Watch& watch) {
+Sky::Sky(const MeshView& mesh, const Box& domain, std::size_t columns, int threads, const Watch& watch) {
   if (mesh.triangles.empty()) return;
   top_nm_ = bounds(mesh).upper_nm.z;
   if (columns == 0 || domain.empty()) return;

@@ -5,9 +5,9 @@
 #include <cstddef>
 #include <vector>
 
+#include "mesh_view.h"
 #include "surf/core/progress.h"
 #include "surf/core/vec3.h"
-#include "surf/mesh/triangle_mesh.h"
 
 namespace surf::mc {
 
@@ -24,7 +24,7 @@ class Sky {
 
   /// Columns over `domain`, at most about `columns` of them (>= 0; 0: only what is above everything
   /// is free). Triangles may lie anywhere. Throws Interrupted.
-  Sky(const TriangleMesh& mesh, const Box& domain, std::size_t columns, int threads = 0,
+  Sky(const MeshView& mesh, const Box& domain, std::size_t columns, int threads = 0,
       const Watch& watch = {});
 
   std::size_t bytes() const {

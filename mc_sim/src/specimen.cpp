@@ -54,14 +54,14 @@ std::string repair_command(const std::string& name) {
       repair_command(subject));
 }
 
-void check_body(const Body& body, const Watch& watch) {
+BodyFacts check_body(const Body& body, const Watch& watch) {
   const std::string subject = body.name.empty() ? "body" : body.name;
   validate(body.mesh, subject.c_str());
   const MeshReport report = check_mesh(body.mesh, watch);
   if (report.boundary_edges > 0) {
     std::string reason;
     if (!extend_open_sheet(body.mesh, 1, reason)) refuse_open(subject, report, reason);
-    return;
+    return {report.triangles, report.bounds_nm, true, false};
   }
   if (!report.closed_and_oriented) refuse_unoriented(subject, report);
   const Vec3 size = report.bounds_nm.size_nm();
@@ -72,13 +72,14 @@ void check_body(const Body& body, const Watch& watch) {
                        "Check its unit (--unit)");
   if (report.signed_volume_nm3 == 0)
     throw InvalidInput(subject, "the mesh encloses no volume", "Give it thickness");
+  return {report.triangles, report.bounds_nm, false, report.signed_volume_nm3 < 0};
 }
 
 }  // namespace
 
 bool is_sheet(const Body& body, const Watch& watch) { return check_mesh(body.mesh, watch).boundary_edges > 0; }
 
-void validate(const Specimen& specimen, const Watch& watch) {
+std::vector<BodyFacts> validate(const Specimen& specimen, const Watch& watch) {
   const Watch silent{{}, watch.cancel};
   for (const Material& m : specimen.materials) validate(m);
   if (!specimen.substrate && !specimen.height_field && specimen.bodies.empty())
@@ -93,10 +94,12 @@ void validate(const Specimen& specimen, const Watch& watch) {
     check_material(specimen, specimen.height_field->material, "height field");
     surf::validate(specimen.height_field->field, name.empty() ? "height field" : name.c_str());
   }
+  std::vector<BodyFacts> facts;
   for (const Body& body : specimen.bodies) {
     check_material(specimen, body.material, body.name.empty() ? "body" : body.name);
-    check_body(body, silent);
+    facts.push_back(check_body(body, silent));
   }
+  return facts;
 }
 
 Box extent(const Specimen& specimen) {

@@ -68,7 +68,7 @@ void SurfaceList::collect(const Vec3& center, double radius, double small) {
   all_.faces.clear();
   guess_ = 0;
   longest_ = 0;
-  const TriangleMesh& mesh = tree_.mesh();
+  const MeshView& mesh = tree_.mesh();
   if (seen_.empty()) seen_.resize(mesh.vertices_nm.size());
   if (++lists_ == 0) {
     std::fill(seen_.begin(), seen_.end(), Seen{});

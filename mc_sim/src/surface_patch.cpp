@@ -59,7 +59,7 @@ class PatchBuilder {
     return static_cast<std::size_t>((level * across + y) * across + x);
   }
 
-  void add(const TriangleMesh& mesh, std::uint32_t number) {
+  void add(const MeshView& mesh, std::uint32_t number) {
     const Triangle& t = mesh.triangles[number];
     Vec3 v[3];
     Box box;

@@ -1,8 +1,10 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 """mpi.py PROGRAM SAMPLES MPIRUN: several processes give the bytes of one, and go on from what a dead one has left."""
+import array
 import csv
 import json
+import math
 import os
 import pathlib
 import random
@@ -253,8 +255,57 @@ def charts(folder):
     expect(code != 0 and "one process" in err and err.count("semsurf: error") == 1, code, err)
 
 
+def write_field(path, side):
+    heights = array.array("f", (1e-9 * (5 * math.sin(i % side / 17) * math.sin(i // side / 23) + i * 7919 % 97 / 200)
+                                for i in range(side * side)))
+    head = (f"Gwyddion Simple Field 1.0\nXRes = {side}\nYRes = {side}\nXReal = {side * 1e-9}\nYReal = {side * 1e-9}\n"
+            "XYUnits = m\nZUnits = m\n").encode()
+    path.write_bytes(head + b"\0" * (4 - len(head) % 4) + heights.tobytes())
+
+
+def shares(folder, words, ranks):
+    """Of memory (proportional: what n hold counts for each as 1/n), bytes by rank, while it simulates."""
+    process = start(folder, ranks if ranks > 1 else 0, [*words, "--size", "400x400", "--electrons", "240", "--checkpoint-every", "0.2s", "-o", f"long_{ranks}.exr"])
+    limit = time.monotonic() + 200
+    while process.poll() is None and time.monotonic() < limit and not list(folder.glob(f"long_{ranks}.*.checkpoint")):
+        time.sleep(0.05)
+    expect(process.poll() is None, "it was over before it was looked at:", *(process.communicate() if process.poll() else ()))
+    there = pids() if ranks > 1 else {0: process.pid}
+    found = {rank: 1024 * int(re.search(r"^Pss: +(\d+)", pathlib.Path(f"/proc/{pid}/smaps_rollup").read_text(), re.M)[1])
+             for rank, pid in there.items()}
+    process.terminate()
+    process.communicate(timeout=120)
+    expect(len(found) == ranks, found)
+    return found
+
+
+def memory(folder):
+    for name, side in (("small", 60), ("solid", 500)):
+        write_field(folder / "field.gsf", side)
+        code, _, err = run(folder, 0, ["mesh", "field.gsf", "--solid", "--plain", "-q", "-o", f"{name}.ply"])
+        expect(code == 0, err)
+    words = ["simulate", "solid.ply", "--material", "Si", "--method", "direct", "--region=100,100,160,160",
+             "--threads", "1"]
+    for name, tolerance in (("solid", "0"), ("small", "0.2nm")):
+        of_job = ["simulate", f"{name}.ply", "--material", "Si", "--method", "direct", "--threads", "1", "--size", "24x24",
+                  "--electrons", "8", "--mesh-tolerance", tolerance]
+        for ranks in (0, 3):
+            code, _, err = run(folder, ranks, [*of_job, "-o", f"{ranks}.exr"])
+            expect(code == 0, ranks, "ranks:", err)
+        expect((folder / "0.exr").read_bytes() == (folder / "3.exr").read_bytes(), "sharing changed the bytes")
+    alone = sum(shares(folder, words, 1).values())
+    three = shares(folder, words, 3)
+    more = (sum(three.values()) - alone) / 2
+    print(f"alone {alone / 1e6:.0f} MB, three {sum(three.values()) / 1e6:.0f} MB: {more / 1e6:.0f} MB for each more")
+    expect(more < 0.75 * alone, "each process more takes", more, "bytes, one alone", alone, three)
+    # Someone's specimen is damaged: all say so once.
+    (folder / "bad.ply").write_bytes((folder / "solid.ply").read_bytes()[:-7])
+    code, _, err = run(folder, 3, ["simulate", "bad.ply", "-o", "x.exr"])
+    expect(code == 3 and err.count("semsurf: error") == 1 and "bad.ply" in err, code, err)
+
+
 with tempfile.TemporaryDirectory(prefix="semsurf-test-") as place:
-    for case in sys.argv[4:] or ("sameness", "errors", "sweeps", "faults", "trainings", "training_faults", "charts"):
+    for case in sys.argv[4:] or ("sameness", "errors", "memory", "sweeps", "faults", "trainings", "training_faults", "charts"):
         folder = pathlib.Path(place) / case
         folder.mkdir()
         globals()[case](folder)

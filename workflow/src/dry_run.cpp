@@ -57,11 +57,12 @@ DryRun dry_run(const SimulateJob& asked, int ranks, double seconds, const Progre
   check_checkpoint(job);
   SimulateSummary summary;
   DryRun out;
-  out.scan = summary.scan = resolve_scan(job.scene.scan, mc::extent(job.scene.specimen), job.scene.beam);
+  const SpecimenFacts facts = facts_of(job.scene.specimen, nullptr, {{}, cancel});
+  out.scan = summary.scan = resolve_scan(job.scene.scan, facts.extent, job.scene.beam);
   check_trajectories(job, out.scan);
-  const mc::Scene scene = make_scene(job, note, cancel, summary);
+  const mc::Scene scene = make_scene(job, facts, nullptr, note, cancel, summary);
   out.scene = scene.summary();
-  out.warnings = warn_before(job, out.scan);
+  out.warnings = warn_before(job, facts, out.scan);
   out.choice = mc::choose_method(scene, job.options, job.scene.method, {job.extras.deposit_cells > 0});
   job.options.method = out.choice.method;
   JobLibraries libraries(job.cache, making, note);

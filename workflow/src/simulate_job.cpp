@@ -15,6 +15,7 @@
 #include "provenance.h"
 #include "sidecar.h"
 #include "simulation_setup.h"
+#include "specimen_facts.h"
 #include "surf/core/error.h"
 #include "surf/core/parallel.h"
 #include "surf/core/units.h"
@@ -172,13 +173,14 @@ void write_all(const SimulateJob& job, const ImageRows& image, SimulateSummary& 
 
 }  // namespace
 
-SimulateSummary run(const SimulateJob& asked, const ProgressCallback& progress,
+SimulateSummary run(SimulateJob asked, const ProgressCallback& progress,
                     const CancelToken* cancel, const WarningCallback& warn,
                     const NoteCallback& tell, const LibraryCallback& making, Team* team) {
   RunRecord record;
   record.start = std::chrono::system_clock::now();
   SimulateJob job;
   SimulateSummary summary;
+  SpecimenFacts facts;
   std::optional<mc::Scene> ready;
   const auto note = [&](std::vector<std::string> warnings) {
     for (std::string& warning : warnings) {
@@ -191,17 +193,25 @@ SimulateSummary run(const SimulateJob& asked, const ProgressCallback& progress,
     check_extras(asked.extras);
     if (team && asked.extras.deposit_cells > 0)
       throw UsageError("--deposit", "each of several processes would see a part of it", "Run it in one process");
-    job = complete(asked);
+    job = complete(std::move(asked));
     if (leads(team)) {   // who follows writes nothing
       check_outputs(job);
       check_checkpoint(job);
     }
-    summary.scan = resolve_scan(job.scene.scan, mc::extent(job.scene.specimen), job.scene.beam);
+    if (leads(team)) record.inputs = hash_inputs(job.scene.inputs);
+  });
+  mc::NodeMemory* const node = node_of(team);
+  together(team, [&] {
+    facts = facts_of(job.scene.specimen, node, {{}, cancel});
+    summary.scan = resolve_scan(job.scene.scan, facts.extent, job.scene.beam);
     check_trajectories(job, summary.scan);
-    record.inputs = hash_inputs(job.scene.inputs);
-    ready.emplace(make_scene(job, tell, cancel, summary));   // validates the specimen
+    if (node && !node->is_first())
+      for (mc::Body& body : job.scene.specimen.bodies) body.mesh = {};   // the first one's are traced
+    ready.emplace(make_scene(job, facts, node, tell, cancel, summary));
+  });
+  together(team, [&] {
     summary.scene = ready->summary();
-    note(warn_before(job, summary.scan));
+    note(warn_before(job, facts, summary.scan));
     // Of this machine today: it is not for the record.
     if (leads(team) && warn)
       for (const std::string& warning : warn_of_full_disks(disk_needs(job, summary.scan))) warn(warning);
@@ -222,7 +232,7 @@ SimulateSummary run(const SimulateJob& asked, const ProgressCallback& progress,
     summary.choice = mc::choose_method(scene, job.options, s.method, {job.extras.deposit_cells > 0});
     job.options.method = summary.choice.method;
   }
-  const auto settings = provenance(job, summary.scan, record.inputs);
+  const auto settings = leads(team) ? provenance(job, summary.scan, record.inputs) : std::map<std::string, std::string>();
 
   std::optional<Deposits> deposits;
   mc::ObserverOfThread observers;

@@ -39,9 +39,8 @@ void check_options(const mc::SimulationOptions& options) {
                      "Give 1 or more");
 }
 
-SimulateJob complete(const SimulateJob& job) {
-  SimulateJob out = job;
-  const io::SceneFile& s = job.scene;
+SimulateJob complete(SimulateJob out) {
+  const io::SceneFile& s = out.scene;
   for (const mc::Detector& d : s.detectors) out.options.detectors.push_back(d);
   mc::validate(out.options.detectors);
   if (s.current_pa.has_value() != s.dwell_us.has_value())
@@ -58,14 +57,14 @@ SimulateJob complete(const SimulateJob& job) {
   }
   if (s.accuracy) out.options.accuracy = *s.accuracy;
   if (s.accuracy_floor) out.options.accuracy_floor = *s.accuracy_floor;
-  if (job.seconds < 0 || !std::isfinite(job.seconds))
+  if (out.seconds < 0 || !std::isfinite(out.seconds))
     throw UsageError("--time", "it must be above zero", "Write for example 30s");
-  if (job.seconds > 0) out.options.accuracy = coarse_accuracy;
+  if (out.seconds > 0) out.options.accuracy = coarse_accuracy;
   if (out.options.accuracy > 0 && s.electrons)
     throw UsageError("--electrons", "a wanted accuracy gives the number of primaries",
                      "Leave out one of the two");
-  if (out.options.scratch_folder.empty() && !job.outputs.empty()) {
-    const fs::path folder = job.outputs.front().parent_path();
+  if (out.options.scratch_folder.empty() && !out.outputs.empty()) {
+    const fs::path folder = out.outputs.front().parent_path();
     out.options.scratch_folder = folder.empty() ? "." : folder.string();
   }
   if (out.png_channel.empty()) out.png_channel = out.options.dose > 0 ? "SE.shot" : "SE";
@@ -121,17 +120,25 @@ void check_checkpoint(const SimulateJob& job) {
   io::check_writable(o.file);
 }
 
-mc::Scene make_scene(const SimulateJob& job, const NoteCallback& tell, const CancelToken* cancel,
-                     SimulateSummary& summary) {
+mc::Scene make_scene(const SimulateJob& job, const SpecimenFacts& facts, mc::NodeMemory* node,
+                     const NoteCallback& tell, const CancelToken* cancel, SimulateSummary& summary) {
   const io::SceneFile& s = job.scene;
   const double tolerance_nm = s.mesh_tolerance_nm.value_or(0);
   const Watch watch{{}, cancel};
-  if (tolerance_nm == 0) return mc::Scene(s.specimen, s.beam, summary.scan, s.physics, {.watch = watch});
+  if (tolerance_nm == 0)
+    return mc::Scene(s.specimen, s.beam, summary.scan, s.physics,
+                     {.facts = &facts.bodies, .node = node, .watch = watch});
   if (tell) tell(fmt::format("leaving out detail below {}", format_length(tolerance_nm)));
-  const mc::Specimen simple =
-      simplify_specimen(s.specimen, tolerance_nm, s.beam, summary.scan, s.physics,
-                        job.options.threads, summary.simplification, watch);
-  return mc::Scene(simple, s.beam, summary.scan, s.physics, {.watch = watch});
+  mc::Specimen simple;
+  std::vector<mc::BodyFacts> of_simple;
+  once_per_node(node, [&] {
+    simple = simplify_specimen(s.specimen, tolerance_nm, s.beam, summary.scan, s.physics,
+                               job.options.threads, summary.simplification, watch);
+    of_simple = mc::validate(simple, watch);
+    return std::string();
+  });
+  if (node && !node->is_first()) simple = s.specimen;
+  return mc::Scene(simple, s.beam, summary.scan, s.physics, {.facts = &of_simple, .node = node, .watch = watch});
 }
 
 }  // namespace surf::workflow

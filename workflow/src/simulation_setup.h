@@ -2,6 +2,7 @@
 // What happens before a simulation begins, for whoever simulates or only says what it would take.
 #pragma once
 
+#include "specimen_facts.h"
 #include "surf/mc/scene.h"
 #include "surf/workflow/simulate_job.h"
 
@@ -11,7 +12,7 @@ namespace surf::workflow {
 void check_options(const mc::SimulationOptions& options);
 
 /// The job with everything in its options that the simulator has to know. Throws UsageError.
-SimulateJob complete(const SimulateJob& job);
+SimulateJob complete(SimulateJob job);
 
 /// An image of one pixel with the channels of the result.
 Image image_like_the_result(const SimulateJob& job);
@@ -21,8 +22,8 @@ void check_outputs(const SimulateJob& job);
 void check_checkpoint(const SimulateJob& job);
 
 /// What is traced: the specimen, or one of fewer triangles within the tolerance asked for. `summary` has the scan, and
-/// gets what was left out.
-mc::Scene make_scene(const SimulateJob& job, const NoteCallback& tell, const CancelToken* cancel,
-                     SimulateSummary& summary);
+/// gets what was left out. With a `node` its processes share the triangles of the first one's specimen.
+mc::Scene make_scene(const SimulateJob& job, const SpecimenFacts& facts, mc::NodeMemory* node,
+                     const NoteCallback& tell, const CancelToken* cancel, SimulateSummary& summary);
 
 }  // namespace surf::workflow

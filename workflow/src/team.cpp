@@ -27,4 +27,22 @@ void together(Team* team, const std::function<void()>& part) {
       throw InvalidInput(fmt::format("rank {}", rank), all[rank], "All machines need the same files in the same places");
 }
 
+std::string once_per_node(mc::NodeMemory* node, const std::function<std::string()>& work) {
+  if (!node) return work();
+  std::string text;
+  if (node->is_first()) {
+    try {
+      text = " " + work();
+    } catch (const std::exception& e) {
+      text = std::string("!") + e.what();
+      node->tell(text);
+      throw;
+    }
+  }
+  node->tell(text);
+  if (text[0] == '!')
+    throw InvalidInput("specimen", "another process of this machine says: " + text.substr(1), "See there");
+  return text.substr(1);
+}
+
 }  // namespace surf::workflow

@@ -18,32 +18,22 @@ constexpr double finest_pixel_nm = 1e-3; // surfaces are no better than this
 constexpr double coarsest_nm = 1e-4;      // of coordinates: a tenth of the distance at which faces are one
 constexpr double lost_fraction = 1e-6;
 
-// Six times the volume, about a corner of the mesh so that a far specimen loses no digits.
-double signed_volume6(const TriangleMesh& mesh) {
-  if (mesh.triangles.empty()) return 0;
-  const Vec3 origin = mesh.vertices_nm[mesh.triangles[0][0]];
-  double sum = 0;
-  for (const Triangle& t : mesh.triangles)
-    sum += dot(mesh.vertices_nm[t[0]] - origin,
-               cross(mesh.vertices_nm[t[1]] - origin, mesh.vertices_nm[t[2]] - origin));
-  return sum;
-}
-
-void warn_about_bodies(const mc::Specimen& specimen, std::vector<std::string>& out) {
-  for (const mc::Body& body : specimen.bodies)
-    if (mc::is_sheet(body))
+void warn_about_bodies(const mc::Specimen& specimen, const SpecimenFacts& facts,
+                       std::vector<std::string>& out) {
+  for (std::size_t i = 0; i < specimen.bodies.size(); ++i) {
+    const mc::Body& body = specimen.bodies[i];
+    if (facts.bodies[i].is_sheet)
       out.push_back(body.name + ": the mesh is open; it is taken as the top of a half-space that goes "
                                 "on flat beyond its rim");
-    else if (signed_volume6(body.mesh) < 0)
+    else if (facts.bodies[i].inward)
       out.push_back(body.name + ": its normals point inward; they are taken as pointing outward");
+  }
   if (!specimen.substrate) return;
   const double top_nm = specimen.substrate->top_nm;
-  for (const mc::Body& body : specimen.bodies) {
-    const Box box = bounds(body.mesh);
-    if (box.upper_nm.z <= top_nm)
-      out.push_back(fmt::format("{}: all of it lies below the substrate's top at {}", body.name,
-                                format_length(top_nm)));
-  }
+  for (std::size_t i = 0; i < specimen.bodies.size(); ++i)
+    if (facts.bodies[i].box.upper_nm.z <= top_nm)
+      out.push_back(fmt::format("{}: all of it lies below the substrate's top at {}",
+                                specimen.bodies[i].name, format_length(top_nm)));
 }
 
 void warn_about_size(const Box& extent, std::vector<std::string>& out) {
@@ -88,13 +78,13 @@ void warn_about_scan(const mc::Specimen& specimen, const Box& extent, const mc::
 
 }  // namespace
 
-std::vector<std::string> warn_before(const SimulateJob& job, const mc::Scan& scan) {
+std::vector<std::string> warn_before(const SimulateJob& job, const SpecimenFacts& facts,
+                                     const mc::Scan& scan) {
   std::vector<std::string> out;
   const mc::Specimen& specimen = job.scene.specimen;
-  const Box extent = mc::extent(specimen);
-  warn_about_size(extent, out);
-  warn_about_bodies(specimen, out);
-  warn_about_scan(specimen, extent, job.scene.beam, scan, out);
+  warn_about_size(facts.extent, out);
+  warn_about_bodies(specimen, facts, out);
+  warn_about_scan(specimen, facts.extent, job.scene.beam, scan, out);
   if (job.options.electrons == 1 && job.options.dose == 0)
     out.push_back("one electron per pixel has no scatter: the standard errors are 0 and mean "
                   "nothing");

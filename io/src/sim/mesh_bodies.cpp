@@ -54,15 +54,15 @@ MeshBody with_material(NamedMesh mesh, const MaterialNames& names,
 
 bool is_open(const MeshBody& body) { return !check_mesh(body.mesh).closed_and_oriented; }
 
-/// Where an open piece of the same name and material is; bodies.end() where there is none.
+/// Where an open piece of the same name and material is, if the piece is open, too; else bodies.end().
 auto find_partner(std::vector<MeshBody>& bodies, const MeshBody& piece) {
   return std::find_if(bodies.begin(), bodies.end(), [&](const MeshBody& body) {
-    return body.name == piece.name && body.material == piece.material && is_open(body);
+    return body.name == piece.name && body.material == piece.material && is_open(body) && is_open(piece);
   });
 }
 
 void add_piece(std::vector<MeshBody>& bodies, MeshBody piece) {
-  const auto partner = is_open(piece) ? find_partner(bodies, piece) : bodies.end();
+  const auto partner = find_partner(bodies, piece);
   if (partner == bodies.end()) {
     bodies.push_back(std::move(piece));
     return;

@@ -176,7 +176,8 @@ void read_specimen(const TomlTable& root, SceneParts parts, mc::Specimen& specim
 }  // namespace
 
 SceneFile read_scene(const std::filesystem::path& path,
-                     const std::vector<std::filesystem::path>& material_files) {
+                     const std::vector<std::filesystem::path>& material_files,
+                     const BodyReader& read) {
   const TomlTable root = TomlTable::parse(read_file(path, max_scene_bytes), path.string());
   root.allow({"title", "beam", "scan", "simulation", "substrate", "height_field", "body",
               "material"});
@@ -190,7 +191,7 @@ SceneFile read_scene(const std::filesystem::path& path,
   if (const auto table = root.table("scan")) scene.scan = read_scan(*table);
   if (const auto table = root.table("simulation")) read_simulation(*table, scene);
   read_materials(root, path, material_files, scene);
-  read_specimen(root, SceneParts(path.parent_path(), scene), scene.specimen);
+  read_specimen(root, SceneParts(path.parent_path(), scene, read), scene.specimen);
   scene.inputs.insert(scene.inputs.end(), material_files.begin(), material_files.end());
   return scene;
 }

@@ -294,7 +294,7 @@ std::vector<mc::Body> SceneParts::read_mesh_file(const TomlTable& table) {
     for (const std::string& name : meaning->keys()) names.meaning[name] = *meaning->text(name);
   }
   const std::filesystem::path path = input(table, "mesh");
-  std::vector<MeshBody> read = read_mesh_bodies(path, unit_nm, names, scene_.materials);
+  std::vector<MeshBody> read = read_(path, unit_nm, names, scene_.materials);
   const std::vector<std::filesystem::path> files = mesh_input_files(path);
   scene_.inputs.insert(scene_.inputs.end(), files.begin() + 1, files.end());
   std::vector<mc::Body> bodies;

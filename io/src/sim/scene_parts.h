@@ -14,8 +14,8 @@ namespace surf::io {
 class SceneParts {
  public:
   /// Adds materials to `scene.specimen` and files to `scene.inputs`; both must outlive this.
-  SceneParts(std::filesystem::path folder, SceneFile& scene)
-      : folder_(std::move(folder)), scene_(scene) {}
+  SceneParts(std::filesystem::path folder, SceneFile& scene, BodyReader read)
+      : folder_(std::move(folder)), scene_(scene), read_(std::move(read)) {}
 
   mc::Substrate read_substrate(const TomlTable& table);
   mc::HeightFieldBody read_height_field(const TomlTable& table);
@@ -32,6 +32,7 @@ class SceneParts {
 
   std::filesystem::path folder_;
   SceneFile& scene_;
+  BodyReader read_;
 };
 
 /// Runs `work`; what it refuses is reported at the key's place in the scene file.

@@ -14,6 +14,8 @@
 
 namespace surf::mc {
 
+class NodeMemory;
+
 /// How `Scene` is built.
 struct SceneOptions {
   /// Memory for bounds of the distance to the nearest surface, bytes, about (>= 0; 0: none, every
@@ -23,6 +25,11 @@ struct SceneOptions {
   /// from all vacuum open to the outside than the ranges at beam energy in all materials together.
   /// It changes no detector's mean or variance.
   bool leave_out_unreachable = true;
+  /// What `validate` has said of the specimen; null: it is asked.
+  const std::vector<BodyFacts>* facts = nullptr;
+  /// Where all processes of a machine build the same scene together (surf/mc/node_memory.h): its
+  /// triangles are there once. Only the first one needs the bodies of the specimen. Null: alone.
+  NodeMemory* node = nullptr;
   Watch watch;
 };
 

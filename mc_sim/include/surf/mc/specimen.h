@@ -48,9 +48,18 @@ struct Specimen {
 /// Whether a body is an open sheet.
 bool is_sheet(const Body& body, const Watch& watch = {});
 
+/// What checking a body has found.
+struct BodyFacts {
+  std::size_t triangles = 0;
+  Box box;
+  bool is_sheet = false;   ///< see `is_sheet`
+  bool inward = false;     ///< a closed mesh whose normals point inward
+};
+
 /// Checks materials, indices, meshes (closed, or sheets; consistently oriented) and the field.
-/// Throws InvalidInput with the place of the first fault. At least one solid is needed.
-void validate(const Specimen& specimen, const Watch& watch = {});
+/// Throws InvalidInput with the place of the first fault. At least one solid is needed. The answer is
+/// of every body: finding it again would take as long.
+std::vector<BodyFacts> validate(const Specimen& specimen, const Watch& watch = {});
 
 /// The box around bodies and height field; for a bare substrate 1000 nm around its origin.
 /// z runs from the lowest to the highest surface.

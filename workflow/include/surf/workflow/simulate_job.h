@@ -103,7 +103,7 @@ using LibraryCallback = ProgressCallback;
 ///
 /// With a `team` all of it call this with the same job, and share its units of work; the leader writes and tells, and its
 /// summary is the true one. Bytes are those of one process. Deposited energy cannot be had so (UsageError).
-SimulateSummary run(const SimulateJob& job, const ProgressCallback& progress = {},
+SimulateSummary run(SimulateJob job, const ProgressCallback& progress = {},
                     const CancelToken* cancel = nullptr, const WarningCallback& warn = {},
                     const NoteCallback& note = {}, const LibraryCallback& libraries = {},
                     Team* team = nullptr);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "surf/mc/crew.h"
+#include "surf/mc/node_memory.h"
 
 namespace surf::workflow {
 
@@ -37,6 +38,8 @@ class Team : public mc::Crew {
   virtual std::vector<std::string> exchange(const std::string& text) = 0;
   /// What the members have done since the team began; the leader's knowledge.
   virtual std::vector<TeamMember> members() const = 0;
+  /// What those on this machine share; null where there is nobody else.
+  virtual mc::NodeMemory* node() { return nullptr; }
 };
 
 /// Does a part of the work that all do, and fails on all if it fails on one: who went on alone would wait for the others
@@ -45,5 +48,12 @@ void together(Team* team, const std::function<void()>& part);
 
 /// Whether to talk to the user and to write.
 inline bool leads(const Team* team) { return !team || team->leads(); }
+
+/// The memory that a team's processes on this machine share; null where there is nobody else.
+inline mc::NodeMemory* node_of(Team* team) { return team ? team->node() : nullptr; }
+
+/// Does what the first process of a machine does for the others, whose answer is its text; alone too.
+/// Where it fails, all fail.
+std::string once_per_node(mc::NodeMemory* node, const std::function<std::string()>& work);
 
 }  // namespace surf::workflow

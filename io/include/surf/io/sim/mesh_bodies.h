@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <optional>
 #include <string>
@@ -36,5 +37,10 @@ struct MaterialNames {
 std::vector<MeshBody> read_mesh_bodies(const std::filesystem::path& path,
                                        std::optional<double> unit_nm, const MaterialNames& names,
                                        const MaterialLibrary& library = {});
+
+/// `read_mesh_bodies`, or what does its work.
+using BodyReader =
+    std::function<std::vector<MeshBody>(const std::filesystem::path& path, std::optional<double> unit_nm,
+                                        const MaterialNames& names, const MaterialLibrary& library)>;
 
 }  // namespace surf::io

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "surf/io/sim/materials.h"
+#include "surf/io/sim/mesh_bodies.h"
 #include "surf/mc/beam.h"
 #include "surf/mc/detector.h"
 #include "surf/mc/physics.h"
@@ -96,9 +97,11 @@ struct SceneFile {
 ///     # rotate_y = 0, rotate_z = 0, move = [0, 0, 0]
 ///     [[material]]               # the scene's own materials: see MaterialLibrary
 ///
-/// `material_files` are read as well; what they say goes before the scene's own materials.
+/// `material_files` are read as well; what they say goes before the scene's own materials. `read` reads
+/// the mesh files.
 SceneFile read_scene(const std::filesystem::path& path,
-                     const std::vector<std::filesystem::path>& material_files = {});
+                     const std::vector<std::filesystem::path>& material_files = {},
+                     const BodyReader& read = read_mesh_bodies);
 
 /// Whether the name ends in ".toml".
 bool is_scene_file(const std::filesystem::path& path);

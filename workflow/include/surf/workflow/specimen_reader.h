@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "surf/io/sim/mesh_bodies.h"
+#include "surf/mc/node_memory.h"
+
+namespace surf::workflow {
+
+/// Reads meshes to be simulated: asks first whether they fit into memory (`require_memory`). Where
+/// several processes of a machine read the same ones together, the first one reads; the others get the
+/// bodies' names and materials, and empty meshes.
+io::BodyReader specimen_reader(mc::NodeMemory* node = nullptr);
+
+}  // namespace surf::workflow
