@@ -146,6 +146,6 @@ int main(int argc, char** argv) {
     const auto model = make_model(trained);
     HeightField at_pixel = field;
     at_pixel.pitch_x_nm = at_pixel.pitch_y_nm = trained.scope.pixel_nm;
-    measure("predict", wanted, [&](const Watch&) { model->predict(at_pixel, {}); });
+    measure("predict", wanted, [&](const Watch& w) { model->predict(at_pixel, {.watch = w}); });
   }
 }
