@@ -240,7 +240,7 @@ def all_numbers_are_looked_at():
 # Places may lie beyond the images: NaN there is the answer.
 BEYOND = {("Drape", "Transform"), ("LineProfile", "Transform"), ("LineProfile", "Point1"), ("LineProfile", "Point2")}
 # For one attempt, on a busy machine.
-SECONDS = 8
+SECONDS = 30
 
 if len(sys.argv) > 1:
     child(int(sys.argv[1]))
