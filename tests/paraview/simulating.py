@@ -177,8 +177,8 @@ def progress_and_abort():
         source.Seed = 2
         source.Seed = 1
         same(array(abort_and_rerun(source, 0.1), "SE"), whole, f"{budget}: after an abort")
-    for budget in ({"Electrons": 60, "Method": "Direct"}, {"Electrons": 400, "Method": "Replay"},
-                   {"Budget": "Accuracy", "Accuracy": 0.04}):
+    for budget in ({"Electrons": 60, "Method": "Direct"}, {"Electrons": 200, "Method": "Replay"},
+                   {"Budget": "Accuracy", "Accuracy": 0.1}):
         check(budget)
 
 
