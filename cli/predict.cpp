@@ -110,9 +110,12 @@ std::string format_values(const Channel& channel) {
 
 int predict(const Options& o) {
   const workflow::PredictJob job = make_job(o);
-  const workflow::PredictSummary s = workflow::run(job, [&](const std::string& note) {
+  Watched watched(!o.quiet);
+  const auto tell = [&](const std::string& note) {
     if (!o.quiet) print_note(note);
-  });
+  };
+  const workflow::PredictSummary s = workflow::run(job, tell, watched.watch());
+  watched.clear();
   for (const std::string& warning : s.warnings) print_warning(warning);
   if (o.quiet) return 0;
   const auto line = [](const std::string& label, const std::string& text) { fmt::print("{:<10} {}\n", label, text); };

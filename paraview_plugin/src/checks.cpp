@@ -13,6 +13,14 @@ void need_number(double value, const char* label) {
   if (!std::isfinite(value)) throw UsageError(label, fmt::format("it is {}, no number", value), "Give a finite one");
 }
 
+void need_between(double value, double low, double high, const char* label) {
+  need_number(value, label);
+  if (value < low || value > high)
+    throw UsageError(label, fmt::format("{} is not in {} to {}", value, low, high), "Give one in between");
+}
+
+void need_moderate(double value, const char* label) { need_between(value, -1e9, 1e9, label); }
+
 void need_length(double nm, const char* label) {
   need_number(nm, label);
   constexpr double most_nm = 1e9;

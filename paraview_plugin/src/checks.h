@@ -8,6 +8,10 @@ namespace surf::pv {
 
 /// Neither NaN nor infinite.
 void need_number(double value, const char* label);
+/// A number from `low` to `high`.
+void need_between(double value, double low, double high, const char* label);
+/// A number, at most 1e9 from 0: a place in nm, a grey level.
+void need_moderate(double value, const char* label);
 /// A number, 0 to 1e9, nm: squares of more than a metre would no longer be told from others.
 void need_length(double nm, const char* label);
 /// The same, above 0.

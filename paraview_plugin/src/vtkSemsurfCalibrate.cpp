@@ -77,9 +77,9 @@ int vtkSemsurfCalibrate::RequestData(vtkInformation*, vtkInformationVector** inp
       }
       images.real = std::move(real.values);
       CalibrationOptions options;
-      pv::need_number(this->Offset, "Offset");
-      pv::need_number(this->Black, "Black");
-      pv::need_number(this->White, "White");
+      pv::need_moderate(this->Offset, "Offset");
+      pv::need_moderate(this->Black, "Black");
+      pv::need_moderate(this->White, "White");
       if (this->Saturation && this->Black >= this->White)
         throw UsageError("White", fmt::format("{} is not above Black, {}", this->White, this->Black), "Give 255, say");
       if (this->FixOffset) options.offset = this->Offset;

@@ -44,8 +44,8 @@ int vtkSemsurfLineProfile::RequestData(vtkInformation*, vtkInformationVector** i
     if (this->Samples < 2 || this->Samples > 1000000)
       throw UsageError("Samples", fmt::format("{} is not in 2 to 1000000", this->Samples), "Give 500 where in doubt");
     for (int i = 0; i < 3; ++i) {
-      pv::need_number(this->Point1[i], "Point1");
-      pv::need_number(this->Point2[i], "Point2");
+      pv::need_moderate(this->Point1[i], "Point1");
+      pv::need_moderate(this->Point2[i], "Point2");
     }
     const Affine to_sem = inverse(pv::to_affine(this->Transform));
     vtkImageData* const scan_image = pv::image_input(inputs, 0, "Input");

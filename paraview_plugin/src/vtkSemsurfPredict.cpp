@@ -70,7 +70,9 @@ int vtkSemsurfPredict::RequestData(vtkInformation*, vtkInformationVector** input
     check_field(trained.scope, field, "Input");
     const auto model = make_model(trained);
     ModelImages predicted;
-    pv::work(this, [&](const Watch&) { predicted = model->predict(field, {static_cast<surf::Edge>(this->Edge), 0}); });
+    pv::work(this, [&](const Watch& watch) {
+      predicted = model->predict(field, {.edge = static_cast<surf::Edge>(this->Edge), .watch = watch});
+    });
     Image image;
     image.pitch_x_nm = field.pitch_x_nm, image.pitch_y_nm = field.pitch_y_nm;
     image.origin_x_nm = field.origin_x_nm, image.origin_y_nm = field.origin_y_nm;

@@ -30,7 +30,7 @@ int vtkSemsurfSampleBody::RequestData(vtkInformation*, vtkInformationVector**,
   return pv::attempt(this, [&] {
     vtkInformation* const output = outputs->GetInformationObject(0);
     if (!pv::is_first_piece(output)) return;
-    for (const double nm : this->Base) pv::need_number(nm, "Base");
+    for (const double nm : this->Base) pv::need_moderate(nm, "Base");
     const Vec3 base{this->Base[0], this->Base[1], this->Base[2]};
     TriangleMesh mesh;
     const auto make = [&] {

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "attempt.h"
+#include "checks.h"
 #include "labels.h"
 #include "pipeline.h"
 #include "surf/core/error.h"
@@ -69,6 +70,10 @@ int vtkSemsurfSampleSurface::RequestData(vtkInformation*, vtkInformationVector**
   return pv::attempt(this, [&] {
     const FieldExtent extent{this->Width, this->Depth, this->Pitch};
     frame_of(extent);   // complains of what cannot be sampled
+    if (this->Shape <= Grating) {
+      pv::need_length(this->FeatureWidth, "Feature Width");
+      pv::need_length(this->WallRun, "Wall Run");
+    }
     HeightField field;
     pv::with_labels([&] { pv::work(this, [&](const Watch&) { field = this->Make(extent); }); },
                     {{"height of", "Feature Height"}, {"depth of", "Feature Height"}, {"top width", "Feature Width"},

@@ -95,7 +95,7 @@ std::string unique_name(std::set<std::string>& taken, const std::string& name) {
 
 void vtkSemsurfScanReader::ReadHead() {
   if (this->FileName.empty()) throw UsageError("FileName", "no file is named", "Name a scan");
-  pv::need_length(this->ZUnit, "Z Unit");
+  pv::need_length(this->ZUnit, "Height Unit");
   for (const double nm : this->PixelSize) pv::need_length(nm, "Pixel Size");
   std::error_code unreadable;   // then reading says what is wrong
   const Contents::Key key{this->FileName, std::filesystem::last_write_time(this->FileName, unreadable),

@@ -1,16 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "vtkSemsurfSurfaceWriter.h"
 
-#include <fmt/format.h>
 #include <vtkInformation.h>
 #include <vtkObjectFactory.h>
 
-#include <cmath>
 #include <utility>
 
+#include "checks.h"
 #include "convert/image.h"
 #include "convert/mesh.h"
-#include "surf/core/error.h"
 #include "surf/io/surface_file.h"
 
 vtkStandardNewMacro(vtkSemsurfSurfaceWriter);
@@ -24,7 +22,7 @@ int vtkSemsurfSurfaceWriter::FillInputPortInformation(int, vtkInformation* info)
 
 void vtkSemsurfSurfaceWriter::WriteFile() {
   for (const auto& [value, label] : {std::pair{this->Magnification, "Magnification"}, {this->ZExaggeration, "Z Exaggeration"}})
-    if (!(value > 0 && std::isfinite(value))) throw UsageError(label, fmt::format("it is {}, not above 0", value), "Give 1");
+    pv::need_between(value, 1e-12, 1e12, label);
   auto* const data = vtkPolyData::SafeDownCast(this->GetInput());
   SurfaceScene scene;
   scene.surfaces.push_back(pv::to_surface(data, "Input"));

@@ -14,6 +14,7 @@
 #include <cmath>
 #include <filesystem>
 #include <iterator>
+#include <limits>
 #include <memory>
 #include <utility>
 
@@ -118,6 +119,8 @@ void vtkSemsurfTrain::AddModel(workflow::TrainJob& job) const {
        "Give 1 to 3, or one 0 for none");
   for (const auto& [value, label] : {std::pair{this->Decay, "Decay"}, {this->Tolerance, "Tolerance"}, {this->CutOff, "Cut Off"}})
     pv::need_number(value, label);
+  need_within(this->Iterations, 0, 100000, "Iterations");
+  need_within(this->TableElectrons, 0, std::numeric_limits<int>::max(), "Table Electrons");
   if (this->Iterations > 0) learn.iterations = this->Iterations;
   if (this->Decay >= 0) learn.decay = this->Decay;
   if (this->Tolerance >= 0) learn.tolerance = this->Tolerance;
@@ -190,7 +193,7 @@ workflow::TrainJob vtkSemsurfTrain::Job(vtkInformationVector** inputs) {
        "Give 1 or more per pixel");
   need(this->Budget == 0 || (this->Accuracy >= 1e-4 && this->Accuracy <= 1), "Accuracy",
        fmt::format("{} is not in 0.0001 to 1", this->Accuracy), "Give 0.03 for 3 %");
-  need(this->PixelSize >= 0 && std::isfinite(this->PixelSize), "Pixel Size", "it is below 0", "Give 3 where in doubt");
+  pv::need_length(this->PixelSize, "Pixel Size");
   need_within(this->Surfaces, 0, 1000, "Surfaces");
   need_within(this->SurfaceSize, 16, 4096, "Surface Size");
   need_within(this->HoldOut, 0, 1000, "Hold Out");
@@ -242,6 +245,6 @@ int vtkSemsurfTrain::RequestData(vtkInformation*, vtkInformationVector** inputs,
       pv::fill_model(model, job, summary, notes);
       pv::give(outputs->GetInformationObject(0), errors);
       pv::give(outputs->GetInformationObject(1), model);
-    });
+    }, {{"pixel size", "Pixel Size"}});
   });
 }

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Scenes, predictions, and what lays images on surfaces and beside them."""
-from support import DATA, FOLDER, SOURCE, array, column, expect, fetch, numpy, quiet, refuses, refuses_until, run, \
+from support import DATA, FOLDER, SOURCE, abort_and_rerun, array, column, expect, fetch, numpy, progress_of, quiet, refuses, refuses_until, run, \
     same, semsurf, simple, text, vtk_to_numpy
 
 MODEL = SOURCE / "samples" / "si-1keV-3nm.json"
@@ -59,6 +59,14 @@ def predictions_equal_the_command():
         expect((got != array(data, "SE")).any(), f"{edge} changes nothing")
 
 
+def predictions_tell_and_abort():
+    surface = simple.SampleSurface(Shape="Rough", Width=6000, Depth=3000, Pitch=3, CorrelationLength=9)
+    source = simple.PredictSEM(Input=surface, ModelFile=str(MODEL))
+    expect(len(progress_of(source)) > 2, "there is progress")
+    whole = array(fetch(source), "SE").copy()
+    same(array(abort_and_rerun(source), "SE"), whole, "after an abort")
+
+
 def images_are_draped():
     heights = fetch(scan())
     surface = simple.HeightFieldtoSurface(Input=scan())
@@ -108,5 +116,5 @@ def wrong_properties_are_refused():
     refuses(simple.SceneReader(FileName=str(FOLDER / "bad.toml")), "beem")
 
 
-run(scenes_are_simulated_as_they_say, predictions_equal_the_command, images_are_draped, profiles_show_all,
+run(scenes_are_simulated_as_they_say, predictions_equal_the_command, predictions_tell_and_abort, images_are_draped, profiles_show_all,
     wrong_properties_are_refused)

@@ -97,6 +97,24 @@ def every_repair_is_the_option():
           ({"MinimumComponent": 10}, "--min-component", "10nm"), ({"Sliver": 0.1}, "--sliver", "0.1nm")], check)
 
 
+def crossings_are_resolved_as_the_command_does():
+    both = simple.AppendGeometry(Input=[simple.SampleBody(Shape="Sphere", Radius=50, Subdivisions=2, Base=[x, 0, 0]) for x in (0, 60)])
+    simple.SaveData(str(FOLDER / "crossing.off"), proxy=both)
+    reader = simple.SurfaceMeshReader(FileName=str(FOLDER / "crossing.off"))
+    results = []
+    for properties, options in [({}, []), ({"ResolveIntersections": 0}, ["--keep-intersections"])]:
+        semsurf("mesh", "crossing.off", "--repair", *options, "-o", "whole.off", code=None)
+        mended, want = simple.CheckandRepairMesh(Input=reader, **properties), read("whole.off")
+        results.append(fetch(mended))
+        same(points(results[-1]), points(want), f"{properties}: points")
+        same(corners(results[-1]), corners(want), f"{properties}: triangles")
+        table = quiet(mended, 1)
+        row = column(table, "quantity").index("self_intersections")
+        before, after = column(table, "before")[row], column(table, "after")[row]
+        expect(before > 10 and (after > 10) == bool(properties), f"{properties}: {before} crossings before, {after} after")
+    expect(len(corners(results[0])) != len(corners(results[1])), "it changes nothing")
+
+
 def thinning_equals_the_command():
     body = simple.SampleBody(Shape="Sphere", Radius=50, Subdivisions=4)
     simple.SaveData(str(FOLDER / "sphere.off"), proxy=body)
@@ -184,5 +202,6 @@ def wrong_properties_are_refused():
         Input=simple.SampleBody(Shape="Sphere"), Samples=20)), "height field", "hole")
 
 
-run(surfaces_equal_the_command, there_and_back, mending_equals_the_command, every_repair_is_the_option, thinning_equals_the_command,
+run(surfaces_equal_the_command, there_and_back, mending_equals_the_command, every_repair_is_the_option,
+    crossings_are_resolved_as_the_command_does, thinning_equals_the_command,
     files_are_read_back, vtk_files_are_inline, wrong_properties_are_refused)

@@ -170,12 +170,16 @@ def wrong_properties_are_refused():
 
 
 def progress_and_abort():
-    source = simple.SimulateSEM(Input=sphere(), Pixels=64, Electrons=60, Method="Direct")
-    expect(len(progress_of(source)) > 3, "there is progress")
-    whole = array(fetch(source), "SE").copy()
-    source.Seed = 2
-    source.Seed = 1
-    same(array(abort_and_rerun(source, 0.1), "SE"), whole, "after an abort")
+    def check(budget):
+        source = simple.SimulateSEM(Input=sphere(), Pixels=64, **budget)
+        expect(len(progress_of(source)) > 3, f"{budget}: there is progress")
+        whole = array(fetch(source), "SE").copy()
+        source.Seed = 2
+        source.Seed = 1
+        same(array(abort_and_rerun(source, 0.1), "SE"), whole, f"{budget}: after an abort")
+    for budget in ({"Electrons": 60, "Method": "Direct"}, {"Electrons": 200, "Method": "Replay"},
+                   {"Budget": "Accuracy", "Accuracy": 0.1}):
+        check(budget)
 
 
 run(images_equal_the_command, every_property_is_the_option, heights_equal_the_command, bodies_have_materials, tracks_and_detectors, live_images_refine,

@@ -92,7 +92,7 @@ std::vector<std::string> prediction_warnings(const TrainedModel& model, const He
   return warnings;
 }
 
-PredictSummary run(const PredictJob& job, const NoteCallback& note) {
+PredictSummary run(const PredictJob& job, const NoteCallback& note, const Watch& watch) {
   PredictSummary summary;
   summary.model = io::read_model(job.model);
   const ModelScope& scope = summary.model.scope;
@@ -103,10 +103,11 @@ PredictSummary run(const PredictJob& job, const NoteCallback& note) {
   summary.image = image_of(job, summary.model, field, model->channels());
   check_outputs(job, summary.image);
   const auto start = std::chrono::steady_clock::now();
-  fill(summary.image, model->predict(field, {job.edge, job.threads}));
+  fill(summary.image, model->predict(field, {.edge = job.edge, .threads = job.threads, .watch = watch}));
   summary.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   summary.range = surface_range(field);
   summary.warnings = prediction_warnings(summary.model, field);
+  watch.check();
   for (const fs::path& output : job.outputs) io::write_image(output, summary.image, {job.png_channel});
   return summary;
 }

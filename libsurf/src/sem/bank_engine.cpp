@@ -45,7 +45,7 @@ template <class T>
 facet::CoarseFits<T> BankEngine<T>::coarse_fits(const Grid<double>& z_nm) const {
   facet::CoarseFits<T> coarse(parameters_.multi_resolution ? parameters_.scales : std::vector<FacetScale>(),
                               pitch_x_nm_, pitch_y_nm_);
-  coarse.load(z_nm, options_.edge, options_.threads);
+  coarse.load(z_nm, options_.edge, options_.threads, {{}, options_.watch.cancel});
   return coarse;
 }
 
@@ -97,7 +97,7 @@ ModelImages BankEngine<T>::predict(const Grid<double>& z_nm) const {
     for (int s = 0; s < scales(); ++s)
       pass_.loops().combine(fit(s, coarse, block, scratch), block.rows, weights_[s].data(), channels, sum.data());
     add(block, sum, 1, images);
-  });
+  }, options_.watch);
   return images;
 }
 

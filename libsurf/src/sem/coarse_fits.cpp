@@ -98,7 +98,7 @@ typename CoarseFits<T>::Range CoarseFits<T>::range(const Fit& fit, int count) co
 }
 
 template <class T>
-void CoarseFits<T>::load(const Grid<double>& z_nm, Edge edge, int threads) {
+void CoarseFits<T>::load(const Grid<double>& z_nm, Edge edge, int threads, const Watch& watch) {
   if (levels_ == 0) return;
   threads = resolve_threads(threads);
   // Relative to a height: smoothing would round what is constant.
@@ -106,12 +106,13 @@ void CoarseFits<T>::load(const Grid<double>& z_nm, Edge edge, int threads) {
   for (int level = 1; level <= levels_; ++level) {
     if (level > 1) z = halve(z, neighbours(z.width()), neighbours(z.height()), 0);
     for (Fit& fit : fits_)
-      if (fit.level == level) fit_level(z, z_nm.width(), z_nm.height(), threads, fit);
+      if (fit.level == level) fit_level(z, z_nm.width(), z_nm.height(), threads, watch, fit);
   }
 }
 
 template <class T>
-void CoarseFits<T>::fit_level(const Grid<double>& z, int width, int height, int threads, Fit& fit) const {
+void CoarseFits<T>::fit_level(const Grid<double>& z, int width, int height, int threads, const Watch& watch,
+                              Fit& fit) const {
   const Range x = range(fit, width), y = range(fit, height);
   Grid<double> part(x.count, y.count);
   for (int row = 0; row < y.count; ++row) std::copy_n(&z(x.first, y.first + row), x.count, &part(0, row));
@@ -131,7 +132,7 @@ void CoarseFits<T>::fit_level(const Grid<double>& z, int width, int height, int 
         std::copy_n(
             k, block.width,
             fit.planes.data() + (static_cast<std::size_t>(row) * coefficients + c) * x.count + block.x);
-  });
+  }, watch);
   fit.floors = {};
   for (const Floors<T>& f : floors)
     fit.floors = {std::max(fit.floors.slope, f.slope), std::max(fit.floors.curvature, f.curvature)};

@@ -5,6 +5,7 @@
 
 #include "facet_pass.h"
 #include "surf/core/grid.h"
+#include "surf/core/progress.h"
 #include "surf/sem/filter_bank.h"
 
 namespace surf::facet {
@@ -23,7 +24,7 @@ class CoarseFits {
   CoarseFits(const std::vector<FacetScale>& scales, double pitch_x_nm, double pitch_y_nm);
 
   bool has(int scale) const { return fits_[scale].level > 0; }
-  void load(const Grid<double>& z_nm, Edge edge, int threads);
+  void load(const Grid<double>& z_nm, Edge edge, int threads, const Watch& watch);
 
   /// A scale's coefficients at a block's pixels, row by row, `columns` (those of FacetPass) apart; 0 beyond
   /// its width.
@@ -55,7 +56,7 @@ class CoarseFits {
   Range range(const Fit& fit, int count) const;
   Range rows_of(const Fit& fit, const Block& block) const;
   Worth worth(const Fit& fit, const Block& block, int columns) const;
-  void fit_level(const Grid<double>& z, int width, int height, int threads, Fit& fit) const;
+  void fit_level(const Grid<double>& z, int width, int height, int threads, const Watch& watch, Fit& fit) const;
   void transpose_fit(int scale, const Source& source, int columns, int threads, double unit, int width,
                      int height, Grid<double>& level) const;
 

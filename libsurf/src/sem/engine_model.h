@@ -26,6 +26,7 @@ class EngineLinearization final : public Linearization {
         pitch_y_nm_(field.pitch_y_nm) {
     images_ = Kind::run(*parameters_, pitch_x_nm_, pitch_y_nm_, options_,
                         [&](const auto& engine) { return engine.predict(z_nm_); });
+    options_.watch = {};   // who watches may be gone when derivatives are asked for
   }
 
   const ModelImages& images() const override { return images_; }

@@ -110,7 +110,7 @@ ModelImages NetworkEngine<T>::predict(const Grid<double>& z_nm) const {
   parallel_for(blocks.size(), options_.threads, [&](std::size_t i, int w) {
     take_inputs(z_nm, planes, blocks[i], workers[w]);
     put(blocks[i], 1, workers[w], images);
-  });
+  }, options_.watch);
   return images;
 }
 

@@ -42,7 +42,7 @@ class SlopeEngine {
         for (std::size_t c = 0; c < images.size(); ++c) to[c] = &images[c](block.x, block.y + y);
         slopes_.curves.yields(worker.row(y, pass_.columns(), block.width), to.data());
       }
-    });
+    }, options_.watch);
     return images;
   }
 

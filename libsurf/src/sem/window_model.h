@@ -41,7 +41,7 @@ class WindowLinearization final : public Linearization {
     rows(field_.height(), [&](int y) {
       for (std::size_t c = 0; c < images_.size(); ++c)
         for (int x = 0; x < field_.width(); ++x) look(c, x, y);
-    });
+    }, options.watch);
   }
 
   const ModelImages& images() const override { return images_; }
@@ -91,8 +91,9 @@ class WindowLinearization final : public Linearization {
 
  private:
   template <class Work>
-  void rows(int count, const Work& work) const {
-    parallel_for(static_cast<std::size_t>(count), threads_, [&](std::size_t y, int) { work(static_cast<int>(y)); });
+  void rows(int count, const Work& work, const Watch& watch = {}) const {
+    parallel_for(static_cast<std::size_t>(count), threads_,
+                 [&](std::size_t y, int) { work(static_cast<int>(y)); }, watch);
   }
 
   WindowTerm term(std::size_t c, int x, int y, int dx, int dy) const {

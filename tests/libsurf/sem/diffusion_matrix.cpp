@@ -105,5 +105,7 @@ TEST(DiffusionMatrix, RefusesWhatIsNoTable) {
   EXPECT_THROW(make_diffusion_matrix(scope, p), InvalidInput);
 }
 
+TEST(DiffusionMatrix, IsWatched) { test::expect_watched(*model(), test::rough_field(30, 20)); }
+
 }  // namespace
 }  // namespace surf

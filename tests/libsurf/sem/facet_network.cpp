@@ -368,4 +368,6 @@ TEST(FitFacetNetwork, RefusesWhatItCannotLearnFrom) {
   EXPECT_THROW(fit_facet_network(images, {"SE", "BSE"}, quick()), InvalidInput);
 }
 
+TEST(FacetNetwork, IsWatched) { expect_watched(*network(), rough_field(150, 700)); }
+
 }  // namespace

@@ -264,4 +264,8 @@ TEST(FilterBank, RefusesBadParameters) {
   refused([](auto& p) { p.channels[1].min_curvature[2] = std::nan(""); });
 }
 
+TEST(FilterBank, IsWatched) {
+  for (const bool multi : {false, true}) expect_watched(*bank(multi), rough_field(150, 700));
+}
+
 }  // namespace

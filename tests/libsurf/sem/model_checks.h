@@ -5,7 +5,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 
+#include "surf/core/error.h"
 #include "surf/core/random.h"
 #include "surf/sem/image_model.h"
 
@@ -86,6 +88,41 @@ inline void expect_finite(const ImageModel& model, const HeightField& field, Edg
     for (const Grid<double>& image : linear->images()) EXPECT_TRUE(finite(image));
     for (const Grid<double>& image : linear->change(w[0])) EXPECT_TRUE(finite(image));
     EXPECT_TRUE(finite(linear->gradient(w)));
+  }
+}
+
+/// Tells of a rising progress, and is left at the first look at a token that is set. Watched or not, the same image.
+inline void expect_watched(const ImageModel& model, const HeightField& field) {
+  double last = 0;
+  int told = 0;
+  const auto tell = [&](double done, double total) {
+    EXPECT_GT(done, last);
+    EXPECT_LE(done, total);
+    last = done;
+    ++told;
+  };
+  EXPECT_EQ(model.predict(field, {.threads = 1, .watch = {tell, nullptr}}), model.predict(field, {.threads = 1}));
+  EXPECT_GE(told, 4) << "blocks are small";
+  CancelToken before;
+  before.cancel();
+  EXPECT_THROW(model.predict(field, {.watch = {{}, &before}}), Interrupted);
+  EXPECT_THROW(model.linearize(field, {.watch = {{}, &before}}), Interrupted);
+  CancelToken during;
+  told = 0;
+  const auto stop = [&](double, double) {
+    ++told;
+    during.cancel();
+  };
+  EXPECT_THROW(model.predict(field, {.threads = 1, .watch = {stop, &during}}), Interrupted);
+  EXPECT_EQ(told, 1) << "it went on";
+  // Derivatives outlive who watched.
+  std::unique_ptr<Linearization> linear;
+  {
+    CancelToken gone;
+    linear = model.linearize(field, {.threads = 1, .watch = {{}, &gone}});
+    gone.cancel();
+    EXPECT_NO_THROW(linear->change(field.z_nm));
+    EXPECT_NO_THROW(linear->gradient(linear->images()));
   }
 }
 

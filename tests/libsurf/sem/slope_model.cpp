@@ -99,4 +99,6 @@ TEST(SlopeModel, RefusesBadParameters) {
   refused(SlopeForm::table, [](auto& p) { p.table_step_deg = 0; });
 }
 
+TEST(SlopeModel, IsWatched) { expect_watched(*make_slope_model({}, slopes(SlopeForm::table)), rough_field(150, 700)); }
+
 }  // namespace

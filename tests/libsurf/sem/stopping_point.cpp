@@ -131,5 +131,7 @@ TEST(StoppingPoint, RefusesWhatIsNoTable) {
   EXPECT_THROW(model()->predict(test::rough_field(8, 8, 3)), InvalidInput) << "another pitch";
 }
 
+TEST(StoppingPoint, IsWatched) { test::expect_watched(*model(), test::rough_field(30, 20)); }
+
 }  // namespace
 }  // namespace surf

@@ -19,7 +19,7 @@ struct Affine {
   friend bool operator==(const Affine&, const Affine&) = default;
 };
 
-/// The way back. Throws InvalidInput if there is none: a determinant of 0 or one that is not finite.
+/// The way back. Throws InvalidInput if there is none: a determinant of 0, or what is not finite.
 Affine inverse(const Affine& map);
 
 /// First `inner`, then `outer`.

@@ -8,6 +8,7 @@
 #include "surf/core/edge.h"
 #include "surf/core/grid.h"
 #include "surf/core/height_field.h"
+#include "surf/core/progress.h"
 
 namespace surf {
 
@@ -28,6 +29,7 @@ struct ModelOptions {
   Edge edge = Edge::mirror;   ///< how the heights go on outside the field
   int threads = 0;            ///< 0: one per hardware thread. Does not change the result
   bool double_precision = false;   ///< compute in double where a model computes in float: slower, to check with
+  Watch watch;                ///< of the making of images; derivatives are not watched
 };
 
 /// A model at one surface: its images there, and how they change with the heights. J is the matrix of

@@ -7,6 +7,7 @@
 
 #include "surf/core/height_field.h"
 #include "surf/core/image.h"
+#include "surf/core/progress.h"
 #include "surf/sem/surface_range.h"
 #include "surf/sem/trained_model.h"
 #include "surf/workflow/simulate_job.h"
@@ -37,9 +38,9 @@ struct PredictSummary {
 /// Checks model and outputs, predicts and writes. The image has a channel for each of the model's, in
 /// counts per primary, placed as the heights are, and says which model of which hash made it. Warns
 /// where the surface is steeper than any that the model has learnt from.
-/// Throws UsageError where the model was trained for anything else than what is wanted, InvalidInput and
-/// FileError.
-PredictSummary run(const PredictJob& job, const NoteCallback& note = {});
+/// Throws UsageError where the model was trained for anything else than what is wanted, InvalidInput,
+/// FileError, and Interrupted before anything is written.
+PredictSummary run(const PredictJob& job, const NoteCallback& note = {}, const Watch& watch = {});
 
 /// What should be known of a prediction of these heights: whether they are steeper than any that the model has learnt from.
 std::vector<std::string> prediction_warnings(const TrainedModel& model, const HeightField& field);
