@@ -25,7 +25,7 @@ constexpr double pilot_seconds = 10;
 // Who leads says it; it is alone in this.
 int try_out(const SimulateOptions& options, const std::string& command_line) {
   if (!workflow::leads(team())) return 0;
-  const workflow::SimulateJob job = make_simulate_job(options, command_line);
+  const workflow::SimulateJob job = make_simulate_job(options, command_line, workflow::specimen_reader());
   workflow::DryRun run;
   {
     InterruptGuard interrupts;

@@ -27,7 +27,7 @@ bool outward(void*, std::uint32_t, double cosine, double distance) {
   return cosine > 0 && distance >= 0;
 }
 
-std::vector<std::uint32_t> all(const TriangleMesh& mesh) {
+std::vector<std::uint32_t> all(const MeshView& mesh) {
   std::vector<std::uint32_t> out(mesh.triangles.size());
   std::iota(out.begin(), out.end(), 0u);
   return out;
@@ -35,7 +35,7 @@ std::vector<std::uint32_t> all(const TriangleMesh& mesh) {
 
 struct Corners {
   Vec3 v[3];
-  Corners(const TriangleMesh& mesh, std::uint32_t t)
+  Corners(const MeshView& mesh, std::uint32_t t)
       : v{mesh.vertices_nm[mesh.triangles[t][0]], mesh.vertices_nm[mesh.triangles[t][1]],
           mesh.vertices_nm[mesh.triangles[t][2]]} {}
   Vec3 middle() const { return (v[0] + v[1] + v[2]) * (1.0 / 3); }
