@@ -41,7 +41,7 @@ THIRD_PARTY = [
     ("cholmod.h", ["libsurf/src/reconstruction/sparse_factor.cpp"]),
     ("fftw3.h", ["libsurf/src/registration/shift_search.cpp"]),
     ("nlopt.h", ["libsurf/src/registration/mutual_information.cpp"]),
-    ("OpenImageIO/*", ["io/src/raster_file.cpp"]),
+    ("OpenImageIO/*", ["io/src/raster_*"]),
     ("vtk*", ["io/src/vti_file.cpp", "io/src/vtp_*.cpp", "io/src/vtk_support.h", "io/src/volume_file.cpp",
               "paraview_plugin/*"]),
     ("pugixml.hpp", ["io/src/vtk_xml.cpp", "io/src/three_mf_file.cpp"]),
