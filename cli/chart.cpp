@@ -70,7 +70,7 @@ workflow::ChartJob make_job(const Options& o, const std::string& command_line) {
   job.folder = *o.output;
   job.command_line = command_line;
   std::vector<std::string> notes;
-  job.scene = make_scene(o.scene, notes, workflow::specimen_reader());
+  job.scene = make_scene(o.scene, notes, workflow::specimen_reader(nullptr, processes_here()));
   if (!o.quiet)
     for (const std::string& note : notes) print_note(note);
   return job;

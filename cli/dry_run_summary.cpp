@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <string>
 
+#include "mpi_team.h"
 #include "surf/core/units.h"
 #include "terminal.h"
 
@@ -48,8 +49,8 @@ void print_memory(const workflow::DryRun& run) {
     if (need.bytes >= 0.005 * run.memory_bytes)
       parts += fmt::format("{}{} {}", parts.empty() ? "" : ", ", format_bytes(need.bytes), need.what);
   print_line("memory", fmt::format("{}{}: {}", format_bytes(run.memory_bytes), run.ranks > 1 ? " each rank" : "", parts));
-  if (run.memory_there > 0 && run.memory_bytes > run.memory_there)
-    print_warning(fmt::format("this machine has {} of memory", format_bytes(run.memory_there)));
+  if (const double all = run.memory_bytes * processes_here(); all > run.memory_there)
+    print_warning(fmt::format("{} of memory are there, and {} would be taken", format_bytes(run.memory_there), format_bytes(all)));
 }
 
 void print_disk(const workflow::DryRun& run) {

@@ -14,6 +14,7 @@
 #define OMPI_SKIP_MPICXX 1
 #define MPICH_SKIP_MPICXX 1
 #include <mpi.h>
+#include <sys/statvfs.h>
 
 #include <algorithm>
 #include <atomic>
@@ -101,6 +102,23 @@ std::string host() {
   return {name, static_cast<std::size_t>(length)};
 }
 
+// Waits for a collective call without keeping a processor busy, as MPI's own waiting does: the leader may be at work
+// for minutes. What comes at once is not slept over.
+template <class Begin>
+void await(const Begin& begin) {
+  MPI_Request request;
+  begin(&request);
+  const auto start = Clock::now();
+  for (;;) {
+    int done = 0;
+    MPI_Test(&request, &done, MPI_STATUS_IGNORE);
+    if (done) return;
+    const auto waited = Clock::now() - start;
+    if (waited < awake) std::this_thread::yield();
+    else std::this_thread::sleep_for(std::min<Clock::duration>(waited / 20, longest_nap));
+  }
+}
+
 // The processes of one machine: memory from MPI's windows, or a copy for each where they cannot be had.
 class MpiNode : public mc::NodeMemory {
  public:
@@ -121,7 +139,7 @@ class MpiNode : public mc::NodeMemory {
 
   void tell(std::string& bytes) override {
     std::uint64_t length = bytes.size();
-    MPI_Bcast(&length, 1, MPI_UINT64_T, 0, comm_);
+    await([&](MPI_Request* r) { MPI_Ibcast(&length, 1, MPI_UINT64_T, 0, comm_, r); });
     bytes.resize(length);
     broadcast(bytes.data(), length);
   }
@@ -131,16 +149,21 @@ class MpiNode : public mc::NodeMemory {
     Window w;
     void* mine = nullptr;
     const auto size = static_cast<MPI_Aint>(is_first() ? bytes + alignment : 0);
-    int good = MPI_Win_allocate_shared(size, 1, MPI_INFO_NULL, comm_, &mine, &w.window) == MPI_SUCCESS;
+    // Asked beforehand: where the first one cannot have it, Open MPI leaves the others waiting.
+    int room = is_first() && has_room(bytes + alignment);
+    await([&](MPI_Request* r) { MPI_Ibcast(&room, 1, MPI_INT, 0, comm_, r); });
+    int good = room && MPI_Win_allocate_shared(size, 1, MPI_INFO_NULL, comm_, &mine, &w.window) == MPI_SUCCESS;
     const bool made = good;
     MPI_Allreduce(MPI_IN_PLACE, &good, 1, MPI_INT, MPI_MIN, comm_);
     if (!good) {
       if (made) MPI_Win_free(&w.window);
-      if (is_first() && !copied_)
+      if (is_first() && !told_)
         std::fprintf(stderr, "semsurf: note: no memory to share (is /dev/shm full?): each process has its own copy\n");
-      copied_ = true;
-      return {static_cast<std::byte*>(::operator new(bytes, std::align_val_t{alignment})),
-              [](std::byte* p) { ::operator delete(p, std::align_val_t{alignment}); }};
+      told_ = true;
+      const std::shared_ptr<std::byte> copy(static_cast<std::byte*>(::operator new(bytes, std::align_val_t{alignment})),
+                                            [](std::byte* p) { ::operator delete(p, std::align_val_t{alignment}); });
+      copies_.push_back(copy.get());
+      return copy;
     }
     MPI_Aint whole = 0;
     int unit = 1;
@@ -152,9 +175,9 @@ class MpiNode : public mc::NodeMemory {
   }
 
   void share(std::byte* memory, std::size_t bytes) override {
-    if (copied_) return broadcast(reinterpret_cast<char*>(memory), bytes);
+    if (std::erase(copies_, memory) > 0) return broadcast(reinterpret_cast<char*>(memory), bytes);
     std::atomic_thread_fence(std::memory_order_seq_cst);
-    MPI_Barrier(comm_);
+    await([&](MPI_Request* r) { MPI_Ibarrier(comm_, r); });
     std::atomic_thread_fence(std::memory_order_seq_cst);
   }
 
@@ -166,8 +189,17 @@ class MpiNode : public mc::NodeMemory {
   };
 
   void broadcast(char* bytes, std::size_t length) {
-    for (std::size_t from = 0; from < length; from += largest_part)
-      MPI_Bcast(bytes + from, static_cast<int>(std::min(largest_part, length - from)), MPI_CHAR, 0, comm_);
+    for (std::size_t from = 0; from < length; from += largest_part) {
+      const int part = static_cast<int>(std::min(largest_part, length - from));
+      await([&](MPI_Request* r) { MPI_Ibcast(bytes + from, part, MPI_CHAR, 0, comm_, r); });
+    }
+  }
+
+  // Open MPI's windows are files there, of five percent more.
+  static bool has_room(std::size_t bytes) {
+    struct statvfs s {};
+    if (statvfs("/dev/shm", &s) != 0) return true;   // elsewhere, then
+    return static_cast<double>(s.f_bavail) * static_cast<double>(s.f_frsize) > 1.06 * static_cast<double>(bytes) + 1e6;
   }
 
   // Windows are freed by all together: those that nobody holds any more.
@@ -184,7 +216,8 @@ class MpiNode : public mc::NodeMemory {
 
   MPI_Comm comm_ = MPI_COMM_NULL;
   int rank_ = 0, size_ = 1;
-  bool copied_ = false;   // the same for all
+  bool told_ = false;
+  std::vector<const std::byte*> copies_;   // not shared yet
   std::vector<Window> windows_;
 };
 
@@ -203,8 +236,8 @@ class MpiTeam : public workflow::Team {
 
   ~MpiTeam() override {
     if (deaf_) MPI_Abort(MPI_COMM_WORLD, 130);   // who does not answer would be waited for
+    await([](MPI_Request* r) { MPI_Ibarrier(MPI_COMM_WORLD, r); });   // more quietly than what follows
     node_->leave();
-    await([](MPI_Request* r) { MPI_Ibarrier(MPI_COMM_WORLD, r); });   // more quietly than MPI_Finalize
     MPI_Finalize();
   }
 
@@ -267,7 +300,14 @@ class MpiTeam : public workflow::Team {
       const std::string bytes = receive(status);
       workflow::TeamMember& member = members_[static_cast<std::size_t>(status.MPI_SOURCE)];
       switch (status.MPI_TAG) {
-        case wants: hand_out(take, trouble.empty() && !thrown ? number(bytes, 0) : 0, status.MPI_SOURCE); break;
+        case wants:
+          try {
+            hand_out(take, trouble.empty() && !thrown ? number(bytes, 0) : 0, status.MPI_SOURCE);
+          } catch (...) {   // a damaged checkpoint
+            thrown = std::current_exception();
+            hand_out(take, 0, status.MPI_SOURCE);
+          }
+          break;
         case tally: {
           const auto primaries = static_cast<std::int64_t>(number(bytes, 1));
           ++member.units;
@@ -435,23 +475,6 @@ class MpiTeam : public workflow::Team {
     }
   }
 
-  // Waits for a collective call without keeping a processor busy, as MPI's own waiting does: the leader may be at work
-  // for minutes. What comes at once is not slept over.
-  template <class Begin>
-  static void await(const Begin& begin) {
-    MPI_Request request;
-    begin(&request);
-    const auto start = Clock::now();
-    for (;;) {
-      int done = 0;
-      MPI_Test(&request, &done, MPI_STATUS_IGNORE);
-      if (done) return;
-      const auto waited = Clock::now() - start;
-      if (waited < awake) std::this_thread::yield();
-      else std::this_thread::sleep_for(std::min<Clock::duration>(waited / 20, longest_nap));
-    }
-  }
-
   void hand_out(const mc::TakeUnit& take, std::uint64_t wanted, int to) {
     std::vector<std::uint64_t> numbers;
     while (numbers.size() < wanted) {
@@ -533,6 +556,11 @@ void join_team() {
 #endif
 
 workflow::Team* team() { return joined.get(); }
+
+int processes_here() {
+  mc::NodeMemory* const node = workflow::node_of(team());
+  return node ? node->processes() : 1;
+}
 
 bool leave_to_leader(const std::string& command) {
   if (!joined) return false;

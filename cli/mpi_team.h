@@ -17,6 +17,9 @@ workflow::Team* team();
 /// For work that is not shared: whether it is for another process to do. The leader says that it is alone with it.
 bool leave_to_leader(const std::string& command);
 
+/// How many of the team are on this machine, itself included.
+int processes_here();
+
 /// Ends MPI, or the whole job where others can no longer be heard.
 void leave_team();
 

@@ -25,13 +25,13 @@ constexpr double pilot_seconds = 10;
 // Who leads says it; it is alone in this.
 int try_out(const SimulateOptions& options, const std::string& command_line) {
   if (!workflow::leads(team())) return 0;
-  const workflow::SimulateJob job = make_simulate_job(options, command_line, workflow::specimen_reader());
+  workflow::SimulateJob job = make_simulate_job(options, command_line, workflow::specimen_reader());
   workflow::DryRun run;
   {
     InterruptGuard interrupts;
     ProgressBar bar(!options.quiet);
     run = workflow::dry_run(
-        job, team() ? team()->size() : 1, pilot_seconds, [&](double done, double total) { bar.show(done, total); },
+        std::move(job), team() ? team()->size() : 1, pilot_seconds, [&](double done, double total) { bar.show(done, total); },
         interrupts.token(),
         [&](const std::string& note) {
           bar.clear();

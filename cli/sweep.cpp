@@ -184,7 +184,7 @@ workflow::SweepJob make_sweep(const Options& o, const std::string& command_line)
       options.outputs.push_back((job.folder / (file_name(axes, run.values) + "." + format)).string());
     // Each process looks at every specimen, so each reads them; they are shared when they are traced.
     run.make = [options, command_line] {
-      return make_simulate_job(options, command_line, workflow::specimen_reader());
+      return make_simulate_job(options, command_line, workflow::specimen_reader(nullptr, processes_here()));
     };
     job.runs.push_back(std::move(run));
   }

@@ -11,6 +11,7 @@
 
 #include "grey_picture.h"
 #include "image_formats.h"
+#include "pyramid.h"
 #include "surf/core/error.h"
 #include "surf/core/units.h"
 #include "surf/io/files.h"
@@ -92,17 +93,25 @@ void check_image(const ImageRows& rows, const std::string& file) {
   }
 }
 
-bool in_tiles(const ImageRows& rows, const ImageWriteOptions& options) {
-  if (options.layout != Layout::automatic) return options.layout == Layout::tiles;
-  return std::int64_t{rows.width} * rows.height > most_pixels_in_rows;
-}
-
 void write_vti_at_once(const std::filesystem::path& target, const std::string& file,
                        const ImageRows& rows) {
   write_vti(target, file, to_image(rows));
 }
 
 }  // namespace
+
+bool in_tiles(Layout layout, const ImageSize& size) {
+  if (layout != Layout::automatic) return layout == Layout::tiles;
+  return std::int64_t{size.width} * size.height > most_pixels_in_rows;
+}
+
+std::int64_t stored_pixels(Layout layout, const ImageSize& size) {
+  if (!in_tiles(layout, size)) return std::int64_t{size.width} * size.height;
+  const auto filled = [](int n) { return std::int64_t{(n + tile_edge - 1) / tile_edge * tile_edge}; };
+  std::int64_t pixels = 0;
+  for (const ImageSize& level : pyramid_sizes(size.width, size.height, 1)) pixels += filled(level.width) * filled(level.height);
+  return pixels;
+}
 
 void write_image(const std::filesystem::path& path, const Image& image,
                  const ImageWriteOptions& options) {
@@ -119,7 +128,7 @@ void write_image(const std::filesystem::path& path, const ImageRows& rows,
   const Channel& channel = find_channel(rows.head, options.channel, file);
   const auto number = static_cast<std::size_t>(&channel - rows.head.channels.data());
   write_atomically(path, [&](const std::filesystem::path& temporary) {
-    const bool tiles = in_tiles(rows, options);
+    const bool tiles = in_tiles(options.layout, {rows.width, rows.height});
     switch (format) {
       case Format::exr:
         if (tiles) write_tiled_exr(temporary, file, rows, options.labels);

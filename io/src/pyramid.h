@@ -12,6 +12,9 @@
 
 namespace surf::io {
 
+/// Pixels across a tile.
+inline constexpr int tile_edge = 128;
+
 /// The sizes of an image and of its halves, rounded up, until neither side is longer than `smallest`.
 std::vector<ImageSize> pyramid_sizes(int width, int height, int smallest);
 

@@ -157,7 +157,7 @@ struct Pages {
 Pages pages_of(OIIO::ImageInput& input) {
   Pages pages;
   pages.mip = std::string_view(input.format_name()) == "openexr";
-  pages.channels = number_of(input.spec(), pages_key);
+  pages.channels = std::clamp(number_of(input.spec(), pages_key), 1, 1 << 16);
   if (!pages.mip) {
     pages.levels = std::clamp(number_of(input.spec(), levels_key), 1, 32);
     return pages;

@@ -12,7 +12,7 @@
 namespace surf::io {
 namespace {
 
-constexpr int tile = 128;
+constexpr int tile = tile_edge;
 
 void use_tiles(OIIO::ImageSpec& spec) {
   spec.tile_width = spec.tile_height = tile;

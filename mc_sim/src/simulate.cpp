@@ -185,6 +185,22 @@ void share(Crew& crew, const UnitPlan& plan, Workshop& workshop, int threads, Me
   if (of_crew) std::rethrow_exception(of_crew);
 }
 
+// Where this process cannot go on: the others neither wait for it nor begin.
+void send_home(Crew& crew, const std::exception_ptr& trouble, const CancelToken* cancel) {
+  try {
+    if (crew.leads())
+      crew.lead([] { return std::nullopt; }, [](const FinishedUnit&) {}, cancel);
+    else
+      crew.follow(
+          [&](const TakeUnit&, const GiveUnit&) {
+            if (trouble) std::rethrow_exception(trouble);
+            throw Interrupted();
+          },
+          1, 0, cancel);
+  } catch (...) {   // it is told by who calls
+  }
+}
+
 Scan one_pixel() {
   Scan scan;
   scan.width = scan.height = 1;
@@ -239,17 +255,26 @@ SimulationResult simulate(const Scene& scene, const SimulationOptions& options,
   };
   const UnitPlan plan(scene.scan(), options);
   // Who follows has nothing to collect: its memory need not hold the image.
-  Collector collector(crew && !crew->leads() ? one_pixel() : scene.scan(), options);
-  SimulationResult& result = collector.result;
+  std::optional<Collector> room;
   Workshop workshop;
-  const auto ready = [&] {
-    try {
-      return workshop.prepare(scene, options, libraries, plan.most(), {}, cancel);
-    } catch (const Interrupted&) {
-      return false;
-    }
-  };
-  if (!ready()) {
+  bool ready = false;
+  std::exception_ptr trouble;
+  try {
+    if (!crew) room.emplace(scene.scan(), options);
+    // All get the libraries together: nobody may leave for reasons of its own before.
+    ready = workshop.prepare(scene, options, libraries, plan.most(), {}, cancel, crew != nullptr);
+    if (crew) room.emplace(crew->leads() ? scene.scan() : one_pixel(), options);
+  } catch (const Interrupted&) {
+    ready = false;
+  } catch (...) {
+    trouble = std::current_exception();
+  }
+  if (crew && (!ready || trouble)) send_home(*crew, trouble, cancel);
+  if (trouble) std::rethrow_exception(trouble);
+  if (!room) room.emplace(crew && !crew->leads() ? one_pixel() : scene.scan(), options);
+  Collector& collector = *room;
+  SimulationResult& result = collector.result;
+  if (!ready) {
     result.complete = false;
     return std::move(result);
   }

@@ -31,7 +31,8 @@ std::size_t library_size(const SimulationOptions& options, std::int64_t most_pri
 }
 
 bool Workshop::prepare(const Scene& scene, const SimulationOptions& options, LibrarySource* source,
-                       std::int64_t most_primaries, const ProgressCallback& progress, const CancelToken* cancel) {
+                       std::int64_t most_primaries, const ProgressCallback& progress, const CancelToken* cancel,
+                       bool crew) {
   scene_ = &scene.impl();
   options_ = &options;
   if (options.method == Method::direct) return true;
@@ -40,7 +41,7 @@ bool Workshop::prepare(const Scene& scene, const SimulationOptions& options, Lib
   const std::size_t least = library_size(options, most_primaries);
   if (!get(scene, *source, least, progress, cancel)) return false;
   if (!(options.accuracy > 0)) return true;
-  measure_yields(static_cast<int>(scene.materials().size()), cancel);
+  measure_yields(static_cast<int>(scene.materials().size()), crew ? nullptr : cancel);
   const double share = options.planar_control && only_planes() ? all_of_the_variance : usual_share_of_variance;
   const std::size_t wanted = std::min(library_size(options, most_primaries, yields_, share),
                                       cascades_that_fit(options.library_memory));

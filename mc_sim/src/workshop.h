@@ -15,9 +15,11 @@ namespace surf::mc {
 /// What the workers of a simulation share: libraries, and planes to compare with.
 class Workshop {
  public:
-  /// False when cancelled. Scene and options must outlive it.
+  /// False when cancelled. Scene and options must outlive it. With others (`crew`) only the source looks at `cancel`
+  /// before all have their libraries.
   bool prepare(const Scene& scene, const SimulationOptions& options, LibrarySource* source,
-               std::int64_t most_primaries, const ProgressCallback& progress, const CancelToken* cancel);
+               std::int64_t most_primaries, const ProgressCallback& progress, const CancelToken* cancel,
+               bool crew = false);
 
   /// Of each material in each detector, with a wanted accuracy.
   const std::vector<CascadeYield>& yields() const { return yields_; }

@@ -85,9 +85,9 @@ def checkpoints_do_not_fit(disk, reference, ranks):
     ballast.unlink()
 
 
-def scratch_does_not_fit(disk, reference, _):
+def scratch_does_not_fit(disk, ranks):
     """Results of very many pixels go to a scratch file, whose room is taken at the start."""
-    run = simulate(disk, "-o", "image.png", job=[w if w != "120x120" else "8192x8192" for w in JOB])
+    run = simulate(disk, "-o", "image.png", ranks=ranks, job=[w if w != "120x120" else "8192x8192" for w in JOB])
     expect(run.returncode == 3, f"scratch: exit {run.returncode}: {run.stderr}")
     expect("intermediate results cannot be had" in run.stderr, f"scratch: no clear error: {run.stderr}")
     expect(leftovers(disk) == [], f"scratch: {leftovers(disk)} is left")
@@ -107,9 +107,9 @@ def all_cases():
                 expect(done.returncode == 0, f"undisturbed: {done.stderr}")
                 reference = pathlib.Path(elsewhere, "image.tif").read_bytes()
             for ranks in [1, 2] if MPIRUN else [1]:
+                scratch_does_not_fit(disk, ranks)
                 outputs_do_not_fit(disk, reference, ranks)
                 checkpoints_do_not_fit(disk, reference, ranks)
-            scratch_does_not_fit(disk, reference, 1)
         finally:
             subprocess.run(["umount", disk], check=False)
     print(f"{len(faults)} faults")

@@ -30,25 +30,6 @@ fs::path folder_of(const fs::path& file) {
   return folder.empty() ? "." : folder;
 }
 
-bool in_tiles(const SimulateJob& job, const mc::Scan& scan) {
-  return job.layout == io::Layout::tiles ||
-         (job.layout == io::Layout::automatic && pixels_of(scan) > io::most_pixels_in_rows);
-}
-
-// Pixels of all sizes, filled up to whole tiles.
-double pixels_in_tiles(const mc::Scan& scan) {
-  constexpr int tile = 128;
-  const auto filled = [](int n) { return static_cast<double>((n + tile - 1) / tile * tile); };
-  int width = scan.width, height = scan.height;
-  double pixels = filled(width) * filled(height);
-  while (std::max(width, height) > tile) {
-    width = (width + 1) / 2;
-    height = (height + 1) / 2;
-    pixels += filled(width) * filled(height);
-  }
-  return pixels;
-}
-
 std::string size_text(double bytes) {
   return bytes < 1e9 ? fmt::format("{:.3g} MB", bytes / 1e6) : fmt::format("{:.3g} GB", bytes / 1e9);
 }
@@ -75,11 +56,11 @@ std::vector<DiskNeed> disk_needs(const SimulateJob& job, const mc::Scan& scan, d
   for (const fs::path& output : job.outputs) {
     const std::string extension = extension_of(output);
     const bool raster = extension == ".exr" || extension == ".tif" || extension == ".tiff";
-    const bool tiles = raster && in_tiles(job, scan);
+    const io::ImageSize size{scan.width, scan.height};
+    const bool tiles = raster && io::in_tiles(job.layout, size);
     const double bytes = extension == ".png"   ? pixels
                          : extension == ".vti" ? 4.0 / 3 * 4 * pixels * channels   // as text
-                         : tiles               ? 4 * pixels_in_tiles(scan) * channels
-                                               : 4 * pixels * channels;
+                                               : 4 * static_cast<double>(io::stored_pixels(job.layout, size)) * channels;
     needs.push_back({output.filename().string(), folder_of(output), bytes, true});
     if (tiles) pyramid = std::max(pyramid, 4 * pixels * channels / 3);
   }

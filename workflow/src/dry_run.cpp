@@ -5,6 +5,7 @@
 #include <cctype>
 #include <cmath>
 #include <fstream>
+#include <utility>
 
 #include "disk_needs.h"
 #include "extras.h"
@@ -12,6 +13,7 @@
 #include "simulation_setup.h"
 #include "surf/core/error.h"
 #include "surf/core/parallel.h"
+#include "surf/workflow/memory_estimate.h"
 #include "time_budget.h"
 #include "warnings.h"
 
@@ -48,11 +50,11 @@ std::vector<MemoryNeed> memory_of_results(const SimulateJob& job, const mc::Scan
 
 }  // namespace
 
-DryRun dry_run(const SimulateJob& asked, int ranks, double seconds, const ProgressCallback& progress,
+DryRun dry_run(SimulateJob asked, int ranks, double seconds, const ProgressCallback& progress,
                const CancelToken* cancel, const NoteCallback& note, const LibraryCallback& making) {
   check_options(asked.options);
   check_extras(asked.extras);
-  SimulateJob job = complete(asked);
+  SimulateJob job = complete(std::move(asked));
   check_outputs(job);
   check_checkpoint(job);
   SimulateSummary summary;
@@ -81,7 +83,8 @@ DryRun dry_run(const SimulateJob& asked, int ranks, double seconds, const Progre
   for (const MemoryNeed& need : memory_of_results(job, out.scan)) out.memory.push_back(need);
   for (const MemoryNeed& need : out.memory) out.memory_bytes += need.bytes;
   out.memory_bytes = std::max(out.memory_bytes, kilobytes_of("/proc/self/status", "VmHWM:"));   // of reading
-  out.memory_there = kilobytes_of("/proc/meminfo", "MemTotal:");
+  const MemoryThere there = memory_there();
+  out.memory_there = there.limit.empty() ? HUGE_VAL : now + static_cast<double>(there.bytes);
   out.disk = disk_needs(job, out.scan, out.pilot.packed_bytes);
   for (std::string& warning : warn_of_full_disks(out.disk)) out.warnings.push_back(std::move(warning));
   return out;

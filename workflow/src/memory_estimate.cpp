@@ -15,6 +15,7 @@
 
 #include "surf/core/error.h"
 #include "surf/core/parallel.h"
+#include "surf/io/mesh_file.h"
 
 namespace surf::workflow {
 namespace {
@@ -116,8 +117,12 @@ std::size_t bytes(double triangles, double each) { return static_cast<std::size_
 
 std::optional<TriangleCount> triangles_in(const fs::path& path) {
   std::error_code error;
-  const auto size = static_cast<double>(fs::file_size(path, error));
-  if (error) return {};
+  double size = 0;
+  for (const fs::path& part : io::mesh_input_files(path)) {   // of some formats the triangles are in others
+    const auto bytes = fs::file_size(part, error);
+    if (error) return {};
+    size += static_cast<double>(bytes);
+  }
   const std::string head = text_of(path);
   if (head.empty()) return {};
   const auto about = [&](double bytes_each, TriangleSource source) {
@@ -133,10 +138,10 @@ std::optional<TriangleCount> triangles_in(const fs::path& path) {
     std::memcpy(&facets, head.data() + 80, sizeof facets);   // little-endian, as we are
     if (size == 84 + 50.0 * facets) return TriangleCount{facets, TriangleSource::soup};
   }
-  if (head.find("facet normal") != std::string::npos) return about(260, TriangleSource::soup);
   std::string extension = path.extension().string();
   std::transform(extension.begin(), extension.end(), extension.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  if (extension == ".stl" || head.find("facet normal") != std::string::npos) return about(260, TriangleSource::soup);
   if (extension == ".obj" || extension == ".off") return about(38, TriangleSource::mesh);
   if (extension == ".vtp" || extension == ".vtm") return about(30, TriangleSource::mesh);
   if (extension == ".3mf") return about(8, TriangleSource::mesh);   // packed
@@ -152,6 +157,7 @@ MemoryEstimate estimate_specimen(const TriangleCount& count, const MemoryUse& us
   out.ray_tracing = bytes(n, std::max(per_built_tree, faces) * use.processes);
   if (count.source == TriangleSource::soup)
     out.specimen = std::max(out.specimen, bytes(n, per_soup) - std::min(bytes(n, per_soup), out.ray_tracing));
+  if (!use.shared) out.specimen *= static_cast<std::size_t>(use.processes);
   return out;
 }
 

@@ -52,7 +52,7 @@ class Maker {
     check_same_folder(*team_, runs_.folder);
     Pieces pieces;
     pieces.weights.assign(runs_.weights.begin(), runs_.weights.begin() + static_cast<std::ptrdiff_t>(count));
-    pieces.work = [&](std::size_t i, const ProgressCallback& progress) { return simulate(i, progress, nullptr); };
+    pieces.work = [&](std::size_t i, const ProgressCallback& progress) { return simulate(i, runs_.make(i), progress, nullptr); };
     pieces.finished = [&](std::size_t i, const std::string& outcome) {
       if (runs_.finished) runs_.finished(i, outcome);
     };
@@ -79,7 +79,9 @@ class Maker {
       if (runs_.progress && of > 0) runs_.progress(done_ + runs_.weights[i] * done / of, total_);
     };
     std::optional<FinishedPiece> piece;
-    together(team_, [&] { piece = simulate(i, show, team_); });
+    SimulateJob job;
+    together(team_, [&] { job = runs_.make(i); });   // by itself: within it nobody may wait for all
+    together(team_, [&] { piece = simulate(i, std::move(job), show, team_); });
     std::string complete = piece ? "yes" : "no";
     if (team_) team_->broadcast(complete);
     if (complete == "no") return false;
@@ -93,8 +95,7 @@ class Maker {
   }
 
   // Nothing when cancelled.
-  std::optional<FinishedPiece> simulate(std::size_t i, const ProgressCallback& progress, Team* with) {
-    const SimulateJob job = runs_.make(i);
+  std::optional<FinishedPiece> simulate(std::size_t i, SimulateJob job, const ProgressCallback& progress, Team* with) {
     try {
       const SimulateSummary s =
           run(job, progress, runs_.cancel, aloud(runs_.warn), aloud(runs_.note), cascades(), with);

@@ -19,7 +19,7 @@ namespace {
 namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
-constexpr auto patience = std::chrono::seconds(60), soon = std::chrono::seconds(2);
+constexpr auto patience = std::chrono::seconds(60), soon = std::chrono::seconds(5);
 constexpr auto nap = std::chrono::milliseconds(50);
 
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
@@ -153,7 +153,12 @@ void check_same_folder(Team& team, const fs::path& folder) {
   try {
     together(&team, [&] {
       std::error_code ignored;
-      for (const auto start = Clock::now(); !fs::exists(folder / name, ignored); std::this_thread::sleep_for(nap))
+      const auto seen = [&] {
+        for (const auto& entry : fs::directory_iterator(folder, ignored))   // a network's folder is looked at anew by this
+          if (entry.path().filename() == name) return true;
+        return fs::exists(folder / name, ignored);
+      };
+      for (const auto start = Clock::now(); !seen(); std::this_thread::sleep_for(nap))
         if (Clock::now() - start > soon)
           throw FileError(folder.string(), fmt::format("rank {} does not see what rank 0 writes there", team.rank()),
                           "Write to a folder that all machines share");

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <exception>
 #include <memory>
 
 #include "checkpoint.h"
@@ -117,11 +118,20 @@ Simulation simulate_coarsely(SimulateJob& job, const mc::Scene& scene, mc::Libra
                              const JobLibraries& kept, const mc::MethodChoice& choice, const RunRecord& record,
                              const ProgressCallback& progress, const CancelToken* cancel, const NoteCallback& note,
                              Team* team) {
-  Simulation coarse =
-      find_accuracy(job, scene, libraries, kept, choice, record, progress, cancel, note, team);
+  Simulation coarse;
+  std::exception_ptr thrown;
+  try {
+    coarse = find_accuracy(job, scene, libraries, kept, choice, record, progress, cancel, note, team);
+  } catch (...) {
+    if (!team) throw;
+    thrown = std::current_exception();
+  }
   if (!team) return coarse;
-  std::string found = fmt::format("{} {}", coarse.final ? 1 : 0, format_exact(job.options.accuracy));
+  // What one says to all has to be said in any case: 2 stands for its failure.
+  std::string found = fmt::format("{} {}", thrown ? 2 : coarse.final ? 1 : 0, format_exact(job.options.accuracy));
   team->broadcast(found);
+  if (thrown && leads(team)) std::rethrow_exception(thrown);
+  if (found[0] == '2') throw Interrupted();   // who leads tells why
   coarse.final = found[0] == '1';
   job.options.accuracy = std::stod(found.substr(2));
   return coarse;

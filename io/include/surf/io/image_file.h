@@ -25,6 +25,12 @@ enum class Layout {
 };
 inline constexpr std::int64_t most_pixels_in_rows = std::int64_t{1} << 26;
 
+/// Whether EXR and TIFF are written in tiles.
+bool in_tiles(Layout layout, const ImageSize& size);
+
+/// Pixels of an EXR or TIFF file: in tiles with all smaller sizes, tiles at the edge filled up.
+std::int64_t stored_pixels(Layout layout, const ImageSize& size);
+
 struct ImageWriteOptions {
   /// The channel that formats with a single picture (PNG) show; empty: the first.
   std::string channel;

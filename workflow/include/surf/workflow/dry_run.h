@@ -34,7 +34,7 @@ struct DryRun {
   double expected_s = 0, standard_error_s = 0;
   std::vector<MemoryNeed> memory;   ///< of each rank
   double memory_bytes = 0;          ///< the peak
-  double memory_there = 0;          ///< 0: not known
+  double memory_there = 0;          ///< as `memory_there` says, this process included; infinite: no limit is known
   std::vector<DiskNeed> disk;
   std::vector<std::string> warnings;
 };
@@ -42,7 +42,7 @@ struct DryRun {
 /// Checks everything as `run` does, builds the scene, makes or loads the libraries, simulates a part of the units for about
 /// `seconds` and throws them away: nothing but libraries in the cache is written. `ranks`: how many processes the job will
 /// be shared by; they are taken to be as fast as this one. Throws as `run`, and Interrupted.
-DryRun dry_run(const SimulateJob& job, int ranks = 1, double seconds = 10, const ProgressCallback& progress = {},
+DryRun dry_run(SimulateJob job, int ranks = 1, double seconds = 10, const ProgressCallback& progress = {},
                const CancelToken* cancel = nullptr, const NoteCallback& note = {},
                const LibraryCallback& libraries = {});
 

@@ -13,11 +13,9 @@ namespace surf::workflow {
 struct MemoryEstimate {
   std::size_t specimen = 0;      ///< triangles as read and as traced; once for each machine
   std::size_t ray_tracing = 0;   ///< Embree's structures while they are made; all processes together
-  std::size_t libraries = 0;     ///< of cascades
-  std::size_t tallies = 0;       ///< of all pixels, as far as they are in memory
   std::size_t program = 0;       ///< what it takes without any specimen
 
-  std::size_t total() const { return specimen + ray_tracing + libraries + tallies + program; }
+  std::size_t total() const { return specimen + ray_tracing + program; }
 };
 
 /// How triangles are told of: with shared corners, each with corners of its own (STL), as a grid.
@@ -33,8 +31,9 @@ struct TriangleCount {
 std::optional<TriangleCount> triangles_in(const std::filesystem::path& mesh_file);
 
 struct MemoryUse {
-  int processes = 1;   ///< on this machine, >= 1: they share the specimen
+  int processes = 1;   ///< on this machine, >= 1: 
   int threads = 0;     ///< of each; 0: one per hardware thread
+  bool shared = true;  ///< else each of them has a specimen of its own
 };
 
 /// The parts that grow with triangles; calibrated by `bench/bench_large_specimen.py`, see
