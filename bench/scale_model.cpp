@@ -176,7 +176,7 @@ io::Plot plot(const limits::Table& table, const limits::Table& checked) {
               at(table, i, "gbit_per_s") > 50)
             continue;
           const double primaries = at(table, i, "unit_primaries");
-          if (!replay && primaries > 5000) continue;   // as the program cuts it
+          if (!replay && (primaries < 10000 || primaries > 20000)) continue;   // as the program cuts so large an image
           line.x.push_back(at(table, i, "ranks") * threads);
           line.y.push_back(at(table, i, "efficiency"));
           dashed.y.push_back(at(table, i, "bound_efficiency"));

@@ -43,7 +43,8 @@ UnitPlan::UnitPlan(const Scan& scan, const SimulationOptions& options) : scan_(s
     most_ = options.electrons;
     total_ = static_cast<double>(options.electrons) * scan.width * scan.height;
   }
-  std::int64_t pixels = std::max<std::int64_t>(1, chunk_ / most_);
+  // Long jobs have many units, which somebody has to merge: longer ones, while there are enough for all.
+  std::int64_t pixels = std::max<std::int64_t>(1, (total_ > much ? 4 : 1) * chunk_ / most_);
   std::int64_t longest = scan.width;
   if (options.method == Method::replay) {   // pixels of a tile share what they read of the library
     chunk_ = replayed_chunk;

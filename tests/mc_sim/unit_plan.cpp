@@ -156,5 +156,17 @@ TEST(UnitPlan, RefusesTalliesOfAnotherSimulation) {
   EXPECT_THROW(merge(result, plan.unit(0), empty_tally(plan.unit(0), one_detector)), InvalidInput);
 }
 
+TEST(UnitPlan, LongJobsHaveLongerUnits) {
+  const SimulationOptions options = options_of(Method::direct, 100);
+  const auto primaries = [&](int side) {
+    const WorkUnit unit = UnitPlan(scan_of(side, side), options).unit(0);
+    return (unit.x1 - unit.x0) * (unit.y1 - unit.y0) * unit.electrons;
+  };
+  EXPECT_EQ(primaries(3000), 4000);    // 9e8 in all
+  EXPECT_EQ(primaries(3200), 16300);   // 1.02e9
+  // Pixels of very many primaries are cut as ever.
+  EXPECT_EQ(UnitPlan(scan_of(3200, 3200), options_of(Method::direct, 10000)).unit(0).electrons, 4096);
+}
+
 }  // namespace
 }  // namespace surf::mc

@@ -27,6 +27,7 @@ class UnitPlan {
  private:
   static constexpr std::int64_t direct_chunk = 4096;   // primaries: a fraction of a second
   static constexpr std::int64_t replayed_chunk = 16 * direct_chunk;
+  static constexpr double much = 1e9;                   // primaries
   static constexpr int tile = 32;
   Scan scan_;
   bool by_pixel_ = false;
