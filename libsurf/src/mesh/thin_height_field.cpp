@@ -113,12 +113,15 @@ class Thinning {
     std::ranges::sort(changed_);
     changed_.erase(std::unique(changed_.begin(), changed_.end()), changed_.end());
     worst_.resize(mesh_.triangles().size());
+    if (worst_.size() < few) watch_.check();   // triangles are large, and take long
     for (const std::uint32_t t : changed_) {
       worst_[t] = worst_of(t);
       if (worst_[t].error_nm > tolerance_nm_) waiting_.push({worst_[t].error_nm, t});
     }
     changed_.clear();
   }
+
+  static constexpr std::uint32_t few = 4096;
 
   // A sample inside makes two triangles more.
   bool full() const { return mesh_.triangles().size() + 2 > limit_; }
@@ -182,6 +185,7 @@ class Thinning {
     std::vector<Site> sites;
     crossing_nm_ = 0;
     for (std::uint32_t side = 0; side < 3 * mesh_.triangles().size(); ++side) {
+      if (side % few == 0) watch_.check();
       if (mesh_.opposite(side) != LatticeDelaunay::none && mesh_.opposite(side) < side) continue;
       const LatticePoint p = mesh_.corner(side / 3, side % 3),
                          q = mesh_.corner(side / 3, (side + 1) % 3);
