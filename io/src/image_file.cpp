@@ -109,7 +109,7 @@ std::int64_t stored_pixels(Layout layout, const ImageSize& size) {
   if (!in_tiles(layout, size)) return std::int64_t{size.width} * size.height;
   const auto filled = [](int n) { return std::int64_t{(n + tile_edge - 1) / tile_edge * tile_edge}; };
   std::int64_t pixels = 0;
-  for (const ImageSize& level : pyramid_sizes(size.width, size.height, 1)) pixels += filled(level.width) * filled(level.height);
+  for (const ImageSize& level : pyramid_sizes(size.width, size.height, tile_edge)) pixels += filled(level.width) * filled(level.height);
   return pixels;
 }
 
