@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cmath>
 #include <mutex>
+#include <numeric>
 #include <vector>
 
 #include "check_options.h"
@@ -27,29 +28,27 @@ constexpr int pixels_looked_at = 4096;  // for planes
 
 double since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
-// Numbers 0 to count - 1, the first few of which are spread evenly; then once again.
+// Numbers 0 to count - 1, each once, any few in a row spread evenly; then once again. Steps of the golden section: what
+// comes back after so many units, as rows of an image do, is met at all its places.
 class Spread {
  public:
-  explicit Spread(std::size_t count) : count_(count) {
-    while (size_ < count_) size_ *= 2;
+  explicit Spread(std::size_t count) : count_(count), step_(static_cast<std::size_t>(0.6180339887 * static_cast<double>(count))) {
+    while (std::gcd(++step_, count_) != 1) {}
   }
   std::size_t next() {
-    for (;;) {
-      if (at_ == size_) {
-        at_ = 0;
-        ++round_;
-      }
-      std::size_t reversed = 0;
-      for (std::size_t bit = 1, i = at_; bit < size_; bit *= 2, i /= 2) reversed = 2 * reversed + i % 2;
-      ++at_;
-      if (reversed < count_) return reversed;
+    if (given_ == count_) {
+      given_ = 0;
+      ++round_;
     }
+    ++given_;
+    at_ = (at_ + step_) % count_;
+    return at_;
   }
   /// How often all have been given.
   std::size_t round() const { return round_; }
 
  private:
-  std::size_t count_, size_ = 1, at_ = 0, round_ = 0;
+  std::size_t count_, step_, at_ = 0, given_ = 0, round_ = 0;
 };
 
 // Pixels times electrons: units at the edge have less of it.

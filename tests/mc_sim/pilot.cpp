@@ -61,6 +61,13 @@ TEST(Pilot, TriesAllThatTakesLessThanTheTime) {
 
 TEST(Pilot, ForetellsFromAPart) { expect_foretold(scene_of(48), options_of(Method::direct, 60), 0.3, 0.3); }
 
+// Four units to a row, of which the first and last see less: every fourth unit alone would be of one column.
+TEST(Pilot, IsNotMisledByRows) {
+  SimulationOptions options = options_of(Method::direct, 100);
+  options.tile_pixels = 10;
+  expect_foretold(scene_of(40), options, 0.4, 0.15);
+}
+
 TEST(Pilot, ForetellsReplay) { expect_foretold(scene_of(64), options_of(Method::replay, 50), 0.3, 0.25); }
 
 TEST(Pilot, ForetellsAnAccuracy) { expect_foretold(scene_of(64), options_of(Method::replay, 1, 0.2), 0.5, 0.4); }
