@@ -91,10 +91,12 @@ void Pyramid::finish() {
     levels_.push_back(make_level(sizes_[k + 1]));
     const Level& below = levels_[k - 1];
     for (std::size_t c = 0; c < is_label_.size(); ++c)
-      for (int y = 0; y < sizes_[k + 1].height; ++y)
+      for (int y = 0; y < sizes_[k + 1].height; ++y) {
+        if (y % tile_edge == 0) release();
         halve(row_of(below[c], 2 * y),
               2 * y + 1 < below[c].height() ? row_of(below[c], 2 * y + 1) : std::span<const float>(), is_label_[c],
               row_of(levels_[k][c], y));
+      }
     release();
   }
 }

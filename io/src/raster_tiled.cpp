@@ -60,6 +60,7 @@ CopyRow rows_from_top(const ImageRows& rows) {
 
 CopyRow rows_of_level(const Pyramid& pyramid, int level) {
   return [&pyramid, level](std::size_t channel, int y, std::span<float> into) {
+    if (y % tile == 0) pyramid.release();
     std::ranges::copy(pyramid.row(level, channel, y), into.begin());
   };
 }

@@ -43,6 +43,10 @@ std::vector<MemoryNeed> memory_of_results(const SimulateJob& job, const mc::Scan
     std::ranges::transform(extension, extension.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
     if (extension == ".vti") writing = std::max(writing, 8 * channels * pixels);
   }
+  constexpr double most_of_a_level = 256e6 * 1.05;   // larger ones are in scratch files (io/src/pyramid.cpp)
+  if (io::in_tiles(job.layout, {scan.width, scan.height}))
+    for (double level = channels * pixels; level > 1e5; level /= 4)
+      if (level <= most_of_a_level) writing += level;
   if (!job.extras.channels.empty()) writing += std::min(limit, 4 * static_cast<double>(extra_channels(job).size()) * pixels);
   needs.push_back({"writing", writing});
   return needs;
