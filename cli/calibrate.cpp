@@ -145,14 +145,14 @@ void write_residual(const std::string& path, const Image& like, const Calibratio
 void print_fit(const Calibration& c) {
   const bool known = c.outcome != CalibrationOutcome::undetermined;
   for (std::size_t i = 0; i < c.channels.size(); ++i)
-    fmt::print("{:<10} {:.6g}{}\n", "gain " + c.channels[i], c.gains[i],
+    print("{:<10} {:.6g}{}\n", "gain " + c.channels[i], c.gains[i],
                known ? fmt::format(" ± {:.2g}", c.gain_stderr(i)) : ", one of many");
-  fmt::print("{:<10} {:.6g}{}\n", "offset", c.offset,
+  print("{:<10} {:.6g}{}\n", "offset", c.offset,
              c.offset_stderr() == 0 ? "" : known ? fmt::format(" ± {:.2g}", c.offset_stderr()) : ", one of many");
-  fmt::print("{:<10} {}\n", "condition", known ? fmt::format("{:.4g}", c.condition_number) : "infinite");
-  fmt::print("{:<10} {:.4g} rms, {:.2f} % of the variance explained; correlation of neighbours {:.2f}\n", "residual",
+  print("{:<10} {}\n", "condition", known ? fmt::format("{:.4g}", c.condition_number) : "infinite");
+  print("{:<10} {:.4g} rms, {:.2f} % of the variance explained; correlation of neighbours {:.2f}\n", "residual",
              c.residual_rms, 100 * c.explained, c.residual_correlation);
-  fmt::print("{:<10} {}{}\n", "pixels", c.pixels, c.saturated ? fmt::format("; {} saturated ones left out", c.saturated) : "");
+  print("{:<10} {}{}\n", "pixels", c.pixels, c.saturated ? fmt::format("; {} saturated ones left out", c.saturated) : "");
 }
 
 int work(const CalibrateOptions& o) {
@@ -184,7 +184,7 @@ int work(const CalibrateOptions& o) {
   if (o.folded) write_folded(*o.folded, *model, c, made);
   if (!o.quiet)
     for (const auto& file : {o.output, o.residual, o.folded})
-      if (file) fmt::print("{:<10} {}\n", "written", *file);
+      if (file) print("{:<10} {}\n", "written", *file);
   return c.outcome == CalibrationOutcome::trusted ? 0 : exit_untrustworthy;
 }
 

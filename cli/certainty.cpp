@@ -76,13 +76,13 @@ void report(const CertaintyMap& map, const Options& o) {
   const auto percent = [](std::size_t part, std::size_t whole) {
     return whole ? 100.0 * static_cast<double>(part) / static_cast<double>(whole) : 0.0;
   };
-  fmt::print("{:<10} contacts within {} of the scan, at most {} pixels from each other's middle\n", "tolerance",
+  print("{:<10} contacts within {} of the scan, at most {} pixels from each other's middle\n", "tolerance",
              format_length(map.tolerance_nm), map.neighbourhood);
-  fmt::print("{:<10} {:.1f} % of the scan touched in one place, {:.1f} % possibly in several\n", "contacts",
+  print("{:<10} {:.1f} % of the scan touched in one place, {:.1f} % possibly in several\n", "contacts",
              percent(map.single, map.image_pixels), percent(map.ambiguous, map.image_pixels));
-  fmt::print("{:<10} {:.1f} % of the surface\n", "certain", percent(map.certain, map.surface_samples));
-  fmt::print("{:<10} {}\n", "written", *o.output);
-  if (o.surface) fmt::print("{:<10} {}\n", "written", *o.surface);
+  print("{:<10} {:.1f} % of the surface\n", "certain", percent(map.certain, map.surface_samples));
+  print("{:<10} {}\n", "written", *o.output);
+  if (o.surface) print("{:<10} {}\n", "written", *o.surface);
 }
 
 int work(const Options& o) {

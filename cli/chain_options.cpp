@@ -160,7 +160,7 @@ std::vector<std::string> input_words(const ChainOptions& o) {
 }
 
 void print_pose(const workflow::Pose& pose, double sem_pixel_nm) {
-  const auto line = [](const char* label, const std::string& text) { fmt::print("{:<10} {}\n", label, text); };
+  const auto line = [](const char* label, const std::string& text) { print("{:<10} {}\n", label, text); };
   const AffineParts p = parts_of(pose.sem_to_afm);
   line("map", fmt::format("SEM to AFM: turn {:.3f} deg, scale {:.5f} x {:.5f}, shear {:.5f}", p.rotation_rad / degrees_to_radians,
                           p.scale_x, p.scale_y, p.shear));

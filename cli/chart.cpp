@@ -89,7 +89,7 @@ std::string time_text(double seconds) {
 }
 
 void print_point(const workflow::ChartPoint& p) {
-  fmt::print("{:<24} {:<38} {:>8} + {:<8}{}\n", p.family, p.setting, time_text(p.run_s), time_text(p.preparation_s),
+  print("{:<24} {:<38} {:>8} + {:<8}{}\n", p.family, p.setting, time_text(p.run_s), time_text(p.preparation_s),
              errors_of(p));
 }
 
@@ -101,7 +101,7 @@ void print_choices(const workflow::ChartSummary& s) {
     else
       text += fmt::format("; {}, {:.2f} times as long as the fastest that does, {}", c.met ? "met" : "NOT met", c.ratio,
                           c.fastest);
-    fmt::print("{:<15} {}\n", fmt::format("--accuracy {}", format_share(c.accuracy)), text);
+    print("{:<15} {}\n", fmt::format("--accuracy {}", format_share(c.accuracy)), text);
   }
 }
 
@@ -153,10 +153,10 @@ int chart(const Options& o, const std::string& command_line) {
     listener.point = [&](const workflow::ChartPoint& p) {
       if (o.quiet) return;
       bar.clear();
-      if (!headed) fmt::print("{:<24} {:<38} {:>8} + {:<8}  rms errors\n", "method", "setting", "image", "before it");
+      if (!headed) print("{:<24} {:<38} {:>8} + {:<8}  rms errors\n", "method", "setting", "image", "before it");
       headed = true;
       print_point(p);
-      std::fflush(stdout);
+      flush();
     };
     listener.warn = [&](const std::string& text) {
       bar.clear();
@@ -175,14 +175,14 @@ int chart(const Options& o, const std::string& command_line) {
     return exit_interrupted;
   }
   if (o.quiet) return 0;
-  if (s.found > 0) fmt::print("{} points were there before\n", s.found);
-  for (const std::string& text : s.left_out) fmt::print("left out: {}\n", text);
+  if (s.found > 0) print("{} points were there before\n", s.found);
+  for (const std::string& text : s.left_out) print("left out: {}\n", text);
   std::string floor;
   for (const workflow::ChartChannel& c : s.reference)
     floor += fmt::format("{}{} {}", floor.empty() ? "" : ", ", c.name, percent(c.error.reference_noise));
-  fmt::print("reference: {} pixels, its noise {}\n", s.compared, floor);
+  print("reference: {} pixels, its noise {}\n", s.compared, floor);
   print_choices(s);
-  for (const auto& path : s.written) fmt::print("written {}\n", path.string());
+  for (const auto& path : s.written) print("written {}\n", path.string());
   return 0;
 }
 

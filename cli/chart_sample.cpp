@@ -48,13 +48,13 @@ void print_registration(const workflow::RegistrationPoint& p) {
                                  p.right, p.draws, p.wrong);
   if (p.verified > 0)
     text += fmt::format("; {:.2f} px off (median), {:.2f} at most", p.median_px, p.largest_px);
-  fmt::print("{}; {} each\n", text, time_text(p.median_s));
+  print("{}; {} each\n", text, time_text(p.median_s));
 }
 
 void print_reconstruction(const workflow::ReconstructionPoint& p) {
   std::string text = fmt::format("{:<20} {:<38} {:>8}", p.family, p.setting, time_text(p.steps.back().run_s));
   if (p.preparation_s > 0) text += fmt::format(" + {}", time_text(p.preparation_s));
-  fmt::print("{}  {:.3g} nm\n", text, p.steps.back().rms_nm);
+  print("{}  {:.3g} nm\n", text, p.steps.back().rms_nm);
 }
 
 std::string range_text(const std::optional<double>& range, bool open, const char* unit) {
@@ -68,7 +68,7 @@ void print_ranges(const workflow::ChainChartSummary& s) {
     std::string text = range_text(r.px, r.px_open, "pixels");
     const std::string turn = range_text(r.deg, r.deg_open, "degrees");
     if (!turn.empty()) text += (text.empty() ? "" : ", ") + turn;
-    fmt::print("{:<20} captures from {}\n", r.family,
+    print("{:<20} captures from {}\n", r.family,
                text.empty() ? "none of the offsets that were tried" : text);
   }
 }
@@ -106,7 +106,7 @@ int chart_sample(const ChartSampleOptions& o, const std::string& command_line) {
       if (o.quiet) return;
       bar.clear();
       print();
-      std::fflush(stdout);
+      flush();
     };
     listener.registration = [&](const workflow::RegistrationPoint& p) {
       tell([&] { print_registration(p); });
@@ -131,13 +131,13 @@ int chart_sample(const ChartSampleOptions& o, const std::string& command_line) {
     return exit_interrupted;
   }
   if (o.quiet) return 0;
-  if (s.found > 0) fmt::print("{} points were there before\n", s.found);
-  for (const std::string& text : s.left_out) fmt::print("left out: {}\n", text);
+  if (s.found > 0) print("{} points were there before\n", s.found);
+  for (const std::string& text : s.left_out) print("left out: {}\n", text);
   print_ranges(s);
   if (!s.reconstructions.empty())
-    fmt::print("the eroded scan is {:.3g} nm off; noise and prior alone leave {:.3g} nm\n", s.eroded_nm,
+    print("the eroded scan is {:.3g} nm off; noise and prior alone leave {:.3g} nm\n", s.eroded_nm,
                s.floor_nm);
-  for (const auto& path : s.written) fmt::print("written {}\n", path.string());
+  for (const auto& path : s.written) print("written {}\n", path.string());
   return 0;
 }
 

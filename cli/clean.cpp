@@ -76,7 +76,7 @@ Plan make_plan(const Options& o) {
 }
 
 void print_summary(const char* what, const CleanSummary& s, const HeightField& field) {
-  fmt::print("{:<10} {} of {} heights changed{}{}\n", what, s.changed, field.z_nm.size(),
+  print("{:<10} {} of {} heights changed{}{}\n", what, s.changed, field.z_nm.size(),
              s.filled ? fmt::format(", {} holes filled", s.filled) : "",
              s.holes ? fmt::format(", {} holes left", s.holes) : "");
 }
@@ -118,7 +118,7 @@ int work(const Options& o) {
     report("closing");
   }
   io::write_height_field(*o.output, field, provenance_of("clean", recorded(o), {o.scan.file}));
-  if (!o.quiet) fmt::print("{:<10} {}\n", "written", *o.output);
+  if (!o.quiet) print("{:<10} {}\n", "written", *o.output);
   return 0;
 }
 

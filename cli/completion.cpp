@@ -7,6 +7,7 @@
 #include "commands.h"
 #include "surf/core/error.h"
 #include "surf/io/sim/materials.h"
+#include "terminal.h"
 
 // Completion scripts are made from the program's own options, so that they never get out of date.
 
@@ -257,11 +258,11 @@ std::string fish_script(const Command& top) {
 void print_script(const CLI::App& app, const std::string& shell) {
   const Command top = read_command(app);
   if (shell == "bash")
-    fmt::print("{}", bash_script(top));
+    print("{}", bash_script(top));
   else if (shell == "zsh")
-    fmt::print("{}", zsh_script(top));
+    print("{}", zsh_script(top));
   else if (shell == "fish")
-    fmt::print("{}", fish_script(top));
+    print("{}", fish_script(top));
   else
     throw UsageError("completion", shell.empty() ? "no shell is given" : "unknown shell " + shell,
                      "Choose bash, zsh or fish");

@@ -88,15 +88,15 @@ void print_scene(const std::filesystem::path& path,
   const io::SceneFile scene = io::read_scene(path, material_files);
   for (const std::string& note : scene.notes) print_note(note);
   mc::validate(scene.specimen);
-  fmt::print("{}: scene{}\n", path.string(),
+  print("{}: scene{}\n", path.string(),
              scene.title.empty() ? "" : ", \"" + scene.title + "\"");
   print_specimen(scene.specimen);
   print_scan(scene);
   print_item("physics", mc::format_physics(scene.physics));
   for (const mc::Material& material : scene.specimen.materials) {
-    fmt::print("  in {}\n", material.name);
+    print("  in {}\n", material.name);
     for (const std::string& line : mc::describe(scene.physics, material))
-      fmt::print("    {}\n", line);
+      print("    {}\n", line);
   }
 }
 
@@ -113,7 +113,7 @@ void print_info(const std::filesystem::path& path, std::optional<double> unit_nm
 }  // namespace
 
 void print_item(const std::string& label, const std::string& value) {
-  fmt::print("  {:<10} {}\n", label, value);
+  print("  {:<10} {}\n", label, value);
 }
 
 std::string format_bounds(const Box& box) {

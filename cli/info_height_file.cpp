@@ -11,6 +11,7 @@
 #include "surf/core/error.h"
 #include "surf/core/units.h"
 #include "surf/io/height_field_file.h"
+#include "terminal.h"
 
 namespace surf::cli {
 namespace {
@@ -64,7 +65,7 @@ void print_height_channel(const std::filesystem::path& path, std::size_t number,
 void print_height_file(const std::filesystem::path& path) {
   const std::vector<io::HeightChannel> channels = io::height_channels(path);
   const io::HeightFieldFile first = io::read_height_field(path);
-  fmt::print("{}: heights, {}\n", path.string(), first.format);
+  print("{}: heights, {}\n", path.string(), first.format);
   print_size(first.field);
   std::vector<std::string> labels;
   std::size_t width = 0;
@@ -76,16 +77,16 @@ void print_height_file(const std::filesystem::path& path) {
     print_height_channel(path, i + 1, channels[i], fmt::format("{:<{}}", labels[i], width));
   for (const std::string& note : first.notes) print_item("note", note);
   if (first.metadata.empty()) return;
-  fmt::print("  what it says of itself\n");
+  print("  what it says of itself\n");
   std::size_t longest = 0, printed = 0;
   constexpr std::size_t widest_key = 30;
   for (const auto& item : first.metadata) longest = std::min(std::max(longest, item.first.size()), widest_key);
   for (const auto& [key, value] : first.metadata) {
     if (printed++ == most_settings) break;
-    fmt::print("    {:<{}}  {}\n", key, longest, value);
+    print("    {:<{}}  {}\n", key, longest, value);
   }
   if (first.metadata.size() > most_settings)
-    fmt::print("    and {} more\n", first.metadata.size() - most_settings);
+    print("    and {} more\n", first.metadata.size() - most_settings);
 }
 
 }  // namespace surf::cli

@@ -11,6 +11,7 @@
 #include "surf/io/surface_file.h"
 #include "surf/mesh/check_mesh.h"
 #include "surf/mesh/open_sheet.h"
+#include "terminal.h"
 
 namespace surf::cli {
 namespace {
@@ -89,10 +90,10 @@ void print_channel(const Channel& channel, std::size_t label_width) {
 
 void print_how_made(const std::map<std::string, std::string>& metadata) {
   if (metadata.empty()) return;
-  fmt::print("  how it was made\n");
+  print("  how it was made\n");
   std::size_t longest = 0;
   for (const auto& item : metadata) longest = std::max(longest, item.first.size());
-  for (const auto& [key, value] : metadata) fmt::print("    {:<{}}  {}\n", key, longest, value);
+  for (const auto& [key, value] : metadata) print("    {:<{}}  {}\n", key, longest, value);
 }
 
 /// What a mesh file says besides its triangles.
@@ -120,7 +121,7 @@ void print_mesh(const std::filesystem::path& path, std::optional<double> unit_nm
   const std::vector<io::NamedMesh> bodies = io::read_meshes(path, unit_nm);
   const TriangleMesh mesh = bodies.size() == 1 ? bodies.front().mesh : io::join(bodies);
   const MeshReport report = check_mesh(mesh);
-  fmt::print("{}: mesh{}\n", path.string(),
+  print("{}: mesh{}\n", path.string(),
              bodies.size() == 1 ? "" : fmt::format(" of {} bodies", bodies.size()));
   for (const io::NamedMesh& body : bodies)
     if (bodies.size() > 1 || !body.material.empty()) print_body(body);
@@ -142,7 +143,7 @@ void print_image(const std::filesystem::path& path) {
   const Image& image = read.image;
   const double scale = std::ldexp(1.0, read.level);
   const double pitch_x_nm = image.pitch_x_nm / scale, pitch_y_nm = image.pitch_y_nm / scale;
-  fmt::print("{}: image\n", path.string());
+  print("{}: image\n", path.string());
   print_item("size", fmt::format("{} x {} pixels of {} x {}, {} x {}", read.whole.width, read.whole.height,
                                  format_length(pitch_x_nm), format_length(pitch_y_nm),
                                  format_length(read.whole.width * pitch_x_nm),

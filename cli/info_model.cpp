@@ -6,6 +6,7 @@
 #include "info.h"
 #include "model_tables.h"
 #include "surf/io/model_file.h"
+#include "terminal.h"
 
 namespace surf::cli {
 namespace {
@@ -28,7 +29,7 @@ std::string format_pixels(const TrainingRecord& record) {
 void print_model(const std::filesystem::path& path) {
   const TrainedModel model = io::read_model(path);
   const TrainingRecord& record = model.record;
-  fmt::print("{}: image model\n", path.string());
+  print("{}: image model\n", path.string());
   print_item("kind", format_model(model));
   print_item("for", format_scope(model.scope));
   print_item("learnt on", format_pixels(record));
@@ -36,13 +37,13 @@ void print_model(const std::filesystem::path& path) {
   if (record.condition_number != 0) print_item("condition", format_condition(record.condition_number));
   for (const std::string& warning : record.warnings) print_item("warning", warning);
   if (const std::vector<std::string> table = residual_table(record); !table.empty()) {
-    fmt::print("  how far it is off (mean signal per primary; in % of it rms, the images' noise subtracted,\n"
+    print("  how far it is off (mean signal per primary; in % of it rms, the images' noise subtracted,\n"
                "  and mean, noise included)\n");
-    for (const std::string& line : table) fmt::print("    {}\n", line);
+    for (const std::string& line : table) print("    {}\n", line);
   }
   if (record.notes.empty()) return;
-  fmt::print("  how it was made\n");
-  for (const auto& [key, value] : record.notes) fmt::print("    {:<16}  {}\n", key, value);
+  print("  how it was made\n");
+  for (const auto& [key, value] : record.notes) print("    {:<16}  {}\n", key, value);
 }
 
 }  // namespace surf::cli

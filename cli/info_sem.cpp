@@ -32,7 +32,7 @@ void print_sem_image(const std::filesystem::path& path) {
   const io::SemFile file = io::read_sem_image(path);
   const PlacedImage& image = file.image;
   for (const std::string& note : file.notes) print_note(note);
-  fmt::print("{}: SEM image, {}{}\n", path.string(), file.format,
+  print("{}: SEM image, {}{}\n", path.string(), file.format,
              file.instrument.empty() ? "" : ", " + file.instrument);
   const int width = image.values.width(), height = image.values.height();
   print_item("size", fmt::format("{} x {} pixels of {} x {}, {} x {}", width, height, format_length(image.pitch_x_nm, 4),
@@ -47,8 +47,8 @@ void print_sem_image(const std::filesystem::path& path) {
   if (file.tilt_deg) print_item("tilt", fmt::format("{:.3g} degrees", *file.tilt_deg));
   if (!file.detector.empty()) print_item("detector", file.detector);
   if (file.metadata.empty()) return;
-  fmt::print("  what the microscope noted\n");
-  for (const auto& [key, value] : file.metadata) fmt::print("    {:<24}  {}\n", key, value);
+  print("  what the microscope noted\n");
+  for (const auto& [key, value] : file.metadata) print("    {:<24}  {}\n", key, value);
 }
 
 }  // namespace surf::cli

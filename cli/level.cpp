@@ -97,12 +97,12 @@ void warn_of(const HoughSummary& s) {
 }
 
 void print_plane(const Plane& plane) {
-  fmt::print("{:<10} tilt {:.4g} deg, uphill at {:.3g} deg; slope {:.4g} along x, {:.4g} along y\n", "plane",
+  print("{:<10} tilt {:.4g} deg, uphill at {:.3g} deg; slope {:.4g} along x, {:.4g} along y\n", "plane",
              plane.tilt_deg(), plane.uphill_deg(), plane.slope_x, plane.slope_y);
 }
 
 void print_inliers(const HoughSummary& s) {
-  fmt::print("{:<10} {:.1f} % within {} of it, {} rms; the next plane holds {:.1f} %\n", "substrate",
+  print("{:<10} {:.1f} % within {} of it, {} rms; the next plane holds {:.1f} %\n", "substrate",
              100 * s.inlier_share, format_length(s.tolerance_nm), format_length(s.inlier_rms_nm),
              100 * s.runner_up_share);
 }
@@ -135,7 +135,7 @@ Grid<unsigned char> level(HeightField& field, const Options& o, const Plan& plan
 }
 
 void print_roughness(const char* label, const char* part, const Roughness& r) {
-  fmt::print("{:<10} {}: Sa {}, Sq {}, Sz {}; {:.2g} deg of tilt left, without it Sq {}\n", label, part,
+  print("{:<10} {}: Sa {}, Sq {}, Sz {}; {:.2g} deg of tilt left, without it Sq {}\n", label, part,
              format_length(r.sa_nm), format_length(r.sq_nm), format_length(r.sz_nm), r.tilt.tilt_deg(),
              format_length(r.sq_levelled_nm));
 }
@@ -143,7 +143,7 @@ void print_roughness(const char* label, const char* part, const Roughness& r) {
 void print_step(const HeightField& field, const std::vector<std::string>& step) {
   const StepHeight s = measure_step(field, parse_mask_region(step[0], "--step", field),
                                     parse_mask_region(step[1], "--step", field));
-  fmt::print("{:<10} {:.6g} ± {:.2g} nm, the second region above the first; {} rms about two parallel planes\n", "step",
+  print("{:<10} {:.6g} ± {:.2g} nm, the second region above the first; {} rms about two parallel planes\n", "step",
              s.height_nm, s.stderr_nm, format_length(s.residual_nm));
 }
 
@@ -168,7 +168,7 @@ int work(const Options& o) {
     const RowLevel rows = level_rows(field, *plan.rows, substrate);
     if (!o.quiet) {
       const auto [low, high] = std::minmax_element(rows.offsets_nm.begin(), rows.offsets_nm.end());
-      fmt::print("{:<10} shifted by {:.4g} to {:.4g} nm{}\n", "rows", *low, *high,
+      print("{:<10} shifted by {:.4g} to {:.4g} nm{}\n", "rows", *low, *high,
                  rows.rows_without_samples
                      ? fmt::format("; {} without a sample to go by, as the nearest", rows.rows_without_samples) : "");
     }
@@ -188,7 +188,7 @@ int work(const Options& o) {
   }
   if (!o.quiet)
     for (const auto& file : {o.mask, o.output})
-      if (file) fmt::print("{:<10} {}\n", "written", *file);
+      if (file) print("{:<10} {}\n", "written", *file);
   return 0;
 }
 

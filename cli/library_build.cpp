@@ -62,7 +62,7 @@ Built build_one(const mc::CascadeSettings& settings, const std::string& title,
                     "Check its permissions and the free space, or choose another --cache");
   if (!library) return {};
   if (!quiet)
-    fmt::print("{:<18} {} cascades, {}, {:.1f} kB each; {}\n", title, library->cascades(),
+    print("{:<18} {} cascades, {}, {:.1f} kB each; {}\n", title, library->cascades(),
                format_bytes(double(library->bytes())),
                1e-3 * double(library->bytes()) / double(library->cascades()),
                pages.made == 0 ? "all were there"

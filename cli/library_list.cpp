@@ -76,11 +76,11 @@ void print_table(const LibraryList& list) {
     material = std::max(material, l.name.material.size());
     physics = std::max(physics, format_differences(l.name).size());
   }
-  fmt::print("{:<{}}  {:>9}  {:<{}}  {:>4}  {:>9}  {:>8}  {:>9}  {:<12}  {}\n", "material",
+  print("{:<{}}  {:>9}  {:<{}}  {:>4}  {:>9}  {:>8}  {:>9}  {:<12}  {}\n", "material",
              material, "energy", "physics", physics, "seed", "cascades", "size", "kB each",
              "last used", "state");
   for (const StoredLibrary& l : list.libraries)
-    fmt::print("{:<{}}  {:>9}  {:<{}}  {:>4}  {:>9}  {:>8}  {:>9.1f}  {:<12}  {}\n", l.name.material,
+    print("{:<{}}  {:>9}  {:<{}}  {:>4}  {:>9}  {:>8}  {:>9.1f}  {:<12}  {}\n", l.name.material,
                material, format_energy(l.name.beam_energy_ev), format_differences(l.name), physics,
                l.name.seed, l.cascades, format_bytes(double(l.bytes)),
                1e-3 * double(l.bytes) / double(std::max<std::size_t>(l.cascades, 1)),
@@ -92,13 +92,13 @@ int list(const LibraryOptions& options, bool check) {
   const LibraryList list = workflow::list_libraries(
       cache, check ? io::Cache::Check::everything : io::Cache::Check::header);
   if (list.libraries.empty()) {
-    fmt::print("no libraries in {}\nMake one: semsurf library build Si --energy 1keV\n",
+    print("no libraries in {}\nMake one: semsurf library build Si --energy 1keV\n",
                cache.folder().string());
   } else {
     print_table(list);
     double bytes = 0;
     for (const StoredLibrary& l : list.libraries) bytes += double(l.bytes);
-    fmt::print("{} of at most {} in {}\n", format_bytes(bytes),
+    print("{} of at most {} in {}\n", format_bytes(bytes),
                format_bytes(double(io::Cache::default_max_bytes)), cache.folder().string());
   }
   if (!list.damaged.empty())
@@ -167,7 +167,7 @@ int remove(const RemoveOptions& o) {
   };
   for (const StoredLibrary& l : list.libraries) {
     if (!is_wanted(l, o, energies)) continue;
-    fmt::print("{}, {} cascades, {}\n", library_title(l.name.material, l.name.beam_energy_ev),
+    print("{}, {} cascades, {}\n", library_title(l.name.material, l.name.beam_energy_ev),
                l.cascades, format_bytes(double(l.bytes)));
     drop(l.pages);
   }
@@ -175,9 +175,9 @@ int remove(const RemoveOptions& o) {
   if (stuck > 0)
     throw FileError(cache.folder().string(), fmt::format("{} files cannot be removed", stuck),
                     "Check the folder's permissions");
-  if (files == 0) fmt::print("nothing to remove in {}\n", cache.folder().string());
+  if (files == 0) print("nothing to remove in {}\n", cache.folder().string());
   else
-    fmt::print("{} {} in {} file{}\n", o.dry_run ? "would free" : "freed", format_bytes(bytes),
+    print("{} {} in {} file{}\n", o.dry_run ? "would free" : "freed", format_bytes(bytes),
                files, files == 1 ? "" : "s");
   return 0;
 }

@@ -78,7 +78,7 @@ int plot(const PlotOptions& options) {
   for (const std::string& note : libraries.take_notes()) print_warning(note);
   if (!plot) return 130;
   io::write_plot(options.output, *plot);
-  if (!options.library.quiet) fmt::print("written    {}\n", options.output);
+  if (!options.library.quiet) print("written    {}\n", options.output);
   return 0;
 }
 

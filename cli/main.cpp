@@ -1,207 +1,22 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <fmt/format.h>
+#include <cstdio>
 
-#include <CLI/CLI.hpp>
-#include <algorithm>
-#include <array>
-#include <cctype>
-#include <cstring>
-#include <memory>
-#include <new>
-
-#include "commands.h"
 #include "mpi_team.h"
-#include "options.h"
+#include "run.h"
 #include "surf/core/error.h"
-#include "surf/workflow/version.h"
 #include "terminal.h"
 
-namespace {
-
-using namespace surf;
-using namespace surf::cli;
-
-constexpr int exit_usage = 2;
-constexpr int exit_unusable = 3;
-constexpr int exit_interrupted = 130;
-
-constexpr const char* examples = R"(Examples:
-  semsurf simulate cube.stl --material Si --substrate Si --tilt 40 -o cube.exr -o cube.png
-      the secondary-electron image of a mesh (in nm) at 1 keV, as data and as a picture
-  semsurf simulate samples/mesa80.toml --energy 3keV --electrons 500 -o mesa.vti
-      a scene file, with two of its settings changed, for ParaView
-  semsurf mesh part.obj --unit um --repair --simplify 1nm -o part.stl
-      a sound mesh of fewer triangles, nowhere more than 1 nm off
-  semsurf info mesa.vti
-      what is in a file, and how it was made
-
-'semsurf simulate --help' explains units and options.)";
-
-// CLI11's help with one empty line between groups, not two.
-class HelpFormatter : public CLI::Formatter {
- public:
-  HelpFormatter() {
-    column_width(34);
-    label("Positionals", "Input");
-    label("SUBCOMMAND", "COMMAND");
-  }
-  std::string make_help(const CLI::App* app, std::string name,
-                        CLI::AppFormatMode mode) const override {
-    const std::string help = CLI::Formatter::make_help(app, name, mode);
-    return CLI::detail::find_and_replace(help, "\n\n\n", "\n\n");
-  }
-};
-
-std::string version_text() {
-  return fmt::format(
-      "semsurf {}\nwith {}, CLI11 {}\nCopyright the semsurf authors. Licence GPL-3.0-or-later; no "
-      "warranty.",
-      workflow::version(), workflow::library_versions(), CLI11_VERSION);
-}
-
-// The command line as a shell would read it, for the record.
-std::string quoted_command(int argc, char** argv) {
-  const auto is_plain = [](unsigned char c) {
-    return std::isalnum(c) || std::strchr("-_=+./,:%@", c);
-  };
-  std::string line;
-  for (int i = 0; i < argc; ++i) {
-    const std::string word = argv[i];
-    const bool plain = !word.empty() && std::all_of(word.begin(), word.end(), is_plain);
-    std::string quoted = "'";
-    for (const char c : word) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
-    line += (i ? " " : "") + (plain ? word : quoted + "'");
-  }
-  return line;
-}
-
-std::vector<std::string> names_of_options(const CLI::App& app) {
-  std::vector<std::string> names;
-  for (const CLI::Option* option : app.get_options())
-    for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
-  return names;
-}
-
-// The innermost subcommand that was parsed, else the program.
-const CLI::App& parsed_app(const CLI::App& app) {
-  const auto chosen = app.get_subcommands();
-  return chosen.empty() ? app : parsed_app(*chosen.front());
-}
-
-std::string help_hint(const CLI::App& app) {
-  std::string words = app.get_name();
-  for (const CLI::App* a = app.get_parent(); a; a = a->get_parent())
-    words = fmt::format("{} {}", a->get_name(), words);
-  return fmt::format("See {} --help", words);
-}
-
-int report_extra(const CLI::App& root) {
-  const CLI::App& app = parsed_app(root);
-  const auto remaining = root.remaining(true);
-  std::string word = remaining.empty() ? std::string() : remaining.front();
-  word.resize(std::min(word.find('='), word.size()));
-  const bool option = word.starts_with('-');
-  std::vector<std::string> candidates = names_of_options(app);
-  if (!option && !app.get_subcommands(nullptr).empty()) {
-    candidates.clear();
-    for (const CLI::App* sub : app.get_subcommands(nullptr)) candidates.push_back(sub->get_name());
-  }
-  const std::string guess = nearest(word, candidates);
-  print_error(fmt::format("{}: unknown {}. {}", word, option ? "option" : "command",
-                          guess.empty() ? help_hint(app)
-                                        : fmt::format("Did you mean {}?", guess)));
-  return exit_usage;
-}
-
-int report_parse_error(const CLI::App& root, const CLI::ParseError& error) {
-  if (error.get_exit_code() == 0) return root.exit(error);   // help and version
-  if (dynamic_cast<const CLI::ExtrasError*>(&error)) return report_extra(root);
-  const CLI::App& app = parsed_app(root);
-  print_error(fmt::format("{}. {}", error.what(), help_hint(app)));
-  return exit_usage;
-}
-
-int act(const Action& action) {
-  try {
-    return action();
-  } catch (const UsageError& error) {
-    print_error(error.what());
-    return exit_usage;
-  } catch (const Interrupted&) {
-    print_note("stopped; nothing was written");
-    return exit_interrupted;
-  } catch (const std::bad_alloc&) {
-    print_error("memory: there is not enough for this. Use fewer pixels or a smaller mesh");
-  } catch (const std::exception& error) {
-    print_error(error.what());
-  }
-  return exit_unusable;
-}
-
-// These do their work together with others; anything else is done by the leader alone.
-bool is_shared(const std::string& command) {
-  constexpr std::array shared{"simulate", "sweep", "train", "chart"};
-  return std::ranges::find(shared, command) != shared.end();
-}
-
-int run(int argc, char** argv) {
-  Action action;
-  CLI::App app("Scanning electron microscope images of surfaces, by Monte Carlo simulation",
-               "semsurf");
-  app.formatter(std::make_shared<HelpFormatter>());
-  app.set_version_flag("-V,--version", version_text, "Versions of semsurf and its libraries");
-  app.footer(examples);
-  app.allow_windows_style_options(false);
-  add_simulate(app, action, quoted_command(argc, argv));
-  add_chart(app, action, quoted_command(argc, argv));
-  add_sweep(app, action, quoted_command(argc, argv));
-  add_join(app, action);
-  add_level(app, action);
-  add_clean(app, action);
-  add_noise(app, action);
-  add_mesh(app, action);
-  add_erode(app, action);
-  add_dilate(app, action);
-  add_certainty(app, action);
-  add_train(app, action);
-  add_predict(app, action);
-  add_info(app, action);
-  add_materials(app, action);
-  add_library(app, action);
-  add_tip(app, action);
-  add_calibrate(app, action);
-  add_register(app, action);
-  add_reconstruct(app, action, quoted_command(argc, argv));
-  add_sample(app, action);
-  add_view(app, action);
-  add_completion(app, action);
-
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return report_parse_error(app, error);
-  }
-  if (!action) {
-    fmt::print(stderr, "{}", app.help());
-    return exit_usage;
-  }
-  const std::string command = app.get_subcommands().front()->get_name();
-  if (!is_shared(command) && leave_to_leader(command)) return 0;
-  return act(action);
-}
-
-}  // namespace
-
 int main(int argc, char** argv) {
+  using namespace surf::cli;
   try {
     join_team();
-  } catch (const Error& error) {
+  } catch (const surf::Error& error) {
     print_error(error.what());
-    return exit_unusable;
+    return 3;
   }
   const bool follows = team() && !team()->leads();
   if (follows) be_silent();
-  const int code = run(argc, argv);
+  const int code = run({argv, argv + argc}, stdout, stderr);
   leave_team();
   return follows ? 0 : code;   // mpirun hands on the code of whoever ends first
 }

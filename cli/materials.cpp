@@ -39,7 +39,7 @@ const char* how_fitted(const mc::Material& m) {
 void print_table(const std::vector<mc::Material>& materials) {
   std::size_t width = 8;
   for (const mc::Material& m : materials) width = std::max(width, m.name.size());
-  fmt::print("{:<{}}  {:>7}  {:>9}  {:>11}  {:>11}  {:>8}  {}\n", "name", width, "g/cm^3",
+  print("{:<{}}  {:>7}  {:>9}  {:>11}  {:>11}  {:>8}  {}\n", "name", width, "g/cm^3",
              "work, eV ", "barrier, eV ", "plasmon, eV ", "E_b, eV ", "SE yield");
   bool any = false;
   for (const mc::Material& m : materials) {
@@ -48,26 +48,26 @@ void print_table(const std::vector<mc::Material>& materials) {
       any |= estimated;
       return fmt::format("{:.4g}{}", value, estimated ? "*" : " ");
     };
-    fmt::print("{:<{}}  {:>7.5g}  {:>9}  {:>12}  {:>12}  {:>8}  {}\n", m.name, width,
+    print("{:<{}}  {:>7.5g}  {:>9}  {:>12}  {:>12}  {:>8}  {}\n", m.name, width,
                m.density_g_cm3, number(m.work_function_ev, "work_function_ev"),
                number(m.barrier_ev, "barrier_ev"),
                m.plasmon_ev > 0 ? number(m.plasmon_ev, "plasmon_ev") : "none ",
                number(m.loss_join_ev, "loss_join_ev"), how_fitted(m));
   }
-  if (any) fmt::print("* estimated; 'semsurf materials NAME' says how\n");
+  if (any) print("* estimated; 'semsurf materials NAME' says how\n");
 }
 
 void print_line(const char* label, const std::string& value, const char* unit) {
-  fmt::print("  {:<38} {}{}{}\n", label, value, *unit ? " " : "", unit);
+  print("  {:<38} {}{}{}\n", label, value, *unit ? " " : "", unit);
 }
 
 void print_material(const mc::Material& m) {
   const auto line = [&](const char* label, double value, const char* unit, const char* field) {
     const std::string* const rule = estimate_of(m, field);
     print_line(label, rule ? fmt::format("{:.5g}", value) : format_exact(value), unit);
-    if (rule) fmt::print("    estimated: {}\n", *rule);
+    if (rule) print("    estimated: {}\n", *rule);
   };
-  fmt::print("{}\n", m.name);
+  print("{}\n", m.name);
   line("density", m.density_g_cm3, "g/cm^3", "density_g_cm3");
   line("work function W", m.work_function_ev, "eV", "work_function_ev");
   line("surface barrier U0", m.barrier_ev, "eV", "barrier_ev");
@@ -79,7 +79,7 @@ void print_material(const mc::Material& m) {
   line("E_b, where the low-energy loss joins", m.loss_join_ev,
        m.loss_join_fitted ? "eV (fitted to measured SE yields)" : "eV (unfitted)", "loss_join_ev");
   for (const mc::Constituent& c : m.constituents) {
-    fmt::print("  {}, Z = {}, {:.4g} % of the mass, {:.4g} per formula unit\n",
+    print("  {}, Z = {}, {:.4g} % of the mass, {:.4g} per formula unit\n",
                mc::element(c.atomic_number).symbol, c.atomic_number, 100 * c.weight_fraction,
                mc::atoms_per_formula_unit(m, c));
     print_line("  atomic weight", format_exact(c.atomic_weight), "g/mol");
@@ -88,7 +88,7 @@ void print_material(const mc::Material& m) {
     print_line("  Mott table", mc::has_mott_table(c.atomic_number)
                                    ? "yes" : "no: use --physics elastic=browning", "");
   }
-  if (!m.sources.empty()) fmt::print("  sources: {}\n", m.sources);
+  if (!m.sources.empty()) print("  sources: {}\n", m.sources);
 }
 
 int print_materials(const std::string& name, const std::vector<std::string>& files) {

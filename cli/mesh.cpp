@@ -204,9 +204,9 @@ bool print_surfaces(const SurfaceScene& scene, bool quiet) {
     std::string with;
     for (const VertexScalar& scalar : surface.scalars) with += (with.empty() ? "; with " : ", ") + scalar.name;
     if (surface.drape) with += (with.empty() ? "; with " : ", ") + fmt::format("the picture {}", surface.drape->name);
-    fmt::print("{:<10} {}{}{}\n", "shape", scene.surfaces.size() > 1 ? surface.name + ": " : "", summary(report), with);
+    print("{:<10} {}{}{}\n", "shape", scene.surfaces.size() > 1 ? surface.name + ": " : "", summary(report), with);
   }
-  if (!quiet) fmt::print("{:<10} {}\n", "size", format_extent(box));
+  if (!quiet) print("{:<10} {}\n", "size", format_extent(box));
   return sound;
 }
 
@@ -225,9 +225,9 @@ int work(const Options& o) {
   write(o, plan, scene);
   const bool sound = print_surfaces(scene, o.quiet);
   if (!o.quiet) {
-    if (!scene.tracks.empty()) fmt::print("{:<10} {}\n", "tracks", scene.tracks.size());
-    if (plan.format.magnified && !plan.out_unit_nm) fmt::print("{:<10} {}\n", "scale", scale_of(plan.magnification));
-    fmt::print("{:<10} {}\n", "written", *o.output);
+    if (!scene.tracks.empty()) print("{:<10} {}\n", "tracks", scene.tracks.size());
+    if (plan.format.magnified && !plan.out_unit_nm) print("{:<10} {}\n", "scale", scale_of(plan.magnification));
+    print("{:<10} {}\n", "written", *o.output);
   }
   const bool of_meshes = std::ranges::all_of(plan.inputs, [](const FileChannel& f) { return io::is_mesh_file(f.file); });
   if (!sound && !o.repair && of_meshes) {

@@ -25,7 +25,7 @@ constexpr double base_share = 0.05;   // of the longer side, under the lowest pl
 void print_repair(const RepairSummary& summary) {
   const char* label = "repair";
   for (const std::string& line : describe(summary)) {
-    fmt::print("{:<10} {}\n", label, line);
+    print("{:<10} {}\n", label, line);
     label = "";
   }
 }
@@ -41,7 +41,7 @@ void advise(const RepairSummary& summary) {
 }
 
 void print_simplified(const SimplifySummary& s) {
-  fmt::print("{:<10} {} triangles to {}, {}\n", "simplify", s.triangles_before, s.triangles_after,
+  print("{:<10} {} triangles to {}, {}\n", "simplify", s.triangles_before, s.triangles_after,
              s.attempts == 0 || s.triangles_after == s.triangles_before
                  ? "nothing could be removed"
                  : fmt::format("at most {} apart (original to result {}, back {}), measured every {}",
@@ -103,7 +103,7 @@ class Treatment {
     TriangleMesh mesh = thin_height_field(
         field, {work_.reduce.tolerance_nm / work_.scale, work_.reduce.triangles, watch_}, s);
     if (!work_.quiet)
-      fmt::print("{:<10} {} triangles to {}, nowhere more than {} above or below (proven)\n", "simplify",
+      print("{:<10} {} triangles to {}, nowhere more than {} above or below (proven)\n", "simplify",
                  s.triangles_before, s.triangles_after, format_length(s.deviation_nm * work_.scale));
     if (work_.reduce.tolerance_nm > 0 && !s.reached)
       print_warning(fmt::format("--triangles: with {} of them the surface is {} off, more than --tolerance",
@@ -185,7 +185,7 @@ class Treatment {
       for (VertexScalar& scalar : surface.scalars)   // of the walls' feet nothing is known
         scalar.values.resize(surface.mesh.vertices_nm.size(), 0);
       if (!work_.quiet)
-        fmt::print("{:<10} walls, and a base {} under the lowest place\n", "solid", format_length(depth));
+        print("{:<10} walls, and a base {} under the lowest place\n", "solid", format_length(depth));
     }
     surface.name = unique_name(scene_, surface.name);
     scene_.surfaces.push_back(std::move(surface));

@@ -86,11 +86,11 @@ int work(const Command& command, const Options& o) {
   if (!scan.channel.empty()) made["channel"] = scan.channel;
   io::write_height_field(*o.output, result, provenance_of(command.name, made, {o.input.file, *o.tip}));
   if (o.quiet) return 0;
-  fmt::print("{:<10} {} x {} pixels of {}, heights {}\n", "scan", scan.field.z_nm.width(),
+  print("{:<10} {} x {} pixels of {}, heights {}\n", "scan", scan.field.z_nm.width(),
              scan.field.z_nm.height(), format_length(scan.field.pitch_x_nm), relief(scan.field));
-  fmt::print("{:<10} {} x {} pixels\n", "tip", tip.z_nm.width(), tip.z_nm.height());
-  fmt::print("{:<10} heights {}\n", command.done, relief(result));
-  fmt::print("{:<10} {}\n", "written", *o.output);
+  print("{:<10} {} x {} pixels\n", "tip", tip.z_nm.width(), tip.z_nm.height());
+  print("{:<10} heights {}\n", command.done, relief(result));
+  print("{:<10} {}\n", "written", *o.output);
   return 0;
 }
 

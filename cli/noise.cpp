@@ -72,7 +72,7 @@ Findings of_substrate(const HeightField& field, const FlatNoiseOptions& options,
   SubstrateNoise s = estimate_substrate_noise(field, options, use);
   watched.clear();
   if (!quiet)
-    fmt::print("{:<12} {:.1f} % of the image; the next plane holds {:.1f} %\n", "substrate", 100 * s.substrate_share,
+    print("{:<12} {:.1f} % of the image; the next plane holds {:.1f} %\n", "substrate", 100 * s.substrate_share,
                100 * s.plane.runner_up_share);
   if (s.plane.verdict != HoughVerdict::clear)
     print_warning("no plane holds a clear majority of the image, so there may be no substrate to take the noise "
@@ -81,7 +81,7 @@ Findings of_substrate(const HeightField& field, const FlatNoiseOptions& options,
 }
 
 void print_model(const char* label, const NoiseEstimate& e) {
-  fmt::print("{:<12} alpha {:.4f} ± {:.1g}, sigma {:.4g} ± {:.1g} nm, innovation {:.4g} ± {:.1g} nm^2\n", label,
+  print("{:<12} alpha {:.4f} ± {:.1g}, sigma {:.4g} ± {:.1g} nm, innovation {:.4g} ± {:.1g} nm^2\n", label,
              e.noise.alpha, e.alpha_stderr, e.sigma_nm(), e.sigma_stderr_nm, e.noise.innovation_nm2,
              e.innovation_stderr_nm2);
 }
@@ -107,9 +107,9 @@ std::string largest(const std::vector<LagCorrelation>& lags) {
 std::string format_p(double p) { return p < 1e-4 ? "p < 0.0001" : fmt::format("p = {:.4f}", p); }
 
 void print_check(const NoiseCheck& c) {
-  fmt::print("{:<12} along rows {}: {}\n", "whiteness", format_p(c.along_p), largest(c.along));
-  fmt::print("{:<12} across rows {}: {}\n", "", format_p(c.across_p), largest(c.across));
-  fmt::print("{:<12} {}: skewness {:.3f}, excess kurtosis {:.3f}\n", "normality", format_p(c.normal_p), c.skewness,
+  print("{:<12} along rows {}: {}\n", "whiteness", format_p(c.along_p), largest(c.along));
+  print("{:<12} across rows {}: {}\n", "", format_p(c.across_p), largest(c.across));
+  print("{:<12} {}: skewness {:.3f}, excess kurtosis {:.3f}\n", "normality", format_p(c.normal_p), c.skewness,
              c.excess_kurtosis);
 }
 
@@ -150,7 +150,7 @@ int of_scan(const Options& o) {
   print_check(check);
   if (o.plot) {
     io::write_plot(*o.plot, plot_noise(f.residual_nm, white, f.samples, f.estimate.noise, check));
-    if (!o.quiet) fmt::print("{:<12} {}\n", "written", *o.plot);
+    if (!o.quiet) print("{:<12} {}\n", "written", *o.plot);
   }
   return 0;
 }

@@ -51,13 +51,13 @@ std::string format_fit(const CountFit& fit) {
 
 void print_set(const FittedCounts& f) {
   const CountMoments& m = f.moments;
-  fmt::print("{:<12} {} a trial: mean {:.4g}, variance {:.4g}, skewness {:.3g}\n",
+  print("{:<12} {} a trial: mean {:.4g}, variance {:.4g}, skewness {:.3g}\n",
              fmt::format("{} of {}", f.set.detector, f.set.electrons), f.set.detector, m.mean, m.variance, m.skewness);
-  fmt::print("{:<12} Poisson, mean {:.4g}: {}\n", "", f.poisson.mean, format_fit(test_fit(f.set.counts, f.poisson)));
+  print("{:<12} Poisson, mean {:.4g}: {}\n", "", f.poisson.mean, format_fit(test_fit(f.set.counts, f.poisson)));
   if (!f.spread) return;
-  fmt::print("{:<12} log-normal, median {:.4g}, scale {:.4g}, shape {:.3g}: {}\n", "", f.log_normal.median,
+  print("{:<12} log-normal, median {:.4g}, scale {:.4g}, shape {:.3g}: {}\n", "", f.log_normal.median,
              f.log_normal.scale, f.log_normal.shape, format_fit(test_fit(f.set.counts, f.log_normal)));
-  fmt::print("{:<12} normal: {}\n", "", format_fit(test_fit(f.set.counts, f.normal)));
+  print("{:<12} normal: {}\n", "", format_fit(test_fit(f.set.counts, f.normal)));
 }
 
 }  // namespace
@@ -93,7 +93,7 @@ int print_counts(const CountsInput& input, const std::optional<std::string>& plo
     summary = workflow::run(job, {[&](double done, double total) { bar.show(done, total); }, interrupts.token()});
   }
   if (!quiet)
-    fmt::print("{:<12} {} trials where the beam meets ({:.4g}, {:.4g}, {:.4g}) nm\n", "counts", job.trials, summary.hit_nm.x,
+    print("{:<12} {} trials where the beam meets ({:.4g}, {:.4g}, {:.4g}) nm\n", "counts", job.trials, summary.hit_nm.x,
                summary.hit_nm.y, summary.hit_nm.z);
   std::vector<FittedCounts> sets;
   for (const workflow::DetectorCounts& set : summary.sets) {
@@ -104,7 +104,7 @@ int print_counts(const CountsInput& input, const std::optional<std::string>& plo
   if (plot) io::write_plot(*plot, plot_counts(sets, static_cast<int>(sets.size() / job.electrons.size())));
   if (quiet) return 0;
   for (const auto& file : {input.csv, plot})
-    if (file) fmt::print("{:<12} {}\n", "written", *file);
+    if (file) print("{:<12} {}\n", "written", *file);
   return 0;
 }
 

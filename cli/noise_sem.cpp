@@ -77,24 +77,24 @@ SemNoiseOptions make_options(const SemNoiseInput& input) {
 
 void print_estimate(const SemNoiseEstimate& e) {
   if (e.slope_known)
-    fmt::print("{:<12} variance = ({:.4g} ± {:.1g}) mean {} ({:.4g} ± {:.1g})\n", "noise", e.noise.slope,
+    print("{:<12} variance = ({:.4g} ± {:.1g}) mean {} ({:.4g} ± {:.1g})\n", "noise", e.noise.slope,
                e.slope_stderr(), e.noise.intercept < 0 ? "-" : "+", std::fabs(e.noise.intercept), e.intercept_stderr());
   else
-    fmt::print("{:<12} variance = {:.4g} ± {:.1g}\n", "noise", e.noise.intercept, e.intercept_stderr());
+    print("{:<12} variance = {:.4g} ± {:.1g}\n", "noise", e.noise.intercept, e.intercept_stderr());
   for (const double mean : {e.least_mean, e.largest_mean})
-    fmt::print("{:<12} at mean {:.4g}: {:.4g} ± {:.1g}, signal to noise {:.3g}\n", "", mean, std::sqrt(e.noise.variance(mean)),
+    print("{:<12} at mean {:.4g}: {:.4g} ± {:.1g}, signal to noise {:.3g}\n", "", mean, std::sqrt(e.noise.variance(mean)),
                e.variance_stderr(mean) / (2 * std::sqrt(e.noise.variance(mean))), mean / std::sqrt(e.noise.variance(mean)));
   const auto used = std::ranges::count_if(e.points, [](const NoisePoint& p) { return p.used; });
-  fmt::print("{:<12} {} used, {} left out{}; {} pixels\n", "flat places", used, static_cast<std::int64_t>(e.points.size()) - used,
+  print("{:<12} {} used, {} left out{}; {} pixels\n", "flat places", used, static_cast<std::int64_t>(e.points.size()) - used,
              e.blocks ? fmt::format(", of {} blocks", e.blocks) : "", e.pixels);
   if (e.degrees > 0)
-    fmt::print("{:<12} chi-squared {:.4g} with {} degrees of freedom, {}; bend {:.1f} % (z = {:.1f})\n", "line", e.chi_squared,
+    print("{:<12} chi-squared {:.4g} with {} degrees of freedom, {}; bend {:.1f} % (z = {:.1f})\n", "line", e.chi_squared,
                e.degrees, e.p < 1e-4 ? "p < 0.0001" : fmt::format("p = {:.4f}", e.p), 100 * e.bend, e.curvature_z);
-  fmt::print("{:<12} {:.3f} along rows, {:.3f} across; a mean counts 1 pixel in {:.3g}, a variance 1 in {:.3g}\n",
+  print("{:<12} {:.3f} along rows, {:.3f} across; a mean counts 1 pixel in {:.3g}, a variance 1 in {:.3g}\n",
              "correlation", e.correlation_x, e.correlation_y, e.correlation_sum, e.correlation_squares);
-  fmt::print("{:<12} excess kurtosis {:.3f}\n", "normality", e.excess_kurtosis);
+  print("{:<12} excess kurtosis {:.3f}\n", "normality", e.excess_kurtosis);
   if (e.quantum > 0)
-    fmt::print("{:<12} in steps of {:g}, which is {:.2g} of the variance\n", "grey levels", e.quantum,
+    print("{:<12} in steps of {:g}, which is {:.2g} of the variance\n", "grey levels", e.quantum,
                e.quantum * e.quantum / 12);
 }
 
@@ -131,7 +131,7 @@ int print_sem_noise(const SemNoiseInput& input, const std::optional<std::string>
   for (const std::string& warning : e.warnings) print_warning(warning);
   if (!plot) return 0;
   io::write_plot(*plot, plot_sem_noise(e, picture.image.values.width(), picture.image.values.height()));
-  if (!quiet) fmt::print("{:<12} {}\n", "written", *plot);
+  if (!quiet) print("{:<12} {}\n", "written", *plot);
   return 0;
 }
 

@@ -118,7 +118,7 @@ int predict(const Options& o) {
   watched.clear();
   for (const std::string& warning : s.warnings) print_warning(warning);
   if (o.quiet) return 0;
-  const auto line = [](const std::string& label, const std::string& text) { fmt::print("{:<10} {}\n", label, text); };
+  const auto line = [](const std::string& label, const std::string& text) { print("{:<10} {}\n", label, text); };
   line("model", format_model(s.model));
   line("for", format_scope(s.model.scope));
   line("image", fmt::format("{} x {} pixels of {}, in {:.3g} s", s.image.width(), s.image.height(),

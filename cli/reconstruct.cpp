@@ -20,7 +20,7 @@ constexpr int exit_interrupted = 130;
 
 using workflow::ReconstructionVerdict;
 
-void line(const std::string& label, const std::string& text) { fmt::print("{:<10} {}\n", label, text); }
+void line(const std::string& label, const std::string& text) { print("{:<10} {}\n", label, text); }
 
 void print_residual(const char* label, const ResidualReport& r) {
   if (r.pixels == 0) return;

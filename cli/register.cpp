@@ -54,7 +54,7 @@ int work(const Options& o) {
   print_pose(s.pose, job.sem.image.pitch_x_nm);
   if (!o.chain.quiet)
     for (const auto& file : {job.transform, job.picture})
-      if (!file.empty()) fmt::print("{:<10} {}\n", "written", file.string());
+      if (!file.empty()) print("{:<10} {}\n", "written", file.string());
   return s.pose.verified() ? 0 : exit_untrustworthy;
 }
 

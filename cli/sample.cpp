@@ -36,7 +36,7 @@ struct Options {
 
 int list_samples() {
   for (const workflow::SampleScene& scene : workflow::sample_scenes())
-    fmt::print("{:<16} {}\n", scene.name, scene.what);
+    print("{:<16} {}\n", scene.name, scene.what);
   return 0;
 }
 
@@ -55,7 +55,7 @@ workflow::SampleJob make_job(const Options& o) {
   return job;
 }
 
-void print_line(const std::string& label, const std::string& text) { fmt::print("{:<10} {}\n", label, text); }
+void print_line(const std::string& label, const std::string& text) { print("{:<10} {}\n", label, text); }
 
 int sample(const Options& o) {
   if (o.list) return list_samples();

@@ -14,7 +14,7 @@ namespace surf::cli {
 namespace {
 
 void print_line(const std::string& label, const std::string& text) {
-  fmt::print("{:<10} {}\n", label, text);
+  print("{:<10} {}\n", label, text);
 }
 
 std::string percent(double part, double whole) {
@@ -39,7 +39,7 @@ void print_yields(const workflow::SimulateSummary& s) {
   for (const mc::Detector& d : s.result.detectors) width = std::max(width, d.name.size());
   for (std::size_t d = 0; d < s.result.detectors.size(); ++d) {
     const mc::Estimate& y = s.statistics.yields[d];
-    fmt::print("{:<{}} {:.4f} ± {:.4f}{}\n", s.result.detectors[d].name, width, y.mean,
+    print("{:<{}} {:.4f} ± {:.4f}{}\n", s.result.detectors[d].name, width, y.mean,
                y.standard_error,
                d == 0 ? fmt::format(" per primary, mean over {} pixels", s.statistics.seen) : "");
   }

@@ -213,8 +213,8 @@ int sweep(const Options& o, const std::string& command_line) {
       for (const std::string& value : job.runs[run].values) line += fmt::format("  {:>8}", value);
       for (const workflow::SweepYield& y : yields)
         line += fmt::format("  {} {:.4f} ± {:.4f}", y.detector, y.mean, y.standard_error);
-      fmt::print("{}\n", line);
-      std::fflush(stdout);
+      print("{}\n", line);
+      flush();
     };
     listener.warn = [&](const std::string& text) {
       bar.clear();
@@ -232,8 +232,8 @@ int sweep(const Options& o, const std::string& command_line) {
     return exit_interrupted;
   }
   if (!quiet) {
-    if (s.found > 0) fmt::print("{} runs were there before\n", s.found);
-    fmt::print("written {}\n", s.table.string());
+    if (s.found > 0) print("{} runs were there before\n", s.found);
+    print("written {}\n", s.table.string());
   }
   return s.untrustworthy > 0 ? exit_untrustworthy : 0;
 }
@@ -267,7 +267,7 @@ void add_join(CLI::App& app, Action& action) {
   sub->callback([folders, &action] {
     action = [folders] {
       const auto table = workflow::join_sweep({folders->begin(), folders->end()});
-      fmt::print("written {}\n", table.string());
+      print("written {}\n", table.string());
       return 0;
     };
   });

@@ -11,6 +11,8 @@
 #include <cmath>
 #include <cstdio>
 
+#include "surf/core/error.h"
+
 namespace surf::cli {
 namespace {
 
@@ -20,15 +22,17 @@ constexpr int exit_interrupted = 130;
 std::atomic<CancelToken*> interrupted_token{nullptr};
 
 bool silent = false;
+std::FILE* results_to = nullptr;   // null: stdout
+std::FILE* messages_to = nullptr;  // null: stderr
 
 void print_line(const char* kind, const std::string& message) {
   if (silent) return;
-  fmt::print(stderr, "semsurf: {}: {}\n", kind, message);
+  fmt::print(messages(), "semsurf: {}: {}\n", kind, message);
 }
 
 int terminal_columns() {
   winsize size{};
-  return ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : 80;
+  return ioctl(fileno(messages()), TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : 80;
 }
 
 // Only calls that are safe in a signal handler.
@@ -52,7 +56,20 @@ void handle_interrupts(void (*handler)(int)) {
 
 }  // namespace
 
-void be_silent() { silent = true; }
+std::FILE* output() { return results_to ? results_to : stdout; }
+std::FILE* messages() { return messages_to ? messages_to : stderr; }
+void speak_to(std::FILE* output, std::FILE* messages) {
+  results_to = output;
+  messages_to = messages;
+}
+
+void flush() {
+  if (std::fflush(output()) == 0 && !std::ferror(output())) return;
+  std::clearerr(output());
+  throw FileError("standard output", "what was printed cannot be written there", "Check the free space and where it goes");
+}
+
+void be_silent(bool wanted) { silent = wanted; }
 
 void print_error(const std::string& message) { print_line("error", message); }
 void print_warning(const std::string& message) { print_line("warning", message); }
@@ -85,12 +102,12 @@ std::string format_duration(double seconds) {
                   : fmt::format("{}:{:02}:{:02}", s / 3600, s / 60 % 60, s % 60);
 }
 
-ProgressBar::ProgressBar(bool wanted) : active_(wanted && !silent && isatty(STDERR_FILENO)) {}
+ProgressBar::ProgressBar(bool wanted) : active_(wanted && !silent && isatty(fileno(messages()))) {}
 
 ProgressBar::~ProgressBar() { clear(); }
 
 void ProgressBar::clear() {
-  if (started_) fmt::print(stderr, "\r\033[K");
+  if (started_) fmt::print(messages(), "\r\033[K");
 }
 
 void ProgressBar::show(double done, double total, const char* things) {
@@ -118,8 +135,8 @@ void ProgressBar::show(double done, double total, const char* things) {
   const int room = terminal_columns() - static_cast<int>(numbers.size()) - 4;
   const int width = std::clamp(room, 0, 40);
   const int filled = static_cast<int>(fraction * width);
-  fmt::print(stderr, "\r[{:#<{}}{: <{}}]{}\033[K", "", filled, "", width - filled, numbers);
-  std::fflush(stderr);
+  fmt::print(messages(), "\r[{:#<{}}{: <{}}]{}\033[K", "", filled, "", width - filled, numbers);
+  std::fflush(messages());
 }
 
 InterruptGuard::InterruptGuard() {

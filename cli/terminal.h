@@ -1,20 +1,37 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <fmt/format.h>
+
 #include <chrono>
+#include <cstdio>
 #include <string>
+#include <utility>
 
 #include "surf/core/progress.h"
 
 namespace surf::cli {
 
-/// "semsurf: error: ...", "semsurf: warning: ..." and "semsurf: note: ..." on stderr.
+/// Where results go and where messages go: stdout and stderr until somebody else is named.
+std::FILE* output();
+std::FILE* messages();
+void speak_to(std::FILE* output, std::FILE* messages);
+
+/// A command's result, to `output()`.
+template <class... T>
+void print(fmt::format_string<T...> format, T&&... values) {
+  fmt::vprint(output(), format, fmt::make_format_args(values...));
+}
+/// What was printed can be read now. Throws FileError if it cannot be kept, as on a full disk.
+void flush();
+
+/// "semsurf: error: ...", "semsurf: warning: ..." and "semsurf: note: ..." in the messages.
 void print_error(const std::string& message);
 void print_warning(const std::string& message);
 void print_note(const std::string& message);
 
-/// From now on none of these says anything, nor does a progress bar: another process does.
-void be_silent();
+/// Whether these say anything, and a progress bar: not where another process does.
+void be_silent(bool silent = true);
 
 /// "13.1 M", "950": a count for people.
 std::string format_count(double count);
@@ -28,8 +45,8 @@ std::string format_energy(double energy_ev);
 /// "0:07", "3:21", "2:05:00".
 std::string format_duration(double seconds);
 
-/// A progress bar on stderr: percentage, things per second, time left. Silent unless `wanted`
-/// and stderr is a terminal. Erased when destroyed.
+/// A progress bar among the messages: percentage, things per second, time left. Silent unless `wanted`
+/// and they go to a terminal. Erased when destroyed.
 class ProgressBar {
  public:
   explicit ProgressBar(bool wanted);

@@ -181,25 +181,25 @@ double depth_of(const Tip& tip) {
 }
 
 void print_tip(const Tip& tip, double depth_nm) {
-  fmt::print("{:<10} {} x {} samples of {}, down to {}\n", "tip", tip.z_nm.width(), tip.z_nm.height(),
+  print("{:<10} {} x {} samples of {}, down to {}\n", "tip", tip.z_nm.width(), tip.z_nm.height(),
              format_length(tip.pitch_x_nm), format_length(-depth_of(tip)));
   try {
     const TipMeasures m = measure_tip(tip);
-    fmt::print("{:<10} {} (fitted down to {}, residual {})", "radius", format_length(m.radius_nm),
+    print("{:<10} {} (fitted down to {}, residual {})", "radius", format_length(m.radius_nm),
                format_length(m.fit_depth_nm), format_length(m.radius_residual_nm));
-    if (m.half_angle_rad) fmt::print(", half angle {:.1f} degrees", *m.half_angle_rad / degrees_to_radians);
-    fmt::print("\n");
+    if (m.half_angle_rad) print(", half angle {:.1f} degrees", *m.half_angle_rad / degrees_to_radians);
+    print("\n");
   } catch (const InvalidInput& e) {   // a flat end, or too few samples
-    fmt::print("{:<10} not known: {}\n", "radius", e.reason());
+    print("{:<10} not known: {}\n", "radius", e.reason());
   }
-  fmt::print("{:<10} {:.4g} nm^3 down to {}\n", "volume", tip_volume_nm3(tip, depth_nm), format_length(depth_nm));
+  print("{:<10} {:.4g} nm^3 down to {}\n", "volume", tip_volume_nm3(tip, depth_nm), format_length(depth_nm));
 }
 
 // 4: there is a result, but not to be trusted.
 int print_sweep(const TipSweep& sweep, bool quiet) {
   const SweptTip& c = sweep.curve[sweep.chosen];
   if (!quiet)
-    fmt::print("{:<10} {} of {} to {}; residual {}, expected {}; largest jump of volume below {}\n", "threshold",
+    print("{:<10} {} of {} to {}; residual {}, expected {}; largest jump of volume below {}\n", "threshold",
                format_length(c.threshold_nm), format_length(sweep.curve.front().threshold_nm),
                format_length(sweep.curve.back().threshold_nm), format_length(c.residual_nm),
                format_length(c.expected_nm), format_length(sweep.curve[sweep.jump].threshold_nm));
@@ -241,7 +241,7 @@ int by_shape(const Options& o) {
   if (o.plot) io::write_plot(*o.plot, tip_plot(tip));
   if (o.quiet) return 0;
   print_tip(tip, depth_of(tip));
-  fmt::print("{:<10} {}\n", "written", *o.output);
+  print("{:<10} {}\n", "written", *o.output);
   return 0;
 }
 
@@ -264,10 +264,10 @@ int by_characterizer(const Options& o) {
     print_warning(fmt::format("scan and characterizer are {} samples or more apart: crop the scan",
                               options.search));
   if (o.quiet) return 0;
-  fmt::print("{:<10} found at sample ({}, {}) of the scan, {} above; residual {}\n", "known", found.offset_x,
+  print("{:<10} found at sample ({}, {}) of the scan, {} above; residual {}\n", "known", found.offset_x,
              found.offset_y, format_length(found.offset_z_nm), format_length(found.residual_nm));
   print_tip(found.tip, std::max(height_range(scans).span_nm(), 1e-9));
-  fmt::print("{:<10} {}\n", "written", *o.output);
+  print("{:<10} {}\n", "written", *o.output);
   return 0;
 }
 
@@ -282,7 +282,7 @@ int work(const Options& o) {
   const std::vector<HeightField> scans = read_scans(o);
   if (!p.noise && p.answer != Answer::blind) p.noise = noise_of(scans, o.quiet);
   if (p.noise && !o.quiet)
-    fmt::print("{:<10} {}, alpha {:.2f}\n", "noise", format_length(std::sqrt(p.noise->variance_nm2())),
+    print("{:<10} {}, alpha {:.2f}\n", "noise", format_length(std::sqrt(p.noise->variance_nm2())),
                p.noise->alpha);
 
   InterruptGuard interrupt;
@@ -315,7 +315,7 @@ int work(const Options& o) {
     bar.clear();
     threshold_nm = summary.chosen.threshold_nm;
     if (!o.quiet)
-      fmt::print("{:<10} misfit {:.2f} with {:.2f} free surface pixels per pixel, {} samples touched\n", "fit",
+      print("{:<10} misfit {:.2f} with {:.2f} free surface pixels per pixel, {} samples touched\n", "fit",
                  summary.chosen.misfit, summary.chosen.freedom, summary.touched);
     plot = tip_plot(tip, summary);
   } else {
@@ -325,7 +325,7 @@ int work(const Options& o) {
       p.blind.threshold_nm = p.blind.apex_tolerance_nm = threshold_nm =
           outer_threshold_nm(*p.noise, pixels, p.blind.width * p.blind.height);
       if (!o.quiet)
-        fmt::print("{:<10} {}: at 95 % an outer bound\n", "threshold", format_length(threshold_nm));
+        print("{:<10} {}: at 95 % an outer bound\n", "threshold", format_length(threshold_nm));
     }
     BlindTipSummary summary;
     tip = blind_tip(scans, p.blind, summary, progress, cancel);
@@ -346,7 +346,7 @@ int work(const Options& o) {
     print_warning(fmt::format("the scan does not tell the tip's shape towards {} degrees (counter-clockwise "
                               "from +x): nothing there is steep enough. What is given is the bluntest tip "
                               "possible", ranges_of(open_ways)));
-  if (!o.quiet) fmt::print("{:<10} {}\n", "written", *o.output);
+  if (!o.quiet) print("{:<10} {}\n", "written", *o.output);
   return code;
 }
 

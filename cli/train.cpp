@@ -15,7 +15,7 @@ namespace {
 
 constexpr int exit_interrupted = 130;
 
-void print_line(const std::string& label, const std::string& text) { fmt::print("{:<10} {}\n", label, text); }
+void print_line(const std::string& label, const std::string& text) { print("{:<10} {}\n", label, text); }
 
 void print_training(const workflow::TrainJob& job, const workflow::TrainSummary& s) {
   const TrainedModel& model = s.model;

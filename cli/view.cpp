@@ -106,11 +106,11 @@ std::string describe(const io::WebSurface& surface) {
 
 void report(const io::WebPage& page, const io::WebPageSummary& summary, const std::string& output) {
   for (const io::WebSurface& surface : page.surfaces)
-    fmt::print("{:<10} {}: {}\n", "surface", surface.name, describe(surface));
+    print("{:<10} {}: {}\n", "surface", surface.name, describe(surface));
   for (const io::WebImage& image : page.images)
-    fmt::print("{:<10} {}: {} x {} pixels{}\n", "image", image.name, image.image.width(), image.image.height(),
+    print("{:<10} {}: {} x {} pixels{}\n", "image", image.name, image.image.width(), image.image.height(),
                image.has_scale ? "" : ", size not known (--pixel-size)");
-  fmt::print("{:<10} {}, {}, of these {} the viewer\n", "written", output, format_bytes(double(summary.bytes)),
+  print("{:<10} {}, {}, of these {} the viewer\n", "written", output, format_bytes(double(summary.bytes)),
              format_bytes(double(summary.viewer_bytes)));
 }
 
