@@ -12,7 +12,7 @@
 #include "chart_sample.h"
 #include "commands.h"
 #include "common_options.h"
-#include "mpi_team.h"
+#include "joined_team.h"
 #include "name_list.h"
 #include "options.h"
 #include "scene_groups.h"

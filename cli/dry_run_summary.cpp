@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <string>
 
-#include "mpi_team.h"
+#include "joined_team.h"
 #include "surf/core/units.h"
 #include "terminal.h"
 

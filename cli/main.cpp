@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <cstdio>
+#include <cstdlib>
 
-#include "mpi_team.h"
+#include "joined_team.h"
 #include "run.h"
 #include "surf/core/error.h"
 #include "terminal.h"
 
 int main(int argc, char** argv) {
   using namespace surf::cli;
+  // OpenBLAS comes with modules. Threads of its own are never used, and where address space is short they never end.
+  setenv("OPENBLAS_NUM_THREADS", "1", 0);
   try {
     join_team();
   } catch (const surf::Error& error) {

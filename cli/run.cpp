@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "commands.h"
-#include "mpi_team.h"
+#include "joined_team.h"
 #include "options.h"
 #include "run.h"
 #include "surf/core/error.h"

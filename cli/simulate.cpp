@@ -6,7 +6,7 @@
 
 #include "commands.h"
 #include "dry_run_summary.h"
-#include "mpi_team.h"
+#include "joined_team.h"
 #include "simulate_job_options.h"
 #include "simulate_options.h"
 #include "simulate_summary.h"

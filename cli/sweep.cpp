@@ -9,7 +9,7 @@
 #include <memory>
 
 #include "commands.h"
-#include "mpi_team.h"
+#include "joined_team.h"
 #include "options.h"
 #include "simulate_job_options.h"
 #include "simulate_options.h"

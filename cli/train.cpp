@@ -5,7 +5,7 @@
 
 #include "commands.h"
 #include "model_tables.h"
-#include "mpi_team.h"
+#include "joined_team.h"
 #include "surf/workflow/train_job.h"
 #include "terminal.h"
 #include "train_options.h"

@@ -38,7 +38,7 @@ struct Sharing {
   double waiting_s_per_unit = 0;     ///< threads of those who follow, for units
 };
 
-/// The queue at the leader, message by message: `units` of work are handed out as cli/mpi_team.cpp does, two for each thread
+/// The queue at the leader, message by message: `units` of work are handed out as workflow/src/mpi_team.cpp does, two for each thread
 /// when fewer than one for each thread are in hand. The leader simulates, too, and its messages take processor time from that.
 /// Above `most` units, two shorter jobs tell how much longer each further unit takes.
 Sharing simulate_sharing(const UnitCosts& costs, const Messages& messages, const Machines& machines, std::int64_t units,

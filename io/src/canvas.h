@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "surf/core/module.h"
+
 namespace surf::io {
 
 /// A drawing in pixels, x right and y down, that becomes a PNG, SVG or PDF.
@@ -16,33 +18,33 @@ class Canvas {
   struct Color { double red, green, blue, alpha = 1; };   ///< 0 to 1
   enum class Align { left, center, right };
 
-  /// `extension` is ".png", ".svg" or ".pdf". `target` is the name to write to, `file` the one for
-  /// messages.
-  Canvas(const std::filesystem::path& target, const std::string& file,
-         const std::string& extension, int width, int height);
-  ~Canvas();
+  virtual ~Canvas() = default;
 
-  void fill_rectangle(Point corner, double width, double height, Color color);
-  void stroke_rectangle(Point corner, double width, double height, double line_width, Color color);
+  virtual void fill_rectangle(Point corner, double width, double height, Color color) = 0;
+  virtual void stroke_rectangle(Point corner, double width, double height, double line_width, Color color) = 0;
   /// One line through the points; where it crosses itself it is not darker.
-  void polyline(std::span<const Point> points, double line_width, Color color);
+  virtual void polyline(std::span<const Point> points, double line_width, Color color) = 0;
   /// Separate straight lines, from each even point to the next.
-  void segments(std::span<const Point> ends, double line_width, Color color);
+  virtual void segments(std::span<const Point> ends, double line_width, Color color) = 0;
   /// `at` is on the line that the letters stand on. Turned by a quarter where `upwards`.
-  void text(const std::string& text, Point at, double size, Align align, Color color,
-            bool bold = false, bool upwards = false);
-  double text_width(const std::string& text, double size, bool bold = false);
+  virtual void text(const std::string& text, Point at, double size, Align align, Color color,
+            bool bold = false, bool upwards = false) = 0;
+  virtual double text_width(const std::string& text, double size, bool bold = false) = 0;
 
   /// Until `unclip`, nothing is drawn outside.
-  void clip(Point corner, double width, double height);
-  void unclip();
+  virtual void clip(Point corner, double width, double height) = 0;
+  virtual void unclip() = 0;
 
   /// Writes the file; nothing can be drawn afterwards. Throws FileError.
-  void finish();
+  virtual void finish() = 0;
+};
 
- private:
-  struct Impl;
-  std::unique_ptr<Impl> impl_;
+/// What the module `cairo` gives.
+struct CanvasLibrary {
+  static constexpr ModuleName module{"cairo", "draws pictures of electron tracks", "Cairo (Debian: libcairo2)"};
+  /// `extension` is ".png", ".svg" or ".pdf". `target` is the name to write to, `file` the one for messages.
+  std::unique_ptr<Canvas> (*make_canvas)(const std::filesystem::path& target, const std::string& file,
+                                         const std::string& extension, int width, int height);
 };
 
 }  // namespace surf::io

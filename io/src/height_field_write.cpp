@@ -25,10 +25,8 @@ void check_known(const std::filesystem::path& path) {
     throw UsageError(path.string(), fmt::format("surfaces are not written as '{}'", path.extension().string()),
                      "Use .gsf, .tif, .txt or .vti");
   }
-  if (extension == ".vti" && !has_vti()) {
-    throw Unsupported(path.string(), "this semsurf was built without VTK, which writes VTI",
-                      "Use .gsf or .tif, or build with VTK");
-  }
+  if (extension == ".vti") require_vtk(path.string());
+  else if (is_image_target(extension)) require_raster(path.string());
 }
 
 /// Formats of 32 bits cannot hold all that 64 bits can.

@@ -41,10 +41,8 @@ Format known_format_of(const std::filesystem::path& path, Use use = Use::write) 
                                                 path.extension().string()),
                      "Use .exr, .tif, .png or .vti");
   }
-  if (format == Format::vti && use == Use::write && !has_vti()) {
-    throw Unsupported(path.string(), "this semsurf was built without VTK, which writes VTI",
-                      "Use .exr or .tif, or build with VTK");
-  }
+  if (format != Format::vti) require_raster(path.string());
+  else if (use == Use::write) require_vtk(path.string());
   return format;
 }
 
@@ -225,7 +223,7 @@ HeightField to_height_field(const Image& image, const std::string& channel, doub
 }
 
 std::string image_library_versions() {
-  return raster_library_version() + (has_vti() ? ", " + vti_library_version() : std::string{});
+  return SEMSURF_IMAGE_LIBRARIES;
 }
 
 }  // namespace surf::io

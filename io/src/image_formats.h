@@ -60,12 +60,10 @@ Image read_raster(const std::filesystem::path& path, int level = 0);
 std::vector<ImageSize> raster_sizes(const std::filesystem::path& path);
 Image read_vti(const std::filesystem::path& path);
 
-/// Whether this build can write VTI.
-bool has_vti();
-
-std::string raster_library_version();
-/// Empty without VTK.
-std::string vti_library_version();
+/// Throw Unsupported, of `file`, where the module is missing that reads and writes EXR, TIFF and PNG, or writes VTK's
+/// files.
+void require_raster(const std::string& file);
+void require_vtk(const std::string& file);
 
 // How an image's placement and metadata become text in files. Metadata KEY is stored as
 // "semsurf:KEY" (no file format gives that prefix a meaning of its own); placement as

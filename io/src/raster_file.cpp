@@ -14,10 +14,11 @@
 
 #include "image_formats.h"
 #include "pyramid.h"
+#include "raster_functions.h"
 #include "raster_output.h"
 #include "surf/core/error.h"
 
-namespace surf::io {
+namespace surf::io::openimageio {
 namespace {
 
 constexpr std::int64_t max_values = std::int64_t{1} << 31;
@@ -219,11 +220,6 @@ void write_png_rows(OIIO::ImageOutput& output, const std::string& target, const 
 
 }  // namespace
 
-std::string raster_library_version() {
-  const int v = OIIO::openimageio_version();
-  return fmt::format("OpenImageIO {}.{}.{}", v / 10000, v / 100 % 100, v % 100);
-}
-
 void write_exr(const std::filesystem::path& target, const std::string& file,
                const ImageRows& rows) {
   const Image& image = rows.head;
@@ -356,4 +352,4 @@ std::vector<ImageSize> raster_sizes(const std::filesystem::path& path) {
   return sizes;
 }
 
-}  // namespace surf::io
+}  // namespace surf::io::openimageio

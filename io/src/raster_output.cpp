@@ -7,7 +7,7 @@
 
 #include "surf/core/error.h"
 
-namespace surf::io {
+namespace surf::io::openimageio {
 
 void keep_quiet() {
   [[maybe_unused]] static const bool done = OIIO::attribute("debug", 0);
@@ -48,4 +48,4 @@ void close_output(OIIO::ImageOutput& output, const std::string& file) {
   check_written(output.close(), output, file);
 }
 
-}  // namespace surf::io
+}  // namespace surf::io::openimageio

@@ -9,7 +9,7 @@
 
 #include "surf/core/image.h"
 
-namespace surf::io {
+namespace surf::io::openimageio {
 
 /// In the text of a TIFF page: how many pages there are, and how many levels of each.
 inline constexpr const char* pages_key = "image:pages";
@@ -31,4 +31,4 @@ void close_output(OIIO::ImageOutput& output, const std::string& file);
 /// Pixels per centimetre, where the format's tags can hold that.
 void set_resolution(OIIO::ImageSpec& spec, const Image& image, double highest);
 
-}  // namespace surf::io
+}  // namespace surf::io::openimageio

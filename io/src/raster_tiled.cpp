@@ -7,9 +7,10 @@
 
 #include "image_formats.h"
 #include "pyramid.h"
+#include "raster_functions.h"
 #include "raster_output.h"
 
-namespace surf::io {
+namespace surf::io::openimageio {
 namespace {
 
 constexpr int tile = tile_edge;
@@ -132,4 +133,4 @@ void write_tiled_tiff(const std::filesystem::path& target, const std::string& fi
   close_output(*output, file);
 }
 
-}  // namespace surf::io
+}  // namespace surf::io::openimageio

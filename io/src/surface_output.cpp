@@ -11,6 +11,7 @@
 #include <fstream>
 #include <utility>
 
+#include "image_formats.h"
 #include "lower_extension.h"
 #include "surf/core/error.h"
 #include "surf/core/units.h"
@@ -60,11 +61,7 @@ const Row& row_of(const std::filesystem::path& path) {
     throw UsageError(path.string(), fmt::format("meshes are not written as '{}'", path.extension().string()),
                      fmt::format("Use {}", known_extensions()));
   }
-  if (found->needs_vtk && !has_vtp_writer()) {
-    throw Unsupported(path.string(),
-                      fmt::format("this semsurf was built without VTK, which writes {}", extension),
-                      "Use .ply, or build with VTK");
-  }
+  if (found->needs_vtk) require_vtk(path.string());
   return *found;
 }
 

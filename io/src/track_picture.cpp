@@ -9,6 +9,7 @@
 
 #include "canvas.h"
 #include "lower_extension.h"
+#include "module_for.h"
 #include "surf/core/error.h"
 #include "surf/io/files.h"
 
@@ -50,6 +51,8 @@ std::size_t group_of(const Track& track) {
   }
   return 2;
 }
+
+const CanvasLibrary& canvases(const std::string& file) { return module_for<CanvasLibrary>(file); }
 
 void check_name(const std::filesystem::path& path) {
   const std::string extension = lower_extension(path);
@@ -305,14 +308,16 @@ void write_track_picture(const std::filesystem::path& path, std::span<const Trac
   for (const Track& track : tracks) validate(track, file.c_str());
   const Window window = choose_window(tracks, options, file);
   write_atomically(path, [&](const std::filesystem::path& temporary) {
-    Canvas canvas(temporary, file, lower_extension(path), options.width_px, options.height_px);
-    Picture(canvas, options, window).draw(tracks);
-    canvas.finish();
+    const auto canvas =
+        canvases(file).make_canvas(temporary, file, lower_extension(path), options.width_px, options.height_px);
+    Picture(*canvas, options, window).draw(tracks);
+    canvas->finish();
   });
 }
 
 void check_track_picture_target(const std::filesystem::path& path) {
   check_name(path);
+  canvases(path.string());
   check_writable(path);
 }
 

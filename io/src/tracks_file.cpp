@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "image_formats.h"
 #include "lower_extension.h"
 #include "surf/core/error.h"
 #include "surf/io/files.h"
@@ -17,9 +18,7 @@ void check_name(const std::filesystem::path& path) {
                      fmt::format("tracks are not written as '{}'", path.extension().string()),
                      "Use .vtp, which ParaView opens");
   }
-  if (has_vtp_writer()) return;
-  throw Unsupported(path.string(), "this semsurf was built without VTK, which writes VTP",
-                    "Build with VTK");
+  require_vtk(path.string());
 }
 
 }  // namespace

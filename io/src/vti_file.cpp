@@ -1,23 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Writes VTK's image files; vti_read.cpp reads them.
-#include "image_formats.h"
-#include "surf/core/error.h"
-
-#ifdef SEMSURF_HAS_VTK
-
 #include <fmt/format.h>
 #include <vtkFloatArray.h>
 #include <vtkImageData.h>
 #include <vtkNew.h>
 #include <vtkPointData.h>
-#include <vtkVersion.h>
 #include <vtkXMLImageDataWriter.h>
 
 #include <algorithm>
 
+#include "surf/core/error.h"
+#include "vtk_functions.h"
 #include "vtk_support.h"
 
-namespace surf::io {
+namespace surf::io::vtk {
 namespace {
 
 void add_channel(vtkImageData* data, const Channel& channel) {
@@ -27,14 +23,6 @@ void add_channel(vtkImageData* data, const Channel& channel) {
   std::copy(channel.values.data().begin(), channel.values.data().end(), array->GetPointer(0));
   data->GetPointData()->AddArray(array);
 }
-
-}  // namespace
-
-bool has_vti() { return true; }
-
-std::string vti_library_version() { return fmt::format("VTK {}", vtkVersion::GetVTKVersion()); }
-
-namespace {
 
 vtkNew<vtkImageData> to_vtk(const Image& image) {
   vtkNew<vtkImageData> data;
@@ -73,30 +61,4 @@ void write_vti(const std::filesystem::path& target, const std::string& file, con
 
 std::string vti_content(const std::string& file, const Image& image) { return write_data({}, file, image); }
 
-}  // namespace surf::io
-
-#else
-
-namespace surf::io {
-namespace {
-
-[[noreturn]] void refuse(const std::string& file) {
-  throw Unsupported(file, "this semsurf was built without VTK, which writes VTI",
-                    "Use .exr or .tif, or build with VTK");
-}
-
-}  // namespace
-
-bool has_vti() { return false; }
-
-std::string vti_library_version() { return {}; }
-
-void write_vti(const std::filesystem::path&, const std::string& file, const Image&) {
-  refuse(file);
-}
-
-std::string vti_content(const std::string& file, const Image&) { refuse(file); }
-
-}  // namespace surf::io
-
-#endif
+}  // namespace surf::io::vtk

@@ -11,7 +11,7 @@
 #include <algorithm>
 #include <string>
 
-namespace surf::io {
+namespace surf::io::vtk {
 
 /// Collects VTK's complaints, which would otherwise only be printed.
 class VtkComplaints {
@@ -53,4 +53,4 @@ inline void add_text(vtkFieldData* fields, const std::string& name, const std::s
   fields->AddArray(array);
 }
 
-}  // namespace surf::io
+}  // namespace surf::io::vtk

@@ -36,9 +36,7 @@ std::vector<std::filesystem::path> vtm_part_files(const std::filesystem::path& p
 /// The field data that lists the surfaces' names.
 inline constexpr const char* vtp_names_key = "surface:names";
 
-/// Whether this build has VTK, which writes the format. Else what follows throws Unsupported.
-bool has_vtp_writer();
-/// The content of the file: several surfaces as one data set, told apart by the cells' array "surface".
+/// Throws Unsupported where the module `vtk` is missing, as `format_tracks` does. The content of the file: several surfaces as one data set, told apart by the cells' array "surface".
 std::string format_vtp(const std::string& file, const SceneView& scene);
 std::string format_tracks(const std::string& file, std::span<const Track> tracks,
                           const std::map<std::string, std::string>& metadata);

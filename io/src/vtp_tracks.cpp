@@ -9,11 +9,12 @@
 #include <vtkPolyData.h>
 #include <vtkTypeInt64Array.h>
 
+#include "vtk_functions.h"
 #include "vtk_support.h"
 #include "vtp_format.h"
 #include "vtp_write.h"
 
-namespace surf::io {
+namespace surf::io::vtk {
 namespace {
 
 /// One number per track, got by `value`.
@@ -72,4 +73,4 @@ std::string format_tracks(const std::string& file, std::span<const Track> tracks
   return vtp_content(file, data);
 }
 
-}  // namespace surf::io
+}  // namespace surf::io::vtk

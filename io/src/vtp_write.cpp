@@ -18,10 +18,11 @@
 
 #include "surf/core/error.h"
 #include "surf/mesh/vertex_normals.h"
+#include "vtk_functions.h"
 #include "vtk_support.h"
 #include "vtp_format.h"
 
-namespace surf::io {
+namespace surf::io::vtk {
 namespace {
 
 void add_triangles(vtkPolyData* data, const SceneView& scene) {
@@ -123,8 +124,6 @@ void add_notes(vtkPolyData* data, const SceneView& scene) {
 
 }  // namespace
 
-bool has_vtp_writer() { return true; }
-
 std::string format_vtp(const std::string& file, const SceneView& scene) {
   vtkNew<vtkPolyData> data;
   add_triangles(data, scene);
@@ -150,4 +149,4 @@ std::string vtp_content(const std::string& file, vtkPolyData* data) {
   return writer->GetOutputString();
 }
 
-}  // namespace surf::io
+}  // namespace surf::io::vtk

@@ -5,9 +5,9 @@
 
 class vtkPolyData;
 
-namespace surf::io {
+namespace surf::io::vtk {
 
 /// The content of a VTP file with inline binary data.
 std::string vtp_content(const std::string& file, vtkPolyData* data);
 
-}  // namespace surf::io
+}  // namespace surf::io::vtk

@@ -4,9 +4,11 @@ set(image --size 8x8 --electrons 2 -o image.exr)
 
 function(semsurf_cli_usage name message)
   semsurf_cli_test(usage.${name} EXIT 2 STDERR "${message}" ARGS ${ARGN})
+  set(cases "${cases}" PARENT_SCOPE)
 endfunction()
 function(semsurf_cli_unusable name message)
   semsurf_cli_test(unusable.${name} EXIT 3 STDERR "${message}" ARGS ${ARGN})
+  set(cases "${cases}" PARENT_SCOPE)
 endfunction()
 
 semsurf_cli_usage(option "--enrgy: unknown option. Did you mean --energy" simulate cube.off --enrgy 1keV ${image})

@@ -5,21 +5,20 @@
 #include <cmath>
 
 #include <Eigen/Dense>
-#include <ceres/gradient_problem.h>
-#include <ceres/gradient_problem_solver.h>
 
 #include "gaussian_basis.h"
+#include "solvers/solvers.h"
 #include "surf/core/error.h"
 
 namespace surf::reconstruction {
 namespace {
 
-class Problem final : public ceres::FirstOrderFunction {
+class Problem final : public solvers::SmoothFunction {
  public:
   Problem(const Objective& objective, const Unknowns& base, const GaussianBasis& basis, const Watch& watch)
       : objective_(objective), base_(base), basis_(basis), watch_(watch) {}
 
-  bool Evaluate(const double* coefficients, double* cost, double* gradient) const override {
+  bool evaluate(const double* coefficients, double* cost, double* gradient) const override {
     watch_.check();
     ++evaluations;
     const Unknowns at = surface_of(coefficients);
@@ -31,7 +30,7 @@ class Problem final : public ceres::FirstOrderFunction {
     }
     return std::isfinite(*cost);
   }
-  int NumParameters() const override { return static_cast<int>(base_.z_nm.size()); }
+  int size() const override { return static_cast<int>(base_.z_nm.size()); }
 
   Unknowns surface_of(const double* coefficients) const {
     Grid<double> c(base_.z_nm.width(), base_.z_nm.height());
@@ -51,14 +50,14 @@ class Problem final : public ceres::FirstOrderFunction {
   const Watch& watch_;
 };
 
-/// Ends when an iteration lowers the objective by less than the tolerance.
-class Settled final : public ceres::IterationCallback {
+/// Ends when an iteration lowers the objective by less than the tolerance, three times in a row.
+class Settled {
  public:
   explicit Settled(double tolerance) : tolerance_(tolerance) {}
-  ceres::CallbackReturnType operator()(const ceres::IterationSummary& s) override {
-    if (s.iteration > 0 && s.cost_change < tolerance_ && ++slow_ >= 3) return ceres::SOLVER_TERMINATE_SUCCESSFULLY;
-    if (s.cost_change >= tolerance_) slow_ = 0;
-    return ceres::SOLVER_CONTINUE;
+  solvers::Then operator()(int iteration, double fell) {
+    if (iteration > 0 && fell < tolerance_ && ++slow_ >= 3) return solvers::Then::settled;
+    if (fell >= tolerance_) slow_ = 0;
+    return solvers::Then::go_on;
   }
 
  private:
@@ -77,36 +76,28 @@ DescentReport descend(const Objective& objective, Unknowns& at, double sigma_px,
     coefficients = basis.deconvolved(basis.sum(at.z_nm), 0.01, 200).data();
     std::fill(base.z_nm.data().begin(), base.z_nm.data().end(), 0.0);
   }
-  auto* problem = new Problem(objective, base, basis, options.watch);
-  const ceres::GradientProblem owner(problem);
-  ceres::GradientProblemSolver::Options solver;
-  solver.line_search_direction_type = method == ReconstructionMethod::lbfgs ? ceres::LBFGS : ceres::NONLINEAR_CONJUGATE_GRADIENT;
-  solver.nonlinear_conjugate_gradient_type = ceres::POLAK_RIBIERE;
-  solver.line_search_type = ceres::WOLFE;
-  solver.max_num_iterations = options.iterations;
-  solver.function_tolerance = 0;
-  solver.parameter_tolerance = 0;
-  solver.gradient_tolerance = 1e-12;
-  solver.max_num_line_search_step_size_iterations = 30;
-  solver.logging_type = ceres::SILENT;
-  solver.update_state_every_iteration = false;
-  Settled settled(options.tolerance);
-  solver.callbacks.push_back(&settled);
-  ceres::GradientProblemSolver::Summary summary;
-  ceres::Solve(solver, owner, coefficients.data(), &summary);
-  at = problem->surface_of(coefficients.data());
+  const Problem problem(objective, base, basis, options.watch);
+  solvers::MinimiseOptions how;
+  how.search = method == ReconstructionMethod::lbfgs ? solvers::Search::lbfgs : solvers::Search::conjugate_gradient;
+  how.most_iterations = options.iterations;
+  how.most_step_sizes = 30;
+  how.function_tolerance = 0;
+  how.parameter_tolerance = 0;
+  how.gradient_tolerance = 1e-12;
+  how.after = Settled(options.tolerance);
+  const solvers::Minimised done = solvers::solvers().minimise(problem, coefficients, how);
+  at = problem.surface_of(coefficients.data());
 
   DescentReport report;
-  report.iterations = static_cast<int>(summary.iterations.size()) - 1;
-  report.evaluations = problem->evaluations;
+  report.iterations = done.iterations;
+  report.evaluations = problem.evaluations;
   const Objective::State state = objective.evaluate(at);
   const Grid<double> gradient = basis.transpose(objective.gradient(at, state).z_nm);
   for (const double g : gradient.data())
     report.gradient_norm = std::max(report.gradient_norm, std::fabs(g));
-  report.ended = summary.termination_type == ceres::USER_SUCCESS || summary.termination_type == ceres::CONVERGENCE
-                     ? "converged"
-                 : summary.termination_type == ceres::NO_CONVERGENCE ? "iterations"
-                                                                     : "line search";
+  report.ended = done.ended == solvers::Ended::settled      ? "converged"
+                 : done.ended == solvers::Ended::iterations ? "iterations"
+                                                            : "line search";
   return report;
 }
 

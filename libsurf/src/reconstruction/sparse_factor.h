@@ -6,6 +6,10 @@
 #include "stencil_matrix.h"
 #include "surf/core/grid.h"
 
+namespace surf::solvers {
+class Factor;
+}
+
 namespace surf::reconstruction {
 
 /// While one lives, OpenBLAS computes in the thread that calls it: threads of its own would fight with ours
@@ -43,8 +47,7 @@ class SparseFactor {
   Grid<double> draw(const Grid<double>& normal) const;
 
  private:
-  struct Parts;
-  std::unique_ptr<Parts> parts_;
+  std::unique_ptr<solvers::Factor> factor_;
 };
 
 }  // namespace surf::reconstruction

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <ceres/gradient_problem.h>
-#include <ceres/gradient_problem_solver.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <span>
 
+#include "solvers/solvers.h"
 #include "surf/core/error.h"
 #include "surf/sem/count_distribution.h"
 
@@ -37,12 +36,12 @@ Edge edge_at(const double* parameters, double x) {
 }
 
 /// Mean of -log P, which is of the size of 1.
-class Likelihood final : public ceres::FirstOrderFunction {
+class Likelihood final : public solvers::SmoothFunction {
  public:
   Likelihood(const CountHistogram& counts, double trials) : counts_(counts), trials_(trials) {}
-  int NumParameters() const override { return 3; }
+  int size() const override { return 3; }
 
-  bool Evaluate(const double* p, double* cost, double* gradient) const override {
+  bool evaluate(const double* p, double* cost, double* gradient) const override {
     if (!(std::fabs(p[1]) < 300 && std::fabs(p[2]) < 300)) return false;
     const LogNormalCounts d{p[0], std::exp(p[1]), std::exp(p[2])};
     *cost = 0;
@@ -80,14 +79,13 @@ double shape_of(double skewness) {
 LogNormalCounts fit_log_normal(const CountHistogram& counts) {
   const CountMoments m = moments(counts);
   if (!(m.variance > 0)) throw InvalidInput("counts", "all trials gave the same count", "Use more primaries in a trial");
-  const ceres::GradientProblem problem(new Likelihood(counts, static_cast<double>(m.trials)));
-  ceres::GradientProblemSolver::Options options;
-  options.line_search_direction_type = ceres::BFGS;
-  options.max_num_iterations = 500;
-  options.function_tolerance = 0;
-  options.parameter_tolerance = 0;
-  options.gradient_tolerance = 1e-9;
-  options.logging_type = ceres::SILENT;
+  const Likelihood likelihood(counts, static_cast<double>(m.trials));
+  solvers::MinimiseOptions how;
+  how.search = solvers::Search::bfgs;
+  how.most_iterations = 500;
+  how.function_tolerance = 0;
+  how.parameter_tolerance = 0;
+  how.gradient_tolerance = 1e-9;
   // From several shapes: with few counts there may be more than one optimum.
   double best_cost = std::numeric_limits<double>::infinity();
   LogNormalCounts best{m.mean, std::sqrt(m.variance), 0};
@@ -97,11 +95,11 @@ LogNormalCounts fit_log_normal(const CountHistogram& counts) {
     const double median = m.mean - scale * std::expm1(0.5 * shape * shape) / shape;
     double p[3] = {median, std::log(scale), std::log(shape)};
     double cost = 0;
-    if (!problem.Evaluate(p, &cost, nullptr)) continue;
-    ceres::GradientProblemSolver::Summary summary;
-    ceres::Solve(options, problem, p, &summary);
-    if (!summary.IsSolutionUsable() || !(summary.final_cost < best_cost)) continue;
-    best_cost = summary.final_cost;
+    if (!likelihood.evaluate(p, &cost, nullptr)) continue;
+    const solvers::Minimised done = solvers::solvers().minimise(likelihood, std::span<double>(p), how);
+    const bool usable = done.ended == solvers::Ended::settled || done.ended == solvers::Ended::iterations;
+    if (!usable || !(done.value < best_cost)) continue;
+    best_cost = done.value;
     best = {p[0], std::exp(p[1]), std::exp(p[2])};
   }
   return best;

@@ -7,9 +7,8 @@
 #include <exception>
 
 #include <Eigen/Core>
-#include <ceres/gradient_problem.h>
-#include <ceres/gradient_problem_solver.h>
 
+#include "solvers/solvers.h"
 #include "surf/core/error.h"
 #include "surf/core/parallel.h"
 
@@ -97,15 +96,15 @@ class Net {
   std::vector<Eigen::VectorXf> biases_;
 };
 
-class Cost final : public ceres::FirstOrderFunction {
+class Cost final : public solvers::SmoothFunction {
  public:
   Cost(const TrainerData& data, const TrainerOptions& options, const Shape& shape)
       : data_(data), options_(options), shape_(shape), pixels_(data.image.size()),
         precision_(data.y.size(), 1.0F) {}
 
-  int NumParameters() const override { return static_cast<int>(shape_.numbers); }
+  int size() const override { return static_cast<int>(shape_.numbers); }
 
-  bool Evaluate(const double* numbers, double* cost, double* gradient) const override {
+  bool evaluate(const double* numbers, double* cost, double* gradient) const override {
     const Net net(shape_, numbers);
     constexpr std::size_t part_pixels = pixels_at_once * at_once_in_a_part;
     const std::size_t parts = (pixels_ + part_pixels - 1) / part_pixels;
@@ -188,28 +187,6 @@ class Cost final : public ceres::FirstOrderFunction {
   mutable double residual_ = 0;
 };
 
-/// Tells how far it is, and ends the optimiser when it is told to.
-class Teller final : public ceres::IterationCallback {
- public:
-  Teller(const Watch& watch, int done, int total) : watch_(watch), done_(done), total_(total) {}
-
-  ceres::CallbackReturnType operator()(const ceres::IterationSummary& summary) override {
-    try {
-      watch_.report(done_ + summary.iteration, total_);
-    } catch (const Interrupted&) {
-      interrupted = std::current_exception();
-      return ceres::SOLVER_ABORT;
-    }
-    return ceres::SOLVER_CONTINUE;
-  }
-
-  std::exception_ptr interrupted;
-
- private:
-  const Watch& watch_;
-  int done_, total_;
-};
-
 }  // namespace
 
 TrainerResult train_network(const TrainerData& data, const TrainerOptions& options, std::vector<DenseLayer>& layers) {
@@ -219,34 +196,39 @@ TrainerResult train_network(const TrainerData& data, const TrainerOptions& optio
     numbers.insert(numbers.end(), layer.weights.begin(), layer.weights.end());
     numbers.insert(numbers.end(), layer.biases.begin(), layer.biases.end());
   }
-  auto* const cost = new Cost(data, options, shape);
-  const ceres::GradientProblem problem(cost);   // which owns it
-  ceres::GradientProblemSolver::Options solver;
-  solver.line_search_direction_type = ceres::LBFGS;
-  solver.max_lbfgs_rank = lbfgs_rank;
-  solver.logging_type = ceres::SILENT;
-  solver.function_tolerance = 1e-8;
-  solver.gradient_tolerance = 1e-9;
-  solver.parameter_tolerance = 1e-12;
+  Cost cost(data, options, shape);
+  solvers::MinimiseOptions how;
+  how.search = solvers::Search::lbfgs;
+  how.lbfgs_rank = lbfgs_rank;
+  how.function_tolerance = 1e-8;
+  how.gradient_tolerance = 1e-9;
+  how.parameter_tolerance = 1e-12;
 
   TrainerResult result;
   // A rough network tells the deviations, a better one tells them again, and the last round uses them.
   constexpr double shares[] = {0.15, 0.25, 0.6};
   for (const double share : shares) {
-    if (share != shares[0]) cost->weigh(numbers.data());
-    solver.max_num_iterations = share == shares[2] ? options.iterations - result.iterations
-                                                    : static_cast<int>(share * options.iterations);
-    if (solver.max_num_iterations == 0) continue;
-    Teller teller(options.watch, result.iterations, options.iterations);
-    solver.callbacks = {&teller};
-    ceres::GradientProblemSolver::Summary summary;
-    ceres::Solve(solver, problem, numbers.data(), &summary);
-    if (teller.interrupted) std::rethrow_exception(teller.interrupted);
-    result.iterations += std::max(0, static_cast<int>(summary.iterations.size()) - 1);   // the first is none
+    if (share != shares[0]) cost.weigh(numbers.data());
+    how.most_iterations = share == shares[2] ? options.iterations - result.iterations
+                                             : static_cast<int>(share * options.iterations);
+    if (how.most_iterations == 0) continue;
+    const int before = result.iterations;
+    std::exception_ptr interrupted;
+    how.after = [&](int iteration, double) {
+      try {
+        options.watch.report(before + iteration, options.iterations);
+      } catch (const Interrupted&) {
+        interrupted = std::current_exception();
+        return solvers::Then::stop;
+      }
+      return solvers::Then::go_on;
+    };
+    result.iterations += solvers::solvers().minimise(cost, numbers, how).iterations;
+    if (interrupted) std::rethrow_exception(interrupted);
   }
   double total = 0;
-  cost->Evaluate(numbers.data(), &total, nullptr);
-  result.cost = cost->residual();
+  cost.evaluate(numbers.data(), &total, nullptr);
+  result.cost = cost.residual();
 
   const double* at = numbers.data();
   for (DenseLayer& layer : layers) {

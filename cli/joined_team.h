@@ -8,7 +8,7 @@
 namespace surf::cli {
 
 /// Joins the processes that `mpirun` or `srun` has started together; nothing of MPI is touched where this one was started
-/// alone. Called once, by main. Throws Unsupported if there are several and this program was built without MPI.
+/// alone. Called once, by main. Throws Unsupported if there are several and MPI is missing.
 void join_team();
 
 /// The team, or null where there is none.

@@ -1,18 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "mpi_team.h"
-
-#include <fmt/format.h>
-
-#include <cstdlib>
-#include <memory>
-#include <string>
-
-#include "surf/core/error.h"
-#include "terminal.h"
-
-#if defined(SEMSURF_MPI)
+// The module `mpi`: the only source that knows MPI.
 #define OMPI_SKIP_MPICXX 1
 #define MPICH_SKIP_MPICXX 1
+#include <fmt/format.h>
 #include <mpi.h>
 #include <sys/statvfs.h>
 
@@ -22,36 +12,25 @@
 #include <condition_variable>
 #include <cstdint>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <ctime>
 #include <deque>
 #include <exception>
 #include <list>
+#include <memory>
 #include <mutex>
 #include <new>
 #include <optional>
 #include <sstream>
+#include <string>
 #include <thread>
-#endif
 
-namespace surf::cli {
-namespace {
+#include "mpi_library.h"
+#include "surf/core/error.h"
+#include "surf/workflow/team.h"
 
-std::unique_ptr<workflow::Team> joined;
-
-// What the starters of MPI programs tell those they start: Open MPI, MPICH and Slurm.
-int started_together() {
-  for (const char* name : {"OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "PMIX_SIZE"})
-    if (const char* value = std::getenv(name)) return std::atoi(value);
-  // Slurm sets it for programs that are not of MPI, too: one task is nobody else.
-  if (std::getenv("PMIX_RANK") || std::getenv("PMI_RANK"))
-    if (const char* value = std::getenv("SLURM_NTASKS")) return std::atoi(value);
-  return 1;
-}
-
-}  // namespace
-
-#if defined(SEMSURF_MPI)
+namespace surf::workflow {
 namespace {
 
 using Clock = std::chrono::steady_clock;
@@ -221,7 +200,7 @@ class MpiNode : public mc::NodeMemory {
   std::vector<Window> windows_;
 };
 
-class MpiTeam : public workflow::Team {
+class MpiTeam : public Team {
  public:
   MpiTeam() {
     int given = 0;
@@ -243,7 +222,7 @@ class MpiTeam : public workflow::Team {
 
   int rank() const override { return rank_; }
   int size() const override { return size_; }
-  std::vector<workflow::TeamMember> members() const override { return members_; }
+  std::vector<TeamMember> members() const override { return members_; }
   mc::NodeMemory* node() override { return node_->processes() > 1 ? &*node_ : nullptr; }
 
   void broadcast(std::string& bytes) override {
@@ -298,7 +277,7 @@ class MpiTeam : public workflow::Team {
       }
       nap = shortest_nap;
       const std::string bytes = receive(status);
-      workflow::TeamMember& member = members_[static_cast<std::size_t>(status.MPI_SOURCE)];
+      TeamMember& member = members_[static_cast<std::size_t>(status.MPI_SOURCE)];
       switch (status.MPI_TAG) {
         case wants:
           try {
@@ -353,7 +332,7 @@ class MpiTeam : public workflow::Team {
       serve(desk, cancel);
     }
     if (!error && cancel && cancel->cancelled()) error = std::make_exception_ptr(Interrupted());
-    workflow::TeamMember& me = own();
+    TeamMember& me = own();
     me.waiting_s += desk.waiting_s;
     if (error) {
       std::string text = "it failed";
@@ -522,14 +501,14 @@ class MpiTeam : public workflow::Team {
     return n;
   }
 
-  static void note_member(const std::string& text, workflow::TeamMember& member) {
+  static void note_member(const std::string& text, TeamMember& member) {
     std::istringstream in(text);
     in >> member.threads >> member.waiting_s >> member.messaging_s >> member.bytes_sent >> member.messages;
     in.ignore();
     std::getline(in, member.host);
   }
 
-  workflow::TeamMember& own() { return members_[static_cast<std::size_t>(rank_)]; }
+  TeamMember& own() { return members_[static_cast<std::size_t>(rank_)]; }
 
   struct Sending {
     MPI_Request request;
@@ -539,38 +518,14 @@ class MpiTeam : public workflow::Team {
   int rank_ = 0, size_ = 1;
   bool deaf_ = false;
   std::optional<MpiNode> node_;
-  std::vector<workflow::TeamMember> members_;
+  std::vector<TeamMember> members_;
 };
 
+std::unique_ptr<Team> join() { return std::make_unique<MpiTeam>(); }
+
+constexpr MpiLibrary table{join};
+
 }  // namespace
+}  // namespace surf::workflow
 
-void join_team() {
-  if (started_together() > 1) joined = std::make_unique<MpiTeam>();
-}
-#else
-void join_team() {
-  if (started_together() < 2) return;
-  throw Unsupported("mpirun", "this semsurf was built without MPI",
-                    "Build it where MPI is installed (libopenmpi-dev), or start it once, without mpirun");
-}
-#endif
-
-workflow::Team* team() { return joined.get(); }
-
-int processes_here() {
-  mc::NodeMemory* const node = workflow::node_of(team());
-  return node ? node->processes() : 1;
-}
-
-bool leave_to_leader(const std::string& command) {
-  if (!joined) return false;
-  if (!joined->leads()) return true;
-  const int others = joined->size() - 1;
-  print_note(fmt::format("'semsurf {}' is the work of one process: {} other{} nothing to do", command, others,
-                         others == 1 ? " has" : "s have"));
-  return false;
-}
-
-void leave_team() { joined.reset(); }
-
-}  // namespace surf::cli
+SEMSURF_MODULE(mpi, surf::workflow::table)

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "image_formats.h"
+#include "surf/core/module.h"
+#include "surf/core/volume.h"
+#include "vtp_format.h"
+
+namespace surf::io {
+
+/// What the module `vtk` gives. Files of VTK are read without it.
+struct VtkLibrary {
+  static constexpr ModuleName module{"vtk", "writes VTI, VTP and VTM files",
+                                     "ParaView's VTK (Debian: paraview) or VTK (Debian: libvtk9.1), as semsurf was built with"};
+
+  decltype(&io::write_vti) write_vti;
+  decltype(&io::vti_content) vti_content;
+  decltype(&io::format_vtp) format_vtp;
+  decltype(&io::format_tracks) format_tracks;
+  void (*write_volume)(const std::filesystem::path& target, const std::string& file, const Volume& volume);
+};
+
+/// Throws Unsupported, of `file`, where it is missing.
+const VtkLibrary& vtk_library(const std::string& file);
+
+}  // namespace surf::io

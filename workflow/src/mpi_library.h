@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <memory>
+
+#include "surf/core/module.h"
+#include "surf/workflow/team.h"
+
+namespace surf::workflow {
+
+/// What the module `mpi` gives.
+struct MpiLibrary {
+  static constexpr ModuleName module{"mpi", "shares a job between processes",
+                                     "MPI (Debian: libopenmpi3), as semsurf was built with, or start it once, without mpirun"};
+  std::unique_ptr<Team> (*join)();
+};
+
+}  // namespace surf::workflow
