@@ -17,3 +17,23 @@ function(semsurf_warnings target)
   target_compile_options(${target} PRIVATE -Wall -Wextra -Wshadow -Wnon-virtual-dtor
                          -Wno-missing-field-initializers)
 endfunction()
+
+# semsurf_cold(TARGET): nothing in it is worth optimising far. Files that are get -O3 of their own
+# (set_source_files_properties(... COMPILE_OPTIONS -O3 SKIP_PRECOMPILE_HEADERS ON)).
+function(semsurf_cold target)
+  target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)
+endfunction()
+
+# semsurf_hot(files...): optimised as far as it goes in a target that is cold.
+function(semsurf_hot)
+  set_source_files_properties(${ARGN} PROPERTIES COMPILE_OPTIONS "$<$<CONFIG:Release>:-O3>"
+                              SKIP_PRECOMPILE_HEADERS ON)
+endfunction()
+
+# semsurf_precompile(TARGET [headers...]): what nearly all of its files include, and these headers, once for all.
+function(semsurf_precompile target)
+  if(SEMSURF_PRECOMPILE)
+    target_precompile_headers(${target} PRIVATE <algorithm> <array> <cmath> <cstdint> <filesystem> <functional> <map>
+      <memory> <optional> <span> <string> <string_view> <utility> <vector> <fmt/format.h> ${ARGN})
+  endif()
+endfunction()

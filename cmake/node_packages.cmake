@@ -1,14 +1,16 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# semsurf_node_packages(RESULT SOURCE_FOLDER FOLDER): installs what SOURCE_FOLDER/package-lock.json names into
-# FOLDER/node_modules, again only where the lock has changed. RESULT is true where the packages are there;
-# else it is false and RESULT_reason says why.
+# semsurf_node_packages(RESULT SOURCE FOLDER): FOLDER gets the folder in which cmake/setup.sh has put what
+# SOURCE/package-lock.json names. RESULT is true where the packages are there; else it is false and RESULT_reason says
+# why. Nothing is fetched here.
 find_program(NODE_PROGRAM node)
-find_program(NPM_PROGRAM npm)
 
-function(semsurf_node_packages result source folder)
+function(semsurf_node_packages result source folder_result)
+  file(RELATIVE_PATH name "${PROJECT_SOURCE_DIR}" "${source}")
+  set(folder "${PROJECT_SOURCE_DIR}/.cache/node/${name}")
+  set(${folder_result} "${folder}" PARENT_SCOPE)
   set(${result} FALSE PARENT_SCOPE)
-  set(${result}_reason "Node.js and npm are missing" PARENT_SCOPE)
-  if(NOT NODE_PROGRAM OR NOT NPM_PROGRAM)
+  if(NOT NODE_PROGRAM)
+    set(${result}_reason "Node.js is missing" PARENT_SCOPE)
     return()
   endif()
   set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS "${source}/package-lock.json")
@@ -16,20 +18,12 @@ function(semsurf_node_packages result source folder)
   set(there "")
   if(EXISTS "${folder}/installed.txt")
     file(READ "${folder}/installed.txt" there)
+    string(STRIP "${there}" there)
   endif()
   if(NOT there STREQUAL wanted)
-    message(STATUS "Fetching the packages of ${source}/package-lock.json")
-    file(COPY "${source}/package.json" "${source}/package-lock.json" "${source}/.npmrc" DESTINATION "${folder}")
-    file(REMOVE "${folder}/installed.txt")
-    execute_process(COMMAND "${NPM_PROGRAM}" ci --ignore-scripts --no-audit --no-fund --loglevel=error
-                    WORKING_DIRECTORY "${folder}" TIMEOUT 300
-                    RESULT_VARIABLE failed OUTPUT_VARIABLE said ERROR_VARIABLE said)
-    if(NOT failed STREQUAL "0")
-      file(WRITE "${folder}/npm.log" "${said}")
-      set(${result}_reason "npm ci failed, see ${folder}/npm.log" PARENT_SCOPE)
-      return()
-    endif()
-    file(WRITE "${folder}/installed.txt" "${wanted}")
+    set(${result}_reason "the packages of ${name}/package-lock.json are not there; 'cmake/node_packages.sh ${name}' fetches them"
+        PARENT_SCOPE)
+    return()
   endif()
   set(${result} TRUE PARENT_SCOPE)
 endfunction()

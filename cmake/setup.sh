@@ -1,12 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Set-up shared by ./run and ./check; source it after setting -euo pipefail. Functions:
 #   setup_packages        installs what is missing of the list below
-#   setup_full            adds to the list the programs that files are tried in
+#   setup_programs        installs the programs that files are tried in, as far as they can be had
+#   setup_node FOLDER...  fetches the packages of Node.js that a folder's lock names
 #   setup_configure       configures the preset `release` into build/, once
 # All leave everything alone when there is nothing to do.
 
 packages=(
-  cmake g++ ninja-build ccache                                    # build
+  cmake g++ ninja-build ccache mold                               # build
   libembree-dev librandom123-dev                                  # ray tracing, random numbers
   libcgal-dev libopenmesh-dev                                     # mesh repair and simplification
   libeigen3-dev libceres-dev                                      # least squares, learning networks
@@ -73,7 +74,28 @@ setup_packages() {
        and ParaView's Python cannot live together; remove python3-vtk9 yourself and start again."
 }
 
-setup_full() { packages+=("${programs[@]}"); }
+# One that cannot be had is no failure: its test is skipped, and counted.
+setup_programs() {
+  command -v dpkg-query >/dev/null && (($(id -u) == 0)) || return 0
+  local needed=("${packages[@]}") missing program
+  packages=("${programs[@]}")
+  mapfile -t missing < <(missing_packages)
+  packages=("${needed[@]}")
+  ((${#missing[@]} > 0)) || return 0
+  say "Installing with apt: ${missing[*]}"
+  export DEBIAN_FRONTEND=noninteractive
+  apt-get -qq update || true
+  apt-get -qq install -y --no-install-recommends --no-remove "${missing[@]}" && return
+  for program in "${missing[@]}"; do
+    apt-get -qq install -y --no-install-recommends --no-remove "$program" || say "$program cannot be installed"
+  done
+}
+
+# What the folders named need of Node.js. Without it semsurf view writes no pages, and everything else works.
+setup_node() {
+  command -v node >/dev/null && command -v npm >/dev/null || return 0
+  cmake/node_packages.sh "$@" || say "npm failed, see above: going on without"
+}
 
 setup_configure() {
   local home fresh=()

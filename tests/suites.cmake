@@ -1,6 +1,16 @@
 # Called by ctest: lists the suites of a test program and gives each to ctest as one process, or two where some of its
-# cases are for ./check --all. Variables: PROGRAM, NAME, LONG (patterns of Suite.Case), LABELS, PROCESSORS, TIMEOUT.
-if(EXISTS "${LIST}" AND "${LIST}" IS_NEWER_THAN "${PROGRAM}" AND "${LIST}" IS_NEWER_THAN "${SETTINGS}")
+# cases are for ./check --all. Variables: PROGRAM, NAME, LONG (patterns of Suite.Case), LIST (the file that remembers), INPUTS (files
+# on which the suites depend), LABELS, PROCESSORS, TIMEOUT.
+set(current FALSE)
+if(EXISTS "${LIST}")
+  set(current TRUE)
+  foreach(file IN LISTS PROGRAM INPUTS)
+    if("${file}" IS_NEWER_THAN "${LIST}")
+      set(current FALSE)
+    endif()
+  endforeach()
+endif()
+if(current)
   include("${LIST}")
   return()
 endif()

@@ -192,7 +192,7 @@ semsurf_cli_test(level.plane ARGS level block.gsf --method plane -o flat.tif STD
 semsurf_cli_test(level.polynomial ARGS level block.gsf --method polynomial --degree 1 --rows median -o levelled.txt
   STDOUT "rows +shifted by" WRITES levelled.txt)
 semsurf_cli_test(level.step ARGS level block.gsf --method none --step 0,0,15,45 25,15,45,35
-  STDOUT "step +5\\.00[0-9]* . 0\\.00.* nm, the second region above")
+  STDOUT "step +5\\.00[0-9]* .+ 0\\.00.* nm, the second region above")
 semsurf_cli_test(clean.all ARGS clean block.gsf --spikes 3:1nm --median 3 --disc --closing 5 -o clean.gsf
   STDOUT "spikes +[0-9]+ of [0-9]+ heights changed" "median " "closing " WRITES clean.gsf)
 semsurf_cli_test(noise.flat ARGS noise noisy.gsf --flat --plot noise.svg

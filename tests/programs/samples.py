@@ -15,7 +15,7 @@ def need(program, package):
     found = shutil.which(program)
     if found:
         return found
-    print(f"skipped: {program} is not installed (Debian: {package}; ./check --full installs it)")
+    print(f"skipped: {program} is not installed (Debian: {package}; ./check --all installs it)")
     sys.exit(77)
 
 

@@ -5,6 +5,7 @@ add_executable(web_scenes write_scenes.cpp)
 target_include_directories(web_scenes PRIVATE "${PROJECT_SOURCE_DIR}/io/src" "${PROJECT_SOURCE_DIR}/tests/io")
 target_link_libraries(web_scenes PRIVATE io fmt::fmt)
 semsurf_warnings(web_scenes)
+semsurf_loads_modules(web_scenes)
 set_target_properties(web_scenes PROPERTIES RUNTIME_OUTPUT_DIRECTORY "${CMAKE_BINARY_DIR}/tests")
 
 set(WEB_SCENES "${CMAKE_CURRENT_BINARY_DIR}/scenes")
@@ -16,7 +17,7 @@ foreach(script validate_gltf show_gltf)
     add_test(NAME web.${script} COMMAND "${NODE_PROGRAM}" "${CMAKE_CURRENT_LIST_DIR}/${script}.mjs"
              "${WEB_TEST_FOLDER}" "${WEB_SCENES}")
   else()
-    add_test(NAME web.${script} COMMAND sh -c "echo 'skipped: no Node.js (./check --full installs it)'; exit 77")
+    add_test(NAME web.${script} COMMAND sh -c "echo 'skipped: no Node.js (./run and ./check install it)'; exit 77")
   endif()
   set_tests_properties(web.${script} PROPERTIES LABELS web FIXTURES_REQUIRED web_scenes TIMEOUT 300
                        SKIP_RETURN_CODE 77)

@@ -10,7 +10,7 @@ import { createRequire } from 'node:module';
 import { join, normalize, resolve } from 'node:path';
 
 const [packages, folder, pictures] = process.argv.slice(2);
-const skip = (missing) => { console.log(`skipped: no ${missing} (./check --full installs it)`); process.exit(77); };
+const skip = (missing) => { console.log(`skipped: no ${missing} (./check --all installs it)`); process.exit(77); };
 const chromium = [process.env.CHROMIUM, '/usr/bin/chromium', '/usr/bin/chromium-browser', '/usr/bin/google-chrome']
   .find((path) => path && existsSync(path));
 if (!chromium) skip('Chromium');

@@ -9,7 +9,7 @@ import { dirname, join, resolve } from 'node:path';
 
 const [packages, ...paths] = process.argv.slice(2);
 if (!existsSync(join(packages, 'node_modules', 'gltf-validator'))) {
-  console.log('skipped: no gltf-validator (./check --full installs it)');
+  console.log('skipped: no gltf-validator (./check --all installs it)');
   process.exit(77);
 }
 const validator = createRequire(resolve(packages, 'node_modules', 'x.js'))('gltf-validator');

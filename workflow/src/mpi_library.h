@@ -11,7 +11,7 @@ namespace surf::workflow {
 /// What the module `mpi` gives.
 struct MpiLibrary {
   static constexpr ModuleName module{"mpi", "shares a job between processes",
-                                     "MPI (Debian: libopenmpi3), as semsurf was built with, or start it once, without mpirun"};
+                                     "MPI (Debian: libopenmpi3)"};
   std::unique_ptr<Team> (*join)();
 };
 

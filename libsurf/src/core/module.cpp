@@ -26,7 +26,7 @@ int linked_count = 0;
 
 [[noreturn]] void refuse(const ModuleName& module, const std::string& reason) {
   throw Unsupported(fmt::format("module {}", module.name), fmt::format("what {} cannot be used: {}", module.provides, reason),
-                    fmt::format("Install {}, or semsurf again", module.needs));
+                    fmt::format("Install {} and semsurf with it", module.needs));
 }
 
 ModuleEntry loaded_entry(const ModuleName& module) {

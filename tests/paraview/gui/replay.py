@@ -26,7 +26,7 @@ BLOCK, WORST, MEAN = 12, 25, 2.5
 def need(program, package):
     if shutil.which(program):
         return
-    print(f"skipped: {program} is not installed (Debian: {package}; ./check --full installs it)")
+    print(f"skipped: {program} is not installed (Debian: {package}; ./check --all installs it)")
     sys.exit(77)
 
 
