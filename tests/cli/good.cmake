@@ -21,6 +21,14 @@ semsurf_cli_test(materials.estimated ARGS materials SiO2
   STDOUT "O, Z = 8, 53\\.2.* 2 per formula unit" "unfitted" "estimated: .*fitted to measured SE")
 semsurf_cli_test(materials.own ARGS materials nitride --materials materials.toml
   STDOUT "work function W +6\\.3 eV\n    estimated: band gap plus" "N, Z = 7" "estimated: sum of the")
+semsurf_cli_test(materials.no_gap ARGS materials nitride --materials no_gap.toml
+  STDERR "warning: nitride: it is taken for a metal, as its band_gap_ev is not given, but most compounds with N ")
+semsurf_cli_test(simulate.no_gap ARGS simulate cube.off --material nitride --materials no_gap.toml ${few} -o cube.exr
+  STDERR "nitride: it is taken for a metal" "nitride: these numbers are estimates: valence_electrons, plasmon_ev, work_function_ev, barrier_ev"
+  WRITES cube.exr)
+semsurf_cli_test(simulate.speck ARGS simulate cube.off --material Au --energy 30keV ${few} -o cube.exr
+  STDERR "warning: the specimen is 40.0 nm wide, but electrons of 30000 eV reach about 1.70 um in Au.*With --unit um it would be 40.0 um"
+  WRITES cube.exr)
 semsurf_cli_test(materials.own_table ARGS materials --materials materials.toml
   STDOUT "nitride +3\\.17" "Au +15 " STDERR "note: Au is as materials.toml says, in place of the built-in")
 semsurf_cli_test(materials.one ARGS materials Si STDOUT "Z = 14" "work function" "Mott table +yes")
@@ -188,6 +196,7 @@ semsurf_cli_test(help.clean ARGS clean --help STDOUT "--spikes" "Examples:")
 semsurf_cli_test(help.noise ARGS noise --help STDOUT "--flat" "Examples:")
 semsurf_cli_test(level.hough ARGS level block.gsf -o flat.gsf --mask substrate.tif
   STDOUT "plane +tilt 5\\.71" "substrate +[78][0-9]\\.[0-9] %" "roughness +all: Sa" "substrate: Sa" WRITES flat.gsf substrate.tif)
+semsurf_cli_test(level.sem_as_heights ARGS level fei.tif --z-unit 1nm --method plane -o flat.tif STDOUT "plane +tilt" WRITES flat.tif)
 semsurf_cli_test(level.plane ARGS level block.gsf --method plane -o flat.tif STDOUT "plane +tilt" WRITES flat.tif)
 semsurf_cli_test(level.polynomial ARGS level block.gsf --method polynomial --degree 1 --rows median -o levelled.txt
   STDOUT "rows +shifted by" WRITES levelled.txt)
@@ -258,6 +267,9 @@ if(WEB_PACKAGES)
     WRITES page.html)
   semsurf_cli_test(view.tolerance ARGS view block.gsf --tolerance 0.1nm -o page.html
     STDERR "triangles instead of [0-9]+, nowhere more than" WRITES page.html)
+  semsurf_cli_test(view.scalar_not_on_the_tip ARGS view block.gsf tip.txt --scalar block.gsf -o page.html
+    STDOUT "surface +block: 60 x 50 samples, [^,]*, Height\n" "surface +tip: 5 x 5 samples, [^,]*\n"
+    STDERR "note: tip: it is of another extent than 'Height' and goes without it" WRITES page.html)
   semsurf_cli_test(view.scalar ARGS view block.gsf --scalar plane.gsf --drape plane.gsf -o page.html -q STDOUT "^$" WRITES page.html)
 endif()
 semsurf_cli_test(help.view ARGS view --help STDOUT "--drape" "--scalar" "Examples:")
