@@ -44,7 +44,7 @@ void print_sem_image(const std::filesystem::path& path) {
   print_values(image);
   if (file.energy_ev) print_item("energy", format_energy(*file.energy_ev));
   if (file.working_distance_nm) print_item("distance", format_length(*file.working_distance_nm) + " to the lens");
-  if (file.tilt_deg) print_item("tilt", fmt::format("{:.3g} degrees", *file.tilt_deg + 0.0));
+  if (file.tilt_deg) print_item("tilt", fmt::format("{:.3g} degrees", *file.tilt_deg));
   if (!file.detector.empty()) print_item("detector", file.detector);
   if (file.metadata.empty()) return;
   print("  what the microscope noted\n");

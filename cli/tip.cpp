@@ -199,9 +199,11 @@ void print_tip(const Tip& tip, double depth_nm) {
     // Thresholds leave ends flat: what lies deeper may tell a radius.
     if (const double whole_nm = depth_of(tip); !std::isfinite(m.radius_nm) && whole_nm > 0)
       m = measure_tip(tip, {.fit_depth_nm = whole_nm});
-    print("{:<10} {} (fitted down to {}, residual {})", "radius",
-               std::isfinite(m.radius_nm) ? format_length(m.radius_nm) : "infinite: it is flat",
-               format_length(m.fit_depth_nm), format_length(m.radius_residual_nm));
+    if (std::isfinite(m.radius_nm))
+      print("{:<10} {} (fitted down to {}, residual {})", "radius", format_length(m.radius_nm),
+            format_length(m.fit_depth_nm), format_length(m.radius_residual_nm));
+    else
+      print("{:<10} infinite: the tip is flat", "radius");
     if (m.half_angle_rad) print(", half angle {:.1f} degrees", *m.half_angle_rad / degrees_to_radians);
     print("\n");
   } catch (const InvalidInput& e) {   // a flat end, or too few samples

@@ -26,7 +26,7 @@ semsurf_cli_usage(cutoff_of_a_library "--cutoff: 200 eV is outside" library buil
 semsurf_cli_usage(cutoff_of_a_sweep "--cutoff: 600 eV is outside.*500 eV"
   sweep cube.off --material Si --vary energy=1keV,500eV --vary cutoff=0,600eV --electrons 2 --size 4x4 -o sweep)
 semsurf_cli_usage(cutoff_of_training "--cutoff: 2000 eV is outside"
-  train --model slope --material Si --pixel-size 3nm --cutoff 2keV -o model.json)
+  train --model slope-table --material Si --pixel-size 3nm --cutoff 2keV -o model.json)
 semsurf_cli_unusable(material_key_without_unit "'density' is not known.*Did you mean 'density_g_cm3'" materials --materials density.toml)
 semsurf_cli_usage(tilt "--tilt" simulate cube.off --tilt 90 ${image})
 semsurf_cli_usage(spot "--spot" simulate cube.off --spot -1nm ${image})

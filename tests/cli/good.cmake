@@ -27,7 +27,7 @@ semsurf_cli_test(simulate.no_gap ARGS simulate cube.off --material nitride --mat
   STDERR "nitride: it is taken for a metal" "nitride: these numbers are estimates: valence_electrons, plasmon_ev, work_function_ev, barrier_ev"
   WRITES cube.exr)
 semsurf_cli_test(simulate.speck ARGS simulate cube.off --material Au --energy 30keV ${few} -o cube.exr
-  STDERR "warning: the specimen is 40.0 nm wide, but electrons of 30000 eV reach about 1.70 um in Au.*With --unit um it would be 40.0 um"
+  STDERR "warning: the specimen is 40.0 nm wide, but electrons of 30000 eV reach about 1.69 um in Au.*With --unit um it would be 40.0 um"
   WRITES cube.exr)
 semsurf_cli_test(materials.own_table ARGS materials --materials materials.toml
   STDOUT "nitride +3\\.17" "Au +15 " STDERR "note: Au is as materials.toml says, in place of the built-in")
@@ -239,6 +239,24 @@ semsurf_cli_test(tip.shape ARGS tip --shape cone:5nm,20deg --size 31 -o tip.gsf 
   STDOUT "tip +31 x 31 samples" "radius " "half angle " WRITES tip.gsf tip.svg INFO tip.gsf "option.shape +cone:5nm,20deg")
 semsurf_cli_test(tip.sweep ARGS tip steps.txt --size 5 --noise 0.02nm --sweep 0.02nm,0.4nm,5 --plot tip.svg -o tip.gsf
   STDOUT "noise +" "threshold " WRITES tip.gsf tip.svg)
+semsurf_cli_test(tip.doubted EXIT 4 ARGS tip steps.txt --size 5 --noise 2nm --plot tip.svg -o tip.gsf
+  STDOUT "radius +infinite: the tip is flat\n" "written +tip.gsf\nwritten +tip.svg\n"
+  STDERR "this tip is not to be trusted, and its file says so: its threshold of 16.0 nm is the largest that was tried.*it is flat"
+  WRITES tip.gsf tip.svg INFO tip.gsf "tip.doubt +its threshold of 16.0 nm")
+semsurf_cli_test(tip.noise_is_the_roughness EXIT 4 ARGS tip noisy.gsf --size 5 -o tip.gsf
+  STDOUT "noise .*from differences of neighbouring rows and columns"
+  STDERR "the noise of .* is most of the scan's roughness .Sq .*second differences of single pixels give" WRITES tip.gsf)
+foreach(command erode dilate)
+  semsurf_cli_test(${command}.doubted_tip ARGS ${command} steps.txt --tip doubted_tip.txt -o surface.gsf
+    STDERR "warning: doubted_tip.txt: it says that this tip is not to be trusted: it is flat" WRITES surface.gsf)
+endforeach()
+semsurf_cli_test(certainty.doubted_tip EXIT 4 ARGS certainty steps.txt --tip doubted_tip.txt --noise 0.01nm -o map.tif
+  STDOUT "certain +.* % of the surface, by the .* % of the scan that this tip can have made"
+  STDERR "doubted_tip.txt: it says that this tip is not to be trusted" "cannot have been made by this tip.*so little of the scan is not to be trusted"
+  WRITES map.tif)
+semsurf_cli_test(register.doubted_tip EXIT 4 ARGS register steps.txt steps_of_grey.tif --sem-pixel-size 3nm --afm-pixel-size 3nm
+  --no-level --afm-noise 0.5,0.01 --tip doubted_tip.txt --model secant.json
+  STDERR "the tip's file says that it is not to be trusted: it is flat")
 semsurf_cli_test(tip.blind ARGS tip steps.txt --size 5 --threshold 0.1nm --apex-tolerance 0.1nm -o tip.gsf
   STDOUT "tip +5 x 5 samples" WRITES tip.gsf INFO tip.gsf "option.answer +blind")
 semsurf_cli_test(tip.outer ARGS tip steps.txt --size 5 --answer outer --noise 0.05nm,0.5 -o tip.gsf

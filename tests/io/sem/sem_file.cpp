@@ -74,6 +74,14 @@ TEST_F(SemFileTest, ReadsThermoFisher) {
   }
 }
 
+TEST_F(SemFileTest, KnowsNoTiltBelowZeroThatIsZero) {
+  TiffMaker tiff = picture();
+  std::string text = fei_text;
+  text.replace(text.find("StageT=0.5"), 10, "StageT=-0.0");
+  tiff.text(34682, text);
+  EXPECT_EQ(fmt::format("{}", read(tiff).tilt_deg.value()), "0");
+}
+
 TEST_F(SemFileTest, KeepsTheDatabarWhereItIsWanted) {
   TiffMaker tiff = picture();
   tiff.text(34682, fei_text);
