@@ -66,7 +66,7 @@ TEST_F(MemoryEstimateTest, RefusesWhatDoesNotFit) {
               testing::ThrowsMessage<InvalidInput>(
                   testing::AllOf(HasSubstr("large.ply"), HasSubstr("100 million triangles"),
                                  HasSubstr("1.00 GB are there by SEMSURF_MEMORY"))));
-  setenv("SEMSURF_MEMORY", "1kB", 1);
+  setenv("SEMSURF_MEMORY", "0.1GB", 1);
   EXPECT_THAT([] { require_memory("tiny.ply", {7}); },
               testing::ThrowsMessage<InvalidInput>(HasSubstr("tiny.ply: 7 triangles need")));
   setenv("SEMSURF_MEMORY", "off", 1);

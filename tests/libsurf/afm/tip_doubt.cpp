@@ -49,19 +49,13 @@ TEST(TipDoubt, IsOfTheEndOfASweepAndOfWhatExplainsNothing) {
   EXPECT_EQ(doubt_of_tip(sweep), "no tip explains the scan: 7.0 times what the noise leaves is left at best");
 }
 
-TEST(TipDoubt, IsOfAFlatOrHollowEnd) {
+TEST(TipDoubt, IsOfAFlatTip) {
   Tip flat = parabola(10);
   flat.z_nm = Grid<double>(21, 21, 0.0);
   EXPECT_THAT(doubt_of_shape(flat), HasSubstr("flat"));
   Tip blunted = parabola(10);   // by a threshold of 2 nm
   for (double& z : blunted.z_nm.data()) z = std::min(0.0, z + 2);
   EXPECT_THAT(doubt_of_shape(blunted), IsEmpty());
-  Tip hollow = parabola(10);
-  for (double& z : hollow.z_nm.data()) z = -20 - z;
-  hollow.z_nm(10, 10) = 0;
-  for (int i = 0; i < 21; ++i)
-    for (const auto [x, y] : {std::pair{i, 0}, {i, 20}, {0, i}, {20, i}}) hollow.z_nm(x, y) = 0;
-  EXPECT_THAT(doubt_of_shape(hollow), testing::Not(IsEmpty()));
   EXPECT_THAT(doubt_of_shape(parabola(3000)), HasSubstr("its radius of 3.00 um is that of a plane over its width of 21.0 nm"));
   EXPECT_THAT(doubt_of_tip(sweep_of(4, flat)), AllOf(HasSubstr("largest that was tried"), HasSubstr("; it is flat")));
 }
@@ -70,10 +64,10 @@ TEST(TipDoubt, IsOfNoiseThatTakesTheWholeRoughness) {
   HeightField scan;
   scan.z_nm = Grid<double>(64, 64);
   for (int y = 0; y < 64; ++y)
-    for (int x = 0; x < 64; ++x) scan.z_nm(x, y) = 3 * std::sin(0.3 * x) + 2 * x;   // Sq 2.1 nm about its plane
+    for (int x = 0; x < 64; ++x) scan.z_nm(x, y) = 3 * std::sin(0.3 * x) + 2 * x;   // Sq 2.04 nm about its plane
   const auto noise = [](double sigma) { return AfmNoise{0, sigma * sigma}; };
   EXPECT_THAT(doubt_of_noise(noise(1), scan), IsEmpty());
-  EXPECT_THAT(doubt_of_noise(noise(2), scan), AllOf(HasSubstr("the noise of 2.00 nm, from differences of"), HasSubstr("Sq 2.1")));
+  EXPECT_THAT(doubt_of_noise(noise(2), scan), AllOf(HasSubstr("the noise of 2.00 nm, from differences of"), HasSubstr("Sq 2.04 nm")));
 }
 
 }  // namespace

@@ -156,7 +156,7 @@ TEST(FormatLength, ChoosesTheUnit) {
 }
 
 TEST(FormatLength, IsShortWhereverTheNumberLies) {
-  EXPECT_EQ(format_length(9.994e13), "99940 m");
+  EXPECT_EQ(format_length(9.994e13), "99900 m");
   EXPECT_EQ(format_length(1e14), "1.00e+05 m");
   EXPECT_EQ(format_length(1e300), "1.00e+291 m");
   EXPECT_EQ(format_length(-1.7976931348623157e308), "-1.80e+299 m");
