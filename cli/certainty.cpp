@@ -18,6 +18,8 @@
 namespace surf::cli {
 namespace {
 
+constexpr int exit_untrustworthy = 4;
+
 constexpr const char* examples =
     R"(The map is 1 where the tip touched the surface and nothing else could have made the scan what it is
 there, to within the noise: there the eroded scan is the surface. 0 elsewhere: an upper bound.
@@ -80,7 +82,10 @@ void report(const CertaintyMap& map, const Options& o) {
              format_length(map.tolerance_nm), map.neighbourhood);
   print("{:<10} {:.1f} % of the scan touched in one place, {:.1f} % possibly in several\n", "contacts",
              percent(map.single, map.image_pixels), percent(map.ambiguous, map.image_pixels));
-  print("{:<10} {:.1f} % of the surface\n", "certain", percent(map.certain, map.surface_samples));
+  print("{:<10} {:.1f} % of the surface{}\n", "certain", percent(map.certain, map.surface_samples),
+        map.unexplained > 0 ? fmt::format(", by the {:.1f} % of the scan that this tip can have made",
+                                          100 - percent(map.unexplained, map.image_pixels))
+                            : "");
   print("{:<10} {}\n", "written", *o.output);
   if (o.surface) print("{:<10} {}\n", "written", *o.surface);
 }
@@ -92,7 +97,7 @@ int work(const Options& o) {
   if (!o.noise) {
     options.noise_nm = pixel_noise_nm(scan.field);
     if (!o.quiet)
-      print_note(fmt::format("a noise of {} is taken from neighbouring pixels; --noise says otherwise",
+      print_note(fmt::format("a noise of {} is taken from neighbouring pixels (their second differences); --noise says otherwise",
                              format_length(options.noise_nm)));
   }
   Watched watched(!o.quiet);
@@ -110,11 +115,13 @@ int work(const Options& o) {
   io::write_image(*o.output, image);
   if (o.surface) io::write_height_field(*o.surface, map.surface, provenance);
   if (!o.quiet) report(map, o);
-  if (20 * map.unexplained > map.image_pixels)
-    print_warning(fmt::format("{:.0f} % of the scan cannot have been made by this tip with this noise: the tip may be "
-                              "blunter than its file says, or --noise larger",
-                              100.0 * static_cast<double>(map.unexplained) / static_cast<double>(map.image_pixels)));
-  return 0;
+  if (20 * map.unexplained <= map.image_pixels) return 0;
+  const bool most = 2 * map.unexplained > map.image_pixels;
+  print_warning(fmt::format("{:.0f} % of the scan cannot have been made by this tip with this noise: the tip may be "
+                            "sharper than its file says, or --noise larger{}",
+                            100.0 * static_cast<double>(map.unexplained) / static_cast<double>(map.image_pixels),
+                            most ? ". A map of so little of the scan is not to be trusted" : ""));
+  return most ? exit_untrustworthy : 0;
 }
 
 }  // namespace

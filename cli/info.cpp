@@ -79,8 +79,8 @@ void print_scan(const io::SceneFile& scene) {
     return;
   }
   const auto electrons = scene.electrons.value_or(mc::SimulationOptions{}.electrons);
-  print_item("electrons", fmt::format("{} per pixel, {:.4g} million in all", electrons,
-                                      1e-6 * double(electrons) * scan.width * scan.height));
+  print_item("electrons", fmt::format("{} per pixel, {} in all", electrons,
+                                      format_count(double(electrons) * scan.width * scan.height)));
 }
 
 void print_scene(const std::filesystem::path& path,

@@ -7,6 +7,7 @@
 #include "surf/core/error.h"
 #include "surf/core/units.h"
 #include "surf/io/cache.h"
+#include "surf/mc/material_doubts.h"
 #include "surf/workflow/libraries.h"
 #include "terminal.h"
 
@@ -75,6 +76,8 @@ int build(const LibraryOptions& options) {
   const LibraryRequest request = read_library_options(options);
   if (request.cache.empty())
     throw UsageError("--cache", "there is no cache to keep libraries in", "Name a folder");
+  for (std::size_t i = 0; i < request.libraries.size(); i += request.energies_ev.size())
+    for (const std::string& doubt : mc::doubts(request.libraries[i].material)) print_warning(doubt);
   const double total =
       static_cast<double>(request.libraries.size()) * static_cast<double>(request.cascades);
   InterruptGuard interrupts;

@@ -109,6 +109,7 @@ LibraryRequest read_library_options(const LibraryOptions& o) {
       mc::Beam beam;
       beam.energy_ev = energy_ev;
       mc::validate(beam);
+      mc::validate(settings.physics, energy_ev);
       const bool barrier = settings.physics.barrier != mc::BarrierModel::off;
       settings.start_energy_ev = energy_ev + (barrier ? settings.material.barrier_ev : 0);
       mc::CascadeLibrary check(settings);

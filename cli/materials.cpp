@@ -9,6 +9,7 @@
 #include "surf/core/units.h"
 #include "surf/io/sim/materials.h"
 #include "surf/mc/element.h"
+#include "surf/mc/material_doubts.h"
 #include "terminal.h"
 
 namespace surf::cli {
@@ -89,6 +90,7 @@ void print_material(const mc::Material& m) {
                                    ? "yes" : "no: use --physics elastic=browning", "");
   }
   if (!m.sources.empty()) print("  sources: {}\n", m.sources);
+  if (const auto doubt = mc::doubt_of_a_metal(m)) print_warning(*doubt);
 }
 
 int print_materials(const std::string& name, const std::vector<std::string>& files) {

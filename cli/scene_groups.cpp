@@ -75,7 +75,8 @@ void add_physics_options(CLI::App& app, SceneOptions& o) {
                  "barrier=quantum|classical|off; any of them, first ones default")
       ->type_name("KEY=VALUE,...")->group(group);
   app.add_option("--cutoff", o.cutoff,
-                 "Where tracking stops (the surface barrier; 50eV without secondaries)")
+                 "Where tracking stops, 0.5eV to below the beam's energy (0: the surface barrier;\n"
+                 "50eV without secondaries)")
       ->type_name("ENERGY")->group(group);
 }
 

@@ -13,6 +13,7 @@
 #include "surf/io/height_field_file.h"
 #include "surf/io/image_file.h"
 #include "surf/io/mesh_file.h"
+#include "surf/io/sem_file.h"
 #include "surf/io/sim/materials.h"
 #include "surf/io/sim/mesh_bodies.h"
 
@@ -80,6 +81,7 @@ HeightField read_scan_field(const fs::path& path, const SceneOptions& options, c
 
 HeightField read_image_field(const fs::path& path, const SceneOptions& options, const FieldUnits& units,
                              std::vector<std::string>& notes) {
+  if (!units.z_nm) io::refuse_as_heights(path);
   const Image image = io::read_image(path);
   const Channel& channel = height_channel(image, path, options.height_channel.value_or(""), notes);
   return io::to_height_field(image, channel.name, units.z_nm.value_or(1));
@@ -110,6 +112,7 @@ void add_mesh_bodies(const std::string& input, std::optional<double> unit_nm,
                                   fallback));
     const int material = material_index(scene, body.material, "--material");
     scene.specimen.bodies.push_back({name, std::move(body.mesh), material});
+    scene.unit_assumed = scene.unit_assumed || body.unit_assumed;
   }
 }
 

@@ -192,6 +192,7 @@ workflow::SweepJob make_sweep(const Options& o, const std::string& command_line)
   for (std::size_t i = 0; i < runs; i = runs <= most_tried || i + 1 == runs ? i + 1 : runs - 1) {
     const workflow::SimulateJob tried = job.runs[i].make();
     workflow::resolve_scan(tried.scene.scan, mc::extent(tried.scene.specimen), tried.scene.beam);
+    mc::validate(tried.scene.physics, tried.scene.beam.energy_ev);
   }
   return job;
 }

@@ -82,6 +82,8 @@ std::string format_count(double count) {
     count /= 1000;
     ++power;
   }
+  constexpr double most = 1e6;
+  if (count >= most) return fmt::format("{:.2e}", count * std::pow(1000.0, power));
   return fmt::format("{:.{}f}{}", count, power == 0 || count >= 99.95 ? 0 : 1, suffixes[power]);
 }
 

@@ -13,6 +13,7 @@
 #include "surf/afm/characterizer.h"
 #include "surf/afm/height_range.h"
 #include "surf/afm/noise_estimate.h"
+#include "surf/afm/tip_doubt.h"
 #include "surf/afm/tip_measure.h"
 #include "surf/afm/tip_sweep.h"
 #include "surf/core/error.h"
@@ -25,6 +26,8 @@
 
 namespace surf::cli {
 namespace {
+
+constexpr int exit_untrustworthy = 4;
 
 constexpr const char* examples =
     R"(Without --threshold, thresholds are swept, and the tip is chosen that leaves of the scan what its
@@ -139,7 +142,7 @@ std::vector<HeightField> read_scans(const Options& o) {
 }
 
 // The mean of all scans' estimates.
-AfmNoise noise_of(const std::vector<HeightField>& scans, bool quiet) {
+AfmNoise noise_of(const std::vector<HeightField>& scans) {
   AfmNoise mean{0, 0};
   double sigma2 = 0;
   bool at_limit = false;
@@ -153,9 +156,12 @@ AfmNoise noise_of(const std::vector<HeightField>& scans, bool quiet) {
   mean.innovation_nm2 = sigma2 * (1 - mean.alpha * mean.alpha);
   if (!(mean.innovation_nm2 > 0))
     throw InvalidInput("scan", "it has no noise that could be estimated", "Say --noise 0.1nm, or --threshold 0nm");
-  if (at_limit && !quiet)
+  if (at_limit)
     print_warning("the noise can hardly be told from the structure and may be less. Say --noise, from a flat "
                   "scan: 'semsurf noise'");
+  for (const HeightField& scan : scans)
+    if (const std::string doubt = doubt_of_noise(mean, scan); !doubt.empty())
+      print_warning(doubt + ". Say --noise");
   return mean;
 }
 
@@ -172,6 +178,11 @@ std::string ranges_of(const std::vector<double>& degrees) {
   return text;
 }
 
+void print_written(const Options& o) {
+  print("{:<10} {}\n", "written", *o.output);
+  if (o.plot) print("{:<10} {}\n", "written", *o.plot);
+}
+
 // Of the samples that the tip has; above 0 for all but a flat one.
 double depth_of(const Tip& tip) {
   double lowest = 0;
@@ -184,9 +195,15 @@ void print_tip(const Tip& tip, double depth_nm) {
   print("{:<10} {} x {} samples of {}, down to {}\n", "tip", tip.z_nm.width(), tip.z_nm.height(),
              format_length(tip.pitch_x_nm), format_length(-depth_of(tip)));
   try {
-    const TipMeasures m = measure_tip(tip);
-    print("{:<10} {} (fitted down to {}, residual {})", "radius", format_length(m.radius_nm),
-               format_length(m.fit_depth_nm), format_length(m.radius_residual_nm));
+    TipMeasures m = measure_tip(tip);
+    // Thresholds leave ends flat: what lies deeper may tell a radius.
+    if (const double whole_nm = depth_of(tip); !std::isfinite(m.radius_nm) && whole_nm > 0)
+      m = measure_tip(tip, {.fit_depth_nm = whole_nm});
+    if (std::isfinite(m.radius_nm))
+      print("{:<10} {} (fitted down to {}, residual {})", "radius", format_length(m.radius_nm),
+            format_length(m.fit_depth_nm), format_length(m.radius_residual_nm));
+    else
+      print("{:<10} infinite: the tip is flat", "radius");
     if (m.half_angle_rad) print(", half angle {:.1f} degrees", *m.half_angle_rad / degrees_to_radians);
     print("\n");
   } catch (const InvalidInput& e) {   // a flat end, or too few samples
@@ -195,8 +212,7 @@ void print_tip(const Tip& tip, double depth_nm) {
   print("{:<10} {:.4g} nm^3 down to {}\n", "volume", tip_volume_nm3(tip, depth_nm), format_length(depth_nm));
 }
 
-// 4: there is a result, but not to be trusted.
-int print_sweep(const TipSweep& sweep, bool quiet) {
+void print_sweep(const TipSweep& sweep, bool quiet) {
   const SweptTip& c = sweep.curve[sweep.chosen];
   if (!quiet)
     print("{:<10} {} of {} to {}; residual {}, expected {}; largest jump of volume below {}\n", "threshold",
@@ -206,10 +222,14 @@ int print_sweep(const TipSweep& sweep, bool quiet) {
   if (sweep.verdict == TipSweepVerdict::disagreement)
     print_warning(fmt::format("the volume jumps at {}, but the residuals choose {}. Look at --plot",
                               format_length(sweep.curve[sweep.jump].threshold_nm), format_length(c.threshold_nm)));
-  if (sweep.verdict != TipSweepVerdict::none) return 0;
-  print_warning(fmt::format("no tip explains the scan: {:.1f} times what the noise leaves is left at best. Is it "
-                            "level, is --noise right, is --size large enough?", c.excess()));
-  return 4;
+}
+
+/// 4: there is a result, but not to be trusted.
+int report_doubt(const Tip& tip) {
+  if (tip.doubt.empty()) return 0;
+  print_warning(fmt::format("this tip is not to be trusted, and its file says so: {}. Is the scan level, is --noise right, "
+                            "is --size large enough? Another scan, or a tip by its shape, may do better", tip.doubt));
+  return exit_untrustworthy;
 }
 
 std::map<std::string, std::string> made_by(const Options& o, const Plan& p, const AfmNoise* noise,
@@ -241,7 +261,7 @@ int by_shape(const Options& o) {
   if (o.plot) io::write_plot(*o.plot, tip_plot(tip));
   if (o.quiet) return 0;
   print_tip(tip, depth_of(tip));
-  print("{:<10} {}\n", "written", *o.output);
+  print_written(o);
   return 0;
 }
 
@@ -267,7 +287,7 @@ int by_characterizer(const Options& o) {
   print("{:<10} found at sample ({}, {}) of the scan, {} above; residual {}\n", "known", found.offset_x,
              found.offset_y, format_length(found.offset_z_nm), format_length(found.residual_nm));
   print_tip(found.tip, std::max(height_range(scans).span_nm(), 1e-9));
-  print("{:<10} {}\n", "written", *o.output);
+  print_written(o);
   return 0;
 }
 
@@ -280,17 +300,16 @@ int work(const Options& o) {
   if (o.characterizer) return by_characterizer(o);
   Plan p = make_plan(o);
   const std::vector<HeightField> scans = read_scans(o);
-  if (!p.noise && p.answer != Answer::blind) p.noise = noise_of(scans, o.quiet);
+  if (!p.noise && p.answer != Answer::blind) p.noise = noise_of(scans);
   if (p.noise && !o.quiet)
-    print("{:<10} {}, alpha {:.2f}\n", "noise", format_length(std::sqrt(p.noise->variance_nm2())),
-               p.noise->alpha);
+    print("{:<10} {}, alpha {:.2f}{}\n", "noise", format_length(std::sqrt(p.noise->variance_nm2())), p.noise->alpha,
+          o.noise ? "" : ", from differences of neighbouring rows and columns");
 
   InterruptGuard interrupt;
   ProgressBar bar(!o.quiet);
   const auto progress = [&](double done, double total) { bar.show(done, total, "tips"); };
   const CancelToken* cancel = interrupt.token();
   Tip tip;
-  int code = 0;
   double threshold_nm = p.blind.threshold_nm;
   io::Plot plot;
   if (p.answer == Answer::sweep) {
@@ -300,8 +319,9 @@ int work(const Options& o) {
     if (sweep.verdict == TipSweepVerdict::cancelled) return 130;
     bar.clear();
     tip = sweep.curve[sweep.chosen].tip;
+    tip.doubt = doubt_of_tip(sweep);
     threshold_nm = sweep.curve[sweep.chosen].threshold_nm;
-    code = print_sweep(sweep, o.quiet);
+    print_sweep(sweep, o.quiet);
     plot = tip_plot(sweep);
   } else if (p.answer == Answer::best) {
     BestTipOptions best;
@@ -333,6 +353,7 @@ int work(const Options& o) {
     bar.clear();
     plot = tip_plot(tip);
   }
+  if (p.answer != Answer::sweep) tip.doubt = doubt_of_shape(tip);
   io::write_tip(*o.output, tip, [&] {
     std::vector<std::string> inputs{o.input.file};
     inputs.insert(inputs.end(), o.also.begin(), o.also.end());
@@ -346,7 +367,8 @@ int work(const Options& o) {
     print_warning(fmt::format("the scan does not tell the tip's shape towards {} degrees (counter-clockwise "
                               "from +x): nothing there is steep enough. What is given is the bluntest tip "
                               "possible", ranges_of(open_ways)));
-  if (!o.quiet) print("{:<10} {}\n", "written", *o.output);
+  const int code = report_doubt(tip);
+  if (!o.quiet) print_written(o);
   return code;
 }
 

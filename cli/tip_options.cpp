@@ -18,9 +18,20 @@ void add_tip_input(CLI::App& app, std::optional<std::string>& file) {
   app.add_option("--tip", file, "The tip, as semsurf writes tips or any file of heights")->type_name("FILE");
 }
 
+namespace {
+
+void warn_of_doubt(const std::string& file, const Tip& tip) {
+  if (!tip.doubt.empty())
+    print_warning(fmt::format("{}: it says that this tip is not to be trusted: {}. What is made with it is not either", file,
+                              tip.doubt));
+}
+
+}  // namespace
+
 Tip read_tip_for(const std::optional<std::string>& file, const HeightField& field, bool quiet) {
   if (!file) throw UsageError("--tip", "no tip is given", "Add --tip tip.gsf");
   Tip tip = io::read_tip(*file);
+  warn_of_doubt(*file, tip);
   const auto differ = [](double a, double b) { return std::abs(a - b) > 1e-6 * std::max(a, b); };
   if (differ(tip.pitch_x_nm, field.pitch_x_nm) || differ(tip.pitch_y_nm, field.pitch_y_nm)) {
     const Tip as_read = std::move(tip);

@@ -14,7 +14,7 @@ namespace surf::cli {
 void add_tip_input(CLI::App& app, std::optional<std::string>& file);
 
 /// Reads it and resamples it to the field's pitch if that differs, with a note unless `quiet`, and a
-/// warning if it has more samples than the field. Throws UsageError, FileError, InvalidInput.
+/// warning if it has more samples than the field, or a doubt (`Tip::doubt`). Throws UsageError, FileError, InvalidInput.
 Tip read_tip_for(const std::optional<std::string>& file, const HeightField& field, bool quiet);
 
 }  // namespace surf::cli

@@ -86,9 +86,13 @@ void add_scalar(const FileChannel& input, const ViewReading& reading, io::WebPag
   if (taken(name)) name = fmt::format("{} of {}", channel, input.file.stem().string());
   for (int number = 2; taken(name); ++number)
     name = fmt::format("{} of {} {}", channel, input.file.stem().string(), number);
-  if (add_sampled_scalar(page, picture.image, channel, name) == 0)
+  const LaidScalar laid = add_sampled_scalar(page, picture.image, channel, name);
+  if (laid.values == 0)
     throw InvalidInput(input.file.string(), fmt::format("'{}' has no value over any surface", channel),
                        "Give a map of the same place");
+  if (!reading.quiet)
+    for (const std::string& surface : laid.left_out)
+      print_note(fmt::format("{}: it is of another extent than '{}' and goes without it", surface, name));
   if (page.scalar.empty()) page.scalar = name;
 }
 

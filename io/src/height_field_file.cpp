@@ -11,6 +11,7 @@
 #include "surf/core/error.h"
 #include "surf/core/units.h"
 #include "surf/io/files.h"
+#include "surf/io/sem_file.h"
 
 namespace surf::io {
 namespace {
@@ -119,6 +120,7 @@ void set_heights(const std::string& file, const ScanChannel& channel, double uni
 
 HeightFieldFile read_height_field(const std::filesystem::path& path, const HeightReadOptions& options) {
   const std::string file = path.string();
+  if (!options.z_unit_nm) refuse_as_heights(path);
   const ScanFile opened = open_scan(path);
   const Scan& scan = opened.scan;
   const ScanChannel& channel = choose(file, scan, options.channel);

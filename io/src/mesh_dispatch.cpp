@@ -38,6 +38,7 @@ ParsedFile in_nm(SurfaceScene scene) {
 }
 
 ParsedFile with_unit(ParsedFile parsed, std::optional<double> unit_nm) {
+  parsed.unit_assumed = !unit_nm && !parsed.note.is_ours && parsed.note.unit_nm == 1;   // 1e9 of glTF
   if (unit_nm) parsed.note.unit_nm = *unit_nm;
   return parsed;
 }

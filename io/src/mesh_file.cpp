@@ -35,9 +35,11 @@ bool may_name_others(MeshFormat format) {
 std::vector<NamedMesh> read_meshes(const std::filesystem::path& path,
                                    std::optional<double> unit_nm) {
   std::vector<NamedMesh> meshes;
-  for (ParsedBody& body : parse_mesh_file(path, unit_nm, Want::shapes).bodies) {
+  ParsedFile parsed = parse_mesh_file(path, unit_nm, Want::shapes);
+  for (ParsedBody& body : parsed.bodies) {
     Surface& surface = body.surface;
-    meshes.push_back({std::move(surface.name), std::move(body.material), merge_equal_vertices(surface.mesh)});
+    meshes.push_back({std::move(surface.name), std::move(body.material), merge_equal_vertices(surface.mesh),
+                      parsed.unit_assumed});
     surface.mesh = {};   // two copies of one body at a time
   }
   return meshes;

@@ -24,6 +24,7 @@ struct ParsedFile {
   std::vector<ParsedBody> bodies;
   std::vector<Track> tracks;
   SurfaceNote note;
+  bool unit_assumed = false;   ///< neither the file nor its reader said what a 1 is: 1 nm
 };
 
 /// What is wanted of a file: scalars, pictures and tracks take time and can be damaged.

@@ -20,6 +20,7 @@ namespace {
 constexpr double nothing = -std::numeric_limits<double>::infinity();
 constexpr const char* tip_key = "tip";
 constexpr const char* apex_key = "tip.apex";
+constexpr const char* doubt_key = "tip.doubt";
 
 struct Place {
   int x = 0, y = 0;
@@ -142,6 +143,7 @@ Tip to_tip(HeightField field, const std::map<std::string, std::string>& metadata
   for (double& z : tip.z_nm.data()) z -= top;
   tip.apex_x = apex.x;
   tip.apex_y = apex.y;
+  tip.doubt = text_of(metadata, doubt_key);
   if (physical) tip = reflected(tip);
   validate(tip, subject.c_str());
   return tip;
@@ -175,6 +177,7 @@ TipHeights to_heights(const Tip& tip, const char* subject) {
   }
   if (!whole) field.valid = std::move(valid);
   heights.metadata = {{tip_key, "structuring function"}, {apex_key, fmt::format("{} {}", tip.apex_x, tip.apex_y)}};
+  if (!tip.doubt.empty()) heights.metadata[doubt_key] = tip.doubt;
   return heights;
 }
 

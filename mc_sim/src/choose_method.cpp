@@ -112,10 +112,6 @@ std::optional<Obstacle> obstacle(const Scene& scene, const MethodLimits& limits)
   if (!can_replay(scene.physics()))
     return Obstacle{"without continuous loss there is no energy at which cascades could be joined",
                     "Use loss=joy-luo"};
-  for (std::size_t m = 0; m < scene.materials().size(); ++m)
-    if (start_energy_ev(scene, m) <= scene.impl().medium_pointers[m]->cutoff_ev())
-      return Obstacle{"the beam's energy is not above the cutoff: there are no cascades",
-                      "Use a lower --cutoff"};
   return std::nullopt;
 }
 

@@ -83,6 +83,7 @@ class Completion {
     m_.density_g_cm3 = draft.density_g_cm3;
     m_.loss_join_fitted = draft.loss_join_fitted;
     m_.sources = draft.sources;
+    m_.taken_for_metal = !draft.band_gap_ev && !(draft.work_function_ev && draft.barrier_ev);
   }
 
   Material run() {

@@ -108,6 +108,7 @@ std::vector<std::string> Medium::describe() const {
 }
 
 Medium make_medium(const Material& material, const Physics& physics) {
+  validate(physics);
   std::vector<std::unique_ptr<const Scattering>> scatterings;
   for (const Constituent& c : material.constituents) {
     scatterings.push_back(physics.elastic == ElasticModel::mott

@@ -69,6 +69,15 @@ void apply_item(const std::string& item, Physics& physics) {
 
 }  // namespace
 
+void validate(const Physics& physics, double beam_energy_ev) {
+  const double cutoff = physics.cutoff_ev;
+  if (cutoff == 0 || (cutoff >= min_cutoff_ev && cutoff < beam_energy_ev)) return;
+  throw UsageError("--cutoff",
+                   fmt::format("{:g} eV is outside {:g} eV to the beam's energy of {:g} eV (excluded)", cutoff,
+                               min_cutoff_ev, beam_energy_ev),
+                   "Choose an energy in that range, such as 5eV, or 0 for the default");
+}
+
 double effective_cutoff_ev(const Physics& physics, const Material& material) {
   if (physics.cutoff_ev > 0) return physics.cutoff_ev;
   const bool full = physics.secondaries && physics.barrier != BarrierModel::off;

@@ -258,6 +258,7 @@ Scene::Scene(const Specimen& specimen, const Beam& beam, const Scan& scan, const
   const auto begin = std::chrono::steady_clock::now();
   validate(beam);
   validate(scan);
+  validate(physics, beam.energy_ev);
   const Watch& watch = options.watch;
   if (!options.node) watch.check();   // who left now would be waited for
   const std::vector<BodyFacts>* found = options.facts;

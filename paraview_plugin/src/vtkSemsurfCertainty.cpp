@@ -53,6 +53,7 @@ int vtkSemsurfCertainty::RequestData(vtkInformation*, vtkInformationVector** inp
     const HeightField field = this->Heights(inputs, name);
     vtkImageData* const tip_image = pv::image_input(inputs, 1, "Tip");
     const Tip tip = pv::to_tip_for(tip_image, pv::chosen_array(this, 1, tip_image), field, "Tip");
+    if (!tip.doubt.empty()) pv::warn(this, fmt::format("the tip says that it is not to be trusted: {}", tip.doubt));
     CertaintyMap map;
     pv::work(this, [&](const Watch& watch) {
       map = certainty_map(field, tip,
@@ -66,7 +67,7 @@ int vtkSemsurfCertainty::RequestData(vtkInformation*, vtkInformationVector** inp
       pv::warn(this,
                fmt::format(
                    "{:.0f} % of the scan cannot have been made by this tip with this noise: the tip may be "
-                   "blunter than it is said to be, or Noise larger",
+                   "sharper than it is said to be, or Noise larger",
                    100.0 * static_cast<double>(map.unexplained) / static_cast<double>(map.image_pixels)));
     const auto image = this->WithHeights(inputs, std::move(map.surface), name);
     add_map(image, map.level);

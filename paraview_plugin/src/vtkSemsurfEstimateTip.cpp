@@ -20,6 +20,7 @@
 #include "pipeline.h"
 #include "surf/afm/best_tip.h"
 #include "surf/afm/noise_estimate.h"
+#include "surf/afm/tip_doubt.h"
 #include "surf/afm/tip_sweep.h"
 #include "surf/core/error.h"
 
@@ -47,6 +48,7 @@ AfmNoise noise_of(const HeightField& scan, std::vector<std::string>& warnings) {
     warnings.push_back(
         "the noise can hardly be told from the structure and may be less: set Noise, which 'Noise Model' "
         "finds on a flat scan");
+  if (const std::string doubt = doubt_of_noise(noise, scan); !doubt.empty()) warnings.push_back(doubt + ": set Noise");
   return noise;
 }
 
@@ -92,11 +94,6 @@ std::vector<std::string> doubts(const TipSweep& sweep) {
         "the volume jumps at a threshold of {:.4g} nm, but the residuals choose {:.4g} nm: look at the "
         "curve, output 2",
         sweep.curve[sweep.jump].threshold_nm, c.threshold_nm)};
-  if (sweep.verdict == TipSweepVerdict::none)
-    return {fmt::format(
-        "no tip explains the scan: {:.1f} times what the noise leaves is left at best. Is it level, is "
-        "Noise right, is Tip Size large enough?",
-        c.excess())};
   return {};
 }
 
@@ -173,6 +170,7 @@ int vtkSemsurfEstimateTip::RequestData(vtkInformation*, vtkInformationVector** i
         watch.check();
         found.tip = sweep.curve[sweep.chosen].tip;
         found.threshold_nm = sweep.curve[sweep.chosen].threshold_nm;
+        found.tip.doubt = doubt_of_tip(sweep);
         for (const std::string& doubt : doubts(sweep)) found.warnings.push_back(doubt);
         add_curve(table, sweep);
       } else if (this->Answer == Best) {
@@ -198,6 +196,10 @@ int vtkSemsurfEstimateTip::RequestData(vtkInformation*, vtkInformationVector** i
                                    {"points", static_cast<double>(summary.points)}});
       }
     });
+    if (this->Answer != Sweep) found.tip.doubt = doubt_of_shape(found.tip);
+    if (!found.tip.doubt.empty())
+      found.warnings.push_back(fmt::format("this tip is not to be trusted: {}. Is the scan level, is Noise right, is Tip Size "
+                                           "large enough?", found.tip.doubt));
     for (const std::string& warning : found.warnings) pv::warn(this, warning);
     const auto image = pv::to_vtk(found.tip);
     std::map<std::string, std::string> made{{"threshold_nm", fmt::format("{:.9g}", found.threshold_nm)}};

@@ -31,6 +31,7 @@ int vtkSemsurfMorphology::RequestData(vtkInformation*, vtkInformationVector** in
     HeightField field = this->Heights(inputs, name);
     vtkImageData* const tip_image = pv::image_input(inputs, 1, "Tip");
     const Tip tip = pv::to_tip_for(tip_image, pv::chosen_array(this, 1, tip_image), field, "Tip");
+    if (!tip.doubt.empty()) pv::warn(this, fmt::format("the tip says that it is not to be trusted: {}", tip.doubt));
     pv::work(this, [&](const Watch& watch) {
       const MorphologyOptions options{.upsample = this->Upsample, .watch = watch};
       switch (this->Operation) {

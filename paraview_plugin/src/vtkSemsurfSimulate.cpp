@@ -26,6 +26,7 @@
 #include "surf/core/error.h"
 #include "surf/core/units.h"
 #include "surf/mc/choose_method.h"
+#include "surf/mc/material_doubts.h"
 #include "surf/mc/result_summary.h"
 #include "surf/workflow/simulate_job.h"
 #include "surf/workflow/version.h"
@@ -200,6 +201,8 @@ void vtkSemsurfSimulate::Plan(vtkDataObject* input) {
   mc::validate(plan.options.detectors);
   if (this->Method != Auto) plan.method = this->Method == Direct ? mc::Method::direct : mc::Method::replay;
   plan.trajectories = this->Trajectories;
+  for (const mc::Material& material : plan.specimen.materials)
+    for (const std::string& doubt : mc::doubts(material)) pv::warn(this, doubt);
   k.plan = std::move(plan);
   k.settings = std::move(settings);
   k.input = digest;

@@ -21,6 +21,14 @@ semsurf_cli_test(materials.estimated ARGS materials SiO2
   STDOUT "O, Z = 8, 53\\.2.* 2 per formula unit" "unfitted" "estimated: .*fitted to measured SE")
 semsurf_cli_test(materials.own ARGS materials nitride --materials materials.toml
   STDOUT "work function W +6\\.3 eV\n    estimated: band gap plus" "N, Z = 7" "estimated: sum of the")
+semsurf_cli_test(materials.no_gap ARGS materials nitride --materials no_gap.toml
+  STDERR "warning: nitride: it is taken for a metal, as its band_gap_ev is not given, but most compounds with N ")
+semsurf_cli_test(simulate.no_gap ARGS simulate cube.off --material nitride --materials no_gap.toml ${few} -o cube.exr
+  STDERR "nitride: it is taken for a metal" "nitride: these numbers are estimates: valence_electrons, plasmon_ev, work_function_ev, barrier_ev"
+  WRITES cube.exr)
+semsurf_cli_test(simulate.speck ARGS simulate cube.off --material Au --energy 30keV ${few} -o cube.exr
+  STDERR "warning: the specimen is 40.0 nm wide, but electrons of 30000 eV reach about 1.69 um in Au.*With --unit um it would be 40.0 um"
+  WRITES cube.exr)
 semsurf_cli_test(materials.own_table ARGS materials --materials materials.toml
   STDOUT "nitride +3\\.17" "Au +15 " STDERR "note: Au is as materials.toml says, in place of the built-in")
 semsurf_cli_test(materials.one ARGS materials Si STDOUT "Z = 14" "work function" "Mott table +yes")
@@ -188,6 +196,7 @@ semsurf_cli_test(help.clean ARGS clean --help STDOUT "--spikes" "Examples:")
 semsurf_cli_test(help.noise ARGS noise --help STDOUT "--flat" "Examples:")
 semsurf_cli_test(level.hough ARGS level block.gsf -o flat.gsf --mask substrate.tif
   STDOUT "plane +tilt 5\\.71" "substrate +[78][0-9]\\.[0-9] %" "roughness +all: Sa" "substrate: Sa" WRITES flat.gsf substrate.tif)
+semsurf_cli_test(level.sem_as_heights ARGS level fei.tif --z-unit 1nm --method plane -o flat.tif STDOUT "plane +tilt" WRITES flat.tif)
 semsurf_cli_test(level.plane ARGS level block.gsf --method plane -o flat.tif STDOUT "plane +tilt" WRITES flat.tif)
 semsurf_cli_test(level.polynomial ARGS level block.gsf --method polynomial --degree 1 --rows median -o levelled.txt
   STDOUT "rows +shifted by" WRITES levelled.txt)
@@ -230,6 +239,24 @@ semsurf_cli_test(tip.shape ARGS tip --shape cone:5nm,20deg --size 31 -o tip.gsf 
   STDOUT "tip +31 x 31 samples" "radius " "half angle " WRITES tip.gsf tip.svg INFO tip.gsf "option.shape +cone:5nm,20deg")
 semsurf_cli_test(tip.sweep ARGS tip steps.txt --size 5 --noise 0.02nm --sweep 0.02nm,0.4nm,5 --plot tip.svg -o tip.gsf
   STDOUT "noise +" "threshold " WRITES tip.gsf tip.svg)
+semsurf_cli_test(tip.doubted EXIT 4 ARGS tip steps.txt --size 5 --noise 2nm --plot tip.svg -o tip.gsf
+  STDOUT "radius +infinite: the tip is flat\n" "written +tip.gsf\nwritten +tip.svg\n"
+  STDERR "this tip is not to be trusted, and its file says so: its threshold of 16.0 nm is the largest that was tried.*it is flat"
+  WRITES tip.gsf tip.svg INFO tip.gsf "tip.doubt +its threshold of 16.0 nm")
+semsurf_cli_test(tip.noise_is_the_roughness EXIT 4 ARGS tip noisy.gsf --size 5 -o tip.gsf
+  STDOUT "noise .*from differences of neighbouring rows and columns"
+  STDERR "the noise of .* is most of the scan's roughness .Sq .*second differences of single pixels give" WRITES tip.gsf)
+foreach(command erode dilate)
+  semsurf_cli_test(${command}.doubted_tip ARGS ${command} steps.txt --tip doubted_tip.txt -o surface.gsf
+    STDERR "warning: doubted_tip.txt: it says that this tip is not to be trusted: it is flat" WRITES surface.gsf)
+endforeach()
+semsurf_cli_test(certainty.doubted_tip EXIT 4 ARGS certainty steps.txt --tip doubted_tip.txt --noise 0.01nm -o map.tif
+  STDOUT "certain +.* % of the surface, by the .* % of the scan that this tip can have made"
+  STDERR "doubted_tip.txt: it says that this tip is not to be trusted" "cannot have been made by this tip.*so little of the scan is not to be trusted"
+  WRITES map.tif)
+semsurf_cli_test(register.doubted_tip EXIT 4 ARGS register steps.txt steps_of_grey.tif --sem-pixel-size 3nm --afm-pixel-size 3nm
+  --no-level --afm-noise 0.5,0.01 --tip doubted_tip.txt --model secant.json
+  STDERR "the tip's file says that it is not to be trusted: it is flat")
 semsurf_cli_test(tip.blind ARGS tip steps.txt --size 5 --threshold 0.1nm --apex-tolerance 0.1nm -o tip.gsf
   STDOUT "tip +5 x 5 samples" WRITES tip.gsf INFO tip.gsf "option.answer +blind")
 semsurf_cli_test(tip.outer ARGS tip steps.txt --size 5 --answer outer --noise 0.05nm,0.5 -o tip.gsf
@@ -258,6 +285,9 @@ if(WEB_PACKAGES)
     WRITES page.html)
   semsurf_cli_test(view.tolerance ARGS view block.gsf --tolerance 0.1nm -o page.html
     STDERR "triangles instead of [0-9]+, nowhere more than" WRITES page.html)
+  semsurf_cli_test(view.scalar_not_on_the_tip ARGS view block.gsf tip.txt --scalar block.gsf -o page.html
+    STDOUT "surface +block: 60 x 50 samples, [^,]*, Height\n" "surface +tip: 5 x 5 samples, [^,]*\n"
+    STDERR "note: tip: it is of another extent than 'Height' and goes without it" WRITES page.html)
   semsurf_cli_test(view.scalar ARGS view block.gsf --scalar plane.gsf --drape plane.gsf -o page.html -q STDOUT "^$" WRITES page.html)
 endif()
 semsurf_cli_test(help.view ARGS view --help STDOUT "--drape" "--scalar" "Examples:")

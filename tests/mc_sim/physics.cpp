@@ -46,6 +46,22 @@ TEST(Physics, StopsTrackingWhereItSays) {
   EXPECT_EQ(effective_cutoff_ev(p, si), 20);
 }
 
+TEST(Physics, RefusesACutoffThatLeavesNothingToTrack) {
+  Physics p;
+  for (const double good : {0.0, 0.5, 50.0, 999.0}) {
+    p.cutoff_ev = good;
+    EXPECT_NO_THROW(validate(p, 1000)) << good;
+  }
+  for (const double bad : {-5.0, 0.4, 1000.0, 5000.0, 1e300, double(INFINITY), double(NAN)}) {
+    p.cutoff_ev = bad;
+    EXPECT_THROW(validate(p, 1000), UsageError) << bad;
+  }
+  for (const double bad : {-5.0, 0.4, double(INFINITY), double(NAN)}) {   // for a beam of any energy
+    p.cutoff_ev = bad;
+    EXPECT_THROW(make_medium(material("Si"), p), UsageError) << bad;
+  }
+}
+
 TEST(Physics, DescribesEveryMechanismWithItsSource) {
   const auto lines = describe({}, material("Si"));
   EXPECT_THAT(lines, Contains(HasSubstr("ELSEPA")));

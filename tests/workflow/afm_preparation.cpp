@@ -87,6 +87,22 @@ TEST(AfmPreparation, AScanThatTellsNothingOfItsTipIsTheSurface) {
   EXPECT_THAT(p.warnings, testing::Contains(testing::HasSubstr("taken as sharp")));
 }
 
+TEST(AfmPreparation, DoubtsATipThatTheScanDoesNotTell) {
+  AfmPreparationOptions o;
+  o.tip_size = 9;
+  const PreparedAfm told = prepare_afm(walls(30), o);
+  EXPECT_EQ(told.tip.doubt, "");
+  o.noise = AfmNoise{0, 400};   // 20 nm of noise hide walls of 40 nm
+  const PreparedAfm p = prepare_afm(walls(30), o);
+  EXPECT_THAT(p.tip.doubt, testing::HasSubstr("is the largest that was tried"));
+  EXPECT_THAT(p.warnings, testing::Contains(testing::HasSubstr("not to be trusted: its threshold of")));
+  o = {};
+  o.tip = p.tip;   // as from a file
+  const PreparedAfm again = prepare_afm(walls(30), o);
+  EXPECT_EQ(again.tip.doubt, p.tip.doubt);
+  EXPECT_THAT(again.warnings, testing::Contains(testing::HasSubstr("the tip's file says that it is not to be trusted")));
+}
+
 TEST(AfmPreparation, RefusesWhatCannotBe) {
   AfmPreparationOptions even, wide;
   even.tip_size = 8;

@@ -66,6 +66,9 @@ TEST_F(MemoryEstimateTest, RefusesWhatDoesNotFit) {
               testing::ThrowsMessage<InvalidInput>(
                   testing::AllOf(HasSubstr("large.ply"), HasSubstr("100 million triangles"),
                                  HasSubstr("1.00 GB are there by SEMSURF_MEMORY"))));
+  setenv("SEMSURF_MEMORY", "0.1GB", 1);
+  EXPECT_THAT([] { require_memory("tiny.ply", {7}); },
+              testing::ThrowsMessage<InvalidInput>(HasSubstr("tiny.ply: 7 triangles need")));
   setenv("SEMSURF_MEMORY", "off", 1);
   EXPECT_NO_THROW(require_memory("large.ply", {1'000'000'000}));
   for (const char* bad : {"", "much", "-1GB", "0", "5 apples", "1e300GB"}) {

@@ -248,11 +248,15 @@ TEST_F(ReconstructJobTest, WhatSpeaksAgainstAResultIsSaid) {
   job_.afm->preparation.noise = AfmNoise{0.5, 0.005};   // a tenth of it
   job_.sem_noise = SemNoise{0, 0.4, 1e-3};
   job_.options.uncertainty = false;
+  job_.afm->preparation.tip->doubt = "it is flat";
   const ReconstructSummary s = run(job_);
   EXPECT_EQ(s.verdict, ReconstructionVerdict::flagged);
   EXPECT_EQ(report("result")["verdict"], "flagged");
   EXPECT_THAT(s.reasons, ElementsAre(HasSubstr("had not settled"), HasSubstr("the AFM scan does not look like noise"),
-                                     HasSubstr("the SEM image does not look like noise")));
+                                     HasSubstr("the SEM image does not look like noise"),
+                                     HasSubstr("the AFM tip is not to be trusted: it is flat")));
+  EXPECT_THAT(s.warnings, Contains(HasSubstr("the tip's file says that it is not to be trusted: it is flat")));
+  EXPECT_EQ(io::read_tip(path("result") / "tip.txt").doubt, "it is flat");
 }
 
 TEST_F(ReconstructJobTest, OneImageIsEnough) {

@@ -47,6 +47,30 @@ TEST(Warnings, TellOfUnlikelySizes) {
   }
 }
 
+TEST(Warnings, TellOfSpecksThatAreLikelyOfAnotherUnit) {
+  const auto speck = Contains(HasSubstr("the specimen is 2.00 nm wide, but electrons of 1000 eV reach about 31.8 nm in Si"));
+  const auto cube = [](double factor, bool substrate, bool assumed) {
+    SimulateJob job = small_job();
+    if (!substrate) job.scene.specimen.substrate.reset();
+    job.scene.unit_assumed = assumed;
+    transform(job.scene.specimen.bodies[0].mesh, factor, {0, 0, 0});
+    job.scene.scan = {};
+    job.scene.scan.width = job.scene.scan.height = 4;
+    return warnings_of(job);
+  };
+  EXPECT_THAT(cube(0.05, false, true), speck);
+  EXPECT_THAT(cube(0.05, false, true), Contains(HasSubstr("With --unit um it would be 2.00 um")));
+  EXPECT_THAT(cube(0.05, false, false), IsEmpty());   // its unit was named
+  EXPECT_THAT(cube(0.05, true, true), IsEmpty());     // a particle on a substrate
+  EXPECT_THAT(cube(0.2, false, true), IsEmpty());
+}
+
+TEST(Warnings, TellOfMaterialsThatAreEstimated) {
+  SimulateJob job = small_job();
+  job.scene.specimen.materials[0].estimates = {{"plasmon_ev", "a rule"}};
+  EXPECT_THAT(warnings_of(job), Contains(HasSubstr("Si: these numbers are estimates: plasmon_ev")));
+}
+
 TEST(Warnings, TellOfSpecimensSoFarAwayThatTheyLoseDigits) {
   for (const double offset_nm : {1e10, 1e12}) {
     SimulateJob job = small_job();

@@ -14,6 +14,7 @@
 #include "surf/afm/resample.h"
 #include "surf/afm/round_tip.h"
 #include "surf/afm/substrate_noise.h"
+#include "surf/afm/tip_doubt.h"
 #include "surf/afm/tip_sweep.h"
 #include "surf/core/error.h"
 #include "surf/core/units.h"
@@ -98,6 +99,16 @@ void find_noise(PreparedAfm& prepared, const AfmPreparationOptions& o) {
   if (!clear && estimate.alpha_at_limit)
     prepared.warnings.push_back("the scan's noise can hardly be told from its structure and may be less. Say --afm-noise, "
                                 "from a flat scan: 'semsurf noise'");
+  if (const std::string doubt = clear ? "" : doubt_of_noise(prepared.noise, prepared.image); !doubt.empty())
+    prepared.warnings.push_back(doubt + ". Say --afm-noise");
+}
+
+/// A tip that was found, and why not to trust it.
+void set_doubt(PreparedAfm& prepared, const std::string& doubt) {
+  prepared.tip.doubt = doubt;
+  if (!doubt.empty())
+    prepared.warnings.push_back(fmt::format("the tip that was found in the scan is not to be trusted: {}. Check "
+                                            "--level-method, --rows and --afm-noise, or give --tip", doubt));
 }
 
 Tip of_pitch(const Tip& tip, const HeightField& image) {
@@ -128,14 +139,13 @@ TipSweep swept(const HeightField& image, const AfmNoise& noise, int size, const 
 
 void find_free_tip(PreparedAfm& prepared, const AfmPreparationOptions& o, const Watch& watch) {
   TipSweep found = swept(prepared.image, prepared.noise, o.tip_size, o, watch);
+  const std::string doubt = doubt_of_tip(found);
   SweptTip& chosen = found.curve[found.chosen];
   prepared.tip_threshold_nm = chosen.threshold_nm;
   prepared.tip = std::move(chosen.tip);
   prepared.notes.push_back(fmt::format("tip of {} x {} samples, found blindly at a threshold of {}", o.tip_size, o.tip_size,
                                        format_length(prepared.tip_threshold_nm)));
-  if (found.verdict == TipSweepVerdict::none)
-    prepared.warnings.push_back(fmt::format("no tip explains the scan: {:.1f} times what the noise leaves is left at best. "
-                                            "Check --level-method, --rows and --afm-noise, or give --tip", chosen.excess()));
+  set_doubt(prepared, doubt);
   if (found.verdict == TipSweepVerdict::disagreement)
     prepared.warnings.push_back("two ways to choose the tip's threshold disagree: look at 'semsurf tip --plot', and give "
                                 "--tip if you know it better");
@@ -155,14 +165,14 @@ void find_round_tip(PreparedAfm& prepared, const AfmPreparationOptions& o, const
                        "Give --tip, or another scan");
   std::vector<std::vector<double>> told;
   int widest = 0;
-  bool explained = false;
+  std::string doubt;   // none where the sweep of any size has none
   constexpr auto sizes = static_cast<double>(std::size(tip_sizes));
   for (std::size_t i = 0; i < std::size(tip_sizes); ++i) {
     const int size = tip_sizes[i];
     if (size > (told.empty() ? shorter : shorter / 3)) break;
     const TipSweep found = swept(image, prepared.noise, size, o, watch.part(double(i) / sizes, double(i + 1) / sizes));
     const SweptTip& chosen = found.curve[found.chosen];
-    explained = explained || found.verdict != TipSweepVerdict::none;
+    if (told.empty() || !doubt.empty()) doubt = doubt_of_sweep(found);
     widest = size;
     prepared.tip_threshold_nm = chosen.threshold_nm;
     told.push_back(round_profile_nm(chosen.tip, told_share));
@@ -173,9 +183,6 @@ void find_round_tip(PreparedAfm& prepared, const AfmPreparationOptions& o, const
     throw InvalidInput("AFM scan", fmt::format("it has {} x {} samples, too few to find a tip in", image.z_nm.width(),
                                                image.z_nm.height()), "Give --tip");
   prepared.tip_round = true;
-  if (!explained)
-    prepared.warnings.push_back("no tip explains the scan: more than noise is left at best. Check --level-method, --rows and "
-                                "--afm-noise, or give --tip");
   const double noise = told_deviations * std::sqrt(prepared.noise.variance_nm2());
   if (std::ranges::none_of(told, [&](const auto& profile) { return profile.back() < -noise; })) {
     prepared.tip = {Grid<double>(1, 1), image.pitch_x_nm, image.pitch_y_nm, 0, 0};
@@ -183,6 +190,7 @@ void find_round_tip(PreparedAfm& prepared, const AfmPreparationOptions& o, const
                                 "Give --tip if you know it");
     return;
   }
+  set_doubt(prepared, doubt);
   prepared.notes.push_back(fmt::format("round tip of {} x {} samples, from what blind ones of up to {} samples tell",
                                        prepared.tip.z_nm.width(), prepared.tip.z_nm.height(), widest));
 }
@@ -192,6 +200,8 @@ void find_tip(PreparedAfm& prepared, const AfmPreparationOptions& o) {
   if (o.tip) {
     validate(*o.tip, "--tip");
     prepared.tip = of_pitch(*o.tip, prepared.image);
+    if (!o.tip->doubt.empty())
+      prepared.warnings.push_back(fmt::format("the tip's file says that it is not to be trusted: {}", o.tip->doubt));
     prepared.tip_given = true;
   } else if (o.tip_size) {
     find_free_tip(prepared, o, watch);

@@ -175,14 +175,25 @@ MemoryThere memory_there() {
   return there;
 }
 
+namespace {
+
+/// "12", "12.3 thousand", "100 million".
+std::string in_words(double count) {
+  if (count < 1e3) return fmt::format("{:.0f}", count);
+  if (count < 1e6) return fmt::format("{:.3g} thousand", count / 1e3);
+  return fmt::format("{:.3g} million", count / 1e6);
+}
+
+}  // namespace
+
 void require_memory(const std::string& subject, const TriangleCount& count, const MemoryUse& use) {
   const auto needed = static_cast<double>(estimate_specimen(count, use).total());
   const MemoryThere there = memory_there();
   if (there.bytes == no_limit || needed <= share_to_take * static_cast<double>(there.bytes)) return;
   throw InvalidInput(
       subject,
-      fmt::format("{:.3g} million triangles need about {:.2f} GB of memory{}, and {:.2f} GB are {}",
-                  static_cast<double>(count.triangles) / 1e6, needed / 1e9,
+      fmt::format("{} triangles need about {:.2f} GB of memory{}, and {:.2f} GB are {}",
+                  in_words(static_cast<double>(count.triangles)), needed / 1e9,
                   use.processes > 1 ? fmt::format(" for {} processes", use.processes) : "",
                   static_cast<double>(there.bytes) / 1e9, there.limit),
       fmt::format("Crop the mesh or simplify it where there is more memory (semsurf mesh --tolerance){}; "

@@ -109,6 +109,8 @@ std::vector<std::string> reasons_of(const ReconstructSummary& s) {
       reasons.push_back(fmt::format("what is left of the SEM image does not look like noise ({}): check the registration, "
                                     "the model and the calibration", seen(last.sem_residual)));
   }
+  if (s.afm && !s.afm->tip.doubt.empty())
+    reasons.push_back(fmt::format("the AFM tip is not to be trusted: {}", s.afm->tip.doubt));
   if (s.pose && !s.pose->verified())
     reasons.push_back(fmt::format("the registration is {} and was accepted all the same", name(s.pose->registration->verdict)));
   return reasons;

@@ -43,6 +43,8 @@ SimulateJob complete(SimulateJob out) {
   const io::SceneFile& s = out.scene;
   for (const mc::Detector& d : s.detectors) out.options.detectors.push_back(d);
   mc::validate(out.options.detectors);
+  mc::validate(s.beam);
+  mc::validate(s.physics, s.beam.energy_ev);
   if (s.current_pa.has_value() != s.dwell_us.has_value())
     throw UsageError(s.current_pa ? "--current" : "--dwell", "the other of the two is missing",
                      "Current and dwell time together make the dose of a pixel: give both");

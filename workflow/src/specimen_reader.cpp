@@ -17,12 +17,12 @@ io::BodyReader specimen_reader(mc::NodeMemory* node, int each) {
         require_memory(path.string(), *found, {.processes = node ? node->processes() : each, .threads = 0, .shared = node != nullptr});
       bodies = io::read_mesh_bodies(path, unit_nm, names, library);
       auto all = nlohmann::json::array();
-      for (const io::MeshBody& b : bodies) all.push_back({b.name, b.file_material, b.material, b.is_default});
+      for (const io::MeshBody& b : bodies) all.push_back({b.name, b.file_material, b.material, b.is_default, b.unit_assumed});
       return all.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
     });
     if (!node || node->is_first()) return bodies;
     for (const auto& b : nlohmann::json::parse(text))
-      bodies.push_back({b[0], b[1], b[2], b[3].get<bool>(), {}});
+      bodies.push_back({b[0], b[1], b[2], b[3].get<bool>(), {}, b[4].get<bool>()});
     return bodies;
   };
 }

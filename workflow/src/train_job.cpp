@@ -13,6 +13,7 @@
 #include "surf/core/units.h"
 #include "surf/io/files.h"
 #include "surf/io/model_file.h"
+#include "surf/mc/material_doubts.h"
 #include "surf/sem/fit_filter_bank.h"
 #include "surf/workflow/version.h"
 #include "training_data.h"
@@ -31,6 +32,7 @@ int own_surfaces(const TrainJob& job, const Learner& learner) {
 void check_numbers(const TrainJob& job, int own) {
   if (!(job.pixel_nm > 0 && std::isfinite(job.pixel_nm)))
     throw UsageError("--pixel-size", "it must be above zero", "Give the model's pixel size, as 3nm");
+  mc::validate(job.physics, job.energy_ev);
   const int surfaces = own + static_cast<int>(job.inputs.size());
   if (job.held_out < 0 || (job.held_out > 0 && job.held_out >= surfaces))
     throw UsageError("--hold-out", fmt::format("{} of {} surfaces leave none to learn on", job.held_out, surfaces),
@@ -159,6 +161,8 @@ TrainSummary run(const TrainJob& job, const TrainListener& listener, Team* team)
     surfaces = gather_surfaces(job, own, listener.note);
     if (leads(team)) check_target(job, surfaces);
   });
+  if (listener.warn && leads(team))
+    for (const std::string& doubt : mc::doubts(job.material)) listener.warn(doubt);
   TrainSummary summary;
   const SimulatedImages simulated = simulate_images(job, surfaces, listener, team);
   summary.images_found = simulated.found;

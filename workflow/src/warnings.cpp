@@ -8,6 +8,8 @@
 #include <limits>
 
 #include "surf/core/units.h"
+#include "surf/mc/electron_range.h"
+#include "surf/mc/material_doubts.h"
 
 namespace surf::workflow {
 namespace {
@@ -16,6 +18,7 @@ constexpr double widest_nm = 1e9;        // a metre: no specimen chamber is wide
 constexpr double narrowest_nm = 0.1;     // an atom
 constexpr double finest_pixel_nm = 1e-3; // surfaces are no better than this
 constexpr double coarsest_nm = 1e-4;      // of coordinates: a tenth of the distance at which faces are one
+constexpr double transparent_share = 0.1;   // of the electrons' range
 constexpr double lost_fraction = 1e-6;
 
 void warn_about_bodies(const mc::Specimen& specimen, const SpecimenFacts& facts,
@@ -48,6 +51,32 @@ void warn_about_size(const Box& extent, std::vector<std::string>& out) {
   if (step > coarsest_nm)
     out.push_back(fmt::format("the specimen lies {} from the origin, where coordinates are {:.1g} nm apart; move it closer",
                               format_length(farthest), step));
+}
+
+/// A mesh in um that was read as nm is a speck that electrons pass through. Neither films nor particles on a
+/// substrate are meant, nor who named the unit.
+void warn_about_transparency(const io::SceneFile& scene, const SpecimenFacts& facts, std::vector<std::string>& out) {
+  const mc::Specimen& specimen = scene.specimen;
+  const bool on_matter = specimen.substrate || specimen.height_field ||
+                         std::ranges::any_of(facts.bodies, &mc::BodyFacts::is_sheet);
+  if (!scene.unit_assumed || on_matter) return;
+  const Vec3 size = facts.extent.size_nm();
+  const double widest = std::max({size.x, size.y, size.z});
+  const mc::Material* densest = nullptr;
+  double range = HUGE_VAL;
+  for (const mc::Body& body : specimen.bodies) {
+    const mc::Material& material = specimen.materials[static_cast<std::size_t>(body.material)];
+    const double here = mc::kanaya_okayama_range_nm(material, scene.beam.energy_ev);
+    if (here < range) densest = &material, range = here;
+  }
+  if (!densest || !(widest < transparent_share * range)) return;
+  std::string other;
+  for (const auto& [unit, factor] : {std::pair{"um", 1e3}, {"mm", 1e6}, {"m", 1e9}})
+    if (other.empty() && factor * widest >= range)
+      other = fmt::format("With --unit {} it would be {}. ", unit, format_length(factor * widest));
+  out.push_back(fmt::format("the specimen is {} wide, but electrons of {:g} eV reach about {} in {}: nearly all pass "
+                            "through it. {}Name the mesh file's unit, --unit or 'unit' in a scene file; nm if it is right",
+                            format_length(widest), scene.beam.energy_ev, format_length(range), densest->name, other));
 }
 
 void warn_about_scan(const mc::Specimen& specimen, const Box& extent, const mc::Beam& beam,
@@ -83,11 +112,14 @@ std::vector<std::string> warn_before(const SimulateJob& job, const SpecimenFacts
   std::vector<std::string> out;
   const mc::Specimen& specimen = job.scene.specimen;
   warn_about_size(facts.extent, out);
+  warn_about_transparency(job.scene, facts, out);
   warn_about_bodies(specimen, facts, out);
   warn_about_scan(specimen, facts.extent, job.scene.beam, scan, out);
   if (job.options.electrons == 1 && job.options.dose == 0)
     out.push_back("one electron per pixel has no scatter: the standard errors are 0 and mean "
                   "nothing");
+  for (const mc::Material& material : specimen.materials)
+    for (std::string& doubt : mc::doubts(material)) out.push_back(std::move(doubt));
   if (job.scene.physics.secondaries)
     for (const mc::Material& material : specimen.materials)
       if (!material.loss_join_fitted)

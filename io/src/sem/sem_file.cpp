@@ -180,17 +180,32 @@ SemFile read_sem_image(const fs::path& path, const SemReadOptions& options) {
   return out;
 }
 
-bool is_sem_image_file(const fs::path& path) {
+namespace {
+
+/// What a microscope's maker says of the image, if anything. The image itself is not read.
+std::optional<SemHeader> header_of_maker(const fs::path& path) {
   constexpr std::array extensions{".tif", ".tiff", ".png", ".jpg", ".jpeg", ".bmp"};
   std::error_code ignored;
-  if (std::find(extensions.begin(), extensions.end(), lower_extension(path)) == extensions.end()) return false;
-  if (!fs::is_regular_file(path, ignored)) return false;
+  if (std::find(extensions.begin(), extensions.end(), lower_extension(path)) == extensions.end()) return {};
+  if (!fs::is_regular_file(path, ignored)) return {};
   try {
     const std::string content = read_file(path);
-    return find_header(path, pages_of(path.string(), content), {2, 2}).has_value();
+    return find_header(path, pages_of(path.string(), content), {2, 2});
   } catch (const FileError&) {
-    return false;   // whoever reads it says why
+    return {};   // whoever reads it says why
   }
+}
+
+}  // namespace
+
+bool is_sem_image_file(const fs::path& path) { return header_of_maker(path).has_value(); }
+
+void refuse_as_heights(const fs::path& path) {
+  const auto header = header_of_maker(path);
+  if (!header) return;
+  throw InvalidInput(path.string(), fmt::format("it is an SEM image ({}), and its grey levels are no heights", header->format),
+                     "Give a scan; an SEM image's noise is found with 'semsurf noise --sem'. If it does hold heights, say "
+                     "what one grey level is with --z-unit");
 }
 
 }  // namespace surf::io

@@ -78,7 +78,7 @@ std::optional<double> number_of(const Settings& settings, const std::string& key
   const std::string text = setting(settings, key);
   const auto number = leading_number(text, rest);
   if (!number || !std::isfinite(*number * factor)) return std::nullopt;
-  return *number * factor;
+  return *number * factor + 0.0;   // no -0
 }
 
 std::optional<double> positive(std::optional<double> value) {

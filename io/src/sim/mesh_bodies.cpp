@@ -39,7 +39,7 @@ void check_meaning(const std::vector<NamedMesh>& meshes, const MaterialNames& na
 
 MeshBody with_material(NamedMesh mesh, const MaterialNames& names,
                        const MaterialLibrary& library) {
-  MeshBody body{mesh.name, mesh.material, {}, false, std::move(mesh.mesh)};
+  MeshBody body{mesh.name, mesh.material, {}, false, std::move(mesh.mesh), mesh.unit_assumed};
   const auto meaning = names.meaning.find(body.file_material);
   if (meaning != names.meaning.end()) {
     body.material = meaning->second;

@@ -144,10 +144,8 @@ void read_simulation(const TomlTable& table, SceneFile& scene) {
         scene.detectors.push_back(std::move(d));
     });
   if (const auto cutoff = table.energy_ev("cutoff")) {
-    if (!(*cutoff >= 0)) {
-      throw UsageError(table.place("cutoff"), "it is negative", "Give 0 or an energy such as 5eV");
-    }
     scene.physics.cutoff_ev = *cutoff;
+    at_place(table, "cutoff", [&] { mc::validate(scene.physics); });
   }
 }
 

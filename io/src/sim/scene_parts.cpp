@@ -11,6 +11,7 @@
 #include "surf/io/height_field_file.h"
 #include "surf/io/image_file.h"
 #include "surf/io/mesh_file.h"
+#include "surf/io/sem_file.h"
 #include "surf/io/sim/materials.h"
 #include "surf/io/sim/mesh_bodies.h"
 #include "surf/mesh/shapes.h"
@@ -258,6 +259,7 @@ HeightField SceneParts::read_field_file(const TomlTable& table) {
       return std::move(read.field);
     });
   } else {
+    if (!table.has("z_unit")) refuse_as_heights(path);
     const Image image = read_image(path);
     field = at_place(table, "channel", [&] { return to_height_field(image, channel, z_unit_nm); });
   }
@@ -305,6 +307,7 @@ std::vector<mc::Body> SceneParts::read_mesh_file(const TomlTable& table) {
                       : read.size() == 1 ? *given
                                          : fmt::format("{}, {}", *given, name),
                       std::move(part.mesh), material(part.material, table.place("material"))});
+    scene_.unit_assumed = scene_.unit_assumed || part.unit_assumed;
   }
   return bodies;
 }

@@ -68,7 +68,7 @@ Tip resampled(const Tip& tip, double pitch_x_nm, double pitch_y_nm) {
   const Extent ex = extent(w, tip.apex_x, rx), ey = extent(h, tip.apex_y, ry);
   const std::vector<Place> xs = places(ex, w, tip.apex_x, rx), ys = places(ey, h, tip.apex_y, ry);
   Tip out{Grid<double>(static_cast<int>(xs.size()), static_cast<int>(ys.size())), pitch_x_nm, pitch_y_nm,
-          ex.before, ey.before};
+          ex.before, ey.before, tip.doubt};
   constexpr double none = -std::numeric_limits<double>::infinity();
   for (std::size_t y = 0; y < ys.size(); ++y)
     for (std::size_t x = 0; x < xs.size(); ++x) {

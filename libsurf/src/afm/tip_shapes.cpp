@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "surf/core/error.h"
+#include "surf/core/units.h"
 
 namespace surf {
 namespace {
@@ -106,7 +107,7 @@ Tip parabolic_tip(double radius_nm, const TipSampling& s) {
 Tip conical_tip(double radius_nm, double half_angle_rad, const TipSampling& s) {
   check(s);
   demand(radius_nm >= 0 && std::isfinite(radius_nm), "a radius", radius_nm, "Give 0 nm or more");
-  demand(half_angle_rad > 0 && half_angle_rad < right_angle, "a half angle in radians", half_angle_rad,
+  demand(half_angle_rad > 0 && half_angle_rad < right_angle, "a half angle in degrees", half_angle_rad / degrees_to_radians,
          "Give one between 0 and 90 degrees");
   const double sine = std::sin(half_angle_rad), cosine = std::cos(half_angle_rad);
   return sample(s, [&](double x, double y) {
@@ -121,8 +122,8 @@ Tip ball_tip(double radius_nm, double stem_radius_nm, double stem_half_angle_rad
   demand(radius_nm > 0 && std::isfinite(radius_nm), "a radius", radius_nm, "Give one above 0 nm");
   demand(stem_radius_nm > 0 && stem_radius_nm < radius_nm, "a stem radius", stem_radius_nm,
          "Give one above 0 and below the ball's");
-  demand(stem_half_angle_rad >= 0 && stem_half_angle_rad < right_angle, "a stem half angle in radians",
-         stem_half_angle_rad, "Give one from 0 to below 90 degrees");
+  demand(stem_half_angle_rad >= 0 && stem_half_angle_rad < right_angle, "a stem half angle in degrees",
+         stem_half_angle_rad / degrees_to_radians, "Give one from 0 to below 90 degrees");
   const double neck = radius_nm + std::sqrt(radius_nm * radius_nm - stem_radius_nm * stem_radius_nm);
   return sample(s, [&](double x, double y) {
     const double r = std::hypot(x, y);
@@ -140,7 +141,7 @@ Tip pyramidal_tip(const PyramidShape& shape, const TipSampling& s) {
   std::vector<Slope> faces;
   for (std::size_t i = 0; i < shape.face_angles_rad.size(); ++i) {
     const double angle = shape.face_angles_rad[i];
-    demand(angle > 0 && angle < right_angle, "a face angle in radians", angle, "Give one between 0 and 90 degrees");
+    demand(angle > 0 && angle < right_angle, "a face angle in degrees", angle / degrees_to_radians, "Give one between 0 and 90 degrees");
     const double azimuth = shape.rotation_rad + 2 * std::numbers::pi * static_cast<double>(i) /
                                                     static_cast<double>(shape.face_angles_rad.size());
     faces.push_back({std::cos(azimuth) / std::tan(angle), std::sin(azimuth) / std::tan(angle)});

@@ -226,6 +226,11 @@ std::string format_length(double length_nm, int digits) {
   std::from_chars(exponent_text + (*exponent_text == '+'), rounded.data() + rounded.size(),
                   exponent);
 
+  // Far from all that is ever measured, zeros would hide the number.
+  constexpr int first_digit_of_100_km = 14, first_digit_of_a_femtometre = -6;
+  if (exponent >= first_digit_of_100_km) return fmt::format("{:.{}e} m", length_nm / 1e9, digits - 1);
+  if (exponent < first_digit_of_a_femtometre) return rounded + " nm";
+
   struct Step {
     int exponent;
     const char* unit;

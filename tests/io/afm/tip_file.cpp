@@ -46,6 +46,20 @@ TEST(TipFile, ComesBackFromEveryFormat) {
   }
 }
 
+TEST(TipFile, ADoubtStaysWithTheTip) {
+  const test::TemporaryFolder folder;
+  Tip tip = some_tip();
+  for (const char* name : {"a.gsf", "a.tif", "a.txt"}) {
+    write_tip(folder.path() / name, tip);
+    EXPECT_EQ(read_tip(folder.path() / name).doubt, "") << name;
+  }
+  tip.doubt = "its end is flat; and more";
+  for (const char* name : {"a.gsf", "a.tif", "a.txt"}) {
+    write_tip(folder.path() / name, tip);
+    EXPECT_EQ(read_tip(folder.path() / name).doubt, tip.doubt) << name;
+  }
+}
+
 HeightField field_of(const Tip& tip, double sign, double shift) {
   HeightField field;
   field.pitch_x_nm = tip.pitch_x_nm;

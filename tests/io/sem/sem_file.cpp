@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "../io_test.h"
+#include "surf/io/height_field_file.h"
 #include "surf/io/image_file.h"
 #include "tiff_maker.h"
 
@@ -71,6 +72,14 @@ TEST_F(SemFileTest, ReadsThermoFisher) {
     EXPECT_EQ(file.metadata.at("Image.ResolutionY"), "3");
     expect_upper_rows(file.image);
   }
+}
+
+TEST_F(SemFileTest, KnowsNoTiltBelowZeroThatIsZero) {
+  TiffMaker tiff = picture();
+  std::string text = fei_text;
+  text.replace(text.find("StageT=0.5"), 10, "StageT=-0.0");
+  tiff.text(34682, text);
+  EXPECT_EQ(fmt::format("{}", read(tiff).tilt_deg.value()), "0");
 }
 
 TEST_F(SemFileTest, KeepsTheDatabarWhereItIsWanted) {
@@ -190,6 +199,20 @@ TEST_F(SemFileTest, ReadsWhatHitachiRepeatsInTheImage) {
   EXPECT_DOUBLE_EQ(file.image.pitch_x_nm, 82.5);
   EXPECT_EQ(file.energy_ev, 15000);
   EXPECT_DOUBLE_EQ(file.working_distance_nm.value(), 7.9e6);
+}
+
+TEST_F(SemFileTest, IsNotTakenForHeightsUnlessSomebodySaysHowHighAGreyLevelIs) {
+  TiffMaker tiff = picture();
+  test::write(path(), tiff.file());
+  EXPECT_NO_THROW(read_height_field(path()));   // a plain picture may hold heights
+  tiff.text(34118, zeiss_text("AP_PIXEL_SIZE\r\nPixel Size = 5.825 nm\r\n"));
+  test::write(path(), tiff.file());
+  EXPECT_THAT(complaint<InvalidInput>([&] { read_height_field(path()); }),
+              testing::AllOf(HasSubstr("image.tif: it is an SEM image (Zeiss SmartSEM), and its grey levels are no heights"),
+                             HasSubstr("semsurf noise --sem"), HasSubstr("--z-unit")));
+  HeightReadOptions options;
+  options.z_unit_nm = 0.5;
+  EXPECT_EQ(read_height_field(path(), options).field.z_nm(0, 0), 24);   // 48 in the lowest row
 }
 
 TEST_F(SemFileTest, ReadsImageJAndOme) {

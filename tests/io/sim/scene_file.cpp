@@ -244,6 +244,10 @@ TEST_F(SceneFileTest, UnknownKeysAreErrorsWithASuggestion) {
               testing::AllOf(HasSubstr("line 2, column 1"),
                              HasSubstr("'energie' is not known in beam"),
                              HasSubstr("Did you mean 'energy'?")));
+  const std::string material = "[[material]]\nname = \"x\"\nformula = \"Si3N4\"\n";
+  for (const auto& [key, meant] : {std::pair{"density", "density_g_cm3"}, {"densty", "density_g_cm3"}, {"band_gap", "band_gap_ev"},
+                                   {"plasmon", "plasmon_ev"}, {"nam", "name"}})
+    EXPECT_THAT(refused<FileError>(material + key + " = 3\n"), HasSubstr(std::string("Did you mean '") + meant + "'?"));
   EXPECT_THAT(refused<FileError>("[Beam]\n"), HasSubstr("Did you mean 'beam'?"));
   EXPECT_THAT(refused<FileError>(std::string(substrate) + "[[body]]\nmaterial = \"Si\"\n"
                                  "shape = \"sphere\"\nradius = 1\ncentre = [0, 0, 0]\n"),
@@ -292,6 +296,8 @@ TEST_F(SceneFileTest, WrongValuesAreNamedWithTheirPlace) {
   expect("[simulation]\naccuracy = 2", "simulation.accuracy", "100%");
   expect("[simulation]\naccuracy_floor = 0.1", "simulation.accuracy_floor", "no accuracy");
   expect("[simulation]\nelectrons = 2.5", "simulation.electrons", "whole");
+  expect("[simulation]\ncutoff = \"-5eV\"", "simulation.cutoff", "-5 eV is outside 0.5 eV to");
+  expect("[simulation]\ncutoff = \"40keV\"", "simulation.cutoff", "40000 eV is outside 0.5 eV to");
   expect("[simulation]\nseed = -1", "simulation.seed", "negative");
   expect("[simulation]\nphysics = \"elastic=mot\"", "simulation.physics", "mot");
   const std::string field = "[height_field]\nmaterial = \"Si\"\n";

@@ -155,6 +155,20 @@ TEST(FormatLength, ChoosesTheUnit) {
   EXPECT_EQ(format_length(-0.0), "0 nm");
 }
 
+TEST(FormatLength, IsShortWhereverTheNumberLies) {
+  EXPECT_EQ(format_length(9.994e13), "99900 m");
+  EXPECT_EQ(format_length(1e14), "1.00e+05 m");
+  EXPECT_EQ(format_length(1e300), "1.00e+291 m");
+  EXPECT_EQ(format_length(-1.7976931348623157e308), "-1.80e+299 m");
+  EXPECT_EQ(format_length(1e-6), "0.00100 pm");
+  EXPECT_EQ(format_length(1e-7), "1.00e-07 nm");
+  EXPECT_EQ(format_length(-1e-300), "-1.00e-300 nm");
+  EXPECT_EQ(format_length(4.9406564584124654e-324), "4.94e-324 nm");
+  EXPECT_EQ(format_length(std::numeric_limits<double>::infinity()), "inf nm");
+  for (int exponent = -320; exponent <= 307; ++exponent)
+    EXPECT_LE(format_length(-9.99 * std::pow(10.0, exponent)).size(), 13u) << exponent;
+}
+
 TEST(FormatLength, RoundsBeforeItChooses) {
   EXPECT_EQ(format_length(999.4), "999 nm");
   EXPECT_EQ(format_length(999.6), "1.00 um");

@@ -38,8 +38,8 @@ struct HeightFieldFile {
 /// docs/methods/afm_files.md. Row 0 is the lowest; the lower-left sample lies at (0, 0) but in files of
 /// semsurf's own, which say where it lies. Missing samples are holes. A channel that is no height is
 /// read only by name and with `z_unit_nm`. What the file says goes before `z_unit_nm` and the pitch.
-/// Throws FileError, Unsupported; InvalidInput where nothing in the file is a height or fewer than 2 x 2
-/// samples are there; UsageError for an unknown channel.
+/// Throws FileError, Unsupported; InvalidInput where nothing in the file is a height, for an SEM image without
+/// `z_unit_nm` (`refuse_as_heights`), or where fewer than 2 x 2 samples are there; UsageError for an unknown channel.
 HeightFieldFile read_height_field(const std::filesystem::path& path,
                                   const HeightReadOptions& options = {});
 

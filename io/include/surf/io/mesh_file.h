@@ -15,6 +15,7 @@ struct NamedMesh {
   std::string name;       ///< of the glTF node or OBJ object, else the file's without extension
   std::string material;   ///< what the file calls its material; empty where it says nothing
   TriangleMesh mesh;
+  bool unit_assumed = false;   ///< nobody said what a 1 of the file is: it was taken for 1 nm
 };
 
 /// Reads STL (text and binary), OBJ, PLY (text and binary), OFF, glTF 2.0 (.gltf and .glb), 3MF, VTP or VTM

@@ -43,4 +43,8 @@ SemFile read_sem_image(const std::filesystem::path& path, const SemReadOptions& 
 /// Whether a microscope's maker has left its mark in the file or beside it.
 bool is_sem_image_file(const std::filesystem::path& path);
 
+/// Throws InvalidInput for such a file: its grey levels are no heights. Whoever names the length of a grey level
+/// wants heights of it all the same, and is not to be asked.
+void refuse_as_heights(const std::filesystem::path& path);
+
 }  // namespace surf::io

@@ -29,7 +29,7 @@ TipHeights to_heights(const Tip& tip, const char* subject = "tip");
 Tip read_tip(const std::filesystem::path& path);
 
 /// Writes the structuring function as heights, holes where it is -infinity; metadata "tip" is
-/// "structuring function".
+/// "structuring function", and "tip.doubt" is the tip's doubt, where it has one.
 void write_tip(const std::filesystem::path& path, const Tip& tip,
                const std::map<std::string, std::string>& metadata = {});
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <string>
+
 #include "surf/core/height_field.h"
 
 namespace surf {
@@ -14,6 +16,7 @@ struct Tip {
   double pitch_y_nm = 1;    ///< > 0
   int apex_x = 0;           ///< column of the apex: the sample at u = 0
   int apex_y = 0;           ///< row of the apex
+  std::string doubt = {};   ///< why the tip is not to be trusted, for people; empty: nothing is known against it
 };
 
 /// Throws InvalidInput (naming `subject`) if there are no samples, the apex lies outside or is not 0, a

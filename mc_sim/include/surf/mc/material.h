@@ -35,6 +35,7 @@ struct Material {
   bool loss_join_fitted = false;        ///< whether E_b was fitted to measured SE yields
   std::string sources;                  ///< where the numbers come from
   std::vector<EstimatedValue> estimates;      ///< which of the numbers are estimates, and how
+  bool taken_for_metal = false;         ///< W or U0 are estimated as a metal's, since no gap was given
 };
 
 /// Throws InvalidInput naming the material and the field.

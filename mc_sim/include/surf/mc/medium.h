@@ -20,7 +20,7 @@ struct EnergyBins {
   static constexpr int per_octave = 1 << log2_per_octave;
   static constexpr int octaves = 17;
   static constexpr int count = octaves * per_octave;
-  static constexpr double lowest_ev = 0.5;
+  static constexpr double lowest_ev = min_cutoff_ev;
 
   static int bin(double energy_ev) {
     constexpr int shift = 52 - log2_per_octave;

@@ -19,14 +19,19 @@ struct Physics {
   bool secondaries = true;
   BarrierModel barrier = BarrierModel::quantum;
 
-  /// Where tracking stops, as energy inside the material in eV. 0: at the barrier (electrons below
-  /// cannot leave), or at 50 eV where secondaries or the barrier are off.
+  /// Where tracking stops, as energy inside the material in eV, 0.5 to below the beam's energy. 0: at the
+  /// barrier (electrons below cannot leave), or at 50 eV where secondaries or the barrier are off.
   double cutoff_ev = 0;
 };
 
 inline constexpr double se_bse_split_ev = 50.0;     ///< SE below, BSE at or above (energy in vacuum)
 inline constexpr double min_beam_energy_ev = 100.0;
 inline constexpr double max_beam_energy_ev = 30000.0;
+
+inline constexpr double min_cutoff_ev = 0.5;         ///< where a Medium's tables begin
+
+/// Throws UsageError where the cutoff is out of range for a beam of this energy.
+void validate(const Physics& physics, double beam_energy_ev = max_beam_energy_ev);
 
 /// The cutoff that holds for a material: `cutoff_ev` or its default.
 double effective_cutoff_ev(const Physics& physics, const Material& material);

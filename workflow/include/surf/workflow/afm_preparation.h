@@ -41,7 +41,7 @@ struct PreparedAfm {
   double tilt_deg = 0;                ///< that was taken off
   AfmNoise noise;
   std::optional<NoiseEstimate> noise_estimate;   ///< absent: it was given
-  Tip tip;                            ///< of the image's pitch
+  Tip tip;                            ///< of the image's pitch; its doubt is that of its finding, or of its file
   bool tip_given = false;
   bool tip_round = false;             ///< it was taken as round
   double tip_threshold_nm = 0;        ///< of the blind reconstruction, else 0

@@ -20,6 +20,7 @@ struct MeshBody {
   std::string material;        ///< semsurf's
   bool is_default = false;     ///< whether the default was taken, as the file's name means nothing
   TriangleMesh mesh;
+  bool unit_assumed = false;   ///< as of NamedMesh
 };
 
 /// What the names of materials in mesh files mean.

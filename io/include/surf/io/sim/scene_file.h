@@ -30,6 +30,7 @@ struct ScanRequest {
 struct SceneFile {
   std::string title;
   mc::Specimen specimen;
+  bool unit_assumed = false;                   ///< of a mesh: neither its file nor the user said the unit
   mc::Beam beam;
   ScanRequest scan;
   mc::Physics physics;
