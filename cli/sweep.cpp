@@ -30,9 +30,9 @@ electrons, accuracy, mesh-tolerance, seed, material, pixel-size, physics, cutoff
 those of the options of the same name: a list with commas, or FROM:TO:STEP.
 
 FOLDER gets an image for each combination, named by its values, and sweep.csv with their mean
-yields. Stop when you like: the same command goes on from there. Another grid needs another folder. --part 3/16 does every 16th run
-from the third on: a job array does all parts, and 'semsurf join' makes the table. Under mpirun each
-process does whole runs, and they share large ones.
+yields. Stop when you like: the same command goes on from there. Another grid needs another folder.
+--part 3/16 does every 16th run from the third on: a job array does all parts, and 'semsurf join'
+makes the table. Under mpirun each process does whole runs, and they share large ones.
 All other options are those of 'semsurf simulate'.
 
 Examples:

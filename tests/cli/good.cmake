@@ -77,7 +77,7 @@ semsurf_cli_test(simulate.scan ARGS simulate flat.txt --height-channel Height --
   --electrons 2 --channels z_nm -o scan.exr WRITES scan.exr INFO scan.exr "z_nm")
 
 semsurf_cli_test(info.no_pixel_size ARGS info four.png
-  STDOUT "size +4 x 4 pixels; the file does not say how large they are")
+  STDOUT "size +4 x 4 pixels. the file does not say how large they are")
 semsurf_cli_test(info.all_but_the_bad EXIT 3 ARGS info cube.off nowhere.stl scan.txt
   STDOUT "12 triangles(.|\n)*4 x 4 pixels of" STDERR "nowhere.stl: there is no such file")
 
