@@ -19,15 +19,15 @@ constexpr const char* examples = R"(Examples:
   semsurf completion zsh > "${fpath[1]}/_semsurf"
   semsurf completion fish > ~/.config/fish/completions/semsurf.fish)";
 
-enum class Values { none, files, words };
-
 // One option, or the positional arguments.
 struct Argument {
   std::vector<std::string> names;   // "-o", "--output"; empty for positionals
   std::string description;
   bool takes_value = false;
-  Values values = Values::none;
-  std::string words;                // separated by spaces
+  bool files = false, folders = false;   // what is offered as its value, besides the words
+  std::string words;                     // separated by spaces
+
+  bool offers() const { return files || folders || !words.empty(); }
 };
 
 struct Command {
@@ -49,24 +49,30 @@ std::string material_names() {
   return names;
 }
 
+void add_word(const std::string& word, std::string& words) { words += (words.empty() ? "" : " ") + word; }
+
+// What is offered for a type as help shows it: "FILE.json" and "SCENE.toml" are names of files, "FOLDER|off" a folder or
+// a word, "SE|BSE|...|valid" words among others. A single name in capitals stands for something that nobody can list.
+// CLI11 adds what it checks itself: "auto|rows:{auto,rows}".
+void read_values(std::string type, Argument& a) {
+  type.resize(std::min(type.find(":{"), type.size()));
+  const bool choice = type.find('|') != std::string::npos;
+  std::istringstream parts(type);
+  for (std::string part; std::getline(parts, part, '|');) {
+    if (part == "FILE" || part.starts_with("FILE.") || part == "SCENE.toml") a.files = true;
+    else if (part == "FOLDER") a.folders = true;
+    else if (part == "MATERIAL") add_word(material_names(), a.words);
+    else if (choice && part != "...") add_word(part, a.words);
+  }
+}
+
 Argument read_argument(const CLI::Option& option) {
   Argument a;
   for (const std::string& name : option.get_snames()) a.names.push_back("-" + name);
   for (const std::string& name : option.get_lnames()) a.names.push_back("--" + name);
   a.description = first_line(option.get_description());
-  const std::string type = option.get_type_name();
   a.takes_value = option.get_items_expected_max() > 0;
-  if (type == "FILE") {
-    a.values = Values::files;
-  } else if (type == "MATERIAL") {
-    a.values = Values::words;
-    a.words = material_names();
-  } else if (type.find('|') != std::string::npos) {
-    a.values = Values::words;
-    a.words = type;
-    for (char& c : a.words)
-      if (c == '|') c = ' ';
-  }
+  read_values(option.get_type_name(), a);
   return a;
 }
 
@@ -80,8 +86,7 @@ Command read_command(const CLI::App& app) {
   }
   for (const CLI::App* sub : app.get_subcommands(nullptr)) {
     command.actions.push_back(read_command(*sub));
-    command.positional.values = Values::words;
-    command.positional.words += (command.positional.words.empty() ? "" : " ") + sub->get_name();
+    add_word(sub->get_name(), command.positional.words);
   }
   return command;
 }
@@ -94,12 +99,10 @@ std::string option_names(const Command& command) {
 }
 
 std::string bash_values(const Argument& a) {
-  switch (a.values) {
-    case Values::files: return "COMPREPLY=($(compgen -f -- \"$cur\"))";
-    case Values::words: return fmt::format("COMPREPLY=($(compgen -W \"{}\" -- \"$cur\"))", a.words);
-    case Values::none: break;
-  }
-  return ":";
+  if (!a.offers()) return ":";
+  std::string what = a.files ? " -f" : a.folders ? " -d" : "";
+  if (!a.words.empty()) what += fmt::format(" -W \"{}\"", a.words);
+  return fmt::format("COMPREPLY=($(compgen{} -- \"$cur\"))", what);
 }
 
 // What bash needs of a command, and of its own: which words lead to it, the values of its options,
@@ -163,12 +166,10 @@ std::string quoted(const std::string& text, const std::string& special) {
 }
 
 std::string zsh_values(const Argument& a) {
-  switch (a.values) {
-    case Values::files: return ":file:_files";
-    case Values::words: return fmt::format(":value:({})", a.words);
-    case Values::none: break;
-  }
-  return ":value: ";
+  const char* const names = a.files ? "_files" : a.folders ? "_files -/" : "";
+  if (!*names) return a.words.empty() ? ":value: " : fmt::format(":value:({})", a.words);
+  if (a.words.empty()) return fmt::format(":file:{}", names);
+  return fmt::format(":value:{{{}; compadd -- {}}}", names, a.words);
 }
 
 // The body of a function that completes a command's words; $words[1] is the command.
@@ -220,9 +221,11 @@ if [[ $funcstack[1] == _semsurf ]]; then _semsurf "$@"; else compdef _semsurf se
 // `seen`: a condition of fish that holds where this command has been typed.
 void add_fish(const Command& c, const std::string& seen, std::string& out) {
   const auto values = [](const Argument& a) {
-    if (a.values == Values::files) return std::string(" -F");
-    if (a.values == Values::words) return fmt::format(" -xa '{}'", a.words);
-    return std::string(a.takes_value ? " -x" : "");
+    if (a.files) return a.words.empty() ? std::string(" -F") : fmt::format(" -rFa '{}'", a.words);
+    if (!a.offers()) return std::string(a.takes_value ? " -x" : "");
+    const char* const folders = !a.folders ? "" : a.words.empty() ? "(__fish_complete_directories)"
+                                                                  : "(__fish_complete_directories) ";
+    return fmt::format(" -xa '{}{}'", folders, a.words);
   };
   const std::string here = fmt::format("complete -c semsurf -n '{}'", seen);
   for (const Argument& option : c.options) {
@@ -233,7 +236,7 @@ void add_fish(const Command& c, const std::string& seen, std::string& out) {
     out += values(option) + fmt::format(" -d '{}'\n", quoted(option.description, "\\"));
   }
   if (c.actions.empty()) {
-    if (c.positional.values != Values::none) out += here + values(c.positional) + "\n";
+    if (c.positional.offers()) out += here + values(c.positional) + "\n";
     return;
   }
   const std::string none_yet =

@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "commands.h"
+#include "failure.h"
 #include "options.h"
 #include "terminal.h"
 #include "surf/core/error.h"
@@ -100,6 +101,19 @@ void print_scene(const std::filesystem::path& path,
   }
 }
 
+// What no reader of ours knows: a scan for Gwyddion, or nothing that semsurf can use.
+void print_foreign_file(const std::filesystem::path& path) {
+  try {
+    print_height_file(path);
+  } catch (const io::UnknownScan&) {
+    if (io::has_scan_name(path)) throw;
+    throw FileError(path.string(), "it is no mesh, image or AFM scan of a format known here",
+                    "Use a mesh (STL, OBJ, PLY, OFF, glTF, 3MF, VTP, VTM), an image (EXR, TIFF, PNG, VTI) or a scan "
+                    "(.gwy, .gsf, .spm, .ibw, .sxm, text ...); with Gwyddion installed (apt-get install gwyddion) "
+                    "semsurf reads many more scans");
+  }
+}
+
 void print_info(const std::filesystem::path& path, std::optional<double> unit_nm,
                 const std::vector<std::filesystem::path>& material_files) {
   if (io::is_scene_file(path)) return print_scene(path, material_files);
@@ -107,7 +121,24 @@ void print_info(const std::filesystem::path& path, std::optional<double> unit_nm
   if (io::is_height_field_file(path)) return print_height_file(path);
   if (io::is_sem_image_file(path)) return print_sem_image(path);
   if (io::is_image_file(path)) return print_image(path);
-  print_mesh(path, unit_nm);
+  if (io::is_mesh_file(path) || io::has_mesh_content(path)) return print_mesh(path, unit_nm);
+  print_foreign_file(path);
+}
+
+// All of them, whatever is wrong with some. The code is that of the first that cannot be shown.
+int print_all(const std::vector<std::string>& files, std::optional<double> unit_nm,
+              const std::vector<std::filesystem::path>& material_files) {
+  int code = 0;
+  for (const std::string& file : files) {
+    try {
+      print_info(file, unit_nm, material_files);
+    } catch (...) {
+      flush();   // what was said before the message
+      const int failed = report_failure();
+      if (code == 0) code = failed;
+    }
+  }
+  return code;
 }
 
 }  // namespace
@@ -150,9 +181,7 @@ void add_info(CLI::App& app, Action& action) {
         throw UsageError("info", "no file is given", "Give meshes, images, AFM scans, models or scene files");
       std::optional<double> unit_nm;
       if (options->unit) unit_nm = parse_unit_nm(*options->unit, "--unit");
-      for (const std::string& file : options->files)
-        print_info(file, unit_nm, {options->materials.begin(), options->materials.end()});
-      return 0;
+      return print_all(options->files, unit_nm, {options->materials.begin(), options->materials.end()});
     };
   });
 }

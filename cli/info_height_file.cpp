@@ -46,7 +46,7 @@ void print_size(const HeightField& field) {
                                  format_length(h * field.pitch_y_nm)));
 }
 
-void print_height_channel(const std::filesystem::path& path, std::size_t number, const io::HeightChannel& channel,
+void print_height_channel(const io::HeightFile& file, std::size_t number, const io::HeightChannel& channel,
                           const std::string& label) {
   if (!channel.is_height) {
     print_item(label, fmt::format("{} x {} pixels in {}, no heights", channel.width, channel.height,
@@ -54,7 +54,7 @@ void print_height_channel(const std::filesystem::path& path, std::size_t number,
     return;
   }
   try {
-    print_item(label, describe_heights(io::read_height_field(path, {std::to_string(number), {}, {}, {}}).field));
+    print_item(label, describe_heights(file.read({std::to_string(number), {}, {}, {}}).field));
   } catch (const Error& error) {
     print_item(label, error.reason());
   }
@@ -63,8 +63,9 @@ void print_height_channel(const std::filesystem::path& path, std::size_t number,
 }  // namespace
 
 void print_height_file(const std::filesystem::path& path) {
-  const std::vector<io::HeightChannel> channels = io::height_channels(path);
-  const io::HeightFieldFile first = io::read_height_field(path);
+  const io::HeightFile file(path);
+  const std::vector<io::HeightChannel> channels = file.channels();
+  const io::HeightFieldFile first = file.read();
   print("{}: heights, {}\n", path.string(), first.format);
   print_size(first.field);
   std::vector<std::string> labels;
@@ -74,7 +75,7 @@ void print_height_file(const std::filesystem::path& path) {
     width = std::max(width, labels.back().size());
   }
   for (std::size_t i = 0; i < channels.size(); ++i)
-    print_height_channel(path, i + 1, channels[i], fmt::format("{:<{}}", labels[i], width));
+    print_height_channel(file, i + 1, channels[i], fmt::format("{:<{}}", labels[i], width));
   for (const std::string& note : first.notes) print_item("note", note);
   if (first.metadata.empty()) return;
   print("  what it says of itself\n");

@@ -3,11 +3,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <tuple>
 
 #include "info.h"
+#include "surf/core/error.h"
 #include "surf/core/units.h"
 #include "surf/io/image_file.h"
 #include "surf/io/mesh_file.h"
+#include "surf/io/sem_file.h"
 #include "surf/io/surface_file.h"
 #include "surf/mesh/check_mesh.h"
 #include "surf/mesh/open_sheet.h"
@@ -96,6 +100,21 @@ void print_how_made(const std::map<std::string, std::string>& metadata) {
   for (const auto& [key, value] : metadata) print("    {:<{}}  {}\n", key, longest, value);
 }
 
+struct DescribedPixel {
+  double x_nm, y_nm;
+  std::string from;
+};
+
+/// What ImageJ or OME-TIFF wrote of a picture's pixels.
+std::optional<DescribedPixel> described_pixel(const std::filesystem::path& path) {
+  try {
+    const io::SemFile file = io::read_sem_image(path);
+    return DescribedPixel{file.image.pitch_x_nm, file.image.pitch_y_nm, file.pixel_from};
+  } catch (const Error&) {
+    return std::nullopt;   // there is nothing, or the picture is in colour
+  }
+}
+
 /// What a mesh file says besides its triangles.
 void print_attributes(const SurfaceScene& scene) {
   for (const Surface& surface : scene.surfaces) {
@@ -142,18 +161,23 @@ void print_image(const std::filesystem::path& path) {
   const io::ImageLevel read = io::read_image_within(path, most_pixels);
   const Image& image = read.image;
   const double scale = std::ldexp(1.0, read.level);
-  const double pitch_x_nm = image.pitch_x_nm / scale, pitch_y_nm = image.pitch_y_nm / scale;
+  double pitch_x_nm = image.pitch_x_nm / scale, pitch_y_nm = image.pitch_y_nm / scale;
+  const bool placed = io::states_pixel_size(image);
+  const std::optional<DescribedPixel> described = placed ? std::nullopt : described_pixel(path);
+  if (described) std::tie(pitch_x_nm, pitch_y_nm) = std::pair(described->x_nm, described->y_nm);
   print("{}: image\n", path.string());
-  print_item("size", fmt::format("{} x {} pixels of {} x {}, {} x {}", read.whole.width, read.whole.height,
-                                 format_length(pitch_x_nm), format_length(pitch_y_nm),
-                                 format_length(read.whole.width * pitch_x_nm),
-                                 format_length(read.whole.height * pitch_y_nm)));
+  const std::string pixels = fmt::format("{} x {} pixels", read.whole.width, read.whole.height);
+  print_item("size", !placed && !described ? pixels + "; the file does not say how large they are"
+                             : fmt::format("{} of {} x {}, {} x {}", pixels, format_length(pitch_x_nm),
+                                           format_length(pitch_y_nm), format_length(read.whole.width * pitch_x_nm),
+                                           format_length(read.whole.height * pitch_y_nm)));
+  if (described) print_item("from", described->from);
   if (read.levels > 1)
     print_item("pyramid", fmt::format("{} sizes{}", read.levels,
                                       read.level == 0 ? ""
                                                       : fmt::format("; values below are of {} x {} means", image.width(),
                                                                     image.height())));
-  if (read.level == 0)
+  if (read.level == 0 && placed)
     print_item("origin", fmt::format("lower-left pixel's centre at {}, {} nm", format_exact(image.origin_x_nm),
                                      format_exact(image.origin_y_nm)));
   std::size_t label_width = 0;

@@ -17,6 +17,7 @@
 #include "surf/core/error.h"
 #include "surf/core/units.h"
 #include "surf/io/image_file.h"
+#include "surf/workflow/afm_preparation.h"
 #include "terminal.h"
 
 namespace surf::cli {
@@ -47,7 +48,7 @@ struct Options {
 
 struct Plan {
   HoughOptions hough;
-  int degree = 2;
+  int degree = workflow::AfmPreparationOptions{}.degree;
   std::optional<RowMethod> rows;
 };
 

@@ -89,7 +89,7 @@ LibraryRequest read_library_options(const LibraryOptions& o) {
   LibraryRequest request;
   if (o.materials.empty())
     throw UsageError("library", "no material is given", "Name one or several, as Si Au");
-  request.energies_ev = parse_energies_ev(o.energy.value_or("1keV"));
+  request.energies_ev = o.energy ? parse_energies_ev(*o.energy) : std::vector{mc::Beam{}.energy_ev};
   request.cascades = number_of_cascades(o);
   request.threads = parse_threads(o.threads);
   request.cache = io::cache_folder(o.cache.value_or(""));

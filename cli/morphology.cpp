@@ -71,7 +71,7 @@ int work(const Command& command, const Options& o) {
   if (!o.output) throw UsageError("--output", "no output file is given", "Add -o surface.gsf");
   io::check_height_field_target(*o.output);
   MorphologyOptions options;
-  options.upsample = o.upsample ? static_cast<int>(parse_whole(*o.upsample, "--upsample", 1, 32)) : 1;
+  if (o.upsample) options.upsample = static_cast<int>(parse_whole(*o.upsample, "--upsample", 1, 32));
   options.threads = parse_threads(o.threads);
   const double distance = parse_distance(o.distance);
   if (!o.tip) throw UsageError("--tip", "no tip is given", "Add --tip tip.gsf");

@@ -174,6 +174,7 @@ void add_reconstruct_options(CLI::App& app, ReconstructOptions& o) {
       ->type_name("FILE.json")->group(pose);
   app.add_flag("--accept-registration", o.accept_registration, "Go on where the registration is not verified")->group(pose);
   const char* optimiser = "Reconstruction";
+  const ReconstructionOptions usual;
   app.add_option("--method", o.method, "How the surface is searched for (gauss-newton)")
       ->type_name("gauss-newton|conjugate-gradients|lbfgs")->group(optimiser);
   app.add_option("--scales", o.scales, "Standard deviations of the Gaussians that the surface is a sum of,\n"
@@ -185,7 +186,8 @@ void add_reconstruct_options(CLI::App& app, ReconstructOptions& o) {
   app.add_option("--prior", o.prior, "Expected second derivative of the surface where no image says\n"
                                      "anything, 1/nm (0.001, more on rough ground)")
       ->type_name("NUMBER")->group(optimiser);
-  app.add_option("--upsample", o.upsample, "Samples of the dilation in each of the scan's pixels, 1 to 8 (3)")
+  app.add_option("--upsample", o.upsample, fmt::format("Samples of the dilation in each of the scan's pixels, 1 to 8 ({})",
+                                                 workflow::ReconstructJob{}.upsample))
       ->type_name("N")->group(optimiser);
   app.add_flag("--fixed-transform", o.fixed_transform, "The map is not fitted further with the surface")->group(optimiser);
   app.add_flag("--fixed-calibration", o.fixed_calibration, "Nor are gains and offset")->group(optimiser);
@@ -193,8 +195,8 @@ void add_reconstruct_options(CLI::App& app, ReconstructOptions& o) {
   app.add_flag("--refine-tip", o.refine_tip, "The tip is fitted with the surface, even the one of --tip")->group(optimiser);
   app.add_flag("--no-uncertainty", o.no_uncertainty, "Without standard deviations of the heights, which take a while")
       ->group(optimiser);
-  app.add_option("--probes", o.probes, "Random vectors that the uncertainty is estimated from (16)")->type_name("N")->group(optimiser);
-  app.add_option("--seed", o.chain.seed, "Of these, and of the noise that tips are judged by (1)")->type_name("N")->group(optimiser);
+  app.add_option("--probes", o.probes, fmt::format("Random vectors that the uncertainty is estimated from ({})", usual.probes))->type_name("N")->group(optimiser);
+  app.add_option("--seed", o.chain.seed, fmt::format("Of these, and of the noise that tips are judged by ({})", usual.seed))->type_name("N")->group(optimiser);
   const char* output = "Output";
   app.add_option("-o,--output", o.output, "Folder for all results; it is made")->type_name("FOLDER")->group(output);
   app.add_option("--truth", o.truth, "Heights in the SEM's frame, to compare the result with")->type_name("FILE")->group(output);

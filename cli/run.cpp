@@ -7,12 +7,13 @@
 #include <cctype>
 #include <cstring>
 #include <memory>
-#include <new>
+#include <regex>
 #include <sstream>
 #include <string>
 #include <vector>
 
 #include "commands.h"
+#include "failure.h"
 #include "joined_team.h"
 #include "options.h"
 #include "run.h"
@@ -27,7 +28,6 @@ using namespace surf::cli;
 
 constexpr int exit_usage = 2;
 constexpr int exit_unusable = 3;
-constexpr int exit_interrupted = 130;
 
 constexpr const char* examples = R"(Examples:
   semsurf simulate cube.stl --material Si --substrate Si --tilt 40 -o cube.exr -o cube.png
@@ -116,6 +116,18 @@ int report_extra(const CLI::App& root) {
   return exit_usage;
 }
 
+// "--energy: At Most 1 required but received 2", in CLI11's words.
+bool report_repetition(const CLI::ParseError& error) {
+  if (!dynamic_cast<const CLI::ArgumentMismatch*>(&error)) return false;
+  static const std::regex words("(-.+): At Most 1 required but received (\\d+)");
+  const std::string text = error.what();
+  std::smatch found;
+  if (!std::regex_match(text, found, words)) return false;
+  const std::string times = found[2] == "2" ? "twice" : found[2].str() + " times";
+  print_error(fmt::format("{}: it is given {}. Give it once", found[1].str(), times));
+  return true;
+}
+
 int report_parse_error(const CLI::App& root, const CLI::ParseError& error) {
   if (error.get_exit_code() == 0) {   // help and version
     std::ostringstream text, unused;
@@ -125,6 +137,7 @@ int report_parse_error(const CLI::App& root, const CLI::ParseError& error) {
   }
   if (dynamic_cast<const CLI::ExtrasError*>(&error)) return report_extra(root);
   const CLI::App& app = parsed_app(root);
+  if (report_repetition(error)) return exit_usage;
   print_error(fmt::format("{}. {}", error.what(), help_hint(app)));
   return exit_usage;
 }
@@ -132,18 +145,9 @@ int report_parse_error(const CLI::App& root, const CLI::ParseError& error) {
 int act(const Action& action) {
   try {
     return action();
-  } catch (const UsageError& error) {
-    print_error(error.what());
-    return exit_usage;
-  } catch (const Interrupted&) {
-    print_note("stopped; nothing was written");
-    return exit_interrupted;
-  } catch (const std::bad_alloc&) {
-    print_error("memory: there is not enough for this. Use fewer pixels or a smaller mesh");
-  } catch (const std::exception& error) {
-    print_error(error.what());
+  } catch (...) {
+    return report_failure();
   }
-  return exit_unusable;
 }
 
 // These do their work together with others; anything else is done by the leader alone.

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <fmt/format.h>
+#include <unistd.h>
 
+#include <chrono>
 #include <memory>
 #include <optional>
 
@@ -20,7 +22,8 @@ constexpr int exit_interrupted = 130;
 constexpr const char* examples =
     R"(A scan by a dull tip and an SEM image of a surface that is known at every place, with noise, tilt and an
 unknown map between the two: something to reconstruct, and to judge a reconstruction by. Files whose
-names have "truth" in them hold what it has to find out.
+names have "truth" in them hold what it has to find out. The SEM image takes minutes. Stop when you like:
+the same command goes on from there.
 
 Examples:
   semsurf sample --list
@@ -57,6 +60,47 @@ workflow::SampleJob make_job(const Options& o) {
 
 void print_line(const std::string& label, const std::string& text) { print("{:<10} {}\n", label, text); }
 
+void print_work(const workflow::SampleJob& job) {
+  print_note(fmt::format("simulating {} x {} pixels of {} primaries, {} in all, with cascades from a library of {}",
+                         job.width, job.height, job.electrons,
+                         format_count(double(job.electrons) * job.width * job.height), job.cascades));
+}
+
+/// Where there is no bar to show it: one line, as soon as the speed is known.
+class TimeLeft {
+ public:
+  TimeLeft(bool wanted, const char* what) : wanted_(wanted), what_(what) {}
+
+  void tell(double done, double total) {
+    const auto now = Clock::now();
+    if (!began_) {
+      began_ = now;
+      done_at_start_ = done;   // a resumed job begins in the middle
+      return;
+    }
+    const double seconds = std::chrono::duration<double>(now - *began_).count();
+    if (!wanted_ || seconds < enough_seconds || done <= done_at_start_) return;
+    wanted_ = false;
+    print_note(fmt::format("{:.0f} % of {} is done, about {} left", 100 * done / total, what_,
+                           format_duration(seconds * (total - done) / (done - done_at_start_))));
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  static constexpr double enough_seconds = 3;
+  bool wanted_;
+  const char* what_;
+  std::optional<Clock::time_point> began_;
+  double done_at_start_ = 0;
+};
+
+std::string why_stopped(const workflow::SampleJob& job, const workflow::SampleSummary& s) {
+  if (!s.checkpoint.empty())
+    return fmt::format("stopped; what is done is kept in {}; the same command goes on from there", s.checkpoint.string());
+  if (job.cache.empty()) return "stopped; nothing was written";
+  return "stopped before a part of the image was done; cascades that are made stay in the cache";
+}
+
 int sample(const Options& o) {
   if (o.list) return list_samples();
   const workflow::SampleJob job = make_job(o);
@@ -64,16 +108,31 @@ int sample(const Options& o) {
   {
     InterruptGuard interrupts;
     ProgressBar bar(!o.quiet);
+    const bool told = !o.quiet && !isatty(fileno(messages()));
+    TimeLeft left(told, "the SEM image"), library_left(told, "the library");
+    if (!o.quiet) print_work(job);
     s = workflow::run(
-        job, [&](double done, double total) { bar.show(done, total); }, interrupts.token(),
-        [&](double done, double total) { bar.show(done, total, "cascades"); },
+        job,
+        [&](double done, double total) {
+          bar.show(done, total);
+          left.tell(done, total);
+        },
+        interrupts.token(),
+        [&](double done, double total) {
+          bar.show(done, total, "cascades");
+          library_left.tell(done, total);
+        },
         [&](const std::string& note) {
           bar.clear();
           if (!o.quiet) print_note(note);
+        },
+        [&](const std::string& warning) {
+          bar.clear();
+          print_warning(warning);
         });
   }
   if (!s.complete) {
-    print_note("stopped; nothing was written");
+    print_note(why_stopped(job, s));
     return exit_interrupted;
   }
   if (o.quiet) return 0;
@@ -98,10 +157,12 @@ void add_sample(CLI::App& app, Action& action) {
   sub->add_flag("--list", o->list, "Say what there is");
   sub->add_option("-o,--output", o->folder, "Where the files go")->type_name("FOLDER");
   const char* making = "Making";
-  sub->add_option("--electrons", o->electrons, "Primaries per pixel of the SEM image (200)")->type_name("N")->group(making);
-  sub->add_option("--size", o->size, "Pixels of the SEM image, the middle of the view (456x172)")
+  const workflow::SampleJob usual;
+  sub->add_option("--electrons", o->electrons, fmt::format("Primaries per pixel of the SEM image ({})", usual.electrons))->type_name("N")->group(making);
+  sub->add_option("--size", o->size, fmt::format("Pixels of the SEM image, the middle of the view ({}x{})", usual.width,
+                                                usual.height))
       ->type_name("WxH")->group(making);
-  sub->add_option("--seed", o->seed, "Of all chance (1)")->type_name("N")->group(making);
+  sub->add_option("--seed", o->seed, fmt::format("Of all chance ({})", usual.seed))->type_name("N")->group(making);
   sub->add_option("--cache", o->cache, "Where libraries of cascades are kept, 'off' for nowhere\n"
                                        "($SEMSURF_CACHE, ~/.cache/semsurf)")
       ->type_name("FOLDER|off")->group(making);

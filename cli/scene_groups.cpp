@@ -7,8 +7,8 @@ namespace surf::cli {
 
 void add_specimen_options(CLI::App& app, SceneOptions& o) {
   app.add_option("INPUT", o.inputs,
-                 "Meshes (STL, OBJ, PLY, OFF, glTF, VTP), a height field (EXR, TIFF,\n"
-                 "PNG, VTI) or one scene file (TOML)")
+                 "Meshes (STL, OBJ, PLY, OFF, glTF, 3MF, VTP, VTM), a height field (an AFM\n"
+                 "scan, EXR, TIFF, PNG, VTI) or one scene file (TOML)")
       ->type_name("FILE");
   const char* group = "Specimen";
   app.add_option("--material", o.material, "What meshes and height field are made of (Si)")

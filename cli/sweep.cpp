@@ -30,15 +30,15 @@ electrons, accuracy, mesh-tolerance, seed, material, pixel-size, physics, cutoff
 those of the options of the same name: a list with commas, or FROM:TO:STEP.
 
 FOLDER gets an image for each combination, named by its values, and sweep.csv with their mean
-yields. Stop when you like: the same command goes on from there. --part 3/16 does every 16th run
-from the third on: a job array does all parts, and 'semsurf join' makes the table. Under mpirun each
-process does whole runs, and they share large ones.
+yields. Stop when you like: the same command goes on from there. Another grid needs another folder.
+--part 3/16 does every 16th run from the third on: a job array does all parts, and 'semsurf join'
+makes the table. Under mpirun each process does whole runs, and they share large ones.
 All other options are those of 'semsurf simulate'.
 
 Examples:
   semsurf sweep samples/mesa80.toml --vary energy=500eV,1keV,2keV --vary tilt=0deg:60deg:5deg -o mesa
   semsurf sweep samples/flat.toml --vary tilt=0:80:10 --accuracy 2% -o yields
-  semsurf sweep samples/mesa80.toml --vary seed=1:16:1 --part 3/16 -o mesa; semsurf join mesa
+  semsurf sweep samples/mesa80.toml --vary seed=1:16:1 --part 3/16 -o seeds; semsurf join seeds
   mpirun -n 4 semsurf sweep samples/mesa80.toml --vary tilt=0deg:60deg:5deg -o mesa)";
 
 struct Options {

@@ -114,7 +114,7 @@ Plan make_plan(const Options& o) {
                      "this answer finds its own", "Leave it out, or --answer");
   if (o.sweep && p.answer != Answer::sweep)
     throw UsageError("--sweep", "this answer does not sweep", "Leave out one of the two");
-  const auto size = parse_whole(o.size.value_or("21"), "--size", 1, 1001);
+  const auto size = parse_whole(o.size.value_or(std::to_string(BlindTipOptions{}.width)), "--size", 1, 1001);
   if (size % 2 == 0)
     throw UsageError("--size", fmt::format("{} samples have no middle for the apex", size),
                      fmt::format("Ask for {}", size + 1));
@@ -256,7 +256,7 @@ std::map<std::string, std::string> made_by(const Options& o, const Plan& p, cons
 int by_shape(const Options& o) {
   if (!o.input.file.empty())
     throw UsageError("--shape", "it takes no scan", "Leave out one of the two");
-  const Tip tip = parse_tip_shape(*o.shape, o.size.value_or("41"), o.input.pixel_size);
+  const Tip tip = parse_tip_shape(*o.shape, o.size.value_or(std::to_string(CharacterizerOptions{}.width)), o.input.pixel_size);
   io::write_tip(*o.output, tip, provenance_of("tip", {{"shape", *o.shape}}, {}));
   if (o.plot) io::write_plot(*o.plot, tip_plot(tip));
   if (o.quiet) return 0;

@@ -2,6 +2,7 @@
 #include "train_model_options.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <utility>
@@ -9,6 +10,7 @@
 #include "options.h"
 #include "surf/core/error.h"
 #include "surf/core/units.h"
+#include "surf/sem/fit_facet_network.h"
 
 namespace surf::cli {
 namespace {
@@ -88,6 +90,7 @@ std::string kinds_in_words() {
 
 void add_train_model_options(CLI::App& app, TrainOptions& o) {
   const char* model = "Model";
+  const FacetNetworkFitOptions usual;
   app.add_option("--model", o.model, "Its kind, of those below (facet-network)")
       ->type_name("KIND")
       ->group(model);
@@ -95,15 +98,16 @@ void add_train_model_options(CLI::App& app, TrainOptions& o) {
                  "Of a filter bank or network: samples across its neighbourhoods, as\n"
                  "5,7,11 (all ten; of a network those that the electrons' range covers)")
       ->type_name("N,N...")->group(model);
-  app.add_option("--hidden", o.hidden, "Of a network: units of its hidden layers, as 24,12; 0: no layer (32)")
+  app.add_option("--hidden", o.hidden, fmt::format("Of a network: units of its hidden layers, as 24,12; 0: no layer ({})",
+                                             fmt::join(usual.hidden, ",")))
       ->type_name("N,N...")->group(model);
-  app.add_option("--iterations", o.iterations, "Of a network's training, at most (1200)")
+  app.add_option("--iterations", o.iterations, fmt::format("Of a network's training, at most ({})", usual.iterations))
       ->type_name("N")
       ->group(model);
-  app.add_option("--decay", o.decay, "Of a network: how strongly large weights are held back (1e-4)")
+  app.add_option("--decay", o.decay, fmt::format("Of a network: how strongly large weights are held back ({:g})", usual.decay))
       ->type_name("NUMBER")->group(model);
   app.add_option("--tolerance", o.tolerance,
-                 "Of a network: what it is expected to miss by besides noise (3%)")
+                 fmt::format("Of a network: what it is expected to miss by besides noise ({:g}%)", 100 * usual.tolerance))
       ->type_name("SHARE")
       ->group(model);
   app.add_option("--cut-off", o.cut_off, "Of a filter bank: components of a smaller eigenvalue are left out")

@@ -18,6 +18,7 @@
 #include "surf/io/image_file.h"
 #include "surf/io/model_file.h"
 #include "surf/io/sim/materials.h"
+#include "surf/workflow/stored_model.h"
 #include "terminal.h"
 #include "train_model_options.h"
 
@@ -90,7 +91,8 @@ void add_budget(const TrainOptions& o, workflow::TrainJob& job) {
   if (o.electrons && o.accuracy)
     throw UsageError("--electrons", "with --accuracy there are two ways to say how much is simulated",
                      "Leave out one of the two");
-  job.simulation.electrons = o.electrons ? parse_whole(*o.electrons, "--electrons", 1, std::int64_t{1} << 31) : 150;
+  job.simulation.electrons = o.electrons ? parse_whole(*o.electrons, "--electrons", 1, std::int64_t{1} << 31)
+                                         : workflow::ModelRequest{}.electrons;
   if (o.accuracy) {
     job.simulation.accuracy = parse_share(*o.accuracy, "--accuracy");
     job.simulation.method = mc::Method::replay;

@@ -95,8 +95,7 @@ class GltfBuilder {
     Object metadata;
     for (const auto& [key, value] : scene_.metadata) {
       check_plain_text(key, "a name in the metadata", file_);
-      check_plain_text(value, fmt::format("the metadata '{}'", key), file_);
-      metadata[key] = Value(value);
+      metadata[key] = Value(as_plain_text(value));
     }
     Object own{{gltf_unit_key, Value(std::string("nm"))},
                {gltf_magnification_key, Value(magnification.factor)},
@@ -209,7 +208,6 @@ class GltfBuilder {
 
   void add(const Surface& surface) {
     const std::string owner = fmt::format("the surface '{}'", surface.name);
-    check_plain_text(surface.name, "the name of a surface", file_);
     const Box box = bounds(surface.mesh);
     const Vec3 center = center_of(box, owner);
     box_nm_.extend(box);
@@ -225,7 +223,7 @@ class GltfBuilder {
       std::string attribute = attribute_name(scalar);
       while (primitive.attributes.count(attribute) > 0) attribute += "_";
       primitive.attributes[attribute] = add_floats(scalar.values, TINYGLTF_TYPE_SCALAR, 1);
-      scalars.push_back(Value(Object{{"attribute", Value(attribute)}, {"name", Value(scalar.name)},
+      scalars.push_back(Value(Object{{"attribute", Value(attribute)}, {"name", Value(as_plain_text(scalar.name))},
                                      {"unit", Value(scalar.unit)}}));
     }
     if (!scalars.empty()) extras[gltf_scalars_key] = Value(scalars);
@@ -234,7 +232,7 @@ class GltfBuilder {
                                                  3 * surface.mesh.triangles.size());
     primitive.indices = add_indices(corners, surface.mesh.vertices_nm.size());
     primitive.material = surface.drape ? add_draped_material(*surface.drape) : add_plain_material();
-    add_node(surface.name, center, primitive, extras);
+    add_node(as_plain_text(surface.name), center, primitive, extras);
   }
 
   static Vec3 scaled(const Vec3& p, double factor, double exaggeration) {
@@ -286,7 +284,7 @@ class GltfBuilder {
 
   int add_draped_material(const Drape& drape) {
     tinygltf::Image image;
-    image.name = drape.name;
+    image.name = as_plain_text(drape.name);
     std::string png = format_grey_png(file_, drape.grey);
     if (is_glb_) {
       image.bufferView = add_view(bytes_.add(png));
@@ -315,8 +313,7 @@ class GltfBuilder {
   }
 
   Value drape_extras(const Drape& drape) const {
-    check_plain_text(drape.name, "the name of a draped picture", file_);
-    return Value(Object{{"name", Value(drape.name)},
+    return Value(Object{{"name", Value(as_plain_text(drape.name))},
                         {"pitch_x_nm", Value(drape.pitch_x_nm)},
                         {"pitch_y_nm", Value(drape.pitch_y_nm)},
                         {"origin_x_nm", Value(drape.origin_x_nm)},

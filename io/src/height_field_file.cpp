@@ -118,11 +118,20 @@ void set_heights(const std::string& file, const ScanChannel& channel, double uni
 
 }  // namespace
 
-HeightFieldFile read_height_field(const std::filesystem::path& path, const HeightReadOptions& options) {
-  const std::string file = path.string();
-  if (!options.z_unit_nm) refuse_as_heights(path);
-  const ScanFile opened = open_scan(path);
-  const Scan& scan = opened.scan;
+struct HeightFile::Content {
+  std::string file;
+  ScanFile opened;
+};
+
+HeightFile::HeightFile(const std::filesystem::path& path)
+    : content_(std::make_unique<const Content>(Content{path.string(), open_scan(path)})) {}
+HeightFile::~HeightFile() = default;
+HeightFile::HeightFile(HeightFile&&) noexcept = default;
+HeightFile& HeightFile::operator=(HeightFile&&) noexcept = default;
+
+HeightFieldFile HeightFile::read(const HeightReadOptions& options) const {
+  const std::string& file = content_->file;
+  const Scan& scan = content_->opened.scan;
   const ScanChannel& channel = choose(file, scan, options.channel);
   HeightFieldFile result{{}, channel.name, scan.format, scan.metadata, scan.notes};
   for (const auto& [key, value] : channel.metadata) result.metadata.emplace(key, value);
@@ -138,13 +147,19 @@ HeightFieldFile read_height_field(const std::filesystem::path& path, const Heigh
   return result;
 }
 
-std::vector<HeightChannel> height_channels(const std::filesystem::path& path) {
-  const ScanFile opened = open_scan(path);
+std::vector<HeightChannel> HeightFile::channels() const {
   std::vector<HeightChannel> channels;
-  for (const ScanChannel& c : opened.scan.channels)
+  for (const ScanChannel& c : content_->opened.scan.channels)
     channels.push_back({c.name, c.z_unit, c.width, c.height, holds_heights(c)});
   return channels;
 }
+
+HeightFieldFile read_height_field(const std::filesystem::path& path, const HeightReadOptions& options) {
+  if (!options.z_unit_nm) refuse_as_heights(path);
+  return HeightFile(path).read(options);
+}
+
+std::vector<HeightChannel> height_channels(const std::filesystem::path& path) { return HeightFile(path).channels(); }
 
 bool is_height_field_file(const std::filesystem::path& path) { return is_scan_file(path); }
 

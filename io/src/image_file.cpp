@@ -178,6 +178,10 @@ Image read_image(const std::filesystem::path& path, int level) {
   return image;
 }
 
+bool states_pixel_size(const Image& image) {
+  return image.pitch_x_nm != 1 || image.pitch_y_nm != 1 || !image.metadata.empty() || image.find("z_nm");
+}
+
 ImageLevel read_image_within(const std::filesystem::path& path, std::int64_t most_pixels) {
   ImageLevel out;
   if (readable_format_of(path) != Format::vti) {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <system_error>
 #include <fstream>
 #include <string_view>
 #include <utility>
@@ -96,6 +97,11 @@ bool is_mesh_file(const std::filesystem::path& path) {
   static constexpr std::array<std::string_view, 9> known{".stl", ".obj", ".ply", ".off", ".glb",
                                                          ".gltf", ".3mf", ".vtp", ".vtm"};
   return std::find(known.begin(), known.end(), lower_extension(path)) != known.end();
+}
+
+bool has_mesh_content(const std::filesystem::path& path) {
+  std::error_code ignored;
+  return std::filesystem::is_regular_file(path, ignored) && mesh_format_of({}, read_file(path)) != MeshFormat::unknown;
 }
 
 }  // namespace surf::io

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "plain_text.h"
 
+#include <algorithm>
 #include <cstdint>
 
 #include "surf/core/error.h"
@@ -39,6 +40,17 @@ bool is_plain_text(std::string_view text) {
     text.remove_prefix(bytes);
   }
   return true;
+}
+
+std::string as_plain_text(std::string_view text) {
+  std::string plain;
+  while (!text.empty()) {
+    const std::size_t bytes = character_bytes(text);
+    if (bytes == 0) plain += "\xEF\xBF\xBD";
+    else plain += text.substr(0, bytes);
+    text.remove_prefix(std::max<std::size_t>(bytes, 1));
+  }
+  return plain;
 }
 
 void check_plain_text(std::string_view text, const std::string& what, const std::string& file) {

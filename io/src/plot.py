@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Draws the plot that stands on standard input as JSON. Arguments: file, format (png or svg).
+"""Draws the plot that stands on standard input as JSON. Arguments: file, format (png or svg), and for tests a file
+that tells what texts cover.
 
 Exits with 3 if there is no Matplotlib. plot.cpp writes the JSON and has checked what is in it.
 """
@@ -14,6 +15,7 @@ try:
     import numpy as np
     from matplotlib import colors as mpl_colors
     from matplotlib import ticker
+    from matplotlib.text import Text
 except ImportError as error:
     print(error, file=sys.stderr)
     sys.exit(3)
@@ -152,19 +154,34 @@ def prepare_axis(axes, axis, settings, which, pictured):
         axis.grid(True, which="major", color="#e4e4e4", linewidth=0.8)
 
 
-def points_on(axes, panel):
-    """Places in pixels that hold data, a row each: the points, and places on lines between them."""
+def along(ends, step):
+    """The ends of a line, a row each, and places between them, no farther apart than `step`."""
+    places = [ends]
+    for start, end in zip(ends, ends[1:]):
+        length = np.hypot(*(end - start))
+        if np.isfinite(length) and length > step:
+            share = np.arange(1, int(length / step) + 1)[:, None] * step / length
+            places.append(start + share * (end - start))
+    return np.concatenate(places)
+
+
+def occupied_on(axes, panel):
+    """Places in pixels that texts should leave free, a row each: points, lines, error bars, references."""
     places = [np.empty((0, 2))]
+    step = axes.figure.dpi * 3 / 72
     for series in panel["series"]:
         x, y = np.array(series["x"]), np.array(series["y"])
         if len(x) > len(y):
             x, y = np.repeat(x, 2)[1:-1], np.repeat(y, 2)
         elif series["y_error"]:
-            places.append(axes.transData.transform(np.stack([x, y + series["y_error"]], axis=1)))
+            for sign in (-1, 1):
+                places.append(axes.transData.transform(np.stack([x, y + sign * np.array(series["y_error"])], axis=1)))
         ends = axes.transData.transform(np.stack([x, y], axis=1))
-        places.append(ends)
-        if series["style"] != "points":
-            places += [ends[:-1] + np.diff(ends, axis=0) * i / 12 for i in range(1, 12)]
+        places.append(ends if series["style"] == "points" else along(ends, step))
+    for line in panel["references"]:
+        at = [(line["at"], t) if line["vertical"] else (t, line["at"]) for t in (0, 1)]
+        transform = axes.get_xaxis_transform() if line["vertical"] else axes.get_yaxis_transform()
+        places.append(along(transform.transform(at), step))
     return np.concatenate(places)
 
 
@@ -173,34 +190,60 @@ def cost(box, places, boxes, room):
     covered = ((places >= box.min) & (places <= box.max)).all(axis=1).sum()
     overlapped = sum(box.overlaps(other) for other in boxes)
     outside = not (room.x0 <= box.x0 and box.x1 <= room.x1 and room.y0 <= box.y0 and box.y1 <= room.y1)
-    return covered + 10 * overlapped + 40 * outside
+    return int(covered + 10 * overlapped + 40 * outside)
 
 
-def draw_notes(axes, panel, places, renderer):
-    """Each beside its point, on the side where it covers least. Returns texts and their boxes."""
-    texts, boxes = [], []
-    room = axes.figure.dpi * 3 / 72   # for a marker's half
-    sides = [(h, v) for reach in (6, 12, 20)
-             for h, v in ((reach, reach), (-reach, reach), (reach, -reach), (-reach, -reach),
-                          (0, 1.3 * reach), (0, -1.3 * reach), (1.3 * reach, 0), (-1.3 * reach, 0))]
+def clearance(axes):
+    """Around a text, in pixels."""
+    return axes.figure.dpi * 3 / 72
+
+
+def box_of(note, renderer):
+    """Of the words alone, without the line to their place."""
+    note.update_positions(renderer)
+    return Text.get_window_extent(note, renderer)
+
+
+NEAR = 6   # points; a text farther from its place is joined to it by a line
+REACHES = (NEAR, 12, 20, 32, 48, 68)
+
+
+def sides_of(reach):
+    ways = [(1, 1), (-1, 1), (1, -1), (-1, -1), (0, 1.3), (0, -1.3), (1.3, 0), (-1.3, 0)]
+    if reach > NEAR:
+        ways += [(2, 1), (-2, 1), (2, -1), (-2, -1), (1, 2), (-1, 2), (1, -2), (-1, -2)]
+    return [(reach * h, reach * v) for h, v in ways]
+
+
+def draw_notes(axes, panel, places, boxes, renderer):
+    """Each beside its point, as near as it covers nothing. Returns texts and their boxes; `boxes` are taken."""
+    texts, taken = [], list(boxes)
+    room = axes.bbox.padded(-1)   # off the axes' lines
     for note in panel["notes"]:
-        tried = []
-        for h, v in sides:
-            text = axes.annotate(plain(note["text"]), (note["x"], note["y"]), (h, v),
-                                 textcoords="offset points", fontsize=9, zorder=6,
-                                 ha="left" if h > 0 else "right" if h < 0 else "center",
-                                 va="bottom" if v > 0 else "top" if v < 0 else "center")
-            box = text.get_window_extent(renderer)
-            tried.append((cost(box.padded(room), places, boxes, axes.bbox), text, box))
-            if tried[-1][0] == 0:
+        best = None
+        for reach in REACHES:
+            for h, v in sides_of(reach):
+                joined = {"arrowstyle": "-", "color": "#777777", "linewidth": 0.7, "shrinkA": 1, "shrinkB": 4}
+                text = axes.annotate(plain(note["text"]), (note["x"], note["y"]), (h, v),
+                                     textcoords="offset points", fontsize=9, zorder=6,
+                                     ha="left" if h > 0 else "right" if h < 0 else "center",
+                                     va="bottom" if v > 0 else "top" if v < 0 else "center",
+                                     arrowprops=joined if reach > NEAR else None)
+                box = box_of(text, renderer)
+                tried = (cost(box.padded(clearance(axes)), places, taken, room), text, box)
+                if best and best[0] <= tried[0]:
+                    text.remove()
+                    continue
+                if best:
+                    best[1].remove()
+                best = tried
+                if best[0] == 0:
+                    break
+            if best[0] == 0:
                 break
-        best = min(tried, key=lambda one: one[0])
-        for one in tried:
-            if one is not best:
-                one[1].remove()
         texts.append(best[1])
-        boxes.append(best[2])
-    return texts, boxes
+        taken.append(best[2])
+    return texts, taken[len(boxes):]
 
 
 def make_legend(axes, named, **place):
@@ -213,14 +256,25 @@ def make_legend(axes, named, **place):
     return legend
 
 
-def fits_inside(axes, named, places, boxes, renderer):
-    """Whether a legend was drawn where it covers nothing."""
-    for place in ("upper right", "upper left", "lower right", "lower left", "center right",
-                  "center left", "upper center", "lower center"):
-        box = make_legend(axes, named, loc=place).get_window_extent(renderer)
-        if cost(box.padded(axes.figure.dpi * 3 / 72), places, boxes, axes.bbox.padded(1)) == 0:
-            return True
-    return False
+LEGEND_PLACES = ("upper right", "upper left", "lower right", "lower left", "center right",
+                 "center left", "upper center", "lower center")
+
+
+def legend_inside(axes, named, places, boxes, renderer):
+    """The legend where it covers least, and how much that is."""
+    def try_at(place):
+        legend = make_legend(axes, named, loc=place)
+        box = legend.get_window_extent(renderer)
+        return legend, cost(box.padded(clearance(axes)), places, boxes, axes.bbox.padded(1))
+
+    tried = []
+    for place in LEGEND_PLACES:
+        legend, covers = try_at(place)
+        tried.append((covers, place))
+        if covers == 0:
+            return legend, 0
+    covers, place = min(tried, key=lambda one: one[0])
+    return try_at(place)
 
 
 def make_room_above(axes):
@@ -229,27 +283,60 @@ def make_room_above(axes):
     axes.set_ylim(*scale.inverted().transform([low, high + 0.12 * (high - low)]))
 
 
-def place_texts(axes, panel, named, renderer):
-    """Notes and legend. Where the legend would cover something, the y axis grows if it may.
+class PanelTexts:
+    """Notes and legend of a panel."""
 
-    Returns whether all stayed as the layout has settled it.
-    """
-    named = [(handle, name) for handle, name in named if name] if panel["legend"] else []
-    attempts = 1 if panel["y"]["range"] else 5
-    for attempt in range(attempts):
-        places = points_on(axes, panel)
-        notes, boxes = draw_notes(axes, panel, places, renderer)
-        if not named or fits_inside(axes, named, places, boxes, renderer):
-            return attempt == 0
-        if attempt + 1 < attempts:
-            for note in notes:
-                note.remove()
-            make_room_above(axes)
-    make_legend(axes, named, loc="upper left", bbox_to_anchor=(1.0, 1.0))
-    return False
+    def __init__(self, axes, panel, named):
+        self.axes, self.panel = axes, panel
+        self.named = [(handle, name) for handle, name in named if name] if panel["legend"] else []
+        self.notes, self.boxes, self.legend = [], [], None
+        self.beside = False
+
+    def place(self, renderer):
+        """Where the legend would cover something, the y axis grows if it may; else the legend goes beside the
+        panel, which the layout then has to make room for. Returns whether the layout stays as it is."""
+        attempts = 1 if self.panel["y"]["range"] else 5
+        for attempt in range(attempts):
+            places = self.put_notes([], renderer)
+            if not self.named:
+                return True
+            self.legend, covers = legend_inside(self.axes, self.named, places, self.boxes, renderer)
+            if covers == 0:
+                return attempt == 0
+            if attempt + 1 < attempts:
+                make_room_above(self.axes)
+        self.beside = True
+        self.legend = make_legend(self.axes, self.named, loc="upper left", bbox_to_anchor=(1.0, 1.0))
+        return False
+
+    def place_again(self, renderer):
+        """In a layout that has changed, and changes no more."""
+        places = self.put_notes([], renderer)
+        if self.legend and not self.beside:
+            self.legend, _ = legend_inside(self.axes, self.named, places, self.boxes, renderer)
+
+    def put_notes(self, boxes, renderer):
+        for note in self.notes:
+            note.remove()
+        places = occupied_on(self.axes, self.panel)
+        self.notes, self.boxes = draw_notes(self.axes, self.panel, places, boxes, renderer)
+        return places
+
+    def report(self, renderer):
+        """What each text covers in the end, for tests: 0 is nothing."""
+        places, out = occupied_on(self.axes, self.panel), []
+        legend = [self.legend.get_window_extent(renderer)] if self.legend else []
+        boxes = [box_of(note, renderer) for note in self.notes]
+        for i, box in enumerate(boxes):
+            others = boxes[:i] + boxes[i + 1:] + legend
+            out.append({"text": self.panel["notes"][i]["text"], "covers": cost(box, places, others, self.axes.bbox)})
+        for box in legend:
+            room = box if self.beside else self.axes.bbox.padded(1)
+            out.append({"text": "legend", "covers": cost(box, places, boxes, room)})
+        return out
 
 
-def draw(plot, path, kind):
+def draw(plot, path, kind, report=None):
     matplotlib.rcdefaults()
     matplotlib.rcParams.update(STYLE)
     rows, columns = plot["rows"], plot["columns"]
@@ -283,12 +370,20 @@ def draw(plot, path, kind):
         panels.append((axes, panel, named))
     figure.draw_without_rendering()   # settles the layout, in which texts are then placed
     renderer = figure.canvas.get_renderer()
-    settled = [place_texts(axes, panel, named, renderer) for axes, panel, named in panels]
-    if all(settled):
-        figure.set_layout_engine("none")   # laying out takes as long as drawing
+    texts = [PanelTexts(axes, panel, named) for axes, panel, named in panels]
+    settled = [one.place(renderer) for one in texts]
+    if not all(settled):
+        figure.draw_without_rendering()
+    figure.set_layout_engine("none")   # laying out takes as long as drawing
+    if not all(settled):
+        for one in texts:
+            one.place_again(renderer)
+    if report:
+        with open(report, "w", encoding="utf-8") as file:
+            json.dump([line for one in texts for line in one.report(renderer)], file)
     # Nothing of the clock or the version in the file.
     metadata = {"Date": None, "Creator": "semsurf"} if kind == "svg" else {"Software": None}
     figure.savefig(path, format=kind, metadata=metadata)
 
 
-draw(json.load(sys.stdin), sys.argv[1], sys.argv[2])
+draw(json.load(sys.stdin), *sys.argv[1:4])

@@ -77,11 +77,10 @@ class ThreeMfBuilder {
     nlohmann::json metadata = nlohmann::json::object();
     for (const auto& [key, value] : scene_.metadata) {
       check_plain_text(key, "a name in the metadata", file_);
-      check_plain_text(value, fmt::format("the metadata '{}'", key), file_);
-      metadata[key] = value;
+      metadata[key] = as_plain_text(value);
     }
     const auto version = scene_.metadata.find("semsurf.version");
-    add_metadata("Application", version == scene_.metadata.end() ? "semsurf" : "semsurf " + version->second);
+    add_metadata("Application", version == scene_.metadata.end() ? "semsurf" : "semsurf " + as_plain_text(version->second));
     const std::string factor = format_exact(magnification_.factor);
     const std::string exaggeration = format_exact(magnification_.z_exaggeration);
     add_metadata("Description", fmt::format("{} times as large as the specimen, heights {} times more", factor,
@@ -101,11 +100,10 @@ class ThreeMfBuilder {
   }
 
   void add_object(std::size_t id, const Surface& surface, const Vec3& center) {
-    check_plain_text(surface.name, "the name of a surface", file_);
     // An open sheet is a surface; a model is a body (4.1).
     const char* const type = check_mesh(surface.mesh).closed_and_oriented ? "model" : "surface";
     text_ += fmt::format("<object id=\"{}\" type=\"{}\" name=\"{}\">\n<mesh>\n<vertices>\n", id, type,
-                         xml_escaped(surface.name));
+                         xml_escaped(as_plain_text(surface.name)));
     for (const Vec3& v : surface.mesh.vertices_nm) {
       const Vec3 p = in_units(v - center);
       const auto x = static_cast<float>(p.x), y = static_cast<float>(p.y), z = static_cast<float>(p.z);

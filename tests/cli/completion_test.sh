@@ -11,7 +11,7 @@ expect() {
   shift
   COMP_WORDS=(semsurf "$@")
   COMP_CWORD=$#
-  _semsurf
+  _semsurf || true   # nothing to offer
   if [[ "${COMPREPLY[*]-}" != "$wanted" ]]; then
     printf '%s -> "%s", not "%s"\n' "$*" "${COMPREPLY[*]-}" "$wanted"
     status=1
@@ -34,4 +34,21 @@ expect "list build plot remove" library ""
 expect "--physics" library build Si --ph
 expect "Si SiO2" library build Si
 expect "--damaged --dry-run" library remove --d
+
+# Names of files and folders.
+folder=$(mktemp -d)
+trap 'rm -r "$folder"' EXIT
+mkdir "$folder/kept"
+touch "$folder/known.json"
+expect "$folder/known.json" predict heights.gsf --model "$folder/kn"
+expect "$folder/known.json" register a.gwy b.tif --landmarks "$folder/kn"
+expect "$folder/known.json" reconstruct --calibration "$folder/kn"
+expect "$folder/known.json" reconstruct --transform "$folder/kn"
+expect "$folder/known.json" mesh cube.stl --tracks "$folder/kn"
+expect "$folder/kept" sample pads -o "$folder/k"
+expect "$folder/kept" simulate --cache "$folder/k"
+expect "off" simulate --cache of
+expect "SE SE.stderr" simulate --channel SE
+expect "" simulate --channel ..
+expect "tiles" simulate --layout t
 exit $status

@@ -6,6 +6,7 @@ semsurf_cli_test(version ARGS --version STDOUT "semsurf ${PROJECT_VERSION}" "Emb
 semsurf_cli_test(help ARGS --help STDOUT "simulate" "info" "materials" "completion" "Examples:")
 semsurf_cli_test(help.simulate ARGS simulate --help
   STDOUT "Specimen:" "Beam:" "Scan:" "Simulation:" "Output:" "bare lengths are nm" "Examples:")
+semsurf_cli_test(help.simulate_inputs ARGS simulate --help STDOUT "3MF, VTP, VTM.*\n.*scan, EXR.*scene file")
 semsurf_cli_test(help.info ARGS info --help STDOUT "Examples:")
 semsurf_cli_test(help.materials ARGS materials --help STDOUT "Examples:")
 foreach(action list build plot remove)
@@ -82,6 +83,11 @@ semsurf_cli_test(info.scan ARGS info scan.txt
   STDOUT "heights, text matrix" "4 x 4 pixels of 10.0 nm x 15.0 nm" "1 Height +0 to 2, mean 0.4.* nm, 1 hole")
 semsurf_cli_test(simulate.scan ARGS simulate flat.txt --height-channel Height --material Si --size 4x4
   --electrons 2 --channels z_nm -o scan.exr WRITES scan.exr INFO scan.exr "z_nm")
+
+semsurf_cli_test(info.no_pixel_size ARGS info four.png
+  STDOUT "size +4 x 4 pixels. the file does not say how large they are")
+semsurf_cli_test(info.all_but_the_bad EXIT 3 ARGS info cube.off nowhere.stl scan.txt
+  STDOUT "12 triangles(.|\n)*4 x 4 pixels of" STDERR "nowhere.stl: there is no such file")
 
 semsurf_cli_test(info.gltf ARGS info two.gltf
   STDOUT "mesh of 2 bodies" "base, material Au, 12 triangles, 40.* wide, 40.* deep, 20.* high"

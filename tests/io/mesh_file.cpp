@@ -214,5 +214,12 @@ TEST(MeshFile, KnowsItsExtensions) {
   }
 }
 
+TEST(MeshFile, KnowsItsContentUnderAnyName) {
+  const TemporaryFolder folder;
+  EXPECT_TRUE(has_mesh_content(write(folder.path() / "part.bin", test::binary_stl(test::letter_f_triangles()))));
+  EXPECT_FALSE(has_mesh_content(write(folder.path() / "part.stl", "nothing of the kind")));
+  EXPECT_FALSE(has_mesh_content(folder.path() / "missing"));
+}
+
 }  // namespace
 }  // namespace surf::io

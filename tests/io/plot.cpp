@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "surf/io/plot.h"
 
+#include <cmath>
+#include <cstdlib>
+#include <nlohmann/json.hpp>
 #include <regex>
 
 #include "environment.h"
@@ -171,6 +174,51 @@ TEST_F(PlotFile, LegendsCoverNoPoints) {
     plot.panels[0].y.range = PlotAxis::Range{-1, 30};
     EXPECT_EQ(covered(svg_of(plot)), 0) << "free corner " << free << ", a range that stays";
   }
+}
+
+/// As a chart of time against error: four falling lines close together, a reference across them, named points, and a
+/// legend that finds no room inside.
+PlotPanel crowded_panel(bool legend) {
+  PlotPanel panel;
+  panel.x = {"time (s)", true, {}};
+  for (int line = 0; line < 4; ++line) {
+    PlotSeries series;
+    series.name = "method " + std::to_string(line) + " with a long name, to an accuracy";
+    series.style = PlotStyle::line_points;
+    for (int i = 0; i < 6; ++i) {
+      series.x.push_back(std::pow(10, -1 + 0.4 * i - 0.2 * line));
+      series.y.push_back(60 / std::sqrt(series.x.back() * (1 + line)));
+    }
+    panel.series.push_back(series);
+  }
+  panel.y = {"rms error (%)", true, PlotAxis::Range{9, 340}};
+  panel.references = {{PlotDirection::horizontal, 22, "noise of the reference"}};
+  panel.notes = {{"the scene's default", panel.series[1].x[2], panel.series[1].y[2]}};
+  for (const int i : {1, 3, 5})
+    panel.notes.push_back({"--accuracy " + std::to_string(i) + " %", panel.series[2].x[static_cast<std::size_t>(i)],
+                           panel.series[2].y[static_cast<std::size_t>(i)]});
+  panel.legend = legend;
+  return panel;
+}
+
+TEST_F(PlotFile, TextsCoverNothing) {
+  const char* const python = std::getenv("SEMSURF_PYTHON");
+  const auto report = folder.path() / "report.json";
+  const std::string interpreter = python && *python                            ? python
+                                  : std::filesystem::exists("/usr/bin/python3") ? "/usr/bin/python3"
+                                                                                : "python3";   // as plot.cpp looks for it
+  const auto script = test::write(folder.path() / "python",
+                                  "#!/bin/sh\nexec " + interpreter + " \"$@\" '" + report.string() + "'\n");
+  std::filesystem::permissions(script, std::filesystem::perms::owner_all);
+  const std::string name = script.string();
+  const test::Environment environment{{"SEMSURF_PYTHON", name.c_str()}};
+  Plot plot = plot_of({crowded_panel(false), crowded_panel(true), crowded_panel(false), crowded_panel(false)});
+  plot.columns = 2;
+  plot.width_px = 1800;
+  write_plot(folder.path() / "plot.svg", plot);
+  const auto told = nlohmann::json::parse(content_of(report));
+  ASSERT_EQ(told.size(), 4 * 4 + 1u);   // all notes, and the legend
+  for (const auto& text : told) EXPECT_EQ(text["covers"], 0) << text["text"];
 }
 
 }  // namespace

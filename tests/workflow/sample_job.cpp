@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "surf/workflow/sample_job.h"
 
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -118,6 +118,53 @@ TEST(SampleJob, LeavesNothingWhenCancelledOrRefused) {
   EXPECT_THROW(run(job), UsageError);
   EXPECT_THROW(run(small("island", folder.path())), UsageError);
   EXPECT_TRUE(fs::is_empty(folder.path()));
+}
+
+TEST(SampleJob, GoesOnWhereItWasStopped) {
+  const test::TemporaryFolder whole, stopped;
+  SampleJob job = small("pads", whole.path());
+  job.width = 72, job.height = 64;   // several units of work
+  job.threads = 1;
+  ASSERT_TRUE(run(job).complete);
+
+  job.folder = stopped.path();
+  CancelToken cancel;
+  const SampleSummary first = run(job, [&](double, double) { cancel.cancel(); }, &cancel);
+  EXPECT_FALSE(first.complete);
+  EXPECT_TRUE(first.written.empty());
+  ASSERT_TRUE(fs::exists(first.checkpoint));
+  EXPECT_EQ(first.checkpoint.parent_path(), stopped.path());
+
+  SampleJob other = job;   // neither takes the work of the first nor touches it
+  other.seed = 2;
+  CancelToken at_once;
+  at_once.cancel();
+  EXPECT_TRUE(run(other, {}, &at_once).checkpoint.empty());
+  ASSERT_TRUE(fs::exists(first.checkpoint));
+
+  std::vector<std::string> notes;
+  double begun_at = 0;
+  const auto progress = [&](double done, double) { begun_at = begun_at > 0 ? begun_at : done; };
+  job.threads = 2;
+  const SampleSummary second =
+      run(job, progress, nullptr, {}, [&](const std::string& note) { notes.push_back(note); });
+  ASSERT_TRUE(second.complete);
+  EXPECT_THAT(notes, testing::Contains(testing::HasSubstr("resuming")));
+  EXPECT_GT(begun_at, 1024 * job.electrons);   // more than its first unit
+  EXPECT_FALSE(fs::exists(first.checkpoint));
+  for (const char* name : {"afm.gsf", "sem.tif", "truth.gsf", "truth_tip.gsf", "truth_sem.exr", "truth.json"})
+    EXPECT_EQ(bytes_of(whole.path() / name), bytes_of(stopped.path() / name)) << name;
+}
+
+TEST(SampleJob, KeepsTheSimulationWhereItsFilesCannotBeWritten) {
+  const test::TemporaryFolder folder;
+  SampleJob job = small("pads", folder.path());
+  const auto block = [&](double, double) { fs::create_directories(folder.path() / "truth.gsf" / "in the way"); };
+  std::vector<std::string> notes;
+  EXPECT_THROW(run(job, block, nullptr, {}, [&](const std::string& note) { notes.push_back(note); }), FileError);
+  EXPECT_THAT(notes, testing::ElementsAre(testing::HasSubstr("the same command goes on from there")));
+  fs::remove_all(folder.path() / "truth.gsf");
+  EXPECT_TRUE(run(job).complete);
 }
 
 }  // namespace

@@ -5,9 +5,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <numbers>
 
+#include "checkpoint.h"
+#include "job_identity.h"
 #include "job_libraries.h"
 #include "surf/afm/morphology.h"
 #include "surf/afm/tip_shapes.h"
@@ -233,6 +236,56 @@ std::map<std::string, std::string> provenance_of(const SampleJob& job) {
           {"seed", std::to_string(job.seed)}};
 }
 
+/// All that the simulated image depends on, and the program that makes it.
+Identity identity_of(const SampleJob& job, const mc::SimulationOptions& options) {
+  return {{"command", "sample"},
+          {"sample", job.name},
+          {"width", std::to_string(job.width)},
+          {"height", std::to_string(job.height)},
+          {"electrons", std::to_string(job.electrons)},
+          {"cascades", std::to_string(job.cascades)},
+          {"seed", std::to_string(job.seed)},
+          {"tile_pixels", std::to_string(options.tile_pixels)},
+          {"instruction set", instruction_set()},
+          {"ray tracer", mc::ray_tracer_version()},
+          {"program", program_hash()}};
+}
+
+std::unique_ptr<Checkpoint> make_checkpoint(const SampleJob& job, const mc::SimulationOptions& options,
+                                            const NoteCallback& note, const WarningCallback& warn) {
+  if (!job.checkpoint.wanted) return nullptr;
+  const auto say = [](const std::string&) {};
+  return std::make_unique<Checkpoint>(job.checkpoint, job.folder / "sem.tif", identity_of(job, options),
+                                      note ? note : say, warn ? warn : say);
+}
+
+/// All but the simulation, from its result.
+void write_all(const SampleJob& job, const SampleScene& scene, const SampleSurface& surface, const AfmFrame& frame,
+               const Image& yields, const CancelToken* cancel, std::vector<fs::path>& written) {
+  HeightField truth = empty_field(job.width, job.height, scene.sem_pixel_nm, 0, 0);
+  sample_heights(surface, sem_to_surface(job, scene), truth, job.threads);
+  Watch watch;
+  watch.cancel = cancel;
+  const double depth_nm = depth_of(job, scene, surface, frame);
+  HeightField scan = dilated(job, scene, surface, frame, depth_nm, watch);
+  const auto number = static_cast<std::uint64_t>(&scene - sample_scenes().data());
+  add_noise_and_tilt(scene, job.seed + number, scan);
+
+  const auto path = [&](const char* name) {
+    written.push_back(job.folder / name);
+    return written.back();
+  };
+  const auto made = provenance_of(job);
+  io::write_height_field(path("afm.gsf"), scan, made);
+  Image sem = signal_of(scene, yields);
+  sem.metadata["beam.energy_ev"] = format_exact(scene.energy_ev);   // a microscope knows it
+  io::write_image(path("sem.tif"), sem);
+  io::write_height_field(path("truth.gsf"), truth, made);
+  io::write_tip(path("truth_tip.gsf"), tip_of(scene, scene.afm_pitch_nm, depth_nm), made);
+  io::write_image(path("truth_sem.exr"), yields);
+  io::write_text(path("truth.json"), truth_of(job, scene, frame).dump(2) + "\n");
+}
+
 }  // namespace
 
 const std::vector<SampleScene>& sample_scenes() {
@@ -266,7 +319,7 @@ const std::vector<SampleScene>& sample_scenes() {
 }
 
 SampleSummary run(const SampleJob& job, const ProgressCallback& progress, const CancelToken* cancel,
-                  const LibraryCallback& libraries, const NoteCallback& note) {
+                  const LibraryCallback& libraries, const NoteCallback& note, const WarningCallback& warn) {
   const SampleScene& scene = find_scene(job.name);
   const SampleSurface& surface = find_sample_surface(job.name);
   check(job);
@@ -284,37 +337,37 @@ SampleSummary run(const SampleJob& job, const ProgressCallback& progress, const 
   JobLibraries kept(job.cache, libraries, note);
   LargeLibraries source(kept, job.cascades);
   const mc::Scene monte_carlo = monte_carlo_scene(job, scene, surface);
-  const mc::SimulationResult result = mc::simulate(monte_carlo, options, progress, cancel, {}, nullptr, &source);
-  if (!result.complete) {
+  const std::unique_ptr<Checkpoint> checkpoint = make_checkpoint(job, options, note, warn);
+  const auto show = [&](double done, double total) {
+    if (checkpoint) checkpoint->expect(total);
+    if (progress) progress(done, total);
+  };
+  const auto keep = [&] {
     summary.complete = false;
+    if (checkpoint && checkpoint->keep()) summary.checkpoint = checkpoint->path();
+  };
+  const mc::SimulationResult result =
+      mc::simulate(monte_carlo, options, show, cancel, {}, checkpoint.get(), &source);
+  if (!result.complete) {
+    keep();
     return summary;
   }
   summary.seconds = result.seconds;
   Image yields = mc::make_image(result, monte_carlo.scan());
   yields.metadata = provenance_of(job);
-
-  HeightField truth = empty_field(job.width, job.height, scene.sem_pixel_nm, 0, 0);
-  sample_heights(surface, sem_to_surface(job, scene), truth, job.threads);
-  Watch watch;
-  watch.cancel = cancel;
-  const double depth_nm = depth_of(job, scene, surface, frame);
-  HeightField scan = dilated(job, scene, surface, frame, depth_nm, watch);
-  const auto number = static_cast<std::uint64_t>(&scene - sample_scenes().data());
-  add_noise_and_tilt(scene, job.seed + number, scan);
-
-  const auto path = [&](const char* name) {
-    summary.written.push_back(job.folder / name);
-    return summary.written.back();
-  };
-  const auto made = provenance_of(job);
-  io::write_height_field(path("afm.gsf"), scan, made);
-  Image sem = signal_of(scene, yields);
-  sem.metadata["beam.energy_ev"] = format_exact(scene.energy_ev);   // a microscope knows it
-  io::write_image(path("sem.tif"), sem);
-  io::write_height_field(path("truth.gsf"), truth, made);
-  io::write_tip(path("truth_tip.gsf"), tip_of(scene, scene.afm_pitch_nm, depth_nm), made);
-  io::write_image(path("truth_sem.exr"), yields);
-  io::write_text(path("truth.json"), truth_of(job, scene, frame).dump(2) + "\n");
+  try {
+    write_all(job, scene, surface, frame, yields, cancel, summary.written);
+  } catch (const Interrupted&) {
+    keep();
+    summary.written.clear();
+    return summary;
+  } catch (const Error&) {
+    keep();   // a full disk should not take the work as well
+    if (note && !summary.checkpoint.empty())
+      note(fmt::format("what is done is kept in {}; the same command goes on from there", summary.checkpoint.string()));
+    throw;
+  }
+  if (checkpoint) checkpoint->finish();
   return summary;
 }
 

@@ -59,6 +59,20 @@ std::optional<Json> read_record(const fs::path& path) {
   }
 }
 
+// Its table, records and images would be replaced without a word.
+void refuse_another_sweep(const SweepJob& job, const std::string& sweep) {
+  std::error_code ignored;
+  for (const auto& entry : fs::directory_iterator(job.folder / "records", ignored)) {
+    const auto record = read_record(entry.path());
+    if (!record || !record->contains("sweep") || (*record)["sweep"] == sweep) continue;
+    std::string what;
+    if (record->contains("axes") && record->contains("of"))
+      what = fmt::format(": {} runs over {}", (*record)["of"].dump(), fmt::join((*record)["axes"].get<std::vector<std::string>>(), ", "));
+    throw InvalidInput(job.folder.string(), "it holds a sweep over another grid" + what,
+                       "Name another folder with -o, or remove this folder first");
+  }
+}
+
 bool is_done(const fs::path& folder, std::size_t number, const SweepRun& what, const std::string& sweep) {
   const auto record = read_record(record_path(folder, number));
   if (!record || record->value("sweep", "") != sweep) return false;
@@ -144,7 +158,9 @@ SweepSummary run(const SweepJob& job, const SweepListener& listener, Team* team)
   summary.table = job.folder / (job.parts == 1 ? std::string("sweep.csv")
                                                : fmt::format("sweep.{}-of-{}.csv", job.part, job.parts));
   together(team, [&] {
-    if (leads(team)) io::check_writable(summary.table);
+    if (!leads(team)) return;
+    io::check_writable(summary.table);
+    refuse_another_sweep(job, sweep);
   });
   std::vector<std::size_t> mine;
   for (std::size_t i = static_cast<std::size_t>(job.part) - 1; i < job.runs.size(); i += static_cast<std::size_t>(job.parts))

@@ -11,6 +11,7 @@
 #include "../run_program.h"
 #include "surf/core/error.h"
 #include "surf/io/files.h"
+#include "surf/io/height_field_file.h"
 
 namespace surf::io {
 namespace {
@@ -49,7 +50,7 @@ std::optional<std::string> convert_by_gwyddion(const fs::path& path) {
   if (!end.started || end.code == 127) return std::nullopt;
   std::error_code error;
   if (end.code != 0 || !fs::is_regular_file(result, error)) {
-    throw FileError(path.string(), "neither semsurf nor Gwyddion, which was asked too, can read it",
+    throw UnknownScan(path.string(), "neither semsurf nor Gwyddion, which was asked too, can read it as a scan",
                     "Export the scan as .gwy, .gsf or text");
   }
   return read_file(result);

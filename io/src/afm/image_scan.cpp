@@ -45,8 +45,7 @@ Scan parse_image_scan(const std::filesystem::path& path) {
   scan.metadata = image->metadata;
   scan.origin_x_nm = image->origin_x_nm;
   scan.origin_y_nm = image->origin_y_nm;
-  const bool placed = image->pitch_x_nm != 1 || image->pitch_y_nm != 1 || !image->metadata.empty() ||
-                      image->find("z_nm");
+  const bool placed = states_pixel_size(*image);
   const Channel* const valid = image->find("valid");
   for (const Channel& channel : image->channels) {
     if (&channel == valid && image->channels.size() > 1) continue;

@@ -12,6 +12,7 @@
 #include "scan_formats.h"
 #include "surf/core/error.h"
 #include "surf/io/files.h"
+#include "surf/io/height_field_file.h"
 #include "surf/io/image_file.h"
 #include "tiff_tags.h"
 
@@ -44,7 +45,7 @@ bool is_text_name(const std::filesystem::path& path) {
 }
 
 [[noreturn]] void fail_unknown(const std::string& file) {
-  throw FileError(file, "neither its content nor its name is that of a scan format known here",
+  throw UnknownScan(file, "its content is not that of a scan that semsurf reads by itself",
                   "Install Gwyddion (apt-get install gwyddion), through which semsurf reads 139 formats "
                   "more, or export the scan as .gwy, .gsf or text");
 }
@@ -85,6 +86,16 @@ ScanFile open_scan(const std::filesystem::path& path) {
     fail_unknown(file);
   }
   return opened;
+}
+
+bool has_scan_name(const std::filesystem::path& path) {
+  // As the instruments' programs name them; .raw, .dat, .data, .img, .top and the like are everybody's.
+  static constexpr std::array names{
+      ".gwy", ".gsf",          ".spm",       ".afm",         ".ibw",    ".ardf",     ".nid", ".nhf", ".ezd",
+      ".sxm", ".stp",          ".wsxm",      ".mdt",         ".mi",     ".asd",      ".aris", ".sdf", ".x3p",
+      ".jpk", ".jpk-qi-image", ".jpk-force", ".jpk-qi-data", ".h5-jpk", ".hdf5-jpk", ".opd",  ".opdx", ".plux", ".bcrf"};
+  const std::string extension = lower_extension(path);
+  return std::find(names.begin(), names.end(), extension) != names.end();
 }
 
 bool is_scan_file(const std::filesystem::path& path) {

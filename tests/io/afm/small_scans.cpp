@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Small files of every format, made by hand: 3 x 4 samples that count up in the order of the file.
 #include "../io_test.h"
+#include "environment.h"
 #include "surf/io/height_field_file.h"
 
 namespace surf::io {
@@ -73,6 +74,48 @@ TEST(SmallScans, OtherFormatsComeThroughGwyddion) {
   EXPECT_NEAR(read.field.pitch_y_nm, 3000, 1e-6);
   EXPECT_NEAR(read.field.z_nm(0, 3), 0, 1e-9);
   EXPECT_NEAR(read.field.z_nm(2, 0), 11, 1e-9);
+}
+
+/// A program of that name in a folder of its own, which is all of the search path but /bin and /usr/bin.
+class FakeGwyddion : public testing::Test {
+ protected:
+  void install(const std::string& script) {
+    const auto file = test::write(folder_.path() / "gwyddion", "#!/bin/sh\n" + script);
+    std::filesystem::permissions(file, std::filesystem::perms::owner_all);
+  }
+  std::filesystem::path scan(const std::string& name) { return test::write(folder_.path() / name, "?\x01 no mark"); }
+
+  const test::TemporaryFolder folder_;
+  const std::string path_ = folder_.path().string() + ":/bin:/usr/bin";
+  const test::Environment environment_{{"PATH", path_.c_str()}};
+};
+
+TEST_F(FakeGwyddion, IsAskedOnceForAllChannels) {
+  const std::string counted = (folder_.path() / "runs").string();
+  install("echo run >> '" + counted + "'\nfor word; do case $word in --convert-to-gwy=*) out=${word#*=};; esac; done\ncp '" +
+          SEMSURF_FUZZ_CORPUS "/gwy/small' \"$out\"\n");
+  const HeightFile file(scan("a.mi"));
+  ASSERT_FALSE(file.channels().empty());
+  EXPECT_EQ(file.read().format, "read by Gwyddion");
+  EXPECT_NEAR(file.read({"1", {}, {}, {}}).field.z_nm(0, 0), 13.5, 1e-5);
+  EXPECT_EQ(test::content_of(counted), "run\n");
+}
+
+TEST_F(FakeGwyddion, MayNotKnowTheFileEither) {
+  install("exit 1\n");
+  const auto file = scan("a.mi");
+  EXPECT_THAT(test::complaint<UnknownScan>([&] { HeightFile{file}; }), testing::HasSubstr("neither semsurf nor Gwyddion"));
+}
+
+TEST_F(FakeGwyddion, IsNamedWhereItIsMissing) {
+  if (std::filesystem::exists("/usr/bin/gwyddion")) GTEST_SKIP() << "Gwyddion is installed";
+  const auto file = scan("a.h5-jpk");
+  EXPECT_THAT(test::complaint<UnknownScan>([&] { HeightFile{file}; }), testing::HasSubstr("apt-get install gwyddion"));
+}
+
+TEST(SmallScans, NamesOfInstruments) {
+  for (const char* name : {"a.mi", "a.SDF", "b/a.h5-jpk", "a.x3p", "a.stp", "a.asd"}) EXPECT_TRUE(has_scan_name(name)) << name;
+  for (const char* name : {"a.stl", "a.pdf", "a.tif", "mi", "a.txt", "a"}) EXPECT_FALSE(has_scan_name(name)) << name;
 }
 
 }  // namespace

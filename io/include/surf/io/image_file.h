@@ -69,6 +69,10 @@ void check_image_target(const std::filesystem::path& path, const Image* image = 
 /// such level.
 Image read_image(const std::filesystem::path& path, int level = 0);
 
+/// Whether the file that `image` was read from says how large its pixels are. Plain pictures do not, and their pitch
+/// of 1 nm means nothing.
+bool states_pixel_size(const Image& image);
+
 /// One size of an image that has several.
 struct ImageLevel {
   Image image;

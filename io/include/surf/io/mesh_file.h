@@ -68,4 +68,8 @@ void check_mesh_target(const std::filesystem::path& path);
 /// ".off", ".glb", ".gltf", ".3mf", ".vtp", ".vtm").
 bool is_mesh_file(const std::filesystem::path& path);
 
+/// Whether the content is that of a mesh, whatever the name; false where there is no such file. OBJ has no mark
+/// and is known by its name alone.
+bool has_mesh_content(const std::filesystem::path& path);
+
 }  // namespace surf::io

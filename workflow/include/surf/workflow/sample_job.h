@@ -48,10 +48,12 @@ struct SampleJob {
   std::uint64_t seed = 1;              ///< of all chance
   int threads = 0;                     ///< 0: one per hardware thread. Does not change the result
   std::filesystem::path cache;         ///< where libraries of cascades are kept; empty: nowhere
+  CheckpointOptions checkpoint;        ///< of the SEM image; without a file of its own beside sem.tif
 };
 
 struct SampleSummary {
-  bool complete = true;                ///< false when cancelled: nothing is written
+  bool complete = true;                ///< false when cancelled: no image is written
+  std::filesystem::path checkpoint;    ///< where a cancelled job goes on from; empty: nothing is kept
   Affine sem_to_afm;
   int afm_width = 0, afm_height = 0;
   double seconds = 0;                  ///< of the simulation of the SEM image
@@ -67,8 +69,9 @@ struct SampleSummary {
 ///   truth_sem.exr  what the simulation gave: SE, BSE and their standard errors, per primary
 ///   truth.json     the map, the gains, the noise and all other parameters
 /// Only the names with "truth" tell what a reconstruction has to find out.
-/// Progress is in primaries. Throws UsageError for an unknown name or options out of range, FileError.
+/// Progress is in primaries. A job that is cancelled, or whose files cannot be written, keeps a checkpoint: the same
+/// job goes on from there, to the same bytes. Throws UsageError for an unknown name or options out of range, FileError.
 SampleSummary run(const SampleJob& job, const ProgressCallback& progress = {}, const CancelToken* cancel = nullptr,
-                  const LibraryCallback& libraries = {}, const NoteCallback& note = {});
+                  const LibraryCallback& libraries = {}, const NoteCallback& note = {}, const WarningCallback& warn = {});
 
 }  // namespace surf::workflow

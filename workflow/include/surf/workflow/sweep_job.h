@@ -50,7 +50,8 @@ struct SweepListener {
 /// Simulates what is not there yet, and writes the table: a line for each run with its values, its file, and per detector
 /// the mean yield with its standard error. What a run gave is kept in records/N.json of the folder; a run that was done
 /// before with the same settings by the same program is not repeated. With one part the table is sweep.csv, else
-/// sweep.K-of-N.csv, to be joined. Throws UsageError, FileError and what simulations throw.
+/// sweep.K-of-N.csv, to be joined. Throws UsageError, FileError, InvalidInput for a folder that holds a sweep over another
+/// grid, and what simulations throw.
 ///
 /// With a `team` all of it call this with the same job: each process does whole runs, into a folder that all see, or they
 /// share large ones. The leader writes records and table, which are those of one process, and who did how much to

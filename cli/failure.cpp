@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "failure.h"
+
+#include <exception>
+#include <new>
+
+#include "surf/core/error.h"
+#include "terminal.h"
+
+namespace surf::cli {
+
+int report_failure() {
+  constexpr int exit_usage = 2, exit_unusable = 3, exit_interrupted = 130;
+  try {
+    throw;
+  } catch (const UsageError& error) {
+    print_error(error.what());
+    return exit_usage;
+  } catch (const Interrupted&) {
+    print_note("stopped; nothing was written");
+    return exit_interrupted;
+  } catch (const std::bad_alloc&) {
+    print_error("memory: there is not enough for this. Use fewer pixels or a smaller mesh");
+  } catch (const std::exception& error) {
+    print_error(error.what());
+  }
+  return exit_unusable;
+}
+
+}  // namespace surf::cli
