@@ -56,6 +56,7 @@ TriangleMesh read_mesh(const std::filesystem::path& path, std::optional<double> 
 }
 
 std::vector<std::filesystem::path> mesh_input_files(const std::filesystem::path& path) {
+  require_regular_file(path);
   std::vector<std::filesystem::path> files{path};
   // Only files that name others are read whole, and few of those are large.
   std::string content = file_head(path, 65536);

@@ -62,6 +62,7 @@ THIRD_PARTY = [
     ("sys/*", ["*"]),
     ("*intrin.h", ["*"]),
     ("fcntl.h", ["*"]),
+    ("linux/magic.h", ["io/src/files.cpp"]),
     ("malloc.h", ["*"]),
     ("poll.h", ["*"]),
     ("sched.h", ["*"]),
