@@ -8,6 +8,7 @@
 #include <string>
 
 #include "surf/core/error.h"
+#include "surf/core/try_thread.h"
 #include "terminal.h"
 
 #if defined(SEMSURF_MPI)
@@ -341,7 +342,7 @@ class MpiTeam : public workflow::Team {
     own().threads = threads;
     std::exception_ptr error;
     {
-      const std::jthread at_work([&] {
+      const std::jthread at_work = try_thread([&] {
         try {
           work([&] { return desk.take(); }, [&](mc::FinishedUnit unit) { desk.give(std::move(unit)); });
         } catch (...) {
@@ -349,6 +350,11 @@ class MpiTeam : public workflow::Team {
         }
         desk.leave();
       });
+      if (!at_work.joinable()) {
+        error = std::make_exception_ptr(Unsupported("threads", "the system cannot start another one",
+                                                    "Raise the limits of processes and memory (ulimit -u, ulimit -v)"));
+        desk.leave();
+      }
       const ThreadTime time(own().messaging_s);
       serve(desk, cancel);
     }

@@ -10,6 +10,7 @@
 #include <new>
 #include <sstream>
 #include <string>
+#include <system_error>
 #include <vector>
 
 #include "commands.h"
@@ -17,6 +18,7 @@
 #include "options.h"
 #include "run.h"
 #include "surf/core/error.h"
+#include "surf/core/try_thread.h"
 #include "surf/workflow/version.h"
 #include "terminal.h"
 
@@ -129,6 +131,8 @@ int report_parse_error(const CLI::App& root, const CLI::ParseError& error) {
   return exit_usage;
 }
 
+constexpr const char* out_of_memory = "memory: there is not enough for this. Use fewer pixels or a smaller mesh";
+
 int act(const Action& action) {
   try {
     return action();
@@ -139,7 +143,12 @@ int act(const Action& action) {
     print_note("stopped; nothing was written");
     return exit_interrupted;
   } catch (const std::bad_alloc&) {
-    print_error("memory: there is not enough for this. Use fewer pixels or a smaller mesh");
+    print_error(out_of_memory);
+  } catch (const std::system_error& error) {
+    print_error(error.code() == std::errc::resource_unavailable_try_again
+                    ? "threads: the system cannot start another one. Give --threads 1, or raise the limits of "
+                      "processes and memory (ulimit -u, ulimit -v)"
+                    : error.what());
   } catch (const std::exception& error) {
     print_error(error.what());
   }
@@ -198,7 +207,10 @@ int parse_and_act(const std::vector<std::string>& arguments) {
   }
   const std::string command = app.get_subcommands().front()->get_name();
   if (!is_shared(command) && leave_to_leader(command)) return 0;
-  return act(action);
+  const int code = act(action);
+  if (take_refused_threads() > 0)
+    print_note("the system refused threads (ulimit -u, ulimit -v): fewer than wanted did the work, with the same result");
+  return code;
 }
 
 }  // namespace
@@ -211,6 +223,9 @@ int run(const std::vector<std::string>& arguments, std::FILE* out, std::FILE* er
   try {
     code = parse_and_act(arguments);
     flush();
+  } catch (const std::bad_alloc&) {
+    print_error(out_of_memory);
+    code = exit_unusable;
   } catch (const std::exception& error) {
     print_error(error.what());
     code = exit_unusable;
