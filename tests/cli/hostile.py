@@ -79,7 +79,8 @@ def run(words):
         said = errors.read_text(errors="replace")
         if code not in (0, 2, 3, 4):
             return f"ended with {code}: {said[-300:]}"
-        if code != 0 and not any(line.startswith("semsurf: error: ") and ". " in line for line in said.splitlines()):
+        begin = "semsurf: warning: " if code == 4 else "semsurf: error: "
+        if code != 0 and not any(line.startswith(begin) and (code == 4 or ". " in line) for line in said.splitlines()):
             return f"ended with {code} and does not say why: {said[-300:]}"
         if usage.ru_maxrss * 1024 > MOST_BYTES:
             return f"took {usage.ru_maxrss / 2**20:.2f} GiB of memory"

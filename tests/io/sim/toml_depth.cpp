@@ -28,8 +28,8 @@ TEST(TomlDepth, KeysOfAHundredThousandPartsAreRefusedWithTheirPlace) {
   EXPECT_THAT(refused(deep + "=1"), HasSubstr("deep.toml, line 1, column 1: a key has more than 32 parts"));
   EXPECT_THAT(refused("title = \"x\"\n[" + deep + "]"), HasSubstr("line 2, column 2"));
   EXPECT_THAT(refused("[[" + deep + "]]"), HasSubstr("column 3"));
-  EXPECT_THAT(refused("a = 1\nb = { c = 1, " + deep + " = 1 }"), HasSubstr("line 2, column 16"));
-  EXPECT_THAT(refused("b = [ 1.5, { " + deep + " = 1 } ]"), HasSubstr("line 1, column 13"));
+  EXPECT_THAT(refused("a = 1\nb = { c = 1, " + deep + " = 1 }"), HasSubstr("line 2, column 14"));
+  EXPECT_THAT(refused("b = [ 1.5, { " + deep + " = 1 } ]"), HasSubstr("line 1, column 14"));
 }
 
 TEST(TomlDepth, SceneAndMaterialFilesAreRefused) {

@@ -3,9 +3,9 @@
 
 #include <gtest/gtest.h>
 #include <sys/resource.h>
+#include <unistd.h>
 
 #include <atomic>
-#include <cstdio>
 #include <cstdlib>
 #include <fstream>
 
@@ -15,12 +15,19 @@ namespace surf {
 namespace {
 
 /// From here on the process gets no more address space than for a little heap: a thread's stack takes more.
+/// Stacks that threads have left are used up by threads that wait until the process ends.
 void refuse_threads() {
   std::size_t pages = 0;
   std::ifstream("/proc/self/statm") >> pages;
   const rlim_t bytes = static_cast<rlim_t>(pages) * 4096 + (1 << 20);
   const rlimit limit{bytes, bytes};
   if (setrlimit(RLIMIT_AS, &limit) != 0) std::_Exit(9);
+  for (;;) {
+    std::jthread thread = try_thread([] { ::pause(); });
+    if (!thread.joinable()) break;
+    thread.detach();
+  }
+  take_refused_threads();
 }
 
 [[noreturn]] void end(bool good) { std::_Exit(good ? 0 : 1); }
