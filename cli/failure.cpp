@@ -3,6 +3,7 @@
 
 #include <exception>
 #include <new>
+#include <system_error>
 
 #include "surf/core/error.h"
 #include "terminal.h"
@@ -21,6 +22,11 @@ int report_failure() {
     return exit_interrupted;
   } catch (const std::bad_alloc&) {
     print_error("memory: there is not enough for this. Use fewer pixels or a smaller mesh");
+  } catch (const std::system_error& error) {
+    print_error(error.code() == std::errc::resource_unavailable_try_again
+                    ? "threads: the system cannot start another one. Give --threads 1, or raise the limits of "
+                      "processes and memory (ulimit -u, ulimit -v)"
+                    : error.what());
   } catch (const std::exception& error) {
     print_error(error.what());
   }

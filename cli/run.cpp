@@ -18,6 +18,7 @@
 #include "options.h"
 #include "run.h"
 #include "surf/core/error.h"
+#include "surf/core/try_thread.h"
 #include "surf/workflow/version.h"
 #include "terminal.h"
 
@@ -27,7 +28,6 @@ using namespace surf;
 using namespace surf::cli;
 
 constexpr int exit_usage = 2;
-constexpr int exit_unusable = 3;
 
 constexpr const char* examples = R"(Examples:
   semsurf simulate cube.stl --material Si --substrate Si --tilt 40 -o cube.exr -o cube.png
@@ -202,7 +202,10 @@ int parse_and_act(const std::vector<std::string>& arguments) {
   }
   const std::string command = app.get_subcommands().front()->get_name();
   if (!is_shared(command) && leave_to_leader(command)) return 0;
-  return act(action);
+  const int code = act(action);
+  if (take_refused_threads() > 0)
+    print_note("the system refused threads (ulimit -u, ulimit -v): fewer than wanted did the work, with the same result");
+  return code;
 }
 
 }  // namespace
@@ -211,13 +214,12 @@ namespace surf::cli {
 
 int run(const std::vector<std::string>& arguments, std::FILE* out, std::FILE* err) {
   speak_to(out, err);
-  int code = exit_unusable;
+  int code = 0;
   try {
     code = parse_and_act(arguments);
     flush();
-  } catch (const std::exception& error) {
-    print_error(error.what());
-    code = exit_unusable;
+  } catch (...) {
+    code = report_failure();
   }
   speak_to(nullptr, nullptr);
   return code;

@@ -18,6 +18,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr int version = 1;
+constexpr std::size_t most_bytes = std::size_t{16} << 20;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr CalibrationOutcome outcomes[] = {CalibrationOutcome::trusted, CalibrationOutcome::doubtful,
                                            CalibrationOutcome::undetermined};
@@ -70,7 +71,7 @@ void write_calibration(const std::filesystem::path& path, const CalibrationFile&
 }
 
 CalibrationFile read_calibration(const std::filesystem::path& path) {
-  const JsonValue json = JsonValue::parse(path.string(), read_file(path));
+  const JsonValue json = JsonValue::parse(path.string(), read_file(path, most_bytes));
   if (json.text("semsurf", "") != "calibration")
     json.fail("it is no calibration", "Make one with 'semsurf calibrate'");
   if (json.require("version").whole() != version)

@@ -12,6 +12,7 @@
 #include <type_traits>
 
 #include "base64.h"
+#include "side_file.h"
 #include "surf/core/error.h"
 #include "surf/io/files.h"
 #include "text_scanner.h"
@@ -97,7 +98,12 @@ fs::path gltf_buffer_file(const fs::path& path, const JsonValue& buffer, const s
     buffer.fail(fmt::format("its data is at '{}', not beside the file", shown(uri)),
                 "Fetch it, and name it relative to the glTF file; or export GLB");
   }
-  return path.parent_path() / percent_decoded(uri);
+  const auto file = side_file(path, percent_decoded(uri));
+  if (!file) {
+    buffer.fail(fmt::format("its data at '{}' are not in or below the folder of the file", shown(uri)),
+                "Put a copy of them into the folder and name that, or export GLB");
+  }
+  return *file;
 }
 
 struct GltfAccessors::Layout {

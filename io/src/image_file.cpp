@@ -154,8 +154,7 @@ namespace {
 
 Format readable_format_of(const std::filesystem::path& path) {
   const Format format = known_format_of(path, Use::read);
-  // Complains about missing files and folders in our words, not a library's.
-  if (!std::filesystem::is_regular_file(path)) read_file(path, 0);
+  require_regular_file(path);
   return format;
 }
 

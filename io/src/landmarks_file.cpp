@@ -17,6 +17,7 @@
 namespace surf::io {
 namespace {
 
+constexpr std::size_t most_bytes = std::size_t{16} << 20;
 constexpr std::array<const char*, 4> names = {"sem_x", "sem_y", "afm_x", "afm_y"};
 constexpr std::array<const char*, 4> from_top = {"sem_col_px", "sem_row_px", "afm_col_px", "afm_row_px"};
 constexpr const char* remedy = "The first line names the columns sem_x_nm,sem_y_nm,afm_x_nm,afm_y_nm, or ..._px, or as viewers "
@@ -41,7 +42,7 @@ class Reader {
       : path_(path), sem_(sem), afm_(afm) {}
 
   std::vector<LandmarkPair> read() {
-    std::istringstream text(read_file(path_));
+    std::istringstream text(read_file(path_, most_bytes));
     std::vector<LandmarkPair> pairs;
     std::optional<Columns> columns;
     for (std::string line; std::getline(text, line);) {

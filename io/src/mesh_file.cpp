@@ -6,6 +6,7 @@
 #include <system_error>
 #include <fstream>
 #include <string_view>
+#include <system_error>
 #include <utility>
 
 #include "lower_extension.h"
@@ -59,6 +60,8 @@ TriangleMesh read_mesh(const std::filesystem::path& path, std::optional<double> 
 }
 
 std::vector<std::filesystem::path> mesh_input_files(const std::filesystem::path& path) {
+  std::error_code error;
+  if (std::filesystem::exists(path, error)) require_regular_file(path);   // its reader says that it is missing
   std::vector<std::filesystem::path> files{path};
   // Only files that name others are read whole, and few of those are large.
   std::string content = file_head(path, 65536);

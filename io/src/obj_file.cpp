@@ -10,6 +10,7 @@
 
 #include "mesh_formats.h"
 #include "mesh_output.h"
+#include "side_file.h"
 #include "split_mesh.h"
 #include "surf/core/error.h"
 #include "text_scanner.h"
@@ -197,11 +198,12 @@ class ObjParser {
 /// The picture that the note names for a surface. It lies beside the file.
 Drape find_drape(const std::filesystem::path& path, const std::string& name) {
   const std::filesystem::path picture(name);
-  if (name.empty() || picture.filename() != picture || name == "." || name == "..") {
+  const auto found = side_file(path, picture);
+  if (!found || picture.filename() != picture || name == ".") {
     throw FileError(path.string(), fmt::format("its picture '{}' is not beside the file", shown(name)),
                     "Write the file again with semsurf");
   }
-  const std::filesystem::path place = path.parent_path() / picture;
+  const std::filesystem::path& place = *found;
   std::error_code error;
   if (!std::filesystem::exists(place, error)) {
     throw FileError(path.string(), fmt::format("its picture {} is missing", place.string()),

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <fstream>
 #include <iterator>
 #include <memory>
 #include <utility>
@@ -16,7 +17,9 @@
 #include "pyramid.h"
 #include "raster_functions.h"
 #include "raster_output.h"
+#include "stored_pixels.h"
 #include "surf/core/error.h"
+#include "surf/io/files.h"
 
 namespace surf::io::openimageio {
 namespace {
@@ -45,6 +48,40 @@ void write_rows(OIIO::ImageOutput& output, const std::string& file, const ImageR
     check_written(output.write_scanlines(first, end, 0, OIIO::TypeDesc::FLOAT, block.data()), output,
                   file);
   }
+}
+
+/// Bytes of one row of PNG's pixels as they are compressed, by its header; colour tables make them smaller than
+/// what is read.
+double png_row_bytes(const std::filesystem::path& path, const OIIO::ImageSpec& spec) {
+  unsigned char head[26] = {};
+  std::ifstream(path, std::ios::binary).read(reinterpret_cast<char*>(head), sizeof head);
+  const bool has_table = head[25] == 3;
+  return spec.width * double(head[24]) / 8 * (has_table ? 1 : spec.nchannels);
+}
+
+/// How many times smaller EXR's compression can make pixels. DWA packs one value for 64, and that once more.
+double exr_ratio(std::string_view compression) {
+  if (compression == "none") return 1;
+  if (compression == "pxr24") return 4.0 / 3 * deflate_ratio;   // it leaves out one of four bytes first
+  return compression.starts_with("dwa") ? 64 * deflate_ratio : deflate_ratio;
+}
+
+/// TIFF's are judged as a whole, by check_tiff_structure.
+void check_stored(const OIIO::ImageInput& input, const std::filesystem::path& path) {
+  const OIIO::ImageSpec& spec = input.spec();
+  const std::string_view format = input.format_name();
+  double bytes = 0, ratio = deflate_ratio;
+  if (format == "openexr") {
+    const bool tiles = spec.tile_width > 0 && spec.tile_height > 0;
+    bytes = std::max(double(spec.image_bytes(true)), tiles ? double(spec.tile_bytes(true)) : 0.0);
+    ratio = exr_ratio(spec.get_string_attribute("compression", "zip"));
+  } else if (format == "png") {
+    bytes = spec.height * png_row_bytes(path, spec);
+  } else {
+    bytes = double(spec.image_bytes(true));
+    if (format != "jpeg" && format != "bmp") ratio = unknown_ratio;   // by a name that does not fit its content
+  }
+  require_stored(path.string(), bytes, bytes / ratio, std::filesystem::file_size(path));
 }
 
 /// Values of all channels, interleaved, the top row first. Whole numbers are left as they are.
@@ -175,6 +212,7 @@ void go_to(OIIO::ImageInput& input, const std::string& file, const Pages& pages,
 }
 
 std::unique_ptr<OIIO::ImageInput> open_raster(const std::filesystem::path& path) {
+  require_regular_file(path);
   keep_quiet();
   OIIO::ImageSpec config;
   config.attribute("oiio:UnassociatedAlpha", 1);
@@ -184,6 +222,7 @@ std::unique_ptr<OIIO::ImageInput> open_raster(const std::filesystem::path& path)
                     "Check that its content fits its name, or write it again");
   }
   if (std::string_view(input->format_name()) == "tiff") check_tiff_structure(path);
+  else check_stored(*input, path);
   return input;
 }
 
@@ -316,6 +355,7 @@ Grid<std::uint8_t> parse_grey_png(const std::string& file, std::string_view cont
 }
 
 int raster_bits(const std::filesystem::path& path) {
+  require_regular_file(path);
   keep_quiet();
   const auto input = OIIO::ImageInput::open(path.string());
   if (!input) throw FileError(path.string(), "cannot be read as an image: " + OIIO::geterror(), "Check its content");

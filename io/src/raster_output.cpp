@@ -17,9 +17,10 @@ std::unique_ptr<OIIO::ImageOutput> create_output(const char* format, const std::
   keep_quiet();
   std::unique_ptr<OIIO::ImageOutput> output = OIIO::ImageOutput::create(format);
   if (!output) {
+    const std::string reason = OIIO::geterror();   // none where it could not start its threads
     throw Unsupported(file, fmt::format("OpenImageIO cannot write {} here ({})", format,
-                                        OIIO::geterror()),
-                      "Choose another format");
+                                        reason.empty() ? "threads or memory may be short" : reason),
+                      "Raise their limits (ulimit -u, ulimit -v), or choose another format");
   }
   return output;
 }

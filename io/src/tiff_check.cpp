@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <fstream>
 #include <set>
@@ -8,18 +9,39 @@
 #include <vector>
 
 #include "image_formats.h"
+#include "stored_pixels.h"
 #include "surf/core/error.h"
 
 namespace surf::io {
 namespace {
 
+constexpr std::uint16_t tag_width = 256;
+constexpr std::uint16_t tag_height = 257;
+constexpr std::uint16_t tag_bits = 258;
+constexpr std::uint16_t tag_compression = 259;
+constexpr std::uint16_t tag_colours = 262;
 constexpr std::uint16_t tag_description = 270;
+constexpr std::uint16_t tag_samples = 277;
+constexpr std::uint16_t tag_tile_width = 322;
+constexpr std::uint16_t tag_tile_height = 323;
 constexpr std::uint16_t tag_strip_offsets = 273;
 constexpr std::uint16_t tag_strip_bytes = 279;
 constexpr std::uint16_t tag_tile_offsets = 324;
 constexpr std::uint16_t tag_tile_bytes = 325;
 
-/// Follows the directories of a TIFF or BigTIFF file and asks whether what they point at is there.
+/// How many times smaller a compression can make pixels.
+double most_ratio(std::uint64_t compression) {
+  switch (compression) {
+    case 1: return 1;          // none
+    case 5: return 1500;       // LZW: texts of up to 3837 bytes in 12 bits
+    case 32773: return 64;     // PackBits: 128 bytes in 2
+    case 8: case 32946: return deflate_ratio;
+    default: return unknown_ratio;   // fax codes of white rows, Zstandard, LZMA
+  }
+}
+
+/// Follows the directories of a TIFF or BigTIFF file and asks whether what they point at is there, and whether
+/// all their pixels can be.
 class TiffStructure {
  public:
   explicit TiffStructure(const std::filesystem::path& path)
@@ -32,6 +54,7 @@ class TiffStructure {
     std::uint64_t directory = big_ ? number(8, 8) : number(4, 4);
     std::set<std::uint64_t> seen;
     while (directory != 0 && seen.insert(directory).second) directory = check_directory(directory);
+    require_stored(path_.string(), pixel_bytes_, least_bytes_, size_);
   }
 
  private:
@@ -64,6 +87,22 @@ class TiffStructure {
     return value;
   }
 
+  /// What a directory says of its image; the values are those where it says nothing.
+  struct Pixels {
+    double width = 0, height = 0, bits = 1, samples = 1, tile_width = 0, tile_height = 0;
+    std::uint64_t compression = 1, colours = 0;
+
+    /// Before they are compressed. Luminance and colours (6) may leave out most of the colours.
+    double bytes() const {
+      const double all = std::max(width * height, tile_width * tile_height) * samples * bits / 8;
+      return colours == 6 ? all / 3 : all;
+    }
+  };
+
+  std::uint64_t first(const Entry& entry) {
+    return entry.count == 0 ? 0 : number(entry.place, entry.bytes);
+  }
+
   /// Returns the offset of the next directory.
   std::uint64_t check_directory(std::uint64_t offset) {
     const std::uint64_t count_bytes = big_ ? 8 : 2;
@@ -71,9 +110,18 @@ class TiffStructure {
     const std::uint64_t count = number(offset, count_bytes);
     if (count > size_ / entry_bytes) fail(offset);
     Entry strip_offsets, strip_bytes, tile_offsets, tile_bytes;
+    Pixels pixels;
     for (std::uint64_t i = 0; i < count; ++i) {
       const std::uint64_t place = offset + count_bytes + i * entry_bytes;
       switch (number(place, 2)) {
+        case tag_width: pixels.width = first(entry(place)); break;
+        case tag_height: pixels.height = first(entry(place)); break;
+        case tag_bits: pixels.bits = first(entry(place)); break;
+        case tag_compression: pixels.compression = first(entry(place)); break;
+        case tag_colours: pixels.colours = first(entry(place)); break;
+        case tag_samples: pixels.samples = first(entry(place)); break;
+        case tag_tile_width: pixels.tile_width = first(entry(place)); break;
+        case tag_tile_height: pixels.tile_height = first(entry(place)); break;
         case tag_description: entry(place); break;
         case tag_strip_offsets: strip_offsets = entry(place); break;
         case tag_strip_bytes: strip_bytes = entry(place); break;
@@ -84,6 +132,8 @@ class TiffStructure {
     }
     check_blocks(strip_offsets, strip_bytes);
     check_blocks(tile_offsets, tile_bytes);
+    pixel_bytes_ += pixels.bytes();
+    least_bytes_ += pixels.bytes() / most_ratio(pixels.compression);
     return number(offset + count_bytes + count * entry_bytes, big_ ? 8 : 4);
   }
 
@@ -112,6 +162,8 @@ class TiffStructure {
   std::filesystem::path path_;
   std::ifstream stream_;
   std::uint64_t size_;
+  double pixel_bytes_ = 0;   // of all directories
+  double least_bytes_ = 0;   // that they take in the file
   bool big_endian_ = false;
   bool big_ = false;
 };

@@ -6,6 +6,7 @@
 
 #include "image_formats.h"
 #include "lower_extension.h"
+#include "side_file.h"
 #include "surf/core/error.h"
 #include "surf/io/files.h"
 #include "text_scanner.h"
@@ -36,11 +37,9 @@ void collect(const Element& element, const std::filesystem::path& main, std::vec
   for (const Element& data : element.children("DataSet")) {
     const std::filesystem::path file = data.attribute("file");
     if (file.empty()) continue;   // an empty block
-    const std::filesystem::path place = file.lexically_normal();
-    if (place.is_absolute() || *place.begin() == "..") {
-      data.fail(fmt::format("its file '{}' is not in or below the folder", shown(file.string())));
-    }
-    blocks.push_back({data.attribute("name"), main.parent_path() / place});
+    const auto place = side_file(main, file);
+    if (!place) data.fail(fmt::format("its file '{}' is not in or below the folder", shown(file.string())));
+    blocks.push_back({data.attribute("name"), *place});
   }
 }
 

@@ -14,6 +14,7 @@
 #include "scene_impl.h"
 #include "surf/core/error.h"
 #include "surf/core/parallel.h"
+#include "surf/core/try_thread.h"
 #include "surf/mc/crew.h"
 #include "surf/mc/pack.h"
 #include "surf/mc/unit_plan.h"
@@ -166,20 +167,22 @@ void share(Crew& crew, const UnitPlan& plan, Workshop& workshop, int threads, Me
   std::exception_ptr own, of_crew;
   {
     // The crew is led from here: its messages may have to come from the thread that began.
-    const std::jthread at_work([&] {
+    const auto work = [&] {
       try {
         take_and_give(plan, workshop, threads, cancel, take, give);
       } catch (...) {
         own = std::current_exception();
         end();
       }
-    });
+    };
+    const std::jthread at_work = try_thread(work);
     try {
       crew.lead(take, [&](const FinishedUnit& unit) { give(unit.number, unpack(unit.bytes)); }, cancel);
     } catch (...) {
       of_crew = std::current_exception();
       end();
     }
+    if (!at_work.joinable()) work();   // what the others have left
   }
   if (own) std::rethrow_exception(own);
   if (of_crew) std::rethrow_exception(of_crew);

@@ -9,6 +9,7 @@
 
 #include "surf/core/error.h"
 #include "surf/core/units.h"
+#include "surf/mc/largest_length.h"
 #include "surf/mesh/check_mesh.h"
 #include "surf/mesh/open_sheet.h"
 
@@ -20,6 +21,14 @@ constexpr double thinnest_nm = 0.01;   // ten times the distance at which faces 
 
 std::string place(const Vec3& p) {
   return fmt::format("({:g}, {:g}, {:g}) nm", p.x, p.y, p.z);
+}
+
+Box field_box(const HeightField& f) {
+  Box box;
+  const auto [low, high] = std::minmax_element(f.z_nm.data().begin(), f.z_nm.data().end());
+  box.extend(Vec3{f.x_nm(0), f.y_nm(0), *low});
+  box.extend(Vec3{f.x_nm(f.z_nm.width() - 1), f.y_nm(f.z_nm.height() - 1), *high});
+  return box;
 }
 
 void check_material(const Specimen& specimen, int material, const std::string& owner) {
@@ -54,9 +63,18 @@ std::string repair_command(const std::string& name) {
       repair_command(subject));
 }
 
+void check_reach(const Box& box, const std::string& subject, const char* remedy) {
+  for (const Vec3& p : {box.lower_nm, box.upper_nm})
+    for (const double at_nm : {p.x, p.y, p.z})
+      if (!(std::abs(at_nm) <= largest_length_nm))
+        throw InvalidInput(subject, fmt::format("it reaches {:.6g} nm from the origin, and {:g} nm (10 km) is the most",
+                                                std::abs(at_nm), largest_length_nm), remedy);
+}
+
 BodyFacts check_body(const Body& body, const Watch& watch) {
   const std::string subject = body.name.empty() ? "body" : body.name;
   validate(body.mesh, subject.c_str());
+  check_reach(bounds(body.mesh), subject, "Check its unit (--unit), or move it closer");
   const MeshReport report = check_mesh(body.mesh, watch);
   if (report.boundary_edges > 0) {
     std::string reason;
@@ -86,13 +104,18 @@ std::vector<BodyFacts> validate(const Specimen& specimen, const Watch& watch) {
     throw InvalidInput("specimen", "there is nothing in it", "Add a mesh, a field or a substrate");
   if (specimen.substrate) {
     check_material(specimen, specimen.substrate->material, "substrate");
-    if (!std::isfinite(specimen.substrate->top_nm))
-      throw InvalidInput("substrate", "its height is not finite", "Give a length");
+    const double top_nm = specimen.substrate->top_nm;
+    if (!(std::abs(top_nm) <= largest_length_nm))
+      throw InvalidInput("substrate", fmt::format("its top at {:.6g} nm is not in -{:g} to {:g} nm", top_nm,
+                                                  largest_length_nm, largest_length_nm),
+                         "Give a height such as 0nm (--substrate-z)");
   }
   if (specimen.height_field) {
     const std::string& name = specimen.height_field->name;
     check_material(specimen, specimen.height_field->material, "height field");
-    surf::validate(specimen.height_field->field, name.empty() ? "height field" : name.c_str());
+    const std::string subject = name.empty() ? "height field" : name;
+    surf::validate(specimen.height_field->field, subject.c_str());
+    check_reach(field_box(specimen.height_field->field), subject, "Check its units (--pitch, --z-unit)");
   }
   std::vector<BodyFacts> facts;
   for (const Body& body : specimen.bodies) {
@@ -104,12 +127,7 @@ std::vector<BodyFacts> validate(const Specimen& specimen, const Watch& watch) {
 
 Box extent(const Specimen& specimen) {
   Box box;
-  if (specimen.height_field) {
-    const HeightField& f = specimen.height_field->field;
-    const auto [low, high] = std::minmax_element(f.z_nm.data().begin(), f.z_nm.data().end());
-    box.extend(Vec3{f.x_nm(0), f.y_nm(0), *low});
-    box.extend(Vec3{f.x_nm(f.z_nm.width() - 1), f.y_nm(f.z_nm.height() - 1), *high});
-  }
+  if (specimen.height_field) box.extend(field_box(specimen.height_field->field));
   for (const Body& body : specimen.bodies) box.extend(bounds(body.mesh));
   if (box.empty() && specimen.substrate) {
     const double z = specimen.substrate->top_nm;

@@ -63,6 +63,7 @@ THIRD_PARTY = [
     ("*intrin.h", ["*"]),
     ("dlfcn.h", ["libsurf/src/core/module.cpp"]),
     ("fcntl.h", ["*"]),
+    ("linux/magic.h", ["io/src/files.cpp"]),
     ("malloc.h", ["*"]),
     ("poll.h", ["*"]),
     ("sched.h", ["*"]),

@@ -32,7 +32,53 @@ TEST(Files, SaysWhyAFileCannotBeRead) {
   EXPECT_THAT(complaint<FileError>([&] { read_file(folder.path()); }), HasSubstr("folder"));
   write(folder.path() / "six", "123456");
   EXPECT_THAT(complaint<FileError>([&] { read_file(folder.path() / "six", 5); }),
-              HasSubstr("larger than 5"));
+              HasSubstr("more than 5 bytes"));
+  std::filesystem::create_symlink("loop", folder.path() / "loop");
+  EXPECT_THAT(complaint<FileError>([&] { read_file(folder.path() / "loop"); }), HasSubstr("cannot be found"));
+}
+
+TEST(Files, DevicesAndNamedPipesAreRefusedAtOnce) {
+  const test::TemporaryFolder folder;
+  const auto pipe = folder.path() / "pipe.stl", link = folder.path() / "zero.gsf";
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  std::filesystem::create_symlink("/dev/zero", link);
+  for (const auto& path : {pipe, link, std::filesystem::path("/dev/zero")}) {
+    const char* const kind = path == pipe ? "named pipe" : "device";
+    EXPECT_THAT(complaint<FileError>([&] { read_file(path); }), HasSubstr(kind));
+    EXPECT_THAT(complaint<FileError>([&] { sha256_of_file(path); }), HasSubstr(kind));
+    EXPECT_THAT(complaint<FileError>([&] { require_regular_file(path); }), HasSubstr(kind));
+  }
+}
+
+TEST(Files, TheSizeIsJudgedBeforeMemoryIsTaken) {
+  const test::TemporaryFolder folder;
+  const auto path = write(folder.path() / "sparse", "");
+  std::filesystem::resize_file(path, std::uintmax_t{1} << 40);   // it takes no room on the disk
+  EXPECT_THAT(complaint<FileError>([&] { read_file(path); }), HasSubstr("has more than 8.59 GB"));
+}
+
+TEST(Files, APipeWithoutANameIsReadOnceAndItsHashIsKept) {
+  int ends[2];
+  ASSERT_EQ(::pipe(ends), 0);
+  const std::filesystem::path path = "/dev/fd/" + std::to_string(ends[0]);
+  EXPECT_THAT(complaint<FileError>([&] { require_regular_file(path); }), HasSubstr("a pipe"));
+  EXPECT_THAT(complaint<FileError>([&] { sha256_of_file(path); }), HasSubstr("a pipe"));
+  ASSERT_EQ(::write(ends[1], "abc", 3), 3);
+  ::close(ends[1]);
+  EXPECT_EQ(read_file(path), "abc");
+  EXPECT_THAT(complaint<FileError>([&] { read_file(path); }), HasSubstr("needed more than once"));
+  EXPECT_EQ(sha256_of_file(path), "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
+  ::close(ends[0]);
+}
+
+TEST(Files, APipeMayNotBeEndless) {
+  int ends[2];
+  ASSERT_EQ(::pipe(ends), 0);
+  ASSERT_EQ(::write(ends[1], "123456", 6), 6);
+  ::close(ends[1]);
+  EXPECT_THAT(complaint<FileError>([&] { read_file("/dev/fd/" + std::to_string(ends[0]), 5); }),
+              HasSubstr("more than 5 bytes"));
+  ::close(ends[0]);
 }
 
 TEST(Files, WritesThroughATemporaryInTheSameFolder) {

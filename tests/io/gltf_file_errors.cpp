@@ -139,6 +139,34 @@ TEST(GltfFileErrors, DataElsewhere) {
   EXPECT_THAT(complaint<FileError>([&] { read_mesh(path); }), HasSubstr("has 5 bytes"));
 }
 
+TEST(GltfErrors, BuffersLieInOrBelowTheFolder) {
+  namespace fs = std::filesystem;
+  const TemporaryFolder folder;
+  const GltfWriter gltf = test::gltf_of_f();
+  const fs::path inside = folder.path() / "inside", path = inside / "a.gltf";
+  fs::create_directories(inside / "deep");
+  write(folder.path() / "out.bin", gltf.binary);
+  write(inside / "a b.bin", gltf.binary);
+  write(inside / "deep" / "c.bin", gltf.binary);
+  fs::create_symlink("../out.bin", inside / "link.bin");
+  fs::create_symlink("..", inside / "up");
+  fs::create_symlink("deep/c.bin", inside / "near.bin");
+  for (const char* uri : {"../out.bin", "%2e%2e/out.bin", "deep/../../out.bin", "%2Fetc/passwd", "link.bin", "up/out.bin",
+                          "up/inside/../out.bin"}) {
+    write(path, gltf.text(uri));
+    EXPECT_THAT(complaint<FileError>([&] { read_mesh(path); }), HasSubstr("not in or below the folder")) << uri;
+    EXPECT_THAT(complaint<FileError>([&] { mesh_input_files(path); }), HasSubstr("not in or below the folder")) << uri;
+  }
+  for (const char* uri : {"a%20b.bin", "./deep/c.bin", "deep/../deep/c.bin", "near.bin", "up/inside/a%20b.bin"}) {
+    write(path, gltf.text(uri));
+    EXPECT_NO_THROW(read_mesh(path)) << uri;
+  }
+  fs::create_symlink("inside/a.gltf", folder.path() / "a.gltf");   // what lies beside the file itself is near, too
+  fs::create_symlink("inside/near.bin", folder.path() / "near.bin");
+  write(path, gltf.text("near.bin"));
+  EXPECT_NO_THROW(read_mesh(folder.path() / "a.gltf"));
+}
+
 std::string unsupported(const GltfWriter& gltf) {
   const TemporaryFolder folder;
   return complaint<Unsupported>([&] { read_mesh(write(folder.path() / "a.glb", gltf.glb())); });

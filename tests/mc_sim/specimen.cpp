@@ -6,6 +6,7 @@
 #include "specimens.h"
 #include "statistics.h"
 #include "surf/core/error.h"
+#include "surf/mc/largest_length.h"
 #include "surf/mesh/height_field_mesh.h"
 #include "surf/mesh/shapes.h"
 
@@ -13,6 +14,7 @@ namespace surf::mc {
 
 namespace {
 
+using testing::AllOf;
 using testing::HasSubstr;
 
 Specimen with(TriangleMesh mesh) {
@@ -35,6 +37,28 @@ std::string complaint(const Specimen& s) {
 
 TEST(Specimen, AcceptsClosedBodies) {
   EXPECT_EQ(complaint(with(make_box({0, 0, 0}, {1, 2, 3}))), "");
+}
+
+TEST(Specimen, ReachesNoFartherThanTheLargestLength) {
+  const double most = largest_length_nm;
+  EXPECT_EQ(complaint(with(make_box({-most, -most, -most}, {most, most, most}))), "");
+  for (const double far : {1.001 * most, 1e19, 1e300}) {
+    EXPECT_THAT(complaint(with(make_box({0, 0, 0}, {1, far, 1}))), AllOf(HasSubstr("part.stl: it reaches"), HasSubstr("--unit")));
+    EXPECT_THAT(complaint(with(make_box({-far, 0, 0}, {1, 1, 1}))), HasSubstr("part.stl: it reaches"));
+    Specimen substrate = with(make_box({0, 0, 0}, {1, 1, 1}));
+    substrate.substrate = Substrate{0, -far};
+    EXPECT_THAT(complaint(substrate), HasSubstr("--substrate-z"));
+    Specimen field;
+    field.materials = {io::find_material("Si", "test")};
+    field.height_field = HeightFieldBody{"scan.gsf", {}, 0, Edge::mirror};
+    field.height_field->field.z_nm = Grid<double>(3, 3);
+    EXPECT_EQ(complaint(field), "");
+    field.height_field->field.pitch_x_nm = far;
+    EXPECT_THAT(complaint(field), HasSubstr("scan.gsf: it reaches"));
+    field.height_field->field.pitch_x_nm = 1;
+    field.height_field->field.z_nm(1, 1) = far;
+    EXPECT_THAT(complaint(field), HasSubstr("scan.gsf: it reaches"));
+  }
 }
 
 TEST(Specimen, RefusesOpenMeshesWithThePlace) {

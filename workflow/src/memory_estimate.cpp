@@ -30,6 +30,7 @@ constexpr double per_built_tree = 100;    // Embree's while it is built; half of
 constexpr double per_faces = 48, per_faces_and_thread = 4;   // distance bounds, while they are made
 constexpr std::size_t program_bytes = std::size_t{180} << 20;
 constexpr double share_to_take = 0.97;    // of what there is
+constexpr std::uint64_t few_triangles = 100000;
 
 constexpr std::size_t no_limit = std::numeric_limits<std::size_t>::max();
 
@@ -177,27 +178,24 @@ MemoryThere memory_there() {
 
 namespace {
 
-/// "12", "12.3 thousand", "100 million".
-std::string in_words(double count) {
-  if (count < 1e3) return fmt::format("{:.0f}", count);
-  if (count < 1e6) return fmt::format("{:.3g} thousand", count / 1e3);
-  return fmt::format("{:.3g} million", count / 1e6);
-}
-
 }  // namespace
 
 void require_memory(const std::string& subject, const TriangleCount& count, const MemoryUse& use) {
   const auto needed = static_cast<double>(estimate_specimen(count, use).total());
   const MemoryThere there = memory_there();
   if (there.bytes == no_limit || needed <= share_to_take * static_cast<double>(there.bytes)) return;
+  const bool small = count.triangles < few_triangles;   // the program itself is what takes the memory
+  const std::string triangles = small ? std::string("this mesh and the program")
+                                      : fmt::format("{:.3g} million triangles", double(count.triangles) / 1e6);
+  const double left_gb = double(there.bytes) / 1e9;
   throw InvalidInput(
       subject,
-      fmt::format("{} triangles need about {:.2f} GB of memory{}, and {:.2f} GB are {}",
-                  in_words(static_cast<double>(count.triangles)), needed / 1e9,
+      fmt::format("{} need about {:.2f} GB of memory{}, and {} {}", triangles, needed / 1e9,
                   use.processes > 1 ? fmt::format(" for {} processes", use.processes) : "",
-                  static_cast<double>(there.bytes) / 1e9, there.limit),
-      fmt::format("Crop the mesh or simplify it where there is more memory (semsurf mesh --tolerance){}; "
-                  "SEMSURF_MEMORY=off tries nevertheless",
+                  left_gb < 0.01 ? "less than 0.01 GB is" : fmt::format("{:.2f} GB are", left_gb), there.limit),
+      fmt::format("{}{}; SEMSURF_MEMORY=off tries nevertheless",
+                  small ? "Make more memory available"
+                        : "Crop the mesh or simplify it where there is more memory (semsurf mesh --tolerance)",
                   use.processes > 1 ? ", or start one process for each machine" : ""));
 }
 

@@ -28,6 +28,7 @@
 
 #include "mpi_library.h"
 #include "surf/core/error.h"
+#include "surf/core/try_thread.h"
 #include "surf/workflow/team.h"
 
 namespace surf::workflow {
@@ -320,7 +321,7 @@ class MpiTeam : public Team {
     own().threads = threads;
     std::exception_ptr error;
     {
-      const std::jthread at_work([&] {
+      const std::jthread at_work = try_thread([&] {
         try {
           work([&] { return desk.take(); }, [&](mc::FinishedUnit unit) { desk.give(std::move(unit)); });
         } catch (...) {
@@ -328,6 +329,11 @@ class MpiTeam : public Team {
         }
         desk.leave();
       });
+      if (!at_work.joinable()) {
+        error = std::make_exception_ptr(Unsupported("threads", "the system cannot start another one",
+                                                    "Raise the limits of processes and memory (ulimit -u, ulimit -v)"));
+        desk.leave();
+      }
       const ThreadTime time(own().messaging_s);
       serve(desk, cancel);
     }

@@ -11,6 +11,7 @@
 #include <thread>
 
 #include "surf/core/error.h"
+#include "surf/core/try_thread.h"
 #include "surf/io/files.h"
 
 namespace surf::workflow {
@@ -91,20 +92,22 @@ void lead(Team& team, const Pieces& pieces, Ledger& ledger) {
   std::exception_ptr own, of_team;
   {
     // As in mc::simulate: messages may have to come from the thread that began.
-    const std::jthread at_work([&] {
+    const auto work = [&] {
       try {
         do_pieces(pieces, take, give, [&](double done) { ledger.show(done); });
       } catch (...) {
         own = std::current_exception();
         ledger.end();
       }
-    });
+    };
+    const std::jthread at_work = try_thread(work);
     try {
       team.lead(take, give, pieces.cancel);
     } catch (...) {
       of_team = std::current_exception();
       ledger.end();
     }
+    if (!at_work.joinable()) work();   // what the others have left
   }
   if (own) std::rethrow_exception(own);
   if (of_team) std::rethrow_exception(of_team);

@@ -5,6 +5,7 @@
 
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <system_error>
 
 #include "lower_extension.h"
 #include "model/json_text.h"
@@ -107,7 +108,8 @@ void check_model_target(const std::filesystem::path& path) {
 }
 
 bool is_model_file(const std::filesystem::path& path) {
-  if (lower_extension(path) != ".json") return false;
+  std::error_code error;
+  if (lower_extension(path) != ".json" || !std::filesystem::is_regular_file(path, error)) return false;
   std::ifstream in(path, std::ios::binary);
   std::string head(4096, '\0');
   in.read(head.data(), static_cast<std::streamsize>(head.size()));

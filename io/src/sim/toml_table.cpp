@@ -9,6 +9,7 @@
 #include <cmath>
 
 #include "sim/suggest.h"
+#include "sim/toml_depth.h"
 #include "surf/core/error.h"
 #include "surf/core/units.h"
 
@@ -66,6 +67,7 @@ std::vector<std::string> TomlTable::keys() const {
 }
 
 TomlTable TomlTable::parse(std::string_view text, const std::string& file) {
+  check_key_depth(text, file);   // toml++ calls itself for each part of a key
   try {
     auto root = std::make_shared<const toml::table>(toml::parse(text, file));
     const toml::table* const table = root.get();

@@ -10,11 +10,12 @@
 #include <exception>
 #include <mutex>
 #include <string>
-#include <system_error>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "surf/core/error.h"
+#include "surf/core/try_thread.h"
 
 namespace surf {
 namespace {
@@ -85,12 +86,11 @@ void parallel_for(std::size_t count, int threads,
   Queue queue(count, work);
   {
     std::vector<std::jthread> others;
-    try {
-      for (int worker = 1; worker < workers; ++worker) {
-        others.emplace_back([&queue, worker] { queue.run(worker); });
-      }
-    } catch (const std::system_error&) {
-      // The system refuses more threads: those there are do all the work.
+    others.reserve(static_cast<std::size_t>(workers));
+    for (int worker = 1; worker < workers; ++worker) {
+      std::jthread other = try_thread([&queue, worker] { queue.run(worker); });
+      if (!other.joinable()) break;   // those there are do all the work
+      others.push_back(std::move(other));
     }
     queue.run(0);
   }

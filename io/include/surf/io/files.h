@@ -9,9 +9,14 @@
 
 namespace surf::io {
 
-/// The whole file. Throws FileError (missing, a folder, unreadable, larger than `max_bytes`).
+/// The whole file, or what comes through a pipe such as the shell's <(command), once and at most 512 MiB.
+/// Throws FileError (missing, a folder, a device, a named pipe, unreadable, larger than `max_bytes`: that is
+/// judged before memory is taken).
 std::string read_file(const std::filesystem::path& path,
                       std::size_t max_bytes = std::size_t{8} << 30);
+
+/// Throws FileError unless `path` is an ordinary file: for readers that open it themselves, or twice.
+void require_regular_file(const std::filesystem::path& path);
 
 /// Calls `write(temporary)` with a name in the same folder and renames the result to `path`, so that
 /// a crash never leaves half a file under the real name. On failure the temporary is removed and
@@ -30,7 +35,7 @@ void write_text(const std::filesystem::path& path, const std::string& text);
 /// writable, or `path` is a folder). Leaves nothing behind but created folders.
 void check_writable(const std::filesystem::path& path);
 
-/// Lower-case hexadecimal SHA-256, as `sha256sum` prints it.
+/// Lower-case hexadecimal SHA-256, as `sha256sum` prints it. Of a pipe only after `read_file`.
 std::string sha256_of_file(const std::filesystem::path& path);
 std::string sha256_of(std::span<const std::byte> bytes);
 

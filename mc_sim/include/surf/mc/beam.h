@@ -7,11 +7,11 @@
 
 namespace surf::mc {
 
-/// The electron probe: monochromatic, Gaussian across at its focus, filling a cone evenly.
+/// The electron probe: monochromatic, Gaussian across at its focus, filling a cone evenly. Lengths: at most `largest_length_nm`.
 struct Beam {
   double energy_ev = 1000;     ///< 100 to 30000
   double tilt_deg = 0;         ///< angle of the beam from -z, 0 <= tilt < 90
-  double azimuth_deg = 0;      ///< toward which side it turns: 0 is +x, counter-clockwise from above
+  double azimuth_deg = 0;      ///< toward which side it turns: 0 is +x, counter-clockwise from above; within ten turns
   double spot_nm = 0;          ///< standard deviation of the Gaussian spot along each axis; 0: a point
   double convergence_deg = 0;  ///< half angle of the cone; 0: parallel
   double focus_nm = 0;         ///< how far above the scan plane, along the beam, the cone has its tip
