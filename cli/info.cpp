@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "commands.h"
+#include "common_options.h"
 #include "options.h"
 #include "terminal.h"
 #include "surf/core/error.h"
@@ -100,14 +101,14 @@ void print_scene(const std::filesystem::path& path,
   }
 }
 
-void print_info(const std::filesystem::path& path, std::optional<double> unit_nm,
+void print_info(const std::filesystem::path& path, const io::MeshUnit& unit,
                 const std::vector<std::filesystem::path>& material_files) {
   if (io::is_scene_file(path)) return print_scene(path, material_files);
   if (io::is_model_file(path)) return print_model(path);
   if (io::is_height_field_file(path)) return print_height_file(path);
   if (io::is_sem_image_file(path)) return print_sem_image(path);
   if (io::is_image_file(path)) return print_image(path);
-  print_mesh(path, unit_nm);
+  print_mesh(path, unit);
 }
 
 }  // namespace
@@ -132,13 +133,13 @@ void add_info(CLI::App& app, Action& action) {
   struct Options {
     std::vector<std::string> files;
     std::optional<std::string> unit;
+    bool override_unit = false;
     std::vector<std::string> materials;
   };
   const auto options = std::make_shared<Options>();
   CLI::App* sub = app.add_subcommand("info", "What is in meshes, images, AFM scans, models and scene files");
   sub->add_option("FILE", options->files, "Meshes, images, AFM scans, models or scenes")->type_name("FILE");
-  sub->add_option("--unit", options->unit, "Length of one unit of the mesh files (nm; glTF: m)")
-      ->type_name("nm|um|mm|m|pm|A|in");
+  add_unit_options(*sub, options->unit, options->override_unit, "Options");
   sub->add_option("--materials", options->materials,
                   "Your own materials for the scene files (TOML); may be repeated")
       ->type_name("FILE")->option_text("FILE")->allow_extra_args(false);
@@ -148,10 +149,9 @@ void add_info(CLI::App& app, Action& action) {
     action = [options] {
       if (options->files.empty())
         throw UsageError("info", "no file is given", "Give meshes, images, AFM scans, models or scene files");
-      std::optional<double> unit_nm;
-      if (options->unit) unit_nm = parse_unit_nm(*options->unit, "--unit");
+      const io::MeshUnit unit = parse_mesh_unit(options->unit, options->override_unit);
       for (const std::string& file : options->files)
-        print_info(file, unit_nm, {options->materials.begin(), options->materials.end()});
+        print_info(file, unit, {options->materials.begin(), options->materials.end()});
       return 0;
     };
   });

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "commands.h"
+#include "file_uses.h"
 #include "mpi_team.h"
 #include "options.h"
 #include "run.h"
@@ -129,8 +130,17 @@ int report_parse_error(const CLI::App& root, const CLI::ParseError& error) {
   return exit_usage;
 }
 
-int act(const Action& action) {
+// These do their work together with others; anything else is done by the leader alone.
+bool is_shared(const std::string& command) {
+  constexpr std::array shared{"simulate", "sweep", "train", "chart"};
+  return std::ranges::find(shared, command) != shared.end();
+}
+
+int act(const CLI::App& app, const Action& action) {
   try {
+    const auto check = [&] { refuse_overlaps(parsed_app(app)); };
+    if (is_shared(app.get_subcommands().front()->get_name())) workflow::together(team(), check);
+    else check();
     return action();
   } catch (const UsageError& error) {
     print_error(error.what());
@@ -144,12 +154,6 @@ int act(const Action& action) {
     print_error(error.what());
   }
   return exit_unusable;
-}
-
-// These do their work together with others; anything else is done by the leader alone.
-bool is_shared(const std::string& command) {
-  constexpr std::array shared{"simulate", "sweep", "train", "chart"};
-  return std::ranges::find(shared, command) != shared.end();
 }
 
 int parse_and_act(const std::vector<std::string>& arguments) {
@@ -198,7 +202,7 @@ int parse_and_act(const std::vector<std::string>& arguments) {
   }
   const std::string command = app.get_subcommands().front()->get_name();
   if (!is_shared(command) && leave_to_leader(command)) return 0;
-  return act(action);
+  return act(app, action);
 }
 
 }  // namespace

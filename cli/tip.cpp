@@ -233,6 +233,12 @@ std::map<std::string, std::string> made_by(const Options& o, const Plan& p, cons
   return made;
 }
 
+std::vector<std::filesystem::path> files_of(const Options& o) {
+  std::vector<std::filesystem::path> files{*o.output};
+  if (o.plot) files.emplace_back(*o.plot);
+  return files;
+}
+
 int by_shape(const Options& o) {
   if (!o.input.file.empty())
     throw UsageError("--shape", "it takes no scan", "Leave out one of the two");
@@ -241,7 +247,7 @@ int by_shape(const Options& o) {
   if (o.plot) io::write_plot(*o.plot, tip_plot(tip));
   if (o.quiet) return 0;
   print_tip(tip, depth_of(tip));
-  print("{:<10} {}\n", "written", *o.output);
+  print_written(files_of(o));
   return 0;
 }
 
@@ -267,7 +273,7 @@ int by_characterizer(const Options& o) {
   print("{:<10} found at sample ({}, {}) of the scan, {} above; residual {}\n", "known", found.offset_x,
              found.offset_y, format_length(found.offset_z_nm), format_length(found.residual_nm));
   print_tip(found.tip, std::max(height_range(scans).span_nm(), 1e-9));
-  print("{:<10} {}\n", "written", *o.output);
+  print_written(files_of(o));
   return 0;
 }
 
@@ -346,7 +352,7 @@ int work(const Options& o) {
     print_warning(fmt::format("the scan does not tell the tip's shape towards {} degrees (counter-clockwise "
                               "from +x): nothing there is steep enough. What is given is the bluntest tip "
                               "possible", ranges_of(open_ways)));
-  if (!o.quiet) print("{:<10} {}\n", "written", *o.output);
+  if (!o.quiet) print_written(files_of(o));
   return code;
 }
 
