@@ -49,7 +49,7 @@ mc::Specimen waves(double radius_nm) {
 
 mc::Specimen mesh(const std::string& path, double size_nm) {
   mc::Specimen s = flat();
-  TriangleMesh m = io::read_mesh(path, 1.0);
+  TriangleMesh m = io::read_mesh(path, {1.0, true});
   const Box box = bounds(m);
   const Vec3 size = box.size_nm();
   const double scale = size_nm / std::max({size.x, size.y, size.z});

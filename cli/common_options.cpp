@@ -10,6 +10,12 @@ CLI::Option* add_materials_option(CLI::App& app, std::vector<std::string>& files
       ->type_name("FILE")->option_text("FILE")->allow_extra_args(false);
 }
 
+void add_unit_options(CLI::App& app, std::optional<std::string>& unit, bool& overrides, const std::string& group) {
+  app.add_option("--unit", unit, "Length of one unit of the mesh files (as they say, else nm; glTF: m)")
+      ->type_name("nm|um|mm|m|pm|A|in")->group(group);
+  app.add_flag("--override-unit", overrides, "Take --unit even where a file says another unit")->group(group);
+}
+
 CLI::Option* add_threads_option(CLI::App& app, std::optional<std::string>& threads) {
   return app.add_option("--threads", threads,
                         "Does not change the result (one per hardware thread)")

@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "commands.h"
+#include "common_options.h"
 #include "failure.h"
 #include "options.h"
 #include "terminal.h"
@@ -114,24 +115,24 @@ void print_foreign_file(const std::filesystem::path& path) {
   }
 }
 
-void print_info(const std::filesystem::path& path, std::optional<double> unit_nm,
+void print_info(const std::filesystem::path& path, const io::MeshUnit& unit,
                 const std::vector<std::filesystem::path>& material_files) {
   if (io::is_scene_file(path)) return print_scene(path, material_files);
   if (io::is_model_file(path)) return print_model(path);
   if (io::is_height_field_file(path)) return print_height_file(path);
   if (io::is_sem_image_file(path)) return print_sem_image(path);
   if (io::is_image_file(path)) return print_image(path);
-  if (io::is_mesh_file(path) || io::has_mesh_content(path)) return print_mesh(path, unit_nm);
+  if (io::is_mesh_file(path) || io::has_mesh_content(path)) return print_mesh(path, unit);
   print_foreign_file(path);
 }
 
 // All of them, whatever is wrong with some. The code is that of the first that cannot be shown.
-int print_all(const std::vector<std::string>& files, std::optional<double> unit_nm,
+int print_all(const std::vector<std::string>& files, const io::MeshUnit& unit,
               const std::vector<std::filesystem::path>& material_files) {
   int code = 0;
   for (const std::string& file : files) {
     try {
-      print_info(file, unit_nm, material_files);
+      print_info(file, unit, material_files);
     } catch (...) {
       flush();   // what was said before the message
       const int failed = report_failure();
@@ -163,13 +164,13 @@ void add_info(CLI::App& app, Action& action) {
   struct Options {
     std::vector<std::string> files;
     std::optional<std::string> unit;
+    bool override_unit = false;
     std::vector<std::string> materials;
   };
   const auto options = std::make_shared<Options>();
   CLI::App* sub = app.add_subcommand("info", "What is in meshes, images, AFM scans, models and scene files");
   sub->add_option("FILE", options->files, "Meshes, images, AFM scans, models or scenes")->type_name("FILE");
-  sub->add_option("--unit", options->unit, "Length of one unit of the mesh files (nm; glTF: m)")
-      ->type_name("nm|um|mm|m|pm|A|in");
+  add_unit_options(*sub, options->unit, options->override_unit, "Options");
   sub->add_option("--materials", options->materials,
                   "Your own materials for the scene files (TOML); may be repeated")
       ->type_name("FILE")->option_text("FILE")->allow_extra_args(false);
@@ -179,9 +180,8 @@ void add_info(CLI::App& app, Action& action) {
     action = [options] {
       if (options->files.empty())
         throw UsageError("info", "no file is given", "Give meshes, images, AFM scans, models or scene files");
-      std::optional<double> unit_nm;
-      if (options->unit) unit_nm = parse_unit_nm(*options->unit, "--unit");
-      return print_all(options->files, unit_nm, {options->materials.begin(), options->materials.end()});
+      const io::MeshUnit unit = parse_mesh_unit(options->unit, options->override_unit);
+      return print_all(options->files, unit, {options->materials.begin(), options->materials.end()});
     };
   });
 }

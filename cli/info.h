@@ -6,6 +6,7 @@
 #include <string>
 
 #include "surf/core/vec3.h"
+#include "surf/io/mesh_unit.h"
 
 namespace surf::cli {
 
@@ -17,7 +18,7 @@ std::string format_bounds(const Box& box);
 std::string format_extent(const Box& box);
 
 /// Without a unit: as the format says, else nm.
-void print_mesh(const std::filesystem::path& path, std::optional<double> unit_nm);
+void print_mesh(const std::filesystem::path& path, const io::MeshUnit& unit);
 void print_image(const std::filesystem::path& path);
 void print_model(const std::filesystem::path& path);
 /// What a microscope wrote: surf/io/sem_file.h.

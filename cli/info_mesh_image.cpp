@@ -136,8 +136,8 @@ void print_attributes(const SurfaceScene& scene) {
 
 }  // namespace
 
-void print_mesh(const std::filesystem::path& path, std::optional<double> unit_nm) {
-  const std::vector<io::NamedMesh> bodies = io::read_meshes(path, unit_nm);
+void print_mesh(const std::filesystem::path& path, const io::MeshUnit& unit) {
+  const std::vector<io::NamedMesh> bodies = io::read_meshes(path, unit);
   const TriangleMesh mesh = bodies.size() == 1 ? bodies.front().mesh : io::join(bodies);
   const MeshReport report = check_mesh(mesh);
   print("{}: mesh{}\n", path.string(),
@@ -152,8 +152,8 @@ void print_mesh(const std::filesystem::path& path, std::optional<double> unit_nm
     print_item("volume", format_power(std::abs(report.signed_volume_nm3), 3));
   const std::string extension = path.extension().string();
   const double file_unit_nm = extension == ".glb" || extension == ".gltf" ? 1e9 : 1;
-  print_mesh_warnings(report, mesh, path, unit_nm.value_or(file_unit_nm));
-  print_attributes(io::read_surfaces(path, unit_nm));
+  print_mesh_warnings(report, mesh, path, unit.nm.value_or(file_unit_nm));
+  print_attributes(io::read_surfaces(path, unit));
 }
 
 void print_image(const std::filesystem::path& path) {

@@ -43,7 +43,7 @@ struct Options {
   std::optional<std::string> output, unit, z_unit, pixel_size, out_unit, scale, smooth, tolerance, triangles;
   std::optional<std::string> stitch, sliver, max_hole, min_component;
   std::optional<std::string> thickness, drape, tracks, magnification, z_exaggeration;
-  bool repair = false, keep_intersections = false, solid = false, true_size = false, plain = false, quiet = false;
+  bool override_unit = false, repair = false, keep_intersections = false, solid = false, true_size = false, plain = false, quiet = false;
 };
 
 double parse_factor(const std::string& text, const char* subject) {
@@ -87,7 +87,7 @@ RepairOptions make_repair(const Options& o) {
 MeshWork make_work(const Options& o, const io::SurfaceFormat& format) {
   MeshWork w;
   w.quiet = o.quiet;
-  if (o.unit) w.unit_nm = parse_unit_nm(*o.unit, "--unit");
+  w.unit = parse_mesh_unit(o.unit, o.override_unit);
   if (o.z_unit) w.z_unit_nm = parse_unit_nm(*o.z_unit, "--z-unit");
   if (o.pixel_size) {
     const auto [x, y] = parse_pixel_size(*o.pixel_size, "--pixel-size");
@@ -158,6 +158,7 @@ std::map<std::string, std::string> provenance(const Options& o, const Plan& p) {
   add("min-component", o.min_component), add("thickness", o.thickness);
   if (o.repair) made["repair"] = o.keep_intersections ? "keep-intersections" : "on";
   if (o.solid) made["solid"] = "on";
+  if (o.override_unit) made["override-unit"] = "on";
   std::vector<std::string> files;
   for (const FileChannel& f : p.inputs) files.push_back(f.file.string());
   for (const FileChannel& f : p.scalars) files.push_back(f.file.string());
@@ -210,24 +211,24 @@ bool print_surfaces(const SurfaceScene& scene, bool quiet) {
   return sound;
 }
 
-void write(const Options& o, const Plan& p, const SurfaceScene& scene) {
+std::vector<std::filesystem::path> write(const Options& o, const Plan& p, const SurfaceScene& scene) {
   if (!p.out_unit_nm) return io::write_surfaces(*o.output, scene, p.magnification);
   if (p.format.magnified) return io::write_surfaces(*o.output, scene, {1e6 / *p.out_unit_nm, 1});
   std::vector<io::NamedMesh> bodies;
   for (const Surface& surface : scene.surfaces) bodies.push_back({surface.name, {}, surface.mesh});
-  io::write_mesh(*o.output, io::join(bodies), *p.out_unit_nm);
+  return io::write_mesh(*o.output, io::join(bodies), *p.out_unit_nm);
 }
 
 int work(const Options& o) {
   const Plan plan = make_plan(o);
   Watched watched(!o.quiet);
   const SurfaceScene scene = make_scene(o, plan, watched);
-  write(o, plan, scene);
+  const std::vector<std::filesystem::path> files = write(o, plan, scene);
   const bool sound = print_surfaces(scene, o.quiet);
   if (!o.quiet) {
     if (!scene.tracks.empty()) print("{:<10} {}\n", "tracks", scene.tracks.size());
     if (plan.format.magnified && !plan.out_unit_nm) print("{:<10} {}\n", "scale", scale_of(plan.magnification));
-    print("{:<10} {}\n", "written", *o.output);
+    print_written(files);
   }
   const bool of_meshes = std::ranges::all_of(plan.inputs, [](const FileChannel& f) { return io::is_mesh_file(f.file); });
   if (!sound && !o.repair && of_meshes) {
@@ -246,8 +247,7 @@ void add_mesh(CLI::App& app, Action& action) {
   sub->group("Commands");
   sub->add_option("INPUTS", o->inputs, "Meshes (STL, OBJ, PLY, OFF, glTF, 3MF, VTP, VTM) and scans")->type_name("FILE");
   const char* units = "Units";
-  sub->add_option("--unit", o->unit, "Length of one unit of the input (nm; glTF: m)")
-      ->type_name("nm|um|mm|m|pm|A|in")->group(units);
+  add_unit_options(*sub, o->unit, o->override_unit, units);
   sub->add_option("--z-unit", o->z_unit, "Length of one unit of height, of scans that do not say (nm)")
       ->type_name("LENGTH")->group(units);
   sub->add_option("--pixel-size", o->pixel_size, "Of scans and pictures that do not say, 2nm or 2nmx3nm (1 nm)")

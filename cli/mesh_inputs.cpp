@@ -87,7 +87,7 @@ class Treatment {
                        "Name the file alone");
     const bool changes = work_.repair || work_.smooth.iterations > 0 || work_.reduces();
     if (changes || !work_.keep_bodies) return whole_mesh();
-    SurfaceScene read = io::read_surfaces(input_.file, work_.unit_nm);
+    SurfaceScene read = io::read_surfaces(input_.file, work_.unit);
     for (Surface& surface : read.surfaces) {
       std::erase_if(surface.scalars, [](const VertexScalar& s) { return s.name == "height" || s.name == "curvature"; });
       if (surface.scalars.empty()) surface.mesh = merge_equal_vertices(surface.mesh);
@@ -145,7 +145,7 @@ class Treatment {
 
   /// All bodies of the file, without what lies on them.
   TriangleMesh joined() {
-    SurfaceScene read = io::read_surfaces(input_.file, work_.unit_nm);
+    SurfaceScene read = io::read_surfaces(input_.file, work_.unit);
     const auto carries = [](const Surface& s) {
       return s.drape || std::ranges::any_of(s.scalars, [](const VertexScalar& scalar) {
         return scalar.name != "height" && scalar.name != "curvature";

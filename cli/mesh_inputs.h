@@ -7,6 +7,7 @@
 
 #include "picture_input.h"
 #include "surf/core/progress.h"
+#include "surf/io/mesh_unit.h"
 #include "surf/mesh/repair_mesh.h"
 #include "surf/mesh/simplify_mesh.h"
 #include "surf/mesh/smooth_mesh.h"
@@ -16,7 +17,7 @@ namespace surf::cli {
 
 /// What `semsurf mesh` does to each of its inputs.
 struct MeshWork {
-  std::optional<double> unit_nm;        ///< of meshes that do not say
+  io::MeshUnit unit;
   std::optional<double> z_unit_nm;      ///< of scans that do not say
   GivenPitch pitch;
   double scale = 1;

@@ -118,6 +118,13 @@ io::ScanRequest::Region parse_region(std::string_view text, std::string_view sub
           parse_length_nm(parts[2], subject), parse_length_nm(parts[3], subject)};
 }
 
+io::MeshUnit parse_mesh_unit(const std::optional<std::string>& unit, bool overrides) {
+  if (overrides && !unit)
+    throw UsageError("--override-unit", "there is no unit to take in place of the file's", "Add --unit um, or leave it out");
+  if (!unit) return {};
+  return {parse_unit_nm(*unit, "--unit"), overrides};
+}
+
 double parse_unit_nm(std::string_view text, std::string_view subject) {
   const bool named = text.find_first_of("0123456789") == std::string_view::npos;
   const double unit_nm = named ? unit_length_nm(text, subject) : parse_length_nm(text, subject);

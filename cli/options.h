@@ -2,11 +2,13 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
+#include "surf/io/mesh_unit.h"
 #include "surf/io/sim/scene_file.h"
 #include "surf/mesh/height_field_mesh.h"
 
@@ -35,6 +37,9 @@ std::pair<double, double> parse_pixel_size(std::string_view text, std::string_vi
 
 /// "X0,Y0,X1,Y1".
 io::ScanRequest::Region parse_region(std::string_view text, std::string_view subject);
+
+/// What --unit and --override-unit say of mesh files. Throws UsageError for the one without the other.
+io::MeshUnit parse_mesh_unit(const std::optional<std::string>& unit, bool overrides);
 
 /// The length of a file's unit in nm: "um", or "25.4mm".
 double parse_unit_nm(std::string_view text, std::string_view subject);

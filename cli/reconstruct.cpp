@@ -57,7 +57,7 @@ void print_surface(const Reconstruction& r) {
 
 void print_summary(const workflow::ReconstructSummary& s, const workflow::ReconstructJob& job) {
   if (s.pose) print_pose(*s.pose, job.sem->image.pitch_x_nm);
-  if (s.verdict == ReconstructionVerdict::not_registered) return;
+  if (s.verdict == ReconstructionVerdict::not_registered) return print_written(s.written);
   if (s.sem_noise)
     line("SEM noise", fmt::format("variance = {:.4g} level {:+.4g}, from {}", s.sem_noise->slope, s.sem_noise->intercept, s.sem_noise_from));
   if (job.sem) {
@@ -80,11 +80,7 @@ void print_summary(const workflow::ReconstructSummary& s, const workflow::Recons
       line("", fmt::format("{:.1f} % within one, {:.1f} % within two standard deviations", 100 * s.truth->coverage_1,
                            100 * s.truth->coverage_2));
   }
-  std::string label = "written";
-  for (const auto& file : s.written) {
-    line(label, file.string());
-    label.clear();
-  }
+  print_written(s.written);
 }
 
 void explain(const workflow::ReconstructSummary& s, const workflow::ReconstructJob& job) {

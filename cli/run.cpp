@@ -14,6 +14,7 @@
 
 #include "commands.h"
 #include "failure.h"
+#include "file_uses.h"
 #include "joined_team.h"
 #include "options.h"
 #include "run.h"
@@ -142,18 +143,21 @@ int report_parse_error(const CLI::App& root, const CLI::ParseError& error) {
   return exit_usage;
 }
 
-int act(const Action& action) {
-  try {
-    return action();
-  } catch (...) {
-    return report_failure();
-  }
-}
-
 // These do their work together with others; anything else is done by the leader alone.
 bool is_shared(const std::string& command) {
   constexpr std::array shared{"simulate", "sweep", "train", "chart"};
   return std::ranges::find(shared, command) != shared.end();
+}
+
+int act(const CLI::App& app, const Action& action) {
+  try {
+    const auto check = [&] { refuse_overlaps(parsed_app(app)); };
+    if (is_shared(app.get_subcommands().front()->get_name())) workflow::together(team(), check);
+    else check();
+    return action();
+  } catch (...) {
+    return report_failure();
+  }
 }
 
 int parse_and_act(const std::vector<std::string>& arguments) {
@@ -202,7 +206,7 @@ int parse_and_act(const std::vector<std::string>& arguments) {
   }
   const std::string command = app.get_subcommands().front()->get_name();
   if (!is_shared(command) && leave_to_leader(command)) return 0;
-  const int code = act(action);
+  const int code = act(app, action);
   if (take_refused_threads() > 0)
     print_note("the system refused threads (ulimit -u, ulimit -v): fewer than wanted did the work, with the same result");
   return code;

@@ -14,8 +14,7 @@ void add_specimen_options(CLI::App& app, SceneOptions& o) {
   app.add_option("--material", o.material, "What meshes and height field are made of (Si)")
       ->type_name("MATERIAL")->group(group);
   add_materials_option(app, o.materials)->group(group);
-  app.add_option("--unit", o.unit, "Length of one unit of the mesh files (nm; glTF: m)")
-      ->type_name("nm|um|mm|m|pm|A|in")->group(group);
+  add_unit_options(app, o.unit, o.override_unit, group);
   app.add_option("--substrate", o.substrate, "Add a half-space below the bodies")
       ->type_name("MATERIAL")->group(group);
   app.add_option("--substrate-z", o.substrate_z, "Height of its top (0nm)")

@@ -100,11 +100,11 @@ HeightField read_height_field(const fs::path& path, const SceneOptions& options,
 }
 
 // All bodies of a mesh file; materials that its bodies name and semsurf knows are taken as such.
-void add_mesh_bodies(const std::string& input, std::optional<double> unit_nm,
+void add_mesh_bodies(const std::string& input, const io::MeshUnit& unit,
                      const std::string& fallback, const io::BodyReader& read, io::SceneFile& scene,
                      std::vector<std::string>& notes) {
   std::vector<io::MeshBody> bodies =
-      read(input, unit_nm, {fallback, {}, "--material"}, scene.materials);
+      read(input, unit, {fallback, {}, "--material"}, scene.materials);
   for (io::MeshBody& body : bodies) {
     const std::string name = bodies.size() == 1 ? input : input + ", " + body.name;
     if (body.is_default && !body.file_material.empty())
@@ -125,8 +125,7 @@ io::SceneFile scene_from_shapes(const SceneOptions& options, const io::BodyReade
   }
   const std::string material = options.material.value_or("Si");
   if (!options.material) notes.push_back("no --material is given: Si");
-  std::optional<double> unit_nm;
-  if (options.unit) unit_nm = parse_unit_nm(*options.unit, "--unit");
+  const io::MeshUnit unit = parse_mesh_unit(options.unit, options.override_unit);
   for (const std::string& input : options.inputs) {
     const fs::path path(input);
     if (io::is_scene_file(path))
@@ -140,7 +139,8 @@ io::SceneFile scene_from_shapes(const SceneOptions& options, const io::BodyReade
           material_index(scene, material, "--material"), Edge::mirror};
       scene.inputs.push_back(path);
     } else {
-      add_mesh_bodies(input, unit_nm, material, read, scene, notes);
+      add_mesh_bodies(input, unit, material, read, scene, notes);
+      if (unit.overrides_file) scene.unit_overrides.push_back({path.filename().string(), *unit.nm});
       for (auto& file : io::mesh_input_files(path)) scene.inputs.push_back(std::move(file));
     }
   }
@@ -162,6 +162,8 @@ io::SceneFile scene_from_file(const SceneOptions& options, const io::BodyReader&
   };
   refuse(options.material, "--material");
   refuse(options.unit, "--unit");
+  if (options.override_unit)
+    throw UsageError("--override-unit", "a scene file says this for each of its parts", "Write override_unit = true there");
   refuse(options.pitch, "--pitch");
   refuse(options.z_unit, "--z-unit");
   refuse(options.height_channel, "--height-channel");

@@ -13,6 +13,7 @@ namespace surf::cli {
 struct SceneOptions {
   std::vector<std::string> inputs;
   std::vector<std::string> materials;   ///< files of the user's own
+  bool override_unit = false;
   std::optional<std::string> material, unit, substrate, substrate_z, edge, pitch, z_unit, height_channel;
   std::optional<std::string> energy, tilt, azimuth, spot, convergence, focus, working_distance;
   std::optional<std::string> current, dwell;

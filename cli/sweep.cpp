@@ -3,12 +3,15 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <iterator>
 #include <map>
 #include <memory>
 
 #include "commands.h"
+#include "file_uses.h"
 #include "joined_team.h"
 #include "options.h"
 #include "simulate_job_options.h"
@@ -150,6 +153,13 @@ void parse_part(const std::string& text, workflow::SweepJob& job) {
   job.part = static_cast<int>(parse_whole(text.substr(0, slash), "--part", 1, job.parts));
 }
 
+std::vector<io::FileUse> inputs_of(const Options& o) {
+  std::vector<io::FileUse> inputs;
+  for (const auto& [option, files] : {std::pair{"INPUT", &o.simulate.scene.inputs}, std::pair{"--materials", &o.simulate.scene.materials}})
+    for (const std::string& file : *files) std::ranges::copy(files_read(option, file), std::back_inserter(inputs));
+  return inputs;
+}
+
 workflow::SweepJob make_sweep(const Options& o, const std::string& command_line) {
   workflow::SweepJob job;
   if (!o.output) throw UsageError("--output", "no folder is given", "Add -o sweep");
@@ -169,6 +179,7 @@ workflow::SweepJob make_sweep(const Options& o, const std::string& command_line)
     if (runs > most_runs) throw UsageError("--vary", "these are more than a million runs", "Give fewer values");
   }
   const std::vector<std::string> formats = o.formats.empty() ? std::vector<std::string>{"exr"} : o.formats;
+  std::vector<io::FileUse> outputs{{"--output", job.folder / "sweep.csv", {}}, {"--output", job.folder / "records", {}}};
   for (std::size_t number = 0; number < runs; ++number) {
     workflow::SweepRun run;
     std::size_t rest = number;
@@ -180,14 +191,19 @@ workflow::SweepJob make_sweep(const Options& o, const std::string& command_line)
     SimulateOptions options = o.simulate;
     options.quiet = true;
     for (std::size_t a = 0; a < axes.size(); ++a) set(options, axes[a].name, run.values[a]);
-    for (const std::string& format : formats)
+    for (const std::string& format : formats) {
       options.outputs.push_back((job.folder / (file_name(axes, run.values) + "." + format)).string());
+      outputs.push_back({"--output", options.outputs.back(), {}});
+    }
+    std::filesystem::path record = options.outputs.back();
+    io::refuse_strangers(options.outputs.back(), {record.replace_extension(".run.json")});
     // Each process looks at every specimen, so each reads them; they are shared when they are traced.
     run.make = [options, command_line] {
       return make_simulate_job(options, command_line, workflow::specimen_reader(nullptr, processes_here()));
     };
     job.runs.push_back(std::move(run));
   }
+  io::refuse_overlaps(inputs_of(o), outputs);
   // A mistake in the last value should not wait for all the others, unless they are very many.
   for (std::size_t i = 0; i < runs; i = runs <= most_tried || i + 1 == runs ? i + 1 : runs - 1) {
     const workflow::SimulateJob tried = job.runs[i].make();
@@ -234,7 +250,7 @@ int sweep(const Options& o, const std::string& command_line) {
   }
   if (!quiet) {
     if (s.found > 0) print("{} runs were there before\n", s.found);
-    print("written {}\n", s.table.string());
+    print("written {}\n        images and records of {} runs in {}\n", s.table.string(), s.done, job.folder.string());
   }
   return s.untrustworthy > 0 ? exit_untrustworthy : 0;
 }

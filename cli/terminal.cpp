@@ -63,6 +63,14 @@ void speak_to(std::FILE* output, std::FILE* messages) {
   messages_to = messages;
 }
 
+void print_written(const std::vector<std::filesystem::path>& files) {
+  const char* label = "written";
+  for (const std::filesystem::path& file : files) {
+    print("{:<10} {}\n", label, file.string());
+    label = "";
+  }
+}
+
 void flush() {
   if (std::fflush(output()) == 0 && !std::ferror(output())) return;
   std::clearerr(output());

@@ -5,8 +5,10 @@
 
 #include <chrono>
 #include <cstdio>
+#include <filesystem>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "surf/core/progress.h"
 
@@ -22,6 +24,8 @@ template <class... T>
 void print(fmt::format_string<T...> format, T&&... values) {
   fmt::vprint(output(), format, fmt::make_format_args(values...));
 }
+/// "written" and the name of each file, one a line; the others, that belong to the first, without the word.
+void print_written(const std::vector<std::filesystem::path>& files);
 /// What was printed can be read now. Throws FileError if it cannot be kept, as on a full disk.
 void flush();
 

@@ -178,11 +178,6 @@ std::string ranges_of(const std::vector<double>& degrees) {
   return text;
 }
 
-void print_written(const Options& o) {
-  print("{:<10} {}\n", "written", *o.output);
-  if (o.plot) print("{:<10} {}\n", "written", *o.plot);
-}
-
 // Of the samples that the tip has; above 0 for all but a flat one.
 double depth_of(const Tip& tip) {
   double lowest = 0;
@@ -253,6 +248,12 @@ std::map<std::string, std::string> made_by(const Options& o, const Plan& p, cons
   return made;
 }
 
+std::vector<std::filesystem::path> files_of(const Options& o) {
+  std::vector<std::filesystem::path> files{*o.output};
+  if (o.plot) files.emplace_back(*o.plot);
+  return files;
+}
+
 int by_shape(const Options& o) {
   if (!o.input.file.empty())
     throw UsageError("--shape", "it takes no scan", "Leave out one of the two");
@@ -261,7 +262,7 @@ int by_shape(const Options& o) {
   if (o.plot) io::write_plot(*o.plot, tip_plot(tip));
   if (o.quiet) return 0;
   print_tip(tip, depth_of(tip));
-  print_written(o);
+  print_written(files_of(o));
   return 0;
 }
 
@@ -287,7 +288,7 @@ int by_characterizer(const Options& o) {
   print("{:<10} found at sample ({}, {}) of the scan, {} above; residual {}\n", "known", found.offset_x,
              found.offset_y, format_length(found.offset_z_nm), format_length(found.residual_nm));
   print_tip(found.tip, std::max(height_range(scans).span_nm(), 1e-9));
-  print_written(o);
+  print_written(files_of(o));
   return 0;
 }
 
@@ -368,7 +369,7 @@ int work(const Options& o) {
                               "from +x): nothing there is steep enough. What is given is the bluntest tip "
                               "possible", ranges_of(open_ways)));
   const int code = report_doubt(tip);
-  if (!o.quiet) print_written(o);
+  if (!o.quiet) print_written(files_of(o));
   return code;
 }
 

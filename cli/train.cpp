@@ -33,7 +33,7 @@ void print_training(const workflow::TrainJob& job, const workflow::TrainSummary&
     label.clear();
   }
   if (label.empty()) print_line("", "in % of the mean signal; rms without the images' noise, mean with it");
-  print_line("written", job.output.string());
+  print_written(s.written);
 }
 
 int train(const TrainOptions& options) {

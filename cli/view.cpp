@@ -40,13 +40,13 @@ struct Options {
   std::vector<std::string> files;
   std::optional<std::string> output, title, drape, unit, pixel_size, tolerance, step;
   std::vector<std::string> scalars;
-  bool quiet = false;
+  bool override_unit = false, quiet = false;
 };
 
 ViewReading make_reading(const Options& o) {
   ViewReading r;
   r.quiet = o.quiet;
-  if (o.unit) r.unit_nm = parse_unit_nm(*o.unit, "--unit");
+  r.unit = parse_mesh_unit(o.unit, o.override_unit);
   if (o.pixel_size) {
     const auto [x, y] = parse_pixel_size(*o.pixel_size, "--pixel-size");
     r.pitch = {x, y};
@@ -160,6 +160,8 @@ int work(const Options& o) {
   if (drape) read.push_back(drape->file.string());
   std::map<std::string, std::string> settings;
   if (reading.tolerance_nm) settings["tolerance_nm"] = format_exact(*reading.tolerance_nm);
+  if (o.unit) settings["unit"] = *o.unit;
+  if (o.override_unit) settings["override-unit"] = "on";
   if (reading.step > 1) settings["step"] = std::to_string(reading.step);
   page.metadata = provenance_of("view", settings, read);
 
@@ -190,8 +192,7 @@ void add_view(CLI::App& app, Action& action) {
   sub->add_option("--scalar", o->scalars, "A map to colour them by, FILE or FILE:CHANNEL; may be repeated")
       ->type_name("FILE")->option_text("FILE")->allow_extra_args(false)->group(shown);
   const char* reading = "Reading";
-  sub->add_option("--unit", o->unit, "Length of one unit of meshes (nm; glTF: m)")
-      ->type_name("nm|um|mm|m|pm|A|in")->group(reading);
+  add_unit_options(*sub, o->unit, o->override_unit, reading);
   sub->add_option("--pixel-size", o->pixel_size, "Of images and scans that do not say, 2nm or 2nmx3nm")
       ->type_name("LENGTH")->group(reading);
   const char* size = "Size";

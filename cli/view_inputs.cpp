@@ -74,7 +74,7 @@ class Adder {
   }
 
   void add_meshes() {
-    SurfaceScene scene = io::read_surfaces(input_.file, reading_.unit_nm);
+    SurfaceScene scene = io::read_surfaces(input_.file, reading_.unit);
     for (Surface& body : scene.surfaces) {
       if (body.drape) add_drape(*body.drape, body.name);
       io::WebSurface surface;

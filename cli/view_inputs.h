@@ -6,12 +6,13 @@
 
 #include "picture_input.h"
 #include "surf/core/progress.h"
+#include "surf/io/mesh_unit.h"
 #include "surf/io/web_page.h"
 
 namespace surf::cli {
 
 struct ViewReading {
-  std::optional<double> unit_nm;        ///< of meshes that do not say
+  io::MeshUnit unit;
   GivenPitch pitch;                     ///< of scans and pictures that do not say
   std::optional<double> tolerance_nm;   ///< height fields and meshes become fewer triangles within it
   int step = 1;                         ///< every so many-th sample of height fields

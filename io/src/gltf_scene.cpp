@@ -8,6 +8,7 @@
 #include <set>
 #include <utility>
 
+#include "file_unit.h"
 #include "gltf_document.h"
 #include "gltf_names.h"
 #include "gltf_nodes.h"
@@ -48,8 +49,8 @@ T whole(double value, const JsonValue& place) {
 
 class SceneParser {
  public:
-  SceneParser(const std::filesystem::path& path, std::string_view content, std::optional<double> unit_nm)
-      : path_(path), document_(path, content), unit_nm_(unit_nm.value_or(document_.unit_nm)),
+  SceneParser(const std::filesystem::path& path, std::string_view content, const MeshUnit& unit)
+      : path_(path), document_(path, content), unit_nm_(file_unit_nm(unit, document_.unit_nm, path.string())),
         instances_(gltf_instances(document_.root)) {
     check_gltf_size(document_, instances_);
   }
@@ -214,8 +215,8 @@ class SceneParser {
 }  // namespace
 
 SurfaceScene parse_gltf_scene(const std::filesystem::path& path, std::string_view content,
-                              std::optional<double> unit_nm) {
-  return SceneParser(path, content, unit_nm).parse();
+                              const MeshUnit& unit) {
+  return SceneParser(path, content, unit).parse();
 }
 
 }  // namespace surf::io

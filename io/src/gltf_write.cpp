@@ -17,6 +17,7 @@
 #include "gltf_names.h"
 #include "image_formats.h"
 #include "lower_extension.h"
+#include "percent_encoded.h"
 #include "plain_text.h"
 #include "surf/core/error.h"
 #include "surf/mesh/vertex_normals.h"
@@ -50,17 +51,6 @@ std::string attribute_name(const VertexScalar& scalar) {
   }
   std::transform(name.begin(), name.end(), name.begin(), upper);
   return name;
-}
-
-/// Bytes other than letters, digits and "-._~" as %XX (RFC 3986).
-std::string percent_encoded(const std::string& name) {
-  std::string uri;
-  for (const char c : name) {
-    const bool is_plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
-                          c == '-' || c == '.' || c == '_' || c == '~';
-    uri += is_plain ? std::string(1, c) : fmt::format("%{:02X}", static_cast<unsigned char>(c));
-  }
-  return uri;
 }
 
 class GltfBuilder {

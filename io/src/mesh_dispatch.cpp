@@ -4,8 +4,10 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <optional>
 #include <utility>
 
+#include "file_unit.h"
 #include "lower_extension.h"
 #include "surf/core/error.h"
 #include "surf/core/units.h"
@@ -21,6 +23,7 @@ ParsedFile parse_gltf_shapes(const std::filesystem::path& path, std::string_view
   ParsedFile parsed;
   GltfMeshes found = parse_gltf(path, content);
   parsed.note.unit_nm = found.unit_nm;
+  parsed.note.states_unit = true;
   for (NamedMesh& body : found.meshes) {
     parsed.bodies.push_back(
         {std::move(body.material), {.name = std::move(body.name), .mesh = std::move(body.mesh)}});
@@ -37,27 +40,28 @@ ParsedFile in_nm(SurfaceScene scene) {
   return parsed;
 }
 
-ParsedFile with_unit(ParsedFile parsed, std::optional<double> unit_nm) {
-  parsed.unit_assumed = !unit_nm && !parsed.note.is_ours && parsed.note.unit_nm == 1;   // 1e9 of glTF
-  if (unit_nm) parsed.note.unit_nm = *unit_nm;
+ParsedFile with_unit(ParsedFile parsed, const MeshUnit& unit, const std::string& file) {
+  const auto stated_nm = parsed.note.states_unit ? std::optional(parsed.note.unit_nm) : std::nullopt;
+  parsed.unit_assumed = !unit.nm && !stated_nm;
+  parsed.note.unit_nm = file_unit_nm(unit, stated_nm, file);
   return parsed;
 }
 
-ParsedFile parse(const std::filesystem::path& path, std::optional<double> unit_nm, Want want) {
+ParsedFile parse(const std::filesystem::path& path, const MeshUnit& unit, Want want) {
   const std::string file = path.string();
   const std::string content = read_file(path);
   if (content.empty()) throw FileError(file, "the file is empty", "Export the mesh again");
   switch (mesh_format_of(path, content)) {
-    case MeshFormat::stl: return with_unit(parse_stl(file, content), unit_nm);
-    case MeshFormat::obj: return with_unit(parse_obj(path, content, want), unit_nm);
-    case MeshFormat::ply: return with_unit(parse_ply(file, content, want), unit_nm);
-    case MeshFormat::off: return with_unit(parse_off(file, content), unit_nm);
+    case MeshFormat::stl: return with_unit(parse_stl(file, content), unit, file);
+    case MeshFormat::obj: return with_unit(parse_obj(path, content, want), unit, file);
+    case MeshFormat::ply: return with_unit(parse_ply(file, content, want), unit, file);
+    case MeshFormat::off: return with_unit(parse_off(file, content), unit, file);
     case MeshFormat::gltf:
-      if (want == Want::shapes) return with_unit(parse_gltf_shapes(path, content), unit_nm);
-      return in_nm(parse_gltf_scene(path, content, unit_nm));
-    case MeshFormat::three_mf: return in_nm(parse_3mf_scene(path, content, unit_nm));
-    case MeshFormat::vtp: return with_unit(parse_vtp(file, content, want), unit_nm);
-    case MeshFormat::vtm: return with_unit(parse_vtm(path, content, want), unit_nm);
+      if (want == Want::shapes) return with_unit(parse_gltf_shapes(path, content), unit, file);
+      return in_nm(parse_gltf_scene(path, content, unit));
+    case MeshFormat::three_mf: return in_nm(parse_3mf_scene(path, content, unit));
+    case MeshFormat::vtp: return with_unit(parse_vtp(file, content, want), unit, file);
+    case MeshFormat::vtm: return with_unit(parse_vtm(path, content, want), unit, file);
     case MeshFormat::unknown: break;
   }
   throw FileError(file, "neither its content nor its name is that of a mesh format known here",
@@ -103,10 +107,10 @@ MeshFormat mesh_format_of(const std::filesystem::path& path, std::string_view co
   return MeshFormat::unknown;
 }
 
-ParsedFile parse_mesh_file(const std::filesystem::path& path, std::optional<double> unit_nm, Want want) {
+ParsedFile parse_mesh_file(const std::filesystem::path& path, const MeshUnit& unit, Want want) {
   const std::string file = path.string();
-  if (unit_nm) check_unit(*unit_nm, file);
-  ParsedFile parsed = parse(path, unit_nm, want);
+  if (unit.nm) check_unit(*unit.nm, file);
+  ParsedFile parsed = parse(path, unit, want);
   std::erase_if(parsed.bodies, [](const ParsedBody& body) { return body.surface.mesh.triangles.empty(); });
   if (parsed.bodies.empty()) {
     throw FileError(file, "there are no triangles in it", "Export a surface, not points or an empty scene");

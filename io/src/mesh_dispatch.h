@@ -2,7 +2,6 @@
 #pragma once
 
 #include <filesystem>
-#include <optional>
 #include <string>
 #include <string_view>
 
@@ -18,9 +17,9 @@ MeshFormat mesh_format_of(const std::filesystem::path& path, std::string_view co
 /// Throws UsageError unless it is positive and finite.
 void check_unit(double unit_nm, const std::string& file);
 
-/// Reads a file of any format. `unit_nm` takes the place of what the file says. Bodies without triangles are
+/// Reads a file of any format. `unit` as in `file_unit_nm`. Bodies without triangles are
 /// left out, others have names (the file's, where it gives none) and are in nm. Throws FileError,
 /// Unsupported, UsageError for a unit that is none.
-ParsedFile parse_mesh_file(const std::filesystem::path& path, std::optional<double> unit_nm, Want want);
+ParsedFile parse_mesh_file(const std::filesystem::path& path, const MeshUnit& unit, Want want);
 
 }  // namespace surf::io

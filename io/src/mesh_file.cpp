@@ -34,10 +34,9 @@ bool may_name_others(MeshFormat format) {
 
 }  // namespace
 
-std::vector<NamedMesh> read_meshes(const std::filesystem::path& path,
-                                   std::optional<double> unit_nm) {
+std::vector<NamedMesh> read_meshes(const std::filesystem::path& path, const MeshUnit& unit) {
   std::vector<NamedMesh> meshes;
-  ParsedFile parsed = parse_mesh_file(path, unit_nm, Want::shapes);
+  ParsedFile parsed = parse_mesh_file(path, unit, Want::shapes);
   for (ParsedBody& body : parsed.bodies) {
     Surface& surface = body.surface;
     meshes.push_back({std::move(surface.name), std::move(body.material), merge_equal_vertices(surface.mesh),
@@ -53,8 +52,8 @@ TriangleMesh join(const std::vector<NamedMesh>& meshes) {
   return merge_equal_vertices(all);
 }
 
-TriangleMesh read_mesh(const std::filesystem::path& path, std::optional<double> unit_nm) {
-  std::vector<NamedMesh> meshes = read_meshes(path, unit_nm);
+TriangleMesh read_mesh(const std::filesystem::path& path, const MeshUnit& unit) {
+  std::vector<NamedMesh> meshes = read_meshes(path, unit);
   if (meshes.size() == 1) return std::move(meshes.front().mesh);
   return join(meshes);
 }
@@ -76,7 +75,7 @@ std::vector<std::filesystem::path> mesh_input_files(const std::filesystem::path&
   return files;
 }
 
-void write_mesh(const std::filesystem::path& path, const TriangleMesh& mesh, double unit_nm) {
+std::vector<std::filesystem::path> write_mesh(const std::filesystem::path& path, const TriangleMesh& mesh, double unit_nm) {
   const SurfaceFormat& format = surface_format_of(path);
   check_unit(unit_nm, path.string());
   validate(mesh, path.string().c_str());
@@ -84,14 +83,13 @@ void write_mesh(const std::filesystem::path& path, const TriangleMesh& mesh, dou
   if (!has_view_writer(format)) {
     SurfaceScene one;
     one.surfaces.push_back({name, mesh, {}, {}});
-    write_surfaces(path, one, {.factor = mm_nm / unit_nm});
-    return;
+    return write_surfaces(path, one, {.factor = mm_nm / unit_nm});
   }
   SceneView scene;
   scene.surfaces.push_back({.name = name, .mesh = &mesh, .scalars = {}});
   if (format.magnified) set_magnification(scene.note, mm_nm / unit_nm);
   scene.note.unit_nm = unit_nm;
-  write_view(path, std::move(scene));
+  return write_view(path, std::move(scene));
 }
 
 void check_mesh_target(const std::filesystem::path& path) { check_surface_target(path); }

@@ -10,6 +10,7 @@
 #include "mesh_dispatch.h"
 #include "surf/core/error.h"
 #include "surf/io/files.h"
+#include "surf/io/overlaps.h"
 #include "surface_names.h"
 #include "surface_output.h"
 
@@ -49,30 +50,31 @@ void tidy_scalars(Surface& surface) {
 
 const SurfaceFormat& check_surface_target(const std::filesystem::path& path) {
   const SurfaceFormat& format = surface_format_of(path);
+  const std::vector<std::filesystem::path> files = files_written_with(path);
+  refuse_strangers(path, {files.begin() + 1, files.end()});
   check_writable(path);
   return format;
 }
 
-void write_surfaces(const std::filesystem::path& path, const SurfaceScene& scene,
+std::vector<std::filesystem::path> write_surfaces(const std::filesystem::path& path, const SurfaceScene& scene,
                     const Magnification& magnification) {
   const SurfaceFormat& format = surface_format_of(path);
   check_magnification(magnification, path.string());
   validate(scene, path.string().c_str());
   if (!has_view_writer(format)) {
-    write_all(format.extension == ".3mf" ? format_3mf(path, scene, magnification)
-                                         : format_gltf(path, scene, magnification));
-    return;
+    return write_all(format.extension == ".3mf" ? format_3mf(path, scene, magnification)
+                                                : format_gltf(path, scene, magnification));
   }
   SceneView view = view_of(scene);
   if (format.magnified) {
     set_magnification(view.note, magnification.factor);
     view.note.z_exaggeration = magnification.z_exaggeration;
   }
-  write_view(path, std::move(view));
+  return write_view(path, std::move(view));
 }
 
-SurfaceScene read_surfaces(const std::filesystem::path& path, std::optional<double> unit_nm) {
-  ParsedFile parsed = parse_mesh_file(path, unit_nm, Want::everything);
+SurfaceScene read_surfaces(const std::filesystem::path& path, const MeshUnit& unit) {
+  ParsedFile parsed = parse_mesh_file(path, unit, Want::everything);
   SurfaceScene scene;
   UniqueNames unique;
   for (ParsedBody& body : parsed.bodies) {

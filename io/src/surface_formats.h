@@ -27,10 +27,8 @@ std::vector<OutputFile> format_3mf(const std::filesystem::path& path, const Surf
 
 // Readers: `file` is the name for messages, the result in nm, semsurf's magnification undone. A surface may
 // have no triangles; the caller drops it.
-SurfaceScene parse_gltf_scene(const std::filesystem::path& path, std::string_view content,
-                              std::optional<double> unit_nm);
-SurfaceScene parse_3mf_scene(const std::filesystem::path& path, std::string_view content,
-                             std::optional<double> unit_nm);
+SurfaceScene parse_gltf_scene(const std::filesystem::path& path, std::string_view content, const MeshUnit& unit);
+SurfaceScene parse_3mf_scene(const std::filesystem::path& path, std::string_view content, const MeshUnit& unit);
 bool is_3mf(std::string_view content);
 
 }  // namespace surf::io

@@ -99,8 +99,10 @@ void apply_entry(std::string_view key, std::string_view value, const std::string
   note.is_ours = true;
   if (kind == "unit_nm") {
     note.unit_nm = positive(key, value, file);
+    note.states_unit = true;
   } else if (kind == "magnification") {
     set_magnification(note, positive(key, value, file));
+    note.states_unit = true;
     if (!(note.unit_nm > 0) || !std::isfinite(note.unit_nm)) fail(file, key, value);
   } else if (kind == "z_exaggeration") {
     note.z_exaggeration = positive(key, value, file);

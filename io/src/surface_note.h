@@ -22,6 +22,7 @@ struct SurfaceNote {
   std::map<std::size_t, std::string> drapes;         ///< by the surface's place: the picture's file
   std::map<std::string, std::string> metadata;
   bool is_ours = false;                              ///< semsurf wrote the file
+  bool states_unit = false;                          ///< unit_nm is what the file says, not assumed
 
   Vec3 to_file(const Vec3& nm) const {
     return {nm.x / unit_nm, nm.y / unit_nm, nm.z * z_exaggeration / unit_nm};

@@ -16,6 +16,7 @@
 #include "surf/core/error.h"
 #include "surf/core/units.h"
 #include "surf/io/files.h"
+#include "surf/io/overlaps.h"
 #include "vtp_format.h"
 
 namespace surf::io {
@@ -122,6 +123,14 @@ void write_content(const std::filesystem::path& temporary, const std::string& co
   if (!stream) throw std::runtime_error(std::strerror(errno));
 }
 
+void write_in_order(std::span<const OutputFile> files) {
+  if (files.empty()) return;
+  write_atomically(files.back().path, [&](const std::filesystem::path& temporary) {
+    write_content(temporary, files.back().content);
+    write_in_order(files.first(files.size() - 1));
+  });
+}
+
 }  // namespace
 
 const std::vector<SurfaceFormat>& surface_formats() {
@@ -139,22 +148,23 @@ bool has_view_writer(const SurfaceFormat& format) {
   return format.extension != ".glb" && format.extension != ".gltf" && format.extension != ".3mf";
 }
 
-void write_all(std::span<const OutputFile> files) {
-  if (files.empty()) return;
-  write_atomically(files.back().path, [&](const std::filesystem::path& temporary) {
-    write_content(temporary, files.back().content);
-    write_all(files.first(files.size() - 1));
-  });
+std::vector<std::filesystem::path> write_all(std::span<const OutputFile> files) {
+  std::vector<std::filesystem::path> names;
+  for (const OutputFile& file : files) names.push_back(file.path);
+  std::ranges::rotate(names, names.end() - 1);
+  refuse_strangers(names.front(), {names.begin() + 1, names.end()});
+  write_in_order(files);
+  return names;
 }
 
-void write_view(const std::filesystem::path& path, SceneView scene) {
+std::vector<std::filesystem::path> write_view(const std::filesystem::path& path, SceneView scene) {
   const Row& row = row_of(path);
   check_numbers(scene, row, path.string());
   scene.note.names.clear();
   if (row.format.several || scene.surfaces.size() == 1) {
     for (const SurfaceView& surface : scene.surfaces) scene.note.names.emplace_back(surface.name);
   }
-  write_all(format(path, row.format.extension, scene));
+  return write_all(format(path, row.format.extension, scene));
 }
 
 }  // namespace surf::io

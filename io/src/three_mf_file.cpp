@@ -11,6 +11,7 @@
 #include <set>
 #include <utility>
 
+#include "file_unit.h"
 #include "affine_map.h"
 #include "json_value.h"
 #include "surf/core/error.h"
@@ -59,8 +60,8 @@ struct Object {
 
 class ThreeMfParser {
  public:
-  ThreeMfParser(const std::filesystem::path& path, std::string_view content, std::optional<double> unit_nm)
-      : path_(path), file_(path.string()), zip_(file_, content), given_unit_nm_(unit_nm) {}
+  ThreeMfParser(const std::filesystem::path& path, std::string_view content, const MeshUnit& unit)
+      : path_(path), file_(path.string()), zip_(file_, content), given_unit_(unit) {}
 
   SurfaceScene parse() {
     const std::string part = model_part();
@@ -155,7 +156,7 @@ class ThreeMfParser {
         scene_.metadata = object.texts("metadata");
       }
     }
-    unit_nm_ = given_unit_nm_.value_or(unit->nm / magnification);
+    unit_nm_ = file_unit_nm(given_unit_, unit->nm / magnification, file_);
   }
 
   double positive(std::string_view text, const char* place) const {
@@ -293,7 +294,7 @@ class ThreeMfParser {
   std::filesystem::path path_;
   std::string file_;
   ZipReader zip_;
-  std::optional<double> given_unit_nm_;
+  MeshUnit given_unit_;
   double unit_nm_ = 1;
   double z_exaggeration_ = 1;
   std::map<std::string, Object> objects_;
@@ -316,8 +317,8 @@ bool is_3mf(std::string_view content) {
 }
 
 SurfaceScene parse_3mf_scene(const std::filesystem::path& path, std::string_view content,
-                             std::optional<double> unit_nm) {
-  return ThreeMfParser(path, content, unit_nm).parse();
+                             const MeshUnit& unit) {
+  return ThreeMfParser(path, content, unit).parse();
 }
 
 }  // namespace surf::io

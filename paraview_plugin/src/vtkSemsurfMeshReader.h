@@ -18,6 +18,7 @@ class VTKSEMSURF_EXPORT vtkSemsurfMeshReader : public vtkPolyDataAlgorithm {
   void SetFileName(VTK_FILEPATH const char* name);
   const char* GetFileName() const { return this->FileName.c_str(); }
   vtkSetMacro(Unit, double);   ///< nm; 0: what the file or its format says
+  vtkSetMacro(OverrideUnit, int);   ///< not 0: Unit counts even where the file says another one
 
  protected:
   vtkSemsurfMeshReader() { this->SetNumberOfInputPorts(0); }
@@ -27,6 +28,7 @@ class VTKSEMSURF_EXPORT vtkSemsurfMeshReader : public vtkPolyDataAlgorithm {
  private:
   std::string FileName;
   double Unit = 0;
+  int OverrideUnit = 0;
 };
 
 #endif

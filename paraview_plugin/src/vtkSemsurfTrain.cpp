@@ -27,6 +27,7 @@
 #include "surf/core/units.h"
 #include "surf/io/sim/materials.h"
 #include "training.h"
+#include "upstream.h"
 
 vtkStandardNewMacro(vtkSemsurfTrain);
 
@@ -235,6 +236,7 @@ int vtkSemsurfTrain::RequestData(vtkInformation*, vtkInformationVector** inputs,
   if (!pv::is_first_piece(outputs->GetInformationObject(0))) return 1;
   return pv::attempt(this, [&] {
     pv::with_labels([&] {
+      pv::refuse_overlaps(this, {{"Model File", this->ModelFile, {}}}, {{"Material File", this->MaterialFile, {}}});
       const workflow::TrainJob job = this->Job(inputs);
       std::vector<std::string> notes;
       workflow::TrainSummary summary;

@@ -8,6 +8,7 @@
 
 #include "attempt.h"
 #include "pipeline.h"
+#include "upstream.h"
 
 void vtkSemsurfWriter::SetFileName(const char* name) {
   const std::string value = name ? name : "";
@@ -27,5 +28,11 @@ vtkTypeBool vtkSemsurfWriter::ProcessRequest(vtkInformation* request, vtkInforma
 void vtkSemsurfWriter::WriteData() {
   auto* const ranks = vtkMultiProcessController::GetGlobalController();
   if (ranks && ranks->GetLocalProcessId() != 0) return;
-  if (!surf::pv::attempt(this, [&] { this->WriteFile(); })) this->SetErrorCode(vtkErrorCode::UnknownError);
+  const auto write = [&] {
+    std::vector<surf::io::FileUse> outputs;
+    for (const auto& file : surf::io::files_written_with(this->FileName)) outputs.push_back({"File Name", file, {}});
+    surf::pv::refuse_overlaps(this, outputs);
+    this->WriteFile();
+  };
+  if (!surf::pv::attempt(this, write)) this->SetErrorCode(vtkErrorCode::UnknownError);
 }

@@ -351,3 +351,16 @@ semsurf_cli_test(sample.small ARGS sample islands --size 24x16 --electrons 1 --c
 semsurf_cli_test(info.sem_image ARGS info fei.tif
   STDOUT "SEM image, Thermo/FEI, Teneo" "4 x 3 pixels of 7.5" "energy +2 keV" "detector +ETD" "Beam.HV +2000"
   STDERR "note: the databar, the lowest 1 rows, is left out")
+
+# Outputs that may be replaced, and all that is written is named.
+semsurf_cli_test(over.before ARGS level block.gsf --method none -o plane.gsf STDOUT "written +plane.gsf")
+semsurf_cli_test(written.gltf ARGS mesh cube.off -o cube.gltf STDOUT "written +cube.gltf\n +cube.bin" WRITES cube.gltf cube.bin)
+semsurf_cli_test(written.tip ARGS tip --shape cone:10nm,15deg --size 5 --pixel-size 2nm -o cone.gsf --plot cone.svg
+  STDOUT "written +cone.gsf\n +cone.svg" WRITES cone.gsf cone.svg)
+
+# Units that files state.
+semsurf_cli_test(unit.same ARGS mesh two.gltf --unit m -o a.ply WRITES a.ply)
+semsurf_cli_test(unit.overridden ARGS mesh two.gltf --unit um --override-unit -o a.ply
+  WRITES a.ply INFO a.ply "option.override-unit +on")
+semsurf_cli_test(unit.simulated ARGS simulate two.gltf --unit 2m --override-unit ${few} -o a.exr
+  WRITES a.exr INFO a.exr "unit_override.1 +two.gltf, 2")

@@ -43,7 +43,7 @@ def main():
             # A good file must be read; not every good file is closed.
             check(faults, name, "info", run(program, "info", path), {0} if good else {0, 3})
             image = folder / (name + ".exr")
-            unit = ["--unit", "nm"] if path.suffix in {".glb", ".gltf"} else []
+            unit = ["--unit", "nm", "--override-unit"] if path.suffix in {".glb", ".gltf"} else []
             ok = check(faults, name, "simulate",
                        run(program, "simulate", path, *unit, *few, "-o", image), {0, 3})
             mended = folder / (name + ".ply")

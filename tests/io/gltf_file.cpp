@@ -19,7 +19,7 @@ using test::write;
 std::vector<NamedMesh> read(const std::string& name, const std::string& content,
                             double unit_nm = 1) {
   const TemporaryFolder folder;
-  return read_meshes(write(folder.path() / name, content), unit_nm);
+  return read_meshes(write(folder.path() / name, content), {unit_nm, true});
 }
 
 NamedMesh read_one(const GltfWriter& gltf) {
@@ -57,7 +57,7 @@ TEST(GltfFile, ReadsDataUrisAndFilesBesideIt) {
   std::filesystem::create_directory(folder.path() / "sub");
   write(folder.path() / "sub" / "a b.bin", gltf.binary);
   const auto path = write(folder.path() / "f.gltf", gltf.text("sub/a%20b.bin"));
-  expect_letter_f(read_mesh(path, 1));
+  expect_letter_f(read_mesh(path, {1.0, true}));
   EXPECT_EQ(mesh_input_files(path), (std::vector{path, folder.path() / "sub" / "a b.bin"}));
 }
 
@@ -65,7 +65,7 @@ TEST(GltfFile, AUnitIsOneMetreUnlessGiven) {
   const TemporaryFolder folder;
   const auto path = write(folder.path() / "f.glb", test::gltf_of_f().glb());
   EXPECT_EQ(corners(read_mesh(path)), moved_letter([](const Vec3& v) { return v * 1e9; }));
-  EXPECT_EQ(corners(read_mesh(path, 2)), moved_letter([](const Vec3& v) { return v * 2; }));
+  EXPECT_EQ(corners(read_mesh(path, {2.0, true})), moved_letter([](const Vec3& v) { return v * 2; }));
 }
 
 TEST(GltfFile, YUpBecomesZUp) {

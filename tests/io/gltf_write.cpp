@@ -27,7 +27,7 @@ std::filesystem::path write_gltf(const std::filesystem::path& path, const Surfac
 }
 
 SurfaceScene read_back(const std::filesystem::path& path, std::optional<double> unit_nm = {}) {
-  SurfaceScene scene = parse_gltf_scene(path, test::content_of(path), unit_nm);
+  SurfaceScene scene = parse_gltf_scene(path, test::content_of(path), {unit_nm, true});
   validate(scene);
   return scene;
 }
@@ -128,7 +128,7 @@ TEST(GltfWrite, TheSceneIsInMetresWithYUp) {
   for (const OutputFile& part : format_gltf(folder.path() / "f.gltf", scene, magnification)) {
     test::write(part.path, part.path.extension() == ".bin" ? part.content : file.dump());
   }
-  const Box box = bounds(read_mesh(folder.path() / "f.gltf", 1e3));   // in mm
+  const Box box = bounds(read_mesh(folder.path() / "f.gltf", {1e3, true}));   // in mm
   const Vec3 size = bounds(scene.surfaces[0].mesh).size_nm();
   EXPECT_NEAR(box.size_nm().x, size.x, 1e-6);
   EXPECT_NEAR(box.size_nm().y, size.y, 1e-6);

@@ -63,14 +63,14 @@ TEST_F(RealMeshes, GoodFilesAgreeWithAnotherReader) {
     const auto facts = truth("mesh/" + entry.path().filename().string());
     ASSERT_FALSE(facts.is_null());
     // The facts are in the files' own units; areas and volumes do not depend on the axes.
-    expect_facts(read_mesh(entry.path(), 1), facts);
+    expect_facts(read_mesh(entry.path(), {1.0, true}), facts);
     ++read;
   }
   EXPECT_GE(read, 16);
 }
 
 TEST_F(RealMeshes, NestedGltfKeepsItsNodes) {
-  const auto meshes = read_meshes(root_ / "mesh" / "nested.glb", 1);
+  const auto meshes = read_meshes(root_ / "mesh" / "nested.glb", {1.0, true});
   ASSERT_EQ(meshes.size(), 3u);
   EXPECT_EQ(meshes[0].name, "block01");
   EXPECT_EQ(meshes[1].name, "block02");

@@ -91,7 +91,7 @@ TEST(WriteMesh, DividesByTheUnitAndSaysSo) {
   for (const std::string& name : names(true)) {
     SCOPED_TRACE(name);
     write_mesh(folder.path() / name, mesh, 1000);
-    const TriangleMesh numbers = read_mesh(folder.path() / name, 1.0);
+    const TriangleMesh numbers = read_mesh(folder.path() / name, {1.0, true});
     EXPECT_EQ(numbers.vertices_nm.at(1), (Vec3{2, 0, 0}));
     EXPECT_EQ(numbers.vertices_nm.at(2), (Vec3{0, 0.5, 0}));
     EXPECT_EQ(read_mesh(folder.path() / name).vertices_nm, mesh.vertices_nm);

@@ -129,7 +129,7 @@ TEST(SurfaceFile, TheNumbersInTheFileAreMillimetresOfTheMagnifiedBody) {
   EXPECT_THAT(test::content_of(folder.path() / "c.off"), HasSubstr("\n0 400 80\n")) << "it holds nm";
 }
 
-TEST(SurfaceFile, AUnitThatIsGivenTakesThePlaceOfTheMagnification) {
+TEST(SurfaceFile, AUnitThatOverridesTakesThePlaceOfTheMagnification) {
   for (const SurfaceFormat& format : test::written_formats()) {
     if (format.extension == ".glb" || format.extension == ".gltf" || format.extension == ".3mf") continue;
     SCOPED_TRACE(format.extension);
@@ -140,7 +140,7 @@ TEST(SurfaceFile, AUnitThatIsGivenTakesThePlaceOfTheMagnification) {
     write_surfaces(path, scene, {.factor = 5e5, .z_exaggeration = 2});
     const double shrunk = format.magnified ? 0.5 : 1;
     const Vec3 expected{0, 400 * 10 * shrunk, 80 * 10 * shrunk};
-    EXPECT_LE(length(read_surfaces(path, 10.0).surfaces.at(0).mesh.vertices_nm.at(2) - expected), 1e-9);
+    EXPECT_LE(length(read_surfaces(path, {10.0, true}).surfaces.at(0).mesh.vertices_nm.at(2) - expected), 1e-9);
   }
 }
 

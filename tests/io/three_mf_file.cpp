@@ -27,7 +27,7 @@ std::string format(const SurfaceScene& scene, const Magnification& magnification
 }
 
 SurfaceScene parse(const std::string& content, std::optional<double> unit_nm = {}) {
-  SurfaceScene scene = parse_3mf_scene("f.3mf", content, unit_nm);
+  SurfaceScene scene = parse_3mf_scene("f.3mf", content, {unit_nm, true});
   validate(scene);
   return scene;
 }

@@ -2,8 +2,8 @@
 """Surfaces made, mended, thinned, written and read are the commands'."""
 import json
 
-from support import DATA, FOLDER, array, column, each, expect, fetch, numpy, quiet, refuses, refuses_until, run, same, \
-    semsurf, servermanager, simple, text, vtk_to_numpy
+from support import DATA, FOLDER, array, column, each, expect, fetch, messages, numpy, quiet, refuses, refuses_until, run, \
+    same, semsurf, servermanager, simple, text, vtk_to_numpy
 
 
 def scan():
@@ -182,6 +182,22 @@ def files_are_read_back():
              array(original, original.GetPointData().GetScalars().GetName()), name)
 
 
+def inputs_are_not_written_over():
+    semsurf("level", DATA / "block.gsf", "--method", "none", "-o", "own.gsf")
+    before = (FOLDER / "own.gsf").read_bytes()
+    (FOLDER / "link.gsf").symlink_to("own.gsf")
+    source = simple.LevelScan(Input=simple.AFMScanReader(FileName=str(FOLDER / "own.gsf")))
+    for name in ("own.gsf", "link.gsf"):
+        writer = servermanager.writers.HeightFieldWriter(Input=source, FileName=str(FOLDER / name))
+        with messages() as said:
+            try:
+                writer.UpdatePipeline()
+            except RuntimeError:
+                pass
+        expect("an input" in said[0], f"{name}: {said[0]}")
+    expect((FOLDER / "own.gsf").read_bytes() == before, "the scan is as it was")
+
+
 def vtk_files_are_inline():
     """Debian's ParaView reads appended data as nothing."""
     surface = simple.HeightFieldtoSurface(Input=scan())
@@ -204,4 +220,4 @@ def wrong_properties_are_refused():
 
 run(surfaces_equal_the_command, there_and_back, mending_equals_the_command, every_repair_is_the_option,
     crossings_are_resolved_as_the_command_does, thinning_equals_the_command,
-    files_are_read_back, vtk_files_are_inline, wrong_properties_are_refused)
+    files_are_read_back, inputs_are_not_written_over, vtk_files_are_inline, wrong_properties_are_refused)

@@ -79,6 +79,16 @@ def wrong_files_are_refused():
     refuses(simple.SEMImageReader(FileName=str(FOLDER / "missing.tif")), "missing.tif")
 
 
+def a_stated_unit_is_overridden_on_request_only():
+    semsurf("mesh", DATA / "cube.off", "-o", "stated.stl")
+    reader = simple.SurfaceMeshReader(FileName=str(FOLDER / "stated.stl"), Unit=1000)
+    refuses(reader, "stated.stl", "says that its unit is 1.00 nm")
+    reader.OverrideUnit = 1
+    bounds = fetch(reader).GetBounds()
+    expect(abs(bounds[1] - bounds[0] - 40e3) < 1, f"in um: {bounds}")
+    refuses(simple.SurfaceMeshReader(FileName=str(FOLDER / "stated.stl"), OverrideUnit=1), "Override Unit")
+
+
 def a_file_that_changes_is_read_again():
     path = FOLDER / "changing.txt"
     path.write_text("1 2\n3 4\n")
@@ -114,4 +124,4 @@ def real_scans_are_the_commands():
 
 run(the_letter_stands_upright, scans_are_in_nm, holes_are_marked, sem_images_have_their_place, units_and_parts_are_read,
     wrong_files_are_refused,
-    a_file_that_changes_is_read_again, channels_can_be_chosen, real_scans_are_the_commands)
+    a_stated_unit_is_overridden_on_request_only, a_file_that_changes_is_read_again, channels_can_be_chosen, real_scans_are_the_commands)

@@ -125,6 +125,45 @@ TEST(Extras, RefuseWhatCannotBe) {
   EXPECT_FALSE(std::filesystem::exists(job.outputs[0]));
 }
 
+TEST(Extras, OfThisJobReplaceTheirOwnKindOnly) {
+  const TemporaryFolder folder;
+  SimulateJob job = job_in(folder, "a");
+  job.options.spectra = true;
+  job.options.electrons = 1;
+  job.extras.trajectories = 1;
+  run(job);
+  EXPECT_EQ(refusal(job), "no error") << "the same job again";
+  const std::filesystem::path picture = folder.path() / "a" / "image.tracks.png";
+  std::filesystem::remove(folder.path() / "a" / "image.run.json");   // which names it
+  EXPECT_THAT(refusal(job), testing::AllOf(HasSubstr(picture.string()), HasSubstr("did not write")));
+  std::filesystem::remove(picture);
+  std::ofstream(folder.path() / "a" / "image.spectra.csv") << "wavelength,counts\n";
+  EXPECT_THAT(refusal(job), HasSubstr("image.spectra.csv"));
+}
+
+TEST(Extras, DoNotReplaceInputs) {
+  const TemporaryFolder folder;
+  SimulateJob job = job_in(folder, ".");
+  const std::filesystem::path input = folder.path() / "mesh.stl", output = job.outputs[0];
+  std::ofstream(input) << "a mesh";
+  job.scene.inputs = {input};
+  std::filesystem::create_hard_link(input, output);
+  EXPECT_THAT(refusal(job), testing::AllOf(HasSubstr("--output"), HasSubstr("mesh.stl, an input")));
+  std::filesystem::remove(output);
+  std::filesystem::create_symlink(input, folder.path() / "image.run.json");
+  EXPECT_THAT(refusal(job), HasSubstr("image.run.json (which belongs to"));
+  EXPECT_EQ(bytes_of(input), "a mesh");
+}
+
+TEST(Extras, TellOfUnitsThatWereOverridden) {
+  const TemporaryFolder folder;
+  SimulateJob job = job_in(folder, "a");
+  job.options.electrons = 1;
+  job.scene.unit_overrides = {{"cube.stl", 1000.0}};
+  run(job);
+  EXPECT_EQ(io::read_image(job.outputs[0]).metadata.at("unit_override.1"), "cube.stl, 1000 nm");
+}
+
 TEST(Warnings, AreToldAsTheyCome) {
   const TemporaryFolder folder;
   SimulateJob job = job_in(folder, "a");

@@ -176,10 +176,6 @@ MemoryThere memory_there() {
   return there;
 }
 
-namespace {
-
-}  // namespace
-
 void require_memory(const std::string& subject, const TriangleCount& count, const MemoryUse& use) {
   const auto needed = static_cast<double>(estimate_specimen(count, use).total());
   const MemoryThere there = memory_there();

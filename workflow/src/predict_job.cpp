@@ -13,6 +13,7 @@
 #include "surf/io/files.h"
 #include "surf/io/image_file.h"
 #include "surf/io/model_file.h"
+#include "surf/io/overlaps.h"
 #include "surf/workflow/version.h"
 
 namespace surf::workflow {
@@ -24,13 +25,10 @@ constexpr double much = 0.001;   // share of the samples that is worth a warning
 
 void check_outputs(const PredictJob& job, const Image& like) {
   if (job.outputs.empty()) throw UsageError("--output", "no output file is given", "Add -o image.exr");
-  std::error_code ignored;
+  std::vector<io::FileUse> outputs;
+  for (const fs::path& output : job.outputs) outputs.push_back({"--output", output, {}});
+  io::refuse_overlaps({{"HEIGHTS", job.input, {}}, {"--model", job.model, {}}}, outputs);
   for (const fs::path& output : job.outputs) {
-    for (const fs::path& input : {job.input, job.model})
-      if (fs::equivalent(output, input, ignored))
-        throw UsageError("--output", fmt::format("{} is an input", output.string()), "Choose another name");
-    if (std::count(job.outputs.begin(), job.outputs.end(), output) > 1)
-      throw UsageError("--output", fmt::format("{} is given twice", output.string()), "Leave one out");
     io::check_image_target(output, &like, {job.png_channel});
     io::check_writable(output);
   }

@@ -110,6 +110,9 @@ Metadata provenance(const SimulateJob& job, const mc::Scan& scan,
         fmt::format("{} sha256 {}", input.path.filename().string(), input.sha256);
   add_beam_and_scan(out, job.scene.beam, scan);
   add_specimen(out, job.scene.specimen);
+  number = 0;
+  for (const auto& [file, unit_nm] : job.scene.unit_overrides)
+    out[fmt::format("unit_override.{}", ++number)] = fmt::format("{}, {} nm", file, format_exact(unit_nm));
   out["physics"] = mc::format_physics(job.scene.physics);
   number = 0;
   for (const mc::Material& material : job.scene.specimen.materials) {

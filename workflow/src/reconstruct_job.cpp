@@ -116,16 +116,18 @@ std::vector<std::string> reasons_of(const ReconstructSummary& s) {
   return reasons;
 }
 
-void keep_registration(const ReconstructJob& job, const ReconstructSummary& s, const PlacedImage& image) {
+void keep_registration(const ReconstructJob& job, const PlacedImage& image, ReconstructSummary& s) {
   if (job.folder.empty()) return;
   io::TransformFile file;
   file.sem_to_afm = s.pose->sem_to_afm;
   file.verified = s.pose->verified();
   if (s.pose->registration)
     file.verdict = fmt::format("{}: {}", name(s.pose->registration->verdict), s.pose->registration->reason);
-  io::write_transform(job.folder / "transform.json", file);
-  if (job.picture)
-    io::write_plot(job.folder / "registration.png", registration_picture(image, s.pose->simulated, s.pose->sem_to_afm));
+  s.written.push_back(job.folder / "transform.json");
+  io::write_transform(s.written.back(), file);
+  if (!job.picture) return;
+  s.written.push_back(job.folder / "registration.png");
+  io::write_plot(s.written.back(), registration_picture(image, s.pose->simulated, s.pose->sem_to_afm));
 }
 
 /// Watches a step of the chain for a job.
@@ -212,7 +214,7 @@ ReconstructSummary run(const ReconstructJob& job, const ChainListener& listener)
     pose.registration.largest_stderr_px = std::max(pose.registration.largest_stderr_px, 1.0);
     s.pose = pose_of(pose, *s.afm, image, *s.model, threads, told);
     if (!s.pose->verified() && !job.pose.accept_unverified) {
-      keep_registration(job, s, image);
+      keep_registration(job, image, s);
       s.verdict = ReconstructionVerdict::not_registered;
       s.reasons = {fmt::format("the registration is {}: {}", name(s.pose->registration->verdict), s.pose->registration->reason)};
       return s;

@@ -152,6 +152,15 @@ std::string history_text(const std::vector<ScaleReport>& scales) {
   return text;
 }
 
+std::vector<fs::path> reconstruction_files(const fs::path& folder) {
+  std::vector<fs::path> files;
+  for (const char* name : {"surface.vti", "surface.gsf", "surface.glb", "simulated_afm.vti", "simulated_sem.vti", "tip.txt",
+                           "first_tip.txt", "model.json", "transform.json", "registration.png", "history.csv", "panel.png",
+                           "report.json", "checkpoint"})
+    files.push_back(folder / name);
+  return files;
+}
+
 std::vector<fs::path> write_reconstruction(const ReconstructJob& job, const ReconstructSummary& s, const AfmData* afm,
                                            const SemData* sem) {
   const Reconstruction& r = s.result;

@@ -171,6 +171,7 @@ void write_all(const SimulateJob& job, const ImageRows& image, SimulateSummary& 
   }
   record.end = std::chrono::system_clock::now();
   record.outputs = job.outputs;
+  for (const fs::path& extra : extra_files(job)) record.outputs.push_back(extra);
   const std::string text = sidecar_text(job, summary, record);
   for (const fs::path& output : job.outputs) {
     const fs::path path = sidecar_path(output);

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <set>
 
 #include "extras.h"
 #include "sidecar.h"
@@ -11,6 +12,7 @@
 #include "surf/core/units.h"
 #include "surf/io/files.h"
 #include "surf/io/image_file.h"
+#include "surf/io/overlaps.h"
 #include "time_budget.h"
 
 namespace surf::workflow {
@@ -20,9 +22,29 @@ namespace fs = std::filesystem;
 
 constexpr std::int64_t max_electrons = std::int64_t{1} << 31;
 
-bool same_file(const fs::path& a, const fs::path& b) {
-  std::error_code ignored;
-  return fs::weakly_canonical(a, ignored) == fs::weakly_canonical(b, ignored);
+std::vector<io::FileUse> inputs_of(const SimulateJob& job) {
+  std::vector<io::FileUse> inputs;
+  for (const fs::path& input : job.scene.inputs) inputs.push_back({"INPUT", input, {}});
+  return inputs;
+}
+
+/// The images, and what is written beside them.
+std::vector<io::FileUse> outputs_of(const SimulateJob& job) {
+  std::vector<io::FileUse> outputs;
+  std::set<fs::path> records;   // images of one name share theirs
+  for (const fs::path& output : job.outputs) {
+    outputs.push_back({"--output", output, {}});
+    if (const fs::path record = sidecar_path(output); records.insert(record).second)
+      outputs.push_back({"--output", record, output});
+  }
+  for (const fs::path& extra : extra_files(job)) outputs.push_back({"--output", extra, job.outputs.front()});
+  return outputs;
+}
+
+void refuse_strangers_of(const SimulateJob& job) {
+  const std::vector<fs::path> extras = extra_files(job);
+  for (const fs::path& output : job.outputs) io::refuse_strangers(output, {sidecar_path(output)});
+  io::refuse_strangers(sidecar_path(job.outputs.front()), extras);
 }
 
 }  // namespace
@@ -91,18 +113,13 @@ void check_outputs(const SimulateJob& job) {
   if (job.outputs.empty())
     throw UsageError("--output", "no output file is given", "Add -o image.exr");
   const Image image = image_like_the_result(job);
+  io::refuse_overlaps(inputs_of(job), outputs_of(job));
+  refuse_strangers_of(job);
   for (const fs::path& extra : extra_files(job)) io::check_writable(extra);
-  for (std::size_t i = 0; i < job.outputs.size(); ++i) {
-    const fs::path& output = job.outputs[i];
+  for (const fs::path& output : job.outputs) {
     io::check_image_target(output, &image, {job.png_channel});
     io::check_writable(output);
     io::check_writable(sidecar_path(output));
-    for (std::size_t j = 0; j < i; ++j)
-      if (same_file(output, job.outputs[j]))
-        throw UsageError("--output", output.string() + " is given twice", "Leave one out");
-    for (const fs::path& input : job.scene.inputs)
-      if (same_file(output, input))
-        throw UsageError("--output", output.string() + " is an input", "Choose another name");
   }
 }
 
@@ -114,11 +131,9 @@ void check_checkpoint(const SimulateJob& job) {
   if (job.extras.deposit_cells > 0)
     throw UsageError("--checkpoint", "deposited energy cannot be kept on the way",
                      "Leave out --checkpoint or --deposit");
-  for (const auto* files : {&job.outputs, &job.scene.inputs})
-    for (const fs::path& file : *files)
-      if (same_file(o.file, file))
-        throw UsageError("--checkpoint", o.file.string() + " is an input or output",
-                         "Choose another name");
+  std::vector<io::FileUse> outputs = outputs_of(job);
+  outputs.push_back({"--checkpoint", o.file, {}});
+  io::refuse_overlaps(inputs_of(job), outputs);
   io::check_writable(o.file);
 }
 

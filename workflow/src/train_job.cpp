@@ -14,6 +14,7 @@
 #include "surf/io/files.h"
 #include "surf/io/model_file.h"
 #include "surf/mc/material_doubts.h"
+#include "surf/io/overlaps.h"
 #include "surf/sem/fit_filter_bank.h"
 #include "surf/workflow/version.h"
 #include "training_data.h"
@@ -45,12 +46,19 @@ void check_numbers(const TrainJob& job, int own) {
         throw UsageError("--signal", fmt::format("there is no image of {}", input.name), "Give one for each of the HEIGHTS");
 }
 
-void check_target(const TrainJob& job, const std::vector<TrainingSurface>& surfaces) {
+void check_target(const TrainJob& job, const std::vector<TrainingSurface>& surfaces, bool is_shared) {
   io::check_model_target(job.output);
-  std::error_code ignored;
-  for (const TrainingSurface& surface : surfaces)
-    if (!surface.image.empty() && std::filesystem::equivalent(surface.image, job.output, ignored))
-      throw UsageError("--output", fmt::format("{} is an input", job.output.string()), "Choose another name");
+  std::vector<io::FileUse> inputs, outputs{{"--output", job.output, {}}};
+  for (const TrainingSurface& surface : surfaces) {
+    if (!surface.image.empty()) inputs.push_back({"--images", surface.image, {}});
+    else if (!surface.has_image()) outputs.push_back({"--output", image_folder(job) / (surface.name + ".exr"), job.output});
+  }
+  if (is_shared) {
+    const std::filesystem::path record = sidecar_path(job.output);
+    outputs.push_back({"--output", record, job.output});
+    io::refuse_strangers(job.output, {record});
+  }
+  io::refuse_overlaps(inputs, outputs);
 }
 
 std::vector<TrainingImage> read_images(const TrainJob& job, const std::vector<TrainingSurface>& surfaces,
@@ -159,7 +167,7 @@ TrainSummary run(const TrainJob& job, const TrainListener& listener, Team* team)
     const int own = own_surfaces(job, *learner);
     check_numbers(job, own);
     surfaces = gather_surfaces(job, own, listener.note);
-    if (leads(team)) check_target(job, surfaces);
+    if (leads(team)) check_target(job, surfaces, team != nullptr);
   });
   if (listener.warn && leads(team))
     for (const std::string& doubt : mc::doubts(job.material)) listener.warn(doubt);
@@ -173,10 +181,12 @@ TrainSummary run(const TrainJob& job, const TrainListener& listener, Team* team)
   together(team, [&] {
     if (!leads(team)) return;
     learn(job, *learner, surfaces, simulated, listener, summary);
+    if (summary.complete) summary.written.push_back(job.output);
     const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
-    if (team && summary.complete)
-      io::write_text(sidecar_path(job.output),
-                     team_record(*team, simulated.runs, seconds.count(), job.simulation.threads, job.command_line));
+    if (!team || !summary.complete) return;
+    summary.written.push_back(sidecar_path(job.output));
+    io::write_text(summary.written.back(),
+                   team_record(*team, simulated.runs, seconds.count(), job.simulation.threads, job.command_line));
   });
   return summary;
 }

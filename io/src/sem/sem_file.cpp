@@ -8,6 +8,7 @@
 #include <cmath>
 #include <charconv>
 
+#include "../companions.h"
 #include "../image_formats.h"
 #include "../lower_extension.h"
 #include "sem_header.h"
@@ -46,18 +47,28 @@ std::string text_at(const fs::path& path) {
   return decoded_text(read_file(path, most_text));
 }
 
+bool is_tescan_text(std::string_view text) { return text.find("PixelSizeX") != text.npos; }
+
+std::vector<fs::path> text_names(const fs::path& image) {
+  fs::path small = image, capital = image;
+  return {small.replace_extension(".txt"), capital.replace_extension(".TXT")};
+}
+
+// image.tif has image-tif.hdr.
+fs::path header_name(const fs::path& image) {
+  std::string extension = image.extension().string();
+  if (!extension.empty()) extension.front() = '-';
+  return image.parent_path() / (image.stem().string() + extension + ".hdr");
+}
+
 std::optional<SemHeader> header_beside(const fs::path& path, SemSize size) {
-  for (const char* extension : {".txt", ".TXT"}) {
-    fs::path beside = path;
-    const std::string text = text_at(beside.replace_extension(extension));
+  for (const fs::path& beside : text_names(path)) {
+    const std::string text = text_at(beside);
     if (is_jeol_text(text)) return parse_jeol(text, size);
     if (is_hitachi_text(text)) return parse_hitachi(text, size);
   }
-  // image.tif has image-tif.hdr.
-  std::string extension = path.extension().string();
-  if (!extension.empty()) extension.front() = '-';
-  const std::string text = text_at(path.parent_path() / (path.stem().string() + extension + ".hdr"));
-  if (text.find("PixelSizeX") != std::string::npos) return parse_tescan_text(text, size);
+  const std::string text = text_at(header_name(path));
+  if (is_tescan_text(text)) return parse_tescan_text(text, size);
   return std::nullopt;
 }
 
@@ -130,6 +141,17 @@ void set_pitch(SemFile& out, const SemHeader& header, const SemReadOptions& opti
 }
 
 }  // namespace
+
+std::vector<fs::path> sem_settings_beside(const fs::path& image) {
+  std::vector<fs::path> files;
+  for (fs::path& beside : text_names(image)) {
+    if (beside == image) continue;
+    const std::string text = text_at(beside);
+    if (is_jeol_text(text) || is_hitachi_text(text)) files.push_back(std::move(beside));
+  }
+  if (fs::path beside = header_name(image); is_tescan_text(text_at(beside))) files.push_back(std::move(beside));
+  return files;
+}
 
 SemFile read_sem_image(const fs::path& path, const SemReadOptions& options) {
   check(options);

@@ -74,10 +74,10 @@ void add_piece(std::vector<MeshBody>& bodies, MeshBody piece) {
 }  // namespace
 
 std::vector<MeshBody> read_mesh_bodies(const std::filesystem::path& path,
-                                       std::optional<double> unit_nm, const MaterialNames& names,
+                                       const MeshUnit& unit, const MaterialNames& names,
                                        const MaterialLibrary& library) {
   library.find(names.fallback, names.subject);
-  std::vector<NamedMesh> meshes = read_meshes(path, unit_nm);
+  std::vector<NamedMesh> meshes = read_meshes(path, unit);
   check_meaning(meshes, names, library, path.string());
   std::vector<MeshBody> bodies;
   for (NamedMesh& mesh : meshes) add_piece(bodies, with_material(std::move(mesh), names, library));

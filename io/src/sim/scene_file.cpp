@@ -11,6 +11,7 @@
 #include "sim/scene_parts.h"
 #include "sim/toml_table.h"
 #include "surf/io/files.h"
+#include "surf/io/overlaps.h"
 #include "surf/mc/choose_method.h"
 
 namespace surf::io {
@@ -192,6 +193,18 @@ SceneFile read_scene(const std::filesystem::path& path,
   read_specimen(root, SceneParts(path.parent_path(), scene, read), scene.specimen);
   scene.inputs.insert(scene.inputs.end(), material_files.begin(), material_files.end());
   return scene;
+}
+
+std::vector<std::filesystem::path> scene_input_files(const std::filesystem::path& path) {
+  const TomlTable root = TomlTable::parse(read_file(path, max_scene_bytes), path.string());
+  std::vector<std::filesystem::path> files{path};
+  const auto add = [&](const TomlTable& table, std::string_view key) {
+    if (!table.has(key)) return;
+    for (auto& file : files_read_with(path.parent_path() / *table.text(key))) files.push_back(std::move(file));
+  };
+  if (const auto field = root.table("height_field")) add(*field, "file");
+  for (const TomlTable& body : root.tables("body")) add(body, "mesh");
+  return files;
 }
 
 bool is_scene_file(const std::filesystem::path& path) {

@@ -12,6 +12,7 @@
 #include "surf/io/image_file.h"
 #include "surf/io/mesh_file.h"
 #include "surf/io/sem_file.h"
+#include "surf/io/mesh_unit.h"
 #include "surf/io/sim/materials.h"
 #include "surf/io/sim/mesh_bodies.h"
 #include "surf/mesh/shapes.h"
@@ -144,6 +145,15 @@ double read_z_unit(const TomlTable& table) {
 void center(HeightField& field) {
   field.origin_x_nm = -0.5 * field.pitch_x_nm * (field.z_nm.width() - 1);
   field.origin_y_nm = -0.5 * field.pitch_y_nm * (field.z_nm.height() - 1);
+}
+
+MeshUnit read_unit(const TomlTable& table) {
+  const auto text = table.text("unit");
+  const bool overrides = table.flag("override_unit").value_or(false);
+  if (text) return {unit_length_nm(*text, table.place("unit")), overrides};
+  if (overrides)
+    throw UsageError(table.place("override_unit"), "there is no unit to take", "Add unit = \"um\", or leave it out");
+  return {};
 }
 
 TriangleMesh make_body(const TomlTable& table) {
@@ -286,17 +296,16 @@ mc::HeightFieldBody SceneParts::read_height_field(const TomlTable& table) {
 }
 
 std::vector<mc::Body> SceneParts::read_mesh_file(const TomlTable& table) {
-  table.allow({"material", "materials", "name", "mesh", "unit", "scale", "rotate_x", "rotate_y",
+  table.allow({"material", "materials", "name", "mesh", "unit", "override_unit", "scale", "rotate_x", "rotate_y",
                "rotate_z", "move"});
-  const auto unit = table.text("unit");
-  std::optional<double> unit_nm;
-  if (unit) unit_nm = unit_length_nm(*unit, table.place("unit"));
+  const MeshUnit unit = read_unit(table);
   MaterialNames names{*table.text("material"), {}, table.place("materials")};
   if (const auto meaning = table.table("materials")) {
     for (const std::string& name : meaning->keys()) names.meaning[name] = *meaning->text(name);
   }
   const std::filesystem::path path = input(table, "mesh");
-  std::vector<MeshBody> read = read_(path, unit_nm, names, scene_.materials);
+  std::vector<MeshBody> read = read_(path, unit, names, scene_.materials);
+  if (unit.overrides_file) scene_.unit_overrides.push_back({path.filename().string(), *unit.nm});
   const std::vector<std::filesystem::path> files = mesh_input_files(path);
   scene_.inputs.insert(scene_.inputs.end(), files.begin() + 1, files.end());
   std::vector<mc::Body> bodies;

@@ -45,7 +45,7 @@ std::vector<std::string> materials(const std::vector<MeshBody>& bodies) {
 }
 
 TEST_F(MeshBodies, KnownNamesAreTakenOthersAreTheDefault) {
-  const auto bodies = read_mesh_bodies(path_, 1, {.fallback = "Cu"});
+  const auto bodies = read_mesh_bodies(path_, {1.0, true}, {.fallback = "Cu"});
   EXPECT_EQ(materials(bodies), (std::vector<std::string>{"Au", "Cu", "Cu"}));
   EXPECT_FALSE(bodies[0].is_default);
   EXPECT_TRUE(bodies[1].is_default);
@@ -55,22 +55,22 @@ TEST_F(MeshBodies, KnownNamesAreTakenOthersAreTheDefault) {
 
 TEST_F(MeshBodies, MeaningsComeFirst) {
   const auto bodies =
-      read_mesh_bodies(path_, 1, {.meaning = {{"paint", "C"}, {"Au", "Al"}}});
+      read_mesh_bodies(path_, {1.0, true}, {.meaning = {{"paint", "C"}, {"Au", "Al"}}});
   EXPECT_EQ(materials(bodies), (std::vector<std::string>{"Al", "C", "Si"}));
   EXPECT_FALSE(bodies[1].is_default);
 }
 
 TEST_F(MeshBodies, RefusesNamesThatMeanNothing) {
   EXPECT_THAT(complaint<UsageError>([&] {
-                read_mesh_bodies(path_, 1, {.meaning = {{"pain", "C"}}, .subject = "--materials"});
+                read_mesh_bodies(path_, {1.0, true}, {.meaning = {{"pain", "C"}}, .subject = "--materials"});
               }),
               testing::AllOf(HasSubstr("--materials"), HasSubstr("'pain'"),
                              HasSubstr("paint, Au")));
   EXPECT_THAT(complaint<UsageError>([&] {
-                read_mesh_bodies(path_, 1, {.meaning = {{"paint", "Xx"}}});
+                read_mesh_bodies(path_, {1.0, true}, {.meaning = {{"paint", "Xx"}}});
               }),
               HasSubstr("Xx"));
-  EXPECT_THAT(complaint<UsageError>([&] { read_mesh_bodies(path_, 1, {.fallback = "Xx"}); }),
+  EXPECT_THAT(complaint<UsageError>([&] { read_mesh_bodies(path_, {1.0, true}, {.fallback = "Xx"}); }),
               HasSubstr("Xx"));
 }
 
@@ -91,6 +91,7 @@ TEST_F(MeshBodies, SceneFilesTakeThemAll) {
     [[body]]
     mesh = "three.glb"
     unit = "nm"
+    override_unit = true
     material = "Si"
     materials = { paint = "C" }
     move = [0, 0, 1]

@@ -5,6 +5,7 @@
 
 #include "../io_test.h"
 #include "surf/io/image_file.h"
+#include "surf/io/mesh_file.h"
 #include "surf/mesh/shapes.h"
 
 namespace surf::io {
@@ -322,6 +323,28 @@ TEST(SceneFileName, EndsInToml) {
   EXPECT_TRUE(is_scene_file("a.TOML"));
   EXPECT_FALSE(is_scene_file("toml"));
   EXPECT_FALSE(is_scene_file("a.stl"));
+}
+
+TEST_F(SceneFileTest, OverridesAUnitOnlyWhereItSaysSo) {
+  const std::filesystem::path mesh = folder_.path() / "cube.stl";
+  write_mesh(mesh, make_box({0, 0, 0}, {40, 40, 40}));
+  const std::string body = "[[body]]\nmaterial = \"Si\"\nmesh = \"cube.stl\"\n";
+  EXPECT_TRUE(read(body + "unit = \"nm\"\n").unit_overrides.empty());
+  EXPECT_THAT(refused<UsageError>(body + "unit = \"um\"\n"),
+              AllOf(HasSubstr("cube.stl"), HasSubstr("override_unit = true")));
+  const SceneFile scene = read(body + "unit = \"um\"\noverride_unit = true\n");
+  EXPECT_NEAR(mc::extent(scene.specimen).size_nm().x, 40e3, 0.1);
+  ASSERT_EQ(scene.unit_overrides.size(), 1u);
+  EXPECT_EQ(scene.unit_overrides[0], std::pair(std::string("cube.stl"), 1000.0));
+  EXPECT_THAT(refused<UsageError>(body + "override_unit = true\n"), HasSubstr("there is no unit"));
+}
+
+TEST_F(SceneFileTest, TellsItsFilesUnread) {
+  write(path_, "[height_field]\nfile = \"a.gsf\"\n[[body]]\nmesh = \"sub/b.off\"\n[[body]]\nmesh = \"c.gltf\"\n");
+  write(folder_.path() / "c.gltf", R"({"asset":{"version":"2.0"},"buffers":[{"byteLength":1,"uri":"d.bin"}]})");
+  const auto here = folder_.path();
+  EXPECT_THAT(scene_input_files(path_),
+              testing::ElementsAre(path_, here / "a.gsf", here / "sub/b.off", here / "c.gltf", here / "d.bin"));
 }
 
 }  // namespace

@@ -133,4 +133,11 @@ std::string chain_json(const ChainChartJob& job, const ChainChartSummary& summar
   return j.dump(1) + "\n";
 }
 
+std::vector<std::filesystem::path> chain_chart_files(const std::filesystem::path& folder) {
+  std::vector<std::filesystem::path> files{folder / "chart.json", folder / "points"};
+  for (const char* name : {"registration", "reconstruction"})
+    for (const char* extension : {".csv", ".svg", ".png"}) files.push_back(folder / (std::string(name) + extension));
+  return files;
+}
+
 }   // namespace surf::workflow

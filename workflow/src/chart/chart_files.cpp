@@ -122,4 +122,11 @@ std::string json_text(const ChartJob& job, const ChartSummary& summary) {
   return j.dump(1) + "\n";
 }
 
+std::vector<std::filesystem::path> chart_files(const std::filesystem::path& folder) {
+  std::vector<std::filesystem::path> files;
+  for (const char* name : {"chart.csv", "chart.json", "chart.svg", "chart.png", "chart.run.json", "reference", "points", "models"})
+    files.push_back(folder / name);
+  return files;
+}
+
 }  // namespace surf::workflow

@@ -2,11 +2,11 @@
 #pragma once
 
 #include <filesystem>
-#include <optional>
 #include <string>
 #include <vector>
 
 #include "surf/core/image.h"
+#include "surf/io/mesh_unit.h"
 #include "surf/mesh/surface.h"
 
 namespace surf::io {
@@ -47,17 +47,18 @@ Drape make_drape(const Image& image, const std::string& channel);
 /// - glTF: y up; float32 nm about the centre of each surface, the centre on its node, the factor on the root node.
 /// - VTP, VTM, OBJ, OFF: double. PLY: double with float scalars. STL, 3MF: float32.
 /// Formats without `several` join the surfaces in order and hold the scalars that all have.
-/// Throws InvalidInput for a scene that `validate` refuses or that the format cannot hold, UsageError for
-/// an unknown extension or bad magnification, FileError, Unsupported without VTK.
-void write_surfaces(const std::filesystem::path& path, const SurfaceScene& scene,
-                    const Magnification& magnification = {});
+/// Returns the names of the files, the main one first. Throws InvalidInput for a scene that `validate` refuses or that the
+/// format cannot hold, UsageError for an unknown extension, a bad magnification or a file beside that would replace a
+/// stranger (`refuse_strangers`), FileError, Unsupported without VTK.
+std::vector<std::filesystem::path> write_surfaces(const std::filesystem::path& path, const SurfaceScene& scene,
+                                                  const Magnification& magnification = {});
 
 /// Reads what `read_meshes` reads, with scalars, drapes, tracks and metadata where the format holds them, in
 /// nm: semsurf's own magnification and exaggeration are undone. One surface per body, names made unique.
-/// Vertices keep the file's order and are not merged, so that scalars fit. `unit_nm` as in `read_meshes`.
+/// Vertices keep the file's order and are not merged, so that scalars fit. `unit` as in `read_meshes`.
 /// Scalars of other programs get names of the form of `VertexScalar` ("Elevation (nm)": elevation_nm); those
 /// with a value that is not finite are left out. Throws what `read_meshes` throws, FileError for a picture
 /// that is missing.
-SurfaceScene read_surfaces(const std::filesystem::path& path, std::optional<double> unit_nm = {});
+SurfaceScene read_surfaces(const std::filesystem::path& path, const MeshUnit& unit = {});
 
 }  // namespace surf::io

@@ -120,6 +120,9 @@ struct ChainChartListener {
 /// times and memory. Throws UsageError, FileError, and what the training of a model throws.
 ChainChartSummary run(const ChainChartJob& job, const ChainChartListener& listener = {});
 
+/// The files in `folder` that a run may write, and the folder of points.
+std::vector<std::filesystem::path> chain_chart_files(const std::filesystem::path& folder);
+
 /// Of points of one way.
 CaptureRange capture_range(const std::vector<RegistrationPoint>& points, const std::string& family);
 

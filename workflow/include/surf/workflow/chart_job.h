@@ -120,4 +120,7 @@ struct ChartListener {
 /// Who did how much is in chart.run.json.
 ChartSummary run(const ChartJob& job, const ChartListener& listener = {}, Team* team = nullptr);
 
+/// The files in `folder` that a run may write, and its folders.
+std::vector<std::filesystem::path> chart_files(const std::filesystem::path& folder);
+
 }  // namespace surf::workflow

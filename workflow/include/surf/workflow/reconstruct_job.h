@@ -80,6 +80,9 @@ struct ReconstructSummary {
 /// Throws UsageError, InvalidInput, FileError, Unsupported, Interrupted.
 ReconstructSummary run(const ReconstructJob& job, const ChainListener& listener = {});
 
+/// The files in `folder` that a run may write, the checkpoint included.
+std::vector<std::filesystem::path> reconstruction_files(const std::filesystem::path& folder);
+
 /// As the reconstruction runs with: gains that are tied are not refined, a tip that was found blindly is.
 ReconstructionOptions options_of(const ReconstructJob& job, const ReconstructSummary& summary);
 

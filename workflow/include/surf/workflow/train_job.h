@@ -105,6 +105,7 @@ struct TrainSummary {
   int images_found = 0;                  ///< of the simulated ones, there before
   int images_made = 0;
   std::filesystem::path images;          ///< the folder that they are in; empty if none were simulated
+  std::vector<std::filesystem::path> written;   ///< the model, and the record of a team
 };
 
 /// Checks everything that can be wrong before time is spent, makes the images that are not given, learns

@@ -4,10 +4,10 @@
 #include <filesystem>
 #include <functional>
 #include <map>
-#include <optional>
 #include <string>
 #include <vector>
 
+#include "surf/io/mesh_unit.h"
 #include "surf/io/sim/materials.h"
 #include "surf/mesh/triangle_mesh.h"
 
@@ -36,12 +36,12 @@ struct MaterialNames {
 /// several colours is one again. Throws what `read_meshes` and `library.find` throw, and UsageError
 /// for a name in `meaning` that the file does not use.
 std::vector<MeshBody> read_mesh_bodies(const std::filesystem::path& path,
-                                       std::optional<double> unit_nm, const MaterialNames& names,
+                                       const MeshUnit& unit, const MaterialNames& names,
                                        const MaterialLibrary& library = {});
 
 /// `read_mesh_bodies`, or what does its work.
 using BodyReader =
-    std::function<std::vector<MeshBody>(const std::filesystem::path& path, std::optional<double> unit_nm,
+    std::function<std::vector<MeshBody>(const std::filesystem::path& path, const MeshUnit& unit,
                                         const MaterialNames& names, const MaterialLibrary& library)>;
 
 }  // namespace surf::io

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "surf/io/sim/materials.h"
@@ -42,6 +43,8 @@ struct SceneFile {
   std::optional<double> current_pa, dwell_us;  ///< of the probe; both or none make a dose
   std::vector<mc::Detector> detectors;         ///< besides SE and BSE
   MaterialLibrary materials;                   ///< built-in ones, the scene's own, those of files
+  /// Mesh files whose own unit does not count, by name, and the nm of the unit that does.
+  std::vector<std::pair<std::string, double>> unit_overrides;
   std::vector<std::filesystem::path> inputs;   ///< files read: the scene itself, then the others
   std::vector<std::string> notes;              ///< what the user may want to know
 };
@@ -84,7 +87,8 @@ struct SceneFile {
 ///                                # pixel_size replaces the file's and centres the field on (0, 0)
 ///     [[body]]
 ///     material = "Au"            # name: the file's or the shape's
-///     mesh = "cube.stl"          # unit = "nm", for glTF "m". A file of several bodies gives all:
+///     mesh = "cube.stl"          # unit = "nm", for glTF "m"; another unit than the file states only
+///                                # with override_unit = true. A file of several bodies gives all:
 ///                                # materials of the file that have one of semsurf's names are
 ///                                # taken as such, for others there is
 ///                                # materials = { "name in the file" = "Au" }, else `material`
@@ -103,6 +107,10 @@ struct SceneFile {
 SceneFile read_scene(const std::filesystem::path& path,
                      const std::vector<std::filesystem::path>& material_files = {},
                      const BodyReader& read = read_mesh_bodies);
+
+/// The scene and the files that it names, with those that are read with them (`files_read_with`); nothing but the scene is
+/// read whole. Throws what `read_scene` would for a file that is no TOML.
+std::vector<std::filesystem::path> scene_input_files(const std::filesystem::path& path);
 
 /// Whether the name ends in ".toml".
 bool is_scene_file(const std::filesystem::path& path);
