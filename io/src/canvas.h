@@ -41,7 +41,7 @@ class Canvas {
 
 /// What the module `cairo` gives.
 struct CanvasLibrary {
-  static constexpr ModuleName module{"cairo", "draws pictures of electron tracks", "Cairo (Debian: libcairo2)"};
+  static constexpr ModuleName module{"cairo", "draws pictures of electron tracks", "Cairo (Debian: libcairo2)", 100};
   /// `extension` is ".png", ".svg" or ".pdf". `target` is the name to write to, `file` the one for messages.
   std::unique_ptr<Canvas> (*make_canvas)(const std::filesystem::path& target, const std::string& file,
                                          const std::string& extension, int width, int height);

@@ -9,7 +9,7 @@ namespace surf::io {
 /// What the module `raster` gives: the functions of image_formats.h that OpenImageIO does.
 struct RasterLibrary {
   static constexpr ModuleName module{"raster", "reads and writes EXR, TIFF and PNG files",
-                                     "OpenImageIO (Debian: libopenimageio2.4)"};
+                                     "OpenImageIO (Debian: libopenimageio2.4)", 700};
 
   decltype(&io::write_exr) write_exr;
   decltype(&io::write_tiff) write_tiff;

@@ -11,7 +11,7 @@ namespace surf::io {
 /// What the module `vtk` gives. Files of VTK are read without it.
 struct VtkLibrary {
   static constexpr ModuleName module{"vtk", "writes VTI, VTP and VTM files",
-                                     "VTK (Debian: paraview or libvtk9.1, as it was built with)"};
+                                     "VTK (Debian: paraview or libvtk9.1, as it was built with)", 100};
 
   decltype(&io::write_vti) write_vti;
   decltype(&io::vti_content) vti_content;

@@ -107,6 +107,9 @@ EmbreeScene::EmbreeScene(SceneMesh all, const Watch& watch) : impl_(std::make_un
       interface_nm + 8.0 * largest * static_cast<double>(std::numeric_limits<float>::epsilon());
 
   impl_->device = rtcNewDevice(nullptr);
+  if (!impl_->device && rtcGetDeviceError(nullptr) != RTC_ERROR_UNSUPPORTED_CPU)
+    throw Error("ray tracing", "Embree cannot start: memory, threads or address space are short",
+                "Raise the limits (ulimit -v, ulimit -u), or give --threads 1");
   if (!impl_->device) throw Unsupported("ray tracing", "Embree finds no usable device", "Check that the processor has SSE2 or NEON");
   rtcSetDeviceMemoryMonitorFunction(
       impl_->device,

@@ -76,6 +76,17 @@ def check_without_modules(program, folder):
         faults.append(f"left behind: {set(folder.iterdir()) - before}")
 
 
+def check_short_address_space(program, folder):
+    """Whatever little there is, the program ends by itself and says why."""
+    for megabytes in (150, 300, 450, 600, 750, 900):
+        limited = ["bash", "-c", f'ulimit -v {1000 * megabytes}; exec "$@"', "bash", program]
+        done = run(limited[0], *limited[1:], "simulate", "cube.off", "--size", "4x4", "--electrons", "2", "-o", "little.exr",
+                   folder=folder)
+        print(f"{megabytes} MB: exit {done.returncode}: {done.stderr}")
+        if done.returncode not in (0, 3) or (done.returncode == 3 and "semsurf: error: " not in done.stderr):
+            faults.append(f"{megabytes} MB of address space: exit {done.returncode}: {done.stderr}")
+
+
 def main():
     program = pathlib.Path(sys.argv[1]).resolve()
     with tempfile.TemporaryDirectory(prefix="semsurf-test-") as name:
@@ -86,6 +97,7 @@ def main():
             faults.append(made.stderr)
         check_start(program, folder)
         check_without_modules(program, folder)
+        check_short_address_space(program, folder)
     for fault in faults:
         print("FAULT:", fault)
     sys.exit(1 if faults else 0)

@@ -16,7 +16,7 @@ endfunction()
 
 step("${CMAKE_COMMAND}" --install "${BUILD}" --prefix "${prefix}")
 foreach(file bin/semsurf include/surf/mc/simulate.h include/surf/io/sim/materials.h
-             share/doc/semsurf/LICENSE)
+             share/doc/semsurf/LICENSE ${MODULES}/raster.so ${MODULES}/solvers.so)
   if(NOT EXISTS "${prefix}/${file}")
     file(REMOVE_RECURSE "${WORK}")
     message(FATAL_ERROR "${file} was not installed")
@@ -24,6 +24,8 @@ foreach(file bin/semsurf include/surf/mc/simulate.h include/surf/io/sim/material
 endforeach()
 step("${prefix}/bin/semsurf" --version)
 message(STATUS "${output}")
+# Its modules are those beside it.
+step("${prefix}/bin/semsurf" simulate "${SCENE}" --electrons 1 --size 4x4 -q -o "${WORK}/flat.exr")
 
 step("${CMAKE_COMMAND}" -G "${GENERATOR}" -S "${PROJECT}" -B "${WORK}/build"
      "-DCMAKE_PREFIX_PATH=${prefix}" "-DWANTED_VERSION=${VERSION}"

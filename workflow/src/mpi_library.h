@@ -11,7 +11,7 @@ namespace surf::workflow {
 /// What the module `mpi` gives.
 struct MpiLibrary {
   static constexpr ModuleName module{"mpi", "shares a job between processes",
-                                     "MPI (Debian: libopenmpi3)"};
+                                     "MPI (Debian: libopenmpi3)", 300};
   std::unique_ptr<Team> (*join)();
 };
 

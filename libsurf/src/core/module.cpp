@@ -3,11 +3,13 @@
 
 #include <dlfcn.h>
 #include <fmt/format.h>
+#include <sys/resource.h>
 #include <unistd.h>
 
 #include <climits>
 #include <cstdlib>
 #include <filesystem>
+#include <fstream>
 #include <mutex>
 
 #include "surf/core/error.h"
@@ -29,7 +31,22 @@ int linked_count = 0;
                     fmt::format("Install {} and semsurf with it", module.needs));
 }
 
+// Libraries that cannot start their threads while they are loaded end the program: they are not asked to.
+void require_address_space(const ModuleName& module) {
+  rlimit limit{};
+  if (getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return;
+  double pages = 0;
+  std::ifstream("/proc/self/statm") >> pages;
+  const double left_mb = (static_cast<double>(limit.rlim_cur) - pages * static_cast<double>(sysconf(_SC_PAGESIZE))) / 1e6;
+  if (left_mb >= module.address_mb) return;
+  throw Unsupported(fmt::format("module {}", module.name),
+                    fmt::format("what {} takes about {} MB of address space, and {:.0f} MB are left", module.provides,
+                                module.address_mb, left_mb),
+                    "Raise the limit (ulimit -v)");
+}
+
 ModuleEntry loaded_entry(const ModuleName& module) {
+  require_address_space(module);
   const std::string file = fmt::format("{}/{}.so", module_folder(), module.name);
   // Local: what one module brings is not to take the place of what another one needs.
   void* const handle = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);

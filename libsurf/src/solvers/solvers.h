@@ -61,7 +61,7 @@ class Factor {
 /// What the module gives.
 struct Solvers {
   static constexpr ModuleName module{"solvers", "fits models and reconstructs surfaces",
-                                     "Ceres, CHOLMOD and OpenBLAS (Debian: libceres3, libcholmod3, libopenblas0-pthread)"};
+                                     "Ceres, CHOLMOD and OpenBLAS (Debian: libceres3, libcholmod3, libopenblas0-pthread)", 200};
 
   /// Lowers `function` from `at`, by Ceres.
   Minimised (*minimise)(const SmoothFunction& function, std::span<double> at, const MinimiseOptions& options);

@@ -14,6 +14,7 @@ struct ModuleName {
   const char* name;      ///< of the file NAME.so, and of its function semsurf_module_NAME
   const char* provides;  ///< "writes VTI and VTP files"
   const char* needs;     ///< "VTK (Debian: libvtk9.1 ...)"
+  int address_mb;        ///< of address space, with the threads that its libraries start when they are loaded
 };
 
 /// The module's table of functions; null where the module was built for another version of semsurf.
