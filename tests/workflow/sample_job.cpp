@@ -121,8 +121,9 @@ TEST(SampleJob, LeavesNothingWhenCancelledOrRefused) {
 }
 
 TEST(SampleJob, GoesOnWhereItWasStopped) {
-  const test::TemporaryFolder whole, stopped;
+  const test::TemporaryFolder whole, stopped, cache;
   SampleJob job = small("pads", whole.path());
+  job.cache = cache.path();   // one library for all
   job.width = 72, job.height = 64;   // several units of work
   job.threads = 1;
   ASSERT_TRUE(run(job).complete);
