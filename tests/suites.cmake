@@ -1,6 +1,6 @@
 # Called by ctest: lists the suites of a test program and gives each to ctest as one process, or two where some of its
 # cases are for ./check --all. Variables: PROGRAM, NAME, LONG (patterns of Suite.Case), LIST (the file that remembers), INPUTS (files
-# on which the suites depend), LABELS, PROCESSORS, TIMEOUT.
+# on which the suites depend), BUSY (patterns of Suite), LABELS, TIMEOUT.
 set(current FALSE)
 if(EXISTS "${LIST}")
   set(current TRUE)
@@ -27,8 +27,14 @@ endif()
 set(script "")
 # One entry of ctest: the cases that `filter` chooses.
 macro(semsurf_add_suite entry filter labels)
+  set(processors 1)
+  foreach(pattern IN LISTS BUSY)
+    if(suite MATCHES "^${pattern}$")
+      set(processors 2)
+    endif()
+  endforeach()
   string(APPEND script "add_test([=[${entry}]=] [=[${PROGRAM}]=] [=[--gtest_filter=${filter}]=])\n"
-         "set_tests_properties([=[${entry}]=] PROPERTIES TIMEOUT ${TIMEOUT} PROCESSORS ${PROCESSORS} LABELS [=[${labels}]=])\n")
+         "set_tests_properties([=[${entry}]=] PROPERTIES TIMEOUT ${TIMEOUT} PROCESSORS ${processors} LABELS [=[${labels}]=])\n")
 endmacro()
 macro(semsurf_end_suite)
   if(suite)

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The commands of good.cmake and bad.cmake, each in a fresh folder that holds the files of data/, all in this process.
 #include <gtest/gtest.h>
-#include <stdio.h>
 #include <stdlib.h>
 
 #include <algorithm>
@@ -11,10 +10,9 @@
 #include <regex>
 #include <set>
 #include <string>
-#include <utility>
 #include <vector>
 
-#include "run.h"
+#include "in_process.h"
 #include "temporary_folder.h"
 
 namespace surf::cli {
@@ -25,7 +23,7 @@ namespace fs = std::filesystem;
 struct Case {
   std::string suite, name;
   int exit = 0;
-  std::vector<std::string> arguments{"semsurf"};
+  std::vector<std::string> arguments;
   std::vector<std::string> out, err, writes;   // regular expressions, and files
   std::optional<std::string> info_file, info;
 };
@@ -62,39 +60,6 @@ std::vector<Case> read_cases() {
   return cases;
 }
 
-/// What goes into it can be read again.
-class Memory {
- public:
-  Memory() : file_(open_memstream(&text_, &size_)) {}
-  ~Memory() {
-    fclose(file_);
-    free(text_);
-  }
-  Memory(const Memory&) = delete;
-  Memory& operator=(const Memory&) = delete;
-  FILE* file() { return file_; }
-  std::string text() {
-    fflush(file_);
-    return {text_, size_};
-  }
-
- private:
-  char* text_ = nullptr;
-  std::size_t size_ = 0;
-  FILE* file_;
-};
-
-struct Said {
-  int code;
-  std::string out, err;
-};
-
-Said say(const std::vector<std::string>& arguments) {
-  Memory out, err;
-  const int code = run(arguments, out.file(), err.file());
-  return {code, out.text(), err.text()};
-}
-
 std::set<std::string> files_here() {
   std::set<std::string> files;
   for (const auto& entry : fs::recursive_directory_iterator("."))
@@ -128,7 +93,7 @@ class Command : public testing::Test {
 
   void TestBody() override {
     const std::set<std::string> old = files_here();
-    const Said said = say(case_.arguments);
+    const test::Said said = test::semsurf(case_.arguments);
     SCOPED_TRACE("--- output\n" + said.out + "--- messages\n" + said.err + "---");
     EXPECT_EQ(said.code, case_.exit);
     for (const std::string& pattern : case_.out)
@@ -144,7 +109,7 @@ class Command : public testing::Test {
     for (const std::string& file : case_.writes)
       EXPECT_EQ(added.count(fs::path(file).lexically_normal().string()), 1u) << file << " was not written";
     if (case_.info_file) {
-      const Said info = say({"semsurf", "info", *case_.info_file});
+      const test::Said info = test::semsurf({"info", *case_.info_file});
       EXPECT_TRUE(matches(info.out, *case_.info)) << "info does not match '" << *case_.info << "':\n" << info.out;
     }
   }

@@ -22,3 +22,4 @@ foreach(script validate_gltf show_gltf)
   set_tests_properties(web.${script} PROPERTIES LABELS web FIXTURES_REQUIRED web_scenes TIMEOUT 300
                        SKIP_RETURN_CODE 77)
 endforeach()
+semsurf_long(web.show_gltf)   # in a browser
