@@ -34,6 +34,7 @@ programs=(
   xvfb xauth                                                      # a screen for those that need one
   chromium                                                        # what shows web pages and glTF
   lib3mf-dev                                                      # the 3MF Consortium's own reader
+  gwyddion                                                        # AFM formats that only it knows
 )
 
 say() { printf '==> %s\n' "$*"; }

@@ -14,7 +14,7 @@ SLOWEST = 10
 
 def tests_of(log):
     """(name, seconds, output) of each test in ctest's log."""
-    for part in re.split(r"^-{58}\n(?=\d+/\d+ Testing: )", log, flags=re.MULTILINE)[1:]:
+    for part in re.split(r"^(?=\d+/\d+ Testing: )", log, flags=re.MULTILINE)[1:]:
         name = re.match(r"\d+/\d+ Testing: (.*)", part)[1]
         seconds = re.search(r"^Test time = +([\d.]+) sec", part, re.MULTILINE)
         yield name, float(seconds[1]) if seconds else 0.0, part
