@@ -17,6 +17,10 @@ int main() {
   const auto scan = workflow::resolve_scan({.width = 8, .height = 8}, {{0, 0, 0}, {80, 80, 10}}, {});
   std::printf("%s, %zu mechanisms, %s a pixel\n", silicon.name.c_str(),
               mc::describe({}, silicon).size(), format_length(scan.pixel_x_nm).c_str());
+  // Modules are linked, not looked for beside this program: else these throw.
+  io::check_image_target("a.exr");
+  io::check_tracks_target("a.vtp");
+  io::check_track_picture_target("a.png");
   // Not run, but linked: what these need inside has to be found.
   if (scan.width < 0) {
     io::write_tracks("a.vtp", {});
