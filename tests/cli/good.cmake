@@ -246,7 +246,7 @@ semsurf_cli_test(tip.shape ARGS tip --shape cone:5nm,20deg --size 31 -o tip.gsf 
 semsurf_cli_test(tip.sweep ARGS tip steps.txt --size 5 --noise 0.02nm --sweep 0.02nm,0.4nm,5 --plot tip.svg -o tip.gsf
   STDOUT "noise +" "threshold " WRITES tip.gsf tip.svg)
 semsurf_cli_test(tip.doubted EXIT 4 ARGS tip steps.txt --size 5 --noise 2nm --plot tip.svg -o tip.gsf
-  STDOUT "radius +infinite: the tip is flat\n" "written +tip.gsf\nwritten +tip.svg\n"
+  STDOUT "radius +infinite: the tip is flat\n" "written +tip.gsf\n +tip.svg\n"
   STDERR "this tip is not to be trusted, and its file says so: its threshold of 16.0 nm is the largest that was tried.*it is flat"
   WRITES tip.gsf tip.svg INFO tip.gsf "tip.doubt +its threshold of 16.0 nm")
 semsurf_cli_test(tip.noise_is_the_roughness EXIT 4 ARGS tip noisy.gsf --size 5 -o tip.gsf

@@ -220,7 +220,7 @@ std::vector<Default> others() {
       {{"train", "predict"}, "--pitch", "1nm"},
       {scenes, "--pitch", "as its file says, or 1nm"},
       {scenes, "--z-unit", "1nm"},
-      {scenes, "--cutoff", "the surface barrier; 50eV without secondaries"},
+      {scenes, "--cutoff", "0: the surface barrier; 50eV without secondaries"},
       {{"erode", "dilate"}, "--distance", "0nm"},
       {{"chart"}, "--draws", "10; with --quick 3"},
       {{"noise"}, "--lags", "10"},
