@@ -53,7 +53,7 @@ Sweep reconstruction_map() {
           {0, 0.25, 0.5, 1, 2, 3, 4, 6, 8, 12, 16},
           at,
           8,
-          1e-4,
+          0.02,
           plot};
 }
 

@@ -93,7 +93,7 @@ Sweep reconstruction_untouched() {
           {50, 70, 90, 110, 130, 150, 180, 220, 260, 320},
           at,
           130,
-          1e-4,
+          0.06,
           plot};
 }
 
