@@ -22,10 +22,14 @@ function(semsurf_warnings target)
   endif()
 endfunction()
 
-# semsurf_cold(TARGET): nothing in it is worth optimising far. Files that are get -O3 of their own
+# semsurf_cold(TARGET [LEVEL]): nothing in it is worth optimising far: -O1, or LEVEL. Files that are get -O3 of their own
 # (set_source_files_properties(... COMPILE_OPTIONS -O3 SKIP_PRECOMPILE_HEADERS ON)).
 function(semsurf_cold target)
-  target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)
+  set(level -O1)
+  if(ARGN)
+    set(level ${ARGN})
+  endif()
+  target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:${level}>)
 endfunction()
 
 # semsurf_hot(files...): optimised as far as it goes in a target that is cold.

@@ -93,6 +93,15 @@ void add_numbered(const fs::path& folder, const std::string& stem, const std::re
   files.insert(files.end(), found.begin(), found.end());
 }
 
+/// Whether a file of semsurf with the same stem as `main` names it: their pictures have the same names.
+bool belongs_to_sibling(const fs::path& main, const fs::path& file) {
+  for (const char* extension : {".gltf", ".mtl", ".vtm"}) {
+    const fs::path sibling = main.parent_path() / (main.stem().string() + extension);
+    if (is_marked(sibling) && names(beginning(sibling, std::size_t{64} << 20), file)) return true;
+  }
+  return false;
+}
+
 }  // namespace
 
 std::vector<fs::path> files_read_with(const fs::path& path) {
@@ -143,7 +152,7 @@ void refuse_strangers(const fs::path& main, const std::vector<fs::path>& beside)
     std::error_code ignored;
     if (!fs::is_regular_file(file, ignored) || is_marked(file)) continue;   // writing refuses what is no file
     if (text.empty()) text = beginning(main, std::size_t{64} << 20);
-    if (names(text, file)) continue;
+    if (names(text, file) || belongs_to_sibling(main, file)) continue;
     throw UsageError(main.string(),
                      fmt::format("{} would be written with it, and a file of that name is there that semsurf did not "
                                  "write",

@@ -129,6 +129,16 @@ TEST_F(Companions, OfOthersAreNotReplaced) {
   EXPECT_THAT(complaint<UsageError>([&] { check_surface_target(gltf); }), HasSubstr("mm.bin"));
 }
 
+// glTF and OBJ of one name have one name for their pictures.
+TEST_F(Companions, OfASiblingOfSemsurfAreReplaced) {
+  write(here_ / "a_drape1.png", "a picture");
+  write(here_ / "a.gltf", R"({"asset": {"generator": "somebody"}, "images": [{"uri": "a_drape1.png"}]})");
+  EXPECT_THAT(complaint<UsageError>([&] { refuse_strangers(here_ / "a.obj", {here_ / "a_drape1.png"}); }),
+              HasSubstr("a_drape1.png"));
+  write(here_ / "a.gltf", R"({"asset": {"extras": {"semsurf.version": "1"}}, "images": [{"uri": "a_drape1.png"}]})");
+  EXPECT_NO_THROW(refuse_strangers(here_ / "a.obj", {here_ / "a_drape1.png"}));
+}
+
 TEST_F(Companions, WithAMarkOfSemsurfAreReplaced) {
   write(here_ / "a.run.json", "{\"semsurf\": \"1.0\"}");
   write(here_ / "b.run.json", "{\"name\": \"b\"}");

@@ -152,7 +152,12 @@ TEST(SimulateJob, RefusesBadJobsBeforeWritingAnything) {
   fails_with_usage_error([](SimulateJob& job) { job.outputs.clear(); });
   fails_with_usage_error([](SimulateJob& job) { job.outputs[0].replace_extension(".jpg2"); });
   fails_with_usage_error([](SimulateJob& job) { job.outputs.push_back(job.outputs[0]); });
-  fails_with_usage_error([](SimulateJob& job) { job.scene.inputs = job.outputs; });
+  const TemporaryFolder other;
+  io::write_text(other.path() / "input.exr", "not looked into");
+  fails_with_usage_error([&](SimulateJob& job) {
+    job.scene.inputs = {other.path() / "input.exr"};
+    job.outputs = {other.path() / "." / "input.exr"};
+  });
   fails_with_usage_error([](SimulateJob& job) { job.options.electrons = 0; });
   fails_with_usage_error([](SimulateJob& job) { job.options.electrons = 1LL << 40; });
   fails_with_usage_error([](SimulateJob& job) { job.options.threads = -1; });
