@@ -8,6 +8,7 @@
 #include <string_view>
 #include <system_error>
 
+#include "bound_parameters.h"
 #include "surf/core/error.h"
 #include "surf/io/sim/scene_file.h"
 #include "surf/workflow/chain_chart_job.h"
@@ -39,6 +40,7 @@ std::string name_of(const CLI::Option& option) {
 }
 
 bool is_output(const CLI::Option& option) {
+  if (const auto role = file_role(option)) return *role == FileRole::written || *role == FileRole::written_folder;
   return std::ranges::any_of(option.get_lnames(), [](const std::string& name) {
     return std::ranges::find(output_names, name) != output_names.end();
   });
@@ -87,7 +89,8 @@ void refuse_overlaps(const CLI::App& command) {
   }
   if (outputs.empty()) return;   // the inputs need not be looked at
   for (const CLI::Option* option : command.get_options()) {
-    if (is_output(*option) || !option->get_type_name().starts_with("FILE")) continue;
+    const auto role = file_role(*option);
+    if (is_output(*option) || (role ? *role != FileRole::read : !option->get_type_name().starts_with("FILE"))) continue;
     for (const std::string& value : option->results())
       std::ranges::copy(files_read(name_of(*option), value), std::back_inserter(inputs));
   }
