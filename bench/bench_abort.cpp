@@ -138,7 +138,7 @@ int main(int argc, char** argv) {
     mc::Beam beam;
     beam.energy_ev = energy_ev;
     mc::SimulationOptions options;
-    options.electrons = energy_ev > 1000 ? 100 : 1000;
+    options.budget = mc::ElectronsPerPixel{energy_ev > 1000 ? 100 : 1000};
     const std::string name = fmt::format("mc::simulate, direct, {:g} keV", energy_ev / 1000);
     if (name.find(wanted) == std::string::npos) continue;
     const mc::Scene scene(coarse, beam, scan);

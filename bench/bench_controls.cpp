@@ -59,7 +59,7 @@ mc::SimulationResult primaries(const mc::Specimen& specimen, double energy_ev, i
   const mc::Scene scene(specimen, bench::beam(energy_ev), bench::view(1e-5, across));
   mc::SimulationOptions o;
   o.method = mc::Method::replay;
-  o.electrons = 1;
+  o.budget = mc::ElectronsPerPixel{1};
   return mc::simulate(scene, o);
 }
 

@@ -112,7 +112,7 @@ std::vector<Grid<double>> reference(const Surface& surface, int half, const fs::
       scan.pixel_x_nm = scan.pixel_y_nm = surface.pixel_nm;
       mc::SimulationOptions options;
       options.method = mc::Method::replay;
-      options.electrons = surface.electrons;
+      options.budget = mc::ElectronsPerPixel{surface.electrons};
       options.seed = 1000 + 100 * half + library;
       const mc::Scene scene(specimen, mc::Beam{}, scan, mc::Physics{});
       io::write_image(path, mc::make_image(mc::simulate(scene, options), scan));

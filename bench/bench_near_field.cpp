@@ -116,7 +116,7 @@ json measure(const Case& c) {
   }
 
   mc::SimulationOptions options;
-  options.electrons = 5;
+  options.budget = mc::ElectronsPerPixel{5};
   options.threads = 1;
   const mc::SimulationResult result = mc::simulate(scene, options);
   const mc::Balance& b = result.balance;

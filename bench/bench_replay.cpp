@@ -166,11 +166,11 @@ json compare(const char* name, const mc::Scene& scene, const Sizes& sizes, std::
   for (const int t : threads) {
     mc::SimulationOptions o;
     o.threads = t;
-    o.electrons = sizes.direct;
+    o.budget = mc::ElectronsPerPixel{sizes.direct};
     const auto direct = mc::simulate(scene, o);
     o.method = mc::Method::replay;
-    o.electrons = sizes.replay;
-    const auto replay = mc::simulate(scene, o, {}, nullptr, {}, nullptr, kept);
+    o.budget = mc::ElectronsPerPixel{sizes.replay};
+    const auto replay = mc::simulate(scene, o, {.libraries = kept});
     json row{{"threads", t}, {"direct", report(direct)},
              {"replay", report(replay, kept ? kept->take_saved_seconds() : 0)}};
     row["equal_time"] = at_equal_time(row["direct"], row["replay"]);
@@ -194,11 +194,11 @@ json to_accuracy(const char* name, const mc::Scene& scene, double accuracy, bool
   const int pixels = scene.scan().width;
   mc::SimulationOptions o;
   o.method = mc::Method::replay;
-  o.accuracy = accuracy;
+  o.budget = mc::Accuracy{accuracy};
   o.planar_control = control;
   o.threads = threads;
   if (!bse) o.detectors.resize(1);
-  const auto r = mc::simulate(scene, o, {}, nullptr, {}, nullptr, kept);
+  const auto r = mc::simulate(scene, o, {.libraries = kept});
   double worst = 0;
   std::int64_t over = 0, all = 0;
   for (int y = 0; y < pixels; ++y)
@@ -278,16 +278,16 @@ json choice(double energy_ev) {
     const mc::Scene scene(specimen, beam(energy_ev), view(192, pixels));
     mc::SimulationOptions o;
     o.threads = 1;
-    o.electrons = static_cast<std::int64_t>(std::clamp(2e4 / energy_ev, 1.0, 20.0));
+    o.budget = mc::ElectronsPerPixel{static_cast<std::int64_t>(std::clamp(2e4 / energy_ev, 1.0, 20.0))};
     begin = cpu_seconds();
     const mc::Balance b = mc::simulate(scene, o).balance;
     const double direct = cpu_seconds() - begin;
     const double per_step = direct / static_cast<double>(b.steps);
     o.method = mc::Method::replay;
     const double share = static_cast<double>(o.electrons);
-    o.electrons = 20;
+    o.budget = mc::ElectronsPerPixel{20};
     begin = cpu_seconds();
-    mc::simulate(scene, o, {}, nullptr, {}, nullptr, &source);
+    mc::simulate(scene, o, {.libraries = &source});
     const double replay = (cpu_seconds() - begin) * share / static_cast<double>(o.electrons);
     const double making = made / segments / per_step, saved = 1 - replay / direct;
     out["scenes"].push_back({{"scene", name}, {"nanoseconds_per_step", 1e9 * per_step},

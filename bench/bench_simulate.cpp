@@ -55,7 +55,7 @@ Run simulate(const mc::Specimen& specimen, const mc::Scan& scan, std::int64_t el
              int threads, const Settings& settings = {}) {
   const mc::Scene scene(specimen, {}, scan, settings.physics, {settings.grid_bytes});
   mc::SimulationOptions options;
-  options.electrons = electrons;
+  options.budget = mc::ElectronsPerPixel{electrons};
   options.threads = threads;
   options.spectra = settings.spectra;
   for (const std::string& text : settings.detectors)

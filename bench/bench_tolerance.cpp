@@ -56,14 +56,14 @@ struct View {
 mc::SimulationResult image(const mc::Scene& scene, const View& view, std::uint64_t seed) {
   mc::SimulationOptions o;
   o.method = mc::Method::replay;
-  o.electrons = view.electrons;
+  o.budget = mc::ElectronsPerPixel{view.electrons};
   o.seed = seed;
   return mc::simulate(scene, o);
 }
 
 double direct_per_second(const mc::Scene& scene) {
   mc::SimulationOptions o;
-  o.electrons = 60;
+  o.budget = mc::ElectronsPerPixel{60};
   const mc::SimulationResult r = mc::simulate(scene, o);
   return static_cast<double>(r.balance.incident) / r.seconds;
 }

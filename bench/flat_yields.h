@@ -73,7 +73,7 @@ inline FlatYields simulate_flat(const mc::Material& material, double energy_ev,
   mc::Scan scan;
   scan.width = scan.height = 4;   // units of work for the threads
   mc::SimulationOptions options;
-  options.electrons = std::max<std::int64_t>(electrons / 16, 1);
+  options.budget = mc::ElectronsPerPixel{std::max<std::int64_t>(electrons / 16, 1)};
   options.tile_pixels = 1;
   const auto result = mc::simulate(mc::Scene(specimen, beam, scan), options);
   const auto yield = [&](std::size_t detector) {

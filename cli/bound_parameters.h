@@ -50,7 +50,7 @@ class BoundParameters {
   }
   template <class Struct>
   static void apply(Struct& to, const GivenTexts& given) {
-    for_each_parameter(to, [&](const Parameter& about, Field& field) { take(about, field, given); });
+    read_parameters(to, [&](const Parameter& about, Field& field) { take(about, field, given); });
   }
 
   const GivenTexts& given() const { return *given_; }

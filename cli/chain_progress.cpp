@@ -5,8 +5,8 @@
 
 namespace surf::cli {
 
-workflow::ChainListener ChainProgress::listener() {
-  workflow::ChainListener l;
+workflow::Reporter ChainProgress::listener() {
+  workflow::Reporter l;
   l.stage = [this](const std::string& stage) {
     bar_.clear();
     stage_ = stage;

@@ -13,7 +13,7 @@ class ChainProgress {
  public:
   explicit ChainProgress(bool quiet) : quiet_(quiet), bar_(!quiet) {}
 
-  workflow::ChainListener listener();
+  workflow::Reporter listener();
 
  private:
   bool quiet_;

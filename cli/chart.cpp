@@ -148,7 +148,7 @@ int chart(const Options& o, const std::string& command_line) {
     InterruptGuard interrupts;
     ProgressBar bar(!o.quiet);
     bool headed = false;
-    workflow::ChartListener listener;
+    workflow::Reporter listener;
     listener.progress = [&](double done, double total) { bar.show(done, total, nullptr); };
     listener.point = [&](const workflow::ChartPoint& p) {
       if (o.quiet) return;

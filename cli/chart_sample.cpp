@@ -100,7 +100,7 @@ int chart_sample(const ChartSampleOptions& o, const std::string& command_line) {
   {
     InterruptGuard interrupts;
     ProgressBar bar(!o.quiet);
-    workflow::ChainChartListener listener;
+    workflow::Reporter listener;
     listener.progress = [&](double done, double total) { bar.show(done, total, nullptr); };
     const auto tell = [&](const auto& print) {
       if (o.quiet) return;

@@ -38,7 +38,7 @@ std::size_t number_of_cascades(const LibraryOptions& o) {
     throw UsageError("--cascades", "the accuracy gives their number", "Leave out one of the two");
   if (o.cascades) return whole_pages(parse_whole(*o.cascades, "--cascades", 1, most_cascades));
   mc::SimulationOptions simulation;
-  if (o.accuracy) simulation.accuracy = parse_accuracy(*o.accuracy);
+  if (o.accuracy) simulation.budget = mc::Accuracy{parse_accuracy(*o.accuracy)};
   return mc::library_size(simulation, simulation.electrons);
 }
 

@@ -53,7 +53,7 @@ bool has_unit(const std::string& text) {
 /// lengths from the image's origin, up.
 PixelRectangle parse_rectangle(const std::string& text, const SemPicture& picture) {
   const PlacedImage& image = picture.image;
-  const io::ScanRequest::Region r = parse_region(text, "--region");
+  const mc::ScanRequest::Region r = parse_region(text, "--region");
   const auto whole = [](double v) { return static_cast<int>(std::clamp(std::round(v), -1e9, 1e9)); };
   if (!has_unit(text)) {
     const int height = image.values.height();

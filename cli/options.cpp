@@ -109,7 +109,7 @@ std::pair<double, double> parse_pixel_size(std::string_view text, std::string_vi
   return {x, y};
 }
 
-io::ScanRequest::Region parse_region(std::string_view text, std::string_view subject) {
+mc::ScanRequest::Region parse_region(std::string_view text, std::string_view subject) {
   const auto parts = split(text, ",");
   if (parts.size() != 4)
     throw UsageError(std::string(subject), fmt::format("'{}' has {} numbers", text, parts.size()),

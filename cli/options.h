@@ -36,7 +36,7 @@ std::pair<int, int> parse_size(std::string_view text, std::string_view subject);
 std::pair<double, double> parse_pixel_size(std::string_view text, std::string_view subject);
 
 /// "X0,Y0,X1,Y1".
-io::ScanRequest::Region parse_region(std::string_view text, std::string_view subject);
+mc::ScanRequest::Region parse_region(std::string_view text, std::string_view subject);
 
 /// What --unit and --override-unit say of mesh files. Throws UsageError for the one without the other.
 io::MeshUnit parse_mesh_unit(const std::optional<std::string>& unit, bool overrides);

@@ -221,7 +221,7 @@ void add_detectors(const SceneOptions& options, io::SceneFile& scene) {
 
 // What the command line gives replaces the same thing in the scene file. Where that leaves size,
 // pixel size and region, the one of the file that least changes the picture gives way.
-void apply_scan(const SceneOptions& options, io::ScanRequest& scan) {
+void apply_scan(const SceneOptions& options, mc::ScanRequest& scan) {
   const int given = options.size.has_value() + options.pixel_size.has_value() +
                     options.region.has_value();
   if (given == 2) scan = {};

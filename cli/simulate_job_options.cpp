@@ -122,7 +122,7 @@ workflow::SimulateJob make_simulate_job(const SimulateOptions& o, const std::str
     throw UsageError("--output", "no output file is given", "Add -o image.exr");
   job.scene = make_scene(o.scene, notes, read);
   apply_budget(o, electrons, job);
-  job.options.electrons = job.scene.electrons.value_or(job.options.electrons);
+  job.options.budget = mc::ElectronsPerPixel{job.scene.electrons.value_or(job.options.electrons)};
   if (method) job.scene.method = *method;
   if (tolerance) job.scene.mesh_tolerance_nm = tolerance;
   job.cache = io::cache_folder(o.cache.value_or(""));

@@ -221,7 +221,7 @@ int sweep(const Options& o, const std::string& command_line) {
   {
     InterruptGuard interrupts;
     ProgressBar bar(!quiet);
-    workflow::SweepListener listener;
+    workflow::Reporter listener;
     listener.progress = [&](double done, double total) { bar.show(done, total, nullptr); };
     listener.done = [&](std::size_t run, const std::vector<workflow::SweepYield>& yields) {
       if (quiet) return;

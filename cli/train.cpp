@@ -43,7 +43,7 @@ int train(const TrainOptions& options) {
   {
     InterruptGuard interrupts;
     ProgressBar bar(!options.quiet);
-    workflow::TrainListener listener;
+    workflow::Reporter listener;
     listener.pixels = [&](double done, double total) { bar.show(done, total, "pixels"); };
     listener.cascades = [&](double done, double total) { bar.show(done, total, "cascades"); };
     listener.learning = [&](double done, double total) { bar.show(done, total, nullptr); };

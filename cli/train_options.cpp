@@ -91,10 +91,10 @@ void add_budget(const TrainOptions& o, workflow::TrainJob& job) {
   if (o.electrons && o.accuracy)
     throw UsageError("--electrons", "with --accuracy there are two ways to say how much is simulated",
                      "Leave out one of the two");
-  job.simulation.electrons = o.electrons ? parse_whole(*o.electrons, "--electrons", 1, std::int64_t{1} << 31)
-                                         : workflow::ModelRequest{}.electrons;
+  job.simulation.budget = mc::ElectronsPerPixel{o.electrons ? parse_whole(*o.electrons, "--electrons", 1, std::int64_t{1} << 31)
+                                         : workflow::ModelRequest{}.electrons};
   if (o.accuracy) {
-    job.simulation.accuracy = parse_share(*o.accuracy, "--accuracy");
+    job.simulation.budget = mc::Accuracy{parse_share(*o.accuracy, "--accuracy")};
     job.simulation.method = mc::Method::replay;
   }
   if (o.seed) job.simulation.seed = parse_seed(*o.seed, "--seed");

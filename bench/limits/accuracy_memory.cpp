@@ -16,8 +16,7 @@ std::vector<double> at(double asked_percent) {
   const mc::Scene scene(bench::flat(bench::only_silicon()), bench::beam(300), bench::view(100, 2));
   mc::SimulationOptions options;
   options.method = mc::Method::replay;
-  options.accuracy = asked_percent / 100;
-  options.accuracy_floor = 0;
+  options.budget = mc::Accuracy{asked_percent / 100, 0};
   options.library_memory = memory;
   mc::Detector narrow;
   narrow.name = "narrow";
@@ -30,7 +29,7 @@ std::vector<double> at(double asked_percent) {
   // The least library grows beyond the memory: the program goes on directly, and so does this.
   const bool fits = choice.library_bytes <= memory;
   if (!fits) return {0, static_cast<double>(choice.cascades), choice.library_bytes / 1e6, none, none, none};
-  const mc::SimulationResult r = mc::simulate(scene, options, {}, nullptr, {}, nullptr, &cascades());
+  const mc::SimulationResult r = mc::simulate(scene, options, {.libraries = &cascades()});
   const mc::ResultSummary s = mc::summarize(r);
   return {1, static_cast<double>(r.library_cascades), choice.library_bytes / 1e6, asked_percent * s.worst,
           static_cast<double>(s.missed) / static_cast<double>(s.seen), s.missed > 0 ? 1.0 : 0.0};

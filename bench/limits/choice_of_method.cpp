@@ -37,7 +37,7 @@ const Work& work() {
 std::vector<double> at(double across) {
   const mc::Scene scene(bench::flat(bench::only_silicon()), bench::beam(300), bench::view(100, static_cast<int>(across)));
   mc::SimulationOptions options;
-  options.electrons = 50;
+  options.budget = mc::ElectronsPerPixel{50};
   const mc::MethodChoice choice = mc::choose_method(scene, options);
   const double primaries = across * across * 50;
   const double direct = primaries * work().direct;

@@ -27,8 +27,7 @@ std::vector<double> at(double depth_over_width) {
   const mc::Scene scene = trench(depth_over_width * width_nm);
   const mc::Estimate truth = mean_yield(simulate(scene, mc::Method::direct, 5000, 17), bse);
   mc::SimulationOptions options;
-  options.accuracy = accuracy;
-  options.accuracy_floor = 0.01;
+  options.budget = mc::Accuracy{accuracy, 0.01};
   const double asked = std::max(accuracy * truth.mean, options.accuracy_floor);
   std::vector<double> row{truth.mean, truth.standard_error, asked};
   for (const mc::Method method : {mc::Method::direct, mc::Method::replay}) {
@@ -36,7 +35,7 @@ std::vector<double> at(double depth_over_width) {
     double sum = 0, squares = 0, primaries = 0, missed = 0;
     for (int seed = 1; seed <= seeds; ++seed) {   // each with a library of its own
       options.seed = static_cast<std::uint64_t>(seed);
-      const mc::SimulationResult r = mc::simulate(scene, options, {}, nullptr, {}, nullptr, &cascades());
+      const mc::SimulationResult r = mc::simulate(scene, options, {.libraries = &cascades()});
       const mc::ResultSummary summary = mc::summarize(r);
       primaries += summary.mean_electrons / seeds;
       missed += static_cast<double>(summary.missed);

@@ -19,7 +19,7 @@ std::vector<double> at(double energy_ev) {
   const mc::Scene scene(bench::flat(bench::only_silicon()), bench::beam(energy_ev), bench::view(100, pixels));
   const double share = std::min(1.0, 1000 / energy_ev);
   mc::SimulationOptions options;
-  options.electrons = static_cast<std::int64_t>(std::ceil(share * primaries / (pixels * pixels)));
+  options.budget = mc::ElectronsPerPixel{static_cast<std::int64_t>(std::ceil(share * primaries / (pixels * pixels)))};
   std::vector<double> row;
   double mean[2][2], error[2][2];
   for (const mc::Method method : {mc::Method::direct, mc::Method::replay}) {

@@ -44,11 +44,11 @@ TrainingImage monte_carlo(const HeightField& surface, const Exposure& e) {
   scan.center_y_nm = surface.origin_y_nm + 0.5 * (scan.height - 1) * surface.pitch_y_nm;
   mc::SimulationOptions options;
   options.method = mc::Method::replay;
-  options.electrons = e.electrons;
+  options.budget = mc::ElectronsPerPixel{e.electrons};
   options.seed = e.seed;
   options.detectors = e.detectors;
   const mc::Scene scene(specimen, beam, scan, mc::Physics{});
-  const mc::SimulationResult r = mc::simulate(scene, options, {}, nullptr, {}, nullptr, &libraries);
+  const mc::SimulationResult r = mc::simulate(scene, options, {.libraries = &libraries});
   TrainingImage out;
   out.name = "surface";
   out.field = surface;

@@ -30,9 +30,9 @@ inline mc::SimulationResult simulate(const mc::Scene& scene, mc::Method method, 
                                      std::uint64_t seed = 1) {
   mc::SimulationOptions options;
   options.method = method;
-  options.electrons = electrons;
+  options.budget = mc::ElectronsPerPixel{electrons};
   options.seed = seed;
-  return mc::simulate(scene, options, {}, nullptr, {}, nullptr, &cascades());
+  return mc::simulate(scene, options, {.libraries = &cascades()});
 }
 
 /// The mean over the image with its standard error, the library's share included.

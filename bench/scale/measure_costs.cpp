@@ -39,7 +39,7 @@ struct Units {
 // Of the large image, at random places.
 Units simulate_directly(const mc::Scene& scene, std::int64_t electrons, int pixels, int count) {
   mc::SimulationOptions options;
-  options.electrons = electrons;
+  options.budget = mc::ElectronsPerPixel{electrons};
   Units out;
   RandomStream random(7, 0, static_cast<std::uint32_t>(pixels));
   for (int i = 0; i <= count; ++i) {
@@ -76,7 +76,7 @@ Units simulate_by_replay(std::int64_t electrons, int pixels_across, mc::LibraryS
   const mc::Scan scan = bench::view(view_nm, pixels_across);
   const mc::Scene scene(bench::mesa(bench::only_silicon()), bench::beam(1000), scan);
   mc::SimulationOptions options;
-  options.electrons = electrons;
+  options.budget = mc::ElectronsPerPixel{electrons};
   options.method = mc::Method::replay;
   options.threads = 1;
   Clocked journal;
@@ -134,7 +134,7 @@ Handling handle(const std::vector<mc::UnitTally>& tallies, const fs::path& folde
 double write_s_per_pixel(const fs::path& folder, int pixels_across) {
   mc::Scan scan = bench::view(view_nm, pixels_across);
   mc::SimulationOptions options;
-  options.electrons = 3;
+  options.budget = mc::ElectronsPerPixel{3};
   options.tally_memory = 0;
   options.scratch_folder = folder.string();
   mc::SimulationResult result = mc::empty_result(scan, options);

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "surf/core/error.h"
+#include "surf/core/parameters.h"
 #include "surf/core/units.h"
 #include "surf/mc/largest_length.h"
 #include "surf/mc/physics.h"
@@ -18,13 +19,6 @@ constexpr double most_convergence_deg = 20;
 constexpr double most_azimuth_deg = 3600;     // ten turns: far beyond, numbers no longer tell directions apart
 constexpr double widest_scan = 4;             // largest lengths: a tilted beam sees a box from corner to corner
 
-// The error for a length from nothing (or minus the most) to the most.
-[[noreturn]] void refuse_length(const char* option, double value_nm, const char* example, bool may_be_negative = false) {
-  throw UsageError(option,
-                   fmt::format("{:.6g} nm is not in {} to {:g} nm", value_nm,
-                               may_be_negative ? fmt::format("-{:g}", largest_length_nm) : "0", largest_length_nm),
-                   fmt::format("Give a length such as {}", example));
-}
 }  // namespace
 
 Vec3 direction(const Beam& beam) {
@@ -34,27 +28,37 @@ Vec3 direction(const Beam& beam) {
   return normalized({std::sin(t) * std::cos(a), std::sin(t) * std::sin(a), -std::cos(t)});
 }
 
-void validate(const Beam& beam) {
-  if (!(beam.energy_ev >= min_beam_energy_ev && beam.energy_ev <= max_beam_energy_ev))
-    throw UsageError("--energy", fmt::format("{:g} eV is outside 100 eV to 30 keV", beam.energy_ev),
-                     "Choose an energy in that range, such as 1keV");
-  if (!(beam.tilt_deg >= 0 && beam.tilt_deg < 90))
-    throw UsageError("--tilt", fmt::format("{:g} degrees is outside 0 to 90 (90 excluded)",
-                                           beam.tilt_deg),
-                     "Choose a smaller tilt and set its side with --azimuth");
-  if (!(std::abs(beam.azimuth_deg) <= most_azimuth_deg))
-    throw UsageError("--azimuth", fmt::format("{:g} degrees is outside -{:g} to {:g}", beam.azimuth_deg,
-                                              most_azimuth_deg, most_azimuth_deg),
-                     "Give an angle within a turn, such as 90deg");
-  if (!(beam.spot_nm >= 0 && beam.spot_nm <= largest_length_nm)) refuse_length("--spot", beam.spot_nm, "1nm");
-  if (!(beam.convergence_deg >= 0 && beam.convergence_deg <= most_convergence_deg))
-    throw UsageError("--convergence", fmt::format("a half angle of {:g} degrees is outside 0 to {:g}",
-                                                  beam.convergence_deg, most_convergence_deg),
-                     "Microscopes have a few mrad: write 5mrad");
-  if (!(std::abs(beam.focus_nm) <= largest_length_nm)) refuse_length("--focus", beam.focus_nm, "0nm", true);
-  if (!(beam.working_distance_nm >= 0 && beam.working_distance_nm <= largest_length_nm))
-    refuse_length("--working-distance", beam.working_distance_nm, "5mm, or leave it out for parallel beams");
+void describe(ParameterVisitor& visit, Beam& beam) {
+  visit(beam.energy_ev, {.name = "beam.energy", .help = "Energy of the beam", .unit = Unit::ev,
+                         .limits = within(min_beam_energy_ev, max_beam_energy_ev)});
+  visit(beam.tilt_deg, {.name = "beam.tilt", .help = "Angle of the beam from straight down", .unit = Unit::deg,
+                        .limits = from_to_below(0, 90)});
+  visit(beam.azimuth_deg, {.name = "beam.azimuth", .help = "Direction that the beam is tilted to: 0 is +x, 90deg is +y",
+                           .unit = Unit::deg, .limits = within(-most_azimuth_deg, most_azimuth_deg), .level = Level::advanced});
+  visit(beam.spot_nm, {.name = "beam.spot", .help = "Standard deviation of the Gaussian spot; 0 is a point", .unit = Unit::nm,
+                       .limits = within(0, largest_length_nm)});
+  visit(beam.convergence_deg, {.name = "beam.convergence", .help = "Half angle of the beam's cone, such as 5mrad; 0 is parallel",
+                               .unit = Unit::deg, .limits = within(0, most_convergence_deg), .level = Level::advanced});
+  visit(beam.focus_nm, {.name = "beam.focus", .help = "Height of the cone's tip above the middle of the scan, along the beam",
+                        .unit = Unit::nm, .limits = within(-largest_length_nm, largest_length_nm), .level = Level::advanced});
+  visit(beam.working_distance_nm,
+        {.name = "beam.working_distance",
+         .help = "Distance from the middle of the scan to the point that all beams come from, for perspective; 0 is infinitely far",
+         .unit = Unit::nm, .limits = within(0, largest_length_nm), .level = Level::advanced});
 }
+
+void describe(ParameterVisitor& visit, Scan& scan) {
+  const Limits place = within(-largest_length_nm, largest_length_nm);
+  visit(scan.width, {.name = "scan.width", .help = "Pixels along x", .limits = at_least(1)});
+  visit(scan.height, {.name = "scan.height", .help = "Pixels along y", .limits = at_least(1)});
+  visit(scan.pixel_x_nm, {.name = "scan.pixel_x", .help = "Width of a pixel", .unit = Unit::nm, .limits = above(0)});
+  visit(scan.pixel_y_nm, {.name = "scan.pixel_y", .help = "Height of a pixel", .unit = Unit::nm, .limits = above(0)});
+  visit(scan.center_x_nm, {.name = "scan.center_x", .help = "Centre of the region, x", .unit = Unit::nm, .limits = place});
+  visit(scan.center_y_nm, {.name = "scan.center_y", .help = "Centre of the region, y", .unit = Unit::nm, .limits = place});
+  visit(scan.center_z_nm, {.name = "scan.center_z", .help = "Height of the scan plane's centre", .unit = Unit::nm, .limits = place});
+}
+
+void validate(const Beam& beam) { check_parameters(beam); }
 
 void validate(const Scan& scan) {
   if (scan.width < 1 || scan.height < 1)

@@ -48,7 +48,7 @@ struct DirectWork {
 // With a wanted accuracy from the scatter of a few primaries more.
 DirectWork direct_work(const Scene& scene, const SimulationOptions& options) {
   constexpr int across = 4;
-  const bool accurate = options.accuracy > 0;
+  const bool accurate = accuracy_of(options.budget) > 0;
   SimulationOptions few;
   few.seed = options.seed;
   few.detectors = options.detectors;
@@ -65,7 +65,7 @@ DirectWork direct_work(const Scene& scene, const SimulationOptions& options) {
       if (accurate) work.primaries += primaries_needed(options, tally) / (across * across);
     }
   work.steps = static_cast<double>(balance.steps) / static_cast<double>(balance.incident);
-  if (!accurate) work.primaries = options.dose > 0 ? options.dose : static_cast<double>(options.electrons);
+  if (!accurate) work.primaries = std::max(dose_of(options.budget), static_cast<double>(electrons_of(options.budget)));
   return work;
 }
 
@@ -96,8 +96,8 @@ std::string count(double n) {
 
 // What a pixel gets at most: with a dose, numbers scatter about it.
 std::int64_t most_primaries(const SimulationOptions& o) {
-  if (o.dose > 0) return static_cast<std::int64_t>(std::ceil(o.dose + 6 * std::sqrt(o.dose) + 6));
-  return o.electrons;
+  if (const double dose = dose_of(o.budget); dose > 0) return static_cast<std::int64_t>(std::ceil(dose + 6 * std::sqrt(dose) + 6));
+  return electrons_of(o.budget);
 }
 
 struct Obstacle {
@@ -125,7 +125,7 @@ std::optional<Obstacle> too_large(const Scene& scene, const MethodChoice& choice
                       ? "one material" : fmt::format("each of {} materials", scene.materials().size()),
                   scene.beam().energy_ev / 1e3, choice.library_bytes / 1e9,
                   limits.library_bytes / 1e9),
-      options.accuracy > 0 ? "Ask for less accuracy, or a lower --energy"
+      accuracy_of(options.budget) > 0 ? "Ask for less accuracy, or a lower --energy"
                            : "Ask for fewer electrons per pixel, or a lower --energy"};
 }
 
@@ -146,7 +146,7 @@ MethodChoice choose_method(const Scene& scene, const SimulationOptions& options,
   const auto materials = scene.materials().size();
   MethodChoice choice;
   choice.cascades = library_size(options, most_primaries(options));
-  if (options.accuracy > 0 && limits.observed)
+  if (accuracy_of(options.budget) > 0 && limits.observed)
     throw UsageError("--accuracy", "deposited energy would be of more primaries in some pixels than in others",
                      "Leave out --deposit, or give --electrons instead of the accuracy");
   if (asked == Method::direct) {
@@ -177,8 +177,8 @@ MethodChoice choose_method(const Scene& scene, const SimulationOptions& options,
       making_by_saving * work.segments * static_cast<double>(choice.cascades) < primaries * direct.steps;
   choice.method = pays ? Method::replay : Method::direct;
   const std::string these = fmt::format(
-      "{}{} primaries{}", options.accuracy > 0 ? "about " : "", count(primaries),
-      options.accuracy > 0 ? " for this accuracy" : "");
+      "{}{} primaries{}", accuracy_of(options.budget) > 0 ? "about " : "", count(primaries),
+      accuracy_of(options.budget) > 0 ? " for this accuracy" : "");
   const std::string those = fmt::format("{} cascades{}", count(static_cast<double>(choice.cascades)),
                                         materials > 1 ? " of each material" : "");
   choice.reason = pays ? fmt::format("{} share {}", these, those)

@@ -99,7 +99,7 @@ class DirectSpendingWorker : public UnitWorker {
   // No more than a pixel takes that one primary in a hundred gives an electron: without a floor a dark
   // one would go on for ever.
   std::int64_t primaries(double wanted) const {
-    const double most = std::min(std::max(1e4, 100 / (options_.accuracy * options_.accuracy)), 2147483648.0);
+    const double most = std::min(std::max(1e4, 100 / (accuracy_of(options_.budget) * accuracy_of(options_.budget))), 2147483648.0);
     return static_cast<std::int64_t>(std::min(std::ceil(wanted), most));
   }
 

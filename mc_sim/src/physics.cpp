@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "surf/core/error.h"
+#include "surf/core/parameters.h"
 #include "surf/mc/medium.h"
 
 namespace surf::mc {
@@ -52,7 +53,7 @@ std::string choices(const Key& key) {
   return out;
 }
 
-void apply_item(const std::string& item, Physics& physics) {
+void apply_item(const std::string& item, Physics& physics, const std::string& subject) {
   const auto equals = item.find('=');
   const std::string name = item.substr(0, equals);
   for (const Key& key : keys()) {
@@ -60,10 +61,10 @@ void apply_item(const std::string& item, Physics& physics) {
     const std::string word = equals == std::string::npos ? "" : item.substr(equals + 1);
     for (const auto& [known, value] : key.words)
       if (known == word) return key.set(physics, value);
-    throw UsageError("--physics", fmt::format("'{}' is no choice for {}", word, name),
+    throw UsageError(subject, fmt::format("'{}' is no choice for {}", word, name),
                      fmt::format("Choose one of: {}", choices(key)));
   }
-  throw UsageError("--physics", fmt::format("there is no '{}'", name),
+  throw UsageError(subject, fmt::format("there is no '{}'", name),
                    "Use elastic=, loss=, secondaries= or barrier=, separated by commas");
 }
 
@@ -72,7 +73,7 @@ void apply_item(const std::string& item, Physics& physics) {
 void validate(const Physics& physics, double beam_energy_ev) {
   const double cutoff = physics.cutoff_ev;
   if (cutoff == 0 || (cutoff >= min_cutoff_ev && cutoff < beam_energy_ev)) return;
-  throw UsageError("--cutoff",
+  throw UsageError("simulation.cutoff",
                    fmt::format("{:g} eV is outside {:g} eV to the beam's energy of {:g} eV (excluded)", cutoff,
                                min_cutoff_ev, beam_energy_ev),
                    "Choose an energy in that range, such as 5eV, or 0 for the default");
@@ -84,10 +85,25 @@ double effective_cutoff_ev(const Physics& physics, const Material& material) {
   return full ? material.barrier_ev : se_bse_split_ev;
 }
 
-void parse_physics(const std::string& text, Physics& physics) {
+void describe(ParameterVisitor& visit, Physics& physics) {
+  visit.form({.name = "simulation.physics",
+              .help = "Changes to the physics: elastic=mott|browning, loss=joy-luo|none, secondaries=on|off, "
+                      "barrier=quantum|classical|off; any of them, the first ones are the default",
+              .form = "KEY=VALUE,...",
+              .level = Level::advanced},
+             [&] { return format_physics(physics); },
+             [&](std::string_view text, const std::string& subject) { parse_physics(std::string(text), physics, subject); });
+  visit(physics.cutoff_ev, {.name = "simulation.cutoff",
+                            .help = "Energy inside the material where tracking stops, at least 0.5eV and below that of the beam; 0 "
+                                    "is the surface barrier, or 50eV without secondaries",
+                            .unit = Unit::ev,
+                            .level = Level::advanced});
+}
+
+void parse_physics(const std::string& text, Physics& physics, const std::string& subject) {
   std::stringstream stream(text);
   for (std::string item; std::getline(stream, item, ',');)
-    if (!item.empty()) apply_item(item, physics);
+    if (!item.empty()) apply_item(item, physics, subject);
 }
 
 std::string format_physics(const Physics& physics) {

@@ -39,7 +39,7 @@ SiteReplay::SiteReplay(const Scene::Impl& scene, const SimulationOptions& option
               any_origin(options.detectors), direct_, detection_, balance_) {
   const double pixel_nm = std::max({scene.scan.pixel_x_nm, scene.scan.pixel_y_nm, 1e-6});
   block_ = std::clamp(static_cast<int>(shared_nm / pixel_nm), 1, most_shared);
-  replay_.steady(options.accuracy > 0 && options.planar_control);
+  replay_.steady(accuracy_of(options.budget) > 0 && options.planar_control);
 }
 
 ReplaySite SiteReplay::site(int x, int y, bool look_around) {

@@ -37,14 +37,15 @@ class Builder {
     const std::string& name = r.detectors[d].name;
     channel(name, [&r, d](int x, int y) { return r.yield(d, x, y).mean; });
     channel(name + ".stderr", [&r, d](int x, int y) { return r.yield(d, x, y).standard_error; });
-    if (r.dose <= 0) return;
-    channel(name + ".shot", [&r, d](int x, int y) {
+    const double dose = dose_of(r.budget);
+    if (dose <= 0) return;
+    channel(name + ".shot", [&r, d, dose](int x, int y) {
       const auto pixel = static_cast<std::uint64_t>(y) *
                              static_cast<std::uint64_t>(r.pixels.width()) +
                          static_cast<std::uint64_t>(x);
       const std::int64_t seen = detected(r.counts[d](x, y).sum, r.detectors[d].efficiency, r.seed,
                                          pixel, d);
-      return static_cast<double>(seen) / r.dose;
+      return static_cast<double>(seen) / dose;
     });
   }
 

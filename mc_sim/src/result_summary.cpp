@@ -25,7 +25,7 @@ double common_error(const SimulationResult& r, std::size_t d, int x, int y, cons
 }
 
 double target(const SimulationResult& r, std::size_t d, double mean, double accuracy) {
-  return std::max(accuracy * mean, r.accuracy_floor * r.detectors[d].efficiency);
+  return std::max(accuracy * mean, floor_of(r.budget) * r.detectors[d].efficiency);
 }
 
 template <class Visit>
@@ -73,8 +73,8 @@ ResultSummary summarize(const SimulationResult& r) {
       sum[d] += e.mean;
       common[d] += shared;
       variance[d] += e.standard_error * e.standard_error - shared * shared;
-      if (r.accuracy > 0) {
-        const double t = target(r, d, e.mean, r.accuracy);
+      if (const double accuracy = accuracy_of(r.budget); accuracy > 0) {
+        const double t = target(r, d, e.mean, accuracy);
         if (t > 0) worst = std::max(worst, e.standard_error / t);
       }
     }

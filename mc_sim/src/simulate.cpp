@@ -216,7 +216,7 @@ std::size_t tally_bytes(const Scan& scan, const SimulationOptions& options) {
   return static_cast<std::size_t>(scan.width) * static_cast<std::size_t>(scan.height) *
          (sizeof(PixelTally) +
           options.detectors.size() *
-              (sizeof(Counts) + (options.accuracy > 0 ? sizeof(Control) : 0)));
+              (sizeof(Counts) + (accuracy_of(options.budget) > 0 ? sizeof(Control) : 0)));
 }
 
 UnitTally simulate_unit(const Scene& scene, const SimulationOptions& options, const WorkUnit& unit,
@@ -224,19 +224,14 @@ UnitTally simulate_unit(const Scene& scene, const SimulationOptions& options, co
   check_options(options);
   check_unit(scene.scan(), unit);
   SimulationOptions wanted = options;
-  wanted.electrons = unit.first_electron + unit.electrons;
+  wanted.budget = ElectronsPerPixel{unit.first_electron + unit.electrons};
   wanted.method = Method::direct;
-  wanted.accuracy = 0;
   UnitTally out;
   make_direct_worker(scene.impl(), wanted)->simulate(unit, observer, out);
   return out;
 }
 
-SimulationResult simulate(const Scene& scene, const SimulationOptions& options,
-                          const ProgressCallback& progress, const CancelToken* cancel,
-                          const ObserverOfThread& observers, UnitJournal* journal,
-                          LibrarySource* libraries, Crew* crew) {
-  check_options(options);
+void SimulationContext::check(const SimulationOptions& options, const Scene& scene) const {
   if (options.method == Method::replay && observers)
     throw UsageError("--method replay", "stored cascades show observers nothing between surfaces",
                      "Use --method direct");
@@ -244,7 +239,7 @@ SimulationResult simulate(const Scene& scene, const SimulationOptions& options,
     throw UsageError("--method replay", "cascades are joined where energies are equal, which needs "
                                         "continuous loss",
                      "Use --method direct, or loss=joy-luo");
-  if (options.accuracy > 0 && observers)
+  if (accuracy_of(options.budget) > 0 && observers)
     throw UsageError("--accuracy", "what observers see would be of more primaries in some pixels than in others",
                      "Give --electrons instead");
   if (crew && observers)
@@ -252,6 +247,12 @@ SimulationResult simulate(const Scene& scene, const SimulationOptions& options,
   if (journal && observers)
     throw UsageError("simulate", "observers would not see the units that a journal recalls",
                      "Leave one of the two out");
+}
+
+SimulationResult simulate(const Scene& scene, const SimulationOptions& options, const SimulationContext& context) {
+  check_options(options);
+  context.check(options, scene);
+  const auto& [progress, cancel, observers, journal, libraries, crew] = context;
   auto begin = std::chrono::steady_clock::now();
   const auto seconds = [&] {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();

@@ -53,7 +53,7 @@ struct Sample {
 
 /// The standard error that is asked for, of a detector whose mean this is.
 inline double wanted_error(const SimulationOptions& options, double mean) {
-  return std::max(options.accuracy * mean, options.accuracy_floor);
+  return std::max(accuracy_of(options.budget) * mean, floor_of(options.budget));
 }
 
 /// Visits the numbers of the pixels whose pilots count with those of pixel `i` of a tile.

@@ -24,7 +24,7 @@ void check_shape(const SimulationResult& result, const WorkUnit& u, const UnitTa
 }  // namespace
 
 UnitPlan::UnitPlan(const Scan& scan, const SimulationOptions& options) : scan_(scan) {
-  if (options.accuracy > 0) {   // a pixel looks at its neighbours within the tile: fixed tiles
+  if (accuracy_of(options.budget) > 0) {   // a pixel looks at its neighbours within the tile: fixed tiles
     run_ = height_ = tile;
     by_pixel_ = true;
     runs_ = (scan.width + tile - 1) / tile;
@@ -32,7 +32,7 @@ UnitPlan::UnitPlan(const Scan& scan, const SimulationOptions& options) : scan_(s
     return;
   }
   const Share share(scan, options);
-  if (options.dose > 0) {
+  if (const double dose = dose_of(options.budget); dose > 0) {
     for (int y = 0; y < scan.height; ++y)
       for (int x = 0; x < scan.width; ++x) {
         const std::int64_t n = share.of(x, y);
@@ -40,8 +40,8 @@ UnitPlan::UnitPlan(const Scan& scan, const SimulationOptions& options) : scan_(s
         total_ += static_cast<double>(n);
       }
   } else {
-    most_ = options.electrons;
-    total_ = static_cast<double>(options.electrons) * scan.width * scan.height;
+    most_ = electrons_of(options.budget);
+    total_ = static_cast<double>(most_) * scan.width * scan.height;
   }
   // Long jobs have many units, which somebody has to merge: longer ones, while there are enough for all.
   std::int64_t pixels = std::max<std::int64_t>(1, (total_ > much ? 4 : 1) * chunk_ / most_);
@@ -80,7 +80,7 @@ double UnitPlan::done(const WorkUnit& unit, const UnitTally& tally) const {
 UnitTally empty_tally(const WorkUnit& unit, const SimulationOptions& options) {
   UnitTally tally;
   clear(tally, unit, options.detectors.size());
-  if (options.accuracy > 0)
+  if (accuracy_of(options.budget) > 0)
     tally.controls.assign(options.detectors.size(), Grid<Control>(tally.pixels.width(), tally.pixels.height()));
   return tally;
 }
@@ -92,11 +92,9 @@ SimulationResult empty_result(const Scan& scan, const SimulationOptions& options
   result.pixels = LargeGrid<PixelTally>(scan.width, scan.height, folder);
   for (std::size_t d = 0; d < options.detectors.size(); ++d)
     result.counts.emplace_back(scan.width, scan.height, folder);
-  for (std::size_t d = 0; options.accuracy > 0 && d < options.detectors.size(); ++d)
+  for (std::size_t d = 0; accuracy_of(options.budget) > 0 && d < options.detectors.size(); ++d)
     result.controls.emplace_back(scan.width, scan.height, folder);
-  result.accuracy = options.accuracy;
-  result.accuracy_floor = options.accuracy_floor;
-  result.dose = options.dose;
+  result.budget = options.budget;
   result.seed = options.seed;
   return result;
 }

@@ -63,7 +63,7 @@ inline void clear(UnitTally& tally, const WorkUnit& unit, std::size_t detectors)
 class Share {
  public:
   Share(const Scan& scan, const SimulationOptions& o)
-      : width_(scan.width), electrons_(o.electrons), dose_(o.dose), seed_(o.seed) {}
+      : width_(scan.width), electrons_(electrons_of(o.budget)), dose_(dose_of(o.budget)), seed_(o.seed) {}
 
   std::int64_t of(int x, int y) const {
     return dose_ > 0 ? primaries_of_pixel(dose_, seed_, number(x, y)) : electrons_;

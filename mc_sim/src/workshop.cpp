@@ -19,10 +19,10 @@ constexpr double all_of_the_variance = 0.9;
 std::size_t library_size(const SimulationOptions& options, std::int64_t most_primaries,
                          std::span<const CascadeYield> yields, double of_the_variance) {
   double wanted = static_cast<double>(most_primaries) / of_the_variance;
-  if (options.accuracy > 0) {
-    wanted = 4 / (options.accuracy * options.accuracy);
+  if (const double accuracy = accuracy_of(options.budget); accuracy > 0) {
+    wanted = 4 / (accuracy * accuracy);
     for (const CascadeYield& y : yields) {
-      const double error = std::max(options.accuracy * y.mean, options.accuracy_floor);
+      const double error = std::max(accuracy * y.mean, floor_of(options.budget));
       if (error > 0) wanted = std::max(wanted, y.variance / (of_the_variance * error * error));
     }
   }
@@ -40,7 +40,7 @@ bool Workshop::prepare(const Scene& scene, const SimulationOptions& options, Lib
   if (!source) source = &fresh;
   const std::size_t least = library_size(options, most_primaries);
   if (!get(scene, *source, least, progress, cancel)) return false;
-  if (!(options.accuracy > 0)) return true;
+  if (!(accuracy_of(options.budget) > 0)) return true;
   measure_yields(static_cast<int>(scene.materials().size()), crew ? nullptr : cancel);
   const double share = options.planar_control && only_planes() ? all_of_the_variance : usual_share_of_variance;
   const std::size_t wanted = std::min(library_size(options, most_primaries, yields_, share),
@@ -69,7 +69,7 @@ bool Workshop::get(const Scene& scene, LibrarySource& source, std::size_t wanted
 
 std::unique_ptr<UnitWorker> Workshop::worker() {
   if (options_->method == Method::direct)
-    return options_->accuracy > 0 ? make_direct_spending_worker(*scene_, *options_)
+    return accuracy_of(options_->budget) > 0 ? make_direct_spending_worker(*scene_, *options_)
                                   : make_direct_worker(*scene_, *options_);
   if (controls_) return make_spending_worker(*scene_, *options_, libraries_, *controls_);
   return make_replay_worker(*scene_, *options_, libraries_);

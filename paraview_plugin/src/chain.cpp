@@ -49,8 +49,8 @@ std::vector<LandmarkPair> landmarks_of(vtkPolyData* sem, vtkPolyData* afm) {
   return pairs;
 }
 
-workflow::ChainListener listen(const Watch& watch, int stages, std::vector<std::string>& warnings) {
-  workflow::ChainListener listener;
+workflow::Reporter listen(const Watch& watch, int stages, std::vector<std::string>& warnings) {
+  workflow::Reporter listener;
   const auto begun = std::make_shared<int>(0);
   const auto tell = [watch, stages, begun](double share) {
     if (watch.progress) watch.progress(std::min(*begun - 1 + share, double(stages)), stages);

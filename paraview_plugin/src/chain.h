@@ -20,6 +20,6 @@ workflow::ModelRequest model_request(const std::string& file, const std::string&
 std::vector<LandmarkPair> landmarks_of(vtkPolyData* sem, vtkPolyData* afm);
 
 /// Tells a watch of a chain's stages, of which there are about `stages`, and collects the warnings.
-workflow::ChainListener listen(const Watch& watch, int stages, std::vector<std::string>& warnings);
+workflow::Reporter listen(const Watch& watch, int stages, std::vector<std::string>& warnings);
 
 }  // namespace surf::pv

@@ -175,8 +175,8 @@ Simulated simulate(vtkAlgorithm* self, const SimulationPlan& plan, vtkMultiProce
 struct LiveSimulation::Shared {
   explicit Shared(SimulationPlan p) : plan(std::move(p)) {
     coarse_options = plan.options;
-    coarse_options.accuracy = coarse_options.dose = 0;
-    coarse_options.electrons = coarse_electrons;
+    coarse_options.budget = mc::Accuracy{coarse_options.budget = mc::Dose{0}};
+    coarse_options.budget = mc::ElectronsPerPixel{coarse_electrons};
     coarse = mc::empty_result(plan.scan, coarse_options);
     fine = mc::empty_result(plan.scan, plan.options);
     thread = std::thread([this] { run(); });

@@ -47,7 +47,7 @@ struct Numbers {
 
 workflow::TrainSummary train(const workflow::TrainJob& job, const Watch& watch, std::vector<std::string>& notes) {
   double learning_from = 0;
-  workflow::TrainListener listener;
+  workflow::Reporter listener;
   listener.pixels = [&](double done, double total) {
     learning_from = share_of_images;
     watch.part(0, share_of_images).report(done, total);

@@ -177,7 +177,7 @@ void vtkSemsurfSimulate::Plan(vtkDataObject* input) {
   plan.beam = {this->Energy, this->Tilt, this->Azimuth, this->Spot, this->Convergence, this->Focus, this->WorkingDistance};
   mc::parse_physics(this->Physics, plan.physics);
   const Box extent = mc::extent(plan.specimen);
-  io::ScanRequest request;
+  mc::ScanRequest request;
   const double* const r = this->Region;
   if (r[0] != 0 || r[1] != 0 || r[2] != 0 || r[3] != 0) request.region = {r[0], r[1], r[2], r[3]};
   if (this->PixelSize > 0) request.pixel_x_nm = request.pixel_y_nm = this->PixelSize;
@@ -191,10 +191,9 @@ void vtkSemsurfSimulate::Plan(vtkDataObject* input) {
     plan.scan = workflow::resolve_scan(request, extent, plan.beam);
   }
   if (this->Budget == ByAccuracy) {
-    plan.options.accuracy = this->Accuracy;
-    plan.options.accuracy_floor = this->AccuracyFloor;
+    plan.options.budget = mc::Accuracy{this->Accuracy, this->AccuracyFloor};
   } else {
-    plan.options.electrons = this->Electrons;
+    plan.options.budget = mc::ElectronsPerPixel{this->Electrons};
   }
   plan.options.seed = static_cast<std::uint64_t>(this->Seed);
   plan.options.detectors = detectors_of(this->Detectors);

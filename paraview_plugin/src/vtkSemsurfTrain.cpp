@@ -210,9 +210,9 @@ workflow::TrainJob vtkSemsurfTrain::Job(vtkInformationVector** inputs) {
   job.fine = this->Fine;
   job.edge = static_cast<surf::Edge>(this->Edge);
   job.simulation.seed = static_cast<std::uint64_t>(this->Seed);
-  job.simulation.electrons = this->Electrons;
+  job.simulation.budget = mc::ElectronsPerPixel{this->Electrons};
   if (this->Budget == 1) {
-    job.simulation.accuracy = this->Accuracy;
+    job.simulation.budget = mc::Accuracy{this->Accuracy};
     job.simulation.method = mc::Method::replay;
   }
   io::MaterialLibrary materials;

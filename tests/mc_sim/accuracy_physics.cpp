@@ -30,7 +30,7 @@ enum class How { with_control, without_control, direct };
 SimulationOptions spending(How how) {
   SimulationOptions options;
   options.method = how == How::direct ? Method::direct : Method::replay;
-  options.accuracy = accuracy;
+  options.budget = Accuracy{accuracy};
   options.planar_control = how == How::with_control;
   options.threads = 1;
   return options;
@@ -39,7 +39,7 @@ SimulationOptions spending(How how) {
 // Per detector and pixel.
 std::vector<std::vector<Estimate>> reference(const Scene& scene, std::int64_t electrons) {
   SimulationOptions options;
-  options.electrons = electrons;
+  options.budget = ElectronsPerPixel{electrons};
   options.seed = 7;
   const SimulationResult result = simulate(scene, options);
   std::vector<std::vector<Estimate>> out(result.counts.size());
@@ -53,7 +53,7 @@ Spent spend(const Scene& scene, How how, const std::vector<std::vector<Estimate>
   SimulationOptions options = spending(how);
   for (int seed = 1; seed <= seeds; ++seed) {
     options.seed = static_cast<std::uint64_t>(seed);
-    SimulationResult r = simulate(scene, options, {}, nullptr, {}, nullptr, &libraries());
+    SimulationResult r = simulate(scene, options, {.libraries = &libraries()});
     if (how != How::direct) r.library_cascades = CascadeLibrary::page_cascades;
     EXPECT_EQ(r.balance.total_lost(), 0);
     double sum = 0;
@@ -164,7 +164,7 @@ TEST(Accuracy, DirectIsTheSameForAnyThreads) {
   beam.energy_ev = 400;
   const Scene scene(s, beam, test::square_scan(200, 40));
   SimulationOptions options = spending(How::direct);
-  options.accuracy = 0.3;
+  options.budget = Accuracy{0.3};
   const SimulationResult one = simulate(scene, options);
   options.threads = 3;
   const SimulationResult three = simulate(scene, options);
@@ -186,8 +186,7 @@ TEST(Accuracy, DirectEndsWithoutAFloor) {
   beam.energy_ev = 400;
   const Scene scene(test::flat("Si"), beam, test::row_of_pixels(0, 2, 1), physics);
   SimulationOptions options = spending(How::direct);
-  options.accuracy = 0.5;
-  options.accuracy_floor = 0;
+  options.budget = Accuracy{0.5, 0};
   options.detectors.resize(1);   // SE: none leave
   options.detectors[0].max_energy_ev = 1e-6;
   const SimulationResult r = simulate(scene, options);
@@ -202,7 +201,7 @@ TEST(Accuracy, StopsAtItsFloor) {
   SimulationOptions options = spending(How::with_control);
   const auto primaries = [&](double floor) {
     options.accuracy_floor = floor;
-    const SimulationResult r = simulate(scene, options, {}, nullptr, {}, nullptr, &libraries());
+    const SimulationResult r = simulate(scene, options, {.libraries = &libraries()});
     std::int64_t sum = 0;
     for (const PixelTally& p : r.pixels.data()) sum += p.primaries;
     for (int x = 0; x < scene.scan().width; ++x)
@@ -224,14 +223,14 @@ TEST(ReplayNoise, CorrelatesPixelsNoMoreThanTheyShareCascades) {
   constexpr int primaries = 1024;   // half the library
   SimulationOptions options;
   options.method = Method::replay;
-  options.electrons = primaries;
+  options.budget = ElectronsPerPixel{primaries};
   options.threads = 1;
   // Among pixels of one library the scatter is that of the pixels' own part, between libraries that
   // of all.
   test::Sample own, means;
   for (int seed = 1; seed <= seeds; ++seed) {
     options.seed = static_cast<std::uint64_t>(seed);
-    const auto r = simulate(scene, options, {}, nullptr, {}, nullptr, &libraries());
+    const auto r = simulate(scene, options, {.libraries = &libraries()});
     test::Sample pixels;
     for (int x = 0; x < scan.width; ++x) {
       pixels.add(r.yield(test::se, x, 0).mean);

@@ -72,7 +72,7 @@ TEST(ChooseMethod, WhatReplayCannotServeIsDirect) {
       EXPECT_THAT(error.what(), HasSubstr(c.reason));
     }
     SimulationOptions accurate;
-    accurate.accuracy = 0.1;
+    accurate.budget = Accuracy{0.1};
     if (c.limits.observed) EXPECT_THROW(choose_method(c.scene, accurate, {}, c.limits), UsageError);
     else EXPECT_EQ(choose_method(c.scene, accurate, {}, c.limits).method, Method::direct) << c.reason;
   }
@@ -86,7 +86,7 @@ TEST(ChooseMethod, WhatIsAskedForIsTaken) {
 
 TEST(ChooseMethod, AnAccuracyTakesReplayWhereItsPrimariesAreMany) {
   SimulationOptions accurate;
-  accurate.accuracy = 0.1;
+  accurate.budget = Accuracy{0.1};
   const Scene few = scene_of(3), many = scene_of(100);
   const MethodChoice direct = choose_method(few, accurate), replay = choose_method(many, accurate);
   EXPECT_EQ(direct.method, Method::direct);

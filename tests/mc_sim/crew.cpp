@@ -24,7 +24,7 @@ const Scan scan = test::square_scan(84, 9);
 
 SimulationOptions few_electrons() {
   SimulationOptions options;
-  options.electrons = 30;
+  options.budget = ElectronsPerPixel{30};
   options.method = Method::direct;
   options.threads = 2;
   options.tile_pixels = 5;

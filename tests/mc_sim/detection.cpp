@@ -15,7 +15,7 @@ namespace {
 SimulationResult run(const std::vector<std::string>& wanted, double tilt_deg,
                      std::int64_t electrons = 400, bool spectra = false) {
   SimulationOptions options;
-  options.electrons = electrons;
+  options.budget = ElectronsPerPixel{electrons};
   options.spectra = spectra;
   for (const std::string& text : wanted)
     for (const Detector& d : parse_detectors(text, "test")) options.detectors.push_back(d);

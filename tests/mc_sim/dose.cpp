@@ -37,7 +37,7 @@ TEST(Dose, ADetectorSeesItsShare) {
 // square of the electrons per primary.
 TEST(Dose, TheImageHasAMicroscopesNoise) {
   SimulationOptions options;
-  options.dose = 25;
+  options.budget = Dose{25};
   const Scan scan = test::square_scan(100, 48);
   const Scene scene(test::flat("Si"), {}, scan);
   const auto r = simulate(scene, options);
@@ -66,10 +66,10 @@ TEST(Dose, TheImageHasAMicroscopesNoise) {
 
 TEST(Dose, RefusesNonsense) {
   SimulationOptions options;
-  options.dose = 2e9;
+  options.budget = Dose{2e9};
   const Scan scan = test::square_scan(100, 1);
   EXPECT_THROW(simulate(Scene(test::flat("Si"), {}, scan), options), UsageError);
-  options.dose = std::nan("");
+  options.budget = Dose{std::nan("")};
   EXPECT_THROW(simulate(Scene(test::flat("Si"), {}, scan), options), UsageError);
 }
 

@@ -60,7 +60,7 @@ TEST(EnergyDeposit, HoldsWhatDidNotEscape) {
   const DepositGrid grid = deposit_grid(scene, 32);
   std::vector<EnergyDeposit> per_thread(3, EnergyDeposit(grid));
   SimulationOptions options;
-  options.electrons = 300;
+  options.budget = ElectronsPerPixel{300};
   options.threads = 3;
   options.tile_pixels = 1;
   const auto r = simulate(scene, options, {}, nullptr, [&](int thread) {

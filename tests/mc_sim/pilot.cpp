@@ -26,8 +26,8 @@ Scene scene_of(int pixels) {
 SimulationOptions options_of(Method method, std::int64_t electrons, double accuracy = 0) {
   SimulationOptions options;
   options.method = method;
-  options.electrons = electrons;
-  options.accuracy = accuracy;
+  options.budget = ElectronsPerPixel{electrons};
+  options.budget = Accuracy{accuracy};
   options.threads = 2;
   return options;
 }

@@ -15,7 +15,7 @@ namespace {
 SimulationOptions replaying(std::int64_t electrons) {
   SimulationOptions options;
   options.method = Method::replay;
-  options.electrons = electrons;
+  options.budget = ElectronsPerPixel{electrons};
   options.threads = 1;
   return options;
 }
@@ -83,10 +83,10 @@ TEST(Replay, GivesTheSameNumbersForAnyThreadsAndTiles) {
     std::vector<SimulationResult> results;
     for (const auto& [threads, tile] : {std::pair(1, 1), {2, 3}, {3, 1024}}) {
       SimulationOptions options = replaying(60);
-      options.accuracy = accuracy;
+      options.budget = Accuracy{accuracy};
       options.threads = threads;
       options.tile_pixels = tile;
-      results.push_back(simulate(scene, options, {}, nullptr, {}, nullptr, &libraries));
+      results.push_back(simulate(scene, options, {.libraries = &libraries}));
     }
     for (const SimulationResult& r : results) {
       for (const char* channel : {"SE", "SE.stderr", "BSE", "BSE.stderr", "valid"})
@@ -165,7 +165,7 @@ TEST(Replay, ReportsTheCascadesThatThereAre) {
   } generous;
   const SimulationOptions options = replaying(10);
   const Scene scene(mesa(), slow(), test::square_scan(40, 2));
-  const auto r = simulate(scene, options, {}, nullptr, {}, nullptr, &generous);
+  const auto r = simulate(scene, options, {.libraries = &generous});
   EXPECT_EQ(r.library_cascades, library_size(options, 10) + CascadeLibrary::page_cascades);
   EXPECT_EQ(simulate(scene, {}).library_cascades, 0u);
 }
@@ -173,7 +173,7 @@ TEST(Replay, ReportsTheCascadesThatThereAre) {
 TEST(LibrarySize, KeepsTheLibraryToAQuarterOfTheVariance) {
   SimulationOptions options;
   EXPECT_GE(library_size(options, 1'000'000), 4'000'000u);
-  options.accuracy = 0.01;
+  options.budget = Accuracy{0.01};
   const auto share = [&](const CascadeYield& y) {   // of the variance asked for
     const double error = std::max(options.accuracy * y.mean, options.accuracy_floor);
     return y.variance / static_cast<double>(library_size(options, 1, std::array{y})) / (error * error);
@@ -188,8 +188,7 @@ TEST(LibrarySize, KeepsTheLibraryToAQuarterOfTheVariance) {
 
 TEST(LibrarySize, GrowsByWhatTheCascadesAreMeasuredToScatterAndFitsIntoMemory) {
   SimulationOptions options = replaying(10);
-  options.accuracy = 0.03;
-  options.accuracy_floor = 0;
+  options.budget = Accuracy{0.03, 0};
   options.threads = 1;
   const Scene scene(mesa(), slow(), test::square_scan(40, 2));
   const auto grown = simulate(scene, options);
@@ -208,18 +207,18 @@ TEST(Replay, RefusesWhatItCannotDo) {
   EXPECT_THAT(refusal(replaying(10), {}, [](int) { return nullptr; }), HasSubstr("observers"));
 
   SimulationOptions accurate = replaying(10);
-  accurate.accuracy = 0.1;
+  accurate.budget = Accuracy{0.1};
   SimulationOptions wrong = accurate;
   wrong.method = Method::direct;
   EXPECT_THAT(refusal(wrong, {}, [](int) { return nullptr; }), HasSubstr("more primaries in some pixels"));
   wrong = accurate;
-  wrong.dose = 10;
+  wrong.budget = Dose{10};
   EXPECT_THAT(refusal(wrong), HasSubstr("dose"));
   wrong = accurate;
   wrong.spectra = true;
   EXPECT_THAT(refusal(wrong), HasSubstr("spectra"));
   for (const double accuracy : {1e-5, 1.5, -0.1}) {
-    wrong.accuracy = accuracy;
+    wrong.budget = Accuracy{accuracy};
     EXPECT_THAT(refusal(wrong), HasSubstr("outside 0.0001 to 1"));
   }
   wrong = accurate;

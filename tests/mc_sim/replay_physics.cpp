@@ -38,7 +38,7 @@ void expect_same(const Setup& setup, int primaries, int libraries = 4) {
   SimulationOptions options;
   options.detectors = all_kinds(setup.beam);
   options.spectra = true;
-  options.electrons = 1 << 20;
+  options.budget = ElectronsPerPixel{1 << 20};
   options.seed = 1;
   test::SceneSample direct;
   const auto worker = make_direct_worker(scene.impl(), options);

@@ -136,7 +136,7 @@ TEST(Sameness, DroppingWhatCannotReachASurfaceChangesNothing) {
 TEST(Sameness, TheDistanceBoundsChangeNothing) {
   const Scan scan = square_scan(84, 8);
   SimulationOptions options;
-  options.electrons = 400;
+  options.budget = ElectronsPerPixel{400};
   const auto with = simulate(Scene(letter_l(), {}, scan), options);
   options.seed = 2;
   const auto without = simulate(Scene(letter_l(), {}, scan, {}, {0}), options);
@@ -178,7 +178,7 @@ TEST(Sameness, SameNumbersForAnyThreadsAndTiles) {
   for (const int threads : {1, 2, 7})
     for (const int tile : {1, 13, 1024}) {
       SimulationOptions options;
-      options.electrons = 20;
+      options.budget = ElectronsPerPixel{20};
       options.threads = threads;
       options.tile_pixels = tile;
       results.push_back(simulate(scene, options));

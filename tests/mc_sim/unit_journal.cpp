@@ -35,7 +35,7 @@ class Memory : public UnitJournal {
 
 SimulationOptions with_spectra(int threads) {
   SimulationOptions options;
-  options.electrons = 30;
+  options.budget = ElectronsPerPixel{30};
   options.spectra = true;
   options.threads = threads;
   options.tile_pixels = 5;

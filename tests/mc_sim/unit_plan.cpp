@@ -22,8 +22,8 @@ Scan scan_of(int width, int height) {
 SimulationOptions options_of(Method method, std::int64_t electrons, double accuracy = 0) {
   SimulationOptions options;
   options.method = method;
-  options.electrons = electrons;
-  options.accuracy = accuracy;
+  options.budget = ElectronsPerPixel{electrons};
+  options.budget = Accuracy{accuracy};
   return options;
 }
 
@@ -94,7 +94,7 @@ TEST(UnitPlan, DoesEveryPrimaryOfEveryPixelOnce) {
 
 TEST(UnitPlan, GoesUpToThePixelThatHasMostOfADose) {
   SimulationOptions options;
-  options.dose = 4000;
+  options.budget = Dose{4000};
   const UnitPlan plan(scan_of(9, 7), options);
   EXPECT_GT(plan.most(), 4000);
   std::int64_t last = 0;

@@ -33,7 +33,7 @@ inline mc::SimulationResult simulate(const mc::Specimen& specimen, const mc::Bea
                                      const mc::Scan& scan, std::int64_t electrons,
                                      const mc::Physics& physics = {}, std::uint64_t seed = 1) {
   mc::SimulationOptions options;
-  options.electrons = electrons;
+  options.budget = mc::ElectronsPerPixel{electrons};
   options.seed = seed;
   return mc::simulate(mc::Scene(specimen, beam, scan, physics), options);
 }

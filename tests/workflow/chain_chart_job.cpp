@@ -130,7 +130,7 @@ TEST_F(ChainChart, TheSameJobGoesOnToTheSameFigures) {
   job.folder = folder.path() / "stopped";
   job.threads = 1;
   CancelToken cancel;
-  ChainChartListener listener;
+  Reporter listener;
   int seen = 0;
   listener.registration = [&](const RegistrationPoint&) {
     if (++seen == 3) cancel.cancel();
@@ -139,7 +139,7 @@ TEST_F(ChainChart, TheSameJobGoesOnToTheSameFigures) {
   EXPECT_FALSE(run(job, listener).complete);
   EXPECT_FALSE(fs::exists(job.folder / "chart.json"));
   double last = 0;
-  ChainChartListener again;
+  Reporter again;
   again.progress = [&](double done, double total) {
     EXPECT_GE(done, last - 1e-9);
     EXPECT_LE(done, total + 1e-9);

@@ -109,7 +109,7 @@ TEST(ChartJob, TheSameJobGoesOnToTheSameFigures) {
   job.folder = folder.path() / "stopped";
   job.threads = 1;
   CancelToken cancel;
-  ChartListener listener;
+  Reporter listener;
   int seen = 0;
   listener.point = [&](const ChartPoint&) {
     if (++seen == 3) cancel.cancel();
@@ -119,7 +119,7 @@ TEST(ChartJob, TheSameJobGoesOnToTheSameFigures) {
   EXPECT_FALSE(first.complete);
   EXPECT_FALSE(fs::exists(job.folder / "chart.csv"));
   double last = 0;
-  ChartListener again;
+  Reporter again;
   again.progress = [&](double done, double total) {
     EXPECT_GE(done, last - 1e-9);
     EXPECT_LE(done, total + 1e-9);

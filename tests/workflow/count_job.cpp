@@ -42,7 +42,7 @@ TEST(CountJob, HasTheStatisticsOfTheImage) {
   scan.pixel_x_nm = scan.pixel_y_nm = 1e-6;
   scan.center_x_nm = 2.5;
   mc::SimulationOptions options;
-  options.electrons = 20000;
+  options.budget = mc::ElectronsPerPixel{20000};
   options.seed = 99;
   options.threads = 1;
   const mc::Scene scene(job.scene.specimen, job.scene.beam, scan, job.scene.physics);

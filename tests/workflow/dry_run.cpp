@@ -41,7 +41,7 @@ TEST(DryRun, FilesAreNoLargerThanItSays) {
     SimulateJob job = job_in(folder.path());
     job.scene.scan.width = job.scene.scan.height = 384;   // three tiles across
     job.scene.scan.pixel_x_nm = job.scene.scan.pixel_y_nm = 0.2;
-    job.options.electrons = 1;
+    job.options.budget = mc::ElectronsPerPixel{1};
     job.layout = layout;
     const DryRun run = dry_run(job, 1, 0.2);
     workflow::run(job);

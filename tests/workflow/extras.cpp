@@ -129,7 +129,7 @@ TEST(Extras, OfThisJobReplaceTheirOwnKindOnly) {
   const TemporaryFolder folder;
   SimulateJob job = job_in(folder, "a");
   job.options.spectra = true;
-  job.options.electrons = 1;
+  job.options.budget = mc::ElectronsPerPixel{1};
   job.extras.trajectories = 1;
   run(job);
   EXPECT_EQ(refusal(job), "no error") << "the same job again";
@@ -158,7 +158,7 @@ TEST(Extras, DoNotReplaceInputs) {
 TEST(Extras, TellOfUnitsThatWereOverridden) {
   const TemporaryFolder folder;
   SimulateJob job = job_in(folder, "a");
-  job.options.electrons = 1;
+  job.options.budget = mc::ElectronsPerPixel{1};
   job.scene.unit_overrides = {{"cube.stl", 1000.0}};
   run(job);
   EXPECT_EQ(io::read_image(job.outputs[0]).metadata.at("unit_override.1"), "cube.stl, 1000 nm");
@@ -167,7 +167,7 @@ TEST(Extras, TellOfUnitsThatWereOverridden) {
 TEST(Warnings, AreToldAsTheyCome) {
   const TemporaryFolder folder;
   SimulateJob job = job_in(folder, "a");
-  job.options.electrons = 1;
+  job.options.budget = mc::ElectronsPerPixel{1};
   std::vector<std::string> told;
   bool before = true;
   run(job, [&](double, double) { before = before && !told.empty(); }, nullptr,

@@ -96,7 +96,7 @@ TEST(LibraryPlot, ShowsTheYieldsOfDirectSimulation) {
   mc::Scan scan;
   scan.width = scan.height = 1;
   mc::SimulationOptions direct;
-  direct.electrons = 10000;
+  direct.budget = mc::ElectronsPerPixel{10000};
   const auto result = mc::simulate(mc::Scene(specimen, beam, scan), direct);
   for (const std::size_t d : {0, 1}) {
     const io::PlotSeries& s = plot.panels[2 + d].series[0];

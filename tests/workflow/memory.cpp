@@ -15,7 +15,7 @@ SimulateJob job_of(int pixels, const std::filesystem::path& folder) {
   job.scene.scan = {};
   job.scene.scan.width = job.scene.scan.height = pixels;
   job.scene.scan.region = {100, 100, 120, 120};
-  job.options.electrons = 1;
+  job.options.budget = mc::ElectronsPerPixel{1};
   job.options.threads = 2;
   for (const char* name : {"image.exr", "image.tif", "image.png"})
     job.outputs.push_back(folder / name);

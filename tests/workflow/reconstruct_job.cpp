@@ -97,8 +97,8 @@ class ReconstructJobTest : public testing::Test {
 };
 
 /// Ends the run once a scale is done.
-ChainListener stopping(CancelToken& token, const std::filesystem::path& checkpoint) {
-  ChainListener listener;
+Reporter stopping(CancelToken& token, const std::filesystem::path& checkpoint) {
+  Reporter listener;
   listener.cancel = &token;
   // Parts of the work have copies of this.
   listener.progress = [&token, checkpoint, first = std::make_shared<std::uintmax_t>(0)](double, double) {
@@ -203,7 +203,7 @@ TEST_F(ReconstructJobTest, DoesNotGoOnWithAnotherJob) {
   EXPECT_THROW(run(job_, stopping(token, job_.folder / "checkpoint")), Interrupted);
   job_.options.tolerance = 0.002;
   std::string said;
-  ChainListener listener;
+  Reporter listener;
   listener.note = [&](const std::string& note) { said += note + "\n"; };
   EXPECT_FALSE(run(job_, listener).resumed);
   EXPECT_THAT(said, HasSubstr("tolerance 0 there and 0.002 here"));
@@ -234,7 +234,7 @@ TEST_F(ReconstructJobTest, AnyOtherInputBeginsAnew) {
     ReconstructJob other = job_;
     change(other);
     CancelToken token;
-    ChainListener listener;
+    Reporter listener;
     listener.cancel = &token;
     listener.note = [&](const std::string& note) {
       if (note.find("begun anew") != std::string::npos) token.cancel();

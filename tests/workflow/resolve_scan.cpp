@@ -18,23 +18,23 @@ Box box(double x0, double y0, double z0, double x1, double y1, double z1) {
 
 const Box specimen = box(-100, 0, 0, 300, 200, 50);   // 400 x 200 nm about (100, 100, 25)
 
-io::ScanRequest size(int width, int height) {
-  io::ScanRequest r;
+mc::ScanRequest size(int width, int height) {
+  mc::ScanRequest r;
   r.width = width;
   r.height = height;
   return r;
 }
 
-io::ScanRequest pixel(double x_nm, double y_nm) {
-  io::ScanRequest r;
+mc::ScanRequest pixel(double x_nm, double y_nm) {
+  mc::ScanRequest r;
   r.pixel_x_nm = x_nm;
   r.pixel_y_nm = y_nm;
   return r;
 }
 
-io::ScanRequest region(double x0, double y0, double x1, double y1) {
-  io::ScanRequest r;
-  r.region = io::ScanRequest::Region{x0, y0, x1, y1};
+mc::ScanRequest region(double x0, double y0, double x1, double y1) {
+  mc::ScanRequest r;
+  r.region = mc::ScanRequest::Region{x0, y0, x1, y1};
   return r;
 }
 
@@ -48,7 +48,7 @@ void expect_scan(const mc::Scan& s, int width, int height, double pixel_x, doubl
   EXPECT_NEAR(s.center_y_nm, center_y, 1e-9);
 }
 
-std::string usage_error(const io::ScanRequest& request, const Box& extent = specimen) {
+std::string usage_error(const mc::ScanRequest& request, const Box& extent = specimen) {
   try {
     resolve_scan(request, extent, {});
   } catch (const UsageError& error) {

@@ -204,7 +204,7 @@ TEST(SimplifySpecimen, ChangesImagesByLittleForASmallTolerance) {
   const mc::Specimen original = rough();
   Simplification done;
   mc::SimulationOptions options;
-  options.electrons = 800;
+  options.budget = mc::ElectronsPerPixel{800};
   options.threads = 2;
   const auto image = [&](const mc::Specimen& s, std::uint64_t seed) {
     options.seed = seed;

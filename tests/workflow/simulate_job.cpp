@@ -158,8 +158,8 @@ TEST(SimulateJob, RefusesBadJobsBeforeWritingAnything) {
     job.scene.inputs = {other.path() / "input.exr"};
     job.outputs = {other.path() / "." / "input.exr"};
   });
-  fails_with_usage_error([](SimulateJob& job) { job.options.electrons = 0; });
-  fails_with_usage_error([](SimulateJob& job) { job.options.electrons = 1LL << 40; });
+  fails_with_usage_error([](SimulateJob& job) { job.options.budget = mc::ElectronsPerPixel{0}; });
+  fails_with_usage_error([](SimulateJob& job) { job.options.budget = mc::ElectronsPerPixel{1LL << 40}; });
   fails_with_usage_error([](SimulateJob& job) { job.options.threads = -1; });
   fails_with_usage_error([](SimulateJob& job) { job.scene.beam.energy_ev = 5; });
   fails_with_usage_error([](SimulateJob& job) { job.scene.beam.tilt_deg = 90; });

@@ -14,7 +14,7 @@ inline TrainJob small_training(const std::filesystem::path& output) {
   job.surface_px = 16;
   job.pixel_nm = 3;
   job.material = io::find_material("Si", "test");
-  job.simulation.electrons = 3;
+  job.simulation.budget = mc::ElectronsPerPixel{3};
   job.simulation.threads = 1;
   job.learn.kind = "secant";
   job.output = output;

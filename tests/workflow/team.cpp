@@ -134,7 +134,7 @@ TEST(Team, SweepsToTheBytesOfOne) {
   for (const int size : {1, 2, 3, 4}) {
     const fs::path place = folder.path() / std::to_string(size);
     std::vector<std::size_t> told;
-    SweepListener listener;
+    Reporter listener;
     listener.done = [&](std::size_t run, const std::vector<SweepYield>& yields) {
       told.push_back(run);
       EXPECT_EQ(yields.size(), 2u);
@@ -161,7 +161,7 @@ TEST(Team, SharesFewRunsThatAreLeftOverUnitByUnit) {
     for (SweepRun& run : job.runs) {
       SimulateJob wide = run.make();
       wide.scene.scan.width = 40;
-      wide.options.electrons = 4;
+      wide.options.budget = mc::ElectronsPerPixel{4};
       run.make = [wide] { return wide; };
     }
     return job;
@@ -236,7 +236,7 @@ TEST(Team, ChartsToTheFiguresOfOne) {
   for (const int size : {1, 3}) {
     job.folder = folder.path() / std::to_string(size);
     std::atomic<int> points = 0;
-    ChartListener listener;
+    Reporter listener;
     listener.point = [&](const ChartPoint&) { ++points; };
     const auto errors = as_team(size, [&](Team& team) { EXPECT_TRUE(run(job, listener, &team).complete); });
     EXPECT_THAT(errors, Each(IsEmpty()));
@@ -255,10 +255,10 @@ TEST(Team, WhatTheLeaderIsToldToStopGoesOnWithAnotherNumberToTheSameBytes) {
   run(small_sweep(folder.path() / "alone", 6));
   const fs::path place = folder.path() / "team";
   CancelToken stop;
-  SweepListener listener;
+  Reporter listener;
   listener.done = [&](std::size_t, const std::vector<SweepYield>&) { stop.cancel(); };
   const auto errors = as_team(3, [&](Team& team) {
-    SweepListener own = listener;
+    Reporter own = listener;
     if (team.leads()) own.cancel = &stop;
     EXPECT_FALSE(run(small_sweep(place, 6), own, &team).complete);
   });
@@ -291,7 +291,7 @@ TEST(Team, WhoFailsInARunEndsTheSweepAndIsNamed) {
 TEST(Team, WhatTheLeaderCannotWriteEndsAll) {
   const TemporaryFolder folder;
   const auto errors = as_team(2, [&](Team& team) {
-    SweepListener listener;
+    Reporter listener;
     listener.done = [](std::size_t, const std::vector<SweepYield>&) {
       throw FileError("records", "the disk is full", "Make room");
     };

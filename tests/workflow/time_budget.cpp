@@ -45,7 +45,7 @@ TEST(TimeBudget, KeepsToTheTime) {
   for (const double left : {10.0, 30.0, 100.0, 1000.0}) {
     const double accuracy = accuracy_that_fits(r, seconds(left));
     mc::SimulationOptions options;
-    options.accuracy = accuracy;
+    options.budget = mc::Accuracy{accuracy};
     const double cascades = double(mc::library_size(options, 1)) - 10'240;
     const double time = mc::expected_primaries(r, accuracy) * 1e-5 + cascades * 2 / 10'240;
     EXPECT_LE(time, 0.9 * left) << left;

@@ -104,7 +104,7 @@ TEST_F(TrainEveryKind, TheNetworkIsWhatIsLearntUnlessToldOtherwise) {
 
 TEST_F(TrainEveryKind, LearningIsShownAndCanBeStoppedWhileImagesStay) {
   CancelToken token;
-  TrainListener listener;
+  Reporter listener;
   listener.cancel = &token;
   double most = 0;
   listener.learning = [&](double done, double total) {

@@ -24,7 +24,7 @@ class TrainJobTest : public testing::Test {
 
   TrainSummary train(const TrainJob& job) {
     notes_.clear();
-    TrainListener listener;
+    Reporter listener;
     listener.note = [&](const std::string& note) { notes_.push_back(note); };
     return run(job, listener);
   }
@@ -96,7 +96,7 @@ TEST_F(TrainJobTest, UsesImagesThatAreThereAndGivesTheSameBytes) {
 TEST_F(TrainJobTest, MakesImagesOfOtherSettingsAnew) {
   TrainJob job = small_training(path("si.json"));
   train(job);
-  job.simulation.electrons = 2;
+  job.simulation.budget = mc::ElectronsPerPixel{2};
   EXPECT_EQ(train(job).images_made, 2);
   EXPECT_THAT(notes_, ElementsAre(HasSubstr("2 images are there made otherwise")));
   job.energy_ev = 2000;
@@ -113,7 +113,7 @@ TEST_F(TrainJobTest, StopsAndGoesOnToTheSameBytes) {
   const std::string undisturbed = bytes_of(path("si.json"));
   job.output = path("stopped.json");
   CancelToken token;
-  TrainListener listener;
+  Reporter listener;
   listener.cancel = &token;
   double most = 0;
   listener.pixels = [&](double done, double total) {

@@ -15,14 +15,14 @@ using testing::IsEmpty;
 std::vector<std::string> warnings_of(SimulateJob job) {
   const TemporaryFolder folder;
   job.outputs = {folder.path() / "image.exr"};
-  job.options.electrons = std::min<std::int64_t>(job.options.electrons, 2);
+  job.options.budget = mc::ElectronsPerPixel{std::min<std::int64_t>(job.options.electrons, 2)};
   return run(job).warnings;
 }
 
 void scan_about(SimulateJob& job, double x_nm) {
   job.scene.scan = {};
   job.scene.scan.width = job.scene.scan.height = 4;
-  job.scene.scan.region = io::ScanRequest::Region{x_nm - 2, -2, x_nm + 2, 2};
+  job.scene.scan.region = mc::ScanRequest::Region{x_nm - 2, -2, x_nm + 2, 2};
 }
 
 TEST(Warnings, AreAbsentWhereNothingIsOdd) { EXPECT_THAT(warnings_of(small_job()), IsEmpty()); }
@@ -103,13 +103,13 @@ TEST(Warnings, TellOfScansBeyondAHeightField) {
   scan_about(job, 0);
   EXPECT_THAT(warnings_of(job), IsEmpty());
   job.scene.scan.width = job.scene.scan.height = 18;
-  job.scene.scan.region = io::ScanRequest::Region{-90, -90, 90, 90};
+  job.scene.scan.region = mc::ScanRequest::Region{-90, -90, 90, 90};
   EXPECT_THAT(warnings_of(job), Contains(HasSubstr("beyond the height field")));
 }
 
 TEST(Warnings, TellOfStandardErrorsThatMeanNothing) {
   SimulateJob job = small_job();
-  job.options.electrons = 1;
+  job.options.budget = mc::ElectronsPerPixel{1};
   EXPECT_THAT(warnings_of(job), Contains(HasSubstr("one electron per pixel")));
 }
 

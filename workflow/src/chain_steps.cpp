@@ -15,45 +15,35 @@ namespace {
 
 constexpr double square = 1e-3;   // relative: as models ask of fields
 
-TrainListener training_listener(const ChainListener& l) {
-  TrainListener t;
-  t.pixels = t.cascades = t.learning = l.progress;
-  t.note = l.note;
-  t.warn = l.warn;
-  t.cancel = l.cancel;
-  return t;
-}
-
 }  // namespace
 
-Watch watch_of(const ChainListener& l) { return {l.progress, l.cancel}; }
 
-void begin(const ChainListener& l, const char* stage) {
-  if (l.cancel && l.cancel->cancelled()) throw Interrupted();
-  if (l.stage) l.stage(stage);
+void begin(const Reporter& reporter, const char* stage) {
+  if (reporter.cancelled()) throw Interrupted();
+  reporter.stage(stage);
 }
 
-PreparedAfm prepare(const AfmInput& afm, int threads, const ChainListener& listener) {
-  begin(listener, "AFM scan");
+PreparedAfm prepare(const AfmInput& afm, int threads, const Reporter& reporter) {
+  begin(reporter, "AFM scan");
   AfmPreparationOptions options = afm.preparation;
   options.threads = threads;
-  options.watch = watch_of(listener);
+  options.watch = reporter.watch();
   PreparedAfm prepared = prepare_afm(afm.scan, options);
   for (const std::string& note : prepared.notes)
-    if (listener.note) listener.note("AFM: " + note);
+    reporter.note("AFM: " + note);
   for (const std::string& warning : prepared.warnings)
-    if (listener.warn) listener.warn("AFM: " + warning);
+    reporter.warn("AFM: " + warning);
   return prepared;
 }
 
-StoredModel model_of(ModelRequest request, const PlacedImage& sem, const ChainListener& listener) {
-  begin(listener, "model");
+StoredModel model_of(ModelRequest request, const PlacedImage& sem, const Reporter& reporter) {
+  begin(reporter, "model");
   if (std::abs(sem.pitch_x_nm - sem.pitch_y_nm) > square * sem.pitch_x_nm)
     throw InvalidInput("SEM image", fmt::format("its pixels are {:.6g} x {:.6g} nm, and models are for square ones",
                                                 sem.pitch_x_nm, sem.pitch_y_nm),
                        "Resample it to square pixels, or correct --sem-pixel-size");
   request.pixel_nm = sem.pitch_x_nm;
-  return find_model(request, training_listener(listener));
+  return find_model(request, reporter);
 }
 
 PlacedImage simulated_view(const HeightField& surface, const ImageModel& model, double pixel_nm, int threads) {
@@ -72,8 +62,8 @@ PlacedImage simulated_view(const HeightField& surface, const ImageModel& model, 
 }
 
 Pose pose_of(const PoseOptions& o, const PreparedAfm& afm, const PlacedImage& sem, const StoredModel& model, int threads,
-             const ChainListener& listener) {
-  begin(listener, "registration");
+             const Reporter& reporter) {
+  begin(reporter, "registration");
   Pose pose;
   pose.simulated = simulated_view(afm.eroded(), *model.model, sem.pitch_x_nm, threads);
   if (o.transform) {
@@ -85,12 +75,11 @@ Pose pose_of(const PoseOptions& o, const PreparedAfm& afm, const PlacedImage& se
     pose.landmarks = fit_landmarks(o.landmarks);
     pose.sem_to_afm = pose.landmarks->sem_to_afm;
     options.start = pose.sem_to_afm;
-    if (listener.note)
-      listener.note(fmt::format("landmarks: {} pairs fit to {} rms", o.landmarks.size(), format_length(pose.landmarks->rms_nm)));
+    reporter.note(fmt::format("landmarks: {} pairs fit to {} rms", o.landmarks.size(), format_length(pose.landmarks->rms_nm)));
     if (o.landmarks_only) return pose;
   }
   options.threads = threads;
-  options.watch = watch_of(listener);
+  options.watch = reporter.watch();
   pose.registration = register_images(sem, pose.simulated, options);
   pose.sem_to_afm = pose.registration->sem_to_afm;
   return pose;

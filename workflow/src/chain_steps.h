@@ -5,18 +5,17 @@
 
 namespace surf::workflow {
 
-// The steps that registration and reconstruction share, each a stage of the listener.
+// The steps that registration and reconstruction share, each a stage of the reporter.
 
-Watch watch_of(const ChainListener& listener);
-void begin(const ChainListener& listener, const char* stage);
+void begin(const Reporter& reporter, const char* stage);
 
 /// With the scan's notes and warnings handed on.
-PreparedAfm prepare(const AfmInput& afm, int threads, const ChainListener& listener);
+PreparedAfm prepare(const AfmInput& afm, int threads, const Reporter& reporter);
 
 /// Of the SEM image's pixels, which must be square.
-StoredModel model_of(ModelRequest request, const PlacedImage& sem, const ChainListener& listener);
+StoredModel model_of(ModelRequest request, const PlacedImage& sem, const Reporter& reporter);
 
 Pose pose_of(const PoseOptions& options, const PreparedAfm& afm, const PlacedImage& sem, const StoredModel& model,
-             int threads, const ChainListener& listener);
+             int threads, const Reporter& reporter);
 
 }  // namespace surf::workflow

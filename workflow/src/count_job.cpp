@@ -58,10 +58,10 @@ std::pair<mc::Beam, mc::Scan> aim(const CountJob& job) {
 
 }  // namespace
 
-CountSummary run(const CountJob& job, const Watch& watch) {
+CountSummary run(const CountJob& job, const Reporter& reporter) {
   check(job);
   const auto [beam, scan] = aim(job);
-  const mc::Scene scene(job.scene.specimen, beam, scan, job.scene.physics, {.watch = {{}, watch.cancel}});
+  const mc::Scene scene(job.scene.specimen, beam, scan, job.scene.physics, {.watch = {{}, reporter.cancel}});
   CountSummary summary;
   const Vec3 point{scan.center_x_nm, scan.center_y_nm, scan.center_z_nm}, d = mc::direction(beam);
   if (!scene.first_surface(point - d * above_nm, d, summary.hit_nm))
@@ -76,11 +76,11 @@ CountSummary run(const CountJob& job, const Watch& watch) {
                        static_cast<double>(std::accumulate(job.electrons.begin(), job.electrons.end(), std::int64_t{0}));
   double before = 0;
   for (std::size_t i = 0; i < job.electrons.size(); ++i) {
-    options.electrons = job.electrons[i];
+    options.budget = mc::ElectronsPerPixel{job.electrons[i]};
     options.seed = job.seed + 0x9e3779b97f4a7c15u * i;   // sets are draws of their own
     const mc::SimulationResult result = mc::simulate(
-        scene, options, [&](double done, double) { if (watch.progress) watch.progress(before + done, total); },
-        watch.cancel);
+        scene, options,
+        {.progress = [&](double done, double) { reporter.progress(before + done, total, "primaries"); }, .cancel = reporter.cancel});
     if (!result.complete) throw Interrupted();
     before += static_cast<double>(job.trials) * static_cast<double>(job.electrons[i]);
     for (std::size_t k = 0; k < result.detectors.size(); ++k) {

@@ -45,7 +45,7 @@ fs::path existing(fs::path folder) {
 
 }  // namespace
 
-std::vector<DiskNeed> disk_needs(const SimulateJob& job, const mc::Scan& scan, double packed_bytes) {
+std::vector<DiskNeed> disk_needs(const ResolvedJob& job, const mc::Scan& scan, double packed_bytes) {
   std::vector<DiskNeed> needs;
   const double pixels = pixels_of(scan);
   const auto channels = static_cast<double>(image_like_the_result(job).channels.size());

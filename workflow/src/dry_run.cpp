@@ -29,7 +29,7 @@ double kilobytes_of(const char* file, const std::string& key) {
 }
 
 // Beyond what scene and libraries take.
-std::vector<MemoryNeed> memory_of_results(const SimulateJob& job, const mc::Scan& scan) {
+std::vector<MemoryNeed> memory_of_results(const ResolvedJob& job, const mc::Scan& scan) {
   std::vector<MemoryNeed> needs;
   const double pixels = static_cast<double>(scan.width) * scan.height;
   const auto limit = static_cast<double>(job.options.tally_memory);
@@ -54,11 +54,10 @@ std::vector<MemoryNeed> memory_of_results(const SimulateJob& job, const mc::Scan
 
 }  // namespace
 
-DryRun dry_run(SimulateJob asked, int ranks, double seconds, const ProgressCallback& progress,
-               const CancelToken* cancel, const NoteCallback& note, const LibraryCallback& making) {
-  check_options(asked.options);
+DryRun dry_run(SimulateJob asked, int ranks, double seconds, const Reporter& reporter) {
+  const CancelToken* const cancel = reporter.cancel;
   check_extras(asked.extras);
-  SimulateJob job = complete(std::move(asked));
+  ResolvedJob job = resolve(std::move(asked));
   check_outputs(job);
   check_checkpoint(job);
   SimulateSummary summary;
@@ -66,18 +65,18 @@ DryRun dry_run(SimulateJob asked, int ranks, double seconds, const ProgressCallb
   const SpecimenFacts facts = facts_of(job.scene.specimen, nullptr, {{}, cancel});
   out.scan = summary.scan = resolve_scan(job.scene.scan, facts.extent, job.scene.beam);
   check_trajectories(job, out.scan);
-  const mc::Scene scene = make_scene(job, facts, nullptr, note, cancel, summary);
+  const mc::Scene scene = make_scene(job, facts, nullptr, reporter.on_note, cancel, summary);
   out.scene = scene.summary();
   out.warnings = warn_before(job, facts, out.scan);
   out.choice = mc::choose_method(scene, job.options, job.scene.method, {job.extras.deposit_cells > 0});
   job.options.method = out.choice.method;
-  JobLibraries libraries(job.cache, making, note);
-  out.pilot = mc::run_pilot(scene, job.options, seconds, &libraries, progress, cancel);
+  JobLibraries libraries(job.cache, reporter.counting("cascades"), reporter.on_note);
+  out.pilot = mc::run_pilot(scene, job.options, seconds, &libraries, reporter.counting("primaries"), cancel);
   if (!out.pilot.complete) throw Interrupted();
   out.threads = resolve_threads(job.options.threads);
   out.ranks = ranks;
-  out.expected_s = job.seconds > 0 ? job.seconds : out.pilot.expected_s / ranks;
-  out.standard_error_s = job.seconds > 0 ? 0 : out.pilot.standard_error_s / ranks;
+  out.expected_s = job.seconds() > 0 ? job.seconds() : out.pilot.expected_s / ranks;
+  out.standard_error_s = job.seconds() > 0 ? 0 : out.pilot.standard_error_s / ranks;
 
   const double now = kilobytes_of("/proc/self/status", "VmRSS:");
   const auto library_bytes = static_cast<double>(out.pilot.library_bytes);

@@ -110,7 +110,7 @@ void add_rows(std::string& text, const mc::SimulationResult& result, std::size_t
 
 }  // namespace
 
-fs::path extra_path(const SimulateJob& job, const char* extension) {
+fs::path extra_path(const ResolvedJob& job, const char* extension) {
   fs::path path = job.outputs.front();
   return path.replace_extension(extension);
 }
@@ -130,7 +130,7 @@ void check_extras(const Extras& extras) {
     throw UsageError("--trajectories-at", "no trajectories are asked for", "Add --trajectories 50");
 }
 
-std::vector<fs::path> extra_files(const SimulateJob& job) {
+std::vector<fs::path> extra_files(const ResolvedJob& job) {
   std::vector<fs::path> files;
   if (job.options.spectra) files.push_back(extra_path(job, ".spectra.csv"));
   if (job.extras.deposit_cells > 0) files.push_back(extra_path(job, ".deposit.vti"));
@@ -143,7 +143,7 @@ std::vector<fs::path> extra_files(const SimulateJob& job) {
 
 std::vector<std::string> label_channels() { return {"material", "model", "valid"}; }
 
-std::vector<std::string> extra_channels(const SimulateJob& job) {
+std::vector<std::string> extra_channels(const ResolvedJob& job) {
   std::vector<std::string> names = surface_channels(job.extras);
   mc::SimulationResult like;
   like.detectors = job.options.detectors;
@@ -151,7 +151,7 @@ std::vector<std::string> extra_channels(const SimulateJob& job) {
   return names;
 }
 
-void add_channels(const mc::Scene& scene, const SimulateJob& job, const mc::SimulationResult& result,
+void add_channels(const mc::Scene& scene, const ResolvedJob& job, const mc::SimulationResult& result,
                   ImageRows& image) {
   if (const auto names = surface_channels(job.extras); !names.empty()) {
     const double bytes = 4.0 * static_cast<double>(names.size()) * static_cast<double>(result.pixels.size());

@@ -9,7 +9,7 @@
 
 #include "surf/mc/energy_deposit.h"
 #include "surf/mc/scene.h"
-#include "surf/workflow/simulate_job.h"
+#include "resolved_job.h"
 
 namespace surf::workflow {
 
@@ -17,21 +17,21 @@ namespace surf::workflow {
 void check_extras(const Extras& extras);
 
 /// The name of one extra file.
-std::filesystem::path extra_path(const SimulateJob& job, const char* extension);
+std::filesystem::path extra_path(const ResolvedJob& job, const char* extension);
 
 /// The files besides the image that a job writes.
-std::vector<std::filesystem::path> extra_files(const SimulateJob& job);
+std::vector<std::filesystem::path> extra_files(const ResolvedJob& job);
 
 /// Adds the channels that are wanted besides the detectors'. What the numbers of materials and models
 /// mean goes into the metadata. Refers to `result`.
-void add_channels(const mc::Scene& scene, const SimulateJob& job, const mc::SimulationResult& result,
+void add_channels(const mc::Scene& scene, const ResolvedJob& job, const mc::SimulationResult& result,
                   ImageRows& image);
 
 /// Those among them whose values are numbers of something.
 std::vector<std::string> label_channels();
 
 /// The channels that `add_channels` adds.
-std::vector<std::string> extra_channels(const SimulateJob& job);
+std::vector<std::string> extra_channels(const ResolvedJob& job);
 
 /// Spectra as CSV: detector, quantity, unit, from, to, yield, standard_error. Yields are counts per
 /// primary in that bin, with the detector's efficiency.
@@ -50,10 +50,10 @@ class Deposits {
 };
 
 /// Throws UsageError where tracks are wanted at a place outside the scan.
-void check_trajectories(const SimulateJob& job, const mc::Scan& scan);
+void check_trajectories(const ResolvedJob& job, const mc::Scan& scan);
 
 /// Simulates the tracks that are wanted, on their own, and writes them with a picture.
-void write_trajectories(const mc::Scene& scene, const SimulateJob& job,
+void write_trajectories(const mc::Scene& scene, const ResolvedJob& job,
                         const std::map<std::string, std::string>& settings);
 
 }  // namespace surf::workflow

@@ -5,6 +5,7 @@
 
 #include "job_identity.h"
 #include "provenance.h"
+#include "simulation_setup.h"
 #include "surf/core/error.h"
 #include "surf/io/image_file.h"
 
@@ -13,7 +14,8 @@ namespace surf::workflow {
 void title_by_identity(SimulateJob& job, const std::string& what) {
   job.scene.title.clear();
   const mc::Scan scan = resolve_scan(job.scene.scan, mc::extent(job.scene.specimen), job.scene.beam);
-  const std::string hash = fingerprint(identity_of(job, provenance(job, scan, {})));
+  const ResolvedJob resolved = resolve(job);
+  const std::string hash = fingerprint(identity_of(resolved, provenance(resolved, scan, {})));
   job.scene.title = fmt::format("{}, {}", what, hash.substr(0, 32));
 }
 

@@ -77,10 +77,10 @@ std::string shown(const Identity& identity, const std::string& key) {
 
 }  // namespace
 
-Identity identity_of(const SimulateJob& job, const std::map<std::string, std::string>& settings) {
+Identity identity_of(const ResolvedJob& job, const std::map<std::string, std::string>& settings) {
   Identity identity = settings;
   identity[geometry_key] = geometry(job.scene.specimen);
-  identity["spectra"] = job.options.spectra ? "yes" : "no";
+  identity["spectra"] = job.spectra ? "yes" : "no";
   identity["tile_pixels"] = std::to_string(job.options.tile_pixels);
   identity["planar_control"] = job.options.planar_control ? "yes" : "no";
   identity["instruction set"] = instruction_set();

@@ -4,7 +4,7 @@
 #include <map>
 #include <string>
 
-#include "surf/workflow/simulate_job.h"
+#include "resolved_job.h"
 
 namespace surf::workflow {
 
@@ -12,7 +12,7 @@ namespace surf::workflow {
 /// the same identity may share a checkpoint. To `settings` (see `provenance`) it adds what an image
 /// does not tell: the meshes and heights themselves, how work is cut into units, and the program.
 using Identity = std::map<std::string, std::string>;
-Identity identity_of(const SimulateJob& job, const std::map<std::string, std::string>& settings);
+Identity identity_of(const ResolvedJob& job, const std::map<std::string, std::string>& settings);
 
 /// Of the program that runs: another build may round differently. "unknown" where the system does not show the
 /// program's own file; versions must do there.

@@ -11,7 +11,7 @@ namespace surf::workflow {
 /// The cache's libraries, with the job's own progress.
 class JobLibraries : public mc::LibrarySource {
  public:
-  JobLibraries(const std::filesystem::path& folder, LibraryCallback progress, NoteCallback note)
+  JobLibraries(const std::filesystem::path& folder, ProgressCallback progress, NoteCallback note)
       : kept_(folder), progress_(std::move(progress)), note_(std::move(note)) {}
 
   std::shared_ptr<const mc::CascadeLibrary> library(const mc::CascadeSettings& settings, std::size_t cascades,
@@ -27,7 +27,7 @@ class JobLibraries : public mc::LibrarySource {
 
  private:
   CachedLibraries kept_;
-  LibraryCallback progress_;
+  ProgressCallback progress_;
   NoteCallback note_;
 };
 

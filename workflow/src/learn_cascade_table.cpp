@@ -45,7 +45,7 @@ std::map<std::string, std::string> notes_of(const TrainJob& job, const mc::Casca
 // Secondaries that stop above the surface are far more than those that leave: level ground sets their scale.
 Learnt learn_stopping_points(const Lesson& lesson) {
   const TrainJob& job = lesson.job;
-  JobLibraries libraries(job.cache, lesson.listener.cascades, lesson.listener.note);
+  JobLibraries libraries(job.cache, lesson.reporter.counting("cascades"), lesson.reporter.on_note);
   SlopeTableOptions flat;
   flat.specimen = SlopeSpecimen::single_plane;
   flat.last_deg = 0;
@@ -67,7 +67,7 @@ Learnt learn_stopping_points(const Lesson& lesson) {
 }
 
 Learnt learn_diffusion_matrix(const Lesson& lesson) {
-  JobLibraries libraries(lesson.job.cache, lesson.listener.cascades, lesson.listener.note);
+  JobLibraries libraries(lesson.job.cache, lesson.reporter.counting("cascades"), lesson.reporter.on_note);
   const auto library = library_of(lesson.job, libraries, lesson.watch());
   return {mc::diffusion_matrix(*library), 0, {}, notes_of(lesson.job, *library)};
 }

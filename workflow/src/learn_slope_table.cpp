@@ -29,7 +29,7 @@ Learnt learn(const Lesson& lesson) {
   options.physics = job.physics;
   options.threads = job.simulation.threads;
   options.watch = lesson.watch();
-  JobLibraries libraries(job.cache, lesson.listener.cascades, lesson.listener.note);
+  JobLibraries libraries(job.cache, lesson.reporter.counting("cascades"), lesson.reporter.on_note);
   const SlopeTable table = make_slope_table(job.material, job.energy_ev, options, &libraries);
   return {to_slope_model(table),
           0,

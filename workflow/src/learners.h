@@ -18,10 +18,10 @@ struct Lesson {
   ModelScope scope;
   std::vector<std::string> channels;
   const std::vector<TrainingImage>& images;   ///< without those held out; none for kinds that need none
-  const TrainListener& listener;
+  const Reporter& reporter;
 
   /// For the whole of learning.
-  Watch watch() const { return {listener.learning, listener.cancel}; }
+  Watch watch() const { return reporter.watch(); }
 };
 
 struct Learnt {

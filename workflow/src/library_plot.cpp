@@ -267,7 +267,7 @@ void check(const LibraryPlotOptions& o) {
 mc::SimulationOptions simulation_of(const LibraryPlotOptions& o) {
   mc::SimulationOptions options;
   options.method = mc::Method::replay;
-  options.accuracy = std::min(1.0, 3 / std::sqrt(static_cast<double>(o.cascades)));
+  options.budget = mc::Accuracy{std::min(1.0, 3 / std::sqrt(static_cast<double>(o.cascades)))};
   options.library_memory = 0;   // no more than that
   options.seed = o.seed;
   options.threads = o.threads;
@@ -286,8 +286,8 @@ bool find_yields(const LibraryPlotOptions& o, double tilt_deg, mc::LibrarySource
   mc::Scan scan;
   scan.width = scan.height = 1;
   const mc::SimulationResult result =
-      mc::simulate(mc::Scene(specimen, beam, scan, o.physics), simulation_of(o), {}, cancel, {},
-                   nullptr, &libraries);
+      mc::simulate(mc::Scene(specimen, beam, scan, o.physics), simulation_of(o),
+                   {.cancel = cancel, .libraries = &libraries});
   if (!result.complete) return false;
   findings.se.push_back(result.yield(0, 0, 0));
   findings.bse.push_back(result.yield(1, 0, 0));

@@ -90,13 +90,14 @@ std::vector<std::string> prediction_warnings(const TrainedModel& model, const He
   return warnings;
 }
 
-PredictSummary run(const PredictJob& job, const NoteCallback& note, const Watch& watch) {
+PredictSummary run(const PredictJob& job, const Reporter& reporter) {
+  const Watch watch = reporter.watch();
   PredictSummary summary;
   summary.model = io::read_model(job.model);
   const ModelScope& scope = summary.model.scope;
   check_conditions(scope, job.wanted);
   const auto model = make_model(summary.model);
-  const HeightField field = at_pixel(job, scope.pixel_nm, note);
+  const HeightField field = at_pixel(job, scope.pixel_nm, reporter.on_note);
   check_field(scope, field, job.input.string().c_str());
   summary.image = image_of(job, summary.model, field, model->channels());
   check_outputs(job, summary.image);
@@ -105,6 +106,7 @@ PredictSummary run(const PredictJob& job, const NoteCallback& note, const Watch&
   summary.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   summary.range = surface_range(field);
   summary.warnings = prediction_warnings(summary.model, field);
+  for (const std::string& warning : summary.warnings) reporter.warn(warning);
   watch.check();
   for (const fs::path& output : job.outputs) io::write_image(output, summary.image, {job.png_channel});
   return summary;

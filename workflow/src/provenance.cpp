@@ -12,24 +12,6 @@ namespace {
 
 using Metadata = std::map<std::string, std::string>;
 
-void add_beam_and_scan(Metadata& out, const mc::Beam& beam, const mc::Scan& scan) {
-  out["beam.energy_ev"] = format_exact(beam.energy_ev);
-  out["beam.tilt_deg"] = format_exact(beam.tilt_deg);
-  out["beam.azimuth_deg"] = format_exact(beam.azimuth_deg);
-  out["beam.spot_nm"] = format_exact(beam.spot_nm);
-  out["beam.convergence_deg"] = format_exact(beam.convergence_deg);
-  out["beam.focus_nm"] = format_exact(beam.focus_nm);
-  out["beam.working_distance_nm"] =
-      beam.working_distance_nm > 0 ? format_exact(beam.working_distance_nm) : "infinite";
-  out["scan.width"] = std::to_string(scan.width);
-  out["scan.height"] = std::to_string(scan.height);
-  out["scan.pixel_x_nm"] = format_exact(scan.pixel_x_nm);
-  out["scan.pixel_y_nm"] = format_exact(scan.pixel_y_nm);
-  out["scan.center_x_nm"] = format_exact(scan.center_x_nm);
-  out["scan.center_y_nm"] = format_exact(scan.center_y_nm);
-  out["scan.center_z_nm"] = format_exact(scan.center_z_nm);
-}
-
 void add_material(Metadata& out, const std::string& key, const mc::Material& material) {
   out[key + ".name"] = material.name;
   out[key + ".density_g_cm3"] = format_exact(material.density_g_cm3);
@@ -99,7 +81,7 @@ std::vector<InputHash> hash_inputs(const std::vector<std::filesystem::path>& inp
   return hashes;
 }
 
-Metadata provenance(const SimulateJob& job, const mc::Scan& scan,
+Metadata provenance(const ResolvedJob& job, const mc::Scan& scan,
                     const std::vector<InputHash>& inputs) {
   Metadata out;
   out["semsurf.version"] = version();
@@ -108,12 +90,18 @@ Metadata provenance(const SimulateJob& job, const mc::Scan& scan,
   for (const InputHash& input : inputs)
     out[fmt::format("input.{}", ++number)] =
         fmt::format("{} sha256 {}", input.path.filename().string(), input.sha256);
-  add_beam_and_scan(out, job.scene.beam, scan);
+  mc::SimulationRequest request = job.scene;   // with what was found of it
+  request.method = job.options.method;
+  request.budget = job.options.budget;
+  request.detectors.clear();                   // all are named below
+  request.scan = {};
+  out.merge(surf::record_of(request));
+  out.merge(surf::record_of(scan));
+  if (const double dose = mc::dose_of(job.options.budget); dose > 0) out["simulation.dose"] = format_exact(dose);
   add_specimen(out, job.scene.specimen);
   number = 0;
   for (const auto& [file, unit_nm] : job.scene.unit_overrides)
     out[fmt::format("unit_override.{}", ++number)] = fmt::format("{}, {} nm", file, format_exact(unit_nm));
-  out["physics"] = mc::format_physics(job.scene.physics);
   number = 0;
   for (const mc::Material& material : job.scene.specimen.materials) {
     const std::string key = fmt::format("material.{}", ++number);
@@ -123,22 +111,8 @@ Metadata provenance(const SimulateJob& job, const mc::Scan& scan,
   number = 0;
   for (const mc::Detector& d : job.options.detectors)
     out[fmt::format("detector.{}", ++number)] = mc::format_detector(d);
-  if (job.options.dose > 0) {
-    out["beam.current_pa"] = format_exact(*job.scene.current_pa);
-    out["beam.dwell_us"] = format_exact(*job.scene.dwell_us);
-    out["dose"] = format_exact(job.options.dose);
-  } else if (job.options.accuracy > 0) {
-    out["accuracy"] = format_exact(job.options.accuracy);
-    out["accuracy_floor"] = format_exact(job.options.accuracy_floor);
-  } else {
-    out["electrons"] = std::to_string(job.options.electrons);
-  }
-  if (const double tolerance = job.scene.mesh_tolerance_nm.value_or(0); tolerance != 0)
-    out["mesh_tolerance_nm"] = format_exact(tolerance);
-  out["method"] = mc::name(job.options.method);
   // Where energy is watched tracks are followed to their end, with other random numbers.
-  if (job.extras.deposit_cells > 0) out["deposit_cells"] = std::to_string(job.extras.deposit_cells);
-  out["seed"] = std::to_string(job.options.seed);
+  if (job.extras.deposit_cells > 0) out["output.deposit"] = std::to_string(job.extras.deposit_cells);
   return out;
 }
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "surf/workflow/simulate_job.h"
+#include "resolved_job.h"
 
 namespace surf::workflow {
 
@@ -19,7 +19,7 @@ std::vector<InputHash> hash_inputs(const std::vector<std::filesystem::path>& inp
 
 /// Everything that changes the result, as an image's metadata: nothing here may depend on threads,
 /// tiles, hosts, clocks, or on the folders that inputs and outputs are in.
-std::map<std::string, std::string> provenance(const SimulateJob& job, const mc::Scan& scan,
+std::map<std::string, std::string> provenance(const ResolvedJob& job, const mc::Scan& scan,
                                               const std::vector<InputHash>& inputs);
 
 /// What a finished simulation adds: its balance, libraries, how pixels were simulated, warnings and,

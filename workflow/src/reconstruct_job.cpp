@@ -133,22 +133,22 @@ void keep_registration(const ReconstructJob& job, const PlacedImage& image, Reco
 /// Watches a step of the chain for a job.
 class Warnings {
  public:
-  Warnings(const ChainListener& listener, ReconstructSummary& summary) : told_(listener) {
-    told_.warn = [&listener, &summary](const std::string& warning) {
+  Warnings(const Reporter& reporter, ReconstructSummary& summary) : told_(reporter) {
+    told_.on_warning = [&reporter, &summary](const std::string& warning) {
       summary.warnings.push_back(warning);
-      if (listener.warn) listener.warn(warning);
+      reporter.warn(warning);
     };
   }
-  const ChainListener& listener() const { return told_; }
+  const Reporter& reporter() const { return told_; }
 
  private:
-  ChainListener told_;
+  Reporter told_;
 };
 
 /// The SEM image, calibrated and with its noise. Both are found twice where there is a scan: the eroded scan is too
 /// broad where it matters, so a first, coarse reconstruction stands in for it (at most `rounds` times).
 SemData sem_data(const ReconstructJob& job, ReconstructSummary& s, const PlacedImage& image, const AfmData* afm,
-                 const ChainListener& told) {
+                 const Reporter& told) {
   begin(told, "calibration");
   constexpr int rounds = 2;
   const HeightField* eroded = s.afm ? &s.afm->eroded() : nullptr;
@@ -166,7 +166,7 @@ SemData sem_data(const ReconstructJob& job, ReconstructSummary& s, const PlacedI
     coarse.curvature_prior_per_nm = job.options.curvature_prior_per_nm;
     coarse.uncertainty = false;
     coarse.threads = threads;
-    coarse.watch = watch_of(told).part(double(round) / rounds, double(round + 1) / rounds);
+    coarse.watch = told.watch().part(double(round) / rounds, double(round + 1) / rounds);
     const SemData sem = data();
     const Reconstruction r = reconstruct(afm, &sem, coarse);
     if (!calibrate_again(image, r.surface, *s.model->model, job.calibration.has_value(), job.sem_noise.has_value(), threads, first)) break;
@@ -192,17 +192,17 @@ ReconstructionOptions options_of(const ReconstructJob& job, const ReconstructSum
   return o;
 }
 
-ReconstructSummary run(const ReconstructJob& job, const ChainListener& listener) {
+ReconstructSummary run(const ReconstructJob& job, const Reporter& reporter) {
   check(job);
   ReconstructSummary s;
-  const Warnings warnings(listener, s);
-  const ChainListener& told = warnings.listener();
+  const Warnings warnings(reporter, s);
+  const Reporter& told = warnings.reporter();
   const int threads = job.options.threads;
   PlacedImage image;
   if (job.sem) {
     image = job.sem->image;
     s.saturated = leave_out_saturated(image);
-    if (s.saturated > 0 && told.note) told.note(fmt::format("SEM: {} saturated pixels are left out", s.saturated));
+    if (s.saturated > 0) told.note(fmt::format("SEM: {} saturated pixels are left out", s.saturated));
     ModelRequest request = job.model;
     if (request.folder.empty()) request.folder = job.folder;   // without a cache
     s.model = model_of(request, image, told);
@@ -232,14 +232,14 @@ ReconstructSummary run(const ReconstructJob& job, const ChainListener& listener)
   if (!job.folder.empty()) {
     std::filesystem::create_directories(job.folder);
     checkpoint.emplace(job.folder / "checkpoint",
-                       identity_of(options_of(job, s), afm_data, sem_data, s.model ? &*s.model : nullptr), told.note);
+                       identity_of(options_of(job, s), afm_data, sem_data, s.model ? &*s.model : nullptr), told.on_note);
     if (const auto state = checkpoint->found()) {
       s.resumed = true;
-      if (told.note) told.note(fmt::format("{} scales are done already: going on from there", state->scales.size()));
+      told.note(fmt::format("{} scales are done already: going on from there", state->scales.size()));
     }
   }
   ReconstructionOptions options = options_of(job, s);
-  options.watch = watch_of(told);
+  options.watch = told.watch();
   s.result = reconstruct(afm_data, sem_data, options, checkpoint ? &*checkpoint : nullptr);
   if (job.truth) s.truth = compare_with_truth(s.result, *job.truth);
   s.reasons = reasons_of(s);

@@ -39,14 +39,14 @@ io::TransformFile transform_file(const RegisterJob& job, const RegisterSummary& 
 
 }  // namespace
 
-RegisterSummary run(const RegisterJob& job, const ChainListener& listener) {
+RegisterSummary run(const RegisterJob& job, const Reporter& reporter) {
   validate(job.sem.image, "SEM image");
   if (!job.transform.empty()) io::check_writable(job.transform);
   if (!job.picture.empty()) io::check_plot_target(job.picture);
   RegisterSummary s;
-  s.model = model_of(job.model, job.sem.image, listener);
-  s.afm = prepare(job.afm, job.threads, listener);
-  s.pose = pose_of(job.pose, s.afm, job.sem.image, s.model, job.threads, listener);
+  s.model = model_of(job.model, job.sem.image, reporter);
+  s.afm = prepare(job.afm, job.threads, reporter);
+  s.pose = pose_of(job.pose, s.afm, job.sem.image, s.model, job.threads, reporter);
   if (!job.transform.empty()) io::write_transform(job.transform, transform_file(job, s));
   if (!job.picture.empty())
     io::write_plot(job.picture, registration_picture(job.sem.image, s.pose.simulated, s.pose.sem_to_afm));

@@ -28,7 +28,7 @@ struct Rectangle {
                                mc::max_pixels));
 }
 
-void check_request(const io::ScanRequest& r) {
+void check_request(const mc::ScanRequest& r) {
   if (r.width.has_value() != r.height.has_value())
     throw UsageError("--size", "only one of width and height is given", "Write --size 256x256");
   if (r.pixel_x_nm.has_value() != r.pixel_y_nm.has_value())
@@ -100,7 +100,7 @@ struct Layout {
   double pixel_x_nm, pixel_y_nm;
 };
 
-Layout from_region(const io::ScanRequest& request, const Rectangle& region) {
+Layout from_region(const mc::ScanRequest& request, const Rectangle& region) {
   if (request.width)
     return {double(*request.width), double(*request.height), region.width() / *request.width,
             region.height() / *request.height};
@@ -115,7 +115,7 @@ Layout from_region(const io::ScanRequest& request, const Rectangle& region) {
 }
 
 // Square pixels about the specimen's centre that show all of it, unless the user gave both.
-Layout from_extent(const io::ScanRequest& request, const Rectangle& extent) {
+Layout from_extent(const mc::ScanRequest& request, const Rectangle& extent) {
   if (request.width && request.pixel_x_nm)
     return {double(*request.width), double(*request.height), *request.pixel_x_nm,
             *request.pixel_y_nm};
@@ -133,7 +133,7 @@ Layout from_extent(const io::ScanRequest& request, const Rectangle& extent) {
 
 }  // namespace
 
-mc::Scan resolve_scan(const io::ScanRequest& request, const Box& specimen_extent,
+mc::Scan resolve_scan(const mc::ScanRequest& request, const Box& specimen_extent,
                       const mc::Beam& beam) {
   check_request(request);
   mc::validate(beam);

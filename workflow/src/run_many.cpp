@@ -57,11 +57,11 @@ class Maker {
       if (runs_.finished) runs_.finished(i, outcome);
     };
     pieces.progress = [&](double done, double) {
-      if (runs_.progress) runs_.progress(done, total_);
+      runs_.reporter.progress(done, total_, runs_.things);
     };
     pieces.talking = &talking_;
     pieces.threads = resolve_threads(runs_.threads);
-    pieces.cancel = runs_.cancel;
+    pieces.cancel = runs_.reporter.cancel;
     const bool complete = share_pieces(*team_, pieces, out_.tallies);
     for (const MemberTally& tally : out_.tallies) {
       out_.primaries += tally.primaries;
@@ -76,7 +76,7 @@ class Maker {
     const auto start = Clock::now();
     const auto show = [&](double done, double of) {
       const std::lock_guard lock(talking_);
-      if (runs_.progress && of > 0) runs_.progress(done_ + runs_.weights[i] * done / of, total_);
+      if (of > 0) runs_.reporter.progress(done_ + runs_.weights[i] * done / of, total_, runs_.things);
     };
     std::optional<FinishedPiece> piece;
     SimulateJob job;
@@ -97,8 +97,7 @@ class Maker {
   // Nothing when cancelled.
   std::optional<FinishedPiece> simulate(std::size_t i, SimulateJob job, const ProgressCallback& progress, Team* with) {
     try {
-      const SimulateSummary s =
-          run(job, progress, runs_.cancel, aloud(runs_.warn), aloud(runs_.note), cascades(), with);
+      const SimulateSummary s = run(job, quietly(progress), with);
       if (!s.result.complete) return std::nullopt;
       FinishedPiece piece{s.result.balance.incident - s.result.recalled, {}};
       if (runs_.outcome && leads(with)) piece.outcome = runs_.outcome(i, job, s);
@@ -108,17 +107,23 @@ class Maker {
     }
   }
 
-  // One voice at a time: other members are told of meanwhile.
-  std::function<void(const std::string&)> aloud(const std::function<void(const std::string&)>& tell) {
+  // One voice at a time: other members are told of meanwhile. `progress` is that of the run in the whole.
+  Reporter quietly(const ProgressCallback& progress) {
+    Reporter one;
+    one.on_progress = [this, progress](double done, double total, std::string_view things) {
+      if (things != "cascades") return progress(done, total);
+      const std::lock_guard lock(talking_);
+      runs_.reporter.progress(done, total, things);
+    };
+    one.on_note = aloud(runs_.reporter.on_note);
+    one.on_warning = aloud(runs_.reporter.on_warning);
+    one.cancel = runs_.reporter.cancel;
+    return one;
+  }
+  NoteCallback aloud(const NoteCallback& tell) {
     return [this, tell](const std::string& text) {
       const std::lock_guard lock(talking_);
       if (tell) tell(text);
-    };
-  }
-  LibraryCallback cascades() {
-    return [this](double done, double total) {
-      const std::lock_guard lock(talking_);
-      if (runs_.cascades) runs_.cascades(done, total);
     };
   }
 

@@ -26,11 +26,8 @@ struct ManyRuns {
   bool whole = false;             ///< each by one process, so that its time means the same as without a team
   int threads = 0;
 
-  ProgressCallback progress;      ///< in weights
-  LibraryCallback cascades;
-  WarningCallback warn;
-  NoteCallback note;
-  const CancelToken* cancel = nullptr;
+  std::string things;             ///< what weights count, for progress
+  Reporter reporter;
 };
 
 struct ManyDone {

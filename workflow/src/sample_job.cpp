@@ -252,7 +252,7 @@ Identity identity_of(const SampleJob& job, const mc::SimulationOptions& options)
 }
 
 std::unique_ptr<Checkpoint> make_checkpoint(const SampleJob& job, const mc::SimulationOptions& options,
-                                            const NoteCallback& note, const WarningCallback& warn) {
+                                            const NoteCallback& note, const NoteCallback& warn) {
   if (!job.checkpoint.wanted) return nullptr;
   const auto say = [](const std::string&) {};
   return std::make_unique<Checkpoint>(job.checkpoint, job.folder / "sem.tif", identity_of(job, options),
@@ -318,8 +318,9 @@ const std::vector<SampleScene>& sample_scenes() {
   return all;
 }
 
-SampleSummary run(const SampleJob& job, const ProgressCallback& progress, const CancelToken* cancel,
-                  const LibraryCallback& libraries, const NoteCallback& note, const WarningCallback& warn) {
+SampleSummary run(const SampleJob& job, const Reporter& reporter) {
+  const CancelToken* const cancel = reporter.cancel;
+  const NoteCallback& note = reporter.on_note;
   const SampleScene& scene = find_scene(job.name);
   const SampleSurface& surface = find_sample_surface(job.name);
   check(job);
@@ -331,23 +332,23 @@ SampleSummary run(const SampleJob& job, const ProgressCallback& progress, const 
 
   mc::SimulationOptions options;
   options.method = mc::Method::replay;
-  options.electrons = job.electrons;
+  options.budget = mc::ElectronsPerPixel{job.electrons};
   options.seed = job.seed;
   options.threads = job.threads;
-  JobLibraries kept(job.cache, libraries, note);
+  JobLibraries kept(job.cache, reporter.counting("cascades"), note);
   LargeLibraries source(kept, job.cascades);
   const mc::Scene monte_carlo = monte_carlo_scene(job, scene, surface);
-  const std::unique_ptr<Checkpoint> checkpoint = make_checkpoint(job, options, note, warn);
+  const std::unique_ptr<Checkpoint> checkpoint = make_checkpoint(job, options, note, reporter.on_warning);
   const auto show = [&](double done, double total) {
     if (checkpoint) checkpoint->expect(total);
-    if (progress) progress(done, total);
+    reporter.progress(done, total, "primaries");
   };
   const auto keep = [&] {
     summary.complete = false;
     if (checkpoint && checkpoint->keep()) summary.checkpoint = checkpoint->path();
   };
   const mc::SimulationResult result =
-      mc::simulate(monte_carlo, options, show, cancel, {}, checkpoint.get(), &source);
+      mc::simulate(monte_carlo, options, {.progress = show, .cancel = cancel, .journal = checkpoint.get(), .libraries = &source});
   if (!result.complete) {
     keep();
     return summary;

@@ -81,7 +81,7 @@ Json simplification_json(const Simplification& s) {
   return {{"tolerance_nm", s.tolerance_nm}, {"seconds", s.seconds}, {"bodies", bodies}};
 }
 
-Json method_json(const SimulateJob& job, const SimulateSummary& s) {
+Json method_json(const ResolvedJob& job, const SimulateSummary& s) {
   Json pixels = Json::object();
   for (int i = 0; i < mc::pixel_models; ++i)
     pixels[mc::name(static_cast<mc::PixelModel>(i))] =
@@ -98,11 +98,11 @@ Json method_json(const SimulateJob& job, const SimulateSummary& s) {
                        {"pages_from_cache", s.pages_loaded},
                        {"pages_made", s.pages_made},
                        {"seconds", s.result.library_seconds}};
-  if (s.result.accuracy > 0)
-    json["accuracy"] = {{"asked", s.result.accuracy},
+  if (const double accuracy = mc::accuracy_of(s.result.budget); accuracy > 0)
+    json["accuracy"] = {{"asked", accuracy},
                         {"pixels_missed", s.statistics.missed},
                         {"worst", s.statistics.worst}};
-  if (job.seconds > 0) json["seconds_allowed"] = job.seconds;
+  if (job.seconds() > 0) json["seconds_allowed"] = job.seconds();
   return json;
 }
 
@@ -142,7 +142,7 @@ std::filesystem::path sidecar_path(const std::filesystem::path& output) {
   return path;
 }
 
-std::string sidecar_text(const SimulateJob& job, const SimulateSummary& summary,
+std::string sidecar_text(const ResolvedJob& job, const SimulateSummary& summary,
                          const RunRecord& record) {
   const mc::SimulationResult& result = summary.result;
   const mc::Balance& b = result.balance;

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "provenance.h"
-#include "surf/workflow/simulate_job.h"
+#include "resolved_job.h"
 
 namespace surf::workflow {
 
@@ -22,7 +22,7 @@ struct RunRecord {
 std::filesystem::path sidecar_path(const std::filesystem::path& output);
 
 /// The record as JSON.
-std::string sidecar_text(const SimulateJob& job, const SimulateSummary& summary,
+std::string sidecar_text(const ResolvedJob& job, const SimulateSummary& summary,
                          const RunRecord& record);
 
 }  // namespace surf::workflow

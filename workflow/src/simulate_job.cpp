@@ -26,6 +26,7 @@
 #include "team_libraries.h"
 #include "surf/mc/choose_method.h"
 #include "surf/mc/scene.h"
+#include "surf/workflow/trajectories.h"
 #include "time_budget.h"
 #include "warnings.h"
 
@@ -35,7 +36,7 @@ namespace {
 namespace fs = std::filesystem;
 
 // Only where it is much: where the results of all pixels go until they are written.
-void tell_of_scratch(const SimulateJob& job, const mc::Scan& scan, const NoteCallback& note) {
+void tell_of_scratch(const ResolvedJob& job, const mc::Scan& scan, const NoteCallback& note) {
   const std::size_t bytes = mc::tally_bytes(scan, job.options);
   if (note && bytes > job.options.tally_memory)
     note(fmt::format("{} x {} pixels: {:.3g} GB of intermediate results go to a scratch file in {}, "
@@ -45,10 +46,10 @@ void tell_of_scratch(const SimulateJob& job, const mc::Scan& scan, const NoteCal
 }
 
 // What went on before, where it can go on.
-std::unique_ptr<Checkpoint> make_checkpoint(const SimulateJob& job,
+std::unique_ptr<Checkpoint> make_checkpoint(const ResolvedJob& job,
                                             const std::map<std::string, std::string>& settings,
-                                            const NoteCallback& note, const WarningCallback& warn) {
-  if (!job.checkpoint.wanted || job.extras.deposit_cells > 0) return nullptr;
+                                            const NoteCallback& note, const NoteCallback& warn) {
+  if (!job.checkpoint.wanted || job.extras.deposit_cells > 0 || job.outputs.empty()) return nullptr;
   const auto say = [](const std::string&) {};
   return std::make_unique<Checkpoint>(job.checkpoint, job.outputs.front(),
                                       identity_of(job, settings), note ? note : say,
@@ -73,12 +74,11 @@ double seconds_since(std::chrono::system_clock::time_point start) {
 
 // For a time budget: simulates coarsely and sets the accuracy that fits. The result stands where
 // there is nothing better, or where it was cancelled.
-Simulation find_accuracy(SimulateJob& job, const mc::Scene& scene, mc::LibrarySource& libraries,
-                         const JobLibraries& kept, const mc::MethodChoice& choice, const RunRecord& record,
-                         const ProgressCallback& progress, const CancelToken* cancel, const NoteCallback& note,
+Simulation find_accuracy(ResolvedJob& job, const mc::Scene& scene, const JobLibraries& kept, const mc::MethodChoice& choice, const RunRecord& record,
+                         const mc::SimulationContext& context, const Simulator& simulator, const NoteCallback& note,
                          Team* team) {
   Simulation coarse;
-  coarse.result = mc::simulate(scene, job.options, progress, cancel, {}, nullptr, &libraries, team);
+  coarse.result = simulator(scene, job.options, context);
   if (!leads(team)) return coarse;   // counts nothing
   const auto say = [&](const std::string& text) {
     if (note) note(text);
@@ -87,83 +87,79 @@ Simulation find_accuracy(SimulateJob& job, const mc::Scene& scene, mc::LibrarySo
   if (coarse.final) return coarse;
   const double spent = seconds_since(record.start);
   TimeBudget budget;
-  budget.seconds_left = job.seconds - spent;
+  budget.seconds_left = job.seconds() - spent;
   budget.materials = scene.materials().size();
   budget.most_library_cascades = mc::MethodLimits{}.library_bytes /
                                  (choice.library_bytes / static_cast<double>(choice.cascades));
   const auto pages = kept.pages();
   budget.cascades_made = (pages.made > 0 ? pages.made : pages.loaded) *
                          mc::CascadeLibrary::page_cascades;
-  job.options.accuracy = accuracy_that_fits(coarse.result, budget);
-  if (job.options.accuracy < coarse_accuracy) {
-    say(fmt::format("{} accuracy fits in {:g} s; --accuracy {} repeats this exactly",
-                    format_share(job.options.accuracy), job.seconds,
-                    option_text(job.options.accuracy)));
+  job.options.budget = mc::Accuracy{accuracy_that_fits(coarse.result, budget), mc::floor_of(job.scene.budget)};
+  const double accuracy = mc::accuracy_of(job.options.budget);
+  if (accuracy < coarse_accuracy) {
+    say(fmt::format("{} accuracy fits in {:g} s; `simulation.accuracy={}` repeats this exactly", format_share(accuracy),
+                    job.seconds(), option_text(accuracy)));
     return coarse;
   }
-  const std::string again = fmt::format("--accuracy {} repeats this exactly",
+  const std::string again = fmt::format("`simulation.accuracy={}` repeats this exactly",
                                         option_text(coarse_accuracy));
-  if (spent > job.seconds)
-    say(fmt::format("{:g} s are too short: even {} accuracy took {:.2g} s; {}", job.seconds,
+  if (spent > job.seconds())
+    say(fmt::format("{:g} s are too short: even {} accuracy took {:.2g} s; {}", job.seconds(),
                     format_share(coarse_accuracy), spent, again));
   else
     say(fmt::format("no better than {} accuracy fits in {:g} s; {}", format_share(coarse_accuracy),
-                    job.seconds, again));
+                    job.seconds(), again));
   coarse.final = true;
   return coarse;
 }
 
 // The same for all of a team: who leads has seen the counts.
-Simulation simulate_coarsely(SimulateJob& job, const mc::Scene& scene, mc::LibrarySource& libraries,
-                             const JobLibraries& kept, const mc::MethodChoice& choice, const RunRecord& record,
-                             const ProgressCallback& progress, const CancelToken* cancel, const NoteCallback& note,
-                             Team* team) {
+Simulation simulate_coarsely(ResolvedJob& job, const mc::Scene& scene, const JobLibraries& kept,
+                             const mc::MethodChoice& choice, const RunRecord& record, const mc::SimulationContext& context,
+                             const Simulator& simulator, const NoteCallback& note, Team* team) {
   Simulation coarse;
   std::exception_ptr thrown;
   try {
-    coarse = find_accuracy(job, scene, libraries, kept, choice, record, progress, cancel, note, team);
+    coarse = find_accuracy(job, scene, kept, choice, record, context, simulator, note, team);
   } catch (...) {
     if (!team) throw;
     thrown = std::current_exception();
   }
   if (!team) return coarse;
   // What one says to all has to be said in any case: 2 stands for its failure.
-  std::string found = fmt::format("{} {}", thrown ? 2 : coarse.final ? 1 : 0, format_exact(job.options.accuracy));
+  std::string found = fmt::format("{} {}", thrown ? 2 : coarse.final ? 1 : 0, format_exact(mc::accuracy_of(job.options.budget)));
   team->broadcast(found);
   if (thrown && leads(team)) std::rethrow_exception(thrown);
   if (found[0] == '2') throw Interrupted();   // who leads tells why
   coarse.final = found[0] == '1';
-  job.options.accuracy = std::stod(found.substr(2));
+  job.options.budget = mc::Accuracy{std::stod(found.substr(2)), mc::floor_of(job.scene.budget)};
   return coarse;
 }
 
 // Where the job goes on from, when it did not come to its end or to its files.
-void keep_interrupted(const SimulateJob& job, Checkpoint* checkpoint, const NoteCallback& note) {
+void keep_interrupted(const ResolvedJob& job, Checkpoint* checkpoint, const NoteCallback& note) {
   if (checkpoint && checkpoint->keep()) {
     if (note)
       note(fmt::format("what is done is kept in {}; the same command{} goes on from there",
                        checkpoint->path().string(),
-                       job.seconds > 0
-                           ? fmt::format(" with --accuracy {} in place of --time",
-                                         option_text(job.options.accuracy))
+                       job.seconds() > 0
+                           ? fmt::format(" with `simulation.accuracy={}` in place of `simulation.time`",
+                                         option_text(mc::accuracy_of(job.options.budget)))
                            : ""));
   } else if (note && job.extras.deposit_cells > 0) {
     note("deposited energy is not kept on the way: the same command begins anew");
   }
 }
 
-ImageRows labelled_image(const SimulateJob& job, const mc::Scene& scene,
-                         const SimulateSummary& summary,
-                         const std::map<std::string, std::string>& settings) {
+ImageRows labelled_image(const ResolvedJob& job, const mc::Scene& scene,
+                         const SimulateSummary& summary) {
   ImageRows image = mc::make_image_rows(summary.result, summary.scan);
   add_channels(scene, job, summary.result, image);
-  auto& metadata = image.head.metadata;
-  for (const auto& [key, value] : settings) metadata[key] = value;
-  for (const auto& [key, value] : outcome(summary)) metadata[key] = value;
+  for (const auto& [key, value] : summary.record) image.head.metadata[key] = value;
   return image;
 }
 
-void write_all(const SimulateJob& job, const ImageRows& image, SimulateSummary& summary,
+void write_all(const ResolvedJob& job, const ImageRows& image, SimulateSummary& summary,
                RunRecord record) {
   for (const fs::path& output : job.outputs) {
     io::write_image(output, image, {job.png_channel, job.layout, label_channels()});
@@ -184,12 +180,14 @@ void write_all(const SimulateJob& job, const ImageRows& image, SimulateSummary& 
 
 }  // namespace
 
-SimulateSummary run(SimulateJob asked, const ProgressCallback& progress,
-                    const CancelToken* cancel, const WarningCallback& warn,
-                    const NoteCallback& tell, const LibraryCallback& making, Team* team) {
+SimulateSummary run(SimulateJob asked, const Reporter& reporter, Team* team, const Simulator& given) {
+  const CancelToken* const cancel = reporter.cancel;
+  const NoteCallback& tell = reporter.on_note;
+  const NoteCallback& warn = reporter.on_warning;
+  const Simulator simulator = given ? given : Simulator(mc::simulate);
   RunRecord record;
   record.start = std::chrono::system_clock::now();
-  SimulateJob job;
+  ResolvedJob job;
   SimulateSummary summary;
   SpecimenFacts facts;
   std::optional<mc::Scene> ready;
@@ -200,12 +198,11 @@ SimulateSummary run(SimulateJob asked, const ProgressCallback& progress,
     }
   };
   together(team, [&] {
-    check_options(asked.options);
     check_extras(asked.extras);
     if (team && asked.extras.deposit_cells > 0)
-      throw UsageError("--deposit", "each of several processes would see a part of it", "Run it in one process");
-    job = complete(std::move(asked));
-    if (leads(team)) {   // who follows writes nothing
+      throw UsageError("output.deposit", "each of several processes would see a part of it", "Run it in one process");
+    job = resolve(std::move(asked));
+    if (leads(team) && !job.outputs.empty()) {   // who follows writes nothing
       check_outputs(job);
       check_checkpoint(job);
     }
@@ -232,37 +229,37 @@ SimulateSummary run(SimulateJob asked, const ProgressCallback& progress,
   });
   const mc::Scene& scene = *ready;
   const io::SceneFile& s = job.scene;
-  JobLibraries kept(job.cache, making, tell);
+  JobLibraries kept(job.cache, reporter.counting("cascades"), tell);
   std::optional<TeamLibraries> of_team;
   if (team) of_team.emplace(*team, kept);
   mc::LibrarySource& libraries = team ? static_cast<mc::LibrarySource&>(*of_team) : kept;
   Simulation simulation;
-  if (job.seconds > 0)
-    simulation = simulate_coarsely(job, scene, libraries, kept, summary.choice, record, progress, cancel, tell, team);
-  if (job.seconds > 0 && !simulation.final) {   // as with --accuracy and that number
+  const ProgressCallback progress = reporter.counting(mc::accuracy_of(job.options.budget) > 0 ? "pixels" : "primaries");
+  mc::SimulationContext context{.progress = progress, .cancel = cancel, .libraries = &libraries, .crew = team};
+  if (job.seconds() > 0)
+    simulation = simulate_coarsely(job, scene, kept, summary.choice, record, context, simulator, tell, team);
+  if (job.seconds() > 0 && !simulation.final) {   // as with an accuracy of that number
     summary.choice = mc::choose_method(scene, job.options, s.method, {job.extras.deposit_cells > 0});
     job.options.method = summary.choice.method;
   }
   const auto settings = leads(team) ? provenance(job, summary.scan, record.inputs) : std::map<std::string, std::string>();
 
   std::optional<Deposits> deposits;
-  mc::ObserverOfThread observers;
   if (job.extras.deposit_cells > 0) {
     deposits.emplace(scene, job.extras.deposit_cells, resolve_threads(job.options.threads));
-    observers = [&](int thread) { return deposits->of_thread(thread); };
+    context.observers = [&](int thread) { return deposits->of_thread(thread); };
   }
   tell_of_scratch(job, summary.scan, tell);
   std::unique_ptr<Checkpoint> checkpoint;
   together(team, [&] {
     if (!simulation.final && leads(team)) checkpoint = make_checkpoint(job, settings, tell, warn);
   });
-  const auto show = [&](double done, double total) {
+  context.progress = [&](double done, double total) {
     if (checkpoint) checkpoint->expect(total);
-    if (progress) progress(done, total);
+    progress(done, total);
   };
-  if (!simulation.final)
-    simulation.result = mc::simulate(scene, job.options, show, cancel, observers, checkpoint.get(),
-                                     &libraries, team);
+  context.journal = checkpoint.get();
+  if (!simulation.final) simulation.result = simulator(scene, job.options, context);
   summary.result = std::move(simulation.result);
   if (!leads(team)) return summary;
   if (team) summary.team = team->members();
@@ -273,8 +270,15 @@ SimulateSummary run(SimulateJob asked, const ProgressCallback& progress,
   if (!summary.result.complete) keep_interrupted(job, checkpoint.get(), tell);
   note(warn_after(summary.result, summary.statistics));
 
+  summary.record = settings;
+  summary.record.merge(outcome(summary));
+  if (job.outputs.empty()) {
+    if (job.extras.trajectories > 0)
+      summary.tracks = record_trajectories(scene, job.options.seed, job.extras.trajectories, job.extras.trajectories_at_nm).tracks;
+    return summary;
+  }
   try {
-    const ImageRows image = labelled_image(job, scene, summary, settings);
+    const ImageRows image = labelled_image(job, scene, summary);
     if (deposits) {
       Volume volume = deposits->density(summary.result.balance.incident);
       volume.metadata = image.head.metadata;

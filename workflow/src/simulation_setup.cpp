@@ -20,16 +20,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::int64_t max_electrons = std::int64_t{1} << 31;
-
-std::vector<io::FileUse> inputs_of(const SimulateJob& job) {
+std::vector<io::FileUse> inputs_of(const ResolvedJob& job) {
   std::vector<io::FileUse> inputs;
   for (const fs::path& input : job.scene.inputs) inputs.push_back({"INPUT", input, {}});
   return inputs;
 }
 
 /// The images, and what is written beside them.
-std::vector<io::FileUse> outputs_of(const SimulateJob& job) {
+std::vector<io::FileUse> outputs_of(const ResolvedJob& job) {
   std::vector<io::FileUse> outputs;
   std::set<fs::path> records;   // images of one name share theirs
   for (const fs::path& output : job.outputs) {
@@ -41,7 +39,7 @@ std::vector<io::FileUse> outputs_of(const SimulateJob& job) {
   return outputs;
 }
 
-void refuse_strangers_of(const SimulateJob& job) {
+void refuse_strangers_of(const ResolvedJob& job) {
   const std::vector<fs::path> extras = extra_files(job);
   for (const fs::path& output : job.outputs) io::refuse_strangers(output, {sidecar_path(output)});
   io::refuse_strangers(sidecar_path(job.outputs.front()), extras);
@@ -49,56 +47,27 @@ void refuse_strangers_of(const SimulateJob& job) {
 
 }  // namespace
 
-void check_options(const mc::SimulationOptions& options) {
-  if (options.electrons < 1 || options.electrons > max_electrons)
-    throw UsageError("--electrons", fmt::format("{} is out of range", options.electrons),
-                     "Give 1 to 2147483648 electrons per pixel");
-  if (options.threads < 0)
-    throw UsageError("--threads", fmt::format("{} is out of range", options.threads),
-                     "Give 1 or more, or 0 for one per hardware thread");
-  if (options.tile_pixels < 1)
-    throw UsageError("tile_pixels", fmt::format("{} is out of range", options.tile_pixels),
-                     "Give 1 or more");
-}
-
-SimulateJob complete(SimulateJob out) {
-  const io::SceneFile& s = out.scene;
-  for (const mc::Detector& d : s.detectors) out.options.detectors.push_back(d);
-  mc::validate(out.options.detectors);
-  mc::validate(s.beam);
-  mc::validate(s.physics, s.beam.energy_ev);
-  if (s.current_pa.has_value() != s.dwell_us.has_value())
-    throw UsageError(s.current_pa ? "--current" : "--dwell", "the other of the two is missing",
-                     "Current and dwell time together make the dose of a pixel: give both");
-  if (s.current_pa) {
-    if (!(*s.current_pa > 0 && *s.dwell_us > 0))
-      throw UsageError("--current, --dwell", "they must be above zero",
-                       "Write for example --current 100pA --dwell 1us");
-    if (s.electrons)
-      throw UsageError("--electrons", "current and dwell time give the number of primaries",
-                       "Leave out --electrons, or --current and --dwell");
-    out.options.dose = *s.current_pa * *s.dwell_us * electrons_per_pa_us;
-  }
-  if (s.accuracy) out.options.accuracy = *s.accuracy;
-  if (s.accuracy_floor) out.options.accuracy_floor = *s.accuracy_floor;
-  if (out.seconds < 0 || !std::isfinite(out.seconds))
-    throw UsageError("--time", "it must be above zero", "Write for example 30s");
-  if (out.seconds > 0) out.options.accuracy = coarse_accuracy;
-  if (out.options.accuracy > 0 && s.electrons)
-    throw UsageError("--electrons", "a wanted accuracy gives the number of primaries",
-                     "Leave out one of the two");
-  if (out.options.scratch_folder.empty() && !out.outputs.empty()) {
+ResolvedJob resolve(SimulateJob asked) {
+  ResolvedJob out{std::move(asked), {}};
+  mc::validate(out.scene);
+  if (out.execution.tile_pixels < 1)
+    throw UsageError("execution.tile_pixels", fmt::format("{} is out of range", out.execution.tile_pixels), "Give 1 or more");
+  if (out.execution.scratch_folder.empty() && !out.outputs.empty()) {
     const fs::path folder = out.outputs.front().parent_path();
-    out.options.scratch_folder = folder.empty() ? "." : folder.string();
+    out.execution.scratch_folder = folder.empty() ? "." : folder.string();
   }
-  if (out.png_channel.empty()) out.png_channel = out.options.dose > 0 ? "SE.shot" : "SE";
+  out.options = mc::options_of(out.scene, out.execution);
+  out.options.spectra = out.spectra;
+  if (const auto* const limit = std::get_if<mc::TimeLimit>(&out.scene.budget))
+    out.options.budget = mc::Accuracy{coarse_accuracy, limit->floor};
+  if (out.png_channel.empty()) out.png_channel = mc::dose_of(out.options.budget) > 0 ? "SE.shot" : "SE";
   return out;
 }
 
-Image image_like_the_result(const SimulateJob& job) {
+Image image_like_the_result(const ResolvedJob& job) {
   mc::SimulationResult result;
   result.detectors = job.options.detectors;
-  result.dose = job.options.dose;
+  result.budget = job.options.budget;
   result.pixels = LargeGrid<mc::PixelTally>(1, 1);
   for (std::size_t d = 0; d < result.detectors.size(); ++d) result.counts.emplace_back(1, 1);
   mc::Scan scan;
@@ -109,7 +78,7 @@ Image image_like_the_result(const SimulateJob& job) {
   return image;
 }
 
-void check_outputs(const SimulateJob& job) {
+void check_outputs(const ResolvedJob& job) {
   if (job.outputs.empty())
     throw UsageError("--output", "no output file is given", "Add -o image.exr");
   const Image image = image_like_the_result(job);
@@ -123,7 +92,7 @@ void check_outputs(const SimulateJob& job) {
   }
 }
 
-void check_checkpoint(const SimulateJob& job) {
+void check_checkpoint(const ResolvedJob& job) {
   const CheckpointOptions& o = job.checkpoint;
   if (!(o.seconds > 0))
     throw UsageError("--checkpoint-every", "it must be above zero", "Write for example 30s");
@@ -137,10 +106,10 @@ void check_checkpoint(const SimulateJob& job) {
   io::check_writable(o.file);
 }
 
-mc::Scene make_scene(const SimulateJob& job, const SpecimenFacts& facts, mc::NodeMemory* node,
+mc::Scene make_scene(const ResolvedJob& job, const SpecimenFacts& facts, mc::NodeMemory* node,
                      const NoteCallback& tell, const CancelToken* cancel, SimulateSummary& summary) {
   const io::SceneFile& s = job.scene;
-  const double tolerance_nm = s.mesh_tolerance_nm.value_or(0);
+  const double tolerance_nm = s.mesh_tolerance_nm;
   const Watch watch{{}, cancel};
   if (tolerance_nm == 0)
     return mc::Scene(s.specimen, s.beam, summary.scan, s.physics,

@@ -4,26 +4,23 @@
 
 #include "specimen_facts.h"
 #include "surf/mc/scene.h"
-#include "surf/workflow/simulate_job.h"
+#include "resolved_job.h"
 
 namespace surf::workflow {
 
-/// Throws UsageError for numbers out of range.
-void check_options(const mc::SimulationOptions& options);
-
-/// The job with everything in its options that the simulator has to know. Throws UsageError.
-SimulateJob complete(SimulateJob job);
+/// The job with everything that the simulator has to know. Throws UsageError for numbers out of range.
+ResolvedJob resolve(SimulateJob job);
 
 /// An image of one pixel with the channels of the result.
-Image image_like_the_result(const SimulateJob& job);
+Image image_like_the_result(const ResolvedJob& job);
 
 /// Whether everything can be written, of a complete job. Throws UsageError, FileError.
-void check_outputs(const SimulateJob& job);
-void check_checkpoint(const SimulateJob& job);
+void check_outputs(const ResolvedJob& job);
+void check_checkpoint(const ResolvedJob& job);
 
 /// What is traced: the specimen, or one of fewer triangles within the tolerance asked for. `summary` has the scan, and
 /// gets what was left out. With a `node` its processes share the triangles of the first one's specimen.
-mc::Scene make_scene(const SimulateJob& job, const SpecimenFacts& facts, mc::NodeMemory* node,
+mc::Scene make_scene(const ResolvedJob& job, const SpecimenFacts& facts, mc::NodeMemory* node,
                      const NoteCallback& tell, const CancelToken* cancel, SimulateSummary& summary);
 
 }  // namespace surf::workflow

@@ -71,7 +71,7 @@ SlopeTable make_slope_table(const mc::Material& material, double energy_ev, cons
   check(o);
   mc::FreshLibraries fresh;
   mc::SimulationOptions options;
-  options.electrons = o.electrons;
+  options.budget = mc::ElectronsPerPixel{o.electrons};
   options.seed = o.seed;
   options.threads = o.threads;
   options.method = mc::can_replay(o.physics) ? mc::Method::replay : mc::Method::direct;
@@ -84,7 +84,7 @@ SlopeTable make_slope_table(const mc::Material& material, double energy_ev, cons
     const Watch part = o.watch.part(double(i) / angles, double(i + 1) / angles);
     const mc::Scene scene = make_scene(material, energy_ev, i * o.step_deg, o);
     const mc::SimulationResult result =
-        mc::simulate(scene, options, part.progress, o.watch.cancel, {}, nullptr, libraries ? libraries : &fresh);
+        mc::simulate(scene, options, {.progress = part.progress, .cancel = o.watch.cancel, .libraries = libraries ? libraries : &fresh});
     if (!result.complete) throw Interrupted();
     table.se.push_back(result.yield(se, 0, 0));
     table.bse.push_back(result.yield(bse, 0, 0));

@@ -81,7 +81,7 @@ TrainJob training(const ModelRequest& r, const fs::path& file) {
   job.energy_ev = energy_of(r);
   job.spot_nm = r.spot_nm;
   job.physics = r.physics;
-  job.simulation.electrons = r.electrons;
+  job.simulation.budget = mc::ElectronsPerPixel{r.electrons};
   job.simulation.threads = r.threads;
   job.learn = r.learn;
   job.output = file;
@@ -99,7 +99,7 @@ std::string kept_name(const ModelRequest& r) {
   return fmt::format("{}-{:.4g}ev-{:.4g}nm-{}.json", plain(r.material.name), energy_of(r), r.pixel_nm, hash.substr(0, 16));
 }
 
-StoredModel find_model(const ModelRequest& r, const TrainListener& listener) {
+StoredModel find_model(const ModelRequest& r, const Reporter& reporter) {
   if (!r.file.empty()) return load(r.file, r);
   if (r.material.name.empty())
     throw UsageError("--material", "it is missing, and so is --model", "Say what the specimen is made of, as --material Si");
@@ -107,7 +107,7 @@ StoredModel find_model(const ModelRequest& r, const TrainListener& listener) {
     throw UsageError("--model", "it is missing, and there is no cache to keep a trained one in",
                      "Train one with 'semsurf train', or name a folder with --cache");
   const auto note = [&](const std::string& text) {
-    if (listener.note) listener.note(text);
+    reporter.note(text);
   };
   const fs::path file = r.folder / kept_name(r);
   std::error_code ignored;
@@ -120,7 +120,7 @@ StoredModel find_model(const ModelRequest& r, const TrainListener& listener) {
   }
   note(fmt::format("no model of {} at {} with pixels of {} is kept: one is trained, which takes minutes. It stays in {}",
                    r.material.name, fmt::format("{:g} eV", energy_of(r)), format_length(r.pixel_nm), file.string()));
-  if (!run(training(r, file), listener).complete) throw Interrupted();
+  if (!run(training(r, file), reporter).complete) throw Interrupted();
   fs::path images = file;
   fs::remove_all(images.replace_extension(".training"), ignored);   // they have served
   StoredModel stored = load(file, r);

@@ -15,6 +15,7 @@
 #include "provenance.h"
 #include "run_many.h"
 #include "sidecar.h"
+#include "simulation_setup.h"
 #include "surf/core/error.h"
 #include "surf/core/units.h"
 #include "surf/io/files.h"
@@ -36,10 +37,10 @@ std::string sweep_identity(const SweepJob& job) {
 
 std::string run_identity(const SimulateJob& job) {
   const mc::Scan scan = resolve_scan(job.scene.scan, mc::extent(job.scene.specimen), job.scene.beam);
-  Identity identity = identity_of(job, provenance(job, scan, {}));
-  if (job.scene.accuracy) identity["accuracy"] = format_exact(*job.scene.accuracy);
-  if (job.scene.method) identity["method"] = mc::name(*job.scene.method);
-  for (const mc::Detector& d : job.scene.detectors) identity["detectors"] += mc::format_detector(d) + " ";
+  const ResolvedJob resolved = resolve(job);
+  Identity identity = identity_of(resolved, provenance(resolved, scan, {}));
+  identity.merge(surf::record_of(static_cast<const mc::SimulationRequest&>(job.scene)));
+  identity["simulation.method"] = job.scene.method ? mc::name(*job.scene.method) : "auto";
   for (const auto& output : job.outputs) identity["outputs"] += output.filename().string() + " ";
   for (const std::string& channel : job.extras.channels) identity["channels"] += channel + " ";
   return fingerprint(identity);
@@ -143,12 +144,12 @@ void describe(const SimulateJob& first, ManyRuns& runs) {
   const mc::Scan scan = resolve_scan(first.scene.scan, mc::extent(first.scene.specimen), first.scene.beam);
   runs.tiles = tiles_of(scan);
   runs.pixels = static_cast<double>(scan.width) * scan.height;
-  runs.threads = first.options.threads;
+  runs.threads = first.execution.threads;
 }
 
 }  // namespace
 
-SweepSummary run(const SweepJob& job, const SweepListener& listener, Team* team) {
+SweepSummary run(const SweepJob& job, const Reporter& reporter, const RunCallback& on_run, Team* team) {
   const auto start = std::chrono::steady_clock::now();
   if (job.runs.empty()) throw UsageError("--vary", "there is nothing to run", "Give --vary energy=500eV,1keV, say");
   if (job.parts < 1 || job.part < 1 || job.part > job.parts)
@@ -180,19 +181,17 @@ SweepSummary run(const SweepJob& job, const SweepListener& listener, Team* team)
     ++summary.done;
     std::vector<SweepYield> yields;
     for (const Json& y : record["yields"]) yields.push_back({y["detector"], y["mean"], y["standard_error"]});
-    if (listener.done) listener.done(missing[i], yields);
+    if (on_run) on_run(missing[i], yields);
   };
   runs.folder = job.folder;
   together(team, [&] {
     if (!missing.empty()) describe(job.runs[missing.front()].make(), runs);
   });
-  runs.progress = [&](double done, double) {
-    if (listener.progress)
-      listener.progress(static_cast<double>(summary.found) + done, static_cast<double>(mine.size()));
+  runs.reporter = reporter;
+  runs.reporter.on_progress = [&](double done, double total, std::string_view things) {
+    if (things == "cascades") return;   // the bar counts runs
+    reporter.progress(static_cast<double>(summary.found) + done, static_cast<double>(mine.size()));
   };
-  runs.warn = listener.warn;
-  runs.note = listener.note;
-  runs.cancel = listener.cancel;
   const ManyDone done = run_many(runs, team);
   summary.complete = done.complete;
   if (!summary.complete) return summary;

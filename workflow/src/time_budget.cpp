@@ -18,8 +18,7 @@ constexpr double reserve = 0.9;
 std::size_t cascades_for(const mc::SimulationResult& result, double accuracy) {
   mc::SimulationOptions options;
   options.detectors = result.detectors;
-  options.accuracy = accuracy;
-  options.accuracy_floor = result.accuracy_floor;
+  options.budget = mc::Accuracy{accuracy, mc::floor_of(result.budget)};
   return mc::library_size(options, 1, result.cascade_yields);
 }
 
@@ -28,7 +27,7 @@ double rounded_up(double accuracy) {
   const double percent = 100 * accuracy;
   const double step = std::pow(10.0, std::floor(std::log10(percent)) - 1);
   const double up = std::ceil(percent / step * (1 - 1e-9)) * step;
-  return std::clamp(parse_share(fmt::format("{:.6g}%", up), "--time"), finest, coarse_accuracy);
+  return std::clamp(parse_share(fmt::format("{:.6g}%", up), "simulation.time"), finest, coarse_accuracy);
 }
 
 }  // namespace

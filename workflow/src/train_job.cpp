@@ -84,8 +84,8 @@ std::map<std::string, std::string> notes_of(const TrainJob& job, const std::vect
   if (std::ranges::all_of(surfaces, &TrainingSurface::has_image)) return notes;
   notes["physics"] = mc::format_physics(job.physics);
   notes["seed"] = std::to_string(job.simulation.seed);
-  if (job.simulation.accuracy > 0) notes["accuracy"] = format_exact(job.simulation.accuracy);
-  else notes["electrons"] = std::to_string(job.simulation.electrons);
+  if (const double accuracy = mc::accuracy_of(job.simulation.budget); accuracy > 0) notes["accuracy"] = format_exact(accuracy);
+  else notes["electrons"] = std::to_string(mc::electrons_of(job.simulation.budget));
   return notes;
 }
 
@@ -101,8 +101,8 @@ std::vector<TrainingScene> judge(const TrainJob& job, const ImageModel& model,
     scene.sha256 = surfaces[i].sha256;
     scene.width = images[k].field.z_nm.width();
     scene.height = images[k].field.z_nm.height();
-    const bool counted = !surfaces[i].has_image() && !(job.simulation.accuracy > 0);
-    scene.electrons = counted ? job.simulation.electrons : 0;
+    const bool counted = !surfaces[i].has_image() && mc::electrons_of(job.simulation.budget) > 0;
+    scene.electrons = counted ? mc::electrons_of(job.simulation.budget) : 0;
     scene.held_out = held_out;
     scene.residuals = residuals_of(model, {images[k]}, job.simulation.threads);
     scenes.push_back(std::move(scene));
@@ -124,11 +124,9 @@ void complete_record(const TrainJob& job, const std::vector<TrainingSurface>& su
     record.scenes.push_back(std::move(scene));
 }
 
-bool is_cancelled(const TrainListener& listener) { return listener.cancel && listener.cancel->cancelled(); }
-
 /// From images to the model's file. `complete` is false when cancelled.
 void learn(const TrainJob& job, const Learner& learner, const std::vector<TrainingSurface>& surfaces,
-           const SimulatedImages& simulated, const TrainListener& listener, TrainSummary& summary) {
+           const SimulatedImages& simulated, const Reporter& reporter, TrainSummary& summary) {
   std::vector<TrainingImage> images = read_images(job, surfaces, simulated);
   if (!images.empty()) validate(images);
   const std::size_t learnt = learner.needs_images ? images.size() - static_cast<std::size_t>(job.held_out) : 0;
@@ -138,7 +136,7 @@ void learn(const TrainJob& job, const Learner& learner, const std::vector<Traini
   TrainedModel& model = summary.model;
   model.scope = {job.pixel_nm, job.material.name, job.energy_ev, job.spot_nm};
   try {
-    Learnt result = learner.learn({job, model.scope, channels_of(job), images, listener});
+    Learnt result = learner.learn({job, model.scope, channels_of(job), images, reporter});
     model.parameters = std::move(result.parameters);
     model.record.condition_number = result.condition_number;
     model.record.warnings = std::move(result.warnings);
@@ -151,14 +149,14 @@ void learn(const TrainJob& job, const Learner& learner, const std::vector<Traini
   }
   complete_record(job, surfaces, images, held_out, model);
   for (const std::string& warning : model.record.warnings)
-    if (listener.warn) listener.warn(warning);
-  summary.complete = !is_cancelled(listener);
+    reporter.warn(warning);
+  summary.complete = !reporter.cancelled();
   if (summary.complete) io::write_model(job.output, model);
 }
 
 }  // namespace
 
-TrainSummary run(const TrainJob& job, const TrainListener& listener, Team* team) {
+TrainSummary run(const TrainJob& job, const Reporter& reporter, Team* team) {
   const auto start = std::chrono::steady_clock::now();
   const Learner* learner = nullptr;
   std::vector<TrainingSurface> surfaces;
@@ -166,13 +164,13 @@ TrainSummary run(const TrainJob& job, const TrainListener& listener, Team* team)
     learner = &learner_of(job);
     const int own = own_surfaces(job, *learner);
     check_numbers(job, own);
-    surfaces = gather_surfaces(job, own, listener.note);
+    surfaces = gather_surfaces(job, own, reporter.on_note);
     if (leads(team)) check_target(job, surfaces, team != nullptr);
   });
-  if (listener.warn && leads(team))
-    for (const std::string& doubt : mc::doubts(job.material)) listener.warn(doubt);
+  if (leads(team))
+    for (const std::string& doubt : mc::doubts(job.material)) reporter.warn(doubt);
   TrainSummary summary;
-  const SimulatedImages simulated = simulate_images(job, surfaces, listener, team);
+  const SimulatedImages simulated = simulate_images(job, surfaces, reporter, team);
   summary.images_found = simulated.found;
   summary.images_made = simulated.made;
   summary.complete = simulated.runs.complete;
@@ -180,7 +178,7 @@ TrainSummary run(const TrainJob& job, const TrainListener& listener, Team* team)
   if (!summary.complete) return summary;
   together(team, [&] {
     if (!leads(team)) return;
-    learn(job, *learner, surfaces, simulated, listener, summary);
+    learn(job, *learner, surfaces, simulated, reporter, summary);
     if (summary.complete) summary.written.push_back(job.output);
     const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
     if (!team || !summary.complete) return;

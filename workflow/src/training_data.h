@@ -48,6 +48,6 @@ struct SimulatedImages {
 /// Simulates what is not there yet. Of a team each process simulates whole images, into a folder that all see; few that are
 /// left over they share, unless each is to be `whole`. The leader's counts are the true ones.
 SimulatedImages simulate_images(const TrainJob& job, const std::vector<TrainingSurface>& surfaces,
-                                const TrainListener& listener, Team* team = nullptr, bool whole = false);
+                                const Reporter& reporter, Team* team = nullptr, bool whole = false);
 
 }  // namespace surf::workflow

@@ -32,8 +32,9 @@ SimulateJob simulation_of(const TrainJob& job, const TrainingSurface& surface, s
   scene.scan.pixel_x_nm = surface.field.pitch_x_nm;
   scene.scan.pixel_y_nm = surface.field.pitch_y_nm;
   scene.physics = job.physics;
-  out.options = job.simulation;
-  out.options.seed += number;   // the libraries' own chance errors then differ from image to image
+  out.execution = job.simulation;
+  scene.budget = job.simulation.budget;
+  scene.seed = job.simulation.seed + number;   // the libraries' own chance errors then differ from image to image
   out.cache = job.cache;
   out.extras.channels = {"z_nm"};
   out.outputs = {output};
@@ -101,7 +102,7 @@ fs::path image_folder(const TrainJob& job) {
 }
 
 SimulatedImages simulate_images(const TrainJob& job, const std::vector<TrainingSurface>& surfaces,
-                                const TrainListener& listener, Team* team, bool whole) {
+                                const Reporter& reporter, Team* team, bool whole) {
   SimulatedImages out;
   out.files.resize(surfaces.size());
   const fs::path folder = image_folder(job);
@@ -113,7 +114,7 @@ SimulatedImages simulate_images(const TrainJob& job, const std::vector<TrainingS
     all.push_back(simulation_of(job, surfaces[i], i, out.files[i]));
     shown.push_back(&surfaces[i]);
   }
-  const std::string wanted = what_is_missing(all, folder, listener.note, team);
+  const std::string wanted = what_is_missing(all, folder, reporter.on_note, team);
   std::vector<SimulateJob> missing;
   ManyRuns runs;
   runs.tiles = std::numeric_limits<std::size_t>::max();
@@ -133,12 +134,12 @@ SimulatedImages simulate_images(const TrainJob& job, const std::vector<TrainingS
   runs.folder = folder;
   runs.whole = whole;
   runs.threads = job.simulation.threads;
-  runs.progress = listener.pixels;
-  runs.cascades = listener.cascades;
-  runs.warn = [&](const std::string& warning) {
-    if (warned.insert(warning).second && listener.warn) listener.warn(warning);
+  runs.things = "pixels";
+  runs.reporter = reporter;
+  runs.reporter.on_note = {};
+  runs.reporter.on_warning = [&](const std::string& warning) {
+    if (warned.insert(warning).second) reporter.warn(warning);
   };
-  runs.cancel = listener.cancel;
   out.runs = run_many(runs, team);
   if (!team || !out.runs.complete) return out;
   together(team, [&] {

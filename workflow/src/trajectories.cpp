@@ -88,7 +88,7 @@ std::string materials_of(const mc::Specimen& specimen) {
 
 }  // namespace
 
-void check_trajectories(const SimulateJob& job, const mc::Scan& scan) {
+void check_trajectories(const ResolvedJob& job, const mc::Scan& scan) {
   if (job.extras.trajectories > 0) pixel_at(scan, job.extras.trajectories_at_nm);
 }
 
@@ -103,7 +103,7 @@ Trajectories record_trajectories(const mc::Scene& scene, std::uint64_t seed, int
   return t;
 }
 
-void write_trajectories(const mc::Scene& scene, const SimulateJob& job,
+void write_trajectories(const mc::Scene& scene, const ResolvedJob& job,
                         const std::map<std::string, std::string>& settings) {
   const int primaries = job.extras.trajectories;
   const auto [tracks, inside, exit_nm] =

@@ -107,7 +107,7 @@ void warn_about_scan(const mc::Specimen& specimen, const Box& extent, const mc::
 
 }  // namespace
 
-std::vector<std::string> warn_before(const SimulateJob& job, const SpecimenFacts& facts,
+std::vector<std::string> warn_before(const ResolvedJob& job, const SpecimenFacts& facts,
                                      const mc::Scan& scan) {
   std::vector<std::string> out;
   const mc::Specimen& specimen = job.scene.specimen;
@@ -115,7 +115,7 @@ std::vector<std::string> warn_before(const SimulateJob& job, const SpecimenFacts
   warn_about_transparency(job.scene, facts, out);
   warn_about_bodies(specimen, facts, out);
   warn_about_scan(specimen, facts.extent, job.scene.beam, scan, out);
-  if (job.options.electrons == 1 && job.options.dose == 0)
+  if (mc::electrons_of(job.options.budget) == 1)
     out.push_back("one electron per pixel has no scatter: the standard errors are 0 and mean "
                   "nothing");
   for (const mc::Material& material : specimen.materials)
@@ -149,7 +149,7 @@ std::vector<std::string> warn_after(const mc::SimulationResult& result,
         "{} of {} pixels ({:.2g} %) did not reach the accuracy of {}; the worst standard error is {:.2g} "
         "times what was asked for",
         summary.missed, summary.seen, 100.0 * double(summary.missed) / double(summary.seen),
-        format_share(result.accuracy), summary.worst));
+        format_share(mc::accuracy_of(result.budget)), summary.worst));
   return out;
 }
 

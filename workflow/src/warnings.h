@@ -5,13 +5,13 @@
 #include <vector>
 
 #include "specimen_facts.h"
-#include "surf/workflow/simulate_job.h"
+#include "resolved_job.h"
 
 namespace surf::workflow {
 
 /// What looks like a mistake before anything is simulated: sizes off by a unit, a scan beside the
 /// specimen, numbers that cannot give what was asked.
-std::vector<std::string> warn_before(const SimulateJob& job, const SpecimenFacts& facts,
+std::vector<std::string> warn_before(const ResolvedJob& job, const SpecimenFacts& facts,
                                      const mc::Scan& scan);
 
 /// What a result shows: nothing hit, lost electrons, an accuracy that was not reached.

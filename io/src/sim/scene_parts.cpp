@@ -6,12 +6,11 @@
 #include <cmath>
 #include <limits>
 
+#include "sim/add_material.h"
+#include "sim/field_source.h"
 #include "sim/suggest.h"
 #include "surf/core/units.h"
-#include "surf/io/height_field_file.h"
-#include "surf/io/image_file.h"
 #include "surf/io/mesh_file.h"
-#include "surf/io/sem_file.h"
 #include "surf/io/mesh_unit.h"
 #include "surf/io/sim/materials.h"
 #include "surf/io/sim/mesh_bodies.h"
@@ -141,12 +140,6 @@ double read_z_unit(const TomlTable& table) {
   return unit_nm;
 }
 
-/// Puts the field's middle at (0, 0), as for shapes.
-void center(HeightField& field) {
-  field.origin_x_nm = -0.5 * field.pitch_x_nm * (field.z_nm.width() - 1);
-  field.origin_y_nm = -0.5 * field.pitch_y_nm * (field.z_nm.height() - 1);
-}
-
 MeshUnit read_unit(const TomlTable& table) {
   const auto text = table.text("unit");
   const bool overrides = table.flag("override_unit").value_or(false);
@@ -222,17 +215,7 @@ void require_one_source(const TomlTable& table, std::string_view file) {
 
 int SceneParts::material(const TomlTable& table) {
   table.require("material", "every solid has one");
-  return material(*table.text("material"), table.place("material"));
-}
-
-int SceneParts::material(const std::string& name, const std::string& place) {
-  const mc::Material& material = scene_.materials.find(name, place);
-  auto& materials = scene_.specimen.materials;
-  for (std::size_t i = 0; i < materials.size(); ++i) {
-    if (materials[i].name == material.name) return static_cast<int>(i);
-  }
-  materials.push_back(material);
-  return static_cast<int>(materials.size()) - 1;
+  return add_material(scene_, *table.text("material"), table.place("material"));
 }
 
 std::filesystem::path SceneParts::input(const TomlTable& table, std::string_view key) {
@@ -256,28 +239,9 @@ HeightField SceneParts::read_field_file(const TomlTable& table) {
   if (pixel && !(*pixel > 0)) {
     throw UsageError(table.place("pixel_size"), "it is not above 0", "Give a positive length");
   }
-  const std::string channel = table.text("channel").value_or("");
-  HeightField field;
-  if (is_height_field_file(path)) {
-    HeightReadOptions options{channel, std::nullopt, pixel, pixel};
-    if (table.has("z_unit")) options.z_unit_nm = z_unit_nm;
-    field = at_place(table, "channel", [&] {
-      HeightFieldFile read = surf::io::read_height_field(path, options);
-      for (const std::string& note : read.notes) {
-        scene_.notes.push_back(path.filename().string() + ": " + note);
-      }
-      return std::move(read.field);
-    });
-  } else {
-    if (!table.has("z_unit")) refuse_as_heights(path);
-    const Image image = read_image(path);
-    field = at_place(table, "channel", [&] { return to_height_field(image, channel, z_unit_nm); });
-  }
-  if (pixel) {
-    field.pitch_x_nm = field.pitch_y_nm = *pixel;
-    center(field);
-  }
-  return field;
+  FieldSource source{path, table.text("channel").value_or(""), pixel, pixel, {}};
+  if (table.has("z_unit")) source.unit_nm = z_unit_nm;
+  return at_place(table, "channel", [&] { return read_field(source, path.filename().string(), scene_.notes); });
 }
 
 mc::HeightFieldBody SceneParts::read_height_field(const TomlTable& table) {
@@ -315,7 +279,7 @@ std::vector<mc::Body> SceneParts::read_mesh_file(const TomlTable& table) {
     bodies.push_back({!given              ? name
                       : read.size() == 1 ? *given
                                          : fmt::format("{}, {}", *given, name),
-                      std::move(part.mesh), material(part.material, table.place("material"))});
+                      std::move(part.mesh), add_material(scene_, part.material, table.place("material"))});
     scene_.unit_assumed = scene_.unit_assumed || part.unit_assumed;
   }
   return bodies;

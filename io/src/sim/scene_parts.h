@@ -24,7 +24,6 @@ class SceneParts {
 
  private:
   int material(const TomlTable& table);
-  int material(const std::string& name, const std::string& place);
   /// A path in the scene, relative to its folder; noted as an input.
   std::filesystem::path input(const TomlTable& table, std::string_view key);
   HeightField read_field_file(const TomlTable& table);

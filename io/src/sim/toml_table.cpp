@@ -87,10 +87,9 @@ std::string TomlTable::place(std::string_view key) const {
                   node ? node : impl_->table);
 }
 
-void TomlTable::allow(std::initializer_list<std::string_view> known) const {
+void TomlTable::allow(const std::vector<std::string>& words) const {
   for (const auto& [key, node] : *impl_->table) {
-    if (std::find(known.begin(), known.end(), key.str()) != known.end()) continue;
-    const std::vector<std::string> words(known.begin(), known.end());
+    if (std::find(words.begin(), words.end(), key.str()) != words.end()) continue;
     const auto nearest = nearest_first(key.str(), words);
     const toml::source_position at = key.source().begin;
     throw FileError(fmt::format("{}, line {}, column {}", impl_->file, at.line, at.column),
@@ -186,6 +185,25 @@ std::optional<double> TomlTable::time_us(std::string_view key) const {
   const toml::node* const node = impl_->table->get(key);
   if (!node) return {};
   return quantity(*node, place(key), parse_time_us);
+}
+
+std::vector<std::string> TomlTable::words(std::string_view key) const {
+  const toml::node* const node = impl_->table->get(key);
+  if (!node) return {};
+  const auto word = [&](const toml::node& one) -> std::string {
+    if (const auto text = one.value_exact<std::string>()) return *text;
+    if (const auto whole = one.value_exact<std::int64_t>()) return std::to_string(*whole);
+    if (const auto flag = one.value_exact<bool>()) return *flag ? "true" : "false";
+    const auto number = one.value_exact<double>();
+    if (!number || !std::isfinite(*number))
+      refuse(place(key), "the value is neither a finite number nor a text with a unit", "Write for example 2 or \"2nm\"");
+    return format_exact(*number);
+  };
+  const toml::array* const array = node->as_array();
+  if (!array) return {word(*node)};
+  std::vector<std::string> all;
+  for (const toml::node& item : *array) all.push_back(word(item));
+  return all;
 }
 
 std::vector<std::string> TomlTable::texts(std::string_view key) const {

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <initializer_list>
 #include <memory>
 #include <optional>
 #include <string>
@@ -21,7 +20,7 @@ class TomlTable {
   static TomlTable parse(std::string_view text, const std::string& file);
 
   /// Throws at the first key that is not in `known`, with the nearest known one suggested.
-  void allow(std::initializer_list<std::string_view> known) const;
+  void allow(const std::vector<std::string>& known) const;
 
   bool has(std::string_view key) const;
   /// In alphabetical order.
@@ -41,6 +40,9 @@ class TomlTable {
   std::optional<double> current_pa(std::string_view key) const;
   std::optional<double> time_us(std::string_view key) const;
   std::optional<double> share(std::string_view key) const;
+  /// The value as texts, one for each element of an array: numbers as they are read back, true and false as such. Throws for
+  /// tables and what is not finite.
+  std::vector<std::string> words(std::string_view key) const;
   /// An array of texts, or one text; none where the key is missing.
   std::vector<std::string> texts(std::string_view key) const;
   /// An array of lengths, or a text of lengths separated by `separators`.

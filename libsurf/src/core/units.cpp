@@ -140,6 +140,18 @@ double parse_length_nm(std::string_view text, std::string_view subject) {
                 length_kind);
 }
 
+std::pair<double, double> parse_two_lengths_nm(std::string_view text, std::string_view subject) {
+  const std::size_t at = text.find_first_of(",x");
+  const std::string_view rest = at == std::string_view::npos ? text : text.substr(at + 1);
+  if (rest.find_first_of(",x") != std::string_view::npos && rest.size() < text.size())
+    throw UsageError(std::string(subject), fmt::format("'{}' is not a pixel size", text),
+                     "Write one length, or two for x and y: 2nm or 2nmx3nm");
+  const double x = parse_length_nm(text.substr(0, at), subject), y = parse_length_nm(rest, subject);
+  if (!(x > 0 && y > 0))
+    throw UsageError(std::string(subject), fmt::format("'{}' is not above zero", text), "Write a length, such as 2nm");
+  return {x, y};
+}
+
 double parse_energy_ev(std::string_view text, std::string_view subject) {
   const Quantity q = split(text, subject, energy_kind);
   const std::string unit = lower_case(q.unit);

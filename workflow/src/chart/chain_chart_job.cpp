@@ -67,7 +67,7 @@ std::string identity_of(const ChainSetting& setting) {
   return fingerprint(id).substr(0, 32);
 }
 
-StoredModel find_model(const ChainChartJob& job, const SampleTruth& sample, const ChainListener& listener) {
+StoredModel find_model(const ChainChartJob& job, const SampleTruth& sample, const Reporter& reporter) {
   ModelRequest request;
   request.file = job.model;
   request.folder = job.models;
@@ -76,24 +76,24 @@ StoredModel find_model(const ChainChartJob& job, const SampleTruth& sample, cons
   request.spot_nm = sample.spot_nm;
   request.spot_given = true;
   request.threads = job.threads;
-  return model_of(std::move(request), sample.sem.image, listener);
+  return model_of(std::move(request), sample.sem.image, reporter);
 }
 
 class Runner {
  public:
-  Runner(const ChainSetting& setting, const ChainChartListener& listener, double total,
+  Runner(const ChainSetting& setting, const Reporter& reporter, double total,
          ChainChartSummary& summary)
       : setting_(setting),
-        listener_(listener),
+        reporter_(reporter),
         identity_(identity_of(setting)),
         total_(total),
         summary_(summary) {}
 
   Watch watch() const {
     Watch watch;
-    watch.cancel = listener_.cancel;
+    watch.cancel = reporter_.cancel;
     watch.progress = [this](double done, double total) {
-      if (listener_.progress && total > 0) listener_.progress(done_ + std::min(1.0, done / total), total_);
+      if (total > 0) reporter_.progress(done_ + std::min(1.0, done / total), total_);
     };
     return watch;
   }
@@ -158,15 +158,15 @@ class Runner {
 
   void advance() {
     done_ += 1;
-    if (listener_.progress) listener_.progress(done_, total_);
+    reporter_.progress(done_, total_);
   }
 
  private:
-  bool cancelled() const { return listener_.cancel && listener_.cancel->cancelled(); }
+  bool cancelled() const { return reporter_.cancelled(); }
   fs::path file_of(const std::string& id) const { return setting_.job.folder / "points" / (id + ".json"); }
 
   const ChainSetting& setting_;
-  const ChainChartListener& listener_;
+  const Reporter& reporter_;
   std::string identity_;
   double done_ = prepared_weight, total_;
   ChainChartSummary& summary_;
@@ -218,7 +218,7 @@ bool wants(const ChainChartJob& job, const std::string& family) {
          std::find(job.families.begin(), job.families.end(), family) != job.families.end();
 }
 
-ChainChartSummary run(const ChainChartJob& asked, const ChainChartListener& listener) {
+ChainChartSummary run(const ChainChartJob& asked, const Reporter& reporter, const ChainChartCallbacks& on_point) {
   const ChainChartJob job = complete(asked);
   ChainChartSummary summary;
   const auto registrations = list_registrations(job);
@@ -236,12 +236,12 @@ ChainChartSummary run(const ChainChartJob& asked, const ChainChartListener& list
 
   const double total = prepared_weight + static_cast<double>(registrations.size() + reconstructions.size()) +
                        (reconstructions.empty() ? 0 : 1);
-  ChainListener training;
-  training.note = listener.note;
-  training.warn = listener.warn;
-  training.cancel = listener.cancel;
-  training.progress = [&](double done, double all) {
-    if (listener.progress && all > 0) listener.progress(prepared_weight * std::min(1.0, done / all), total);
+  Reporter training;
+  training.on_note = reporter.on_note;
+  training.on_warning = reporter.on_warning;
+  training.cancel = reporter.cancel;
+  training.on_progress = [&](double done, double all, std::string_view) {
+    if (all > 0) reporter.progress(prepared_weight * std::min(1.0, done / all), total);
   };
   StoredModel model;
   try {
@@ -261,13 +261,13 @@ ChainChartSummary run(const ChainChartJob& asked, const ChainChartListener& list
   const ChainSetting setting{job, std::move(sample), std::move(model), std::move(eroded),
                              std::move(simulated)};
 
-  Runner runner(setting, listener, total, summary);
+  Runner runner(setting, reporter, total, summary);
   for (const auto& method : registrations)
-    if (summary.complete) summary.complete = runner.run(method, listener.registration, summary.registrations);
+    if (summary.complete) summary.complete = runner.run(method, on_point.registration, summary.registrations);
   if (!reconstructions.empty() && summary.complete) summary.complete = runner.find_floor();
   for (const auto& method : reconstructions)
     if (summary.complete)
-      summary.complete = runner.run(method, listener.reconstruction, summary.reconstructions);
+      summary.complete = runner.run(method, on_point.reconstruction, summary.reconstructions);
   if (!summary.complete) return summary;
   for (const ChainFamily& family : chain_chart_families())
     if (std::ranges::any_of(summary.registrations,

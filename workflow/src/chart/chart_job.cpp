@@ -62,7 +62,7 @@ ChartJob complete(const ChartJob& asked) {
     }
   }
   if (job.folder.empty()) throw UsageError("--output", "no folder is given", "Add -o chart");
-  if (job.scene.current_pa || job.scene.dwell_us)
+  if (mc::dose_of(job.scene.budget) > 0)
     throw UsageError("scene", "with a current and a dwell time pixels get random numbers of electrons",
                      "Leave both out: the chart compares numbers of electrons");
   return job;
@@ -79,6 +79,10 @@ std::vector<double> accuracies_of(const ChartJob& job) {
 // So fine that libraries of cascades take too much memory: several images with libraries of their own, their mean.
 constexpr double finest_at_once = 0.007;
 
+double floor_of_scene(const ChartJob& job) {
+  return mc::accuracy_of(job.scene.budget) > 0 ? mc::floor_of(job.scene.budget) : mc::Accuracy{}.floor;
+}
+
 std::vector<SimulateJob> reference_jobs(const ChartJob& job, const ComparedPixels& pixels, const mc::Scan& scan) {
   const int parts = std::max(1, static_cast<int>(std::ceil(std::pow(finest_at_once / job.reference_accuracy, 2) - 1e-9)));
   std::vector<SimulateJob> out;
@@ -86,15 +90,13 @@ std::vector<SimulateJob> reference_jobs(const ChartJob& job, const ComparedPixel
     SimulateJob part;
     part.scene = job.scene;
     part.scene.scan = request_for(pixels, scan);
-    part.scene.electrons.reset();
     part.scene.method.reset();
-    part.scene.mesh_tolerance_nm.reset();
+    part.scene.mesh_tolerance_nm = 0;
     part.scene.detectors.clear();
-    part.scene.accuracy = job.reference_accuracy * std::sqrt(parts);
-    const double floor = job.scene.accuracy_floor.value_or(mc::SimulationOptions{}.accuracy_floor);
-    part.scene.accuracy_floor = floor * *part.scene.accuracy / job.finest;
-    part.options.seed = job.seed + other_seed + static_cast<std::uint64_t>(i);
-    part.options.threads = job.threads;
+    const double accuracy = job.reference_accuracy * std::sqrt(parts);
+    part.scene.budget = mc::Accuracy{accuracy, floor_of_scene(job) * accuracy / job.finest};
+    part.scene.seed = job.seed + other_seed + static_cast<std::uint64_t>(i);
+    part.execution.threads = job.threads;
     part.outputs = {job.folder / "reference" / fmt::format("{}.exr", i + 1)};
     part.command_line = job.command_line;
     title_by_identity(part, "reference of a chart");
@@ -130,9 +132,8 @@ std::string identity(const ChartJob& job, const std::vector<SimulateJob>& refere
               {"seed", std::to_string(job.seed)},
               {"quick", job.quick ? "yes" : "no"},
               {"training", fmt::format("{} {} {}", job.surfaces, job.surface_px, job.training_electrons)}};
-  if (job.scene.electrons) id["electrons"] = std::to_string(*job.scene.electrons);
-  if (job.scene.accuracy) id["accuracy"] = format_exact(*job.scene.accuracy);
-  if (job.scene.mesh_tolerance_nm) id["tolerance"] = format_exact(*job.scene.mesh_tolerance_nm);
+  id.merge(surf::record_of(mc::words_of(job.scene.budget)));
+  id["tolerance"] = format_exact(job.scene.mesh_tolerance_nm);
   if (job.scene.method) id["method"] = mc::name(*job.scene.method);
   for (const double a : accuracies) id["accuracies"] += format_exact(a) + " ";
   return fingerprint(id).substr(0, 32);
@@ -144,14 +145,13 @@ std::vector<ChartChoice> choices_of(const ChartSetting& setting, const std::vect
   const mc::Scene scene(job.scene.specimen, job.scene.beam, setting.scan, job.scene.physics);
   for (std::size_t i = 0; i < setting.accuracies.size(); ++i) {
     mc::SimulationOptions options;
-    options.accuracy = setting.accuracies[i];
+    options.budget = mc::Accuracy{setting.accuracies[i], floor_of_scene(job)};
     options.seed = job.seed;
-    if (job.scene.accuracy_floor) options.accuracy_floor = *job.scene.accuracy_floor;
     const mc::MethodChoice choice = mc::choose_method(scene, options);
     ChartChoice c;
-    c.accuracy = options.accuracy;
+    c.accuracy = setting.accuracies[i];
     c.reason = fmt::format("{}: {}", mc::name(choice.method), choice.reason);
-    const std::string id = id_of_accuracy(choice.method, options.planar_control, options.accuracy);
+    const std::string id = id_of_accuracy(choice.method, options.planar_control, setting.accuracies[i]);
     const ChartPoint *chosen = nullptr, *fastest = nullptr;
     for (const ChartPoint& p : points) {
       if (p.id == id) chosen = &p;
@@ -185,27 +185,27 @@ ManyDone make_images_for(const ChartSetting& setting, const std::vector<ChartMet
 // Of all points and before them; the reference counts as much as all together: it takes the most electrons.
 class Course {
  public:
-  Course(const ChartListener& listener, double points) : listener_(listener), points_(points) {}
+  Course(const Reporter& reporter, double points) : reporter_(reporter), points_(points) {}
 
   ProgressCallback show(double weight) {
     return [this, weight](double done, double total) {
-      if (listener_.progress && total > 0) listener_.progress(before_ + weight * done / total, 2 * points_);
+      if (total > 0) reporter_.progress(before_ + weight * done / total, 2 * points_);
     };
   }
   ProgressCallback show_reference() { return show(points_); }
   void end_reference() { before_ = points_; }
   void end_point() {
     before_ += 1;
-    if (listener_.progress) listener_.progress(before_, 2 * points_);
+    reporter_.progress(before_, 2 * points_);
   }
 
  private:
-  const ChartListener& listener_;
+  const Reporter& reporter_;
   double points_, before_ = 0;
 };
 
 ManyDone make_reference(const ChartJob& job, const std::vector<SimulateJob>& parts, const mc::Scan& scan,
-                        const ChartListener& listener, Course& course, Team* team) {
+                        const Reporter& reporter, Course& course, Team* team) {
   std::string letters;   // whoever leads has looked
   for (const SimulateJob& part : parts) letters += leads(team) && is_finished(part) ? '+' : '-';
   if (team) team->broadcast(letters);
@@ -219,10 +219,11 @@ ManyDone make_reference(const ChartJob& job, const std::vector<SimulateJob>& par
   runs.tiles = tiles_of(scan);
   runs.pixels = static_cast<double>(scan.width) * scan.height;
   runs.threads = job.threads;
-  runs.progress = course.show_reference();
-  runs.warn = listener.warn;
-  runs.note = listener.note;
-  runs.cancel = listener.cancel;
+  const ProgressCallback show = course.show_reference();
+  runs.reporter = reporter;
+  runs.reporter.on_progress = [&](double done, double total, std::string_view things) {
+    if (things != "cascades") show(done, total);
+  };
   const ManyDone done = run_many(runs, team);
   course.end_reference();
   if (!team || !done.complete) return done;
@@ -235,14 +236,15 @@ ManyDone make_reference(const ChartJob& job, const std::vector<SimulateJob>& par
 
 // Runs what is not there yet.
 void make_points(const ChartSetting& setting, const std::vector<ChartMethod>& methods, const std::string& id,
-                 const ChartListener& listener, Course& course, ChartSummary& summary) {
+                 const Reporter& reporter, const PointCallback& on_point, Course& course,
+                 ChartSummary& summary) {
   for (const ChartMethod& method : methods) {
     const fs::path file = point_file(setting.job, method);
     std::optional<ChartPoint> point = read_point(file, id);
     if (point) {
       ++summary.found;
     } else {
-      if (listener.cancel && listener.cancel->cancelled()) {
+      if (reporter.cancelled()) {
         summary.complete = false;
         return;
       }
@@ -250,14 +252,14 @@ void make_points(const ChartSetting& setting, const std::vector<ChartMethod>& me
       point->is_default = method.is_default;
       try {
         const PeakMemory memory;
-        method.run(setting, course.show(1), listener.cancel, *point);
+        method.run(setting, course.show(1), reporter.cancel, *point);
         point->peak_bytes = memory.bytes();
       } catch (const Interrupted&) {
         summary.complete = false;
         return;
       }
       write_point(file, *point, id);
-      if (listener.point) listener.point(*point);
+      if (on_point) on_point(*point);
     }
     summary.points.push_back(std::move(*point));
     course.end_point();
@@ -304,7 +306,7 @@ double ChartPoint::worst_rms() const {
   return worst;
 }
 
-ChartSummary run(const ChartJob& asked, const ChartListener& listener, Team* team) {
+ChartSummary run(const ChartJob& asked, const Reporter& reporter, const PointCallback& on_point, Team* team) {
   const auto start = std::chrono::steady_clock::now();
   ChartJob job;
   together(team, [&] { job = complete(asked); });
@@ -331,13 +333,13 @@ ChartSummary run(const ChartJob& asked, const ChartListener& listener, Team* tea
       throw UsageError("--methods", "none of them can be had with this scene", "Leave it out for all that can");
   });
 
-  Course course(listener, static_cast<double>(methods.size()));
+  Course course(reporter, static_cast<double>(methods.size()));
   mc::Scan compared;
   compared.width = pixels.width;
   compared.height = pixels.height;
-  ManyDone done = make_reference(job, parts, compared, listener, course, team);
+  ManyDone done = make_reference(job, parts, compared, reporter, course, team);
   try {
-    if (team && done.complete) done.add(make_images_for(setting, methods, id, course.show(1), listener.cancel, *team));
+    if (team && done.complete) done.add(make_images_for(setting, methods, id, course.show(1), reporter.cancel, *team));
   } catch (const Interrupted&) {
     done.complete = false;
   }
@@ -347,11 +349,11 @@ ChartSummary run(const ChartJob& asked, const ChartListener& listener, Team* tea
   together(team, [&] {
     if (!leads(team)) return;
     const Reference reference = read_reference(
-        mean_of(parts), pixels, job.scene.accuracy_floor.value_or(mc::SimulationOptions{}.accuracy_floor));
+        mean_of(parts), pixels, floor_of_scene(job));
     setting.reference = &reference;
     for (const ComparedChannel& c : reference.channels)
       summary.reference.push_back({c.name, image_error(c.values, {}, c.values, c.standard_errors)});
-    make_points(setting, methods, id, listener, course, summary);
+    make_points(setting, methods, id, reporter, on_point, course, summary);
     if (!summary.complete) return;
     summary.choices = choices_of(setting, summary.points);
     write_chart(job, summary);

@@ -33,13 +33,13 @@ ComparedPixels choose_pixels(const mc::Scan& scan, int about) {
   }
 }
 
-io::ScanRequest request_for(const ComparedPixels& pixels, const mc::Scan& scan) {
+mc::ScanRequest request_for(const ComparedPixels& pixels, const mc::Scan& scan) {
   const double half_x = 0.5 * pixels.width * pixels.step * scan.pixel_x_nm;
   const double half_y = 0.5 * pixels.height * pixels.step * scan.pixel_y_nm;
-  io::ScanRequest request;
+  mc::ScanRequest request;
   request.width = pixels.width;
   request.height = pixels.height;
-  request.region = io::ScanRequest::Region{scan.center_x_nm - half_x, scan.center_y_nm - half_y,
+  request.region = mc::ScanRequest::Region{scan.center_x_nm - half_x, scan.center_y_nm - half_y,
                                            scan.center_x_nm + half_x, scan.center_y_nm + half_y};
   return request;
 }

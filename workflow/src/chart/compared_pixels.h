@@ -21,7 +21,7 @@ struct ComparedPixels {
 ComparedPixels choose_pixels(const mc::Scan& scan, int about);
 
 /// What has to be asked for to scan them alone.
-io::ScanRequest request_for(const ComparedPixels& pixels, const mc::Scan& scan);
+mc::ScanRequest request_for(const ComparedPixels& pixels, const mc::Scan& scan);
 
 /// One channel at the compared pixels that the reference sees.
 struct ComparedChannel {

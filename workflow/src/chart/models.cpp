@@ -99,7 +99,7 @@ TrainJob training(const ChartSetting& setting, const LearnOptions& learn, const 
   out.energy_ev = job.scene.beam.energy_ev;
   out.spot_nm = job.scene.beam.spot_nm;
   out.physics = job.scene.physics;
-  out.simulation.electrons = job.quick ? std::min(job.training_electrons, quick_electrons) : job.training_electrons;
+  out.simulation.budget = mc::ElectronsPerPixel{job.quick ? std::min(job.training_electrons, quick_electrons) : job.training_electrons};
   out.simulation.threads = job.threads;
   out.simulation.seed = job.seed;
   out.learn = learn;
@@ -132,11 +132,14 @@ void predict(const LearnOptions& learn, const std::string& id, bool needs_images
   }
   TrainJob job = training(setting, learn, id);
   if (!needs_images) job.surfaces = 0;
-  TrainListener listener;
-  listener.learning = part(0.5, 0.9);
-  listener.cancel = cancel;
+  Reporter reporter;
+  const ProgressCallback show = part(0.5, 0.9);
+  reporter.on_progress = [&](double done, double total, std::string_view things) {
+    if (things.empty()) show(done, total);
+  };
+  reporter.cancel = cancel;
   const auto start = Clock::now();
-  const TrainSummary trained = run(job, listener);
+  const TrainSummary trained = run(job, reporter);
   if (!trained.complete) throw Interrupted();
   preparation_s += seconds_since(start);
   const Heights heights = heights_of(setting);
@@ -180,10 +183,12 @@ ManyDone make_images(const ChartSetting& setting, const ProgressCallback& progre
   const TrainJob job = training_of_images(setting);
   std::vector<TrainingSurface> surfaces;
   together(team, [&] { surfaces = gather_surfaces(job, *job.surfaces, {}); });
-  TrainListener listener;
-  listener.pixels = progress;
-  listener.cancel = cancel;
-  const SimulatedImages done = simulate_images(job, surfaces, listener, team, true);
+  Reporter reporter;
+  reporter.on_progress = [&](double done, double total, std::string_view things) {
+    if (progress && things == "pixels") progress(done, total);
+  };
+  reporter.cancel = cancel;
+  const SimulatedImages done = simulate_images(job, surfaces, reporter, team, true);
   together(team, [&] {
     const fs::path times = times_of_images(job);
     if (leads(team) && done.made > 0)

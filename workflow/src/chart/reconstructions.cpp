@@ -102,18 +102,18 @@ void whole_chain(const ChainSetting& setting, const Watch& watch, Reconstruction
   job.options.uncertainty = false;
   const auto begin = Clock::now();
   double prepared_s = 0;
-  ChainListener listener;
-  listener.cancel = watch.cancel;
+  Reporter reporter;
+  reporter.cancel = watch.cancel;
   double stages = 0;
-  listener.stage = [&](const std::string& stage) {
+  reporter.on_stage = [&](const std::string& stage) {
     if (stage == "reconstruction") prepared_s = seconds_since(begin);
     stages += 1;
   };
   constexpr double all_stages = 5;   // model, scan, registration, calibration, reconstruction
-  listener.progress = [&](double done, double total) {
+  reporter.on_progress = [&](double done, double total, std::string_view) {
     if (total > 0) watch.report(std::min(all_stages, std::max(stages, 1.0) - 1 + done / total), all_stages);
   };
-  const ReconstructSummary s = run(job, listener);
+  const ReconstructSummary s = run(job, reporter);
   if (s.verdict == ReconstructionVerdict::not_registered)
     throw InvalidInput("chain", s.reasons.front(), "Nothing was reconstructed");
   point.preparation_s = prepared_s;

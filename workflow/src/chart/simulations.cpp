@@ -52,7 +52,7 @@ void simulate(const Simulation& what, const ChartSetting& setting, const Progres
                                    setting.job.threads, done);
     const mc::Scene ready(specimen, scene.beam, setting.scan, scene.physics);
     const double building_s = seconds_since(start);
-    const mc::SimulationResult r = mc::simulate(ready, what.options, progress, cancel);
+    const mc::SimulationResult r = mc::simulate(ready, what.options, {.progress = progress, .cancel = cancel});
     if (!r.complete) throw Interrupted();
     run_s.push_back(r.seconds);
     preparation_s.push_back(building_s + r.library_seconds);
@@ -74,7 +74,7 @@ class List {
       : setting_(setting), pixels_(static_cast<double>(setting.scan.width) * setting.scan.height) {
     options_.seed = setting.job.seed;
     options_.threads = setting.job.threads;
-    if (setting.job.scene.accuracy_floor) options_.accuracy_floor = *setting.job.scene.accuracy_floor;
+    if (mc::accuracy_of(setting.job.scene.budget) > 0) floor_ = mc::floor_of(setting.job.scene.budget);
   }
 
   ChartMethods out;
@@ -85,7 +85,7 @@ class List {
     if (static_cast<double>(n) * pixels_ > most) return too_long(family, text);
     Simulation what{options_, 0};
     what.options.method = method;
-    what.options.electrons = n;
+    what.options.budget = mc::ElectronsPerPixel{n};
     add(family, fmt::format("{}-{}", family, n), text, what);
   }
 
@@ -97,7 +97,7 @@ class List {
     if (each * pixels_ > most) return too_long(family, text);
     Simulation what{options_, 0};
     what.options.method = method;
-    what.options.accuracy = accuracy;
+    what.options.budget = mc::Accuracy{accuracy, floor_};
     what.options.planar_control = control;
     add(family, id_of_accuracy(method, control, accuracy), text, what);
   }
@@ -105,7 +105,7 @@ class List {
   void tolerance(double nm, double accuracy) {
     Simulation what{options_, nm};
     what.options.method = mc::Method::replay;
-    what.options.accuracy = accuracy;
+    what.options.budget = mc::Accuracy{accuracy, floor_};
     add("mesh-tolerance", fmt::format("mesh-tolerance-{:g}nm", nm),
         fmt::format("detail below {} left out, {} accuracy", format_length(nm), format_share(accuracy)), what);
   }
@@ -113,13 +113,13 @@ class List {
   // What `simulate` does with the scene as it is.
   void by_default() {
     const io::SceneFile& s = setting_.job.scene;
-    Simulation what{options_, s.mesh_tolerance_nm.value_or(0)};
-    if (s.accuracy) what.options.accuracy = *s.accuracy;
-    else if (s.electrons) what.options.electrons = *s.electrons;
+    Simulation what{options_, s.mesh_tolerance_nm};
+    if (!std::holds_alternative<mc::TimeLimit>(s.budget)) what.options.budget = s.budget;
+    const double accuracy = mc::accuracy_of(s.budget);
     const mc::Scene scene(s.specimen, s.beam, setting_.scan, s.physics);
     what.options.method = mc::choose_method(scene, what.options, s.method).method;
-    const std::string text = s.accuracy ? fmt::format("{} accuracy", format_share(*s.accuracy))
-                                        : fmt::format("{} electrons per pixel", what.options.electrons);
+    const std::string text = accuracy > 0 ? fmt::format("{} accuracy", format_share(accuracy))
+                                          : fmt::format("{:g} electrons per pixel", mc::mean_electrons_of(what.options.budget));
     add("default", "default", fmt::format("{}, {}", text, mc::name(what.options.method)), what);
     out.methods.back().is_default = true;
   }
@@ -140,6 +140,7 @@ class List {
   const ChartSetting& setting_;
   double pixels_;
   mc::SimulationOptions options_;
+  double floor_ = mc::Accuracy{}.floor;
 };
 
 }  // namespace

@@ -92,6 +92,8 @@ class ParameterVisitor {
   virtual ~ParameterVisitor() = default;
 
   virtual void visit(const Parameter& about, Field& field) = 0;
+  /// Whether it gives values: what is one of several ways then shows none of them, so that those given can be told.
+  virtual bool reads() const { return false; }
 
   void operator()(double& value, const Parameter& about);
   void operator()(int& value, const Parameter& about);
@@ -153,11 +155,13 @@ namespace parameters_detail {
 /// `visit` with a function.
 class Calling final : public ParameterVisitor {
  public:
-  explicit Calling(std::function<void(const Parameter&, Field&)> call) : call_(std::move(call)) {}
+  Calling(std::function<void(const Parameter&, Field&)> call, bool reads) : call_(std::move(call)), reads_(reads) {}
   void visit(const Parameter& about, Field& field) override { call_(about, field); }
+  bool reads() const override { return reads_; }
 
  private:
   std::function<void(const Parameter&, Field&)> call_;
+  bool reads_;
 };
 void check_field(const Parameter& about, Field& field);
 void record_field(const Parameter& about, Field& field, Record& record);
@@ -165,8 +169,15 @@ void record_field(const Parameter& about, Field& field, Record& record);
 
 template <class Struct>
 void for_each_parameter(Struct& of, std::function<void(const Parameter&, Field&)> call) {
-  parameters_detail::Calling visitor(std::move(call));
+  parameters_detail::Calling visitor(std::move(call), false);
   describe(visitor, of);
+}
+
+/// The same for who gives values.
+template <class Struct>
+void read_parameters(Struct& to, std::function<void(const Parameter&, Field&)> call) {
+  parameters_detail::Calling visitor(std::move(call), true);
+  describe(visitor, to);
 }
 
 /// Throws UsageError that names the field for the first value that is not allowed.
@@ -188,7 +199,7 @@ Record record_of(const Struct& of) {
 template <class Struct>
 void set_parameter(Struct& of, std::string_view name, std::string_view text) {
   bool found = false;
-  for_each_parameter(of, [&](const Parameter& about, Field& field) {
+  read_parameters(of, [&](const Parameter& about, Field& field) {
     if (about.name != name) return;
     found = true;
     field.read(text, about.name);

@@ -3,6 +3,7 @@
 
 #include <string>
 #include <string_view>
+#include <utility>
 
 namespace surf {
 
@@ -13,6 +14,9 @@ namespace surf {
 /// "2", "2nm", "0.5um", "1e-3 mm", "3pm", "2A", "1m" to nm. Bare numbers are nm.
 /// Throws UsageError on unknown suffixes, NaN, infinity and trailing text.
 double parse_length_nm(std::string_view text, std::string_view subject);
+
+/// "2nm" for both, or "2nmx3nm", each above 0. Throws as `parse_length_nm`.
+std::pair<double, double> parse_two_lengths_nm(std::string_view text, std::string_view subject);
 
 /// "500", "500eV", "1keV", "0.03MeV" to eV. Bare numbers are eV.
 double parse_energy_ev(std::string_view text, std::string_view subject);

@@ -5,6 +5,10 @@
 
 #include "surf/core/vec3.h"
 
+namespace surf {
+class ParameterVisitor;
+}
+
 namespace surf::mc {
 
 /// The electron probe: monochromatic, Gaussian across at its focus, filling a cone evenly. Lengths: at most `largest_length_nm`.
@@ -38,7 +42,10 @@ struct Scan {
 
 inline constexpr std::int64_t max_pixels = std::int64_t{1} << 28;
 
-/// Throws UsageError naming the option.
+void describe(ParameterVisitor& visit, Beam& beam);
+void describe(ParameterVisitor& visit, Scan& scan);
+
+/// Throws UsageError naming the field.
 void validate(const Beam& beam);
 void validate(const Scan& scan);
 

@@ -6,6 +6,10 @@
 
 #include "surf/mc/material.h"
 
+namespace surf {
+class ParameterVisitor;
+}
+
 namespace surf::mc {
 
 enum class ElasticModel { mott, browning };
@@ -39,10 +43,12 @@ double effective_cutoff_ev(const Physics& physics, const Material& material);
 /// Reads "elastic=mott,secondaries=off" over the given settings. Keys: elastic = mott | browning,
 /// loss = joy-luo | none, secondaries = on | off, barrier = quantum | classical | off.
 /// Throws UsageError naming the word and the choices.
-void parse_physics(const std::string& text, Physics& physics);
+void parse_physics(const std::string& text, Physics& physics, const std::string& subject = "simulation.physics");
 
 /// The settings as `parse_physics` reads them, every key given.
 std::string format_physics(const Physics& physics);
+
+void describe(ParameterVisitor& visit, Physics& physics);
 
 /// What is active for a material, a line per mechanism with formula's source and range.
 std::vector<std::string> describe(const Physics& physics, const Material& material);

@@ -12,6 +12,7 @@
 #include "surf/core/large_grid.h"
 #include "surf/core/progress.h"
 #include "surf/mc/beam.h"
+#include "surf/mc/budget.h"
 #include "surf/mc/detector.h"
 #include "surf/mc/observer.h"
 #include "surf/mc/library_source.h"
@@ -26,27 +27,24 @@ namespace surf::mc {
 /// How electrons are simulated. Replay retraces stored cascades; both have the same statistics.
 enum class Method { direct, replay };
 
-struct SimulationOptions {
-  std::int64_t electrons = 200;   ///< primaries per pixel, 1 to 2^31
-  /// Instead of `electrons`, where above 0: the mean number of primaries of a pixel. Each pixel gets
-  /// a number of its own, drawn from the Poisson distribution, as in a microscope. At most 1e9.
-  double dose = 0;
+/// How the work is carried out. Nothing of it changes the result.
+struct Execution {
+  int threads = 0;                ///< 0: one per hardware thread
+  int tile_pixels = 1024;         ///< pixels in a unit of work, >= 1
+  /// Tallies of more bytes than this (16 per pixel, and 16 per pixel and detector) go into scratch
+  /// files in `scratch_folder`; never where that is empty.
+  std::size_t tally_memory = std::size_t{1} << 30;
+  std::string scratch_folder;
+};
+
+struct SimulationOptions : Execution {
+  Budget budget;                  ///< no TimeLimit
   Method method = Method::direct;
-  /// Instead of `electrons`, where above 0: each pixel gets as many primaries as it takes to bring the
-  /// standard error of every detector down to this share of its mean, 1e-4 to 1.
-  double accuracy = 0;
-  double accuracy_floor = 0.002;  ///< no standard error below this is asked for, >= 0, per primary
-  bool planar_control = true;     ///< with `accuracy`: average the difference to a plane's outcome
+  bool planar_control = true;     ///< with an accuracy: average the difference to a plane's outcome
   std::uint64_t seed = 1;
   std::vector<Detector> detectors = default_detectors();   ///< at least one; unique names
   bool spectra = false;           ///< collect `Spectra` per detector
-  int threads = 0;                ///< 0: one per hardware thread. Does not change the result
-  int tile_pixels = 1024;         ///< pixels in a unit of work, >= 1. Does not change the result
-  /// Tallies of more bytes than this (16 per pixel, and 16 per pixel and detector) go into scratch
-  /// files in `scratch_folder`; never where that is empty. Does not change the result.
-  std::size_t tally_memory = std::size_t{1} << 30;
-  std::string scratch_folder;
-  /// With `accuracy`, all libraries together grow beyond their least size only up to this many bytes.
+  /// With an accuracy, all libraries together grow beyond their least size only up to this many bytes.
   double library_memory = 2.0 * (1u << 30);
 };
 
@@ -61,7 +59,7 @@ struct CascadeYield {
 inline constexpr double usual_share_of_variance = 0.24;
 
 /// How many cascades of each material replay with these options takes, where no pixel has more than
-/// `most_primaries`. With a wanted accuracy (2 / accuracy)^2, the least that any use can be made of, and where `yields` are known as many as
+/// `most_primaries`. With an accuracy (2 / share)^2, the least that any use can be made of, and where `yields` are known as many as
 /// it takes for the library's share to be `share` of the variance asked for, 0 to 1.
 std::size_t library_size(const SimulationOptions& options, std::int64_t most_primaries,
                          std::span<const CascadeYield> yields = {}, double share = usual_share_of_variance);
@@ -99,10 +97,8 @@ struct SimulationResult {
   std::vector<LargeGrid<Control>> controls;   ///< per detector, with `accuracy`
   std::vector<Spectra> spectra;          ///< per detector, where asked for
   Balance balance;
-  double dose = 0;                       ///< as in the options
+  Budget budget;                         ///< as in the options
   std::uint64_t seed = 1;
-  double accuracy = 0;                   ///< as in the options
-  double accuracy_floor = 0;
   std::size_t library_cascades = 0;      ///< of each material, with replay
   std::vector<CascadeYield> cascade_yields;   ///< with `accuracy`: per material and detector
   double library_seconds = 0;            ///< wall time to get the libraries
@@ -125,21 +121,25 @@ using ObserverOfThread = std::function<Observer*(int thread)>;
 
 class Crew;
 
-/// Simulates the whole scan, in parallel. On cancellation returns what is done.
-/// Progress counts primaries, and is told after each unit that is simulated. With `observers` every track is followed to its end, as in
-/// `simulate_unit`. A `journal` is told of every finished unit and asked for those done before; it
-/// must be of the same scene and options, `tile_pixels` among them. Not both (UsageError).
-/// Replay gets its cascades from `libraries` (null: they are made on the spot); it cannot serve
-/// observers, nor physics without continuous loss (UsageError). With a `crew` units are shared with other
-/// processes, all of which call this: the result is the leader's, others return one that counts nothing and
-/// is complete. Bytes are the same with and without. No observers then (UsageError); only the leader's
-/// journal is used.
-SimulationResult simulate(const Scene& scene, const SimulationOptions& options,
-                          const ProgressCallback& progress = {},
-                          const CancelToken* cancel = nullptr,
-                          const ObserverOfThread& observers = {},
-                          UnitJournal* journal = nullptr, LibrarySource* libraries = nullptr,
-                          Crew* crew = nullptr);
+/// Who takes part in a simulation, and who watches it. All of it may be left out.
+struct SimulationContext {
+  ProgressCallback progress;             ///< counts primaries, with an accuracy pixels; told after each unit that is simulated
+  const CancelToken* cancel = nullptr;
+  ObserverOfThread observers;            ///< every track is then followed to its end, as in `simulate_unit`
+  /// Is told of every finished unit and asked for those done before: of the same scene and options, `tile_pixels` among them.
+  UnitJournal* journal = nullptr;
+  LibrarySource* libraries = nullptr;    ///< where replay gets its cascades; null: they are made on the spot
+  Crew* crew = nullptr;                  ///< other processes, all of which call `simulate`
+
+  /// Throws UsageError for what cannot go together.
+  void check(const SimulationOptions& options, const Scene& scene) const;
+};
+
+/// Simulates the whole scan, in parallel. On cancellation returns what is done. Replay cannot serve observers, nor physics
+/// without continuous loss; observers go with neither a journal nor a crew nor an accuracy (UsageError). With a crew the
+/// result is the leader's, others return one that counts nothing and is complete; only the leader's journal is used. Bytes
+/// are the same with and without.
+SimulationResult simulate(const Scene& scene, const SimulationOptions& options, const SimulationContext& context = {});
 
 /// Per detector the channels NAME and NAME.stderr, in counts per primary; with a dose also
 /// NAME.shot, what a microscope would show: electrons counted over the mean number of primaries.

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "surf/core/progress.h"
+#include "surf/workflow/reporter.h"
 #include "surf/workflow/simulate_job.h"
 
 namespace surf::workflow {
@@ -102,13 +103,10 @@ struct ChainChartSummary {
   std::vector<std::filesystem::path> written;
 };
 
-struct ChainChartListener {
-  ProgressCallback progress;                                    ///< in points, fractions included
-  std::function<void(const RegistrationPoint&)> registration;   ///< as soon as it is there
+/// Is told of each point as soon as it is there.
+struct ChainChartCallbacks {
+  std::function<void(const RegistrationPoint&)> registration;
   std::function<void(const ReconstructionPoint&)> reconstruction;
-  WarningCallback warn;
-  NoteCallback note;
-  const CancelToken* cancel = nullptr;
 };
 
 /// Runs what is not there yet, and writes to the folder:
@@ -118,7 +116,7 @@ struct ChainChartListener {
 ///   points/ID.json                   each point, from which the same job goes on
 /// Charts of which no point was asked for are left out. The same job gives the same numbers again, but for
 /// times and memory. Throws UsageError, FileError, and what the training of a model throws.
-ChainChartSummary run(const ChainChartJob& job, const ChainChartListener& listener = {});
+ChainChartSummary run(const ChainChartJob& job, const Reporter& reporter = {}, const ChainChartCallbacks& on_point = {});
 
 /// The files in `folder` that a run may write, and the folder of points.
 std::vector<std::filesystem::path> chain_chart_files(const std::filesystem::path& folder);

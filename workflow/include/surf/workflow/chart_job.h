@@ -9,6 +9,7 @@
 
 #include "surf/io/sim/scene_file.h"
 #include "surf/sem/image_error.h"
+#include "surf/workflow/reporter.h"
 #include "surf/workflow/simulate_job.h"
 
 namespace surf::workflow {
@@ -97,13 +98,8 @@ struct ChartSummary {
   std::vector<std::filesystem::path> written;
 };
 
-struct ChartListener {
-  ProgressCallback progress;          ///< in points, fractions included
-  std::function<void(const ChartPoint&)> point;   ///< as soon as it is there
-  WarningCallback warn;
-  NoteCallback note;
-  const CancelToken* cancel = nullptr;
-};
+/// Is told of each point as soon as it is there.
+using PointCallback = std::function<void(const ChartPoint&)>;
 
 /// Makes the reference, runs what is not there yet, and writes to the folder:
 ///   chart.csv          a line for each point and channel
@@ -118,7 +114,7 @@ struct ChartListener {
 /// With a `team` all of it call this with the same job, and share the reference and the images that models learn from.
 /// Points, whose times are to mean the same, are the leader's alone, which has the true summary; the others wait meanwhile.
 /// Who did how much is in chart.run.json.
-ChartSummary run(const ChartJob& job, const ChartListener& listener = {}, Team* team = nullptr);
+ChartSummary run(const ChartJob& job, const Reporter& reporter = {}, const PointCallback& on_point = {}, Team* team = nullptr);
 
 /// The files in `folder` that a run may write, and its folders.
 std::vector<std::filesystem::path> chart_files(const std::filesystem::path& folder);

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "surf/core/progress.h"
+#include "surf/workflow/reporter.h"
 #include "surf/core/vec3.h"
 #include "surf/io/sim/scene_file.h"
 #include "surf/sem/count_distribution.h"
@@ -41,6 +41,6 @@ struct CountSummary {
 /// Always simulates directly: replayed primaries share cascades, so that trials would not be independent.
 /// Detectors' efficiencies do not count. Progress is in primaries. Throws UsageError for numbers out of range,
 /// InvalidInput where the beam misses the specimen, Interrupted.
-CountSummary run(const CountJob& job, const Watch& watch = {});
+CountSummary run(const CountJob& job, const Reporter& reporter = {});
 
 }  // namespace surf::workflow

@@ -42,8 +42,6 @@ struct DryRun {
 /// Checks everything as `run` does, builds the scene, makes or loads the libraries, simulates a part of the units for about
 /// `seconds` and throws them away: nothing but libraries in the cache is written. `ranks`: how many processes the job will
 /// be shared by; they are taken to be as fast as this one. Throws as `run`, and Interrupted.
-DryRun dry_run(SimulateJob job, int ranks = 1, double seconds = 10, const ProgressCallback& progress = {},
-               const CancelToken* cancel = nullptr, const NoteCallback& note = {},
-               const LibraryCallback& libraries = {});
+DryRun dry_run(SimulateJob job, int ranks = 1, double seconds = 10, const Reporter& reporter = {});
 
 }  // namespace surf::workflow

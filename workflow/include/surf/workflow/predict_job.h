@@ -40,7 +40,7 @@ struct PredictSummary {
 /// where the surface is steeper than any that the model has learnt from.
 /// Throws UsageError where the model was trained for anything else than what is wanted, InvalidInput,
 /// FileError, and Interrupted before anything is written.
-PredictSummary run(const PredictJob& job, const NoteCallback& note = {}, const Watch& watch = {});
+PredictSummary run(const PredictJob& job, const Reporter& reporter = {});
 
 /// What should be known of a prediction of these heights: whether they are steeper than any that the model has learnt from.
 std::vector<std::string> prediction_warnings(const TrainedModel& model, const HeightField& field);

@@ -78,7 +78,7 @@ struct ReconstructSummary {
 /// thrown) or killed. One of another job is begun anew. Nothing is written where the registration is not verified, but
 /// transform.json and registration.png.
 /// Throws UsageError, InvalidInput, FileError, Unsupported, Interrupted.
-ReconstructSummary run(const ReconstructJob& job, const ChainListener& listener = {});
+ReconstructSummary run(const ReconstructJob& job, const Reporter& reporter = {});
 
 /// The files in `folder` that a run may write, the checkpoint included.
 std::vector<std::filesystem::path> reconstruction_files(const std::filesystem::path& folder);

@@ -12,6 +12,7 @@
 #include "surf/registration/landmarks.h"
 #include "surf/registration/register_images.h"
 #include "surf/workflow/afm_preparation.h"
+#include "surf/workflow/reporter.h"
 #include "surf/workflow/stored_model.h"
 
 namespace surf::workflow {
@@ -46,15 +47,6 @@ struct Pose {
   bool verified() const { return !registration || registration->verdict == RegistrationVerdict::verified; }
 };
 
-/// Is told what happens. Stages come in order; progress is within the stage.
-struct ChainListener {
-  std::function<void(const std::string& stage)> stage;   ///< "tip", "model", "registration" ...
-  ProgressCallback progress;
-  NoteCallback note;
-  WarningCallback warn;
-  const CancelToken* cancel = nullptr;
-};
-
 struct RegisterJob {
   AfmInput afm;
   SemInput sem;
@@ -73,7 +65,7 @@ struct RegisterSummary {
 
 /// Prepares the scan, predicts the SEM image of what is left of it when the tip is taken off, at the SEM's pixel size,
 /// and registers. Files are written whatever the verdict, which they say. Throws as its steps do.
-RegisterSummary run(const RegisterJob& job, const ChainListener& listener = {});
+RegisterSummary run(const RegisterJob& job, const Reporter& reporter = {});
 
 /// The predicted image of a surface at the model's pixel: the sum of its channels, valid where the surface is.
 PlacedImage simulated_view(const HeightField& surface, const ImageModel& model, double pixel_nm, int threads);

@@ -9,14 +9,17 @@
 
 namespace surf::workflow {
 
+/// Is told something in words.
+using NoteCallback = std::function<void(const std::string& text)>;
+
 /// Who hears what a job does, and can end it. All members may be left out. They are called from the thread that runs the
 /// job, one at a time.
 struct Reporter {
   std::function<void(const std::string& stage)> on_stage;   ///< "tip", "model": progress begins anew
   /// `things` is what is counted, "primaries"; empty where only the share counts.
   std::function<void(double done, double total, std::string_view things)> on_progress;
-  std::function<void(const std::string& text)> on_note;      ///< good to know, and no mistake
-  std::function<void(const std::string& text)> on_warning;   ///< may be a mistake, and what to do about it
+  NoteCallback on_note;      ///< good to know, and no mistake
+  NoteCallback on_warning;   ///< may be a mistake, and what to do about it
   const CancelToken* cancel = nullptr;
 
   void stage(const std::string& name) const {

@@ -69,9 +69,8 @@ struct SampleSummary {
 ///   truth_sem.exr  what the simulation gave: SE, BSE and their standard errors, per primary
 ///   truth.json     the map, the gains, the noise and all other parameters
 /// Only the names with "truth" tell what a reconstruction has to find out.
-/// Progress is in primaries. A job that is cancelled, or whose files cannot be written, keeps a checkpoint: the same
+/// Progress is in cascades, then primaries. A job that is cancelled, or whose files cannot be written, keeps a checkpoint: the same
 /// job goes on from there, to the same bytes. Throws UsageError for an unknown name or options out of range, FileError.
-SampleSummary run(const SampleJob& job, const ProgressCallback& progress = {}, const CancelToken* cancel = nullptr,
-                  const LibraryCallback& libraries = {}, const NoteCallback& note = {}, const WarningCallback& warn = {});
+SampleSummary run(const SampleJob& job, const Reporter& reporter = {});
 
 }  // namespace surf::workflow

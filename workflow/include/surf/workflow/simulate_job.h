@@ -10,12 +10,14 @@
 #include <vector>
 
 #include "surf/core/image.h"
-#include "surf/core/progress.h"
+#include "surf/core/parameters.h"
+#include "surf/core/track.h"
 #include "surf/io/image_file.h"
 #include "surf/io/sim/scene_file.h"
 #include "surf/mc/choose_method.h"
 #include "surf/mc/result_summary.h"
 #include "surf/mc/simulate.h"
+#include "surf/workflow/reporter.h"
 #include "surf/workflow/simplify_specimen.h"
 #include "surf/workflow/team.h"
 
@@ -26,7 +28,7 @@ namespace surf::workflow {
 /// side. Three, or numbers that do not fit, are a UsageError. The specimen's extent is what the
 /// beam sees of its box; the scan plane goes through mid-height, so that a tilted view is centred
 /// too. A region and a pixel size must fit each other to 1e-6 of whole pixels.
-mc::Scan resolve_scan(const io::ScanRequest& request, const Box& specimen_extent,
+mc::Scan resolve_scan(const mc::ScanRequest& request, const Box& specimen_extent,
                       const mc::Beam& beam);
 
 /// What is wanted besides the image. File names are made from the first output's: for out.exr
@@ -54,18 +56,15 @@ struct CheckpointOptions {
   bool restart = false;          ///< begin anew, whatever there is
 };
 
-/// One simulation from specimen to files.
+/// One simulation from specimen to files, or to memory alone.
 struct SimulateJob {
-  io::SceneFile scene;                            ///< with the command line's overrides applied
-  /// Its detectors come before the scene's. The method is set as the scene says, or chosen
-  /// (mc::choose_method); the scene's accuracy goes before the one here.
-  mc::SimulationOptions options;
-  /// Above 0: the wall time, s, that the job may take. A coarse simulation tells which accuracy fits.
-  double seconds = 0;
+  io::SceneFile scene;                            ///< what is asked for
+  mc::Execution execution;
+  bool spectra = false;                           ///< energies and angles per detector
   std::filesystem::path cache;                    ///< where libraries are kept; empty: nowhere
   Extras extras;
   CheckpointOptions checkpoint;
-  std::vector<std::filesystem::path> outputs;     ///< formats by extension; at least one
+  std::vector<std::filesystem::path> outputs;     ///< formats by extension; none: results stay in the summary
   std::string png_channel;                        ///< for PNG; empty: SE, or SE.shot with a dose
   io::Layout layout = io::Layout::automatic;      ///< of EXR and TIFF
   std::string command_line;                       ///< for the sidecar
@@ -80,32 +79,26 @@ struct SimulateSummary {
   Simplification simplification;                  ///< with the scene's mesh_tolerance_nm
   mc::SceneSummary scene;
   std::vector<std::string> warnings;
+  Record record;                                  ///< everything that changes the result, and its balance: an image's metadata
+  std::vector<Track> tracks;                      ///< of a job without outputs, where its extras ask for them
   std::vector<std::filesystem::path> written;     ///< outputs, extras and their .run.json sidecars
   std::vector<TeamMember> team;                   ///< who did how much; none without a team
 };
 
-/// Is told of every warning as soon as it is known: what looks like a mistake comes before the
-/// simulation.
-using WarningCallback = std::function<void(const std::string&)>;
-
-/// Is told what is good to know and no mistake: that a job is resumed, where its checkpoint is.
-using NoteCallback = std::function<void(const std::string&)>;
-
-/// Is told of progress in getting libraries, in cascades.
-using LibraryCallback = ProgressCallback;
+/// How a scene is simulated, in place of `mc::simulate`: with units done elsewhere, or with somebody looking on.
+using Simulator = std::function<mc::SimulationResult(const mc::Scene& scene, const mc::SimulationOptions& options,
+                                                     const mc::SimulationContext& context)>;
 
 /// Checks everything that can be wrong before spending time (targets writable, channel known), then
 /// simplifies the specimen where that is asked for, builds the scene, simulates, and writes every output and its sidecar `NAME.run.json`. When
 /// cancelled the files are written with `partial = true` in their metadata, and a checkpoint is left
 /// for the same job to go on from; it is deleted when the job is done. Cancelled before there is anything to write
 /// it throws Interrupted. One that cannot be gone on from
-/// is a FileError. Progress is in primaries, with a wanted accuracy in pixels.
+/// is a FileError. Progress is in primaries, with a wanted accuracy in pixels, and before that in cascades. Warnings come as
+/// soon as they are known: what looks like a mistake comes before the simulation.
 ///
 /// With a `team` all of it call this with the same job, and share its units of work; the leader writes and tells, and its
 /// summary is the true one. Bytes are those of one process. Deposited energy cannot be had so (UsageError).
-SimulateSummary run(SimulateJob job, const ProgressCallback& progress = {},
-                    const CancelToken* cancel = nullptr, const WarningCallback& warn = {},
-                    const NoteCallback& note = {}, const LibraryCallback& libraries = {},
-                    Team* team = nullptr);
+SimulateSummary run(SimulateJob job, const Reporter& reporter = {}, Team* team = nullptr, const Simulator& simulator = {});
 
 }  // namespace surf::workflow

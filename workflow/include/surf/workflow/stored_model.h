@@ -46,6 +46,6 @@ std::string kept_name(const ModelRequest& request);
 /// interrupted or killed is gone on with. A kept file that cannot be read is trained anew.
 /// Throws UsageError where the file is of another material, energy or spot, InvalidInput for another pixel size,
 /// FileError, Interrupted.
-StoredModel find_model(const ModelRequest& request, const TrainListener& listener = {});
+StoredModel find_model(const ModelRequest& request, const Reporter& reporter = {});
 
 }  // namespace surf::workflow

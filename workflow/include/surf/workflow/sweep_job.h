@@ -39,13 +39,8 @@ struct SweepYield {
   double mean = 0, standard_error = 0;
 };
 
-struct SweepListener {
-  ProgressCallback progress;         ///< in runs, fractions included
-  std::function<void(std::size_t run, const std::vector<SweepYield>&)> done;
-  WarningCallback warn;
-  NoteCallback note;
-  const CancelToken* cancel = nullptr;
-};
+/// Is told of each run of this process's part that is simulated now.
+using RunCallback = std::function<void(std::size_t run, const std::vector<SweepYield>& yields)>;
 
 /// Simulates what is not there yet, and writes the table: a line for each run with its values, its file, and per detector
 /// the mean yield with its standard error. What a run gave is kept in records/N.json of the folder; a run that was done
@@ -56,7 +51,7 @@ struct SweepListener {
 /// With a `team` all of it call this with the same job: each process does whole runs, into a folder that all see, or they
 /// share large ones. The leader writes records and table, which are those of one process, and who did how much to
 /// sweep.run.json.
-SweepSummary run(const SweepJob& job, const SweepListener& listener = {}, Team* team = nullptr);
+SweepSummary run(const SweepJob& job, const Reporter& reporter = {}, const RunCallback& on_run = {}, Team* team = nullptr);
 
 /// Puts the records of all parts, in one folder or in several, together to sweep.csv in the first of them. Returns its path.
 /// Throws InvalidInput if runs are missing, saying which, or if folders are of different sweeps.

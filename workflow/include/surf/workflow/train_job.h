@@ -17,6 +17,7 @@
 #include "surf/mc/physics.h"
 #include "surf/mc/simulate.h"
 #include "surf/sem/trained_model.h"
+#include "surf/workflow/reporter.h"
 #include "surf/workflow/simulate_job.h"
 
 namespace surf::workflow {
@@ -90,15 +91,6 @@ struct TrainJob {
   std::string command_line;              ///< for the record: what changes the model only
 };
 
-struct TrainListener {
-  ProgressCallback pixels;               ///< of all images that have to be simulated
-  LibraryCallback cascades;
-  ProgressCallback learning;             ///< once the images are there
-  WarningCallback warn;
-  NoteCallback note;
-  const CancelToken* cancel = nullptr;
-};
-
 struct TrainSummary {
   bool complete = true;                  ///< false when cancelled: there is no model yet
   TrainedModel model;
@@ -120,6 +112,6 @@ struct TrainSummary {
 ///
 /// With a `team` all of it call this with the same job, and simulate images, whole ones, into a folder that all see; the
 /// leader learns, while the others wait, and tells in NAME.run.json who did how much. Bytes are those of one process.
-TrainSummary run(const TrainJob& job, const TrainListener& listener = {}, Team* team = nullptr);
+TrainSummary run(const TrainJob& job, const Reporter& reporter = {}, Team* team = nullptr);
 
 }  // namespace surf::workflow
