@@ -77,6 +77,12 @@ void BoundParameters::declare(CLI::App& app, const std::string& group, const Par
   const std::string help = wrapped(help_of(about, field, look.help), help_width);
   const auto given = given_;
   const std::string key = about.name;
+  std::string heading = group;
+  if (heading.empty()) {
+    auto known = headings.find(about.name);
+    if (known == headings.end()) known = headings.find(about.name.substr(0, about.name.find('.')));
+    if (known != headings.end()) heading = known->second;
+  }
   const auto declare_as = [&](const std::string& as, const std::string& in_group) {
     CLI::Option* option = nullptr;
     if (field.kind() == FieldKind::flag) {
@@ -96,7 +102,7 @@ void BoundParameters::declare(CLI::App& app, const std::string& group, const Par
     option->group(in_group);
     roles()[option] = about.file;
   };
-  declare_as(name, group);
+  declare_as(name, heading);
   for (const std::string& former : look.former) declare_as(former, "");
 }
 

@@ -42,6 +42,8 @@ class BoundParameters {
 
   /// Before `add`: how these are named and shown.
   OptionLooks looks;
+  /// Headings in help by the parameter's name, or by its group ("beam"): for parameters that are added without one.
+  std::map<std::string, std::string, std::less<>> headings;
 
   /// Gives the struct what was given. Throws UsageError that names the parameter.
   template <class Struct>

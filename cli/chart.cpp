@@ -12,10 +12,11 @@
 #include "chart_sample.h"
 #include "commands.h"
 #include "common_options.h"
+#include "job_reporter.h"
 #include "joined_team.h"
 #include "name_list.h"
 #include "options.h"
-#include "scene_groups.h"
+#include "simulate_options.h"
 #include "surf/core/error.h"
 #include "surf/core/units.h"
 #include "surf/workflow/chain_chart_job.h"
@@ -48,7 +49,7 @@ Examples:
   semsurf sample pads -o pads && semsurf chart pads --model samples/si-1keV-10nm.json -o pads-chart)";
 
 struct Options {
-  SceneOptions scene;
+  BoundParameters scene;
   ChartSampleOptions sample;
   std::optional<std::string> output, accuracy, reference, compared, most, surfaces, surface_px, seed, threads, methods;
   bool quick = false, quiet = false;
@@ -69,10 +70,7 @@ workflow::ChartJob make_job(const Options& o, const std::string& command_line) {
   if (!o.output) throw UsageError("--output", "no folder is given", "Add -o chart");
   job.folder = *o.output;
   job.command_line = command_line;
-  std::vector<std::string> notes;
-  job.scene = make_scene(o.scene, notes, workflow::specimen_reader(nullptr, processes_here()));
-  if (!o.quiet)
-    for (const std::string& note : notes) print_note(note);
+  job.scene = read_scene(o.scene.given(), o.quiet, workflow::specimen_reader(nullptr, processes_here()));
   return job;
 }
 
@@ -124,13 +122,15 @@ void check_options(const CLI::App& app, bool sample) {
 
 bool is_folder(const Options& o) {
   std::error_code ignored;
-  return o.scene.inputs.size() == 1 && std::filesystem::is_directory(o.scene.inputs.front(), ignored);
+  const auto inputs = o.scene.given().find("specimen.input");
+  return inputs != o.scene.given().end() && inputs->second.size() == 1 &&
+         std::filesystem::is_directory(inputs->second.front(), ignored);
 }
 
 int chart_folder(const Options& o, const std::string& command_line) {
   if (leave_to_leader("chart FOLDER")) return 0;
   ChartSampleOptions sample = o.sample;
-  sample.sample = o.scene.inputs.front();
+  sample.sample = o.scene.given().at("specimen.input").front();
   sample.output = o.output;
   sample.methods = o.methods;
   sample.seed = o.seed;
@@ -145,29 +145,17 @@ int chart(const Options& o, const std::string& command_line) {
   workflow::together(team(), [&] { job = make_job(o, command_line); });
   workflow::ChartSummary s;
   {
-    InterruptGuard interrupts;
-    ProgressBar bar(!o.quiet);
+    JobReporter reporter(o.quiet);
     bool headed = false;
-    workflow::Reporter listener;
-    listener.progress = [&](double done, double total) { bar.show(done, total, nullptr); };
-    listener.point = [&](const workflow::ChartPoint& p) {
+    const auto tell = [&](const workflow::ChartPoint& p) {
       if (o.quiet) return;
-      bar.clear();
+      reporter.clear();
       if (!headed) print("{:<24} {:<38} {:>8} + {:<8}  rms errors\n", "method", "setting", "image", "before it");
       headed = true;
       print_point(p);
       flush();
     };
-    listener.warn = [&](const std::string& text) {
-      bar.clear();
-      print_warning(text);
-    };
-    listener.note = [&](const std::string& text) {
-      bar.clear();
-      if (!o.quiet) print_note(text);
-    };
-    listener.cancel = interrupts.token();
-    s = workflow::run(job, listener, team());
+    s = workflow::run(job, reporter, tell, team());
   }
   if (!workflow::leads(team())) return 0;
   if (!s.complete) {
@@ -218,10 +206,10 @@ void add_chart(CLI::App& app, Action& action, const std::string& command_line) {
   CLI::App* sub =
       app.add_subcommand("chart", "Time against error of every method, on a scene or a sample of yours");
   sub->group("Commands");
-  add_specimen_options(*sub, options->scene);
-  add_beam_options(*sub, options->scene);
-  add_scan_options(*sub, options->scene);
-  add_physics_options(*sub, options->scene);
+  add_request_options(*sub, options->scene,
+                      {"beam.energy", "beam.tilt", "beam.azimuth", "beam.spot", "beam.convergence", "beam.focus",
+                       "beam.working_distance", "scan.size", "scan.pixel_size", "scan.region", "simulation.physics",
+                       "simulation.cutoff"});
   add_options(*sub, *options);
   add_chart_sample_options(*sub, options->sample);
   sub->footer(footer());
@@ -229,7 +217,7 @@ void add_chart(CLI::App& app, Action& action, const std::string& command_line) {
     action = [options, sub, command_line] {
       const bool folder = is_folder(*options);
       if (!folder) check_options(*sub, false);
-      else if (workflow::is_sample(options->scene.inputs.front())) check_options(*sub, true);
+      else if (workflow::is_sample(options->scene.given().at("specimen.input").front())) check_options(*sub, true);
       return folder ? chart_folder(*options, command_line) : chart(*options, command_line);
     };
   });

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "common_options.h"
+#include "job_reporter.h"
 #include "name_list.h"
 #include "options.h"
 #include "surf/core/error.h"
@@ -98,32 +99,19 @@ int chart_sample(const ChartSampleOptions& o, const std::string& command_line) {
   const workflow::ChainChartJob job = make_job(o, command_line);
   workflow::ChainChartSummary s;
   {
-    InterruptGuard interrupts;
-    ProgressBar bar(!o.quiet);
-    workflow::Reporter listener;
-    listener.progress = [&](double done, double total) { bar.show(done, total, nullptr); };
-    const auto tell = [&](const auto& print) {
+    JobReporter reporter(o.quiet);
+    const auto tell = [&](const auto& print_it) {
       if (o.quiet) return;
-      bar.clear();
-      print();
+      reporter.clear();
+      print_it();
       flush();
     };
-    listener.registration = [&](const workflow::RegistrationPoint& p) {
-      tell([&] { print_registration(p); });
-    };
-    listener.reconstruction = [&](const workflow::ReconstructionPoint& p) {
-      tell([&] { print_reconstruction(p); });
-    };
-    listener.warn = [&](const std::string& text) {
-      bar.clear();
-      print_warning(text);
-    };
-    listener.note = [&](const std::string& text) { tell([&] { print_note(text); }); };
-    listener.cancel = interrupts.token();
+    workflow::ChainChartCallbacks points;
+    points.registration = [&](const workflow::RegistrationPoint& p) { tell([&] { print_registration(p); }); };
+    points.reconstruction = [&](const workflow::ReconstructionPoint& p) { tell([&] { print_reconstruction(p); }); };
     if (workflow::is_sample(o.sample))
-      listener.note(fmt::format(
-          "{} is a sample whose truth is known: registration and reconstruction are charted", o.sample));
-    s = workflow::run(job, listener);
+      reporter->note(fmt::format("{} is a sample whose truth is known: registration and reconstruction are charted", o.sample));
+    s = workflow::run(job, reporter, points);
   }
   if (!s.complete) {
     print_note(fmt::format("stopped: what is done is kept in {}; the same command goes on from there",

@@ -67,22 +67,18 @@ void print_scan(const io::SceneFile& scene) {
                                  format_exact(scan.center_y_nm),
                                  format_exact(scan.center_z_nm)));
   for (const mc::Detector& d : scene.detectors) print_item("detector", mc::format_detector(d));
-  if (scene.current_pa && scene.dwell_us) {
-    print_item("dose", fmt::format("{} pA for {} us: {:.4g} primaries per pixel",
-                                   format_exact(*scene.current_pa), format_exact(*scene.dwell_us),
-                                   *scene.current_pa * *scene.dwell_us * electrons_per_pa_us));
-    return;
+  if (const auto* const dose = std::get_if<mc::Dose>(&scene.budget)) {
+    print_item("dose", fmt::format("{} pA for {} us: {:.4g} primaries per pixel", format_exact(dose->current_pa),
+                                   format_exact(dose->dwell_us), dose->electrons));
+  } else if (const auto* const accuracy = std::get_if<mc::Accuracy>(&scene.budget)) {
+    print_item("accuracy", fmt::format("{}, but no better than {} per primary", format_share(accuracy->share), accuracy->floor));
+  } else if (const auto* const limit = std::get_if<mc::TimeLimit>(&scene.budget)) {
+    print_item("time", fmt::format("{:g} s", limit->seconds));
+  } else {
+    const auto electrons = mc::electrons_of(scene.budget);
+    print_item("electrons", fmt::format("{} per pixel, {} in all", electrons,
+                                        format_count(double(electrons) * scan.width * scan.height)));
   }
-  if (scene.accuracy) {
-    print_item("accuracy", fmt::format("{}, but no better than {} per primary",
-                                       format_share(*scene.accuracy),
-                                       scene.accuracy_floor.value_or(
-                                           mc::SimulationOptions{}.accuracy_floor)));
-    return;
-  }
-  const auto electrons = scene.electrons.value_or(mc::SimulationOptions{}.electrons);
-  print_item("electrons", fmt::format("{} per pixel, {} in all", electrons,
-                                      format_count(double(electrons) * scan.width * scan.height)));
 }
 
 void print_scene(const std::filesystem::path& path,

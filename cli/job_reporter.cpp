@@ -4,6 +4,7 @@
 namespace surf::cli {
 
 JobReporter::JobReporter(bool quiet) : bar_(!quiet) {
+  reporter_.on_stage = [this](const std::string&) { bar_.clear(); };
   reporter_.on_progress = [this](double done, double total, std::string_view things) {
     things_ = things;
     bar_.show(done, total, things_.empty() ? nullptr : things_.c_str());

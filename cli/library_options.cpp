@@ -39,7 +39,7 @@ std::size_t number_of_cascades(const LibraryOptions& o) {
   if (o.cascades) return whole_pages(parse_whole(*o.cascades, "--cascades", 1, most_cascades));
   mc::SimulationOptions simulation;
   if (o.accuracy) simulation.budget = mc::Accuracy{parse_accuracy(*o.accuracy)};
-  return mc::library_size(simulation, simulation.electrons);
+  return mc::library_size(simulation, mc::electrons_of(simulation.budget));
 }
 
 }  // namespace

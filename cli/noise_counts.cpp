@@ -8,6 +8,7 @@
 
 #include "common_options.h"
 #include "counts_plot.h"
+#include "job_reporter.h"
 #include "options.h"
 #include "surf/core/error.h"
 #include "surf/core/units.h"
@@ -39,7 +40,7 @@ workflow::CountJob make_job(const CountsInput& input) {
   if (input.at) job.at_nm = parse_point(*input.at);
   job.threads = parse_threads(input.threads);
   job.scene = io::read_scene(*input.scene);
-  job.seed = input.seed ? parse_seed(*input.seed, "--seed") : job.scene.seed.value_or(job.seed);
+  job.seed = input.seed ? parse_seed(*input.seed, "--seed") : job.scene.seed;
   return job;
 }
 
@@ -88,9 +89,8 @@ int print_counts(const CountsInput& input, const std::optional<std::string>& plo
   const workflow::CountJob job = make_job(input);
   workflow::CountSummary summary;
   {
-    InterruptGuard interrupts;
-    ProgressBar bar(!quiet);
-    summary = workflow::run(job, {[&](double done, double total) { bar.show(done, total); }, interrupts.token()});
+    const JobReporter reporter(quiet);
+    summary = workflow::run(job, reporter);
   }
   if (!quiet)
     print("{:<12} {} trials where the beam meets ({:.4g}, {:.4g}, {:.4g}) nm\n", "counts", job.trials, summary.hit_nm.x,

@@ -8,6 +8,7 @@
 
 #include "commands.h"
 #include "common_options.h"
+#include "job_reporter.h"
 #include "model_tables.h"
 #include "options.h"
 #include "surf/core/error.h"
@@ -110,13 +111,11 @@ std::string format_values(const Channel& channel) {
 
 int predict(const Options& o) {
   const workflow::PredictJob job = make_job(o);
-  Watched watched(!o.quiet);
-  const auto tell = [&](const std::string& note) {
-    if (!o.quiet) print_note(note);
-  };
-  const workflow::PredictSummary s = workflow::run(job, tell, watched.watch());
-  watched.clear();
-  for (const std::string& warning : s.warnings) print_warning(warning);
+  workflow::PredictSummary s;
+  {
+    const JobReporter reporter(o.quiet);
+    s = workflow::run(job, reporter);
+  }
   if (o.quiet) return 0;
   const auto line = [](const std::string& label, const std::string& text) { print("{:<10} {}\n", label, text); };
   line("model", format_model(s.model));

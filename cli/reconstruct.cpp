@@ -5,8 +5,8 @@
 #include <cmath>
 #include <memory>
 
-#include "chain_progress.h"
 #include "commands.h"
+#include "job_reporter.h"
 #include "reconstruct_options.h"
 #include "surf/core/error.h"
 #include "surf/core/units.h"
@@ -95,8 +95,8 @@ int work(const ReconstructOptions& o, const std::string& command_line) {
   job.command_line = command_line;
   workflow::ReconstructSummary s;
   try {
-    ChainProgress progress(o.chain.quiet);
-    s = workflow::run(job, progress.listener());
+    const JobReporter reporter(o.chain.quiet);
+    s = workflow::run(job, reporter);
   } catch (const Interrupted&) {
     print_note("stopped: there is no result yet. The same command goes on from what is done");
     return exit_interrupted;

@@ -4,9 +4,9 @@
 #include <memory>
 
 #include "chain_options.h"
-#include "chain_progress.h"
 #include "commands.h"
 #include "common_options.h"
+#include "job_reporter.h"
 #include "surf/core/error.h"
 #include "surf/io/plot.h"
 #include "terminal.h"
@@ -48,8 +48,8 @@ int work(const Options& o) {
   job.pose = pose_options(o.chain, job.afm.scan, job.sem.image);
   workflow::RegisterSummary s;
   {
-    ChainProgress progress(o.chain.quiet);
-    s = workflow::run(job, progress.listener());
+    const JobReporter reporter(o.chain.quiet);
+    s = workflow::run(job, reporter);
   }
   print_pose(s.pose, job.sem.image.pitch_x_nm);
   if (!o.chain.quiet)

@@ -8,6 +8,7 @@
 
 #include "commands.h"
 #include "common_options.h"
+#include "job_reporter.h"
 #include "options.h"
 #include "surf/core/error.h"
 #include "surf/io/cache.h"
@@ -106,30 +107,16 @@ int sample(const Options& o) {
   const workflow::SampleJob job = make_job(o);
   workflow::SampleSummary s;
   {
-    InterruptGuard interrupts;
-    ProgressBar bar(!o.quiet);
+    JobReporter reporter(o.quiet);
     const bool told = !o.quiet && !isatty(fileno(messages()));
     TimeLeft left(told, "the SEM image"), library_left(told, "the library");
     if (!o.quiet) print_work(job);
-    s = workflow::run(
-        job,
-        [&](double done, double total) {
-          bar.show(done, total);
-          left.tell(done, total);
-        },
-        interrupts.token(),
-        [&](double done, double total) {
-          bar.show(done, total, "cascades");
-          library_left.tell(done, total);
-        },
-        [&](const std::string& note) {
-          bar.clear();
-          if (!o.quiet) print_note(note);
-        },
-        [&](const std::string& warning) {
-          bar.clear();
-          print_warning(warning);
-        });
+    workflow::Reporter also = reporter;
+    also.on_progress = [&](double done, double total, std::string_view things) {
+      reporter->progress(done, total, things);
+      (things == "cascades" ? library_left : left).tell(done, total);
+    };
+    s = workflow::run(job, also);
   }
   if (!s.complete) {
     print_note(why_stopped(job, s));

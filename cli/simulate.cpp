@@ -6,8 +6,8 @@
 
 #include "commands.h"
 #include "dry_run_summary.h"
+#include "job_reporter.h"
 #include "joined_team.h"
-#include "simulate_job_options.h"
 #include "simulate_options.h"
 #include "simulate_summary.h"
 #include "surf/workflow/dry_run.h"
@@ -25,19 +25,12 @@ constexpr double pilot_seconds = 10;
 // Who leads says it; it is alone in this.
 int try_out(const SimulateOptions& options, const std::string& command_line) {
   if (!workflow::leads(team())) return 0;
-  workflow::SimulateJob job = make_simulate_job(options, command_line, workflow::specimen_reader());
+  workflow::SimulateJob job =
+      make_simulate_job(options.parameters.given(), options.quiet, command_line, workflow::specimen_reader());
   workflow::DryRun run;
   {
-    InterruptGuard interrupts;
-    ProgressBar bar(!options.quiet);
-    run = workflow::dry_run(
-        std::move(job), team() ? team()->size() : 1, pilot_seconds, [&](double done, double total) { bar.show(done, total); },
-        interrupts.token(),
-        [&](const std::string& note) {
-          bar.clear();
-          if (!options.quiet) print_note(note);
-        },
-        [&](double done, double total) { bar.show(done, total, "cascades"); });
+    const JobReporter reporter(options.quiet);
+    run = workflow::dry_run(std::move(job), team() ? team()->size() : 1, pilot_seconds, reporter);
   }
   for (const std::string& warning : run.warnings) print_warning(warning);
   print_dry_run(run);
@@ -48,26 +41,14 @@ int simulate(const SimulateOptions& options, const std::string& command_line) {
   if (options.dry_run) return try_out(options, command_line);
   workflow::SimulateJob job;
   workflow::together(team(), [&] {
-    job = make_simulate_job(options, command_line,
+    job = make_simulate_job(options.parameters.given(), options.quiet, command_line,
                             workflow::specimen_reader(workflow::node_of(team())));
   });
-  const int threads = job.options.threads;
+  const int threads = job.execution.threads;
   workflow::SimulateSummary summary;
   {
-    InterruptGuard interrupts;
-    ProgressBar bar(!options.quiet);
-    const char* things = job.scene.accuracy || job.seconds > 0 ? "pixels" : "primaries";
-    summary = workflow::run(
-        std::move(job), [&](double done, double total) { bar.show(done, total, things); }, interrupts.token(),
-        [&](const std::string& warning) {
-          bar.clear();
-          print_warning(warning);
-        },
-        [&](const std::string& note) {
-          bar.clear();
-          if (!options.quiet) print_note(note);
-        },
-        [&](double done, double total) { bar.show(done, total, "cascades"); }, team());
+    const JobReporter reporter(options.quiet);
+    summary = workflow::run(std::move(job), reporter, team());
   }
   if (!workflow::leads(team())) return 0;
   if (!options.quiet) print_summary(threads, summary);

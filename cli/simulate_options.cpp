@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "simulate_options.h"
 
+#include <utility>
+
 #include "common_options.h"
-#include "scene_groups.h"
+#include "surf/core/error.h"
+#include "surf/io/cache.h"
+#include "terminal.h"
 
 namespace surf::cli {
 namespace {
@@ -29,128 +33,101 @@ Examples:
   semsurf simulate samples/mesa80.toml --time 30s -o mesa.exr
   semsurf simulate cube.stl --materials mine.toml --material nitride -o nitride.exr
   semsurf simulate scan.gwy --height-channel ZSensor -o sem.exr
-  semsurf simulate afm.tif --pitch 2nm --z-unit 0.1nm --edge mirror -o sem.exr
+  semsurf simulate afm.tif --height-pitch 2nm --height-unit 0.1nm --edge mirror -o sem.exr
   semsurf simulate cube.stl --size 64x64 --region -96,-96,96,96 \
       --physics elastic=browning,secondaries=off -o bse.exr)";
 
-constexpr const char* detectors = "Detectors, besides SE and BSE";
+const std::vector<std::string> written{"output.", "job.checkpoint", "job.checkpoint_every", "job.restart"};
 
-void add_detector_option(CLI::App& app, SimulateOptions& o) {
-  app.add_option("--detector", o.scene.detectors,
-                 "One of these, changed after a colon (side:axis=60deg/90deg), or one\n"
-                 "of your own (loss:energy=900eV..,cone=30deg); may be repeated")
-      ->type_name("SE1|SE2|quadrants|annular|in-lens|side")->allow_extra_args(false)->group(detectors);
+void set_looks(BoundParameters& p) {
+  p.headings = {{"specimen", "Specimen"},
+                {"beam", "Beam"},
+                {"scan", "Scan"},
+                {"simulation", "Simulation"},
+                {"simulation.detector", "Detectors, besides SE and BSE"},
+                {"output.spectra", "Detectors, besides SE and BSE"},
+                {"output.deposit", "Detectors, besides SE and BSE"},
+                {"output.trajectories", "Detectors, besides SE and BSE"},
+                {"output.trajectories_at", "Detectors, besides SE and BSE"},
+                {"output", "Output"},
+                {"job", "Long jobs: the same command goes on from where it was stopped"},
+                {"job.threads", "Simulation"},
+                {"job.cache", "Simulation"}};
+  p.looks["specimen.input"] = {.name = "INPUT", .positional = true};
+  p.looks["specimen.height_pitch"] = {.former = {"--pitch"}};
+  p.looks["specimen.height_unit"] = {.former = {"--z-unit"}};
+  p.looks["output.png_channel"] = {.former = {"--channel"}};
+  p.looks["output.file"] = {.name = "-o,--output"};
 }
 
-void add_record_options(CLI::App& app, SimulateOptions& o) {
-  const char* group = detectors;
-  app.add_flag("--spectra", o.spectra, "Energies and angles per detector: NAME.spectra.csv")
-      ->group(group);
-  app.add_option("--deposit", o.deposit,
-                 "Deposited energy on a grid of N cells along its longest side:\n"
-                 "NAME.deposit.vti")
-      ->type_name("N")->group(group);
-  app.add_option("--trajectories", o.trajectories,
-                 "Tracks of N primaries: NAME.tracks.vtp and a side view, NAME.tracks.png")
-      ->type_name("N")->group(group);
-  app.add_option("--trajectories-at", o.trajectories_at, "Where they land (the scan's middle)")
-      ->type_name("X,Y")->group(group);
+/// Which parameters of a job the struct has, but for those whose names begin so.
+std::vector<std::string> names_without(const std::vector<std::string>& beginnings) {
+  std::vector<std::string> names;
+  workflow::SimulateJob job;
+  for_each_parameter(job, [&](const Parameter& about, Field&) {
+    for (const std::string& beginning : beginnings)
+      if (about.name.starts_with(beginning)) return;
+    names.push_back(about.name);
+  });
+  return names;
 }
 
-void add_simulation_options(CLI::App& app, SimulateOptions& o) {
-  const char* group = "Simulation";
-  app.add_option("--electrons", o.electrons, "Primaries per pixel (200)")
-      ->type_name("N")->group(group);
-  app.add_option("--accuracy", o.accuracy,
-                 "Instead: as many as each pixel needs to bring the standard error of\n"
-                 "all detectors down to this share of its mean, as 1% or 0.01")
-      ->type_name("SHARE")->group(group);
-  app.add_option("--accuracy-floor", o.accuracy_floor,
-                 "No standard error below this is asked for, counts per primary (0.002)")
-      ->type_name("NUMBER")->group(group);
-  app.add_option("--time", o.time,
-                 "Instead: the accuracy that fits in this time, as 30s; says which, and\n"
-                 "--accuracy with that gives the same bytes")
-      ->type_name("TIME")->group(group);
-  app.add_option("--mesh-tolerance", o.mesh_tolerance,
-                 "Leave out detail of meshes and height fields, moving no surface by more\n"
-                 "than this; says what is gained (0nm: all detail is simulated)")
-      ->type_name("LENGTH")->group(group);
-  app.add_option("--method", o.method,
-                 "Follow each electron (direct), or retrace stored cascades (replay); both\n"
-                 "have the same statistics (auto: whichever is less work)")
-      ->type_name("auto|direct|replay")->group(group);
-  app.add_option("--cache", o.cache,
-                 "Where libraries of cascades are kept for other runs, or off\n"
-                 "($SEMSURF_CACHE, ~/.cache/semsurf)")
-      ->type_name("FOLDER|off")->group(group);
-  add_physics_options(app, o.scene);
-  app.add_option("--seed", o.seed, "The same seed gives the same bytes (1)")
-      ->type_name("N")->group(group);
-  add_threads_option(app, o.threads)->group(group);
-}
-
-void add_long_job_options(CLI::App& app, SimulateOptions& o) {
-  const char* group = "Long jobs: the same command goes on from where it was stopped";
-  app.add_option("--checkpoint", o.checkpoint,
-                 "Where unfinished work is kept (NAME.XXXXXXXX.checkpoint beside the\n"
-                 "first output, X standing for the job), or off")
-      ->type_name("FILE")->group(group);
-  app.add_option("--checkpoint-every", o.checkpoint_every,
-                 "Time between writes (30s); the first is after 10s or less")
-      ->type_name("TIME")->group(group);
-  app.add_flag("--restart", o.restart, "Begin anew, whatever was done before")->group(group);
-  app.add_flag("--dry-run", o.dry_run,
-               "Simulate a part for ten seconds, and tell what the whole will take: rays,\n"
-               "time, memory and disk. Writes nothing but libraries")
-      ->group(group);
-}
-
-void add_channel_options(CLI::App& app, SimulateOptions& o) {
-  const char* group = "Output";
-  app.add_option("--channel", o.channel, "What PNG files show (SE)")
-      ->type_name("SE|SE.stderr|BSE|...|valid")->group(group);
-  app.add_option("--channels", o.channels, "Also what the beam sees: z_nm, normal, material; and how it was simulated:\n"
-                 "electrons, model, variance_left (see below)")
-      ->type_name("NAME,...")->group(group);
-}
-
-void add_output_options(CLI::App& app, SimulateOptions& o) {
-  const char* group = "Output";
-  app.add_option("-o,--output", o.outputs, "Image to write: .exr .tif .png .vti; may be repeated")
-      ->type_name("FILE")->option_text("FILE")->allow_extra_args(false)->group(group);
-  add_channel_options(app, o);
-  app.add_option("--layout", o.layout,
-                 "EXR and TIFF in rows, or in tiles with smaller sizes for viewing (auto:\n"
-                 "tiles above 64 million pixels)")
-      ->type_name("auto|rows|tiles")->check(CLI::IsMember({"auto", "rows", "tiles"}))->group(group);
-  add_quiet_flag(app, o.quiet)->group(group);
+void print_notes(const std::vector<std::string>& notes, bool quiet) {
+  if (quiet) return;
+  for (const std::string& note : notes) print_note(note);
 }
 
 }  // namespace
 
-void add_simulate_settings(CLI::App& app, SimulateOptions& options) {
-  add_specimen_options(app, options.scene);
-  add_beam_options(app, options.scene);
-  add_dose_options(app, options.scene);
-  add_scan_options(app, options.scene);
-  add_simulation_options(app, options);
-  add_detector_option(app, options);
-  add_channel_options(app, options);
-  add_quiet_flag(app, options.quiet)->group("Output");
+void add_request_options(CLI::App& app, BoundParameters& parameters, const std::vector<std::string>& only) {
+  set_looks(parameters);
+  parameters.add(app, "", io::SpecimenRequest{});
+  parameters.add(app, "", mc::SimulationRequest{}, only);
 }
 
-void add_simulate_options(CLI::App& app, SimulateOptions& options) {
-  add_specimen_options(app, options.scene);
-  add_beam_options(app, options.scene);
-  add_dose_options(app, options.scene);
-  add_scan_options(app, options.scene);
-  add_simulation_options(app, options);
-  add_detector_option(app, options);
-  add_record_options(app, options);
-  add_long_job_options(app, options);
-  add_output_options(app, options);
+void add_simulate_settings(CLI::App& app, SimulateOptions& o) {
+  set_looks(o.parameters);
+  o.parameters.add(app, "", io::SpecimenRequest{});
+  std::vector<std::string> names = names_without(written);
+  names.insert(names.end(), {"output.channels", "output.png_channel"});
+  o.parameters.add(app, "", workflow::SimulateJob{}, names);
+  add_quiet_flag(app, o.quiet)->group("Output");
+}
+
+void add_simulate_options(CLI::App& app, SimulateOptions& o) {
+  set_looks(o.parameters);
+  o.parameters.add(app, "", io::SpecimenRequest{});
+  o.parameters.add(app, "", workflow::SimulateJob{});
+  app.add_flag("--dry-run", o.dry_run,
+               "Simulate a part for ten seconds, and tell what the whole will take: rays, time, memory and disk;\n"
+               "writes nothing but libraries")
+      ->group("Long jobs: the same command goes on from where it was stopped");
+  add_quiet_flag(app, o.quiet)->group("Output");
   app.footer(examples);
+}
+
+io::SceneFile read_scene(const GivenTexts& given, bool quiet, const io::BodyReader& read) {
+  // Numbers first: a bad one should not wait for a large mesh to be read.
+  mc::SimulationRequest numbers;
+  BoundParameters::apply(numbers, given);
+  io::SpecimenRequest specimen;
+  BoundParameters::apply(specimen, given);
+  io::SceneFile scene = io::read_specimen(specimen, read);
+  print_notes(scene.notes, quiet);
+  BoundParameters::apply(static_cast<mc::SimulationRequest&>(scene), given);
+  return scene;
+}
+
+workflow::SimulateJob make_simulate_job(const GivenTexts& given, bool quiet, const std::string& command_line,
+                                       const io::BodyReader& read) {
+  workflow::SimulateJob job;
+  job.cache = io::cache_folder();
+  BoundParameters::apply(job, given);
+  if (job.outputs.empty() && given.contains("specimen.input"))
+    throw UsageError("output.file", "no output file is given", "Add -o image.exr");
+  job.scene = read_scene(given, quiet, read);
+  job.command_line = command_line;
+  return job;
 }
 
 }  // namespace surf::cli

@@ -2,33 +2,37 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
-#include <optional>
 #include <string>
-#include <vector>
 
-#include "scene_options.h"
+#include "bound_parameters.h"
+#include "surf/io/sim/specimen_request.h"
+#include "surf/workflow/simulate_job.h"
 
 namespace surf::cli {
 
-/// Everything `simulate` is told, as text; absent: not given.
+/// What `simulate` and its relatives are told.
 struct SimulateOptions {
-  SceneOptions scene;
-  std::optional<std::string> electrons, accuracy, accuracy_floor, time, mesh_tolerance, method, seed, threads, cache;
-  std::vector<std::string> outputs;
-  std::string channel, channels, layout = "auto";
-  std::optional<std::string> deposit, trajectories, trajectories_at;
-  std::optional<std::string> checkpoint, checkpoint_every;
-  bool restart = false;
+  BoundParameters parameters;
   bool dry_run = false;
-  bool spectra = false;
   bool quiet = false;
 };
 
-/// Declares specimen, beam, scan and how it is simulated, with their help: all but outputs, what else is recorded and
-/// checkpoints.
+/// Declares the specimen's files, and beam, scan, physics and how much is simulated: those parameters of the request that
+/// `only` names, or all.
+void add_request_options(CLI::App& app, BoundParameters& parameters, const std::vector<std::string>& only = {});
+
+/// Declares all of a simulation but outputs, what else is recorded and checkpoints: what a sweep can vary.
 void add_simulate_settings(CLI::App& app, SimulateOptions& options);
 
-/// Declares them all, with their help.
+/// Declares all of a simulation.
 void add_simulate_options(CLI::App& app, SimulateOptions& options);
+
+/// The specimen and what is asked of it. Notes go to the user unless they are quiet. Throws UsageError, FileError and
+/// InvalidInput.
+io::SceneFile read_scene(const GivenTexts& given, bool quiet, const io::BodyReader& read);
+
+/// The job that texts ask for, likewise.
+workflow::SimulateJob make_simulate_job(const GivenTexts& given, bool quiet, const std::string& command_line,
+                                       const io::BodyReader& read);
 
 }  // namespace surf::cli

@@ -60,7 +60,7 @@ void print_library(const workflow::SimulateSummary& s) {
 // Which share of the pixels that see the specimen was done how, and which of the electrons went there.
 void print_models(const workflow::SimulateSummary& s) {
   const mc::ResultSummary& r = s.statistics;
-  if (s.result.accuracy <= 0 || r.seen == 0) return;
+  if (mc::accuracy_of(s.result.budget) <= 0 || r.seen == 0) return;
   const double all = r.mean_electrons * double(r.seen);
   std::string text;
   for (const auto& [model, words] :
@@ -79,15 +79,16 @@ void print_models(const workflow::SimulateSummary& s) {
 
 void print_electrons(const workflow::SimulateSummary& s) {
   const mc::ResultSummary& r = s.statistics;
-  if (s.result.dose > 0)
-    print_line("dose", fmt::format("{:.4g} primaries per pixel on average", s.result.dose));
-  if (s.result.accuracy <= 0) return;
+  if (const double dose = mc::dose_of(s.result.budget); dose > 0)
+    print_line("dose", fmt::format("{:.4g} primaries per pixel on average", dose));
+  const double accuracy = mc::accuracy_of(s.result.budget);
+  if (accuracy <= 0) return;
   print_line("electrons", fmt::format("{:.0f} per pixel on average, {} to {}", r.mean_electrons,
                                       r.fewest_electrons, r.most_electrons));
   print_line("accuracy",
              r.missed == 0
-                 ? fmt::format("{} reached in every pixel", format_share(s.result.accuracy))
-                 : fmt::format("{} not reached in {} of {} pixels", format_share(s.result.accuracy),
+                 ? fmt::format("{} reached in every pixel", format_share(accuracy))
+                 : fmt::format("{} not reached in {} of {} pixels", format_share(accuracy),
                                r.missed, r.seen));
 }
 

@@ -12,9 +12,9 @@
 
 #include "commands.h"
 #include "file_uses.h"
+#include "job_reporter.h"
 #include "joined_team.h"
 #include "options.h"
-#include "simulate_job_options.h"
 #include "simulate_options.h"
 #include "surf/core/error.h"
 #include "surf/workflow/specimen_reader.h"
@@ -28,20 +28,19 @@ constexpr int exit_interrupted = 130;
 constexpr std::size_t most_runs = 1'000'000, most_tried = 100;
 
 constexpr const char* examples =
-    R"(What can be varied: energy, tilt, azimuth, spot, convergence, focus, working-distance, current,
-electrons, accuracy, mesh-tolerance, seed, material, pixel-size, physics, cutoff, method. Values are
-those of the options of the same name: a list with commas, or FROM:TO:STEP.
+    R"(What can be varied: whatever the groups Specimen, Beam, Scan, Simulation and Detectors have, files apart.
+Values are those of the options of the same name: a list with commas, or FROM:TO:STEP.
 
 FOLDER gets an image for each combination, named by its values, and sweep.csv with their mean
 yields. Stop when you like: the same command goes on from there. Another grid needs another folder.
---part 3/16 does every 16th run from the third on: a job array does all parts, and 'semsurf join'
+--part 3/16 does every 16th run from the third on: a job array does all parts, and 'semsurf sweep join'
 makes the table. Under mpirun each process does whole runs, and they share large ones.
 All other options are those of 'semsurf simulate'.
 
 Examples:
   semsurf sweep samples/mesa80.toml --vary energy=500eV,1keV,2keV --vary tilt=0deg:60deg:5deg -o mesa
   semsurf sweep samples/flat.toml --vary tilt=0:80:10 --accuracy 2% -o yields
-  semsurf sweep samples/mesa80.toml --vary seed=1:16:1 --part 3/16 -o seeds; semsurf join seeds
+  semsurf sweep samples/mesa80.toml --vary seed=1:16:1 --part 3/16 -o seeds; semsurf sweep join seeds
   mpirun -n 4 semsurf sweep samples/mesa80.toml --vary tilt=0deg:60deg:5deg -o mesa)";
 
 struct Options {
@@ -51,32 +50,26 @@ struct Options {
   std::vector<std::string> formats;
 };
 
-using Field = std::optional<std::string> SimulateOptions::*;
-using SceneField = std::optional<std::string> SceneOptions::*;
-
-void set(SimulateOptions& o, const std::string& name, const std::string& value) {
-  static const std::map<std::string, Field> own{
-      {"electrons", &SimulateOptions::electrons}, {"accuracy", &SimulateOptions::accuracy},
-      {"mesh-tolerance", &SimulateOptions::mesh_tolerance}, {"seed", &SimulateOptions::seed},
-      {"method", &SimulateOptions::method}};
-  static const std::map<std::string, SceneField> scene{
-      {"energy", &SceneOptions::energy}, {"tilt", &SceneOptions::tilt}, {"azimuth", &SceneOptions::azimuth},
-      {"spot", &SceneOptions::spot}, {"convergence", &SceneOptions::convergence}, {"focus", &SceneOptions::focus},
-      {"working-distance", &SceneOptions::working_distance}, {"current", &SceneOptions::current},
-      {"material", &SceneOptions::material}, {"pixel-size", &SceneOptions::pixel_size},
-      {"physics", &SceneOptions::physics}, {"cutoff", &SceneOptions::cutoff}};
-  if (const auto found = own.find(name); found != own.end()) {
-    o.*found->second = value;
-  } else if (const auto of_scene = scene.find(name); of_scene != scene.end()) {
-    o.scene.*of_scene->second = value;
-  } else {
-    std::vector<std::string> names;
-    for (const auto& [known, field] : own) names.push_back(known);
-    for (const auto& [known, field] : scene) names.push_back(known);
-    const std::string guess = nearest(name, names);
-    throw UsageError("--vary", fmt::format("'{}' cannot be varied", name),
-                     guess.empty() ? "'semsurf sweep --help' lists what can" : fmt::format("Did you mean {}?", guess));
-  }
+/// The parameter that an option of `simulate` stands for.
+std::string parameter_of(const std::string& name) {
+  static const std::map<std::string, std::string> all = [] {
+    std::map<std::string, std::string> known;
+    const auto add = [&](const Parameter& about, Field&) {
+      known[option_name(about.name).substr(2)] = about.name;
+    };
+    io::SpecimenRequest specimen;
+    for_each_parameter(specimen, add);
+    mc::SimulationRequest request;
+    for_each_parameter(request, add);
+    for (const char* fixed : {"input", "time", "materials"}) known.erase(fixed);
+    return known;
+  }();
+  if (const auto found = all.find(name); found != all.end()) return found->second;
+  std::vector<std::string> names;
+  for (const auto& [known, parameter] : all) names.push_back(known);
+  const std::string guess = nearest(name, names);
+  throw UsageError("--vary", fmt::format("'{}' cannot be varied", name),
+                   guess.empty() ? "'semsurf sweep --help' lists what can" : fmt::format("Did you mean {}?", guess));
 }
 
 struct Number {
@@ -155,8 +148,10 @@ void parse_part(const std::string& text, workflow::SweepJob& job) {
 
 std::vector<io::FileUse> inputs_of(const Options& o) {
   std::vector<io::FileUse> inputs;
-  for (const auto& [option, files] : {std::pair{"INPUT", &o.simulate.scene.inputs}, std::pair{"--materials", &o.simulate.scene.materials}})
-    for (const std::string& file : *files) std::ranges::copy(files_read(option, file), std::back_inserter(inputs));
+  const GivenTexts& given = o.simulate.parameters.given();
+  for (const auto& [option, parameter] : {std::pair{"INPUT", "specimen.input"}, {"--materials", "specimen.materials"}})
+    if (const auto files = given.find(parameter); files != given.end())
+      for (const std::string& file : files->second) std::ranges::copy(files_read(option, file), std::back_inserter(inputs));
   return inputs;
 }
 
@@ -188,18 +183,18 @@ workflow::SweepJob make_sweep(const Options& o, const std::string& command_line)
       run.values[a] = axes[a].values[rest % axes[a].values.size()];
       rest /= axes[a].values.size();
     }
-    SimulateOptions options = o.simulate;
-    options.quiet = true;
-    for (std::size_t a = 0; a < axes.size(); ++a) set(options, axes[a].name, run.values[a]);
+    GivenTexts given = o.simulate.parameters.given();
+    for (std::size_t a = 0; a < axes.size(); ++a) given[parameter_of(axes[a].name)] = {run.values[a]};
+    std::vector<std::string>& files = given["output.file"];
     for (const std::string& format : formats) {
-      options.outputs.push_back((job.folder / (file_name(axes, run.values) + "." + format)).string());
-      outputs.push_back({"--output", options.outputs.back(), {}});
+      files.push_back((job.folder / (file_name(axes, run.values) + "." + format)).string());
+      outputs.push_back({"--output", files.back(), {}});
     }
-    std::filesystem::path record = options.outputs.back();
-    io::refuse_strangers(options.outputs.back(), {record.replace_extension(".run.json")});
+    std::filesystem::path record = files.back();
+    io::refuse_strangers(files.back(), {record.replace_extension(".run.json")});
     // Each process looks at every specimen, so each reads them; they are shared when they are traced.
-    run.make = [options, command_line] {
-      return make_simulate_job(options, command_line, workflow::specimen_reader(nullptr, processes_here()));
+    run.make = [given, command_line] {
+      return make_simulate_job(given, true, command_line, workflow::specimen_reader(nullptr, processes_here()));
     };
     job.runs.push_back(std::move(run));
   }
@@ -219,13 +214,10 @@ int sweep(const Options& o, const std::string& command_line) {
   workflow::SweepSummary s;
   const bool quiet = o.simulate.quiet || !workflow::leads(team());
   {
-    InterruptGuard interrupts;
-    ProgressBar bar(!quiet);
-    workflow::Reporter listener;
-    listener.progress = [&](double done, double total) { bar.show(done, total, nullptr); };
-    listener.done = [&](std::size_t run, const std::vector<workflow::SweepYield>& yields) {
+    JobReporter reporter(quiet);
+    const auto tell = [&](std::size_t run, const std::vector<workflow::SweepYield>& yields) {
       if (quiet) return;
-      bar.clear();
+      reporter.clear();
       std::string line = fmt::format("{:>5}/{}", run + 1, job.runs.size());
       for (const std::string& value : job.runs[run].values) line += fmt::format("  {:>8}", value);
       for (const workflow::SweepYield& y : yields)
@@ -233,16 +225,7 @@ int sweep(const Options& o, const std::string& command_line) {
       print("{}\n", line);
       flush();
     };
-    listener.warn = [&](const std::string& text) {
-      bar.clear();
-      print_warning(text);
-    };
-    listener.note = [&](const std::string& text) {
-      bar.clear();
-      if (!quiet) print_note(text);
-    };
-    listener.cancel = interrupts.token();
-    s = workflow::run(job, listener, team());
+    s = workflow::run(job, reporter, tell, team());
   }
   if (!s.complete) {
     print_note(fmt::format("stopped after {} runs, kept in {}; the same command goes on from there", s.done, job.folder.string()));

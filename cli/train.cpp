@@ -5,6 +5,7 @@
 
 #include "commands.h"
 #include "model_tables.h"
+#include "job_reporter.h"
 #include "joined_team.h"
 #include "surf/workflow/train_job.h"
 #include "terminal.h"
@@ -41,22 +42,8 @@ int train(const TrainOptions& options) {
   workflow::together(team(), [&] { job = make_train_job(options); });
   workflow::TrainSummary summary;
   {
-    InterruptGuard interrupts;
-    ProgressBar bar(!options.quiet);
-    workflow::Reporter listener;
-    listener.pixels = [&](double done, double total) { bar.show(done, total, "pixels"); };
-    listener.cascades = [&](double done, double total) { bar.show(done, total, "cascades"); };
-    listener.learning = [&](double done, double total) { bar.show(done, total, nullptr); };
-    listener.warn = [&](const std::string& warning) {
-      bar.clear();
-      print_warning(warning);
-    };
-    listener.note = [&](const std::string& note) {
-      bar.clear();
-      if (!options.quiet) print_note(note);
-    };
-    listener.cancel = interrupts.token();
-    summary = workflow::run(job, listener, team());
+    const JobReporter reporter(options.quiet);
+    summary = workflow::run(job, reporter, team());
   }
   if (!workflow::leads(team())) return 0;
   if (!summary.complete) {

@@ -121,6 +121,12 @@ void describe(ParameterVisitor& visit, ScanRequest& scan) {
   else scan.pixel_x_nm = scan.pixel_y_nm = std::nullopt;
 }
 
+void describe(ParameterVisitor& visit, Execution& execution) {
+  visit(execution.threads, {.name = "job.threads", .help = "Number of threads, which does not change the result",
+                            .limits = within(0, 4096), .otherwise = "one per hardware thread", .level = Level::advanced,
+                            .recorded = false});
+}
+
 void describe(ParameterVisitor& visit, SimulationRequest& request) {
   describe(visit, request.beam);
   describe(visit, request.scan);

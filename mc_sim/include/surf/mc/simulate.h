@@ -37,6 +37,8 @@ struct Execution {
   std::string scratch_folder;
 };
 
+void describe(ParameterVisitor& visit, Execution& execution);
+
 struct SimulationOptions : Execution {
   Budget budget;                  ///< no TimeLimit
   Method method = Method::direct;

@@ -56,6 +56,9 @@ struct CheckpointOptions {
   bool restart = false;          ///< begin anew, whatever there is
 };
 
+void describe(ParameterVisitor& visit, Extras& extras);
+void describe(ParameterVisitor& visit, CheckpointOptions& checkpoint);
+
 /// One simulation from specimen to files, or to memory alone.
 struct SimulateJob {
   io::SceneFile scene;                            ///< what is asked for
@@ -69,6 +72,9 @@ struct SimulateJob {
   io::Layout layout = io::Layout::automatic;      ///< of EXR and TIFF
   std::string command_line;                       ///< for the sidecar
 };
+
+/// All but the specimen: the request, how it is carried out, and what is written.
+void describe(ParameterVisitor& visit, SimulateJob& job);
 
 struct SimulateSummary {
   mc::SimulationResult result;

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <fmt/format.h>
+
+#include "surf/core/error.h"
+#include "surf/core/parameters.h"
+#include "surf/core/units.h"
+#include "surf/io/cache.h"
+#include "surf/workflow/simulate_job.h"
+
+namespace surf::workflow {
+
+void describe(ParameterVisitor& visit, Extras& extras) {
+  visit(extras.channels, {.name = "output.channels",
+                          .help = "More channels. What the beam sees: z_nm, normal, material; how it was simulated: electrons, model, "
+                                  "variance_left",
+                          .level = Level::advanced});
+  const auto number = [&](int& count, const Parameter& about) {
+    std::optional<int> given = count > 0 ? std::optional(count) : std::nullopt;
+    visit(given, about);
+    count = given.value_or(0);
+  };
+  number(extras.deposit_cells,
+         {.name = "output.deposit",
+          .help = "Deposited energy on a grid of this many cells along its longest side, in NAME.deposit.vti",
+          .limits = within(1, 1024), .level = Level::advanced});
+  number(extras.trajectories, {.name = "output.trajectories",
+                               .help = "Tracks of this many primaries, in NAME.tracks.vtp, and a side view, in NAME.tracks.png",
+                               .limits = within(1, 100'000)});
+  visit.form({.name = "output.trajectories_at", .help = "Point of the scan plane where the primaries of tracks land",
+              .unit = Unit::nm, .otherwise = "the middle of the scan", .form = "X,Y", .level = Level::advanced},
+             [&] {
+               const auto& at = extras.trajectories_at_nm;
+               return at ? fmt::format("{},{}", format_exact(at->first), format_exact(at->second)) : std::string();
+             },
+             [&](std::string_view text, const std::string& subject) {
+               const std::size_t comma = text.find(',');
+               if (comma == std::string_view::npos) throw UsageError(subject, "it is not a point", "Write two lengths, X,Y");
+               extras.trajectories_at_nm = {parse_length_nm(text.substr(0, comma), subject),
+                                            parse_length_nm(text.substr(comma + 1), subject)};
+             });
+}
+
+void describe(ParameterVisitor& visit, CheckpointOptions& checkpoint) {
+  visit.form({.name = "job.checkpoint", .help = "File that unfinished work is kept in, or off",
+              .otherwise = "NAME.XXXXXXXX.checkpoint beside the first output, X standing for the job", .form = "FILE|off",
+              .level = Level::advanced, .recorded = false, .file = FileRole::written},
+             [&] { return checkpoint.wanted ? checkpoint.file.string() : std::string("off"); },
+             [&](std::string_view text, const std::string&) {
+               checkpoint.wanted = text != "off";
+               if (checkpoint.wanted) checkpoint.file = text;
+             });
+  visit(checkpoint.seconds, {.name = "job.checkpoint_every",
+                             .help = "Time between writes of unfinished work; the first is after 10s or less", .unit = Unit::s,
+                             .limits = above(0), .level = Level::advanced, .recorded = false});
+  visit(checkpoint.restart, {.name = "job.restart", .help = "Begin anew, whatever was done before", .level = Level::advanced,
+                             .recorded = false});
+}
+
+void describe(ParameterVisitor& visit, SimulateJob& job) {
+  describe(visit, static_cast<mc::SimulationRequest&>(job.scene));
+  describe(visit, job.execution);
+  visit.form({.name = "job.cache", .help = "Folder that libraries of cascades are kept in for other runs, or off",
+              .otherwise = "$SEMSURF_CACHE, ~/.cache/semsurf", .form = "FOLDER|off", .level = Level::advanced, .recorded = false},
+             [&] { return job.cache.string(); },
+             [&](std::string_view text, const std::string&) { job.cache = io::cache_folder(std::string(text)); });
+  describe(visit, job.extras);
+  visit(job.spectra, {.name = "output.spectra", .help = "Energies and angles per detector, in NAME.spectra.csv",
+                      .level = Level::advanced, .recorded = false});
+  visit(job.png_channel, {.name = "output.png_channel", .help = "Channel that PNG files show", .otherwise = "SE", .form = "NAME",
+                          .level = Level::advanced});
+  visit(job.layout, {"auto", "rows", "tiles"},
+        {.name = "output.layout", .help = "Layout of EXR and TIFF: rows, or tiles with smaller sizes for viewing",
+         .otherwise = "auto: tiles above 64 million pixels", .level = Level::advanced});
+  visit.form({.name = "output.file", .help = "Image to write: .exr .tif .png .vti", .form = "FILE", .recorded = false,
+              .file = FileRole::written},
+             [&] { return job.outputs.empty() ? std::string() : job.outputs.front().string(); },
+             [&](std::string_view text, const std::string&) { job.outputs.emplace_back(text); }, FieldKind::list);
+  describe(visit, job.checkpoint);
+}
+
+}  // namespace surf::workflow
