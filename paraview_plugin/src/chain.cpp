@@ -55,12 +55,12 @@ workflow::Reporter listen(const Watch& watch, int stages, std::vector<std::strin
   const auto tell = [watch, stages, begun](double share) {
     if (watch.progress) watch.progress(std::min(*begun - 1 + share, double(stages)), stages);
   };
-  listener.stage = [begun, tell](const std::string&) {
+  listener.on_stage = [begun, tell](const std::string&) {
     ++*begun;
     tell(0);
   };
-  listener.progress = [tell](double done, double total) { tell(total > 0 ? std::clamp(done / total, 0.0, 1.0) : 0); };
-  listener.warn = [&warnings](const std::string& text) { warnings.push_back(text); };
+  listener.on_progress = [tell](double done, double total, std::string_view) { tell(total > 0 ? std::clamp(done / total, 0.0, 1.0) : 0); };
+  listener.on_warning = [&warnings](const std::string& text) { warnings.push_back(text); };
   listener.cancel = watch.cancel;
   return listener;
 }

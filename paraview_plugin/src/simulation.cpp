@@ -18,11 +18,8 @@
 #include "attempt.h"
 #include "surf/core/error.h"
 #include "surf/core/parallel.h"
-#include "surf/io/cache.h"
-#include "surf/mc/choose_method.h"
 #include "surf/mc/pack.h"
 #include "surf/mc/unit_plan.h"
-#include "surf/workflow/libraries.h"
 
 namespace surf::pv {
 namespace {
@@ -30,21 +27,6 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr double scene_share = 0.02, library_share = 0.3;   // of the progress
-
-/// The cache's libraries, which tell of their making.
-class Libraries final : public mc::LibrarySource {
- public:
-  explicit Libraries(Watch watch) : kept_(io::cache_folder()), watch_(std::move(watch)) {}
-
-  std::shared_ptr<const mc::CascadeLibrary> library(const mc::CascadeSettings& settings, std::size_t cascades, int threads,
-                                                    const ProgressCallback&, const CancelToken* cancel) override {
-    return kept_.library(settings, cascades, threads, watch_.progress, cancel);
-  }
-
- private:
-  workflow::CachedLibraries kept_;
-  Watch watch_;
-};
 
 /// Leaves to each rank every so many-eth unit: neighbours take alike long.
 class ShareOfRank final : public mc::UnitJournal {
@@ -123,62 +105,134 @@ void together(vtkMultiProcessController* ranks, const std::function<void()>& par
   if (any) throw Interrupted();
 }
 
-mc::Scene make_scene(const SimulationPlan& plan, const Watch& watch) {
-  return {plan.specimen, plan.beam, plan.scan, plan.physics, {.watch = watch}};
+/// Progress of a job as a share of the whole, and its warnings.
+workflow::Reporter reporter_of(const Watch& watch, std::vector<std::string>& warnings) {
+  workflow::Reporter reporter;
+  auto begun = std::make_shared<double>(scene_share);   // where the simulation itself begins
+  reporter.on_progress = [watch, begun](double done, double total, std::string_view things) {
+    if (things == "cascades") {
+      *begun = library_share;
+      watch.part(scene_share, library_share).report(done, total);
+    } else {
+      watch.part(*begun, 1).report(done, total);
+    }
+  };
+  reporter.on_warning = [&warnings](const std::string& text) { warnings.push_back(text); };
+  reporter.cancel = watch.cancel;
+  return reporter;
 }
 
-mc::SimulationOptions chosen_options(const SimulationPlan& plan, const mc::Scene& scene) {
-  mc::SimulationOptions options = plan.options;
-  options.method = mc::choose_method(scene, options, plan.method).method;
-  return options;
+/// What the job's thread and ParaView's, which alone may talk to other ranks, have for each other.
+struct Exchange {
+  std::mutex mutex;
+  std::condition_variable changed;
+  std::optional<std::string> own, all;   // units done here, and by everybody
+  bool given_up = false, ended = false;
+
+  template <class Condition>
+  void await(const Condition& condition) {
+    std::unique_lock lock(mutex);
+    changed.wait(lock, condition);
+  }
+  void tell(const std::function<void()>& change) {
+    const std::lock_guard lock(mutex);
+    change();
+    changed.notify_all();
+  }
+};
+
+/// Simulates this rank's share, and takes the others' from the exchange.
+workflow::Simulator sharing(Exchange& exchange, int rank, int count) {
+  return [&exchange, rank, count](const mc::Scene& scene, const mc::SimulationOptions& options,
+                                  const mc::SimulationContext& context) {
+    ShareOfRank share(scene.scan(), options, rank, count);
+    mc::SimulationContext own = context;
+    own.journal = &share;
+    mc::simulate(scene, options, own);
+    if (context.cancel && context.cancel->cancelled()) throw Interrupted();
+    exchange.tell([&] { exchange.own = std::move(share.bytes); });
+    exchange.await([&] { return exchange.all || exchange.given_up; });
+    if (exchange.given_up) throw Interrupted();
+    AllRanks journal(*exchange.all);
+    mc::SimulationContext whole = context;
+    whole.progress = {};
+    whole.journal = &journal;
+    return mc::simulate(scene, options, whole);
+  };
 }
 
-std::vector<Track> tracks_of(const SimulationPlan& plan, const mc::Scene& scene) {
-  if (plan.trajectories == 0) return {};
-  return workflow::record_trajectories(scene, plan.options.seed, plan.trajectories).tracks;
+workflow::SimulateSummary simulate_together(vtkAlgorithm* self, const workflow::SimulateJob& job,
+                                            vtkMultiProcessController* ranks, std::vector<std::string>& warnings) {
+  Exchange exchange;
+  CancelToken cancel;
+  std::mutex telling;
+  Watch told;   // of the phase that ParaView's thread is in
+  const Watch forward{[&](double done, double total) {
+                        const std::lock_guard lock(telling);
+                        if (told.progress) told.progress(done, total);
+                      },
+                      &cancel};
+  workflow::SimulateSummary summary;
+  std::exception_ptr error;
+  std::thread thread([&] {
+    try {
+      summary = workflow::run(job, reporter_of(forward, warnings), nullptr,
+                              sharing(exchange, ranks->GetLocalProcessId(), ranks->GetNumberOfProcesses()));
+    } catch (...) {
+      error = std::current_exception();
+    }
+    exchange.tell([&] { exchange.ended = true; });
+  });
+  const auto follow = [&](const std::function<bool()>& there) {
+    together(ranks, [&] {
+      work(self, [&](const Watch& watch) {
+        {
+          const std::lock_guard lock(telling);
+          told = watch;
+        }
+        std::unique_lock lock(exchange.mutex);
+        while (!exchange.changed.wait_for(lock, std::chrono::milliseconds(50), [&] { return there() || exchange.ended; }))
+          if (watch.cancel->cancelled()) cancel.cancel();
+        lock.unlock();
+        const std::lock_guard quiet(telling);
+        told = {};
+      });
+      if (exchange.ended && error) std::rethrow_exception(error);
+    });
+  };
+  try {
+    follow([&] { return exchange.own.has_value(); });
+    const std::string all = gather(ranks, *exchange.own);
+    exchange.tell([&] { exchange.all = all; });
+    follow([] { return false; });
+  } catch (...) {
+    cancel.cancel();
+    exchange.tell([&] { exchange.given_up = true; });
+    thread.join();
+    throw;
+  }
+  thread.join();
+  return summary;
 }
 
 }  // namespace
 
-Simulated simulate(vtkAlgorithm* self, const SimulationPlan& plan, vtkMultiProcessController* ranks) {
-  Simulated done;
-  std::optional<mc::Scene> scene;
-  mc::SimulationOptions options;
-  std::optional<Libraries> libraries;
-  std::optional<ShareOfRank> share;
-  together(ranks, [&] {
-    work(self, [&](const Watch& watch) {
-      scene.emplace(make_scene(plan, watch.part(0, scene_share)));
-      watch.report(scene_share, 1);
-      options = chosen_options(plan, *scene);
-      if (ranks)
-        share.emplace(plan.scan, options, ranks->GetLocalProcessId(), ranks->GetNumberOfProcesses());
-      libraries.emplace(watch.part(scene_share, library_share));
-      const bool made = options.method == mc::Method::replay;
-      const Watch rest = watch.part(made ? library_share : scene_share, 1);
-      done.result = mc::simulate(*scene, options, rest.progress, watch.cancel, {}, share ? &*share : nullptr, &*libraries);
-      watch.check();
-      done.tracks = tracks_of(plan, *scene);
-    });
-  });
-  if (!ranks) return done;
-  const std::string all = gather(ranks, share->bytes);
-  together(ranks, [&] {
-    work(self, [&](const Watch& watch) {
-      AllRanks journal(all);
-      done.result = mc::simulate(*scene, options, {}, watch.cancel, {}, &journal, &*libraries);
-    });
-  });
-  return done;
+workflow::SimulateSummary simulate(vtkAlgorithm* self, const workflow::SimulateJob& job, vtkMultiProcessController* ranks) {
+  workflow::SimulateSummary summary;
+  std::vector<std::string> warnings;
+  if (ranks) summary = simulate_together(self, job, ranks, warnings);
+  else work(self, [&](const Watch& watch) { summary = workflow::run(job, reporter_of(watch, warnings)); });
+  for (const std::string& text : warnings) warn(self, text);
+  return summary;
 }
 
 struct LiveSimulation::Shared {
-  explicit Shared(SimulationPlan p) : plan(std::move(p)) {
-    coarse_options = plan.options;
-    coarse_options.budget = mc::Accuracy{coarse_options.budget = mc::Dose{0}};
+  Shared(workflow::SimulateJob j, const mc::Scan& s) : job(std::move(j)), scan(s) {
+    const mc::SimulationOptions options = mc::options_of(job.scene, job.execution);
+    coarse_options = options;
     coarse_options.budget = mc::ElectronsPerPixel{coarse_electrons};
-    coarse = mc::empty_result(plan.scan, coarse_options);
-    fine = mc::empty_result(plan.scan, plan.options);
+    coarse = mc::empty_result(scan, coarse_options);
+    fine = mc::empty_result(scan, options);
     thread = std::thread([this] { run(); });
   }
 
@@ -193,7 +247,8 @@ struct LiveSimulation::Shared {
   static constexpr int coarsest = 8;            // places along the longer side, doubled again and again
   static constexpr std::chrono::milliseconds coarse_time{600};
 
-  SimulationPlan plan;
+  workflow::SimulateJob job;
+  mc::Scan scan;
   mc::SimulationOptions coarse_options;
   CancelToken cancel;
 
@@ -203,6 +258,8 @@ struct LiveSimulation::Shared {
   mc::SimulationResult coarse, fine;            // the pixels done
   std::vector<int> strides;                     // of the coarse ones, falling
   std::vector<Track> tracks;
+  std::vector<std::string> warnings;            // nobody has seen yet
+  Record record;
   std::exception_ptr error;
   bool coarse_done = false, has_fine = false, news = false, ended = false, looked_at = false;
 
@@ -231,15 +288,15 @@ class Shown final : public mc::UnitJournal {
 /// Electrons in few pixels, then in those between, as far as the time goes. They are those of a direct simulation.
 void LiveSimulation::Shared::look_coarsely(const mc::Scene& scene) {
   const auto end = Clock::now() + coarse_time;
-  const int longer = std::max(plan.scan.width, plan.scan.height);
+  const int longer = std::max(scan.width, scan.height);
   for (int places = coarsest;; places *= 2) {
     const int stride = std::max(1, longer / places);
-    const int columns = (plan.scan.width + stride - 1) / stride, rows = (plan.scan.height + stride - 1) / stride;
+    const int columns = (scan.width + stride - 1) / stride, rows = (scan.height + stride - 1) / stride;
     {
       const std::lock_guard lock(mutex);
       if (strides.empty() || strides.back() != stride) strides.push_back(stride);
     }
-    parallel_for(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows), plan.options.threads,
+    parallel_for(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows), job.execution.threads,
                  [&](std::size_t i, int) {
                    if (cancel.cancelled() || Clock::now() > end) return;
                    const int x = static_cast<int>(i) % columns * stride, y = static_cast<int>(i) / columns * stride;
@@ -260,28 +317,36 @@ void LiveSimulation::Shared::look_coarsely(const mc::Scene& scene) {
 
 void LiveSimulation::Shared::run() {
   try {
-    const mc::Scene scene = make_scene(plan, {{}, &cancel});
-    look_coarsely(scene);
-    {
+    workflow::Reporter reporter;
+    reporter.cancel = &cancel;
+    reporter.on_warning = [this](const std::string& text) {
       const std::lock_guard lock(mutex);
-      coarse_done = true;
-      tell();
-    }
-    if (!cancel.cancelled()) {
-      const mc::SimulationOptions options = chosen_options(plan, scene);
-      Libraries libraries({{}, &cancel});
-      Shown shown(plan.scan, options, [this](const mc::WorkUnit& unit, const mc::UnitTally& tally) {
+      warnings.push_back(text);
+    };
+    const auto watched = [this](const mc::Scene& scene, const mc::SimulationOptions& options,
+                                const mc::SimulationContext& context) {
+      look_coarsely(scene);
+      {
+        const std::lock_guard lock(mutex);
+        coarse_done = true;
+        tell();
+      }
+      if (cancel.cancelled()) throw Interrupted();
+      Shown shown(scan, options, [this](const mc::WorkUnit& unit, const mc::UnitTally& tally) {
         const std::lock_guard lock(mutex);
         mc::merge(fine, unit, tally);
         has_fine = true;
         tell();
       });
-      mc::SimulationResult result = mc::simulate(scene, options, {}, &cancel, {}, &shown, &libraries);
-      std::vector<Track> paths = cancel.cancelled() ? std::vector<Track>() : tracks_of(plan, scene);
-      const std::lock_guard lock(mutex);
-      fine = std::move(result);
-      tracks = std::move(paths);
-    }
+      mc::SimulationContext own = context;
+      own.journal = &shown;
+      return mc::simulate(scene, options, own);
+    };
+    workflow::SimulateSummary summary = workflow::run(job, reporter, nullptr, watched);
+    const std::lock_guard lock(mutex);
+    fine = std::move(summary.result);
+    tracks = std::move(summary.tracks);
+    record = std::move(summary.record);
   } catch (...) {
     const std::lock_guard lock(mutex);
     error = std::current_exception();
@@ -291,7 +356,8 @@ void LiveSimulation::Shared::run() {
   tell();
 }
 
-LiveSimulation::LiveSimulation(SimulationPlan plan) : shared_(std::make_unique<Shared>(std::move(plan))) {}
+LiveSimulation::LiveSimulation(workflow::SimulateJob job, const mc::Scan& scan)
+    : shared_(std::make_unique<Shared>(std::move(job), scan)) {}
 
 LiveSimulation::~LiveSimulation() {
   shared_->cancel.cancel();
@@ -322,19 +388,21 @@ void LiveSimulation::wait(double seconds, const CancelToken& cancel) const {
 }
 
 LiveSimulation::View LiveSimulation::look() {
-  const mc::Scan& scan = shared_->plan.scan;
+  const mc::Scan& scan = shared_->scan;
   const std::lock_guard lock(shared_->mutex);
   if (shared_->error) std::rethrow_exception(shared_->error);
   shared_->news = false;
   shared_->looked_at = true;
   View view;
   view.tracks = shared_->tracks;
+  view.warnings = std::exchange(shared_->warnings, {});
+  view.record = shared_->ended ? shared_->record : record_of(static_cast<const mc::SimulationRequest&>(shared_->job.scene));
   view.image = mc::make_image(shared_->fine, scan);
   view.state = shared_->ended ? "done" : shared_->has_fine ? "refining" : "coarse";
   // A copy: the tallies go on growing.
   view.result = mc::empty_result(scan, shared_->coarse_options);
   const mc::SimulationResult& r = shared_->fine;
-  view.result.accuracy = r.accuracy, view.result.accuracy_floor = r.accuracy_floor, view.result.dose = r.dose;
+  view.result.budget = r.budget;
   view.result.balance = r.balance;
   std::ranges::copy(r.pixels.data(), view.result.pixels.data().begin());
   for (std::size_t d = 0; d < r.counts.size(); ++d)

@@ -8,41 +8,24 @@
 
 #include "surf/core/image.h"
 #include "surf/core/progress.h"
-#include "surf/mc/scene.h"
-#include "surf/mc/simulate.h"
-#include "surf/workflow/trajectories.h"
+#include "surf/workflow/simulate_job.h"
 
 class vtkAlgorithm;
 class vtkMultiProcessController;
 
 namespace surf::pv {
 
-/// All that an SEM image depends on.
-struct SimulationPlan {
-  mc::Specimen specimen;
-  mc::Beam beam;
-  mc::Scan scan;
-  mc::Physics physics;
-  mc::SimulationOptions options;     ///< the method is chosen
-  std::optional<mc::Method> method;  ///< absent: semsurf chooses
-  int trajectories = 0;              ///< of so many primaries, in the middle
-};
-
-struct Simulated {
-  mc::SimulationResult result;
-  std::vector<Track> tracks;
-};
-
-/// The simulation, from beginning to end. With the ranks of `ranks` (or nullptr) each simulates a share of the units of
-/// work and is sent those of the others, so that all have the whole result: the bytes that one rank makes.
-/// Called on ParaView's thread, on all ranks alike.
-Simulated simulate(vtkAlgorithm* self, const SimulationPlan& plan, vtkMultiProcessController* ranks);
+/// The job in memory, from beginning to end, with its warnings as ParaView's. With the ranks of `ranks` (or nullptr) each
+/// simulates a share of the units of work and is sent those of the others, so that all have the whole result: the bytes that one
+/// rank makes. Called on ParaView's thread, on all ranks alike.
+workflow::SimulateSummary simulate(vtkAlgorithm* self, const workflow::SimulateJob& job, vtkMultiProcessController* ranks);
 
 /// The same simulation in a thread of its own, to be looked at on the way: first a few electrons in ever more places, then
 /// what is done of the image, in the end the very result of `simulate`.
 class LiveSimulation {
  public:
-  explicit LiveSimulation(SimulationPlan plan);
+  /// `scan` is the job's.
+  LiveSimulation(workflow::SimulateJob job, const mc::Scan& scan);
   ~LiveSimulation();   ///< ends it
   LiveSimulation(const LiveSimulation&) = delete;
   LiveSimulation& operator=(const LiveSimulation&) = delete;
@@ -56,6 +39,8 @@ class LiveSimulation {
     Image image;
     mc::SimulationResult result;   ///< so far
     std::vector<Track> tracks;
+    Record record;                 ///< what the image says of how it was made
+    std::vector<std::string> warnings;   ///< that have come since the last look
     const char* state = "";        ///< "coarse", "refining" or "done"
   };
   /// Throws what ended the simulation. With nothing to show yet the image is 0 and not valid.

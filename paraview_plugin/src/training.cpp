@@ -48,12 +48,15 @@ struct Numbers {
 workflow::TrainSummary train(const workflow::TrainJob& job, const Watch& watch, std::vector<std::string>& notes) {
   double learning_from = 0;
   workflow::Reporter listener;
-  listener.pixels = [&](double done, double total) {
-    learning_from = share_of_images;
-    watch.part(0, share_of_images).report(done, total);
+  listener.on_progress = [&](double done, double total, std::string_view things) {
+    if (things == "pixels") {
+      learning_from = share_of_images;
+      watch.part(0, share_of_images).report(done, total);
+    } else if (things.empty()) {
+      watch.part(learning_from, 1).report(done, total);
+    }
   };
-  listener.learning = [&](double done, double total) { watch.part(learning_from, 1).report(done, total); };
-  listener.note = [&notes](const std::string& note) { notes.push_back(note); };
+  listener.on_note = [&notes](const std::string& note) { notes.push_back(note); };
   listener.cancel = watch.cancel;
   workflow::TrainSummary summary = workflow::run(job, listener);
   if (!summary.complete) throw Interrupted();

@@ -22,24 +22,26 @@
 #include "convert/tracks.h"
 #include "labels.h"
 #include "pipeline.h"
+#include "property_values.h"
 #include "simulation.h"
 #include "surf/core/error.h"
 #include "surf/core/units.h"
-#include "surf/mc/choose_method.h"
-#include "surf/mc/material_doubts.h"
+#include "surf/io/cache.h"
+#include "surf/io/sim/specimen_request.h"
 #include "surf/mc/result_summary.h"
 #include "surf/workflow/simulate_job.h"
-#include "surf/workflow/version.h"
 
 vtkStandardNewMacro(vtkSemsurfSimulate);
 
 using namespace surf;
 
 struct vtkSemsurfSimulate::State {
+  pv::PropertyValues values;
   std::string settings;             // that the plan is of
   std::uint64_t input = 0;          // its digest
   bool planned = false;
-  pv::SimulationPlan plan;
+  workflow::SimulateJob job;
+  mc::Scan scan;
   std::unique_ptr<pv::LiveSimulation> live;   // of this plan
 };
 
@@ -52,20 +54,6 @@ constexpr double first_wait_s = 0.7, next_wait_s = 0.2;   // of live updates, fo
 pv::Frame frame_of(const mc::Scan& s) {
   return {s.width, s.height, s.pixel_x_nm, s.pixel_y_nm, s.center_x_nm - 0.5 * (s.width - 1) * s.pixel_x_nm,
           s.center_y_nm - 0.5 * (s.height - 1) * s.pixel_y_nm};
-}
-
-std::vector<mc::Detector> detectors_of(const std::string& text) {
-  std::vector<mc::Detector> detectors = mc::default_detectors();
-  for (std::size_t from = 0; from < text.size();) {
-    const std::size_t end = std::min(text.find(';', from), text.size());
-    const std::size_t first = text.find_first_not_of(' ', from);
-    if (first < end) {
-      const std::size_t last = text.find_last_not_of(' ', end - 1);
-      for (mc::Detector& d : mc::parse_detectors(text.substr(first, last + 1 - first), "Detectors")) detectors.push_back(d);
-    }
-    from = end + 1;
-  }
-  return detectors;
 }
 
 /// A row for each detector, then where all electrons went.
@@ -87,20 +75,34 @@ void fill_table(vtkTable* table, const mc::SimulationResult& result) {
   pv::add_column(table, "settings", settings);
 }
 
-std::map<std::string, std::string> made_by(const pv::SimulationPlan& plan, const mc::SimulationResult& result) {
-  std::map<std::string, std::string> made{{"semsurf.version", workflow::version()}, {"command", "simulate"}};
-  made["beam.energy_ev"] = format_exact(plan.beam.energy_ev);
-  made["beam.spot_nm"] = format_exact(plan.beam.spot_nm);
-  made["beam.tilt_deg"] = format_exact(plan.beam.tilt_deg);
-  made["beam.azimuth_deg"] = format_exact(plan.beam.azimuth_deg);
-  made["physics"] = mc::format_physics(plan.physics);
-  made["seed"] = fmt::format("{}", plan.options.seed);
-  if (result.accuracy > 0) made["accuracy"] = format_exact(result.accuracy);
-  else made["electrons"] = fmt::format("{}", plan.options.electrons);
-  made["method"] = result.library_cascades > 0 ? "replay" : "direct";
-  int number = 0;
-  for (const mc::Material& m : plan.specimen.materials) made[fmt::format("material.{}.name", ++number)] = m.name;
-  return made;
+/// Lengths from here on are not told apart from none by rays.
+constexpr double most_nm = 1e9;
+
+/// What the properties ask for, but for the pixels and the specimen.
+workflow::SimulateJob job_of(pv::PropertyValues values, int budget) {
+  const bool by_accuracy = budget == vtkSemsurfSimulate::ByAccuracy;
+  for (const char* other : {"simulation.accuracy", "simulation.accuracy_floor"})
+    if (!by_accuracy) values.forget(other);
+  if (by_accuracy) values.forget("simulation.electrons");
+  for (const char* nothing_at_0 : {"scan.pixel_size", "output.trajectories", "beam.current", "beam.dwell"})
+    if (values.text(nothing_at_0) == "0") values.forget(nothing_at_0);
+  if (values.text("scan.region") == "0,0,0,0") values.forget("scan.region");
+  workflow::SimulateJob job;
+  job.cache = io::cache_folder();
+  job.checkpoint.wanted = false;
+  values.apply(static_cast<mc::SimulationRequest&>(job.scene));
+  values.apply(job.extras);
+  return job;
+}
+
+pv::SpecimenWish wish_of(const pv::PropertyValues& values) {
+  io::SpecimenRequest said;
+  values.apply(said);
+  const double top_nm = said.substrate_z_nm.value_or(0);
+  if (!(std::abs(top_nm) <= most_nm))
+    throw UsageError("specimen.substrate_z", fmt::format("{} nm are not in -{} to {}", top_nm, most_nm, most_nm), "Give 0");
+  return {said.material.value_or("Si"), said.material_files.empty() ? std::string() : said.material_files.front(),
+          said.substrate.value_or(""), top_nm, said.edge.value_or(Edge::mirror)};
 }
 
 }  // namespace
@@ -120,49 +122,19 @@ int vtkSemsurfSimulate::FillOutputPortInformation(int port, vtkInformation* info
   return 1;
 }
 
-void vtkSemsurfSimulate::Check() const {
-  const auto need = [](bool good, const char* property, const std::string& reason, const char* remedy) {
-    if (!good) throw UsageError(property, reason, remedy);
-  };
-  need(this->Energy >= mc::min_beam_energy_ev && this->Energy <= mc::max_beam_energy_ev, "Energy",
-       fmt::format("{} eV are not in 100 to 30000", this->Energy), "Give 1000 for 1 keV");
-  constexpr double most_nm = 1e9;   // rays that begin farther away than this miss by rounding
-  need(this->Spot >= 0 && this->Spot <= most_nm, "Spot", fmt::format("{} nm are not in 0 to {}", this->Spot, most_nm),
-       "Give 0 for a point");
-  for (const auto& [name, value] : {std::pair{"Substrate Top", this->SubstrateTop}, {"Focus", this->Focus},
-                                    {"Working Distance", this->WorkingDistance}})
-    need(std::abs(value) <= most_nm, name, fmt::format("{} nm are not in -{} to {}", value, most_nm, most_nm), "Give 0");
-  for (const double edge : this->Region)
-    need(std::abs(edge) <= most_nm, "Region", fmt::format("{} nm are not in -{} to {}", edge, most_nm, most_nm),
-         "Give 0 0 0 0 for all of the specimen");
-  need(std::isfinite(this->PixelSize), "Pixel Size", "it is no number", "Give 0 to go by Pixels");
-  need(this->PixelSize >= 0, "Pixel Size", fmt::format("{} nm are below 0", this->PixelSize), "Give 0 to go by Pixels");
-  need(this->PixelSize > 0 || (this->Pixels >= 1 && this->Pixels <= 16384), "Pixels",
-       fmt::format("{} is not in 1 to 16384", this->Pixels), "Give 256 where in doubt");
-  need(this->Budget == ByAccuracy || this->Electrons >= 1, "Electrons", fmt::format("{} are too few", this->Electrons),
-       "Give 1 or more per pixel");
-  need(this->Budget == ByElectrons || (this->Accuracy >= 1e-4 && this->Accuracy <= 1), "Accuracy",
-       fmt::format("{} is not in 0.0001 to 1", this->Accuracy), "Give 0.05 for 5 %");
-  need(this->Trajectories >= 0 && this->Trajectories <= 100000, "Trajectories",
-       fmt::format("{} is not in 0 to 100000", this->Trajectories), "Give 50 where in doubt");
-  need(this->Seed >= 0, "Seed", fmt::format("{} is below 0", this->Seed), "Give 1");
-  need(this->Edge >= 0 && this->Edge <= 2, "Edge", fmt::format("there is no edge {}", this->Edge), "Choose 0 to 2");
-  need(this->Method >= Auto && this->Method <= Replay, "Method", fmt::format("there is no method {}", this->Method),
-       "Choose 0 to 2");
+void vtkSemsurfSimulate::SetParameter(const char* name, double value) {
+  if (this->Kept->values.set(name, value)) this->Modified();
 }
-
-std::string vtkSemsurfSimulate::Settings() const {
-  return fmt::format("{}|{}|{}|{}|{}|{} {} {} {} {} {} {} {} {} {} {} {} {} {} {} {} {} {} {} {} {} {}", this->Materials,
-                     this->MaterialFile, this->Substrate, this->Physics, this->Detectors, this->SubstrateTop, this->Edge,
-                     this->Energy, this->Spot, this->Tilt, this->Azimuth, this->Convergence, this->Focus,
-                     this->WorkingDistance, this->Pixels, this->PixelSize, this->Region[0], this->Region[1],
-                     this->Region[2], this->Region[3], this->Budget, this->Electrons, this->Accuracy, this->AccuracyFloor,
-                     this->Method, this->Seed, this->Trajectories);
+void vtkSemsurfSimulate::SetParameter(const char* name, const char* text) {
+  if (this->Kept->values.set(name, text)) this->Modified();
+}
+void vtkSemsurfSimulate::SetParameter(const char* name, double a, double b, double c, double d) {
+  if (this->Kept->values.set(name, std::vector{a, b, c, d})) this->Modified();
 }
 
 void vtkSemsurfSimulate::Plan(vtkDataObject* input) {
   State& k = *this->Kept;
-  std::string settings = this->Settings();
+  std::string settings = fmt::format("{}{}|{}", k.values.all(), this->Pixels, this->Budget);
   auto* const image = vtkImageData::SafeDownCast(input);
   vtkDataArray* const heights = image ? pv::chosen_array(this, 0, image) : nullptr;
   if (heights && heights->GetName()) settings += heights->GetName();
@@ -170,39 +142,23 @@ void vtkSemsurfSimulate::Plan(vtkDataObject* input) {
   if (k.planned && k.settings == settings && k.input == digest) return;
   k.live.reset();
   k.planned = false;
-  this->Check();
-  pv::SimulationPlan plan;
-  plan.specimen = pv::to_specimen(input, heights, {this->Materials, this->MaterialFile, this->Substrate, this->SubstrateTop,
-                                                   static_cast<surf::Edge>(this->Edge)});
-  plan.beam = {this->Energy, this->Tilt, this->Azimuth, this->Spot, this->Convergence, this->Focus, this->WorkingDistance};
-  mc::parse_physics(this->Physics, plan.physics);
-  const Box extent = mc::extent(plan.specimen);
-  mc::ScanRequest request;
-  const double* const r = this->Region;
-  if (r[0] != 0 || r[1] != 0 || r[2] != 0 || r[3] != 0) request.region = {r[0], r[1], r[2], r[3]};
-  if (this->PixelSize > 0) request.pixel_x_nm = request.pixel_y_nm = this->PixelSize;
-  plan.scan = workflow::resolve_scan(request, extent, plan.beam);
+  workflow::SimulateJob job = job_of(k.values, this->Budget);
+  const bool by_pixels = !job.scene.scan.pixel_x_nm;
+  if (by_pixels && (this->Pixels < 1 || this->Pixels > 16384))
+    throw UsageError("Pixels", fmt::format("{} is not in 1 to 16384", this->Pixels), "Give 256 where in doubt");
+  job.scene.specimen = pv::to_specimen(input, heights, wish_of(k.values));
+  mc::validate(job.scene);
+  const Box extent = mc::extent(job.scene.specimen);
+  k.scan = workflow::resolve_scan(job.scene.scan, extent, job.scene.beam);
   constexpr int usual = 256;   // across the longer side, where nothing is said
-  if (this->PixelSize <= 0 && this->Pixels != usual) {
+  if (by_pixels && this->Pixels != usual) {
     const double fewer = static_cast<double>(this->Pixels) / usual;
     const auto pixels = [&](int of_usual) { return std::max(1, static_cast<int>(std::lround(fewer * of_usual))); };
-    request.width = pixels(plan.scan.width);
-    request.height = pixels(plan.scan.height);
-    plan.scan = workflow::resolve_scan(request, extent, plan.beam);
+    job.scene.scan.width = pixels(k.scan.width);
+    job.scene.scan.height = pixels(k.scan.height);
+    k.scan = workflow::resolve_scan(job.scene.scan, extent, job.scene.beam);
   }
-  if (this->Budget == ByAccuracy) {
-    plan.options.budget = mc::Accuracy{this->Accuracy, this->AccuracyFloor};
-  } else {
-    plan.options.budget = mc::ElectronsPerPixel{this->Electrons};
-  }
-  plan.options.seed = static_cast<std::uint64_t>(this->Seed);
-  plan.options.detectors = detectors_of(this->Detectors);
-  mc::validate(plan.options.detectors);
-  if (this->Method != Auto) plan.method = this->Method == Direct ? mc::Method::direct : mc::Method::replay;
-  plan.trajectories = this->Trajectories;
-  for (const mc::Material& material : plan.specimen.materials)
-    for (const std::string& doubt : mc::doubts(material)) pv::warn(this, doubt);
-  k.plan = std::move(plan);
+  k.job = std::move(job);
   k.settings = std::move(settings);
   k.input = digest;
   k.planned = true;
@@ -220,7 +176,7 @@ int vtkSemsurfSimulate::RequestInformation(vtkInformation*, vtkInformationVector
       vtkDataObject* const data = producer->GetOutputDataObject(port);
       if (!data) throw InvalidInput("Input", "there is none", "Give a surface");
       this->Plan(data);
-      pv::announce(outputs->GetInformationObject(0), frame_of(this->Kept->plan.scan));
+      pv::announce(outputs->GetInformationObject(0), frame_of(this->Kept->scan));
     });
   });
 }
@@ -246,7 +202,7 @@ int vtkSemsurfSimulate::RequestData(vtkInformation*, vtkInformationVector** inpu
       std::map<std::string, std::string> texts;
       if (this->Live && !ranks) {
         const bool first = !k.live;
-        if (first) k.live = std::make_unique<pv::LiveSimulation>(k.plan);
+        if (first) k.live = std::make_unique<pv::LiveSimulation>(k.job, k.scan);
         try {
           pv::work(this, [&](const Watch& watch) { k.live->wait(first ? first_wait_s : next_wait_s, *watch.cancel); });
         } catch (...) {
@@ -256,20 +212,17 @@ int vtkSemsurfSimulate::RequestData(vtkInformation*, vtkInformationVector** inpu
         pv::LiveSimulation::View view = k.live->look();
         image = std::move(view.image);
         tracks = std::move(view.tracks);
-        texts = made_by(k.plan, view.result);
+        for (const std::string& warning : view.warnings) pv::warn(this, warning);
+        texts = std::move(view.record);
         texts["state"] = view.state;
         fill_table(table, view.result);
       } else {
         k.live.reset();
-        pv::Simulated done = pv::simulate(this, k.plan, ranks);
-        image = mc::make_image(done.result, k.plan.scan);
+        workflow::SimulateSummary done = pv::simulate(this, k.job, ranks);
+        image = mc::make_image(done.result, k.scan);
         tracks = std::move(done.tracks);
-        texts = made_by(k.plan, done.result);
+        texts = std::move(done.record);
         texts["state"] = "done";
-        const mc::ResultSummary summary = mc::summarize(done.result);
-        if (summary.seen == 0) pv::warn(this, "no pixel sees the specimen: check Region, and the unit of the input: nm");
-        if (summary.missed > 0)
-          pv::warn(this, fmt::format("Accuracy: {} pixels miss it, the worst by a factor of {:.2g}", summary.missed, summary.worst));
         fill_table(table, done.result);
       }
       image.metadata = std::move(texts);

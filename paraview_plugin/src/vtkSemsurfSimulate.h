@@ -17,32 +17,13 @@ class VTKSEMSURF_EXPORT vtkSemsurfSimulate : public vtkImageAlgorithm {
   vtkTypeMacro(vtkSemsurfSimulate, vtkImageAlgorithm);
 
   enum Budgets { ByElectrons, ByAccuracy };
-  enum Methods { Auto, Direct, Replay };
 
-  vtkSetStdStringFromCharMacro(Materials);   ///< names, with commas; the last for all bodies that are left
-  vtkSetStdStringFromCharMacro(MaterialFile);
-  vtkSetStdStringFromCharMacro(Substrate);   ///< a material; empty: none
-  vtkSetMacro(SubstrateTop, double);   ///< nm
-  vtkSetMacro(Edge, int);   ///< of images of heights: mirror, flat, periodic
-  vtkSetMacro(Energy, double);   ///< eV
-  vtkSetMacro(Spot, double);   ///< nm, standard deviation
-  vtkSetMacro(Tilt, double);   ///< degrees, as the next two
-  vtkSetMacro(Azimuth, double);
-  vtkSetMacro(Convergence, double);
-  vtkSetMacro(Focus, double);   ///< nm, as the next
-  vtkSetMacro(WorkingDistance, double);   ///< 0: parallel beams
+  /// The parameter of that name (surf/mc/simulation_request.h, surf/io/sim/specimen_request.h): a choice by its number.
+  void SetParameter(const char* name, double value);
+  void SetParameter(const char* name, const char* text);
+  void SetParameter(const char* name, double a, double b, double c, double d);
   vtkSetMacro(Pixels, int);   ///< across the longer side, without a pixel size
-  vtkSetMacro(PixelSize, double);   ///< nm; 0: by Pixels
-  vtkSetVector4Macro(Region, double);   ///< nm, x0 y0 x1 y1; all 0: what there is of the specimen
   vtkSetMacro(Budget, int);
-  vtkSetMacro(Electrons, int);   ///< per pixel
-  vtkSetMacro(Accuracy, double);   ///< standard error over mean
-  vtkSetMacro(AccuracyFloor, double);
-  vtkSetMacro(Method, int);
-  vtkSetStdStringFromCharMacro(Physics);
-  vtkSetStdStringFromCharMacro(Detectors);   ///< besides SE and BSE, with semicolons
-  vtkSetMacro(Seed, int);
-  vtkSetMacro(Trajectories, int);   ///< primaries
   vtkSetMacro(Live, bool);   ///< each update gives what there is so far
 
   /// Whether an update would show more, of a live simulation.
@@ -59,16 +40,10 @@ class VTKSEMSURF_EXPORT vtkSemsurfSimulate : public vtkImageAlgorithm {
 
  private:
   struct State;   // what is kept between requests
-  void Check() const;
   /// Makes the plan for an input anew if it or a property has changed.
   void Plan(vtkDataObject* input);
-  std::string Settings() const;
 
-  std::string Materials = "Si", MaterialFile, Substrate, Physics, Detectors;
-  double SubstrateTop = 0, Energy = 1000, Spot = 0, Tilt = 0, Azimuth = 0, Convergence = 0, Focus = 0, WorkingDistance = 0;
-  double PixelSize = 0, Accuracy = 0.05, AccuracyFloor = 0.002;
-  double Region[4] = {0, 0, 0, 0};
-  int Edge = 0, Pixels = 256, Budget = ByElectrons, Electrons = 200, Method = Auto, Seed = 1, Trajectories = 0;
+  int Pixels = 256, Budget = ByElectrons;
   bool Live = false;
   std::unique_ptr<State> Kept;
 };

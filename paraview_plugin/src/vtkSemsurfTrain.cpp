@@ -178,8 +178,8 @@ std::string vtkSemsurfTrain::Command(const workflow::TrainJob& job) const {
   if (job.held_out > 0) add("--hold-out", std::to_string(job.held_out));
   if (job.fine > 0) add("--fine", std::to_string(job.fine));
   if (this->Edge > 0) add("--edge", edges[this->Edge]);
-  if (job.simulation.accuracy > 0) add("--accuracy", format_exact(job.simulation.accuracy));
-  else if (job.simulation.electrons != 150) add("--electrons", std::to_string(job.simulation.electrons));
+  if (const double accuracy = mc::accuracy_of(job.simulation.budget); accuracy > 0) add("--accuracy", format_exact(accuracy));
+  else if (mc::electrons_of(job.simulation.budget) != 150) add("--electrons", std::to_string(mc::electrons_of(job.simulation.budget)));
   if (!this->Physics.empty()) add("--physics", this->Physics);
   if (job.simulation.seed != 1) add("--seed", std::to_string(job.simulation.seed));
   return text + (learn.multi_resolution ? " --multi-resolution" : "");

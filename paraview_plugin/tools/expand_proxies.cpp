@@ -1,0 +1,219 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Makes the properties of proxies from the descriptions of parameters, when the plugin is built: expand_proxies IN.xml OUT.xml.
+// In a proxy,
+//   <Parameters of="simulation" command="SetParameter"/>      is replaced by a property for each parameter of that struct,
+//   <Parameter name="beam.tilt" .../>                         by that one, and the struct's list then leaves it out.
+// A Parameter may say what differs for ParaView: property (its name), label, default, numbers (how many), level, omit="1", the
+// widget's condition show_with="Budget=1", and documentation, which goes before the description's.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <cstdio>
+#include <functional>
+#include <limits>
+#include <map>
+#include <pugixml.hpp>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "surf/core/parameters.h"
+#include "surf/io/sim/specimen_request.h"
+#include "surf/workflow/simulate_job.h"
+
+namespace {
+
+using namespace surf;
+
+/// What is said of a parameter, out of reach of the struct that it is of.
+struct Described {
+  Parameter about;
+  FieldKind kind;
+  std::vector<std::string> choices;
+  std::string text;
+};
+
+template <class Struct>
+std::vector<Described> described() {
+  std::vector<Described> all;
+  Struct of{};
+  for_each_parameter(of, [&](const Parameter& about, Field& field) {
+    all.push_back({about, field.kind(), field.choices(), field.text()});
+  });
+  return all;
+}
+
+const std::map<std::string, std::function<std::vector<Described>()>>& structs() {
+  static const std::map<std::string, std::function<std::vector<Described>()>> all{
+      {"simulation", described<mc::SimulationRequest>},
+      {"specimen", described<io::SpecimenRequest>},
+      {"extras", described<workflow::Extras>}};
+  return all;
+}
+
+std::string with_spaces(std::string_view name) {
+  std::string label;
+  for (const char c : name) {
+    const bool first = label.empty() || label.back() == ' ';
+    label += c == '_' ? ' ' : first ? static_cast<char>(std::toupper(static_cast<unsigned char>(c))) : c;
+  }
+  return label;
+}
+
+std::string joined(std::string label) {
+  std::erase(label, ' ');
+  return label;
+}
+
+const char* unit_word(Unit unit) {
+  switch (unit) {
+    case Unit::nm: return "nm";
+    case Unit::ev: return "eV";
+    case Unit::deg: return "degrees";
+    case Unit::pa: return "pA";
+    case Unit::us: return "us";
+    case Unit::s: return "s";
+    default: return "";
+  }
+}
+
+/// "nm, 0 to 100, below 90": numbers as ParaView shows them, without units.
+std::string range_words(const Parameter& about) {
+  Parameter plain = about;
+  plain.unit = Unit::none;
+  const std::string limits = format_limits(plain), unit = unit_word(about.unit);
+  return unit.empty() || limits.empty() ? unit + limits : unit + ", " + limits;
+}
+
+void set_range(pugi::xml_node domain, const Parameter& about, bool whole) {
+  const auto text = [&](double value) {
+    return whole ? fmt::format("{:.0f}", std::clamp(value, double(std::numeric_limits<int>::min()), double(std::numeric_limits<int>::max())))
+                 : fmt::format("{}", value);
+  };
+  if (std::isfinite(about.limits.low)) domain.append_attribute("min") = text(about.limits.low).c_str();
+  if (std::isfinite(about.limits.high)) domain.append_attribute("max") = text(about.limits.high).c_str();
+}
+
+std::string sentence(const Described& d, const std::string& own) {
+  std::string text = own.empty() ? d.about.help : own + " " + d.about.help;
+  if (const std::string range = range_words(d.about); !range.empty() && d.kind != FieldKind::choice) text += "; " + range;
+  return text + ".";
+}
+
+/// The property in place of `placeholder`, which says what differs.
+void add_property(pugi::xml_node placeholder, const Described& d, const char* command) {
+  const pugi::xml_node said = placeholder;
+  const auto attribute = [&](const char* name, const std::string& usual) {
+    const pugi::xml_attribute given = said.attribute(name);
+    return given ? std::string(given.value()) : usual;
+  };
+  const std::string label = attribute("label", with_spaces(d.about.last_name()));
+  const bool is_choice = d.kind == FieldKind::choice, is_flag = d.kind == FieldKind::flag;
+  const int numbers = said.attribute("numbers").as_int(0);
+  const bool is_whole = d.kind == FieldKind::whole, is_number = d.kind == FieldKind::number || numbers > 0;
+  const char* const element = is_choice || is_flag || is_whole ? "IntVectorProperty"
+                              : is_number                      ? "DoubleVectorProperty"
+                                                               : "StringVectorProperty";
+  pugi::xml_node property = placeholder.parent().insert_child_before(element, placeholder);
+  std::string usual = d.text;
+  if (is_flag) usual = d.text == "on" ? "1" : "0";
+  if (is_choice) {
+    const auto found = std::ranges::find(d.choices, d.text);
+    usual = std::to_string(found == d.choices.end() ? 0 : found - d.choices.begin());
+  }
+  if ((is_whole || is_number) && usual.empty()) usual = "0";
+  property.append_attribute("name") = attribute("property", joined(label)).c_str();
+  property.append_attribute("label") = label.c_str();
+  property.append_attribute("command") = command;
+  property.append_attribute("initial_string") = d.about.name.c_str();
+  property.append_attribute("number_of_elements") = std::max(1, numbers);
+  property.append_attribute("default_values") = attribute("default", usual).c_str();
+  const bool advanced = attribute("level", d.about.level == Level::advanced ? "advanced" : "basic") == "advanced";
+  if (advanced) property.append_attribute("panel_visibility") = "advanced";
+  if (is_choice) {
+    pugi::xml_node domain = property.append_child("EnumerationDomain");
+    domain.append_attribute("name") = "enum";
+    int value = 0;
+    for (const std::string& choice : d.choices) {
+      pugi::xml_node entry = domain.append_child("Entry");
+      entry.append_attribute("value") = value++;
+      std::string shown = choice;
+      std::ranges::replace(shown, '-', ' ');
+      shown[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(shown[0])));
+      entry.append_attribute("text") = shown.c_str();
+    }
+  } else if (is_flag) {
+    property.append_child("BooleanDomain").append_attribute("name") = "bool";
+  } else if (is_whole || is_number) {
+    pugi::xml_node domain = property.append_child(is_whole ? "IntRangeDomain" : "DoubleRangeDomain");
+    domain.append_attribute("name") = "range";
+    set_range(domain, d.about, is_whole);
+  } else if (d.about.file == FileRole::read) {
+    property.append_child("FileListDomain").append_attribute("name") = "files";
+  }
+  property.append_child("Documentation").append_child(pugi::node_pcdata).set_value(
+      sentence(d, said.attribute("documentation").value()).c_str());
+  if (const std::string condition = said.attribute("show_with").value(); !condition.empty()) {
+    pugi::xml_node widget = property.append_child("Hints").append_child("PropertyWidgetDecorator");
+    widget.append_attribute("type") = "GenericDecorator";
+    widget.append_attribute("mode") = "visibility";
+    widget.append_attribute("property") = condition.substr(0, condition.find('=')).c_str();
+    widget.append_attribute("value") = condition.substr(condition.find('=') + 1).c_str();
+  }
+}
+
+[[noreturn]] void fail(const std::string& text) {
+  fmt::print(stderr, "{}\n", text);
+  std::exit(1);
+}
+
+const Described& find(const std::string& name, const std::vector<std::string>& of) {
+  static std::map<std::string, std::vector<Described>> all;
+  for (const std::string& one : of) {
+    auto& list = all[one];
+    if (list.empty()) list = structs().at(one)();
+    for (const Described& d : list)
+      if (d.about.name == name) return d;
+  }
+  fail("no parameter " + name);
+}
+
+void expand(pugi::xml_node proxy) {
+  std::vector<pugi::xml_node> single, lists;
+  for (pugi::xml_node child : proxy.children()) {
+    if (std::string(child.name()) == "Parameter") single.push_back(child);
+    if (std::string(child.name()) == "Parameters") lists.push_back(child);
+  }
+  std::set<std::string> done;
+  std::vector<std::string> all_structs;
+  for (const auto& [name, make] : structs()) all_structs.push_back(name);
+  for (pugi::xml_node placeholder : single) {
+    const Described& d = find(placeholder.attribute("name").value(), all_structs);
+    done.insert(d.about.name);
+    if (!placeholder.attribute("omit").as_bool()) add_property(placeholder, d, "SetParameter");
+  }
+  for (pugi::xml_node placeholder : lists) {
+    const std::string of = placeholder.attribute("of").value();
+    if (!structs().contains(of)) fail("no parameters of " + of);
+    for (const Described& d : structs().at(of)())
+      if (done.insert(d.about.name).second) add_property(placeholder, d, "SetParameter");
+  }
+  for (pugi::xml_node placeholder : single) proxy.remove_child(placeholder);
+  for (pugi::xml_node placeholder : lists) proxy.remove_child(placeholder);
+}
+
+}  // namespace
+
+int main(int count, char** arguments) {
+  if (count != 3) fail("usage: expand_proxies IN.xml OUT.xml");
+  pugi::xml_document document;
+  const auto read = document.load_file(arguments[1]);
+  if (!read) fail(fmt::format("{}: {}", arguments[1], read.description()));
+  for (pugi::xml_node group : document.child("ServerManagerConfiguration").children())
+    for (pugi::xml_node proxy : group.children()) expand(proxy);
+  if (!document.save_file(arguments[2], "  ")) fail(fmt::format("{}: cannot be written", arguments[2]));
+  return 0;
+}
