@@ -6,6 +6,7 @@
 #include <array>
 #include <cctype>
 #include <cstring>
+#include <map>
 #include <memory>
 #include <regex>
 #include <sstream>
@@ -19,6 +20,7 @@
 #include "options.h"
 #include "run.h"
 #include "surf/core/error.h"
+#include "surf/core/field_words.h"
 #include "surf/core/try_thread.h"
 #include "surf/workflow/version.h"
 #include "terminal.h"
@@ -90,6 +92,21 @@ std::vector<std::string> names_of_options(const CLI::App& app) {
 const CLI::App& parsed_app(const CLI::App& app) {
   const auto chosen = app.get_subcommands();
   return chosen.empty() ? app : parsed_app(*chosen.front());
+}
+
+// `beam.tilt=30deg` is --tilt 30deg, where the command has that option; of one with a letter, -o image.exr.
+FieldWord options_for_fields(const CLI::App& app) {
+  std::map<std::string, std::string> letters;
+  for (const CLI::Option* option : app.get_options())
+    for (const std::string& name : option->get_lnames())
+      letters[name] = option->get_snames().empty() ? "" : option->get_snames().front();
+  return [letters](std::string_view field, std::string_view value) {
+    const auto found = letters.find(last_part(field, '-'));
+    const std::string setting = value.empty() ? "" : " " + std::string(value);
+    if (found == letters.end()) return last_part(field, ' ') + setting;
+    const auto& [name, letter] = *found;
+    return (value.empty() || letter.empty() ? "--" + name : "-" + letter) + setting;
+  };
 }
 
 std::string help_hint(const CLI::App& app) {
@@ -200,6 +217,7 @@ int parse_and_act(const std::vector<std::string>& arguments) {
   } catch (const CLI::ParseError& error) {
     return report_parse_error(app, error);
   }
+  call_fields(options_for_fields(parsed_app(app)));
   if (!action) {
     fmt::print(messages(), "{}", app.help());
     return exit_usage;
@@ -218,6 +236,7 @@ namespace surf::cli {
 
 int run(const std::vector<std::string>& arguments, std::FILE* out, std::FILE* err) {
   speak_to(out, err);
+  call_fields(nullptr);
   int code = 0;
   try {
     code = parse_and_act(arguments);

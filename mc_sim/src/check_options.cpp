@@ -17,7 +17,7 @@ constexpr double largest_dose = 1e9;
 
 void check_options(const SimulationOptions& options) {
   if (options.electrons < 1 || options.electrons > most_electrons)
-    throw UsageError("--electrons", "the number of primaries per pixel must be 1 to 2^31",
+    throw UsageError("`simulation.electrons`", "the number of primaries per pixel must be 1 to 2^31",
                      "Ask for 200, say");
   if (!(options.dose >= 0 && options.dose <= largest_dose))
     throw UsageError("dose", fmt::format("{:g} primaries per pixel are outside 0 to 1e9",
@@ -28,14 +28,14 @@ void check_options(const SimulationOptions& options) {
     throw UsageError("detectors", "there are none", "Use SE and BSE");
   validate(options.detectors);
   if (options.accuracy != 0 && !(options.accuracy >= 1e-4 && options.accuracy <= 1))
-    throw UsageError("--accuracy", fmt::format("{:g} is outside 0.0001 to 1", options.accuracy),
+    throw UsageError("`simulation.accuracy`", fmt::format("{:g} is outside 0.0001 to 1", options.accuracy),
                      "Ask for 0.01 or 1%, say");
   if (!(options.accuracy_floor >= 0 && std::isfinite(options.accuracy_floor)))
-    throw UsageError("--accuracy-floor", "it must be zero or more", "Leave it out: 0.002");
+    throw UsageError("`simulation.accuracy_floor`", "it must be zero or more", "Leave it out: 0.002");
   if (options.accuracy > 0 && (options.dose > 0 || options.spectra))
-    throw UsageError("--accuracy", "pixels then get different numbers of electrons, and spectra or a "
+    throw UsageError("`simulation.accuracy`", "pixels then get different numbers of electrons, and spectra or a "
                                    "dose would mean nothing",
-                     "Give --electrons with --spectra, or --current and --dwell alone");
+                     "Give `simulation.electrons` with `simulation.spectra`, or `beam.current` and `beam.dwell` alone");
 }
 
 }  // namespace surf::mc

@@ -18,7 +18,7 @@ namespace {
 
 using Choice = std::pair<std::string_view, int>;
 
-// A key of --physics, its words (the default first), and how it is stored.
+// A key of `simulation.physics`, its words (the default first), and how it is stored.
 struct Key {
   std::string_view name;
   std::vector<Choice> words;
@@ -60,10 +60,10 @@ void apply_item(const std::string& item, Physics& physics) {
     const std::string word = equals == std::string::npos ? "" : item.substr(equals + 1);
     for (const auto& [known, value] : key.words)
       if (known == word) return key.set(physics, value);
-    throw UsageError("--physics", fmt::format("'{}' is no choice for {}", word, name),
+    throw UsageError("`simulation.physics`", fmt::format("'{}' is no choice for {}", word, name),
                      fmt::format("Choose one of: {}", choices(key)));
   }
-  throw UsageError("--physics", fmt::format("there is no '{}'", name),
+  throw UsageError("`simulation.physics`", fmt::format("there is no '{}'", name),
                    "Use elastic=, loss=, secondaries= or barrier=, separated by commas");
 }
 
@@ -72,7 +72,7 @@ void apply_item(const std::string& item, Physics& physics) {
 void validate(const Physics& physics, double beam_energy_ev) {
   const double cutoff = physics.cutoff_ev;
   if (cutoff == 0 || (cutoff >= min_cutoff_ev && cutoff < beam_energy_ev)) return;
-  throw UsageError("--cutoff",
+  throw UsageError("`simulation.cutoff`",
                    fmt::format("{:g} eV is outside {:g} eV to the beam's energy of {:g} eV (excluded)", cutoff,
                                min_cutoff_ev, beam_energy_ev),
                    "Choose an energy in that range, such as 5eV, or 0 for the default");

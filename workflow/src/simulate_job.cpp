@@ -96,12 +96,12 @@ Simulation find_accuracy(SimulateJob& job, const mc::Scene& scene, mc::LibrarySo
                          mc::CascadeLibrary::page_cascades;
   job.options.accuracy = accuracy_that_fits(coarse.result, budget);
   if (job.options.accuracy < coarse_accuracy) {
-    say(fmt::format("{} accuracy fits in {:g} s; --accuracy {} repeats this exactly",
+    say(fmt::format("{} accuracy fits in {:g} s; `simulation.accuracy={}` repeats this exactly",
                     format_share(job.options.accuracy), job.seconds,
                     option_text(job.options.accuracy)));
     return coarse;
   }
-  const std::string again = fmt::format("--accuracy {} repeats this exactly",
+  const std::string again = fmt::format("`simulation.accuracy={}` repeats this exactly",
                                         option_text(coarse_accuracy));
   if (spent > job.seconds)
     say(fmt::format("{:g} s are too short: even {} accuracy took {:.2g} s; {}", job.seconds,
@@ -144,7 +144,7 @@ void keep_interrupted(const SimulateJob& job, Checkpoint* checkpoint, const Note
       note(fmt::format("what is done is kept in {}; the same command{} goes on from there",
                        checkpoint->path().string(),
                        job.seconds > 0
-                           ? fmt::format(" with --accuracy {} in place of --time",
+                           ? fmt::format(" with `simulation.accuracy={}` in place of `simulation.time`",
                                          option_text(job.options.accuracy))
                            : ""));
   } else if (note && job.extras.deposit_cells > 0) {
@@ -203,7 +203,7 @@ SimulateSummary run(SimulateJob asked, const ProgressCallback& progress,
     check_options(asked.options);
     check_extras(asked.extras);
     if (team && asked.extras.deposit_cells > 0)
-      throw UsageError("--deposit", "each of several processes would see a part of it", "Run it in one process");
+      throw UsageError("`output.deposit`", "each of several processes would see a part of it", "Run it in one process");
     job = complete(std::move(asked));
     if (leads(team)) {   // who follows writes nothing
       check_outputs(job);
@@ -239,7 +239,7 @@ SimulateSummary run(SimulateJob asked, const ProgressCallback& progress,
   Simulation simulation;
   if (job.seconds > 0)
     simulation = simulate_coarsely(job, scene, libraries, kept, summary.choice, record, progress, cancel, tell, team);
-  if (job.seconds > 0 && !simulation.final) {   // as with --accuracy and that number
+  if (job.seconds > 0 && !simulation.final) {   // as if that accuracy were asked for
     summary.choice = mc::choose_method(scene, job.options, s.method, {job.extras.deposit_cells > 0});
     job.options.method = summary.choice.method;
   }

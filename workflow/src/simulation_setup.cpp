@@ -33,11 +33,11 @@ std::vector<io::FileUse> outputs_of(const SimulateJob& job) {
   std::vector<io::FileUse> outputs;
   std::set<fs::path> records;   // images of one name share theirs
   for (const fs::path& output : job.outputs) {
-    outputs.push_back({"--output", output, {}});
+    outputs.push_back({"`output`", output, {}});
     if (const fs::path record = sidecar_path(output); records.insert(record).second)
-      outputs.push_back({"--output", record, output});
+      outputs.push_back({"`output`", record, output});
   }
-  for (const fs::path& extra : extra_files(job)) outputs.push_back({"--output", extra, job.outputs.front()});
+  for (const fs::path& extra : extra_files(job)) outputs.push_back({"`output`", extra, job.outputs.front()});
   return outputs;
 }
 
@@ -51,10 +51,10 @@ void refuse_strangers_of(const SimulateJob& job) {
 
 void check_options(const mc::SimulationOptions& options) {
   if (options.electrons < 1 || options.electrons > max_electrons)
-    throw UsageError("--electrons", fmt::format("{} is out of range", options.electrons),
+    throw UsageError("`simulation.electrons`", fmt::format("{} is out of range", options.electrons),
                      "Give 1 to 2147483648 electrons per pixel");
   if (options.threads < 0)
-    throw UsageError("--threads", fmt::format("{} is out of range", options.threads),
+    throw UsageError("`simulation.threads`", fmt::format("{} is out of range", options.threads),
                      "Give 1 or more, or 0 for one per hardware thread");
   if (options.tile_pixels < 1)
     throw UsageError("tile_pixels", fmt::format("{} is out of range", options.tile_pixels),
@@ -68,24 +68,24 @@ SimulateJob complete(SimulateJob out) {
   mc::validate(s.beam);
   mc::validate(s.physics, s.beam.energy_ev);
   if (s.current_pa.has_value() != s.dwell_us.has_value())
-    throw UsageError(s.current_pa ? "--current" : "--dwell", "the other of the two is missing",
+    throw UsageError(s.current_pa ? "`beam.current`" : "`beam.dwell`", "the other of the two is missing",
                      "Current and dwell time together make the dose of a pixel: give both");
   if (s.current_pa) {
     if (!(*s.current_pa > 0 && *s.dwell_us > 0))
-      throw UsageError("--current, --dwell", "they must be above zero",
-                       "Write for example --current 100pA --dwell 1us");
+      throw UsageError("`beam.current`, `beam.dwell`", "they must be above zero",
+                       "Write for example `beam.current=100pA` `beam.dwell=1us`");
     if (s.electrons)
-      throw UsageError("--electrons", "current and dwell time give the number of primaries",
-                       "Leave out --electrons, or --current and --dwell");
+      throw UsageError("`simulation.electrons`", "current and dwell time give the number of primaries",
+                       "Leave out `simulation.electrons`, or `beam.current` and `beam.dwell`");
     out.options.dose = *s.current_pa * *s.dwell_us * electrons_per_pa_us;
   }
   if (s.accuracy) out.options.accuracy = *s.accuracy;
   if (s.accuracy_floor) out.options.accuracy_floor = *s.accuracy_floor;
   if (out.seconds < 0 || !std::isfinite(out.seconds))
-    throw UsageError("--time", "it must be above zero", "Write for example 30s");
+    throw UsageError("`simulation.time`", "it must be above zero", "Write for example 30s");
   if (out.seconds > 0) out.options.accuracy = coarse_accuracy;
   if (out.options.accuracy > 0 && s.electrons)
-    throw UsageError("--electrons", "a wanted accuracy gives the number of primaries",
+    throw UsageError("`simulation.electrons`", "a wanted accuracy gives the number of primaries",
                      "Leave out one of the two");
   if (out.options.scratch_folder.empty() && !out.outputs.empty()) {
     const fs::path folder = out.outputs.front().parent_path();
@@ -111,7 +111,7 @@ Image image_like_the_result(const SimulateJob& job) {
 
 void check_outputs(const SimulateJob& job) {
   if (job.outputs.empty())
-    throw UsageError("--output", "no output file is given", "Add -o image.exr");
+    throw UsageError("`output`", "no output file is given", "Add `output=image.exr`");
   const Image image = image_like_the_result(job);
   io::refuse_overlaps(inputs_of(job), outputs_of(job));
   refuse_strangers_of(job);
@@ -126,13 +126,13 @@ void check_outputs(const SimulateJob& job) {
 void check_checkpoint(const SimulateJob& job) {
   const CheckpointOptions& o = job.checkpoint;
   if (!(o.seconds > 0))
-    throw UsageError("--checkpoint-every", "it must be above zero", "Write for example 30s");
+    throw UsageError("`output.checkpoint_every`", "it must be above zero", "Write for example 30s");
   if (!o.wanted || o.file.empty()) return;
   if (job.extras.deposit_cells > 0)
-    throw UsageError("--checkpoint", "deposited energy cannot be kept on the way",
-                     "Leave out --checkpoint or --deposit");
+    throw UsageError("`output.checkpoint`", "deposited energy cannot be kept on the way",
+                     "Leave out `output.checkpoint` or `output.deposit`");
   std::vector<io::FileUse> outputs = outputs_of(job);
-  outputs.push_back({"--checkpoint", o.file, {}});
+  outputs.push_back({"`output.checkpoint`", o.file, {}});
   io::refuse_overlaps(inputs_of(job), outputs);
   io::check_writable(o.file);
 }

@@ -28,7 +28,7 @@ double rounded_up(double accuracy) {
   const double percent = 100 * accuracy;
   const double step = std::pow(10.0, std::floor(std::log10(percent)) - 1);
   const double up = std::ceil(percent / step * (1 - 1e-9)) * step;
-  return std::clamp(parse_share(fmt::format("{:.6g}%", up), "--time"), finest, coarse_accuracy);
+  return std::clamp(parse_share(fmt::format("{:.6g}%", up), "`simulation.time`"), finest, coarse_accuracy);
 }
 
 }  // namespace

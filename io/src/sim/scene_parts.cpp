@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "sim/suggest.h"
+#include "surf/core/field_words.h"
 #include "surf/core/units.h"
 #include "surf/io/height_field_file.h"
 #include "surf/io/image_file.h"
@@ -264,7 +265,7 @@ HeightField SceneParts::read_field_file(const TomlTable& table) {
     field = at_place(table, "channel", [&] {
       HeightFieldFile read = surf::io::read_height_field(path, options);
       for (const std::string& note : read.notes) {
-        scene_.notes.push_back(path.filename().string() + ": " + note);
+        scene_.notes.push_back(path.filename().string() + ": " + with_scene_words(note));
       }
       return std::move(read.field);
     });
@@ -336,6 +337,23 @@ std::vector<mc::Body> SceneParts::read_bodies(const TomlTable& table) {
     at_place(table, {}, [&] { place_body(table, body.mesh); });
   }
   return bodies;
+}
+
+std::string with_scene_words(std::string_view text) {
+  return with_field_words(text, [](std::string_view field, std::string_view value) {
+    return std::string(field) + (value.empty() ? "" : " = ") + std::string(value);
+  });
+}
+
+void refuse_at(const TomlTable& table, std::string_view key, const UsageError& error) {
+  const std::string reason = with_scene_words(error.reason()), remedy = with_scene_words(error.remedy());
+  std::string own;
+  const std::string rest = with_field_words(error.subject(), [&](std::string_view field, std::string_view) {
+    own = last_part(field, '_');
+    return std::string();
+  });
+  if (rest.empty() && table.has(own)) throw UsageError(table.place(own), reason, remedy);
+  throw UsageError(table.place(key), with_scene_words(error.subject()) + ": " + reason, remedy);
 }
 
 }  // namespace surf::io

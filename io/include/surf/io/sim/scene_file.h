@@ -57,7 +57,7 @@ struct SceneFile {
 ///     title = "80 nm mesa"
 ///     [beam]
 ///     energy = "1keV"            # tilt = 0, azimuth = 0, spot = 0, convergence = 0, focus = 0;
-///                                # working_distance: parallel beams; current and dwell: see --current
+///                                # working_distance: parallel beams; current and dwell: the dose
 ///     [scan]                     # see ScanRequest
 ///     size = "256x256"           # or 256; pixel_size = "1nm" or "1nm x 2nm";
 ///                                # region = "-96,-96,96,96" or [-96, -96, 96, 96]
