@@ -6,11 +6,12 @@
 #include <array>
 #include <cctype>
 #include <cstring>
-#include <map>
 #include <memory>
 #include <regex>
 #include <sstream>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include "commands.h"
@@ -94,18 +95,42 @@ const CLI::App& parsed_app(const CLI::App& app) {
   return chosen.empty() ? app : parsed_app(*chosen.front());
 }
 
-// `beam.tilt=30deg` is --tilt 30deg, where the command has that option; of one with a letter, -o image.exr.
-FieldWord options_for_fields(const CLI::App& app) {
-  std::map<std::string, std::string> letters;
+struct OptionNames {
+  std::string name, letter;   // without dashes; few have a letter
+};
+
+std::vector<OptionNames> options_of(const CLI::App& app) {
+  std::vector<OptionNames> options;
   for (const CLI::Option* option : app.get_options())
     for (const std::string& name : option->get_lnames())
-      letters[name] = option->get_snames().empty() ? "" : option->get_snames().front();
-  return [letters](std::string_view field, std::string_view value) {
-    const auto found = letters.find(last_part(field, '-'));
+      options.push_back({name, option->get_snames().empty() ? "" : option->get_snames().front()});
+  return options;
+}
+
+// Two names of one setting, as sem-pixel-size is pixel-size where there is no other image.
+bool is_alike(std::string_view a, std::string_view b) {
+  if (a.size() < b.size()) std::swap(a, b);
+  return b.find('-') != b.npos && a.ends_with("-" + std::string(b));
+}
+
+// The option of this name, else the only one that is alike, else null.
+const OptionNames* option_called(const std::vector<OptionNames>& options, const std::string& name) {
+  const OptionNames* found = nullptr;
+  int alike = 0;
+  for (const OptionNames& option : options) {
+    if (option.name == name) return &option;
+    if (is_alike(option.name, name)) found = &option, ++alike;
+  }
+  return alike == 1 ? found : nullptr;
+}
+
+// `beam.tilt=30deg` is --tilt 30deg where the command has that option, and with a letter it is -o image.exr.
+FieldWord options_for_fields(const CLI::App& app) {
+  return [options = options_of(app)](std::string_view field, std::string_view value) {
+    const OptionNames* option = option_called(options, last_part(field, '-'));
     const std::string setting = value.empty() ? "" : " " + std::string(value);
-    if (found == letters.end()) return last_part(field, ' ') + setting;
-    const auto& [name, letter] = *found;
-    return (value.empty() || letter.empty() ? "--" + name : "-" + letter) + setting;
+    if (!option) return last_part(field, ' ') + setting;
+    return (value.empty() || option->letter.empty() ? "--" + option->name : "-" + option->letter) + setting;
   };
 }
 

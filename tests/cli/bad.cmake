@@ -162,7 +162,7 @@ semsurf_cli_usage(noise_flat_sem "--flat: it is of AFM scans" noise --sem four.p
 semsurf_cli_usage(noise_trials "--trials.*100 to 10000000" noise --counts scene.toml --trials 5)
 semsurf_cli_usage(noise_counts_at "--at: it is not a point" noise --counts scene.toml --at 5)
 semsurf_cli_unusable(noise_sem_small "no noise|flat places" noise --sem four.png)
-set(sem_as_heights "fei.tif: it is an SEM image .Thermo/FEI.*no heights.*noise --sem.*--z-unit")
+set(sem_as_heights "fei.tif: it is an SEM image .Thermo/FEI.*no heights.*noise --sem.*-z-unit")
 semsurf_cli_unusable(noise_of_an_sem_image "${sem_as_heights}" noise fei.tif)
 semsurf_cli_unusable(level_an_sem_image "${sem_as_heights}" level fei.tif --pixel-size 2nm -o flat.gsf)
 semsurf_cli_unusable(clean_an_sem_image "${sem_as_heights}" clean fei.tif --median 3 -o flat.gsf)
