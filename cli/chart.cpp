@@ -12,6 +12,7 @@
 #include "chart_sample.h"
 #include "commands.h"
 #include "common_options.h"
+#include "exit_codes.h"
 #include "joined_team.h"
 #include "name_list.h"
 #include "options.h"
@@ -24,8 +25,6 @@
 
 namespace surf::cli {
 namespace {
-
-constexpr int exit_interrupted = 130;
 
 constexpr const char* examples =
     R"(Writes chart.svg, chart.png, chart.csv and chart.json into the folder. Stop when you like: the same

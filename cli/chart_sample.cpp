@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "common_options.h"
+#include "exit_codes.h"
 #include "name_list.h"
 #include "options.h"
 #include "surf/core/error.h"
@@ -13,8 +14,6 @@
 
 namespace surf::cli {
 namespace {
-
-constexpr int exit_interrupted = 130;
 
 workflow::ChainChartJob make_job(const ChartSampleOptions& o, const std::string& command_line) {
   workflow::ChainChartJob job;

@@ -6,12 +6,12 @@
 #include <system_error>
 
 #include "surf/core/error.h"
+#include "exit_codes.h"
 #include "terminal.h"
 
 namespace surf::cli {
 
 int report_failure() {
-  constexpr int exit_usage = 2, exit_unusable = 3, exit_interrupted = 130;
   try {
     throw;
   } catch (const UsageError& error) {

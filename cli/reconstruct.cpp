@@ -7,6 +7,7 @@
 
 #include "chain_progress.h"
 #include "commands.h"
+#include "exit_codes.h"
 #include "reconstruct_options.h"
 #include "surf/core/error.h"
 #include "surf/core/units.h"
@@ -14,9 +15,6 @@
 
 namespace surf::cli {
 namespace {
-
-constexpr int exit_untrustworthy = 4;
-constexpr int exit_interrupted = 130;
 
 using workflow::ReconstructionVerdict;
 

@@ -4,8 +4,6 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
-#include <cctype>
-#include <cstring>
 #include <memory>
 #include <regex>
 #include <sstream>
@@ -15,6 +13,7 @@
 #include <vector>
 
 #include "commands.h"
+#include "exit_codes.h"
 #include "failure.h"
 #include "file_uses.h"
 #include "joined_team.h"
@@ -23,6 +22,7 @@
 #include "surf/core/error.h"
 #include "surf/core/field_words.h"
 #include "surf/core/try_thread.h"
+#include "surf/core/words.h"
 #include "surf/workflow/version.h"
 #include "terminal.h"
 
@@ -30,8 +30,6 @@ namespace {
 
 using namespace surf;
 using namespace surf::cli;
-
-constexpr int exit_usage = 2;
 
 constexpr const char* examples = R"(Examples:
   semsurf simulate cube.stl --material Si --substrate Si --tilt 40 -o cube.exr -o cube.png
@@ -65,21 +63,6 @@ std::string version_text() {
       "semsurf {}\nwith {}, CLI11 {}\nCopyright the semsurf authors. Licence GPL-3.0-or-later; no "
       "warranty.",
       workflow::version(), workflow::library_versions(), CLI11_VERSION);
-}
-
-// The command line as a shell would read it, for the record.
-std::string quoted_command(const std::vector<std::string>& arguments) {
-  const auto is_plain = [](unsigned char c) {
-    return std::isalnum(c) || std::strchr("-_=+./,:%@", c);
-  };
-  std::string line;
-  for (const std::string& word : arguments) {
-    const bool plain = !word.empty() && std::all_of(word.begin(), word.end(), is_plain);
-    std::string quoted = "'";
-    for (const char c : word) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
-    line += (line.empty() ? "" : " ") + (plain ? word : quoted + "'");
-  }
-  return line;
 }
 
 std::vector<std::string> names_of_options(const CLI::App& app) {

@@ -11,6 +11,7 @@
 #include <memory>
 
 #include "commands.h"
+#include "exit_codes.h"
 #include "file_uses.h"
 #include "joined_team.h"
 #include "options.h"
@@ -23,8 +24,6 @@
 namespace surf::cli {
 namespace {
 
-constexpr int exit_untrustworthy = 4;
-constexpr int exit_interrupted = 130;
 constexpr std::size_t most_runs = 1'000'000, most_tried = 100;
 
 constexpr const char* examples =

@@ -12,13 +12,13 @@
 #include <cstdio>
 #include <utility>
 
+#include "exit_codes.h"
 #include "surf/core/error.h"
 
 namespace surf::cli {
 namespace {
 
 constexpr auto update_interval = std::chrono::milliseconds(100);
-constexpr int exit_interrupted = 130;
 
 std::atomic<CancelToken*> interrupted_token{nullptr};
 

@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "commands.h"
+#include "exit_codes.h"
 #include "model_tables.h"
 #include "joined_team.h"
 #include "surf/workflow/train_job.h"
@@ -12,8 +13,6 @@
 
 namespace surf::cli {
 namespace {
-
-constexpr int exit_interrupted = 130;
 
 void print_line(const std::string& label, const std::string& text) { print("{:<10} {}\n", label, text); }
 

@@ -4,13 +4,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
-#include <cstring>
 #include <nlohmann/json.hpp>
 
 #include "surf/afm/round_tip.h"
 #include "surf/core/units.h"
+#include "surf/core/words.h"
 #include "surf/io/files.h"
 #include "surf/io/model_file.h"
 #include "surf/workflow/version.h"
@@ -28,17 +27,6 @@ std::string list_of(const std::vector<double>& values) {
 
 /// Not finite numbers have no place in JSON.
 Json number(double value) { return std::isfinite(value) ? Json(value) : Json(); }
-
-std::string quoted(const std::vector<std::string>& words) {
-  const auto is_plain = [](unsigned char c) { return std::isalnum(c) || std::strchr("-_=+./,:%@", c); };
-  std::string line;
-  for (const std::string& word : words) {
-    std::string marked = "'";
-    for (const char c : word) marked += c == '\'' ? std::string("'\\''") : std::string(1, c);
-    line += (line.empty() ? "" : " ") + (!word.empty() && std::ranges::all_of(word, is_plain) ? word : marked + "'");
-  }
-  return line;
-}
 
 Json file_json(const std::filesystem::path& file) {
   return {{"file", file.string()}, {"sha256", io::sha256_of_file(file)}};
@@ -217,7 +205,7 @@ std::string reconstruction_report(const ReconstructJob& job, const ReconstructSu
   json["semsurf"] = version();
   json["libraries"] = library_versions();
   json["command"] = job.command_line;
-  json["repeat"] = quoted(repeating_command(job, s, afm, sem));
+  json["repeat"] = quoted_command(repeating_command(job, s, afm, sem));
   json["verdict"] = name(s.verdict);
   json["reasons"] = s.reasons;
   json["warnings"] = s.warnings;
