@@ -16,7 +16,7 @@ namespace {
 
 void print_line(const std::string& label, const std::string& text) { print("{:<10} {}\n", label, text); }
 
-void print_training(const workflow::TrainJob& job, const workflow::TrainSummary& s) {
+void print_training(const workflow::TrainSummary& s) {
   const TrainedModel& model = s.model;
   print_line("model", format_model(model));
   print_line("for", format_scope(model.scope));
@@ -66,7 +66,7 @@ int train(const TrainOptions& options) {
                                  summary.images.string()));
     return exit_interrupted;
   }
-  if (!options.quiet) print_training(job, summary);
+  if (!options.quiet) print_training(summary);
   return 0;
 }
 
