@@ -9,10 +9,11 @@ namespace surf::cli {
 namespace {
 
 /// "help (default)", over as many lines as it takes.
-std::string help_of(const Parameter& about, const Field& field, const std::string& own) {
+std::string help_of(const Parameter& about, const Field& field, const std::string& own, bool positional) {
   std::string text = own.empty() ? about.help : own;
   if (const std::string limits = format_limits(about); !limits.empty() && field.kind() != FieldKind::choice)
     text += ", " + limits;
+  if (field.kind() == FieldKind::list && !positional) text += "; may be repeated";
   if (!about.otherwise.empty()) return text + fmt::format(" ({})", about.otherwise);
   if (field.kind() == FieldKind::flag || !field.given()) return text;
   std::string usual = field.text();
@@ -74,7 +75,7 @@ void BoundParameters::declare(CLI::App& app, const std::string& group, const Par
   const OptionLook look = found != looks.end() ? found->second : OptionLook{};
   if (look.hidden) return;
   const std::string name = look.name.empty() ? option_name(about.name) : look.name;
-  const std::string help = wrapped(help_of(about, field, look.help), help_width);
+  const std::string help = wrapped(help_of(about, field, look.help, look.positional), help_width);
   const auto given = given_;
   const std::string key = about.name;
   std::string heading = group;
@@ -110,11 +111,11 @@ void BoundParameters::take(const Parameter& about, Field& field, const GivenText
   const auto found = given.find(about.name);
   if (found == given.end()) return;
   if (field.kind() != FieldKind::list) {
-    field.read(found->second.back(), about.name);
+    field.read(found->second.back(), about.subject());
     return;
   }
   field.clear();
-  for (const std::string& text : found->second) field.add(text, about.name);
+  for (const std::string& text : found->second) field.add(text, about.subject());
 }
 
 }  // namespace surf::cli

@@ -14,6 +14,7 @@
 #include "afm_options.h"
 #include "calibrate_options.h"
 #include "commands.h"
+#include "exit_codes.h"
 #include "picture_input.h"
 #include "surf/core/error.h"
 #include "surf/core/units.h"
@@ -26,7 +27,6 @@
 namespace surf::cli {
 namespace {
 
-constexpr int exit_untrustworthy = 4;
 constexpr double same_pitch = 1e-3;   // relative: as models ask of fields
 
 void check_same_pixels(const Image& real, const Image& simulated, const CalibrateOptions& o) {

@@ -8,6 +8,7 @@
 #include "afm_options.h"
 #include "commands.h"
 #include "common_options.h"
+#include "exit_codes.h"
 #include "options.h"
 #include "surf/core/error.h"
 #include "surf/core/units.h"
@@ -17,8 +18,6 @@
 
 namespace surf::cli {
 namespace {
-
-constexpr int exit_untrustworthy = 4;
 
 constexpr const char* examples =
     R"(The map is 1 where the tip touched the surface and nothing else could have made the scan what it is

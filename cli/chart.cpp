@@ -12,6 +12,7 @@
 #include "chart_sample.h"
 #include "commands.h"
 #include "common_options.h"
+#include "exit_codes.h"
 #include "job_reporter.h"
 #include "joined_team.h"
 #include "name_list.h"
@@ -25,8 +26,6 @@
 
 namespace surf::cli {
 namespace {
-
-constexpr int exit_interrupted = 130;
 
 constexpr const char* examples =
     R"(Writes chart.svg, chart.png, chart.csv and chart.json into the folder. Stop when you like: the same

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "common_options.h"
+#include "exit_codes.h"
 #include "job_reporter.h"
 #include "name_list.h"
 #include "options.h"
@@ -14,8 +15,6 @@
 
 namespace surf::cli {
 namespace {
-
-constexpr int exit_interrupted = 130;
 
 workflow::ChainChartJob make_job(const ChartSampleOptions& o, const std::string& command_line) {
   workflow::ChainChartJob job;

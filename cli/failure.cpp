@@ -6,12 +6,12 @@
 #include <system_error>
 
 #include "surf/core/error.h"
+#include "exit_codes.h"
 #include "terminal.h"
 
 namespace surf::cli {
 
 int report_failure() {
-  constexpr int exit_usage = 2, exit_unusable = 3, exit_interrupted = 130;
   try {
     throw;
   } catch (const UsageError& error) {
@@ -24,7 +24,7 @@ int report_failure() {
     print_error("memory: there is not enough for this. Use fewer pixels or a smaller mesh");
   } catch (const std::system_error& error) {
     print_error(error.code() == std::errc::resource_unavailable_try_again
-                    ? "threads: the system cannot start another one. Give --threads 1, or raise the limits of "
+                    ? "threads: the system cannot start another one. Give `simulation.threads=1`, or raise the limits of "
                       "processes and memory (ulimit -u, ulimit -v)"
                     : error.what());
   } catch (const std::exception& error) {

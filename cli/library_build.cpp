@@ -3,6 +3,7 @@
 
 #include <memory>
 
+#include "exit_codes.h"
 #include "library.h"
 #include "surf/core/error.h"
 #include "surf/core/units.h"
@@ -91,7 +92,7 @@ int build(const LibraryOptions& options) {
     const Built built = build_one(
         request.libraries[i], title, request, options.quiet,
         [&](double done, double) { bar.show(before + done, total); }, interrupts.token(), bar);
-    if (!built.complete) return 130;
+    if (!built.complete) return exit_interrupted;
     bytes += built.bytes;
   }
   if (bytes > io::Cache::default_max_bytes)

@@ -3,6 +3,7 @@
 
 #include <memory>
 
+#include "exit_codes.h"
 #include "library.h"
 #include "surf/core/error.h"
 #include "surf/core/units.h"
@@ -76,7 +77,7 @@ int plot(const PlotOptions& options) {
         interrupts.token());
   }
   for (const std::string& note : libraries.take_notes()) print_warning(note);
-  if (!plot) return 130;
+  if (!plot) return exit_interrupted;
   io::write_plot(options.output, *plot);
   if (!options.library.quiet) print("written    {}\n", options.output);
   return 0;

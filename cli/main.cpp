@@ -2,6 +2,7 @@
 #include <cstdio>
 #include <cstdlib>
 
+#include "exit_codes.h"
 #include "joined_team.h"
 #include "run.h"
 #include "surf/core/error.h"
@@ -15,7 +16,7 @@ int main(int argc, char** argv) {
     join_team();
   } catch (const surf::Error& error) {
     print_error(error.what());
-    return 3;
+    return exit_unusable;
   }
   const bool follows = team() && !team()->leads();
   if (follows) be_silent();

@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "commands.h"
+#include "exit_codes.h"
 #include "job_reporter.h"
 #include "reconstruct_options.h"
 #include "surf/core/error.h"
@@ -14,9 +15,6 @@
 
 namespace surf::cli {
 namespace {
-
-constexpr int exit_untrustworthy = 4;
-constexpr int exit_interrupted = 130;
 
 using workflow::ReconstructionVerdict;
 

@@ -9,12 +9,11 @@
 #include "job_reporter.h"
 #include "surf/core/error.h"
 #include "surf/io/plot.h"
+#include "exit_codes.h"
 #include "terminal.h"
 
 namespace surf::cli {
 namespace {
-
-constexpr int exit_untrustworthy = 4;
 
 constexpr const char* examples =
     R"(Predicts the SEM image of the scan, its tip taken off, and finds the affine map that lays the SEM image on it.

@@ -4,22 +4,25 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
-#include <cctype>
-#include <cstring>
 #include <memory>
 #include <regex>
 #include <sstream>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include "commands.h"
+#include "exit_codes.h"
 #include "failure.h"
 #include "file_uses.h"
 #include "joined_team.h"
 #include "options.h"
 #include "run.h"
 #include "surf/core/error.h"
+#include "surf/core/field_words.h"
 #include "surf/core/try_thread.h"
+#include "surf/core/words.h"
 #include "surf/workflow/version.h"
 #include "terminal.h"
 
@@ -27,8 +30,6 @@ namespace {
 
 using namespace surf;
 using namespace surf::cli;
-
-constexpr int exit_usage = 2;
 
 constexpr const char* examples = R"(Examples:
   semsurf simulate cube.stl --material Si --substrate Si --tilt 40 -o cube.exr -o cube.png
@@ -64,21 +65,6 @@ std::string version_text() {
       workflow::version(), workflow::library_versions(), CLI11_VERSION);
 }
 
-// The command line as a shell would read it, for the record.
-std::string quoted_command(const std::vector<std::string>& arguments) {
-  const auto is_plain = [](unsigned char c) {
-    return std::isalnum(c) || std::strchr("-_=+./,:%@", c);
-  };
-  std::string line;
-  for (const std::string& word : arguments) {
-    const bool plain = !word.empty() && std::all_of(word.begin(), word.end(), is_plain);
-    std::string quoted = "'";
-    for (const char c : word) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
-    line += (line.empty() ? "" : " ") + (plain ? word : quoted + "'");
-  }
-  return line;
-}
-
 std::vector<std::string> names_of_options(const CLI::App& app) {
   std::vector<std::string> names;
   for (const CLI::Option* option : app.get_options())
@@ -90,6 +76,45 @@ std::vector<std::string> names_of_options(const CLI::App& app) {
 const CLI::App& parsed_app(const CLI::App& app) {
   const auto chosen = app.get_subcommands();
   return chosen.empty() ? app : parsed_app(*chosen.front());
+}
+
+struct OptionNames {
+  std::string name, letter;   // without dashes; few have a letter
+};
+
+std::vector<OptionNames> options_of(const CLI::App& app) {
+  std::vector<OptionNames> options;
+  for (const CLI::Option* option : app.get_options())
+    for (const std::string& name : option->get_lnames())
+      options.push_back({name, option->get_snames().empty() ? "" : option->get_snames().front()});
+  return options;
+}
+
+// Two names of one setting, as sem-pixel-size is pixel-size where there is no other image.
+bool is_alike(std::string_view a, std::string_view b) {
+  if (a.size() < b.size()) std::swap(a, b);
+  return b.find('-') != b.npos && a.ends_with("-" + std::string(b));
+}
+
+// The option of this name, else the only one that is alike, else null.
+const OptionNames* option_called(const std::vector<OptionNames>& options, const std::string& name) {
+  const OptionNames* found = nullptr;
+  int alike = 0;
+  for (const OptionNames& option : options) {
+    if (option.name == name) return &option;
+    if (is_alike(option.name, name)) found = &option, ++alike;
+  }
+  return alike == 1 ? found : nullptr;
+}
+
+// `beam.tilt=30deg` is --tilt 30deg where the command has that option, and with a letter it is -o image.exr.
+FieldWord options_for_fields(const CLI::App& app) {
+  return [options = options_of(app)](std::string_view field, std::string_view value) {
+    const OptionNames* option = option_called(options, last_part(field, '-'));
+    const std::string setting = value.empty() ? "" : " " + std::string(value);
+    if (!option) return last_part(field, ' ') + setting;
+    return (value.empty() || option->letter.empty() ? "--" + option->name : "-" + option->letter) + setting;
+  };
 }
 
 std::string help_hint(const CLI::App& app) {
@@ -200,6 +225,7 @@ int parse_and_act(const std::vector<std::string>& arguments) {
   } catch (const CLI::ParseError& error) {
     return report_parse_error(app, error);
   }
+  call_fields(options_for_fields(parsed_app(app)));
   if (!action) {
     fmt::print(messages(), "{}", app.help());
     return exit_usage;
@@ -218,6 +244,7 @@ namespace surf::cli {
 
 int run(const std::vector<std::string>& arguments, std::FILE* out, std::FILE* err) {
   speak_to(out, err);
+  call_fields(nullptr);
   int code = 0;
   try {
     code = parse_and_act(arguments);

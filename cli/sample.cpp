@@ -8,6 +8,7 @@
 
 #include "commands.h"
 #include "common_options.h"
+#include "exit_codes.h"
 #include "job_reporter.h"
 #include "options.h"
 #include "surf/core/error.h"
@@ -17,8 +18,6 @@
 
 namespace surf::cli {
 namespace {
-
-constexpr int exit_interrupted = 130;
 
 constexpr const char* examples =
     R"(A scan by a dull tip and an SEM image of a surface that is known at every place, with noise, tilt and an

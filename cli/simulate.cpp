@@ -6,6 +6,7 @@
 
 #include "commands.h"
 #include "dry_run_summary.h"
+#include "exit_codes.h"
 #include "job_reporter.h"
 #include "joined_team.h"
 #include "simulate_options.h"
@@ -18,8 +19,6 @@
 namespace surf::cli {
 namespace {
 
-constexpr int exit_untrustworthy = 4;
-constexpr int exit_interrupted = 130;
 constexpr double pilot_seconds = 10;
 
 // Who leads says it; it is alone in this.

@@ -57,7 +57,7 @@ void set_looks(BoundParameters& p) {
   p.looks["specimen.height_pitch"] = {.former = {"--pitch"}};
   p.looks["specimen.height_unit"] = {.former = {"--z-unit"}};
   p.looks["output.png_channel"] = {.former = {"--channel"}};
-  p.looks["output.file"] = {.name = "-o,--output"};
+  p.looks["output"] = {.name = "-o,--output"};
 }
 
 /// Which parameters of a job the struct has, but for those whose names begin so.
@@ -124,7 +124,7 @@ workflow::SimulateJob make_simulate_job(const GivenTexts& given, bool quiet, con
   job.cache = io::cache_folder();
   BoundParameters::apply(job, given);
   if (job.outputs.empty() && given.contains("specimen.input"))
-    throw UsageError("output.file", "no output file is given", "Add -o image.exr");
+    throw UsageError("`output`", "no output file is given", "Add -o image.exr");
   job.scene = read_scene(given, quiet, read);
   job.command_line = command_line;
   return job;

@@ -11,6 +11,7 @@
 #include <memory>
 
 #include "commands.h"
+#include "exit_codes.h"
 #include "file_uses.h"
 #include "job_reporter.h"
 #include "joined_team.h"
@@ -23,8 +24,6 @@
 namespace surf::cli {
 namespace {
 
-constexpr int exit_untrustworthy = 4;
-constexpr int exit_interrupted = 130;
 constexpr std::size_t most_runs = 1'000'000, most_tried = 100;
 
 constexpr const char* examples =
@@ -185,7 +184,7 @@ workflow::SweepJob make_sweep(const Options& o, const std::string& command_line)
     }
     GivenTexts given = o.simulate.parameters.given();
     for (std::size_t a = 0; a < axes.size(); ++a) given[parameter_of(axes[a].name)] = {run.values[a]};
-    std::vector<std::string>& files = given["output.file"];
+    std::vector<std::string>& files = given["output"];
     for (const std::string& format : formats) {
       files.push_back((job.folder / (file_name(axes, run.values) + "." + format)).string());
       outputs.push_back({"--output", files.back(), {}});

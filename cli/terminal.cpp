@@ -10,14 +10,15 @@
 #include <atomic>
 #include <cmath>
 #include <cstdio>
+#include <utility>
 
+#include "exit_codes.h"
 #include "surf/core/error.h"
 
 namespace surf::cli {
 namespace {
 
 constexpr auto update_interval = std::chrono::milliseconds(100);
-constexpr int exit_interrupted = 130;
 
 std::atomic<CancelToken*> interrupted_token{nullptr};
 
@@ -25,9 +26,15 @@ bool silent = false;
 std::FILE* results_to = nullptr;   // null: stdout
 std::FILE* messages_to = nullptr;  // null: stderr
 
+std::string plain_words(std::string_view field, std::string_view value) {
+  return last_part(field, ' ') + (value.empty() ? "" : " ") + std::string(value);
+}
+
+FieldWord field_word = plain_words;
+
 void print_line(const char* kind, const std::string& message) {
   if (silent) return;
-  fmt::print(messages(), "semsurf: {}: {}\n", kind, message);
+  fmt::print(messages(), "semsurf: {}: {}\n", kind, with_field_words(message, field_word));
 }
 
 int terminal_columns() {
@@ -76,6 +83,8 @@ void flush() {
   std::clearerr(output());
   throw FileError("standard output", "what was printed cannot be written there", "Check the free space and where it goes");
 }
+
+void call_fields(FieldWord word) { field_word = word ? std::move(word) : plain_words; }
 
 void be_silent(bool wanted) { silent = wanted; }
 

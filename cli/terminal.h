@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "surf/core/field_words.h"
 #include "surf/core/progress.h"
 
 namespace surf::cli {
@@ -29,7 +30,11 @@ void print_written(const std::vector<std::filesystem::path>& files);
 /// What was printed can be read now. Throws FileError if it cannot be kept, as on a full disk.
 void flush();
 
-/// "semsurf: error: ...", "semsurf: warning: ..." and "semsurf: note: ..." in the messages.
+/// How fields are called in messages from now on; as plain words, until this is called.
+void call_fields(FieldWord word);
+
+/// "semsurf: error: ...", "semsurf: warning: ..." and "semsurf: note: ..." in the messages, fields in backticks as they
+/// are called.
 void print_error(const std::string& message);
 void print_warning(const std::string& message);
 void print_note(const std::string& message);

@@ -8,6 +8,7 @@
 #include "afm_options.h"
 #include "commands.h"
 #include "common_options.h"
+#include "exit_codes.h"
 #include "options.h"
 #include "surf/afm/best_tip.h"
 #include "surf/afm/characterizer.h"
@@ -26,8 +27,6 @@
 
 namespace surf::cli {
 namespace {
-
-constexpr int exit_untrustworthy = 4;
 
 constexpr const char* examples =
     R"(Without --threshold, thresholds are swept, and the tip is chosen that leaves of the scan what its
@@ -317,7 +316,7 @@ int work(const Options& o) {
     p.sweep.blind = p.blind;
     p.sweep.noise = *p.noise;
     const TipSweep sweep = sweep_tips(scans, p.sweep, progress, cancel);
-    if (sweep.verdict == TipSweepVerdict::cancelled) return 130;
+    if (sweep.verdict == TipSweepVerdict::cancelled) return exit_interrupted;
     bar.clear();
     tip = sweep.curve[sweep.chosen].tip;
     tip.doubt = doubt_of_tip(sweep);
@@ -332,7 +331,7 @@ int work(const Options& o) {
     best.threads = p.blind.threads;
     BestTipSummary summary;
     tip = best_tip(scans, best, summary, progress, cancel);
-    if (cancel->cancelled()) return 130;
+    if (cancel->cancelled()) return exit_interrupted;
     bar.clear();
     threshold_nm = summary.chosen.threshold_nm;
     if (!o.quiet)
@@ -350,7 +349,7 @@ int work(const Options& o) {
     }
     BlindTipSummary summary;
     tip = blind_tip(scans, p.blind, summary, progress, cancel);
-    if (summary.end == BlindTipEnd::cancelled) return 130;
+    if (summary.end == BlindTipEnd::cancelled) return exit_interrupted;
     bar.clear();
     plot = tip_plot(tip);
   }

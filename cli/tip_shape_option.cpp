@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <string_view>
 #include <tuple>
 #include <vector>
 
@@ -10,21 +11,9 @@
 #include "surf/afm/tip_shapes.h"
 #include "surf/core/error.h"
 #include "surf/core/units.h"
+#include "surf/core/words.h"
 
 namespace surf::cli {
-namespace {
-
-std::vector<std::string> split(const std::string& text) {
-  std::vector<std::string> words;
-  for (std::size_t from = 0; from <= text.size();) {
-    const std::size_t comma = std::min(text.find(',', from), text.size());
-    words.push_back(text.substr(from, comma - from));
-    from = comma + 1;
-  }
-  return words;
-}
-
-}  // namespace
 
 Tip parse_tip_shape(const std::string& shape, const std::string& size,
                     const std::optional<std::string>& pixel_size) {
@@ -37,7 +26,8 @@ Tip parse_tip_shape(const std::string& shape, const std::string& size,
     std::tie(sampling.pitch_x_nm, sampling.pitch_y_nm) = parse_pixel_size(*pixel_size, "--pixel-size");
   const std::size_t colon = std::min(shape.find(':'), shape.size());
   const std::string kind = shape.substr(0, colon);
-  const std::vector<std::string> words = split(colon < shape.size() ? shape.substr(colon + 1) : "");
+  const std::vector<std::string_view> words =
+      split(colon < shape.size() ? std::string_view(shape).substr(colon + 1) : std::string_view(), ",");
   const auto length = [&](std::size_t k) { return parse_length_nm(words[k], "--shape"); };
   const auto angle = [&](std::size_t k) { return parse_angle_deg(words[k], "--shape") * degrees_to_radians; };
   try {

@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "commands.h"
+#include "exit_codes.h"
 #include "model_tables.h"
 #include "job_reporter.h"
 #include "joined_team.h"
@@ -14,11 +15,9 @@
 namespace surf::cli {
 namespace {
 
-constexpr int exit_interrupted = 130;
-
 void print_line(const std::string& label, const std::string& text) { print("{:<10} {}\n", label, text); }
 
-void print_training(const workflow::TrainJob& job, const workflow::TrainSummary& s) {
+void print_training(const workflow::TrainSummary& s) {
   const TrainedModel& model = s.model;
   print_line("model", format_model(model));
   print_line("for", format_scope(model.scope));
@@ -54,7 +53,7 @@ int train(const TrainOptions& options) {
                                  summary.images.string()));
     return exit_interrupted;
   }
-  if (!options.quiet) print_training(job, summary);
+  if (!options.quiet) print_training(summary);
   return 0;
 }
 

@@ -20,7 +20,7 @@ double file_unit_nm(const MeshUnit& given, std::optional<double> stated_nm, cons
   throw UsageError(file,
                    fmt::format("the file says that its unit is {}, and {} is given as the unit",
                                format_length(*stated_nm), format_length(*given.nm)),
-                   "Leave the unit out; or add --override-unit (in a scene file override_unit = true) if the file is "
+                   "Leave the unit out; or add `override_unit` (in a scene file override_unit = true) if the file is "
                    "wrong");
 }
 

@@ -62,23 +62,23 @@ void validate(const Beam& beam) { check_parameters(beam); }
 
 void validate(const Scan& scan) {
   if (scan.width < 1 || scan.height < 1)
-    throw UsageError("--size", "an image needs at least one pixel each way",
+    throw UsageError("`scan.size`", "an image needs at least one pixel each way",
                      "Give a size such as 256x256");
   if (static_cast<std::int64_t>(scan.width) * scan.height > max_pixels)
-    throw UsageError("--size", fmt::format("{} x {} pixels are more than 2^28", scan.width,
+    throw UsageError("`scan.size`", fmt::format("{} x {} pixels are more than 2^28", scan.width,
                                            scan.height),
                      "Choose a smaller size or region");
   if (!(scan.pixel_x_nm > 0 && scan.pixel_y_nm > 0))
-    throw UsageError("--pixel-size", "a pixel must be larger than nothing", "Give a length such as 2nm");
+    throw UsageError("`scan.pixel_size`", "a pixel must be larger than nothing", "Give a length such as 2nm");
   const double wide_nm = std::max(scan.width * scan.pixel_x_nm, scan.height * scan.pixel_y_nm);
   if (!(wide_nm <= widest_scan * largest_length_nm))
-    throw UsageError("--region, --pixel-size",
+    throw UsageError("`scan.region`, `scan.pixel_size`",
                      fmt::format("the scan is {:.6g} nm wide, more than {:g} nm", wide_nm,
                                  widest_scan * largest_length_nm),
                      "Choose a smaller region or smaller pixels");
   for (const double center_nm : {scan.center_x_nm, scan.center_y_nm, scan.center_z_nm})
     if (!(std::abs(center_nm) <= largest_length_nm))
-      throw UsageError("--region", fmt::format("its centre is {:.6g} nm from 0, more than {:g} nm", std::abs(center_nm),
+      throw UsageError("`scan.region`", fmt::format("its centre is {:.6g} nm from 0, more than {:g} nm", std::abs(center_nm),
                                                largest_length_nm),
                        "Give four lengths X0,Y0,X1,Y1 nearer to 0");
 }

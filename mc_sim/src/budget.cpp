@@ -96,11 +96,11 @@ void describe(ParameterVisitor& visit, BudgetWords& words) {
 Budget budget_of(const BudgetWords& words, const Budget& usual) {
   const std::vector<const char*> said = ways(words);
   if (said.size() > 1)
-    throw UsageError(std::string(said[0]).substr(1, std::string(said[0]).find('`', 1) - 1),
+    throw UsageError(said[0],
                      fmt::format("with {} there are two ways to say how much is simulated", said[1]),
                      fmt::format("Leave out {}, or {}", said[0], said[1]));
   if (words.current_pa.has_value() != words.dwell_us.has_value())
-    throw UsageError(words.current_pa ? "beam.current" : "beam.dwell", "the other of the two is missing",
+    throw UsageError(words.current_pa ? "`beam.current`" : "`beam.dwell`", "the other of the two is missing",
                      "Current and dwell time together make the dose of a pixel: give both");
   Budget budget = usual;
   const double floor = accuracy_of(usual) > 0 || std::holds_alternative<TimeLimit>(usual) ? floor_of(usual) : Accuracy{}.floor;
@@ -112,7 +112,7 @@ Budget budget_of(const BudgetWords& words, const Budget& usual) {
     if (auto* const accuracy = std::get_if<Accuracy>(&budget)) accuracy->floor = *words.accuracy_floor;
     else if (auto* const limit = std::get_if<TimeLimit>(&budget)) limit->floor = *words.accuracy_floor;
     else
-      throw UsageError("simulation.accuracy_floor", "there is no accuracy that it could limit",
+      throw UsageError("`simulation.accuracy_floor`", "there is no accuracy that it could limit",
                        "Add `simulation.accuracy=1%`, or leave it out");
   }
   return budget;
@@ -133,7 +133,7 @@ void validate(const Budget& budget) {
   check_parameters(words_of(budget));
   const auto* const dose = std::get_if<Dose>(&budget);
   if (dose && !(dose->electrons > 0 && dose->electrons <= largest_dose))
-    throw UsageError("beam.current", fmt::format("{:g} primaries per pixel are not above 0 to 1e9", dose->electrons),
+    throw UsageError("`beam.current`", fmt::format("{:g} primaries per pixel are not above 0 to 1e9", dose->electrons),
                      "Choose another current or dwell time");
 }
 

@@ -18,7 +18,7 @@ namespace {
 
 // What a segment of a cascade costs to make, in steps of direct simulation, by the share of a primary's
 // work that replay then saves. Measured on flat silicon, the mesa and waves of 25 nm radius: 1.1 to 2.4
-// by 0.60 to 0.97, so 1.5 to 2.5, from 0.5 to 10 keV; 3.7 at 30 keV (bench_replay --only choice).
+// by 0.60 to 0.97, so 1.5 to 2.5, from 0.5 to 10 keV; 3.7 at 30 keV (choice, in bench_replay).
 constexpr double making_by_saving = 2.5;
 
 // Primaries of a pixel that foretell how many an accuracy takes.
@@ -108,7 +108,7 @@ struct Obstacle {
 std::optional<Obstacle> obstacle(const Scene& scene, const MethodLimits& limits) {
   if (limits.observed)
     return Obstacle{"deposited energy needs every electron's whole track, which stored cascades do "
-                    "not show", "Leave out --deposit"};
+                    "not show", "Leave out `output.deposit`"};
   if (!can_replay(scene.physics()))
     return Obstacle{"without continuous loss there is no energy at which cascades could be joined",
                     "Use loss=joy-luo"};
@@ -125,8 +125,8 @@ std::optional<Obstacle> too_large(const Scene& scene, const MethodChoice& choice
                       ? "one material" : fmt::format("each of {} materials", scene.materials().size()),
                   scene.beam().energy_ev / 1e3, choice.library_bytes / 1e9,
                   limits.library_bytes / 1e9),
-      accuracy_of(options.budget) > 0 ? "Ask for less accuracy, or a lower --energy"
-                           : "Ask for fewer electrons per pixel, or a lower --energy"};
+      accuracy_of(options.budget) > 0 ? "Ask for less accuracy, or a lower `beam.energy`"
+                           : "Ask for fewer electrons per pixel, or a lower `beam.energy`"};
 }
 
 }  // namespace
@@ -147,8 +147,8 @@ MethodChoice choose_method(const Scene& scene, const SimulationOptions& options,
   MethodChoice choice;
   choice.cascades = library_size(options, most_primaries(options));
   if (accuracy_of(options.budget) > 0 && limits.observed)
-    throw UsageError("--accuracy", "deposited energy would be of more primaries in some pixels than in others",
-                     "Leave out --deposit, or give --electrons instead of the accuracy");
+    throw UsageError("`simulation.accuracy`", "deposited energy would be of more primaries in some pixels than in others",
+                     "Leave out `output.deposit`, or give `simulation.electrons` instead of the accuracy");
   if (asked == Method::direct) {
     choice.reason = "as asked for";
     return choice;
@@ -160,7 +160,7 @@ MethodChoice choose_method(const Scene& scene, const SimulationOptions& options,
     choice.library_bytes = static_cast<double>(choice.cascades) * work.bytes;
     no_replay = too_large(scene, choice, options, limits);
   }
-  if (no_replay && asked) throw UsageError("--method replay", no_replay->reason, no_replay->remedy);
+  if (no_replay && asked) throw UsageError("`simulation.method=replay`", no_replay->reason, no_replay->remedy);
   if (no_replay) {
     choice.reason = no_replay->reason;
     return choice;

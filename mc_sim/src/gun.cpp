@@ -31,7 +31,7 @@ Gun::Gun(const Beam& beam, const Scan& scan, double top_nm)
   if (working_distance_nm_ > 0) {
     const double lens_nm = (center_ - direction_ * working_distance_nm_).z;
     if (lens_nm < start_nm_)
-      throw UsageError("--working-distance",
+      throw UsageError("`beam.working_distance`",
                        fmt::format("{} from the middle of the scan is not above the specimen, whose "
                                    "top is at z = {}", format_length(working_distance_nm_),
                                    format_length(top_nm)),
@@ -43,7 +43,7 @@ Gun::Gun(const Beam& beam, const Scan& scan, double top_nm)
       const Vec3 d = middle(column, row).direction;
       const double polar = std::acos(-d.z) + beam.convergence_deg * degrees_to_radians;
       if (std::cos(polar) < shallowest_cosine)
-        throw UsageError("--tilt",
+        throw UsageError("`beam.tilt`",
                          "part of the beam, with its cone and perspective, would come from below or less than "
                          "0.06 degrees above the horizon",
                          "Choose a smaller tilt or convergence, or a longer working distance");

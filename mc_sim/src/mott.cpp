@@ -130,7 +130,7 @@ std::unique_ptr<const Scattering> make_mott(const Material& material, const Cons
                        fmt::format("there is no Mott table for {} (Z = {}), only for {}",
                                    element(c.atomic_number).symbol, c.atomic_number,
                                    symbols_with_tables()),
-                       "Use --physics elastic=browning, which needs none");
+                       "Use `simulation.physics=elastic=browning`, which needs none");
   return std::make_unique<Mott>(*tables, number_density_per_nm3(material, c));
 }
 

@@ -19,7 +19,7 @@ namespace {
 
 using Choice = std::pair<std::string_view, int>;
 
-// A key of --physics, its words (the default first), and how it is stored.
+// A key of `simulation.physics`, its words (the default first), and how it is stored.
 struct Key {
   std::string_view name;
   std::vector<Choice> words;
@@ -73,7 +73,7 @@ void apply_item(const std::string& item, Physics& physics, const std::string& su
 void validate(const Physics& physics, double beam_energy_ev) {
   const double cutoff = physics.cutoff_ev;
   if (cutoff == 0 || (cutoff >= min_cutoff_ev && cutoff < beam_energy_ev)) return;
-  throw UsageError("simulation.cutoff",
+  throw UsageError("`simulation.cutoff`",
                    fmt::format("{:g} eV is outside {:g} eV to the beam's energy of {:g} eV (excluded)", cutoff,
                                min_cutoff_ev, beam_energy_ev),
                    "Choose an energy in that range, such as 5eV, or 0 for the default");
@@ -88,7 +88,8 @@ double effective_cutoff_ev(const Physics& physics, const Material& material) {
 void describe(ParameterVisitor& visit, Physics& physics) {
   visit.form({.name = "simulation.physics",
               .help = "Changes to the physics: elastic=mott|browning, loss=joy-luo|none, secondaries=on|off, "
-                      "barrier=quantum|classical|off; any of them, the first ones are the default",
+                      "barrier=quantum|classical|off",
+              .otherwise = "the first of each",
               .form = "KEY=VALUE,...",
               .level = Level::advanced},
              [&] { return format_physics(physics); },

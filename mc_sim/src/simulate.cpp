@@ -233,17 +233,17 @@ UnitTally simulate_unit(const Scene& scene, const SimulationOptions& options, co
 
 void SimulationContext::check(const SimulationOptions& options, const Scene& scene) const {
   if (options.method == Method::replay && observers)
-    throw UsageError("--method replay", "stored cascades show observers nothing between surfaces",
-                     "Use --method direct");
+    throw UsageError("`simulation.method=replay`", "stored cascades show observers nothing between surfaces",
+                     "Use `simulation.method=direct`");
   if (options.method == Method::replay && !can_replay(scene.physics()))
-    throw UsageError("--method replay", "cascades are joined where energies are equal, which needs "
+    throw UsageError("`simulation.method=replay`", "cascades are joined where energies are equal, which needs "
                                         "continuous loss",
-                     "Use --method direct, or loss=joy-luo");
+                     "Use `simulation.method=direct`, or loss=joy-luo");
   if (accuracy_of(options.budget) > 0 && observers)
-    throw UsageError("--accuracy", "what observers see would be of more primaries in some pixels than in others",
-                     "Give --electrons instead");
+    throw UsageError("`simulation.accuracy`", "what observers see would be of more primaries in some pixels than in others",
+                     "Give `simulation.electrons` instead");
   if (crew && observers)
-    throw UsageError("--deposit", "each of several processes would see a part of it", "Run it in one process");
+    throw UsageError("`output.deposit`", "each of several processes would see a part of it", "Run it in one process");
   if (journal && observers)
     throw UsageError("simulate", "observers would not see the units that a journal recalls",
                      "Leave one of the two out");

@@ -37,9 +37,12 @@ void check_material(const Specimen& specimen, int material, const std::string& o
                        "Choose one of the specimen's materials");
 }
 
+std::string repaired(const std::string& name) {
+  return std::filesystem::path(name).stem().string() + "_repaired.ply";
+}
+
 std::string repair_command(const std::string& name) {
-  return fmt::format("Try: semsurf mesh {} --repair -o {}", name,
-                     std::filesystem::path(name).stem().string() + "_repaired.ply");
+  return fmt::format("Try: semsurf mesh {} --repair -o {}", name, repaired(name));
 }
 
 [[noreturn]] void refuse_open(const std::string& subject, const MeshReport& report,
@@ -49,7 +52,7 @@ std::string repair_command(const std::string& name) {
       fmt::format("the mesh is open: {} of its edges have a triangle on one side only, the first "
                   "near {}; and it cannot stand for the top of a half-space: {}",
                   report.boundary_edges, place(report.first_boundary_nm), why_no_sheet),
-      repair_command(subject) + " (--max-hole LENGTH fills larger holes)");
+      fmt::format("Try: semsurf mesh {} --repair -o {} (--max-hole LENGTH fills larger holes)", subject, repaired(subject)));
 }
 
 [[noreturn]] void refuse_unoriented(const std::string& subject, const MeshReport& report) {
@@ -74,7 +77,7 @@ void check_reach(const Box& box, const std::string& subject, const char* remedy)
 BodyFacts check_body(const Body& body, const Watch& watch) {
   const std::string subject = body.name.empty() ? "body" : body.name;
   validate(body.mesh, subject.c_str());
-  check_reach(bounds(body.mesh), subject, "Check its unit (--unit), or move it closer");
+  check_reach(bounds(body.mesh), subject, "Check its unit (`specimen.unit`), or move it closer");
   const MeshReport report = check_mesh(body.mesh, watch);
   if (report.boundary_edges > 0) {
     std::string reason;
@@ -87,7 +90,7 @@ BodyFacts check_body(const Body& body, const Watch& watch) {
     throw InvalidInput(subject,
                        fmt::format("the body is only {:g} nm thick: faces within 1e-3 nm count as "
                                    "one", std::min({size.x, size.y, size.z})),
-                       "Check its unit (--unit)");
+                       "Check its unit (`specimen.unit`)");
   if (report.signed_volume_nm3 == 0)
     throw InvalidInput(subject, "the mesh encloses no volume", "Give it thickness");
   return {report.triangles, report.bounds_nm, false, report.signed_volume_nm3 < 0};
@@ -108,14 +111,14 @@ std::vector<BodyFacts> validate(const Specimen& specimen, const Watch& watch) {
     if (!(std::abs(top_nm) <= largest_length_nm))
       throw InvalidInput("substrate", fmt::format("its top at {:.6g} nm is not in -{:g} to {:g} nm", top_nm,
                                                   largest_length_nm, largest_length_nm),
-                         "Give a height such as 0nm (--substrate-z)");
+                         "Give a height such as 0nm (`specimen.substrate_z`)");
   }
   if (specimen.height_field) {
     const std::string& name = specimen.height_field->name;
     check_material(specimen, specimen.height_field->material, "height field");
     const std::string subject = name.empty() ? "height field" : name;
     surf::validate(specimen.height_field->field, subject.c_str());
-    check_reach(field_box(specimen.height_field->field), subject, "Check its units (--pitch, --z-unit)");
+    check_reach(field_box(specimen.height_field->field), subject, "Check its units (`specimen.pitch`, `specimen.z_unit`)");
   }
   std::vector<BodyFacts> facts;
   for (const Body& body : specimen.bodies) {

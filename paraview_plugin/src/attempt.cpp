@@ -15,6 +15,7 @@
 #include <new>
 #include <thread>
 
+#include "labels.h"
 #include "surf/core/error.h"
 
 namespace surf::pv {
@@ -64,7 +65,7 @@ int attempt(vtkAlgorithm* self, const std::function<void()>& request) {
     vtkErrorWithObjectMacro(
         self, << "memory: there is not enough for this. Use fewer samples or a smaller mesh");
   } catch (const std::exception& error) {
-    vtkErrorWithObjectMacro(self, << error.what());
+    vtkErrorWithObjectMacro(self, << labelled(error.what()));
   }
   return 0;
 }
@@ -100,6 +101,6 @@ void work(vtkAlgorithm* self, const std::function<void(const Watch&)>& job) {
   if (run.cancel.cancelled()) throw Interrupted();
 }
 
-void warn(vtkAlgorithm* self, const std::string& text) { vtkWarningWithObjectMacro(self, << text); }
+void warn(vtkAlgorithm* self, const std::string& text) { vtkWarningWithObjectMacro(self, << labelled(text)); }
 
 }   // namespace surf::pv

@@ -3,39 +3,28 @@
 
 #include <cctype>
 #include <map>
-#include <regex>
 #include <string>
+#include <string_view>
 
 #include "surf/core/error.h"
+#include "surf/core/field_words.h"
 
 namespace surf::pv {
 namespace {
 
-/// What a property is called that is not called as the option is.
-const std::map<std::string, std::string> other_names{
-    {"materials", "Material File"}, {"size", "Pixels"}, {"output", "Model File"}};
+/// What a property is called that is not called as the field is.
+const std::map<std::string_view, std::string> other_names{
+    {"specimen.materials", "Material File"}, {"scan.size", "Pixels"}, {"output", "Model File"}};
 
-std::string label_of(const std::string& option) {
-  if (const auto other = other_names.find(option); other != other_names.end()) return other->second;
-  std::string label;
-  for (const char c : option) {
-    const bool first = label.empty() || label.back() == ' ';
-    label += c == '-' ? ' ' : first ? static_cast<char>(std::toupper(static_cast<unsigned char>(c))) : c;
+std::string label_of(std::string_view field) {
+  if (const auto other = other_names.find(field); other != other_names.end()) return other->second;
+  std::string label = last_part(field, ' ');
+  char before = ' ';
+  for (char& c : label) {
+    if (before == ' ') c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+    before = c;
   }
   return label;
-}
-
-/// With every option in it as a property.
-std::string labelled(const std::string& text) {
-  static const std::regex option("(^|[ ,(])--([a-z]+(-[a-z]+)*)");
-  std::string out;
-  auto from = text.begin();
-  for (std::sregex_iterator found(text.begin(), text.end(), option), none; found != none; ++found) {
-    out.append(from, (*found)[0].first);
-    out += (*found)[1].str() + label_of((*found)[2].str());
-    from = (*found)[0].second;
-  }
-  return out.append(from, text.end());
 }
 
 std::string named(const std::string& subject, const Labels& names) {
@@ -50,6 +39,12 @@ template <class Kind>
 }
 
 }  // namespace
+
+std::string labelled(const std::string& text) {
+  return with_field_words(text, [](std::string_view field, std::string_view value) {
+    return label_of(field) + (value.empty() ? "" : " ") + std::string(value);
+  });
+}
 
 void with_labels(const std::function<void()>& request, const Labels& names) {
   try {

@@ -11,8 +11,10 @@ namespace surf::pv {
 /// The beginning of a library's name for a number, and the label of the property that it comes from.
 using Labels = std::vector<std::pair<std::string, std::string>>;
 
-/// What the libraries' jobs say of options of the command line is said of properties: "--pixel-size" is Pixel Size.
-/// So is what they say of the numbers in `names`.
+/// A message of the libraries with each field in it, `scan.pixel_size`, as a property: Pixel Size.
+std::string labelled(const std::string& text);
+
+/// What the libraries' jobs refuse is said of properties: so are fields, and the numbers in `names`.
 void with_labels(const std::function<void()>& request, const Labels& names = {});
 
 }  // namespace surf::pv

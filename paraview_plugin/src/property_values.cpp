@@ -42,11 +42,11 @@ void PropertyValues::take(const Parameter& about, Field& field) const {
     const auto choices = field.choices();
     const double index = number(about.name);
     if (!(index >= 0 && index < static_cast<double>(choices.size())) || index != std::floor(index))
-      throw UsageError(about.name, fmt::format("there is no choice {}", text), fmt::format("Choose 0 to {}", choices.size() - 1));
-    field.read(choices[static_cast<std::size_t>(index)], about.name);
+      throw UsageError(about.subject(), fmt::format("there is no choice {}", text), fmt::format("Choose 0 to {}", choices.size() - 1));
+    field.read(choices[static_cast<std::size_t>(index)], about.subject());
     return;
   }
-  field.read(text, about.name);
+  field.read(text, about.subject());
 }
 
 std::string PropertyValues::all() const {

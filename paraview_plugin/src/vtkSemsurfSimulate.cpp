@@ -100,7 +100,7 @@ pv::SpecimenWish wish_of(const pv::PropertyValues& values) {
   values.apply(said);
   const double top_nm = said.substrate_z_nm.value_or(0);
   if (!(std::abs(top_nm) <= most_nm))
-    throw UsageError("specimen.substrate_z", fmt::format("{} nm are not in -{} to {}", top_nm, most_nm, most_nm), "Give 0");
+    throw UsageError("`specimen.substrate_z`", fmt::format("{} nm are not in -{} to {}", top_nm, most_nm, most_nm), "Give 0");
   return {said.material.value_or("Si"), said.material_files.empty() ? std::string() : said.material_files.front(),
           said.substrate.value_or(""), top_nm, said.edge.value_or(Edge::mirror)};
 }

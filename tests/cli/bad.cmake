@@ -173,7 +173,7 @@ semsurf_cli_unusable(certainty_of_an_sem_image "${sem_as_heights}" certainty fei
 semsurf_cli_unusable(mesh_of_an_sem_image "${sem_as_heights}" mesh fei.tif -o mesh.ply)
 semsurf_cli_unusable(simulate_an_sem_image "${sem_as_heights}" simulate fei.tif --material Si ${image})
 semsurf_cli_unusable(predict_an_sem_image "${sem_as_heights}" predict fei.tif --pitch 3nm --model secant.json -o image.exr)
-semsurf_cli_unusable(register_an_sem_image "${sem_as_heights}" register fei.tif steps_of_grey.tif --sem-pixel-size 3nm --model secant.json)
+semsurf_cli_unusable(register_an_sem_image "fei.tif: it is an SEM image.*--afm-z-unit" register fei.tif steps_of_grey.tif --sem-pixel-size 3nm --model secant.json)
 semsurf_cli_usage(noise_lags "--lags" noise noisy.gsf --lags 0)
 semsurf_cli_usage(erode_tip "--tip: no tip is given" erode steps.txt -o surface.gsf)
 semsurf_cli_usage(erode_output "--output: no output file is given" erode steps.txt --tip tip.txt)

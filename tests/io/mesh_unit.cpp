@@ -35,7 +35,7 @@ TEST(MeshUnit, HasToBeWhatTheFileSays) {
     EXPECT_NEAR(width_nm(read_mesh(path)), 40, 1e-4) << name;
     EXPECT_NEAR(width_nm(read_mesh(path, unit_nm)), 40, 1e-4) << name;
     EXPECT_THAT(complaint<UsageError>([&] { read_mesh(path, 1000.0 * unit_nm); }),
-                AllOf(HasSubstr(name), HasSubstr("says that its unit is 3.00"), HasSubstr("--override-unit"))) << name;
+                AllOf(HasSubstr(name), HasSubstr("says that its unit is 3.00"), HasSubstr("`override_unit`"))) << name;
     EXPECT_THAT(complaint<UsageError>([&] { read_surfaces(path, 1000.0 * unit_nm); }), HasSubstr(name));
     EXPECT_NEAR(width_nm(read_mesh(path, {1000 * unit_nm, true})), 40e3, 0.1) << name;
   }

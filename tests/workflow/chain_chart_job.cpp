@@ -79,7 +79,7 @@ TEST_F(ChainChart, ShowsEveryMethodInASaneOrder) {
   const ChainChartSummary s = run(job);
   ASSERT_TRUE(s.complete);
   EXPECT_EQ(s.sample, "pads");
-  EXPECT_THAT(s.left_out, testing::ElementsAre(HasSubstr("chain: with --quick")));
+  EXPECT_THAT(s.left_out, testing::ElementsAre(HasSubstr("chain: in a quick chart")));
   std::map<std::string, const RegistrationPoint*> registrations;
   for (const RegistrationPoint& p : s.registrations) registrations[p.id] = &p;
   std::map<std::string, const ReconstructionPoint*> reconstructions;
@@ -263,10 +263,10 @@ TEST_F(ChainChart, SaysWhatIsWrongBeforeAnyWork) {
   };
   refused("without truth.json", [&](ChainChartJob& j) { j.sample = folder.path(); });
   refused("semsurf sample", [&](ChainChartJob& j) { j.sample = folder.path(); });
-  refused("--draws", [](ChainChartJob& j) { j.draws = -1; });
+  refused("chart.draws", [](ChainChartJob& j) { j.draws = -1; });
   refused("'replay' is none of those for samples. Choose of correlation",
           [](ChainChartJob& j) { j.families = {"replay"}; });
-  refused("with --quick the chain is left out", [](ChainChartJob& j) { j.families = {"chain"}; });
+  refused("with `chart.quick` the chain is left out", [](ChainChartJob& j) { j.families = {"chain"}; });
   refused("no folder is given", [](ChainChartJob& j) { j.folder.clear(); });
   refused("sample's own folder", [](ChainChartJob& j) { j.folder = j.sample; });
   EXPECT_FALSE(fs::exists(good.folder));

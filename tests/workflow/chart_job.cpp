@@ -161,12 +161,12 @@ TEST(ChartJob, SaysWhatIsWrongBeforeAnyWork) {
       EXPECT_THAT(error.what(), HasSubstr(subject));
     }
   };
-  refused("--accuracy", [](ChartJob& j) { j.finest = 0.5; });
-  refused("--reference", [](ChartJob& j) { j.reference_accuracy = 0.9 * 0.03; });
-  refused("--compared", [](ChartJob& j) { j.compared_pixels = 3; });
-  refused("--most", [](ChartJob& j) { j.most_primaries = 10; });
+  refused("chart.accuracy", [](ChartJob& j) { j.finest = 0.5; });
+  refused("chart.reference", [](ChartJob& j) { j.reference_accuracy = 0.9 * 0.03; });
+  refused("chart.compared", [](ChartJob& j) { j.compared_pixels = 3; });
+  refused("chart.most", [](ChartJob& j) { j.most_primaries = 10; });
   refused("'fast' is none of them. Choose of default, direct", [](ChartJob& j) { j.families = {"fast"}; });
-  refused("--output", [](ChartJob& j) { j.folder.clear(); });
+  refused("`output`", [](ChartJob& j) { j.folder.clear(); });
   refused("current", [](ChartJob& j) { j.scene.current_pa = 100; });
   EXPECT_FALSE(fs::exists(good.folder));
 }

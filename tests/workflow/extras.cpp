@@ -98,7 +98,7 @@ TEST(Extras, ADoseReplacesTheNumberOfElectrons) {
   EXPECT_NEAR(double(summary.result.balance.incident) / pixels, 31.2, 5 * std::sqrt(31.2 / pixels));
 
   job.scene.electrons = 5;
-  EXPECT_THAT(refusal(job), HasSubstr("--electrons"));
+  EXPECT_THAT(refusal(job), HasSubstr("simulation.electrons"));
   job.scene.electrons.reset();
   job.scene.dwell_us.reset();
   EXPECT_THAT(refusal(job), HasSubstr("give both"));
@@ -112,9 +112,9 @@ TEST(Extras, RefuseWhatCannotBe) {
   job.extras.channels = {"slope"};
   EXPECT_THAT(refusal(job), HasSubstr("z_nm, normal, material"));
   job.extras = {{}, 5000, 0, {}};
-  EXPECT_THAT(refusal(job), HasSubstr("--deposit"));
+  EXPECT_THAT(refusal(job), HasSubstr("output.deposit"));
   job.extras = {{}, 0, -1, {}};
-  EXPECT_THAT(refusal(job), HasSubstr("--trajectories"));
+  EXPECT_THAT(refusal(job), HasSubstr("output.trajectories"));
   job.extras = {{}, 0, 0, std::pair{0.0, 0.0}};
   EXPECT_THAT(refusal(job), HasSubstr("no trajectories"));
   job.extras = {{}, 0, 5, std::pair{1e6, 0.0}};
@@ -148,7 +148,7 @@ TEST(Extras, DoNotReplaceInputs) {
   std::ofstream(input) << "a mesh";
   job.scene.inputs = {input};
   std::filesystem::create_hard_link(input, output);
-  EXPECT_THAT(refusal(job), testing::AllOf(HasSubstr("--output"), HasSubstr("mesh.stl, an input")));
+  EXPECT_THAT(refusal(job), testing::AllOf(HasSubstr("`output`"), HasSubstr("mesh.stl, an input")));
   std::filesystem::remove(output);
   std::filesystem::create_symlink(input, folder.path() / "image.run.json");
   EXPECT_THAT(refusal(job), HasSubstr("image.run.json (which belongs to"));

@@ -268,7 +268,7 @@ TEST_F(ReconstructJobTest, OneImageIsEnough) {
   ReconstructJob sem = job_;
   sem.afm.reset();
   sem.folder = path("sem");
-  EXPECT_THAT([&] { run(sem); }, ThrowsMessage<UsageError>(HasSubstr("--gains")));
+  EXPECT_THAT([&] { run(sem); }, ThrowsMessage<UsageError>(HasSubstr("reconstruction.gains")));
   sem.calibration = {{100, 100}, 20};
   run(sem);
   EXPECT_FALSE(report("sem").contains("afm"));

@@ -115,13 +115,13 @@ TEST(ResolveScan, NamesPixelSizesThatWouldFit) {
 }
 
 TEST(ResolveScan, RefusesNonsense) {
-  EXPECT_THAT(usage_error(size(0, 5)), HasSubstr("--size"));
-  EXPECT_THAT(usage_error(pixel(-1, 1)), HasSubstr("--pixel-size"));
-  EXPECT_THAT(usage_error(pixel(0, 1)), HasSubstr("--pixel-size"));
-  EXPECT_THAT(usage_error(pixel(NAN, 1)), HasSubstr("--pixel-size"));
-  EXPECT_THAT(usage_error(region(5, 0, 5, 1)), HasSubstr("--region"));
-  EXPECT_THAT(usage_error(region(0, 0, HUGE_VAL, 1)), HasSubstr("--region"));
-  EXPECT_THAT(usage_error({}, Box{}), HasSubstr("--region"));
+  EXPECT_THAT(usage_error(size(0, 5)), HasSubstr("scan.size"));
+  EXPECT_THAT(usage_error(pixel(-1, 1)), HasSubstr("scan.pixel_size"));
+  EXPECT_THAT(usage_error(pixel(0, 1)), HasSubstr("scan.pixel_size"));
+  EXPECT_THAT(usage_error(pixel(NAN, 1)), HasSubstr("scan.pixel_size"));
+  EXPECT_THAT(usage_error(region(5, 0, 5, 1)), HasSubstr("scan.region"));
+  EXPECT_THAT(usage_error(region(0, 0, HUGE_VAL, 1)), HasSubstr("scan.region"));
+  EXPECT_THAT(usage_error({}, Box{}), HasSubstr("scan.region"));
 }
 
 TEST(ResolveScan, RefusesImagesThatAreTooLarge) {

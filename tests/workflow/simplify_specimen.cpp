@@ -119,7 +119,7 @@ TEST(SimplifySpecimen, KeepsWhatTouchesTouching) {
   EXPECT_LT(at(simple.bodies[1].mesh, 20), at(original.bodies[1].mesh, 20) / 2);
   EXPECT_EQ(done.bodies[0].kept, "nothing would be gained");
   EXPECT_THAT(warnings_of(original, done),
-              ElementsAre("lower: with --mesh-tolerance 0.500 nm nothing would be gained; it stays as it is"));
+              ElementsAre("lower: with `simulation.mesh_tolerance=0.500 nm` nothing would be gained; it stays as it is"));
 }
 
 TEST(SimplifySpecimen, LeavesAHeightFieldThatBodiesStandOn) {

@@ -156,17 +156,17 @@ TEST_F(TrainEveryKind, RefusesWhatDoesNotConcernAKind) {
     spoil(job);
     EXPECT_THAT([&] { run(job); }, testing::ThrowsMessage<UsageError>(HasSubstr(words))) << words;
   };
-  expect("secant", "--hidden: a model 'secant' has none", [](TrainJob& j) { j.learn.hidden = {4}; });
-  expect("filter-bank", "--iterations: a model 'filter-bank' has none",
+  expect("secant", "`training.hidden`: a model 'secant' has none", [](TrainJob& j) { j.learn.hidden = {4}; });
+  expect("filter-bank", "`training.iterations`: a model 'filter-bank' has none",
          [](TrainJob& j) { j.learn.iterations = 4; });
-  expect("filter-bank", "--decay", [](TrainJob& j) { j.learn.decay = 0; });
-  expect("slope-table", "--tolerance", [](TrainJob& j) { j.learn.tolerance = 0; });
-  expect("secant", "add --model slope-table", [](TrainJob& j) { j.learn.table_electrons = 100; });
-  expect("facet-network", "add --model filter-bank", [](TrainJob& j) { j.learn.cut_off = 0; });
+  expect("filter-bank", "`training.decay`", [](TrainJob& j) { j.learn.decay = 0; });
+  expect("slope-table", "`training.tolerance`", [](TrainJob& j) { j.learn.tolerance = 0; });
+  expect("secant", "add `training.model=slope-table`", [](TrainJob& j) { j.learn.table_electrons = 100; });
+  expect("facet-network", "add `training.model=filter-bank`", [](TrainJob& j) { j.learn.cut_off = 0; });
   expect("facet-network", "hidden units is 0", [](TrainJob& j) { j.learn.hidden = {0}; });
   expect("facet-network", "tolerance is 2", [](TrainJob& j) { j.learn.tolerance = 2; });
-  expect("slope-table", "--hold-out", [](TrainJob& j) { j.surfaces = 2, j.held_out = 1; });
-  expect("slope-table", "--table-electrons: 1", [](TrainJob& j) { j.learn.table_electrons = 1; });
+  expect("slope-table", "`training.hold_out`", [](TrainJob& j) { j.surfaces = 2, j.held_out = 1; });
+  expect("slope-table", "`training.table_electrons`: 1", [](TrainJob& j) { j.learn.table_electrons = 1; });
   expect("diffusion-matrix", "semsurf calibrate", [](TrainJob& j) { j.signal = "SE"; });
   expect("stopping-points", "knows of no spot", [](TrainJob& j) { j.spot_nm = 1; });
   expect("stopping-points", "continuous loss", [](TrainJob& j) { j.physics.loss = mc::LossModel::none; });

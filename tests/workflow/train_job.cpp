@@ -192,9 +192,9 @@ TEST_F(TrainJobTest, RefusesWhatCannotBeLearntBeforeTimeIsSpent) {
     EXPECT_THAT([&] { train(job); }, testing::ThrowsMessage<Error>(HasSubstr(words)));
   };
   expect("there is no kind 'neural'. Choose one of facet-network, filter-bank", [](TrainJob& j) { j.learn.kind = "neural"; });
-  expect("--cut-off", [](TrainJob& j) { j.learn.cut_off = 0.1; });
+  expect("training.cut_off", [](TrainJob& j) { j.learn.cut_off = 0.1; });
   expect("leave none to learn on", [](TrainJob& j) { j.held_out = 1; });
-  expect("--pixel-size", [](TrainJob& j) { j.pixel_nm = 0; });
+  expect("training.pixel_size", [](TrainJob& j) { j.pixel_nm = 0; });
   expect("there is no image of", [](TrainJob& j) { j.signal = "SE"; });
   expect("Name its HEIGHTS", [](TrainJob& j) { j.inputs.clear(); j.surfaces = 2; j.signal = "SE"; });
   expect(".json", [](TrainJob& j) { j.output = "model.txt"; });

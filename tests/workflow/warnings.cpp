@@ -43,7 +43,7 @@ TEST(Warnings, TellOfUnlikelySizes) {
     transform(job.scene.specimen.bodies[0].mesh, factor, {0, 0, 0});
     job.scene.scan = {};
     job.scene.scan.width = job.scene.scan.height = 4;
-    EXPECT_THAT(warnings_of(job), Contains(HasSubstr("is --unit right?"))) << factor;
+    EXPECT_THAT(warnings_of(job), Contains(HasSubstr("is `specimen.unit` right?"))) << factor;
   }
 }
 
@@ -59,7 +59,7 @@ TEST(Warnings, TellOfSpecksThatAreLikelyOfAnotherUnit) {
     return warnings_of(job);
   };
   EXPECT_THAT(cube(0.05, false, true), speck);
-  EXPECT_THAT(cube(0.05, false, true), Contains(HasSubstr("With --unit um it would be 2.00 um")));
+  EXPECT_THAT(cube(0.05, false, true), Contains(HasSubstr("With `specimen.unit=um` it would be 2.00 um")));
   EXPECT_THAT(cube(0.05, false, false), IsEmpty());   // its unit was named
   EXPECT_THAT(cube(0.05, true, true), IsEmpty());     // a particle on a substrate
   EXPECT_THAT(cube(0.2, false, true), IsEmpty());

@@ -57,7 +57,7 @@ Grid<unsigned char> level(HeightField& field, const AfmPreparationOptions& o, Pr
   if (s.verdict != HoughVerdict::clear)
     prepared.warnings.push_back(fmt::format(
         "the scan was levelled by a plane that {}. Look at it, and level the scan first ('semsurf level') or choose "
-        "--level-method", s.verdict == HoughVerdict::contested ? "has a rival at another height" : "hardly stands out"));
+        "`reconstruction.level_method`", s.verdict == HoughVerdict::contested ? "has a rival at another height" : "hardly stands out"));
   return std::move(s.inliers);
 }
 
@@ -80,7 +80,7 @@ bool is_ground(const SubstrateNoise& found) {
 
 void find_noise(PreparedAfm& prepared, const AfmPreparationOptions& o) {
   if (o.noise) {
-    validate(*o.noise, "--afm-noise");
+    validate(*o.noise, "`reconstruction.afm_noise`");
     prepared.noise = *o.noise;
     return;
   }
@@ -93,14 +93,14 @@ void find_noise(PreparedAfm& prepared, const AfmPreparationOptions& o) {
   prepared.noise_estimate = estimate;
   if (!(prepared.noise.innovation_nm2 > 0))
     throw InvalidInput("AFM scan", "it has no noise that could be estimated: it may be simulated or filtered",
-                       "Say --afm-noise ALPHA,INNOVATION, as 0.8,0.2nm2");
+                       "Say `reconstruction.afm_noise=ALPHA,INNOVATION`, as 0.8,0.2nm2");
   prepared.notes.push_back(fmt::format("noise of {}: {} rms, alpha {:.3f}", clear ? "the substrate" : "the differences",
                                        format_length(estimate.sigma_nm()), estimate.noise.alpha));
   if (!clear && estimate.alpha_at_limit)
-    prepared.warnings.push_back("the scan's noise can hardly be told from its structure and may be less. Say --afm-noise, "
+    prepared.warnings.push_back("the scan's noise can hardly be told from its structure and may be less. Say `reconstruction.afm_noise`, "
                                 "from a flat scan: 'semsurf noise'");
   if (const std::string doubt = clear ? "" : doubt_of_noise(prepared.noise, prepared.image); !doubt.empty())
-    prepared.warnings.push_back(doubt + ". Say --afm-noise");
+    prepared.warnings.push_back(doubt + ". Say `reconstruction.afm_noise`");
 }
 
 /// A tip that was found, and why not to trust it.
@@ -108,7 +108,7 @@ void set_doubt(PreparedAfm& prepared, const std::string& doubt) {
   prepared.tip.doubt = doubt;
   if (!doubt.empty())
     prepared.warnings.push_back(fmt::format("the tip that was found in the scan is not to be trusted: {}. Check "
-                                            "--level-method, --rows and --afm-noise, or give --tip", doubt));
+                                            "`reconstruction.level_method`, `reconstruction.rows` and `reconstruction.afm_noise`, or give `reconstruction.tip`", doubt));
 }
 
 Tip of_pitch(const Tip& tip, const HeightField& image) {
@@ -148,7 +148,7 @@ void find_free_tip(PreparedAfm& prepared, const AfmPreparationOptions& o, const 
   set_doubt(prepared, doubt);
   if (found.verdict == TipSweepVerdict::disagreement)
     prepared.warnings.push_back("two ways to choose the tip's threshold disagree: look at 'semsurf tip --plot', and give "
-                                "--tip if you know it better");
+                                "`reconstruction.tip` if you know it better");
   const auto open = unconstrained_directions(prepared.tip, prepared.tip_threshold_nm +
                                                                3 * std::sqrt(prepared.noise.variance_nm2()));
   if (!open.empty())
@@ -162,7 +162,7 @@ void find_round_tip(PreparedAfm& prepared, const AfmPreparationOptions& o, const
   const double relief = height_range({&image, 1}).span_nm() - noise_span * std::sqrt(prepared.noise.variance_nm2());
   if (!(relief > 0))
     throw InvalidInput("AFM scan", "its relief is no higher than its noise, so it tells nothing of the tip",
-                       "Give --tip, or another scan");
+                       "Give `reconstruction.tip`, or another scan");
   std::vector<std::vector<double>> told;
   int widest = 0;
   std::string doubt;   // none where the sweep of any size has none
@@ -181,13 +181,13 @@ void find_round_tip(PreparedAfm& prepared, const AfmPreparationOptions& o, const
   }
   if (told.empty())
     throw InvalidInput("AFM scan", fmt::format("it has {} x {} samples, too few to find a tip in", image.z_nm.width(),
-                                               image.z_nm.height()), "Give --tip");
+                                               image.z_nm.height()), "Give `reconstruction.tip`");
   prepared.tip_round = true;
   const double noise = told_deviations * std::sqrt(prepared.noise.variance_nm2());
   if (std::ranges::none_of(told, [&](const auto& profile) { return profile.back() < -noise; })) {
     prepared.tip = {Grid<double>(1, 1), image.pitch_x_nm, image.pitch_y_nm, 0, 0};
     prepared.warnings.push_back("the scan tells nothing of its tip, which is taken as sharp, so that the scan is the surface. "
-                                "Give --tip if you know it");
+                                "Give `reconstruction.tip` if you know it");
     return;
   }
   set_doubt(prepared, doubt);
@@ -198,7 +198,7 @@ void find_round_tip(PreparedAfm& prepared, const AfmPreparationOptions& o, const
 void find_tip(PreparedAfm& prepared, const AfmPreparationOptions& o) {
   const Watch watch = o.watch.part(0.15, 0.95);
   if (o.tip) {
-    validate(*o.tip, "--tip");
+    validate(*o.tip, "`reconstruction.tip`");
     prepared.tip = of_pitch(*o.tip, prepared.image);
     if (!o.tip->doubt.empty())
       prepared.warnings.push_back(fmt::format("the tip's file says that it is not to be trusted: {}", o.tip->doubt));
@@ -215,20 +215,20 @@ void find_tip(PreparedAfm& prepared, const AfmPreparationOptions& o) {
 PreparedAfm prepare_afm(const HeightField& scan, const AfmPreparationOptions& o) {
   validate(scan, "AFM scan");
   if (o.tip_size != 0 && (o.tip_size < 3 || o.tip_size % 2 == 0))
-    throw UsageError("--tip-size", fmt::format("{} samples have no middle for the apex", o.tip_size), "Give an odd number from 3 on");
+    throw UsageError("`reconstruction.tip_size`", fmt::format("{} samples have no middle for the apex", o.tip_size), "Give an odd number from 3 on");
   const int shorter = std::min(scan.z_nm.width(), scan.z_nm.height());
   if (o.tip_size > shorter)
-    throw UsageError("--tip-size", fmt::format("{} samples, but the scan has {} x {}", o.tip_size, scan.z_nm.width(),
+    throw UsageError("`reconstruction.tip_size`", fmt::format("{} samples, but the scan has {} x {}", o.tip_size, scan.z_nm.width(),
                                                scan.z_nm.height()), fmt::format("Give {} at most", shorter - (shorter % 2 == 0)));
   if (!(height_range({&scan, 1}).span_nm() > 0))
-    throw InvalidInput("AFM scan", "all its heights are the same", "Choose the channel of heights with --afm-channel");
+    throw InvalidInput("AFM scan", "all its heights are the same", "Choose the channel of heights with `reconstruction.afm_channel`");
   PreparedAfm prepared;
   prepared.image = scan;
   level_scan(prepared, o);
   find_noise(prepared, o);
   find_tip(prepared, o);
   if (prepared.tip.z_nm.width() > scan.z_nm.width() || prepared.tip.z_nm.height() > scan.z_nm.height())
-    throw InvalidInput("--tip", fmt::format("it is {} x {} samples, wider than the scan of {} x {}",
+    throw InvalidInput("`reconstruction.tip`", fmt::format("it is {} x {} samples, wider than the scan of {} x {}",
                                             prepared.tip.z_nm.width(), prepared.tip.z_nm.height(), scan.z_nm.width(),
                                             scan.z_nm.height()), "Crop the tip to what can touch the surface, or check its pixel size");
   CertaintyOptions certainty;

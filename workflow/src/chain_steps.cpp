@@ -41,7 +41,7 @@ StoredModel model_of(ModelRequest request, const PlacedImage& sem, const Reporte
   if (std::abs(sem.pitch_x_nm - sem.pitch_y_nm) > square * sem.pitch_x_nm)
     throw InvalidInput("SEM image", fmt::format("its pixels are {:.6g} x {:.6g} nm, and models are for square ones",
                                                 sem.pitch_x_nm, sem.pitch_y_nm),
-                       "Resample it to square pixels, or correct --sem-pixel-size");
+                       "Resample it to square pixels, or correct `sem_pixel_size`");
   request.pixel_nm = sem.pitch_x_nm;
   return find_model(request, reporter);
 }

@@ -35,7 +35,7 @@ Differences differences(const HeightField& surface, const HeightField& truth) {
       ++d.count;
     }
   if (d.count < least_pixels)
-    throw InvalidInput("--truth", fmt::format("it has {} places in common with the surface", d.count),
+    throw InvalidInput("`reconstruction.truth`", fmt::format("it has {} places in common with the surface", d.count),
                        "Give heights in the frame of the SEM image, or of the scan where there is none");
   d.mean = sum / static_cast<double>(d.count);
   d.rms = std::sqrt(std::max(squared / static_cast<double>(d.count) - d.mean * d.mean, 0.0));

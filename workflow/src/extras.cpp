@@ -118,16 +118,16 @@ fs::path extra_path(const ResolvedJob& job, const char* extension) {
 void check_extras(const Extras& extras) {
   for (const std::string& name : extras.channels)
     if (!surface_quantities().contains(name) && !is_simulation_quantity(name))
-      throw UsageError("--channels", fmt::format("there is no '{}'", name),
+      throw UsageError("`output.channels`", fmt::format("there is no '{}'", name),
                        "Choose among z_nm, normal, material, electrons, model and variance_left");
   if (extras.deposit_cells < 0 || extras.deposit_cells > most_deposit_cells)
-    throw UsageError("--deposit", fmt::format("{} cells are out of range", extras.deposit_cells),
+    throw UsageError("`output.deposit`", fmt::format("{} cells are out of range", extras.deposit_cells),
                      "Give 1 to 1024 cells along the longest side");
   if (extras.trajectories < 0 || extras.trajectories > most_trajectories)
-    throw UsageError("--trajectories", fmt::format("{} is out of range", extras.trajectories),
+    throw UsageError("`output.trajectories`", fmt::format("{} is out of range", extras.trajectories),
                      "Give 1 to 100000 primaries; 50 make a clear picture");
   if (extras.trajectories_at_nm && extras.trajectories == 0)
-    throw UsageError("--trajectories-at", "no trajectories are asked for", "Add --trajectories 50");
+    throw UsageError("`output.trajectories_at`", "no trajectories are asked for", "Add `output.trajectories=50`");
 }
 
 std::vector<fs::path> extra_files(const ResolvedJob& job) {

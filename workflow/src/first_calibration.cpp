@@ -71,7 +71,7 @@ std::vector<double> levels_of(const Grid<double>& image, std::initializer_list<d
 /// From flat places, where there are some.
 void find_noise(const PlacedImage& sem, const std::optional<SemNoise>& given, FirstCalibration& first) {
   if (given) {
-    validate(*given, "--sem-noise");
+    validate(*given, "`reconstruction.sem_noise`");
     first.noise = *given;
     first.noise_from = "given";
     return;
@@ -141,7 +141,7 @@ FirstCalibration calibrate_first(const PlacedImage& sem, const HeightField* erod
   FirstCalibration first;
   const std::size_t channels = model.channels().size();
   if (given && given->gains.size() != channels)
-    throw UsageError("--gains", fmt::format("{} are given, and the model has {} channels", given->gains.size(), channels),
+    throw UsageError("`reconstruction.gains`", fmt::format("{} are given, and the model has {} channels", given->gains.size(), channels),
                      "Give one for each of the model's channels, 0 for those that the image has nothing of");
   CalibrationImages images;
   images.real = sem.values;
@@ -155,8 +155,8 @@ FirstCalibration calibrate_first(const PlacedImage& sem, const HeightField* erod
     first.offset = given->offset;
   }
   if (!eroded && first.noise_from.empty())
-    throw UsageError("--sem-noise", "it is missing, and the SEM image has no flat places to take it from",
-                     "Say what 'semsurf noise' finds on another image, as --sem-noise 1.2,30");
+    throw UsageError("`reconstruction.sem_noise`", "it is missing, and the SEM image has no flat places to take it from",
+                     "Say what 'semsurf noise' finds on another image, as `reconstruction.sem_noise=1.2,30`");
   if (eroded) {
     const SurfaceUnderSem under = surface_under_sem(*eroded, sem, sem_to_afm);
     first.overlap = under.overlap;
@@ -184,7 +184,7 @@ FirstCalibration calibrate_first(const PlacedImage& sem, const HeightField* erod
       first.noise = estimate.noise;
       first.noise_from = "the residuals of the first calibration";
       first.warnings.push_back("the SEM image has no flat places, so its noise is taken from what the eroded scan does not "
-                               "explain, which is too large. Say --sem-noise if you know it");
+                               "explain, which is too large. Say `reconstruction.sem_noise` if you know it");
     }
   }
   return first;

@@ -17,10 +17,10 @@ constexpr std::int64_t usual_cascades = 10240;   // as simulations take: they ar
 
 void check(const TrainJob& job) {
   if (job.spot_nm > 0)
-    throw UsageError("--spot", fmt::format("a model '{}' knows of no spot", job.learn.kind), "Leave it out");
+    throw UsageError("`beam.spot`", fmt::format("a model '{}' knows of no spot", job.learn.kind), "Leave it out");
   if (!mc::can_replay(job.physics))
     throw UsageError(
-        "--physics",
+        "`simulation.physics`",
         fmt::format("a model '{}' is made of cascades, which need continuous loss", job.learn.kind),
         "Choose loss=joy-luo");
 }
@@ -76,11 +76,11 @@ Learnt learn_diffusion_matrix(const Lesson& lesson) {
 
 const Learner stopping_points_learner{
     "stopping-points",     "electrons that would stop above the surface (Aristov 1991); no images needed",
-    {"--table-electrons"}, check,
+    {"table_electrons"}, check,
     learn_stopping_points, false};
 const Learner diffusion_matrix_learner{
     "diffusion-matrix",     "their flux through facets (Desai, Czyzewski 1990); no images needed",
-    {"--table-electrons"},  check,
+    {"table_electrons"},  check,
     learn_diffusion_matrix, false};
 
 }  // namespace surf::workflow

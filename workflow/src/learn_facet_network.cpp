@@ -43,7 +43,7 @@ Learnt learn(const Lesson& lesson) {
 
 const Learner facet_network_learner{"facet-network",
                                     "a small network on what the filter bank sees and on the sky in view",
-                                    {"--scales", "--hidden", "--iterations", "--decay", "--tolerance"},
+                                    {"scales", "hidden", "iterations", "decay", "tolerance"},
                                     check,
                                     learn};
 

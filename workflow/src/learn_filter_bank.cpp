@@ -15,7 +15,7 @@ namespace {
 void check(const TrainJob& job) {
   const LearnOptions& o = job.learn;
   if (o.cut_off && !(*o.cut_off >= 0 && std::isfinite(*o.cut_off)))
-    throw UsageError("--cut-off", fmt::format("{} is not a number of 0 or above", *o.cut_off), "Write for example 0.1");
+    throw UsageError("`training.cut_off`", fmt::format("{} is not a number of 0 or above", *o.cut_off), "Write for example 0.1");
 }
 
 Learnt learn(const Lesson& lesson) {
@@ -37,6 +37,6 @@ Learnt learn(const Lesson& lesson) {
 }  // namespace
 
 const Learner filter_bank_learner{"filter-bank", "gradient and curvatures at ten scales, combined (thesis, chapter 6)",
-                                  {"--scales", "--multi-resolution", "--cut-off"}, check, learn};
+                                  {"scales", "multi_resolution", "cut_off"}, check, learn};
 
 }  // namespace surf::workflow

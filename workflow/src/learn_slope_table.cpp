@@ -45,13 +45,13 @@ Learnt learn(const Lesson& lesson) {
 const Learner slope_table_learner{
     "slope-table",
     "yields of tilted planes (thesis, appendix E.1); simulated, no images needed",
-    {"--table-electrons"},
+    {"table_electrons"},
     nullptr,
     learn<SlopeSpecimen::single_plane>,
     false};
 const Learner slope_table_two_planes_learner{"slope-table-two-planes",
                                              "the same beside level ground; no images needed",
-                                             {"--table-electrons"},
+                                             {"table_electrons"},
                                              nullptr,
                                              learn<SlopeSpecimen::two_planes>,
                                              false};

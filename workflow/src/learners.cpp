@@ -16,24 +16,24 @@ constexpr const Learner* all[] = {&facet_network_learner, &filter_bank_learner, 
                                   &diffusion_matrix_learner, &secant_learner, &ikeuchi_exponential_learner,
                                   &ikeuchi_secant_learner, &ikeuchi_mixed_learner};
 
-bool takes(const Learner& learner, std::string_view option) {
-  return std::ranges::find(learner.options, option) != learner.options.end();
+bool takes(const Learner& learner, std::string_view field) {
+  return std::ranges::find(learner.fields, field) != learner.fields.end();
 }
 
 void refuse_options(const Learner& learner, const LearnOptions& o) {
-  const std::pair<bool, const char*> options[] = {{!o.scales.empty(), "--scales"},
-                                                  {o.multi_resolution, "--multi-resolution"},
-                                                  {o.cut_off.has_value(), "--cut-off"},
-                                                  {o.hidden.has_value(), "--hidden"},
-                                                  {o.iterations.has_value(), "--iterations"},
-                                                  {o.decay.has_value(), "--decay"},
-                                                  {o.tolerance.has_value(), "--tolerance"},
-                                                  {o.table_electrons.has_value(), "--table-electrons"}};
-  for (const auto& [given, option] : options) {
-    if (!given || takes(learner, option)) continue;
-    const auto other = std::ranges::find_if(all, [&](const Learner* l) { return takes(*l, option); });
-    throw UsageError(option, fmt::format("a model '{}' has none", learner.name),
-                     fmt::format("Leave it out, or add --model {}", (*other)->name));
+  const std::pair<bool, const char*> fields[] = {{!o.scales.empty(), "scales"},
+                                                  {o.multi_resolution, "multi_resolution"},
+                                                  {o.cut_off.has_value(), "cut_off"},
+                                                  {o.hidden.has_value(), "hidden"},
+                                                  {o.iterations.has_value(), "iterations"},
+                                                  {o.decay.has_value(), "decay"},
+                                                  {o.tolerance.has_value(), "tolerance"},
+                                                  {o.table_electrons.has_value(), "table_electrons"}};
+  for (const auto& [given, field] : fields) {
+    if (!given || takes(learner, field)) continue;
+    const auto other = std::ranges::find_if(all, [&](const Learner* l) { return takes(*l, field); });
+    throw UsageError(fmt::format("`training.{}`", field), fmt::format("a model '{}' has none", learner.name),
+                     fmt::format("Leave it out, or add `training.model={}`", (*other)->name));
   }
 }
 
@@ -41,17 +41,17 @@ void refuse_options(const Learner& learner, const LearnOptions& o) {
 void refuse_learning_from_images(const Learner& learner, const TrainJob& job) {
   if (job.held_out > 0)
     throw UsageError(
-        "--hold-out",
+        "`training.hold_out`",
         fmt::format("a model '{}' learns from no surface: all of them only judge it", learner.name),
         "Leave it out");
   if (!job.signal.empty())
     throw UsageError(
-        "--signal",
+        "`training.signal`",
         fmt::format("a model '{}' gives SE and BSE, not what a microscope makes of them", learner.name),
         "Leave it out; 'semsurf calibrate' compares the two");
   const std::int64_t electrons = job.learn.table_electrons.value_or(2);
   if (electrons < 2 || electrons > std::int64_t{1} << 31)
-    throw UsageError("--table-electrons", fmt::format("{} electrons make no table", electrons),
+    throw UsageError("`training.table_electrons`", fmt::format("{} electrons make no table", electrons),
                      "Give 2 to 2^31");
 }
 
@@ -68,7 +68,7 @@ const Learner& learner_of(const TrainJob& job) {
     }
     names += fmt::format("{}{}", names.empty() ? "" : ", ", learner->name);
   }
-  throw UsageError("--model", fmt::format("there is no kind '{}'", job.learn.kind),
+  throw UsageError("`training.model`", fmt::format("there is no kind '{}'", job.learn.kind),
                    fmt::format("Choose one of {}", names));
 }
 

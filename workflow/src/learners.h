@@ -35,8 +35,8 @@ struct Learnt {
 struct Learner {
   const char* name;
   const char* what;
-  /// Which of LearnOptions concern it, as the command line calls them. Others are refused.
-  std::vector<std::string_view> options;
+  /// Which of LearnOptions concern it. Others are refused.
+  std::vector<std::string_view> fields;
   /// Throws UsageError for what is out of range or cannot be had with this kind: before any time is spent.
   /// Null: there is no such thing.
   void (*check)(const TrainJob& job);

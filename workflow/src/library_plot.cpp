@@ -259,8 +259,8 @@ void check(const LibraryPlotOptions& o) {
                                                  o.materials.size()),
                      "Choose 1 to 8");
   if (o.energies_ev.empty())
-    throw UsageError("--energy", "there is none", "Give one or several");
-  if (o.cascades < 1) throw UsageError("--cascades", "there are none", "Ask for 10000");
+    throw UsageError("`beam.energy`", "there is none", "Give one or several");
+  if (o.cascades < 1) throw UsageError("`library.cascades`", "there are none", "Ask for 10000");
 }
 
 // Of one pixel, averaged over all of a library of about this size.

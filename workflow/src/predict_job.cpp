@@ -24,10 +24,10 @@ namespace fs = std::filesystem;
 constexpr double much = 0.001;   // share of the samples that is worth a warning
 
 void check_outputs(const PredictJob& job, const Image& like) {
-  if (job.outputs.empty()) throw UsageError("--output", "no output file is given", "Add -o image.exr");
+  if (job.outputs.empty()) throw UsageError("`output`", "no output file is given", "Add `output=image.exr`");
   std::vector<io::FileUse> outputs;
-  for (const fs::path& output : job.outputs) outputs.push_back({"--output", output, {}});
-  io::refuse_overlaps({{"HEIGHTS", job.input, {}}, {"--model", job.model, {}}}, outputs);
+  for (const fs::path& output : job.outputs) outputs.push_back({"`output`", output, {}});
+  io::refuse_overlaps({{"HEIGHTS", job.input, {}}, {"`model`", job.model, {}}}, outputs);
   for (const fs::path& output : job.outputs) {
     io::check_image_target(output, &like, {job.png_channel});
     io::check_writable(output);

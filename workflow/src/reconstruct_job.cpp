@@ -72,14 +72,14 @@ Identity identity_of(const ReconstructionOptions& o, const AfmData* afm, const S
 
 void check(const ReconstructJob& job) {
   if (!job.afm && !job.sem)
-    throw UsageError("reconstruct", "neither a scan nor an SEM image is given", "Add --afm scan.gwy, --sem image.tif, or both");
+    throw UsageError("reconstruct", "neither a scan nor an SEM image is given", "Add `reconstruction.afm=scan.gwy`, `reconstruction.sem=image.tif`, or both");
   std::error_code ignored;
   if (std::filesystem::exists(job.folder, ignored) && !std::filesystem::is_directory(job.folder, ignored))
-    throw UsageError("--output", fmt::format("{} is no folder", job.folder.string()), "Name a folder for all results, as -o result");
+    throw UsageError("`output`", fmt::format("{} is no folder", job.folder.string()), "Name a folder for all results, as `output=result`");
   if (!job.afm && !job.calibration)
-    throw UsageError("--gains", "without a scan there is nothing to calibrate with", "Say --gains and --offset, or give --afm");
+    throw UsageError("`reconstruction.gains`", "without a scan there is nothing to calibrate with", "Say `reconstruction.gains` and `reconstruction.offset`, or give `reconstruction.afm`");
   if (job.upsample < 1 || job.upsample > 8)
-    throw UsageError("--upsample", fmt::format("{} is out of range", job.upsample), "Give a whole number from 1 to 8");
+    throw UsageError("`reconstruction.upsample`", fmt::format("{} is out of range", job.upsample), "Give a whole number from 1 to 8");
   if (job.sem) validate(job.sem->image, "SEM image");
   if (job.picture && !job.folder.empty()) io::check_plot_target(job.folder / "panel.png");
 }
@@ -99,7 +99,7 @@ bool like_noise(const ResidualReport& r) {
 std::vector<std::string> reasons_of(const ReconstructSummary& s) {
   std::vector<std::string> reasons;
   const Reconstruction& r = s.result;
-  if (!r.converged || (!r.scales.empty() && r.scales.back().ended == "iterations")) reasons.push_back("the optimiser had not settled at the last scale: allow it more --iterations");
+  if (!r.converged || (!r.scales.empty() && r.scales.back().ended == "iterations")) reasons.push_back("the optimiser had not settled at the last scale: allow it more `reconstruction.iterations`");
   if (!r.scales.empty()) {
     const ScaleReport& last = r.scales.back();
     if (last.afm_residual.pixels > 0 && !like_noise(last.afm_residual))
@@ -173,7 +173,7 @@ SemData sem_data(const ReconstructJob& job, ReconstructSummary& s, const PlacedI
   }
   for (const std::string& warning : first.warnings) told.warn(warning);
   if (first.tied)
-    told.warn("the channels of the model cannot be told apart in the SEM image, so all have one gain; say --gains if you "
+    told.warn("the channels of the model cannot be told apart in the SEM image, so all have one gain; say `reconstruction.gains` if you "
               "know them");
   s.gains_tied = first.tied;
   s.calibration = first.fit;

@@ -4,13 +4,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
-#include <cstring>
 #include <nlohmann/json.hpp>
 
 #include "surf/afm/round_tip.h"
 #include "surf/core/units.h"
+#include "surf/core/words.h"
 #include "surf/io/files.h"
 #include "surf/io/model_file.h"
 #include "surf/workflow/version.h"
@@ -28,17 +27,6 @@ std::string list_of(const std::vector<double>& values) {
 
 /// Not finite numbers have no place in JSON.
 Json number(double value) { return std::isfinite(value) ? Json(value) : Json(); }
-
-std::string quoted(const std::vector<std::string>& words) {
-  const auto is_plain = [](unsigned char c) { return std::isalnum(c) || std::strchr("-_=+./,:%@", c); };
-  std::string line;
-  for (const std::string& word : words) {
-    std::string marked = "'";
-    for (const char c : word) marked += c == '\'' ? std::string("'\\''") : std::string(1, c);
-    line += (line.empty() ? "" : " ") + (!word.empty() && std::ranges::all_of(word, is_plain) ? word : marked + "'");
-  }
-  return line;
-}
 
 Json file_json(const std::filesystem::path& file) {
   return {{"file", file.string()}, {"sha256", io::sha256_of_file(file)}};
@@ -174,38 +162,39 @@ std::vector<std::string> repeating_command(const ReconstructJob& job, const Reco
                                            const SemData* sem) {
   const ReconstructionOptions o = options_of(job, s);
   std::vector<std::string> words{"semsurf", "reconstruct"};
-  const auto add = [&](const std::string& option, const std::string& value) { words.insert(words.end(), {option, value}); };
-  if (afm) add("--afm", job.afm->file.string());
-  if (sem) add("--sem", job.sem->file.string());
+  const auto set = [&](const std::string& option) { words.push_back("--" + option); };
+  const auto add = [&](const std::string& option, const std::string& value) { set(option), words.push_back(value); };
+  if (afm) add("afm", job.afm->file.string());
+  if (sem) add("sem", job.sem->file.string());
   words.insert(words.end(), job.fixed_options.begin(), job.fixed_options.end());
   if (afm) {
-    add("--tip", (job.folder / (o.refine_tip ? "first_tip.txt" : "tip.txt")).string());
-    words.emplace_back(o.refine_tip ? "--refine-tip" : "--keep-tip");
-    add("--afm-noise", list_of({afm->noise.alpha, afm->noise.innovation_nm2}));
-    add("--upsample", std::to_string(afm->upsample));
+    add("tip", (job.folder / (o.refine_tip ? "first_tip.txt" : "tip.txt")).string());
+    set(o.refine_tip ? "refine-tip" : "keep-tip");
+    add("afm-noise", list_of({afm->noise.alpha, afm->noise.innovation_nm2}));
+    add("upsample", std::to_string(afm->upsample));
   }
   if (sem) {
-    add("--model", (job.folder / "model.json").string());
-    add("--gains", list_of(sem->gains));
-    add("--offset", format_exact(sem->offset));
-    add("--sem-noise", list_of({sem->noise.slope, sem->noise.intercept, sem->noise.least_variance}));
+    add("model", (job.folder / "model.json").string());
+    add("gains", list_of(sem->gains));
+    add("offset", format_exact(sem->offset));
+    add("sem-noise", list_of({sem->noise.slope, sem->noise.intercept, sem->noise.least_variance}));
   }
   if (afm && sem) {
     const Affine& m = s.pose->sem_to_afm;
-    add("--transform", list_of({m.xx, m.xy, m.x0, m.yx, m.yy, m.y0}));
+    add("transform", list_of({m.xx, m.xy, m.x0, m.yx, m.yy, m.y0}));
   }
-  add("--method", name(o.method));
-  if (!o.scales_px.empty()) add("--scales", list_of(o.scales_px));
-  if (o.iterations > 0) add("--iterations", std::to_string(o.iterations));
-  if (o.tolerance > 0) add("--tolerance", format_exact(o.tolerance));
-  if (o.curvature_prior_per_nm > 0) add("--prior", format_exact(o.curvature_prior_per_nm));
-  if (!o.refine_transform) words.emplace_back("--fixed-transform");
-  if (!o.refine_calibration) words.emplace_back("--fixed-calibration");
-  if (!o.uncertainty) words.emplace_back("--no-uncertainty");
-  add("--probes", std::to_string(o.probes));
-  add("--seed", std::to_string(o.seed));
-  if (!job.truth_file.empty()) add("--truth", job.truth_file.string());
-  add("-o", job.folder.string() + "-again");
+  add("method", name(o.method));
+  if (!o.scales_px.empty()) add("scales", list_of(o.scales_px));
+  if (o.iterations > 0) add("iterations", std::to_string(o.iterations));
+  if (o.tolerance > 0) add("tolerance", format_exact(o.tolerance));
+  if (o.curvature_prior_per_nm > 0) add("prior", format_exact(o.curvature_prior_per_nm));
+  if (!o.refine_transform) set("fixed-transform");
+  if (!o.refine_calibration) set("fixed-calibration");
+  if (!o.uncertainty) set("no-uncertainty");
+  add("probes", std::to_string(o.probes));
+  add("seed", std::to_string(o.seed));
+  if (!job.truth_file.empty()) add("truth", job.truth_file.string());
+  words.insert(words.end(), {"-o", job.folder.string() + "-again"});
   return words;
 }
 
@@ -216,7 +205,7 @@ std::string reconstruction_report(const ReconstructJob& job, const ReconstructSu
   json["semsurf"] = version();
   json["libraries"] = library_versions();
   json["command"] = job.command_line;
-  json["repeat"] = quoted(repeating_command(job, s, afm, sem));
+  json["repeat"] = quoted_command(repeating_command(job, s, afm, sem));
   json["verdict"] = name(s.verdict);
   json["reasons"] = s.reasons;
   json["warnings"] = s.warnings;

@@ -21,7 +21,7 @@ struct Rectangle {
 };
 
 [[noreturn]] void too_many_pixels(double width, double height) {
-  throw UsageError("--size",
+  throw UsageError("`scan.size`",
                    fmt::format("an image of {:.6g} x {:.6g} pixels is too large", width, height),
                    fmt::format("At most {} pixels (16384 x 16384) fit into one image: give fewer "
                                "or larger pixels, or a smaller region",
@@ -30,28 +30,28 @@ struct Rectangle {
 
 void check_request(const mc::ScanRequest& r) {
   if (r.width.has_value() != r.height.has_value())
-    throw UsageError("--size", "only one of width and height is given", "Write --size 256x256");
+    throw UsageError("`scan.size`", "only one of width and height is given", "Write `scan.size=256x256`");
   if (r.pixel_x_nm.has_value() != r.pixel_y_nm.has_value())
-    throw UsageError("--pixel-size", "only one of x and y is given", "Write --pixel-size 2nm");
+    throw UsageError("`scan.pixel_size`", "only one of x and y is given", "Write `scan.pixel_size=2nm`");
   if (r.width && r.pixel_x_nm && r.region)
-    throw UsageError("--size, --pixel-size, --region",
+    throw UsageError("`scan.size`, `scan.pixel_size`, `scan.region`",
                      "all three are given, and any two say it all", "Leave one out");
   if (r.width && (*r.width < 1 || *r.height < 1))
-    throw UsageError("--size", fmt::format("{}x{} is not a size", *r.width, *r.height),
+    throw UsageError("`scan.size`", fmt::format("{}x{} is not a size", *r.width, *r.height),
                      "Give at least 1x1 pixels");
   if (r.width && std::int64_t{*r.width} * *r.height > mc::max_pixels)
     too_many_pixels(*r.width, *r.height);
   if (r.pixel_x_nm)
     for (double pixel : {*r.pixel_x_nm, *r.pixel_y_nm})
       if (!(pixel > 0) || !std::isfinite(pixel))
-        throw UsageError("--pixel-size", fmt::format("{} nm is not a pixel size", pixel),
+        throw UsageError("`scan.pixel_size`", fmt::format("{} nm is not a pixel size", pixel),
                          "Give a length above zero");
   if (r.region) {
     const auto& g = *r.region;
     const bool finite = std::isfinite(g.x0_nm) && std::isfinite(g.y0_nm) &&
                         std::isfinite(g.x1_nm) && std::isfinite(g.y1_nm);
     if (!finite || !(g.x0_nm < g.x1_nm) || !(g.y0_nm < g.y1_nm))
-      throw UsageError("--region", "the region is empty",
+      throw UsageError("`scan.region`", "the region is empty",
                        "Give the outer edges X0,Y0,X1,Y1 with X0 < X1 and Y0 < Y1");
   }
 }
@@ -71,8 +71,8 @@ Rectangle specimen_rectangle(const Box& extent, const mc::Beam& beam) {
   const Rectangle r{center.x - half_x, center.y - half_y, center.x + half_x, center.y + half_y};
   if (extent.empty() || !std::isfinite(r.width()) || !std::isfinite(r.height()) ||
       !(r.width() > 0) || !(r.height() > 0))
-    throw UsageError("--region", "the specimen has no extent in x and y to choose a scan from",
-                     "Give --region and --size");
+    throw UsageError("`scan.region`", "the specimen has no extent in x and y to choose a scan from",
+                     "Give `scan.region` and `scan.size`");
   return r;
 }
 
@@ -82,10 +82,10 @@ double whole_pixels(double length_nm, double pixel_nm, const char* axis) {
   const double whole = std::round(pixels);
   if (whole >= 1 && std::abs(pixels - whole) <= whole_tolerance * whole) return whole;
   const double fewer = std::max(1.0, std::floor(pixels));
-  throw UsageError("--region, --pixel-size",
+  throw UsageError("`scan.region`, `scan.pixel_size`",
                    fmt::format("{} nm along {} is {:.7g} pixels of {} nm, not a whole number",
                                format_exact(length_nm), axis, pixels, format_exact(pixel_nm)),
-                   fmt::format("Give --size instead, or a pixel size of {:.9g} nm ({} pixels) or "
+                   fmt::format("Give `scan.size` instead, or a pixel size of {:.9g} nm ({} pixels) or "
                                "{:.9g} nm ({} pixels)",
                                length_nm / fewer, fewer, length_nm / (fewer + 1), fewer + 1));
 }

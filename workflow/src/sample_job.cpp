@@ -61,9 +61,9 @@ const SampleScene& find_scene(const std::string& name) {
 
 void check(const SampleJob& job) {
   if (job.width < 16 || job.height < 16 || job.width > 4096 || job.height > 4096)
-    throw UsageError("--size", fmt::format("{} x {} pixels", job.width, job.height), "Give 16 to 4096 each way");
+    throw UsageError("`sample.size`", fmt::format("{} x {} pixels", job.width, job.height), "Give 16 to 4096 each way");
   if (job.electrons < 1 || job.electrons > std::int64_t{1} << 31)
-    throw UsageError("--electrons", fmt::format("{} is out of range", job.electrons), "Give 1 to 2e9 per pixel");
+    throw UsageError("`sample.electrons`", fmt::format("{} is out of range", job.electrons), "Give 1 to 2e9 per pixel");
   if (job.cascades < fewest_cascades)
     throw UsageError("sample", fmt::format("{} cascades are too few", job.cascades),
                      fmt::format("Give {} or more", fewest_cascades));

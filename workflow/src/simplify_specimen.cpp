@@ -26,7 +26,7 @@ constexpr double one_interface_nm = 1e-3;   // faces nearer than this are one (s
 constexpr double least_gain = 0.95;         // of the triangles: what leaves more is not worth a change
 constexpr int attempts = 3;                 // each with half the tolerance of the last
 
-constexpr const char* option = "--mesh-tolerance";
+constexpr const char* tolerance = "`simulation.mesh_tolerance`";
 
 std::string name_of(const mc::Body& body) { return body.name.empty() ? "body" : body.name; }
 
@@ -41,7 +41,7 @@ double relief_nm(const HeightField& field) {
 
 void require_smaller(double tolerance_nm, double size_nm, const std::string& name) {
   if (tolerance_nm < size_nm) return;
-  throw UsageError(option,
+  throw UsageError(tolerance,
                    fmt::format("{} leaves nothing of {}, which is {} across where it is thinnest",
                                format_length(tolerance_nm), name, format_length(size_nm)),
                    "Give a length well below the smallest detail that matters");
@@ -49,7 +49,7 @@ void require_smaller(double tolerance_nm, double size_nm, const std::string& nam
 
 void check_tolerance(const mc::Specimen& specimen, double tolerance_nm) {
   if (!(std::isfinite(tolerance_nm) && tolerance_nm > 0))
-    throw UsageError(option, "it is " + format_exact(tolerance_nm) + " nm",
+    throw UsageError(tolerance, "it is " + format_exact(tolerance_nm) + " nm",
                      "Give a length above 0, as 0.5nm");
   if (const auto& h = specimen.height_field) {
     const HeightField& f = h->field;
@@ -191,10 +191,10 @@ mc::Specimen simplify_specimen(const mc::Specimen& specimen, double tolerance_nm
 std::vector<std::string> warnings_of(const mc::Specimen& specimen, const Simplification& done) {
   std::vector<std::string> out;
   if (done.tolerance_nm > 0 && done.bodies.empty())
-    out.push_back(fmt::format("{}: a bare substrate has no triangles to leave out", option));
+    out.push_back(fmt::format("{}: a bare substrate has no triangles to leave out", tolerance));
   for (const SimplifiedBody& body : done.bodies)
     if (!body.kept.empty())
-      out.push_back(fmt::format("{}: with {} {} {}; it stays as it is", body.name, option,
+      out.push_back(fmt::format("{}: with `simulation.mesh_tolerance={}` {}; it stays as it is", body.name,
                                 format_length(done.tolerance_nm), body.kept));
   if (!specimen.height_field) return out;
   const double relief = relief_nm(specimen.height_field->field);

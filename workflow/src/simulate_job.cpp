@@ -200,7 +200,7 @@ SimulateSummary run(SimulateJob asked, const Reporter& reporter, Team* team, con
   together(team, [&] {
     check_extras(asked.extras);
     if (team && asked.extras.deposit_cells > 0)
-      throw UsageError("output.deposit", "each of several processes would see a part of it", "Run it in one process");
+      throw UsageError("`output.deposit`", "each of several processes would see a part of it", "Run it in one process");
     job = resolve(std::move(asked));
     if (leads(team) && !job.outputs.empty()) {   // who follows writes nothing
       check_outputs(job);

@@ -31,11 +31,11 @@ std::vector<io::FileUse> outputs_of(const ResolvedJob& job) {
   std::vector<io::FileUse> outputs;
   std::set<fs::path> records;   // images of one name share theirs
   for (const fs::path& output : job.outputs) {
-    outputs.push_back({"--output", output, {}});
+    outputs.push_back({"`output`", output, {}});
     if (const fs::path record = sidecar_path(output); records.insert(record).second)
-      outputs.push_back({"--output", record, output});
+      outputs.push_back({"`output`", record, output});
   }
-  for (const fs::path& extra : extra_files(job)) outputs.push_back({"--output", extra, job.outputs.front()});
+  for (const fs::path& extra : extra_files(job)) outputs.push_back({"`output`", extra, job.outputs.front()});
   return outputs;
 }
 
@@ -51,7 +51,7 @@ ResolvedJob resolve(SimulateJob asked) {
   ResolvedJob out{std::move(asked), {}};
   mc::validate(out.scene);
   if (out.execution.tile_pixels < 1)
-    throw UsageError("execution.tile_pixels", fmt::format("{} is out of range", out.execution.tile_pixels), "Give 1 or more");
+    throw UsageError("`execution.tile_pixels`", fmt::format("{} is out of range", out.execution.tile_pixels), "Give 1 or more");
   if (out.execution.scratch_folder.empty() && !out.outputs.empty()) {
     const fs::path folder = out.outputs.front().parent_path();
     out.execution.scratch_folder = folder.empty() ? "." : folder.string();
@@ -80,7 +80,7 @@ Image image_like_the_result(const ResolvedJob& job) {
 
 void check_outputs(const ResolvedJob& job) {
   if (job.outputs.empty())
-    throw UsageError("--output", "no output file is given", "Add -o image.exr");
+    throw UsageError("`output`", "no output file is given", "Add `output=image.exr`");
   const Image image = image_like_the_result(job);
   io::refuse_overlaps(inputs_of(job), outputs_of(job));
   refuse_strangers_of(job);
@@ -95,13 +95,13 @@ void check_outputs(const ResolvedJob& job) {
 void check_checkpoint(const ResolvedJob& job) {
   const CheckpointOptions& o = job.checkpoint;
   if (!(o.seconds > 0))
-    throw UsageError("--checkpoint-every", "it must be above zero", "Write for example 30s");
+    throw UsageError("`output.checkpoint_every`", "it must be above zero", "Write for example 30s");
   if (!o.wanted || o.file.empty()) return;
   if (job.extras.deposit_cells > 0)
-    throw UsageError("--checkpoint", "deposited energy cannot be kept on the way",
-                     "Leave out --checkpoint or --deposit");
+    throw UsageError("`output.checkpoint`", "deposited energy cannot be kept on the way",
+                     "Leave out `output.checkpoint` or `output.deposit`");
   std::vector<io::FileUse> outputs = outputs_of(job);
-  outputs.push_back({"--checkpoint", o.file, {}});
+  outputs.push_back({"`output.checkpoint`", o.file, {}});
   io::refuse_overlaps(inputs_of(job), outputs);
   io::check_writable(o.file);
 }

@@ -67,7 +67,7 @@ StoredModel load(const fs::path& file, const ModelRequest& r) {
   if (scope.pixel_nm > 0 && std::abs(scope.pixel_nm - r.pixel_nm) > same_pixel * scope.pixel_nm)
     throw InvalidInput(file.string(), fmt::format("it is for pixels of {:.6g} nm, and those of the SEM image are {:.6g} nm",
                                                   scope.pixel_nm, r.pixel_nm),
-                       "Leave out --model, so that one is trained, or check --sem-pixel-size");
+                       "Leave out `reconstruction.model`, so that one is trained, or check `sem_pixel_size`");
   stored.model = make_model(stored.trained);
   return stored;
 }
@@ -102,10 +102,10 @@ std::string kept_name(const ModelRequest& r) {
 StoredModel find_model(const ModelRequest& r, const Reporter& reporter) {
   if (!r.file.empty()) return load(r.file, r);
   if (r.material.name.empty())
-    throw UsageError("--material", "it is missing, and so is --model", "Say what the specimen is made of, as --material Si");
+    throw UsageError("`specimen.material`", "it is missing, and so is `reconstruction.model`", "Say what the specimen is made of, as `specimen.material=Si`");
   if (r.folder.empty())
-    throw UsageError("--model", "it is missing, and there is no cache to keep a trained one in",
-                     "Train one with 'semsurf train', or name a folder with --cache");
+    throw UsageError("`reconstruction.model`", "it is missing, and there is no cache to keep a trained one in",
+                     "Train one with 'semsurf train', or name a folder with `simulation.cache`");
   const auto note = [&](const std::string& text) {
     reporter.note(text);
   };

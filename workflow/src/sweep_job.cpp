@@ -151,9 +151,9 @@ void describe(const SimulateJob& first, ManyRuns& runs) {
 
 SweepSummary run(const SweepJob& job, const Reporter& reporter, const RunCallback& on_run, Team* team) {
   const auto start = std::chrono::steady_clock::now();
-  if (job.runs.empty()) throw UsageError("--vary", "there is nothing to run", "Give --vary energy=500eV,1keV, say");
+  if (job.runs.empty()) throw UsageError("`sweep.vary`", "there is nothing to run", "Give `sweep.vary=energy=500eV,1keV`, say");
   if (job.parts < 1 || job.part < 1 || job.part > job.parts)
-    throw UsageError("--part", fmt::format("{}/{} is no part", job.part, job.parts), "Write 3/16 for the third of 16");
+    throw UsageError("`sweep.part`", fmt::format("{}/{} is no part", job.part, job.parts), "Write 3/16 for the third of 16");
   const std::string sweep = sweep_identity(job);
   SweepSummary summary;
   summary.table = job.folder / (job.parts == 1 ? std::string("sweep.csv")
@@ -227,7 +227,7 @@ fs::path join_sweep(const std::vector<fs::path>& folders) {
       }
       if ((*record)["sweep"] != sweep)
         throw InvalidInput(folder.string(), fmt::format("it holds another sweep than {}", from),
-                           "Join the parts of one sweep: the same --vary in the same order");
+                           "Join the parts of one sweep: the same `sweep.vary` in the same order");
       records[(*record)["number"]] = *record;
     }
   }

@@ -32,30 +32,30 @@ int own_surfaces(const TrainJob& job, const Learner& learner) {
 
 void check_numbers(const TrainJob& job, int own) {
   if (!(job.pixel_nm > 0 && std::isfinite(job.pixel_nm)))
-    throw UsageError("--pixel-size", "it must be above zero", "Give the model's pixel size, as 3nm");
+    throw UsageError("`training.pixel_size`", "it must be above zero", "Give the model's pixel size, as 3nm");
   mc::validate(job.physics, job.energy_ev);
   const int surfaces = own + static_cast<int>(job.inputs.size());
   if (job.held_out < 0 || (job.held_out > 0 && job.held_out >= surfaces))
-    throw UsageError("--hold-out", fmt::format("{} of {} surfaces leave none to learn on", job.held_out, surfaces),
+    throw UsageError("`training.hold_out`", fmt::format("{} of {} surfaces leave none to learn on", job.held_out, surfaces),
                      "Give fewer, or more surfaces");
   if (job.inputs.empty() && !job.signal.empty())
-    throw UsageError("--signal", "an image is learnt together with the surface that it shows", "Name its HEIGHTS");
+    throw UsageError("`training.signal`", "an image is learnt together with the surface that it shows", "Name its HEIGHTS");
   if (!job.signal.empty())
     for (const TrainingInput& input : job.inputs)
       if (!input.has_image())
-        throw UsageError("--signal", fmt::format("there is no image of {}", input.name), "Give one for each of the HEIGHTS");
+        throw UsageError("`training.signal`", fmt::format("there is no image of {}", input.name), "Give one for each of the HEIGHTS");
 }
 
 void check_target(const TrainJob& job, const std::vector<TrainingSurface>& surfaces, bool is_shared) {
   io::check_model_target(job.output);
-  std::vector<io::FileUse> inputs, outputs{{"--output", job.output, {}}};
+  std::vector<io::FileUse> inputs, outputs{{"`output`", job.output, {}}};
   for (const TrainingSurface& surface : surfaces) {
-    if (!surface.image.empty()) inputs.push_back({"--images", surface.image, {}});
-    else if (!surface.has_image()) outputs.push_back({"--output", image_folder(job) / (surface.name + ".exr"), job.output});
+    if (!surface.image.empty()) inputs.push_back({"`training.images`", surface.image, {}});
+    else if (!surface.has_image()) outputs.push_back({"`output`", image_folder(job) / (surface.name + ".exr"), job.output});
   }
   if (is_shared) {
     const std::filesystem::path record = sidecar_path(job.output);
-    outputs.push_back({"--output", record, job.output});
+    outputs.push_back({"`output`", record, job.output});
     io::refuse_strangers(job.output, {record});
   }
   io::refuse_overlaps(inputs, outputs);

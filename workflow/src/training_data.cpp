@@ -51,7 +51,7 @@ HeightField at_pixel(const TrainingInput& input, double pixel_nm, const NoteCall
   if (coarsest > most_coarse * pixel_nm)
     throw InvalidInput(input.name, fmt::format("its samples are {} apart, the model's pixels are {}",
                                                format_length(coarsest), format_length(pixel_nm)),
-                       fmt::format("What is in between is not known: use --pixel-size {}nm, or leave the file out",
+                       fmt::format("What is in between is not known: use `training.pixel_size={}nm`, or leave the file out",
                                    format_exact(coarsest)));
   HeightField out = resampled(field, pixel_nm);
   if (note)
@@ -133,8 +133,8 @@ TrainingImage read_training_image(const TrainingSurface& surface, const fs::path
     const Channel* channel = image.find(name);
     if (!channel)
       throw FileError(subject, fmt::format("it has no channel '{}'", name),
-                      simulated ? "Give an image with SE and BSE, or --signal for that of a microscope"
-                                : "'semsurf info' lists its channels: --signal FILE:CHANNEL");
+                      simulated ? "Give an image with SE and BSE, or `training.signal` for that of a microscope"
+                                : "'semsurf info' lists its channels: `training.signal=FILE:CHANNEL`");
     for (std::size_t i = 0; i < out.used.size(); ++i)
       if (!std::isfinite(channel->values.data()[i])) out.used.data()[i] = 0;
     out.images.push_back(channel->values);

@@ -30,7 +30,7 @@ Pixel pixel_at(const mc::Scan& scan, const std::optional<std::pair<double, doubl
   const double x = (at_nm->first - scan.center_x_nm) / scan.pixel_x_nm + 0.5 * scan.width;
   const double y = (at_nm->second - scan.center_y_nm) / scan.pixel_y_nm + 0.5 * scan.height;
   if (!(x >= 0 && x < scan.width && y >= 0 && y < scan.height))
-    throw UsageError("--trajectories-at",
+    throw UsageError("`output.trajectories_at`",
                      fmt::format("({:g}, {:g}) nm is outside the scan", at_nm->first, at_nm->second),
                      "Give a point that the image shows");
   return {static_cast<int>(x), static_cast<int>(y)};

@@ -43,7 +43,7 @@ void warn_about_size(const Box& extent, std::vector<std::string>& out) {
   const Vec3 size = extent.size_nm();
   const double widest = std::max({size.x, size.y, size.z});
   if (widest > widest_nm || widest < narrowest_nm)
-    out.push_back(fmt::format("the specimen is {} wide; is --unit right?", format_length(widest)));
+    out.push_back(fmt::format("the specimen is {} wide; is `specimen.unit` right?", format_length(widest)));
   double farthest = 0;
   for (const Vec3& p : {extent.lower_nm, extent.upper_nm})
     farthest = std::max({farthest, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
@@ -73,9 +73,9 @@ void warn_about_transparency(const io::SceneFile& scene, const SpecimenFacts& fa
   std::string other;
   for (const auto& [unit, factor] : {std::pair{"um", 1e3}, {"mm", 1e6}, {"m", 1e9}})
     if (other.empty() && factor * widest >= range)
-      other = fmt::format("With --unit {} it would be {}. ", unit, format_length(factor * widest));
+      other = fmt::format("With `specimen.unit={}` it would be {}. ", unit, format_length(factor * widest));
   out.push_back(fmt::format("the specimen is {} wide, but electrons of {:g} eV reach about {} in {}: nearly all pass "
-                            "through it. {}Name the mesh file's unit, --unit or 'unit' in a scene file; nm if it is right",
+                            "through it. {}Name the mesh file's unit, `specimen.unit` or 'unit' in a scene file; nm if it is right",
                             format_length(widest), scene.beam.energy_ev, format_length(range), densest->name, other));
 }
 

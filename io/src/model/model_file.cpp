@@ -103,7 +103,7 @@ void write_model(const std::filesystem::path& path, const TrainedModel& model) {
 
 void check_model_target(const std::filesystem::path& path) {
   if (lower_extension(path) != ".json")
-    throw UsageError("--output", fmt::format("{} does not end in .json", path.string()), "Add -o model.json");
+    throw UsageError("`output`", fmt::format("{} does not end in .json", path.string()), "Add `output=model.json`");
   check_writable(path);
 }
 

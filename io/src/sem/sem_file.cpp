@@ -130,7 +130,7 @@ void set_pitch(SemFile& out, const SemHeader& header, const SemReadOptions& opti
     throw UsageError(file, header.format.empty()
                                ? "nothing in it, or beside it, says how large its pixels are"
                                : fmt::format("what {} wrote of it does not say how large its pixels are", header.format),
-                     "Add --sem-pixel-size 2nm, with the size at the specimen");
+                     "Add `sem_pixel_size=2nm`, with the size at the specimen");
   out.image.pitch_x_nm = x.value_or(header.pixel_x_nm);
   out.image.pitch_y_nm = y.value_or(header.pixel_y_nm);
   out.pixel_from = x ? "given" : header.pixel_from;
@@ -227,7 +227,7 @@ void refuse_as_heights(const fs::path& path) {
   if (!header) return;
   throw InvalidInput(path.string(), fmt::format("it is an SEM image ({}), and its grey levels are no heights", header->format),
                      "Give a scan; an SEM image's noise is found with 'semsurf noise --sem'. If it does hold heights, say "
-                     "what one grey level is with --z-unit");
+                     "what one grey level is with `z_unit`");
 }
 
 }  // namespace surf::io

@@ -17,7 +17,7 @@ const Channel& height_channel(const Image& image, const FieldSource& source, con
                               std::vector<std::string>& notes) {
   if (!source.channel.empty()) {
     if (const Channel* channel = image.find(source.channel)) return *channel;
-    throw UsageError("specimen.height_channel", fmt::format("{} has no channel '{}'", called, source.channel),
+    throw UsageError("`specimen.height_channel`", fmt::format("{} has no channel '{}'", called, source.channel),
                      "'semsurf info' lists its channels");
   }
   for (const char* name : {"z_nm", "z"})

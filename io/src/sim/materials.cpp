@@ -30,8 +30,8 @@ const mc::Material& find_in(const std::vector<mc::Material>& materials, const st
     names.push_back(material.name);
   }
   throw UsageError(subject, fmt::format("there is no material '{}'", name),
-                   fmt::format("Choose one of: {}. Or describe it in a file and add --materials "
-                               "FILE.toml",
+                   fmt::format("Choose one of: {}. Or describe it in a file and add "
+                               "`specimen.materials=FILE.toml`",
                                join(nearest_first(name, std::move(names)))));
 }
 

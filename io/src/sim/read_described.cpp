@@ -6,6 +6,7 @@
 
 #include <algorithm>
 
+#include "sim/scene_parts.h"
 #include "surf/core/error.h"
 
 namespace surf::io {
@@ -42,12 +43,12 @@ void at_parameters(const TomlTable& root, const std::function<void()>& work) {
   try {
     work();
   } catch (const UsageError& error) {
-    const std::string& name = error.subject();
-    if (name.find('.') == std::string::npos || name.find(' ') != std::string::npos) throw;
+    if (!error.subject().starts_with('`') || error.subject().find('.') == std::string::npos) throw;
+    const std::string name = error.subject().substr(1, error.subject().find('`', 1) - 1);
     const auto table = root.has(group_of(name)) ? root.table(group_of(name)) : std::nullopt;
     const std::string key = name.substr(name.rfind('.') + 1);
     if (!table || !table->has(key)) throw;
-    throw UsageError(table->place(key), error.reason(), error.remedy());
+    throw UsageError(table->place(key), with_scene_words(error.reason()), with_scene_words(error.remedy()));
   }
 }
 

@@ -9,6 +9,7 @@
 #include "sim/add_material.h"
 #include "sim/field_source.h"
 #include "sim/suggest.h"
+#include "surf/core/field_words.h"
 #include "surf/core/units.h"
 #include "surf/io/mesh_file.h"
 #include "surf/io/mesh_unit.h"
@@ -300,6 +301,23 @@ std::vector<mc::Body> SceneParts::read_bodies(const TomlTable& table) {
     at_place(table, {}, [&] { place_body(table, body.mesh); });
   }
   return bodies;
+}
+
+std::string with_scene_words(std::string_view text) {
+  return with_field_words(text, [](std::string_view field, std::string_view value) {
+    return std::string(field) + (value.empty() ? "" : " = ") + std::string(value);
+  });
+}
+
+void refuse_at(const TomlTable& table, std::string_view key, const UsageError& error) {
+  const std::string reason = with_scene_words(error.reason()), remedy = with_scene_words(error.remedy());
+  std::string own;
+  const std::string rest = with_field_words(error.subject(), [&](std::string_view field, std::string_view) {
+    own = last_part(field, '_');
+    return std::string();
+  });
+  if (rest.empty() && table.has(own)) throw UsageError(table.place(own), reason, remedy);
+  throw UsageError(table.place(key), with_scene_words(error.subject()) + ": " + reason, remedy);
 }
 
 }  // namespace surf::io

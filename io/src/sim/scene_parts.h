@@ -3,6 +3,8 @@
 
 #include <filesystem>
 #include <functional>
+#include <string>
+#include <string_view>
 
 #include "sim/toml_table.h"
 #include "surf/core/error.h"
@@ -34,13 +36,19 @@ class SceneParts {
   BodyReader read_;
 };
 
-/// Runs `work`; what it refuses is reported at the key's place in the scene file.
+/// `text` with fields as a scene file has them: beam.tilt, beam.tilt = 30deg.
+std::string with_scene_words(std::string_view text);
+
+/// Says what is refused at its place in the scene file: that of the field's own key if the table has it, else of `key`.
+[[noreturn]] void refuse_at(const TomlTable& table, std::string_view key, const UsageError& error);
+
+/// Runs `work`; what it refuses is reported at its place in the scene file.
 template <class Work>
 auto at_place(const TomlTable& table, std::string_view key, const Work& work) {
   try {
     return work();
   } catch (const UsageError& error) {
-    throw UsageError(table.place(key), error.subject() + ": " + error.reason(), error.remedy());
+    refuse_at(table, key, error);
   }
 }
 

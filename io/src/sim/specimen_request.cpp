@@ -35,12 +35,12 @@ std::string text_of(const std::optional<double>& nm) { return nm ? format_exact(
 void add_mesh_bodies(const std::string& input, const SpecimenRequest& request, const std::string& fallback,
                      const BodyReader& read, SceneFile& scene) {
   const MeshUnit unit{request.mesh_unit_nm, request.override_unit};
-  std::vector<MeshBody> bodies = read(input, unit, {fallback, {}, "specimen.material"}, scene.materials);
+  std::vector<MeshBody> bodies = read(input, unit, {fallback, {}, "`specimen.material`"}, scene.materials);
   for (MeshBody& body : bodies) {
     const std::string name = bodies.size() == 1 ? input : input + ", " + body.name;
     if (body.is_default && !body.file_material.empty())
       scene.notes.push_back(fmt::format("{}: '{}' is no known material: {}", name, body.file_material, fallback));
-    const int material = add_material(scene, body.material, "specimen.material");
+    const int material = add_material(scene, body.material, "`specimen.material`");
     scene.specimen.bodies.push_back({name, std::move(body.mesh), material});
     scene.unit_assumed = scene.unit_assumed || body.unit_assumed;
   }
@@ -58,7 +58,7 @@ SceneFile from_shapes(const SpecimenRequest& request, const BodyReader& read) {
   const std::string material = request.material.value_or("Si");
   if (!request.material) scene.notes.push_back("no `specimen.material` is given: Si");
   if (request.override_unit && !request.mesh_unit_nm)
-    throw UsageError("specimen.override_unit", "there is no unit to take in place of the file's",
+    throw UsageError("`specimen.override_unit`", "there is no unit to take in place of the file's",
                      "Add `specimen.unit=um`, or leave it out");
   for (const std::string& input : request.inputs) {
     const fs::path path(input);
@@ -73,27 +73,27 @@ SceneFile from_shapes(const SpecimenRequest& request, const BodyReader& read) {
     HeightField field = read_field({path, request.height_channel, request.height_pitch_x_nm, request.height_pitch_y_nm,
                                     request.height_unit_nm}, input, scene.notes);
     scene.specimen.height_field =
-        mc::HeightFieldBody{input, std::move(field), add_material(scene, material, "specimen.material"), Edge::mirror};
+        mc::HeightFieldBody{input, std::move(field), add_material(scene, material, "`specimen.material`"), Edge::mirror};
     scene.inputs.push_back(path);
   }
   scene.notes.insert(scene.notes.end(), of_materials.begin(), of_materials.end());
-  const char* const of_heights = request.height_pitch_x_nm         ? "specimen.height_pitch"
-                                 : request.height_unit_nm          ? "specimen.height_unit"
-                                 : !request.height_channel.empty() ? "specimen.height_channel" : nullptr;
+  const char* const of_heights = request.height_pitch_x_nm         ? "`specimen.height_pitch`"
+                                 : request.height_unit_nm          ? "`specimen.height_unit`"
+                                 : !request.height_channel.empty() ? "`specimen.height_channel`" : nullptr;
   if (of_heights && !scene.specimen.height_field)
     throw UsageError(of_heights, "no input is a height field", "Leave it out, or give an image");
   if (scene.specimen.bodies.empty() && request.mesh_unit_nm)
-    throw UsageError("specimen.unit", "no input is a mesh", "Leave it out; `specimen.height_unit` scales heights");
+    throw UsageError("`specimen.unit`", "no input is a mesh", "Leave it out; `specimen.height_unit` scales heights");
   return scene;
 }
 
 SceneFile from_file(const SpecimenRequest& request, const BodyReader& read) {
-  for (const auto& [given, name] : {std::pair{request.material.has_value(), "specimen.material"},
-                                    {request.mesh_unit_nm.has_value(), "specimen.unit"},
-                                    {request.override_unit, "specimen.override_unit"},
-                                    {request.height_pitch_x_nm.has_value(), "specimen.height_pitch"},
-                                    {request.height_unit_nm.has_value(), "specimen.height_unit"},
-                                    {!request.height_channel.empty(), "specimen.height_channel"}})
+  for (const auto& [given, name] : {std::pair{request.material.has_value(), "`specimen.material`"},
+                                    {request.mesh_unit_nm.has_value(), "`specimen.unit`"},
+                                    {request.override_unit, "`specimen.override_unit`"},
+                                    {request.height_pitch_x_nm.has_value(), "`specimen.height_pitch`"},
+                                    {request.height_unit_nm.has_value(), "`specimen.height_unit`"},
+                                    {!request.height_channel.empty(), "`specimen.height_channel`"}})
     if (given)
       throw UsageError(name, "a scene file says this for each of its parts", "Change the scene file, or give a mesh");
   return read_scene(request.inputs.front(), {request.material_files.begin(), request.material_files.end()}, read);
@@ -146,21 +146,22 @@ void describe(ParameterVisitor& visit, SpecimenRequest& r) {
 SceneFile read_specimen(const SpecimenRequest& request, const BodyReader& read) {
   if (request.inputs.empty())
     throw UsageError("simulate", "no specimen is given",
-                     "Give a mesh, a height field or a scene file, as in 'semsurf simulate cube.stl -o cube.exr'");
+                     "Give a mesh, a height field or a scene file, as in "
+                     "'semsurf simulate cube.stl -o cube.exr'");
   const bool is_file = request.inputs.size() == 1 && is_scene_file(request.inputs.front());
   SceneFile scene = is_file ? from_file(request, read) : from_shapes(request, read);
   mc::Specimen& specimen = scene.specimen;
   if (request.substrate) {
     if (!specimen.substrate) specimen.substrate.emplace();
-    specimen.substrate->material = add_material(scene, *request.substrate, "specimen.substrate");
+    specimen.substrate->material = add_material(scene, *request.substrate, "`specimen.substrate`");
   }
   if (request.substrate_z_nm) {
     if (!specimen.substrate)
-      throw UsageError("specimen.substrate_z", "there is no substrate", "Add `specimen.substrate=Si`");
+      throw UsageError("`specimen.substrate_z`", "there is no substrate", "Add `specimen.substrate=Si`");
     specimen.substrate->top_nm = *request.substrate_z_nm;
   }
   if (request.edge) {
-    if (!specimen.height_field) throw UsageError("specimen.edge", "the specimen has no height field", "Leave it out");
+    if (!specimen.height_field) throw UsageError("`specimen.edge`", "the specimen has no height field", "Leave it out");
     specimen.height_field->edge = *request.edge;
   }
   return scene;

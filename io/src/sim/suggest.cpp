@@ -3,8 +3,8 @@
 
 #include <algorithm>
 #include <cctype>
-#include <numeric>
-#include <utility>
+
+#include "surf/core/words.h"
 
 namespace surf::io {
 namespace {
@@ -13,21 +13,6 @@ std::string lower_case(std::string_view text) {
   std::string lower(text);
   for (char& c : lower) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
   return lower;
-}
-
-/// Levenshtein's distance: letters to insert, remove or replace.
-std::size_t edit_distance(const std::string& a, const std::string& b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  std::iota(row.begin(), row.end(), std::size_t{0});
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    std::size_t diagonal = std::exchange(row[0], i + 1);
-    for (std::size_t j = 0; j < b.size(); ++j) {
-      const std::size_t replaced = diagonal + (a[i] == b[j] ? 0 : 1);
-      diagonal = row[j + 1];
-      row[j + 1] = std::min({row[j] + 1, row[j + 1] + 1, replaced});
-    }
-  }
-  return row.back();
 }
 
 /// From the key, or from what it is without its last words: the unit of "density_g_cm3" is easily forgotten.

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <utility>
 
 #include "surf/core/error.h"
 #include "surf/core/units.h"
@@ -269,6 +270,8 @@ std::string_view Parameter::last_name() const {
   return dot == std::string::npos ? std::string_view(name) : std::string_view(name).substr(dot + 1);
 }
 
+std::string Parameter::subject() const { return "`" + name + "`"; }
+
 std::string Parameter::key() const { return name + std::string(unit_suffix(unit)); }
 
 void ParameterVisitor::operator()(double& value, const Parameter& about) {
@@ -361,7 +364,10 @@ std::string format_value(double value, Unit unit) {
       std::erase(share, ' ');
       return share;
     }
-    case Unit::nm: return number(value) + "nm";
+    case Unit::nm:
+      for (const auto& [nm, name] : {std::pair{1e9, "m"}, {1e6, "mm"}})
+        if (std::abs(value) >= nm && std::fmod(value, nm) == 0) return number(value / nm) + name;
+      return number(value) + "nm";
     case Unit::ev:
       return std::abs(value) >= 1000 && std::isfinite(value) ? number(value / 1000) + "keV" : number(value) + "eV";
     case Unit::deg: return number(value) + "deg";
@@ -410,7 +416,7 @@ std::string form_of(const Parameter& about, const Field& field) {
 
 namespace parameters_detail {
 
-void check_field(const Parameter& about, Field& field) { field.check(about.name); }
+void check_field(const Parameter& about, Field& field) { field.check(about.subject()); }
 
 void record_field(const Parameter& about, Field& field, Record& record) {
   if (about.recorded && field.given()) record[about.key()] = field.text();

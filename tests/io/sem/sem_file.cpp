@@ -209,7 +209,7 @@ TEST_F(SemFileTest, IsNotTakenForHeightsUnlessSomebodySaysHowHighAGreyLevelIs) {
   test::write(path(), tiff.file());
   EXPECT_THAT(complaint<InvalidInput>([&] { read_height_field(path()); }),
               testing::AllOf(HasSubstr("image.tif: it is an SEM image (Zeiss SmartSEM), and its grey levels are no heights"),
-                             HasSubstr("semsurf noise --sem"), HasSubstr("--z-unit")));
+                             HasSubstr("semsurf noise --sem"), HasSubstr("`z_unit`")));
   HeightReadOptions options;
   options.z_unit_nm = 0.5;
   EXPECT_EQ(read_height_field(path(), options).field.z_nm(0, 0), 24);   // 48 in the lowest row
@@ -231,7 +231,7 @@ TEST_F(SemFileTest, ReadsImageJAndOme) {
 TEST_F(SemFileTest, AsksForAPixelSizeThatNobodySays) {
   TiffMaker dots = picture();
   dots.ratio(282, 96, 1), dots.ratio(283, 96, 1);   // of a screen, not of the specimen
-  EXPECT_THAT(complaint<UsageError>([&] { read(dots); }), HasSubstr("--sem-pixel-size"));
+  EXPECT_THAT(complaint<UsageError>([&] { read(dots); }), HasSubstr("`sem_pixel_size=2nm`"));
   SemReadOptions options;
   options.pixel_x_nm = 3;
   EXPECT_EQ(read(dots, options).image.pitch_x_nm, 3);

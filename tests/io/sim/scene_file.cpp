@@ -280,6 +280,7 @@ TEST_F(SceneFileTest, WrongValuesAreNamedWithTheirPlace) {
   };
   expect("[beam]\nenergy = \"1 kV\"", "line 2, beam.energy", "kV");
   expect("[beam]\nenergy = true", "line 2, beam.energy", "neither");
+  expect("[beam]\nenergy = 1e3\ntilt = 91", "line 3, beam.tilt: 91 degrees is outside", "with beam.azimuth");
   expect("[beam]\nenergy = nan", "line 2, beam.energy", "neither");
   expect("[beam]\ntilt = 95", "beam", "95");
   expect("beam = 3", "line 1, beam", "not a table");
@@ -300,7 +301,7 @@ TEST_F(SceneFileTest, WrongValuesAreNamedWithTheirPlace) {
   expect("[simulation]\ncutoff = \"-5eV\"", "simulation.cutoff", "-5 eV is outside 0.5 eV to");
   expect("[simulation]\ncutoff = \"40keV\"", "simulation.cutoff", "40000 eV is outside 0.5 eV to");
   expect("[simulation]\nseed = -1", "simulation.seed", "negative");
-  expect("[simulation]\nphysics = \"elastic=mot\"", "simulation.physics", "mot");
+  expect("[simulation]\nphysics = \"elastic=mot\"", "line 2, simulation.physics: 'mot' is no choice", "mott");
   const std::string field = "[height_field]\nmaterial = \"Si\"\n";
   expect(field + "shape = \"mesh\"", "height_field.shape", "Choose one of: mesa");
   expect(field + "shape = \"mesa\"\nedge = \"mirrored\"", "edge", "of: mirror");

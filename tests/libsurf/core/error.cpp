@@ -6,9 +6,9 @@
 namespace surf {
 
 TEST(Error, WhatJoinsSubjectReasonAndRemedy) {
-  const UsageError error("--size", "is 0", "Give 1 or more");
-  EXPECT_STREQ(error.what(), "--size: is 0. Give 1 or more");
-  EXPECT_EQ(error.subject(), "--size");
+  const UsageError error("`scan.size`", "is 0", "Give 1 or more");
+  EXPECT_STREQ(error.what(), "`scan.size`: is 0. Give 1 or more");
+  EXPECT_EQ(error.subject(), "`scan.size`");
   EXPECT_EQ(error.reason(), "is 0");
   EXPECT_EQ(error.remedy(), "Give 1 or more");
 }

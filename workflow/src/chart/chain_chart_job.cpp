@@ -35,20 +35,20 @@ ChainChartJob complete(const ChainChartJob& asked) {
   ChainChartJob job = asked;
   if (job.draws == 0) job.draws = job.quick ? quick_draws : usual_draws;
   if (job.draws < 1 || job.draws > most_draws)
-    throw UsageError("--draws", fmt::format("{} is out of range", job.draws),
+    throw UsageError("`chart.draws`", fmt::format("{} is out of range", job.draws),
                      fmt::format("Give 1 to {}", most_draws));
   const auto& all = chain_chart_families();
   for (const std::string& family : job.families)
     if (std::none_of(all.begin(), all.end(), [&](const ChainFamily& f) { return f.name == family; })) {
       std::string names;
       for (const ChainFamily& f : all) names += (names.empty() ? "" : ", ") + f.name;
-      throw UsageError("--methods", fmt::format("'{}' is none of those for samples", family),
+      throw UsageError("`chart.methods`", fmt::format("'{}' is none of those for samples", family),
                        "Choose of " + names);
     }
-  if (job.folder.empty()) throw UsageError("--output", "no folder is given", "Add -o chart");
+  if (job.folder.empty()) throw UsageError("`output`", "no folder is given", "Add `output=chart`");
   std::error_code ignored;
   if (fs::equivalent(job.folder, job.sample, ignored))
-    throw UsageError("--output", "it is the sample's own folder", "Name another one, as -o chart");
+    throw UsageError("`output`", "it is the sample's own folder", "Name another one, as `output=chart`");
   return job;
 }
 
@@ -209,7 +209,7 @@ const std::vector<ChainFamily>& chain_chart_families() {
       {"gauss-newton", "from both, with the usual method", false},
       {"conjugate-gradients", "from both, with the thesis's method", false},
       {"lbfgs", "from both, with L-BFGS", false},
-      {"chain", "as 'semsurf reconstruct' does it, tip, map and gains found; not with --quick", false}};
+      {"chain", "as 'semsurf reconstruct' does it, tip, map and gains found; not in a quick chart", false}};
   return families;
 }
 
@@ -224,10 +224,10 @@ ChainChartSummary run(const ChainChartJob& asked, const Reporter& reporter, cons
   const auto registrations = list_registrations(job);
   const auto reconstructions = list_reconstructions(job);
   if (registrations.empty() && reconstructions.empty())
-    throw UsageError("--methods", "with --quick the chain is left out",
-                     "Leave out --quick, or ask for others too");
+    throw UsageError("`chart.methods`", "with `chart.quick` the chain is left out",
+                     "Leave out `chart.quick`, or ask for others too");
   if (job.quick && wants(job, "chain"))
-    summary.left_out.push_back("chain: with --quick it would take too long");
+    summary.left_out.push_back("chain: in a quick chart it would take too long");
   SampleTruth sample = read_sample(job.sample);
   summary.sample = sample.name;
   io::check_writable(job.folder / "chart.json");

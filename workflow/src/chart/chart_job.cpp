@@ -36,7 +36,7 @@ constexpr std::uint64_t other_seed = 1'000'003;
 ChartJob complete(const ChartJob& asked) {
   ChartJob job = asked;
   if (!(job.finest >= 0.001 && job.finest <= 0.1))
-    throw UsageError("--accuracy", fmt::format("{:g} is outside 0.1 % to 10 %", job.finest), "Ask for 1%, say");
+    throw UsageError("`chart.accuracy`", fmt::format("{:g} is outside 0.1 % to 10 %", job.finest), "Ask for 1%, say");
   if (job.quick) {
     job.finest = std::max(job.finest, 0.03);
     job.most_primaries = std::min(job.most_primaries, 5e6);
@@ -44,24 +44,24 @@ ChartJob complete(const ChartJob& asked) {
   }
   if (job.reference_accuracy == 0) job.reference_accuracy = job.finest / 3;
   if (!(job.reference_accuracy >= 1e-4 && job.reference_accuracy <= 0.5 * job.finest))
-    throw UsageError("--reference", fmt::format("{} is not well below the finest accuracy, {}",
+    throw UsageError("`chart.reference`", fmt::format("{} is not well below the finest accuracy, {}",
                                                 format_share(job.reference_accuracy), format_share(job.finest)),
                      "Give at most half of it, and 0.01% at least");
   if (job.compared_pixels < 16)
-    throw UsageError("--compared", fmt::format("{} pixels are too few", job.compared_pixels), "Give 16 or more");
+    throw UsageError("`chart.compared`", fmt::format("{} pixels are too few", job.compared_pixels), "Give 16 or more");
   if (!(job.most_primaries >= 1e5))
-    throw UsageError("--most", fmt::format("{:g} primaries are too few", job.most_primaries), "Give 1e5 or more");
+    throw UsageError("`chart.most`", fmt::format("{:g} primaries are too few", job.most_primaries), "Give 1e5 or more");
   if (job.surfaces < 2 || job.surface_px < 16)
-    throw UsageError("--surfaces, --surface-size", "models learn from 2 surfaces of 16 pixels at least", "Give more");
+    throw UsageError("`chart.surfaces`, `chart.surface_size`", "models learn from 2 surfaces of 16 pixels at least", "Give more");
   for (const std::string& family : job.families) {
     const auto& all = chart_families();
     if (std::none_of(all.begin(), all.end(), [&](const ChartFamily& f) { return f.name == family; })) {
       std::string names;
       for (const ChartFamily& f : all) names += (names.empty() ? "" : ", ") + f.name;
-      throw UsageError("--methods", fmt::format("'{}' is none of them", family), "Choose of " + names);
+      throw UsageError("`chart.methods`", fmt::format("'{}' is none of them", family), "Choose of " + names);
     }
   }
-  if (job.folder.empty()) throw UsageError("--output", "no folder is given", "Add -o chart");
+  if (job.folder.empty()) throw UsageError("`output`", "no folder is given", "Add `output=chart`");
   if (mc::dose_of(job.scene.budget) > 0)
     throw UsageError("scene", "with a current and a dwell time pixels get random numbers of electrons",
                      "Leave both out: the chart compares numbers of electrons");
@@ -330,7 +330,7 @@ ChartSummary run(const ChartJob& asked, const Reporter& reporter, const PointCal
       std::ranges::move(list.left_out, std::back_inserter(summary.left_out));
     }
     if (methods.empty())
-      throw UsageError("--methods", "none of them can be had with this scene", "Leave it out for all that can");
+      throw UsageError("`chart.methods`", "none of them can be had with this scene", "Leave it out for all that can");
   });
 
   Course course(reporter, static_cast<double>(methods.size()));

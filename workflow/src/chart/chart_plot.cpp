@@ -89,7 +89,7 @@ io::PlotPanel panel(const ChartSummary& summary, std::size_t channel, bool prepa
   for (const ChartChoice& choice : summary.choices)
     for (const Place& p : all)
       if (p.point->id == choice.id)
-        panel.notes.push_back({fmt::format("--accuracy {}", format_share(choice.accuracy)), p.time, p.error});
+        panel.notes.push_back({fmt::format("accuracy {}", format_share(choice.accuracy)), p.time, p.error});
   const double floor = summary.reference[channel].error.reference_noise;
   if (floor > 0)
     panel.references.push_back({io::PlotDirection::horizontal, 100 * floor, "noise of the reference"});

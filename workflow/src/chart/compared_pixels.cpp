@@ -52,7 +52,7 @@ Reference read_reference(const Image& image, const ComparedPixels& pixels, doubl
   for (std::size_t i = 0; i < static_cast<std::size_t>(pixels.width) * static_cast<std::size_t>(pixels.height); ++i)
     out.seen.push_back(!valid || valid->values.data()[i] > 0.5f);
   if (std::find(out.seen.begin(), out.seen.end(), true) == out.seen.end())
-    throw InvalidInput("scene", "the beam meets the specimen in none of the pixels", "Check --region and the specimen");
+    throw InvalidInput("scene", "the beam meets the specimen in none of the pixels", "Check `scan.region` and the specimen");
   for (const char* name : {"SE", "BSE"}) {
     const Channel *value = image.find(name), *error = image.find(std::string(name) + ".stderr");
     if (!value || !error)

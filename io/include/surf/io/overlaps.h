@@ -9,7 +9,7 @@ namespace surf::io {
 
 /// A file that a job reads or writes.
 struct FileUse {
-  std::string option;            ///< the option or field that names it: "--output"
+  std::string option;            ///< what names it in a message: "`output`", a field
   std::filesystem::path path;
   std::filesystem::path named;   ///< the file that the option names, where `path` only belongs to it; else empty
 };

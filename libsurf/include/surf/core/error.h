@@ -6,8 +6,9 @@
 
 namespace surf {
 
-/// Base of every exception semsurf throws. A message has three parts: the subject (a file or an
-/// option), the reason, and the remedy; `what()` joins them as "subject: reason. remedy".
+/// Base of every exception semsurf throws. A message has three parts: the subject (a file or a
+/// field), the reason, and the remedy; `what()` joins them as "subject: reason. remedy". Fields are in backticks
+/// wherever they are named: see surf/core/field_words.h.
 class Error : public std::runtime_error {
  public:
   Error(const std::string& subject, const std::string& reason, const std::string& remedy);
@@ -22,7 +23,7 @@ class Error : public std::runtime_error {
   std::string remedy_;
 };
 
-/// An option or argument is missing, malformed or out of range. The command line exits with 2.
+/// A field or argument is missing, malformed or out of range. The command line exits with 2.
 class UsageError : public Error {
   using Error::Error;
 };

@@ -61,6 +61,8 @@ struct Parameter {
   std::string_view last_name() const;
   /// "beam.working_distance_nm": the key in records.
   std::string key() const;
+  /// "`beam.working_distance`": the subject of an error (surf/core/field_words.h).
+  std::string subject() const;
 };
 
 enum class FieldKind { number, whole, flag, choice, text, list };
@@ -202,7 +204,7 @@ void set_parameter(Struct& of, std::string_view name, std::string_view text) {
   read_parameters(of, [&](const Parameter& about, Field& field) {
     if (about.name != name) return;
     found = true;
-    field.read(text, about.name);
+    field.read(text, about.subject());
   });
   if (!found) throw std::invalid_argument("no parameter " + std::string(name));
 }

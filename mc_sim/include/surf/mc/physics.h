@@ -43,7 +43,7 @@ double effective_cutoff_ev(const Physics& physics, const Material& material);
 /// Reads "elastic=mott,secondaries=off" over the given settings. Keys: elastic = mott | browning,
 /// loss = joy-luo | none, secondaries = on | off, barrier = quantum | classical | off.
 /// Throws UsageError naming the word and the choices.
-void parse_physics(const std::string& text, Physics& physics, const std::string& subject = "simulation.physics");
+void parse_physics(const std::string& text, Physics& physics, const std::string& subject = "`simulation.physics`");
 
 /// The settings as `parse_physics` reads them, every key given.
 std::string format_physics(const Physics& physics);

@@ -77,7 +77,7 @@ struct ChartPoint {
   double worst_rms() const;           ///< of its channels
 };
 
-/// What `simulate --accuracy` takes for an accuracy, beside the fastest point that meets it.
+/// What a simulation of an accuracy takes, beside the fastest point that meets it.
 struct ChartChoice {
   double accuracy = 0;
   std::string reason;         ///< as `simulate` prints it
