@@ -37,7 +37,7 @@ Examples:
   semsurf simulate cube.stl --size 64x64 --region -96,-96,96,96 \
       --physics elastic=browning,secondaries=off -o bse.exr)";
 
-const std::vector<std::string> written{"output.", "job.checkpoint", "job.checkpoint_every", "job.restart"};
+const std::vector<std::string> written{"output", "job.checkpoint", "job.restart"};   // beginnings of names
 
 void set_looks(BoundParameters& p) {
   p.headings = {{"specimen", "Specimen"},

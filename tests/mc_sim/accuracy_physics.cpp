@@ -62,7 +62,7 @@ Spent spend(const Scene& scene, How how, const std::vector<std::vector<Estimate>
       for (int x = 0; x < scene.scan().width; ++x) {
         const Estimate e = r.yield(d, x, 0);
         const Estimate& t = truth[d][static_cast<std::size_t>(x)];
-        const double asked = std::max(accuracy * e.mean, options.accuracy_floor);
+        const double asked = std::max(accuracy * e.mean, floor_of(options.budget));
         const double off = e.mean - t.mean;
         sum += off / asked;
         ++terms;
@@ -147,7 +147,7 @@ TEST(Accuracy, IsReached) {
     for (std::size_t d = 0; d < r.counts.size(); ++d)
       for (int i = 0; i < 81; ++i) {
         const Estimate e = r.yield(d, i % 9, i / 9);
-        const double asked = std::max(accuracy * e.mean, options.accuracy_floor);
+        const double asked = std::max(accuracy * e.mean, floor_of(options.budget));
         above += e.standard_error > asked;
         EXPECT_LT(e.standard_error, 1.15 * asked);
       }
@@ -200,7 +200,7 @@ TEST(Accuracy, StopsAtItsFloor) {
   const Scene scene(field(make_mesa({240, 240, 8}, 60, 60, 8)), beam, test::row_of_pixels(20, 14, 5));
   SimulationOptions options = spending(How::with_control);
   const auto primaries = [&](double floor) {
-    options.accuracy_floor = floor;
+    options.budget = Accuracy{accuracy, floor};
     const SimulationResult r = simulate(scene, options, {.libraries = &libraries()});
     std::int64_t sum = 0;
     for (const PixelTally& p : r.pixels.data()) sum += p.primaries;

@@ -43,7 +43,7 @@ TEST(Crew, GivesTheResultOfOneWhateverItsSize) {
     SimulationResult result;
     const auto errors = test::on_ranks(size, [&](int rank) {
       ThreadCrew crew(room, rank);
-      SimulationResult own = simulate(scene, options, {}, nullptr, {}, nullptr, nullptr, &crew);
+      SimulationResult own = simulate(scene, options, {.crew = &crew});
       if (rank == 0) result = std::move(own);
     });
     EXPECT_THAT(errors, Each(IsEmpty()));
@@ -91,7 +91,7 @@ TEST(Crew, WhoFailsInAUnitEndsTheSimulationAndIsNamed) {
   const auto errors = test::on_ranks(3, [&](int rank) {
     ThreadCrew crew(room, rank);
     if (rank != 2) {
-      simulate(scene, few_electrons(), {}, nullptr, {}, nullptr, nullptr, &crew);
+      simulate(scene, few_electrons(), {.crew = &crew});
       return;
     }
     crew.follow([](const TakeUnit& take, const GiveUnit&) {
@@ -111,7 +111,7 @@ TEST(Crew, RefusesTalliesOfAnotherScene) {
     ThreadCrew crew(room, rank);
     SimulationOptions own = options;
     if (rank == 1) own.tile_pixels = 3;
-    simulate(flat_scene(), own, {}, nullptr, {}, nullptr, nullptr, &crew);
+    simulate(flat_scene(), own, {.crew = &crew});
   });
   EXPECT_THAT(errors[0], HasSubstr("another simulation"));
 }

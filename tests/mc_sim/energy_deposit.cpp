@@ -63,9 +63,9 @@ TEST(EnergyDeposit, HoldsWhatDidNotEscape) {
   options.budget = ElectronsPerPixel{300};
   options.threads = 3;
   options.tile_pixels = 1;
-  const auto r = simulate(scene, options, {}, nullptr, [&](int thread) {
+  const auto r = simulate(scene, options, {.observers = [&](int thread) {
     return &per_thread[static_cast<std::size_t>(thread)];
-  });
+  }});
   EnergyDeposit all(grid);
   for (const EnergyDeposit& d : per_thread) all += d;
   const Balance& b = r.balance;

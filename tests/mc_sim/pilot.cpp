@@ -27,7 +27,7 @@ SimulationOptions options_of(Method method, std::int64_t electrons, double accur
   SimulationOptions options;
   options.method = method;
   options.budget = ElectronsPerPixel{electrons};
-  options.budget = Accuracy{accuracy};
+  if (accuracy > 0) options.budget = Accuracy{accuracy};
   options.threads = 2;
   return options;
 }

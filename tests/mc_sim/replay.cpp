@@ -35,8 +35,8 @@ Beam slow() {
 std::string refusal(const SimulationOptions& options, const Physics& physics = {},
                     const ObserverOfThread& observers = {}) {
   try {
-    simulate(Scene(mesa(), slow(), test::square_scan(40, 2), physics), options, {}, nullptr,
-             observers);
+    simulate(Scene(mesa(), slow(), test::square_scan(40, 2), physics), options,
+             {.observers = observers});
   } catch (const UsageError& e) {
     return e.what();
   }
@@ -83,7 +83,7 @@ TEST(Replay, GivesTheSameNumbersForAnyThreadsAndTiles) {
     std::vector<SimulationResult> results;
     for (const auto& [threads, tile] : {std::pair(1, 1), {2, 3}, {3, 1024}}) {
       SimulationOptions options = replaying(60);
-      options.budget = Accuracy{accuracy};
+      if (accuracy > 0) options.budget = Accuracy{accuracy};
       options.threads = threads;
       options.tile_pixels = tile;
       results.push_back(simulate(scene, options, {.libraries = &libraries}));
@@ -175,14 +175,14 @@ TEST(LibrarySize, KeepsTheLibraryToAQuarterOfTheVariance) {
   EXPECT_GE(library_size(options, 1'000'000), 4'000'000u);
   options.budget = Accuracy{0.01};
   const auto share = [&](const CascadeYield& y) {   // of the variance asked for
-    const double error = std::max(options.accuracy * y.mean, options.accuracy_floor);
+    const double error = std::max(0.01 * y.mean, floor_of(options.budget));
     return y.variance / static_cast<double>(library_size(options, 1, std::array{y})) / (error * error);
   };
   EXPECT_EQ(library_size(options, 1), library_size(options, 1, std::array{CascadeYield{0, 0}}));
   for (const CascadeYield& y : {CascadeYield{1.1, 3}, {0.2, 0.16}, {0.01, 0.01}, {5, 100}})
     EXPECT_LE(share(y), 0.25) << y.mean;
   EXPECT_GT(share({5, 100}), 0.23);   // and it is no larger than that takes
-  options.accuracy_floor = 0;
+  options.budget = Accuracy{0.01, 0};
   EXPECT_GT(library_size(options, 1, std::array{CascadeYield{0, 0}}), 0u);
 }
 
@@ -212,18 +212,18 @@ TEST(Replay, RefusesWhatItCannotDo) {
   wrong.method = Method::direct;
   EXPECT_THAT(refusal(wrong, {}, [](int) { return nullptr; }), HasSubstr("more primaries in some pixels"));
   wrong = accurate;
-  wrong.budget = Dose{10};
-  EXPECT_THAT(refusal(wrong), HasSubstr("dose"));
+  wrong.budget = TimeLimit{10};
+  EXPECT_THAT(refusal(wrong), HasSubstr("no clock"));
   wrong = accurate;
   wrong.spectra = true;
   EXPECT_THAT(refusal(wrong), HasSubstr("spectra"));
   for (const double accuracy : {1e-5, 1.5, -0.1}) {
     wrong.budget = Accuracy{accuracy};
-    EXPECT_THAT(refusal(wrong), HasSubstr("outside 0.0001 to 1"));
+    EXPECT_THAT(refusal(wrong), HasSubstr("0.01% to 100%"));
   }
   wrong = accurate;
-  wrong.accuracy_floor = -1;
-  EXPECT_THAT(refusal(wrong), HasSubstr("zero or more"));
+  wrong.budget = Accuracy{0.1, -1};
+  EXPECT_THAT(refusal(wrong), HasSubstr("0 or more"));
 }
 
 }  // namespace surf::mc

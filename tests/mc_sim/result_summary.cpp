@@ -16,8 +16,7 @@ SimulationResult result_of_every_kind() {
   r.pixels = LargeGrid<PixelTally>(4, 1);
   r.counts.emplace_back(4, 1);
   r.controls.emplace_back(4, 1);
-  r.accuracy = 0.1;
-  r.accuracy_floor = 0.002;
+  r.budget = Accuracy{0.1, 0.002};
   r.library_cascades = 10000;
   const PixelModel models[] = {PixelModel::none, PixelModel::plane, PixelModel::difference,
                                PixelModel::replay};
@@ -61,9 +60,9 @@ TEST(ResultSummary, FindsPixelsThatMissedTheAccuracy) {
   ResultSummary s = summarize(r);   // asked for: 0.1, 0.14, 0.04; only the last is not reached
   EXPECT_EQ(s.missed, 1);
   EXPECT_NEAR(s.worst, own_error / 0.04, 1e-12);
-  r.accuracy = 0.2;
+  r.budget = Accuracy{0.2, 0.002};
   EXPECT_EQ(summarize(r).missed, 0);
-  r.accuracy = 0.01;
+  r.budget = Accuracy{0.01, 0.002};
   EXPECT_EQ(summarize(r).missed, 2);   // the plane: 0.01 of 0.01
 }
 

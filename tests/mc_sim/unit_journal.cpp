@@ -69,27 +69,27 @@ TEST(UnitJournal, IsToldOfEveryUnitAndGivesTheSameResultBack) {
   const Scene scene = small_scene();
   const SimulationResult plain = simulate(scene, with_spectra(2));
   Memory journal;
-  const SimulationResult first = simulate(scene, with_spectra(2), {}, nullptr, {}, &journal);
+  const SimulationResult first = simulate(scene, with_spectra(2), {.journal = &journal});
   expect_same(first, plain);
   EXPECT_EQ(first.recalled, 0);
   EXPECT_EQ(journal.units.size(), 18u);   // runs of 5 and 4 pixels in each of 9 rows
 
   for (std::size_t unit = 0; unit < 18; unit += 3) journal.units.erase(unit);
   const std::size_t known = journal.units.size();
-  const SimulationResult second = simulate(scene, with_spectra(1), {}, nullptr, {}, &journal);
+  const SimulationResult second = simulate(scene, with_spectra(1), {.journal = &journal});
   expect_same(second, plain);
   EXPECT_EQ(known, 12u);
   EXPECT_EQ(journal.units.size(), 18u);
   EXPECT_EQ(second.recalled, 6 * 5 * 30 + 6 * 4 * 30);
 
-  const SimulationResult third = simulate(scene, with_spectra(2), {}, nullptr, {}, &journal);
+  const SimulationResult third = simulate(scene, with_spectra(2), {.journal = &journal});
   expect_same(third, plain);
   EXPECT_EQ(third.recalled, third.balance.incident);
 }
 
 TEST(UnitJournal, IsAskedInTheOrderOfUnits) {
   Memory journal;
-  simulate(small_scene(), with_spectra(1), {}, nullptr, {}, &journal);
+  simulate(small_scene(), with_spectra(1), {.journal = &journal});
   EXPECT_EQ(journal.asked.size(), 18u);
   EXPECT_TRUE(std::is_sorted(journal.asked.begin(), journal.asked.end()));
 }
@@ -109,10 +109,10 @@ TEST(UnitJournal, IsNotToldOfUnitsThatWereAbandonedAndGetsThemLater) {
   const SimulationOptions options = with_spectra(1);
   const SimulationResult plain = simulate(scene, options);
   Stopping journal;
-  const SimulationResult stopped = simulate(scene, options, {}, &journal.cancel, {}, &journal);
+  const SimulationResult stopped = simulate(scene, options, {.cancel = &journal.cancel, .journal = &journal});
   EXPECT_FALSE(stopped.complete);
   EXPECT_EQ(journal.units.size(), 7u) << "the unit that had begun is left out";
-  expect_same(simulate(scene, options, {}, nullptr, {}, &journal), plain);
+  expect_same(simulate(scene, options, {.journal = &journal}), plain);
 }
 
 TEST(UnitJournal, WhatObserversHaveSeenOfAUnitCounts) {
@@ -123,7 +123,7 @@ TEST(UnitJournal, WhatObserversHaveSeenOfAUnitCounts) {
     CancelToken cancel;
     std::int64_t seen = 0;
   } observer;
-  const SimulationResult r = simulate(small_scene(), with_spectra(1), {}, &observer.cancel, [&](int) { return &observer; });
+  const SimulationResult r = simulate(small_scene(), with_spectra(1), {.cancel = &observer.cancel, .observers = [&](int) { return &observer; }});
   EXPECT_FALSE(r.complete);
   EXPECT_EQ(r.balance.incident, observer.seen);
 }
@@ -131,14 +131,14 @@ TEST(UnitJournal, WhatObserversHaveSeenOfAUnitCounts) {
 TEST(UnitJournal, OfAnotherSimulationIsRefused) {
   const Scene scene = small_scene();
   Memory journal;
-  simulate(scene, with_spectra(1), {}, nullptr, {}, &journal);
+  simulate(scene, with_spectra(1), {.journal = &journal});
   SimulationOptions other = with_spectra(1);
   other.tile_pixels = 3;
-  EXPECT_THROW(simulate(scene, other, {}, nullptr, {}, &journal), InvalidInput);
+  EXPECT_THROW(simulate(scene, other, {.journal = &journal}), InvalidInput);
   other = with_spectra(1);
   other.detectors = parse_detectors("in-lens", "test");
-  EXPECT_THROW(simulate(scene, other, {}, nullptr, {}, &journal), InvalidInput);
-  EXPECT_THROW(simulate(scene, with_spectra(1), {}, nullptr, [](int) { return nullptr; }, &journal),
+  EXPECT_THROW(simulate(scene, other, {.journal = &journal}), InvalidInput);
+  EXPECT_THROW(simulate(scene, with_spectra(1), {.observers = [](int) { return nullptr; }, .journal = &journal}),
                UsageError);
 }
 

@@ -23,7 +23,7 @@ SimulationOptions options_of(Method method, std::int64_t electrons, double accur
   SimulationOptions options;
   options.method = method;
   options.budget = ElectronsPerPixel{electrons};
-  options.budget = Accuracy{accuracy};
+  if (accuracy > 0) options.budget = Accuracy{accuracy};
   return options;
 }
 
@@ -87,7 +87,7 @@ TEST(UnitPlan, DoesEveryPrimaryOfEveryPixelOnce) {
           next(x, y) += u.electrons;
         }
     }
-    const std::int64_t wanted = c.options.accuracy > 0 ? plan.most() : c.options.electrons;
+    const std::int64_t wanted = accuracy_of(c.options.budget) > 0 ? plan.most() : electrons_of(c.options.budget);
     for (const std::int64_t n : next.data()) ASSERT_EQ(n, wanted) << c.what;
   }
 }

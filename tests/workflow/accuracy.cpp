@@ -23,8 +23,7 @@ SimulateJob accurate_job(const std::filesystem::path& output) {
   SimulateJob job = small_job();
   job.scene.beam.energy_ev = 500;
   job.scene.physics.secondaries = false;
-  job.scene.accuracy = 0.2;
-  job.scene.accuracy_floor = 0.05;
+  job.scene.budget = mc::Accuracy{0.2, 0.05};
   job.scene.method = mc::Method::replay;
   job.extras.channels = {"electrons", "model", "variance_left"};
   job.outputs = {output};
@@ -36,7 +35,7 @@ TEST(Accuracy, SameBytesForAnyThreadsAndCache) {
   std::string first;
   for (const auto& [threads, cache] : {std::pair{1, ""}, {3, "cache"}, {2, "cache"}}) {
     SimulateJob job = accurate_job(folder.path() / (std::to_string(threads) + ".exr"));
-    job.options.threads = threads;
+    job.execution.threads = threads;
     if (*cache) job.cache = folder.path() / cache;
     const SimulateSummary s = run(job);
     EXPECT_EQ(s.pages_loaded > 0, threads == 2);
@@ -53,12 +52,12 @@ TEST(Accuracy, IsReachedAndRecorded) {
   const SimulateSummary s = run(job);
   EXPECT_EQ(s.statistics.missed, 0);
   const Image image = io::read_image(job.outputs[0]);
-  EXPECT_EQ(image.metadata.at("accuracy"), "0.2");
-  EXPECT_EQ(image.metadata.at("accuracy_floor"), "0.05");
-  EXPECT_EQ(image.metadata.at("method"), "replay");
+  EXPECT_EQ(image.metadata.at("simulation.accuracy"), "0.2");
+  EXPECT_EQ(image.metadata.at("simulation.accuracy_floor"), "0.05");
+  EXPECT_EQ(image.metadata.at("simulation.method"), "replay");
   EXPECT_EQ(image.metadata.at("library.cascades"), "10240");
   EXPECT_THAT(image.metadata.at("model"), HasSubstr("4 plane"));
-  EXPECT_FALSE(image.metadata.contains("electrons"));
+  EXPECT_FALSE(image.metadata.contains("simulation.electrons"));
   const Channel &yield = *image.find("BSE"), &error = *image.find("BSE.stderr");
   const Channel &electrons = *image.find("electrons"), &model = *image.find("model");
   for (int y = 0; y < yield.values.height(); ++y)
@@ -86,9 +85,9 @@ TEST(Accuracy, FewPrimariesAreFollowedDirectly) {
   EXPECT_EQ(s.statistics.electrons[static_cast<std::size_t>(mc::PixelModel::direct)],
             std::llround(s.statistics.mean_electrons * static_cast<double>(s.statistics.seen)));
   const Image image = io::read_image(job.outputs[0]);
-  EXPECT_EQ(image.metadata.at("method"), "direct");
-  EXPECT_EQ(image.metadata.at("accuracy"), "0.2");
-  job.options.threads = 3;
+  EXPECT_EQ(image.metadata.at("simulation.method"), "direct");
+  EXPECT_EQ(image.metadata.at("simulation.accuracy"), "0.2");
+  job.execution.threads = 3;
   job.outputs = {folder.path() / "3.exr"};
   run(job);
   EXPECT_TRUE(bytes_of(folder.path() / "1.exr") == bytes_of(folder.path() / "3.exr"));
@@ -97,14 +96,12 @@ TEST(Accuracy, FewPrimariesAreFollowedDirectly) {
 TEST(Accuracy, TimeFindsOneThatRepeatsExactly) {
   const TemporaryFolder folder;
   SimulateJob job = accurate_job(folder.path() / "time.exr");
-  job.scene.accuracy.reset();
-  job.seconds = 3;
+  job.scene.budget = mc::TimeLimit{3, 0.05};
   std::string said;
   const SimulateSummary s =
-      run(job, {}, nullptr, {}, [&](const std::string& note) { said += note + "\n"; });
+      run(job, {.on_note = [&](const std::string& note) { said += note + "\n"; }});
   EXPECT_THAT(said, HasSubstr("repeats"));
-  job.seconds = 0;
-  job.scene.accuracy = s.result.accuracy;
+  job.scene.budget = s.result.budget;
   job.outputs = {folder.path() / "accuracy.exr"};
   run(job);
   EXPECT_TRUE(bytes_of(folder.path() / "time.exr") == bytes_of(folder.path() / "accuracy.exr"));
@@ -113,18 +110,18 @@ TEST(Accuracy, TimeFindsOneThatRepeatsExactly) {
 TEST(Accuracy, TooShortATimeGivesTheCoarseImage) {
   const TemporaryFolder folder;
   SimulateJob job = accurate_job(folder.path() / "time.exr");
-  job.seconds = 1e-3;
+  job.scene.budget = mc::TimeLimit{1e-3, 0.05};
   std::string said;
   const SimulateSummary s =
-      run(job, {}, nullptr, {}, [&](const std::string& note) { said += note + "\n"; });
+      run(job, {.on_note = [&](const std::string& note) { said += note + "\n"; }});
   EXPECT_THAT(said, HasSubstr("too short: even 10 % accuracy took"));
-  EXPECT_EQ(s.result.accuracy, 0.1);
-  EXPECT_EQ(io::read_image(job.outputs[0]).metadata.at("accuracy"), "0.1");
+  EXPECT_EQ(mc::accuracy_of(s.result.budget), 0.1);
+  EXPECT_EQ(io::read_image(job.outputs[0]).metadata.at("simulation.accuracy"), "0.1");
 }
 
 TEST(Accuracy, WarnsWhereItIsNotReached) {
   mc::SimulationResult result;
-  result.accuracy = 0.02;
+  result.budget = mc::Accuracy{0.02};
   mc::ResultSummary summary;
   summary.seen = 50;
   EXPECT_THAT(warn_after(result, summary), testing::IsEmpty());

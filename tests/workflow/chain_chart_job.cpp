@@ -132,15 +132,16 @@ TEST_F(ChainChart, TheSameJobGoesOnToTheSameFigures) {
   CancelToken cancel;
   Reporter listener;
   int seen = 0;
-  listener.registration = [&](const RegistrationPoint&) {
+  ChainChartCallbacks points;
+  points.registration = [&](const RegistrationPoint&) {
     if (++seen == 3) cancel.cancel();
   };
   listener.cancel = &cancel;
-  EXPECT_FALSE(run(job, listener).complete);
+  EXPECT_FALSE(run(job, listener, points).complete);
   EXPECT_FALSE(fs::exists(job.folder / "chart.json"));
   double last = 0;
   Reporter again;
-  again.progress = [&](double done, double total) {
+  again.on_progress = [&](double done, double total, std::string_view) {
     EXPECT_GE(done, last - 1e-9);
     EXPECT_LE(done, total + 1e-9);
     last = done;

@@ -34,7 +34,7 @@ ChartJob small_chart(const fs::path& folder, int pixels = 16) {
   job.scene.scan.width = job.scene.scan.height = pixels;
   job.scene.beam.energy_ev = 500;
   job.scene.physics.secondaries = false;
-  job.scene.electrons = 30;
+  job.scene.budget = mc::ElectronsPerPixel{30};
   job.quick = true;
   job.threads = 2;
   job.folder = folder;
@@ -111,16 +111,16 @@ TEST(ChartJob, TheSameJobGoesOnToTheSameFigures) {
   CancelToken cancel;
   Reporter listener;
   int seen = 0;
-  listener.point = [&](const ChartPoint&) {
+  const PointCallback tell = [&](const ChartPoint&) {
     if (++seen == 3) cancel.cancel();
   };
   listener.cancel = &cancel;
-  const ChartSummary first = run(job, listener);
+  const ChartSummary first = run(job, listener, tell);
   EXPECT_FALSE(first.complete);
   EXPECT_FALSE(fs::exists(job.folder / "chart.csv"));
   double last = 0;
   Reporter again;
-  again.progress = [&](double done, double total) {
+  again.on_progress = [&](double done, double total, std::string_view) {
     EXPECT_GE(done, last - 1e-9);
     EXPECT_LE(done, total + 1e-9);
     last = done;
@@ -167,7 +167,7 @@ TEST(ChartJob, SaysWhatIsWrongBeforeAnyWork) {
   refused("chart.most", [](ChartJob& j) { j.most_primaries = 10; });
   refused("'fast' is none of them. Choose of default, direct", [](ChartJob& j) { j.families = {"fast"}; });
   refused("`output`", [](ChartJob& j) { j.folder.clear(); });
-  refused("current", [](ChartJob& j) { j.scene.current_pa = 100; });
+  refused("current", [](ChartJob& j) { j.scene.budget = mc::dose_of_probe(100, 1); });
   EXPECT_FALSE(fs::exists(good.folder));
 }
 

@@ -3,6 +3,7 @@
 
 #include <gmock/gmock.h>
 
+#include "simulation_setup.h"
 #include "small_job.h"
 #include "surf/core/error.h"
 #include "surf/io/files.h"
@@ -154,21 +155,21 @@ TEST_F(CheckpointTest, ThatCannotBeWrittenIsAWarning) {
 
 TEST(JobIdentity, ChangesWithWhatChangesTheResult) {
   const SimulateJob job = small_job();
-  const Identity identity = identity_of(job, {{"seed", "1"}});
+  const Identity identity = identity_of(resolve(job), {{"seed", "1"}});
   const auto differs = [&](auto change) {
     SimulateJob other = job;
     change(other);
-    return fingerprint(identity_of(other, {{"seed", "1"}})) != fingerprint(identity);
+    return fingerprint(identity_of(resolve(other), {{"seed", "1"}})) != fingerprint(identity);
   };
   EXPECT_TRUE(differs([](SimulateJob& j) {
     j.scene.specimen.bodies[0].mesh.vertices_nm[3].x += 1e-9;
   }));
   EXPECT_TRUE(differs([](SimulateJob& j) { j.scene.specimen.bodies[0].mesh.triangles.pop_back(); }));
-  EXPECT_TRUE(differs([](SimulateJob& j) { j.options.spectra = true; }));
-  EXPECT_TRUE(differs([](SimulateJob& j) { j.options.tile_pixels = 5; }));
-  EXPECT_FALSE(differs([](SimulateJob& j) { j.options.threads = 5; }));
+  EXPECT_TRUE(differs([](SimulateJob& j) { j.spectra = true; }));
+  EXPECT_TRUE(differs([](SimulateJob& j) { j.execution.tile_pixels = 5; }));
+  EXPECT_FALSE(differs([](SimulateJob& j) { j.execution.threads = 5; }));
   EXPECT_FALSE(differs([](SimulateJob& j) { j.outputs = {"elsewhere.tif"}; }));
-  EXPECT_NE(fingerprint(identity), fingerprint(identity_of(job, {{"seed", "2"}})));
+  EXPECT_NE(fingerprint(identity), fingerprint(identity_of(resolve(job), {{"seed", "2"}})));
 }
 
 TEST(JobIdentity, SaysWhatDiffers) {

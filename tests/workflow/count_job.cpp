@@ -108,7 +108,7 @@ TEST(CountJob, CanBeEnded) {
   CountJob job = on_the_cube(0, 0);
   CancelToken token;
   token.cancel();
-  EXPECT_THROW(run(job, {{}, &token}), Interrupted);
+  EXPECT_THROW(run(job, {.cancel = &token}), Interrupted);
 }
 
 }  // namespace

@@ -41,7 +41,7 @@ TEST(DryRun, FilesAreNoLargerThanItSays) {
     SimulateJob job = job_in(folder.path());
     job.scene.scan.width = job.scene.scan.height = 384;   // three tiles across
     job.scene.scan.pixel_x_nm = job.scene.scan.pixel_y_nm = 0.2;
-    job.options.budget = mc::ElectronsPerPixel{1};
+    job.scene.budget = mc::ElectronsPerPixel{1};
     job.layout = layout;
     const DryRun run = dry_run(job, 1, 0.2);
     workflow::run(job);
@@ -60,9 +60,9 @@ TEST(DryRun, LargeImagesHaveScratchFiles) {
   const test::TemporaryFolder folder;
   SimulateJob job = job_in(folder.path());
   EXPECT_EQ(bytes_of(dry_run(job, 1, 0.1), "scratch file"), -1);
-  job.options.tally_memory = 0;
+  job.execution.tally_memory = 0;
   const DryRun run = dry_run(job, 1, 0.1);
-  EXPECT_EQ(bytes_of(run, "scratch file"), static_cast<double>(mc::tally_bytes(run.scan, job.options)));
+  EXPECT_EQ(bytes_of(run, "scratch file"), static_cast<double>(mc::tally_bytes(run.scan, mc::options_of(job.scene))));
 }
 
 TEST(DryRun, RanksShareTheTime) {
@@ -76,8 +76,7 @@ TEST(DryRun, RanksShareTheTime) {
 TEST(DryRun, ATimeToKeepToIsTheTime) {
   const test::TemporaryFolder folder;
   SimulateJob job = job_in(folder.path());
-  job.seconds = 12;
-  job.scene.electrons = std::nullopt;
+  job.scene.budget = mc::TimeLimit{12};
   EXPECT_EQ(dry_run(job, 1, 0.1).expected_s, 12);
 }
 
@@ -90,7 +89,7 @@ TEST(DryRun, RefusesWhatARunRefuses) {
   EXPECT_THROW(dry_run(job, 1, 0.1), FileError);
   CancelToken cancel;
   cancel.cancel();
-  EXPECT_THROW(dry_run(job_in(folder.path()), 1, 0.1, {}, &cancel), Interrupted);
+  EXPECT_THROW(dry_run(job_in(folder.path()), 1, 0.1, {.cancel = &cancel}), Interrupted);
 }
 
 }  // namespace

@@ -37,9 +37,9 @@ TEST(Extras, AreTheSameBytesForAnyThreadsAndTiles) {
   std::map<std::string, std::string> first;
   for (const auto& [threads, tile] : {std::pair{1, 1024}, {3, 5}}) {
     SimulateJob job = job_in(folder, std::to_string(threads));
-    job.options.threads = threads;
-    job.options.tile_pixels = tile;
-    job.options.spectra = true;
+    job.execution.threads = threads;
+    job.execution.tile_pixels = tile;
+    job.spectra = true;
     job.scene.detectors = mc::parse_detectors("quadrants", "test");
     job.extras = {{"z_nm", "material"}, 6, 3, {}};
     const SimulateSummary summary = run(job);
@@ -59,7 +59,7 @@ TEST(Extras, AreTheSameBytesForAnyThreadsAndTiles) {
 TEST(Extras, SpectraAddUpToYields) {
   const TemporaryFolder folder;
   SimulateJob job = job_in(folder, "a");
-  job.options.spectra = true;
+  job.spectra = true;
   job.scene.detectors = mc::parse_detectors("side:efficiency=0.5", "test");
   const SimulateSummary summary = run(job);
   std::map<std::string, double> sums;   // of each detector and quantity
@@ -87,23 +87,29 @@ TEST(Extras, SpectraAddUpToYields) {
 TEST(Extras, ADoseReplacesTheNumberOfElectrons) {
   const TemporaryFolder folder;
   SimulateJob job = job_in(folder, "a");
-  job.scene.current_pa = 10;
-  job.scene.dwell_us = 0.5;
+  job.scene.budget = mc::dose_of_probe(10, 0.5);
   const SimulateSummary summary = run(job);
   const Image image = io::read_image(job.outputs[0]);
   ASSERT_NE(image.find("SE.shot"), nullptr);
-  EXPECT_TRUE(image.metadata.contains("dose"));
-  EXPECT_FALSE(image.metadata.contains("electrons"));
+  EXPECT_TRUE(image.metadata.contains("simulation.dose"));
+  EXPECT_FALSE(image.metadata.contains("simulation.electrons"));
   const double pixels = double(image.width()) * image.height();
   EXPECT_NEAR(double(summary.result.balance.incident) / pixels, 31.2, 5 * std::sqrt(31.2 / pixels));
 
-  job.scene.electrons = 5;
-  EXPECT_THAT(refusal(job), HasSubstr("simulation.electrons"));
-  job.scene.electrons.reset();
-  job.scene.dwell_us.reset();
-  EXPECT_THAT(refusal(job), HasSubstr("give both"));
-  job.scene.dwell_us = -1;
-  EXPECT_THAT(refusal(job), HasSubstr("above zero"));
+  mc::BudgetWords words{.electrons = 5, .current_pa = 10, .dwell_us = 0.5};
+  const auto said = [&]() -> std::string {
+    try {
+      mc::budget_of(words);
+    } catch (const UsageError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_THAT(said(), HasSubstr("simulation.electrons"));
+  words = {.current_pa = 10};
+  EXPECT_THAT(said(), HasSubstr("give both"));
+  job.scene.budget = mc::dose_of_probe(10, -1);
+  EXPECT_THAT(refusal(job), HasSubstr("above 0us"));
 }
 
 TEST(Extras, RefuseWhatCannotBe) {
@@ -128,8 +134,8 @@ TEST(Extras, RefuseWhatCannotBe) {
 TEST(Extras, OfThisJobReplaceTheirOwnKindOnly) {
   const TemporaryFolder folder;
   SimulateJob job = job_in(folder, "a");
-  job.options.spectra = true;
-  job.options.budget = mc::ElectronsPerPixel{1};
+  job.spectra = true;
+  job.scene.budget = mc::ElectronsPerPixel{1};
   job.extras.trajectories = 1;
   run(job);
   EXPECT_EQ(refusal(job), "no error") << "the same job again";
@@ -158,7 +164,7 @@ TEST(Extras, DoNotReplaceInputs) {
 TEST(Extras, TellOfUnitsThatWereOverridden) {
   const TemporaryFolder folder;
   SimulateJob job = job_in(folder, "a");
-  job.options.budget = mc::ElectronsPerPixel{1};
+  job.scene.budget = mc::ElectronsPerPixel{1};
   job.scene.unit_overrides = {{"cube.stl", 1000.0}};
   run(job);
   EXPECT_EQ(io::read_image(job.outputs[0]).metadata.at("unit_override.1"), "cube.stl, 1000 nm");
@@ -167,11 +173,11 @@ TEST(Extras, TellOfUnitsThatWereOverridden) {
 TEST(Warnings, AreToldAsTheyCome) {
   const TemporaryFolder folder;
   SimulateJob job = job_in(folder, "a");
-  job.options.budget = mc::ElectronsPerPixel{1};
+  job.scene.budget = mc::ElectronsPerPixel{1};
   std::vector<std::string> told;
   bool before = true;
-  run(job, [&](double, double) { before = before && !told.empty(); }, nullptr,
-      [&](const std::string& warning) { told.push_back(warning); });
+  run(job, {.on_progress = [&](double, double, std::string_view) { before = before && !told.empty(); },
+            .on_warning = [&](const std::string& warning) { told.push_back(warning); }});
   EXPECT_THAT(told, Contains(HasSubstr("one electron per pixel")));
   EXPECT_TRUE(before) << "warnings come before the simulation";
 }

@@ -15,8 +15,8 @@ SimulateJob job_of(int pixels, const std::filesystem::path& folder) {
   job.scene.scan = {};
   job.scene.scan.width = job.scene.scan.height = pixels;
   job.scene.scan.region = {100, 100, 120, 120};
-  job.options.budget = mc::ElectronsPerPixel{1};
-  job.options.threads = 2;
+  job.scene.budget = mc::ElectronsPerPixel{1};
+  job.execution.threads = 2;
   for (const char* name : {"image.exr", "image.tif", "image.png"})
     job.outputs.push_back(folder / name);
   job.extras.channels = {"z_nm", "normal", "material", "electrons"};
@@ -32,13 +32,13 @@ double peak_megabytes() {
 void expect_no_growth(io::Layout layout, double most_megabytes) {
   const test::TemporaryFolder folder;
   SimulateJob small = job_of(512, folder.path());
-  small.options.tally_memory = 0;
+  small.execution.tally_memory = 0;
   small.layout = layout;
   run(small);
   const double before = peak_megabytes();
   // Sixteen times the pixels: 200 MB of tallies and 180 MB of channels.
   SimulateJob large = job_of(2048, folder.path());
-  large.options.tally_memory = 0;
+  large.execution.tally_memory = 0;
   large.layout = layout;
   run(large);
   EXPECT_LT(peak_megabytes() - before, most_megabytes);
@@ -55,7 +55,7 @@ TEST(Memory, WhereTalliesAreDoesNotChangeTheBytes) {
   std::vector<std::string> first;
   for (const std::size_t limit : {std::size_t{1} << 30, std::size_t{0}}) {
     SimulateJob job = small_job();
-    job.options.tally_memory = limit;
+    job.execution.tally_memory = limit;
     for (const char* name : {"image.exr", "image.tif", "image.png"})
       job.outputs.push_back(folder.path() / std::to_string(limit) / name);
     run(job);

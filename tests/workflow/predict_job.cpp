@@ -82,7 +82,7 @@ TEST_F(PredictJobTest, ResamplesWhereItIsAsked) {
   job_.field = make_rough({40, 30, 2}, 4, 9, 1);
   job_.resample = true;
   std::string said;
-  run(job_, [&](const std::string& note) { said = note; });
+  run(job_, {.on_note = [&](const std::string& note) { said = note; }});
   EXPECT_THAT(said, HasSubstr("21 x 16 samples of 2.00 nm are resampled to 14 x 11 of 3.00 nm"));
   EXPECT_EQ(io::read_image(path("image.exr")).width(), 14);
 }

@@ -101,7 +101,7 @@ Reporter stopping(CancelToken& token, const std::filesystem::path& checkpoint) {
   Reporter listener;
   listener.cancel = &token;
   // Parts of the work have copies of this.
-  listener.progress = [&token, checkpoint, first = std::make_shared<std::uintmax_t>(0)](double, double) {
+  listener.on_progress = [&token, checkpoint, first = std::make_shared<std::uintmax_t>(0)](double, double, std::string_view) {
     std::error_code none;
     const auto size = std::filesystem::file_size(checkpoint, none);
     if (!none && *first == 0) *first = size;
@@ -204,7 +204,7 @@ TEST_F(ReconstructJobTest, DoesNotGoOnWithAnotherJob) {
   job_.options.tolerance = 0.002;
   std::string said;
   Reporter listener;
-  listener.note = [&](const std::string& note) { said += note + "\n"; };
+  listener.on_note = [&](const std::string& note) { said += note + "\n"; };
   EXPECT_FALSE(run(job_, listener).resumed);
   EXPECT_THAT(said, HasSubstr("tolerance 0 there and 0.002 here"));
 }
@@ -236,7 +236,7 @@ TEST_F(ReconstructJobTest, AnyOtherInputBeginsAnew) {
     CancelToken token;
     Reporter listener;
     listener.cancel = &token;
-    listener.note = [&](const std::string& note) {
+    listener.on_note = [&](const std::string& note) {
       if (note.find("begun anew") != std::string::npos) token.cancel();
     };
     EXPECT_THROW(run(other, listener), Interrupted);

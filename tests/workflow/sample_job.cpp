@@ -109,7 +109,7 @@ TEST(SampleJob, LeavesNothingWhenCancelledOrRefused) {
   const test::TemporaryFolder folder;
   CancelToken cancel;
   cancel.cancel();
-  EXPECT_FALSE(run(small("islands", folder.path()), {}, &cancel).complete);
+  EXPECT_FALSE(run(small("islands", folder.path()), {.cancel = &cancel}).complete);
   SampleJob job = small("islands", folder.path());
   job.width = 8;
   EXPECT_THROW(run(job), UsageError);
@@ -130,7 +130,8 @@ TEST(SampleJob, GoesOnWhereItWasStopped) {
 
   job.folder = stopped.path();
   CancelToken cancel;
-  const SampleSummary first = run(job, [&](double, double) { cancel.cancel(); }, &cancel);
+  const SampleSummary first = run(job, {.on_progress = [&](double, double, std::string_view things) { if (things == "primaries") cancel.cancel(); },
+                                        .cancel = &cancel});
   EXPECT_FALSE(first.complete);
   EXPECT_TRUE(first.written.empty());
   ASSERT_TRUE(fs::exists(first.checkpoint));
@@ -140,15 +141,17 @@ TEST(SampleJob, GoesOnWhereItWasStopped) {
   other.seed = 2;
   CancelToken at_once;
   at_once.cancel();
-  EXPECT_TRUE(run(other, {}, &at_once).checkpoint.empty());
+  EXPECT_TRUE(run(other, {.cancel = &at_once}).checkpoint.empty());
   ASSERT_TRUE(fs::exists(first.checkpoint));
 
   std::vector<std::string> notes;
   double begun_at = 0;
-  const auto progress = [&](double done, double) { begun_at = begun_at > 0 ? begun_at : done; };
+  const auto progress = [&](double done, double, std::string_view things) {
+    if (things == "primaries") begun_at = begun_at > 0 ? begun_at : done;
+  };
   job.threads = 2;
   const SampleSummary second =
-      run(job, progress, nullptr, {}, [&](const std::string& note) { notes.push_back(note); });
+      run(job, {.on_progress = progress, .on_note = [&](const std::string& note) { notes.push_back(note); }});
   ASSERT_TRUE(second.complete);
   EXPECT_THAT(notes, testing::Contains(testing::HasSubstr("resuming")));
   EXPECT_GT(begun_at, 1024 * job.electrons);   // more than its first unit
@@ -160,9 +163,9 @@ TEST(SampleJob, GoesOnWhereItWasStopped) {
 TEST(SampleJob, KeepsTheSimulationWhereItsFilesCannotBeWritten) {
   const test::TemporaryFolder folder;
   SampleJob job = small("pads", folder.path());
-  const auto block = [&](double, double) { fs::create_directories(folder.path() / "truth.gsf" / "in the way"); };
+  const auto block = [&](double, double, std::string_view) { fs::create_directories(folder.path() / "truth.gsf" / "in the way"); };
   std::vector<std::string> notes;
-  EXPECT_THROW(run(job, block, nullptr, {}, [&](const std::string& note) { notes.push_back(note); }), FileError);
+  EXPECT_THROW(run(job, {.on_progress = block, .on_note = [&](const std::string& note) { notes.push_back(note); }}), FileError);
   EXPECT_THAT(notes, testing::ElementsAre(testing::HasSubstr("the same command goes on from there")));
   fs::remove_all(folder.path() / "truth.gsf");
   EXPECT_TRUE(run(job).complete);

@@ -44,8 +44,7 @@ Image simulated(const TrainedModel& model, const HeightField& field) {
   job.scene.scan.width = compared(field.z_nm.width());
   job.scene.scan.height = compared(field.z_nm.height());
   job.scene.scan.pixel_x_nm = job.scene.scan.pixel_y_nm = field.pitch_x_nm;
-  job.scene.electrons = 40;
-  job.scene.accuracy.reset();
+  job.scene.budget = mc::ElectronsPerPixel{40};
   job.outputs = {folder.path() / "mesa.exr"};
   run(job);
   return io::read_image(job.outputs.front());

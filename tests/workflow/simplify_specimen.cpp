@@ -254,10 +254,10 @@ TEST(MeshTolerance, IsRecordedAndGivesTheSameBytesForAnyThreads) {
   job.outputs = {folder.path() / "a.exr"};
   std::vector<std::string> notes;
   const SimulateSummary summary =
-      run(job, {}, nullptr, {}, [&](const std::string& note) { notes.push_back(note); });
+      run(job, {.on_note = [&](const std::string& note) { notes.push_back(note); }});
   EXPECT_THAT(notes, testing::Contains("leaving out detail below 0.300 nm"));
   auto metadata = io::read_image(job.outputs[0]).metadata;
-  EXPECT_EQ(metadata["mesh_tolerance_nm"], "0.3");
+  EXPECT_EQ(metadata["simulation.mesh_tolerance_nm"], "0.3");
   EXPECT_EQ(metadata["simplified.1"], describe(summary.simplification.bodies[0]));
   const auto json = nlohmann::json::parse(bytes_of(folder.path() / "a.run.json"));
   EXPECT_EQ(json["simplification"]["tolerance_nm"], 0.3);
@@ -265,7 +265,7 @@ TEST(MeshTolerance, IsRecordedAndGivesTheSameBytesForAnyThreads) {
   EXPECT_LT(json["simplification"]["bodies"][0]["triangles_after"],
             json["simplification"]["bodies"][0]["triangles_before"]);
   EXPECT_GE(json["simplification"]["seconds"], 0);
-  job.options.threads = 3;
+  job.execution.threads = 3;
   job.outputs = {folder.path() / "b.exr"};
   run(job);
   EXPECT_TRUE(bytes_of(folder.path() / "a.exr") == bytes_of(folder.path() / "b.exr"));

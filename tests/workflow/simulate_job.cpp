@@ -36,8 +36,8 @@ TEST(SimulateJob, WritesTheSameBytesForAnyThreadsTilesAndPaths) {
     for (const auto& [threads, tile] :
          {std::pair{1, 1024}, {2, 1024}, {7, 1}, {1, 7}, {2, 100000}}) {
       SimulateJob job = small_job();
-      job.options.threads = threads;
-      job.options.tile_pixels = tile;
+      job.execution.threads = threads;
+      job.execution.tile_pixels = tile;
       job.command_line += std::to_string(threads);
       job.outputs = {folder.path() / std::to_string(threads * 1000 + tile) /
                      (std::string("image") + extension)};
@@ -55,7 +55,7 @@ TEST(SimulateJob, AnotherSeedGivesAnotherImage) {
   SimulateJob job = small_job();
   job.outputs = {folder.path() / "a.exr"};
   run(job);
-  job.options.seed = 2;
+  job.scene.seed = 2;
   job.outputs = {folder.path() / "b.exr"};
   run(job);
   const Image a = io::read_image(folder.path() / "a.exr");
@@ -79,15 +79,15 @@ TEST(SimulateJob, RecordsInTheImageWhatMadeIt) {
   EXPECT_EQ(metadata["beam.tilt_deg"], "0");
   EXPECT_EQ(metadata["scan.width"], "12");
   EXPECT_EQ(metadata["scan.pixel_x_nm"], "5");
-  EXPECT_EQ(metadata["physics"], mc::format_physics(job.scene.physics));
+  EXPECT_EQ(metadata["simulation.physics"], mc::format_physics(job.scene.physics));
   EXPECT_EQ(metadata["material.1.name"], "Si");
   for (const char* number : {"density_g_cm3", "barrier_ev", "work_function_ev", "plasmon_ev",
                              "valence_electrons", "loss_join_ev", "cutoff_ev", "constituents"})
     EXPECT_FALSE(metadata[std::string("material.1.") + number].empty()) << number;
   EXPECT_THAT(metadata["specimen.body.1"], StartsWith("cube, Si, 12 triangles"));
   EXPECT_EQ(metadata["specimen.substrate"], "Si, top at 0 nm");
-  EXPECT_EQ(metadata["electrons"], "20");
-  EXPECT_EQ(metadata["seed"], "1");
+  EXPECT_EQ(metadata["simulation.electrons"], "20");
+  EXPECT_EQ(metadata["simulation.seed"], "1");
   EXPECT_EQ(metadata["balance.incident"], std::to_string(12 * 9 * 20));
   EXPECT_EQ(metadata["balance.se"], std::to_string(summary.result.balance.se));
   EXPECT_FALSE(metadata.contains("partial"));
@@ -130,10 +130,10 @@ TEST(SimulateJob, RecordsTheRunBesideTheImage) {
 TEST(SimulateJob, WritesWhatIsDoneWhenCancelled) {
   const TemporaryFolder folder;
   SimulateJob job = small_job();
-  job.options.tile_pixels = 1;
+  job.execution.tile_pixels = 1;
   job.outputs = {folder.path() / "image.exr"};
   CancelToken cancel;
-  const auto summary = run(job, [&](double, double) { cancel.cancel(); }, &cancel);
+  const auto summary = run(job, {.on_progress = [&](double, double, std::string_view) { cancel.cancel(); }, .cancel = &cancel});
   EXPECT_FALSE(summary.result.complete);
   const Image image = io::read_image(job.outputs[0]);
   EXPECT_EQ(image.metadata.at("partial"), "true");
@@ -149,7 +149,6 @@ TEST(SimulateJob, RefusesBadJobsBeforeWritingAnything) {
     change(job);
     EXPECT_THROW(run(job), UsageError);
   };
-  fails_with_usage_error([](SimulateJob& job) { job.outputs.clear(); });
   fails_with_usage_error([](SimulateJob& job) { job.outputs[0].replace_extension(".jpg2"); });
   fails_with_usage_error([](SimulateJob& job) { job.outputs.push_back(job.outputs[0]); });
   const TemporaryFolder other;
@@ -158,9 +157,9 @@ TEST(SimulateJob, RefusesBadJobsBeforeWritingAnything) {
     job.scene.inputs = {other.path() / "input.exr"};
     job.outputs = {other.path() / "." / "input.exr"};
   });
-  fails_with_usage_error([](SimulateJob& job) { job.options.budget = mc::ElectronsPerPixel{0}; });
-  fails_with_usage_error([](SimulateJob& job) { job.options.budget = mc::ElectronsPerPixel{1LL << 40}; });
-  fails_with_usage_error([](SimulateJob& job) { job.options.threads = -1; });
+  fails_with_usage_error([](SimulateJob& job) { job.scene.budget = mc::ElectronsPerPixel{0}; });
+  fails_with_usage_error([](SimulateJob& job) { job.scene.budget = mc::ElectronsPerPixel{1LL << 40}; });
+  fails_with_usage_error([](SimulateJob& job) { job.execution.threads = -1; });
   fails_with_usage_error([](SimulateJob& job) { job.scene.beam.energy_ev = 5; });
   fails_with_usage_error([](SimulateJob& job) { job.scene.beam.tilt_deg = 90; });
   fails_with_usage_error([](SimulateJob& job) {

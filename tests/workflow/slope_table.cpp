@@ -13,7 +13,7 @@ const mc::Material& silicon() { return io::find_material("Si", "test"); }
 SlopeTableOptions quick(SlopeSpecimen specimen, std::int64_t electrons = 4000) {
   SlopeTableOptions options;
   options.specimen = specimen;
-  options.budget = mc::ElectronsPerPixel{electrons};
+  options.electrons = electrons;
   return options;
 }
 
@@ -117,7 +117,7 @@ TEST(SlopeTable, CanBeInterruptedAndRefusesNonsense) {
   options.last_deg = 90;
   EXPECT_THROW(make_slope_table(silicon(), 1000, options), UsageError);
   options = {};
-  options.budget = mc::ElectronsPerPixel{1};
+  options.electrons = 1;
   EXPECT_THROW(make_slope_table(silicon(), 1000, options), UsageError);
 }
 

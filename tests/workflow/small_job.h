@@ -21,8 +21,8 @@ inline SimulateJob small_job() {
   job.scene.scan.width = 12;
   job.scene.scan.height = 9;
   job.scene.scan.pixel_x_nm = job.scene.scan.pixel_y_nm = 5;
-  job.options.budget = mc::ElectronsPerPixel{20};
-  job.options.threads = 1;
+  job.scene.budget = mc::ElectronsPerPixel{20};
+  job.execution.threads = 1;
   job.command_line = "semsurf simulate 'a cube'";
   return job;
 }

@@ -21,7 +21,7 @@ SweepJob tilts(const fs::path& folder, const std::vector<double>& tilts_deg) {
     job.runs.push_back({{value}, [folder, tilt_deg, value] {
                           SimulateJob run = small_job();
                           run.scene.beam.tilt_deg = tilt_deg;
-                          run.options.budget = mc::ElectronsPerPixel{2};
+                          run.scene.budget = mc::ElectronsPerPixel{2};
                           run.outputs = {folder / ("tilt_" + value + ".exr")};
                           return run;
                         }});

@@ -66,7 +66,7 @@ SweepJob small_sweep(const fs::path& folder, int runs) {
   job.axes = {"seed"};
   for (int i = 1; i <= runs; ++i) {
     SimulateJob run = small_job();
-    run.options.seed = static_cast<std::uint64_t>(i);
+    run.scene.seed = static_cast<std::uint64_t>(i);
     run.scene.method = mc::Method::direct;
     run.outputs = {folder / ("seed_" + std::to_string(i) + ".exr")};
     job.runs.push_back({{std::to_string(i)}, [run] { return run; }});
@@ -112,14 +112,14 @@ TEST(Team, LeavesOverOnlyWhatKeepsAllBusyTogether) {
 TEST(Team, SimulatesToTheBytesOfOne) {
   const TemporaryFolder folder;
   SimulateJob job = small_job();
-  job.options.tile_pixels = 4;
+  job.execution.tile_pixels = 4;
   job.outputs = {folder.path() / "alone" / "cube.exr"};
   run(job);
   const auto wanted = results_in(folder.path() / "alone");
   for (const int size : {1, 2, 3, 4}) {
     const fs::path place = folder.path() / std::to_string(size);
     job.outputs = {place / "cube.exr"};
-    const auto errors = as_team(size, [&](Team& team) { run(job, {}, nullptr, {}, {}, {}, &team); });
+    const auto errors = as_team(size, [&](Team& team) { run(job, {}, &team); });
     EXPECT_THAT(errors, Each(IsEmpty()));
     expect_same_files(place, wanted, size);
     EXPECT_EQ(sum_of(ranks_in(place / "cube.run.json"), "primaries"), 12 * 9 * 20);
@@ -134,14 +134,13 @@ TEST(Team, SweepsToTheBytesOfOne) {
   for (const int size : {1, 2, 3, 4}) {
     const fs::path place = folder.path() / std::to_string(size);
     std::vector<std::size_t> told;
-    Reporter listener;
-    listener.done = [&](std::size_t run, const std::vector<SweepYield>& yields) {
+    const RunCallback tell = [&](std::size_t run, const std::vector<SweepYield>& yields) {
       told.push_back(run);
       EXPECT_EQ(yields.size(), 2u);
       EXPECT_GT(yields[0].mean, 0.1);
     };
     const auto errors = as_team(size, [&](Team& team) {
-      const SweepSummary s = run(small_sweep(place, 5), listener, &team);
+      const SweepSummary s = run(small_sweep(place, 5), {}, tell, &team);
       EXPECT_TRUE(s.complete);
       EXPECT_EQ(s.done, team.leads() ? 5u : 0u);
     });
@@ -161,13 +160,13 @@ TEST(Team, SharesFewRunsThatAreLeftOverUnitByUnit) {
     for (SweepRun& run : job.runs) {
       SimulateJob wide = run.make();
       wide.scene.scan.width = 40;
-      wide.options.budget = mc::ElectronsPerPixel{4};
+      wide.scene.budget = mc::ElectronsPerPixel{4};
       run.make = [wide] { return wide; };
     }
     return job;
   };
   run(sweep("alone"));
-  const auto errors = as_team(2, [&](Team& team) { run(sweep("two"), {}, &team); });
+  const auto errors = as_team(2, [&](Team& team) { run(sweep("two"), {}, {}, &team); });
   EXPECT_THAT(errors, Each(IsEmpty()));
   expect_same_files(folder.path() / "two", results_in(folder.path() / "alone"), 2);
   const auto ranks = ranks_in(folder.path() / "two" / "sweep.run.json");
@@ -225,7 +224,7 @@ TEST(Team, ChartsToTheFiguresOfOne) {
   job.scene.scan.width = job.scene.scan.height = 16;
   job.scene.beam.energy_ev = 500;
   job.scene.physics.secondaries = false;
-  job.scene.electrons = 30;
+  job.scene.budget = mc::ElectronsPerPixel{30};
   job.quick = true;
   job.threads = 1;
   job.reference_accuracy = 0.015;
@@ -236,9 +235,8 @@ TEST(Team, ChartsToTheFiguresOfOne) {
   for (const int size : {1, 3}) {
     job.folder = folder.path() / std::to_string(size);
     std::atomic<int> points = 0;
-    Reporter listener;
-    listener.point = [&](const ChartPoint&) { ++points; };
-    const auto errors = as_team(size, [&](Team& team) { EXPECT_TRUE(run(job, listener, &team).complete); });
+    const PointCallback tell = [&](const ChartPoint&) { ++points; };
+    const auto errors = as_team(size, [&](Team& team) { EXPECT_TRUE(run(job, {}, tell, &team).complete); });
     EXPECT_THAT(errors, Each(IsEmpty()));
     EXPECT_EQ(points, 2);
     EXPECT_EQ(figures(job.folder / "chart.csv"), figures(folder.path() / "alone" / "chart.csv")) << size;
@@ -255,17 +253,16 @@ TEST(Team, WhatTheLeaderIsToldToStopGoesOnWithAnotherNumberToTheSameBytes) {
   run(small_sweep(folder.path() / "alone", 6));
   const fs::path place = folder.path() / "team";
   CancelToken stop;
-  Reporter listener;
-  listener.done = [&](std::size_t, const std::vector<SweepYield>&) { stop.cancel(); };
+  const RunCallback tell = [&](std::size_t, const std::vector<SweepYield>&) { stop.cancel(); };
   const auto errors = as_team(3, [&](Team& team) {
-    Reporter own = listener;
+    Reporter own;
     if (team.leads()) own.cancel = &stop;
-    EXPECT_FALSE(run(small_sweep(place, 6), own, &team).complete);
+    EXPECT_FALSE(run(small_sweep(place, 6), own, tell, &team).complete);
   });
   EXPECT_THAT(errors, Each(IsEmpty()));
   EXPECT_FALSE(fs::exists(place / "sweep.csv"));
   as_team(2, [&](Team& team) {
-    const SweepSummary s = run(small_sweep(place, 6), {}, &team);
+    const SweepSummary s = run(small_sweep(place, 6), {}, {}, &team);
     EXPECT_GE(s.found, 1u);
   });
   expect_same_files(place, results_in(folder.path() / "alone"), 2);
@@ -282,7 +279,7 @@ TEST(Team, WhoFailsInARunEndsTheSweepAndIsNamed) {
           if (++*asked > 1) throw FileError("scan.gwy", "it is gone", "Bring it back");
           return make();
         };
-    run(job, {}, &team);
+    run(job, {}, {}, &team);
   });
   EXPECT_THAT(errors, Each(HasSubstr("it is gone")));
   EXPECT_THAT(errors[0], HasSubstr("rank 2"));
@@ -291,11 +288,10 @@ TEST(Team, WhoFailsInARunEndsTheSweepAndIsNamed) {
 TEST(Team, WhatTheLeaderCannotWriteEndsAll) {
   const TemporaryFolder folder;
   const auto errors = as_team(2, [&](Team& team) {
-    Reporter listener;
-    listener.done = [](std::size_t, const std::vector<SweepYield>&) {
+    const RunCallback tell = [](std::size_t, const std::vector<SweepYield>&) {
       throw FileError("records", "the disk is full", "Make room");
     };
-    run(small_sweep(folder.path(), 8), listener, &team);
+    run(small_sweep(folder.path(), 8), {}, tell, &team);
   });
   EXPECT_THAT(errors, Each(HasSubstr("the disk is full")));
 }
@@ -303,7 +299,7 @@ TEST(Team, WhatTheLeaderCannotWriteEndsAll) {
 TEST(Team, RefusesAFolderThatIsNotTheSameForAll) {
   const TemporaryFolder folder;
   const auto errors = as_team(2, [&](Team& team) {
-    run(small_sweep(folder.path() / std::to_string(team.rank()), 4), {}, &team);
+    run(small_sweep(folder.path() / std::to_string(team.rank()), 4), {}, {}, &team);
   });
   EXPECT_THAT(errors, Each(HasSubstr("does not see what rank 0 writes")));
   EXPECT_TRUE(results_in(folder.path()).empty());

@@ -24,8 +24,7 @@ mc::SimulationResult coarse() {
       r.counts[0](x, y) = {40, 40};
     }
   r.balance.incident = 100'000;
-  r.accuracy = coarse_accuracy;
-  r.accuracy_floor = 0.0001;
+  r.budget = mc::Accuracy{coarse_accuracy, 0.0001};
   r.library_cascades = 10'240;
   r.library_seconds = 2;
   r.seconds = 1;

@@ -25,7 +25,7 @@ class TrainJobTest : public testing::Test {
   TrainSummary train(const TrainJob& job) {
     notes_.clear();
     Reporter listener;
-    listener.note = [&](const std::string& note) { notes_.push_back(note); };
+    listener.on_note = [&](const std::string& note) { notes_.push_back(note); };
     return run(job, listener);
   }
 
@@ -116,7 +116,8 @@ TEST_F(TrainJobTest, StopsAndGoesOnToTheSameBytes) {
   Reporter listener;
   listener.cancel = &token;
   double most = 0;
-  listener.pixels = [&](double done, double total) {
+  listener.on_progress = [&](double done, double total, std::string_view things) {
+    if (things != "pixels") return;
     EXPECT_EQ(total, 512);
     EXPECT_GE(done, most);
     most = done;

@@ -15,7 +15,7 @@ using testing::IsEmpty;
 std::vector<std::string> warnings_of(SimulateJob job) {
   const TemporaryFolder folder;
   job.outputs = {folder.path() / "image.exr"};
-  job.options.budget = mc::ElectronsPerPixel{std::min<std::int64_t>(job.options.electrons, 2)};
+  job.scene.budget = mc::ElectronsPerPixel{std::min<std::int64_t>(mc::electrons_of(job.scene.budget), 2)};
   return run(job).warnings;
 }
 
@@ -109,7 +109,7 @@ TEST(Warnings, TellOfScansBeyondAHeightField) {
 
 TEST(Warnings, TellOfStandardErrorsThatMeanNothing) {
   SimulateJob job = small_job();
-  job.options.budget = mc::ElectronsPerPixel{1};
+  job.scene.budget = mc::ElectronsPerPixel{1};
   EXPECT_THAT(warnings_of(job), Contains(HasSubstr("one electron per pixel")));
 }
 

@@ -188,7 +188,7 @@ SweepSummary run(const SweepJob& job, const Reporter& reporter, const RunCallbac
     if (!missing.empty()) describe(job.runs[missing.front()].make(), runs);
   });
   runs.reporter = reporter;
-  runs.reporter.on_progress = [&](double done, double total, std::string_view things) {
+  runs.reporter.on_progress = [&](double done, double, std::string_view things) {
     if (things == "cascades") return;   // the bar counts runs
     reporter.progress(static_cast<double>(summary.found) + done, static_cast<double>(mine.size()));
   };

@@ -43,8 +43,6 @@ TEST_F(SceneFileTest, ReadsEverything) {
     convergence = "10mrad"
     focus = -5
     working_distance = "4mm"
-    current = "0.1nA"
-    dwell = 2
     [scan]
     size = "64x32"
     pixel_size = "1nm x 0.5nm"
@@ -95,8 +93,6 @@ TEST_F(SceneFileTest, ReadsEverything) {
   EXPECT_NEAR(scene.beam.convergence_deg, 1.8 / std::numbers::pi, 1e-12);
   EXPECT_EQ(scene.beam.focus_nm, -5);
   EXPECT_EQ(scene.beam.working_distance_nm, 4e6);
-  EXPECT_EQ(scene.current_pa, 100);
-  EXPECT_EQ(scene.dwell_us, 2);
   ASSERT_EQ(scene.detectors.size(), 5u);
   EXPECT_EQ(scene.detectors[4].min_energy_ev, 900);
   EXPECT_EQ(scene.scan.width, 64);
@@ -106,7 +102,7 @@ TEST_F(SceneFileTest, ReadsEverything) {
   ASSERT_TRUE(scene.scan.region);
   EXPECT_EQ(scene.scan.region->x0_nm, -32);
   EXPECT_EQ(scene.scan.region->y1_nm, 8);
-  EXPECT_EQ(scene.electrons, 1'000'000);
+  EXPECT_EQ(mc::electrons_of(scene.budget), 1'000'000);
   EXPECT_EQ(scene.seed, 9223372036854775807u);
   EXPECT_EQ(scene.physics.elastic, mc::ElasticModel::browning);
   EXPECT_FALSE(scene.physics.secondaries);
@@ -148,7 +144,8 @@ TEST_F(SceneFileTest, DefaultsAreThoseOfTheLibraries) {
   const SceneFile scene = read(substrate);
   EXPECT_EQ(scene.beam.energy_ev, mc::Beam{}.energy_ev);
   EXPECT_FALSE(scene.scan.width || scene.scan.pixel_x_nm || scene.scan.region);
-  EXPECT_FALSE(scene.electrons || scene.seed);
+  EXPECT_EQ(mc::electrons_of(scene.budget), mc::ElectronsPerPixel{}.count);
+  EXPECT_EQ(scene.seed, mc::SimulationRequest{}.seed);
   EXPECT_TRUE(scene.physics.secondaries);
   EXPECT_EQ(scene.specimen.substrate->top_nm, 0);
   EXPECT_EQ(scene.inputs.size(), 1u);
@@ -225,13 +222,21 @@ TEST_F(SceneFileTest, HoldsItsOwnMaterialsAndFilesGoBeforeThem) {
 TEST_F(SceneFileTest, SaysHowMuchIsSimulatedAndHow) {
   const std::string scene = "[substrate]\nmaterial = \"Si\"\n[simulation]\n";
   SceneFile s = read(scene + "accuracy = \"1.3%\"\naccuracy_floor = 0\nmethod = \"replay\"");
-  EXPECT_EQ(s.accuracy, 0.013);
-  EXPECT_EQ(s.accuracy_floor, 0);
+  EXPECT_EQ(mc::accuracy_of(s.budget), 0.013);
+  EXPECT_EQ(mc::floor_of(s.budget), 0);
   EXPECT_EQ(s.method, mc::Method::replay);
-  EXPECT_FALSE(s.electrons);
   s = read(scene + "accuracy = 0.02\nmethod = \"auto\"");
-  EXPECT_EQ(s.accuracy, 0.02);
-  EXPECT_FALSE(s.method || s.accuracy_floor || s.mesh_tolerance_nm);
+  EXPECT_EQ(mc::accuracy_of(s.budget), 0.02);
+  EXPECT_EQ(mc::floor_of(s.budget), mc::Accuracy{}.floor);
+  EXPECT_FALSE(s.method);
+  EXPECT_EQ(s.mesh_tolerance_nm, 0);
+  s = read("[substrate]\nmaterial = \"Si\"\n[beam]\ncurrent = \"0.1nA\"\ndwell = 2\n");
+  const auto* const dose = std::get_if<mc::Dose>(&s.budget);
+  ASSERT_TRUE(dose);
+  EXPECT_EQ(dose->current_pa, 100);
+  EXPECT_EQ(dose->dwell_us, 2);
+  s = read(scene + "time = \"2min\"");
+  EXPECT_EQ(std::get<mc::TimeLimit>(s.budget).seconds, 120);
   EXPECT_EQ(read(scene + "mesh_tolerance = \"0.5nm\"").mesh_tolerance_nm, 0.5);
 }
 
@@ -282,25 +287,25 @@ TEST_F(SceneFileTest, WrongValuesAreNamedWithTheirPlace) {
   expect("[beam]\nenergy = true", "line 2, beam.energy", "neither");
   expect("[beam]\nenergy = 1e3\ntilt = 91", "line 3, beam.tilt: 91 degrees is outside", "with beam.azimuth");
   expect("[beam]\nenergy = nan", "line 2, beam.energy", "neither");
-  expect("[beam]\ntilt = 95", "beam", "95");
+  expect("[beam]\ntilt = 95", "line 2, beam.tilt", "95");
   expect("beam = 3", "line 1, beam", "not a table");
-  expect("[scan]\nsize = \"256x256x256\"", "scan.size", "3 values");
-  expect("[scan]\nsize = \"1um\"", "scan.size", "number of pixels");
-  expect("[scan]\nsize = 2.5", "scan.size", "number of pixels");
-  expect("[scan]\nsize = 0", "scan.size", "not above 0");
-  expect("[scan]\npixel_size = -1", "scan.pixel_size", "not above 0");
+  expect("[scan]\nsize = \"256x256x256\"", "scan.size", "not a size");
+  expect("[scan]\nsize = \"1um\"", "scan.size", "whole number");
+  expect("[scan]\nsize = 2.5", "scan.size", "whole number");
+  expect("[scan]\nsize = 0", "scan.size", "out of range");
+  expect("[scan]\npixel_size = -1", "scan.pixel_size", "not above zero");
   expect("[scan]\nregion = [0, 0, 1]", "scan.region", "3 numbers");
   expect("[scan]\nregion = [0, 0, 0, 1]", "scan.region", "empty");
   expect("[simulation]\nelectrons = 0", "simulation.electrons", "0");
   expect("[simulation]\nmethod = \"fast\"", "simulation.method", "auto, direct or replay");
-  expect("[simulation]\naccuracy = \"1%\"\nelectrons = 3", "simulation.accuracy", "Leave one");
-  expect("[simulation]\nmesh_tolerance = -1", "simulation.mesh_tolerance", "0.5nm");
+  expect("[simulation]\naccuracy = \"1%\"\nelectrons = 3", "simulation.electrons", "Leave out");
+  expect("[simulation]\nmesh_tolerance = -1", "simulation.mesh_tolerance", "0nm or more");
   expect("[simulation]\naccuracy = 2", "simulation.accuracy", "100%");
   expect("[simulation]\naccuracy_floor = 0.1", "simulation.accuracy_floor", "no accuracy");
   expect("[simulation]\nelectrons = 2.5", "simulation.electrons", "whole");
   expect("[simulation]\ncutoff = \"-5eV\"", "simulation.cutoff", "-5 eV is outside 0.5 eV to");
   expect("[simulation]\ncutoff = \"40keV\"", "simulation.cutoff", "40000 eV is outside 0.5 eV to");
-  expect("[simulation]\nseed = -1", "simulation.seed", "negative");
+  expect("[simulation]\nseed = -1", "simulation.seed", "whole number");
   expect("[simulation]\nphysics = \"elastic=mot\"", "line 2, simulation.physics: 'mot' is no choice", "mott");
   const std::string field = "[height_field]\nmaterial = \"Si\"\n";
   expect(field + "shape = \"mesh\"", "height_field.shape", "Choose one of: mesa");
