@@ -17,8 +17,8 @@
 #include "surf/io/landmarks_file.h"
 #include "surf/io/sim/materials.h"
 #include "surf/io/tip_file.h"
+#include "surf/workflow/tip_job.h"
 #include "terminal.h"
-#include "tip_shape_option.h"
 
 namespace surf::cli {
 namespace {
@@ -45,8 +45,9 @@ AfmNoise parse_afm_noise(const std::string& text) {
     if (numbers.size() != 2) throw InvalidInput("", "", "");
     validate(noise);
   } catch (const InvalidInput&) {
-    throw UsageError("--afm-noise", fmt::format("'{}' is no noise", text),
-                     "Give alpha, below 1, and the variance of the innovation in nm^2, as 0.8,0.2; 'semsurf noise' finds them");
+    throw UsageError(
+        "--afm-noise", fmt::format("'{}' is no noise", text),
+        "Give alpha, below 1, and the variance of the innovation in nm^2, as 0.8,0.2; 'semsurf noise scan' finds them");
   }
   return noise;
 }
@@ -61,21 +62,23 @@ Tip read_tip_option(const ChainOptions& o, const HeightField& scan) {
   if (!shape) return io::read_tip(text);
   const int shorter = std::min(scan.z_nm.width(), scan.z_nm.height());
   const int usual = std::min(41, shorter / 2 * 2 - 1);
-  return parse_tip_shape(text, o.tip_size.value_or(std::to_string(usual)),
-                         fmt::format("{}nmx{}nm", format_exact(scan.pitch_x_nm), format_exact(scan.pitch_y_nm)));
+  workflow::TipShapeParameters parameters{workflow::parse_tip_shape(text, "--tip"), usual, scan.pitch_x_nm,
+                                          scan.pitch_y_nm};
+  if (o.tip_size) parameters.size = static_cast<int>(parse_whole(*o.tip_size, "--tip-size", 1, 4001));
+  return workflow::tip_by_shape(parameters, "--tip");
 }
 
 void take_preparation(const ChainOptions& o, workflow::AfmInput& afm) {
   workflow::AfmPreparationOptions& p = afm.preparation;
-  p.level = parse_level(o);
+  p.level.method = parse_level(o);
   if (o.level_degree) {
-    if (p.level != LevelMethod::polynomial)
+    if (p.level.method != LevelMethod::polynomial)
       throw UsageError("--level-degree", "only a polynomial has one", "Add --level-method polynomial");
-    p.degree = static_cast<int>(parse_whole(*o.level_degree, "--level-degree", 0, 6));
+    p.level.degree = static_cast<int>(parse_whole(*o.level_degree, "--level-degree", 0, 6));
   }
   if (o.rows) {
-    if (*o.rows == "median") p.rows = RowMethod::median;
-    else if (*o.rows == "difference") p.rows = RowMethod::difference;
+    if (*o.rows == "median") p.level.rows = RowMethod::median;
+    else if (*o.rows == "difference") p.level.rows = RowMethod::difference;
     else throw UsageError("--rows", fmt::format("'{}' is no way to level rows", *o.rows), "Choose median or difference");
   }
   if (o.afm_noise) p.noise = parse_afm_noise(*o.afm_noise);
@@ -90,13 +93,13 @@ PlacedImage place_of(const HeightField& f) { return {f.z_nm, f.valid, f.pitch_x_
 }  // namespace
 
 workflow::AfmInput read_afm(const ChainOptions& o) {
-  ScanInput input;
-  input.file = o.afm;
-  input.channel = o.afm_channel;
-  input.z_unit = o.afm_z_unit;
-  input.pixel_size = o.afm_pixel_size;
+  io::HeightReadOptions reading;
+  reading.channel = o.afm_channel.value_or("");
+  if (o.afm_z_unit) reading.z_unit_nm = parse_unit_nm(*o.afm_z_unit, "--afm-z-unit");
+  if (o.afm_pixel_size)
+    std::tie(reading.pitch_x_nm, reading.pitch_y_nm) = parse_pixel_size(*o.afm_pixel_size, "--afm-pixel-size");
   workflow::AfmInput afm;
-  afm.scan = read_scan(input, o.quiet).field;
+  afm.scan = read_scan(o.afm, reading, o.quiet).field;
   afm.file = o.afm;
   take_preparation(o, afm);
   return afm;
@@ -214,7 +217,7 @@ void add_preparation_options(CLI::App& app, ChainOptions& o) {
   app.add_option("--tip-size", o.tip_size, "Samples across a blind tip of any shape, odd (a round one)")
       ->type_name("N")->group(group);
   app.add_option("--afm-noise", o.afm_noise, "Correlation of neighbours and variance of the innovation in nm^2\n"
-                                             "(estimated, as 'semsurf noise' does)")
+                                             "(estimated, as 'semsurf noise scan' does)")
       ->type_name("ALPHA,INNOVATION")->group(group);
 }
 
