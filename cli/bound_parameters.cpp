@@ -46,7 +46,7 @@ constexpr std::size_t help_width = 74;
 struct BoundOption {
   std::weak_ptr<const GivenTexts> lives;
   std::string parameter;
-  FileRole file = FileRole::none;
+  std::optional<FileRole> file;   // none: the command reads the option by itself
 };
 
 std::map<const CLI::Option*, BoundOption>& bound_options() {
@@ -78,7 +78,11 @@ std::string option_of(const CLI::App& command, std::string_view parameter) {
 
 std::optional<FileRole> file_role(const CLI::Option& option) {
   const BoundOption* const bound = find_bound(option);
-  return bound ? std::optional(bound->file) : std::nullopt;
+  return bound ? bound->file : std::nullopt;
+}
+
+void BoundParameters::stands_for(const CLI::Option* option, const std::string& parameter) {
+  bound_options()[option] = {given_, parameter, std::nullopt};
 }
 
 void BoundParameters::declare(CLI::App& app, const std::string& group, const Parameter& about, const Field& field,

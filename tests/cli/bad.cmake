@@ -288,7 +288,7 @@ semsurf_cli_usage(reconstruct_upsample "--upsample" reconstruct ${pair} --upsamp
 semsurf_cli_usage(reconstruct_afm_noise "--afm-noise: '1,1' is no noise" reconstruct --afm steps.txt --afm-noise 1,1 -o result)
 semsurf_cli_usage(reconstruct_sem_noise "--sem-noise: '1' has 1 numbers" reconstruct ${pair} --sem-noise 1 -o result)
 semsurf_cli_usage(reconstruct_levels "--no-level: with --level-method there are two ways" reconstruct ${pair} --level-method plane -o result)
-semsurf_cli_usage(reconstruct_level_method "no method 'flat'" reconstruct --afm steps.txt --level-method flat -o result)
+semsurf_cli_usage(reconstruct_level_method "level.method: .flat. is not known. Choose hough, plane, polynomial or none" reconstruct --afm steps.txt --level-method flat -o result)
 semsurf_cli_usage(register_none "AFM: no scan is given" register)
 semsurf_cli_usage(register_one "SEM: no SEM image is given" register steps.txt)
 semsurf_cli_usage(register_objective "no objective 'both'" register steps.txt steps_of_grey.tif --sem-pixel-size 3nm ${scan_options} --model secant.json --objective both)

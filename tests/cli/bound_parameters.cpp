@@ -66,6 +66,15 @@ TEST(BoundParameters, AreFoundByTheParametersName) {
   EXPECT_EQ(option_of(p.app, "other.thing"), "");
 }
 
+TEST(BoundParameters, OtherOptionsMayStandForAParameter) {
+  Program p({{"sample.plan", {.hidden = true}}});
+  std::string value;
+  CLI::Option* own = p.app.add_option("--own-plan", value);
+  p.bound.stands_for(own, "sample.plan");
+  EXPECT_EQ(option_of(p.app, "sample.plan"), "--own-plan");
+  EXPECT_FALSE(file_role(*own));
+}
+
 TEST(BoundParameters, RolesOfFilesEndWithTheirOptions) {
   CLI::App plain;
   for (int i = 0; i < 50; ++i) {   // options may lie where bound ones lay
