@@ -198,7 +198,8 @@ void add_preparation_options(CLI::App& app, ChainOptions& o) {
   app.add_option("--tip", o.tip, "A file, or a shape as in 'semsurf tip': cone:10nm,15deg (found blindly,\n"
                                  "taken as round)")
       ->type_name("FILE")->option_text("FILE|SHAPE")->group(group);
-  CLI::Option* size = app.add_option("--tip-size", o.tip_size, "Samples across a blind tip of any shape, odd (a round one)");
+  CLI::Option* size = app.add_option("--tip-size", o.tip_size,
+                                     "Samples across a blind tip of any shape, odd (a round one)");
   size->type_name("N")->group(group);
   o.bound.stands_for(size, "tip.size");
   CLI::Option* noise = app.add_option("--afm-noise", o.afm_noise,

@@ -59,7 +59,8 @@ TEST(BoundParameters, FormerNamesStandForTheSameAndAreNotShown) {
 }
 
 TEST(BoundParameters, AreFoundByTheParametersName) {
-  Program p({{"sample.width", {.name = "-w,--sample-width", .former = {"--breadth"}}}, {"sample.quick", {.hidden = true}}});
+  Program p({{"sample.width", {.name = "-w,--sample-width", .former = {"--breadth"}}},
+             {"sample.quick", {.hidden = true}}});
   EXPECT_EQ(option_of(p.app, "sample.width"), "--sample-width");
   EXPECT_EQ(option_of(p.app, "sample.count"), "--count");
   EXPECT_EQ(option_of(p.app, "sample.quick"), "");

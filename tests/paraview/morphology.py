@@ -42,7 +42,8 @@ def morphology_equals_the_command():
         semsurf(command, DATA / "noisy.gsf", "--tip", "tip.txt", "--distance", "2nm", "--upsample", 2, "-o", "out.txt")
         same(heights(make(Input=scan(), Tip=tip(), Distance=2, Upsample=2)), matrix(FOLDER / "out.txt"), command)
     plain = heights(scan())
-    for make, command, steps in [(simple.OpenbyTip, "open", ["erode", "dilate"]), (simple.ClosebyTip, "close", ["dilate", "erode"])]:
+    for make, command, steps in [(simple.OpenbyTip, "open", ["erode", "dilate"]),
+                                 (simple.ClosebyTip, "close", ["dilate", "erode"])]:
         semsurf(command, DATA / "noisy.gsf", "--tip", "tip.txt", "-o", "out.txt")
         got = heights(make(Input=scan(), Tip=tip()))
         same(got, matrix(FOLDER / "out.txt"), command)
@@ -187,5 +188,5 @@ def measured_noise_equals_the_command():
 
 
 run(tips_equal_the_command, morphology_equals_the_command, tips_are_resampled, certainty_equals_the_command,
-    cleaning_equals_the_command, found_tips_equal_the_command, outputs_tell_how_they_were_made, wrong_properties_are_refused,
-    progress_and_abort, the_library_tells_its_time, measured_noise_equals_the_command)
+    cleaning_equals_the_command, found_tips_equal_the_command, outputs_tell_how_they_were_made,
+    wrong_properties_are_refused, progress_and_abort, the_library_tells_its_time, measured_noise_equals_the_command)
