@@ -24,6 +24,22 @@ Grid<float> read_mask(const std::string& path, const HeightField& field) {
 
 }  // namespace
 
+std::vector<std::string> MaskInput::files() const {
+  std::vector<std::string> files;
+  for (const auto& file : {use, exclude})
+    if (file) files.push_back(*file);
+  return files;
+}
+
+void describe(ParameterVisitor& visit, MaskInput& input) {
+  visit(input.use, {.name = "scan.use",
+                    .help = "Image of the scan's size: only samples where it is not 0 count (.tif .png .exr .vti)",
+                    .file = FileRole::read});
+  visit(input.exclude, {.name = "scan.exclude",
+                        .help = "Image of the scan's size: samples where it is not 0 do not count",
+                        .file = FileRole::read});
+}
+
 void add_mask_input(CLI::App& app, MaskInput& input) {
   app.add_option("--use", input.use, "Only samples count where this image is not 0: .tif .png .exr .vti")
       ->type_name("FILE");
@@ -42,7 +58,7 @@ Grid<unsigned char> read_masks(const MaskInput& input, const HeightField& field)
   for (std::size_t i = 0; i < mask.size(); ++i)
     if (mask.data()[i] && (field.valid.empty() || field.valid.data()[i])) return mask;
   throw InvalidInput(input.use ? *input.use : *input.exclude, "no sample of the scan remains to count",
-                     "Check which of --use and --exclude is meant");
+                     "Check which of `scan.use` and `scan.exclude` is meant");
 }
 
 Grid<unsigned char> parse_mask_region(const std::string& text, const char* subject, const HeightField& field) {

@@ -4,16 +4,22 @@
 #include <CLI/App.hpp>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "surf/core/height_field.h"
+#include "surf/core/parameters.h"
 
 namespace surf::cli {
 
 /// Which samples of a scan decide: images of its size, where what is not 0 counts.
 struct MaskInput {
   std::optional<std::string> use, exclude;
-};
 
+  /// Those that are given.
+  std::vector<std::string> files() const;
+};
+/// scan.use and scan.exclude.
+void describe(ParameterVisitor& visit, MaskInput& input);
 /// --use and --exclude.
 void add_mask_input(CLI::App& app, MaskInput& input);
 

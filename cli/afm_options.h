@@ -2,34 +2,22 @@
 #pragma once
 
 #include <CLI/App.hpp>
-#include <map>
 #include <optional>
 #include <string>
-#include <vector>
 
-#include "surf/io/height_field_file.h"
+#include "bound_parameters.h"
+#include "surf/io/scan_parameters.h"
+#include "surf/workflow/step_record.h"
 
 namespace surf::cli {
 
-/// The scan that the AFM commands read, as text.
-struct ScanInput {
-  std::string file;
-  std::optional<std::string> channel, z_unit, pixel_size;
-};
+/// INPUT, --height-channel, --height-unit and --height-pitch. A `group` of "" hides them.
+void add_scan_input(CLI::App& app, BoundParameters& bound, std::string& file, const std::string& group = "Options");
 
-/// INPUT, --channel, --z-unit and --pixel-size (the last two for files that do not say).
-void add_scan_input(CLI::App& app, ScanInput& input);
-
-/// Reads it and prints what had to be assumed, unless `quiet`. Throws UsageError, FileError.
-io::HeightFieldFile read_scan(const ScanInput& input, bool quiet);
+/// Reads a scan and prints what had to be assumed, unless `quiet`. Throws UsageError, FileError.
+io::HeightFieldFile read_scan(const std::string& file, const io::HeightReadOptions& options, bool quiet);
 
 /// -o, required; checked with io::check_height_field_target before any work.
 void add_surface_output(CLI::App& app, std::optional<std::string>& output);
-
-/// What an output says of how it was made: version, the command's name, its options that change the
-/// result, the inputs with their hashes.
-std::map<std::string, std::string> provenance_of(const std::string& command,
-                                                 const std::map<std::string, std::string>& options,
-                                                 const std::vector<std::string>& inputs);
 
 }  // namespace surf::cli

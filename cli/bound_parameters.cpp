@@ -43,10 +43,21 @@ std::string wrapped(const std::string& text, std::size_t width) {
 
 constexpr std::size_t help_width = 74;
 
-/// Of the options that live; a new one may come where an old one was.
-std::map<const CLI::Option*, FileRole>& roles() {
-  static std::map<const CLI::Option*, FileRole> all;
+/// What an option stands for, while what it writes to is there: another option may come where it was.
+struct BoundOption {
+  std::weak_ptr<const GivenTexts> lives;
+  std::string parameter;
+  std::optional<FileRole> file;   // none: the command reads the option by itself
+};
+
+std::map<const CLI::Option*, BoundOption>& bound_options() {
+  static std::map<const CLI::Option*, BoundOption> all;
   return all;
+}
+
+const BoundOption* find_bound(const CLI::Option& option) {
+  const auto found = bound_options().find(&option);
+  return found == bound_options().end() || found->second.lives.expired() ? nullptr : &found->second;
 }
 
 }  // namespace
@@ -58,14 +69,21 @@ std::string option_name(std::string_view parameter) {
 }
 
 std::string option_of(const CLI::App& command, std::string_view parameter) {
+  for (const CLI::Option* option : command.get_options())
+    if (const BoundOption* bound = find_bound(*option);
+        bound && bound->parameter == parameter && !option->get_group().empty())
+      return option->nonpositional() ? "--" + option->get_lnames().front() : option->get_name();
   const std::string name = option_name(parameter);
   return command.get_option_no_throw(name) ? name : std::string();
 }
 
 std::optional<FileRole> file_role(const CLI::Option& option) {
-  const auto found = roles().find(&option);
-  if (found == roles().end()) return std::nullopt;
-  return found->second;
+  const BoundOption* const bound = find_bound(option);
+  return bound ? bound->file : std::nullopt;
+}
+
+void BoundParameters::stands_for(const CLI::Option* option, const std::string& parameter) {
+  bound_options()[option] = {given_, parameter, std::nullopt};
 }
 
 void BoundParameters::declare(CLI::App& app, const std::string& group, const Parameter& about, const Field& field,
@@ -101,7 +119,7 @@ void BoundParameters::declare(CLI::App& app, const std::string& group, const Par
       else option->expected(1)->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
     }
     option->group(in_group);
-    roles()[option] = about.file;
+    bound_options()[option] = {given_, about.name, about.file};
   };
   declare_as(name, heading);
   for (const std::string& former : look.former) declare_as(former, "");

@@ -55,6 +55,9 @@ class BoundParameters {
     read_parameters(to, [&](const Parameter& about, Field& field) { take(about, field, given); });
   }
 
+  /// Of an option that the command reads by itself: messages about the parameter name it (`option_of`).
+  void stands_for(const CLI::Option* option, const std::string& parameter);
+
   const GivenTexts& given() const { return *given_; }
   bool is_given(std::string_view name) const { return given_->contains(name); }
 

@@ -11,7 +11,6 @@
 #include <utility>
 
 #include "afm_masks.h"
-#include "afm_options.h"
 #include "calibrate_options.h"
 #include "commands.h"
 #include "exit_codes.h"
@@ -22,6 +21,8 @@
 #include "surf/io/files.h"
 #include "surf/io/image_file.h"
 #include "surf/io/model_file.h"
+#include "surf/io/height_field_file.h"
+#include "surf/workflow/step_record.h"
 #include "terminal.h"
 
 namespace surf::cli {
@@ -176,7 +177,7 @@ int work(const CalibrateOptions& o) {
   if (o.model) inputs.push_back(o.heights);
   for (const auto& input : {o.images, o.model, o.masks.use, o.masks.exclude})
     if (input) inputs.push_back(*input);
-  const auto made = provenance_of("calibrate", recorded(o), inputs);
+  const auto made = workflow::step_record("calibrate", recorded(o), {inputs.begin(), inputs.end()});
   if (!o.quiet) print_fit(c);
   for (const std::string& warning : c.warnings) print_warning(warning);
   if (o.residual) write_residual(*o.residual, real, images, c, plan.range_nm, made);

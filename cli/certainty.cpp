@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "surf/afm/certainty.h"
+#include "surf/workflow/certainty_job.h"
 
 #include <fmt/format.h>
 
@@ -10,6 +10,7 @@
 #include "common_options.h"
 #include "exit_codes.h"
 #include "options.h"
+#include "job_reporter.h"
 #include "surf/core/error.h"
 #include "surf/core/units.h"
 #include "surf/io/image_file.h"
@@ -26,34 +27,14 @@ Channels: certain; radius_px, in how large a neighbourhood the contact lies (-1:
 
 Examples:
   semsurf certainty scan.gsf --tip tip.gsf -o map.png
-  semsurf certainty scan.gsf --tip tip.gsf --noise 0.1nm -o map.vti --surface surface.gsf)";
+  semsurf certainty scan.gsf --tip tip.gsf --height-noise 0.1nm -o map.vti --eroded surface.gsf)";
 
 struct Options {
-  ScanInput input;
-  std::optional<std::string> tip, noise, sigmas, neighbourhood, distance, output, surface, threads;
+  BoundParameters bound;
+  std::string input;
+  std::optional<std::string> tip, output, eroded, threads;
   bool quiet = false;
 };
-
-double parse_not_below_0(const std::string& text, const char* subject) {
-  const double nm = parse_length_nm(text, subject);
-  if (nm >= 0) return nm;
-  throw UsageError(subject, fmt::format("'{}' is below 0", text), "Give a length, as 0.1nm");
-}
-
-CertaintyOptions plan(const Options& o) {
-  if (!o.output) throw UsageError("--output", "no output file is given", "Add -o map.png");
-  io::check_image_target(*o.output);
-  if (o.surface) io::check_height_field_target(*o.surface);
-  if (!o.tip) throw UsageError("--tip", "no tip is given", "Add --tip tip.gsf");
-  CertaintyOptions c;
-  if (o.noise) c.noise_nm = parse_not_below_0(*o.noise, "--noise");
-  if (o.distance) c.distance_nm = parse_not_below_0(*o.distance, "--distance");
-  if (o.sigmas) c.sigmas = static_cast<double>(parse_whole(*o.sigmas, "--sigmas", 1, 100));
-  if (o.neighbourhood)
-    c.neighbourhood = static_cast<int>(parse_whole(*o.neighbourhood, "--neighbourhood", 0, 100));
-  c.threads = parse_threads(o.threads);
-  return c;
-}
 
 Image to_image(const CertaintyMap& map) {
   const int w = map.level.width(), h = map.level.height();
@@ -86,41 +67,29 @@ void report(const CertaintyMap& map, const Options& o) {
                                           100 - percent(map.unexplained, map.image_pixels))
                             : "");
   print("{:<10} {}\n", "written", *o.output);
-  if (o.surface) print("{:<10} {}\n", "written", *o.surface);
+  if (o.eroded) print("{:<10} {}\n", "written", *o.eroded);
 }
 
 int work(const Options& o) {
-  CertaintyOptions options = plan(o);
-  const io::HeightFieldFile scan = read_scan(o.input, o.quiet);
-  const Tip tip = read_tip_for(o.tip, scan.field, o.quiet);
-  if (!o.noise) {
-    options.noise_nm = pixel_noise_nm(scan.field);
-    if (!o.quiet)
-      print_note(fmt::format("a noise of {} is taken from neighbouring pixels (their second differences); --noise says otherwise",
-                             format_length(options.noise_nm)));
-  }
-  Watched watched(!o.quiet);
-  options.watch = watched.watch();
-  const CertaintyMap map = certainty_map(scan.field, tip, options);
-  watched.clear();
-  std::map<std::string, std::string> made{{"noise_nm", fmt::format("{}", options.noise_nm)},
-                                          {"sigmas", fmt::format("{}", options.sigmas)},
-                                          {"neighbourhood_px", fmt::format("{}", map.neighbourhood)},
-                                          {"distance_nm", fmt::format("{}", options.distance_nm)}};
-  if (!scan.channel.empty()) made["channel"] = scan.channel;
-  const auto provenance = provenance_of("certainty", made, {o.input.file, *o.tip});
-  Image image = to_image(map);
-  image.metadata = provenance;
+  if (!o.output) throw UsageError("--output", "no output file is given", "Add -o map.png");
+  io::check_image_target(*o.output);
+  if (o.eroded) io::check_height_field_target(*o.eroded);
+  if (!o.tip) throw UsageError("--tip", "no tip is given", "Add --tip tip.gsf");
+  workflow::CertaintyParameters parameters;
+  io::HeightReadOptions reading;
+  o.bound.apply(parameters), o.bound.apply(reading);
+  parameters.threads = parse_threads(o.threads);
+  const HeightField scan = read_scan(o.input, reading, o.quiet).field;
+  const Tip tip = read_tip_for(o.tip, scan, o.quiet);
+  const workflow::CertaintyResult certain = workflow::certainty(scan, tip, parameters, JobReporter(o.quiet));
+  const auto record =
+      workflow::step_record("certainty", workflow::records_of(certain.used, reading), {o.input, *o.tip});
+  Image image = to_image(certain.map);
+  image.metadata = record;
   io::write_image(*o.output, image);
-  if (o.surface) io::write_height_field(*o.surface, map.surface, provenance);
-  if (!o.quiet) report(map, o);
-  if (20 * map.unexplained <= map.image_pixels) return 0;
-  const bool most = 2 * map.unexplained > map.image_pixels;
-  print_warning(fmt::format("{:.0f} % of the scan cannot have been made by this tip with this noise: the tip may be "
-                            "sharper than its file says, or --noise larger{}",
-                            100.0 * static_cast<double>(map.unexplained) / static_cast<double>(map.image_pixels),
-                            most ? ". A map of so little of the scan is not to be trusted" : ""));
-  return most ? exit_untrustworthy : 0;
+  if (o.eroded) io::write_height_field(*o.eroded, certain.map.surface, record);
+  if (!o.quiet) report(certain.map, o);
+  return certain.trustworthy ? 0 : exit_untrustworthy;
 }
 
 }  // namespace
@@ -129,18 +98,13 @@ void add_certainty(CLI::App& app, Action& action) {
   const auto o = std::make_shared<Options>();
   CLI::App* sub = app.add_subcommand("certainty", "Where an eroded scan is the surface");
   sub->group("Commands");
-  add_scan_input(*sub, o->input);
+  add_scan_input(*sub, o->bound, o->input);
   add_tip_input(*sub, o->tip);
-  sub->add_option("--noise", o->noise, "Standard deviation of the scan's noise (from neighbouring pixels)")
-      ->type_name("LENGTH");
-  sub->add_option("--sigmas", o->sigmas, "The noise is within so many standard deviations (3)")->type_name("N");
-  sub->add_option("--neighbourhood", o->neighbourhood,
-                  "How many pixels contacts may lie apart (as flat as the apex is within the noise)")
-      ->type_name("PIXELS");
-  sub->add_option("--distance", o->distance, "That the tip keeps from the surface, of non-contact scans (0nm)")
-      ->type_name("LENGTH");
+  o->bound.looks["scan.height_noise"].former = {"--noise"};
+  o->bound.add<workflow::CertaintyParameters>(*sub, "Options");
   sub->add_option("-o,--output", o->output, "The map: .png, .tif, .exr or .vti")->type_name("FILE");
-  sub->add_option("--surface", o->surface, "Also the eroded scan: .gsf, .tif, .txt or .vti")->type_name("FILE");
+  sub->add_option("--eroded", o->eroded, "The eroded scan: .gsf, .tif, .txt or .vti")->type_name("FILE");
+  sub->add_option("--surface", o->eroded)->type_name("FILE")->group("");   // its former name
   add_threads_option(*sub, o->threads);
   add_quiet_flag(*sub, o->quiet);
   sub->footer(examples);

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <tuple>
 
 #include "afm_options.h"
 #include "common_options.h"
@@ -17,23 +16,23 @@
 #include "surf/io/landmarks_file.h"
 #include "surf/io/sim/materials.h"
 #include "surf/io/tip_file.h"
+#include "surf/workflow/tip_job.h"
 #include "terminal.h"
-#include "tip_shape_option.h"
 
 namespace surf::cli {
 namespace {
 
 using workflow::LevelMethod;
 
-LevelMethod parse_level(const ChainOptions& o) {
-  if (o.no_level && o.level_method)
+workflow::LevelParameters level_parameters(const ChainOptions& o) {
+  workflow::LevelParameters level;
+  o.bound.apply(level);
+  if (o.no_level && o.bound.is_given("level.method"))
     throw UsageError("--no-level", "with --level-method there are two ways", "Leave out one of the two");
-  const std::string text = o.no_level ? "none" : o.level_method.value_or("hough");
-  if (text == "hough") return LevelMethod::hough;
-  if (text == "plane") return LevelMethod::plane;
-  if (text == "polynomial") return LevelMethod::polynomial;
-  if (text == "none") return LevelMethod::none;
-  throw UsageError("--level-method", fmt::format("there is no method '{}'", text), "Choose hough, plane, polynomial or none");
+  if (o.no_level) level.method = LevelMethod::none;
+  if (o.bound.is_given("level.degree") && level.method != LevelMethod::polynomial)
+    throw UsageError("--level-degree", "only a polynomial has one", "Add --level-method polynomial");
+  return level;
 }
 
 /// "ALPHA,INNOVATION", the innovation in nm^2.
@@ -45,8 +44,9 @@ AfmNoise parse_afm_noise(const std::string& text) {
     if (numbers.size() != 2) throw InvalidInput("", "", "");
     validate(noise);
   } catch (const InvalidInput&) {
-    throw UsageError("--afm-noise", fmt::format("'{}' is no noise", text),
-                     "Give alpha, below 1, and the variance of the innovation in nm^2, as 0.8,0.2; 'semsurf noise' finds them");
+    throw UsageError(
+        "--afm-noise", fmt::format("'{}' is no noise", text),
+        "Give alpha, below 1, and the variance of the innovation in nm^2, as 0.8,0.2; 'semsurf noise scan' finds them");
   }
   return noise;
 }
@@ -61,23 +61,15 @@ Tip read_tip_option(const ChainOptions& o, const HeightField& scan) {
   if (!shape) return io::read_tip(text);
   const int shorter = std::min(scan.z_nm.width(), scan.z_nm.height());
   const int usual = std::min(41, shorter / 2 * 2 - 1);
-  return parse_tip_shape(text, o.tip_size.value_or(std::to_string(usual)),
-                         fmt::format("{}nmx{}nm", format_exact(scan.pitch_x_nm), format_exact(scan.pitch_y_nm)));
+  workflow::TipShapeParameters parameters{workflow::parse_tip_shape(text, "--tip"), usual, scan.pitch_x_nm,
+                                          scan.pitch_y_nm};
+  if (o.tip_size) parameters.size = static_cast<int>(parse_whole(*o.tip_size, "--tip-size", 1, 4001));
+  return workflow::tip_by_shape(parameters, "--tip");
 }
 
 void take_preparation(const ChainOptions& o, workflow::AfmInput& afm) {
   workflow::AfmPreparationOptions& p = afm.preparation;
-  p.level = parse_level(o);
-  if (o.level_degree) {
-    if (p.level != LevelMethod::polynomial)
-      throw UsageError("--level-degree", "only a polynomial has one", "Add --level-method polynomial");
-    p.degree = static_cast<int>(parse_whole(*o.level_degree, "--level-degree", 0, 6));
-  }
-  if (o.rows) {
-    if (*o.rows == "median") p.rows = RowMethod::median;
-    else if (*o.rows == "difference") p.rows = RowMethod::difference;
-    else throw UsageError("--rows", fmt::format("'{}' is no way to level rows", *o.rows), "Choose median or difference");
-  }
+  p.level = level_parameters(o);
   if (o.afm_noise) p.noise = parse_afm_noise(*o.afm_noise);
   if (o.tip_size) p.tip_size = static_cast<int>(parse_whole(*o.tip_size, "--tip-size", 3, 1001));
   if (o.tip) p.tip = read_tip_option(o, afm.scan);
@@ -90,13 +82,10 @@ PlacedImage place_of(const HeightField& f) { return {f.z_nm, f.valid, f.pitch_x_
 }  // namespace
 
 workflow::AfmInput read_afm(const ChainOptions& o) {
-  ScanInput input;
-  input.file = o.afm;
-  input.channel = o.afm_channel;
-  input.z_unit = o.afm_z_unit;
-  input.pixel_size = o.afm_pixel_size;
+  io::HeightReadOptions reading;
+  o.bound.apply(reading);
   workflow::AfmInput afm;
-  afm.scan = read_scan(input, o.quiet).field;
+  afm.scan = read_scan(o.afm, reading, o.quiet).field;
   afm.file = o.afm;
   take_preparation(o, afm);
   return afm;
@@ -149,13 +138,13 @@ workflow::PoseOptions pose_options(const ChainOptions& o, const HeightField& afm
 
 std::vector<std::string> input_words(const ChainOptions& o) {
   std::vector<std::string> words;
+  for (const auto& [parameter, texts] : o.bound.given())
+    if (parameter != "level.method") words.insert(words.end(), {o.bound.looks.at(parameter).name, texts.back()});
   for (const auto& [value, option] :
-       {std::pair{&o.afm_channel, "--afm-channel"}, std::pair{&o.afm_z_unit, "--afm-z-unit"},
-        std::pair{&o.afm_pixel_size, "--afm-pixel-size"}, std::pair{&o.sem_channel, "--sem-channel"},
-        std::pair{&o.sem_pixel_size, "--sem-pixel-size"}, std::pair{&o.level_degree, "--level-degree"},
-        std::pair{&o.rows, "--rows"}})
+       {std::pair{&o.sem_channel, "--sem-channel"}, std::pair{&o.sem_pixel_size, "--sem-pixel-size"}})
     if (value->has_value()) words.insert(words.end(), {option, **value});
-  if (!o.afm.empty()) words.insert(words.end(), {"--level-method", o.no_level ? "none" : o.level_method.value_or("hough")});
+  if (!o.afm.empty())
+    words.insert(words.end(), {"--level-method", record_of(level_parameters(o)).at("level.method")});
   return words;
 }
 
@@ -189,12 +178,10 @@ void print_pose(const workflow::Pose& pose, double sem_pixel_nm) {
 
 void add_chain_inputs(CLI::App& app, ChainOptions& o) {
   const char* inputs = "Inputs";
-  app.add_option("--afm-channel", o.afm_channel, "Channel of the scan, by name or number (the first of heights)")
-      ->type_name("NAME")->group(inputs);
-  app.add_option("--afm-z-unit", o.afm_z_unit, "Length of one unit of height, of scans that do not say (nm)")
-      ->type_name("LENGTH")->group(inputs);
-  app.add_option("--afm-pixel-size", o.afm_pixel_size, "Of scans that do not say, 2nm or 2nmx3nm (1 nm)")
-      ->type_name("LENGTH")->group(inputs);
+  o.bound.looks["scan.height_channel"].name = "--afm-channel";
+  o.bound.looks["scan.height_unit"].name = "--afm-z-unit";
+  o.bound.looks["scan.height_pitch"].name = "--afm-pixel-size";
+  o.bound.add<io::HeightReadOptions>(app, inputs);
   app.add_option("--sem-channel", o.sem_channel, "Channel of the SEM image, by name (the first)")
       ->type_name("NAME")->group(inputs);
   app.add_option("--sem-pixel-size", o.sem_pixel_size, "Of the SEM image (from the microscope's metadata)")
@@ -203,19 +190,23 @@ void add_chain_inputs(CLI::App& app, ChainOptions& o) {
 
 void add_preparation_options(CLI::App& app, ChainOptions& o) {
   const char* group = "AFM scan (each step is found if it is not said)";
-  app.add_option("--level-method", o.level_method, "What is taken off the scan (hough); see 'semsurf level'")
-      ->type_name("hough|plane|polynomial|none")->group(group);
-  app.add_option("--level-degree", o.level_degree, "Of the polynomial, 0 to 6 (2)")->type_name("N")->group(group);
+  o.bound.looks["level.method"].name = "--level-method";
+  o.bound.looks["level.degree"].name = "--level-degree";
+  o.bound.looks["level.rows"].name = "--rows";
+  o.bound.add<workflow::LevelParameters>(app, group, {}, {"level.method", "level.degree", "level.rows"});
   app.add_flag("--no-level", o.no_level, "The scan is level")->group(group);
-  app.add_option("--rows", o.rows, "Take off steps between scan lines, too")->type_name("median|difference")->group(group);
   app.add_option("--tip", o.tip, "A file, or a shape as in 'semsurf tip': cone:10nm,15deg (found blindly,\n"
                                  "taken as round)")
       ->type_name("FILE")->option_text("FILE|SHAPE")->group(group);
-  app.add_option("--tip-size", o.tip_size, "Samples across a blind tip of any shape, odd (a round one)")
-      ->type_name("N")->group(group);
-  app.add_option("--afm-noise", o.afm_noise, "Correlation of neighbours and variance of the innovation in nm^2\n"
-                                             "(estimated, as 'semsurf noise' does)")
-      ->type_name("ALPHA,INNOVATION")->group(group);
+  CLI::Option* size = app.add_option("--tip-size", o.tip_size,
+                                     "Samples across a blind tip of any shape, odd (a round one)");
+  size->type_name("N")->group(group);
+  o.bound.stands_for(size, "tip.size");
+  CLI::Option* noise = app.add_option("--afm-noise", o.afm_noise,
+                                      "Correlation of neighbours and variance of the innovation in nm^2\n"
+                                      "(estimated, as 'semsurf noise scan' does)");
+  noise->type_name("ALPHA,INNOVATION")->group(group);
+  o.bound.stands_for(noise, "scan.height_noise");
 }
 
 void add_model_request(CLI::App& app, ChainOptions& o) {

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "bound_parameters.h"
 #include "surf/workflow/register_job.h"
 
 namespace surf::cli {
@@ -13,8 +14,9 @@ namespace surf::cli {
 /// What `register` and `reconstruct` are told about their inputs and how these come to lie on each other, as text.
 struct ChainOptions {
   std::string afm, sem;   ///< files
-  std::optional<std::string> afm_channel, afm_z_unit, afm_pixel_size, sem_channel, sem_pixel_size;
-  std::optional<std::string> level_method, level_degree, rows, tip, tip_size, afm_noise, seed;
+  BoundParameters bound;   ///< of how the scan is read and levelled
+  std::optional<std::string> sem_channel, sem_pixel_size;
+  std::optional<std::string> tip, tip_size, afm_noise, seed;
   std::optional<std::string> material, energy, spot, model, cache;
   std::vector<std::string> materials;
   std::optional<std::string> landmarks, objective, threads;

@@ -22,6 +22,8 @@ void add_noise(CLI::App& app, Action& action);
 void add_mesh(CLI::App& app, Action& action);
 void add_erode(CLI::App& app, Action& action);
 void add_dilate(CLI::App& app, Action& action);
+void add_open(CLI::App& app, Action& action);
+void add_close(CLI::App& app, Action& action);
 void add_certainty(CLI::App& app, Action& action);
 void add_train(CLI::App& app, Action& action);
 void add_predict(CLI::App& app, Action& action);

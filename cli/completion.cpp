@@ -79,6 +79,7 @@ Argument read_argument(const CLI::Option& option) {
 Command read_command(const CLI::App& app) {
   Command command{app.get_name(), app.get_description(), {}, {}, {}};
   for (const CLI::Option* option : app.get_options()) {
+    if (option->get_group().empty()) continue;   // a former name
     if (option->nonpositional())
       command.options.push_back(read_argument(*option));
     else

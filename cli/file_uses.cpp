@@ -20,8 +20,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::array<std::string_view, 9> output_names{"output", "plot",   "csv",     "surface",   "mask",
-                                                       "picture", "folded", "residual", "checkpoint"};
+constexpr std::array<std::string_view, 11> output_names{"output",    "plot",           "csv",     "surface", "eroded",
+                                                        "mask",      "substrate-mask", "picture", "folded",  "residual",
+                                                        "checkpoint"};
 
 bool is_file(const fs::path& path) {
   std::error_code ignored;

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <memory>
 
-#include "afm_options.h"
 #include "commands.h"
 #include "common_options.h"
 #include "info.h"
@@ -18,6 +17,7 @@
 #include "surf/io/mesh_file.h"
 #include "surf/io/surface_file.h"
 #include "surf/io/tracks_file.h"
+#include "surf/workflow/step_record.h"
 #include "terminal.h"
 
 namespace surf::cli {
@@ -164,7 +164,7 @@ std::map<std::string, std::string> provenance(const Options& o, const Plan& p) {
   for (const FileChannel& f : p.scalars) files.push_back(f.file.string());
   if (p.drape) files.push_back(p.drape->file.string());
   if (o.tracks) files.push_back(*o.tracks);
-  return provenance_of("mesh", made, files);
+  return workflow::step_record("mesh", made, {files.begin(), files.end()});
 }
 
 SurfaceScene make_scene(const Options& o, const Plan& p, Watched& watched) {

@@ -63,16 +63,17 @@ void print_set(const FittedCounts& f) {
 
 }  // namespace
 
-void add_counts_options(CLI::App& app, CountsInput& input) {
-  const char* group = "Simulated counts";
-  app.add_option("--counts", input.scene, "Counts of a beam that stands still on this scene")
-      ->type_name("SCENE.toml")->group(group);
-  app.add_option("--at", input.at, "Where, X,Y in the image (its middle)")->type_name("POINT")->group(group);
+void add_counts_options(CLI::App& app, CountsInput& input, const std::string& group) {
+  app.add_option("--at", input.at, "Point of the image that the beam stands on, X,Y (its middle)")
+      ->type_name("POINT")
+      ->group(group);
   app.add_option("--electrons", input.electrons, "Primaries in a trial (1,20,100)")->type_name("N,N,...")->group(group);
-  app.add_option("--trials", input.trials, "With each number of primaries (10000)")->type_name("N")->group(group);
-  app.add_option("--seed", input.seed, "Of the random numbers (the scene's, or 1)")->type_name("N")->group(group);
+  app.add_option("--trials", input.trials, "Trials with each number of primaries (10000)")
+      ->type_name("N")
+      ->group(group);
+  app.add_option("--seed", input.seed, "Seed of the random numbers (the scene's, or 1)")->type_name("N")->group(group);
   add_threads_option(app, input.threads)->group(group);
-  app.add_option("--csv", input.csv, "The counts, seen and expected")->type_name("FILE.csv")->group(group);
+  app.add_option("--csv", input.csv, "Table of the counts, seen and expected")->type_name("FILE.csv")->group(group);
 }
 
 void require_counts(const CountsInput& input) {

@@ -7,14 +7,15 @@
 
 namespace surf::cli {
 
-/// `semsurf noise --counts`: how many electrons a beam that stands still gives.
+/// `semsurf noise counts`: how many electrons a beam that stands still gives.
 struct CountsInput {
   std::optional<std::string> scene, at, electrons, trials, seed, threads, csv;
 };
 
-void add_counts_options(CLI::App& app, CountsInput& input);
+/// All but the scene. A `group` of "" hides them.
+void add_counts_options(CLI::App& app, CountsInput& input, const std::string& group);
 
-/// Throws UsageError if one of them is given without --counts.
+/// Throws UsageError if one of them is given without a scene.
 void require_counts(const CountsInput& input);
 
 int print_counts(const CountsInput& input, const std::optional<std::string>& plot, bool quiet);

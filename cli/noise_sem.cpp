@@ -53,14 +53,14 @@ bool has_unit(const std::string& text) {
 /// lengths from the image's origin, up.
 PixelRectangle parse_rectangle(const std::string& text, const SemPicture& picture) {
   const PlacedImage& image = picture.image;
-  const mc::ScanRequest::Region r = parse_region(text, "--region");
+  const mc::ScanRequest::Region r = parse_region(text, "--flat-region");
   const auto whole = [](double v) { return static_cast<int>(std::clamp(std::round(v), -1e9, 1e9)); };
   if (!has_unit(text)) {
     const int height = image.values.height();
     return {whole(r.x0_nm), height - whole(r.y1_nm), whole(r.x1_nm), height - whole(r.y0_nm)};
   }
   if (!picture.has_scale)
-    throw UsageError("--region", "the image does not say how large its pixels are",
+    throw UsageError("--flat-region", "the image does not say how large its pixels are",
                      "Add --pixel-size, or give the region in pixels");
   const auto column = [&](double x) { return whole((x - image.origin_x_nm) / image.pitch_x_nm + 0.5); };
   const auto row = [&](double y) { return whole((y - image.origin_y_nm) / image.pitch_y_nm + 0.5); };
@@ -100,13 +100,15 @@ void print_estimate(const SemNoiseEstimate& e) {
 
 }  // namespace
 
-void add_sem_noise_options(CLI::App& app, SemNoiseInput& input) {
-  const char* group = "SEM image";
-  app.add_option("--sem", input.image, "The noise of this SEM image, FILE or FILE:CHANNEL")->type_name("FILE")->group(group);
-  app.add_option("--region", input.regions,
+void add_sem_noise_options(CLI::App& app, SemNoiseInput& input, const std::string& group) {
+  app.add_option("--flat-region", input.regions,
                  "A flat place X0,Y0,X1,Y1: pixels from the upper left, or lengths with units; may be repeated "
                  "(flat blocks are found)")
       ->type_name("RECTANGLE")->option_text("RECTANGLE")->allow_extra_args(false)->group(group);
+  app.add_option("--region", input.regions)
+      ->type_name("RECTANGLE")
+      ->allow_extra_args(false)
+      ->group("");   // its former name
   app.add_option("--block", input.block, "Side of the blocks, 6 to 64 pixels (16, 12 or 8)")->type_name("N")->group(group);
   app.add_option("--black", input.black, "Pixels at or below this level are saturated (found)")
       ->type_name("LEVEL")->group(group);
@@ -116,7 +118,7 @@ void add_sem_noise_options(CLI::App& app, SemNoiseInput& input) {
 
 void require_sem(const SemNoiseInput& input) {
   if (input.image) return;
-  const char* given = !input.regions.empty() ? "--region" : input.block ? "--block" : input.black ? "--black"
+  const char* given = !input.regions.empty() ? "--flat-region" : input.block ? "--block" : input.black ? "--black"
                       : input.white ? "--white" : nullptr;
   if (given) throw UsageError(given, "it is of SEM images, and none is given", "Add --sem image.tif, or leave it out");
 }

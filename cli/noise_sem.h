@@ -8,15 +8,16 @@
 
 namespace surf::cli {
 
-/// `semsurf noise --sem`: the noise of one SEM image.
+/// `semsurf noise sem`: the noise of one SEM image.
 struct SemNoiseInput {
   std::optional<std::string> image, pixel_size, block, black, white;
   std::vector<std::string> regions;
 };
 
-void add_sem_noise_options(CLI::App& app, SemNoiseInput& input);
+/// All but the image and its pixel size. A `group` of "" hides them.
+void add_sem_noise_options(CLI::App& app, SemNoiseInput& input, const std::string& group);
 
-/// Throws UsageError if one of them is given without --sem.
+/// Throws UsageError if one of them is given without an image.
 void require_sem(const SemNoiseInput& input);
 
 int print_sem_noise(const SemNoiseInput& input, const std::optional<std::string>& plot, bool quiet);

@@ -12,6 +12,7 @@
 #include "surf/core/error.h"
 #include "surf/core/units.h"
 #include "surf/core/words.h"
+#include "surf/io/scan_parameters.h"
 
 namespace surf::cli {
 namespace {
@@ -76,13 +77,7 @@ std::pair<int, int> parse_size(std::string_view text, std::string_view subject) 
 }
 
 std::pair<double, double> parse_pixel_size(std::string_view text, std::string_view subject) {
-  const auto parts = split(text, ",x");
-  if (parts.size() > 2)
-    throw UsageError(std::string(subject), fmt::format("'{}' is not a pixel size", text),
-                     "Write one length, or two for x and y: 2nm or 2nmx3nm");
-  const double x = parse_length_nm(parts[0], subject);
-  const double y = parts.size() == 1 ? x : parse_length_nm(parts[1], subject);
-  return {x, y};
+  return io::parse_pitch_nm(text, subject);
 }
 
 mc::ScanRequest::Region parse_region(std::string_view text, std::string_view subject) {
@@ -101,14 +96,7 @@ io::MeshUnit parse_mesh_unit(const std::optional<std::string>& unit, bool overri
   return {parse_unit_nm(*unit, "--unit"), overrides};
 }
 
-double parse_unit_nm(std::string_view text, std::string_view subject) {
-  const bool named = text.find_first_of("0123456789") == std::string_view::npos;
-  const double unit_nm = named ? unit_length_nm(text, subject) : parse_length_nm(text, subject);
-  if (!(unit_nm > 0))
-    throw UsageError(std::string(subject), "it must be above zero",
-                     "Write a length, as um or 25.4mm");
-  return unit_nm;
-}
+double parse_unit_nm(std::string_view text, std::string_view subject) { return io::parse_unit_nm(text, subject); }
 
 Edge parse_edge(std::string_view text, std::string_view subject) {
   if (text == "mirror") return Edge::mirror;

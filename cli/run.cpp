@@ -54,7 +54,8 @@ class HelpFormatter : public CLI::Formatter {
   std::string make_help(const CLI::App* app, std::string name,
                         CLI::AppFormatMode mode) const override {
     const std::string help = CLI::Formatter::make_help(app, name, mode);
-    return CLI::detail::find_and_replace(help, "\n\n\n", "\n\n");
+    const std::string usage = CLI::detail::find_and_replace(help, " [] ", " ");   // of a hidden input
+    return CLI::detail::find_and_replace(usage, "\n\n\n", "\n\n");
   }
 };
 
@@ -68,7 +69,8 @@ std::string version_text() {
 std::vector<std::string> names_of_options(const CLI::App& app) {
   std::vector<std::string> names;
   for (const CLI::Option* option : app.get_options())
-    for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+    for (const std::string& name : option->get_group().empty() ? std::vector<std::string>{} : option->get_lnames())
+      names.push_back("--" + name);
   return names;
 }
 
@@ -204,6 +206,8 @@ int parse_and_act(const std::vector<std::string>& arguments) {
   add_mesh(app, action);
   add_erode(app, action);
   add_dilate(app, action);
+  add_open(app, action);
+  add_close(app, action);
   add_certainty(app, action);
   add_train(app, action);
   add_predict(app, action);

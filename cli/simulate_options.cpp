@@ -43,6 +43,9 @@ void set_looks(BoundParameters& p) {
   p.headings = {{"specimen", "Specimen"},
                 {"beam", "Beam"},
                 {"scan", "Scan"},
+                {"scan.height_pitch", "Specimen"},
+                {"scan.height_unit", "Specimen"},
+                {"scan.height_channel", "Specimen"},
                 {"simulation", "Simulation"},
                 {"simulation.detector", "Detectors, besides SE and BSE"},
                 {"output.spectra", "Detectors, besides SE and BSE"},
@@ -54,8 +57,8 @@ void set_looks(BoundParameters& p) {
                 {"job.threads", "Simulation"},
                 {"job.cache", "Simulation"}};
   p.looks["specimen.input"] = {.name = "INPUT", .positional = true};
-  p.looks["specimen.height_pitch"] = {.former = {"--pitch"}};
-  p.looks["specimen.height_unit"] = {.former = {"--z-unit"}};
+  p.looks["scan.height_pitch"] = {.former = {"--pitch"}};
+  p.looks["scan.height_unit"] = {.former = {"--z-unit"}};
   p.looks["output.png_channel"] = {.former = {"--channel"}};
   p.looks["output"] = {.name = "-o,--output"};
 }

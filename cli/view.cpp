@@ -7,7 +7,6 @@
 #include <memory>
 #include <tuple>
 
-#include "afm_options.h"
 #include "commands.h"
 #include "common_options.h"
 #include "image_sampler.h"
@@ -15,6 +14,7 @@
 #include "surf/core/error.h"
 #include "surf/core/units.h"
 #include "surf/io/web_page.h"
+#include "surf/workflow/step_record.h"
 #include "terminal.h"
 #include "view_inputs.h"
 #include "view_scalar.h"
@@ -163,7 +163,7 @@ int work(const Options& o) {
   if (o.unit) settings["unit"] = *o.unit;
   if (o.override_unit) settings["override-unit"] = "on";
   if (reading.step > 1) settings["step"] = std::to_string(reading.step);
-  page.metadata = provenance_of("view", settings, read);
+  page.metadata = workflow::step_record("view", settings, {read.begin(), read.end()});
 
   const auto summary = io::write_web_page(
       *o.output, page, [&](double part, double total) { bar.show(steps / 2 * (1 + part / total), steps, "files"); },

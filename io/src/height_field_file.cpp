@@ -39,7 +39,7 @@ const ScanChannel& choose(const std::string& file, const Scan& scan, const std::
     if (found == all.end()) found = std::find_if(all.begin(), all.end(), holds_heights);
     if (found != all.end()) return *found;
     throw InvalidInput(file, fmt::format("none of its channels holds heights: {}", names_of(scan, false)),
-                       "Choose one by name, and give the nm of its unit with `z_unit`");
+                       "Choose one by name, and give the nm of its unit with `scan.height_unit`");
   }
   for (const ScanChannel& channel : all)
     if (channel.name == wanted) return channel;
@@ -60,7 +60,8 @@ double z_unit_nm(const std::string& file, const Scan& scan, const ScanChannel& c
                      "Give a positive length");
   if (const auto nm = scan_length_nm(channel.z_unit)) {
     if (options.z_unit_nm)
-      notes.push_back(fmt::format("the file says that heights are in {}: `z_unit` is not used", channel.z_unit));
+      notes.push_back(
+          fmt::format("the file says that heights are in {}: `scan.height_unit` is not used", channel.z_unit));
     return *nm;
   }
   if (trimmed(channel.z_unit).empty()) {
@@ -74,9 +75,10 @@ double z_unit_nm(const std::string& file, const Scan& scan, const ScanChannel& c
   }
   const std::string heights = names_of(scan, true);
   throw InvalidInput(file, fmt::format("its channel '{}' is in {}, which is no length", channel.name, channel.z_unit),
-                     heights.empty() ? fmt::format("Give the nm of one {} with `z_unit`", channel.z_unit)
-                                     : fmt::format("Choose heights ({}), or give the nm of one {} with `z_unit`",
-                                                   heights, channel.z_unit));
+                     heights.empty()
+                         ? fmt::format("Give the nm of one {} with `scan.height_unit`", channel.z_unit)
+                         : fmt::format("Choose heights ({}), or give the nm of one {} with `scan.height_unit`", heights,
+                                       channel.z_unit));
 }
 
 double pitch_nm(const std::string& file, char axis, double of_file, bool guessed, std::optional<double> given,

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 #include <vtkDataArray.h>
+#include <vtkImageData.h>
 #include <vtkInformation.h>
 #include <vtkInformationVector.h>
 #include <vtkObjectFactory.h>
@@ -14,8 +15,9 @@
 #include "checks.h"
 #include "convert/tip.h"
 #include "pipeline.h"
-#include "surf/afm/certainty.h"
+#include "reports.h"
 #include "surf/core/error.h"
+#include "surf/workflow/certainty_job.h"
 
 vtkStandardNewMacro(vtkSemsurfCertainty);
 
@@ -49,28 +51,24 @@ int vtkSemsurfCertainty::RequestData(vtkInformation*, vtkInformationVector** inp
     if (this->Neighbourhood < -1 || this->Neighbourhood > 100)
       throw UsageError("Neighbourhood", fmt::format("{} is not in -1 to 100", this->Neighbourhood),
                        "Give -1");
+    workflow::CertaintyParameters parameters;
+    if (this->Noise >= 0) parameters.noise_nm = this->Noise;
+    parameters.sigmas = this->Sigmas;
+    if (this->Neighbourhood >= 0) parameters.neighbourhood = this->Neighbourhood;
+    parameters.distance_nm = this->Distance;
     std::string name;
     const HeightField field = this->Heights(inputs, name);
     vtkImageData* const tip_image = pv::image_input(inputs, 1, "Tip");
-    const Tip tip = pv::to_tip_for(tip_image, pv::chosen_array(this, 1, tip_image), field, "Tip");
-    if (!tip.doubt.empty()) pv::warn(this, fmt::format("the tip says that it is not to be trusted: {}", tip.doubt));
-    CertaintyMap map;
+    std::vector<std::string> warnings;
+    const Tip tip = pv::to_tip_for(tip_image, pv::chosen_array(this, 1, tip_image), field, "Tip", warnings);
+    workflow::CertaintyResult certain;
     pv::work(this, [&](const Watch& watch) {
-      map = certainty_map(field, tip,
-                          {.noise_nm = this->Noise < 0 ? pixel_noise_nm(field) : this->Noise,
-                           .sigmas = this->Sigmas,
-                           .neighbourhood = this->Neighbourhood,
-                           .distance_nm = this->Distance,
-                           .watch = watch});
+      certain = workflow::certainty(field, tip, parameters, pv::hear(watch, warnings));
     });
-    if (20 * map.unexplained > map.image_pixels)
-      pv::warn(this,
-               fmt::format(
-                   "{:.0f} % of the scan cannot have been made by this tip with this noise: the tip may be "
-                   "sharper than it is said to be, or Noise larger",
-                   100.0 * static_cast<double>(map.unexplained) / static_cast<double>(map.image_pixels)));
-    const auto image = this->WithHeights(inputs, std::move(map.surface), name);
-    add_map(image, map.level);
+    pv::warn(this, warnings);
+    const auto image = this->WithHeights(inputs, std::move(certain.map.surface), name);
+    add_map(image, certain.map.level);
+    pv::add_record(image, "certainty", record_of(certain.used));
     pv::give(outputs->GetInformationObject(0), image);
   });
 }

@@ -2,6 +2,7 @@
 #include "vtkSemsurfClean.h"
 
 #include <fmt/format.h>
+#include <vtkImageData.h>
 #include <vtkInformation.h>
 #include <vtkInformationVector.h>
 #include <vtkObjectFactory.h>
@@ -11,9 +12,9 @@
 #include "attempt.h"
 #include "checks.h"
 #include "pipeline.h"
-#include "surf/afm/certainty.h"
-#include "surf/afm/clean.h"
+#include "reports.h"
 #include "surf/core/error.h"
+#include "surf/workflow/clean_job.h"
 
 vtkStandardNewMacro(vtkSemsurfClean);
 
@@ -35,42 +36,27 @@ int checked_width(int width, const char* property) {
 int vtkSemsurfClean::RequestData(vtkInformation*, vtkInformationVector** inputs,
                                  vtkInformationVector* outputs) {
   return pv::attempt(this, [&] {
-    const auto neighbourhood = this->Disc ? Neighbourhood::disc : Neighbourhood::square;
     const int spikes = checked_width(this->SpikeWidth, "Spike Width");
     const int median = checked_width(this->MedianWidth, "Median Width");
     const int closing = checked_width(this->ClosingWidth, "Closing Width");
     pv::need_length(this->SpikeLimit, "Spike Limit");
+    workflow::CleanParameters parameters;
+    if (this->RemoveSpikes) {
+      parameters.spikes = workflow::Spikes{spikes, {}};
+      if (this->SpikeLimit > 0) parameters.spikes->limit_nm = this->SpikeLimit;
+    }
+    if (this->MedianFilter) parameters.median = median;
+    if (this->Closing) parameters.closing = closing;
+    parameters.disc = this->Disc;
+    parameters.fill_holes = this->FillHoles;
     std::string name;
-    HeightField field = this->Heights(inputs, name);
-    pv::work(this, [&](const Watch& watch) {
-      CleanSummary summary;
-      const double steps = this->RemoveSpikes + this->MedianFilter + this->Closing;
-      double done = 0;
-      const auto next = [&] {
-        const double from = done++;
-        return watch.part(from / steps, done / steps);
-      };
-      constexpr double sigmas = 6;   // noise alone passes it once in a billion
-      const double limit_nm = this->SpikeLimit > 0 ? this->SpikeLimit : sigmas * pixel_noise_nm(field);
-      if (this->RemoveSpikes && limit_nm > 0)   // without noise nothing is a spike for sure
-        field = median_filter(field,
-                              {.radius = spikes / 2,
-                               .neighbourhood = neighbourhood,
-                               .limit_nm = limit_nm,
-                               .fill_holes = this->FillHoles,
-                               .watch = next()},
-                              summary);
-      if (this->MedianFilter)
-        field = median_filter(field,
-                              {.radius = median / 2,
-                               .neighbourhood = neighbourhood,
-                               .fill_holes = this->FillHoles,
-                               .watch = next()},
-                              summary);
-      if (this->Closing)
-        field =
-            flat_closing(field, {.width = closing, .fill_holes = this->FillHoles, .watch = next()}, summary);
-    });
-    pv::give(outputs->GetInformationObject(0), this->WithHeights(inputs, std::move(field), name));
+    const HeightField scan = this->Heights(inputs, name);
+    std::vector<std::string> warnings;
+    workflow::CleanResult cleaned;
+    pv::work(this, [&](const Watch& watch) { cleaned = workflow::clean(scan, parameters, pv::hear(watch, warnings)); });
+    pv::warn(this, warnings);
+    const auto image = this->WithHeights(inputs, std::move(cleaned.field), name);
+    pv::add_record(image, "clean", record_of(cleaned.used));
+    pv::give(outputs->GetInformationObject(0), image);
   });
 }

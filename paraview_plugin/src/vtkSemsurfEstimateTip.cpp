@@ -2,6 +2,7 @@
 #include "vtkSemsurfEstimateTip.h"
 
 #include <fmt/format.h>
+#include <vtkImageData.h>
 #include <vtkInformation.h>
 #include <vtkInformationVector.h>
 #include <vtkNew.h>
@@ -10,7 +11,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <utility>
 
 #include "attempt.h"
@@ -18,39 +18,15 @@
 #include "convert/table.h"
 #include "convert/tip.h"
 #include "pipeline.h"
-#include "surf/afm/best_tip.h"
-#include "surf/afm/noise_estimate.h"
-#include "surf/afm/tip_doubt.h"
-#include "surf/afm/tip_sweep.h"
+#include "reports.h"
 #include "surf/core/error.h"
+#include "surf/workflow/tip_job.h"
 
 vtkStandardNewMacro(vtkSemsurfEstimateTip);
 
 using namespace surf;
 
 namespace {
-
-struct Found {
-  Tip tip;
-  double threshold_nm = 0;
-  std::vector<std::string> warnings;
-};
-
-/// As `semsurf tip` takes it from the scan.
-AfmNoise noise_of(const HeightField& scan, std::vector<std::string>& warnings) {
-  const NoiseEstimate e = estimate_noise(scan);
-  AfmNoise noise{e.noise.alpha, 0};
-  noise.innovation_nm2 = e.noise.variance_nm2() * (1 - noise.alpha * noise.alpha);
-  if (!(noise.innovation_nm2 > 0))
-    throw InvalidInput("Input", "it has no noise that could be estimated",
-                       "Set Noise, or the Answer 'At threshold'");
-  if (e.alpha_at_limit)
-    warnings.push_back(
-        "the noise can hardly be told from the structure and may be less: set Noise, which 'Noise Model' "
-        "finds on a flat scan");
-  if (const std::string doubt = doubt_of_noise(noise, scan); !doubt.empty()) warnings.push_back(doubt + ": set Noise");
-  return noise;
-}
 
 template <class Row, class Value>
 std::vector<double> column_of(const std::vector<Row>& rows, const Value& value) {
@@ -87,16 +63,6 @@ void add_candidates(vtkTable* table, const BestTipSummary& summary) {
   add("risk", [](const TipCandidate& c) { return c.risk; });
 }
 
-std::vector<std::string> doubts(const TipSweep& sweep) {
-  const SweptTip& c = sweep.curve[sweep.chosen];
-  if (sweep.verdict == TipSweepVerdict::disagreement)
-    return {fmt::format(
-        "the volume jumps at a threshold of {:.4g} nm, but the residuals choose {:.4g} nm: look at the "
-        "curve, output 2",
-        sweep.curve[sweep.jump].threshold_nm, c.threshold_nm)};
-  return {};
-}
-
 }   // namespace
 
 int vtkSemsurfEstimateTip::FillOutputPortInformation(int port, vtkInformation* info) {
@@ -126,6 +92,25 @@ void vtkSemsurfEstimateTip::Check() const {
                      "Give 0");
 }
 
+workflow::TipParameters vtkSemsurfEstimateTip::Parameters() const {
+  workflow::TipParameters parameters;
+  parameters.size = this->TipSize;
+  parameters.answer = static_cast<workflow::TipAnswer>(this->Answer);
+  if (this->Answer == Blind) {
+    parameters.threshold_nm = this->Threshold;
+    parameters.apex_tolerance_nm = this->ApexTolerance;
+    return parameters;
+  }
+  const double alpha = this->NoiseCorrelation, sigma = this->Noise;
+  if (sigma > 0) parameters.noise = AfmNoise{alpha, sigma * sigma * (1 - alpha * alpha)};
+  if (this->Answer == Sweep) {
+    parameters.sweep_least_nm = this->ThresholdRange[0], parameters.sweep_most_nm = this->ThresholdRange[1];
+    parameters.sweep_thresholds = this->Thresholds;
+    parameters.seed = static_cast<std::uint64_t>(this->Seed);
+  }
+  return parameters;
+}
+
 int vtkSemsurfEstimateTip::RequestInformation(vtkInformation*, vtkInformationVector** inputs,
                                               vtkInformationVector* outputs) {
   return pv::attempt_information(this, outputs, [&] {
@@ -148,66 +133,22 @@ int vtkSemsurfEstimateTip::RequestData(vtkInformation*, vtkInformationVector** i
     if (const auto& z = scans[0].z_nm; this->TipSize > std::min(z.width(), z.height()))
       throw UsageError("Tip Size", fmt::format("{} samples are more than the scan's {} x {}", this->TipSize, z.width(), z.height()),
                        "Give fewer");
+    const workflow::TipParameters parameters = this->Parameters();
+    std::vector<std::string> warnings;
+    workflow::TipResult found;
+    pv::work(this,
+             [&](const Watch& watch) { found = workflow::find_tip(scans, parameters, pv::hear(watch, warnings)); });
+    pv::warn(this, warnings);
     vtkNew<vtkTable> table;
-    Found found;
-    AfmNoise noise{0, 0};
-    pv::work(this, [&](const Watch& watch) {
-      BlindTipOptions blind{.width = this->TipSize, .height = this->TipSize};
-      if (this->Answer != Blind) {
-        const double alpha = this->NoiseCorrelation, sigma = this->Noise;
-        noise = sigma > 0 ? AfmNoise{alpha, sigma * sigma * (1 - alpha * alpha)}
-                          : noise_of(scans[0], found.warnings);
-      }
-      if (this->Answer == Sweep) {
-        const TipSweep sweep = sweep_tips(scans,
-                                          {.blind = blind,
-                                           .noise = noise,
-                                           .least_nm = this->ThresholdRange[0],
-                                           .most_nm = this->ThresholdRange[1],
-                                           .thresholds = this->Thresholds,
-                                           .seed = static_cast<std::uint64_t>(this->Seed)},
-                                          watch.progress, watch.cancel);
-        watch.check();
-        found.tip = sweep.curve[sweep.chosen].tip;
-        found.threshold_nm = sweep.curve[sweep.chosen].threshold_nm;
-        found.tip.doubt = doubt_of_tip(sweep);
-        for (const std::string& doubt : doubts(sweep)) found.warnings.push_back(doubt);
-        add_curve(table, sweep);
-      } else if (this->Answer == Best) {
-        BestTipSummary summary;
-        found.tip = best_tip(scans, {.width = this->TipSize, .height = this->TipSize, .noise = noise},
-                             summary, watch.progress, watch.cancel);
-        watch.check();
-        found.threshold_nm = summary.chosen.threshold_nm;
-        add_candidates(table, summary);
-      } else {
-        blind.threshold_nm = this->Threshold;
-        blind.apex_tolerance_nm = this->ApexTolerance;
-        if (this->Answer == OuterBound)
-          blind.threshold_nm = blind.apex_tolerance_nm = outer_threshold_nm(
-              noise, static_cast<double>(scans[0].z_nm.size()), this->TipSize * this->TipSize);
-        BlindTipSummary summary;
-        found.tip = blind_tip(scans, blind, summary, watch.progress, watch.cancel);
-        watch.check();
-        found.threshold_nm = blind.threshold_nm;
-        pv::add_quantities(table, {{"threshold_nm", blind.threshold_nm},
-                                   {"apex_tolerance_nm", blind.apex_tolerance_nm},
-                                   {"rounds", static_cast<double>(summary.rounds)},
-                                   {"points", static_cast<double>(summary.points)}});
-      }
-    });
-    if (this->Answer != Sweep) found.tip.doubt = doubt_of_shape(found.tip);
-    if (!found.tip.doubt.empty())
-      found.warnings.push_back(fmt::format("this tip is not to be trusted: {}. Is the scan level, is Noise right, is Tip Size "
-                                           "large enough?", found.tip.doubt));
-    for (const std::string& warning : found.warnings) pv::warn(this, warning);
+    if (found.sweep) add_curve(table, *found.sweep);
+    if (found.best) add_candidates(table, *found.best);
+    if (found.blind)
+      pv::add_quantities(table, {{"threshold_nm", *found.used.threshold_nm},
+                                 {"apex_tolerance_nm", found.used.apex_tolerance_nm},
+                                 {"rounds", static_cast<double>(found.blind->rounds)},
+                                 {"points", static_cast<double>(found.blind->points)}});
     const auto image = pv::to_vtk(found.tip);
-    std::map<std::string, std::string> made{{"threshold_nm", fmt::format("{:.9g}", found.threshold_nm)}};
-    if (this->Answer != Blind) {
-      made["noise_nm"] = fmt::format("{:.9g}", std::sqrt(noise.variance_nm2()));
-      made["noise_alpha"] = fmt::format("{:.9g}", noise.alpha);
-    }
-    pv::add_texts(image, made);
+    pv::add_record(image, "tip", record_of(found.used));
     pv::give(outputs->GetInformationObject(0), image);
     pv::give(outputs->GetInformationObject(1), table);
   });

@@ -4,6 +4,12 @@
 
 #include "vtkSemsurfImageFilter.h"
 
+namespace surf {
+namespace workflow {
+struct TipParameters;
+}
+}   // namespace surf
+
 /// The tip that made a scan, as `semsurf tip` finds it. Output 0 is the tip, output 1 a table: the curve of
 /// thresholds of a sweep, the candidates of the best tip, else how the tip was found.
 class VTKSEMSURF_EXPORT vtkSemsurfEstimateTip : public vtkSemsurfImageFilter {
@@ -30,6 +36,7 @@ class VTKSEMSURF_EXPORT vtkSemsurfEstimateTip : public vtkSemsurfImageFilter {
 
  private:
   void Check() const;
+  surf::workflow::TipParameters Parameters() const;
 
   int Answer = Sweep;
   int TipSize = 21;

@@ -4,12 +4,6 @@
 
 #include "vtkSemsurfImageFilter.h"
 
-namespace surf {
-struct Watch;
-template <class T>
-class Grid;
-}   // namespace surf
-
 /// Takes the plane of the substrate, another background, or steps between scan lines off, as `semsurf level`
 /// does.
 class VTKSEMSURF_EXPORT vtkSemsurfLevel : public vtkSemsurfImageFilter {
@@ -29,9 +23,6 @@ class VTKSEMSURF_EXPORT vtkSemsurfLevel : public vtkSemsurfImageFilter {
   int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
 
  private:
-  surf::Grid<unsigned char> TakeOff(surf::HeightField& field, const surf::Watch& watch,
-                                    std::string& warning) const;
-
   int Method = Hough;
   double Tolerance = 0;
   int Degree = 2;

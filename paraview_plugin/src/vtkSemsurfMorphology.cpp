@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 #include <vtkDataArray.h>
+#include <vtkImageData.h>
 #include <vtkInformation.h>
 #include <vtkInformationVector.h>
 #include <vtkObjectFactory.h>
@@ -13,8 +14,9 @@
 #include "checks.h"
 #include "convert/tip.h"
 #include "pipeline.h"
-#include "surf/afm/morphology.h"
+#include "reports.h"
 #include "surf/core/error.h"
+#include "surf/workflow/morphology_job.h"
 
 vtkStandardNewMacro(vtkSemsurfMorphology);
 
@@ -23,33 +25,25 @@ using namespace surf;
 int vtkSemsurfMorphology::RequestData(vtkInformation*, vtkInformationVector** inputs,
                                       vtkInformationVector* outputs) {
   return pv::attempt(this, [&] {
-    if (this->Upsample < 1 || this->Upsample > 32)
-      throw UsageError("Upsample", fmt::format("{} is not in 1 to 32", this->Upsample),
-                       "Give 1 where in doubt");
+    if (this->Operation < Erode || this->Operation > Close)
+      throw UsageError("Operation", fmt::format("there is no operation {}", this->Operation), "Choose 0 to 3");
+    pv::need_within(this->Upsample, 1, 32, "Upsample");
     pv::need_length(this->Distance, "Distance");
+    const auto operation = static_cast<workflow::MorphologyOperation>(this->Operation);
+    workflow::MorphologyParameters parameters;
+    parameters.upsample = this->Upsample;
+    if (this->Operation == Erode || this->Operation == Dilate) parameters.distance_nm = this->Distance;
     std::string name;
     HeightField field = this->Heights(inputs, name);
     vtkImageData* const tip_image = pv::image_input(inputs, 1, "Tip");
-    const Tip tip = pv::to_tip_for(tip_image, pv::chosen_array(this, 1, tip_image), field, "Tip");
-    if (!tip.doubt.empty()) pv::warn(this, fmt::format("the tip says that it is not to be trusted: {}", tip.doubt));
+    std::vector<std::string> warnings;
+    const Tip tip = pv::to_tip_for(tip_image, pv::chosen_array(this, 1, tip_image), field, "Tip", warnings);
     pv::work(this, [&](const Watch& watch) {
-      const MorphologyOptions options{.upsample = this->Upsample, .watch = watch};
-      switch (this->Operation) {
-        case Erode:
-          field = this->Distance > 0 ? erode_noncontact(field, tip, this->Distance, options)
-                                     : erode(field, tip, options);
-          break;
-        case Dilate:
-          field = this->Distance > 0 ? dilate_noncontact(field, tip, this->Distance, options)
-                                     : dilate(field, tip, options);
-          break;
-        case Open: field = opening(field, tip, options); break;
-        case Close: field = closing(field, tip, options); break;
-        default:
-          throw UsageError("Operation", fmt::format("there is no operation {}", this->Operation),
-                           "Choose 0 to 3");
-      }
+      field = workflow::morphology(operation, field, tip, parameters, pv::hear(watch, warnings));
     });
-    pv::give(outputs->GetInformationObject(0), this->WithHeights(inputs, std::move(field), name));
+    pv::warn(this, warnings);
+    const auto image = this->WithHeights(inputs, std::move(field), name);
+    pv::add_record(image, workflow::name(operation), record_of(parameters));
+    pv::give(outputs->GetInformationObject(0), image);
   });
 }

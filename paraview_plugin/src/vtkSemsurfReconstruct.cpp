@@ -122,7 +122,7 @@ int vtkSemsurfReconstruct::RequestData(vtkInformation*, vtkInformationVector** i
       std::string name;
       job.afm.emplace();
       job.afm->scan = this->Heights(inputs, name);
-      job.afm->preparation.level = static_cast<workflow::LevelMethod>(this->Level);
+      job.afm->preparation.level.method = static_cast<workflow::LevelMethod>(this->Level);
       if (vtkImageData* const tip = pv::image_input(inputs, 2, "Tip"))
         job.afm->preparation.tip = pv::to_tip(tip, pv::chosen_array(this, 2, tip), "Tip");
       if (vtkImageData* const sem = pv::image_input(inputs, 1, "SEM")) {

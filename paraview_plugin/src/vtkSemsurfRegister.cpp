@@ -99,7 +99,7 @@ int vtkSemsurfRegister::RequestData(vtkInformation*, vtkInformationVector** inpu
       workflow::RegisterJob job;
       std::string name;
       job.afm.scan = this->Heights(inputs, name);
-      job.afm.preparation.level = static_cast<workflow::LevelMethod>(this->Level);
+      job.afm.preparation.level.method = static_cast<workflow::LevelMethod>(this->Level);
       vtkImageData* const sem = pv::image_input(inputs, 1, "SEM");
       job.sem.image = pv::to_placed_image(sem, pv::chosen_array(this, 1, sem), "SEM");
       if (vtkImageData* const tip = pv::image_input(inputs, 4, "Tip"))

@@ -2,6 +2,7 @@
 #include "vtkSemsurfTipSource.h"
 
 #include <fmt/format.h>
+#include <vtkImageData.h>
 #include <vtkInformation.h>
 #include <vtkInformationVector.h>
 #include <vtkObjectFactory.h>
@@ -13,9 +14,11 @@
 #include "checks.h"
 #include "convert/tip.h"
 #include "pipeline.h"
-#include "surf/afm/tip_shapes.h"
+#include "reports.h"
 #include "surf/core/error.h"
-#include "surf/core/units.h"
+#include "surf/io/scan_parameters.h"
+#include "surf/workflow/step_record.h"
+#include "surf/workflow/tip_job.h"
 
 vtkStandardNewMacro(vtkSemsurfTipSource);
 
@@ -52,30 +55,18 @@ int vtkSemsurfTipSource::RequestInformation(vtkInformation*, vtkInformationVecto
 int vtkSemsurfTipSource::RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector* outputs) {
   return pv::attempt(this, [&] {
     this->Check();
-    const TipSampling sampling{this->Pitch, this->Pitch, this->Samples, this->Samples};
-    const double half_angle = this->HalfAngle * degrees_to_radians;
-    Tip tip;
-    switch (this->Shape) {
-      case Cone: tip = conical_tip(this->Radius, half_angle, sampling); break;
-      case Parabola: tip = parabolic_tip(this->Radius, sampling); break;
-      case Pyramid: {
-        if (this->Faces < 3 || this->Faces > 100)
-          throw UsageError("Faces", fmt::format("{} is not in 3 to 100", this->Faces),
-                           "Give 4 where in doubt");
-        PyramidShape shape;
-        shape.radius_nm = this->Radius;
-        shape.rotation_rad = this->Rotation * degrees_to_radians;
-        shape.face_angles_rad.assign(static_cast<std::size_t>(this->Faces), half_angle);
-        tip = pyramidal_tip(shape, sampling);
-        break;
-      }
-      case Ball:
-        // On a cylinder, which is never seen, any radius does.
-        tip = ball_tip(this->Radius, this->StemRadius > 0 ? this->StemRadius : 0.5 * this->Radius,
-                       this->StemRadius > 0 ? this->StemHalfAngle * degrees_to_radians : 0, sampling);
-        break;
-      default: throw UsageError("Shape", fmt::format("there is no shape {}", this->Shape), "Choose 0 to 3");
-    }
-    pv::give(outputs->GetInformationObject(0), pv::to_vtk(tip));
+    if (this->Shape < Cone || this->Shape > Ball)
+      throw UsageError("Shape", fmt::format("there is no shape {}", this->Shape), "Choose 0 to 3");
+    if (this->Shape == Pyramid) pv::need_within(this->Faces, 3, 100, "Faces");
+    workflow::TipShapeParameters parameters;
+    parameters.shape = {static_cast<workflow::TipShape::Kind>(this->Shape), this->Radius, this->HalfAngle, this->Faces,
+                        this->Rotation, this->StemRadius, this->StemRadius > 0 ? this->StemHalfAngle : 0};
+    parameters.size = this->Samples;
+    parameters.pitch_x_nm = parameters.pitch_y_nm = this->Pitch;
+    const auto image = pv::to_vtk(workflow::tip_by_shape(parameters));
+    io::HeightReadOptions reading;
+    reading.pitch_x_nm = reading.pitch_y_nm = this->Pitch;
+    pv::add_record(image, "tip", workflow::records_of(parameters, reading));
+    pv::give(outputs->GetInformationObject(0), image);
   });
 }

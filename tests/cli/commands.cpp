@@ -25,7 +25,8 @@ struct Case {
   int exit = 0;
   std::vector<std::string> arguments;
   std::vector<std::string> out, err, writes;   // regular expressions, and files
-  std::optional<std::string> info_file, info;
+  std::optional<std::string> info_file;
+  std::vector<std::string> info;
 };
 
 /// One thing a line, as tests/cli/CMakeLists.txt writes them.
@@ -54,7 +55,7 @@ std::vector<Case> read_cases() {
     } else if (kind == "INFO_FILE") {
       cases.back().info_file = value;
     } else if (kind == "INFO") {
-      cases.back().info = value;
+      cases.back().info.push_back(value);
     }
   }
   return cases;
@@ -110,7 +111,8 @@ class Command : public testing::Test {
       EXPECT_EQ(added.count(fs::path(file).lexically_normal().string()), 1u) << file << " was not written";
     if (case_.info_file) {
       const test::Said info = test::semsurf({"info", *case_.info_file});
-      EXPECT_TRUE(matches(info.out, *case_.info)) << "info does not match '" << *case_.info << "':\n" << info.out;
+      for (const std::string& pattern : case_.info)
+        EXPECT_TRUE(matches(info.out, pattern)) << "info does not match '" << pattern << "':\n" << info.out;
     }
   }
 

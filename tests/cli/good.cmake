@@ -197,57 +197,81 @@ semsurf_cli_test(help.accuracy ARGS simulate --help
   STDOUT "--accuracy-floor" "--time" "auto.direct.replay" "variance_left is the share")
 
 # AFM scans: block.gsf is a tilted plane with a block of 5 nm on it, noisy.gsf AR(1) noise, plane.gsf all equal.
-semsurf_cli_test(help.level ARGS level --help STDOUT "hough" "--rows" "--step" "Examples:")
+semsurf_cli_test(help.level ARGS level --help STDOUT "--level-method hough" "--level-degree N +Degree.* 0 to 6 .2." "--rows" "--step" "Examples:")
 semsurf_cli_test(help.clean ARGS clean --help STDOUT "--spikes" "Examples:")
-semsurf_cli_test(help.noise ARGS noise --help STDOUT "--flat" "Examples:")
-semsurf_cli_test(level.hough ARGS level block.gsf -o flat.gsf --mask substrate.tif
-  STDOUT "plane +tilt 5\\.71" "substrate +[78][0-9]\\.[0-9] %" "roughness +all: Sa" "substrate: Sa" WRITES flat.gsf substrate.tif)
-semsurf_cli_test(level.sem_as_heights ARGS level fei.tif --z-unit 1nm --method plane -o flat.tif STDOUT "plane +tilt" WRITES flat.tif)
-semsurf_cli_test(level.plane ARGS level block.gsf --method plane -o flat.tif STDOUT "plane +tilt" WRITES flat.tif)
-semsurf_cli_test(level.polynomial ARGS level block.gsf --method polynomial --degree 1 --rows median -o levelled.txt
+semsurf_cli_test(help.noise ARGS noise --help STDOUT "Usage: semsurf noise .OPTIONS. .COMMAND." "scan +The noise" "sem " "counts " "Examples:")
+semsurf_cli_test(help.noise_scan ARGS noise scan --help STDOUT "--flat" "Examples:")
+semsurf_cli_test(level.hough ARGS level block.gsf -o flat.gsf --substrate-mask substrate.tif
+  STDOUT "plane +tilt 5\\.71" "substrate +[78][0-9]\\.[0-9] %" "roughness +all: Sa" "substrate: Sa" WRITES flat.gsf substrate.tif
+  INFO flat.gsf "command +level" "option.level.method +hough" "option.level.degree +2")
+semsurf_cli_test(level.sem_as_heights ARGS level fei.tif --height-unit 1nm --level-method plane -o flat.tif STDOUT "plane +tilt" WRITES flat.tif)
+semsurf_cli_test(level.plane ARGS level block.gsf --level-method plane -o flat.tif STDOUT "plane +tilt" WRITES flat.tif)
+semsurf_cli_test(level.polynomial ARGS level block.gsf --level-method polynomial --level-degree 1 --rows median -o levelled.txt
   STDOUT "rows +shifted by" WRITES levelled.txt)
-semsurf_cli_test(level.step ARGS level block.gsf --method none --step 0,0,15,45 25,15,45,35
+semsurf_cli_test(level.step ARGS level block.gsf --level-method none --step 0,0,15,45 25,15,45,35
   STDOUT "step +5\\.00[0-9]* .+ 0\\.00.* nm, the second region above")
+semsurf_cli_test(level.former_names ARGS level steps.txt --z-unit 1nm --pixel-size 2nmx3nm --channel 1 --method hough --tolerance 0.5nm
+  --mask substrate.tif -o flat.gsf WRITES substrate.tif flat.gsf
+  INFO flat.gsf "2.00 nm x 3.00 nm" "option.level.tolerance_nm +0.5" "option.scan.height_channel +1" "option.scan.height_pitch_nm +2x3"
+       "option.scan.height_unit_nm +1" "input.1")
+semsurf_cli_test(level.former_degree ARGS level block.gsf --method polynomial --degree 1 -o flat.gsf
+  INFO flat.gsf "option.level.degree +1" "option.level.method +polynomial")
+semsurf_cli_test(clean.own_limit ARGS clean noisy.gsf --spikes 3 -o clean.gsf STDOUT "spikes +[0-9]+ of"
+  INFO clean.gsf "option.clean.spikes +3:[0-9.]+")
 semsurf_cli_test(clean.all ARGS clean block.gsf --spikes 3:1nm --median 3 --disc --closing 5 -o clean.gsf
   STDOUT "spikes +[0-9]+ of [0-9]+ heights changed" "median " "closing " WRITES clean.gsf)
-semsurf_cli_test(noise.flat ARGS noise noisy.gsf --flat --plot noise.svg
+semsurf_cli_test(noise.flat ARGS noise scan noisy.gsf --flat --plot noise.svg
   STDOUT "noise +alpha 0\\.[0-9]+ ± .*sigma" "differences +alpha" "whiteness +along rows p" "normality +p" WRITES noise.svg)
-semsurf_cli_test(noise.none ARGS noise plane.gsf --flat --degree 1 STDERR "no noise at all" STDOUT "noise +alpha")
-semsurf_cli_test(noise.help_of_all ARGS noise --help STDOUT "SEM image" "--region" "Simulated counts" "--trials")
-semsurf_cli_test(noise.sem ARGS noise --sem steps_of_grey.tif --plot noise.svg
+semsurf_cli_test(noise.none ARGS noise scan plane.gsf --flat --degree 1 STDERR "no noise at all" STDOUT "noise +alpha")
+semsurf_cli_test(noise.help_of_sem ARGS noise sem --help STDOUT "IMAGE FILE" "--flat-region RECTANGLE" "--block")
+semsurf_cli_test(noise.help_of_counts ARGS noise counts --help STDOUT "SCENE FILE" "--trials")
+semsurf_cli_test(noise.as_before ARGS noise noisy.gsf --flat --plot noise.svg STDOUT "noise +alpha" WRITES noise.svg)
+semsurf_cli_test(noise.sem_as_before ARGS noise --sem steps_of_grey.tif --pixel-size 2nm --region 8nm,8nm,56nm,56nm --region 36,4,60,28
+  --region 68,36,92,60 STDOUT "flat places +3 used")
+semsurf_cli_test(noise.counts_as_before ARGS noise --counts scene.toml --electrons 5 --trials 200 --csv counts.csv
+  STDOUT "200 trials" WRITES counts.csv)
+semsurf_cli_test(noise.sem ARGS noise sem steps_of_grey.tif --plot noise.svg
   STDOUT "noise +variance = " "flat places +[0-9]+ used" "correlation +-?0\\.[0-9]+ along rows" WRITES noise.svg)
-semsurf_cli_test(noise.sem_region ARGS noise --sem steps_of_grey.tif --region 4,4,28,28 --region 36,4,60,28 --region 68,36,92,60
+semsurf_cli_test(noise.sem_region ARGS noise sem steps_of_grey.tif --flat-region 4,4,28,28 --flat-region 36,4,60,28 --flat-region 68,36,92,60
   STDOUT "flat places +3 used")
-semsurf_cli_test(noise.counts ARGS noise --counts scene.toml --electrons 1,5 --trials 200 --at 0,0 --csv counts.csv --plot counts.svg
+semsurf_cli_test(noise.counts ARGS noise counts scene.toml --electrons 1,5 --trials 200 --at 0,0 --csv counts.csv --plot counts.svg
   STDOUT "200 trials" "SE of 5 +.*mean" "log-normal, median" WRITES counts.csv counts.svg)
-semsurf_cli_test(noise.substrate ARGS noise noisy.gsf STDOUT "substrate +[0-9.]+ % of the image")
+semsurf_cli_test(noise.substrate ARGS noise scan noisy.gsf STDOUT "substrate +[0-9.]+ % of the image")
 # AFM: a tip put into a surface and taken out of the scan.
-foreach(command erode dilate certainty)
-  semsurf_cli_test(help.${command} ARGS ${command} --help STDOUT "--tip FILE" "--channel NAME" "Examples:")
+foreach(command erode dilate open close certainty)
+  semsurf_cli_test(help.${command} ARGS ${command} --help STDOUT "--tip FILE" "--height-channel NAME" "Examples:")
 endforeach()
 semsurf_cli_test(dilate ARGS dilate steps.txt --tip tip.txt -o scan.gsf
   STDOUT "scan +24 x 20 pixels" "tip +5 x 5" "dilated +heights" WRITES scan.gsf)
 semsurf_cli_test(erode ARGS erode steps.txt --tip tip.txt --upsample 2 --threads 2 -o surface.gsf
-  STDOUT "eroded +heights" WRITES surface.gsf INFO surface.gsf "option.upsample +2")
+  STDOUT "eroded +heights" WRITES surface.gsf INFO surface.gsf "option.morphology.upsample +2")
+semsurf_cli_test(open ARGS open steps.txt --tip tip.txt --height-unit 2nm -o opened.gsf
+  STDOUT "opened +heights" WRITES opened.gsf INFO opened.gsf "command +open" "option.scan.height_unit_nm +2" "input.2")
+semsurf_cli_test(close ARGS close steps.txt --tip tip.txt -o closed.gsf STDOUT "closed +heights" WRITES closed.gsf)
 semsurf_cli_test(erode.noncontact ARGS erode steps.txt --tip tip.txt --distance 2nm -o surface.txt WRITES surface.txt)
-semsurf_cli_test(erode.resampled ARGS erode steps.txt --pixel-size 0.5nm --tip tip.txt -o surface.gsf
-  STDERR "note: tip.txt: resampled from 5 x 5 pixels of 1.00 nm to 9 x 9" WRITES surface.gsf)
-semsurf_cli_test(certainty ARGS certainty steps.txt --tip tip.txt --noise 0.05nm -o map.png --surface surface.gsf
+semsurf_cli_test(erode.resampled ARGS erode steps.txt --height-pitch 0.5nm --tip tip.txt -o surface.gsf
+  STDERR "note: tip.txt: resampled from 5 x 5 pixels of 1.00 nm to 9 x 9" WRITES surface.gsf INFO surface.gsf "option.scan.height_pitch_nm +0.5")
+semsurf_cli_test(certainty ARGS certainty steps.txt --tip tip.txt --height-noise 0.05nm -o map.png --eroded surface.gsf
   STDOUT "tolerance +contacts within 0.300 nm" "certain +[0-9.]+ % of the surface" WRITES map.png surface.gsf)
+semsurf_cli_test(certainty.former_names ARGS certainty steps.txt --pixel-size 1nm --tip tip.txt --noise 0.05nm -o map.vti --surface surface.gsf
+  WRITES map.vti surface.gsf INFO surface.gsf "option.scan.height_noise_nm +0.05" "option.scan.height_pitch_nm +1" "option.certainty.sigmas +3")
 semsurf_cli_test(certainty.own_noise ARGS certainty steps.txt --tip tip.txt -o map.vti
   STDERR "a noise of .* is taken from neighbouring pixels" WRITES map.vti)
-semsurf_cli_test(certainty.unexplained ARGS certainty steps.txt --tip tip.txt --noise 0 --neighbourhood 1 -o map.tif
+semsurf_cli_test(certainty.unexplained ARGS certainty steps.txt --tip tip.txt --height-noise 0 --neighbourhood 1 -o map.tif
   STDERR "cannot have been made by this tip" WRITES map.tif)
 # AFM: the tip itself.
 semsurf_cli_test(help.tip ARGS tip --help STDOUT "--answer" "--shape SHAPE" "--also FILE" "Without --threshold")
-semsurf_cli_test(tip.ball ARGS tip --shape ball:5nm --size 15 -o tip.gsf STDOUT "15 x 15 samples" "down to -5.00 nm" WRITES tip.gsf)
+semsurf_cli_test(tip.ball ARGS tip --shape ball:5nm --tip-size 15 -o tip.gsf STDOUT "15 x 15 samples" "down to -5.00 nm" WRITES tip.gsf)
 semsurf_cli_test(tip.shape ARGS tip --shape cone:5nm,20deg --size 31 -o tip.gsf --plot tip.svg
-  STDOUT "tip +31 x 31 samples" "radius " "half angle " WRITES tip.gsf tip.svg INFO tip.gsf "option.shape +cone:5nm,20deg")
-semsurf_cli_test(tip.sweep ARGS tip steps.txt --size 5 --noise 0.02nm --sweep 0.02nm,0.4nm,5 --plot tip.svg -o tip.gsf
-  STDOUT "noise +" "threshold " WRITES tip.gsf tip.svg)
-semsurf_cli_test(tip.doubted EXIT 4 ARGS tip steps.txt --size 5 --noise 2nm --plot tip.svg -o tip.gsf
+  STDOUT "tip +31 x 31 samples" "radius " "half angle " WRITES tip.gsf tip.svg INFO tip.gsf "option.tip.shape +cone:5nm,20deg" "option.tip.size +31")
+semsurf_cli_test(tip.turned ARGS tip --shape pyramid:5nm,20deg,3,30deg --tip-size 9 --height-pitch 2nm -o tip.gsf
+  INFO tip.gsf "option.tip.shape +pyramid:5nm,20deg,3,30deg" "option.scan.height_pitch_nm +2")
+semsurf_cli_test(tip.sweep ARGS tip steps.txt --tip-size 5 --height-noise 0.02nm --sweep 0.02nm,0.4nm,5 --plot tip.svg -o tip.gsf
+  STDOUT "noise +" "threshold " WRITES tip.gsf tip.svg
+  INFO tip.gsf "option.tip.sweep_nm +0.02,0.4,5" "option.tip.answer +sweep" "option.scan.height_noise_nm +0.02")
+semsurf_cli_test(tip.doubted EXIT 4 ARGS tip steps.txt --tip-size 5 --height-noise 2nm --plot tip.svg -o tip.gsf
   STDOUT "radius +infinite: the tip is flat\n" "written +tip.gsf\n +tip.svg\n"
-  STDERR "this tip is not to be trusted, and its file says so: its threshold of 16.0 nm is the largest that was tried.*it is flat"
+  STDERR "this tip is not to be trusted: its threshold of 16.0 nm is the largest that was tried.*it is flat"
   WRITES tip.gsf tip.svg INFO tip.gsf "tip.doubt +its threshold of 16.0 nm")
 semsurf_cli_test(tip.noise_is_the_roughness EXIT 4 ARGS tip noisy.gsf --size 5 -o tip.gsf
   STDOUT "noise .*from differences of neighbouring rows and columns"
@@ -256,21 +280,21 @@ foreach(command erode dilate)
   semsurf_cli_test(${command}.doubted_tip ARGS ${command} steps.txt --tip doubted_tip.txt -o surface.gsf
     STDERR "warning: doubted_tip.txt: it says that this tip is not to be trusted: it is flat" WRITES surface.gsf)
 endforeach()
-semsurf_cli_test(certainty.doubted_tip EXIT 4 ARGS certainty steps.txt --tip doubted_tip.txt --noise 0.01nm -o map.tif
+semsurf_cli_test(certainty.doubted_tip EXIT 4 ARGS certainty steps.txt --tip doubted_tip.txt --height-noise 0.01nm -o map.tif
   STDOUT "certain +.* % of the surface, by the .* % of the scan that this tip can have made"
   STDERR "doubted_tip.txt: it says that this tip is not to be trusted" "cannot have been made by this tip.*so little of the scan is not to be trusted"
   WRITES map.tif)
 semsurf_cli_test(register.doubted_tip EXIT 4 ARGS register steps.txt steps_of_grey.tif --sem-pixel-size 3nm --afm-pixel-size 3nm
   --no-level --afm-noise 0.5,0.01 --tip doubted_tip.txt --model secant.json
-  STDERR "the tip's file says that it is not to be trusted: it is flat")
+  STDERR "tip: it says that this tip is not to be trusted: it is flat")
 semsurf_cli_test(tip.blind ARGS tip steps.txt --size 5 --threshold 0.1nm --apex-tolerance 0.1nm -o tip.gsf
-  STDOUT "tip +5 x 5 samples" WRITES tip.gsf INFO tip.gsf "option.answer +blind")
+  STDOUT "tip +5 x 5 samples" WRITES tip.gsf INFO tip.gsf "option.tip.answer +blind" "option.tip.apex_tolerance_nm +0.1" "option.tip.maxima +off")
 semsurf_cli_test(tip.outer ARGS tip steps.txt --size 5 --answer outer --noise 0.05nm,0.5 -o tip.gsf
   STDOUT "at 95 % an outer bound" STDERR "does not tell the tip's shape" WRITES tip.gsf)
 semsurf_cli_test(tip.best ARGS tip steps.txt --also steps.txt --size 5 --answer best --noise 0.05nm --plot best.png -o tip.gsf
-  STDOUT "fit +misfit" WRITES tip.gsf best.png INFO tip.gsf "option.answer +best estimate")
+  STDOUT "fit +misfit" WRITES tip.gsf best.png INFO tip.gsf "option.tip.answer +best" "option.tip.size +5")
 semsurf_cli_test(tip.characterizer ARGS tip steps.txt --characterizer steps.txt --size 3 --search 2 -o tip.gsf
-  STDOUT "known +found at sample" WRITES tip.gsf INFO tip.gsf "option.answer +characterizer")
+  STDOUT "known +found at sample" WRITES tip.gsf INFO tip.gsf "option.tip.answer +characterizer" "option.tip.search +2")
 # SEM: a model's images against a microscope's.
 semsurf_cli_test(help.calibrate ARGS calibrate --help STDOUT "--images FILE" "--range LENGTH" "Exit code 4" "Examples:")
 semsurf_cli_test(calibrate ARGS calibrate four.png --pixel-size 1nm --images four.png --fit L --range 2nm -o fit.json --residual fit.exr
@@ -353,9 +377,9 @@ semsurf_cli_test(info.sem_image ARGS info fei.tif
   STDERR "note: the databar, the lowest 1 rows, is left out")
 
 # Outputs that may be replaced, and all that is written is named.
-semsurf_cli_test(over.before ARGS level block.gsf --method none -o plane.gsf STDOUT "written +plane.gsf")
+semsurf_cli_test(over.before ARGS level block.gsf --level-method none -o plane.gsf STDOUT "written +plane.gsf")
 semsurf_cli_test(written.gltf ARGS mesh cube.off -o cube.gltf STDOUT "written +cube.gltf\n +cube.bin" WRITES cube.gltf cube.bin)
-semsurf_cli_test(written.tip ARGS tip --shape cone:10nm,15deg --size 5 --pixel-size 2nm -o cone.gsf --plot cone.svg
+semsurf_cli_test(written.tip ARGS tip --shape cone:10nm,15deg --tip-size 5 --height-pitch 2nm -o cone.gsf --plot cone.svg
   STDOUT "written +cone.gsf\n +cone.svg" WRITES cone.gsf cone.svg)
 
 # Units that files state.

@@ -18,6 +18,7 @@
 #include "surf/afm/certainty.h"
 #include "surf/afm/characterizer.h"
 #include "surf/afm/morphology.h"
+#include "surf/afm/noise_check.h"
 #include "surf/afm/noise_estimate.h"
 #include "surf/afm/tip_sweep.h"
 #include "surf/io/image_file.h"
@@ -31,6 +32,7 @@
 #include "surf/workflow/chain_chart_job.h"
 #include "surf/workflow/chart_job.h"
 #include "surf/workflow/count_job.h"
+#include "surf/workflow/morphology_job.h"
 #include "surf/workflow/reconstruct_job.h"
 #include "surf/workflow/register_job.h"
 #include "surf/workflow/sample_job.h"
@@ -141,7 +143,7 @@ std::vector<Default> defaults() {
   const RepairOptions repair;
   const io::Magnification magnification;
   const std::vector<std::string> scenes{"simulate", "chart", "sweep"}, simulations{"simulate", "sweep"};
-  const std::vector<std::string> morphologies{"erode", "dilate"}, chains{"register", "reconstruct"};
+  const std::vector<std::string> morphologies{"erode", "dilate", "open", "close"}, chains{"register", "reconstruct"};
   const std::vector<std::string> libraries{"library build", "library plot"};
   return {
       {scenes, "--substrate-z", mc::Substrate{}.top_nm},
@@ -163,17 +165,19 @@ std::vector<Default> defaults() {
       {{"chart"}, "--surfaces", double(chart.surfaces)},
       {{"chart"}, "--surface-size", double(chart.surface_px)},
       {{"chart"}, "--seed", double(chart.seed)},
-      {{"level"}, "--degree", double(preparation.degree)},
-      {{"noise"}, "--degree", double(FlatNoiseOptions{}.degree)},
-      {{"noise"}, "--electrons", fmt::format("{}", fmt::join(counts.electrons, ","))},
-      {{"noise"}, "--trials", double(counts.trials)},
-      {{"noise"}, "--seed", fmt::format("the scene's, or {}", counts.seed)},
+      {{"level"}, "--level-degree", double(preparation.level.degree)},
+      {{"noise scan"}, "--degree", double(FlatNoiseOptions{}.degree)},
+      {{"noise counts"}, "--electrons", fmt::format("{}", fmt::join(counts.electrons, ","))},
+      {{"noise counts"}, "--trials", double(counts.trials)},
+      {{"noise counts"}, "--seed", fmt::format("the scene's, or {}", counts.seed)},
       {{"mesh"}, "--scale", cli::MeshWork{}.scale},
       {{"mesh"}, "--sliver", repair.sliver_nm},
       {{"mesh"}, "--min-component", repair.min_component_nm},
       {{"mesh"}, "--magnification", magnification.factor},
       {{"mesh"}, "--z-exaggeration", magnification.z_exaggeration},
       {morphologies, "--upsample", double(MorphologyOptions{}.upsample)},
+      {{"erode", "dilate"}, "--distance", workflow::MorphologyParameters{}.distance_nm},
+      {{"noise scan"}, "--lags", double(NoiseCheckOptions{}.lags)},
       {{"certainty"}, "--sigmas", CertaintyOptions{}.sigmas},
       {{"certainty"}, "--distance", CertaintyOptions{}.distance_nm},
       {{"train"}, "--surface-size", double(train.surface_px)},
@@ -187,13 +191,13 @@ std::vector<Default> defaults() {
       {{"train"}, "--decay", network.decay},
       {{"train"}, "--tolerance", network.tolerance},
       {{"train"}, "--table-electrons", fmt::format("{} | 10240", workflow::SlopeTableOptions{}.electrons)},
-      {{"tip"}, "--size", fmt::format("{}; {} with --shape", BlindTipOptions{}.width, CharacterizerOptions{}.width)},
+      {{"tip"}, "--tip-size", double(BlindTipOptions{}.width)},
       {{"tip"}, "--search", double(CharacterizerOptions{}.search)},
       {{"tip"}, "--apex-tolerance", BlindTipOptions{}.apex_tolerance_nm},
       {{"tip"}, "--layer", BlindTipOptions{}.layer_nm},
       {{"tip"}, "--sweep", fmt::format("0.3 to 8 standard deviations of the noise, {}", TipSweepOptions{}.thresholds)},
       {{"tip"}, "--seed", double(TipSweepOptions{}.seed)},
-      {chains, "--level-degree", double(preparation.degree)},
+      {chains, "--level-degree", double(preparation.level.degree)},
       {chains, "--spot", workflow::ModelRequest{}.spot_nm},
       {{"register"}, "--seed", double(preparation.seed)},
       {{"reconstruct"}, "--upsample", double(workflow::ReconstructJob{}.upsample)},
@@ -211,20 +215,19 @@ std::vector<Default> defaults() {
 /// Numbers that no struct holds: of files that do not say, of a choice made where it is used, and no defaults at all.
 std::vector<Default> others() {
   const std::vector<std::string> scenes{"simulate", "chart", "sweep"};
-  const std::vector<std::string> scans{"level", "clean", "noise", "erode", "dilate", "certainty", "tip"};
+  const std::vector<std::string> scans{"level", "clean", "noise scan", "erode", "dilate", "open", "close",
+                                       "certainty", "tip"};
   const std::vector<std::string> chains{"register", "reconstruct"}, libraries{"library build", "library plot"};
   return {
-      {scans, "--pixel-size", "1 nm"},
+      {scans, "--height-pitch", "1 nm"},
       {chains, "--afm-pixel-size", "1 nm"},
       {{"mesh"}, "--pixel-size", "1 nm"},
       {{"train", "predict"}, "--pitch", "1nm"},
       {scenes, "--pitch", "as its file says, or 1nm"},
       {scenes, "--z-unit", "1nm"},
       {scenes, "--cutoff", "0: the surface barrier; 50eV without secondaries"},
-      {{"erode", "dilate"}, "--distance", "0nm"},
       {{"chart"}, "--draws", "10; with --quick 3"},
-      {{"noise"}, "--lags", "10"},
-      {{"noise"}, "--block", "16, 12 or 8"},
+      {{"noise sem"}, "--block", "16, 12 or 8"},
       {{"mesh"}, "--stitch", "1e-6 of the diagonal"},
       {{"mesh"}, "--thickness", "5 % of the longer side"},
       {{"train"}, "--surfaces", "60; 0 if no images are needed"},

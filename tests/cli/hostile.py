@@ -23,10 +23,11 @@ FEW = ["--material", "Si", "--size", "4x4", "--electrons", "1", "-q", "-o", "ima
 
 MESHES = [["info", "FILE"], ["mesh", "FILE", "-o", "out.ply"], ["simulate", "FILE", *FEW],
           ["view", "FILE", "-o", "page.html"]]
-HEIGHTS = [["info", "FILE"], ["level", "FILE", "-o", "out.gsf"], ["noise", "FILE"], ["tip", "FILE", "-o", "tip.gsf"],
+HEIGHTS = [["info", "FILE"], ["level", "FILE", "-o", "out.gsf"], ["noise", "scan", "FILE"],
+           ["tip", "FILE", "-o", "tip.gsf"],
            ["simulate", "FILE", *FEW],
            ["predict", "FILE", "--model", str(SAMPLES / "si-1keV-10nm.json"), "-o", "predicted.tif"]]
-PICTURES = [["noise", "--sem", "FILE"],
+PICTURES = [["noise", "sem", "FILE"],
             ["calibrate", "FILE", "--images", "FILE", "-o", "calibration.json"]]
 SCENES = [["info", "FILE"], ["simulate", "FILE", "--size", "4x4", "--electrons", "1", "-q", "-o", "image.exr"],
           ["materials", "--materials", "FILE"]]

@@ -138,7 +138,7 @@ TEST(ParaViewDefaults, AreThoseOfTheLibrary) {
       {"SemsurfTrainBase.Fine", double(train.fine)},
       {"SemsurfTrainBase.Seed", double(train.simulation.seed)},
       {"SemsurfTrainBuiltIn.SurfaceSize", double(train.surface_px)},
-      {"SemsurfLevel.Degree", double(preparation.degree)},
+      {"SemsurfLevel.Degree", double(preparation.level.degree)},
       {"SemsurfNoise.Degree", double(FlatNoiseOptions{}.degree)},
       {"SemsurfEstimateTip.TipSize", double(BlindTipOptions{}.width)},
       {"SemsurfEstimateTip.Thresholds", double(TipSweepOptions{}.thresholds)},

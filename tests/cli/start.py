@@ -61,7 +61,7 @@ def check_without_modules(program, folder):
     expect("version", run(alone, "--version", folder=folder), 0, "OpenImageIO")
     expect("info", run(alone, "info", "cube.stl", folder=folder), 0, "12 triangles")
     expect("mesh", run(alone, "mesh", "cube.stl", "-o", "cube.ply", folder=folder), 0)
-    expect("erode", run(alone, "erode", "steps.txt", "--tip", "tip.txt", "--pixel-size", "3nm", "-o", "surface.gsf",
+    expect("erode", run(alone, "erode", "steps.txt", "--tip", "tip.txt", "--height-pitch", "3nm", "-o", "surface.gsf",
                         folder=folder), 0)
     before = set(folder.iterdir())
     for name, package in (("image.exr", "OpenImageIO"), ("image.vti", "VTK")):

@@ -20,7 +20,7 @@ def make_files():
     numpy.savetxt(FOLDER / "truth.txt", z[::-1])
     numpy.savetxt(FOLDER / "scan.txt", (z + 0.2 * chance.standard_normal(z.shape))[::-1])
     semsurf("predict", "truth.txt", "--pitch", "3nm", "--model", MODEL, "-o", "truth.tif", "-q")
-    semsurf("tip", "--shape", "cone:2nm,8deg", "--size", 7, "--pixel-size", "3nm", "-o", "tip.txt")
+    semsurf("tip", "--shape", "cone:2nm,8deg", "--tip-size", 7, "--height-pitch", "3nm", "-o", "tip.txt")
     sem = fetch(simple.SEMImageReader(FileName=str(FOLDER / "truth.tif"), Channel="SE"))
     signal = array(sem, "SE")
     numpy.savetxt(FOLDER / "sem.txt", (500 * signal + 100 + 4 * chance.standard_normal(z.shape))[::-1])

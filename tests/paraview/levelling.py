@@ -12,8 +12,8 @@ def equals_the_command():
     ways = {"hough": {}, "plane": {"Method": "Mean plane"},
             "polynomial": {"Method": "Polynomial", "Degree": 3}}
     for method, properties in ways.items():
-        options = ["--degree", 3] if method == "polynomial" else []
-        semsurf("level", DATA / "block.gsf", "--method", method, *options, "-o", "level.txt")
+        options = ["--level-degree", 3] if method == "polynomial" else []
+        semsurf("level", DATA / "block.gsf", "--level-method", method, *options, "-o", "level.txt")
         got = quiet(simple.LevelScan(Input=scan(), **properties))
         same(array(got, got.GetPointData().GetScalars().GetName()), matrix(FOLDER / "level.txt"), method)
 

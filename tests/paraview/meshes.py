@@ -183,7 +183,7 @@ def files_are_read_back():
 
 
 def inputs_are_not_written_over():
-    semsurf("level", DATA / "block.gsf", "--method", "none", "-o", "own.gsf")
+    semsurf("level", DATA / "block.gsf", "--level-method", "none", "-o", "own.gsf")
     before = (FOLDER / "own.gsf").read_bytes()
     (FOLDER / "link.gsf").symlink_to("own.gsf")
     source = simple.LevelScan(Input=simple.AFMScanReader(FileName=str(FOLDER / "own.gsf")))

@@ -24,7 +24,7 @@ def tip():
 def tips_equal_the_command():
     for shape, properties in {"cone:5nm,20deg": {}, "parabola:5nm": {"Shape": "Parabola"},
                               "pyramid:5nm,20deg,3": {"Shape": "Pyramid", "Faces": 3}, "ball:3nm": {"Shape": "Ball", "Radius": 3}}.items():
-        semsurf("tip", "--shape", shape, "--size", 9, "--pixel-size", "1nm", "-o", "tip.txt")
+        semsurf("tip", "--shape", shape, "--tip-size", 9, "--height-pitch", "1nm", "-o", "tip.txt")
         source = tip()
         for name, value in properties.items():
             setattr(source, name, value)
@@ -35,33 +35,36 @@ def tips_equal_the_command():
 
 
 def morphology_equals_the_command():
-    semsurf("tip", "--shape", "cone:5nm,20deg", "--size", 9, "--pixel-size", "1nm", "-o", "tip.txt")
+    semsurf("tip", "--shape", "cone:5nm,20deg", "--tip-size", 9, "--height-pitch", "1nm", "-o", "tip.txt")
     for command, make in {"erode": simple.ErodebyTip, "dilate": simple.DilatebyTip}.items():
         semsurf(command, DATA / "noisy.gsf", "--tip", "tip.txt", "-o", "out.txt")
         same(heights(make(Input=scan(), Tip=tip())), matrix(FOLDER / "out.txt"), command)
         semsurf(command, DATA / "noisy.gsf", "--tip", "tip.txt", "--distance", "2nm", "--upsample", 2, "-o", "out.txt")
         same(heights(make(Input=scan(), Tip=tip(), Distance=2, Upsample=2)), matrix(FOLDER / "out.txt"), command)
     plain = heights(scan())
-    for make, commands in {simple.OpenbyTip: ["erode", "dilate"], simple.ClosebyTip: ["dilate", "erode"]}.items():
-        semsurf(commands[0], DATA / "noisy.gsf", "--tip", "tip.txt", "-o", "half.txt")
-        semsurf(commands[1], "half.txt", "--tip", "tip.txt", "-o", "out.txt")
+    for make, command, steps in [(simple.OpenbyTip, "open", ["erode", "dilate"]),
+                                 (simple.ClosebyTip, "close", ["dilate", "erode"])]:
+        semsurf(command, DATA / "noisy.gsf", "--tip", "tip.txt", "-o", "out.txt")
         got = heights(make(Input=scan(), Tip=tip()))
-        same(got, matrix(FOLDER / "out.txt"), f"{commands}")
-        expect(numpy.abs(got - plain).max() > 0.1, f"{commands} change something")
+        same(got, matrix(FOLDER / "out.txt"), command)
+        semsurf(steps[0], DATA / "noisy.gsf", "--tip", "tip.txt", "-o", "half.txt")
+        semsurf(steps[1], "half.txt", "--tip", "tip.txt", "-o", "both.txt")
+        same(got, matrix(FOLDER / "both.txt"), f"{steps}")
+        expect(numpy.abs(got - plain).max() > 0.1, f"{command} changes something")
     expect((heights(simple.OpenbyTip(Input=scan(), Tip=tip())) <= plain + 1e-6).all(), "an opening is never above")
     expect((heights(simple.ClosebyTip(Input=scan(), Tip=tip())) >= plain - 1e-6).all(), "a closing is never below")
 
 
 def tips_are_resampled():
     coarse = simple.AFMTip(Radius=5, HalfAngle=20, Samples=5, Pitch=2)
-    semsurf("tip", "--shape", "cone:5nm,20deg", "--size", 5, "--pixel-size", "2nm", "-o", "coarse.txt")
+    semsurf("tip", "--shape", "cone:5nm,20deg", "--tip-size", 5, "--height-pitch", "2nm", "-o", "coarse.txt")
     semsurf("erode", DATA / "noisy.gsf", "--tip", "coarse.txt", "-o", "out.txt")
     same(heights(simple.ErodebyTip(Input=scan(), Tip=coarse)), matrix(FOLDER / "out.txt"), "a coarser tip")
 
 
 def certainty_equals_the_command():
-    semsurf("tip", "--shape", "cone:5nm,20deg", "--size", 9, "--pixel-size", "1nm", "-o", "tip.txt")
-    semsurf("certainty", DATA / "noisy.gsf", "--tip", "tip.txt", "-o", "map.tif", "--surface", "out.txt", "-q")
+    semsurf("tip", "--shape", "cone:5nm,20deg", "--tip-size", 9, "--height-pitch", "1nm", "-o", "tip.txt")
+    semsurf("certainty", DATA / "noisy.gsf", "--tip", "tip.txt", "-o", "map.tif", "--eroded", "out.txt", "-q")
     source = simple.CertaintyMap(Input=scan(), Tip=tip())
     data = fetch(source)
     same(array(data, "Height"), matrix(FOLDER / "out.txt"), "surface")
@@ -84,7 +87,7 @@ def cleaning_equals_the_command():
 
 def found_tips_equal_the_command():
     def check(properties, *options):
-        semsurf("tip", DATA / "noisy.gsf", "--size", 5, *options, "-o", "tip.txt")
+        semsurf("tip", DATA / "noisy.gsf", "--tip-size", 5, *options, "-o", "tip.txt")
         source = simple.EstimateTip(Input=scan(), TipSize=5, **properties)
         same(array(fetch(source), "z_nm"), matrix(FOLDER / "tip.txt"), f"{properties}")
         return fetch(source, 1)
@@ -92,12 +95,28 @@ def found_tips_equal_the_command():
                 "--apex-tolerance", "0.1nm")
     # This scan's tip does not depend on it.
     expect(column(how, "value")[column(how, "quantity").index("apex_tolerance_nm")] == 0.1, "the apex tolerance")
-    check({"Answer": "Outer bound", "Noise": 0.1}, "--answer", "outer", "--noise", "0.1nm")
-    curve = check({"Noise": 0.1, "Thresholds": 10, "ThresholdRange": [0.03, 0.8]}, "--noise", "0.1nm",
+    check({"Answer": "Outer bound", "Noise": 0.1}, "--answer", "outer", "--height-noise", "0.1nm")
+    curve = check({"Noise": 0.1, "Thresholds": 10, "ThresholdRange": [0.03, 0.8]}, "--height-noise", "0.1nm",
                   "--sweep", "0.03nm,0.8nm,10")
     expect(curve.GetNumberOfRows() == 10 and column(curve, "chosen").sum() == 1, "a curve with the choice")
-    candidates = check({"Answer": "Best", "Noise": 0.1}, "--answer", "best", "--noise", "0.1nm")
+    candidates = check({"Answer": "Best", "Noise": 0.1}, "--answer", "best", "--height-noise", "0.1nm")
     expect((column(candidates, "risk") > 0).all(), "the candidates")
+
+
+def outputs_tell_how_they_were_made():
+    """As the files of the commands do."""
+    options = {
+        "level": (simple.LevelScan(Input=scan()), {"level.method": "hough"}),
+        "clean": (simple.CleanScan(Input=scan(), SpikeLimit=0.5), {"clean.spikes": "3:0.5"}),
+        "erode": (simple.ErodebyTip(Input=scan(), Tip=tip(), Distance=2), {"morphology.distance_nm": "2"}),
+        "close": (simple.ClosebyTip(Input=scan(), Tip=tip(), Upsample=2), {"morphology.upsample": "2"}),
+        "certainty": (simple.CertaintyMap(Input=scan(), Tip=tip(), Noise=0.25), {"scan.height_noise_nm": "0.25"}),
+        "tip": (tip(), {"tip.shape": "cone:5nm,20deg", "tip.size": "9", "scan.height_pitch_nm": "1"})}
+    for command, (source, wanted) in options.items():
+        data = fetch(source)
+        expect(text(data, "command") == command, f"{command}: {text(data, 'command')}")
+        for name, value in wanted.items():
+            expect(text(data, f"option.{name}") == value, f"{name}: {text(data, f'option.{name}')}")
 
 
 def wrong_properties_are_refused():
@@ -146,7 +165,7 @@ def the_library_tells_its_time():
 def measured_noise_equals_the_command():
     """To the digits that it prints."""
     for properties, options in [({}, []), ({"Flat": 1, "Degree": 3}, ["--flat", "--degree", 3]), ({"Lags": 3}, ["--lags", 3])]:
-        printed = semsurf("noise", DATA / "noisy.gsf", *options)
+        printed = semsurf("noise", "scan", DATA / "noisy.gsf", *options)
         source = simple.NoiseModel(Input=scan(), **properties)
         table, lags = fetch(source), fetch(source, 1)
         v = dict(zip(column(table, "quantity"), column(table, "value")))
@@ -169,5 +188,5 @@ def measured_noise_equals_the_command():
 
 
 run(tips_equal_the_command, morphology_equals_the_command, tips_are_resampled, certainty_equals_the_command,
-    cleaning_equals_the_command, found_tips_equal_the_command, wrong_properties_are_refused, progress_and_abort,
-    the_library_tells_its_time, measured_noise_equals_the_command)
+    cleaning_equals_the_command, found_tips_equal_the_command, outputs_tell_how_they_were_made,
+    wrong_properties_are_refused, progress_and_abort, the_library_tells_its_time, measured_noise_equals_the_command)

@@ -31,7 +31,7 @@ def the_letter_stands_upright():
 
 
 def scans_are_in_nm():
-    semsurf("level", DATA / "block.gsf", "--method", "none", "-o", "block.txt")
+    semsurf("level", DATA / "block.gsf", "--level-method", "none", "-o", "block.txt")
     data = quiet(simple.AFMScanReader(FileName=str(DATA / "block.gsf")))
     same(array(data, "Height"), matrix(FOLDER / "block.txt"), "heights")
     from vtkmodules.vtkCommonCore import vtkDataArray
@@ -118,7 +118,7 @@ def real_scans_are_the_commands():
     for path in sorted((REAL / "afm").iterdir()):
         with messages():
             data = fetch(simple.AFMScanReader(FileName=str(path)))
-        semsurf("level", path, "--method", "none", "-q", "-o", "real.txt")
+        semsurf("level", path, "--level-method", "none", "-q", "-o", "real.txt")
         same(array(data, data.GetPointData().GetScalars().GetName()), matrix(FOLDER / "real.txt"), path.name)
 
 

@@ -42,7 +42,7 @@ TEST(AfmPreparation, FindsLevelNoiseAndTip) {
 
 TEST(AfmPreparation, TakesWhatIsGiven) {
   AfmPreparationOptions o;
-  o.level = LevelMethod::none;
+  o.level.method = LevelMethod::none;
   o.noise = AfmNoise{0.1, 0.3};
   o.tip = conical_tip(30, 0.35, {2 * pitch, 2 * pitch, 9, 9});
   const HeightField as_read = scan(30);
@@ -100,7 +100,7 @@ TEST(AfmPreparation, DoubtsATipThatTheScanDoesNotTell) {
   o.tip = p.tip;   // as from a file
   const PreparedAfm again = prepare_afm(walls(30), o);
   EXPECT_EQ(again.tip.doubt, p.tip.doubt);
-  EXPECT_THAT(again.warnings, testing::Contains(testing::HasSubstr("the tip's file says that it is not to be trusted")));
+  EXPECT_THAT(again.warnings, testing::Contains(testing::HasSubstr("tip: it says that this tip is not to be trusted")));
 }
 
 TEST(AfmPreparation, RefusesWhatCannotBe) {

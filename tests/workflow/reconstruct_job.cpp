@@ -57,7 +57,7 @@ class ReconstructJobTest : public testing::Test {
     truth_ = truth;
     job_.afm = AfmInput{scan, path("scan.txt"), {}};
     io::write_height_field(path("scan.txt"), scan);
-    job_.afm->preparation.level = LevelMethod::none;
+    job_.afm->preparation.level.method = LevelMethod::none;
     job_.afm->preparation.noise = noise;
     job_.afm->preparation.tip = conical_tip(20, 0.4, {pitch, pitch, 9, 9});
     job_.sem = SemInput{sem_image(io::read_model(path("si.json"))), path("sem.txt")};
@@ -255,7 +255,7 @@ TEST_F(ReconstructJobTest, WhatSpeaksAgainstAResultIsSaid) {
   EXPECT_THAT(s.reasons, ElementsAre(HasSubstr("had not settled"), HasSubstr("the AFM scan does not look like noise"),
                                      HasSubstr("the SEM image does not look like noise"),
                                      HasSubstr("the AFM tip is not to be trusted: it is flat")));
-  EXPECT_THAT(s.warnings, Contains(HasSubstr("the tip's file says that it is not to be trusted: it is flat")));
+  EXPECT_THAT(s.warnings, Contains(HasSubstr("it says that this tip is not to be trusted: it is flat")));
   EXPECT_EQ(io::read_tip(path("result") / "tip.txt").doubt, "it is flat");
 }
 

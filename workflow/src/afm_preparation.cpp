@@ -11,18 +11,18 @@
 #include "surf/afm/hough_plane.h"
 #include "surf/afm/morphology.h"
 #include "surf/afm/noise_check.h"
-#include "surf/afm/resample.h"
 #include "surf/afm/round_tip.h"
 #include "surf/afm/substrate_noise.h"
 #include "surf/afm/tip_doubt.h"
 #include "surf/afm/tip_sweep.h"
 #include "surf/core/error.h"
 #include "surf/core/units.h"
+#include "surf/workflow/morphology_job.h"
+#include "surf/workflow/tip_job.h"
 
 namespace surf::workflow {
 namespace {
 
-constexpr double same_pitch = 1e-6;   // relative
 constexpr int tip_sizes[] = {5, 7, 9, 11, 13, 19, 27, 39, 57};
 constexpr int enough = 9;             // samples that are tried in any case
 constexpr double told_share = 0.1;    // of the directions that a round tip goes by
@@ -30,43 +30,30 @@ constexpr double told_deviations = 3;  // of noise: a tip no deeper is told by n
 constexpr double ground_correlation = 0.5;   // of whitened neighbours in two rows
 constexpr double noise_span = 6;      // standard deviations of noise in the range of heights
 
-/// Takes off what the method says; returns what rows should go by.
-Grid<unsigned char> level(HeightField& field, const AfmPreparationOptions& o, PreparedAfm& prepared, bool last,
-                          const Watch& watch) {
-  if (o.level == LevelMethod::none) return {};
-  if (o.level == LevelMethod::polynomial) {
-    subtract(field, fit_polynomial(field, o.degree));
-    if (last) prepared.notes.push_back(fmt::format("levelled by a polynomial of degree {}", o.degree));
-    return {};
-  }
-  if (o.level == LevelMethod::plane) {
-    const Plane plane = fit_plane(field);
-    if (last) prepared.notes.push_back(fmt::format("levelled by the mean plane, tilt {:.3g} deg", plane.tilt_deg()));
-    prepared.tilt_deg = std::max(prepared.tilt_deg, plane.tilt_deg());
-    subtract(field, plane);
-    return {};
-  }
-  HoughOptions hough;
-  hough.watch = watch;
-  HoughSummary s = find_plane(field, hough);
-  subtract(field, s.plane);
-  prepared.tilt_deg = std::max(prepared.tilt_deg, s.plane.tilt_deg());
-  if (!last) return std::move(s.inliers);
-  prepared.notes.push_back(fmt::format("levelled by the plane that {:.0f} % of the scan lies on, tilt {:.3g} deg",
-                                       100 * s.inlier_share, prepared.tilt_deg));
-  if (s.verdict != HoughVerdict::clear)
-    prepared.warnings.push_back(fmt::format(
-        "the scan was levelled by a plane that {}. Look at it, and level the scan first ('semsurf level') or choose "
-        "`reconstruction.level_method`", s.verdict == HoughVerdict::contested ? "has a rival at another height" : "hardly stands out"));
-  return std::move(s.inliers);
+/// What a step says, kept for later.
+Reporter keeping(PreparedAfm& prepared, const Watch& watch) {
+  Reporter reporter;
+  reporter.on_progress = [watch](double done, double total, std::string_view) {
+    if (watch.progress) watch.progress(done, total);
+  };
+  reporter.on_note = [&prepared](const std::string& text) { prepared.notes.push_back(text); };
+  reporter.on_warning = [&prepared](const std::string& text) { prepared.warnings.push_back(text); };
+  reporter.cancel = watch.cancel;
+  return reporter;
 }
 
-void level_scan(PreparedAfm& prepared, const AfmPreparationOptions& o) {
-  Grid<unsigned char> substrate = level(prepared.image, o, prepared, !o.rows, o.watch.part(0, 0.05));
-  if (!o.rows) return;
-  level_rows(prepared.image, *o.rows, substrate);
-  prepared.notes.push_back("steps between scan lines taken off");
-  level(prepared.image, o, prepared, true, o.watch.part(0.05, 0.1));
+void level_scan(PreparedAfm& prepared, const HeightField& scan, const AfmPreparationOptions& o) {
+  LevelResult levelled = level(scan, o.level, {}, keeping(prepared, o.watch.part(0, 0.1)));
+  prepared.tilt_deg = levelled.tilt_deg;
+  if (levelled.rows) prepared.notes.push_back("steps between scan lines taken off");
+  if (o.level.method == LevelMethod::polynomial)
+    prepared.notes.push_back(fmt::format("levelled by a polynomial of degree {}", o.level.degree));
+  if (o.level.method == LevelMethod::plane)
+    prepared.notes.push_back(fmt::format("levelled by the mean plane, tilt {:.3g} deg", levelled.plane->tilt_deg()));
+  if (levelled.hough)
+    prepared.notes.push_back(fmt::format("levelled by the plane that {:.0f} % of the scan lies on, tilt {:.3g} deg",
+                                         100 * levelled.hough->inlier_share, prepared.tilt_deg));
+  prepared.image = std::move(levelled.field);
 }
 
 /// Noise knows nothing of the row before: where a "substrate" goes on from row to row it is rough ground.
@@ -96,28 +83,7 @@ void find_noise(PreparedAfm& prepared, const AfmPreparationOptions& o) {
                        "Say `reconstruction.afm_noise=ALPHA,INNOVATION`, as 0.8,0.2nm2");
   prepared.notes.push_back(fmt::format("noise of {}: {} rms, alpha {:.3f}", clear ? "the substrate" : "the differences",
                                        format_length(estimate.sigma_nm()), estimate.noise.alpha));
-  if (!clear && estimate.alpha_at_limit)
-    prepared.warnings.push_back("the scan's noise can hardly be told from its structure and may be less. Say `reconstruction.afm_noise`, "
-                                "from a flat scan: 'semsurf noise'");
-  if (const std::string doubt = clear ? "" : doubt_of_noise(prepared.noise, prepared.image); !doubt.empty())
-    prepared.warnings.push_back(doubt + ". Say `reconstruction.afm_noise`");
-}
-
-/// A tip that was found, and why not to trust it.
-void set_doubt(PreparedAfm& prepared, const std::string& doubt) {
-  prepared.tip.doubt = doubt;
-  if (!doubt.empty())
-    prepared.warnings.push_back(fmt::format("the tip that was found in the scan is not to be trusted: {}. Check "
-                                            "`reconstruction.level_method`, `reconstruction.rows` and `reconstruction.afm_noise`, or give `reconstruction.tip`", doubt));
-}
-
-Tip of_pitch(const Tip& tip, const HeightField& image) {
-  const auto differ = [](double a, double b) { return std::abs(a - b) > same_pitch * std::max(a, b); };
-  if (differ(tip.pitch_x_nm, image.pitch_x_nm) || differ(tip.pitch_y_nm, image.pitch_y_nm))
-    return resampled(tip, image.pitch_x_nm, image.pitch_y_nm);
-  Tip same = tip;   // but for what a file's text rounds
-  same.pitch_x_nm = image.pitch_x_nm, same.pitch_y_nm = image.pitch_y_nm;
-  return same;
+  if (!clear) tell_noise_doubts(prepared.noise, estimate.alpha_at_limit, prepared.image, keeping(prepared, {}));
 }
 
 BlindTipOptions blind_options(int size, int threads) {
@@ -138,22 +104,17 @@ TipSweep swept(const HeightField& image, const AfmNoise& noise, int size, const 
 }
 
 void find_free_tip(PreparedAfm& prepared, const AfmPreparationOptions& o, const Watch& watch) {
-  TipSweep found = swept(prepared.image, prepared.noise, o.tip_size, o, watch);
-  const std::string doubt = doubt_of_tip(found);
-  SweptTip& chosen = found.curve[found.chosen];
-  prepared.tip_threshold_nm = chosen.threshold_nm;
-  prepared.tip = std::move(chosen.tip);
+  TipParameters parameters;
+  parameters.answer = TipAnswer::sweep;
+  parameters.size = o.tip_size;
+  parameters.noise = prepared.noise;
+  parameters.seed = o.seed;
+  parameters.threads = o.threads;
+  TipResult found = find_tip({prepared.image}, parameters, keeping(prepared, watch));
+  prepared.tip_threshold_nm = *found.used.threshold_nm;
+  prepared.tip = std::move(found.tip);
   prepared.notes.push_back(fmt::format("tip of {} x {} samples, found blindly at a threshold of {}", o.tip_size, o.tip_size,
                                        format_length(prepared.tip_threshold_nm)));
-  set_doubt(prepared, doubt);
-  if (found.verdict == TipSweepVerdict::disagreement)
-    prepared.warnings.push_back("two ways to choose the tip's threshold disagree: look at 'semsurf tip --plot', and give "
-                                "`reconstruction.tip` if you know it better");
-  const auto open = unconstrained_directions(prepared.tip, prepared.tip_threshold_nm +
-                                                               3 * std::sqrt(prepared.noise.variance_nm2()));
-  if (!open.empty())
-    prepared.warnings.push_back(fmt::format("the scan does not tell the tip's shape in {} of 36 directions: there it is "
-                                            "taken as the bluntest possible, and walls as steep as they can be", open.size()));
 }
 
 void find_round_tip(PreparedAfm& prepared, const AfmPreparationOptions& o, const Watch& watch) {
@@ -190,18 +151,26 @@ void find_round_tip(PreparedAfm& prepared, const AfmPreparationOptions& o, const
                                 "Give `reconstruction.tip` if you know it");
     return;
   }
-  set_doubt(prepared, doubt);
+  prepared.tip.doubt = doubt;
+  tell_tip_doubt(prepared.tip, keeping(prepared, watch));
   prepared.notes.push_back(fmt::format("round tip of {} x {} samples, from what blind ones of up to {} samples tell",
                                        prepared.tip.z_nm.width(), prepared.tip.z_nm.height(), widest));
 }
 
-void find_tip(PreparedAfm& prepared, const AfmPreparationOptions& o) {
+Tip meeting(const Tip& tip, PreparedAfm& prepared) {
+  Reporter reporter = keeping(prepared, {});
+  reporter.on_note = nullptr;   // of a pitch that differs
+  Tip met = tip_for(tip, prepared.image, "tip", reporter);
+  met.pitch_x_nm = prepared.image.pitch_x_nm,
+  met.pitch_y_nm = prepared.image.pitch_y_nm;   // but for what a file's text rounds
+  return met;
+}
+
+void choose_tip(PreparedAfm& prepared, const AfmPreparationOptions& o) {
   const Watch watch = o.watch.part(0.15, 0.95);
   if (o.tip) {
     validate(*o.tip, "`reconstruction.tip`");
-    prepared.tip = of_pitch(*o.tip, prepared.image);
-    if (!o.tip->doubt.empty())
-      prepared.warnings.push_back(fmt::format("the tip's file says that it is not to be trusted: {}", o.tip->doubt));
+    prepared.tip = meeting(*o.tip, prepared);
     prepared.tip_given = true;
   } else if (o.tip_size) {
     find_free_tip(prepared, o, watch);
@@ -223,10 +192,9 @@ PreparedAfm prepare_afm(const HeightField& scan, const AfmPreparationOptions& o)
   if (!(height_range({&scan, 1}).span_nm() > 0))
     throw InvalidInput("AFM scan", "all its heights are the same", "Choose the channel of heights with `reconstruction.afm_channel`");
   PreparedAfm prepared;
-  prepared.image = scan;
-  level_scan(prepared, o);
+  level_scan(prepared, scan, o);
   find_noise(prepared, o);
-  find_tip(prepared, o);
+  choose_tip(prepared, o);
   if (prepared.tip.z_nm.width() > scan.z_nm.width() || prepared.tip.z_nm.height() > scan.z_nm.height())
     throw InvalidInput("`reconstruction.tip`", fmt::format("it is {} x {} samples, wider than the scan of {} x {}",
                                             prepared.tip.z_nm.width(), prepared.tip.z_nm.height(), scan.z_nm.width(),

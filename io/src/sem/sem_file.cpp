@@ -225,9 +225,10 @@ bool is_sem_image_file(const fs::path& path) { return header_of_maker(path).has_
 void refuse_as_heights(const fs::path& path) {
   const auto header = header_of_maker(path);
   if (!header) return;
-  throw InvalidInput(path.string(), fmt::format("it is an SEM image ({}), and its grey levels are no heights", header->format),
-                     "Give a scan; an SEM image's noise is found with 'semsurf noise --sem'. If it does hold heights, say "
-                     "what one grey level is with `z_unit`");
+  throw InvalidInput(
+      path.string(), fmt::format("it is an SEM image ({}), and its grey levels are no heights", header->format),
+      "Give a scan; an SEM image's noise is found with 'semsurf noise sem'. If it does hold heights, say "
+      "what one grey level is with `scan.height_unit`");
 }
 
 }  // namespace surf::io

@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "surf/core/error.h"
-#include "surf/io/height_field_file.h"
 #include "surf/io/image_file.h"
 #include "surf/io/sem_file.h"
 
@@ -15,9 +14,9 @@ namespace {
 
 const Channel& height_channel(const Image& image, const FieldSource& source, const std::string& called,
                               std::vector<std::string>& notes) {
-  if (!source.channel.empty()) {
-    if (const Channel* channel = image.find(source.channel)) return *channel;
-    throw UsageError("`specimen.height_channel`", fmt::format("{} has no channel '{}'", called, source.channel),
+  if (!source.options.channel.empty()) {
+    if (const Channel* channel = image.find(source.options.channel)) return *channel;
+    throw UsageError("`scan.height_channel`", fmt::format("{} has no channel '{}'", called, source.options.channel),
                      "'semsurf info' lists its channels");
   }
   for (const char* name : {"z_nm", "z"})
@@ -28,25 +27,24 @@ const Channel& height_channel(const Image& image, const FieldSource& source, con
 }
 
 HeightField read_scan(const FieldSource& source, const std::string& called, std::vector<std::string>& notes) {
-  HeightFieldFile file =
-      read_height_field(source.path, {source.channel, source.unit_nm, source.pitch_x_nm, source.pitch_y_nm});
+  HeightFieldFile file = read_height_field(source.path, source.options);
   for (const std::string& note : file.notes) notes.push_back(fmt::format("{}: {}", called, note));
   return std::move(file.field);
 }
 
 HeightField read_picture(const FieldSource& source, const std::string& called, std::vector<std::string>& notes) {
-  if (!source.unit_nm) refuse_as_heights(source.path);
+  if (!source.options.z_unit_nm) refuse_as_heights(source.path);
   const Image image = read_image(source.path);
-  return to_height_field(image, height_channel(image, source, called, notes).name, source.unit_nm.value_or(1));
+  return to_height_field(image, height_channel(image, source, called, notes).name, source.options.z_unit_nm.value_or(1));
 }
 
 }  // namespace
 
 HeightField read_field(const FieldSource& source, const std::string& called, std::vector<std::string>& notes) {
   HeightField field = is_height_field_file(source.path) ? read_scan(source, called, notes) : read_picture(source, called, notes);
-  if (!source.pitch_x_nm) return field;
-  field.pitch_x_nm = *source.pitch_x_nm;
-  field.pitch_y_nm = *source.pitch_y_nm;
+  if (!source.options.pitch_x_nm) return field;
+  field.pitch_x_nm = *source.options.pitch_x_nm;
+  field.pitch_y_nm = source.options.pitch_y_nm.value_or(*source.options.pitch_x_nm);
   field.origin_x_nm = -0.5 * field.pitch_x_nm * (field.z_nm.width() - 1);   // as for shapes
   field.origin_y_nm = -0.5 * field.pitch_y_nm * (field.z_nm.height() - 1);
   return field;

@@ -240,8 +240,8 @@ HeightField SceneParts::read_field_file(const TomlTable& table) {
   if (pixel && !(*pixel > 0)) {
     throw UsageError(table.place("pixel_size"), "it is not above 0", "Give a positive length");
   }
-  FieldSource source{path, table.text("channel").value_or(""), pixel, pixel, {}};
-  if (table.has("z_unit")) source.unit_nm = z_unit_nm;
+  FieldSource source{path, {table.text("channel").value_or(""), {}, pixel, pixel}};
+  if (table.has("z_unit")) source.options.z_unit_nm = z_unit_nm;
   return at_place(table, "channel", [&] { return read_field(source, path.filename().string(), scene_.notes); });
 }
 

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <tuple>
 
 #include "sim/add_material.h"
 #include "sim/field_source.h"
@@ -15,19 +14,12 @@
 #include "surf/io/height_field_file.h"
 #include "surf/io/image_file.h"
 #include "surf/io/mesh_file.h"
+#include "surf/io/scan_parameters.h"
 
 namespace surf::io {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// "um", or a length such as "25.4mm".
-double unit_nm(std::string_view text, const std::string& subject) {
-  const bool named = text.find_first_of("0123456789") == std::string_view::npos;
-  const double nm = named ? unit_length_nm(text, subject) : parse_length_nm(text, subject);
-  if (!(nm > 0)) throw UsageError(subject, fmt::format("'{}' is not above zero", text), "Write a length, as um or 25.4mm");
-  return nm;
-}
 
 std::string text_of(const std::optional<double>& nm) { return nm ? format_exact(*nm) + "nm" : std::string(); }
 
@@ -70,20 +62,19 @@ SceneFile from_shapes(const SpecimenRequest& request, const BodyReader& read) {
     }
     if (scene.specimen.height_field)
       throw UsageError(input, "there is a height field already", "Give one image at most");
-    HeightField field = read_field({path, request.height_channel, request.height_pitch_x_nm, request.height_pitch_y_nm,
-                                    request.height_unit_nm}, input, scene.notes);
+    HeightField field = read_field({path, request.heights}, input, scene.notes);
     scene.specimen.height_field =
         mc::HeightFieldBody{input, std::move(field), add_material(scene, material, "`specimen.material`"), Edge::mirror};
     scene.inputs.push_back(path);
   }
   scene.notes.insert(scene.notes.end(), of_materials.begin(), of_materials.end());
-  const char* const of_heights = request.height_pitch_x_nm         ? "`specimen.height_pitch`"
-                                 : request.height_unit_nm          ? "`specimen.height_unit`"
-                                 : !request.height_channel.empty() ? "`specimen.height_channel`" : nullptr;
+  const char* const of_heights = request.heights.pitch_x_nm         ? "`scan.height_pitch`"
+                                 : request.heights.z_unit_nm        ? "`scan.height_unit`"
+                                 : !request.heights.channel.empty() ? "`scan.height_channel`" : nullptr;
   if (of_heights && !scene.specimen.height_field)
     throw UsageError(of_heights, "no input is a height field", "Leave it out, or give an image");
   if (scene.specimen.bodies.empty() && request.mesh_unit_nm)
-    throw UsageError("`specimen.unit`", "no input is a mesh", "Leave it out; `specimen.height_unit` scales heights");
+    throw UsageError("`specimen.unit`", "no input is a mesh", "Leave it out; `scan.height_unit` scales heights");
   return scene;
 }
 
@@ -91,9 +82,9 @@ SceneFile from_file(const SpecimenRequest& request, const BodyReader& read) {
   for (const auto& [given, name] : {std::pair{request.material.has_value(), "`specimen.material`"},
                                     {request.mesh_unit_nm.has_value(), "`specimen.unit`"},
                                     {request.override_unit, "`specimen.override_unit`"},
-                                    {request.height_pitch_x_nm.has_value(), "`specimen.height_pitch`"},
-                                    {request.height_unit_nm.has_value(), "`specimen.height_unit`"},
-                                    {!request.height_channel.empty(), "`specimen.height_channel`"}})
+                                    {request.heights.pitch_x_nm.has_value(), "`scan.height_pitch`"},
+                                    {request.heights.z_unit_nm.has_value(), "`scan.height_unit`"},
+                                    {!request.heights.channel.empty(), "`scan.height_channel`"}})
     if (given)
       throw UsageError(name, "a scene file says this for each of its parts", "Change the scene file, or give a mesh");
   return read_scene(request.inputs.front(), {request.material_files.begin(), request.material_files.end()}, read);
@@ -114,7 +105,7 @@ void describe(ParameterVisitor& visit, SpecimenRequest& r) {
   visit.form({.name = "specimen.unit", .help = "Length of one unit of the mesh files", .otherwise = "as they say, else nm; glTF: m",
               .form = "nm|um|mm|m|pm|A|in"},
              [&] { return text_of(r.mesh_unit_nm); },
-             [&](std::string_view text, const std::string& subject) { r.mesh_unit_nm = unit_nm(text, subject); });
+             [&](std::string_view text, const std::string& subject) { r.mesh_unit_nm = parse_unit_nm(text, subject); });
   visit(r.override_unit, {.name = "specimen.override_unit", .help = "Take the given unit even where a mesh file says another",
                           .level = Level::advanced});
   visit(r.substrate, {.name = "specimen.substrate", .help = "Material of a half-space below the bodies", .otherwise = "none",
@@ -124,30 +115,13 @@ void describe(ParameterVisitor& visit, SpecimenRequest& r) {
   visit(r.edge, {"mirror", "flat", "periodic"},
         {.name = "specimen.edge", .help = "Continuation of a height field outside its samples", .otherwise = "mirror",
          .level = Level::advanced});
-  visit.form({.name = "specimen.height_pitch", .help = "Sample distance of a height field", .unit = Unit::nm,
-              .otherwise = "as its file says, or 1nm", .form = "LENGTH"},
-             [&] {
-               if (!r.height_pitch_x_nm) return std::string();
-               return fmt::format("{}x{}", format_exact(*r.height_pitch_x_nm), format_exact(*r.height_pitch_y_nm));
-             },
-             [&](std::string_view text, const std::string& subject) {
-               std::tie(r.height_pitch_x_nm, r.height_pitch_y_nm) = parse_two_lengths_nm(text, subject);
-             });
-  visit.form({.name = "specimen.height_unit", .help = "Length of one grey level or unit of a height field", .unit = Unit::nm,
-              .otherwise = "as its file says, or 1nm", .form = "LENGTH"},
-             [&] { return r.height_unit_nm ? format_exact(*r.height_unit_nm) : std::string(); },
-             [&](std::string_view text, const std::string& subject) { r.height_unit_nm = unit_nm(text, subject); });
-  visit(r.height_channel, {.name = "specimen.height_channel",
-                           .help = "Channel of a height field, by name or number of 'semsurf info'",
-                           .otherwise = "the first of heights",
-                           .form = "NAME"});
+  describe(visit, r.heights);
 }
 
 SceneFile read_specimen(const SpecimenRequest& request, const BodyReader& read) {
   if (request.inputs.empty())
     throw UsageError("simulate", "no specimen is given",
-                     "Give a mesh, a height field or a scene file, as in "
-                     "'semsurf simulate cube.stl -o cube.exr'");
+                     "Give a mesh, a height field or a scene file: 'semsurf simulate --help' has examples");
   const bool is_file = request.inputs.size() == 1 && is_scene_file(request.inputs.front());
   SceneFile scene = is_file ? from_file(request, read) : from_shapes(request, read);
   mc::Specimen& specimen = scene.specimen;

@@ -209,7 +209,7 @@ TEST_F(SemFileTest, IsNotTakenForHeightsUnlessSomebodySaysHowHighAGreyLevelIs) {
   test::write(path(), tiff.file());
   EXPECT_THAT(complaint<InvalidInput>([&] { read_height_field(path()); }),
               testing::AllOf(HasSubstr("image.tif: it is an SEM image (Zeiss SmartSEM), and its grey levels are no heights"),
-                             HasSubstr("semsurf noise --sem"), HasSubstr("`z_unit`")));
+                             HasSubstr("semsurf noise sem"), HasSubstr("scan.height_unit")));
   HeightReadOptions options;
   options.z_unit_nm = 0.5;
   EXPECT_EQ(read_height_field(path(), options).field.z_nm(0, 0), 24);   // 48 in the lowest row

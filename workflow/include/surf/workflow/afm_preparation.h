@@ -8,25 +8,16 @@
 
 #include "surf/afm/certainty.h"
 #include "surf/afm/noise_estimate.h"
-#include "surf/afm/row_level.h"
 #include "surf/afm/tip.h"
 #include "surf/core/height_field.h"
 #include "surf/core/progress.h"
+#include "surf/workflow/level_job.h"
 
 namespace surf::workflow {
 
-enum class LevelMethod {
-  hough,        ///< the plane that most of the scan lies on
-  plane,        ///< the mean plane
-  polynomial,   ///< of `degree`
-  none,         ///< the scan is level
-};
-
 /// What is done to a scan before anything is made of it. What is not given is found.
 struct AfmPreparationOptions {
-  LevelMethod level = LevelMethod::hough;
-  int degree = 2;                     ///< of the polynomial, 0 to 6
-  std::optional<RowMethod> rows;      ///< steps between scan lines are taken off too
+  LevelParameters level;
   std::optional<AfmNoise> noise;
   std::optional<Tip> tip;             ///< of any pitch
   int tip_size = 0;                   ///< samples across a tip of any shape, odd; 0: a round one is searched for

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "surf/core/edge.h"
+#include "surf/io/height_field_file.h"
 #include "surf/io/sim/mesh_bodies.h"
 #include "surf/io/sim/scene_file.h"
 
@@ -25,10 +26,7 @@ struct SpecimenRequest {
   std::optional<std::string> substrate;          ///< a material; absent: none, or the scene file's
   std::optional<double> substrate_z_nm;          ///< absent: 0, or the scene file's
   std::optional<Edge> edge;                      ///< absent: mirror, or the scene file's
-  // Of a height field whose file does not say.
-  std::string height_channel;                    ///< by name or number; empty: the first of heights
-  std::optional<double> height_pitch_x_nm, height_pitch_y_nm;   ///< > 0, both or neither
-  std::optional<double> height_unit_nm;          ///< > 0
+  HeightReadOptions heights;                     ///< how a height field is read; its pitch is in place of the file's
 };
 
 void describe(ParameterVisitor& visit, SpecimenRequest& request);

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <string_view>
+#include <utility>
+
+#include "surf/core/parameters.h"
+#include "surf/io/height_field_file.h"
+
+namespace surf::io {
+
+/// How a scan file is read: scan.height_channel, scan.height_unit and scan.height_pitch.
+void describe(ParameterVisitor& visit, HeightReadOptions& options);
+
+/// "2nm" for square samples, or "2nmx3nm". Throws UsageError naming `subject`.
+std::pair<double, double> parse_pitch_nm(std::string_view text, std::string_view subject);
+
+/// The length of a file's unit in nm: "um", or "25.4mm". Throws UsageError naming `subject`.
+double parse_unit_nm(std::string_view text, std::string_view subject);
+
+}  // namespace surf::io
