@@ -47,7 +47,7 @@ void set_looks(BoundParameters& p) {
                 {"scan.height_unit", "Specimen"},
                 {"scan.height_channel", "Specimen"},
                 {"simulation", "Simulation"},
-                {"simulation.detector", "Detectors, besides SE and BSE"},
+                {"simulation.detectors", "Detectors, besides SE and BSE"},
                 {"output.spectra", "Detectors, besides SE and BSE"},
                 {"output.deposit", "Detectors, besides SE and BSE"},
                 {"output.trajectories", "Detectors, besides SE and BSE"},
@@ -59,6 +59,7 @@ void set_looks(BoundParameters& p) {
   p.looks["specimen.input"] = {.name = "INPUT", .positional = true};
   p.looks["scan.height_pitch"] = {.former = {"--pitch"}};
   p.looks["scan.height_unit"] = {.former = {"--z-unit"}};
+  p.looks["simulation.detectors"] = {.name = "--detector"};
   p.looks["output.png_channel"] = {.former = {"--channel"}};
   p.looks["output"] = {.name = "-o,--output"};
 }

@@ -146,7 +146,7 @@ void describe(ParameterVisitor& visit, SimulationRequest& request) {
          .limits = at_least(0),
          .level = Level::advanced});
   DetectorsField detectors(request.detectors);
-  visit.visit({.name = "simulation.detector",
+  visit.visit({.name = "simulation.detectors",
                .help = "Detector besides SE and BSE: one of these, changed after a colon (side:axis=60deg/90deg), or one of your "
                        "own (loss:energy=900eV..,cone=30deg)",
                .form = "SE1|SE2|quadrants|annular|in-lens|side",

@@ -3,7 +3,7 @@
 // In a proxy,
 //   <Parameters of="simulation" command="SetParameter"/>      is replaced by a property for each parameter of that struct,
 //   <Parameter name="beam.tilt" .../>                         by that one, and the struct's list then leaves it out.
-// A Parameter may say what differs for ParaView: property (its name), label, default, numbers (how many), level, omit="1", the
+// A Parameter may say what differs for ParaView: property (its name), label, default, numbers (how many), min, level, omit="1", the
 // widget's condition show_with="Budget=1", and documentation, which goes before the description's.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -89,12 +89,13 @@ std::string range_words(const Parameter& about) {
 }
 
 void set_range(pugi::xml_node domain, const Parameter& about, bool whole) {
-  const auto text = [&](double value) {
-    return whole ? fmt::format("{:.0f}", std::clamp(value, double(std::numeric_limits<int>::min()), double(std::numeric_limits<int>::max())))
-                 : fmt::format("{}", value);
+  // ParaView's whole numbers end earlier than some of ours.
+  const auto text = [&](double value) { return whole ? fmt::format("{:.0f}", value) : fmt::format("{}", value); };
+  const auto is_there = [&](double value) {
+    return std::isfinite(value) && (!whole || std::abs(value) <= std::numeric_limits<int>::max());
   };
-  if (std::isfinite(about.limits.low)) domain.append_attribute("min") = text(about.limits.low).c_str();
-  if (std::isfinite(about.limits.high)) domain.append_attribute("max") = text(about.limits.high).c_str();
+  if (is_there(about.limits.low)) domain.append_attribute("min") = text(about.limits.low).c_str();
+  if (is_there(about.limits.high)) domain.append_attribute("max") = text(about.limits.high).c_str();
 }
 
 std::string sentence(const Described& d, const std::string& own) {
@@ -104,12 +105,13 @@ std::string sentence(const Described& d, const std::string& own) {
 }
 
 /// The property in place of `placeholder`, which says what differs.
-void add_property(pugi::xml_node placeholder, const Described& d, const char* command) {
+void add_property(pugi::xml_node placeholder, Described d, const char* command) {
   const pugi::xml_node said = placeholder;
   const auto attribute = [&](const char* name, const std::string& usual) {
     const pugi::xml_attribute given = said.attribute(name);
     return given ? std::string(given.value()) : usual;
   };
+  if (said.attribute("min")) d.about.limits.low = said.attribute("min").as_double();
   const std::string label = attribute("label", with_spaces(d.about.last_name()));
   const bool is_choice = d.kind == FieldKind::choice, is_flag = d.kind == FieldKind::flag;
   const int numbers = said.attribute("numbers").as_int(0);
@@ -124,7 +126,10 @@ void add_property(pugi::xml_node placeholder, const Described& d, const char* co
     const auto found = std::ranges::find(d.choices, d.text);
     usual = std::to_string(found == d.choices.end() ? 0 : found - d.choices.begin());
   }
-  if ((is_whole || is_number) && usual.empty()) usual = "0";
+  if ((is_whole || is_number) && usual.empty()) {
+    usual = "0";
+    for (int i = 1; i < numbers; ++i) usual += " 0";
+  }
   property.append_attribute("name") = attribute("property", joined(label)).c_str();
   property.append_attribute("label") = label.c_str();
   property.append_attribute("command") = command;

@@ -44,7 +44,7 @@ THIRD_PARTY = [
     ("OpenImageIO/*", ["io/src/raster_*"]),
     ("vtk*", ["io/src/vti_file.cpp", "io/src/vti_volume.cpp", "io/src/vtp_*.cpp", "io/src/vtk_support.h",
               "paraview_plugin/*"]),
-    ("pugixml.hpp", ["io/src/vtk_xml.cpp", "io/src/three_mf_file.cpp"]),
+    ("pugixml.hpp", ["io/src/vtk_xml.cpp", "io/src/three_mf_file.cpp", "paraview_plugin/tools/expand_proxies.cpp"]),
     ("zlib.h", ["io/src/deflate.cpp", "io/src/vtk_data.cpp", "io/src/zip_file.cpp"]),
     ("tiny_gltf.h", ["io/src/gltf_write.cpp"]),
     ("cairo*.h", ["io/src/canvas.cpp"]),

@@ -114,7 +114,7 @@ semsurf_cli_test(simulate.every_option ARGS simulate cube.off cube.off --materia
   --substrate Au --substrate-z -5nm --energy 0.5keV --tilt 0.3rad --azimuth 30 --spot 1nm
   --region -32,-32,32,32 --pixel-size 8nm --electrons 3 --seed 18446744073709551615
   --physics elastic=browning,secondaries=off,barrier=off --cutoff 60eV --threads 2 -o image.exr
-  STDOUT "8 x 8 pixels" INFO image.exr "seed +18446744073709551615")
+  STDOUT "8 x 8 pixels" INFO image.exr "simulation.seed +18446744073709551615")
 semsurf_cli_test(simulate.detectors ARGS simulate cube.off ${few} --detector quadrants
   --detector SE1 --detector loss:energy=400eV..,cone=30deg -o image.exr
   STDOUT "BSE-bottom +0" "SE1 +[01]" "loss +0" WRITES image.exr
@@ -169,14 +169,14 @@ endforeach()
 set(short --energy 500 --physics secondaries=off)
 semsurf_cli_test(simulate.auto ARGS simulate cube.off --substrate Si ${few} -o image.exr
   STDOUT "method +direct: 128 primaries are too few for 10.2 thousand cascades"
-  INFO image.exr "method +direct(.|\n)*pixels.direct +64")
+  INFO image.exr "pixels.direct +64(.|\n)*simulation.method +direct")
 semsurf_cli_test(simulate.replay ARGS simulate cube.off --substrate Si ${few} ${short}
   --method replay -o image.exr STDOUT "method +replay: as asked for" "library +10240 cascades.*made in"
-  INFO image.exr "balance.handed_over(.|\n)*library.cascades +10240(.|\n)*method +replay")
+  INFO image.exr "balance.handed_over(.|\n)*library.cascades +10240(.|\n)*simulation.method +replay")
 semsurf_cli_test(simulate.accuracy ARGS simulate cube.off --substrate Si --size 8x8 ${short}
   --accuracy 20% --accuracy-floor 0.05 --method replay --channels model,electrons,variance_left -o image.exr
   STDOUT "pixels +.*differences to planes" "electrons +[0-9]+ per pixel on average" "accuracy +20 % reached"
-  INFO image.exr "BSE.variance_left(.|\n)*accuracy_floor +0.05(.|\n)*method +replay")
+  INFO image.exr "BSE.variance_left(.|\n)*simulation.accuracy_floor +0.05(.|\n)*simulation.method +replay")
 semsurf_cli_test(simulate.accuracy_direct ARGS simulate cube.off --substrate Si --size 8x8 ${short}
   --accuracy 20% --accuracy-floor 0.05 -o image.exr
   STDOUT "method +direct: about .* are too few for" "pixels +100 % directly" "accuracy +20 % reached" WRITES image.exr)
@@ -186,7 +186,7 @@ semsurf_cli_test(simulate.time ARGS simulate cube.off --substrate Si --size 8x8 
 semsurf_cli_test(simulate.mesh_tolerance ARGS simulate rough.toml ${few} --mesh-tolerance 0.5nm -o image.exr
   STDOUT "simplified +rough: [0-9]+ triangles to [0-9]+, at most 0\\.[0-9]+ nm off" "0.500 nm allowed, took"
   STDERR "leaving out detail below 0.500 nm"
-  INFO image.exr "mesh_tolerance_nm +0.5(.|\n)*simplified.1 +rough: ")
+  INFO image.exr "simplified.1 +rough: (.|\n)*simulation.mesh_tolerance_nm +0.5")
 semsurf_cli_test(simulate.mesh_tolerance_in_scene ARGS simulate rough.toml ${few} -o image.exr
   INFO image.exr "mesh_tolerance_nm +0.2")
 semsurf_cli_test(simulate.mesh_tolerance_gains_nothing ARGS simulate cube.off ${few} --mesh-tolerance 1nm

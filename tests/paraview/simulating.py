@@ -40,7 +40,7 @@ def images_equal_the_command():
             (dict(Budget="Accuracy", Accuracy=0.2, Pixels=24), ["--size", "24x24", "--accuracy", "20%"])]:
         data = quiet(simple.SimulateSEM(Input=body, **properties))
         same_as(data, command("sphere.off", *options), f"{properties}")
-    expect(text(data, "state") == "done" and text(data, "accuracy") == "0.2", "it says how it was made")
+    expect(text(data, "state") == "done" and text(data, "simulation.accuracy") == "0.2", "it says how it was made")
     expect(array(data, "SE.stderr").max() > 0, "there are standard errors")
 
 
@@ -157,11 +157,11 @@ def live_images_refine():
 def wrong_properties_are_refused():
     def wrong(*words, **properties):
         refuses(simple.SimulateSEM(Input=sphere(), **{"Pixels": 8, "Electrons": 1, **properties}), *words)
-    wrong("Energy", "100 to 30000", Energy=50)
+    wrong("Energy", "100eV to 30keV", Energy=50)
     wrong("Materials", "'Xx'", Materials="Xx")
     wrong("Substrate", "'Xx'", Substrate="Xx")
-    wrong("Electrons", "too few", Electrons=0)
-    wrong("Accuracy", "0.0001 to 1", Budget="Accuracy", Accuracy=2)
+    wrong("Electrons", "out of range", Electrons=0)
+    wrong("Accuracy", "0.01% to 100%", Budget="Accuracy", Accuracy=2)
     wrong("Detectors", "no value", Detectors="nonsense:")
     wrong("Tilt", "90", Tilt=95)
     wrong("Region", "empty", Region=[5, 0, 1, 1])

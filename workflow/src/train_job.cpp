@@ -34,6 +34,7 @@ void check_numbers(const TrainJob& job, int own) {
   if (!(job.pixel_nm > 0 && std::isfinite(job.pixel_nm)))
     throw UsageError("`training.pixel_size`", "it must be above zero", "Give the model's pixel size, as 3nm");
   mc::validate(job.physics, job.energy_ev);
+  mc::validate(job.simulation.budget);
   const int surfaces = own + static_cast<int>(job.inputs.size());
   if (job.held_out < 0 || (job.held_out > 0 && job.held_out >= surfaces))
     throw UsageError("`training.hold_out`", fmt::format("{} of {} surfaces leave none to learn on", job.held_out, surfaces),

@@ -163,12 +163,20 @@ class Optional final : public Field {
 
 class List final : public Field {
  public:
-  explicit List(std::vector<std::string>& value) : value_(value) {}
+  List(std::vector<std::string>& value, const Parameter& about) : value_(value), about_(about) {}
   FieldKind kind() const override { return FieldKind::list; }
   bool given() const override { return !value_.empty(); }
   std::string text() const override { return fmt::format("{}", fmt::join(value_, ",")); }
   void read(std::string_view text, const std::string& subject) override {
     value_.clear();
+    add(text, subject);
+  }
+  /// Names between commas, which may be in names of files.
+  void add(std::string_view text, const std::string& subject) override {
+    if (about_.file != FileRole::none) {
+      value_.emplace_back(text);
+      return;
+    }
     for (std::size_t from = 0; from <= text.size();) {
       const std::size_t comma = std::min(text.find(',', from), text.size());
       const std::string_view one = trimmed(text.substr(from, comma - from));
@@ -177,11 +185,11 @@ class List final : public Field {
       from = comma + 1;
     }
   }
-  void add(std::string_view text, const std::string&) override { value_.emplace_back(text); }
   void clear() override { value_.clear(); }
 
  private:
   std::vector<std::string>& value_;
+  const Parameter& about_;
 };
 
 class Choice final : public Field {
@@ -299,7 +307,7 @@ void ParameterVisitor::operator()(std::string& value, const Parameter& about) {
   visit(about, field);
 }
 void ParameterVisitor::operator()(std::vector<std::string>& value, const Parameter& about) {
-  List field(value);
+  List field(value, about);
   visit(about, field);
 }
 void ParameterVisitor::operator()(std::optional<double>& value, const Parameter& about) {

@@ -21,7 +21,9 @@ int main() {
   const mc::Beam beam{.energy_ev = 1000};
   const mc::Scan scan{.width = 4, .height = 4, .pixel_x_nm = 10, .pixel_y_nm = 10};
   const mc::Scene scene(specimen, beam, scan);
-  const auto result = mc::simulate(scene, {.electrons = 50});
+  mc::SimulationOptions options;
+  options.budget = mc::ElectronsPerPixel{50};
+  const auto result = mc::simulate(scene, options);
   const auto& b = result.balance;
   std::printf("yield SE %.3f BSE %.3f\n", double(b.se) / double(b.incident),
               double(b.bse) / double(b.incident));

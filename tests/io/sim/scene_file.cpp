@@ -285,7 +285,7 @@ TEST_F(SceneFileTest, WrongValuesAreNamedWithTheirPlace) {
   };
   expect("[beam]\nenergy = \"1 kV\"", "line 2, beam.energy", "kV");
   expect("[beam]\nenergy = true", "line 2, beam.energy", "neither");
-  expect("[beam]\nenergy = 1e3\ntilt = 91", "line 3, beam.tilt: 91 degrees is outside", "with beam.azimuth");
+  expect("[beam]\nenergy = 1e3\ntilt = 91", "line 3, beam.tilt: '91' is out of range", "below 90deg");
   expect("[beam]\nenergy = nan", "line 2, beam.energy", "neither");
   expect("[beam]\ntilt = 95", "line 2, beam.tilt", "95");
   expect("beam = 3", "line 1, beam", "not a table");
