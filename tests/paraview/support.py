@@ -68,6 +68,12 @@ def text(data, name):
     return found.GetValue(0) if found else None
 
 
+def texts(data):
+    """All texts of the field data, by name."""
+    arrays = [data.GetFieldData().GetAbstractArray(i) for i in range(data.GetFieldData().GetNumberOfArrays())]
+    return {found.GetName(): str(found.GetValue(0)) for found in arrays}
+
+
 def same(got, wanted, what):
     """To the last bit; NaN equals NaN."""
     got, wanted = numpy.asarray(got), numpy.asarray(wanted)

@@ -116,6 +116,23 @@ Metadata provenance(const ResolvedJob& job, const mc::Scan& scan,
   return out;
 }
 
+Metadata output_settings(const ResolvedJob& job) {
+  SimulateJob said = job, usual;
+  Metadata out, defaults;
+  const auto keep = [](Metadata& to) {
+    return [&to](const Parameter& about, Field& field) {
+      if (about.recorded && about.name.starts_with("output.") && field.given()) to[about.key()] = field.text();
+    };
+  };
+  for_each_parameter(said, keep(out));
+  for_each_parameter(usual, keep(defaults));
+  std::erase_if(out, [&](const auto& one) {
+    const auto found = defaults.find(one.first);
+    return found != defaults.end() && found->second == one.second;
+  });
+  return out;
+}
+
 Metadata outcome(const SimulateSummary& summary) {
   Metadata out;
   const mc::SimulationResult& result = summary.result;

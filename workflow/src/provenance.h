@@ -22,6 +22,9 @@ std::vector<InputHash> hash_inputs(const std::vector<std::filesystem::path>& inp
 std::map<std::string, std::string> provenance(const ResolvedJob& job, const mc::Scan& scan,
                                               const std::vector<InputHash>& inputs);
 
+/// What was asked of the files: channels, layout, tracks. Work that is gone on with does not depend on it.
+std::map<std::string, std::string> output_settings(const ResolvedJob& job);
+
 /// What a finished simulation adds: its balance, libraries, how pixels were simulated, warnings and,
 /// when cancelled, that it is partial.
 std::map<std::string, std::string> outcome(const SimulateSummary& summary);

@@ -272,6 +272,7 @@ SimulateSummary run(SimulateJob asked, const Reporter& reporter, Team* team, con
 
   summary.record = settings;
   summary.record.merge(outcome(summary));
+  summary.record.merge(output_settings(job));
   if (job.outputs.empty()) {
     if (job.extras.trajectories > 0)
       summary.tracks = record_trajectories(scene, job.options.seed, job.extras.trajectories, job.extras.trajectories_at_nm).tracks;

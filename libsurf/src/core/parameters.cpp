@@ -46,8 +46,7 @@ const char* thing(Unit unit, bool whole) {
 [[noreturn]] void refuse_value(const std::string& shown, const Parameter& about, const std::string& subject, bool whole) {
   const std::string limits = format_limits(about);
   throw UsageError(subject, fmt::format("{} is out of range", shown),
-                   fmt::format("Give {}{}{}", thing(about.unit, whole), limits.empty() ? "" : " ",
-                               limits.empty() ? "that is finite" : limits));
+                   fmt::format("Give {} {}", thing(about.unit, whole), limits.empty() ? "that is finite" : limits));
 }
 
 void check_number(double value, const Parameter& about, const std::string& subject, bool whole = false) {
@@ -82,7 +81,12 @@ struct ReadingWhole {
                          fmt::format("Give a whole number{}{}", format_limits(about).empty() ? "" : " ", format_limits(about)));
       const double lowest = static_cast<double>(std::numeric_limits<Whole>::min());
       const double highest = std::min(most_exact, static_cast<double>(std::numeric_limits<Whole>::max()));
-      if (real < lowest || real > highest) refuse_value(fmt::format("'{}'", text), about, subject, true);
+      if (real < lowest || real > highest) {
+        Parameter of_type = about;   // where the parameter itself has no limits
+        if (format_limits(about).empty())
+          of_type.limits = within(lowest, static_cast<double>(std::numeric_limits<Whole>::max()));
+        refuse_value(fmt::format("'{}'", text), of_type, subject, true);
+      }
       value = static_cast<Whole>(real);
     }
     if (!about.limits.holds(static_cast<double>(value))) refuse_value(fmt::format("'{}'", text), about, subject, true);

@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Every parameter of a simulation that changes its files is found in them: each option is given another value than its default,
+// and the image is read again.
+#include <gmock/gmock.h>
+
+#include <filesystem>
+#include <map>
+#include <set>
+
+#include "bound_parameters.h"
+#include "in_process.h"
+#include "surf/io/image_file.h"
+#include "surf/io/height_field_file.h"
+#include "surf/io/mesh_file.h"
+#include "surf/io/sim/specimen_request.h"
+#include "surf/mesh/shapes.h"
+#include "surf/workflow/simulate_job.h"
+#include "temporary_folder.h"
+
+namespace surf {
+namespace {
+
+/// What is given, besides the usual, and what the image then says under the parameter's key. Empty: the parameter's text.
+struct Change {
+  std::vector<std::string> options;
+  std::string key, value;
+};
+
+const std::map<std::string, Change>& changes() {
+  static const std::map<std::string, Change> all{
+      {"beam.energy", {{"--energy", "2keV"}, "beam.energy_ev", "2000"}},
+      {"beam.tilt", {{"--tilt", "30deg"}, "beam.tilt_deg", "30"}},
+      {"beam.azimuth", {{"--azimuth", "45"}, "beam.azimuth_deg", "45"}},
+      {"beam.spot", {{"--spot", "2nm"}, "beam.spot_nm", "2"}},
+      {"beam.convergence", {{"--convergence", "1deg"}, "beam.convergence_deg", "1"}},
+      {"beam.focus", {{"--focus", "0.1um"}, "beam.focus_nm", "100"}},
+      {"beam.working_distance", {{"--working-distance", "5mm"}, "beam.working_distance_nm", "5e+06"}},
+      {"beam.current", {{"--current", "20pA", "--dwell", "0.1us"}, "beam.current_pa", "20"}},
+      {"beam.dwell", {{"--current", "20pA", "--dwell", "0.1us"}, "beam.dwell_us", "0.1"}},
+      {"scan.size", {{"--size", "6x5"}, "scan.height", "5"}},
+      {"scan.pixel_size", {{"--pixel-size", "10nmx20nm"}, "scan.pixel_y_nm", "20"}},
+      {"scan.region", {{"--region", "-20,-20,0,0", "--size", "4x4"}, "scan.center_x_nm", "-10"}},
+      {"simulation.electrons", {{"--electrons", "3"}, "simulation.electrons", "3"}},
+      {"simulation.accuracy", {{"--accuracy", "60%"}, "simulation.accuracy", "0.6"}},
+      {"simulation.accuracy_floor", {{"--accuracy", "60%", "--accuracy-floor", "0.5"}, "simulation.accuracy_floor", "0.5"}},
+      {"simulation.method", {{"--method", "replay"}, "simulation.method", "replay"}},
+      {"simulation.mesh_tolerance", {{"--mesh-tolerance", "0.5nm"}, "simulation.mesh_tolerance_nm", "0.5"}},
+      {"simulation.detectors", {{"--detector", "SE1:name=first"}, "detector.3", "first:"}},
+      {"simulation.physics", {{"--physics", "barrier=off"}, "simulation.physics", "barrier=off"}},
+      {"simulation.cutoff", {{"--cutoff", "20"}, "simulation.cutoff_ev", "20"}},
+      {"simulation.seed", {{"--seed", "5"}, "simulation.seed", "5"}},
+      {"output.channels", {{"--channels", "z_nm,electrons"}, "output.channels", "z_nm,electrons"}},
+      {"output.deposit", {{"--deposit", "4"}, "output.deposit", "4"}},
+      {"output.trajectories", {{"--trajectories", "2"}, "output.trajectories", "2"}},
+      {"output.trajectories_at", {{"--trajectories", "2", "--trajectories-at", "5,5"}, "output.trajectories_at_nm", "5,5"}},
+      {"output.png_channel", {{"--png-channel", "BSE"}, "output.png_channel", "BSE"}},
+      {"output.layout", {{"--layout", "tiles"}, "output.layout", "tiles"}},
+      {"specimen.material", {{"--material", "Au"}, "material.1.name", "Au"}},
+      {"specimen.unit", {{"--unit", "um", "--override-unit"}, "specimen.body.1", "20000"}},
+      {"specimen.override_unit", {{"--unit", "um", "--override-unit"}, "unit_override.1", "1000 nm"}},
+      {"specimen.substrate", {{"--substrate", "C"}, "specimen.substrate", "C, top at 0 nm"}},
+      {"specimen.substrate_z", {{"--substrate", "C", "--substrate-z", "-3nm"}, "specimen.substrate", "C, top at -3 nm"}},
+  };
+  return all;
+}
+
+/// Recorded by what they read, or of height fields (below).
+const std::set<std::string> others{"specimen.edge", "scan.height_pitch", "scan.height_unit", "scan.height_channel"};
+
+class Records : public testing::Test {
+ protected:
+  Records() { io::write_mesh(mesh_, make_box({-20, -20, 0}, {20, 20, 40})); }
+
+  std::map<std::string, std::string> made_with(const std::vector<std::string>& options) {
+    const std::string output = (folder_.path() / "image.tif").string();
+    std::vector<std::string> words{"simulate", mesh_.string(), "-q", "--cache", "off", "--checkpoint", "off", "-o", output};
+    const auto given = [&](const char* name) { return std::ranges::find(options, name) != options.end(); };
+    if (!given("--size") && !given("--pixel-size")) words.insert(words.end(), {"--size", "4x4"});
+    if (!given("--electrons") && !given("--accuracy") && !given("--current"))
+      words.insert(words.end(), {"--electrons", "2"});
+    words.insert(words.end(), options.begin(), options.end());
+    const test::Said said = test::semsurf(words);
+    EXPECT_EQ(said.code == 4 ? 0 : said.code, 0) << said.err;   // 4: an accuracy was missed
+    return said.code == 0 || said.code == 4 ? io::read_image(output).metadata : std::map<std::string, std::string>();
+  }
+
+  test::TemporaryFolder folder_;
+  std::filesystem::path mesh_ = folder_.path() / "cube.stl";
+};
+
+TEST_F(Records, HoldEveryParameterOfASimulation) {
+  const auto plain = made_with({});
+  std::set<std::string> known = others;
+  for (const auto& [name, change] : changes()) {
+    SCOPED_TRACE(name);
+    known.insert(name);
+    const auto made = made_with(change.options);
+    ASSERT_TRUE(made.contains(change.key));
+    EXPECT_THAT(made.at(change.key), testing::HasSubstr(change.value));
+    if (plain.contains(change.key)) {
+      EXPECT_NE(plain.at(change.key), made.at(change.key)) << "it is so by default";
+    }
+  }
+  // A new parameter has to be looked for, too.
+  const auto look = [&](const Parameter& about, Field&) {
+    if (about.recorded) {
+      EXPECT_TRUE(known.contains(about.name)) << about.name;
+    }
+  };
+  workflow::SimulateJob job;
+  for_each_parameter(job, look);
+  io::SpecimenRequest specimen;
+  for_each_parameter(specimen, look);
+}
+
+TEST_F(Records, HoldHowAHeightFieldWasRead) {
+  const std::filesystem::path field = folder_.path() / "field.txt";
+  io::write_height_field(field, make_mesa({30, 30, 2}, 5, 10, 2), {});
+  mesh_ = field;
+  const auto of = [&](const std::vector<std::string>& options) { return made_with(options).at("specimen.height_field"); };
+  EXPECT_THAT(of({"--edge", "flat"}), testing::HasSubstr("edge flat"));
+  EXPECT_THAT(of({"--height-pitch", "3nm"}), testing::HasSubstr("pitch 3 x 3 nm"));
+}
+
+}  // namespace
+}  // namespace surf
