@@ -56,7 +56,7 @@ def main():
     print(f"{'':34} {'clock ms':>9} {'+ ms':>8} {'%':>6} {'processor':>11} {'+ ms':>8} {'%':>6}")
     measure("Level Scan", simple.LevelScan(Input=field), repeats)
     measure("Level Scan, rows", simple.LevelScan(Input=field, Rows="Median"), repeats)
-    measure("Level Scan, mean plane", simple.LevelScan(Input=field, Method="Mean plane"), repeats)
+    measure("Level Scan, mean plane", simple.LevelScan(Input=field, Method="Plane"), repeats)
     measure("Clean Scan, median 3 x 3", simple.CleanScan(Input=field, RemoveSpikes=0, MedianFilter=1), repeats)
     measure("Clean Scan, median 9 x 9",
             simple.CleanScan(Input=field, RemoveSpikes=0, MedianFilter=1, MedianWidth=9), repeats)

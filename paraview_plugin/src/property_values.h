@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <algorithm>
 #include <map>
 #include <string>
+#include <vector>
 
 #include "surf/core/parameters.h"
 
@@ -28,6 +30,13 @@ class PropertyValues {
   template <class Struct>
   void apply(Struct& to) const {
     read_parameters(to, [&](const Parameter& about, Field& field) { take(about, field); });
+  }
+  /// The same of some parameters.
+  template <class Struct>
+  void apply(Struct& to, const std::vector<std::string>& only) const {
+    read_parameters(to, [&](const Parameter& about, Field& field) {
+      if (std::ranges::find(only, about.name) != only.end()) take(about, field);
+    });
   }
 
   /// All of it, to see whether anything has changed.

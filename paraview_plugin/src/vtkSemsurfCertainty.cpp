@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "vtkSemsurfCertainty.h"
 
-#include <fmt/format.h>
 #include <vtkDataArray.h>
 #include <vtkImageData.h>
 #include <vtkInformation.h>
@@ -12,11 +11,10 @@
 #include <utility>
 
 #include "attempt.h"
-#include "checks.h"
 #include "convert/tip.h"
 #include "pipeline.h"
+#include "property_values.h"
 #include "reports.h"
-#include "surf/core/error.h"
 #include "surf/workflow/certainty_job.h"
 
 vtkStandardNewMacro(vtkSemsurfCertainty);
@@ -44,18 +42,11 @@ void add_map(vtkImageData* image, const Grid<unsigned char>& level) {
 int vtkSemsurfCertainty::RequestData(vtkInformation*, vtkInformationVector** inputs,
                                      vtkInformationVector* outputs) {
   return pv::attempt(this, [&] {
-    pv::need_number(this->Noise, "Noise");
-    if (!(this->Sigmas > 0 && this->Sigmas <= 1e6))
-      throw UsageError("Sigmas", fmt::format("{} is not above 0, up to 1e6", this->Sigmas), "Give 3");
-    pv::need_length(this->Distance, "Distance");
-    if (this->Neighbourhood < -1 || this->Neighbourhood > 100)
-      throw UsageError("Neighbourhood", fmt::format("{} is not in -1 to 100", this->Neighbourhood),
-                       "Give -1");
+    pv::PropertyValues values = *this->Values;
+    for (const char* found_below_0 : {"scan.height_noise", "certainty.neighbourhood"})
+      if (values.number(found_below_0) < 0) values.forget(found_below_0);
     workflow::CertaintyParameters parameters;
-    if (this->Noise >= 0) parameters.noise_nm = this->Noise;
-    parameters.sigmas = this->Sigmas;
-    if (this->Neighbourhood >= 0) parameters.neighbourhood = this->Neighbourhood;
-    parameters.distance_nm = this->Distance;
+    values.apply(parameters);
     std::string name;
     const HeightField field = this->Heights(inputs, name);
     vtkImageData* const tip_image = pv::image_input(inputs, 1, "Tip");

@@ -10,20 +10,9 @@ class VTKSEMSURF_EXPORT vtkSemsurfCertainty : public vtkSemsurfImageFilter {
   static vtkSemsurfCertainty* New();
   vtkTypeMacro(vtkSemsurfCertainty, vtkSemsurfImageFilter);
 
-  vtkSetMacro(Noise, double);   ///< nm, standard deviation; below 0: from neighbouring pixels
-  vtkSetMacro(Sigmas, double);
-  vtkSetMacro(Neighbourhood, int);   ///< samples; -1: from the tip's apex
-  vtkSetMacro(Distance, double);     ///< nm
-
  protected:
   vtkSemsurfCertainty() { this->SetNumberOfInputPorts(2); }
   int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
-
- private:
-  double Noise = -1;
-  double Sigmas = 3;
-  int Neighbourhood = -1;
-  double Distance = 0;
 };
 
 #endif

@@ -11,8 +11,19 @@
 #include <utility>
 
 #include "pipeline.h"
+#include "property_values.h"
 
 using namespace surf;
+
+vtkSemsurfImageFilter::vtkSemsurfImageFilter() : Values(std::make_unique<pv::PropertyValues>()) {}
+vtkSemsurfImageFilter::~vtkSemsurfImageFilter() = default;
+
+void vtkSemsurfImageFilter::SetParameter(const char* name, double value) {
+  if (this->Values->set(name, value)) this->Modified();
+}
+void vtkSemsurfImageFilter::SetParameter(const char* name, const char* text) {
+  if (this->Values->set(name, text)) this->Modified();
+}
 
 /// Samples as of the input, and pieces of them: else every rank would be asked for all.
 int vtkSemsurfImageFilter::RequestInformation(vtkInformation*, vtkInformationVector**,

@@ -5,13 +5,17 @@
 #include <vtkImageAlgorithm.h>
 #include <vtkSmartPointer.h>
 
+#include <memory>
 #include <string>
 
 #include <vtkSemsurfModule.h>
 
 namespace surf {
 struct HeightField;
+namespace pv {
+class PropertyValues;
 }
+}  // namespace surf
 
 /// What filters from one height field to images of the same samples share: they ask for all of every input.
 /// Input array 0 are the heights; outputs keep the input's other arrays.
@@ -19,7 +23,13 @@ class VTKSEMSURF_EXPORT vtkSemsurfImageFilter : public vtkImageAlgorithm {
  public:
   vtkAbstractTypeMacro(vtkSemsurfImageFilter, vtkImageAlgorithm);
 
+  /// A described parameter of that name: a choice by its number.
+  void SetParameter(const char* name, double value);
+  void SetParameter(const char* name, const char* text);
+
  protected:
+  vtkSemsurfImageFilter();
+  ~vtkSemsurfImageFilter() override;
   int RequestInformation(vtkInformation*, vtkInformationVector**, vtkInformationVector* outputs) override;
   int RequestUpdateExtent(vtkInformation*, vtkInformationVector** inputs, vtkInformationVector*) override;
 
@@ -28,6 +38,8 @@ class VTKSEMSURF_EXPORT vtkSemsurfImageFilter : public vtkImageAlgorithm {
   /// Input 0 with other heights of that name, and without the mask of the old ones.
   vtkSmartPointer<vtkImageData> WithHeights(vtkInformationVector** inputs, surf::HeightField field,
                                             const std::string& name);
+
+  std::unique_ptr<surf::pv::PropertyValues> Values;   // of described parameters
 };
 
 #endif

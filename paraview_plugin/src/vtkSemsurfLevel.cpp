@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "vtkSemsurfLevel.h"
 
-#include <fmt/format.h>
 #include <vtkImageData.h>
 #include <vtkInformation.h>
 #include <vtkInformationVector.h>
@@ -10,10 +9,9 @@
 #include <utility>
 
 #include "attempt.h"
-#include "checks.h"
 #include "pipeline.h"
+#include "property_values.h"
 #include "reports.h"
-#include "surf/core/error.h"
 #include "surf/workflow/level_job.h"
 
 vtkStandardNewMacro(vtkSemsurfLevel);
@@ -23,21 +21,14 @@ using namespace surf;
 int vtkSemsurfLevel::RequestData(vtkInformation*, vtkInformationVector** inputs,
                                  vtkInformationVector* outputs) {
   return pv::attempt(this, [&] {
-    if (this->Method < Hough || this->Method > None)
-      throw UsageError("Method", fmt::format("there is no method {}", this->Method), "Choose 0 to 3");
-    if (this->Rows < Keep || this->Rows > Difference)
-      throw UsageError("Rows", fmt::format("there is no method {}", this->Rows), "Choose 0 to 2");
+    pv::PropertyValues values = *this->Values;
     workflow::LevelParameters parameters;
-    parameters.method = static_cast<workflow::LevelMethod>(this->Method);
-    if (this->Method == Hough) {
-      pv::need_length(this->Tolerance, "Tolerance");
-      if (this->Tolerance > 0) parameters.tolerance_nm = this->Tolerance;
-    }
-    if (this->Method == Polynomial) {
-      pv::need_within(this->Degree, 0, 6, "Degree");
-      parameters.degree = this->Degree;
-    }
-    if (this->Rows != Keep) parameters.rows = static_cast<RowMethod>(this->Rows - 1);
+    values.apply(parameters, {"level.method"});
+    // What another method has says nothing.
+    if (parameters.method != workflow::LevelMethod::hough || values.text("level.tolerance") == "0")
+      values.forget("level.tolerance");
+    if (parameters.method != workflow::LevelMethod::polynomial) values.forget("level.degree");
+    values.apply(parameters);
     std::string name;
     const HeightField scan = this->Heights(inputs, name);
     std::vector<std::string> warnings;

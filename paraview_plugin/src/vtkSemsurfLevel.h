@@ -11,22 +11,9 @@ class VTKSEMSURF_EXPORT vtkSemsurfLevel : public vtkSemsurfImageFilter {
   static vtkSemsurfLevel* New();
   vtkTypeMacro(vtkSemsurfLevel, vtkSemsurfImageFilter);
 
-  enum Methods { Hough, LeastSquares, Polynomial, None };
-  enum RowMethods { Keep, Median, Difference };
-  vtkSetMacro(Method, int);
-  vtkSetMacro(Tolerance, double);   ///< nm; 0: from the heights
-  vtkSetMacro(Degree, int);
-  vtkSetMacro(Rows, int);
-
  protected:
   vtkSemsurfLevel() = default;
   int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
-
- private:
-  int Method = Hough;
-  double Tolerance = 0;
-  int Degree = 2;
-  int Rows = Keep;
 };
 
 #endif

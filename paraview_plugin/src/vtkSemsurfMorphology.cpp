@@ -11,9 +11,9 @@
 #include <utility>
 
 #include "attempt.h"
-#include "checks.h"
 #include "convert/tip.h"
 #include "pipeline.h"
+#include "property_values.h"
 #include "reports.h"
 #include "surf/core/error.h"
 #include "surf/workflow/morphology_job.h"
@@ -27,12 +27,9 @@ int vtkSemsurfMorphology::RequestData(vtkInformation*, vtkInformationVector** in
   return pv::attempt(this, [&] {
     if (this->Operation < Erode || this->Operation > Close)
       throw UsageError("Operation", fmt::format("there is no operation {}", this->Operation), "Choose 0 to 3");
-    pv::need_within(this->Upsample, 1, 32, "Upsample");
-    pv::need_length(this->Distance, "Distance");
-    const auto operation = static_cast<workflow::MorphologyOperation>(this->Operation);
     workflow::MorphologyParameters parameters;
-    parameters.upsample = this->Upsample;
-    if (this->Operation == Erode || this->Operation == Dilate) parameters.distance_nm = this->Distance;
+    this->Values->apply(parameters);
+    const auto operation = static_cast<workflow::MorphologyOperation>(this->Operation);
     std::string name;
     HeightField field = this->Heights(inputs, name);
     vtkImageData* const tip_image = pv::image_input(inputs, 1, "Tip");

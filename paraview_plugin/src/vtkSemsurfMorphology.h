@@ -12,8 +12,6 @@ class VTKSEMSURF_EXPORT vtkSemsurfMorphology : public vtkSemsurfImageFilter {
 
   enum Operations { Erode, Dilate, Open, Close };
   vtkSetMacro(Operation, int);
-  vtkSetMacro(Distance, double);   ///< nm that the tip keeps away, of non-contact scans
-  vtkSetMacro(Upsample, int);
 
  protected:
   vtkSemsurfMorphology() { this->SetNumberOfInputPorts(2); }
@@ -21,8 +19,6 @@ class VTKSEMSURF_EXPORT vtkSemsurfMorphology : public vtkSemsurfImageFilter {
 
  private:
   int Operation = Erode;
-  double Distance = 0;
-  int Upsample = 1;
 };
 
 #endif

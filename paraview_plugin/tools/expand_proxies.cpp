@@ -22,6 +22,9 @@
 
 #include "surf/core/parameters.h"
 #include "surf/io/sim/specimen_request.h"
+#include "surf/workflow/certainty_job.h"
+#include "surf/workflow/level_job.h"
+#include "surf/workflow/morphology_job.h"
 #include "surf/workflow/simulate_job.h"
 
 namespace {
@@ -50,7 +53,10 @@ const std::map<std::string, std::function<std::vector<Described>()>>& structs() 
   static const std::map<std::string, std::function<std::vector<Described>()>> all{
       {"simulation", described<mc::SimulationRequest>},
       {"specimen", described<io::SpecimenRequest>},
-      {"extras", described<workflow::Extras>}};
+      {"extras", described<workflow::Extras>},
+      {"level", described<workflow::LevelParameters>},
+      {"certainty", described<workflow::CertaintyParameters>},
+      {"morphology", described<workflow::MorphologyParameters>}};
   return all;
 }
 
@@ -204,7 +210,7 @@ void expand(pugi::xml_node proxy) {
     const std::string of = placeholder.attribute("of").value();
     if (!structs().contains(of)) fail("no parameters of " + of);
     for (const Described& d : structs().at(of)())
-      if (done.insert(d.about.name).second) add_property(placeholder, d, "SetParameter");
+      if (d.about.last_name() != "threads" && done.insert(d.about.name).second) add_property(placeholder, d, "SetParameter");
   }
   for (pugi::xml_node placeholder : single) proxy.remove_child(placeholder);
   for (pugi::xml_node placeholder : lists) proxy.remove_child(placeholder);

@@ -9,7 +9,7 @@ def scan():
 
 
 def equals_the_command():
-    ways = {"hough": {}, "plane": {"Method": "Mean plane"},
+    ways = {"hough": {}, "plane": {"Method": "Plane"},
             "polynomial": {"Method": "Polynomial", "Degree": 3}}
     for method, properties in ways.items():
         options = ["--level-degree", 3] if method == "polynomial" else []

@@ -122,7 +122,7 @@ def outputs_tell_how_they_were_made():
 def wrong_properties_are_refused():
     refuses_until(simple.EstimateTip(Input=scan(), TipSize=4), ["Tip Size", "odd"], TipSize=5)
     refuses(simple.CleanScan(Input=scan(), MedianWidth=4), "Median Width", "Give 5")
-    refuses(simple.ErodebyTip(Input=scan(), Tip=tip(), Distance=-1), "Distance", "below 0")
+    refuses(simple.ErodebyTip(Input=scan(), Tip=tip(), Distance=-1), "Distance", "0nm or more")
     refuses(simple.CertaintyMap(Input=scan(), Tip=tip(), Sigmas=0), "Sigmas")
     refuses(simple.ErodebyTip(Input=scan(), Tip=simple.AFMTip(Samples=4)), "Samples", "odd")
     refuses_until(simple.AFMTip(Samples=4), ["Samples", "odd"], Samples=9)

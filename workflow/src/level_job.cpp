@@ -63,8 +63,9 @@ void describe(ParameterVisitor& visit, LevelParameters& p) {
                          .level = Level::advanced});
   visit(p.rows, {"median", "difference"},
         {.name = "level.rows",
-         .help = "Take off steps between scan lines, by the median of each or of the differences to the "
-                 "one below"});
+         .help = "Take off steps between scan lines, by the median of each or of the differences to the one below",
+         .otherwise = "none"},
+        "none");
 }
 
 LevelResult level(const HeightField& scan, const LevelParameters& p, const Grid<unsigned char>& use,
