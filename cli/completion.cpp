@@ -278,7 +278,6 @@ void add_completion(CLI::App& app, Action& action) {
   const auto shell = std::make_shared<std::string>();
   CLI::App* sub = app.add_subcommand("completion", "A completion script for the shell");
   sub->add_option("SHELL", *shell, "The shell")->type_name("bash|zsh|fish");
-  sub->group("Commands");
   sub->footer(examples);
   sub->callback([shell, &app, &action] {
     action = [shell, &app] {

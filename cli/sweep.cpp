@@ -237,12 +237,26 @@ int sweep(const Options& o, const std::string& command_line) {
   return s.untrustworthy > 0 ? exit_untrustworthy : 0;
 }
 
+CLI::App* add_join(CLI::App& app, Action& action) {
+  const auto folders = std::make_shared<std::vector<std::string>>();
+  CLI::App* sub = app.add_subcommand("join", "One table from the parts of a sweep");
+  sub->add_option("FOLDER", *folders, "Where 'semsurf sweep --part' wrote to, one or several")->type_name("FOLDER");
+  sub->footer("Writes sweep.csv into the first folder.\n\nExample:\n  semsurf sweep join mesa");
+  sub->callback([folders, &action] {
+    action = [folders] {
+      const auto table = workflow::join_sweep({folders->begin(), folders->end()});
+      print("written {}\n", table.string());
+      return 0;
+    };
+  });
+  return sub;
+}
+
 }  // namespace
 
 void add_sweep(CLI::App& app, Action& action, const std::string& command_line) {
   const auto options = std::make_shared<Options>();
   CLI::App* sub = app.add_subcommand("sweep", "Simulations over a grid of settings: energies, tilts, focus ...");
-  sub->group("Commands");
   const char* group = "Sweep";
   sub->add_option("--vary", options->vary, "What varies, as energy=500eV,1keV or tilt=0deg:60deg:5deg; may be\nrepeated: all combinations")
       ->type_name("NAME=VALUES")->allow_extra_args(false)->group(group);
@@ -252,24 +266,13 @@ void add_sweep(CLI::App& app, Action& action, const std::string& command_line) {
   sub->add_option("--part", options->part, "Only part K of N: the third of 16 is 3/16")->type_name("K/N")->group(group);
   add_simulate_settings(*sub, options->simulate);
   sub->footer(examples);
-  sub->callback([options, &action, command_line] {
+  add_join(*sub, action)->group("Commands");
+  sub->callback([sub, options, &action, command_line] {
+    if (!sub->get_subcommands().empty()) return;
     action = [options, command_line] { return sweep(*options, command_line); };
   });
 }
 
-void add_join(CLI::App& app, Action& action) {
-  const auto folders = std::make_shared<std::vector<std::string>>();
-  CLI::App* sub = app.add_subcommand("join", "One table from the parts of a sweep");
-  sub->group("Commands");
-  sub->add_option("FOLDER", *folders, "Where 'semsurf sweep --part' wrote to, one or several")->type_name("FOLDER");
-  sub->footer("Writes sweep.csv into the first folder.\n\nExample:\n  semsurf join mesa");
-  sub->callback([folders, &action] {
-    action = [folders] {
-      const auto table = workflow::join_sweep({folders->begin(), folders->end()});
-      print("written {}\n", table.string());
-      return 0;
-    };
-  });
-}
+void add_former_join(CLI::App& app, Action& action) { add_join(app, action)->group(""); }
 
 }  // namespace surf::cli
