@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "commands.h"
+#include "complete.h"
 #include "exit_codes.h"
 #include "failure.h"
 #include "file_uses.h"
@@ -220,6 +221,10 @@ int parse_and_act(const std::vector<std::string>& arguments) {
   app.allow_windows_style_options(false);
   add_commands(app, action, command_line);
 
+  if (arguments.size() > 1 && arguments[1] == "__complete") {
+    print("{}", completions(app, {arguments.begin() + 2, arguments.end()}));
+    return 0;
+  }
   try {
     std::vector<std::string> words(arguments.rbegin(), arguments.rend());   // CLI11 wants the last one first
     if (!words.empty()) words.pop_back();   // the program

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "surf/workflow/sweep_job.h"
+#include "sweep.h"
 
 #include <fmt/format.h>
 
@@ -19,6 +19,7 @@
 #include "simulate_options.h"
 #include "surf/core/error.h"
 #include "surf/workflow/specimen_reader.h"
+#include "surf/workflow/sweep_job.h"
 #include "terminal.h"
 
 namespace surf::cli {
@@ -49,8 +50,8 @@ struct Options {
   std::vector<std::string> formats;
 };
 
-/// The parameter that an option of `simulate` stands for.
-std::string parameter_of(const std::string& name) {
+/// Options of `simulate` that can be varied, without dashes, and the parameters that they stand for.
+const std::map<std::string, std::string>& varied_parameters() {
   static const std::map<std::string, std::string> all = [] {
     std::map<std::string, std::string> known;
     const auto add = [&](const Parameter& about, Field&) {
@@ -63,10 +64,13 @@ std::string parameter_of(const std::string& name) {
     for (const char* fixed : {"input", "time", "materials"}) known.erase(fixed);
     return known;
   }();
+  return all;
+}
+
+std::string parameter_of(const std::string& name) {
+  const auto& all = varied_parameters();
   if (const auto found = all.find(name); found != all.end()) return found->second;
-  std::vector<std::string> names;
-  for (const auto& [known, parameter] : all) names.push_back(known);
-  const std::string guess = nearest(name, names);
+  const std::string guess = nearest(name, names_to_vary());
   throw UsageError("--vary", fmt::format("'{}' cannot be varied", name),
                    guess.empty() ? "'semsurf sweep --help' lists what can" : fmt::format("Did you mean {}?", guess));
 }
@@ -253,6 +257,12 @@ CLI::App* add_join(CLI::App& app, Action& action) {
 }
 
 }  // namespace
+
+std::vector<std::string> names_to_vary() {
+  std::vector<std::string> names;
+  for (const auto& [name, parameter] : varied_parameters()) names.push_back(name);
+  return names;
+}
 
 void add_sweep(CLI::App& app, Action& action, const std::string& command_line) {
   const auto options = std::make_shared<Options>();
