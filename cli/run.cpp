@@ -13,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+#include "app.h"
 #include "commands.h"
 #include "complete.h"
 #include "exit_codes.h"
@@ -212,15 +213,8 @@ void add_commands(CLI::App& app, Action& action, const std::string& command_line
 
 int parse_and_act(const std::vector<std::string>& arguments) {
   Action action;
-  const std::string command_line = quoted_command(arguments);
-  CLI::App app("Scanning electron microscope images of surfaces, by Monte Carlo simulation",
-               "semsurf");
-  app.formatter(std::make_shared<HelpFormatter>());
-  app.set_version_flag("-V,--version", version_text, "Versions of semsurf and its libraries");
-  app.footer(examples);
-  app.allow_windows_style_options(false);
-  add_commands(app, action, command_line);
-
+  const std::unique_ptr<CLI::App> made = make_app(action, quoted_command(arguments));
+  CLI::App& app = *made;
   if (arguments.size() > 1 && arguments[1] == "__complete") {
     print("{}", completions(app, {arguments.begin() + 2, arguments.end()}));
     return 0;
@@ -248,6 +242,16 @@ int parse_and_act(const std::vector<std::string>& arguments) {
 }  // namespace
 
 namespace surf::cli {
+
+std::unique_ptr<CLI::App> make_app(Action& action, const std::string& command_line) {
+  auto app = std::make_unique<CLI::App>("Scanning electron microscope images of surfaces, by Monte Carlo simulation", "semsurf");
+  app->formatter(std::make_shared<HelpFormatter>());
+  app->set_version_flag("-V,--version", version_text, "Versions of semsurf and its libraries");
+  app->footer(examples);
+  app->allow_windows_style_options(false);
+  add_commands(*app, action, command_line);
+  return app;
+}
 
 int run(const std::vector<std::string>& arguments, std::FILE* out, std::FILE* err) {
   speak_to(out, err);
