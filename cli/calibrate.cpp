@@ -194,7 +194,6 @@ int work(const CalibrateOptions& o) {
 void add_calibrate(CLI::App& app, Action& action) {
   const auto o = std::make_shared<CalibrateOptions>();
   CLI::App* sub = app.add_subcommand("calibrate", "Gains and offset that turn simulated images into a real one");
-  sub->group("Commands");
   add_calibrate_options(*sub, *o);
   sub->callback([o, &action] { action = [o] { return work(*o); }; });
 }

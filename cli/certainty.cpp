@@ -97,7 +97,6 @@ int work(const Options& o) {
 void add_certainty(CLI::App& app, Action& action) {
   const auto o = std::make_shared<Options>();
   CLI::App* sub = app.add_subcommand("certainty", "Where an eroded scan is the surface");
-  sub->group("Commands");
   add_scan_input(*sub, o->bound, o->input);
   add_tip_input(*sub, o->tip);
   o->bound.looks["scan.height_noise"].former = {"--noise"};

@@ -204,7 +204,6 @@ void add_chart(CLI::App& app, Action& action, const std::string& command_line) {
   const auto options = std::make_shared<Options>();
   CLI::App* sub =
       app.add_subcommand("chart", "Time against error of every method, on a scene or a sample of yours");
-  sub->group("Commands");
   add_request_options(*sub, options->scene,
                       {"beam.energy", "beam.tilt", "beam.azimuth", "beam.spot", "beam.convergence", "beam.focus",
                        "beam.working_distance", "scan.size", "scan.pixel_size", "scan.region", "simulation.physics",

@@ -75,7 +75,6 @@ int work(const Options& o) {
 void add_clean(CLI::App& app, Action& action) {
   const auto o = std::make_shared<Options>();
   CLI::App* sub = app.add_subcommand("clean", "Take spikes, noise and pits out of an AFM scan");
-  sub->group("Commands");
   add_scan_input(*sub, o->bound, o->scan);
   o->bound.add<CleanParameters>(*sub, "Cleaning");
   const char* output = "Output";

@@ -170,7 +170,6 @@ void add_info(CLI::App& app, Action& action) {
   sub->add_option("--materials", options->materials,
                   "Your own materials for the scene files (TOML); may be repeated")
       ->type_name("FILE")->option_text("FILE")->allow_extra_args(false);
-  sub->group("Commands");
   sub->footer(examples);
   sub->callback([options, &action] {
     action = [options] {

@@ -126,7 +126,6 @@ int work(const Options& o) {
 void add_level(CLI::App& app, Action& action) {
   const auto o = std::make_shared<Options>();
   CLI::App* sub = app.add_subcommand("level", "Level an AFM scan; roughness and step heights");
-  sub->group("Commands");
   add_scan_input(*sub, o->bound, o->scan);
   o->bound.looks["level.method"] = {.name = "--level-method", .former = {"--method"}};
   o->bound.looks["level.degree"] = {.name = "--level-degree", .former = {"--degree"}};

@@ -25,7 +25,6 @@ The cache is $SEMSURF_CACHE, else $XDG_CACHE_HOME/semsurf, else ~/.cache/semsurf
 
 void add_library(CLI::App& app, Action& action) {
   CLI::App* sub = app.add_subcommand("library", "Libraries of cascades that simulations replay");
-  sub->group("Commands");
   sub->footer(examples);
   add_library_list(*sub, action);
   add_library_build(*sub, action);

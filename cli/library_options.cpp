@@ -46,7 +46,7 @@ std::size_t number_of_cascades(const LibraryOptions& o) {
 
 void add_cache_option(CLI::App& app, LibraryOptions& o) {
   app.add_option("--cache", o.cache, "Where libraries are kept ($SEMSURF_CACHE, ~/.cache/semsurf)")
-      ->type_name("FILE")->option_text("FOLDER");
+      ->type_name("FOLDER");
 }
 
 void add_library_options(CLI::App& app, LibraryOptions& o) {

@@ -116,7 +116,6 @@ void add_materials(CLI::App& app, Action& action) {
   CLI::App* sub = app.add_subcommand("materials", "The materials and their numbers");
   sub->add_option("NAME", options->name, "Show this one, with sources")->type_name("MATERIAL");
   add_materials_option(*sub, options->files);
-  sub->group("Commands");
   sub->footer(examples);
   sub->callback([options, &action] {
     action = [options] { return print_materials(options->name, options->files); };

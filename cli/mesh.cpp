@@ -244,7 +244,6 @@ int work(const Options& o) {
 void add_mesh(CLI::App& app, Action& action) {
   const auto o = std::make_shared<Options>();
   CLI::App* sub = app.add_subcommand("mesh", "Meshes and scans to glTF, CAD and ParaView; repair, simplify");
-  sub->group("Commands");
   sub->add_option("INPUTS", o->inputs, "Meshes (STL, OBJ, PLY, OFF, glTF, 3MF, VTP, VTM) and scans")->type_name("FILE");
   const char* units = "Units";
   add_unit_options(*sub, o->unit, o->override_unit, units);

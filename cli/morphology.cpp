@@ -96,7 +96,6 @@ int work(const Command& command, const Options& o) {
 void add(CLI::App& app, Action& action, const Command& command) {
   const auto o = std::make_shared<Options>();
   CLI::App* sub = app.add_subcommand(name(command.operation), command.title);
-  sub->group("Commands");
   add_scan_input(*sub, o->bound, o->input);
   add_tip_input(*sub, o->tip);
   o->bound.looks["morphology.distance"].hidden =

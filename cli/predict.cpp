@@ -137,7 +137,6 @@ int predict(const Options& o) {
 void add_predict(CLI::App& app, Action& action) {
   const auto o = std::make_shared<Options>();
   CLI::App* sub = app.add_subcommand("predict", "An SEM image of heights by a model, in place of a simulation");
-  sub->group("Commands");
   sub->add_option("HEIGHTS", o->heights, "A scan, an image of heights, or a scene file (TOML)")->type_name("FILE");
   sub->add_option("--model", o->model, "The model, as 'semsurf train' writes it")->type_name("FILE.json");
   sub->add_option("--edge", o->edge, "How the heights go on outside (mirror)")->type_name("mirror|flat|periodic");

@@ -109,7 +109,6 @@ int work(const ReconstructOptions& o, const std::string& command_line) {
 void add_reconstruct(CLI::App& app, Action& action, const std::string& command_line) {
   const auto o = std::make_shared<ReconstructOptions>();
   CLI::App* sub = app.add_subcommand("reconstruct", "The surface that makes an AFM scan and an SEM image most likely");
-  sub->group("Commands");
   add_reconstruct_options(*sub, *o);
   sub->callback([o, &action, command_line] { action = [o, command_line] { return work(*o, command_line); }; });
 }

@@ -62,7 +62,6 @@ int work(const Options& o) {
 void add_register(CLI::App& app, Action& action) {
   const auto o = std::make_shared<Options>();
   CLI::App* sub = app.add_subcommand("register", "Lay an SEM image on an AFM scan of the same place");
-  sub->group("Commands");
   sub->add_option("AFM", o->chain.afm, "The scan, of any format")->type_name("FILE");
   sub->add_option("SEM", o->chain.sem, "The SEM image")->type_name("FILE");
   add_chain_inputs(*sub, o->chain);

@@ -9,11 +9,14 @@
 #include <sstream>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
+#include "app.h"
 #include "bound_parameters.h"
 #include "commands.h"
+#include "complete.h"
 #include "exit_codes.h"
 #include "failure.h"
 #include "file_uses.h"
@@ -137,7 +140,8 @@ int report_extra(const CLI::App& root) {
   std::vector<std::string> candidates = names_of_options(app);
   if (!option && !app.get_subcommands(nullptr).empty()) {
     candidates.clear();
-    for (const CLI::App* sub : app.get_subcommands(nullptr)) candidates.push_back(sub->get_name());
+    for (const CLI::App* sub : app.get_subcommands(nullptr))
+      if (!sub->get_group().empty()) candidates.push_back(sub->get_name());
   }
   const std::string guess = nearest(word, candidates);
   print_error(fmt::format("{}: unknown {}. {}", word, option ? "option" : "command",
@@ -173,15 +177,15 @@ int report_parse_error(const CLI::App& root, const CLI::ParseError& error) {
 }
 
 // These do their work together with others; anything else is done by the leader alone.
-bool is_shared(const std::string& command) {
+bool is_shared(const CLI::App& app) {
   constexpr std::array shared{"simulate", "sweep", "train", "chart"};
-  return std::ranges::find(shared, command) != shared.end();
+  return std::ranges::find(shared, parsed_app(app).get_name()) != shared.end();
 }
 
 int act(const CLI::App& app, const Action& action) {
   try {
     const auto check = [&] { refuse_overlaps(parsed_app(app)); };
-    if (is_shared(app.get_subcommands().front()->get_name())) workflow::together(team(), check);
+    if (is_shared(app)) workflow::together(team(), check);
     else check();
     return action();
   } catch (...) {
@@ -189,41 +193,34 @@ int act(const CLI::App& app, const Action& action) {
   }
 }
 
+/// The headings of help, and the commands of each in the order in which they are used.
+void add_commands(CLI::App& app, Action& action, const std::string& command_line) {
+  const auto group = [&](const char* heading, const auto&... add) {
+    const auto added = [&](const auto& one) {
+      const std::size_t before = app.get_subcommands(nullptr).size();
+      if constexpr (std::is_invocable_v<decltype(one), CLI::App&, Action&>) one(app, action);
+      else one(app, action, command_line);
+      for (std::size_t i = before; i < app.get_subcommands(nullptr).size(); ++i)
+        app.get_subcommands(nullptr)[i]->group(heading);
+    };
+    (added(add), ...);
+  };
+  group("SEM", add_simulate, add_sweep, add_train, add_predict);
+  group("AFM", add_level, add_clean, add_noise, add_tip, add_erode, add_dilate, add_open, add_close, add_certainty);
+  group("AFM + SEM", add_sample, add_register, add_calibrate, add_reconstruct);
+  group("Surfaces and files", add_info, add_view, add_mesh, add_materials);
+  group("Set-up and study", add_library, add_chart, add_completion);
+  group("", add_former_join);
+}
+
 int parse_and_act(const std::vector<std::string>& arguments) {
   Action action;
-  const std::string command_line = quoted_command(arguments);
-  CLI::App app("Scanning electron microscope images of surfaces, by Monte Carlo simulation",
-               "semsurf");
-  app.formatter(std::make_shared<HelpFormatter>());
-  app.set_version_flag("-V,--version", version_text, "Versions of semsurf and its libraries");
-  app.footer(examples);
-  app.allow_windows_style_options(false);
-  add_simulate(app, action, command_line);
-  add_chart(app, action, command_line);
-  add_sweep(app, action, command_line);
-  add_join(app, action);
-  add_level(app, action);
-  add_clean(app, action);
-  add_noise(app, action);
-  add_mesh(app, action);
-  add_erode(app, action);
-  add_dilate(app, action);
-  add_open(app, action);
-  add_close(app, action);
-  add_certainty(app, action);
-  add_train(app, action);
-  add_predict(app, action);
-  add_info(app, action);
-  add_materials(app, action);
-  add_library(app, action);
-  add_tip(app, action);
-  add_calibrate(app, action);
-  add_register(app, action);
-  add_reconstruct(app, action, command_line);
-  add_sample(app, action);
-  add_view(app, action);
-  add_completion(app, action);
-
+  const std::unique_ptr<CLI::App> made = make_app(action, quoted_command(arguments));
+  CLI::App& app = *made;
+  if (arguments.size() > 1 && arguments[1] == "__complete") {
+    print("{}", completions(app, {arguments.begin() + 2, arguments.end()}));
+    return 0;
+  }
   try {
     std::vector<std::string> words(arguments.rbegin(), arguments.rend());   // CLI11 wants the last one first
     if (!words.empty()) words.pop_back();   // the program
@@ -237,7 +234,7 @@ int parse_and_act(const std::vector<std::string>& arguments) {
     return exit_usage;
   }
   const std::string command = app.get_subcommands().front()->get_name();
-  if (!is_shared(command) && leave_to_leader(command)) return 0;
+  if (!is_shared(app) && leave_to_leader(command)) return 0;
   const int code = act(app, action);
   if (take_refused_threads() > 0)
     print_note("the system refused threads (ulimit -u, ulimit -v): fewer than wanted did the work, with the same result");
@@ -247,6 +244,16 @@ int parse_and_act(const std::vector<std::string>& arguments) {
 }  // namespace
 
 namespace surf::cli {
+
+std::unique_ptr<CLI::App> make_app(Action& action, const std::string& command_line) {
+  auto app = std::make_unique<CLI::App>("Scanning electron microscope images of surfaces, by Monte Carlo simulation", "semsurf");
+  app->formatter(std::make_shared<HelpFormatter>());
+  app->set_version_flag("-V,--version", version_text, "Versions of semsurf and its libraries");
+  app->footer(examples);
+  app->allow_windows_style_options(false);
+  add_commands(*app, action, command_line);
+  return app;
+}
 
 int run(const std::vector<std::string>& arguments, std::FILE* out, std::FILE* err) {
   speak_to(out, err);

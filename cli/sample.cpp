@@ -138,7 +138,6 @@ int sample(const Options& o) {
 void add_sample(CLI::App& app, Action& action) {
   const auto o = std::make_shared<Options>();
   CLI::App* sub = app.add_subcommand("sample", "A scan and an SEM image of a known surface, to try a reconstruction on");
-  sub->group("Commands");
   sub->add_option("NAME", o->name, "Which one")->type_name("nist0523-thick|nist0523-thin|pads|islands|terrain");
   sub->add_flag("--list", o->list, "Say what there is");
   sub->add_option("-o,--output", o->folder, "Where the files go")->type_name("FOLDER");

@@ -61,7 +61,6 @@ void add_simulate(CLI::App& app, Action& action, const std::string& command_line
   const auto options = std::make_shared<SimulateOptions>();
   CLI::App* sub = app.add_subcommand(
       "simulate", "Secondary- and backscattered-electron images of a specimen");
-  sub->group("Commands");
   add_simulate_options(*sub, *options);
   sub->callback([options, &action, command_line] {
     action = [options, command_line] { return simulate(*options, command_line); };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "surf/workflow/sweep_job.h"
+#include "sweep.h"
 
 #include <fmt/format.h>
 
@@ -19,6 +19,7 @@
 #include "simulate_options.h"
 #include "surf/core/error.h"
 #include "surf/workflow/specimen_reader.h"
+#include "surf/workflow/sweep_job.h"
 #include "terminal.h"
 
 namespace surf::cli {
@@ -49,8 +50,8 @@ struct Options {
   std::vector<std::string> formats;
 };
 
-/// The parameter that an option of `simulate` stands for.
-std::string parameter_of(const std::string& name) {
+/// Options of `simulate` that can be varied, without dashes, and the parameters that they stand for.
+const std::map<std::string, std::string>& varied_parameters() {
   static const std::map<std::string, std::string> all = [] {
     std::map<std::string, std::string> known;
     const auto add = [&](const Parameter& about, Field&) {
@@ -63,10 +64,13 @@ std::string parameter_of(const std::string& name) {
     for (const char* fixed : {"input", "time", "materials"}) known.erase(fixed);
     return known;
   }();
+  return all;
+}
+
+std::string parameter_of(const std::string& name) {
+  const auto& all = varied_parameters();
   if (const auto found = all.find(name); found != all.end()) return found->second;
-  std::vector<std::string> names;
-  for (const auto& [known, parameter] : all) names.push_back(known);
-  const std::string guess = nearest(name, names);
+  const std::string guess = nearest(name, names_to_vary());
   throw UsageError("--vary", fmt::format("'{}' cannot be varied", name),
                    guess.empty() ? "'semsurf sweep --help' lists what can" : fmt::format("Did you mean {}?", guess));
 }
@@ -237,12 +241,32 @@ int sweep(const Options& o, const std::string& command_line) {
   return s.untrustworthy > 0 ? exit_untrustworthy : 0;
 }
 
+CLI::App* add_join(CLI::App& app, Action& action) {
+  const auto folders = std::make_shared<std::vector<std::string>>();
+  CLI::App* sub = app.add_subcommand("join", "One table from the parts of a sweep");
+  sub->add_option("FOLDER", *folders, "Where 'semsurf sweep --part' wrote to, one or several")->type_name("FOLDER");
+  sub->footer("Writes sweep.csv into the first folder.\n\nExample:\n  semsurf sweep join mesa");
+  sub->callback([folders, &action] {
+    action = [folders] {
+      const auto table = workflow::join_sweep({folders->begin(), folders->end()});
+      print("written {}\n", table.string());
+      return 0;
+    };
+  });
+  return sub;
+}
+
 }  // namespace
+
+std::vector<std::string> names_to_vary() {
+  std::vector<std::string> names;
+  for (const auto& [name, parameter] : varied_parameters()) names.push_back(name);
+  return names;
+}
 
 void add_sweep(CLI::App& app, Action& action, const std::string& command_line) {
   const auto options = std::make_shared<Options>();
   CLI::App* sub = app.add_subcommand("sweep", "Simulations over a grid of settings: energies, tilts, focus ...");
-  sub->group("Commands");
   const char* group = "Sweep";
   sub->add_option("--vary", options->vary, "What varies, as energy=500eV,1keV or tilt=0deg:60deg:5deg; may be\nrepeated: all combinations")
       ->type_name("NAME=VALUES")->allow_extra_args(false)->group(group);
@@ -252,24 +276,13 @@ void add_sweep(CLI::App& app, Action& action, const std::string& command_line) {
   sub->add_option("--part", options->part, "Only part K of N: the third of 16 is 3/16")->type_name("K/N")->group(group);
   add_simulate_settings(*sub, options->simulate);
   sub->footer(examples);
-  sub->callback([options, &action, command_line] {
+  add_join(*sub, action)->group("Commands");
+  sub->callback([sub, options, &action, command_line] {
+    if (!sub->get_subcommands().empty()) return;
     action = [options, command_line] { return sweep(*options, command_line); };
   });
 }
 
-void add_join(CLI::App& app, Action& action) {
-  const auto folders = std::make_shared<std::vector<std::string>>();
-  CLI::App* sub = app.add_subcommand("join", "One table from the parts of a sweep");
-  sub->group("Commands");
-  sub->add_option("FOLDER", *folders, "Where 'semsurf sweep --part' wrote to, one or several")->type_name("FOLDER");
-  sub->footer("Writes sweep.csv into the first folder.\n\nExample:\n  semsurf join mesa");
-  sub->callback([folders, &action] {
-    action = [folders] {
-      const auto table = workflow::join_sweep({folders->begin(), folders->end()});
-      print("written {}\n", table.string());
-      return 0;
-    };
-  });
-}
+void add_former_join(CLI::App& app, Action& action) { add_join(app, action)->group(""); }
 
 }  // namespace surf::cli

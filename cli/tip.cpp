@@ -186,7 +186,6 @@ int work(const Options& o) {
 void add_tip(CLI::App& app, Action& action) {
   const auto o = std::make_shared<Options>();
   CLI::App* sub = app.add_subcommand("tip", "Find the tip that made a scan, or make one by its shape");
-  sub->group("Commands");
   add_scan_input(*sub, o->bound, o->scan);
   sub->add_option("--also", o->also, "Another scan by the same tip; may be repeated")->type_name("FILE");
   const char* tip = "Tip";

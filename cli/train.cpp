@@ -62,7 +62,6 @@ int train(const TrainOptions& options) {
 void add_train(CLI::App& app, Action& action) {
   const auto options = std::make_shared<TrainOptions>();
   CLI::App* sub = app.add_subcommand("train", "A fast model of SEM images, learnt from simulated or real ones");
-  sub->group("Commands");
   add_train_options(*sub, *options);
   sub->callback([options, &action] { action = [options] { return train(*options); }; });
 }

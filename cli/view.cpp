@@ -183,7 +183,6 @@ int work(const Options& o) {
 void add_view(CLI::App& app, Action& action) {
   const auto o = std::make_shared<Options>();
   CLI::App* sub = app.add_subcommand("view", "One web page that shows surfaces and images to anybody");
-  sub->group("Commands");
   sub->add_option("FILES", o->files, "Scans, meshes, images; FILE:CHANNEL chooses a channel")->type_name("FILE");
   const char* shown = "Shown";
   sub->add_option("--title", o->title, "Of the page (the first file's name)")->type_name("TEXT")->group(shown);

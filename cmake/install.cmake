@@ -27,6 +27,7 @@ install(FILES "${CMAKE_BINARY_DIR}/completions/semsurf.zsh" RENAME _semsurf
 install(FILES "${CMAKE_BINARY_DIR}/completions/semsurf.fish"
         DESTINATION "${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d")
 
+install(FILES docs/reference/semsurf.1 DESTINATION "${CMAKE_INSTALL_MANDIR}/man1")
 install(FILES LICENSE README.md CHANGELOG.md DESTINATION "${CMAKE_INSTALL_DOCDIR}")
 
 install(EXPORT semsurfTargets NAMESPACE semsurf:: DESTINATION "${SEMSURF_PACKAGE_DIR}")

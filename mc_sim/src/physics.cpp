@@ -12,6 +12,7 @@
 #include "surf/core/error.h"
 #include "surf/core/parameters.h"
 #include "surf/mc/medium.h"
+#include "surf/mc/physics_words.h"
 
 namespace surf::mc {
 
@@ -116,10 +117,19 @@ std::string format_physics(const Physics& physics) {
   return out;
 }
 
+std::vector<PhysicsWords> physics_words() {
+  std::vector<PhysicsWords> all;
+  for (const Key& key : keys()) {
+    PhysicsWords& words = all.emplace_back(PhysicsWords{std::string(key.name), {}});
+    for (const auto& [word, value] : key.words) words.values.emplace_back(word);
+  }
+  return all;
+}
+
 std::vector<std::string> describe(const Physics& physics, const Material& material) {
   std::vector<std::string> lines = make_medium(material, physics).describe();
-  if (physics.loss == LossModel::none) lines.push_back("continuous loss: none");
-  if (!physics.secondaries) lines.push_back("secondaries: none");
+  if (physics.loss == LossModel::none) lines.emplace_back("continuous loss: none");
+  if (!physics.secondaries) lines.emplace_back("secondaries: none");
   switch (physics.barrier) {
     case BarrierModel::quantum:
       lines.push_back(fmt::format("surface barrier of {:g} eV: refraction, total reflection, "
@@ -131,7 +141,7 @@ std::vector<std::string> describe(const Physics& physics, const Material& materi
                                   material.barrier_ev));
       break;
     case BarrierModel::off:
-      lines.push_back("surface barrier: none; energies count from the vacuum level");
+      lines.emplace_back("surface barrier: none; energies count from the vacuum level");
       break;
   }
   lines.push_back(fmt::format("tracking stops at {:g} eV inside; {:g} eV in vacuum divides SE from "

@@ -190,7 +190,7 @@ workflow::TrainJob vtkSemsurfTrain::Job(vtkInformationVector** inputs) {
   need_within(this->Edge, 0, 2, "Edge");
   need_within(this->Budget, 0, 1, "Budget");
   need(this->Seed >= 0, "Seed", fmt::format("{} is below 0", this->Seed), "Give 1");
-  need(this->Budget == 1 || this->Electrons >= 1, "Electrons", fmt::format("{} are too few", this->Electrons),
+  need(this->Electrons >= 1, "Electrons", fmt::format("{} are too few", this->Electrons),
        "Give 1 or more per pixel");
   need(this->Budget == 0 || (this->Accuracy >= 1e-4 && this->Accuracy <= 1), "Accuracy",
        fmt::format("{} is not in 0.0001 to 1", this->Accuracy), "Give 0.03 for 3 %");

@@ -115,6 +115,8 @@ semsurf_cli_unusable(mesh_holes "is invalid.*fill them" mesh scan.txt -o out.glb
 semsurf_cli_unusable(mesh_map_elsewhere "says nothing at" mesh cube.off --scalar block.gsf -o out.glb)
 semsurf_cli_unusable(mesh_drape_scale "Give their size with --pixel-size" mesh block.gsf --drape four.png -o out.glb)
 semsurf_cli_usage(mesh_repairs "--max-hole.*--repair" mesh cube.off --max-hole 3nm -o out.ply)
+semsurf_cli_unusable(sweep_join "cube.off.*sweep" sweep join cube.off)
+semsurf_cli_unusable(former_join "cube.off.*sweep" join cube.off)
 semsurf_cli_usage(completion "bash, zsh or fish" completion tcsh)
 
 semsurf_cli_unusable(missing "nowhere.off" simulate nowhere.off ${image})

@@ -1,8 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# The completion scripts parse, where the shell is there, and bash's completes.
+# What the program tells the shells; their scripts parse, where the shell is there, and bash's completes.
+semsurf_cli_test(complete.commands ARGS __complete s STDOUT "^:nothing\nsimulate\tSecondary-.*\nsweep\t.*\nsample\t.*\n$")
+semsurf_cli_test(complete.options ARGS __complete materials --m STDOUT "^:nothing\n--materials\tYour own.*\n$")
+semsurf_cli_test(complete.files ARGS __complete info x STDOUT "^:files\n$")
+semsurf_cli_test(complete.folders ARGS __complete simulate --cache o STDOUT "^:folders\noff\n$")
+semsurf_cli_test(complete.nothing ARGS __complete STDOUT "^:nothing\nsimulate")
+semsurf_cli_test(complete.unknown ARGS __complete nowhere --what x STDOUT "^:nothing\n$")
 foreach(shell bash zsh fish)
-  semsurf_cli_test(completion.${shell} ARGS completion ${shell}
-    STDOUT "semsurf" "pixel-size" "mirror" "Si")
+  semsurf_cli_test(completion.${shell} ARGS completion ${shell} STDOUT "semsurf" "__complete")
   find_program(SHELL_${shell} ${shell})
   if(SHELL_${shell})
     add_test(NAME cli.completion.${shell}.parses

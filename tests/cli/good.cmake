@@ -4,6 +4,9 @@ set(few --electrons 2 --size 8x8)
 
 semsurf_cli_test(version ARGS --version STDOUT "semsurf ${PROJECT_VERSION}" "Embree [0-9]" "OpenImageIO [0-9]")
 semsurf_cli_test(help ARGS --help STDOUT "simulate" "info" "materials" "completion" "Examples:")
+semsurf_cli_test(help.groups ARGS --help
+  STDOUT "\nSEM:\n  simulate" "\nAFM:\n  level" "\nAFM \\+ SEM:\n" "\nSurfaces and files:\n" "\nSet-up and study:\n")
+semsurf_cli_test(help.sweep_join ARGS sweep join --help STDOUT "Usage: semsurf sweep join .*FOLDER" "semsurf sweep join mesa")
 semsurf_cli_test(help.simulate ARGS simulate --help
   STDOUT "Specimen:" "Beam:" "Scan:" "Simulation:" "Output:" "bare lengths are nm" "Examples:")
 semsurf_cli_test(help.simulate_inputs ARGS simulate --help STDOUT "3MF, VTP, VTM.*\n.*scan, EXR.*scene file")

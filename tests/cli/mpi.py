@@ -152,17 +152,17 @@ def sweeps(folder):
     for part in (1, 3):
         code, _, err = run(folder, 0, [*words, "--part", f"{part}/3", "-o", "parts"])
         expect(code == 0, err)
-    code, _, err = run(folder, 0, ["join", "parts"])
+    code, _, err = run(folder, 0, ["sweep", "join", "parts"])
     expect(code == 3 and "2 of 6 runs are missing: 2, 5" in err, err)
     code, _, err = run(folder, 0, [*words, "--part", "2/3", "-o", "elsewhere"])
     expect(code == 0, err)
-    code, _, err = run(folder, 0, ["join", "parts", "elsewhere"])
+    code, _, err = run(folder, 0, ["sweep", "join", "parts", "elsewhere"])
     expect(code == 0 and (folder / "parts" / "sweep.csv").read_text() == table, "the parts are not the whole", err)
     code, out, err = run(folder, 0, [*words, "-o", "alone"])
     expect(code == 0 and "6 runs were there before" in out, out, err)
     code, out, err = run(folder, 0, [*words, "--seed", "2", "-o", "alone"])
     expect(code == 0 and "there before" not in out, out, err)
-    code, _, err = run(folder, 0, ["join", "alone", "parts"])
+    code, _, err = run(folder, 0, ["sweep", "join", "alone", "parts"])
     expect(code == 0, "two runs of one sweep were refused", err)
     for bad, text in ((["--vary", "tilt=0deg:60:5deg"], "mixes units"), (["--vary", "tlt=1"], "Did you mean tilt"),
                       (["--vary", "energy"], "names no values"), (["--vary", "tilt=0,95"], "--tilt"),

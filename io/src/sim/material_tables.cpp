@@ -7,6 +7,7 @@
 #include <string>
 
 #include "surf/core/error.h"
+#include "surf/io/sim/scene_keys.h"
 #include "surf/mc/element.h"
 #include "surf/mc/material_draft.h"
 
@@ -40,7 +41,7 @@ int read_atomic_number(const TomlTable& table) {
 }
 
 mc::Constituent read_element(const TomlTable& table) {
-  table.allow({"Z", "symbol", "A", "weight_fraction", "J_ev"});
+  table.allow(keys_of("elements"));
   return {.atomic_number = read_atomic_number(table),
           .atomic_weight = table.number("A").value_or(0),
           .weight_fraction = table.number("weight_fraction").value_or(1),
@@ -48,9 +49,7 @@ mc::Constituent read_element(const TomlTable& table) {
 }
 
 mc::MaterialDraft read_draft(const TomlTable& table) {
-  table.allow({"name", "formula", "elements", "density_g_cm3", "band_gap_ev", "work_function_ev",
-               "barrier_ev", "valence_electrons", "plasmon_ev", "loss_join_ev", "loss_join_fitted",
-               "sources"});
+  table.allow(keys_of("material"));
   table.require("name", "every material has one");
   if (table.has("formula") == table.has("elements")) {
     throw FileError(table.place(),

@@ -13,6 +13,7 @@
 #include "sim/toml_table.h"
 #include "surf/io/files.h"
 #include "surf/io/overlaps.h"
+#include "surf/io/sim/scene_keys.h"
 #include "surf/mc/choose_method.h"
 
 namespace surf::io {
@@ -48,8 +49,9 @@ SceneFile read_scene(const std::filesystem::path& path,
                      const std::vector<std::filesystem::path>& material_files,
                      const BodyReader& read) {
   const TomlTable root = TomlTable::parse(read_file(path, max_scene_bytes), path.string());
-  root.allow({"title", "beam", "scan", "simulation", "substrate", "height_field", "body",
-              "material"});
+  std::vector<std::string> top;
+  for (const SceneKey& key : top_scene_keys()) top.push_back(key.name);
+  root.allow(top);
   SceneFile scene;
   scene.inputs.push_back(path);
   scene.title = root.text("title").value_or("");

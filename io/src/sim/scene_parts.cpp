@@ -15,6 +15,7 @@
 #include "surf/io/mesh_unit.h"
 #include "surf/io/sim/materials.h"
 #include "surf/io/sim/mesh_bodies.h"
+#include "surf/io/sim/scene_keys.h"
 #include "surf/mesh/shapes.h"
 
 namespace surf::io {
@@ -59,46 +60,41 @@ FieldExtent read_extent(const TomlTable& table) {
 }
 
 HeightField make_mesa_field(const TomlTable& table) {
-  table.allow({"material", "edge", "shape", "width", "depth", "pitch", "height", "top_width",
-               "wall_run"});
+  table.allow(keys_of("height_field", "mesa"));
   const double height = required_length(table, "height", "a mesa has one");
   const double top_width = required_length(table, "top_width", "a mesa has one");
   return make_mesa(read_extent(table), height, top_width, table.length_nm("wall_run").value_or(0));
 }
 
 HeightField make_trench_field(const TomlTable& table) {
-  table.allow({"material", "edge", "shape", "width", "depth", "pitch", "trench_depth",
-               "bottom_width", "wall_run"});
+  table.allow(keys_of("height_field", "trench"));
   const double depth = required_length(table, "trench_depth", "a trench has one");
   const double bottom = required_length(table, "bottom_width", "a trench has one");
   return make_trench(read_extent(table), depth, bottom, table.length_nm("wall_run").value_or(0));
 }
 
 HeightField make_line_field(const TomlTable& table) {
-  table.allow({"material", "edge", "shape", "width", "depth", "pitch", "height", "top_width",
-               "wall_run"});
+  table.allow(keys_of("height_field", "line"));
   const double height = required_length(table, "height", "a line has one");
   const double top_width = required_length(table, "top_width", "a line has one");
   return make_line(read_extent(table), height, top_width, table.length_nm("wall_run").value_or(0));
 }
 
 HeightField make_via_field(const TomlTable& table) {
-  table.allow({"material", "edge", "shape", "width", "depth", "pitch", "via_depth", "bottom_width",
-               "wall_run"});
+  table.allow(keys_of("height_field", "via"));
   const double depth = required_length(table, "via_depth", "a via has one");
   const double bottom = required_length(table, "bottom_width", "a via has one");
   return make_via(read_extent(table), depth, bottom, table.length_nm("wall_run").value_or(0));
 }
 
 HeightField make_step_field(const TomlTable& table) {
-  table.allow({"material", "edge", "shape", "width", "depth", "pitch", "height", "wall_run"});
+  table.allow(keys_of("height_field", "step"));
   const double height = required_length(table, "height", "a step has one");
   return make_step(read_extent(table), height, table.length_nm("wall_run").value_or(0));
 }
 
 HeightField make_grating_field(const TomlTable& table) {
-  table.allow({"material", "edge", "shape", "width", "depth", "pitch", "height", "period",
-               "top_width", "wall_run"});
+  table.allow(keys_of("height_field", "grating"));
   const double height = required_length(table, "height", "a grating has one");
   const double period = required_length(table, "period", "a grating has one");
   const double top_width = required_length(table, "top_width", "a grating has one");
@@ -107,8 +103,7 @@ HeightField make_grating_field(const TomlTable& table) {
 }
 
 HeightField make_rough_field(const TomlTable& table) {
-  table.allow({"material", "edge", "shape", "width", "depth", "pitch", "rms", "correlation",
-               "hurst", "seed"});
+  table.allow(keys_of("height_field", "rough"));
   const double rms = required_length(table, "rms", "a rough surface has one");
   const double correlation = required_length(table, "correlation", "a rough surface has one");
   const auto seed = static_cast<std::uint64_t>(table.integer("seed").value_or(1));
@@ -153,23 +148,20 @@ MeshUnit read_unit(const TomlTable& table) {
 TriangleMesh make_body(const TomlTable& table) {
   const std::string shape = *table.text("shape");
   if (shape == "box") {
-    table.allow({"material", "name", "shape", "lower", "upper", "subdivisions", "scale",
-                 "rotate_x", "rotate_y", "rotate_z", "move"});
+    table.allow(keys_of("body", "box"));
     table.require("lower", "a box has a lower corner");
     table.require("upper", "a box has an upper corner");
     return make_box(*table.point_nm("lower"), *table.point_nm("upper"),
                     small_integer(table, "subdivisions", 1));
   }
   if (shape == "sphere") {
-    table.allow({"material", "name", "shape", "center", "radius", "subdivisions", "scale",
-                 "rotate_x", "rotate_y", "rotate_z", "move"});
+    table.allow(keys_of("body", "sphere"));
     return make_sphere(table.point_nm("center").value_or(Vec3{}),
                        required_length(table, "radius", "a sphere has one"),
                        small_integer(table, "subdivisions", 4));
   }
   if (shape == "cone") {
-    table.allow({"material", "name", "shape", "base", "bottom_radius", "top_radius", "height",
-                 "segments", "scale", "rotate_x", "rotate_y", "rotate_z", "move"});
+    table.allow(keys_of("body", "cone"));
     return make_cone(table.point_nm("base").value_or(Vec3{}),
                      required_length(table, "bottom_radius", "a cone has one"),
                      table.length_nm("top_radius").value_or(0),
@@ -228,12 +220,12 @@ std::filesystem::path SceneParts::input(const TomlTable& table, std::string_view
 }
 
 mc::Substrate SceneParts::read_substrate(const TomlTable& table) {
-  table.allow({"material", "z"});
+  table.allow(keys_of("substrate"));
   return {.material = material(table), .top_nm = table.length_nm("z").value_or(0)};
 }
 
 HeightField SceneParts::read_field_file(const TomlTable& table) {
-  table.allow({"material", "edge", "file", "channel", "pixel_size", "z_unit"});
+  table.allow(keys_of("height_field", "file"));
   const double z_unit_nm = read_z_unit(table);
   const auto path = input(table, "file");
   const auto pixel = table.length_nm("pixel_size");
@@ -261,8 +253,7 @@ mc::HeightFieldBody SceneParts::read_height_field(const TomlTable& table) {
 }
 
 std::vector<mc::Body> SceneParts::read_mesh_file(const TomlTable& table) {
-  table.allow({"material", "materials", "name", "mesh", "unit", "override_unit", "scale", "rotate_x", "rotate_y",
-               "rotate_z", "move"});
+  table.allow(keys_of("body", "file"));
   const MeshUnit unit = read_unit(table);
   MaterialNames names{*table.text("material"), {}, table.place("materials")};
   if (const auto meaning = table.table("materials")) {
