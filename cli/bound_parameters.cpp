@@ -2,7 +2,6 @@
 #include "bound_parameters.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 
@@ -131,10 +130,6 @@ void BoundParameters::take(const Parameter& about, Field& field, const GivenText
   if (found == given.end()) return;
   if (field.kind() != FieldKind::list) {
     field.read(found->second.back(), about.subject());
-    return;
-  }
-  if (form_of(about, field).ends_with(",...")) {   // several a time, or one each time
-    field.read(fmt::format("{}", fmt::join(found->second, ",")), about.subject());
     return;
   }
   field.clear();

@@ -5,7 +5,7 @@
 #include "pages.h"
 #include "surf/core/parameters.h"
 #include "surf/mc/beam.h"
-#include "surf/mc/simulation_request.h"
+#include "surf/workflow/simulate_job.h"
 
 namespace surf::cli::reference {
 namespace {
@@ -22,7 +22,6 @@ const Entries& other_metadata() {
       {"option.NAME", "value of a parameter of an AFM step that changes the result, as `option.level.method`"},
       {"detector.N", "a detector in the order of the channels, as `--detector` reads it"},
       {"simulation.dose", "electrons per pixel of the beam's current and dwell time"},
-      {"output.deposit", "cells of the deposited energy"},
       {"specimen.substrate", "material and height of the half-space below"},
       {"specimen.height_field", "name, material, samples, pitch, origin and edge of the height field"},
       {"specimen.body.N", "name, material, triangles and extent of a body"},
@@ -111,8 +110,8 @@ Entries image_metadata() {
   const auto add = [&](const Parameter& about, Field&) {
     if (about.recorded) all.push_back({about.key(), cell(about.help)});
   };
-  mc::SimulationRequest request;
-  for_each_parameter(request, add);
+  workflow::SimulateJob job;
+  for_each_parameter(job, add);
   std::erase_if(all, [](const NamedEntry& e) { return e.name.starts_with("scan.") || e.name == "simulation.detector"; });
   mc::Scan scan;
   for_each_parameter(scan, add);

@@ -25,7 +25,7 @@ pixel_size = "2nm"
 
 [simulation]
 electrons = 50
-detector = ["in-lens", "side:axis=60deg/90deg"]
+detectors = ["in-lens", "side:axis=60deg/90deg"]
 
 [height_field]
 shape = "line"

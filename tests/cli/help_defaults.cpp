@@ -208,7 +208,6 @@ std::vector<Default> others() {
   const std::vector<std::string> chains{"register", "reconstruct"}, libraries{"library build", "library plot"};
   return {
       {scans, "--height-pitch", "1 nm"},
-      {scenes, "--height-pitch", "1 nm"},
       {chains, "--afm-pixel-size", "1 nm"},
       {{"mesh"}, "--pixel-size", "1 nm"},
       {{"train", "predict"}, "--pitch", "1nm"},

@@ -20,7 +20,9 @@ inline std::string other_value(const Parameter& about, const Field& field) {
     case FieldKind::flag: return field.text() == "on" ? "off" : "on";
     case FieldKind::choice: {
       const auto words = field.choices();
-      return *std::ranges::find_if(words, [&](const std::string& word) { return word != field.text(); });
+      return *std::ranges::find_if(words, [&](const std::string& word) {
+        return word != field.text() && (field.given() || word != "none");   // "none" is not to give it
+      });
     }
     case FieldKind::number:
     case FieldKind::whole: {
