@@ -142,7 +142,7 @@ int main(int argc, char** argv) {
     const std::string name = fmt::format("mc::simulate, direct, {:g} keV", energy_ev / 1000);
     if (name.find(wanted) == std::string::npos) continue;
     const mc::Scene scene(coarse, beam, scan);
-    measure(name, wanted, [&](const Watch& w) { mc::simulate(scene, options, {}, w.cancel); });
+    measure(name, wanted, [&](const Watch& w) { mc::simulate(scene, options, {.cancel = w.cancel}); });
   }
   if (argc > 2) {
     const TrainedModel trained = io::read_model(argv[2]);

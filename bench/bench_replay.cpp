@@ -205,7 +205,7 @@ json to_accuracy(const char* name, const mc::Scene& scene, double accuracy, bool
     for (int x = 0; x < pixels; ++x)
       for (std::size_t d = 0; d < o.detectors.size(); ++d) {
         const mc::Estimate e = r.yield(d, x, y);
-        const double share = e.standard_error / std::max(accuracy * e.mean, o.accuracy_floor);
+        const double share = e.standard_error / std::max(accuracy * e.mean, mc::floor_of(o.budget));
         worst = std::max(worst, share);
         over += share > 1;
         ++all;
@@ -284,11 +284,11 @@ json choice(double energy_ev) {
     const double direct = cpu_seconds() - begin;
     const double per_step = direct / static_cast<double>(b.steps);
     o.method = mc::Method::replay;
-    const double share = static_cast<double>(o.electrons);
+    const double share = mc::mean_electrons_of(o.budget);
     o.budget = mc::ElectronsPerPixel{20};
     begin = cpu_seconds();
     mc::simulate(scene, o, {.libraries = &source});
-    const double replay = (cpu_seconds() - begin) * share / static_cast<double>(o.electrons);
+    const double replay = (cpu_seconds() - begin) * share / mc::mean_electrons_of(o.budget);
     const double making = made / segments / per_step, saved = 1 - replay / direct;
     out["scenes"].push_back({{"scene", name}, {"nanoseconds_per_step", 1e9 * per_step},
                              {"making", making}, {"saved", saved}});

@@ -63,8 +63,8 @@ Run simulate(const mc::Specimen& specimen, const mc::Scan& scan, std::int64_t el
   if (!settings.deposit) return {mc::simulate(scene, options), scene.summary()};
   std::vector<mc::EnergyDeposit> deposits(static_cast<std::size_t>(threads),
                                           mc::EnergyDeposit(mc::deposit_grid(scene, 64)));
-  return {mc::simulate(scene, options, {}, nullptr,
-                       [&](int thread) { return &deposits[static_cast<std::size_t>(thread)]; }),
+  return {mc::simulate(scene, options,
+                       {.observers = [&](int thread) { return &deposits[static_cast<std::size_t>(thread)]; }}),
           scene.summary()};
 }
 

@@ -28,7 +28,7 @@ std::vector<double> at(double depth_over_width) {
   const mc::Estimate truth = mean_yield(simulate(scene, mc::Method::direct, 5000, 17), bse);
   mc::SimulationOptions options;
   options.budget = mc::Accuracy{accuracy, 0.01};
-  const double asked = std::max(accuracy * truth.mean, options.accuracy_floor);
+  const double asked = std::max(accuracy * truth.mean, mc::floor_of(options.budget));
   std::vector<double> row{truth.mean, truth.standard_error, asked};
   for (const mc::Method method : {mc::Method::direct, mc::Method::replay}) {
     options.method = method;

@@ -80,7 +80,7 @@ Units simulate_by_replay(std::int64_t electrons, int pixels_across, mc::LibraryS
   options.method = mc::Method::replay;
   options.threads = 1;
   Clocked journal;
-  mc::simulate(scene, options, {}, nullptr, {}, &journal, &libraries);
+  mc::simulate(scene, options, {.journal = &journal, .libraries = &libraries});
   return journal.units;
 }
 

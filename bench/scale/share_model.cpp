@@ -198,7 +198,7 @@ Sharing simulate_sharing(const UnitCosts& costs, const Messages& messages, const
   const std::int64_t done = std::min(units, enough);
   Run run(costs, messages, machines, done);
   Sharing out;
-  out.scene.budget = mc::TimeLimit{run.seconds()};
+  out.seconds = run.seconds();
   out.leader_busy = std::min(1.0, run.served_s() / out.seconds);
   out.waiting_s_per_unit = run.waiting_s() / static_cast<double>(std::max<std::int64_t>(1, run.of_others()));
   if (units > done) {
@@ -219,7 +219,7 @@ Sharing bound_sharing(const UnitCosts& costs, const Messages& m, const Machines&
   // Serving takes processor time from the leader's own units.
   const double lost = by_others / serves / (machines.threads + 1.0);
   Sharing out;
-  out.scene.budget = mc::TimeLimit{static_cast<double>(units) / (by_others + own * (1 - lost)) + (machines.ranks > 1 ? 2 * unit_s : unit_s / 2)};
+  out.seconds = static_cast<double>(units) / (by_others + own * (1 - lost)) + (machines.ranks > 1 ? 2 * unit_s : unit_s / 2);
   out.efficiency = ideal_s(costs, machines, units) / out.seconds;
   out.leader_busy = by_others / serves;
   return out;
