@@ -39,7 +39,7 @@ constexpr const char* examples = R"(Examples:
       the secondary-electron image of a mesh (in nm) at 1 keV, as data and as a picture
   semsurf simulate samples/mesa80.toml --energy 3keV --electrons 500 -o mesa.vti
       a scene file, with two of its settings changed, for ParaView
-  semsurf mesh part.obj --unit um --repair --simplify 1nm -o part.stl
+  semsurf mesh part.obj --unit um --repair --mesh-tolerance 1nm -o part.stl
       a sound mesh of fewer triangles, nowhere more than 1 nm off
   semsurf info mesa.vti
       what is in a file, and how it was made
