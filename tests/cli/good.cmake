@@ -383,7 +383,8 @@ semsurf_cli_test(help.sample ARGS sample --help STDOUT "nist0523-thick" "Example
 semsurf_cli_test(sample.list ARGS sample --list STDOUT "nist0523-thick.*100 nm high" "terrain")
 semsurf_cli_test(sample.small ARGS sample islands --size 24x16 --electrons 1 --cache off -o made
   STDOUT "SEM +24 x 16 pixels of 1 primaries" "truth.json"
-  WRITES made/afm.gsf made/sem.tif made/truth.gsf made/truth_tip.gsf made/truth_sem.exr made/truth.json)
+  WRITES made/afm.gsf made/sem.tif made/truth.gsf made/truth_tip.gsf made/truth_sem.exr made/truth.json
+  INFO made/sem.tif "option.sample.electrons +1\n" "option.sample.name +islands\n" "option.sample.seed +1\n" "option.sample.size +24x16\n")
 semsurf_cli_test(info.sem_image ARGS info fei.tif
   STDOUT "SEM image, Thermo/FEI, Teneo" "4 x 3 pixels of 7.5" "energy +2 keV" "detector +ETD" "Beam.HV +2000"
   STDERR "note: the databar, the lowest 1 rows, is left out")
