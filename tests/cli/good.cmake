@@ -398,6 +398,6 @@ semsurf_cli_test(written.tip ARGS tip --shape cone:10nm,15deg --tip-size 5 --hei
 # Units that files state.
 semsurf_cli_test(unit.same ARGS mesh two.gltf --unit m -o a.ply WRITES a.ply)
 semsurf_cli_test(unit.overridden ARGS mesh two.gltf --unit um --override-unit -o a.ply
-  WRITES a.ply INFO a.ply "option.override-unit +on")
+  WRITES a.ply INFO a.ply "option.specimen.override_unit +on")
 semsurf_cli_test(unit.simulated ARGS simulate two.gltf --unit 2m --override-unit ${few} -o a.exr
   WRITES a.exr INFO a.exr "unit_override.1 +two.gltf, 2")
