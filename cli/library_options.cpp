@@ -59,9 +59,11 @@ void add_library_options(CLI::App& app, LibraryOptions& o) {
                  "Accuracy of images that begin with so many cascades: (2/accuracy)^2, not\n"
                  "below 10000, which is their number where neither is given")
       ->type_name("SHARE");
-  app.add_option("--physics", o.physics, "Changes to the physics, as for simulate; each choice has libraries of its own")
+  app.add_option("--physics", o.physics, "Changes to the physics, as for simulate; each choice has libraries of its "
+                                        "own")
       ->type_name("KEY=VALUE,...");
-  app.add_option("--cutoff", o.cutoff, "Energy inside the material where tracking stops, as for simulate")->type_name("ENERGY");
+  app.add_option("--cutoff", o.cutoff, "Energy inside the material where tracking stops, as for "
+                                       "simulate")->type_name("ENERGY");
   app.add_option("--seed", o.seed, "Seed of the random numbers, as for simulate (1)")->type_name("N");
   add_materials_option(app, o.material_files);
   add_threads_option(app, o.threads);

@@ -47,7 +47,8 @@ struct Options {
   bool quiet = false;
 };
 
-const std::vector<std::string> reading_names{"specimen.unit", "specimen.override_unit", "scan.height_unit", "scan.height_pitch"};
+const std::vector<std::string> reading_names{"specimen.unit", "specimen.override_unit", "scan.height_unit",
+    "scan.height_pitch"};
 
 /// All the numbers, before a large mesh is read.
 struct Plan {
@@ -68,7 +69,8 @@ RepairOptions make_repair(const MeshParameters& p, const BoundParameters& bound)
   repair.max_hole_nm = p.max_hole_nm;
   repair.min_component_nm = p.min_component_nm;
   repair.resolve_self_intersections = !p.keep_intersections;
-  for (const char* of_repair : {"mesh.max_hole", "mesh.stitch", "mesh.sliver", "mesh.min_component", "mesh.keep_intersections"})
+  for (const char* of_repair : {"mesh.max_hole", "mesh.stitch", "mesh.sliver", "mesh.min_component",
+      "mesh.keep_intersections"})
     if (bound.is_given(of_repair) && !p.repair)
       throw UsageError(option_name(of_repair), "it is about repairs, and there are none", "Add --repair");
   return repair;
@@ -143,7 +145,8 @@ std::map<std::string, std::string> provenance(const Options& o, const Plan& p) {
   for (const FileChannel& f : p.scalars) files.push_back(f.file.string());
   if (p.drape) files.push_back(p.drape->file.string());
   if (o.tracks) files.push_back(*o.tracks);
-  return workflow::step_record("mesh", workflow::records_of(p.reading, p.pixel, p.parameters), {files.begin(), files.end()});
+  return workflow::step_record("mesh", workflow::records_of(p.reading, p.pixel, p.parameters),
+                               {files.begin(), files.end()});
 }
 
 /// Maps of a scan's format may lie as the scan does.
@@ -210,7 +213,8 @@ int work(const Options& o) {
   const bool sound = print_surfaces(scene, o.quiet);
   if (!o.quiet) {
     if (!scene.tracks.empty()) print("{:<10} {}\n", "tracks", scene.tracks.size());
-    if (plan.format.magnified && !plan.parameters.out_unit_nm) print("{:<10} {}\n", "scale", scale_of(plan.magnification));
+    if (plan.format.magnified && !plan.parameters.out_unit_nm)
+      print("{:<10} {}\n", "scale", scale_of(plan.magnification));
     print_written(files);
   }
   const bool of_meshes = std::ranges::all_of(plan.inputs, [](const FileChannel& f) { return io::is_mesh_file(f.file); });
@@ -235,7 +239,8 @@ void add_mesh(CLI::App& app, Action& action) {
   const auto add = [&](const char* heading, const std::vector<std::string>& names) {
     o->bound.add<MeshParameters>(*sub, heading, {}, names);
   };
-  add("Repair", {"mesh.repair", "mesh.stitch", "mesh.sliver", "mesh.max_hole", "mesh.min_component", "mesh.keep_intersections"});
+  add("Repair", {"mesh.repair", "mesh.stitch", "mesh.sliver", "mesh.max_hole", "mesh.min_component",
+      "mesh.keep_intersections"});
   add("Shape", {"mesh.scale", "mesh.smooth", "mesh.mesh_tolerance", "mesh.triangles", "mesh.solid", "mesh.thickness"});
   const char* shown = "On the surface";
   sub->add_option("--scalar", o->scalars, "A map to go along, FILE or FILE:CHANNEL; may be repeated")

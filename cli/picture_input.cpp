@@ -93,10 +93,12 @@ io::WebImage read_plain_picture(const FileChannel& input, const GivenPitch& give
 }
 
 void describe(ParameterVisitor& visit, GivenPitch& pitch) {
-  visit.form({.name = "picture.pixel_size", .help = "Distance of neighbouring pixels, 2nm or 2nmx3nm, of pictures that do not say",
+  visit.form({.name = "picture.pixel_size", .help = "Distance of neighbouring pixels, 2nm or 2nmx3nm, of pictures "
+                                        "that do not say",
               .unit = Unit::nm, .form = "LENGTH"},
              [&] {
-               return pitch.x_nm ? format_exact(*pitch.x_nm) + "x" + format_exact(pitch.y_nm.value_or(*pitch.x_nm)) : std::string();
+               if (!pitch.x_nm) return std::string();
+               return format_exact(*pitch.x_nm) + "x" + format_exact(pitch.y_nm.value_or(*pitch.x_nm));
              },
              [&](std::string_view text, const std::string& subject) {
                const auto [x, y] = io::parse_pitch_nm(text, subject);

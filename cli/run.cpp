@@ -235,7 +235,8 @@ int parse_and_act(const std::vector<std::string>& arguments) {
   if (!is_shared(app) && leave_to_leader(command)) return 0;
   const int code = act(app, action);
   if (take_refused_threads() > 0)
-    print_note("the system refused threads (ulimit -u, ulimit -v): fewer than wanted did the work, with the same result");
+    print_note("the system refused threads (ulimit -u, ulimit -v): fewer than wanted did the work, with the same "
+               "result");
   return code;
 }
 
@@ -244,7 +245,8 @@ int parse_and_act(const std::vector<std::string>& arguments) {
 namespace surf::cli {
 
 std::unique_ptr<CLI::App> make_app(Action& action, const std::string& command_line) {
-  auto app = std::make_unique<CLI::App>("Scanning electron microscope images of surfaces, by Monte Carlo simulation", "semsurf");
+  auto app = std::make_unique<CLI::App>("Scanning electron microscope images of surfaces, by Monte Carlo "
+                                        "simulation", "semsurf");
   app->formatter(std::make_shared<HelpFormatter>());
   app->set_version_flag("-V,--version", version_text, "Versions of semsurf and its libraries");
   app->footer(examples);

@@ -90,7 +90,8 @@ class TimeLeft {
 
 std::string why_stopped(const workflow::SampleJob& job, const workflow::SampleSummary& s) {
   if (!s.checkpoint.empty())
-    return fmt::format("stopped; what is done is kept in {}; the same command goes on from there", s.checkpoint.string());
+    return fmt::format("stopped; what is done is kept in {}; the same command goes on from "
+                       "there", s.checkpoint.string());
   if (job.cache.empty()) return "stopped; nothing was written";
   return "stopped before a part of the image was done; cascades that are made stay in the cache";
 }
@@ -131,13 +132,15 @@ int sample(const Options& o) {
 
 void add_sample(CLI::App& app, Action& action) {
   const auto o = std::make_shared<Options>();
-  CLI::App* sub = app.add_subcommand("sample", "A scan and an SEM image of a known surface, to try a reconstruction on");
+  CLI::App* sub = app.add_subcommand("sample", "A scan and an SEM image of a known surface, to try a reconstruction "
+                                        "on");
   sub->add_flag("--list", o->list, "Say what there is");
   const char* making = "Making";
   o->bound.looks["sample.name"] = {.name = "NAME", .positional = true};
   o->bound.looks["output"] = {.name = "-o,--output"};
   o->bound.add<workflow::SampleJob>(*sub, "Options", {}, {"sample.name", "output"});
-  o->bound.add<workflow::SampleJob>(*sub, making, {}, {"sample.electrons", "sample.size", "sample.seed", "job.cache", "job.threads"});
+  o->bound.add<workflow::SampleJob>(*sub, making, {}, {"sample.electrons", "sample.size", "sample.seed", "job.cache",
+      "job.threads"});
   add_quiet_flag(*sub, o->quiet)->group(making);
   sub->footer(examples);
   sub->callback([o, &action] { action = [o] { return sample(*o); }; });

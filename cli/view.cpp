@@ -46,7 +46,8 @@ struct Options {
   bool quiet = false;
 };
 
-const std::vector<std::string> reading_names{"specimen.unit", "specimen.override_unit", "scan.height_unit", "scan.height_pitch"};
+const std::vector<std::string> reading_names{"specimen.unit", "specimen.override_unit", "scan.height_unit",
+    "scan.height_pitch"};
 
 ViewReading make_reading(const Options& o, const io::SpecimenRequest& given) {
   ViewReading r;
@@ -62,7 +63,8 @@ void add_drape(const FileChannel& input, const ViewReading& reading, io::WebPage
   auto [picture, channel] = read_placed_picture(input, reading.pitch);
   if (std::none_of(page.surfaces.begin(), page.surfaces.end(),
                    [&](const io::WebSurface& surface) { return lies_over(picture.image, surface); }))
-    throw InvalidInput(input.file.string(), fmt::format("the picture, {}, lies over no surface", place_of(picture.image)),
+    throw InvalidInput(input.file.string(), fmt::format("the picture, {}, lies over no "
+                                        "surface", place_of(picture.image)),
                        "Give it without --drape to see it beside them");
   const std::string wanted = channel;
   const auto same = std::find_if(page.images.begin(), page.images.end(), [&](const io::WebImage& image) {
@@ -159,7 +161,8 @@ int work(const Options& o) {
   for (const FileChannel& scalar : scalars) read.push_back(scalar.file.string());
   if (drape) read.push_back(drape->file.string());
   page.metadata = workflow::step_record(
-      "view", workflow::records_of(given, reading.pitch, static_cast<const ViewParameters&>(reading)), {read.begin(), read.end()});
+      "view", workflow::records_of(given, reading.pitch, static_cast<const ViewParameters&>(reading)), {read.begin(),
+          read.end()});
 
   const auto summary = io::write_web_page(
       *o.output, page, [&](double part, double total) { bar.show(steps / 2 * (1 + part / total), steps, "files"); },
@@ -168,7 +171,8 @@ int work(const Options& o) {
   if (summary.bytes == 0) return interrupted;
   if (!o.quiet) report(page, summary, *o.output);
   if (double(summary.bytes) > heavy_page_bytes)
-    print_warning(fmt::format("a page of {} opens slowly. --mesh-tolerance 0.1nm leaves out what is flat, --every 2 takes "
+    print_warning(fmt::format("a page of {} opens slowly. --mesh-tolerance 0.1nm leaves out what is flat, --every 2 "
+                              "takes "
                               "every second sample",
                               format_bytes(double(summary.bytes))));
   return 0;

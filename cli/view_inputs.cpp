@@ -50,7 +50,8 @@ class Adder {
     }
     if (reading_.mesh_tolerance_nm) {
       ThinSummary summary;
-      surface.shape = thin_height_field(field, {.tolerance_nm = *reading_.mesh_tolerance_nm, .watch = reading_.watch}, summary);
+      surface.shape = thin_height_field(field, {.tolerance_nm = *reading_.mesh_tolerance_nm, .watch = reading_.watch},
+          summary);
       note(fmt::format("{} triangles instead of {}, nowhere more than {} off", summary.triangles_after,
                        summary.triangles_before, format_length(summary.deviation_nm)));
       surface.metadata["view.deviation_nm"] = format_exact(summary.deviation_nm);
@@ -172,7 +173,8 @@ class Adder {
 void describe(ParameterVisitor& visit, ViewParameters& p) {
   visit(p.mesh_tolerance_nm, {.name = "view.mesh_tolerance", .help = "Fewer triangles, nowhere farther off than this",
                               .unit = Unit::nm, .limits = above(0), .otherwise = "all"});
-  visit(p.every, {.name = "view.every", .help = "Step of the samples of height fields that are shown: 2 is every second one",
+  visit(p.every, {.name = "view.every", .help = "Step of the samples of height fields that are shown: 2 is every "
+                                        "second one",
                   .limits = within(1, 1'000'000)});
 }
 

@@ -295,7 +295,8 @@ void describe(ParameterVisitor& visit, SampleJob& job) {
   for (const SampleScene& scene : sample_scenes()) names += (names.empty() ? "" : "|") + scene.name;
   visit(job.name, {.name = "sample.name", .help = "The surface", .form = names});
   std::string folder = job.folder.string();
-  visit(folder, {.name = "output", .help = "Folder for the files; it is made", .recorded = false, .file = FileRole::written_folder});
+  visit(folder, {.name = "output", .help = "Folder for the files; it is "
+                                        "made", .recorded = false, .file = FileRole::written_folder});
   job.folder = folder;
   visit(job.electrons, {.name = "sample.electrons", .help = "Primaries per pixel of the SEM image",
                         .limits = within(1, double(std::int64_t{1} << 31))});
@@ -310,7 +311,8 @@ void describe(ParameterVisitor& visit, SampleJob& job) {
              });
   visit(job.seed, {.name = "sample.seed", .help = "Seed of noise and simulation: the same seed gives the same files"});
   visit.form({.name = "job.cache", .help = "Folder that libraries of cascades are kept in for other runs, or off",
-              .otherwise = "$SEMSURF_CACHE, ~/.cache/semsurf", .form = "FOLDER|off", .level = Level::advanced, .recorded = false},
+              .otherwise = "$SEMSURF_CACHE, ~/.cache/semsurf", .form = "FOLDER|off", .level = Level::advanced,
+                  .recorded = false},
              [&] { return job.cache.string(); },
              [&](std::string_view text, const std::string&) { job.cache = io::cache_folder(std::string(text)); });
   visit(job.threads, {.name = "job.threads", .help = "Number of threads, which does not change the result",
