@@ -177,16 +177,16 @@ void add_options(CLI::App& app, Options& o) {
   const char* group = "Chart";
   app.add_option("-o,--output", o.output, "Folder for the chart and what it is made from")->type_name("FOLDER")->group(group);
   app.add_flag("--quick", o.quick, "Few settings of each method, a finest accuracy of 3%, small trainings")->group(group);
-  std::string families = "Only these of the methods below, with commas between them";
+  std::string families = "Methods to chart, of those below, with commas between them (all)";
   app.add_option("--methods", o.methods, families)->type_name("NAME,...")->group(group);
-  app.add_option("--accuracy", o.accuracy, "The finest that methods are asked for, 0.1% to 10% (1%)")->type_name("SHARE")->group(group);
+  app.add_option("--accuracy", o.accuracy, "Finest accuracy that methods are asked for, 0.1% to 10% (1%)")->type_name("SHARE")->group(group);
   app.add_option("--reference", o.reference, "Accuracy of the reference (a third of the finest)")->type_name("SHARE")->group(group);
-  app.add_option("--compared", o.compared, "About how many pixels the reference has (1000)")->type_name("N")->group(group);
-  app.add_option("--most", o.most, "Settings with more primaries in the whole image are left out, direct\n"
+  app.add_option("--compared", o.compared, "Number of pixels of the reference, about (1000)")->type_name("N")->group(group);
+  app.add_option("--most", o.most, "Primaries in the whole image above which settings are left out, direct\n"
                                    "ones with more than a twentieth of it (3e8; with --quick 5e6)")->type_name("N")->group(group);
   app.add_option("--surfaces", o.surfaces, "Surfaces that fast models learn on (20)")->type_name("N")->group(group);
-  app.add_option("--surface-size", o.surface_px, "Pixels across each of them (64)")->type_name("N")->group(group);
-  app.add_option("--seed", o.seed, "The same seed gives the same numbers, but for times (1)")->type_name("N")->group(group);
+  app.add_option("--surface-size", o.surface_px, "Pixels across each of those surfaces (64)")->type_name("N")->group(group);
+  app.add_option("--seed", o.seed, "Seed of the random numbers: the same seed gives the same numbers, but for times (1)")->type_name("N")->group(group);
   add_threads_option(app, o.threads)->group(group);
   add_quiet_flag(app, o.quiet)->group(group);
 }

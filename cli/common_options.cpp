@@ -18,7 +18,7 @@ void add_unit_options(CLI::App& app, std::optional<std::string>& unit, bool& ove
 
 CLI::Option* add_threads_option(CLI::App& app, std::optional<std::string>& threads) {
   return app.add_option("--threads", threads,
-                        "Does not change the result (one per hardware thread)")
+                        "Number of threads, which does not change the result (one per hardware thread)")
       ->type_name("N");
 }
 

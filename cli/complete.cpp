@@ -87,7 +87,8 @@ void add_words_of(const CLI::Option& option, const std::string& form, Offer& off
   }
 }
 
-/// "FILE.json" and "SCENE.toml" are names of files, "FOLDER|off" a folder or a word, "SE|BSE|...|valid" words among others.
+/// "FILE.json" and "SCENE.toml" are names of files, "FOLDER|off" a folder or a word, "SE|BSE|...|valid" words among
+/// others.
 /// A single name in capitals stands for what nobody can list.
 Offer values_of(const CLI::Option& option) {
   Offer offer;
@@ -148,7 +149,8 @@ Offer varied(const CLI::App& command, const std::string& before, const std::stri
   return continued(std::move(offer), before + word.substr(0, equals + 1), word.substr(equals + 1));
 }
 
-Offer complete_value(const CLI::App& command, const CLI::Option& option, const std::string& before, const std::string& word) {
+Offer complete_value(const CLI::App& command, const CLI::Option& option, const std::string& before,
+    const std::string& word) {
   const std::string form = form_of_value(option);
   if (form == "KEY=VALUE,...") return physics(before, word);
   if (form == "NAME=VALUES") return varied(command, before, word);

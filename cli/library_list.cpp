@@ -203,12 +203,12 @@ void add_library_list(CLI::App& library, Action& action) {
 void add_library_remove(CLI::App& library, Action& action) {
   const auto options = std::make_shared<RemoveOptions>();
   CLI::App* sub = library.add_subcommand("remove", "Remove libraries from the cache");
-  sub->add_option("MATERIAL", options->library.materials, "Those of these materials")
+  sub->add_option("MATERIAL", options->library.materials, "Materials whose libraries are removed")
       ->type_name("MATERIAL");
-  sub->add_option("--energy", options->library.energy, "Those of these beam energies")
+  sub->add_option("--energy", options->library.energy, "Beam energies whose libraries are removed")
       ->type_name("ENERGY,...");
-  sub->add_flag("--all", options->all, "All, and what is damaged");
-  sub->add_flag("--damaged", options->damaged, "What cannot be used because it is damaged");
+  sub->add_flag("--all", options->all, "Remove all, and what is damaged");
+  sub->add_flag("--damaged", options->damaged, "Remove what cannot be used because it is damaged");
   sub->add_flag("-n,--dry-run", options->dry_run, "Only say what would be removed");
   add_cache_option(*sub, options->library);
   sub->group("Commands");

@@ -45,24 +45,26 @@ std::size_t number_of_cascades(const LibraryOptions& o) {
 }  // namespace
 
 void add_cache_option(CLI::App& app, LibraryOptions& o) {
-  app.add_option("--cache", o.cache, "Where libraries are kept ($SEMSURF_CACHE, ~/.cache/semsurf)")
+  app.add_option("--cache", o.cache, "Folder that libraries are kept in ($SEMSURF_CACHE, ~/.cache/semsurf)")
       ->type_name("FOLDER");
 }
 
 void add_library_options(CLI::App& app, LibraryOptions& o) {
-  app.add_option("MATERIAL", o.materials, "What the electrons move in")->type_name("MATERIAL");
-  app.add_option("--energy", o.energy, "Of the beam, one or several, 100eV to 30keV (1keV)")
+  app.add_option("MATERIAL", o.materials, "Material that the electrons move in")->type_name("MATERIAL");
+  app.add_option("--energy", o.energy, "Energy of the beam, one or several, 100eV to 30keV (1keV)")
       ->type_name("ENERGY,...");
   app.add_option("--cascades", o.cascades, "Primaries in each library, rounded up to whole 2048s")
       ->type_name("N");
   app.add_option("--accuracy", o.accuracy,
-                 "As many as images of this accuracy begin with: (2/accuracy)^2, not\n"
-                 "below 10000, which is what is made where neither is given")
+                 "Accuracy of images that begin with so many cascades: (2/accuracy)^2, not\n"
+                 "below 10000, which is their number where neither is given")
       ->type_name("SHARE");
-  app.add_option("--physics", o.physics, "As for simulate; each choice has libraries of its own")
+  app.add_option("--physics", o.physics, "Changes to the physics, as for simulate; each choice has libraries of its "
+                                        "own")
       ->type_name("KEY=VALUE,...");
-  app.add_option("--cutoff", o.cutoff, "As for simulate")->type_name("ENERGY");
-  app.add_option("--seed", o.seed, "As for simulate (1)")->type_name("N");
+  app.add_option("--cutoff", o.cutoff, "Energy inside the material where tracking stops, as for "
+                                       "simulate")->type_name("ENERGY");
+  app.add_option("--seed", o.seed, "Seed of the random numbers, as for simulate (1)")->type_name("N");
   add_materials_option(app, o.material_files);
   add_threads_option(app, o.threads);
   add_quiet_flag(app, o.quiet);

@@ -106,7 +106,7 @@ class Treatment {
       print("{:<10} {} triangles to {}, nowhere more than {} above or below (proven)\n", "simplify",
                  s.triangles_before, s.triangles_after, format_length(s.deviation_nm * work_.scale));
     if (work_.reduce.tolerance_nm > 0 && !s.reached)
-      print_warning(fmt::format("--triangles: with {} of them the surface is {} off, more than --tolerance",
+      print_warning(fmt::format("--triangles: with {} of them the surface is {} off, more than --mesh-tolerance",
                                 s.triangles_after, format_length(s.deviation_nm * work_.scale)));
     return mesh;
   }
@@ -138,7 +138,7 @@ class Treatment {
       if (!work_.quiet) print_simplified(summary);
       if (!summary.reached)
         print_warning(fmt::format("--triangles: {} are left; fewer would {}", summary.triangles_after,
-                                  work_.reduce.tolerance_nm > 0 ? "exceed --tolerance" : "turn faces over"));
+                                  work_.reduce.tolerance_nm > 0 ? "exceed --mesh-tolerance" : "turn faces over"));
     }
     add(std::move(surface));
   }

@@ -10,6 +10,8 @@
 #include <vector>
 
 #include "surf/core/error.h"
+#include "surf/core/units.h"
+#include "surf/io/scan_parameters.h"
 #include "surf/io/height_field_file.h"
 #include "surf/io/image_file.h"
 
@@ -88,6 +90,20 @@ io::WebImage read_plain_picture(const FileChannel& input, const GivenPitch& give
   }
   check_channel(picture.image, input);
   return picture;
+}
+
+void describe(ParameterVisitor& visit, GivenPitch& pitch) {
+  visit.form({.name = "picture.pixel_size", .help = "Distance of neighbouring pixels, 2nm or 2nmx3nm, of pictures "
+                                        "that do not say",
+              .unit = Unit::nm, .form = "LENGTH"},
+             [&] {
+               if (!pitch.x_nm) return std::string();
+               return format_exact(*pitch.x_nm) + "x" + format_exact(pitch.y_nm.value_or(*pitch.x_nm));
+             },
+             [&](std::string_view text, const std::string& subject) {
+               const auto [x, y] = io::parse_pitch_nm(text, subject);
+               pitch = {x, y};
+             });
 }
 
 FileChannel parse_file_channel(const std::string& text) {

@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "surf/core/parameters.h"
 #include "surf/io/web_page.h"
 
 namespace surf::cli {
@@ -22,6 +23,9 @@ FileChannel parse_file_channel(const std::string& text);
 struct GivenPitch {
   std::optional<double> x_nm, y_nm;
 };
+
+/// As that of pictures: picture.pixel_size.
+void describe(ParameterVisitor& visit, GivenPitch& pitch);
 
 /// A picture, or one channel of a scan in its own unit, as an image. Throws UsageError for a channel that is
 /// not there.

@@ -40,7 +40,7 @@ constexpr const char* examples = R"(Examples:
       the secondary-electron image of a mesh (in nm) at 1 keV, as data and as a picture
   semsurf simulate samples/mesa80.toml --energy 3keV --electrons 500 -o mesa.vti
       a scene file, with two of its settings changed, for ParaView
-  semsurf mesh part.obj --unit um --repair --simplify 1nm -o part.stl
+  semsurf mesh part.obj --unit um --repair --mesh-tolerance 1nm -o part.stl
       a sound mesh of fewer triangles, nowhere more than 1 nm off
   semsurf info mesa.vti
       what is in a file, and how it was made
@@ -237,7 +237,8 @@ int parse_and_act(const std::vector<std::string>& arguments) {
   if (!is_shared(app) && leave_to_leader(command)) return 0;
   const int code = act(app, action);
   if (take_refused_threads() > 0)
-    print_note("the system refused threads (ulimit -u, ulimit -v): fewer than wanted did the work, with the same result");
+    print_note("the system refused threads (ulimit -u, ulimit -v): fewer than wanted did the work, with the same "
+               "result");
   return code;
 }
 
@@ -246,7 +247,8 @@ int parse_and_act(const std::vector<std::string>& arguments) {
 namespace surf::cli {
 
 std::unique_ptr<CLI::App> make_app(Action& action, const std::string& command_line) {
-  auto app = std::make_unique<CLI::App>("Scanning electron microscope images of surfaces, by Monte Carlo simulation", "semsurf");
+  auto app = std::make_unique<CLI::App>("Scanning electron microscope images of surfaces, by Monte Carlo "
+                                        "simulation", "semsurf");
   app->formatter(std::make_shared<HelpFormatter>());
   app->set_version_flag("-V,--version", version_text, "Versions of semsurf and its libraries");
   app->footer(examples);

@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 
+#include "bound_parameters.h"
 #include "commands.h"
 #include "common_options.h"
 #include "exit_codes.h"
@@ -31,9 +32,7 @@ Examples:
   semsurf sample terrain --electrons 50 --seed 2 -o noisy)";
 
 struct Options {
-  std::string name;
-  std::optional<std::string> folder, size, electrons, seed, threads;
-  std::string cache;
+  BoundParameters bound;
   bool list = false, quiet = false;
 };
 
@@ -45,16 +44,11 @@ int list_samples() {
 
 workflow::SampleJob make_job(const Options& o) {
   workflow::SampleJob job;
-  if (o.name.empty())
+  job.cache = io::cache_folder("");
+  o.bound.apply(job);
+  if (job.name.empty())
     throw UsageError("NAME", "no sample is named", "Choose one that 'semsurf sample --list' shows");
-  if (!o.folder) throw UsageError("--output", "no folder is given", "Add -o FOLDER");
-  job.name = o.name;
-  job.folder = *o.folder;
-  if (o.size) std::tie(job.width, job.height) = parse_size(*o.size, "--size");
-  if (o.electrons) job.electrons = parse_whole(*o.electrons, "--electrons", 1, std::int64_t{1} << 31);
-  if (o.seed) job.seed = parse_seed(*o.seed, "--seed");
-  job.threads = parse_threads(o.threads);
-  job.cache = io::cache_folder(o.cache);
+  if (job.folder.empty()) throw UsageError("--output", "no folder is given", "Add -o FOLDER");
   return job;
 }
 
@@ -96,7 +90,8 @@ class TimeLeft {
 
 std::string why_stopped(const workflow::SampleJob& job, const workflow::SampleSummary& s) {
   if (!s.checkpoint.empty())
-    return fmt::format("stopped; what is done is kept in {}; the same command goes on from there", s.checkpoint.string());
+    return fmt::format("stopped; what is done is kept in {}; the same command goes on from "
+                       "there", s.checkpoint.string());
   if (job.cache.empty()) return "stopped; nothing was written";
   return "stopped before a part of the image was done; cascades that are made stay in the cache";
 }
@@ -137,21 +132,15 @@ int sample(const Options& o) {
 
 void add_sample(CLI::App& app, Action& action) {
   const auto o = std::make_shared<Options>();
-  CLI::App* sub = app.add_subcommand("sample", "A scan and an SEM image of a known surface, to try a reconstruction on");
-  sub->add_option("NAME", o->name, "Which one")->type_name("nist0523-thick|nist0523-thin|pads|islands|terrain");
+  CLI::App* sub = app.add_subcommand("sample", "A scan and an SEM image of a known surface, to try a reconstruction "
+                                        "on");
   sub->add_flag("--list", o->list, "Say what there is");
-  sub->add_option("-o,--output", o->folder, "Where the files go")->type_name("FOLDER");
   const char* making = "Making";
-  const workflow::SampleJob usual;
-  sub->add_option("--electrons", o->electrons, fmt::format("Primaries per pixel of the SEM image ({})", usual.electrons))->type_name("N")->group(making);
-  sub->add_option("--size", o->size, fmt::format("Pixels of the SEM image, the middle of the view ({}x{})", usual.width,
-                                                usual.height))
-      ->type_name("WxH")->group(making);
-  sub->add_option("--seed", o->seed, fmt::format("Of all chance ({})", usual.seed))->type_name("N")->group(making);
-  sub->add_option("--cache", o->cache, "Where libraries of cascades are kept, 'off' for nowhere\n"
-                                       "($SEMSURF_CACHE, ~/.cache/semsurf)")
-      ->type_name("FOLDER|off")->group(making);
-  add_threads_option(*sub, o->threads)->group(making);
+  o->bound.looks["sample.name"] = {.name = "NAME", .positional = true};
+  o->bound.looks["output"] = {.name = "-o,--output"};
+  o->bound.add<workflow::SampleJob>(*sub, "Options", {}, {"sample.name", "output"});
+  o->bound.add<workflow::SampleJob>(*sub, making, {}, {"sample.electrons", "sample.size", "sample.seed", "job.cache",
+      "job.threads"});
   add_quiet_flag(*sub, o->quiet)->group(making);
   sub->footer(examples);
   sub->callback([o, &action] { action = [o] { return sample(*o); }; });

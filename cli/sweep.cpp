@@ -271,9 +271,9 @@ void add_sweep(CLI::App& app, Action& action, const std::string& command_line) {
   sub->add_option("--vary", options->vary, "What varies, as energy=500eV,1keV or tilt=0deg:60deg:5deg; may be\nrepeated: all combinations")
       ->type_name("NAME=VALUES")->allow_extra_args(false)->group(group);
   sub->add_option("-o,--output", options->output, "Folder of the images and the table")->type_name("FOLDER")->group(group);
-  sub->add_option("--format", options->formats, "Of the images, instead of exr; may be repeated")->type_name("exr|tif|png|vti")
+  sub->add_option("--format", options->formats, "Format of the images, instead of exr; may be repeated")->type_name("exr|tif|png|vti")
       ->allow_extra_args(false)->group(group);
-  sub->add_option("--part", options->part, "Only part K of N: the third of 16 is 3/16")->type_name("K/N")->group(group);
+  sub->add_option("--part", options->part, "Part K of N to do: the third of 16 is 3/16 (all)")->type_name("K/N")->group(group);
   add_simulate_settings(*sub, options->simulate);
   sub->footer(examples);
   add_join(*sub, action)->group("Commands");

@@ -7,9 +7,11 @@
 #include <memory>
 #include <tuple>
 
+#include "bound_parameters.h"
 #include "commands.h"
 #include "common_options.h"
 #include "image_sampler.h"
+#include "mesh_parameters.h"
 #include "options.h"
 #include "surf/core/error.h"
 #include "surf/core/units.h"
@@ -32,31 +34,28 @@ Examples:
   semsurf view scan.gwy -o page.html
   semsurf view scan.gsf eroded.gsf tip.gsf --scalar certainty.tif:certain -o page.html
   semsurf view specimen.ply --drape simulated.exr:SE --title "Mesa, 80 deg" -o page.html
-  semsurf view large.gsf --tolerance 0.1nm -o page.html)";
+  semsurf view large.gsf --mesh-tolerance 0.1nm -o page.html)";
 
 constexpr double heavy_page_bytes = 50e6;
 
 struct Options {
   std::vector<std::string> files;
-  std::optional<std::string> output, title, drape, unit, pixel_size, tolerance, step;
+  std::optional<std::string> output, title, drape;
   std::vector<std::string> scalars;
-  bool override_unit = false, quiet = false;
+  BoundParameters bound;
+  bool quiet = false;
 };
 
-ViewReading make_reading(const Options& o) {
+const std::vector<std::string> reading_names{"specimen.unit", "specimen.override_unit", "scan.height_unit",
+    "scan.height_pitch"};
+
+ViewReading make_reading(const Options& o, const io::SpecimenRequest& given) {
   ViewReading r;
   r.quiet = o.quiet;
-  r.unit = parse_mesh_unit(o.unit, o.override_unit);
-  if (o.pixel_size) {
-    const auto [x, y] = parse_pixel_size(*o.pixel_size, "--pixel-size");
-    r.pitch = {x, y};
-  }
-  if (o.tolerance) {
-    r.tolerance_nm = parse_length_nm(*o.tolerance, "--tolerance");
-    if (!(*r.tolerance_nm > 0))
-      throw UsageError("--tolerance", fmt::format("'{}' is not above 0", *o.tolerance), "Give a length, as 0.1nm");
-  }
-  if (o.step) r.step = static_cast<int>(parse_whole(*o.step, "--step", 1, 1000000));
+  o.bound.apply(static_cast<ViewParameters&>(r));
+  o.bound.apply(r.pitch);
+  r.unit = mesh_unit_of(given);
+  r.heights = given.heights;
   return r;
 }
 
@@ -64,7 +63,8 @@ void add_drape(const FileChannel& input, const ViewReading& reading, io::WebPage
   auto [picture, channel] = read_placed_picture(input, reading.pitch);
   if (std::none_of(page.surfaces.begin(), page.surfaces.end(),
                    [&](const io::WebSurface& surface) { return lies_over(picture.image, surface); }))
-    throw InvalidInput(input.file.string(), fmt::format("the picture, {}, lies over no surface", place_of(picture.image)),
+    throw InvalidInput(input.file.string(), fmt::format("the picture, {}, lies over no "
+                                        "surface", place_of(picture.image)),
                        "Give it without --drape to see it beside them");
   const std::string wanted = channel;
   const auto same = std::find_if(page.images.begin(), page.images.end(), [&](const io::WebImage& image) {
@@ -122,7 +122,9 @@ int work(const Options& o) {
   if (o.files.empty())
     throw UsageError("view", "no file is given", "Name scans, meshes or images to show");
   if (!o.output) throw UsageError("--output", "no output file is given", "Add -o page.html");
-  ViewReading reading = make_reading(o);
+  io::SpecimenRequest given;
+  o.bound.apply(given);
+  ViewReading reading = make_reading(o, given);
   io::check_web_page_target(*o.output);
   std::vector<FileChannel> inputs, scalars;
   for (const std::string& file : o.files) inputs.push_back(parse_file_channel(file));
@@ -158,12 +160,9 @@ int work(const Options& o) {
   for (const FileChannel& input : inputs) read.push_back(input.file.string());
   for (const FileChannel& scalar : scalars) read.push_back(scalar.file.string());
   if (drape) read.push_back(drape->file.string());
-  std::map<std::string, std::string> settings;
-  if (reading.tolerance_nm) settings["tolerance_nm"] = format_exact(*reading.tolerance_nm);
-  if (o.unit) settings["unit"] = *o.unit;
-  if (o.override_unit) settings["override-unit"] = "on";
-  if (reading.step > 1) settings["step"] = std::to_string(reading.step);
-  page.metadata = workflow::step_record("view", settings, {read.begin(), read.end()});
+  page.metadata = workflow::step_record(
+      "view", workflow::records_of(given, reading.pitch, static_cast<const ViewParameters&>(reading)), {read.begin(),
+          read.end()});
 
   const auto summary = io::write_web_page(
       *o.output, page, [&](double part, double total) { bar.show(steps / 2 * (1 + part / total), steps, "files"); },
@@ -172,7 +171,8 @@ int work(const Options& o) {
   if (summary.bytes == 0) return interrupted;
   if (!o.quiet) report(page, summary, *o.output);
   if (double(summary.bytes) > heavy_page_bytes)
-    print_warning(fmt::format("a page of {} opens slowly. --tolerance 0.1nm leaves out what is flat, --step 2 takes "
+    print_warning(fmt::format("a page of {} opens slowly. --mesh-tolerance 0.1nm leaves out what is flat, --every 2 "
+                              "takes "
                               "every second sample",
                               format_bytes(double(summary.bytes))));
   return 0;
@@ -185,19 +185,17 @@ void add_view(CLI::App& app, Action& action) {
   CLI::App* sub = app.add_subcommand("view", "One web page that shows surfaces and images to anybody");
   sub->add_option("FILES", o->files, "Scans, meshes, images; FILE:CHANNEL chooses a channel")->type_name("FILE");
   const char* shown = "Shown";
-  sub->add_option("--title", o->title, "Of the page (the first file's name)")->type_name("TEXT")->group(shown);
+  sub->add_option("--title", o->title, "Title of the page (the first file's name)")->type_name("TEXT")->group(shown);
   sub->add_option("--drape", o->drape, "An image to lay on the surfaces, FILE or FILE:CHANNEL")
       ->type_name("FILE")->group(shown);
   sub->add_option("--scalar", o->scalars, "A map to colour them by, FILE or FILE:CHANNEL; may be repeated")
       ->type_name("FILE")->option_text("FILE")->allow_extra_args(false)->group(shown);
   const char* reading = "Reading";
-  add_unit_options(*sub, o->unit, o->override_unit, reading);
-  sub->add_option("--pixel-size", o->pixel_size, "Of images and scans that do not say, 2nm or 2nmx3nm")
-      ->type_name("LENGTH")->group(reading);
-  const char* size = "Size";
-  sub->add_option("--tolerance", o->tolerance, "Fewer triangles, nowhere farther off than this")
-      ->type_name("LENGTH")->group(size);
-  sub->add_option("--step", o->step, "Every so many-th sample of height fields (1)")->type_name("N")->group(size);
+  o->bound.looks["view.mesh_tolerance"].former = {"--tolerance"};
+  o->bound.looks["view.every"].former = {"--step"};
+  o->bound.add<io::SpecimenRequest>(*sub, reading, {}, reading_names);
+  o->bound.add<GivenPitch>(*sub, reading);
+  o->bound.add<ViewParameters>(*sub, "Size");
   const char* output = "Output";
   sub->add_option("-o,--output", o->output, "The page: .html")->type_name("FILE")->group(output);
   add_quiet_flag(*sub, o->quiet)->group(output);

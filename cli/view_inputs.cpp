@@ -40,22 +40,23 @@ class Adder {
     io::WebSurface surface;
     surface.name = unique_name(page_, name);
     surface.metadata = std::move(metadata);
-    if (reading_.step > 1) {
+    if (reading_.every > 1) {
       const HeightField fine = std::move(field);
-      field = every_sample(fine, reading_.step);
-      note(fmt::format("every {} sample of {} x {}: {} x {} on the page", ordinal(reading_.step), fine.z_nm.width(),
+      field = every_sample(fine, reading_.every);
+      note(fmt::format("every {} sample of {} x {}: {} x {} on the page", ordinal(reading_.every), fine.z_nm.width(),
                        fine.z_nm.height(), field.z_nm.width(), field.z_nm.height()));
       for (io::WebScalar& scalar : scalars) scalar.values = thinned(scalar.values, fine);
-      surface.metadata["view.step"] = std::to_string(reading_.step);
+      surface.metadata["view.every"] = std::to_string(reading_.every);
     }
-    if (reading_.tolerance_nm) {
+    if (reading_.mesh_tolerance_nm) {
       ThinSummary summary;
-      surface.shape = thin_height_field(field, {.tolerance_nm = *reading_.tolerance_nm, .watch = reading_.watch}, summary);
+      surface.shape = thin_height_field(field, {.tolerance_nm = *reading_.mesh_tolerance_nm, .watch = reading_.watch},
+          summary);
       note(fmt::format("{} triangles instead of {}, nowhere more than {} off", summary.triangles_after,
                        summary.triangles_before, format_length(summary.deviation_nm)));
       surface.metadata["view.deviation_nm"] = format_exact(summary.deviation_nm);
       if (!scalars.empty())
-        note("with --tolerance its other channels are left out; --scalar lays one on what remains");
+        note("with --mesh-tolerance its other channels are left out; --scalar lays one on what remains");
     } else {
       surface.shape = std::move(field);
       surface.scalars = std::move(scalars);
@@ -64,8 +65,10 @@ class Adder {
   }
 
   void add_scan() {
-    const io::HeightFieldFile file =
-        io::read_height_field(input_.file, {input_.channel, {}, reading_.pitch.x_nm, reading_.pitch.y_nm});
+    io::HeightReadOptions options = reading_.heights;
+    options.channel = input_.channel;
+    if (!options.pitch_x_nm) options.pitch_x_nm = reading_.pitch.x_nm, options.pitch_y_nm = reading_.pitch.y_nm;
+    const io::HeightFieldFile file = io::read_height_field(input_.file, options);
     for (const std::string& text : file.notes) note(text);
     std::map<std::string, std::string> metadata = file.metadata;
     metadata["file.format"] = file.format;
@@ -81,16 +84,16 @@ class Adder {
       surface.name = unique_name(page_, body.name);
       surface.metadata = scene.metadata;
       surface.metadata["file"] = input_.file.filename().string();
-      if (reading_.tolerance_nm) {
+      if (reading_.mesh_tolerance_nm) {
         SimplifyOptions options;
-        options.tolerance_nm = *reading_.tolerance_nm;
+        options.tolerance_nm = *reading_.mesh_tolerance_nm;
         options.watch = reading_.watch;
         SimplifySummary summary;
         body.mesh = simplify_mesh(merge_equal_vertices(body.mesh), options, summary);
         note(fmt::format("{} triangles instead of {}, at most {} apart", summary.triangles_after,
                          summary.triangles_before, format_length(summary.deviation.largest_nm())));
         if (!body.scalars.empty())
-          note("with --tolerance its scalars are left out; --scalar lays one on what remains");
+          note("with --mesh-tolerance its scalars are left out; --scalar lays one on what remains");
         body.scalars.clear();
         surface.metadata["view.deviation_nm"] = format_exact(summary.deviation.largest_nm());
       } else if (body.scalars.empty()) {
@@ -154,8 +157,8 @@ class Adder {
 
   std::vector<float> thinned(const std::vector<float>& values, const HeightField& fine) const {
     std::vector<float> some;
-    for (int y = 0; y < fine.z_nm.height(); y += reading_.step)
-      for (int x = 0; x < fine.z_nm.width(); x += reading_.step)
+    for (int y = 0; y < fine.z_nm.height(); y += reading_.every)
+      for (int x = 0; x < fine.z_nm.width(); x += reading_.every)
         some.push_back(values[std::size_t(y) * std::size_t(fine.z_nm.width()) + std::size_t(x)]);
     return some;
   }
@@ -167,11 +170,19 @@ class Adder {
 
 }  // namespace
 
+void describe(ParameterVisitor& visit, ViewParameters& p) {
+  visit(p.mesh_tolerance_nm, {.name = "view.mesh_tolerance", .help = "Fewer triangles, nowhere farther off than this",
+                              .unit = Unit::nm, .limits = above(0), .otherwise = "all"});
+  visit(p.every, {.name = "view.every", .help = "Step of the samples of height fields that are shown: 2 is every "
+                                        "second one",
+                  .limits = within(1, 1'000'000)});
+}
+
 HeightField every_sample(const HeightField& field, int step) {
   HeightField some;
   const int width = (field.z_nm.width() - 1) / step + 1, height = (field.z_nm.height() - 1) / step + 1;
   if (width < 2 || height < 2)
-    throw UsageError("--step", fmt::format("every {} samples nothing is left of {} x {}", step, field.z_nm.width(),
+    throw UsageError("--every", fmt::format("every {} samples nothing is left of {} x {}", step, field.z_nm.width(),
                                            field.z_nm.height()),
                      "Give a smaller number");
   some.pitch_x_nm = field.pitch_x_nm * step;

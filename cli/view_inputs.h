@@ -6,16 +6,24 @@
 
 #include "picture_input.h"
 #include "surf/core/progress.h"
+#include "surf/io/height_field_file.h"
 #include "surf/io/mesh_unit.h"
 #include "surf/io/web_page.h"
 
 namespace surf::cli {
 
-struct ViewReading {
+/// How large what is shown may be.
+struct ViewParameters {
+  std::optional<double> mesh_tolerance_nm;   ///< height fields and meshes become fewer triangles within it
+  int every = 1;                             ///< every so many-th sample of height fields
+};
+
+void describe(ParameterVisitor& visit, ViewParameters& parameters);
+
+struct ViewReading : ViewParameters {
   io::MeshUnit unit;
-  GivenPitch pitch;                     ///< of scans and pictures that do not say
-  std::optional<double> tolerance_nm;   ///< height fields and meshes become fewer triangles within it
-  int step = 1;                         ///< every so many-th sample of height fields
+  io::HeightReadOptions heights;        ///< of scans that do not say
+  GivenPitch pitch;                     ///< of pictures that do not say
   bool quiet = false;
   Watch watch;                          ///< of what lasts; is told nothing
 };

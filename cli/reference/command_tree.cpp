@@ -74,7 +74,8 @@ CommandText read(const CLI::App& app, const std::string& parent) {
   for (const CLI::App* sub : app.get_subcommands(nullptr))
     if (!sub->get_group().empty()) command.commands.push_back(read(*sub, command.name));
   command.usage = command.name;
-  const bool has_options = std::ranges::any_of(command.options, [](const OptionGroup& g) { return g.heading != "Input"; });
+  const bool has_options = std::ranges::any_of(command.options,
+      [](const OptionGroup& g) { return g.heading != "Input"; });
   if (has_options) command.usage += " [OPTIONS]";
   for (const OptionGroup& group : command.options)
     for (const OptionText& option : group.options)

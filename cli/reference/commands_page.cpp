@@ -19,11 +19,13 @@ std::string table_of(const OptionGroup& group) {
   std::vector<std::vector<std::string>> rows;
   for (const OptionText& o : group.options)
     rows.push_back({code(o.names + (o.form.empty() || o.names == o.form ? "" : " " + o.form)), cell(o.help)});
-  return fmt::format("**{}**\n\n", group.heading) + table({group.heading == "Input" ? "Input" : "Option", "Meaning"}, rows) + "\n";
+  return fmt::format("**{}**\n\n", group.heading) + table({group.heading == "Input" ? "Input" : "Option", "Meaning"},
+      rows) + "\n";
 }
 
 std::string section(const CommandText& c, int depth) {
-  std::string text = fmt::format("{} {}\n\n{}.\n\n", std::string(static_cast<std::size_t>(depth), '#'), c.name, c.title);
+  std::string text = fmt::format("{} {}\n\n{}.\n\n", std::string(static_cast<std::size_t>(depth), '#'), c.name,
+      c.title);
   text += fmt::format("```sh\n{}\n```\n\n", c.usage);
   if (!c.examples.empty()) text += fmt::format("Examples:\n\n```sh\n{}```\n\n", c.examples);
   for (const OptionGroup& group : c.options) text += table_of(group);

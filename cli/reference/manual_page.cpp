@@ -57,11 +57,15 @@ std::string manual_page() {
   const CommandText program = read_program();
   std::string out = ".\\\" Made by the program: cmake --build build --target reference\n";
   out += fmt::format(".TH SEMSURF 1 \"\" \"semsurf {}\" \"User Commands\"\n.ad l\n.nh\n", workflow::version());
-  out += ".SH NAME\nsemsurf \\- " + plain("scanning electron microscope images of surfaces, and surfaces from AFM and SEM images") + "\n";
+  out += ".SH NAME\nsemsurf \\- " + plain("scanning electron microscope images of surfaces, and surfaces from AFM and "
+                                        "SEM images") + "\n";
   out += ".SH SYNOPSIS\n.B semsurf\n.I COMMAND\n[\\fIOPTIONS\\fR]\n";
-  out += ".SH DESCRIPTION\n" + plain("semsurf simulates SEM images of meshes and height fields by the Monte Carlo method, learns fast "
-         "models of such images, cleans AFM scans and takes the tip off them, and reconstructs the surface that makes an AFM scan "
-         "and an SEM image most likely. Bare lengths are nm, bare energies eV, bare angles degrees; all may carry a unit.") + "\n";
+  out += ".SH DESCRIPTION\n" + plain("semsurf simulates SEM images of meshes and height fields by the Monte Carlo "
+                                     "method, learns fast "
+         "models of such images, cleans AFM scans and takes the tip off them, and reconstructs the surface that makes "
+         "an AFM scan "
+         "and an SEM image most likely. Bare lengths are nm, bare energies eV, bare angles degrees; all may carry a "
+         "unit.") + "\n";
   out += ".SH EXAMPLES\n" + verbatim(program.examples);
   std::string group;
   for (const CommandText& c : program.commands) {
@@ -71,13 +75,17 @@ std::string manual_page() {
   }
   out += ".SH OPTIONS\n.TP\n\\fB\\-h, \\-\\-help\\fR\n" + plain("Help, also after a command") + "\n";
   for (const OptionGroup& options : program.options)
-    for (const OptionText& o : options.options) out += fmt::format(".TP\n\\fB{}\\fR\n{}\n", plain(o.names), plain(o.help));
+    for (const OptionText& o : options.options) out += fmt::format(".TP\n\\fB{}\\fR\n{}\n", plain(o.names),
+        plain(o.help));
   out += ".SH EXIT STATUS\n";
-  for (const ExitCode& e : exit_codes) out += fmt::format(".TP\n.B {}\n{} {}\n", e.code, plain(e.meaning), plain(e.next));
+  for (const ExitCode& e : exit_codes) out += fmt::format(".TP\n.B {}\n{} {}\n", e.code, plain(e.meaning),
+      plain(e.next));
   out += ".SH ENVIRONMENT\n";
   const std::pair<const char*, const char*> variables[] = {
-      {"SEMSURF_CACHE", "Folder of libraries of cascades, or off. Without it $XDG_CACHE_HOME/semsurf, else ~/.cache/semsurf."},
-      {"SEMSURF_MEMORY", "Memory that semsurf takes to be there, as 48GB, or off: nothing is refused for lack of memory."},
+      {"SEMSURF_CACHE", "Folder of libraries of cascades, or off. Without it $XDG_CACHE_HOME/semsurf, else "
+                        "~/.cache/semsurf."},
+      {"SEMSURF_MEMORY", "Memory that semsurf takes to be there, as 48GB, or off: nothing is refused for lack of "
+                         "memory."},
       {"SEMSURF_PYTHON", "The Python that draws charts; it needs Matplotlib."}};
   for (const auto& [name, meaning] : variables) out += fmt::format(".TP\n.B {}\n{}\n", name, plain(meaning));
   out += ".SH SEE ALSO\n" + plain("Scene files, channels and metadata: docs/reference of the sources.") + "\n";

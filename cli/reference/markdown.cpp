@@ -7,7 +7,8 @@
 namespace surf::cli::reference {
 
 std::string page_head(const std::string& title, const std::string& introduction) {
-  return fmt::format("# {}\n\n<!-- Made by the program: cmake --build build --target reference -->\n\n{}\n\n", title, introduction);
+  return fmt::format("# {}\n\n<!-- Made by the program: cmake --build build --target reference "
+                     "-->\n\n{}\n\n", title, introduction);
 }
 
 std::string cell(const std::string& text) {

@@ -35,7 +35,8 @@ const Entries& other_metadata() {
       {"material.N.plasmon_ev", "energy of a plasmon"},
       {"material.N.loss_join_ev", "energy below which the continuous loss falls as E^(5/2)"},
       {"material.N.loss_join_fitted", "whether that energy was fitted to measured yields"},
-      {"material.N.constituents", "its elements: atomic number and weight, share of the weight, mean ionization energy"},
+      {"material.N.constituents", "its elements: atomic number and weight, share of the weight, mean ionization "
+                                  "energy"},
       {"material.N.formula_weight_g_mol", "weight of a formula unit"},
       {"material.N.cutoff_ev", "energy inside it where tracking stopped"},
       {"material.N.estimated.NAME", "rule that a missing number was estimated by"},
@@ -94,7 +95,8 @@ Entries image_channels() {
   return {{"NAME", "a detector's yield: electrons per primary, one channel for each of SE, BSE and `--detector`"},
           {"NAME.stderr", "standard error of that yield"},
           {"NAME.shot", "the yield with the shot noise of the dose, where there is a dose"},
-          {"NAME.variance_left", "share of the scatter that differences and planes leave, of `--channels variance_left`"},
+          {"NAME.variance_left", "share of the scatter that differences and planes leave, of `--channels "
+                                 "variance_left`"},
           {"valid", "1 where the beam met the specimen, else 0"},
           {"z_nm", "height of the point that the beam meets, of `--channels z_nm`"},
           {"normal.x", "x of the surface's normal there, of `--channels normal`"},
@@ -102,7 +104,8 @@ Entries image_channels() {
           {"normal.z", "z of the normal"},
           {"material", "number of the material there, as in `material.N.name`, of `--channels material`"},
           {"electrons", "primaries that a pixel is the mean of, of `--channels electrons`"},
-          {"model", "how a pixel was simulated, of `--channels model`: 0 none, 1 direct, 2 replay, 3 difference, 4 plane"}};
+          {"model", "how a pixel was simulated, of `--channels model`: 0 none, 1 direct, 2 replay, 3 difference, 4 "
+                    "plane"}};
 }
 
 Entries image_metadata() {
@@ -112,7 +115,10 @@ Entries image_metadata() {
   };
   workflow::SimulateJob job;
   for_each_parameter(job, add);
-  std::erase_if(all, [](const NamedEntry& e) { return e.name.starts_with("scan.") || e.name == "simulation.detector"; });
+  // Files hold the scan as it is resolved, and name each detector on its own.
+  std::erase_if(all, [](const NamedEntry& e) {
+    return e.name.starts_with("scan.") || e.name.starts_with("simulation.detector");
+  });
   mc::Scan scan;
   for_each_parameter(scan, add);
   std::ranges::stable_sort(all, {}, [](const NamedEntry& e) { return e.name.substr(0, e.name.find('.')); });
@@ -130,19 +136,24 @@ std::string results_page() {
          "Metadata is text: numbers are written so that they read back exactly, and units are in the key.\n\n"
          "## Channels of simulated images\n\n" + entries("Channel", image_channels()) +
          "\n## Channels of other files\n\n" +
-         entries("Channel", {{"z_nm", "heights: of levelled, cleaned, eroded scans, of tips and of reconstructed surfaces"},
+         entries("Channel", {{"z_nm", "heights: of levelled, cleaned, eroded scans, of tips and of reconstructed "
+                                      "surfaces"},
                              {"valid", "1 where there is a value"},
                              {"certain", "1 where an eroded scan is the surface, else 0"},
                              {"deviation_nm", "standard deviation of a reconstructed height"},
-                             {"held_by", "what holds a reconstructed height: 1 the tip touched it, 2 the SEM image says it, 3 both, 0 its neighbours"},
+                             {"held_by", "what holds a reconstructed height: 1 the tip touched it, 2 the SEM image "
+                                        "says it, 3 both, 0 its neighbours"},
                              {"start_nm", "surface that a reconstruction began with"},
-                             {"simulated_nm, scan_nm", "the scan that the reconstructed surface makes, and the real one"},
+                             {"simulated_nm, scan_nm", "the scan that the reconstructed surface makes, and the real "
+                                        "one"},
                              {"simulated, sem", "the image that the reconstructed surface makes, and the real one"},
                              {"residual", "their difference, in standard deviations of the noise"},
                              {"used", "1 where a pixel counted"}}) +
-         "\n## Metadata\n\nKeys of simulated images; those of other files are among them. What is not given is not there.\n\n" +
+         "\n## Metadata\n\nKeys of simulated images; those of other files are among them. What is not given is not "
+         "there.\n\n" +
          entries("Key", image_metadata()) +
-         "\n## The record of a run\n\n`NAME.run.json` lies beside the first output of `simulate`. It holds what may differ from run to run, "
+         "\n## The record of a run\n\n`NAME.run.json` lies beside the first output of `simulate`. It holds what may "
+         "differ from run to run, "
          "as times, beside what the images hold.\n\n" + entries("Key", sidecar_keys());
 }
 

@@ -69,7 +69,8 @@ std::string described(const std::string& heading) {
   for_each_parameter(request, [&](const Parameter& about, Field& field) {
     if (!about.name.starts_with(heading + ".")) return;
     rows.push_back({code(std::string(about.last_name())), code(form_of(about, field)), unit_word(about.unit),
-                    cell(field.kind() == FieldKind::choice ? "" : format_limits(about)), cell(usual(about, field)), cell(about.help)});
+                    cell(field.kind() == FieldKind::choice ? "" : format_limits(about)), cell(usual(about, field)),
+                        cell(about.help)});
   });
   return table({"Key", "Form", "Unit of bare numbers", "Range", "Where it is missing", "Meaning"}, rows);
 }
@@ -77,7 +78,8 @@ std::string described(const std::string& heading) {
 std::string keys_table(const std::vector<io::SceneKey>& keys) {
   std::vector<std::vector<std::string>> rows;
   for (const io::SceneKey& key : keys)
-    rows.push_back({code(key.name), code(key.form), key.otherwise == "required" ? "**required**" : cell(key.otherwise), cell(key.help)});
+    rows.push_back({code(key.name), code(key.form), key.otherwise == "required" ? "**required**" : cell(key.otherwise),
+        cell(key.help)});
   return table({"Key", "Form", "Where it is missing", "Meaning"}, rows);
 }
 
@@ -93,7 +95,8 @@ std::string title_of(const io::SceneTable& t) {
 
 std::string scene_files_page() {
   std::string text = page_head("Scene files",
-      "A scene file says in [TOML](https://toml.io) what is imaged and how: `semsurf simulate scene.toml -o image.exr`.\n"
+      "A scene file says in [TOML](https://toml.io) what is imaged and how: `semsurf simulate scene.toml -o "
+      "image.exr`.\n"
       "Options of the command line go before what the file says. Names of files are relative to the scene file.\n"
       "Lengths, energies, angles, currents and times are bare numbers (nm, eV, degrees, pA, us) or texts with a unit\n"
       "(`\"1um\"`, `\"5keV\"`, `\"5mrad\"`); points are texts with commas or arrays. Unknown keys are errors.");
@@ -101,7 +104,8 @@ std::string scene_files_page() {
   text += "## Top of the file\n\n" + keys_table(io::top_scene_keys());
   text += "\n## [beam]\n\n```toml\n[beam]\nenergy = \"1keV\"\ntilt = \"40deg\"\n```\n\n" + described("beam");
   text += "\nA dose is `current` and `dwell` together.\n";
-  text += "\n## [scan]\n\nAny two of the three keys say which points the beam visits; with one of them the specimen's extent says the rest.\n\n"
+  text += "\n## [scan]\n\nAny two of the three keys say which points the beam visits; with one of them the specimen's "
+          "extent says the rest.\n\n"
           "```toml\n[scan]\nsize = \"256x192\"\npixel_size = \"2nm\"\n```\n\n" + described("scan");
   text += "\n## [simulation]\n\nOne of `electrons`, `accuracy`, `time` and a dose says how much is simulated.\n\n"
           "```toml\n[simulation]\naccuracy = \"5%\"\nseed = 7\n```\n\n" + described("simulation");

@@ -59,13 +59,13 @@ semsurf_cli_test(mesh.open_warns ARGS mesh open.off -o out.ply STDERR "Try --rep
 semsurf_cli_test(mesh.simplify ARGS mesh "${PROJECT_SOURCE_DIR}/samples/pyramid.stl" --simplify 0.1nm
   -o small.ply STDOUT "simplify +[0-9]+ triangles to [0-9]+" WRITES small.ply)
 semsurf_cli_test(mesh.smooth ARGS mesh cube.off --smooth 3 -o cube.ply -q STDOUT "^$" WRITES cube.ply)
-semsurf_cli_test(mesh.scan ARGS mesh block.gsf --tolerance 0.1nm -o block.glb
+semsurf_cli_test(mesh.scan ARGS mesh block.gsf --mesh-tolerance 0.1nm -o block.glb
   STDOUT "nowhere more than .* \\(proven\\)" "with height, curvature" "scale +1 nm is 1.00 mm" WRITES block.glb
-  INFO block.glb "scalar +curvature, (.|\n)*command +mesh(.|\n)*option.tolerance +0.1nm")
+  INFO block.glb "scalar +curvature, (.|\n)*command +mesh(.|\n)*option.mesh.mesh_tolerance_nm +0.1")
 semsurf_cli_test(mesh.scan_to_count ARGS mesh steps.txt --triangles 100 -o steps.ply
   STDOUT "simplify +[0-9]+ triangles to (99|100)," WRITES steps.ply)
 semsurf_cli_test(mesh.scan_missed ARGS mesh steps.txt --triangles 20 --tolerance 0.001nm -o steps.ply
-  STDERR "more than --tolerance" WRITES steps.ply)
+  STDERR "more than --mesh-tolerance" WRITES steps.ply)
 semsurf_cli_test(mesh.solid ARGS mesh block.gsf --solid --thickness 7nm -o block.stl
   STDOUT "a base 7.00 nm under" "shape +closed" WRITES block.stl INFO block.stl "closed, ")
 semsurf_cli_test(mesh.open_sheet ARGS mesh block.gsf -o block.3mf STDERR "which --solid makes of it" WRITES block.3mf)
@@ -80,7 +80,12 @@ semsurf_cli_test(mesh.true_size ARGS mesh cube.off --true-size --z-exaggeration 
   STDOUT "scale +true size.*5 times larger still" WRITES cube.glb INFO cube.glb "40.0 nm wide, 40.0 nm deep, 40.0 nm high")
 semsurf_cli_test(mesh.magnified ARGS mesh cube.off --magnification 1e3 -o cube.stl
   STDOUT "1 nm is 1.00 um in the file" WRITES cube.stl INFO cube.stl "40.0 nm wide")
-semsurf_cli_test(help.mesh ARGS mesh --help STDOUT "Repair:" "--simplify" "Examples:")
+semsurf_cli_test(mesh.records ARGS mesh steps.txt --height-unit 2nm --height-pitch 3nmx4nm --scale 2 --mesh-tolerance 1pm --plain
+  --out-unit um -o steps.glb WRITES steps.glb INFO steps.glb "option.mesh.mesh_tolerance_nm +0.001\n" "option.mesh.out_unit +1000nm\n"
+  "option.mesh.plain +on\n" "option.mesh.scale +2\n" "option.scan.height_pitch_nm +3x4\n" "option.scan.height_unit_nm +2\n")
+semsurf_cli_test(mesh.former_names ARGS mesh steps.txt --z-unit 2nm --pixel-size 3nm --tolerance 1pm -o steps.glb
+  WRITES steps.glb INFO steps.glb "option.mesh.mesh_tolerance_nm +0.001\n" "option.picture.pixel_size_nm +3x3\n" "option.scan.height_unit_nm +2\n")
+semsurf_cli_test(help.mesh ARGS mesh --help STDOUT "Repair:" "--mesh-tolerance LENGTH" "--height-pitch LENGTH" "Examples:")
 
 semsurf_cli_test(info.scan ARGS info scan.txt
   STDOUT "heights, text matrix" "4 x 4 pixels of 10.0 nm x 15.0 nm" "1 Height +0 to 2, mean 0.4.* nm, 1 hole")
@@ -316,6 +321,10 @@ if(WEB_PACKAGES)
     STDOUT "surface +block 2:" "cube: 12 triangles" "cap: 12 triangles" "image +four.png: .*size not known" WRITES page.html)
   semsurf_cli_test(view.step ARGS view block.gsf --step 2 -o page.html STDERR "note: block.gsf: every second sample of"
     WRITES page.html)
+  semsurf_cli_test(view.every ARGS view block.gsf --every 2 -o page.html STDERR "note: block.gsf: every second sample of"
+    WRITES page.html)
+  semsurf_cli_test(view.mesh_tolerance ARGS view block.gsf --mesh-tolerance 0.1nm --height-pitch 3nm -o page.html
+    STDERR "triangles instead of [0-9]+, nowhere more than" WRITES page.html)
   semsurf_cli_test(view.tolerance ARGS view block.gsf --tolerance 0.1nm -o page.html
     STDERR "triangles instead of [0-9]+, nowhere more than" WRITES page.html)
   semsurf_cli_test(view.scalar_not_on_the_tip ARGS view block.gsf tip.txt --scalar block.gsf -o page.html
@@ -374,7 +383,8 @@ semsurf_cli_test(help.sample ARGS sample --help STDOUT "nist0523-thick" "Example
 semsurf_cli_test(sample.list ARGS sample --list STDOUT "nist0523-thick.*100 nm high" "terrain")
 semsurf_cli_test(sample.small ARGS sample islands --size 24x16 --electrons 1 --cache off -o made
   STDOUT "SEM +24 x 16 pixels of 1 primaries" "truth.json"
-  WRITES made/afm.gsf made/sem.tif made/truth.gsf made/truth_tip.gsf made/truth_sem.exr made/truth.json)
+  WRITES made/afm.gsf made/sem.tif made/truth.gsf made/truth_tip.gsf made/truth_sem.exr made/truth.json
+  INFO made/sem.tif "option.sample.electrons +1\n" "option.sample.name +islands\n" "option.sample.seed +1\n" "option.sample.size +24x16\n")
 semsurf_cli_test(info.sem_image ARGS info fei.tif
   STDOUT "SEM image, Thermo/FEI, Teneo" "4 x 3 pixels of 7.5" "energy +2 keV" "detector +ETD" "Beam.HV +2000"
   STDERR "note: the databar, the lowest 1 rows, is left out")
@@ -388,6 +398,6 @@ semsurf_cli_test(written.tip ARGS tip --shape cone:10nm,15deg --tip-size 5 --hei
 # Units that files state.
 semsurf_cli_test(unit.same ARGS mesh two.gltf --unit m -o a.ply WRITES a.ply)
 semsurf_cli_test(unit.overridden ARGS mesh two.gltf --unit um --override-unit -o a.ply
-  WRITES a.ply INFO a.ply "option.override-unit +on")
+  WRITES a.ply INFO a.ply "option.specimen.override_unit +on")
 semsurf_cli_test(unit.simulated ARGS simulate two.gltf --unit 2m --override-unit ${few} -o a.exr
   WRITES a.exr INFO a.exr "unit_override.1 +two.gltf, 2")

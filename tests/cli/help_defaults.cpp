@@ -14,7 +14,7 @@
 
 #include "bound_parameters.h"
 #include "in_process.h"
-#include "mesh_inputs.h"
+#include "mesh_parameters.h"
 #include "surf/afm/blind_tip.h"
 #include "surf/afm/certainty.h"
 #include "surf/afm/characterizer.h"
@@ -159,7 +159,7 @@ std::vector<Default> defaults() {
       {{"noise counts"}, "--electrons", fmt::format("{}", fmt::join(counts.electrons, ","))},
       {{"noise counts"}, "--trials", double(counts.trials)},
       {{"noise counts"}, "--seed", fmt::format("the scene's, or {}", counts.seed)},
-      {{"mesh"}, "--scale", cli::MeshWork{}.scale},
+      {{"mesh"}, "--scale", cli::MeshParameters{}.scale},
       {{"mesh"}, "--sliver", repair.sliver_nm},
       {{"mesh"}, "--min-component", repair.min_component_nm},
       {{"mesh"}, "--magnification", magnification.factor},
@@ -195,7 +195,7 @@ std::vector<Default> defaults() {
       {{"sample"}, "--electrons", double(sample.electrons)},
       {{"sample"}, "--size", fmt::format("{}x{}", sample.width, sample.height)},
       {{"sample"}, "--seed", double(sample.seed)},
-      {{"view"}, "--step", double(cli::ViewReading{}.step)},
+      {{"view"}, "--every", double(cli::ViewParameters{}.every)},
       {libraries, "--energy", beam.energy_ev},
       {libraries, "--seed", double(mc::CascadeSettings{}.seed)},
   };
@@ -209,7 +209,7 @@ std::vector<Default> others() {
   return {
       {scans, "--height-pitch", "1 nm"},
       {chains, "--afm-pixel-size", "1 nm"},
-      {{"mesh"}, "--pixel-size", "1 nm"},
+      {{"mesh", "view"}, "--height-pitch", "1 nm"},
       {{"train", "predict"}, "--pitch", "1nm"},
       {{"chart"}, "--draws", "10; with --quick 3"},
       {{"noise sem"}, "--block", "16, 12 or 8"},

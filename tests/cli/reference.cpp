@@ -46,7 +46,8 @@ TEST(Reference, IsUpToDate) {
     int line = 0;
     do ++line, std::getline(old, before), std::getline(made, now);
     while (before == now && old && made);
-    ADD_FAILURE() << file << ", line " << line << " is not what the program says. Run: cmake --build build --target reference\n"
+    ADD_FAILURE() << file << ", line " << line << " is not what the program says. Run: cmake --build build --target "
+                                        "reference\n"
                   << "file:    " << before << "\nprogram: " << now;
   }
 }
@@ -110,8 +111,10 @@ TEST(Reference, NamesChannelsAndMetadataOfImages) {
       {"--electrons", "2", "--substrate", "Si", "--channels", "z_nm,normal,material,electrons,model,variance_left"},
       {"--accuracy", "50%", "--method", "replay", "--mesh-tolerance", "1nm", "--unit", "um", "--override-unit"}};
   std::vector<reference::NamedEntry> channels = reference::image_channels();
-  std::erase_if(channels, [](const auto& entry) { return entry.name == "NAME"; });   // any name: detectors are listed here
-  for (const char* detector : {"SE", "BSE", "BSE-right", "BSE-top", "BSE-left", "BSE-bottom"}) channels.push_back({detector, ""});
+  // It would be any name: the detectors are listed here.
+  std::erase_if(channels, [](const auto& entry) { return entry.name == "NAME"; });
+  for (const char* detector : {"SE", "BSE", "BSE-right", "BSE-top", "BSE-left", "BSE-bottom"})
+    channels.push_back({detector, ""});
   const std::vector<reference::NamedEntry> metadata = reference::image_metadata();
   for (const std::vector<std::string>& way : ways) {
     std::vector<std::string> words{"simulate", data / "cube.off", "--size", "4x4", "--cache", "off", "-q", "-o", image};

@@ -191,7 +191,7 @@ void require_memory(const std::string& subject, const TriangleCount& count, cons
                   left_gb < 0.01 ? "less than 0.01 GB is" : fmt::format("{:.2f} GB are", left_gb), there.limit),
       fmt::format("{}{}; SEMSURF_MEMORY=off tries nevertheless",
                   small ? "Make more memory available"
-                        : "Crop the mesh or simplify it where there is more memory (semsurf mesh --tolerance)",
+                        : "Crop the mesh or simplify it where there is more memory (semsurf mesh --mesh-tolerance)",
                   use.processes > 1 ? ", or start one process for each machine" : ""));
 }
 

@@ -16,13 +16,16 @@
 #include "surf/afm/tip_shapes.h"
 #include "surf/core/error.h"
 #include "surf/core/units.h"
+#include "surf/io/cache.h"
 #include "surf/io/files.h"
 #include "surf/io/height_field_file.h"
 #include "surf/io/image_file.h"
 #include "surf/io/sim/materials.h"
 #include "surf/io/tip_file.h"
+#include "surf/mc/scan_request.h"
 #include "surf/mc/simulate.h"
 #include "surf/reconstruction/sample_surfaces.h"
+#include "surf/workflow/step_record.h"
 #include "surf/workflow/version.h"
 
 namespace surf::workflow {
@@ -232,8 +235,7 @@ nlohmann::ordered_json truth_of(const SampleJob& job, const SampleScene& scene, 
 }
 
 std::map<std::string, std::string> provenance_of(const SampleJob& job) {
-  return {{"semsurf.version", version()}, {"command", "sample"}, {"sample", job.name},
-          {"seed", std::to_string(job.seed)}};
+  return step_record("sample", record_of(job), {});
 }
 
 /// All that the simulated image depends on, and the program that makes it.
@@ -287,6 +289,36 @@ void write_all(const SampleJob& job, const SampleScene& scene, const SampleSurfa
 }
 
 }  // namespace
+
+void describe(ParameterVisitor& visit, SampleJob& job) {
+  std::string names;
+  for (const SampleScene& scene : sample_scenes()) names += (names.empty() ? "" : "|") + scene.name;
+  visit(job.name, {.name = "sample.name", .help = "The surface", .form = names});
+  std::string folder = job.folder.string();
+  visit(folder, {.name = "output", .help = "Folder for the files; it is "
+                                        "made", .recorded = false, .file = FileRole::written_folder});
+  job.folder = folder;
+  visit(job.electrons, {.name = "sample.electrons", .help = "Primaries per pixel of the SEM image",
+                        .limits = within(1, double(std::int64_t{1} << 31))});
+  visit.form({.name = "sample.size", .help = "Pixels of the SEM image, the middle of the view", .form = "WxH"},
+             [&] { return fmt::format("{}x{}", job.width, job.height); },
+             [&](std::string_view text, const std::string& subject) {
+               mc::ScanRequest scan;
+               read_parameters(scan, [&](const Parameter& about, Field& field) {
+                 if (about.name == "scan.size") field.read(text, subject);
+               });
+               job.width = *scan.width, job.height = *scan.height;
+             });
+  visit(job.seed, {.name = "sample.seed", .help = "Seed of noise and simulation: the same seed gives the same files"});
+  visit.form({.name = "job.cache", .help = "Folder that libraries of cascades are kept in for other runs, or off",
+              .otherwise = "$SEMSURF_CACHE, ~/.cache/semsurf", .form = "FOLDER|off", .level = Level::advanced,
+                  .recorded = false},
+             [&] { return job.cache.string(); },
+             [&](std::string_view text, const std::string&) { job.cache = io::cache_folder(std::string(text)); });
+  visit(job.threads, {.name = "job.threads", .help = "Number of threads, which does not change the result",
+                      .limits = within(0, 4096), .otherwise = "one per hardware thread", .level = Level::advanced,
+                      .recorded = false});
+}
 
 const std::vector<SampleScene>& sample_scenes() {
   const auto scene = [](const char* name, AffineParts map, double radius_nm, double half_angle_deg) {

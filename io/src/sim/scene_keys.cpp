@@ -15,7 +15,8 @@ Keys operator+(Keys a, const Keys& b) {
 
 const char* const required = "required";
 
-const SceneKey material{"material", "MATERIAL", "Material of the solid: a built-in one, or a [[material]] of the scene", required};
+const SceneKey material{"material", "MATERIAL", "Material of the solid: a built-in one, or a [[material]] of the "
+                                        "scene", required};
 const SceneKey edge{"edge", "mirror|flat|periodic", "Continuation of the height field outside its samples", "mirror"};
 const SceneKey wall_run{"wall_run", "LENGTH", "Horizontal length of a wall; 0 is one sample distance", "0nm"};
 
@@ -38,7 +39,8 @@ Keys sunk(const char* key, const char* what) {
 
 const Keys& placing() {
   static const Keys keys{{"scale", "NUMBER", "Factor of the body's size, about the origin", "1"},
-                         {"rotate_x", "ANGLE", "Turn about the x axis, counter-clockwise seen from its positive end; after scale", "0deg"},
+                         {"rotate_x", "ANGLE", "Turn about the x axis, counter-clockwise seen from its positive end; "
+                                        "after scale", "0deg"},
                          {"rotate_y", "ANGLE", "Turn about the y axis, after the one about x", "0deg"},
                          {"rotate_z", "ANGLE", "Turn about the z axis, after the one about y", "0deg"},
                          {"move", "X,Y,Z", "Shift of the body, after all turns", "0,0,0"}};
@@ -46,7 +48,8 @@ const Keys& placing() {
 }
 
 Keys body(const char* shape) {
-  return {{"shape", shape, "Kind of body", required}, material, {"name", "TEXT", "Name in records and messages", "the shape"}};
+  return {{"shape", shape, "Kind of body", required}, material, {"name", "TEXT", "Name in records and messages",
+      "the shape"}};
 }
 
 std::vector<SceneTable> make_tables() {
@@ -63,14 +66,17 @@ std::vector<SceneTable> make_tables() {
        "[height_field]\nfile = \"scan.txt\"\nmaterial = \"Si\"\npixel_size = \"2nm\"\nedge = \"mirror\"\n"},
       {"height_field", "mesa", "A square, flat-topped hill on a plane.",
        field("mesa") + raised("Height above the plane", "Width of the flat top"),
-       "[height_field]\nshape = \"mesa\"\nmaterial = \"Si\"\nheight = \"200nm\"\ntop_width = \"80nm\"\nwall_run = \"20nm\"\n"},
+       "[height_field]\nshape = \"mesa\"\nmaterial = \"Si\"\nheight = \"200nm\"\ntop_width = \"80nm\"\nwall_run = "
+       "\"20nm\"\n"},
       {"height_field", "line", "A line along y on a plane.",
        field("line") + raised("Height above the plane", "Width of the flat top"),
        "[height_field]\nshape = \"line\"\nmaterial = \"Si\"\nheight = \"50nm\"\ntop_width = \"30nm\"\n"},
       {"height_field", "grating", "Equal lines along y, one of them in the middle.",
-       field("grating") + Keys{{"period", "LENGTH", "Distance of neighbouring lines, above their width at the foot", required}} +
+       field("grating") + Keys{{"period", "LENGTH", "Distance of neighbouring lines, above their width at the "
+                                        "foot", required}} +
            raised("Height of the lines", "Width of their flat tops"),
-       "[height_field]\nshape = \"grating\"\nmaterial = \"Si\"\nheight = \"50nm\"\nperiod = \"100nm\"\ntop_width = \"30nm\"\n"},
+       "[height_field]\nshape = \"grating\"\nmaterial = \"Si\"\nheight = \"50nm\"\nperiod = \"100nm\"\ntop_width = "
+       "\"30nm\"\n"},
       {"height_field", "step", "A step along y: low on the left, high on the right.",
        field("step") + Keys{{"height", "LENGTH", "Height of the step", required}, wall_run},
        "[height_field]\nshape = \"step\"\nmaterial = \"Si\"\nheight = \"20nm\"\n"},
@@ -83,13 +89,16 @@ std::vector<SceneTable> make_tables() {
       {"height_field", "rough", "A random rough surface that repeats without a seam.",
        field("rough") + Keys{{"rms", "LENGTH", "Root mean square of the heights", required},
                              {"correlation", "LENGTH", "Correlation length", required},
-                             {"hurst", "NUMBER", "Hurst exponent of a self-affine surface, above 0 to 1", "a Gaussian correlation"},
+                             {"hurst", "NUMBER", "Hurst exponent of a self-affine surface, above 0 to "
+                                        "1", "a Gaussian correlation"},
                              {"seed", "N", "Seed of the random numbers: the same seed gives the same surface", "1"}},
-       "[height_field]\nshape = \"rough\"\nmaterial = \"Si\"\nrms = \"10nm\"\ncorrelation = \"25nm\"\nedge = \"periodic\"\n"},
+       "[height_field]\nshape = \"rough\"\nmaterial = \"Si\"\nrms = \"10nm\"\ncorrelation = \"25nm\"\nedge = "
+       "\"periodic\"\n"},
       {"body", "file", "One body or several from a mesh file.",
        Keys{{"mesh", "FILE", "STL, OBJ, PLY, OFF, glTF, 3MF, VTP or VTM, relative to the scene file", required},
             material,
-            {"materials", "TABLE", "Materials of the file's parts by the names that the file gives them", "`material` for all"},
+            {"materials", "TABLE", "Materials of the file's parts by the names that the file gives "
+                                   "them", "`material` for all"},
             {"name", "TEXT", "Name in records and messages", "the file's"},
             {"unit", "nm|um|mm|m|pm|A|in", "Length of one unit of the file", "as it says, else nm; glTF: m"},
             {"override_unit", "true|false", "Take `unit` even where the file says another", "false"}} + placing(),
@@ -102,7 +111,8 @@ std::vector<SceneTable> make_tables() {
       {"body", "sphere", "A sphere of flat triangles.",
        body("sphere") + Keys{{"radius", "LENGTH", "Radius", required},
                              {"center", "X,Y,Z", "Centre", "0,0,0"},
-                             {"subdivisions", "N", "Times that an icosahedron's triangles are split, 0 to 9", "4"}} + placing(),
+                             {"subdivisions", "N", "Times that an icosahedron's triangles are split, 0 to "
+                                        "9", "4"}} + placing(),
        "[[body]]\nshape = \"sphere\"\nmaterial = \"Au\"\nradius = \"40nm\"\ncenter = \"0,0,39.5\"\n"},
       {"body", "cone", "A cone on its base, whole or cut off at the top.",
        body("cone") + Keys{{"bottom_radius", "LENGTH", "Radius of the base", required},
@@ -110,7 +120,8 @@ std::vector<SceneTable> make_tables() {
                            {"height", "LENGTH", "Height", required},
                            {"base", "X,Y,Z", "Centre of the base", "0,0,0"},
                            {"segments", "N", "Flat sides, 3 to 100000", "64"}} + placing(),
-       "[[body]]\nshape = \"cone\"\nmaterial = \"Si\"\nbottom_radius = \"50nm\"\ntop_radius = \"20nm\"\nheight = \"80nm\"\n"},
+       "[[body]]\nshape = \"cone\"\nmaterial = \"Si\"\nbottom_radius = \"50nm\"\ntop_radius = \"20nm\"\nheight = "
+       "\"80nm\"\n"},
       {"material", "", "A material of your own. It goes before a built-in one of the same name.",
        {{"name", "TEXT", "Name that solids call it by", required},
         {"density_g_cm3", "NUMBER", "Density in g/cm3", required},

@@ -8,6 +8,7 @@
 
 #include "surf/afm/noise.h"
 #include "surf/core/affine.h"
+#include "surf/core/parameters.h"
 #include "surf/core/progress.h"
 #include "surf/workflow/simulate_job.h"
 
@@ -50,6 +51,9 @@ struct SampleJob {
   std::filesystem::path cache;         ///< where libraries of cascades are kept; empty: nowhere
   CheckpointOptions checkpoint;        ///< of the SEM image; without a file of its own beside sem.tif
 };
+
+/// All but `checkpoint` and `cascades`.
+void describe(ParameterVisitor& visit, SampleJob& job);
 
 struct SampleSummary {
   bool complete = true;                ///< false when cancelled: no image is written
