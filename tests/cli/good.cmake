@@ -323,31 +323,41 @@ endif()
 semsurf_cli_test(help.view ARGS view --help STDOUT "--drape" "--scalar" "Examples:")
 
 # A model on two small surfaces, and what is made of it.
-set(small_model --pixel-size 3nm --surfaces 2 --surface-size 16 --electrons 2 --model secant)
+set(small_model --pixel-size 3nm --surfaces 2 --surface-size 16 --electrons 2 --kind secant)
 semsurf_cli_test(help.train ARGS train --help STDOUT "What the model is for:" "Kinds of models" "Examples:")
 semsurf_cli_test(help.predict ARGS predict --help STDOUT "--model FILE.json" "Examples:")
 semsurf_cli_test(train.own_surfaces ARGS train --material Si --energy 1keV ${small_model} -o si.json
   STDOUT "for +Si, 1 keV, pixels of 3.00 nm" "2 simulated, 0 there before, in si.training" "all learnt from .* %"
-  WRITES si.json si.training/blocks.exr INFO si.json "command +semsurf train --material Si --energy 1keV")
+  WRITES si.json si.training/blocks.exr INFO si.json "command +semsurf train --material Si --surfaces 2 --surface-size 16 --pixel-size 3nm --kind secant")
 semsurf_cli_test(train.hold_out ARGS train ${small_model} --hold-out 1 -o si.json
   STDOUT "island .held out." "all held out" STDERR "no --material is given: Si" WRITES si.json
   INFO si.json "1 surface, 256 pixels. 1 held out")
-semsurf_cli_test(train.network ARGS train --pixel-size 3nm --surfaces 2 --surface-size 16 --electrons 2 --hidden 3,2 --iterations 9 --decay 1e-3 --tolerance 5% -o si.json
+semsurf_cli_test(train.network ARGS train --pixel-size 3nm --surfaces 2 --surface-size 16 --electrons 2 --hidden 3,2 --iterations 9 --decay 1e-3 --model-error 5% -o si.json
   STDOUT "facet network, [0-9]+ neighbourhoods of 5 to [0-9]+ samples, sky in 6 bands to 169 nm, 3 and 2 hidden units, [0-9]+ numbers"
   WRITES si.json INFO si.json "cost +[0-9]")
-semsurf_cli_test(train.slope_table ARGS train --pixel-size 3nm --model slope-table-two-planes --table-electrons 50 -o si.json
+semsurf_cli_test(train.slope_table ARGS train --pixel-size 3nm --kind slope-table-two-planes --table-electrons 50 -o si.json
   STDOUT "slope, a table in steps of 5 degrees. gives SE and BSE" WRITES si.json INFO si.json "50 at each angle")
-semsurf_cli_test(train.slope_table_judged ARGS train --pixel-size 3nm --model slope-table --table-electrons 50 --surfaces 2 --surface-size 16 --electrons 2 -o si.json
+semsurf_cli_test(train.slope_table_judged ARGS train --pixel-size 3nm --kind slope-table --table-electrons 50 --surfaces 2 --surface-size 16 --electrons 2 -o si.json
   STDOUT "2 simulated, 0 there before" "blocks .held out." "all held out" WRITES si.json INFO si.json "no images. 2 held out")
-semsurf_cli_test(train.stopping_points ARGS train --pixel-size 3nm --model stopping-points --table-electrons 50 -o si.json
+semsurf_cli_test(train.stopping_points ARGS train --pixel-size 3nm --kind stopping-points --table-electrons 50 -o si.json
   STDOUT "stopping points, 48 rings of" WRITES si.json INFO si.json "table.flat_se")
-semsurf_cli_test(train.diffusion_matrix ARGS train --pixel-size 3nm --model diffusion-matrix --table-electrons 50 -q -o si.json
+semsurf_cli_test(train.diffusion_matrix ARGS train --pixel-size 3nm --kind diffusion-matrix --table-electrons 50 -q -o si.json
   STDOUT "^$" WRITES si.json INFO si.json "diffusion matrix, 48 rings of")
-semsurf_cli_test(train.heights ARGS train block.gsf --electrons 2 --model ikeuchi-secant -q -o block.json
+semsurf_cli_test(train.record ARGS train --pixel-size 3nm --surfaces 2 --surface-size 16 --electrons 2 --kind filter-bank --least-eigenvalue 10% --seed 7 -q -o si.json
+  STDOUT "^$" WRITES si.json
+  INFO si.json "command +semsurf train --material Si --surfaces 2 --surface-size 16 --pixel-size 3nm --kind filter-bank --least-eigenvalue 10% --electrons 2 --seed 7"
+  "option.simulation.seed +7" "option.training.least_eigenvalue +0.1" "option.training.surface_size +16" "option.beam.energy_ev +1000")
+semsurf_cli_test(train.former_kind ARGS train --pixel-size 3nm --surfaces 2 --surface-size 16 --electrons 2 --model filter-bank --cut-off 10% -q -o si.json
+  STDOUT "^$" WRITES si.json INFO si.json "option.training.kind +filter-bank" "option.training.least_eigenvalue +0.1")
+semsurf_cli_test(train.former_tolerance ARGS train --pixel-size 3nm --surfaces 2 --surface-size 16 --electrons 2 --hidden 3 --iterations 2 --tolerance 5% -q -o si.json
+  STDOUT "^$" WRITES si.json INFO si.json "option.training.model_error +0.05")
+semsurf_cli_test(train.former_scan ARGS train four.txt --pitch 3nm --z-unit 2nm --signal four.png --model secant -q -o four.json
+  STDOUT "^$" WRITES four.json INFO four.json "option.scan.height_pitch_nm +3" "option.scan.height_unit_nm +2")
+semsurf_cli_test(train.heights ARGS train block.gsf --electrons 2 --kind ikeuchi-secant -q -o block.json
   STDOUT "^$" WRITES block.json block.training/block.exr INFO block.json "gives SE and BSE")
-semsurf_cli_test(train.signal ARGS train four.txt --pitch 3nm --signal four.png --model secant -o four.json
+semsurf_cli_test(train.signal ARGS train four.txt --height-pitch 3nm --signal four.png --kind secant -o four.json
   STDOUT "gives signal" WRITES four.json)
-semsurf_cli_test(train.interrupted EXIT 130 INTERRUPT ARGS train --pixel-size 3nm --electrons 100000 --model secant -o si.json
+semsurf_cli_test(train.interrupted EXIT 130 INTERRUPT ARGS train --pixel-size 3nm --electrons 100000 --kind secant -o si.json
   STDERR "stopped: there is no model yet.*same command goes on")
 semsurf_cli_test(predict.scan ARGS predict steps.txt --pitch 3nm --model secant.json --material Si --energy 1keV -o image.exr -o image.png
   STDOUT "model +slope. gives SE and BSE" "image +[0-9]+ x [0-9]+ pixels of 3.00 nm" "SE +[0-9.]+ to"

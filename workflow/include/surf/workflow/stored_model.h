@@ -25,8 +25,8 @@ struct ModelRequest {
   std::filesystem::path folder;    ///< where models are kept, as cache_folder() / "models"; created where missing
   LearnOptions learn;              ///< of a training
   std::optional<int> surfaces;     ///< as in TrainJob, as are the next two
-  int surface_px = 64;
-  std::int64_t electrons = 150;
+  int surface_px = TrainJob{}.surface_px;
+  std::int64_t electrons = mc::electrons_of(training_simulation().budget);
   int threads = 0;
 };
 
