@@ -284,8 +284,11 @@ semsurf_cli_test(certainty.doubted_tip EXIT 4 ARGS certainty steps.txt --tip dou
   STDOUT "certain +.* % of the surface, by the .* % of the scan that this tip can have made"
   STDERR "doubted_tip.txt: it says that this tip is not to be trusted" "cannot have been made by this tip.*so little of the scan is not to be trusted"
   WRITES map.tif)
-semsurf_cli_test(register.doubted_tip EXIT 4 ARGS register steps.txt steps_of_grey.tif --sem-pixel-size 3nm --afm-pixel-size 3nm
-  --no-level --afm-noise 0.5,0.01 --tip doubted_tip.txt --model secant.json
+semsurf_cli_test(register.doubted_tip EXIT 4 ARGS register --afm steps.txt --sem steps_of_grey.tif --pixel-size 3nm --height-pitch 3nm
+  --level-method none --height-noise 0.1nm,0.5 --tip doubted_tip.txt --model secant.json
+  STDERR "tip: it says that this tip is not to be trusted: it is flat")
+semsurf_cli_test(register.former_names EXIT 4 ARGS register steps.txt steps_of_grey.tif --sem-pixel-size 3nm --afm-pixel-size 3nm
+  --afm-channel 1 --afm-z-unit 1nm --no-level --afm-noise 0.5,0.01 --tip doubted_tip.txt --model secant.json
   STDERR "tip: it says that this tip is not to be trusted: it is flat")
 semsurf_cli_test(tip.blind ARGS tip steps.txt --size 5 --threshold 0.1nm --apex-tolerance 0.1nm -o tip.gsf
   STDOUT "tip +5 x 5 samples" WRITES tip.gsf INFO tip.gsf "option.tip.answer +blind" "option.tip.apex_tolerance_nm +0.1" "option.tip.maxima +off")
@@ -372,10 +375,16 @@ semsurf_cli_test(info.model ARGS info secant.json STDOUT "image model" "for +Si,
 semsurf_cli_test(help.register ARGS register --help STDOUT "AFM scan" "Registration:" "ambiguous" "Examples:")
 semsurf_cli_test(help.reconstruct ARGS reconstruct --help
   STDOUT "Inputs:" "SEM image:" "Registration:" "Reconstruction:" "Output:" "Exit code 4" "Examples:")
-semsurf_cli_test(reconstruct.afm_only ARGS reconstruct --afm steps.txt --afm-pixel-size 3nm --no-level --tip tip.txt
-  --afm-noise 0.5,0.01 --no-picture --threads 1 -o result/ EXIT 4
+semsurf_cli_test(reconstruct.afm_only ARGS reconstruct --afm steps.txt --height-pitch 3nm --level-method none --tip tip.txt
+  --height-noise 0.1nm,0.5 --no-picture --threads 1 -o result/ EXIT 4
   STDOUT "-log L AFM" "held by +AFM" "written +result/surface.vti"
-  WRITES result/surface.vti result/surface.gsf result/surface.glb result/simulated_afm.vti result/tip.txt result/history.csv result/report.json)
+  WRITES result/surface.vti result/surface.gsf result/surface.glb result/simulated_afm.vti result/tip.txt result/history.csv result/report.json
+  INFO result/surface.vti "option.level.method +none" "option.scan.height_pitch_nm +3" "option.scan.height_noise_nm +0.1,0.5"
+  "option.reconstruction.probes +6" "option.reconstruction.optimiser +gauss-newton" "tip +[0-9]+ x [0-9]+ samples, sha256")
+semsurf_cli_test(reconstruct.former_names ARGS reconstruct --afm steps.txt --afm-pixel-size 3nm --no-level --tip tip.txt
+  --afm-noise 0.5,0.0075 --method lbfgs --tolerance 0.5 --no-picture --threads 1 -q -o result EXIT 4
+  WRITES result/surface.gsf INFO result/surface.gsf "option.reconstruction.optimiser +lbfgs"
+  "option.reconstruction.optimiser_tolerance +0.5" "option.scan.height_noise_nm +0.1,0.5")
 
 semsurf_cli_test(help.sample ARGS sample --help STDOUT "nist0523-thick" "Examples:" "truth")
 semsurf_cli_test(sample.list ARGS sample --list STDOUT "nist0523-thick.*100 nm high" "terrain")

@@ -221,7 +221,7 @@ std::vector<Default> others() {
   const std::vector<std::string> chains{"register", "reconstruct"}, libraries{"library build", "library plot"};
   return {
       {scans, "--height-pitch", "1 nm"},
-      {chains, "--afm-pixel-size", "1 nm"},
+      {chains, "--height-pitch", "1 nm"},
       {{"mesh"}, "--pixel-size", "1 nm"},
       {{"train"}, "--height-pitch", "1 nm"},
       {{"predict"}, "--pitch", "1nm"},

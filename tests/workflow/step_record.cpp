@@ -13,6 +13,7 @@
 #include "surf/workflow/level_job.h"
 #include "surf/workflow/morphology_job.h"
 #include "surf/workflow/noise_job.h"
+#include "surf/workflow/reconstruct_job.h"
 #include "surf/workflow/tip_job.h"
 #include "surf/workflow/train_job.h"
 #include "surf/workflow/version.h"
@@ -37,6 +38,15 @@ TEST(StepRecord, EveryParameterThatIsChangedIsInTheRecord) {
 TEST(StepRecord, EveryParameterOfTrainingIsInTheRecord) {
   test::every_change_is_recorded<LearnOptions>(
       {{"training.kind", "secant"}, {"training.scales", "5,7"}, {"training.hidden", "24,12"}});
+}
+
+TEST(StepRecord, EveryParameterOfReconstructionIsInTheRecord) {
+  test::every_change_is_recorded<ReconstructionOptions>({{"reconstruction.scales", "16,8,4"}});
+  test::every_change_is_recorded<AfmPreparationOptions>({{"scan.height_noise", "0.5nm,0.5"}});
+  test::every_change_is_recorded<AfmInput>(
+      {{"scan.height_noise", "0.5nm,0.5"}, {"scan.height_unit", "2.5um"}, {"scan.height_pitch", "2nmx3nm"}});
+  test::every_change_is_recorded<SemInput>({{"scan.pixel_size", "2nmx3nm"}});
+  test::every_change_is_recorded<PoseOptions>({{"registration.transform", "1,0,60,0,1,45"}});
 }
 
 TEST(StepRecord, TheCommandOfATrainingSaysWhatDiffers) {

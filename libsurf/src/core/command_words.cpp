@@ -24,12 +24,13 @@ std::string shown(const Parameter& about, const Field& field) {
 
 }  // namespace
 
-void add_command_words(const Parameter& about, const Field& field, const std::string& usual,
+void add_command_words(const Parameter& about, const Field& field, const std::string& usual, const OptionNames& names,
                        std::vector<std::string>& words) {
   if (!about.recorded || !field.given() || field.text() == usual) return;
   std::string option(about.last_name());
   std::ranges::replace(option, '_', '-');
-  words.push_back("--" + option);
+  const auto other = names.find(about.name);
+  words.push_back(other != names.end() ? other->second : "--" + option);
   if (field.kind() != FieldKind::flag) words.push_back(shown(about, field));
 }
 

@@ -29,6 +29,8 @@ struct ModelRequest {
   std::int64_t electrons = mc::electrons_of(training_simulation().budget);
   int threads = 0;
 };
+/// reconstruction.model, beam.energy, beam.spot and job.cache; not the material.
+void describe(ParameterVisitor& visit, ModelRequest& request);
 
 struct StoredModel {
   TrainedModel trained;
