@@ -88,18 +88,18 @@ void explain(const workflow::ReconstructSummary& s, const workflow::ReconstructJ
                            "--accept-registration", (job.folder / "registration.png").string()));
 }
 
-int work(const ReconstructOptions& o, const std::string& command_line) {
+int work(const ChainOptions& o, const std::string& command_line) {
   workflow::ReconstructJob job = make_reconstruct_job(o);
   job.command_line = command_line;
   workflow::ReconstructSummary s;
   try {
-    const JobReporter reporter(o.chain.quiet);
+    const JobReporter reporter(o.quiet);
     s = workflow::run(job, reporter);
   } catch (const Interrupted&) {
     print_note("stopped: there is no result yet. The same command goes on from what is done");
     return exit_interrupted;
   }
-  if (!o.chain.quiet) print_summary(s, job);
+  if (!o.quiet) print_summary(s, job);
   explain(s, job);
   return s.verdict == ReconstructionVerdict::sound ? 0 : exit_untrustworthy;
 }
@@ -107,7 +107,7 @@ int work(const ReconstructOptions& o, const std::string& command_line) {
 }  // namespace
 
 void add_reconstruct(CLI::App& app, Action& action, const std::string& command_line) {
-  const auto o = std::make_shared<ReconstructOptions>();
+  const auto o = std::make_shared<ChainOptions>();
   CLI::App* sub = app.add_subcommand("reconstruct", "The surface that makes an AFM scan and an SEM image most likely");
   add_reconstruct_options(*sub, *o);
   sub->callback([o, &action, command_line] { action = [o, command_line] { return work(*o, command_line); }; });

@@ -116,8 +116,9 @@ const OptionNames* option_called(const std::vector<OptionNames>& options, const 
 // `beam.tilt=30deg` is --tilt 30deg where the command has that option, and with a letter it is -o image.exr.
 FieldWord options_for_fields(const CLI::App& app) {
   return [&app, options = options_of(app)](std::string_view field, std::string_view value) {
-    const std::string own = option_of(app, field);   // "--level-method" of level.method
-    const OptionNames* option = option_called(options, own.starts_with("--") ? own.substr(2) : last_part(field, '-'));
+    const std::string bound = option_of(app, field);   // "--level-method" of level.method, whatever --method is
+    const OptionNames* option = bound.starts_with("--") ? option_called(options, bound.substr(2)) : nullptr;
+    if (!option) option = option_called(options, last_part(field, '-'));
     const std::string setting = value.empty() ? "" : " " + std::string(value);
     if (!option) return last_part(field, ' ') + setting;
     return (value.empty() || option->letter.empty() ? "--" + option->name : "-" + option->letter) + setting;
@@ -228,6 +229,9 @@ int parse_and_act(const std::vector<std::string>& arguments) {
   } catch (const CLI::ParseError& error) {
     return report_parse_error(app, error);
   }
+  struct Words {
+    ~Words() { call_fields(nullptr); }   // they know the command by reference
+  } words_of_command;
   call_fields(options_for_fields(parsed_app(app)));
   if (!action) {
     fmt::print(messages(), "{}", app.help());

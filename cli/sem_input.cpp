@@ -5,24 +5,15 @@
 
 #include <utility>
 
-#include "options.h"
-#include "surf/core/error.h"
-#include "surf/io/sem_file.h"
 #include "terminal.h"
 
 namespace surf::cli {
 
-PlacedImage read_sem_input(const SemInputText& input, bool quiet) {
-  io::SemReadOptions options;
-  options.channel = input.channel.value_or("");
-  if (input.pixel_size) {
-    const auto [x, y] = parse_pixel_size(*input.pixel_size, "--sem-pixel-size");
-    options.pixel_x_nm = x, options.pixel_y_nm = y;
-  }
-  io::SemFile file = io::read_sem_image(input.file, options);
+PlacedImage read_sem_input(const std::string& file, const io::SemReadOptions& options, bool quiet) {
+  io::SemFile read = io::read_sem_image(file, options);
   if (!quiet)
-    for (const std::string& note : file.notes) print_note(fmt::format("{}: {}", input.file, note));
-  return std::move(file.image);
+    for (const std::string& note : read.notes) print_note(fmt::format("{}: {}", file, note));
+  return std::move(read.image);
 }
 
 }  // namespace surf::cli

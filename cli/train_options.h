@@ -2,24 +2,24 @@
 #pragma once
 
 #include <CLI/App.hpp>
-#include <optional>
 #include <string>
 #include <vector>
 
+#include "bound_parameters.h"
 #include "surf/workflow/train_job.h"
 
 namespace surf::cli {
 
-/// Everything `train` is told, as text; absent: not given.
-struct TrainOptions {
+/// The files that a training reads, and the name of its material.
+struct TrainFiles {
   std::vector<std::string> heights, images, signals, materials;
-  std::optional<std::string> height_channel, z_unit, pitch, edge;
-  std::optional<std::string> material, energy, spot, pixel_size, physics, cutoff;
-  std::optional<std::string> surfaces, surface_size, hold_out, fine;
-  std::optional<std::string> electrons, accuracy, seed, threads, cache;
-  std::optional<std::string> model, scales, cut_off, hidden, iterations, decay, tolerance;
-  std::optional<std::string> table_electrons, output;
-  bool multi_resolution = false, quiet = false;
+  std::string material;
+};
+void describe(ParameterVisitor& visit, TrainFiles& files);
+
+struct TrainOptions {
+  BoundParameters bound;
+  bool quiet = false;
 };
 
 void add_train_options(CLI::App& app, TrainOptions& options);

@@ -36,6 +36,22 @@ void describe(ParameterVisitor& visit, HeightReadOptions& o) {
              });
 }
 
+void describe(ParameterVisitor& visit, SemReadOptions& o) {
+  visit(o.channel, {.name = "scan.sem_channel", .help = "Channel of the SEM image, by name", .otherwise = "the first",
+                    .form = "NAME"});
+  visit.form({.name = "scan.pixel_size", .help = "Width and height of the SEM image's pixels, as 2nm or 2nmx3nm",
+              .unit = Unit::nm, .otherwise = "from the microscope's metadata", .form = "LENGTH"},
+             [&o] {
+               if (!o.pixel_x_nm) return std::string();
+               const double y = o.pixel_y_nm.value_or(*o.pixel_x_nm);
+               return format_exact(*o.pixel_x_nm) + (y == *o.pixel_x_nm ? "" : "x" + format_exact(y));
+             },
+             [&o](std::string_view text, const std::string& subject) {
+               const auto [x, y] = parse_pitch_nm(text, subject);
+               o.pixel_x_nm = x, o.pixel_y_nm = y;
+             });
+}
+
 std::pair<double, double> parse_pitch_nm(std::string_view text, std::string_view subject) {
   return parse_two_lengths_nm(text, subject);
 }

@@ -12,7 +12,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <iterator>
 #include <limits>
 #include <memory>
@@ -24,7 +23,6 @@
 #include "labels.h"
 #include "pipeline.h"
 #include "surf/core/error.h"
-#include "surf/core/units.h"
 #include "surf/io/sim/materials.h"
 #include "training.h"
 #include "upstream.h"
@@ -36,7 +34,6 @@ using pv::need_within;
 
 namespace {
 
-constexpr const char* edges[] = {"mirror", "flat", "periodic"};
 // In the order of the XML's entries.
 constexpr const char* kinds[] = {"facet-network", "filter-bank", "slope-table", "slope-table-two-planes",
                                  "stopping-points", "diffusion-matrix", "secant", "ikeuchi-exponential",
@@ -112,19 +109,16 @@ void vtkSemsurfTrain::AddModel(workflow::TrainJob& job) const {
   learn.kind = kinds[this->Model];
   learn.scales = scales_of(this->Scales);
   learn.multi_resolution = this->MultiResolution;
-  if (this->CutOff >= 0) learn.cut_off = this->CutOff;
+  if (this->CutOff >= 0) learn.least_eigenvalue = this->CutOff;
   // One 0 is a network without hidden layers.
   if (!this->Hidden.empty()) learn.hidden = this->Hidden == std::vector{0} ? std::vector<int>() : this->Hidden;
-  for (const int units : learn.hidden.value_or(std::vector<int>())) need_within(units, 1, 256, "Hidden");
-  need(this->Hidden.size() <= 3, "Hidden", fmt::format("{} hidden layers are too many", this->Hidden.size()),
-       "Give 1 to 3, or one 0 for none");
   for (const auto& [value, label] : {std::pair{this->Decay, "Decay"}, {this->Tolerance, "Tolerance"}, {this->CutOff, "Cut Off"}})
-    pv::need_number(value, label);
-  need_within(this->Iterations, 0, 100000, "Iterations");
+    pv::need_number(value, label);   // below 0 they are not given
+  need_within(this->Iterations, 0, std::numeric_limits<int>::max(), "Iterations");
   need_within(this->TableElectrons, 0, std::numeric_limits<int>::max(), "Table Electrons");
   if (this->Iterations > 0) learn.iterations = this->Iterations;
   if (this->Decay >= 0) learn.decay = this->Decay;
-  if (this->Tolerance >= 0) learn.tolerance = this->Tolerance;
+  if (this->Tolerance >= 0) learn.model_error = this->Tolerance;
   if (this->TableElectrons > 0) learn.table_electrons = this->TableElectrons;
 }
 
@@ -152,39 +146,6 @@ void vtkSemsurfTrain::AddInputs(vtkInformationVector** inputs, workflow::TrainJo
   job.pixel_nm = first.pitch_x_nm;
 }
 
-/// As a command line says it that gives the same file.
-std::string vtkSemsurfTrain::Command(const workflow::TrainJob& job) const {
-  std::string text = "semsurf train";
-  const auto add = [&text](const char* option, const std::string& value) { text += fmt::format(" {} {}", option, value); };
-  const workflow::LearnOptions& learn = job.learn;
-  for (const workflow::TrainingInput& input : job.inputs) text += " " + input.name;
-  for (const workflow::TrainingInput& input : job.inputs)
-    if (input.pixels) add(job.signal.empty() ? "--images" : "--signal", input.name);
-  if (!this->MaterialFile.empty()) add("--materials", std::filesystem::path(this->MaterialFile).filename().string());
-  add("--material", this->Material);
-  add("--energy", format_exact(job.energy_ev) + "eV");
-  if (job.spot_nm > 0) add("--spot", format_exact(job.spot_nm) + "nm");
-  add("--pixel-size", format_exact(job.pixel_nm) + "nm");
-  add("--model", learn.kind);
-  if (!this->Scales.empty()) add("--scales", fmt::format("{}", fmt::join(this->Scales, ",")));
-  if (learn.cut_off) add("--cut-off", format_exact(*learn.cut_off));
-  if (learn.hidden) add("--hidden", fmt::format("{}", fmt::join(this->Hidden, ",")));
-  if (learn.iterations) add("--iterations", std::to_string(*learn.iterations));
-  if (learn.decay) add("--decay", format_exact(*learn.decay));
-  if (learn.tolerance) add("--tolerance", format_exact(*learn.tolerance));
-  if (learn.table_electrons) add("--table-electrons", std::to_string(*learn.table_electrons));
-  if (job.surfaces) add("--surfaces", std::to_string(*job.surfaces));
-  if (job.inputs.empty() && job.surface_px != 64) add("--surface-size", std::to_string(job.surface_px));
-  if (job.held_out > 0) add("--hold-out", std::to_string(job.held_out));
-  if (job.fine > 0) add("--fine", std::to_string(job.fine));
-  if (this->Edge > 0) add("--edge", edges[this->Edge]);
-  if (const double accuracy = mc::accuracy_of(job.simulation.budget); accuracy > 0) add("--accuracy", format_exact(accuracy));
-  else if (mc::electrons_of(job.simulation.budget) != 150) add("--electrons", std::to_string(mc::electrons_of(job.simulation.budget)));
-  if (!this->Physics.empty()) add("--physics", this->Physics);
-  if (job.simulation.seed != 1) add("--seed", std::to_string(job.simulation.seed));
-  return text + (learn.multi_resolution ? " --multi-resolution" : "");
-}
-
 workflow::TrainJob vtkSemsurfTrain::Job(vtkInformationVector** inputs) {
   need(!this->ModelFile.empty(), "Model File", "no file is named for the model", "Name one that ends in .json");
   need_within(this->Edge, 0, 2, "Edge");
@@ -195,10 +156,7 @@ workflow::TrainJob vtkSemsurfTrain::Job(vtkInformationVector** inputs) {
   need(this->Budget == 0 || (this->Accuracy >= 1e-4 && this->Accuracy <= 1), "Accuracy",
        fmt::format("{} is not in 0.0001 to 1", this->Accuracy), "Give 0.03 for 3 %");
   pv::need_length(this->PixelSize, "Pixel Size");
-  need_within(this->Surfaces, 0, 1000, "Surfaces");
-  need_within(this->SurfaceSize, 16, 4096, "Surface Size");
-  need_within(this->HoldOut, 0, 1000, "Hold Out");
-  need_within(this->Fine, 0, 8, "Fine");
+  need_within(this->Surfaces, 0, std::numeric_limits<int>::max(), "Surfaces");
   workflow::TrainJob job;
   job.output = this->ModelFile;
   need(job.output.extension() == ".json", "Model File", fmt::format("{} does not end in .json", this->ModelFile),
@@ -219,15 +177,13 @@ workflow::TrainJob vtkSemsurfTrain::Job(vtkInformationVector** inputs) {
   std::vector<std::string> notes;
   if (!this->MaterialFile.empty()) materials.read(this->MaterialFile, notes);
   job.material = materials.find(this->Material, "Material");
+  if (!this->MaterialFile.empty()) job.material_files = {this->MaterialFile};
   job.energy_ev = this->Energy;
   job.spot_nm = this->Spot;
-  need(job.energy_ev >= mc::min_beam_energy_ev && job.energy_ev <= mc::max_beam_energy_ev, "Energy",
-       fmt::format("{} eV are not in 100 to 30000", job.energy_ev), "Give 1000 for 1 keV");
-  pv::need_length(job.spot_nm, "Spot");
   if (!this->Physics.empty()) mc::parse_physics(this->Physics, job.physics);
   this->AddInputs(inputs, job);
   need(job.pixel_nm > 0, "Pixel Size", "it is 0, and there is no surface to take it from", "Give 3 where in doubt");
-  job.command_line = this->Command(job);
+  check_parameters(job);
   return job;
 }
 

@@ -66,7 +66,6 @@ class VTKSEMSURF_EXPORT vtkSemsurfTrain : public vtkTableAlgorithm {
   surf::workflow::TrainJob Job(vtkInformationVector** inputs);
   void AddInputs(vtkInformationVector** inputs, surf::workflow::TrainJob& job);
   void AddModel(surf::workflow::TrainJob& job) const;
-  std::string Command(const surf::workflow::TrainJob& job) const;
 
   std::string ModelFile, Signal, Material = "Si", MaterialFile, Physics;
   std::vector<int> Scales, Hidden;

@@ -292,8 +292,11 @@ semsurf_cli_test(certainty.doubted_tip EXIT 4 ARGS certainty steps.txt --tip dou
   STDOUT "certain +.* % of the surface, by the .* % of the scan that this tip can have made"
   STDERR "doubted_tip.txt: it says that this tip is not to be trusted" "cannot have been made by this tip.*so little of the scan is not to be trusted"
   WRITES map.tif)
-semsurf_cli_test(register.doubted_tip EXIT 4 ARGS register steps.txt steps_of_grey.tif --sem-pixel-size 3nm --afm-pixel-size 3nm
-  --no-level --afm-noise 0.5,0.01 --tip doubted_tip.txt --model secant.json
+semsurf_cli_test(register.doubted_tip EXIT 4 ARGS register --afm steps.txt --sem steps_of_grey.tif --pixel-size 3nm --height-pitch 3nm
+  --level-method none --height-noise 0.1nm,0.5 --tip doubted_tip.txt --model secant.json
+  STDERR "tip: it says that this tip is not to be trusted: it is flat")
+semsurf_cli_test(register.former_names EXIT 4 ARGS register steps.txt steps_of_grey.tif --sem-pixel-size 3nm --afm-pixel-size 3nm
+  --afm-channel 1 --afm-z-unit 1nm --no-level --afm-noise 0.5,0.01 --tip doubted_tip.txt --model secant.json
   STDERR "tip: it says that this tip is not to be trusted: it is flat")
 semsurf_cli_test(tip.blind ARGS tip steps.txt --size 5 --threshold 0.1nm --apex-tolerance 0.1nm -o tip.gsf
   STDOUT "tip +5 x 5 samples" WRITES tip.gsf INFO tip.gsf "option.tip.answer +blind" "option.tip.apex_tolerance_nm +0.1" "option.tip.maxima +off")
@@ -335,31 +338,41 @@ endif()
 semsurf_cli_test(help.view ARGS view --help STDOUT "--drape" "--scalar" "Examples:")
 
 # A model on two small surfaces, and what is made of it.
-set(small_model --pixel-size 3nm --surfaces 2 --surface-size 16 --electrons 2 --model secant)
+set(small_model --pixel-size 3nm --surfaces 2 --surface-size 16 --electrons 2 --kind secant)
 semsurf_cli_test(help.train ARGS train --help STDOUT "What the model is for:" "Kinds of models" "Examples:")
 semsurf_cli_test(help.predict ARGS predict --help STDOUT "--model FILE.json" "Examples:")
 semsurf_cli_test(train.own_surfaces ARGS train --material Si --energy 1keV ${small_model} -o si.json
   STDOUT "for +Si, 1 keV, pixels of 3.00 nm" "2 simulated, 0 there before, in si.training" "all learnt from .* %"
-  WRITES si.json si.training/blocks.exr INFO si.json "command +semsurf train --material Si --energy 1keV")
+  WRITES si.json si.training/blocks.exr INFO si.json "command +semsurf train --material Si --surfaces 2 --surface-size 16 --pixel-size 3nm --kind secant")
 semsurf_cli_test(train.hold_out ARGS train ${small_model} --hold-out 1 -o si.json
   STDOUT "island .held out." "all held out" STDERR "no --material is given: Si" WRITES si.json
   INFO si.json "1 surface, 256 pixels. 1 held out")
-semsurf_cli_test(train.network ARGS train --pixel-size 3nm --surfaces 2 --surface-size 16 --electrons 2 --hidden 3,2 --iterations 9 --decay 1e-3 --tolerance 5% -o si.json
+semsurf_cli_test(train.network ARGS train --pixel-size 3nm --surfaces 2 --surface-size 16 --electrons 2 --hidden 3,2 --iterations 9 --decay 1e-3 --model-error 5% -o si.json
   STDOUT "facet network, [0-9]+ neighbourhoods of 5 to [0-9]+ samples, sky in 6 bands to 169 nm, 3 and 2 hidden units, [0-9]+ numbers"
   WRITES si.json INFO si.json "cost +[0-9]")
-semsurf_cli_test(train.slope_table ARGS train --pixel-size 3nm --model slope-table-two-planes --table-electrons 50 -o si.json
+semsurf_cli_test(train.slope_table ARGS train --pixel-size 3nm --kind slope-table-two-planes --table-electrons 50 -o si.json
   STDOUT "slope, a table in steps of 5 degrees. gives SE and BSE" WRITES si.json INFO si.json "50 at each angle")
-semsurf_cli_test(train.slope_table_judged ARGS train --pixel-size 3nm --model slope-table --table-electrons 50 --surfaces 2 --surface-size 16 --electrons 2 -o si.json
+semsurf_cli_test(train.slope_table_judged ARGS train --pixel-size 3nm --kind slope-table --table-electrons 50 --surfaces 2 --surface-size 16 --electrons 2 -o si.json
   STDOUT "2 simulated, 0 there before" "blocks .held out." "all held out" WRITES si.json INFO si.json "no images. 2 held out")
-semsurf_cli_test(train.stopping_points ARGS train --pixel-size 3nm --model stopping-points --table-electrons 50 -o si.json
+semsurf_cli_test(train.stopping_points ARGS train --pixel-size 3nm --kind stopping-points --table-electrons 50 -o si.json
   STDOUT "stopping points, 48 rings of" WRITES si.json INFO si.json "table.flat_se")
-semsurf_cli_test(train.diffusion_matrix ARGS train --pixel-size 3nm --model diffusion-matrix --table-electrons 50 -q -o si.json
+semsurf_cli_test(train.diffusion_matrix ARGS train --pixel-size 3nm --kind diffusion-matrix --table-electrons 50 -q -o si.json
   STDOUT "^$" WRITES si.json INFO si.json "diffusion matrix, 48 rings of")
-semsurf_cli_test(train.heights ARGS train block.gsf --electrons 2 --model ikeuchi-secant -q -o block.json
+semsurf_cli_test(train.record ARGS train --pixel-size 3nm --surfaces 2 --surface-size 16 --electrons 2 --kind filter-bank --least-eigenvalue 10% --seed 7 -q -o si.json
+  STDOUT "^$" WRITES si.json
+  INFO si.json "command +semsurf train --material Si --surfaces 2 --surface-size 16 --pixel-size 3nm --kind filter-bank --least-eigenvalue 10% --electrons 2 --seed 7"
+  "option.simulation.seed +7" "option.training.least_eigenvalue +0.1" "option.training.surface_size +16" "option.beam.energy_ev +1000")
+semsurf_cli_test(train.former_kind ARGS train --pixel-size 3nm --surfaces 2 --surface-size 16 --electrons 2 --model filter-bank --cut-off 10% -q -o si.json
+  STDOUT "^$" WRITES si.json INFO si.json "option.training.kind +filter-bank" "option.training.least_eigenvalue +0.1")
+semsurf_cli_test(train.former_tolerance ARGS train --pixel-size 3nm --surfaces 2 --surface-size 16 --electrons 2 --hidden 3 --iterations 2 --tolerance 5% -q -o si.json
+  STDOUT "^$" WRITES si.json INFO si.json "option.training.model_error +0.05")
+semsurf_cli_test(train.former_scan ARGS train four.txt --pitch 3nm --z-unit 2nm --signal four.png --model secant -q -o four.json
+  STDOUT "^$" WRITES four.json INFO four.json "option.scan.height_pitch_nm +3" "option.scan.height_unit_nm +2")
+semsurf_cli_test(train.heights ARGS train block.gsf --electrons 2 --kind ikeuchi-secant -q -o block.json
   STDOUT "^$" WRITES block.json block.training/block.exr INFO block.json "gives SE and BSE")
-semsurf_cli_test(train.signal ARGS train four.txt --pitch 3nm --signal four.png --model secant -o four.json
+semsurf_cli_test(train.signal ARGS train four.txt --height-pitch 3nm --signal four.png --kind secant -o four.json
   STDOUT "gives signal" WRITES four.json)
-semsurf_cli_test(train.interrupted EXIT 130 INTERRUPT ARGS train --pixel-size 3nm --electrons 100000 --model secant -o si.json
+semsurf_cli_test(train.interrupted EXIT 130 INTERRUPT ARGS train --pixel-size 3nm --electrons 100000 --kind secant -o si.json
   STDERR "stopped: there is no model yet.*same command goes on")
 semsurf_cli_test(predict.scan ARGS predict steps.txt --pitch 3nm --model secant.json --material Si --energy 1keV -o image.exr -o image.png
   STDOUT "model +slope. gives SE and BSE" "image +[0-9]+ x [0-9]+ pixels of 3.00 nm" "SE +[0-9.]+ to"
@@ -374,10 +387,16 @@ semsurf_cli_test(info.model ARGS info secant.json STDOUT "image model" "for +Si,
 semsurf_cli_test(help.register ARGS register --help STDOUT "AFM scan" "Registration:" "ambiguous" "Examples:")
 semsurf_cli_test(help.reconstruct ARGS reconstruct --help
   STDOUT "Inputs:" "SEM image:" "Registration:" "Reconstruction:" "Output:" "Exit code 4" "Examples:")
-semsurf_cli_test(reconstruct.afm_only ARGS reconstruct --afm steps.txt --afm-pixel-size 3nm --no-level --tip tip.txt
-  --afm-noise 0.5,0.01 --no-picture --threads 1 -o result/ EXIT 4
+semsurf_cli_test(reconstruct.afm_only ARGS reconstruct --afm steps.txt --height-pitch 3nm --level-method none --tip tip.txt
+  --height-noise 0.1nm,0.5 --no-picture --threads 1 -o result/ EXIT 4
   STDOUT "-log L AFM" "held by +AFM" "written +result/surface.vti"
-  WRITES result/surface.vti result/surface.gsf result/surface.glb result/simulated_afm.vti result/tip.txt result/history.csv result/report.json)
+  WRITES result/surface.vti result/surface.gsf result/surface.glb result/simulated_afm.vti result/tip.txt result/history.csv result/report.json
+  INFO result/surface.vti "option.level.method +none" "option.scan.height_pitch_nm +3" "option.scan.height_noise_nm +0.1,0.5"
+  "option.reconstruction.probes +6" "option.reconstruction.optimiser +gauss-newton" "tip +[0-9]+ x [0-9]+ samples, sha256")
+semsurf_cli_test(reconstruct.former_names ARGS reconstruct --afm steps.txt --afm-pixel-size 3nm --no-level --tip tip.txt
+  --afm-noise 0.5,0.0075 --method lbfgs --tolerance 0.5 --no-picture --threads 1 -q -o result EXIT 4
+  WRITES result/surface.gsf INFO result/surface.gsf "option.reconstruction.optimiser +lbfgs"
+  "option.reconstruction.optimiser_tolerance +0.5" "option.scan.height_noise_nm +0.1,0.5")
 
 semsurf_cli_test(help.sample ARGS sample --help STDOUT "nist0523-thick" "Examples:" "truth")
 semsurf_cli_test(sample.list ARGS sample --list STDOUT "nist0523-thick.*100 nm high" "terrain")

@@ -183,7 +183,7 @@ def same_files(folder, alone, but=()):
         expect(found[name] == data, name, "has other bytes in", folder)
 
 
-TRAINING = ["train", "--material", "Si", "--energy", "500eV", "--pixel-size", "3nm", "--model", "secant", "--threads", "1"]
+TRAINING = ["train", "--material", "Si", "--energy", "500eV", "--pixel-size", "3nm", "--kind", "secant", "--threads", "1"]
 
 
 def trainings(folder):
@@ -202,7 +202,7 @@ def trainings(folder):
         expect(all(r["whole_runs"] > 0 for r in tallies), "somebody had nothing to do:", tallies)
     code, out, err = run(folder / "3", 2, [*words, "-o", "m.json"])
     expect(code == 0 and "0 simulated, 4 there before" in out, out, err)
-    for bad, code, text in ((["--surfaces", "2", "--hold-out", "2"], 2, "--hold-out"), (["--model", "none"], 2, "--model"),
+    for bad, code, text in ((["--surfaces", "2", "--hold-out", "2"], 2, "--hold-out"), (["--kind", "none"], 2, "--kind"),
                             (["none.gsf"], 3, "none.gsf")):
         ended, _, err = run(folder, 2, [*TRAINING, *bad, "-o", "bad.json"])
         expect(ended == code and err.count("semsurf: error") == 1 and text in err, bad, "ended with", ended, err)

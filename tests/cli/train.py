@@ -11,7 +11,7 @@ import time
 
 PROGRAM = pathlib.Path(sys.argv[1]).resolve()
 JOB = [PROGRAM, "train", "--material", "Si", "--pixel-size", "3nm", "--surfaces", "3", "--surface-size", "24",
-       "--electrons", "40", "--model", "secant", "--threads", "1"]
+       "--electrons", "40", "--kind", "secant", "--threads", "1"]
 os.environ["SEMSURF_CACHE"] = "off"
 
 

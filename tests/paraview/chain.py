@@ -42,7 +42,7 @@ def tip():
     return simple.AFMTipReader(FileName=str(FOLDER / "tip.txt"))
 
 
-CHAIN = ["--afm-pixel-size", "3nm", "--sem-pixel-size", "3nm", "--level-method", "none", "--tip", "tip.txt", "--model", MODEL]
+CHAIN = ["--height-pitch", "3nm", "--pixel-size", "3nm", "--level-method", "none", "--tip", "tip.txt", "--model", MODEL]
 
 
 def registration_equals_the_command():

@@ -26,16 +26,16 @@ def of(table, quantity):
 
 def files_equal_the_command():
     """To the last byte, the command it is made by included."""
-    common = "train --material Si --energy 1000eV --pixel-size 3nm --model"
+    common = "train --material Si --energy 1000eV --pixel-size 3nm --kind"
     for number, (properties, options) in enumerate([
             (SMALL | {"HoldOut": 1}, "secant --surfaces 2 --surface-size 16 --hold-out 1 --electrons 2"),
             ({"Model": "facet-network", "Surfaces": 2, "SurfaceSize": 16, "Electrons": 2, "Scales": [5, 7], "Hidden": [3, 2],
               "Iterations": 9, "Decay": 1e-3, "Tolerance": 0.05, "Edge": "Flat", "Seed": 4},
-             "facet-network --scales 5,7 --hidden 3,2 --iterations 9 --decay 0.001 --tolerance 0.05 --surfaces 2 "
+             "facet-network --scales 5,7 --hidden 3,2 --iterations 9 --decay 0.001 --model-error 0.05 --surfaces 2 "
              "--surface-size 16 --edge flat --electrons 2 --seed 4"),
             ({"Model": "filter-bank", "Surfaces": 2, "SurfaceSize": 16, "Electrons": 2, "Scales": [5], "MultiResolution": 1,
               "CutOff": 0},
-             "filter-bank --scales 5 --cut-off 0 --surfaces 2 --surface-size 16 --electrons 2 --multi-resolution"),
+             "filter-bank --scales 5 --least-eigenvalue 0 --surfaces 2 --surface-size 16 --electrons 2 --multi-resolution"),
             ({"Model": "slope-table", "TableElectrons": 50}, "slope-table --table-electrons 50")]):
         errors = quiet(train := own(f"ours{number}.json", **properties))
         semsurf(*common.split(), *options.split(), "-q", "-o", f"theirs{number}.json")
@@ -58,7 +58,7 @@ def surfaces_are_learnt_and_predicted_with():
     expect(column(table, "surface") == ["surface-1", "surface-2", "all learnt from", "all held out"],
            f"rows: {column(table, 'surface')}")
     expect(list(column(table, "held_out")) == [0, 1, 0, 1], "the last is held out")
-    semsurf("train", DATA / "block.gsf", "--model", "ikeuchi-secant", "--electrons", 2, "-q", "-o", "theirs.json")
+    semsurf("train", DATA / "block.gsf", "--kind", "ikeuchi-secant", "--electrons", 2, "-q", "-o", "theirs.json")
     train.Input, train.HoldOut = [scan()], 0
     expect(quiet(train).GetNumberOfRows() == 2, "one input less")
     same(model("heights.json")["parameters"]["channels"][0]["flat_yield"],
@@ -108,8 +108,8 @@ def wrong_properties_are_refused():
     refuses(own("a.json", **SMALL | {"HoldOut": 2}), "Hold Out", "leave none to learn on")
     refuses(own("a.json", **SMALL | {"Hidden": [4]}), "Hidden", "a model 'secant' has none", "add Model facet-network")
     refuses(own("a.json", Model="facet-network", Scales=[6]), "Scales", "Choose among 5, 7")
-    refuses(own("a.json", Model="facet-network", Hidden=[4, 0]), "Hidden", "0 is not in 1 to 256")
-    refuses(own("a.json", Energy=50), "Energy", "100 to 30000")
+    refuses(own("a.json", Model="facet-network", Hidden=[4, 0]), "Hidden", "0 is out of range")
+    refuses(own("a.json", Energy=50), "Energy", "100eV to 30keV")
     refuses(own("a.json", Material="Unobtainium"), "Material", "Unobtainium")
     refuses(own("a.json", Model="stopping-points", Spot=2), "Spot", "knows of no spot")
     two = {"ModelFile": str(FOLDER / "a.json"), "Model": "secant", "Electrons": 2}

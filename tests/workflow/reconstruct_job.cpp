@@ -30,6 +30,7 @@
 namespace surf::workflow {
 namespace {
 
+using testing::AllOf;
 using testing::Contains;
 using testing::ElementsAre;
 using testing::HasSubstr;
@@ -170,7 +171,7 @@ TEST_F(ReconstructJobTest, AFittedTipIsWrittenAndFoundAgain) {
   EXPECT_EQ(tip["profile_step_nm"], pitch);
   EXPECT_EQ(tip["profile_nm"][3], round_profile_nm(first, 0.5)[3]);
   EXPECT_EQ(tip["profile_at_the_end_nm"][3], round_profile_nm(last, 0.5)[3]);
-  EXPECT_THAT(report("result")["repeat"].get<std::string>(), HasSubstr("first_tip.txt --refine-tip"));
+  EXPECT_THAT(report("result")["repeat"].get<std::string>(), AllOf(HasSubstr("first_tip.txt "), HasSubstr(" --refine-tip ")));
   // As the report says it is repeated: begun with the first tip.
   ReconstructJob again = job_;
   again.afm->preparation.tip = first;
@@ -195,7 +196,7 @@ TEST_F(ReconstructJobTest, AKeptTipIsWrittenOnce) {
   EXPECT_FALSE(std::filesystem::exists(job_.folder / "first_tip.txt"));
   EXPECT_EQ(report("result")["afm"]["tip"]["fitted"], false);
   EXPECT_FALSE(report("result")["afm"]["tip"].contains("profile_at_the_end_nm"));
-  EXPECT_THAT(report("result")["repeat"].get<std::string>(), HasSubstr("/tip.txt --keep-tip"));
+  EXPECT_THAT(report("result")["repeat"].get<std::string>(), AllOf(HasSubstr("/tip.txt "), HasSubstr(" --keep-tip ")));
 }
 
 TEST_F(ReconstructJobTest, DoesNotGoOnWithAnotherJob) {
@@ -206,7 +207,7 @@ TEST_F(ReconstructJobTest, DoesNotGoOnWithAnotherJob) {
   Reporter listener;
   listener.on_note = [&](const std::string& note) { said += note + "\n"; };
   EXPECT_FALSE(run(job_, listener).resumed);
-  EXPECT_THAT(said, HasSubstr("tolerance 0 there and 0.002 here"));
+  EXPECT_THAT(said, HasSubstr("optimiser_tolerance"));
 }
 
 TEST_F(ReconstructJobTest, AnyOtherInputBeginsAnew) {

@@ -18,7 +18,6 @@ inline TrainJob small_training(const std::filesystem::path& output) {
   job.simulation.threads = 1;
   job.learn.kind = "secant";
   job.output = output;
-  job.command_line = "semsurf train";
   return job;
 }
 

@@ -56,7 +56,7 @@ TEST_F(TrainEveryKind, FromSurfacesOrTablesToAFileToAnImage) {
     EXPECT_EQ(summary.images_made, kind.needs_images ? 2 : 0);
     EXPECT_EQ(fs::exists(path(kind.name + ".training")), kind.needs_images);
     EXPECT_EQ(summary.model.record.notes.at("model"), kind.name);
-    EXPECT_EQ(summary.model.record.notes.at("seed"), "1");
+    EXPECT_EQ(summary.model.record.notes.at("option.simulation.seed"), "1");
     EXPECT_EQ(summary.model.record.residuals.size(), kind.needs_images ? 2u : 0u);
     predict.model = path(kind.name + ".json");
     predict.outputs = {path(kind.name + ".exr")};
@@ -161,11 +161,11 @@ TEST_F(TrainEveryKind, RefusesWhatDoesNotConcernAKind) {
   expect("filter-bank", "`training.iterations`: a model 'filter-bank' has none",
          [](TrainJob& j) { j.learn.iterations = 4; });
   expect("filter-bank", "`training.decay`", [](TrainJob& j) { j.learn.decay = 0; });
-  expect("slope-table", "`training.tolerance`", [](TrainJob& j) { j.learn.tolerance = 0; });
-  expect("secant", "add `training.model=slope-table`", [](TrainJob& j) { j.learn.table_electrons = 100; });
-  expect("facet-network", "add `training.model=filter-bank`", [](TrainJob& j) { j.learn.cut_off = 0; });
-  expect("facet-network", "hidden units is 0", [](TrainJob& j) { j.learn.hidden = {0}; });
-  expect("facet-network", "tolerance is 2", [](TrainJob& j) { j.learn.tolerance = 2; });
+  expect("slope-table", "`training.model_error`", [](TrainJob& j) { j.learn.model_error = 0; });
+  expect("secant", "add `training.kind=slope-table`", [](TrainJob& j) { j.learn.table_electrons = 100; });
+  expect("facet-network", "add `training.kind=filter-bank`", [](TrainJob& j) { j.learn.least_eigenvalue = 0; });
+  expect("facet-network", "`training.hidden`: 0 is out of range", [](TrainJob& j) { j.learn.hidden = {0}; });
+  expect("facet-network", "tolerance is 2", [](TrainJob& j) { j.learn.model_error = 2; });
   expect("slope-table", "`training.hold_out`", [](TrainJob& j) { j.surfaces = 2, j.held_out = 1; });
   expect("slope-table", "`training.table_electrons`: 1", [](TrainJob& j) { j.learn.table_electrons = 1; });
   expect("diffusion-matrix", "semsurf calibrate", [](TrainJob& j) { j.signal = "SE"; });

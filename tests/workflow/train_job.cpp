@@ -68,7 +68,7 @@ TEST_F(TrainJobTest, MakesItsImagesAndAModelThatSaysWhereItIsFrom) {
   EXPECT_EQ(record.held_out_residuals.size(), 2u);
   EXPECT_GT(record.range.slope_deg_max, 45);
   EXPECT_EQ(record.notes.at("model"), "secant");
-  EXPECT_EQ(record.notes.at("seed"), "1");
+  EXPECT_EQ(record.notes.at("option.simulation.seed"), "1");
   // Pixel on sample: what the simulator saw there is the surface.
   const Image image = io::read_image(path("si.training") / "blocks.exr");
   ASSERT_NE(image.find("z_nm"), nullptr);
@@ -150,6 +150,7 @@ TEST_F(TrainJobTest, LearnsFromGivenImages) {
 
 TEST_F(TrainJobTest, LearnsTheSameFromAnImageAsFromItsFile) {
   TrainJob job = own_training(path("si.json"), 3);
+  job.inputs[0].name = "image.exr";   // the record names the image
   write_image_of(job.inputs[0].field, path("image.exr"), {"SE", "BSE"});
   job.inputs[0].image = path("image.exr");
   train(job);
@@ -161,7 +162,7 @@ TEST_F(TrainJobTest, LearnsTheSameFromAnImageAsFromItsFile) {
   Image narrow = *job.inputs[0].pixels;
   for (Channel& channel : narrow.channels) channel.values = Grid<float>(9, 16);
   job.inputs[0].pixels = std::make_shared<Image>(narrow);
-  EXPECT_THAT([&] { train(job); }, testing::ThrowsMessage<InvalidInput>(HasSubstr("the image of scan: it has 9 x 16")));
+  EXPECT_THAT([&] { train(job); }, testing::ThrowsMessage<InvalidInput>(HasSubstr("the image of image: it has 9 x 16")));
 }
 
 TEST_F(TrainJobTest, LearnsFromTheOneSignalOfAMicroscope) {
@@ -193,7 +194,7 @@ TEST_F(TrainJobTest, RefusesWhatCannotBeLearntBeforeTimeIsSpent) {
     EXPECT_THAT([&] { train(job); }, testing::ThrowsMessage<Error>(HasSubstr(words)));
   };
   expect("there is no kind 'neural'. Choose one of facet-network, filter-bank", [](TrainJob& j) { j.learn.kind = "neural"; });
-  expect("training.cut_off", [](TrainJob& j) { j.learn.cut_off = 0.1; });
+  expect("training.least_eigenvalue", [](TrainJob& j) { j.learn.least_eigenvalue = 0.1; });
   expect("leave none to learn on", [](TrainJob& j) { j.held_out = 1; });
   expect("training.pixel_size", [](TrainJob& j) { j.pixel_nm = 0; });
   expect("there is no image of", [](TrainJob& j) { j.signal = "SE"; });

@@ -67,7 +67,7 @@ bool is_ground(const SubstrateNoise& found) {
 
 void find_noise(PreparedAfm& prepared, const AfmPreparationOptions& o) {
   if (o.noise) {
-    validate(*o.noise, "`reconstruction.afm_noise`");
+    validate(*o.noise, "`scan.height_noise`");
     prepared.noise = *o.noise;
     return;
   }
@@ -80,7 +80,7 @@ void find_noise(PreparedAfm& prepared, const AfmPreparationOptions& o) {
   prepared.noise_estimate = estimate;
   if (!(prepared.noise.innovation_nm2 > 0))
     throw InvalidInput("AFM scan", "it has no noise that could be estimated: it may be simulated or filtered",
-                       "Say `reconstruction.afm_noise=ALPHA,INNOVATION`, as 0.8,0.2nm2");
+                       "Say `scan.height_noise=SIGMA,ALPHA`, as 0.5nm,0.8");
   prepared.notes.push_back(fmt::format("noise of {}: {} rms, alpha {:.3f}", clear ? "the substrate" : "the differences",
                                        format_length(estimate.sigma_nm()), estimate.noise.alpha));
   if (!clear) tell_noise_doubts(prepared.noise, estimate.alpha_at_limit, prepared.image, keeping(prepared, {}));
@@ -190,7 +190,7 @@ PreparedAfm prepare_afm(const HeightField& scan, const AfmPreparationOptions& o)
     throw UsageError("`reconstruction.tip_size`", fmt::format("{} samples, but the scan has {} x {}", o.tip_size, scan.z_nm.width(),
                                                scan.z_nm.height()), fmt::format("Give {} at most", shorter - (shorter % 2 == 0)));
   if (!(height_range({&scan, 1}).span_nm() > 0))
-    throw InvalidInput("AFM scan", "all its heights are the same", "Choose the channel of heights with `reconstruction.afm_channel`");
+    throw InvalidInput("AFM scan", "all its heights are the same", "Choose the channel of heights with `scan.height_channel`");
   PreparedAfm prepared;
   level_scan(prepared, scan, o);
   find_noise(prepared, o);

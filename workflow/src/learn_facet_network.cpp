@@ -17,7 +17,7 @@ FacetNetworkFitOptions options_of(const TrainJob& job) {
   if (o.hidden) options.hidden = *o.hidden;
   if (o.iterations) options.iterations = *o.iterations;
   if (o.decay) options.decay = *o.decay;
-  if (o.tolerance) options.tolerance = *o.tolerance;
+  if (o.model_error) options.tolerance = *o.model_error;
   options.seed = job.simulation.seed;
   options.threads = job.simulation.threads;
   return options;
@@ -35,7 +35,7 @@ Learnt learn(const Lesson& lesson) {
           {{"electron_range", fmt::format("{:.4g} nm", options.range_nm)},
            {"iterations", std::to_string(fit.iterations)},
            {"decay", format_exact(options.decay)},
-           {"tolerance", format_exact(options.tolerance)},
+           {"model_error", format_exact(options.tolerance)},
            {"cost", fmt::format("{:.4g}", fit.cost)}}};
 }
 
@@ -43,7 +43,7 @@ Learnt learn(const Lesson& lesson) {
 
 const Learner facet_network_learner{"facet-network",
                                     "a small network on what the filter bank sees and on the sky in view",
-                                    {"scales", "hidden", "iterations", "decay", "tolerance"},
+                                    {"scales", "hidden", "iterations", "decay", "model_error"},
                                     check,
                                     learn};
 

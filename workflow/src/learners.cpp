@@ -23,17 +23,17 @@ bool takes(const Learner& learner, std::string_view field) {
 void refuse_options(const Learner& learner, const LearnOptions& o) {
   const std::pair<bool, const char*> fields[] = {{!o.scales.empty(), "scales"},
                                                   {o.multi_resolution, "multi_resolution"},
-                                                  {o.cut_off.has_value(), "cut_off"},
+                                                  {o.least_eigenvalue.has_value(), "least_eigenvalue"},
                                                   {o.hidden.has_value(), "hidden"},
                                                   {o.iterations.has_value(), "iterations"},
                                                   {o.decay.has_value(), "decay"},
-                                                  {o.tolerance.has_value(), "tolerance"},
+                                                  {o.model_error.has_value(), "model_error"},
                                                   {o.table_electrons.has_value(), "table_electrons"}};
   for (const auto& [given, field] : fields) {
     if (!given || takes(learner, field)) continue;
     const auto other = std::ranges::find_if(all, [&](const Learner* l) { return takes(*l, field); });
     throw UsageError(fmt::format("`training.{}`", field), fmt::format("a model '{}' has none", learner.name),
-                     fmt::format("Leave it out, or add `training.model={}`", (*other)->name));
+                     fmt::format("Leave it out, or add `training.kind={}`", (*other)->name));
   }
 }
 
@@ -49,10 +49,6 @@ void refuse_learning_from_images(const Learner& learner, const TrainJob& job) {
         "`training.signal`",
         fmt::format("a model '{}' gives SE and BSE, not what a microscope makes of them", learner.name),
         "Leave it out; 'semsurf calibrate' compares the two");
-  const std::int64_t electrons = job.learn.table_electrons.value_or(2);
-  if (electrons < 2 || electrons > std::int64_t{1} << 31)
-    throw UsageError("`training.table_electrons`", fmt::format("{} electrons make no table", electrons),
-                     "Give 2 to 2^31");
 }
 
 }  // namespace
@@ -61,6 +57,7 @@ const Learner& learner_of(const TrainJob& job) {
   std::string names;
   for (const Learner* learner : all) {
     if (job.learn.kind == learner->name) {
+      check_parameters(job);
       refuse_options(*learner, job.learn);
       if (!learner->needs_images) refuse_learning_from_images(*learner, job);
       if (learner->check) learner->check(job);
@@ -68,7 +65,7 @@ const Learner& learner_of(const TrainJob& job) {
     }
     names += fmt::format("{}{}", names.empty() ? "" : ", ", learner->name);
   }
-  throw UsageError("`training.model`", fmt::format("there is no kind '{}'", job.learn.kind),
+  throw UsageError("`training.kind`", fmt::format("there is no kind '{}'", job.learn.kind),
                    fmt::format("Choose one of {}", names));
 }
 

@@ -13,6 +13,7 @@
 #include "job_identity.h"
 #include "reconstruction_checkpoint.h"
 #include "reconstruction_output.h"
+#include "reconstruction_report.h"
 #include "registration_picture.h"
 #include "surf/core/error.h"
 #include "surf/core/units.h"
@@ -43,12 +44,11 @@ std::string map_text(const Affine& m) { return text_of({m.xx, m.xy, m.x0, m.yx, 
 /// All that the states of the reconstruction depend on.
 Identity identity_of(const ReconstructionOptions& o, const AfmData* afm, const SemData* sem, const StoredModel* model) {
   Identity id{{"semsurf", version()}, {"program", program_hash()}, {"instruction set", instruction_set()}};
-  id["method"] = name(o.method);
-  id["scales"] = text_of(o.scales_px);
-  id["iterations"] = std::to_string(o.iterations);
-  id["tolerance"] = format_exact(o.tolerance);
-  id["prior"] = format_exact(o.curvature_prior_per_nm);
-  id["fit"] = fmt::format("transform {}, calibration {}, tip {}", o.refine_transform, o.refine_calibration, o.refine_tip);
+  ReconstructionOptions steps = o;   // without what comes after them
+  steps.uncertainty = ReconstructionOptions{}.uncertainty;
+  steps.probes = ReconstructionOptions{}.probes;
+  steps.seed = ReconstructionOptions{}.seed;
+  for (const auto& [key, value] : record_of(steps)) id[key.substr(key.find('.') + 1)] = value;
   if (afm) {
     const HeightField& f = afm->image;
     id["scan"] = hash_of(f.z_nm.data()) + hash_of(f.valid.data()) +
@@ -78,8 +78,7 @@ void check(const ReconstructJob& job) {
     throw UsageError("`output`", fmt::format("{} is no folder", job.folder.string()), "Name a folder for all results, as `output=result`");
   if (!job.afm && !job.calibration)
     throw UsageError("`reconstruction.gains`", "without a scan there is nothing to calibrate with", "Say `reconstruction.gains` and `reconstruction.offset`, or give `reconstruction.afm`");
-  if (job.upsample < 1 || job.upsample > 8)
-    throw UsageError("`reconstruction.upsample`", fmt::format("{} is out of range", job.upsample), "Give a whole number from 1 to 8");
+  check_parameters(parameters_of(job));
   if (job.sem) validate(job.sem->image, "SEM image");
   if (job.picture && !job.folder.empty()) io::check_plot_target(job.folder / "panel.png");
 }

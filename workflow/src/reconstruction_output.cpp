@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
 
 #include "reconstruction_panel.h"
 #include "reconstruction_report.h"
@@ -19,7 +20,7 @@
 #include "surf/io/tip_file.h"
 #include "surf/io/transform_file.h"
 #include "surf/mesh/height_field_mesh.h"
-#include "surf/workflow/version.h"
+#include "surf/workflow/step_record.h"
 
 namespace surf::workflow {
 namespace {
@@ -27,16 +28,23 @@ namespace {
 namespace fs = std::filesystem;
 using Metadata = std::map<std::string, std::string>;
 
-/// What made a file: the same for a run that is repeated from the report.
-Metadata made_by(const ReconstructJob& job) {
-  Metadata made{{"semsurf.version", version()}, {"command", "reconstruct"}};
-  int number = 0;
-  const auto add = [&](const fs::path& file) {
-    made[fmt::format("input.{}", ++number)] =
-        fmt::format("{} sha256 {}", file.filename().string(), io::sha256_of_file(file));
-  };
-  if (job.afm) add(job.afm->file);
-  if (job.sem) add(job.sem->file);
+std::string hash_of(const Grid<double>& values) { return io::sha256_of(std::as_bytes(std::span(values.data()))); }
+
+/// What made a file: the same for a run that is repeated from the report. `model` is the model's file as it was written.
+Metadata made_by(const ReconstructJob& job, const ReconstructSummary& s, const AfmData* afm, const SemData* sem,
+                 const fs::path& model) {
+  std::vector<fs::path> inputs;
+  if (job.afm) inputs.push_back(job.afm->file);
+  if (job.sem) inputs.push_back(job.sem->file);
+  Metadata made = step_record("reconstruct", record_of(parameters_used(job, s, afm, sem)), inputs);
+  if (afm)
+    made["tip"] = fmt::format("{} x {} samples, sha256 {}", afm->tip.z_nm.width(), afm->tip.z_nm.height(), hash_of(afm->tip.z_nm));
+  if (!sem) return made;
+  made["model"] = fmt::format("{} sha256 {}", model.filename().string(), io::sha256_of_file(model));
+  const ModelScope& scope = s.model->trained.scope;
+  if (!scope.material.empty()) made["material.1.name"] = scope.material;
+  if (scope.energy_ev > 0) made["beam.energy_ev"] = format_exact(scope.energy_ev);
+  made["beam.spot_nm"] = format_exact(scope.spot_nm);
   return made;
 }
 
@@ -164,28 +172,31 @@ std::vector<fs::path> reconstruction_files(const fs::path& folder) {
 std::vector<fs::path> write_reconstruction(const ReconstructJob& job, const ReconstructSummary& s, const AfmData* afm,
                                            const SemData* sem) {
   const Reconstruction& r = s.result;
-  const Metadata made = made_by(job);
   std::vector<fs::path> written;
   const auto file = [&](const char* name) {
     written.push_back(job.folder / name);
     return written.back();
   };
+  const fs::path model = job.folder / "model.json";
+  if (sem) io::write_model(model, s.model->trained);
+  const Metadata made = made_by(job, s, afm, sem, model);
   io::write_image(file("surface.vti"), surface_image(s, made));
   io::write_height_field(file("surface.gsf"), r.surface, made);
   io::write_surfaces(file("surface.glb"), surface_scene(r, made));
   if (afm) {
     io::write_image(file("simulated_afm.vti"), afm_image(r, *afm, made));
-    io::write_tip(file("tip.txt"), r.tip, {{"semsurf.version", version()}});
-    if (options_of(job, s).refine_tip) io::write_tip(file("first_tip.txt"), afm->tip, {{"semsurf.version", version()}});
+    io::write_tip(file("tip.txt"), r.tip, made);
+    if (options_of(job, s).refine_tip) io::write_tip(file("first_tip.txt"), afm->tip, made);
   }
   if (sem) {
     io::write_image(file("simulated_sem.vti"), sem_image(r, *sem, made));
-    io::write_model(file("model.json"), s.model->trained);
+    written.push_back(model);
   }
   if (afm && sem) {
     io::TransformFile transform;
     transform.sem_to_afm = r.sem_to_afm;
     transform.verified = s.pose->verified();
+    transform.notes = made;
     transform.verdict = "as it is after the reconstruction";
     io::write_transform(file("transform.json"), transform);
   }

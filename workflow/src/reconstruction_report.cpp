@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "surf/afm/round_tip.h"
+#include "surf/core/command_words.h"
 #include "surf/core/units.h"
 #include "surf/core/words.h"
 #include "surf/io/files.h"
@@ -138,13 +139,17 @@ Json scales_json(const std::vector<ScaleReport>& scales) {
   return list;
 }
 
-Json options_json(const ReconstructionOptions& o, const Reconstruction& r) {
-  std::vector<double> scales;
-  for (const ScaleReport& s : r.scales) scales.push_back(s.sigma_px);
-  return {{"method", name(o.method)}, {"scales_px", scales}, {"iterations", o.iterations}, {"tolerance", o.tolerance},
-          {"curvature_prior_per_nm", o.curvature_prior_per_nm}, {"refine_transform", o.refine_transform},
-          {"refine_calibration", o.refine_calibration}, {"refine_tip", o.refine_tip}, {"uncertainty", o.uncertainty}, {"probes", o.probes},
-          {"seed", o.seed}};
+/// Every parameter by its name: numbers as such.
+Json options_json(ReconstructJob used) {
+  Json json = Json::object();
+  for_each_parameter(used, [&](const Parameter& about, Field& field) {
+    if (!about.recorded || !field.given()) return;
+    const std::string text = field.text();
+    if (field.kind() == FieldKind::flag) json[about.key()] = text == "on";
+    else if (field.kind() == FieldKind::number || field.kind() == FieldKind::whole) json[about.key()] = Json::parse(text);
+    else json[about.key()] = text;
+  });
+  return json;
 }
 
 /// Shares of the surface by what holds it.
@@ -158,41 +163,67 @@ Json held_json(const Grid<unsigned char>& held_by) {
 
 }  // namespace
 
-std::vector<std::string> repeating_command(const ReconstructJob& job, const ReconstructSummary& s, const AfmData* afm,
-                                           const SemData* sem) {
-  const ReconstructionOptions o = options_of(job, s);
-  std::vector<std::string> words{"semsurf", "reconstruct"};
-  const auto set = [&](const std::string& option) { words.push_back("--" + option); };
-  const auto add = [&](const std::string& option, const std::string& value) { set(option), words.push_back(value); };
-  if (afm) add("afm", job.afm->file.string());
-  if (sem) add("sem", job.sem->file.string());
-  words.insert(words.end(), job.fixed_options.begin(), job.fixed_options.end());
+ReconstructJob parameters_of(const ReconstructJob& job) {
+  ReconstructJob out;
+  if (job.afm) {
+    out.afm.emplace();
+    out.afm->reading = job.afm->reading;
+    out.afm->preparation = job.afm->preparation;
+    out.afm->preparation.tip.reset();
+  }
+  if (job.sem) {
+    out.sem.emplace();
+    out.sem->reading = job.sem->reading;
+  }
+  out.model = job.model;
+  out.pose = job.pose;
+  out.calibration = job.calibration;
+  out.sem_noise = job.sem_noise;
+  out.upsample = job.upsample;
+  out.refine_tip = job.refine_tip;
+  out.options = job.options;
+  return out;
+}
+
+ReconstructJob parameters_used(const ReconstructJob& job, const ReconstructSummary& s, const AfmData* afm, const SemData* sem) {
+  ReconstructJob used = parameters_of(job);
+  used.model = {};
+  used.pose = {};
+  used.options = options_of(job, s);
   if (afm) {
-    add("tip", (job.folder / (o.refine_tip ? "first_tip.txt" : "tip.txt")).string());
-    set(o.refine_tip ? "refine-tip" : "keep-tip");
-    add("afm-noise", list_of({afm->noise.alpha, afm->noise.innovation_nm2}));
-    add("upsample", std::to_string(afm->upsample));
+    used.afm->preparation.noise = afm->noise;
+    used.afm->preparation.tip_size = 0;
+    used.refine_tip = used.options.refine_tip;
   }
   if (sem) {
+    used.calibration = {sem->gains, sem->offset};
+    used.sem_noise = sem->noise;
+  }
+  if (afm && sem) used.pose.transform = s.pose->sem_to_afm;
+  return used;
+}
+
+std::vector<std::string> repeating_command(const ReconstructJob& job, const ReconstructSummary& s, const AfmData* afm,
+                                           const SemData* sem) {
+  ReconstructJob used = parameters_used(job, s, afm, sem), usual;
+  std::vector<std::string> words{"semsurf", "reconstruct"};
+  const auto add = [&](const std::string& option, const std::string& value) { words.insert(words.end(), {"--" + option, value}); };
+  if (afm) {
+    add("afm", job.afm->file.string());
+    add("tip", (job.folder / (used.options.refine_tip ? "first_tip.txt" : "tip.txt")).string());
+    add("afm-noise", list_of({afm->noise.alpha, afm->noise.innovation_nm2}));   // exact, as --height-noise is not
+    used.afm->preparation.noise.reset();
+    usual.afm.emplace();
+  }
+  if (sem) {
+    add("sem", job.sem->file.string());
     add("model", (job.folder / "model.json").string());
-    add("gains", list_of(sem->gains));
-    add("offset", format_exact(sem->offset));
-    add("sem-noise", list_of({sem->noise.slope, sem->noise.intercept, sem->noise.least_variance}));
+    usual.sem.emplace();
   }
-  if (afm && sem) {
-    const Affine& m = s.pose->sem_to_afm;
-    add("transform", list_of({m.xx, m.xy, m.x0, m.yx, m.yy, m.y0}));
-  }
-  add("method", name(o.method));
-  if (!o.scales_px.empty()) add("scales", list_of(o.scales_px));
-  if (o.iterations > 0) add("iterations", std::to_string(o.iterations));
-  if (o.tolerance > 0) add("tolerance", format_exact(o.tolerance));
-  if (o.curvature_prior_per_nm > 0) add("prior", format_exact(o.curvature_prior_per_nm));
-  if (!o.refine_transform) set("fixed-transform");
-  if (!o.refine_calibration) set("fixed-calibration");
-  if (!o.uncertainty) set("no-uncertainty");
-  add("probes", std::to_string(o.probes));
-  add("seed", std::to_string(o.seed));
+  const OptionNames names{{"level.method", "--level-method"}, {"level.degree", "--level-degree"},
+                          {"level.tolerance", "--level-tolerance"}};
+  const std::vector<std::string> changed = command_words(used, usual, names);
+  words.insert(words.end(), changed.begin(), changed.end());
   if (!job.truth_file.empty()) add("truth", job.truth_file.string());
   words.insert(words.end(), {"-o", job.folder.string() + "-again"});
   return words;
@@ -212,7 +243,7 @@ std::string reconstruction_report(const ReconstructJob& job, const ReconstructSu
   if (afm) json["afm"] = afm_json(job, s, *afm);
   if (sem) json["sem"] = sem_json(job, s, *sem);
   if (s.pose) json["registration"] = pose_json(job, s);
-  json["options"] = options_json(options_of(job, s), r);
+  json["options"] = options_json(parameters_used(job, s, afm, sem));
   json["surface"] = {{"pixels", {r.surface.z_nm.width(), r.surface.z_nm.height()}},
                      {"pitch_nm", {r.surface.pitch_x_nm, r.surface.pitch_y_nm}}, {"converged", r.converged}};
   if (!r.held_by.empty()) json["surface"]["held_by"] = held_json(r.held_by);

@@ -12,7 +12,7 @@
 #include "surf/io/files.h"
 #include "surf/io/plot.h"
 #include "surf/io/transform_file.h"
-#include "surf/workflow/version.h"
+#include "surf/workflow/step_record.h"
 
 namespace surf::workflow {
 namespace {
@@ -21,13 +21,25 @@ std::string hash_line(const std::filesystem::path& file) {
   return fmt::format("{} sha256 {}", file.filename().string(), io::sha256_of_file(file));
 }
 
+/// Without the images.
+RegisterJob parameters_of(const RegisterJob& job) {
+  RegisterJob out;
+  out.afm.reading = job.afm.reading;
+  out.afm.preparation = job.afm.preparation;
+  out.sem.reading = job.sem.reading;
+  out.model = job.model;
+  out.pose = job.pose;
+  return out;
+}
+
 io::TransformFile transform_file(const RegisterJob& job, const RegisterSummary& s) {
   io::TransformFile file;
   file.sem_to_afm = s.pose.sem_to_afm;
   file.verified = s.pose.verified();
-  file.notes = {{"semsurf.version", version()}, {"command", "register"}, {"afm", hash_line(job.afm.file)},
-                {"sem", hash_line(job.sem.file)},
-                {"model", fmt::format("{} sha256 {}", s.model.file.filename().string(), s.model.sha256)}};
+  file.notes = step_record("register", record_of(parameters_of(job)));
+  file.notes.merge(std::map<std::string, std::string>{
+      {"afm", hash_line(job.afm.file)}, {"sem", hash_line(job.sem.file)},
+      {"model", fmt::format("{} sha256 {}", s.model.file.filename().string(), s.model.sha256)}});
   if (!s.pose.registration) return file;
   const Registration& r = *s.pose.registration;
   file.verdict = fmt::format("{}: {}", name(r.verdict), r.reason);
@@ -40,6 +52,7 @@ io::TransformFile transform_file(const RegisterJob& job, const RegisterSummary& 
 }  // namespace
 
 RegisterSummary run(const RegisterJob& job, const Reporter& reporter) {
+  check_parameters(parameters_of(job));
   validate(job.sem.image, "SEM image");
   if (!job.transform.empty()) io::check_writable(job.transform);
   if (!job.picture.empty()) io::check_plot_target(job.picture);

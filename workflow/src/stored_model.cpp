@@ -85,9 +85,6 @@ TrainJob training(const ModelRequest& r, const fs::path& file) {
   job.simulation.threads = r.threads;
   job.learn = r.learn;
   job.output = file;
-  job.command_line = fmt::format("semsurf train --material {} --energy {}eV --spot {}nm --pixel-size {}nm",
-                                 r.material.name, format_exact(job.energy_ev), format_exact(r.spot_nm),
-                                 format_exact(r.pixel_nm));
   return job;
 }
 

@@ -214,6 +214,16 @@ Tip make_tip(const TipShape& s, const TipSampling& sampling) {
 
 }  // namespace
 
+void describe_noise(ParameterVisitor& visit, std::optional<AfmNoise>& noise) {
+  visit.form({.name = "scan.height_noise",
+              .help = "Standard deviation of the scan's noise, and its correlation from one pixel to the next",
+              .unit = Unit::nm,
+              .otherwise = "estimated from the scan",
+              .form = "LENGTH[,ALPHA]"},
+             [&noise] { return write_noise(noise); },
+             [&noise](std::string_view text, const std::string& subject) { noise = read_noise(text, subject); });
+}
+
 void describe(ParameterVisitor& visit, TipParameters& p) {
   visit(p.size, {.name = "tip.size", .help = "Samples across the tip, odd", .limits = sizes});
   visit(p.answer, {"sweep", "outer", "best", "blind"},
@@ -222,13 +232,7 @@ void describe(ParameterVisitor& visit, TipParameters& p) {
                  "one at a "
                  "threshold (blind)",
          .otherwise = "sweep; blind with a threshold"});
-  visit.form({.name = "scan.height_noise",
-              .help = "Standard deviation of the scan's noise, and its correlation from one pixel to the next",
-              .unit = Unit::nm,
-              .otherwise = "estimated from the scan",
-              .form = "LENGTH[,ALPHA]"},
-             [&p] { return write_noise(p.noise); },
-             [&p](std::string_view text, const std::string& subject) { p.noise = read_noise(text, subject); });
+  describe_noise(visit, p.noise);
   visit(p.threshold_nm, {.name = "tip.threshold",
                          .help = "Lower samples of the tip only by more than this",
                          .unit = Unit::nm,

@@ -16,7 +16,7 @@
 #include "surf/mc/material_doubts.h"
 #include "surf/io/overlaps.h"
 #include "surf/sem/fit_filter_bank.h"
-#include "surf/workflow/version.h"
+#include "surf/workflow/step_record.h"
 #include "training_data.h"
 
 namespace surf::workflow {
@@ -76,17 +76,8 @@ std::vector<TrainingImage> read_images(const TrainJob& job, const std::vector<Tr
 }
 
 std::map<std::string, std::string> notes_of(const TrainJob& job, const std::vector<TrainingSurface>& surfaces) {
-  std::map<std::string, std::string> notes{{"semsurf.version", version()}};
-  if (!job.command_line.empty()) notes["command"] = job.command_line;
-  if (surfaces.empty()) return notes;
-  notes["edge"] = job.edge == Edge::mirror ? "mirror" : job.edge == Edge::flat ? "flat" : "periodic";
-  if (samples_per_pixel(job) > 1) notes["samples_per_pixel"] = std::to_string(samples_per_pixel(job));
-  if (job.inputs.empty()) notes["surfaces"] = fmt::format("semsurf's own, {} pixels across", job.surface_px);
-  if (std::ranges::all_of(surfaces, &TrainingSurface::has_image)) return notes;
-  notes["physics"] = mc::format_physics(job.physics);
-  notes["seed"] = std::to_string(job.simulation.seed);
-  if (const double accuracy = mc::accuracy_of(job.simulation.budget); accuracy > 0) notes["accuracy"] = format_exact(accuracy);
-  else notes["electrons"] = std::to_string(mc::electrons_of(job.simulation.budget));
+  std::map<std::string, std::string> notes = step_record(training_command(job), record_of(job));
+  if (!surfaces.empty() && samples_per_pixel(job) > 1) notes["samples_per_pixel"] = std::to_string(samples_per_pixel(job));
   return notes;
 }
 
@@ -185,7 +176,7 @@ TrainSummary run(const TrainJob& job, const Reporter& reporter, Team* team) {
     if (!team || !summary.complete) return;
     summary.written.push_back(sidecar_path(job.output));
     io::write_text(summary.written.back(),
-                   team_record(*team, simulated.runs, seconds.count(), job.simulation.threads, job.command_line));
+                   team_record(*team, simulated.runs, seconds.count(), job.simulation.threads, training_command(job)));
   });
   return summary;
 }

@@ -38,7 +38,7 @@ SimulateJob simulation_of(const TrainJob& job, const TrainingSurface& surface, s
   out.cache = job.cache;
   out.extras.channels = {"z_nm"};
   out.outputs = {output};
-  out.command_line = job.command_line;
+  out.command_line = training_command(job);
   title_by_identity(out, "training surface " + surface.name);
   return out;
 }

@@ -6,11 +6,15 @@
 
 #include "surf/core/parameters.h"
 #include "surf/io/height_field_file.h"
+#include "surf/io/sem_file.h"
 
 namespace surf::io {
 
 /// How a scan file is read: scan.height_channel, scan.height_unit and scan.height_pitch.
 void describe(ParameterVisitor& visit, HeightReadOptions& options);
+
+/// How an SEM image is read: scan.sem_channel and scan.pixel_size.
+void describe(ParameterVisitor& visit, SemReadOptions& options);
 
 /// "2nm" for square samples, or "2nmx3nm". Throws UsageError naming `subject`.
 std::pair<double, double> parse_pitch_nm(std::string_view text, std::string_view subject);

@@ -11,6 +11,7 @@
 #include "surf/afm/tip.h"
 #include "surf/core/affine.h"
 #include "surf/core/height_field.h"
+#include "surf/core/parameters.h"
 #include "surf/core/placed_image.h"
 #include "surf/core/progress.h"
 #include "surf/sem/image_model.h"
@@ -72,6 +73,8 @@ struct ReconstructionOptions {
   int threads = 0;                 ///< 0: one per hardware thread. Does not change the result
   Watch watch;
 };
+/// reconstruction.optimiser, reconstruction.scales and so on; not the threads.
+void describe(ParameterVisitor& visit, ReconstructionOptions& options);
 
 /// How an image's whitened residuals look: standard normal and white if all is right.
 struct ResidualReport {

@@ -25,6 +25,8 @@ struct AfmPreparationOptions {
   int threads = 0;                    ///< 0: one per hardware thread. Does not change the result
   Watch watch;
 };
+/// level.method and so on, scan.height_noise and reconstruction.tip_size; not the tip, nor the seed.
+void describe(ParameterVisitor& visit, AfmPreparationOptions& options);
 
 /// A scan ready for use, and all that was found of it on the way.
 struct PreparedAfm {

@@ -34,9 +34,10 @@ struct ReconstructJob {
   std::filesystem::path truth_file;
   std::filesystem::path folder;                  ///< of the result; made where it is missing. Empty: no files are written
   std::string command_line;                      ///< as given, for the record
-  std::vector<std::string> fixed_options;        ///< what it says of how inputs are read and prepared: options and values
   bool picture = true;                           ///< panel.png, which needs Python with Matplotlib
 };
+/// Those of the inputs that there are, of the options, and of the output.
+void describe(ParameterVisitor& visit, ReconstructJob& job);
 
 /// How far a surface is from the true one. A scan does not know where 0 is, so the mean difference is taken off.
 struct TruthReport {

@@ -8,7 +8,10 @@
 #include <string>
 #include <vector>
 
+#include "surf/core/parameters.h"
 #include "surf/core/placed_image.h"
+#include "surf/io/height_field_file.h"
+#include "surf/io/sem_file.h"
 #include "surf/registration/landmarks.h"
 #include "surf/registration/register_images.h"
 #include "surf/workflow/afm_preparation.h"
@@ -22,21 +25,28 @@ struct AfmInput {
   HeightField scan;
   std::filesystem::path file;
   AfmPreparationOptions preparation;
+  io::HeightReadOptions reading = {};      ///< how the file was read: of the record
 };
+void describe(ParameterVisitor& visit, AfmInput& input);
 
 struct SemInput {
   PlacedImage image;
   std::filesystem::path file;
+  io::SemReadOptions reading = {};         ///< as of AfmInput
 };
+void describe(ParameterVisitor& visit, SemInput& input);
 
 /// How the two images come to lie on each other.
 struct PoseOptions {
   std::optional<Affine> transform;         ///< SEM to AFM, known: nothing is searched for
+  std::string transform_doubt;             ///< what its file says of it where it is not verified
   std::vector<LandmarkPair> landmarks;     ///< none: the start is searched for
   bool landmarks_only = false;             ///< the map of the landmarks is not refined
   RegistrationOptions registration;
   bool accept_unverified = false;          ///< go on with a registration that is not verified
 };
+/// registration.objective, registration.transform and so on; not the landmarks.
+void describe(ParameterVisitor& visit, PoseOptions& options);
 
 struct Pose {
   Affine sem_to_afm;
@@ -56,6 +66,7 @@ struct RegisterJob {
   std::filesystem::path transform;         ///< file to write, .json; or empty
   std::filesystem::path picture;           ///< both images and how they lie on each other, .png or .svg; or empty
 };
+void describe(ParameterVisitor& visit, RegisterJob& job);
 
 struct RegisterSummary {
   PreparedAfm afm;

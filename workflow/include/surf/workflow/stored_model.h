@@ -25,10 +25,12 @@ struct ModelRequest {
   std::filesystem::path folder;    ///< where models are kept, as cache_folder() / "models"; created where missing
   LearnOptions learn;              ///< of a training
   std::optional<int> surfaces;     ///< as in TrainJob, as are the next two
-  int surface_px = 64;
-  std::int64_t electrons = 150;
+  int surface_px = TrainJob{}.surface_px;
+  std::int64_t electrons = mc::electrons_of(training_simulation().budget);
   int threads = 0;
 };
+/// reconstruction.model, beam.energy, beam.spot and job.cache; not the material.
+void describe(ParameterVisitor& visit, ModelRequest& request);
 
 struct StoredModel {
   TrainedModel trained;

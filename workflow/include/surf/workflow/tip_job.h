@@ -44,6 +44,9 @@ struct TipParameters {
 /// tip.size, tip.answer, scan.height_noise, tip.threshold and so on, tip.sweep as FROM,TO,N, and tip.seed.
 void describe(ParameterVisitor& visit, TipParameters& parameters);
 
+/// scan.height_noise as a standard deviation, or with the correlation of neighbours.
+void describe_noise(ParameterVisitor& visit, std::optional<AfmNoise>& noise);
+
 struct TipResult {
   Tip tip;                                 ///< with the doubt that there is
   TipParameters used;                      ///< with the answer, the noise and the threshold that were found

@@ -12,7 +12,9 @@
 #include "surf/core/edge.h"
 #include "surf/core/height_field.h"
 #include "surf/core/image.h"
+#include "surf/core/parameters.h"
 #include "surf/core/progress.h"
+#include "surf/io/height_field_file.h"
 #include "surf/mc/material.h"
 #include "surf/mc/physics.h"
 #include "surf/mc/simulate.h"
@@ -44,14 +46,16 @@ struct LearnOptions {
   /// Of a filter bank or a facet network; empty: the thesis's ten, of a network those within the electrons' range.
   std::vector<FacetScale> scales;
   bool multi_resolution = false;             ///< see FilterBankParameters
-  std::optional<double> cut_off;             ///< of the eigenvalues of a filter bank's outputs
+  std::optional<double> least_eigenvalue;    ///< of a filter bank: components of smaller ones are left out
   std::optional<std::vector<int>> hidden;    ///< of a facet network, this and the next: see FacetNetworkFitOptions
   std::optional<int> iterations;
-  std::optional<double> decay, tolerance;
+  std::optional<double> decay, model_error;  ///< `tolerance` of FacetNetworkFitOptions
   /// Primaries that a table is made of: at each angle of slopes (31000), or in all (10240, rounded up to pages
   /// of a library of cascades).
   std::optional<std::int64_t> table_electrons;
 };
+/// training.kind, training.scales and so on.
+void describe(ParameterVisitor& visit, LearnOptions& learn);
 
 /// A kind of model that can be learnt, for people.
 struct LearnableKind {
@@ -60,6 +64,13 @@ struct LearnableKind {
   bool needs_images = true;   ///< else images only judge it
 };
 std::vector<LearnableKind> learnable_kinds();
+
+/// How missing images are simulated, where nothing else is said.
+inline mc::SimulationOptions training_simulation() {
+  mc::SimulationOptions options;
+  options.budget = mc::ElectronsPerPixel{150};
+  return options;
+}
 
 /// A model from surfaces to its file.
 struct TrainJob {
@@ -82,14 +93,22 @@ struct TrainJob {
   double energy_ev = 1000, spot_nm = 0;
   mc::Physics physics;
   /// Electrons or accuracy, seed and threads; each image has a seed of its own, counted on from this.
-  mc::SimulationOptions simulation;
+  mc::SimulationOptions simulation = training_simulation();
   std::filesystem::path cache;           ///< as in SimulateJob
   LearnOptions learn;
   std::filesystem::path output;          ///< the model, .json
   /// Folder of the simulated images, which trainings of other kinds may share; empty: NAME.training beside NAME.json.
   std::filesystem::path images;
-  std::string command_line;              ///< for the record: what changes the model only
+  // Of the record alone:
+  io::HeightReadOptions reading;         ///< how the files of `inputs` were read
+  std::vector<std::filesystem::path> material_files;   ///< where materials of one's own were looked for
 };
+/// The options of learning, training.surfaces and so on, scan.height_unit and so on, and of the simulation what a model is
+/// for and how much is simulated.
+void describe(ParameterVisitor& visit, TrainJob& job);
+
+/// The command that trains the same model, without folders of files: of the record.
+std::string training_command(const TrainJob& job);
 
 struct TrainSummary {
   bool complete = true;                  ///< false when cancelled: there is no model yet

@@ -1,0 +1,226 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "surf/core/error.h"
+#include "surf/core/some_parameters.h"
+#include "surf/core/units.h"
+#include "surf/core/words.h"
+#include "surf/io/cache.h"
+#include "surf/io/scan_parameters.h"
+#include "surf/io/transform_file.h"
+#include "surf/mc/largest_length.h"
+#include "surf/mc/physics.h"
+#include "surf/workflow/reconstruct_job.h"
+#include "surf/workflow/tip_job.h"
+
+namespace surf::workflow {
+namespace {
+
+std::string text_of(const std::vector<double>& values) {
+  std::string text;
+  for (const double value : values) text += (text.empty() ? "" : ",") + format_exact(value);
+  return text;
+}
+
+std::vector<double> numbers_of(std::string_view text, const std::string& subject) {
+  return parse_values(text, {.name = "number", .help = ""}, subject);
+}
+
+/// A file, or six numbers.
+void read_transform(std::string_view text, const std::string& subject, PoseOptions& pose) {
+  const bool numbers = std::ranges::count(text, ',') == 5 && text.find_first_not_of("0123456789+-.,eE") == text.npos;
+  pose.transform_doubt.clear();
+  if (!numbers) {
+    const io::TransformFile file = io::read_transform(std::string(text));
+    pose.transform = file.sem_to_afm;
+    if (!file.verified) pose.transform_doubt = file.verdict.empty() ? "unknown" : file.verdict;
+    return;
+  }
+  const std::vector<double> v = numbers_of(text, subject);
+  pose.transform = Affine{v[0], v[1], v[2], v[3], v[4], v[5]};
+  try {
+    inverse(*pose.transform);
+  } catch (const InvalidInput& error) {
+    throw UsageError(subject, error.reason(), error.remedy());
+  }
+}
+
+SemNoise read_sem_noise(std::string_view text, const std::string& subject) {
+  const std::vector<double> line = numbers_of(text, subject);
+  if (line.size() < 2 || line.size() > 3)
+    throw UsageError(subject, fmt::format("'{}' has {} numbers", text, line.size()),
+                     "Give slope and intercept of the variance, and its least value if you like, as 1.2,30");
+  const SemNoise noise{line[0], line[1], line.size() > 2 ? line[2] : SemNoise{}.least_variance};
+  try {
+    validate(noise);
+  } catch (const InvalidInput& error) {
+    throw UsageError(subject, error.reason(), error.remedy());
+  }
+  return noise;
+}
+
+std::vector<double> read_gains(std::string_view text, const std::string& subject) {
+  std::vector<double> gains = numbers_of(text, subject);
+  if (std::ranges::all_of(gains, [](double gain) { return gain == 0; }))
+    throw UsageError(subject, "all are 0: the image would have nothing of the model", "Give one above 0 at least");
+  return gains;
+}
+
+void describe_calibration(ParameterVisitor& visit, std::optional<GivenCalibration>& calibration) {
+  visit.form({.name = "reconstruction.gains", .help = "Gain of each channel of the model", .otherwise = "fitted", .form = "N,N"},
+             [&] { return calibration ? text_of(calibration->gains) : std::string(); },
+             [&](std::string_view text, const std::string& subject) { calibration = {read_gains(text, subject), 0}; });
+  std::optional<double> offset;
+  if (calibration && !visit.reads()) offset = calibration->offset;
+  visit(offset, {.name = "reconstruction.offset", .help = "Offset of the grey levels, where gains are given", .otherwise = "0"});
+  if (!visit.reads() || !offset) return;
+  if (!calibration)
+    throw UsageError("`reconstruction.offset`", "without `reconstruction.gains` it is fitted",
+                     "Add `reconstruction.gains`, or leave it out");
+  calibration->offset = *offset;
+}
+
+/// Whether the tip is fitted, as two flags: neither leaves it to how the tip was found.
+void describe_tip_fit(ParameterVisitor& visit, std::optional<bool>& refine) {
+  bool keep = refine == false;
+  visit(keep, {.name = "reconstruction.keep_tip", .help = "Do not fit the tip that was found in the scan further"});
+  if (!visit.reads()) return;
+  if (keep && refine == true)
+    throw UsageError("`reconstruction.keep_tip`", "with `reconstruction.refine_tip` it contradicts itself", "Leave one of them out");
+  if (keep) refine = false;
+}
+
+void describe_threads(ParameterVisitor& visit, int& threads) {
+  mc::Execution execution;
+  execution.threads = threads;
+  describe(visit, execution);
+  threads = execution.threads;
+}
+
+void describe_folder(ParameterVisitor& visit, std::filesystem::path& folder) {
+  visit.form({.name = "output", .help = "Folder for all results; it is made", .form = "FOLDER", .recorded = false,
+              .file = FileRole::written_folder},
+             [&] { return folder.string(); },
+             [&](std::string_view text, const std::string&) {
+               folder = text;
+               while (folder.filename().empty() && folder.has_parent_path()) folder = folder.parent_path();   // result/
+             });
+}
+
+void describe_file(ParameterVisitor& visit, std::filesystem::path& file, const Parameter& about) {
+  visit.form(about, [&] { return file.string(); }, [&](std::string_view text, const std::string&) { file = text; });
+}
+
+}  // namespace
+
+void describe(ParameterVisitor& visit, AfmPreparationOptions& o) {
+  describe(visit, o.level);
+  describe_noise(visit, o.noise);
+  std::optional<int> size = o.tip_size != 0 ? std::optional(o.tip_size) : std::nullopt;
+  visit(size, {.name = "reconstruction.tip_size", .help = "Samples across a tip of any shape, odd", .limits = within(3, 1001),
+               .otherwise = "a round tip of any size"});
+  o.tip_size = size.value_or(0);
+}
+
+void describe(ParameterVisitor& visit, AfmInput& input) {
+  describe(visit, input.reading);
+  describe(visit, input.preparation);
+}
+
+void describe(ParameterVisitor& visit, SemInput& input) { describe(visit, input.reading); }
+
+void describe(ParameterVisitor& visit, ModelRequest& request) {
+  std::optional<double> energy_ev, spot_nm;
+  if (request.energy_ev > 0) energy_ev = request.energy_ev;
+  if (request.spot_given) spot_nm = request.spot_nm;
+  visit(energy_ev, {.name = "beam.energy", .help = "Energy of the beam", .unit = Unit::ev,
+                    .limits = within(mc::min_beam_energy_ev, mc::max_beam_energy_ev), .otherwise = "as the model says"});
+  visit(spot_nm, {.name = "beam.spot", .help = "Standard deviation of the Gaussian spot; 0 is a point", .unit = Unit::nm,
+                  .limits = within(0, mc::largest_length_nm), .otherwise = "0nm, or as the model says"});
+  request.energy_ev = energy_ev.value_or(0);
+  request.spot_given = spot_nm.has_value();
+  request.spot_nm = spot_nm.value_or(request.spot_nm);
+  describe_file(visit, request.file,
+                {.name = "reconstruction.model", .help = "Fast model, as 'semsurf train' writes it",
+                 .otherwise = "one that was kept, else one is trained and kept", .form = "FILE.json", .recorded = false,
+                 .file = FileRole::read});
+  visit.form({.name = "job.cache", .help = "Folder that models are kept in; 'semsurf library --help' tells more",
+              .otherwise = "$SEMSURF_CACHE, ~/.cache/semsurf", .form = "FOLDER|off", .level = Level::advanced, .recorded = false},
+             [&] { return request.folder.parent_path().string(); },
+             [&](std::string_view text, const std::string&) {
+               const std::filesystem::path cache = io::cache_folder(std::string(text));
+               request.folder = cache.empty() ? cache : cache / "models";
+             });
+}
+
+void describe(ParameterVisitor& visit, PoseOptions& pose) {
+  visit(pose.registration.objective, {"correlation", "mutual-information"},
+        {.name = "registration.objective", .help = "What is largest where the images agree"});
+  visit(pose.landmarks_only, {.name = "registration.landmarks_only", .help = "Do not refine the landmarks' map by the images"});
+  visit.form({.name = "registration.transform",
+              .help = "Map that is known: a file as 'semsurf register' writes it, or xx,xy,x0,yx,yy,y0 in nm",
+              .otherwise = "searched for", .form = "FILE.json", .file = FileRole::read},
+             [&] {
+               if (!pose.transform) return std::string();
+               const Affine& m = *pose.transform;
+               return text_of({m.xx, m.xy, m.x0, m.yx, m.yy, m.y0});
+             },
+             [&](std::string_view text, const std::string& subject) { read_transform(text, subject, pose); });
+  visit(pose.accept_unverified, {.name = "registration.accept_registration",
+                                 .help = "Go on where the registration is not verified"});
+}
+
+void describe(ParameterVisitor& visit, RegisterJob& job) {
+  describe(visit, job.afm);
+  describe(visit, job.sem);
+  describe(visit, job.model);
+  describe(visit, job.pose);
+  visit(job.afm.preparation.seed, {.name = "tip.seed", .help = "Seed of the noise that tips are judged by"});
+  describe_file(visit, job.transform, {.name = "output", .help = "The map, which 'semsurf reconstruct --transform' takes",
+                                       .form = "FILE.json", .recorded = false, .file = FileRole::written});
+  describe_file(visit, job.picture, {.name = "output.picture", .help = "Both images and squares of them in turn: .png .svg",
+                                     .form = "FILE", .recorded = false, .file = FileRole::written});
+  describe_threads(visit, job.threads);
+}
+
+void describe(ParameterVisitor& visit, ReconstructJob& job) {
+  if (job.afm) describe(visit, *job.afm);
+  if (job.sem) {
+    describe(visit, *job.sem);
+    describe(visit, job.model);
+    describe_calibration(visit, job.calibration);
+    visit.form({.name = "reconstruction.sem_noise",
+                .help = "Variance by the grey level, a line: slope, intercept and, if it matters, least variance",
+                .otherwise = "estimated from flat places", .form = "SLOPE,INTERCEPT"},
+               [&] {
+                 const auto& n = job.sem_noise;
+                 return n ? text_of({n->slope, n->intercept, n->least_variance}) : std::string();
+               },
+               [&](std::string_view text, const std::string& subject) { job.sem_noise = read_sem_noise(text, subject); });
+  }
+  if (job.afm && job.sem) describe(visit, job.pose);
+  ReconstructionOptions options = job.options;
+  options.refine_tip = job.refine_tip.value_or(false);
+  describe(visit, options);
+  const std::optional<bool> refine = options.refine_tip ? std::optional(true) : job.refine_tip == true ? std::nullopt : job.refine_tip;
+  options.refine_tip = job.options.refine_tip;
+  job.options = options;
+  job.refine_tip = refine;
+  describe_tip_fit(visit, job.refine_tip);
+  if (job.afm) {
+    visit(job.upsample, {.name = "reconstruction.upsample", .help = "Samples of the dilation in each of the scan's pixels",
+                         .limits = within(1, 8)});
+    if (visit.reads()) job.afm->preparation.seed = job.options.seed;
+  }
+  describe_folder(visit, job.folder);
+  bool no_picture = !job.picture;
+  visit(no_picture, {.name = "output.no_picture", .help = "Leave out panel.png, which needs Python with Matplotlib",
+                     .recorded = false});
+  job.picture = !no_picture;
+  describe_threads(visit, job.options.threads);
+}
+
+}  // namespace surf::workflow
