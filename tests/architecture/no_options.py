@@ -12,9 +12,13 @@ import sys
 import tempfile
 
 LIBRARIES = ("libsurf", "mc_sim", "io", "workflow")
-# Files that start programs of others, or write for them, and what they may say.
+# Files that start programs of others, write for them, or write the command that repeats a run, and what they may say.
 OTHERS = {"io/src/afm/gwyddion_program.cpp": {"--no-log-to-file", "--convert-to-gwy"},
           "io/src/afm/gwyddion_program.h": {"--convert-to-gwy"},
+          "libsurf/include/surf/core/command_words.h": {"--level-method", "--working-distance"},
+          "workflow/src/train_parameters.cpp": {"--images", "--signal", "--materials", "--material"},
+          "workflow/src/reconstruction_report.cpp": {"--height-noise", "--level-method", "--level-degree",
+                                                     "--level-tolerance"},
           "io/src/web_page_template.h": {"--semsurf"}}   # <!--semsurf:title-->
 # Characters first: '"' begins no text. Of a comment or a text, what it says.
 SAID = re.compile(r"""'(?:[^'\\\n]|\\.)'|//(?P<line>[^\n]*)|/\*(?P<block>.*?)\*/"""

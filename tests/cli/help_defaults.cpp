@@ -171,10 +171,6 @@ std::vector<Default> defaults() {
       {{"certainty"}, "--distance", CertaintyOptions{}.distance_nm},
       {{"train"}, "--surface-size", double(train.surface_px)},
       {{"train"}, "--hold-out", double(train.held_out)},
-      {{"train"}, "--energy", train.energy_ev},
-      {{"train"}, "--spot", train.spot_nm},
-      {{"train"}, "--seed", double(train.simulation.seed)},
-      {{"train"}, "--electrons", double(mc::electrons_of(train.simulation.budget))},
       {{"train"}, "--hidden", fmt::format("{}", fmt::join(network.hidden, ","))},
       {{"train"}, "--iterations", double(network.iterations)},
       {{"train"}, "--decay", network.decay},
@@ -210,7 +206,6 @@ std::vector<Default> others() {
       {scans, "--height-pitch", "1 nm"},
       {chains, "--height-pitch", "1 nm"},
       {{"mesh", "view"}, "--height-pitch", "1 nm"},
-      {{"train"}, "--height-pitch", "1 nm"},
       {{"predict"}, "--pitch", "1nm"},
       {{"chart"}, "--draws", "10; with --quick 3"},
       {{"noise sem"}, "--block", "16, 12 or 8"},
@@ -242,7 +237,8 @@ bool is_described(const Stated& s) {
     for_each_parameter(specimen, add);
     return all;
   }();
-  const bool of_scenes = s.command == "simulate" || s.command == "sweep" || s.command == "chart";
+  const bool of_scenes = s.command == "simulate" || s.command == "sweep" || s.command == "chart" ||
+                         s.command == "train";
   static const std::set<std::string> of_chart{"--accuracy", "--seed"};   // others than those of simulations
   return of_scenes && names.contains(s.option) && !(s.command == "chart" && of_chart.contains(s.option));
 }
