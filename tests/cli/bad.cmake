@@ -210,7 +210,7 @@ semsurf_cli_usage(calibrate_output "--output: no output file is given" calibrate
 semsurf_cli_usage(calibrate_channel "it has no channel SE or BSE" calibrate four.png --pixel-size 1nm --images four.png -o fit.json)
 semsurf_cli_usage(calibrate_fit "has no channel 'TE'.*Choose of: L" calibrate four.png --pixel-size 1nm --images four.png --fit TE -o fit.json)
 semsurf_cli_usage(calibrate_ratio "it is of two channels, not of 1" calibrate four.png --pixel-size 1nm --images four.png --fit L --ratio 2 -o fit.json)
-semsurf_cli_usage(calibrate_range "--range: '0nm' is not above 0" calibrate four.png --images four.png --range 0nm -o fit.json)
+semsurf_cli_usage(calibrate_range "--range: '0nm' is out of range. Give a length above 0nm" calibrate four.png --images four.png --range 0nm -o fit.json)
 semsurf_cli_usage(calibrate_white "--white: it is not above --black" calibrate four.png --images four.png --black 9 --white 3 -o fit.json)
 semsurf_cli_unusable(calibrate_scale "Give their size with --pixel-size" calibrate four.png --images four.png -o fit.json)
 semsurf_cli_unusable(calibrate_size "register and resample one first" calibrate steps.txt --images four.png -o fit.json)

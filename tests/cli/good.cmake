@@ -301,7 +301,8 @@ semsurf_cli_test(tip.characterizer ARGS tip steps.txt --characterizer steps.txt 
 # SEM: a model's images against a microscope's.
 semsurf_cli_test(help.calibrate ARGS calibrate --help STDOUT "--images FILE" "--range LENGTH" "Exit code 4" "Examples:")
 semsurf_cli_test(calibrate ARGS calibrate four.png --pixel-size 1nm --images four.png --fit L --range 2nm -o fit.json --residual fit.exr
-  STDOUT "gain L +1 ± " "condition +1" "100\\.00 % of the variance" WRITES fit.json fit.exr INFO fit.exr "calibrated")
+  STDOUT "gain L +1 ± " "condition +1" "100\\.00 % of the variance" WRITES fit.json fit.exr INFO fit.exr "calibrated" "option.calibration.range_nm +2" "option.calibration.fit +L" "option.scan.pixel_size_nm +1"
+  "option.calibration.edge +mirror")
 semsurf_cli_test(calibrate.model EXIT 4 ARGS calibrate steps.txt steps.txt --pixel-size 3nm --model secant.json -o fit.json
   STDERR "cannot be told apart: SE and BSE have a correlation of 1\\.0000.*fix the ratio" STDOUT "condition +infinite" WRITES fit.json)
 semsurf_cli_test(calibrate.ratio ARGS calibrate four.png four.txt --pixel-size 3nm --model secant.json --ratio 0.5 -q -o fit.json
