@@ -30,7 +30,7 @@ namespace {
 
 constexpr double same_pitch = 1e-3;   // relative: as models ask of fields
 
-void check_same_pixels(const Image& real, const Image& simulated, const CalibrateOptions& o) {
+void check_same_pixels(const Image& real, const Image& simulated, const CalibrateParameters& o) {
   const std::string& other = o.images ? *o.images : o.heights;
   constexpr const char* remedy = "They have to show the same surface pixel on pixel: register and resample one first";
   if (real.width() != simulated.width() || real.height() != simulated.height())
@@ -59,14 +59,14 @@ void add_channels(CalibrationImages& images, const Image& simulated, const Calib
   if (wanted.empty())
     throw UsageError(file, "it has no channel SE or BSE", "Say which of its channels to fit with --fit");
   if (!p.options.ratios.empty() && wanted.size() != 2)
-    throw UsageError("--ratio", fmt::format("it is of two channels, not of {}", wanted.size()),
+    throw UsageError("`calibration.ratio`", fmt::format("it is of two channels, not of {}", wanted.size()),
                      "Fit two channels, or leave it out");
   for (const std::string& name : wanted) {
     const Channel* channel = simulated.find(name);
     if (!channel) {
       std::vector<std::string> names;
       for (const Channel& c : simulated.channels) names.push_back(c.name);
-      throw UsageError("--fit", fmt::format("{} has no channel '{}'", file, name),
+      throw UsageError("`calibration.fit`", fmt::format("{} has no channel '{}'", file, name),
                        fmt::format("Choose of: {}", fmt::join(names, ", ")));
     }
     images.channels.push_back(name);
@@ -74,9 +74,9 @@ void add_channels(CalibrationImages& images, const Image& simulated, const Calib
   }
 }
 
-Image predicted(const CalibrateOptions& o, const CalibratePlan& p, const TrainedModel& trained) {
+Image predicted(const CalibrateParameters& o, const CalibratePlan& p, const TrainedModel& trained, bool quiet) {
   const io::HeightFieldFile scan = io::read_height_field(o.heights, {{}, {}, p.pitch.x_nm, p.pitch.y_nm});
-  if (!o.quiet)
+  if (!quiet)
     for (const std::string& note : scan.notes) print_note(fmt::format("{}: {}", o.heights, note));
   check_field(trained.scope, scan.field, o.heights.c_str());
   const auto model = make_model(trained);
@@ -102,7 +102,7 @@ void write_folded(const std::string& path, TrainedModel trained, const Calibrati
   io::write_model(path, trained);
 }
 
-Image read_real(const CalibrateOptions& o, const CalibratePlan& p, Grid<double>& real) {
+Image read_real(const CalibrateParameters& o, const CalibratePlan& p, Grid<double>& real) {
   const FileChannel input = parse_file_channel(o.image);
   io::WebImage picture = read_picture(input, p.pitch);
   if (!picture.has_scale)
@@ -156,15 +156,17 @@ void print_fit(const Calibration& c) {
   print("{:<10} {}{}\n", "pixels", c.pixels, c.saturated ? fmt::format("; {} saturated ones left out", c.saturated) : "");
 }
 
-int work(const CalibrateOptions& o) {
+int work(const CalibrateOptions& options) {
+  CalibrateParameters o;
+  options.bound.apply(o);
   const CalibratePlan plan = make_calibrate_plan(o);
   CalibrationImages images;
   const Image real = read_real(o, plan, images.real);
   std::optional<TrainedModel> model;
   if (o.model) model = io::read_model(*o.model);
   if (o.folded && !std::holds_alternative<FilterBankParameters>(model->parameters))
-    throw UsageError("--folded", "gains fold into filter banks only", "Keep the calibration beside the model");
-  const Image simulated = model ? predicted(o, plan, *model) : io::read_image(*o.images);
+    throw UsageError("`calibration.folded`", "gains fold into filter banks only", "Keep the calibration beside the model");
+  const Image simulated = model ? predicted(o, plan, *model, options.quiet) : io::read_image(*o.images);
   check_same_pixels(real, simulated, o);
   add_channels(images, simulated, plan, model ? *o.model : *o.images);
   HeightField place;
@@ -177,13 +179,13 @@ int work(const CalibrateOptions& o) {
   if (o.model) inputs.push_back(o.heights);
   for (const auto& input : {o.images, o.model, o.masks.use, o.masks.exclude})
     if (input) inputs.push_back(*input);
-  const auto made = workflow::step_record("calibrate", recorded(o), {inputs.begin(), inputs.end()});
-  if (!o.quiet) print_fit(c);
+  const auto made = workflow::step_record("calibrate", record_of(o), {inputs.begin(), inputs.end()});
+  if (!options.quiet) print_fit(c);
   for (const std::string& warning : c.warnings) print_warning(warning);
   if (o.residual) write_residual(*o.residual, real, images, c, plan.range_nm, made);
   if (o.output) io::write_calibration(*o.output, {c, plan.range_nm, made});
   if (o.folded) write_folded(*o.folded, *model, c, made);
-  if (!o.quiet)
+  if (!options.quiet)
     for (const auto& file : {o.output, o.residual, o.folded})
       if (file) print("{:<10} {}\n", "written", *file);
   return c.outcome == CalibrationOutcome::trusted ? 0 : exit_untrustworthy;

@@ -2,24 +2,36 @@
 #pragma once
 
 #include <CLI/App.hpp>
-#include <map>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "afm_masks.h"
+#include "bound_parameters.h"
 #include "picture_input.h"
+#include "surf/core/edge.h"
+#include "surf/io/sem_file.h"
+#include "surf/mc/simulate.h"
 #include "surf/sem/calibration.h"
 #include "surf/sem/image_model.h"
 
 namespace surf::cli {
 
-/// Everything `calibrate` is told, as text; absent: not given.
-struct CalibrateOptions {
+/// What `calibrate` is told. Empty: not given.
+struct CalibrateParameters {
   std::string image, heights;
-  std::optional<std::string> pixel_size, images, model, edge, folded, threads;
-  std::optional<std::string> fit, ratio, offset, black, white, range, output, residual;
+  std::optional<std::string> images, model, output, residual, folded;
+  std::vector<std::string> fit;            ///< channels; empty: SE and BSE, those that are there
+  std::optional<double> ratio, offset, black, white, range_nm;
+  Edge edge = Edge::mirror;
+  io::SemReadOptions reading;              ///< its pixel size, of files that do not say
   MaskInput masks;
+  mc::Execution execution;
+};
+void describe(ParameterVisitor& visit, CalibrateParameters& parameters);
+
+struct CalibrateOptions {
+  BoundParameters bound;
   bool quiet = false;
 };
 
@@ -35,9 +47,6 @@ struct CalibratePlan {
 void add_calibrate_options(CLI::App& app, CalibrateOptions& options);
 
 /// Throws UsageError, FileError for outputs that cannot be written.
-CalibratePlan make_calibrate_plan(const CalibrateOptions& options);
-
-/// What a file that was made should tell of the options.
-std::map<std::string, std::string> recorded(const CalibrateOptions& options);
+CalibratePlan make_calibrate_plan(const CalibrateParameters& parameters);
 
 }  // namespace surf::cli

@@ -309,7 +309,8 @@ semsurf_cli_test(tip.characterizer ARGS tip steps.txt --characterizer steps.txt 
 # SEM: a model's images against a microscope's.
 semsurf_cli_test(help.calibrate ARGS calibrate --help STDOUT "--images FILE" "--range LENGTH" "Exit code 4" "Examples:")
 semsurf_cli_test(calibrate ARGS calibrate four.png --pixel-size 1nm --images four.png --fit L --range 2nm -o fit.json --residual fit.exr
-  STDOUT "gain L +1 ± " "condition +1" "100\\.00 % of the variance" WRITES fit.json fit.exr INFO fit.exr "calibrated")
+  STDOUT "gain L +1 ± " "condition +1" "100\\.00 % of the variance" WRITES fit.json fit.exr INFO fit.exr "calibrated" "option.calibration.range_nm +2" "option.calibration.fit +L" "option.scan.pixel_size_nm +1"
+  "option.calibration.edge +mirror")
 semsurf_cli_test(calibrate.model EXIT 4 ARGS calibrate steps.txt steps.txt --pixel-size 3nm --model secant.json -o fit.json
   STDERR "cannot be told apart: SE and BSE have a correlation of 1\\.0000.*fix the ratio" STDOUT "condition +infinite" WRITES fit.json)
 semsurf_cli_test(calibrate.ratio ARGS calibrate four.png four.txt --pixel-size 3nm --model secant.json --ratio 0.5 -q -o fit.json
@@ -374,12 +375,15 @@ semsurf_cli_test(train.signal ARGS train four.txt --height-pitch 3nm --signal fo
   STDOUT "gives signal" WRITES four.json)
 semsurf_cli_test(train.interrupted EXIT 130 INTERRUPT ARGS train --pixel-size 3nm --electrons 100000 --kind secant -o si.json
   STDERR "stopped: there is no model yet.*same command goes on")
-semsurf_cli_test(predict.scan ARGS predict steps.txt --pitch 3nm --model secant.json --material Si --energy 1keV -o image.exr -o image.png
+semsurf_cli_test(predict.scan ARGS predict steps.txt --height-pitch 3nm --model secant.json --material Si --energy 1keV -o image.exr -o image.png
   STDOUT "model +slope. gives SE and BSE" "image +[0-9]+ x [0-9]+ pixels of 3.00 nm" "SE +[0-9.]+ to"
   WRITES image.exr image.png INFO image.exr "model +secant.json sha256")
+semsurf_cli_test(predict.former_names ARGS predict steps.txt --pitch 3nm --z-unit 20nm --channel BSE --model secant.json -q -o image.tif
+  WRITES image.tif INFO image.tif "option.scan.height_pitch_nm +3" "option.scan.height_unit_nm +20" "option.output.png_channel +BSE"
+  "option.prediction.edge +mirror" "option.prediction.resample +off")
 semsurf_cli_test(predict.scene ARGS predict "${PROJECT_SOURCE_DIR}/samples/mesa80.toml" --model secant.json --resample -o mesa.vti
   STDERR "are resampled to" WRITES mesa.vti)
-semsurf_cli_test(predict.steep ARGS predict steps.txt --pitch 3nm --z-unit 20nm --model secant.json -q -o image.tif
+semsurf_cli_test(predict.steep ARGS predict steps.txt --height-pitch 3nm --height-unit 20nm --model secant.json -q -o image.tif
   STDOUT "^$" STDERR "warning: .* steeper than the 70 degrees" WRITES image.tif)
 semsurf_cli_test(info.model ARGS info secant.json STDOUT "image model" "for +Si, 1 keV" "warning +few pixels" "all learnt from")
 

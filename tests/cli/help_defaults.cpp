@@ -205,8 +205,7 @@ std::vector<Default> others() {
   return {
       {scans, "--height-pitch", "1 nm"},
       {chains, "--height-pitch", "1 nm"},
-      {{"mesh", "view"}, "--height-pitch", "1 nm"},
-      {{"predict"}, "--pitch", "1nm"},
+      {{"mesh", "view", "predict"}, "--height-pitch", "1 nm"},
       {{"chart"}, "--draws", "10; with --quick 3"},
       {{"noise sem"}, "--block", "16, 12 or 8"},
       {{"mesh"}, "--stitch", "1e-6 of the diagonal"},

@@ -19,7 +19,7 @@ def make_files():
         z += 25 / (1 + numpy.exp(numpy.clip((numpy.hypot(x - cx, 1.3 * (y - cy)) - r) * 1.5, -30, 30)))
     numpy.savetxt(FOLDER / "truth.txt", z[::-1])
     numpy.savetxt(FOLDER / "scan.txt", (z + 0.2 * chance.standard_normal(z.shape))[::-1])
-    semsurf("predict", "truth.txt", "--pitch", "3nm", "--model", MODEL, "-o", "truth.tif", "-q")
+    semsurf("predict", "truth.txt", "--height-pitch", "3nm", "--model", MODEL, "-o", "truth.tif", "-q")
     semsurf("tip", "--shape", "cone:2nm,8deg", "--tip-size", 7, "--height-pitch", "3nm", "-o", "tip.txt")
     sem = fetch(simple.SEMImageReader(FileName=str(FOLDER / "truth.tif"), Channel="SE"))
     signal = array(sem, "SE")

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <optional>
 
 #include "surf/afm/resample.h"
 #include "surf/core/error.h"
@@ -14,7 +15,11 @@
 #include "surf/io/image_file.h"
 #include "surf/io/model_file.h"
 #include "surf/io/overlaps.h"
-#include "surf/workflow/version.h"
+#include "surf/io/scan_parameters.h"
+#include "surf/mc/largest_length.h"
+#include "surf/mc/physics.h"
+#include "surf/mc/simulate.h"
+#include "surf/workflow/step_record.h"
 
 namespace surf::workflow {
 namespace {
@@ -27,15 +32,22 @@ void check_outputs(const PredictJob& job, const Image& like) {
   if (job.outputs.empty()) throw UsageError("`output`", "no output file is given", "Add `output=image.exr`");
   std::vector<io::FileUse> outputs;
   for (const fs::path& output : job.outputs) outputs.push_back({"`output`", output, {}});
-  io::refuse_overlaps({{"HEIGHTS", job.input, {}}, {"`model`", job.model, {}}}, outputs);
+  io::refuse_overlaps({{"HEIGHTS", job.input, {}}, {"`prediction.model`", job.model, {}}}, outputs);
   for (const fs::path& output : job.outputs) {
     io::check_image_target(output, &like, {job.png_channel});
     io::check_writable(output);
   }
 }
 
-const char* name_of(Edge edge) {
-  return edge == Edge::mirror ? "mirror" : edge == Edge::flat ? "flat" : "periodic";
+/// Without the heights.
+PredictJob parameters_of(const PredictJob& job) {
+  PredictJob out;
+  out.edge = job.edge;
+  out.resample = job.resample;
+  out.wanted = job.wanted;
+  out.png_channel = job.png_channel;
+  out.reading = job.reading;
+  return out;
 }
 
 HeightField at_pixel(const PredictJob& job, double pixel_nm, const NoteCallback& note) {
@@ -59,10 +71,7 @@ Image image_of(const PredictJob& job, const TrainedModel& model, const HeightFie
   for (const std::string& name : channels)
     image.channels.push_back({name, "1", Grid<float>(field.z_nm.width(), field.z_nm.height())});
   auto& made = image.metadata;
-  made["semsurf.version"] = version();
-  made["command"] = "predict";
-  made["edge"] = name_of(job.edge);
-  made["input.1"] = fmt::format("{} sha256 {}", job.input.filename().string(), io::sha256_of_file(job.input));
+  made = step_record("predict", record_of(parameters_of(job)), {job.input});
   made["model"] = fmt::format("{} sha256 {}", job.model.filename().string(), io::sha256_of_file(job.model));
   made["model.kind"] = io::kind_of(model);
   if (!model.scope.material.empty()) made["material.1.name"] = model.scope.material;
@@ -90,9 +99,40 @@ std::vector<std::string> prediction_warnings(const TrainedModel& model, const He
   return warnings;
 }
 
+void describe(ParameterVisitor& visit, PredictJob& job) {
+  visit.form({.name = "prediction.model", .help = "The model, as 'semsurf train' writes it", .form = "FILE.json",
+              .recorded = false, .file = FileRole::read},
+             [&] { return job.model.string(); },
+             [&](std::string_view text, const std::string&) { job.model = text; });
+  visit(job.edge, {"mirror", "flat", "periodic"},
+        {.name = "prediction.edge", .help = "Continuation of the heights outside", .otherwise = "mirror"});
+  visit(job.resample, {.name = "prediction.resample", .help = "Resample heights of another pitch to the model's pixels"});
+  describe(visit, job.reading);
+  visit(job.wanted.material, {.name = "specimen.material", .help = "What the surface is made of", .form = "MATERIAL"});
+  std::optional<double> energy_ev = job.wanted.energy_ev > 0 ? std::optional(job.wanted.energy_ev) : std::nullopt;
+  visit(energy_ev, {.name = "beam.energy", .help = "Energy of the beam", .unit = Unit::ev,
+                    .limits = within(mc::min_beam_energy_ev, mc::max_beam_energy_ev)});
+  job.wanted.energy_ev = energy_ev.value_or(0);
+  std::optional<double> spot_nm = job.wanted.spot_nm > 0 ? std::optional(job.wanted.spot_nm) : std::nullopt;
+  visit(spot_nm, {.name = "beam.spot", .help = "Standard deviation of the Gaussian spot", .unit = Unit::nm,
+                  .limits = within(0, mc::largest_length_nm)});
+  job.wanted.spot_nm = spot_nm.value_or(0);
+  visit.form({.name = "output", .help = "Image to write: EXR, TIFF, PNG, VTI", .form = "FILE", .recorded = false,
+              .file = FileRole::written},
+             [&] { return job.outputs.empty() ? std::string() : job.outputs.front().string(); },
+             [&](std::string_view text, const std::string&) { job.outputs.emplace_back(text); }, FieldKind::list);
+  visit(job.png_channel, {.name = "output.png_channel", .help = "Channel that PNG files show",
+                          .otherwise = "the model's first channel", .form = "NAME"});
+  mc::Execution execution;
+  execution.threads = job.threads;
+  describe(visit, execution);
+  job.threads = execution.threads;
+}
+
 PredictSummary run(const PredictJob& job, const Reporter& reporter) {
   const Watch watch = reporter.watch();
   PredictSummary summary;
+  check_parameters(parameters_of(job));
   summary.model = io::read_model(job.model);
   const ModelScope& scope = summary.model.scope;
   check_conditions(scope, job.wanted);

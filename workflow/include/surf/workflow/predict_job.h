@@ -7,7 +7,9 @@
 
 #include "surf/core/height_field.h"
 #include "surf/core/image.h"
+#include "surf/core/parameters.h"
 #include "surf/core/progress.h"
+#include "surf/io/height_field_file.h"
 #include "surf/sem/surface_range.h"
 #include "surf/sem/trained_model.h"
 #include "surf/workflow/simulate_job.h"
@@ -25,7 +27,10 @@ struct PredictJob {
   int threads = 0;
   std::vector<std::filesystem::path> outputs;   ///< formats by extension; at least one
   std::string png_channel;                 ///< for PNG; empty: the first
+  io::HeightReadOptions reading;           ///< how `input` was read: of the record
 };
+/// prediction.model, prediction.edge and so on; not the heights.
+void describe(ParameterVisitor& visit, PredictJob& job);
 
 struct PredictSummary {
   TrainedModel model;
