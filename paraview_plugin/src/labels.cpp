@@ -13,9 +13,12 @@ namespace surf::pv {
 namespace {
 
 /// What a property is called that is not called as the field is.
-const std::map<std::string_view, std::string> other_names{
-    {"specimen.materials", "Material File"}, {"scan.size", "Pixels"}, {"output", "Model File"}, {"training.kind", "Model"},
-    {"training.least_eigenvalue", "Cut Off"}, {"training.model_error", "Tolerance"}};
+const std::map<std::string_view, std::string> other_names{{"specimen.materials", "Material File"},
+                                                          {"scan.size", "Pixels"},
+                                                          {"output", "Model File"},
+                                                          {"training.kind", "Model"},
+                                                          {"training.least_eigenvalue", "Cut Off"},
+                                                          {"training.model_error", "Tolerance"}};
 
 std::string label_of(std::string_view field) {
   if (const auto other = other_names.find(field); other != other_names.end()) return other->second;
