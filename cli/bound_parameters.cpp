@@ -113,7 +113,9 @@ void BoundParameters::declare(CLI::App& app, const std::string& group, const Par
             all.insert(all.end(), texts.begin(), texts.end());
           },
           help);
-      option->type_name(form_of(about, field))->option_text(form_of(about, field))->allow_extra_args(look.positional && field.kind() == FieldKind::list);
+      option->type_name(form_of(about, field))
+          ->option_text(form_of(about, field))
+          ->allow_extra_args(look.positional && field.kind() == FieldKind::list);
       if (look.positional) option->expected(field.kind() == FieldKind::list ? -1 : 1)->required(false);
       else if (field.kind() != FieldKind::list) option->expected(1)->multi_option_policy(CLI::MultiOptionPolicy::Throw);
       else option->expected(1)->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);

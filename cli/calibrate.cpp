@@ -165,7 +165,8 @@ int work(const CalibrateOptions& options) {
   std::optional<TrainedModel> model;
   if (o.model) model = io::read_model(*o.model);
   if (o.folded && !std::holds_alternative<FilterBankParameters>(model->parameters))
-    throw UsageError("`calibration.folded`", "gains fold into filter banks only", "Keep the calibration beside the model");
+    throw UsageError("`calibration.folded`", "gains fold into filter banks only",
+                     "Keep the calibration beside the model");
   const Image simulated = model ? predicted(o, plan, *model, options.quiet) : io::read_image(*o.images);
   check_same_pixels(real, simulated, o);
   add_channels(images, simulated, plan, model ? *o.model : *o.images);

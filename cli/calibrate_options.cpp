@@ -59,15 +59,21 @@ void describe(ParameterVisitor& visit, CalibrateParameters& p) {
   };
   file(p.image, "calibration.image", "The image of a microscope", FileRole::read);
   file(p.heights, "calibration.heights", "The surface that IMAGE shows, for a model", FileRole::read);
-  file(p.images, "calibration.images", "Simulated images of the same surface, as of 'semsurf simulate'", FileRole::read);
+  file(p.images, "calibration.images", "Simulated images of the same surface, as of 'semsurf simulate'",
+       FileRole::read);
   file(p.model, "calibration.model", "Model that images HEIGHTS, as of 'semsurf train'", FileRole::read, "FILE.json");
-  visit(p.edge, {"mirror", "flat", "periodic"}, {.name = "calibration.edge", .help = "Continuation of HEIGHTS outside"});
-  describe_some(visit, p.reading, {{"scan.pixel_size", "Size of pixels, of files that do not say, 2nm or 2nmx3nm", "as they say"}});
+  visit(p.edge, {"mirror", "flat", "periodic"},
+        {.name = "calibration.edge", .help = "Continuation of HEIGHTS outside"});
+  describe_some(visit, p.reading,
+                {{"scan.pixel_size", "Size of pixels, of files that do not say, 2nm or 2nmx3nm", "as they say"}});
   NamesField fit(p.fit);
-  visit.visit({.name = "calibration.fit", .help = "Simulated channels to fit", .otherwise = "SE,BSE, those that are there",
+  visit.visit({.name = "calibration.fit",
+               .help = "Simulated channels to fit",
+               .otherwise = "SE,BSE, those that are there",
                .form = "NAMES"},
               fit);
-  visit(p.ratio, {.name = "calibration.ratio", .help = "Gain of the second channel over the first's, where it is known"});
+  visit(p.ratio,
+        {.name = "calibration.ratio", .help = "Gain of the second channel over the first's, where it is known"});
   visit(p.offset, {.name = "calibration.offset", .help = "What the image shows without a signal, where it is known"});
   visit(p.black, {.name = "calibration.black", .help = "Level from which pixels downwards are saturated and left out"});
   visit(p.white, {.name = "calibration.white", .help = "Level from which pixels upwards are saturated and left out"});
@@ -119,10 +125,18 @@ CalibratePlan make_calibrate_plan(const CalibrateParameters& o) {
 
 void add_calibrate_options(CLI::App& app, CalibrateOptions& o) {
   const char *options = "Options", *fitting = "Fit", *output = "Output";
-  o.bound.headings = {{"calibration", fitting},       {"calibration.image", options},    {"calibration.heights", options},
-                      {"calibration.images", options}, {"calibration.model", options},   {"calibration.edge", options},
-                      {"scan", fitting},               {"scan.pixel_size", options},     {"calibration.range", output},
-                      {"output", output},              {"calibration.residual", output}, {"calibration.folded", output},
+  o.bound.headings = {{"calibration", fitting},
+                      {"calibration.image", options},
+                      {"calibration.heights", options},
+                      {"calibration.images", options},
+                      {"calibration.model", options},
+                      {"calibration.edge", options},
+                      {"scan", fitting},
+                      {"scan.pixel_size", options},
+                      {"calibration.range", output},
+                      {"output", output},
+                      {"calibration.residual", output},
+                      {"calibration.folded", output},
                       {"job", output}};
   o.bound.looks["calibration.image"] = {.name = "IMAGE", .positional = true};
   o.bound.looks["calibration.heights"] = {.name = "HEIGHTS", .positional = true};

@@ -50,9 +50,9 @@ Tip read_tip_option(std::string text, int size, const HeightField& scan) {
   if (!shape) return io::read_tip(text);
   const int shorter = std::min(scan.z_nm.width(), scan.z_nm.height());
   const int usual = std::min(41, shorter / 2 * 2 - 1);
-  return workflow::tip_by_shape({workflow::parse_tip_shape(text, "`reconstruction.tip`"), size ? size : usual, scan.pitch_x_nm,
-                                 scan.pitch_y_nm},
-                                "`reconstruction.tip`");
+  return workflow::tip_by_shape(
+      {workflow::parse_tip_shape(text, "`reconstruction.tip`"), size ? size : usual, scan.pitch_x_nm, scan.pitch_y_nm},
+      "`reconstruction.tip`");
 }
 
 void take_level(const ChainOptions& o, workflow::LevelParameters& level) {
@@ -69,18 +69,24 @@ PlacedImage place_of(const HeightField& f) { return {f.z_nm, f.valid, f.pitch_x_
 }  // namespace
 
 void describe(ParameterVisitor& visit, ChainFiles& files) {
-  visit(files.afm, {.name = "reconstruction.afm", .help = "The AFM scan, of any format", .form = "FILE", .file = FileRole::read});
+  visit(files.afm,
+        {.name = "reconstruction.afm", .help = "The AFM scan, of any format", .form = "FILE", .file = FileRole::read});
   visit(files.sem, {.name = "reconstruction.sem", .help = "The SEM image", .form = "FILE", .file = FileRole::read});
-  visit(files.tip, {.name = "reconstruction.tip", .help = "The tip: a file, or a shape as in 'semsurf tip', cone:10nm,15deg",
-                    .otherwise = "found blindly, taken as round", .form = "FILE|SHAPE", .file = FileRole::read});
+  visit(files.tip, {.name = "reconstruction.tip",
+                    .help = "The tip: a file, or a shape as in 'semsurf tip', cone:10nm,15deg",
+                    .otherwise = "found blindly, taken as round",
+                    .form = "FILE|SHAPE",
+                    .file = FileRole::read});
   visit(files.material, {.name = "specimen.material", .help = "What the specimen is made of", .form = "MATERIAL"});
   visit(files.materials, {.name = "specimen.materials", .help = "File of your own materials (TOML)", .form = "FILE",
                           .file = FileRole::read});
-  visit(files.landmarks,
-        {.name = "registration.landmarks",
-         .help = "Places seen in both images, to start from: CSV with a first line sem_x_px,sem_y_px,afm_x_px,afm_y_px, or _nm, "
-                 "or sem_col_px,sem_row_px counted from the top left",
-         .otherwise = "none are needed", .form = "FILE.csv", .file = FileRole::read});
+  visit(files.landmarks, {.name = "registration.landmarks",
+                          .help = "Places seen in both images, to start from: CSV with a first line "
+                                  "sem_x_px,sem_y_px,afm_x_px,afm_y_px, or _nm, "
+                                  "or sem_col_px,sem_row_px counted from the top left",
+                          .otherwise = "none are needed",
+                          .form = "FILE.csv",
+                          .file = FileRole::read});
 }
 
 void take_afm(const ChainOptions& o, const ChainFiles& files, workflow::AfmInput& afm) {
@@ -127,7 +133,8 @@ void take_pose(const ChainOptions& o, const ChainFiles& files, const HeightField
                      fmt::format("its registration is not verified ({})", pose.transform_doubt),
                      "Look at 'semsurf register --picture'; `registration.accept_registration` takes it all the same");
   if (pose.landmarks_only && files.landmarks.empty())
-    throw UsageError("`registration.landmarks_only`", "there are no landmarks", "Add `registration.landmarks=FILE.csv`");
+    throw UsageError("`registration.landmarks_only`", "there are no landmarks",
+                     "Add `registration.landmarks=FILE.csv`");
   if (files.landmarks.empty()) return;
   pose.landmarks = io::read_landmarks(files.landmarks, sem, place_of(afm));
   fit_landmarks(pose.landmarks);   // complains of too few, or on a line, before any work
@@ -197,7 +204,8 @@ void add_chain_options(CLI::App& app, ChainOptions& o) {
   looks["reconstruction.optimiser_tolerance"] = {.former = {"--tolerance"}};
   looks["output"] = {.name = "-o,--output"};
   app.add_flag("--no-level", o.no_level, "The scan is level")->group("");
-  app.add_option("--afm-noise", o.afm_noise, "Correlation of neighbours and variance of the innovation in nm^2")->group("");
+  app.add_option("--afm-noise", o.afm_noise, "Correlation of neighbours and variance of the innovation in nm^2")
+      ->group("");
 }
 
 }  // namespace surf::cli

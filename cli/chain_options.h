@@ -29,8 +29,8 @@ struct ChainOptions {
 /// How both commands call and group parameters, and hidden options of before.
 void add_chain_options(CLI::App& app, ChainOptions& options);
 
-// What a described job cannot be told by text alone. Inputs are read, with a note of what had to be assumed unless `quiet`.
-// All throw UsageError, FileError and InvalidInput.
+// What a described job cannot be told by text alone. Inputs are read, with a note of what had to be assumed unless
+// `quiet`. All throw UsageError, FileError and InvalidInput.
 void take_afm(const ChainOptions& options, const ChainFiles& files, workflow::AfmInput& afm);
 void take_sem(const ChainOptions& options, const ChainFiles& files, workflow::SemInput& sem);
 void take_model(const ChainOptions& options, const ChainFiles& files, int threads, workflow::ModelRequest& model);

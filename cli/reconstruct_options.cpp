@@ -31,14 +31,17 @@ struct ReconstructFiles {
 };
 
 void describe(ParameterVisitor& visit, ReconstructFiles& files) {
-  visit(files.calibration, {.name = "reconstruction.calibration", .help = "Gains and offset as 'semsurf calibrate' writes them",
-                            .form = "FILE.json", .file = FileRole::read});
+  visit(files.calibration, {.name = "reconstruction.calibration",
+                            .help = "Gains and offset as 'semsurf calibrate' writes them",
+                            .form = "FILE.json",
+                            .file = FileRole::read});
   visit(files.truth, {.name = "reconstruction.truth", .help = "Heights in the SEM's frame, to compare the result with",
                       .form = "FILE", .file = FileRole::read});
 }
 
 /// Before any file is read.
-void refuse_contradictions(const BoundParameters& bound, const ReconstructFiles& files, const workflow::ReconstructJob& job) {
+void refuse_contradictions(const BoundParameters& bound, const ReconstructFiles& files,
+                           const workflow::ReconstructJob& job) {
   if (!files.calibration.empty() && job.calibration)
     throw UsageError("`reconstruction.calibration`", "gains or an offset are given, too", "Leave one of them out");
   if (job.refine_tip == true && job.options.method != ReconstructionMethod::gauss_newton)

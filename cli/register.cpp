@@ -32,8 +32,10 @@ int work(const ChainOptions& o) {
   ChainFiles files;
   workflow::RegisterJob job;
   o.bound.apply(files), o.bound.apply(job);
-  if (files.afm.empty()) throw UsageError("`reconstruction.afm`", "no scan is given", "Name one, as `reconstruction.afm=scan.gwy`");
-  if (files.sem.empty()) throw UsageError("`reconstruction.sem`", "no SEM image is given", "Name one, as `reconstruction.sem=image.tif`");
+  if (files.afm.empty())
+    throw UsageError("`reconstruction.afm`", "no scan is given", "Name one, as `reconstruction.afm=scan.gwy`");
+  if (files.sem.empty())
+    throw UsageError("`reconstruction.sem`", "no SEM image is given", "Name one, as `reconstruction.sem=image.tif`");
   if (!job.picture.empty()) io::check_plot_target(job.picture);
   take_model(o, files, job.threads, job.model);
   take_afm(o, files, job.afm);
@@ -59,7 +61,8 @@ void add_register(CLI::App& app, Action& action) {
   add_chain_options(*sub, *o);
   o->bound.looks["reconstruction.afm"] = {.former = {"AFM"}};
   o->bound.looks["reconstruction.sem"] = {.former = {"SEM"}};
-  for (const char* name : {"registration.transform", "registration.accept_registration"}) o->bound.looks[name] = {.hidden = true};
+  for (const char* name : {"registration.transform", "registration.accept_registration"})
+    o->bound.looks[name] = {.hidden = true};
   o->bound.add<ChainFiles>(*sub, "");
   o->bound.add<workflow::RegisterJob>(*sub, "");
   add_quiet_flag(*sub, o->quiet)->group("Output");

@@ -65,7 +65,8 @@ void add_images(const TrainFiles& files, workflow::TrainJob& job) {
       continue;
     }
     const FileChannel input = parse_file_channel(images[i]);
-    const std::string channel = input.channel.empty() ? io::read_image(input.file).channels.front().name : input.channel;
+    const std::string channel =
+        input.channel.empty() ? io::read_image(input.file).channels.front().name : input.channel;
     if (i > 0 && channel != job.signal)
       throw UsageError("`training.signal`", fmt::format("channel '{}' here and '{}' before", channel, job.signal),
                        "Give the same channel of each image, as FILE:CHANNEL");
@@ -79,10 +80,12 @@ void refuse_contradictions(const BoundParameters& bound, const TrainFiles& files
   if (!files.heights.empty()) {
     for (const char* name : {"training.surfaces", "training.surface_size"})
       if (bound.is_given(name))
-        throw UsageError(fmt::format("`{}`", name), "it is about semsurf's own surfaces, and HEIGHTS are given", "Leave it out");
+        throw UsageError(fmt::format("`{}`", name), "it is about semsurf's own surfaces, and HEIGHTS are given",
+                         "Leave it out");
     return;
   }
-  for (const char* name : {"training.images", "training.signal", "scan.height_channel", "scan.height_unit", "scan.height_pitch"})
+  for (const char* name :
+       {"training.images", "training.signal", "scan.height_channel", "scan.height_unit", "scan.height_pitch"})
     if (bound.is_given(name))
       throw UsageError(fmt::format("`{}`", name), "no HEIGHTS are given", "Name the surfaces, or leave it out");
 }
@@ -94,7 +97,8 @@ void refuse_without_images(const BoundParameters& bound, const TrainFiles& files
   if (kind == kinds.end() || kind->needs_images || job.surfaces || !files.heights.empty()) return;
   for (const char* name : {"training.surface_size", "simulation.electrons", "simulation.accuracy", "training.edge"})
     if (bound.is_given(name))
-      throw UsageError(fmt::format("`{}`", name), fmt::format("a model '{}' needs no images, so there are none", kind->name),
+      throw UsageError(fmt::format("`{}`", name),
+                       fmt::format("a model '{}' needs no images, so there are none", kind->name),
                        "Leave it out, or add `training.surfaces=N` to judge the model on");
 }
 
@@ -133,9 +137,11 @@ void describe(ParameterVisitor& visit, TrainFiles& files) {
                         .otherwise = "semsurf's own", .form = "FILE", .file = FileRole::read});
   visit(files.images, {.name = "training.images", .help = "Image with channels SE and BSE, one for each of HEIGHTS",
                        .form = "FILE", .file = FileRole::read});
-  visit(files.signals, {.name = "training.signal",
-                        .help = "Image of a microscope, FILE or FILE:CHANNEL, pixel on sample: the model then has its one signal",
-                        .form = "FILE", .file = FileRole::read});
+  visit(files.signals,
+        {.name = "training.signal",
+         .help = "Image of a microscope, FILE or FILE:CHANNEL, pixel on sample: the model then has its one signal",
+         .form = "FILE",
+         .file = FileRole::read});
   visit(files.material, {.name = "specimen.material", .help = "What the surfaces are made of", .otherwise = "Si",
                          .form = "MATERIAL"});
   visit(files.materials, {.name = "specimen.materials", .help = "File of your own materials (TOML)", .form = "FILE",
@@ -168,7 +174,8 @@ void add_train_options(CLI::App& app, TrainOptions& o) {
   looks["training.model_error"] = {.former = {"--tolerance"}};
   looks["scan.height_unit"] = {.former = {"--z-unit"}};
   looks["scan.height_pitch"] = {.former = {"--pitch"}};
-  const char *surfaces = "Surfaces", *images = "Images of HEIGHTS", *conditions = "What the model is for", *model = "Model";
+  const char *surfaces = "Surfaces", *images = "Images of HEIGHTS", *conditions = "What the model is for",
+             *model = "Model";
   const char *simulation = "Simulation of missing images", *options = "Options";
   o.bound.headings = {{"training", model},
                       {"training.heights", surfaces},

@@ -171,7 +171,8 @@ TEST_F(ReconstructJobTest, AFittedTipIsWrittenAndFoundAgain) {
   EXPECT_EQ(tip["profile_step_nm"], pitch);
   EXPECT_EQ(tip["profile_nm"][3], round_profile_nm(first, 0.5)[3]);
   EXPECT_EQ(tip["profile_at_the_end_nm"][3], round_profile_nm(last, 0.5)[3]);
-  EXPECT_THAT(report("result")["repeat"].get<std::string>(), AllOf(HasSubstr("first_tip.txt "), HasSubstr(" --refine-tip ")));
+  EXPECT_THAT(report("result")["repeat"].get<std::string>(),
+              AllOf(HasSubstr("first_tip.txt "), HasSubstr(" --refine-tip ")));
   // As the report says it is repeated: begun with the first tip.
   ReconstructJob again = job_;
   again.afm->preparation.tip = first;

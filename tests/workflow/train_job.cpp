@@ -162,7 +162,8 @@ TEST_F(TrainJobTest, LearnsTheSameFromAnImageAsFromItsFile) {
   Image narrow = *job.inputs[0].pixels;
   for (Channel& channel : narrow.channels) channel.values = Grid<float>(9, 16);
   job.inputs[0].pixels = std::make_shared<Image>(narrow);
-  EXPECT_THAT([&] { train(job); }, testing::ThrowsMessage<InvalidInput>(HasSubstr("the image of image: it has 9 x 16")));
+  EXPECT_THAT([&] { train(job); },
+              testing::ThrowsMessage<InvalidInput>(HasSubstr("the image of image: it has 9 x 16")));
 }
 
 TEST_F(TrainJobTest, LearnsFromTheOneSignalOfAMicroscope) {

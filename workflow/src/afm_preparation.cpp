@@ -190,7 +190,8 @@ PreparedAfm prepare_afm(const HeightField& scan, const AfmPreparationOptions& o)
     throw UsageError("`reconstruction.tip_size`", fmt::format("{} samples, but the scan has {} x {}", o.tip_size, scan.z_nm.width(),
                                                scan.z_nm.height()), fmt::format("Give {} at most", shorter - (shorter % 2 == 0)));
   if (!(height_range({&scan, 1}).span_nm() > 0))
-    throw InvalidInput("AFM scan", "all its heights are the same", "Choose the channel of heights with `scan.height_channel`");
+    throw InvalidInput("AFM scan", "all its heights are the same",
+                       "Choose the channel of heights with `scan.height_channel`");
   PreparedAfm prepared;
   level_scan(prepared, scan, o);
   find_noise(prepared, o);

@@ -70,12 +70,20 @@ std::vector<double> read_gains(std::string_view text, const std::string& subject
 }
 
 void describe_calibration(ParameterVisitor& visit, std::optional<GivenCalibration>& calibration) {
-  visit.form({.name = "reconstruction.gains", .help = "Gain of each channel of the model", .otherwise = "fitted", .form = "N,N"},
-             [&] { return calibration ? text_of(calibration->gains) : std::string(); },
-             [&](std::string_view text, const std::string& subject) { calibration = {read_gains(text, subject), 0}; });
+  visit.form(
+      {.name = "reconstruction.gains",
+       .help = "Gain of each channel of the model",
+       .otherwise = "fitted",
+       .form = "N,N"},
+      [&] { return calibration ? text_of(calibration->gains) : std::string(); },
+      [&](std::string_view text, const std::string& subject) {
+        calibration = {read_gains(text, subject), 0};
+      });
   std::optional<double> offset;
   if (calibration && !visit.reads()) offset = calibration->offset;
-  visit(offset, {.name = "reconstruction.offset", .help = "Offset of the grey levels, where gains are given", .otherwise = "0"});
+  visit(
+      offset,
+      {.name = "reconstruction.offset", .help = "Offset of the grey levels, where gains are given", .otherwise = "0"});
   if (!visit.reads() || !offset) return;
   if (!calibration)
     throw UsageError("`reconstruction.offset`", "without `reconstruction.gains` it is fitted",
@@ -89,7 +97,8 @@ void describe_tip_fit(ParameterVisitor& visit, std::optional<bool>& refine) {
   visit(keep, {.name = "reconstruction.keep_tip", .help = "Do not fit the tip that was found in the scan further"});
   if (!visit.reads()) return;
   if (keep && refine == true)
-    throw UsageError("`reconstruction.keep_tip`", "with `reconstruction.refine_tip` it contradicts itself", "Leave one of them out");
+    throw UsageError("`reconstruction.keep_tip`", "with `reconstruction.refine_tip` it contradicts itself",
+                     "Leave one of them out");
   if (keep) refine = false;
 }
 
@@ -120,7 +129,9 @@ void describe(ParameterVisitor& visit, AfmPreparationOptions& o) {
   describe(visit, o.level);
   describe_noise(visit, o.noise);
   std::optional<int> size = o.tip_size != 0 ? std::optional(o.tip_size) : std::nullopt;
-  visit(size, {.name = "reconstruction.tip_size", .help = "Samples across a tip of any shape, odd", .limits = within(3, 1001),
+  visit(size, {.name = "reconstruction.tip_size",
+               .help = "Samples across a tip of any shape, odd",
+               .limits = within(3, 1001),
                .otherwise = "a round tip of any size"});
   o.tip_size = size.value_or(0);
 }
@@ -136,10 +147,16 @@ void describe(ParameterVisitor& visit, ModelRequest& request) {
   std::optional<double> energy_ev, spot_nm;
   if (request.energy_ev > 0) energy_ev = request.energy_ev;
   if (request.spot_given) spot_nm = request.spot_nm;
-  visit(energy_ev, {.name = "beam.energy", .help = "Energy of the beam", .unit = Unit::ev,
-                    .limits = within(mc::min_beam_energy_ev, mc::max_beam_energy_ev), .otherwise = "as the model says"});
-  visit(spot_nm, {.name = "beam.spot", .help = "Standard deviation of the Gaussian spot; 0 is a point", .unit = Unit::nm,
-                  .limits = within(0, mc::largest_length_nm), .otherwise = "0nm, or as the model says"});
+  visit(energy_ev, {.name = "beam.energy",
+                    .help = "Energy of the beam",
+                    .unit = Unit::ev,
+                    .limits = within(mc::min_beam_energy_ev, mc::max_beam_energy_ev),
+                    .otherwise = "as the model says"});
+  visit(spot_nm, {.name = "beam.spot",
+                  .help = "Standard deviation of the Gaussian spot; 0 is a point",
+                  .unit = Unit::nm,
+                  .limits = within(0, mc::largest_length_nm),
+                  .otherwise = "0nm, or as the model says"});
   request.energy_ev = energy_ev.value_or(0);
   request.spot_given = spot_nm.has_value();
   request.spot_nm = spot_nm.value_or(request.spot_nm);
@@ -147,19 +164,25 @@ void describe(ParameterVisitor& visit, ModelRequest& request) {
                 {.name = "reconstruction.model", .help = "Fast model, as 'semsurf train' writes it",
                  .otherwise = "one that was kept, else one is trained and kept", .form = "FILE.json", .recorded = false,
                  .file = FileRole::read});
-  visit.form({.name = "job.cache", .help = "Folder that models are kept in; 'semsurf library --help' tells more",
-              .otherwise = "$SEMSURF_CACHE, ~/.cache/semsurf", .form = "FOLDER|off", .level = Level::advanced, .recorded = false},
-             [&] { return request.folder.parent_path().string(); },
-             [&](std::string_view text, const std::string&) {
-               const std::filesystem::path cache = io::cache_folder(std::string(text));
-               request.folder = cache.empty() ? cache : cache / "models";
-             });
+  visit.form(
+      {.name = "job.cache",
+       .help = "Folder that models are kept in; 'semsurf library --help' tells more",
+       .otherwise = "$SEMSURF_CACHE, ~/.cache/semsurf",
+       .form = "FOLDER|off",
+       .level = Level::advanced,
+       .recorded = false},
+      [&] { return request.folder.parent_path().string(); },
+      [&](std::string_view text, const std::string&) {
+        const std::filesystem::path cache = io::cache_folder(std::string(text));
+        request.folder = cache.empty() ? cache : cache / "models";
+      });
 }
 
 void describe(ParameterVisitor& visit, PoseOptions& pose) {
   visit(pose.registration.objective, {"correlation", "mutual-information"},
         {.name = "registration.objective", .help = "What is largest where the images agree"});
-  visit(pose.landmarks_only, {.name = "registration.landmarks_only", .help = "Do not refine the landmarks' map by the images"});
+  visit(pose.landmarks_only,
+        {.name = "registration.landmarks_only", .help = "Do not refine the landmarks' map by the images"});
   visit.form({.name = "registration.transform",
               .help = "Map that is known: a file as 'semsurf register' writes it, or xx,xy,x0,yx,yy,y0 in nm",
               .otherwise = "searched for", .form = "FILE.json", .file = FileRole::read},
@@ -179,10 +202,18 @@ void describe(ParameterVisitor& visit, RegisterJob& job) {
   describe(visit, job.model);
   describe(visit, job.pose);
   visit(job.afm.preparation.seed, {.name = "tip.seed", .help = "Seed of the noise that tips are judged by"});
-  describe_file(visit, job.transform, {.name = "output", .help = "The map, which 'semsurf reconstruct --transform' takes",
-                                       .form = "FILE.json", .recorded = false, .file = FileRole::written});
-  describe_file(visit, job.picture, {.name = "output.picture", .help = "Both images and squares of them in turn: .png .svg",
-                                     .form = "FILE", .recorded = false, .file = FileRole::written});
+  describe_file(visit, job.transform,
+                {.name = "output",
+                 .help = "The map, which 'semsurf reconstruct --transform' takes",
+                 .form = "FILE.json",
+                 .recorded = false,
+                 .file = FileRole::written});
+  describe_file(visit, job.picture,
+                {.name = "output.picture",
+                 .help = "Both images and squares of them in turn: .png .svg",
+                 .form = "FILE",
+                 .recorded = false,
+                 .file = FileRole::written});
   describe_threads(visit, job.threads);
 }
 
@@ -192,26 +223,31 @@ void describe(ParameterVisitor& visit, ReconstructJob& job) {
     describe(visit, *job.sem);
     describe(visit, job.model);
     describe_calibration(visit, job.calibration);
-    visit.form({.name = "reconstruction.sem_noise",
-                .help = "Variance by the grey level, a line: slope, intercept and, if it matters, least variance",
-                .otherwise = "estimated from flat places", .form = "SLOPE,INTERCEPT"},
-               [&] {
-                 const auto& n = job.sem_noise;
-                 return n ? text_of({n->slope, n->intercept, n->least_variance}) : std::string();
-               },
-               [&](std::string_view text, const std::string& subject) { job.sem_noise = read_sem_noise(text, subject); });
+    visit.form(
+        {.name = "reconstruction.sem_noise",
+         .help = "Variance by the grey level, a line: slope, intercept and, if it matters, least variance",
+         .otherwise = "estimated from flat places",
+         .form = "SLOPE,INTERCEPT"},
+        [&] {
+          const auto& n = job.sem_noise;
+          return n ? text_of({n->slope, n->intercept, n->least_variance}) : std::string();
+        },
+        [&](std::string_view text, const std::string& subject) { job.sem_noise = read_sem_noise(text, subject); });
   }
   if (job.afm && job.sem) describe(visit, job.pose);
   ReconstructionOptions options = job.options;
   options.refine_tip = job.refine_tip.value_or(false);
   describe(visit, options);
-  const std::optional<bool> refine = options.refine_tip ? std::optional(true) : job.refine_tip == true ? std::nullopt : job.refine_tip;
+  const std::optional<bool> refine = options.refine_tip       ? std::optional(true)
+                                     : job.refine_tip == true ? std::nullopt
+                                                              : job.refine_tip;
   options.refine_tip = job.options.refine_tip;
   job.options = options;
   job.refine_tip = refine;
   describe_tip_fit(visit, job.refine_tip);
   if (job.afm) {
-    visit(job.upsample, {.name = "reconstruction.upsample", .help = "Samples of the dilation in each of the scan's pixels",
+    visit(job.upsample, {.name = "reconstruction.upsample",
+                         .help = "Samples of the dilation in each of the scan's pixels",
                          .limits = within(1, 8)});
     if (visit.reads()) job.afm->preparation.seed = job.options.seed;
   }

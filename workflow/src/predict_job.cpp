@@ -106,7 +106,8 @@ void describe(ParameterVisitor& visit, PredictJob& job) {
              [&](std::string_view text, const std::string&) { job.model = text; });
   visit(job.edge, {"mirror", "flat", "periodic"},
         {.name = "prediction.edge", .help = "Continuation of the heights outside", .otherwise = "mirror"});
-  visit(job.resample, {.name = "prediction.resample", .help = "Resample heights of another pitch to the model's pixels"});
+  visit(job.resample,
+        {.name = "prediction.resample", .help = "Resample heights of another pitch to the model's pixels"});
   describe(visit, job.reading);
   visit(job.wanted.material, {.name = "specimen.material", .help = "What the surface is made of", .form = "MATERIAL"});
   std::optional<double> energy_ev = job.wanted.energy_ev > 0 ? std::optional(job.wanted.energy_ev) : std::nullopt;

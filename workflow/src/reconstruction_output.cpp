@@ -30,7 +30,8 @@ using Metadata = std::map<std::string, std::string>;
 
 std::string hash_of(const Grid<double>& values) { return io::sha256_of(std::as_bytes(std::span(values.data()))); }
 
-/// What made a file: the same for a run that is repeated from the report. `model` is the model's file as it was written.
+/// What made a file: the same for a run that is repeated from the report. `model` is the model's file as it was
+/// written.
 Metadata made_by(const ReconstructJob& job, const ReconstructSummary& s, const AfmData* afm, const SemData* sem,
                  const fs::path& model) {
   std::vector<fs::path> inputs;
@@ -38,7 +39,8 @@ Metadata made_by(const ReconstructJob& job, const ReconstructSummary& s, const A
   if (job.sem) inputs.push_back(job.sem->file);
   Metadata made = step_record("reconstruct", record_of(parameters_used(job, s, afm, sem)), inputs);
   if (afm)
-    made["tip"] = fmt::format("{} x {} samples, sha256 {}", afm->tip.z_nm.width(), afm->tip.z_nm.height(), hash_of(afm->tip.z_nm));
+    made["tip"] = fmt::format("{} x {} samples, sha256 {}", afm->tip.z_nm.width(), afm->tip.z_nm.height(),
+                              hash_of(afm->tip.z_nm));
   if (!sem) return made;
   made["model"] = fmt::format("{} sha256 {}", model.filename().string(), io::sha256_of_file(model));
   const ModelScope& scope = s.model->trained.scope;

@@ -146,7 +146,8 @@ Json options_json(ReconstructJob used) {
     if (!about.recorded || !field.given()) return;
     const std::string text = field.text();
     if (field.kind() == FieldKind::flag) json[about.key()] = text == "on";
-    else if (field.kind() == FieldKind::number || field.kind() == FieldKind::whole) json[about.key()] = Json::parse(text);
+    else if (field.kind() == FieldKind::number || field.kind() == FieldKind::whole)
+      json[about.key()] = Json::parse(text);
     else json[about.key()] = text;
   });
   return json;
@@ -185,7 +186,8 @@ ReconstructJob parameters_of(const ReconstructJob& job) {
   return out;
 }
 
-ReconstructJob parameters_used(const ReconstructJob& job, const ReconstructSummary& s, const AfmData* afm, const SemData* sem) {
+ReconstructJob parameters_used(const ReconstructJob& job, const ReconstructSummary& s, const AfmData* afm,
+                               const SemData* sem) {
   ReconstructJob used = parameters_of(job);
   used.model = {};
   used.pose = {};
@@ -207,7 +209,9 @@ std::vector<std::string> repeating_command(const ReconstructJob& job, const Reco
                                            const SemData* sem) {
   ReconstructJob used = parameters_used(job, s, afm, sem), usual;
   std::vector<std::string> words{"semsurf", "reconstruct"};
-  const auto add = [&](const std::string& option, const std::string& value) { words.insert(words.end(), {"--" + option, value}); };
+  const auto add = [&](const std::string& option, const std::string& value) {
+    words.insert(words.end(), {"--" + option, value});
+  };
   if (afm) {
     add("afm", job.afm->file.string());
     add("tip", (job.folder / (used.options.refine_tip ? "first_tip.txt" : "tip.txt")).string());

@@ -16,8 +16,8 @@ std::string reconstruction_report(const ReconstructJob& job, const ReconstructSu
 /// The job without its images: what there is to describe.
 ReconstructJob parameters_of(const ReconstructJob& job);
 
-/// The same with what was found in place of how it is found: a job that makes the same surface from the same images, tip and
-/// model. Files say this of themselves, so a run that is repeated gives the same ones.
+/// The same with what was found in place of how it is found: a job that makes the same surface from the same images,
+/// tip and model. Files say this of themselves, so a run that is repeated gives the same ones.
 ReconstructJob parameters_used(const ReconstructJob& job, const ReconstructSummary& summary, const AfmData* afm,
                                const SemData* sem);
 

@@ -77,7 +77,8 @@ std::vector<TrainingImage> read_images(const TrainJob& job, const std::vector<Tr
 
 std::map<std::string, std::string> notes_of(const TrainJob& job, const std::vector<TrainingSurface>& surfaces) {
   std::map<std::string, std::string> notes = step_record(training_command(job), record_of(job));
-  if (!surfaces.empty() && samples_per_pixel(job) > 1) notes["samples_per_pixel"] = std::to_string(samples_per_pixel(job));
+  if (!surfaces.empty() && samples_per_pixel(job) > 1)
+    notes["samples_per_pixel"] = std::to_string(samples_per_pixel(job));
   return notes;
 }
 

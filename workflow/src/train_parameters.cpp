@@ -34,7 +34,8 @@ std::vector<FacetScale> read_scales(std::string_view text, const std::string& su
   for (const int size : parse_whole_numbers(text, {.name = "scale", .help = "", .limits = within(5, 255)}, subject)) {
     const auto known = std::ranges::find(all, size, &FacetScale::size);
     if (known == all.end())
-      throw UsageError(subject, fmt::format("there is no neighbourhood of {} samples", size), "Choose among " + write_scales(all));
+      throw UsageError(subject, fmt::format("there is no neighbourhood of {} samples", size),
+                       "Choose among " + write_scales(all));
     scales.push_back(*known);
   }
   return scales;
@@ -66,7 +67,8 @@ class HiddenField final : public Field {
       if (units < 1 || units > 256)
         throw UsageError(subject, fmt::format("{} is out of range", units), "Give 1 to 256 units for each layer");
     if (layers_->size() > most_hidden_layers)
-      throw UsageError(subject, fmt::format("{} hidden layers are too many", layers_->size()), "Give 1 to 3, or 0 for none");
+      throw UsageError(subject, fmt::format("{} hidden layers are too many", layers_->size()),
+                       "Give 1 to 3, or 0 for none");
   }
 
  private:
@@ -99,8 +101,9 @@ void describe_simulation(ParameterVisitor& visit, TrainJob& job) {
                 {{"beam.energy"},
                  {"beam.spot"},
                  {"simulation.electrons", "Primaries per pixel of simulated images", usual},
-                 {"simulation.accuracy", "Standard error of every detector over the pixel's mean, in place of a number of "
-                                         "electrons"},
+                 {"simulation.accuracy",
+                  "Standard error of every detector over the pixel's mean, in place of a number of "
+                  "electrons"},
                  {"simulation.physics"},
                  {"simulation.cutoff"},
                  {"simulation.seed", "Seed of surfaces and simulations: the same seed gives the same model"}});
@@ -120,10 +123,13 @@ std::string file_name(const std::filesystem::path& path) { return path.filename(
 void describe(ParameterVisitor& visit, LearnOptions& learn) {
   const FacetNetworkFitOptions network;
   visit(learn.kind, {.name = "training.kind", .help = "Kind of model, of those below", .form = "KIND"});
-  visit.form({.name = "training.scales", .help = "Samples across the neighbourhoods of a filter bank or network, as 5,7,11",
-              .otherwise = "all ten; of a network those that the electrons' range covers", .form = "N,N..."},
-             [&] { return write_scales(learn.scales); },
-             [&](std::string_view text, const std::string& subject) { learn.scales = read_scales(text, subject); });
+  visit.form(
+      {.name = "training.scales",
+       .help = "Samples across the neighbourhoods of a filter bank or network, as 5,7,11",
+       .otherwise = "all ten; of a network those that the electrons' range covers",
+       .form = "N,N..."},
+      [&] { return write_scales(learn.scales); },
+      [&](std::string_view text, const std::string& subject) { learn.scales = read_scales(text, subject); });
   HiddenField hidden(learn.hidden);
   visit.visit({.name = "training.hidden", .help = "Units of a network's hidden layers, as 24,12; 0 is no layer",
                .otherwise = fmt::format("{}", fmt::join(network.hidden, ",")), .form = "N,N..."},
@@ -132,18 +138,20 @@ void describe(ParameterVisitor& visit, LearnOptions& learn) {
                            .limits = within(1, 100'000), .otherwise = std::to_string(network.iterations)});
   visit(learn.decay, {.name = "training.decay", .help = "How strongly large weights of a network are held back",
                       .limits = at_least(0), .otherwise = fmt::format("{:g}", network.decay)});
-  visit(learn.model_error, {.name = "training.model_error", .help = "Error that a network is expected to have besides noise",
-                            .unit = Unit::share, .limits = at_least(0),
+  visit(learn.model_error, {.name = "training.model_error",
+                            .help = "Error that a network is expected to have besides noise",
+                            .unit = Unit::share,
+                            .limits = at_least(0),
                             .otherwise = format_value(network.tolerance, Unit::share)});
   visit(learn.least_eigenvalue,
         {.name = "training.least_eigenvalue", .help = "Least eigenvalue of the components that a filter bank keeps",
          .unit = Unit::share, .limits = at_least(0), .form = "NUMBER"});
   visit(learn.multi_resolution,
         {.name = "training.multi_resolution", .help = "Wide neighbourhoods of a filter bank on fewer samples"});
-  visit(learn.table_electrons,
-        {.name = "training.table_electrons", .help = "Primaries that a table is made of: at each angle of slopes, or in all",
-         .limits = within(2, most_electrons),
-         .otherwise = fmt::format("{} at each, 10240 in all", SlopeTableOptions{}.electrons)});
+  visit(learn.table_electrons, {.name = "training.table_electrons",
+                                .help = "Primaries that a table is made of: at each angle of slopes, or in all",
+                                .limits = within(2, most_electrons),
+                                .otherwise = fmt::format("{} at each, 10240 in all", SlopeTableOptions{}.electrons)});
 }
 
 void describe(ParameterVisitor& visit, TrainJob& job) {
@@ -154,9 +162,12 @@ void describe(ParameterVisitor& visit, TrainJob& job) {
   visit(job.held_out, {.name = "training.hold_out", .help = "Number of the last surfaces that only judge the model",
                        .limits = within(0, 1000)});
   show_or_none(visit, job.fine,
-               {.name = "training.fine", .help = "Samples per pixel to simulate with, smooth between them", .limits = within(1, 8),
+               {.name = "training.fine",
+                .help = "Samples per pixel to simulate with, smooth between them",
+                .limits = within(1, 8),
                 .otherwise = "so many that they are at most a fifth of the electrons' range apart"});
-  visit(job.edge, {"mirror", "flat", "periodic"}, {.name = "training.edge", .help = "Continuation of surfaces outside"});
+  visit(job.edge, {"mirror", "flat", "periodic"},
+        {.name = "training.edge", .help = "Continuation of surfaces outside"});
   describe(visit, job.reading);
   visit.form({.name = "training.pixel_size", .help = "Size of the images' pixels, which are square", .unit = Unit::nm,
               .otherwise = "that of the first of HEIGHTS", .form = "LENGTH"},
@@ -165,10 +176,14 @@ void describe(ParameterVisitor& visit, TrainJob& job) {
              FieldKind::number);
   describe(visit, job.learn);
   describe_simulation(visit, job);
-  visit.form({.name = "job.cache", .help = "Folder that libraries of cascades are kept in, 115 MB or so for every image, or off",
-              .otherwise = "off", .form = "FOLDER|off", .recorded = false},
-             [&] { return job.cache.string(); },
-             [&](std::string_view text, const std::string&) { job.cache = io::cache_folder(std::string(text)); });
+  visit.form(
+      {.name = "job.cache",
+       .help = "Folder that libraries of cascades are kept in, 115 MB or so for every image, or off",
+       .otherwise = "off",
+       .form = "FOLDER|off",
+       .recorded = false},
+      [&] { return job.cache.string(); },
+      [&](std::string_view text, const std::string&) { job.cache = io::cache_folder(std::string(text)); });
   visit.form({.name = "output", .help = "The model to write, .json", .form = "FILE", .recorded = false,
               .file = FileRole::written},
              [&] { return job.output.string(); },
@@ -178,7 +193,9 @@ void describe(ParameterVisitor& visit, TrainJob& job) {
 
 std::string training_command(const TrainJob& job) {
   std::vector<std::string> words{"semsurf", "train"};
-  const auto add = [&words](const char* option, const std::string& value) { words.insert(words.end(), {option, value}); };
+  const auto add = [&words](const char* option, const std::string& value) {
+    words.insert(words.end(), {option, value});
+  };
   for (const TrainingInput& input : job.inputs) words.push_back(file_name(input.name));
   for (const TrainingInput& input : job.inputs) {
     if (!input.has_image()) continue;

@@ -42,7 +42,8 @@ class ScalesField final : public Field {
   void check(const std::string& subject) const override {
     for (std::size_t i = 0; i < scales_.size(); ++i)
       if (!(scales_[i] > 0) || (i > 0 && !(scales_[i] < scales_[i - 1])))
-        throw UsageError(subject, fmt::format("'{}' does not fall, or is not above 0", text()), "Give pixels, as 16,8,4,2,1");
+        throw UsageError(subject, fmt::format("'{}' does not fall, or is not above 0", text()),
+                         "Give pixels, as 16,8,4,2,1");
   }
 
  private:
@@ -67,18 +68,22 @@ void describe(ParameterVisitor& visit, ReconstructionOptions& o) {
                .otherwise = "the optimiser's own"});
   show_or_own(visit, o.curvature_prior_per_nm,
               {.name = "reconstruction.prior",
-               .help = "Expected second derivative of the surface where no image says anything, in 1/nm", .limits = above(0),
+               .help = "Expected second derivative of the surface where no image says anything, in 1/nm",
+               .limits = above(0),
                .otherwise = "0.001, more on rough ground"});
   show_unless(visit, o.refine_transform,
               {.name = "reconstruction.fixed_transform", .help = "Do not fit the map further with the surface"});
-  show_unless(visit, o.refine_calibration,
-              {.name = "reconstruction.fixed_calibration", .help = "Do not fit gains and offset further with the surface"});
-  visit(o.refine_tip, {.name = "reconstruction.refine_tip", .help = "Fit the tip with the surface, even one that is given"});
+  show_unless(
+      visit, o.refine_calibration,
+      {.name = "reconstruction.fixed_calibration", .help = "Do not fit gains and offset further with the surface"});
+  visit(o.refine_tip,
+        {.name = "reconstruction.refine_tip", .help = "Fit the tip with the surface, even one that is given"});
   show_unless(visit, o.uncertainty, {.name = "reconstruction.no_uncertainty",
                                      .help = "Leave out the standard deviations of heights, which take a while"});
   visit(o.probes, {.name = "reconstruction.probes", .help = "Random vectors that the uncertainty is estimated from",
                    .limits = within(2, 100'000)});
-  visit(o.seed, {.name = "reconstruction.seed", .help = "Seed of random vectors, and of the noise that tips are judged by"});
+  visit(o.seed,
+        {.name = "reconstruction.seed", .help = "Seed of random vectors, and of the noise that tips are judged by"});
 }
 
 }  // namespace surf

@@ -17,8 +17,8 @@ void add_command_words(const Parameter& about, const Field& field, const std::st
                        std::vector<std::string>& words);
 }  // namespace parameters_detail
 
-/// What a command line says to come from `usual` to `of`: option and value of every recorded parameter that differs, the
-/// option named by the last part of the parameter's name, "--working-distance".
+/// What a command line says to come from `usual` to `of`: option and value of every recorded parameter that differs,
+/// the option named by the last part of the parameter's name, "--working-distance".
 template <class Struct>
 std::vector<std::string> command_words(const Struct& of, const Struct& usual = {}, const OptionNames& names = {}) {
   Struct from = usual, to = of;   // a description may change what it describes

@@ -103,8 +103,8 @@ struct TrainJob {
   io::HeightReadOptions reading;         ///< how the files of `inputs` were read
   std::vector<std::filesystem::path> material_files;   ///< where materials of one's own were looked for
 };
-/// The options of learning, training.surfaces and so on, scan.height_unit and so on, and of the simulation what a model is
-/// for and how much is simulated.
+/// The options of learning, training.surfaces and so on, scan.height_unit and so on, and of the simulation what a model
+/// is for and how much is simulated.
 void describe(ParameterVisitor& visit, TrainJob& job);
 
 /// The command that trains the same model, without folders of files: of the record.
