@@ -109,7 +109,7 @@ EmbreeScene::EmbreeScene(SceneMesh all, const Watch& watch) : impl_(std::make_un
   impl_->device = rtcNewDevice(nullptr);
   if (!impl_->device && rtcGetDeviceError(nullptr) != RTC_ERROR_UNSUPPORTED_CPU)
     throw Error("ray tracing", "Embree cannot start: memory, threads or address space are short",
-                "Raise the limits (ulimit -v, ulimit -u), or give `simulation.threads=1`");
+                "Raise the limits (ulimit -v, ulimit -u), or give `job.threads=1`");
   if (!impl_->device) throw Unsupported("ray tracing", "Embree finds no usable device", "Check that the processor has SSE2 or NEON");
   rtcSetDeviceMemoryMonitorFunction(
       impl_->device,

@@ -118,7 +118,7 @@ std::vector<BodyFacts> validate(const Specimen& specimen, const Watch& watch) {
     check_material(specimen, specimen.height_field->material, "height field");
     const std::string subject = name.empty() ? "height field" : name;
     surf::validate(specimen.height_field->field, subject.c_str());
-    check_reach(field_box(specimen.height_field->field), subject, "Check its units (`specimen.pitch`, `specimen.z_unit`)");
+    check_reach(field_box(specimen.height_field->field), subject, "Check its units (`scan.height_pitch`, `scan.height_unit`)");
   }
   std::vector<BodyFacts> facts;
   for (const Body& body : specimen.bodies) {

@@ -43,7 +43,7 @@ class Reader {
   }
   std::string_view take(std::uint64_t size) {
     if (size > rest_.size())
-      throw InvalidInput("checkpoint", "a record is cut off", "Add `output.restart` to begin anew");
+      throw InvalidInput("checkpoint", "a record is cut off", "Add `job.restart` to begin anew");
     const std::string_view taken = rest_.substr(0, size);
     rest_.remove_prefix(size);
     return taken;
@@ -139,7 +139,7 @@ void Checkpoint::resume() {
   const Identity there = read_identity(file_.read(file_.blocks().front()));
   if (const std::string what = difference(there, identity_); !what.empty())
     throw FileError(name, "is the checkpoint of another job; different: " + what,
-                    "Choose another name by `output.checkpoint=FILE`, or give up what is in it by `output.restart`");
+                    "Choose another name by `job.checkpoint=FILE`, or give up what is in it by `job.restart`");
 
   double work = 0, expected = 0;
   for (auto block = file_.blocks().begin() + 1; block != file_.blocks().end(); ++block) {

@@ -30,8 +30,8 @@ std::string sha256(const std::string& text) {
 
 [[noreturn]] void fail(const fs::path& path, const std::string& reason) {
   throw FileError(path.string(), reason,
-                  "Check its folder and the free space, choose another place by `output.checkpoint=FILE`, or "
-                  "do without by `output.checkpoint=off`");
+                  "Check its folder and the free space, choose another place by `job.checkpoint=FILE`, or "
+                  "do without by `job.checkpoint=off`");
 }
 
 std::string head_of(const std::string& content) {
@@ -133,7 +133,7 @@ void CheckpointFile::lock() {
   if (::flock(file_, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK) return;
   close();
   throw FileError(path_.string(), "another semsurf is working on the same job",
-                  "Wait until it is done, or give `output.checkpoint=off` to do the work twice");
+                  "Wait until it is done, or give `job.checkpoint=off` to do the work twice");
 }
 
 void CheckpointFile::find_blocks() {
@@ -152,7 +152,7 @@ void CheckpointFile::find_blocks() {
         !tag.starts_with(std::string_view(head).substr(0, tag.size()))) {
       close();
       throw FileError(path_.string(), "is not a checkpoint of semsurf, and is left alone",
-                      "Choose another name by `output.checkpoint=FILE`");
+                      "Choose another name by `job.checkpoint=FILE`");
     }
     const std::uint64_t size = head.size() == head_size ? size_in(head) : 0;
     if (size == 0 || size > file_size - offset - head_size) break;

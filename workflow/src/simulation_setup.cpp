@@ -51,7 +51,7 @@ ResolvedJob resolve(SimulateJob asked) {
   ResolvedJob out{std::move(asked), {}};
   mc::validate(out.scene);
   if (out.execution.tile_pixels < 1)
-    throw UsageError("`execution.tile_pixels`", fmt::format("{} is out of range", out.execution.tile_pixels), "Give 1 or more");
+    throw UsageError("`job.tile_pixels`", fmt::format("{} is out of range", out.execution.tile_pixels), "Give 1 or more");
   if (out.execution.scratch_folder.empty() && !out.outputs.empty()) {
     const fs::path folder = out.outputs.front().parent_path();
     out.execution.scratch_folder = folder.empty() ? "." : folder.string();
@@ -95,13 +95,13 @@ void check_outputs(const ResolvedJob& job) {
 void check_checkpoint(const ResolvedJob& job) {
   const CheckpointOptions& o = job.checkpoint;
   if (!(o.seconds > 0))
-    throw UsageError("`output.checkpoint_every`", "it must be above zero", "Write for example 30s");
+    throw UsageError("`job.checkpoint_every`", "it must be above zero", "Write for example 30s");
   if (!o.wanted || o.file.empty()) return;
   if (job.extras.deposit_cells > 0)
-    throw UsageError("`output.checkpoint`", "deposited energy cannot be kept on the way",
-                     "Leave out `output.checkpoint` or `output.deposit`");
+    throw UsageError("`job.checkpoint`", "deposited energy cannot be kept on the way",
+                     "Leave out `job.checkpoint` or `output.deposit`");
   std::vector<io::FileUse> outputs = outputs_of(job);
-  outputs.push_back({"`output.checkpoint`", o.file, {}});
+  outputs.push_back({"`job.checkpoint`", o.file, {}});
   io::refuse_overlaps(inputs_of(job), outputs);
   io::check_writable(o.file);
 }

@@ -102,7 +102,7 @@ StoredModel find_model(const ModelRequest& r, const Reporter& reporter) {
     throw UsageError("`specimen.material`", "it is missing, and so is `reconstruction.model`", "Say what the specimen is made of, as `specimen.material=Si`");
   if (r.folder.empty())
     throw UsageError("`reconstruction.model`", "it is missing, and there is no cache to keep a trained one in",
-                     "Train one with 'semsurf train', or name a folder with `simulation.cache`");
+                     "Train one with 'semsurf train', or name a folder with `job.cache`");
   const auto note = [&](const std::string& text) {
     reporter.note(text);
   };

@@ -131,7 +131,7 @@ void predict(const LearnOptions& learn, const std::string& id, bool needs_images
     preparation_s = read_seconds(times_of_images(training_of_images(setting)));
   }
   TrainJob job = training(setting, learn, id);
-  if (!needs_images) job.surfaces = 0;
+  if (!needs_images) job.surfaces.reset();   // none, where nothing asks for images
   Reporter reporter;
   const ProgressCallback show = part(0.5, 0.9);
   reporter.on_progress = [&](double done, double total, std::string_view things) {
