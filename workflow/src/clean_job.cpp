@@ -44,9 +44,9 @@ Spikes read_spikes(std::string_view text, const std::string& subject) {
 
 void check(const CleanParameters& p) {
   check_parameters(p);
-  if (p.spikes) odd(p.spikes->width, "clean.spikes");
-  if (p.median) odd(*p.median, "clean.median");
-  if (p.closing) odd(*p.closing, "clean.closing");
+  if (p.spikes) odd(p.spikes->width, "`clean.spikes`");
+  if (p.median) odd(*p.median, "`clean.median`");
+  if (p.closing) odd(*p.closing, "`clean.closing`");
 }
 
 }  // namespace
