@@ -23,11 +23,15 @@ OTHERS = {"io/src/afm/gwyddion_program.cpp": {"--no-log-to-file", "--convert-to-
 # Characters first: '"' begins no text. Of a comment or a text, what it says.
 SAID = re.compile(r"""'(?:[^'\\\n]|\\.)'|//(?P<line>[^\n]*)|/\*(?P<block>.*?)\*/"""
                   r"""|R"(?P<mark>\w*)\((?P<raw>.*?)\)(?P=mark)"|"(?P<text>(?:[^"\\\n]|\\.)*)\"""", re.S)
+BARE_FIELD = re.compile(r'UsageError\("([a-z_]+\.[a-z_.]+)"')   # a subject without backticks is not translated
 OPTION = re.compile(r"(?<![\w-])(?:--[a-z][a-z-]*|-o(?= [a-z]))")
 COMMAND = re.compile(r"semsurf [a-z]+\b[^'.;\n]*$")   # ends in the option that is looked at
 
 
 def faults_of(name, source):
+    for bare in BARE_FIELD.finditer(source):
+        line = source.count("\n", 0, bare.start()) + 1
+        yield f"{name}:{line}: {bare.group(1)} needs backticks to be said in the words of its reader"
     for said in SAID.finditer(source):
         for kind in ("line", "block", "raw", "text"):
             words = said.group(kind)
@@ -50,8 +54,10 @@ def faults(root):
 def self_test():
     bad = {"a.cpp": 'throw UsageError("--tilt", "91", "see");', "b.h": "int a;\n/// What --size says\nint b;",
            "c.cpp": 'f("it is semsurf\'s; give --tilt");', "d.cpp": "/* two\nlines --seed */",
-           "e.cpp": 'char c = \'"\'; f("or --unit")', "f.cpp": 'R"(as\n--unit)"'}
+           "e.cpp": 'char c = \'"\'; f("or --unit")', "f.cpp": 'R"(as\n--unit)"',
+           "fa.cpp": 'throw UsageError("tip.size", "even", "odd");'}
     good = {"g.cpp": 'for (int i = 3; i > 0; --i) f("Try: semsurf mesh {} --repair (--max-hole X fills)");',
+            "ha.cpp": 'throw UsageError("`tip.size`", file("a.txt"));',
             "h.cpp": "x = a[--top]; // `semsurf simulate --seed`", "i.cpp": 'f("a--b", "--", " -- ", --count, "--1");'}
     lines = {"b.h": 2, "d.cpp": 2, "f.cpp": 2}
     with tempfile.TemporaryDirectory() as folder:

@@ -72,7 +72,7 @@ LevelResult level(const HeightField& scan, const LevelParameters& p, const Grid<
                   const Reporter& reporter) {
   check_parameters(p);
   if (p.tolerance_nm && p.method != LevelMethod::hough)
-    throw UsageError("level.tolerance", "only the method hough has one",
+    throw UsageError("`level.tolerance`", "only the method hough has one",
                      "Leave it out, or choose `level.method=hough`");
   LevelResult result;
   result.field = scan;

@@ -50,7 +50,7 @@ HeightField morphology(MorphologyOperation operation, const HeightField& field, 
     case MorphologyOperation::open:
     case MorphologyOperation::close: break;
   }
-  if (kept_away) throw UsageError("morphology.distance", "openings and closings know none", "Leave it out");
+  if (kept_away) throw UsageError("`morphology.distance`", "openings and closings know none", "Leave it out");
   return operation == MorphologyOperation::open ? opening(field, tip, options) : closing(field, tip, options);
 }
 

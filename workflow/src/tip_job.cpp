@@ -19,7 +19,7 @@ constexpr Limits sizes = within(1, 1001);
 
 void need_odd(int size) {
   if (size % 2 == 0)
-    throw UsageError("tip.size", fmt::format("{} samples have no middle for the apex", size),
+    throw UsageError("`tip.size`", fmt::format("{} samples have no middle for the apex", size),
                      fmt::format("Ask for {}", size + 1));
 }
 
@@ -85,15 +85,15 @@ void check(const TipParameters& p, TipAnswer answer) {
   check_parameters(p);
   need_odd(p.size);
   if (answer == TipAnswer::blind && !p.threshold_nm)
-    throw UsageError("tip.threshold", "this answer needs one", "Give one, as 0.5nm, or leave out `tip.answer`");
+    throw UsageError("`tip.threshold`", "this answer needs one", "Give one, as 0.5nm, or leave out `tip.answer`");
   if (answer != TipAnswer::blind)
-    for (const auto& [given, name] : {std::pair{p.threshold_nm.has_value(), "tip.threshold"},
-                                      std::pair{p.threshold_y_nm.has_value(), "tip.threshold_y"},
-                                      std::pair{p.maxima, "tip.maxima"}, std::pair{p.layer_nm != 0, "tip.layer"},
-                                      std::pair{p.apex_tolerance_nm != 0, "tip.apex_tolerance"}})
+    for (const auto& [given, name] : {std::pair{p.threshold_nm.has_value(), "`tip.threshold`"},
+                                      std::pair{p.threshold_y_nm.has_value(), "`tip.threshold_y`"},
+                                      std::pair{p.maxima, "`tip.maxima`"}, std::pair{p.layer_nm != 0, "`tip.layer`"},
+                                      std::pair{p.apex_tolerance_nm != 0, "`tip.apex_tolerance`"}})
       if (given) throw UsageError(name, "this answer finds its own", "Leave it out, or `tip.answer`");
   if (answer != TipAnswer::sweep && !sweeps_as_usual(p))
-    throw UsageError("tip.sweep", "this answer does not sweep", "Leave it out, or `tip.answer`");
+    throw UsageError("`tip.sweep`", "this answer does not sweep", "Leave it out, or `tip.answer`");
 }
 
 // The mean of all scans' estimates.

@@ -98,7 +98,7 @@ struct TipShapeParameters {
 void describe(ParameterVisitor& visit, TipShapeParameters& parameters);
 
 /// Throws UsageError naming `subject` for shapes that are not possible.
-Tip tip_by_shape(const TipShapeParameters& parameters, const std::string& subject = "tip.shape");
+Tip tip_by_shape(const TipShapeParameters& parameters, const std::string& subject = "`tip.shape`");
 
 /// Warnings of noise that was estimated from one of the scans it is of: structure may have been taken for it.
 void tell_noise_doubts(const AfmNoise& noise, bool alpha_at_limit, const HeightField& scan, const Reporter& reporter);
