@@ -10,30 +10,19 @@ class VTKSEMSURF_EXPORT vtkSemsurfClean : public vtkSemsurfImageFilter {
   static vtkSemsurfClean* New();
   vtkTypeMacro(vtkSemsurfClean, vtkSemsurfImageFilter);
 
+  // Whether there is such a step.
   vtkSetMacro(RemoveSpikes, bool);
-  vtkSetMacro(SpikeWidth, int);      ///< samples, odd
-  vtkSetMacro(SpikeLimit, double);   ///< nm; 0: six standard deviations of the pixels' noise
   vtkSetMacro(MedianFilter, bool);
-  vtkSetMacro(MedianWidth, int);   ///< samples, odd
-  vtkSetMacro(Disc, bool);
   vtkSetMacro(Closing, bool);
-  vtkSetMacro(ClosingWidth, int);   ///< samples, odd
-  vtkSetMacro(FillHoles, bool);
+  vtkSetMacro(SpikeLimit, double);   ///< nm; 0: six standard deviations of the pixels' noise
 
  protected:
   vtkSemsurfClean() = default;
   int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
 
  private:
-  bool RemoveSpikes = true;
-  int SpikeWidth = 3;
+  bool RemoveSpikes = true, MedianFilter = false, Closing = false;
   double SpikeLimit = 0;
-  bool MedianFilter = false;
-  int MedianWidth = 3;
-  bool Disc = false;
-  bool Closing = false;
-  int ClosingWidth = 3;
-  bool FillHoles = false;
 };
 
 #endif

@@ -18,6 +18,7 @@
 #include "convert/table.h"
 #include "convert/tip.h"
 #include "pipeline.h"
+#include "property_values.h"
 #include "reports.h"
 #include "surf/core/error.h"
 #include "surf/workflow/tip_job.h"
@@ -70,18 +71,8 @@ int vtkSemsurfEstimateTip::FillOutputPortInformation(int port, vtkInformation* i
   return 1;
 }
 
-void vtkSemsurfEstimateTip::Check() const {
-  if (this->TipSize < 1 || this->TipSize > 1001 || this->TipSize % 2 == 0)
-    throw UsageError("Tip Size",
-                     fmt::format("{} is no odd number from 1 to 1001, so that there is no middle for the "
-                                 "apex",
-                                 this->TipSize),
-                     "Give 21 where in doubt");
-  if (this->Answer < Sweep || this->Answer > Blind)
-    throw UsageError("Answer", fmt::format("there is no answer {}", this->Answer), "Choose 0 to 3");
+workflow::TipParameters vtkSemsurfEstimateTip::Parameters() const {
   pv::need_length(this->Noise, "Noise");
-  pv::need_length(this->Threshold, "Threshold");
-  pv::need_length(this->ApexTolerance, "Apex Tolerance");
   for (const double nm : this->ThresholdRange) pv::need_length(nm, "Threshold Range");
   if (this->ThresholdRange[1] != 0 && this->ThresholdRange[0] >= this->ThresholdRange[1])
     throw UsageError("Threshold Range", fmt::format("{} to {} nm is no range", this->ThresholdRange[0], this->ThresholdRange[1]),
@@ -90,34 +81,36 @@ void vtkSemsurfEstimateTip::Check() const {
   if (!(std::abs(this->NoiseCorrelation) < 1))
     throw UsageError("Noise Correlation", fmt::format("{} is not between -1 and 1", this->NoiseCorrelation),
                      "Give 0");
-}
-
-workflow::TipParameters vtkSemsurfEstimateTip::Parameters() const {
   workflow::TipParameters parameters;
-  parameters.size = this->TipSize;
-  parameters.answer = static_cast<workflow::TipAnswer>(this->Answer);
-  if (this->Answer == Blind) {
-    parameters.threshold_nm = this->Threshold;
-    parameters.apex_tolerance_nm = this->ApexTolerance;
-    return parameters;
+  this->Values->apply(parameters, {"tip.answer"});
+  pv::PropertyValues values = *this->Values;
+  // What another answer takes says nothing.
+  if (parameters.answer == workflow::TipAnswer::blind) {
+    if (values.number("tip.threshold_y") < 0) values.forget("tip.threshold_y");
+  } else {
+    for (const char* of_blind : {"tip.threshold", "tip.threshold_y", "tip.apex_tolerance", "tip.layer", "tip.maxima"})
+      values.forget(of_blind);
+    const double alpha = this->NoiseCorrelation, sigma = this->Noise;
+    if (sigma > 0) parameters.noise = AfmNoise{alpha, sigma * sigma * (1 - alpha * alpha)};
   }
-  const double alpha = this->NoiseCorrelation, sigma = this->Noise;
-  if (sigma > 0) parameters.noise = AfmNoise{alpha, sigma * sigma * (1 - alpha * alpha)};
-  if (this->Answer == Sweep) {
+  if (parameters.answer == workflow::TipAnswer::sweep) {
     parameters.sweep_least_nm = this->ThresholdRange[0], parameters.sweep_most_nm = this->ThresholdRange[1];
     parameters.sweep_thresholds = this->Thresholds;
-    parameters.seed = static_cast<std::uint64_t>(this->Seed);
+  } else {
+    values.forget("tip.seed");
   }
+  values.apply(parameters);
+  workflow::check(parameters);
   return parameters;
 }
 
 int vtkSemsurfEstimateTip::RequestInformation(vtkInformation*, vtkInformationVector** inputs,
                                               vtkInformationVector* outputs) {
   return pv::attempt_information(this, outputs, [&] {
-    this->Check();
+    const int size = this->Parameters().size;
     double pitch[3] = {1, 1, 1};
     inputs[0]->GetInformationObject(0)->Get(vtkDataObject::SPACING(), pitch);
-    const int samples = std::max(this->TipSize, 2), apex = this->TipSize / 2;
+    const int samples = std::max(size, 2), apex = size / 2;
     pv::announce(outputs->GetInformationObject(0),
                  {samples, samples, pitch[0], pitch[1], -apex * pitch[0], -apex * pitch[1]});
     pv::announce_pieces(outputs->GetInformationObject(1));
@@ -127,13 +120,12 @@ int vtkSemsurfEstimateTip::RequestInformation(vtkInformation*, vtkInformationVec
 int vtkSemsurfEstimateTip::RequestData(vtkInformation*, vtkInformationVector** inputs,
                                        vtkInformationVector* outputs) {
   return pv::attempt(this, [&] {
-    this->Check();
+    const workflow::TipParameters parameters = this->Parameters();
     std::string name;
     const std::vector<HeightField> scans{this->Heights(inputs, name)};
-    if (const auto& z = scans[0].z_nm; this->TipSize > std::min(z.width(), z.height()))
-      throw UsageError("Tip Size", fmt::format("{} samples are more than the scan's {} x {}", this->TipSize, z.width(), z.height()),
+    if (const auto& z = scans[0].z_nm; parameters.size > std::min(z.width(), z.height()))
+      throw UsageError("Tip Size", fmt::format("{} samples are more than the scan's {} x {}", parameters.size, z.width(), z.height()),
                        "Give fewer");
-    const workflow::TipParameters parameters = this->Parameters();
     std::vector<std::string> warnings;
     workflow::TipResult found;
     pv::work(this,

@@ -17,16 +17,10 @@ class VTKSEMSURF_EXPORT vtkSemsurfEstimateTip : public vtkSemsurfImageFilter {
   static vtkSemsurfEstimateTip* New();
   vtkTypeMacro(vtkSemsurfEstimateTip, vtkSemsurfImageFilter);
 
-  enum Answers { Sweep, OuterBound, Best, Blind };
-  vtkSetMacro(Answer, int);
-  vtkSetMacro(TipSize, int);               ///< samples across, odd
-  vtkSetMacro(Threshold, double);          ///< nm, of Blind
-  vtkSetMacro(ApexTolerance, double);      ///< nm, of Blind
   vtkSetMacro(Noise, double);              ///< nm, standard deviation; 0: from the scan
   vtkSetMacro(NoiseCorrelation, double);   ///< of neighbours along rows, in (-1, 1), where Noise is given
   vtkSetMacro(Thresholds, int);            ///< of the sweep
   vtkSetVector2Macro(ThresholdRange, double);   ///< nm; both 0: from the noise
-  vtkSetMacro(Seed, int);
 
  protected:
   vtkSemsurfEstimateTip() { this->SetNumberOfOutputPorts(2); }
@@ -35,18 +29,13 @@ class VTKSEMSURF_EXPORT vtkSemsurfEstimateTip : public vtkSemsurfImageFilter {
   int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
 
  private:
-  void Check() const;
+  /// Throws UsageError for what cannot be.
   surf::workflow::TipParameters Parameters() const;
 
-  int Answer = Sweep;
-  int TipSize = 21;
-  double Threshold = 0.5;
-  double ApexTolerance = 0.5;
   double Noise = 0;
   double NoiseCorrelation = 0;
   int Thresholds = 40;
   double ThresholdRange[2] = {0, 0};
-  int Seed = 1;
 };
 
 #endif

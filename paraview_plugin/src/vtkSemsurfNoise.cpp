@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "vtkSemsurfNoise.h"
 
-#include <fmt/format.h>
 #include <vtkDataArray.h>
 #include <vtkImageData.h>
 #include <vtkInformation.h>
@@ -13,11 +12,10 @@
 #include <utility>
 
 #include "attempt.h"
-#include "checks.h"
 #include "convert/table.h"
 #include "pipeline.h"
+#include "property_values.h"
 #include "reports.h"
-#include "surf/core/error.h"
 #include "surf/workflow/noise_job.h"
 
 vtkStandardNewMacro(vtkSemsurfNoise);
@@ -46,6 +44,16 @@ void add_correlations(vtkTable* table, const NoiseCheck& check) {
 
 }   // namespace
 
+vtkSemsurfNoise::vtkSemsurfNoise() : Values(std::make_unique<pv::PropertyValues>()) {
+  this->SetNumberOfInputPorts(1);
+  this->SetNumberOfOutputPorts(2);
+}
+vtkSemsurfNoise::~vtkSemsurfNoise() = default;
+
+void vtkSemsurfNoise::SetParameter(const char* name, double value) {
+  if (this->Values->set(name, value)) this->Modified();
+}
+
 int vtkSemsurfNoise::FillInputPortInformation(int, vtkInformation* info) {
   info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkImageData");
   return 1;
@@ -66,15 +74,10 @@ int vtkSemsurfNoise::RequestUpdateExtent(vtkInformation*, vtkInformationVector**
 int vtkSemsurfNoise::RequestData(vtkInformation*, vtkInformationVector** inputs,
                                  vtkInformationVector* outputs) {
   return pv::attempt(this, [&] {
-    if (this->Lags < 1 || this->Lags > 1000)
-      throw UsageError("Lags", fmt::format("{} is not in 1 to 1000", this->Lags), "Give 10 where in doubt");
-    pv::need_within(this->Degree, 0, 6, "Degree");
+    workflow::ScanNoiseParameters parameters;
+    this->Values->apply(parameters);
     vtkImageData* const image = pv::image_input(inputs, 0, "Input");
     const HeightField field = pv::to_height_field(image, pv::chosen_array(this, 0, image), "Input");
-    workflow::ScanNoiseParameters parameters;
-    parameters.flat = this->Flat;
-    parameters.degree = this->Degree;
-    parameters.lags = this->Lags;
     std::vector<std::string> warnings;
     workflow::ScanNoise noise;
     pv::work(this, [&](const Watch& watch) {

@@ -4,7 +4,15 @@
 
 #include <vtkTableAlgorithm.h>
 
+#include <memory>
+
 #include <vtkSemsurfModule.h>
+
+namespace surf {
+namespace pv {
+class PropertyValues;
+}
+}   // namespace surf
 
 /// The noise of a scan along its lines, as `semsurf noise` finds it: a table of quantities, and one of
 /// correlations.
@@ -13,24 +21,19 @@ class VTKSEMSURF_EXPORT vtkSemsurfNoise : public vtkTableAlgorithm {
   static vtkSemsurfNoise* New();
   vtkTypeMacro(vtkSemsurfNoise, vtkTableAlgorithm);
 
-  vtkSetMacro(Flat, bool);    ///< all of the scan is flat
-  vtkSetMacro(Degree, int);   ///< of the polynomial taken off
-  vtkSetMacro(Lags, int);
+  /// A described parameter of that name.
+  void SetParameter(const char* name, double value);
 
  protected:
-  vtkSemsurfNoise() {
-    this->SetNumberOfInputPorts(1);
-    this->SetNumberOfOutputPorts(2);
-  }
+  vtkSemsurfNoise();
+  ~vtkSemsurfNoise() override;
   int FillInputPortInformation(int port, vtkInformation* info) override;
   int RequestUpdateExtent(vtkInformation*, vtkInformationVector** inputs, vtkInformationVector*) override;
   int RequestInformation(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
   int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
 
  private:
-  bool Flat = false;
-  int Degree = 2;
-  int Lags = 10;
+  std::unique_ptr<surf::pv::PropertyValues> Values;
 };
 
 #endif

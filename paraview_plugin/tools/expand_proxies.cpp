@@ -3,8 +3,8 @@
 // In a proxy,
 //   <Parameters of="simulation" command="SetParameter"/>      is replaced by a property for each parameter of that struct,
 //   <Parameter name="beam.tilt" .../>                         by that one, and the struct's list then leaves it out.
-// A Parameter may say what differs for ParaView: property (its name), label, default, numbers (how many), min, level, omit="1", the
-// widget's condition show_with="Budget=1", and documentation, which goes before the description's.
+// A Parameter may say what differs for ParaView: property (its name), label, default, numbers (how many), whole="1", min, max, level,
+// omit="1", the widget's condition show_with="Budget=1", and documentation, which goes before the description's.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -23,9 +23,12 @@
 #include "surf/core/parameters.h"
 #include "surf/io/sim/specimen_request.h"
 #include "surf/workflow/certainty_job.h"
+#include "surf/workflow/clean_job.h"
 #include "surf/workflow/level_job.h"
 #include "surf/workflow/morphology_job.h"
+#include "surf/workflow/noise_job.h"
 #include "surf/workflow/simulate_job.h"
+#include "surf/workflow/tip_job.h"
 
 namespace {
 
@@ -55,6 +58,9 @@ const std::map<std::string, std::function<std::vector<Described>()>>& structs() 
       {"specimen", described<io::SpecimenRequest>},
       {"extras", described<workflow::Extras>},
       {"level", described<workflow::LevelParameters>},
+      {"clean", described<workflow::CleanParameters>},
+      {"noise", described<workflow::ScanNoiseParameters>},
+      {"tip", described<workflow::TipParameters>},
       {"certainty", described<workflow::CertaintyParameters>},
       {"morphology", described<workflow::MorphologyParameters>}};
   return all;
@@ -118,10 +124,11 @@ void add_property(pugi::xml_node placeholder, Described d, const char* command) 
     return given ? std::string(given.value()) : usual;
   };
   if (said.attribute("min")) d.about.limits.low = said.attribute("min").as_double();
+  if (said.attribute("max")) d.about.limits.high = said.attribute("max").as_double();
   const std::string label = attribute("label", with_spaces(d.about.last_name()));
   const bool is_choice = d.kind == FieldKind::choice, is_flag = d.kind == FieldKind::flag;
   const int numbers = said.attribute("numbers").as_int(0);
-  const bool is_whole = d.kind == FieldKind::whole, is_number = d.kind == FieldKind::number || numbers > 0;
+  const bool is_whole = d.kind == FieldKind::whole || said.attribute("whole").as_bool(), is_number = d.kind == FieldKind::number || numbers > 0;
   const char* const element = is_choice || is_flag || is_whole ? "IntVectorProperty"
                               : is_number                      ? "DoubleVectorProperty"
                                                                : "StringVectorProperty";

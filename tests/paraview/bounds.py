@@ -38,7 +38,7 @@ def cases():
     for kind in ("Hough", "Polynomial"):
         yield "Level", lambda: simple.LevelScan(Input=scan, Method={"Hough": 0, "Polynomial": 2}[kind]), True
     yield "Clean", lambda: simple.CleanScan(Input=scan, MedianFilter=1, Closing=1), True
-    for answer, more in [("Sweep", {"Noise": 0.3, "Thresholds": 3}), ("At threshold", {}), ("Outer bound", {"Noise": 0.3})]:
+    for answer, more in [("Sweep", {"Noise": 0.3, "Thresholds": 3}), ("Blind", {}), ("Outer", {"Noise": 0.3})]:
         yield "EstimateTip", lambda: simple.EstimateTip(Input=scan, TipSize=3, Answer=answer, **more), True
     for operation in ("Erode", "Dilate", "Open", "Close"):
         yield operation, lambda: getattr(simple, f"{operation}byTip")(Input=scan, Tip=probe), True

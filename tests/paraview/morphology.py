@@ -91,11 +91,11 @@ def found_tips_equal_the_command():
         source = simple.EstimateTip(Input=scan(), TipSize=5, **properties)
         same(array(fetch(source), "z_nm"), matrix(FOLDER / "tip.txt"), f"{properties}")
         return fetch(source, 1)
-    how = check({"Answer": "At threshold", "Threshold": 0.2, "ApexTolerance": 0.1}, "--threshold", "0.2nm",
+    how = check({"Answer": "Blind", "Threshold": 0.2, "ApexTolerance": 0.1}, "--threshold", "0.2nm",
                 "--apex-tolerance", "0.1nm")
     # This scan's tip does not depend on it.
     expect(column(how, "value")[column(how, "quantity").index("apex_tolerance_nm")] == 0.1, "the apex tolerance")
-    check({"Answer": "Outer bound", "Noise": 0.1}, "--answer", "outer", "--height-noise", "0.1nm")
+    check({"Answer": "Outer", "Noise": 0.1}, "--answer", "outer", "--height-noise", "0.1nm")
     curve = check({"Noise": 0.1, "Thresholds": 10, "ThresholdRange": [0.03, 0.8]}, "--height-noise", "0.1nm",
                   "--sweep", "0.03nm,0.8nm,10")
     expect(curve.GetNumberOfRows() == 10 and column(curve, "chosen").sum() == 1, "a curve with the choice")
@@ -120,8 +120,8 @@ def outputs_tell_how_they_were_made():
 
 
 def wrong_properties_are_refused():
-    refuses_until(simple.EstimateTip(Input=scan(), TipSize=4), ["Tip Size", "odd"], TipSize=5)
-    refuses(simple.CleanScan(Input=scan(), MedianWidth=4), "Median Width", "Give 5")
+    refuses_until(simple.EstimateTip(Input=scan(), TipSize=4), ["Tip Size", "middle"], TipSize=5)
+    refuses(simple.CleanScan(Input=scan(), MedianWidth=4), "Median Width", "Give 3 or 5")
     refuses(simple.ErodebyTip(Input=scan(), Tip=tip(), Distance=-1), "Distance", "0nm or more")
     refuses(simple.CertaintyMap(Input=scan(), Tip=tip(), Sigmas=0), "Sigmas")
     refuses(simple.ErodebyTip(Input=scan(), Tip=simple.AFMTip(Samples=4)), "Samples", "odd")

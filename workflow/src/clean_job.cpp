@@ -42,13 +42,6 @@ Spikes read_spikes(std::string_view text, const std::string& subject) {
   return spikes;
 }
 
-void check(const CleanParameters& p) {
-  check_parameters(p);
-  if (p.spikes) odd(p.spikes->width, "`clean.spikes`");
-  if (p.median) odd(*p.median, "`clean.median`");
-  if (p.closing) odd(*p.closing, "`clean.closing`");
-}
-
 }  // namespace
 
 void describe(ParameterVisitor& visit, CleanParameters& p) {
@@ -73,6 +66,13 @@ void describe(ParameterVisitor& visit, CleanParameters& p) {
                     .form = "WIDTH"});
   visit(p.disc, {.name = "clean.disc", .help = "Medians of discs instead of squares"});
   visit(p.fill_holes, {.name = "clean.fill_holes", .help = "Give holes the height found for them too"});
+}
+
+void check(const CleanParameters& p) {
+  check_parameters(p);
+  if (p.spikes) odd(p.spikes->width, "`clean.spikes`");
+  if (p.median) odd(*p.median, "`clean.median`");
+  if (p.closing) odd(*p.closing, "`clean.closing`");
 }
 
 CleanResult clean(const HeightField& scan, const CleanParameters& p, const Reporter& reporter) {

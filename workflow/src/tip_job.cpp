@@ -81,21 +81,6 @@ TipAnswer answer_of(const TipParameters& p) {
   return p.answer.value_or(p.threshold_nm || p.maxima ? TipAnswer::blind : TipAnswer::sweep);
 }
 
-void check(const TipParameters& p, TipAnswer answer) {
-  check_parameters(p);
-  need_odd(p.size);
-  if (answer == TipAnswer::blind && !p.threshold_nm)
-    throw UsageError("`tip.threshold`", "this answer needs one", "Give one, as 0.5nm, or leave out `tip.answer`");
-  if (answer != TipAnswer::blind)
-    for (const auto& [given, name] : {std::pair{p.threshold_nm.has_value(), "`tip.threshold`"},
-                                      std::pair{p.threshold_y_nm.has_value(), "`tip.threshold_y`"},
-                                      std::pair{p.maxima, "`tip.maxima`"}, std::pair{p.layer_nm != 0, "`tip.layer`"},
-                                      std::pair{p.apex_tolerance_nm != 0, "`tip.apex_tolerance`"}})
-      if (given) throw UsageError(name, "this answer finds its own", "Leave it out, or `tip.answer`");
-  if (answer != TipAnswer::sweep && !sweeps_as_usual(p))
-    throw UsageError("`tip.sweep`", "this answer does not sweep", "Leave it out, or `tip.answer`");
-}
-
 // The mean of all scans' estimates.
 AfmNoise noise_of(const std::vector<HeightField>& scans, const Reporter& reporter) {
   AfmNoise mean{0, 0};
@@ -293,9 +278,25 @@ void describe(ParameterVisitor& visit, TipShapeParameters& p) {
   visit(p.size, {.name = "tip.size", .help = "Samples across the tip, odd", .limits = within(1, 4001)});
 }
 
+void check(const TipParameters& p) {
+  const TipAnswer answer = answer_of(p);
+  check_parameters(p);
+  need_odd(p.size);
+  if (answer == TipAnswer::blind && !p.threshold_nm)
+    throw UsageError("`tip.threshold`", "this answer needs one", "Give one, as 0.5nm, or leave out `tip.answer`");
+  if (answer != TipAnswer::blind)
+    for (const auto& [given, name] : {std::pair{p.threshold_nm.has_value(), "`tip.threshold`"},
+                                      std::pair{p.threshold_y_nm.has_value(), "`tip.threshold_y`"},
+                                      std::pair{p.maxima, "`tip.maxima`"}, std::pair{p.layer_nm != 0, "`tip.layer`"},
+                                      std::pair{p.apex_tolerance_nm != 0, "`tip.apex_tolerance`"}})
+      if (given) throw UsageError(name, "this answer finds its own", "Leave it out, or `tip.answer`");
+  if (answer != TipAnswer::sweep && !sweeps_as_usual(p))
+    throw UsageError("`tip.sweep`", "this answer does not sweep", "Leave it out, or `tip.answer`");
+}
+
 TipResult find_tip(const std::vector<HeightField>& scans, const TipParameters& p, const Reporter& reporter) {
   const TipAnswer answer = answer_of(p);
-  check(p, answer);
+  check(p);
   TipResult result;
   result.used = p;
   result.used.answer = answer;

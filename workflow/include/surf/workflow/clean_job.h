@@ -27,6 +27,9 @@ struct CleanParameters {
 /// clean.spikes, clean.median, clean.closing, clean.disc and clean.fill_holes.
 void describe(ParameterVisitor& visit, CleanParameters& parameters);
 
+/// Throws UsageError: ranges, and widths that are odd.
+void check(const CleanParameters& parameters);
+
 struct CleanResult {
   HeightField field;
   std::optional<CleanSummary> spikes, median, closing;

@@ -44,6 +44,9 @@ struct TipParameters {
 /// tip.size, tip.answer, scan.height_noise, tip.threshold and so on, tip.sweep as FROM,TO,N, and tip.seed.
 void describe(ParameterVisitor& visit, TipParameters& parameters);
 
+/// Throws UsageError: ranges, a size that is odd, what its answer does not take.
+void check(const TipParameters& parameters);
+
 /// scan.height_noise as a standard deviation, or with the correlation of neighbours.
 void describe_noise(ParameterVisitor& visit, std::optional<AfmNoise>& noise);
 
