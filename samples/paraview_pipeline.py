@@ -23,7 +23,7 @@ else:
 
 level = simple.LevelScan(Input=scan)
 # Of a scan with noise: Answer="Sweep" finds the threshold by itself.
-tip = simple.EstimateTip(Input=level, Answer="At threshold", Threshold=0, ApexTolerance=0, TipSize=31)
+tip = simple.EstimateTip(Input=level, Answer="Blind", Threshold=0, ApexTolerance=0, TipSize=31)
 eroded = simple.ErodebyTip(Input=level, Tip=tip)
 certain = simple.CertaintyMap(Input=level, Tip=tip)
 surface = simple.HeightFieldtoSurface(Input=eroded, Simplify=1, Tolerance=0.1)
