@@ -51,7 +51,7 @@ def main():
     sheet = simple.HeightFieldtoSurface(Input=rough(708), Curvature=0)
     sheet.UpdatePipeline()
     triangles = sheet.GetClientSideObject().GetOutputDataObject(0).GetNumberOfCells()
-    tip = simple.AFMTip(Radius=15, Samples=31, Pitch=1)
+    tip = simple.AFMTip(Radius=15, TipSize=31, Pitch=1)
     print(f"{width} x {height} samples, {triangles} triangles, {repeats} runs")
     print(f"{'':34} {'clock ms':>9} {'+ ms':>8} {'%':>6} {'processor':>11} {'+ ms':>8} {'%':>6}")
     measure("Level Scan", simple.LevelScan(Input=field), repeats)

@@ -1,8 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "surf/sem/calibration.h"
-
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -14,81 +11,36 @@
 #include "calibrate_options.h"
 #include "commands.h"
 #include "exit_codes.h"
+#include "job_reporter.h"
 #include "picture_input.h"
 #include "surf/core/error.h"
-#include "surf/core/units.h"
 #include "surf/io/calibration_file.h"
 #include "surf/io/files.h"
 #include "surf/io/image_file.h"
 #include "surf/io/model_file.h"
 #include "surf/io/height_field_file.h"
+#include "surf/workflow/calibrate_job.h"
+#include "surf/workflow/predict_job.h"
 #include "surf/workflow/step_record.h"
 #include "terminal.h"
 
 namespace surf::cli {
 namespace {
 
-constexpr double same_pitch = 1e-3;   // relative: as models ask of fields
+using workflow::CalibrateInput;
+using workflow::CalibrateParameters;
 
-void check_same_pixels(const Image& real, const Image& simulated, const CalibrateParameters& o) {
-  const std::string& other = o.images ? *o.images : o.heights;
-  constexpr const char* remedy = "They have to show the same surface pixel on pixel: register and resample one first";
-  if (real.width() != simulated.width() || real.height() != simulated.height())
-    throw InvalidInput(o.image, fmt::format("it has {} x {} pixels, {} has {} x {}", real.width(), real.height(),
-                                            other, simulated.width(), simulated.height()), remedy);
-  const auto differ = [](double a, double b) { return std::fabs(a - b) > same_pitch * b; };
-  if (differ(real.pitch_x_nm, simulated.pitch_x_nm) || differ(real.pitch_y_nm, simulated.pitch_y_nm))
-    throw InvalidInput(o.image, fmt::format("its pixels are {:.6g} x {:.6g} nm, those of {} {:.6g} x {:.6g} nm",
-                                            real.pitch_x_nm, real.pitch_y_nm, other, simulated.pitch_x_nm,
-                                            simulated.pitch_y_nm), remedy);
-}
-
-Grid<double> values(const Image& image, const Channel& channel) {
-  const Channel* valid = image.find("valid");
-  Grid<double> out(image.width(), image.height());
-  for (std::size_t i = 0; i < out.size(); ++i)
-    out.data()[i] = valid && valid->values.data()[i] == 0 ? NAN : double{channel.values.data()[i]};
-  return out;
-}
-
-void add_channels(CalibrationImages& images, const Image& simulated, const CalibratePlan& p, const std::string& file) {
-  std::vector<std::string> wanted = p.channels;
-  if (wanted.empty())
-    for (const char* usual : {"SE", "BSE"})
-      if (simulated.find(usual)) wanted.emplace_back(usual);
-  if (wanted.empty())
-    throw UsageError(file, "it has no channel SE or BSE", "Say which of its channels to fit with --fit");
-  if (!p.options.ratios.empty() && wanted.size() != 2)
-    throw UsageError("`calibration.ratio`", fmt::format("it is of two channels, not of {}", wanted.size()),
-                     "Fit two channels, or leave it out");
-  for (const std::string& name : wanted) {
-    const Channel* channel = simulated.find(name);
-    if (!channel) {
-      std::vector<std::string> names;
-      for (const Channel& c : simulated.channels) names.push_back(c.name);
-      throw UsageError("`calibration.fit`", fmt::format("{} has no channel '{}'", file, name),
-                       fmt::format("Choose of: {}", fmt::join(names, ", ")));
-    }
-    images.channels.push_back(name);
-    images.simulated.push_back(values(simulated, *channel));
-  }
-}
-
-Image predicted(const CalibrateParameters& o, const CalibratePlan& p, const TrainedModel& trained, bool quiet) {
-  const io::HeightFieldFile scan = io::read_height_field(o.heights, {{}, {}, p.pitch.x_nm, p.pitch.y_nm});
-  if (!quiet)
-    for (const std::string& note : scan.notes) print_note(fmt::format("{}: {}", o.heights, note));
-  check_field(trained.scope, scan.field, o.heights.c_str());
-  const auto model = make_model(trained);
-  const ModelImages images = model->predict(scan.field, p.model);
-  Image out;
-  out.pitch_x_nm = scan.field.pitch_x_nm, out.pitch_y_nm = scan.field.pitch_y_nm;
-  for (std::size_t c = 0; c < images.size(); ++c) {
-    out.channels.push_back({model->channels()[c], "1", Grid<float>(images[c].width(), images[c].height())});
-    for (std::size_t i = 0; i < images[c].size(); ++i)
-      out.channels.back().values.data()[i] = static_cast<float>(images[c].data()[i]);
-  }
-  return out;
+/// What a model gives for the heights, with a note of how these were read.
+Image predicted(const CalibrateFiles& o, const CalibrateParameters& p, const workflow::Reporter& reporter) {
+  workflow::PredictJob job;
+  job.model = *o.model;
+  job.input = o.heights;
+  job.edge = p.edge;
+  job.threads = o.execution.threads;
+  io::HeightFieldFile scan = io::read_height_field(o.heights, {{}, {}, o.reading.pixel_x_nm, o.reading.pixel_y_nm});
+  for (const std::string& note : scan.notes) reporter.note(fmt::format("{}: {}", o.heights, note));
+  job.field = std::move(scan.field);
+  return workflow::run(job, reporter).image;
 }
 
 /// A filter bank in the image's own units.
@@ -102,43 +54,44 @@ void write_folded(const std::string& path, TrainedModel trained, const Calibrati
   io::write_model(path, trained);
 }
 
-Image read_real(const CalibrateParameters& o, const CalibratePlan& p, Grid<double>& real) {
-  const FileChannel input = parse_file_channel(o.image);
-  io::WebImage picture = read_picture(input, p.pitch);
+CalibrateInput read_input(const CalibrateFiles& o) {
+  const FileChannel file = parse_file_channel(o.image);
+  const io::WebImage picture = read_picture(file, {o.reading.pixel_x_nm, o.reading.pixel_y_nm});
   if (!picture.has_scale)
     throw InvalidInput(o.image, "it does not say how large its pixels are", "Give their size with --pixel-size");
-  const Channel* channel = input.channel.empty() ? &picture.image.channels.front() : picture.image.find(input.channel);
-  if (!channel) channel = &picture.image.channels.front();   // by number
-  real = values(picture.image, *channel);
-  return std::move(picture.image);
+  const Image& image = picture.image;
+  const Channel* channel = file.channel.empty() ? nullptr : image.find(file.channel);
+  if (!channel) channel = &image.channels.front();   // the first, or by number
+  const Channel* const valid = image.find("valid");
+  CalibrateInput input;
+  input.name = o.image;
+  input.image = {Grid<double>(image.width(), image.height()), {}, image.pitch_x_nm, image.pitch_y_nm,
+                 image.origin_x_nm, image.origin_y_nm};
+  for (std::size_t i = 0; i < input.image.values.size(); ++i)
+    input.image.values.data()[i] = valid && valid->values.data()[i] == 0 ? NAN : double{channel->values.data()[i]};
+  HeightField place;
+  place.z_nm = input.image.values;
+  place.pitch_x_nm = image.pitch_x_nm, place.pitch_y_nm = image.pitch_y_nm;
+  place.origin_x_nm = image.origin_x_nm, place.origin_y_nm = image.origin_y_nm;
+  input.image.valid = read_masks(o.masks, place);
+  return input;
 }
 
-void write_residual(const std::string& path, const Image& like, const CalibrationImages& images,
-                    const Calibration& c, double range_nm, const std::map<std::string, std::string>& made) {
-  Grid<double> fit = calibrated_image(c, images.simulated);
-  SlowGain slow;
-  if (range_nm > 0) {
-    slow = slow_gain(images.real, fit, static_cast<int>(std::min(range_nm / like.pitch_x_nm, 1e9)),
-                     static_cast<int>(std::min(range_nm / like.pitch_y_nm, 1e9)), images.used);
-    if (slow.unknown)
-      print_warning(fmt::format("{} pixels have nothing around them to take a gain from: they are not valid in {}",
-                                slow.unknown, path));
-    for (std::size_t i = 0; i < fit.size(); ++i) fit.data()[i] *= slow.gain.data()[i];
-  }
+void write_residual(const std::string& path, const PlacedImage& like, const workflow::CalibrateResult& result,
+                    const std::map<std::string, std::string>& made) {
   Image out;
   out.pitch_x_nm = like.pitch_x_nm, out.pitch_y_nm = like.pitch_y_nm;
   out.origin_x_nm = like.origin_x_nm, out.origin_y_nm = like.origin_y_nm;
   out.metadata = made;
-  const Grid<float> none(like.width(), like.height());
+  const Grid<float> none(like.values.width(), like.values.height());
   out.channels = {{"calibrated", "1", none}, {"residual", "1", none}, {"valid", "1", none}};
-  if (range_nm > 0) out.channels.push_back({"gain", "1", none});
-  for (std::size_t i = 0; i < fit.size(); ++i) {
-    const bool known = range_nm <= 0 || slow.known.data()[i];
-    if (!known || !std::isfinite(fit.data()[i]) || !std::isfinite(images.real.data()[i])) continue;
-    out.channels[0].values.data()[i] = static_cast<float>(fit.data()[i]);
-    out.channels[1].values.data()[i] = static_cast<float>(images.real.data()[i] - fit.data()[i]);
+  if (!result.gain.empty()) out.channels.push_back({"gain", "1", none});
+  for (std::size_t i = 0; i < result.fit.size(); ++i) {
+    if (!std::isfinite(result.residual.data()[i])) continue;
+    out.channels[0].values.data()[i] = static_cast<float>(result.fit.data()[i]);
+    out.channels[1].values.data()[i] = static_cast<float>(result.residual.data()[i]);
     out.channels[2].values.data()[i] = 1;
-    if (range_nm > 0) out.channels[3].values.data()[i] = static_cast<float>(slow.gain.data()[i]);
+    if (!result.gain.empty()) out.channels[3].values.data()[i] = static_cast<float>(result.gain.data()[i]);
   }
   io::write_image(path, out);
 }
@@ -156,40 +109,42 @@ void print_fit(const Calibration& c) {
   print("{:<10} {}{}\n", "pixels", c.pixels, c.saturated ? fmt::format("; {} saturated ones left out", c.saturated) : "");
 }
 
+std::map<std::string, std::string> record(const CalibrateFiles& o, const CalibrateParameters& p) {
+  std::vector<std::filesystem::path> inputs{parse_file_channel(o.image).file};
+  if (o.model) inputs.emplace_back(o.heights);
+  for (const auto& input : {o.images, o.model, o.masks.use, o.masks.exclude})
+    if (input) inputs.emplace_back(*input);
+  return workflow::step_record("calibrate", workflow::records_of(o, p), inputs);
+}
+
 int work(const CalibrateOptions& options) {
-  CalibrateParameters o;
-  options.bound.apply(o);
-  const CalibratePlan plan = make_calibrate_plan(o);
-  CalibrationImages images;
-  const Image real = read_real(o, plan, images.real);
+  CalibrateFiles o;
+  CalibrateParameters parameters;
+  options.bound.apply(o), options.bound.apply(parameters);
+  check(o, parameters);
+  CalibrateInput input = read_input(o);
   std::optional<TrainedModel> model;
-  if (o.model) model = io::read_model(*o.model);
-  if (o.folded && !std::holds_alternative<FilterBankParameters>(model->parameters))
+  if (o.folded) model = io::read_model(*o.model);
+  if (model && !std::holds_alternative<FilterBankParameters>(model->parameters))
     throw UsageError("`calibration.folded`", "gains fold into filter banks only",
                      "Keep the calibration beside the model");
-  const Image simulated = model ? predicted(o, plan, *model, options.quiet) : io::read_image(*o.images);
-  check_same_pixels(real, simulated, o);
-  add_channels(images, simulated, plan, model ? *o.model : *o.images);
-  HeightField place;
-  place.z_nm = images.real;
-  place.pitch_x_nm = real.pitch_x_nm, place.pitch_y_nm = real.pitch_y_nm;
-  place.origin_x_nm = real.origin_x_nm, place.origin_y_nm = real.origin_y_nm;
-  images.used = read_masks(o.masks, place);
-  const Calibration c = calibrate(images, plan.options);
-  std::vector<std::string> inputs{parse_file_channel(o.image).file.string()};
-  if (o.model) inputs.push_back(o.heights);
-  for (const auto& input : {o.images, o.model, o.masks.use, o.masks.exclude})
-    if (input) inputs.push_back(*input);
-  const auto made = workflow::step_record("calibrate", record_of(o), {inputs.begin(), inputs.end()});
+  workflow::CalibrateResult result;
+  {
+    const JobReporter reporter(options.quiet);
+    input.simulated = o.model ? predicted(o, parameters, reporter) : io::read_image(*o.images);
+    input.simulated_name = o.model ? o.heights : *o.images;
+    result = workflow::calibrate(input, parameters, reporter);
+  }
+  const Calibration& c = result.calibration;
+  const auto made = record(o, parameters);
   if (!options.quiet) print_fit(c);
-  for (const std::string& warning : c.warnings) print_warning(warning);
-  if (o.residual) write_residual(*o.residual, real, images, c, plan.range_nm, made);
-  if (o.output) io::write_calibration(*o.output, {c, plan.range_nm, made});
+  if (o.residual) write_residual(*o.residual, input.image, result, made);
+  if (o.output) io::write_calibration(*o.output, {c, parameters.range_nm.value_or(0), made});
   if (o.folded) write_folded(*o.folded, *model, c, made);
   if (!options.quiet)
     for (const auto& file : {o.output, o.residual, o.folded})
       if (file) print("{:<10} {}\n", "written", *file);
-  return c.outcome == CalibrationOutcome::trusted ? 0 : exit_untrustworthy;
+  return result.trusted() ? 0 : exit_untrustworthy;
 }
 
 }  // namespace

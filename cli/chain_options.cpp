@@ -15,7 +15,6 @@
 #include "surf/core/units.h"
 #include "surf/io/cache.h"
 #include "surf/io/landmarks_file.h"
-#include "surf/io/sim/materials.h"
 #include "surf/io/tip_file.h"
 #include "surf/workflow/tip_job.h"
 #include "terminal.h"
@@ -77,9 +76,7 @@ void describe(ParameterVisitor& visit, ChainFiles& files) {
                     .otherwise = "found blindly, taken as round",
                     .form = "FILE|SHAPE",
                     .file = FileRole::read});
-  visit(files.material, {.name = "specimen.material", .help = "What the specimen is made of", .form = "MATERIAL"});
-  visit(files.materials, {.name = "specimen.materials", .help = "File of your own materials (TOML)", .form = "FILE",
-                          .file = FileRole::read});
+  describe(visit, files.material);
   visit(files.landmarks, {.name = "registration.landmarks",
                           .help = "Places seen in both images, to start from: CSV with a first line "
                                   "sem_x_px,sem_y_px,afm_x_px,afm_y_px, or _nm, "
@@ -106,13 +103,11 @@ void take_sem(const ChainOptions& o, const ChainFiles& files, workflow::SemInput
 }
 
 void take_model(const ChainOptions& o, const ChainFiles& files, int threads, workflow::ModelRequest& model) {
-  io::MaterialLibrary materials;
   std::vector<std::string> notes;
-  for (const std::string& file : files.materials) materials.read(file, notes);
-  if (files.material) model.material = materials.find(*files.material, "`specimen.material`");
+  if (!files.material.name.empty()) model.material = io::find_material(files.material, notes);
   if (!o.quiet)
     for (const std::string& note : notes) print_note(note);
-  if (model.file.empty() && !files.material)
+  if (model.file.empty() && files.material.name.empty())
     throw UsageError("`specimen.material`", "it is missing, and so is `reconstruction.model`",
                      "Say what the specimen is made of, as `specimen.material=Si`");
   if (model.file.empty() && !o.bound.is_given("beam.energy"))

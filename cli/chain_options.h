@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "bound_parameters.h"
+#include "surf/io/sim/materials.h"
 #include "surf/workflow/register_job.h"
 
 namespace surf::cli {
@@ -14,8 +15,7 @@ namespace surf::cli {
 /// Files that `register` and `reconstruct` read, and what the specimen is made of.
 struct ChainFiles {
   std::string afm, sem, landmarks, tip;
-  std::optional<std::string> material;
-  std::vector<std::string> materials;
+  io::MaterialChoice material;
 };
 void describe(ParameterVisitor& visit, ChainFiles& files);
 

@@ -62,18 +62,11 @@ struct Plan {
   std::optional<FileChannel> drape;
 };
 
-RepairOptions make_repair(const MeshParameters& p, const BoundParameters& bound) {
-  RepairOptions repair;
-  repair.stitch_nm = p.stitch_nm;
-  repair.sliver_nm = p.sliver_nm;
-  repair.max_hole_nm = p.max_hole_nm;
-  repair.min_component_nm = p.min_component_nm;
-  repair.resolve_self_intersections = !p.keep_intersections;
+void check_repair(const MeshParameters& p, const BoundParameters& bound) {
   for (const char* of_repair : {"mesh.max_hole", "mesh.stitch", "mesh.sliver", "mesh.min_component",
       "mesh.keep_intersections"})
     if (bound.is_given(of_repair) && !p.repair)
       throw UsageError(option_name(of_repair), "it is about repairs, and there are none", "Add --repair");
-  return repair;
 }
 
 MeshWork make_work(const Options& o, const Plan& plan) {
@@ -86,11 +79,10 @@ MeshWork make_work(const Options& o, const Plan& plan) {
                 ? GivenPitch{plan.reading.heights.pitch_x_nm, plan.reading.heights.pitch_y_nm}
                 : plan.pixel;
   w.scale = p.scale;
-  const RepairOptions repair = make_repair(p, o.bound);
-  if (p.repair) w.repair = repair;
+  check_repair(p, o.bound);
+  if (p.repair) w.repair = p.mending;
   w.smooth.iterations = p.smooth.value_or(0);
-  if (p.mesh_tolerance_nm) w.reduce.tolerance_nm = *p.mesh_tolerance_nm;
-  if (p.triangles) w.reduce.triangles = static_cast<std::size_t>(*p.triangles);
+  w.reduce = p.reduce;
   if (p.thickness_nm && !p.solid)
     throw UsageError("--thickness", "it is that of a solid's base", "Add --solid");
   if (p.solid) w.solid_nm = p.thickness_nm.value_or(0);

@@ -16,21 +16,10 @@ void describe(ParameterVisitor& visit, MeshParameters& p) {
              });
   visit(p.scale, {.name = "mesh.scale", .help = "Factor of all coordinates", .limits = above(0), .form = "FACTOR"});
   visit(p.repair, {.name = "mesh.repair", .help = "Merge, stitch, orient, fill holes, resolve self-intersections"});
-  visit(p.stitch_nm, {.name = "mesh.stitch", .help = "Distance of rims that are joined",
-                      .unit = Unit::nm, .limits = at_least(0), .otherwise = "1e-6 of the diagonal"});
-  visit(p.sliver_nm, {.name = "mesh.sliver", .help = "Height of triangles that are removed as too flat",
-                      .unit = Unit::nm, .limits = at_least(0)});
-  visit(p.max_hole_nm, {.name = "mesh.max_hole", .help = "Longest rim of a hole to fill",
-                        .unit = Unit::nm, .limits = at_least(0), .otherwise = "the diagonal of its component"});
-  visit(p.min_component_nm, {.name = "mesh.min_component", .help = "Size below which separate parts are dropped",
-                             .unit = Unit::nm, .limits = at_least(0)});
-  visit(p.keep_intersections, {.name = "mesh.keep_intersections", .help = "Count self-intersections only"});
+  describe(visit, p.mending);
   visit(p.smooth, {.name = "mesh.smooth", .help = "Times of Taubin smoothing",
                    .limits = within(1, 100'000), .otherwise = "none"});
-  visit(p.mesh_tolerance_nm, {.name = "mesh.mesh_tolerance", .help = "Fewer triangles, nowhere farther off than this",
-                              .unit = Unit::nm, .limits = above(0), .otherwise = "all"});
-  visit(p.triangles, {.name = "mesh.triangles", .help = "Fewer triangles, down to this many",
-                      .limits = within(4, 1e9), .otherwise = "all"});
+  describe(visit, p.reduce);
   visit(p.solid, {.name = "mesh.solid", .help = "Walls and a base under an open sheet: a closed body"});
   visit(p.thickness_nm, {.name = "mesh.thickness", .help = "Thickness of the base under the lowest place",
                          .unit = Unit::nm, .limits = above(0), .otherwise = "5 % of the longer side"});

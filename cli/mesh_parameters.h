@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <cstdint>
 #include <optional>
 
 #include "surf/core/parameters.h"
 #include "surf/io/mesh_unit.h"
 #include "surf/io/sim/specimen_request.h"
 #include "surf/mesh/repair_mesh.h"
+#include "surf/mesh/simplify_mesh.h"
 
 namespace surf::cli {
 
@@ -15,14 +15,9 @@ namespace surf::cli {
 struct MeshParameters {
   double scale = 1;
   bool repair = false;
-  std::optional<double> stitch_nm;
-  double sliver_nm = RepairOptions{}.sliver_nm;
-  std::optional<double> max_hole_nm;
-  double min_component_nm = RepairOptions{}.min_component_nm;
-  bool keep_intersections = false;
+  RepairOptions mending;                   ///< what a repair does
   std::optional<int> smooth;
-  std::optional<double> mesh_tolerance_nm;
-  std::optional<std::int64_t> triangles;
+  SimplifyOptions reduce;
   bool solid = false;
   std::optional<double> thickness_nm;
   bool plain = false;

@@ -9,11 +9,11 @@
 #include "common_options.h"
 #include "picture_input.h"
 #include "surf/core/error.h"
+#include "surf/core/some_parameters.h"
 #include "surf/core/units.h"
 #include "surf/io/files.h"
 #include "surf/io/image_file.h"
 #include "surf/io/model_file.h"
-#include "surf/io/sim/materials.h"
 #include "terminal.h"
 
 namespace surf::cli {
@@ -103,12 +103,12 @@ void refuse_without_images(const BoundParameters& bound, const TrainFiles& files
 }
 
 void add_material(const TrainFiles& files, bool quiet, workflow::TrainJob& job) {
-  io::MaterialLibrary materials;
+  io::MaterialChoice material = files.material;
   std::vector<std::string> notes;
-  for (const std::string& file : files.materials) materials.read(file, notes);
-  job.material = materials.find(files.material.empty() ? "Si" : files.material, "`specimen.material`");
-  job.material_files.assign(files.materials.begin(), files.materials.end());
-  if (files.material.empty()) notes.push_back("no --material is given: Si");
+  if (material.name.empty()) material.name = "Si";
+  job.material = io::find_material(material, notes);
+  job.material_files.assign(material.files.begin(), material.files.end());
+  if (files.material.name.empty()) notes.push_back("no --material is given: Si");
   tell(notes, quiet);
 }
 
@@ -142,10 +142,8 @@ void describe(ParameterVisitor& visit, TrainFiles& files) {
          .help = "Image of a microscope, FILE or FILE:CHANNEL, pixel on sample: the model then has its one signal",
          .form = "FILE",
          .file = FileRole::read});
-  visit(files.material, {.name = "specimen.material", .help = "What the surfaces are made of", .otherwise = "Si",
-                         .form = "MATERIAL"});
-  visit(files.materials, {.name = "specimen.materials", .help = "File of your own materials (TOML)", .form = "FILE",
-                          .level = Level::advanced, .file = FileRole::read});
+  describe_some(visit, files.material,
+                {{"specimen.material", "What the surfaces are made of", "Si"}, {"specimen.materials"}});
 }
 
 workflow::TrainJob make_train_job(const TrainOptions& o) {

@@ -6,14 +6,15 @@
 #include <vector>
 
 #include "bound_parameters.h"
+#include "surf/io/sim/materials.h"
 #include "surf/workflow/train_job.h"
 
 namespace surf::cli {
 
 /// The files that a training reads, and the name of its material.
 struct TrainFiles {
-  std::vector<std::string> heights, images, signals, materials;
-  std::string material;
+  std::vector<std::string> heights, images, signals;
+  io::MaterialChoice material;
 };
 void describe(ParameterVisitor& visit, TrainFiles& files);
 

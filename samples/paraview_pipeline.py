@@ -19,7 +19,7 @@ if scan_file:
     scan = simple.AFMScanReader(FileName=scan_file)
 else:
     grating = simple.SampleSurface(Shape="Grating", Width=400, Depth=200, FeatureHeight=30, FeatureWidth=60, Period=150)
-    scan = simple.DilatebyTip(Input=grating, Tip=simple.AFMTip(Radius=15, Samples=61, Pitch=2))
+    scan = simple.DilatebyTip(Input=grating, Tip=simple.AFMTip(Radius=15, TipSize=61, Pitch=2))
 
 level = simple.LevelScan(Input=scan)
 # Of a scan with noise: Answer="Sweep" finds the threshold by itself.

@@ -7,30 +7,30 @@
 #include <algorithm>
 #include <memory>
 
-#include "checks.h"
+#include "property_values.h"
 #include "surf/core/error.h"
 #include "surf/io/cache.h"
 #include "surf/io/sim/materials.h"
-#include "surf/mc/physics.h"
 
 namespace surf::pv {
 
-workflow::ModelRequest model_request(const std::string& file, const std::string& material, double energy_ev, double spot_nm) {
-  if (!(energy_ev >= mc::min_beam_energy_ev && energy_ev <= mc::max_beam_energy_ev))
-    throw UsageError("Energy", fmt::format("{} eV are not in 100 to 30000", energy_ev), "Give 1000 for 1 keV");
-  need_length(spot_nm, "Spot");
-  workflow::ModelRequest request;
-  request.file = file;
+const Labels chain_labels{{"`level.method`", "Level Method"},
+                          {"`level.degree`", "Level Degree"},
+                          {"`level.tolerance`", "Level Tolerance"},
+                          {"`reconstruction.model`", "Model File"}};
+
+void complete(workflow::ModelRequest& request, const PropertyValues& values) {
   const std::filesystem::path cache = io::cache_folder();
   if (!cache.empty()) request.folder = cache / "models";
-  if (!file.empty()) return request;
-  if (material.empty()) throw UsageError("Model File", "no model is named, nor a material", "Give one of the two");
-  if (cache.empty()) throw UsageError("Model File", "none is named, and there is no cache to keep one in", "Name one");
-  request.material = io::find_material(material, "Material");
-  request.energy_ev = energy_ev;
-  request.spot_nm = spot_nm;
-  request.spot_given = true;
-  return request;
+  if (!request.file.empty()) return;
+  io::MaterialChoice material;
+  values.apply(material);
+  if (material.name.empty())
+    throw UsageError("`reconstruction.model`", "no model is named, nor a material", "Give one of the two");
+  if (cache.empty())
+    throw UsageError("`reconstruction.model`", "none is named, and there is no cache to keep one in", "Name one");
+  std::vector<std::string> notes;
+  request.material = io::find_material(material, notes);
 }
 
 std::vector<LandmarkPair> landmarks_of(vtkPolyData* sem, vtkPolyData* afm) {

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "labels.h"
 #include "surf/core/progress.h"
 #include "surf/registration/landmarks.h"
 #include "surf/workflow/register_job.h"
@@ -12,8 +13,14 @@ class vtkPolyData;
 
 namespace surf::pv {
 
-/// A fast model: its file, or for a material and an energy one that was kept, else it is trained and kept.
-workflow::ModelRequest model_request(const std::string& file, const std::string& material, double energy_ev, double spot_nm);
+class PropertyValues;
+
+/// What a job's description cannot take from properties: the folder that models are kept in and, where no model is
+/// named, the material. Throws UsageError.
+void complete(workflow::ModelRequest& request, const PropertyValues& values);
+
+/// What properties of both filters are called that are not called as their fields are.
+extern const Labels chain_labels;
 
 /// Points that were picked in both views, in the same order; either may be nullptr. Throws UsageError where there are
 /// not as many of both.

@@ -17,8 +17,7 @@ const std::map<std::string_view, std::string> other_names{
     {"specimen.material", "Materials"},  {"specimen.materials", "Material File"}, {"specimen.substrate_z", "Substrate Top"},
     {"scan.size", "Pixels"},             {"output", "Model File"},                {"training.kind", "Model"},
     {"tip.size", "Tip Size"},            {"clean.spikes", "Spike Width"},         {"clean.median", "Median Width"},
-    {"clean.closing", "Closing Width"},  {"scan.height_noise", "Noise"},
-    {"training.least_eigenvalue", "Cut Off"}, {"training.model_error", "Tolerance"}};
+    {"clean.closing", "Closing Width"},  {"scan.height_noise", "Noise"}};
 
 std::string label_of(std::string_view field) {
   if (const auto other = other_names.find(field); other != other_names.end()) return other->second;

@@ -5,26 +5,30 @@
 
 #include <cmath>
 #include <cstdlib>
+#include <utility>
 
 #include "surf/core/error.h"
 #include "surf/core/units.h"
 
 namespace surf::pv {
 
-bool PropertyValues::set(const char* name, const char* text) {
-  std::string& there = texts_[name];
-  const std::string now = text ? text : "";
-  if (there == now) return false;
-  there = now;
+bool PropertyValues::keep(const std::string& name, std::string text) {
+  const std::size_t end = name.find('=');
+  if (end != name.npos && name.substr(end + 1) == text) text.clear();
+  std::string& there = texts_[name.substr(0, end)];
+  if (there == text) return false;
+  there = std::move(text);
   return true;
 }
 
-bool PropertyValues::set(const char* name, double value) { return set(name, format_exact(value).c_str()); }
+bool PropertyValues::set(const char* name, const char* text) { return keep(name, text ? text : ""); }
+
+bool PropertyValues::set(const char* name, double value) { return keep(name, format_exact(value)); }
 
 bool PropertyValues::set(const char* name, const std::vector<double>& values) {
   std::string text;
   for (const double value : values) text += (text.empty() ? "" : ",") + format_exact(value);
-  return set(name, text.c_str());
+  return keep(name, text);
 }
 
 std::string PropertyValues::text(const std::string& name) const {

@@ -13,7 +13,7 @@ namespace surf::pv {
 /// What the properties of a proxy say, by the names of the parameters that they stand for.
 class PropertyValues {
  public:
-  // Each returns whether that is something new.
+  // Each returns whether that is something new. A name may carry what says nothing: "beam.current=0".
   bool set(const char* name, const char* text);
   bool set(const char* name, double value);
   bool set(const char* name, const std::vector<double>& values);
@@ -44,6 +44,8 @@ class PropertyValues {
 
  private:
   void take(const Parameter& about, Field& field) const;
+
+  bool keep(const std::string& name, std::string text);
 
   std::map<std::string, std::string> texts_;
 };

@@ -42,11 +42,8 @@ void add_map(vtkImageData* image, const Grid<unsigned char>& level) {
 int vtkSemsurfCertainty::RequestData(vtkInformation*, vtkInformationVector** inputs,
                                      vtkInformationVector* outputs) {
   return pv::attempt(this, [&] {
-    pv::PropertyValues values = *this->Values;
-    for (const char* found_below_0 : {"scan.height_noise", "certainty.neighbourhood"})
-      if (values.number(found_below_0) < 0) values.forget(found_below_0);
     workflow::CertaintyParameters parameters;
-    values.apply(parameters);
+    this->Values->apply(parameters);
     std::string name;
     const HeightField field = this->Heights(inputs, name);
     vtkImageData* const tip_image = pv::image_input(inputs, 1, "Tip");

@@ -85,9 +85,7 @@ workflow::TipParameters vtkSemsurfEstimateTip::Parameters() const {
   this->Values->apply(parameters, {"tip.answer"});
   pv::PropertyValues values = *this->Values;
   // What another answer takes says nothing.
-  if (parameters.answer == workflow::TipAnswer::blind) {
-    if (values.number("tip.threshold_y") < 0) values.forget("tip.threshold_y");
-  } else {
+  if (parameters.answer != workflow::TipAnswer::blind) {
     for (const char* of_blind : {"tip.threshold", "tip.threshold_y", "tip.apex_tolerance", "tip.layer", "tip.maxima"})
       values.forget(of_blind);
     const double alpha = this->NoiseCorrelation, sigma = this->Noise;

@@ -24,6 +24,9 @@ void vtkSemsurfImageFilter::SetParameter(const char* name, double value) {
 void vtkSemsurfImageFilter::SetParameter(const char* name, const char* text) {
   if (this->Values->set(name, text)) this->Modified();
 }
+void vtkSemsurfImageFilter::SetParameter(const char* name, double a, double b, double c, double d, double e, double f) {
+  if (this->Values->set(name, std::vector{a, b, c, d, e, f})) this->Modified();
+}
 
 /// Samples as of the input, and pieces of them: else every rank would be asked for all.
 int vtkSemsurfImageFilter::RequestInformation(vtkInformation*, vtkInformationVector**,

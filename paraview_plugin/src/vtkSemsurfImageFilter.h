@@ -26,6 +26,7 @@ class VTKSEMSURF_EXPORT vtkSemsurfImageFilter : public vtkImageAlgorithm {
   /// A described parameter of that name: a choice by its number.
   void SetParameter(const char* name, double value);
   void SetParameter(const char* name, const char* text);
+  void SetParameter(const char* name, double a, double b, double c, double d, double e, double f);
 
  protected:
   vtkSemsurfImageFilter();

@@ -25,8 +25,7 @@ int vtkSemsurfLevel::RequestData(vtkInformation*, vtkInformationVector** inputs,
     workflow::LevelParameters parameters;
     values.apply(parameters, {"level.method"});
     // What another method has says nothing.
-    if (parameters.method != workflow::LevelMethod::hough || values.text("level.tolerance") == "0")
-      values.forget("level.tolerance");
+    if (parameters.method != workflow::LevelMethod::hough) values.forget("level.tolerance");
     if (parameters.method != workflow::LevelMethod::polynomial) values.forget("level.degree");
     values.apply(parameters);
     std::string name;

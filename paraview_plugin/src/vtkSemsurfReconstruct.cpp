@@ -17,7 +17,6 @@
 #include <utility>
 
 #include "attempt.h"
-#include "checks.h"
 #include "chain.h"
 #include "convert/mesh.h"
 #include "convert/table.h"
@@ -25,6 +24,8 @@
 #include "convert/transform.h"
 #include "labels.h"
 #include "pipeline.h"
+#include "property_values.h"
+#include "reports.h"
 #include "surf/core/error.h"
 #include "surf/mesh/height_field_mesh.h"
 #include "surf/workflow/reconstruct_job.h"
@@ -105,40 +106,29 @@ int vtkSemsurfReconstruct::RequestInformation(vtkInformation*, vtkInformationVec
 int vtkSemsurfReconstruct::RequestData(vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs) {
   return pv::attempt(this, [&] {
     pv::with_labels([&] {
-      const auto choose = [](int value, int most, const char* property) {
-        if (value < 0 || value > most)
-          throw UsageError(property, fmt::format("there is no {}", value), fmt::format("Choose 0 to {}", most));
-      };
-      choose(this->Level, 3, "Level");
-      choose(this->Method, 2, "Method");
-      pv::need_within(this->Iterations, 0, 1000000, "Iterations");
-      pv::need_within(this->Upsample, 1, 8, "Upsample");
+      vtkImageData* const sem = pv::image_input(inputs, 1, "SEM");
       workflow::ReconstructJob job;
       job.picture = false;
-      job.upsample = this->Upsample;
-      job.options.method = static_cast<ReconstructionMethod>(this->Method);
-      job.options.iterations = this->Iterations;
-      job.options.uncertainty = this->Uncertainty;
-      std::string name;
       job.afm.emplace();
+      if (sem) job.sem.emplace();
+      pv::PropertyValues values = *this->Values;
+      if (!this->UseTransform) values.forget("registration.transform");
+      values.apply(job);
+      std::string name;
       job.afm->scan = this->Heights(inputs, name);
-      job.afm->preparation.level.method = static_cast<workflow::LevelMethod>(this->Level);
       if (vtkImageData* const tip = pv::image_input(inputs, 2, "Tip"))
         job.afm->preparation.tip = pv::to_tip(tip, pv::chosen_array(this, 2, tip), "Tip");
-      if (vtkImageData* const sem = pv::image_input(inputs, 1, "SEM")) {
-        job.sem.emplace();
+      if (sem) {
+        pv::complete(job.model, values);
         job.sem->image = pv::to_placed_image(sem, pv::chosen_array(this, 1, sem), "SEM");
-        job.model = pv::model_request(this->ModelFile, this->Material, this->Energy, this->Spot);
         job.pose.landmarks = pv::landmarks_of(pv::surface_input(inputs, 4), pv::surface_input(inputs, 3));
-        if (this->UseTransform) job.pose.transform = pv::to_affine(this->Transform);
-        job.pose.accept_unverified = this->AcceptRegistration;
       }
       std::vector<std::string> warnings;
       std::optional<workflow::ReconstructSummary> s;
       pv::work(this, [&](const Watch& watch) { s = workflow::run(job, pv::listen(watch, job.sem ? 5 : 2, warnings)); });
       for (const std::string& warning : warnings) pv::warn(this, warning);
       if (s->verdict == workflow::ReconstructionVerdict::not_registered)
-        throw InvalidInput("SEM", s->reasons.at(0), "Give landmarks, set Transform, or Accept Registration");
+        throw InvalidInput("SEM", s->reasons.at(0), "Give landmarks, Use Transform, or Accept Registration");
       for (const std::string& reason : s->reasons) pv::warn(this, reason);
       Reconstruction& r = s->result;
       const std::map<std::string, std::string> texts{{"verdict", workflow::name(s->verdict)},
@@ -168,8 +158,9 @@ int vtkSemsurfReconstruct::RequestData(vtkInformation*, vtkInformationVector** i
       if (r.start.z_nm.size() == r.surface.z_nm.size()) pv::add_values(surface, std::move(r.start.z_nm), "start_nm", "nm");
       pv::add_heights(surface, std::move(r.surface));
       pv::add_texts(surface, texts);
+      pv::add_record(surface, "reconstruct", record_of(job));
       pv::give(outputs->GetInformationObject(0), surface);
       pv::give(outputs->GetInformationObject(2), afm);
-    });
+    }, pv::chain_labels);
   });
 }

@@ -2,8 +2,6 @@
 #ifndef vtkSemsurfReconstruct_h
 #define vtkSemsurfReconstruct_h
 
-#include <string>
-
 #include "vtkSemsurfImageFilter.h"
 
 /// The surface that makes a scan (input 0) and an SEM image (input 1, optional) most likely, as `semsurf reconstruct`; input
@@ -14,18 +12,7 @@ class VTKSEMSURF_EXPORT vtkSemsurfReconstruct : public vtkSemsurfImageFilter {
   static vtkSemsurfReconstruct* New();
   vtkTypeMacro(vtkSemsurfReconstruct, vtkSemsurfImageFilter);
 
-  vtkSetStdStringFromCharMacro(ModelFile);
-  vtkSetStdStringFromCharMacro(Material);   ///< without a model
-  vtkSetMacro(Energy, double);   ///< eV
-  vtkSetMacro(Spot, double);   ///< nm
-  vtkSetMacro(Level, int);   ///< as `semsurf reconstruct --level-method`
   vtkSetMacro(UseTransform, bool);   ///< instead of searching for it
-  vtkSetVector6Macro(Transform, double);
-  vtkSetMacro(AcceptRegistration, bool);   ///< one that is not verified
-  vtkSetMacro(Method, int);
-  vtkSetMacro(Iterations, int);   ///< of each scale; 0: the method's own
-  vtkSetMacro(Upsample, int);
-  vtkSetMacro(Uncertainty, bool);
 
  protected:
   vtkSemsurfReconstruct() { this->SetNumberOfInputPorts(5); this->SetNumberOfOutputPorts(5); }
@@ -35,10 +22,7 @@ class VTKSEMSURF_EXPORT vtkSemsurfReconstruct : public vtkSemsurfImageFilter {
   int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
 
  private:
-  std::string ModelFile, Material = "Si";
-  double Energy = 1000, Spot = 0, Transform[6] = {1, 0, 0, 0, 1, 0};
-  int Level = 0, Method = 0, Iterations = 0, Upsample = 3;
-  bool UseTransform = false, AcceptRegistration = false, Uncertainty = true;
+  bool UseTransform = false;
 };
 
 #endif

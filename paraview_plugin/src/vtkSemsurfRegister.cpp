@@ -18,13 +18,14 @@
 #include <utility>
 
 #include "attempt.h"
-#include "checks.h"
 #include "chain.h"
 #include "convert/table.h"
 #include "convert/tip.h"
 #include "convert/transform.h"
 #include "labels.h"
 #include "pipeline.h"
+#include "property_values.h"
+#include "reports.h"
 #include "surf/core/error.h"
 #include "surf/core/sample_image.h"
 #include "surf/core/units.h"
@@ -93,23 +94,18 @@ int vtkSemsurfRegister::FillOutputPortInformation(int port, vtkInformation* info
 int vtkSemsurfRegister::RequestData(vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs) {
   return pv::attempt(this, [&] {
     pv::with_labels([&] {
-      if (this->Level < 0 || this->Level > 3)
-        throw UsageError("Level", fmt::format("there is no method {}", this->Level), "Choose 0 to 3");
-      pv::need_within(this->Objective, 0, 1, "Objective");
       workflow::RegisterJob job;
+      this->Values->apply(job);
+      pv::complete(job.model, *this->Values);
       std::string name;
       job.afm.scan = this->Heights(inputs, name);
-      job.afm.preparation.level.method = static_cast<workflow::LevelMethod>(this->Level);
       vtkImageData* const sem = pv::image_input(inputs, 1, "SEM");
       job.sem.image = pv::to_placed_image(sem, pv::chosen_array(this, 1, sem), "SEM");
       if (vtkImageData* const tip = pv::image_input(inputs, 4, "Tip"))
         job.afm.preparation.tip = pv::to_tip(tip, pv::chosen_array(this, 2, tip), "Tip");
       job.pose.landmarks = pv::landmarks_of(pv::surface_input(inputs, 3), pv::surface_input(inputs, 2));
-      job.pose.landmarks_only = this->LandmarksOnly;
-      if (this->LandmarksOnly && job.pose.landmarks.empty())
-        throw UsageError("Landmarks Only", "there are no landmarks", "Give three pairs or more");
-      if (this->Objective == 1) job.pose.registration.objective = RegistrationObjective::mutual_information;
-      job.model = pv::model_request(this->ModelFile, this->Material, this->Energy, this->Spot);
+      if (job.pose.landmarks_only && job.pose.landmarks.empty())
+        throw UsageError("`registration.landmarks_only`", "there are no landmarks", "Give three pairs or more");
       std::vector<std::string> warnings;
       std::optional<workflow::RegisterSummary> s;
       pv::work(this, [&](const Watch& watch) { s = workflow::run(job, pv::listen(watch, 3, warnings)); });
@@ -131,11 +127,12 @@ int vtkSemsurfRegister::RequestData(vtkInformation*, vtkInformationVector** inpu
       const std::map<std::string, std::string> texts{{pv::transform_text, pv::text_of(s->pose.sem_to_afm)},
                                                      {"verdict", r ? workflow::name(r->verdict) : "by landmarks"}};
       pv::add_texts(image, texts);
+      pv::add_record(image, "register", record_of(job));
       vtkNew<vtkTable> table;
       fill_table(table, s->pose);
       pv::add_texts(table, texts);
       pv::give(outputs->GetInformationObject(0), image);
       pv::give(outputs->GetInformationObject(1), table);
-    });
+    }, pv::chain_labels);
   });
 }

@@ -2,8 +2,6 @@
 #ifndef vtkSemsurfRegister_h
 #define vtkSemsurfRegister_h
 
-#include <string>
-
 #include "vtkSemsurfImageFilter.h"
 
 /// Where an SEM image (input 1) lies on a scan (input 0), as `semsurf register`; inputs 2 and 3 are landmarks in the scan
@@ -13,25 +11,11 @@ class VTKSEMSURF_EXPORT vtkSemsurfRegister : public vtkSemsurfImageFilter {
   static vtkSemsurfRegister* New();
   vtkTypeMacro(vtkSemsurfRegister, vtkSemsurfImageFilter);
 
-  vtkSetStdStringFromCharMacro(ModelFile);
-  vtkSetStdStringFromCharMacro(Material);   ///< without a model
-  vtkSetMacro(Energy, double);   ///< eV
-  vtkSetMacro(Spot, double);   ///< nm
-  vtkSetMacro(Level, int);   ///< as `semsurf register --level-method`
-  vtkSetMacro(Objective, int);   ///< correlation, mutual information
-  vtkSetMacro(LandmarksOnly, bool);
-
  protected:
   vtkSemsurfRegister() { this->SetNumberOfInputPorts(5); this->SetNumberOfOutputPorts(2); }
   int FillInputPortInformation(int port, vtkInformation* info) override;
   int FillOutputPortInformation(int port, vtkInformation* info) override;
   int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
-
- private:
-  std::string ModelFile, Material = "Si";
-  double Energy = 1000, Spot = 0;
-  int Level = 0, Objective = 0;
-  bool LandmarksOnly = false;
 };
 
 #endif

@@ -8,14 +8,14 @@
 #include <vtkObjectFactory.h>
 #include <vtkTable.h>
 
-#include <optional>
 #include <utility>
 
 #include "attempt.h"
-#include "checks.h"
 #include "convert/mesh.h"
 #include "convert/table.h"
 #include "pipeline.h"
+#include "property_values.h"
+#include "reports.h"
 #include "surf/core/error.h"
 #include "surf/mesh/repair_mesh.h"
 #include "surf/mesh/self_intersections.h"
@@ -54,9 +54,16 @@ void add_report(vtkTable* table, const RepairSummary& s) {
   pv::add_column(table, "after", std::move(after));
 }
 
-std::optional<double> unless_negative(double nm) { return nm < 0 ? std::nullopt : std::optional(nm); }
-
 }   // namespace
+
+vtkSemsurfRepairMesh::vtkSemsurfRepairMesh() : Values(std::make_unique<pv::PropertyValues>()) {
+  this->SetNumberOfOutputPorts(2);
+}
+vtkSemsurfRepairMesh::~vtkSemsurfRepairMesh() = default;
+
+void vtkSemsurfRepairMesh::SetParameter(const char* name, double value) {
+  if (this->Values->set(name, value)) this->Modified();
+}
 
 int vtkSemsurfRepairMesh::FillOutputPortInformation(int port, vtkInformation* info) {
   info->Set(vtkDataObject::DATA_TYPE_NAME(), port == 0 ? "vtkPolyData" : "vtkTable");
@@ -79,10 +86,8 @@ int vtkSemsurfRepairMesh::RequestData(vtkInformation*, vtkInformationVector** in
                                       vtkInformationVector* outputs) {
   return pv::attempt(this, [&] {
     if (!pv::is_first_piece(outputs->GetInformationObject(0))) return;
-    pv::need_length(this->Sliver, "Sliver");
-    pv::need_length(this->MinimumComponent, "Minimum Component");
-    pv::need_number(this->Stitch, "Stitch");
-    pv::need_number(this->MaximumHole, "Maximum Hole");
+    RepairOptions options;
+    this->Values->apply(options);
     vtkPolyData* const input = pv::surface_input(inputs, 0);
     const TriangleMesh mesh = pv::to_mesh(input, "Input");
     TriangleMesh mended;
@@ -94,14 +99,8 @@ int vtkSemsurfRepairMesh::RequestData(vtkInformation*, vtkInformationVector** in
             find_self_intersections(mesh, {.watch = watch.part(0.3, 1)}).pairs.size();
         return;
       }
-      mended = repair_mesh(mesh,
-                           {.stitch_nm = unless_negative(this->Stitch),
-                            .sliver_nm = this->Sliver,
-                            .max_hole_nm = unless_negative(this->MaximumHole),
-                            .min_component_nm = this->MinimumComponent,
-                            .resolve_self_intersections = this->ResolveIntersections,
-                            .watch = watch},
-                           summary);
+      options.watch = watch;
+      mended = repair_mesh(mesh, options, summary);
     });
     vtkNew<vtkTable> table;
     add_report(table, summary);
@@ -110,6 +109,7 @@ int vtkSemsurfRepairMesh::RequestData(vtkInformation*, vtkInformationVector** in
       pv::give(outputs->GetInformationObject(0), pv::to_vtk(std::move(mended)));
     else
       pv::give(outputs->GetInformationObject(0), input);
+    if (this->Repair) pv::add_record(table, "mesh", record_of(options));
     pv::give(outputs->GetInformationObject(1), table);
   });
 }

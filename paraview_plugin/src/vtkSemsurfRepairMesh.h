@@ -4,7 +4,15 @@
 
 #include <vtkPolyDataAlgorithm.h>
 
+#include <memory>
+
 #include <vtkSemsurfModule.h>
+
+namespace surf {
+namespace pv {
+class PropertyValues;
+}
+}  // namespace surf
 
 /// What is wrong with a mesh, and a mended one. Output 0 is the mesh, output 1 a table: counts before and
 /// after.
@@ -14,14 +22,12 @@ class VTKSEMSURF_EXPORT vtkSemsurfRepairMesh : public vtkPolyDataAlgorithm {
   vtkTypeMacro(vtkSemsurfRepairMesh, vtkPolyDataAlgorithm);
 
   vtkSetMacro(Repair, bool);
-  vtkSetMacro(Stitch, double);             ///< nm; below 0: 1e-6 of the diagonal
-  vtkSetMacro(Sliver, double);             ///< nm
-  vtkSetMacro(MaximumHole, double);        ///< nm of rim; below 0: the component's diagonal
-  vtkSetMacro(MinimumComponent, double);   ///< nm
-  vtkSetMacro(ResolveIntersections, bool);
+  /// A described parameter of that name.
+  void SetParameter(const char* name, double value);
 
  protected:
-  vtkSemsurfRepairMesh() { this->SetNumberOfOutputPorts(2); }
+  vtkSemsurfRepairMesh();
+  ~vtkSemsurfRepairMesh() override;
   int FillOutputPortInformation(int port, vtkInformation* info) override;
   int RequestUpdateExtent(vtkInformation*, vtkInformationVector** inputs, vtkInformationVector*) override;
   int RequestInformation(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
@@ -29,11 +35,7 @@ class VTKSEMSURF_EXPORT vtkSemsurfRepairMesh : public vtkPolyDataAlgorithm {
 
  private:
   bool Repair = true;
-  double Stitch = -1;
-  double Sliver = 0;
-  double MaximumHole = -1;
-  double MinimumComponent = 0;
-  bool ResolveIntersections = true;
+  std::unique_ptr<surf::pv::PropertyValues> Values;   // of described parameters
 };
 
 #endif

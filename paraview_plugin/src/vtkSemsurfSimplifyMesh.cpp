@@ -9,15 +9,23 @@
 #include <utility>
 
 #include "attempt.h"
-#include "checks.h"
 #include "convert/mesh.h"
 #include "pipeline.h"
+#include "property_values.h"
+#include "reports.h"
 #include "surf/core/error.h"
 #include "surf/mesh/simplify_mesh.h"
 
 vtkStandardNewMacro(vtkSemsurfSimplifyMesh);
 
 using namespace surf;
+
+vtkSemsurfSimplifyMesh::vtkSemsurfSimplifyMesh() : Values(std::make_unique<pv::PropertyValues>()) {}
+vtkSemsurfSimplifyMesh::~vtkSemsurfSimplifyMesh() = default;
+
+void vtkSemsurfSimplifyMesh::SetParameter(const char* name, double value) {
+  if (this->Values->set(name, value)) this->Modified();
+}
 
 int vtkSemsurfSimplifyMesh::RequestInformation(vtkInformation*, vtkInformationVector**,
                                                vtkInformationVector* outputs) {
@@ -37,19 +45,18 @@ int vtkSemsurfSimplifyMesh::RequestData(vtkInformation*, vtkInformationVector** 
     if (!pv::is_first_piece(output)) return;
     if (this->Limit < ByTolerance || this->Limit > ByBoth)
       throw UsageError("Limit", fmt::format("there is no limit {}", this->Limit), "Choose 0 to 2");
-    if (this->Limit != ByTriangles) pv::need_length(this->Tolerance, "Tolerance");
-    if (this->Limit != ByTolerance && this->Triangles < 4)
-      throw UsageError("Triangles", fmt::format("{} are too few for a body", this->Triangles),
-                       "Give 4 or more");
+    pv::PropertyValues values = *this->Values;
+    if (this->Limit == ByTriangles) values.forget("mesh.mesh_tolerance");
+    if (this->Limit == ByTolerance) values.forget("mesh.triangles");
+    SimplifyOptions options;
+    values.apply(options);
     // Corners at equal places are one, or seams would keep all of theirs.
     const TriangleMesh mesh = merge_equal_vertices(pv::to_mesh(pv::surface_input(inputs, 0), "Input"));
     if (!(length(bounds(mesh).size_nm()) > 0))
       throw InvalidInput("Input", "all its corners lie at one place", "Give a surface");
     constexpr double share = 1e-3;   // of the diagonal: no difference to be seen
-    SimplifyOptions options;
-    if (this->Limit != ByTriangles)
-      options.tolerance_nm = this->Tolerance > 0 ? this->Tolerance : share * length(bounds(mesh).size_nm());
-    if (this->Limit != ByTolerance) options.triangles = static_cast<std::size_t>(this->Triangles);
+    if (this->Limit != ByTriangles && options.tolerance_nm == 0)
+      options.tolerance_nm = share * length(bounds(mesh).size_nm());
     SimplifySummary summary;
     TriangleMesh simple;
     pv::work(this, [&](const Watch& watch) {
@@ -58,9 +65,10 @@ int vtkSemsurfSimplifyMesh::RequestData(vtkInformation*, vtkInformationVector** 
     });
     if (!summary.reached)
       pv::warn(this, fmt::format("Triangles: {} are left; fewer would {}", summary.triangles_after,
-                                 options.tolerance_nm > 0 ? "exceed Tolerance" : "turn faces over"));
+                                 options.tolerance_nm > 0 ? "exceed Mesh Tolerance" : "turn faces over"));
     const auto data = pv::to_vtk(std::move(simple));
     pv::add_texts(data, {{"deviation_nm", fmt::format("{:.9g}", summary.deviation.largest_nm())}});
+    pv::add_record(data, "mesh", record_of(options));
     pv::give(output, data);
   });
 }

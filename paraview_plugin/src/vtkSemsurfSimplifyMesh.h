@@ -4,7 +4,15 @@
 
 #include <vtkPolyDataAlgorithm.h>
 
+#include <memory>
+
 #include <vtkSemsurfModule.h>
+
+namespace surf {
+namespace pv {
+class PropertyValues;
+}
+}  // namespace surf
 
 /// Fewer triangles within a tolerance, or down to a number (surf/mesh/simplify_mesh.h).
 class VTKSEMSURF_EXPORT vtkSemsurfSimplifyMesh : public vtkPolyDataAlgorithm {
@@ -14,19 +22,19 @@ class VTKSEMSURF_EXPORT vtkSemsurfSimplifyMesh : public vtkPolyDataAlgorithm {
 
   enum Limits { ByTolerance, ByTriangles, ByBoth };
   vtkSetMacro(Limit, int);
-  vtkSetMacro(Tolerance, double);   ///< nm; 0: a thousandth of the diagonal
-  vtkSetMacro(Triangles, int);
+  /// A described parameter of that name.
+  void SetParameter(const char* name, double value);
 
  protected:
-  vtkSemsurfSimplifyMesh() = default;
+  vtkSemsurfSimplifyMesh();
+  ~vtkSemsurfSimplifyMesh() override;
   int RequestUpdateExtent(vtkInformation*, vtkInformationVector** inputs, vtkInformationVector*) override;
   int RequestInformation(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
   int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
 
  private:
   int Limit = ByTolerance;
-  double Tolerance = 0;
-  int Triangles = 10000;
+  std::unique_ptr<surf::pv::PropertyValues> Values;   // of described parameters
 };
 
 #endif

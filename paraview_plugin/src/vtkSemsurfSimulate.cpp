@@ -84,9 +84,6 @@ workflow::SimulateJob job_of(pv::PropertyValues values, int budget) {
   for (const char* other : {"simulation.accuracy", "simulation.accuracy_floor"})
     if (!by_accuracy) values.forget(other);
   if (by_accuracy) values.forget("simulation.electrons");
-  for (const char* nothing_at_0 : {"scan.pixel_size", "output.trajectories", "beam.current", "beam.dwell"})
-    if (values.text(nothing_at_0) == "0") values.forget(nothing_at_0);
-  if (values.text("scan.region") == "0,0,0,0") values.forget("scan.region");
   workflow::SimulateJob job;
   job.cache = io::cache_folder();
   job.checkpoint.wanted = false;

@@ -4,7 +4,18 @@
 
 #include <vtkImageAlgorithm.h>
 
+#include <memory>
+
 #include <vtkSemsurfModule.h>
+
+namespace surf {
+namespace pv {
+class PropertyValues;
+}
+namespace workflow {
+struct TipShapeParameters;
+}
+}  // namespace surf
 
 /// Tips by their shape (surf/afm/tip_shapes.h): the structuring function about its apex at (0, 0).
 class VTKSEMSURF_EXPORT vtkSemsurfTipSource : public vtkImageAlgorithm {
@@ -12,33 +23,20 @@ class VTKSEMSURF_EXPORT vtkSemsurfTipSource : public vtkImageAlgorithm {
   static vtkSemsurfTipSource* New();
   vtkTypeMacro(vtkSemsurfTipSource, vtkImageAlgorithm);
 
-  enum Shapes { Cone, Parabola, Pyramid, Ball };
-  vtkSetMacro(Shape, int);
-  vtkSetMacro(Radius, double);      ///< nm
-  vtkSetMacro(HalfAngle, double);   ///< degrees from the axis
-  vtkSetMacro(Faces, int);
-  vtkSetMacro(Rotation, double);        ///< degrees
-  vtkSetMacro(StemRadius, double);      ///< nm
-  vtkSetMacro(StemHalfAngle, double);   ///< degrees
-  vtkSetMacro(Samples, int);            ///< across, odd
+  /// A described parameter of that name: a choice by its number.
+  void SetParameter(const char* name, double value);
   vtkSetMacro(Pitch, double);           ///< nm
 
  protected:
-  vtkSemsurfTipSource() { this->SetNumberOfInputPorts(0); }
+  vtkSemsurfTipSource();
+  ~vtkSemsurfTipSource() override;
   int RequestInformation(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
   int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
 
  private:
-  void Check() const;
+  surf::workflow::TipShapeParameters Parameters() const;
 
-  int Shape = Cone;
-  double Radius = 10;
-  double HalfAngle = 15;
-  int Faces = 4;
-  double Rotation = 0;
-  double StemRadius = 0;
-  double StemHalfAngle = 0;
-  int Samples = 41;
+  std::unique_ptr<surf::pv::PropertyValues> Values;   // of described parameters
   double Pitch = 2;
 };
 

@@ -2,7 +2,6 @@
 #include "vtkSemsurfTrain.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 #include <vtkImageData.h>
 #include <vtkInformation.h>
 #include <vtkInformationVector.h>
@@ -10,10 +9,6 @@
 #include <vtkObjectFactory.h>
 #include <vtkTable.h>
 
-#include <algorithm>
-#include <cmath>
-#include <iterator>
-#include <limits>
 #include <memory>
 #include <utility>
 
@@ -22,6 +17,7 @@
 #include "convert/image.h"
 #include "labels.h"
 #include "pipeline.h"
+#include "property_values.h"
 #include "surf/core/error.h"
 #include "surf/io/sim/materials.h"
 #include "training.h"
@@ -34,56 +30,23 @@ using pv::need_within;
 
 namespace {
 
-// In the order of the XML's entries.
-constexpr const char* kinds[] = {"facet-network", "filter-bank", "slope-table", "slope-table-two-planes",
-                                 "stopping-points", "diffusion-matrix", "secant", "ikeuchi-exponential",
-                                 "ikeuchi-secant", "ikeuchi-mixed"};
-
 void need(bool good, const char* property, const std::string& reason, const char* remedy) {
   if (!good) throw UsageError(property, reason, remedy);
 }
 
-std::vector<FacetScale> scales_of(const std::vector<int>& sizes) {
-  const std::vector<FacetScale> all = thesis_scales();
-  std::vector<FacetScale> scales;
-  for (const int size : sizes) {
-    const auto known = std::ranges::find(all, size, &FacetScale::size);
-    if (known == all.end()) {
-      std::vector<int> known_sizes;
-      std::ranges::transform(all, std::back_inserter(known_sizes), &FacetScale::size);
-      throw UsageError("Scales", fmt::format("there is no neighbourhood of {} samples", size),
-                       fmt::format("Choose among {}", fmt::join(known_sizes, ", ")));
-    }
-    scales.push_back(*known);
-  }
-  return scales;
-}
-
 }  // namespace
 
-vtkSemsurfTrain::vtkSemsurfTrain() {
+vtkSemsurfTrain::vtkSemsurfTrain() : Values(std::make_unique<pv::PropertyValues>()) {
   this->SetNumberOfInputPorts(2);
   this->SetNumberOfOutputPorts(2);
 }
+vtkSemsurfTrain::~vtkSemsurfTrain() = default;
 
-void vtkSemsurfTrain::AddScale(int samples) {
-  this->Scales.push_back(samples);
-  this->Modified();
+void vtkSemsurfTrain::SetParameter(const char* name, double value) {
+  if (this->Values->set(name, value)) this->Modified();
 }
-
-void vtkSemsurfTrain::RemoveAllScales() {
-  this->Scales.clear();
-  this->Modified();
-}
-
-void vtkSemsurfTrain::AddHidden(int units) {
-  this->Hidden.push_back(units);
-  this->Modified();
-}
-
-void vtkSemsurfTrain::RemoveAllHidden() {
-  this->Hidden.clear();
-  this->Modified();
+void vtkSemsurfTrain::SetParameter(const char* name, const char* text) {
+  if (this->Values->set(name, text)) this->Modified();
 }
 
 int vtkSemsurfTrain::FillInputPortInformation(int, vtkInformation* info) {
@@ -103,25 +66,6 @@ int vtkSemsurfTrain::RequestUpdateExtent(vtkInformation*, vtkInformationVector**
   return 1;
 }
 
-void vtkSemsurfTrain::AddModel(workflow::TrainJob& job) const {
-  workflow::LearnOptions& learn = job.learn;
-  need_within(this->Model, 0, static_cast<int>(std::size(kinds)) - 1, "Model");
-  learn.kind = kinds[this->Model];
-  learn.scales = scales_of(this->Scales);
-  learn.multi_resolution = this->MultiResolution;
-  if (this->CutOff >= 0) learn.least_eigenvalue = this->CutOff;
-  // One 0 is a network without hidden layers.
-  if (!this->Hidden.empty()) learn.hidden = this->Hidden == std::vector{0} ? std::vector<int>() : this->Hidden;
-  for (const auto& [value, label] : {std::pair{this->Decay, "Decay"}, {this->Tolerance, "Tolerance"}, {this->CutOff, "Cut Off"}})
-    pv::need_number(value, label);   // below 0 they are not given
-  need_within(this->Iterations, 0, std::numeric_limits<int>::max(), "Iterations");
-  need_within(this->TableElectrons, 0, std::numeric_limits<int>::max(), "Table Electrons");
-  if (this->Iterations > 0) learn.iterations = this->Iterations;
-  if (this->Decay >= 0) learn.decay = this->Decay;
-  if (this->Tolerance >= 0) learn.model_error = this->Tolerance;
-  if (this->TableElectrons > 0) learn.table_electrons = this->TableElectrons;
-}
-
 void vtkSemsurfTrain::AddInputs(vtkInformationVector** inputs, workflow::TrainJob& job) {
   const int surfaces = inputs[0]->GetNumberOfInformationObjects(), images = inputs[1]->GetNumberOfInformationObjects();
   need(images == 0 || images == surfaces, "Images", fmt::format("there are {} of {} surfaces", images, surfaces),
@@ -138,51 +82,30 @@ void vtkSemsurfTrain::AddInputs(vtkInformationVector** inputs, workflow::TrainJo
       input.pixels = std::make_shared<Image>(pv::to_image(pv::image_input(inputs, 1, "Images", i), "Images"));
     job.inputs.push_back(std::move(input));
   }
-  job.pixel_nm = this->PixelSize;
-  if (surfaces == 0 || this->PixelSize != 0) return;
+  if (surfaces == 0 || job.pixel_nm != 0) return;
   const HeightField& first = job.inputs.front().field;
-  need(first.pitch_x_nm == first.pitch_y_nm, "Pixel Size", "the samples of the first surface are not square",
+  need(first.pitch_x_nm == first.pitch_y_nm, "`training.pixel_size`", "the samples of the first surface are not square",
        "Say how large the model's pixels are, as 3");
   job.pixel_nm = first.pitch_x_nm;
 }
 
 workflow::TrainJob vtkSemsurfTrain::Job(vtkInformationVector** inputs) {
-  need(!this->ModelFile.empty(), "Model File", "no file is named for the model", "Name one that ends in .json");
-  need_within(this->Edge, 0, 2, "Edge");
   need_within(this->Budget, 0, 1, "Budget");
-  need(this->Seed >= 0, "Seed", fmt::format("{} is below 0", this->Seed), "Give 1");
-  need(this->Electrons >= 1, "Electrons", fmt::format("{} are too few", this->Electrons),
-       "Give 1 or more per pixel");
-  need(this->Budget == 0 || (this->Accuracy >= 1e-4 && this->Accuracy <= 1), "Accuracy",
-       fmt::format("{} is not in 0.0001 to 1", this->Accuracy), "Give 0.03 for 3 %");
-  pv::need_length(this->PixelSize, "Pixel Size");
-  need_within(this->Surfaces, 0, std::numeric_limits<int>::max(), "Surfaces");
+  pv::PropertyValues values = *this->Values;
+  values.forget(this->Budget == 0 ? "simulation.accuracy" : "simulation.electrons");
   workflow::TrainJob job;
-  job.output = this->ModelFile;
-  need(job.output.extension() == ".json", "Model File", fmt::format("{} does not end in .json", this->ModelFile),
+  values.apply(job);
+  need(!job.output.empty(), "`output`", "no file is named for the model", "Name one that ends in .json");
+  need(job.output.extension() == ".json", "`output`", fmt::format("{} does not end in .json", job.output.string()),
        "Name one that does");
-  this->AddModel(job);
-  if (this->Surfaces > 0) job.surfaces = this->Surfaces;
-  job.surface_px = this->SurfaceSize;
-  job.held_out = this->HoldOut;
-  job.fine = this->Fine;
-  job.edge = static_cast<surf::Edge>(this->Edge);
-  job.simulation.seed = static_cast<std::uint64_t>(this->Seed);
-  job.simulation.budget = mc::ElectronsPerPixel{this->Electrons};
-  if (this->Budget == 1) {
-    job.simulation.budget = mc::Accuracy{this->Accuracy};
-    job.simulation.method = mc::Method::replay;
-  }
-  io::MaterialLibrary materials;
+  io::MaterialChoice material;
+  values.apply(material);
   std::vector<std::string> notes;
-  if (!this->MaterialFile.empty()) materials.read(this->MaterialFile, notes);
-  job.material = materials.find(this->Material, "Material");
-  if (!this->MaterialFile.empty()) job.material_files = {this->MaterialFile};
-  job.energy_ev = this->Energy;
-  job.spot_nm = this->Spot;
-  if (!this->Physics.empty()) mc::parse_physics(this->Physics, job.physics);
+  job.material = io::find_material(material, notes);
+  job.material_files.assign(material.files.begin(), material.files.end());
   this->AddInputs(inputs, job);
-  need(job.pixel_nm > 0, "Pixel Size", "it is 0, and there is no surface to take it from", "Give 3 where in doubt");
+  need(job.pixel_nm > 0, "`training.pixel_size`", "it is 0, and there is no surface to take it from",
+       "Give 3 where in doubt");
   check_parameters(job);
   return job;
 }
@@ -192,7 +115,8 @@ int vtkSemsurfTrain::RequestData(vtkInformation*, vtkInformationVector** inputs,
   if (!pv::is_first_piece(outputs->GetInformationObject(0))) return 1;
   return pv::attempt(this, [&] {
     pv::with_labels([&] {
-      pv::refuse_overlaps(this, {{"Model File", this->ModelFile, {}}}, {{"Material File", this->MaterialFile, {}}});
+      pv::refuse_overlaps(this, {{"Model File", this->Values->text("output"), {}}},
+                          {{"Material File", this->Values->text("specimen.materials"), {}}});
       const workflow::TrainJob job = this->Job(inputs);
       std::vector<std::string> notes;
       workflow::TrainSummary summary;

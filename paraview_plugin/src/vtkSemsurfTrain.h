@@ -4,12 +4,15 @@
 
 #include <vtkTableAlgorithm.h>
 
+#include <memory>
 #include <string>
-#include <vector>
 
 #include <vtkSemsurfModule.h>
 
 namespace surf {
+namespace pv {
+class PropertyValues;
+}
 namespace workflow {
 struct TrainJob;
 }
@@ -25,38 +28,15 @@ class VTKSEMSURF_EXPORT vtkSemsurfTrain : public vtkTableAlgorithm {
 
   void RemoveAllImages() { this->SetInputConnection(1, nullptr); }
 
-  vtkSetStdStringFromCharMacro(ModelFile);
-  vtkSetMacro(Model, int);   ///< the kind
   vtkSetStdStringFromCharMacro(Signal);   ///< of a microscope: the array of input 1; empty: SE and BSE
-  vtkSetMacro(Surfaces, int);   ///< of semsurf's own; 0: as many as the kind needs
-  vtkSetMacro(SurfaceSize, int);   ///< pixels across each
-  vtkSetMacro(HoldOut, int);
-  vtkSetMacro(Fine, int);   ///< samples per pixel in simulations; 0: by the electrons' range
-  vtkSetMacro(Edge, int);   ///< mirror, flat, periodic
-  vtkSetMacro(PixelSize, double);   ///< nm; 0: that of the first input
-  vtkSetStdStringFromCharMacro(Material);
-  vtkSetStdStringFromCharMacro(MaterialFile);
-  vtkSetMacro(Energy, double);   ///< eV
-  vtkSetMacro(Spot, double);   ///< nm
-  vtkSetStdStringFromCharMacro(Physics);
   vtkSetMacro(Budget, int);   ///< electrons or accuracy
-  vtkSetMacro(Electrons, int);
-  vtkSetMacro(Accuracy, double);
-  vtkSetMacro(Seed, int);
-  // Of some kinds only. Those below 0, lists without a number and 0 electrons are not given.
-  void AddScale(int samples);
-  void RemoveAllScales();
-  void AddHidden(int units);
-  void RemoveAllHidden();
-  vtkSetMacro(Iterations, int);
-  vtkSetMacro(Decay, double);
-  vtkSetMacro(Tolerance, double);
-  vtkSetMacro(CutOff, double);
-  vtkSetMacro(MultiResolution, bool);
-  vtkSetMacro(TableElectrons, int);
+  /// A described parameter of that name: a choice by its number.
+  void SetParameter(const char* name, double value);
+  void SetParameter(const char* name, const char* text);
 
  protected:
   vtkSemsurfTrain();
+  ~vtkSemsurfTrain() override;
   int FillInputPortInformation(int port, vtkInformation* info) override;
   int RequestInformation(vtkInformation*, vtkInformationVector**, vtkInformationVector* outputs) override;
   int RequestUpdateExtent(vtkInformation*, vtkInformationVector** inputs, vtkInformationVector*) override;
@@ -65,14 +45,10 @@ class VTKSEMSURF_EXPORT vtkSemsurfTrain : public vtkTableAlgorithm {
  private:
   surf::workflow::TrainJob Job(vtkInformationVector** inputs);
   void AddInputs(vtkInformationVector** inputs, surf::workflow::TrainJob& job);
-  void AddModel(surf::workflow::TrainJob& job) const;
 
-  std::string ModelFile, Signal, Material = "Si", MaterialFile, Physics;
-  std::vector<int> Scales, Hidden;
-  double PixelSize = 0, Energy = 1000, Spot = 0, Accuracy = 0.03, Decay = -1, Tolerance = -1, CutOff = -1;
-  int Model = 0, Surfaces = 0, SurfaceSize = 64, HoldOut = 0, Fine = 0, Edge = 0, Budget = 0, Electrons = 150, Seed = 1;
-  int Iterations = 0, TableElectrons = 0;
-  bool MultiResolution = false;
+  std::string Signal;
+  int Budget = 0;
+  std::unique_ptr<surf::pv::PropertyValues> Values;   // of described parameters
 };
 
 #endif

@@ -4,7 +4,10 @@
 //   <Parameters of="simulation" command="SetParameter"/>      is replaced by a property for each parameter of that struct,
 //   <Parameter name="beam.tilt" .../>                         by that one, and the struct's list then leaves it out.
 // A Parameter may say what differs for ParaView: property (its name), label, default, numbers (how many), whole="1", min, max, level,
-// omit="1", the widget's condition show_with="Budget=1", and documentation, which goes before the description's.
+// omit="1", help (in place of the description's), the widget's condition show_with="Budget=1 2", documentation, which goes before the description's, none (the number
+// that says nothing) and otherwise (what holds then). What it contains goes into the property: hints, say.
+// Parameters may say the level of all that it stands for.
+// An optional number without any of default and none has 0 for nothing, or -1 where it may be 0; where it may be both, it is a text.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -21,14 +24,22 @@
 #include <vector>
 
 #include "surf/core/parameters.h"
+#include "surf/io/sim/materials.h"
 #include "surf/io/sim/specimen_request.h"
+#include "surf/mesh/repair_mesh.h"
+#include "surf/mesh/simplify_mesh.h"
+#include "surf/workflow/calibrate_job.h"
 #include "surf/workflow/certainty_job.h"
 #include "surf/workflow/clean_job.h"
 #include "surf/workflow/level_job.h"
 #include "surf/workflow/morphology_job.h"
 #include "surf/workflow/noise_job.h"
+#include "surf/workflow/predict_job.h"
+#include "surf/workflow/reconstruct_job.h"
+#include "surf/workflow/register_job.h"
 #include "surf/workflow/simulate_job.h"
 #include "surf/workflow/tip_job.h"
+#include "surf/workflow/train_job.h"
 
 namespace {
 
@@ -43,18 +54,40 @@ struct Described {
 };
 
 template <class Struct>
-std::vector<Described> described() {
+std::vector<Described> described_as(Struct of) {
   std::vector<Described> all;
-  Struct of{};
   for_each_parameter(of, [&](const Parameter& about, Field& field) {
     all.push_back({about, field.kind(), field.choices(), field.text()});
   });
   return all;
 }
 
+template <class Struct>
+std::vector<Described> described() {
+  return described_as(Struct{});
+}
+
+/// With a part for each image.
+std::vector<Described> described_reconstruction() {
+  workflow::ReconstructJob job;
+  job.afm.emplace();
+  job.sem.emplace();
+  return described_as(job);
+}
+
 const std::map<std::string, std::function<std::vector<Described>()>>& structs() {
   static const std::map<std::string, std::function<std::vector<Described>()>> all{
       {"simulation", described<mc::SimulationRequest>},
+      {"material", described<io::MaterialChoice>},
+      {"train", described<workflow::TrainJob>},
+      {"predict", described<workflow::PredictJob>},
+      {"register", described<workflow::RegisterJob>},
+      {"reconstruct", described_reconstruction},
+      {"calibrate", described<workflow::CalibrateParameters>},
+      {"repair", described<RepairOptions>},
+      {"simplify", described<SimplifyOptions>},
+      {"tip_shape", described<workflow::TipShape>},
+      {"tip_by_shape", described<workflow::TipShapeParameters>},
       {"specimen", described<io::SpecimenRequest>},
       {"extras", described<workflow::Extras>},
       {"level", described<workflow::LevelParameters>},
@@ -110,10 +143,60 @@ void set_range(pugi::xml_node domain, const Parameter& about, bool whole) {
   if (is_there(about.limits.high)) domain.append_attribute("max") = text(about.limits.high).c_str();
 }
 
-std::string sentence(const Described& d, const std::string& own) {
+std::string sentence(const Described& d, const std::string& own, const std::string& none) {
   std::string text = own.empty() ? d.about.help : own + " " + d.about.help;
   if (const std::string range = range_words(d.about); !range.empty() && d.kind != FieldKind::choice) text += "; " + range;
+  if (!none.empty() && !d.about.otherwise.empty()) text += fmt::format("; {}: {}", none, d.about.otherwise);
   return text + ".";
+}
+
+/// "0" or "-1": the number that says nothing, which the parameter cannot be; empty where it can be both.
+std::string none_of(const Limits& limits) {
+  for (const int number : {0, -1})
+    if (!limits.holds(number)) return std::to_string(number);
+  return {};
+}
+
+struct Widget {
+  const char* element;
+  bool whole, number;
+};
+
+Widget widget_of(const Described& d, bool whole, int numbers) {
+  if (d.kind == FieldKind::choice || d.kind == FieldKind::flag) return {"IntVectorProperty", false, false};
+  if (d.kind == FieldKind::whole || whole) return {"IntVectorProperty", true, false};
+  if (d.kind == FieldKind::number || numbers > 0) return {"DoubleVectorProperty", false, true};
+  return {"StringVectorProperty", false, false};
+}
+
+std::string repeated(const std::string& text, int times) {
+  std::string out = text;
+  for (int i = 1; i < times; ++i) out += " " + text;
+  return out;
+}
+
+void add_choices(pugi::xml_node property, const std::vector<std::string>& choices) {
+  pugi::xml_node domain = property.append_child("EnumerationDomain");
+  domain.append_attribute("name") = "enum";
+  int value = 0;
+  for (const std::string& choice : choices) {
+    pugi::xml_node entry = domain.append_child("Entry");
+    entry.append_attribute("value") = value++;
+    std::string shown = choice;
+    std::ranges::replace(shown, '-', ' ');
+    shown[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(shown[0])));
+    entry.append_attribute("text") = shown.c_str();
+  }
+}
+
+/// Shows the property only where another one has one of some values: "Budget=1 2".
+void add_condition(pugi::xml_node property, const std::string& condition) {
+  pugi::xml_node widget = property.append_child("Hints").append_child("PropertyWidgetDecorator");
+  widget.append_attribute("type") = "GenericDecorator";
+  widget.append_attribute("mode") = "visibility";
+  widget.append_attribute("property") = condition.substr(0, condition.find('=')).c_str();
+  const std::string values = condition.substr(condition.find('=') + 1);
+  widget.append_attribute(values.find(' ') == values.npos ? "value" : "values") = values.c_str();
 }
 
 /// The property in place of `placeholder`, which says what differs.
@@ -125,62 +208,53 @@ void add_property(pugi::xml_node placeholder, Described d, const char* command) 
   };
   if (said.attribute("min")) d.about.limits.low = said.attribute("min").as_double();
   if (said.attribute("max")) d.about.limits.high = said.attribute("max").as_double();
+  d.about.otherwise = attribute("otherwise", d.about.otherwise);
+  d.about.help = attribute("help", d.about.help);
   const std::string label = attribute("label", with_spaces(d.about.last_name()));
-  const bool is_choice = d.kind == FieldKind::choice, is_flag = d.kind == FieldKind::flag;
   const int numbers = said.attribute("numbers").as_int(0);
-  const bool is_whole = d.kind == FieldKind::whole || said.attribute("whole").as_bool(), is_number = d.kind == FieldKind::number || numbers > 0;
-  const char* const element = is_choice || is_flag || is_whole ? "IntVectorProperty"
-                              : is_number                      ? "DoubleVectorProperty"
-                                                               : "StringVectorProperty";
-  pugi::xml_node property = placeholder.parent().insert_child_before(element, placeholder);
-  std::string usual = d.text;
-  if (is_flag) usual = d.text == "on" ? "1" : "0";
-  if (is_choice) {
+  Widget widget = widget_of(d, said.attribute("whole").as_bool(), numbers);
+  std::string usual = d.text, none, name = d.about.name;
+  Parameter range = d.about;
+  if ((widget.whole || widget.number) && usual.empty() && !said.attribute("default")) {
+    none = attribute("none", d.kind == FieldKind::text ? "0" : none_of(d.about.limits));
+    if (none.empty()) widget = {"StringVectorProperty", false, false};
+    else range.limits.low = std::min(range.limits.low, std::stod(none));
+    usual = repeated(none, numbers);
+    std::string nothing = usual;
+    std::ranges::replace(nothing, ' ', ',');
+    if (!none.empty()) name += "=" + nothing;
+  }
+  if (d.kind == FieldKind::flag) usual = d.text == "on" ? "1" : "0";
+  if (d.kind == FieldKind::choice) {
     const auto found = std::ranges::find(d.choices, d.text);
     usual = std::to_string(found == d.choices.end() ? 0 : found - d.choices.begin());
   }
-  if ((is_whole || is_number) && usual.empty()) {
-    usual = "0";
-    for (int i = 1; i < numbers; ++i) usual += " 0";
-  }
+  pugi::xml_node property = placeholder.parent().insert_child_before(widget.element, placeholder);
   property.append_attribute("name") = attribute("property", joined(label)).c_str();
   property.append_attribute("label") = label.c_str();
   property.append_attribute("command") = command;
-  property.append_attribute("initial_string") = d.about.name.c_str();
+  property.append_attribute("initial_string") = name.c_str();
   property.append_attribute("number_of_elements") = std::max(1, numbers);
   property.append_attribute("default_values") = attribute("default", usual).c_str();
   const bool advanced = attribute("level", d.about.level == Level::advanced ? "advanced" : "basic") == "advanced";
   if (advanced) property.append_attribute("panel_visibility") = "advanced";
-  if (is_choice) {
-    pugi::xml_node domain = property.append_child("EnumerationDomain");
-    domain.append_attribute("name") = "enum";
-    int value = 0;
-    for (const std::string& choice : d.choices) {
-      pugi::xml_node entry = domain.append_child("Entry");
-      entry.append_attribute("value") = value++;
-      std::string shown = choice;
-      std::ranges::replace(shown, '-', ' ');
-      shown[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(shown[0])));
-      entry.append_attribute("text") = shown.c_str();
-    }
-  } else if (is_flag) {
+  if (d.kind == FieldKind::choice) {
+    add_choices(property, d.choices);
+  } else if (d.kind == FieldKind::flag) {
     property.append_child("BooleanDomain").append_attribute("name") = "bool";
-  } else if (is_whole || is_number) {
-    pugi::xml_node domain = property.append_child(is_whole ? "IntRangeDomain" : "DoubleRangeDomain");
+  } else if (widget.whole || widget.number) {
+    pugi::xml_node domain = property.append_child(widget.whole ? "IntRangeDomain" : "DoubleRangeDomain");
     domain.append_attribute("name") = "range";
-    set_range(domain, d.about, is_whole);
+    set_range(domain, range, widget.whole);
   } else if (d.about.file == FileRole::read) {
     property.append_child("FileListDomain").append_attribute("name") = "files";
   }
+  const bool empty_text = std::string(widget.element) == "StringVectorProperty" && usual.empty() && !said.attribute("default");
+  const std::string nothing = empty_text ? "empty" : numbers > 1 && !none.empty() ? "all " + none : none;
   property.append_child("Documentation").append_child(pugi::node_pcdata).set_value(
-      sentence(d, said.attribute("documentation").value()).c_str());
-  if (const std::string condition = said.attribute("show_with").value(); !condition.empty()) {
-    pugi::xml_node widget = property.append_child("Hints").append_child("PropertyWidgetDecorator");
-    widget.append_attribute("type") = "GenericDecorator";
-    widget.append_attribute("mode") = "visibility";
-    widget.append_attribute("property") = condition.substr(0, condition.find('=')).c_str();
-    widget.append_attribute("value") = condition.substr(condition.find('=') + 1).c_str();
-  }
+      sentence(d, said.attribute("documentation").value(), nothing).c_str());
+  for (pugi::xml_node child : placeholder.children()) property.append_copy(child);
+  if (const std::string condition = said.attribute("show_with").value(); !condition.empty()) add_condition(property, condition);
 }
 
 [[noreturn]] void fail(const std::string& text) {
@@ -191,6 +265,7 @@ void add_property(pugi::xml_node placeholder, Described d, const char* command) 
 const Described& find(const std::string& name, const std::vector<std::string>& of) {
   static std::map<std::string, std::vector<Described>> all;
   for (const std::string& one : of) {
+    if (!structs().contains(one)) fail("no parameters of " + one);
     auto& list = all[one];
     if (list.empty()) list = structs().at(one)();
     for (const Described& d : list)
@@ -201,23 +276,27 @@ const Described& find(const std::string& name, const std::vector<std::string>& o
 
 void expand(pugi::xml_node proxy) {
   std::vector<pugi::xml_node> single, lists;
+  // A parameter is looked for in the proxy's own structs first.
+  std::vector<std::string> order;
   for (pugi::xml_node child : proxy.children()) {
     if (std::string(child.name()) == "Parameter") single.push_back(child);
-    if (std::string(child.name()) == "Parameters") lists.push_back(child);
+    if (std::string(child.name()) != "Parameters") continue;
+    lists.push_back(child);
+    order.emplace_back(child.attribute("of").value());
   }
+  for (const auto& [name, make] : structs()) order.push_back(name);
   std::set<std::string> done;
-  std::vector<std::string> all_structs;
-  for (const auto& [name, make] : structs()) all_structs.push_back(name);
   for (pugi::xml_node placeholder : single) {
-    const Described& d = find(placeholder.attribute("name").value(), all_structs);
+    const Described& d = find(placeholder.attribute("name").value(), order);
     done.insert(d.about.name);
     if (!placeholder.attribute("omit").as_bool()) add_property(placeholder, d, "SetParameter");
   }
   for (pugi::xml_node placeholder : lists) {
-    const std::string of = placeholder.attribute("of").value();
-    if (!structs().contains(of)) fail("no parameters of " + of);
-    for (const Described& d : structs().at(of)())
+    const bool advanced = std::string(placeholder.attribute("level").value()) == "advanced";
+    for (Described d : structs().at(placeholder.attribute("of").value())()) {
+      if (advanced) d.about.level = Level::advanced;
       if (d.about.last_name() != "threads" && done.insert(d.about.name).second) add_property(placeholder, d, "SetParameter");
+    }
   }
   for (pugi::xml_node placeholder : single) proxy.remove_child(placeholder);
   for (pugi::xml_node placeholder : lists) proxy.remove_child(placeholder);

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// ParaView's property panels have defaults of their own, in XML. They are those of the plugin's classes, and where the
-// library has such an option those of its struct. The files are read as text: no ParaView is needed.
+// Properties that are written by hand have defaults of their own, in XML. They are those of the plugin's classes, and
+// where the library has such an option those of its struct. The files are read as text: no ParaView is needed.
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 #include <gmock/gmock.h>
 
 #include <filesystem>
@@ -14,20 +13,8 @@
 #include <set>
 #include <sstream>
 
-#include "surf/afm/blind_tip.h"
-#include "surf/afm/certainty.h"
-#include "surf/afm/morphology.h"
-#include "surf/afm/noise_estimate.h"
 #include "surf/afm/tip_sweep.h"
 #include "surf/io/surface_file.h"
-#include "surf/mc/beam.h"
-#include "surf/mc/simulate.h"
-#include "surf/mesh/repair_mesh.h"
-#include "surf/sem/fit_facet_network.h"
-#include "surf/workflow/afm_preparation.h"
-#include "surf/workflow/reconstruct_job.h"
-#include "surf/workflow/slope_table.h"
-#include "surf/workflow/train_job.h"
 
 namespace surf {
 namespace {
@@ -96,10 +83,9 @@ std::vector<Property> properties() {
 }
 
 TEST(ParaViewDefaults, AreThoseOfTheClasses) {
-  // A proxy may begin elsewhere than its class: the operation that it is, and the pixels of built-in surfaces, which
-  // nothing else tells.
+  // A proxy may begin elsewhere than its class: the operation that it is.
   const std::set<std::string> own{"SemsurfErode.Operation", "SemsurfDilate.Operation", "SemsurfOpen.Operation",
-                                  "SemsurfClose.Operation", "SemsurfTrainBuiltIn.PixelSize"};
+                                  "SemsurfClose.Operation"};
   std::size_t compared = 0;
   std::map<std::string, std::map<std::string, Numbers>> members;
   for (const Property& p : properties()) {
@@ -120,28 +106,9 @@ TEST(ParaViewDefaults, AreThoseOfTheClasses) {
 }
 
 TEST(ParaViewDefaults, AreThoseOfTheLibrary) {
-  const mc::Beam beam;
-  const mc::SimulationOptions simulation;
-  const workflow::TrainJob train;
-  const workflow::AfmPreparationOptions preparation;
-  const RepairOptions repair;
   const io::Magnification magnification;
   const std::map<std::string, double> known{
-      {"SemsurfRegister.Energy", beam.energy_ev},
-      {"SemsurfReconstruct.Energy", beam.energy_ev},
-      {"SemsurfReconstruct.Upsample", double(workflow::ReconstructJob{}.upsample)},
-      {"SemsurfReconstruct.Iterations", double(ReconstructionOptions{}.iterations)},
-      {"SemsurfReconstruct.Uncertainty", double(ReconstructionOptions{}.uncertainty)},
-      {"SemsurfTrainBase.Energy", train.energy_ev},
-      {"SemsurfTrainBase.Spot", train.spot_nm},
-      {"SemsurfTrainBase.HoldOut", double(train.held_out)},
-      {"SemsurfTrainBase.Fine", double(train.fine)},
-      {"SemsurfTrainBase.Seed", double(train.simulation.seed)},
-      {"SemsurfTrainBuiltIn.SurfaceSize", double(train.surface_px)},
       {"SemsurfEstimateTip.Thresholds", double(TipSweepOptions{}.thresholds)},
-      {"SemsurfRepairMesh.Sliver", repair.sliver_nm},
-      {"SemsurfRepairMesh.MinimumComponent", repair.min_component_nm},
-      {"SemsurfRepairMesh.ResolveIntersections", double(repair.resolve_self_intersections)},
       {"SemsurfSurfaceWriter.Magnification", magnification.factor},
       {"SemsurfSurfaceWriter.ZExaggeration", magnification.z_exaggeration},
   };
@@ -156,8 +123,6 @@ TEST(ParaViewDefaults, AreThoseOfTheLibrary) {
 }
 
 TEST(ParaViewDefaults, TooltipsSayWhatStandsForTheUsual) {
-  const FacetNetworkFitOptions network;
-  const std::string train = text_of(plugin / "xml" / "train.xml");
   // "0: 600" and the like: the value that the panel begins with, and what it stands for.
   std::set<std::string> said;
   static const std::regex stands_for(R"((?:^|[ ;,])(-?\d+|none): (\d[\d.]*)(?=[ ,;.]|\.<))");
@@ -168,15 +133,9 @@ TEST(ParaViewDefaults, TooltipsSayWhatStandsForTheUsual) {
       said.insert(fmt::format("{}.{} {}: {}", p.proxy, p.name, (*it)[1].str(), number));
     }
   }
-  EXPECT_THAT(said, testing::UnorderedElementsAre(
-                        fmt::format("SemsurfTrainBase.Iterations 0: {}", network.iterations),
-                        fmt::format("SemsurfTrainBase.Decay -1: {}", network.decay),
-                        fmt::format("SemsurfTrainBase.Tolerance -1: {}", network.tolerance),
-                        fmt::format("SemsurfTrainBase.TableElectrons 0: {}", workflow::SlopeTableOptions{}.electrons),
-                        // No struct holds these: choices made where they are used, and nm of files that do not say.
-                        "SemsurfTrainBuiltIn.Surfaces 0: 60", "SemsurfEstimateTip.ThresholdRange 0: 0.3",
-                        "SemsurfToSurface.Thickness 0: 5", "SemsurfScanReader.ZUnit 0: 1", "SemsurfScanReader.PixelSize 0: 1"));
-  EXPECT_THAT(train, testing::HasSubstr(fmt::format("none: {}.", fmt::join(network.hidden, ", "))));
+  // No struct holds these: choices made where they are used, and nm of files that do not say.
+  EXPECT_THAT(said, testing::UnorderedElementsAre("SemsurfEstimateTip.ThresholdRange 0: 0.3", "SemsurfToSurface.Thickness 0: 5",
+                                                  "SemsurfScanReader.ZUnit 0: 1", "SemsurfScanReader.PixelSize 0: 1"));
 }
 
 }  // namespace

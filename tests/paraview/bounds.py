@@ -22,7 +22,7 @@ def field():
 
 
 def tip():
-    return simple.AFMTip(Samples=5, Radius=5, Pitch=3)
+    return simple.AFMTip(TipSize=5, Radius=5, Pitch=3)
 
 
 def body():
@@ -47,7 +47,7 @@ def cases():
         yield "Noise", lambda: simple.NoiseModel(Input=scan, Flat=flat), True
     yield "Register", lambda: simple.RegisterAFMandSEM(Input=scan, SEM=sem, Tip=probe, Material="Si"), False
     yield "Reconstruct", lambda: simple.Reconstruct(Input=scan, SEM=sem, Tip=probe, Material="Si", UseTransform=1), False
-    yield "Calibrate", lambda: simple.CalibrateSEM(Input=sem, Simulated=sem, FixOffset=1, Saturation=1, Black=-1), True
+    yield "Calibrate", lambda: simple.CalibrateSEM(Input=sem, Simulated=sem, Offset="-1", Black="-1"), True
     yield "Predict", lambda: simple.PredictSEM(Input=scan, ModelFile=MODEL), True
     yield "Drape", lambda: simple.DrapeImageonSurface(Input=sheet, Image=scan), True
     yield "LineProfile", lambda: simple.LineProfile(Input=scan, SEM=sem, Surface=sheet, Samples=9), True
@@ -68,8 +68,8 @@ def cases():
     for shape in range(3):
         yield "SampleBody", lambda: simple.SampleBody(Shape=shape, Subdivisions=1, Segments=5), True
     for shape in range(4):
-        yield "TipSource", lambda: simple.AFMTip(Shape=shape, Samples=5, StemRadius=2, StemHalfAngle=5), True
-    small = {"Model": "secant", "Electrons": 2, "ModelFile": str(FOLDER / "bounds.json")}
+        yield "TipSource", lambda: simple.AFMTip(Shape=shape, TipSize=5, StemRadius=2, StemHalfAngle=5), True
+    small = {"Model": "Secant", "Electrons": 2, "ModelFile": str(FOLDER / "bounds.json")}
     yield "TrainBuiltIn", lambda: simple.TrainSEMModelonBuiltinSurfaces(Surfaces=2, SurfaceSize=16, **small), True
     yield "TrainBuiltIn", lambda: simple.TrainSEMModelonBuiltinSurfaces(Surfaces=2, SurfaceSize=16, Budget=1, Accuracy=0.9,
                                                                         **small), False

@@ -48,7 +48,7 @@ CHAIN = ["--height-pitch", "3nm", "--pixel-size", "3nm", "--level-method", "none
 def registration_equals_the_command():
     semsurf("register", "scan.txt", "sem.tif", *CHAIN, "-o", "transform.json", "-q", code=None)
     want = json.loads((FOLDER / "transform.json").read_text())
-    source = simple.RegisterAFMandSEM(Input=scan(), SEM=sem(), Tip=tip(), ModelFile=str(MODEL), Level="None")
+    source = simple.RegisterAFMandSEM(Input=scan(), SEM=sem(), Tip=tip(), ModelFile=str(MODEL), LevelMethod="None")
     table = fetch(source, 1)
     values = dict(zip(column(table, "quantity"), column(table, "value")))
     same([values[k] for k in ("xx", "xy", "x0_nm", "yx", "yy", "y0_nm")], want["sem_to_afm"], "the transform")
@@ -74,7 +74,7 @@ def marks(of):
 def landmarks_make_the_map():
     places, points = PLACES, marks
     moved = [(x + 6, y - 3) for x, y in places]
-    common = dict(Input=scan(), SEM=sem(), Tip=tip(), ModelFile=str(MODEL), Level="None", LandmarksOnly=1)
+    common = dict(Input=scan(), SEM=sem(), Tip=tip(), ModelFile=str(MODEL), LevelMethod="None", LandmarksOnly=1)
     source = simple.RegisterAFMandSEM(SEMLandmarks=points(places), AFMLandmarks=points(moved), **common)
     table = fetch(source, 1)
     values = dict(zip(column(table, "quantity"), column(table, "value")))
@@ -86,7 +86,7 @@ def landmarks_make_the_map():
 def reconstruction_equals_the_command():
     semsurf("reconstruct", "--afm", "scan.txt", "--sem", "sem.tif", *CHAIN, "--transform", "1,0,0,0,1,0", "--no-picture",
             "--iterations", 4, "-o", "result", "-q", code=None)
-    source = simple.Reconstruct(Input=scan(), SEM=sem(), Tip=tip(), ModelFile=str(MODEL), Level="None", UseTransform=1,
+    source = simple.Reconstruct(Input=scan(), SEM=sem(), Tip=tip(), ModelFile=str(MODEL), LevelMethod="None", UseTransform=1,
                                 Iterations=4)
     told = progress_of(source)
     expect(len(told) > 3, "there is progress")
@@ -117,16 +117,16 @@ def landmarks_and_methods_reach_the_reconstruction():
                                       "".join(f"{a},{b},{c},{d}\n" for (a, b), (c, d) in zip(places, moved)))
     semsurf("reconstruct", "--afm", "scan.txt", "--sem", "sem.tif", *CHAIN, "--landmarks", "pairs.csv", "--accept-registration",
             "--no-picture", "--no-uncertainty", "--method", "conjugate-gradients", "--iterations", 3, "-o", "second", "-q", code=None)
-    source = simple.Reconstruct(Input=scan(), SEM=sem(), Tip=tip(), ModelFile=str(MODEL), Level="None", AcceptRegistration=1,
-                                SEMLandmarks=marks(places), AFMLandmarks=marks(moved), Iterations=3, Uncertainty=0,
-                                Method="Conjugate gradients")
+    source = simple.Reconstruct(Input=scan(), SEM=sem(), Tip=tip(), ModelFile=str(MODEL), LevelMethod="None", AcceptRegistration=1,
+                                SEMLandmarks=marks(places), AFMLandmarks=marks(moved), Iterations=3, NoUncertainty=1,
+                                Optimiser="Conjugate gradients")
     want = fetch(simple.XMLImageDataReader(FileName=[str(FOLDER / "second" / "surface.vti")]))
     same(array(fetch(source), "z_nm").astype(numpy.float32), array(want, "z_nm"), "the surface")
     expect(fetch(source).GetPointData().GetArray("deviation_nm") is None, "no deviations")
 
 
 def scans_alone_are_reconstructed():
-    source = simple.Reconstruct(Input=scan(), Tip=tip(), Level="None", Iterations=2, Uncertainty=0)
+    source = simple.Reconstruct(Input=scan(), Tip=tip(), LevelMethod="None", Iterations=2, NoUncertainty=1)
     expect(array(fetch(source), "z_nm").shape == (SIZE, SIZE), "on the scan's samples")
     expect(fetch(source, 3).GetNumberOfPoints() == 0 or fetch(source, 3).GetPointData().GetNumberOfArrays() == 0, "no SEM")
 
@@ -143,9 +143,9 @@ def calibration_equals_the_command():
          [c["gain"] for c in want["channels"]] + [want["offset"]["value"]], "gains and offset")
     image = fetch(source)
     expect(numpy.allclose(array(image, "calibrated") + array(image, "residual"), array(fetch(sem()), sem_name())), "the fit")
-    for properties, options in [({"FixOffset": 1, "Offset": 90}, ["--offset", 90]),
-                                ({"Saturation": 1, "Black": 120, "White": 700}, ["--black", 120, "--white", 700]),
-                                ({"Channels": "SE"}, ["--fit", "SE"])]:
+    for properties, options in [({"Offset": "90"}, ["--offset", 90]),
+                                ({"Black": "120", "White": "700"}, ["--black", 120, "--white", 700]),
+                                ({"Fit": "SE"}, ["--fit", "SE"])]:
         semsurf("calibrate", "sem.tif", "--pixel-size", "3nm", "--images", "truth.tif", *options, "-o", "fit.json", "-q", code=None)
         want = json.loads((FOLDER / "fit.json").read_text())
         table = fetch(simple.CalibrateSEM(Input=sem(), Simulated=predicted, **properties), 1)
@@ -153,7 +153,7 @@ def calibration_equals_the_command():
         expect(got["gain SE"] != values["gain SE"], f"{properties} change nothing")
         same([got[f"gain {c['name']}"] for c in want["channels"]] + [got["offset"]],
              [c["gain"] for c in want["channels"]] + [want["offset"]["value"]], f"{properties}")
-    refuses(simple.CalibrateSEM(Input=sem(), Simulated=predicted, Channels="SE, XX"), "Channels", "'XX'")
+    refuses(simple.CalibrateSEM(Input=sem(), Simulated=predicted, Fit="SE, XX"), "Fit", "'XX'")
     refuses(simple.CalibrateSEM(Input=simple.SampleSurface(), Simulated=predicted), "Simulated", "pixels")
 
 
@@ -162,7 +162,7 @@ def sem_name():
 
 
 def wrong_properties_are_refused():
-    common = dict(Input=scan(), SEM=sem(), Tip=tip(), Level="None")
+    common = dict(Input=scan(), SEM=sem(), Tip=tip(), LevelMethod="None")
     refuses(simple.RegisterAFMandSEM(ModelFile="", Material="", **common), "Model File", "no model")
     refuses(simple.Reconstruct(ModelFile=str(MODEL), Upsample=9, **common), "Upsample", "1 to 8")
     refuses(simple.Reconstruct(ModelFile=str(MODEL), UseTransform=1, Transform=[0] * 6, **common), "Transform")

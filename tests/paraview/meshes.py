@@ -93,8 +93,8 @@ def every_repair_is_the_option():
         result = points(got).tobytes() + corners(got).tobytes()
         expect(result not in seen, "it changes nothing")
         seen.add(result)
-    each([({},), ({"Stitch": 0.5}, "--stitch", "0.5nm"), ({"MaximumHole": 1000}, "--max-hole", "1um"),
-          ({"MinimumComponent": 10}, "--min-component", "10nm"), ({"Sliver": 0.1}, "--sliver", "0.1nm")], check)
+    each([({},), ({"Stitch": 0.5}, "--stitch", "0.5nm"), ({"MaxHole": 1000}, "--max-hole", "1um"),
+          ({"MinComponent": 10}, "--min-component", "10nm"), ({"Sliver": 0.1}, "--sliver", "0.1nm")], check)
 
 
 def crossings_are_resolved_as_the_command_does():
@@ -102,7 +102,7 @@ def crossings_are_resolved_as_the_command_does():
     simple.SaveData(str(FOLDER / "crossing.off"), proxy=both)
     reader = simple.SurfaceMeshReader(FileName=str(FOLDER / "crossing.off"))
     results = []
-    for properties, options in [({}, []), ({"ResolveIntersections": 0}, ["--keep-intersections"])]:
+    for properties, options in [({}, []), ({"KeepIntersections": 1}, ["--keep-intersections"])]:
         semsurf("mesh", "crossing.off", "--repair", *options, "-o", "whole.off", code=None)
         mended, want = simple.CheckandRepairMesh(Input=reader, **properties), read("whole.off")
         results.append(fetch(mended))
@@ -119,15 +119,15 @@ def thinning_equals_the_command():
     body = simple.SampleBody(Shape="Sphere", Radius=50, Subdivisions=4)
     simple.SaveData(str(FOLDER / "sphere.off"), proxy=body)
     semsurf("mesh", "sphere.off", "--tolerance", "1nm", "-o", "thin.off")
-    got, want = quiet(simple.SimplifyMesh(Input=body, Tolerance=1)), read("thin.off")
+    got, want = quiet(simple.SimplifyMesh(Input=body, MeshTolerance=1)), read("thin.off")
     same(corners(got), corners(want), "triangles")
     same(points(got), points(want), "points")
     few = quiet(simple.SimplifyMesh(Input=body, Limit="Triangles", Triangles=100))
     expect(few.GetNumberOfPolys() <= 100, f"{few.GetNumberOfPolys()} triangles")
-    both = quiet(simple.SimplifyMesh(Input=body, Limit="Both", Triangles=600, Tolerance=3))
+    both = quiet(simple.SimplifyMesh(Input=body, Limit="Both", Triangles=600, MeshTolerance=3))
     semsurf("mesh", "sphere.off", "--tolerance", "3nm", "--triangles", 600, "-o", "both.off")
     same(points(both), points(read("both.off")), "with both limits")
-    expect(both.GetNumberOfPolys() > fetch(simple.SimplifyMesh(Input=body, Tolerance=3)).GetNumberOfPolys(),
+    expect(both.GetNumberOfPolys() > fetch(simple.SimplifyMesh(Input=body, MeshTolerance=3)).GetNumberOfPolys(),
            "the number is reached first")
 
 
@@ -152,11 +152,11 @@ def files_are_read_back():
         expect(numpy.allclose(points(got), points(want), rtol=0, atol=0 if exact else 1e-5), f"{name}: places")
         if name != "all.3mf" and name != "all.off":
             expect(numpy.allclose(array(got, "curvature"), array(want, "curvature"), atol=1e-6), f"{name}: curvature")
-    thin = simple.SimplifyMesh(Input=surface, Tolerance=1)
+    thin = simple.SimplifyMesh(Input=surface, MeshTolerance=1)
     simple.SaveData(str(FOLDER / "thin.glb"), proxy=thin)
     expect(float(text(fetch(thin), "deviation_nm")) > 0, "what is said of it")
     expect(text(read("thin.glb"), "deviation_nm") == text(fetch(thin), "deviation_nm"), "goes along into the file")
-    tip = simple.AFMTip(Samples=9)
+    tip = simple.AFMTip(TipSize=9)
     servermanager.writers.HeightFieldWriter(Input=tip, FileName=str(FOLDER / "tip.gsf")).UpdatePipeline()
     back = fetch(simple.AFMScanReader(FileName=str(FOLDER / "tip.gsf")))
     expect(text(back, "tip") == text(fetch(tip), "tip") == "structuring function", "and of heights")

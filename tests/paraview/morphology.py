@@ -18,7 +18,7 @@ def heights(source):
 
 
 def tip():
-    return simple.AFMTip(Radius=5, HalfAngle=20, Samples=9, Pitch=1)
+    return simple.AFMTip(Radius=5, HalfAngle=20, TipSize=9, Pitch=1)
 
 
 def tips_equal_the_command():
@@ -56,7 +56,7 @@ def morphology_equals_the_command():
 
 
 def tips_are_resampled():
-    coarse = simple.AFMTip(Radius=5, HalfAngle=20, Samples=5, Pitch=2)
+    coarse = simple.AFMTip(Radius=5, HalfAngle=20, TipSize=5, Pitch=2)
     semsurf("tip", "--shape", "cone:5nm,20deg", "--tip-size", 5, "--height-pitch", "2nm", "-o", "coarse.txt")
     semsurf("erode", DATA / "noisy.gsf", "--tip", "coarse.txt", "-o", "out.txt")
     same(heights(simple.ErodebyTip(Input=scan(), Tip=coarse)), matrix(FOLDER / "out.txt"), "a coarser tip")
@@ -124,8 +124,8 @@ def wrong_properties_are_refused():
     refuses(simple.CleanScan(Input=scan(), MedianWidth=4), "Median Width", "Give 3 or 5")
     refuses(simple.ErodebyTip(Input=scan(), Tip=tip(), Distance=-1), "Distance", "0nm or more")
     refuses(simple.CertaintyMap(Input=scan(), Tip=tip(), Sigmas=0), "Sigmas")
-    refuses(simple.ErodebyTip(Input=scan(), Tip=simple.AFMTip(Samples=4)), "Samples", "odd")
-    refuses_until(simple.AFMTip(Samples=4), ["Samples", "odd"], Samples=9)
+    refuses(simple.ErodebyTip(Input=scan(), Tip=simple.AFMTip(TipSize=4)), "Tip Size", "middle")
+    refuses_until(simple.AFMTip(TipSize=4), ["Tip Size", "middle"], TipSize=9)
     refuses_until(simple.SampleSurface(Width=0), ["Width", "samples"], Width=20)
     two = simple.SampleSurface(Shape="Grating", Width=100, Depth=100, FeatureHeight=10, Period=40, FeatureWidth=4, WallRun=4)
     refuses(simple.ErodebyTip(Input=scan(), Tip=two), "Tip", "places that do not touch")
@@ -133,7 +133,7 @@ def wrong_properties_are_refused():
 
 def progress_and_abort():
     large = simple.SampleSurface(Shape="Rough", Width=1022, Depth=1022)
-    blunt = simple.AFMTip(Radius=60, Samples=61)
+    blunt = simple.AFMTip(Radius=60, TipSize=61)
     erode = simple.ErodebyTip(Input=large, Tip=blunt, Distance=4, Upsample=4)
     expect(len(progress_of(erode)) > 3, "there is progress")
     whole = array(fetch(erode), "z_nm").copy()
@@ -150,7 +150,7 @@ def the_library_tells_its_time():
     expect(key is not None, "the key is there")
     large = simple.SampleSurface(Shape="Rough", Width=600, Depth=600)
     large.UpdatePipeline()
-    erode = simple.ErodebyTip(Input=large, Tip=simple.AFMTip(Radius=60, Samples=61), Distance=4)
+    erode = simple.ErodebyTip(Input=large, Tip=simple.AFMTip(Radius=60, TipSize=61), Distance=4)
     seconds = []
     for upsample in (4, 1):
         erode.Upsample = upsample

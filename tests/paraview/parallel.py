@@ -15,8 +15,8 @@ def pipelines():
     """Name to what is saved: images as pieces, the rest by semsurf's own writers and as tables."""
     scan = simple.AFMScanReader(FileName=str(DATA / "noisy.gsf"))
     made = simple.SampleSurface(Shape="Rough", Width=120, Depth=90)
-    tip = simple.AFMTip(Radius=5, Samples=9, Pitch=1)
-    coarse = simple.AFMTip(Radius=5, Samples=9, Pitch=2)
+    tip = simple.AFMTip(Radius=5, TipSize=9, Pitch=1)
+    coarse = simple.AFMTip(Radius=5, TipSize=9, Pitch=2)
     images = {"scan": scan, "surface": made, "tip": tip,
               "level": simple.LevelScan(Input=scan, Rows="Median"),
               "clean": simple.CleanScan(Input=scan, MedianFilter=1, Closing=1),
@@ -28,7 +28,7 @@ def pipelines():
     images["seen"] = simple.SurfacetoHeightField(Input=sheet, Samples=40)
     images["sem"] = simple.SimulateSEM(Input=sheet, Pixels=24, Electrons=4)
     surfaces = {"sheet": sheet, "body": simple.SampleBody(Shape="Sphere"),
-                "thin": simple.SimplifyMesh(Input=simple.SampleBody(Shape="Sphere"), Tolerance=1),
+                "thin": simple.SimplifyMesh(Input=simple.SampleBody(Shape="Sphere"), MeshTolerance=1),
                 "mended": simple.CheckandRepairMesh(Input=sheet)}
     return images, surfaces
 

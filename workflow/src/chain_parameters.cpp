@@ -31,9 +31,8 @@ std::vector<double> numbers_of(std::string_view text, const std::string& subject
 
 /// A file, or six numbers.
 void read_transform(std::string_view text, const std::string& subject, PoseOptions& pose) {
-  const bool numbers = std::ranges::count(text, ',') == 5 && text.find_first_not_of("0123456789+-.,eE") == text.npos;
   pose.transform_doubt.clear();
-  if (!numbers) {
+  if (std::ranges::count(text, ',') != 5) {
     const io::TransformFile file = io::read_transform(std::string(text));
     pose.transform = file.sem_to_afm;
     if (!file.verified) pose.transform_doubt = file.verdict.empty() ? "unknown" : file.verdict;

@@ -29,7 +29,7 @@ namespace fs = std::filesystem;
 constexpr double much = 0.001;   // share of the samples that is worth a warning
 
 void check_outputs(const PredictJob& job, const Image& like) {
-  if (job.outputs.empty()) throw UsageError("`output`", "no output file is given", "Add `output=image.exr`");
+  if (job.outputs.empty()) return;
   std::vector<io::FileUse> outputs;
   for (const fs::path& output : job.outputs) outputs.push_back({"`output`", output, {}});
   io::refuse_overlaps({{"HEIGHTS", job.input, {}}, {"`prediction.model`", job.model, {}}}, outputs);
@@ -50,16 +50,8 @@ PredictJob parameters_of(const PredictJob& job) {
   return out;
 }
 
-HeightField at_pixel(const PredictJob& job, double pixel_nm, const NoteCallback& note) {
-  const bool other = pixel_nm > 0 && (job.field.pitch_x_nm != pixel_nm || job.field.pitch_y_nm != pixel_nm);
-  if (!job.resample || !other) return job.field;
-  HeightField field = resampled(job.field, pixel_nm);
-  if (note)
-    note(fmt::format("{}: {} x {} samples of {} are resampled to {} x {} of {}", job.input.string(),
-                     job.field.z_nm.width(), job.field.z_nm.height(), format_length(job.field.pitch_x_nm),
-                     field.z_nm.width(), field.z_nm.height(), format_length(pixel_nm)));
-  return field;
-}
+/// Who the heights are, for messages.
+std::string name_of(const PredictJob& job) { return job.input.empty() ? "HEIGHTS" : job.input.string(); }
 
 Image image_of(const PredictJob& job, const TrainedModel& model, const HeightField& field,
                const std::vector<std::string>& channels) {
@@ -71,7 +63,9 @@ Image image_of(const PredictJob& job, const TrainedModel& model, const HeightFie
   for (const std::string& name : channels)
     image.channels.push_back({name, "1", Grid<float>(field.z_nm.width(), field.z_nm.height())});
   auto& made = image.metadata;
-  made = step_record("predict", record_of(parameters_of(job)), {job.input});
+  std::vector<fs::path> inputs;
+  if (!job.input.empty()) inputs.push_back(job.input);
+  made = step_record("predict", record_of(parameters_of(job)), inputs);
   made["model"] = fmt::format("{} sha256 {}", job.model.filename().string(), io::sha256_of_file(job.model));
   made["model.kind"] = io::kind_of(model);
   if (!model.scope.material.empty()) made["material.1.name"] = model.scope.material;
@@ -99,6 +93,12 @@ std::vector<std::string> prediction_warnings(const TrainedModel& model, const He
   return warnings;
 }
 
+HeightField heights_for(const PredictJob& job, const ModelScope& scope) {
+  const double pixel_nm = scope.pixel_nm;
+  const bool other = pixel_nm > 0 && (job.field.pitch_x_nm != pixel_nm || job.field.pitch_y_nm != pixel_nm);
+  return job.resample && other ? resampled(job.field, pixel_nm) : job.field;
+}
+
 void describe(ParameterVisitor& visit, PredictJob& job) {
   visit.form({.name = "prediction.model", .help = "The model, as 'semsurf train' writes it", .form = "FILE.json",
               .recorded = false, .file = FileRole::read},
@@ -109,14 +109,15 @@ void describe(ParameterVisitor& visit, PredictJob& job) {
   visit(job.resample,
         {.name = "prediction.resample", .help = "Resample heights of another pitch to the model's pixels"});
   describe(visit, job.reading);
-  visit(job.wanted.material, {.name = "specimen.material", .help = "What the surface is made of", .form = "MATERIAL"});
+  visit(job.wanted.material, {.name = "specimen.material", .help = "What the surface is made of",
+                              .otherwise = "as the model says", .form = "MATERIAL"});
   std::optional<double> energy_ev = job.wanted.energy_ev > 0 ? std::optional(job.wanted.energy_ev) : std::nullopt;
   visit(energy_ev, {.name = "beam.energy", .help = "Energy of the beam", .unit = Unit::ev,
-                    .limits = within(mc::min_beam_energy_ev, mc::max_beam_energy_ev)});
+                    .limits = within(mc::min_beam_energy_ev, mc::max_beam_energy_ev), .otherwise = "as the model says"});
   job.wanted.energy_ev = energy_ev.value_or(0);
   std::optional<double> spot_nm = job.wanted.spot_nm > 0 ? std::optional(job.wanted.spot_nm) : std::nullopt;
   visit(spot_nm, {.name = "beam.spot", .help = "Standard deviation of the Gaussian spot", .unit = Unit::nm,
-                  .limits = within(0, mc::largest_length_nm)});
+                  .limits = within(0, mc::largest_length_nm), .otherwise = "as the model says"});
   job.wanted.spot_nm = spot_nm.value_or(0);
   visit.form({.name = "output", .help = "Image to write: EXR, TIFF, PNG, VTI", .form = "FILE", .recorded = false,
               .file = FileRole::written},
@@ -134,12 +135,18 @@ PredictSummary run(const PredictJob& job, const Reporter& reporter) {
   const Watch watch = reporter.watch();
   PredictSummary summary;
   check_parameters(parameters_of(job));
+  if (job.model.empty())
+    throw UsageError("`prediction.model`", "no model is given", "Name one that 'semsurf train' has written");
   summary.model = io::read_model(job.model);
   const ModelScope& scope = summary.model.scope;
   check_conditions(scope, job.wanted);
   const auto model = make_model(summary.model);
-  const HeightField field = at_pixel(job, scope.pixel_nm, reporter.on_note);
-  check_field(scope, field, job.input.string().c_str());
+  const HeightField field = heights_for(job, scope);
+  if (field.pitch_x_nm != job.field.pitch_x_nm || field.pitch_y_nm != job.field.pitch_y_nm)
+    reporter.note(fmt::format("{}: {} x {} samples of {} are resampled to {} x {} of {}", name_of(job),
+                              job.field.z_nm.width(), job.field.z_nm.height(), format_length(job.field.pitch_x_nm),
+                              field.z_nm.width(), field.z_nm.height(), format_length(scope.pixel_nm)));
+  check_field(scope, field, name_of(job).c_str());
   summary.image = image_of(job, summary.model, field, model->channels());
   check_outputs(job, summary.image);
   const auto start = std::chrono::steady_clock::now();

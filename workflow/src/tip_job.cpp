@@ -265,6 +265,27 @@ void describe(ParameterVisitor& visit, CharacterizerParameters& p) {
                    .level = Level::advanced});
 }
 
+void describe(ParameterVisitor& visit, TipShape& s) {
+  constexpr double most_nm = 1e9;
+  visit(s.kind, {"cone", "parabola", "pyramid", "ball"},
+        {.name = "tip.kind",
+         .help = "Shape: cone and pyramid end in a sphere without a kink, a parabola has the radius at its apex, a ball "
+                 "sits on a stem"});
+  visit(s.radius_nm, {.name = "tip.radius", .help = "Radius at the apex, or of the ball", .unit = Unit::nm,
+                      .limits = above(0, most_nm)});
+  visit(s.half_angle_deg, {.name = "tip.half_angle", .help = "Angle of the side with the axis, of a cone or pyramid",
+                           .unit = Unit::deg, .limits = from_to_below(0, 90)});
+  visit(s.faces, {.name = "tip.faces", .help = "Number of a pyramid's faces", .limits = within(3, 100)});
+  visit(s.rotation_deg, {.name = "tip.rotation", .help = "Azimuth of a pyramid's first face, counter-clockwise from +x",
+                         .unit = Unit::deg, .limits = within(-1e6, 1e6), .level = Level::advanced});
+  visit(s.stem_radius_nm, {.name = "tip.stem_radius",
+                           .help = "Radius of the stem where it leaves a ball, less than the ball's; 0: never seen",
+                           .unit = Unit::nm, .limits = within(0, most_nm), .level = Level::advanced});
+  visit(s.stem_half_angle_deg, {.name = "tip.stem_half_angle",
+                                .help = "Angle by which the stem of a ball widens; 0: a cylinder",
+                                .unit = Unit::deg, .limits = from_to_below(0, 90), .level = Level::advanced});
+}
+
 void describe(ParameterVisitor& visit, TipShapeParameters& p) {
   visit.form(
       {.name = "tip.shape",

@@ -75,6 +75,24 @@ class HiddenField final : public Field {
   std::optional<std::vector<int>>& layers_;
 };
 
+/// A kind of those that can be learnt; what is none of them is refused where it is looked for.
+class KindField final : public Field {
+ public:
+  explicit KindField(std::string& kind) : kind_(kind) {}
+  FieldKind kind() const override { return FieldKind::choice; }
+  std::vector<std::string> choices() const override {
+    std::vector<std::string> names;
+    for (const LearnableKind& one : learnable_kinds()) names.push_back(one.name);
+    return names;
+  }
+  bool given() const override { return !kind_.empty(); }
+  std::string text() const override { return kind_; }
+  void read(std::string_view text, const std::string&) override { kind_ = text; }
+
+ private:
+  std::string& kind_;
+};
+
 /// Shows a number that stands for its own choice where it is 0.
 void show_or_none(ParameterVisitor& visit, int& number, const Parameter& about) {
   std::optional<int> given = number != 0 ? std::optional(number) : std::nullopt;
@@ -122,7 +140,8 @@ std::string file_name(const std::filesystem::path& path) { return path.filename(
 
 void describe(ParameterVisitor& visit, LearnOptions& learn) {
   const FacetNetworkFitOptions network;
-  visit(learn.kind, {.name = "training.kind", .help = "Kind of model, of those below", .form = "KIND"});
+  KindField kind(learn.kind);
+  visit.visit({.name = "training.kind", .help = "Kind of model", .form = "KIND"}, kind);
   visit.form(
       {.name = "training.scales",
        .help = "Samples across the neighbourhoods of a filter bank or network, as 5,7,11",
@@ -170,7 +189,7 @@ void describe(ParameterVisitor& visit, TrainJob& job) {
         {.name = "training.edge", .help = "Continuation of surfaces outside"});
   describe(visit, job.reading);
   visit.form({.name = "training.pixel_size", .help = "Size of the images' pixels, which are square", .unit = Unit::nm,
-              .otherwise = "that of the first of HEIGHTS", .form = "LENGTH"},
+              .limits = above(0), .otherwise = "that of the first of HEIGHTS", .form = "LENGTH"},
              [&] { return job.pixel_nm != 0 ? format_exact(job.pixel_nm) : std::string(); },
              [&](std::string_view text, const std::string& subject) { job.pixel_nm = read_square_nm(text, subject); },
              FieldKind::number);

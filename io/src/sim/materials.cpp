@@ -42,6 +42,21 @@ const std::vector<mc::Material>& builtin_materials() {
   return materials;
 }
 
+void describe(ParameterVisitor& visit, MaterialChoice& choice) {
+  visit(choice.name, {.name = "specimen.material", .help = "What the specimen is made of", .form = "MATERIAL"});
+  visit(choice.files, {.name = "specimen.materials",
+                       .help = "File of your own materials (TOML)",
+                       .form = "FILE",
+                       .level = Level::advanced,
+                       .file = FileRole::read});
+}
+
+mc::Material find_material(const MaterialChoice& choice, std::vector<std::string>& notes) {
+  MaterialLibrary materials;
+  for (const std::string& file : choice.files) materials.read(file, notes);
+  return materials.find(choice.name, "`specimen.material`");
+}
+
 const mc::Material& find_material(const std::string& name, const std::string& subject) {
   return find_in(builtin_materials(), name, subject);
 }

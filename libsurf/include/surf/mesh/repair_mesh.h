@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "surf/core/parameters.h"
 #include "surf/core/progress.h"
 #include "surf/mesh/check_mesh.h"
 #include "surf/mesh/triangle_mesh.h"
@@ -32,6 +33,8 @@ struct RepairOptions {
   int threads = 0;                          ///< 0: one per hardware thread; same result
   Watch watch;
 };
+/// mesh.stitch, mesh.sliver and so on.
+void describe(ParameterVisitor& visit, RepairOptions& options);
 
 /// A hole that was left open.
 struct OpenHole {

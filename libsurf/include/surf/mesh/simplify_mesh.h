@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "surf/core/parameters.h"
 #include "surf/core/progress.h"
 #include "surf/mesh/mesh_deviation.h"
 #include "surf/mesh/triangle_mesh.h"
@@ -20,6 +21,8 @@ struct SimplifyOptions {
   int threads = 0;   ///< of the measurement; 0: one per hardware thread. Same result
   Watch watch;
 };
+/// mesh.mesh_tolerance and mesh.triangles.
+void describe(ParameterVisitor& visit, SimplifyOptions& options);
 
 struct SimplifySummary {
   std::size_t triangles_before = 0;

@@ -20,12 +20,12 @@ namespace surf::workflow {
 struct PredictJob {
   std::filesystem::path model;             ///< its file
   HeightField field;
-  std::filesystem::path input;             ///< the file that the heights are from
+  std::filesystem::path input;             ///< the file that the heights are from; may be empty
   Edge edge = Edge::mirror;
   bool resample = false;                   ///< heights of another pitch are resampled, not refused
   ModelScope wanted;                       ///< what it must have been trained for; empty and 0: whatever
   int threads = 0;
-  std::vector<std::filesystem::path> outputs;   ///< formats by extension; at least one
+  std::vector<std::filesystem::path> outputs;   ///< formats by extension; none: the image stays in the summary
   std::string png_channel;                 ///< for PNG; empty: the first
   io::HeightReadOptions reading;           ///< how `input` was read: of the record
 };
@@ -39,6 +39,9 @@ struct PredictSummary {
   double seconds = 0;                      ///< of the prediction alone
   std::vector<std::string> warnings;
 };
+
+/// Heights at the pixel of the model, where the job asks for resampling; else as they are.
+HeightField heights_for(const PredictJob& job, const ModelScope& scope);
 
 /// Checks model and outputs, predicts and writes. The image has a channel for each of the model's, in
 /// counts per primary, placed as the heights are, and says which model of which hash made it. Warns

@@ -88,6 +88,8 @@ struct TipShape {
   double stem_radius_nm = 0;               ///< of a ball; 0: on a cylinder, which is never seen
   double stem_half_angle_deg = 0;
 };
+/// tip.kind, tip.radius and so on, each by itself: for who asks for numbers, not for a text.
+void describe(ParameterVisitor& visit, TipShape& shape);
 /// Throws UsageError naming `subject`.
 TipShape parse_tip_shape(std::string_view text, const std::string& subject);
 std::string format_tip_shape(const TipShape& shape);

@@ -5,12 +5,23 @@
 #include <string>
 #include <vector>
 
+#include "surf/core/parameters.h"
 #include "surf/mc/material.h"
 
 namespace surf::io {
 
 /// The materials that come with semsurf (data/materials.toml), in the order of the file.
 const std::vector<mc::Material>& builtin_materials();
+
+/// A material by its name, of those that come with semsurf or of files of one's own.
+struct MaterialChoice {
+  std::string name;                    ///< empty: none is said
+  std::vector<std::string> files;      ///< as MaterialLibrary::read takes them
+};
+/// specimen.material and specimen.materials.
+void describe(ParameterVisitor& visit, MaterialChoice& choice);
+/// Throws UsageError naming specimen.material, and as the files do. `notes`: see MaterialLibrary::add.
+mc::Material find_material(const MaterialChoice& choice, std::vector<std::string>& notes);
 
 /// The built-in material of that name; see MaterialLibrary::find.
 const mc::Material& find_material(const std::string& name, const std::string& subject);
