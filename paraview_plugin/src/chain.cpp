@@ -7,17 +7,19 @@
 #include <algorithm>
 #include <memory>
 
+#include "convert/image.h"
 #include "property_values.h"
+#include "reports.h"
 #include "surf/core/error.h"
 #include "surf/io/cache.h"
 #include "surf/io/sim/materials.h"
 
 namespace surf::pv {
 
-const Labels chain_labels{{"`level.method`", "Level Method"},
+const Labels chain_labels{{"`specimen.material`", "Material"},
+                          {"`level.method`", "Level Method"},
                           {"`level.degree`", "Level Degree"},
-                          {"`level.tolerance`", "Level Tolerance"},
-                          {"`reconstruction.model`", "Model File"}};
+                          {"`level.tolerance`", "Level Tolerance"}};
 
 void complete(workflow::ModelRequest& request, const PropertyValues& values) {
   const std::filesystem::path cache = io::cache_folder();
@@ -31,6 +33,12 @@ void complete(workflow::ModelRequest& request, const PropertyValues& values) {
     throw UsageError("`reconstruction.model`", "none is named, and there is no cache to keep one in", "Name one");
   std::vector<std::string> notes;
   request.material = io::find_material(material, notes);
+}
+
+void add_chain_record(vtkDataObject* data, const std::string& step, const Record& parameters,
+                      const workflow::StoredModel* model) {
+  add_record(data, step, parameters);
+  if (model) add_texts(data, {{"model", fmt::format("{} sha256 {}", model->file.filename().string(), model->sha256)}});
 }
 
 std::vector<LandmarkPair> landmarks_of(vtkPolyData* sem, vtkPolyData* afm) {

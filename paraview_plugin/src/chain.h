@@ -9,6 +9,7 @@
 #include "surf/registration/landmarks.h"
 #include "surf/workflow/register_job.h"
 
+class vtkDataObject;
 class vtkPolyData;
 
 namespace surf::pv {
@@ -21,6 +22,10 @@ void complete(workflow::ModelRequest& request, const PropertyValues& values);
 
 /// What properties of both filters are called that are not called as their fields are.
 extern const Labels chain_labels;
+
+/// Says with the data how they were made: the job's parameters, and which model of which hash it was.
+void add_chain_record(vtkDataObject* data, const std::string& step, const Record& parameters,
+                      const workflow::StoredModel* model);
 
 /// Points that were picked in both views, in the same order; either may be nullptr. Throws UsageError where there are
 /// not as many of both.

@@ -16,7 +16,8 @@ namespace {
 const std::map<std::string_view, std::string> other_names{
     {"specimen.material", "Materials"},  {"specimen.materials", "Material File"}, {"specimen.substrate_z", "Substrate Top"},
     {"scan.size", "Pixels"},             {"output", "Model File"},                {"training.kind", "Model"},
-    {"tip.size", "Tip Size"},            {"clean.spikes", "Spike Width"},         {"clean.median", "Median Width"},
+    {"prediction.model", "Model File"},  {"reconstruction.model", "Model File"},
+    {"tip.kind", "Shape"},               {"tip.size", "Tip Size"},            {"clean.spikes", "Spike Width"},         {"clean.median", "Median Width"},
     {"clean.closing", "Closing Width"},  {"scan.height_noise", "Noise"}};
 
 std::string label_of(std::string_view field) {

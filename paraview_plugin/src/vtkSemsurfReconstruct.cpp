@@ -158,7 +158,7 @@ int vtkSemsurfReconstruct::RequestData(vtkInformation*, vtkInformationVector** i
       if (r.start.z_nm.size() == r.surface.z_nm.size()) pv::add_values(surface, std::move(r.start.z_nm), "start_nm", "nm");
       pv::add_heights(surface, std::move(r.surface));
       pv::add_texts(surface, texts);
-      pv::add_record(surface, "reconstruct", record_of(job));
+      pv::add_chain_record(surface, "reconstruct", record_of(job), s->model ? &*s->model : nullptr);
       pv::give(outputs->GetInformationObject(0), surface);
       pv::give(outputs->GetInformationObject(2), afm);
     }, pv::chain_labels);

@@ -127,7 +127,7 @@ int vtkSemsurfRegister::RequestData(vtkInformation*, vtkInformationVector** inpu
       const std::map<std::string, std::string> texts{{pv::transform_text, pv::text_of(s->pose.sem_to_afm)},
                                                      {"verdict", r ? workflow::name(r->verdict) : "by landmarks"}};
       pv::add_texts(image, texts);
-      pv::add_record(image, "register", record_of(job));
+      pv::add_chain_record(image, "register", record_of(job), &s->model);
       vtkNew<vtkTable> table;
       fill_table(table, s->pose);
       pv::add_texts(table, texts);

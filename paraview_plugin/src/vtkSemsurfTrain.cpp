@@ -127,6 +127,6 @@ int vtkSemsurfTrain::RequestData(vtkInformation*, vtkInformationVector** inputs,
       pv::fill_model(model, job, summary, notes);
       pv::give(outputs->GetInformationObject(0), errors);
       pv::give(outputs->GetInformationObject(1), model);
-    }, {{"pixel size", "Pixel Size"}});
+    }, {{"pixel size", "Pixel Size"}, {"`specimen.material`", "Material"}});
   });
 }

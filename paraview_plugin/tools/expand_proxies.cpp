@@ -4,7 +4,7 @@
 //   <Parameters of="simulation" command="SetParameter"/>      is replaced by a property for each parameter of that struct,
 //   <Parameter name="beam.tilt" .../>                         by that one, and the struct's list then leaves it out.
 // A Parameter may say what differs for ParaView: property (its name), label, default, numbers (how many), whole="1", min, max, level,
-// omit="1", help (in place of the description's), the widget's condition show_with="Budget=1 2", documentation, which goes before the description's, none (the number
+// omit="1", help (in place of the description's), entries (of a choice, in their order), the widget's condition show_with="Budget=1 2", documentation, which goes before the description's, none (the number
 // that says nothing) and otherwise (what holds then). What it contains goes into the property: hints, say.
 // Parameters may say the level of all that it stands for.
 // An optional number without any of default and none has 0 for nothing, or -1 where it may be 0; where it may be both, it is a text.
@@ -24,6 +24,7 @@
 #include <vector>
 
 #include "surf/core/parameters.h"
+#include "surf/core/words.h"
 #include "surf/io/sim/materials.h"
 #include "surf/io/sim/specimen_request.h"
 #include "surf/mesh/repair_mesh.h"
@@ -97,6 +98,11 @@ const std::map<std::string, std::function<std::vector<Described>()>>& structs() 
       {"certainty", described<workflow::CertaintyParameters>},
       {"morphology", described<workflow::MorphologyParameters>}};
   return all;
+}
+
+[[noreturn]] void fail(const std::string& text) {
+  fmt::print(stderr, "{}\n", text);
+  std::exit(1);
 }
 
 std::string with_spaces(std::string_view name) {
@@ -183,7 +189,6 @@ void add_choices(pugi::xml_node property, const std::vector<std::string>& choice
     pugi::xml_node entry = domain.append_child("Entry");
     entry.append_attribute("value") = value++;
     std::string shown = choice;
-    std::ranges::replace(shown, '-', ' ');
     shown[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(shown[0])));
     entry.append_attribute("text") = shown.c_str();
   }
@@ -239,7 +244,14 @@ void add_property(pugi::xml_node placeholder, Described d, const char* command) 
   const bool advanced = attribute("level", d.about.level == Level::advanced ? "advanced" : "basic") == "advanced";
   if (advanced) property.append_attribute("panel_visibility") = "advanced";
   if (d.kind == FieldKind::choice) {
-    add_choices(property, d.choices);
+    std::vector<std::string> entries = d.choices;
+    for (std::string& entry : entries) std::ranges::replace(entry, '-', ' ');
+    if (const std::string own = said.attribute("entries").value(); !own.empty()) {
+      entries.clear();
+      for (const std::string_view entry : split(own, ",")) entries.emplace_back(entry);
+      if (entries.size() != d.choices.size()) fail("entries of " + d.about.name + " are not as many as its choices");
+    }
+    add_choices(property, entries);
   } else if (d.kind == FieldKind::flag) {
     property.append_child("BooleanDomain").append_attribute("name") = "bool";
   } else if (widget.whole || widget.number) {
@@ -255,11 +267,6 @@ void add_property(pugi::xml_node placeholder, Described d, const char* command) 
       sentence(d, said.attribute("documentation").value(), nothing).c_str());
   for (pugi::xml_node child : placeholder.children()) property.append_copy(child);
   if (const std::string condition = said.attribute("show_with").value(); !condition.empty()) add_condition(property, condition);
-}
-
-[[noreturn]] void fail(const std::string& text) {
-  fmt::print(stderr, "{}\n", text);
-  std::exit(1);
 }
 
 const Described& find(const std::string& name, const std::vector<std::string>& of) {

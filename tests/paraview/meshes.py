@@ -210,9 +210,9 @@ def vtk_files_are_inline():
 def wrong_properties_are_refused():
     surface = simple.HeightFieldtoSurface(Input=scan())
     refuses(simple.HeightFieldtoSurface(Input=scan(), Simplify=1, Tolerance=-1), "Tolerance", "below 0")
-    refuses(simple.SimplifyMesh(Input=surface, Limit="Triangles", Triangles=3), "Triangles", "too few")
+    refuses(simple.SimplifyMesh(Input=surface, Limit="Triangles", Triangles=3), "Triangles", "4 to 1000000000")
     refuses_until(simple.SurfacetoHeightField(Input=surface, Samples=1), ["Samples", "2 to 16384"], Samples=20)
-    refuses(simple.CheckandRepairMesh(Input=surface, Sliver=-1), "Sliver", "below 0")
+    refuses(simple.CheckandRepairMesh(Input=surface, Sliver=-1), "Sliver", "0nm or more")
     refuses(simple.SimplifyMesh(Input=simple.Line()), "Input", "no polygons")
     refuses(simple.HeightFieldtoSurface(Input=simple.SurfacetoHeightField(
         Input=simple.SampleBody(Shape="Sphere"), Samples=20)), "height field", "hole")

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a filter's image says of how it was made: each property is changed from its default and found again."""
-from support import each, expect, fetch, run, simple, text, texts
+"""What a filter's output says of how it was made: each property is changed from its default and found again."""
+from support import SOURCE, each, expect, fetch, messages, run, simple, text, texts
+
+MODEL = str(SOURCE / "samples" / "si-1keV-3nm.json")
 
 # By property: another value, and what is to be found in the image.
 SIMULATE = {
@@ -28,6 +30,53 @@ TOGETHER = {
 # What is of the input, or of how the result is shown.
 OTHERS = {"Input", "Scalars", "MaterialFile", "Edge", "Budget", "Live", "NeedsUpdate"}
 
+# Of filters that work on scans, tips and meshes: by property another value, and the parameter as the output says it. What
+# it is changed together with comes third.
+LEVELLING = {"Method": ("Plane", "level.method=plane"), "Degree": (3, "level.degree=3", {"Method": "Polynomial"}),
+             "Tolerance": (1.5, "level.tolerance_nm=1.5"), "Rows": ("Difference", "level.rows=difference")}
+CHAIN = {"LevelMethod": ("Plane", "level.method=plane"),
+         "LevelDegree": (1, "level.degree=1", {"LevelMethod": "Polynomial"}),
+         "LevelTolerance": (1.5, "level.tolerance_nm=1.5", {"LevelMethod": "Hough"}), "Rows": ("Median", "level.rows=median"),
+         "Noise": ("0.25,0.5", "scan.height_noise_nm=0.25,0.5"), "TipSize": (7, "reconstruction.tip_size=7"),
+         "Energy": (1000, "beam.energy_ev=1000"), "Spot": (0, "beam.spot_nm=0"),
+         "Objective": ("Mutual information", "registration.objective=mutual-information")}
+STEPS = {
+    "LevelScan": LEVELLING,
+    "PredictSEM": {"Edge": ("Flat", "prediction.edge=flat"), "Resample": (0, "prediction.resample=off"),
+                   "Material": ("Si", "specimen.material=Si"), "Energy": (1000, "beam.energy_ev=1000")},
+    "CalibrateSEM": {"Fit": ("SE", "calibration.fit=SE"), "Offset": ("3", "calibration.offset=3"),
+                     "Black": ("-4", "calibration.black=-4"), "White": ("1e6", "calibration.white=1e+06"),
+                     "Ratio": ("0.5", "calibration.ratio=0.5", {"Fit": "SE,BSE"}), "Range": (30, "calibration.range_nm=30")},
+    "CheckandRepairMesh": {"MaxHole": (4, "mesh.max_hole_nm=4"), "Stitch": (0.5, "mesh.stitch_nm=0.5"),
+                           "Sliver": (0.25, "mesh.sliver_nm=0.25"), "MinComponent": (2, "mesh.min_component_nm=2"),
+                           "KeepIntersections": (1, "mesh.keep_intersections=on")},
+    "SimplifyMesh": {"MeshTolerance": (2, "mesh.mesh_tolerance_nm=2"),
+                     "Triangles": (40, "mesh.triangles=40", {"Limit": "Triangles"})},
+    "RegisterAFMandSEM": CHAIN | {"Seed": (5, "tip.seed=5"), "LandmarksOnly": (1, "registration.landmarks_only=on",
+                                                                             {"landmarks": True})},
+    "Reconstruct": CHAIN | {
+        "Seed": (5, "reconstruction.seed=5"), "Gains": ("2,3", "reconstruction.gains=2,3"),
+        "Offset": ("4", "reconstruction.offset=4", {"Gains": "2,3"}), "SemNoise": ("0,9", "reconstruction.sem_noise=0,9,"),
+        "LandmarksOnly": (1, "registration.landmarks_only=on", {"landmarks": True, "UseTransform": 0}),
+        "AcceptRegistration": (1, "registration.accept_registration=on"),
+        "Transform": ([1, 0, 3, 0, 1, 0], "registration.transform=1,0,3,0,1,0"),
+        "Optimiser": ("L-BFGS", "reconstruction.optimiser=lbfgs"), "Scales": ("2,1", "reconstruction.scales=2,1"),
+        "Iterations": (2, "reconstruction.iterations=2"), "OptimiserTolerance": (0.5, "reconstruction.optimiser_tolerance=0.5"),
+        "Prior": (0.25, "reconstruction.prior=0.25"), "FixedTransform": (1, "reconstruction.fixed_transform=on"),
+        "FixedCalibration": (1, "reconstruction.fixed_calibration=on"), "RefineTip": (1, "reconstruction.refine_tip=on"),
+        "KeepTip": (1, "reconstruction.keep_tip=on"), "NoUncertainty": (0, "reconstruction.no_uncertainty=off"),
+        "Probes": (3, "reconstruction.probes=3"), "Upsample": (2, "reconstruction.upsample=2")},
+    "AFMTip": {"Shape": ("Ball", "tip.shape=ball:5nm"), "Radius": (7, "tip.shape=cone:7nm,15deg"),
+               "HalfAngle": (20, "tip.shape=cone:5nm,20deg"), "Faces": (3, "tip.shape=pyramid:5nm,15deg,3", {"Shape": "Pyramid"}),
+               "Rotation": (9, "tip.shape=pyramid:5nm,15deg,4,9deg", {"Shape": "Pyramid"}),
+               "StemRadius": (2, "tip.shape=ball:5nm,2nm,0deg", {"Shape": "Ball"}),
+               "StemHalfAngle": (4, "tip.shape=ball:5nm,2nm,4deg", {"Shape": "Ball", "StemRadius": 2}),
+               "TipSize": (9, "tip.size=9"), "Pitch": (2, "scan.height_pitch_nm=2")},
+}
+# Inputs, and what says what is made or shown, not how.
+APART = {"Input", "Scalars", "SEM", "SEMScalars", "Tip", "AFMLandmarks", "SEMLandmarks", "Simulated", "SimulatedScalars",
+         "ModelFile", "Material", "MaterialFile", "UseTransform", "Repair", "Limit"}
+
 
 def sphere():
     return simple.SampleBody(Shape="Sphere", Radius=50, Subdivisions=2)
@@ -48,5 +97,54 @@ def simulations_say_every_property():
          [(name, properties, wanted) for name, (properties, wanted) in TOGETHER.items()], check)
 
 
+def points(places):
+    return simple.PolyLineSource(Points=[v for x, y in places for v in (x, y, 0)])
+
+
+def step(name, properties):
+    """A filter that is done in a moment."""
+    scan = simple.SampleSurface(Shape="Rough", Width=69, Depth=57, Pitch=3, CorrelationLength=9, RmsHeight=4)
+    sem = simple.PredictSEM(Input=scan, ModelFile=MODEL)
+    chain = {"Input": scan, "SEM": sem, "Tip": simple.AFMTip(TipSize=5, Radius=5, Pitch=3), "ModelFile": MODEL,
+             "LevelMethod": "None"}
+    usual = {"LevelScan": {"Input": scan}, "PredictSEM": {"Input": scan, "ModelFile": MODEL},
+             "CalibrateSEM": {"Input": sem, "Simulated": sem}, "CheckandRepairMesh": {"Input": sphere()},
+             "SimplifyMesh": {"Input": sphere()}, "RegisterAFMandSEM": chain,
+             "Reconstruct": chain | {"UseTransform": 1, "Iterations": 1, "NoUncertainty": 1},
+             "AFMTip": {"TipSize": 5, "Radius": 5, "Pitch": 3}}
+    properties = usual[name] | properties
+    if properties.pop("landmarks", False):
+        places = [(-30, -20), (30, -20), (-20, 25), (25, 20)]
+        properties |= {"SEMLandmarks": points(places), "AFMLandmarks": points(places)}
+    return getattr(simple, name)(**properties)
+
+
+def said(source):
+    """What any of the outputs says: a sound mesh comes back as it was, and the table says how it was looked at."""
+    with messages():
+        source.UpdatePipeline()
+    found = {}
+    for port in range(source.SMProxy.GetNumberOfOutputPorts()):
+        found |= {key.removeprefix("option."): value for key, value in texts(fetch(source, port)).items()
+                  if key.startswith("option.")}
+    return found
+
+
+def steps_say_every_property():
+    def check(name):
+        known = set(STEPS[name]) | APART
+        names = set(step(name, {}).ListProperties())
+        if name == "PredictSEM":
+            names -= {"Spot"}   # no other one than the model's is taken
+        expect(names <= known, f"nobody looks for {names - known}")
+        plain = said(step(name, {}))
+        for what, (value, wanted, *more) in STEPS[name].items():
+            key, _, number = wanted.partition("=")
+            got = said(step(name, (more[0] if more else {}) | {what: value}))
+            expect(got.get(key, "").startswith(number), f"{what}: {key} is {got.get(key)}, not {number}")
+            expect(not plain.get(key, "none").startswith(number), f"{what}: {key} is {number} by default")
+    each([(name,) for name in STEPS], check)
+
+
 if __name__ == "__main__":
-    run(simulations_say_every_property)
+    run(simulations_say_every_property, steps_say_every_property)

@@ -92,13 +92,22 @@ TEST_F(PredictJobTest, WarnsOfSlopesThatWereNotLearnt) {
   EXPECT_THAT(run(job_).warnings, testing::ElementsAre(HasSubstr("steeper than the 80 degrees")));
 }
 
+TEST_F(PredictJobTest, KeepsTheImageWhereNoFileIsWanted) {
+  run(job_);
+  PredictJob job = job_;
+  job.outputs.clear();
+  const Image image = run(job).image, written = io::read_image(path("image.exr"));
+  ASSERT_EQ(image.channels.size(), written.channels.size());
+  for (const Channel& channel : image.channels)
+    EXPECT_EQ(channel.values.data(), written.find(channel.name)->values.data()) << channel.name;
+  EXPECT_EQ(image.metadata.at("model"), written.metadata.at("model"));
+}
+
 TEST_F(PredictJobTest, RefusesBadOutputs) {
   job_.png_channel = "gold";
   job_.outputs = {path("a.png")};
   EXPECT_THROW(run(job_), UsageError);
   job_.png_channel.clear();
-  job_.outputs = {};
-  EXPECT_THROW(run(job_), UsageError);
   job_.outputs = {path("a.exr"), path("a.exr")};
   EXPECT_THROW(run(job_), UsageError);
 }

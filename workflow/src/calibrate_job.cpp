@@ -125,13 +125,14 @@ void describe(ParameterVisitor& visit, CalibrateParameters& p) {
                .form = "NAMES"},
               fit);
   visit(p.ratio,
-        {.name = "calibration.ratio", .help = "Gain of the second channel over the first's, where it is known"});
+        {.name = "calibration.ratio", .help = "Gain of the second channel over the first's, where it is known",
+                  .otherwise = "fitted"});
   visit(p.offset, {.name = "calibration.offset", .help = "What the image shows without a signal, where it is known",
-                   .limits = within(-most_level, most_level)});
+                   .limits = within(-most_level, most_level), .otherwise = "fitted"});
   visit(p.black, {.name = "calibration.black", .help = "Level from which pixels downwards are saturated and left out",
-                  .limits = within(-most_level, most_level)});
+                  .limits = within(-most_level, most_level), .otherwise = "none are"});
   visit(p.white, {.name = "calibration.white", .help = "Level from which pixels upwards are saturated and left out",
-                  .limits = within(-most_level, most_level)});
+                  .limits = within(-most_level, most_level), .otherwise = "none are"});
   visit(p.range_nm, {.name = "calibration.range", .help = "Half the width of squares over which the gain may vary",
                      .unit = Unit::nm, .limits = above(0), .otherwise = "it is constant"});
 }

@@ -13,6 +13,7 @@
 #include "surf/io/scan_parameters.h"
 #include "surf/mc/simulation_request.h"
 #include "surf/sem/fit_facet_network.h"
+#include "surf/sem/fit_filter_bank.h"
 #include "surf/workflow/slope_table.h"
 #include "surf/workflow/train_job.h"
 
@@ -21,6 +22,7 @@ namespace {
 
 constexpr double most_electrons = 2147483648.0;
 constexpr std::size_t most_hidden_layers = 3;
+constexpr double most_pixel_nm = 1e6;
 
 std::string write_scales(const std::vector<FacetScale>& scales) {
   std::string text;
@@ -103,6 +105,9 @@ void show_or_none(ParameterVisitor& visit, int& number, const Parameter& about) 
 double read_square_nm(std::string_view text, const std::string& subject) {
   const auto [x, y] = parse_two_lengths_nm(text, subject);
   if (!(x > 0) || x != y) throw UsageError(subject, "a model's pixels are square and above zero", "Write 3nm");
+  if (x > most_pixel_nm)
+    throw UsageError(subject, fmt::format("{} is out of range", format_length(x)),
+                     fmt::format("Give at most {}", format_length(most_pixel_nm)));
   return x;
 }
 
@@ -164,7 +169,8 @@ void describe(ParameterVisitor& visit, LearnOptions& learn) {
                             .otherwise = format_value(network.tolerance, Unit::share)});
   visit(learn.least_eigenvalue,
         {.name = "training.least_eigenvalue", .help = "Least eigenvalue of the components that a filter bank keeps",
-         .unit = Unit::share, .limits = at_least(0), .form = "NUMBER"});
+         .unit = Unit::share, .limits = at_least(0), .otherwise = fmt::format("{:g}", FilterBankFitOptions{}.eigenvalue_cutoff),
+         .form = "NUMBER"});
   visit(learn.multi_resolution,
         {.name = "training.multi_resolution", .help = "Wide neighbourhoods of a filter bank on fewer samples"});
   visit(learn.table_electrons, {.name = "training.table_electrons",
@@ -189,7 +195,7 @@ void describe(ParameterVisitor& visit, TrainJob& job) {
         {.name = "training.edge", .help = "Continuation of surfaces outside"});
   describe(visit, job.reading);
   visit.form({.name = "training.pixel_size", .help = "Size of the images' pixels, which are square", .unit = Unit::nm,
-              .limits = above(0), .otherwise = "that of the first of HEIGHTS", .form = "LENGTH"},
+              .limits = above(0, most_pixel_nm), .otherwise = "that of the first of HEIGHTS", .form = "LENGTH"},
              [&] { return job.pixel_nm != 0 ? format_exact(job.pixel_nm) : std::string(); },
              [&](std::string_view text, const std::string& subject) { job.pixel_nm = read_square_nm(text, subject); },
              FieldKind::number);
