@@ -10,11 +10,9 @@
 #include <vtkTable.h>
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 #include "attempt.h"
-#include "checks.h"
 #include "convert/table.h"
 #include "convert/tip.h"
 #include "pipeline.h"
@@ -72,31 +70,18 @@ int vtkSemsurfEstimateTip::FillOutputPortInformation(int port, vtkInformation* i
 }
 
 workflow::TipParameters vtkSemsurfEstimateTip::Parameters() const {
-  pv::need_length(this->Noise, "Noise");
-  for (const double nm : this->ThresholdRange) pv::need_length(nm, "Threshold Range");
-  if (this->ThresholdRange[1] != 0 && this->ThresholdRange[0] >= this->ThresholdRange[1])
-    throw UsageError("Threshold Range", fmt::format("{} to {} nm is no range", this->ThresholdRange[0], this->ThresholdRange[1]),
-                     "Give the least and the most, or 0 for both");
-  pv::need_within(this->Thresholds, 2, 10000, "Thresholds");
-  if (!(std::abs(this->NoiseCorrelation) < 1))
-    throw UsageError("Noise Correlation", fmt::format("{} is not between -1 and 1", this->NoiseCorrelation),
-                     "Give 0");
   workflow::TipParameters parameters;
   this->Values->apply(parameters, {"tip.answer"});
   pv::PropertyValues values = *this->Values;
   // What another answer takes says nothing.
-  if (parameters.answer != workflow::TipAnswer::blind) {
+  if (parameters.answer == workflow::TipAnswer::blind) {
+    values.forget("scan.height_noise");
+  } else {
     for (const char* of_blind : {"tip.threshold", "tip.threshold_y", "tip.apex_tolerance", "tip.layer", "tip.maxima"})
       values.forget(of_blind);
-    const double alpha = this->NoiseCorrelation, sigma = this->Noise;
-    if (sigma > 0) parameters.noise = AfmNoise{alpha, sigma * sigma * (1 - alpha * alpha)};
   }
-  if (parameters.answer == workflow::TipAnswer::sweep) {
-    parameters.sweep_least_nm = this->ThresholdRange[0], parameters.sweep_most_nm = this->ThresholdRange[1];
-    parameters.sweep_thresholds = this->Thresholds;
-  } else {
-    values.forget("tip.seed");
-  }
+  if (parameters.answer != workflow::TipAnswer::sweep)
+    for (const char* of_sweep : {"tip.sweep", "tip.seed"}) values.forget(of_sweep);
   values.apply(parameters);
   workflow::check(parameters);
   return parameters;

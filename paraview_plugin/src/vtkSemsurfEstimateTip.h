@@ -17,11 +17,6 @@ class VTKSEMSURF_EXPORT vtkSemsurfEstimateTip : public vtkSemsurfImageFilter {
   static vtkSemsurfEstimateTip* New();
   vtkTypeMacro(vtkSemsurfEstimateTip, vtkSemsurfImageFilter);
 
-  vtkSetMacro(Noise, double);              ///< nm, standard deviation; 0: from the scan
-  vtkSetMacro(NoiseCorrelation, double);   ///< of neighbours along rows, in (-1, 1), where Noise is given
-  vtkSetMacro(Thresholds, int);            ///< of the sweep
-  vtkSetVector2Macro(ThresholdRange, double);   ///< nm; both 0: from the noise
-
  protected:
   vtkSemsurfEstimateTip() { this->SetNumberOfOutputPorts(2); }
   int FillOutputPortInformation(int port, vtkInformation* info) override;
@@ -31,11 +26,6 @@ class VTKSEMSURF_EXPORT vtkSemsurfEstimateTip : public vtkSemsurfImageFilter {
  private:
   /// Throws UsageError for what cannot be.
   surf::workflow::TipParameters Parameters() const;
-
-  double Noise = 0;
-  double NoiseCorrelation = 0;
-  int Thresholds = 40;
-  double ThresholdRange[2] = {0, 0};
 };
 
 #endif

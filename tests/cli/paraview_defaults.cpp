@@ -13,7 +13,6 @@
 #include <set>
 #include <sstream>
 
-#include "surf/afm/tip_sweep.h"
 #include "surf/io/surface_file.h"
 
 namespace surf {
@@ -108,7 +107,6 @@ TEST(ParaViewDefaults, AreThoseOfTheClasses) {
 TEST(ParaViewDefaults, AreThoseOfTheLibrary) {
   const io::Magnification magnification;
   const std::map<std::string, double> known{
-      {"SemsurfEstimateTip.Thresholds", double(TipSweepOptions{}.thresholds)},
       {"SemsurfSurfaceWriter.Magnification", magnification.factor},
       {"SemsurfSurfaceWriter.ZExaggeration", magnification.z_exaggeration},
   };
@@ -134,7 +132,7 @@ TEST(ParaViewDefaults, TooltipsSayWhatStandsForTheUsual) {
     }
   }
   // No struct holds these: choices made where they are used, and nm of files that do not say.
-  EXPECT_THAT(said, testing::UnorderedElementsAre("SemsurfEstimateTip.ThresholdRange 0: 0.3", "SemsurfToSurface.Thickness 0: 5",
+  EXPECT_THAT(said, testing::UnorderedElementsAre("SemsurfToSurface.Thickness 0: 5",
                                                   "SemsurfScanReader.ZUnit 0: 1", "SemsurfScanReader.PixelSize 0: 1"));
 }
 

@@ -38,7 +38,8 @@ def cases():
     for kind in ("Hough", "Polynomial"):
         yield "Level", lambda: simple.LevelScan(Input=scan, Method={"Hough": 0, "Polynomial": 2}[kind]), True
     yield "Clean", lambda: simple.CleanScan(Input=scan, MedianFilter=1, Closing=1), True
-    for answer, more in [("Sweep", {"Noise": 0.3, "Thresholds": 3}), ("Blind", {}), ("Outer", {"Noise": 0.3})]:
+    for answer, more in [("Sweep", {"HeightNoise": "0.3", "Sweep": "0.1,2,3"}), ("Blind", {}),
+                         ("Outer", {"HeightNoise": "0.3"})]:
         yield "EstimateTip", lambda: simple.EstimateTip(Input=scan, TipSize=3, Answer=answer, **more), True
     for operation in ("Erode", "Dilate", "Open", "Close"):
         yield operation, lambda: getattr(simple, f"{operation}byTip")(Input=scan, Tip=probe), True
@@ -69,7 +70,7 @@ def cases():
         yield "SampleBody", lambda: simple.SampleBody(Shape=shape, Subdivisions=1, Segments=5), True
     for shape in range(4):
         yield "TipSource", lambda: simple.AFMTip(Shape=shape, TipSize=5, StemRadius=2, StemHalfAngle=5), True
-    small = {"Model": "Secant", "Electrons": 2, "ModelFile": str(FOLDER / "bounds.json")}
+    small = {"Kind": "Secant", "Electrons": 2, "ModelFile": str(FOLDER / "bounds.json")}
     yield "TrainBuiltIn", lambda: simple.TrainSEMModelonBuiltinSurfaces(Surfaces=2, SurfaceSize=16, **small), True
     yield "TrainBuiltIn", lambda: simple.TrainSEMModelonBuiltinSurfaces(Surfaces=2, SurfaceSize=16, Budget=1, Accuracy=0.9,
                                                                         **small), False

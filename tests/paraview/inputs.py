@@ -8,7 +8,7 @@ from vtkmodules.util.numpy_support import numpy_to_vtk
 
 from support import array, each, expect, fetch, numpy, quiet, refuses, run, simple
 
-FILTERS = {"LevelScan": {}, "CleanScan": {}, "NoiseModel": {}, "EstimateTip": {"TipSize": 5, "Noise": 0.3},
+FILTERS = {"LevelScan": {}, "CleanScan": {}, "NoiseModel": {}, "EstimateTip": {"TipSize": 5, "HeightNoise": "0.3"},
            "HeightFieldtoSurface": {}, "LineProfile": {}, "SimulateSEM": {"Pixels": 6, "Electrons": 1}}
 
 

@@ -95,11 +95,11 @@ def found_tips_equal_the_command():
                 "--apex-tolerance", "0.1nm")
     # This scan's tip does not depend on it.
     expect(column(how, "value")[column(how, "quantity").index("apex_tolerance_nm")] == 0.1, "the apex tolerance")
-    check({"Answer": "Outer", "Noise": 0.1}, "--answer", "outer", "--height-noise", "0.1nm")
-    curve = check({"Noise": 0.1, "Thresholds": 10, "ThresholdRange": [0.03, 0.8]}, "--height-noise", "0.1nm",
+    check({"Answer": "Outer", "HeightNoise": "0.1"}, "--answer", "outer", "--height-noise", "0.1nm")
+    curve = check({"HeightNoise": "0.1", "Sweep": "0.03,0.8,10"}, "--height-noise", "0.1nm",
                   "--sweep", "0.03nm,0.8nm,10")
     expect(curve.GetNumberOfRows() == 10 and column(curve, "chosen").sum() == 1, "a curve with the choice")
-    candidates = check({"Answer": "Best", "Noise": 0.1}, "--answer", "best", "--height-noise", "0.1nm")
+    candidates = check({"Answer": "Best", "HeightNoise": "0.1"}, "--answer", "best", "--height-noise", "0.1nm")
     expect((column(candidates, "risk") > 0).all(), "the candidates")
 
 
@@ -110,7 +110,7 @@ def outputs_tell_how_they_were_made():
         "clean": (simple.CleanScan(Input=scan(), SpikeLimit=0.5), {"clean.spikes": "3:0.5"}),
         "erode": (simple.ErodebyTip(Input=scan(), Tip=tip(), Distance=2), {"morphology.distance_nm": "2"}),
         "close": (simple.ClosebyTip(Input=scan(), Tip=tip(), Upsample=2), {"morphology.upsample": "2"}),
-        "certainty": (simple.CertaintyMap(Input=scan(), Tip=tip(), Noise=0.25), {"scan.height_noise_nm": "0.25"}),
+        "certainty": (simple.CertaintyMap(Input=scan(), Tip=tip(), HeightNoise=0.25), {"scan.height_noise_nm": "0.25"}),
         "tip": (tip(), {"tip.shape": "cone:5nm,20deg", "tip.size": "9", "scan.height_pitch_nm": "1"})}
     for command, (source, wanted) in options.items():
         data = fetch(source)
@@ -140,7 +140,7 @@ def progress_and_abort():
     erode.Upsample = 3
     erode.Upsample = 4
     same(array(abort_and_rerun(erode), "z_nm"), whole, "after an abort")
-    sweep = simple.EstimateTip(Input=simple.SampleSurface(Shape="Rough", Width=300, Depth=300), Noise=0.3)
+    sweep = simple.EstimateTip(Input=simple.SampleSurface(Shape="Rough", Width=300, Depth=300), HeightNoise="0.3")
     expect(len(progress_of(sweep)) > 3, "the sweep tells its progress")
 
 

@@ -23,7 +23,7 @@ def pipelines():
               "erode": simple.ErodebyTip(Input=scan, Tip=tip), "dilate": simple.DilatebyTip(Input=made, Tip=coarse),
               "open": simple.OpenbyTip(Input=scan, Tip=tip), "close": simple.ClosebyTip(Input=scan, Tip=tip),
               "certainty": simple.CertaintyMap(Input=scan, Tip=tip),
-              "found": simple.EstimateTip(Input=scan, TipSize=5, Noise=0.1, Thresholds=6)}
+              "found": simple.EstimateTip(Input=scan, TipSize=5, HeightNoise="0.1", Sweep="0.03,0.8,6")}
     sheet = simple.HeightFieldtoSurface(Input=images["level"], Simplify=1)
     images["seen"] = simple.SurfacetoHeightField(Input=sheet, Samples=40)
     images["sem"] = simple.SimulateSEM(Input=sheet, Pixels=24, Electrons=4)

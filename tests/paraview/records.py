@@ -37,7 +37,7 @@ LEVELLING = {"Method": ("Plane", "level.method=plane"), "Degree": (3, "level.deg
 CHAIN = {"LevelMethod": ("Plane", "level.method=plane"),
          "LevelDegree": (1, "level.degree=1", {"LevelMethod": "Polynomial"}),
          "LevelTolerance": (1.5, "level.tolerance_nm=1.5", {"LevelMethod": "Hough"}), "Rows": ("Median", "level.rows=median"),
-         "Noise": ("0.25,0.5", "scan.height_noise_nm=0.25,0.5"), "TipSize": (7, "reconstruction.tip_size=7"),
+         "HeightNoise": ("0.25,0.5", "scan.height_noise_nm=0.25,0.5"), "TipSize": (7, "reconstruction.tip_size=7"),
          "Energy": (1000, "beam.energy_ev=1000"), "Spot": (0, "beam.spot_nm=0"),
          "Objective": ("Mutual information", "registration.objective=mutual-information")}
 STEPS = {
