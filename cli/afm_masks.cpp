@@ -40,12 +40,6 @@ void describe(ParameterVisitor& visit, MaskInput& input) {
                         .file = FileRole::read});
 }
 
-void add_mask_input(CLI::App& app, MaskInput& input) {
-  app.add_option("--use", input.use, "Only samples count where this image is not 0: .tif .png .exr .vti")
-      ->type_name("FILE");
-  app.add_option("--exclude", input.exclude, "Samples do not count where this image is not 0")->type_name("FILE");
-}
-
 Grid<unsigned char> read_masks(const MaskInput& input, const HeightField& field) {
   if (!input.use && !input.exclude) return {};
   Grid<unsigned char> mask(field.z_nm.width(), field.z_nm.height(), 1);

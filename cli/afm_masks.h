@@ -20,8 +20,6 @@ struct MaskInput {
 };
 /// scan.use and scan.exclude.
 void describe(ParameterVisitor& visit, MaskInput& input);
-/// --use and --exclude.
-void add_mask_input(CLI::App& app, MaskInput& input);
 
 /// 1 where a sample decides; empty if neither is given. Throws UsageError, FileError, InvalidInput if a
 /// size differs or nothing remains.

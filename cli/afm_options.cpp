@@ -9,7 +9,8 @@
 namespace surf::cli {
 
 void add_scan_input(CLI::App& app, BoundParameters& bound, std::string& file, const std::string& group) {
-  CLI::Option* input = app.add_option("INPUT", file, "A scan of any format, or an image of heights")->type_name("FILE");
+  CLI::Option* input = with_role(
+      app.add_option("INPUT", file, "A scan of any format, or an image of heights")->type_name("FILE"), FileRole::read);
   if (group.empty()) input->group("");
   bound.looks["scan.height_channel"].former = {"--channel"};
   bound.looks["scan.height_unit"].former = {"--z-unit"};
@@ -26,7 +27,8 @@ io::HeightFieldFile read_scan(const std::string& file, const io::HeightReadOptio
 }
 
 void add_surface_output(CLI::App& app, std::optional<std::string>& output) {
-  app.add_option("-o,--output", output, "The surface: .gsf, .tif, .txt or .vti")->type_name("FILE");
+  with_role(app.add_option("-o,--output", output, "The surface: .gsf, .tif, .txt or .vti")->type_name("FILE"),
+            FileRole::written);
 }
 
 }  // namespace surf::cli

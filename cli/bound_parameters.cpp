@@ -55,6 +55,12 @@ std::map<const CLI::Option*, BoundOption>& bound_options() {
   return all;
 }
 
+/// Of options that commands read by themselves.
+std::map<const CLI::Option*, FileRole>& own_roles() {
+  static std::map<const CLI::Option*, FileRole> all;
+  return all;
+}
+
 const BoundOption* find_bound(const CLI::Option& option) {
   const auto found = bound_options().find(&option);
   return found == bound_options().end() || found->second.lives.expired() ? nullptr : &found->second;
@@ -78,8 +84,14 @@ std::string option_of(const CLI::App& command, std::string_view parameter) {
 }
 
 std::optional<FileRole> file_role(const CLI::Option& option) {
-  const BoundOption* const bound = find_bound(option);
-  return bound ? bound->file : std::nullopt;
+  if (const BoundOption* const bound = find_bound(option); bound && bound->file) return bound->file;
+  const auto found = own_roles().find(&option);
+  return found == own_roles().end() ? std::nullopt : std::optional(found->second);
+}
+
+CLI::Option* with_role(CLI::Option* option, FileRole role) {
+  own_roles()[option] = role;
+  return option;
 }
 
 void BoundParameters::stands_for(const CLI::Option* option, const std::string& parameter) {

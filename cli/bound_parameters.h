@@ -75,7 +75,10 @@ std::string option_name(std::string_view parameter);
 /// The option that stands for a parameter in a command; empty where there is none.
 std::string option_of(const CLI::App& command, std::string_view parameter);
 
-/// What is done with the file that an option names; empty where the option is not of a described parameter.
+/// What is done with the file that an option names; empty where nothing is known of it.
 std::optional<FileRole> file_role(const CLI::Option& option);
+
+/// Says it of an option that a command declares and reads by itself. Every option of a file or folder needs that.
+CLI::Option* with_role(CLI::Option* option, FileRole role);
 
 }  // namespace surf::cli

@@ -32,7 +32,7 @@ Examples:
 struct Options {
   BoundParameters bound;
   std::string input;
-  std::optional<std::string> tip, output, eroded, threads;
+  std::optional<std::string> tip, output, eroded;
   bool quiet = false;
 };
 
@@ -78,7 +78,7 @@ int work(const Options& o) {
   workflow::CertaintyParameters parameters;
   io::HeightReadOptions reading;
   o.bound.apply(parameters), o.bound.apply(reading);
-  parameters.threads = parse_threads(o.threads);
+  parameters.threads = threads_of(o.bound);
   const HeightField scan = read_scan(o.input, reading, o.quiet).field;
   const Tip tip = read_tip_for(o.tip, scan, o.quiet);
   const workflow::CertaintyResult certain = workflow::certainty(scan, tip, parameters, JobReporter(o.quiet));
@@ -101,10 +101,12 @@ void add_certainty(CLI::App& app, Action& action) {
   add_tip_input(*sub, o->tip);
   o->bound.looks["scan.height_noise"].former = {"--noise"};
   o->bound.add<workflow::CertaintyParameters>(*sub, "Options");
-  sub->add_option("-o,--output", o->output, "The map: .png, .tif, .exr or .vti")->type_name("FILE");
-  sub->add_option("--eroded", o->eroded, "The eroded scan: .gsf, .tif, .txt or .vti")->type_name("FILE");
-  sub->add_option("--surface", o->eroded)->type_name("FILE")->group("");   // its former name
-  add_threads_option(*sub, o->threads);
+  with_role(sub->add_option("-o,--output", o->output, "The map: .png, .tif, .exr or .vti")->type_name("FILE"),
+            FileRole::written);
+  with_role(sub->add_option("--eroded", o->eroded, "The eroded scan: .gsf, .tif, .txt or .vti")->type_name("FILE"),
+            FileRole::written);
+  with_role(sub->add_option("--surface", o->eroded)->type_name("FILE")->group(""), FileRole::written);   // its former name
+  add_threads_option(*sub, o->bound, "Options");
   add_quiet_flag(*sub, o->quiet);
   sub->footer(examples);
   sub->callback([o, &action] { action = [o] { return work(*o); }; });

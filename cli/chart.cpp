@@ -4,10 +4,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <filesystem>
 #include <memory>
-#include <optional>
+#include <set>
 
 #include "chart_sample.h"
 #include "commands.h"
@@ -15,8 +14,6 @@
 #include "exit_codes.h"
 #include "job_reporter.h"
 #include "joined_team.h"
-#include "name_list.h"
-#include "options.h"
 #include "simulate_options.h"
 #include "surf/core/error.h"
 #include "surf/core/units.h"
@@ -48,26 +45,14 @@ Examples:
   semsurf sample pads -o pads && semsurf chart pads --model samples/si-1keV-10nm.json -o pads-chart)";
 
 struct Options {
-  BoundParameters scene;
-  ChartSampleOptions sample;
-  std::optional<std::string> output, accuracy, reference, compared, most, surfaces, surface_px, seed, threads, methods;
-  bool quick = false, quiet = false;
+  BoundParameters scene, bound;   // of both kinds of charts
+  bool quiet = false;
 };
 
 workflow::ChartJob make_job(const Options& o, const std::string& command_line) {
   workflow::ChartJob job;
-  if (o.accuracy) job.finest = parse_share(*o.accuracy, "--accuracy");
-  if (o.reference) job.reference_accuracy = parse_share(*o.reference, "--reference");
-  if (o.compared) job.compared_pixels = static_cast<int>(parse_whole(*o.compared, "--compared", 16, 1 << 24));
-  if (o.most) job.most_primaries = static_cast<double>(parse_whole(*o.most, "--most", 100'000, std::int64_t{1} << 50));
-  if (o.surfaces) job.surfaces = static_cast<int>(parse_whole(*o.surfaces, "--surfaces", 2, 10000));
-  if (o.surface_px) job.surface_px = static_cast<int>(parse_whole(*o.surface_px, "--surface-size", 16, 4096));
-  if (o.seed) job.seed = parse_seed(*o.seed, "--seed");
-  if (o.methods) job.families = parse_names(*o.methods);
-  job.threads = parse_threads(o.threads);
-  job.quick = o.quick;
-  if (!o.output) throw UsageError("--output", "no folder is given", "Add -o chart");
-  job.folder = *o.output;
+  o.bound.apply(job);
+  if (job.folder.empty()) throw UsageError("`output`", "no folder is given", "Add `output=chart`");
   job.command_line = command_line;
   job.scene = read_scene(o.scene.given(), o.quiet, workflow::specimen_reader(nullptr, processes_here()));
   return job;
@@ -102,21 +87,24 @@ void print_choices(const workflow::ChartSummary& s) {
   }
 }
 
-// Options of scenes say nothing of samples, and the other way round.
-void check_options(const CLI::App& app, bool sample) {
-  constexpr std::array of_both{"--output", "--methods", "--quick", "--seed", "--threads", "--quiet"};
-  constexpr std::array of_samples{"--draws", "--model"};
-  const auto is_in = [](const auto& names, const std::string& name) {
-    return std::ranges::find(names, name) != names.end();
+/// What is of scenes says nothing of samples, and the other way round.
+void refuse_other_kind(const Options& o, bool sample) {
+  std::set<std::string> own{"specimen.input"};
+  const auto keep = [&](const Parameter& about, Field&) { own.insert(about.name); };
+  workflow::ChartJob chart;
+  workflow::ChainChartJob chain;
+  if (sample) for_each_parameter(chain, keep);
+  else for_each_parameter(chart, keep);
+  const auto refuse = [&](const GivenTexts& given) {
+    for (const auto& [name, texts] : given)
+      if (!own.contains(name))
+        throw UsageError(fmt::format("`{}`", name),
+                         sample ? "it says nothing of a folder that 'semsurf sample' made"
+                                : "it is for a folder that 'semsurf sample' made",
+                         "Leave it out");
   };
-  for (const CLI::Option* option : app.get_options()) {
-    const std::string name = option->get_name();
-    if (option->count() == 0 || option->get_positional() || is_in(of_both, name)) continue;
-    if (is_in(of_samples, name) == sample) continue;
-    throw UsageError(name, sample ? "it says nothing of a folder that 'semsurf sample' made"
-                                  : "it is for a folder that 'semsurf sample' made",
-                     "Leave it out");
-  }
+  refuse(o.bound.given());
+  if (sample) refuse(o.scene.given());
 }
 
 bool is_folder(const Options& o) {
@@ -128,15 +116,11 @@ bool is_folder(const Options& o) {
 
 int chart_folder(const Options& o, const std::string& command_line) {
   if (leave_to_leader("chart FOLDER")) return 0;
-  ChartSampleOptions sample = o.sample;
-  sample.sample = o.scene.given().at("specimen.input").front();
-  sample.output = o.output;
-  sample.methods = o.methods;
-  sample.seed = o.seed;
-  sample.threads = o.threads;
-  sample.quick = o.quick;
-  sample.quiet = o.quiet;
-  return chart_sample(sample, command_line);
+  workflow::ChainChartJob job;
+  o.bound.apply(job);
+  job.sample = o.scene.given().at("specimen.input").front();
+  job.command_line = command_line;
+  return chart_sample(std::move(job), o.quiet);
 }
 
 int chart(const Options& o, const std::string& command_line) {
@@ -174,21 +158,14 @@ int chart(const Options& o, const std::string& command_line) {
 }
 
 void add_options(CLI::App& app, Options& o) {
-  const char* group = "Chart";
-  app.add_option("-o,--output", o.output, "Folder for the chart and what it is made from")->type_name("FOLDER")->group(group);
-  app.add_flag("--quick", o.quick, "Few settings of each method, a finest accuracy of 3%, small trainings")->group(group);
-  std::string families = "Methods to chart, of those below, with commas between them (all)";
-  app.add_option("--methods", o.methods, families)->type_name("NAME,...")->group(group);
-  app.add_option("--accuracy", o.accuracy, "Finest accuracy that methods are asked for, 0.1% to 10% (1%)")->type_name("SHARE")->group(group);
-  app.add_option("--reference", o.reference, "Accuracy of the reference (a third of the finest)")->type_name("SHARE")->group(group);
-  app.add_option("--compared", o.compared, "Number of pixels of the reference, about (1000)")->type_name("N")->group(group);
-  app.add_option("--most", o.most, "Primaries in the whole image above which settings are left out, direct\n"
-                                   "ones with more than a twentieth of it (3e8; with --quick 5e6)")->type_name("N")->group(group);
-  app.add_option("--surfaces", o.surfaces, "Surfaces that fast models learn on (20)")->type_name("N")->group(group);
-  app.add_option("--surface-size", o.surface_px, "Pixels across each of those surfaces (64)")->type_name("N")->group(group);
-  app.add_option("--seed", o.seed, "Seed of the random numbers: the same seed gives the same numbers, but for times (1)")->type_name("N")->group(group);
-  add_threads_option(app, o.threads)->group(group);
-  add_quiet_flag(app, o.quiet)->group(group);
+  add_request_options(app, o.scene,
+                      {"beam.energy", "beam.tilt", "beam.azimuth", "beam.spot", "beam.convergence", "beam.focus",
+                       "beam.working_distance", "scan.size", "scan.pixel_size", "scan.region", "simulation.physics",
+                       "simulation.cutoff"});
+  o.bound.looks["output"] = {.name = "-o,--output"};
+  o.bound.add<workflow::ChartJob>(app, "Chart");
+  add_quiet_flag(app, o.quiet)->group("Chart");
+  o.bound.add<workflow::ChainChartJob>(app, "Chart of a sample", {}, {"chart.draws", "chart.model"});
 }
 
 std::string footer() {
@@ -204,18 +181,13 @@ void add_chart(CLI::App& app, Action& action, const std::string& command_line) {
   const auto options = std::make_shared<Options>();
   CLI::App* sub =
       app.add_subcommand("chart", "Time against error of every method, on a scene or a sample of yours");
-  add_request_options(*sub, options->scene,
-                      {"beam.energy", "beam.tilt", "beam.azimuth", "beam.spot", "beam.convergence", "beam.focus",
-                       "beam.working_distance", "scan.size", "scan.pixel_size", "scan.region", "simulation.physics",
-                       "simulation.cutoff"});
   add_options(*sub, *options);
-  add_chart_sample_options(*sub, options->sample);
   sub->footer(footer());
-  sub->callback([options, sub, &action, command_line] {
-    action = [options, sub, command_line] {
+  sub->callback([options, &action, command_line] {
+    action = [options, command_line] {
       const bool folder = is_folder(*options);
-      if (!folder) check_options(*sub, false);
-      else if (workflow::is_sample(options->scene.given().at("specimen.input").front())) check_options(*sub, true);
+      if (!folder) refuse_other_kind(*options, false);
+      else if (workflow::is_sample(options->scene.given().at("specimen.input").front())) refuse_other_kind(*options, true);
       return folder ? chart_folder(*options, command_line) : chart(*options, command_line);
     };
   });

@@ -3,11 +3,8 @@
 
 #include <fmt/format.h>
 
-#include "common_options.h"
 #include "exit_codes.h"
 #include "job_reporter.h"
-#include "name_list.h"
-#include "options.h"
 #include "surf/core/error.h"
 #include "surf/io/cache.h"
 #include "surf/workflow/chain_chart_job.h"
@@ -15,23 +12,6 @@
 
 namespace surf::cli {
 namespace {
-
-workflow::ChainChartJob make_job(const ChartSampleOptions& o, const std::string& command_line) {
-  workflow::ChainChartJob job;
-  job.sample = o.sample;
-  if (!o.output) throw UsageError("--output", "no folder is given", "Add -o chart");
-  job.folder = *o.output;
-  if (o.methods) job.families = parse_names(*o.methods);
-  if (o.draws) job.draws = static_cast<int>(parse_whole(*o.draws, "--draws", 1, 1000));
-  if (o.seed) job.seed = parse_seed(*o.seed, "--seed");
-  if (o.model) job.model = *o.model;
-  job.threads = parse_threads(o.threads);
-  job.quick = o.quick;
-  const std::filesystem::path cache = io::cache_folder("");
-  job.models = cache.empty() ? job.folder / "models" : cache / "models";
-  job.command_line = command_line;
-  return job;
-}
 
 std::string time_text(double seconds) {
   return seconds >= 0.995 ? fmt::format("{:.3g} s", seconds) : fmt::format("{:.3g} ms", 1e3 * seconds);
@@ -75,18 +55,6 @@ void print_ranges(const workflow::ChainChartSummary& s) {
 
 }   // namespace
 
-void add_chart_sample_options(CLI::App& app, ChartSampleOptions& o) {
-  const char* group = "Chart of a sample";
-  app.add_option("--draws", o.draws, "Registrations of each way and offset (10; with --quick 3)")
-      ->type_name("N")
-      ->group(group);
-  app.add_option("--model", o.model,
-                 "The fast model of SEM images (one that was kept is taken, else one is\n"
-                 "trained and kept)")
-      ->type_name("FILE.json")
-      ->group(group);
-}
-
 std::string chart_sample_methods() {
   std::string text;
   for (const workflow::ChainFamily& f : workflow::chain_chart_families())
@@ -94,13 +62,15 @@ std::string chart_sample_methods() {
   return text;
 }
 
-int chart_sample(const ChartSampleOptions& o, const std::string& command_line) {
-  const workflow::ChainChartJob job = make_job(o, command_line);
+int chart_sample(workflow::ChainChartJob job, bool quiet) {
+  if (job.folder.empty()) throw UsageError("`output`", "no folder is given", "Add `output=chart`");
+  const std::filesystem::path cache = io::cache_folder("");
+  job.models = cache.empty() ? job.folder / "models" : cache / "models";
   workflow::ChainChartSummary s;
   {
-    JobReporter reporter(o.quiet);
+    JobReporter reporter(quiet);
     const auto tell = [&](const auto& print_it) {
-      if (o.quiet) return;
+      if (quiet) return;
       reporter.clear();
       print_it();
       flush();
@@ -108,8 +78,8 @@ int chart_sample(const ChartSampleOptions& o, const std::string& command_line) {
     workflow::ChainChartCallbacks points;
     points.registration = [&](const workflow::RegistrationPoint& p) { tell([&] { print_registration(p); }); };
     points.reconstruction = [&](const workflow::ReconstructionPoint& p) { tell([&] { print_reconstruction(p); }); };
-    if (workflow::is_sample(o.sample))
-      reporter->note(fmt::format("{} is a sample whose truth is known: registration and reconstruction are charted", o.sample));
+    if (workflow::is_sample(job.sample))
+      reporter->note(fmt::format("{} is a sample whose truth is known: registration and reconstruction are charted", job.sample.string()));
     s = workflow::run(job, reporter, points);
   }
   if (!s.complete) {
@@ -117,7 +87,7 @@ int chart_sample(const ChartSampleOptions& o, const std::string& command_line) {
                            job.folder.string()));
     return exit_interrupted;
   }
-  if (o.quiet) return 0;
+  if (quiet) return 0;
   if (s.found > 0) print("{} points were there before\n", s.found);
   for (const std::string& text : s.left_out) print("left out: {}\n", text);
   print_ranges(s);

@@ -29,7 +29,7 @@ Examples:
 struct Options {
   BoundParameters bound;
   std::string scan;
-  std::optional<std::string> output, threads;
+  std::optional<std::string> output;
   bool quiet = false;
 };
 
@@ -42,7 +42,7 @@ CleanParameters parameters_of(const Options& o) {
     throw UsageError("clean", "nothing is to be done", "Add --spikes 3:0.5nm, --median 3 or --closing 5");
   if (p.disc && !p.median && !p.spikes)
     throw UsageError("--disc", "a closing is by a square", "Leave out --disc, or add --median or --spikes");
-  p.threads = parse_threads(o.threads);
+  p.threads = threads_of(o.bound);
   return p;
 }
 
@@ -79,7 +79,7 @@ void add_clean(CLI::App& app, Action& action) {
   o->bound.add<CleanParameters>(*sub, "Cleaning");
   const char* output = "Output";
   add_surface_output(*sub, o->output);
-  add_threads_option(*sub, o->threads)->group(output);
+  add_threads_option(*sub, o->bound, output);
   add_quiet_flag(*sub, o->quiet)->group(output);
   sub->footer(examples);
   sub->callback([o, &action] { action = [o] { return work(*o); }; });

@@ -4,20 +4,20 @@
 #include <CLI/CLI.hpp>
 #include <optional>
 #include <string>
-#include <vector>
+
+#include "bound_parameters.h"
 
 namespace surf::cli {
 
 // Options that mean the same for several commands, as text; the caller may put each into a group.
 
-CLI::Option* add_materials_option(CLI::App& app, std::vector<std::string>& files);
-CLI::Option* add_threads_option(CLI::App& app, std::optional<std::string>& threads);
 CLI::Option* add_quiet_flag(CLI::App& app, bool& quiet);
 
 /// --unit and --override-unit, of mesh files.
 void add_unit_options(CLI::App& app, std::optional<std::string>& unit, bool& overrides, const std::string& group);
 
-/// What --threads says: 0 (one per hardware thread) where it is absent. Throws UsageError.
-int parse_threads(const std::optional<std::string>& text);
+/// --threads, and what it says: 0 (one per hardware thread) where it is absent. Throws UsageError.
+void add_threads_option(CLI::App& app, BoundParameters& bound, const std::string& group);
+int threads_of(const BoundParameters& bound);
 
 }  // namespace surf::cli

@@ -7,7 +7,6 @@
 #include <set>
 #include <string_view>
 
-#include "name_list.h"
 #include "surf/io/sim/materials.h"
 #include "surf/mc/physics_words.h"
 #include "surf/workflow/chart_job.h"
@@ -116,7 +115,8 @@ Offer prefixed(Offer offer, const std::string& before, const std::string& begun)
 Offer continued(Offer offer, const std::string& before, const std::string& word) {
   const std::size_t begin = offer.list ? word.rfind(',') + 1 : 0;   // npos + 1 is 0
   const std::set<std::string> used = [&] {
-    const auto names = parse_names(word.substr(0, begin));
+    const std::string before_it = word.substr(0, begin);
+    const auto names = surf::split(before_it, ",");
     return std::set<std::string>(names.begin(), names.end());
   }();
   std::erase_if(offer.candidates, [&](const Candidate& c) { return used.contains(c.word); });

@@ -3,9 +3,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <array>
 #include <iterator>
-#include <string_view>
 #include <system_error>
 
 #include "bound_parameters.h"
@@ -19,10 +17,6 @@ namespace surf::cli {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr std::array<std::string_view, 11> output_names{"output",    "plot",           "csv",     "surface", "eroded",
-                                                        "mask",      "substrate-mask", "picture", "folded",  "residual",
-                                                        "checkpoint"};
 
 bool is_file(const fs::path& path) {
   std::error_code ignored;
@@ -41,10 +35,8 @@ std::string name_of(const CLI::Option& option) {
 }
 
 bool is_output(const CLI::Option& option) {
-  if (const auto role = file_role(option)) return *role == FileRole::written || *role == FileRole::written_folder;
-  return std::ranges::any_of(option.get_lnames(), [](const std::string& name) {
-    return std::ranges::find(output_names, name) != output_names.end();
-  });
+  const FileRole role = file_role(option).value_or(FileRole::none);
+  return role == FileRole::written || role == FileRole::written_folder;
 }
 
 void add_output(const std::string& option, const fs::path& path, std::vector<io::FileUse>& outputs) {
@@ -82,7 +74,7 @@ void refuse_overlaps(const CLI::App& command) {
   std::vector<io::FileUse> inputs, outputs;
   for (const CLI::Option* option : command.get_options()) {
     if (!is_output(*option)) continue;
-    const bool is_folder = option->get_type_name().starts_with("FOLDER");
+    const bool is_folder = file_role(*option) == FileRole::written_folder;
     for (const std::string& value : option->results()) {
       if (!is_folder) add_output(name_of(*option), value, outputs);
       else for (const fs::path& file : files_in(value, command.get_name())) outputs.push_back({name_of(*option), file, {}});
@@ -90,8 +82,7 @@ void refuse_overlaps(const CLI::App& command) {
   }
   if (outputs.empty()) return;   // the inputs need not be looked at
   for (const CLI::Option* option : command.get_options()) {
-    const auto role = file_role(*option);
-    if (is_output(*option) || (role ? *role != FileRole::read : !option->get_type_name().starts_with("FILE"))) continue;
+    if (file_role(*option) != FileRole::read) continue;
     for (const std::string& value : option->results())
       std::ranges::copy(files_read(name_of(*option), value), std::back_inserter(inputs));
   }

@@ -14,9 +14,8 @@ namespace surf::cli {
 /// is the file; what is no file has none.
 std::vector<io::FileUse> files_read(const std::string& option, const std::string& value);
 
-/// Throws UsageError where the parsed command would write over one of its inputs, or would write one file twice. Options whose
-/// type name begins with FILE are files: inputs, unless their name is in the list of outputs. So a new option is looked at
-/// before anybody thinks of it.
+/// Throws UsageError where the parsed command would write over one of its inputs, or would write one file twice: what is done
+/// with the file of an option, `file_role` tells.
 void refuse_overlaps(const CLI::App& command);
 
 }  // namespace surf::cli

@@ -165,11 +165,12 @@ void add_info(CLI::App& app, Action& action) {
   };
   const auto options = std::make_shared<Options>();
   CLI::App* sub = app.add_subcommand("info", "What is in meshes, images, AFM scans, models and scene files");
-  sub->add_option("FILE", options->files, "Meshes, images, AFM scans, models or scenes")->type_name("FILE");
+  with_role(sub->add_option("FILE", options->files, "Meshes, images, AFM scans, models or scenes")->type_name("FILE"),
+            FileRole::read);
   add_unit_options(*sub, options->unit, options->override_unit, "Options");
-  sub->add_option("--materials", options->materials,
-                  "Your own materials for the scene files (TOML); may be repeated")
-      ->type_name("FILE")->option_text("FILE")->allow_extra_args(false);
+  with_role(sub->add_option("--materials", options->materials, "Your own materials for the scene files (TOML); may be repeated")
+                ->type_name("FILE")->option_text("FILE")->allow_extra_args(false),
+            FileRole::read);
   sub->footer(examples);
   sub->callback([options, &action] {
     action = [options] {

@@ -136,9 +136,10 @@ void add_level(CLI::App& app, Action& action) {
   sub->add_option("--step", o->step, "Height of the second region above the first, in nm from the\n"
                                      "scan's origin")
       ->type_name("X0,Y0,X1,Y1")->expected(2)->group(output);
-  sub->add_option("--substrate-mask", o->substrate_mask, "Image of where the substrate is: .tif .png .exr .vti")
-      ->type_name("FILE")->group(output);
-  sub->add_option("--mask", o->substrate_mask)->type_name("FILE")->group("");   // its former name
+  with_role(sub->add_option("--substrate-mask", o->substrate_mask, "Image of where the substrate is: .tif .png .exr .vti")
+                ->type_name("FILE")->group(output),
+            FileRole::written);
+  with_role(sub->add_option("--mask", o->substrate_mask)->type_name("FILE")->group(""), FileRole::written);   // its former name
   add_surface_output(*sub, o->output);
   add_quiet_flag(*sub, o->quiet)->group(output);
   sub->footer(examples);

@@ -33,7 +33,7 @@ void check_size(const mc::CascadeLibrary& begun, std::size_t cascades, const std
   const auto page = static_cast<double>(mc::CascadeLibrary::page_cascades);
   const auto fit = static_cast<std::size_t>(most / each / page) * mc::CascadeLibrary::page_cascades;
   throw UsageError(
-      "--cascades",
+      "`library.cascades`",
       fmt::format("{} cascades of {} would take {}, but the cache keeps {} in all", cascades, title,
                   format_bytes(each * static_cast<double>(cascades)), format_bytes(most)),
       fmt::format("Ask for at most {}", fit));
@@ -48,20 +48,20 @@ struct Built {
 Built build_one(const mc::CascadeSettings& settings, const std::string& title,
                 const LibraryRequest& request, bool quiet, const ProgressCallback& progress,
                 const CancelToken* cancel, ProgressBar& bar) {
-  workflow::CachedLibraries libraries(request.cache);
+  workflow::CachedLibraries libraries(request.parameters.cache);
   // Its first page tells how large it will be.
-  auto library = libraries.library(settings, mc::CascadeLibrary::page_cascades, request.threads,
+  auto library = libraries.library(settings, mc::CascadeLibrary::page_cascades, request.parameters.threads,
                                    progress, cancel);
   if (library) {
     check_size(*library, request.cascades, title);
-    library = libraries.library(settings, request.cascades, request.threads, progress, cancel);
+    library = libraries.library(settings, request.cascades, request.parameters.threads, progress, cancel);
   }
   bar.clear();
   for (const std::string& note : libraries.take_notes()) print_warning(note);
   const auto pages = libraries.pages();
   if (pages.stored < pages.made)
-    throw FileError(request.cache.string(), title + " cannot be kept there",
-                    "Check its permissions and the free space, or choose another --cache");
+    throw FileError(request.parameters.cache.string(), title + " cannot be kept there",
+                    "Check its permissions and the free space, or choose another `job.cache`");
   if (!library) return {};
   if (!quiet)
     print("{:<18} {} cascades, {}, {:.1f} kB each; {}\n", title, library->cascades(),
@@ -75,9 +75,9 @@ Built build_one(const mc::CascadeSettings& settings, const std::string& title,
 
 int build(const LibraryOptions& options) {
   const LibraryRequest request = read_library_options(options);
-  if (request.cache.empty())
-    throw UsageError("--cache", "there is no cache to keep libraries in", "Name a folder");
-  for (std::size_t i = 0; i < request.libraries.size(); i += request.energies_ev.size())
+  if (request.parameters.cache.empty())
+    throw UsageError("`job.cache`", "there is no cache to keep libraries in", "Name a folder");
+  for (std::size_t i = 0; i < request.libraries.size(); i += request.parameters.energies_ev.size())
     for (const std::string& doubt : mc::doubts(request.libraries[i].material)) print_warning(doubt);
   const double total =
       static_cast<double>(request.libraries.size()) * static_cast<double>(request.cascades);
@@ -88,7 +88,7 @@ int build(const LibraryOptions& options) {
     const double before = static_cast<double>(i * request.cascades);
     const std::string title =
         library_title(request.libraries[i].material.name,
-                      request.energies_ev[i % request.energies_ev.size()]);
+                      request.parameters.energies_ev[i % request.parameters.energies_ev.size()]);
     const Built built = build_one(
         request.libraries[i], title, request, options.quiet,
         [&](double done, double) { bar.show(before + done, total); }, interrupts.token(), bar);

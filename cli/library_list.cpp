@@ -31,11 +31,13 @@ constexpr const char* remove_examples = R"(Examples:
   semsurf library remove --all --dry-run     what that would free
   semsurf library remove --damaged)";
 
-io::Cache open_cache(const LibraryOptions& options) {
-  const auto folder = io::cache_folder(options.cache.value_or(""));
-  if (folder.empty())
-    throw UsageError("--cache", "there is no cache", "Name a folder, or unset SEMSURF_CACHE");
-  return io::Cache(folder);
+io::Cache open_cache(const BoundParameters& bound) {
+  workflow::LibraryParameters parameters;
+  parameters.cache = io::cache_folder();
+  bound.apply(parameters);
+  if (parameters.cache.empty())
+    throw UsageError("`job.cache`", "there is no cache", "Name a folder, or unset SEMSURF_CACHE");
+  return io::Cache(parameters.cache);
 }
 
 std::string format_ago(std::filesystem::file_time_type when) {
@@ -87,8 +89,8 @@ void print_table(const LibraryList& list) {
                format_ago(l.last_used), l.name.is_current ? "good" : "of another version");
 }
 
-int list(const LibraryOptions& options, bool check) {
-  const io::Cache cache = open_cache(options);
+int list(const BoundParameters& bound, bool check) {
+  const io::Cache cache = open_cache(bound);
   const LibraryList list = workflow::list_libraries(
       cache, check ? io::Cache::Check::everything : io::Cache::Check::header);
   if (list.libraries.empty()) {
@@ -110,10 +112,24 @@ int list(const LibraryOptions& options, bool check) {
   return 0;
 }
 
-struct RemoveOptions {
-  LibraryOptions library;
+/// Which libraries are removed.
+struct Removal {
+  std::vector<std::string> materials;
+  std::vector<double> energies_ev;
   bool all = false, damaged = false, dry_run = false;
 };
+
+void describe(ParameterVisitor& visit, Removal& r) {
+  visit(r.materials, {.name = "library.materials", .help = "Materials whose libraries are removed", .form = "MATERIAL"});
+  visit.form({.name = "library.energy", .help = "Beam energies whose libraries are removed", .form = "ENERGY,..."},
+             [] { return std::string(); },
+             [&](std::string_view text, const std::string& subject) {
+               r.energies_ev = workflow::parse_energies_ev(text, subject);
+             });
+  visit(r.all, {.name = "library.all", .help = "Remove all, and what is damaged"});
+  visit(r.damaged, {.name = "library.damaged", .help = "Remove what cannot be used because it is damaged"});
+  visit(r.dry_run, {.name = "library.dry_run", .help = "Only say what would be removed"});
+}
 
 // Names that no library has are mistakes: the materials themselves may be long gone.
 void check_names(const std::vector<std::string>& wanted, const LibraryList& list) {
@@ -128,36 +144,33 @@ void check_names(const std::vector<std::string>& wanted, const LibraryList& list
   }
 }
 
-bool is_wanted(const StoredLibrary& l, const RemoveOptions& o, const std::vector<double>& energies) {
-  const auto contains = [](const auto& all, const auto& one) {
-    return std::find(all.begin(), all.end(), one) != all.end();
-  };
-  if (o.all) return true;
-  if (o.library.materials.empty() && energies.empty()) return false;
+bool is_wanted(const StoredLibrary& l, const Removal& r) {
+  if (r.all) return true;
+  if (r.materials.empty() && r.energies_ev.empty()) return false;
   const auto same = [&](double e) { return std::abs(e - l.name.beam_energy_ev) < 1e-6 * e; };
-  return (o.library.materials.empty() || contains(o.library.materials, l.name.material)) &&
-         (energies.empty() || std::any_of(energies.begin(), energies.end(), same));
+  return (r.materials.empty() || std::ranges::count(r.materials, l.name.material) > 0) &&
+         (r.energies_ev.empty() || std::ranges::any_of(r.energies_ev, same));
 }
 
-int remove(const RemoveOptions& o) {
-  const auto energies =
-      o.library.energy ? parse_energies_ev(*o.library.energy) : std::vector<double>{};
-  const bool some = !o.library.materials.empty() || !energies.empty();
-  if (!some && !o.all && !o.damaged)
+int remove(const BoundParameters& bound) {
+  Removal r;
+  bound.apply(r);
+  const bool some = !r.materials.empty() || !r.energies_ev.empty();
+  if (!some && !r.all && !r.damaged)
     throw UsageError("library remove", "what to remove is not given",
                      "Name materials or --energy, or say --all or --damaged");
-  if (some && o.all)
-    throw UsageError("--all", "it is more than what is named", "Leave out one of the two");
-  io::Cache cache = open_cache(o.library);
+  if (some && r.all)
+    throw UsageError("`library.all`", "it is more than what is named", "Leave out one of the two");
+  io::Cache cache = open_cache(bound);
   // What is asked for as damaged has to be looked at whole.
   const LibraryList list = workflow::list_libraries(
-      cache, o.damaged ? io::Cache::Check::everything : io::Cache::Check::header);
-  check_names(o.library.materials, list);
+      cache, r.damaged ? io::Cache::Check::everything : io::Cache::Check::header);
+  check_names(r.materials, list);
   std::size_t files = 0, stuck = 0;
   double bytes = 0;
   const auto drop = [&](const std::vector<io::CacheEntry>& entries) {
     for (const io::CacheEntry& entry : entries) {
-      if (!o.dry_run && !cache.remove(entry)) {
+      if (!r.dry_run && !cache.remove(entry)) {
         ++stuck;
         continue;
       }
@@ -166,18 +179,18 @@ int remove(const RemoveOptions& o) {
     }
   };
   for (const StoredLibrary& l : list.libraries) {
-    if (!is_wanted(l, o, energies)) continue;
+    if (!is_wanted(l, r)) continue;
     print("{}, {} cascades, {}\n", library_title(l.name.material, l.name.beam_energy_ev),
                l.cascades, format_bytes(double(l.bytes)));
     drop(l.pages);
   }
-  if (o.damaged || o.all) drop(list.damaged);
+  if (r.damaged || r.all) drop(list.damaged);
   if (stuck > 0)
     throw FileError(cache.folder().string(), fmt::format("{} files cannot be removed", stuck),
                     "Check the folder's permissions");
   if (files == 0) print("nothing to remove in {}\n", cache.folder().string());
   else
-    print("{} {} in {} file{}\n", o.dry_run ? "would free" : "freed", format_bytes(bytes),
+    print("{} {} in {} file{}\n", r.dry_run ? "would free" : "freed", format_bytes(bytes),
                files, files == 1 ? "" : "s");
   return 0;
 }
@@ -186,34 +199,28 @@ int remove(const RemoveOptions& o) {
 
 void add_library_list(CLI::App& library, Action& action) {
   struct Options {
-    LibraryOptions library;
+    BoundParameters bound;
     bool check = false;
   };
   const auto options = std::make_shared<Options>();
   CLI::App* sub = library.add_subcommand("list", "The libraries in the cache");
   sub->add_flag("--check", options->check, "Read all of every file, not only its beginning");
-  add_cache_option(*sub, options->library);
+  add_cache_option(*sub, options->bound);
   sub->group("Commands");
   sub->footer(list_examples);
-  sub->callback([options, &action] {
-    action = [options] { return list(options->library, options->check); };
-  });
+  sub->callback([options, &action] { action = [options] { return list(options->bound, options->check); }; });
 }
 
 void add_library_remove(CLI::App& library, Action& action) {
-  const auto options = std::make_shared<RemoveOptions>();
+  const auto bound = std::make_shared<BoundParameters>();
   CLI::App* sub = library.add_subcommand("remove", "Remove libraries from the cache");
-  sub->add_option("MATERIAL", options->library.materials, "Materials whose libraries are removed")
-      ->type_name("MATERIAL");
-  sub->add_option("--energy", options->library.energy, "Beam energies whose libraries are removed")
-      ->type_name("ENERGY,...");
-  sub->add_flag("--all", options->all, "Remove all, and what is damaged");
-  sub->add_flag("--damaged", options->damaged, "Remove what cannot be used because it is damaged");
-  sub->add_flag("-n,--dry-run", options->dry_run, "Only say what would be removed");
-  add_cache_option(*sub, options->library);
+  bound->looks["library.materials"] = {.name = "MATERIAL", .positional = true};
+  bound->looks["library.dry_run"] = {.name = "-n,--dry-run"};
+  bound->add<Removal>(*sub, "Options");
+  add_cache_option(*sub, *bound);
   sub->group("Commands");
   sub->footer(remove_examples);
-  sub->callback([options, &action] { action = [options] { return remove(*options); }; });
+  sub->callback([bound, &action] { action = [bound] { return remove(*bound); }; });
 }
 
 }  // namespace surf::cli

@@ -6,7 +6,6 @@
 #include "exit_codes.h"
 #include "library.h"
 #include "surf/core/error.h"
-#include "surf/core/units.h"
 #include "surf/workflow/libraries.h"
 #include "surf/workflow/library_plot.h"
 #include "terminal.h"
@@ -27,49 +26,42 @@ Examples:
       --measured data/reference/se_delta_joy2001.csv \
       --measured data/reference/bse_eta_joy2001.csv)";
 
-struct PlotOptions {
-  LibraryOptions library;
+struct PlotFiles {
   std::string output;
-  std::optional<std::string> tilt;
   std::vector<std::string> measured;
 };
 
-std::vector<double> parse_tilts_deg(const std::string& text) {
-  std::vector<double> tilts;
-  for (std::size_t from = 0; from <= text.size();) {
-    const std::size_t comma = std::min(text.find(',', from), text.size());
-    tilts.push_back(parse_angle_deg(text.substr(from, comma - from), "--tilt"));
-    if (!(tilts.back() >= 0 && tilts.back() < 90))
-      throw UsageError("--tilt", "it is outside 0 to below 90 degrees", "Write --tilt 0,30,60");
-    from = comma + 1;
-  }
-  return tilts;
+void describe(ParameterVisitor& visit, PlotFiles& files) {
+  visit(files.measured,
+        {.name = "library.measured", .help = "Measured yields to show", .form = "FILE", .file = FileRole::read});
+  visit(files.output, {.name = "output", .help = "Chart to write: .svg .png", .form = "FILE", .file = FileRole::written});
 }
 
-int plot(const PlotOptions& options) {
-  if (options.output.empty())
-    throw UsageError("--output", "no output file is given", "Add -o ranges.svg");
-  const LibraryRequest request = read_library_options(options.library);
+int plot(const LibraryOptions& options) {
+  PlotFiles files;
   workflow::LibraryPlotOptions o;
-  for (std::size_t i = 0; i < request.libraries.size(); i += request.energies_ev.size())
+  options.bound.apply(files), options.bound.apply(o);
+  if (files.output.empty()) throw UsageError("`output`", "no output file is given", "Add `output=ranges.svg`");
+  const LibraryRequest request = read_library_options(options);
+  const workflow::LibraryParameters& parameters = request.parameters;
+  for (std::size_t i = 0; i < request.libraries.size(); i += parameters.energies_ev.size())
     o.materials.push_back(request.libraries[i].material);
-  o.energies_ev = request.energies_ev;
-  if (options.tilt) o.tilts_deg = parse_tilts_deg(*options.tilt);
-  o.physics = request.libraries.front().physics;
-  o.seed = request.libraries.front().seed;
+  o.energies_ev = parameters.energies_ev;
+  o.physics = parameters.simulation.physics;
+  o.seed = parameters.simulation.seed;
   o.cascades = request.cascades;
-  o.threads = request.threads;
-  for (const std::string& file : options.measured) {
+  o.threads = parameters.threads;
+  for (const std::string& file : files.measured) {
     const auto yields = workflow::read_measured_yields(file);
     o.measured.insert(o.measured.end(), yields.begin(), yields.end());
   }
-  io::check_plot_target(options.output);
+  io::check_plot_target(files.output);
 
   std::optional<io::Plot> plot;
-  workflow::CachedLibraries libraries(request.cache);
+  workflow::CachedLibraries libraries(parameters.cache);
   {
     InterruptGuard interrupts;
-    ProgressBar bar(!options.library.quiet);
+    ProgressBar bar(!options.quiet);
     const auto cascades = static_cast<double>(o.cascades);
     plot = workflow::plot_libraries(
         o, libraries,
@@ -78,24 +70,20 @@ int plot(const PlotOptions& options) {
   }
   for (const std::string& note : libraries.take_notes()) print_warning(note);
   if (!plot) return exit_interrupted;
-  io::write_plot(options.output, *plot);
-  if (!options.library.quiet) print("written    {}\n", options.output);
+  io::write_plot(files.output, *plot);
+  if (!options.quiet) print("written    {}\n", files.output);
   return 0;
 }
 
 }  // namespace
 
 void add_library_plot(CLI::App& library, Action& action) {
-  const auto options = std::make_shared<PlotOptions>();
+  const auto options = std::make_shared<LibraryOptions>();
   CLI::App* sub = library.add_subcommand("plot", "A chart of ranges and yields");
-  add_library_options(*sub, options->library);
-  sub->add_option("--tilt", options->tilt, "Angles that yields are shown for (0; with one energy\n"
-                                           "0 to 75 degrees)")
-      ->type_name("ANGLE,...");
-  sub->add_option("--measured", options->measured, "Measured yields to show; may be repeated")
-      ->type_name("FILE")->option_text("FILE")->allow_extra_args(false);
-  sub->add_option("-o,--output", options->output, "Chart to write: .svg .png")
-      ->type_name("FILE")->option_text("FILE");
+  add_library_options(*sub, *options);
+  options->bound.looks["output"] = {.name = "-o,--output"};
+  options->bound.add<workflow::LibraryPlotOptions>(*sub, "Options");
+  options->bound.add<PlotFiles>(*sub, "Options");
   sub->group("Commands");
   sub->footer(examples);
   sub->callback([options, &action] { action = [options] { return plot(*options); }; });

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <memory>
 
+#include "bound_parameters.h"
 #include "commands.h"
-#include "common_options.h"
 #include "surf/core/units.h"
 #include "surf/io/sim/materials.h"
 #include "surf/mc/element.h"
@@ -108,17 +108,17 @@ int print_materials(const std::string& name, const std::vector<std::string>& fil
 }  // namespace
 
 void add_materials(CLI::App& app, Action& action) {
-  struct Options {
-    std::string name;
-    std::vector<std::string> files;
-  };
-  const auto options = std::make_shared<Options>();
+  const auto bound = std::make_shared<BoundParameters>();
   CLI::App* sub = app.add_subcommand("materials", "The materials and their numbers");
-  sub->add_option("NAME", options->name, "Show this one, with sources")->type_name("MATERIAL");
-  add_materials_option(*sub, options->files);
+  bound->looks["specimen.material"] = {.name = "NAME", .help = "Show this one, with sources", .positional = true};
+  bound->add<io::MaterialChoice>(*sub, "Options");
   sub->footer(examples);
-  sub->callback([options, &action] {
-    action = [options] { return print_materials(options->name, options->files); };
+  sub->callback([bound, &action] {
+    action = [bound] {
+      io::MaterialChoice choice;
+      bound->apply(choice);
+      return print_materials(choice.name, choice.files);
+    };
   });
 }
 

@@ -223,7 +223,9 @@ int work(const Options& o) {
 void add_mesh(CLI::App& app, Action& action) {
   const auto o = std::make_shared<Options>();
   CLI::App* sub = app.add_subcommand("mesh", "Meshes and scans to glTF, CAD and ParaView; repair, simplify");
-  sub->add_option("INPUTS", o->inputs, "Meshes (STL, OBJ, PLY, OFF, glTF, 3MF, VTP, VTM) and scans")->type_name("FILE");
+  with_role(sub->add_option("INPUTS", o->inputs, "Meshes (STL, OBJ, PLY, OFF, glTF, 3MF, VTP, VTM) and scans")
+                ->type_name("FILE"),
+            FileRole::read);
   o->bound.looks["scan.height_unit"].former = {"--z-unit"};
   o->bound.looks["mesh.mesh_tolerance"].former = {"--tolerance", "--simplify"};
   o->bound.add<io::SpecimenRequest>(*sub, "Reading", {}, reading_names);
@@ -235,16 +237,21 @@ void add_mesh(CLI::App& app, Action& action) {
       "mesh.keep_intersections"});
   add("Shape", {"mesh.scale", "mesh.smooth", "mesh.mesh_tolerance", "mesh.triangles", "mesh.solid", "mesh.thickness"});
   const char* shown = "On the surface";
-  sub->add_option("--scalar", o->scalars, "A map to go along, FILE or FILE:CHANNEL; may be repeated")
-      ->type_name("FILE")->option_text("FILE")->allow_extra_args(false)->group(shown);
-  sub->add_option("--drape", o->drape, "A picture to lay on it, FILE or FILE:CHANNEL")->type_name("FILE")->group(shown);
-  sub->add_option("--tracks", o->tracks, "Paths of electrons, as 'simulate --trajectories' writes them")
-      ->type_name("FILE.vtp")->group(shown);
+  with_role(sub->add_option("--scalar", o->scalars, "A map to go along, FILE or FILE:CHANNEL; may be repeated")
+                ->type_name("FILE")->option_text("FILE")->allow_extra_args(false)->group(shown),
+            FileRole::read);
+  with_role(sub->add_option("--drape", o->drape, "A picture to lay on it, FILE or FILE:CHANNEL")
+                ->type_name("FILE")->group(shown),
+            FileRole::read);
+  with_role(sub->add_option("--tracks", o->tracks, "Paths of electrons, as 'simulate --trajectories' writes them")
+                ->type_name("FILE.vtp")->group(shown),
+            FileRole::read);
   add(shown, {"mesh.plain"});
   const char* output = "Output";
   std::string suffixes;
   for (const io::SurfaceFormat& format : io::surface_formats()) suffixes += " " + format.extension;
-  sub->add_option("-o,--output", o->output, "To write:" + suffixes)->type_name("FILE")->group(output);
+  with_role(sub->add_option("-o,--output", o->output, "To write:" + suffixes)->type_name("FILE")->group(output),
+            FileRole::written);
   add(output, {"mesh.out_unit", "mesh.magnification", "mesh.true_size", "mesh.z_exaggeration"});
   add_quiet_flag(*sub, o->quiet)->group(output);
   sub->footer(examples);

@@ -61,7 +61,7 @@ Examples:
 struct Options {
   BoundParameters bound;
   std::string input;
-  std::optional<std::string> tip, output, threads;
+  std::optional<std::string> tip, output;
   bool quiet = false;
 };
 
@@ -76,7 +76,7 @@ int work(const Command& command, const Options& o) {
   workflow::MorphologyParameters parameters;
   io::HeightReadOptions reading;
   o.bound.apply(parameters), o.bound.apply(reading);
-  parameters.threads = parse_threads(o.threads);
+  parameters.threads = threads_of(o.bound);
   if (!o.tip) throw UsageError("--tip", "no tip is given", "Add --tip tip.gsf");
   const HeightField scan = read_scan(o.input, reading, o.quiet).field;
   const Tip tip = read_tip_for(o.tip, scan, o.quiet);
@@ -102,7 +102,7 @@ void add(CLI::App& app, Action& action, const Command& command) {
       command.operation == MorphologyOperation::open || command.operation == MorphologyOperation::close;
   o->bound.add<workflow::MorphologyParameters>(*sub, "Options");
   add_surface_output(*sub, o->output);
-  add_threads_option(*sub, o->threads);
+  add_threads_option(*sub, o->bound, "Options");
   add_quiet_flag(*sub, o->quiet);
   sub->footer(command.examples);
   sub->callback([o, &action, &command] { action = [o, &command] { return work(command, *o); }; });

@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <memory>
+#include <set>
 
 #include "afm_masks.h"
 #include "afm_options.h"
@@ -14,6 +15,8 @@
 #include "noise_sem.h"
 #include "surf/core/error.h"
 #include "surf/core/units.h"
+#include "surf/sem/estimate_sem_noise.h"
+#include "surf/workflow/count_job.h"
 #include "surf/workflow/noise_job.h"
 #include "terminal.h"
 
@@ -54,8 +57,6 @@ Examples:
 struct Options {
   BoundParameters bound;
   std::string scan;
-  SemNoiseInput sem;
-  CountsInput counts;
   std::optional<std::string> plot;
   bool quiet = false;
 };
@@ -120,15 +121,8 @@ int of_scan(const Options& o) {
   return 0;
 }
 
-int of_sem_image(const Options& o) {
-  if (!o.sem.image) throw UsageError("noise", "no image is given", "Name a file to read");
-  return print_sem_noise(o.sem, o.plot, o.quiet);
-}
-
-int of_scene(const Options& o) {
-  if (!o.counts.scene) throw UsageError("noise", "no scene is given", "Name a file to read");
-  return print_counts(o.counts, o.plot, o.quiet);
-}
+int of_sem_image(const Options& o) { return print_sem_noise(o.bound.given(), o.plot, o.quiet); }
+int of_scene(const Options& o) { return print_counts(o.bound, o.plot, o.quiet); }
 
 void add_scan_options(CLI::App& app, Options& o, bool hidden) {
   add_scan_input(app, o.bound, o.scan, hidden ? "" : "Options");
@@ -138,26 +132,37 @@ void add_scan_options(CLI::App& app, Options& o, bool hidden) {
 
 void add_outputs(CLI::App& app, Options& o, bool hidden) {
   const char* group = hidden ? "" : "Output";
-  app.add_option("--plot", o.plot, "What was found, as a chart: .svg .png")->type_name("FILE")->group(group);
+  with_role(app.add_option("--plot", o.plot, "What was found, as a chart: .svg .png")->type_name("FILE")->group(group),
+            FileRole::written);
   add_quiet_flag(app, o.quiet)->group(group);
+}
+
+template <class... Struct>
+std::set<std::string> names_of(Struct... of) {
+  std::set<std::string> names;
+  (for_each_parameter(of, [&](const Parameter& about, Field&) { names.insert(about.name); }), ...);
+  return names;
 }
 
 /// What `noise` was before it had commands of its own: `noise SCAN`, `noise --sem IMAGE`, `noise --counts SCENE`.
 int as_before(const Options& o) {
-  const int uses = !o.scan.empty() + o.sem.image.has_value() + o.counts.scene.has_value();
+  const bool sem = o.bound.is_given("noise.image"), counts = o.bound.is_given("counts.scene");
+  const int uses = !o.scan.empty() + sem + counts;
   if (uses > 1)
     throw UsageError("noise", "more than one of a scan, --sem and --counts is given", "Run it once for each");
   if (uses == 0) throw UsageError("noise", "of what is not given", "Choose scan, sem or counts");
-  require_sem(o.sem);
-  require_counts(o.counts);
-  if (!o.sem.image && !o.counts.scene) return of_scan(o);
-  for (const auto& [parameter, texts] : o.bound.given())
-    if (o.counts.scene || parameter != "scan.height_pitch")
-      throw UsageError(parameter, "it is of AFM scans", "Leave it out, or name a scan");
-  if (o.counts.scene) return of_scene(o);
-  Options sem = o;
-  if (o.bound.is_given("scan.height_pitch")) sem.sem.pixel_size = o.bound.given().at("scan.height_pitch").back();
-  return of_sem_image(sem);
+  const auto of_sem = names_of(SemNoiseInput{}, SemNoiseOptions{}), of_counts = names_of(CountsFiles{}, workflow::CountJob{});
+  for (const auto& [name, texts] : o.bound.given()) {
+    const bool is_sem = of_sem.contains(name) || (sem && name == "scan.height_pitch"), is_count = of_counts.contains(name);
+    if (is_sem == sem && is_count == counts) continue;
+    throw UsageError(fmt::format("`{}`", name),
+                     fmt::format("it is of {}", is_sem ? "SEM images" : is_count ? "simulated counts" : "AFM scans"),
+                     "Leave it out");
+  }
+  if (!sem) return counts ? of_scene(o) : of_scan(o);
+  GivenTexts given = o.bound.given();
+  if (const auto pitch = given.find("scan.height_pitch"); pitch != given.end()) given["scan.pixel_size"] = pitch->second;
+  return print_sem_noise(given, o.plot, o.quiet);
 }
 
 using Work = int (*)(const Options&);
@@ -183,10 +188,12 @@ void add_noise(CLI::App& app, Action& action) {
       as_before,
       [](CLI::App& noise, Options& o) {
         add_scan_options(noise, o, true);
-        noise.add_option("--sem", o.sem.image)->type_name("FILE")->group("");
-        noise.add_option("--counts", o.counts.scene)->type_name("FILE")->group("");
-        add_sem_noise_options(noise, o.sem, "");
-        add_counts_options(noise, o.counts, "");
+        o.bound.looks["noise.image"] = {.name = "--sem"};
+        o.bound.looks["counts.scene"] = {.name = "--counts"};
+        o.bound.add<SemNoiseInput>(noise, "", {}, {"noise.image"});
+        o.bound.add<CountsFiles>(noise, "", {}, {"counts.scene"});
+        add_sem_noise_options(noise, o.bound, "");
+        add_counts_options(noise, o.bound, "");
         add_outputs(noise, o, true);
       },
       action);
@@ -195,20 +202,20 @@ void add_noise(CLI::App& app, Action& action) {
     add_outputs(scan, o, false);
   }, action);
   add(*sub, "sem", "The noise of an SEM image", of_sem_images, of_sem_image, [](CLI::App& sem, Options& o) {
-    sem.add_option("IMAGE", o.sem.image, "An SEM image, FILE or FILE:CHANNEL")->type_name("FILE");
-    add_sem_noise_options(sem, o.sem, "Noise");
-    sem.add_option("--pixel-size", o.sem.pixel_size,
-                   "Distance of neighbouring pixels, 2nm or 2nmx3nm, of images that do\n"
-                   "not say: for regions with lengths")
-        ->type_name("LENGTH")
-        ->group("Noise");
+    o.bound.looks["noise.image"] = {.name = "IMAGE", .positional = true};
+    o.bound.looks["scan.pixel_size"] = {
+        .help = "Width and height of the pixels, as 2nm or 2nmx3nm: for regions with lengths"};
+    o.bound.add<SemNoiseInput>(sem, "Noise", {}, {"noise.image"});
+    add_sem_noise_options(sem, o.bound, "Noise");
+    o.bound.add<io::SemReadOptions>(sem, "Noise", {}, {"scan.pixel_size"});
     add_outputs(sem, o, false);
   }, action);
   add(
       *sub, "counts", "The electrons that a beam that stands still gives", of_counts, of_scene,
       [](CLI::App& counts, Options& o) {
-        counts.add_option("SCENE", o.counts.scene, "A scene (TOML)")->type_name("FILE");
-        add_counts_options(counts, o.counts, "Counts");
+        o.bound.looks["counts.scene"] = {.name = "SCENE", .positional = true};
+        o.bound.add<CountsFiles>(counts, "Counts", {}, {"counts.scene"});
+        add_counts_options(counts, o.bound, "Counts");
         add_outputs(counts, o, false);
       },
       action);

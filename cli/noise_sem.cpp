@@ -5,13 +5,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <tuple>
 
 #include "options.h"
 #include "picture_input.h"
 #include "sem_noise_plot.h"
 #include "surf/core/error.h"
 #include "surf/core/units.h"
+#include "surf/io/scan_parameters.h"
 #include "surf/io/sem_file.h"
 #include "surf/sem/estimate_sem_noise.h"
 #include "terminal.h"
@@ -19,23 +19,23 @@
 namespace surf::cli {
 namespace {
 
+constexpr const char* region_subject = "`noise.flat_region`";
+
 struct SemPicture {
   PlacedImage image;
   bool has_scale = false;
 };
 
 /// Noise is the same for pixels of any size, so that pictures need not say theirs.
-SemPicture read_sem_picture(const SemNoiseInput& input, bool quiet) {
-  const FileChannel name = parse_file_channel(*input.image);
-  io::SemReadOptions options;
+SemPicture read_sem_picture(const SemNoiseInput& input, io::SemReadOptions options, bool quiet) {
+  const FileChannel name = parse_file_channel(input.image);
   options.channel = name.channel;
-  if (input.pixel_size) std::tie(options.pixel_x_nm, options.pixel_y_nm) = parse_pixel_size(*input.pixel_size, "--pixel-size");
   io::SemFile file;
   bool has_scale = true;
   try {
     file = io::read_sem_image(name.file, options);
   } catch (const UsageError&) {
-    if (input.pixel_size) throw;
+    if (options.pixel_x_nm) throw;
     has_scale = false;
     options.pixel_x_nm = options.pixel_y_nm = 1;
     file = io::read_sem_image(name.file, options);   // says again what else is wrong
@@ -53,26 +53,18 @@ bool has_unit(const std::string& text) {
 /// lengths from the image's origin, up.
 PixelRectangle parse_rectangle(const std::string& text, const SemPicture& picture) {
   const PlacedImage& image = picture.image;
-  const mc::ScanRequest::Region r = parse_region(text, "--flat-region");
+  const mc::ScanRequest::Region r = parse_region(text, region_subject);
   const auto whole = [](double v) { return static_cast<int>(std::clamp(std::round(v), -1e9, 1e9)); };
   if (!has_unit(text)) {
     const int height = image.values.height();
     return {whole(r.x0_nm), height - whole(r.y1_nm), whole(r.x1_nm), height - whole(r.y0_nm)};
   }
   if (!picture.has_scale)
-    throw UsageError("--flat-region", "the image does not say how large its pixels are",
-                     "Add --pixel-size, or give the region in pixels");
+    throw UsageError(region_subject, "the image does not say how large its pixels are",
+                     "Add `scan.pixel_size=2nm`, or give the region in pixels");
   const auto column = [&](double x) { return whole((x - image.origin_x_nm) / image.pitch_x_nm + 0.5); };
   const auto row = [&](double y) { return whole((y - image.origin_y_nm) / image.pitch_y_nm + 0.5); };
   return {column(r.x0_nm), row(r.y0_nm), column(r.x1_nm), row(r.y1_nm)};
-}
-
-SemNoiseOptions make_options(const SemNoiseInput& input) {
-  SemNoiseOptions options;
-  if (input.block) options.block_px = static_cast<int>(parse_whole(*input.block, "--block", 6, 64));
-  if (input.black) options.black = parse_number(*input.black, "--black");
-  if (input.white) options.white = parse_number(*input.white, "--white");
-  return options;
 }
 
 void print_estimate(const SemNoiseEstimate& e) {
@@ -100,33 +92,29 @@ void print_estimate(const SemNoiseEstimate& e) {
 
 }  // namespace
 
-void add_sem_noise_options(CLI::App& app, SemNoiseInput& input, const std::string& group) {
-  app.add_option("--flat-region", input.regions,
-                 "A flat place X0,Y0,X1,Y1: pixels from the upper left, or lengths with units; may be repeated "
-                 "(flat blocks are found)")
-      ->type_name("RECTANGLE")->option_text("RECTANGLE")->allow_extra_args(false)->group(group);
-  app.add_option("--region", input.regions)
-      ->type_name("RECTANGLE")
-      ->allow_extra_args(false)
-      ->group("");   // its former name
-  app.add_option("--block", input.block, "Side of the blocks, 6 to 64 pixels (16, 12 or 8)")->type_name("N")->group(group);
-  app.add_option("--black", input.black, "Pixels at or below this level are saturated (found)")
-      ->type_name("LEVEL")->group(group);
-  app.add_option("--white", input.white, "Pixels at or above this level are saturated (found)")
-      ->type_name("LEVEL")->group(group);
+void describe(ParameterVisitor& visit, SemNoiseInput& input) {
+  visit(input.image, {.name = "noise.image", .help = "An SEM image, FILE or FILE:CHANNEL", .form = "FILE",
+                      .file = FileRole::read});
+  visit(input.regions, {.name = "noise.flat_region",
+                        .help = "A flat place X0,Y0,X1,Y1: pixels from the upper left, or lengths with units",
+                        .otherwise = "flat blocks are found",
+                        .form = "RECTANGLE"});
 }
 
-void require_sem(const SemNoiseInput& input) {
-  if (input.image) return;
-  const char* given = !input.regions.empty() ? "--flat-region" : input.block ? "--block" : input.black ? "--black"
-                      : input.white ? "--white" : nullptr;
-  if (given) throw UsageError(given, "it is of SEM images, and none is given", "Add --sem image.tif, or leave it out");
+void add_sem_noise_options(CLI::App& app, BoundParameters& bound, const std::string& group) {
+  bound.looks["noise.flat_region"].former = {"--region"};
+  bound.add<SemNoiseInput>(app, group, {}, {"noise.flat_region"});
+  bound.add<SemNoiseOptions>(app, group);
 }
 
-int print_sem_noise(const SemNoiseInput& input, const std::optional<std::string>& plot, bool quiet) {
-  SemNoiseOptions options = make_options(input);
+int print_sem_noise(const GivenTexts& given, const std::optional<std::string>& plot, bool quiet) {
+  SemNoiseInput input;
+  SemNoiseOptions options;
+  io::SemReadOptions reading;
+  BoundParameters::apply(input, given), BoundParameters::apply(options, given), BoundParameters::apply(reading, given);
+  if (input.image.empty()) throw UsageError("noise", "no image is given", "Name a file to read");
   if (plot) io::check_plot_target(*plot);
-  const SemPicture picture = read_sem_picture(input, quiet);
+  const SemPicture picture = read_sem_picture(input, reading, quiet);
   for (const std::string& text : input.regions) options.regions.push_back(parse_rectangle(text, picture));
   const SemNoiseEstimate e = estimate_sem_noise(picture.image, options);
   print_estimate(e);

@@ -121,7 +121,8 @@ int predict(const Options& o) {
 void add_predict(CLI::App& app, Action& action) {
   const auto o = std::make_shared<Options>();
   CLI::App* sub = app.add_subcommand("predict", "An SEM image of heights by a model, in place of a simulation");
-  sub->add_option("HEIGHTS", o->heights, "A scan, an image of heights, or a scene file (TOML)")->type_name("FILE");
+  with_role(sub->add_option("HEIGHTS", o->heights, "A scan, an image of heights, or a scene file (TOML)")->type_name("FILE"),
+            FileRole::read);
   const char *options = "Options", *wanted = "What the image is to be of; a model for anything else is refused";
   o->bound.headings = {{"prediction", options}, {"scan", "Heights"},   {"specimen", wanted},
                        {"beam", wanted},        {"output", "Output"}, {"job", "Output"}};

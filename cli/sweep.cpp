@@ -45,10 +45,22 @@ Examples:
 
 struct Options {
   SimulateOptions simulate;
-  std::vector<std::string> vary;
-  std::optional<std::string> output, part;
-  std::vector<std::string> formats;
+  BoundParameters bound;
 };
+
+/// What is run.
+struct Runs {
+  std::vector<std::string> vary;      ///< "energy=500eV,1keV"
+  std::vector<std::string> formats;   ///< of the images
+};
+
+void describe(ParameterVisitor& visit, Runs& runs) {
+  visit(runs.vary, {.name = "sweep.vary",
+                    .help = "What varies, as energy=500eV,1keV or tilt=0deg:60deg:5deg: all combinations",
+                    .form = "NAME=VALUES"});
+  visit(runs.formats,
+        {.name = "sweep.format", .help = "Format of the images", .otherwise = "exr", .form = "exr|tif|png|vti"});
+}
 
 /// Options of `simulate` that can be varied, without dashes, and the parameters that they stand for.
 const std::map<std::string, std::string>& varied_parameters() {
@@ -142,13 +154,6 @@ std::string file_name(const std::vector<Axis>& axes, const std::vector<std::stri
   return name;
 }
 
-void parse_part(const std::string& text, workflow::SweepJob& job) {
-  const std::size_t slash = text.find('/');
-  if (slash == std::string::npos) throw UsageError("--part", fmt::format("'{}' is no part", text), "Write 3/16 for the third of 16");
-  job.parts = static_cast<int>(parse_whole(text.substr(slash + 1), "--part", 1, 1'000'000));
-  job.part = static_cast<int>(parse_whole(text.substr(0, slash), "--part", 1, job.parts));
-}
-
 std::vector<io::FileUse> inputs_of(const Options& o) {
   std::vector<io::FileUse> inputs;
   const GivenTexts& given = o.simulate.parameters.given();
@@ -160,14 +165,14 @@ std::vector<io::FileUse> inputs_of(const Options& o) {
 
 workflow::SweepJob make_sweep(const Options& o, const std::string& command_line) {
   workflow::SweepJob job;
-  if (!o.output) throw UsageError("--output", "no folder is given", "Add -o sweep");
-  if (o.vary.empty()) throw UsageError("--vary", "nothing varies", "Add --vary energy=500eV,1keV, say");
-  job.folder = *o.output;
+  Runs what;
+  o.bound.apply(job), o.bound.apply(what);
+  if (job.folder.empty()) throw UsageError("`output`", "no folder is given", "Add `output=sweep`");
+  if (what.vary.empty()) throw UsageError("--vary", "nothing varies", "Add --vary energy=500eV,1keV, say");
   job.command_line = command_line;
-  if (o.part) parse_part(*o.part, job);
   std::vector<Axis> axes;
   std::size_t runs = 1;
-  for (const std::string& text : o.vary) {
+  for (const std::string& text : what.vary) {
     axes.push_back(parse_axis(text));
     for (std::size_t i = 0; i + 1 < axes.size(); ++i)
       if (axes[i].name == axes.back().name)
@@ -176,7 +181,7 @@ workflow::SweepJob make_sweep(const Options& o, const std::string& command_line)
     runs *= axes.back().values.size();
     if (runs > most_runs) throw UsageError("--vary", "these are more than a million runs", "Give fewer values");
   }
-  const std::vector<std::string> formats = o.formats.empty() ? std::vector<std::string>{"exr"} : o.formats;
+  const std::vector<std::string> formats = what.formats.empty() ? std::vector<std::string>{"exr"} : what.formats;
   std::vector<io::FileUse> outputs{{"--output", job.folder / "sweep.csv", {}}, {"--output", job.folder / "records", {}}};
   for (std::size_t number = 0; number < runs; ++number) {
     workflow::SweepRun run;
@@ -244,7 +249,9 @@ int sweep(const Options& o, const std::string& command_line) {
 CLI::App* add_join(CLI::App& app, Action& action) {
   const auto folders = std::make_shared<std::vector<std::string>>();
   CLI::App* sub = app.add_subcommand("join", "One table from the parts of a sweep");
-  sub->add_option("FOLDER", *folders, "Where 'semsurf sweep --part' wrote to, one or several")->type_name("FOLDER");
+  with_role(sub->add_option("FOLDER", *folders, "Where 'semsurf sweep --part' wrote to, one or several")
+                ->type_name("FOLDER"),
+            FileRole::none);
   sub->footer("Writes sweep.csv into the first folder.\n\nExample:\n  semsurf sweep join mesa");
   sub->callback([folders, &action] {
     action = [folders] {
@@ -267,13 +274,10 @@ std::vector<std::string> names_to_vary() {
 void add_sweep(CLI::App& app, Action& action, const std::string& command_line) {
   const auto options = std::make_shared<Options>();
   CLI::App* sub = app.add_subcommand("sweep", "Simulations over a grid of settings: energies, tilts, focus ...");
-  const char* group = "Sweep";
-  sub->add_option("--vary", options->vary, "What varies, as energy=500eV,1keV or tilt=0deg:60deg:5deg; may be\nrepeated: all combinations")
-      ->type_name("NAME=VALUES")->allow_extra_args(false)->group(group);
-  sub->add_option("-o,--output", options->output, "Folder of the images and the table")->type_name("FOLDER")->group(group);
-  sub->add_option("--format", options->formats, "Format of the images, instead of exr; may be repeated")->type_name("exr|tif|png|vti")
-      ->allow_extra_args(false)->group(group);
-  sub->add_option("--part", options->part, "Part K of N to do: the third of 16 is 3/16 (all)")->type_name("K/N")->group(group);
+  options->bound.looks["output"] = {.name = "-o,--output"};
+  options->bound.add<Runs>(*sub, "Sweep", {}, {"sweep.vary"});
+  options->bound.add<workflow::SweepJob>(*sub, "Sweep");
+  options->bound.add<Runs>(*sub, "Sweep", {}, {"sweep.format"});
   add_simulate_settings(*sub, options->simulate);
   sub->footer(examples);
   add_join(*sub, action)->group("Commands");

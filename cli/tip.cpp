@@ -42,7 +42,7 @@ struct Options {
   BoundParameters bound;
   std::string scan;
   std::vector<std::string> also;
-  std::optional<std::string> characterizer, plot, output, threads;
+  std::optional<std::string> characterizer, plot, output;
   bool quiet = false;
 
   template <class Struct>
@@ -121,7 +121,7 @@ int by_characterizer(const Options& o) {
   const std::vector<HeightField> scans = read_scans(o);
   if (scans.size() > 1) throw UsageError("--also", "a characterizer takes one scan", "Leave it out");
   auto parameters = o.told<workflow::CharacterizerParameters>();
-  parameters.threads = parse_threads(o.threads);
+  parameters.threads = threads_of(o.bound);
   const HeightField known = read_scan(*o.characterizer, {}, o.quiet).field;
   const CharacterizedTip found = workflow::tip_by_characterizer(scans[0], known, parameters, JobReporter(o.quiet));
   Record record = workflow::records_of(parameters, o.told<io::HeightReadOptions>());
@@ -155,7 +155,7 @@ void print_finding(const workflow::TipResult& found) {
 
 int from_scans(const Options& o) {
   auto parameters = o.told<workflow::TipParameters>();
-  parameters.threads = parse_threads(o.threads);
+  parameters.threads = threads_of(o.bound);
   const std::vector<HeightField> scans = read_scans(o);
   const workflow::TipResult found = workflow::find_tip(scans, parameters, JobReporter(o.quiet));
   std::vector<std::filesystem::path> inputs{o.scan};
@@ -187,7 +187,8 @@ void add_tip(CLI::App& app, Action& action) {
   const auto o = std::make_shared<Options>();
   CLI::App* sub = app.add_subcommand("tip", "Find the tip that made a scan, or make one by its shape");
   add_scan_input(*sub, o->bound, o->scan);
-  sub->add_option("--also", o->also, "Another scan by the same tip; may be repeated")->type_name("FILE");
+  with_role(sub->add_option("--also", o->also, "Another scan by the same tip; may be repeated")->type_name("FILE"),
+            FileRole::read);
   const char* tip = "Tip";
   o->bound.looks["tip.size"] = {.name = "--tip-size", .former = {"--size"},
                                 .help = fmt::format("Samples across the tip, odd; {} where --shape gives it",
@@ -195,16 +196,20 @@ void add_tip(CLI::App& app, Action& action) {
   o->bound.looks["scan.height_noise"].former = {"--noise"};
   o->bound.add<workflow::TipParameters>(*sub, tip, {}, {"tip.size", "tip.answer", "scan.height_noise"});
   o->bound.add<workflow::TipShapeParameters>(*sub, tip, {}, {"tip.shape"});
-  sub->add_option("--characterizer", o->characterizer, "The known surface that the scan shows, as heights")
-      ->type_name("FILE")->group(tip);
+  with_role(sub->add_option("--characterizer", o->characterizer, "The known surface that the scan shows, as heights")
+                ->type_name("FILE")->group(tip),
+            FileRole::read);
   o->bound.add<workflow::CharacterizerParameters>(*sub, tip, {}, {"tip.search"});
   o->bound.add<workflow::TipParameters>(
       *sub, "Blind reconstruction", {},
       {"tip.threshold", "tip.threshold_y", "tip.apex_tolerance", "tip.layer", "tip.maxima", "tip.sweep", "tip.seed"});
   const char* output = "Output";
-  sub->add_option("-o,--output", o->output, "Tip to write: .gsf .tif .txt .vti")->type_name("FILE")->group(output);
-  sub->add_option("--plot", o->plot, "Chart of the choice and the tip: .svg .png")->type_name("FILE")->group(output);
-  add_threads_option(*sub, o->threads)->group(output);
+  with_role(sub->add_option("-o,--output", o->output, "Tip to write: .gsf .tif .txt .vti")->type_name("FILE")->group(output),
+            FileRole::written);
+  with_role(sub->add_option("--plot", o->plot, "Chart of the choice and the tip: .svg .png")
+                ->type_name("FILE")->group(output),
+            FileRole::written);
+  add_threads_option(*sub, o->bound, output);
   add_quiet_flag(*sub, o->quiet)->group(output);
   sub->footer(examples);
   sub->callback([o, &action] { action = [o] { return work(*o); }; });

@@ -9,7 +9,8 @@
 namespace surf::cli {
 
 void add_tip_input(CLI::App& app, std::optional<std::string>& file) {
-  app.add_option("--tip", file, "The tip, as semsurf writes tips or any file of heights")->type_name("FILE");
+  with_role(app.add_option("--tip", file, "The tip, as semsurf writes tips or any file of heights")->type_name("FILE"),
+            FileRole::read);
 }
 
 Tip read_tip_for(const std::optional<std::string>& file, const HeightField& field, bool quiet) {

@@ -183,13 +183,16 @@ int work(const Options& o) {
 void add_view(CLI::App& app, Action& action) {
   const auto o = std::make_shared<Options>();
   CLI::App* sub = app.add_subcommand("view", "One web page that shows surfaces and images to anybody");
-  sub->add_option("FILES", o->files, "Scans, meshes, images; FILE:CHANNEL chooses a channel")->type_name("FILE");
+  with_role(sub->add_option("FILES", o->files, "Scans, meshes, images; FILE:CHANNEL chooses a channel")->type_name("FILE"),
+            FileRole::read);
   const char* shown = "Shown";
   sub->add_option("--title", o->title, "Title of the page (the first file's name)")->type_name("TEXT")->group(shown);
-  sub->add_option("--drape", o->drape, "An image to lay on the surfaces, FILE or FILE:CHANNEL")
-      ->type_name("FILE")->group(shown);
-  sub->add_option("--scalar", o->scalars, "A map to colour them by, FILE or FILE:CHANNEL; may be repeated")
-      ->type_name("FILE")->option_text("FILE")->allow_extra_args(false)->group(shown);
+  with_role(sub->add_option("--drape", o->drape, "An image to lay on the surfaces, FILE or FILE:CHANNEL")
+                ->type_name("FILE")->group(shown),
+            FileRole::read);
+  with_role(sub->add_option("--scalar", o->scalars, "A map to colour them by, FILE or FILE:CHANNEL; may be repeated")
+                ->type_name("FILE")->option_text("FILE")->allow_extra_args(false)->group(shown),
+            FileRole::read);
   const char* reading = "Reading";
   o->bound.looks["view.mesh_tolerance"].former = {"--tolerance"};
   o->bound.looks["view.every"].former = {"--step"};
@@ -197,7 +200,8 @@ void add_view(CLI::App& app, Action& action) {
   o->bound.add<GivenPitch>(*sub, reading);
   o->bound.add<ViewParameters>(*sub, "Size");
   const char* output = "Output";
-  sub->add_option("-o,--output", o->output, "The page: .html")->type_name("FILE")->group(output);
+  with_role(sub->add_option("-o,--output", o->output, "The page: .html")->type_name("FILE")->group(output),
+            FileRole::written);
   add_quiet_flag(*sub, o->quiet)->group(output);
   sub->footer(examples);
   sub->callback([o, &action] { action = [o] { return work(*o); }; });

@@ -3,6 +3,9 @@
 
 #include <gmock/gmock.h>
 
+#include <functional>
+
+#include "app.h"
 #include "surf/core/error.h"
 
 namespace surf::cli {
@@ -86,6 +89,29 @@ TEST(BoundParameters, RolesOfFilesEndWithTheirOptions) {
   std::vector<std::string> values(50);
   for (std::size_t i = 0; i < values.size(); ++i)
     EXPECT_FALSE(file_role(*plain.add_option("--o" + std::to_string(i), values[i])));
+}
+
+/// So a new command cannot write over its inputs before anybody thinks of it.
+TEST(BoundParameters, EveryOptionOfAFileSaysWhatIsDoneWithIt) {
+  Action action;
+  const std::unique_ptr<CLI::App> app = make_app(action, "");
+  int files = 0;
+  const std::function<void(const CLI::App&)> look = [&](const CLI::App& command) {
+    for (const CLI::Option* option : command.get_options()) {
+      const std::string form = option->get_option_text().empty() ? option->get_type_name() : option->get_option_text();
+      SCOPED_TRACE(command.get_name() + " " + option->get_name() + " " + form);
+      const auto role = file_role(*option);
+      if (form.starts_with("FILE")) {
+        ++files;
+        EXPECT_TRUE(role && *role != FileRole::none);
+      } else if (form.starts_with("FOLDER")) {
+        EXPECT_TRUE(role);
+      }
+    }
+    for (const CLI::App* sub : command.get_subcommands(nullptr)) look(*sub);
+  };
+  look(*app);
+  EXPECT_GT(files, 80);
 }
 
 }  // namespace

@@ -208,7 +208,7 @@ std::vector<Default> others() {
       {scans, "--height-pitch", "1 nm"},
       {chains, "--height-pitch", "1 nm"},
       {{"mesh", "view", "predict"}, "--height-pitch", "1 nm"},
-      {{"chart"}, "--draws", "10; with --quick 3"},
+      {{"chart"}, "--draws", "10, quickly 3"},
       {{"noise sem"}, "--block", "16, 12 or 8"},
       {{"mesh"}, "--stitch", "1e-6 of the diagonal"},
       {{"mesh"}, "--thickness", "5 % of the longer side"},

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common_parameters.h"
 #include "surf/core/error.h"
 #include "surf/core/some_parameters.h"
 #include "surf/core/units.h"
@@ -101,27 +102,6 @@ void describe_tip_fit(ParameterVisitor& visit, std::optional<bool>& refine) {
   if (keep) refine = false;
 }
 
-void describe_threads(ParameterVisitor& visit, int& threads) {
-  mc::Execution execution;
-  execution.threads = threads;
-  describe(visit, execution);
-  threads = execution.threads;
-}
-
-void describe_folder(ParameterVisitor& visit, std::filesystem::path& folder) {
-  visit.form({.name = "output", .help = "Folder for all results; it is made", .form = "FOLDER", .recorded = false,
-              .file = FileRole::written_folder},
-             [&] { return folder.string(); },
-             [&](std::string_view text, const std::string&) {
-               folder = text;
-               while (folder.filename().empty() && folder.has_parent_path()) folder = folder.parent_path();   // result/
-             });
-}
-
-void describe_file(ParameterVisitor& visit, std::filesystem::path& file, const Parameter& about) {
-  visit.form(about, [&] { return file.string(); }, [&](std::string_view text, const std::string&) { file = text; });
-}
-
 }  // namespace
 
 void describe(ParameterVisitor& visit, AfmPreparationOptions& o) {
@@ -159,7 +139,7 @@ void describe(ParameterVisitor& visit, ModelRequest& request) {
   request.energy_ev = energy_ev.value_or(0);
   request.spot_given = spot_nm.has_value();
   request.spot_nm = spot_nm.value_or(request.spot_nm);
-  describe_file(visit, request.file,
+  describe_path(visit, request.file,
                 {.name = "reconstruction.model", .help = "Fast model, as 'semsurf train' writes it",
                  .otherwise = "one that was kept, else one is trained and kept", .form = "FILE.json", .recorded = false,
                  .file = FileRole::read});
@@ -201,13 +181,13 @@ void describe(ParameterVisitor& visit, RegisterJob& job) {
   describe(visit, job.model);
   describe(visit, job.pose);
   visit(job.afm.preparation.seed, {.name = "tip.seed", .help = "Seed of the noise that tips are judged by"});
-  describe_file(visit, job.transform,
+  describe_path(visit, job.transform,
                 {.name = "output",
                  .help = "The map, which 'semsurf reconstruct --transform' takes",
                  .form = "FILE.json",
                  .recorded = false,
                  .file = FileRole::written});
-  describe_file(visit, job.picture,
+  describe_path(visit, job.picture,
                 {.name = "output.picture",
                  .help = "Both images and squares of them in turn: .png .svg",
                  .form = "FILE",
@@ -250,7 +230,7 @@ void describe(ParameterVisitor& visit, ReconstructJob& job) {
                          .limits = within(1, 8)});
     if (visit.reads()) job.afm->preparation.seed = job.options.seed;
   }
-  describe_folder(visit, job.folder);
+  describe_folder(visit, job.folder, "Folder for all results; it is made");
   bool no_picture = !job.picture;
   visit(no_picture, {.name = "output.no_picture", .help = "Leave out panel.png, which needs Python with Matplotlib",
                      .recorded = false});

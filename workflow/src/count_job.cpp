@@ -2,13 +2,16 @@
 #include "surf/workflow/count_job.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <numeric>
 
+#include "common_parameters.h"
 #include "surf/core/error.h"
+#include "surf/core/some_parameters.h"
 #include "surf/mc/scene.h"
 #include "surf/mc/simulate.h"
 #include "surf/workflow/simulate_job.h"
@@ -21,13 +24,15 @@ constexpr double degrees = 180 / std::numbers::pi;
 constexpr double scan_width_nm = 1e-6;
 constexpr double above_nm = 1e7;
 
+constexpr Limits electrons_of_a_trial = within(1, 1'000'000);
+
 void check(const CountJob& job) {
-  if (job.trials < 100 || job.trials > 10'000'000)
-    throw UsageError("trials", fmt::format("{} are out of range", job.trials), "Give 100 to 1e7");
-  if (job.electrons.empty()) throw UsageError("electrons", "no number is given", "Give one or more, as 1,20,100");
+  check_parameters(job);
+  if (job.electrons.empty())
+    throw UsageError("`counts.electrons`", "no number is given", "Give one or more, as 1,20,100");
   for (const std::int64_t n : job.electrons)
-    if (n < 1 || n > 1'000'000)
-      throw UsageError("electrons", fmt::format("{} in a trial are out of range", n), "Give 1 to 1e6");
+    if (!electrons_of_a_trial.holds(static_cast<double>(n)))
+      throw UsageError("`counts.electrons`", fmt::format("{} in a trial are out of range", n), "Give 1 to 1e6");
 }
 
 /// The beam and the scan that stand still at a point of the scan plane.
@@ -57,6 +62,22 @@ std::pair<mc::Beam, mc::Scan> aim(const CountJob& job) {
 }
 
 }  // namespace
+
+void describe(ParameterVisitor& visit, CountJob& job) {
+  describe_point(visit, job.at_nm,
+                 {.name = "counts.at", .help = "Point of the image that the beam stands on", .otherwise = "its middle"});
+  const Parameter electrons{.name = "counts.electrons", .help = "Primaries in a trial", .limits = electrons_of_a_trial,
+                            .form = "N,N,..."};
+  visit.form(electrons, [&] { return fmt::format("{}", fmt::join(job.electrons, ",")); },
+             [&](std::string_view text, const std::string& subject) {
+               const std::vector<int> numbers = parse_whole_numbers(text, electrons, subject);
+               job.electrons.assign(numbers.begin(), numbers.end());
+             });
+  visit(job.trials,
+        {.name = "counts.trials", .help = "Trials with each number of primaries", .limits = within(100, 10'000'000)});
+  visit(job.seed, {.name = "counts.seed", .help = "Seed of the random numbers", .otherwise = "the scene's, or 1"});
+  describe_threads(visit, job.threads);
+}
 
 CountSummary run(const CountJob& job, const Reporter& reporter) {
   check(job);

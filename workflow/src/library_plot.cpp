@@ -7,8 +7,10 @@
 #include <string>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "surf/core/error.h"
+#include "surf/core/some_parameters.h"
 #include "surf/mc/element.h"
 #include "surf/mc/simulate.h"
 
@@ -255,11 +257,11 @@ class Charts {
 
 void check(const LibraryPlotOptions& o) {
   if (o.materials.empty() || o.materials.size() > most_materials)
-    throw UsageError("library plot", fmt::format("{} materials do not fit into one chart",
+    throw UsageError("`library.materials`", fmt::format("{} materials do not fit into one chart",
                                                  o.materials.size()),
                      "Choose 1 to 8");
   if (o.energies_ev.empty())
-    throw UsageError("`beam.energy`", "there is none", "Give one or several");
+    throw UsageError("`library.energy`", "there is none", "Give one or several");
   if (o.cascades < 1) throw UsageError("`library.cascades`", "there are none", "Ask for 10000");
 }
 
@@ -301,6 +303,14 @@ std::vector<double> tilts_of(const LibraryPlotOptions& o) {
 }
 
 }  // namespace
+
+void describe(ParameterVisitor& visit, LibraryPlotOptions& o) {
+  const Parameter tilt{.name = "library.tilt", .help = "Angles that yields are shown for", .unit = Unit::deg,
+                       .limits = from_to_below(0, 90), .otherwise = "0; with one energy 0 to 75 degrees",
+                       .form = "ANGLE,..."};
+  visit.form(tilt, [&] { return fmt::format("{}", fmt::join(o.tilts_deg, ",")); },
+             [&](std::string_view text, const std::string& subject) { o.tilts_deg = parse_values(text, tilt, subject); });
+}
 
 std::optional<io::Plot> plot_libraries(const LibraryPlotOptions& o, mc::LibrarySource& libraries,
                                        const ProgressCallback& progress,

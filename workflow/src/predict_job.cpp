@@ -8,6 +8,7 @@
 #include <cmath>
 #include <optional>
 
+#include "common_parameters.h"
 #include "surf/afm/resample.h"
 #include "surf/core/error.h"
 #include "surf/core/units.h"
@@ -100,10 +101,8 @@ HeightField heights_for(const PredictJob& job, const ModelScope& scope) {
 }
 
 void describe(ParameterVisitor& visit, PredictJob& job) {
-  visit.form({.name = "prediction.model", .help = "The model, as 'semsurf train' writes it", .form = "FILE.json",
-              .recorded = false, .file = FileRole::read},
-             [&] { return job.model.string(); },
-             [&](std::string_view text, const std::string&) { job.model = text; });
+  describe_path(visit, job.model, {.name = "prediction.model", .help = "The model, as 'semsurf train' writes it",
+                                   .form = "FILE.json", .recorded = false, .file = FileRole::read});
   visit(job.edge, {"mirror", "flat", "periodic"},
         {.name = "prediction.edge", .help = "Continuation of the heights outside", .otherwise = "mirror"});
   visit(job.resample,
@@ -125,10 +124,7 @@ void describe(ParameterVisitor& visit, PredictJob& job) {
              [&](std::string_view text, const std::string&) { job.outputs.emplace_back(text); }, FieldKind::list);
   visit(job.png_channel, {.name = "output.png_channel", .help = "Channel that PNG files show",
                           .otherwise = "the model's first channel", .form = "NAME"});
-  mc::Execution execution;
-  execution.threads = job.threads;
-  describe(visit, execution);
-  job.threads = execution.threads;
+  describe_threads(visit, job.threads);
 }
 
 PredictSummary run(const PredictJob& job, const Reporter& reporter) {

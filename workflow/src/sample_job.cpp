@@ -10,13 +10,13 @@
 #include <numbers>
 
 #include "checkpoint.h"
+#include "common_parameters.h"
 #include "job_identity.h"
 #include "job_libraries.h"
 #include "surf/afm/morphology.h"
 #include "surf/afm/tip_shapes.h"
 #include "surf/core/error.h"
 #include "surf/core/units.h"
-#include "surf/io/cache.h"
 #include "surf/io/files.h"
 #include "surf/io/height_field_file.h"
 #include "surf/io/image_file.h"
@@ -294,10 +294,7 @@ void describe(ParameterVisitor& visit, SampleJob& job) {
   std::string names;
   for (const SampleScene& scene : sample_scenes()) names += (names.empty() ? "" : "|") + scene.name;
   visit(job.name, {.name = "sample.name", .help = "The surface", .form = names});
-  std::string folder = job.folder.string();
-  visit(folder, {.name = "output", .help = "Folder for the files; it is "
-                                        "made", .recorded = false, .file = FileRole::written_folder});
-  job.folder = folder;
+  describe_folder(visit, job.folder, "Folder for the files; it is made");
   visit(job.electrons, {.name = "sample.electrons", .help = "Primaries per pixel of the SEM image",
                         .limits = within(1, double(std::int64_t{1} << 31))});
   visit.form({.name = "sample.size", .help = "Pixels of the SEM image, the middle of the view", .form = "WxH"},
@@ -310,14 +307,8 @@ void describe(ParameterVisitor& visit, SampleJob& job) {
                job.width = *scan.width, job.height = *scan.height;
              });
   visit(job.seed, {.name = "sample.seed", .help = "Seed of noise and simulation: the same seed gives the same files"});
-  visit.form({.name = "job.cache", .help = "Folder that libraries of cascades are kept in for other runs, or off",
-              .otherwise = "$SEMSURF_CACHE, ~/.cache/semsurf", .form = "FOLDER|off", .level = Level::advanced,
-                  .recorded = false},
-             [&] { return job.cache.string(); },
-             [&](std::string_view text, const std::string&) { job.cache = io::cache_folder(std::string(text)); });
-  visit(job.threads, {.name = "job.threads", .help = "Number of threads, which does not change the result",
-                      .limits = within(0, 4096), .otherwise = "one per hardware thread", .level = Level::advanced,
-                      .recorded = false});
+  describe_cache(visit, job.cache);
+  describe_threads(visit, job.threads);
 }
 
 const std::vector<SampleScene>& sample_scenes() {

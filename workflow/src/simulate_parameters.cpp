@@ -1,10 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <fmt/format.h>
-
-#include "surf/core/error.h"
+#include "common_parameters.h"
 #include "surf/core/parameters.h"
-#include "surf/core/units.h"
-#include "surf/io/cache.h"
 #include "surf/workflow/simulate_job.h"
 
 namespace surf::workflow {
@@ -26,18 +22,9 @@ void describe(ParameterVisitor& visit, Extras& extras) {
   number(extras.trajectories, {.name = "output.trajectories",
                                .help = "Tracks of this many primaries, in NAME.tracks.vtp, and a side view, in NAME.tracks.png",
                                .limits = within(1, 100'000)});
-  visit.form({.name = "output.trajectories_at", .help = "Point of the scan plane where the primaries of tracks land",
-              .unit = Unit::nm, .otherwise = "the middle of the scan", .form = "X,Y", .level = Level::advanced},
-             [&] {
-               const auto& at = extras.trajectories_at_nm;
-               return at ? fmt::format("{},{}", format_exact(at->first), format_exact(at->second)) : std::string();
-             },
-             [&](std::string_view text, const std::string& subject) {
-               const std::size_t comma = text.find(',');
-               if (comma == std::string_view::npos) throw UsageError(subject, "it is not a point", "Write two lengths, X,Y");
-               extras.trajectories_at_nm = {parse_length_nm(text.substr(0, comma), subject),
-                                            parse_length_nm(text.substr(comma + 1), subject)};
-             });
+  describe_point(visit, extras.trajectories_at_nm,
+                 {.name = "output.trajectories_at", .help = "Point of the scan plane where the primaries of tracks land",
+                  .otherwise = "the middle of the scan", .level = Level::advanced});
 }
 
 void describe(ParameterVisitor& visit, CheckpointOptions& checkpoint) {
@@ -59,10 +46,7 @@ void describe(ParameterVisitor& visit, CheckpointOptions& checkpoint) {
 void describe(ParameterVisitor& visit, SimulateJob& job) {
   describe(visit, static_cast<mc::SimulationRequest&>(job.scene));
   describe(visit, job.execution);
-  visit.form({.name = "job.cache", .help = "Folder that libraries of cascades are kept in for other runs, or off",
-              .otherwise = "$SEMSURF_CACHE, ~/.cache/semsurf", .form = "FOLDER|off", .level = Level::advanced, .recorded = false},
-             [&] { return job.cache.string(); },
-             [&](std::string_view text, const std::string&) { job.cache = io::cache_folder(std::string(text)); });
+  describe_cache(visit, job.cache);
   describe(visit, job.extras);
   visit(job.spectra, {.name = "output.spectra", .help = "Energies and angles per detector, in NAME.spectra.csv",
                       .level = Level::advanced, .recorded = false});

@@ -11,13 +11,16 @@
 #include <optional>
 #include <span>
 
+#include "common_parameters.h"
 #include "job_identity.h"
 #include "provenance.h"
 #include "run_many.h"
 #include "sidecar.h"
 #include "simulation_setup.h"
 #include "surf/core/error.h"
+#include "surf/core/some_parameters.h"
 #include "surf/core/units.h"
+#include "surf/core/words.h"
 #include "surf/io/files.h"
 
 namespace surf::workflow {
@@ -148,6 +151,23 @@ void describe(const SimulateJob& first, ManyRuns& runs) {
 }
 
 }  // namespace
+
+void describe(ParameterVisitor& visit, SweepJob& job) {
+  describe_folder(visit, job.folder, "Folder of the images and the table");
+  visit.form({.name = "sweep.part", .help = "Part K of N to do: the third of 16 is 3/16", .otherwise = "all", .form = "K/N",
+              .recorded = false},
+             [&] { return job.parts > 1 ? fmt::format("{}/{}", job.part, job.parts) : std::string(); },
+             [&](std::string_view text, const std::string& subject) {
+               const auto words = split(text, "/");
+               if (words.size() != 2)
+                 throw UsageError(subject, fmt::format("'{}' is no part", text), "Write 3/16 for the third of 16");
+               const auto number = [&](std::string_view word, double most) {
+                 return parse_whole_numbers(word, {.name = "part", .help = "", .limits = within(1, most)}, subject).at(0);
+               };
+               job.parts = number(words[1], 1'000'000);
+               job.part = number(words[0], job.parts);
+             });
+}
 
 SweepSummary run(const SweepJob& job, const Reporter& reporter, const RunCallback& on_run, Team* team) {
   const auto start = std::chrono::steady_clock::now();

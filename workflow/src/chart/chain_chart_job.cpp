@@ -28,15 +28,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int usual_draws = 10, quick_draws = 3, most_draws = 1000;
+constexpr int usual_draws = 10, quick_draws = 3;
 constexpr double prepared_weight = 1;   // of the progress: a point's
 
 ChainChartJob complete(const ChainChartJob& asked) {
+  check_parameters(asked);
   ChainChartJob job = asked;
   if (job.draws == 0) job.draws = job.quick ? quick_draws : usual_draws;
-  if (job.draws < 1 || job.draws > most_draws)
-    throw UsageError("`chart.draws`", fmt::format("{} is out of range", job.draws),
-                     fmt::format("Give 1 to {}", most_draws));
   const auto& all = chain_chart_families();
   for (const std::string& family : job.families)
     if (std::none_of(all.begin(), all.end(), [&](const ChainFamily& f) { return f.name == family; })) {

@@ -7,6 +7,7 @@
 
 #include "kept_point.h"
 #include "surf/io/files.h"
+#include "surf/workflow/step_record.h"
 #include "surf/workflow/version.h"
 
 namespace surf::workflow {
@@ -108,6 +109,7 @@ std::string json_text(const ChartJob& job, const ChartSummary& summary) {
   Json j{{"program", std::string("semsurf ") + version()},
          {"command", job.command_line},
          {"title", job.scene.title},
+         {"parameters", records_of(job, static_cast<const mc::SimulationRequest&>(job.scene))},
          {"complete", summary.complete},
          {"compared_pixels", summary.compared},
          {"reference", {{"accuracy", job.reference_accuracy}}},

@@ -34,25 +34,18 @@ namespace fs = std::filesystem;
 constexpr std::uint64_t other_seed = 1'000'003;
 
 ChartJob complete(const ChartJob& asked) {
+  check_parameters(asked);
   ChartJob job = asked;
-  if (!(job.finest >= 0.001 && job.finest <= 0.1))
-    throw UsageError("`chart.accuracy`", fmt::format("{:g} is outside 0.1 % to 10 %", job.finest), "Ask for 1%, say");
   if (job.quick) {
     job.finest = std::max(job.finest, 0.03);
     job.most_primaries = std::min(job.most_primaries, 5e6);
     job.compared_pixels = std::min(job.compared_pixels, 400);
   }
   if (job.reference_accuracy == 0) job.reference_accuracy = job.finest / 3;
-  if (!(job.reference_accuracy >= 1e-4 && job.reference_accuracy <= 0.5 * job.finest))
+  if (job.reference_accuracy > 0.5 * job.finest)
     throw UsageError("`chart.reference`", fmt::format("{} is not well below the finest accuracy, {}",
                                                 format_share(job.reference_accuracy), format_share(job.finest)),
                      "Give at most half of it, and 0.01% at least");
-  if (job.compared_pixels < 16)
-    throw UsageError("`chart.compared`", fmt::format("{} pixels are too few", job.compared_pixels), "Give 16 or more");
-  if (!(job.most_primaries >= 1e5))
-    throw UsageError("`chart.most`", fmt::format("{:g} primaries are too few", job.most_primaries), "Give 1e5 or more");
-  if (job.surfaces < 2 || job.surface_px < 16)
-    throw UsageError("`chart.surfaces`, `chart.surface_size`", "models learn from 2 surfaces of 16 pixels at least", "Give more");
   for (const std::string& family : job.families) {
     const auto& all = chart_families();
     if (std::none_of(all.begin(), all.end(), [&](const ChartFamily& f) { return f.name == family; })) {

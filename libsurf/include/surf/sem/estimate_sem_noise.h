@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "surf/core/parameters.h"
 #include "surf/core/placed_image.h"
 #include "surf/sem/sem_noise.h"
 
@@ -32,6 +33,9 @@ struct SemNoiseOptions {
   /// 1 / least_share typical ones.
   double least_share = 0.01;
 };
+
+/// noise.block, noise.black and noise.white.
+void describe(ParameterVisitor& visit, SemNoiseOptions& options);
 
 /// Mean and variance of one flat place.
 struct NoisePoint {

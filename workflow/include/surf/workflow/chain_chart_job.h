@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "surf/core/parameters.h"
 #include "surf/core/progress.h"
 #include "surf/workflow/reporter.h"
 #include "surf/workflow/simulate_job.h"
@@ -30,6 +31,9 @@ struct ChainChartJob {
   int threads = 0;                     ///< 0: one per hardware thread. Changes times only
   std::string command_line;
 };
+
+/// All but sample, kept models and command line.
+void describe(ParameterVisitor& visit, ChainChartJob& job);
 
 struct ChainFamily {
   std::string name;        ///< as the command line takes it: "landmarks"

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "surf/core/parameters.h"
 #include "surf/io/sim/scene_file.h"
 #include "surf/sem/image_error.h"
 #include "surf/workflow/reporter.h"
@@ -37,6 +38,9 @@ struct ChartJob {
   int threads = 0;                    ///< 0: one per hardware thread. Changes times only
   std::string command_line;
 };
+
+/// All but scene, training electrons and command line.
+void describe(ParameterVisitor& visit, ChartJob& job);
 
 /// A family of methods, for people.
 struct ChartFamily {

@@ -26,6 +26,9 @@ struct CountJob {
   int threads = 0;                                ///< 0: one per hardware thread. Does not change the result
 };
 
+/// counts.at, counts.electrons, counts.trials, counts.seed and job.threads.
+void describe(ParameterVisitor& visit, CountJob& job);
+
 /// What one detector counted in the trials of one set.
 struct DetectorCounts {
   std::string detector;

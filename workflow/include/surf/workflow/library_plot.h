@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "surf/core/parameters.h"
 #include "surf/core/progress.h"
 #include "surf/io/plot.h"
 #include "surf/mc/library_source.h"
@@ -25,6 +26,9 @@ struct LibraryPlotOptions {
   int threads = 0;                         ///< 0: one per hardware thread
   std::vector<MeasuredYield> measured;     ///< shown beside yields at normal incidence
 };
+
+/// library.tilt.
+void describe(ParameterVisitor& visit, LibraryPlotOptions& options);
 
 /// What is in libraries and what comes of it: how deep and how far primaries get, against the energy
 /// where there are several, and the yields of flat specimens, replayed from the same libraries, with

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "surf/core/parameters.h"
 #include "surf/workflow/simulate_job.h"
 
 namespace surf::workflow {
@@ -25,6 +26,9 @@ struct SweepJob {
   int part = 1, parts = 1;           ///< 1 to `parts`; part k does runs k, k + parts, k + 2 parts ...
   std::string command_line;
 };
+
+/// Its folder and its part.
+void describe(ParameterVisitor& visit, SweepJob& job);
 
 struct SweepSummary {
   bool complete = true;              ///< false when cancelled: what is done stays
