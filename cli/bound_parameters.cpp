@@ -2,6 +2,7 @@
 #include "bound_parameters.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 
@@ -48,6 +49,7 @@ struct BoundOption {
   std::weak_ptr<const GivenTexts> lives;
   std::string parameter;
   std::optional<FileRole> file;   // none: the command reads the option by itself
+  bool shows_default = false;
 };
 
 std::map<const CLI::Option*, BoundOption>& bound_options() {
@@ -89,13 +91,23 @@ std::optional<FileRole> file_role(const CLI::Option& option) {
   return found == own_roles().end() ? std::nullopt : std::optional(found->second);
 }
 
+void describe_texts(ParameterVisitor& visit, std::vector<std::string>& texts, const Parameter& about) {
+  visit.form(about, [&] { return fmt::format("{}", fmt::join(texts, " ")); },
+             [&](std::string_view text, const std::string&) { texts.emplace_back(text); }, FieldKind::list);
+}
+
+bool shows_default(const CLI::Option& option) {
+  const BoundOption* const bound = find_bound(option);
+  return bound && bound->shows_default;
+}
+
 CLI::Option* with_role(CLI::Option* option, FileRole role) {
   own_roles()[option] = role;
   return option;
 }
 
 void BoundParameters::stands_for(const CLI::Option* option, const std::string& parameter) {
-  bound_options()[option] = {given_, parameter, std::nullopt};
+  bound_options()[option] = {given_, parameter, std::nullopt, false};
 }
 
 void BoundParameters::declare(CLI::App& app, const std::string& group, const Parameter& about, const Field& field,
@@ -133,7 +145,7 @@ void BoundParameters::declare(CLI::App& app, const std::string& group, const Par
       else option->expected(1)->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
     }
     option->group(in_group);
-    bound_options()[option] = {given_, about.name, about.file};
+    bound_options()[option] = {given_, about.name, about.file, look.help.empty() && about.otherwise.empty()};
   };
   declare_as(name, heading);
   for (const std::string& former : look.former) declare_as(former, "");

@@ -78,6 +78,12 @@ std::string option_of(const CLI::App& command, std::string_view parameter);
 /// What is done with the file that an option names; empty where nothing is known of it.
 std::optional<FileRole> file_role(const CLI::Option& option);
 
+/// A list of texts with commas in them, one for each time that its option is given.
+void describe_texts(ParameterVisitor& visit, std::vector<std::string>& texts, const Parameter& about);
+
+/// Whether help says the value that the field has by default, and no words in its place.
+bool shows_default(const CLI::Option& option);
+
 /// Says it of an option that a command declares and reads by itself. Every option of a file or folder needs that.
 CLI::Option* with_role(CLI::Option* option, FileRole role);
 

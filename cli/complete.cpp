@@ -7,6 +7,7 @@
 #include <set>
 #include <string_view>
 
+#include "surf/core/words.h"
 #include "surf/io/sim/materials.h"
 #include "surf/mc/physics_words.h"
 #include "surf/workflow/chart_job.h"
@@ -39,15 +40,6 @@ std::string form_of_value(const CLI::Option& option) {
   if (form.empty()) form = option.get_type_name();
   form.resize(std::min({form.find(":{"), form.find(' '), form.size()}));
   return form;
-}
-
-std::vector<std::string> split(const std::string& text, char separator) {
-  std::vector<std::string> parts(1);
-  for (const char c : text) {
-    if (c == separator) parts.emplace_back();
-    else parts.back() += c;
-  }
-  return parts;
 }
 
 /// A shell that ends words at "=" and ":" gives "a=b" as "a", "=", "b".
@@ -94,11 +86,11 @@ Offer values_of(const CLI::Option& option) {
   const std::string form = form_of_value(option);
   offer.list = form.find(',') != std::string::npos && form.find("...") != std::string::npos;
   const bool choice = form.find('|') != std::string::npos;
-  for (const std::string& part : split(form, '|')) {
+  for (const std::string_view part : split(form, "|")) {
     if (part == "FILE" || part.starts_with("FILE.") || part == "SCENE.toml") offer.kind = ":files";
     else if (part == "FOLDER") offer.kind = ":folders";
     else if (part == "MATERIAL") for (const mc::Material& m : io::builtin_materials()) offer.add(m.name);
-    else if (choice && part != "..." && part != "SHAPE") offer.add(part);
+    else if (choice && part != "..." && part != "SHAPE") offer.add(std::string(part));
   }
   add_words_of(option, form, offer);
   return offer;
@@ -116,7 +108,7 @@ Offer continued(Offer offer, const std::string& before, const std::string& word)
   const std::size_t begin = offer.list ? word.rfind(',') + 1 : 0;   // npos + 1 is 0
   const std::set<std::string> used = [&] {
     const std::string before_it = word.substr(0, begin);
-    const auto names = surf::split(before_it, ",");
+    const auto names = split(before_it, ",");
     return std::set<std::string>(names.begin(), names.end());
   }();
   std::erase_if(offer.candidates, [&](const Candidate& c) { return used.contains(c.word); });

@@ -151,9 +151,10 @@ int as_before(const Options& o) {
   if (uses > 1)
     throw UsageError("noise", "more than one of a scan, --sem and --counts is given", "Run it once for each");
   if (uses == 0) throw UsageError("noise", "of what is not given", "Choose scan, sem or counts");
-  const auto of_sem = names_of(SemNoiseInput{}, SemNoiseOptions{}), of_counts = names_of(CountsFiles{}, workflow::CountJob{});
+  const auto sem_names = names_of(SemNoiseInput{}, SemNoiseOptions{}),
+             count_names = names_of(CountsFiles{}, workflow::CountJob{});
   for (const auto& [name, texts] : o.bound.given()) {
-    const bool is_sem = of_sem.contains(name) || (sem && name == "scan.height_pitch"), is_count = of_counts.contains(name);
+    const bool is_sem = sem_names.contains(name) || (sem && name == "scan.height_pitch"), is_count = count_names.contains(name);
     if (is_sem == sem && is_count == counts) continue;
     throw UsageError(fmt::format("`{}`", name),
                      fmt::format("it is of {}", is_sem ? "SEM images" : is_count ? "simulated counts" : "AFM scans"),

@@ -95,7 +95,7 @@ void print_estimate(const SemNoiseEstimate& e) {
 void describe(ParameterVisitor& visit, SemNoiseInput& input) {
   visit(input.image, {.name = "noise.image", .help = "An SEM image, FILE or FILE:CHANNEL", .form = "FILE",
                       .file = FileRole::read});
-  visit(input.regions, {.name = "noise.flat_region",
+  describe_texts(visit, input.regions, {.name = "noise.flat_region",
                         .help = "A flat place X0,Y0,X1,Y1: pixels from the upper left, or lengths with units",
                         .otherwise = "flat blocks are found",
                         .form = "RECTANGLE"});

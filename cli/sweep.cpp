@@ -55,7 +55,7 @@ struct Runs {
 };
 
 void describe(ParameterVisitor& visit, Runs& runs) {
-  visit(runs.vary, {.name = "sweep.vary",
+  describe_texts(visit, runs.vary, {.name = "sweep.vary",
                     .help = "What varies, as energy=500eV,1keV or tilt=0deg:60deg:5deg: all combinations",
                     .form = "NAME=VALUES"});
   visit(runs.formats,

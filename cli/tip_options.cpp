@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tip_options.h"
 
+#include "bound_parameters.h"
 #include "job_reporter.h"
 #include "surf/core/error.h"
 #include "surf/io/tip_file.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Help texts say in parentheses what holds where an option is not given. Whatever they say with a number is compared
-// here with the structs that decide it. A new option with such a number has to be entered below.
+// Help says in parentheses what holds where an option is not given: the field's own default, or words in its place. Numbers
+// in such words are compared here with the structs that decide them. New ones have to be entered below.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <gmock/gmock.h>
@@ -12,36 +12,21 @@
 #include <sstream>
 #include <variant>
 
+#include "app.h"
 #include "bound_parameters.h"
 #include "in_process.h"
-#include "mesh_parameters.h"
 #include "surf/afm/blind_tip.h"
-#include "surf/afm/certainty.h"
-#include "surf/afm/characterizer.h"
-#include "surf/afm/morphology.h"
-#include "surf/afm/noise_check.h"
-#include "surf/afm/noise_estimate.h"
 #include "surf/afm/tip_sweep.h"
-#include "surf/io/image_file.h"
-#include "surf/io/sim/specimen_request.h"
 #include "surf/io/surface_file.h"
-#include "surf/mc/beam.h"
-#include "surf/mc/simulate.h"
-#include "surf/mesh/repair_mesh.h"
-#include "surf/reconstruction/reconstruct.h"
+#include "surf/mc/budget.h"
+#include "surf/mc/specimen.h"
 #include "surf/sem/fit_facet_network.h"
-#include "surf/workflow/afm_preparation.h"
-#include "surf/workflow/chain_chart_job.h"
-#include "surf/workflow/chart_job.h"
+#include "surf/sem/fit_filter_bank.h"
 #include "surf/workflow/count_job.h"
-#include "surf/workflow/morphology_job.h"
 #include "surf/workflow/reconstruct_job.h"
 #include "surf/workflow/register_job.h"
-#include "surf/workflow/sample_job.h"
-#include "surf/workflow/simulate_job.h"
 #include "surf/workflow/slope_table.h"
 #include "surf/workflow/train_job.h"
-#include "view_inputs.h"
 
 namespace surf {
 namespace {
@@ -134,43 +119,18 @@ struct Default {
 };
 
 std::vector<Default> defaults() {
-  const mc::Beam beam;
-  const mc::SimulationOptions simulation;
-  const workflow::ChartJob chart;
-  const workflow::TrainJob train;
   const FacetNetworkFitOptions network;
-  const ReconstructionOptions reconstruction;
-  const workflow::AfmPreparationOptions preparation;
-  const workflow::SampleJob sample;
-  const workflow::CountJob counts;
-  const RepairOptions repair;
   const io::Magnification magnification;
-  const std::vector<std::string> morphologies{"erode", "dilate", "open", "close"}, chains{"register", "reconstruct"};
-  const std::vector<std::string> libraries{"library build", "library plot"};
+  const std::vector<std::string> chains{"register", "reconstruct"};
   return {
-      {{"chart"}, "--accuracy", chart.finest},
-      {{"chart"}, "--compared", double(chart.compared_pixels)},
-      {{"chart"}, "--most", chart.most_primaries},
-      {{"chart"}, "--surfaces", double(chart.surfaces)},
-      {{"chart"}, "--surface-size", double(chart.surface_px)},
-      {{"chart"}, "--seed", double(chart.seed)},
-      {{"level"}, "--level-degree", double(preparation.level.degree)},
-      {{"noise scan"}, "--degree", double(FlatNoiseOptions{}.degree)},
-      {{"noise counts"}, "--electrons", fmt::format("{}", fmt::join(counts.electrons, ","))},
-      {{"noise counts"}, "--trials", double(counts.trials)},
-      {{"noise counts"}, "--seed", fmt::format("the scene's, or {}", counts.seed)},
-      {{"mesh"}, "--scale", cli::MeshParameters{}.scale},
-      {{"mesh"}, "--sliver", repair.sliver_nm},
-      {{"mesh"}, "--min-component", repair.min_component_nm},
+      {{"noise counts"}, "--seed", fmt::format("the scene's, or {}", workflow::CountJob{}.seed)},
+      {{"simulate", "sweep", "chart"}, "--substrate-z", mc::Substrate{}.top_nm},
+      {{"simulate", "sweep"}, "--electrons", double(mc::ElectronsPerPixel{}.count)},
+      {{"simulate", "sweep"}, "--accuracy-floor", mc::Accuracy{}.floor},
+      {{"train"}, "--electrons", double(mc::electrons_of(workflow::TrainJob{}.simulation.budget))},
+      {{"train"}, "--least-eigenvalue", FilterBankFitOptions{}.eigenvalue_cutoff},
       {{"mesh"}, "--magnification", magnification.factor},
       {{"mesh"}, "--z-exaggeration", magnification.z_exaggeration},
-      {morphologies, "--upsample", double(MorphologyOptions{}.upsample)},
-      {{"erode", "dilate"}, "--distance", workflow::MorphologyParameters{}.distance_nm},
-      {{"noise scan"}, "--lags", double(NoiseCheckOptions{}.lags)},
-      {{"certainty"}, "--sigmas", CertaintyOptions{}.sigmas},
-      {{"certainty"}, "--distance", CertaintyOptions{}.distance_nm},
-      {{"train"}, "--surface-size", double(train.surface_px)},
-      {{"train"}, "--hold-out", double(train.held_out)},
       {{"train"}, "--hidden", fmt::format("{}", fmt::join(network.hidden, ","))},
       {{"train"}, "--iterations", double(network.iterations)},
       {{"train"}, "--decay", network.decay},
@@ -179,23 +139,8 @@ std::vector<Default> defaults() {
        "--table-electrons",
        fmt::format("{} at each, 10240 in all", workflow::SlopeTableOptions{}.electrons)},
       {{"tip"}, "--tip-size", double(BlindTipOptions{}.width)},
-      {{"tip"}, "--search", double(CharacterizerOptions{}.search)},
-      {{"tip"}, "--apex-tolerance", BlindTipOptions{}.apex_tolerance_nm},
-      {{"tip"}, "--layer", BlindTipOptions{}.layer_nm},
       {{"tip"}, "--sweep", fmt::format("0.3 to 8 standard deviations of the noise, {}", TipSweepOptions{}.thresholds)},
-      {{"tip"}, "--seed", double(TipSweepOptions{}.seed)},
-      {chains, "--level-degree", double(preparation.level.degree)},
       {chains, "--spot", workflow::ModelRequest{}.spot_nm},
-      {{"register"}, "--seed", double(preparation.seed)},
-      {{"reconstruct"}, "--upsample", double(workflow::ReconstructJob{}.upsample)},
-      {{"reconstruct"}, "--probes", double(reconstruction.probes)},
-      {{"reconstruct"}, "--seed", double(reconstruction.seed)},
-      {{"sample"}, "--electrons", double(sample.electrons)},
-      {{"sample"}, "--size", fmt::format("{}x{}", sample.width, sample.height)},
-      {{"sample"}, "--seed", double(sample.seed)},
-      {{"view"}, "--every", double(cli::ViewParameters{}.every)},
-      {libraries, "--energy", beam.energy_ev},
-      {libraries, "--seed", double(mc::CascadeSettings{}.seed)},
   };
 }
 
@@ -207,7 +152,8 @@ std::vector<Default> others() {
   return {
       {scans, "--height-pitch", "1 nm"},
       {chains, "--height-pitch", "1 nm"},
-      {{"mesh", "view", "predict"}, "--height-pitch", "1 nm"},
+      {{"mesh", "view", "predict", "simulate", "sweep", "train", "chart"}, "--height-pitch", "1 nm"},
+      {{"simulate"}, "--layout", "auto: tiles above 64 million pixels"},
       {{"chart"}, "--draws", "10, quickly 3"},
       {{"noise sem"}, "--block", "16, 12 or 8"},
       {{"mesh"}, "--stitch", "1e-6 of the diagonal"},
@@ -216,8 +162,7 @@ std::vector<Default> others() {
       {{"reconstruct"}, "--offset", "0"},
       {{"reconstruct"}, "--prior", "0.001, more on rough ground"},
       {{"library plot"}, "--tilt", "0; with one energy 0 to 75 degrees"},
-      {{"simulate", "sweep"}, "--detector", "side:axis=60deg/90deg | loss:energy=900eV..,cone=30deg"},
-      {libraries, "--accuracy", "2/accuracy"},
+      {libraries, "--accuracy", "2/accuracy | 10000 cascades"},
   };
 }
 
@@ -227,21 +172,14 @@ const Default* find(const std::vector<Default>& all, const Stated& stated) {
   return nullptr;
 }
 
-/// Whether help is made from a description of the field, defaults and all.
+/// Whether help is made from the field itself.
 bool is_described(const Stated& s) {
-  static const std::set<std::string> names = [] {
-    std::set<std::string> all;
-    const auto add = [&](const Parameter& about, Field&) { all.insert(cli::option_name(about.name)); };
-    workflow::SimulateJob job;
-    for_each_parameter(job, add);
-    io::SpecimenRequest specimen;
-    for_each_parameter(specimen, add);
-    return all;
-  }();
-  const bool of_scenes = s.command == "simulate" || s.command == "sweep" || s.command == "chart" ||
-                         s.command == "train";
-  static const std::set<std::string> of_chart{"--accuracy", "--seed"};   // others than those of simulations
-  return of_scenes && names.contains(s.option) && !(s.command == "chart" && of_chart.contains(s.option));
+  static cli::Action action;
+  static const std::unique_ptr<CLI::App> app = cli::make_app(action, "");
+  const CLI::App* command = app.get();
+  std::istringstream words(s.command);
+  for (std::string word; words >> word;) command = command->get_subcommand(word);
+  return cli::shows_default(*command->get_option(s.option));
 }
 
 TEST(HelpDefaults, AreThoseOfTheStructs) {

@@ -35,11 +35,10 @@ void describe(ParameterVisitor& visit, LibraryParameters& p) {
              [&] { return text_of(p.energies_ev); },
              [&](std::string_view text, const std::string& subject) { p.energies_ev = parse_energies_ev(text, subject); });
   visit(p.cascades, {.name = "library.cascades", .help = "Primaries in each library, rounded up to whole 2048s",
-                     .limits = within(1, 100'000'000), .otherwise = "by the accuracy"});
+                     .limits = within(1, 100'000'000), .otherwise = "as many as the accuracy takes"});
   visit(p.accuracy, {.name = "library.accuracy",
-                     .help = "Accuracy of images that begin with so many cascades: (2/accuracy)^2, not below 10000, which is "
-                             "their number where neither is given",
-                     .unit = Unit::share, .limits = within(1e-4, 1)});
+                     .help = "Accuracy of images that begin with so many cascades, (2/accuracy)^2 and not below 10000",
+                     .unit = Unit::share, .limits = within(1e-4, 1), .otherwise = "10000 cascades"});
   describe_some(visit, p.simulation,
                 {{"simulation.physics", "Changes to the physics, as for simulate; each choice has libraries of its own"},
                  {"simulation.cutoff"},

@@ -367,7 +367,16 @@ double parse_value(std::string_view text, const Parameter& about, const std::str
 }
 
 std::string format_value(double value, Unit unit) {
-  const auto number = [](double v) { return fmt::format("{}", v); };
+  const auto number = [](double v) {
+    std::string text = fmt::format("{}", v);
+    if (!(std::abs(v) >= 1e6)) return text;
+    const std::string power = fmt::format("{:g}", v);   // "1e+08"
+    const std::size_t plus = power.find("e+");
+    double same = 0;
+    if (plus == std::string::npos || !read_all(power, same) || same != v) return text;
+    const std::size_t digits = power.find_first_not_of('0', plus + 2);
+    return digits == std::string::npos ? text : power.substr(0, plus + 1) + power.substr(digits);
+  };
   switch (unit) {
     case Unit::none: return number(value);
     case Unit::share: {

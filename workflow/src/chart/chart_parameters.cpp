@@ -33,7 +33,7 @@ void describe(ParameterVisitor& visit, ChartJob& job) {
   visit(reference, {.name = "chart.reference", .help = "Accuracy of the reference", .unit = Unit::share,
                     .limits = within(1e-4, 0.05), .otherwise = "a third of the finest", .level = Level::advanced});
   job.reference_accuracy = reference.value_or(0);
-  visit(job.compared_pixels, {.name = "chart.compared", .help = "Number of pixels of the reference, about",
+  visit(job.compared_pixels, {.name = "chart.compared", .help = "Number of the reference's pixels, roughly",
                               .limits = within(16, 1 << 24), .level = Level::advanced});
   visit(job.most_primaries, {.name = "chart.most",
                              .help = "Primaries in the whole image above which settings are left out, direct ones with more "
