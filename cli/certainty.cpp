@@ -9,7 +9,6 @@
 #include "commands.h"
 #include "common_options.h"
 #include "exit_codes.h"
-#include "options.h"
 #include "job_reporter.h"
 #include "surf/core/error.h"
 #include "surf/core/units.h"

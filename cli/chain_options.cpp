@@ -9,9 +9,9 @@
 
 #include "afm_options.h"
 #include "common_options.h"
-#include "options.h"
 #include "sem_input.h"
 #include "surf/core/error.h"
+#include "surf/core/some_parameters.h"
 #include "surf/core/units.h"
 #include "surf/io/cache.h"
 #include "surf/io/landmarks_file.h"
@@ -26,7 +26,7 @@ using workflow::LevelMethod;
 
 /// "ALPHA,INNOVATION", the innovation in nm^2.
 AfmNoise parse_afm_noise(const std::string& text) {
-  const auto numbers = parse_numbers(text, "--afm-noise");
+  const auto numbers = parse_values(text, {.name = "number", .help = ""}, "--afm-noise");
   AfmNoise noise;
   if (numbers.size() == 2) noise = {numbers[0], numbers[1]};
   try {

@@ -5,12 +5,6 @@
 
 namespace surf::cli {
 
-void add_unit_options(CLI::App& app, std::optional<std::string>& unit, bool& overrides, const std::string& group) {
-  app.add_option("--unit", unit, "Length of one unit of the mesh files (as they say, else nm; glTF: m)")
-      ->type_name("nm|um|mm|m|pm|A|in")->group(group);
-  app.add_flag("--override-unit", overrides, "Take --unit even where a file says another unit")->group(group);
-}
-
 void add_threads_option(CLI::App& app, BoundParameters& bound, const std::string& group) {
   bound.add<mc::Execution>(app, group);
 }

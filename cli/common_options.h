@@ -13,9 +13,6 @@ namespace surf::cli {
 
 CLI::Option* add_quiet_flag(CLI::App& app, bool& quiet);
 
-/// --unit and --override-unit, of mesh files.
-void add_unit_options(CLI::App& app, std::optional<std::string>& unit, bool& overrides, const std::string& group);
-
 /// --threads, and what it says: 0 (one per hardware thread) where it is absent. Throws UsageError.
 void add_threads_option(CLI::App& app, BoundParameters& bound, const std::string& group);
 int threads_of(const BoundParameters& bound);

@@ -5,10 +5,10 @@
 
 #include <memory>
 
+#include "bound_parameters.h"
 #include "commands.h"
-#include "common_options.h"
 #include "failure.h"
-#include "options.h"
+#include "mesh_parameters.h"
 #include "terminal.h"
 #include "surf/core/error.h"
 #include "surf/core/units.h"
@@ -17,6 +17,7 @@
 #include "surf/io/mesh_file.h"
 #include "surf/io/model_file.h"
 #include "surf/io/sem_file.h"
+#include "surf/io/sim/materials.h"
 #include "surf/io/sim/scene_file.h"
 #include "surf/workflow/simulate_job.h"
 
@@ -158,26 +159,24 @@ std::string format_extent(const Box& box) {
 
 void add_info(CLI::App& app, Action& action) {
   struct Options {
+    BoundParameters bound;
     std::vector<std::string> files;
-    std::optional<std::string> unit;
-    bool override_unit = false;
-    std::vector<std::string> materials;
   };
   const auto options = std::make_shared<Options>();
   CLI::App* sub = app.add_subcommand("info", "What is in meshes, images, AFM scans, models and scene files");
   with_role(sub->add_option("FILE", options->files, "Meshes, images, AFM scans, models or scenes")->type_name("FILE"),
             FileRole::read);
-  add_unit_options(*sub, options->unit, options->override_unit, "Options");
-  with_role(sub->add_option("--materials", options->materials, "Your own materials for the scene files (TOML); may be repeated")
-                ->type_name("FILE")->option_text("FILE")->allow_extra_args(false),
-            FileRole::read);
+  options->bound.add<io::SpecimenRequest>(*sub, "Options", {}, {"specimen.unit", "specimen.override_unit"});
+  options->bound.add<io::MaterialChoice>(*sub, "Options", {}, {"specimen.materials"});
   sub->footer(examples);
   sub->callback([options, &action] {
     action = [options] {
       if (options->files.empty())
         throw UsageError("info", "no file is given", "Give meshes, images, AFM scans, models or scene files");
-      const io::MeshUnit unit = parse_mesh_unit(options->unit, options->override_unit);
-      return print_all(options->files, unit, {options->materials.begin(), options->materials.end()});
+      io::SpecimenRequest request;
+      io::MaterialChoice own;
+      options->bound.apply(request), options->bound.apply(own);
+      return print_all(options->files, mesh_unit_of(request), {own.files.begin(), own.files.end()});
     };
   });
 }

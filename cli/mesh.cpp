@@ -13,7 +13,6 @@
 #include "mesh_attributes.h"
 #include "mesh_inputs.h"
 #include "mesh_parameters.h"
-#include "options.h"
 #include "surf/core/error.h"
 #include "surf/core/units.h"
 #include "surf/io/mesh_file.h"

@@ -11,7 +11,6 @@
 #include "common_options.h"
 #include "exit_codes.h"
 #include "job_reporter.h"
-#include "options.h"
 #include "surf/core/error.h"
 #include "surf/io/cache.h"
 #include "surf/workflow/sample_job.h"

@@ -12,7 +12,6 @@
 #include "common_options.h"
 #include "image_sampler.h"
 #include "mesh_parameters.h"
-#include "options.h"
 #include "surf/core/error.h"
 #include "surf/core/units.h"
 #include "surf/io/web_page.h"

@@ -2,11 +2,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Runs one command in a fresh folder with the test files and checks what it does.
 
-command.py [--exit N] [--stdout REGEX]... [--stderr REGEX]... [--writes FILE]... [--interrupt]
+command.py [--exit N] [--stdout REGEX]... [--stderr REGEX]... [--writes FILE]... [--interrupt WHEN]
            [--info FILE REGEX] PROGRAM -- ARGUMENTS...
 
 A command that is refused (exit 2 or 3) must leave the folder as it was and say one line that begins
-with "semsurf: error: ". --interrupt sends SIGINT once the program handles it. --info then runs
+with "semsurf: error: ". --interrupt sends SIGINT once the program
+handles it and a file is there that fits WHEN, "" for none. --info then runs
 `PROGRAM info FILE` and looks for REGEX in its output.
 """
 import argparse
@@ -34,7 +35,7 @@ def arguments():
     parser.add_argument("--stdout", action="append", default=[])
     parser.add_argument("--stderr", action="append", default=[])
     parser.add_argument("--writes", action="append", default=[])
-    parser.add_argument("--interrupt", action="store_true")
+    parser.add_argument("--interrupt")
     parser.add_argument("--info", nargs=2)
     parser.add_argument("program")
     return parser.parse_args(ours), theirs
@@ -50,8 +51,10 @@ def run(command, folder, interrupt):
     process = subprocess.Popen(command, cwd=folder, stdin=subprocess.DEVNULL, text=True,
                                env={**os.environ, "SEMSURF_CACHE": "off"}, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
     try:
-        if interrupt:
+        if interrupt is not None:
             while process.poll() is None and not handles_interrupts(process.pid):
+                time.sleep(0.02)
+            while interrupt and process.poll() is None and not list(pathlib.Path(folder).glob(interrupt)):
                 time.sleep(0.02)
             time.sleep(0.5)
             process.send_signal(signal.SIGINT)

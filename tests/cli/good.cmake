@@ -160,8 +160,8 @@ semsurf_cli_test(simulate.scene_overridden ARGS simulate scene.toml --energy 3ke
   STDOUT "4 x 4 pixels of 10" "primaries +80" INFO image.exr "beam.energy_ev +3000(.|\n)*specimen.substrate +C,")
 semsurf_cli_test(simulate.scene_region ARGS simulate scene.toml --region -10,-10,10,10 -o image.exr
   STDOUT "8 x 8 pixels of 2.5")
-semsurf_cli_test(simulate.interrupted EXIT 130 INTERRUPT
-  ARGS simulate cube.off --substrate Si --electrons 100000000 --size 4x4 -o image.exr
+semsurf_cli_test(simulate.interrupted EXIT 130 INTERRUPT WHEN *.checkpoint
+  ARGS simulate cube.off --substrate Si --electrons 100000000 --size 4x4 --checkpoint-every 0.1s -o image.exr
   STDERR "interrupted" STDOUT "partial" WRITES image.exr image.run.json INFO image.exr "partial +true")
 
 # Every sample runs, as it is but for its size.

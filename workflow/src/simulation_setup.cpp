@@ -51,7 +51,7 @@ ResolvedJob resolve(SimulateJob asked) {
   ResolvedJob out{std::move(asked), {}};
   mc::validate(out.scene);
   if (out.execution.tile_pixels < 1)
-    throw UsageError("`job.tile_pixels`", fmt::format("{} is out of range", out.execution.tile_pixels), "Give 1 or more");
+    throw UsageError("tile_pixels", fmt::format("{} is out of range", out.execution.tile_pixels), "Give 1 or more");
   if (out.execution.scratch_folder.empty() && !out.outputs.empty()) {
     const fs::path folder = out.outputs.front().parent_path();
     out.execution.scratch_folder = folder.empty() ? "." : folder.string();
