@@ -210,7 +210,7 @@ def vtk_files_are_inline():
 def wrong_properties_are_refused():
     surface = simple.HeightFieldtoSurface(Input=scan())
     refuses(simple.HeightFieldtoSurface(Input=scan(), Simplify=1, Tolerance=-1), "Tolerance", "below 0")
-    refuses(simple.SimplifyMesh(Input=surface, Limit="Triangles", Triangles=3), "Triangles", "4 to 1000000000")
+    refuses(simple.SimplifyMesh(Input=surface, Limit="Triangles", Triangles=3), "Triangles", "4 to 1e9")
     refuses_until(simple.SurfacetoHeightField(Input=surface, Samples=1), ["Samples", "2 to 16384"], Samples=20)
     refuses(simple.CheckandRepairMesh(Input=surface, Sliver=-1), "Sliver", "0nm or more")
     refuses(simple.SimplifyMesh(Input=simple.Line()), "Input", "no polygons")
