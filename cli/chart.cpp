@@ -158,10 +158,11 @@ int chart(const Options& o, const std::string& command_line) {
 }
 
 void add_options(CLI::App& app, Options& o) {
+  // How much is simulated, by which method and on which mesh, is what the chart compares.
   add_request_options(app, o.scene,
-                      {"beam.energy", "beam.tilt", "beam.azimuth", "beam.spot", "beam.convergence", "beam.focus",
-                       "beam.working_distance", "scan.size", "scan.pixel_size", "scan.region", "simulation.physics",
-                       "simulation.cutoff"});
+                      {"beam.current", "beam.dwell", "simulation.electrons", "simulation.accuracy", "simulation.accuracy_floor",
+                       "simulation.time", "simulation.method", "simulation.mesh_tolerance", "simulation.detectors",
+                       "simulation.seed"});
   o.bound.looks["output"] = {.name = "-o,--output"};
   o.bound.add<workflow::ChartJob>(app, "Chart");
   add_quiet_flag(app, o.quiet)->group("Chart");

@@ -11,6 +11,7 @@
 #include "mesh_parameters.h"
 #include "terminal.h"
 #include "surf/core/error.h"
+#include "surf/core/field_words.h"
 #include "surf/core/units.h"
 #include "surf/io/height_field_file.h"
 #include "surf/io/image_file.h"
@@ -56,10 +57,17 @@ void print_specimen(const mc::Specimen& specimen) {
 }
 
 void print_scan(const io::SceneFile& scene) {
-  const mc::Beam& beam = scene.beam;
-  print_item("beam", fmt::format("{} eV, tilt {} deg, azimuth {} deg, spot {}",
-                                 format_exact(beam.energy_ev), format_exact(beam.tilt_deg),
-                                 format_exact(beam.azimuth_deg), format_length(beam.spot_nm)));
+  mc::Beam beam = scene.beam;
+  const Record usual = record_of(mc::Beam{});
+  std::string settings;
+  for_each_parameter(beam, [&](const Parameter& about, Field& field) {
+    if (field.kind() != FieldKind::number || !field.given()) return;
+    const auto found = usual.find(about.key());
+    if (found != usual.end() && found->second == field.text() && about.name != "beam.energy") return;
+    settings += fmt::format("{}{} {}", settings.empty() ? "" : ", ", last_part(about.name, ' '),
+                            format_value(std::stod(field.text()), about.unit));
+  });
+  print_item("beam", settings);
   const mc::Scan scan =
       workflow::resolve_scan(scene.scan, mc::extent(scene.specimen), beam);
   print_item("scan", fmt::format("{} x {} pixels of {} x {} about {}, {}, {} nm", scan.width,

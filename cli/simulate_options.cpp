@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "simulate_options.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "common_options.h"
@@ -83,10 +84,15 @@ void print_notes(const std::vector<std::string>& notes, bool quiet) {
 
 }  // namespace
 
-void add_request_options(CLI::App& app, BoundParameters& parameters, const std::vector<std::string>& only) {
+void add_request_options(CLI::App& app, BoundParameters& parameters, const std::vector<std::string>& without) {
   set_looks(parameters);
   parameters.add(app, "", io::SpecimenRequest{});
-  parameters.add(app, "", mc::SimulationRequest{}, only);
+  std::vector<std::string> names;
+  mc::SimulationRequest request;
+  for_each_parameter(request, [&](const Parameter& about, Field&) {
+    if (std::ranges::find(without, about.name) == without.end()) names.push_back(about.name);
+  });
+  parameters.add(app, "", request, names);
 }
 
 void add_simulate_settings(CLI::App& app, SimulateOptions& o) {

@@ -17,9 +17,8 @@ struct SimulateOptions {
   bool quiet = false;
 };
 
-/// Declares the specimen's files, and beam, scan, physics and how much is simulated: those parameters of the request that
-/// `only` names, or all.
-void add_request_options(CLI::App& app, BoundParameters& parameters, const std::vector<std::string>& only = {});
+/// Declares the specimen's files, and all parameters of the request but those that are named.
+void add_request_options(CLI::App& app, BoundParameters& parameters, const std::vector<std::string>& without);
 
 /// Declares all of a simulation but outputs, what else is recorded and checkpoints: what a sweep can vary.
 void add_simulate_settings(CLI::App& app, SimulateOptions& options);

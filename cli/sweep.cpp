@@ -79,7 +79,8 @@ const std::map<std::string, std::string>& varied_parameters() {
   return all;
 }
 
-std::string parameter_of(const std::string& name) {
+std::string parameter_of(std::string name) {
+  std::ranges::replace(name, '_', '-');   // as keys of scene files have it
   const auto& all = varied_parameters();
   if (const auto found = all.find(name); found != all.end()) return found->second;
   const std::string guess = nearest(name, names_to_vary());

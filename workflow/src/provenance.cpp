@@ -81,6 +81,15 @@ std::vector<InputHash> hash_inputs(const std::vector<std::filesystem::path>& inp
   return hashes;
 }
 
+Metadata parameters_of(const ResolvedJob& job) {
+  mc::SimulationRequest request = job.scene;   // with what was found of it
+  request.method = job.options.method;
+  request.budget = job.options.budget;
+  request.detectors.clear();                   // all are named by themselves
+  request.scan = {};
+  return surf::record_of(request);
+}
+
 Metadata provenance(const ResolvedJob& job, const mc::Scan& scan,
                     const std::vector<InputHash>& inputs) {
   Metadata out;
@@ -90,12 +99,7 @@ Metadata provenance(const ResolvedJob& job, const mc::Scan& scan,
   for (const InputHash& input : inputs)
     out[fmt::format("input.{}", ++number)] =
         fmt::format("{} sha256 {}", input.path.filename().string(), input.sha256);
-  mc::SimulationRequest request = job.scene;   // with what was found of it
-  request.method = job.options.method;
-  request.budget = job.options.budget;
-  request.detectors.clear();                   // all are named below
-  request.scan = {};
-  out.merge(surf::record_of(request));
+  out.merge(parameters_of(job));
   out.merge(surf::record_of(scan));
   if (const double dose = mc::dose_of(job.options.budget); dose > 0) out["simulation.dose"] = format_exact(dose);
   add_specimen(out, job.scene.specimen);

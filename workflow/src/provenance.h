@@ -17,6 +17,10 @@ struct InputHash {
 
 std::vector<InputHash> hash_inputs(const std::vector<std::filesystem::path>& inputs);
 
+/// Those of the request that changed the result, with the values that were used, under their keys: "beam.energy_ev".
+/// Specimen, scan and detectors are named by themselves.
+std::map<std::string, std::string> parameters_of(const ResolvedJob& job);
+
 /// Everything that changes the result, as an image's metadata: nothing here may depend on threads,
 /// tiles, hosts, clocks, or on the folders that inputs and outputs are in.
 std::map<std::string, std::string> provenance(const ResolvedJob& job, const mc::Scan& scan,

@@ -152,6 +152,7 @@ std::string sidecar_text(const ResolvedJob& job, const SimulateSummary& summary,
   json["semsurf"] = version();
   json["libraries"] = library_versions();
   json["command"] = job.command_line;
+  json["parameters"] = parameters_of(job);
   json["complete"] = result.complete;
   json["inputs"] = files_json(record, "inputs");
   json["outputs"] = files_json(record, "outputs");

@@ -27,7 +27,7 @@ void TomlParameters::visit(const Parameter& about, Field& field) {
   const std::string place = table->place(key);
   const bool is_flag = words.size() == 1 && (words[0] == "true" || words[0] == "false");
   if (is_flag && field.kind() != FieldKind::flag)
-    throw UsageError(place, "the value is neither a finite number nor a text", "Write for example 2 or \"2nm\"");
+    throw UsageError(place, "the value is neither a finite number nor a text", fmt::format("Write {}", format_limits(about).empty() ? form_of(about, field) : format_limits(about)));
   if (field.kind() == FieldKind::list)
     for (const std::string& word : words) field.add(word, place);
   else

@@ -157,12 +157,6 @@ std::optional<double> TomlTable::length_nm(std::string_view key) const {
   return quantity(*node, place(key), parse_length_nm);
 }
 
-std::optional<double> TomlTable::share(std::string_view key) const {
-  const toml::node* const node = impl_->table->get(key);
-  if (!node) return {};
-  return quantity(*node, place(key), parse_share);
-}
-
 std::optional<double> TomlTable::energy_ev(std::string_view key) const {
   const toml::node* const node = impl_->table->get(key);
   if (!node) return {};

@@ -39,7 +39,6 @@ class TomlTable {
   std::optional<double> angle_deg(std::string_view key) const;
   std::optional<double> current_pa(std::string_view key) const;
   std::optional<double> time_us(std::string_view key) const;
-  std::optional<double> share(std::string_view key) const;
   /// The value as texts, one for each element of an array: numbers as they are read back, true and false as such. Throws for
   /// tables and what is not finite.
   std::vector<std::string> words(std::string_view key) const;

@@ -354,7 +354,7 @@ double parse_value(std::string_view text, const Parameter& about, const std::str
       if (!read_all(trimmed(text), value) || !std::isfinite(value))
         throw UsageError(subject, fmt::format("'{}' is no number", text), "Give a finite number, as 12.5");
       break;
-    case Unit::share: value = trimmed(text) == "0" ? 0 : parse_share(trimmed(text), subject); break;
+    case Unit::share: value = parse_share(trimmed(text), subject); break;
     case Unit::nm: value = parse_length_nm(text, subject); break;
     case Unit::ev: value = parse_energy_ev(text, subject); break;
     case Unit::deg: value = parse_angle_deg(text, subject); break;

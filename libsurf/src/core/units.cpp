@@ -199,9 +199,8 @@ double parse_share(std::string_view text, std::string_view subject) {
   if (percent && number.find_first_of("eE") == std::string::npos) number += "e-2";
   double share = 0;
   const auto [end, error] = std::from_chars(number.data(), number.data() + number.size(), share);
-  if (error != std::errc{} || end != number.data() + number.size() || !std::isfinite(share) ||
-      !(share > 0))
-    throw UsageError(std::string(subject), fmt::format("'{}' is not a share above 0", text),
+  if (error != std::errc{} || end != number.data() + number.size() || !std::isfinite(share) || share < 0)
+    throw UsageError(std::string(subject), fmt::format("'{}' is not a share", text),
                      "Write for example 1% or 0.01");
   return share;
 }

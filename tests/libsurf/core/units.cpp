@@ -184,7 +184,8 @@ TEST(Share, PercentAndNumberAreTheSame) {
   EXPECT_EQ(parse_share("0.013", "x"), parse_share("1.3%", "x"));
   for (int i = 1; i < 1000; ++i)
     EXPECT_EQ(parse_share(std::to_string(i) + "%", "x"), i / 100.0);
-  for (const char* bad : {"", "%", "0", "-1%", "nan", "inf", "1%%", "1 percent", "0x1"})
+  for (const char* zero : {"0", "0.0", "0%", "0.00 %"}) EXPECT_EQ(parse_share(zero, "x"), 0) << zero;
+  for (const char* bad : {"", "%", "-1%", "nan", "inf", "1%%", "1 percent", "0x1"})
     EXPECT_THROW(parse_share(bad, "--accuracy"), UsageError) << bad;
 }
 

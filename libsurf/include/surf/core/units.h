@@ -33,7 +33,7 @@ double parse_time_us(std::string_view text, std::string_view subject);
 /// "90", "90s", "5min", "2h", "1d", "500ms" to seconds, for waiting. Bare numbers are seconds.
 double parse_duration_s(std::string_view text, std::string_view subject);
 
-/// "1%" or "0.01" to 0.01, the same number for both. Must be finite and above 0.
+/// "1%" or "0.01" to 0.01, the same number for both. Must be finite and not below 0.
 double parse_share(std::string_view text, std::string_view subject);
 
 /// 0.013 to "1.3 %", in the fewest digits that `parse_share` reads back as it was.
