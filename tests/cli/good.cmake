@@ -101,7 +101,7 @@ semsurf_cli_test(info.gltf ARGS info two.gltf
   STDOUT "mesh of 2 bodies" "base, material Au, 12 triangles, 40.* wide, 40.* deep, 20.* high"
          "cap, material coating, 12 triangles, 16" "shape +closed, 24 triangles" "z 0 to 46 nm")
 semsurf_cli_test(info.scene ARGS info scene.toml
-  STDOUT "a cube of gold" "2000 eV" "8 x 8 pixels of 10" "3 per pixel" "in Au" "Joy")
+  STDOUT "a cube of gold" "beam +energy 2keV" "8 x 8 pixels of 10" "3 per pixel" "in Au" "Joy")
 
 semsurf_cli_test(simulate.mesh ARGS simulate cube.off ${few} -o cube.exr
   STDOUT "8 x 8 pixels" "SE +0\\.[0-9]+ ± 0" "BSE" "primaries +128" "cube.exr"
