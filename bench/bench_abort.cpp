@@ -19,7 +19,7 @@
 #include "surf/core/error.h"
 #include "surf/io/model_file.h"
 #include "surf/io/sim/materials.h"
-#include "surf/mc/scene.h"
+#include "surf/mc/geometry/scene.h"
 #include "surf/mc/simulate.h"
 #include "surf/mesh/check_mesh.h"
 #include "surf/mesh/height_field_mesh.h"

@@ -15,8 +15,8 @@
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
-#include "face_tree.h"
-#include "near_field.h"
+#include "geometry/face_tree.h"
+#include "geometry/distance_grid.h"
 #include "surf/core/random.h"
 #include "surf/io/sim/materials.h"
 #include "surf/mc/simulate.h"

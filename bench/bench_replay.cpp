@@ -27,8 +27,8 @@
 #include "surf/io/mesh_file.h"
 #include "surf/io/plot.h"
 #include "surf/io/sim/materials.h"
-#include "surf/mc/cascade_library.h"
-#include "surf/mc/library_source.h"
+#include "surf/mc/cascades/cascade_library.h"
+#include "surf/mc/cascades/library_source.h"
 #include "surf/mc/simulate.h"
 
 namespace {

@@ -15,12 +15,12 @@
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
-#include "embree_scene.h"
+#include "geometry/embree_scene.h"
 #include "scenes.h"
 #include "surf/core/random.h"
-#include "surf/mc/boundary.h"
-#include "surf/mc/energy_deposit.h"
-#include "surf/mc/medium.h"
+#include "surf/mc/transport/boundary.h"
+#include "surf/mc/transport/energy_deposit.h"
+#include "surf/mc/physics/medium.h"
 #include "surf/mc/simulate.h"
 #include "surf/mesh/height_field_mesh.h"
 #include "surf/mesh/shapes.h"

@@ -14,7 +14,7 @@
 
 #include "surf/io/plot.h"
 #include "surf/io/sim/materials.h"
-#include "surf/mc/scene.h"
+#include "surf/mc/geometry/scene.h"
 #include "surf/mc/simulate.h"
 #include "surf/mesh/shapes.h"
 #include "surf/workflow/simplify_specimen.h"

@@ -13,7 +13,7 @@
 
 #include "surf/io/csv_line.h"
 #include "surf/io/sim/materials.h"
-#include "surf/mc/element.h"
+#include "surf/mc/physics/element.h"
 #include "surf/mc/simulate.h"
 
 namespace surf::bench {

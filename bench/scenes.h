@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "surf/io/sim/materials.h"
-#include "surf/mc/scene.h"
+#include "surf/mc/geometry/scene.h"
 #include "surf/mesh/shapes.h"
 
 namespace surf::bench {

@@ -9,7 +9,7 @@
 
 #include "surf/core/words.h"
 #include "surf/io/sim/materials.h"
-#include "surf/mc/physics_words.h"
+#include "surf/mc/physics/physics_words.h"
 #include "surf/workflow/chart_job.h"
 #include "surf/workflow/train_job.h"
 #include "sweep.h"

@@ -8,7 +8,7 @@
 #include "surf/core/error.h"
 #include "surf/core/units.h"
 #include "surf/io/cache.h"
-#include "surf/mc/material_doubts.h"
+#include "surf/mc/physics/material_doubts.h"
 #include "surf/workflow/libraries.h"
 #include "terminal.h"
 

@@ -8,8 +8,8 @@
 #include "commands.h"
 #include "surf/core/units.h"
 #include "surf/io/sim/materials.h"
-#include "surf/mc/element.h"
-#include "surf/mc/material_doubts.h"
+#include "surf/mc/physics/element.h"
+#include "surf/mc/physics/material_doubts.h"
 #include "terminal.h"
 
 namespace surf::cli {

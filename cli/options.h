@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "surf/mc/scan_request.h"
+#include "surf/mc/request/scan_request.h"
 
 namespace surf::cli {
 

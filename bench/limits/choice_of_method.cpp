@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "simulations.h"
-#include "surf/mc/choose_method.h"
+#include "surf/mc/sampling/choose_method.h"
 #include "sweeps.h"
 
 namespace surf::limits {

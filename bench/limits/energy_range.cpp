@@ -5,7 +5,7 @@
 #include <cstdlib>
 
 #include "../scenes.h"
-#include "surf/mc/result_summary.h"
+#include "surf/mc/results/result_summary.h"
 #include "surf/mc/simulate.h"
 #include "sweeps.h"
 

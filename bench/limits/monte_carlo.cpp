@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "surf/io/sim/materials.h"
-#include "surf/mc/library_source.h"
+#include "surf/mc/cascades/library_source.h"
 #include "surf/mc/simulate.h"
 #include "surf/sem/image_error.h"
 

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "surf/core/height_field.h"
-#include "surf/mc/detector.h"
-#include "surf/mc/material.h"
+#include "surf/mc/transport/detector.h"
+#include "surf/mc/physics/material.h"
 #include "surf/sem/training_image.h"
 
 namespace surf::limits {

@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "../scenes.h"
-#include "surf/mc/library_source.h"
-#include "surf/mc/result_summary.h"
+#include "surf/mc/cascades/library_source.h"
+#include "surf/mc/results/result_summary.h"
 #include "surf/mc/simulate.h"
 
 namespace surf::limits {

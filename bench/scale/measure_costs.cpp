@@ -13,9 +13,9 @@
 #include "scenes.h"
 #include "surf/core/random.h"
 #include "surf/io/image_file.h"
-#include "surf/mc/pack.h"
+#include "surf/mc/results/serialize.h"
 #include "surf/mc/simulate.h"
-#include "surf/mc/unit_plan.h"
+#include "surf/mc/scheduling/unit_plan.h"
 
 namespace surf::scale {
 namespace {

@@ -4,7 +4,7 @@
 #include "markdown.h"
 #include "pages.h"
 #include "surf/core/parameters.h"
-#include "surf/mc/beam.h"
+#include "surf/mc/geometry/beam.h"
 #include "surf/workflow/simulate_job.h"
 
 namespace surf::cli::reference {

@@ -8,7 +8,7 @@
 #include "pages.h"
 #include "surf/core/parameters.h"
 #include "surf/io/sim/scene_keys.h"
-#include "surf/mc/simulation_request.h"
+#include "surf/mc/request/simulation_request.h"
 
 namespace surf::cli::reference {
 namespace {

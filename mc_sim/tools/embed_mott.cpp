@@ -28,7 +28,7 @@ int main(int argc, char** argv) {
   if (argc < 3) fail("usage: embed_mott OUTPUT.cpp CSV...");
   std::ofstream out(argv[1]);
   out << "// Made by embed_mott from data/mott. Do not edit.\n"
-         "#include \"mott_data.h\"\n\nnamespace surf::mc {\nnamespace {\n";
+         "#include \"physics/mott_data.h\"\n\nnamespace surf::mc {\nnamespace {\n";
   std::string index;
   for (int i = 2; i < argc; ++i) {
     const std::string path = argv[i];

@@ -18,8 +18,8 @@
 #include "attempt.h"
 #include "surf/core/error.h"
 #include "surf/core/parallel.h"
-#include "surf/mc/pack.h"
-#include "surf/mc/unit_plan.h"
+#include "surf/mc/results/serialize.h"
+#include "surf/mc/scheduling/unit_plan.h"
 
 namespace surf::pv {
 namespace {

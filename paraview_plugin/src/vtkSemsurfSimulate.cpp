@@ -28,7 +28,7 @@
 #include "surf/core/units.h"
 #include "surf/io/cache.h"
 #include "surf/io/sim/specimen_request.h"
-#include "surf/mc/result_summary.h"
+#include "surf/mc/results/result_summary.h"
 #include "surf/workflow/simulate_job.h"
 
 vtkStandardNewMacro(vtkSemsurfSimulate);

@@ -18,7 +18,7 @@ class VTKSEMSURF_EXPORT vtkSemsurfSimulate : public vtkImageAlgorithm {
 
   enum Budgets { ByElectrons, ByAccuracy };
 
-  /// The parameter of that name (surf/mc/simulation_request.h, surf/io/sim/specimen_request.h): a choice by its number.
+  /// The parameter of that name (surf/mc/request/simulation_request.h, surf/io/sim/specimen_request.h): a choice by its number.
   void SetParameter(const char* name, double value);
   void SetParameter(const char* name, const char* text);
   void SetParameter(const char* name, double a, double b, double c, double d);

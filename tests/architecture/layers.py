@@ -28,7 +28,7 @@ OWNERS = [("surf/io/sim/", "io_sim"), ("surf/io/", "io"), ("surf/mc/", "mc"),
           ("surf/workflow/", "workflow"), ("surf/", "surf")]
 # Third-party headers <...> and the files that may include them. First match; public headers never.
 THIRD_PARTY = [
-    ("embree*/*", ["mc_sim/src/embree_scene.cpp"]),
+    ("embree*/*", ["mc_sim/src/geometry/embree_scene.cpp"]),
     ("CGAL/*", ["libsurf/src/mesh/cgal_*.cpp"]),
     ("OpenMesh/*", ["libsurf/src/mesh/simplify_mesh.cpp"]),
     ("Eigen/*", ["libsurf/src/reconstruction/descent.cpp", "libsurf/src/reconstruction/preconditioner.cpp",
@@ -157,7 +157,7 @@ GOOD = {
     "libsurf/src/core/random.cpp": '#include <Random123/philox.h>\n#include "surf/core/a.h"\n',
     "libsurf/src/core/parallel.cpp": "#include <tbb/parallel_for.h>\n#include <unistd.h>\n",
     "mc_sim/include/surf/mc/a.h": '#include "surf/core/a.h"\n',
-    "mc_sim/src/embree_scene.cpp": '#include <embree3/rtcore.h>\n#include "private.h"\n',
+    "mc_sim/src/geometry/embree_scene.cpp": '#include <embree3/rtcore.h>\n#include "private.h"\n',
     "mc_sim/src/private.h": '#include <fmt/format.h>\n#include "surf/mc/a.h"\n',
     "io/src/raster_file.cpp": "#include <OpenImageIO/imageio.h>\n",
     "io/src/private.h": '#include "surf/io/files.h"\n',

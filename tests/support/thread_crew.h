@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "surf/core/error.h"
-#include "surf/mc/crew.h"
+#include "surf/mc/scheduling/unit_scheduler.h"
 
 namespace surf::test {
 

@@ -7,7 +7,7 @@
 #include "small_job.h"
 #include "surf/core/error.h"
 #include "surf/io/files.h"
-#include "surf/mc/pack.h"
+#include "surf/mc/results/serialize.h"
 #include "temporary_folder.h"
 
 namespace surf::workflow {

@@ -5,7 +5,7 @@
 
 #include "surf/io/files.h"
 #include "surf/io/sim/materials.h"
-#include "surf/mc/cascade_library.h"
+#include "surf/mc/cascades/cascade_library.h"
 #include "temporary_folder.h"
 
 namespace surf::workflow {

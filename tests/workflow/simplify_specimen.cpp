@@ -12,7 +12,7 @@
 #include "surf/core/error.h"
 #include "surf/core/large_grid.h"
 #include "surf/io/image_file.h"
-#include "surf/mc/scene.h"
+#include "surf/mc/geometry/scene.h"
 #include "surf/mc/simulate.h"
 #include "surf/mesh/check_mesh.h"
 #include "surf/mesh/mesh_deviation.h"

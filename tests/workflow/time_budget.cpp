@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "surf/core/units.h"
-#include "surf/mc/result_summary.h"
+#include "surf/mc/results/result_summary.h"
 
 namespace surf::workflow {
 namespace {

@@ -12,8 +12,8 @@
 #include "surf/io/cache.h"
 #include "surf/io/scan_parameters.h"
 #include "surf/io/transform_file.h"
-#include "surf/mc/largest_length.h"
-#include "surf/mc/physics.h"
+#include "surf/mc/geometry/largest_length.h"
+#include "surf/mc/physics/physics.h"
 #include "surf/workflow/reconstruct_job.h"
 #include "surf/workflow/tip_job.h"
 

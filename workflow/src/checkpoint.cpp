@@ -11,7 +11,7 @@
 #include <nlohmann/json.hpp>
 
 #include "surf/core/error.h"
-#include "surf/mc/pack.h"
+#include "surf/mc/results/serialize.h"
 
 namespace surf::workflow {
 namespace {

@@ -12,7 +12,7 @@
 
 #include "checkpoint_file.h"
 #include "job_identity.h"
-#include "surf/mc/unit_journal.h"
+#include "surf/mc/scheduling/unit_journal.h"
 #include "surf/workflow/simulate_job.h"
 
 namespace surf::workflow {

@@ -12,7 +12,7 @@
 #include "common_parameters.h"
 #include "surf/core/error.h"
 #include "surf/core/some_parameters.h"
-#include "surf/mc/scene.h"
+#include "surf/mc/geometry/scene.h"
 #include "surf/mc/simulate.h"
 #include "surf/workflow/simulate_job.h"
 

@@ -10,7 +10,7 @@
 
 #include "surf/core/error.h"
 #include "surf/core/units.h"
-#include "surf/mc/surface_view.h"
+#include "surf/mc/geometry/surface_view.h"
 
 namespace surf::workflow {
 namespace {

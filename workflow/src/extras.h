@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "surf/mc/energy_deposit.h"
-#include "surf/mc/scene.h"
+#include "surf/mc/transport/energy_deposit.h"
+#include "surf/mc/geometry/scene.h"
 #include "resolved_job.h"
 
 namespace surf::workflow {

@@ -9,7 +9,7 @@
 
 #include "surf/core/error.h"
 #include "surf/io/files.h"
-#include "surf/mc/scene.h"
+#include "surf/mc/geometry/scene.h"
 #include "surf/workflow/version.h"
 
 namespace surf::workflow {

@@ -5,9 +5,9 @@
 #include "learners.h"
 #include "surf/core/error.h"
 #include "surf/core/units.h"
-#include "surf/mc/diffusion_matrix.h"
-#include "surf/mc/medium.h"
-#include "surf/mc/stopping_points.h"
+#include "surf/mc/cascades/diffusion_matrix.h"
+#include "surf/mc/physics/medium.h"
+#include "surf/mc/cascades/stopping_points.h"
 #include "surf/workflow/slope_table.h"
 
 namespace surf::workflow {
@@ -18,7 +18,7 @@ constexpr std::int64_t usual_cascades = 10240;   // as simulations take: they ar
 void check(const TrainJob& job) {
   if (job.spot_nm > 0)
     throw UsageError("`beam.spot`", fmt::format("a model '{}' knows of no spot", job.learn.kind), "Leave it out");
-  if (!mc::can_replay(job.physics))
+  if (!mc::can_replay(mc::make_medium(job.material, job.physics)))
     throw UsageError(
         "`simulation.physics`",
         fmt::format("a model '{}' is made of cascades, which need continuous loss", job.learn.kind),

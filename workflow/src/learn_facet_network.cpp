@@ -3,7 +3,7 @@
 
 #include "learners.h"
 #include "surf/core/units.h"
-#include "surf/mc/electron_range.h"
+#include "surf/mc/physics/electron_range.h"
 #include "surf/sem/fit_facet_network.h"
 
 namespace surf::workflow {

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "surf/mc/cascade_library.h"
+#include "surf/mc/cascades/cascade_library.h"
 
 namespace surf::workflow {
 

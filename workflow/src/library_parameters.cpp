@@ -10,8 +10,8 @@
 #include "surf/core/some_parameters.h"
 #include "surf/core/units.h"
 #include "surf/core/words.h"
-#include "surf/mc/beam.h"
-#include "surf/mc/physics.h"
+#include "surf/mc/geometry/beam.h"
+#include "surf/mc/physics/physics.h"
 #include "surf/mc/simulate.h"
 
 namespace surf::workflow {

@@ -11,7 +11,7 @@
 
 #include "surf/core/error.h"
 #include "surf/core/some_parameters.h"
-#include "surf/mc/element.h"
+#include "surf/mc/physics/element.h"
 #include "surf/mc/simulate.h"
 
 namespace surf::workflow {

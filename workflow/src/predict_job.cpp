@@ -17,8 +17,8 @@
 #include "surf/io/model_file.h"
 #include "surf/io/overlaps.h"
 #include "surf/io/scan_parameters.h"
-#include "surf/mc/largest_length.h"
-#include "surf/mc/physics.h"
+#include "surf/mc/geometry/largest_length.h"
+#include "surf/mc/physics/physics.h"
 #include "surf/mc/simulate.h"
 #include "surf/workflow/step_record.h"
 

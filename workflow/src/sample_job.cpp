@@ -22,7 +22,7 @@
 #include "surf/io/image_file.h"
 #include "surf/io/sim/materials.h"
 #include "surf/io/tip_file.h"
-#include "surf/mc/scan_request.h"
+#include "surf/mc/request/scan_request.h"
 #include "surf/mc/simulate.h"
 #include "surf/reconstruction/sample_surfaces.h"
 #include "surf/workflow/step_record.h"

@@ -10,8 +10,8 @@
 
 #include "surf/core/error.h"
 #include "surf/core/units.h"
-#include "surf/mc/field_in_reach.h"
-#include "surf/mc/medium.h"
+#include "surf/mc/geometry/field_in_reach.h"
+#include "surf/mc/physics/medium.h"
 #include "surf/mesh/check_mesh.h"
 #include "surf/mesh/open_sheet.h"
 #include "surf/mesh/self_intersections.h"

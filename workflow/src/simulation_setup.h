@@ -3,7 +3,7 @@
 #pragma once
 
 #include "specimen_facts.h"
-#include "surf/mc/scene.h"
+#include "surf/mc/geometry/scene.h"
 #include "resolved_job.h"
 
 namespace surf::workflow {

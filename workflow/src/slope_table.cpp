@@ -8,9 +8,9 @@
 #include <numbers>
 
 #include "surf/core/error.h"
-#include "surf/mc/cascade_library.h"
-#include "surf/mc/field_in_reach.h"
-#include "surf/mc/medium.h"
+#include "surf/mc/cascades/cascade_library.h"
+#include "surf/mc/geometry/field_in_reach.h"
+#include "surf/mc/physics/medium.h"
 #include "surf/mc/simulate.h"
 
 namespace surf::workflow {
@@ -74,7 +74,7 @@ SlopeTable make_slope_table(const mc::Material& material, double energy_ev, cons
   options.budget = mc::ElectronsPerPixel{o.electrons};
   options.seed = o.seed;
   options.threads = o.threads;
-  options.method = mc::can_replay(o.physics) ? mc::Method::replay : mc::Method::direct;
+  options.method = mc::can_replay(mc::make_medium(material, o.physics)) ? mc::Method::replay : mc::Method::direct;
   SlopeTable table;
   table.step_deg = o.step_deg;
   // Half a thousandth of a step: 85 is one of the angles whatever rounding makes of 17 x 5.

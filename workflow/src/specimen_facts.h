@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include "surf/mc/node_memory.h"
-#include "surf/mc/specimen.h"
+#include "surf/mc/geometry/shared_memory.h"
+#include "surf/mc/geometry/specimen.h"
 
 namespace surf::workflow {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "surf/mc/library_source.h"
+#include "surf/mc/cascades/library_source.h"
 #include "surf/workflow/team.h"
 
 namespace surf::workflow {

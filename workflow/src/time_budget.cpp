@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 
 #include "surf/core/units.h"
-#include "surf/mc/result_summary.h"
+#include "surf/mc/results/result_summary.h"
 
 namespace surf::workflow {
 namespace {

@@ -13,7 +13,7 @@
 #include "surf/core/units.h"
 #include "surf/io/files.h"
 #include "surf/io/model_file.h"
-#include "surf/mc/material_doubts.h"
+#include "surf/mc/physics/material_doubts.h"
 #include "surf/io/overlaps.h"
 #include "surf/sem/fit_filter_bank.h"
 #include "surf/workflow/step_record.h"

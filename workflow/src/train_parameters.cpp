@@ -11,7 +11,7 @@
 #include "surf/core/words.h"
 #include "surf/io/cache.h"
 #include "surf/io/scan_parameters.h"
-#include "surf/mc/simulation_request.h"
+#include "surf/mc/request/simulation_request.h"
 #include "surf/sem/fit_facet_network.h"
 #include "surf/sem/fit_filter_bank.h"
 #include "surf/workflow/slope_table.h"

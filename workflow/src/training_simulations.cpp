@@ -10,7 +10,7 @@
 #include "run_many.h"
 #include "surf/afm/resample.h"
 #include "surf/core/error.h"
-#include "surf/mc/electron_range.h"
+#include "surf/mc/physics/electron_range.h"
 #include "training_data.h"
 
 namespace surf::workflow {

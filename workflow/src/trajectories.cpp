@@ -11,7 +11,7 @@
 #include "surf/core/units.h"
 #include "surf/io/track_picture.h"
 #include "surf/io/tracks_file.h"
-#include "surf/mc/track_recorder.h"
+#include "surf/mc/transport/track_recorder.h"
 #include "surf/mesh/height_field_mesh.h"
 #include "surf/mesh/section.h"
 

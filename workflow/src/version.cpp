@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "surf/io/image_file.h"
-#include "surf/mc/scene.h"
+#include "surf/mc/geometry/scene.h"
 
 namespace surf::workflow {
 

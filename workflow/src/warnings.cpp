@@ -8,8 +8,8 @@
 #include <limits>
 
 #include "surf/core/units.h"
-#include "surf/mc/electron_range.h"
-#include "surf/mc/material_doubts.h"
+#include "surf/mc/physics/electron_range.h"
+#include "surf/mc/physics/material_doubts.h"
 
 namespace surf::workflow {
 namespace {

@@ -8,8 +8,8 @@
 
 #include "surf/core/error.h"
 #include "surf/io/sim/scene_keys.h"
-#include "surf/mc/element.h"
-#include "surf/mc/material_draft.h"
+#include "surf/mc/physics/element.h"
+#include "surf/mc/physics/material_draft.h"
 
 namespace surf::io {
 namespace {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "sim/toml_table.h"
-#include "surf/mc/material.h"
+#include "surf/mc/physics/material.h"
 
 namespace surf::io {
 

@@ -14,7 +14,7 @@
 #include "surf/io/files.h"
 #include "surf/io/overlaps.h"
 #include "surf/io/sim/scene_keys.h"
-#include "surf/mc/choose_method.h"
+#include "surf/mc/sampling/choose_method.h"
 
 namespace surf::io {
 namespace {

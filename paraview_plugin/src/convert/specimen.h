@@ -4,7 +4,7 @@
 #include <string>
 
 #include "surf/core/edge.h"
-#include "surf/mc/specimen.h"
+#include "surf/mc/geometry/specimen.h"
 
 class vtkDataArray;
 class vtkDataObject;

@@ -8,7 +8,7 @@
 #include "surf/io/sim/materials.h"
 #include "surf/io/track_picture.h"
 #include "surf/io/tracks_file.h"
-#include "surf/mc/physics.h"
+#include "surf/mc/physics/physics.h"
 #include "surf/workflow/simulate_job.h"
 
 int main() {

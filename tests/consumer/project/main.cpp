@@ -2,7 +2,7 @@
 // A gold sphere of 50 nm on a 4 x 4 grid at 1 keV: prints the mean yields.
 #include <cstdio>
 
-#include "surf/mc/material_draft.h"
+#include "surf/mc/physics/material_draft.h"
 #include "surf/mc/simulate.h"
 #include "surf/mesh/shapes.h"
 

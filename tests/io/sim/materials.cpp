@@ -3,7 +3,7 @@
 
 #include <set>
 
-#include "surf/mc/element.h"
+#include "surf/mc/physics/element.h"
 
 #include "../io_test.h"
 

@@ -21,8 +21,8 @@
 #include "surf/io/files.h"
 #include "surf/io/image_file.h"
 #include "surf/io/plot.h"
-#include "surf/mc/choose_method.h"
-#include "surf/mc/scene.h"
+#include "surf/mc/sampling/choose_method.h"
+#include "surf/mc/geometry/scene.h"
 #include "surf/workflow/train_job.h"
 
 namespace surf::workflow {

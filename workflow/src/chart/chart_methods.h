@@ -7,7 +7,7 @@
 
 #include "../run_many.h"
 #include "compared_pixels.h"
-#include "surf/mc/beam.h"
+#include "surf/mc/geometry/beam.h"
 #include "surf/workflow/chart_job.h"
 
 namespace surf::workflow {

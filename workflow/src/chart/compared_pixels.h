@@ -6,7 +6,7 @@
 
 #include "surf/core/image.h"
 #include "surf/io/sim/scene_file.h"
-#include "surf/mc/beam.h"
+#include "surf/mc/geometry/beam.h"
 #include "surf/workflow/chart_job.h"
 
 namespace surf::workflow {

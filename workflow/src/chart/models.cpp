@@ -13,9 +13,9 @@
 #include "chart_methods.h"
 #include "surf/core/error.h"
 #include "surf/io/model_file.h"
-#include "surf/mc/electron_range.h"
-#include "surf/mc/scene.h"
-#include "surf/mc/surface_view.h"
+#include "surf/mc/physics/electron_range.h"
+#include "surf/mc/geometry/scene.h"
+#include "surf/mc/geometry/surface_view.h"
 #include "surf/sem/filter_bank.h"
 #include "surf/workflow/train_job.h"
 

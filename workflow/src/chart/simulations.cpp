@@ -8,9 +8,9 @@
 #include "chart_methods.h"
 #include "surf/core/error.h"
 #include "surf/core/units.h"
-#include "surf/mc/cascade_library.h"
-#include "surf/mc/choose_method.h"
-#include "surf/mc/scene.h"
+#include "surf/mc/cascades/cascade_library.h"
+#include "surf/mc/sampling/choose_method.h"
+#include "surf/mc/geometry/scene.h"
 #include "surf/mc/simulate.h"
 #include "surf/workflow/simplify_specimen.h"
 
@@ -157,7 +157,7 @@ std::string id_of_accuracy(mc::Method method, bool planar_control, double accura
 ChartMethods list_simulations(const ChartSetting& setting) {
   const ChartJob& job = setting.job;
   List list(setting);
-  const bool replays = mc::can_replay(job.scene.physics);
+  const bool replays = mc::can_replay(job.scene.physics, job.scene.specimen.materials);
   if (!replays) list.out.left_out.push_back("replay: without continuous loss there is none");
   const std::vector<std::int64_t> few = job.quick ? std::vector<std::int64_t>{10, 30}
                                                   : std::vector<std::int64_t>{10, 30, 100, 300};

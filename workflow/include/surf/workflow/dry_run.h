@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "surf/mc/pilot.h"
+#include "surf/mc/scheduling/pilot.h"
 #include "surf/workflow/simulate_job.h"
 
 namespace surf::workflow {

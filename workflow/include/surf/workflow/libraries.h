@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "surf/io/cache.h"
-#include "surf/mc/library_source.h"
+#include "surf/mc/cascades/library_source.h"
 
 namespace surf::workflow {
 

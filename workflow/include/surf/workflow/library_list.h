@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "surf/io/cache.h"
-#include "surf/mc/cascade_key.h"
+#include "surf/mc/cascades/cascade_key.h"
 
 namespace surf::workflow {
 

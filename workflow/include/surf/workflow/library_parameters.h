@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "surf/core/parameters.h"
-#include "surf/mc/cascade_library.h"
-#include "surf/mc/simulation_request.h"
+#include "surf/mc/cascades/cascade_library.h"
+#include "surf/mc/request/simulation_request.h"
 
 namespace surf::workflow {
 

@@ -8,7 +8,7 @@
 #include "surf/core/parameters.h"
 #include "surf/core/progress.h"
 #include "surf/io/plot.h"
-#include "surf/mc/library_source.h"
+#include "surf/mc/cascades/library_source.h"
 #include "surf/workflow/measured_yields.h"
 
 namespace surf::workflow {

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "surf/mc/beam.h"
-#include "surf/mc/physics.h"
-#include "surf/mc/specimen.h"
+#include "surf/mc/geometry/beam.h"
+#include "surf/mc/physics/physics.h"
+#include "surf/mc/geometry/specimen.h"
 
 namespace surf::workflow {
 

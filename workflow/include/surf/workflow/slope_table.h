@@ -5,10 +5,10 @@
 #include <vector>
 
 #include "surf/core/progress.h"
-#include "surf/mc/library_source.h"
-#include "surf/mc/material.h"
-#include "surf/mc/physics.h"
-#include "surf/mc/tally.h"
+#include "surf/mc/cascades/library_source.h"
+#include "surf/mc/physics/material.h"
+#include "surf/mc/physics/physics.h"
+#include "surf/mc/transport/tally.h"
 #include "surf/sem/slope_model.h"
 
 namespace surf::workflow {

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "surf/io/sim/mesh_bodies.h"
-#include "surf/mc/node_memory.h"
+#include "surf/mc/geometry/shared_memory.h"
 
 namespace surf::workflow {
 

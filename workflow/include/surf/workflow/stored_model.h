@@ -5,8 +5,8 @@
 #include <memory>
 #include <string>
 
-#include "surf/mc/material.h"
-#include "surf/mc/physics.h"
+#include "surf/mc/physics/material.h"
+#include "surf/mc/physics/physics.h"
 #include "surf/sem/image_model.h"
 #include "surf/sem/trained_model.h"
 #include "surf/workflow/train_job.h"

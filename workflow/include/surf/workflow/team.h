@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "surf/mc/crew.h"
-#include "surf/mc/node_memory.h"
+#include "surf/mc/scheduling/unit_scheduler.h"
+#include "surf/mc/geometry/shared_memory.h"
 
 namespace surf::workflow {
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "surf/core/track.h"
-#include "surf/mc/scene.h"
+#include "surf/mc/geometry/scene.h"
 
 namespace surf::workflow {
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "surf/core/parameters.h"
-#include "surf/mc/material.h"
+#include "surf/mc/physics/material.h"
 
 namespace surf::io {
 

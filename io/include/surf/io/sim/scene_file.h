@@ -8,7 +8,7 @@
 
 #include "surf/io/sim/materials.h"
 #include "surf/io/sim/mesh_bodies.h"
-#include "surf/mc/simulation_request.h"
+#include "surf/mc/request/simulation_request.h"
 
 namespace surf::io {
 

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "surf/mc/physics/material.h"
+
+namespace surf {
+class ParameterVisitor;
+}
+
+namespace surf::mc {
+
+enum class ElasticModel { mott, browning };
+enum class LossModel { joy_luo, none };
+enum class BarrierModel { quantum, classical, off };
+
+/// Which physics is at work, chosen at run time. Defaults come first everywhere.
+struct Physics {
+  ElasticModel elastic = ElasticModel::mott;
+  LossModel loss = LossModel::joy_luo;
+  bool secondaries = true;
+  BarrierModel barrier = BarrierModel::quantum;
+
+  /// Where tracking stops, as energy inside the material in eV, 0.5 to below the beam's energy. 0: at the
+  /// barrier (electrons below cannot leave), or at 50 eV where secondaries or the barrier are off.
+  double cutoff_ev = 0;
+};
+
+inline constexpr double se_bse_split_ev = 50.0;     ///< SE below, BSE at or above (energy in vacuum)
+inline constexpr double min_beam_energy_ev = 100.0;
+inline constexpr double max_beam_energy_ev = 30000.0;
+
+inline constexpr double min_cutoff_ev = 0.5;         ///< where a Medium's tables begin
+
+/// Throws UsageError where the cutoff is out of range for a beam of this energy.
+void validate(const Physics& physics, double beam_energy_ev = max_beam_energy_ev);
+
+/// The cutoff that holds for a material: `cutoff_ev` or its default.
+double effective_cutoff_ev(const Physics& physics, const Material& material);
+
+/// Reads "elastic=mott,secondaries=off" over the given settings. Keys: elastic = mott | browning,
+/// loss = joy-luo | none, secondaries = on | off, barrier = quantum | classical | off.
+/// Throws UsageError naming the word and the choices.
+void parse_physics(const std::string& text, Physics& physics, const std::string& subject = "`simulation.physics`");
+
+/// The settings as `parse_physics` reads them, every key given.
+std::string format_physics(const Physics& physics);
+
+void describe(ParameterVisitor& visit, Physics& physics);
+
+/// What is active for a material, a line per mechanism with formula's source and range.
+std::vector<std::string> describe(const Physics& physics, const Material& material);
+
+}  // namespace surf::mc

@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scheduling/prepared_simulation.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "geometry/scene_impl.h"
+#include "replay/replay_site.h"
+
+namespace surf::mc {
+namespace {
+
+// A pilot finds a variance a little low at times.
+constexpr double all_of_the_variance = 0.9;
+
+}  // namespace
+
+std::size_t library_size(const SimulationOptions& options, std::int64_t most_primaries,
+                         std::span<const CascadeYield> yields, double of_the_variance) {
+  double wanted = static_cast<double>(most_primaries) / of_the_variance;
+  if (const double accuracy = accuracy_of(options.budget); accuracy > 0) {
+    wanted = 4 / (accuracy * accuracy);
+    for (const CascadeYield& y : yields) {
+      const double error = std::max(accuracy * y.mean, floor_of(options.budget));
+      if (error > 0) wanted = std::max(wanted, y.variance / (of_the_variance * error * error));
+    }
+  }
+  const double pages = std::ceil(std::max(wanted, 1e4) / CascadeLibrary::page_cascades);
+  return static_cast<std::size_t>(pages) * CascadeLibrary::page_cascades;
+}
+
+bool Workshop::prepare(const Scene& scene, const SimulationOptions& options, LibrarySource* source,
+                       std::int64_t most_primaries, const ProgressCallback& progress, const CancelToken* cancel,
+                       bool crew) {
+  scene_ = &scene.impl();
+  options_ = &options;
+  if (options.method == Method::direct) return true;
+  FreshLibraries fresh;
+  if (!source) source = &fresh;
+  const std::size_t least = library_size(options, most_primaries);
+  if (!get(scene, *source, least, progress, cancel)) return false;
+  if (!(accuracy_of(options.budget) > 0)) return true;
+  measure_yields(static_cast<int>(scene.materials().size()), crew ? nullptr : cancel);
+  const double share = options.planar_control && only_planes() ? all_of_the_variance : usual_share_of_variance;
+  const std::size_t wanted = std::min(library_size(options, most_primaries, yields_, share),
+                                      cascades_that_fit(options.library_memory));
+  if (wanted > least && !get(scene, *source, wanted, progress, cancel)) return false;
+  controls_.emplace(*scene_, options, libraries_, cancel);
+  return true;
+}
+
+bool Workshop::get(const Scene& scene, LibrarySource& source, std::size_t wanted, const ProgressCallback& progress,
+                   const CancelToken* cancel) {
+  libraries_.clear();
+  cascades_ = 0;
+  for (std::size_t m = 0; m < scene.materials().size(); ++m) {
+    const Medium& medium = *scene_->medium_pointers[m];
+    const CascadeSettings settings{scene.materials()[m], scene.physics(),
+                                   scene.beam().energy_ev + medium.barrier_ev(), options_->seed};
+    auto library = source.library(settings, wanted, options_->threads, progress, cancel);
+    if (!library) return false;
+    libraries_.push_back(std::move(library));
+  }
+  for (const auto& library : libraries_)
+    cascades_ = cascades_ == 0 ? library->cascades() : std::min(cascades_, library->cascades());
+  return true;
+}
+
+std::unique_ptr<UnitWorker> Workshop::worker() {
+  if (options_->method == Method::direct)
+    return accuracy_of(options_->budget) > 0 ? make_direct_spending_worker(*scene_, *options_)
+                                  : make_direct_worker(*scene_, *options_);
+  if (controls_) return make_spending_worker(*scene_, *options_, libraries_, *controls_);
+  return make_replay_worker(*scene_, *options_, libraries_);
+}
+
+std::size_t Workshop::planes_expected(int pixels) const {
+  if (!controls_ || !options_->planar_control) return 0;
+  SiteReplay replay(*scene_, *options_, libraries_);
+  std::set<PlaneControls::Key> keys;
+  const double all = static_cast<double>(scene_->scan.width) * scene_->scan.height;
+  const int stride = std::max(1, static_cast<int>(std::sqrt(all / pixels)));
+  for (int y = stride / 2; y < scene_->scan.height; y += stride)
+    for (int x = stride / 2; x < scene_->scan.width; x += stride) {
+      const ReplaySite site = replay.site(x, y, true);
+      if (site.hit) keys.insert(controls_->key(site.material, site.flat.normal, replay.proved_plane(site)));
+    }
+  return std::max(keys.size(), controls_->made().planes);
+}
+
+std::size_t Workshop::library_bytes() const {
+  std::size_t bytes = 0;
+  for (const auto& library : libraries_) bytes += library->bytes();
+  return bytes;
+}
+
+// On the plane where counts scatter most for their mean: the one across the beam.
+void Workshop::measure_yields(int materials, const CancelToken* cancel) {
+  constexpr std::size_t pilot = 5 * CascadeLibrary::page_cascades;
+  Libraries first;
+  for (const auto& library : libraries_)
+    first.push_back(std::make_shared<CascadeLibrary>(
+        library->first(pilot / CascadeLibrary::page_cascades)));
+  PlaneControls controls(*scene_, *options_, first, cancel);
+  for (int m = 0; m < materials; ++m) {
+    const auto match = controls.match(m, -direction(scene_->beam), false);
+    for (const Counts& sums : match.control->sums) {
+      const auto n = static_cast<double>(controls.cascades());
+      const Estimate e = estimate(static_cast<std::int64_t>(controls.cascades()), sums);
+      yields_.push_back({e.mean, e.standard_error * e.standard_error * n});
+    }
+  }
+}
+
+// Whether every pixel is proved to be a plane, so that nothing but the library's error is in it. Ends at
+// the first that is not.
+bool Workshop::only_planes() const {
+  SiteReplay replay(*scene_, *options_, libraries_);
+  for (int y = 0; y < scene_->scan.height; ++y)
+    for (int x = 0; x < scene_->scan.width; ++x) {
+      const ReplaySite site = replay.site(x, y, true);
+      if (!site.single || (site.hit && !replay.proved_plane(site))) return false;
+    }
+  return true;
+}
+
+std::size_t Workshop::cascades_that_fit(double bytes) const {
+  constexpr std::size_t page = CascadeLibrary::page_cascades;
+  double of_a_page = 0;
+  for (const auto& library : libraries_)
+    of_a_page += static_cast<double>(library->bytes()) / static_cast<double>(library->pages());
+  return static_cast<std::size_t>(bytes / of_a_page) * page;
+}
+
+}  // namespace surf::mc
