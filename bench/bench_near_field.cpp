@@ -149,7 +149,7 @@ json build(int samples) {
   const Box domain = bounds(height_field_sheet(f));
   const auto begin = std::chrono::steady_clock::now();
   const std::clock_t used = std::clock();
-  const mc::NearField field(mesh, domain, std::size_t{32} << 20);
+  const mc::DistanceGrid field(mesh, domain, std::size_t{32} << 20);
   const double seconds = seconds_since(begin);
   return {{"case", "build, waves over a micron"},
           {"triangles", mesh.triangles.size()},

@@ -111,10 +111,10 @@ Handling handle(const std::vector<mc::UnitTally>& tallies, const fs::path& folde
   };
   Handling out;
   std::vector<std::string> packed(tallies.size());
-  out.pack_s = each([&](std::int64_t i) { packed[static_cast<std::size_t>(i) % tallies.size()] = mc::pack(of(i)); });
+  out.pack_s = each([&](std::int64_t i) { packed[static_cast<std::size_t>(i) % tallies.size()] = mc::serialize(of(i)); });
   for (const std::string& bytes : packed) out.bytes += static_cast<double>(bytes.size()) / static_cast<double>(packed.size());
   std::int64_t seen = 0;
-  out.unpack_s = each([&](std::int64_t i) { seen += mc::unpack(packed[static_cast<std::size_t>(i) % packed.size()]).balance.incident; });
+  out.unpack_s = each([&](std::int64_t i) { seen += mc::deserialize(packed[static_cast<std::size_t>(i) % packed.size()]).balance.incident; });
   std::size_t added = 0;
   out.merge_s = each([&](std::int64_t i) {
     const int x = static_cast<int>(i % across) * width, y = static_cast<int>(i / across) * height;

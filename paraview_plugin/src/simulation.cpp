@@ -41,7 +41,7 @@ class ShareOfRank final : public mc::UnitJournal {
   }
 
   void record(std::size_t unit, const mc::UnitTally& tally) override {
-    const std::string packed = mc::pack(tally);
+    const std::string packed = mc::serialize(tally);
     const std::uint64_t head[2] = {unit, packed.size()};
     bytes.append(reinterpret_cast<const char*>(head), sizeof head);
     bytes += packed;
@@ -70,7 +70,7 @@ class AllRanks final : public mc::UnitJournal {
   bool recall(std::size_t unit, mc::UnitTally& tally) override {
     const auto found = units_.find(unit);
     if (found == units_.end()) return false;
-    tally = mc::unpack(found->second);
+    tally = mc::deserialize(found->second);
     return true;
   }
   void record(std::size_t, const mc::UnitTally&) override {}

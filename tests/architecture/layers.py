@@ -12,19 +12,31 @@ import re
 import sys
 import tempfile
 
+# The rooms of mc_sim: each may include those before it. What lies in none is the last.
+ROOMS = ["physics", "geometry", "transport", "request", "cascades", "replay", "results", "sampling", "scheduling"]
+MC = {f"mc/{room}" for room in ROOMS} | {"mc"}
+
+
+def rooms_of_mc():
+    parts = {f"mc/{room}": ([f"mc_sim/src/{room}/*", f"mc_sim/include/surf/mc/{room}/*"],
+                            {"surf"} | {f"mc/{before}" for before in ROOMS[:i]}) for i, room in enumerate(ROOMS)}
+    return {**parts, "mc": (["mc_sim/*"], {"surf"} | MC)}
+
+
 # A part of the project: the folder patterns it lives in and the parts it may include. First match.
 PARTS = {
-    "io_sim": (["io/include/surf/io/sim/*", "io/src/sim/*"], {"surf", "mc", "io"}),
+    "io_sim": (["io/include/surf/io/sim/*", "io/src/sim/*"], {"surf", "io"} | MC),
     "io": (["io/*"], {"surf"}),
     "surf": (["libsurf/*"], set()),
-    "mc": (["mc_sim/*"], {"surf"}),
-    "workflow": (["workflow/*"], {"surf", "mc", "io", "io_sim"}),
-    "cli": (["cli/*"], {"surf", "mc", "io", "io_sim", "workflow"}),
-    "samples": (["samples/*"], {"surf", "mc", "io", "io_sim", "workflow"}),
-    "paraview_plugin": (["paraview_plugin/*"], {"surf", "mc", "io", "io_sim", "workflow"}),
+    **rooms_of_mc(),
+    "workflow": (["workflow/*"], {"surf", "io", "io_sim"} | MC),
+    "cli": (["cli/*"], {"surf", "io", "io_sim", "workflow"} | MC),
+    "samples": (["samples/*"], {"surf", "io", "io_sim", "workflow"} | MC),
+    "paraview_plugin": (["paraview_plugin/*"], {"surf", "io", "io_sim", "workflow"} | MC),
 }
 # Whose header "surf/..." is. First match.
-OWNERS = [("surf/io/sim/", "io_sim"), ("surf/io/", "io"), ("surf/mc/", "mc"),
+OWNERS = [("surf/io/sim/", "io_sim"), ("surf/io/", "io"),
+          *((f"surf/mc/{room}/", f"mc/{room}") for room in ROOMS), ("surf/mc/", "mc"),
           ("surf/workflow/", "workflow"), ("surf/", "surf")]
 # Third-party headers <...> and the files that may include them. First match; public headers never.
 THIRD_PARTY = [
@@ -157,7 +169,9 @@ GOOD = {
     "libsurf/src/core/random.cpp": '#include <Random123/philox.h>\n#include "surf/core/a.h"\n',
     "libsurf/src/core/parallel.cpp": "#include <tbb/parallel_for.h>\n#include <unistd.h>\n",
     "mc_sim/include/surf/mc/a.h": '#include "surf/core/a.h"\n',
-    "mc_sim/src/geometry/embree_scene.cpp": '#include <embree3/rtcore.h>\n#include "private.h"\n',
+    "mc_sim/include/surf/mc/physics/b.h": "",
+    "mc_sim/src/geometry/embree_scene.cpp": '#include <embree3/rtcore.h>\n#include "surf/mc/physics/b.h"\n',
+    "mc_sim/src/physics/b.cpp": '#include "surf/mc/physics/b.h"\n',
     "mc_sim/src/private.h": '#include <fmt/format.h>\n#include "surf/mc/a.h"\n',
     "io/src/raster_file.cpp": "#include <OpenImageIO/imageio.h>\n",
     "io/src/private.h": '#include "surf/io/files.h"\n',
@@ -174,6 +188,7 @@ BAD = {
     "libsurf/src/core/parallel.cpp": ['#include "surf/io/files.h"', "#include <surf/core/a.h>",
                                       "  #  include <Random123/philox.h>"],
     "mc_sim/include/surf/mc/a.h": ["#include <embree3/rtcore.h>", '#include "surf/workflow/job.h"'],
+    "mc_sim/src/physics/b.cpp": ['#include "geometry/hidden.h"', '#include "surf/mc/transport/c.h"', '#include "surf/mc/a.h"'],
     "mc_sim/src/private.h": ["#include <embree3/rtcore.h>", '#include "surf/io/files.h"',
                              '#include "../../io/src/private.h"', '#include "nowhere.h"'],
     "io/src/private.h": ['#include "surf/mc/a.h"', '#include "surf/io/sim/scene_file.h"',

@@ -122,7 +122,7 @@ class CrewRoom {
 };
 
 /// One thread of a crew.
-class ThreadCrew : public mc::Crew {
+class ThreadCrew : public mc::UnitScheduler {
  public:
   ThreadCrew(CrewRoom& room, int rank) : room_(room), rank_(rank) {}
 

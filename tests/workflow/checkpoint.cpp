@@ -45,7 +45,7 @@ class CheckpointTest : public testing::Test {
     for (std::size_t unit = 0; unit < units; ++unit) {
       mc::UnitTally tally;
       if (!checkpoint.recall(unit, tally)) continue;
-      EXPECT_EQ(mc::pack(tally), mc::pack(tally_of(static_cast<std::int64_t>(unit) + 1)));
+      EXPECT_EQ(mc::serialize(tally), mc::serialize(tally_of(static_cast<std::int64_t>(unit) + 1)));
       found.push_back(unit);
     }
     return found;

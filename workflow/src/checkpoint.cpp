@@ -206,13 +206,13 @@ bool Checkpoint::recall(std::size_t unit, mc::UnitTally& tally) {
   }
   const auto found = recalled_.find(unit);
   if (found == recalled_.end()) return false;
-  tally = mc::unpack(found->second);
+  tally = mc::deserialize(found->second);
   recalled_.erase(found);
   return true;
 }
 
 void Checkpoint::record(std::size_t unit, const mc::UnitTally& tally) {
-  const std::string bytes = mc::pack(tally);
+  const std::string bytes = mc::serialize(tally);
   first_waiting_ = waiting_.empty() ? unit : std::min(first_waiting_, unit);
   put(waiting_, unit);
   put(waiting_, bytes.size());

@@ -235,7 +235,7 @@ SimulateSummary run(SimulateJob asked, const Reporter& reporter, Team* team, con
   mc::LibrarySource& libraries = team ? static_cast<mc::LibrarySource&>(*of_team) : kept;
   Simulation simulation;
   const ProgressCallback progress = reporter.counting(mc::accuracy_of(job.options.budget) > 0 ? "pixels" : "primaries");
-  mc::SimulationContext context{.progress = progress, .cancel = cancel, .libraries = &libraries, .crew = team};
+  mc::SimulationContext context{.progress = progress, .cancel = cancel, .libraries = &libraries, .scheduler = team};
   if (job.seconds() > 0)
     simulation = simulate_coarsely(job, scene, kept, summary.choice, record, context, simulator, tell, team);
   if (job.seconds() > 0 && !simulation.final) {   // as with an accuracy of that number

@@ -8,6 +8,7 @@
 
 #include "surf/core/units.h"
 #include "surf/mc/results/result_summary.h"
+#include "surf/mc/sampling/expected_primaries.h"
 
 namespace surf::workflow {
 namespace {

@@ -244,7 +244,7 @@ std::shared_ptr<const CascadeLibrary> FreshLibraries::library(const CascadeSetti
 bool can_replay(const Medium& medium) { return medium.loses_continuously(); }
 
 bool can_replay(const Physics& physics, std::span<const Material> materials) {
-  return std::ranges::all_of(materials, [&](const Material& m) { return can_replay(make_medium(m, physics)); });
+  return std::ranges::any_of(materials, [&](const Material& m) { return can_replay(make_medium(m, physics)); });
 }
 
 namespace {

@@ -49,12 +49,12 @@ double area_within(const MeshView& mesh, const Box& box) {
 
 }  // namespace
 
-class NearFieldBuilder {
+class DistanceGridBuilder {
  public:
-  using Cell = NearField::Cell;
+  using Cell = DistanceGrid::Cell;
 
-  NearFieldBuilder(const MeshView& mesh, const Box& domain, std::size_t bytes, int threads,
-                   const Watch& watch, NearField& field)
+  DistanceGridBuilder(const MeshView& mesh, const Box& domain, std::size_t bytes, int threads,
+                   const Watch& watch, DistanceGrid& field)
       : watch_{{}, watch.cancel}, field_(field), domain_(domain), bytes_(bytes), threads_(threads),
         most_cells_(std::min({static_cast<double>(bytes) / sizeof(Cell), most_cells,
                               few_cells + cells_per_triangle *
@@ -62,7 +62,7 @@ class NearFieldBuilder {
         area_(area_within(mesh, domain)),
         cell_(first_cell(area_)),
         widest_(1.5 * cell_),
-        tree_(mesh, grown(domain, (brick_span + 4) * NearField::cut * widest_), threads, watch_),
+        tree_(mesh, grown(domain, (brick_span + 4) * DistanceGrid::cut * widest_), threads, watch_),
         per_area_(static_cast<double>(tree_.size()) / std::max(area_, 1e-9)) {}
 
   void build() {
@@ -82,7 +82,7 @@ class NearFieldBuilder {
   }
 
  private:
-  static constexpr std::size_t in_brick = NearField::cut * NearField::cut * NearField::cut;
+  static constexpr std::size_t in_brick = DistanceGrid::cut * DistanceGrid::cut * DistanceGrid::cut;
 
   struct Fit {
     Cell cell;
@@ -100,7 +100,7 @@ class NearFieldBuilder {
     const Vec3 size = domain_.size_nm();
     double h = smallest_cell_nm;
     for (;; h *= 1.05) {
-      const double brick = NearField::cut * h;
+      const double brick = DistanceGrid::cut * h;
       const double bricks = (size.x / brick + 4) * (size.y / brick + 4) * (size.z / brick + 4);
       const double cells = area * 2 * (near_nm + 0.5 * brick) / (h * h * h);
       if (bricks <= most_bricks && 1.25 * bricks + std::min(cells, bricks * in_brick) <= most_cells_)
@@ -110,7 +110,7 @@ class NearFieldBuilder {
   }
 
   void lay_out() {
-    edge_ = NearField::cut * cell_;
+    edge_ = DistanceGrid::cut * cell_;
     const Box box = grown(domain_, 2 * edge_);
     const Vec3 size = box.size_nm();
     field_.lower_ = box.lower_nm;
@@ -118,13 +118,13 @@ class NearFieldBuilder {
     field_.nx_ = static_cast<int>(size.x / edge_) + 1;
     field_.ny_ = static_cast<int>(size.y / edge_) + 1;
     field_.nz_ = static_cast<int>(size.z / edge_) + 1;
-    field_.levels_ = {level(1, brick_span), level(NearField::cut, cell_span)};
+    field_.levels_ = {level(1, brick_span), level(DistanceGrid::cut, cell_span)};
     field_.cell_nm_ = cell_;
   }
 
-  NearField::Level level(int cells, double span) const {
+  DistanceGrid::Level level(int cells, double span) const {
     const double unit = span * edge_ / cells / steps, r = half_diagonal * steps / span;
-    NearField::Level out;
+    DistanceGrid::Level out;
     out.cells = static_cast<float>(cells);
     out.last = cells - 1;
     out.scale = static_cast<float>(1 / span);
@@ -138,8 +138,8 @@ class NearFieldBuilder {
     return field_.lower_ + Vec3{double(x), double(y), double(z)} * edge_;
   }
 
-  std::vector<SurfaceList> lists() const {
-    return std::vector<SurfaceList>(static_cast<std::size_t>(threads_), SurfaceList(tree_));
+  std::vector<LocalTriangles> lists() const {
+    return std::vector<LocalTriangles>(static_cast<std::size_t>(threads_), LocalTriangles(tree_));
   }
 
   // All bricks whole; the answer are those worth cutting.
@@ -147,7 +147,7 @@ class NearFieldBuilder {
     bricks_.assign(field_.index(0, 0, field_.nz_), {});
     std::vector<std::uint8_t> wanted(bricks_.size(), 0);
     const auto ny = static_cast<std::size_t>(field_.ny_);
-    std::vector<SurfaceList> surface = lists();
+    std::vector<LocalTriangles> surface = lists();
     parallel_for(static_cast<std::size_t>(field_.nz_) * ny, threads_, [&](std::size_t row, int worker) {
       const int y = static_cast<int>(row % ny), z = static_cast<int>(row / ny);
       std::uint32_t guess = FaceTree::none;
@@ -168,40 +168,40 @@ class NearFieldBuilder {
 
   void fill_cells(const std::vector<std::uint32_t>& cut) {
     field_.bricks_.assign(bricks_.size(), 0);
-    for (const std::uint32_t i : cut) field_.bricks_[i] = NearField::is_cut;
+    for (const std::uint32_t i : cut) field_.bricks_[i] = DistanceGrid::is_cut;
     std::vector<Cell>& cells = field_.cells_;
     cells.reserve(bricks_.size() + cut.size() * (in_brick - 1));
     for (std::size_t i = 0; i < bricks_.size(); ++i) {
       const auto at = static_cast<std::uint32_t>(cells.size());
       if (field_.bricks_[i] == 0) {
         // Far away many neighbours are alike.
-        const bool alike = i > 0 && !(field_.bricks_[i - 1] & NearField::is_cut) &&
+        const bool alike = i > 0 && !(field_.bricks_[i - 1] & DistanceGrid::is_cut) &&
                            same(bricks_[i], bricks_[i - 1]);
         if (!alike) cells.push_back(bricks_[i]);
         field_.bricks_[i] = alike ? at - 1 : at;
       } else {
-        field_.bricks_[i] = at | NearField::is_cut;
+        field_.bricks_[i] = at | DistanceGrid::is_cut;
         cells.resize(cells.size() + in_brick);
       }
     }
     bricks_ = {};
     const auto nx = static_cast<std::uint32_t>(field_.nx_), ny = static_cast<std::uint32_t>(field_.ny_);
     constexpr std::size_t block = 16;
-    std::vector<SurfaceList> surface = lists();
+    std::vector<LocalTriangles> surface = lists();
     parallel_for((cut.size() + block - 1) / block, threads_, [&](std::size_t b, int worker) {
       for (std::size_t k = b * block; k < std::min(cut.size(), (b + 1) * block); ++k) {
         const std::uint32_t i = cut[k];
         const Vec3 lower = brick_lower(static_cast<int>(i % nx), static_cast<int>(i / nx % ny),
                                        static_cast<int>(i / nx / ny));
         fill(lower + Vec3{0.5, 0.5, 0.5} * edge_, surface[static_cast<std::size_t>(worker)],
-             &cells[field_.bricks_[i] & ~NearField::is_cut]);
+             &cells[field_.bricks_[i] & ~DistanceGrid::is_cut]);
       }
     }, watch_);
   }
 
   // The cells of a brick, by way of its eighths. Cells that are not near the surface get no slab and
   // need to know little of it.
-  void fill(const Vec3& center, SurfaceList& surface, Cell* out) const {
+  void fill(const Vec3& center, LocalTriangles& surface, Cell* out) const {
     const auto corner = [](int i) {
       return Vec3{i & 1 ? 0.5 : -0.5, i & 2 ? 0.5 : -0.5, i & 4 ? 0.5 : -0.5};
     };
@@ -210,7 +210,7 @@ class NearFieldBuilder {
     tree_.improve(center, nearest);
     const double all_covered = std::min(nearest.distance + 8 * r + 4 * slack_nm, asked + 3 * r);
     surface.collect(center, all_covered, small_edges * cell_);
-    SurfaceList::Part part;
+    LocalTriangles::Part part;
     for (int e = 0; e < 8; ++e) {
       const Vec3 middle = corner(e) * (0.5 * edge_);
       const double part_covered = std::min(all_covered - length(middle), asked + r);
@@ -223,7 +223,7 @@ class NearFieldBuilder {
         const Vec3 offset = corner(c) * cell_;
         const int x = 2 * (e & 1) + (c & 1), y = (e & 2) + (c >> 1 & 1), z = (e >> 1 & 2) + (c >> 2);
         const double at_least = std::max(0.0, part_distance - length(offset));
-        out[(z * NearField::cut + y) * NearField::cut + x] =
+        out[(z * DistanceGrid::cut + y) * DistanceGrid::cut + x] =
             (is_far ? without_slab(at_least, cell_, cell_span)
                     : fitted(surface, part, middle + offset, at_least, part_covered - length(offset),
                              cell_, cell_span)).cell;
@@ -232,7 +232,7 @@ class NearFieldBuilder {
   }
 
   // `guess`: a triangle that is near, or none; left as the nearest.
-  Fit brick(const Vec3& center, SurfaceList& surface, std::uint32_t& guess) const {
+  Fit brick(const Vec3& center, LocalTriangles& surface, std::uint32_t& guess) const {
     const double r = half_diagonal * edge_;
     FaceTree::Nearest nearest{brick_span * edge_, FaceTree::none, {}};
     if (guess != FaceTree::none) tree_.improve(center, guess, nearest);
@@ -267,10 +267,10 @@ class NearFieldBuilder {
 
   // For the cell around `center`, from a part of the surface that holds all within `covered` of it;
   // nothing is nearer than `at_least`.
-  Fit fitted(SurfaceList& surface, const SurfaceList::Part& part, const Vec3& center,
+  Fit fitted(LocalTriangles& surface, const LocalTriangles::Part& part, const Vec3& center,
              double at_least, double covered, double edge, double span) const {
     const double unit = span * edge / steps, r = half_diagonal * edge;
-    const SurfaceList::Nearest nearest = surface.nearest(part, center);
+    const LocalTriangles::Nearest nearest = surface.nearest(part, center);
     const double d = std::max(at_least, std::min(nearest.distance, covered));
     Fit fit = without_slab(std::min(d, span * edge), edge, span);
     const double radius = std::min(d + 2 * r + 2 * slack_nm, covered);
@@ -303,13 +303,13 @@ class NearFieldBuilder {
     return static_cast<std::uint16_t>(std::clamp(std::floor(v), 0.0, steps));
   }
 
-  static Cell with_slab(Cell cell, SurfaceList& surface, const Vec3& n, double unit) {
+  static Cell with_slab(Cell cell, LocalTriangles& surface, const Vec3& n, double unit) {
     // Towards zero: no longer than 1, so gaps do not come out too large.
     const double quantised[3] = {std::trunc(n.x * steps), std::trunc(n.y * steps),
                                  std::trunc(n.z * steps)};
     for (std::size_t k = 0; k < 3; ++k) cell.n[k] = static_cast<std::int16_t>(quantised[k]);
     const Vec3 used = Vec3{quantised[0], quantised[1], quantised[2]} * (1 / steps);
-    const SurfaceList::Slab slab = surface.slab(used);
+    const LocalTriangles::Slab slab = surface.slab(used);
     // Rounding of single precision in units, besides that of positions in nm.
     const double slack = slack_nm / unit + 0.05;
     const auto clamped = [](double v) {
@@ -324,16 +324,16 @@ class NearFieldBuilder {
     return cell;
   }
 
-  static double mean_bound(const Cell& cell, const NearField::Level& level) {
+  static double mean_bound(const Cell& cell, const DistanceGrid::Level& level) {
     double sum = 0;
     for (int i = 0; i < 8; ++i)
-      sum += NearField::bound(cell, i & 1 ? 0.9f : 0.1f, i & 2 ? 0.9f : 0.1f, i & 4 ? 0.9f : 0.1f,
+      sum += DistanceGrid::bound(cell, i & 1 ? 0.9f : 0.1f, i & 2 ? 0.9f : 0.1f, i & 4 ? 0.9f : 0.1f,
                               level);
     return sum;
   }
 
   const Watch watch_;   // tells nobody; first: the tree below is built with it
-  NearField& field_;
+  DistanceGrid& field_;
   Box domain_;
   std::size_t bytes_;
   int threads_;
@@ -347,14 +347,14 @@ class NearFieldBuilder {
   std::vector<Cell> bricks_;
 };
 
-NearField::NearField(const MeshView& mesh, const Box& domain, std::size_t bytes, int threads,
+DistanceGrid::DistanceGrid(const MeshView& mesh, const Box& domain, std::size_t bytes, int threads,
                      const Watch& watch)
     : surface_box_(bounds(mesh)) {
   if (mesh.triangles.empty() || bytes < 4096 || domain.empty()) return;
-  NearFieldBuilder(mesh, domain, bytes, resolve_threads(threads), watch, *this).build();
+  DistanceGridBuilder(mesh, domain, bytes, resolve_threads(threads), watch, *this).build();
 }
 
-double NearField::outside_nm(const Vec3& p) const {
+double DistanceGrid::outside_nm(const Vec3& p) const {
   const double above = p.z - surface_box_.upper_nm.z, below = surface_box_.lower_nm.z - p.z;
   const double dz = std::max({above, below, 0.0});
   const double dx = std::max({surface_box_.lower_nm.x - p.x, p.x - surface_box_.upper_nm.x, 0.0});

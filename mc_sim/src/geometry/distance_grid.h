@@ -23,15 +23,15 @@ namespace surf::mc {
 /// bound, a larger one would only make the slab thicker. At a point p of the cell the bound is
 ///   max(0, d - r, min(gap between p and the slab, d + r)).
 /// All numbers are kept in 16 bits, rounded so that the bound stays one.
-class NearField {
+class DistanceGrid {
  public:
-  NearField() = default;
+  DistanceGrid() = default;
 
   /// Covers `domain` and a little around it with about `bytes` of memory (>= 0; 0: only points
   /// outside the box of all triangles get a bound). Triangles may lie anywhere.
   /// `threads` >= 0; 0: one per hardware thread. The result does not depend on it.
   /// Throws Interrupted.
-  NearField(const MeshView& mesh, const Box& domain, std::size_t bytes, int threads = 0,
+  DistanceGrid(const MeshView& mesh, const Box& domain, std::size_t bytes, int threads = 0,
             const Watch& watch = {});
 
   double cell_nm() const { return cell_nm_; }   ///< the smallest cells; 0 without any
@@ -60,7 +60,7 @@ class NearField {
   }
 
  private:
-  friend class NearFieldBuilder;
+  friend class DistanceGridBuilder;
   static constexpr int cut = 4;                          // cells along a brick
   static constexpr std::uint32_t is_cut = 0x80000000u;   // of a brick's number of its first cell
 

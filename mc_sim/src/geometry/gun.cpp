@@ -5,9 +5,9 @@
 
 #include <fmt/format.h>
 
+#include "geometry/directions.h"
 #include "surf/core/error.h"
 #include "surf/core/units.h"
-#include "transport/transport.h"
 
 namespace surf::mc {
 

@@ -41,9 +41,9 @@ bool may_overlap(const Vec3 (&v)[3], double x, double y, double half) {
 
 }  // namespace
 
-class SkyBuilder {
+class HorizonMapBuilder {
  public:
-  SkyBuilder(const MeshView& mesh, const Box& domain, std::size_t columns, Sky& sky)
+  HorizonMapBuilder(const MeshView& mesh, const Box& domain, std::size_t columns, HorizonMap& sky)
       : mesh_(mesh), sky_(sky) {
     const Vec3 size = domain.size_nm();
     const double longest = std::max({size.x, size.y, 1e-3});
@@ -72,10 +72,10 @@ class SkyBuilder {
         sky_.around_.push_back(around(x, y));
         sky_.slopes_.push_back(steepest_around(x, y));
       }
-    const auto rings = static_cast<int>(Sky::rings);
+    const auto rings = static_cast<int>(HorizonMap::rings);
     while (static_cast<int>(heights_.size()) <= level_of(rings - 1)) heights_.push_back(halved());
     sky_.heights_.assign(static_cast<std::size_t>(sky_.nx_) * static_cast<std::size_t>(sky_.ny_) *
-                             Sky::sectors * Sky::rings, upward(outside_));
+                             HorizonMap::sectors * HorizonMap::rings, upward(outside_));
     for (int ring = 0; ring < rings - 1; ++ring) {   // the last one is outside
       watch.check();
       fill(ring, threads);
@@ -169,8 +169,8 @@ class SkyBuilder {
 
   // The blocks that a ray from somewhere in a block may be over while it is within the ring, by
   // sector.
-  static std::array<std::vector<Offset>, Sky::sectors> offsets(int ring) {
-    std::array<std::vector<Offset>, Sky::sectors> out;
+  static std::array<std::vector<Offset>, HorizonMap::sectors> offsets(int ring) {
+    std::array<std::vector<Offset>, HorizonMap::sectors> out;
     const double block = std::ldexp(1.0, level_of(ring));
     const double inner = std::ldexp(1.0, ring), outer = 2 * inner;
     const int most = static_cast<int>(outer / block) + 1;
@@ -179,7 +179,7 @@ class SkyBuilder {
         const double nearest = std::hypot(std::max(0, std::abs(x) - 1), std::max(0, std::abs(y) - 1));
         const double farthest = std::hypot(std::abs(x) + 1, std::abs(y) + 1);
         if (nearest * block > outer || farthest * block < inner) continue;
-        for (std::size_t k = 0; k < Sky::sectors; ++k)
+        for (std::size_t k = 0; k < HorizonMap::sectors; ++k)
           if (may_be_in(k, x, y)) out[k].push_back({x, y});
       }
     return out;
@@ -210,7 +210,7 @@ class SkyBuilder {
     parallel_for(static_cast<std::size_t>(blocks.height()), threads, [&](std::size_t row, int) {
       const int by = static_cast<int>(row);
       for (int bx = 0; bx < blocks.width(); ++bx)
-        for (std::size_t k = 0; k < Sky::sectors; ++k) {
+        for (std::size_t k = 0; k < HorizonMap::sectors; ++k) {
           float highest = nothing;
           for (const Offset& o : lists[k]) {
             const int x = bx + o.x, y = by + o.y;
@@ -222,7 +222,7 @@ class SkyBuilder {
               const std::size_t column = static_cast<std::size_t>(y) *
                                              static_cast<std::size_t>(sky_.nx_) +
                                          static_cast<std::size_t>(x);
-              sky_.heights_[(column * Sky::sectors + k) * Sky::rings +
+              sky_.heights_[(column * HorizonMap::sectors + k) * HorizonMap::rings +
                             static_cast<std::size_t>(ring)] = highest;
             }
         }
@@ -230,18 +230,18 @@ class SkyBuilder {
   }
 
   const MeshView mesh_;
-  Sky& sky_;
+  HorizonMap& sky_;
   double outside_ = -HUGE_VAL;
   Grid<double> exact_;
   Grid<float> slopes_;
   std::vector<Grid<float>> heights_;   // of blocks of 2^level columns
 };
 
-Sky::Sky(const MeshView& mesh, const Box& domain, std::size_t columns, int threads, const Watch& watch) {
+HorizonMap::HorizonMap(const MeshView& mesh, const Box& domain, std::size_t columns, int threads, const Watch& watch) {
   if (mesh.triangles.empty()) return;
   top_nm_ = bounds(mesh).upper_nm.z;
   if (columns == 0 || domain.empty()) return;
-  SkyBuilder(mesh, domain, columns, *this).build(resolve_threads(threads), watch);
+  HorizonMapBuilder(mesh, domain, columns, *this).build(resolve_threads(threads), watch);
 }
 
 }  // namespace surf::mc

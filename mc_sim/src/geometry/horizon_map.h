@@ -18,13 +18,13 @@ namespace surf::mc {
 /// is free where it is above every one of them in its direction when it enters the ring. It may
 /// start on the surface itself: where that is a plateau, at the height of the highest surface around
 /// it; or on a slope, where all surface around faces upward and the ray rises more steeply.
-class Sky {
+class HorizonMap {
  public:
-  Sky() = default;
+  HorizonMap() = default;
 
   /// Columns over `domain`, at most about `columns` of them (>= 0; 0: only what is above everything
   /// is free). Triangles may lie anywhere. Throws Interrupted.
-  Sky(const MeshView& mesh, const Box& domain, std::size_t columns, int threads = 0,
+  HorizonMap(const MeshView& mesh, const Box& domain, std::size_t columns, int threads = 0,
       const Watch& watch = {});
 
   std::size_t bytes() const {
@@ -52,7 +52,7 @@ class Sky {
   }
 
  private:
-  friend class SkyBuilder;
+  friend class HorizonMapBuilder;
   static constexpr std::size_t sectors = 8, rings = 11;
 
   // Sector k holds the azimuths from k to k + 1 eighths of a turn.

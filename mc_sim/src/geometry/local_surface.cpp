@@ -15,13 +15,13 @@ constexpr double hair = 1e-4;                 // nm: of rounding, and of paths t
 
 }  // namespace
 
-class PatchBuilder {
+class LocalSurfaceBuilder {
  public:
-  PatchBuilder(SurfacePatch& patch) : patch_(patch) {}
+  LocalSurfaceBuilder(LocalSurface& patch) : patch_(patch) {}
 
   void build(const EmbreeScene& triangles, std::optional<double> plane_nm) {
     float reach = 0;
-    for (float r = 4 * SurfacePatch::finest_nm; r <= SurfacePatch::widest_nm; r *= 2) {
+    for (float r = 4 * LocalSurface::finest_nm; r <= LocalSurface::widest_nm; r *= 2) {
       near_.clear();
       if (!triangles.within(patch_.frame_.origin, 1.7321 * r + hair, most_triangles, near_)) break;
       std::swap(known_, near_);
@@ -30,11 +30,11 @@ class PatchBuilder {
     if (reach == 0) return;
     patch_.reach_nm_ = reach;
     // A ball within reach has less than the reach for its radius.
-    levels_ = 1 + static_cast<int>(std::lround(std::log2(2 * reach / SurfacePatch::finest_nm)));
+    levels_ = 1 + static_cast<int>(std::lround(std::log2(2 * reach / LocalSurface::finest_nm)));
     const auto columns = static_cast<std::size_t>(levels_ * across * across);
     bands_.assign(columns, {HUGE_VAL, -HUGE_VAL});
     patch_.lists_.resize(
-        static_cast<std::size_t>(std::min(levels_, SurfacePatch::listing_levels) * across * across));
+        static_cast<std::size_t>(std::min(levels_, LocalSurface::listing_levels) * across * across));
     for (const std::uint32_t t : known_) add(triangles.mesh(), t);
     if (plane_nm) add_plane(*plane_nm);
     pack();
@@ -42,14 +42,14 @@ class PatchBuilder {
   }
 
  private:
-  static constexpr int across = SurfacePatch::across;
+  static constexpr int across = LocalSurface::across;
   static constexpr std::uint16_t none = 0xffff;
 
   struct Heights {
     double low, high;
   };
 
-  static double width(int level) { return double(SurfacePatch::finest_nm) * (1 << level); }
+  static double width(int level) { return double(LocalSurface::finest_nm) * (1 << level); }
   // Farther out nobody asks.
   double half(int level) const {
     return std::min(width(level) * (across / 2), double(patch_.reach_nm_)) + hair;
@@ -102,7 +102,7 @@ class PatchBuilder {
           }
           const std::size_t at = column(x, y, level);
           widen(bands_[at], low, high);
-          if (at >= patch_.lists_.size() || ++patch_.lists_[at].count > SurfacePatch::most_faces)
+          if (at >= patch_.lists_.size() || ++patch_.lists_[at].count > LocalSurface::most_faces)
             continue;
           if (face == none) {
             face = static_cast<std::uint16_t>(patch_.faces_.size());
@@ -137,7 +137,7 @@ class PatchBuilder {
   void pack() {
     patch_.bands_.resize(bands_.size());
     for (int level = 0; level < levels_; ++level) {
-      const double unit = width(level) / double(SurfacePatch::units);
+      const double unit = width(level) / double(LocalSurface::units);
       for (int i = 0; i < across * across; ++i) {
         const std::size_t at = column(i, 0, level);
         if (!(bands_[at].low <= bands_[at].high)) continue;
@@ -153,21 +153,21 @@ class PatchBuilder {
   // The lists of triangles, column by column.
   void list() {
     std::uint32_t next = 0;
-    for (SurfacePatch::List& l : patch_.lists_) {
+    for (LocalSurface::List& l : patch_.lists_) {
       l.first = next;
-      if (l.count <= SurfacePatch::most_faces) next += l.count;
+      if (l.count <= LocalSurface::most_faces) next += l.count;
     }
     patch_.listed_.resize(next);
     std::vector<std::uint32_t> filled(patch_.lists_.size());
     for (const auto& [at, number] : pairs_) {
-      const SurfacePatch::List& l = patch_.lists_[at];
-      if (l.count > SurfacePatch::most_faces) continue;
+      const LocalSurface::List& l = patch_.lists_[at];
+      if (l.count > LocalSurface::most_faces) continue;
       patch_.listed_[l.first + filled[at]++] = number;
     }
   }
 
-  static SurfacePatch::Face face_of(const Vec3 (&v)[3], const Box& box, const TriangleShape& shape) {
-    SurfacePatch::Face out{Float4{}, {static_cast<float>(box.lower_nm.x), static_cast<float>(box.lower_nm.y),
+  static LocalSurface::Face face_of(const Vec3 (&v)[3], const Box& box, const TriangleShape& shape) {
+    LocalSurface::Face out{Float4{}, {static_cast<float>(box.lower_nm.x), static_cast<float>(box.lower_nm.y),
                                       static_cast<float>(box.upper_nm.x), static_cast<float>(box.upper_nm.y)}};
     if (shape.is_needle()) return out;
     const Vec3 normal = shape.across * (1 / shape.area2);
@@ -205,17 +205,17 @@ class PatchBuilder {
     }
   }
 
-  SurfacePatch& patch_;
+  LocalSurface& patch_;
   int levels_ = 0;
   std::vector<std::uint32_t> near_, known_;
   std::vector<Heights> bands_;
   std::vector<std::pair<std::uint32_t, std::uint16_t>> pairs_;   // column, face
 };
 
-SurfacePatch::SurfacePatch(const EmbreeScene& triangles, std::optional<double> plane_nm,
+LocalSurface::LocalSurface(const EmbreeScene& triangles, std::optional<double> plane_nm,
                            const Vec3& origin, const Vec3& normal)
     : frame_(frame_about(origin, normal)) {
-  PatchBuilder(*this).build(triangles, plane_nm);
+  LocalSurfaceBuilder(*this).build(triangles, plane_nm);
 }
 
 }  // namespace surf::mc

@@ -37,11 +37,11 @@ struct Band {
 /// about the origin, each twice as large as the one before, are cut into 16 x 16 columns along z. A
 /// column knows between which heights all surface lies in it and half a column's width beside it, and,
 /// where they are few, the triangles. Places are in nm in the patch's frame.
-class SurfacePatch {
+class LocalSurface {
  public:
   /// `normal`: unit. `plane_nm`: the height of an endless horizontal surface in the specimen, if there
   /// is one. How far a patch reaches depends on how many triangles there are.
-  SurfacePatch(const EmbreeScene& triangles, std::optional<double> plane_nm, const Vec3& origin,
+  LocalSurface(const EmbreeScene& triangles, std::optional<double> plane_nm, const Vec3& origin,
                const Vec3& normal);
 
   bool empty() const { return reach_nm_ == 0; }
@@ -104,7 +104,7 @@ class SurfacePatch {
   }
 
  private:
-  friend class PatchBuilder;
+  friend class LocalSurfaceBuilder;
   static constexpr int across = 16;              // columns of a cube
   static constexpr float finest_nm = 0.5f;       // columns of the smallest cube
   static constexpr float widest_nm = 64;         // patch

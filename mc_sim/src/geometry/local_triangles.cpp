@@ -36,7 +36,7 @@ Float4 more(const Float4& a, const Float4& b) { return a > b ? a : b; }
 
 }  // namespace
 
-void SurfaceList::add_face(const Vec3 (&v)[3], const Vec3& across, double area2, double radius) {
+void LocalTriangles::add_face(const Vec3 (&v)[3], const Vec3& across, double area2, double radius) {
   Face f;
   for (std::size_t i = 0; i < 3; ++i) f.corners[i] = v[i];
   f.normal = area2 > 0 ? across * (1 / area2) : Vec3{};
@@ -58,7 +58,7 @@ void SurfaceList::add_face(const Vec3 (&v)[3], const Vec3& across, double area2,
   faces_.push_back(f);
 }
 
-void SurfaceList::collect(const Vec3& center, double radius, double small) {
+void LocalTriangles::collect(const Vec3& center, double radius, double small) {
   triangles_.clear();
   tree_.within(center, radius, triangles_);
   faces_.clear();
@@ -108,7 +108,7 @@ void SurfaceList::collect(const Vec3& center, double radius, double small) {
   fill_up(all_);
 }
 
-void SurfaceList::fill_up(Part& part) {
+void LocalTriangles::fill_up(Part& part) {
   while (part.x.size() % 4) {
     for (auto* v : {&part.x, &part.y, &part.z}) v->push_back(nowhere);
     for (auto* v : {&part.nx, &part.ny, &part.nz}) v->push_back(0);
@@ -122,7 +122,7 @@ void SurfaceList::fill_up(Part& part) {
 
 // Visits the faces whose spheres come within `radius` of `p`; it may shrink on the way.
 template <class Visit>
-void SurfaceList::visit_faces(const Part& part, const Vec3& p, const float& radius,
+void LocalTriangles::visit_faces(const Part& part, const Vec3& p, const float& radius,
                               const Visit& visit) const {
   const Float4 px = all4(p.x), py = all4(p.y), pz = all4(p.z);
   for (std::size_t i = 0; i < part.faces.size(); i += 4) {
@@ -135,7 +135,7 @@ void SurfaceList::visit_faces(const Part& part, const Vec3& p, const float& radi
   }
 }
 
-double SurfaceList::improve(const Face& f, const Vec3& p, Nearest& best) const {
+double LocalTriangles::improve(const Face& f, const Vec3& p, Nearest& best) const {
   const Vec3 v[3] = {f.corners[0] - p, f.corners[1] - p, f.corners[2] - p};
   Vec3 point;
   const double distance = distance_of_triangle(v, TriangleShape(v), point);
@@ -143,7 +143,7 @@ double SurfaceList::improve(const Face& f, const Vec3& p, Nearest& best) const {
   return distance;
 }
 
-SurfaceList::Nearest SurfaceList::nearest(const Part& part, const Vec3& p) {
+LocalTriangles::Nearest LocalTriangles::nearest(const Part& part, const Vec3& p) {
   Nearest best;
   if (!part.faces.empty()) {
     improve(faces_[guess_], p, best);
@@ -180,7 +180,7 @@ SurfaceList::Nearest SurfaceList::nearest(const Part& part, const Vec3& p) {
   return best;
 }
 
-void SurfaceList::narrow(const Part& part, const Vec3& p, double radius, Part& out) const {
+void LocalTriangles::narrow(const Part& part, const Vec3& p, double radius, Part& out) const {
   for (auto* v : {&out.x, &out.y, &out.z, &out.nx, &out.ny, &out.nz, &out.fx, &out.fy, &out.fz,
                   &out.reach})
     v->clear();
@@ -211,7 +211,7 @@ void SurfaceList::narrow(const Part& part, const Vec3& p, double radius, Part& o
   fill_up(out);
 }
 
-void SurfaceList::look_at(const Part& part, const Vec3& p, double radius) {
+void LocalTriangles::look_at(const Part& part, const Vec3& p, double radius) {
   part_ = &part;
   center_ = p;
   radius_ = radius;
@@ -225,7 +225,7 @@ void SurfaceList::look_at(const Part& part, const Vec3& p, double radius) {
   });
 }
 
-SurfaceList::Slab SurfaceList::slab(const Vec3& n) {
+LocalTriangles::Slab LocalTriangles::slab(const Vec3& n) {
   const Part& part = *part_;
   const Vec3 p = center_;
   const double radius = radius_;
@@ -278,7 +278,7 @@ SurfaceList::Slab SurfaceList::slab(const Vec3& n) {
   return s;
 }
 
-Vec3 SurfaceList::mean_normal() const {
+Vec3 LocalTriangles::mean_normal() const {
   const Part& part = *part_;
   const Vec3 p = center_;
   const double radius = radius_, squared_radius = radius * radius;

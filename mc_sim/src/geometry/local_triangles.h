@@ -15,9 +15,9 @@ namespace surf::mc {
 /// that are small against what is asked stand as their corners, so that the cost hardly depends on
 /// how finely a surface is meshed. Answers are conservative, as `FaceTree`'s. Positions are about
 /// the ball's centre. Holds scratch space: one per thread.
-class SurfaceList {
+class LocalTriangles {
  public:
-  explicit SurfaceList(const FaceTree& tree) : tree_(tree) {}
+  explicit LocalTriangles(const FaceTree& tree) : tree_(tree) {}
 
   /// Lists what is within `radius` of `center`; triangles with no side longer than `small` stand as
   /// their corners (nm, >= 0).

@@ -97,14 +97,14 @@ class Boxes {
   std::vector<std::uint8_t> within(double distance) const {
     const std::vector<float> squared = squared_gaps();
     const double limit = distance / edge_ * (distance / edge_) * (1 + 1e-6);
-    std::vector<std::uint8_t> felt;
+    std::vector<std::uint8_t> reachable;
     for (const Triangle& t : mesh_.triangles) {
       Range r;
-      bool is_felt = !range(t, r);
-      for_each(r, [&](std::size_t i) { is_felt = is_felt || static_cast<double>(squared[i]) <= limit; });
-      felt.push_back(is_felt);
+      bool is_reachable = !range(t, r);
+      for_each(r, [&](std::size_t i) { is_reachable = is_reachable || static_cast<double>(squared[i]) <= limit; });
+      reachable.push_back(is_reachable);
     }
-    return felt;
+    return reachable;
   }
 
  private:
@@ -230,7 +230,7 @@ class Boxes {
 
 }  // namespace
 
-std::vector<std::uint8_t> felt_triangles(const MeshView& mesh,
+std::vector<std::uint8_t> reachable_triangles(const MeshView& mesh,
                                          std::span<const std::uint32_t> shell_of,
                                          const std::vector<Shell>& shells,
                                          std::optional<double> plane_nm, const Box& domain,

@@ -23,7 +23,7 @@ struct Shell {
 /// triangle touches it and its middle is within a solid, or where all of it is below `plane_nm`.
 /// What is not matter and hangs together with the rim of `domain` may be vacuum open to the outside.
 /// Triangles that reach beyond `domain` are always 1. Throws Interrupted.
-std::vector<std::uint8_t> felt_triangles(const MeshView& mesh,
+std::vector<std::uint8_t> reachable_triangles(const MeshView& mesh,
                                          std::span<const std::uint32_t> shell_of,
                                          const std::vector<Shell>& shells,
                                          std::optional<double> plane_nm, const Box& domain,

@@ -145,17 +145,17 @@ std::size_t leave_out_unreachable(Assembly& all, std::optional<double> plane_nm,
                                   double reach, const Watch& watch) {
   const double lowest = near.lower_nm.z, highest = std::max(near.upper_nm.z, plane_nm.value_or(-HUGE_VAL));
   if (all.shells.size() < 2 || highest - lowest <= reach) return 0;
-  const std::vector<std::uint8_t> felt =
-      felt_triangles(all.mesh, all.shell_of, all.shells, plane_nm, near, reach, watch);
+  const std::vector<std::uint8_t> reachable =
+      reachable_triangles(all.mesh, all.shell_of, all.shells, plane_nm, near, reach, watch);
   std::size_t kept = 0;
-  for (std::size_t i = 0; i < felt.size(); ++i) {
-    if (!felt[i]) continue;
+  for (std::size_t i = 0; i < reachable.size(); ++i) {
+    if (!reachable[i]) continue;
     all.mesh.triangles[kept] = all.mesh.triangles[i];
     all.shell_of[kept++] = all.shell_of[i];
   }
   all.mesh.triangles.resize(kept);
   all.shell_of.resize(kept);
-  return felt.size() - kept;
+  return reachable.size() - kept;
 }
 
 // An assembly, and what else the scene has to know of it.
@@ -305,9 +305,9 @@ Scene::Scene(const Specimen& specimen, const Beam& beam, const Scan& scan, const
     s.shell_of = mesh.shell_of;
     const Box domain = near_scan(near, scan, beam, reach);
     watch.report(0.3, 1);
-    s.near = NearField(mesh.mesh, domain, options.distance_grid_bytes, 0, watch.part(0.3, 0.7));
+    s.near = DistanceGrid(mesh.mesh, domain, options.distance_grid_bytes, 0, watch.part(0.3, 0.7));
     watch.report(0.7, 1);
-    s.sky = Sky(mesh.mesh, domain, sky_columns, 0, watch);
+    s.sky = HorizonMap(mesh.mesh, domain, sky_columns, 0, watch);
     watch.report(0.8, 1);
     s.triangles = std::make_unique<EmbreeScene>(std::move(mesh), watch.part(0.8, 1));
   }

@@ -41,8 +41,8 @@ struct Scene::Impl {
   std::uint32_t plane_shell = 0;
   std::span<const std::uint32_t> shell_of; ///< per triangle
   std::unique_ptr<EmbreeScene> triangles;  ///< null for a bare substrate; holds what is per triangle
-  NearField near;
-  Sky sky;
+  DistanceGrid near;
+  HorizonMap sky;
   double top_nm = 0;                       ///< highest surface
   double bottom_nm = 0;                    ///< lowest surface
   bool half_space = false;                 ///< whether something goes on below without end

@@ -70,13 +70,13 @@ bool axial(const Scene::Impl& scene, const std::vector<Detector>& detectors) {
 
 }  // namespace
 
-struct PlaneControls::Slot {
+struct PlanarControls::Slot {
   std::once_flag made;
   std::atomic<bool> ready = false;
-  std::shared_ptr<const PlaneControl> control;
+  std::shared_ptr<const PlanarControl> control;
 };
 
-PlaneControls::PlaneControls(const Scene::Impl& scene, const SimulationOptions& options,
+PlanarControls::PlanarControls(const Scene::Impl& scene, const SimulationOptions& options,
                              const Libraries& libraries, const CancelToken* cancel)
     : scene_(scene), options_(options), libraries_(libraries), cancel_(cancel),
       axial_(axial(scene, options.detectors)), against_(-direction(scene.beam)) {
@@ -88,20 +88,20 @@ PlaneControls::PlaneControls(const Scene::Impl& scene, const SimulationOptions& 
     if (l) cascades_ = cascades_ == 0 ? l->cascades() : std::min(cascades_, l->cascades());
 }
 
-PlaneControls::~PlaneControls() = default;
+PlanarControls::~PlanarControls() = default;
 
-double PlaneControls::azimuth(std::uint64_t seed, std::size_t cascade) {
+double PlanarControls::azimuth(std::uint64_t seed, std::size_t cascade) {
   return azimuth_of({seed, random_streams::azimuths, cascade, cascade, 0});
 }
 
-PlaneControls::Made PlaneControls::made() const {
+PlanarControls::Made PlanarControls::made() const {
   const std::lock_guard lock(mutex_);
   return made_;
 }
 
-double PlaneControls::seconds_of_this_thread() { return spent_here; }
+double PlanarControls::seconds_of_this_thread() { return spent_here; }
 
-PlaneControls::Place PlaneControls::place(int material, const Vec3& normal, bool exact) const {
+PlanarControls::Place PlanarControls::place(int material, const Vec3& normal, bool exact) const {
   const double cosine = std::clamp(dot(normal, against_), -1.0, 1.0);
   const double polar = std::acos(cosine) / degrees_to_radians;
   const double turn = std::atan2(dot(normal, up_), dot(normal, across_)) / (2 * std::numbers::pi);
@@ -139,7 +139,7 @@ PlaneControls::Place PlaneControls::place(int material, const Vec3& normal, bool
   return out;
 }
 
-PlaneControls::Match PlaneControls::match(int material, const Vec3& normal, bool exact) {
+PlanarControls::Match PlanarControls::match(int material, const Vec3& normal, bool exact) {
   const Place where = place(material, normal, exact);
   Match out;
   out.azimuth = where.azimuth;
@@ -175,10 +175,10 @@ PlaneControls::Match PlaneControls::match(int material, const Vec3& normal, bool
   return out;
 }
 
-std::shared_ptr<const PlaneControl> PlaneControls::make(int material, const Vec3& normal,
+std::shared_ptr<const PlanarControl> PlanarControls::make(int material, const Vec3& normal,
                                                         std::uint64_t number) const {
   const std::size_t detectors = options_.detectors.size();
-  auto control = std::make_shared<PlaneControl>();
+  auto control = std::make_shared<PlanarControl>();
   control->normal = normal;
   control->number = number;
   control->counts.assign(detectors, std::vector<std::uint8_t>(cascades_));

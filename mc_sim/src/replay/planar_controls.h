@@ -18,7 +18,7 @@
 namespace surf::mc {
 
 /// What every cascade of a library gives on a plane.
-struct PlaneControl {
+struct PlanarControl {
   Vec3 normal;                            ///< out of the matter; the beam comes along `beam`
   std::uint64_t number = 0;               ///< stands for the pixel in the cascades' random numbers
   std::vector<std::vector<std::uint8_t>> counts;   ///< per detector, per cascade
@@ -28,17 +28,17 @@ struct PlaneControl {
 /// The planes that pixels are compared with: one for each direction of the surface, in steps of some
 /// degrees, and the very plane where a pixel's surface is proved to be one. Made when first asked
 /// for; safe to use from many threads.
-class PlaneControls {
+class PlanarControls {
  public:
-  PlaneControls(const Scene::Impl& scene, const SimulationOptions& options,
+  PlanarControls(const Scene::Impl& scene, const SimulationOptions& options,
                 const Libraries& libraries, const CancelToken* cancel);
-  ~PlaneControls();
+  ~PlanarControls();
 
   /// The control for a surface of this material and outward normal, and the azimuth, in turns, by
   /// which the control's cascades are turned about the beam to lie in that surface as in the
   /// control's. `exact`: of just this normal, but for the azimuth where it does not count.
   struct Match {
-    std::shared_ptr<const PlaneControl> control;
+    std::shared_ptr<const PlanarControl> control;
     double azimuth = 0;
   };
   /// Throws Interrupted.
@@ -73,7 +73,7 @@ class PlaneControls {
   };
 
   Place place(int material, const Vec3& normal, bool exact) const;
-  std::shared_ptr<const PlaneControl> make(int material, const Vec3& normal,
+  std::shared_ptr<const PlanarControl> make(int material, const Vec3& normal,
                                            std::uint64_t number) const;
 
   const Scene::Impl& scene_;

@@ -74,7 +74,7 @@ class Replay {
 
   /// What is known of the surface around the next primaries; it changes nothing but time. `patch`:
   /// null, or one that stays until the next call.
-  void surroundings(const FlatSurroundings<State>& flat, const SurfacePatch* patch = nullptr) {
+  void surroundings(const FlatSurroundings<State>& flat, const LocalSurface* patch = nullptr) {
     query_.at(flat, patch);
     // Nothing is reflected for certain where the barrier is off: it has no step then.
     flat_step_ev_ = flat.radius > 0 ? barrier_of(geometry_.material(flat.inside)) -

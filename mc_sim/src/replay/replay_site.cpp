@@ -69,9 +69,9 @@ ReplaySite SiteReplay::site_alone(int x, int y) {
 // Neighbours share a patch: that of the pixel in the middle of their block, where the surface there is
 // near enough and about as steep. Which one a pixel gets depends on the scan alone, as the frame's
 // rounding may decide an electron's fate.
-std::shared_ptr<const SurfacePatch> SiteReplay::patch(int x, int y, const ReplaySite& site) {
+std::shared_ptr<const LocalSurface> SiteReplay::patch(int x, int y, const ReplaySite& site) {
   const auto own = [&](const ReplaySite& s) {
-    return std::make_shared<const SurfacePatch>(*scene_.triangles, scene_.plane_nm,
+    return std::make_shared<const LocalSurface>(*scene_.triangles, scene_.plane_nm,
                                                 s.surface.position, s.flat.normal);
   };
   if (patches_.size() > most_patches) patches_.clear();
@@ -82,7 +82,7 @@ std::shared_ptr<const SurfacePatch> SiteReplay::patch(int x, int y, const Replay
                    std::min(y / block_ * block_ + block_ / 2, scene_.scan.height - 1));
     if (middle.hit) at->second = {middle.flat.normal, own(middle)};
   }
-  const BlockPatch& block = at->second;
+  const BlockSurface& block = at->second;
   const bool near = block.patch && dot(block.normal, site.flat.normal) > shared_cosine &&
                     length(block.patch->frame().origin - site.surface.position) < shared_nm;
   return near ? block.patch : own(site);

@@ -23,7 +23,7 @@ struct ReplaySite {
   SceneGeometry::Surface surface;     ///< where it meets it
   FlatSurroundings<SceneGeometry::State> flat;
   int material = -1;                  ///< behind the surface
-  std::shared_ptr<const SurfacePatch> patch;   ///< null where nobody looked, or all is flat
+  std::shared_ptr<const LocalSurface> patch;   ///< null where nobody looked, or all is flat
 };
 
 /// Replays primaries in a scene, on one thread.
@@ -64,7 +64,7 @@ class SiteReplay {
  private:
   ReplaySite site_alone(int x, int y);
   void find_plane(ReplaySite& site) const;
-  std::shared_ptr<const SurfacePatch> patch(int x, int y, const ReplaySite& site);
+  std::shared_ptr<const LocalSurface> patch(int x, int y, const ReplaySite& site);
 
   const Scene::Impl& scene_;
   SceneGeometry geometry_;
@@ -80,12 +80,12 @@ class SiteReplay {
     bool top;
   };
   std::vector<KnownPlane> planes_;
-  struct BlockPatch {
+  struct BlockSurface {
     Vec3 normal;
-    std::shared_ptr<const SurfacePatch> patch;   // null where the beam meets nothing
+    std::shared_ptr<const LocalSurface> patch;   // null where the beam meets nothing
   };
   int block_;                         // of pixels to a side that may share a patch
-  std::map<std::pair<int, int>, BlockPatch> patches_;
+  std::map<std::pair<int, int>, BlockSurface> patches_;
 };
 
 }  // namespace surf::mc

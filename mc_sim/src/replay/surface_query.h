@@ -49,7 +49,7 @@ class SurfaceQuery {
   explicit SurfaceQuery(G& geometry) : geometry_(geometry) {}
 
   /// `patch`: null, or one that stays until the next call.
-  void at(const FlatSurroundings<State>& flat, const SurfacePatch* patch) {
+  void at(const FlatSurroundings<State>& flat, const LocalSurface* patch) {
     flat_ = flat;
     patch_ = patch;
     frame_ = patch ? patch->frame() : Frame{};
@@ -137,7 +137,7 @@ class SurfaceQuery {
   }
 
  private:
-  using Answer = SurfacePatch::Crossed::Answer;
+  using Answer = LocalSurface::Crossed::Answer;
 
   /// Whether a sphere lies in the flat surroundings.
   bool is_flat_around(const BranchPose& pose, State state, const Float4& center, float radius) const {
@@ -151,10 +151,10 @@ class SurfaceQuery {
 
   G& geometry_;
   FlatSurroundings<State> flat_;
-  const SurfacePatch* patch_ = nullptr;
+  const LocalSurface* patch_ = nullptr;
   Frame frame_;
   FramedPlane plane_;
-  SurfacePatch::Crossed crossed_;   // scratch
+  LocalSurface::Crossed crossed_;   // scratch
 };
 
 }  // namespace surf::mc

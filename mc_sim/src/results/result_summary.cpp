@@ -7,7 +7,7 @@
 #include <set>
 #include <utility>
 
-#include "sampling/adaptive_sampling.h"
+#include "results/seen_pixels.h"
 
 namespace surf::mc {
 
@@ -22,19 +22,6 @@ double common_error(const SimulationResult& r, std::size_t d, int x, int y, cons
                        static_cast<double>(r.library_cascades);
   return std::min(e.standard_error,
                   std::hypot(of_control, e.standard_error * std::sqrt(std::min(1.0, drawn))));
-}
-
-double target(const SimulationResult& r, std::size_t d, double mean, double accuracy) {
-  return std::max(accuracy * mean, floor_of(r.budget) * r.detectors[d].efficiency);
-}
-
-template <class Visit>
-void for_seen_pixels(const SimulationResult& r, const Visit& visit) {
-  for (int y = 0; y < r.pixels.height(); ++y) {
-    for (int x = 0; x < r.pixels.width(); ++x)
-      if (r.pixels(x, y).hits > 0) visit(x, y);
-    r.release();
-  }
 }
 
 }  // namespace
@@ -88,24 +75,6 @@ ResultSummary summarize(const SimulationResult& r) {
   for (std::size_t d = 0; d < detectors; ++d)
     s.yields.push_back({sum[d] / n, std::hypot(std::sqrt(std::max(0.0, variance[d])), common[d]) / n});
   return s;
-}
-
-double expected_primaries(const SimulationResult& r, double accuracy) {
-  double all = 0;
-  for_seen_pixels(r, [&](int x, int y) {
-    const PixelTally& p = r.pixels(x, y);
-    if (p.model == PixelModel::plane) return;
-    const auto n = static_cast<double>(p.primaries);
-    double wanted = fewest_primaries;
-    for (std::size_t d = 0; d < r.detectors.size(); ++d) {
-      const double efficiency = r.detectors[d].efficiency;
-      const double own = estimate(p.primaries, r.counts[d](x, y)).standard_error * efficiency;
-      const double t = target(r, d, std::max(0.0, r.yield(d, x, y).mean), accuracy);
-      if (t > 0) wanted = std::max(wanted, own * own * n / (t * t));
-    }
-    all += pilot_primaries + reserve_of_primaries * wanted;
-  });
-  return all;
 }
 
 std::size_t planes_used(const SimulationResult& r) {

@@ -155,13 +155,13 @@ void walk(Way& way, Tally& t) {
 
 }  // namespace
 
-std::string pack(const UnitTally& tally) {
+std::string serialize(const UnitTally& tally) {
   Packer packer;
   walk(packer, tally);
   return std::move(packer.bytes);
 }
 
-UnitTally unpack(std::string_view bytes) {
+UnitTally deserialize(std::string_view bytes) {
   Unpacker unpacker(bytes);
   UnitTally tally;
   walk(unpacker, tally);

@@ -27,7 +27,7 @@ constexpr double most_share = 0.9;
 class SpendingWorker : public UnitWorker {
  public:
   SpendingWorker(const Scene::Impl& scene, const SimulationOptions& options,
-                 const Libraries& libraries, PlaneControls& controls)
+                 const Libraries& libraries, PlanarControls& controls)
       : scene_(scene), options_(options), controls_(controls), replay_(scene, options, libraries),
         detectors_(options.detectors.size()), cascades_(controls.cascades()) {}
 
@@ -51,10 +51,10 @@ class SpendingWorker : public UnitWorker {
     std::uint64_t number = 0;
     int x = 0, y = 0;
     ReplaySite site;
-    PlaneControls::Match match;
+    PlanarControls::Match match;
     bool plane = false;               // nothing is left to simulate
     std::vector<Sample> plain, difference;   // the pilot's, then those that count; per detector
-    Subset subset{Subset::run, 0, 0};
+    StratifiedPermutation subset{StratifiedPermutation::run, 0, 0};
     std::uint64_t used = 0, end = 0;  // of its primaries: taken, and to be taken now
   };
 
@@ -71,7 +71,7 @@ class SpendingWorker : public UnitWorker {
     p.site = replay_.site(p.x, p.y, true);
     RandomStream own(options_.seed, p.number, random_streams::order_of_cascades);
     const std::uint32_t a = own.bits(), b = own.bits();
-    p.subset = Subset(cascades_, a, b);
+    p.subset = StratifiedPermutation(cascades_, a, b);
     p.plain.resize(detectors_);
     p.difference.resize(detectors_);
     if (p.site.single && !p.site.hit) return;
@@ -109,12 +109,12 @@ class SpendingWorker : public UnitWorker {
   void run(Pixel& p, std::uint64_t electron, std::size_t cascade, const Take& take) {
     check();
     ReplayedPrimary primary{options_.seed, p.number, electron, cascade, 0};
-    const PlaneControl* control = p.match.control.get();
+    const PlanarControl* control = p.match.control.get();
     if (control) {
       // As in the control, so that where the surface is nearly the plane it gives nearly the same.
       primary.pixel = control->number;
       primary.electron = cascade;
-      primary.azimuth = PlaneControls::azimuth(options_.seed, cascade) + p.match.azimuth;
+      primary.azimuth = PlanarControls::azimuth(options_.seed, cascade) + p.match.azimuth;
     } else {
       primary.azimuth = azimuth_of(primary);
     }
@@ -264,7 +264,7 @@ class SpendingWorker : public UnitWorker {
 
   const Scene::Impl& scene_;
   const SimulationOptions& options_;
-  PlaneControls& controls_;
+  PlanarControls& controls_;
   SiteReplay replay_;
   std::size_t detectors_;
   std::size_t cascades_;
@@ -278,7 +278,7 @@ class SpendingWorker : public UnitWorker {
 std::unique_ptr<UnitWorker> make_spending_worker(const Scene::Impl& scene,
                                                  const SimulationOptions& options,
                                                  const Libraries& libraries,
-                                                 PlaneControls& controls) {
+                                                 PlanarControls& controls) {
   return std::make_unique<SpendingWorker>(scene, options, libraries, controls);
 }
 

@@ -17,7 +17,7 @@ namespace surf::mc {
 template <class Pixel, class Serve>
 void by_blocks(const std::vector<Pixel>& pixels, std::size_t cascades, SiteReplay& replay,
                const Serve& serve) {
-  for (std::uint64_t block = 0; block < cascades / Subset::block; ++block)
+  for (std::uint64_t block = 0; block < cascades / StratifiedPermutation::block; ++block)
     for (std::size_t i = 0; i < pixels.size(); ++i) {
       const Pixel& p = pixels[i];
       bool there = false;

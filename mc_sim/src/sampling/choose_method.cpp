@@ -83,6 +83,7 @@ double start_energy_ev(const Scene& scene, std::size_t material) {
 LibraryWork library_work(const Scene& scene, const SimulationOptions& options) {
   LibraryWork work;
   for (std::size_t m = 0; m < scene.materials().size(); ++m) {
+    if (!can_replay(*scene.impl().medium_pointers[m])) continue;
     const CascadeSample sample = sample_cascades(
         {scene.materials()[m], scene.physics(), start_energy_ev(scene, m), options.seed});
     work.bytes += sample.bytes;

@@ -41,7 +41,7 @@ class ReplayWorker : public UnitWorker {
     std::uint64_t number;
     std::uint64_t used, end;  // of its primaries: the first, and one past the last
     ReplaySite site;
-    Subset subset;
+    StratifiedPermutation subset;
   };
 
   void look(const WorkUnit& unit) {
@@ -55,7 +55,7 @@ class ReplayWorker : public UnitWorker {
         pixels_.push_back({x, y, number, static_cast<std::uint64_t>(unit.first_electron),
                            static_cast<std::uint64_t>(std::max<std::int64_t>(end, 0)),
                            replay_.site(x, y, end - unit.first_electron >= worth_looking_around),
-                           Subset(cascades_, a, b)});
+                           StratifiedPermutation(cascades_, a, b)});
       }
   }
 

@@ -13,13 +13,13 @@ namespace surf::mc {
 /// none twice before all were taken. Cascades are independent of each other, so any choice that does
 /// not look at them is as good as a random one. Pixels that are served together go through the
 /// library block by block, so that the processor's cache holds what they replay.
-class Subset {
+class StratifiedPermutation {
  public:
   static constexpr std::uint64_t run = 32, block = 64;
   static_assert(CascadeLibrary::page_cascades % block == 0 && block % run == 0);
 
   /// `a` and `b` are random words; `cascades` a multiple of `block`.
-  Subset(std::uint64_t cascades, std::uint32_t a, std::uint32_t b)
+  StratifiedPermutation(std::uint64_t cascades, std::uint32_t a, std::uint32_t b)
       : blocks_(cascades / block), first_(blocks_ > 0 ? a % blocks_ : 0), key_(b) {}
 
   /// The cascade of the pixel's primary `i`.

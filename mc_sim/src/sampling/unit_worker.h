@@ -14,7 +14,7 @@
 
 namespace surf::mc {
 
-class PlaneControls;
+class PlanarControls;
 
 /// Simulates units of work, one thread's share. A unit's tally depends on scene, options and unit
 /// alone.
@@ -45,6 +45,6 @@ std::unique_ptr<UnitWorker> make_direct_spending_worker(const Scene::Impl& scene
 std::unique_ptr<UnitWorker> make_spending_worker(const Scene::Impl& scene,
                                                  const SimulationOptions& options,
                                                  const Libraries& libraries,
-                                                 PlaneControls& controls);
+                                                 PlanarControls& controls);
 
 }  // namespace surf::mc

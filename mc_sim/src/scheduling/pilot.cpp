@@ -87,7 +87,7 @@ struct Sums {
     primaries += scale * static_cast<double>(tally.balance.incident);
     rays += scale * static_cast<double>(tally.balance.rays);
     steps += scale * static_cast<double>(tally.balance.steps);
-    bytes += scale * static_cast<double>(pack(tally).size());
+    bytes += scale * static_cast<double>(serialize(tally).size());
   }
 };
 
@@ -121,30 +121,30 @@ Pilot run_pilot(const Scene& scene, const SimulationOptions& options, double sec
   const UnitPlan plan(scene.scan(), options);
   pilot.units_in_all = plan.units();
   const auto begin = Clock::now();
-  Workshop workshop;
+  PreparedSimulation prepared;
   const auto cancelled = [&] { return cancel && cancel->cancelled(); };
   try {
-    if (!workshop.prepare(scene, options, libraries, plan.most(), progress, cancel)) throw Interrupted();
+    if (!prepared.prepare(scene, options, libraries, plan.most(), progress, cancel)) throw Interrupted();
     pilot.library_seconds = since(begin);
-    pilot.library_cascades = workshop.cascades();
-    pilot.library_bytes = workshop.library_bytes();
+    pilot.library_cascades = prepared.cascades();
+    pilot.library_bytes = prepared.library_bytes();
 
     const int threads = resolve_threads(options.threads);
     Spread of_parts(plan.units()), of_units(plan.units());
     std::mutex mutex;
     Sums parts, units;
     // Who is the first on a plane makes it: that is no matter of the unit.
-    const std::size_t planes = workshop.planes_expected(pixels_looked_at);
-    const PlaneControls::Made made_before = workshop.planes_made();
+    const std::size_t planes = prepared.planes_expected(pixels_looked_at);
+    const PlanarControls::Made made_before = prepared.planes_made();
     const auto start = Clock::now();
     const auto out_of_time = [&] {
-      const double for_planes = (workshop.planes_made().seconds - made_before.seconds) / threads;
+      const double for_planes = (prepared.planes_made().seconds - made_before.seconds) / threads;
       return since(start) - std::min(for_planes, most_for_planes * seconds) > seconds;
     };
     const auto probing = [&] { return parts.units < threads || since(start) < share_of_parts * seconds; };
     const auto short_enough = [&] { return parts.seconds / parts.units < longest_share * seconds; };
     parallel_for(static_cast<std::size_t>(threads), threads, [&](std::size_t, int) {
-      const auto worker = workshop.worker();
+      const auto worker = prepared.worker();
       worker->cancel = cancel;
       UnitTally tally;
       worker->simulate(part_of(plan.unit(0), 0, 0), nullptr, tally);   // gets tables and memory ready
@@ -163,9 +163,9 @@ Pilot run_pilot(const Scene& scene, const SimulationOptions& options, double sec
         }
         tally = {};
         const auto now = Clock::now();
-        const double planes_before = PlaneControls::seconds_of_this_thread();
+        const double planes_before = PlanarControls::seconds_of_this_thread();
         worker->simulate(tried, nullptr, tally);
-        const double took = since(now) - (PlaneControls::seconds_of_this_thread() - planes_before);
+        const double took = since(now) - (PlanarControls::seconds_of_this_thread() - planes_before);
         const std::lock_guard lock(mutex);
         (whole ? units : parts).add(took, tally, unit, tried);
         if (progress) progress(std::min(seconds, since(start)), seconds);
@@ -178,7 +178,7 @@ Pilot run_pilot(const Scene& scene, const SimulationOptions& options, double sec
     pilot.seconds = since(start);
     const double all_work = static_cast<double>(scene.scan().width) * scene.scan().height * static_cast<double>(plan.most());
     conclude(sums, all_work, pilot.whole, threads, pilot);
-    if (const PlaneControls::Made made = workshop.planes_made(); made.planes > 0) {
+    if (const PlanarControls::Made made = prepared.planes_made(); made.planes > 0) {
       pilot.planes = planes;
       pilot.planes_s = made.seconds / static_cast<double>(made.planes) * static_cast<double>(planes) / threads;
       pilot.expected_s += pilot.planes_s;

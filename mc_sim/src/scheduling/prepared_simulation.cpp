@@ -30,9 +30,9 @@ std::size_t library_size(const SimulationOptions& options, std::int64_t most_pri
   return static_cast<std::size_t>(pages) * CascadeLibrary::page_cascades;
 }
 
-bool Workshop::prepare(const Scene& scene, const SimulationOptions& options, LibrarySource* source,
+bool PreparedSimulation::prepare(const Scene& scene, const SimulationOptions& options, LibrarySource* source,
                        std::int64_t most_primaries, const ProgressCallback& progress, const CancelToken* cancel,
-                       bool crew) {
+                       bool shared) {
   scene_ = &scene.impl();
   options_ = &options;
   if (options.method == Method::direct) return true;
@@ -41,7 +41,7 @@ bool Workshop::prepare(const Scene& scene, const SimulationOptions& options, Lib
   const std::size_t least = library_size(options, most_primaries);
   if (!get(scene, *source, least, progress, cancel)) return false;
   if (!(accuracy_of(options.budget) > 0)) return true;
-  measure_yields(static_cast<int>(scene.materials().size()), crew ? nullptr : cancel);
+  measure_yields(static_cast<int>(scene.materials().size()), shared ? nullptr : cancel);
   const double share = options.planar_control && only_planes() ? all_of_the_variance : usual_share_of_variance;
   const std::size_t wanted = std::min(library_size(options, most_primaries, yields_, share),
                                       cascades_that_fit(options.library_memory));
@@ -50,12 +50,16 @@ bool Workshop::prepare(const Scene& scene, const SimulationOptions& options, Lib
   return true;
 }
 
-bool Workshop::get(const Scene& scene, LibrarySource& source, std::size_t wanted, const ProgressCallback& progress,
+bool PreparedSimulation::get(const Scene& scene, LibrarySource& source, std::size_t wanted, const ProgressCallback& progress,
                    const CancelToken* cancel) {
   libraries_.clear();
   cascades_ = 0;
   for (std::size_t m = 0; m < scene.materials().size(); ++m) {
     const Medium& medium = *scene_->medium_pointers[m];
+    if (!can_replay(medium)) {   // its electrons are followed directly
+      libraries_.emplace_back();
+      continue;
+    }
     const CascadeSettings settings{scene.materials()[m], scene.physics(),
                                    scene.beam().energy_ev + medium.barrier_ev(), options_->seed};
     auto library = source.library(settings, wanted, options_->threads, progress, cancel);
@@ -63,11 +67,11 @@ bool Workshop::get(const Scene& scene, LibrarySource& source, std::size_t wanted
     libraries_.push_back(std::move(library));
   }
   for (const auto& library : libraries_)
-    cascades_ = cascades_ == 0 ? library->cascades() : std::min(cascades_, library->cascades());
+    if (library) cascades_ = cascades_ == 0 ? library->cascades() : std::min(cascades_, library->cascades());
   return true;
 }
 
-std::unique_ptr<UnitWorker> Workshop::worker() {
+std::unique_ptr<UnitWorker> PreparedSimulation::worker() {
   if (options_->method == Method::direct)
     return accuracy_of(options_->budget) > 0 ? make_direct_spending_worker(*scene_, *options_)
                                   : make_direct_worker(*scene_, *options_);
@@ -75,10 +79,10 @@ std::unique_ptr<UnitWorker> Workshop::worker() {
   return make_replay_worker(*scene_, *options_, libraries_);
 }
 
-std::size_t Workshop::planes_expected(int pixels) const {
+std::size_t PreparedSimulation::planes_expected(int pixels) const {
   if (!controls_ || !options_->planar_control) return 0;
   SiteReplay replay(*scene_, *options_, libraries_);
-  std::set<PlaneControls::Key> keys;
+  std::set<PlanarControls::Key> keys;
   const double all = static_cast<double>(scene_->scan.width) * scene_->scan.height;
   const int stride = std::max(1, static_cast<int>(std::sqrt(all / pixels)));
   for (int y = stride / 2; y < scene_->scan.height; y += stride)
@@ -89,20 +93,21 @@ std::size_t Workshop::planes_expected(int pixels) const {
   return std::max(keys.size(), controls_->made().planes);
 }
 
-std::size_t Workshop::library_bytes() const {
+std::size_t PreparedSimulation::library_bytes() const {
   std::size_t bytes = 0;
-  for (const auto& library : libraries_) bytes += library->bytes();
+  for (const auto& library : libraries_)
+    if (library) bytes += library->bytes();
   return bytes;
 }
 
 // On the plane where counts scatter most for their mean: the one across the beam.
-void Workshop::measure_yields(int materials, const CancelToken* cancel) {
+void PreparedSimulation::measure_yields(int materials, const CancelToken* cancel) {
   constexpr std::size_t pilot = 5 * CascadeLibrary::page_cascades;
   Libraries first;
   for (const auto& library : libraries_)
-    first.push_back(std::make_shared<CascadeLibrary>(
-        library->first(pilot / CascadeLibrary::page_cascades)));
-  PlaneControls controls(*scene_, *options_, first, cancel);
+    first.push_back(library ? std::make_shared<CascadeLibrary>(library->first(pilot / CascadeLibrary::page_cascades))
+                            : nullptr);
+  PlanarControls controls(*scene_, *options_, first, cancel);
   for (int m = 0; m < materials; ++m) {
     const auto match = controls.match(m, -direction(scene_->beam), false);
     for (const Counts& sums : match.control->sums) {
@@ -115,7 +120,7 @@ void Workshop::measure_yields(int materials, const CancelToken* cancel) {
 
 // Whether every pixel is proved to be a plane, so that nothing but the library's error is in it. Ends at
 // the first that is not.
-bool Workshop::only_planes() const {
+bool PreparedSimulation::only_planes() const {
   SiteReplay replay(*scene_, *options_, libraries_);
   for (int y = 0; y < scene_->scan.height; ++y)
     for (int x = 0; x < scene_->scan.width; ++x) {
@@ -125,11 +130,11 @@ bool Workshop::only_planes() const {
   return true;
 }
 
-std::size_t Workshop::cascades_that_fit(double bytes) const {
+std::size_t PreparedSimulation::cascades_that_fit(double bytes) const {
   constexpr std::size_t page = CascadeLibrary::page_cascades;
   double of_a_page = 0;
   for (const auto& library : libraries_)
-    of_a_page += static_cast<double>(library->bytes()) / static_cast<double>(library->pages());
+    if (library) of_a_page += static_cast<double>(library->bytes()) / static_cast<double>(library->pages());
   return static_cast<std::size_t>(bytes / of_a_page) * page;
 }
 

@@ -14,13 +14,13 @@
 namespace surf::mc {
 
 /// What the workers of a simulation share: libraries, and planes to compare with.
-class Workshop {
+class PreparedSimulation {
  public:
-  /// False when cancelled. Scene and options must outlive it. With others (`crew`) only the source looks at `cancel`
+  /// False when cancelled. Scene and options must outlive it. With others (`shared`) only the source looks at `cancel`
   /// before all have their libraries.
   bool prepare(const Scene& scene, const SimulationOptions& options, LibrarySource* source,
                std::int64_t most_primaries, const ProgressCallback& progress, const CancelToken* cancel,
-               bool crew = false);
+               bool shared = false);
 
   /// Of each material in each detector, with a wanted accuracy.
   const std::vector<CascadeYield>& yields() const { return yields_; }
@@ -30,7 +30,7 @@ class Workshop {
   /// Of each material, those that there are; 0 without replay.
   std::size_t cascades() const { return cascades_; }
   /// Planes made so far to compare with; nothing without a wanted accuracy and replay.
-  PlaneControls::Made planes_made() const { return controls_ ? controls_->made() : PlaneControls::Made{}; }
+  PlanarControls::Made planes_made() const { return controls_ ? controls_->made() : PlanarControls::Made{}; }
   /// How many there will be, from so many pixels of the scan, about, that are looked at.
   std::size_t planes_expected(int pixels) const;
 
@@ -49,7 +49,7 @@ class Workshop {
   std::size_t cascades_ = 0;
   Libraries libraries_;
   std::vector<CascadeYield> yields_;
-  std::optional<PlaneControls> controls_;
+  std::optional<PlanarControls> controls_;
 };
 
 }  // namespace surf::mc

@@ -65,7 +65,7 @@ struct Shortfall {
 
 // The proof by trial: no bound exceeds the true distance, near the surface and all over the domain.
 Shortfall expect_bounds(const TriangleMesh& mesh, const Box& domain, std::size_t bytes, int points) {
-  const NearField field(mesh, domain, bytes);
+  const DistanceGrid field(mesh, domain, bytes);
   RandomStream random(1, bytes, mesh.triangles.size());
   const Vec3 size = domain.size_nm(), margin = size * 0.2;
   Shortfall out;
@@ -97,7 +97,7 @@ TriangleMesh moved(TriangleMesh mesh, const Vec3& by) {
 
 }  // namespace
 
-TEST(NearField, IsNeverMoreThanTheDistance) {
+TEST(DistanceGrid, IsNeverMoreThanTheDistance) {
   const TriangleMesh box = make_box({-50, -40, -30}, {50, 40, 30});
   EXPECT_LT(expect_bounds(box, bounds(box), memory, 200000).mean_nm, 0.1);
   const TriangleMesh ball = make_sphere({100, 0, -7}, 25, 3);
@@ -109,9 +109,9 @@ TEST(NearField, IsNeverMoreThanTheDistance) {
   EXPECT_LT(expect_bounds(membrane, bounds(membrane), memory, 100000).mean_nm, 0.2);
 }
 
-TEST(NearField, IsTightNextToAFlatFacet) {
+TEST(DistanceGrid, IsTightNextToAFlatFacet) {
   const TriangleMesh box = make_box({-50, -50, -50}, {50, 50, 50}, 4);
-  const NearField field(box, bounds(box), memory);
+  const DistanceGrid field(box, bounds(box), memory);
   RandomStream random(2, 0, 0);
   double lost = 0;
   const int n = 20000;
@@ -125,7 +125,7 @@ TEST(NearField, IsTightNextToAFlatFacet) {
   EXPECT_LT(lost / n, 0.05);
 }
 
-TEST(NearField, HoldsForRoughSurfacesAndAllowsForWhatLiesOutsideItsDomain) {
+TEST(DistanceGrid, HoldsForRoughSurfacesAndAllowsForWhatLiesOutsideItsDomain) {
   const TriangleMesh sheet = half_space_top(make_mesa({120, 120, 6}, 60, 30, 10), 1000);
   Box domain;
   domain.extend(Vec3{-30, -30, 0});
@@ -136,7 +136,7 @@ TEST(NearField, HoldsForRoughSurfacesAndAllowsForWhatLiesOutsideItsDomain) {
   EXPECT_LT(expect_bounds(top, bounds(height_field_sheet(rough)), memory, 10000).mean_nm, 0.5);
 }
 
-TEST(NearField, HoldsFarFromTheOrigin) {
+TEST(DistanceGrid, HoldsFarFromTheOrigin) {
   const Vec3 away{1e5, -1e5, 1e5};
   const TriangleMesh ball = moved(make_sphere({0, 0, 0}, 25, 3), away);
   EXPECT_LT(expect_bounds(ball, bounds(ball), memory, 20000).mean_nm, 0.4);
@@ -144,7 +144,7 @@ TEST(NearField, HoldsFarFromTheOrigin) {
   EXPECT_LT(expect_bounds(box, bounds(box), memory, 40000).mean_nm, 0.1);
 }
 
-TEST(NearField, HoldsForTrianglesSmallerThanItsCellsAmongLargeOnes) {
+TEST(DistanceGrid, HoldsForTrianglesSmallerThanItsCellsAmongLargeOnes) {
   TriangleMesh mesh = make_sphere({3, 2, 20}, 7, 4);   // sides of half a nanometre
   const TriangleMesh box = make_box({-60, -60, -20}, {60, 60, 10});
   const auto base = static_cast<std::uint32_t>(mesh.vertices_nm.size());
@@ -158,7 +158,7 @@ TEST(NearField, HoldsForTrianglesSmallerThanItsCellsAmongLargeOnes) {
   expect_bounds(coarse, bounds(coarse), 1 << 16, 5000);
 }
 
-TEST(NearField, HoldsForNeedlesAndTrianglesWithoutArea) {
+TEST(DistanceGrid, HoldsForNeedlesAndTrianglesWithoutArea) {
   TriangleMesh mesh;
   RandomStream random(3, 0, 0);
   for (std::uint32_t i = 0; i < 60; ++i) {
@@ -171,7 +171,7 @@ TEST(NearField, HoldsForNeedlesAndTrianglesWithoutArea) {
   EXPECT_LT(expect_bounds(mesh, bounds(mesh), memory, 100000).mean_nm, 0.5);
 }
 
-TEST(NearField, HoldsForADragonfly) {
+TEST(DistanceGrid, HoldsForADragonfly) {
   const char* const folder = std::getenv("SEMSURF_TEST_DATA");
   if (!folder || !std::filesystem::exists(folder))
     GTEST_SKIP() << "SEMSURF_TEST_DATA names no folder: real files are not tested";
@@ -181,9 +181,9 @@ TEST(NearField, HoldsForADragonfly) {
   EXPECT_LT(expect_bounds(mesh, bounds(mesh), memory, 10000).mean_nm, 0.7);
 }
 
-TEST(NearField, IsTheSameForAnyNumberOfThreads) {
+TEST(DistanceGrid, IsTheSameForAnyNumberOfThreads) {
   const TriangleMesh ball = make_sphere({0, 0, 0}, 25, 3);
-  const NearField one(ball, bounds(ball), memory, 1), three(ball, bounds(ball), memory, 3);
+  const DistanceGrid one(ball, bounds(ball), memory, 1), three(ball, bounds(ball), memory, 3);
   EXPECT_EQ(one.bytes(), three.bytes());
   RandomStream random(4, 0, 0);
   for (int i = 0; i < 20000; ++i) {
@@ -192,15 +192,15 @@ TEST(NearField, IsTheSameForAnyNumberOfThreads) {
   }
 }
 
-TEST(NearField, KeepsToItsMemory) {
+TEST(DistanceGrid, KeepsToItsMemory) {
   const TriangleMesh top = half_space_top(make_rough({100, 100, 2}, 8, 25, 1), 1000);
   for (const std::size_t bytes : {1u << 16, 1u << 20, 1u << 22})
-    EXPECT_LT(NearField(top, bounds(top), bytes).bytes(), 1.5 * static_cast<double>(bytes));
+    EXPECT_LT(DistanceGrid(top, bounds(top), bytes).bytes(), 1.5 * static_cast<double>(bytes));
 }
 
-TEST(NearField, WithoutMemoryBoundsOnlyOutsideTheBox) {
+TEST(DistanceGrid, WithoutMemoryBoundsOnlyOutsideTheBox) {
   const TriangleMesh box = make_box({-50, -50, -50}, {50, 50, 50});
-  const NearField field(box, bounds(box), 0);
+  const DistanceGrid field(box, bounds(box), 0);
   EXPECT_EQ(field.bound_nm({0, 0, 0}), 0);
   EXPECT_NEAR(field.bound_nm({0, 0, 80}), 30, 0.01);
 }

@@ -19,7 +19,7 @@ using test::isotropic;
 // Rays that leave the surface, and rays from anywhere around it; never free where the ray tracer
 // hits from outside. The answer is the share proven of those that leave and are free.
 double share_of_free(const TriangleMesh& mesh, const Box& domain, bool from_tops) {
-  const Sky sky(mesh, domain, 1 << 12);
+  const HorizonMap sky(mesh, domain, 1 << 12);
   const EmbreeScene rays(mesh);
   RandomStream random(1, mesh.triangles.size(), 0);
   const Vec3 size = domain.size_nm();
@@ -58,7 +58,7 @@ double share_of_free(const TriangleMesh& mesh, const Box& domain, bool from_tops
 
 }  // namespace
 
-TEST(Sky, IsNeverFreeWhereSomethingIsMet) {
+TEST(HorizonMap, IsNeverFreeWhereSomethingIsMet) {
   const HeightField mesa = make_mesa({200, 200, 4}, 60, 60, 8);
   const double of_mesa =
       share_of_free(half_space_top(mesa, 4000), bounds(height_field_sheet(mesa)), true);
@@ -77,7 +77,7 @@ TEST(Sky, IsNeverFreeWhereSomethingIsMet) {
   EXPECT_GT(share_of_free(cubes, bounds(cubes), true), 0.6);
 }
 
-TEST(Sky, AllowsForWhatLiesOutsideItsColumns) {
+TEST(HorizonMap, AllowsForWhatLiesOutsideItsColumns) {
   const HeightField mesa = make_mesa({200, 200, 4}, 60, 60, 8);
   Box part;
   part.extend(Vec3{50, 20, 0});
@@ -85,7 +85,7 @@ TEST(Sky, AllowsForWhatLiesOutsideItsColumns) {
   share_of_free(half_space_top(mesa, 4000), part, true);
 }
 
-TEST(Sky, KnowsTheWallNextToAPoint) {
+TEST(HorizonMap, KnowsTheWallNextToAPoint) {
   // Columns of 2 nm, and steep rays that meet a wall in the next one, just below its top.
   TriangleMesh walls = make_box({-32, -32, 0}, {32, 32, 1});
   const TriangleMesh box = make_box({-10.1, -10.1, 1}, {10.1, 10.1, 11});
@@ -93,7 +93,7 @@ TEST(Sky, KnowsTheWallNextToAPoint) {
   walls.vertices_nm.insert(walls.vertices_nm.end(), box.vertices_nm.begin(), box.vertices_nm.end());
   for (const Triangle& t : box.triangles)
     walls.triangles.push_back({base + t[0], base + t[1], base + t[2]});
-  const Sky sky(walls, bounds(walls), 1 << 10);
+  const HorizonMap sky(walls, bounds(walls), 1 << 10);
   const EmbreeScene rays(walls);
   RandomStream random(5, 0, 0);
   int met = 0, free = 0;
@@ -115,7 +115,7 @@ TEST(Sky, KnowsTheWallNextToAPoint) {
   EXPECT_GT(free, 100);
 }
 
-TEST(Sky, KnowsTheNextToothWithinAColumn) {
+TEST(HorizonMap, KnowsTheNextToothWithinAColumn) {
   // Teeth much narrower than columns: by the next column a ray from between them is above all others.
   HeightField teeth;
   teeth.pitch_x_nm = teeth.pitch_y_nm = 0.25;
@@ -123,7 +123,7 @@ TEST(Sky, KnowsTheNextToothWithinAColumn) {
   for (int y = 0; y < 129; ++y)
     for (int x = 0; x < 129; ++x) teeth.z_nm(x, y) = 0.5 * std::abs(x % 4 - 2);
   const TriangleMesh top = height_field_sheet(teeth);
-  const Sky sky(top, bounds(top), 1 << 8);
+  const HorizonMap sky(top, bounds(top), 1 << 8);
   const EmbreeScene rays(top);
   RandomStream random(6, 0, 0);
   int met = 0, free = 0;
@@ -146,9 +146,9 @@ TEST(Sky, KnowsTheNextToothWithinAColumn) {
   EXPECT_GT(free, 10000);
 }
 
-TEST(Sky, IsNotFreeBelowARoofNorDownward) {
+TEST(HorizonMap, IsNotFreeBelowARoofNorDownward) {
   const TriangleMesh roof = make_box({-20, -20, 10}, {20, 20, 12});
-  const Sky sky(roof, bounds(roof), 1 << 10);
+  const HorizonMap sky(roof, bounds(roof), 1 << 10);
   EXPECT_FALSE(sky.is_free({0, 0, 0}, {0, 0, 1}));
   EXPECT_FALSE(sky.is_free({0, 0, 20}, {0, 0, -1}));
   EXPECT_TRUE(sky.is_free({0, 0, 12}, {0, 0, 1}));

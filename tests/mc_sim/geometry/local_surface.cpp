@@ -20,7 +20,7 @@ namespace surf::mc {
 
 namespace {
 
-using Answer = SurfacePatch::Crossed::Answer;
+using Answer = LocalSurface::Crossed::Answer;
 
 struct Place {
   std::string name;
@@ -105,7 +105,7 @@ std::vector<Place> places() {
 // A mesh in a patch's frame, in double, and what is about the origin.
 struct Around {
   EmbreeScene scene;
-  SurfacePatch patch;
+  LocalSurface patch;
   Vec3 up;                       // the specimen's z
   std::optional<double> gap;     // the endless plane is up.p = gap
   struct Corners {
@@ -235,7 +235,7 @@ struct Tried {
 
 // What a patch says of a way, against all triangles.
 void expect_all_crossed(const Around& around, const Float4& a, const Float4& b, Tried& tried) {
-  SurfacePatch::Crossed crossed;
+  LocalSurface::Crossed crossed;
   around.patch.crossed(a, b, crossed);
   if (crossed.answer == Answer::unknown || crossed.answer == Answer::crowded) return;
   ++tried.answered;
@@ -355,40 +355,40 @@ INSTANTIATE_TEST_SUITE_P(Places, SurfacePatchOf, testing::ValuesIn(places()), []
   return name;
 });
 
-TEST(SurfacePatch, KnowsNothingWhereTrianglesAreTooMany) {
+TEST(LocalSurface, KnowsNothingWhereTrianglesAreTooMany) {
   const EmbreeScene dust(height_field_sheet(make_rough({4, 4, 0.05}, 0.2, 1, 1)));
-  const SurfacePatch patch(dust, {}, {0, 0, 0}, {0, 0, 1});
+  const LocalSurface patch(dust, {}, {0, 0, 0}, {0, 0, 1});
   EXPECT_TRUE(patch.empty());
   EXPECT_FALSE(patch.band(Float4{}, 0.1f).is_known());
-  SurfacePatch::Crossed crossed;
+  LocalSurface::Crossed crossed;
   patch.crossed(Float4{0, 0, 1, 0}, Float4{0, 0, -1, 0}, crossed);
   EXPECT_EQ(crossed.answer, Answer::unknown);
 }
 
-TEST(SurfacePatch, KnowsThatNothingIsThere) {
+TEST(LocalSurface, KnowsThatNothingIsThere) {
   const EmbreeScene away(make_sphere({500, 0, 0}, 10, 2));
-  const SurfacePatch patch(away, {}, {0, 0, 0}, {0, 0, 1});
+  const LocalSurface patch(away, {}, {0, 0, 0}, {0, 0, 1});
   EXPECT_EQ(patch.reach_nm(), 64);
   EXPECT_TRUE(patch.band(Float4{3, 4, 5, 0}, 20).is_clear(5, 20));
-  SurfacePatch::Crossed crossed;
+  LocalSurface::Crossed crossed;
   patch.crossed(Float4{0, 0, 30, 0}, Float4{0, 0, -30, 0}, crossed);
   EXPECT_EQ(crossed.answer, Answer::none);
 }
 
-TEST(SurfacePatch, SaysNothingOfBallsBeyondItsReach) {
+TEST(LocalSurface, SaysNothingOfBallsBeyondItsReach) {
   const EmbreeScene cube(make_box({-50, -50, -50}, {50, 50, 0}));
-  const SurfacePatch patch(cube, {}, {0, 0, 0}, {0, 0, 1});
+  const LocalSurface patch(cube, {}, {0, 0, 0}, {0, 0, 1});
   EXPECT_TRUE(patch.band(Float4{40, 0, 0, 0}, 20).is_known());
   EXPECT_FALSE(patch.band(Float4{40, 0, 0, 0}, 25).is_known());
   EXPECT_FALSE(patch.band(Float4{0, -70, 0, 0}, 1).is_known());
 }
 
 // Where many triangles are, halves of a way have few.
-TEST(SurfacePatch, CallsLongWaysAmongManyTrianglesCrowded) {
+TEST(LocalSurface, CallsLongWaysAmongManyTrianglesCrowded) {
   const Place fine = on_sheet("fine", height_field_sheet(make_rough({21, 21, 0.7}, 0.5, 4, 4)), 0, 0);
   const EmbreeScene scene(fine.mesh);
-  const SurfacePatch patch(scene, {}, fine.origin, fine.normal);
-  SurfacePatch::Crossed crossed;
+  const LocalSurface patch(scene, {}, fine.origin, fine.normal);
+  LocalSurface::Crossed crossed;
   patch.crossed(Float4{-1, 0, 1, 0}, Float4{1, 0, -1, 0}, crossed);
   EXPECT_EQ(crossed.answer, Answer::crowded);
   patch.crossed(Float4{-0.05f, 0, 0.05f, 0}, Float4{0.05f, 0, -0.05f, 0}, crossed);

@@ -150,4 +150,36 @@ TEST(Medium, SecondariesNeverOutdoTheirParents) {
   }
 }
 
+// A mechanism that debits cannot be joined where energies are equal, whatever the loss model is.
+TEST(Medium, LosesContinuouslyOnlyIfNoMechanismDebits) {
+  class Debiting final : public Scattering {
+   public:
+    std::string describe() const override { return "debiting"; }
+    double inverse_mean_free_path_per_nm(double) const override { return 1; }
+    bool debits() const override { return true; }
+    void scatter(double, RandomStream&, ScatterEvent& event) const override { event.energy_loss_ev = 1; }
+  };
+  EXPECT_TRUE(make(1, std::make_unique<Power>(5, 0)).loses_continuously());
+  EXPECT_FALSE(make(1, nullptr).loses_continuously());
+  std::vector<std::unique_ptr<const Scattering>> s;
+  s.push_back(std::make_unique<Isotropic>(1));
+  s.push_back(std::make_unique<Debiting>());
+  EXPECT_FALSE(Medium(std::move(s), std::make_unique<Power>(5, 0), 0, 4).loses_continuously());
+}
+
+TEST(Medium, MechanismsDebitOnlyIfTheySaySo) {
+  for (const char* name : {"Si", "Au", "PMMA"}) {
+    const Medium medium = make_medium(material(name), {});
+    RandomStream random(2, 3, 4);
+    for (int i = 0; i < 20'000; ++i) {
+      ScatterEvent event;
+      const double energy = 20 + 980 * random.uniform();
+      const Scattering& mechanism = medium.choose(energy, random.uniform());
+      mechanism.scatter(energy, random, event);
+      if (!mechanism.debits()) ASSERT_EQ(event.energy_loss_ev, 0) << mechanism.describe();
+    }
+    EXPECT_TRUE(medium.loses_continuously());
+  }
+}
+
 }  // namespace surf::mc

@@ -45,12 +45,12 @@ std::string refusal(const SimulationOptions& options, const Physics& physics = {
 
 }  // namespace
 
-TEST(Subset, TakesNoCascadeTwiceBeforeAllWereTaken) {
+TEST(StratifiedPermutation, TakesNoCascadeTwiceBeforeAllWereTaken) {
   for (const std::uint64_t cascades : {2048u, 10240u})
     for (std::uint64_t seed = 0; seed < 40; ++seed) {
       RandomStream random(1, seed, 0);
       const std::uint32_t a = random.bits(), b = random.bits();
-      const Subset subset(cascades, a, b);
+      const StratifiedPermutation subset(cascades, a, b);
       std::vector<int> taken(cascades);
       for (std::uint64_t i = 0; i < cascades; ++i) ++taken[subset[i]];
       EXPECT_EQ(std::count(taken.begin(), taken.end(), 1), static_cast<std::ptrdiff_t>(cascades));
@@ -58,17 +58,17 @@ TEST(Subset, TakesNoCascadeTwiceBeforeAllWereTaken) {
     }
 }
 
-TEST(Subset, SpreadsPixelsEvenly) {
+TEST(StratifiedPermutation, SpreadsPixelsEvenly) {
   // Over many pixels every run of cascades is taken equally often, and as the second run, too.
-  constexpr std::uint64_t cascades = 2048, runs = cascades / Subset::run;
+  constexpr std::uint64_t cascades = 2048, runs = cascades / StratifiedPermutation::run;
   std::vector<std::int64_t> first(runs), tenth(runs);
   constexpr int pixels = 20000;
   for (int p = 0; p < pixels; ++p) {
     RandomStream random(3, static_cast<std::uint64_t>(p), 0);
     const std::uint32_t a = random.bits(), b = random.bits();
-    const Subset subset(cascades, a, b);
-    ++first[subset[0] / Subset::run];
-    ++tenth[subset[9 * Subset::run] / Subset::run];
+    const StratifiedPermutation subset(cascades, a, b);
+    ++first[subset[0] / StratifiedPermutation::run];
+    ++tenth[subset[9 * StratifiedPermutation::run] / StratifiedPermutation::run];
   }
   const std::vector<double> even(runs, double(pixels) / runs);
   test::expect_distributed(first, even, 2);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "surf/mc/results/result_summary.h"
+#include "surf/mc/sampling/expected_primaries.h"
 
 #include <gtest/gtest.h>
 

@@ -8,9 +8,9 @@
 
 namespace surf::mc {
 
-TEST(Subset, TakesEachCascadeOnceBeforeAnyTwice) {
+TEST(StratifiedPermutation, TakesEachCascadeOnceBeforeAnyTwice) {
   for (const std::uint64_t cascades : {64u, 128u, 1024u, 64u * 17u}) {
-    const Subset subset(cascades, 123456789, 987654321);
+    const StratifiedPermutation subset(cascades, 123456789, 987654321);
     for (const std::uint64_t round : {0, 1, 2}) {
       std::set<std::size_t> taken;
       for (std::uint64_t i = round * cascades; i < (round + 1) * cascades; ++i) taken.insert(subset[i]);
@@ -21,7 +21,7 @@ TEST(Subset, TakesEachCascadeOnceBeforeAnyTwice) {
 }
 
 // Block by block are the same pairs of primary and cascade, each once, wherever the range begins.
-TEST(Subset, GivesTheSamePrimariesBlockByBlock) {
+TEST(StratifiedPermutation, GivesTheSamePrimariesBlockByBlock) {
   struct Range {
     std::uint64_t first, end;
   };
@@ -30,24 +30,24 @@ TEST(Subset, GivesTheSamePrimariesBlockByBlock) {
       for (const Range r : {Range{0, 0}, Range{0, 1}, Range{0, 31}, Range{0, 400}, Range{17, 18},
                             Range{31, 33}, Range{100, 1000}, Range{cascades, 3 * cascades + 5},
                             Range{1000001, 1003000}}) {
-        const Subset subset(cascades, a, 3 * a + 5);
+        const StratifiedPermutation subset(cascades, a, 3 * a + 5);
         std::set<std::uint64_t> served;
-        for (std::uint64_t b = 0; b < cascades / Subset::block; ++b)
+        for (std::uint64_t b = 0; b < cascades / StratifiedPermutation::block; ++b)
           subset.each_of_block(b, r.first, r.end, [&](std::uint64_t i, std::size_t cascade) {
             EXPECT_TRUE(served.insert(i).second) << i << " is served twice";
             EXPECT_EQ(cascade, subset[i]) << i << " of " << cascades;
-            EXPECT_EQ(cascade / Subset::block, b) << i;
+            EXPECT_EQ(cascade / StratifiedPermutation::block, b) << i;
             EXPECT_TRUE(i >= r.first && i < r.end) << i << " of " << r.first << " to " << r.end;
           });
         EXPECT_EQ(served.size(), r.end - r.first) << r.first << " to " << r.end << " of " << cascades;
       }
 }
 
-TEST(Subset, IsEachPixelsOwn) {
-  const Subset one(64 * 100, 5, 7), other(64 * 100, 6, 7), third(64 * 100, 5, 8);
+TEST(StratifiedPermutation, IsEachPixelsOwn) {
+  const StratifiedPermutation one(64 * 100, 5, 7), other(64 * 100, 6, 7), third(64 * 100, 5, 8);
   EXPECT_NE(one[0], other[0]);
   int different = 0;
-  for (std::uint64_t i = 0; i < 6400; i += Subset::run) different += one[i] != third[i];
+  for (std::uint64_t i = 0; i < 6400; i += StratifiedPermutation::run) different += one[i] != third[i];
   EXPECT_GT(different, 50);
 }
 

@@ -22,11 +22,11 @@ class Memory : public UnitJournal {
     asked.push_back(unit);
     const auto found = units.find(unit);
     if (found == units.end()) return false;
-    tally = unpack(found->second);
+    tally = deserialize(found->second);
     return true;
   }
   void record(std::size_t unit, const UnitTally& tally) override {
-    EXPECT_TRUE(units.emplace(unit, pack(tally)).second) << "unit " << unit << " came twice";
+    EXPECT_TRUE(units.emplace(unit, serialize(tally)).second) << "unit " << unit << " came twice";
   }
 
   std::map<std::size_t, std::string> units;
@@ -153,7 +153,7 @@ TEST(Pack, KeepsEveryNumber) {
   t.balance.lost[2] = -1;
   t.balance.rays = 1234567890123;
   t.balance.deposited_energy = EnergySum::of_parts(-5);
-  const UnitTally back = unpack(pack(t));
+  const UnitTally back = deserialize(serialize(t));
   EXPECT_EQ(back.pixels(0, 0).primaries, most);
   EXPECT_EQ(back.pixels(0, 0).hits, 63);
   EXPECT_EQ(back.pixels(1, 0).primaries, 64);
@@ -162,15 +162,15 @@ TEST(Pack, KeepsEveryNumber) {
   EXPECT_EQ(back.balance.lost[2], -1);
   EXPECT_EQ(back.balance.rays, 1234567890123);
   EXPECT_EQ(back.balance.deposited_energy.parts(), -5);
-  EXPECT_EQ(pack(back), pack(t));
+  EXPECT_EQ(serialize(back), serialize(t));
 }
 
 TEST(Pack, RefusesWhatIsNoTally) {
-  const std::string good = pack(simulate_unit(small_scene(), with_spectra(1), {0, 0, 3, 2, 0, 10}));
-  EXPECT_EQ(pack(unpack(good)), good);
+  const std::string good = serialize(simulate_unit(small_scene(), with_spectra(1), {0, 0, 3, 2, 0, 10}));
+  EXPECT_EQ(serialize(deserialize(good)), good);
   for (std::size_t n = 0; n < good.size(); ++n)
-    EXPECT_THROW(unpack(std::string_view(good).substr(0, n)), InvalidInput) << n;
-  EXPECT_THROW(unpack(good + '\0'), InvalidInput);
+    EXPECT_THROW(deserialize(std::string_view(good).substr(0, n)), InvalidInput) << n;
+  EXPECT_THROW(deserialize(good + '\0'), InvalidInput);
   // Whatever the bytes: an error or a tally, and no more memory than they stand for.
   RandomStream random(1, 2, 3);
   for (int i = 0; i < 20000; ++i) {
@@ -179,7 +179,7 @@ TEST(Pack, RefusesWhatIsNoTally) {
       bad[static_cast<std::size_t>(random.uniform() * (k == 0 ? 8 : double(bad.size())))] =
           static_cast<char>(random.bits());
     try {
-      unpack(bad);
+      deserialize(bad);
     } catch (const InvalidInput&) {
     }
   }

@@ -33,7 +33,7 @@ SimulationOptions few_electrons() {
 
 Scene flat_scene(const Scan& pixels = scan) { return Scene(test::flat("Si"), {}, pixels); }
 
-TEST(Crew, GivesTheResultOfOneWhateverItsSize) {
+TEST(UnitScheduler, GivesTheResultOfOneWhateverItsSize) {
   const Scene scene = flat_scene();
   const SimulationOptions options = few_electrons();
   const SimulationResult alone = simulate(scene, options);
@@ -43,7 +43,7 @@ TEST(Crew, GivesTheResultOfOneWhateverItsSize) {
     SimulationResult result;
     const auto errors = test::on_ranks(size, [&](int rank) {
       ThreadCrew crew(room, rank);
-      SimulationResult own = simulate(scene, options, {.crew = &crew});
+      SimulationResult own = simulate(scene, options, {.scheduler = &crew});
       if (rank == 0) result = std::move(own);
     });
     EXPECT_THAT(errors, Each(IsEmpty()));
@@ -62,7 +62,7 @@ TEST(Crew, GivesTheResultOfOneWhateverItsSize) {
   }
 }
 
-TEST(Crew, DoesAllUnitsWhereTheLeaderHasNoThreadFree) {
+TEST(UnitScheduler, DoesAllUnitsWhereTheLeaderHasNoThreadFree) {
   CrewRoom room(2);
   const std::size_t units = 50;
   std::vector<std::size_t> came;
@@ -85,13 +85,13 @@ TEST(Crew, DoesAllUnitsWhereTheLeaderHasNoThreadFree) {
   EXPECT_EQ(came, all);
 }
 
-TEST(Crew, WhoFailsInAUnitEndsTheSimulationAndIsNamed) {
+TEST(UnitScheduler, WhoFailsInAUnitEndsTheSimulationAndIsNamed) {
   const Scene scene = flat_scene();
   CrewRoom room(3);
   const auto errors = test::on_ranks(3, [&](int rank) {
     ThreadCrew crew(room, rank);
     if (rank != 2) {
-      simulate(scene, few_electrons(), {.crew = &crew});
+      simulate(scene, few_electrons(), {.scheduler = &crew});
       return;
     }
     crew.follow([](const TakeUnit& take, const GiveUnit&) {
@@ -104,14 +104,14 @@ TEST(Crew, WhoFailsInAUnitEndsTheSimulationAndIsNamed) {
   EXPECT_THAT(errors[2], HasSubstr("the disk is full"));
 }
 
-TEST(Crew, RefusesTalliesOfAnotherScene) {
+TEST(UnitScheduler, RefusesTalliesOfAnotherScene) {
   CrewRoom room(2);
   SimulationOptions options = few_electrons();
   const auto errors = test::on_ranks(2, [&](int rank) {
     ThreadCrew crew(room, rank);
     SimulationOptions own = options;
     if (rank == 1) own.tile_pixels = 3;
-    simulate(flat_scene(), own, {.crew = &crew});
+    simulate(flat_scene(), own, {.scheduler = &crew});
   });
   EXPECT_THAT(errors[0], HasSubstr("another simulation"));
 }

@@ -17,7 +17,7 @@ namespace surf::mc {
 /// threads less one. They must outlive the simulation.
 using ObserverOfThread = std::function<Observer*(int thread)>;
 
-class Crew;
+class UnitScheduler;
 
 /// Who takes part in a simulation, and who watches it. All of it may be left out.
 struct SimulationContext {
@@ -27,14 +27,14 @@ struct SimulationContext {
   /// Is told of every finished unit and asked for those done before: of the same scene and options, `tile_pixels` among them.
   UnitJournal* journal = nullptr;
   LibrarySource* libraries = nullptr;    ///< where replay gets its cascades; null: they are made on the spot
-  Crew* crew = nullptr;                  ///< other processes, all of which call `simulate`
+  UnitScheduler* scheduler = nullptr;                  ///< other processes, all of which call `simulate`
 
   /// Throws UsageError for what cannot go together.
   void check(const SimulationOptions& options, const Scene& scene) const;
 };
 
 /// Simulates the whole scan, in parallel. On cancellation returns what is done. Replay cannot serve observers, nor physics
-/// without continuous loss; observers go with neither a journal nor a crew nor an accuracy (UsageError). With a crew the
+/// without continuous loss; observers go with neither a journal nor a scheduler nor an accuracy (UsageError). With a scheduler the
 /// result is the leader's, others return one that counts nothing and is complete; only the leader's journal is used. Bytes
 /// are the same with and without.
 SimulationResult simulate(const Scene& scene, const SimulationOptions& options, const SimulationContext& context = {});

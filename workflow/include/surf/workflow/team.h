@@ -26,7 +26,7 @@ struct TeamMember {
 
 /// Processes that do one job together, each of which calls the same functions in the same order. Rank 0 leads: it
 /// reads and writes what all share, and talks to the user.
-class Team : public mc::Crew {
+class Team : public mc::UnitScheduler {
  public:
   virtual int rank() const = 0;
   virtual int size() const = 0;

@@ -94,7 +94,7 @@ class CascadeLibrary {
 /// Whether cascades in this medium can be joined, turned and mirrored: energy falls by continuous
 /// loss alone, as its mechanisms say.
 bool can_replay(const Medium& medium);
-/// The same of each material's medium.
+/// Whether it can in one at least of these: in the others electrons are followed directly.
 bool can_replay(const Physics& physics, std::span<const Material> materials);
 
 /// What is in a library, over its first `cascades` cascades (all, if fewer).

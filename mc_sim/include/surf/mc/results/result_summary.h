@@ -36,10 +36,6 @@ struct ResultSummary {
 
 ResultSummary summarize(const SimulationResult& result);
 
-/// How many primaries an accuracy takes, from what a result shows of how each pixel's counts scatter:
-/// for planning, within some ten percent. 0 < accuracy; needs a result with an accuracy.
-double expected_primaries(const SimulationResult& result, double accuracy);
-
 /// Planes that pixels of a result were compared with, as far as its tallies show.
 std::size_t planes_used(const SimulationResult& result);
 

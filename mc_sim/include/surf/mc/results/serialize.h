@@ -10,9 +10,9 @@ namespace surf::mc {
 
 /// A tally as bytes, to keep or to send: about four per pixel and four more for each detector. The
 /// same on every machine.
-std::string pack(const UnitTally& tally);
+std::string serialize(const UnitTally& tally);
 
-/// The tally that `pack` was given. Throws InvalidInput for bytes that are not one.
-UnitTally unpack(std::string_view bytes);
+/// The tally that `serialize` was given. Throws InvalidInput for bytes that are not one.
+UnitTally deserialize(std::string_view bytes);
 
 }  // namespace surf::mc

@@ -25,11 +25,11 @@ using GiveUnit = std::function<void(FinishedUnit unit)>;
 
 /// Others who do numbered units of the same work in other processes: of a simulation, parts of the same scene with the
 /// same options. Whoever leads hands out units and gets what became of them; who follows does what it is handed.
-class Crew {
+class UnitScheduler {
  public:
-  virtual ~Crew() = default;
+  virtual ~UnitScheduler() = default;
 
-  /// Whether this process leads. Only one of a crew does.
+  /// Whether this process leads. Only one of a scheduler does.
   virtual bool leads() const = 0;
 
   /// Hands units to the others until there is no more to take and all that they took has been given, or until `cancel`.

@@ -81,13 +81,13 @@ struct Bench {
 };
 using Benches = std::vector<std::unique_ptr<Bench>>;
 
-Bench& bench_of(Benches& benches, int thread, Workshop& workshop, const ObserverOfThread& observers) {
+Bench& bench_of(Benches& benches, int thread, PreparedSimulation& prepared, const ObserverOfThread& observers) {
   auto& bench = benches[static_cast<std::size_t>(thread)];
-  if (!bench) bench = std::make_unique<Bench>(Bench{workshop.worker(), observers ? observers(thread) : nullptr});
+  if (!bench) bench = std::make_unique<Bench>(Bench{prepared.worker(), observers ? observers(thread) : nullptr});
   return *bench;
 }
 
-void run_all(const UnitPlan& plan, Workshop& workshop, int threads, const ObserverOfThread& observers,
+void run_all(const UnitPlan& plan, PreparedSimulation& prepared, int threads, const ObserverOfThread& observers,
              Merging& merging, const CancelToken* cancel) {
   Benches benches(static_cast<std::size_t>(threads));
   parallel_for(plan.units(), threads, [&](std::size_t i, int w) {
@@ -96,7 +96,7 @@ void run_all(const UnitPlan& plan, Workshop& workshop, int threads, const Observ
       const std::lock_guard lock(merging.mutex);
       if (merging.recall(i)) return;
     }
-    Bench& bench = bench_of(benches, w, workshop, observers);
+    Bench& bench = bench_of(benches, w, prepared, observers);
     bench.worker->cancel = observers ? nullptr : cancel;   // what they have seen of a unit has to count
     UnitTally tally;
     try {
@@ -112,12 +112,12 @@ void run_all(const UnitPlan& plan, Workshop& workshop, int threads, const Observ
 using GiveTally = std::function<void(std::size_t number, const UnitTally& tally)>;
 
 // Threads of this process take units until there are none.
-void take_and_give(const UnitPlan& plan, Workshop& workshop, int threads, const CancelToken* cancel,
+void take_and_give(const UnitPlan& plan, PreparedSimulation& prepared, int threads, const CancelToken* cancel,
                    const TakeUnit& take, const GiveTally& give) {
   Benches benches(static_cast<std::size_t>(threads));
   parallel_for(static_cast<std::size_t>(threads), threads, [&](std::size_t, int w) {
     while (const auto number = take()) {
-      UnitWorker& worker = *bench_of(benches, w, workshop, {}).worker;
+      UnitWorker& worker = *bench_of(benches, w, prepared, {}).worker;
       worker.cancel = cancel;
       UnitTally tally;
       try {
@@ -131,12 +131,12 @@ void take_and_give(const UnitPlan& plan, Workshop& workshop, int threads, const 
 }
 
 // The same units, whoever does them: they merge to the same result.
-void share(Crew& crew, const UnitPlan& plan, Workshop& workshop, int threads, Merging& merging,
+void share(UnitScheduler& scheduler, const UnitPlan& plan, PreparedSimulation& prepared, int threads, Merging& merging,
            const CancelToken* cancel) {
-  if (!crew.leads()) {
-    crew.follow([&](const TakeUnit& take, const GiveUnit& give) {
-      take_and_give(plan, workshop, threads, cancel, take, [&](std::size_t number, const UnitTally& tally) {
-        give({number, tally.balance.incident, pack(tally)});
+  if (!scheduler.leads()) {
+    scheduler.follow([&](const TakeUnit& take, const GiveUnit& give) {
+      take_and_give(plan, prepared, threads, cancel, take, [&](std::size_t number, const UnitTally& tally) {
+        give({number, tally.balance.incident, serialize(tally)});
       });
     }, threads, threads, cancel);
     return;
@@ -159,10 +159,10 @@ void share(Crew& crew, const UnitPlan& plan, Workshop& workshop, int threads, Me
   };
   std::exception_ptr own, of_crew;
   {
-    // The crew is led from here: its messages may have to come from the thread that began.
+    // The scheduler is led from here: its messages may have to come from the thread that began.
     const auto work = [&] {
       try {
-        take_and_give(plan, workshop, threads, cancel, take, give);
+        take_and_give(plan, prepared, threads, cancel, take, give);
       } catch (...) {
         own = std::current_exception();
         end();
@@ -170,7 +170,7 @@ void share(Crew& crew, const UnitPlan& plan, Workshop& workshop, int threads, Me
     };
     const std::jthread at_work = try_thread(work);
     try {
-      crew.lead(take, [&](const FinishedUnit& unit) { give(unit.number, unpack(unit.bytes)); }, cancel);
+      scheduler.lead(take, [&](const FinishedUnit& unit) { give(unit.number, deserialize(unit.bytes)); }, cancel);
     } catch (...) {
       of_crew = std::current_exception();
       end();
@@ -182,12 +182,12 @@ void share(Crew& crew, const UnitPlan& plan, Workshop& workshop, int threads, Me
 }
 
 // Where this process cannot go on: the others neither wait for it nor begin.
-void send_home(Crew& crew, const std::exception_ptr& trouble, const CancelToken* cancel) {
+void send_home(UnitScheduler& scheduler, const std::exception_ptr& trouble, const CancelToken* cancel) {
   try {
-    if (crew.leads())
-      crew.lead([] { return std::nullopt; }, [](const FinishedUnit&) {}, cancel);
+    if (scheduler.leads())
+      scheduler.lead([] { return std::nullopt; }, [](const FinishedUnit&) {}, cancel);
     else
-      crew.follow(
+      scheduler.follow(
           [&](const TakeUnit&, const GiveUnit&) {
             if (trouble) std::rethrow_exception(trouble);
             throw Interrupted();
@@ -216,7 +216,7 @@ void SimulationContext::check(const SimulationOptions& options, const Scene& sce
   if (accuracy_of(options.budget) > 0 && observers)
     throw UsageError("`simulation.accuracy`", "what observers see would be of more primaries in some pixels than in others",
                      "Give `simulation.electrons` instead");
-  if (crew && observers)
+  if (scheduler && observers)
     throw UsageError("`output.deposit`", "each of several processes would see a part of it", "Run it in one process");
   if (journal && observers)
     throw UsageError("simulate", "observers would not see the units that a journal recalls",
@@ -226,7 +226,7 @@ void SimulationContext::check(const SimulationOptions& options, const Scene& sce
 SimulationResult simulate(const Scene& scene, const SimulationOptions& options, const SimulationContext& context) {
   check_options(options);
   context.check(options, scene);
-  const auto& [progress, cancel, observers, journal, libraries, crew] = context;
+  const auto& [progress, cancel, observers, journal, libraries, scheduler] = context;
   auto begin = std::chrono::steady_clock::now();
   const auto seconds = [&] {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
@@ -234,36 +234,36 @@ SimulationResult simulate(const Scene& scene, const SimulationOptions& options, 
   const UnitPlan plan(scene.scan(), options);
   // Who follows has nothing to collect: its memory need not hold the image.
   std::optional<Collector> room;
-  Workshop workshop;
+  PreparedSimulation prepared;
   bool ready = false;
   std::exception_ptr trouble;
   try {
-    if (!crew) room.emplace(scene.scan(), options);
+    if (!scheduler) room.emplace(scene.scan(), options);
     // All get the libraries together: nobody may leave for reasons of its own before.
-    ready = workshop.prepare(scene, options, libraries, plan.most(), {}, cancel, crew != nullptr);
-    if (crew) room.emplace(crew->leads() ? scene.scan() : one_pixel(), options);
+    ready = prepared.prepare(scene, options, libraries, plan.most(), {}, cancel, scheduler != nullptr);
+    if (scheduler) room.emplace(scheduler->leads() ? scene.scan() : one_pixel(), options);
   } catch (const Interrupted&) {
     ready = false;
   } catch (...) {
     trouble = std::current_exception();
   }
-  if (crew && (!ready || trouble)) send_home(*crew, trouble, cancel);
+  if (scheduler && (!ready || trouble)) send_home(*scheduler, trouble, cancel);
   if (trouble) std::rethrow_exception(trouble);
-  if (!room) room.emplace(crew && !crew->leads() ? one_pixel() : scene.scan(), options);
+  if (!room) room.emplace(scheduler && !scheduler->leads() ? one_pixel() : scene.scan(), options);
   Collector& collector = *room;
   SimulationResult& result = collector.result;
   if (!ready) {
     result.complete = false;
     return std::move(result);
   }
-  result.library_cascades = workshop.cascades();
-  result.cascade_yields = workshop.yields();
+  result.library_cascades = prepared.cascades();
+  result.cascade_yields = prepared.yields();
   result.library_seconds = seconds();
   begin = std::chrono::steady_clock::now();
   Merging merging{plan, collector, progress, journal};
-  if (crew) share(*crew, plan, workshop, resolve_threads(options.threads), merging, cancel);
-  else run_all(plan, workshop, resolve_threads(options.threads), observers, merging, cancel);
-  result.complete = merging.done == plan.total() || (crew && !crew->leads());
+  if (scheduler) share(*scheduler, plan, prepared, resolve_threads(options.threads), merging, cancel);
+  else run_all(plan, prepared, resolve_threads(options.threads), observers, merging, cancel);
+  result.complete = merging.done == plan.total() || (scheduler && !scheduler->leads());
   result.seconds = seconds();
   return std::move(result);
 }
