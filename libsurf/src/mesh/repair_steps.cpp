@@ -7,6 +7,7 @@
 #include <unordered_map>
 
 #include "mesh/disjoint_sets.h"
+#include "surf/core/triangle_geometry.h"
 #include "surf/mesh/check_mesh.h"
 
 namespace surf {
@@ -182,17 +183,14 @@ Box box_of(const TriangleMesh& mesh, const std::vector<std::uint32_t>& triangles
   return box;
 }
 
-/// How often closed triangles wind around a point: the sum of their solid angles (van Oosterom and
-/// Strackee, 1983, doi:10.1109/TBME.1983.325207).
+/// How often closed triangles wind around a point.
 double winding(const TriangleMesh& mesh, const std::vector<std::uint32_t>& triangles, const Vec3& p) {
   double sum = 0;
   for (const std::uint32_t t : triangles) {
     const Vec3 a = mesh.vertices_nm[mesh.triangles[t][0]] - p;
     const Vec3 b = mesh.vertices_nm[mesh.triangles[t][1]] - p;
     const Vec3 c = mesh.vertices_nm[mesh.triangles[t][2]] - p;
-    const double la = length(a), lb = length(b), lc = length(c);
-    sum += std::atan2(dot(a, cross(b, c)), la * lb * lc + dot(a, b) * lc + dot(b, c) * la +
-                                               dot(c, a) * lb);
+    sum += half_solid_angle(a, b, c);
   }
   return sum / 6.283185307179586;
 }

@@ -31,29 +31,6 @@ double Vec3::*longest_axis(const Box& box) {
 
 }  // namespace
 
-Vec3 closest_point(const Corners& t, const Vec3& p) {
-  const Vec3 ab = t.b - t.a, ac = t.c - t.a, ap = p - t.a;
-  const double d1 = dot(ab, ap), d2 = dot(ac, ap);
-  if (d1 <= 0 && d2 <= 0) return t.a;
-  const Vec3 bp = p - t.b;
-  const double d3 = dot(ab, bp), d4 = dot(ac, bp);
-  if (d3 >= 0 && d4 <= d3) return t.b;
-  const double vc = d1 * d4 - d3 * d2;
-  if (vc <= 0 && d1 >= 0 && d3 <= 0) return d1 > d3 ? t.a + ab * (d1 / (d1 - d3)) : t.a;
-  const Vec3 cp = p - t.c;
-  const double d5 = dot(ab, cp), d6 = dot(ac, cp);
-  if (d6 >= 0 && d5 <= d6) return t.c;
-  const double vb = d5 * d2 - d1 * d6;
-  if (vb <= 0 && d2 >= 0 && d6 <= 0) return d2 > d6 ? t.a + ac * (d2 / (d2 - d6)) : t.a;
-  const double va = d3 * d6 - d5 * d4;
-  if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0) {
-    const double run = (d4 - d3) + (d5 - d6);
-    return run > 0 ? t.b + (t.c - t.b) * ((d4 - d3) / run) : t.b;
-  }
-  const double scale = 1 / (va + vb + vc);
-  return t.a + ab * (vb * scale) + ac * (vc * scale);
-}
-
 TriangleTree::TriangleTree(const TriangleMesh& mesh, const Watch& watch)
     : mesh_(mesh), triangles_(mesh.triangles.size()) {
   std::iota(triangles_.begin(), triangles_.end(), 0u);

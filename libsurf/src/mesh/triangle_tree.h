@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "surf/core/triangle_geometry.h"
 #include "surf/core/progress.h"
 #include "surf/mesh/triangle_mesh.h"
 
@@ -21,7 +22,7 @@ struct Corners {
 };
 
 /// The point of a triangle that is nearest to `p` (Ericson, Real-Time Collision Detection, 5.1.5).
-Vec3 closest_point(const Corners& t, const Vec3& p);
+inline Vec3 closest_point(const Corners& t, const Vec3& p) { return closest_point(t.a, t.b, t.c, p); }
 
 /// A tree of boxes over the triangles of a mesh, which must outlive it unchanged. Building takes
 /// O(n log n) and may throw Interrupted; queries may run at once from several threads.

@@ -9,6 +9,7 @@
 #include <limits>
 #include <vector>
 
+#include "surf/core/triangle_geometry.h"
 #include "surf/core/error.h"
 #include "surf/mc/geometry/scene.h"
 
@@ -250,28 +251,6 @@ const MeshView& EmbreeScene::mesh() const { return impl_->mesh; }
 
 namespace {
 
-// The nearest point of a triangle (Ericson, Real-Time Collision Detection, 5.1.5).
-Vec3 nearest_point(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
-  const Vec3 ab = b - a, ac = c - a, ap = p - a;
-  const double d1 = dot(ab, ap), d2 = dot(ac, ap);
-  if (d1 <= 0 && d2 <= 0) return a;
-  const Vec3 bp = p - b;
-  const double d3 = dot(ab, bp), d4 = dot(ac, bp);
-  if (d3 >= 0 && d4 <= d3) return b;
-  const double vc = d1 * d4 - d3 * d2;
-  if (vc <= 0 && d1 >= 0 && d3 <= 0) return a + ab * (d1 / (d1 - d3));
-  const Vec3 cp = p - c;
-  const double d5 = dot(ab, cp), d6 = dot(ac, cp);
-  if (d6 >= 0 && d5 <= d6) return c;
-  const double vb = d5 * d2 - d1 * d6;
-  if (vb <= 0 && d2 >= 0 && d6 <= 0) return a + ac * (d2 / (d2 - d6));
-  const double va = d3 * d6 - d5 * d4;
-  if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0)
-    return b + (c - b) * ((d4 - d3) / ((d4 - d3) + (d5 - d6)));
-  const double all = 1.0 / (va + vb + vc);
-  return a + ab * (vb * all) + ac * (vc * all);
-}
-
 struct FlatSearch {
   const MeshView* mesh;
   std::span<const std::uint32_t> shell_of;
@@ -290,7 +269,7 @@ bool look_at(RTCPointQueryFunctionArguments* args) {
   const Vec3& a = search.mesh->vertices_nm[t[0]];
   const Vec3& b = search.mesh->vertices_nm[t[1]];
   const Vec3& c = search.mesh->vertices_nm[t[2]];
-  const double distance = length(nearest_point(search.point, a, b, c) - search.point);
+  const double distance = length(closest_point(a, b, c, search.point) - search.point);
   if (distance >= search.radius) return false;
   const auto off = [&](const Vec3& v) {
     return std::fabs(dot(v - search.point, search.normal)) > search.tolerance;

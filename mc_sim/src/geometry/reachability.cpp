@@ -5,6 +5,8 @@
 #include <cmath>
 #include <map>
 
+#include "surf/core/triangle_geometry.h"
+
 namespace surf::mc {
 
 namespace {
@@ -14,13 +16,8 @@ constexpr double most_touched = 3e8;     // boxes of triangles; more is not wort
 constexpr double most_angles = 5e7;      // solid angles of triangles, likewise
 constexpr double inside_turns = 0.25;    // a closed shell is seen under 1 or 0, a sheet under +-0.5
 
-// The solid angle of a triangle seen from 0, over 4 pi (Van Oosterom and Strackee 1983,
-// doi:10.1109/TBME.1983.325207).
-double turns(const Vec3& a, const Vec3& b, const Vec3& c) {
-  const double la = length(a), lb = length(b), lc = length(c);
-  const double below = la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb;
-  return std::atan2(dot(a, cross(b, c)), below) / (2 * 3.14159265358979324);
-}
+// The solid angle of a triangle seen from 0, over 4 pi.
+double turns(const Vec3& a, const Vec3& b, const Vec3& c) { return half_solid_angle(a, b, c) / (2 * 3.14159265358979324); }
 
 class Boxes {
  public:

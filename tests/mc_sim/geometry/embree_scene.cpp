@@ -10,6 +10,7 @@
 #include "geometry/triangle_shape.h"
 #include "random_direction.h"
 #include "surf/core/random.h"
+#include "surf/core/triangle_geometry.h"
 #include "surf/mesh/height_field_mesh.h"
 #include "surf/mesh/shapes.h"
 
@@ -198,7 +199,7 @@ TEST(EmbreeScene, FindsAllTrianglesWithinABall) {
       for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
         Corners c(mesh, t);
         for (Vec3& v : c.v) v -= point;
-        if (length(nearest_of_triangle(c.v)) <= radius) expected.push_back(t);
+        if (length(closest_point(c.v[0], c.v[1], c.v[2], {})) <= radius) expected.push_back(t);
       }
       constexpr std::size_t most = 100;
       std::vector<std::uint32_t> found{7, 7};   // stay

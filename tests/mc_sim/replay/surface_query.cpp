@@ -4,10 +4,10 @@
 #include <gtest/gtest.h>
 
 #include "geometry/scene_impl.h"
-#include "geometry/triangle_shape.h"
 #include "random_direction.h"
 #include "specimens.h"
 #include "surf/core/random.h"
+#include "surf/core/triangle_geometry.h"
 #include "surf/mesh/height_field_mesh.h"
 
 namespace surf::mc {
@@ -40,7 +40,7 @@ class SurfaceQueries : public testing::TestWithParam<bool> {
     const MeshView& mesh = scene_.impl().triangles->mesh();
     for (const Triangle& t : mesh.triangles) {
       const Vec3 v[3] = {mesh.vertices_nm[t[0]] - p, mesh.vertices_nm[t[1]] - p, mesh.vertices_nm[t[2]] - p};
-      least = std::min(least, length(nearest_of_triangle(v)));
+      least = std::min(least, length(closest_point(v[0], v[1], v[2], {})));
     }
     return least;
   }
