@@ -72,8 +72,10 @@ Grid<unsigned char> parse_mask_region(const std::string& text, const char* subje
                                field.x_nm(mask.width() - 1), field.y_nm(mask.height() - 1)));
 }
 
-void write_mask(const std::string& path, const Grid<unsigned char>& mask, const HeightField& field) {
+void write_mask(const std::string& path, const Grid<unsigned char>& mask, const HeightField& field,
+                const std::map<std::string, std::string>& made) {
   Image image;
+  image.metadata = made;
   image.channels.push_back({"mask", "1", Grid<float>(mask.width(), mask.height())});
   std::copy(mask.data().begin(), mask.data().end(), image.channels.front().values.data().begin());
   image.pitch_x_nm = field.pitch_x_nm, image.pitch_y_nm = field.pitch_y_nm;

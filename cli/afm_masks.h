@@ -2,6 +2,7 @@
 #pragma once
 
 #include <CLI/App.hpp>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -29,7 +30,8 @@ Grid<unsigned char> read_masks(const MaskInput& input, const HeightField& field)
 /// also where there are none.
 Grid<unsigned char> parse_mask_region(const std::string& text, const char* subject, const HeightField& field);
 
-/// As an image of 0 and 1.
-void write_mask(const std::string& path, const Grid<unsigned char>& mask, const HeightField& field);
+/// As an image of 0 and 1; `made` says how.
+void write_mask(const std::string& path, const Grid<unsigned char>& mask, const HeightField& field,
+                const std::map<std::string, std::string>& made);
 
 }  // namespace surf::cli

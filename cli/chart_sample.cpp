@@ -63,7 +63,6 @@ std::string chart_sample_methods() {
 }
 
 int chart_sample(workflow::ChainChartJob job, bool quiet) {
-  if (job.folder.empty()) throw UsageError("`output`", "no folder is given", "Add `output=chart`");
   const std::filesystem::path cache = io::cache_folder("");
   job.models = cache.empty() ? job.folder / "models" : cache / "models";
   workflow::ChainChartSummary s;

@@ -69,8 +69,10 @@ io::Plot plot_counts(const std::vector<FittedCounts>& sets, int detectors) {
   return plot;
 }
 
-std::string counts_csv(const std::vector<FittedCounts>& sets) {
-  std::string text = "detector,primaries,count,trials,poisson,log_normal,normal\n";
+std::string counts_csv(const std::vector<FittedCounts>& sets, const std::map<std::string, std::string>& made) {
+  std::string text;
+  for (const auto& [key, value] : made) text += fmt::format("# {} = {}\n", key, value);
+  text += "detector,primaries,count,trials,poisson,log_normal,normal\n";
   for (const FittedCounts& f : sets)
     for (std::size_t k = 0; k < f.set.counts.size(); ++k) {
       const auto count = static_cast<std::int64_t>(k);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <map>
 #include <string>
 #include <vector>
 
@@ -24,6 +25,7 @@ FittedCounts fit(const workflow::DetectorCounts& set);
 io::Plot plot_counts(const std::vector<FittedCounts>& sets, int detectors);
 
 /// detector, primaries, count, trials, poisson, log_normal, normal: of each count the trials seen and expected.
-std::string counts_csv(const std::vector<FittedCounts>& sets);
+/// Before them lines "# key = value" of `made`.
+std::string counts_csv(const std::vector<FittedCounts>& sets, const std::map<std::string, std::string>& made);
 
 }  // namespace surf::cli

@@ -108,12 +108,12 @@ int work(const Options& o) {
     if (levelled.hough) print_roughness("", "substrate", measure_roughness(field, levelled.substrate));
   }
   if (!o.step.empty()) print_step(field, o.step);
-  if (o.substrate_mask) write_mask(*o.substrate_mask, levelled.substrate, field);
-  if (o.output) {
+  if (o.substrate_mask || o.output) {
     std::vector<std::filesystem::path> inputs{o.scan};
     for (const std::string& mask : masks.files()) inputs.emplace_back(mask);
-    io::write_height_field(*o.output, field,
-                           workflow::step_record("level", workflow::records_of(parameters, reading, masks), inputs));
+    const auto made = workflow::step_record("level", workflow::records_of(parameters, reading, masks), inputs);
+    if (o.substrate_mask) write_mask(*o.substrate_mask, levelled.substrate, field, made);
+    if (o.output) io::write_height_field(*o.output, field, made);
   }
   if (!o.quiet)
     for (const auto& file : {o.substrate_mask, o.output})

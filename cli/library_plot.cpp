@@ -8,6 +8,7 @@
 #include "surf/core/error.h"
 #include "surf/workflow/libraries.h"
 #include "surf/workflow/library_plot.h"
+#include "surf/workflow/step_record.h"
 #include "terminal.h"
 
 namespace surf::cli {
@@ -70,6 +71,10 @@ int plot(const LibraryOptions& options) {
   }
   for (const std::string& note : libraries.take_notes()) print_warning(note);
   if (!plot) return exit_interrupted;
+  LibraryMaterials materials;
+  options.bound.apply(materials);
+  plot->metadata = workflow::step_record("library plot", workflow::records_of(materials, parameters, o),
+                                         {files.measured.begin(), files.measured.end()});
   io::write_plot(files.output, *plot);
   if (!options.quiet) print("written    {}\n", files.output);
   return 0;

@@ -18,6 +18,7 @@
 #include "surf/sem/estimate_sem_noise.h"
 #include "surf/workflow/count_job.h"
 #include "surf/workflow/noise_job.h"
+#include "surf/workflow/step_record.h"
 #include "terminal.h"
 
 namespace surf::cli {
@@ -115,8 +116,11 @@ int of_scan(const Options& o) {
   }
   print_check(*noise.check);
   if (!o.plot) return 0;
-  io::write_plot(*o.plot,
-                 plot_noise(noise.residual_nm, noise.white, noise.samples, noise.estimate.noise, *noise.check));
+  std::vector<std::filesystem::path> inputs{o.scan};
+  for (const std::string& mask : masks.files()) inputs.emplace_back(mask);
+  io::Plot plot = plot_noise(noise.residual_nm, noise.white, noise.samples, noise.estimate.noise, *noise.check);
+  plot.metadata = workflow::step_record("noise scan", workflow::records_of(parameters, reading, masks), inputs);
+  io::write_plot(*o.plot, plot);
   if (!o.quiet) print("{:<12} {}\n", "written", *o.plot);
   return 0;
 }

@@ -8,6 +8,7 @@
 #include "surf/core/error.h"
 #include "surf/io/files.h"
 #include "surf/workflow/count_job.h"
+#include "surf/workflow/step_record.h"
 #include "terminal.h"
 
 namespace surf::cli {
@@ -72,8 +73,14 @@ int print_counts(const BoundParameters& bound, const std::optional<std::string>&
     sets.push_back(fit(set));
     print_set(sets.back());
   }
-  if (!files.csv.empty()) io::write_text(files.csv, counts_csv(sets));
-  if (plot) io::write_plot(*plot, plot_counts(sets, static_cast<int>(sets.size() / job.electrons.size())));
+  const auto made = workflow::step_record(
+      "noise counts", workflow::records_of(job, static_cast<const mc::SimulationRequest&>(job.scene)), {files.scene});
+  if (!files.csv.empty()) io::write_text(files.csv, counts_csv(sets, made));
+  if (plot) {
+    io::Plot drawn = plot_counts(sets, static_cast<int>(sets.size() / job.electrons.size()));
+    drawn.metadata = made;
+    io::write_plot(*plot, drawn);
+  }
   if (quiet) return 0;
   for (const std::string& file : {files.csv, plot.value_or("")})
     if (!file.empty()) print("{:<12} {}\n", "written", file);

@@ -14,6 +14,7 @@
 #include "surf/io/scan_parameters.h"
 #include "surf/io/sem_file.h"
 #include "surf/sem/estimate_sem_noise.h"
+#include "surf/workflow/step_record.h"
 #include "terminal.h"
 
 namespace surf::cli {
@@ -120,7 +121,10 @@ int print_sem_noise(const GivenTexts& given, const std::optional<std::string>& p
   print_estimate(e);
   for (const std::string& warning : e.warnings) print_warning(warning);
   if (!plot) return 0;
-  io::write_plot(*plot, plot_sem_noise(e, picture.image.values.width(), picture.image.values.height()));
+  io::Plot drawn = plot_sem_noise(e, picture.image.values.width(), picture.image.values.height());
+  drawn.metadata = workflow::step_record("noise sem", workflow::records_of(input, options, reading),
+                                         {parse_file_channel(input.image).file});
+  io::write_plot(*plot, drawn);
   if (!quiet) print("{:<12} {}\n", "written", *plot);
   return 0;
 }

@@ -103,14 +103,21 @@ std::vector<std::filesystem::path> files_of(const Options& o) {
   return files;
 }
 
+/// The tip, and its chart where one is asked for; both say how they were made.
+void write_found(const Options& o, const Tip& tip, io::Plot plot, const std::map<std::string, std::string>& made) {
+  io::write_tip(*o.output, tip, made);
+  if (!o.plot) return;
+  plot.metadata = made;
+  io::write_plot(*o.plot, plot);
+}
+
 int by_shape(const Options& o) {
   if (!o.scan.empty()) throw UsageError("--shape", "it takes no scan", "Leave out one of the two");
   auto parameters = o.told<workflow::TipShapeParameters>();
   const auto reading = o.told<io::HeightReadOptions>();
   if (reading.pitch_x_nm) parameters.pitch_x_nm = *reading.pitch_x_nm, parameters.pitch_y_nm = *reading.pitch_y_nm;
   const Tip tip = workflow::tip_by_shape(parameters);
-  io::write_tip(*o.output, tip, workflow::step_record("tip", workflow::records_of(parameters, reading)));
-  if (o.plot) io::write_plot(*o.plot, tip_plot(tip));
+  write_found(o, tip, tip_plot(tip), workflow::step_record("tip", workflow::records_of(parameters, reading)));
   if (o.quiet) return 0;
   print_tip(tip, depth_of(tip));
   print_written(files_of(o));
@@ -126,8 +133,7 @@ int by_characterizer(const Options& o) {
   const CharacterizedTip found = workflow::tip_by_characterizer(scans[0], known, parameters, JobReporter(o.quiet));
   Record record = workflow::records_of(parameters, o.told<io::HeightReadOptions>());
   record["tip.answer"] = "characterizer";
-  io::write_tip(*o.output, found.tip, workflow::step_record("tip", record, {o.scan, *o.characterizer}));
-  if (o.plot) io::write_plot(*o.plot, tip_plot(found.tip));
+  write_found(o, found.tip, tip_plot(found.tip), workflow::step_record("tip", record, {o.scan, *o.characterizer}));
   if (o.quiet) return 0;
   print("{:<10} found at sample ({}, {}) of the scan, {} above; residual {}\n", "known", found.offset_x,
              found.offset_y, format_length(found.offset_z_nm), format_length(found.residual_nm));
@@ -160,10 +166,8 @@ int from_scans(const Options& o) {
   const workflow::TipResult found = workflow::find_tip(scans, parameters, JobReporter(o.quiet));
   std::vector<std::filesystem::path> inputs{o.scan};
   inputs.insert(inputs.end(), o.also.begin(), o.also.end());
-  io::write_tip(
-      *o.output, found.tip,
-      workflow::step_record("tip", workflow::records_of(found.used, o.told<io::HeightReadOptions>()), inputs));
-  if (o.plot) io::write_plot(*o.plot, plot_of(found));
+  write_found(o, found.tip, plot_of(found),
+              workflow::step_record("tip", workflow::records_of(found.used, o.told<io::HeightReadOptions>()), inputs));
   if (!o.quiet) {
     print_finding(found);
     print_tip(found.tip, std::max(height_range(scans).span_nm(), 1e-9));

@@ -138,7 +138,10 @@ json json_of(const Plot& plot) {
   // The height of a row as a share of the width.
   const double height = columns == 1 ? 0.625 : columns == 2 ? 0.43 : 0.33;
   const double automatic = std::clamp(plot.width_px * height * rows, 200.0, 10000.0);
+  std::string description;
+  for (const auto& [key, value] : plot.metadata) description += fmt::format("{} = {}\n", key, value);
   return {{"title", plot.title},
+          {"description", description},
           {"panels", panels},
           {"rows", rows},
           {"columns", columns},

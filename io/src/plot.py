@@ -383,6 +383,8 @@ def draw(plot, path, kind, report=None):
             json.dump([line for one in texts for line in one.report(renderer)], file)
     # Nothing of the clock or the version in the file.
     metadata = {"Date": None, "Creator": "semsurf"} if kind == "svg" else {"Software": None}
+    if plot["description"]:
+        metadata["Description"] = plot["description"]
     figure.savefig(path, format=kind, metadata=metadata)
 
 

@@ -4,11 +4,14 @@
 #include <gmock/gmock.h>
 
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <map>
 #include <set>
 
 #include "bound_parameters.h"
 #include "in_process.h"
+#include "surf/core/random.h"
 #include "surf/io/image_file.h"
 #include "surf/io/height_field_file.h"
 #include "surf/io/mesh_file.h"
@@ -121,6 +124,91 @@ TEST_F(Records, HoldHowAHeightFieldWasRead) {
   EXPECT_THAT(of({"--edge", "flat"}), testing::HasSubstr("edge flat"));
   EXPECT_THAT(of({"--height-pitch", "3nm"}), testing::HasSubstr("pitch 3 x 3 nm"));
 }
+
+/// What is written besides images and surfaces: each option in turn, and the line that the file then has.
+struct Written {
+  std::string name;
+  std::vector<std::string> words;                                          // `FILE` is what is written
+  std::string extension;
+  std::vector<std::pair<std::vector<std::string>, std::string>> changes;   // options, "key = value"
+};
+
+const std::vector<Written>& all_written() {
+  static const std::vector<Written> all{
+      {"noise_scan", {"noise", "scan", "scan.txt", "--plot", "FILE"}, ".svg",
+       {{{"--flat"}, "noise.flat = on"},
+        {{"--flat", "--degree", "1"}, "noise.degree = 1"},
+        {{"--flat", "--lags", "7"}, "noise.lags = 7"},
+        {{"--flat", "--height-pitch", "3nm"}, "scan.height_pitch_nm = 3"}}},
+      {"noise_sem", {"noise", "sem", "image.tif", "--plot", "FILE"}, ".svg",
+       {{{"--block", "9"}, "noise.block = 9"},
+        {{"--black", "-99"}, "noise.black = -99"},
+        {{"--white", "999"}, "noise.white = 999"},
+        {{"--flat-region", "1,1,30,30", "--flat-region", "31,1,60,30", "--flat-region", "1,31,30,60"},
+         "noise.flat_region = 1,1,30,30 31,1,60,30 1,31,30,60"}}},
+      {"noise_counts", {"noise", "counts", "scene.toml", "--trials", "200", "--electrons", "3", "--csv", "FILE"}, ".csv",
+       {{{"--at", "5,-5"}, "counts.at_nm = 5,-5"}, {{"--seed", "9"}, "counts.seed = 9"}, {{}, "counts.trials = 200"},
+        {{}, "counts.electrons = 3"}, {{}, "beam.energy_ev = 700"}}},
+      {"substrate", {"level", "scan.txt", "--substrate-mask", "FILE", "-o", "flat.txt"}, ".tif",
+       {{{"--level-tolerance", "0.7nm"}, "level.tolerance_nm = 0.7"}, {{"--rows", "median"}, "level.rows = median"}}},
+      {"tip", {"tip", "--shape", "cone:5nm,20deg", "--pixel-size", "2nm", "-o", "tip.gsf", "--plot", "FILE"}, ".svg",
+       {{{"--tip-size", "9"}, "tip.size = 9"}}},
+      {"library", {"library", "plot", "Si", "--energy", "500eV", "--tilt", "0", "-o", "FILE"}, ".svg",
+       {{{"--seed", "9"}, "simulation.seed = 9"}, {{}, "library.materials = Si"}, {{}, "library.tilt_deg = 0"},
+        {{"--physics", "barrier=off"}, "secondaries=on,barrier=off"},
+        {{"--cascades", "12288"}, "library.cascades = 12288"}}},
+  };
+  return all;
+}
+
+class WrittenRecords : public testing::TestWithParam<Written> {
+ protected:
+  WrittenRecords() {
+    HeightField scan;
+    scan.z_nm = Grid<double>(64, 64);
+    scan.pitch_x_nm = scan.pitch_y_nm = 2;
+    Image image;
+    image.pitch_x_nm = image.pitch_y_nm = 1;
+    image.channels = {{"SE", "1", Grid<float>(64, 64)}};
+    RandomStream random(1, 2, 3);
+    for (std::size_t i = 0; i < scan.z_nm.size(); ++i) {
+      scan.z_nm.data()[i] = random.uniform();
+      image.channels[0].values.data()[i] = static_cast<float>(100 * (1 + i / 2048) + 10 * random.uniform());
+    }
+    io::write_height_field(folder_.path() / "scan.txt", scan, {});
+    io::write_image(folder_.path() / "image.tif", image);
+    std::ofstream(folder_.path() / "scene.toml") << "[substrate]\nmaterial = \"Si\"\n[beam]\nenergy = 700\n"
+                                                    "[scan]\nsize = \"4x4\"\npixel_size = 10\n";
+  }
+  test::TemporaryFolder folder_;
+};
+
+TEST_P(WrittenRecords, HoldEveryParameter) {
+  for (const auto& [options, line] : GetParam().changes) {
+    SCOPED_TRACE(line);
+    const std::string file = (folder_.path() / ("out" + GetParam().extension)).string();
+    std::vector<std::string> words = GetParam().words;
+    for (std::string& word : words)
+      if (word == "FILE") word = file;
+      else if (std::filesystem::exists(folder_.path() / word) || word.ends_with(".gsf") || word == "flat.txt")
+        word = (folder_.path() / word).string();
+    words.push_back("-q");
+    words.insert(words.end(), options.begin(), options.end());
+    const test::Said said = test::semsurf(words);
+    if (said.err.find("Matplotlib") != std::string::npos) GTEST_SKIP() << said.err;
+    ASSERT_TRUE(said.code == 0 || said.code == 4) << said.err;
+    std::string text;
+    if (GetParam().extension == ".tif") {
+      for (const auto& [key, value] : io::read_image(file).metadata) text += key + " = " + value + "\n";
+    } else {
+      std::ifstream in(file);
+      text.assign(std::istreambuf_iterator<char>(in), {});
+    }
+    EXPECT_NE(text.find(line), std::string::npos) << text.substr(0, 3000);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Of, WrittenRecords, testing::ValuesIn(all_written()), [](const auto& about) { return about.param.name; });
 
 }  // namespace
 }  // namespace surf

@@ -21,6 +21,7 @@
 #include "surf/io/plot.h"
 #include "surf/io/transform_file.h"
 #include "surf/workflow/version.h"
+#include "surf/workflow/step_record.h"
 
 namespace surf::workflow {
 namespace {
@@ -122,11 +123,14 @@ void keep_registration(const ReconstructJob& job, const PlacedImage& image, Reco
   file.verified = s.pose->verified();
   if (s.pose->registration)
     file.verdict = fmt::format("{}: {}", name(s.pose->registration->verdict), s.pose->registration->reason);
+  file.notes = step_record("reconstruct", record_of(job), {job.afm->file, job.sem->file});
   s.written.push_back(job.folder / "transform.json");
   io::write_transform(s.written.back(), file);
   if (!job.picture) return;
   s.written.push_back(job.folder / "registration.png");
-  io::write_plot(s.written.back(), registration_picture(image, s.pose->simulated, s.pose->sem_to_afm));
+  io::Plot picture = registration_picture(image, s.pose->simulated, s.pose->sem_to_afm);
+  picture.metadata = file.notes;
+  io::write_plot(s.written.back(), picture);
 }
 
 /// Watches a step of the chain for a job.

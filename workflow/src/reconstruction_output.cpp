@@ -203,7 +203,11 @@ std::vector<fs::path> write_reconstruction(const ReconstructJob& job, const Reco
     io::write_transform(file("transform.json"), transform);
   }
   io::write_text(file("history.csv"), history_text(r.scales));
-  if (job.picture) io::write_plot(file("panel.png"), reconstruction_panel(job, s, afm, sem));
+  if (job.picture) {
+    io::Plot panel = reconstruction_panel(job, s, afm, sem);
+    panel.metadata = made;
+    io::write_plot(file("panel.png"), panel);
+  }
   io::write_text(file("report.json"), reconstruction_report(job, s, afm, sem));
   return written;
 }

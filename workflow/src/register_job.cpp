@@ -61,8 +61,11 @@ RegisterSummary run(const RegisterJob& job, const Reporter& reporter) {
   s.afm = prepare(job.afm, job.threads, reporter);
   s.pose = pose_of(job.pose, s.afm, job.sem.image, s.model, job.threads, reporter);
   if (!job.transform.empty()) io::write_transform(job.transform, transform_file(job, s));
-  if (!job.picture.empty())
-    io::write_plot(job.picture, registration_picture(job.sem.image, s.pose.simulated, s.pose.sem_to_afm));
+  if (!job.picture.empty()) {
+    io::Plot picture = registration_picture(job.sem.image, s.pose.simulated, s.pose.sem_to_afm);
+    picture.metadata = transform_file(job, s).notes;
+    io::write_plot(job.picture, picture);
+  }
   return s;
 }
 

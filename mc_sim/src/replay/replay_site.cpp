@@ -6,6 +6,8 @@
 
 namespace surf::mc {
 
+static_assert(Geometry<SceneGeometry> && WalkHandler<Replay<SceneGeometry>>);
+
 namespace {
 
 // Surfaces are no better known than this; what deviates less from a plane is a plane.

@@ -10,19 +10,10 @@
 #include "surf/core/error.h"
 #include "surf/core/parameters.h"
 #include "surf/core/units.h"
+#include "surf/core/words.h"
 
 namespace surf::mc {
 namespace {
-
-std::vector<std::string_view> parts_of(std::string_view text, std::string_view separators) {
-  std::vector<std::string_view> parts;
-  for (;;) {
-    const std::size_t at = text.find_first_of(separators);
-    parts.push_back(text.substr(0, at));
-    if (at == std::string_view::npos) return parts;
-    text.remove_prefix(at + 1);
-  }
-}
 
 int pixels(std::string_view text, const std::string& subject) {
   std::optional<int> count;
@@ -32,7 +23,7 @@ int pixels(std::string_view text, const std::string& subject) {
 }
 
 void read_size(std::string_view text, const std::string& subject, ScanRequest& scan) {
-  const auto parts = parts_of(text, "xX");
+  const auto parts = split(text, "xX");
   if (parts.size() > 2)
     throw UsageError(subject, fmt::format("'{}' is not a size", text), "Write width x height in pixels, as 256x192");
   const int width = pixels(parts[0], subject);
@@ -45,7 +36,7 @@ void read_pixel_size(std::string_view text, const std::string& subject, ScanRequ
 }
 
 void read_region(std::string_view text, const std::string& subject, ScanRequest& scan) {
-  const auto parts = parts_of(text, ",");
+  const auto parts = split(text, ",");
   if (parts.size() != 4)
     throw UsageError(subject, fmt::format("'{}' has {} numbers", text, parts.size()),
                      "Give the outer edges X0,Y0,X1,Y1, as -96,-96,96,96");

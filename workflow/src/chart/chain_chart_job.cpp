@@ -21,6 +21,7 @@
 #include "surf/io/plot.h"
 #include "surf/io/sim/materials.h"
 #include "surf/workflow/reconstruct_job.h"
+#include "surf/workflow/step_record.h"
 #include "surf/workflow/version.h"
 
 namespace surf::workflow {
@@ -175,7 +176,8 @@ void write(const ChainChartJob& job, ChainChartSummary& s) {
     io::write_text(job.folder / name, what);
     s.written.push_back(job.folder / name);
   };
-  const auto plot = [&](const std::string& name, const io::Plot& what) {
+  const auto plot = [&](const std::string& name, io::Plot what) {
+    what.metadata = step_record("chart", record_of(job));
     for (const char* extension : {".svg", ".png"}) {
       io::write_plot(job.folder / (name + extension), what);
       s.written.push_back(job.folder / (name + extension));

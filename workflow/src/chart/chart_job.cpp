@@ -23,6 +23,7 @@
 #include "surf/io/plot.h"
 #include "surf/mc/sampling/choose_method.h"
 #include "surf/mc/geometry/scene.h"
+#include "surf/workflow/step_record.h"
 #include "surf/workflow/train_job.h"
 
 namespace surf::workflow {
@@ -263,7 +264,8 @@ void write_chart(const ChartJob& job, ChartSummary& summary) {
   io::write_text(job.folder / "chart.csv", csv_text(summary));
   io::write_text(job.folder / "chart.json", json_text(job, summary));
   summary.written = {job.folder / "chart.csv", job.folder / "chart.json"};
-  const io::Plot plot = chart_plot(job, summary);
+  io::Plot plot = chart_plot(job, summary);
+  plot.metadata = step_record("chart", records_of(job, static_cast<const mc::SimulationRequest&>(job.scene)));
   for (const char* name : {"chart.svg", "chart.png"}) {
     io::write_plot(job.folder / name, plot);
     summary.written.push_back(job.folder / name);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -97,6 +98,8 @@ struct Plot {
   int columns = 0;                 ///< of panels, at least 1; 0: one to three beside each other
   int width_px = 1200;             ///< of a PNG, 300 to 10000; text grows with it. An SVG is 8 inches
   int height_px = 0;               ///< 200 to 10000; 0: what suits the panels
+  /// How it was made, kept in the file as its description: lines "key = value".
+  std::map<std::string, std::string> metadata = {};
 };
 
 /// Draws charts by extension, .svg or .png; the same plot gives the same bytes with one version of
