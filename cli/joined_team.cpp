@@ -20,7 +20,7 @@ void join_team() { joined = workflow::join_started_team(); }
 workflow::Team* team() { return joined.get(); }
 
 int processes_here() {
-  mc::NodeMemory* const node = workflow::node_of(team());
+  workflow::NodeMemory* const node = workflow::node_of(team());
   return node ? node->processes() : 1;
 }
 

@@ -6,9 +6,6 @@
 #include <exception>
 #include <mutex>
 #include <optional>
-#include <thread>
-
-#include <fmt/format.h>
 
 #include "geometry/scene_impl.h"
 #include "request/check_options.h"
@@ -16,8 +13,6 @@
 #include "scheduling/prepared_simulation.h"
 #include "surf/core/error.h"
 #include "surf/core/parallel.h"
-#include "surf/core/try_thread.h"
-#include "surf/mc/results/serialize.h"
 #include "surf/mc/scheduling/unit_plan.h"
 #include "surf/mc/scheduling/unit_scheduler.h"
 
@@ -45,157 +40,87 @@ class Collector {
   std::size_t added_ = 0;
 };
 
-// Units as they are finished, and who is told of them.
-struct Merging {
-  const UnitPlan& plan;
-  Collector& collector;
-  const ProgressCallback& progress;
-  UnitJournal* journal;
-  double done = 0;
-  std::mutex mutex{};
+// Hands units out, and merges them as they are finished. For use from many threads.
+class Merging {
+ public:
+  Merging(const UnitPlan& plan, Collector& collector, const ProgressCallback& progress, UnitJournal* journal,
+          const CancelToken* cancel)
+      : plan_(plan), collector_(collector), progress_(progress), journal_(journal), cancel_(cancel) {}
 
-  void add(std::size_t number, const UnitTally& tally) {
-    const WorkUnit unit = plan.unit(number);
-    collector.add(unit, tally);
-    done += plan.done(unit, tally);
+  /// The next unit that the journal does not know.
+  std::optional<std::size_t> take() {
+    const std::lock_guard lock(mutex_);
+    while (next_ < plan_.units() && !(cancel_ && cancel_->cancelled()))
+      if (const std::size_t number = next_++; !recall(number)) return number;
+    return std::nullopt;
   }
-  /// Whether the journal knew it.
+
+  void finish(std::size_t number, const UnitTally& tally) {
+    const std::lock_guard lock(mutex_);
+    add(number, tally);
+    if (progress_) progress_(done_, plan_.total());
+    if (journal_) journal_->record(number, tally);
+  }
+
+  bool complete() const { return done_ == plan_.total(); }
+
+ private:
+  void add(std::size_t number, const UnitTally& tally) {
+    const WorkUnit unit = plan_.unit(number);
+    collector_.add(unit, tally);
+    done_ += plan_.done(unit, tally);
+  }
+
+  // Whether the journal knew it.
   bool recall(std::size_t number) {
     UnitTally tally;
-    if (!journal || !journal->recall(number, tally)) return false;
-    collector.result.recalled += tally.balance.incident;
+    if (!journal_ || !journal_->recall(number, tally)) return false;
+    collector_.result.recalled += tally.balance.incident;
     add(number, tally);
     return true;
   }
-  void give(std::size_t number, const UnitTally& tally) {
-    add(number, tally);
-    if (progress) progress(done, plan.total());
-    if (journal) journal->record(number, tally);
-  }
+
+  const UnitPlan& plan_;
+  Collector& collector_;
+  const ProgressCallback& progress_;
+  UnitJournal* journal_;
+  const CancelToken* cancel_;
+  std::mutex mutex_;
+  std::size_t next_ = 0;
+  double done_ = 0;
 };
 
-// What a thread works with, made when it first has something to do.
-struct Bench {
-  std::unique_ptr<UnitWorker> worker;
-  Observer* observer;
-};
-using Benches = std::vector<std::unique_ptr<Bench>>;
+// What simulates on each of the threads, made when the thread first has something to do.
+class Workers {
+ public:
+  Workers(PreparedSimulation& prepared, int threads, const ObserverOfThread& observers, const CancelToken* cancel)
+      : prepared_(prepared), observers_(observers), cancel_(cancel), of_thread_(static_cast<std::size_t>(threads)) {}
 
-Bench& bench_of(Benches& benches, int thread, PreparedSimulation& prepared, const ObserverOfThread& observers) {
-  auto& bench = benches[static_cast<std::size_t>(thread)];
-  if (!bench) bench = std::make_unique<Bench>(Bench{prepared.worker(), observers ? observers(thread) : nullptr});
-  return *bench;
-}
-
-void run_all(const UnitPlan& plan, PreparedSimulation& prepared, int threads, const ObserverOfThread& observers,
-             Merging& merging, const CancelToken* cancel) {
-  Benches benches(static_cast<std::size_t>(threads));
-  parallel_for(plan.units(), threads, [&](std::size_t i, int w) {
-    if (cancel && cancel->cancelled()) return;
-    if (merging.journal) {
-      const std::lock_guard lock(merging.mutex);
-      if (merging.recall(i)) return;
+  /// False when it was cancelled. What observers have seen of a unit has to count: then it is not.
+  bool simulate(const WorkUnit& unit, int thread, UnitTally& tally) {
+    Worker& w = of_thread_[static_cast<std::size_t>(thread)];
+    if (!w.worker) {
+      w = {prepared_.worker(), observers_ ? observers_(thread) : nullptr};
+      w.worker->cancel = observers_ ? nullptr : cancel_;
     }
-    Bench& bench = bench_of(benches, w, prepared, observers);
-    bench.worker->cancel = observers ? nullptr : cancel;   // what they have seen of a unit has to count
-    UnitTally tally;
     try {
-      bench.worker->simulate(plan.unit(i), bench.observer, tally);
+      w.worker->simulate(unit, w.observer, tally);
     } catch (const Interrupted&) {
-      return;   // the unit is left out, and done anew by who resumes
+      return false;
     }
-    const std::lock_guard lock(merging.mutex);
-    merging.give(i, tally);
-  });
-}
-
-using GiveTally = std::function<void(std::size_t number, const UnitTally& tally)>;
-
-// Threads of this process take units until there are none.
-void take_and_give(const UnitPlan& plan, PreparedSimulation& prepared, int threads, const CancelToken* cancel,
-                   const TakeUnit& take, const GiveTally& give) {
-  Benches benches(static_cast<std::size_t>(threads));
-  parallel_for(static_cast<std::size_t>(threads), threads, [&](std::size_t, int w) {
-    while (const auto number = take()) {
-      UnitWorker& worker = *bench_of(benches, w, prepared, {}).worker;
-      worker.cancel = cancel;
-      UnitTally tally;
-      try {
-        worker.simulate(plan.unit(*number), nullptr, tally);
-      } catch (const Interrupted&) {
-        return;   // as in run_all
-      }
-      give(*number, tally);
-    }
-  });
-}
-
-// The same units, whoever does them: they merge to the same result.
-void share(UnitScheduler& scheduler, const UnitPlan& plan, PreparedSimulation& prepared, int threads, Merging& merging,
-           const CancelToken* cancel) {
-  if (!scheduler.leads()) {
-    scheduler.follow([&](const TakeUnit& take, const GiveUnit& give) {
-      take_and_give(plan, prepared, threads, cancel, take, [&](std::size_t number, const UnitTally& tally) {
-        give({number, tally.balance.incident, serialize(tally)});
-      });
-    }, threads, threads, cancel);
-    return;
+    return true;
   }
-  std::size_t next = 0;
-  bool ended = false;   // an error on either side: the other takes no more
-  const TakeUnit take = [&]() -> std::optional<std::size_t> {
-    const std::lock_guard lock(merging.mutex);
-    while (!ended && next < plan.units() && !(cancel && cancel->cancelled()))
-      if (const std::size_t number = next++; !merging.recall(number)) return number;
-    return std::nullopt;
-  };
-  const GiveTally give = [&](std::size_t number, const UnitTally& tally) {
-    const std::lock_guard lock(merging.mutex);
-    merging.give(number, tally);
-  };
-  const auto end = [&] {
-    const std::lock_guard lock(merging.mutex);
-    ended = true;
-  };
-  std::exception_ptr own, of_crew;
-  {
-    // The scheduler is led from here: its messages may have to come from the thread that began.
-    const auto work = [&] {
-      try {
-        take_and_give(plan, prepared, threads, cancel, take, give);
-      } catch (...) {
-        own = std::current_exception();
-        end();
-      }
-    };
-    const std::jthread at_work = try_thread(work);
-    try {
-      scheduler.lead(take, [&](const FinishedUnit& unit) { give(unit.number, deserialize(unit.bytes)); }, cancel);
-    } catch (...) {
-      of_crew = std::current_exception();
-      end();
-    }
-    if (!at_work.joinable()) work();   // what the others have left
-  }
-  if (own) std::rethrow_exception(own);
-  if (of_crew) std::rethrow_exception(of_crew);
-}
 
-// Where this process cannot go on: the others neither wait for it nor begin.
-void send_home(UnitScheduler& scheduler, const std::exception_ptr& trouble, const CancelToken* cancel) {
-  try {
-    if (scheduler.leads())
-      scheduler.lead([] { return std::nullopt; }, [](const FinishedUnit&) {}, cancel);
-    else
-      scheduler.follow(
-          [&](const TakeUnit&, const GiveUnit&) {
-            if (trouble) std::rethrow_exception(trouble);
-            throw Interrupted();
-          },
-          1, 0, cancel);
-  } catch (...) {   // it is told by who calls
-  }
-}
+ private:
+  struct Worker {
+    std::unique_ptr<UnitWorker> worker;
+    Observer* observer = nullptr;
+  };
+  PreparedSimulation& prepared_;
+  const ObserverOfThread& observers_;
+  const CancelToken* cancel_;
+  std::vector<Worker> of_thread_;
+};
 
 Scan one_pixel() {
   Scan scan;
@@ -226,32 +151,32 @@ void SimulationContext::check(const SimulationOptions& options, const Scene& sce
 SimulationResult simulate(const Scene& scene, const SimulationOptions& options, const SimulationContext& context) {
   check_options(options);
   context.check(options, scene);
-  const auto& [progress, cancel, observers, journal, libraries, scheduler] = context;
+  const auto& [progress, cancel, observers, journal, libraries, given] = context;
+  ThreadScheduler own_threads;
+  UnitScheduler& scheduler = given ? *given : own_threads;
   auto begin = std::chrono::steady_clock::now();
   const auto seconds = [&] {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   };
   const UnitPlan plan(scene.scan(), options);
-  // Who follows has nothing to collect: its memory need not hold the image.
-  std::optional<Collector> room;
+  // Where nothing is collected, memory need not hold the image.
+  const Scan collected = scheduler.collects() ? scene.scan() : one_pixel();
   PreparedSimulation prepared;
-  bool ready = false;
+  std::optional<Collector> collector;
   std::exception_ptr trouble;
+  bool ready = false;
   try {
-    if (!scheduler) room.emplace(scene.scan(), options);
-    // All get the libraries together: nobody may leave for reasons of its own before.
-    ready = prepared.prepare(scene, options, libraries, plan.most(), {}, cancel, scheduler != nullptr);
-    if (scheduler) room.emplace(scheduler->leads() ? scene.scan() : one_pixel(), options);
+    ready = prepared.prepare(scene, options, libraries, plan.most(), {}, cancel);
+    collector.emplace(collected, options);
   } catch (const Interrupted&) {
     ready = false;
   } catch (...) {
     trouble = std::current_exception();
   }
-  if (scheduler && (!ready || trouble)) send_home(*scheduler, trouble, cancel);
+  if (!ready || trouble) scheduler.abandon(trouble, cancel);
   if (trouble) std::rethrow_exception(trouble);
-  if (!room) room.emplace(scheduler && !scheduler->leads() ? one_pixel() : scene.scan(), options);
-  Collector& collector = *room;
-  SimulationResult& result = collector.result;
+  if (!collector) collector.emplace(collected, options);
+  SimulationResult& result = collector->result;
   if (!ready) {
     result.complete = false;
     return std::move(result);
@@ -260,10 +185,15 @@ SimulationResult simulate(const Scene& scene, const SimulationOptions& options, 
   result.cascade_yields = prepared.yields();
   result.library_seconds = seconds();
   begin = std::chrono::steady_clock::now();
-  Merging merging{plan, collector, progress, journal};
-  if (scheduler) share(*scheduler, plan, prepared, resolve_threads(options.threads), merging, cancel);
-  else run_all(plan, prepared, resolve_threads(options.threads), observers, merging, cancel);
-  result.complete = merging.done == plan.total() || (scheduler && !scheduler->leads());
+  const int threads = resolve_threads(options.threads);
+  Merging merging(plan, *collector, progress, journal, cancel);
+  Workers workers(prepared, threads, observers, cancel);
+  scheduler.run({threads, [&] { return merging.take(); },
+                 [&](std::size_t number, int thread, UnitTally& tally) {
+                   return workers.simulate(plan.unit(number), thread, tally);
+                 },
+                 [&](std::size_t number, const UnitTally& tally) { merging.finish(number, tally); }, cancel});
+  result.complete = merging.complete() || !scheduler.collects();
   result.seconds = seconds();
   return std::move(result);
 }

@@ -21,8 +21,8 @@ class ThreadTeam : public workflow::Team {
   void broadcast(std::string& bytes) override { bytes = meet("broadcast ", leads() ? bytes : "").front(); }
   std::vector<std::string> exchange(const std::string& text) override { return meet("exchange ", text); }
 
-  void lead(const mc::TakeUnit& take, const mc::GiveUnit& give, const CancelToken* cancel) override {
-    const auto count = [&](mc::FinishedUnit unit) {
+  void lead(const workflow::TakeUnit& take, const workflow::GiveUnit& give, const CancelToken* cancel) override {
+    const auto count = [&](workflow::FinishedUnit unit) {
       auto& member = members_[static_cast<std::size_t>(unit.rank)];
       ++member.units;
       member.primaries += unit.primaries;
@@ -30,7 +30,7 @@ class ThreadTeam : public workflow::Team {
     };
     crew_.lead(take, count, cancel);
   }
-  void follow(const std::function<void(const mc::TakeUnit&, const mc::GiveUnit&)>& work, int threads, int ahead,
+  void follow(const std::function<void(const workflow::TakeUnit&, const workflow::GiveUnit&)>& work, int threads, int ahead,
               const CancelToken* cancel) override {
     crew_.follow(work, threads, ahead, cancel);
   }

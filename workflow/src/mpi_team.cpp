@@ -100,7 +100,7 @@ void await(const Begin& begin) {
 }
 
 // The processes of one machine: memory from MPI's windows, or a copy for each where they cannot be had.
-class MpiNode : public mc::NodeMemory {
+class MpiNode : public NodeMemory {
  public:
   MpiNode() {
     MPI_Comm_split_type(MPI_COMM_WORLD, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &comm_);
@@ -224,7 +224,7 @@ class MpiTeam : public Team {
   int rank() const override { return rank_; }
   int size() const override { return size_; }
   std::vector<TeamMember> members() const override { return members_; }
-  mc::NodeMemory* node() override { return node_->processes() > 1 ? &*node_ : nullptr; }
+  NodeMemory* node() override { return node_->processes() > 1 ? &*node_ : nullptr; }
 
   void broadcast(std::string& bytes) override {
     if (deaf_) return;
@@ -254,7 +254,7 @@ class MpiTeam : public Team {
     return out;
   }
 
-  void lead(const mc::TakeUnit& take, const mc::GiveUnit& give, const CancelToken* cancel) override {
+  void lead(const TakeUnit& take, const GiveUnit& give, const CancelToken* cancel) override {
     const ThreadTime time(own().messaging_s);
     int at_work = size_ - 1;
     std::string trouble;
@@ -314,7 +314,7 @@ class MpiTeam : public Team {
       throw InvalidInput("team", trouble, "Look at that machine, and start the same command again");
   }
 
-  void follow(const std::function<void(const mc::TakeUnit&, const mc::GiveUnit&)>& work, int threads, int ahead,
+  void follow(const std::function<void(const TakeUnit&, const GiveUnit&)>& work, int threads, int ahead,
               const CancelToken* cancel) override {
     Desk desk;
     desk.ahead = static_cast<std::size_t>(ahead);
@@ -323,7 +323,7 @@ class MpiTeam : public Team {
     {
       const std::jthread at_work = try_thread([&] {
         try {
-          work([&] { return desk.take(); }, [&](mc::FinishedUnit unit) { desk.give(std::move(unit)); });
+          work([&] { return desk.take(); }, [&](FinishedUnit unit) { desk.give(std::move(unit)); });
         } catch (...) {
           error = std::current_exception();
         }
@@ -365,7 +365,7 @@ class MpiTeam : public Team {
     std::condition_variable changed;   // for those who simulate
     std::condition_variable news;      // for the other
     std::deque<std::size_t> in;
-    std::deque<mc::FinishedUnit> out;
+    std::deque<FinishedUnit> out;
     std::size_t ahead = 0, takers = 0;   // takers: who wait for a unit
     bool closed = false, left = false;
     double waiting_s = 0;
@@ -384,7 +384,7 @@ class MpiTeam : public Team {
       news.notify_one();
       return unit;
     }
-    void give(mc::FinishedUnit unit) {
+    void give(FinishedUnit unit) {
       const std::lock_guard lock(mutex);
       out.push_back(std::move(unit));
       news.notify_one();
@@ -409,7 +409,7 @@ class MpiTeam : public Team {
         desk.in.clear();
         desk.changed.notify_all();
       }
-      std::deque<mc::FinishedUnit> done;
+      std::deque<FinishedUnit> done;
       bool all_done = false, ask = false;
       std::uint64_t want = 0;
       {
@@ -419,7 +419,7 @@ class MpiTeam : public Team {
         ask = !asked && desk.has_few();
         want = desk.enough() + desk.ahead - desk.in.size();
       }
-      for (const mc::FinishedUnit& unit : done) {
+      for (const FinishedUnit& unit : done) {
         const std::uint64_t head[] = {unit.number, static_cast<std::uint64_t>(unit.primaries)};
         send(std::string(reinterpret_cast<const char*>(head), sizeof head) + unit.bytes, tally, 0);
       }
@@ -460,7 +460,7 @@ class MpiTeam : public Team {
     }
   }
 
-  void hand_out(const mc::TakeUnit& take, std::uint64_t wanted, int to) {
+  void hand_out(const TakeUnit& take, std::uint64_t wanted, int to) {
     std::vector<std::uint64_t> numbers;
     while (numbers.size() < wanted) {
       const auto unit = take();

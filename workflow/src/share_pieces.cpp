@@ -6,12 +6,10 @@
 
 #include <algorithm>
 #include <chrono>
-#include <exception>
 #include <numeric>
 #include <thread>
 
 #include "surf/core/error.h"
-#include "surf/core/try_thread.h"
 #include "surf/io/files.h"
 
 namespace surf::workflow {
@@ -39,7 +37,7 @@ class Ledger {
     return next_++;
   }
 
-  void give(const mc::FinishedUnit& unit) {
+  void give(const FinishedUnit& unit) {
     const std::size_t tab = unit.bytes.find('\t');
     const std::lock_guard lock(*pieces_.talking);
     MemberTally& tally = tallies_.at(static_cast<std::size_t>(unit.rank));
@@ -73,7 +71,7 @@ class Ledger {
 };
 
 // Until there are no more.
-void do_pieces(const Pieces& pieces, const mc::TakeUnit& take, const mc::GiveUnit& give,
+void do_pieces(const Pieces& pieces, const TakeUnit& take, const GiveUnit& give,
                const std::function<void(double)>& show) {
   while (const auto number = take()) {
     const auto start = Clock::now();
@@ -87,35 +85,15 @@ void do_pieces(const Pieces& pieces, const mc::TakeUnit& take, const mc::GiveUni
 }
 
 void lead(Team& team, const Pieces& pieces, Ledger& ledger) {
-  const mc::TakeUnit take = [&] { return ledger.take(); };
-  const mc::GiveUnit give = [&](const mc::FinishedUnit& unit) { ledger.give(unit); };
-  std::exception_ptr own, of_team;
-  {
-    // As in mc::simulate: messages may have to come from the thread that began.
-    const auto work = [&] {
-      try {
-        do_pieces(pieces, take, give, [&](double done) { ledger.show(done); });
-      } catch (...) {
-        own = std::current_exception();
-        ledger.end();
-      }
-    };
-    const std::jthread at_work = try_thread(work);
-    try {
-      team.lead(take, give, pieces.cancel);
-    } catch (...) {
-      of_team = std::current_exception();
-      ledger.end();
-    }
-    if (!at_work.joinable()) work();   // what the others have left
-  }
-  if (own) std::rethrow_exception(own);
-  if (of_team) std::rethrow_exception(of_team);
+  const TakeUnit take = [&] { return ledger.take(); };
+  const GiveUnit give = [&](const FinishedUnit& unit) { ledger.give(unit); };
+  lead_while(team, take, give, pieces.cancel,
+             [&] { do_pieces(pieces, take, give, [&](double done) { ledger.show(done); }); }, [&] { ledger.end(); });
 }
 
 void follow(Team& team, const Pieces& pieces) {
   try {
-    team.follow([&](const mc::TakeUnit& take, const mc::GiveUnit& give) { do_pieces(pieces, take, give, {}); },
+    team.follow([&](const TakeUnit& take, const GiveUnit& give) { do_pieces(pieces, take, give, {}); },
                 pieces.threads, 0, pieces.cancel);
   } catch (const Interrupted&) {   // whoever leads knows, and says that it is not complete
   }

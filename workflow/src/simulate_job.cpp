@@ -24,6 +24,7 @@
 #include "surf/io/image_file.h"
 #include "surf/io/volume_file.h"
 #include "team_libraries.h"
+#include "team_scheduler.h"
 #include "surf/mc/sampling/choose_method.h"
 #include "surf/mc/geometry/scene.h"
 #include "surf/workflow/trajectories.h"
@@ -208,7 +209,7 @@ SimulateSummary run(SimulateJob asked, const Reporter& reporter, Team* team, con
     }
     if (leads(team)) record.inputs = hash_inputs(job.scene.inputs);
   });
-  mc::NodeMemory* const node = node_of(team);
+  NodeMemory* const node = node_of(team);
   together(team, [&] {
     facts = facts_of(job.scene.specimen, node, {{}, cancel});
     summary.scan = resolve_scan(job.scene.scan, facts.extent, job.scene.beam);
@@ -235,7 +236,10 @@ SimulateSummary run(SimulateJob asked, const Reporter& reporter, Team* team, con
   mc::LibrarySource& libraries = team ? static_cast<mc::LibrarySource&>(*of_team) : kept;
   Simulation simulation;
   const ProgressCallback progress = reporter.counting(mc::accuracy_of(job.options.budget) > 0 ? "pixels" : "primaries");
-  mc::SimulationContext context{.progress = progress, .cancel = cancel, .libraries = &libraries, .scheduler = team};
+  std::optional<TeamScheduler> processes;
+  if (team) processes.emplace(*team);
+  mc::SimulationContext context{
+      .progress = progress, .cancel = cancel, .libraries = &libraries, .scheduler = processes ? &*processes : nullptr};
   if (job.seconds() > 0)
     simulation = simulate_coarsely(job, scene, kept, summary.choice, record, context, simulator, tell, team);
   if (job.seconds() > 0 && !simulation.final) {   // as with an accuracy of that number

@@ -106,7 +106,7 @@ void check_checkpoint(const ResolvedJob& job) {
   io::check_writable(o.file);
 }
 
-mc::Scene make_scene(const ResolvedJob& job, const SpecimenFacts& facts, mc::NodeMemory* node,
+mc::Scene make_scene(const ResolvedJob& job, const SpecimenFacts& facts, NodeMemory* node,
                      const NoteCallback& tell, const CancelToken* cancel, SimulateSummary& summary) {
   const io::SceneFile& s = job.scene;
   const double tolerance_nm = s.mesh_tolerance_nm;

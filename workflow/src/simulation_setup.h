@@ -20,7 +20,7 @@ void check_checkpoint(const ResolvedJob& job);
 
 /// What is traced: the specimen, or one of fewer triangles within the tolerance asked for. `summary` has the scan, and
 /// gets what was left out. With a `node` its processes share the triangles of the first one's specimen.
-mc::Scene make_scene(const ResolvedJob& job, const SpecimenFacts& facts, mc::NodeMemory* node,
+mc::Scene make_scene(const ResolvedJob& job, const SpecimenFacts& facts, NodeMemory* node,
                      const NoteCallback& tell, const CancelToken* cancel, SimulateSummary& summary);
 
 }  // namespace surf::workflow

@@ -7,7 +7,7 @@
 
 namespace surf::workflow {
 
-SpecimenFacts facts_of(const mc::Specimen& specimen, mc::NodeMemory* node, const Watch& watch) {
+SpecimenFacts facts_of(const mc::Specimen& specimen, NodeMemory* node, const Watch& watch) {
   SpecimenFacts facts;
   const std::string text = once_per_node(node, [&] {
     facts = {mc::extent(specimen), mc::validate(specimen, watch)};

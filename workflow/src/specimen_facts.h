@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "surf/mc/geometry/shared_memory.h"
+#include "surf/workflow/node_memory.h"
 #include "surf/mc/geometry/specimen.h"
 
 namespace surf::workflow {
@@ -15,6 +15,6 @@ struct SpecimenFacts {
 };
 
 /// Validates the specimen; on a machine of several processes the first one does, for all.
-SpecimenFacts facts_of(const mc::Specimen& specimen, mc::NodeMemory* node, const Watch& watch);
+SpecimenFacts facts_of(const mc::Specimen& specimen, NodeMemory* node, const Watch& watch);
 
 }  // namespace surf::workflow

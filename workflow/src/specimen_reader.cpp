@@ -8,7 +8,7 @@
 
 namespace surf::workflow {
 
-io::BodyReader specimen_reader(mc::NodeMemory* node, int each) {
+io::BodyReader specimen_reader(NodeMemory* node, int each) {
   return [node, each](const std::filesystem::path& path, const io::MeshUnit& unit,
                 const io::MaterialNames& names, const io::MaterialLibrary& library) {
     std::vector<io::MeshBody> bodies;

@@ -4,8 +4,10 @@
 #include <fmt/format.h>
 
 #include <exception>
+#include <thread>
 
 #include "surf/core/error.h"
+#include "surf/core/try_thread.h"
 
 namespace surf::workflow {
 
@@ -27,7 +29,33 @@ void together(Team* team, const std::function<void()>& part) {
       throw InvalidInput(fmt::format("rank {}", rank), all[rank], "All machines need the same files in the same places");
 }
 
-std::string once_per_node(mc::NodeMemory* node, const std::function<std::string()>& work) {
+void lead_while(Team& team, const TakeUnit& take, const GiveUnit& give, const CancelToken* cancel,
+                const std::function<void()>& work, const std::function<void()>& end) {
+  std::exception_ptr own, of_team;
+  {
+    // The team is led from here: its messages may have to come from the thread that began.
+    const auto guarded = [&] {
+      try {
+        work();
+      } catch (...) {
+        own = std::current_exception();
+        end();
+      }
+    };
+    const std::jthread at_work = try_thread(guarded);
+    try {
+      team.lead(take, give, cancel);
+    } catch (...) {
+      of_team = std::current_exception();
+      end();
+    }
+    if (!at_work.joinable()) guarded();   // what the others have left
+  }
+  if (own) std::rethrow_exception(own);
+  if (of_team) std::rethrow_exception(of_team);
+}
+
+std::string once_per_node(NodeMemory* node, const std::function<std::string()>& work) {
   if (!node) return work();
   std::string text;
   if (node->is_first()) {

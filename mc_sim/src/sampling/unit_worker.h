@@ -2,9 +2,7 @@
 #pragma once
 
 #include <memory>
-#include <vector>
 
-#include "surf/core/error.h"
 #include "surf/core/progress.h"
 #include "surf/mc/cascades/library_source.h"
 #include "surf/mc/geometry/scene.h"
@@ -16,8 +14,7 @@ namespace surf::mc {
 
 class PlanarControls;
 
-/// Simulates units of work, one thread's share. A unit's tally depends on scene, options and unit
-/// alone.
+/// Simulates units of work, one thread's share. A unit's tally depends on scene, options and unit alone.
 class UnitWorker {
  public:
   virtual ~UnitWorker() = default;
@@ -25,26 +22,14 @@ class UnitWorker {
   /// `out` is empty at first. `observer` may be null. Throws Interrupted, with `out` of no use.
   virtual void simulate(const WorkUnit& unit, Observer* observer, UnitTally& out) = 0;
 
-  /// Looked at with each primary: a unit takes seconds where electrons are fast. May be null.
-  const CancelToken* cancel = nullptr;
-
- protected:
-  void check() const {
-    if (cancel && cancel->cancelled()) throw Interrupted();
-  }
+  const CancelToken* cancel = nullptr;   ///< may be null
 };
 
-std::unique_ptr<UnitWorker> make_direct_worker(const Scene::Impl& scene,
-                                               const SimulationOptions& options);
-std::unique_ptr<UnitWorker> make_replay_worker(const Scene::Impl& scene,
-                                               const SimulationOptions& options,
-                                               const Libraries& libraries);
-/// For `accuracy`, these two: pixels of a unit are served as they need.
-std::unique_ptr<UnitWorker> make_direct_spending_worker(const Scene::Impl& scene,
-                                                        const SimulationOptions& options);
-std::unique_ptr<UnitWorker> make_spending_worker(const Scene::Impl& scene,
-                                                 const SimulationOptions& options,
-                                                 const Libraries& libraries,
-                                                 PlanarControls& controls);
+// How many primaries a pixel gets (fixed_sampler.h, adaptive_sampler.h) goes by the options' budget; where their outcome comes
+// from (direct_source.h, replay_source.h) by which of these is called. Scene, options and libraries must outlive the worker.
+std::unique_ptr<UnitWorker> make_direct_worker(const Scene::Impl& scene, const SimulationOptions& options);
+/// `controls` are needed with an accuracy, and not used without.
+std::unique_ptr<UnitWorker> make_replay_worker(const Scene::Impl& scene, const SimulationOptions& options,
+                                               const Libraries& libraries, PlanarControls* controls = nullptr);
 
 }  // namespace surf::mc

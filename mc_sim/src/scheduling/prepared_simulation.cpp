@@ -31,8 +31,7 @@ std::size_t library_size(const SimulationOptions& options, std::int64_t most_pri
 }
 
 bool PreparedSimulation::prepare(const Scene& scene, const SimulationOptions& options, LibrarySource* source,
-                       std::int64_t most_primaries, const ProgressCallback& progress, const CancelToken* cancel,
-                       bool shared) {
+                       std::int64_t most_primaries, const ProgressCallback& progress, const CancelToken* cancel) {
   scene_ = &scene.impl();
   options_ = &options;
   if (options.method == Method::direct) return true;
@@ -41,7 +40,7 @@ bool PreparedSimulation::prepare(const Scene& scene, const SimulationOptions& op
   const std::size_t least = library_size(options, most_primaries);
   if (!get(scene, *source, least, progress, cancel)) return false;
   if (!(accuracy_of(options.budget) > 0)) return true;
-  measure_yields(static_cast<int>(scene.materials().size()), shared ? nullptr : cancel);
+  measure_yields(static_cast<int>(scene.materials().size()));
   const double share = options.planar_control && only_planes() ? all_of_the_variance : usual_share_of_variance;
   const std::size_t wanted = std::min(library_size(options, most_primaries, yields_, share),
                                       cascades_that_fit(options.library_memory));
@@ -72,11 +71,8 @@ bool PreparedSimulation::get(const Scene& scene, LibrarySource& source, std::siz
 }
 
 std::unique_ptr<UnitWorker> PreparedSimulation::worker() {
-  if (options_->method == Method::direct)
-    return accuracy_of(options_->budget) > 0 ? make_direct_spending_worker(*scene_, *options_)
-                                  : make_direct_worker(*scene_, *options_);
-  if (controls_) return make_spending_worker(*scene_, *options_, libraries_, *controls_);
-  return make_replay_worker(*scene_, *options_, libraries_);
+  if (options_->method == Method::direct) return make_direct_worker(*scene_, *options_);
+  return make_replay_worker(*scene_, *options_, libraries_, controls_ ? &*controls_ : nullptr);
 }
 
 std::size_t PreparedSimulation::planes_expected(int pixels) const {
@@ -101,13 +97,13 @@ std::size_t PreparedSimulation::library_bytes() const {
 }
 
 // On the plane where counts scatter most for their mean: the one across the beam.
-void PreparedSimulation::measure_yields(int materials, const CancelToken* cancel) {
+void PreparedSimulation::measure_yields(int materials) {
   constexpr std::size_t pilot = 5 * CascadeLibrary::page_cascades;
   Libraries first;
   for (const auto& library : libraries_)
     first.push_back(library ? std::make_shared<CascadeLibrary>(library->first(pilot / CascadeLibrary::page_cascades))
                             : nullptr);
-  PlanarControls controls(*scene_, *options_, first, cancel);
+  PlanarControls controls(*scene_, *options_, first, nullptr);   // of some thousand cascades
   for (int m = 0; m < materials; ++m) {
     const auto match = controls.match(m, -direction(scene_->beam), false);
     for (const Counts& sums : match.control->sums) {

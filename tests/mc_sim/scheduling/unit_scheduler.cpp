@@ -4,21 +4,18 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
-#include <numeric>
+#include <atomic>
+#include <mutex>
+#include <vector>
 
 #include "specimens.h"
 #include "surf/core/error.h"
 #include "surf/mc/scheduling/unit_plan.h"
-#include "thread_crew.h"
 
 namespace surf::mc {
 namespace {
 
-using test::CrewRoom;
-using test::ThreadCrew;
-using testing::Each;
 using testing::HasSubstr;
-using testing::IsEmpty;
 
 const Scan scan = test::square_scan(84, 9);
 
@@ -31,89 +28,115 @@ SimulationOptions few_electrons() {
   return options;
 }
 
-Scene flat_scene(const Scan& pixels = scan) { return Scene(test::flat("Si"), {}, pixels); }
+// One thread, the last unit first.
+class Backwards : public UnitScheduler {
+ public:
+  bool collects() const override { return true; }
+  void run(const UnitWork& work) override {
+    std::vector<std::size_t> all;
+    while (const auto number = work.take()) all.push_back(*number);
+    units = all.size();
+    std::ranges::reverse(all);
+    for (const std::size_t number : all) {
+      UnitTally tally;
+      ASSERT_TRUE(work.simulate(number, 0, tally));
+      work.finish(number, tally);
+    }
+  }
+  void abandon(const std::exception_ptr&, const CancelToken*) override { abandoned = true; }
 
-TEST(UnitScheduler, GivesTheResultOfOneWhateverItsSize) {
-  const Scene scene = flat_scene();
-  const SimulationOptions options = few_electrons();
-  const SimulationResult alone = simulate(scene, options);
-  const Image image = make_image(alone, scan);
-  for (const int size : {1, 2, 3, 4}) {
-    CrewRoom room(size);
-    SimulationResult result;
-    const auto errors = test::on_ranks(size, [&](int rank) {
-      ThreadCrew crew(room, rank);
-      SimulationResult own = simulate(scene, options, {.scheduler = &crew});
-      if (rank == 0) result = std::move(own);
-    });
-    EXPECT_THAT(errors, Each(IsEmpty()));
-    EXPECT_TRUE(result.complete);
-    EXPECT_EQ(result.balance.incident, alone.balance.incident);
-    EXPECT_EQ(result.balance.deposited_energy.parts(), alone.balance.deposited_energy.parts());
-    const Image shared = make_image(result, scan);
-    for (std::size_t c = 0; c < image.channels.size(); ++c)
-      EXPECT_EQ(shared.channels[c].values, image.channels[c].values) << size;
-    // Nobody does what somebody else has done, and all that is handed out comes back.
-    std::sort(room.handed.begin(), room.handed.end());
-    std::sort(room.given.begin(), room.given.end());
-    EXPECT_EQ(std::adjacent_find(room.handed.begin(), room.handed.end()), room.handed.end());
-    EXPECT_EQ(room.given, room.handed);
-    EXPECT_LE(room.handed.size(), UnitPlan(scan, options).units());
+  std::size_t units = 0;
+  bool abandoned = false;
+};
+
+TEST(UnitScheduler, TheResultDoesNotDependOnTheOrder) {
+  const Scene scene(test::flat("Si"), {}, scan);
+  const SimulationResult usual = simulate(scene, few_electrons());
+  Backwards backwards;
+  const SimulationResult result = simulate(scene, few_electrons(), {.scheduler = &backwards});
+  EXPECT_TRUE(result.complete);
+  EXPECT_FALSE(backwards.abandoned);
+  EXPECT_EQ(backwards.units, UnitPlan(scan, few_electrons()).units());
+  EXPECT_EQ(result.balance.deposited_energy.parts(), usual.balance.deposited_energy.parts());
+  const Image a = make_image(result, scan), b = make_image(usual, scan);
+  for (std::size_t c = 0; c < a.channels.size(); ++c) EXPECT_EQ(a.channels[c].values, b.channels[c].values);
+}
+
+// What comes to nobody: units are done, and given elsewhere.
+class Elsewhere : public Backwards {
+ public:
+  bool collects() const override { return false; }
+  void run(const UnitWork& work) override {
+    UnitTally tally;
+    ASSERT_TRUE(work.simulate(0, 0, tally));
+    EXPECT_GT(tally.balance.incident, 0);
+  }
+};
+
+TEST(UnitScheduler, WhereNothingIsCollectedTheResultCountsNothing) {
+  const Scene scene(test::flat("Si"), {}, scan);
+  Elsewhere elsewhere;
+  const SimulationResult result = simulate(scene, few_electrons(), {.scheduler = &elsewhere});
+  EXPECT_TRUE(result.complete);
+  EXPECT_EQ(result.balance.incident, 0);
+}
+
+TEST(UnitScheduler, IsAbandonedWhereThereAreNoLibraries) {
+  struct Cancelled : LibrarySource {
+    std::shared_ptr<const CascadeLibrary> library(const CascadeSettings&, std::size_t, int, const ProgressCallback&,
+                                                  const CancelToken*) override {
+      return nullptr;
+    }
+  } none;
+  const Scene scene(test::flat("Si"), {}, scan);
+  SimulationOptions options = few_electrons();
+  options.method = Method::replay;
+  Backwards backwards;
+  const SimulationResult result = simulate(scene, options, {.libraries = &none, .scheduler = &backwards});
+  EXPECT_TRUE(backwards.abandoned);
+  EXPECT_FALSE(result.complete);
+  EXPECT_EQ(backwards.units, 0u);
+}
+
+TEST(ThreadScheduler, FinishesEveryUnitOnce) {
+  for (const int threads : {1, 2, 5}) {
+    std::atomic<std::size_t> next = 0;
+    std::mutex mutex;
+    std::vector<int> finished(200, 0);
+    ThreadScheduler().run({threads,
+                           [&]() -> std::optional<std::size_t> {
+                             const std::size_t number = next++;
+                             return number < finished.size() ? std::optional(number) : std::nullopt;
+                           },
+                           [&](std::size_t number, int thread, UnitTally& tally) {
+                             EXPECT_GE(thread, 0);
+                             EXPECT_LT(thread, threads);
+                             tally.balance.incident = static_cast<std::int64_t>(number);
+                             return true;
+                           },
+                           [&](std::size_t number, const UnitTally& tally) {
+                             const std::lock_guard lock(mutex);
+                             EXPECT_EQ(tally.balance.incident, static_cast<std::int64_t>(number));
+                             ++finished[number];
+                           }});
+    EXPECT_THAT(finished, testing::Each(1)) << threads;
   }
 }
 
-TEST(UnitScheduler, DoesAllUnitsWhereTheLeaderHasNoThreadFree) {
-  CrewRoom room(2);
-  const std::size_t units = 50;
-  std::vector<std::size_t> came;
-  test::on_ranks(2, [&](int rank) {
-    ThreadCrew crew(room, rank);
-    std::size_t next = 0;
-    if (rank == 0)
-      return crew.lead([&] { return next < units ? std::optional(next++) : std::nullopt; },
-                       [&](const FinishedUnit& unit) {
-                         came.push_back(unit.number);
-                         EXPECT_EQ(unit.rank, 1);
-                         EXPECT_EQ(unit.bytes, "done " + std::to_string(unit.number));
-                       }, nullptr);
-    crew.follow([](const TakeUnit& take, const GiveUnit& give) {
-      while (const auto unit = take()) give({*unit, 3, "done " + std::to_string(*unit)});
-    }, 1, 0, nullptr);
-  });
-  std::vector<std::size_t> all(units);
-  std::iota(all.begin(), all.end(), 0u);
-  EXPECT_EQ(came, all);
-}
-
-TEST(UnitScheduler, WhoFailsInAUnitEndsTheSimulationAndIsNamed) {
-  const Scene scene = flat_scene();
-  CrewRoom room(3);
-  const auto errors = test::on_ranks(3, [&](int rank) {
-    ThreadCrew crew(room, rank);
-    if (rank != 2) {
-      simulate(scene, few_electrons(), {.scheduler = &crew});
-      return;
-    }
-    crew.follow([](const TakeUnit& take, const GiveUnit&) {
-      if (take()) throw InvalidInput("unit", "the disk is full", "Make room");
-    }, 1, 1, nullptr);
-  });
-  EXPECT_THAT(errors[0], HasSubstr("rank 2"));
-  EXPECT_THAT(errors[0], HasSubstr("the disk is full"));
-  EXPECT_EQ(errors[1], "");
-  EXPECT_THAT(errors[2], HasSubstr("the disk is full"));
-}
-
-TEST(UnitScheduler, RefusesTalliesOfAnotherScene) {
-  CrewRoom room(2);
-  SimulationOptions options = few_electrons();
-  const auto errors = test::on_ranks(2, [&](int rank) {
-    ThreadCrew crew(room, rank);
-    SimulationOptions own = options;
-    if (rank == 1) own.tile_pixels = 3;
-    simulate(flat_scene(), own, {.scheduler = &crew});
-  });
-  EXPECT_THAT(errors[0], HasSubstr("another simulation"));
+TEST(ThreadScheduler, AFailureEndsAllThreads) {
+  std::atomic<std::size_t> next = 0;
+  const UnitWork work{4, [&] { return std::optional(next++); },   // without end
+                      [](std::size_t number, int, UnitTally&) -> bool {
+                        if (number == 20) throw InvalidInput("unit", "the disk is full", "Make room");
+                        return true;
+                      },
+                      [](std::size_t, const UnitTally&) {}};
+  try {
+    ThreadScheduler().run(work);
+    FAIL() << "it went on";
+  } catch (const InvalidInput& e) {
+    EXPECT_THAT(e.what(), HasSubstr("the disk is full"));
+  }
 }
 
 }  // namespace

@@ -27,16 +27,15 @@ struct SimulationContext {
   /// Is told of every finished unit and asked for those done before: of the same scene and options, `tile_pixels` among them.
   UnitJournal* journal = nullptr;
   LibrarySource* libraries = nullptr;    ///< where replay gets its cascades; null: they are made on the spot
-  UnitScheduler* scheduler = nullptr;                  ///< other processes, all of which call `simulate`
+  UnitScheduler* scheduler = nullptr;    ///< who simulates which units; null: threads of this process
 
   /// Throws UsageError for what cannot go together.
   void check(const SimulationOptions& options, const Scene& scene) const;
 };
 
 /// Simulates the whole scan, in parallel. On cancellation returns what is done. Replay cannot serve observers, nor physics
-/// without continuous loss; observers go with neither a journal nor a scheduler nor an accuracy (UsageError). With a scheduler the
-/// result is the leader's, others return one that counts nothing and is complete; only the leader's journal is used. Bytes
-/// are the same with and without.
+/// without continuous loss; observers go with neither a journal nor a scheduler nor an accuracy (UsageError). Where the scheduler
+/// does not collect, the result counts nothing and is complete, and the journal is not used.
 SimulationResult simulate(const Scene& scene, const SimulationOptions& options, const SimulationContext& context = {});
 
 }  // namespace surf::mc

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "surf/io/sim/mesh_bodies.h"
-#include "surf/mc/geometry/shared_memory.h"
+#include "surf/workflow/node_memory.h"
 
 namespace surf::workflow {
 
@@ -10,6 +10,6 @@ namespace surf::workflow {
 /// several processes of a machine read the same ones together, the first one reads; the others get the
 /// bodies' names and materials, and empty meshes.
 /// `each`: so many processes of this machine read on their own at the same time.
-io::BodyReader specimen_reader(mc::NodeMemory* node = nullptr, int each = 1);
+io::BodyReader specimen_reader(NodeMemory* node = nullptr, int each = 1);
 
 }  // namespace surf::workflow

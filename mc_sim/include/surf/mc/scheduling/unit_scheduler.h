@@ -2,46 +2,51 @@
 #pragma once
 
 #include <cstddef>
-#include <cstdint>
+#include <exception>
 #include <functional>
 #include <optional>
-#include <string>
 
 #include "surf/core/progress.h"
+#include "surf/mc/results/unit_tally.h"
 
 namespace surf::mc {
 
 /// The number of the next unit of work to be simulated, or none when there is no more.
 using TakeUnit = std::function<std::optional<std::size_t>()>;
 
-/// What has become of a unit, as whoever leads and whoever follows have agreed to write it.
-struct FinishedUnit {
-  std::size_t number = 0;
-  std::int64_t primaries = 0;   ///< simulated for it
-  std::string bytes;
-  int rank = 0;                 ///< who did it; whoever leads is told
+/// The units of a simulation, and what to do with them. Its functions may be called from several threads at once.
+struct UnitWork {
+  int threads = 1;   ///< to be used in this process
+  TakeUnit take;     ///< no unit is given twice; only where the scheduler `collects`
+  /// Simulates a unit on one of the threads, which are numbered from 0. False when it was cancelled: the unit is left out.
+  std::function<bool(std::size_t number, int thread, UnitTally& tally)> simulate;
+  /// Takes a finished unit, whoever simulated it; only where the scheduler `collects`.
+  std::function<void(std::size_t number, const UnitTally& tally)> finish;
+  const CancelToken* cancel = nullptr;
 };
-using GiveUnit = std::function<void(FinishedUnit unit)>;
 
-/// Others who do numbered units of the same work in other processes: of a simulation, parts of the same scene with the
-/// same options. Whoever leads hands out units and gets what became of them; who follows does what it is handed.
+/// Decides who simulates which units: threads of this process, or those of others besides. The result does not depend on it.
 class UnitScheduler {
  public:
   virtual ~UnitScheduler() = default;
 
-  /// Whether this process leads. Only one of a scheduler does.
-  virtual bool leads() const = 0;
+  /// Whether finished units come to this process, which then has the result. They come to one process only.
+  virtual bool collects() const = 0;
 
-  /// Hands units to the others until there is no more to take and all that they took has been given, or until `cancel`.
-  /// `take` and `give` may be called while others call them. Called by `simulate` on its own thread.
-  virtual void lead(const TakeUnit& take, const GiveUnit& give, const CancelToken* cancel) = 0;
+  /// Has all units simulated, and returns when this process has no more to do. Throws what a function of `work` has thrown.
+  virtual void run(const UnitWork& work) = 0;
 
-  /// The other side: has `work` go on with a `take` that waits for the leader, and a `give` that sends there.
-  /// `work` computes on `threads` threads, and returns when `take` has no more. About `ahead` units are kept here beyond
-  /// those at work, so that nobody waits for the next; 0 where a unit is long, and others may be idle by then. Throws
-  /// Interrupted on `cancel`, which the leader takes for a failure unless it is cancelled itself.
-  virtual void follow(const std::function<void(const TakeUnit&, const GiveUnit&)>& work, int threads, int ahead,
-                      const CancelToken* cancel) = 0;
+  /// Called in place of `run` where this process cannot take part, so that others do not wait for it. `reason`: null when it
+  /// was cancelled.
+  virtual void abandon(const std::exception_ptr& reason, const CancelToken* cancel) = 0;
+};
+
+/// Threads of this process, alone. Each takes the next unit as soon as it has finished one.
+class ThreadScheduler final : public UnitScheduler {
+ public:
+  bool collects() const override { return true; }
+  void run(const UnitWork& work) override;
+  void abandon(const std::exception_ptr&, const CancelToken*) override {}
 };
 
 }  // namespace surf::mc

@@ -5,7 +5,7 @@
 #include <memory>
 #include <string>
 
-namespace surf::mc {
+namespace surf::workflow {
 
 /// What the processes of one machine that do a job together share. All of them call the same functions
 /// in the same order.
@@ -25,4 +25,4 @@ class NodeMemory {
   virtual void share(std::byte* memory, std::size_t bytes) = 0;
 };
 
-}  // namespace surf::mc
+}  // namespace surf::workflow

@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "surf/core/error.h"
-#include "surf/mc/scheduling/unit_scheduler.h"
+#include "surf/workflow/team.h"
 
 namespace surf::test {
 
@@ -41,7 +41,7 @@ class CrewRoom {
     return result_;
   }
 
-  void lead(const mc::TakeUnit& take, const mc::GiveUnit& give) {
+  void lead(const workflow::TakeUnit& take, const workflow::GiveUnit& give) {
     std::string trouble;
     std::exception_ptr own;
     for (std::size_t at_work = size_ - 1; at_work > 0;) {
@@ -75,7 +75,7 @@ class CrewRoom {
     mine.pop_front();
     return unit;
   }
-  void give(int rank, mc::FinishedUnit unit) {
+  void give(int rank, workflow::FinishedUnit unit) {
     unit.rank = rank;
     post({rank, std::move(unit), false, {}});
   }
@@ -84,7 +84,7 @@ class CrewRoom {
  private:
   struct Letter {
     int rank = 0;
-    std::optional<mc::FinishedUnit> done;
+    std::optional<workflow::FinishedUnit> done;
     bool ended = false;
     std::string trouble;
   };
@@ -122,16 +122,15 @@ class CrewRoom {
 };
 
 /// One thread of a crew.
-class ThreadCrew : public mc::UnitScheduler {
+class ThreadCrew {
  public:
   ThreadCrew(CrewRoom& room, int rank) : room_(room), rank_(rank) {}
 
-  bool leads() const override { return rank_ == 0; }
-  void lead(const mc::TakeUnit& take, const mc::GiveUnit& give, const CancelToken*) override { room_.lead(take, give); }
-  void follow(const std::function<void(const mc::TakeUnit&, const mc::GiveUnit&)>& work, int, int,
-              const CancelToken* cancel) override {
+  void lead(const workflow::TakeUnit& take, const workflow::GiveUnit& give, const CancelToken*) { room_.lead(take, give); }
+  void follow(const std::function<void(const workflow::TakeUnit&, const workflow::GiveUnit&)>& work, int, int,
+              const CancelToken* cancel) {
     try {
-      work([&] { return room_.take(rank_); }, [&](mc::FinishedUnit unit) { room_.give(rank_, std::move(unit)); });
+      work([&] { return room_.take(rank_); }, [&](workflow::FinishedUnit unit) { room_.give(rank_, std::move(unit)); });
       if (cancel && cancel->cancelled()) throw Interrupted();
     } catch (const std::exception& e) {
       room_.end(rank_, "rank " + std::to_string(rank_) + ": " + e.what());
