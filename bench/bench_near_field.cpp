@@ -15,7 +15,7 @@
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
-#include "geometry/face_tree.h"
+#include "geometry/nearest_triangle.h"
 #include "geometry/distance_grid.h"
 #include "surf/core/random.h"
 #include "surf/io/sim/materials.h"
@@ -99,15 +99,12 @@ json measure(const Case& c) {
   const double lookups = times * static_cast<double>(points.size());
   const double lookup_seconds = seconds_since(begin);
 
-  Box region;
-  region.extend(Vec3{-1e6, -1e6, -1e6});
-  region.extend(Vec3{1e6, 1e6, 1e6});
-  const mc::FaceTree tree(c.surface, region, 0);
+  const TriangleTree tree(c.surface, {}, 0);
   double lost = 0;
   int near = 0;
   for (const Vec3& p : points) {
-    mc::FaceTree::Nearest nearest;
-    tree.improve(p, nearest);
+    mc::NearestTriangle nearest;
+    mc::improve(tree, p, nearest);
     double distance = nearest.distance;
     if (c.specimen.substrate) distance = std::min(distance, std::fabs(p.z));
     if (distance > 3) continue;

@@ -7,12 +7,14 @@
 #include <set>
 
 #include "extras.h"
+#include "share_surfaces.h"
 #include "sidecar.h"
 #include "surf/core/error.h"
 #include "surf/core/units.h"
 #include "surf/io/files.h"
 #include "surf/io/image_file.h"
 #include "surf/io/overlaps.h"
+#include "surf/workflow/simplify_specimen.h"
 #include "time_budget.h"
 
 namespace surf::workflow {
@@ -111,20 +113,16 @@ mc::Scene make_scene(const ResolvedJob& job, const SpecimenFacts& facts, NodeMem
   const io::SceneFile& s = job.scene;
   const double tolerance_nm = s.mesh_tolerance_nm;
   const Watch watch{{}, cancel};
-  if (tolerance_nm == 0)
-    return mc::Scene(s.specimen, s.beam, summary.scan, s.physics,
-                     {.facts = &facts.bodies, .node = node, .watch = watch});
-  if (tell) tell(fmt::format("leaving out detail below {}", format_length(tolerance_nm)));
-  mc::Specimen simple;
-  std::vector<mc::BodyFacts> of_simple;
-  once_per_node(node, [&] {
-    simple = simplify_specimen(s.specimen, tolerance_nm, s.beam, summary.scan, s.physics,
-                               job.options.threads, summary.simplification, watch);
-    of_simple = mc::validate(simple, watch);
-    return std::string();
-  });
-  if (node && !node->is_first()) simple = s.specimen;
-  return mc::Scene(simple, s.beam, summary.scan, s.physics, {.facts = &of_simple, .node = node, .watch = watch});
+  if (tolerance_nm > 0 && tell) tell(fmt::format("leaving out detail below {}", format_length(tolerance_nm)));
+  const auto surfaces = [&] {
+    if (tolerance_nm == 0)
+      return mc::make_surfaces(s.specimen, facts.bodies, s.beam, summary.scan, s.physics, {.watch = watch});
+    const mc::Specimen simple = simplify_specimen(s.specimen, tolerance_nm, s.beam, summary.scan, s.physics,
+                                                  job.options.threads, summary.simplification, watch);
+    return mc::make_surfaces(simple, mc::validate(simple, watch), s.beam, summary.scan, s.physics, {.watch = watch});
+  };
+  return mc::Scene(node ? share_surfaces(*node, surfaces) : surfaces(), s.specimen.materials, s.beam, summary.scan,
+                   s.physics, {.watch = watch});
 }
 
 }  // namespace surf::workflow

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "mesh/triangle_tree.h"
+#include "surf/mesh/triangle_tree.h"
 
 namespace surf {
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/argument.h"
-#include "mesh/triangle_tree.h"
+#include "surf/mesh/triangle_tree.h"
 #include "surf/core/parallel.h"
 
 namespace surf {
@@ -90,7 +90,7 @@ MeshDeviation mesh_deviation(const TriangleMesh& first, const TriangleMesh& seco
                      : default_spacing * std::min(mean_edge(a), mean_edge(b));
   const auto from = [&](const TriangleMesh& one, const TriangleMesh& other, double begin) {
     watch.report(begin, 1);
-    const TriangleTree tree(other, watch);
+    const TriangleTree tree(other, watch, options.threads);
     return largest_distance(one, tree, d.spacing_nm, options.threads, watch.part(begin + 0.1, begin + 0.5));
   };
   d.from_first_nm = from(a, b, 0);

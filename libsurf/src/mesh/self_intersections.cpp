@@ -5,7 +5,7 @@
 
 #include "mesh/cgal_predicates.h"
 #include "mesh/edges.h"
-#include "mesh/triangle_tree.h"
+#include "surf/mesh/triangle_tree.h"
 #include "surf/core/error.h"
 #include "surf/core/parallel.h"
 
@@ -72,7 +72,7 @@ SelfIntersections find_self_intersections(const TriangleMesh& mesh,
   validate(mesh);
   const Watch& watch = options.watch;
   watch.check();
-  const TriangleTree tree(mesh, watch);
+  const TriangleTree tree(mesh, watch, options.threads);
   const std::size_t triangles = mesh.triangles.size();
   const Meeting meet(tree, welded_triangles(mesh, weld_equal_vertices(mesh)));
   std::vector<unsigned char> flat(triangles);

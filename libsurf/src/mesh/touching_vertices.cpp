@@ -2,7 +2,7 @@
 #include "surf/mesh/touching_vertices.h"
 
 #include "core/argument.h"
-#include "mesh/triangle_tree.h"
+#include "surf/mesh/triangle_tree.h"
 
 namespace surf {
 

@@ -1,103 +1,150 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "mesh/triangle_tree.h"
+#include "surf/mesh/triangle_tree.h"
 
-#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
+
+#include "surf/core/parallel.h"
 
 namespace surf {
 namespace {
 
-constexpr std::uint32_t leaf_size = 4;
-constexpr std::uint32_t watched_size = 4096;   // triangles: less is a matter of milliseconds
-constexpr double negligible = 1e-12;   // of the diagonal: a point that near lies on the surface
+constexpr std::size_t leaf_size = 4;
+constexpr std::size_t block_size = 65536;   // triangles of a unit of work
+constexpr double negligible = 1e-12;        // of the diagonal: a point that near lies on the surface
 
 double squared(const Vec3& v) { return dot(v, v); }
 
-double squared_distance(const Box& box, const Vec3& p) {
-  const auto outside = [](double low, double high, double x) {
-    return std::max({low - x, x - high, 0.0});
-  };
-  return squared({outside(box.lower_nm.x, box.upper_nm.x, p.x),
-                  outside(box.lower_nm.y, box.upper_nm.y, p.y),
-                  outside(box.lower_nm.z, box.upper_nm.z, p.z)});
-}
-
-double Vec3::*longest_axis(const Box& box) {
-  const Vec3 size = box.size_nm();
-  if (size.x >= size.y && size.x >= size.z) return &Vec3::x;
-  return size.y >= size.z ? &Vec3::y : &Vec3::z;
+float outward(double v, bool up) {
+  const auto f = static_cast<float>(v);
+  constexpr float far = std::numeric_limits<float>::infinity();
+  return std::nextafter(f, up ? far : -far);
 }
 
 }  // namespace
 
-TriangleTree::TriangleTree(const TriangleMesh& mesh, const Watch& watch)
-    : mesh_(mesh), triangles_(mesh.triangles.size()) {
-  std::iota(triangles_.begin(), triangles_.end(), 0u);
-  std::vector<Vec3> middles(triangles_.size());
-  for (std::uint32_t t = 0; t < middles.size(); ++t) middles[t] = box_of(t).center_nm();
-  nodes_.reserve(triangles_.size());
-  nodes_.emplace_back();
-  split(0, 0, static_cast<std::uint32_t>(triangles_.size()), middles, watch);
-  const double diagonal = length(nodes_[0].box.size_nm());
-  negligible_squared_ = negligible * diagonal * negligible * diagonal;
+TriangleTree::TriangleTree(const MeshView& mesh, const Watch& watch, int threads)
+    : mesh_(mesh), faces_(mesh.triangles.size()) {
+  std::iota(faces_.begin(), faces_.end(), 0u);
+  const Box box = bounds(mesh);
+  if (!box.empty()) origin_ = box.center_nm();
+  if (!faces_.empty()) build(watch, threads);
 }
 
-void TriangleTree::split(std::uint32_t node, std::uint32_t first, std::uint32_t count,
-                         const std::vector<Vec3>& middles, const Watch& watch) {
-  if (count > watched_size) watch.check();
-  if (count <= leaf_size) {
-    for (std::uint32_t i = first; i < first + count; ++i) nodes_[node].box.extend(box_of(triangles_[i]));
-    nodes_[node].first = first;
-    nodes_[node].count = count;
+TriangleTree::TriangleTree(const MeshView& mesh, const Box& region, const Watch& watch, int threads)
+    : mesh_(mesh), origin_(region.center_nm()) {
+  for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i)
+    if (overlap(box_of(i), region)) faces_.push_back(i);
+  if (!faces_.empty()) build(watch, threads);
+}
+
+void TriangleTree::build(const Watch& watched, int threads) {
+  const Watch watch{{}, watched.cancel};   // it is short beside what it is for
+  struct Item {
+    std::array<float, 3> middle;
+    std::uint32_t triangle;
+  };
+  const std::size_t n = faces_.size();
+  while ((n >> levels_) > leaf_size) ++levels_;
+  std::vector<Item> items(n);
+  parallel_for((n + block_size - 1) / block_size, threads, [&](std::size_t block, int) {
+    for (std::size_t i = block * block_size; i < std::min(n, (block + 1) * block_size); ++i) {
+      const Corners t = corners(faces_[i]);
+      const Vec3 sum = (t.a - origin_) + (t.b - origin_) + (t.c - origin_);
+      items[i] = {{static_cast<float>(sum.x), static_cast<float>(sum.y), static_cast<float>(sum.z)},
+                  faces_[i]};
+    }
+  }, watch);
+  nodes_.resize((std::size_t{2} << levels_) - 1);
+  const auto split = [&](std::size_t node, int level) {
+    const Range all = range({node, level}), half = range({2 * node + 1, level + 1});
+    std::array<float, 3> low, high;
+    low.fill(std::numeric_limits<float>::infinity());
+    high.fill(-std::numeric_limits<float>::infinity());
+    for (std::size_t i = all.first; i < all.last; ++i)
+      for (std::size_t k = 0; k < 3; ++k) {
+        low[k] = std::min(low[k], items[i].middle[k]);
+        high[k] = std::max(high[k], items[i].middle[k]);
+      }
+    std::size_t axis = 0;
+    for (std::size_t k = 1; k < 3; ++k)
+      if (high[k] - low[k] > high[axis] - low[axis]) axis = k;
+    const auto at = [&](std::size_t i) { return items.begin() + static_cast<std::ptrdiff_t>(i); };
+    std::nth_element(at(all.first), at(half.last), at(all.last), [&](const Item& a, const Item& b) {
+      return a.middle[axis] < b.middle[axis] ||
+             (a.middle[axis] == b.middle[axis] && a.triangle < b.triangle);
+    });
+  };
+  // The top one level at a time, then whole branches.
+  const int top = std::min(levels_, 8);
+  for (int level = 0; level < top; ++level)
+    parallel_for(std::size_t{1} << level, threads, [&](std::size_t k, int) {
+      split((std::size_t{1} << level) - 1 + k, level);
+    }, watch);
+  parallel_for(std::size_t{1} << top, threads, [&](std::size_t k, int) {
+    for (int level = top; level <= levels_; ++level) {
+      const std::size_t wide = std::size_t{1} << (level - top);
+      const std::size_t first = (std::size_t{1} << level) - 1 + k * wide;
+      if (level < levels_) {
+        for (std::size_t node = first; node < first + wide; ++node) split(node, level);
+        continue;
+      }
+      for (std::size_t node = first; node < first + wide; ++node) {
+        const Range r = range({node, level});
+        for (std::size_t i = r.first; i < r.last; ++i) faces_[i] = items[i].triangle;
+      }
+    }
+    for (int level = levels_; level >= top; --level) {
+      const std::size_t wide = std::size_t{1} << (level - top);
+      const std::size_t first = (std::size_t{1} << level) - 1 + k * wide;
+      for (std::size_t node = first; node < first + wide; ++node) bound({node, level});
+    }
+  }, watch);
+  for (std::size_t node = (std::size_t{1} << top) - 1; node-- > 0;) bound({node, -1});
+  Vec3 diagonal;
+  for (double Vec3::*axis : {&Vec3::x, &Vec3::y, &Vec3::z}) {
+    const std::size_t k = axis == &Vec3::x ? 0 : axis == &Vec3::y ? 1 : 2;
+    diagonal.*axis = static_cast<double>(nodes_[0].upper[k]) - static_cast<double>(nodes_[0].lower[k]);
+  }
+  negligible_squared_ = negligible * negligible * squared(diagonal);
+}
+
+// The box of a leaf from its triangles, of any other node from its children.
+void TriangleTree::bound(const Place& place) {
+  Node& box = nodes_[place.node];
+  if (place.level != levels_) {
+    const Node &a = nodes_[2 * place.node + 1], &b = nodes_[2 * place.node + 2];
+    for (int k = 0; k < 3; ++k) {
+      box.lower[k] = std::min(a.lower[k], b.lower[k]);
+      box.upper[k] = std::max(a.upper[k], b.upper[k]);
+    }
     return;
   }
-  Box box;
-  for (std::uint32_t i = first; i < first + count; ++i) box.extend(middles[triangles_[i]]);
-  double Vec3::*const axis = longest_axis(box);
-  const auto begin = triangles_.begin() + first;
-  std::nth_element(begin, begin + count / 2, begin + count, [&](std::uint32_t a, std::uint32_t b) {
-    return middles[a].*axis < middles[b].*axis || (middles[a].*axis == middles[b].*axis && a < b);
-  });
-  const auto children = static_cast<std::uint32_t>(nodes_.size());
-  nodes_[node].first = children;
-  nodes_.resize(nodes_.size() + 2);
-  split(children, first, count / 2, middles, watch);
-  split(children + 1, first + count / 2, count - count / 2, middles, watch);
-  nodes_[node].box = nodes_[children].box;
-  nodes_[node].box.extend(nodes_[children + 1].box);
+  Box sum;
+  const Range r = range(place);
+  for (std::size_t i = r.first; i < r.last; ++i) {
+    const Corners t = corners(faces_[i]);
+    for (const Vec3& corner : {t.a, t.b, t.c}) sum.extend(corner - origin_);
+  }
+  const double lower[] = {sum.lower_nm.x, sum.lower_nm.y, sum.lower_nm.z};
+  const double upper[] = {sum.upper_nm.x, sum.upper_nm.y, sum.upper_nm.z};
+  for (int k = 0; k < 3; ++k) {
+    box.lower[k] = outward(lower[k], false);
+    box.upper[k] = outward(upper[k], true);
+  }
 }
 
 TriangleTree::Closest TriangleTree::closest(const Vec3& p, std::uint32_t start) const {
   std::uint32_t best = start;
   double least = squared(closest_point(corners(start), p) - p);
-  struct Entry {
-    double squared;
-    std::uint32_t node;
-  };
-  Entry stack[max_depth];
-  int size = 0;
-  stack[size++] = {squared_distance(nodes_[0].box, p), 0};
-  while (size > 0 && least > negligible_squared_) {
-    const Entry entry = stack[--size];
-    if (entry.squared >= least) continue;
-    const Node& node = nodes_[entry.node];
-    if (node.count == 0) {
-      Entry near{squared_distance(nodes_[node.first].box, p), node.first};
-      Entry far{squared_distance(nodes_[node.first + 1].box, p), node.first + 1};
-      if (far.squared < near.squared) std::swap(near, far);
-      stack[size++] = far;
-      stack[size++] = near;
-      continue;
-    }
-    for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
-      const double d = squared(closest_point(corners(triangles_[i]), p) - p);
-      if (d < least) {
-        least = d;
-        best = triangles_[i];
-      }
-    }
-  }
+  const auto reach = [&] { return least > negligible_squared_ ? least : 0.0; };
+  visit_near(p, reach, [&](std::uint32_t triangle) {
+    const double d = squared(closest_point(corners(triangle), p) - p);
+    if (d >= least) return;
+    least = d;
+    best = triangle;
+  });
   return {std::sqrt(least), best};
 }
 

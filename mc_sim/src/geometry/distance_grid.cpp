@@ -3,8 +3,8 @@
 
 #include <cmath>
 
-#include "geometry/face_tree.h"
 #include "geometry/local_triangles.h"
+#include "geometry/nearest_triangle.h"
 #include "surf/core/parallel.h"
 
 namespace surf::mc {
@@ -62,7 +62,7 @@ class DistanceGridBuilder {
         area_(area_within(mesh, domain)),
         cell_(first_cell(area_)),
         widest_(1.5 * cell_),
-        tree_(mesh, grown(domain, (brick_span + 4) * DistanceGrid::cut * widest_), threads, watch_),
+        tree_(mesh, grown(domain, (brick_span + 4) * DistanceGrid::cut * widest_), watch_, threads),
         per_area_(static_cast<double>(tree_.size()) / std::max(area_, 1e-9)) {}
 
   void build() {
@@ -150,7 +150,7 @@ class DistanceGridBuilder {
     std::vector<LocalTriangles> surface = lists();
     parallel_for(static_cast<std::size_t>(field_.nz_) * ny, threads_, [&](std::size_t row, int worker) {
       const int y = static_cast<int>(row % ny), z = static_cast<int>(row / ny);
-      std::uint32_t guess = FaceTree::none;
+      std::uint32_t guess = TriangleTree::none;
       for (int x = 0; x < field_.nx_; ++x) {
         const Vec3 center = brick_lower(x, y, z) + Vec3{0.5, 0.5, 0.5} * edge_;
         const Fit fit = brick(center, surface[static_cast<std::size_t>(worker)], guess);
@@ -206,8 +206,8 @@ class DistanceGridBuilder {
       return Vec3{i & 1 ? 0.5 : -0.5, i & 2 ? 0.5 : -0.5, i & 4 ? 0.5 : -0.5};
     };
     const double r = half_diagonal * cell_, asked = slab_within(cell_) + 2 * r + 3 * slack_nm;
-    FaceTree::Nearest nearest;
-    tree_.improve(center, nearest);
+    NearestTriangle nearest;
+    improve(tree_, center, nearest);
     const double all_covered = std::min(nearest.distance + 8 * r + 4 * slack_nm, asked + 3 * r);
     surface.collect(center, all_covered, small_edges * cell_);
     LocalTriangles::Part part;
@@ -234,9 +234,9 @@ class DistanceGridBuilder {
   // `guess`: a triangle that is near, or none; left as the nearest.
   Fit brick(const Vec3& center, LocalTriangles& surface, std::uint32_t& guess) const {
     const double r = half_diagonal * edge_;
-    FaceTree::Nearest nearest{brick_span * edge_, FaceTree::none, {}};
-    if (guess != FaceTree::none) tree_.improve(center, guess, nearest);
-    tree_.improve(center, nearest);
+    NearestTriangle nearest{brick_span * edge_, TriangleTree::none, {}};
+    if (guess != TriangleTree::none) improve(tree_, center, guess, nearest);
+    improve(tree_, center, nearest);
     guess = nearest.triangle;
     const double d = nearest.distance, covered = d + 2 * r + 4 * slack_nm;
     const double in_ball =
@@ -341,7 +341,7 @@ class DistanceGridBuilder {
   double area_;
   double cell_;
   double widest_;   // that the tree allows for
-  FaceTree tree_;
+  TriangleTree tree_;
   double per_area_;   // triangles per nm^2
   double edge_ = 0;
   std::vector<Cell> bricks_;

@@ -7,9 +7,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "geometry/shared_mesh.h"
 #include "surf/core/progress.h"
 #include "surf/core/vec3.h"
+#include "surf/mesh/mesh_view.h"
 
 namespace surf::mc {
 

@@ -98,10 +98,10 @@ EmbreeScene::EmbreeScene(TriangleMesh mesh, const Watch& watch)
 
 EmbreeScene::EmbreeScene(SceneMesh all, const Watch& watch) : impl_(std::make_unique<Impl>()) {
   impl_->all = std::move(all);
-  impl_->mesh = impl_->all.mesh;
+  impl_->mesh = impl_->all.view();
   const MeshView& mesh = impl_->mesh;
   const Box box = bounds(mesh);
-  impl_->center = impl_->all.center;
+  impl_->center = impl_->all.center_nm;
   const Vec3 half = box.size_nm() * 0.5;
   const double largest = std::max({half.x, half.y, half.z});
   impl_->start_back =
@@ -125,7 +125,7 @@ EmbreeScene::EmbreeScene(SceneMesh all, const Watch& watch) : impl_(std::make_un
                                               RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION));
   RTCGeometry geometry = rtcNewGeometry(impl_->device, RTC_GEOMETRY_TYPE_TRIANGLE);
   rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
-                             impl_->all.local.data(), 0, 3 * sizeof(float),
+                             impl_->all.local_nm.values.data(), 0, 3 * sizeof(float),
                              mesh.vertices_nm.size());
   rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
                              mesh.triangles.data(), 0, sizeof(Triangle), mesh.triangles.size());
@@ -156,7 +156,7 @@ double EmbreeScene::tolerance_nm() const { return impl_->start_back; }
 std::size_t EmbreeScene::memory_bytes() const {
   return static_cast<std::size_t>(impl_->bytes.load()) +
          impl_->mesh.vertices_nm.size_bytes() + impl_->mesh.triangles.size_bytes() +
-         impl_->all.local.size_bytes();
+         impl_->all.local_nm.values.size_bytes();
 }
 
 bool EmbreeScene::nearest(const Vec3& origin, const Vec3& direction, double length, Accept accept,

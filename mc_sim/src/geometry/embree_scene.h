@@ -9,9 +9,9 @@
 #include <string>
 #include <vector>
 
-#include "geometry/shared_mesh.h"
 #include "surf/core/progress.h"
 #include "surf/core/vec3.h"
+#include "surf/mc/geometry/scene_mesh.h"
 
 namespace surf::mc {
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "geometry/nearest_triangle.h"
 #include "geometry/triangle_shape.h"
 
 namespace surf::mc {
@@ -60,7 +61,7 @@ void LocalTriangles::add_face(const Vec3 (&v)[3], const Vec3& across, double are
 
 void LocalTriangles::collect(const Vec3& center, double radius, double small) {
   triangles_.clear();
-  tree_.within(center, radius, triangles_);
+  append_within(tree_, center, radius, triangles_);
   faces_.clear();
   for (auto* v : {&all_.x, &all_.y, &all_.z, &all_.nx, &all_.ny, &all_.nz, &all_.fx, &all_.fy,
                   &all_.fz, &all_.reach})

@@ -6,18 +6,18 @@
 #include <cstdint>
 #include <vector>
 
-#include "geometry/face_tree.h"
+#include "surf/mesh/triangle_tree.h"
 #include "surf/core/vec3.h"
 
 namespace surf::mc {
 
 /// The surface within a ball, listed once for many questions about smaller balls in it. Triangles
 /// that are small against what is asked stand as their corners, so that the cost hardly depends on
-/// how finely a surface is meshed. Answers are conservative, as `FaceTree`'s. Positions are about
+/// how finely a surface is meshed. Answers are conservative, as `NearestTriangle`'s. Positions are about
 /// the ball's centre. Holds scratch space: one per thread.
 class LocalTriangles {
  public:
-  explicit LocalTriangles(const FaceTree& tree) : tree_(tree) {}
+  explicit LocalTriangles(const TriangleTree& tree) : tree_(tree) {}
 
   /// Lists what is within `radius` of `center`; triangles with no side longer than `small` stand as
   /// their corners (nm, >= 0).
@@ -78,7 +78,7 @@ class LocalTriangles {
   void visit_faces(const Part& part, const Vec3& p, const float& radius, const Visit& visit) const;
   double improve(const Face& face, const Vec3& p, Nearest& best) const;
 
-  const FaceTree& tree_;
+  const TriangleTree& tree_;
   std::vector<std::uint32_t> triangles_;
   std::vector<Face> faces_;
   Part all_;

@@ -6,17 +6,12 @@
 #include <span>
 #include <vector>
 
-#include "geometry/shared_mesh.h"
 #include "surf/core/progress.h"
 #include "surf/core/vec3.h"
+#include "surf/mc/geometry/scene_surfaces.h"
+#include "surf/mesh/mesh_view.h"
 
 namespace surf::mc {
-
-/// A closed connected surface, or the substrate's plane.
-struct Shell {
-  int solid = 0;      ///< which solid it bounds
-  int sense = 1;      ///< 1: normals point out of what it encloses; -1: a cavity
-};
 
 /// For every triangle 1 where an electron from outside may come within `reach_nm` (>= 0) of it, else
 /// 0. The answer errs towards 1: space is cut into boxes, and one counts as matter only where no

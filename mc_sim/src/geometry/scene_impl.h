@@ -21,11 +21,6 @@
 
 namespace surf::mc {
 
-/// A body, height field or substrate. Later ones win where they overlap.
-struct Solid {
-  int material = 0;
-};
-
 struct Scene::Impl {
   Beam beam;
   Scan scan;

@@ -187,9 +187,9 @@ TEST(Scene, LeavesOutWhatNoElectronReachesAndChangesNothing) {
   Specimen s = nested();
   s.bodies.push_back({"block", make_box({-200, -200, -600}, {200, 200, 0}, 4), 0});
   s.bodies.push_back({"buried", make_box({-50, -50, -400}, {50, 50, -300}, 4), 1});
-  SceneOptions whole;
-  whole.leave_out_unreachable = false;
-  const Scene all(s, {}, square_scan(40, 4), {}, whole), some(s, {}, square_scan(40, 4));
+  const Scan scan = square_scan(40, 4);
+  const Scene all(make_surfaces(s, validate(s), {}, scan, {}, {.leave_out_unreachable = false}), s.materials, {}, scan);
+  const Scene some(s, {}, scan);
   EXPECT_EQ(all.summary().triangles_left_out, 0u);
   EXPECT_GE(some.summary().triangles_left_out, s.bodies[1].mesh.triangles.size());
   EXPECT_EQ(some.summary().triangles + some.summary().triangles_left_out, all.summary().triangles);

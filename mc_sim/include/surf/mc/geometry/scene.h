@@ -9,27 +9,17 @@
 #include "surf/core/progress.h"
 #include "surf/core/vec3.h"
 #include "surf/mc/geometry/beam.h"
+#include "surf/mc/geometry/scene_surfaces.h"
 #include "surf/mc/geometry/specimen.h"
 #include "surf/mc/physics/physics.h"
 
 namespace surf::mc {
-
-class NodeMemory;
 
 /// How `Scene` is built.
 struct SceneOptions {
   /// Memory for bounds of the distance to the nearest surface, bytes, about (>= 0; 0: none, every
   /// step asks for the surface). They change speed, not results.
   std::size_t distance_grid_bytes = std::size_t{32} << 20;
-  /// Whether to leave out triangles that neither the beam nor any electron can reach: those farther
-  /// from all vacuum open to the outside than the ranges at beam energy in all materials together.
-  /// It changes no detector's mean or variance.
-  bool leave_out_unreachable = true;
-  /// What `validate` has said of the specimen; null: it is asked.
-  const std::vector<BodyFacts>* facts = nullptr;
-  /// Where all processes of a machine build the same scene together (surf/mc/geometry/shared_memory.h): its
-  /// triangles are there once. Only the first one needs the bodies of the specimen. Null: alone.
-  NodeMemory* node = nullptr;
   Watch watch;
 };
 
@@ -50,6 +40,9 @@ class Scene {
   /// reach, and the distance bounds cover that. Throws Interrupted.
   Scene(const Specimen& specimen, const Beam& beam, const Scan& scan, const Physics& physics = {},
         const SceneOptions& options = {});
+  /// The same of surfaces that `make_surfaces` has made, here or in another process, for the same beam, scan and physics.
+  Scene(SceneSurfaces surfaces, std::vector<Material> materials, const Beam& beam, const Scan& scan,
+        const Physics& physics = {}, const SceneOptions& options = {});
   ~Scene();
   Scene(Scene&&) noexcept;
   Scene& operator=(Scene&&) noexcept;
