@@ -26,23 +26,39 @@ constexpr double most_in_brick = 1500;   // nor bricks where more triangles woul
 constexpr double small_edges = 0.75;     // triangles up to this many edges stand as their corners
 constexpr std::size_t most_bricks = std::size_t{1} << 21;
 // More cells than this would take longer to fill than a coarse surface is worth.
-constexpr double few_cells = 1.5e5, cells_per_triangle = 1.5, most_cells = 4e5;
+constexpr double few_cells = 3e5, cells_per_triangle = 1.5, most_cells = 4e5;
 
-// The mesh's area within the box, at most.
+// A polygon's part on one side of a plane across an axis.
+std::vector<Vec3> clipped(const std::vector<Vec3>& polygon, double Vec3::*axis, double limit, double sign) {
+  std::vector<Vec3> out;
+  for (std::size_t i = 0; i < polygon.size(); ++i) {
+    const Vec3 &a = polygon[i], &b = polygon[(i + 1) % polygon.size()];
+    const double from = sign * (limit - a.*axis), to = sign * (limit - b.*axis);
+    if (from >= 0) out.push_back(a);
+    if ((from < 0) != (to < 0)) out.push_back(a + (b - a) * (from / (from - to)));
+  }
+  return out;
+}
+
+// The mesh's area within the box.
 double area_within(const MeshView& mesh, const Box& box) {
   double sum = 0;
   for (const Triangle& t : mesh.triangles) {
-    Box part;
-    for (const std::uint32_t v : t) part.extend(mesh.vertices_nm[v]);
-    const auto overlap = [&](double Vec3::*x) {
-      return std::min(part.upper_nm.*x, box.upper_nm.*x) - std::max(part.lower_nm.*x, box.lower_nm.*x);
-    };
-    const double x = overlap(&Vec3::x), y = overlap(&Vec3::y), z = overlap(&Vec3::z);
-    if (x < 0 || y < 0 || z < 0) continue;
-    const Vec3& a = mesh.vertices_nm[t[0]];
-    const double area =
-        0.5 * length(cross(mesh.vertices_nm[t[1]] - a, mesh.vertices_nm[t[2]] - a));
-    sum += std::min(area, std::sqrt(x * x * y * y + y * y * z * z + z * z * x * x));
+    std::vector<Vec3> part;
+    bool inside = true, outside = false;
+    for (const std::uint32_t v : t) part.push_back(mesh.vertices_nm[v]);
+    for (double Vec3::*x : {&Vec3::x, &Vec3::y, &Vec3::z}) {
+      const double low = std::min({part[0].*x, part[1].*x, part[2].*x}), high = std::max({part[0].*x, part[1].*x, part[2].*x});
+      inside = inside && low >= box.lower_nm.*x && high <= box.upper_nm.*x;
+      outside = outside || high < box.lower_nm.*x || low > box.upper_nm.*x;
+    }
+    if (outside) continue;
+    if (!inside)
+      for (double Vec3::*x : {&Vec3::x, &Vec3::y, &Vec3::z})
+        part = clipped(clipped(part, x, box.upper_nm.*x, 1), x, box.lower_nm.*x, -1);
+    Vec3 across;
+    for (std::size_t i = 2; i < part.size(); ++i) across += cross(part[i - 1] - part[0], part[i] - part[0]);
+    sum += 0.5 * length(across);
   }
   return sum;
 }

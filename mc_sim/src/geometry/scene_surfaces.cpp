@@ -12,6 +12,7 @@
 #include "surf/mc/geometry/field_in_reach.h"
 #include "surf/mesh/check_mesh.h"
 #include "surf/mesh/height_field_mesh.h"
+#include "surf/mesh/merge_coplanar.h"
 #include "surf/mesh/open_sheet.h"
 
 namespace surf::mc {
@@ -65,8 +66,8 @@ std::vector<double> volumes(const TriangleMesh& mesh, const std::vector<std::uin
   return volume;
 }
 
-void add_body(Assembly& all, const Body& body) {
-  TriangleMesh mesh = merge_equal_vertices(body.mesh);
+void add_body(Assembly& all, const Body& body, const Watch& watch) {
+  TriangleMesh mesh = merge_coplanar(merge_equal_vertices(body.mesh), {.watch = watch});
   std::vector<std::uint32_t> component = triangle_components(mesh);
   std::vector<double> volume = volumes(mesh, component);
   // A mesh whose normals all point inward is turned as a whole.
@@ -81,7 +82,7 @@ void add_body(Assembly& all, const Body& body) {
 }
 
 // A sheet goes on flat as far as electrons of the scan reach, and further.
-void add_sheet(Assembly& all, const Body& body, const Scan& scan, double reach) {
+void add_sheet(Assembly& all, const Body& body, const Scan& scan, double reach, const Watch& watch) {
   Box needed = bounds(body.mesh);
   const double half = 0.5 * std::hypot(scan.width * scan.pixel_x_nm, scan.height * scan.pixel_y_nm);
   const Vec3 size = needed.size_nm();
@@ -89,7 +90,8 @@ void add_sheet(Assembly& all, const Body& body, const Scan& scan, double reach) 
   const double apron = apron_in_widths * std::max(size.x, size.y) + reach + half +
                        std::hypot(away.x, away.y);
   std::string reason;
-  TriangleMesh mesh = *extend_open_sheet(body.mesh, apron, reason);   // validated
+  const TriangleMesh merged = merge_coplanar(merge_equal_vertices(body.mesh), {.watch = watch});
+  TriangleMesh mesh = *extend_open_sheet(merged, apron, reason);   // validated
   std::vector<std::uint32_t> component = triangle_components(mesh);
   const std::vector<double> volume = volumes(mesh, component);
   // The apron's vertices come last: what holds the last one is the sheet.
@@ -104,12 +106,13 @@ void add_sheet(Assembly& all, const Body& body, const Scan& scan, double reach) 
   all.solids.push_back({body.material});
 }
 
-void add_height_field(Assembly& all, const HeightFieldBody& body, const Scan& scan, double reach) {
+void add_height_field(Assembly& all, const HeightFieldBody& body, const Scan& scan, double reach, const Watch& watch) {
   HeightField wide = field_in_reach(body, scan, reach);
   const double width = std::max(wide.z_nm.width() * wide.pitch_x_nm,
                                 wide.z_nm.height() * wide.pitch_y_nm);
   TriangleMesh sheet = half_space_top(wide, apron_in_widths * width);
   wide = {};
+  sheet = merge_coplanar(std::move(sheet), {.watch = watch});
   std::vector<std::uint32_t> component(sheet.triangles.size(), 0);
   append(all, std::move(sheet), std::move(component));
   all.shells.push_back({static_cast<int>(all.solids.size()), 1});
@@ -143,6 +146,7 @@ SceneSurfaces make_surfaces(const Specimen& specimen, const std::vector<BodyFact
   validate(scan);
   validate(physics, beam.energy_ev);
   const Reach reach = reach_of(make_media(specimen.materials, physics), beam);
+  const Watch watch{{}, options.watch.cancel};
   SceneSurfaces out;
   Assembly all;
   if (specimen.substrate) {
@@ -151,23 +155,23 @@ SceneSurfaces make_surfaces(const Specimen& specimen, const std::vector<BodyFact
     all.solids.push_back({specimen.substrate->material});
   }
   if (specimen.height_field) {
-    add_height_field(all, *specimen.height_field, scan, reach.of_any_nm);
+    add_height_field(all, *specimen.height_field, scan, reach.of_any_nm, watch);
     out.box.extend(bounds(all.mesh));
   }
   out.half_space = specimen.substrate || specimen.height_field;
   for (std::size_t i = 0; i < specimen.bodies.size(); ++i) {
-    options.watch.check();
+    watch.check();
     const Body& body = specimen.bodies[i];
     if (facts[i].is_sheet) {
-      add_sheet(all, body, scan, reach.of_any_nm);
+      add_sheet(all, body, scan, reach.of_any_nm, watch);
       out.half_space = true;
     } else {
-      add_body(all, body);
+      add_body(all, body, watch);
     }
     out.box.extend(facts[i].box);
   }
   if (options.leave_out_unreachable && !out.box.empty())
-    out.triangles_left_out = leave_out_unreachable(all, out.plane_nm, out.box, reach.through_all_nm, options.watch);
+    out.triangles_left_out = leave_out_unreachable(all, out.plane_nm, out.box, reach.through_all_nm, watch);
   out.shells = std::move(all.shells);
   out.solids = std::move(all.solids);
   if (!all.mesh.triangles.empty()) out.mesh = make_scene_mesh(std::move(all.mesh), std::move(all.shell_of));
