@@ -2,8 +2,10 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <cstring>
 
@@ -46,6 +48,7 @@ struct PackedNode {
   std::uint32_t words;          ///< of the node with all that is in it
   PackedVertex start;           ///< where its first segment starts
 };
+static_assert(offsetof(PackedNode, start) == sizeof(PackedNode) - sizeof(PackedVertex));   // the vertices follow
 static_assert(sizeof(PackedVertex) == 8 && sizeof(PackedSphere) == 8 && sizeof(PackedNode) == 24);
 
 inline constexpr int segments_per_node = 8;
@@ -62,11 +65,23 @@ inline PackedVertex read_vertex(const std::uint64_t* at) {
   return std::bit_cast<PackedVertex>(*at);
 }
 
+/// How many of eight bits are set. Processors count them, but not those that every build has to run on.
+inline int bits_in(unsigned eight) {
+  static constexpr auto counts = [] {
+    std::array<std::uint8_t, 256> table{};
+    for (std::size_t i = 1; i < table.size(); ++i) table[i] = static_cast<std::uint8_t>(table[i / 2] + i % 2);
+    return table;
+  }();
+  return counts[eight];
+}
+
 /// The parts of a node.
 struct NodeView {
   explicit NodeView(const std::uint64_t* at) : begin(at), node(read_node(at)) {}
 
-  int children() const { return node.level > 0 ? node.count : std::popcount(node.births); }
+  int children() const { return node.level > 0 ? node.count : bits_in(node.births); }
+  /// Where its first segment starts, and the vertices: one after another.
+  const std::uint64_t* points() const { return begin + header_words - 1; }
   const std::uint64_t* vertex(int i) const { return begin + header_words + i; }
   const std::uint64_t* spheres() const {
     return begin + header_words + (node.level > 0 ? 0 : node.count);

@@ -33,8 +33,7 @@ class LocalSurfaceBuilder {
     levels_ = 1 + static_cast<int>(std::lround(std::log2(2 * reach / LocalSurface::finest_nm)));
     const auto columns = static_cast<std::size_t>(levels_ * across * across);
     bands_.assign(columns, {HUGE_VAL, -HUGE_VAL});
-    patch_.lists_.resize(
-        static_cast<std::size_t>(std::min(levels_, LocalSurface::listing_levels) * across * across));
+    patch_.lists_.resize(columns);
     for (const std::uint32_t t : known_) add(triangles.mesh(), t);
     if (plane_nm) add_plane(*plane_nm);
     pack();
@@ -102,7 +101,7 @@ class LocalSurfaceBuilder {
           }
           const std::size_t at = column(x, y, level);
           widen(bands_[at], low, high);
-          if (at >= patch_.lists_.size() || ++patch_.lists_[at].count > LocalSurface::most_faces)
+          if (++patch_.lists_[at].count > LocalSurface::most_faces)
             continue;
           if (face == none) {
             face = static_cast<std::uint16_t>(patch_.faces_.size());

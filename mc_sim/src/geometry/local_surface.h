@@ -61,6 +61,49 @@ class LocalSurface {
     return {static_cast<float>(b.low) * place.unit, static_cast<float>(b.high) * place.unit};
   }
 
+  /// The few triangles that come near a ball, and the endless plane.
+  struct NearFaces {
+    static constexpr std::size_t most = 12;
+    std::array<std::uint16_t, most> numbers{};
+    std::uint8_t count = 0;
+    bool is_known = false;   ///< else there may be more
+  };
+
+  /// Those near a ball; not known where it has too many or lies too far from the patch's origin.
+  void find_near(const Float4& center, float radius, NearFaces& out) const {
+    out = {};
+    Place place;
+    if (!find(center, radius + search_nm, place) || place.column >= lists_.size()) return;
+    const List& list = lists_[place.column];
+    if (list.count > most_faces) return;
+    for (std::size_t i = list.first; i < list.first + list.count; ++i) {
+      if (is_far(faces_[listed_[i]], center, radius)) continue;
+      if (out.count == NearFaces::most) return;
+      out.numbers[out.count++] = listed_[i];
+    }
+    if (has_level_ && !is_beyond(level_, center, radius)) {
+      if (out.count == NearFaces::most) return;
+      out.numbers[out.count++] = the_level;
+    }
+    out.is_known = true;
+  }
+
+  /// Of those near a larger ball around this one.
+  void keep_near(const Float4& center, float radius, NearFaces& faces) const {
+    std::uint8_t kept = 0;
+    for (std::uint8_t i = 0; i < faces.count; ++i) {
+      const std::uint16_t n = faces.numbers[i];
+      if (n == the_level ? is_beyond(level_, center, radius) : is_far(faces_[n], center, radius)) continue;
+      faces.numbers[kept++] = n;
+    }
+    faces.count = kept;
+  }
+
+  /// Unit normal and height of a triangle's plane; 0 where it has none.
+  const Float4& plane(std::uint16_t number) const { return number == the_level ? level_ : faces_[number].plane; }
+
+  static constexpr float search_nm = 2e-3f;      ///< searches begin within this before a way
+
   /// Triangles that a way may cross.
   struct Crossed {
     /// crowded: there are many, but fewer about a part of the way.
@@ -108,9 +151,8 @@ class LocalSurface {
   static constexpr int across = 16;              // columns of a cube
   static constexpr float finest_nm = 0.5f;       // columns of the smallest cube
   static constexpr float widest_nm = 64;         // patch
-  static constexpr float search_nm = 2e-3f;      // searches begin within this before a way
   static constexpr float grazing_nm = 0.01f;
-  static constexpr int listing_levels = 4;       // the finest ones
+  static constexpr std::uint16_t the_level = 0xffff;   // in place of a face's number
   static constexpr std::uint32_t most_faces = 16;
   static constexpr float units = 3000;           // of height to a column's width
 
@@ -133,6 +175,14 @@ class LocalSurface {
   static float above(const Float4& plane, const Float4& p) {
     const Float4 along = plane * p;
     return along[0] + along[1] + along[2] - plane[3];
+  }
+  static bool is_beyond(const Float4& plane, const Float4& center, float radius) {
+    return std::fabs(above(plane, center)) > radius + search_nm;
+  }
+  static bool is_far(const Face& face, const Float4& center, float radius) {
+    const float room = radius + search_nm;
+    return is_beyond(face.plane, center, radius) || center[0] + room < face.box[0] || center[1] + room < face.box[1] ||
+           center[0] - room > face.box[2] || center[1] - room > face.box[3];
   }
   static bool is_beside(float from, float to) {
     return std::min(from, to) > search_nm || std::max(from, to) < -search_nm;

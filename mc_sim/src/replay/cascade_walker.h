@@ -62,14 +62,20 @@ struct WalkedSegment {
 /// Who follows a walk:
 ///   medium(material)                      its ReplayMaterial
 ///   ledger()                              the books of the primary
+///   passed(branch, spheres, count, near)  bits of spheres within which nothing happens: not all that there are
 ///   passes(branch, sphere, near)          whether nothing happens within a sphere; else `near` is what is known there
+///   eventful(node, branch, near)          bits of segments that may meet something, or change how the branch lies; of others
+///                                         the handler is not told
 ///   meets(segment, branch, near)          what becomes of the electron on the segment
 ///   scattered(segment, moved, branch, near)  at its end; whether that changed how the branch lies
 template <class H>
 concept WalkHandler =
-    requires(H handler, Branch<typename H::State>& branch, Near& near, const WalkedSegment& segment, Moved moved) {
+    requires(H handler, Branch<typename H::State>& branch, Near& near, const WalkedSegment& segment, Moved moved,
+             const NodeView& node, const std::uint64_t* spheres) {
       { handler.medium(0) } -> std::convertible_to<const ReplayMaterial&>;
       { handler.ledger() } -> std::same_as<Ledger&>;
+      { handler.passed(branch, spheres, 1, near) } -> std::same_as<unsigned>;
+      { handler.eventful(node, branch, near) } -> std::same_as<unsigned>;
       { handler.passes(branch, std::uint64_t{}, near) } -> std::convertible_to<bool>;
       { handler.meets(segment, branch, near) } -> std::same_as<Moved>;
       { handler.scattered(segment, moved, branch, near) } -> std::convertible_to<bool>;
@@ -97,13 +103,17 @@ class CascadeWalker {
       if (!follow(view.child(i), branch, {}, inside)) return take_off_from(view, i + 1);
       ++i;
     }
+    unsigned passed = handler_.passed(branch, view.spheres(), view.node.count, near);
     for (; i < view.node.count; ++i) {
+      if (passed >> i & 1) continue;
       Near of_child = near;
       if (handler_.passes(branch, view.spheres()[i], of_child)) continue;
       const int moves = branch.moves, changes = branch.changes;
       if (!follow(view.child(i), branch, of_child)) return take_off_from(view, i + 1);
+      if (branch.changes == changes) continue;
       if (branch.moves != moves) near = {};
-      else if (branch.changes != changes) near.band = {};
+      near.forget_places();
+      passed = handler_.passed(branch, view.spheres(), view.node.count, near);
     }
     return true;
   }
@@ -130,36 +140,48 @@ class CascadeWalker {
 
   bool follow_segments(const NodeView& view, Branch<State>& branch, Near near, const StartInside* inside) {
     const PackedNode& node = view.node;
-    int i = 0, birth = 0;
-    std::uint64_t before = std::bit_cast<std::uint64_t>(node.start);
+    const std::uint64_t* const points = view.points();
+    const unsigned all = (1u << node.count) - 1;
+    unsigned left = all;
     if (inside) {
-      i = segment_at(view, inside->energy_ev, handler_.medium(branch.material));
-      birth = std::popcount(node.births & ((1u << i) - 1));
-      add_births(view, birth, branch.material);
+      const int first = segment_at(view, inside->energy_ev, handler_.medium(branch.material));
+      left &= ~0u << first;
+      add_births(view, births_before(node, first), branch.material);
     }
-    const auto height_of = [&](std::uint64_t word) {
-      return near.flat ? branch.height_over_plane(word) : branch.height_over_frame(word);
-    };
-    float low = height_of(before);
-    for (; i < node.count; ++i) {
-      const std::uint64_t vertex = *view.vertex(i);
-      float high = height_of(vertex);
-      const WalkedSegment segment{view, i, before, vertex, low, high, inside};
-      const Moved moved = handler_.meets(segment, branch, near);
-      if (moved == Moved::gone) return take_off_births(view, birth, branch.material);
-      if (moved == Moved::yes) near = {};
-      const bool changed = handler_.scattered(segment, moved, branch, near);
-      if (moved != Moved::no || changed) high = height_of(vertex);
-      if (node.births & 1u << i) {
-        follow_birth(view, birth, branch, vertex, near);
-        ++birth;
+    while (left != 0) {   // again after each change of how the branch lies
+      const unsigned first = left & -left;
+      unsigned eventful = handler_.eventful(view, branch, near);
+      if (inside) eventful |= first;
+      const int spheres = view.children();
+      const unsigned passed = spheres > 0 ? handler_.passed(branch, view.spheres(), spheres, near) : 0;
+      bool changed = false;
+      for (unsigned todo = (eventful | node.births) & left; todo != 0 && !changed; todo &= todo - 1) {
+        const int i = std::countr_zero(todo);
+        if (eventful >> i & 1) {
+          const std::uint64_t before = points[i], vertex = points[i + 1];
+          const auto height_of = [&](std::uint64_t word) {
+            return near.flat ? branch.height_over_plane(word) : branch.height_over_frame(word);
+          };
+          const WalkedSegment segment{view, i, before, vertex, height_of(before), height_of(vertex), inside};
+          const Moved moved = handler_.meets(segment, branch, near);
+          if (moved == Moved::gone) return take_off_births(view, births_before(node, i), branch.material);
+          if (moved == Moved::yes) near = {};
+          changed = handler_.scattered(segment, moved, branch, near);
+          changed |= moved != Moved::no || inside != nullptr;
+        }
+        if (node.births >> i & 1) {
+          const int birth = births_before(node, i);
+          if (changed || !(passed >> birth & 1)) follow_birth(view, birth, branch, points[i + 1], near);
+        }
+        inside = nullptr;
+        if (changed) left &= ~1u << i;
       }
-      inside = nullptr;
-      before = vertex;
-      low = high;
+      if (!changed) return true;
     }
     return true;
   }
+
+  static int births_before(const PackedNode& node, int segment) { return bits_in(node.births & ((1u << segment) - 1)); }
 
   void follow_birth(const NodeView& view, int birth, Branch<State>& parent, std::uint64_t vertex, Near near) {
     if (handler_.passes(parent, view.spheres()[birth], near)) return;

@@ -101,6 +101,16 @@ class Replay {
     return query_.misses(branch, branch.state, sphere, near) && !watching(branch);
   }
 
+  unsigned passed(const Branch<State>& branch, const std::uint64_t* spheres, int count, const Near& near) const {
+    return watching(branch) ? 0 : query_.clear_of(branch, spheres, count, near);
+  }
+
+  unsigned eventful(const NodeView& node, const Branch<State>& branch, const Near& near) const {
+    const int segments = node.node.count;
+    if (watching(branch) || (branch.deflected && common_random_numbers_)) return (1u << segments) - 1;
+    return query_.may_meet(branch, node.points(), segments, near);
+  }
+
   Moved meets(const WalkedSegment& s, Branch<State>& branch, const Near& near) {
     if (near.flat) {
       if (watching(branch)) note_turn(branch.point(s.vertex) - branch.point(s.before));

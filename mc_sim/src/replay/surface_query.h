@@ -8,6 +8,7 @@
 #include "geometry/geometry.h"
 #include "geometry/local_surface.h"
 #include "replay/branch_pose.h"
+#include "replay/packed_heights.h"
 #include "surf/core/vec3.h"
 
 namespace surf::mc {
@@ -36,6 +37,13 @@ struct FlatSurroundings {
 struct Near {
   bool flat = false;
   Band band;
+  LocalSurface::NearFaces faces;   ///< all that there are, where they are known
+
+  /// After a mirror in the flat surroundings' plane: what is not said of them alone is of another place.
+  void forget_places() {
+    band = {};
+    faces = {};
+  }
 };
 
 /// Answers where surfaces are around the current pixel: by its flat surroundings, by its patch, then by the geometry. All of
@@ -78,13 +86,44 @@ class SurfaceQuery {
       pose.measure_from(plane_);
       return std::fabs(pose.height_over_plane(sphere)) > radius;
     }
+    if (near.faces.is_known) {
+      patch_->keep_near(center, radius, near.faces);
+      return near.faces.count == 0;
+    }
     near.band = {};
     if (patch_) {
       near.band = patch_->band(center, radius);
       if (near.band.is_clear(height, radius)) return true;
+      patch_->find_near(center, radius, near.faces);
+      if (near.faces.is_known) return near.faces.count == 0;
       if (near.band.high - near.band.low < radius) return false;   // it is met
     }
     return geometry_.clearance(frame_.out(vec3(center))) > radius;
+  }
+
+  /// Spheres that all stay inside the material, by what is known around a branch: bit i for sphere i. `misses` tells of more.
+  unsigned clear_of(const BranchPose& pose, const std::uint64_t* spheres, int count, const Near& near) const {
+    if (near.flat) return PackedHeights(pose.over_plane, pose.exponent).clear(spheres, count);
+    if (!near.faces.is_known) return 0;
+    unsigned clear = (1u << count) - 1;
+    for (std::uint8_t i = 0; i < near.faces.count; ++i)
+      clear &= heights_over(near.faces.numbers[i], pose).clear(spheres, count, LocalSurface::search_nm);
+    return clear;
+  }
+
+  /// Segments between `count` + 1 points, one after another, that may meet a surface: bit i for the segment that ends at point
+  /// i + 1.
+  unsigned may_meet(const BranchPose& pose, const std::uint64_t* points, int count, const Near& near) const {
+    if (near.flat) return PackedHeights(pose.over_plane, pose.exponent).may_be_above(points + 1, count);
+    const unsigned all = (1u << count) - 1;
+    if (!near.faces.is_known) return all;
+    unsigned bits = 0;
+    for (std::uint8_t i = 0; i < near.faces.count && bits != all; ++i) {
+      const auto [above, below] =
+          heights_over(near.faces.numbers[i], pose).sides(points, count + 1, LocalSurface::search_nm);
+      bits |= ~((above & above >> 1) | (below & below >> 1));
+    }
+    return bits & all;
   }
 
   /// Whether a way meets no surface. `first_crossing` of the same way, next, knows what was found.
@@ -145,6 +184,13 @@ class SurfaceQuery {
     if (flat_.whole && !pose.left_ball) return true;
     const double room = flat_.radius - radius;
     return room > 0 && squared_length(center - plane_.point) <= room * room;
+  }
+
+  PackedHeights heights_over(std::uint16_t face, const BranchPose& pose) const {
+    const Float4& plane = patch_->plane(face);
+    const auto along = [&](const Float4& v) { return plane[0] * v[0] + plane[1] * v[1] + plane[2] * v[2]; };
+    const Float4 over{along(pose.scaled.x), along(pose.scaled.y), along(pose.scaled.z), along(pose.origin) - plane[3]};
+    return PackedHeights(over, pose.exponent);
   }
 
   static constexpr double shortest_bit_nm = 0.1;

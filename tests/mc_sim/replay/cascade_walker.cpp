@@ -44,6 +44,8 @@ struct Handler {
     ++asked;
     return passes_all;
   }
+  unsigned passed(const Branch<int>&, const std::uint64_t*, int, const Near&) { return 0; }
+  unsigned eventful(const NodeView& node, const Branch<int>&, const Near&) { return (1u << node.node.count) - 1; }
   Moved meets(const WalkedSegment& s, Branch<int>&, const Near&) {
     energies.push_back(s.inside ? s.inside->energy_ev : only.energy_ev(s.view, s.number));
     return segments++ == gone_at ? Moved::gone : Moved::no;

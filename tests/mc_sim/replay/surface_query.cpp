@@ -3,6 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+#include <bit>
+#include <cmath>
+
 #include "geometry/scene_impl.h"
 #include "random_direction.h"
 #include "specimens.h"
@@ -49,13 +53,13 @@ class SurfaceQueries : public testing::TestWithParam<bool> {
     return point_ + test::isotropic(random) * (12 * random.uniform());
   }
 
-  /// Inside, up to 6 nm below the surface.
-  Vec3 below(RandomStream& random) {
+  /// Inside, not far below the surface.
+  Vec3 below(RandomStream& random, double depth_nm = 6) {
     const Vec3 place = somewhere(random);
     SceneGeometry::Surface met;
     SceneGeometry::State state = 0;
     EXPECT_EQ(geometry_.crossing({place.x, place.y, 100}, {0, 0, -1}, HUGE_VAL, state, met), Crossing::surface);
-    return met.position - Vec3{0, 0, 0.01 + 6 * random.uniform()};
+    return met.position - Vec3{0, 0, 0.01 + depth_nm * random.uniform()};
   }
 
   Scene scene_;
@@ -108,6 +112,50 @@ TEST_P(SurfaceQueries, AClearWayMeetsNothing) {
   }
   EXPECT_GT(clear, 100);
   EXPECT_GT(met, 15);
+}
+
+// A node that lies anywhere near the surface: what is left out of it has to be clear of every triangle.
+TEST_P(SurfaceQueries, WhatIsLeftOutOfANodeMeetsNothing) {
+  RandomStream random(5, 1, GetParam());
+  int out = 0, known = 0, spheres_out = 0;
+  for (int round = 0; round < 3000; ++round) {
+    BranchPose pose;
+    pose.exponent = -12;
+    const Frame turned = frame_about({}, test::isotropic(random));
+    pose.scaled = Rotation{float4(turned.x), float4(turned.y), float4(turned.z)} * power_of_two(pose.exponent);
+    pose.origin = float4(query_.frame().in(below(random, 0.5)));
+    pose.note_change();
+    // A walk of eight steps within the ball that stands for the node.
+    const double size = 0.05 + 0.5 * random.uniform();
+    std::array<std::uint64_t, 9> points;
+    for (std::uint64_t& p : points) {
+      const Vec3 v = test::isotropic(random) * (size * std::cbrt(random.uniform()) / power_of_two(pose.exponent));
+      p = std::bit_cast<std::uint64_t>(PackedSphere{static_cast<std::int16_t>(v.x), static_cast<std::int16_t>(v.y),
+                                                    static_cast<std::int16_t>(v.z), static_cast<std::uint16_t>(200)});
+    }
+    const auto ball = static_cast<std::uint64_t>(std::ceil(size / power_of_two(pose.exponent))) + 201;
+    Near near;
+    if (query_.misses(pose, inside_, ball << 48, near)) continue;
+    const unsigned may = query_.may_meet(pose, points.data(), 8, near);
+    known += near.faces.is_known;
+    for (std::size_t i = 0; i < 8; ++i) {
+      if (may >> i & 1) continue;
+      ++out;
+      const Vec3 from = query_.frame().out(vec3(pose.point(points[i]))), to = query_.frame().out(vec3(pose.point(points[i + 1])));
+      SceneGeometry::State state = inside_;
+      SceneGeometry::Surface met;
+      EXPECT_EQ(geometry_.crossing(from, normalized(to - from), length(to - from), state, met), Crossing::none);
+    }
+    const unsigned clear = query_.clear_of(pose, points.data(), 8, near);
+    for (std::size_t i = 0; i < 8; ++i) {
+      if (!(clear >> i & 1)) continue;
+      ++spheres_out;
+      EXPECT_GT(distance(query_.frame().out(vec3(pose.point(points[i])))), pose.radius(points[i]));
+    }
+  }
+  EXPECT_EQ(known > 200, GetParam());
+  EXPECT_EQ(out > 1000, GetParam());
+  EXPECT_EQ(spheres_out > 1000, GetParam());
 }
 
 INSTANTIATE_TEST_SUITE_P(Beside, SurfaceQueries, testing::Bool(),
