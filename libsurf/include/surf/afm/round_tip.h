@@ -7,9 +7,10 @@
 
 namespace surf {
 
-/// How high a tip is at 0, 1, 2 ... steps of the finer pitch from its apex, nm: what a `share` in [0, 1] of the directions
-/// around it lie below. As far as so many have samples: into the corners, which tell of tips between square plateaus. Throws InvalidInput for an invalid tip, UsageError for a share out
-/// of range.
+/// A tip's height at 0, 1, 2 ... steps of the finer pitch from its apex, nm: the height that a `share` in [0, 1] of the
+/// directions around the apex do not exceed. The profile ends where fewer than that share of the directions have samples, so it
+/// reaches into the corners of the tip's square. Corners matter on scans of square plateaus. Throws InvalidInput for an invalid
+/// tip, UsageError for a share out of range.
 std::vector<double> round_profile_nm(const Tip& tip, double share);
 
 /// A round tip that is nowhere above any of the profiles, each 0, 1, 2 ... steps of the finer pitch from the apex, and

@@ -49,9 +49,10 @@ struct PreparedAfm {
 ///
 /// The noise is that of the substrate, or where there is no clear one that of the differences between rows and
 /// columns. The tip is Villarrubia's, at the threshold that the noise explains (`sweep_tips`), of `tip_size`
-/// samples; else the round one below all that blind tips of 5, 7, 9, 11, 13, 19 ... 57 samples tell in the tenth of
-/// directions where they tell most (`tip_below`), until they are as wide as the tip is at the scan's full relief: straight
-/// lines and plateaus leave a tip of any shape open in most directions. Where they tell nothing it is one sample, sharp.
+/// samples where that is given. Otherwise blind tips of 5, 7, 9, 11, 13, 19 ... 57 samples are found, until one is as wide as
+/// the tip is at the scan's full relief, and the tip is the largest round one below them (`tip_below`). Of each blind tip the
+/// tenth of directions counts that bounds the tip most, because straight lines and plateaus bound it in few directions. Where
+/// no direction bounds the tip, it is one sample, sharp.
 /// Throws InvalidInput for scans without relief or noise, UsageError for options out of range, Interrupted.
 PreparedAfm prepare_afm(const HeightField& scan, const AfmPreparationOptions& options = {});
 

@@ -7,11 +7,11 @@
 namespace surf::mc {
 
 struct CascadeTableOptions {
-  int rings = 48;      ///< about the beam, as far as anything is found, 1 to 1024
-  int heights = 96;    ///< steps from the lowest to the highest of it, 2 to 1024
-  /// Of stopping points alone, where above 0: SE is scaled so that level ground gives this yield. Without it
-  /// the channel counts all secondaries that stop above, those included that start there: ten to a hundred
-  /// times what leaves a surface.
+  int rings = 48;      ///< of the table, around the beam, out to the farthest stopping point, 1 to 1024
+  int heights = 96;    ///< of the table, from the lowest to the highest stopping point, 2 to 1024
+  /// If above 0, the SE channel of stopping points is scaled so that level ground gives this yield. If 0, the channel counts all
+  /// secondaries that stop above the surface, also those that started there. That is ten to a hundred times the number that
+  /// leaves a real surface. `diffusion_matrix` does not use it.
   double flat_se_yield = 0;
 };
 

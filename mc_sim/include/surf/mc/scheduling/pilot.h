@@ -29,9 +29,9 @@ struct Pilot {
   bool complete = true;            ///< false when cancelled: the rest means nothing
 };
 
-/// Gets the libraries, then simulates units spread evenly over the scan for about `seconds` (> 0), or all of them where
-/// that is less. First a few pixels of units; where these show that a unit takes a tenth of the time or more, only such parts. Throws what
-/// `simulate` throws for options.
+/// Gets the libraries, then simulates units for about `seconds` (> 0), or all units where that takes less. The units are spread
+/// evenly over the scan. It begins with a few pixels of each unit; where a whole unit would take a tenth of the time or more, it
+/// goes on with such parts. Throws what `simulate` throws for options.
 Pilot run_pilot(const Scene& scene, const SimulationOptions& options, double seconds, LibrarySource* libraries = nullptr,
                 const ProgressCallback& progress = {}, const CancelToken* cancel = nullptr);
 

@@ -16,11 +16,11 @@ class UnitJournal {
  public:
   virtual ~UnitJournal() = default;
 
-  /// Whether this unit was done before; then `tally` is set. Asked once for every unit, before it is
-  /// simulated, in the order of their numbers but for those that other threads are about to ask for.
+  /// Whether this unit was done before; then `tally` is set. `simulate` calls it once for every unit, in the order of their
+  /// numbers, before anybody simulates the unit.
   virtual bool recall(std::size_t unit, UnitTally& tally) = 0;
 
-  /// A unit is simulated. Not called for those that were recalled.
+  /// Keeps a unit that has been simulated. It is not called for units that were recalled.
   virtual void record(std::size_t unit, const UnitTally& tally) = 0;
 };
 
