@@ -14,7 +14,7 @@ namespace {
 constexpr double plane_nm = 1e-6;
 
 // Pixels that share a patch: their surfaces are no farther apart and no more turned than this.
-constexpr double shared_nm = 4, shared_cosine = 0.9;
+constexpr double shared_nm = 12, shared_cosine = 0.9;
 constexpr int most_shared = 8;           // pixels along a block
 constexpr std::size_t most_patches = 512;
 
