@@ -2,12 +2,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
 
 #include "bound_parameters.h"
 #include "commands.h"
 #include "surf/core/units.h"
 #include "surf/io/sim/materials.h"
+#include "surf/mc/physics/dielectric_data.h"
 #include "surf/mc/physics/element.h"
 #include "surf/mc/physics/material_doubts.h"
 #include "terminal.h"
@@ -62,6 +64,35 @@ void print_line(const char* label, const std::string& value, const char* unit) {
   print("  {:<38} {}{}{}\n", label, value, *unit ? " " : "", unit);
 }
 
+// Its sums tell how far an energy-loss function can be trusted.
+void print_losses(const mc::Material& m) {
+  const auto data = mc::find_dielectric_data(m);
+  if (!data) return;
+  const mc::EnergyLossFunction elf = data->band.gap_ev > 0 ? data->elf.above(data->band.gap_ev) : data->elf;
+  print("  energy-loss function, {} to {} (simulations do not use it yet)\n", fmt::format("{:g} eV", elf.lowest_ev()),
+        fmt::format("{:g} eV", elf.highest_ev()));
+  const double screening = elf.screening_sum(), complete = mc::expected_screening_sum(m);
+  double z = 0;
+  for (const mc::Constituent& c : m.constituents) z += c.atomic_number * mc::atoms_per_formula_unit(m, c);
+  const double electrons = elf.electron_sum(mc::formula_units_per_nm3(m));
+  print_line("  screening sum", fmt::format("{:.3f}, {:.3f} if complete", screening, complete), "");
+  print_line("  electrons by the f-sum", fmt::format("{:.1f}, {:.4g} if complete", electrons, z), "");
+  print_line("  filled band", fmt::format("{:.4g}", data->band.filled_ev), "eV");
+  if (data->band.gap_ev > 0) print_line("  gap", fmt::format("{:.3g}", data->band.gap_ev), "eV");
+  print("  band: {}\n  function: {}\n", data->band_source, elf.source());
+  print("  {:>10}  {:>14}  {:>16}\n", "energy", "free path, nm", "loss, eV/nm");
+  const mc::SinglePole losses(data->elf, data->band);
+  for (const double energy_ev : {30.0, 100.0, 300.0, 1000.0, 3000.0, 10000.0, 30000.0}) {
+    const double inside = energy_ev + data->band.filled_ev + m.work_function_ev;
+    print("  {:>10}  {:>14.3g}  {:>16.3g}\n", fmt::format("{:g} eV", energy_ev), 1 / losses.inverse_mean_free_path_per_nm(inside),
+          losses.stopping_power_ev_per_nm(inside));
+  }
+  const auto off = [](double value, double expected) { return std::fabs(value / expected - 1); };
+  if (off(screening, complete) > 0.1 || off(electrons, z) > 0.1)
+    print_warning(fmt::format("the energy-loss function of {} breaks a sum rule by {:.0f} %", m.name,
+                              100 * std::max(off(screening, complete), off(electrons, z))));
+}
+
 void print_material(const mc::Material& m) {
   const auto line = [&](const char* label, double value, const char* unit, const char* field) {
     const std::string* const rule = estimate_of(m, field);
@@ -90,6 +121,7 @@ void print_material(const mc::Material& m) {
                                    ? "yes" : "no: use --physics elastic=browning", "");
   }
   if (!m.sources.empty()) print("  sources: {}\n", m.sources);
+  print_losses(m);
   if (const auto doubt = mc::doubt_of_a_metal(m)) print_warning(*doubt);
 }
 
