@@ -4,10 +4,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "geometry/embree_scene.h"
 #include "random_direction.h"
 #include "specimens.h"
+#include "surf/core/error.h"
 #include "surf/core/random.h"
 #include "surf/mc/geometry/scene.h"
 #include "surf/mc/simulate.h"
