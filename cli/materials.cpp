@@ -7,11 +7,15 @@
 
 #include "bound_parameters.h"
 #include "commands.h"
+#include "surf/core/error.h"
 #include "surf/core/units.h"
+#include "surf/io/plot.h"
 #include "surf/io/sim/materials.h"
 #include "surf/mc/physics/dielectric_data.h"
 #include "surf/mc/physics/element.h"
 #include "surf/mc/physics/material_doubts.h"
+#include "surf/workflow/material_plot.h"
+#include "surf/workflow/step_record.h"
 #include "terminal.h"
 
 namespace surf::cli {
@@ -20,6 +24,7 @@ namespace {
 constexpr const char* examples = R"(Examples:
   semsurf materials                                    the table
   semsurf materials Si                                 every number of silicon, with its source
+  semsurf materials Si --plot si.svg                   its losses and free paths, drawn
   semsurf materials nitride --materials mine.toml      your own, and what is estimated
 A file of your own materials:
   [[material]]
@@ -125,15 +130,36 @@ void print_material(const mc::Material& m) {
   if (const auto doubt = mc::doubt_of_a_metal(m)) print_warning(*doubt);
 }
 
-int print_materials(const std::string& name, const std::vector<std::string>& files) {
+struct MaterialsOutput {
+  std::string plot;
+};
+
+void describe(ParameterVisitor& visit, MaterialsOutput& output) {
+  visit(output.plot, {.name = "materials.plot",
+                      .help = "Chart of one material's losses and free paths: .svg .png",
+                      .form = "FILE",
+                      .file = FileRole::written});
+}
+
+int print_materials(const io::MaterialChoice& choice, const MaterialsOutput& output) {
   io::MaterialLibrary library;
   std::vector<std::string> notes;
-  for (const std::string& file : files) library.read(file, notes);
+  for (const std::string& file : choice.files) library.read(file, notes);
   for (const std::string& note : notes) print_note(note);
-  if (name.empty())
+  if (choice.name.empty()) {
+    if (!output.plot.empty())
+      throw UsageError("`materials.plot`", "a chart shows one material", "Name one: semsurf materials Si --plot si.svg");
     print_table(library.all());
-  else
-    print_material(library.find(name, "materials"));
+    return 0;
+  }
+  const mc::Material& material = library.find(choice.name, "materials");
+  if (!output.plot.empty()) io::check_plot_target(output.plot);
+  print_material(material);
+  if (output.plot.empty()) return 0;
+  io::Plot plot = workflow::plot_material(material);
+  plot.metadata = workflow::step_record("materials", workflow::records_of(choice), {choice.files.begin(), choice.files.end()});
+  io::write_plot(output.plot, plot);
+  print("written    {}\n", output.plot);
   return 0;
 }
 
@@ -144,12 +170,14 @@ void add_materials(CLI::App& app, Action& action) {
   CLI::App* sub = app.add_subcommand("materials", "The materials and their numbers");
   bound->looks["specimen.material"] = {.name = "NAME", .help = "Show this one, with sources", .positional = true};
   bound->add<io::MaterialChoice>(*sub, "Options");
+  bound->add<MaterialsOutput>(*sub, "Options");
   sub->footer(examples);
   sub->callback([bound, &action] {
     action = [bound] {
       io::MaterialChoice choice;
-      bound->apply(choice);
-      return print_materials(choice.name, choice.files);
+      MaterialsOutput output;
+      bound->apply(choice), bound->apply(output);
+      return print_materials(choice, output);
     };
   });
 }
