@@ -60,11 +60,10 @@ std::optional<DielectricData> find_dielectric_data(const Material& material) {
   const auto files = elf_files();
   const auto file = std::ranges::find(files, std::string_view(k->file), &ElfFile::name);
   if (file == files.end()) throw InvalidInput(k->file, "this energy-loss function is not in the library", "Build it again");
-  DielectricData data{parse_energy_loss_function(file->text, k->file), {k->filled_ev, k->gap_ev}, k->source, false};
+  DielectricData data{parse_energy_loss_function(file->text, k->file), {k->filled_ev, k->gap_ev}, k->source};
   if (k->filled_ev == 0) {
     const double electrons = material.valence_electrons * formula_units_per_nm3(material);
     data.band.filled_ev = free_electron_fermi_ev(electrons);
-    data.is_band_estimated = true;
     data.band_source = fmt::format("{}width of the filled band estimated: a gas of {:g} free electrons per formula unit",
                                    *k->source ? fmt::format("{}; ", k->source) : "", material.valence_electrons);
   }

@@ -22,7 +22,7 @@ struct PrimaryRange {
 struct SourceTask {
   const WorkUnit& unit;
   std::span<const std::int64_t> expected = {};   ///< primaries of each pixel, row by row; empty: many
-  Observer* observer = nullptr;                  ///< only where `observed`
+  Observer* observer = nullptr;                  ///< may be null; replay has nothing to show it
   const CancelToken* cancel = nullptr;           ///< looked at with each primary: a unit takes seconds where electrons are fast
 };
 

@@ -47,14 +47,22 @@ struct Case {
 // Few and many units away from the plane, and so far that heights no longer fit.
 constexpr std::array far_in_units{100.0, 1e4, 5e4, 1e6, 1e9};
 
+// Units, distances and points of every kind; every other plane passes near one of the points.
+template <std::size_t N>
+Case random_case(RandomStream& random, int round, std::array<std::uint64_t, N>& words) {
+  const int exponent = -12 + round % 8;
+  Case c(random, exponent, far_in_units[static_cast<std::size_t>(round) % 5] * power_of_two(exponent));
+  for (std::uint64_t& w : words) w = random_word(random);
+  if (round % 2) c.move_near(words[static_cast<std::size_t>(round) % N], random);
+  return c;
+}
+
 TEST(PackedHeights, AskForACloserLookWhereverAPointMayBeAbove) {
   RandomStream random(1, 0, 0);
   int above = 0, asked = 0, all = 0;
   for (int round = 0; round < 4000; ++round) {
-    Case c(random, -12 + round % 8, far_in_units[static_cast<std::size_t>(round) % 5] * power_of_two(-12 + round % 8));
     std::array<std::uint64_t, 9> words;
-    for (std::uint64_t& w : words) w = random_word(random);
-    if (round % 2) c.move_near(words[static_cast<std::size_t>(round) % 9], random);
+    const Case c = random_case(random, round, words);
     const PackedHeights heights(c.over, c.pose.exponent);
     for (int count = 1; count <= 9; ++count) {
       const unsigned bits = heights.may_be_above(words.data(), count);
@@ -77,10 +85,8 @@ TEST(PackedHeights, TellTheSideOnlyWhereItIsCertain) {
   RandomStream random(2, 0, 0);
   int told = 0, all = 0;
   for (int round = 0; round < 4000; ++round) {
-    Case c(random, -12 + round % 8, far_in_units[static_cast<std::size_t>(round) % 5] * power_of_two(-12 + round % 8));
     std::array<std::uint64_t, 9> words;
-    for (std::uint64_t& w : words) w = random_word(random);
-    if (round % 2) c.move_near(words[static_cast<std::size_t>(round) % 9], random);
+    const Case c = random_case(random, round, words);
     const PackedHeights heights(c.over, c.pose.exponent);
     for (const float by : {0.0f, 0.002f, 1.0f}) {
       const auto [higher, lower] = heights.sides(words.data(), 9, by);
@@ -101,10 +107,9 @@ TEST(PackedHeights, ClearSpheresAreFartherThanTheirRadii) {
   RandomStream random(3, 0, 0);
   int clear = 0, missed = 0;
   for (int round = 0; round < 4000; ++round) {
-    const Case c(random, -12 + round % 8, far_in_units[static_cast<std::size_t>(round) % 5] * power_of_two(-12 + round % 8));
-    const PackedHeights heights(c.over, c.pose.exponent);
     std::array<std::uint64_t, 8> spheres;
-    for (std::uint64_t& s : spheres) s = random_word(random);
+    const Case c = random_case(random, round, spheres);
+    const PackedHeights heights(c.over, c.pose.exponent);
     for (int count = 1; count <= 8; ++count) {
       const unsigned bits = heights.clear(spheres.data(), count, 0.002f);
       EXPECT_EQ(bits >> count, 0u);

@@ -15,7 +15,6 @@ struct DielectricData {
   EnergyLossFunction elf;
   BandLimits band;
   std::string band_source;             ///< where the band's numbers come from; completes "band: "
-  bool is_band_estimated = false;
 };
 
 /// For the materials that come with semsurf, by name; nothing for others. Where no width of the filled band is at hand it is
