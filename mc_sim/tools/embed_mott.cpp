@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Turns data/mott/icdfx_A_Z*.csv into a C++ source: embed_mott OUTPUT.cpp CSV...
+// Turns data/mott/icdfx_*_Z*.csv into a C++ source with this function: embed_mott OUTPUT.cpp FUNCTION CSV...
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
@@ -25,12 +25,12 @@ std::vector<std::string> fields(const std::string& line) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (argc < 3) fail("usage: embed_mott OUTPUT.cpp CSV...");
+  if (argc < 4) fail("usage: embed_mott OUTPUT.cpp FUNCTION CSV...");
   std::ofstream out(argv[1]);
   out << "// Made by embed_mott from data/mott. Do not edit.\n"
          "#include \"physics/mott_data.h\"\n\nnamespace surf::mc {\nnamespace {\n";
   std::string index;
-  for (int i = 2; i < argc; ++i) {
+  for (int i = 3; i < argc; ++i) {
     const std::string path = argv[i];
     const auto at = path.rfind("_Z");
     if (at == std::string::npos) fail(path + ": no _Znnn in the name");
@@ -51,7 +51,7 @@ int main(int argc, char** argv) {
     index += "{" + z + ", rows_" + z + "},\n";
   }
   out << "constexpr MottElement elements[] = {\n" << index << "};\n}  // namespace\n\n"
-      << "std::span<const MottElement> mott_elements() { return elements; }\n\n"
+      << "std::span<const MottElement> " << argv[2] << "() { return elements; }\n\n"
       << "}  // namespace surf::mc\n";
   return out.good() ? 0 : 1;
 }
