@@ -13,6 +13,7 @@
 #include "surf/io/sim/materials.h"
 #include "surf/mc/physics/dielectric_data.h"
 #include "surf/mc/physics/element.h"
+#include "surf/mc/physics/full_penn.h"
 #include "surf/mc/physics/material_doubts.h"
 #include "surf/workflow/material_plot.h"
 #include "surf/workflow/step_record.h"
@@ -24,7 +25,7 @@ namespace {
 constexpr const char* examples = R"(Examples:
   semsurf materials                                    the table
   semsurf materials Si                                 every number of silicon, with its source
-  semsurf materials Si --plot si.svg                   its losses and free paths, drawn
+  semsurf materials Si --plot si.svg                   its losses, free paths and yields, drawn
   semsurf materials nitride --materials mine.toml      your own, and what is estimated
 A file of your own materials:
   [[material]]
@@ -70,25 +71,45 @@ void print_line(const char* label, const std::string& value, const char* unit) {
 }
 
 // Its sums tell how far an energy-loss function can be trusted.
-void print_losses(const mc::Material& m) {
-  const auto data = mc::find_dielectric_data(m);
-  if (!data) return;
-  const mc::EnergyLossFunction elf = data->band.gap_ev > 0 ? data->elf.above(data->band.gap_ev) : data->elf;
-  print("  energy-loss function, {} to {} (simulations do not use it yet)\n", fmt::format("{:g} eV", elf.lowest_ev()),
-        fmt::format("{:g} eV", elf.highest_ev()));
-  const double screening = elf.screening_sum(), complete = mc::expected_screening_sum(m);
+void print_dielectric(const mc::Material& m) {
+  const mc::DielectricData& data = *m.dielectric;
+  const auto line = [&](const char* label, double value, const char* unit, const char* field) {
+    print_line(label, fmt::format("{:.5g}", value), unit);
+    for (const mc::EstimatedValue& e : data.estimates)
+      if (e.field == field) print("    estimated: {}\n", e.rule);
+  };
+  const mc::EnergyLossFunction elf = data.band.gap_ev > 0 ? data.elf.above(data.band.gap_ev) : data.elf;
+  print("  with inelastic=dielectric, energies from the bottom of the filled band:\n");
+  print_line("  energy-loss function", fmt::format("{:g} to {:g}", elf.lowest_ev(), elf.highest_ev()), "eV");
+  print("    {}\n", elf.source());
+  const double screening = elf.screening_sum(), complete = data.expected_screening_sum;
   double z = 0;
   for (const mc::Constituent& c : m.constituents) z += c.atomic_number * mc::atoms_per_formula_unit(m, c);
   const double electrons = elf.electron_sum(mc::formula_units_per_nm3(m));
-  print_line("  screening sum", fmt::format("{:.3f}, {:.3f} if complete", screening, complete), "");
-  print_line("  electrons by the f-sum", fmt::format("{:.1f}, {:.4g} if complete", electrons, z), "");
-  print_line("  filled band", fmt::format("{:.4g}", data->band.filled_ev), "eV");
-  if (data->band.gap_ev > 0) print_line("  gap", fmt::format("{:.3g}", data->band.gap_ev), "eV");
-  print("  band: {}\n  function: {}\n", data->band_source, elf.source());
+  print_line("    screening sum", fmt::format("{:.3f}, {:.3f} if complete", screening, complete), "");
+  print_line("    electrons by the f-sum", fmt::format("{:.1f}, {:.4g} if complete", electrons, z), "");
+  line("  filled band", data.band.filled_ev, "eV", "filled_band_ev");
+  if (data.band.gap_ev > 0) line("  gap", data.band.gap_ev, "eV", "gap_ev");
+  line("  highest filled state to vacuum", data.vacuum_ev, "eV", "vacuum_ev");
+  line("  lattice constant", data.lattice_nm, "nm", "lattice_nm");
+  for (const mc::AcousticBranch& b : data.acoustic) {
+    line(data.acoustic.size() == 1 ? "  sound" : &b == data.acoustic.data() ? "  sound, longitudinal" : "  sound, transverse",
+         b.speed_m_s, "m/s", "sound_m_s");
+    if (b.deformation_ev > 0) line("    deformation potential", b.deformation_ev, "eV", "");
+  }
+  if (data.resistivity_ohm_m > 0) line("  resistivity, for the deformation", data.resistivity_ohm_m, "ohm m", "");
+  else if (std::ranges::any_of(data.acoustic, [](const mc::AcousticBranch& b) { return !(b.deformation_ev > 0); }))
+    for (const mc::EstimatedValue& e : data.estimates)
+      if (e.field == "deformation_ev") print("    deformation potential estimated: {}\n", e.rule);
+  for (const mc::OpticalMode& mode : data.optical)
+    line("  optical phonons", mode.energy_ev, "eV", "optical_phonons");
+  if (data.trap_per_nm > 0)
+    print_line("  polaron traps", fmt::format("{:g} per nm, falling by e every {:g} eV", data.trap_per_nm, data.trap_ev), "");
+  if (!data.sources.empty()) print("    {}\n", data.sources);
   print("  {:>10}  {:>14}  {:>16}\n", "energy", "free path, nm", "loss, eV/nm");
-  const mc::SinglePole losses(data->elf, data->band);
+  const mc::FullPenn losses(data);
   for (const double energy_ev : {30.0, 100.0, 300.0, 1000.0, 3000.0, 10000.0, 30000.0}) {
-    const double inside = energy_ev + data->band.filled_ev + m.work_function_ev;
+    const double inside = energy_ev + data.barrier_ev();
     print("  {:>10}  {:>14.3g}  {:>16.3g}\n", fmt::format("{:g} eV", energy_ev), 1 / losses.inverse_mean_free_path_per_nm(inside),
           losses.stopping_power_ev_per_nm(inside));
   }
@@ -126,7 +147,7 @@ void print_material(const mc::Material& m) {
                                    ? "yes" : "no: use --physics elastic=browning", "");
   }
   if (!m.sources.empty()) print("  sources: {}\n", m.sources);
-  print_losses(m);
+  print_dielectric(m);
   if (const auto doubt = mc::doubt_of_a_metal(m)) print_warning(*doubt);
 }
 
@@ -136,7 +157,7 @@ struct MaterialsOutput {
 
 void describe(ParameterVisitor& visit, MaterialsOutput& output) {
   visit(output.plot, {.name = "materials.plot",
-                      .help = "Chart of one material's losses and free paths: .svg .png",
+                      .help = "Chart of one material's losses, free paths and yields: .svg .png",
                       .form = "FILE",
                       .file = FileRole::written});
 }

@@ -119,6 +119,7 @@ void print_simplified(const workflow::Simplification& s) {
 void print_summary(int threads, const workflow::SimulateSummary& s) {
   print_image(s);
   print_yields(s);
+  if (s.charging) print_line("charging", workflow::describe(*s.charging));
   print_line("method", fmt::format("{}: {}", mc::name(s.choice.method), s.choice.reason));
   print_library(s);
   print_models(s);

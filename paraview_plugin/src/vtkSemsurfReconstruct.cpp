@@ -147,11 +147,11 @@ int vtkSemsurfReconstruct::RequestData(vtkInformation*, vtkInformationVector** i
         afm->GetPointData()->SetActiveScalars("residual");
       }
       if (!r.sem_residual.empty()) {
-        const auto sem = pv::make_image_like(surface);
-        pv::add_values(sem, std::move(r.sem_residual), "residual", "1");
-        pv::add_values(sem, std::move(r.simulated_sem), "simulated", "1");
-        sem->GetPointData()->SetActiveScalars("residual");
-        pv::give(outputs->GetInformationObject(3), sem);
+        const auto compared = pv::make_image_like(surface);
+        pv::add_values(compared, std::move(r.sem_residual), "residual", "1");
+        pv::add_values(compared, std::move(r.simulated_sem), "simulated", "1");
+        compared->GetPointData()->SetActiveScalars("residual");
+        pv::give(outputs->GetInformationObject(3), compared);
       }
       if (!r.deviation_nm.empty()) pv::add_values(surface, std::move(r.deviation_nm), "deviation_nm", "nm");
       if (!r.held_by.empty()) pv::add_values(surface, std::move(r.held_by), "held_by", "1");

@@ -2,18 +2,22 @@
 #include "surf/workflow/material_plot.h"
 
 #include <cmath>
-#include <optional>
+#include <iterator>
 
 #include <fmt/format.h>
 
 #include "surf/mc/physics/dielectric_data.h"
+#include "surf/mc/physics/full_penn.h"
 #include "surf/mc/physics/medium.h"
+#include "surf/mc/physics/single_pole.h"
+#include "surf/workflow/flat_yields.h"
 
 namespace surf::workflow {
 namespace {
 
 constexpr double lowest_ev = 20, highest_ev = 3e4;   // above the vacuum level
 constexpr int per_decade = 24;
+constexpr double yield_energies_ev[] = {200, 300, 500, 800, 1000, 1500, 2000, 3000, 5000, 10000};
 constexpr double least_elf = 1e-7;                   // what is smaller is not drawn
 
 std::vector<double> energies_ev() {
@@ -58,33 +62,73 @@ io::PlotPanel loss_function(const mc::DielectricData& data) {
 
 }  // namespace
 
-io::Plot plot_material(const mc::Material& material) {
-  mc::Physics elastic_only;
-  elastic_only.secondaries = false;
-  const mc::Medium elastic = mc::make_medium(material, elastic_only), used = mc::make_medium(material, {});
-  const auto data = mc::find_dielectric_data(material);
-  std::optional<mc::SinglePole> losses;
-  if (data) losses.emplace(data->elf, data->band);
+namespace {
+
+mc::Physics physics_of(const char* text) {
+  mc::Physics physics;
+  mc::parse_physics(text, physics);
+  return physics;
+}
+
+// Yields of a plane across the beam by both tiers.
+io::PlotPanel yields(const mc::Material& material, const MaterialPlotOptions& options) {
+  io::PlotPanel p;
+  p.title = "Yields of a plane";
+  p.x = {"energy of the beam (eV)", true, {}};
+  p.y = {"electrons per primary", false, {}};
+  struct Tier {
+    const char *words, *name;
+  };
+  constexpr Tier tiers[] = {{"inelastic=dielectric", "dielectric"}, {"inelastic=monsel", "monsel"}};
+  const std::size_t energies = std::size(yield_energies_ev);
+  double done = 0;
+  for (const Tier& tier : tiers) {
+    io::PlotSeries se, bse;
+    se.name = std::string("SE, ") + tier.name;
+    bse.name = std::string("BSE, ") + tier.name;
+    for (const double energy_ev : yield_energies_ev) {
+      const double part = 1.0 / (double(energies) * double(std::size(tiers)));
+      const FlatYields y = flat_yields(material, energy_ev, physics_of(tier.words), options.electrons, options.threads,
+                                       options.watch.part(done, done + part));
+      done += part;
+      se.x.push_back(energy_ev), se.y.push_back(y.se.mean);
+      bse.x.push_back(energy_ev), bse.y.push_back(y.bse.mean);
+    }
+    p.series.push_back(std::move(se));
+    p.series.push_back(std::move(bse));
+  }
+  return p;
+}
+
+}  // namespace
+
+io::Plot plot_material(const mc::Material& material, const MaterialPlotOptions& options) {
+  const mc::DielectricData& data = *material.dielectric;
+  const mc::Medium monsel = mc::make_medium(material, physics_of("secondaries=off"));
+  const mc::Medium slow = mc::make_medium(material, physics_of("inelastic=monsel,secondaries=off,elastic=mott-phonon,atoms=solid"));
+  const mc::FullPenn full(data);
+  const mc::SinglePole pole(data.elf, data.band);
   const std::vector<double> x = energies_ev();
-  // The same electron inside: simulations count from the bottom of the conduction band, losses from that of the valence band.
+  // The same electron inside: the tiers count from the bottom of the conduction band, and from that of the filled band.
   const auto inside = [&](double energy_ev) { return energy_ev + material.barrier_ev; };
-  const auto in_band = [&](double energy_ev) { return energy_ev + data->band.filled_ev + material.work_function_ev; };
+  const auto in_band = [&](double energy_ev) { return energy_ev + data.barrier_ev(); };
 
   io::Plot plot;
   plot.title = material.name;
-  if (data) plot.panels.push_back(loss_function(*data));
+  plot.panels.push_back(loss_function(data));
   io::PlotPanel paths = panel("Free paths", "free path (nm)");
-  if (losses)
-    draw(paths, "inelastic, energy-loss function", x,
-         [&](double e) { return 1 / losses->inverse_mean_free_path_per_nm(in_band(e)); });
-  draw(paths, "elastic, in use: Mott, isotropic below 50 eV", x, [&](double e) { return 1 / elastic.inverse_mean_free_path_per_nm(inside(e)); });
+  draw(paths, "losses: full Penn", x, [&](double e) { return 1 / full.inverse_mean_free_path_per_nm(in_band(e)); });
+  draw(paths, "losses: single pole", x, [&](double e) { return 1 / pole.inverse_mean_free_path_per_nm(in_band(e)); });
+  draw(paths, "elastic: phonons, atoms of a solid", x, [&](double e) { return 1 / slow.inverse_mean_free_path_per_nm(in_band(e)); });
+  draw(paths, "elastic, monsel: free atoms", x, [&](double e) { return 1 / monsel.inverse_mean_free_path_per_nm(inside(e)); });
   plot.panels.push_back(std::move(paths));
   io::PlotPanel stopping = panel("Loss per length", "loss (eV/nm)");
-  if (losses)
-    draw(stopping, "energy-loss function", x, [&](double e) { return losses->stopping_power_ev_per_nm(in_band(e)); });
-  draw(stopping, "in use: Joy and Luo", x, [&](double e) { return used.stopping_power_ev_per_nm(inside(e)); });
+  draw(stopping, "full Penn", x, [&](double e) { return full.stopping_power_ev_per_nm(in_band(e)); });
+  draw(stopping, "single pole", x, [&](double e) { return pole.stopping_power_ev_per_nm(in_band(e)); });
+  draw(stopping, "monsel: Joy and Luo", x, [&](double e) { return monsel.stopping_power_ev_per_nm(inside(e)); });
   plot.panels.push_back(std::move(stopping));
-  plot.columns = static_cast<int>(plot.panels.size());
+  plot.panels.push_back(yields(material, options));
+  plot.columns = 2;
   return plot;
 }
 

@@ -106,6 +106,12 @@ Json method_json(const ResolvedJob& job, const SimulateSummary& s) {
   return json;
 }
 
+Json charging_json(const Charging& c) {
+  Json json = {{"materials", c.materials}, {"leaving_per_primary", c.leaving}, {"net_per_primary", c.net()}};
+  if (c.current_pa > 0) json["net_per_nm2"] = c.per_nm2;
+  return json;
+}
+
 // What the leader did itself is what nobody else did.
 Json team_json(const SimulateSummary& s, int threads) {
   Json ranks = Json::array();
@@ -174,6 +180,7 @@ std::string sidecar_text(const ResolvedJob& job, const SimulateSummary& summary,
   if (summary.simplification.tolerance_nm > 0)
     json["simplification"] = simplification_json(summary.simplification);
   json["balance"] = balance_json(b);
+  if (summary.charging) json["charging"] = charging_json(*summary.charging);
   json["physics"] = Json::object();
   for (const mc::Material& material : job.scene.specimen.materials)
     json["physics"][material.name] = mc::describe(job.scene.physics, material);

@@ -270,6 +270,7 @@ SimulateSummary run(SimulateJob asked, const Reporter& reporter, Team* team, con
   summary.pages_loaded = kept.pages().loaded;
   summary.pages_made = kept.pages().made;
   summary.statistics = mc::summarize(summary.result);
+  summary.charging = charging_of(scene.materials(), summary.result, scene.scan());
   // Before anything is written, for the same reason as below.
   if (!summary.result.complete) keep_interrupted(job, checkpoint.get(), tell);
   note(warn_after(summary.result, summary.statistics));

@@ -120,7 +120,12 @@ std::vector<std::string> warn_before(const ResolvedJob& job, const SpecimenFacts
                   "nothing");
   for (const mc::Material& material : specimen.materials)
     for (std::string& doubt : mc::doubts(material)) out.push_back(std::move(doubt));
-  if (job.scene.physics.secondaries)
+  if (mc::is_dielectric(job.scene.physics)) {
+    for (const mc::Material& material : specimen.materials)
+      for (const mc::EstimatedValue& e : material.dielectric->estimates)
+        if (e.field == "energy_loss_function")
+          out.push_back(fmt::format("{}: its energy-loss function is an estimate ({}); free paths may be 60 % off", material.name, e.rule));
+  } else if (job.scene.physics.secondaries)
     for (const mc::Material& material : specimen.materials)
       if (!material.loss_join_fitted)
         out.push_back(material.name + ": no measured yields were used to fit its secondary "

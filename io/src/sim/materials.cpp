@@ -19,7 +19,7 @@ constexpr std::size_t max_file_bytes = std::size_t{16} << 20;
 std::vector<mc::Material> read_builtin_materials() {
   const TomlTable root = TomlTable::parse(materials_toml, "materials.toml");
   root.allow({"material"});
-  return read_material_tables(root, {});
+  return read_material_tables(root, {}, [](const std::string& name) { return std::string(mc::find_energy_loss_file(name)); });
 }
 
 const mc::Material& find_in(const std::vector<mc::Material>& materials, const std::string& name,
@@ -92,7 +92,7 @@ void MaterialLibrary::read(const std::filesystem::path& path, std::vector<std::s
   if (!root.has("material")) {
     throw FileError(path.string(), "it holds no material", "Add [[material]] tables");
   }
-  for (mc::Material& material : read_material_tables(root, builtin_materials())) {
+  for (mc::Material& material : read_material_tables(root, builtin_materials(), reader_beside(path))) {
     add(std::move(material), path.string(), notes);
   }
 }

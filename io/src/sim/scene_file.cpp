@@ -23,7 +23,7 @@ constexpr std::size_t max_scene_bytes = std::size_t{16} << 20;
 
 void read_materials(const TomlTable& root, const std::filesystem::path& path,
                     const std::vector<std::filesystem::path>& files, SceneFile& scene) {
-  for (mc::Material& material : read_material_tables(root, builtin_materials())) {
+  for (mc::Material& material : read_material_tables(root, builtin_materials(), reader_beside(path))) {
     scene.materials.add(std::move(material), path.string(), scene.notes);
   }
   for (const std::filesystem::path& file : files) scene.materials.read(file, scene.notes);

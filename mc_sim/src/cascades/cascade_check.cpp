@@ -70,12 +70,12 @@ class Check {
     for (int i = 0; i < view.node.count; ++i) {
       const std::uint16_t here = EnergyCode::energy_part(read_vertex(view.vertex(i)).energy);
       if (here > energy) return false;
+      std::uint16_t theirs = energy;   // a secondary has no more than the electron before the event
       energy = here;
       if (!(view.node.births & 1u << i)) continue;
       std::size_t next = 0;
       if (!child(view, birth++, at, end, next)) return false;
       const PackedNode root = read_node(words_ + at);
-      std::uint16_t theirs = energy;
       ++generated;
       if (!node(at, next, root.level, root.exponent, theirs, generated, nested + 1)) return false;
       at = next;

@@ -2,6 +2,7 @@
 #include "surf/mc/cascades/cascade_key.h"
 
 #include <algorithm>
+#include <bit>
 #include <charconv>
 #include <map>
 #include <string_view>
@@ -42,6 +43,27 @@ T number(const std::string& text) {
   return value;
 }
 
+// A number for all that simulations take from the data; FNV-1a over the bits.
+std::string digest(const DielectricData& d) {
+  std::uint64_t hash = 0xcbf29ce484222325;
+  const auto add = [&](double value) {
+    for (std::uint64_t bits = std::bit_cast<std::uint64_t>(value), i = 0; i < 8; ++i, bits >>= 8)
+      hash = (hash ^ (bits & 0xff)) * 0x100000001b3;
+  };
+  for (const auto* const numbers : {&d.elf.energies_ev(), &d.elf.values(), &d.elf.shells_ev()}) {
+    add(static_cast<double>(numbers->size()));
+    for (const double value : *numbers) add(value);
+  }
+  for (const double value : {d.band.filled_ev, d.band.gap_ev, d.exhausted_ev, d.vacuum_ev, d.lattice_nm, d.resistivity_ohm_m,
+                             d.effective_mass, d.density_of_states_mass, d.trap_per_nm, d.trap_ev})
+    add(value);
+  for (const AcousticBranch& b : d.acoustic)
+    for (const double value : {b.speed_m_s, b.deformation_ev, b.bend_m2_s, double(b.count)}) add(value);
+  for (const OpticalMode& m : d.optical)
+    for (const double value : {m.energy_ev, m.high_permittivity, m.low_permittivity}) add(value);
+  return fmt::format("{:016x}", hash);
+}
+
 }  // namespace
 
 std::string cascade_page_key(const CascadeSettings& s, std::size_t number) {
@@ -58,6 +80,9 @@ std::string cascade_page_key(const CascadeSettings& s, std::size_t number) {
       m.name, format_exact(m.density_g_cm3), format_exact(m.formula_weight_g_mol),
       format_exact(m.work_function_ev), format_exact(m.barrier_ev),
       format_exact(m.valence_electrons), format_exact(m.plasmon_ev), format_exact(m.loss_join_ev));
+  if (is_dielectric(s.physics)) {
+    key += fmt::format("vacuum_barrier_ev = {}\ndielectric = {}\n", format_exact(m.dielectric->barrier_ev()), digest(*m.dielectric));
+  }
   for (const Constituent& c : m.constituents)
     key += fmt::format("constituent = {} {} {} {}\n", c.atomic_number, format_exact(c.atomic_weight),
                        format_exact(c.weight_fraction), format_exact(c.mean_ionization_ev));
@@ -85,10 +110,15 @@ std::optional<CascadePageName> read_cascade_page_key(const std::string& key) {
     parse_physics(text("physics"), name.physics);
     Material material;
     material.barrier_ev = number<double>(text("barrier_ev"));
+    if (is_dielectric(name.physics)) {
+      DielectricData data{.elf = EnergyLossFunction({1, 2, 3}, {0, 0, 0})};
+      data.vacuum_ev = number<double>(text("vacuum_barrier_ev"));
+      material.dielectric = std::make_shared<const DielectricData>(std::move(data));
+    }
     const double cutoff_ev = number<double>(text("cutoff_ev"));
     name.is_usual_cutoff = cutoff_ev == effective_cutoff_ev(name.physics, material);
     name.physics.cutoff_ev = cutoff_ev;
-    const double inside_ev = name.physics.barrier == BarrierModel::off ? 0 : material.barrier_ev;
+    const double inside_ev = effective_barrier_ev(name.physics, material);
     name.beam_energy_ev = number<double>(text("start_energy_ev")) - inside_ev;
     name.seed = number<std::uint64_t>(text("seed"));
   } catch (const std::exception&) {

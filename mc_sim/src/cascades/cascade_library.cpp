@@ -25,6 +25,25 @@ namespace surf::mc {
 
 namespace {
 
+// Of all that is in a page from where its cascades start.
+double page_reach_nm(const CascadePage& page) {
+  double farthest = 0;
+  for (std::size_t i = 0; i + 1 < page.starts.size(); ++i) {
+    const NodeView root(page.words.data() + page.starts[i]);
+    const double unit = power_of_two(root.node.exponent);
+    const auto distance = [&](double x, double y, double z) { return unit * std::sqrt(x * x + y * y + z * z); };
+    for (int k = 0; root.node.level == 0 && k < root.node.count; ++k) {
+      const PackedVertex v = read_vertex(root.vertex(k));
+      farthest = std::max(farthest, distance(v.x, v.y, v.z));
+    }
+    for (int k = 0; k < root.children(); ++k) {
+      const auto s = std::bit_cast<PackedSphere>(root.spheres()[k]);
+      farthest = std::max(farthest, distance(s.x, s.y, s.z) + unit * s.radius);
+    }
+  }
+  return farthest;
+}
+
 // Streams of libraries are apart from those of pixels.
 
 class Maker {
@@ -32,7 +51,7 @@ class Maker {
   explicit Maker(const CascadeLibrary& library)
       : settings_(library.settings()), media_{&library.medium()},
         recorder_(EnergyCode(library.medium().cutoff_ev(), settings_.start_energy_ev),
-                  library.medium().barrier_ev()),
+                  library.medium().barrier_ev(), library.medium().loses_in_events()),
         detection_(default_detectors(), {}, false),
         transport_(endless_, media_, settings_.physics.barrier, false, recorder_, detection_,
                    balance_) {}
@@ -61,8 +80,8 @@ CascadeLibrary::CascadeLibrary(CascadeSettings settings)
     : settings_(std::move(settings)),
       medium_(std::make_shared<Medium>(make_medium(settings_.material, settings_.physics))) {
   if (!can_replay(*medium_))
-    throw UsageError("cascade library", "without continuous loss cascades cannot be stored",
-                     "Choose loss=joy-luo, or direct simulation");
+    throw UsageError("cascade library", "without a loss cascades never end and cannot be stored",
+                     "Choose loss=joy-luo or inelastic=dielectric, or direct simulation");
   if (!(settings_.start_energy_ev > medium_->cutoff_ev()) ||
       settings_.start_energy_ev > 2 * max_beam_energy_ev)
     throw UsageError("cascade library",
@@ -195,6 +214,7 @@ CascadePage CascadeLibrary::make_page(std::size_t number, int threads, const Can
 void CascadeLibrary::add_page(std::shared_ptr<const CascadePage> page) {
   if (!is_page(*page))
     throw InvalidInput("cascade library", "this is not a page of cascades", "Build it again");
+  reaches_nm_.push_back(page_reach_nm(*page));
   pages_.push_back(std::move(page));
 }
 
@@ -212,6 +232,7 @@ bool CascadeLibrary::would_make(const CascadePage& page, std::size_t number,
 CascadeLibrary CascadeLibrary::first(std::size_t pages) const {
   CascadeLibrary library = *this;
   library.pages_.resize(std::min(pages, pages_.size()));
+  library.reaches_nm_.resize(library.pages_.size());
   return library;
 }
 
@@ -225,8 +246,10 @@ void CascadeLibrary::grow(std::size_t cascades, int threads, const ProgressCallb
              static_cast<double>(cascades));
   };
   PageMaker maker(*this, this->pages(), pages);
-  for (auto& page : maker.make(threads, cancel, progress ? report : ProgressCallback{}))
+  for (auto& page : maker.make(threads, cancel, progress ? report : ProgressCallback{})) {
+    reaches_nm_.push_back(page_reach_nm(*page));
     pages_.push_back(std::move(page));
+  }
 }
 
 std::shared_ptr<const CascadeLibrary> FreshLibraries::library(const CascadeSettings& settings,
@@ -241,7 +264,12 @@ std::shared_ptr<const CascadeLibrary> FreshLibraries::library(const CascadeSetti
   return std::make_shared<const CascadeLibrary>(library.first((cascades + page - 1) / page));
 }
 
-bool can_replay(const Medium& medium) { return medium.loses_continuously(); }
+double CascadeLibrary::reach_nm() const {
+  if (medium_->loses_continuously()) return medium_->range_nm(settings_.start_energy_ev);
+  return reaches_nm_.empty() ? 0 : *std::ranges::max_element(reaches_nm_);
+}
+
+bool can_replay(const Medium& medium) { return medium.loses_continuously() || medium.loses_in_events(); }
 
 bool can_replay(const Physics& physics, std::span<const Material> materials) {
   return std::ranges::any_of(materials, [&](const Material& m) { return can_replay(make_medium(m, physics)); });

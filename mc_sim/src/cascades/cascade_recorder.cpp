@@ -146,7 +146,7 @@ CascadeRecorder::Packed CascadeRecorder::pack_node(Branch& branch, std::size_t f
     if (level == 0) {
       const Electron& electron = electrons_[static_cast<std::size_t>(branch.next_birth)];
       branch.next_birth = electron.next;
-      packed.content += {1, points_[electron.first].energy_ev - barrier_ev_};
+      packed.content += {1, paid_ ? 0 : points_[electron.first].energy_ev - barrier_ev_};
       child = pack_branch(electron, points_[branch.first + electron.birth].position, words);
     } else {
       child = pack_node(branch, first + i * segments_of_level(level - 1), level - 1, words);

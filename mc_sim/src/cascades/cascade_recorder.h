@@ -13,7 +13,8 @@ namespace surf::mc {
 /// Watches the transport loop in an endless medium and packs one cascade after the other.
 class CascadeRecorder {
  public:
-  CascadeRecorder(EnergyCode code, double barrier_ev) : code_(code), barrier_ev_(barrier_ev) {}
+  /// `paid`: whether electrons pay for the secondaries that they make, so that these bring no energy of their own.
+  CascadeRecorder(EnergyCode code, double barrier_ev, bool paid) : code_(code), barrier_ev_(barrier_ev), paid_(paid) {}
 
   void begin_track(int number, int parent, int generation, const Vec3& position, const Vec3&,
                    double energy_ev);
@@ -21,7 +22,10 @@ class CascadeRecorder {
     points_.push_back({to, energy_to_ev, false});
   }
   void deposit(const Vec3&, const Vec3&, double) {}
-  void scattered(bool isotropic) { points_.back().forgets = isotropic; }
+  void scattered(bool isotropic, double energy_ev) {
+    points_.back().forgets = isotropic;
+    points_.back().energy_ev = energy_ev;
+  }
   void end_track(TrackKind, const Vec3&, const Vec3&, double) {}
 
   /// Packs what was watched since the last call and adds it to `words`.
@@ -78,6 +82,7 @@ class CascadeRecorder {
 
   EnergyCode code_;
   double barrier_ev_;
+  bool paid_;
   // Reused from cascade to cascade.
   std::vector<Electron> electrons_;
   std::vector<Point> points_;             // once packed, as they will be unpacked

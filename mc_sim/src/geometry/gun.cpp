@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-#include "geometry/directions.h"
+#include "physics/directions.h"
 #include "surf/core/error.h"
 #include "surf/core/units.h"
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include "geometry/sin_cos.h"
+#include "physics/sin_cos.h"
 #include "surf/core/vec3.h"
 
 namespace surf::mc {

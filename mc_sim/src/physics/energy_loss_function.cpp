@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include <fmt/format.h>
@@ -95,6 +96,28 @@ EnergyLossFunction EnergyLossFunction::above(double gap_ev) const {
   EnergyLossFunction cut = *this;
   cut.cut_ev_ = std::max(0.0, gap_ev);
   return cut;
+}
+
+EnergyLossFunction EnergyLossFunction::times(double factor) const {
+  EnergyLossFunction denser = *this;
+  for (double& value : denser.values_) value *= factor;
+  return denser;
+}
+
+double EnergyLossFunction::loss_of_electrons_ev(double electrons, double formula_units_per_nm3) const {
+  const double wanted = electrons * formula_units_per_nm3 * squared_plasma_ev2_nm3 * std::numbers::pi / 2;
+  double sum = 0;
+  for (std::size_t i = 0; i + 1 < energies_.size(); ++i) {
+    const double a = std::log(std::max(energies_[i], cut_ev_)), b = std::log(energies_[i + 1]);
+    if (!(b > a)) continue;
+    const double h = (b - a) / steps_per_interval;
+    for (int k = 0; k < steps_per_interval; ++k) {
+      const double w = std::exp(a + (k + 0.5) * h);
+      sum += h * w * w * (*this)(w);
+      if (sum >= wanted) return w;
+    }
+  }
+  return std::numeric_limits<double>::infinity();
 }
 
 double EnergyLossFunction::screening_sum() const {

@@ -100,6 +100,7 @@ class Completion {
                estimated_loss_join_ev(m_.barrier_ev, m_.work_function_ev),
                "6.72 U0 + 1.87 gap, the regression over the materials fitted to measured SE yields");
     validate(m_);
+    m_.dielectric = complete(draft_.dielectric, m_);
     return m_;
   }
 

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "physics/dielectric/kept_tables.h"
+#include "physics/dielectric/phonons.h"
 #include "physics/mechanisms.h"
 
 namespace surf::mc {
@@ -21,7 +23,9 @@ constexpr int samples_per_bin = 8;
 
 Medium::Medium(std::vector<std::unique_ptr<const Scattering>> scatterings,
                std::unique_ptr<const ContinuousLoss> loss, double barrier_ev, double cutoff_ev)
-    : scatterings_(std::move(scatterings)), loss_(std::move(loss)), barrier_ev_(barrier_ev),
+    : scatterings_(std::move(scatterings)), loss_(std::move(loss)),
+      loses_in_events_(!loss_ && std::ranges::any_of(scatterings_, [](const auto& s) { return s->debits(); })),
+      barrier_ev_(barrier_ev),
       cutoff_ev_(std::max(cutoff_ev, EnergyBins::lowest_ev)),
       cutoff_bin_(EnergyBins::bin(cutoff_ev_)), bins_(EnergyBins::count),
       cumulative_(EnergyBins::count * scatterings_.size()) {
@@ -55,7 +59,7 @@ Medium::Medium(std::vector<std::unique_ptr<const Scattering>> scatterings,
           total > 0 ? static_cast<float>(sum / total) : 1.0f;
     }
     bins_[static_cast<std::size_t>(i)] = {lower, slowness, 1.0 / slowness, total,
-                                          total > 0 ? 1.0 / total : 0.0, 0.0};
+                                          total > 0 ? 1.0 / total : 0.0, 0.0, slowness};
   }
   for (int i = cutoff_bin_ + 1; i < EnergyBins::count; ++i) {
     const Bin& below = bins_[static_cast<std::size_t>(i - 1)];
@@ -94,6 +98,15 @@ bool Medium::loses_continuously() const {
   return loss_ && std::ranges::none_of(scatterings_, [](const auto& s) { return s->debits(); });
 }
 
+void Medium::set_range(const std::vector<double>& at_edges) {
+  for (std::size_t i = 0; i < bins_.size(); ++i) {
+    Bin& bin = bins_[i];
+    const double upper_ev = EnergyBins::lower_ev(static_cast<int>(i) + 1);
+    bin.range_nm = at_edges[i];
+    bin.range_nm_per_ev = std::max(0.0, at_edges[i + 1] - at_edges[i]) / (upper_ev - bin.lower_ev);
+  }
+}
+
 double Medium::stopping_power_ev_per_nm(double energy_ev) const {
   return loss_ ? loss_->stopping_power_ev_per_nm(energy_ev) : 0.0;
 }
@@ -111,22 +124,40 @@ std::vector<std::string> Medium::describe() const {
   return lines;
 }
 
+namespace {
+
+using Scatterings = std::vector<std::unique_ptr<const Scattering>>;
+
+Scatterings elastic_of(const Material& material, const Physics& physics) {
+  Scatterings atoms;
+  for (const Constituent& c : material.constituents)
+    atoms.push_back(physics.elastic == ElasticModel::browning ? make_browning(material, c) : make_mott(material, c, physics.atoms));
+  if (physics.elastic != ElasticModel::mott_phonon) return atoms;
+  return fade(make_acoustic_phonons(material, *material.dielectric), std::move(atoms));
+}
+
+}  // namespace
+
 Medium make_medium(const Material& material, const Physics& physics) {
   validate(physics);
-  std::vector<std::unique_ptr<const Scattering>> scatterings;
-  for (const Constituent& c : material.constituents) {
-    scatterings.push_back(physics.elastic == ElasticModel::mott
-                              ? make_mott(material, c)
-                              : make_browning(material, c));
-  }
-  if (physics.secondaries) {
-    if (material.valence_electrons > 0) scatterings.push_back(make_moller(material, physics));
-    if (material.plasmon_ev > 0) scatterings.push_back(make_plasmon(material, physics));
-  }
+  Scatterings scatterings = elastic_of(material, physics);
   std::unique_ptr<const ContinuousLoss> loss;
-  if (physics.loss == LossModel::joy_luo) loss = make_joy_luo(material, physics);
-  const double barrier = physics.barrier == BarrierModel::off ? 0.0 : material.barrier_ev;
-  return {std::move(scatterings), std::move(loss), barrier, effective_cutoff_ev(physics, material)};
+  if (is_dielectric(physics)) {
+    const DielectricData& data = *material.dielectric;
+    scatterings.push_back(make_dielectric(material, physics));
+    for (const OpticalMode& mode : data.optical) scatterings.push_back(make_optical_phonons(mode, data));
+    if (data.trap_per_nm > 0) scatterings.push_back(make_polaron_traps(data));
+  } else {
+    if (physics.secondaries) {
+      if (material.valence_electrons > 0) scatterings.push_back(make_moller(material, physics));
+      if (material.plasmon_ev > 0) scatterings.push_back(make_plasmon(material, physics));
+    }
+    if (physics.loss == LossModel::joy_luo) loss = make_joy_luo(material, physics);
+  }
+  Medium medium(std::move(scatterings), std::move(loss), effective_barrier_ev(physics, material),
+                effective_cutoff_ev(physics, material));
+  if (is_dielectric(physics)) medium.set_range(kept_reach_nm(medium, material, physics));
+  return medium;
 }
 
 }  // namespace surf::mc

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "physics/directions.h"
 #include "physics/mechanisms.h"
 
 namespace surf::mc {
@@ -61,8 +62,7 @@ class Moller final : public Scattering {
     event.turn = random.uniform();
     event.has_secondary = true;
     event.secondary_energy_ev = eps * e + level_ev_;
-    event.secondary_cos_theta = std::sqrt(eps);
-    event.secondary_turn = event.turn + 0.5;
+    event.secondary_direction = from_axis(std::sqrt(eps), event.turn + 0.5);
   }
 
  private:

@@ -13,8 +13,8 @@
 
 namespace surf::mc {
 
-const MottElement* find_mott_element(int atomic_number) {
-  for (const MottElement& element : mott_elements())
+const MottElement* find_mott_element(int atomic_number, MottAtoms atoms) {
+  for (const MottElement& element : atoms == MottAtoms::free ? free_mott_elements() : solid_mott_elements())
     if (element.atomic_number == atomic_number) return &element;
   return nullptr;
 }
@@ -25,7 +25,7 @@ namespace {
 
 std::string symbols_with_tables() {
   std::string symbols;
-  for (const MottElement& e : mott_elements())
+  for (const MottElement& e : free_mott_elements())
     symbols += fmt::format("{}{}", symbols.empty() ? "" : ", ", element(e.atomic_number).symbol);
   return symbols;
 }
@@ -38,8 +38,8 @@ std::string symbols_with_tables() {
 // Browning's fit, and scattering is isotropic, as in that fit's low-energy limit.
 class Mott final : public Scattering {
  public:
-  Mott(const MottElement& element, double atoms_per_nm3)
-      : element_(element), atoms_per_nm3_(atoms_per_nm3),
+  Mott(const MottElement& element, double atoms_per_nm3, MottAtoms atoms)
+      : element_(element), atoms_per_nm3_(atoms_per_nm3), atoms_(atoms),
         lowest_ev_(element.rows.front().energy_ev) {
     for (int i = 0; i < EnergyBins::count; ++i) {
       const double middle = 0.5 * (EnergyBins::lower_ev(i) + EnergyBins::lower_ev(i + 1));
@@ -49,9 +49,12 @@ class Mott final : public Scattering {
   }
 
   std::string describe() const override {
-    return fmt::format("elastic, Z = {}: Mott tables, ELSEPA with the settings of NIST SRD 64, {:g} "
+    return fmt::format("elastic, Z = {}: Mott tables, ELSEPA {}, {:g} "
                        "eV to {:g} eV (doi:10.1016/j.cpc.2004.09.006); below, isotropic",
-                       element_.atomic_number, element_.rows.front().energy_ev,
+                       element_.atomic_number,
+                       atoms_ == MottAtoms::free ? "with the settings of NIST SRD 64"
+                                                 : "for atoms in a solid: muffin-tin, correlation and polarisation",
+                       element_.rows.front().energy_ev,
                        element_.rows.back().energy_ev);
   }
 
@@ -119,21 +122,39 @@ class Mott final : public Scattering {
 
   const MottElement& element_;
   double atoms_per_nm3_;
+  MottAtoms atoms_;
   double lowest_ev_;
   std::array<Choice, EnergyBins::count> choices_;
 };
 
 }  // namespace
 
-std::unique_ptr<const Scattering> make_mott(const Material& material, const Constituent& c) {
-  const MottElement* tables = find_mott_element(c.atomic_number);
+std::unique_ptr<const Scattering> make_mott(const Material& material, const Constituent& c, MottAtoms atoms) {
+  const MottElement* tables = find_mott_element(c.atomic_number, atoms);
   if (!tables)
     throw InvalidInput("material " + material.name,
                        fmt::format("there is no Mott table for {} (Z = {}), only for {}",
                                    element(c.atomic_number).symbol, c.atomic_number,
                                    symbols_with_tables()),
                        "Use `simulation.physics=elastic=browning`, which needs none");
-  return std::make_unique<Mott>(*tables, number_density_per_nm3(material, c));
+  return std::make_unique<Mott>(*tables, number_density_per_nm3(material, c), atoms);
+}
+
+double inverse_transport_path_per_nm(const Material& material, double energy_ev) {
+  double sum = 0;
+  for (const Constituent& c : material.constituents) {
+    const MottElement* const tables = find_mott_element(c.atomic_number);
+    double transport_nm2 = browning_transport_cross_section_nm2(c.atomic_number, energy_ev);
+    if (tables) {
+      std::size_t i = 0;
+      while (i + 2 < tables->rows.size() && tables->rows[i + 1].energy_ev <= energy_ev) ++i;
+      const MottRow &a = tables->rows[i], &b = tables->rows[i + 1];
+      const double share = std::log(energy_ev / a.energy_ev) / std::log(b.energy_ev / a.energy_ev);
+      transport_nm2 = a.transport_cross_section_nm2 * std::pow(b.transport_cross_section_nm2 / a.transport_cross_section_nm2, share);
+    }
+    sum += number_density_per_nm3(material, c) * transport_nm2;
+  }
+  return sum;
 }
 
 }  // namespace surf::mc

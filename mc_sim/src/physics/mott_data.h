@@ -3,6 +3,8 @@
 
 #include <span>
 
+#include "surf/mc/physics/physics.h"
+
 namespace surf::mc {
 
 /// Elastic scattering of one element at one energy: cross-sections and the inverse cumulative
@@ -21,11 +23,12 @@ struct MottElement {
   std::span<const MottRow> rows;   ///< rising in energy
 };
 
-/// ELSEPA tables (Salvat, Jablonski, Powell, doi:10.1016/j.cpc.2004.09.006) with the settings of
-/// NIST SRD 64; made at build time from data/mott.
-std::span<const MottElement> mott_elements();
+/// ELSEPA tables (Salvat, Jablonski, Powell, doi:10.1016/j.cpc.2004.09.006), made at build time from data/mott: of free atoms,
+/// with the settings of NIST SRD 64, and of atoms in a solid.
+std::span<const MottElement> free_mott_elements();
+std::span<const MottElement> solid_mott_elements();
 
 /// The element's tables, or nullptr.
-const MottElement* find_mott_element(int atomic_number);
+const MottElement* find_mott_element(int atomic_number, MottAtoms atoms = MottAtoms::free);
 
 }  // namespace surf::mc

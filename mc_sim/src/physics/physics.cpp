@@ -20,6 +20,15 @@ namespace {
 
 using Choice = std::pair<std::string_view, int>;
 
+// What is usual with a tier, where it changes.
+void choose_tier(Physics& p, InelasticTier tier) {
+  if (p.inelastic == tier) return;
+  p.inelastic = tier;
+  const bool dielectric = tier == InelasticTier::dielectric;
+  p.elastic = dielectric ? ElasticModel::mott_phonon : ElasticModel::mott;
+  p.atoms = dielectric ? MottAtoms::solid : MottAtoms::free;
+}
+
 // A key of `simulation.physics`, its words (the default first), and how it is stored.
 struct Key {
   std::string_view name;
@@ -28,11 +37,26 @@ struct Key {
   void (*set)(Physics&, int);
 };
 
-const std::array<Key, 4>& keys() {
-  static const std::array<Key, 4> all{{
-      {"elastic", {{"mott", int(ElasticModel::mott)}, {"browning", int(ElasticModel::browning)}},
+const std::array<Key, 8>& keys() {
+  static const std::array<Key, 8> all{{
+      {"inelastic", {{"monsel", int(InelasticTier::monsel)}, {"dielectric", int(InelasticTier::dielectric)}},
+       [](const Physics& p) { return int(p.inelastic); },
+       [](Physics& p, int v) { choose_tier(p, InelasticTier(v)); }},
+      {"inelastic-model",
+       {{"full-penn", int(InelasticModel::full_penn)}, {"single-pole", int(InelasticModel::single_pole)}},
+       [](const Physics& p) { return int(p.inelastic_model); },
+       [](Physics& p, int v) { p.inelastic_model = InelasticModel(v); }},
+      {"auger", {{"off", 0}, {"on", 1}},
+       [](const Physics& p) { return int(p.auger); },
+       [](Physics& p, int v) { p.auger = v != 0; }},
+      {"elastic",
+       {{"mott", int(ElasticModel::mott)}, {"mott-phonon", int(ElasticModel::mott_phonon)},
+        {"browning", int(ElasticModel::browning)}},
        [](const Physics& p) { return int(p.elastic); },
        [](Physics& p, int v) { p.elastic = ElasticModel(v); }},
+      {"atoms", {{"free", int(MottAtoms::free)}, {"solid", int(MottAtoms::solid)}},
+       [](const Physics& p) { return int(p.atoms); },
+       [](Physics& p, int v) { p.atoms = MottAtoms(v); }},
       {"loss", {{"joy-luo", int(LossModel::joy_luo)}, {"none", int(LossModel::none)}},
        [](const Physics& p) { return int(p.loss); },
        [](Physics& p, int v) { p.loss = LossModel(v); }},
@@ -48,9 +72,22 @@ const std::array<Key, 4>& keys() {
   return all;
 }
 
+// Whether a key says anything with these settings.
+bool matters(const Key& key, const Physics& physics) {
+  if (key.name == "inelastic-model" || key.name == "auger") return is_dielectric(physics);
+  return key.name != "loss" || !is_dielectric(physics);
+}
+
 std::string choices(const Key& key) {
   std::string out;
   for (const auto& [word, value] : key.words) out += (out.empty() ? "" : ", ") + std::string(word);
+  return out;
+}
+
+std::string key_names() {
+  std::string out;
+  for (std::size_t i = 0; i < keys().size(); ++i)
+    out += fmt::format("{}{}=", i == 0 ? "" : i + 1 == keys().size() ? " or " : ", ", keys()[i].name);
   return out;
 }
 
@@ -66,12 +103,15 @@ void apply_item(const std::string& item, Physics& physics, const std::string& su
                      fmt::format("Choose one of: {}", choices(key)));
   }
   throw UsageError(subject, fmt::format("there is no '{}'", name),
-                   "Use elastic=, loss=, secondaries= or barrier=, separated by commas");
+                   fmt::format("Use {}, separated by commas", key_names()));
 }
 
 }  // namespace
 
 void validate(const Physics& physics, double beam_energy_ev) {
+  if (is_dielectric(physics) && physics.barrier == BarrierModel::off)
+    throw UsageError("`simulation.physics`", "barrier=off does not go with inelastic=dielectric, which counts energies from the band",
+                     "Choose barrier=quantum or barrier=classical");
   const double cutoff = physics.cutoff_ev;
   if (cutoff == 0 || (cutoff >= min_cutoff_ev && cutoff < beam_energy_ev)) return;
   throw UsageError("`simulation.cutoff`",
@@ -80,15 +120,22 @@ void validate(const Physics& physics, double beam_energy_ev) {
                    "Choose an energy in that range, such as 5eV, or 0 for the default");
 }
 
+double effective_barrier_ev(const Physics& physics, const Material& material) {
+  if (is_dielectric(physics)) return material.dielectric->barrier_ev();
+  return physics.barrier == BarrierModel::off ? 0.0 : material.barrier_ev;
+}
+
 double effective_cutoff_ev(const Physics& physics, const Material& material) {
   if (physics.cutoff_ev > 0) return physics.cutoff_ev;
   const bool full = physics.secondaries && physics.barrier != BarrierModel::off;
-  return full ? material.barrier_ev : se_bse_split_ev;
+  const double barrier = effective_barrier_ev(physics, material);
+  return full ? barrier : is_dielectric(physics) ? barrier + se_bse_split_ev : se_bse_split_ev;
 }
 
 void describe(ParameterVisitor& visit, Physics& physics) {
   visit.form({.name = "simulation.physics",
-              .help = "Changes to the physics: elastic=mott|browning, loss=joy-luo|none, secondaries=on|off, "
+              .help = "Changes to the physics: inelastic=monsel|dielectric, inelastic-model=full-penn|single-pole, auger=off|on, "
+                      "elastic=mott|mott-phonon|browning, atoms=free|solid, loss=joy-luo|none, secondaries=on|off, "
                       "barrier=quantum|classical|off",
               .otherwise = "the first of each",
               .form = "KEY=VALUE,...",
@@ -103,16 +150,19 @@ void describe(ParameterVisitor& visit, Physics& physics) {
 }
 
 void parse_physics(const std::string& text, Physics& physics, const std::string& subject) {
-  std::stringstream stream(text);
-  for (std::string item; std::getline(stream, item, ',');)
-    if (!item.empty()) apply_item(item, physics, subject);
+  // The tier first: other keys change what comes with it.
+  for (const bool tier : {true, false}) {
+    std::stringstream stream(text);
+    for (std::string item; std::getline(stream, item, ',');)
+      if (!item.empty() && item.starts_with("inelastic=") == tier) apply_item(item, physics, subject);
+  }
 }
 
 std::string format_physics(const Physics& physics) {
   std::string out;
   for (const Key& key : keys())
     for (const auto& [word, value] : key.words)
-      if (value == key.get(physics))
+      if (value == key.get(physics) && matters(key, physics))
         out += fmt::format("{}{}={}", out.empty() ? "" : ",", key.name, word);
   return out;
 }
@@ -128,17 +178,17 @@ std::vector<PhysicsWords> physics_words() {
 
 std::vector<std::string> describe(const Physics& physics, const Material& material) {
   std::vector<std::string> lines = make_medium(material, physics).describe();
-  if (physics.loss == LossModel::none) lines.emplace_back("continuous loss: none");
+  if (physics.loss == LossModel::none && !is_dielectric(physics)) lines.emplace_back("continuous loss: none");
   if (!physics.secondaries) lines.emplace_back("secondaries: none");
   switch (physics.barrier) {
     case BarrierModel::quantum:
       lines.push_back(fmt::format("surface barrier of {:g} eV: refraction, total reflection, "
                                   "quantum-mechanical transmission of an abrupt step",
-                                  material.barrier_ev));
+                                  effective_barrier_ev(physics, material)));
       break;
     case BarrierModel::classical:
       lines.push_back(fmt::format("surface barrier of {:g} eV: refraction and total reflection",
-                                  material.barrier_ev));
+                                  effective_barrier_ev(physics, material)));
       break;
     case BarrierModel::off:
       lines.emplace_back("surface barrier: none; energies count from the vacuum level");

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "physics/directions.h"
 #include "physics/mechanisms.h"
 
 namespace surf::mc {
@@ -47,8 +48,8 @@ class Plasmon final : public Scattering {
     if (energy_ev - level_ev_ <= plasmon_ev_) return;
     event.has_secondary = true;
     event.secondary_energy_ev = plasmon_ev_ + level_ev_;
-    event.secondary_cos_theta = 1.0 - 2.0 * random.uniform();
-    event.secondary_turn = random.uniform();
+    const double cos_theta = 1.0 - 2.0 * random.uniform();
+    event.secondary_direction = from_axis(cos_theta, random.uniform());
   }
 
  private:

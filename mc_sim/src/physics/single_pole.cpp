@@ -2,98 +2,96 @@
 #include "surf/mc/physics/single_pole.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numbers>
+
+#include "physics/dielectric/atomic_units.h"
+#include "physics/dielectric/pole_line.h"
 
 namespace surf::mc {
 namespace {
 
-constexpr double hartree_ev = 27.211386246, bohr_nm = 0.0529177210903;
-constexpr double rest_energy = 18778.865;   // of an electron, hartree
-constexpr int steps_per_octave = 24;        // of w0
+using atomic::bohr_nm;
+using atomic::hartree_ev;
 
-// Nodes and weights of Gauss and Legendre on [-1, 1], eight of them.
-constexpr std::array<double, 4> nodes{0.1834346424956498, 0.5255324099163290, 0.7966664774136267, 0.9602898564975363};
-constexpr std::array<double, 4> weights{0.3626837833783620, 0.3137066458778873, 0.2223810344533745, 0.1012285362903763};
-
-// kF^2 / 3 of the electron gas whose plasma energy is w0.
-double dispersion(double w0) {
-  const double kf = std::cbrt(0.75 * std::numbers::pi * w0 * w0);
-  return kf * kf / 3;
-}
-
-// Of the electron before and after a loss, relativistic: p^2 = 2 T (1 + T / 2 m c^2).
-double momentum(double energy) { return std::sqrt(2 * energy * (1 + energy / (2 * rest_energy))); }
-
-template <class F>
-double bisect(double low, double high, const F& is_above) {
-  for (int i = 0; i < 60; ++i) {
-    const double middle = 0.5 * (low + high);
-    (is_above(middle) ? high : low) = middle;
-  }
-  return 0.5 * (low + high);
-}
+constexpr int steps_per_octave = 48;        // of w0
+constexpr double least_loss_ev = 1e-3;
+constexpr int most_iterations = 60;
 
 }  // namespace
 
 SinglePole::SinglePole(const EnergyLossFunction& elf, const BandLimits& limits)
     : elf_(limits.gap_ev > 0 ? elf.above(limits.gap_ev) : elf), limits_(limits) {}
 
-double SinglePole::loss(double w0, double q) { return std::sqrt(w0 * w0 + dispersion(w0) * q * q + 0.25 * q * q * q * q); }
+double SinglePole::loss(double w0, double q) { return PoleLine(w0).loss(q); }
 
+// Momentum is conserved where q lies between the difference and the sum of the momenta p and p' before and after, which is where
+// h(q) = (p^2 - p'^2 + q^2) / 2 - p q is not positive. h is convex: Newton's steps from outside approach its zeros from outside.
 SinglePole::Momenta SinglePole::momenta(double energy, double w0) const {
   const double most = energy - (limits_.filled_ev + limits_.gap_ev) / hartree_ev;   // of losses
   if (!(most > w0)) return {};
-  const double d = dispersion(w0);
-  const double longest = std::sqrt(2 * (std::sqrt(d * d + most * most - w0 * w0) - d));   // where w_q is `most`
-  // Momentum is conserved where q lies between the difference and the sum of the momenta before and after.
-  const double before = momentum(energy);
-  const auto room = [&](double q) {
-    const double after = momentum(std::max(0.0, energy - loss(w0, q)));
-    return std::min(q - (before - after), before + after - q);
+  const PoleLine line(w0);
+  const double before = atomic::momentum(energy);
+  const auto zero = [&](double q, double side, double& at) {
+    for (int i = 0; i < most_iterations; ++i) {
+      const double w = line.loss(q);
+      const double h = w * (1 + (energy - 0.5 * w) / atomic::rest_energy) + 0.5 * q * q - before * q;
+      const double slope = line.slope(q, w) * (1 + (energy - w) / atomic::rest_energy) + q - before;
+      if (slope * side >= 0) return false;   // beyond the minimum: there is none
+      const double step = h / slope;
+      q -= step;
+      if (std::fabs(step) <= 1e-14 * q) break;
+    }
+    at = q;
+    return true;
   };
-  // Somewhere in between there is room, or nowhere: the room grows up to there and falls beyond.
-  double low = 0, high = longest;
-  for (int i = 0; i < 100; ++i) {
-    const double a = low + (high - low) / 3, b = high - (high - low) / 3;
-    (room(a) < room(b) ? low : high) = room(a) < room(b) ? a : b;
-  }
-  const double best = 0.5 * (low + high);
-  if (!(room(best) > 0)) return {};
   Momenta m;
-  m.first = bisect(0, best, [&](double q) { return room(q) > 0; });
-  m.last = room(longest) >= 0 ? longest : bisect(best, longest, [&](double q) { return room(q) < 0; });
+  if (!zero(0.5 * w0 / before, 1, m.first) || !zero(2 * before, -1, m.last)) return {};
+  m.last = std::min(m.last, line.momentum(most));
   return m;
 }
 
-double SinglePole::integral(double energy_ev, bool weighted) const {
-  const double energy = energy_ev / hartree_ev;
+double SinglePole::density_per_nm(double energy_ev, double w0_ev) const {
+  const double value = elf_(w0_ev);
+  if (!(value > 0)) return 0;
+  const double energy = energy_ev / hartree_ev, w0 = w0_ev / hartree_ev;
+  const Momenta m = momenta(energy, w0);
+  if (!(m.last > m.first)) return 0;
+  return value * w0 * w0 * PoleLine(w0).integral(m.first, m.last) /
+         (std::numbers::pi * atomic::half_squared_speed(energy) * bohr_nm);
+}
+
+template <class F>
+double SinglePole::over_losses(double energy_ev, const F& value) const {
   const double most_ev = energy_ev - limits_.filled_ev - limits_.gap_ev;
-  const double least_ev = std::max(limits_.gap_ev, 1e-3);
+  const double least_ev = std::max(limits_.gap_ev, least_loss_ev);
   if (!(most_ev > least_ev)) return 0;
   const double from = std::log(least_ev), to = std::log(most_ev);
   const int steps = std::max(8, static_cast<int>(steps_per_octave * (to - from) / std::numbers::ln2));
   const double h = (to - from) / steps;
   double sum = 0;
-  for (int i = 0; i < steps; ++i) {
-    const double w0_ev = std::exp(from + (i + 0.5) * h), w0 = w0_ev / hartree_ev;
-    const double value = elf_(w0_ev);
-    if (!(value > 0)) continue;
+  for (int i = 0; i < steps; ++i) sum += h * value(std::exp(from + (i + 0.5) * h));   // dw0 = w0 d ln w0
+  return sum;
+}
+
+double SinglePole::inverse_mean_free_path_per_nm(double energy_ev) const {
+  return over_losses(energy_ev, [&](double w0_ev) { return density_per_nm(energy_ev, w0_ev); });
+}
+
+double SinglePole::stopping_power_ev_per_nm(double energy_ev) const {
+  const double energy = energy_ev / hartree_ev;
+  const double most = energy - (limits_.filled_ev + limits_.gap_ev) / hartree_ev;
+  const double sum = over_losses(energy_ev, [&](double w0_ev) {
+    const double value = elf_(w0_ev), w0 = w0_ev / hartree_ev;
+    if (!(value > 0)) return 0.0;
     const Momenta m = momenta(energy, w0);
-    if (!(m.last > m.first)) continue;
-    const double middle = 0.5 * std::log(m.first * m.last), half = 0.5 * std::log(m.last / m.first);
-    double over_momenta = weighted ? 2 * half : 0;
-    for (std::size_t k = 0; k < nodes.size() && !weighted; ++k)
-      for (const double sign : {-1.0, 1.0})
-        over_momenta += half * weights[k] / loss(w0, std::exp(middle + sign * half * nodes[k]));
-    sum += h * w0 * value * w0 * over_momenta;   // dw0 = w0 d ln w0
-  }
-  // 1 / (pi K), with m v^2 / 2 in place of K.
-  const double gamma = 1 + energy / rest_energy;
-  const double half_v2 = 0.5 * rest_energy * (1 - 1 / (gamma * gamma));
-  const double per_bohr = sum / (std::numbers::pi * half_v2);
-  return per_bohr / bohr_nm * (weighted ? hartree_ev : 1);
+    if (!(m.last > m.first)) return 0.0;
+    const PoleLine line(w0);
+    // Up to half of what can be lost the loss counts, beyond it the rest.
+    const double half = w0 < 0.5 * most ? std::clamp(line.momentum(0.5 * most), m.first, m.last) : m.first;
+    return value * w0 * w0 * (std::log(half / m.first) + most * line.integral(half, m.last) - std::log(m.last / half));
+  });
+  return sum / (std::numbers::pi * atomic::half_squared_speed(energy)) / bohr_nm * hartree_ev;
 }
 
 }  // namespace surf::mc

@@ -19,6 +19,7 @@ struct ReplayMaterial {
   const CascadeLibrary* library;   ///< null: direct simulation follows its electrons
   const Medium* medium;
   double barrier_ev;
+  bool paid;                       ///< whether losses in events pay for secondaries: no cascade can be joined
   EnergyCode code;
 
   double start_ev(const PackedNode& node) const { return code.decode(node.start.energy); }
@@ -191,7 +192,7 @@ class CascadeWalker {
 
   double total_ev(const NodeView& child, int material) const {
     const ReplayMaterial& medium = handler_.medium(material);
-    return medium.start_ev(child.node) - medium.barrier_ev;
+    return medium.paid ? 0 : medium.start_ev(child.node) - medium.barrier_ev;
   }
 
   void add_births(const NodeView& view, int birth, int material) {

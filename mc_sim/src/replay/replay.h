@@ -43,7 +43,7 @@ class Replay {
         detection_(detection), balance_(balance), ledger_(balance), walker_(*this) {
     for (std::size_t i = 0; i < media.size(); ++i) {
       const CascadeLibrary* l = libraries[i];
-      materials_.push_back({l, media[i], media[i]->barrier_ev(),
+      materials_.push_back({l, media[i], media[i]->barrier_ev(), media[i]->loses_in_events(),
                             EnergyCode(media[i]->cutoff_ev(),
                                        l ? l->settings().start_energy_ev : 2 * max_beam_energy_ev)});
     }
@@ -327,11 +327,11 @@ class Replay {
   }
 
   // Goes on with a track of the material's library where its energy is the electron's, turned to its
-  // direction: exact, as energy falls by continuous loss alone.
+  // direction: exact, where energy falls by continuous loss alone.
   void join(const Free& e, int generation) {
     const int material = geometry_.material(e.state);
     const ReplayMaterial& m = medium(material);
-    if (!m.library) return hand_over(e, generation);
+    if (!m.library || m.paid) return hand_over(e, generation);
     if (e.energy <= m.medium->cutoff_ev()) return;
     if (++joined_ > most_joined) {
       lose(LossCause::too_many_steps, e.energy - m.barrier_ev);
@@ -375,7 +375,7 @@ class Replay {
     home_ = before_joining;
   }
 
-  // A material without a library: direct simulation follows the electron and all that it generates.
+  // A material without a library, or with one that has no track of this energy: direct simulation follows the electron and all that it generates.
   void hand_over(const Free& e, int generation) {
     const double total_ev = e.energy - barrier_of(geometry_.material(e.state));
     if (handed_over_ == random_streams::most_handed_over) {

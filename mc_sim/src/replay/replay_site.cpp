@@ -33,7 +33,7 @@ std::vector<const CascadeLibrary*> pointers(const Libraries& libraries) {
 
 SiteReplay::SiteReplay(const Scene::Impl& scene, const SimulationOptions& options,
                        const Libraries& libraries)
-    : scene_(scene), geometry_(scene), gun_(scene.beam, scene.scan, scene.top_nm),
+    : scene_(scene), libraries_(libraries), geometry_(scene), gun_(scene.beam, scene.scan, scene.top_nm),
       detection_(options.detectors, scene.beam, options.spectra),
       direct_(geometry_, scene.medium_pointers, scene.physics.barrier, true, nobody_, detection_,
               balance_),
@@ -91,6 +91,7 @@ std::shared_ptr<const LocalSurface> SiteReplay::patch(int x, int y, const Replay
 }
 
 double SiteReplay::range_nm(int material) const {
+  if (const CascadeLibrary* const l = library(material)) return l->reach_nm();
   const Medium& medium = *scene_.medium_pointers[static_cast<std::size_t>(material)];
   return medium.range_nm(scene_.beam.energy_ev + medium.barrier_ev());
 }

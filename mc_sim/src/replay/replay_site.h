@@ -61,12 +61,16 @@ class SiteReplay {
   /// Farther than any electron gets inside a material.
   double range_nm(int material) const;
 
+  /// Of the library that cascades in this material come from; null where direct simulation follows its electrons.
+  const CascadeLibrary* library(int material) const { return libraries_[static_cast<std::size_t>(material)].get(); }
+
  private:
   ReplaySite site_alone(int x, int y);
   void find_plane(ReplaySite& site) const;
   std::shared_ptr<const LocalSurface> patch(int x, int y, const ReplaySite& site);
 
   const Scene::Impl& scene_;
+  Libraries libraries_;
   SceneGeometry geometry_;
   Gun gun_;
   Detection detection_;

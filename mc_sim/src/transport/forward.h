@@ -15,7 +15,7 @@ struct Forward {
     to.segment(a, b, ea, eb, m);
   }
   void deposit(const Vec3& a, const Vec3& b, double e) { to.deposit(a, b, e); }
-  void scattered(bool) {}
+  void scattered(bool, double) {}
   void end_track(TrackKind end, const Vec3& p, const Vec3& d, double e) {
     to.end_track(end, p, d, e);
   }

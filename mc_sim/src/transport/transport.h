@@ -9,7 +9,7 @@
 #include <limits>
 #include <vector>
 
-#include "geometry/directions.h"
+#include "physics/directions.h"
 #include "geometry/geometry.h"
 #include "surf/core/vec3.h"
 #include "surf/mc/physics/barrier.h"
@@ -138,10 +138,13 @@ class Transport {
     // Within this distance there is nothing but this material: where no surface can be reached,
     // there is no ray, and where none can be reached ever again, a cascade is not followed.
     double clear = geometry_.clearance(t.position);
+    // Where losses come in events, reaches are long and steps many: what is left of a clearance is as good as a new one.
+    const bool in_events = medium.loses_in_events();
     for (;;) {
       if (++steps_ > Limits::max_steps) return lose(t, LossCause::too_many_steps);
       if (drop_unreachable_ && medium.range_nm(t.energy) < clear) return drop(t, medium);
       const Medium::Step step = medium.step(t.energy, -std::log(random.uniform()));
+      if (in_events && step.length_nm > clear) clear = geometry_.clearance(t.position);
       if (step.length_nm > clear) {
         ++balance_.rays;
         typename G::Surface& surface = surface_;
@@ -158,7 +161,7 @@ class Transport {
       }
       advance(t, t.position + t.direction * step.length_nm, step.energy_ev, material);
       if (step.stopped) return absorb(t, medium);
-      clear = geometry_.clearance(t.position);
+      clear = in_events ? clear - step.length_nm : geometry_.clearance(t.position);
       if (!scatter(t, medium, clear, random)) return false;
       if (t.energy <= medium.cutoff_ev()) return absorb(t, medium);
     }
@@ -190,50 +193,46 @@ class Transport {
     ScatterEvent event;
     const Scattering& mechanism = medium.choose(t.energy, random.uniform());
     mechanism.scatter(t.energy, random, event);
-    if (event.has_secondary) {
-      if (!add_secondary(t, medium, event, clear)) return lose(t, LossCause::too_many_secondaries);
-    } else {
-      deposited_ += event.energy_loss_ev;
-      if (event.energy_loss_ev != 0)
-        watcher_.deposit(t.position, t.position, event.energy_loss_ev);
+    deposited_ += event.energy_loss_ev;
+    if (event.energy_loss_ev != 0) watcher_.deposit(t.position, t.position, event.energy_loss_ev);
+    if (event.has_secondary &&
+        !add_secondary(t, medium, clear, event.secondary_energy_ev, event.secondary_direction, event.energy_loss_ev > 0))
+      return lose(t, LossCause::too_many_secondaries);
+    if (event.auger_energy_ev > 0) {
+      watcher_.segment(t.position, t.position, t.energy, t.energy, geometry_.material(t.state));   // a point for each birth
+      if (!add_secondary(t, medium, clear, event.auger_energy_ev, event.auger_direction, true))
+        return lose(t, LossCause::too_many_secondaries);
     }
-    watcher_.scattered(event.isotropic);
+    t.energy -= event.energy_loss_ev;
+    watcher_.scattered(event.isotropic, t.energy);
     if (event.isotropic) t.direction = from_axis(event.cos_theta, event.turn);
     else if (event.cos_theta != 1.0)
       t.direction = deflected(t.direction, event.cos_theta, event.turn);
-    t.energy -= event.energy_loss_ev;
     note_turn(t);
     return true;
   }
 
-  // False when too many are waiting.
-  bool add_secondary(const Track& t, const Medium& medium, const ScatterEvent& event,
-                     double clear) {
-    const double energy = event.secondary_energy_ev;
-    if (energy <= medium.cutoff_ev()) {   // it never was an electron that moves
-      deposited_ += event.energy_loss_ev;
-      watcher_.deposit(t.position, t.position, event.energy_loss_ev);
-      return true;
-    }
+  // False when too many are waiting. `paid`: the energy is part of what an electron has lost.
+  bool add_secondary(const Track& t, const Medium& medium, double clear, double energy, const Vec3& direction,
+                     bool paid) {
+    if (energy <= medium.cutoff_ev()) return true;   // it never was an electron that moves
     const double total = energy - medium.barrier_ev();
     ++balance_.generated;
-    balance_.generated_energy.add(total - event.energy_loss_ev);
+    if (paid) deposited_ -= total;
+    else balance_.generated_energy.add(total);
     if (drop_unreachable_ && medium.range_nm(energy) < clear) {
       ++balance_.absorbed;
       ++balance_.dropped;
       balance_.deposited_energy.add(total);
-      watcher_.deposit(t.position, t.position, event.energy_loss_ev);
       return true;
     }
-    watcher_.deposit(t.position, t.position, event.energy_loss_ev - total);
+    watcher_.deposit(t.position, t.position, -total);
     if (waiting_.size() >= Limits::max_waiting) {
       ++balance_.lost[static_cast<std::size_t>(LossCause::too_many_secondaries)];
       balance_.lost_energy.add(total);
       return false;
     }
-    waiting_.push_back({t.position,
-                        deflected(t.direction, event.secondary_cos_theta, event.secondary_turn),
-                        energy, t.state, t.generation + 1, number_, t.turned});
+    waiting_.push_back({t.position, from_frame_of(t.direction, direction), energy, t.state, t.generation + 1, number_, t.turned});
     return true;
   }
 

@@ -1,14 +1,23 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <cstdint>
+
+#include "surf/core/progress.h"
 #include "surf/io/plot.h"
 #include "surf/mc/physics/material.h"
 
 namespace surf::workflow {
 
+struct MaterialPlotOptions {
+  std::int64_t electrons = 4000;   ///< for each yield
+  int threads = 0;
+  Watch watch;
+};
+
 /// What is known of a material's losses and scattering, from 20 eV to 30 keV above the vacuum level: its energy-loss function,
-/// free paths and losses per length. Of materials without an energy-loss function (mc::find_dielectric_data) what simulations
-/// use alone.
-io::Plot plot_material(const mc::Material& material);
+/// free paths and losses per length of both tiers of physics, and the yields that follow for a plane, which are simulated.
+/// Throws Interrupted.
+io::Plot plot_material(const mc::Material& material, const MaterialPlotOptions& options = {});
 
 }  // namespace surf::workflow

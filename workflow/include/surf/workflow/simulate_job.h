@@ -17,6 +17,7 @@
 #include "surf/mc/sampling/choose_method.h"
 #include "surf/mc/results/result_summary.h"
 #include "surf/mc/simulate.h"
+#include "surf/workflow/charging.h"
 #include "surf/workflow/reporter.h"
 #include "surf/workflow/simplify_specimen.h"
 #include "surf/workflow/team.h"
@@ -79,6 +80,7 @@ void describe(ParameterVisitor& visit, SimulateJob& job);
 struct SimulateSummary {
   mc::SimulationResult result;
   mc::ResultSummary statistics;                   ///< of the result
+  std::optional<Charging> charging;               ///< of insulators
   mc::MethodChoice choice;
   std::size_t pages_loaded = 0, pages_made = 0;   ///< of libraries, from the cache and not
   mc::Scan scan;

@@ -78,6 +78,9 @@ class CascadeLibrary {
     for (std::size_t i = 0; i < end; i += line_words) __builtin_prefetch(words.data() + i);
   }
 
+  /// How far from their start cascades get: with continuous loss, what no cascade exceeds; else the farthest of those that there are.
+  double reach_nm() const;
+
   /// The words of a cascade, number < cascades().
   std::span<const std::uint64_t> cascade(std::size_t number) const {
     const CascadePage& page = *pages_[number / page_cascades];
@@ -89,10 +92,12 @@ class CascadeLibrary {
   CascadeSettings settings_;
   std::shared_ptr<const Medium> medium_;
   std::vector<std::shared_ptr<const CascadePage>> pages_;
+  std::vector<double> reaches_nm_;   // of the cascades of each page
 };
 
-/// Whether cascades in this medium can be joined, turned and mirrored: energy falls by continuous
-/// loss alone, as its mechanisms say.
+/// Whether cascades in this medium can be turned and mirrored, and gone on with where an electron comes back into it with the
+/// energy that it left with: energy falls by continuous loss alone, or in events alone. Where electrons enter with any other
+/// energy, only continuous loss lets them join a cascade; else they are followed directly.
 bool can_replay(const Medium& medium);
 /// Whether it can in one at least of these: in the others electrons are followed directly.
 bool can_replay(const Physics& physics, std::span<const Material> materials);

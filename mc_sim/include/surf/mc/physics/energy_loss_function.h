@@ -21,9 +21,13 @@ class EnergyLossFunction {
   /// Where nothing is lost to electrons any more: what lies below an insulator's gap are vibrations of the lattice.
   EnergyLossFunction above(double gap_ev) const;
 
+  /// That of the same substance with so many times the density, where single electrons and not their sum absorb.
+  EnergyLossFunction times(double factor) const;
+
   double lowest_ev() const { return energies_.front(); }
   double highest_ev() const { return energies_.back(); }
   const std::vector<double>& energies_ev() const { return energies_; }
+  const std::vector<double>& values() const { return values_; }
   /// Binding energies of outer shells, eV.
   const std::vector<double>& shells_ev() const { return shells_; }
   const std::string& source() const { return source_; }
@@ -32,6 +36,8 @@ class EnergyLossFunction {
   double screening_sum() const;
   /// The effective number of electrons that a density of formula units gives, from the integral of w ELF: the sum over their Z.
   double electron_sum(double formula_units_per_nm3) const;
+  /// The loss below which that sum reaches a number of electrons; infinite where it never does.
+  double loss_of_electrons_ev(double electrons, double formula_units_per_nm3) const;
 
  private:
   std::vector<double> energies_, values_, shells_;

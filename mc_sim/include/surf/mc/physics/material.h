@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <memory>
 #include <string>
 #include <vector>
+
+#include "surf/mc/physics/dielectric_data.h"
+#include "surf/mc/physics/estimated_value.h"
 
 namespace surf::mc {
 
@@ -14,14 +18,8 @@ struct Constituent {
   double mean_ionization_ev = 0;  ///< J of the Joy-Luo loss, > 0
 };
 
-/// A value that was not given but follows from a rule.
-struct EstimatedValue {
-  std::string field;   ///< of Material, "plasmon_ev"
-  std::string rule;    ///< in words; completes "estimated: "
-};
-
-/// A homogeneous, isotropic solid. Energies inside are kinetic energies above the bottom of the
-/// conduction band; outside they count from the vacuum level. Plain data; `validate` checks it.
+/// A homogeneous, isotropic solid. Energies inside are kinetic energies above the bottom of the conduction band, with
+/// `inelastic=dielectric` above that of the filled band; outside they count from the vacuum level. Plain data; `validate` checks it.
 struct Material {
   std::string name;
   double density_g_cm3 = 0;             ///< > 0
@@ -35,6 +33,7 @@ struct Material {
   bool loss_join_fitted = false;        ///< whether E_b was fitted to measured SE yields
   std::string sources;                  ///< where the numbers come from
   std::vector<EstimatedValue> estimates;      ///< which of the numbers are estimates, and how
+  std::shared_ptr<const DielectricData> dielectric;   ///< for `inelastic=dielectric`; never null once `complete` has made it
   bool taken_for_metal = false;         ///< W or U0 are estimated as a metal's, since no gap was given
 };
 

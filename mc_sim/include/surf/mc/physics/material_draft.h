@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "surf/mc/physics/dielectric_draft.h"
 #include "surf/mc/physics/formula.h"
 #include "surf/mc/physics/material.h"
 
@@ -22,6 +23,7 @@ struct MaterialDraft {
   std::optional<double> work_function_ev, barrier_ev, valence_electrons, plasmon_ev, loss_join_ev;
   std::optional<double> band_gap_ev;       ///< 0 for metals
   bool loss_join_fitted = false;
+  DielectricDraft dielectric;
   std::string sources;
 };
 
@@ -35,7 +37,8 @@ struct MaterialDraft {
 /// - barrier_ev U0: with a gap, W - gap; without one, W plus the mean over the atoms of U0 - W where
 ///   `known` has all elements, otherwise W plus the Fermi energy of a free-electron gas of the elements'
 ///   free electrons;
-/// - loss_join_ev E_b: `estimated_loss_join_ev`.
+/// - loss_join_ev E_b: `estimated_loss_join_ev`;
+/// - dielectric: see dielectric_draft.h.
 /// Throws InvalidInput, as `validate` does.
 Material complete(const MaterialDraft& draft, std::span<const Material> known = {});
 

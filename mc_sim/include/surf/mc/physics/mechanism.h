@@ -5,6 +5,7 @@
 #include <string>
 
 #include "surf/core/random.h"
+#include "surf/core/vec3.h"
 
 namespace surf::mc {
 
@@ -15,9 +16,10 @@ struct ScatterEvent {
   bool isotropic = false;          ///< all directions alike: the two above count from any axis
   double energy_loss_ev = 0;       ///< debited from the electron (0 where the continuous loss pays)
   bool has_secondary = false;
-  double secondary_energy_ev = 0;  ///< above the bottom of the conduction band
-  double secondary_cos_theta = 1;
-  double secondary_turn = 0;       ///< azimuth in turns, any real number
+  double secondary_energy_ev = 0;  ///< counted as the electron's
+  Vec3 secondary_direction{0, 0, 1};   ///< unit; z is the electron's direction before the event
+  double auger_energy_ev = 0;      ///< of an electron that carries off the energy of an inner shell's hole; 0: none
+  Vec3 auger_direction{0, 0, 1};       ///< likewise
 };
 
 /// A kind of event that happens at points along an electron's path: elastic scattering, a collision

@@ -80,13 +80,15 @@ class Medium {
   /// Energy left after `length_nm`, not below the cutoff.
   double energy_after(double energy_ev, double length_nm) const;
 
-  /// Path length until the cutoff (practically endless without continuous loss). Neither the
-  /// electron nor any secondary of its can get farther from where it is: secondaries never have
-  /// more energy than the electron has when it makes them.
+  /// Neither the electron nor any secondary of its gets farther from where it is. With continuous loss it is the path length
+  /// until the cutoff, as secondaries never have more energy than the electron has when it makes them. Where losses are paid
+  /// event by event, no such length exists: one in a million gets farther at most. Practically endless without any loss.
   double range_nm(double energy_ev) const {
     const Bin& bin = bins_[static_cast<std::size_t>(EnergyBins::bin(energy_ev))];
-    return bin.range_nm + (energy_ev - bin.lower_ev) * bin.nm_per_ev;
+    return bin.range_nm + (energy_ev - bin.lower_ev) * bin.range_nm_per_ev;
   }
+  /// `at_edges`: range_nm at the edges of energy bins, one more than there are bins.
+  void set_range(const std::vector<double>& at_edges);
 
   /// The mechanism of an event at this energy; `u` uniform in [0, 1).
   const Scattering& choose(double energy_ev, double u) const {
@@ -99,6 +101,8 @@ class Medium {
 
   /// Whether energy falls by continuous loss alone.
   bool loses_continuously() const;
+  /// Whether energy falls in events alone, which pay for the secondaries that they make.
+  bool loses_in_events() const { return loses_in_events_; }
 
   double stopping_power_ev_per_nm(double energy_ev) const;
   double inverse_mean_free_path_per_nm(double energy_ev) const;
@@ -112,6 +116,7 @@ class Medium {
     double rate_per_nm;
     double mean_free_path_nm;
     double range_nm;   // of an electron at lower_ev
+    double range_nm_per_ev;
   };
 
   struct RateFactors {
@@ -122,6 +127,7 @@ class Medium {
 
   std::vector<std::unique_ptr<const Scattering>> scatterings_;
   std::unique_ptr<const ContinuousLoss> loss_;
+  bool loses_in_events_;
   double barrier_ev_;
   double cutoff_ev_;
   int cutoff_bin_;

@@ -1,15 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "surf/mc/physics/energy_loss_function.h"
+#include "surf/mc/physics/dielectric_data.h"
 
 namespace surf::mc {
-
-/// Where energies of electrons inside count from, and which losses the filled states forbid.
-struct BandLimits {
-  double filled_ev = 0;   ///< from the bottom of the band to the highest filled state: F of a metal, the valence width of others
-  double gap_ev = 0;      ///< 0 for metals: no smaller loss, and no final state within it
-};
 
 /// Inelastic scattering by the energy-loss function extended to momenta by a single pole (Penn, Phys. Rev. B 35, 482 (1987),
 /// doi:10.1103/PhysRevB.35.482): a loss w0 of light becomes the dispersion w_q^2 = w0^2 + kF^2 q^2 / 3 + q^4 / 4 of a
@@ -19,9 +13,13 @@ class SinglePole {
   SinglePole(const EnergyLossFunction& elf, const BandLimits& limits);
 
   /// 1 / lambda, per nm, at a kinetic energy.
-  double inverse_mean_free_path_per_nm(double energy_ev) const { return integral(energy_ev, false); }
-  /// Mean loss per length, eV/nm.
-  double stopping_power_ev_per_nm(double energy_ev) const { return integral(energy_ev, true); }
+  double inverse_mean_free_path_per_nm(double energy_ev) const;
+  /// Mean loss per length, eV/nm, of whichever electron is faster after the event: electrons cannot be told apart, and formulas
+  /// of stopping powers take the faster one for the primary.
+  double stopping_power_ev_per_nm(double energy_ev) const;
+
+  /// How likely a loss is that begins at w0, per nm and per relative width of w0: integrates over ln w0 to 1 / lambda.
+  double density_per_nm(double energy_ev, double w0_ev) const;
 
   /// Momenta, in atomic units, that an electron of this energy (hartree) may hand over with a loss that begins at w0; empty
   /// where first > last.
@@ -32,8 +30,12 @@ class SinglePole {
   /// The loss at a momentum, hartree.
   static double loss(double w0, double momentum);
 
+  const EnergyLossFunction& elf() const { return elf_; }
+  const BandLimits& limits() const { return limits_; }
+
  private:
-  double integral(double energy_ev, bool weighted) const;
+  template <class F>
+  double over_losses(double energy_ev, const F& value) const;
 
   EnergyLossFunction elf_;
   BandLimits limits_;

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "geometry/sin_cos.h"
+#include "physics/sin_cos.h"
 #include "surf/core/vec3.h"
 
 namespace surf::mc {
@@ -17,21 +17,18 @@ inline Vec3 from_axis(double cos_theta, double turn) {
   return {sin_theta * cosine, sin_theta * sine, cos_theta};
 }
 
-/// `direction` turned by the polar angle with this cosine, at the azimuth `turn` about itself.
-/// Basis: Duff et al., JCGT 6(1), 2017.
-inline Vec3 deflected(const Vec3& d, double cos_theta, double turn) {
-  double sine, cosine;
-  sin_cos_turn(turn, sine, cosine);
-  const double sin_theta = std::sqrt(std::max(0.0, 1.0 - cos_theta * cos_theta));
-  const double sx = sin_theta * cosine;
-  const double sy = sin_theta * sine;
+/// A direction that is given in the frame of another, `d` as its z axis. Basis: Duff et al., JCGT 6(1), 2017.
+inline Vec3 from_frame_of(const Vec3& d, const Vec3& local) {
   const double sign = std::copysign(1.0, d.z);
   const double a = -1.0 / (sign + d.z);
   const double b = d.x * d.y * a;
-  Vec3 out{sx * (1.0 + sign * d.x * d.x * a) + sy * b + cos_theta * d.x,
-           sx * sign * b + sy * (sign + d.y * d.y * a) + cos_theta * d.y,
-           -sx * sign * d.x - sy * d.y + cos_theta * d.z};
+  Vec3 out{local.x * (1.0 + sign * d.x * d.x * a) + local.y * b + local.z * d.x,
+           local.x * sign * b + local.y * (sign + d.y * d.y * a) + local.z * d.y,
+           -local.x * sign * d.x - local.y * d.y + local.z * d.z};
   return out * (1.5 - 0.5 * dot(out, out));   // one Newton step keeps the length at 1
 }
+
+/// `direction` turned by the polar angle with this cosine, at the azimuth `turn` about itself.
+inline Vec3 deflected(const Vec3& d, double cos_theta, double turn) { return from_frame_of(d, from_axis(cos_theta, turn)); }
 
 }  // namespace surf::mc
