@@ -73,7 +73,7 @@ expect "electrons" simulate --channels el
 expect "z_nm,electrons" simulate --channels z_nm,el
 expect "normal,z_nm normal,material normal,electrons normal,model normal,variance_left" simulate --channels normal,
 expect "elastic=" simulate --physics el
-expect "mott browning" simulate --physics elastic =
+expect "mott mott-phonon browning" simulate --physics elastic =
 expect "browning" simulate --physics elastic = br
 expect "browning,loss=" library build Si --physics elastic = browning,lo
 expect "none" simulate --physics elastic = browning,loss = n

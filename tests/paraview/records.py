@@ -15,7 +15,7 @@ SIMULATE = {
     "Electrons": (4, {"simulation.electrons": "4"}), "Seed": (9, {"simulation.seed": "9"}),
     "Method": ("Replay", {"simulation.method": "replay"}), "Cutoff": (20, {"simulation.cutoff_ev": "20"}),
     "MeshTolerance": (0.5, {"simulation.mesh_tolerance_nm": "0.5"}),
-    "Physics": ("secondaries=off", {"simulation.physics": "elastic=mott,loss=joy-luo,secondaries=off,barrier=quantum"}),
+    "Physics": ("secondaries=off", {"simulation.physics": "inelastic=monsel,elastic=mott,atoms=free,loss=joy-luo,secondaries=off,barrier=quantum"}),
     "Detectors": ("SE1", {"detector.3": "SE1:energy=0eV..50eV,cone=0deg..180deg,axis=beam,sector=0deg..360deg,side=any,"
                                         "origin=se1,efficiency=1"}),
     "Materials": ("Au", {"material.1.name": "Au"}),

@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 
 #include "small_job.h"
+#include "surf/mc/physics/dielectric_draft.h"
 #include "temporary_folder.h"
 
 namespace surf::workflow {
@@ -117,6 +118,11 @@ TEST(Warnings, TellOfUnfittedMaterials) {
   SimulateJob job = small_job();
   job.scene.specimen.materials[0].loss_join_fitted = false;
   EXPECT_THAT(warnings_of(job), Contains(HasSubstr("Si: no measured yields")));
+  mc::parse_physics("inelastic=dielectric", job.scene.physics);
+  EXPECT_THAT(warnings_of(job), testing::Not(Contains(HasSubstr("Si: no measured yields")))) << "nothing is fitted to them";
+  mc::Material& si = job.scene.specimen.materials[0];
+  si.dielectric = mc::complete(mc::DielectricDraft{}, si);
+  EXPECT_THAT(warnings_of(job), Contains(HasSubstr("Si: its energy-loss function is an estimate")));
 }
 
 }  // namespace

@@ -117,6 +117,37 @@ TEST_F(MaterialFileTest, ReplacesOnesOfTheSameNameAndSaysSo) {
   EXPECT_EQ(find_material("Au", "test").density_g_cm3, 19.282) << "the built-in one stays";
 }
 
+TEST_F(MaterialFileTest, TakesWhatLossesInEventsNeed) {
+  test::write(folder_.path() / "nitride.csv", "# made for a test; source: me\n# 100 400 -1\n5,0.1\n20,1\n24,1.2\n40,0.2\n100,0.02\n1000,1e-5\n");
+  read(std::string(nitride) +
+       "band_gap_ev = 5.3\n[material.dielectric]\nenergy_loss_function = \"nitride.csv\"\nfilled_band_ev = 8\nvacuum_ev = \"7.3eV\"\n"
+       "sound_m_s = [11000, 6200]\ndeformation_ev = [8, 5]\noptical_phonons = [{ energy_ev = 0.11, high_permittivity = 4, "
+       "low_permittivity = 7.5 }]\ntrap_per_nm = 0.1\ntrap_ev = 1\nsources = \"a test\"\n");
+  const mc::DielectricData& d = *library_.find("nitride", "test").dielectric;
+  EXPECT_EQ(d.elf.source(), "me");
+  EXPECT_DOUBLE_EQ(d.elf(20), 1);
+  EXPECT_EQ(d.band.filled_ev, 8);
+  EXPECT_EQ(d.barrier_ev(), 15.3);
+  ASSERT_EQ(d.acoustic.size(), 2u);
+  EXPECT_EQ(d.acoustic[1].speed_m_s, 6200);
+  EXPECT_EQ(d.acoustic[1].deformation_ev, 5);
+  EXPECT_EQ(d.acoustic[1].count, 2);
+  ASSERT_EQ(d.optical.size(), 1u);
+  EXPECT_EQ(d.optical[0].low_permittivity, 7.5);
+  EXPECT_EQ(d.trap_per_nm, 0.1);
+  EXPECT_EQ(d.sources, "a test");
+}
+
+TEST_F(MaterialFileTest, NamesMistakesInWhatLossesInEventsNeed) {
+  const std::string start = std::string(nitride) + "band_gap_ev = 5.3\n[material.dielectric]\n";
+  EXPECT_THAT(refused<FileError>(start + "energy_loss = \"x.csv\"\n"), HasSubstr("energy_loss"));
+  EXPECT_THAT(refused<FileError>(start + "energy_loss_function = \"missing.csv\"\n"), HasSubstr("missing.csv"));
+  EXPECT_THAT(refused<UsageError>(start + "sound_m_s = [1000, 2000]\ndeformation_ev = [3]\n"), HasSubstr("as many as in sound_m_s"));
+  EXPECT_THAT(refused<UsageError>(start + "sound_m_s = [1000, 2000, 3000]\n"), HasSubstr("3 speeds"));
+  EXPECT_THAT(refused<FileError>(start + "optical_phonons = [{ energy_ev = 0.1 }]\n"), HasSubstr("high_permittivity"));
+  EXPECT_THAT(refused<InvalidInput>(start + "filled_band_ev = 1000\n"), HasSubstr("dielectric.filled_band_ev is 1000"));
+}
+
 TEST_F(MaterialFileTest, MistakesAreNamedWithTheirPlace) {
   EXPECT_THAT(refused<FileError>(std::string(nitride) + "bandgap = 5\n"),
               testing::AllOf(HasSubstr("line 5, column 1"), HasSubstr("Did you mean 'band_gap_ev'")));

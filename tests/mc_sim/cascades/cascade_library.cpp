@@ -64,7 +64,7 @@ struct Witness {
     EXPECT_EQ(static_cast<std::size_t>(number), electrons.size());
     electrons.push_back({parent, {at}, {energy_ev}});
   }
-  void scattered(bool) {}
+  void scattered(bool, double energy_ev) { electrons.back().energies_ev.back() = energy_ev; }
   void segment(const Vec3&, const Vec3& to, double, double energy_ev, int) {
     electrons.back().points_nm.push_back(to);
     electrons.back().energies_ev.push_back(energy_ev);

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "surf/io/sim/materials.h"
+#include "surf/mc/physics/single_pole.h"
 
 namespace surf::mc {
 namespace {
@@ -13,13 +14,13 @@ namespace {
 TEST(DielectricData, IsThereForEveryMaterialThatComesWithSemsurf) {
   io::MaterialLibrary library;
   for (const Material& m : library.all()) {
-    const auto data = find_dielectric_data(m);
+    const auto data = m.dielectric;
     ASSERT_TRUE(data) << m.name;
     EXPECT_FALSE(data->elf.source().empty()) << m.name;
     EXPECT_GT(data->elf.highest_ev(), 5000) << m.name;
     EXPECT_GT(data->band.filled_ev, 3) << m.name;
     EXPECT_LT(data->band.filled_ev, 50) << m.name;
-    EXPECT_FALSE(data->band_source.empty()) << m.name;
+    EXPECT_FALSE(data->sources.empty()) << m.name;
     const SinglePole losses(data->elf, data->band);
     double before = 0;
     for (double energy_ev = 300; energy_ev < 3e4; energy_ev *= 2) {
@@ -36,16 +37,10 @@ TEST(DielectricData, SumsCountTheElectrons) {
   for (const Material& m : library.all()) {
     double z = 0;
     for (const Constituent& c : m.constituents) z += c.atomic_number * atoms_per_formula_unit(m, c);
-    const auto data = find_dielectric_data(m);
+    const auto data = m.dielectric;
     EXPECT_NEAR(data->elf.electron_sum(formula_units_per_nm3(m)) / z, 0.95, 0.16) << m.name;
-    EXPECT_NEAR(data->elf.above(data->band.gap_ev).screening_sum(), expected_screening_sum(m), 0.13) << m.name;
+    EXPECT_NEAR(data->elf.above(data->band.gap_ev).screening_sum(), data->expected_screening_sum, 0.13) << m.name;
   }
-}
-
-TEST(DielectricData, IsNotGuessedForOthers) {
-  Material mine = io::find_material("Si", "test");
-  mine.name = "mine";
-  EXPECT_FALSE(find_dielectric_data(mine));
 }
 
 }  // namespace

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "physics/directions.h"
 #include "physics/mechanism_test.h"
 
 namespace surf::mc {
@@ -60,10 +61,12 @@ TEST(Moller, ConservesMomentumOfTheTwoElectrons) {
     moller->scatter(energy, random, s);
     const double given = s.secondary_energy_ev - level;
     const double p1 = std::sqrt(e - given), p2 = std::sqrt(given);
-    EXPECT_NEAR(p1 * s.cos_theta + p2 * s.secondary_cos_theta, std::sqrt(e), 1e-9);
+    EXPECT_NEAR(p1 * s.cos_theta + p2 * s.secondary_direction.z, std::sqrt(e), 1e-9);
     EXPECT_NEAR(p1 * std::sqrt(1 - s.cos_theta * s.cos_theta),
-                p2 * std::sqrt(1 - s.secondary_cos_theta * s.secondary_cos_theta), 1e-6);
-    EXPECT_NEAR(std::fabs(s.secondary_turn - s.turn), 0.5, 1e-12);
+                p2 * std::sqrt(1 - s.secondary_direction.z * s.secondary_direction.z), 1e-6);
+    const Vec3 own = from_axis(s.cos_theta, s.turn), across{own.x, own.y, 0};
+    EXPECT_NEAR(dot(s.secondary_direction, across), -length(across) * std::sqrt(1 - s.secondary_direction.z * s.secondary_direction.z),
+                1e-6) << "on the other side";
     EXPECT_LE(s.secondary_energy_ev, energy);
     EXPECT_EQ(s.energy_loss_ev, 0);
   }

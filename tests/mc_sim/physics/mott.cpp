@@ -22,8 +22,18 @@ double table_cdf(const MottRow& row, double mu) {
 
 }  // namespace
 
+namespace {
+
+std::vector<MottElement> all_elements() {
+  std::vector<MottElement> all(free_mott_elements().begin(), free_mott_elements().end());
+  all.insert(all.end(), solid_mott_elements().begin(), solid_mott_elements().end());
+  return all;
+}
+
+}  // namespace
+
 TEST(Mott, TablesAreDistributions) {
-  for (const MottElement& element : mott_elements()) {
+  for (const MottElement& element : all_elements()) {
     double last = 0;
     for (const MottRow& row : element.rows) {
       EXPECT_GT(row.energy_ev, last);
@@ -37,7 +47,7 @@ TEST(Mott, TablesAreDistributions) {
 
 // The mean of 1 - cos theta over the sampler, integrated exactly from its inverse distribution.
 TEST(Mott, ReproducesTheTransportCrossSections) {
-  for (const MottElement& element : mott_elements()) {
+  for (const MottElement& element : all_elements()) {
     for (const MottRow& row : element.rows) {
       double mean = 0;
       const int n = 200000;
@@ -91,6 +101,21 @@ TEST(Mott, RateIsDensityTimesCrossSection) {
   for (int i = 1; i < 10; ++i) edges.push_back(-1 + i / 5.0);
   expect_sampled(*mott, 20, 50000, edges, [](const ScatterEvent& e) { return e.cos_theta; },
                  [](double c) { return (1 + c) / 2; });
+}
+
+// In a solid forward scattering is cut off: the total path is longer, the transport path hardly differs.
+TEST(Mott, HasTablesOfAtomsInASolid) {
+  const Material& si = material("Si");
+  const auto free = make_mott(si, si.constituents[0]), solid = make_mott(si, si.constituents[0], MottAtoms::solid);
+  EXPECT_NEAR(1 / free->inverse_mean_free_path_per_nm(1000), 1.45, 0.02);
+  EXPECT_NEAR(1 / solid->inverse_mean_free_path_per_nm(1000), 2.18, 0.05 * 2.18);
+  const auto transport_nm = [&](MottAtoms atoms) {
+    for (const MottRow& row : find_mott_element(14, atoms)->rows)
+      if (row.energy_ev == 1000) return 1 / (row.transport_cross_section_nm2 * number_density_per_nm3(si, si.constituents[0]));
+    return 0.0;
+  };
+  EXPECT_NEAR(transport_nm(MottAtoms::free), 15, 0.75);
+  EXPECT_NEAR(transport_nm(MottAtoms::solid), 15, 0.75);
 }
 
 TEST(Mott, SaysWhichElementItLacks) {

@@ -32,8 +32,45 @@ TEST(Physics, RefusesUnknownWords) {
     FAIL();
   } catch (const UsageError& e) {
     EXPECT_THAT(e.what(), HasSubstr("moot"));
-    EXPECT_THAT(e.what(), HasSubstr("mott, browning"));
+    EXPECT_THAT(e.what(), HasSubstr("mott, mott-phonon, browning"));
   }
+}
+
+// What is usual with a tier comes with it, wherever in the text it stands; what is said too goes before that.
+TEST(Physics, ATierBringsWhatIsUsualWithIt) {
+  Physics p;
+  parse_physics("atoms=free,inelastic=dielectric", p);
+  EXPECT_EQ(p.inelastic, InelasticTier::dielectric);
+  EXPECT_EQ(p.elastic, ElasticModel::mott_phonon);
+  EXPECT_EQ(p.atoms, MottAtoms::free);
+  EXPECT_EQ(format_physics(p),
+            "inelastic=dielectric,inelastic-model=full-penn,auger=off,elastic=mott-phonon,atoms=free,secondaries=on,barrier=quantum");
+  Physics again;
+  parse_physics(format_physics(p), again);
+  EXPECT_EQ(format_physics(again), format_physics(p));
+  parse_physics("elastic=browning", p);
+  parse_physics("inelastic=dielectric", p);
+  EXPECT_EQ(p.elastic, ElasticModel::browning) << "nothing changes, so nothing comes with it";
+  parse_physics("inelastic=monsel", p);
+  EXPECT_EQ(p.elastic, ElasticModel::mott);
+}
+
+TEST(Physics, RefusesToCountDielectricEnergiesFromTheVacuum) {
+  Physics p;
+  parse_physics("inelastic=dielectric,barrier=off", p);
+  EXPECT_THROW(validate(p), UsageError);
+}
+
+// The tiers count energies from different bands: in silicon from the conduction band, and from the valence band.
+TEST(Physics, CountsFromTheBandOfItsTier) {
+  const Material& si = material("Si");
+  Physics p;
+  EXPECT_EQ(effective_barrier_ev(p, si), si.barrier_ev);
+  parse_physics("inelastic=dielectric", p);
+  EXPECT_DOUBLE_EQ(effective_barrier_ev(p, si), 7.27 + 1.12 + 4.05);
+  EXPECT_EQ(effective_cutoff_ev(p, si), effective_barrier_ev(p, si));
+  p.secondaries = false;
+  EXPECT_EQ(effective_cutoff_ev(p, si), effective_barrier_ev(p, si) + 50);
 }
 
 TEST(Physics, StopsTrackingWhereItSays) {

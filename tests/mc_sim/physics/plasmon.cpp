@@ -31,7 +31,7 @@ TEST(Plasmon, MakesOneIsotropicSecondaryOfItsEnergy) {
   std::vector<double> edges;
   for (int i = 1; i < 20; ++i) edges.push_back(-1 + i / 10.0);
   expect_sampled(*plasmon, 300, 100000, edges,
-                 [](const ScatterEvent& s) { return s.secondary_cos_theta; },
+                 [](const ScatterEvent& s) { return s.secondary_direction.z; },
                  [](double c) { return (1 + c) / 2; });
 }
 

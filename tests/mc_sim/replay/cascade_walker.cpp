@@ -23,7 +23,7 @@ const CascadeLibrary& library() {
 
 ReplayMaterial material() {
   const Medium& medium = library().medium();
-  return {&library(), &medium, medium.barrier_ev(),
+  return {&library(), &medium, medium.barrier_ev(), medium.loses_in_events(),
           EnergyCode(medium.cutoff_ev(), library().settings().start_energy_ev)};
 }
 
