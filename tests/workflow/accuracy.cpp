@@ -30,12 +30,15 @@ SimulateJob accurate_job(const std::filesystem::path& output) {
   return job;
 }
 
-TEST(Accuracy, SameBytesForAnyThreadsAndCache) {
+class AccuracyOf : public testing::TestWithParam<const char*> {};
+
+TEST_P(AccuracyOf, SameBytesForAnyThreadsAndCache) {
   const TemporaryFolder folder;
   std::string first;
   for (const auto& [threads, cache] : {std::pair{1, ""}, {3, "cache"}, {2, "cache"}}) {
     SimulateJob job = accurate_job(folder.path() / (std::to_string(threads) + ".exr"));
     job.execution.threads = threads;
+    mc::parse_physics(GetParam(), job.scene.physics);
     if (*cache) job.cache = folder.path() / cache;
     const SimulateSummary s = run(job);
     EXPECT_EQ(s.pages_loaded > 0, threads == 2);
@@ -45,6 +48,9 @@ TEST(Accuracy, SameBytesForAnyThreadsAndCache) {
     EXPECT_TRUE(bytes == first) << threads << " threads";
   }
 }
+
+INSTANTIATE_TEST_SUITE_P(Tiers, AccuracyOf, testing::Values("inelastic=monsel", "inelastic=dielectric"),
+                         [](const auto& instance) { return std::string(instance.param).substr(10); });
 
 TEST(Accuracy, IsReachedAndRecorded) {
   const TemporaryFolder folder;

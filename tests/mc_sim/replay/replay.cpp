@@ -75,9 +75,10 @@ TEST(StratifiedPermutation, SpreadsPixelsEvenly) {
   test::expect_distributed(tenth, even, 2);
 }
 
-TEST(Replay, GivesTheSameNumbersForAnyThreadsAndTiles) {
-  const Scan scan = test::square_scan(60, 4);
-  const Scene scene(mesa(), slow(), scan);
+namespace {
+
+void expect_same_for_any_threads(const Scene& scene) {
+  const Scan& scan = scene.scan();
   test::SmallLibraries libraries(1);
   for (const double accuracy : {0.0, 0.3}) {
     std::vector<SimulationResult> results;
@@ -99,6 +100,20 @@ TEST(Replay, GivesTheSameNumbersForAnyThreadsAndTiles) {
     }
     test::expect_balanced(results[0].balance);
   }
+}
+
+}  // namespace
+
+TEST(Replay, GivesTheSameNumbersForAnyThreadsAndTiles) { expect_same_for_any_threads(Scene(mesa(), slow(), test::square_scan(60, 4))); }
+
+// Electrons that change the material are followed directly.
+TEST(Replay, GivesTheSameNumbersWithLossesInEvents) {
+  Physics physics;
+  parse_physics("inelastic=dielectric,auger=on", physics);
+  Specimen s = mesa();
+  s.materials.push_back(io::find_material("SiO2", "test"));
+  s.bodies.push_back({"grain", make_box({-10, -10, 20}, {10, 10, 70}), 1});
+  expect_same_for_any_threads(Scene(s, slow(), test::square_scan(60, 4), physics));
 }
 
 // All that a cascade generates is counted, as where every track is followed to its end.

@@ -78,10 +78,10 @@ Spent spend(const Scene& scene, How how, const std::vector<std::vector<Estimate>
   return spent;
 }
 
-void expect_well_spent(const Specimen& specimen, const Scan& scan, bool planes = false) {
+void expect_well_spent(const Specimen& specimen, const Scan& scan, bool planes = false, const Physics& physics = {}) {
   Beam beam;
   beam.energy_ev = 400;
-  const Scene scene(specimen, beam, scan);
+  const Scene scene(specimen, beam, scan, physics);
   const auto truth = reference(scene, 40000);
   // The reference's own share, were all its errors alike.
   double known = 0;
@@ -120,6 +120,12 @@ TEST(Accuracy, OnAPlane) { expect_well_spent(test::flat("Si"), test::row_of_pixe
 TEST(Accuracy, BesideAWallsFoot) {
   // From its top over the wall to where nothing but rare electrons tell of it.
   expect_well_spent(field(make_mesa({240, 240, 8}, 60, 60, 8)), test::row_of_pixels(20, 14, 5));
+}
+
+TEST(Accuracy, WithLossesInEvents) {
+  Physics physics;
+  parse_physics("inelastic=dielectric", physics);
+  expect_well_spent(field(make_mesa({240, 240, 8}, 60, 60, 8)), test::row_of_pixels(20, 14, 5), false, physics);
 }
 
 TEST(Accuracy, BesideAnIsolatedEdge) {
