@@ -90,6 +90,7 @@ void print_electrons(const workflow::SimulateSummary& s) {
                  ? fmt::format("{} reached in every pixel", format_share(accuracy))
                  : fmt::format("{} not reached in {} of {} pixels", format_share(accuracy),
                                r.missed, r.seen));
+  if (s.tier) print_line("physics", *s.tier);
 }
 
 void print_speed(int threads, const workflow::SimulateSummary& s) {

@@ -180,6 +180,7 @@ std::string sidecar_text(const ResolvedJob& job, const SimulateSummary& summary,
   if (summary.simplification.tolerance_nm > 0)
     json["simplification"] = simplification_json(summary.simplification);
   json["balance"] = balance_json(b);
+  if (summary.tier) json["tier"] = *summary.tier;
   if (summary.charging) json["charging"] = charging_json(*summary.charging);
   json["physics"] = Json::object();
   for (const mc::Material& material : job.scene.specimen.materials)

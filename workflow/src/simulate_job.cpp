@@ -28,6 +28,7 @@
 #include "surf/mc/sampling/choose_method.h"
 #include "surf/mc/geometry/scene.h"
 #include "surf/workflow/trajectories.h"
+#include "surf/workflow/tier_doubt.h"
 #include "time_budget.h"
 #include "warnings.h"
 
@@ -270,6 +271,8 @@ SimulateSummary run(SimulateJob asked, const Reporter& reporter, Team* team, con
   summary.pages_loaded = kept.pages().loaded;
   summary.pages_made = kept.pages().made;
   summary.statistics = mc::summarize(summary.result);
+  if (const double accuracy = mc::accuracy_of(summary.result.budget); accuracy > 0)
+    summary.tier = tier_doubt(scene.physics(), scene.materials().size(), accuracy);
   summary.charging = charging_of(scene.materials(), summary.result, scene.scan());
   // Before anything is written, for the same reason as below.
   if (!summary.result.complete) keep_interrupted(job, checkpoint.get(), tell);

@@ -81,6 +81,7 @@ struct SimulateSummary {
   mc::SimulationResult result;
   mc::ResultSummary statistics;                   ///< of the result
   std::optional<Charging> charging;               ///< of insulators
+  std::optional<std::string> tier;                ///< with a wanted accuracy: whether the tier of physics is good enough for it
   mc::MethodChoice choice;
   std::size_t pages_loaded = 0, pages_made = 0;   ///< of libraries, from the cache and not
   mc::Scan scan;
