@@ -82,6 +82,20 @@ TEST(DielectricYield, OfMetalsLiesAmongTheMeasurements) {
   }
 }
 
+// One set of each metal goes through a maximum, Bronstein and Fraiman's of clean surfaces; the order of metals is theirs.
+TEST(DielectricYield, OfMetalsHasTheMaximaOfCleanSurfaces) {
+  double last = 0;
+  for (const auto& [name, measured] : {std::pair{"Al", 0.642}, {"Cu", 1.034}, {"Au", 1.395}}) {
+    double most = 0;
+    for (const double energy_ev : {200.0, 300.0, 500.0, 800.0, 1200.0}) most = std::max(most, flat_yields(name, energy_ev, 0, 5000).se.mean);
+    EXPECT_GT(most, measured / 1.3) << name;
+    EXPECT_LT(most, measured * 1.3) << name;
+    const double at_1_kev = flat_yields(name, 1000, 0, 5000).se.mean;
+    EXPECT_GT(at_1_kev, last) << name;
+    last = at_1_kev;
+  }
+}
+
 // Energies are counted from the vacuum level: nothing is made or lost, whatever the mechanism.
 TEST(DielectricYield, KeepsEnergy) {
   for (const char* const name : {"Si", "SiO2", "Au"}) {
