@@ -16,8 +16,8 @@
 
 #include "scenes.h"
 #include "surf/io/plot.h"
+#include "surf/mc/flat_yields.h"
 #include "surf/mc/simulate.h"
-#include "surf/workflow/flat_yields.h"
 #include "surf/workflow/measured_yields.h"
 
 namespace {
@@ -140,7 +140,7 @@ void draw_yields(const std::string& file, int electrons) {
       io::PlotSeries se, bse;
       se.name = std::string("SE, ") + tier, bse.name = std::string("BSE, ") + tier;
       for (const double e : energies) {
-        const auto y = workflow::flat_yields(io::find_material(name, "bench"), e, physics, e > 2500 ? electrons / 4 : electrons);
+        const auto y = mc::flat_yields(io::find_material(name, "bench"), e, e > 2500 ? electrons / 4 : electrons, physics);
         se.x.push_back(e), se.y.push_back(y.se.mean);
         bse.x.push_back(e), bse.y.push_back(y.bse.mean);
       }

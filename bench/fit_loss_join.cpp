@@ -13,7 +13,8 @@
 
 #include <fmt/core.h>
 
-#include "flat_yields.h"
+#include "measured_means.h"
+#include "surf/mc/flat_yields.h"
 
 namespace {
 
@@ -24,7 +25,7 @@ double fit(mc::Material material, double target, bool with_bse, std::int64_t ele
   double low = std::fmax(material.barrier_ev, material.work_function_ev) + 1.01, high = 300;
   while (high - low > 1e-3 * low) {
     material.loss_join_ev = 0.5 * (low + high);
-    const auto y = bench::simulate_flat(material, 1000, electrons);
+    const auto y = mc::flat_yields(material, 1000, electrons);
     (y.se.mean + (with_bse ? y.bse.mean : 0) < target ? low : high) = material.loss_join_ev;
   }
   return 0.5 * (low + high);
@@ -34,7 +35,7 @@ void print_other_energies(const mc::Material& material, const std::map<double, d
                           bool with_bse, std::int64_t electrons) {
   for (const auto& [energy, yield] : measured) {
     if (energy < 0.1) continue;
-    const auto y = bench::simulate_flat(material, energy * 1000, electrons);
+    const auto y = mc::flat_yields(material, energy * 1000, electrons);
     const double own = y.se.mean + (with_bse ? y.bse.mean : 0);
     fmt::print("  {:6.2f} keV  {} {:.3f}  measured {:.3f}  ratio {:.2f}  BSE {:.3f}\n", energy,
                with_bse ? "SE+BSE" : "SE", own, yield, own / yield, y.bse.mean);

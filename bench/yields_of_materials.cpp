@@ -11,7 +11,8 @@
 
 #include <fmt/core.h>
 
-#include "flat_yields.h"
+#include "measured_means.h"
+#include "surf/mc/flat_yields.h"
 
 namespace {
 
@@ -88,7 +89,7 @@ int main(int argc, char** argv) {
              "|---|---|---|---|---|---|---|---|\n");
   for (const mc::Material& m : io::builtin_materials())
     for (const double e : energies) {
-      const auto y = bench::simulate_flat(m, 1000 * e, std::atoll(argv[1]));
+      const auto y = mc::flat_yields(m, 1000 * e, std::atoll(argv[1]));
       fmt::print("| {} | {:g} | {} | {} | {} | {} | {} | {:.3f} |\n", m.name, e, with_error(y.se),
                  or_none(mean_near(se, bench::measured_as(m, se), e)),
                  from_maximum(folder + "/se_maxima_handbook.csv", m.name, e), with_error(y.bse),

@@ -177,7 +177,9 @@ int print_materials(const io::MaterialChoice& choice, const MaterialsOutput& out
   if (!output.plot.empty()) io::check_plot_target(output.plot);
   print_material(material);
   if (output.plot.empty()) return 0;
-  io::Plot plot = workflow::plot_material(material);
+  Watched watched(true);
+  io::Plot plot = workflow::plot_material(material, {.watch = watched.watch()});
+  watched.clear();
   plot.metadata = workflow::step_record("materials", workflow::records_of(choice), {choice.files.begin(), choice.files.end()});
   io::write_plot(output.plot, plot);
   print("written    {}\n", output.plot);

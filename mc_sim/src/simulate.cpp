@@ -137,7 +137,7 @@ void SimulationContext::check(const SimulationOptions& options, const Scene& sce
   if (options.method == Method::replay && !can_replay(scene.physics(), scene.materials()))
     throw UsageError("`simulation.method=replay`", "cascades are joined where energies are equal, which needs "
                                         "continuous loss",
-                     "Use `simulation.method=direct`, or loss=joy-luo");
+                     "Use `simulation.method=direct`, loss=joy-luo, or inelastic=dielectric");
   if (accuracy_of(options.budget) > 0 && observers)
     throw UsageError("`simulation.accuracy`", "what observers see would be of more primaries in some pixels than in others",
                      "Give `simulation.electrons` instead");

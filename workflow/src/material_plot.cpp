@@ -6,11 +6,11 @@
 
 #include <fmt/format.h>
 
+#include "surf/mc/flat_yields.h"
 #include "surf/mc/physics/dielectric_data.h"
 #include "surf/mc/physics/full_penn.h"
 #include "surf/mc/physics/medium.h"
 #include "surf/mc/physics/single_pole.h"
-#include "surf/workflow/flat_yields.h"
 
 namespace surf::workflow {
 namespace {
@@ -88,8 +88,8 @@ io::PlotPanel yields(const mc::Material& material, const MaterialPlotOptions& op
     bse.name = std::string("BSE, ") + tier.name;
     for (const double energy_ev : yield_energies_ev) {
       const double part = 1.0 / (double(energies) * double(std::size(tiers)));
-      const FlatYields y = flat_yields(material, energy_ev, physics_of(tier.words), options.electrons, options.threads,
-                                       options.watch.part(done, done + part));
+      const mc::FlatYields y = mc::flat_yields(material, energy_ev, options.electrons, physics_of(tier.words), options.threads,
+                                               options.watch.part(done, done + part));
       done += part;
       se.x.push_back(energy_ev), se.y.push_back(y.se.mean);
       bse.x.push_back(energy_ev), bse.y.push_back(y.bse.mean);
@@ -105,7 +105,7 @@ io::PlotPanel yields(const mc::Material& material, const MaterialPlotOptions& op
 io::Plot plot_material(const mc::Material& material, const MaterialPlotOptions& options) {
   const mc::DielectricData& data = *material.dielectric;
   const mc::Medium monsel = mc::make_medium(material, physics_of("secondaries=off"));
-  const mc::Medium slow = mc::make_medium(material, physics_of("inelastic=monsel,secondaries=off,elastic=mott-phonon,atoms=solid"));
+  const mc::Medium slow = mc::make_medium(material, physics_of("secondaries=off,elastic=mott-phonon,atoms=solid"));
   const mc::FullPenn full(data);
   const mc::SinglePole pole(data.elf, data.band);
   const std::vector<double> x = energies_ev();
@@ -119,7 +119,7 @@ io::Plot plot_material(const mc::Material& material, const MaterialPlotOptions& 
   io::PlotPanel paths = panel("Free paths", "free path (nm)");
   draw(paths, "losses: full Penn", x, [&](double e) { return 1 / full.inverse_mean_free_path_per_nm(in_band(e)); });
   draw(paths, "losses: single pole", x, [&](double e) { return 1 / pole.inverse_mean_free_path_per_nm(in_band(e)); });
-  draw(paths, "elastic: phonons, atoms of a solid", x, [&](double e) { return 1 / slow.inverse_mean_free_path_per_nm(in_band(e)); });
+  draw(paths, "elastic: phonons, atoms of a solid", x, [&](double e) { return 1 / slow.inverse_mean_free_path_per_nm(inside(e)); });
   draw(paths, "elastic, monsel: free atoms", x, [&](double e) { return 1 / monsel.inverse_mean_free_path_per_nm(inside(e)); });
   plot.panels.push_back(std::move(paths));
   io::PlotPanel stopping = panel("Loss per length", "loss (eV/nm)");

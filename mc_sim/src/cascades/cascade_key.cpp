@@ -108,17 +108,11 @@ std::optional<CascadePageName> read_cascade_page_key(const std::string& key) {
                       name.cascades == CascadeLibrary::page_cascades;
     name.material = text("material");
     parse_physics(text("physics"), name.physics);
-    Material material;
-    material.barrier_ev = number<double>(text("barrier_ev"));
-    if (is_dielectric(name.physics)) {
-      DielectricData data{.elf = EnergyLossFunction({1, 2, 3}, {0, 0, 0})};
-      data.vacuum_ev = number<double>(text("vacuum_barrier_ev"));
-      material.dielectric = std::make_shared<const DielectricData>(std::move(data));
-    }
+    const double inside_ev = is_dielectric(name.physics)                     ? number<double>(text("vacuum_barrier_ev"))
+                             : name.physics.barrier == BarrierModel::off ? 0 : number<double>(text("barrier_ev"));
     const double cutoff_ev = number<double>(text("cutoff_ev"));
-    name.is_usual_cutoff = cutoff_ev == effective_cutoff_ev(name.physics, material);
+    name.is_usual_cutoff = cutoff_ev == effective_cutoff_ev(name.physics, inside_ev);
     name.physics.cutoff_ev = cutoff_ev;
-    const double inside_ev = effective_barrier_ev(name.physics, material);
     name.beam_energy_ev = number<double>(text("start_energy_ev")) - inside_ev;
     name.seed = number<std::uint64_t>(text("seed"));
   } catch (const std::exception&) {

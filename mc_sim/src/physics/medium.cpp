@@ -133,7 +133,7 @@ Scatterings elastic_of(const Material& material, const Physics& physics) {
   for (const Constituent& c : material.constituents)
     atoms.push_back(physics.elastic == ElasticModel::browning ? make_browning(material, c) : make_mott(material, c, physics.atoms));
   if (physics.elastic != ElasticModel::mott_phonon) return atoms;
-  return fade(make_acoustic_phonons(material, *material.dielectric), std::move(atoms));
+  return fade(make_acoustic_phonons(material, *material.dielectric, is_dielectric(physics)), std::move(atoms));
 }
 
 }  // namespace

@@ -125,11 +125,14 @@ double effective_barrier_ev(const Physics& physics, const Material& material) {
   return physics.barrier == BarrierModel::off ? 0.0 : material.barrier_ev;
 }
 
-double effective_cutoff_ev(const Physics& physics, const Material& material) {
+double effective_cutoff_ev(const Physics& physics, double effective_barrier_ev) {
   if (physics.cutoff_ev > 0) return physics.cutoff_ev;
-  const bool full = physics.secondaries && physics.barrier != BarrierModel::off;
-  const double barrier = effective_barrier_ev(physics, material);
-  return full ? barrier : is_dielectric(physics) ? barrier + se_bse_split_ev : se_bse_split_ev;
+  if (physics.secondaries && physics.barrier != BarrierModel::off) return effective_barrier_ev;
+  return is_dielectric(physics) ? effective_barrier_ev + se_bse_split_ev : se_bse_split_ev;
+}
+
+double effective_cutoff_ev(const Physics& physics, const Material& material) {
+  return effective_cutoff_ev(physics, effective_barrier_ev(physics, material));
 }
 
 void describe(ParameterVisitor& visit, Physics& physics) {

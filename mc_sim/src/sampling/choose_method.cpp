@@ -115,7 +115,7 @@ std::optional<Obstacle> obstacle(const Scene& scene, const MethodLimits& limits)
                     "not show", "Leave out `output.deposit`"};
   if (!can_replay(scene.physics(), scene.materials()))
     return Obstacle{"without continuous loss there is no energy at which cascades could be joined",
-                    "Use loss=joy-luo"};
+                    "Use loss=joy-luo or inelastic=dielectric"};
   return std::nullopt;
 }
 

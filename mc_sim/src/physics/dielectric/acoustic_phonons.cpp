@@ -35,8 +35,8 @@ constexpr double screening = 5;          // A over the energy at the zone's edge
 // between a smooth mean of their logarithms. An electron loses what is emitted more than absorbed, hw tanh(hw / 2 kT).
 class AcousticPhonons final : public Scattering {
  public:
-  AcousticPhonons(const Material& material, const DielectricData& data)
-      : zero_ev_(data.band.gap_ev > 0 ? data.band.free_ev() : 0), edge_(2 * std::numbers::pi / data.lattice_nm),
+  AcousticPhonons(const Material& material, const DielectricData& data, bool in_events = true)
+      : in_events_(in_events), zero_ev_(in_events && data.band.gap_ev > 0 ? data.band.free_ev() : 0), edge_(2 * std::numbers::pi / data.lattice_nm),
         edge_ev_(0.5 * hbar2_per_mass * edge_ * edge_), zone_energy_ev_(0.25 * edge_ev_), mass_(data.density_of_states_mass) {
     const double density = material.density_g_cm3 * avogadro_cm3_per_nm3 * dalton;   // of mass, eV s^2 / nm^5
     for (const AcousticBranch& b : data.acoustic) {
@@ -81,7 +81,7 @@ class AcousticPhonons final : public Scattering {
     return sum;
   }
 
-  bool debits() const override { return true; }
+  bool debits() const override { return in_events_; }
 
   void scatter(double energy_ev, RandomStream& random, ScatterEvent& event) const override {
     const double energy = energy_ev - zero_ev_;
@@ -95,6 +95,7 @@ class AcousticPhonons final : public Scattering {
     // One word serves the azimuth and the branch.
     const std::uint32_t word = random.bits();
     event.turn = static_cast<double>(word >> 16) * 0x1p-16;
+    if (!in_events_) return;
     std::size_t b = 0;
     for (float u = static_cast<float>(word & 0xffff) * 0x1p-16f; b + 1 < branches_.size() && u >= table.share[b]; ++b)
       u -= table.share[b];
@@ -162,6 +163,7 @@ class AcousticPhonons final : public Scattering {
     }
   }
 
+  bool in_events_;
   double zero_ev_;    // E counts from here
   double edge_;       // of the Brillouin zone, per nm
   double edge_ev_;    // a free electron's energy there
@@ -191,7 +193,7 @@ double deformation_by_resistivity_ev(const Material& material, const DielectricD
 
 }  // namespace
 
-std::unique_ptr<const Scattering> make_acoustic_phonons(const Material& material, const DielectricData& data) {
+std::unique_ptr<const Scattering> make_acoustic_phonons(const Material& material, const DielectricData& data, bool in_events) {
   DielectricData d = data;
   if (std::ranges::any_of(d.acoustic, [](const AcousticBranch& b) { return !(b.deformation_ev > 0); })) {
     const double estimate = data.resistivity_ohm_m > 0
@@ -200,7 +202,7 @@ std::unique_ptr<const Scattering> make_acoustic_phonons(const Material& material
     for (AcousticBranch& b : d.acoustic)
       if (!(b.deformation_ev > 0)) b.deformation_ev = estimate;
   }
-  return std::make_unique<AcousticPhonons>(material, d);
+  return std::make_unique<AcousticPhonons>(material, d, in_events);
 }
 
 }  // namespace surf::mc

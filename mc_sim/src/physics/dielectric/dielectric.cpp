@@ -31,11 +31,12 @@ class Dielectric final : public Scattering {
         model_(physics.inelastic_model) {}
 
   std::string describe() const override {
-    return fmt::format("losses: energy-loss function to {:.4g} eV, {}, tables of {:.1f} MB; each frees one electron{}", top_ev_,
+    return fmt::format("losses: energy-loss function to {:.4g} eV, {}, tables of {:.1f} MB{}{}", top_ev_,
                        model_ == InelasticModel::single_pole ? "extended by a single pole (doi:10.1103/PhysRevB.35.482)"
                                                              : "full Penn algorithm (doi:10.1002/sia.5789)",
                        static_cast<double>(losses_->bytes()) / 1e6,
-                       auger_ ? ", and holes of inner shells an Auger electron" : "");
+                       secondaries_ ? "; each frees one electron" : "",
+                       secondaries_ && auger_ ? ", and holes of inner shells an Auger electron" : "");
   }
 
   double inverse_mean_free_path_per_nm(double energy_ev) const override {

@@ -7,8 +7,8 @@
 
 #include "physics/dielectric/atomic_units.h"
 #include "physics/dielectric/full_penn_table.h"
+#include "physics/dielectric/loss_quantiles.h"
 #include "physics/dielectric/loss_sampler.h"
-#include "physics/dielectric/quantile_table.h"
 #include "surf/mc/physics/full_penn.h"
 #include "surf/mc/physics/medium.h"
 
@@ -29,34 +29,14 @@ double place_of(double rest) { return (1 - std::sqrt(std::sqrt(rest))) * cells; 
 
 constexpr int most_redraws = 1000;
 
-// Tables at the edges of the energy bins: quantiles of the loss, and at each the part of its momenta that can be handed over.
-// Between two energies and two quantiles both are interpolated, in proportion to the energy, which keeps the largest loss exact.
 class FullPennSampler final : public LossSampler {
  public:
   explicit FullPennSampler(const DielectricData& data)
-      : penn_(data), band_(data.band), shells_(data), least_ev_(penn_.table().losses.front() * hartree_ev) {
+      : penn_(data), band_(data.band), shells_(data), losses_(data.band, penn_.table().losses.front() * hartree_ev) {
     make_guide();
     invert_rows();
-    const FullPenn::Table& t = penn_.table();
-    std::vector<double> edges, sums;
-    for (int i = 0; i <= EnergyBins::count; ++i) {
-      const double energy_ev = EnergyBins::lower_ev(i), most_ev = energy_ev - band_.free_ev();
-      if (!(most_ev > least_ev_ * (1 + 1e-6))) {
-        ++without_;
-        rates_per_nm_.push_back(0);
-        continue;
-      }
-      edges.assign(1, least_ev_), sums.assign(1, 0);
-      for (std::size_t row = 0; row < t.rows(); ++row) {
-        const double half = 0.5 * t.widths[row], w_ev = t.losses[row] * hartree_ev;
-        const double from = std::max(edges.back(), w_ev * std::exp(-half)), to = std::min(most_ev, w_ev * std::exp(half));
-        if (!(to > from)) continue;
-        sums.push_back(sums.back() + std::log(to / from) * t.density(energy_ev / hartree_ev, row));
-        edges.push_back(to);
-      }
-      rates_per_nm_.push_back(sums.back() / atomic::bohr_nm);
-      for (const double w_ev : quantiles_of(edges, sums)) points_.push_back(point(energy_ev, w_ev));
-    }
+    for (int i = 0; i <= EnergyBins::count; ++i)
+      rates_per_nm_.push_back(losses_.add(EnergyBins::lower_ev(i), *this) / atomic::bohr_nm);
   }
 
   double inverse_mean_free_path_per_nm(double energy_ev) const override {
@@ -70,36 +50,13 @@ class FullPennSampler final : public LossSampler {
   double stopping_power_ev_per_nm(double energy_ev) const override { return penn_.stopping_power_ev_per_nm(energy_ev); }
 
   bool draw(double energy_ev, RandomStream& random, Loss& loss) const override {
-    const double most_ev = energy_ev - band_.free_ev();
-    if (!(most_ev > least_ev_)) return false;
-    const int bin = EnergyBins::bin(energy_ev);
-    const double from = EnergyBins::lower_ev(bin), to = EnergyBins::lower_ev(bin + 1);
+    if (!losses_.can_lose(energy_ev)) return false;
     const double energy = energy_ev / hartree_ev, before = atomic::momentum(energy);
-    const auto table = [&](int i) { return points_.data() + static_cast<std::size_t>(i - without_) * Quantiles::points; };
     for (int redraws = 0; redraws < most_redraws; ++redraws) {
-      const double place = Quantiles::place(random.uniform());
-      const int cell = std::min(static_cast<int>(place), Quantiles::cells - 1);
-      const double part = place - cell;
-      const auto at = [&](const Point* t) {
-        const Point &a = t[cell], &b = t[cell + 1];
-        const auto mix = [&](float x, float y) { return x + part * (y - x); };
-        return Place{mix(a.w_ev, b.w_ev), mix(a.first, b.first), mix(a.last, b.last)};
-      };
-      Place p = at(table(std::max(bin + 1, without_)));
-      if (bin >= without_) {
-        const Place lower = at(table(bin));
-        const double share = (energy_ev - from) / (to - from);
-        p = {lower.w_ev + share * (p.w_ev - lower.w_ev), lower.first + share * (p.first - lower.first),
-             lower.last + share * (p.last - lower.last)};
-      } else {   // the bin in which losses begin: they shrink with what there is
-        const double top_ev = EnergyBins::lower_ev(without_) - band_.free_ev();
-        p.w_ev = least_ev_ + (p.w_ev - least_ev_) * (most_ev - least_ev_) / (top_ev - least_ev_);
-        const Point exact = point(energy_ev, p.w_ev);
-        p.first = exact.first, p.last = exact.last;
-      }
-      const double w = p.w_ev / hartree_ev;
-      if (!(energy_ev - p.w_ev >= band_.free_ev())) continue;
-      const Row row = row_of(p.w_ev);
+      const LossQuantiles::Place p = losses_.draw(energy_ev, random, *this);
+      const double w = p.loss_ev / hartree_ev;
+      if (!(energy_ev - p.loss_ev >= band_.free_ev())) continue;
+      const Row row = row_of(p.loss_ev);
       const double c = place_of(p.first + random.uniform() * (p.last - p.first));
       const int k = std::clamp(static_cast<int>(c), 0, cells - 1);
       const double f = c - k;
@@ -113,22 +70,40 @@ class FullPennSampler final : public LossSampler {
       const auto mix = [&](float x, float y) { return x + row.share * (y - x); };
       const double inner = mix(a->inner, b->inner);
       loss = {w, q, 0, false};
-      if (kind < inner) loss.shell_ev = shells_.draw_inner(p.w_ev, kind / inner);
+      if (kind < inner) loss.shell_ev = shells_.draw_inner(p.loss_ev, kind / inner);
       else loss.collective = kind < inner + mix(a->plasmon, b->plasmon) * (1 - inner);
       return true;
     }
     return false;
   }
 
-  std::size_t bytes() const override { return points_.size() * sizeof(Point) + cells_.size() * sizeof(Cell); }
+  std::size_t bytes() const override { return losses_.bytes() + cells_.size() * sizeof(Cell) + penn_.table().bytes(); }
+
+  // What LossQuantiles asks.
+  void integrate(double energy_ev, double most_ev, std::vector<double>& edges, std::vector<double>& sums) const {
+    const FullPenn::Table& t = penn_.table();
+    for (std::size_t row = 0; row < t.rows(); ++row) {
+      const double half = 0.5 * t.widths[row];
+      const double from = std::max(edges.back(), row_ev_[row] * std::exp(-half)), to = std::min(most_ev, row_ev_[row] * std::exp(half));
+      if (!(to > from)) continue;
+      sums.push_back(sums.back() + std::log(to / from) * t.density(energy_ev / hartree_ev, row));
+      edges.push_back(to);
+    }
+  }
+
+  // Momenta as the part of the loss's momenta that are larger.
+  LossAndRange range(double energy_ev, double w_ev) const {
+    const double energy = energy_ev / hartree_ev, w = std::min(w_ev, energy_ev - band_.free_ev()) / hartree_ev;
+    const double p = atomic::momentum(energy), after = atomic::momentum(energy - w), unit = std::sqrt(2 * w);
+    const Row row = row_of(w_ev);
+    const auto part = [&](double q) {
+      const double lower = part_above(row.number, q / unit), upper = part_above(row.number + 1, q / unit);
+      return static_cast<float>(lower + row.share * (upper - lower));
+    };
+    return LossAndRange{static_cast<float>(w_ev), part(p - after), part(p + after)};
+  }
 
  private:
-  struct Point {
-    float w_ev, first, last;   // the parts of momenta that are larger than the smallest and the largest that can be handed over
-  };
-  struct Place {
-    double w_ev, first, last;
-  };
   struct Cell {
     float log_x;              // at its lower edge
     float plasmon, inner;     // shares in it
@@ -179,17 +154,6 @@ class FullPennSampler final : public LossSampler {
     return whole > 0 ? std::clamp((whole - t.up_to(row, x * std::sqrt(2 * t.losses[row]))) / whole, 0.0, 1.0) : 1;
   }
 
-  Point point(double energy_ev, double w_ev) const {
-    const double energy = energy_ev / hartree_ev, w = std::min(w_ev, energy_ev - band_.free_ev()) / hartree_ev;
-    const double p = atomic::momentum(energy), after = atomic::momentum(energy - w), unit = std::sqrt(2 * w);
-    const Row row = row_of(w_ev);
-    const auto part = [&](double q) {
-      const double lower = part_above(row.number, q / unit), upper = part_above(row.number + 1, q / unit);
-      return static_cast<float>(lower + row.share * (upper - lower));
-    };
-    return {static_cast<float>(w_ev), part(p - after), part(p + after)};
-  }
-
   void invert_rows() {
     const FullPenn::Table& t = penn_.table();
     cells_.resize(t.rows() * (cells + 1));
@@ -216,12 +180,10 @@ class FullPennSampler final : public LossSampler {
   FullPenn penn_;
   BandLimits band_;
   Shells shells_;
-  double least_ev_;
+  LossQuantiles losses_;
   std::vector<double> row_ev_;          // losses of rows
   std::vector<std::size_t> guide_;
-  int without_ = 0;             // edges of energy bins below all losses
   std::vector<double> rates_per_nm_;   // 1 / lambda at the edges of energy bins
-  std::vector<Point> points_;   // [edge, from `without_`][quantile]
   std::vector<Cell> cells_;     // [row][cell]
 };
 

@@ -16,6 +16,7 @@ struct FullPenn::Table {
 
   std::size_t rows() const { return losses.size(); }
   std::size_t cells() const { return edges.size() - 1; }
+  std::size_t bytes() const { return (integral.size() + plasmon.size() + inner.size()) * sizeof(float); }
 
   Parts value(double loss, double momentum) const;
 

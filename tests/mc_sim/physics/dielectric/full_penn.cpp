@@ -21,7 +21,7 @@ const FullPenn& penn_of(const std::string& name) {
   return kept.try_emplace(name, data_of(name)).first->second;
 }
 
-// Tanuma, Powell and Penn (2011); energies count from the Fermi level. The 8 % from 100 eV on; below, 15 %.
+// Tanuma, Powell and Penn (2011); energies count from the Fermi level.
 TEST(FullPenn, HasThePublishedFreePaths) {
   for (const auto& row : test::read_reference("imfp_full_penn.csv")) {
     const double energy_ev = std::stod(row.at("energy_ev"));

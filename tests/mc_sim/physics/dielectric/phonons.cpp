@@ -56,6 +56,21 @@ TEST(AcousticPhonons, TakeALittleEnergy) {
   EXPECT_NEAR(most, 0.040, 0.003);
 }
 
+// With the first tier they turn electrons round, counted from its band, and its continuous loss pays: cascades can be joined.
+TEST(AcousticPhonons, TakeNothingWhereLossIsContinuous) {
+  const Material& si = material("Si");
+  const auto paid = make_acoustic_phonons(si, *si.dielectric, false), own = make_acoustic_phonons(si, *si.dielectric);
+  EXPECT_DOUBLE_EQ(paid->inverse_mean_free_path_per_nm(20), own->inverse_mean_free_path_per_nm(20 + si.dielectric->band.free_ev()));
+  EXPECT_FALSE(paid->debits());
+  RandomStream random(1, 2, 3);
+  ScatterEvent event;
+  paid->scatter(20, random, event);
+  EXPECT_EQ(event.energy_loss_ev, 0);
+  Physics physics;
+  parse_physics("elastic=mott-phonon", physics);
+  EXPECT_TRUE(make_medium(si, physics).loses_continuously());
+}
+
 // 1 / tau = n e^2 rho / m at the Fermi energy: aluminium, 18.1 electrons a nm^3 more or less, 2.65e-8 ohm m.
 TEST(AcousticPhonons, HaveTheResistivityOfAMetal) {
   const Material& al = material("Al");

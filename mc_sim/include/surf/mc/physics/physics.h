@@ -51,8 +51,9 @@ inline bool is_dielectric(const Physics& physics) { return physics.inelastic == 
 /// From the zero of energies inside to the vacuum: 0 where the barrier is off.
 double effective_barrier_ev(const Physics& physics, const Material& material);
 
-/// The cutoff that holds for a material: `cutoff_ev` or its default.
+/// The cutoff that holds for a material: `cutoff_ev` or its default. It asks for no more of a material than its barrier.
 double effective_cutoff_ev(const Physics& physics, const Material& material);
+double effective_cutoff_ev(const Physics& physics, double effective_barrier_ev);
 
 /// Reads "elastic=mott,secondaries=off" over the given settings. Keys: inelastic = monsel | dielectric, inelastic-model =
 /// full-penn | single-pole, auger = off | on, elastic = mott | mott-phonon | browning, atoms = free | solid, loss = joy-luo | none,

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-// Yields of bare half-spaces, and the measured ones to compare with: for fit_loss_join and
-// yields_of_materials.
+// Measured yields to compare with: for fit_loss_join and yields_of_materials.
 
 #include <cmath>
 #include <fstream>
@@ -14,7 +13,6 @@
 #include "surf/io/csv_line.h"
 #include "surf/io/sim/materials.h"
 #include "surf/mc/physics/element.h"
-#include "surf/mc/simulate.h"
 
 namespace surf::bench {
 
@@ -57,31 +55,6 @@ inline Means read_means(const std::vector<std::string>& paths, const std::string
 inline std::string measured_as(const mc::Material& material, const Means& means) {
   if (means.contains(material.name) || material.constituents.size() != 1) return material.name;
   return mc::element(material.constituents[0].atomic_number).symbol;
-}
-
-struct FlatYields {
-  mc::Estimate se, bse;
-};
-
-inline FlatYields simulate_flat(const mc::Material& material, double energy_ev,
-                                std::int64_t electrons) {
-  mc::Specimen specimen;
-  specimen.materials = {material};
-  specimen.substrate = mc::Substrate{};
-  mc::Beam beam;
-  beam.energy_ev = energy_ev;
-  mc::Scan scan;
-  scan.width = scan.height = 4;   // units of work for the threads
-  mc::SimulationOptions options;
-  options.budget = mc::ElectronsPerPixel{std::max<std::int64_t>(electrons / 16, 1)};
-  options.tile_pixels = 1;
-  const auto result = mc::simulate(mc::Scene(specimen, beam, scan), options);
-  const auto yield = [&](std::size_t detector) {
-    mc::Counts sum;
-    for (const mc::Counts& c : result.counts[detector].data()) sum += c;
-    return mc::estimate(result.balance.incident, sum);
-  };
-  return {yield(0), yield(1)};
 }
 
 }  // namespace surf::bench
