@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How long work goes on after it is told to stop: each is stopped at nine points spread over its time, on a surface of
-// 1025 x 1025 samples or of a million triangles. ParaView's plugin adds up to 0.05 s until it passes an abort on.
+// How long work goes on after it is told to stop: each is stopped at nine points spread over its
+// time, on a surface of 1025 x 1025 samples or of a million triangles. ParaView's plugin adds up to
+// 0.05 s until it passes an abort on.
 //   bench_abort [PART OF A NAME [MODEL.json]]
 #include <fmt/core.h>
 
@@ -38,7 +39,9 @@ using namespace surf;
 using Clock = std::chrono::steady_clock;
 using Job = std::function<void(const Watch&)>;
 
-double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
 
 /// Seconds from the word to the end; below 0: it had ended before.
 double latency(const Job& job, double after_s) {
@@ -70,7 +73,8 @@ void measure(const std::string& name, const std::string& wanted, const Job& job)
     if (const double s = latency(job, 0.1 * tenth * whole); s >= 0) latencies.push_back(s);
   std::ranges::sort(latencies);
   if (latencies.empty()) latencies.push_back(0);
-  fmt::print("{:<36} {:>8.2f} {:>10.3f} {:>10.3f}\n", name, whole, latencies[latencies.size() / 2], latencies.back());
+  fmt::print("{:<36} {:>8.2f} {:>10.3f} {:>10.3f}\n", name, whole, latencies[latencies.size() / 2],
+             latencies.back());
   std::fflush(stdout);
 }
 
@@ -87,8 +91,9 @@ int main(int argc, char** argv) {
   const std::string wanted = argc > 1 ? argv[1] : "";
   const HeightField field = make_rough({1024, 1024, 1}, 10, 25, 1);
   const TriangleMesh sheet = height_field_sheet(make_rough({708, 708, 1}, 10, 25, 1));
-  TriangleMesh torn = sheet;   // holes all over, and vertices that are several
-  for (std::size_t t = 0; t < torn.triangles.size(); t += 997) torn.triangles[t] = torn.triangles.back();
+  TriangleMesh torn = sheet;  // holes all over, and vertices that are several
+  for (std::size_t t = 0; t < torn.triangles.size(); t += 997)
+    torn.triangles[t] = torn.triangles.back();
   const Tip tip = conical_tip(15, 0.35, {1, 1, 31, 31});
   mc::Scan scan;
   scan.width = scan.height = 64;
@@ -96,7 +101,8 @@ int main(int argc, char** argv) {
   const mc::Specimen specimen = of_silicon(field);
   // Goes on for micrometres beyond its edge where electrons are fast: 24 GB of samples of 1 nm.
   const mc::Specimen coarse = of_silicon(make_rough({8192, 8192, 32}, 10, 800, 1));
-  fmt::print("{} x {} samples, {} triangles\n", field.z_nm.width(), field.z_nm.height(), sheet.triangles.size());
+  fmt::print("{} x {} samples, {} triangles\n", field.z_nm.width(), field.z_nm.height(),
+             sheet.triangles.size());
   fmt::print("{:<36} {:>8} {:>10} {:>10}\n", "", "whole s", "median s", "longest s");
   measure("find_plane", wanted, [&](const Watch& w) { find_plane(field, {.watch = w}); });
   measure("median_filter 9 x 9", wanted, [&](const Watch& w) {
@@ -104,16 +110,19 @@ int main(int argc, char** argv) {
     median_filter(field, {.radius = 4, .watch = w}, summary);
   });
   measure("erode", wanted, [&](const Watch& w) { erode(field, tip, {.watch = w}); });
-  measure("certainty_map", wanted, [&](const Watch& w) { certainty_map(field, tip, {.watch = w}); });
+  measure("certainty_map", wanted,
+          [&](const Watch& w) { certainty_map(field, tip, {.watch = w}); });
   measure("thin_height_field", wanted, [&](const Watch& w) {
     ThinSummary summary;
     thin_height_field(field, {.tolerance_nm = 0.1, .watch = w}, summary);
   });
   measure("mean_curvature", wanted, [&](const Watch& w) { mean_curvature(sheet, 0, w); });
   measure("sheet_solid", wanted, [&](const Watch& w) { sheet_solid(sheet, -1000, w); });
-  measure("mesh_height_field", wanted, [&](const Watch& w) { mesh_height_field(sheet, {.pitch_nm = 0.7, .watch = w}); });
+  measure("mesh_height_field", wanted,
+          [&](const Watch& w) { mesh_height_field(sheet, {.pitch_nm = 0.7, .watch = w}); });
   measure("check_mesh", wanted, [&](const Watch& w) { check_mesh(sheet, w); });
-  measure("find_self_intersections", wanted, [&](const Watch& w) { find_self_intersections(sheet, {.watch = w}); });
+  measure("find_self_intersections", wanted,
+          [&](const Watch& w) { find_self_intersections(sheet, {.watch = w}); });
   measure("repair_mesh, sound", wanted, [&](const Watch& w) {
     RepairSummary summary;
     repair_mesh(sheet, {.watch = w}, summary);
@@ -126,7 +135,8 @@ int main(int argc, char** argv) {
     SimplifySummary summary;
     simplify_mesh(sheet, {.triangles = sheet.triangles.size() / 10, .watch = w}, summary);
   });
-  measure("mc::Scene, field", wanted, [&](const Watch& w) { mc::Scene(specimen, {}, scan, {}, {.watch = w}); });
+  measure("mc::Scene, field", wanted,
+          [&](const Watch& w) { mc::Scene(specimen, {}, scan, {}, {.watch = w}); });
   measure("mc::Scene, mesh", wanted, [&](const Watch& w) {
     mc::Specimen of_mesh = specimen;
     of_mesh.height_field.reset();
@@ -142,7 +152,8 @@ int main(int argc, char** argv) {
     const std::string name = fmt::format("mc::simulate, direct, {:g} keV", energy_ev / 1000);
     if (name.find(wanted) == std::string::npos) continue;
     const mc::Scene scene(coarse, beam, scan);
-    measure(name, wanted, [&](const Watch& w) { mc::simulate(scene, options, {.cancel = w.cancel}); });
+    measure(name, wanted,
+            [&](const Watch& w) { mc::simulate(scene, options, {.cancel = w.cancel}); });
   }
   if (argc > 2) {
     const TrainedModel trained = io::read_model(argv[2]);

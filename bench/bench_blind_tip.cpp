@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Blind tip reconstruction of 512 x 512 pixels by 41 x 41 samples on one thread and two, beside Gwyddion's
-// library on the same heights in the same run where it is installed, and how far the two tips are apart; a
-// sweep of 40 thresholds; the twin experiment of the best estimate.
+// Blind tip reconstruction of 512 x 512 pixels by 41 x 41 samples on one thread and two, beside
+// Gwyddion's library on the same heights in the same run where it is installed, and how far the two
+// tips are apart; a sweep of 40 thresholds; the twin experiment of the best estimate.
 //   bench_blind_tip [--quick]
 #include <algorithm>
 #include <chrono>
@@ -37,7 +37,8 @@ HeightField scan_of(int pixels, const Tip& tip, double noise_nm) {
   HeightField out;
   Grid<double> surface(pixels, pixels);
   for (int k = 0; k < pixels * pixels / 600; ++k) {
-    const int cx = static_cast<int>(random.uniform() * pixels), cy = static_cast<int>(random.uniform() * pixels);
+    const int cx = static_cast<int>(random.uniform() * pixels),
+              cy = static_cast<int>(random.uniform() * pixels);
     const double radius = 2 + 4 * random.uniform(), height = 5 + 10 * random.uniform();
     for (int y = std::max(0, cy - 6); y <= std::min(pixels - 1, cy + 6); ++y)
       for (int x = std::max(0, cx - 6); x <= std::min(pixels - 1, cx + 6); ++x)
@@ -63,17 +64,20 @@ Tip lopsided(int radius) {
   tip.apex_x = tip.apex_y = radius;
   for (int j = -radius; j <= radius; ++j)
     for (int i = -radius; i <= radius; ++i)
-      tip.z_nm(i + radius, j + radius) = -(1.2 * i * i + j * j + 0.2 * i * j) / 24 - 0.1 * std::max(0, i);
+      tip.z_nm(i + radius, j + radius) =
+          -(1.2 * i * i + j * j + 0.2 * i * j) / 24 - 0.1 * std::max(0, i);
   return tip;
 }
 
 #ifdef SEMSURF_GWYDDION
 // Row 0 is the top there.
-double by_gwyddion(const HeightField& scan, double threshold_nm, int size, Tip& out, double& partial_seconds) {
+double by_gwyddion(const HeightField& scan, double threshold_nm, int size, Tip& out,
+                   double& partial_seconds) {
   const int w = scan.z_nm.width(), h = scan.z_nm.height();
   GwyDataField* image = gwy_data_field_new(w, h, w, h, FALSE);
   for (int y = 0; y < h; ++y)
-    for (int x = 0; x < w; ++x) gwy_data_field_get_data(image)[(h - 1 - y) * w + x] = scan.z_nm(x, y);
+    for (int x = 0; x < w; ++x)
+      gwy_data_field_get_data(image)[(h - 1 - y) * w + x] = scan.z_nm(x, y);
   GwyDataField* tip = gwy_data_field_new(size, size, size, size, TRUE);
   int count = -1;
   partial_seconds = seconds([&] {
@@ -105,8 +109,8 @@ void compare(const HeightField& scan, double threshold_nm, int size) {
   for (const int threads : {1, 2}) {
     options.threads = threads;
     const double s = seconds([&] { tip = blind_tip({scan}, options, summary); });
-    fmt::print("threshold {} nm, {} thread{}: {:.3f} s, {} points in {} rounds\n", threshold_nm, threads,
-               threads > 1 ? "s" : "", s, summary.points, summary.rounds);
+    fmt::print("threshold {} nm, {} thread{}: {:.3f} s, {} points in {} rounds\n", threshold_nm,
+               threads, threads > 1 ? "s" : "", s, summary.points, summary.rounds);
   }
 #ifdef SEMSURF_GWYDDION
   Tip theirs;
@@ -120,8 +124,8 @@ void compare(const HeightField& scan, double threshold_nm, int size) {
       const double d = tip.z_nm.data()[k] - t.z_nm.data()[k];
       if (std::fabs(d) > most) most = std::fabs(d), signed_most = d;
     }
-    fmt::print("  Gwyddion: partial {:.3f} s, full {:.2f} s more; tips {}at most {:.5f} nm apart\n", partial, full,
-               mirrored ? "(mirrored) " : "", signed_most);
+    fmt::print("  Gwyddion: partial {:.3f} s, full {:.2f} s more; tips {}at most {:.5f} nm apart\n",
+               partial, full, mirrored ? "(mirrored) " : "", signed_most);
   }
 #endif
 }
@@ -141,28 +145,35 @@ int main(int argc, char** argv) {
   sweep.noise = {0, 0.01};
   TipSweep swept;
   const double s = seconds([&] { swept = sweep_tips({scan}, sweep); });
-  fmt::print("sweep of {} thresholds, all threads: {:.1f} s, chosen {:.2f} nm\n", sweep.thresholds, s,
-             swept.curve[swept.chosen].threshold_nm);
+  fmt::print("sweep of {} thresholds, all threads: {:.1f} s, chosen {:.2f} nm\n", sweep.thresholds,
+             s, swept.curve[swept.chosen].threshold_nm);
 
-  for (const auto& [name, alpha, apart_nm] :
-       {std::tuple("white noise", 0.0, 0.0), {"AR(1) noise, 0.6", 0.6, 0.0}, {"double tip", 0.0, 4.5}}) {
+  for (const auto& [name, alpha, apart_nm] : {std::tuple("white noise", 0.0, 0.0),
+                                              {"AR(1) noise, 0.6", 0.6, 0.0},
+                                              {"double tip", 0.0, 4.5}}) {
     const AfmNoise noise{alpha, 0.09 * (1 - alpha * alpha)};
     double squares = 0, classical = 0, time = 0;
     const int seeds = quick ? 2 : 5;
     for (int seed = 1; seed <= seeds; ++seed) {
-      const test::TwinExperiment twin = test::twin_experiment(noise, apart_nm, static_cast<std::uint64_t>(seed));
+      const test::TwinExperiment twin =
+          test::twin_experiment(noise, apart_nm, static_cast<std::uint64_t>(seed));
       BestTipOptions best;
       best.width = best.height = twin.tip.z_nm.width();
       best.noise = noise;
       BestTipSummary summary;
-      time += seconds([&] { squares += std::pow(twin.error_of(best_tip(twin.scans, best, summary)), 2); }) / seeds;
+      time += seconds([&] {
+                squares += std::pow(twin.error_of(best_tip(twin.scans, best, summary)), 2);
+              }) /
+              seeds;
       BlindTipOptions blind;
       blind.width = blind.height = best.width;
       blind.threshold_nm = 0.9;
       BlindTipSummary ignored;
       classical += std::pow(twin.error_of(blind_tip(twin.scans, blind, ignored)), 2);
     }
-    fmt::print("twin experiment, {}: best estimate {:.3f} nm in {:.2f} s, classical at 3 sigma {:.3f} nm\n", name,
-               std::sqrt(squares / seeds), time, std::sqrt(classical / seeds));
+    fmt::print(
+        "twin experiment, {}: best estimate {:.3f} nm in {:.2f} s, classical at 3 sigma {:.3f} "
+        "nm\n",
+        name, std::sqrt(squares / seeds), time, std::sqrt(classical / seeds));
   }
 }

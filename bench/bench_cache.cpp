@@ -39,8 +39,7 @@ int main(int argc, char** argv) {
   surf::io::Cache cache(folder);
   report("store (with fsync)", megabytes, [&] { cache.store("bench", payload); });
   report("load", megabytes, [&] { cache.load("bench"); });
-  report("check all entries", megabytes,
-         [&] { cache.list(surf::io::Cache::Check::everything); });
+  report("check all entries", megabytes, [&] { cache.list(surf::io::Cache::Check::everything); });
   const auto path = cache.list().at(0).path;
   report("floor: read the file", megabytes, [&] { surf::io::read_file(path); });
   report("instead: SHA-256 of it", megabytes, [&] { surf::io::sha256_of(payload); });

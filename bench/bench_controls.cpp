@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a control of higher order would leave of a pixel's variance, as JSON: the same cascades, with the
-// same random numbers, on waves and on their Taylor polynomials about the pixel, of first order (the
-// tangent plane, which `--accuracy` compares with), second (a quadric) and third. The variance of the
-// difference of the counts over that of the counts, averaged over pixels.
+// What a control of higher order would leave of a pixel's variance, as JSON: the same cascades,
+// with the same random numbers, on waves and on their Taylor polynomials about the pixel, of first
+// order (the tangent plane, which `--accuracy` compares with), second (a quadric) and third. The
+// variance of the difference of the counts over that of the counts, averaged over pixels.
 //   bench_controls [--quick] [output.json]
 #include <algorithm>
 #include <array>
@@ -22,7 +22,8 @@ namespace {
 using namespace surf;
 using nlohmann::json;
 
-// a (sin k x + sin 0.9 k y) about a point, as a polynomial of that order; the waves themselves above 3.
+// a (sin k x + sin 0.9 k y) about a point, as a polynomial of that order; the waves themselves
+// above 3.
 mc::Specimen surface(double wavelength_nm, double radius_nm, double x_nm, double y_nm, int order) {
   constexpr double half_width_nm = 150;
   const double pitch_nm = wavelength_nm / 100;
@@ -33,7 +34,8 @@ mc::Specimen surface(double wavelength_nm, double radius_nm, double x_nm, double
     // Farther out polynomials tower over the pixel: level from where the waves have turned.
     if (order > 1) d = std::clamp(d, -wavelength_nm / 4, wavelength_nm / 4);
     const std::array<double, 4> derivatives{std::sin(wave_number * at), std::cos(wave_number * at),
-                                            -std::sin(wave_number * at), -std::cos(wave_number * at)};
+                                            -std::sin(wave_number * at),
+                                            -std::cos(wave_number * at)};
     double sum = 0, term = 1;
     for (int n = 0; n <= order; ++n) {
       sum += derivatives[static_cast<std::size_t>(n)] * term;
@@ -75,7 +77,8 @@ json left(double energy_ev, double wavelength_nm, double radius_nm, int points, 
   std::array<std::array<double, orders>, 2> remains{};
   for (int p = 0; p < points; ++p) {
     // Spread evenly over a wave, by the golden ratio.
-    const double x_nm = wavelength_nm * (p + 0.5) / points, y_nm = wavelength_nm * std::fmod(0.618034 * p, 1);
+    const double x_nm = wavelength_nm * (p + 0.5) / points,
+                 y_nm = wavelength_nm * std::fmod(0.618034 * p, 1);
     const auto counts = [&](int order) {
       return primaries(surface(wavelength_nm, radius_nm, x_nm, y_nm, order), energy_ev, across);
     };
@@ -96,8 +99,9 @@ json left(double energy_ev, double wavelength_nm, double radius_nm, int points, 
     }
   }
   out["left"] = {{"SE", remains[0]}, {"BSE", remains[1]}};
-  fmt::print(stderr, "{} eV, waves of {} nm, radii from {} nm: of SE {:.3f} plane, {:.3f} quadric, {:.3f} "
-                     "cubic; of BSE {:.3f}, {:.3f}, {:.3f}\n",
+  fmt::print(stderr,
+             "{} eV, waves of {} nm, radii from {} nm: of SE {:.3f} plane, {:.3f} quadric, {:.3f} "
+             "cubic; of BSE {:.3f}, {:.3f}, {:.3f}\n",
              energy_ev, wavelength_nm, radius_nm, remains[0][0], remains[0][1], remains[0][2],
              remains[1][0], remains[1][1], remains[1][2]);
   return out;
@@ -115,8 +119,10 @@ int main(int argc, char** argv) {
   json out;
   const int points = quick ? 3 : 6, across = quick ? 48 : 64;
   for (const double energy_ev : {500.0, 1000.0, 2000.0})
-    for (const auto& [wavelength_nm, radius_nm] : {std::pair{200.0, 250.0}, {120.0, 90.0}, {60.0, 25.0}})
-      if (!quick || energy_ev == 1000) out.push_back(left(energy_ev, wavelength_nm, radius_nm, points, across));
+    for (const auto& [wavelength_nm, radius_nm] :
+         {std::pair{200.0, 250.0}, {120.0, 90.0}, {60.0, 25.0}})
+      if (!quick || energy_ev == 1000)
+        out.push_back(left(energy_ev, wavelength_nm, radius_nm, points, across));
   const std::string text = out.dump(2) + "\n";
   if (file.empty()) fmt::print("{}", text);
   else std::ofstream(file) << text;

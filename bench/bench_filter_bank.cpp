@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How fast images are predicted, with and without their gradient, beside what the vector unit can do at most.
+// How fast images are predicted, with and without their gradient, beside what the vector unit can
+// do at most.
 //   bench_filter_bank [runs, default 31] [pixels of the largest field along a side, default 4096]
-// Times are medians and least ones, CPU seconds of one thread: other programs on the machine slow both.
-// Of the peak is what the median reaches. Operations are counted as the passes do them on a field without
-// a border: for each pixel and scale 11 one-dimensional passes of a multiply-add per pair of samples, and
-// the sums and differences of the pairs; a transposed pass does the same.
+// Times are medians and least ones, CPU seconds of one thread: other programs on the machine slow
+// both. Of the peak is what the median reaches. Operations are counted as the passes do them on a
+// field without a border: for each pixel and scale 11 one-dimensional passes of a multiply-add per
+// pair of samples, and the sums and differences of the pairs; a transposed pass does the same.
 #include <time.h>
 
 #include <algorithm>
@@ -47,21 +48,21 @@ Time measure_time(int runs, const Work& work) {
   return {seconds[runs / 2], seconds[0]};
 }
 
-// Multiply-adds and additions on nothing but registers, as many of one as of the other, 10^9 single-precision
-// operations per second (a multiply-add is one).
-#define PEAK(name, bytes, target)                                                      \
-  target double name() {                                                               \
-    typedef float V [[gnu::vector_size(bytes)]];                                       \
-    V sum[7] = {}, product[7] = {}, b = V{} + 1e-9F;                                   \
-    constexpr long steps = 4'000'000;                                                  \
-    const double start = cpu_seconds();                                                \
-    for (long i = 0; i < steps; ++i)                                                   \
-      for (int j = 0; j < 7; ++j) {                                                    \
-        sum[j] = sum[j] + b;                                                           \
-        product[j] = product[j] * b + b;                                               \
-        asm volatile("" : "+v"(sum[j]), "+v"(product[j]));                             \
-      }                                                                                \
-    return 1e-9 * steps * 14 * (bytes / 4) / (cpu_seconds() - start);                  \
+// Multiply-adds and additions on nothing but registers, as many of one as of the other, 10^9
+// single-precision operations per second (a multiply-add is one).
+#define PEAK(name, bytes, target)                                     \
+  target double name() {                                              \
+    typedef float V [[gnu::vector_size(bytes)]];                      \
+    V sum[7] = {}, product[7] = {}, b = V{} + 1e-9F;                  \
+    constexpr long steps = 4'000'000;                                 \
+    const double start = cpu_seconds();                               \
+    for (long i = 0; i < steps; ++i)                                  \
+      for (int j = 0; j < 7; ++j) {                                   \
+        sum[j] = sum[j] + b;                                          \
+        product[j] = product[j] * b + b;                              \
+        asm volatile("" : "+v"(sum[j]), "+v"(product[j]));            \
+      }                                                               \
+    return 1e-9 * steps * 14 * (bytes / 4) / (cpu_seconds() - start); \
   }
 #ifdef __x86_64__
 PEAK(peak_portable, 16, )
@@ -69,10 +70,11 @@ PEAK(peak_avx2, 32, [[gnu::target("avx2,fma")]])
 PEAK(peak_avx512, 64, [[gnu::target("avx512f,fma,prefer-vector-width=512")]])
 
 double peak() {
-  double most = 0;   // of several: the machine may be doing other things
+  double most = 0;  // of several: the machine may be doing other things
   for (int i = 0; i < 7; ++i)
     most = std::max(most, __builtin_cpu_supports("avx512f") ? peak_avx512()
-                          : __builtin_cpu_supports("avx2") ? peak_avx2() : peak_portable());
+                          : __builtin_cpu_supports("avx2")  ? peak_avx2()
+                                                            : peak_portable());
   return most;
 }
 #else
@@ -92,7 +94,8 @@ FilterBankParameters bank(const std::vector<FacetScale>& scales, bool multi_reso
   FilterBankParameters p{scales, multi_resolution, {}};
   for (const char* name : {"SE", "BSE"})
     p.channels.push_back({name, 0.1, std::vector<double>(scales.size(), 0.1),
-                          std::vector<double>(scales.size(), 0.2), std::vector<double>(scales.size(), 0.3)});
+                          std::vector<double>(scales.size(), 0.2),
+                          std::vector<double>(scales.size(), 0.3)});
   return p;
 }
 
@@ -110,17 +113,20 @@ Row measure(const ImageModel& model, const HeightField& field, int runs) {
   const ModelOptions one{.threads = 1};
   Row row;
   row.value = measure_time(runs, [&] { model.predict(field, one); });
-  ModelImages weights(model.channels().size(), Grid<double>(field.z_nm.width(), field.z_nm.height(), 0.5));
+  ModelImages weights(model.channels().size(),
+                      Grid<double>(field.z_nm.width(), field.z_nm.height(), 0.5));
   row.both = measure_time(runs, [&] { model.linearize(field, one)->gradient(weights); });
   return row;
 }
 
 void print(const std::string& name, const Row& row, double pixels, double per_pixel, double peak) {
-  const auto part = [&](double seconds, double count) { return 100e-9 * count * pixels / seconds / peak; };
-  fmt::print("{:<26} {:9.2f} {:8.2f} {:8.1f} {:6.0f}% {:9.2f} {:8.2f} {:8.1f} {:6.0f}%\n", name, 1e3 * row.value.median,
-             1e3 * row.value.least, 1e9 * row.value.median / pixels, part(row.value.median, per_pixel),
-             1e3 * row.both.median, 1e3 * row.both.least, 1e9 * row.both.median / pixels,
-             part(row.both.median, 3 * per_pixel));
+  const auto part = [&](double seconds, double count) {
+    return 100e-9 * count * pixels / seconds / peak;
+  };
+  fmt::print("{:<26} {:9.2f} {:8.2f} {:8.1f} {:6.0f}% {:9.2f} {:8.2f} {:8.1f} {:6.0f}%\n", name,
+             1e3 * row.value.median, 1e3 * row.value.least, 1e9 * row.value.median / pixels,
+             part(row.value.median, per_pixel), 1e3 * row.both.median, 1e3 * row.both.least,
+             1e9 * row.both.median / pixels, part(row.both.median, 3 * per_pixel));
   std::fflush(stdout);
 }
 
@@ -131,28 +137,35 @@ int main(int argc, char** argv) {
   const int most_pixels = argc > 2 ? std::atoi(argv[2]) : 4096;
   const std::vector<FacetScale> all = thesis_scales();
   const double per_pixel = operations(all), most = peak();
-  fmt::print("{:.0f} operations a pixel for ten scales; peak {:.0f} 10^9/s: {:.1f} ms at least for 300 x 300\n\n",
-             per_pixel, most, 1e-6 * per_pixel * 90000 / most);
-  fmt::print("{:<26} {:>9} {:>8} {:>8} {:>7} {:>9} {:>8} {:>8} {:>7}\n", "SE and BSE, one thread", "value", "", "", "",
-             "gradient", "too", "", "");
-  fmt::print("{:<26} {:>9} {:>8} {:>8} {:>7} {:>9} {:>8} {:>8} {:>7}\n", "", "ms", "least", "ns/pixel", "of peak", "ms",
-             "least", "ns/pixel", "of peak");
+  fmt::print(
+      "{:.0f} operations a pixel for ten scales; peak {:.0f} 10^9/s: {:.1f} ms at least for 300 x "
+      "300\n\n",
+      per_pixel, most, 1e-6 * per_pixel * 90000 / most);
+  fmt::print("{:<26} {:>9} {:>8} {:>8} {:>7} {:>9} {:>8} {:>8} {:>7}\n", "SE and BSE, one thread",
+             "value", "", "", "", "gradient", "too", "", "");
+  fmt::print("{:<26} {:>9} {:>8} {:>8} {:>7} {:>9} {:>8} {:>8} {:>7}\n", "", "ms", "least",
+             "ns/pixel", "of peak", "ms", "least", "ns/pixel", "of peak");
   const HeightField field = rough(300);
   const auto full = make_filter_bank({}, bank(all));
   print("300 x 300, ten scales", measure(*full, field, runs), 90000, per_pixel, most);
   for (const FacetScale& scale : all)
     print(fmt::format("  {} x {} alone", scale.size, scale.size),
-          measure(*make_filter_bank({}, bank({scale})), field, runs), 90000, operations({scale}), most);
-  print("  multi-resolution", measure(*make_filter_bank({}, bank(all, true)), field, runs), 90000, per_pixel, most);
+          measure(*make_filter_bank({}, bank({scale})), field, runs), 90000, operations({scale}),
+          most);
+  print("  multi-resolution", measure(*make_filter_bank({}, bank(all, true)), field, runs), 90000,
+        per_pixel, most);
   SlopeModelParameters slopes{SlopeForm::table, 5, {5, 0.6}, {}};
-  for (const char* name : {"SE", "BSE"}) slopes.channels.push_back({name, 1, std::vector<double>(18, 1.0)});
-  print("  table of the slope", measure(*make_slope_model({}, slopes), field, runs), 90000, operations({{5, 0.6}}), most);
+  for (const char* name : {"SE", "BSE"})
+    slopes.channels.push_back({name, 1, std::vector<double>(18, 1.0)});
+  print("  table of the slope", measure(*make_slope_model({}, slopes), field, runs), 90000,
+        operations({{5, 0.6}}), most);
   slopes.form = SlopeForm::secant;
-  print("  secant", measure(*make_slope_model({}, slopes), field, runs), 90000, operations({{5, 0.6}}), most);
+  print("  secant", measure(*make_slope_model({}, slopes), field, runs), 90000,
+        operations({{5, 0.6}}), most);
   for (int n = 128; n <= most_pixels; n *= 2) {
     const HeightField large = rough(n);
     const double pixels = static_cast<double>(n) * n;
-    print(fmt::format("{} x {}", n, n), measure(*full, large, std::clamp(runs * 300 / n, 1, runs)), pixels, per_pixel,
-          most);
+    print(fmt::format("{} x {}", n, n), measure(*full, large, std::clamp(runs * 300 / n, 1, runs)),
+          pixels, per_pixel, most);
   }
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How fast scans are levelled, cleaned and their noise estimated, as JSON, on one thread; Gwyddion's library on
-// the same array beside it where it is installed. 512 x 512 samples, 30 % of them a tilted substrate.
+// How fast scans are levelled, cleaned and their noise estimated, as JSON, on one thread;
+// Gwyddion's library on the same array beside it where it is installed. 512 x 512 samples, 30 % of
+// them a tilted substrate.
 //   bench_level [output.json]
 #include <algorithm>
 #include <chrono>
@@ -40,7 +41,8 @@ double seconds(const Work& work) {
   for (int i = 0; i < 5; ++i) {
     const auto start = std::chrono::steady_clock::now();
     work();
-    times.push_back(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+    times.push_back(
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
   }
   std::sort(times.begin(), times.end());
   return times[2];
@@ -55,7 +57,8 @@ HeightField scan() {
       const double top = random.uniform() < 0.3 ? 0 : 5 + 55 * random.uniform();
       const double tilt = top > 0 ? random.uniform() - 0.5 : 0;
       for (int y = j; y < j + 16; ++y)
-        for (int x = i; x < i + 16; ++x) f.z_nm(x, y) += slope_x * x + slope_y * y + top + tilt * (x - i);
+        for (int x = i; x < i + 16; ++x)
+          f.z_nm(x, y) += slope_x * x + slope_y * y + top + tilt * (x - i);
     }
   }
   return f;
@@ -80,7 +83,8 @@ void compare(const HeightField& f, const HeightField& median_of_ours, json& out)
   double c = 0, bx = 0, by = 0;
   s["mean_plane"] = seconds([&] { gwy_data_field_fit_plane(g, &c, &bx, &by); });
   out["gwyddion_mean_plane"] = {{"slope_x", bx}, {"slope_y", by}};
-  s["facet_plane"] = seconds([&] { gwy_data_field_fit_facet_plane(g, nullptr, GWY_MASK_IGNORE, &c, &bx, &by); });
+  s["facet_plane"] =
+      seconds([&] { gwy_data_field_fit_facet_plane(g, nullptr, GWY_MASK_IGNORE, &c, &bx, &by); });
   out["gwyddion_facet_plane_off_nm"] = off_nm(bx, by);
   for (const int width : {3, 11, 41}) {
     GwyDataField* copy = nullptr;
@@ -91,9 +95,10 @@ void compare(const HeightField& f, const HeightField& median_of_ours, json& out)
     });
     if (width == 11) {
       CleanSummary unused;
-      const HeightField disc =
-          median_filter(f, {.radius = 5, .neighbourhood = Neighbourhood::disc, .threads = 1}, unused);
-      for (const auto& [shape, ours] : {std::pair{"square", &median_of_ours}, std::pair{"disc", &disc}}) {
+      const HeightField disc = median_filter(
+          f, {.radius = 5, .neighbourhood = Neighbourhood::disc, .threads = 1}, unused);
+      for (const auto& [shape, ours] :
+           {std::pair{"square", &median_of_ours}, std::pair{"disc", &disc}}) {
         double largest = 0;
         std::size_t others = 0;
         for (int y = 6; y < size - 6; ++y) {
@@ -124,19 +129,24 @@ int main(int argc, char** argv) {
   HoughSummary hough;
   s["hough_plane"] = seconds([&] { hough = find_plane(f); });
   out["hough_plane_off_nm"] = off_nm(hough.plane.slope_x, hough.plane.slope_y);
-  out["hough"] = {{"inliers", hough.inlier_share}, {"runner_up", hough.runner_up_share},
-                  {"planes_counted", hough.evaluated}, {"tolerance_nm", hough.tolerance_nm}};
+  out["hough"] = {{"inliers", hough.inlier_share},
+                  {"runner_up", hough.runner_up_share},
+                  {"planes_counted", hough.evaluated},
+                  {"tolerance_nm", hough.tolerance_nm}};
   CleanSummary summary;
   HeightField median;
   for (const int radius : {20, 1, 5})
     s[fmt::format("median_{}", 2 * radius + 1)] =
         seconds([&] { median = median_filter(f, {.radius = radius, .threads = 1}, summary); });
   for (const int width : {3, 41})
-    s[fmt::format("closing_{}", width)] = seconds([&] { flat_closing(f, {.width = width, .threads = 1}, summary); });
+    s[fmt::format("closing_{}", width)] =
+        seconds([&] { flat_closing(f, {.width = width, .threads = 1}, summary); });
   s["noise_differences"] = seconds([&] { estimate_noise(f); });
   s["noise_flat"] = seconds([&] { estimate_flat_noise(f); });
   Grid<double> gradient;
-  s["log_likelihood_and_gradient"] = seconds([&] { log_likelihood(f.z_nm, {0.8, 1}, {}, &gradient); });
+  s["log_likelihood_and_gradient"] = seconds([&] {
+    log_likelihood(f.z_nm, {0.8, 1}, {}, &gradient);
+  });
 #ifdef SEMSURF_GWYDDION
   compare(f, median, out);
 #else

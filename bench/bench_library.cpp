@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What libraries of cascades cost: for each material and energy the bytes and electrons of a cascade,
-// the processor time to make 10,000 (of all threads together, so that other work beside matters
-// little), and for one page of 2048 the time to make it, to check it, to make its sample, to load it.
+// What libraries of cascades cost: for each material and energy the bytes and electrons of a
+// cascade, the processor time to make 10,000 (of all threads together, so that other work beside
+// matters little), and for one page of 2048 the time to make it, to check it, to make its sample,
+// to load it.
 //   bench_library [cascades, default 10000] [MATERIAL...] [keV...]
 #include <cstdlib>
 #include <ctime>
@@ -34,12 +35,12 @@ void measure(const std::string& material, double kev, std::size_t cascades) {
   std::shared_ptr<const mc::CascadeLibrary> library;
   mc::FreshLibraries fresh;
   const double make = seconds([&] { library = fresh.library(settings, cascades, 0, {}, nullptr); });
-  const double share = double(cascades) / double(library->cascades());   // whole pages are made
+  const double share = double(cascades) / double(library->cascades());  // whole pages are made
   const auto statistics = mc::describe(*library, cascades);
 
   workflow::CachedLibraries(folder).library(settings, 1, 0, {}, nullptr);
-  const double load = seconds(
-      [&] { workflow::CachedLibraries(folder).library(settings, 1, 0, {}, nullptr); });
+  const double load =
+      seconds([&] { workflow::CachedLibraries(folder).library(settings, 1, 0, {}, nullptr); });
   mc::CascadeLibrary empty(settings);
   const auto page = std::make_shared<const mc::CascadePage>(empty.make_page(0, 0));
   const double check = seconds([&] { empty.add_page(page); });

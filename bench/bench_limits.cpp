@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Where methods fail (docs/limits.md): runs sweeps and writes their figures and charts.
 //   bench_limits [NAME ...] [--out FOLDER] [--draw] [--list]
-// Without names all of them; FOLDER is docs/limits by default. With --draw charts of the figures that are there.
+// Without names all of them; FOLDER is docs/limits by default. With --draw charts of the figures
+// that are there.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -32,14 +33,17 @@ int main(int argc, char** argv) {
     else names.push_back(word);
   }
   for (const std::string& name : names)
-    if (std::none_of(limits::sweeps().begin(), limits::sweeps().end(), [&](const auto& s) { return s.name == name; })) {
+    if (std::none_of(limits::sweeps().begin(), limits::sweeps().end(),
+                     [&](const auto& s) { return s.name == name; })) {
       fmt::print(stderr, "{}: there is no such sweep; --list shows all\n", name);
       return 2;
     }
   try {
     for (const limits::Sweep& sweep : limits::sweeps()) {
-      if (!names.empty() && std::find(names.begin(), names.end(), sweep.name) == names.end()) continue;
-      const std::filesystem::path csv = folder / (sweep.name + ".csv"), svg = folder / (sweep.name + ".svg");
+      if (!names.empty() && std::find(names.begin(), names.end(), sweep.name) == names.end())
+        continue;
+      const std::filesystem::path csv = folder / (sweep.name + ".csv"),
+                                  svg = folder / (sweep.name + ".svg");
       if (draw) {
         io::write_plot(svg, sweep.plot(limits::from_csv(io::read_file(csv), csv.string())));
         continue;
@@ -50,7 +54,8 @@ int main(int argc, char** argv) {
         std::vector<double> row = sweep.at(value);
         row.insert(row.begin(), value);
         fmt::print("{}:", sweep.name);
-        for (std::size_t i = 0; i < row.size(); ++i) fmt::print(" {}={:.4g}", sweep.columns.at(i), row[i]);
+        for (std::size_t i = 0; i < row.size(); ++i)
+          fmt::print(" {}={:.4g}", sweep.columns.at(i), row[i]);
         fmt::print("\n");
         std::fflush(stdout);
         table.rows.push_back(std::move(row));

@@ -89,17 +89,19 @@ int main(int argc, char** argv) {
   s["check"] = seconds([&] { check_mesh(mesh); });
   s["check_broken"] = seconds([&] { check_mesh(soup); });
   s["self_intersections"] = seconds([&] { find_self_intersections(mesh); });
-  s["self_intersections_1_thread"] = seconds([&] { find_self_intersections(mesh, {.threads = 1}); });
+  s["self_intersections_1_thread"] =
+      seconds([&] { find_self_intersections(mesh, {.threads = 1}); });
   RepairSummary repair;
   s["repair_sound"] = seconds([&] { repair_mesh(mesh, {}, repair); });
   out["sound_unchanged"] = !repair.changed;
   s["repair_broken"] = seconds([&] { repair_mesh(soup, {}, repair); });
-  out["repaired"] = {{"sound", repair.sound()}, {"merged", repair.merged_vertices},
-                     {"turned", repair.turned_triangles}, {"filled", repair.filled_holes},
+  out["repaired"] = {{"sound", repair.sound()},
+                     {"merged", repair.merged_vertices},
+                     {"turned", repair.turned_triangles},
+                     {"filled", repair.filled_holes},
                      {"duplicates", repair.removed_duplicates}};
-  s["repair_broken_without_self_intersections"] = seconds([&] {
-    repair_mesh(soup, {.resolve_self_intersections = false}, repair);
-  });
+  s["repair_broken_without_self_intersections"] =
+      seconds([&] { repair_mesh(soup, {.resolve_self_intersections = false}, repair); });
   s["smooth_10"] = seconds([&] { smooth_mesh(mesh, {}); });
   s["measure"] = seconds([&] { measure_mesh(mesh); });
   s["height_field"] = seconds([&] { mesh_height_field(mesh, {.pitch_nm = 0.5}); });
@@ -107,17 +109,21 @@ int main(int argc, char** argv) {
   for (const double tolerance : {0.1, 1.0}) {
     SimplifySummary simple;
     const double t = seconds([&] { simplify_mesh(part, {.tolerance_nm = tolerance}, simple); });
-    out["simplify"].push_back({{"tolerance_nm", tolerance}, {"seconds", t},
+    out["simplify"].push_back({{"tolerance_nm", tolerance},
+                               {"seconds", t},
                                {"triangles_before", simple.triangles_before},
-                               {"triangles", simple.triangles_after}, {"runs", simple.attempts},
+                               {"triangles", simple.triangles_after},
+                               {"runs", simple.attempts},
                                {"deviation_nm", simple.deviation.largest_nm()}});
   }
 
   Soup c = to_soup(mesh);
   CGAL::Surface_mesh<Point> cgal;
-  s["cgal_from_sound_soup"] = seconds([&] { pmp::polygon_soup_to_polygon_mesh(c.points, c.polygons, cgal); });
+  s["cgal_from_sound_soup"] =
+      seconds([&] { pmp::polygon_soup_to_polygon_mesh(c.points, c.polygons, cgal); });
   std::vector<std::pair<CGAL::SM_Face_index, CGAL::SM_Face_index>> pairs;
-  s["cgal_self_intersections"] = seconds([&] { pmp::self_intersections(cgal, std::back_inserter(pairs)); });
+  s["cgal_self_intersections"] =
+      seconds([&] { pmp::self_intersections(cgal, std::back_inserter(pairs)); });
   c = to_soup(soup);
   CGAL::Surface_mesh<Point> mended;
   s["cgal_repair_soup_orient_stitch"] = seconds([&] {

@@ -1,17 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How far fast image models are from Monte Carlo on surfaces that they were not trained on, against the time
-// that they take: the thesis's table 6-2 and figures 6-9, 6-10, E-3 and E-4, and a chart of error against time.
+// How far fast image models are from Monte Carlo on surfaces that they were not trained on, against
+// the time that they take: the thesis's table 6-2 and figures 6-9, 6-10, E-3 and E-4, and a chart
+// of error against time.
 //   bench_models FOLDER MODEL.json ...
-// Models as `semsurf train` writes them, of silicon at 1 keV. Surfaces: after the thesis's description a square
-// 20 nm high, 45 nm wide at the top with 3 nm pixels, or 15 nm with 1 nm pixels, its walls 6 nm long; and
-// bumps and crevices like its figure 6-4. A model sees those of its own pixel size.
-// The Monte Carlo images are kept in FOLDER and made where they are not there: two independent halves, each of
-// several libraries of cascades. Of squares the eight mirror images and turns are averaged. What is written
-// beside them: models.csv, models.svg and, for each surface, a picture NAME.png: above SE, below BSE, Monte
-// Carlo first, then the models in their order.
-// rms: of the difference to the truth, from the product of the differences to both halves, whose noise is
-// independent. mean, median, deviation and maximum are of |model - image| / image as the thesis has them, the
-// image's noise included; mean less noise takes the noise's share off a folded normal distribution.
+// Models as `semsurf train` writes them, of silicon at 1 keV. Surfaces: after the thesis's
+// description a square 20 nm high, 45 nm wide at the top with 3 nm pixels, or 15 nm with 1 nm
+// pixels, its walls 6 nm long; and bumps and crevices like its figure 6-4. A model sees those of
+// its own pixel size. The Monte Carlo images are kept in FOLDER and made where they are not there:
+// two independent halves, each of several libraries of cascades. Of squares the eight mirror images
+// and turns are averaged. What is written beside them: models.csv, models.svg and, for each
+// surface, a picture NAME.png: above SE, below BSE, Monte Carlo first, then the models in their
+// order. rms: of the difference to the truth, from the product of the differences to both halves,
+// whose noise is independent. mean, median, deviation and maximum are of |model - image| / image as
+// the thesis has them, the image's noise included; mean less noise takes the noise's share off a
+// folded normal distribution.
 #include <time.h>
 
 #include <algorithm>
@@ -40,14 +42,14 @@ namespace {
 using namespace surf;
 namespace fs = std::filesystem;
 
-constexpr int libraries = 4;   // of each half
+constexpr int libraries = 4;  // of each half
 
 struct Surface {
   std::string name;
   double pixel_nm;
   HeightField field;
-  bool square;                ///< it has the symmetry of one
-  std::int64_t electrons;     ///< per pixel and library
+  bool square;             ///< it has the symmetry of one
+  std::int64_t electrons;  ///< per pixel and library
 };
 
 HeightField square(int pixels, double pixel_nm, double top_nm) {
@@ -72,7 +74,8 @@ HeightField crevices(int pixels, double pixel_nm, std::uint64_t seed) {
       for (int u = 0; u < pixels; ++u) {
         const double d2 = std::pow(field.x_nm(u) - x, 2) + std::pow(field.y_nm(v) - y, 2);
         if (d2 < radius * radius)
-          field.z_nm(u, v) = std::max(field.z_nm(u, v), base + rise * std::sqrt(radius * radius - d2));
+          field.z_nm(u, v) =
+              std::max(field.z_nm(u, v), base + rise * std::sqrt(radius * radius - d2));
       }
   }
   return field;
@@ -194,7 +197,8 @@ Model load(const fs::path& path) {
   const int runs = std::clamp(static_cast<int>(2000 / m.value_ms), 1, 21);
   m.value_ms = median_ms(runs, [&] { m.model->predict(field, one); });
   const ModelImages weights(m.model->channels().size(), Grid<double>(300, 300, 1.0));
-  m.gradient_ms = median_ms(std::max(1, runs / 3), [&] { m.model->linearize(field, one)->gradient(weights); });
+  m.gradient_ms =
+      median_ms(std::max(1, runs / 3), [&] { m.model->linearize(field, one)->gradient(weights); });
   return m;
 }
 
@@ -211,12 +215,14 @@ void write_picture(const fs::path& path, const std::vector<std::vector<Grid<doub
   image.channels = {{"grey", "1", Grid<float>(width, height, 1.0F)}};
   for (int c = 0; c < 2; ++c) {
     double least = 1e300, most = 0;
-    for (const double v : columns[0][c].data()) least = std::min(least, v), most = std::max(most, v);
+    for (const double v : columns[0][c].data())
+      least = std::min(least, v), most = std::max(most, v);
     for (std::size_t k = 0; k < columns.size(); ++k)
       for (int y = 0; y < n; ++y)
         for (int x = 0; x < n; ++x)
           image.channels[0].values(static_cast<int>(k) * (n + gap) + x, (1 - c) * (n + gap) + y) =
-              static_cast<float>(std::clamp((columns[k][c](x, y) - least) / (most - least), 0.0, 1.0));
+              static_cast<float>(
+                  std::clamp((columns[k][c](x, y) - least) / (most - least), 0.0, 1.0));
   }
   io::write_image(path, image);
 }
@@ -226,22 +232,26 @@ int run(const fs::path& folder, const std::vector<fs::path>& files) {
   std::vector<Model> models;
   for (const fs::path& file : files) models.push_back(load(file));
   std::ofstream csv(folder / "models.csv");
-  csv << "surface,model,channel,value_ms,gradient_ms,rms,mean,mean_less_noise,median,deviation,maximum,bias,noise\n";
-  fmt::print("{:17} {:28} {:4} {:>9} {:>9} {:>6} {:>6} {:>9} {:>6} {:>6} {:>6} {:>6} {:>6}\n", "surface", "model", "",
-             "value ms", "gradient", "rms %", "mean", "less noise", "median", "dev", "max", "bias", "noise");
+  csv << "surface,model,channel,value_ms,gradient_ms,rms,mean,mean_less_noise,median,deviation,"
+         "maximum,bias,noise\n";
+  fmt::print("{:17} {:28} {:4} {:>9} {:>9} {:>6} {:>6} {:>9} {:>6} {:>6} {:>6} {:>6} {:>6}\n",
+             "surface", "model", "", "value ms", "gradient", "rms %", "mean", "less noise",
+             "median", "dev", "max", "bias", "noise");
   io::Plot plot;
   plot.title = "Error on surfaces not trained on against time for 300 x 300 pixels, one thread";
   for (const Surface& surface : surfaces()) {
     std::vector<const Model*> fitting;
     for (const Model& m : models)
-      if (m.model->scope().pixel_nm == 0 || std::abs(m.model->scope().pixel_nm - surface.pixel_nm) < 1e-3)
+      if (m.model->scope().pixel_nm == 0 ||
+          std::abs(m.model->scope().pixel_nm - surface.pixel_nm) < 1e-3)
         fitting.push_back(&m);
     if (fitting.empty()) continue;
     const auto a = reference(surface, 0, folder), b = reference(surface, 1, folder);
     std::vector<std::vector<Grid<double>>> picture(1);
     for (int c = 0; c < 2; ++c) {
       Grid<double> mean = a[c];
-      for (std::size_t i = 0; i < mean.size(); ++i) mean.data()[i] = (a[c].data()[i] + b[c].data()[i]) / 2;
+      for (std::size_t i = 0; i < mean.size(); ++i)
+        mean.data()[i] = (a[c].data()[i] + b[c].data()[i]) / 2;
       picture[0].push_back(std::move(mean));
     }
     io::PlotPanel panel;
@@ -257,13 +267,16 @@ int run(const fs::path& folder, const std::vector<fs::path>& files) {
         picture.back().push_back(k >= 0 ? images[k] : Grid<double>(a[c].width(), a[c].height()));
         if (k < 0) continue;
         const Errors e = errors(images[k], a[c], b[c]);
-        fmt::print("{:17} {:28} {:4} {:9.2f} {:9.2f} {:6.2f} {:6.2f} {:9.2f} {:6.2f} {:6.2f} {:6.1f} {:6.2f} {:6.2f}\n",
-                   surface.name, m->name, channel, m->value_ms, m->gradient_ms, 100 * e.rms, 100 * e.mean,
-                   100 * e.mean_less_noise, 100 * e.median, 100 * e.deviation, 100 * e.maximum, 100 * e.bias,
-                   100 * e.noise);
-        csv << fmt::format("{},{},{},{:.3f},{:.3f},{:.5f},{:.5f},{:.5f},{:.5f},{:.5f},{:.5f},{:.5f},{:.5f}\n", surface.name,
-                           m->name, channel, m->value_ms, m->gradient_ms, e.rms, e.mean, e.mean_less_noise, e.median,
-                           e.deviation, e.maximum, e.bias, e.noise);
+        fmt::print(
+            "{:17} {:28} {:4} {:9.2f} {:9.2f} {:6.2f} {:6.2f} {:9.2f} {:6.2f} {:6.2f} {:6.1f} "
+            "{:6.2f} {:6.2f}\n",
+            surface.name, m->name, channel, m->value_ms, m->gradient_ms, 100 * e.rms, 100 * e.mean,
+            100 * e.mean_less_noise, 100 * e.median, 100 * e.deviation, 100 * e.maximum,
+            100 * e.bias, 100 * e.noise);
+        csv << fmt::format(
+            "{},{},{},{:.3f},{:.3f},{:.5f},{:.5f},{:.5f},{:.5f},{:.5f},{:.5f},{:.5f},{:.5f}\n",
+            surface.name, m->name, channel, m->value_ms, m->gradient_ms, e.rms, e.mean,
+            e.mean_less_noise, e.median, e.deviation, e.maximum, e.bias, e.noise);
         if (e.rms > 0) {
           io::PlotSeries& s = series[channel];
           s.name = channel;

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What keeps rays away, as JSON: for a cube's top, the thesis's mesa, a rough surface and a sphere on a
-// substrate, at 1 keV and one thread: lookups of the distance bound per second, how far bounds fall
-// short of the distance within 3 nm of the surface, and rays per primary. Then what distance bounds
-// of waves over a micron take to build, against the number of triangles.
+// What keeps rays away, as JSON: for a cube's top, the thesis's mesa, a rough surface and a sphere
+// on a substrate, at 1 keV and one thread: lookups of the distance bound per second, how far bounds
+// fall short of the distance within 3 nm of the surface, and rays per primary. Then what distance
+// bounds of waves over a micron take to build, against the number of triangles.
 //   bench_near_field [output.json]
 #include <chrono>
 #include <cmath>
-#include <ctime>
 #include <cstdint>
+#include <ctime>
 #include <fstream>
 #include <string>
 #include <vector>
@@ -15,8 +15,8 @@
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
-#include "geometry/nearest_triangle.h"
 #include "geometry/distance_grid.h"
+#include "geometry/nearest_triangle.h"
 #include "surf/core/random.h"
 #include "surf/io/sim/materials.h"
 #include "surf/mc/simulate.h"
@@ -31,7 +31,7 @@ using nlohmann::json;
 struct Case {
   const char* name;
   mc::Specimen specimen;
-  TriangleMesh surface;   // of the specimen, within the view
+  TriangleMesh surface;  // of the specimen, within the view
   double view_nm;
 };
 

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // How far reconstructions are off and what they cost, on folders that `semsurf sample` made:
 //   bench_reconstruct MODEL.json FOLDER ... [--methods CHART.svg]
-// Tip, map, noise and gains are the true ones, so that it is the reconstruction that is judged; `semsurf reconstruct --truth`
-// judges the whole chain. With --methods the thesis's descents run beside Gauss-Newton, from the same start, and error
-// is drawn against time, a point for each scale.
+// Tip, map, noise and gains are the true ones, so that it is the reconstruction that is judged;
+// `semsurf reconstruct --truth` judges the whole chain. With --methods the thesis's descents run
+// beside Gauss-Newton, from the same start, and error is drawn against time, a point for each
+// scale.
 #include <fmt/format.h>
 
 #include <chrono>
@@ -23,7 +24,9 @@ namespace {
 
 using namespace surf;
 
-double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
+double now() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
 
 template <class Work>
 double seconds(const Work& work) {
@@ -57,8 +60,9 @@ double rms(const HeightField& surface, const HeightField& truth) {
 HeightField in_sem_frame(const HeightField& surface, const Scene& s) {
   const PlacedImage& i = s.sem.image;
   HeightField out = s.truth;
-  out.z_nm = reconstruction::on_frame(surface, {i.values.width(), i.values.height(), i.pitch_x_nm, i.origin_x_nm, i.origin_y_nm},
-                                      s.sem.sem_to_afm);
+  out.z_nm = reconstruction::on_frame(
+      surface, {i.values.width(), i.values.height(), i.pitch_x_nm, i.origin_x_nm, i.origin_y_nm},
+      s.sem.sem_to_afm);
   return out;
 }
 
@@ -75,15 +79,20 @@ void print_costs(const Scene& s) {
   const Step g = o.gradient(at, state);
   Preconditioner m(Preconditioner::usual_tile_px, 0);
   m.factor(o, at, state);
-  const double value = seconds([&] { o.evaluate(at); }), gradient = seconds([&] { o.gradient(at, state); });
-  const double product = seconds([&] { o.product(at, state, g); }), factor = seconds([&] { m.factor(o, at, state); });
+  const double value = seconds([&] { o.evaluate(at); }),
+               gradient = seconds([&] { o.gradient(at, state); });
+  const double product = seconds([&] { o.product(at, state, g); }),
+               factor = seconds([&] { m.factor(o, at, state); });
   const SemTerm::Near near = o.sem->near(*state.sem, at.mixture);
-  const double sparse = seconds([&] { o.product(at, state, g, &near); }), made = seconds([&] { o.sem->near(*state.sem, at.mixture); });
+  const double sparse = seconds([&] { o.product(at, state, g, &near); }),
+               made = seconds([&] { o.sem->near(*state.sem, at.mixture); });
   const double model = seconds([&] { s.sem.model->predict(frame.field(at.z_nm)); });
-  fmt::print("  costs: objective {:.0f} ms, gradient {:.0f} ms, second derivative times a vector {:.0f} ms, sparse {:.0f} ms (made in {:.0f} ms), factor {:.0f} ms, "
-             "its solution {:.0f} ms; the SEM model alone {:.0f} ms, {:.0f} samples\n",
-             1e3 * value, 1e3 * gradient, 1e3 * product, 1e3 * sparse, 1e3 * made, 1e3 * factor, 1e3 * seconds([&] { m.solve(g); }), 1e3 * model,
-             1.0 * static_cast<double>(at.z_nm.size()));
+  fmt::print(
+      "  costs: objective {:.0f} ms, gradient {:.0f} ms, second derivative times a vector {:.0f} "
+      "ms, sparse {:.0f} ms (made in {:.0f} ms), factor {:.0f} ms, "
+      "its solution {:.0f} ms; the SEM model alone {:.0f} ms, {:.0f} samples\n",
+      1e3 * value, 1e3 * gradient, 1e3 * product, 1e3 * sparse, 1e3 * made, 1e3 * factor,
+      1e3 * seconds([&] { m.solve(g); }), 1e3 * model, 1.0 * static_cast<double>(at.z_nm.size()));
 }
 
 /// When which scale ended, and how far its surface was off.
@@ -116,7 +125,8 @@ struct Run {
   double seconds = 0;
 };
 
-Run run(const Scene& s, bool afm, bool sem, const ReconstructionOptions& o, ReconstructionJournal* journal = nullptr) {
+Run run(const Scene& s, bool afm, bool sem, const ReconstructionOptions& o,
+        ReconstructionJournal* journal = nullptr) {
   const double begin = now();
   Run r{reconstruct(afm ? &s.afm : nullptr, sem ? &s.sem : nullptr, o, journal), 0};
   r.seconds = now() - begin;
@@ -130,20 +140,26 @@ void print_run(const char* label, const Run& r, double error, double start, doub
     products += s.products;
     iterations += s.iterations;
   }
-  fmt::print("  {:<28} rms {:.2f} nm = {:.2f} floors, squares {:.3f} of the eroded scan's; {:.1f} s, {} iterations, {} objectives, {} "
-             "products, {}\n",
-             label, error, error / floor, error * error / (start * start), r.seconds, iterations, evaluations, products,
-             r.result.scales.back().ended);
+  fmt::print(
+      "  {:<28} rms {:.2f} nm = {:.2f} floors, squares {:.3f} of the eroded scan's; {:.1f} s, {} "
+      "iterations, {} objectives, {} "
+      "products, {}\n",
+      label, error, error / floor, error * error / (start * start), r.seconds, iterations,
+      evaluations, products, r.result.scales.back().ended);
 }
 
-double judge(const std::string& folder, const std::shared_ptr<const ImageModel>& model, io::Plot* methods) {
+double judge(const std::string& folder, const std::shared_ptr<const ImageModel>& model,
+             io::Plot* methods) {
   const Scene s = read(folder, model);
   ReconstructionOptions o;
   o.uncertainty = false;
   const double floor = noise_floor_nm(&s.afm, &s.sem, s.truth, o);
   const Run both = run(s, true, true, o), afm = run(s, true, false, o);
-  const double start = rms(both.result.start, s.truth), alone = rms(in_sem_frame(afm.result.surface, s), s.truth);
-  fmt::print("{}\n  eroded scan rms {:.2f} nm; the floor, of noise and prior at the truth, {:.2f} nm\n", folder, start, floor);
+  const double start = rms(both.result.start, s.truth),
+               alone = rms(in_sem_frame(afm.result.surface, s), s.truth);
+  fmt::print(
+      "{}\n  eroded scan rms {:.2f} nm; the floor, of noise and prior at the truth, {:.2f} nm\n",
+      folder, start, floor);
   print_run("AFM alone", afm, alone, start, floor);
   print_run("AFM and SEM", both, rms(both.result.surface, s.truth), start, floor);
   o.refine_calibration = false;
@@ -155,10 +171,12 @@ double judge(const std::string& folder, const std::shared_ptr<const ImageModel>&
     panel.title = std::filesystem::path(folder).filename().string();
     panel.x = {"time on this machine (s)", true, {}};
     panel.y = {"root-mean-square error (nm)", true, {}};
-    panel.references = {{io::PlotDirection::horizontal, start, "eroded scan"}, {io::PlotDirection::horizontal, floor, "floor"}};
-    for (const auto& [method, name] : {std::pair{ReconstructionMethod::gauss_newton, "Gauss-Newton"},
-                                       std::pair{ReconstructionMethod::conjugate_gradients, "conjugate gradients (thesis)"},
-                                       std::pair{ReconstructionMethod::lbfgs, "L-BFGS"}}) {
+    panel.references = {{io::PlotDirection::horizontal, start, "eroded scan"},
+                        {io::PlotDirection::horizontal, floor, "floor"}};
+    for (const auto& [method, name] :
+         {std::pair{ReconstructionMethod::gauss_newton, "Gauss-Newton"},
+          std::pair{ReconstructionMethod::conjugate_gradients, "conjugate gradients (thesis)"},
+          std::pair{ReconstructionMethod::lbfgs, "L-BFGS"}}) {
       o.method = method;
       Clock clock(s.truth);
       const Run r = run(s, true, true, o, &clock);
@@ -172,11 +190,13 @@ double judge(const std::string& folder, const std::shared_ptr<const ImageModel>&
   double one = 0, two = 0;
   const auto n = static_cast<double>(s.truth.z_nm.size());
   for (std::size_t i = 0; i < s.truth.z_nm.size(); ++i) {
-    const double z = std::fabs(with.result.surface.z_nm.data()[i] - s.truth.z_nm.data()[i]) / with.result.deviation_nm.data()[i];
+    const double z = std::fabs(with.result.surface.z_nm.data()[i] - s.truth.z_nm.data()[i]) /
+                     with.result.deviation_nm.data()[i];
     one += (z < 1) / n;
     two += (z < 2) / n;
   }
-  fmt::print("  deviations: {:.2f} within one, {:.2f} within two; {:.1f} s with them\n", one, two, with.seconds);
+  fmt::print("  deviations: {:.2f} within one, {:.2f} within two; {:.1f} s with them\n", one, two,
+             with.seconds);
   print_costs(s);
   return rms(both.result.surface, s.truth) / floor;
 }
@@ -195,11 +215,14 @@ int main(int argc, char** argv) {
     return 2;
   }
   if (!chart.empty()) io::check_plot_target(chart);
-  fmt::print("The thesis's ratios of squares (table 10-1): 0.114, 0.397, 0.414, 0.133, 0.049, in 3.5 to 6 hours\n");
+  fmt::print(
+      "The thesis's ratios of squares (table 10-1): 0.114, 0.397, 0.414, 0.133, 0.049, in 3.5 to 6 "
+      "hours\n");
   const auto model = surf::make_model(surf::io::read_model(argv[1]));
   io::Plot methods;
   double worst = 0;
-  for (const std::string& folder : folders) worst = std::max(worst, judge(folder, model, chart.empty() ? nullptr : &methods));
+  for (const std::string& folder : folders)
+    worst = std::max(worst, judge(folder, model, chart.empty() ? nullptr : &methods));
   fmt::print("worst: {:.2f} floors\n", worst);
   if (!chart.empty()) io::write_plot(chart, methods);
   return 0;

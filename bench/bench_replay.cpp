@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // How fast replay is beside direct simulation, as JSON: primaries per second on flat silicon, the
-// thesis's mesa and closed meshes; cost against the number of triangles; time of an image of a rough
-// surface to 1 %; error at equal time against energy, as a chart, too; what the choice of a method goes by.
-// Errors are standard errors per pixel, root mean square over pixels, relative to the image's mean. Times
-// `sqrt(seconds)` they no longer depend on how many primaries were spent; the square of the ratio of two
-// such numbers, the gain, is how many times less time one takes for the same error. Both are without and
-// with the seconds that the library takes, which an image of any size pays for once.
+// thesis's mesa and closed meshes; cost against the number of triangles; time of an image of a
+// rough surface to 1 %; error at equal time against energy, as a chart, too; what the choice of a
+// method goes by. Errors are standard errors per pixel, root mean square over pixels, relative to
+// the image's mean. Times `sqrt(seconds)` they no longer depend on how many primaries were spent;
+// the square of the ratio of two such numbers, the gain, is how many times less time one takes for
+// the same error. Both are without and with the seconds that the library takes, which an image of
+// any size pays for once.
 //   bench_replay [--quick] [--only WORD] [--data FOLDER] [--chart FILE.png] [output.json]
 #include <algorithm>
 #include <chrono>
@@ -141,8 +142,10 @@ json at_equal_time(const json& direct, const json& replay) {
       return of_direct["root_seconds"].get<double>() / of_replay[key].get<double>();
     };
     const double alone = ratio("root_seconds"), all = ratio("root_seconds_with_library");
-    out[detector] = {{"error_ratio", alone}, {"gain", alone * alone},
-                     {"error_ratio_with_library", all}, {"gain_with_library", all * all}};
+    out[detector] = {{"error_ratio", alone},
+                     {"gain", alone * alone},
+                     {"error_ratio_with_library", all},
+                     {"gain_with_library", all * all}};
   }
   return out;
 }
@@ -161,7 +164,9 @@ mc::Scene scene_of(const mc::Specimen& specimen, double width_nm, int pixels, do
 json compare(const char* name, const mc::Scene& scene, const Sizes& sizes, std::vector<int> threads,
              KeptLibraries* kept = nullptr) {
   const double energy_ev = scene.beam().energy_ev;
-  json out{{"scene", name}, {"energy_ev", energy_ev}, {"triangles", scene.summary().triangles},
+  json out{{"scene", name},
+           {"energy_ev", energy_ev},
+           {"triangles", scene.summary().triangles},
            {"build_seconds", scene.summary().build_seconds}};
   for (const int t : threads) {
     mc::SimulationOptions o;
@@ -171,18 +176,20 @@ json compare(const char* name, const mc::Scene& scene, const Sizes& sizes, std::
     o.method = mc::Method::replay;
     o.budget = mc::ElectronsPerPixel{sizes.replay};
     const auto replay = mc::simulate(scene, o, {.libraries = kept});
-    json row{{"threads", t}, {"direct", report(direct)},
+    json row{{"threads", t},
+             {"direct", report(direct)},
              {"replay", report(replay, kept ? kept->take_saved_seconds() : 0)}};
     row["equal_time"] = at_equal_time(row["direct"], row["replay"]);
     row["gain"] = row["replay"]["primaries_per_second"].get<double>() /
                   row["direct"]["primaries_per_second"].get<double>();
-    fmt::print(stderr,
-               "{} {} eV, {} threads: direct {:.0f}/s, replay {:.0f}/s, for the same error SE {:.1f}, "
-               "BSE {:.1f} times less time\n",
-               name, energy_ev, t, row["direct"]["primaries_per_second"].get<double>(),
-               row["replay"]["primaries_per_second"].get<double>(),
-               row["equal_time"]["SE"]["gain"].get<double>(),
-               row["equal_time"]["BSE"]["gain"].get<double>());
+    fmt::print(
+        stderr,
+        "{} {} eV, {} threads: direct {:.0f}/s, replay {:.0f}/s, for the same error SE {:.1f}, "
+        "BSE {:.1f} times less time\n",
+        name, energy_ev, t, row["direct"]["primaries_per_second"].get<double>(),
+        row["replay"]["primaries_per_second"].get<double>(),
+        row["equal_time"]["SE"]["gain"].get<double>(),
+        row["equal_time"]["BSE"]["gain"].get<double>());
     out["runs"].push_back(std::move(row));
   }
   return out;
@@ -219,10 +226,11 @@ json to_accuracy(const char* name, const mc::Scene& scene, double accuracy, bool
   out["electrons_per_pixel"] = static_cast<double>(r.balance.incident) / pixels / pixels;
   out["worst_error_over_target"] = worst;
   out["fraction_over_target"] = static_cast<double>(over) / static_cast<double>(all);
-  fmt::print(stderr,
-             "{} to {}: {:.1f} s ({:.1f} s library), {:.0f} electrons per pixel, {:.0f}/s, worst {:.3f}\n",
-             name, accuracy, r.seconds, out["library_seconds"].get<double>(),
-             out["electrons_per_pixel"].get<double>(), out["primaries_per_second"].get<double>(), worst);
+  fmt::print(
+      stderr,
+      "{} to {}: {:.1f} s ({:.1f} s library), {:.0f} electrons per pixel, {:.0f}/s, worst {:.3f}\n",
+      name, accuracy, r.seconds, out["library_seconds"].get<double>(),
+      out["electrons_per_pixel"].get<double>(), out["primaries_per_second"].get<double>(), worst);
   return out;
 }
 
@@ -237,8 +245,11 @@ json generation(double energy_ev, int threads) {
   const double per = seconds * 10000 / static_cast<double>(library.cascades());
   fmt::print(stderr, "10,000 cascades at {} eV: {:.3f} s on {} threads, {:.0f} bytes each\n",
              energy_ev, per, threads, s.bytes_per_cascade);
-  return {{"energy_ev", energy_ev}, {"threads", threads}, {"seconds_per_10000", per},
-          {"bytes_per_cascade", s.bytes_per_cascade}, {"segments", s.segments_per_cascade},
+  return {{"energy_ev", energy_ev},
+          {"threads", threads},
+          {"seconds_per_10000", per},
+          {"bytes_per_cascade", s.bytes_per_cascade},
+          {"segments", s.segments_per_cascade},
           {"electrons", s.electrons_per_cascade}};
 }
 
@@ -259,8 +270,8 @@ class Only : public mc::LibrarySource {
   std::shared_ptr<const mc::CascadeLibrary> library_;
 };
 
-// What the choice of a method goes by, on one thread: a segment of a cascade that is made, in steps of
-// direct simulation; and the share of a primary's time that replay saves.
+// What the choice of a method goes by, on one thread: a segment of a cascade that is made, in steps
+// of direct simulation; and the share of a primary's time that replay saves.
 json choice(double energy_ev) {
   const mc::Material si = io::find_material("Si", "bench");
   auto library = std::make_shared<mc::CascadeLibrary>(
@@ -272,13 +283,14 @@ json choice(double energy_ev) {
                           static_cast<double>(library->cascades());
   Only source(library);
   json out{{"energy_ev", energy_ev}, {"nanoseconds_per_segment_made", 1e9 * made / segments}};
-  for (const auto& [name, specimen] :
-       {std::pair("flat", flat()), std::pair("mesa", mesa()), std::pair("waves 25 nm", waves(25))}) {
+  for (const auto& [name, specimen] : {std::pair("flat", flat()), std::pair("mesa", mesa()),
+                                       std::pair("waves 25 nm", waves(25))}) {
     constexpr int pixels = 32;
     const mc::Scene scene(specimen, beam(energy_ev), view(192, pixels));
     mc::SimulationOptions o;
     o.threads = 1;
-    o.budget = mc::ElectronsPerPixel{static_cast<std::int64_t>(std::clamp(2e4 / energy_ev, 1.0, 20.0))};
+    o.budget =
+        mc::ElectronsPerPixel{static_cast<std::int64_t>(std::clamp(2e4 / energy_ev, 1.0, 20.0))};
     begin = cpu_seconds();
     const mc::Balance b = mc::simulate(scene, o).balance;
     const double direct = cpu_seconds() - begin;
@@ -290,29 +302,36 @@ json choice(double energy_ev) {
     mc::simulate(scene, o, {.libraries = &source});
     const double replay = (cpu_seconds() - begin) * share / mc::mean_electrons_of(o.budget);
     const double making = made / segments / per_step, saved = 1 - replay / direct;
-    out["scenes"].push_back({{"scene", name}, {"nanoseconds_per_step", 1e9 * per_step},
-                             {"making", making}, {"saved", saved}});
-    fmt::print(stderr, "{} eV, {}: {:.0f} ns per step, making {:.2f}, saved {:.2f}\n", energy_ev, name,
-               1e9 * per_step, making, saved);
+    out["scenes"].push_back({{"scene", name},
+                             {"nanoseconds_per_step", 1e9 * per_step},
+                             {"making", making},
+                             {"saved", saved}});
+    fmt::print(stderr, "{} eV, {}: {:.0f} ns per step, making {:.2f}, saved {:.2f}\n", energy_ev,
+               name, 1e9 * per_step, making, saved);
   }
   return out;
 }
 
-// Waves at one energy: direct simulation, replay, and replay to an accuracy with the planar control.
+// Waves at one energy: direct simulation, replay, and replay to an accuracy with the planar
+// control.
 struct EnergyRow {
   double energy_ev, accuracy;
-  int pixels;   // across
+  int pixels;  // across
   Sizes sizes;
 };
 
 std::vector<EnergyRow> energy_rows(bool quick) {
-  if (quick) return {{500, 0.1, 16, {20, 100}}, {1000, 0.1, 16, {20, 100}}, {2000, 0.1, 16, {20, 100}}};
-  return {{500, 0.1, 32, {40, 100}}, {1000, 0.1, 32, {40, 100}}, {2000, 0.1, 32, {40, 100}},
-          {5000, 0.15, 24, {8, 100}}, {10000, 0.15, 24, {8, 100}}};
+  if (quick)
+    return {{500, 0.1, 16, {20, 100}}, {1000, 0.1, 16, {20, 100}}, {2000, 0.1, 16, {20, 100}}};
+  return {{500, 0.1, 32, {40, 100}},
+          {1000, 0.1, 32, {40, 100}},
+          {2000, 0.1, 32, {40, 100}},
+          {5000, 0.15, 24, {8, 100}},
+          {10000, 0.15, 24, {8, 100}}};
 }
 
 json at_energy(double radius_nm, const EnergyRow& e, KeptLibraries& kept) {
-  constexpr int threads = 1;   // an image of a single tile has work for one
+  constexpr int threads = 1;  // an image of a single tile has work for one
   const mc::Scene scene = scene_of(waves(radius_nm), 64, e.pixels, e.energy_ev);
   const std::string name = fmt::format("waves {} nm", radius_nm);
   json row = compare(name.c_str(), scene, e.sizes, {threads}, &kept);
@@ -404,8 +423,7 @@ int main(int argc, char** argv) {
           }
   if (wanted("triangles"))
     for (const double pitch : {2.0, 0.2})
-      out["triangles"].push_back(
-          compare("mesa", scene_of(mesa(pitch), 192, 64, 1000), sizes, {2}));
+      out["triangles"].push_back(compare("mesa", scene_of(mesa(pitch), 192, 64, 1000), sizes, {2}));
   if (wanted("rough"))
     for (const double radius : {250.0, 25.0})
       for (const bool bse : {false, true}) {
@@ -419,7 +437,7 @@ int main(int argc, char** argv) {
     for (const EnergyRow& row : energy_rows(quick)) {
       for (const double radius_nm : {250.0, 25.0})
         out["energies"].push_back(at_energy(radius_nm, row, kept));
-      kept.clear();   // those of high energies are large
+      kept.clear();  // those of high energies are large
     }
   }
   const std::string text = out.dump(2) + "\n";

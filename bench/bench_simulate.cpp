@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How fast the simulator is, as JSON: flat silicon and the thesis's mesa at 1 keV with full secondary
-// cascades, one and two threads; cost against the number of triangles; electrons lost on the closed
-// samples; and the floor: what the ray tracer and the scattering cost on their own.
+// How fast the simulator is, as JSON: flat silicon and the thesis's mesa at 1 keV with full
+// secondary cascades, one and two threads; cost against the number of triangles; electrons lost on
+// the closed samples; and the floor: what the ray tracer and the scattering cost on their own.
 //   bench_simulate [--quick] [output.json]
 #include <chrono>
 #include <cmath>
@@ -18,10 +18,10 @@
 #include "geometry/embree_scene.h"
 #include "scenes.h"
 #include "surf/core/random.h"
-#include "surf/mc/transport/boundary.h"
-#include "surf/mc/transport/energy_deposit.h"
 #include "surf/mc/physics/medium.h"
 #include "surf/mc/simulate.h"
+#include "surf/mc/transport/boundary.h"
+#include "surf/mc/transport/energy_deposit.h"
 #include "surf/mesh/height_field_mesh.h"
 #include "surf/mesh/shapes.h"
 
@@ -30,7 +30,7 @@ namespace {
 using namespace surf;
 using nlohmann::json;
 
-constexpr double target_per_thread = 50000;   // primaries per second on the mesa
+constexpr double target_per_thread = 50000;  // primaries per second on the mesa
 
 using bench::silicon;
 using bench::view;
@@ -45,9 +45,9 @@ struct Run {
 
 struct Settings {
   mc::Physics physics = {};
-  std::vector<std::string> detectors = {};   // besides SE and BSE
+  std::vector<std::string> detectors = {};  // besides SE and BSE
   bool spectra = false;
-  bool deposit = false;                      // energy on a grid of 64 cells
+  bool deposit = false;  // energy on a grid of 64 cells
   std::size_t grid_bytes = mc::SceneOptions{}.distance_grid_bytes;
 };
 
@@ -63,9 +63,11 @@ Run simulate(const mc::Specimen& specimen, const mc::Scan& scan, std::int64_t el
   if (!settings.deposit) return {mc::simulate(scene, options), scene.summary()};
   std::vector<mc::EnergyDeposit> deposits(static_cast<std::size_t>(threads),
                                           mc::EnergyDeposit(mc::deposit_grid(scene, 64)));
-  return {mc::simulate(scene, options,
-                       {.observers = [&](int thread) { return &deposits[static_cast<std::size_t>(thread)]; }}),
-          scene.summary()};
+  return {
+      mc::simulate(
+          scene, options,
+          {.observers = [&](int thread) { return &deposits[static_cast<std::size_t>(thread)]; }}),
+      scene.summary()};
 }
 
 json report(const Run& run) {
@@ -104,9 +106,9 @@ json floor_costs(bool quick) {
   for (int i = 0; i < 4096; ++i) {
     const double c = 1 - 2 * random.uniform(), f = 6.283185307 * random.uniform();
     const double s = std::sqrt(1 - c * c);
-    lines.push_back({{192 * (random.uniform() - 0.5), 192 * (random.uniform() - 0.5),
-                      -2 * random.uniform()},
-                     {s * std::cos(f), s * std::sin(f), c}});
+    lines.push_back(
+        {{192 * (random.uniform() - 0.5), 192 * (random.uniform() - 0.5), -2 * random.uniform()},
+         {s * std::cos(f), s * std::sin(f), c}});
   }
   mc::EmbreeScene::Hit hit;
   auto begin = std::chrono::steady_clock::now();
@@ -143,10 +145,11 @@ json against_floor(const json& run, const json& floor) {
                             (rays - 1) * floor["short_ray_ns"].get<double>() +
                             floor["long_ray_ns"].get<double>());
   const double measured = 1e6 / run["primaries_per_second"].get<double>();
-  return {{"microseconds_per_primary", measured},
-          {"floor_microseconds", us},
-          {"scattering_share_of_floor", 1e-3 * steps * floor["scattering_step_ns"].get<double>() / us},
-          {"ratio_to_floor", measured / us}};
+  return {
+      {"microseconds_per_primary", measured},
+      {"floor_microseconds", us},
+      {"scattering_share_of_floor", 1e-3 * steps * floor["scattering_step_ns"].get<double>() / us},
+      {"ratio_to_floor", measured / us}};
 }
 
 json lost_electrons(bool quick) {
@@ -182,7 +185,9 @@ json lost_electrons(bool quick) {
     lost += b.total_lost();
     out.push_back({{"sample", s.name}, {"electrons", b.incident + b.generated}, {"lost", causes}});
   }
-  return {{"samples", out}, {"electrons", electrons}, {"lost", lost},
+  return {{"samples", out},
+          {"electrons", electrons},
+          {"lost", lost},
           {"fraction", static_cast<double>(lost) / static_cast<double>(electrons)},
           {"target", 1e-7}};
 }
@@ -204,8 +209,11 @@ json cost_of_outputs(std::int64_t electrons) {
     json row = report(simulate(mesa(), view(192, 96), electrons, 1, settings));
     const double rate = row["primaries_per_second"];
     if (full == 0) full = rate;
-    out.push_back({{"case", name}, {"primaries_per_second", rate}, {"times_full_model", rate / full},
-                   {"se_yield", row["se_yield"]}, {"bse_yield", row["bse_yield"]}});
+    out.push_back({{"case", name},
+                   {"primaries_per_second", rate},
+                   {"times_full_model", rate / full},
+                   {"se_yield", row["se_yield"]},
+                   {"bse_yield", row["bse_yield"]}});
   }
   return out;
 }
@@ -251,7 +259,8 @@ int main(int argc, char** argv) {
     out["flat"][key] = report(simulate(flat(), view(192, 96), n, threads));
     out["mesa"][key] = report(simulate(mesa(), view(192, 96), n, threads));
     // The alternative, in the same run: every step asks for the surface.
-    out["mesa_without_distance_grid"][key] = report(simulate(mesa(), view(192, 96), n / 2, threads, no_grid));
+    out["mesa_without_distance_grid"][key] =
+        report(simulate(mesa(), view(192, 96), n / 2, threads, no_grid));
   }
   out["mesa"]["target_per_thread"] = target_per_thread;
   out["mesa"]["ratio_to_target"] =

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What each tier of physics costs, and how much images differ by it: tables of docs/methods/dielectric.md.
+// What each tier of physics costs, and how much images differ by it: tables of
+// docs/methods/dielectric.md.
 //   bench_tiers [ELECTRONS] [--yields FILE.svg]
-// Four scenes at 1 keV by both tiers, in turn; speeds are medians of three. An image of the tier `monsel` is scaled by the gain that
-// fits that of `dielectric` best; what is left, its noise taken off, is a share of the mean. Beside it the noise of the comparison.
+// Four scenes at 1 keV by both tiers, in turn; speeds are medians of three. An image of the tier
+// `monsel` is scaled by the gain that fits that of `dielectric` best; what is left, its noise taken
+// off, is a share of the mean. Beside it the noise of the comparison.
 // --yields draws yields of twelve materials by both tiers, with the measurements in data/reference.
 #include <algorithm>
 #include <array>
@@ -46,11 +48,15 @@ mc::Specimen with(const char* material, const TriangleMesh& mesh) {
 
 std::vector<Case> cases() {
   mc::Specimen line = bench::only_silicon();
-  line.height_field = mc::HeightFieldBody{"line", make_line({160, 40, 1}, 40, 40, 2), 0, Edge::flat};
-  return {{"topography in one material: a mesa", bench::mesa(bench::only_silicon()), scan(48, 48, 6)},
-          {"material contrast: gold beside silicon, level", with("Au", make_box({-400, -400, -60}, {0, 400, 0.001})), scan(64, 4, 1)},
-          {"a thin film: the edge of 5 nm of SiO2 on silicon", with("SiO2", make_box({-400, -400, 0}, {0, 400, 5})), scan(64, 4, 1)},
-          {"a line's edge: silicon, 40 nm high", line, scan(96, 4, 1)}};
+  line.height_field =
+      mc::HeightFieldBody{"line", make_line({160, 40, 1}, 40, 40, 2), 0, Edge::flat};
+  return {
+      {"topography in one material: a mesa", bench::mesa(bench::only_silicon()), scan(48, 48, 6)},
+      {"material contrast: gold beside silicon, level",
+       with("Au", make_box({-400, -400, -60}, {0, 400, 0.001})), scan(64, 4, 1)},
+      {"a thin film: the edge of 5 nm of SiO2 on silicon",
+       with("SiO2", make_box({-400, -400, 0}, {0, 400, 5})), scan(64, 4, 1)},
+      {"a line's edge: silicon, 40 nm high", line, scan(96, 4, 1)}};
 }
 
 struct Image {
@@ -92,31 +98,39 @@ struct Difference {
 };
 
 // Of the scaled image from the true one, as a share of its mean.
-Difference difference(const std::vector<mc::Estimate>& truth, const std::vector<mc::Estimate>& other) {
+Difference difference(const std::vector<mc::Estimate>& truth,
+                      const std::vector<mc::Estimate>& other) {
   double ab = 0, bb = 0, mean = 0;
-  for (std::size_t i = 0; i < truth.size(); ++i) ab += truth[i].mean * other[i].mean, bb += other[i].mean * other[i].mean, mean += truth[i].mean;
+  for (std::size_t i = 0; i < truth.size(); ++i)
+    ab += truth[i].mean * other[i].mean, bb += other[i].mean * other[i].mean, mean += truth[i].mean;
   const double gain = ab / bb, n = double(truth.size());
   mean /= n;
   double squares = 0, noise = 0;
   for (std::size_t i = 0; i < truth.size(); ++i) {
     const double d = truth[i].mean - gain * other[i].mean;
     squares += d * d / n;
-    noise += (truth[i].standard_error * truth[i].standard_error + gain * gain * other[i].standard_error * other[i].standard_error) / n;
+    noise += (truth[i].standard_error * truth[i].standard_error +
+              gain * gain * other[i].standard_error * other[i].standard_error) /
+             n;
   }
   return {gain, std::sqrt(std::max(0.0, squares - noise)) / mean, std::sqrt(noise) / mean};
 }
 
 void compare(int electrons) {
-  fmt::print("| scene | SE: gain, what is left (noise) | BSE: gain, what is left (noise) | direct, monsel and dielectric /s | replay /s |\n"
-             "|---|---|---|---|---|\n");
+  fmt::print(
+      "| scene | SE: gain, what is left (noise) | BSE: gain, what is left (noise) | direct, monsel "
+      "and dielectric /s | replay /s |\n"
+      "|---|---|---|---|---|\n");
   for (const Case& c : cases()) {
-    const Image monsel = simulate(c, "monsel", electrons), dielectric = simulate(c, "dielectric", electrons);
+    const Image monsel = simulate(c, "monsel", electrons),
+                dielectric = simulate(c, "dielectric", electrons);
     fmt::print("| {} |", c.name);
     for (std::size_t d = 0; d < 2; ++d) {
       const Difference e = difference(dielectric.yields[d], monsel.yields[d]);
       fmt::print(" {:.2f}, {:.1f} % ({:.1f} %) |", e.gain, 100 * e.rest, 100 * e.noise);
     }
-    fmt::print(" {:.3g}, {:.3g} | {:.3g}, {:.3g} |\n", monsel.direct_rate, dielectric.direct_rate, monsel.replay_rate, dielectric.replay_rate);
+    fmt::print(" {:.3g}, {:.3g} | {:.3g}, {:.3g} |\n", monsel.direct_rate, dielectric.direct_rate,
+               monsel.replay_rate, dielectric.replay_rate);
     std::fflush(stdout);
   }
 }
@@ -125,11 +139,13 @@ void draw_yields(const std::string& file, int electrons) {
   constexpr double energies[] = {200, 300, 500, 800, 1000, 1500, 2000, 3000, 5000, 10000};
   std::vector<workflow::MeasuredYield> measured;
   for (const char* name : {"se_delta_joy2001.csv", "bse_eta_joy2001.csv", "se_yields_further.csv"})
-    for (auto& y : workflow::read_measured_yields(std::string(SEMSURF_REFERENCE_DATA) + "/" + name)) measured.push_back(y);
+    for (auto& y : workflow::read_measured_yields(std::string(SEMSURF_REFERENCE_DATA) + "/" + name))
+      measured.push_back(y);
   io::Plot plot;
   plot.title = "Yields of planes";
   plot.columns = 3;
-  for (const char* name : {"C", "Al", "Si", "Ge", "Cu", "Ni", "Ag", "W", "Au", "SiO2", "TiO2", "PMMA"}) {
+  for (const char* name :
+       {"C", "Al", "Si", "Ge", "Cu", "Ni", "Ag", "W", "Au", "SiO2", "TiO2", "PMMA"}) {
     io::PlotPanel p;
     p.title = name;
     p.x = {"energy of the beam (eV)", true, {}};
@@ -140,7 +156,8 @@ void draw_yields(const std::string& file, int electrons) {
       io::PlotSeries se, bse;
       se.name = std::string("SE, ") + tier, bse.name = std::string("BSE, ") + tier;
       for (const double e : energies) {
-        const auto y = mc::flat_yields(io::find_material(name, "bench"), e, e > 2500 ? electrons / 4 : electrons, physics);
+        const auto y = mc::flat_yields(io::find_material(name, "bench"), e,
+                                       e > 2500 ? electrons / 4 : electrons, physics);
         se.x.push_back(e), se.y.push_back(y.se.mean);
         bse.x.push_back(e), bse.y.push_back(y.bse.mean);
       }
@@ -154,7 +171,8 @@ void draw_yields(const std::string& file, int electrons) {
       s.style = io::PlotStyle::points;
       s.color = backscattered ? 1 : 0;
       for (const auto& y : measured)
-        if (y.material == name && y.backscattered == backscattered && y.energy_ev >= 190 && y.energy_ev <= 10500)
+        if (y.material == name && y.backscattered == backscattered && y.energy_ev >= 190 &&
+            y.energy_ev <= 10500)
           s.x.push_back(y.energy_ev), s.y.push_back(y.yield);
       if (!s.x.empty()) p.series.push_back(std::move(s));
     }

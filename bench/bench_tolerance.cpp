@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What --mesh-tolerance gains and changes, as JSON and as a chart: triangles, time to simplify and to
-// build, memory, primaries per second (directly simulated and by replay), and how far SE and BSE images,
-// by replay, are from those of all detail. A rough height field and a bumpy ball on a substrate, silicon at 1 keV.
+// What --mesh-tolerance gains and changes, as JSON and as a chart: triangles, time to simplify and
+// to build, memory, primaries per second (directly simulated and by replay), and how far SE and BSE
+// images, by replay, are from those of all detail. A rough height field and a bumpy ball on a
+// substrate, silicon at 1 keV.
 //   bench_tolerance [--quick] [output.json [chart.svg]]
 #include <cmath>
 #include <cstring>
@@ -70,7 +71,7 @@ double direct_per_second(const mc::Scene& scene) {
 
 // Root-mean-square difference of two images beyond their scatter, and what of it could be chance.
 struct Difference {
-  double rms, noise, of_means;   // relative to the mean of the first
+  double rms, noise, of_means;  // relative to the mean of the first
 };
 
 Difference difference(const mc::SimulationResult& a, const mc::SimulationResult& b, std::size_t d,
@@ -99,7 +100,8 @@ json sweep(const char* name, const mc::Specimen& all, const View& view,
   for (const double tolerance : tolerances) {
     workflow::Simplification done;
     const mc::Specimen simple =
-        tolerance > 0 ? workflow::simplify_specimen(all, tolerance, {}, view.scan, {}, 0, done) : all;
+        tolerance > 0 ? workflow::simplify_specimen(all, tolerance, {}, view.scan, {}, 0, done)
+                      : all;
     const mc::Scene scene(simple, {}, view.scan);
     const mc::SimulationResult result = image(scene, view, ++seed);
     const auto incident = static_cast<double>(result.balance.incident);

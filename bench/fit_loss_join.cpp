@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Fits E_b (loss_join_ev), the one free parameter of the secondary-electron model, to the geometric
-// mean of the measured SE yields at 1 keV, and prints the yields that follow at other energies; then
-// the regression of E_b of all fitted materials on barrier and band gap, which estimates E_b of the
-// others (mc::estimated_loss_join_ev).
+// mean of the measured SE yields at 1 keV, and prints the yields that follow at other energies;
+// then the regression of E_b of all fitted materials on barrier and band gap, which estimates E_b
+// of the others (mc::estimated_loss_join_ev).
 //   fit_loss_join ELECTRONS MEASUREMENTS.csv... [--only NAME]...
-//   e.g. fit_loss_join 200000 data/reference/se_delta_joy2001.csv data/reference/se_yields_further.csv
+//   e.g. fit_loss_join 200000 data/reference/se_delta_joy2001.csv
+//   data/reference/se_yields_further.csv
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
@@ -58,8 +59,7 @@ void print_regression(const std::vector<mc::Material>& materials) {
              std::sqrt(best / double(materials.size())));
   for (const mc::Material& m : materials)
     fmt::print("  {:10} U0 {:6.2f}  gap {:5.2f}  fitted {:6.1f}  regression {:6.1f}\n", m.name,
-               m.barrier_ev, gap_ev(m), m.loss_join_ev,
-               best_a * m.barrier_ev + best_b * gap_ev(m));
+               m.barrier_ev, gap_ev(m), m.loss_join_ev, best_a * m.barrier_ev + best_b * gap_ev(m));
 }
 
 }  // namespace

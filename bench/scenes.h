@@ -30,16 +30,16 @@ inline mc::Specimen flat(mc::Specimen s) {
   return s;
 }
 
-/// Seeger's figure 5-6: 200 nm high, 80 nm wide at the top; at a pitch of 2 nm 79,202 triangles over
-/// 398 nm.
+/// Seeger's figure 5-6: 200 nm high, 80 nm wide at the top; at a pitch of 2 nm 79,202 triangles
+/// over 398 nm.
 inline mc::Specimen mesa(mc::Specimen s, double pitch_nm = 2) {
   s.height_field =
       mc::HeightFieldBody{"mesa", make_mesa({398, 398, pitch_nm}, 200, 80, 2), 0, Edge::flat};
   return s;
 }
 
-/// Gentle crossed waves a (sin k x + sin 0.9 k y) over 600 nm, as long as `wavelength_nm`, whose smallest
-/// radius of curvature 1 / (a k^2) is `radius_nm`: slopes to about 1 / (k radius).
+/// Gentle crossed waves a (sin k x + sin 0.9 k y) over 600 nm, as long as `wavelength_nm`, whose
+/// smallest radius of curvature 1 / (a k^2) is `radius_nm`: slopes to about 1 / (k radius).
 inline mc::Specimen waves(mc::Specimen s, double wavelength_nm, double radius_nm, double pitch_nm) {
   const double k = 2 * 3.14159265358979324 / wavelength_nm;
   const double height_nm = 1 / (k * k * radius_nm);

@@ -18,8 +18,8 @@ namespace {
 
 using namespace surf;
 
-// Hunger and Kuechler (1979) with August's factor (1989); E in keV. Made for 4 to 40 keV and not for
-// hydrogen, which reflects next to nothing.
+// Hunger and Kuechler (1979) with August's factor (1989); E in keV. Made for 4 to 40 keV and not
+// for hydrogen, which reflects next to nothing.
 double august(int z, double e) {
   if (z == 1) return 0;
   const double l = std::log(z);
@@ -52,7 +52,8 @@ std::string or_none(const std::optional<double>& value) {
   return value ? fmt::format("{:.3f}", *value) : "";
 }
 
-// The universal curve of Lin and Joy (Surf. Interface Anal. 37, 895 (2005)) through a yield's maximum.
+// The universal curve of Lin and Joy (Surf. Interface Anal. 37, 895 (2005)) through a yield's
+// maximum.
 double universal(double maximum, double at_ev, double kev) {
   const double x = 1000 * kev / at_ev;
   return maximum * 1.28 * std::pow(x, -0.67) * (1 - std::exp(-1.614 * std::pow(x, 1.67)));
@@ -85,8 +86,9 @@ int main(int argc, char** argv) {
   const bench::Means se = bench::read_means(
       {folder + "/se_delta_joy2001.csv", folder + "/se_yields_further.csv"}, "delta");
   const bench::Means bse = bench::read_means({folder + "/bse_eta_joy2001.csv"}, "eta");
-  fmt::print("| material | keV | SE | measured | handbook | BSE | measured | formula |\n"
-             "|---|---|---|---|---|---|---|---|\n");
+  fmt::print(
+      "| material | keV | SE | measured | handbook | BSE | measured | formula |\n"
+      "|---|---|---|---|---|---|---|---|\n");
   for (const mc::Material& m : io::builtin_materials())
     for (const double e : energies) {
       const auto y = mc::flat_yields(m, 1000 * e, std::atoll(argv[1]));

@@ -16,9 +16,11 @@ namespace {
 Grid<float> read_mask(const std::string& path, const HeightField& field) {
   const Image image = io::read_image(path);
   const Grid<double>& z = field.z_nm;
-  if (image.width() == z.width() && image.height() == z.height()) return image.channels.front().values;
-  throw InvalidInput(path, fmt::format("it has {} x {} pixels, the scan {} x {}", image.width(), image.height(),
-                                       z.width(), z.height()),
+  if (image.width() == z.width() && image.height() == z.height())
+    return image.channels.front().values;
+  throw InvalidInput(path,
+                     fmt::format("it has {} x {} pixels, the scan {} x {}", image.width(),
+                                 image.height(), z.width(), z.height()),
                      "Give a mask of the scan's size");
 }
 
@@ -32,9 +34,11 @@ std::vector<std::string> MaskInput::files() const {
 }
 
 void describe(ParameterVisitor& visit, MaskInput& input) {
-  visit(input.use, {.name = "scan.use",
-                    .help = "Image of the scan's size: only samples where it is not 0 count (.tif .png .exr .vti)",
-                    .file = FileRole::read});
+  visit(input.use,
+        {.name = "scan.use",
+         .help =
+             "Image of the scan's size: only samples where it is not 0 count (.tif .png .exr .vti)",
+         .file = FileRole::read});
   visit(input.exclude, {.name = "scan.exclude",
                         .help = "Image of the scan's size: samples where it is not 0 do not count",
                         .file = FileRole::read});
@@ -51,11 +55,13 @@ Grid<unsigned char> read_masks(const MaskInput& input, const HeightField& field)
   if (input.exclude) narrow(*input.exclude, false);
   for (std::size_t i = 0; i < mask.size(); ++i)
     if (mask.data()[i] && (field.valid.empty() || field.valid.data()[i])) return mask;
-  throw InvalidInput(input.use ? *input.use : *input.exclude, "no sample of the scan remains to count",
+  throw InvalidInput(input.use ? *input.use : *input.exclude,
+                     "no sample of the scan remains to count",
                      "Check which of `scan.use` and `scan.exclude` is meant");
 }
 
-Grid<unsigned char> parse_mask_region(const std::string& text, const char* subject, const HeightField& field) {
+Grid<unsigned char> parse_mask_region(const std::string& text, const char* subject,
+                                      const HeightField& field) {
   const auto r = parse_region(text, subject);
   Grid<unsigned char> mask(field.z_nm.width(), field.z_nm.height());
   bool any = false;
@@ -67,9 +73,10 @@ Grid<unsigned char> parse_mask_region(const std::string& text, const char* subje
     }
   }
   if (any) return mask;
-  throw UsageError(subject, fmt::format("'{}' holds no sample of the scan", text),
-                   fmt::format("The scan reaches from {:.6g},{:.6g} to {:.6g},{:.6g} nm", field.origin_x_nm, field.origin_y_nm,
-                               field.x_nm(mask.width() - 1), field.y_nm(mask.height() - 1)));
+  throw UsageError(
+      subject, fmt::format("'{}' holds no sample of the scan", text),
+      fmt::format("The scan reaches from {:.6g},{:.6g} to {:.6g},{:.6g} nm", field.origin_x_nm,
+                  field.origin_y_nm, field.x_nm(mask.width() - 1), field.y_nm(mask.height() - 1)));
 }
 
 void write_mask(const std::string& path, const Grid<unsigned char>& mask, const HeightField& field,

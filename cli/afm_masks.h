@@ -22,13 +22,14 @@ struct MaskInput {
 /// scan.use and scan.exclude.
 void describe(ParameterVisitor& visit, MaskInput& input);
 
-/// 1 where a sample decides; empty if neither is given. Throws UsageError, FileError, InvalidInput if a
-/// size differs or nothing remains.
+/// 1 where a sample decides; empty if neither is given. Throws UsageError, FileError, InvalidInput
+/// if a size differs or nothing remains.
 Grid<unsigned char> read_masks(const MaskInput& input, const HeightField& field);
 
-/// 1 at samples whose centre lies in "X0,Y0,X1,Y1" (nm, in the scan's coordinates). Throws UsageError,
-/// also where there are none.
-Grid<unsigned char> parse_mask_region(const std::string& text, const char* subject, const HeightField& field);
+/// 1 at samples whose centre lies in "X0,Y0,X1,Y1" (nm, in the scan's coordinates). Throws
+/// UsageError, also where there are none.
+Grid<unsigned char> parse_mask_region(const std::string& text, const char* subject,
+                                      const HeightField& field);
 
 /// As an image of 0 and 1; `made` says how.
 void write_mask(const std::string& path, const Grid<unsigned char>& mask, const HeightField& field,

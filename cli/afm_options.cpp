@@ -8,9 +8,12 @@
 
 namespace surf::cli {
 
-void add_scan_input(CLI::App& app, BoundParameters& bound, std::string& file, const std::string& group) {
-  CLI::Option* input = with_role(
-      app.add_option("INPUT", file, "A scan of any format, or an image of heights")->type_name("FILE"), FileRole::read);
+void add_scan_input(CLI::App& app, BoundParameters& bound, std::string& file,
+                    const std::string& group) {
+  CLI::Option* input =
+      with_role(app.add_option("INPUT", file, "A scan of any format, or an image of heights")
+                    ->type_name("FILE"),
+                FileRole::read);
   if (group.empty()) input->group("");
   bound.looks["scan.height_channel"].former = {"--channel"};
   bound.looks["scan.height_unit"].former = {"--z-unit"};
@@ -18,7 +21,8 @@ void add_scan_input(CLI::App& app, BoundParameters& bound, std::string& file, co
   bound.add<io::HeightReadOptions>(app, group);
 }
 
-io::HeightFieldFile read_scan(const std::string& file, const io::HeightReadOptions& options, bool quiet) {
+io::HeightFieldFile read_scan(const std::string& file, const io::HeightReadOptions& options,
+                              bool quiet) {
   if (file.empty()) throw UsageError("INPUT", "no scan is given", "Name a file to read");
   io::HeightFieldFile scan = io::read_height_field(file, options);
   const JobReporter reporter(quiet);
@@ -27,7 +31,8 @@ io::HeightFieldFile read_scan(const std::string& file, const io::HeightReadOptio
 }
 
 void add_surface_output(CLI::App& app, std::optional<std::string>& output) {
-  with_role(app.add_option("-o,--output", output, "The surface: .gsf, .tif, .txt or .vti")->type_name("FILE"),
+  with_role(app.add_option("-o,--output", output, "The surface: .gsf, .tif, .txt or .vti")
+                ->type_name("FILE"),
             FileRole::written);
 }
 

@@ -10,9 +10,11 @@ namespace surf::cli {
 namespace {
 
 /// "help (default)", over as many lines as it takes.
-std::string help_of(const Parameter& about, const Field& field, const std::string& own, bool positional) {
+std::string help_of(const Parameter& about, const Field& field, const std::string& own,
+                    bool positional) {
   std::string text = own.empty() ? about.help : own;
-  if (const std::string limits = format_limits(about); !limits.empty() && field.kind() != FieldKind::choice)
+  if (const std::string limits = format_limits(about);
+      !limits.empty() && field.kind() != FieldKind::choice)
     text += ", " + limits;
   if (field.kind() == FieldKind::list && !positional) text += "; may be repeated";
   if (!about.otherwise.empty()) return text + fmt::format(" ({})", about.otherwise);
@@ -44,11 +46,12 @@ std::string wrapped(const std::string& text, std::size_t width) {
 
 constexpr std::size_t help_width = 74;
 
-/// What an option stands for, while what it writes to is there: another option may come where it was.
+/// What an option stands for, while what it writes to is there: another option may come where it
+/// was.
 struct BoundOption {
   std::weak_ptr<const GivenTexts> lives;
   std::string parameter;
-  std::optional<FileRole> file;   // none: the command reads the option by itself
+  std::optional<FileRole> file;  // none: the command reads the option by itself
   bool shows_default = false;
 };
 
@@ -71,7 +74,7 @@ const BoundOption* find_bound(const CLI::Option& option) {
 }  // namespace
 
 std::string option_name(std::string_view parameter) {
-  std::string name(parameter.substr(parameter.rfind('.') + 1));   // npos + 1 is 0
+  std::string name(parameter.substr(parameter.rfind('.') + 1));  // npos + 1 is 0
   std::ranges::replace(name, '_', '-');
   return "--" + name;
 }
@@ -91,9 +94,12 @@ std::optional<FileRole> file_role(const CLI::Option& option) {
   return found == own_roles().end() ? std::nullopt : std::optional(found->second);
 }
 
-void describe_texts(ParameterVisitor& visit, std::vector<std::string>& texts, const Parameter& about) {
-  visit.form(about, [&] { return fmt::format("{}", fmt::join(texts, " ")); },
-             [&](std::string_view text, const std::string&) { texts.emplace_back(text); }, FieldKind::list);
+void describe_texts(ParameterVisitor& visit, std::vector<std::string>& texts,
+                    const Parameter& about) {
+  visit.form(
+      about, [&] { return fmt::format("{}", fmt::join(texts, " ")); },
+      [&](std::string_view text, const std::string&) { texts.emplace_back(text); },
+      FieldKind::list);
 }
 
 bool shows_default(const CLI::Option& option) {
@@ -110,8 +116,8 @@ void BoundParameters::stands_for(const CLI::Option* option, const std::string& p
   bound_options()[option] = {given_, parameter, std::nullopt, false};
 }
 
-void BoundParameters::declare(CLI::App& app, const std::string& group, const Parameter& about, const Field& field,
-                              const std::vector<std::string>& only) {
+void BoundParameters::declare(CLI::App& app, const std::string& group, const Parameter& about,
+                              const Field& field, const std::vector<std::string>& only) {
   if (!only.empty() && std::ranges::find(only, about.name) == only.end()) return;
   const auto found = looks.find(about.name);
   const OptionLook look = found != looks.end() ? found->second : OptionLook{};
@@ -129,10 +135,12 @@ void BoundParameters::declare(CLI::App& app, const std::string& group, const Par
   const auto declare_as = [&](const std::string& as, const std::string& in_group) {
     CLI::Option* option = nullptr;
     if (field.kind() == FieldKind::flag) {
-      option = app.add_flag_callback(as, [given, key] { (*given)[key] = {"on"}; }, help);
+      option = app.add_flag_callback(
+          as, [given, key] { (*given)[key] = {"on"}; }, help);
     } else {
       option = app.add_option_function<std::vector<std::string>>(
-          as, [given, key](const std::vector<std::string>& texts) {
+          as,
+          [given, key](const std::vector<std::string>& texts) {
             auto& all = (*given)[key];
             all.insert(all.end(), texts.begin(), texts.end());
           },
@@ -140,12 +148,15 @@ void BoundParameters::declare(CLI::App& app, const std::string& group, const Par
       option->type_name(form_of(about, field))
           ->option_text(form_of(about, field))
           ->allow_extra_args(look.positional && field.kind() == FieldKind::list);
-      if (look.positional) option->expected(field.kind() == FieldKind::list ? -1 : 1)->required(false);
-      else if (field.kind() != FieldKind::list) option->expected(1)->multi_option_policy(CLI::MultiOptionPolicy::Throw);
+      if (look.positional)
+        option->expected(field.kind() == FieldKind::list ? -1 : 1)->required(false);
+      else if (field.kind() != FieldKind::list)
+        option->expected(1)->multi_option_policy(CLI::MultiOptionPolicy::Throw);
       else option->expected(1)->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
     }
     option->group(in_group);
-    bound_options()[option] = {given_, about.name, about.file, look.help.empty() && about.otherwise.empty()};
+    bound_options()[option] = {given_, about.name, about.file,
+                               look.help.empty() && about.otherwise.empty()};
   };
   declare_as(name, heading);
   for (const std::string& former : look.former) declare_as(former, "");

@@ -20,29 +20,33 @@ using GivenTexts = std::map<std::string, std::vector<std::string>, std::less<>>;
 
 /// How a command names and shows a parameter, where it is not as usual.
 struct OptionLook {
-  std::string name;                        ///< "-o,--output"; empty: the parameter's last name, "--working-distance"
-  std::vector<std::string> former;         ///< hidden names from before: "--pitch"
-  std::string help;                        ///< empty: the description's
-  bool positional = false;                 ///< `name` is what stands for it in help, "INPUT"
-  bool hidden = false;                     ///< not in this command
+  std::string name;  ///< "-o,--output"; empty: the parameter's last name, "--working-distance"
+  std::vector<std::string> former;  ///< hidden names from before: "--pitch"
+  std::string help;                 ///< empty: the description's
+  bool positional = false;          ///< `name` is what stands for it in help, "INPUT"
+  bool hidden = false;              ///< not in this command
 };
 
 /// Looks by parameter name.
 using OptionLooks = std::map<std::string, OptionLook, std::less<>>;
 
-/// The options of one command that stand for parameters of structs. What was given is kept as text until `apply`.
+/// The options of one command that stand for parameters of structs. What was given is kept as text
+/// until `apply`.
 class BoundParameters {
  public:
-  /// Declares an option for each parameter of the struct that is described; defaults in help are those of `of`. With
-  /// `only`, those parameters alone.
+  /// Declares an option for each parameter of the struct that is described; defaults in help are
+  /// those of `of`. With `only`, those parameters alone.
   template <class Struct>
-  void add(CLI::App& app, const std::string& group, Struct of = {}, const std::vector<std::string>& only = {}) {
-    for_each_parameter(of, [&](const Parameter& about, Field& field) { declare(app, group, about, field, only); });
+  void add(CLI::App& app, const std::string& group, Struct of = {},
+           const std::vector<std::string>& only = {}) {
+    for_each_parameter(
+        of, [&](const Parameter& about, Field& field) { declare(app, group, about, field, only); });
   }
 
   /// Before `add`: how these are named and shown.
   OptionLooks looks;
-  /// Headings in help by the parameter's name, or by its group ("beam"): for parameters that are added without one.
+  /// Headings in help by the parameter's name, or by its group ("beam"): for parameters that are
+  /// added without one.
   std::map<std::string, std::string, std::less<>> headings;
 
   /// Gives the struct what was given. Throws UsageError that names the parameter.
@@ -55,7 +59,8 @@ class BoundParameters {
     read_parameters(to, [&](const Parameter& about, Field& field) { take(about, field, given); });
   }
 
-  /// Of an option that the command reads by itself: messages about the parameter name it (`option_of`).
+  /// Of an option that the command reads by itself: messages about the parameter name it
+  /// (`option_of`).
   void stands_for(const CLI::Option* option, const std::string& parameter);
 
   const GivenTexts& given() const { return *given_; }
@@ -79,12 +84,14 @@ std::string option_of(const CLI::App& command, std::string_view parameter);
 std::optional<FileRole> file_role(const CLI::Option& option);
 
 /// A list of texts with commas in them, one for each time that its option is given.
-void describe_texts(ParameterVisitor& visit, std::vector<std::string>& texts, const Parameter& about);
+void describe_texts(ParameterVisitor& visit, std::vector<std::string>& texts,
+                    const Parameter& about);
 
 /// Whether help says the value that the field has by default, and no words in its place.
 bool shows_default(const CLI::Option& option);
 
-/// Says it of an option that a command declares and reads by itself. Every option of a file or folder needs that.
+/// Says it of an option that a command declares and reads by itself. Every option of a file or
+/// folder needs that.
 CLI::Option* with_role(CLI::Option* option, FileRole role);
 
 }  // namespace surf::cli

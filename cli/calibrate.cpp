@@ -16,9 +16,9 @@
 #include "surf/core/error.h"
 #include "surf/io/calibration_file.h"
 #include "surf/io/files.h"
+#include "surf/io/height_field_file.h"
 #include "surf/io/image_file.h"
 #include "surf/io/model_file.h"
-#include "surf/io/height_field_file.h"
 #include "surf/workflow/calibrate_job.h"
 #include "surf/workflow/predict_job.h"
 #include "surf/workflow/step_record.h"
@@ -31,13 +31,15 @@ using workflow::CalibrateInput;
 using workflow::CalibrateParameters;
 
 /// What a model gives for the heights, with a note of how these were read.
-Image predicted(const CalibrateFiles& o, const CalibrateParameters& p, const workflow::Reporter& reporter) {
+Image predicted(const CalibrateFiles& o, const CalibrateParameters& p,
+                const workflow::Reporter& reporter) {
   workflow::PredictJob job;
   job.model = *o.model;
   job.input = o.heights;
   job.edge = p.edge;
   job.threads = o.execution.threads;
-  io::HeightFieldFile scan = io::read_height_field(o.heights, {{}, {}, o.reading.pixel_x_nm, o.reading.pixel_y_nm});
+  io::HeightFieldFile scan =
+      io::read_height_field(o.heights, {{}, {}, o.reading.pixel_x_nm, o.reading.pixel_y_nm});
   for (const std::string& note : scan.notes) reporter.note(fmt::format("{}: {}", o.heights, note));
   job.field = std::move(scan.field);
   return workflow::run(job, reporter).image;
@@ -47,7 +49,7 @@ Image predicted(const CalibrateFiles& o, const CalibrateParameters& p, const wor
 void write_folded(const std::string& path, TrainedModel trained, const Calibration& c,
                   const std::map<std::string, std::string>& made) {
   trained.parameters = fold(c, std::get<FilterBankParameters>(trained.parameters));
-  trained.record.residuals.clear();   // they are of the channels before
+  trained.record.residuals.clear();  // they are of the channels before
   trained.record.held_out_residuals.clear();
   for (TrainingScene& scene : trained.record.scenes) scene.residuals.clear();
   for (const auto& [key, value] : made) trained.record.notes["calibration." + key] = value;
@@ -58,17 +60,23 @@ CalibrateInput read_input(const CalibrateFiles& o) {
   const FileChannel file = parse_file_channel(o.image);
   const io::WebImage picture = read_picture(file, {o.reading.pixel_x_nm, o.reading.pixel_y_nm});
   if (!picture.has_scale)
-    throw InvalidInput(o.image, "it does not say how large its pixels are", "Give their size with --pixel-size");
+    throw InvalidInput(o.image, "it does not say how large its pixels are",
+                       "Give their size with --pixel-size");
   const Image& image = picture.image;
   const Channel* channel = file.channel.empty() ? nullptr : image.find(file.channel);
-  if (!channel) channel = &image.channels.front();   // the first, or by number
+  if (!channel) channel = &image.channels.front();  // the first, or by number
   const Channel* const valid = image.find("valid");
   CalibrateInput input;
   input.name = o.image;
-  input.image = {Grid<double>(image.width(), image.height()), {}, image.pitch_x_nm, image.pitch_y_nm,
-                 image.origin_x_nm, image.origin_y_nm};
+  input.image = {Grid<double>(image.width(), image.height()),
+                 {},
+                 image.pitch_x_nm,
+                 image.pitch_y_nm,
+                 image.origin_x_nm,
+                 image.origin_y_nm};
   for (std::size_t i = 0; i < input.image.values.size(); ++i)
-    input.image.values.data()[i] = valid && valid->values.data()[i] == 0 ? NAN : double{channel->values.data()[i]};
+    input.image.values.data()[i] =
+        valid && valid->values.data()[i] == 0 ? NAN : double{channel->values.data()[i]};
   HeightField place;
   place.z_nm = input.image.values;
   place.pitch_x_nm = image.pitch_x_nm, place.pitch_y_nm = image.pitch_y_nm;
@@ -77,7 +85,8 @@ CalibrateInput read_input(const CalibrateFiles& o) {
   return input;
 }
 
-void write_residual(const std::string& path, const PlacedImage& like, const workflow::CalibrateResult& result,
+void write_residual(const std::string& path, const PlacedImage& like,
+                    const workflow::CalibrateResult& result,
                     const std::map<std::string, std::string>& made) {
   Image out;
   out.pitch_x_nm = like.pitch_x_nm, out.pitch_y_nm = like.pitch_y_nm;
@@ -91,7 +100,8 @@ void write_residual(const std::string& path, const PlacedImage& like, const work
     out.channels[0].values.data()[i] = static_cast<float>(result.fit.data()[i]);
     out.channels[1].values.data()[i] = static_cast<float>(result.residual.data()[i]);
     out.channels[2].values.data()[i] = 1;
-    if (!result.gain.empty()) out.channels[3].values.data()[i] = static_cast<float>(result.gain.data()[i]);
+    if (!result.gain.empty())
+      out.channels[3].values.data()[i] = static_cast<float>(result.gain.data()[i]);
   }
   io::write_image(path, out);
 }
@@ -100,13 +110,16 @@ void print_fit(const Calibration& c) {
   const bool known = c.outcome != CalibrationOutcome::undetermined;
   for (std::size_t i = 0; i < c.channels.size(); ++i)
     print("{:<10} {:.6g}{}\n", "gain " + c.channels[i], c.gains[i],
-               known ? fmt::format(" ± {:.2g}", c.gain_stderr(i)) : ", one of many");
+          known ? fmt::format(" ± {:.2g}", c.gain_stderr(i)) : ", one of many");
   print("{:<10} {:.6g}{}\n", "offset", c.offset,
-             c.offset_stderr() == 0 ? "" : known ? fmt::format(" ± {:.2g}", c.offset_stderr()) : ", one of many");
+        c.offset_stderr() == 0 ? ""
+        : known                ? fmt::format(" ± {:.2g}", c.offset_stderr())
+                               : ", one of many");
   print("{:<10} {}\n", "condition", known ? fmt::format("{:.4g}", c.condition_number) : "infinite");
-  print("{:<10} {:.4g} rms, {:.2f} % of the variance explained; correlation of neighbours {:.2f}\n", "residual",
-             c.residual_rms, 100 * c.explained, c.residual_correlation);
-  print("{:<10} {}{}\n", "pixels", c.pixels, c.saturated ? fmt::format("; {} saturated ones left out", c.saturated) : "");
+  print("{:<10} {:.4g} rms, {:.2f} % of the variance explained; correlation of neighbours {:.2f}\n",
+        "residual", c.residual_rms, 100 * c.explained, c.residual_correlation);
+  print("{:<10} {}{}\n", "pixels", c.pixels,
+        c.saturated ? fmt::format("; {} saturated ones left out", c.saturated) : "");
 }
 
 std::map<std::string, std::string> record(const CalibrateFiles& o, const CalibrateParameters& p) {
@@ -151,7 +164,8 @@ int work(const CalibrateOptions& options) {
 
 void add_calibrate(CLI::App& app, Action& action) {
   const auto o = std::make_shared<CalibrateOptions>();
-  CLI::App* sub = app.add_subcommand("calibrate", "Gains and offset that turn simulated images into a real one");
+  CLI::App* sub = app.add_subcommand("calibrate",
+                                     "Gains and offset that turn simulated images into a real one");
   add_calibrate_options(*sub, *o);
   sub->callback([o, &action] { action = [o] { return work(*o); }; });
 }

@@ -28,37 +28,48 @@ Examples:
 }  // namespace
 
 void describe(ParameterVisitor& visit, CalibrateFiles& p) {
-  const auto file = [&](auto& value, const char* name, const char* help, FileRole role, const char* form = "FILE") {
+  const auto file = [&](auto& value, const char* name, const char* help, FileRole role,
+                        const char* form = "FILE") {
     visit(value, {.name = name, .help = help, .form = form, .recorded = false, .file = role});
   };
   file(p.image, "calibration.image", "The image of a microscope", FileRole::read);
-  file(p.heights, "calibration.heights", "The surface that IMAGE shows, for a model", FileRole::read);
-  file(p.images, "calibration.images", "Simulated images of the same surface, as of 'semsurf simulate'",
+  file(p.heights, "calibration.heights", "The surface that IMAGE shows, for a model",
        FileRole::read);
-  file(p.model, "calibration.model", "Model that images HEIGHTS, as of 'semsurf train'", FileRole::read, "FILE.json");
+  file(p.images, "calibration.images",
+       "Simulated images of the same surface, as of 'semsurf simulate'", FileRole::read);
+  file(p.model, "calibration.model", "Model that images HEIGHTS, as of 'semsurf train'",
+       FileRole::read, "FILE.json");
   describe_some(visit, p.reading,
-                {{"scan.pixel_size", "Size of pixels, of files that do not say, 2nm or 2nmx3nm", "as they say"}});
+                {{"scan.pixel_size", "Size of pixels, of files that do not say, 2nm or 2nmx3nm",
+                  "as they say"}});
   describe(visit, p.masks);
   file(p.output, "output", "The calibration: .json", FileRole::written);
-  file(p.residual, "calibration.residual", "The fit and what it leaves: .exr .tif .vti .png", FileRole::written);
-  file(p.folded, "calibration.folded", "The model with gains and offset in its coefficients (filter banks): .json",
+  file(p.residual, "calibration.residual", "The fit and what it leaves: .exr .tif .vti .png",
+       FileRole::written);
+  file(p.folded, "calibration.folded",
+       "The model with gains and offset in its coefficients (filter banks): .json",
        FileRole::written, "FILE.json");
   describe(visit, p.execution);
 }
 
 void check(const CalibrateFiles& o, const workflow::CalibrateParameters& parameters) {
-  if (o.image.empty()) throw UsageError("calibrate", "no image is given", "Name the image of a microscope");
+  if (o.image.empty())
+    throw UsageError("calibrate", "no image is given", "Name the image of a microscope");
   if (!o.images && !o.model)
-    throw UsageError("`calibration.images`", "there is nothing to compare with",
-                     "Add `calibration.images=simulated.exr`, or HEIGHTS with `calibration.model=MODEL.json`");
-  if (o.images && o.model)
-    throw UsageError("`calibration.model`", "simulated images are given, too", "Leave one of them out");
-  if (o.model.has_value() == o.heights.empty())
     throw UsageError(
-        "HEIGHTS", o.model ? "a model needs the surface" : "simulated images need no surface",
-        o.model ? "Name heights, pixel on pixel with IMAGE" : "Leave it out, or give `calibration.model` instead");
+        "`calibration.images`", "there is nothing to compare with",
+        "Add `calibration.images=simulated.exr`, or HEIGHTS with `calibration.model=MODEL.json`");
+  if (o.images && o.model)
+    throw UsageError("`calibration.model`", "simulated images are given, too",
+                     "Leave one of them out");
+  if (o.model.has_value() == o.heights.empty())
+    throw UsageError("HEIGHTS",
+                     o.model ? "a model needs the surface" : "simulated images need no surface",
+                     o.model ? "Name heights, pixel on pixel with IMAGE"
+                             : "Leave it out, or give `calibration.model` instead");
   if (o.folded && !o.model)
-    throw UsageError("`calibration.folded`", "there is no model to fold into", "Add `calibration.model=MODEL.json`");
+    throw UsageError("`calibration.folded`", "there is no model to fold into",
+                     "Add `calibration.model=MODEL.json`");
   if (!o.output && !o.residual)
     throw UsageError("`output`", "no output file is given", "Add -o calibration.json");
   if (o.folded) io::check_model_target(*o.folded);

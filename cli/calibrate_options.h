@@ -17,7 +17,7 @@ namespace surf::cli {
 struct CalibrateFiles {
   std::string image, heights;
   std::optional<std::string> images, model, output, residual, folded;
-  io::SemReadOptions reading;              ///< its pixel size, of files that do not say
+  io::SemReadOptions reading;  ///< its pixel size, of files that do not say
   MaskInput masks;
   mc::Execution execution;
 };
@@ -30,7 +30,8 @@ struct CalibrateOptions {
 
 void add_calibrate_options(CLI::App& app, CalibrateOptions& options);
 
-/// Everything that can be wrong before a file is read. Throws UsageError, FileError for outputs that cannot be written.
+/// Everything that can be wrong before a file is read. Throws UsageError, FileError for outputs
+/// that cannot be written.
 void check(const CalibrateFiles& files, const workflow::CalibrateParameters& parameters);
 
 }  // namespace surf::cli

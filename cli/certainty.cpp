@@ -49,7 +49,8 @@ Image to_image(const CertaintyMap& map) {
     radius.data()[i] = is_certain ? static_cast<float>(map.level.data()[i]) : -1.0f;
     surface.data()[i] = static_cast<float>(map.surface.z_nm.data()[i]);
   }
-  image.channels = {{"certain", "1", certain}, {"radius_px", "1", radius}, {"surface", "nm", surface}};
+  image.channels = {
+      {"certain", "1", certain}, {"radius_px", "1", radius}, {"surface", "nm", surface}};
   return image;
 }
 
@@ -57,14 +58,16 @@ void report(const CertaintyMap& map, const Options& o) {
   const auto percent = [](std::size_t part, std::size_t whole) {
     return whole ? 100.0 * static_cast<double>(part) / static_cast<double>(whole) : 0.0;
   };
-  print("{:<10} contacts within {} of the scan, at most {} pixels from each other's middle\n", "tolerance",
-             format_length(map.tolerance_nm), map.neighbourhood);
-  print("{:<10} {:.1f} % of the scan touched in one place, {:.1f} % possibly in several\n", "contacts",
-             percent(map.single, map.image_pixels), percent(map.ambiguous, map.image_pixels));
+  print("{:<10} contacts within {} of the scan, at most {} pixels from each other's middle\n",
+        "tolerance", format_length(map.tolerance_nm), map.neighbourhood);
+  print("{:<10} {:.1f} % of the scan touched in one place, {:.1f} % possibly in several\n",
+        "contacts", percent(map.single, map.image_pixels),
+        percent(map.ambiguous, map.image_pixels));
   print("{:<10} {:.1f} % of the surface{}\n", "certain", percent(map.certain, map.surface_samples),
-        map.unexplained > 0 ? fmt::format(", by the {:.1f} % of the scan that this tip can have made",
-                                          100 - percent(map.unexplained, map.image_pixels))
-                            : "");
+        map.unexplained > 0
+            ? fmt::format(", by the {:.1f} % of the scan that this tip can have made",
+                          100 - percent(map.unexplained, map.image_pixels))
+            : "");
   print("{:<10} {}\n", "written", *o.output);
   if (o.eroded) print("{:<10} {}\n", "written", *o.eroded);
 }
@@ -80,9 +83,10 @@ int work(const Options& o) {
   parameters.threads = threads_of(o.bound);
   const HeightField scan = read_scan(o.input, reading, o.quiet).field;
   const Tip tip = read_tip_for(o.tip, scan, o.quiet);
-  const workflow::CertaintyResult certain = workflow::certainty(scan, tip, parameters, JobReporter(o.quiet));
-  const auto record =
-      workflow::step_record("certainty", workflow::records_of(certain.used, reading), {o.input, *o.tip});
+  const workflow::CertaintyResult certain =
+      workflow::certainty(scan, tip, parameters, JobReporter(o.quiet));
+  const auto record = workflow::step_record(
+      "certainty", workflow::records_of(certain.used, reading), {o.input, *o.tip});
   Image image = to_image(certain.map);
   image.metadata = record;
   io::write_image(*o.output, image);
@@ -100,11 +104,14 @@ void add_certainty(CLI::App& app, Action& action) {
   add_tip_input(*sub, o->tip);
   o->bound.looks["scan.height_noise"].former = {"--noise"};
   o->bound.add<workflow::CertaintyParameters>(*sub, "Options");
-  with_role(sub->add_option("-o,--output", o->output, "The map: .png, .tif, .exr or .vti")->type_name("FILE"),
+  with_role(sub->add_option("-o,--output", o->output, "The map: .png, .tif, .exr or .vti")
+                ->type_name("FILE"),
             FileRole::written);
-  with_role(sub->add_option("--eroded", o->eroded, "The eroded scan: .gsf, .tif, .txt or .vti")->type_name("FILE"),
+  with_role(sub->add_option("--eroded", o->eroded, "The eroded scan: .gsf, .tif, .txt or .vti")
+                ->type_name("FILE"),
             FileRole::written);
-  with_role(sub->add_option("--surface", o->eroded)->type_name("FILE")->group(""), FileRole::written);   // its former name
+  with_role(sub->add_option("--surface", o->eroded)->type_name("FILE")->group(""),
+            FileRole::written);  // its former name
   add_threads_option(*sub, o->bound, "Options");
   add_quiet_flag(*sub, o->quiet);
   sub->footer(examples);

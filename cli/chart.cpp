@@ -45,7 +45,7 @@ Examples:
   semsurf sample pads -o pads && semsurf chart pads --model samples/si-1keV-10nm.json -o pads-chart)";
 
 struct Options {
-  BoundParameters scene, bound;   // of both kinds of charts
+  BoundParameters scene, bound;  // of both kinds of charts
   bool quiet = false;
 };
 
@@ -54,7 +54,8 @@ workflow::ChartJob make_job(const Options& o, const std::string& command_line) {
   o.bound.apply(job);
   if (job.folder.empty()) throw UsageError("`output`", "no folder is given", "Add `output=chart`");
   job.command_line = command_line;
-  job.scene = read_scene(o.scene.given(), o.quiet, workflow::specimen_reader(nullptr, processes_here()));
+  job.scene =
+      read_scene(o.scene.given(), o.quiet, workflow::specimen_reader(nullptr, processes_here()));
   return job;
 }
 
@@ -62,17 +63,19 @@ std::string percent(double share) { return fmt::format("{:.2g} %", 100 * share);
 
 std::string errors_of(const workflow::ChartPoint& p) {
   std::string text;
-  for (const workflow::ChartChannel& c : p.channels) text += fmt::format("  {} {:>7}", c.name, percent(c.error.rms));
+  for (const workflow::ChartChannel& c : p.channels)
+    text += fmt::format("  {} {:>7}", c.name, percent(c.error.rms));
   return text;
 }
 
 std::string time_text(double seconds) {
-  return seconds >= 0.995 ? fmt::format("{:.3g} s", seconds) : fmt::format("{:.3g} ms", 1e3 * seconds);
+  return seconds >= 0.995 ? fmt::format("{:.3g} s", seconds)
+                          : fmt::format("{:.3g} ms", 1e3 * seconds);
 }
 
 void print_point(const workflow::ChartPoint& p) {
-  print("{:<24} {:<38} {:>8} + {:<8}{}\n", p.family, p.setting, time_text(p.run_s), time_text(p.preparation_s),
-             errors_of(p));
+  print("{:<24} {:<38} {:>8} + {:<8}{}\n", p.family, p.setting, time_text(p.run_s),
+        time_text(p.preparation_s), errors_of(p));
 }
 
 void print_choices(const workflow::ChartSummary& s) {
@@ -81,8 +84,8 @@ void print_choices(const workflow::ChartSummary& s) {
     if (c.id.empty()) text += "; it is not on the chart";
     else if (c.fastest.empty()) text += "; no method on the chart met it";
     else
-      text += fmt::format("; {}, {:.2f} times as long as the fastest that does, {}", c.met ? "met" : "NOT met", c.ratio,
-                          c.fastest);
+      text += fmt::format("; {}, {:.2f} times as long as the fastest that does, {}",
+                          c.met ? "met" : "NOT met", c.ratio, c.fastest);
     print("{:<15} {}\n", fmt::format("--accuracy {}", format_share(c.accuracy)), text);
   }
 }
@@ -133,7 +136,9 @@ int chart(const Options& o, const std::string& command_line) {
     const auto tell = [&](const workflow::ChartPoint& p) {
       if (o.quiet) return;
       reporter.clear();
-      if (!headed) print("{:<24} {:<38} {:>8} + {:<8}  rms errors\n", "method", "setting", "image", "before it");
+      if (!headed)
+        print("{:<24} {:<38} {:>8} + {:<8}  rms errors\n", "method", "setting", "image",
+              "before it");
       headed = true;
       print_point(p);
       flush();
@@ -142,7 +147,9 @@ int chart(const Options& o, const std::string& command_line) {
   }
   if (!workflow::leads(team())) return 0;
   if (!s.complete) {
-    print_note(fmt::format("stopped: what is done is kept in {}; the same command goes on from there", job.folder.string()));
+    print_note(
+        fmt::format("stopped: what is done is kept in {}; the same command goes on from there",
+                    job.folder.string()));
     return exit_interrupted;
   }
   if (o.quiet) return 0;
@@ -150,7 +157,8 @@ int chart(const Options& o, const std::string& command_line) {
   for (const std::string& text : s.left_out) print("left out: {}\n", text);
   std::string floor;
   for (const workflow::ChartChannel& c : s.reference)
-    floor += fmt::format("{}{} {}", floor.empty() ? "" : ", ", c.name, percent(c.error.reference_noise));
+    floor +=
+        fmt::format("{}{} {}", floor.empty() ? "" : ", ", c.name, percent(c.error.reference_noise));
   print("reference: {} pixels, its noise {}\n", s.compared, floor);
   print_choices(s);
   for (const auto& path : s.written) print("written {}\n", path.string());
@@ -160,18 +168,20 @@ int chart(const Options& o, const std::string& command_line) {
 void add_options(CLI::App& app, Options& o) {
   // How much is simulated, by which method and on which mesh, is what the chart compares.
   add_request_options(app, o.scene,
-                      {"beam.current", "beam.dwell", "simulation.electrons", "simulation.accuracy", "simulation.accuracy_floor",
-                       "simulation.time", "simulation.method", "simulation.mesh_tolerance", "simulation.detectors",
-                       "simulation.seed"});
+                      {"beam.current", "beam.dwell", "simulation.electrons", "simulation.accuracy",
+                       "simulation.accuracy_floor", "simulation.time", "simulation.method",
+                       "simulation.mesh_tolerance", "simulation.detectors", "simulation.seed"});
   o.bound.looks["output"] = {.name = "-o,--output"};
   o.bound.add<workflow::ChartJob>(app, "Chart");
   add_quiet_flag(app, o.quiet)->group("Chart");
-  o.bound.add<workflow::ChainChartJob>(app, "Chart of a sample", {}, {"chart.draws", "chart.model"});
+  o.bound.add<workflow::ChainChartJob>(app, "Chart of a sample", {},
+                                       {"chart.draws", "chart.model"});
 }
 
 std::string footer() {
   std::string text = "Methods for scenes (--methods):\n";
-  for (const workflow::ChartFamily& f : workflow::chart_families()) text += fmt::format("  {:<24}{}\n", f.name, f.what);
+  for (const workflow::ChartFamily& f : workflow::chart_families())
+    text += fmt::format("  {:<24}{}\n", f.name, f.what);
   text += "\nMethods for folders of 'semsurf sample':\n" + chart_sample_methods();
   return text + "\n" + examples;
 }
@@ -180,15 +190,16 @@ std::string footer() {
 
 void add_chart(CLI::App& app, Action& action, const std::string& command_line) {
   const auto options = std::make_shared<Options>();
-  CLI::App* sub =
-      app.add_subcommand("chart", "Time against error of every method, on a scene or a sample of yours");
+  CLI::App* sub = app.add_subcommand(
+      "chart", "Time against error of every method, on a scene or a sample of yours");
   add_options(*sub, *options);
   sub->footer(footer());
   sub->callback([options, &action, command_line] {
     action = [options, command_line] {
       const bool folder = is_folder(*options);
       if (!folder) refuse_other_kind(*options, false);
-      else if (workflow::is_sample(options->scene.given().at("specimen.input").front())) refuse_other_kind(*options, true);
+      else if (workflow::is_sample(options->scene.given().at("specimen.input").front()))
+        refuse_other_kind(*options, true);
       return folder ? chart_folder(*options, command_line) : chart(*options, command_line);
     };
   });

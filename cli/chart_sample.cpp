@@ -14,7 +14,8 @@ namespace surf::cli {
 namespace {
 
 std::string time_text(double seconds) {
-  return seconds >= 0.995 ? fmt::format("{:.3g} s", seconds) : fmt::format("{:.3g} ms", 1e3 * seconds);
+  return seconds >= 0.995 ? fmt::format("{:.3g} s", seconds)
+                          : fmt::format("{:.3g} ms", 1e3 * seconds);
 }
 
 std::string offset_text(const workflow::RegistrationPoint& p) {
@@ -24,15 +25,16 @@ std::string offset_text(const workflow::RegistrationPoint& p) {
 }
 
 void print_registration(const workflow::RegistrationPoint& p) {
-  std::string text = fmt::format("{:<20} {:<16} {:>3} of {} right, {} wrong", p.family, offset_text(p),
-                                 p.right, p.draws, p.wrong);
+  std::string text = fmt::format("{:<20} {:<16} {:>3} of {} right, {} wrong", p.family,
+                                 offset_text(p), p.right, p.draws, p.wrong);
   if (p.verified > 0)
     text += fmt::format("; {:.2f} px off (median), {:.2f} at most", p.median_px, p.largest_px);
   print("{}; {} each\n", text, time_text(p.median_s));
 }
 
 void print_reconstruction(const workflow::ReconstructionPoint& p) {
-  std::string text = fmt::format("{:<20} {:<38} {:>8}", p.family, p.setting, time_text(p.steps.back().run_s));
+  std::string text =
+      fmt::format("{:<20} {:<38} {:>8}", p.family, p.setting, time_text(p.steps.back().run_s));
   if (p.preparation_s > 0) text += fmt::format(" + {}", time_text(p.preparation_s));
   print("{}  {:.3g} nm\n", text, p.steps.back().rms_nm);
 }
@@ -49,11 +51,11 @@ void print_ranges(const workflow::ChainChartSummary& s) {
     const std::string turn = range_text(r.deg, r.deg_open, "degrees");
     if (!turn.empty()) text += (text.empty() ? "" : ", ") + turn;
     print("{:<20} captures from {}\n", r.family,
-               text.empty() ? "none of the offsets that were tried" : text);
+          text.empty() ? "none of the offsets that were tried" : text);
   }
 }
 
-}   // namespace
+}  // namespace
 
 std::string chart_sample_methods() {
   std::string text;
@@ -75,15 +77,22 @@ int chart_sample(workflow::ChainChartJob job, bool quiet) {
       flush();
     };
     workflow::ChainChartCallbacks points;
-    points.registration = [&](const workflow::RegistrationPoint& p) { tell([&] { print_registration(p); }); };
-    points.reconstruction = [&](const workflow::ReconstructionPoint& p) { tell([&] { print_reconstruction(p); }); };
+    points.registration = [&](const workflow::RegistrationPoint& p) {
+      tell([&] { print_registration(p); });
+    };
+    points.reconstruction = [&](const workflow::ReconstructionPoint& p) {
+      tell([&] { print_reconstruction(p); });
+    };
     if (workflow::is_sample(job.sample))
-      reporter->note(fmt::format("{} is a sample whose truth is known: registration and reconstruction are charted", job.sample.string()));
+      reporter->note(fmt::format(
+          "{} is a sample whose truth is known: registration and reconstruction are charted",
+          job.sample.string()));
     s = workflow::run(job, reporter, points);
   }
   if (!s.complete) {
-    print_note(fmt::format("stopped: what is done is kept in {}; the same command goes on from there",
-                           job.folder.string()));
+    print_note(
+        fmt::format("stopped: what is done is kept in {}; the same command goes on from there",
+                    job.folder.string()));
     return exit_interrupted;
   }
   if (quiet) return 0;
@@ -92,9 +101,9 @@ int chart_sample(workflow::ChainChartJob job, bool quiet) {
   print_ranges(s);
   if (!s.reconstructions.empty())
     print("the eroded scan is {:.3g} nm off; noise and prior alone leave {:.3g} nm\n", s.eroded_nm,
-               s.floor_nm);
+          s.floor_nm);
   for (const auto& path : s.written) print("written {}\n", path.string());
   return 0;
 }
 
-}   // namespace surf::cli
+}  // namespace surf::cli

@@ -13,4 +13,4 @@ std::string chart_sample_methods();
 /// Registration and reconstruction of a folder that `semsurf sample` made: the exit code.
 int chart_sample(workflow::ChainChartJob job, bool quiet);
 
-}   // namespace surf::cli
+}  // namespace surf::cli

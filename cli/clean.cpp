@@ -39,17 +39,19 @@ CleanParameters parameters_of(const Options& o) {
   CleanParameters p;
   o.bound.apply(p);
   if (!p.median && !p.spikes && !p.closing)
-    throw UsageError("clean", "nothing is to be done", "Add --spikes 3:0.5nm, --median 3 or --closing 5");
+    throw UsageError("clean", "nothing is to be done",
+                     "Add --spikes 3:0.5nm, --median 3 or --closing 5");
   if (p.disc && !p.median && !p.spikes)
-    throw UsageError("--disc", "a closing is by a square", "Leave out --disc, or add --median or --spikes");
+    throw UsageError("--disc", "a closing is by a square",
+                     "Leave out --disc, or add --median or --spikes");
   p.threads = threads_of(o.bound);
   return p;
 }
 
 void print_summary(const char* what, const CleanSummary& s, const HeightField& field) {
   print("{:<10} {} of {} heights changed{}{}\n", what, s.changed, field.z_nm.size(),
-             s.filled ? fmt::format(", {} holes filled", s.filled) : "",
-             s.holes ? fmt::format(", {} holes left", s.holes) : "");
+        s.filled ? fmt::format(", {} holes filled", s.filled) : "",
+        s.holes ? fmt::format(", {} holes left", s.holes) : "");
 }
 
 int work(const Options& o) {
@@ -64,8 +66,9 @@ int work(const Options& o) {
     if (cleaned.median) print_summary("median", *cleaned.median, scan);
     if (cleaned.closing) print_summary("closing", *cleaned.closing, scan);
   }
-  io::write_height_field(*o.output, cleaned.field,
-                         workflow::step_record("clean", workflow::records_of(cleaned.used, reading), {o.scan}));
+  io::write_height_field(
+      *o.output, cleaned.field,
+      workflow::step_record("clean", workflow::records_of(cleaned.used, reading), {o.scan}));
   if (!o.quiet) print("{:<10} {}\n", "written", *o.output);
   return 0;
 }

@@ -15,7 +15,7 @@ using Action = std::function<int()>;
 void add_simulate(CLI::App& app, Action& action, const std::string& command_line);
 void add_chart(CLI::App& app, Action& action, const std::string& command_line);
 void add_sweep(CLI::App& app, Action& action, const std::string& command_line);
-void add_former_join(CLI::App& app, Action& action);   // 'semsurf join', hidden
+void add_former_join(CLI::App& app, Action& action);  // 'semsurf join', hidden
 void add_level(CLI::App& app, Action& action);
 void add_clean(CLI::App& app, Action& action);
 void add_noise(CLI::App& app, Action& action);

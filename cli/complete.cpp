@@ -24,9 +24,11 @@ struct Candidate {
 struct Offer {
   std::string kind = ":nothing";
   std::vector<Candidate> candidates;
-  bool list = false;   // more of them may follow after a comma
+  bool list = false;  // more of them may follow after a comma
 
-  void add(const std::string& word, const std::string& description = {}) { candidates.push_back({word, description}); }
+  void add(const std::string& word, const std::string& description = {}) {
+    candidates.push_back({word, description});
+  }
 };
 
 std::string first_line(std::string text) {
@@ -34,7 +36,8 @@ std::string first_line(std::string text) {
   return text;
 }
 
-/// What help shows for an option's value, without what CLI11 adds of its checks: "auto|rows:{auto,rows}".
+/// What help shows for an option's value, without what CLI11 adds of its checks:
+/// "auto|rows:{auto,rows}".
 std::string form_of_value(const CLI::Option& option) {
   std::string form = option.get_option_text();
   if (form.empty()) form = option.get_type_name();
@@ -72,15 +75,16 @@ void add_words_of(const CLI::Option& option, const std::string& form, Offer& off
   if (form == "KIND") {
     for (const workflow::LearnableKind& kind : workflow::learnable_kinds()) offer.add(kind.name);
   } else if (name == "channels" && form == "NAME,...") {
-    for (const char* word : {"z_nm", "normal", "material", "electrons", "model", "variance_left"}) offer.add(word);
+    for (const char* word : {"z_nm", "normal", "material", "electrons", "model", "variance_left"})
+      offer.add(word);
   } else if (name == "methods") {
     for (const workflow::ChartFamily& family : workflow::chart_families()) offer.add(family.name);
   }
 }
 
-/// "FILE.json" and "SCENE.toml" are names of files, "FOLDER|off" a folder or a word, "SE|BSE|...|valid" words among
-/// others.
-/// A single name in capitals stands for what nobody can list.
+/// "FILE.json" and "SCENE.toml" are names of files, "FOLDER|off" a folder or a word,
+/// "SE|BSE|...|valid" words among others. A single name in capitals stands for what nobody can
+/// list.
 Offer values_of(const CLI::Option& option) {
   Offer offer;
   const std::string form = form_of_value(option);
@@ -89,7 +93,8 @@ Offer values_of(const CLI::Option& option) {
   for (const std::string_view part : split(form, "|")) {
     if (part == "FILE" || part.starts_with("FILE.") || part == "SCENE.toml") offer.kind = ":files";
     else if (part == "FOLDER") offer.kind = ":folders";
-    else if (part == "MATERIAL") for (const mc::Material& m : io::builtin_materials()) offer.add(m.name);
+    else if (part == "MATERIAL")
+      for (const mc::Material& m : io::builtin_materials()) offer.add(m.name);
     else if (choice && part != "..." && part != "SHAPE") offer.add(std::string(part));
   }
   add_words_of(option, form, offer);
@@ -105,7 +110,7 @@ Offer prefixed(Offer offer, const std::string& before, const std::string& begun)
 
 /// What may stand after the last comma, but for what stands before it.
 Offer continued(Offer offer, const std::string& before, const std::string& word) {
-  const std::size_t begin = offer.list ? word.rfind(',') + 1 : 0;   // npos + 1 is 0
+  const std::size_t begin = offer.list ? word.rfind(',') + 1 : 0;  // npos + 1 is 0
   const std::set<std::string> used = [&] {
     const std::string before_it = word.substr(0, begin);
     const auto names = split(before_it, ",");
@@ -142,7 +147,7 @@ Offer varied(const CLI::App& command, const std::string& before, const std::stri
 }
 
 Offer complete_value(const CLI::App& command, const CLI::Option& option, const std::string& before,
-    const std::string& word) {
+                     const std::string& word) {
   const std::string form = form_of_value(option);
   if (form == "KEY=VALUE,...") return physics(before, word);
   if (form == "NAME=VALUES") return varied(command, before, word);
@@ -181,9 +186,11 @@ Offer complete_input(const CLI::App& command, std::size_t inputs, const std::str
   if (inputs > 0) return offer;
   Offer commands;
   for (const CLI::App* sub : command.get_subcommands(nullptr))
-    if (!sub->get_group().empty()) commands.add(sub->get_name(), first_line(sub->get_description()));
+    if (!sub->get_group().empty())
+      commands.add(sub->get_name(), first_line(sub->get_description()));
   commands = prefixed(std::move(commands), "", word);
-  offer.candidates.insert(offer.candidates.begin(), commands.candidates.begin(), commands.candidates.end());
+  offer.candidates.insert(offer.candidates.begin(), commands.candidates.begin(),
+                          commands.candidates.end());
   return offer;
 }
 
@@ -192,8 +199,8 @@ Offer complete_input(const CLI::App& command, std::size_t inputs, const std::str
 std::string completions(const CLI::App& app, const std::vector<std::string>& words) {
   const std::vector<std::string> all = rejoined(words);
   const CLI::App* command = &app;
-  const CLI::Option* awaits = nullptr;   // whose value comes next
-  int values = 0;                        // how many of them
+  const CLI::Option* awaits = nullptr;  // whose value comes next
+  int values = 0;                       // how many of them
   std::size_t inputs = 0;
   for (std::size_t i = 0; i + 1 < all.size(); ++i) {
     const std::string& word = all[i];
@@ -209,7 +216,7 @@ std::string completions(const CLI::App& app, const std::vector<std::string>& wor
     }
   }
   const std::string& word = all.back();
-  const Offer offer = values > 0                  ? complete_value(*command, *awaits, "", word)
+  const Offer offer = values > 0              ? complete_value(*command, *awaits, "", word)
                       : word.starts_with('-') ? complete_option(*command, word)
                                               : complete_input(*command, inputs, word);
   std::string text = offer.kind + "\n";

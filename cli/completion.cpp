@@ -6,7 +6,8 @@
 #include "surf/core/error.h"
 #include "terminal.h"
 
-// The scripts ask the program itself what may come next (complete.h), so that they never get out of date.
+// The scripts ask the program itself what may come next (complete.h), so that they never get out of
+// date.
 
 namespace surf::cli {
 namespace {
@@ -16,8 +17,10 @@ constexpr const char* examples = R"(Examples:
   semsurf completion zsh > "${fpath[1]}/_semsurf"
   semsurf completion fish > ~/.config/fish/completions/semsurf.fish)";
 
-// Bash ends words at "=" and ":" too: what stands before the current piece is taken off the answers.
-constexpr const char* bash_script = R"(# bash completion for semsurf, made by "semsurf completion bash"
+// Bash ends words at "=" and ":" too: what stands before the current piece is taken off the
+// answers.
+constexpr const char* bash_script =
+    R"(# bash completion for semsurf, made by "semsurf completion bash"
 _semsurf() {
   local cur=${COMP_WORDS[COMP_CWORD]} line=${COMP_LINE:0:COMP_POINT} lines i
   [[ $cur == [=:] ]] && cur=
@@ -56,7 +59,8 @@ _semsurf() {
 if [[ $funcstack[1] == _semsurf ]]; then _semsurf "$@"; else compdef _semsurf semsurf; fi
 )";
 
-constexpr const char* fish_script = R"(# fish completion for semsurf, made by "semsurf completion fish"
+constexpr const char* fish_script =
+    R"(# fish completion for semsurf, made by "semsurf completion fish"
 function __semsurf_complete
   set -l words (commandline -opc)
   set -l word (commandline -ct)

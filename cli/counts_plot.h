@@ -15,7 +15,7 @@ struct FittedCounts {
   workflow::DetectorCounts set;
   CountMoments moments;
   PoissonCounts poisson;
-  bool spread = false;      ///< the others are fitted
+  bool spread = false;  ///< the others are fitted
   LogNormalCounts log_normal;
   NormalCounts normal;
 };
@@ -24,8 +24,9 @@ FittedCounts fit(const workflow::DetectorCounts& set);
 /// A panel for each set, `detectors` beside each other (thesis, figures 8-5 to 8-7).
 io::Plot plot_counts(const std::vector<FittedCounts>& sets, int detectors);
 
-/// detector, primaries, count, trials, poisson, log_normal, normal: of each count the trials seen and expected.
-/// Before them lines "# key = value" of `made`.
-std::string counts_csv(const std::vector<FittedCounts>& sets, const std::map<std::string, std::string>& made);
+/// detector, primaries, count, trials, poisson, log_normal, normal: of each count the trials seen
+/// and expected. Before them lines "# key = value" of `made`.
+std::string counts_csv(const std::vector<FittedCounts>& sets,
+                       const std::map<std::string, std::string>& made);
 
 }  // namespace surf::cli

@@ -5,8 +5,8 @@
 #include <new>
 #include <system_error>
 
-#include "surf/core/error.h"
 #include "exit_codes.h"
+#include "surf/core/error.h"
 #include "terminal.h"
 
 namespace surf::cli {
@@ -24,7 +24,8 @@ int report_failure() {
     print_error("memory: there is not enough for this. Use fewer pixels or a smaller mesh");
   } catch (const std::system_error& error) {
     print_error(error.code() == std::errc::resource_unavailable_try_again
-                    ? "threads: the system cannot start another one. Give `job.threads=1`, or raise the limits of "
+                    ? "threads: the system cannot start another one. Give `job.threads=1`, or "
+                      "raise the limits of "
                       "processes and memory (ulimit -u, ulimit -v)"
                     : error.what());
   } catch (const std::exception& error) {

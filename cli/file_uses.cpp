@@ -39,7 +39,8 @@ bool is_output(const CLI::Option& option) {
   return role == FileRole::written || role == FileRole::written_folder;
 }
 
-void add_output(const std::string& option, const fs::path& path, std::vector<io::FileUse>& outputs) {
+void add_output(const std::string& option, const fs::path& path,
+                std::vector<io::FileUse>& outputs) {
   for (const fs::path& file : io::files_written_with(path))
     outputs.push_back({option, file, file == path ? fs::path() : path});
 }
@@ -49,7 +50,7 @@ std::vector<fs::path> files_in(const fs::path& folder, const std::string& comman
   if (command == "reconstruct") return workflow::reconstruction_files(folder);
   if (command != "chart") return {};
   std::vector<fs::path> files = workflow::chart_files(folder);
-  for (const fs::path& file : workflow::chain_chart_files(folder))   // some names are the same
+  for (const fs::path& file : workflow::chain_chart_files(folder))  // some names are the same
     if (std::ranges::find(files, file) == files.end()) files.push_back(file);
   return files;
 }
@@ -63,10 +64,11 @@ std::vector<io::FileUse> files_read(const std::string& option, const std::string
   try {
     files = io::is_scene_file(path) ? io::scene_input_files(path) : io::files_read_with(path);
   } catch (const Error&) {
-    files = {path};   // reading the scene will say what is wrong
+    files = {path};  // reading the scene will say what is wrong
   }
   std::vector<io::FileUse> uses;
-  for (const fs::path& file : files) uses.push_back({option, file, file == path ? fs::path() : path});
+  for (const fs::path& file : files)
+    uses.push_back({option, file, file == path ? fs::path() : path});
   return uses;
 }
 
@@ -77,10 +79,12 @@ void refuse_overlaps(const CLI::App& command) {
     const bool is_folder = file_role(*option) == FileRole::written_folder;
     for (const std::string& value : option->results()) {
       if (!is_folder) add_output(name_of(*option), value, outputs);
-      else for (const fs::path& file : files_in(value, command.get_name())) outputs.push_back({name_of(*option), file, {}});
+      else
+        for (const fs::path& file : files_in(value, command.get_name()))
+          outputs.push_back({name_of(*option), file, {}});
     }
   }
-  if (outputs.empty()) return;   // the inputs need not be looked at
+  if (outputs.empty()) return;  // the inputs need not be looked at
   for (const CLI::Option* option : command.get_options()) {
     if (file_role(*option) != FileRole::read) continue;
     for (const std::string& value : option->results())

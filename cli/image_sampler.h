@@ -13,8 +13,8 @@ bool covers(const Image& image, double x_nm, double y_nm);
 /// "x 0 to 500, y 0 to 300 nm".
 std::string place_of(const Image& image);
 
-/// A channel's values anywhere, between pixels in proportion to the four around; NaN beyond the image, where it is not
-/// valid and beside holes. The image must outlive it.
+/// A channel's values anywhere, between pixels in proportion to the four around; NaN beyond the
+/// image, where it is not valid and beside holes. The image must outlive it.
 class ImageSampler {
  public:
   ImageSampler(const Image& image, const std::string& channel);

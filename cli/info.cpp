@@ -9,7 +9,6 @@
 #include "commands.h"
 #include "failure.h"
 #include "mesh_parameters.h"
-#include "terminal.h"
 #include "surf/core/error.h"
 #include "surf/core/field_words.h"
 #include "surf/core/units.h"
@@ -21,6 +20,7 @@
 #include "surf/io/sim/materials.h"
 #include "surf/io/sim/scene_file.h"
 #include "surf/workflow/simulate_job.h"
+#include "terminal.h"
 
 namespace surf::cli {
 namespace {
@@ -41,13 +41,13 @@ void print_specimen(const mc::Specimen& specimen) {
     return specimen.materials.at(static_cast<std::size_t>(index)).name;
   };
   if (const auto& s = specimen.substrate)
-    print_item("substrate", fmt::format("{} below z = {}", material(s->material),
-                                        format_length(s->top_nm)));
+    print_item("substrate",
+               fmt::format("{} below z = {}", material(s->material), format_length(s->top_nm)));
   if (const auto& h = specimen.height_field)
-    print_item("field", fmt::format("{}, {}, {} x {} samples, pitch {} x {}", h->name,
-                                    material(h->material), h->field.z_nm.width(),
-                                    h->field.z_nm.height(), format_length(h->field.pitch_x_nm),
-                                    format_length(h->field.pitch_y_nm)));
+    print_item("field",
+               fmt::format("{}, {}, {} x {} samples, pitch {} x {}", h->name, material(h->material),
+                           h->field.z_nm.width(), h->field.z_nm.height(),
+                           format_length(h->field.pitch_x_nm), format_length(h->field.pitch_y_nm)));
   for (const mc::Body& body : specimen.bodies)
     print_item("body", fmt::format("{}, {}, {} triangles, {}", body.name, material(body.material),
                                    body.mesh.triangles.size(), format_extent(bounds(body.mesh))));
@@ -63,30 +63,32 @@ void print_scan(const io::SceneFile& scene) {
   for_each_parameter(beam, [&](const Parameter& about, Field& field) {
     if (field.kind() != FieldKind::number || !field.given()) return;
     const auto found = usual.find(about.key());
-    if (found != usual.end() && found->second == field.text() && about.name != "beam.energy") return;
+    if (found != usual.end() && found->second == field.text() && about.name != "beam.energy")
+      return;
     settings += fmt::format("{}{} {}", settings.empty() ? "" : ", ", last_part(about.name, ' '),
                             format_value(std::stod(field.text()), about.unit));
   });
   print_item("beam", settings);
-  const mc::Scan scan =
-      workflow::resolve_scan(scene.scan, mc::extent(scene.specimen), beam);
+  const mc::Scan scan = workflow::resolve_scan(scene.scan, mc::extent(scene.specimen), beam);
   print_item("scan", fmt::format("{} x {} pixels of {} x {} about {}, {}, {} nm", scan.width,
                                  scan.height, format_length(scan.pixel_x_nm),
                                  format_length(scan.pixel_y_nm), format_exact(scan.center_x_nm),
-                                 format_exact(scan.center_y_nm),
-                                 format_exact(scan.center_z_nm)));
+                                 format_exact(scan.center_y_nm), format_exact(scan.center_z_nm)));
   for (const mc::Detector& d : scene.detectors) print_item("detector", mc::format_detector(d));
   if (const auto* const dose = std::get_if<mc::Dose>(&scene.budget)) {
-    print_item("dose", fmt::format("{} pA for {} us: {:.4g} primaries per pixel", format_exact(dose->current_pa),
-                                   format_exact(dose->dwell_us), dose->electrons));
+    print_item("dose", fmt::format("{} pA for {} us: {:.4g} primaries per pixel",
+                                   format_exact(dose->current_pa), format_exact(dose->dwell_us),
+                                   dose->electrons));
   } else if (const auto* const accuracy = std::get_if<mc::Accuracy>(&scene.budget)) {
-    print_item("accuracy", fmt::format("{}, but no better than {} per primary", format_share(accuracy->share), accuracy->floor));
+    print_item("accuracy", fmt::format("{}, but no better than {} per primary",
+                                       format_share(accuracy->share), accuracy->floor));
   } else if (const auto* const limit = std::get_if<mc::TimeLimit>(&scene.budget)) {
     print_item("time", fmt::format("{:g} s", limit->seconds));
   } else {
     const auto electrons = mc::electrons_of(scene.budget);
-    print_item("electrons", fmt::format("{} per pixel, {} in all", electrons,
-                                        format_count(double(electrons) * scan.width * scan.height)));
+    print_item("electrons",
+               fmt::format("{} per pixel, {} in all", electrons,
+                           format_count(double(electrons) * scan.width * scan.height)));
   }
 }
 
@@ -95,15 +97,13 @@ void print_scene(const std::filesystem::path& path,
   const io::SceneFile scene = io::read_scene(path, material_files);
   for (const std::string& note : scene.notes) print_note(note);
   mc::validate(scene.specimen);
-  print("{}: scene{}\n", path.string(),
-             scene.title.empty() ? "" : ", \"" + scene.title + "\"");
+  print("{}: scene{}\n", path.string(), scene.title.empty() ? "" : ", \"" + scene.title + "\"");
   print_specimen(scene.specimen);
   print_scan(scene);
   print_item("physics", mc::format_physics(scene.physics));
   for (const mc::Material& material : scene.specimen.materials) {
     print("  in {}\n", material.name);
-    for (const std::string& line : mc::describe(scene.physics, material))
-      print("    {}\n", line);
+    for (const std::string& line : mc::describe(scene.physics, material)) print("    {}\n", line);
   }
 }
 
@@ -114,8 +114,10 @@ void print_foreign_file(const std::filesystem::path& path) {
   } catch (const io::UnknownScan&) {
     if (io::has_scan_name(path)) throw;
     throw FileError(path.string(), "it is no mesh, image or AFM scan of a format known here",
-                    "Use a mesh (STL, OBJ, PLY, OFF, glTF, 3MF, VTP, VTM), an image (EXR, TIFF, PNG, VTI) or a scan "
-                    "(.gwy, .gsf, .spm, .ibw, .sxm, text ...); with Gwyddion installed (apt-get install gwyddion) "
+                    "Use a mesh (STL, OBJ, PLY, OFF, glTF, 3MF, VTP, VTM), an image (EXR, TIFF, "
+                    "PNG, VTI) or a scan "
+                    "(.gwy, .gsf, .spm, .ibw, .sxm, text ...); with Gwyddion installed (apt-get "
+                    "install gwyddion) "
                     "semsurf reads many more scans");
   }
 }
@@ -139,7 +141,7 @@ int print_all(const std::vector<std::string>& files, const io::MeshUnit& unit,
     try {
       print_info(file, unit, material_files);
     } catch (...) {
-      flush();   // what was said before the message
+      flush();  // what was said before the message
       const int failed = report_failure();
       if (code == 0) code = failed;
     }
@@ -171,16 +173,20 @@ void add_info(CLI::App& app, Action& action) {
     std::vector<std::string> files;
   };
   const auto options = std::make_shared<Options>();
-  CLI::App* sub = app.add_subcommand("info", "What is in meshes, images, AFM scans, models and scene files");
-  with_role(sub->add_option("FILE", options->files, "Meshes, images, AFM scans, models or scenes")->type_name("FILE"),
+  CLI::App* sub =
+      app.add_subcommand("info", "What is in meshes, images, AFM scans, models and scene files");
+  with_role(sub->add_option("FILE", options->files, "Meshes, images, AFM scans, models or scenes")
+                ->type_name("FILE"),
             FileRole::read);
-  options->bound.add<io::SpecimenRequest>(*sub, "Options", {}, {"specimen.unit", "specimen.override_unit"});
+  options->bound.add<io::SpecimenRequest>(*sub, "Options", {},
+                                          {"specimen.unit", "specimen.override_unit"});
   options->bound.add<io::MaterialChoice>(*sub, "Options", {}, {"specimen.materials"});
   sub->footer(examples);
   sub->callback([options, &action] {
     action = [options] {
       if (options->files.empty())
-        throw UsageError("info", "no file is given", "Give meshes, images, AFM scans, models or scene files");
+        throw UsageError("info", "no file is given",
+                         "Give meshes, images, AFM scans, models or scene files");
       io::SpecimenRequest request;
       io::MaterialChoice own;
       options->bound.apply(request), options->bound.apply(own);

@@ -31,7 +31,8 @@ std::string describe_heights(const HeightField& field) {
       ++count;
     }
   }
-  std::string text = fmt::format("{:.6g} to {:.6g}, mean {:.6g} nm", lowest, highest, sum / double(count));
+  std::string text =
+      fmt::format("{:.6g} to {:.6g}, mean {:.6g} nm", lowest, highest, sum / double(count));
   if (count < field.z_nm.size()) {
     const std::size_t holes = field.z_nm.size() - count;
     text += fmt::format(", {} hole{}", holes, holes == 1 ? "" : "s");
@@ -41,13 +42,14 @@ std::string describe_heights(const HeightField& field) {
 
 void print_size(const HeightField& field) {
   const int w = field.z_nm.width(), h = field.z_nm.height();
-  print_item("size", fmt::format("{} x {} pixels of {} x {}, {} x {}", w, h, format_length(field.pitch_x_nm),
-                                 format_length(field.pitch_y_nm), format_length(w * field.pitch_x_nm),
-                                 format_length(h * field.pitch_y_nm)));
+  print_item("size",
+             fmt::format("{} x {} pixels of {} x {}, {} x {}", w, h,
+                         format_length(field.pitch_x_nm), format_length(field.pitch_y_nm),
+                         format_length(w * field.pitch_x_nm), format_length(h * field.pitch_y_nm)));
 }
 
-void print_height_channel(const io::HeightFile& file, std::size_t number, const io::HeightChannel& channel,
-                          const std::string& label) {
+void print_height_channel(const io::HeightFile& file, std::size_t number,
+                          const io::HeightChannel& channel, const std::string& label) {
   if (!channel.is_height) {
     print_item(label, fmt::format("{} x {} pixels in {}, no heights", channel.width, channel.height,
                                   channel.z_unit.empty() ? "an unknown unit" : channel.z_unit));
@@ -71,7 +73,8 @@ void print_height_file(const std::filesystem::path& path) {
   std::vector<std::string> labels;
   std::size_t width = 0;
   for (std::size_t i = 0; i < channels.size(); ++i) {
-    labels.push_back(fmt::format("{} {}", i + 1, channels[i].name.empty() ? "heights" : channels[i].name));
+    labels.push_back(
+        fmt::format("{} {}", i + 1, channels[i].name.empty() ? "heights" : channels[i].name));
     width = std::max(width, labels.back().size());
   }
   for (std::size_t i = 0; i < channels.size(); ++i)
@@ -81,7 +84,8 @@ void print_height_file(const std::filesystem::path& path) {
   print("  what it says of itself\n");
   std::size_t longest = 0, printed = 0;
   constexpr std::size_t widest_key = 30;
-  for (const auto& item : first.metadata) longest = std::min(std::max(longest, item.first.size()), widest_key);
+  for (const auto& item : first.metadata)
+    longest = std::min(std::max(longest, item.first.size()), widest_key);
   for (const auto& [key, value] : first.metadata) {
     if (printed++ == most_settings) break;
     print("    {:<{}}  {}\n", key, longest, value);

@@ -37,7 +37,8 @@ std::string size_warning(double wide_nm, double unit_nm) {
   constexpr double typical_nm = 3e3;
   const auto off = [&](double nm) { return std::abs(std::log10(nm / typical_nm)); };
   std::pair<const char*, double> best{"nm", 1};
-  for (const auto& [unit, nm] : {std::pair{"pm", 1e-3}, {"nm", 1.0}, {"um", 1e3}, {"mm", 1e6}, {"m", 1e9}}) {
+  for (const auto& [unit, nm] :
+       {std::pair{"pm", 1e-3}, {"nm", 1.0}, {"um", 1e3}, {"mm", 1e6}, {"m", 1e9}}) {
     if (off(wide_nm / unit_nm * nm) < off(wide_nm / unit_nm * best.second)) best = {unit, nm};
   }
   const double then_nm = wide_nm / unit_nm * best.second;
@@ -58,12 +59,14 @@ void print_mesh_warnings(const MeshReport& r, const TriangleMesh& mesh,
     warn("not closed or not oriented: it cannot be simulated as it is");
   const bool inward = r.closed_and_oriented && r.signed_volume_nm3 < 0;
   if (inward) warn("normals point inward; simulate takes them as pointing outward");
-  if ((!r.closed_and_oriented && !sheet) || inward || r.degenerate_triangles + r.duplicate_triangles > 0)
+  if ((!r.closed_and_oriented && !sheet) || inward ||
+      r.degenerate_triangles + r.duplicate_triangles > 0)
     print_item("try", fmt::format("semsurf mesh {} --repair -o {}", path.string(),
                                   path.stem().string() + "_repaired.ply"));
   const Vec3 size = r.bounds_nm.size_nm();
   const double widest = std::max({size.x, size.y, size.z});
-  if (widest > 0 && (widest > widest_nm || widest < narrowest_nm)) warn(size_warning(widest, unit_nm));
+  if (widest > 0 && (widest > widest_nm || widest < narrowest_nm))
+    warn(size_warning(widest, unit_nm));
 }
 
 void print_body(const io::NamedMesh& body) {
@@ -83,10 +86,9 @@ void print_channel(const Channel& channel, std::size_t label_width) {
     ++finite;
   }
   const std::string unit = channel.unit.empty() || channel.unit == "1" ? "" : " " + channel.unit;
-  std::string text =
-      finite == 0 ? "no finite value"
-                  : fmt::format("{:.6g} to {:.6g}, mean {:.6g}{}", lowest, highest,
-                                sum / double(finite), unit);
+  std::string text = finite == 0 ? "no finite value"
+                                 : fmt::format("{:.6g} to {:.6g}, mean {:.6g}{}", lowest, highest,
+                                               sum / double(finite), unit);
   if (finite > 0 && finite < channel.values.size())
     text += fmt::format(", {} not finite", channel.values.size() - finite);
   print_item(fmt::format("{:<{}}", channel.name, label_width), text);
@@ -111,7 +113,7 @@ std::optional<DescribedPixel> described_pixel(const std::filesystem::path& path)
     const io::SemFile file = io::read_sem_image(path);
     return DescribedPixel{file.image.pitch_x_nm, file.image.pitch_y_nm, file.pixel_from};
   } catch (const Error&) {
-    return std::nullopt;   // there is nothing, or the picture is in colour
+    return std::nullopt;  // there is nothing, or the picture is in colour
   }
 }
 
@@ -121,8 +123,9 @@ void print_attributes(const SurfaceScene& scene) {
     const std::string of = scene.surfaces.size() > 1 ? " of " + surface.name : "";
     for (const VertexScalar& scalar : surface.scalars) {
       const auto [low, high] = std::ranges::minmax(scalar.values);
-      print_item("scalar", fmt::format("{}{}, {:.6g} to {:.6g}{}", scalar.name, of, low, high,
-                                       scalar.unit.empty() || scalar.unit == "1" ? "" : " " + scalar.unit));
+      print_item("scalar",
+                 fmt::format("{}{}, {:.6g} to {:.6g}{}", scalar.name, of, low, high,
+                             scalar.unit.empty() || scalar.unit == "1" ? "" : " " + scalar.unit));
     }
     if (surface.drape)
       print_item("picture", fmt::format("{}{}, {} x {} pixels of {} x {}", surface.drape->name, of,
@@ -141,7 +144,7 @@ void print_mesh(const std::filesystem::path& path, const io::MeshUnit& unit) {
   const TriangleMesh mesh = bodies.size() == 1 ? bodies.front().mesh : io::join(bodies);
   const MeshReport report = check_mesh(mesh);
   print("{}: mesh{}\n", path.string(),
-             bodies.size() == 1 ? "" : fmt::format(" of {} bodies", bodies.size()));
+        bodies.size() == 1 ? "" : fmt::format(" of {} bodies", bodies.size()));
   for (const io::NamedMesh& body : bodies)
     if (bodies.size() > 1 || !body.material.empty()) print_body(body);
   print_item("shape", summary(report));
@@ -157,7 +160,8 @@ void print_mesh(const std::filesystem::path& path, const io::MeshUnit& unit) {
 }
 
 void print_image(const std::filesystem::path& path) {
-  constexpr std::int64_t most_pixels = std::int64_t{1} << 25;   // larger ones are looked at in a smaller size
+  constexpr std::int64_t most_pixels = std::int64_t{1}
+                                       << 25;  // larger ones are looked at in a smaller size
   const io::ImageLevel read = io::read_image_within(path, most_pixels);
   const Image& image = read.image;
   const double scale = std::ldexp(1.0, read.level);
@@ -167,19 +171,23 @@ void print_image(const std::filesystem::path& path) {
   if (described) std::tie(pitch_x_nm, pitch_y_nm) = std::pair(described->x_nm, described->y_nm);
   print("{}: image\n", path.string());
   const std::string pixels = fmt::format("{} x {} pixels", read.whole.width, read.whole.height);
-  print_item("size", !placed && !described ? pixels + "; the file does not say how large they are"
-                             : fmt::format("{} of {} x {}, {} x {}", pixels, format_length(pitch_x_nm),
-                                           format_length(pitch_y_nm), format_length(read.whole.width * pitch_x_nm),
-                                           format_length(read.whole.height * pitch_y_nm)));
+  print_item("size", !placed && !described
+                         ? pixels + "; the file does not say how large they are"
+                         : fmt::format("{} of {} x {}, {} x {}", pixels, format_length(pitch_x_nm),
+                                       format_length(pitch_y_nm),
+                                       format_length(read.whole.width * pitch_x_nm),
+                                       format_length(read.whole.height * pitch_y_nm)));
   if (described) print_item("from", described->from);
   if (read.levels > 1)
-    print_item("pyramid", fmt::format("{} sizes{}", read.levels,
-                                      read.level == 0 ? ""
-                                                      : fmt::format("; values below are of {} x {} means", image.width(),
-                                                                    image.height())));
+    print_item("pyramid",
+               fmt::format("{} sizes{}", read.levels,
+                           read.level == 0 ? ""
+                                           : fmt::format("; values below are of {} x {} means",
+                                                         image.width(), image.height())));
   if (read.level == 0 && placed)
-    print_item("origin", fmt::format("lower-left pixel's centre at {}, {} nm", format_exact(image.origin_x_nm),
-                                     format_exact(image.origin_y_nm)));
+    print_item("origin",
+               fmt::format("lower-left pixel's centre at {}, {} nm",
+                           format_exact(image.origin_x_nm), format_exact(image.origin_y_nm)));
   std::size_t label_width = 0;
   for (const Channel& channel : image.channels)
     label_width = std::max(label_width, channel.name.size());

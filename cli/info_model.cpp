@@ -18,9 +18,12 @@ std::string format_condition(double number) {
 
 std::string format_pixels(const TrainingRecord& record) {
   const std::size_t learnt = learnt_from(record);
-  std::string text = learnt == 0 ? "no images" : fmt::format("{} surface{}", learnt, learnt == 1 ? "" : "s");
-  if (!record.residuals.empty()) text += fmt::format(", {} pixels", record.residuals.front().pixels);
-  if (learnt < record.scenes.size()) text += fmt::format("; {} held out", record.scenes.size() - learnt);
+  std::string text =
+      learnt == 0 ? "no images" : fmt::format("{} surface{}", learnt, learnt == 1 ? "" : "s");
+  if (!record.residuals.empty())
+    text += fmt::format(", {} pixels", record.residuals.front().pixels);
+  if (learnt < record.scenes.size())
+    text += fmt::format("; {} held out", record.scenes.size() - learnt);
   return text;
 }
 
@@ -34,11 +37,14 @@ void print_model(const std::filesystem::path& path) {
   print_item("for", format_scope(model.scope));
   print_item("learnt on", format_pixels(record));
   if (learnt_from(record) > 0) print_item("range", format_range(record.range));
-  if (record.condition_number != 0) print_item("condition", format_condition(record.condition_number));
+  if (record.condition_number != 0)
+    print_item("condition", format_condition(record.condition_number));
   for (const std::string& warning : record.warnings) print_item("warning", warning);
   if (const std::vector<std::string> table = residual_table(record); !table.empty()) {
-    print("  how far it is off (mean signal per primary; in % of it rms, the images' noise subtracted,\n"
-               "  and mean, noise included)\n");
+    print(
+        "  how far it is off (mean signal per primary; in % of it rms, the images' noise "
+        "subtracted,\n"
+        "  and mean, noise included)\n");
     for (const std::string& line : table) print("    {}\n", line);
   }
   if (record.notes.empty()) return;

@@ -23,7 +23,8 @@ void print_values(const PlacedImage& image) {
     ++count;
   }
   if (count > 0)
-    print_item("signal", fmt::format("{:.6g} to {:.6g}, mean {:.6g}", lowest, highest, sum / double(count)));
+    print_item("signal",
+               fmt::format("{:.6g} to {:.6g}, mean {:.6g}", lowest, highest, sum / double(count)));
 }
 
 }  // namespace
@@ -33,17 +34,21 @@ void print_sem_image(const std::filesystem::path& path) {
   const PlacedImage& image = file.image;
   for (const std::string& note : file.notes) print_note(note);
   print("{}: SEM image, {}{}\n", path.string(), file.format,
-             file.instrument.empty() ? "" : ", " + file.instrument);
+        file.instrument.empty() ? "" : ", " + file.instrument);
   const int width = image.values.width(), height = image.values.height();
-  print_item("size", fmt::format("{} x {} pixels of {} x {}, {} x {}", width, height, format_length(image.pitch_x_nm, 4),
-                                 format_length(image.pitch_y_nm, 4), format_length(width * image.pitch_x_nm),
-                                 format_length(height * image.pitch_y_nm)));
+  print_item("size",
+             fmt::format("{} x {} pixels of {} x {}, {} x {}", width, height,
+                         format_length(image.pitch_x_nm, 4), format_length(image.pitch_y_nm, 4),
+                         format_length(width * image.pitch_x_nm),
+                         format_length(height * image.pitch_y_nm)));
   print_item("from", file.pixel_from);
-  if (file.databar_rows > 0) print_item("databar", fmt::format("{} rows below, left out", file.databar_rows));
+  if (file.databar_rows > 0)
+    print_item("databar", fmt::format("{} rows below, left out", file.databar_rows));
   print_item("numbers", file.bits > 0 ? fmt::format("{} bits", file.bits) : "floats");
   print_values(image);
   if (file.energy_ev) print_item("energy", format_energy(*file.energy_ev));
-  if (file.working_distance_nm) print_item("distance", format_length(*file.working_distance_nm) + " to the lens");
+  if (file.working_distance_nm)
+    print_item("distance", format_length(*file.working_distance_nm) + " to the lens");
   if (file.tilt_deg) print_item("tilt", fmt::format("{:.3g} degrees", *file.tilt_deg));
   if (!file.detector.empty()) print_item("detector", file.detector);
   if (file.metadata.empty()) return;

@@ -8,7 +8,8 @@
 
 namespace surf::cli {
 
-/// A job's reports on the terminal: a progress bar, notes and warnings that make room for themselves, Ctrl-C. One at a time.
+/// A job's reports on the terminal: a progress bar, notes and warnings that make room for
+/// themselves, Ctrl-C. One at a time.
 class JobReporter {
  public:
   /// `quiet`: warnings only.

@@ -28,8 +28,8 @@ bool leave_to_leader(const std::string& command) {
   if (!joined) return false;
   if (!joined->leads()) return true;
   const int others = joined->size() - 1;
-  print_note(fmt::format("'semsurf {}' is the work of one process: {} other{} nothing to do", command, others,
-                         others == 1 ? " has" : "s have"));
+  print_note(fmt::format("'semsurf {}' is the work of one process: {} other{} nothing to do",
+                         command, others, others == 1 ? " has" : "s have"));
   return false;
 }
 

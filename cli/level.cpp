@@ -48,44 +48,48 @@ struct Options {
 void refuse_contradictions(const Options& o, const LevelParameters& p) {
   if (o.scan.empty()) throw UsageError("level", "no scan is given", "Name a file to read");
   if (!o.output && o.step.empty())
-    throw UsageError("--output", "no output file is given", "Add -o flat.gsf, or --step to measure only");
+    throw UsageError("--output", "no output file is given",
+                     "Add -o flat.gsf, or --step to measure only");
   if (o.substrate_mask && p.method != LevelMethod::hough)
     throw UsageError("--substrate-mask", "only the method hough marks a substrate",
                      "Leave out --substrate-mask, or --level-method");
   if (o.bound.is_given("level.degree") && p.method != LevelMethod::polynomial)
-    throw UsageError("--level-degree", "only a polynomial has one", "Add --level-method polynomial");
+    throw UsageError("--level-degree", "only a polynomial has one",
+                     "Add --level-method polynomial");
 }
 
 void print_plane(const Plane& plane) {
-  print("{:<10} tilt {:.4g} deg, uphill at {:.3g} deg; slope {:.4g} along x, {:.4g} along y\n", "plane",
-             plane.tilt_deg(), plane.uphill_deg(), plane.slope_x, plane.slope_y);
+  print("{:<10} tilt {:.4g} deg, uphill at {:.3g} deg; slope {:.4g} along x, {:.4g} along y\n",
+        "plane", plane.tilt_deg(), plane.uphill_deg(), plane.slope_x, plane.slope_y);
 }
 
 void print_rows(const RowLevel& rows) {
   const auto [low, high] = std::minmax_element(rows.offsets_nm.begin(), rows.offsets_nm.end());
   print("{:<10} shifted by {:.4g} to {:.4g} nm{}\n", "rows", *low, *high,
-        rows.rows_without_samples
-            ? fmt::format("; {} without a sample to go by, as the nearest", rows.rows_without_samples)
-            : "");
+        rows.rows_without_samples ? fmt::format("; {} without a sample to go by, as the nearest",
+                                                rows.rows_without_samples)
+                                  : "");
 }
 
 void print_inliers(const HoughSummary& s) {
   print("{:<10} {:.1f} % within {} of it, {} rms; the next plane holds {:.1f} %\n", "substrate",
-             100 * s.inlier_share, format_length(s.tolerance_nm), format_length(s.inlier_rms_nm),
-             100 * s.runner_up_share);
+        100 * s.inlier_share, format_length(s.tolerance_nm), format_length(s.inlier_rms_nm),
+        100 * s.runner_up_share);
 }
 
 void print_roughness(const char* label, const char* part, const Roughness& r) {
   print("{:<10} {}: Sa {}, Sq {}, Sz {}; {:.2g} deg of tilt left, without it Sq {}\n", label, part,
-             format_length(r.sa_nm), format_length(r.sq_nm), format_length(r.sz_nm), r.tilt.tilt_deg(),
-             format_length(r.sq_levelled_nm));
+        format_length(r.sa_nm), format_length(r.sq_nm), format_length(r.sz_nm), r.tilt.tilt_deg(),
+        format_length(r.sq_levelled_nm));
 }
 
 void print_step(const HeightField& field, const std::vector<std::string>& step) {
   const StepHeight s = measure_step(field, parse_mask_region(step[0], "--step", field),
                                     parse_mask_region(step[1], "--step", field));
-  print("{:<10} {:.6g} ± {:.2g} nm, the second region above the first; {} rms about two parallel planes\n", "step",
-             s.height_nm, s.stderr_nm, format_length(s.residual_nm));
+  print(
+      "{:<10} {:.6g} ± {:.2g} nm, the second region above the first; {} rms about two parallel "
+      "planes\n",
+      "step", s.height_nm, s.stderr_nm, format_length(s.residual_nm));
 }
 
 int work(const Options& o) {
@@ -98,20 +102,24 @@ int work(const Options& o) {
   if (o.substrate_mask) io::check_image_target(*o.substrate_mask);
   const HeightField scan = read_scan(o.scan, reading, o.quiet).field;
   const Grid<unsigned char> use = read_masks(masks, scan);
-  const workflow::LevelResult levelled = workflow::level(scan, parameters, use, JobReporter(o.quiet));
+  const workflow::LevelResult levelled =
+      workflow::level(scan, parameters, use, JobReporter(o.quiet));
   const HeightField& field = levelled.field;
   if (!o.quiet) {
     if (levelled.rows) print_rows(*levelled.rows);
     if (levelled.plane) print_plane(*levelled.plane);
     if (levelled.hough) print_inliers(*levelled.hough);
-    print_roughness("roughness", use.empty() ? "all" : "what counts", measure_roughness(field, use));
-    if (levelled.hough) print_roughness("", "substrate", measure_roughness(field, levelled.substrate));
+    print_roughness("roughness", use.empty() ? "all" : "what counts",
+                    measure_roughness(field, use));
+    if (levelled.hough)
+      print_roughness("", "substrate", measure_roughness(field, levelled.substrate));
   }
   if (!o.step.empty()) print_step(field, o.step);
   if (o.substrate_mask || o.output) {
     std::vector<std::filesystem::path> inputs{o.scan};
     for (const std::string& mask : masks.files()) inputs.emplace_back(mask);
-    const auto made = workflow::step_record("level", workflow::records_of(parameters, reading, masks), inputs);
+    const auto made =
+        workflow::step_record("level", workflow::records_of(parameters, reading, masks), inputs);
     if (o.substrate_mask) write_mask(*o.substrate_mask, levelled.substrate, field, made);
     if (o.output) io::write_height_field(*o.output, field, made);
   }
@@ -133,13 +141,19 @@ void add_level(CLI::App& app, Action& action) {
   o->bound.add<LevelParameters>(*sub, "Levelling");
   o->bound.add<MaskInput>(*sub, "Samples that decide");
   const char* output = "Output";
-  sub->add_option("--step", o->step, "Height of the second region above the first, in nm from the\n"
-                                     "scan's origin")
-      ->type_name("X0,Y0,X1,Y1")->expected(2)->group(output);
-  with_role(sub->add_option("--substrate-mask", o->substrate_mask, "Image of where the substrate is: .tif .png .exr .vti")
-                ->type_name("FILE")->group(output),
+  sub->add_option("--step", o->step,
+                  "Height of the second region above the first, in nm from the\n"
+                  "scan's origin")
+      ->type_name("X0,Y0,X1,Y1")
+      ->expected(2)
+      ->group(output);
+  with_role(sub->add_option("--substrate-mask", o->substrate_mask,
+                            "Image of where the substrate is: .tif .png .exr .vti")
+                ->type_name("FILE")
+                ->group(output),
             FileRole::written);
-  with_role(sub->add_option("--mask", o->substrate_mask)->type_name("FILE")->group(""), FileRole::written);   // its former name
+  with_role(sub->add_option("--mask", o->substrate_mask)->type_name("FILE")->group(""),
+            FileRole::written);  // its former name
   add_surface_output(*sub, o->output);
   add_quiet_flag(*sub, o->quiet)->group(output);
   sub->footer(examples);

@@ -16,7 +16,7 @@ namespace surf::cli {
 /// The materials of libraries.
 struct LibraryMaterials {
   std::vector<std::string> names;
-  io::MaterialChoice own;   ///< its files
+  io::MaterialChoice own;  ///< its files
 };
 /// library.materials and specimen.materials.
 void describe(ParameterVisitor& visit, LibraryMaterials& materials);
@@ -34,8 +34,8 @@ void add_cache_option(CLI::App& app, BoundParameters& bound);
 /// The same, read.
 struct LibraryRequest {
   workflow::LibraryParameters parameters;
-  std::vector<mc::CascadeSettings> libraries;   ///< material by material, each at all energies
-  std::size_t cascades = 0;                     ///< in each, whole pages
+  std::vector<mc::CascadeSettings> libraries;  ///< material by material, each at all energies
+  std::size_t cascades = 0;                    ///< in each, whole pages
 };
 
 /// Throws UsageError where something is missing, wrong or no library can be of it. What is good to

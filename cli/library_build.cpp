@@ -50,11 +50,12 @@ Built build_one(const mc::CascadeSettings& settings, const std::string& title,
                 const CancelToken* cancel, ProgressBar& bar) {
   workflow::CachedLibraries libraries(request.parameters.cache);
   // Its first page tells how large it will be.
-  auto library = libraries.library(settings, mc::CascadeLibrary::page_cascades, request.parameters.threads,
-                                   progress, cancel);
+  auto library = libraries.library(settings, mc::CascadeLibrary::page_cascades,
+                                   request.parameters.threads, progress, cancel);
   if (library) {
     check_size(*library, request.cascades, title);
-    library = libraries.library(settings, request.cascades, request.parameters.threads, progress, cancel);
+    library =
+        libraries.library(settings, request.cascades, request.parameters.threads, progress, cancel);
   }
   bar.clear();
   for (const std::string& note : libraries.take_notes()) print_warning(note);
@@ -65,11 +66,11 @@ Built build_one(const mc::CascadeSettings& settings, const std::string& title,
   if (!library) return {};
   if (!quiet)
     print("{:<18} {} cascades, {}, {:.1f} kB each; {}\n", title, library->cascades(),
-               format_bytes(double(library->bytes())),
-               1e-3 * double(library->bytes()) / double(library->cascades()),
-               pages.made == 0 ? "all were there"
-                               : fmt::format("{} are new",
-                                             pages.made * mc::CascadeLibrary::page_cascades));
+          format_bytes(double(library->bytes())),
+          1e-3 * double(library->bytes()) / double(library->cascades()),
+          pages.made == 0
+              ? "all were there"
+              : fmt::format("{} are new", pages.made * mc::CascadeLibrary::page_cascades));
   return {library->bytes(), true};
 }
 
@@ -96,10 +97,10 @@ int build(const LibraryOptions& options) {
     bytes += built.bytes;
   }
   if (bytes > io::Cache::default_max_bytes)
-    print_warning(fmt::format("{} are more than the {} that the cache keeps: those built first are "
-                              "gone again. Build less at a time",
-                              format_bytes(double(bytes)),
-                              format_bytes(double(io::Cache::default_max_bytes))));
+    print_warning(fmt::format(
+        "{} are more than the {} that the cache keeps: those built first are "
+        "gone again. Build less at a time",
+        format_bytes(double(bytes)), format_bytes(double(io::Cache::default_max_bytes))));
   return 0;
 }
 

@@ -78,15 +78,14 @@ void print_table(const LibraryList& list) {
     material = std::max(material, l.name.material.size());
     physics = std::max(physics, format_differences(l.name).size());
   }
-  print("{:<{}}  {:>9}  {:<{}}  {:>4}  {:>9}  {:>8}  {:>9}  {:<12}  {}\n", "material",
-             material, "energy", "physics", physics, "seed", "cascades", "size", "kB each",
-             "last used", "state");
+  print("{:<{}}  {:>9}  {:<{}}  {:>4}  {:>9}  {:>8}  {:>9}  {:<12}  {}\n", "material", material,
+        "energy", "physics", physics, "seed", "cascades", "size", "kB each", "last used", "state");
   for (const StoredLibrary& l : list.libraries)
     print("{:<{}}  {:>9}  {:<{}}  {:>4}  {:>9}  {:>8}  {:>9.1f}  {:<12}  {}\n", l.name.material,
-               material, format_energy(l.name.beam_energy_ev), format_differences(l.name), physics,
-               l.name.seed, l.cascades, format_bytes(double(l.bytes)),
-               1e-3 * double(l.bytes) / double(std::max<std::size_t>(l.cascades, 1)),
-               format_ago(l.last_used), l.name.is_current ? "good" : "of another version");
+          material, format_energy(l.name.beam_energy_ev), format_differences(l.name), physics,
+          l.name.seed, l.cascades, format_bytes(double(l.bytes)),
+          1e-3 * double(l.bytes) / double(std::max<std::size_t>(l.cascades, 1)),
+          format_ago(l.last_used), l.name.is_current ? "good" : "of another version");
 }
 
 int list(const BoundParameters& bound, bool check) {
@@ -95,20 +94,20 @@ int list(const BoundParameters& bound, bool check) {
       cache, check ? io::Cache::Check::everything : io::Cache::Check::header);
   if (list.libraries.empty()) {
     print("no libraries in {}\nMake one: semsurf library build Si --energy 1keV\n",
-               cache.folder().string());
+          cache.folder().string());
   } else {
     print_table(list);
     double bytes = 0;
     for (const StoredLibrary& l : list.libraries) bytes += double(l.bytes);
     print("{} of at most {} in {}\n", format_bytes(bytes),
-               format_bytes(double(io::Cache::default_max_bytes)), cache.folder().string());
+          format_bytes(double(io::Cache::default_max_bytes)), cache.folder().string());
   }
   if (!list.damaged.empty())
-    print_warning(fmt::format("{} damaged file{} in the cache {} never used. Remove {} with "
-                              "'semsurf library remove --damaged'",
-                              list.damaged.size(), list.damaged.size() == 1 ? "" : "s",
-                              list.damaged.size() == 1 ? "is" : "are",
-                              list.damaged.size() == 1 ? "it" : "them"));
+    print_warning(fmt::format(
+        "{} damaged file{} in the cache {} never used. Remove {} with "
+        "'semsurf library remove --damaged'",
+        list.damaged.size(), list.damaged.size() == 1 ? "" : "s",
+        list.damaged.size() == 1 ? "is" : "are", list.damaged.size() == 1 ? "it" : "them"));
   return 0;
 }
 
@@ -120,14 +119,20 @@ struct Removal {
 };
 
 void describe(ParameterVisitor& visit, Removal& r) {
-  visit(r.materials, {.name = "library.materials", .help = "Materials whose libraries are removed", .form = "MATERIAL"});
-  visit.form({.name = "library.energy", .help = "Beam energies whose libraries are removed", .form = "ENERGY,..."},
-             [] { return std::string(); },
-             [&](std::string_view text, const std::string& subject) {
-               r.energies_ev = workflow::parse_energies_ev(text, subject);
-             });
+  visit(r.materials, {.name = "library.materials",
+                      .help = "Materials whose libraries are removed",
+                      .form = "MATERIAL"});
+  visit.form(
+      {.name = "library.energy",
+       .help = "Beam energies whose libraries are removed",
+       .form = "ENERGY,..."},
+      [] { return std::string(); },
+      [&](std::string_view text, const std::string& subject) {
+        r.energies_ev = workflow::parse_energies_ev(text, subject);
+      });
   visit(r.all, {.name = "library.all", .help = "Remove all, and what is damaged"});
-  visit(r.damaged, {.name = "library.damaged", .help = "Remove what cannot be used because it is damaged"});
+  visit(r.damaged,
+        {.name = "library.damaged", .help = "Remove what cannot be used because it is damaged"});
   visit(r.dry_run, {.name = "library.dry_run", .help = "Only say what would be removed"});
 }
 
@@ -138,9 +143,9 @@ void check_names(const std::vector<std::string>& wanted, const LibraryList& list
   for (const std::string& name : wanted) {
     if (names.contains(name)) continue;
     const std::string guess = nearest(name, {names.begin(), names.end()});
-    throw UsageError(name, "there is no library of it",
-                     guess.empty() ? "See 'semsurf library list'"
-                                   : fmt::format("Did you mean {}?", guess));
+    throw UsageError(
+        name, "there is no library of it",
+        guess.empty() ? "See 'semsurf library list'" : fmt::format("Did you mean {}?", guess));
   }
 }
 
@@ -181,7 +186,7 @@ int remove(const BoundParameters& bound) {
   for (const StoredLibrary& l : list.libraries) {
     if (!is_wanted(l, r)) continue;
     print("{}, {} cascades, {}\n", library_title(l.name.material, l.name.beam_energy_ev),
-               l.cascades, format_bytes(double(l.bytes)));
+          l.cascades, format_bytes(double(l.bytes)));
     drop(l.pages);
   }
   if (r.damaged || r.all) drop(list.damaged);
@@ -190,8 +195,8 @@ int remove(const BoundParameters& bound) {
                     "Check the folder's permissions");
   if (files == 0) print("nothing to remove in {}\n", cache.folder().string());
   else
-    print("{} {} in {} file{}\n", r.dry_run ? "would free" : "freed", format_bytes(bytes),
-               files, files == 1 ? "" : "s");
+    print("{} {} in {} file{}\n", r.dry_run ? "would free" : "freed", format_bytes(bytes), files,
+          files == 1 ? "" : "s");
   return 0;
 }
 
@@ -208,7 +213,8 @@ void add_library_list(CLI::App& library, Action& action) {
   add_cache_option(*sub, options->bound);
   sub->group("Commands");
   sub->footer(list_examples);
-  sub->callback([options, &action] { action = [options] { return list(options->bound, options->check); }; });
+  sub->callback(
+      [options, &action] { action = [options] { return list(options->bound, options->check); }; });
 }
 
 void add_library_remove(CLI::App& library, Action& action) {

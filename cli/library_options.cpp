@@ -13,7 +13,9 @@
 namespace surf::cli {
 
 void describe(ParameterVisitor& visit, LibraryMaterials& materials) {
-  visit(materials.names, {.name = "library.materials", .help = "Material that the electrons move in", .form = "MATERIAL"});
+  visit(materials.names, {.name = "library.materials",
+                          .help = "Material that the electrons move in",
+                          .form = "MATERIAL"});
   describe_some(visit, materials.own, {{"specimen.materials"}});
 }
 
@@ -37,7 +39,8 @@ LibraryRequest read_library_options(const LibraryOptions& o) {
   LibraryRequest request;
   request.parameters.cache = io::cache_folder();
   o.bound.apply(wanted), o.bound.apply(request.parameters);
-  if (wanted.names.empty()) throw UsageError("library", "no material is given", "Name one or several, as Si Au");
+  if (wanted.names.empty())
+    throw UsageError("library", "no material is given", "Name one or several, as Si Au");
   request.cascades = workflow::cascades_of(request.parameters);
 
   io::MaterialLibrary materials;

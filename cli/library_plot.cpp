@@ -33,16 +33,22 @@ struct PlotFiles {
 };
 
 void describe(ParameterVisitor& visit, PlotFiles& files) {
-  visit(files.measured,
-        {.name = "library.measured", .help = "Measured yields to show", .form = "FILE", .file = FileRole::read});
-  visit(files.output, {.name = "output", .help = "Chart to write: .svg .png", .form = "FILE", .file = FileRole::written});
+  visit(files.measured, {.name = "library.measured",
+                         .help = "Measured yields to show",
+                         .form = "FILE",
+                         .file = FileRole::read});
+  visit(files.output, {.name = "output",
+                       .help = "Chart to write: .svg .png",
+                       .form = "FILE",
+                       .file = FileRole::written});
 }
 
 int plot(const LibraryOptions& options) {
   PlotFiles files;
   workflow::LibraryPlotOptions o;
   options.bound.apply(files), options.bound.apply(o);
-  if (files.output.empty()) throw UsageError("`output`", "no output file is given", "Add `output=ranges.svg`");
+  if (files.output.empty())
+    throw UsageError("`output`", "no output file is given", "Add `output=ranges.svg`");
   const LibraryRequest request = read_library_options(options);
   const workflow::LibraryParameters& parameters = request.parameters;
   for (std::size_t i = 0; i < request.libraries.size(); i += parameters.energies_ev.size())
@@ -73,8 +79,9 @@ int plot(const LibraryOptions& options) {
   if (!plot) return exit_interrupted;
   LibraryMaterials materials;
   options.bound.apply(materials);
-  plot->metadata = workflow::step_record("library plot", workflow::records_of(materials, parameters, o),
-                                         {files.measured.begin(), files.measured.end()});
+  plot->metadata =
+      workflow::step_record("library plot", workflow::records_of(materials, parameters, o),
+                            {files.measured.begin(), files.measured.end()});
   io::write_plot(files.output, *plot);
   if (!options.quiet) print("written    {}\n", files.output);
   return 0;

@@ -10,7 +10,8 @@
 
 int main(int argc, char** argv) {
   using namespace surf::cli;
-  // OpenBLAS comes with modules. Threads of its own are never used, and where address space is short they never end.
+  // OpenBLAS comes with modules. Threads of its own are never used, and where address space is
+  // short they never end.
   setenv("OPENBLAS_NUM_THREADS", "1", 0);
   try {
     join_team();
@@ -22,5 +23,5 @@ int main(int argc, char** argv) {
   if (follows) be_silent();
   const int code = run({argv, argv + argc}, stdout, stderr);
   leave_team();
-  return follows ? 0 : code;   // mpirun hands on the code of whoever ends first
+  return follows ? 0 : code;  // mpirun hands on the code of whoever ends first
 }

@@ -48,8 +48,8 @@ const char* how_fitted(const mc::Material& m) {
 void print_table(const std::vector<mc::Material>& materials) {
   std::size_t width = 8;
   for (const mc::Material& m : materials) width = std::max(width, m.name.size());
-  print("{:<{}}  {:>7}  {:>9}  {:>11}  {:>11}  {:>8}  {}\n", "name", width, "g/cm^3",
-             "work, eV ", "barrier, eV ", "plasmon, eV ", "E_b, eV ", "SE yield");
+  print("{:<{}}  {:>7}  {:>9}  {:>11}  {:>11}  {:>8}  {}\n", "name", width, "g/cm^3", "work, eV ",
+        "barrier, eV ", "plasmon, eV ", "E_b, eV ", "SE yield");
   bool any = false;
   for (const mc::Material& m : materials) {
     const auto number = [&](double value, const char* field) {
@@ -57,11 +57,10 @@ void print_table(const std::vector<mc::Material>& materials) {
       any |= estimated;
       return fmt::format("{:.4g}{}", value, estimated ? "*" : " ");
     };
-    print("{:<{}}  {:>7.5g}  {:>9}  {:>12}  {:>12}  {:>8}  {}\n", m.name, width,
-               m.density_g_cm3, number(m.work_function_ev, "work_function_ev"),
-               number(m.barrier_ev, "barrier_ev"),
-               m.plasmon_ev > 0 ? number(m.plasmon_ev, "plasmon_ev") : "none ",
-               number(m.loss_join_ev, "loss_join_ev"), how_fitted(m));
+    print("{:<{}}  {:>7.5g}  {:>9}  {:>12}  {:>12}  {:>8}  {}\n", m.name, width, m.density_g_cm3,
+          number(m.work_function_ev, "work_function_ev"), number(m.barrier_ev, "barrier_ev"),
+          m.plasmon_ev > 0 ? number(m.plasmon_ev, "plasmon_ev") : "none ",
+          number(m.loss_join_ev, "loss_join_ev"), how_fitted(m));
   }
   if (any) print("* estimated; 'semsurf materials NAME' says how\n");
 }
@@ -78,45 +77,57 @@ void print_dielectric(const mc::Material& m) {
     for (const mc::EstimatedValue& e : data.estimates)
       if (e.field == field) print("    estimated: {}\n", e.rule);
   };
-  const mc::EnergyLossFunction elf = data.band.gap_ev > 0 ? data.elf.above(data.band.gap_ev) : data.elf;
+  const mc::EnergyLossFunction elf =
+      data.band.gap_ev > 0 ? data.elf.above(data.band.gap_ev) : data.elf;
   print("  with inelastic=dielectric, energies from the bottom of the filled band:\n");
-  print_line("  energy-loss function", fmt::format("{:g} to {:g}", elf.lowest_ev(), elf.highest_ev()), "eV");
+  print_line("  energy-loss function",
+             fmt::format("{:g} to {:g}", elf.lowest_ev(), elf.highest_ev()), "eV");
   print("    {}\n", elf.source());
   const double screening = elf.screening_sum(), complete = data.expected_screening_sum;
   double z = 0;
-  for (const mc::Constituent& c : m.constituents) z += c.atomic_number * mc::atoms_per_formula_unit(m, c);
+  for (const mc::Constituent& c : m.constituents)
+    z += c.atomic_number * mc::atoms_per_formula_unit(m, c);
   const double electrons = elf.electron_sum(mc::formula_units_per_nm3(m));
-  print_line("    screening sum", fmt::format("{:.3f}, {:.3f} if complete", screening, complete), "");
-  print_line("    electrons by the f-sum", fmt::format("{:.1f}, {:.4g} if complete", electrons, z), "");
+  print_line("    screening sum", fmt::format("{:.3f}, {:.3f} if complete", screening, complete),
+             "");
+  print_line("    electrons by the f-sum", fmt::format("{:.1f}, {:.4g} if complete", electrons, z),
+             "");
   line("  filled band", data.band.filled_ev, "eV", "filled_band_ev");
   if (data.band.gap_ev > 0) line("  gap", data.band.gap_ev, "eV", "gap_ev");
   line("  highest filled state to vacuum", data.vacuum_ev, "eV", "vacuum_ev");
   line("  lattice constant", data.lattice_nm, "nm", "lattice_nm");
   for (const mc::AcousticBranch& b : data.acoustic) {
-    line(data.acoustic.size() == 1 ? "  sound" : &b == data.acoustic.data() ? "  sound, longitudinal" : "  sound, transverse",
+    line(data.acoustic.size() == 1    ? "  sound"
+         : &b == data.acoustic.data() ? "  sound, longitudinal"
+                                      : "  sound, transverse",
          b.speed_m_s, "m/s", "sound_m_s");
     if (b.deformation_ev > 0) line("    deformation potential", b.deformation_ev, "eV", "");
   }
-  if (data.resistivity_ohm_m > 0) line("  resistivity, for the deformation", data.resistivity_ohm_m, "ohm m", "");
-  else if (std::ranges::any_of(data.acoustic, [](const mc::AcousticBranch& b) { return !(b.deformation_ev > 0); }))
+  if (data.resistivity_ohm_m > 0)
+    line("  resistivity, for the deformation", data.resistivity_ohm_m, "ohm m", "");
+  else if (std::ranges::any_of(data.acoustic,
+                               [](const mc::AcousticBranch& b) { return !(b.deformation_ev > 0); }))
     for (const mc::EstimatedValue& e : data.estimates)
       if (e.field == "deformation_ev") print("    deformation potential estimated: {}\n", e.rule);
   for (const mc::OpticalMode& mode : data.optical)
     line("  optical phonons", mode.energy_ev, "eV", "optical_phonons");
   if (data.trap_per_nm > 0)
-    print_line("  polaron traps", fmt::format("{:g} per nm, falling by e every {:g} eV", data.trap_per_nm, data.trap_ev), "");
+    print_line(
+        "  polaron traps",
+        fmt::format("{:g} per nm, falling by e every {:g} eV", data.trap_per_nm, data.trap_ev), "");
   if (!data.sources.empty()) print("    {}\n", data.sources);
   print("  {:>10}  {:>14}  {:>16}\n", "energy", "free path, nm", "loss, eV/nm");
   const mc::FullPenn losses(data);
   for (const double energy_ev : {30.0, 100.0, 300.0, 1000.0, 3000.0, 10000.0, 30000.0}) {
     const double inside = energy_ev + data.barrier_ev();
-    print("  {:>10}  {:>14.3g}  {:>16.3g}\n", fmt::format("{:g} eV", energy_ev), 1 / losses.inverse_mean_free_path_per_nm(inside),
+    print("  {:>10}  {:>14.3g}  {:>16.3g}\n", fmt::format("{:g} eV", energy_ev),
+          1 / losses.inverse_mean_free_path_per_nm(inside),
           losses.stopping_power_ev_per_nm(inside));
   }
   const auto off = [](double value, double expected) { return std::fabs(value / expected - 1); };
   if (off(screening, complete) > 0.1 || off(electrons, z) > 0.1)
-    print_warning(fmt::format("the energy-loss function of {} breaks a sum rule by {:.0f} %", m.name,
-                              100 * std::max(off(screening, complete), off(electrons, z))));
+    print_warning(fmt::format("the energy-loss function of {} breaks a sum rule by {:.0f} %",
+                              m.name, 100 * std::max(off(screening, complete), off(electrons, z))));
 }
 
 void print_material(const mc::Material& m) {
@@ -130,21 +141,20 @@ void print_material(const mc::Material& m) {
   line("work function W", m.work_function_ev, "eV", "work_function_ev");
   line("surface barrier U0", m.barrier_ev, "eV", "barrier_ev");
   line("valence electrons per formula unit", m.valence_electrons, "", "valence_electrons");
-  if (m.plasmon_ev > 0)
-    line("plasmon energy", m.plasmon_ev, "eV", "plasmon_ev");
-  else
-    print_line("plasmon energy", "none", "");
+  if (m.plasmon_ev > 0) line("plasmon energy", m.plasmon_ev, "eV", "plasmon_ev");
+  else print_line("plasmon energy", "none", "");
   line("E_b, where the low-energy loss joins", m.loss_join_ev,
        m.loss_join_fitted ? "eV (fitted to measured SE yields)" : "eV (unfitted)", "loss_join_ev");
   for (const mc::Constituent& c : m.constituents) {
     print("  {}, Z = {}, {:.4g} % of the mass, {:.4g} per formula unit\n",
-               mc::element(c.atomic_number).symbol, c.atomic_number, 100 * c.weight_fraction,
-               mc::atoms_per_formula_unit(m, c));
+          mc::element(c.atomic_number).symbol, c.atomic_number, 100 * c.weight_fraction,
+          mc::atoms_per_formula_unit(m, c));
     print_line("  atomic weight", format_exact(c.atomic_weight), "g/mol");
     print_line("  mean ionization energy J", fmt::format("{:.5g}", c.mean_ionization_ev), "eV");
     print_line("  atoms", fmt::format("{:.4g}", mc::number_density_per_nm3(m, c)), "per nm^3");
-    print_line("  Mott table", mc::has_mott_table(c.atomic_number)
-                                   ? "yes" : "no: use --physics elastic=browning", "");
+    print_line("  Mott table",
+               mc::has_mott_table(c.atomic_number) ? "yes" : "no: use --physics elastic=browning",
+               "");
   }
   if (!m.sources.empty()) print("  sources: {}\n", m.sources);
   print_dielectric(m);
@@ -169,7 +179,8 @@ int print_materials(const io::MaterialChoice& choice, const MaterialsOutput& out
   for (const std::string& note : notes) print_note(note);
   if (choice.name.empty()) {
     if (!output.plot.empty())
-      throw UsageError("`materials.plot`", "a chart shows one material", "Name one: semsurf materials Si --plot si.svg");
+      throw UsageError("`materials.plot`", "a chart shows one material",
+                       "Name one: semsurf materials Si --plot si.svg");
     print_table(library.all());
     return 0;
   }
@@ -180,7 +191,8 @@ int print_materials(const io::MaterialChoice& choice, const MaterialsOutput& out
   Watched watched(true);
   io::Plot plot = workflow::plot_material(material, {.watch = watched.watch()});
   watched.clear();
-  plot.metadata = workflow::step_record("materials", workflow::records_of(choice), {choice.files.begin(), choice.files.end()});
+  plot.metadata = workflow::step_record("materials", workflow::records_of(choice),
+                                        {choice.files.begin(), choice.files.end()});
   io::write_plot(output.plot, plot);
   print("written    {}\n", output.plot);
   return 0;
@@ -191,7 +203,8 @@ int print_materials(const io::MaterialChoice& choice, const MaterialsOutput& out
 void add_materials(CLI::App& app, Action& action) {
   const auto bound = std::make_shared<BoundParameters>();
   CLI::App* sub = app.add_subcommand("materials", "The materials and their numbers");
-  bound->looks["specimen.material"] = {.name = "NAME", .help = "Show this one, with sources", .positional = true};
+  bound->looks["specimen.material"] = {
+      .name = "NAME", .help = "Show this one, with sources", .positional = true};
   bound->add<io::MaterialChoice>(*sub, "Options");
   bound->add<MaterialsOutput>(*sub, "Options");
   sub->footer(examples);

@@ -46,15 +46,15 @@ struct Options {
   bool quiet = false;
 };
 
-const std::vector<std::string> reading_names{"specimen.unit", "specimen.override_unit", "scan.height_unit",
-    "scan.height_pitch"};
+const std::vector<std::string> reading_names{"specimen.unit", "specimen.override_unit",
+                                             "scan.height_unit", "scan.height_pitch"};
 
 /// All the numbers, before a large mesh is read.
 struct Plan {
   io::SurfaceFormat format;
   MeshParameters parameters;
   io::SpecimenRequest reading;
-  GivenPitch pixel;                     ///< of pictures, and of scans where nothing else is said
+  GivenPitch pixel;  ///< of pictures, and of scans where nothing else is said
   MeshWork work;
   io::Magnification magnification;
   std::vector<FileChannel> inputs, scalars;
@@ -63,9 +63,10 @@ struct Plan {
 
 void check_repair(const MeshParameters& p, const BoundParameters& bound) {
   for (const char* of_repair : {"mesh.max_hole", "mesh.stitch", "mesh.sliver", "mesh.min_component",
-      "mesh.keep_intersections"})
+                                "mesh.keep_intersections"})
     if (bound.is_given(of_repair) && !p.repair)
-      throw UsageError(option_name(of_repair), "it is about repairs, and there are none", "Add --repair");
+      throw UsageError(option_name(of_repair), "it is about repairs, and there are none",
+                       "Add --repair");
 }
 
 MeshWork make_work(const Options& o, const Plan& plan) {
@@ -90,7 +91,8 @@ MeshWork make_work(const Options& o, const Plan& plan) {
   return w;
 }
 
-void refuse_what_the_format_lacks(const Options& o, const MeshParameters& p, const io::SurfaceFormat& format) {
+void refuse_what_the_format_lacks(const Options& o, const MeshParameters& p,
+                                  const io::SurfaceFormat& format) {
   const auto refuse = [&](const char* option, const char* what, bool io::SurfaceFormat::*held) {
     std::vector<std::string> others;
     for (const io::SurfaceFormat& f : io::surface_formats())
@@ -98,7 +100,8 @@ void refuse_what_the_format_lacks(const Options& o, const MeshParameters& p, con
     throw UsageError(option, fmt::format("{} files hold no {}", format.extension, what),
                      fmt::format("Write one of {}", fmt::join(others, " ")));
   };
-  if (!o.scalars.empty() && !format.scalars) refuse("--scalar", "scalars", &io::SurfaceFormat::scalars);
+  if (!o.scalars.empty() && !format.scalars)
+    refuse("--scalar", "scalars", &io::SurfaceFormat::scalars);
   if (o.drape && !format.drape) refuse("--drape", "pictures", &io::SurfaceFormat::drape);
   if (o.tracks && !format.tracks) refuse("--tracks", "tracks", &io::SurfaceFormat::tracks);
   const char* const enlarging = p.magnification    ? "--magnification"
@@ -106,11 +109,14 @@ void refuse_what_the_format_lacks(const Options& o, const MeshParameters& p, con
                                 : p.z_exaggeration ? "--z-exaggeration"
                                                    : nullptr;
   if (!enlarging) return;
-  if (!format.magnified) refuse(enlarging, "magnification, they hold nm", &io::SurfaceFormat::magnified);
+  if (!format.magnified)
+    refuse(enlarging, "magnification, they hold nm", &io::SurfaceFormat::magnified);
   if (p.out_unit_nm)
-    throw UsageError(enlarging, "--out-unit says how large the file is already", "Leave one of them out");
+    throw UsageError(enlarging, "--out-unit says how large the file is already",
+                     "Leave one of them out");
   if (p.magnification && p.true_size)
-    throw UsageError("--true-size", "--magnification says how large the file is already", "Leave one of them out");
+    throw UsageError("--true-size", "--magnification says how large the file is already",
+                     "Leave one of them out");
 }
 
 Plan make_plan(const Options& o) {
@@ -147,8 +153,9 @@ SurfaceScene make_scene(const Options& o, const Plan& p, Watched& watched) {
   SurfaceScene scene;
   for (std::size_t i = 0; i < p.inputs.size(); ++i) {
     const auto share = static_cast<double>(p.inputs.size());
-    add_mesh_input(p.inputs[i], p.work, watched.watch(static_cast<double>(i) / share, static_cast<double>(i + 1) / share),
-                   scene);
+    add_mesh_input(
+        p.inputs[i], p.work,
+        watched.watch(static_cast<double>(i) / share, static_cast<double>(i + 1) / share), scene);
     watched.clear();
   }
   if (p.format.scalars && !p.parameters.plain) add_shape_scalars(scene, watched.watch());
@@ -164,7 +171,8 @@ SurfaceScene make_scene(const Options& o, const Plan& p, Watched& watched) {
 std::string scale_of(const io::Magnification& m) {
   std::string text = fmt::format("1 nm is {} in the file", format_length(m.factor));
   if (m.factor == 1) text = "true size; many programs cannot show or treat anything as small";
-  if (m.z_exaggeration != 1) text += fmt::format(", and heights are {:.6g} times larger still", m.z_exaggeration);
+  if (m.z_exaggeration != 1)
+    text += fmt::format(", and heights are {:.6g} times larger still", m.z_exaggeration);
   return text;
 }
 
@@ -179,15 +187,20 @@ bool print_surfaces(const SurfaceScene& scene, bool quiet) {
     box.extend(report.bounds_nm.upper_nm);
     if (quiet) continue;
     std::string with;
-    for (const VertexScalar& scalar : surface.scalars) with += (with.empty() ? "; with " : ", ") + scalar.name;
-    if (surface.drape) with += (with.empty() ? "; with " : ", ") + fmt::format("the picture {}", surface.drape->name);
-    print("{:<10} {}{}{}\n", "shape", scene.surfaces.size() > 1 ? surface.name + ": " : "", summary(report), with);
+    for (const VertexScalar& scalar : surface.scalars)
+      with += (with.empty() ? "; with " : ", ") + scalar.name;
+    if (surface.drape)
+      with +=
+          (with.empty() ? "; with " : ", ") + fmt::format("the picture {}", surface.drape->name);
+    print("{:<10} {}{}{}\n", "shape", scene.surfaces.size() > 1 ? surface.name + ": " : "",
+          summary(report), with);
   }
   if (!quiet) print("{:<10} {}\n", "size", format_extent(box));
   return sound;
 }
 
-std::vector<std::filesystem::path> write(const Options& o, const Plan& p, const SurfaceScene& scene) {
+std::vector<std::filesystem::path> write(const Options& o, const Plan& p,
+                                         const SurfaceScene& scene) {
   const std::optional<double>& out_unit_nm = p.parameters.out_unit_nm;
   if (!out_unit_nm) return io::write_surfaces(*o.output, scene, p.magnification);
   if (p.format.magnified) return io::write_surfaces(*o.output, scene, {1e6 / *out_unit_nm, 1});
@@ -208,10 +221,12 @@ int work(const Options& o) {
       print("{:<10} {}\n", "scale", scale_of(plan.magnification));
     print_written(files);
   }
-  const bool of_meshes = std::ranges::all_of(plan.inputs, [](const FileChannel& f) { return io::is_mesh_file(f.file); });
+  const bool of_meshes = std::ranges::all_of(
+      plan.inputs, [](const FileChannel& f) { return io::is_mesh_file(f.file); });
   if (!sound && !plan.parameters.repair && of_meshes) {
     print_warning("the mesh is not closed or not oriented. Try --repair");
-  } else if (!sound && (plan.format.extension == ".stl" || plan.format.extension == ".3mf") && !plan.parameters.solid) {
+  } else if (!sound && (plan.format.extension == ".stl" || plan.format.extension == ".3mf") &&
+             !plan.parameters.solid) {
     print_note("an open sheet: slicers and CAD want a body, which --solid makes of it");
   }
   return 0;
@@ -221,8 +236,10 @@ int work(const Options& o) {
 
 void add_mesh(CLI::App& app, Action& action) {
   const auto o = std::make_shared<Options>();
-  CLI::App* sub = app.add_subcommand("mesh", "Meshes and scans to glTF, CAD and ParaView; repair, simplify");
-  with_role(sub->add_option("INPUTS", o->inputs, "Meshes (STL, OBJ, PLY, OFF, glTF, 3MF, VTP, VTM) and scans")
+  CLI::App* sub =
+      app.add_subcommand("mesh", "Meshes and scans to glTF, CAD and ParaView; repair, simplify");
+  with_role(sub->add_option("INPUTS", o->inputs,
+                            "Meshes (STL, OBJ, PLY, OFF, glTF, 3MF, VTP, VTM) and scans")
                 ->type_name("FILE"),
             FileRole::read);
   o->bound.looks["scan.height_unit"].former = {"--z-unit"};
@@ -233,23 +250,33 @@ void add_mesh(CLI::App& app, Action& action) {
     o->bound.add<MeshParameters>(*sub, heading, {}, names);
   };
   add("Repair", {"mesh.repair", "mesh.stitch", "mesh.sliver", "mesh.max_hole", "mesh.min_component",
-      "mesh.keep_intersections"});
-  add("Shape", {"mesh.scale", "mesh.smooth", "mesh.mesh_tolerance", "mesh.triangles", "mesh.solid", "mesh.thickness"});
+                 "mesh.keep_intersections"});
+  add("Shape", {"mesh.scale", "mesh.smooth", "mesh.mesh_tolerance", "mesh.triangles", "mesh.solid",
+                "mesh.thickness"});
   const char* shown = "On the surface";
-  with_role(sub->add_option("--scalar", o->scalars, "A map to go along, FILE or FILE:CHANNEL; may be repeated")
-                ->type_name("FILE")->option_text("FILE")->allow_extra_args(false)->group(shown),
+  with_role(sub->add_option("--scalar", o->scalars,
+                            "A map to go along, FILE or FILE:CHANNEL; may be repeated")
+                ->type_name("FILE")
+                ->option_text("FILE")
+                ->allow_extra_args(false)
+                ->group(shown),
             FileRole::read);
   with_role(sub->add_option("--drape", o->drape, "A picture to lay on it, FILE or FILE:CHANNEL")
-                ->type_name("FILE")->group(shown),
+                ->type_name("FILE")
+                ->group(shown),
             FileRole::read);
-  with_role(sub->add_option("--tracks", o->tracks, "Paths of electrons, as 'simulate --trajectories' writes them")
-                ->type_name("FILE.vtp")->group(shown),
+  with_role(sub->add_option("--tracks", o->tracks,
+                            "Paths of electrons, as 'simulate --trajectories' writes them")
+                ->type_name("FILE.vtp")
+                ->group(shown),
             FileRole::read);
   add(shown, {"mesh.plain"});
   const char* output = "Output";
   std::string suffixes;
   for (const io::SurfaceFormat& format : io::surface_formats()) suffixes += " " + format.extension;
-  with_role(sub->add_option("-o,--output", o->output, "To write:" + suffixes)->type_name("FILE")->group(output),
+  with_role(sub->add_option("-o,--output", o->output, "To write:" + suffixes)
+                ->type_name("FILE")
+                ->group(output),
             FileRole::written);
   add(output, {"mesh.out_unit", "mesh.magnification", "mesh.true_size", "mesh.z_exaggeration"});
   add_quiet_flag(*sub, o->quiet)->group(output);

@@ -15,7 +15,8 @@ namespace surf::cli {
 namespace {
 
 bool has(const Surface& surface, const std::string& name) {
-  return std::ranges::any_of(surface.scalars, [&](const VertexScalar& s) { return s.name == name; });
+  return std::ranges::any_of(surface.scalars,
+                             [&](const VertexScalar& s) { return s.name == name; });
 }
 
 }  // namespace
@@ -24,11 +25,13 @@ void add_shape_scalars(SurfaceScene& scene, const Watch& watch) {
   for (Surface& surface : scene.surfaces) {
     if (!has(surface, "height")) {
       VertexScalar height{"height", "nm", {}};
-      for (const Vec3& v : surface.mesh.vertices_nm) height.values.push_back(static_cast<float>(v.z));
+      for (const Vec3& v : surface.mesh.vertices_nm)
+        height.values.push_back(static_cast<float>(v.z));
       surface.scalars.insert(surface.scalars.begin(), std::move(height));
     }
     if (!has(surface, "curvature"))
-      surface.scalars.insert(surface.scalars.begin() + 1, {"curvature", "1/nm", mean_curvature(surface.mesh, 0, watch)});
+      surface.scalars.insert(surface.scalars.begin() + 1,
+                             {"curvature", "1/nm", mean_curvature(surface.mesh, 0, watch)});
   }
 }
 
@@ -36,7 +39,8 @@ void add_image_scalar(const FileChannel& input, const GivenPitch& pitch, Surface
   const auto [picture, channel] = read_placed_picture(input, pitch);
   const ImageSampler sampler(picture.image, channel);
   const auto is_taken = [&](const std::string& name) {
-    return std::ranges::any_of(scene.surfaces, [&](const Surface& surface) { return has(surface, name); });
+    return std::ranges::any_of(scene.surfaces,
+                               [&](const Surface& surface) { return has(surface, name); });
   };
   std::string name = scalar_name(channel);
   if (is_taken(name)) name = scalar_name(channel + " of " + input.file.stem().string());
@@ -48,11 +52,12 @@ void add_image_scalar(const FileChannel& input, const GivenPitch& pitch, Surface
     for (const Vec3& v : surface.mesh.vertices_nm) {
       const float value = sampler.at(v.x, v.y);
       if (!std::isfinite(value))
-        throw InvalidInput(input.file.string(),
-                           fmt::format("'{}' says nothing at ({:.6g}, {:.6g}) nm, where '{}' has a vertex", channel,
-                                       v.x, v.y, surface.name),
-                           fmt::format("Give a map without holes of all of the surface; this one is {}",
-                                       place_of(picture.image)));
+        throw InvalidInput(
+            input.file.string(),
+            fmt::format("'{}' says nothing at ({:.6g}, {:.6g}) nm, where '{}' has a vertex",
+                        channel, v.x, v.y, surface.name),
+            fmt::format("Give a map without holes of all of the surface; this one is {}",
+                        place_of(picture.image)));
       scalar.values.push_back(value);
     }
     surface.scalars.push_back(std::move(scalar));
@@ -70,9 +75,10 @@ void add_drape(const FileChannel& input, const GivenPitch& pitch, SurfaceScene& 
     used = true;
   }
   if (!used)
-    throw InvalidInput(input.file.string(),
-                       fmt::format("the picture, {}, lies over no surface", place_of(picture.image)),
-                       "Give one of the same place");
+    throw InvalidInput(
+        input.file.string(),
+        fmt::format("the picture, {}, lies over no surface", place_of(picture.image)),
+        "Give one of the same place");
 }
 
 }  // namespace surf::cli

@@ -20,7 +20,7 @@
 namespace surf::cli {
 namespace {
 
-constexpr double base_share = 0.05;   // of the longer side, under the lowest place
+constexpr double base_share = 0.05;  // of the longer side, under the lowest place
 
 void print_repair(const RepairSummary& summary) {
   const char* label = "repair";
@@ -37,18 +37,18 @@ void advise(const RepairSummary& summary) {
   }
   if (longest_nm == 0) return;
   print_note(fmt::format("--max-hole {:.4g}nm would fill the holes left open, were that wanted",
-                         1.001 * longest_nm));   // rounding to four digits never goes below it
+                         1.001 * longest_nm));  // rounding to four digits never goes below it
 }
 
 void print_simplified(const SimplifySummary& s) {
   print("{:<10} {} triangles to {}, {}\n", "simplify", s.triangles_before, s.triangles_after,
-             s.attempts == 0 || s.triangles_after == s.triangles_before
-                 ? "nothing could be removed"
-                 : fmt::format("at most {} apart (original to result {}, back {}), measured every {}",
-                               format_length(s.deviation.largest_nm()),
-                               format_length(s.deviation.from_first_nm),
-                               format_length(s.deviation.from_second_nm),
-                               format_length(s.deviation.spacing_nm)));
+        s.attempts == 0 || s.triangles_after == s.triangles_before
+            ? "nothing could be removed"
+            : fmt::format("at most {} apart (original to result {}, back {}), measured every {}",
+                          format_length(s.deviation.largest_nm()),
+                          format_length(s.deviation.from_first_nm),
+                          format_length(s.deviation.from_second_nm),
+                          format_length(s.deviation.spacing_nm)));
 }
 
 std::string unique_name(const SurfaceScene& scene, const std::string& name) {
@@ -73,7 +73,8 @@ class Treatment {
     const io::HeightFieldFile file = io::read_height_field(
         input_.file, {input_.channel, work_.z_unit_nm, work_.pitch.x_nm, work_.pitch.y_nm});
     if (!work_.quiet)
-      for (const std::string& note : file.notes) print_note(fmt::format("{}: {}", input_.file.string(), note));
+      for (const std::string& note : file.notes)
+        print_note(fmt::format("{}: {}", input_.file.string(), note));
     Surface surface;
     surface.name = input_.file.stem().string();
     surface.mesh = work_.reduces() ? thinned(file.field) : height_field_sheet(file.field);
@@ -83,13 +84,16 @@ class Treatment {
 
   void mesh() {
     if (!input_.channel.empty())
-      throw UsageError(input_.file.string(), fmt::format("a mesh has no channel '{}'", input_.channel),
+      throw UsageError(input_.file.string(),
+                       fmt::format("a mesh has no channel '{}'", input_.channel),
                        "Name the file alone");
     const bool changes = work_.repair || work_.smooth.iterations > 0 || work_.reduces();
     if (changes || !work_.keep_bodies) return whole_mesh();
     SurfaceScene read = io::read_surfaces(input_.file, work_.unit);
     for (Surface& surface : read.surfaces) {
-      std::erase_if(surface.scalars, [](const VertexScalar& s) { return s.name == "height" || s.name == "curvature"; });
+      std::erase_if(surface.scalars, [](const VertexScalar& s) {
+        return s.name == "height" || s.name == "curvature";
+      });
       if (surface.scalars.empty()) surface.mesh = merge_equal_vertices(surface.mesh);
       if (work_.scale != 1) enlarge(surface);
       add(std::move(surface));
@@ -104,10 +108,11 @@ class Treatment {
         field, {work_.reduce.tolerance_nm / work_.scale, work_.reduce.triangles, watch_}, s);
     if (!work_.quiet)
       print("{:<10} {} triangles to {}, nowhere more than {} above or below (proven)\n", "simplify",
-                 s.triangles_before, s.triangles_after, format_length(s.deviation_nm * work_.scale));
+            s.triangles_before, s.triangles_after, format_length(s.deviation_nm * work_.scale));
     if (work_.reduce.tolerance_nm > 0 && !s.reached)
-      print_warning(fmt::format("--triangles: with {} of them the surface is {} off, more than --mesh-tolerance",
-                                s.triangles_after, format_length(s.deviation_nm * work_.scale)));
+      print_warning(fmt::format(
+          "--triangles: with {} of them the surface is {} off, more than --mesh-tolerance",
+          s.triangles_after, format_length(s.deviation_nm * work_.scale)));
     return mesh;
   }
 
@@ -137,8 +142,9 @@ class Treatment {
       mesh = simplify_mesh(mesh, reduce, summary);
       if (!work_.quiet) print_simplified(summary);
       if (!summary.reached)
-        print_warning(fmt::format("--triangles: {} are left; fewer would {}", summary.triangles_after,
-                                  work_.reduce.tolerance_nm > 0 ? "exceed --mesh-tolerance" : "turn faces over"));
+        print_warning(fmt::format(
+            "--triangles: {} are left; fewer would {}", summary.triangles_after,
+            work_.reduce.tolerance_nm > 0 ? "exceed --mesh-tolerance" : "turn faces over"));
     }
     add(std::move(surface));
   }
@@ -148,12 +154,14 @@ class Treatment {
     SurfaceScene read = io::read_surfaces(input_.file, work_.unit);
     const auto carries = [](const Surface& s) {
       return s.drape || std::ranges::any_of(s.scalars, [](const VertexScalar& scalar) {
-        return scalar.name != "height" && scalar.name != "curvature";
-      });
+               return scalar.name != "height" && scalar.name != "curvature";
+             });
     };
     if (work_.keep_bodies && !work_.quiet && std::ranges::any_of(read.surfaces, carries))
-      print_note(fmt::format("{}: its scalars and pictures are left out, as its vertices change; --scalar and --drape "
-                             "lay them on what is made", input_.file.string()));
+      print_note(fmt::format(
+          "{}: its scalars and pictures are left out, as its vertices change; --scalar and --drape "
+          "lay them on what is made",
+          input_.file.string()));
     std::vector<io::NamedMesh> bodies;
     for (Surface& body : read.surfaces) bodies.push_back({body.name, {}, std::move(body.mesh)});
     add_tracks(std::move(read.tracks));
@@ -170,8 +178,8 @@ class Treatment {
   void enlarge(Surface& surface) const {
     transform(surface.mesh, work_.scale, {});
     if (!surface.drape) return;
-    for (double* nm : {&surface.drape->pitch_x_nm, &surface.drape->pitch_y_nm, &surface.drape->origin_x_nm,
-                       &surface.drape->origin_y_nm})
+    for (double* nm : {&surface.drape->pitch_x_nm, &surface.drape->pitch_y_nm,
+                       &surface.drape->origin_x_nm, &surface.drape->origin_y_nm})
       *nm *= work_.scale;
   }
 
@@ -179,13 +187,16 @@ class Treatment {
     if (work_.solid_nm) {
       const Box box = bounds(surface.mesh);
       const Vec3 size = box.size_nm();
-      const double depth = *work_.solid_nm > 0 ? *work_.solid_nm : base_share * std::max(size.x, size.y);
-      if (work_.curvature) surface.scalars.push_back({"curvature", "1/nm", mean_curvature(surface.mesh, 0, watch_)});
+      const double depth =
+          *work_.solid_nm > 0 ? *work_.solid_nm : base_share * std::max(size.x, size.y);
+      if (work_.curvature)
+        surface.scalars.push_back({"curvature", "1/nm", mean_curvature(surface.mesh, 0, watch_)});
       surface.mesh = sheet_solid(surface.mesh, box.lower_nm.z - depth, watch_);
-      for (VertexScalar& scalar : surface.scalars)   // of the walls' feet nothing is known
+      for (VertexScalar& scalar : surface.scalars)  // of the walls' feet nothing is known
         scalar.values.resize(surface.mesh.vertices_nm.size(), 0);
       if (!work_.quiet)
-        print("{:<10} walls, and a base {} under the lowest place\n", "solid", format_length(depth));
+        print("{:<10} walls, and a base {} under the lowest place\n", "solid",
+              format_length(depth));
     }
     surface.name = unique_name(scene_, surface.name);
     scene_.surfaces.push_back(std::move(surface));
@@ -199,7 +210,8 @@ class Treatment {
 
 }  // namespace
 
-void add_mesh_input(const FileChannel& input, const MeshWork& work, const Watch& watch, SurfaceScene& scene) {
+void add_mesh_input(const FileChannel& input, const MeshWork& work, const Watch& watch,
+                    SurfaceScene& scene) {
   watch.check();
   Treatment treatment(input, work, watch, scene);
   if (io::is_height_field_file(input.file) || io::is_image_file(input.file)) treatment.scan();

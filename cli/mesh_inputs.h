@@ -18,22 +18,24 @@ namespace surf::cli {
 /// What `semsurf mesh` does to each of its inputs.
 struct MeshWork {
   io::MeshUnit unit;
-  std::optional<double> z_unit_nm;      ///< of scans that do not say
+  std::optional<double> z_unit_nm;  ///< of scans that do not say
   GivenPitch pitch;
   double scale = 1;
   std::optional<RepairOptions> repair;
-  SmoothOptions smooth;                 ///< 0 times: not at all
-  SimplifyOptions reduce;               ///< neither limit: not at all
-  std::optional<double> solid_nm;       ///< walls and a base so far below the lowest place; 0: chosen
-  bool curvature = true;                ///< of a sheet is measured before it gets walls
-  bool keep_bodies = true;              ///< false: the bodies of a mesh file become one
+  SmoothOptions smooth;            ///< 0 times: not at all
+  SimplifyOptions reduce;          ///< neither limit: not at all
+  std::optional<double> solid_nm;  ///< walls and a base so far below the lowest place; 0: chosen
+  bool curvature = true;           ///< of a sheet is measured before it gets walls
+  bool keep_bodies = true;         ///< false: the bodies of a mesh file become one
   bool quiet = false;
 
   bool reduces() const { return reduce.tolerance_nm > 0 || reduce.triangles > 0; }
 };
 
-/// Adds the surfaces of a mesh file, or of a scan or image of heights, ready to be written, and says on the way what
-/// was done. A mesh that is changed loses its scalars. Throws Interrupted, and what reading and treating throw.
-void add_mesh_input(const FileChannel& input, const MeshWork& work, const Watch& watch, SurfaceScene& scene);
+/// Adds the surfaces of a mesh file, or of a scan or image of heights, ready to be written, and
+/// says on the way what was done. A mesh that is changed loses its scalars. Throws Interrupted, and
+/// what reading and treating throw.
+void add_mesh_input(const FileChannel& input, const MeshWork& work, const Watch& watch,
+                    SurfaceScene& scene);
 
 }  // namespace surf::cli

@@ -15,7 +15,7 @@ namespace surf::cli {
 struct MeshParameters {
   double scale = 1;
   bool repair = false;
-  RepairOptions mending;                   ///< what a repair does
+  RepairOptions mending;  ///< what a repair does
   std::optional<int> smooth;
   SimplifyOptions reduce;
   bool solid = false;

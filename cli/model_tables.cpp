@@ -40,11 +40,13 @@ std::string counted(std::size_t count, const char* thing) {
 std::string neighbourhoods(const std::vector<FacetScale>& scales) {
   if (scales.empty()) return "";
   const auto [low, high] = std::ranges::minmax(scales, {}, &FacetScale::size);
-  return fmt::format(", {} of {} to {} samples", counted(scales.size(), "neighbourhood"), low.size, high.size);
+  return fmt::format(", {} of {} to {} samples", counted(scales.size(), "neighbourhood"), low.size,
+                     high.size);
 }
 
 std::string table_size(double ring_nm, int rings, double step_nm, int heights) {
-  return fmt::format(", {} rings of {} x {} heights of {}", rings, format_length(ring_nm), heights, format_length(step_nm));
+  return fmt::format(", {} rings of {} x {} heights of {}", rings, format_length(ring_nm), heights,
+                     format_length(step_nm));
 }
 
 // One overload per kind of model: what is worth telling besides its name.
@@ -55,20 +57,23 @@ std::string details(const FilterBankParameters& p) {
 std::string details(const FacetNetworkParameters& p) {
   std::string text = neighbourhoods(p.scales);
   if (p.sky_edges_nm.size() > 1)
-    text += fmt::format(", sky in {} to {}", counted(p.sky_edges_nm.size() - 1, "band"), format_length(p.sky_edges_nm.back()));
+    text += fmt::format(", sky in {} to {}", counted(p.sky_edges_nm.size() - 1, "band"),
+                        format_length(p.sky_edges_nm.back()));
   std::vector<int> hidden;
   std::size_t numbers = 0;
   for (const DenseLayer& layer : p.layers) {
     hidden.push_back(layer.outputs);
     numbers += layer.weights.size() + layer.biases.size();
   }
-  hidden.pop_back();   // the channels
+  hidden.pop_back();  // the channels
   if (!hidden.empty()) text += fmt::format(", {} hidden units", fmt::join(hidden, " and "));
   return text + ", " + counted(numbers, "number");
 }
 
 std::string details(const SlopeModelParameters& p) {
-  return p.form == SlopeForm::table ? fmt::format(", a table in steps of {:g} degrees", p.table_step_deg) : "";
+  return p.form == SlopeForm::table
+             ? fmt::format(", a table in steps of {:g} degrees", p.table_step_deg)
+             : "";
 }
 
 std::string details(const StoppingPointParameters& p) {
@@ -85,20 +90,23 @@ std::string format_scope(const ModelScope& scope) {
   std::vector<std::string> words;
   words.push_back(scope.material.empty() ? "any material" : scope.material);
   words.push_back(scope.energy_ev > 0 ? format_energy(scope.energy_ev) : "any energy");
-  words.push_back(scope.pixel_nm > 0 ? "pixels of " + format_length(scope.pixel_nm) : "any pixel size");
-  words.push_back(scope.spot_nm > 0 ? "spot " + format_length(scope.spot_nm) : "a point for a spot");
+  words.push_back(scope.pixel_nm > 0 ? "pixels of " + format_length(scope.pixel_nm)
+                                     : "any pixel size");
+  words.push_back(scope.spot_nm > 0 ? "spot " + format_length(scope.spot_nm)
+                                    : "a point for a spot");
   return fmt::format("{}", fmt::join(words, ", "));
 }
 
 std::string format_model(const TrainedModel& model) {
-  return fmt::format("{}{}; gives {}", io::kind_of(model),
-                     std::visit([](const auto& parameters) { return details(parameters); }, model.parameters),
-                     fmt::join(make_model(model)->channels(), " and "));
+  return fmt::format(
+      "{}{}; gives {}", io::kind_of(model),
+      std::visit([](const auto& parameters) { return details(parameters); }, model.parameters),
+      fmt::join(make_model(model)->channels(), " and "));
 }
 
 std::size_t learnt_from(const TrainingRecord& record) {
-  return static_cast<std::size_t>(
-      std::ranges::count_if(record.scenes, [](const TrainingScene& scene) { return !scene.held_out; }));
+  return static_cast<std::size_t>(std::ranges::count_if(
+      record.scenes, [](const TrainingScene& scene) { return !scene.held_out; }));
 }
 
 std::vector<std::string> residual_table(const TrainingRecord& record) {
@@ -107,7 +115,8 @@ std::vector<std::string> residual_table(const TrainingRecord& record) {
   if (columns.empty()) return {};
   std::vector<Row> rows(1, Row{"surface"});
   for (const ModelResidual& r : columns)
-    for (const std::string& column : {r.channel, std::string("rms off"), std::string("mean off")}) rows[0].push_back(column);
+    for (const std::string& column : {r.channel, std::string("rms off"), std::string("mean off")})
+      rows[0].push_back(column);
   for (const TrainingScene& scene : record.scenes) {
     if (scene.residuals.size() != columns.size()) continue;
     rows.push_back({scene.name + (scene.held_out ? " (held out)" : "")});
@@ -128,8 +137,10 @@ std::vector<std::string> residual_table(const TrainingRecord& record) {
 }
 
 std::string format_range(const SurfaceRange& range) {
-  return fmt::format("slopes to {:.0f} deg (99 % of it: {:.0f}), curvatures to {:.2g} per nm (99 %: {:.2g})",
-                     range.slope_deg_max, range.slope_deg_p99, range.curvature_max_per_nm, range.curvature_p99_per_nm);
+  return fmt::format(
+      "slopes to {:.0f} deg (99 % of it: {:.0f}), curvatures to {:.2g} per nm (99 %: {:.2g})",
+      range.slope_deg_max, range.slope_deg_p99, range.curvature_max_per_nm,
+      range.curvature_p99_per_nm);
 }
 
 }  // namespace surf::cli

@@ -18,9 +18,9 @@ std::string format_model(const TrainedModel& model);
 /// How many of its surfaces a model has learnt from: not those held out.
 std::size_t learnt_from(const TrainingRecord& record);
 
-/// How far a model is off, a line per surface and then for all, in columns per channel: the root mean
-/// square with the noise subtracted and the mean deviation with it, both in % of the mean signal, which
-/// comes first. Empty if it was never judged.
+/// How far a model is off, a line per surface and then for all, in columns per channel: the root
+/// mean square with the noise subtracted and the mean deviation with it, both in % of the mean
+/// signal, which comes first. Empty if it was never judged.
 std::vector<std::string> residual_table(const TrainingRecord& record);
 
 /// "slopes to 83 deg (99 %: 71), curvatures to 1.2 per nm (99 %: 0.3)".

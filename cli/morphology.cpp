@@ -28,7 +28,8 @@ struct Command {
 };
 
 constexpr Command erode_command{
-    MorphologyOperation::erode, "Take a tip out of a scan: the highest surface that agrees with it", "eroded",
+    MorphologyOperation::erode, "Take a tip out of a scan: the highest surface that agrees with it",
+    "eroded",
     R"(The result is an upper bound of the surface; 'semsurf certainty' says where it is the surface.
 Noise lowers it: level and clean the scan first.
 
@@ -36,14 +37,15 @@ Examples:
   semsurf erode scan.gsf --tip tip.gsf -o surface.gsf
   semsurf erode scan.spm --height-channel Height --tip tip.gsf --distance 2nm --upsample 3 -o surface.vti)"};
 
-constexpr Command dilate_command{
-    MorphologyOperation::dilate, "The scan that a tip makes of a surface", "dilated",
-    R"(Examples:
+constexpr Command dilate_command{MorphologyOperation::dilate,
+                                 "The scan that a tip makes of a surface", "dilated",
+                                 R"(Examples:
   semsurf dilate surface.gsf --tip tip.gsf -o scan.gsf
   semsurf dilate surface.tif --height-pitch 2nm --tip tip.gsf --distance 3nm -o scan.gsf)"};
 
 constexpr Command open_command{
-    MorphologyOperation::open, "Take off a scan what a tip cannot have touched: erosion, then dilation", "opened",
+    MorphologyOperation::open,
+    "Take off a scan what a tip cannot have touched: erosion, then dilation", "opened",
     R"(The result is nowhere above the scan, and equal to it where the tip can touch it from below. What is
 taken off, this tip cannot have made: noise, or a sharper tip.
 
@@ -51,7 +53,8 @@ Examples:
   semsurf open scan.gsf --tip tip.gsf -o opened.gsf)"};
 
 constexpr Command close_command{
-    MorphologyOperation::close, "Fill what a tip does not reach of a surface: dilation, then erosion", "closed",
+    MorphologyOperation::close,
+    "Fill what a tip does not reach of a surface: dilation, then erosion", "closed",
     R"(The result is nowhere below the surface, and equal to it where the tip can touch it: the most that scans
 by this tip can tell.
 
@@ -80,10 +83,12 @@ int work(const Command& command, const Options& o) {
   if (!o.tip) throw UsageError("--tip", "no tip is given", "Add --tip tip.gsf");
   const HeightField scan = read_scan(o.input, reading, o.quiet).field;
   const Tip tip = read_tip_for(o.tip, scan, o.quiet);
-  const HeightField result = workflow::morphology(command.operation, scan, tip, parameters, JobReporter(o.quiet));
-  io::write_height_field(*o.output, result,
-                         workflow::step_record(name(command.operation), workflow::records_of(parameters, reading),
-                                               {o.input, *o.tip}));
+  const HeightField result =
+      workflow::morphology(command.operation, scan, tip, parameters, JobReporter(o.quiet));
+  io::write_height_field(
+      *o.output, result,
+      workflow::step_record(name(command.operation), workflow::records_of(parameters, reading),
+                            {o.input, *o.tip}));
   if (o.quiet) return 0;
   print("{:<10} {} x {} pixels of {}, heights {}\n", "scan", scan.z_nm.width(), scan.z_nm.height(),
         format_length(scan.pitch_x_nm), relief(scan));
@@ -98,8 +103,8 @@ void add(CLI::App& app, Action& action, const Command& command) {
   CLI::App* sub = app.add_subcommand(name(command.operation), command.title);
   add_scan_input(*sub, o->bound, o->input);
   add_tip_input(*sub, o->tip);
-  o->bound.looks["morphology.distance"].hidden =
-      command.operation == MorphologyOperation::open || command.operation == MorphologyOperation::close;
+  o->bound.looks["morphology.distance"].hidden = command.operation == MorphologyOperation::open ||
+                                                 command.operation == MorphologyOperation::close;
   o->bound.add<workflow::MorphologyParameters>(*sub, "Options");
   add_surface_output(*sub, o->output);
   add_threads_option(*sub, o->bound, "Options");

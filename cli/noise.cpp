@@ -63,16 +63,17 @@ struct Options {
 };
 
 void print_model(const char* label, const NoiseEstimate& e) {
-  print("{:<12} alpha {:.4f} ± {:.1g}, sigma {:.4g} ± {:.1g} nm, innovation {:.4g} ± {:.1g} nm^2\n", label,
-             e.noise.alpha, e.alpha_stderr, e.sigma_nm(), e.sigma_stderr_nm, e.noise.innovation_nm2,
-             e.innovation_stderr_nm2);
+  print("{:<12} alpha {:.4f} ± {:.1g}, sigma {:.4g} ± {:.1g} nm, innovation {:.4g} ± {:.1g} nm^2\n",
+        label, e.noise.alpha, e.alpha_stderr, e.sigma_nm(), e.sigma_stderr_nm,
+        e.noise.innovation_nm2, e.innovation_stderr_nm2);
 }
 
 void print_differences(const HeightField& field) {
   try {
     const NoiseEstimate e = estimate_noise(field);
     print_model("differences", e);
-    if (e.alpha_at_limit) print_note("differences: alpha is at its limit, so structure is likely to dominate them");
+    if (e.alpha_at_limit)
+      print_note("differences: alpha is at its limit, so structure is likely to dominate them");
   } catch (const InvalidInput& error) {
     print_note(fmt::format("differences: {}", error.reason()));
   }
@@ -82,7 +83,8 @@ std::string largest(const std::vector<LagCorrelation>& lags) {
   const LagCorrelation* most = nullptr;
   for (const LagCorrelation& l : lags)
     if (!most || std::fabs(l.correlation) > std::fabs(most->correlation)) most = &l;
-  return most ? fmt::format("largest correlation {:.4f} at lag {} (z {:.1f})", most->correlation, most->lag, most->z)
+  return most ? fmt::format("largest correlation {:.4f} at lag {} (z {:.1f})", most->correlation,
+                            most->lag, most->z)
               : "no pairs";
 }
 
@@ -91,8 +93,8 @@ std::string format_p(double p) { return p < 1e-4 ? "p < 0.0001" : fmt::format("p
 void print_check(const NoiseCheck& c) {
   print("{:<12} along rows {}: {}\n", "whiteness", format_p(c.along_p), largest(c.along));
   print("{:<12} across rows {}: {}\n", "", format_p(c.across_p), largest(c.across));
-  print("{:<12} {}: skewness {:.3f}, excess kurtosis {:.3f}\n", "normality", format_p(c.normal_p), c.skewness,
-             c.excess_kurtosis);
+  print("{:<12} {}: skewness {:.3f}, excess kurtosis {:.3f}\n", "normality", format_p(c.normal_p),
+        c.skewness, c.excess_kurtosis);
 }
 
 int of_scan(const Options& o) {
@@ -106,8 +108,8 @@ int of_scan(const Options& o) {
   const workflow::ScanNoise noise =
       workflow::noise_of_scan(scan, parameters, read_masks(masks, scan), JobReporter(o.quiet));
   if (noise.plane && !o.quiet)
-    print("{:<12} {:.1f} % of the image; the next plane holds {:.1f} %\n", "substrate", 100 * noise.substrate_share,
-          100 * noise.plane->runner_up_share);
+    print("{:<12} {:.1f} % of the image; the next plane holds {:.1f} %\n", "substrate",
+          100 * noise.substrate_share, 100 * noise.plane->runner_up_share);
   print_model("noise", noise.estimate);
   if (!o.quiet) print_differences(scan);
   if (!noise.check) {
@@ -118,8 +120,10 @@ int of_scan(const Options& o) {
   if (!o.plot) return 0;
   std::vector<std::filesystem::path> inputs{o.scan};
   for (const std::string& mask : masks.files()) inputs.emplace_back(mask);
-  io::Plot plot = plot_noise(noise.residual_nm, noise.white, noise.samples, noise.estimate.noise, *noise.check);
-  plot.metadata = workflow::step_record("noise scan", workflow::records_of(parameters, reading, masks), inputs);
+  io::Plot plot =
+      plot_noise(noise.residual_nm, noise.white, noise.samples, noise.estimate.noise, *noise.check);
+  plot.metadata =
+      workflow::step_record("noise scan", workflow::records_of(parameters, reading, masks), inputs);
   io::write_plot(*o.plot, plot);
   if (!o.quiet) print("{:<12} {}\n", "written", *o.plot);
   return 0;
@@ -136,7 +140,9 @@ void add_scan_options(CLI::App& app, Options& o, bool hidden) {
 
 void add_outputs(CLI::App& app, Options& o, bool hidden) {
   const char* group = hidden ? "" : "Output";
-  with_role(app.add_option("--plot", o.plot, "What was found, as a chart: .svg .png")->type_name("FILE")->group(group),
+  with_role(app.add_option("--plot", o.plot, "What was found, as a chart: .svg .png")
+                ->type_name("FILE")
+                ->group(group),
             FileRole::written);
   add_quiet_flag(app, o.quiet)->group(group);
 }
@@ -148,25 +154,31 @@ std::set<std::string> names_of(Struct... of) {
   return names;
 }
 
-/// What `noise` was before it had commands of its own: `noise SCAN`, `noise --sem IMAGE`, `noise --counts SCENE`.
+/// What `noise` was before it had commands of its own: `noise SCAN`, `noise --sem IMAGE`, `noise
+/// --counts SCENE`.
 int as_before(const Options& o) {
   const bool sem = o.bound.is_given("noise.image"), counts = o.bound.is_given("counts.scene");
   const int uses = !o.scan.empty() + sem + counts;
   if (uses > 1)
-    throw UsageError("noise", "more than one of a scan, --sem and --counts is given", "Run it once for each");
+    throw UsageError("noise", "more than one of a scan, --sem and --counts is given",
+                     "Run it once for each");
   if (uses == 0) throw UsageError("noise", "of what is not given", "Choose scan, sem or counts");
   const auto sem_names = names_of(SemNoiseInput{}, SemNoiseOptions{}),
              count_names = names_of(CountsFiles{}, workflow::CountJob{});
   for (const auto& [name, texts] : o.bound.given()) {
-    const bool is_sem = sem_names.contains(name) || (sem && name == "scan.height_pitch"), is_count = count_names.contains(name);
+    const bool is_sem = sem_names.contains(name) || (sem && name == "scan.height_pitch"),
+               is_count = count_names.contains(name);
     if (is_sem == sem && is_count == counts) continue;
     throw UsageError(fmt::format("`{}`", name),
-                     fmt::format("it is of {}", is_sem ? "SEM images" : is_count ? "simulated counts" : "AFM scans"),
+                     fmt::format("it is of {}", is_sem     ? "SEM images"
+                                                : is_count ? "simulated counts"
+                                                           : "AFM scans"),
                      "Leave it out");
   }
   if (!sem) return counts ? of_scene(o) : of_scan(o);
   GivenTexts given = o.bound.given();
-  if (const auto pitch = given.find("scan.height_pitch"); pitch != given.end()) given["scan.pixel_size"] = pitch->second;
+  if (const auto pitch = given.find("scan.height_pitch"); pitch != given.end())
+    given["scan.pixel_size"] = pitch->second;
   return print_sem_noise(given, o.plot, o.quiet);
 }
 
@@ -189,8 +201,9 @@ CLI::App* add(CLI::App& app, const char* name, const char* title, const char* fo
 
 void add_noise(CLI::App& app, Action& action) {
   CLI::App* sub = add(
-      app, "noise", "The noise of an AFM scan, an SEM image or simulated counts, and whether the model fits", of_all,
-      as_before,
+      app, "noise",
+      "The noise of an AFM scan, an SEM image or simulated counts, and whether the model fits",
+      of_all, as_before,
       [](CLI::App& noise, Options& o) {
         add_scan_options(noise, o, true);
         o.bound.looks["noise.image"] = {.name = "--sem"};
@@ -202,19 +215,25 @@ void add_noise(CLI::App& app, Action& action) {
         add_outputs(noise, o, true);
       },
       action);
-  add(*sub, "scan", "The noise of an AFM scan", of_scans, of_scan, [](CLI::App& scan, Options& o) {
-    add_scan_options(scan, o, false);
-    add_outputs(scan, o, false);
-  }, action);
-  add(*sub, "sem", "The noise of an SEM image", of_sem_images, of_sem_image, [](CLI::App& sem, Options& o) {
-    o.bound.looks["noise.image"] = {.name = "IMAGE", .positional = true};
-    o.bound.looks["scan.pixel_size"] = {
-        .help = "Width and height of the pixels, as 2nm or 2nmx3nm: for regions with lengths"};
-    o.bound.add<SemNoiseInput>(sem, "Noise", {}, {"noise.image"});
-    add_sem_noise_options(sem, o.bound, "Noise");
-    o.bound.add<io::SemReadOptions>(sem, "Noise", {}, {"scan.pixel_size"});
-    add_outputs(sem, o, false);
-  }, action);
+  add(
+      *sub, "scan", "The noise of an AFM scan", of_scans, of_scan,
+      [](CLI::App& scan, Options& o) {
+        add_scan_options(scan, o, false);
+        add_outputs(scan, o, false);
+      },
+      action);
+  add(
+      *sub, "sem", "The noise of an SEM image", of_sem_images, of_sem_image,
+      [](CLI::App& sem, Options& o) {
+        o.bound.looks["noise.image"] = {.name = "IMAGE", .positional = true};
+        o.bound.looks["scan.pixel_size"] = {
+            .help = "Width and height of the pixels, as 2nm or 2nmx3nm: for regions with lengths"};
+        o.bound.add<SemNoiseInput>(sem, "Noise", {}, {"noise.image"});
+        add_sem_noise_options(sem, o.bound, "Noise");
+        o.bound.add<io::SemReadOptions>(sem, "Noise", {}, {"scan.pixel_size"});
+        add_outputs(sem, o, false);
+      },
+      action);
   add(
       *sub, "counts", "The electrons that a beam that stands still gives", of_counts, of_scene,
       [](CLI::App& counts, Options& o) {

@@ -16,7 +16,7 @@ namespace {
 
 workflow::CountJob make_job(const BoundParameters& bound, const std::string& scene) {
   workflow::CountJob job;
-  bound.apply(job);   // numbers are looked at before the scene is read
+  bound.apply(job);  // numbers are looked at before the scene is read
   job.scene = io::read_scene(scene);
   job.seed = job.scene.seed;
   bound.apply(job);
@@ -32,19 +32,25 @@ std::string format_fit(const CountFit& fit) {
 void print_set(const FittedCounts& f) {
   const CountMoments& m = f.moments;
   print("{:<12} {} a trial: mean {:.4g}, variance {:.4g}, skewness {:.3g}\n",
-             fmt::format("{} of {}", f.set.detector, f.set.electrons), f.set.detector, m.mean, m.variance, m.skewness);
-  print("{:<12} Poisson, mean {:.4g}: {}\n", "", f.poisson.mean, format_fit(test_fit(f.set.counts, f.poisson)));
+        fmt::format("{} of {}", f.set.detector, f.set.electrons), f.set.detector, m.mean,
+        m.variance, m.skewness);
+  print("{:<12} Poisson, mean {:.4g}: {}\n", "", f.poisson.mean,
+        format_fit(test_fit(f.set.counts, f.poisson)));
   if (!f.spread) return;
-  print("{:<12} log-normal, median {:.4g}, scale {:.4g}, shape {:.3g}: {}\n", "", f.log_normal.median,
-             f.log_normal.scale, f.log_normal.shape, format_fit(test_fit(f.set.counts, f.log_normal)));
+  print("{:<12} log-normal, median {:.4g}, scale {:.4g}, shape {:.3g}: {}\n", "",
+        f.log_normal.median, f.log_normal.scale, f.log_normal.shape,
+        format_fit(test_fit(f.set.counts, f.log_normal)));
   print("{:<12} normal: {}\n", "", format_fit(test_fit(f.set.counts, f.normal)));
 }
 
 }  // namespace
 
 void describe(ParameterVisitor& visit, CountsFiles& files) {
-  visit(files.scene, {.name = "counts.scene", .help = "A scene (TOML)", .form = "FILE", .file = FileRole::read});
-  visit(files.csv, {.name = "counts.csv", .help = "Table of the counts, seen and expected", .form = "FILE.csv",
+  visit(files.scene,
+        {.name = "counts.scene", .help = "A scene (TOML)", .form = "FILE", .file = FileRole::read});
+  visit(files.csv, {.name = "counts.csv",
+                    .help = "Table of the counts, seen and expected",
+                    .form = "FILE.csv",
                     .file = FileRole::written});
 }
 
@@ -66,15 +72,17 @@ int print_counts(const BoundParameters& bound, const std::optional<std::string>&
     summary = workflow::run(job, reporter);
   }
   if (!quiet)
-    print("{:<12} {} trials where the beam meets ({:.4g}, {:.4g}, {:.4g}) nm\n", "counts", job.trials, summary.hit_nm.x,
-               summary.hit_nm.y, summary.hit_nm.z);
+    print("{:<12} {} trials where the beam meets ({:.4g}, {:.4g}, {:.4g}) nm\n", "counts",
+          job.trials, summary.hit_nm.x, summary.hit_nm.y, summary.hit_nm.z);
   std::vector<FittedCounts> sets;
   for (const workflow::DetectorCounts& set : summary.sets) {
     sets.push_back(fit(set));
     print_set(sets.back());
   }
   const auto made = workflow::step_record(
-      "noise counts", workflow::records_of(job, static_cast<const mc::SimulationRequest&>(job.scene)), {files.scene});
+      "noise counts",
+      workflow::records_of(job, static_cast<const mc::SimulationRequest&>(job.scene)),
+      {files.scene});
   if (!files.csv.empty()) io::write_text(files.csv, counts_csv(sets, made));
   if (plot) {
     io::Plot drawn = plot_counts(sets, static_cast<int>(sets.size() / job.electrons.size()));

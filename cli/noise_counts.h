@@ -10,7 +10,7 @@ namespace surf::cli {
 /// `semsurf noise counts`: how many electrons a beam that stands still gives.
 struct CountsFiles {
   std::string scene;
-  std::string csv;   ///< to write; empty: none
+  std::string csv;  ///< to write; empty: none
 };
 /// counts.scene and counts.csv.
 void describe(ParameterVisitor& visit, CountsFiles& files);

@@ -11,7 +11,7 @@ namespace surf::cli {
 namespace {
 
 constexpr int most_lags = 30;
-constexpr double farthest = 5;   // standard deviations
+constexpr double farthest = 5;  // standard deviations
 
 io::PlotPanel autocovariances(const Grid<double>& residual_nm, const Grid<double>& white,
                               const Grid<unsigned char>& samples, const AfmNoise& noise) {
@@ -36,22 +36,27 @@ io::PlotPanel autocovariances(const Grid<double>& residual_nm, const Grid<double
   return panel;
 }
 
-io::PlotPanel density(const Grid<double>& white, const Grid<unsigned char>& samples, const NoiseCheck& check) {
-  const int bins = std::clamp(static_cast<int>(std::sqrt(static_cast<double>(check.samples)) / 3), 10, 100);
+io::PlotPanel density(const Grid<double>& white, const Grid<unsigned char>& samples,
+                      const NoiseCheck& check) {
+  const int bins =
+      std::clamp(static_cast<int>(std::sqrt(static_cast<double>(check.samples)) / 3), 10, 100);
   io::PlotSeries found{.name = "whitened", .style = io::PlotStyle::bars}, normal{.name = "normal"};
   found.y.assign(static_cast<std::size_t>(bins), 0);
   const double width = 2 * farthest / bins;
   for (std::size_t i = 0; i < white.size(); ++i)
-    if (const double bin = (white.data()[i] + farthest) / width; samples.data()[i] && bin >= 0 && bin < bins)
+    if (const double bin = (white.data()[i] + farthest) / width;
+        samples.data()[i] && bin >= 0 && bin < bins)
       found.y[static_cast<std::size_t>(bin)] += 1 / (width * static_cast<double>(check.samples));
   for (int i = 0; i <= bins; ++i) found.x.push_back(-farthest + i * width);
   for (int i = 0; i <= 200; ++i) {
     normal.x.push_back(-farthest + i * farthest / 100);
-    normal.y.push_back(std::exp(-0.5 * normal.x.back() * normal.x.back()) / std::sqrt(2 * std::numbers::pi));
+    normal.y.push_back(std::exp(-0.5 * normal.x.back() * normal.x.back()) /
+                       std::sqrt(2 * std::numbers::pi));
   }
   io::PlotPanel panel;
-  panel.title = fmt::format("Density of the whitened residual\nskewness {:.2f}, excess kurtosis {:.2f}", check.skewness,
-                            check.excess_kurtosis);
+  panel.title =
+      fmt::format("Density of the whitened residual\nskewness {:.2f}, excess kurtosis {:.2f}",
+                  check.skewness, check.excess_kurtosis);
   panel.x.label = "whitened residual (standard deviations)";
   panel.y.label = "density";
   panel.series = {found, normal};
@@ -60,10 +65,12 @@ io::PlotPanel density(const Grid<double>& white, const Grid<unsigned char>& samp
 
 }  // namespace
 
-io::Plot plot_noise(const Grid<double>& residual_nm, const Grid<double>& white, const Grid<unsigned char>& samples,
-                    const AfmNoise& noise, const NoiseCheck& check) {
+io::Plot plot_noise(const Grid<double>& residual_nm, const Grid<double>& white,
+                    const Grid<unsigned char>& samples, const AfmNoise& noise,
+                    const NoiseCheck& check) {
   io::Plot plot;
-  plot.panels = {autocovariances(residual_nm, white, samples, noise), density(white, samples, check)};
+  plot.panels = {autocovariances(residual_nm, white, samples, noise),
+                 density(white, samples, check)};
   plot.columns = 2;
   return plot;
 }

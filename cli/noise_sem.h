@@ -10,7 +10,7 @@ namespace surf::cli {
 
 /// `semsurf noise sem`: the noise of one SEM image.
 struct SemNoiseInput {
-  std::string image;                  ///< FILE or FILE:CHANNEL
+  std::string image;  ///< FILE or FILE:CHANNEL
   std::vector<std::string> regions;
 };
 /// noise.image and noise.flat_region.

@@ -11,9 +11,9 @@
 
 #include "surf/core/error.h"
 #include "surf/core/units.h"
-#include "surf/io/scan_parameters.h"
 #include "surf/io/height_field_file.h"
 #include "surf/io/image_file.h"
+#include "surf/io/scan_parameters.h"
 
 namespace surf::cli {
 namespace {
@@ -23,16 +23,19 @@ bool is_file(const std::filesystem::path& path) {
   return std::filesystem::exists(path, ignored);
 }
 
-bool is_colour(const std::string& name) { return name == "R" || name == "G" || name == "B" || name == "A"; }
+bool is_colour(const std::string& name) {
+  return name == "R" || name == "G" || name == "B" || name == "A";
+}
 
-/// A photograph becomes one picture of its brightness (Rec. 709): three almost equal ones help nobody.
+/// A photograph becomes one picture of its brightness (Rec. 709): three almost equal ones help
+/// nobody.
 void join_colours(Image& image) {
   const Channel *r = image.find("R"), *g = image.find("G"), *b = image.find("B");
   if (!r || !g || !b) return;
   Channel grey{"brightness", r->unit, Grid<float>(image.width(), image.height())};
   for (std::size_t i = 0; i < grey.values.size(); ++i)
-    grey.values.data()[i] =
-        0.2126f * r->values.data()[i] + 0.7152f * g->values.data()[i] + 0.0722f * b->values.data()[i];
+    grey.values.data()[i] = 0.2126f * r->values.data()[i] + 0.7152f * g->values.data()[i] +
+                            0.0722f * b->values.data()[i];
   std::erase_if(image.channels, [](const Channel& channel) { return is_colour(channel.name); });
   image.channels.insert(image.channels.begin(), std::move(grey));
 }
@@ -54,10 +57,11 @@ io::WebImage read_scan_channel(const FileChannel& input, const GivenPitch& given
   const auto channels = io::height_channels(input.file);
   std::string unit = "nm";
   for (std::size_t i = 0; i < channels.size(); ++i)
-    if ((channels[i].name == input.channel || std::to_string(i + 1) == input.channel) && !channels[i].is_height)
+    if ((channels[i].name == input.channel || std::to_string(i + 1) == input.channel) &&
+        !channels[i].is_height)
       unit = channels[i].z_unit;
   io::HeightReadOptions options{input.channel, {}, given.x_nm, given.y_nm};
-  if (unit != "nm") options.z_unit_nm = 1;   // its own unit stays
+  if (unit != "nm") options.z_unit_nm = 1;  // its own unit stays
   const io::HeightFieldFile file = io::read_height_field(input.file, options);
   const HeightField& field = file.field;
   io::WebImage picture{input.file.filename().string(), {}};
@@ -93,17 +97,20 @@ io::WebImage read_plain_picture(const FileChannel& input, const GivenPitch& give
 }
 
 void describe(ParameterVisitor& visit, GivenPitch& pitch) {
-  visit.form({.name = "picture.pixel_size", .help = "Distance of neighbouring pixels, 2nm or 2nmx3nm, of pictures "
-                                        "that do not say",
-              .unit = Unit::nm, .form = "LENGTH"},
-             [&] {
-               if (!pitch.x_nm) return std::string();
-               return format_exact(*pitch.x_nm) + "x" + format_exact(pitch.y_nm.value_or(*pitch.x_nm));
-             },
-             [&](std::string_view text, const std::string& subject) {
-               const auto [x, y] = io::parse_pitch_nm(text, subject);
-               pitch = {x, y};
-             });
+  visit.form(
+      {.name = "picture.pixel_size",
+       .help = "Distance of neighbouring pixels, 2nm or 2nmx3nm, of pictures "
+               "that do not say",
+       .unit = Unit::nm,
+       .form = "LENGTH"},
+      [&] {
+        if (!pitch.x_nm) return std::string();
+        return format_exact(*pitch.x_nm) + "x" + format_exact(pitch.y_nm.value_or(*pitch.x_nm));
+      },
+      [&](std::string_view text, const std::string& subject) {
+        const auto [x, y] = io::parse_pitch_nm(text, subject);
+        pitch = {x, y};
+      });
 }
 
 FileChannel parse_file_channel(const std::string& text) {
@@ -111,11 +118,13 @@ FileChannel parse_file_channel(const std::string& text) {
   const std::size_t colon = text.rfind(':');
   if (colon != std::string::npos && colon + 1 < text.size() && is_file(text.substr(0, colon)))
     return {text.substr(0, colon), text.substr(colon + 1)};
-  throw FileError(text, "there is no such file", "Check the name; a channel is given as FILE:CHANNEL");
+  throw FileError(text, "there is no such file",
+                  "Check the name; a channel is given as FILE:CHANNEL");
 }
 
 io::WebImage read_picture(const FileChannel& input, const GivenPitch& given) {
-  return io::is_height_field_file(input.file) ? read_scan_channel(input, given) : read_plain_picture(input, given);
+  return io::is_height_field_file(input.file) ? read_scan_channel(input, given)
+                                              : read_plain_picture(input, given);
 }
 
 PlacedPicture read_placed_picture(const FileChannel& input, const GivenPitch& given) {

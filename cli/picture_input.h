@@ -13,7 +13,7 @@ namespace surf::cli {
 /// FILE or FILE:CHANNEL.
 struct FileChannel {
   std::filesystem::path file;
-  std::string channel;   ///< empty: the first
+  std::string channel;  ///< empty: the first
 };
 
 /// A name that is a file stays whole, colons and all. Throws FileError where there is no such file.
@@ -27,15 +27,15 @@ struct GivenPitch {
 /// As that of pictures: picture.pixel_size.
 void describe(ParameterVisitor& visit, GivenPitch& pitch);
 
-/// A picture, or one channel of a scan in its own unit, as an image. Throws UsageError for a channel that is
-/// not there.
+/// A picture, or one channel of a scan in its own unit, as an image. Throws UsageError for a
+/// channel that is not there.
 io::WebImage read_picture(const FileChannel& input, const GivenPitch& given);
 
 /// A picture of a general format (surf/io/image_file.h).
 io::WebImage read_plain_picture(const FileChannel& input, const GivenPitch& given);
 
-/// A picture to lay on surfaces, and which of its channels: the one asked for, else the first. Throws InvalidInput
-/// if it does not say how large its pixels are.
+/// A picture to lay on surfaces, and which of its channels: the one asked for, else the first.
+/// Throws InvalidInput if it does not say how large its pixels are.
 struct PlacedPicture {
   io::WebImage picture;
   std::string channel;

@@ -43,12 +43,15 @@ void take_scene(const std::string& file, workflow::PredictJob& job) {
   const io::SceneFile scene = io::read_scene(file);
   const mc::Specimen& specimen = scene.specimen;
   if (!specimen.height_field || !specimen.bodies.empty())
-    throw UsageError(file, "its specimen is not a height field alone", "Only 'semsurf simulate' can image it");
+    throw UsageError(file, "its specimen is not a height field alone",
+                     "Only 'semsurf simulate' can image it");
   if (scene.beam.tilt_deg != 0)
-    throw UsageError(file, "its beam is tilted", "Models are for a beam from straight above: use 'semsurf simulate'");
+    throw UsageError(file, "its beam is tilted",
+                     "Models are for a beam from straight above: use 'semsurf simulate'");
   job.field = specimen.height_field->field;
   job.edge = specimen.height_field->edge;
-  job.wanted.material = specimen.materials.at(static_cast<std::size_t>(specimen.height_field->material)).name;
+  job.wanted.material =
+      specimen.materials.at(static_cast<std::size_t>(specimen.height_field->material)).name;
   job.wanted.energy_ev = scene.beam.energy_ev;
   job.wanted.spot_nm = scene.beam.spot_nm;
 }
@@ -63,17 +66,20 @@ void take_heights(const Options& o, workflow::PredictJob& job) {
 void refuse_with_scene(const BoundParameters& bound) {
   for (const char* name : {"scan.height_channel", "scan.height_unit", "scan.height_pitch"})
     if (bound.is_given(name))
-      throw UsageError(fmt::format("`{}`", name), "a scene file says this itself", "Change the scene file");
+      throw UsageError(fmt::format("`{}`", name), "a scene file says this itself",
+                       "Change the scene file");
 }
 
 workflow::PredictJob make_job(const Options& o) {
-  if (o.heights.empty()) throw UsageError("HEIGHTS", "no surface is given", "Name a scan or an image of heights");
-  workflow::PredictJob asked, job;   // numbers are looked at before files are read
+  if (o.heights.empty())
+    throw UsageError("HEIGHTS", "no surface is given", "Name a scan or an image of heights");
+  workflow::PredictJob asked, job;  // numbers are looked at before files are read
   o.bound.apply(asked);
   if (asked.model.empty())
     throw UsageError("`prediction.model`", "no model is given",
                      "Add `prediction.model=MODEL.json`; 'semsurf train' makes one");
-  if (asked.outputs.empty()) throw UsageError("`output`", "no output file is given", "Add `output=image.exr`");
+  if (asked.outputs.empty())
+    throw UsageError("`output`", "no output file is given", "Add `output=image.exr`");
   job.input = o.heights;
   job.reading = asked.reading;
   if (io::is_scene_file(o.heights)) {
@@ -82,14 +88,15 @@ workflow::PredictJob make_job(const Options& o) {
   } else {
     take_heights(o, job);
   }
-  o.bound.apply(job);   // goes before what a scene file says
+  o.bound.apply(job);  // goes before what a scene file says
   return job;
 }
 
 std::string format_values(const Channel& channel) {
   const auto& values = channel.values.data();
   const auto [low, high] = std::minmax_element(values.begin(), values.end());
-  const double mean = std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+  const double mean =
+      std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
   return fmt::format("{:.4g} to {:.4g}, mean {:.4g} per primary", *low, *high, mean);
 }
 
@@ -101,7 +108,9 @@ int predict(const Options& o) {
     s = workflow::run(job, reporter);
   }
   if (o.quiet) return 0;
-  const auto line = [](const std::string& label, const std::string& text) { print("{:<10} {}\n", label, text); };
+  const auto line = [](const std::string& label, const std::string& text) {
+    print("{:<10} {}\n", label, text);
+  };
   line("model", format_model(s.model));
   line("for", format_scope(s.model.scope));
   line("image", fmt::format("{} x {} pixels of {}, in {:.3g} s", s.image.width(), s.image.height(),
@@ -120,11 +129,15 @@ int predict(const Options& o) {
 
 void add_predict(CLI::App& app, Action& action) {
   const auto o = std::make_shared<Options>();
-  CLI::App* sub = app.add_subcommand("predict", "An SEM image of heights by a model, in place of a simulation");
-  with_role(sub->add_option("HEIGHTS", o->heights, "A scan, an image of heights, or a scene file (TOML)")->type_name("FILE"),
-            FileRole::read);
-  const char *options = "Options", *wanted = "What the image is to be of; a model for anything else is refused";
-  o->bound.headings = {{"prediction", options}, {"scan", "Heights"},   {"specimen", wanted},
+  CLI::App* sub =
+      app.add_subcommand("predict", "An SEM image of heights by a model, in place of a simulation");
+  with_role(
+      sub->add_option("HEIGHTS", o->heights, "A scan, an image of heights, or a scene file (TOML)")
+          ->type_name("FILE"),
+      FileRole::read);
+  const char *options = "Options",
+             *wanted = "What the image is to be of; a model for anything else is refused";
+  o->bound.headings = {{"prediction", options}, {"scan", "Heights"},  {"specimen", wanted},
                        {"beam", wanted},        {"output", "Output"}, {"job", "Output"}};
   o->bound.looks["scan.height_pitch"] = {.former = {"--pitch"}};
   o->bound.looks["scan.height_unit"] = {.former = {"--z-unit"}};

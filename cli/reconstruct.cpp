@@ -22,15 +22,19 @@ void line(const std::string& label, const std::string& text) { print("{:<10} {}\
 
 void print_residual(const char* label, const ResidualReport& r) {
   if (r.pixels == 0) return;
-  line(label, fmt::format("residuals: mean {:.3f}, deviation {:.3f}, correlation {:.3f} along and {:.3f} across rows{}", r.mean,
-                          r.deviation, r.along, r.across, r.like_noise ? "" : ": not like noise"));
+  line(label,
+       fmt::format("residuals: mean {:.3f}, deviation {:.3f}, correlation {:.3f} along and {:.3f} "
+                   "across rows{}",
+                   r.mean, r.deviation, r.along, r.across, r.like_noise ? "" : ": not like noise"));
 }
 
 void print_scales(const std::vector<ScaleReport>& scales) {
   if (scales.empty()) return;
-  line("scales", fmt::format("{:>9} {:>12} {:>12} {:>12} {:>6}  {}", "sigma/px", "-log L AFM", "-log L SEM", "prior", "steps", "ended"));
+  line("scales", fmt::format("{:>9} {:>12} {:>12} {:>12} {:>6}  {}", "sigma/px", "-log L AFM",
+                             "-log L SEM", "prior", "steps", "ended"));
   for (const ScaleReport& s : scales)
-    line("", fmt::format("{:>9.3g} {:>12.5g} {:>12.5g} {:>12.5g} {:>6}  {}", s.sigma_px, s.afm, s.sem, s.prior, s.iterations, s.ended));
+    line("", fmt::format("{:>9.3g} {:>12.5g} {:>12.5g} {:>12.5g} {:>6}  {}", s.sigma_px, s.afm,
+                         s.sem, s.prior, s.iterations, s.ended));
 }
 
 double median(std::vector<double> values) {
@@ -41,27 +45,32 @@ double median(std::vector<double> values) {
 
 void print_surface(const Reconstruction& r) {
   const HeightField& f = r.surface;
-  std::string text = fmt::format("{} x {} samples of {}", f.z_nm.width(), f.z_nm.height(), format_length(f.pitch_x_nm));
+  std::string text = fmt::format("{} x {} samples of {}", f.z_nm.width(), f.z_nm.height(),
+                                 format_length(f.pitch_x_nm));
   if (!r.deviation_nm.empty())
-    text += fmt::format("; standard deviation of a height {} (median)", format_length(median(r.deviation_nm.data())));
+    text += fmt::format("; standard deviation of a height {} (median)",
+                        format_length(median(r.deviation_nm.data())));
   line("surface", text);
   if (r.held_by.empty()) return;
   const auto share = [&](unsigned char what) {
-    return 100.0 * static_cast<double>(std::ranges::count(r.held_by.data(), what)) / static_cast<double>(r.held_by.size());
+    return 100.0 * static_cast<double>(std::ranges::count(r.held_by.data(), what)) /
+           static_cast<double>(r.held_by.size());
   };
-  line("held by", fmt::format("AFM {:.0f} %, SEM {:.0f} %, both {:.0f} %, neighbours only {:.0f} %", share(1), share(2), share(3),
-                              share(0)));
+  line("held by", fmt::format("AFM {:.0f} %, SEM {:.0f} %, both {:.0f} %, neighbours only {:.0f} %",
+                              share(1), share(2), share(3), share(0)));
 }
 
 void print_summary(const workflow::ReconstructSummary& s, const workflow::ReconstructJob& job) {
   if (s.pose) print_pose(*s.pose, job.sem->image.pitch_x_nm);
   if (s.verdict == ReconstructionVerdict::not_registered) return print_written(s.written);
   if (s.sem_noise)
-    line("SEM noise", fmt::format("variance = {:.4g} level {:+.4g}, from {}", s.sem_noise->slope, s.sem_noise->intercept, s.sem_noise_from));
+    line("SEM noise", fmt::format("variance = {:.4g} level {:+.4g}, from {}", s.sem_noise->slope,
+                                  s.sem_noise->intercept, s.sem_noise_from));
   if (job.sem) {
     std::string gains;
     for (std::size_t c = 0; c < s.result.gains.size(); ++c)
-      gains += fmt::format("{}{} {:.5g}", c ? ", " : "", s.model->model->channels()[c], s.result.gains[c]);
+      gains += fmt::format("{}{} {:.5g}", c ? ", " : "", s.model->model->channels()[c],
+                           s.result.gains[c]);
     line("gains", fmt::format("{}; offset {:.5g}", gains, s.result.offset));
   }
   print_scales(s.result.scales);
@@ -71,12 +80,15 @@ void print_summary(const workflow::ReconstructSummary& s, const workflow::Recons
   }
   print_surface(s.result);
   if (s.truth) {
-    line("truth", fmt::format("{:.3g} nm rms off, {:.3g} nm before ({:.3f} of the squared error); mean difference {:.3g} nm taken off",
-                              s.truth->rms_nm, s.truth->start_rms_nm,
-                              std::pow(s.truth->rms_nm / std::max(s.truth->start_rms_nm, 1e-300), 2), s.truth->offset_nm));
+    line("truth",
+         fmt::format("{:.3g} nm rms off, {:.3g} nm before ({:.3f} of the squared error); mean "
+                     "difference {:.3g} nm taken off",
+                     s.truth->rms_nm, s.truth->start_rms_nm,
+                     std::pow(s.truth->rms_nm / std::max(s.truth->start_rms_nm, 1e-300), 2),
+                     s.truth->offset_nm));
     if (s.truth->coverage_2 > 0)
-      line("", fmt::format("{:.1f} % within one, {:.1f} % within two standard deviations", 100 * s.truth->coverage_1,
-                           100 * s.truth->coverage_2));
+      line("", fmt::format("{:.1f} % within one, {:.1f} % within two standard deviations",
+                           100 * s.truth->coverage_1, 100 * s.truth->coverage_2));
   }
   print_written(s.written);
 }
@@ -84,8 +96,11 @@ void print_summary(const workflow::ReconstructSummary& s, const workflow::Recons
 void explain(const workflow::ReconstructSummary& s, const workflow::ReconstructJob& job) {
   for (const std::string& reason : s.reasons) print_warning(reason);
   if (s.verdict == ReconstructionVerdict::not_registered)
-    print_note(fmt::format("nothing was reconstructed. Look at {}, give --landmarks or --transform, or go on all the same with "
-                           "--accept-registration", (job.folder / "registration.png").string()));
+    print_note(
+        fmt::format("nothing was reconstructed. Look at {}, give --landmarks or --transform, or go "
+                    "on all the same with "
+                    "--accept-registration",
+                    (job.folder / "registration.png").string()));
 }
 
 int work(const ChainOptions& o, const std::string& command_line) {
@@ -108,9 +123,12 @@ int work(const ChainOptions& o, const std::string& command_line) {
 
 void add_reconstruct(CLI::App& app, Action& action, const std::string& command_line) {
   const auto o = std::make_shared<ChainOptions>();
-  CLI::App* sub = app.add_subcommand("reconstruct", "The surface that makes an AFM scan and an SEM image most likely");
+  CLI::App* sub = app.add_subcommand(
+      "reconstruct", "The surface that makes an AFM scan and an SEM image most likely");
   add_reconstruct_options(*sub, *o);
-  sub->callback([o, &action, command_line] { action = [o, command_line] { return work(*o, command_line); }; });
+  sub->callback([o, &action, command_line] {
+    action = [o, command_line] { return work(*o, command_line); };
+  });
 }
 
 }  // namespace surf::cli

@@ -35,15 +35,18 @@ void describe(ParameterVisitor& visit, ReconstructFiles& files) {
                             .help = "Gains and offset as 'semsurf calibrate' writes them",
                             .form = "FILE.json",
                             .file = FileRole::read});
-  visit(files.truth, {.name = "reconstruction.truth", .help = "Heights in the SEM's frame, to compare the result with",
-                      .form = "FILE", .file = FileRole::read});
+  visit(files.truth, {.name = "reconstruction.truth",
+                      .help = "Heights in the SEM's frame, to compare the result with",
+                      .form = "FILE",
+                      .file = FileRole::read});
 }
 
 /// Before any file is read.
 void refuse_contradictions(const BoundParameters& bound, const ReconstructFiles& files,
                            const workflow::ReconstructJob& job) {
   if (!files.calibration.empty() && job.calibration)
-    throw UsageError("`reconstruction.calibration`", "gains or an offset are given, too", "Leave one of them out");
+    throw UsageError("`reconstruction.calibration`", "gains or an offset are given, too",
+                     "Leave one of them out");
   if (job.refine_tip == true && job.options.method != ReconstructionMethod::gauss_newton)
     throw UsageError("`reconstruction.refine_tip`", "only Gauss-Newton fits the tip",
                      "Leave out `reconstruction.optimiser`, or `reconstruction.refine_tip`");
@@ -69,9 +72,11 @@ workflow::ReconstructJob make_reconstruct_job(const ChainOptions& o) {
   ReconstructFiles files;
   workflow::ReconstructJob job = whole_job();
   o.bound.apply(inputs), o.bound.apply(files), o.bound.apply(job);
-  if (job.folder.empty()) throw UsageError("`output`", "no folder for the result is given", "Add -o result");
+  if (job.folder.empty())
+    throw UsageError("`output`", "no folder for the result is given", "Add -o result");
   if (inputs.afm.empty() && inputs.sem.empty())
-    throw UsageError("reconstruct", "neither a scan nor an SEM image is given", "Add --afm scan.gwy, --sem image.tif, or both");
+    throw UsageError("reconstruct", "neither a scan nor an SEM image is given",
+                     "Add --afm scan.gwy, --sem image.tif, or both");
   if (inputs.afm.empty()) job.afm.reset();
   if (inputs.sem.empty()) job.sem.reset();
   refuse_contradictions(o.bound, files, job);

@@ -6,10 +6,10 @@
 #include "chain_options.h"
 #include "commands.h"
 #include "common_options.h"
+#include "exit_codes.h"
 #include "job_reporter.h"
 #include "surf/core/error.h"
 #include "surf/io/plot.h"
-#include "exit_codes.h"
 #include "terminal.h"
 
 namespace surf::cli {
@@ -33,9 +33,11 @@ int work(const ChainOptions& o) {
   workflow::RegisterJob job;
   o.bound.apply(files), o.bound.apply(job);
   if (files.afm.empty())
-    throw UsageError("`reconstruction.afm`", "no scan is given", "Name one, as `reconstruction.afm=scan.gwy`");
+    throw UsageError("`reconstruction.afm`", "no scan is given",
+                     "Name one, as `reconstruction.afm=scan.gwy`");
   if (files.sem.empty())
-    throw UsageError("`reconstruction.sem`", "no SEM image is given", "Name one, as `reconstruction.sem=image.tif`");
+    throw UsageError("`reconstruction.sem`", "no SEM image is given",
+                     "Name one, as `reconstruction.sem=image.tif`");
   if (!job.picture.empty()) io::check_plot_target(job.picture);
   take_model(o, files, job.threads, job.model);
   take_afm(o, files, job.afm);
@@ -57,7 +59,8 @@ int work(const ChainOptions& o) {
 
 void add_register(CLI::App& app, Action& action) {
   const auto o = std::make_shared<ChainOptions>();
-  CLI::App* sub = app.add_subcommand("register", "Lay an SEM image on an AFM scan of the same place");
+  CLI::App* sub =
+      app.add_subcommand("register", "Lay an SEM image on an AFM scan of the same place");
   add_chain_options(*sub, *o);
   o->bound.looks["reconstruction.afm"] = {.former = {"AFM"}};
   o->bound.looks["reconstruction.sem"] = {.former = {"SEM"}};

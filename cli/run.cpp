@@ -58,7 +58,8 @@ class HelpFormatter : public CLI::Formatter {
   std::string make_help(const CLI::App* app, std::string name,
                         CLI::AppFormatMode mode) const override {
     const std::string help = CLI::Formatter::make_help(app, name, mode);
-    const std::string usage = CLI::detail::find_and_replace(help, " [] ", " ");   // of a hidden input
+    const std::string usage =
+        CLI::detail::find_and_replace(help, " [] ", " ");  // of a hidden input
     return CLI::detail::find_and_replace(usage, "\n\n\n", "\n\n");
   }
 };
@@ -73,7 +74,8 @@ std::string version_text() {
 std::vector<std::string> names_of_options(const CLI::App& app) {
   std::vector<std::string> names;
   for (const CLI::Option* option : app.get_options())
-    for (const std::string& name : option->get_group().empty() ? std::vector<std::string>{} : option->get_lnames())
+    for (const std::string& name :
+         option->get_group().empty() ? std::vector<std::string>{} : option->get_lnames())
       names.push_back("--" + name);
   return names;
 }
@@ -85,7 +87,7 @@ const CLI::App& parsed_app(const CLI::App& app) {
 }
 
 struct OptionNames {
-  std::string name, letter;   // without dashes; few have a letter
+  std::string name, letter;  // without dashes; few have a letter
 };
 
 std::vector<OptionNames> options_of(const CLI::App& app) {
@@ -113,15 +115,19 @@ const OptionNames* option_called(const std::vector<OptionNames>& options, const 
   return alike == 1 ? found : nullptr;
 }
 
-// `beam.tilt=30deg` is --tilt 30deg where the command has that option, and with a letter it is -o image.exr.
+// `beam.tilt=30deg` is --tilt 30deg where the command has that option, and with a letter it is -o
+// image.exr.
 FieldWord options_for_fields(const CLI::App& app) {
   return [&app, options = options_of(app)](std::string_view field, std::string_view value) {
-    const std::string bound = option_of(app, field);   // "--level-method" of level.method, whatever --method is
-    const OptionNames* option = bound.starts_with("--") ? option_called(options, bound.substr(2)) : nullptr;
+    const std::string bound =
+        option_of(app, field);  // "--level-method" of level.method, whatever --method is
+    const OptionNames* option =
+        bound.starts_with("--") ? option_called(options, bound.substr(2)) : nullptr;
     if (!option) option = option_called(options, last_part(field, '-'));
     const std::string setting = value.empty() ? "" : " " + std::string(value);
     if (!option) return last_part(field, ' ') + setting;
-    return (value.empty() || option->letter.empty() ? "--" + option->name : "-" + option->letter) + setting;
+    return (value.empty() || option->letter.empty() ? "--" + option->name : "-" + option->letter) +
+           setting;
   };
 }
 
@@ -146,8 +152,7 @@ int report_extra(const CLI::App& root) {
   }
   const std::string guess = nearest(word, candidates);
   print_error(fmt::format("{}: unknown {}. {}", word, option ? "option" : "command",
-                          guess.empty() ? help_hint(app)
-                                        : fmt::format("Did you mean {}?", guess)));
+                          guess.empty() ? help_hint(app) : fmt::format("Did you mean {}?", guess)));
   return exit_usage;
 }
 
@@ -164,7 +169,7 @@ bool report_repetition(const CLI::ParseError& error) {
 }
 
 int report_parse_error(const CLI::App& root, const CLI::ParseError& error) {
-  if (error.get_exit_code() == 0) {   // help and version
+  if (error.get_exit_code() == 0) {  // help and version
     std::ostringstream text, unused;
     const int code = root.exit(error, text, unused);
     print("{}", text.str());
@@ -207,7 +212,8 @@ void add_commands(CLI::App& app, Action& action, const std::string& command_line
     (added(add), ...);
   };
   group("SEM", add_simulate, add_sweep, add_train, add_predict);
-  group("AFM", add_level, add_clean, add_noise, add_tip, add_erode, add_dilate, add_open, add_close, add_certainty);
+  group("AFM", add_level, add_clean, add_noise, add_tip, add_erode, add_dilate, add_open, add_close,
+        add_certainty);
   group("AFM + SEM", add_sample, add_register, add_calibrate, add_reconstruct);
   group("Surfaces and files", add_info, add_view, add_mesh, add_materials);
   group("Set-up and study", add_library, add_chart, add_completion);
@@ -223,14 +229,15 @@ int parse_and_act(const std::vector<std::string>& arguments) {
     return 0;
   }
   try {
-    std::vector<std::string> words(arguments.rbegin(), arguments.rend());   // CLI11 wants the last one first
-    if (!words.empty()) words.pop_back();   // the program
+    std::vector<std::string> words(arguments.rbegin(),
+                                   arguments.rend());  // CLI11 wants the last one first
+    if (!words.empty()) words.pop_back();              // the program
     app.parse(words);
   } catch (const CLI::ParseError& error) {
     return report_parse_error(app, error);
   }
   struct Words {
-    ~Words() { call_fields(nullptr); }   // they know the command by reference
+    ~Words() { call_fields(nullptr); }  // they know the command by reference
   } words_of_command;
   call_fields(options_for_fields(parsed_app(app)));
   if (!action) {
@@ -241,8 +248,10 @@ int parse_and_act(const std::vector<std::string>& arguments) {
   if (!is_shared(app) && leave_to_leader(command)) return 0;
   const int code = act(app, action);
   if (take_refused_threads() > 0)
-    print_note("the system refused threads (ulimit -u, ulimit -v): fewer than wanted did the work, with the same "
-               "result");
+    print_note(
+        "the system refused threads (ulimit -u, ulimit -v): fewer than wanted did the work, with "
+        "the same "
+        "result");
   return code;
 }
 
@@ -251,8 +260,10 @@ int parse_and_act(const std::vector<std::string>& arguments) {
 namespace surf::cli {
 
 std::unique_ptr<CLI::App> make_app(Action& action, const std::string& command_line) {
-  auto app = std::make_unique<CLI::App>("Scanning electron microscope images of surfaces, by Monte Carlo "
-                                        "simulation", "semsurf");
+  auto app = std::make_unique<CLI::App>(
+      "Scanning electron microscope images of surfaces, by Monte Carlo "
+      "simulation",
+      "semsurf");
   app->formatter(std::make_shared<HelpFormatter>());
   app->set_version_flag("-V,--version", version_text, "Versions of semsurf and its libraries");
   app->footer(examples);

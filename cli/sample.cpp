@@ -51,12 +51,15 @@ workflow::SampleJob make_job(const Options& o) {
   return job;
 }
 
-void print_line(const std::string& label, const std::string& text) { print("{:<10} {}\n", label, text); }
+void print_line(const std::string& label, const std::string& text) {
+  print("{:<10} {}\n", label, text);
+}
 
 void print_work(const workflow::SampleJob& job) {
-  print_note(fmt::format("simulating {} x {} pixels of {} primaries, {} in all, with cascades from a library of {}",
-                         job.width, job.height, job.electrons,
-                         format_count(double(job.electrons) * job.width * job.height), job.cascades));
+  print_note(fmt::format(
+      "simulating {} x {} pixels of {} primaries, {} in all, with cascades from a library of {}",
+      job.width, job.height, job.electrons,
+      format_count(double(job.electrons) * job.width * job.height), job.cascades));
 }
 
 /// Where there is no bar to show it: one line, as soon as the speed is known.
@@ -68,7 +71,7 @@ class TimeLeft {
     const auto now = Clock::now();
     if (!began_) {
       began_ = now;
-      done_at_start_ = done;   // a resumed job begins in the middle
+      done_at_start_ = done;  // a resumed job begins in the middle
       return;
     }
     const double seconds = std::chrono::duration<double>(now - *began_).count();
@@ -89,8 +92,10 @@ class TimeLeft {
 
 std::string why_stopped(const workflow::SampleJob& job, const workflow::SampleSummary& s) {
   if (!s.checkpoint.empty())
-    return fmt::format("stopped; what is done is kept in {}; the same command goes on from "
-                       "there", s.checkpoint.string());
+    return fmt::format(
+        "stopped; what is done is kept in {}; the same command goes on from "
+        "there",
+        s.checkpoint.string());
   if (job.cache.empty()) return "stopped; nothing was written";
   return "stopped before a part of the image was done; cascades that are made stay in the cache";
 }
@@ -117,8 +122,8 @@ int sample(const Options& o) {
   }
   if (o.quiet) return 0;
   print_line("AFM", fmt::format("{} x {} samples", s.afm_width, s.afm_height));
-  print_line("SEM", fmt::format("{} x {} pixels of {} primaries, in {:.3g} s", job.width, job.height,
-                                job.electrons, s.seconds));
+  print_line("SEM", fmt::format("{} x {} pixels of {} primaries, in {:.3g} s", job.width,
+                                job.height, job.electrons, s.seconds));
   std::string label = "written";
   for (const auto& file : s.written) {
     print_line(label, file.string());
@@ -131,15 +136,18 @@ int sample(const Options& o) {
 
 void add_sample(CLI::App& app, Action& action) {
   const auto o = std::make_shared<Options>();
-  CLI::App* sub = app.add_subcommand("sample", "A scan and an SEM image of a known surface, to try a reconstruction "
-                                        "on");
+  CLI::App* sub =
+      app.add_subcommand("sample",
+                         "A scan and an SEM image of a known surface, to try a reconstruction "
+                         "on");
   sub->add_flag("--list", o->list, "Say what there is");
   const char* making = "Making";
   o->bound.looks["sample.name"] = {.name = "NAME", .positional = true};
   o->bound.looks["output"] = {.name = "-o,--output"};
   o->bound.add<workflow::SampleJob>(*sub, "Options", {}, {"sample.name", "output"});
-  o->bound.add<workflow::SampleJob>(*sub, making, {}, {"sample.electrons", "sample.size", "sample.seed", "job.cache",
-      "job.threads"});
+  o->bound.add<workflow::SampleJob>(
+      *sub, making, {},
+      {"sample.electrons", "sample.size", "sample.seed", "job.cache", "job.threads"});
   add_quiet_flag(*sub, o->quiet)->group(making);
   sub->footer(examples);
   sub->callback([o, &action] { action = [o] { return sample(*o); }; });

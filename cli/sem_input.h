@@ -8,8 +8,8 @@
 
 namespace surf::cli {
 
-/// Reads an SEM image and prints what had to be assumed, unless `quiet`. Throws UsageError, FileError, InvalidInput
-/// where the pixel size is not known (also UsageError).
+/// Reads an SEM image and prints what had to be assumed, unless `quiet`. Throws UsageError,
+/// FileError, InvalidInput where the pixel size is not known (also UsageError).
 PlacedImage read_sem_input(const std::string& file, const io::SemReadOptions& options, bool quiet);
 
 }  // namespace surf::cli

@@ -16,7 +16,8 @@ struct Bar {
   double mean = 0, variance = 0, error = 0;
 };
 
-/// Too many points hide each other and the line: weighted means of those of neighbouring means then.
+/// Too many points hide each other and the line: weighted means of those of neighbouring means
+/// then.
 std::vector<Bar> bars_of(const SemNoiseEstimate& e) {
   std::vector<NoisePoint> used;
   for (const NoisePoint& p : e.points)
@@ -38,15 +39,20 @@ std::vector<Bar> bars_of(const SemNoiseEstimate& e) {
 io::PlotPanel variances(const SemNoiseEstimate& e) {
   const std::vector<Bar> bars = bars_of(e);
   const auto count = std::ranges::count_if(e.points, [](const NoisePoint& p) { return p.used; });
-  io::PlotSeries used{.name = count > static_cast<std::int64_t>(bars.size()) ? fmt::format("{} flat places, averaged", count)
-                                                                             : "flat places",
-                      .style = io::PlotStyle::points, .color = 0};
-  for (const Bar& b : bars) used.x.push_back(b.mean), used.y.push_back(b.variance), used.y_error.push_back(b.error);
+  io::PlotSeries used{.name = count > static_cast<std::int64_t>(bars.size())
+                                  ? fmt::format("{} flat places, averaged", count)
+                                  : "flat places",
+                      .style = io::PlotStyle::points,
+                      .color = 0};
+  for (const Bar& b : bars)
+    used.x.push_back(b.mean), used.y.push_back(b.variance), used.y_error.push_back(b.error);
   const double least = e.least_mean, largest = e.largest_mean;
-  io::PlotSeries line{.name = fmt::format("{:.4g} mean {} {:.4g}", e.noise.slope, e.noise.intercept < 0 ? "-" : "+",
-                                          std::fabs(e.noise.intercept)),
-                      .color = 1};
-  io::PlotSeries above{.name = "two standard errors of it", .dashed = true, .color = 1}, below = above;
+  io::PlotSeries line{
+      .name = fmt::format("{:.4g} mean {} {:.4g}", e.noise.slope, e.noise.intercept < 0 ? "-" : "+",
+                          std::fabs(e.noise.intercept)),
+      .color = 1};
+  io::PlotSeries above{.name = "two standard errors of it", .dashed = true, .color = 1},
+      below = above;
   below.name.clear();
   const double margin = 0.05 * std::max(largest - least, 1e-9 * std::max(std::fabs(largest), 1e-9));
   for (int i = 0; i <= line_samples; ++i) {
@@ -56,7 +62,8 @@ io::PlotPanel variances(const SemNoiseEstimate& e) {
     line.y.push_back(v), above.y.push_back(v + error), below.y.push_back(std::max(v - error, 0.0));
   }
   io::PlotPanel panel;
-  panel.title = fmt::format("Variance against mean\nchi-squared {:.4g} with {} degrees of freedom", e.chi_squared, e.degrees);
+  panel.title = fmt::format("Variance against mean\nchi-squared {:.4g} with {} degrees of freedom",
+                            e.chi_squared, e.degrees);
   panel.x.label = "mean (grey levels)";
   panel.y.label = "variance (grey levels²)";
   if (!used.x.empty()) panel.series.push_back(used);

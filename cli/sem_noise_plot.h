@@ -6,8 +6,8 @@
 
 namespace surf::cli {
 
-/// Variance against mean with error bars, the line with its error, and the places in the image that the
-/// points are from (thesis, figures 8-8 to 8-12).
+/// Variance against mean with error bars, the line with its error, and the places in the image that
+/// the points are from (thesis, figures 8-8 to 8-12).
 io::Plot plot_sem_noise(const SemNoiseEstimate& estimate, int width_px, int height_px);
 
 }  // namespace surf::cli

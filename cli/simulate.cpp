@@ -24,8 +24,8 @@ constexpr double pilot_seconds = 10;
 // Who leads says it; it is alone in this.
 int try_out(const SimulateOptions& options, const std::string& command_line) {
   if (!workflow::leads(team())) return 0;
-  workflow::SimulateJob job =
-      make_simulate_job(options.parameters.given(), options.quiet, command_line, workflow::specimen_reader());
+  workflow::SimulateJob job = make_simulate_job(options.parameters.given(), options.quiet,
+                                                command_line, workflow::specimen_reader());
   workflow::DryRun run;
   {
     const JobReporter reporter(options.quiet);
@@ -59,8 +59,8 @@ int simulate(const SimulateOptions& options, const std::string& command_line) {
 
 void add_simulate(CLI::App& app, Action& action, const std::string& command_line) {
   const auto options = std::make_shared<SimulateOptions>();
-  CLI::App* sub = app.add_subcommand(
-      "simulate", "Secondary- and backscattered-electron images of a specimen");
+  CLI::App* sub =
+      app.add_subcommand("simulate", "Secondary- and backscattered-electron images of a specimen");
   add_simulate_options(*sub, *options);
   sub->callback([options, &action, command_line] {
     action = [options, command_line] { return simulate(*options, command_line); };

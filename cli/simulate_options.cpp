@@ -38,7 +38,8 @@ Examples:
   semsurf simulate cube.stl --size 64x64 --region -96,-96,96,96 \
       --physics elastic=browning,secondaries=off -o bse.exr)";
 
-const std::vector<std::string> written{"output", "job.checkpoint", "job.restart"};   // beginnings of names
+const std::vector<std::string> written{"output", "job.checkpoint",
+                                       "job.restart"};  // beginnings of names
 
 void set_looks(BoundParameters& p) {
   p.headings = {{"specimen", "Specimen"},
@@ -84,7 +85,8 @@ void print_notes(const std::vector<std::string>& notes, bool quiet) {
 
 }  // namespace
 
-void add_request_options(CLI::App& app, BoundParameters& parameters, const std::vector<std::string>& without) {
+void add_request_options(CLI::App& app, BoundParameters& parameters,
+                         const std::vector<std::string>& without) {
   set_looks(parameters);
   parameters.add(app, "", io::SpecimenRequest{});
   std::vector<std::string> names;
@@ -109,7 +111,8 @@ void add_simulate_options(CLI::App& app, SimulateOptions& o) {
   o.parameters.add(app, "", io::SpecimenRequest{});
   o.parameters.add(app, "", workflow::SimulateJob{});
   app.add_flag("--dry-run", o.dry_run,
-               "Simulate a part for ten seconds, and tell what the whole will take: rays, time, memory and disk;\n"
+               "Simulate a part for ten seconds, and tell what the whole will take: rays, time, "
+               "memory and disk;\n"
                "writes nothing but libraries")
       ->group("Long jobs: the same command goes on from where it was stopped");
   add_quiet_flag(app, o.quiet)->group("Output");
@@ -128,8 +131,9 @@ io::SceneFile read_scene(const GivenTexts& given, bool quiet, const io::BodyRead
   return scene;
 }
 
-workflow::SimulateJob make_simulate_job(const GivenTexts& given, bool quiet, const std::string& command_line,
-                                       const io::BodyReader& read) {
+workflow::SimulateJob make_simulate_job(const GivenTexts& given, bool quiet,
+                                        const std::string& command_line,
+                                        const io::BodyReader& read) {
   workflow::SimulateJob job;
   job.cache = io::cache_folder();
   BoundParameters::apply(job, given);

@@ -24,10 +24,10 @@ std::string percent(double part, double whole) {
 
 void print_image(const workflow::SimulateSummary& s) {
   const mc::Scan& scan = s.scan;
-  const std::string pixel = scan.pixel_x_nm == scan.pixel_y_nm
-                                ? format_length(scan.pixel_x_nm)
-                                : format_length(scan.pixel_x_nm) + " x " +
-                                      format_length(scan.pixel_y_nm);
+  const std::string pixel =
+      scan.pixel_x_nm == scan.pixel_y_nm
+          ? format_length(scan.pixel_x_nm)
+          : format_length(scan.pixel_x_nm) + " x " + format_length(scan.pixel_y_nm);
   print_line("image", fmt::format("{} x {} pixels of {}, {} x {}{}", scan.width, scan.height, pixel,
                                   format_length(scan.width * scan.pixel_x_nm),
                                   format_length(scan.height * scan.pixel_y_nm),
@@ -39,9 +39,8 @@ void print_yields(const workflow::SimulateSummary& s) {
   for (const mc::Detector& d : s.result.detectors) width = std::max(width, d.name.size());
   for (std::size_t d = 0; d < s.result.detectors.size(); ++d) {
     const mc::Estimate& y = s.statistics.yields[d];
-    print("{:<{}} {:.4f} ± {:.4f}{}\n", s.result.detectors[d].name, width, y.mean,
-               y.standard_error,
-               d == 0 ? fmt::format(" per primary, mean over {} pixels", s.statistics.seen) : "");
+    print("{:<{}} {:.4f} ± {:.4f}{}\n", s.result.detectors[d].name, width, y.mean, y.standard_error,
+          d == 0 ? fmt::format(" per primary, mean over {} pixels", s.statistics.seen) : "");
   }
 }
 
@@ -57,7 +56,8 @@ void print_library(const workflow::SimulateSummary& s) {
                                     s.result.library_cascades, from, s.result.library_seconds));
 }
 
-// Which share of the pixels that see the specimen was done how, and which of the electrons went there.
+// Which share of the pixels that see the specimen was done how, and which of the electrons went
+// there.
 void print_models(const workflow::SimulateSummary& s) {
   const mc::ResultSummary& r = s.statistics;
   if (mc::accuracy_of(s.result.budget) <= 0 || r.seen == 0) return;
@@ -70,9 +70,11 @@ void print_models(const workflow::SimulateSummary& s) {
         std::pair{mc::PixelModel::direct, "directly"}}) {
     const auto n = r.models[static_cast<std::size_t>(model)];
     if (n == 0) continue;
-    text += fmt::format("{}{} {}", text.empty() ? "" : ", ", percent(double(n), double(r.seen)), words);
+    text +=
+        fmt::format("{}{} {}", text.empty() ? "" : ", ", percent(double(n), double(r.seen)), words);
     const auto electrons = r.electrons[static_cast<std::size_t>(model)];
-    if (electrons > 0) text += fmt::format(" ({} of the electrons)", percent(double(electrons), all));
+    if (electrons > 0)
+      text += fmt::format(" ({} of the electrons)", percent(double(electrons), all));
   }
   print_line("pixels", text);
 }
@@ -85,11 +87,10 @@ void print_electrons(const workflow::SimulateSummary& s) {
   if (accuracy <= 0) return;
   print_line("electrons", fmt::format("{:.0f} per pixel on average, {} to {}", r.mean_electrons,
                                       r.fewest_electrons, r.most_electrons));
-  print_line("accuracy",
-             r.missed == 0
-                 ? fmt::format("{} reached in every pixel", format_share(accuracy))
-                 : fmt::format("{} not reached in {} of {} pixels", format_share(accuracy),
-                               r.missed, r.seen));
+  print_line("accuracy", r.missed == 0
+                             ? fmt::format("{} reached in every pixel", format_share(accuracy))
+                             : fmt::format("{} not reached in {} of {} pixels",
+                                           format_share(accuracy), r.missed, r.seen));
   if (s.tier) print_line("physics", *s.tier);
 }
 
@@ -97,12 +98,11 @@ void print_speed(int threads, const workflow::SimulateSummary& s) {
   const double recalled = double(s.result.recalled);
   const double primaries = double(s.result.balance.incident) - recalled;
   const double seconds = s.result.seconds;
-  print_line("primaries",
-             fmt::format("{}{} in {:.1f} s, {} per second on {} threads",
-                         recalled > 0 ? format_count(recalled) + " done before, " : "",
-                         format_count(primaries), seconds,
-                         format_count(seconds > 0 ? primaries / seconds : 0),
-                         resolve_threads(threads)));
+  print_line("primaries", fmt::format("{}{} in {:.1f} s, {} per second on {} threads",
+                                      recalled > 0 ? format_count(recalled) + " done before, " : "",
+                                      format_count(primaries), seconds,
+                                      format_count(seconds > 0 ? primaries / seconds : 0),
+                                      resolve_threads(threads)));
 }
 
 void print_simplified(const workflow::Simplification& s) {
@@ -112,7 +112,8 @@ void print_simplified(const workflow::Simplification& s) {
     label.clear();
   }
   if (!s.bodies.empty())
-    print_line("", fmt::format("{} allowed, took {:.1f} s", format_length(s.tolerance_nm), s.seconds));
+    print_line("",
+               fmt::format("{} allowed, took {:.1f} s", format_length(s.tolerance_nm), s.seconds));
 }
 
 }  // namespace

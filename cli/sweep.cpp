@@ -50,19 +50,24 @@ struct Options {
 
 /// What is run.
 struct Runs {
-  std::vector<std::string> vary;      ///< "energy=500eV,1keV"
-  std::vector<std::string> formats;   ///< of the images
+  std::vector<std::string> vary;     ///< "energy=500eV,1keV"
+  std::vector<std::string> formats;  ///< of the images
 };
 
 void describe(ParameterVisitor& visit, Runs& runs) {
-  describe_texts(visit, runs.vary, {.name = "sweep.vary",
-                    .help = "What varies, as energy=500eV,1keV or tilt=0deg:60deg:5deg: all combinations",
-                    .form = "NAME=VALUES"});
-  visit(runs.formats,
-        {.name = "sweep.format", .help = "Format of the images", .otherwise = "exr", .form = "exr|tif|png|vti"});
+  describe_texts(
+      visit, runs.vary,
+      {.name = "sweep.vary",
+       .help = "What varies, as energy=500eV,1keV or tilt=0deg:60deg:5deg: all combinations",
+       .form = "NAME=VALUES"});
+  visit(runs.formats, {.name = "sweep.format",
+                       .help = "Format of the images",
+                       .otherwise = "exr",
+                       .form = "exr|tif|png|vti"});
 }
 
-/// Options of `simulate` that can be varied, without dashes, and the parameters that they stand for.
+/// Options of `simulate` that can be varied, without dashes, and the parameters that they stand
+/// for.
 const std::map<std::string, std::string>& varied_parameters() {
   static const std::map<std::string, std::string> all = [] {
     std::map<std::string, std::string> known;
@@ -80,12 +85,13 @@ const std::map<std::string, std::string>& varied_parameters() {
 }
 
 std::string parameter_of(std::string name) {
-  std::ranges::replace(name, '_', '-');   // as keys of scene files have it
+  std::ranges::replace(name, '_', '-');  // as keys of scene files have it
   const auto& all = varied_parameters();
   if (const auto found = all.find(name); found != all.end()) return found->second;
   const std::string guess = nearest(name, names_to_vary());
   throw UsageError("--vary", fmt::format("'{}' cannot be varied", name),
-                   guess.empty() ? "'semsurf sweep --help' lists what can" : fmt::format("Did you mean {}?", guess));
+                   guess.empty() ? "'semsurf sweep --help' lists what can"
+                                 : fmt::format("Did you mean {}?", guess));
 }
 
 struct Number {
@@ -97,7 +103,8 @@ Number number(const std::string& text, const std::string& subject) {
   Number out;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), out.value);
   if (error != std::errc() || !std::isfinite(out.value))
-    throw UsageError(subject, fmt::format("'{}' is not a number with a unit", text), "Write 0deg:60deg:5deg, say");
+    throw UsageError(subject, fmt::format("'{}' is not a number with a unit", text),
+                     "Write 0deg:60deg:5deg, say");
   out.unit.assign(end, text.data() + text.size());
   return out;
 }
@@ -106,11 +113,14 @@ Number number(const std::string& text, const std::string& subject) {
 std::vector<std::string> range(const std::string& text, const std::string& subject) {
   const std::size_t a = text.find(':'), b = text.find(':', a + 1);
   if (b == std::string::npos || text.find(':', b + 1) != std::string::npos)
-    throw UsageError(subject, fmt::format("'{}' is no range", text), "Write FROM:TO:STEP, as 0deg:60deg:5deg");
-  const Number from = number(text.substr(0, a), subject), to = number(text.substr(a + 1, b - a - 1), subject),
+    throw UsageError(subject, fmt::format("'{}' is no range", text),
+                     "Write FROM:TO:STEP, as 0deg:60deg:5deg");
+  const Number from = number(text.substr(0, a), subject),
+               to = number(text.substr(a + 1, b - a - 1), subject),
                step = number(text.substr(b + 1), subject);
   if (from.unit != to.unit || from.unit != step.unit)
-    throw UsageError(subject, fmt::format("'{}' mixes units", text), "Give all three of the range the same one");
+    throw UsageError(subject, fmt::format("'{}' mixes units", text),
+                     "Give all three of the range the same one");
   const double count = (to.value - from.value) / step.value;
   if (!(count >= 0) || !std::isfinite(count) || count > double(most_runs))
     throw UsageError(subject, fmt::format("'{}' does not lead from the first to the second", text),
@@ -129,7 +139,8 @@ struct Axis {
 Axis parse_axis(const std::string& text) {
   const std::size_t equals = text.find('=');
   if (equals == std::string::npos || equals == 0 || equals + 1 == text.size())
-    throw UsageError("--vary", fmt::format("'{}' names no values", text), "Write NAME=VALUE,VALUE or NAME=FROM:TO:STEP");
+    throw UsageError("--vary", fmt::format("'{}' names no values", text),
+                     "Write NAME=VALUE,VALUE or NAME=FROM:TO:STEP");
   Axis axis{text.substr(0, equals), {}};
   const std::string subject = "--vary " + axis.name, values = text.substr(equals + 1);
   for (std::size_t from = 0; from <= values.size();) {
@@ -137,7 +148,8 @@ Axis parse_axis(const std::string& text) {
     const std::string value = values.substr(from, comma - from);
     if (value.empty()) throw UsageError(subject, "a value is empty", "Leave out the comma");
     if (value.find(':') == std::string::npos) axis.values.push_back(value);
-    else for (std::string& one : range(value, subject)) axis.values.push_back(std::move(one));
+    else
+      for (std::string& one : range(value, subject)) axis.values.push_back(std::move(one));
     from = comma + 1;
   }
   return axis;
@@ -158,9 +170,11 @@ std::string file_name(const std::vector<Axis>& axes, const std::vector<std::stri
 std::vector<io::FileUse> inputs_of(const Options& o) {
   std::vector<io::FileUse> inputs;
   const GivenTexts& given = o.simulate.parameters.given();
-  for (const auto& [option, parameter] : {std::pair{"INPUT", "specimen.input"}, {"--materials", "specimen.materials"}})
+  for (const auto& [option, parameter] :
+       {std::pair{"INPUT", "specimen.input"}, {"--materials", "specimen.materials"}})
     if (const auto files = given.find(parameter); files != given.end())
-      for (const std::string& file : files->second) std::ranges::copy(files_read(option, file), std::back_inserter(inputs));
+      for (const std::string& file : files->second)
+        std::ranges::copy(files_read(option, file), std::back_inserter(inputs));
   return inputs;
 }
 
@@ -169,7 +183,8 @@ workflow::SweepJob make_sweep(const Options& o, const std::string& command_line)
   Runs what;
   o.bound.apply(job), o.bound.apply(what);
   if (job.folder.empty()) throw UsageError("`output`", "no folder is given", "Add `output=sweep`");
-  if (what.vary.empty()) throw UsageError("--vary", "nothing varies", "Add --vary energy=500eV,1keV, say");
+  if (what.vary.empty())
+    throw UsageError("--vary", "nothing varies", "Add --vary energy=500eV,1keV, say");
   job.command_line = command_line;
   std::vector<Axis> axes;
   std::size_t runs = 1;
@@ -177,23 +192,28 @@ workflow::SweepJob make_sweep(const Options& o, const std::string& command_line)
     axes.push_back(parse_axis(text));
     for (std::size_t i = 0; i + 1 < axes.size(); ++i)
       if (axes[i].name == axes.back().name)
-        throw UsageError("--vary", fmt::format("'{}' is given twice", axes.back().name), "Put its values into one list");
+        throw UsageError("--vary", fmt::format("'{}' is given twice", axes.back().name),
+                         "Put its values into one list");
     job.axes.push_back(axes.back().name);
     runs *= axes.back().values.size();
-    if (runs > most_runs) throw UsageError("--vary", "these are more than a million runs", "Give fewer values");
+    if (runs > most_runs)
+      throw UsageError("--vary", "these are more than a million runs", "Give fewer values");
   }
-  const std::vector<std::string> formats = what.formats.empty() ? std::vector<std::string>{"exr"} : what.formats;
-  std::vector<io::FileUse> outputs{{"--output", job.folder / "sweep.csv", {}}, {"--output", job.folder / "records", {}}};
+  const std::vector<std::string> formats =
+      what.formats.empty() ? std::vector<std::string>{"exr"} : what.formats;
+  std::vector<io::FileUse> outputs{{"--output", job.folder / "sweep.csv", {}},
+                                   {"--output", job.folder / "records", {}}};
   for (std::size_t number = 0; number < runs; ++number) {
     workflow::SweepRun run;
     std::size_t rest = number;
     run.values.resize(axes.size());
-    for (std::size_t a = axes.size(); a-- > 0;) {   // the last axis is the fastest
+    for (std::size_t a = axes.size(); a-- > 0;) {  // the last axis is the fastest
       run.values[a] = axes[a].values[rest % axes[a].values.size()];
       rest /= axes[a].values.size();
     }
     GivenTexts given = o.simulate.parameters.given();
-    for (std::size_t a = 0; a < axes.size(); ++a) given[parameter_of(axes[a].name)] = {run.values[a]};
+    for (std::size_t a = 0; a < axes.size(); ++a)
+      given[parameter_of(axes[a].name)] = {run.values[a]};
     std::vector<std::string>& files = given["output"];
     for (const std::string& format : formats) {
       files.push_back((job.folder / (file_name(axes, run.values) + "." + format)).string());
@@ -201,9 +221,11 @@ workflow::SweepJob make_sweep(const Options& o, const std::string& command_line)
     }
     std::filesystem::path record = files.back();
     io::refuse_strangers(files.back(), {record.replace_extension(".run.json")});
-    // Each process looks at every specimen, so each reads them; they are shared when they are traced.
+    // Each process looks at every specimen, so each reads them; they are shared when they are
+    // traced.
     run.make = [given, command_line] {
-      return make_simulate_job(given, true, command_line, workflow::specimen_reader(nullptr, processes_here()));
+      return make_simulate_job(given, true, command_line,
+                               workflow::specimen_reader(nullptr, processes_here()));
     };
     job.runs.push_back(std::move(run));
   }
@@ -237,12 +259,14 @@ int sweep(const Options& o, const std::string& command_line) {
     s = workflow::run(job, reporter, tell, team());
   }
   if (!s.complete) {
-    print_note(fmt::format("stopped after {} runs, kept in {}; the same command goes on from there", s.done, job.folder.string()));
+    print_note(fmt::format("stopped after {} runs, kept in {}; the same command goes on from there",
+                           s.done, job.folder.string()));
     return exit_interrupted;
   }
   if (!quiet) {
     if (s.found > 0) print("{} runs were there before\n", s.found);
-    print("written {}\n        images and records of {} runs in {}\n", s.table.string(), s.done, job.folder.string());
+    print("written {}\n        images and records of {} runs in {}\n", s.table.string(), s.done,
+          job.folder.string());
   }
   return s.untrustworthy > 0 ? exit_untrustworthy : 0;
 }
@@ -250,9 +274,10 @@ int sweep(const Options& o, const std::string& command_line) {
 CLI::App* add_join(CLI::App& app, Action& action) {
   const auto folders = std::make_shared<std::vector<std::string>>();
   CLI::App* sub = app.add_subcommand("join", "One table from the parts of a sweep");
-  with_role(sub->add_option("FOLDER", *folders, "Where 'semsurf sweep --part' wrote to, one or several")
-                ->type_name("FOLDER"),
-            FileRole::none);
+  with_role(
+      sub->add_option("FOLDER", *folders, "Where 'semsurf sweep --part' wrote to, one or several")
+          ->type_name("FOLDER"),
+      FileRole::none);
   sub->footer("Writes sweep.csv into the first folder.\n\nExample:\n  semsurf sweep join mesa");
   sub->callback([folders, &action] {
     action = [folders] {
@@ -274,7 +299,8 @@ std::vector<std::string> names_to_vary() {
 
 void add_sweep(CLI::App& app, Action& action, const std::string& command_line) {
   const auto options = std::make_shared<Options>();
-  CLI::App* sub = app.add_subcommand("sweep", "Simulations over a grid of settings: energies, tilts, focus ...");
+  CLI::App* sub = app.add_subcommand(
+      "sweep", "Simulations over a grid of settings: energies, tilts, focus ...");
   options->bound.looks["output"] = {.name = "-o,--output"};
   options->bound.add<Runs>(*sub, "Sweep", {}, {"sweep.vary"});
   options->bound.add<workflow::SweepJob>(*sub, "Sweep");

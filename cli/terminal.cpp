@@ -81,7 +81,8 @@ void print_written(const std::vector<std::filesystem::path>& files) {
 void flush() {
   if (std::fflush(output()) == 0 && !std::ferror(output())) return;
   std::clearerr(output());
-  throw FileError("standard output", "what was printed cannot be written there", "Check the free space and where it goes");
+  throw FileError("standard output", "what was printed cannot be written there",
+                  "Check the free space and where it goes");
 }
 
 void call_fields(FieldWord word) { field_word = word ? std::move(word) : plain_words; }
@@ -169,7 +170,8 @@ InterruptGuard::~InterruptGuard() {
 }
 
 Watch Watched::watch(double from, double to) {
-  const Watch whole{[this](double done, double total) { bar_.show(done, total, nullptr); }, guard_.token()};
+  const Watch whole{[this](double done, double total) { bar_.show(done, total, nullptr); },
+                    guard_.token()};
   return whole.part(from, to);
 }
 

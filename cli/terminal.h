@@ -25,7 +25,8 @@ template <class... T>
 void print(fmt::format_string<T...> format, T&&... values) {
   fmt::vprint(output(), format, fmt::make_format_args(values...));
 }
-/// "written" and the name of each file, one a line; the others, that belong to the first, without the word.
+/// "written" and the name of each file, one a line; the others, that belong to the first, without
+/// the word.
 void print_written(const std::vector<std::filesystem::path>& files);
 /// What was printed can be read now. Throws FileError if it cannot be kept, as on a full disk.
 void flush();
@@ -33,8 +34,8 @@ void flush();
 /// How fields are called in messages from now on; as plain words, until this is called.
 void call_fields(FieldWord word);
 
-/// "semsurf: error: ...", "semsurf: warning: ..." and "semsurf: note: ..." in the messages, fields in backticks as they
-/// are called.
+/// "semsurf: error: ...", "semsurf: warning: ..." and "semsurf: note: ..." in the messages, fields
+/// in backticks as they are called.
 void print_error(const std::string& message);
 void print_warning(const std::string& message);
 void print_note(const std::string& message);
@@ -54,8 +55,8 @@ std::string format_energy(double energy_ev);
 /// "0:07", "3:21", "2:05:00".
 std::string format_duration(double seconds);
 
-/// A progress bar among the messages: percentage, things per second, time left. Silent unless `wanted`
-/// and they go to a terminal. Erased when destroyed.
+/// A progress bar among the messages: percentage, things per second, time left. Silent unless
+/// `wanted` and they go to a terminal. Erased when destroyed.
 class ProgressBar {
  public:
   explicit ProgressBar(bool wanted);
@@ -73,7 +74,7 @@ class ProgressBar {
   using Clock = std::chrono::steady_clock;
   bool active_;
   bool started_ = false;
-  double done_at_start_ = 0;   // a resumed job begins in the middle
+  double done_at_start_ = 0;  // a resumed job begins in the middle
   double last_done_ = 0;
   std::string things_;
   Clock::time_point start_, next_;

@@ -10,7 +10,8 @@
 namespace surf::cli {
 
 void add_tip_input(CLI::App& app, std::optional<std::string>& file) {
-  with_role(app.add_option("--tip", file, "The tip, as semsurf writes tips or any file of heights")->type_name("FILE"),
+  with_role(app.add_option("--tip", file, "The tip, as semsurf writes tips or any file of heights")
+                ->type_name("FILE"),
             FileRole::read);
 }
 

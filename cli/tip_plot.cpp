@@ -15,7 +15,8 @@ using io::PlotSeries;
 using io::PlotStyle;
 
 // Along a row or column through the apex, of the physical tip: (x, z) -> (-x, -z).
-PlotSeries profile(const Tip& tip, bool along_x, const Grid<double>* standard_error, const char* name) {
+PlotSeries profile(const Tip& tip, bool along_x, const Grid<double>* standard_error,
+                   const char* name) {
   PlotSeries s;
   s.name = name;
   s.style = PlotStyle::line_points;
@@ -24,7 +25,8 @@ PlotSeries profile(const Tip& tip, bool along_x, const Grid<double>* standard_er
     const int i = along_x ? k : tip.apex_x, j = along_x ? tip.apex_y : k;
     if (!std::isfinite(tip.z_nm(i, j))) continue;
     if (standard_error && !std::isfinite((*standard_error)(i, j))) continue;
-    s.x.push_back(-(along_x ? (i - tip.apex_x) * tip.pitch_x_nm : (j - tip.apex_y) * tip.pitch_y_nm));
+    s.x.push_back(
+        -(along_x ? (i - tip.apex_x) * tip.pitch_x_nm : (j - tip.apex_y) * tip.pitch_y_nm));
     s.y.push_back(-tip.z_nm(i, j));
     if (standard_error) s.y_error.push_back((*standard_error)(i, j));
   }
@@ -33,10 +35,12 @@ PlotSeries profile(const Tip& tip, bool along_x, const Grid<double>* standard_er
 
 PlotPanel profiles(const Tip& tip, const Grid<double>* standard_error = nullptr) {
   PlotPanel p;
-  p.title = standard_error ? "the tip through its apex, where it touched" : "the tip through its apex";
+  p.title =
+      standard_error ? "the tip through its apex, where it touched" : "the tip through its apex";
   p.x.label = "from the apex (nm)";
   p.y.label = "height (nm)";
-  p.series = {profile(tip, true, standard_error, "along x"), profile(tip, false, standard_error, "along y")};
+  p.series = {profile(tip, true, standard_error, "along x"),
+              profile(tip, false, standard_error, "along y")};
   return p;
 }
 
@@ -69,7 +73,8 @@ io::Plot tip_plot(const TipSweep& sweep) {
   for (const SweptTip& t : sweep.curve) {
     v.x.push_back(t.threshold_nm);
     v.y.push_back(t.volume_nm3);
-    if (!(t.residual_nm > 0 && t.expected_nm > 0 && t.peaks_nm > 0 && t.expected_peaks_nm > 0)) continue;
+    if (!(t.residual_nm > 0 && t.expected_nm > 0 && t.peaks_nm > 0 && t.expected_peaks_nm > 0))
+      continue;
     rms.x.push_back(t.threshold_nm);
     rms.y.push_back(t.residual_nm / t.expected_nm);
     peaks.x.push_back(t.threshold_nm);
@@ -81,7 +86,8 @@ io::Plot tip_plot(const TipSweep& sweep) {
   for (PlotPanel* p : {&volume, &residual})
     p->references.push_back({PlotDirection::vertical, chosen.threshold_nm, "chosen"});
   if (sweep.jump != sweep.chosen)
-    volume.references.push_back({PlotDirection::vertical, sweep.curve[sweep.jump].threshold_nm, "above the jump"});
+    volume.references.push_back(
+        {PlotDirection::vertical, sweep.curve[sweep.jump].threshold_nm, "above the jump"});
   plot.panels.push_back(volume);
   if (!rms.x.empty()) plot.panels.push_back(residual);
   plot.panels.push_back(profiles(chosen.tip));
@@ -98,7 +104,7 @@ io::Plot tip_plot(const Tip& tip, const BestTipSummary& summary) {
   risk.x.label = "threshold of the bound (nm)";
   risk.y = {"per pixel", true, {}};
   for (const TipCandidate& c : summary.candidates) {
-    if (risk.series.empty() || c.tolerance != tolerance) {   // another family of bounds
+    if (risk.series.empty() || c.tolerance != tolerance) {  // another family of bounds
       tolerance = c.tolerance;
       const int color = static_cast<int>(risk.series.size() / 2);
       for (const char* what : {"risk", "misfit"}) {

@@ -5,9 +5,9 @@
 
 #include "commands.h"
 #include "exit_codes.h"
-#include "model_tables.h"
 #include "job_reporter.h"
 #include "joined_team.h"
+#include "model_tables.h"
 #include "surf/workflow/train_job.h"
 #include "terminal.h"
 #include "train_options.h"
@@ -15,15 +15,17 @@
 namespace surf::cli {
 namespace {
 
-void print_line(const std::string& label, const std::string& text) { print("{:<10} {}\n", label, text); }
+void print_line(const std::string& label, const std::string& text) {
+  print("{:<10} {}\n", label, text);
+}
 
 void print_training(const workflow::TrainSummary& s) {
   const TrainedModel& model = s.model;
   print_line("model", format_model(model));
   print_line("for", format_scope(model.scope));
   if (!s.images.empty())
-    print_line("images", fmt::format("{} simulated, {} there before, in {}", s.images_made, s.images_found,
-                                     s.images.string()));
+    print_line("images", fmt::format("{} simulated, {} there before, in {}", s.images_made,
+                                     s.images_found, s.images.string()));
   if (learnt_from(model.record) > 0) print_line("range", format_range(model.record.range));
   if (model.record.condition_number != 0)
     print_line("condition", fmt::format("{:.3g}", model.record.condition_number));
@@ -32,7 +34,8 @@ void print_training(const workflow::TrainSummary& s) {
     print_line(label, line);
     label.clear();
   }
-  if (label.empty()) print_line("", "in % of the mean signal; rms without the images' noise, mean with it");
+  if (label.empty())
+    print_line("", "in % of the mean signal; rms without the images' noise, mean with it");
   print_written(s.written);
 }
 
@@ -48,7 +51,8 @@ int train(const TrainOptions& options) {
   if (!summary.complete) {
     print_note(summary.images.empty()
                    ? "stopped: there is no model yet"
-                   : fmt::format("stopped: there is no model yet. What is simulated is kept in {}; the same command goes "
+                   : fmt::format("stopped: there is no model yet. What is simulated is kept in {}; "
+                                 "the same command goes "
                                  "on from there",
                                  summary.images.string()));
     return exit_interrupted;
@@ -61,7 +65,8 @@ int train(const TrainOptions& options) {
 
 void add_train(CLI::App& app, Action& action) {
   const auto options = std::make_shared<TrainOptions>();
-  CLI::App* sub = app.add_subcommand("train", "A fast model of SEM images, learnt from simulated or real ones");
+  CLI::App* sub =
+      app.add_subcommand("train", "A fast model of SEM images, learnt from simulated or real ones");
   add_train_options(*sub, *options);
   sub->callback([options, &action] { action = [options] { return train(*options); }; });
 }

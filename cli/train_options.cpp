@@ -43,7 +43,8 @@ void tell(const std::vector<std::string>& notes, bool quiet) {
   for (const std::string& note : notes) print_note(note);
 }
 
-workflow::TrainingInput read_input(const std::string& file, const io::HeightReadOptions& reading, bool quiet) {
+workflow::TrainingInput read_input(const std::string& file, const io::HeightReadOptions& reading,
+                                   bool quiet) {
   io::HeightFieldFile scan = io::read_height_field(file, reading);
   for (std::string& note : scan.notes) note = fmt::format("{}: {}", file, note);
   tell(scan.notes, quiet);
@@ -52,13 +53,15 @@ workflow::TrainingInput read_input(const std::string& file, const io::HeightRead
 
 void add_images(const TrainFiles& files, workflow::TrainJob& job) {
   if (!files.images.empty() && !files.signals.empty())
-    throw UsageError("`training.signal`", "`training.images` are given too", "Leave one of them out");
+    throw UsageError("`training.signal`", "`training.images` are given too",
+                     "Leave one of them out");
   const auto& images = files.signals.empty() ? files.images : files.signals;
   if (images.empty()) return;
   if (images.size() != files.heights.size())
-    throw UsageError(files.signals.empty() ? "`training.images`" : "`training.signal`",
-                     fmt::format("{} images are given for {} HEIGHTS", images.size(), files.heights.size()),
-                     "Give one for each, in the same order");
+    throw UsageError(
+        files.signals.empty() ? "`training.images`" : "`training.signal`",
+        fmt::format("{} images are given for {} HEIGHTS", images.size(), files.heights.size()),
+        "Give one for each, in the same order");
   for (std::size_t i = 0; i < images.size(); ++i) {
     if (files.signals.empty()) {
       job.inputs[i].image = images[i];
@@ -68,34 +71,40 @@ void add_images(const TrainFiles& files, workflow::TrainJob& job) {
     const std::string channel =
         input.channel.empty() ? io::read_image(input.file).channels.front().name : input.channel;
     if (i > 0 && channel != job.signal)
-      throw UsageError("`training.signal`", fmt::format("channel '{}' here and '{}' before", channel, job.signal),
+      throw UsageError("`training.signal`",
+                       fmt::format("channel '{}' here and '{}' before", channel, job.signal),
                        "Give the same channel of each image, as FILE:CHANNEL");
     job.signal = channel;
     job.inputs[i].image = input.file;
   }
 }
 
-/// What is about semsurf's own surfaces alone, and what only is about surfaces or images that are given.
+/// What is about semsurf's own surfaces alone, and what only is about surfaces or images that are
+/// given.
 void refuse_contradictions(const BoundParameters& bound, const TrainFiles& files) {
   if (!files.heights.empty()) {
     for (const char* name : {"training.surfaces", "training.surface_size"})
       if (bound.is_given(name))
-        throw UsageError(fmt::format("`{}`", name), "it is about semsurf's own surfaces, and HEIGHTS are given",
+        throw UsageError(fmt::format("`{}`", name),
+                         "it is about semsurf's own surfaces, and HEIGHTS are given",
                          "Leave it out");
     return;
   }
-  for (const char* name :
-       {"training.images", "training.signal", "scan.height_channel", "scan.height_unit", "scan.height_pitch"})
+  for (const char* name : {"training.images", "training.signal", "scan.height_channel",
+                           "scan.height_unit", "scan.height_pitch"})
     if (bound.is_given(name))
-      throw UsageError(fmt::format("`{}`", name), "no HEIGHTS are given", "Name the surfaces, or leave it out");
+      throw UsageError(fmt::format("`{}`", name), "no HEIGHTS are given",
+                       "Name the surfaces, or leave it out");
 }
 
 /// What is about images that a kind without any would leave unused.
-void refuse_without_images(const BoundParameters& bound, const TrainFiles& files, const workflow::TrainJob& job) {
+void refuse_without_images(const BoundParameters& bound, const TrainFiles& files,
+                           const workflow::TrainJob& job) {
   const auto kinds = workflow::learnable_kinds();
   const auto kind = std::ranges::find(kinds, job.learn.kind, &workflow::LearnableKind::name);
   if (kind == kinds.end() || kind->needs_images || job.surfaces || !files.heights.empty()) return;
-  for (const char* name : {"training.surface_size", "simulation.electrons", "simulation.accuracy", "training.edge"})
+  for (const char* name :
+       {"training.surface_size", "simulation.electrons", "simulation.accuracy", "training.edge"})
     if (bound.is_given(name))
       throw UsageError(fmt::format("`{}`", name),
                        fmt::format("a model '{}' needs no images, so there are none", kind->name),
@@ -113,14 +122,18 @@ void add_material(const TrainFiles& files, bool quiet, workflow::TrainJob& job) 
 }
 
 void add_inputs(const TrainFiles& files, bool quiet, workflow::TrainJob& job) {
-  for (const std::string& file : files.heights) job.inputs.push_back(read_input(file, job.reading, quiet));
+  for (const std::string& file : files.heights)
+    job.inputs.push_back(read_input(file, job.reading, quiet));
   if (job.pixel_nm > 0) return;
   const HeightField& first = job.inputs.front().field;
   if (first.pitch_x_nm != first.pitch_y_nm)
-    throw UsageError("`training.pixel_size`", fmt::format("the samples of {} are not square", files.heights.front()),
+    throw UsageError("`training.pixel_size`",
+                     fmt::format("the samples of {} are not square", files.heights.front()),
                      "Say how large the model's pixels are, as 3nm");
   job.pixel_nm = first.pitch_x_nm;
-  tell({fmt::format("no --pixel-size is given: {}, as {}", format_length(job.pixel_nm), files.heights.front())}, quiet);
+  tell({fmt::format("no --pixel-size is given: {}, as {}", format_length(job.pixel_nm),
+                    files.heights.front())},
+       quiet);
 }
 
 std::string kinds_in_words() {
@@ -133,30 +146,38 @@ std::string kinds_in_words() {
 }  // namespace
 
 void describe(ParameterVisitor& visit, TrainFiles& files) {
-  visit(files.heights, {.name = "training.heights", .help = "Surfaces to learn on: scans and images of heights",
-                        .otherwise = "semsurf's own", .form = "FILE", .file = FileRole::read});
-  visit(files.images, {.name = "training.images", .help = "Image with channels SE and BSE, one for each of HEIGHTS",
-                       .form = "FILE", .file = FileRole::read});
-  visit(files.signals,
-        {.name = "training.signal",
-         .help = "Image of a microscope, FILE or FILE:CHANNEL, pixel on sample: the model then has its one signal",
-         .form = "FILE",
-         .file = FileRole::read});
-  describe_some(visit, files.material,
-                {{"specimen.material", "What the surfaces are made of", "Si"}, {"specimen.materials"}});
+  visit(files.heights, {.name = "training.heights",
+                        .help = "Surfaces to learn on: scans and images of heights",
+                        .otherwise = "semsurf's own",
+                        .form = "FILE",
+                        .file = FileRole::read});
+  visit(files.images, {.name = "training.images",
+                       .help = "Image with channels SE and BSE, one for each of HEIGHTS",
+                       .form = "FILE",
+                       .file = FileRole::read});
+  visit(files.signals, {.name = "training.signal",
+                        .help = "Image of a microscope, FILE or FILE:CHANNEL, pixel on sample: the "
+                                "model then has its one signal",
+                        .form = "FILE",
+                        .file = FileRole::read});
+  describe_some(
+      visit, files.material,
+      {{"specimen.material", "What the surfaces are made of", "Si"}, {"specimen.materials"}});
 }
 
 workflow::TrainJob make_train_job(const TrainOptions& o) {
   TrainFiles files;
   workflow::TrainJob job;
   o.bound.apply(files), o.bound.apply(job);
-  if (job.output.empty()) throw UsageError("`output`", "no output file is given", "Add -o model.json");
+  if (job.output.empty())
+    throw UsageError("`output`", "no output file is given", "Add -o model.json");
   io::check_model_target(job.output);
   check_parameters(job);
   refuse_contradictions(o.bound, files);
   refuse_without_images(o.bound, files, job);
   if (job.pixel_nm == 0 && files.heights.empty())
-    throw UsageError("`training.pixel_size`", "it is missing", "Say how large the pixels of your images are, as 3nm");
+    throw UsageError("`training.pixel_size`", "it is missing",
+                     "Say how large the pixels of your images are, as 3nm");
   add_material(files, o.quiet, job);
   if (!files.heights.empty()) add_inputs(files, o.quiet, job);
   add_images(files, job);
@@ -172,8 +193,8 @@ void add_train_options(CLI::App& app, TrainOptions& o) {
   looks["training.model_error"] = {.former = {"--tolerance"}};
   looks["scan.height_unit"] = {.former = {"--z-unit"}};
   looks["scan.height_pitch"] = {.former = {"--pitch"}};
-  const char *surfaces = "Surfaces", *images = "Images of HEIGHTS", *conditions = "What the model is for",
-             *model = "Model";
+  const char *surfaces = "Surfaces", *images = "Images of HEIGHTS",
+             *conditions = "What the model is for", *model = "Model";
   const char *simulation = "Simulation of missing images", *options = "Options";
   o.bound.headings = {{"training", model},
                       {"training.heights", surfaces},

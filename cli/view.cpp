@@ -45,8 +45,8 @@ struct Options {
   bool quiet = false;
 };
 
-const std::vector<std::string> reading_names{"specimen.unit", "specimen.override_unit", "scan.height_unit",
-    "scan.height_pitch"};
+const std::vector<std::string> reading_names{"specimen.unit", "specimen.override_unit",
+                                             "scan.height_unit", "scan.height_pitch"};
 
 ViewReading make_reading(const Options& o, const io::SpecimenRequest& given) {
   ViewReading r;
@@ -60,15 +60,19 @@ ViewReading make_reading(const Options& o, const io::SpecimenRequest& given) {
 
 void add_drape(const FileChannel& input, const ViewReading& reading, io::WebPage& page) {
   auto [picture, channel] = read_placed_picture(input, reading.pitch);
-  if (std::none_of(page.surfaces.begin(), page.surfaces.end(),
-                   [&](const io::WebSurface& surface) { return lies_over(picture.image, surface); }))
-    throw InvalidInput(input.file.string(), fmt::format("the picture, {}, lies over no "
-                                        "surface", place_of(picture.image)),
+  if (std::none_of(page.surfaces.begin(), page.surfaces.end(), [&](const io::WebSurface& surface) {
+        return lies_over(picture.image, surface);
+      }))
+    throw InvalidInput(input.file.string(),
+                       fmt::format("the picture, {}, lies over no "
+                                   "surface",
+                                   place_of(picture.image)),
                        "Give it without --drape to see it beside them");
   const std::string wanted = channel;
-  const auto same = std::find_if(page.images.begin(), page.images.end(), [&](const io::WebImage& image) {
-    return image.name == picture.name && image.has_scale && image.image.find(wanted);
-  });
+  const auto same =
+      std::find_if(page.images.begin(), page.images.end(), [&](const io::WebImage& image) {
+        return image.name == picture.name && image.has_scale && image.image.find(wanted);
+      });
   page.drape = {static_cast<std::size_t>(same - page.images.begin()), channel};
   if (same == page.images.end()) page.images.push_back(std::move(picture));
 }
@@ -87,11 +91,13 @@ void add_scalar(const FileChannel& input, const ViewReading& reading, io::WebPag
     name = fmt::format("{} of {} {}", channel, input.file.stem().string(), number);
   const LaidScalar laid = add_sampled_scalar(page, picture.image, channel, name);
   if (laid.values == 0)
-    throw InvalidInput(input.file.string(), fmt::format("'{}' has no value over any surface", channel),
+    throw InvalidInput(input.file.string(),
+                       fmt::format("'{}' has no value over any surface", channel),
                        "Give a map of the same place");
   if (!reading.quiet)
     for (const std::string& surface : laid.left_out)
-      print_note(fmt::format("{}: it is of another extent than '{}' and goes without it", surface, name));
+      print_note(
+          fmt::format("{}: it is of another extent than '{}' and goes without it", surface, name));
   if (page.scalar.empty()) page.scalar = name;
 }
 
@@ -101,8 +107,7 @@ std::string describe(const io::WebSurface& surface) {
     text = fmt::format("{} x {} samples, {} x {}", field->z_nm.width(), field->z_nm.height(),
                        format_length((field->z_nm.width() - 1) * field->pitch_x_nm),
                        format_length((field->z_nm.height() - 1) * field->pitch_y_nm));
-  else
-    text = fmt::format("{} triangles", std::get<TriangleMesh>(surface.shape).triangles.size());
+  else text = fmt::format("{} triangles", std::get<TriangleMesh>(surface.shape).triangles.size());
   for (const io::WebScalar& scalar : surface.scalars) text += ", " + scalar.name;
   return text;
 }
@@ -111,10 +116,10 @@ void report(const io::WebPage& page, const io::WebPageSummary& summary, const st
   for (const io::WebSurface& surface : page.surfaces)
     print("{:<10} {}: {}\n", "surface", surface.name, describe(surface));
   for (const io::WebImage& image : page.images)
-    print("{:<10} {}: {} x {} pixels{}\n", "image", image.name, image.image.width(), image.image.height(),
-               image.has_scale ? "" : ", size not known (--pixel-size)");
-  print("{:<10} {}, {}, of these {} the viewer\n", "written", output, format_bytes(double(summary.bytes)),
-             format_bytes(double(summary.viewer_bytes)));
+    print("{:<10} {}: {} x {} pixels{}\n", "image", image.name, image.image.width(),
+          image.image.height(), image.has_scale ? "" : ", size not known (--pixel-size)");
+  print("{:<10} {}, {}, of these {} the viewer\n", "written", output,
+        format_bytes(double(summary.bytes)), format_bytes(double(summary.viewer_bytes)));
 }
 
 int work(const Options& o) {
@@ -134,7 +139,7 @@ int work(const Options& o) {
   InterruptGuard interrupt;
   reading.watch.cancel = interrupt.token();
   ProgressBar bar(!o.quiet);
-  const double steps = 2 * double(inputs.size() + scalars.size());   // reading, then writing
+  const double steps = 2 * double(inputs.size() + scalars.size());  // reading, then writing
   double done = 0;
   const auto goes_on = [&] {
     bar.show(done++, steps, "files");
@@ -148,7 +153,8 @@ int work(const Options& o) {
     add_view_input(input, reading, page);
   }
   if ((drape || !scalars.empty()) && page.surfaces.empty())
-    throw UsageError(drape ? "--drape" : "--scalar", "there is no surface to lay it on", "Give a scan or a mesh");
+    throw UsageError(drape ? "--drape" : "--scalar", "there is no surface to lay it on",
+                     "Give a scan or a mesh");
   for (const FileChannel& scalar : scalars) {
     if (!goes_on()) return interrupted;
     add_scalar(scalar, reading, page);
@@ -160,20 +166,23 @@ int work(const Options& o) {
   for (const FileChannel& scalar : scalars) read.push_back(scalar.file.string());
   if (drape) read.push_back(drape->file.string());
   page.metadata = workflow::step_record(
-      "view", workflow::records_of(given, reading.pitch, static_cast<const ViewParameters&>(reading)), {read.begin(),
-          read.end()});
+      "view",
+      workflow::records_of(given, reading.pitch, static_cast<const ViewParameters&>(reading)),
+      {read.begin(), read.end()});
 
   const auto summary = io::write_web_page(
-      *o.output, page, [&](double part, double total) { bar.show(steps / 2 * (1 + part / total), steps, "files"); },
+      *o.output, page,
+      [&](double part, double total) { bar.show(steps / 2 * (1 + part / total), steps, "files"); },
       interrupt.token());
   bar.clear();
   if (summary.bytes == 0) return interrupted;
   if (!o.quiet) report(page, summary, *o.output);
   if (double(summary.bytes) > heavy_page_bytes)
-    print_warning(fmt::format("a page of {} opens slowly. --mesh-tolerance 0.1nm leaves out what is flat, --every 2 "
-                              "takes "
-                              "every second sample",
-                              format_bytes(double(summary.bytes))));
+    print_warning(fmt::format(
+        "a page of {} opens slowly. --mesh-tolerance 0.1nm leaves out what is flat, --every 2 "
+        "takes "
+        "every second sample",
+        format_bytes(double(summary.bytes))));
   return 0;
 }
 
@@ -181,16 +190,27 @@ int work(const Options& o) {
 
 void add_view(CLI::App& app, Action& action) {
   const auto o = std::make_shared<Options>();
-  CLI::App* sub = app.add_subcommand("view", "One web page that shows surfaces and images to anybody");
-  with_role(sub->add_option("FILES", o->files, "Scans, meshes, images; FILE:CHANNEL chooses a channel")->type_name("FILE"),
-            FileRole::read);
+  CLI::App* sub =
+      app.add_subcommand("view", "One web page that shows surfaces and images to anybody");
+  with_role(
+      sub->add_option("FILES", o->files, "Scans, meshes, images; FILE:CHANNEL chooses a channel")
+          ->type_name("FILE"),
+      FileRole::read);
   const char* shown = "Shown";
-  sub->add_option("--title", o->title, "Title of the page (the first file's name)")->type_name("TEXT")->group(shown);
-  with_role(sub->add_option("--drape", o->drape, "An image to lay on the surfaces, FILE or FILE:CHANNEL")
-                ->type_name("FILE")->group(shown),
-            FileRole::read);
-  with_role(sub->add_option("--scalar", o->scalars, "A map to colour them by, FILE or FILE:CHANNEL; may be repeated")
-                ->type_name("FILE")->option_text("FILE")->allow_extra_args(false)->group(shown),
+  sub->add_option("--title", o->title, "Title of the page (the first file's name)")
+      ->type_name("TEXT")
+      ->group(shown);
+  with_role(
+      sub->add_option("--drape", o->drape, "An image to lay on the surfaces, FILE or FILE:CHANNEL")
+          ->type_name("FILE")
+          ->group(shown),
+      FileRole::read);
+  with_role(sub->add_option("--scalar", o->scalars,
+                            "A map to colour them by, FILE or FILE:CHANNEL; may be repeated")
+                ->type_name("FILE")
+                ->option_text("FILE")
+                ->allow_extra_args(false)
+                ->group(shown),
             FileRole::read);
   const char* reading = "Reading";
   o->bound.looks["view.mesh_tolerance"].former = {"--tolerance"};
@@ -199,7 +219,9 @@ void add_view(CLI::App& app, Action& action) {
   o->bound.add<GivenPitch>(*sub, reading);
   o->bound.add<ViewParameters>(*sub, "Size");
   const char* output = "Output";
-  with_role(sub->add_option("-o,--output", o->output, "The page: .html")->type_name("FILE")->group(output),
+  with_role(sub->add_option("-o,--output", o->output, "The page: .html")
+                ->type_name("FILE")
+                ->group(output),
             FileRole::written);
   add_quiet_flag(*sub, o->quiet)->group(output);
   sub->footer(examples);

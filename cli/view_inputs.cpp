@@ -35,7 +35,8 @@ class Adder {
   Adder(const FileChannel& input, const ViewReading& reading, io::WebPage& page)
       : input_(input), reading_(reading), page_(page) {}
 
-  void add_field(HeightField field, const std::string& name, std::map<std::string, std::string> metadata,
+  void add_field(HeightField field, const std::string& name,
+                 std::map<std::string, std::string> metadata,
                  std::vector<io::WebScalar> scalars = {}) {
     io::WebSurface surface;
     surface.name = unique_name(page_, name);
@@ -43,20 +44,24 @@ class Adder {
     if (reading_.every > 1) {
       const HeightField fine = std::move(field);
       field = every_sample(fine, reading_.every);
-      note(fmt::format("every {} sample of {} x {}: {} x {} on the page", ordinal(reading_.every), fine.z_nm.width(),
-                       fine.z_nm.height(), field.z_nm.width(), field.z_nm.height()));
+      note(fmt::format("every {} sample of {} x {}: {} x {} on the page", ordinal(reading_.every),
+                       fine.z_nm.width(), fine.z_nm.height(), field.z_nm.width(),
+                       field.z_nm.height()));
       for (io::WebScalar& scalar : scalars) scalar.values = thinned(scalar.values, fine);
       surface.metadata["view.every"] = std::to_string(reading_.every);
     }
     if (reading_.mesh_tolerance_nm) {
       ThinSummary summary;
-      surface.shape = thin_height_field(field, {.tolerance_nm = *reading_.mesh_tolerance_nm, .watch = reading_.watch},
-          summary);
-      note(fmt::format("{} triangles instead of {}, nowhere more than {} off", summary.triangles_after,
-                       summary.triangles_before, format_length(summary.deviation_nm)));
+      surface.shape = thin_height_field(
+          field, {.tolerance_nm = *reading_.mesh_tolerance_nm, .watch = reading_.watch}, summary);
+      note(fmt::format("{} triangles instead of {}, nowhere more than {} off",
+                       summary.triangles_after, summary.triangles_before,
+                       format_length(summary.deviation_nm)));
       surface.metadata["view.deviation_nm"] = format_exact(summary.deviation_nm);
       if (!scalars.empty())
-        note("with --mesh-tolerance its other channels are left out; --scalar lays one on what remains");
+        note(
+            "with --mesh-tolerance its other channels are left out; --scalar lays one on what "
+            "remains");
     } else {
       surface.shape = std::move(field);
       surface.scalars = std::move(scalars);
@@ -67,7 +72,8 @@ class Adder {
   void add_scan() {
     io::HeightReadOptions options = reading_.heights;
     options.channel = input_.channel;
-    if (!options.pitch_x_nm) options.pitch_x_nm = reading_.pitch.x_nm, options.pitch_y_nm = reading_.pitch.y_nm;
+    if (!options.pitch_x_nm)
+      options.pitch_x_nm = reading_.pitch.x_nm, options.pitch_y_nm = reading_.pitch.y_nm;
     const io::HeightFieldFile file = io::read_height_field(input_.file, options);
     for (const std::string& text : file.notes) note(text);
     std::map<std::string, std::string> metadata = file.metadata;
@@ -101,7 +107,7 @@ class Adder {
       }
       surface.shape = std::move(body.mesh);
       for (VertexScalar& scalar : body.scalars)
-        if (scalar.name != "height")   // the page has its own
+        if (scalar.name != "height")  // the page has its own
           surface.scalars.push_back({scalar.name, scalar.unit, std::move(scalar.values)});
       page_.surfaces.push_back(std::move(surface));
     }
@@ -109,7 +115,8 @@ class Adder {
 
   void add_drape(const Drape& drape, const std::string& surface) {
     io::WebImage picture{fmt::format("picture on {}", surface), {}};
-    Channel channel{drape.name.empty() ? "picture" : drape.name, "1", Grid<float>(drape.grey.width(), drape.grey.height())};
+    Channel channel{drape.name.empty() ? "picture" : drape.name, "1",
+                    Grid<float>(drape.grey.width(), drape.grey.height())};
     std::copy(drape.grey.data().begin(), drape.grey.data().end(), channel.values.data().begin());
     if (!page_.drape) page_.drape = {page_.images.size(), channel.name};
     picture.image.channels.push_back(std::move(channel));
@@ -132,11 +139,14 @@ class Adder {
         scalars.push_back(std::move(scalar));
       }
       HeightField field = io::to_height_field(picture.image, heights->name);
-      add_field(std::move(field), input_.file.stem().string(), picture.image.metadata, std::move(scalars));
+      add_field(std::move(field), input_.file.stem().string(), picture.image.metadata,
+                std::move(scalars));
       const std::string name = heights->name;
-      std::erase_if(picture.image.channels, [&](const Channel& channel) { return channel.unit == "nm"; });
-      const bool pictures_left = std::any_of(picture.image.channels.begin(), picture.image.channels.end(),
-                                             [](const Channel& channel) { return channel.name != "valid"; });
+      std::erase_if(picture.image.channels,
+                    [&](const Channel& channel) { return channel.unit == "nm"; });
+      const bool pictures_left =
+          std::any_of(picture.image.channels.begin(), picture.image.channels.end(),
+                      [](const Channel& channel) { return channel.name != "valid"; });
       if (!pictures_left) return;
     } else if (!input_.channel.empty()) {
       std::erase_if(picture.image.channels, [&](const Channel& channel) {
@@ -171,19 +181,25 @@ class Adder {
 }  // namespace
 
 void describe(ParameterVisitor& visit, ViewParameters& p) {
-  visit(p.mesh_tolerance_nm, {.name = "view.mesh_tolerance", .help = "Fewer triangles, nowhere farther off than this",
-                              .unit = Unit::nm, .limits = above(0), .otherwise = "all"});
-  visit(p.every, {.name = "view.every", .help = "Step of the samples of height fields that are shown: 2 is every "
-                                        "second one",
+  visit(p.mesh_tolerance_nm, {.name = "view.mesh_tolerance",
+                              .help = "Fewer triangles, nowhere farther off than this",
+                              .unit = Unit::nm,
+                              .limits = above(0),
+                              .otherwise = "all"});
+  visit(p.every, {.name = "view.every",
+                  .help = "Step of the samples of height fields that are shown: 2 is every "
+                          "second one",
                   .limits = within(1, 1'000'000)});
 }
 
 HeightField every_sample(const HeightField& field, int step) {
   HeightField some;
-  const int width = (field.z_nm.width() - 1) / step + 1, height = (field.z_nm.height() - 1) / step + 1;
+  const int width = (field.z_nm.width() - 1) / step + 1,
+            height = (field.z_nm.height() - 1) / step + 1;
   if (width < 2 || height < 2)
-    throw UsageError("--every", fmt::format("every {} samples nothing is left of {} x {}", step, field.z_nm.width(),
-                                           field.z_nm.height()),
+    throw UsageError("--every",
+                     fmt::format("every {} samples nothing is left of {} x {}", step,
+                                 field.z_nm.width(), field.z_nm.height()),
                      "Give a smaller number");
   some.pitch_x_nm = field.pitch_x_nm * step;
   some.pitch_y_nm = field.pitch_y_nm * step;
@@ -202,8 +218,9 @@ HeightField every_sample(const HeightField& field, int step) {
 
 std::string unique_name(const io::WebPage& page, const std::string& name) {
   std::string unique = name.empty() ? "surface" : name;
-  for (int number = 2; std::any_of(page.surfaces.begin(), page.surfaces.end(),
-                                   [&](const io::WebSurface& surface) { return surface.name == unique; });
+  for (int number = 2;
+       std::any_of(page.surfaces.begin(), page.surfaces.end(),
+                   [&](const io::WebSurface& surface) { return surface.name == unique; });
        ++number)
     unique = fmt::format("{} {}", name.empty() ? "surface" : name, number);
   return unique;

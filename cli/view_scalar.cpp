@@ -21,7 +21,7 @@ void for_each_place(const io::WebSurface& surface, const Use& use) {
     for (int x = 0; x < field.z_nm.width(); ++x) use(field.x_nm(x), field.y_nm(y));
 }
 
-constexpr double fits_as_well = 0.5;   // of the best surface's share
+constexpr double fits_as_well = 0.5;  // of the best surface's share
 
 struct Extent {
   double x0 = HUGE_VAL, y0 = HUGE_VAL, x1 = -HUGE_VAL, y1 = -HUGE_VAL;
@@ -49,7 +49,8 @@ Extent extent_of(const Image& image) {
 
 /// 1 for the same extent, 0 for extents apart.
 double share(const Extent& a, const Extent& b) {
-  const Extent both{std::max(a.x0, b.x0), std::max(a.y0, b.y0), std::min(a.x1, b.x1), std::min(a.y1, b.y1)};
+  const Extent both{std::max(a.x0, b.x0), std::max(a.y0, b.y0), std::min(a.x1, b.x1),
+                    std::min(a.y1, b.y1)};
   const double all = a.area() + b.area() - both.area();
   return all > 0 ? both.area() / all : 0;
 }
@@ -67,7 +68,8 @@ LaidScalar add_sampled_scalar(io::WebPage& page, const Image& image, const std::
   const ImageSampler sampler(image, channel);
   const Extent of_map = extent_of(image);
   std::vector<double> shares;
-  for (const io::WebSurface& surface : page.surfaces) shares.push_back(share(extent_of(surface), of_map));
+  for (const io::WebSurface& surface : page.surfaces)
+    shares.push_back(share(extent_of(surface), of_map));
   const double best = shares.empty() ? 0 : *std::ranges::max_element(shares);
   LaidScalar laid;
   for (std::size_t i = 0; i < page.surfaces.size(); ++i) {

@@ -15,11 +15,11 @@ struct LaidScalar {
   std::vector<std::string> left_out = {};  ///< surfaces below the map whose extent it does not fit
 };
 
-/// Gives surfaces the channel's values at their vertices or samples, between pixels in proportion to
-/// the four around; NaN beyond the image, where it is not valid and beside holes. Surfaces that it does
-/// not lie over go without. So do those that it does not fit: their extent shares less with the map's (area of
-/// the intersection over that of the union) than half of what the best surface's shares. A map of a scan is so
-/// not laid on the tip, which lies somewhere below it.
+/// Gives surfaces the channel's values at their vertices or samples, between pixels in proportion
+/// to the four around; NaN beyond the image, where it is not valid and beside holes. Surfaces that
+/// it does not lie over go without. So do those that it does not fit: their extent shares less with
+/// the map's (area of the intersection over that of the union) than half of what the best surface's
+/// shares. A map of a scan is so not laid on the tip, which lies somewhere below it.
 LaidScalar add_sampled_scalar(io::WebPage& page, const Image& image, const std::string& channel,
                               const std::string& name);
 

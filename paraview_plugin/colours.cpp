@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <vtkSMSettings.h>
 
-// How arrays look that nobody has coloured yet: ParaView asks its settings for a colour map by an array's name. The
-// priority is below that of the user's own settings.
+// How arrays look that nobody has coloured yet: ParaView asks its settings for a colour map by an
+// array's name. The priority is below that of the user's own settings.
 namespace {
 
 constexpr const char* colours = R"json({"standard_presets": {
@@ -25,6 +25,7 @@ constexpr const char* colours = R"json({"standard_presets": {
 }})json";
 
 // Done as the plugin is loaded.
-[[maybe_unused]] const bool added = vtkSMSettings::GetInstance()->AddCollectionFromString(colours, 0);
+[[maybe_unused]] const bool added =
+    vtkSMSettings::GetInstance()->AddCollectionFromString(colours, 0);
 
-}   // namespace
+}  // namespace

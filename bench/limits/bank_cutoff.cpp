@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The filter bank's cut-off of principal components: errors on what was learnt from, on another surface of the same
-// kind and on one of another kind.
+// The filter bank's cut-off of principal components: errors on what was learnt from, on another
+// surface of the same kind and on one of another kind.
 #include <cstdlib>
 #include <vector>
 
@@ -13,7 +13,8 @@ namespace {
 
 /// One surface with few electrons: what a bank of 31 numbers a channel can just be learnt from.
 const std::vector<TrainingImage>& training() {
-  static const std::vector<TrainingImage> images{monte_carlo(rough(3, 15, 1, 24), {.electrons = 10, .seed = 2})};
+  static const std::vector<TrainingImage> images{
+      monte_carlo(rough(3, 15, 1, 24), {.electrons = 10, .seed = 2})};
   return images;
 }
 
@@ -30,8 +31,9 @@ std::vector<double> at(double cut_off) {
 }
 
 io::Plot plot(const Table& t) {
-  io::PlotPanel error = panel(t, "", {"cut-off of eigenvalues", true, {}}, {"rms error of SE, relative", false, {}},
-                              {{"same_kind_error", "same kind"}, {"other_kind_error", "a mesa"}});
+  io::PlotPanel error =
+      panel(t, "", {"cut-off of eigenvalues", true, {}}, {"rms error of SE, relative", false, {}},
+            {{"same_kind_error", "same kind"}, {"other_kind_error", "a mesa"}});
   double warned = 0;
   for (const auto& row : t.rows)
     if (row[6] > 0) warned = row[0];
@@ -46,10 +48,15 @@ io::Plot plot(const Table& t) {
 }  // namespace
 
 Sweep bank_cutoff() {
-  return {"bank_cutoff", "the filter bank's cut-off of principal components, with few pixels",
-          {"cut_off", "training_error", "same_kind_error", "other_kind_error", "components", "condition_number", "warned"},
+  return {"bank_cutoff",
+          "the filter bank's cut-off of principal components, with few pixels",
+          {"cut_off", "training_error", "same_kind_error", "other_kind_error", "components",
+           "condition_number", "warned"},
           {1e-5, 1e-4, 0.0003, 0.001, 0.003, 0.01, 0.03, 0.1, 0.3, 1, 2, 4},
-          at, 0.0003, 1e-3, plot};
+          at,
+          0.0003,
+          1e-3,
+          plot};
 }
 
 }  // namespace surf::limits

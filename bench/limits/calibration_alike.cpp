@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// SE and BSE more and more alike: what the gains are off by for noise and for a model that is off, and what
-// is said.
+// SE and BSE more and more alike: what the gains are off by for noise and for a model that is off,
+// and what is said.
 #include <cmath>
 #include <numbers>
 
@@ -11,10 +11,11 @@
 namespace surf::limits {
 namespace {
 
-constexpr double se_gain = 120, bse_gain = 310, noise = 3;   // grey levels
+constexpr double se_gain = 120, bse_gain = 310, noise = 3;  // grey levels
 
 double normal(RandomStream& random) {
-  return std::sqrt(-2 * std::log(random.uniform())) * std::cos(2 * std::numbers::pi * random.uniform());
+  return std::sqrt(-2 * std::log(random.uniform())) *
+         std::cos(2 * std::numbers::pi * random.uniform());
 }
 
 /// Less its mean, of standard deviation 1.
@@ -54,11 +55,13 @@ std::vector<double> at(double unlike) {
     Grid<double> added(width, height);
     for (double& v : added.data()) v = noise * normal(random);
     const double phase = 6.28 * random.uniform();
-    // SE that the model has wrong by 2 % here and there; with free gains and with one gain of a known ratio.
+    // SE that the model has wrong by 2 % here and there; with free gains and with one gain of a
+    // known ratio.
     for (const bool off : {false, true}) {
       for (int y = 0; y < height; ++y)
         for (int x = 0; x < width; ++x) {
-          const double wrong = off ? 0.02 * std::sin(0.2 * x + phase) * std::sin(0.23 * y + 2 * phase) : 0;
+          const double wrong =
+              off ? 0.02 * std::sin(0.2 * x + phase) * std::sin(0.23 * y + 2 * phase) : 0;
           images.real(x, y) = se_gain * images.simulated[0](x, y) * (1 + wrong) +
                               bse_gain * images.simulated[1](x, y) - 14 + added(x, y);
         }
@@ -92,14 +95,15 @@ io::Plot plot(const Table& t) {
   io::Plot out;
   const io::PlotAxis x{"1 - correlation of SE and BSE", true, {}};
   out.title = "Calibration with SE and BSE more and more alike";
-  io::PlotPanel errors =
-      panel(t, "grey levels have noise of 3", x, {"relative error of the BSE's gain (rms of 50)", true, {}},
-            {{"error_noise", "noise alone"},
-             {"standard_error", "standard error that is given", true},
-             {"error_model", "SE of the model off by 2 % in places"},
-             {"error_ratio", "the same, ratio of the gains told"}});
+  io::PlotPanel errors = panel(t, "grey levels have noise of 3", x,
+                               {"relative error of the BSE's gain (rms of 50)", true, {}},
+                               {{"error_noise", "noise alone"},
+                                {"standard_error", "standard error that is given", true},
+                                {"error_model", "SE of the model off by 2 % in places"},
+                                {"error_ratio", "the same, ratio of the gains told"}});
   io::PlotPanel said =
-      panel(t, "what is said", x, {"share of 50 fits, model off", false, io::PlotAxis::Range{-0.04, 1.04}},
+      panel(t, "what is said", x,
+            {"share of 50 fits, model off", false, io::PlotAxis::Range{-0.04, 1.04}},
             {{"doubtful", "doubtful"}, {"warned", "any warning", true}});
   for (io::PlotPanel* p : {&errors, &said})
     p->references.push_back({io::PlotDirection::vertical, 1 - 0.99778, "condition number 30"});
@@ -107,13 +111,13 @@ io::Plot plot(const Table& t) {
   return out;
 }
 
-}   // namespace
+}  // namespace
 
 Sweep calibration_alike() {
   return {"calibration_alike",
           "gains of SE and BSE that are more and more alike",
-          {"unlike", "condition", "error_noise", "standard_error", "error_model", "error_ratio", "doubtful",
-           "warned"},
+          {"unlike", "condition", "error_noise", "standard_error", "error_model", "error_ratio",
+           "doubtful", "warned"},
           {1, 0.3, 0.1, 0.03, 0.01, 0.005, 0.003, 0.002, 0.001, 3e-4, 1e-4, 1e-5},
           at,
           0.002,
@@ -121,4 +125,4 @@ Sweep calibration_alike() {
           plot};
 }
 
-}   // namespace surf::limits
+}  // namespace surf::limits

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The bottom of an ever deeper trench, which few BSE leave: whether the pilot of --accuracy, 24 primaries, still finds
-// how many electrons it takes. 16 pixels along it, all alike, with four libraries, so that their scatter is the true error.
+// The bottom of an ever deeper trench, which few BSE leave: whether the pilot of --accuracy, 24
+// primaries, still finds how many electrons it takes. 16 pixels along it, all alike, with four
+// libraries, so that their scatter is the true error.
 #include "simulations.h"
 #include "sweeps.h"
 
@@ -33,7 +34,7 @@ std::vector<double> at(double depth_over_width) {
   for (const mc::Method method : {mc::Method::direct, mc::Method::replay}) {
     options.method = method;
     double sum = 0, squares = 0, primaries = 0, missed = 0;
-    for (int seed = 1; seed <= seeds; ++seed) {   // each with a library of its own
+    for (int seed = 1; seed <= seeds; ++seed) {  // each with a library of its own
       options.seed = static_cast<std::uint64_t>(seed);
       const mc::SimulationResult r = mc::simulate(scene, options, {.libraries = &cascades()});
       const mc::ResultSummary summary = mc::summarize(r);
@@ -55,8 +56,10 @@ io::Plot plot(const Table& t) {
   out.title = "BSE from the bottom of a trench, --accuracy 20%, silicon, 300 eV";
   const io::PlotAxis x{"depth over width", false, {}};
   out.panels = {panel(t, "", x, {"error of 64 pixels, in errors asked for", false, {}},
-                      {{"direct_rms", "rms, direct"}, {"replay_rms", "rms, replay", true},
-                       {"direct_bias", "mean, direct"}, {"replay_bias", "mean, replay", true}}),
+                      {{"direct_rms", "rms, direct"},
+                       {"replay_rms", "rms, replay", true},
+                       {"direct_bias", "mean, direct"},
+                       {"replay_bias", "mean, replay", true}}),
                 panel(t, "", x, {"primaries of a pixel", true, {}},
                       {{"direct_primaries", "direct"}, {"replay_primaries", "replay", true}})};
   out.panels[0].references = {{io::PlotDirection::horizontal, 1, "as asked for"}};
@@ -67,11 +70,16 @@ io::Plot plot(const Table& t) {
 }  // namespace
 
 Sweep deep_trench() {
-  return {"deep_trench", "what --accuracy reaches where signals are rare",
-          {"depth_over_width", "bse", "bse_error", "asked", "direct_bias", "direct_rms", "direct_primaries", "direct_missed",
-           "replay_bias", "replay_rms", "replay_primaries", "replay_missed"},
+  return {"deep_trench",
+          "what --accuracy reaches where signals are rare",
+          {"depth_over_width", "bse", "bse_error", "asked", "direct_bias", "direct_rms",
+           "direct_primaries", "direct_missed", "replay_bias", "replay_rms", "replay_primaries",
+           "replay_missed"},
           {0, 0.5, 1, 2, 3, 5},
-          at, 2, 1e-6, plot};
+          at,
+          2,
+          1e-6,
+          plot};
 }
 
 }  // namespace surf::limits

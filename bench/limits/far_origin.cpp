@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// An L of two boxes on a substrate, moved away from the origin with the scan: its image against the one there.
+// An L of two boxes on a substrate, moved away from the origin with the scan: its image against the
+// one there.
 #include "simulations.h"
 #include "surf/core/error.h"
 #include "sweeps.h"
@@ -23,7 +24,8 @@ mc::SimulationResult image(double offset_nm, mc::Method method) {
 std::vector<double> at(double offset_nm) {
   std::vector<double> row{0};
   double lost = 0;
-  static const mc::SimulationResult expected[2] = {image(0, mc::Method::direct), image(0, mc::Method::replay)};
+  static const mc::SimulationResult expected[2] = {image(0, mc::Method::direct),
+                                                   image(0, mc::Method::replay)};
   try {
     for (const mc::Method method : {mc::Method::direct, mc::Method::replay}) {
       const mc::SimulationResult far = image(offset_nm, method);
@@ -43,10 +45,12 @@ io::Plot plot(const Table& t) {
   io::Plot out;
   out.title = "An L of silicon far from the origin, 300 eV";
   const io::PlotAxis x{"offset of x, y and z (nm)", true, {}};
-  out.panels = {panel(t, "image against the one at the origin, rms of SE", x, {"difference (%)", true, {}},
-                      {{"direct_percent", "direct"}, {"replay_percent", "replay", true},
-                       {"direct_chance_percent", "by chance alone", true}}),
-                panel(t, "electrons given up", x, {"share (%)", false, {}}, {{"lost_percent", ""}})};
+  out.panels = {
+      panel(t, "image against the one at the origin, rms of SE", x, {"difference (%)", true, {}},
+            {{"direct_percent", "direct"},
+             {"replay_percent", "replay", true},
+             {"direct_chance_percent", "by chance alone", true}}),
+      panel(t, "electrons given up", x, {"share (%)", false, {}}, {{"lost_percent", ""}})};
   for (io::PlotPanel& p : out.panels) p.references = {{io::PlotDirection::vertical, 1e9, "1 m"}};
   out.columns = 2;
   return out;
@@ -55,11 +59,15 @@ io::Plot plot(const Table& t) {
 }  // namespace
 
 Sweep far_origin() {
-  return {"far_origin", "an L of boxes 1 um to 100 km from the origin",
-          {"offset_nm", "refused", "direct_percent", "direct_chance_percent", "replay_percent", "replay_chance_percent",
-           "lost_percent"},
+  return {"far_origin",
+          "an L of boxes 1 um to 100 km from the origin",
+          {"offset_nm", "refused", "direct_percent", "direct_chance_percent", "replay_percent",
+           "replay_chance_percent", "lost_percent"},
           {1e3, 1e6, 1e8, 1e9, 3e9, 1e10, 1e11, 1e12, 1e13, 1e14},
-          at, 1e11, 1e-6, plot};
+          at,
+          1e11,
+          1e-6,
+          plot};
 }
 
 }  // namespace surf::limits

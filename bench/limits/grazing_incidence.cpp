@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Flat silicon under a beam that comes in ever flatter: what is followed and what is replayed, and who is lost.
+// Flat silicon under a beam that comes in ever flatter: what is followed and what is replayed, and
+// who is lost.
 #include "simulations.h"
 #include "surf/core/error.h"
 #include "sweeps.h"
@@ -36,7 +37,9 @@ io::Plot plot(const Table& t) {
   out.title = "A beam that grazes flat silicon, 300 eV";
   io::PlotPanel p = panel(t, "", {"angle between beam and surface (degrees)", true, {}},
                           {"electrons per primary", false, {}},
-                          {{"se", "SE, direct"}, {"se_replay", "SE, replay", true}, {"bse", "BSE, direct"},
+                          {{"se", "SE, direct"},
+                           {"se_replay", "SE, replay", true},
+                           {"bse", "BSE, direct"},
                            {"bse_replay", "BSE, replay", true}});
   p.references = {{io::PlotDirection::vertical, 0.0573, "refused below"}};
   out.panels = {std::move(p)};
@@ -46,11 +49,16 @@ io::Plot plot(const Table& t) {
 }  // namespace
 
 Sweep grazing_incidence() {
-  return {"grazing_incidence", "yields of flat silicon for a beam 90 to 0 degrees above its surface",
-          {"above_surface_deg", "refused", "se", "se_error", "bse", "bse_error", "se_replay", "se_replay_error",
-           "bse_replay", "bse_replay_error", "lost_electrons", "energy_unbalanced"},
-          {90, 60, 30, 15, 10, 5, 2, 1, 0.5, 0.1, 0.01, 0.001, 0},
-          at, 0.1, 1e-6, plot};
+  return {
+      "grazing_incidence",
+      "yields of flat silicon for a beam 90 to 0 degrees above its surface",
+      {"above_surface_deg", "refused", "se", "se_error", "bse", "bse_error", "se_replay",
+       "se_replay_error", "bse_replay", "bse_replay_error", "lost_electrons", "energy_unbalanced"},
+      {90, 60, 30, 15, 10, 5, 2, 1, 0.5, 0.1, 0.01, 0.001, 0},
+      at,
+      0.1,
+      1e-6,
+      plot};
 }
 
 }  // namespace surf::limits

@@ -15,8 +15,9 @@ constexpr std::size_t cascades = 4096;
 
 class SharedLibraries : public mc::LibrarySource {
  public:
-  std::shared_ptr<const mc::CascadeLibrary> library(const mc::CascadeSettings& settings, std::size_t wanted,
-                                                    int threads, const ProgressCallback& progress,
+  std::shared_ptr<const mc::CascadeLibrary> library(const mc::CascadeSettings& settings,
+                                                    std::size_t wanted, int threads,
+                                                    const ProgressCallback& progress,
                                                     const CancelToken* cancel) override {
     return kept_.library(settings, std::max(wanted, cascades), threads, progress, cancel);
   }
@@ -59,7 +60,8 @@ TrainingImage monte_carlo(const HeightField& surface, const Exposure& e) {
         const mc::Estimate yield = r.yield(d, x, y);
         image(x, y) = static_cast<float>(yield.mean);
         // No electron at all: as if there had been one.
-        errors(x, y) = static_cast<float>(std::max(yield.standard_error, 1.0 / static_cast<double>(e.electrons)));
+        errors(x, y) = static_cast<float>(
+            std::max(yield.standard_error, 1.0 / static_cast<double>(e.electrons)));
       }
     out.images.push_back(std::move(image));
     out.standard_errors.push_back(std::move(errors));
@@ -67,9 +69,13 @@ TrainingImage monte_carlo(const HeightField& surface, const Exposure& e) {
   return out;
 }
 
-double error_beyond_noise(const Grid<double>& predicted, const TrainingImage& truth, std::size_t channel) {
-  const auto as_double = [](const Grid<float>& g) { return std::vector<double>(g.data().begin(), g.data().end()); };
-  return image_error(predicted.data(), {}, as_double(truth.images.at(channel)), as_double(truth.standard_errors.at(channel)))
+double error_beyond_noise(const Grid<double>& predicted, const TrainingImage& truth,
+                          std::size_t channel) {
+  const auto as_double = [](const Grid<float>& g) {
+    return std::vector<double>(g.data().begin(), g.data().end());
+  };
+  return image_error(predicted.data(), {}, as_double(truth.images.at(channel)),
+                     as_double(truth.standard_errors.at(channel)))
       .beyond_noise;
 }
 

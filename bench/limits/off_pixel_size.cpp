@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A model for pixels of 3 nm, and heights sampled otherwise: refused; resampled; or said to be 3 nm apart.
+// A model for pixels of 3 nm, and heights sampled otherwise: refused; resampled; or said to be 3 nm
+// apart.
 #include <algorithm>
 #include <cmath>
 #include <vector>
@@ -43,25 +44,32 @@ std::vector<double> at(double ratio) {
   }
   HeightField lie = field;
   lie.pitch_x_nm = lie.pitch_y_nm = 3;
-  const double wrong = error_beyond_noise(make_model(gentle_bank())->predict(lie).front(), monte_carlo(field));
+  const double wrong =
+      error_beyond_noise(make_model(gentle_bank())->predict(lie).front(), monte_carlo(field));
   return {refused, wrong, resampled_error(field, fine)};
 }
 
 io::Plot plot(const Table& t) {
   io::Plot out;
   out.title = "A model for 3 nm: refused but at 1";
-  out.panels = {panel(t, "", {"distance of samples over 3 nm", true, {{0.6, 2.2}}}, {"rms error of SE, relative", true, {}},
-                      {{"wrong_error", "if said to be 3 nm apart"}, {"resampled_error", "resampled to 3 nm"}})};
+  out.panels = {panel(
+      t, "", {"distance of samples over 3 nm", true, {{0.6, 2.2}}},
+      {"rms error of SE, relative", true, {}},
+      {{"wrong_error", "if said to be 3 nm apart"}, {"resampled_error", "resampled to 3 nm"}})};
   return out;
 }
 
 }  // namespace
 
 Sweep off_pixel_size() {
-  return {"off_pixel_size", "a model for pixels of 3 nm on heights sampled otherwise",
+  return {"off_pixel_size",
+          "a model for pixels of 3 nm on heights sampled otherwise",
           {"ratio", "refused", "wrong_error", "resampled_error"},
           {0.67, 0.8, 0.9, 1, 1.1, 1.25, 1.5, 2},
-          at, 1.1, 0.02, plot};
+          at,
+          1.1,
+          0.02,
+          plot};
 }
 
 }  // namespace surf::limits

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Gains that are wrong, with the brightness of level ground right: fitted with the surface, and held.
+// Gains that are wrong, with the brightness of level ground right: fitted with the surface, and
+// held.
 #include <cmath>
 
 #include "libsurf/reconstruction/small_scene.h"
@@ -10,7 +11,7 @@ namespace {
 
 std::vector<double> at(double factor) {
   test::SmallScene scene;
-  const double level = scene.sem.gains[0] + scene.sem.offset;   // the model gives 1 there
+  const double level = scene.sem.gains[0] + scene.sem.offset;  // the model gives 1 there
   scene.sem.gains[0] *= factor;
   scene.sem.offset = level - scene.sem.gains[0];
   std::vector<double> row;
@@ -39,13 +40,13 @@ io::Plot plot(const Table& t) {
   return out;
 }
 
-}   // namespace
+}  // namespace
 
 Sweep reconstruction_gains() {
   return {"reconstruction_gains",
           "reconstruction from gains that are wrong by a factor",
-          {"factor", "fitted_nm", "fitted_left", "fitted_warned", "gain_fitted", "held_nm", "held_left",
-           "held_warned"},
+          {"factor", "fitted_nm", "fitted_left", "fitted_warned", "gain_fitted", "held_nm",
+           "held_left", "held_warned"},
           {0.3, 0.5, 0.7, 0.85, 0.95, 1, 1.05, 1.15, 1.4, 2, 3},
           at,
           1.4,
@@ -53,4 +54,4 @@ Sweep reconstruction_gains() {
           plot};
 }
 
-}   // namespace surf::limits
+}  // namespace surf::limits

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A model that is not the specimen's: walls that brighten with slope otherwise than it says, as of another
-// material or energy, and brightness that drifts over the image.
+// A model that is not the specimen's: walls that brighten with slope otherwise than it says, as of
+// another material or energy, and brightness that drifts over the image.
 #include <cmath>
 #include <functional>
 
@@ -10,9 +10,10 @@
 namespace surf::limits {
 namespace {
 
-/// `brightness`: the specimen's, relative to level ground, at a pixel where the model says `se`; x, y across
-/// the image.
-std::vector<double> outcomes(const std::function<double(double se, double x, double y)>& brightness) {
+/// `brightness`: the specimen's, relative to level ground, at a pixel where the model says `se`; x,
+/// y across the image.
+std::vector<double> outcomes(
+    const std::function<double(double se, double x, double y)>& brightness) {
   test::SmallScene scene;
   const Grid<double> se = scene.sem.model->predict(scene.truth)[0];
   for (int y = 0; y < se.height(); ++y)
@@ -26,10 +27,11 @@ std::vector<double> outcomes(const std::function<double(double se, double x, dou
     const Reconstruction r = reconstruct(&scene.afm, &scene.sem, o);
     double within = 0;
     for (std::size_t i = 0; i < r.deviation_nm.size(); ++i)
-      within += std::abs(r.surface.z_nm.data()[i] - scene.truth.z_nm.data()[i]) < r.deviation_nm.data()[i];
-    row.insert(row.end(),
-               {scene.rms_error(r.surface), r.scales.back().sem_residual.deviation,
-                within / static_cast<double>(r.deviation_nm.size()), r.warnings.empty() ? 0.0 : 1.0});
+      within += std::abs(r.surface.z_nm.data()[i] - scene.truth.z_nm.data()[i]) <
+                r.deviation_nm.data()[i];
+    row.insert(row.end(), {scene.rms_error(r.surface), r.scales.back().sem_residual.deviation,
+                           within / static_cast<double>(r.deviation_nm.size()),
+                           r.warnings.empty() ? 0.0 : 1.0});
   }
   // The scan alone, on the same samples: a gain of 0 leaves the SEM image without a say.
   scene.sem.gains = {0};
@@ -44,7 +46,8 @@ std::vector<double> at_power(double power) {
 }
 
 std::vector<double> at_drift(double drift) {
-  return outcomes([&](double se, double x, double y) { return se * (1 + drift * std::sin(9 * x + 3 * y)); });
+  return outcomes(
+      [&](double se, double x, double y) { return se * (1 + drift * std::sin(9 * x + 3 * y)); });
 }
 
 std::vector<std::string> columns(const char* first) {
@@ -55,18 +58,19 @@ std::vector<std::string> columns(const char* first) {
 io::Plot plot(const Table& t, const std::string& title, const io::PlotAxis& x) {
   io::Plot out;
   out.title = title;
-  out.panels = {panel(t, "", x, {"error of the surface, rms (nm)", false, {}},
-                      {{"fitted_nm", "gains fitted with the surface"},
-                       {"held_nm", "gains held"},
-                       {"afm_nm", "AFM alone", true}}),
-                panel(t, "", x, {"share of heights within one deviation", false, io::PlotAxis::Range{0, 1}},
-                      {{"fitted_within", "gains fitted"}, {"held_within", "gains held"}}),
-                panel(t, "", x, {"warned", false, io::PlotAxis::Range{-0.04, 1.04}},
-                      {{"fitted_warned", "gains fitted"}, {"held_warned", "gains held", true}})};
+  out.panels = {
+      panel(t, "", x, {"error of the surface, rms (nm)", false, {}},
+            {{"fitted_nm", "gains fitted with the surface"},
+             {"held_nm", "gains held"},
+             {"afm_nm", "AFM alone", true}}),
+      panel(t, "", x, {"share of heights within one deviation", false, io::PlotAxis::Range{0, 1}},
+            {{"fitted_within", "gains fitted"}, {"held_within", "gains held"}}),
+      panel(t, "", x, {"warned", false, io::PlotAxis::Range{-0.04, 1.04}},
+            {{"fitted_warned", "gains fitted"}, {"held_warned", "gains held", true}})};
   return out;
 }
 
-}   // namespace
+}  // namespace
 
 Sweep reconstruction_material() {
   return {"reconstruction_material",
@@ -96,4 +100,4 @@ Sweep reconstruction_drift() {
           }};
 }
 
-}   // namespace surf::limits
+}  // namespace surf::limits

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The schedule of scales: how smooth the last one leaves the surface, and how coarse the first one begins.
+// The schedule of scales: how smooth the last one leaves the surface, and how coarse the first one
+// begins.
 #include <cmath>
 
 #include "libsurf/reconstruction/small_scene.h"
@@ -12,20 +13,22 @@ struct End {
   double error_nm = 0, sem_deviation = 0, warned = 0;
 };
 
-End end_of(const test::SmallScene& scene, ReconstructionMethod method, std::vector<double> scales_px) {
+End end_of(const test::SmallScene& scene, ReconstructionMethod method,
+           std::vector<double> scales_px) {
   ReconstructionOptions o;
   o.method = method;
   o.scales_px = std::move(scales_px);
   o.uncertainty = false;
   if (method != ReconstructionMethod::gauss_newton) o.iterations = 60;
   const Reconstruction r = reconstruct(&scene.afm, &scene.sem, o);
-  return {scene.rms_error(r.surface), r.scales.back().sem_residual.deviation, r.warnings.empty() ? 0.0 : 1.0};
+  return {scene.rms_error(r.surface), r.scales.back().sem_residual.deviation,
+          r.warnings.empty() ? 0.0 : 1.0};
 }
 
 std::vector<double> at_last(double scale_px) {
   const test::SmallScene scene;
   const End newton = end_of(scene, ReconstructionMethod::gauss_newton, {scale_px});
-  std::vector<double> falling;   // halved from 8 on
+  std::vector<double> falling;  // halved from 8 on
   for (double s = 8; s > 1.01 * scale_px; s /= 2) falling.push_back(s);
   falling.push_back(scale_px);
   const End descent = end_of(scene, ReconstructionMethod::lbfgs, falling);
@@ -40,10 +43,8 @@ std::vector<double> at_first(double scale_px) {
   std::vector<double> halved, jump{scale_px};
   for (double s = scale_px; s > 0.75; s /= 2) halved.push_back(s);
   halved.push_back(0.5);
-  if (scale_px > 0.5)
-    jump.push_back(0.5);
-  else
-    halved = {scale_px};
+  if (scale_px > 0.5) jump.push_back(0.5);
+  else halved = {scale_px};
   const End n = end_of(scene, ReconstructionMethod::gauss_newton, newton);
   const End h = end_of(scene, ReconstructionMethod::lbfgs, halved);
   const End j = end_of(scene, ReconstructionMethod::lbfgs, jump);
@@ -79,12 +80,13 @@ io::Plot plot_first(const Table& t) {
   return out;
 }
 
-}   // namespace
+}  // namespace
 
 Sweep reconstruction_last_scale() {
   return {"reconstruction_last_scale",
           "reconstruction with a last scale that is too fine or too coarse",
-          {"scale_px", "newton_nm", "newton_left", "newton_warned", "lbfgs_nm", "lbfgs_left", "lbfgs_warned"},
+          {"scale_px", "newton_nm", "newton_left", "newton_warned", "lbfgs_nm", "lbfgs_left",
+           "lbfgs_warned"},
           {0.25, 0.5, 0.7, 1, 1.4, 2, 3, 5, 8, 15, 30},
           at_last,
           5,
@@ -95,7 +97,8 @@ Sweep reconstruction_last_scale() {
 Sweep reconstruction_first_scale() {
   return {"reconstruction_first_scale",
           "reconstruction with a first scale that is too fine or too coarse",
-          {"scale_px", "newton_nm", "newton_warned", "halved_nm", "halved_warned", "jump_nm", "jump_warned"},
+          {"scale_px", "newton_nm", "newton_warned", "halved_nm", "halved_warned", "jump_nm",
+           "jump_warned"},
           {0.5, 1, 2, 4, 8, 15, 30, 60},
           at_first,
           30,
@@ -103,4 +106,4 @@ Sweep reconstruction_first_scale() {
           plot_first};
 }
 
-}   // namespace surf::limits
+}  // namespace surf::limits

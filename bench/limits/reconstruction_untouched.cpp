@@ -83,13 +83,13 @@ io::Plot plot(const Table& t) {
   return out;
 }
 
-}   // namespace
+}  // namespace
 
 Sweep reconstruction_untouched() {
   return {"reconstruction_untouched",
           "a trench that narrows until the tip does not touch its floor",
-          {"width_nm", "touched", "start_nm", "afm_nm", "afm_deviation_nm", "both_nm", "both_deviation_nm",
-           "both_seen", "both_held_by_nothing", "warned"},
+          {"width_nm", "touched", "start_nm", "afm_nm", "afm_deviation_nm", "both_nm",
+           "both_deviation_nm", "both_seen", "both_held_by_nothing", "warned"},
           {50, 70, 90, 110, 130, 150, 180, 220, 260, 320},
           at,
           130,
@@ -97,4 +97,4 @@ Sweep reconstruction_untouched() {
           plot};
 }
 
-}   // namespace surf::limits
+}  // namespace surf::limits

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Landmarks that are read off inexactly: how wrong four of them may be for the registration to find the
-// place.
+// Landmarks that are read off inexactly: how wrong four of them may be for the registration to find
+// the place.
 #include <cmath>
 #include <numbers>
 
@@ -32,7 +32,7 @@ io::Plot plot(const Table& t) {
   return out;
 }
 
-}   // namespace
+}  // namespace
 
 Sweep registration_landmarks() {
   std::vector<std::string> columns = columns_from_starts();
@@ -47,4 +47,4 @@ Sweep registration_landmarks() {
           plot};
 }
 
-}   // namespace surf::limits
+}  // namespace surf::limits

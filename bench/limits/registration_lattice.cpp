@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Landmarks on a lattice: a start that is off by half a period leads to the next dot. Whether that is said.
+// Landmarks on a lattice: a start that is off by half a period leads to the next dot. Whether that
+// is said.
 #include <cmath>
 
 #include "registration_outcomes.h"
@@ -17,12 +18,14 @@ std::vector<double> at(double off_px) {
   const test::Scene dots = test::lattice_of(period);
   for (std::uint64_t seed = 1; seed <= scenes; ++seed) {
     const test::Spots spots(seed);
-    const test::Scene scene = [&](double x, double y) { return dots(x, y) + 0.2 * spots(x / 3, y / 3); };
+    const test::Scene scene = [&](double x, double y) {
+      return dots(x, y) + 0.2 * spots(x / 3, y / 3);
+    };
     const Affine truth = make_affine({0.3, 1, 1, 0, 4, -3});
     const PlacedImage sem = test::image_of(scene, truth, width, height, 1, 0.3, 2 * seed);
     const PlacedImage afm = test::image_of(scene, {}, scan, scan, 1, 0.03, 2 * seed + 1);
     RegistrationOptions options;
-    options.start = compose(Affine{1, 0, off_px, 0, 1, 0}, truth);   // along a row of dots
+    options.start = compose(Affine{1, 0, off_px, 0, 1, 0}, truth);  // along a row of dots
     const auto add = [&](Outcomes& to) {
       const Registration r = register_images(sem, afm, options);
       to.add(r, test::error_px(truth, r.sem_to_afm, width, height, 0.5 * scan));
@@ -54,7 +57,7 @@ io::Plot plot(const Table& t) {
   return out;
 }
 
-}   // namespace
+}  // namespace
 
 Sweep registration_lattice() {
   return {"registration_lattice",
@@ -68,4 +71,4 @@ Sweep registration_lattice() {
           plot};
 }
 
-}   // namespace surf::limits
+}  // namespace surf::limits

@@ -3,7 +3,8 @@
 
 namespace surf::limits {
 
-std::vector<double> registered_from(const std::function<Affine(const Affine&, RandomStream&)>& start) {
+std::vector<double> registered_from(
+    const std::function<Affine(const Affine&, RandomStream&)>& start) {
   constexpr std::uint64_t scenes = 12;
   Outcomes usual, narrow;
   for (std::uint64_t seed = 1; seed <= scenes; ++seed) {
@@ -37,4 +38,4 @@ io::PlotPanel panel_of_starts(const Table& t, const std::string& title, const io
                 {"narrow_verified_right", "right, verified; blurs 2, 1, 0 px only", true}});
 }
 
-}   // namespace surf::limits
+}  // namespace surf::limits

@@ -38,7 +38,8 @@ class Outcomes {
   double all_ = 0, verified_right_ = 0, verified_wrong_ = 0, ambiguous_ = 0, refused_ = 0;
 };
 
-/// Spots of 3 to 9 SEM pixels, 120 x 90 of them, over a scan as wide; another scene and map for each seed.
+/// Spots of 3 to 9 SEM pixels, 120 x 90 of them, over a scan as wide; another scene and map for
+/// each seed.
 struct SpotScene {
   static constexpr int width = 120, height = 90, scan = 120;
   Affine truth;
@@ -47,20 +48,23 @@ struct SpotScene {
   explicit SpotScene(std::uint64_t seed) {
     RandomStream random(seed, 5, 5);
     const auto between = [&](double a, double b) { return a + (b - a) * random.uniform(); };
-    truth = make_affine({between(-3.1, 3.1), between(0.9, 1.1), between(0.9, 1.1), between(-0.03, 0.03),
-                         between(-8, 8), between(-8, 8)});
+    truth = make_affine({between(-3.1, 3.1), between(0.9, 1.1), between(0.9, 1.1),
+                         between(-0.03, 0.03), between(-8, 8), between(-8, 8)});
     const test::Spots spots(seed);
     sem = test::image_of(spots, truth, width, height, 1, 0.3, 2 * seed);
     simulated = test::image_of(spots, {}, scan, scan, 1, 0.03, 2 * seed + 1);
   }
 
-  double error_px(const Affine& map) const { return test::error_px(truth, map, width, height, 0.5 * scan); }
+  double error_px(const Affine& map) const {
+    return test::error_px(truth, map, width, height, 0.5 * scan);
+  }
 };
 
-/// Registers scenes from starts that are wrong: `start` makes one of the truth and a stream of random
-/// numbers. With the usual blurs first, then with none wider than two pixels.
-std::vector<double> registered_from(const std::function<Affine(const Affine& truth, RandomStream&)>& start);
+/// Registers scenes from starts that are wrong: `start` makes one of the truth and a stream of
+/// random numbers. With the usual blurs first, then with none wider than two pixels.
+std::vector<double> registered_from(
+    const std::function<Affine(const Affine& truth, RandomStream&)>& start);
 std::vector<std::string> columns_from_starts();
 io::PlotPanel panel_of_starts(const Table& t, const std::string& title, const io::PlotAxis& x);
 
-}   // namespace surf::limits
+}  // namespace surf::limits

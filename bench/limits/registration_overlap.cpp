@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Two images of which less and less shows the same: searched for with the usual least overlap, with a smaller
-// one, and from a start near the truth.
+// Two images of which less and less shows the same: searched for with the usual least overlap, with
+// a smaller one, and from a start near the truth.
 #include <cmath>
 
 #include "registration_outcomes.h"
@@ -17,7 +17,7 @@ std::vector<double> at(double overlap) {
   for (std::uint64_t seed = 1; seed <= scenes; ++seed) {
     const test::Spots spots(seed);
     const Affine truth{1, 0, (1 - overlap) * width,
-                       0, 1, 0};   // the scan's right part is the SEM's left part
+                       0, 1, 0};  // the scan's right part is the SEM's left part
     const PlacedImage sem = test::image_of(spots, truth, width, height, 1, 0.3, 2 * seed);
     const PlacedImage scan = test::image_of(spots, {}, width, height, 1, 0.03, 2 * seed + 1);
     const auto add = [&](Outcomes& to, const RegistrationOptions& options) {
@@ -35,7 +35,7 @@ std::vector<double> at(double overlap) {
     };
     RegistrationOptions options;
     options.least_scale = 0.95, options.largest_scale = 1.05,
-    options.largest_shear = 0.02;   // pixel sizes are known
+    options.largest_shear = 0.02;  // pixel sizes are known
     add(usual, options);
     options.least_overlap = 0.1;
     add(small, options);
@@ -43,8 +43,8 @@ std::vector<double> at(double overlap) {
     add(led, options);
   }
   std::vector<double> row = usual.shares();
-  row.insert(row.end(),
-             {small.verified_right(), small.verified_wrong(), led.verified_right(), led.verified_wrong()});
+  row.insert(row.end(), {small.verified_right(), small.verified_wrong(), led.verified_right(),
+                         led.verified_wrong()});
   return row;
 }
 
@@ -66,7 +66,7 @@ io::Plot plot(const Table& t) {
   return out;
 }
 
-}   // namespace
+}  // namespace
 
 Sweep registration_overlap() {
   return {"registration_overlap",
@@ -80,4 +80,4 @@ Sweep registration_overlap() {
           plot};
 }
 
-}   // namespace surf::limits
+}  // namespace surf::limits

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A lattice of dots with something that does not repeat beside it, less and less: whether the place is found,
-// and what is said where it is not.
+// A lattice of dots with something that does not repeat beside it, less and less: whether the place
+// is found, and what is said where it is not.
 #include <cmath>
 
 #include "registration_outcomes.h"
@@ -18,7 +18,9 @@ std::vector<double> at(double unique) {
   const test::Scene dots = test::lattice_of(period);
   for (std::uint64_t seed = 1; seed <= scenes; ++seed) {
     const test::Spots spots(seed);
-    const test::Scene scene = [&](double x, double y) { return dots(x, y) + unique * spots(x / 3, y / 3); };
+    const test::Scene scene = [&](double x, double y) {
+      return dots(x, y) + unique * spots(x / 3, y / 3);
+    };
     const Affine truth = make_affine({0.7, 1.02, 0.98, 0.01, 9, -7});
     const PlacedImage sem = test::image_of(scene, truth, width, height, 1, 0.3, 2 * seed);
     const PlacedImage afm = test::image_of(scene, {}, scan, scan, 1, 0.03, 2 * seed + 1);
@@ -28,7 +30,7 @@ std::vector<double> at(double unique) {
     };
     RegistrationOptions options;
     options.least_scale = 0.95, options.largest_scale = 1.05,
-    options.largest_shear = 0.02;   // pixel sizes are known
+    options.largest_shear = 0.02;  // pixel sizes are known
     add(searched, options);
     // Landmarks, and blurs that leave the pattern there.
     options.blurs_px = {3, 2, 1, 0};
@@ -54,12 +56,13 @@ io::Plot plot(const Table& t) {
   return out;
 }
 
-}   // namespace
+}  // namespace
 
 Sweep registration_repeats() {
   return {"registration_repeats",
           "registration of a lattice with less and less that does not repeat",
-          {"unique", "verified_right", "verified_wrong", "ambiguous", "refused", "led_right", "led_wrong"},
+          {"unique", "verified_right", "verified_wrong", "ambiguous", "refused", "led_right",
+           "led_wrong"},
           {0.001, 0.01, 0.03, 0.1, 0.2, 0.4, 0.7, 1, 2, 4},
           at,
           0.4,
@@ -67,4 +70,4 @@ Sweep registration_repeats() {
           plot};
 }
 
-}   // namespace surf::limits
+}  // namespace surf::limits

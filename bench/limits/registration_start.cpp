@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A start that is off by some pixels: from how far the registration finds the place, and what it says
-// otherwise.
+// A start that is off by some pixels: from how far the registration finds the place, and what it
+// says otherwise.
 #include <cmath>
 #include <numbers>
 
@@ -25,7 +25,7 @@ io::Plot plot(const Table& t) {
   return out;
 }
 
-}   // namespace
+}  // namespace
 
 Sweep registration_start() {
   std::vector<std::string> columns = columns_from_starts();
@@ -40,4 +40,4 @@ Sweep registration_start() {
           plot};
 }
 
-}   // namespace surf::limits
+}  // namespace surf::limits

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A start that is turned: from how far the registration finds the place, and what it says otherwise.
+// A start that is turned: from how far the registration finds the place, and what it says
+// otherwise.
 #include <numbers>
 
 #include "registration_outcomes.h"
@@ -23,7 +24,7 @@ io::Plot plot(const Table& t) {
   return out;
 }
 
-}   // namespace
+}  // namespace
 
 Sweep registration_turn() {
   std::vector<std::string> columns = columns_from_starts();
@@ -38,4 +39,4 @@ Sweep registration_turn() {
           plot};
 }
 
-}   // namespace surf::limits
+}  // namespace surf::limits

@@ -18,7 +18,7 @@
 namespace surf::limits {
 
 inline constexpr double none = std::numeric_limits<double>::quiet_NaN();
-inline constexpr std::size_t se = 0, bse = 1;   // the default detectors
+inline constexpr std::size_t se = 0, bse = 1;  // the default detectors
 
 /// Libraries of cascades that all sweeps share: they depend on material, energy and seed alone.
 inline mc::LibrarySource& cascades() {
@@ -26,8 +26,8 @@ inline mc::LibrarySource& cascades() {
   return kept;
 }
 
-inline mc::SimulationResult simulate(const mc::Scene& scene, mc::Method method, std::int64_t electrons,
-                                     std::uint64_t seed = 1) {
+inline mc::SimulationResult simulate(const mc::Scene& scene, mc::Method method,
+                                     std::int64_t electrons, std::uint64_t seed = 1) {
   mc::SimulationOptions options;
   options.method = method;
   options.budget = mc::ElectronsPerPixel{electrons};
@@ -50,8 +50,8 @@ inline double share_lost(const mc::Balance& b) {
   return static_cast<double>(b.total_lost()) / static_cast<double>(b.incident + b.generated);
 }
 
-/// How far two SE images are from each other, and how far two that differ by chance alone would be: root mean
-/// square over the pixels, of the first one's mean.
+/// How far two SE images are from each other, and how far two that differ by chance alone would be:
+/// root mean square over the pixels, of the first one's mean.
 struct Apart {
   double rms, chance;
 };

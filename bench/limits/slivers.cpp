@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A box with a row of triangles across it that are ever narrower: its image against that of the box without.
+// A box with a row of triangles across it that are ever narrower: its image against that of the box
+// without.
 #include "simulations.h"
 #include "surf/core/error.h"
 #include "surf/mesh/repair_mesh.h"
@@ -21,11 +22,13 @@ std::vector<double> at(double aspect) {
   for (Vec3& v : mesh.vertices_nm)
     if (std::abs(v.x + first_nm) < 1) v.x = first_nm + 40 / 3.0 / aspect;
   static const TriangleMesh clean = make_box({-20, -20, 0}, {20, 20, 40});
-  static const mc::SimulationResult expected[2] = {image(clean, mc::Method::direct), image(clean, mc::Method::replay)};
+  static const mc::SimulationResult expected[2] = {image(clean, mc::Method::direct),
+                                                   image(clean, mc::Method::replay)};
   const MeshReport report = check_mesh(mesh);
   RepairSummary repair;
   repair_mesh(mesh, {}, repair);
-  std::vector<double> row{0, static_cast<double>(report.degenerate_triangles), static_cast<double>(repair.removed_degenerate)};
+  std::vector<double> row{0, static_cast<double>(report.degenerate_triangles),
+                          static_cast<double>(repair.removed_degenerate)};
   try {
     double lost = 0;
     for (const mc::Method method : {mc::Method::direct, mc::Method::replay}) {
@@ -46,11 +49,13 @@ io::Plot plot(const Table& t) {
   io::Plot out;
   out.title = "Slivers across a box of 40 nm, silicon, 300 eV: nobody is lost";
   const io::PlotAxis x{"length of a sliver over its width", true, {}};
-  out.panels = {panel(t, "image against that of the box without, rms of SE", x, {"difference (%)", false, {}},
-                      {{"direct_percent", "direct"}, {"replay_percent", "replay", true},
-                       {"direct_chance_percent", "by chance alone", true}}),
-                panel(t, "triangles said to have no area", x, {"triangles", false, {}},
-                      {{"degenerate", "check"}, {"removed", "removed by repair", true}})};
+  out.panels = {
+      panel(t, "image against that of the box without, rms of SE", x, {"difference (%)", false, {}},
+            {{"direct_percent", "direct"},
+             {"replay_percent", "replay", true},
+             {"direct_chance_percent", "by chance alone", true}}),
+      panel(t, "triangles said to have no area", x, {"triangles", false, {}},
+            {{"degenerate", "check"}, {"removed", "removed by repair", true}})};
   out.columns = 2;
   return out;
 }
@@ -58,11 +63,15 @@ io::Plot plot(const Table& t) {
 }  // namespace
 
 Sweep slivers() {
-  return {"slivers", "a box with triangles 1 to 1e16 times as long as wide",
-          {"aspect", "refused", "degenerate", "removed", "direct_percent", "direct_chance_percent", "replay_percent",
-           "replay_chance_percent", "lost_electrons"},
+  return {"slivers",
+          "a box with triangles 1 to 1e16 times as long as wide",
+          {"aspect", "refused", "degenerate", "removed", "direct_percent", "direct_chance_percent",
+           "replay_percent", "replay_chance_percent", "lost_electrons"},
           {1, 1e2, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e12, 1e15, 1e16},
-          at, 1e7, 1e-6, plot};
+          at,
+          1e7,
+          1e-6,
+          plot};
 }
 
 }  // namespace surf::limits

@@ -11,13 +11,15 @@ namespace {
 
 TrainedModel with_record(TrainedModel model, const std::vector<TrainingImage>& images) {
   model.scope = {images.front().field.pitch_x_nm, "Si", 1000, 0};
-  for (const TrainingImage& image : images) model.record.range = united(model.record.range, surface_range(image.field));
+  for (const TrainingImage& image : images)
+    model.record.range = united(model.record.range, surface_range(image.field));
   return model;
 }
 
 }  // namespace
 
-HeightField rough(double rms_nm, double correlation_nm, std::uint64_t seed, int pixels, double pixel_nm) {
+HeightField rough(double rms_nm, double correlation_nm, std::uint64_t seed, int pixels,
+                  double pixel_nm) {
   const double across = (pixels - 1) * pixel_nm;
   return make_rough({across, across, pixel_nm}, rms_nm, correlation_nm, seed);
 }

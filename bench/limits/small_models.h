@@ -7,17 +7,20 @@
 #include "monte_carlo.h"
 #include "surf/sem/trained_model.h"
 
-// Models that are learnt in a second, to see where such models fail. Silicon at 1 keV, pixels of 3 nm.
+// Models that are learnt in a second, to see where such models fail. Silicon at 1 keV, pixels of 3
+// nm.
 
 namespace surf::limits {
 
 /// Gaussian rough surface of 3 nm pixels about the origin.
-HeightField rough(double rms_nm, double correlation_nm, std::uint64_t seed, int pixels = 32, double pixel_nm = 3);
+HeightField rough(double rms_nm, double correlation_nm, std::uint64_t seed, int pixels = 32,
+                  double pixel_nm = 3);
 
 /// Heights times a factor.
 HeightField scaled(HeightField field, double factor);
 
-/// Four rough surfaces of 3 nm rms and 15 nm correlation, 32 x 32 pixels: slopes to about 45 degrees.
+/// Four rough surfaces of 3 nm rms and 15 nm correlation, 32 x 32 pixels: slopes to about 45
+/// degrees.
 const std::vector<TrainingImage>& gentle_training();
 
 /// With scope and range of what was learnt from, as `semsurf train` keeps them.

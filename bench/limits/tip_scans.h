@@ -19,7 +19,8 @@ inline HeightField scan_of_spikes(const Tip& tip, int pixels, double noise_nm, s
   f.z_nm = Grid<double>(pixels, pixels);
   RandomStream random(seed, 0, 0);
   for (int k = 0; k < pixels * pixels / 60; ++k) {
-    const int x = static_cast<int>(random.uniform() * pixels), y = static_cast<int>(random.uniform() * pixels);
+    const int x = static_cast<int>(random.uniform() * pixels),
+              y = static_cast<int>(random.uniform() * pixels);
     f.z_nm(x, y) = 2 + 10 * random.uniform();
   }
   f = dilate(f, tip);
@@ -32,7 +33,7 @@ inline HeightField scan_of_spikes(const Tip& tip, int pixels, double noise_nm, s
 
 /// How far a tip is off where the true one is less than `depth_nm` below its apex.
 struct TipError {
-  double rms_nm = 0, mean_nm = 0;   ///< mean: above 0 too blunt, below too sharp
+  double rms_nm = 0, mean_nm = 0;  ///< mean: above 0 too blunt, below too sharp
 };
 inline TipError error_of(const Tip& estimate, const Tip& truth, double depth_nm) {
   TipError e;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Blind tips at thresholds from 0 to 6 standard deviations of the noise, and what the sweep of thresholds
-// finds by itself in the same scans.
+// Blind tips at thresholds from 0 to 6 standard deviations of the noise, and what the sweep of
+// thresholds finds by itself in the same scans.
 #include <cmath>
 #include <vector>
 
@@ -17,7 +17,9 @@ constexpr int size_px = 13, pixels = 96, scans = 4;
 
 Tip truth() { return parabolic_tip(4, {1, 1, size_px, size_px}); }
 
-HeightField scan(int number) { return scan_of_spikes(truth(), pixels, sigma_nm, static_cast<std::uint64_t>(4 + number)); }
+HeightField scan(int number) {
+  return scan_of_spikes(truth(), pixels, sigma_nm, static_cast<std::uint64_t>(4 + number));
+}
 
 BlindTipOptions options(double threshold_nm, double tolerance_nm) {
   BlindTipOptions o;
@@ -60,7 +62,8 @@ std::vector<double> at(double threshold_sigma) {
     without.rms_nm += b.rms_nm / scans, without.mean_nm += b.mean_nm / scans;
   }
   const Found found = by_itself();
-  return {with.rms_nm, with.mean_nm, without.rms_nm, without.mean_nm, found.rms_nm, found.threshold_sigma};
+  return {with.rms_nm,     with.mean_nm, without.rms_nm,
+          without.mean_nm, found.rms_nm, found.threshold_sigma};
 }
 
 io::Plot plot(const Table& t) {
@@ -69,7 +72,8 @@ io::Plot plot(const Table& t) {
                               {{"mean_nm", "apex tolerance = threshold"},
                                {"no_tolerance_mean_nm", "no apex tolerance (1997)"}});
   error.references = {{io::PlotDirection::horizontal, 0, ""},
-                      {io::PlotDirection::vertical, t.column("sweep_threshold_sigma").front(), "chosen by the sweep"}};
+                      {io::PlotDirection::vertical, t.column("sweep_threshold_sigma").front(),
+                       "chosen by the sweep"}};
   io::Plot out;
   out.title = "Blind tips of 4 nm radius, noise 0.1 nm";
   out.panels = {error};
@@ -79,11 +83,15 @@ io::Plot plot(const Table& t) {
 }  // namespace
 
 Sweep tip_threshold() {
-  return {"tip_threshold", "blind tips at thresholds from 0 to 6 standard deviations of the noise",
-          {"threshold_sigma", "rms_nm", "mean_nm", "no_tolerance_rms_nm", "no_tolerance_mean_nm", "sweep_rms_nm",
-           "sweep_threshold_sigma"},
+  return {"tip_threshold",
+          "blind tips at thresholds from 0 to 6 standard deviations of the noise",
+          {"threshold_sigma", "rms_nm", "mean_nm", "no_tolerance_rms_nm", "no_tolerance_mean_nm",
+           "sweep_rms_nm", "sweep_threshold_sigma"},
           {0, 0.5, 1, 1.5, 2, 2.5, 3, 3.5, 4, 4.5, 5, 6},
-          at, 2, 1e-4, plot};
+          at,
+          2,
+          1e-4,
+          plot};
 }
 
 }  // namespace surf::limits

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Tips with a second peak, from as high as the first to 6 nm shorter: which of the two peaks a blind tip
-// finds, and what the sweep says of it.
+// Tips with a second peak, from as high as the first to 6 nm shorter: which of the two peaks a
+// blind tip finds, and what the sweep says of it.
 #include <algorithm>
 #include <cmath>
 #include <vector>
@@ -58,13 +58,15 @@ std::vector<double> at(double shorter_nm) {
 }
 
 io::Plot plot(const Table& t) {
-  io::PlotPanel peaks = panel(t, "", {"second peak shorter by (nm)", false, {}}, {"its depth (nm)", false, {}},
-                              {{"shorter_nm", "the truth", true},
-                               {"sweep_second_nm", "sweep"},
-                               {"no_tolerance_second_nm", "no apex tolerance"},
-                               {"sweep_mirrored_nm", "other side (12 nm)"}});
+  io::PlotPanel peaks =
+      panel(t, "", {"second peak shorter by (nm)", false, {}}, {"its depth (nm)", false, {}},
+            {{"shorter_nm", "the truth", true},
+             {"sweep_second_nm", "sweep"},
+             {"no_tolerance_second_nm", "no apex tolerance"},
+             {"sweep_mirrored_nm", "other side (12 nm)"}});
   for (const auto& row : t.rows)
-    if (row[7] == static_cast<double>(TipSweepVerdict::none)) peaks.notes.push_back({"none fits", row[0], row[5]});
+    if (row[7] == static_cast<double>(TipSweepVerdict::none))
+      peaks.notes.push_back({"none fits", row[0], row[5]});
   io::Plot out;
   out.title = "A tip with two peaks";
   out.panels = {peaks};
@@ -74,11 +76,15 @@ io::Plot plot(const Table& t) {
 }  // namespace
 
 Sweep tip_two_peaks() {
-  return {"tip_two_peaks", "blind tips where the true one has two peaks",
-          {"shorter_nm", "sweep_rms_nm", "no_tolerance_rms_nm", "sweep_second_nm", "no_tolerance_second_nm",
-           "sweep_mirrored_nm", "true_mirrored_nm", "verdict", "excess"},
+  return {"tip_two_peaks",
+          "blind tips where the true one has two peaks",
+          {"shorter_nm", "sweep_rms_nm", "no_tolerance_rms_nm", "sweep_second_nm",
+           "no_tolerance_second_nm", "sweep_mirrored_nm", "true_mirrored_nm", "verdict", "excess"},
           {0, 0.1, 0.2, 0.3, 0.5, 1, 2, 3, 4, 6},
-          at, 0, 1e-4, plot};
+          at,
+          0,
+          1e-4,
+          plot};
 }
 
 }  // namespace surf::limits

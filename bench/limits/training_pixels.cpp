@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How many pixels it takes to learn a filter bank or a network, judged on a surface of the same kind.
+// How many pixels it takes to learn a filter bank or a network, judged on a surface of the same
+// kind.
 #include <cmath>
 #include <utility>
 #include <vector>
@@ -22,7 +23,8 @@ std::vector<TrainingImage> thinned(double pixels) {
   }
   RandomStream random(5, 0, 0);
   for (std::size_t k = 0; k < static_cast<std::size_t>(pixels) && k < all.size(); ++k) {
-    const auto other = k + static_cast<std::size_t>(random.uniform() * static_cast<double>(all.size() - k));
+    const auto other =
+        k + static_cast<std::size_t>(random.uniform() * static_cast<double>(all.size() - k));
     std::swap(all[k], all[other]);
     *all[k] = 1;
   }
@@ -51,9 +53,11 @@ std::vector<double> at(double pixels) {
 }
 
 io::Plot plot(const Table& t) {
-  io::PlotPanel error = panel(t, "", {"pixels learnt from", true, {}}, {"rms error of SE, relative", true, {}},
-                              {{"bank_error", "filter bank, cut-off 0.1"}, {"whole_bank_error", "filter bank, no cut-off"},
-                               {"network_error", "facet network"}});
+  io::PlotPanel error =
+      panel(t, "", {"pixels learnt from", true, {}}, {"rms error of SE, relative", true, {}},
+            {{"bank_error", "filter bank, cut-off 0.1"},
+             {"whole_bank_error", "filter bank, no cut-off"},
+             {"network_error", "facet network"}});
   double warned = 0;
   for (const auto& row : t.rows)
     if (row[4] > 0) warned = row[0];
@@ -67,10 +71,15 @@ io::Plot plot(const Table& t) {
 }  // namespace
 
 Sweep training_pixels() {
-  return {"training_pixels", "how many pixels it takes to learn a model",
-          {"pixels", "bank_error", "whole_bank_error", "network_error", "bank_says", "whole_bank_says", "network_says"},
+  return {"training_pixels",
+          "how many pixels it takes to learn a model",
+          {"pixels", "bank_error", "whole_bank_error", "network_error", "bank_says",
+           "whole_bank_says", "network_says"},
           {10, 20, 40, 80, 160, 320, 640, 1280, 2560, 4096},
-          at, 80, 0.02, plot};
+          at,
+          80,
+          0.02,
+          plot};
 }
 
 }  // namespace surf::limits

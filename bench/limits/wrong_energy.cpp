@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A model of 1 keV and silicon on images of another energy or another density: what it costs whoever says the wrong
-// one, before and after gain and offset are fitted as calibration does.
+// A model of 1 keV and silicon on images of another energy or another density: what it costs
+// whoever says the wrong one, before and after gain and offset are fitted as calibration does.
 #include <vector>
 
 #include "small_models.h"
@@ -28,7 +28,8 @@ Off judge(const TrainingImage& truth) {
   images.simulated = {predicted};
   const Calibration c = calibrate(images);
   return {error_beyond_noise(predicted, truth), mean_predicted / mean - 1,
-          error_beyond_noise(calibrated_image(c, images.simulated), truth), static_cast<double>(!c.warnings.empty())};
+          error_beyond_noise(calibrated_image(c, images.simulated), truth),
+          static_cast<double>(!c.warnings.empty())};
 }
 
 std::vector<double> at(double ratio) {
@@ -41,7 +42,7 @@ std::vector<double> at(double ratio) {
   } catch (const UsageError&) {
     refused = 1;
   }
-  return {refused, energy.error, energy.bias, energy.calibrated, energy.warned,
+  return {refused,       energy.error, energy.bias,        energy.calibrated, energy.warned,
           density.error, density.bias, density.calibrated, density.warned};
 }
 
@@ -60,11 +61,16 @@ io::Plot plot(const Table& t) {
 }  // namespace
 
 Sweep wrong_energy() {
-  return {"wrong_energy", "a model on images of another energy or density than said",
-          {"ratio", "refused", "energy_error", "energy_bias", "energy_calibrated_error", "energy_warned",
-           "density_error", "density_bias", "density_calibrated_error", "density_warned"},
+  return {"wrong_energy",
+          "a model on images of another energy or density than said",
+          {"ratio", "refused", "energy_error", "energy_bias", "energy_calibrated_error",
+           "energy_warned", "density_error", "density_bias", "density_calibrated_error",
+           "density_warned"},
           {0.8, 0.9, 1, 1.1},
-          at, 0.9, 0.02, plot};
+          at,
+          0.9,
+          0.02,
+          plot};
 }
 
 }  // namespace surf::limits

@@ -22,7 +22,7 @@ std::string form_of_value(const CLI::Option& option) {
     if (option.nonpositional() && option.get_items_expected_min() > 1)
       form += " x" + std::to_string(option.get_items_expected_min());
   }
-  form.resize(std::min(form.find(":{"), form.size()));   // what CLI11 adds of its own checks
+  form.resize(std::min(form.find(":{"), form.size()));  // what CLI11 adds of its own checks
   return form;
 }
 
@@ -41,7 +41,8 @@ void add_options(const CLI::App& app, CommandText& command) {
     const std::string heading = option->nonpositional() ? option->get_group() : "Input";
     auto group = std::ranges::find(command.options, heading, &OptionGroup::heading);
     if (group == command.options.end()) group = command.options.insert(group, {heading, {}});
-    group->options.push_back({names_of(*option), form_of_value(*option), in_one_line(option->get_description())});
+    group->options.push_back(
+        {names_of(*option), form_of_value(*option), in_one_line(option->get_description())});
   }
   std::ranges::stable_sort(command.options, [](const OptionGroup& a, const OptionGroup& b) {
     return (a.heading == "Input") > (b.heading == "Input");
@@ -74,12 +75,13 @@ CommandText read(const CLI::App& app, const std::string& parent) {
   for (const CLI::App* sub : app.get_subcommands(nullptr))
     if (!sub->get_group().empty()) command.commands.push_back(read(*sub, command.name));
   command.usage = command.name;
-  const bool has_options = std::ranges::any_of(command.options,
-      [](const OptionGroup& g) { return g.heading != "Input"; });
+  const bool has_options = std::ranges::any_of(
+      command.options, [](const OptionGroup& g) { return g.heading != "Input"; });
   if (has_options) command.usage += " [OPTIONS]";
   for (const OptionGroup& group : command.options)
     for (const OptionText& option : group.options)
-      if (group.heading == "Input") command.usage += " " + option.names + (option.form.ends_with("...") ? "..." : "");
+      if (group.heading == "Input")
+        command.usage += " " + option.names + (option.form.ends_with("...") ? "..." : "");
   if (!command.commands.empty()) command.usage += " [COMMAND]";
   return command;
 }

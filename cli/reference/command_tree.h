@@ -8,9 +8,9 @@
 namespace surf::cli::reference {
 
 struct OptionText {
-  std::string names;   ///< "-o, --output", or "INPUT"
-  std::string form;    ///< "FILE"; empty for flags
-  std::string help;    ///< in one line
+  std::string names;  ///< "-o, --output", or "INPUT"
+  std::string form;   ///< "FILE"; empty for flags
+  std::string help;   ///< in one line
 };
 
 struct OptionGroup {
@@ -19,11 +19,11 @@ struct OptionGroup {
 };
 
 struct CommandText {
-  std::string group;   ///< heading in help
-  std::string name;    ///< "semsurf noise scan"
+  std::string group;  ///< heading in help
+  std::string name;   ///< "semsurf noise scan"
   std::string usage, title;
   std::vector<OptionGroup> options;
-  std::string examples, notes;   ///< of the text below the options
+  std::string examples, notes;  ///< of the text below the options
   std::vector<CommandText> commands;
 };
 

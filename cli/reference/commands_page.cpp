@@ -18,14 +18,15 @@ std::string anchor(std::string heading) {
 std::string table_of(const OptionGroup& group) {
   std::vector<std::vector<std::string>> rows;
   for (const OptionText& o : group.options)
-    rows.push_back({code(o.names + (o.form.empty() || o.names == o.form ? "" : " " + o.form)), cell(o.help)});
-  return fmt::format("**{}**\n\n", group.heading) + table({group.heading == "Input" ? "Input" : "Option", "Meaning"},
-      rows) + "\n";
+    rows.push_back(
+        {code(o.names + (o.form.empty() || o.names == o.form ? "" : " " + o.form)), cell(o.help)});
+  return fmt::format("**{}**\n\n", group.heading) +
+         table({group.heading == "Input" ? "Input" : "Option", "Meaning"}, rows) + "\n";
 }
 
 std::string section(const CommandText& c, int depth) {
-  std::string text = fmt::format("{} {}\n\n{}.\n\n", std::string(static_cast<std::size_t>(depth), '#'), c.name,
-      c.title);
+  std::string text = fmt::format(
+      "{} {}\n\n{}.\n\n", std::string(static_cast<std::size_t>(depth), '#'), c.name, c.title);
   text += fmt::format("```sh\n{}\n```\n\n", c.usage);
   if (!c.examples.empty()) text += fmt::format("Examples:\n\n```sh\n{}```\n\n", c.examples);
   for (const OptionGroup& group : c.options) text += table_of(group);
@@ -38,10 +39,13 @@ std::string section(const CommandText& c, int depth) {
 
 std::string commands_page() {
   const CommandText program = read_program();
-  std::string text = page_head("Commands",
-      "All commands of `semsurf` with their options. `semsurf COMMAND --help` shows the same in a terminal.\n"
+  std::string text = page_head(
+      "Commands",
+      "All commands of `semsurf` with their options. `semsurf COMMAND --help` shows the same in a "
+      "terminal.\n"
       "What holds where an option is not given stands in parentheses at the end of its line.\n"
-      "Bare lengths are nm, bare energies eV, bare angles degrees; texts may carry a unit: `5mrad`, `1.5keV`, `2um`.\n"
+      "Bare lengths are nm, bare energies eV, bare angles degrees; texts may carry a unit: "
+      "`5mrad`, `1.5keV`, `2um`.\n"
       "An option whose form ends in `...` may be repeated.");
   text += fmt::format("```sh\n{}```\n\n", program.examples);
   std::string group;

@@ -15,6 +15,7 @@ std::string cell(const std::string& text);
 std::string code(const std::string& text);
 
 /// Cells are taken as they are.
-std::string table(const std::vector<std::string>& heads, const std::vector<std::vector<std::string>>& rows);
+std::string table(const std::vector<std::string>& heads,
+                  const std::vector<std::vector<std::string>>& rows);
 
 }  // namespace surf::cli::reference

@@ -18,7 +18,8 @@ std::string exit_codes_page();
 std::string index_page();
 std::string manual_page();
 
-/// What channels and metadata of images are called, and what they are. "N" stands for a number, "NAME" for a name.
+/// What channels and metadata of images are called, and what they are. "N" stands for a number,
+/// "NAME" for a name.
 struct NamedEntry {
   std::string name, meaning;
 };

@@ -19,11 +19,13 @@ const Entries& other_metadata() {
       {"title", "title of the scene"},
       {"partial", "`true` where the work was stopped: pixels of no electrons are not valid"},
       {"input.N", "name and SHA-256 of a file that was read"},
-      {"option.NAME", "value of a parameter of an AFM step that changes the result, as `option.level.method`"},
+      {"option.NAME",
+       "value of a parameter of an AFM step that changes the result, as `option.level.method`"},
       {"detector.N", "a detector in the order of the channels, as `--detector` reads it"},
       {"simulation.dose", "electrons per pixel of the beam's current and dwell time"},
       {"specimen.substrate", "material and height of the half-space below"},
-      {"specimen.height_field", "name, material, samples, pitch, origin and edge of the height field"},
+      {"specimen.height_field",
+       "name, material, samples, pitch, origin and edge of the height field"},
       {"specimen.body.N", "name, material, triangles and extent of a body"},
       {"unit_override.N", "a mesh file whose own unit did not count, and the unit that did"},
       {"simplified.N", "what `simulation.mesh_tolerance` left out of a body"},
@@ -35,8 +37,9 @@ const Entries& other_metadata() {
       {"material.N.plasmon_ev", "energy of a plasmon"},
       {"material.N.loss_join_ev", "energy below which the continuous loss falls as E^(5/2)"},
       {"material.N.loss_join_fitted", "whether that energy was fitted to measured yields"},
-      {"material.N.constituents", "its elements: atomic number and weight, share of the weight, mean ionization "
-                                  "energy"},
+      {"material.N.constituents",
+       "its elements: atomic number and weight, share of the weight, mean ionization "
+       "energy"},
       {"material.N.formula_weight_g_mol", "weight of a formula unit"},
       {"material.N.cutoff_ev", "energy inside it where tracking stopped"},
       {"material.N.estimated.NAME", "rule that a missing number was estimated by"},
@@ -52,7 +55,9 @@ const Entries& other_metadata() {
       {"balance.lost", "electrons that were given up; a warning says why"},
       {"library.cascades", "cascades of the library that were replayed"},
       {"pixels.NAME", "pixels done by one method: direct, replay, difference, plane, none"},
-      {"model", "meaning of the numbers of the channel `model`; of predicted images the model's file and SHA-256"},
+      {"model",
+       "meaning of the numbers of the channel `model`; of predicted images the model's file and "
+       "SHA-256"},
       {"model.kind", "kind of the model of a predicted image"},
       {"edge", "continuation of the heights of a predicted image"},
       {"warning.N", "a warning, as the program printed it"}};
@@ -92,20 +97,26 @@ const Entries& sidecar_keys() {
 }  // namespace
 
 Entries image_channels() {
-  return {{"NAME", "a detector's yield: electrons per primary, one channel for each of SE, BSE and `--detector`"},
+  return {{"NAME",
+           "a detector's yield: electrons per primary, one channel for each of SE, BSE and "
+           "`--detector`"},
           {"NAME.stderr", "standard error of that yield"},
           {"NAME.shot", "the yield with the shot noise of the dose, where there is a dose"},
-          {"NAME.variance_left", "share of the scatter that differences and planes leave, of `--channels "
-                                 "variance_left`"},
+          {"NAME.variance_left",
+           "share of the scatter that differences and planes leave, of `--channels "
+           "variance_left`"},
           {"valid", "1 where the beam met the specimen, else 0"},
           {"z_nm", "height of the point that the beam meets, of `--channels z_nm`"},
           {"normal.x", "x of the surface's normal there, of `--channels normal`"},
           {"normal.y", "y of the normal"},
           {"normal.z", "z of the normal"},
-          {"material", "number of the material there, as in `material.N.name`, of `--channels material`"},
+          {"material",
+           "number of the material there, as in `material.N.name`, of `--channels material`"},
           {"electrons", "primaries that a pixel is the mean of, of `--channels electrons`"},
-          {"model", "how a pixel was simulated, of `--channels model`: 0 none, 1 direct, 2 replay, 3 difference, 4 "
-                    "plane"}};
+          {"model",
+           "how a pixel was simulated, of `--channels model`: 0 none, 1 direct, 2 replay, 3 "
+           "difference, 4 "
+           "plane"}};
 }
 
 Entries image_metadata() {
@@ -121,40 +132,52 @@ Entries image_metadata() {
   });
   mc::Scan scan;
   for_each_parameter(scan, add);
-  std::ranges::stable_sort(all, {}, [](const NamedEntry& e) { return e.name.substr(0, e.name.find('.')); });
+  std::ranges::stable_sort(all, {},
+                           [](const NamedEntry& e) { return e.name.substr(0, e.name.find('.')); });
   all.insert(all.end(), other_metadata().begin(), other_metadata().end());
   return all;
 }
 
 std::string results_page() {
   return page_head("Channels and metadata",
-                   "What images and scans that semsurf writes hold, and what they say of how they were made.\n"
+                   "What images and scans that semsurf writes hold, and what they say of how they "
+                   "were made.\n"
                    "`NAME` stands for a name, `N` for a number from 1.") +
          "```sh\nsemsurf simulate samples/mesa80.toml --channels z_nm,normal -o mesa.exr\n"
-         "semsurf info mesa.exr          # channels and metadata\ncat mesa.run.json              # the run\n```\n\n"
+         "semsurf info mesa.exr          # channels and metadata\ncat mesa.run.json              # "
+         "the run\n```\n\n"
          "EXR, TIFF and VTI files hold all channels, PNG files one, as grey levels. "
-         "Metadata is text: numbers are written so that they read back exactly, and units are in the key.\n\n"
-         "## Channels of simulated images\n\n" + entries("Channel", image_channels()) +
-         "\n## Channels of other files\n\n" +
-         entries("Channel", {{"z_nm", "heights: of levelled, cleaned, eroded scans, of tips and of reconstructed "
-                                      "surfaces"},
-                             {"valid", "1 where there is a value"},
-                             {"certain", "1 where an eroded scan is the surface, else 0"},
-                             {"deviation_nm", "standard deviation of a reconstructed height"},
-                             {"held_by", "what holds a reconstructed height: 1 the tip touched it, 2 the SEM image "
-                                        "says it, 3 both, 0 its neighbours"},
-                             {"start_nm", "surface that a reconstruction began with"},
-                             {"simulated_nm, scan_nm", "the scan that the reconstructed surface makes, and the real "
-                                        "one"},
-                             {"simulated, sem", "the image that the reconstructed surface makes, and the real one"},
-                             {"residual", "their difference, in standard deviations of the noise"},
-                             {"used", "1 where a pixel counted"}}) +
-         "\n## Metadata\n\nKeys of simulated images; those of other files are among them. What is not given is not "
+         "Metadata is text: numbers are written so that they read back exactly, and units are in "
+         "the key.\n\n"
+         "## Channels of simulated images\n\n" +
+         entries("Channel", image_channels()) + "\n## Channels of other files\n\n" +
+         entries("Channel",
+                 {{"z_nm",
+                   "heights: of levelled, cleaned, eroded scans, of tips and of reconstructed "
+                   "surfaces"},
+                  {"valid", "1 where there is a value"},
+                  {"certain", "1 where an eroded scan is the surface, else 0"},
+                  {"deviation_nm", "standard deviation of a reconstructed height"},
+                  {"held_by",
+                   "what holds a reconstructed height: 1 the tip touched it, 2 the SEM image "
+                   "says it, 3 both, 0 its neighbours"},
+                  {"start_nm", "surface that a reconstruction began with"},
+                  {"simulated_nm, scan_nm",
+                   "the scan that the reconstructed surface makes, and the real "
+                   "one"},
+                  {"simulated, sem",
+                   "the image that the reconstructed surface makes, and the real one"},
+                  {"residual", "their difference, in standard deviations of the noise"},
+                  {"used", "1 where a pixel counted"}}) +
+         "\n## Metadata\n\nKeys of simulated images; those of other files are among them. What is "
+         "not given is not "
          "there.\n\n" +
          entries("Key", image_metadata()) +
-         "\n## The record of a run\n\n`NAME.run.json` lies beside the first output of `simulate`. It holds what may "
+         "\n## The record of a run\n\n`NAME.run.json` lies beside the first output of `simulate`. "
+         "It holds what may "
          "differ from run to run, "
-         "as times, beside what the images hold.\n\n" + entries("Key", sidecar_keys());
+         "as times, beside what the images hold.\n\n" +
+         entries("Key", sidecar_keys());
 }
 
 }  // namespace surf::cli::reference

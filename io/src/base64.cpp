@@ -45,7 +45,7 @@ std::optional<std::string> decode_base64(std::string_view text) {
   std::string bytes;
   bytes.reserve(text.size() / 4 * 3);
   std::uint32_t bits = 0;
-  int count = 0;      // bits held
+  int count = 0;  // bits held
   std::size_t used = 0, padding = 0;
   for (const char c : text) {
     if (is_blank(c)) continue;
@@ -64,7 +64,8 @@ std::optional<std::string> decode_base64(std::string_view text) {
     }
   }
   // A single digit left over holds no byte; padding fills the last group of four or is left out.
-  const bool is_whole = used % 4 != 1 && (padding == 0 || (padding < 3 && (used + padding) % 4 == 0));
+  const bool is_whole =
+      used % 4 != 1 && (padding == 0 || (padding < 3 && (used + padding) % 4 == 0));
   if (!is_whole) return {};
   return bytes;
 }

@@ -30,7 +30,7 @@ class Base64Reader {
 
   std::string_view text_;
   std::size_t position_ = 0;
-  std::string held_;   // decoded, not yet taken
+  std::string held_;  // decoded, not yet taken
 };
 
 }  // namespace surf::io

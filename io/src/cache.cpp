@@ -23,7 +23,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* extension = ".cache";
-constexpr std::size_t hash_size = 64;   ///< hexadecimal digits of a SHA-256
+constexpr std::size_t hash_size = 64;  ///< hexadecimal digits of a SHA-256
 constexpr std::size_t max_locks = 64;
 
 std::string name_of(const std::string& key) {
@@ -70,8 +70,8 @@ struct Cache::Impl {
   fs::path folder;
   std::uint64_t max_bytes;
 
-  std::mutex mutex;   ///< of what follows
-  std::map<fs::path, FileDescriptor> used;   ///< each with its lock, if it has one
+  std::mutex mutex;                         ///< of what follows
+  std::map<fs::path, FileDescriptor> used;  ///< each with its lock, if it has one
   std::vector<std::string> notes;
   std::set<std::string> said;
 
@@ -97,15 +97,15 @@ struct Cache::Impl {
 
   bool write(const fs::path& path, const std::string& key, std::span<const std::byte> payload) {
     try {
-      write_atomically(path, [&](const fs::path& temporary) {
-        write_entry(temporary, key, payload);
-      });
+      write_atomically(path,
+                       [&](const fs::path& temporary) { write_entry(temporary, key, payload); });
       return true;
     } catch (const FileError& error) {
       // Without the name of the entry: one note for all of them.
-      note(fmt::format("cache {}: {}. Nothing is kept for the next time; check the folder, its "
-                       "permissions and the free space, or name another one",
-                       folder.string(), error.reason()));
+      note(
+          fmt::format("cache {}: {}. Nothing is kept for the next time; check the folder, its "
+                      "permissions and the free space, or name another one",
+                      folder.string(), error.reason()));
       return false;
     }
   }
@@ -120,7 +120,7 @@ struct Cache::Impl {
       entry.path = file.path();
       entry.bytes = file.file_size(error);
       if (!error) entry.last_used = file.last_write_time(error);
-      if (!error) found.push_back(std::move(entry));   // else it was just removed
+      if (!error) found.push_back(std::move(entry));  // else it was just removed
     }
     std::sort(found.begin(), found.end(), [](const CacheEntry& a, const CacheEntry& b) {
       return a.last_used != b.last_used ? a.last_used > b.last_used : a.path < b.path;

@@ -28,7 +28,7 @@ using Buffer = std::span<std::byte>;
 // Line ends of three systems and an end-of-text mark: copying as text damages it.
 constexpr char magic[] = "semsurf cache\r\n\x1a";
 constexpr std::size_t magic_size = sizeof magic - 1;
-constexpr std::size_t sums_size = 32;   ///< what lies before the checksum
+constexpr std::size_t sums_size = 32;  ///< what lies before the checksum
 constexpr std::size_t header_size = 48;
 constexpr std::uint32_t version = 1;
 /// Pieces that are still in the processor's cache when they are summed.
@@ -113,8 +113,7 @@ bool read_payload(int file, std::uint64_t size, Buffer kept, Summer& sum) {
   std::vector<std::byte> scratch(kept.empty() ? std::min<std::uint64_t>(size, piece_size) : 0);
   for (std::uint64_t done = 0; done < size;) {
     const std::size_t count = std::min<std::uint64_t>(size - done, piece_size);
-    const Buffer piece =
-        kept.empty() ? Buffer(scratch).first(count) : kept.subspan(done, count);
+    const Buffer piece = kept.empty() ? Buffer(scratch).first(count) : kept.subspan(done, count);
     if (!read_all(file, piece)) return false;
     sum.add(piece);
     done += count;

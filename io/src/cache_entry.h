@@ -41,7 +41,7 @@ class FileDescriptor {
 /// What was read of an entry. `fault` says what is wrong with it, and is empty if nothing is.
 struct EntryContent {
   std::string key;
-  std::vector<std::byte> payload;   ///< only if it was asked for
+  std::vector<std::byte> payload;  ///< only if it was asked for
   std::string fault;
 };
 

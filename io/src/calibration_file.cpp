@@ -20,8 +20,8 @@ using Json = nlohmann::ordered_json;
 constexpr int version = 1;
 constexpr std::size_t most_bytes = std::size_t{16} << 20;
 constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr CalibrationOutcome outcomes[] = {CalibrationOutcome::trusted, CalibrationOutcome::doubtful,
-                                           CalibrationOutcome::undetermined};
+constexpr CalibrationOutcome outcomes[] = {
+    CalibrationOutcome::trusted, CalibrationOutcome::doubtful, CalibrationOutcome::undetermined};
 
 /// Infinity has no number in JSON.
 void add_finite(Json& object, const char* key, double value) {
@@ -39,9 +39,12 @@ CalibrationOutcome outcome_of(const JsonValue& value) {
 
 const char* name(CalibrationOutcome outcome) {
   switch (outcome) {
-    case CalibrationOutcome::trusted: return "trusted";
-    case CalibrationOutcome::doubtful: return "doubtful";
-    case CalibrationOutcome::undetermined: break;
+    case CalibrationOutcome::trusted:
+      return "trusted";
+    case CalibrationOutcome::doubtful:
+      return "doubtful";
+    case CalibrationOutcome::undetermined:
+      break;
   }
   return "undetermined";
 }
@@ -55,8 +58,11 @@ void write_calibration(const std::filesystem::path& path, const CalibrationFile&
   }
   Json offset = {{"value", c.offset}};
   add_finite(offset, "stderr", c.offset_stderr());
-  Json json = {{"semsurf", "calibration"}, {"version", version}, {"outcome", name(c.outcome)},
-               {"channels", channels}, {"offset", offset}};
+  Json json = {{"semsurf", "calibration"},
+               {"version", version},
+               {"outcome", name(c.outcome)},
+               {"channels", channels},
+               {"offset", offset}};
   if (c.outcome != CalibrationOutcome::undetermined) json["covariance"] = c.covariance;
   add_finite(json, "condition_number", c.condition_number);
   json["residual_rms"] = c.residual_rms;
@@ -94,7 +100,8 @@ CalibrationFile read_calibration(const std::filesystem::path& path) {
   } else {
     c.covariance = json.numbers("covariance");
     if (c.covariance.size() != n * n)
-      json.require("covariance").fail(fmt::format("{} numbers, not {} x {}", c.covariance.size(), n, n));
+      json.require("covariance")
+          .fail(fmt::format("{} numbers, not {} x {}", c.covariance.size(), n, n));
   }
   const auto condition = json.find("condition_number");
   c.condition_number = condition ? condition->number() : infinity;

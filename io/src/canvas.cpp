@@ -14,7 +14,7 @@
 namespace surf::io {
 namespace {
 
-constexpr double points_per_pixel = 72.0 / 96.0;   // PDF and SVG surfaces measure in points
+constexpr double points_per_pixel = 72.0 / 96.0;  // PDF and SVG surfaces measure in points
 
 using SurfacePointer = std::unique_ptr<cairo_surface_t, void (*)(cairo_surface_t*)>;
 using ContextPointer = std::unique_ptr<cairo_t, void (*)(cairo_t*)>;
@@ -34,14 +34,16 @@ cairo_surface_t* make_surface(const std::string& target, const std::string& exte
 
 class CairoCanvas final : public Canvas {
  public:
-  CairoCanvas(const std::filesystem::path& target, const std::string& file, const std::string& extension, int width,
-              int height);
+  CairoCanvas(const std::filesystem::path& target, const std::string& file,
+              const std::string& extension, int width, int height);
 
   void fill_rectangle(Point corner, double width, double height, Color color) override;
-  void stroke_rectangle(Point corner, double width, double height, double line_width, Color color) override;
+  void stroke_rectangle(Point corner, double width, double height, double line_width,
+                        Color color) override;
   void polyline(std::span<const Point> points, double line_width, Color color) override;
   void segments(std::span<const Point> ends, double line_width, Color color) override;
-  void text(const std::string& text, Point at, double size, Align align, Color color, bool bold, bool upwards) override;
+  void text(const std::string& text, Point at, double size, Align align, Color color, bool bold,
+            bool upwards) override;
   double text_width(const std::string& text, double size, bool bold) override;
   void clip(Point corner, double width, double height) override;
   void unclip() override;
@@ -76,10 +78,8 @@ class CairoCanvas final : public Canvas {
 };
 
 CairoCanvas::CairoCanvas(const std::filesystem::path& target, const std::string& file,
-               const std::string& extension, int width, int height)
-    : target_(target.string()),
-      file_(file),
-      is_raster_(extension == ".png"),
+                         const std::string& extension, int width, int height)
+    : target_(target.string()), file_(file), is_raster_(extension == ".png"),
       surface_(make_surface(target.string(), extension, width, height), &cairo_surface_destroy),
       context_(nullptr, &cairo_destroy) {
   check(cairo_surface_status(surface_.get()));
@@ -99,7 +99,7 @@ void CairoCanvas::fill_rectangle(Point corner, double width, double height, Colo
 }
 
 void CairoCanvas::stroke_rectangle(Point corner, double width, double height, double line_width,
-                              Color color) {
+                                   Color color) {
   cairo_t* const c = use(color, line_width);
   cairo_rectangle(c, corner.x, corner.y, width, height);
   cairo_stroke(c);
@@ -122,7 +122,7 @@ void CairoCanvas::segments(std::span<const Point> ends, double line_width, Color
 }
 
 void CairoCanvas::text(const std::string& text, Point at, double size, Align align, Color color,
-                  bool bold, bool upwards) {
+                       bool bold, bool upwards) {
   const double width = align == Align::left ? 0 : text_width(text, size, bold);
   cairo_t* const c = use(color, 1);
   cairo_save(c);

@@ -14,21 +14,26 @@ namespace surf::io {
 /// A drawing in pixels, x right and y down, that becomes a PNG, SVG or PDF.
 class Canvas {
  public:
-  struct Point { double x, y; };
-  struct Color { double red, green, blue, alpha = 1; };   ///< 0 to 1
+  struct Point {
+    double x, y;
+  };
+  struct Color {
+    double red, green, blue, alpha = 1;
+  };  ///< 0 to 1
   enum class Align { left, center, right };
 
   virtual ~Canvas() = default;
 
   virtual void fill_rectangle(Point corner, double width, double height, Color color) = 0;
-  virtual void stroke_rectangle(Point corner, double width, double height, double line_width, Color color) = 0;
+  virtual void stroke_rectangle(Point corner, double width, double height, double line_width,
+                                Color color) = 0;
   /// One line through the points; where it crosses itself it is not darker.
   virtual void polyline(std::span<const Point> points, double line_width, Color color) = 0;
   /// Separate straight lines, from each even point to the next.
   virtual void segments(std::span<const Point> ends, double line_width, Color color) = 0;
   /// `at` is on the line that the letters stand on. Turned by a quarter where `upwards`.
   virtual void text(const std::string& text, Point at, double size, Align align, Color color,
-            bool bold = false, bool upwards = false) = 0;
+                    bool bold = false, bool upwards = false) = 0;
   virtual double text_width(const std::string& text, double size, bool bold = false) = 0;
 
   /// Until `unclip`, nothing is drawn outside.
@@ -41,10 +46,13 @@ class Canvas {
 
 /// What the module `cairo` gives.
 struct CanvasLibrary {
-  static constexpr ModuleName module{"cairo", "draws pictures of electron tracks", "Cairo (Debian: libcairo2)", 100};
-  /// `extension` is ".png", ".svg" or ".pdf". `target` is the name to write to, `file` the one for messages.
-  std::unique_ptr<Canvas> (*make_canvas)(const std::filesystem::path& target, const std::string& file,
-                                         const std::string& extension, int width, int height);
+  static constexpr ModuleName module{"cairo", "draws pictures of electron tracks",
+                                     "Cairo (Debian: libcairo2)", 100};
+  /// `extension` is ".png", ".svg" or ".pdf". `target` is the name to write to, `file` the one for
+  /// messages.
+  std::unique_ptr<Canvas> (*make_canvas)(const std::filesystem::path& target,
+                                         const std::string& file, const std::string& extension,
+                                         int width, int height);
 };
 
 }  // namespace surf::io

@@ -16,9 +16,7 @@ bool is_histogram(const PlotSeries& series) {
 }
 
 /// NaN without its sign, which means nothing.
-std::string text_of(double value) {
-  return std::isnan(value) ? "nan" : fmt::format("{}", value);
-}
+std::string text_of(double value) { return std::isnan(value) ? "nan" : fmt::format("{}", value); }
 
 /// Checks one panel and says where something is wrong in it.
 class PanelCheck {
@@ -26,7 +24,8 @@ class PanelCheck {
   PanelCheck(const PlotPanel& panel, std::string place) : panel_(panel), place_(std::move(place)) {}
 
   void check() const {
-    if (panel_.series.empty() && !panel_.image) fail(place_, "a panel without series cannot be drawn", "Add one");
+    if (panel_.series.empty() && !panel_.image)
+      fail(place_, "a panel without series cannot be drawn", "Add one");
     if (panel_.image) check_image(*panel_.image);
     check_range(panel_.x, "x");
     check_range(panel_.y, "y");
@@ -87,11 +86,13 @@ class PanelCheck {
     if (image.values.empty()) fail(place, "it has no samples", "Leave it out");
     for (const double length : {image.pitch_x, image.pitch_y, image.lit_per_unit})
       if (!(length > 0) || !std::isfinite(length))
-        fail(place, fmt::format("its pitch or scale is {}", text_of(length)), "Give lengths above 0");
+        fail(place, fmt::format("its pitch or scale is {}", text_of(length)),
+             "Give lengths above 0");
     for (const double origin : {image.origin_x, image.origin_y})
       if (!std::isfinite(origin)) fail(place, "its origin is not finite", "Give its place");
     if (panel_.x.log || panel_.y.log) fail(place, "its axes are logarithmic", "Use linear ones");
-    if (image.range && !(image.range->from < image.range->to && std::isfinite(image.range->to - image.range->from)))
+    if (image.range && !(image.range->from < image.range->to &&
+                         std::isfinite(image.range->to - image.range->from)))
       fail(place, "its range of colours is empty", "Give from < to");
   }
 
@@ -118,7 +119,8 @@ class PanelCheck {
     const std::size_t expected = series.y.size() + (is_histogram(series) ? 1 : 0);
     if (series.x.size() != expected) {
       fail(place, fmt::format("it has {} x for {} y", series.x.size(), series.y.size()),
-           fmt::format("Give {}{}", expected, is_histogram(series) ? ", the edges of the bins" : ""));
+           fmt::format("Give {}{}", expected,
+                       is_histogram(series) ? ", the edges of the bins" : ""));
     }
     if (series.style == PlotStyle::band && series.y_error.empty())
       fail(place, "it is a band without y_error", "Give its half width at each x");
@@ -127,9 +129,8 @@ class PanelCheck {
            "Give none or one for each");
     }
     if (is_histogram(series) &&
-        std::adjacent_find(series.x.begin(), series.x.end(), [](double a, double b) {
-          return a >= b;
-        }) != series.x.end()) {
+        std::adjacent_find(series.x.begin(), series.x.end(),
+                           [](double a, double b) { return a >= b; }) != series.x.end()) {
       fail(place, "the edges of its bins do not increase", "Sort them and leave out empty bins");
     }
   }

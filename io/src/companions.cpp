@@ -22,7 +22,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t most_bytes = std::size_t{1} << 20;   // in which a file names others, or bears its mark
+constexpr std::size_t most_bytes = std::size_t{1}
+                                   << 20;  // in which a file names others, or bears its mark
 
 std::string beginning(const fs::path& path, std::size_t bytes = most_bytes) {
   std::error_code ignored;
@@ -51,7 +52,8 @@ void add_obj_files(const fs::path& path, std::vector<fs::path>& files) {
   const fs::path folder = path.parent_path();
   for (const std::string& library : values_of(beginning(path), "mtllib ")) {
     files.push_back(folder / library);
-    for (const std::string& picture : values_of(beginning(files.back()), "map_Kd ")) files.push_back(folder / picture);
+    for (const std::string& picture : values_of(beginning(files.back()), "map_Kd "))
+      files.push_back(folder / picture);
   }
 }
 
@@ -72,28 +74,39 @@ bool names(std::string_view text, const fs::path& file) {
   return has_word(text, name) || has_word(text, percent_encoded(name));
 }
 
-/// Records and spectra, materials, VTK's files and PNG pictures bear a mark; the numbers of glTF and pictures of tracks none.
+/// Records and spectra, materials, VTK's files and PNG pictures bear a mark; the numbers of glTF
+/// and pictures of tracks none.
 bool is_marked(const fs::path& path) {
-  constexpr std::array<std::string_view, 7> marks{"\"semsurf\":", "semsurf.version", "semsurf:", "written by semsurf",
-                                                  "surface:unit_nm", "image:pitch_x_nm",
-                                                  "detector,quantity,unit,from,to,yield,standard_error"};
+  constexpr std::array<std::string_view, 7> marks{
+      "\"semsurf\":",
+      "semsurf.version",
+      "semsurf:",
+      "written by semsurf",
+      "surface:unit_nm",
+      "image:pitch_x_nm",
+      "detector,quantity,unit,from,to,yield,standard_error"};
   const std::string text = beginning(path);
-  return std::ranges::any_of(marks, [&](std::string_view mark) { return text.find(mark) != text.npos; });
+  return std::ranges::any_of(marks,
+                             [&](std::string_view mark) { return text.find(mark) != text.npos; });
 }
 
 /// The names of files in `folder` that are `stem` and what `rest` matches.
-void add_numbered(const fs::path& folder, const std::string& stem, const std::regex& rest, std::vector<fs::path>& files) {
+void add_numbered(const fs::path& folder, const std::string& stem, const std::regex& rest,
+                  std::vector<fs::path>& files) {
   std::error_code ignored;
   std::vector<fs::path> found;
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder.empty() ? fs::path(".") : folder, ignored)) {
+  for (const fs::directory_entry& entry :
+       fs::directory_iterator(folder.empty() ? fs::path(".") : folder, ignored)) {
     const std::string name = entry.path().filename().string();
-    if (name.starts_with(stem) && std::regex_match(name.substr(stem.size()), rest)) found.push_back(folder / name);
+    if (name.starts_with(stem) && std::regex_match(name.substr(stem.size()), rest))
+      found.push_back(folder / name);
   }
   std::ranges::sort(found);
   files.insert(files.end(), found.begin(), found.end());
 }
 
-/// Whether a file of semsurf with the same stem as `main` names it: their pictures have the same names.
+/// Whether a file of semsurf with the same stem as `main` names it: their pictures have the same
+/// names.
 bool belongs_to_sibling(const fs::path& main, const fs::path& file) {
   for (const char* extension : {".gltf", ".mtl", ".vtm"}) {
     const fs::path sibling = main.parent_path() / (main.stem().string() + extension);
@@ -114,14 +127,15 @@ std::vector<fs::path> files_read_with(const fs::path& path) {
     if (extension == ".obj") add_obj_files(path, files);
     if (extension == ".gltf" || extension == ".vtm") {
       std::vector<fs::path> pictures;
-      add_numbered(path.parent_path(), path.stem().string(), std::regex("_drape[0-9]+\\.png"), pictures);
+      add_numbered(path.parent_path(), path.stem().string(), std::regex("_drape[0-9]+\\.png"),
+                   pictures);
       const std::string text = beginning(path);
       for (fs::path& picture : pictures)
         if (names(text, picture)) files.push_back(std::move(picture));
     }
     for (fs::path& settings : sem_settings_beside(path)) files.push_back(std::move(settings));
   } catch (const Error&) {
-    files.assign({path});   // reading will say what is wrong
+    files.assign({path});  // reading will say what is wrong
   }
   return files;
 }
@@ -131,7 +145,9 @@ std::vector<fs::path> files_written_with(const fs::path& path) {
   const std::string extension = lower_extension(path), stem = path.stem().string();
   const fs::path folder = path.parent_path();
   const auto add = [&](const char* end) { files.push_back(folder / (stem + end)); };
-  const auto add_pictures = [&] { add_numbered(folder, stem, std::regex("_drape[0-9]+\\.png"), files); };
+  const auto add_pictures = [&] {
+    add_numbered(folder, stem, std::regex("_drape[0-9]+\\.png"), files);
+  };
   if (extension == ".gltf") {
     add(".bin");
     add_pictures();
@@ -141,7 +157,8 @@ std::vector<fs::path> files_written_with(const fs::path& path) {
   } else if (extension == ".vtm") {
     add("_surface1.vtp");
     add("_tracks.vtp");
-    add_numbered(folder, stem, std::regex("_surface([2-9]|[1-9][0-9]+)\\.vtp|_surface[0-9]+\\.vti"), files);
+    add_numbered(folder, stem, std::regex("_surface([2-9]|[1-9][0-9]+)\\.vtp|_surface[0-9]+\\.vti"),
+                 files);
   }
   return files;
 }
@@ -150,14 +167,17 @@ void refuse_strangers(const fs::path& main, const std::vector<fs::path>& beside)
   std::string text;
   for (const fs::path& file : beside) {
     std::error_code ignored;
-    if (!fs::is_regular_file(file, ignored) || is_marked(file)) continue;   // writing refuses what is no file
+    if (!fs::is_regular_file(file, ignored) || is_marked(file))
+      continue;  // writing refuses what is no file
     if (text.empty()) text = beginning(main, std::size_t{64} << 20);
     if (names(text, file) || belongs_to_sibling(main, file)) continue;
-    throw UsageError(main.string(),
-                     fmt::format("{} would be written with it, and a file of that name is there that semsurf did not "
-                                 "write",
-                                 file.string()),
-                     "Choose another name, or move that file away");
+    throw UsageError(
+        main.string(),
+        fmt::format(
+            "{} would be written with it, and a file of that name is there that semsurf did not "
+            "write",
+            file.string()),
+        "Choose another name, or move that file away");
   }
 }
 

@@ -23,7 +23,8 @@ std::string deflate(std::string_view bytes) {
   do {
     const std::string_view now = bytes.substr(0, piece);
     bytes.remove_prefix(now.size());
-    stream.next_in = const_cast<Bytef*>(reinterpret_cast<const Bytef*>(now.data()));   // zlib does not write there
+    stream.next_in = const_cast<Bytef*>(
+        reinterpret_cast<const Bytef*>(now.data()));  // zlib does not write there
     stream.avail_in = static_cast<uInt>(now.size());
     do {
       stream.next_out = out.data();

@@ -13,8 +13,8 @@
 namespace surf::io {
 namespace {
 
-/// From the edge of pixel 0; the centre of the outermost pixels is as far as it goes, so that neither
-/// smoothing nor repetition brings in the other side.
+/// From the edge of pixel 0; the centre of the outermost pixels is as far as it goes, so that
+/// neither smoothing nor repetition brings in the other side.
 double along(double place_nm, double origin_nm, double pitch_nm, int pixels) {
   const double pixel = std::clamp((place_nm - origin_nm) / pitch_nm, 0.0, double(pixels - 1));
   return (pixel + 0.5) / pixels;
@@ -36,7 +36,8 @@ Image placed(const Drape& drape) {
 Drape make_drape(const Image& image, const std::string& channel) {
   const auto at = std::ranges::find(image.channels, channel, &Channel::name);
   const auto number = static_cast<std::size_t>(at - image.channels.begin());
-  return {channel, make_grey_picture(rows_of(image), number).grey, image.pitch_x_nm, image.pitch_y_nm,
+  return {channel,           make_grey_picture(rows_of(image), number).grey,
+          image.pitch_x_nm,  image.pitch_y_nm,
           image.origin_x_nm, image.origin_y_nm};
 }
 
@@ -49,7 +50,8 @@ std::string format_drape(const std::string& file, const Drape& drape) {
   const int width = drape.grey.width();
   return png_content(file, placed(drape), width, drape.grey.height(),
                      [&](int y, std::span<unsigned char> row) {
-                       for (int x = 0; x < width; ++x) row[static_cast<std::size_t>(x)] = drape.grey(x, y);
+                       for (int x = 0; x < width; ++x)
+                         row[static_cast<std::size_t>(x)] = drape.grey(x, y);
                      });
 }
 
@@ -64,8 +66,9 @@ Image to_image(const Drape& drape) {
 Drape read_drape(const std::filesystem::path& path) {
   const Image image = read_image(path);
   const Channel& channel = image.channels.front();
-  Drape drape{channel.name, Grid<std::uint8_t>(image.width(), image.height()), image.pitch_x_nm,
-              image.pitch_y_nm, image.origin_x_nm, image.origin_y_nm};
+  Drape drape{channel.name,      Grid<std::uint8_t>(image.width(), image.height()),
+              image.pitch_x_nm,  image.pitch_y_nm,
+              image.origin_x_nm, image.origin_y_nm};
   for (std::size_t i = 0; i < channel.values.size(); ++i) {
     const float value = channel.values.data()[i];
     if (!(value >= 0 && value <= 255)) {

@@ -31,32 +31,40 @@ namespace fs = std::filesystem;
 
 constexpr const char* temporary_start = ".semsurf-";
 constexpr const char* temporary_end = ".tmp";
-constexpr std::size_t most_pipe_bytes = std::size_t{512} << 20;   // its size is not known before
+constexpr std::size_t most_pipe_bytes = std::size_t{512} << 20;  // its size is not known before
 
 using FilePointer = std::unique_ptr<std::FILE, int (*)(std::FILE*)>;
 
-/// Throws for what is neither an ordinary file nor a pipe without a name, such as the shell's <(command):
-/// a device may never end, and a pipe with a name may never begin.
+/// Throws for what is neither an ordinary file nor a pipe without a name, such as the shell's
+/// <(command): a device may never end, and a pipe with a name may never begin.
 fs::file_type readable_type(const fs::path& path) {
   std::error_code error;
   const fs::file_status status = fs::status(path, error);
   if (!fs::exists(status)) {
-    if (error && error != std::errc::no_such_file_or_directory && error != std::errc::not_a_directory) {
-      throw FileError(path.string(), fmt::format("cannot be found: {}", error.message()), "Check its folder and links");
+    if (error && error != std::errc::no_such_file_or_directory &&
+        error != std::errc::not_a_directory) {
+      throw FileError(path.string(), fmt::format("cannot be found: {}", error.message()),
+                      "Check its folder and links");
     }
     throw FileError(path.string(), "there is no such file", "Check the name and the folder");
   }
   switch (status.type()) {
-    case fs::file_type::regular: return fs::file_type::regular;
-    case fs::file_type::directory: throw FileError(path.string(), "this is a folder", "Name a file in it");
+    case fs::file_type::regular:
+      return fs::file_type::regular;
+    case fs::file_type::directory:
+      throw FileError(path.string(), "this is a folder", "Name a file in it");
     case fs::file_type::fifo: {
-      struct statfs system{};
-      if (::statfs(path.c_str(), &system) == 0 && system.f_type == PIPEFS_MAGIC) return fs::file_type::fifo;
-      throw FileError(path.string(), "this is a named pipe", "Name an ordinary file, or write <(command) in the shell");
+      struct statfs system {};
+      if (::statfs(path.c_str(), &system) == 0 && system.f_type == PIPEFS_MAGIC)
+        return fs::file_type::fifo;
+      throw FileError(path.string(), "this is a named pipe",
+                      "Name an ordinary file, or write <(command) in the shell");
     }
     case fs::file_type::character:
-    case fs::file_type::block: throw FileError(path.string(), "this is a device", "Name an ordinary file");
-    default: throw FileError(path.string(), "this is not an ordinary file", "Name an ordinary file");
+    case fs::file_type::block:
+      throw FileError(path.string(), "this is a device", "Name an ordinary file");
+    default:
+      throw FileError(path.string(), "this is not an ordinary file", "Name an ordinary file");
   }
 }
 
@@ -70,15 +78,17 @@ FilePointer open_for_reading(const fs::path& path) {
 }
 
 std::string size_text(std::size_t bytes) {
-  return bytes < 1000 ? fmt::format("{} bytes", bytes)
-         : bytes < 1000000 ? fmt::format("{:.3g} kB", 1e-3 * double(bytes))
+  return bytes < 1000         ? fmt::format("{} bytes", bytes)
+         : bytes < 1000000    ? fmt::format("{:.3g} kB", 1e-3 * double(bytes))
          : bytes < 1000000000 ? fmt::format("{:.3g} MB", 1e-6 * double(bytes))
                               : fmt::format("{:.3g} GB", 1e-9 * double(bytes));
 }
 
 [[noreturn]] void fail_size(const fs::path& path, std::size_t max_bytes) {
-  throw FileError(path.string(), fmt::format("has more than {}, which is the most that is read here", size_text(max_bytes)),
-                  "Give a smaller file");
+  throw FileError(
+      path.string(),
+      fmt::format("has more than {}, which is the most that is read here", size_text(max_bytes)),
+      "Give a smaller file");
 }
 
 /// SHA-256 of what came through pipes, for records: a pipe gives its bytes only once.
@@ -97,7 +107,7 @@ class PipeHashes {
  private:
   using Key = std::pair<dev_t, ino_t>;
   static Key key_of(const std::FILE* file) {
-    struct stat status{};
+    struct stat status {};
     ::fstat(::fileno(const_cast<std::FILE*>(file)), &status);
     return {status.st_dev, status.st_ino};
   }
@@ -153,8 +163,8 @@ class Temporary {
   Temporary(const fs::path& path, const fs::path& target) {
     static std::atomic<unsigned> counter{0};
     for (int attempt = 0; attempt < 1000; ++attempt) {
-      name_ = target.parent_path() / fmt::format(
-          "{}{}-{}{}", temporary_start, ::getpid(), counter++, temporary_end);
+      name_ = target.parent_path() /
+              fmt::format("{}{}-{}{}", temporary_start, ::getpid(), counter++, temporary_end);
       const int file = ::open(name_.c_str(), O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC, 0666);
       if (file >= 0) {
         ::close(file);
@@ -254,8 +264,10 @@ std::string read_file(const fs::path& path, std::size_t max_bytes) {
     if (read == 0) break;
   }
   if (std::ferror(file.get())) fail_reading(path);
-  if (is_pipe && text.empty() && pipe_hashes().find(file.get())) require_regular_file(path);   // it was read before
-  if (is_pipe && !text.empty()) pipe_hashes().put(file.get(), sha256_of(std::as_bytes(std::span(text))));
+  if (is_pipe && text.empty() && pipe_hashes().find(file.get()))
+    require_regular_file(path);  // it was read before
+  if (is_pipe && !text.empty())
+    pipe_hashes().put(file.get(), sha256_of(std::as_bytes(std::span(text))));
   return text;
 }
 

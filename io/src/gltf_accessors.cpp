@@ -23,15 +23,27 @@ namespace {
 namespace fs = std::filesystem;
 
 enum ComponentType : std::uint64_t {
-  int8 = 5120, uint8 = 5121, int16 = 5122, uint16 = 5123, uint32 = 5125, float32 = 5126
+  int8 = 5120,
+  uint8 = 5121,
+  int16 = 5122,
+  uint16 = 5123,
+  uint32 = 5125,
+  float32 = 5126
 };
 
 std::size_t bytes_of(std::uint64_t component, const JsonValue& place) {
   switch (component) {
-    case int8: case uint8: return 1;
-    case int16: case uint16: return 2;
-    case uint32: case float32: return 4;
-    default: place.fail(fmt::format("{} is not a component type", component));
+    case int8:
+    case uint8:
+      return 1;
+    case int16:
+    case uint16:
+      return 2;
+    case uint32:
+    case float32:
+      return 4;
+    default:
+      place.fail(fmt::format("{} is not a component type", component));
   }
 }
 
@@ -59,12 +71,18 @@ double from_bytes(const char* bytes, bool normalized) {
 
 double component(const char* bytes, std::uint64_t type, bool normalized) {
   switch (type) {
-    case int8: return from_bytes<std::int8_t>(bytes, normalized);
-    case uint8: return from_bytes<std::uint8_t>(bytes, normalized);
-    case int16: return from_bytes<std::int16_t>(bytes, normalized);
-    case uint16: return from_bytes<std::uint16_t>(bytes, normalized);
-    case uint32: return from_bytes<std::uint32_t>(bytes, false);
-    default: return from_bytes<float>(bytes, false);
+    case int8:
+      return from_bytes<std::int8_t>(bytes, normalized);
+    case uint8:
+      return from_bytes<std::uint8_t>(bytes, normalized);
+    case int16:
+      return from_bytes<std::int16_t>(bytes, normalized);
+    case uint16:
+      return from_bytes<std::uint16_t>(bytes, normalized);
+    case uint32:
+      return from_bytes<std::uint32_t>(bytes, false);
+    default:
+      return from_bytes<float>(bytes, false);
   }
 }
 
@@ -78,8 +96,8 @@ std::string percent_decoded(const std::string& uri) {
   };
   std::string text;
   for (std::size_t i = 0; i < uri.size(); ++i) {
-    const bool is_code = uri[i] == '%' && i + 2 < uri.size() && digit(uri[i + 1]) >= 0 &&
-                         digit(uri[i + 2]) >= 0;
+    const bool is_code =
+        uri[i] == '%' && i + 2 < uri.size() && digit(uri[i + 1]) >= 0 && digit(uri[i + 2]) >= 0;
     text += is_code ? static_cast<char>(16 * digit(uri[i + 1]) + digit(uri[i + 2])) : uri[i];
     if (is_code) i += 2;
   }
@@ -100,8 +118,9 @@ fs::path gltf_buffer_file(const fs::path& path, const JsonValue& buffer, const s
   }
   const auto file = side_file(path, percent_decoded(uri));
   if (!file) {
-    buffer.fail(fmt::format("its data at '{}' are not in or below the folder of the file", shown(uri)),
-                "Put a copy of them into the folder and name that, or export GLB");
+    buffer.fail(
+        fmt::format("its data at '{}' are not in or below the folder of the file", shown(uri)),
+        "Put a copy of them into the folder and name that, or export GLB");
   }
   return *file;
 }
@@ -116,7 +135,7 @@ struct GltfAccessors::Layout {
 
 struct GltfAccessors::View {
   std::string_view bytes;
-  std::uint64_t stride = 0;   ///< 0: packed
+  std::uint64_t stride = 0;  ///< 0: packed
 };
 
 std::string GltfAccessors::load(const JsonValue& buffer, const std::string& uri,
@@ -225,7 +244,8 @@ std::vector<double> GltfAccessors::decode(const JsonValue& owner, const Layout& 
 void GltfAccessors::apply_sparse(const JsonValue& sparse, const Layout& base,
                                  std::vector<double>& values) {
   const JsonValue places = sparse.require("indices");
-  Layout index_layout{.component = places.require("componentType").whole(), .components = 1,
+  Layout index_layout{.component = places.require("componentType").whole(),
+                      .components = 1,
                       .count = sparse.require("count").whole()};
   index_layout.element_bytes = bytes_of(index_layout.component, places);
   if (index_layout.count > base.count) sparse.fail("it replaces more values than there are");
@@ -295,7 +315,8 @@ bool GltfAccessors::is_scalar(std::uint64_t index) const {
 
 std::vector<float> GltfAccessors::scalars(std::uint64_t index) {
   const JsonValue accessor = root_.item("accessors", index);
-  if (layout(accessor).components != 1) accessor.fail("one number for each vertex (SCALAR) is expected");
+  if (layout(accessor).components != 1)
+    accessor.fail("one number for each vertex (SCALAR) is expected");
   const std::vector<double> numbers = values(accessor);
   std::vector<float> result(numbers.size());
   for (std::size_t i = 0; i < result.size(); ++i) {

@@ -39,8 +39,8 @@ class GltfAccessors {
   std::string image(const JsonValue& image);
 
  private:
-  struct Layout;   // how the values of an accessor lie in bytes
-  struct View;     // a stretch of bytes
+  struct Layout;  // how the values of an accessor lie in bytes
+  struct View;    // a stretch of bytes
 
   std::string_view buffer(std::uint64_t index);
   std::string load(const JsonValue& buffer, const std::string& uri, std::uint64_t bytes) const;

@@ -17,7 +17,9 @@ std::string little_endian(std::uint64_t value) {
   return bytes;
 }
 
-void pad(std::string& content, char filler) { content.resize((content.size() + 3) / 4 * 4, filler); }
+void pad(std::string& content, char filler) {
+  content.resize((content.size() + 3) / 4 * 4, filler);
+}
 
 }  // namespace
 
@@ -35,8 +37,12 @@ GltfBytes::Stretch GltfBytes::add_numbers(std::span<const T> values) {
 }
 
 GltfBytes::Stretch GltfBytes::add(std::span<const float> values) { return add_numbers(values); }
-GltfBytes::Stretch GltfBytes::add(std::span<const std::uint32_t> values) { return add_numbers(values); }
-GltfBytes::Stretch GltfBytes::add(std::span<const std::uint16_t> values) { return add_numbers(values); }
+GltfBytes::Stretch GltfBytes::add(std::span<const std::uint32_t> values) {
+  return add_numbers(values);
+}
+GltfBytes::Stretch GltfBytes::add(std::span<const std::uint16_t> values) {
+  return add_numbers(values);
+}
 
 GltfBytes::Stretch GltfBytes::add(std::string_view bytes) {
   const Stretch stretch{content_.size(), bytes.size()};
@@ -54,10 +60,10 @@ std::string format_glb(const std::string& file, std::string json, std::string bi
     throw InvalidInput(file, "it would have more than the 4 GB that GLB can count",
                        "Write .gltf, whose data lie in a file beside it, or simplify the surface");
   }
-  std::string head = "glTF" + little_endian(2) + little_endian(total) + little_endian(json.size()) +
-                     "JSON" + json;
+  std::string head =
+      "glTF" + little_endian(2) + little_endian(total) + little_endian(json.size()) + "JSON" + json;
   if (!binary.empty()) head += little_endian(binary.size()) + std::string("BIN\0", 4);
-  binary.insert(0, head);   // in place where there is room: the binary part can be large
+  binary.insert(0, head);  // in place where there is room: the binary part can be large
   return binary;
 }
 

@@ -9,7 +9,8 @@
 
 namespace surf::io {
 
-/// The binary part of a glTF file as it grows: little-endian numbers, each array at a multiple of 4.
+/// The binary part of a glTF file as it grows: little-endian numbers, each array at a multiple
+/// of 4.
 class GltfBytes {
  public:
   /// Where an array lies.
@@ -35,8 +36,8 @@ class GltfBytes {
   std::string content_;
 };
 
-/// A GLB file (glTF 2.0, 4.4) of text and binary part, which may be empty. Throws InvalidInput beyond the 4 GB
-/// that the format can count.
+/// A GLB file (glTF 2.0, 4.4) of text and binary part, which may be empty. Throws InvalidInput
+/// beyond the 4 GB that the format can count.
 std::string format_glb(const std::string& file, std::string json, std::string binary);
 
 }  // namespace surf::io

@@ -8,9 +8,9 @@ namespace surf::io {
 namespace {
 
 constexpr double yfov = 0.7;
-constexpr double azimuth = 0.5;      // to the right of the front, which shows the specimen's -y side
+constexpr double azimuth = 0.5;  // to the right of the front, which shows the specimen's -y side
 constexpr double elevation = 0.65;
-constexpr double filled = 0.92;      // share of the half picture that the box may take
+constexpr double filled = 0.92;  // share of the half picture that the box may take
 
 std::array<Vec3, 8> corners(const Box& box) {
   std::array<Vec3, 8> points;
@@ -42,7 +42,10 @@ GltfCamera frame_box(const Box& framed, const Box& all, double smallest) {
   // A turn about y by the azimuth after one about x by -elevation.
   const double sy = std::sin(azimuth / 2), cy = std::cos(azimuth / 2);
   const double sx = std::sin(-elevation / 2), cx = std::cos(elevation / 2);
-  return {center + back * distance, {cy * sx, sy * cx, -sy * sx, cy * cx}, yfov, distance / 100,
+  return {center + back * distance,
+          {cy * sx, sy * cx, -sy * sx, cy * cx},
+          yfov,
+          distance / 100,
           std::max(4 * distance, 2 * (distance + farthest))};
 }
 

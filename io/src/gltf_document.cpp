@@ -69,8 +69,8 @@ Container open(const std::string& file, std::string_view content) {
 /// Extensions that change nothing about shapes.
 bool is_harmless(const std::string& extension) {
   static constexpr std::array<std::string_view, 7> beginnings{
-      "KHR_materials_", "KHR_texture_", "EXT_texture_", "MSFT_texture_", "KHR_lights_",
-      "EXT_lights_", "KHR_xmp"};
+      "KHR_materials_", "KHR_texture_", "EXT_texture_", "MSFT_texture_",
+      "KHR_lights_",    "EXT_lights_",  "KHR_xmp"};
   return extension == "KHR_mesh_quantization" ||
          std::any_of(beginnings.begin(), beginnings.end(),
                      [&](std::string_view b) { return extension.starts_with(b); });
@@ -90,10 +90,10 @@ void check_extensions(const JsonValue& root) {
     const bool compresses = extension == "KHR_draco_mesh_compression" ||
                             extension == "EXT_meshopt_compression" ||
                             extension == "KHR_meshopt_compression";
-    throw Unsupported(root.place(),
-                      fmt::format("it requires the extension {}, which cannot be read here",
-                                  shown(extension)),
-                      compresses ? "Export without compression" : "Export without it");
+    throw Unsupported(
+        root.place(),
+        fmt::format("it requires the extension {}, which cannot be read here", shown(extension)),
+        compresses ? "Export without compression" : "Export without it");
   }
 }
 
@@ -114,8 +114,8 @@ GltfDocument::GltfDocument(const std::filesystem::path& path, std::string_view c
     : GltfDocument(path, open(path.string(), content)) {}
 
 GltfDocument::GltfDocument(const std::filesystem::path& path, const Container& container)
-    : root(JsonValue::parse(path.string(), container.json)), accessors(path, root, container.binary),
-      unit_nm(metre_nm) {
+    : root(JsonValue::parse(path.string(), container.json)),
+      accessors(path, root, container.binary), unit_nm(metre_nm) {
   check_version(root);
   check_extensions(root);
   const auto extras = root.require("asset").find("extras");

@@ -13,7 +13,8 @@
 
 namespace surf::io {
 
-/// An opened glTF or GLB file of version 2 whose extensions can be read, and the scale that semsurf gave it.
+/// An opened glTF or GLB file of version 2 whose extensions can be read, and the scale that semsurf
+/// gave it.
 class GltfDocument {
  public:
   /// Text and binary part of a file.
@@ -24,11 +25,12 @@ class GltfDocument {
 
   /// `content` must outlive this. Throws FileError, Unsupported.
   GltfDocument(const std::filesystem::path& path, std::string_view content);
-  GltfDocument(const GltfDocument&) = delete;   // the accessors look at the root
+  GltfDocument(const GltfDocument&) = delete;  // the accessors look at the root
 
   const JsonValue root;
   GltfAccessors accessors;
-  /// The nm that a unit of the scene stands for: those of a metre, with semsurf's magnification undone.
+  /// The nm that a unit of the scene stands for: those of a metre, with semsurf's magnification
+  /// undone.
   double unit_nm;
   /// How much too high the scene is.
   double z_exaggeration = 1;

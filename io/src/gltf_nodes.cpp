@@ -109,7 +109,7 @@ std::vector<GltfInstance> gltf_instances(const JsonValue& root) {
   };
   std::vector<GltfInstance> instances;
   std::vector<bool> seen(root.count("nodes"), false);
-  std::vector<Visit> waiting;   // the next one is the last
+  std::vector<Visit> waiting;  // the next one is the last
   const auto wait_for = [&waiting](std::vector<std::uint64_t> nodes, const AffineMap& parent) {
     std::reverse(nodes.begin(), nodes.end());
     for (const std::uint64_t node : nodes) waiting.push_back({node, parent});

@@ -13,12 +13,12 @@ namespace surf::io {
 struct GltfInstance {
   JsonValue node;
   JsonValue mesh;
-  AffineMap to_scene;   ///< from the mesh's frame to the scene's, y up
+  AffineMap to_scene;  ///< from the mesh's frame to the scene's, y up
 };
 
-/// Every showing of a mesh in the default scene (else in the first, else in the whole file), parents
-/// before children. Throws FileError for a node with two parents or above itself, Unsupported for
-/// meshes that a skeleton or shape keys deform.
+/// Every showing of a mesh in the default scene (else in the first, else in the whole file),
+/// parents before children. Throws FileError for a node with two parents or above itself,
+/// Unsupported for meshes that a skeleton or shape keys deform.
 std::vector<GltfInstance> gltf_instances(const JsonValue& root);
 
 }  // namespace surf::io

@@ -78,9 +78,13 @@ bool has_positions(const JsonValue& primitive) {
 
 }  // namespace
 
-bool has_triangles(const JsonValue& primitive) { return mode_of(primitive) >= 4 && has_positions(primitive); }
+bool has_triangles(const JsonValue& primitive) {
+  return mode_of(primitive) >= 4 && has_positions(primitive);
+}
 
-bool has_lines(const JsonValue& primitive) { return mode_of(primitive) == 1 && has_positions(primitive); }
+bool has_lines(const JsonValue& primitive) {
+  return mode_of(primitive) == 1 && has_positions(primitive);
+}
 
 void check_gltf_size(const GltfDocument& document, const std::vector<GltfInstance>& instances) {
   const auto count = [&](const JsonValue& accessor) {
@@ -93,13 +97,15 @@ void check_gltf_size(const GltfDocument& document, const std::vector<GltfInstanc
       total += count(primitive.require("attributes").require("POSITION"));
       if (const auto indices = primitive.find("indices")) total += count(*indices);
       if (total > max_gltf_size) {
-        instance.node.fail("the scene has too many triangles, copies included", "Simplify the scene");
+        instance.node.fail("the scene has too many triangles, copies included",
+                           "Simplify the scene");
       }
     }
   }
 }
 
-std::vector<Vec3> gltf_points(GltfDocument& document, const JsonValue& primitive, const AffineMap& to_scene) {
+std::vector<Vec3> gltf_points(GltfDocument& document, const JsonValue& primitive,
+                              const AffineMap& to_scene) {
   refuse_compressed(document, primitive);
   const JsonValue position = primitive.require("attributes").require("POSITION");
   std::vector<Vec3> points = document.accessors.positions(position.whole());
@@ -110,8 +116,8 @@ std::vector<Vec3> gltf_points(GltfDocument& document, const JsonValue& primitive
 void append_triangles(GltfDocument& document, const JsonValue& primitive, const AffineMap& to_scene,
                       TriangleMesh& mesh) {
   const std::vector<Vec3> points = gltf_points(document, primitive, to_scene);
-  std::vector<Triangle> triangles =
-      assemble(primitive.whole("mode", 4), corners_of(document, primitive, points.size()), primitive);
+  std::vector<Triangle> triangles = assemble(
+      primitive.whole("mode", 4), corners_of(document, primitive, points.size()), primitive);
   const auto first = static_cast<std::uint32_t>(mesh.vertices_nm.size());
   mesh.vertices_nm.insert(mesh.vertices_nm.end(), points.begin(), points.end());
   const bool flip = to_scene.mirrors();
@@ -121,13 +127,14 @@ void append_triangles(GltfDocument& document, const JsonValue& primitive, const 
   }
 }
 
-std::vector<GltfBody> gltf_bodies(const GltfDocument& document, const std::vector<GltfInstance>& instances) {
+std::vector<GltfBody> gltf_bodies(const GltfDocument& document,
+                                  const std::vector<GltfInstance>& instances) {
   constexpr std::uint64_t no_material = ~std::uint64_t{0};
   std::vector<GltfBody> bodies;
   for (const GltfInstance& instance : instances) {
     std::string name = instance.node.text("name", "");
     if (name.empty()) name = instance.mesh.text("name", "");
-    std::vector<std::pair<std::uint64_t, std::size_t>> targets;   // material, place in bodies
+    std::vector<std::pair<std::uint64_t, std::size_t>> targets;  // material, place in bodies
     for (const JsonValue& primitive : instance.mesh.items("primitives")) {
       if (!has_triangles(primitive)) continue;
       const std::uint64_t material = primitive.whole("material", no_material);
@@ -136,7 +143,8 @@ std::vector<GltfBody> gltf_bodies(const GltfDocument& document, const std::vecto
       if (target == targets.end()) {
         targets.emplace_back(material, bodies.size());
         const std::string material_name =
-            material == no_material ? "" : document.root.item("materials", material).text("name", "");
+            material == no_material ? ""
+                                    : document.root.item("materials", material).text("name", "");
         bodies.push_back({name, material_name, &instance, {}});
         target = targets.end() - 1;
       }

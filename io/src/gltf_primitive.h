@@ -19,7 +19,8 @@ bool has_lines(const JsonValue& primitive);
 /// Many nodes can show one mesh: this stops a small file from filling the memory.
 void check_gltf_size(const GltfDocument& document, const std::vector<GltfInstance>& instances);
 
-std::vector<Vec3> gltf_points(GltfDocument& document, const JsonValue& primitive, const AffineMap& to_scene);
+std::vector<Vec3> gltf_points(GltfDocument& document, const JsonValue& primitive,
+                              const AffineMap& to_scene);
 
 /// Appends its triangles, turned the right way round where the map mirrors.
 void append_triangles(GltfDocument& document, const JsonValue& primitive, const AffineMap& to_scene,
@@ -27,13 +28,15 @@ void append_triangles(GltfDocument& document, const JsonValue& primitive, const 
 
 /// What one node shows in one material.
 struct GltfBody {
-  std::string name;                     ///< the node's, else the mesh's, else empty
-  std::string material;                 ///< the name of it, or empty
+  std::string name;      ///< the node's, else the mesh's, else empty
+  std::string material;  ///< the name of it, or empty
   const GltfInstance* instance;
-  std::vector<JsonValue> primitives;    ///< with triangles; one or more
+  std::vector<JsonValue> primitives;  ///< with triangles; one or more
 };
 
-/// In the order of nodes and, of each, of their first primitive. `instances` must outlive the result.
-std::vector<GltfBody> gltf_bodies(const GltfDocument& document, const std::vector<GltfInstance>& instances);
+/// In the order of nodes and, of each, of their first primitive. `instances` must outlive the
+/// result.
+std::vector<GltfBody> gltf_bodies(const GltfDocument& document,
+                                  const std::vector<GltfInstance>& instances);
 
 }  // namespace surf::io

@@ -30,8 +30,8 @@ std::optional<JsonValue> extra(const JsonValue& mesh, const char* key) {
 
 TrackKind kind_of(const JsonValue& tracks) {
   const std::string name = tracks.require("kind").text();
-  for (const TrackKind kind : {TrackKind::absorbed, TrackKind::se, TrackKind::bse, TrackKind::transmitted,
-                               TrackKind::lost}) {
+  for (const TrackKind kind : {TrackKind::absorbed, TrackKind::se, TrackKind::bse,
+                               TrackKind::transmitted, TrackKind::lost}) {
     if (name == name_of(kind)) return kind;
   }
   tracks.fail("its kind is not known");
@@ -39,7 +39,7 @@ TrackKind kind_of(const JsonValue& tracks) {
 
 template <class T>
 T whole(double value, const JsonValue& place) {
-  constexpr double most = 0x1p53;   // whole numbers up to here are exact
+  constexpr double most = 0x1p53;  // whole numbers up to here are exact
   const double high = std::min(most, static_cast<double>(std::numeric_limits<T>::max()));
   if (!(std::abs(value) <= high) || value != std::floor(value)) {
     place.fail(fmt::format("{} is not a whole number that fits here", value));
@@ -50,7 +50,8 @@ T whole(double value, const JsonValue& place) {
 class SceneParser {
  public:
   SceneParser(const std::filesystem::path& path, std::string_view content, const MeshUnit& unit)
-      : path_(path), document_(path, content), unit_nm_(file_unit_nm(unit, document_.unit_nm, path.string())),
+      : path_(path), document_(path, content),
+        unit_nm_(file_unit_nm(unit, document_.unit_nm, path.string())),
         instances_(gltf_instances(document_.root)) {
     check_gltf_size(document_, instances_);
   }
@@ -65,7 +66,8 @@ class SceneParser {
     if (document_.is_own()) {
       for (const GltfInstance& instance : instances_) add_tracks(instance);
     }
-    std::stable_sort(tracks_.begin(), tracks_.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+    std::stable_sort(tracks_.begin(), tracks_.end(),
+                     [](const auto& a, const auto& b) { return a.first < b.first; });
     for (auto& [place, track] : tracks_) scene.tracks.push_back(std::move(track));
     scene.metadata = document_.metadata();
     return scene;
@@ -87,20 +89,22 @@ class SceneParser {
     for (Vec3& p : points) {
       p *= unit_nm_;
       if (is_finite(p)) continue;
-      throw FileError(path_.string(), fmt::format("its coordinates are too large for a unit of {} nm",
-                                                  format_exact(unit_nm_)),
-                      "Check the unit");
+      throw FileError(
+          path_.string(),
+          fmt::format("its coordinates are too large for a unit of {} nm", format_exact(unit_nm_)),
+          "Check the unit");
     }
   }
 
   /// Names and units as semsurf noted them, else what the attributes' own names suggest.
   static std::vector<std::pair<std::string, VertexScalar>> announced(const GltfBody& body) {
-    std::vector<std::pair<std::string, VertexScalar>> scalars;   // attribute, its name and unit
+    std::vector<std::pair<std::string, VertexScalar>> scalars;  // attribute, its name and unit
     if (const auto extras = extra(body.instance->mesh, gltf_scalars_key)) {
       for (const JsonValue& item : body.instance->mesh.require("extras").items(gltf_scalars_key)) {
         const std::string name = item.require("name").text();
         if (!is_scalar_name(name)) item.fail("its name is not one that a scalar can have");
-        scalars.push_back({item.require("attribute").text(), {name, item.require("unit").text(), {}}});
+        scalars.push_back(
+            {item.require("attribute").text(), {name, item.require("unit").text(), {}}});
       }
       return scalars;
     }
@@ -115,10 +119,12 @@ class SceneParser {
     for (auto& [attribute, scalar] : announced(body)) {
       if (!has_everywhere(body, attribute)) continue;
       while (!names.insert(scalar.name).second) scalar.name += "_";
-      for (const JsonValue& primitive : body.primitives) append_values(primitive, attribute, scalar.values);
+      for (const JsonValue& primitive : body.primitives)
+        append_values(primitive, attribute, scalar.values);
       if (scalar.values.size() != surface.mesh.vertices_nm.size()) {
         body.instance->mesh.fail(fmt::format("{} has {} values for {} vertices", attribute,
-                                             scalar.values.size(), surface.mesh.vertices_nm.size()));
+                                             scalar.values.size(),
+                                             surface.mesh.vertices_nm.size()));
       }
       surface.scalars.push_back(std::move(scalar));
     }
@@ -126,13 +132,15 @@ class SceneParser {
 
   /// Whether every part of the body has one number per vertex under that name.
   bool has_everywhere(const GltfBody& body, const std::string& attribute) const {
-    return std::all_of(body.primitives.begin(), body.primitives.end(), [&](const JsonValue& primitive) {
-      const auto accessor = primitive.require("attributes").find(attribute);
-      return accessor && document_.accessors.is_scalar(accessor->whole());
-    });
+    return std::all_of(body.primitives.begin(), body.primitives.end(),
+                       [&](const JsonValue& primitive) {
+                         const auto accessor = primitive.require("attributes").find(attribute);
+                         return accessor && document_.accessors.is_scalar(accessor->whole());
+                       });
   }
 
-  void append_values(const JsonValue& primitive, const std::string& attribute, std::vector<float>& values) {
+  void append_values(const JsonValue& primitive, const std::string& attribute,
+                     std::vector<float>& values) {
     const auto accessor = primitive.require("attributes").require(attribute).whole();
     const std::vector<float> more = document_.accessors.scalars(accessor);
     values.insert(values.end(), more.begin(), more.end());
@@ -143,9 +151,10 @@ class SceneParser {
     const auto material = body.primitives.front().find("material");
     if (!noted || !material) return {};
     const JsonValue& root = document_.root;
-    const JsonValue look = root.item("materials", material->whole()).require("pbrMetallicRoughness");
+    const JsonValue look =
+        root.item("materials", material->whole()).require("pbrMetallicRoughness");
     const auto texture = look.find("baseColorTexture");
-    if (!texture) return {};   // taken away by another program
+    if (!texture) return {};  // taken away by another program
     const auto source = root.item("textures", texture->require("index").whole()).require("source");
     Drape drape;
     drape.name = noted->require("name").text();
@@ -153,7 +162,8 @@ class SceneParser {
     drape.pitch_y_nm = noted->require("pitch_y_nm").number();
     drape.origin_x_nm = noted->require("origin_x_nm").number();
     drape.origin_y_nm = noted->require("origin_y_nm").number();
-    if (!(drape.pitch_x_nm > 0) || !(drape.pitch_y_nm > 0)) noted->fail("pixels have a size above 0");
+    if (!(drape.pitch_x_nm > 0) || !(drape.pitch_y_nm > 0))
+      noted->fail("pixels have a size above 0");
     const JsonValue image = root.item("images", source.whole());
     drape.grey = parse_grey_png(image.place(), document_.accessors.image(image));
     return drape;
@@ -167,7 +177,8 @@ class SceneParser {
     }
   }
 
-  void add_tracks(const GltfInstance& instance, const JsonValue& primitive, const JsonValue& noted) {
+  void add_tracks(const GltfInstance& instance, const JsonValue& primitive,
+                  const JsonValue& noted) {
     const TrackKind kind = kind_of(noted);
     std::vector<Vec3> points = gltf_points(document_, primitive, instance.to_scene);
     to_nm(points);
@@ -175,7 +186,8 @@ class SceneParser {
     append_values(primitive, gltf_energy_attribute, energies);
     append_values(primitive, gltf_material_attribute, materials);
     const std::vector<double> counts = noted.numbers("points");
-    constexpr std::array<const char*, 6> keys{"place", "number", "parent", "generation", "secondary", "electron"};
+    constexpr std::array<const char*, 6> keys{"place",      "number",    "parent",
+                                              "generation", "secondary", "electron"};
     std::array<std::vector<double>, keys.size()> lists;
     for (std::size_t k = 0; k < keys.size(); ++k) {
       lists[k] = noted.numbers(keys[k]);
@@ -185,7 +197,8 @@ class SceneParser {
     for (std::size_t i = 0; i < counts.size(); ++i) {
       const auto size = whole<std::uint32_t>(counts[i], noted);
       const std::size_t most = std::min({points.size(), energies.size(), materials.size()}) - first;
-      if (size < 2 || size > most) noted.fail(fmt::format("track {} cannot have {} points", i, size));
+      if (size < 2 || size > most)
+        noted.fail(fmt::format("track {} cannot have {} points", i, size));
       Track track;
       track.kind = kind;
       track.number = whole<int>(lists[1][i], noted);
@@ -209,7 +222,7 @@ class SceneParser {
   GltfDocument document_;
   double unit_nm_;
   std::vector<GltfInstance> instances_;
-  std::vector<std::pair<double, Track>> tracks_;   // by their place in what was written
+  std::vector<std::pair<double, Track>> tracks_;  // by their place in what was written
 };
 
 }  // namespace

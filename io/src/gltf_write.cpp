@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// glTF 2.0 and GLB. The only source that knows tinygltf, which makes the text; the binary part, which can be
-// large, is made here once.
+// glTF 2.0 and GLB. The only source that knows tinygltf, which makes the text; the binary part,
+// which can be large, is made here once.
 #include <fmt/format.h>
 #include <tiny_gltf.h>
 
@@ -33,17 +33,25 @@ using Array = Value::Array;
 constexpr double metre_nm = 1e9;
 
 /// Matte; the first surface grey, others tinted, so that they can be told apart. Linear, not sRGB.
-constexpr std::array<std::array<double, 3>, 6> surface_colors{
-    {{0.52, 0.52, 0.52}, {0.35, 0.48, 0.60}, {0.60, 0.46, 0.32}, {0.38, 0.55, 0.38}, {0.55, 0.38, 0.50},
-     {0.55, 0.53, 0.30}}};
+constexpr std::array<std::array<double, 3>, 6> surface_colors{{{0.52, 0.52, 0.52},
+                                                               {0.35, 0.48, 0.60},
+                                                               {0.60, 0.46, 0.32},
+                                                               {0.38, 0.55, 0.38},
+                                                               {0.55, 0.38, 0.50},
+                                                               {0.55, 0.53, 0.30}}};
 
 /// Emitted, so that lines are seen without lights: absorbed, se, bse, transmitted, lost.
-constexpr std::array<std::array<double, 3>, 5> track_colors{
-    {{0.10, 0.25, 0.80}, {0.90, 0.60, 0.05}, {0.80, 0.08, 0.05}, {0.10, 0.60, 0.25}, {0.45, 0.45, 0.45}}};
+constexpr std::array<std::array<double, 3>, 5> track_colors{{{0.10, 0.25, 0.80},
+                                                             {0.90, 0.60, 0.05},
+                                                             {0.80, 0.08, 0.05},
+                                                             {0.10, 0.60, 0.25},
+                                                             {0.45, 0.45, 0.45}}};
 
 /// "_HEIGHT_NM"; units that are no plain word are left to the extras.
 std::string attribute_name(const VertexScalar& scalar) {
-  const auto upper = [](char c) { return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c; };
+  const auto upper = [](char c) {
+    return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
+  };
   const auto is_word = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); };
   std::string name = "_" + scalar.name;
   if (!scalar.unit.empty() && std::all_of(scalar.unit.begin(), scalar.unit.end(), is_word)) {
@@ -55,12 +63,14 @@ std::string attribute_name(const VertexScalar& scalar) {
 
 class GltfBuilder {
  public:
-  GltfBuilder(const std::filesystem::path& path, const SurfaceScene& scene, const Magnification& magnification)
+  GltfBuilder(const std::filesystem::path& path, const SurfaceScene& scene,
+              const Magnification& magnification)
       : path_(path), file_(path.string()), scene_(scene), scale_(magnification.factor / metre_nm),
         exaggeration_(magnification.z_exaggeration), is_glb_(lower_extension(path) == ".glb") {
     model_.asset.version = "2.0";
     const auto version = scene.metadata.find("semsurf.version");
-    model_.asset.generator = version == scene.metadata.end() ? "semsurf" : "semsurf " + version->second;
+    model_.asset.generator =
+        version == scene.metadata.end() ? "semsurf" : "semsurf " + version->second;
     model_.asset.extras = Value(Object{{gltf_own_key, own_extras(magnification)}});
   }
 
@@ -68,12 +78,12 @@ class GltfBuilder {
     bytes_.reserve(expected_size());
     tinygltf::Node root;
     root.name = "nm to m, y up";
-    root.rotation = {-std::sqrt(0.5), 0, 0, std::sqrt(0.5)};   // (x, y, z) -> (x, z, -y)
+    root.rotation = {-std::sqrt(0.5), 0, 0, std::sqrt(0.5)};  // (x, y, z) -> (x, z, -y)
     root.scale = {scale_, scale_, scale_ * exaggeration_};
     model_.nodes.push_back(root);
     for (const Surface& surface : scene_.surfaces) add(surface);
-    for (const TrackKind kind : {TrackKind::absorbed, TrackKind::se, TrackKind::bse, TrackKind::transmitted,
-                                 TrackKind::lost}) {
+    for (const TrackKind kind : {TrackKind::absorbed, TrackKind::se, TrackKind::bse,
+                                 TrackKind::transmitted, TrackKind::lost}) {
       add_tracks(kind);
     }
     add_camera();
@@ -90,14 +100,15 @@ class GltfBuilder {
     Object own{{gltf_unit_key, Value(std::string("nm"))},
                {gltf_magnification_key, Value(magnification.factor)},
                {gltf_exaggeration_key, Value(magnification.z_exaggeration)}};
-    if (!metadata.empty()) own[gltf_metadata_key] = Value(metadata);   // tinygltf writes null for {}
+    if (!metadata.empty()) own[gltf_metadata_key] = Value(metadata);  // tinygltf writes null for {}
     return Value(own);
   }
 
   std::size_t expected_size() const {
-    std::size_t bytes = std::size_t{1} << 16;   // also for the text before it
+    std::size_t bytes = std::size_t{1} << 16;  // also for the text before it
     for (const Surface& surface : scene_.surfaces) {
-      bytes += surface.mesh.vertices_nm.size() * (24 + 4 * surface.scalars.size() + (surface.drape ? 8 : 0)) +
+      bytes += surface.mesh.vertices_nm.size() *
+                   (24 + 4 * surface.scalars.size() + (surface.drape ? 8 : 0)) +
                surface.mesh.triangles.size() * 12;
       if (surface.drape) bytes += surface.drape->grey.size();
     }
@@ -115,7 +126,8 @@ class GltfBuilder {
     return static_cast<int>(model_.bufferViews.size()) - 1;
   }
 
-  int add_accessor(const GltfBytes::Stretch& stretch, int target, int component, int type, std::size_t count) {
+  int add_accessor(const GltfBytes::Stretch& stretch, int target, int component, int type,
+                   std::size_t count) {
     tinygltf::Accessor accessor;
     accessor.bufferView = add_view(stretch, target);
     accessor.componentType = component;
@@ -126,12 +138,13 @@ class GltfBuilder {
   }
 
   int add_floats(const std::vector<float>& values, int type, std::size_t components) {
-    return add_accessor(bytes_.add(values), TINYGLTF_TARGET_ARRAY_BUFFER, TINYGLTF_COMPONENT_TYPE_FLOAT, type,
-                        values.size() / components);
+    return add_accessor(bytes_.add(values), TINYGLTF_TARGET_ARRAY_BUFFER,
+                        TINYGLTF_COMPONENT_TYPE_FLOAT, type, values.size() / components);
   }
 
   /// Offsets from `center`, with the bounds that the format demands of positions.
-  int add_positions(const std::vector<Vec3>& points_nm, const Vec3& center, const std::string& owner) {
+  int add_positions(const std::vector<Vec3>& points_nm, const Vec3& center,
+                    const std::string& owner) {
     std::vector<float> values;
     values.reserve(3 * points_nm.size());
     std::array<float, 3> low, high;
@@ -164,7 +177,8 @@ class GltfBuilder {
     if (vertices <= 65535) {
       const std::vector<std::uint16_t> small(corners.begin(), corners.end());
       return add_accessor(bytes_.add(small), TINYGLTF_TARGET_ELEMENT_ARRAY_BUFFER,
-                          TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT, TINYGLTF_TYPE_SCALAR, small.size());
+                          TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT, TINYGLTF_TYPE_SCALAR,
+                          small.size());
     }
     return add_accessor(bytes_.add(std::span<const std::uint32_t>(corners)),
                         TINYGLTF_TARGET_ELEMENT_ARRAY_BUFFER, TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT,
@@ -190,7 +204,8 @@ class GltfBuilder {
       values.push_back(static_cast<float>(1 - ((v.y - drape.origin_y_nm) / drape.pitch_y_nm + 0.5) /
                                                   drape.grey.height()));
       if (std::isfinite(values.back()) && std::isfinite(values[values.size() - 2])) continue;
-      throw InvalidInput(file_, fmt::format("the picture '{}' lies too far from its surface", drape.name),
+      throw InvalidInput(file_,
+                         fmt::format("the picture '{}' lies too far from its surface", drape.name),
                          "Check the pixel size and the origin of both");
     }
     return add_floats(values, TINYGLTF_TYPE_VEC2, 2);
@@ -205,7 +220,8 @@ class GltfBuilder {
     primitive.mode = TINYGLTF_MODE_TRIANGLES;
     primitive.attributes["POSITION"] = add_positions(surface.mesh.vertices_nm, center, owner);
     primitive.attributes["NORMAL"] = add_normals(surface.mesh);
-    if (surface.drape) primitive.attributes["TEXCOORD_0"] = add_places(surface.mesh, *surface.drape);
+    if (surface.drape)
+      primitive.attributes["TEXCOORD_0"] = add_places(surface.mesh, *surface.drape);
     Object extras;
     Array scalars;
     for (const VertexScalar& scalar : surface.scalars) {
@@ -213,7 +229,8 @@ class GltfBuilder {
       std::string attribute = attribute_name(scalar);
       while (primitive.attributes.count(attribute) > 0) attribute += "_";
       primitive.attributes[attribute] = add_floats(scalar.values, TINYGLTF_TYPE_SCALAR, 1);
-      scalars.push_back(Value(Object{{"attribute", Value(attribute)}, {"name", Value(as_plain_text(scalar.name))},
+      scalars.push_back(Value(Object{{"attribute", Value(attribute)},
+                                     {"name", Value(as_plain_text(scalar.name))},
                                      {"unit", Value(scalar.unit)}}));
     }
     if (!scalars.empty()) extras[gltf_scalars_key] = Value(scalars);
@@ -234,7 +251,8 @@ class GltfBuilder {
     const Vec3 far = scaled(box.upper_nm - box.lower_nm, 1, 1);
     constexpr double most = std::numeric_limits<float>::max();
     for (const double c : {center.x, center.y, center.z, far.x, far.y, far.z}) {
-      if (!(std::abs(c) <= most) || !(std::abs(c) * scale_ * std::max(1.0, exaggeration_) <= most)) {
+      if (!(std::abs(c) <= most) ||
+          !(std::abs(c) * scale_ * std::max(1.0, exaggeration_) <= most)) {
         refuse_size(owner);
       }
     }
@@ -270,7 +288,9 @@ class GltfBuilder {
     return static_cast<int>(model_.materials.size()) - 1;
   }
 
-  int add_plain_material() { return add_material(matte(surface_colors[surfaces_++ % surface_colors.size()])); }
+  int add_plain_material() {
+    return add_material(matte(surface_colors[surfaces_++ % surface_colors.size()]));
+  }
 
   int add_draped_material(const Drape& drape) {
     tinygltf::Image image;
@@ -281,7 +301,8 @@ class GltfBuilder {
       image.mimeType = "image/png";
     } else {
       // Not NAME.png, which may be the picture that is draped.
-      const auto name = fmt::format("{}_drape{}.png", path_.stem().string(), model_.images.size() + 1);
+      const auto name =
+          fmt::format("{}_drape{}.png", path_.stem().string(), model_.images.size() + 1);
       image.uri = percent_encoded(name);
       files_.push_back({path_.parent_path() / name, std::move(png)});
     }
@@ -298,7 +319,8 @@ class GltfBuilder {
     texture.source = static_cast<int>(model_.images.size()) - 1;
     model_.textures.push_back(texture);
     tinygltf::Material material = matte({1, 1, 1});
-    material.pbrMetallicRoughness.baseColorTexture.index = static_cast<int>(model_.textures.size()) - 1;
+    material.pbrMetallicRoughness.baseColorTexture.index =
+        static_cast<int>(model_.textures.size()) - 1;
     return add_material(material);
   }
 
@@ -327,7 +349,9 @@ class GltfBuilder {
         if (!std::isfinite(energies.back())) refuse_size("the energy of a track");
         materials.push_back(static_cast<float>(track.material[p == 0 ? 0 : p - 1]));
       }
-      const auto add = [&](const char* key, auto value) { lists[key].push_back(Value(double(value))); };
+      const auto add = [&](const char* key, auto value) {
+        lists[key].push_back(Value(double(value)));
+      };
       add("place", i);
       add("points", track.points_nm.size());
       add("number", track.number);
@@ -349,7 +373,7 @@ class GltfBuilder {
     primitive.attributes[gltf_material_attribute] = add_floats(materials, TINYGLTF_TYPE_SCALAR, 1);
     primitive.indices = add_indices(ends, points.size());
     const auto& color = track_colors[static_cast<std::size_t>(kind)];
-    tinygltf::Material material = matte(color);   // three.js draws lines in the base colour, unlit
+    tinygltf::Material material = matte(color);  // three.js draws lines in the base colour, unlit
     material.emissiveFactor.assign(color.begin(), color.end());
     primitive.material = add_material(material);
     Object tracks{{"kind", Value(std::string(name_of(kind)))}};
@@ -392,10 +416,11 @@ class GltfBuilder {
 
   std::vector<OutputFile> pack() {
     tinygltf::TinyGLTF writer;
-    writer.SetImageWriter(nullptr, nullptr);   // the pictures are made already
+    writer.SetImageWriter(nullptr, nullptr);  // the pictures are made already
     std::ostringstream text;
     if (!writer.WriteGltfSceneToStream(&model_, text, false, false)) {
-      throw FileError(file_, "tinygltf could not make its text", "Report this as a fault of semsurf");
+      throw FileError(file_, "tinygltf could not make its text",
+                      "Report this as a fault of semsurf");
     }
     nlohmann::json json = nlohmann::json::parse(std::move(text).str());
     json["buffers"] = {{{"byteLength", bytes_.size()}}};
@@ -410,7 +435,7 @@ class GltfBuilder {
   std::filesystem::path path_;
   std::string file_;
   const SurfaceScene& scene_;
-  double scale_;           ///< metres of the file's body per nm
+  double scale_;  ///< metres of the file's body per nm
   double exaggeration_;
   bool is_glb_;
   tinygltf::Model model_;

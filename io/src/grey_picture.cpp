@@ -19,8 +19,8 @@ constexpr double low_share = 0.005;
 constexpr double high_share = 0.995;
 
 struct Stretch {
-  float low = 0;    ///< shown as 0
-  float high = 0;   ///< shown as 255
+  float low = 0;   ///< shown as 0
+  float high = 0;  ///< shown as 255
 };
 
 /// The values that count in rows of one channel.
@@ -71,7 +71,7 @@ float value_of(std::uint32_t order) {
   return std::bit_cast<float>(order >> 31 ? order & 0x7fffffffU : ~order);
 }
 
-using Histogram = std::vector<std::int64_t>;   // of 16 bits
+using Histogram = std::vector<std::int64_t>;  // of 16 bits
 
 // Where a rank falls; `rank` becomes that within the bin.
 std::uint32_t find_bin(const Histogram& histogram, std::int64_t& rank) {
@@ -80,8 +80,8 @@ std::uint32_t find_bin(const Histogram& histogram, std::int64_t& rank) {
   return bin;
 }
 
-// The exact values of two ranks without sorting: the upper half of their bits in one pass, the lower
-// one in another.
+// The exact values of two ranks without sorting: the upper half of their bits in one pass, the
+// lower one in another.
 Stretch find_stretch(Counted& counted) {
   constexpr std::size_t bins = std::size_t{1} << 16;
   Histogram upper(bins);

@@ -32,13 +32,17 @@ std::string names_of(const Scan& scan, bool heights_only) {
 /// By name, by name in small letters, by number, or the first of heights.
 const ScanChannel& choose(const std::string& file, const Scan& scan, const std::string& wanted) {
   const auto& all = scan.channels;
-  if (all.empty()) throw FileError(file, "there is no image in it", "Give a scan with an image of heights");
+  if (all.empty())
+    throw FileError(file, "there is no image in it", "Give a scan with an image of heights");
   if (wanted.empty()) {
-    const auto known = [](const ScanChannel& c) { return holds_heights(c) && scan_length_nm(c.z_unit); };
+    const auto known = [](const ScanChannel& c) {
+      return holds_heights(c) && scan_length_nm(c.z_unit);
+    };
     auto found = std::find_if(all.begin(), all.end(), known);
     if (found == all.end()) found = std::find_if(all.begin(), all.end(), holds_heights);
     if (found != all.end()) return *found;
-    throw InvalidInput(file, fmt::format("none of its channels holds heights: {}", names_of(scan, false)),
+    throw InvalidInput(file,
+                       fmt::format("none of its channels holds heights: {}", names_of(scan, false)),
                        "Choose one by name, and give the nm of its unit with `scan.height_unit`");
   }
   for (const ScanChannel& channel : all)
@@ -60,12 +64,13 @@ double z_unit_nm(const std::string& file, const Scan& scan, const ScanChannel& c
                      "Give a positive length");
   if (const auto nm = scan_length_nm(channel.z_unit)) {
     if (options.z_unit_nm)
-      notes.push_back(
-          fmt::format("the file says that heights are in {}: `scan.height_unit` is not used", channel.z_unit));
+      notes.push_back(fmt::format(
+          "the file says that heights are in {}: `scan.height_unit` is not used", channel.z_unit));
     return *nm;
   }
   if (trimmed(channel.z_unit).empty()) {
-    if (!options.z_unit_nm) notes.push_back("the file does not say the unit of its heights: nm are assumed");
+    if (!options.z_unit_nm)
+      notes.push_back("the file does not say the unit of its heights: nm are assumed");
     return options.z_unit_nm.value_or(1);
   }
   if (options.z_unit_nm) {
@@ -74,17 +79,20 @@ double z_unit_nm(const std::string& file, const Scan& scan, const ScanChannel& c
     return *options.z_unit_nm;
   }
   const std::string heights = names_of(scan, true);
-  throw InvalidInput(file, fmt::format("its channel '{}' is in {}, which is no length", channel.name, channel.z_unit),
-                     heights.empty()
-                         ? fmt::format("Give the nm of one {} with `scan.height_unit`", channel.z_unit)
-                         : fmt::format("Choose heights ({}), or give the nm of one {} with `scan.height_unit`", heights,
-                                       channel.z_unit));
+  throw InvalidInput(
+      file,
+      fmt::format("its channel '{}' is in {}, which is no length", channel.name, channel.z_unit),
+      heights.empty()
+          ? fmt::format("Give the nm of one {} with `scan.height_unit`", channel.z_unit)
+          : fmt::format("Choose heights ({}), or give the nm of one {} with `scan.height_unit`",
+                        heights, channel.z_unit));
 }
 
-double pitch_nm(const std::string& file, char axis, double of_file, bool guessed, std::optional<double> given,
-                std::vector<std::string>& notes) {
+double pitch_nm(const std::string& file, char axis, double of_file, bool guessed,
+                std::optional<double> given, std::vector<std::string>& notes) {
   if (given && !(*given > 0 && std::isfinite(*given)))
-    throw UsageError(file, fmt::format("{} nm cannot be the distance of pixels", *given), "Give a positive length");
+    throw UsageError(file, fmt::format("{} nm cannot be the distance of pixels", *given),
+                     "Give a positive length");
   if (of_file > 0 && !guessed) {
     if (given && axis == 'x')
       notes.push_back(fmt::format("the file says that pixels are {} wide: `pixel_size` is not used",
@@ -93,14 +101,17 @@ double pitch_nm(const std::string& file, char axis, double of_file, bool guessed
   }
   if (given) return *given;
   if (axis == 'x')
-    notes.push_back(of_file > 0 ? fmt::format("the file gives lengths without a unit, taken as nm: a pixel is {} wide",
-                                              format_length(of_file))
-                                : std::string("the file does not say the size of its pixels: 1 nm is assumed"));
+    notes.push_back(
+        of_file > 0
+            ? fmt::format("the file gives lengths without a unit, taken as nm: a pixel is {} wide",
+                          format_length(of_file))
+            : std::string("the file does not say the size of its pixels: 1 nm is assumed"));
   return of_file > 0 ? of_file : 1;
 }
 
 /// From the channel's unit to nm; what is not finite becomes a hole.
-void set_heights(const std::string& file, const ScanChannel& channel, double unit_nm, HeightField& field) {
+void set_heights(const std::string& file, const ScanChannel& channel, double unit_nm,
+                 HeightField& field) {
   field.z_nm = channel.values();
   Grid<unsigned char> valid(field.z_nm.width(), field.z_nm.height(), 1);
   std::size_t holes = 0;
@@ -138,10 +149,10 @@ HeightFieldFile HeightFile::read(const HeightReadOptions& options) const {
   HeightFieldFile result{{}, channel.name, scan.format, scan.metadata, scan.notes};
   for (const auto& [key, value] : channel.metadata) result.metadata.emplace(key, value);
   const double unit_nm = z_unit_nm(file, scan, channel, options, result.notes);
-  result.field.pitch_x_nm =
-      pitch_nm(file, 'x', channel.pitch_x_nm, channel.pitch_guessed, options.pitch_x_nm, result.notes);
-  result.field.pitch_y_nm =
-      pitch_nm(file, 'y', channel.pitch_y_nm, channel.pitch_guessed, options.pitch_y_nm, result.notes);
+  result.field.pitch_x_nm = pitch_nm(file, 'x', channel.pitch_x_nm, channel.pitch_guessed,
+                                     options.pitch_x_nm, result.notes);
+  result.field.pitch_y_nm = pitch_nm(file, 'y', channel.pitch_y_nm, channel.pitch_guessed,
+                                     options.pitch_y_nm, result.notes);
   result.field.origin_x_nm = scan.origin_x_nm;
   result.field.origin_y_nm = scan.origin_y_nm;
   set_heights(file, channel, unit_nm, result.field);
@@ -156,12 +167,15 @@ std::vector<HeightChannel> HeightFile::channels() const {
   return channels;
 }
 
-HeightFieldFile read_height_field(const std::filesystem::path& path, const HeightReadOptions& options) {
+HeightFieldFile read_height_field(const std::filesystem::path& path,
+                                  const HeightReadOptions& options) {
   if (!options.z_unit_nm) refuse_as_heights(path);
   return HeightFile(path).read(options);
 }
 
-std::vector<HeightChannel> height_channels(const std::filesystem::path& path) { return HeightFile(path).channels(); }
+std::vector<HeightChannel> height_channels(const std::filesystem::path& path) {
+  return HeightFile(path).channels();
+}
 
 bool is_height_field_file(const std::filesystem::path& path) { return is_scan_file(path); }
 

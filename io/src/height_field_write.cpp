@@ -22,7 +22,8 @@ bool is_image_target(const std::string& extension) {
 void check_known(const std::filesystem::path& path) {
   const std::string extension = lower_extension(path);
   if (extension != ".gsf" && extension != ".txt" && !is_image_target(extension)) {
-    throw UsageError(path.string(), fmt::format("surfaces are not written as '{}'", path.extension().string()),
+    throw UsageError(path.string(),
+                     fmt::format("surfaces are not written as '{}'", path.extension().string()),
                      "Use .gsf, .tif, .txt or .vti");
   }
   if (extension == ".vti") require_vtk(path.string());
@@ -35,8 +36,9 @@ void check_range(const std::string& file, const HeightField& field) {
   for (int y = 0; y < field.z_nm.height(); ++y)
     for (int x = 0; x < field.z_nm.width(); ++x)
       if (field.is_valid(x, y) && std::abs(field.z_nm(x, y)) > most_nm)
-        throw InvalidInput(file, fmt::format("a height of {:g} nm is too large for 32 bits", field.z_nm(x, y)),
-                           "Write .txt");
+        throw InvalidInput(
+            file, fmt::format("a height of {:g} nm is too large for 32 bits", field.z_nm(x, y)),
+            "Write .txt");
 }
 
 Image image_of(const HeightField& field, const std::map<std::string, std::string>& metadata) {

@@ -16,7 +16,7 @@ constexpr const char* channels_key = "image:channels";
 
 struct PlacementField {
   const char* key;
-  double Image::* value;
+  double Image::*value;
   bool is_pitch;
 };
 constexpr PlacementField placement[] = {
@@ -30,11 +30,20 @@ std::string escape(std::string_view text) {
   std::string escaped;
   for (const char c : text) {
     switch (c) {
-      case '\\': escaped += "\\\\"; break;
-      case '\n': escaped += "\\n"; break;
-      case '\r': escaped += "\\r"; break;
-      case '=': escaped += "\\e"; break;
-      default: escaped += c;
+      case '\\':
+        escaped += "\\\\";
+        break;
+      case '\n':
+        escaped += "\\n";
+        break;
+      case '\r':
+        escaped += "\\r";
+        break;
+      case '=':
+        escaped += "\\e";
+        break;
+      default:
+        escaped += c;
     }
   }
   return escaped;
@@ -48,10 +57,17 @@ std::string unescape(std::string_view text) {
       continue;
     }
     switch (text[++i]) {
-      case 'n': plain += '\n'; break;
-      case 'r': plain += '\r'; break;
-      case 'e': plain += '='; break;
-      default: plain += text[i];
+      case 'n':
+        plain += '\n';
+        break;
+      case 'r':
+        plain += '\r';
+        break;
+      case 'e':
+        plain += '=';
+        break;
+      default:
+        plain += text[i];
     }
   }
   return plain;

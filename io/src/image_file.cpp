@@ -37,9 +37,10 @@ enum class Use { read, write };
 Format known_format_of(const std::filesystem::path& path, Use use = Use::write) {
   const Format format = format_of(path);
   if (format == Format::none) {
-    throw UsageError(path.string(), fmt::format("'{}' is not an image format known here",
-                                                path.extension().string()),
-                     "Use .exr, .tif, .png or .vti");
+    throw UsageError(
+        path.string(),
+        fmt::format("'{}' is not an image format known here", path.extension().string()),
+        "Use .exr, .tif, .png or .vti");
   }
   if (format != Format::vti) require_raster(path.string());
   else if (use == Use::write) require_vtk(path.string());
@@ -105,9 +106,12 @@ bool in_tiles(Layout layout, const ImageSize& size) {
 
 std::int64_t stored_pixels(Layout layout, const ImageSize& size) {
   if (!in_tiles(layout, size)) return std::int64_t{size.width} * size.height;
-  const auto filled = [](int n) { return std::int64_t{(n + tile_edge - 1) / tile_edge * tile_edge}; };
+  const auto filled = [](int n) {
+    return std::int64_t{(n + tile_edge - 1) / tile_edge * tile_edge};
+  };
   std::int64_t pixels = 0;
-  for (const ImageSize& level : pyramid_sizes(size.width, size.height, tile_edge)) pixels += filled(level.width) * filled(level.height);
+  for (const ImageSize& level : pyramid_sizes(size.width, size.height, tile_edge))
+    pixels += filled(level.width) * filled(level.height);
   return pixels;
 }
 
@@ -136,9 +140,14 @@ void write_image(const std::filesystem::path& path, const ImageRows& rows,
         if (tiles) write_tiled_tiff(temporary, file, rows, options.labels);
         else write_tiff(temporary, file, rows);
         break;
-      case Format::png: write_grey_picture(temporary, file, rows, number); break;
-      case Format::vti: write_vti_at_once(temporary, file, rows); break;
-      case Format::none: break;
+      case Format::png:
+        write_grey_picture(temporary, file, rows, number);
+        break;
+      case Format::vti:
+        write_vti_at_once(temporary, file, rows);
+        break;
+      case Format::none:
+        break;
     }
   });
 }
@@ -178,7 +187,8 @@ Image read_image(const std::filesystem::path& path, int level) {
 }
 
 bool states_pixel_size(const Image& image) {
-  return image.pitch_x_nm != 1 || image.pitch_y_nm != 1 || !image.metadata.empty() || image.find("z_nm");
+  return image.pitch_x_nm != 1 || image.pitch_y_nm != 1 || !image.metadata.empty() ||
+         image.find("z_nm");
 }
 
 ImageLevel read_image_within(const std::filesystem::path& path, std::int64_t most_pixels) {
@@ -225,8 +235,6 @@ HeightField to_height_field(const Image& image, const std::string& channel, doub
   return field;
 }
 
-std::string image_library_versions() {
-  return SEMSURF_IMAGE_LIBRARIES;
-}
+std::string image_library_versions() { return SEMSURF_IMAGE_LIBRARIES; }
 
 }  // namespace surf::io

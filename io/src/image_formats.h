@@ -23,10 +23,10 @@ void write_exr(const std::filesystem::path& target, const std::string& file, con
 void write_tiff(const std::filesystem::path& target, const std::string& file,
                 const ImageRows& rows);
 /// In tiles, and in smaller sizes as well; of channels named in `labels` see Pyramid.
-void write_tiled_exr(const std::filesystem::path& target, const std::string& file, const ImageRows& rows,
-                     std::span<const std::string> labels);
-void write_tiled_tiff(const std::filesystem::path& target, const std::string& file, const ImageRows& rows,
-                      std::span<const std::string> labels);
+void write_tiled_exr(const std::filesystem::path& target, const std::string& file,
+                     const ImageRows& rows, std::span<const std::string> labels);
+void write_tiled_tiff(const std::filesystem::path& target, const std::string& file,
+                      const ImageRows& rows, std::span<const std::string> labels);
 void write_vti(const std::filesystem::path& target, const std::string& file, const Image& image);
 /// The same as bytes.
 std::string vti_content(const std::string& file, const Image& image);
@@ -41,8 +41,8 @@ void write_png(const std::filesystem::path& target, const std::string& file, con
 std::string png_content(const std::string& file, const Image& head, int width, int height,
                         const GreyRow& grey);
 
-/// The content of a PNG file of 8 bits in grey, without any text; sample (0, 0) is the lower-left pixel. The
-/// same pixels give the same bytes.
+/// The content of a PNG file of 8 bits in grey, without any text; sample (0, 0) is the lower-left
+/// pixel. The same pixels give the same bytes.
 std::string format_grey_png(const std::string& file, const Grid<std::uint8_t>& grey);
 /// The pixels of a PNG file as 8 bits in grey, colours by their first channel. `content`
 /// is the file's. Throws FileError.
@@ -60,8 +60,8 @@ Image read_raster(const std::filesystem::path& path, int level = 0);
 std::vector<ImageSize> raster_sizes(const std::filesystem::path& path);
 Image read_vti(const std::filesystem::path& path);
 
-/// Throw Unsupported, of `file`, where the module is missing that reads and writes EXR, TIFF and PNG, or writes VTK's
-/// files.
+/// Throw Unsupported, of `file`, where the module is missing that reads and writes EXR, TIFF and
+/// PNG, or writes VTK's files.
 void require_raster(const std::string& file);
 void require_vtk(const std::string& file);
 

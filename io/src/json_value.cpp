@@ -112,7 +112,8 @@ std::map<std::string, std::string> JsonValue::texts(const std::string& key) cons
   const auto object = find(key);
   if (!object) return texts;
   if (!object->is_object()) object->fail("an object is expected");
-  for (const auto& [name, value] : object->value_->items()) texts[name] = object->at(value, name).text();
+  for (const auto& [name, value] : object->value_->items())
+    texts[name] = object->at(value, name).text();
   return texts;
 }
 

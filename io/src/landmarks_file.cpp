@@ -19,15 +19,19 @@ namespace {
 
 constexpr std::size_t most_bytes = std::size_t{16} << 20;
 constexpr std::array<const char*, 4> names = {"sem_x", "sem_y", "afm_x", "afm_y"};
-constexpr std::array<const char*, 4> from_top = {"sem_col_px", "sem_row_px", "afm_col_px", "afm_row_px"};
-constexpr const char* remedy = "The first line names the columns sem_x_nm,sem_y_nm,afm_x_nm,afm_y_nm, or ..._px, or as viewers "
-                               "count, sem_col_px,sem_row_px; every other line holds one pair";
+constexpr std::array<const char*, 4> from_top = {"sem_col_px", "sem_row_px", "afm_col_px",
+                                                 "afm_row_px"};
+constexpr const char* remedy =
+    "The first line names the columns sem_x_nm,sem_y_nm,afm_x_nm,afm_y_nm, or ..._px, or as "
+    "viewers "
+    "count, sem_col_px,sem_row_px; every other line holds one pair";
 
 enum class Unit { nm, px, px_from_top };
 
 std::string trimmed(const std::string& text) {
   const auto first = text.find_first_not_of(" \t");
-  return first == std::string::npos ? "" : text.substr(first, text.find_last_not_of(" \t") - first + 1);
+  return first == std::string::npos ? ""
+                                    : text.substr(first, text.find_last_not_of(" \t") - first + 1);
 }
 
 struct Column {
@@ -68,22 +72,27 @@ class Reader {
     for (std::size_t f = 0; f < fields.size(); ++f)
       for (std::size_t i = 0; i < names.size(); ++i)
         for (const Unit unit : {Unit::nm, Unit::px, Unit::px_from_top}) {
-          const std::string name = unit == Unit::px_from_top ? from_top[i] : std::string(names[i]) + (unit == Unit::px ? "_px" : "_nm");
+          const std::string name = unit == Unit::px_from_top
+                                       ? from_top[i]
+                                       : std::string(names[i]) + (unit == Unit::px ? "_px" : "_nm");
           if (trimmed(fields[f]) != name) continue;
           if (found[i]) fail(fmt::format("there are two columns of {}", names[i]));
           found[i] = Column{f, unit};
         }
     Columns columns{};
     for (std::size_t i = 0; i < names.size(); ++i) {
-      if (!found[i]) fail(fmt::format("there is no column {}_nm, {}_px or {}", names[i], names[i], from_top[i]));
+      if (!found[i])
+        fail(fmt::format("there is no column {}_nm, {}_px or {}", names[i], names[i], from_top[i]));
       columns[i] = *found[i];
     }
     for (const std::size_t i : {std::size_t{0}, std::size_t{2}})
-      if (columns[i].unit != columns[i + 1].unit) fail(fmt::format("{} and {} are in different units", names[i], names[i + 1]));
+      if (columns[i].unit != columns[i + 1].unit)
+        fail(fmt::format("{} and {} are in different units", names[i], names[i + 1]));
     return columns;
   }
 
-  double number_of(const std::vector<std::string>& fields, const Columns& columns, std::size_t i) const {
+  double number_of(const std::vector<std::string>& fields, const Columns& columns,
+                   std::size_t i) const {
     if (columns[i].index >= fields.size()) fail(fmt::format("{} is missing", names[i]));
     const std::string text = trimmed(fields[columns[i].index]);
     const char* const begin = text.data() + (text.starts_with('+') ? 1 : 0);
@@ -111,7 +120,8 @@ class Reader {
 
 }  // namespace
 
-std::vector<LandmarkPair> read_landmarks(const std::filesystem::path& path, const PlacedImage& sem, const PlacedImage& afm) {
+std::vector<LandmarkPair> read_landmarks(const std::filesystem::path& path, const PlacedImage& sem,
+                                         const PlacedImage& afm) {
   return Reader(path, sem, afm).read();
 }
 

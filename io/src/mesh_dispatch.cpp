@@ -41,7 +41,8 @@ ParsedFile in_nm(SurfaceScene scene) {
 }
 
 ParsedFile with_unit(ParsedFile parsed, const MeshUnit& unit, const std::string& file) {
-  const auto stated_nm = parsed.note.states_unit ? std::optional(parsed.note.unit_nm) : std::nullopt;
+  const auto stated_nm =
+      parsed.note.states_unit ? std::optional(parsed.note.unit_nm) : std::nullopt;
   parsed.unit_assumed = !unit.nm && !stated_nm;
   parsed.note.unit_nm = file_unit_nm(unit, stated_nm, file);
   return parsed;
@@ -52,29 +53,38 @@ ParsedFile parse(const std::filesystem::path& path, const MeshUnit& unit, Want w
   const std::string content = read_file(path);
   if (content.empty()) throw FileError(file, "the file is empty", "Export the mesh again");
   switch (mesh_format_of(path, content)) {
-    case MeshFormat::stl: return with_unit(parse_stl(file, content), unit, file);
-    case MeshFormat::obj: return with_unit(parse_obj(path, content, want), unit, file);
-    case MeshFormat::ply: return with_unit(parse_ply(file, content, want), unit, file);
-    case MeshFormat::off: return with_unit(parse_off(file, content), unit, file);
+    case MeshFormat::stl:
+      return with_unit(parse_stl(file, content), unit, file);
+    case MeshFormat::obj:
+      return with_unit(parse_obj(path, content, want), unit, file);
+    case MeshFormat::ply:
+      return with_unit(parse_ply(file, content, want), unit, file);
+    case MeshFormat::off:
+      return with_unit(parse_off(file, content), unit, file);
     case MeshFormat::gltf:
       if (want == Want::shapes) return with_unit(parse_gltf_shapes(path, content), unit, file);
       return in_nm(parse_gltf_scene(path, content, unit));
-    case MeshFormat::three_mf: return in_nm(parse_3mf_scene(path, content, unit));
-    case MeshFormat::vtp: return with_unit(parse_vtp(file, content, want), unit, file);
-    case MeshFormat::vtm: return with_unit(parse_vtm(path, content, want), unit, file);
-    case MeshFormat::unknown: break;
+    case MeshFormat::three_mf:
+      return in_nm(parse_3mf_scene(path, content, unit));
+    case MeshFormat::vtp:
+      return with_unit(parse_vtp(file, content, want), unit, file);
+    case MeshFormat::vtm:
+      return with_unit(parse_vtm(path, content, want), unit, file);
+    case MeshFormat::unknown:
+      break;
   }
   throw FileError(file, "neither its content nor its name is that of a mesh format known here",
                   "Use STL, OBJ, PLY, OFF, glTF, 3MF, VTP or VTM");
 }
 
 void convert_to_nm(TriangleMesh& mesh, const SurfaceNote& note, const std::string& file) {
-  if (note.unit_nm == 1 && note.z_exaggeration == 1) return;   // what was read is finite
+  if (note.unit_nm == 1 && note.z_exaggeration == 1) return;  // what was read is finite
   for (Vec3& v : mesh.vertices_nm) {
     v = note.to_nm(v);
     if (is_finite(v)) continue;
-    throw FileError(file, fmt::format("its coordinates are too large for a unit of {} nm",
-                                      format_exact(note.unit_nm)),
+    throw FileError(file,
+                    fmt::format("its coordinates are too large for a unit of {} nm",
+                                format_exact(note.unit_nm)),
                     "Check the unit");
   }
 }
@@ -111,9 +121,11 @@ ParsedFile parse_mesh_file(const std::filesystem::path& path, const MeshUnit& un
   const std::string file = path.string();
   if (unit.nm) check_unit(*unit.nm, file);
   ParsedFile parsed = parse(path, unit, want);
-  std::erase_if(parsed.bodies, [](const ParsedBody& body) { return body.surface.mesh.triangles.empty(); });
+  std::erase_if(parsed.bodies,
+                [](const ParsedBody& body) { return body.surface.mesh.triangles.empty(); });
   if (parsed.bodies.empty()) {
-    throw FileError(file, "there are no triangles in it", "Export a surface, not points or an empty scene");
+    throw FileError(file, "there are no triangles in it",
+                    "Export a surface, not points or an empty scene");
   }
   const bool has_names = parsed.note.names.size() == parsed.bodies.size();
   for (std::size_t i = 0; i < parsed.bodies.size(); ++i) {

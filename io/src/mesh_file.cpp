@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <system_error>
 #include <fstream>
 #include <string_view>
 #include <system_error>
@@ -39,9 +38,9 @@ std::vector<NamedMesh> read_meshes(const std::filesystem::path& path, const Mesh
   ParsedFile parsed = parse_mesh_file(path, unit, Want::shapes);
   for (ParsedBody& body : parsed.bodies) {
     Surface& surface = body.surface;
-    meshes.push_back({std::move(surface.name), std::move(body.material), merge_equal_vertices(surface.mesh),
-                      parsed.unit_assumed});
-    surface.mesh = {};   // two copies of one body at a time
+    meshes.push_back({std::move(surface.name), std::move(body.material),
+                      merge_equal_vertices(surface.mesh), parsed.unit_assumed});
+    surface.mesh = {};  // two copies of one body at a time
   }
   return meshes;
 }
@@ -60,7 +59,8 @@ TriangleMesh read_mesh(const std::filesystem::path& path, const MeshUnit& unit) 
 
 std::vector<std::filesystem::path> mesh_input_files(const std::filesystem::path& path) {
   std::error_code error;
-  if (std::filesystem::exists(path, error)) require_regular_file(path);   // its reader says that it is missing
+  if (std::filesystem::exists(path, error))
+    require_regular_file(path);  // its reader says that it is missing
   std::vector<std::filesystem::path> files{path};
   // Only files that name others are read whole, and few of those are large.
   std::string content = file_head(path, 65536);
@@ -75,7 +75,8 @@ std::vector<std::filesystem::path> mesh_input_files(const std::filesystem::path&
   return files;
 }
 
-std::vector<std::filesystem::path> write_mesh(const std::filesystem::path& path, const TriangleMesh& mesh, double unit_nm) {
+std::vector<std::filesystem::path> write_mesh(const std::filesystem::path& path,
+                                              const TriangleMesh& mesh, double unit_nm) {
   const SurfaceFormat& format = surface_format_of(path);
   check_unit(unit_nm, path.string());
   validate(mesh, path.string().c_str());
@@ -95,14 +96,15 @@ std::vector<std::filesystem::path> write_mesh(const std::filesystem::path& path,
 void check_mesh_target(const std::filesystem::path& path) { check_surface_target(path); }
 
 bool is_mesh_file(const std::filesystem::path& path) {
-  static constexpr std::array<std::string_view, 9> known{".stl", ".obj", ".ply", ".off", ".glb",
+  static constexpr std::array<std::string_view, 9> known{".stl",  ".obj", ".ply", ".off", ".glb",
                                                          ".gltf", ".3mf", ".vtp", ".vtm"};
   return std::find(known.begin(), known.end(), lower_extension(path)) != known.end();
 }
 
 bool has_mesh_content(const std::filesystem::path& path) {
   std::error_code ignored;
-  return std::filesystem::is_regular_file(path, ignored) && mesh_format_of({}, read_file(path)) != MeshFormat::unknown;
+  return std::filesystem::is_regular_file(path, ignored) &&
+         mesh_format_of({}, read_file(path)) != MeshFormat::unknown;
 }
 
 }  // namespace surf::io

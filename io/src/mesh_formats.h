@@ -15,8 +15,8 @@ namespace surf::io {
 
 /// A body in a file, in the file's units and under the file's name, which may be empty.
 struct ParsedBody {
-  std::string material;   ///< what the file calls it; empty where it says nothing
-  Surface surface;        ///< scalars have names of the form that `validate` asks for, and finite values
+  std::string material;  ///< what the file calls it; empty where it says nothing
+  Surface surface;  ///< scalars have names of the form that `validate` asks for, and finite values
 };
 
 /// All that a file holds, in its units; what it says of these is in the note.
@@ -24,14 +24,14 @@ struct ParsedFile {
   std::vector<ParsedBody> bodies;
   std::vector<Track> tracks;
   SurfaceNote note;
-  bool unit_assumed = false;   ///< neither the file nor its reader said what a 1 is: 1 nm
+  bool unit_assumed = false;  ///< neither the file nor its reader said what a 1 is: 1 nm
 };
 
 /// What is wanted of a file: scalars, pictures and tracks take time and can be damaged.
 enum class Want { shapes, everything };
 
-// One parser per format, behind read_meshes and read_surfaces. `file` is the name for messages. The result
-// is z up, with the file's own vertices (not merged), with indices in range; it may have no
+// One parser per format, behind read_meshes and read_surfaces. `file` is the name for messages. The
+// result is z up, with the file's own vertices (not merged), with indices in range; it may have no
 // triangles. Coordinates are finite, but those of glTF may overflow in the scene's transforms.
 
 ParsedFile parse_stl(const std::string& file, std::string_view content);
@@ -40,8 +40,8 @@ ParsedFile parse_obj(const std::filesystem::path& path, std::string_view content
 ParsedFile parse_ply(const std::string& file, std::string_view content, Want want);
 ParsedFile parse_off(const std::string& file, std::string_view content);
 struct GltfMeshes {
-  std::vector<NamedMesh> meshes;   ///< semsurf's exaggeration of heights undone
-  double unit_nm;                  ///< of a metre, with semsurf's magnification undone
+  std::vector<NamedMesh> meshes;  ///< semsurf's exaggeration of heights undone
+  double unit_nm;                 ///< of a metre, with semsurf's magnification undone
 };
 /// glTF 2.0 as text or GLB. One mesh per node and material. `path` is where buffers are looked for.
 GltfMeshes parse_gltf(const std::filesystem::path& path, std::string_view content);

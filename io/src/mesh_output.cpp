@@ -87,8 +87,8 @@ std::string comments(const SurfaceNote& note, bool magnified, const char* prefix
 
 /// Names that PLY's readers take for something else.
 bool is_taken_in_ply(const std::string& name) {
-  static const std::set<std::string> taken{"x", "y", "z", "nx", "ny", "nz", "s", "t", "u", "v",
-                                           "red", "green", "blue", "alpha"};
+  static const std::set<std::string> taken{"x", "y", "z", "nx",  "ny",    "nz",   "s",
+                                           "t", "u", "v", "red", "green", "blue", "alpha"};
   return taken.contains(name);
 }
 
@@ -111,12 +111,14 @@ std::vector<std::vector<const VertexScalar*>> common_scalars(const SceneView& sc
 std::string format_stl(const std::string& file, const SceneView& scene) {
   const std::size_t count = count_triangles(scene);
   if (count > std::numeric_limits<std::uint32_t>::max()) refuse_size(file, "triangles", count);
-  std::string content = to_stl_header(scene.note);   // "solid" would announce text
+  std::string content = to_stl_header(scene.note);  // "solid" would announce text
   content.reserve(content.size() + 4 + 50 * count);
   LittleEndian bytes(content);
   bytes.add(static_cast<std::uint32_t>(count));
   for (const SurfaceView& surface : scene.surfaces) {
-    const auto corner = [&](std::uint32_t v) { return scene.note.to_file(surface.mesh->vertices_nm[v]); };
+    const auto corner = [&](std::uint32_t v) {
+      return scene.note.to_file(surface.mesh->vertices_nm[v]);
+    };
     for (const Triangle& t : surface.mesh->triangles) {
       const Vec3 a = corner(t[0]), b = corner(t[1]), c = corner(t[2]);
       for (const Vec3& v : {normal_of(a, b, c), a, b, c}) add_float32(bytes, v, file);
@@ -136,9 +138,10 @@ std::string format_ply(const std::string& file, const SceneView& scene) {
   for (const auto& scalar : scalars) {
     const std::string& name = scalar.front()->name;
     if (is_taken_in_ply(name)) {
-      throw InvalidInput(file, fmt::format("a scalar cannot be called '{}' in PLY, where this has a meaning",
-                                           name),
-                         "Give it a longer name");
+      throw InvalidInput(
+          file,
+          fmt::format("a scalar cannot be called '{}' in PLY, where this has a meaning", name),
+          "Give it a longer name");
     }
     properties += fmt::format("property float {}\n", name);
     note.scalar_units[name] = scalar.front()->unit;
@@ -148,7 +151,8 @@ std::string format_ply(const std::string& file, const SceneView& scene) {
       "property double x\nproperty double y\nproperty double z\n{}element face {}\n"
       "property list uchar int vertex_indices\nend_header\n",
       comments(note, false, "comment "), vertices, properties, count_triangles(scene));
-  content.reserve(content.size() + (24 + 4 * scalars.size()) * vertices + 13 * count_triangles(scene));
+  content.reserve(content.size() + (24 + 4 * scalars.size()) * vertices +
+                  13 * count_triangles(scene));
   LittleEndian bytes(content);
   for (std::size_t s = 0; s < scene.surfaces.size(); ++s) {
     const auto& places = scene.surfaces[s].mesh->vertices_nm;
@@ -173,12 +177,14 @@ std::string format_off(const SceneView& scene) {
   std::string text = fmt::format("OFF\n{}{} {} 0\n", comments(scene.note, false, "# "),
                                  count_vertices(scene), count_triangles(scene));
   for (const SurfaceView& surface : scene.surfaces) {
-    for (const Vec3& v : surface.mesh->vertices_nm) add_vertex_line(text, scene.note.to_file(v), "");
+    for (const Vec3& v : surface.mesh->vertices_nm)
+      add_vertex_line(text, scene.note.to_file(v), "");
   }
   std::uint64_t first = 0;
   for (const SurfaceView& surface : scene.surfaces) {
     for (const Triangle& t : surface.mesh->triangles) {
-      fmt::format_to(std::back_inserter(text), "3 {} {} {}\n", first + t[0], first + t[1], first + t[2]);
+      fmt::format_to(std::back_inserter(text), "3 {} {} {}\n", first + t[0], first + t[1],
+                     first + t[2]);
     }
     first += surface.mesh->vertices_nm.size();
   }
@@ -188,7 +194,8 @@ std::string format_off(const SceneView& scene) {
 std::vector<OutputFile> format_obj(const std::filesystem::path& path, const SceneView& scene) {
   const std::string stem = path.stem().string();
   if (stem.find_first_of("\n\r") != stem.npos) {
-    throw UsageError(path.string(), "OBJ cannot name a file whose name has line ends", "Choose another name");
+    throw UsageError(path.string(), "OBJ cannot name a file whose name has line ends",
+                     "Choose another name");
   }
   std::vector<OutputFile> files;
   SurfaceNote note = scene.note;
@@ -196,15 +203,18 @@ std::vector<OutputFile> format_obj(const std::filesystem::path& path, const Scen
   for (std::size_t s = 0; s < scene.surfaces.size(); ++s) {
     if (!scene.surfaces[s].drape) continue;
     const std::string picture = fmt::format("{}_drape{}.png", stem, s + 1);
-    materials += fmt::format("\nnewmtl drape{}\nKa 0 0 0\nKd 1 1 1\nKs 0 0 0\nillum 1\nmap_Kd {}\n", s + 1,
-                             picture);
+    materials += fmt::format("\nnewmtl drape{}\nKa 0 0 0\nKd 1 1 1\nKs 0 0 0\nillum 1\nmap_Kd {}\n",
+                             s + 1, picture);
     note.drapes[s] = picture;
-    files.push_back({path.parent_path() / picture, format_drape(path.string(), *scene.surfaces[s].drape)});
+    files.push_back(
+        {path.parent_path() / picture, format_drape(path.string(), *scene.surfaces[s].drape)});
   }
   std::string text = fmt::format(
-      "# OBJ written by semsurf. Taken for millimetres, it shows the specimen {} times larger{}.\n{}",
+      "# OBJ written by semsurf. Taken for millimetres, it shows the specimen {} times "
+      "larger{}.\n{}",
       note.magnification,
-      note.z_exaggeration == 1 ? "" : fmt::format(", its heights another {} times", note.z_exaggeration),
+      note.z_exaggeration == 1 ? ""
+                               : fmt::format(", its heights another {} times", note.z_exaggeration),
       comments(note, true, "# "));
   if (!files.empty()) {
     text += fmt::format("mtllib {}.mtl\n", stem);
@@ -218,7 +228,8 @@ std::vector<OutputFile> format_obj(const std::filesystem::path& path, const Scen
     for (const Vec3& v : places) add_vertex_line(text, note.to_file(v), "v ");
     if (!surface.drape) {
       for (const Triangle& t : surface.mesh->triangles) {
-        fmt::format_to(std::back_inserter(text), "f {} {} {}\n", first + t[0], first + t[1], first + t[2]);
+        fmt::format_to(std::back_inserter(text), "f {} {} {}\n", first + t[0], first + t[1],
+                       first + t[2]);
       }
     } else {
       for (const Vec3& v : places) {
@@ -227,8 +238,9 @@ std::vector<OutputFile> format_obj(const std::filesystem::path& path, const Scen
       }
       text += fmt::format("usemtl drape{}\n", s + 1);
       for (const Triangle& t : surface.mesh->triangles) {
-        fmt::format_to(std::back_inserter(text), "f {}/{} {}/{} {}/{}\n", first + t[0], first_texture + t[0],
-                       first + t[1], first_texture + t[1], first + t[2], first_texture + t[2]);
+        fmt::format_to(std::back_inserter(text), "f {}/{} {}/{} {}/{}\n", first + t[0],
+                       first_texture + t[0], first + t[1], first_texture + t[1], first + t[2],
+                       first_texture + t[2]);
       }
       first_texture += places.size();
     }

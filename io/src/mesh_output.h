@@ -19,7 +19,7 @@ struct SurfaceView {
   std::string_view name;
   const TriangleMesh* mesh = nullptr;
   std::span<const VertexScalar> scalars;
-  const Drape* drape = nullptr;   ///< or nullptr
+  const Drape* drape = nullptr;  ///< or nullptr
 };
 
 /// What one file shows, and how its numbers are meant.
@@ -29,19 +29,21 @@ struct SceneView {
   SurfaceNote note;
 };
 
-/// For each scalar that all surfaces have in the same unit: where each has it. Formats that make one of
-/// several surfaces hold these.
+/// For each scalar that all surfaces have in the same unit: where each has it. Formats that make
+/// one of several surfaces hold these.
 std::vector<std::vector<const VertexScalar*>> common_scalars(const SceneView& scene);
 
-// One function per format, behind write_surfaces and write_mesh: the content of the file. The scene is valid,
-// its numbers fit; what the format cannot hold is left out. `file` is the name for messages.
+// One function per format, behind write_surfaces and write_mesh: the content of the file. The scene
+// is valid, its numbers fit; what the format cannot hold is left out. `file` is the name for
+// messages.
 
 std::string format_stl(const std::string& file, const SceneView& scene);
 std::string format_ply(const std::string& file, const SceneView& scene);
 std::string format_off(const SceneView& scene);
 std::vector<OutputFile> format_obj(const std::filesystem::path& path, const SceneView& scene);
 
-/// Where the picture shows this place, from 0 (left, below) to 1; beyond the picture its outermost pixels.
+/// Where the picture shows this place, from 0 (left, below) to 1; beyond the picture its outermost
+/// pixels.
 struct TexturePoint {
   double u = 0;
   double v = 0;

@@ -21,15 +21,15 @@ namespace {
 /// Statements without geometry that matters here.
 bool is_ignored(std::string_view keyword) {
   static constexpr std::array<std::string_view, 21> ignored{
-      "vn",       "vt",       "vp",  "l",          "p",         "g",    "s",
-      "mg",       "mtllib",   "usemap", "maplib",  "bevel",     "c_interp", "d_interp",
-      "lod",      "shadow_obj", "trace_obj", "call", "csh",     "ctech", "stech"};
+      "vn",  "vt",         "vp",        "l",      "p",     "g",        "s",
+      "mg",  "mtllib",     "usemap",    "maplib", "bevel", "c_interp", "d_interp",
+      "lod", "shadow_obj", "trace_obj", "call",   "csh",   "ctech",    "stech"};
   return std::find(ignored.begin(), ignored.end(), keyword) != ignored.end();
 }
 
 bool is_free_form(std::string_view keyword) {
   static constexpr std::array<std::string_view, 13> free_form{
-      "cstype", "deg", "bmat", "step", "curv", "curv2", "surf",
+      "cstype", "deg",  "bmat", "step", "curv", "curv2", "surf",
       "parm",   "trim", "hole", "scrv", "sp",   "con"};
   return std::find(free_form.begin(), free_form.end(), keyword) != free_form.end();
 }
@@ -126,7 +126,7 @@ class ObjParser {
     part_of_triangle_.resize(mesh_.triangles.size(), current_);
     Part& part = parts_[current_];
     if (!part.has_faces) part.object = object_;
-    if (part.object != object_) part.object.clear();   // faces of several objects
+    if (part.object != object_) part.object.clear();  // faces of several objects
     part.has_faces = true;
   }
 
@@ -154,7 +154,7 @@ class ObjParser {
     const auto in_use = [](const Part& part) { return part.has_faces; };
     const auto used = std::count_if(parts_.begin(), parts_.end(), in_use);
     std::vector<ParsedBody> result;
-    if (used == 1) {   // the vertices keep their order
+    if (used == 1) {  // the vertices keep their order
       const Part& part = *std::find_if(parts_.begin(), parts_.end(), in_use);
       result.push_back({part.material, {.name = part.object, .mesh = std::move(mesh_)}});
       return result;
@@ -162,7 +162,8 @@ class ObjParser {
     std::vector<TriangleMesh> meshes = split();
     for (std::size_t i = 0; i < parts_.size(); ++i) {
       if (!parts_[i].has_faces) continue;
-      result.push_back({parts_[i].material, {.name = parts_[i].object, .mesh = std::move(meshes[i])}});
+      result.push_back(
+          {parts_[i].material, {.name = parts_[i].object, .mesh = std::move(meshes[i])}});
     }
     return result;
   }
@@ -187,7 +188,7 @@ class ObjParser {
   TriangleMesh mesh_;
   std::vector<std::uint32_t> corners_;
   std::string object_;
-  std::vector<Part> parts_{Part{}};   // the first: faces before any material
+  std::vector<Part> parts_{Part{}};  // the first: faces before any material
   std::map<std::string, std::size_t> numbers_{{std::string{}, 0}};
   std::uint32_t current_ = 0;
   std::vector<std::uint32_t> part_of_triangle_;
@@ -200,7 +201,8 @@ Drape find_drape(const std::filesystem::path& path, const std::string& name) {
   const std::filesystem::path picture(name);
   const auto found = side_file(path, picture);
   if (!found || picture.filename() != picture || name == ".") {
-    throw FileError(path.string(), fmt::format("its picture '{}' is not beside the file", shown(name)),
+    throw FileError(path.string(),
+                    fmt::format("its picture '{}' is not beside the file", shown(name)),
                     "Write the file again with semsurf");
   }
   const std::filesystem::path& place = *found;

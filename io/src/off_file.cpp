@@ -58,8 +58,7 @@ void expect_line(TextScanner& scanner, std::string_view what, std::uint64_t done
   }
 }
 
-void parse_face(TextScanner& scanner, std::uint64_t vertices,
-                std::vector<std::uint32_t>& corners) {
+void parse_face(TextScanner& scanner, std::uint64_t vertices, std::vector<std::uint32_t>& corners) {
   const std::int64_t count = scanner.integer("the number of a face's corners");
   if (count < 3) {
     scanner.fail(fmt::format("a face has {} corners", count),

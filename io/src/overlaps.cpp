@@ -14,7 +14,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Where a name leads to. Writing goes the same way (`write_atomically`): a link to nothing is replaced itself.
+/// Where a name leads to. Writing goes the same way (`write_atomically`): a link to nothing is
+/// replaced itself.
 fs::path place_of(const fs::path& path) {
   std::error_code ignored;
   const fs::path whole = fs::absolute(path, ignored);
@@ -56,13 +57,17 @@ std::string describe(const FileUse& use) {
 void refuse_input(const FileUse& output, const FileUse& input) {
   if (output.named.empty() && input.named.empty() && output.path == input.path)
     refuse(output, fmt::format("{} is an input, too ({})", output.path.string(), input.option));
-  refuse(output, fmt::format("{} is the same file as {}, an input ({})", describe(output), describe(input), input.option));
+  refuse(output, fmt::format("{} is the same file as {}, an input ({})", describe(output),
+                             describe(input), input.option));
 }
 
 void refuse_twin(const FileUse& output, const FileUse& other) {
-  if (output.named.empty() && other.named.empty() && output.path == other.path && output.option == other.option)
-    throw UsageError(output.option, fmt::format("{} is given twice", output.path.string()), "Leave one out");
-  refuse(output, fmt::format("{} is the same file as {} of {}", describe(output), describe(other), other.option));
+  if (output.named.empty() && other.named.empty() && output.path == other.path &&
+      output.option == other.option)
+    throw UsageError(output.option, fmt::format("{} is given twice", output.path.string()),
+                     "Leave one out");
+  refuse(output, fmt::format("{} is the same file as {} of {}", describe(output), describe(other),
+                             other.option));
 }
 
 }  // namespace
@@ -76,12 +81,13 @@ void refuse_overlaps(const std::vector<FileUse>& inputs, const std::vector<FileU
     if (fs::is_directory(output.path, ignored)) {
       for (const auto& [identity, input] : read)
         if (is_within(input->path, output.path))
-          refuse(output, fmt::format("{} lies in {}, which is written to ({})", describe(*input), describe(output),
-                                     input->option));
+          refuse(output, fmt::format("{} lies in {}, which is written to ({})", describe(*input),
+                                     describe(output), input->option));
       continue;
     }
     const std::string identity = identity_of(output.path);
-    if (const auto same = read.find(identity); same != read.end()) refuse_input(output, *same->second);
+    if (const auto same = read.find(identity); same != read.end())
+      refuse_input(output, *same->second);
     const auto [same, is_new] = written.emplace(identity, &output);
     if (!is_new) refuse_twin(output, *same->second);
   }

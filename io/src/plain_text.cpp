@@ -27,7 +27,7 @@ std::size_t character_bytes(std::string_view text) {
   }
   const std::uint32_t least = bytes == 2 ? 0x80 : bytes == 3 ? 0x800 : 0x10000;
   const bool is_surrogate = code >= 0xD800 && code <= 0xDFFF;
-  const bool is_no_character = code == 0xFFFE || code == 0xFFFF;   // XML 1.0, 2.2
+  const bool is_no_character = code == 0xFFFE || code == 0xFFFF;  // XML 1.0, 2.2
   return code < least || code > 0x10FFFF || is_surrogate || is_no_character ? 0 : bytes;
 }
 

@@ -23,7 +23,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr int no_matplotlib = 3;   ///< what plot.py returns without it
+constexpr int no_matplotlib = 3;  ///< what plot.py returns without it
 
 void check_name(const std::filesystem::path& path) {
   const std::string extension = lower_extension(path);
@@ -35,12 +35,18 @@ void check_name(const std::filesystem::path& path) {
 
 const char* name_of(PlotStyle style) {
   switch (style) {
-    case PlotStyle::line: return "line";
-    case PlotStyle::points: return "points";
-    case PlotStyle::line_points: return "line_points";
-    case PlotStyle::steps: return "steps";
-    case PlotStyle::bars: return "bars";
-    case PlotStyle::band: return "band";
+    case PlotStyle::line:
+      return "line";
+    case PlotStyle::points:
+      return "points";
+    case PlotStyle::line_points:
+      return "line_points";
+    case PlotStyle::steps:
+      return "steps";
+    case PlotStyle::bars:
+      return "bars";
+    case PlotStyle::band:
+      return "band";
   }
   return "line";
 }
@@ -55,10 +61,14 @@ json json_of(const PlotAxis& axis) {
 
 const char* name_of(PlotColors colors) {
   switch (colors) {
-    case PlotColors::grey: return "grey";
-    case PlotColors::heights: return "heights";
-    case PlotColors::relief: return "relief";
-    case PlotColors::difference: return "difference";
+    case PlotColors::grey:
+      return "grey";
+    case PlotColors::heights:
+      return "heights";
+    case PlotColors::relief:
+      return "relief";
+    case PlotColors::difference:
+      return "difference";
   }
   return "grey";
 }
@@ -67,7 +77,8 @@ const char* name_of(PlotColors colors) {
 json json_of(const std::optional<PlotImage>& image) {
   if (!image) return {};
   const auto& data = image->values.data();
-  const auto finite = std::find_if(data.begin(), data.end(), [](double v) { return std::isfinite(v); });
+  const auto finite =
+      std::find_if(data.begin(), data.end(), [](double v) { return std::isfinite(v); });
   const double middle = finite == data.end() ? 0 : *finite;
   std::string bytes;
   bytes.reserve(4 * data.size());
@@ -116,16 +127,16 @@ json json_of(const PlotPanel& panel) {
                      {"to", band.to},
                      {"name", band.name}});
   }
-  return {{"title", panel.title}, {"x", json_of(panel.x)}, {"y", json_of(panel.y)},
-          {"series", series},     {"notes", notes},        {"references", references},
-          {"bands", bands},       {"legend", panel.legend},   {"image", json_of(panel.image)}};
+  return {{"title", panel.title}, {"x", json_of(panel.x)},  {"y", json_of(panel.y)},
+          {"series", series},     {"notes", notes},         {"references", references},
+          {"bands", bands},       {"legend", panel.legend}, {"image", json_of(panel.image)}};
 }
 
 json json_of(const Plot& plot) {
   const int count = static_cast<int>(plot.panels.size());
   // Four panels look better as two by two.
   const int columns = std::min(count, plot.columns > 0 ? plot.columns : count == 4 ? 2 : 3);
-  int cell = 0;   // the next free one, by rows
+  int cell = 0;  // the next free one, by rows
   json panels = json::array();
   for (const PlotPanel& panel : plot.panels) {
     const int span = std::min(panel.columns, columns);
@@ -139,7 +150,8 @@ json json_of(const Plot& plot) {
   const double height = columns == 1 ? 0.625 : columns == 2 ? 0.43 : 0.33;
   const double automatic = std::clamp(plot.width_px * height * rows, 200.0, 10000.0);
   std::string description;
-  for (const auto& [key, value] : plot.metadata) description += fmt::format("{} = {}\n", key, value);
+  for (const auto& [key, value] : plot.metadata)
+    description += fmt::format("{} = {}\n", key, value);
   return {{"title", plot.title},
           {"description", description},
           {"panels", panels},
@@ -193,9 +205,8 @@ void write_plot(const std::filesystem::path& path, const Plot& plot) {
   // Bytes that are no UTF-8 become a mark.
   const std::string input = json_of(plot).dump(-1, ' ', true, json::error_handler_t::replace);
   const std::string kind = lower_extension(path).substr(1);
-  write_atomically(path, [&](const std::filesystem::path& temporary) {
-    draw(temporary, kind, input, file);
-  });
+  write_atomically(
+      path, [&](const std::filesystem::path& temporary) { draw(temporary, kind, input, file); });
 }
 
 void check_plot_target(const std::filesystem::path& path) {

@@ -83,13 +83,20 @@ class BinaryBody {
   std::int64_t whole(PlyType type) {
     const char* const bytes = take(bytes_of(type));
     switch (type) {
-      case PlyType::int8: return number_from<std::int8_t, std::uint8_t>(bytes, swap_);
-      case PlyType::uint8: return number_from<std::uint8_t, std::uint8_t>(bytes, swap_);
-      case PlyType::int16: return number_from<std::int16_t, std::uint16_t>(bytes, swap_);
-      case PlyType::uint16: return number_from<std::uint16_t, std::uint16_t>(bytes, swap_);
-      case PlyType::int32: return number_from<std::int32_t, std::uint32_t>(bytes, swap_);
-      case PlyType::uint32: return number_from<std::uint32_t, std::uint32_t>(bytes, swap_);
-      default: fail("a whole number is expected");
+      case PlyType::int8:
+        return number_from<std::int8_t, std::uint8_t>(bytes, swap_);
+      case PlyType::uint8:
+        return number_from<std::uint8_t, std::uint8_t>(bytes, swap_);
+      case PlyType::int16:
+        return number_from<std::int16_t, std::uint16_t>(bytes, swap_);
+      case PlyType::uint16:
+        return number_from<std::uint16_t, std::uint16_t>(bytes, swap_);
+      case PlyType::int32:
+        return number_from<std::int32_t, std::uint32_t>(bytes, swap_);
+      case PlyType::uint32:
+        return number_from<std::uint32_t, std::uint32_t>(bytes, swap_);
+      default:
+        fail("a whole number is expected");
     }
   }
   void skip(PlyType type) { take(bytes_of(type)); }
@@ -137,14 +144,14 @@ void skip_property(Body& body, const PlyProperty& property) {
 
 /// Properties of vertices that are no scalars of a surface.
 bool has_other_meaning(std::string_view name) {
-  static constexpr std::array<std::string_view, 14> others{"x",  "y",   "z",     "nx",   "ny", "nz", "s",
-                                                           "t",  "u",   "v",     "red",  "green", "blue",
-                                                           "alpha"};
+  static constexpr std::array<std::string_view, 14> others{
+      "x", "y", "z", "nx", "ny", "nz", "s", "t", "u", "v", "red", "green", "blue", "alpha"};
   return std::find(others.begin(), others.end(), name) != others.end();
 }
 
 /// Which scalar each property is; -1: none.
-std::vector<int> scalar_properties(const PlyElement& element, const SurfaceNote& note, Surface& surface) {
+std::vector<int> scalar_properties(const PlyElement& element, const SurfaceNote& note,
+                                   Surface& surface) {
   std::vector<int> scalar_of;
   for (const PlyProperty& property : element.properties) {
     if (property.count_type || has_other_meaning(property.name)) {
@@ -153,7 +160,8 @@ std::vector<int> scalar_properties(const PlyElement& element, const SurfaceNote&
     }
     scalar_of.push_back(static_cast<int>(surface.scalars.size()));
     const auto unit = note.scalar_units.find(property.name);
-    surface.scalars.push_back({property.name, unit == note.scalar_units.end() ? "1" : unit->second, {}});
+    surface.scalars.push_back(
+        {property.name, unit == note.scalar_units.end() ? "1" : unit->second, {}});
     surface.scalars.back().values.reserve(element.count);
   }
   return scalar_of;
@@ -214,8 +222,7 @@ void read_corners(Body& body, const PlyProperty& property, std::uint64_t vertice
 }
 
 template <class Body>
-void read_faces(Body& body, const PlyElement& element, std::uint64_t vertices,
-                TriangleMesh& mesh) {
+void read_faces(Body& body, const PlyElement& element, std::uint64_t vertices, TriangleMesh& mesh) {
   const int list = std::max(element.find("vertex_indices"), element.find("vertex_index"));
   if (list < 0 || !element.properties[static_cast<std::size_t>(list)].count_type ||
       !is_whole(element.properties[static_cast<std::size_t>(list)].type)) {
@@ -297,7 +304,8 @@ ParsedFile parse_ply(const std::string& file, std::string_view content, Want wan
   ParsedFile parsed;
   parsed.note = header.note;
   if (header.encoding == PlyEncoding::text) {
-    parsed.bodies.push_back({{}, read_body(TextBody(file, content, header.body), header, vertices, want)});
+    parsed.bodies.push_back(
+        {{}, read_body(TextBody(file, content, header.body), header, vertices, want)});
     return parsed;
   }
   const bool big_endian = header.encoding == PlyEncoding::big_endian;

@@ -15,14 +15,22 @@ namespace {
 
 PlyType parse_type(TextScanner& scanner) {
   static constexpr std::array<std::pair<std::string_view, PlyType>, 16> types{{
-      {"char", PlyType::int8},     {"int8", PlyType::int8},
-      {"uchar", PlyType::uint8},   {"uint8", PlyType::uint8},
-      {"short", PlyType::int16},   {"int16", PlyType::int16},
-      {"ushort", PlyType::uint16}, {"uint16", PlyType::uint16},
-      {"int", PlyType::int32},     {"int32", PlyType::int32},
-      {"uint", PlyType::uint32},   {"uint32", PlyType::uint32},
-      {"float", PlyType::float32}, {"float32", PlyType::float32},
-      {"double", PlyType::float64}, {"float64", PlyType::float64},
+      {"char", PlyType::int8},
+      {"int8", PlyType::int8},
+      {"uchar", PlyType::uint8},
+      {"uint8", PlyType::uint8},
+      {"short", PlyType::int16},
+      {"int16", PlyType::int16},
+      {"ushort", PlyType::uint16},
+      {"uint16", PlyType::uint16},
+      {"int", PlyType::int32},
+      {"int32", PlyType::int32},
+      {"uint", PlyType::uint32},
+      {"uint32", PlyType::uint32},
+      {"float", PlyType::float32},
+      {"float32", PlyType::float32},
+      {"double", PlyType::float64},
+      {"float64", PlyType::float64},
   }};
   const std::string_view word = scanner.word();
   for (const auto& [name, type] : types) {
@@ -35,8 +43,7 @@ PlyEncoding parse_format(TextScanner& scanner) {
   const std::string_view format = scanner.word();
   const std::string_view version = scanner.word();
   if (version != "1.0") {
-    scanner.fail(fmt::format("PLY version '{}' is not known", shown(version)),
-                 "Export PLY 1.0");
+    scanner.fail(fmt::format("PLY version '{}' is not known", shown(version)), "Export PLY 1.0");
   }
   if (format == "ascii") return PlyEncoding::text;
   if (format == "binary_little_endian") return PlyEncoding::little_endian;
@@ -78,8 +85,8 @@ void parse_property(TextScanner& scanner, std::vector<PlyElement>& elements) {
 std::uint64_t smallest_size(const PlyElement& element, PlyEncoding encoding) {
   std::uint64_t bytes = 0;
   for (const PlyProperty& property : element.properties) {
-    bytes += encoding == PlyEncoding::text ? 2
-                                           : bytes_of(property.count_type.value_or(property.type));
+    bytes +=
+        encoding == PlyEncoding::text ? 2 : bytes_of(property.count_type.value_or(property.type));
   }
   return bytes;
 }

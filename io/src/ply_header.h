@@ -18,8 +18,8 @@ inline bool is_whole(PlyType type) { return type < PlyType::float32; }
 
 struct PlyProperty {
   std::string name;
-  PlyType type;                        ///< of the value, or of a list's items
-  std::optional<PlyType> count_type;   ///< only for lists
+  PlyType type;                       ///< of the value, or of a list's items
+  std::optional<PlyType> count_type;  ///< only for lists
 };
 
 struct PlyElement {
@@ -36,8 +36,8 @@ enum class PlyEncoding { text, little_endian, big_endian };
 struct PlyHeader {
   PlyEncoding encoding = PlyEncoding::text;
   std::vector<PlyElement> elements;
-  SurfaceNote note;                    ///< from the comments
-  std::size_t body = 0;                ///< offset of the first byte after the header
+  SurfaceNote note;      ///< from the comments
+  std::size_t body = 0;  ///< offset of the first byte after the header
 };
 
 /// Throws FileError with the line. Refuses counts that cannot fit in the file.

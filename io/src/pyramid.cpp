@@ -8,7 +8,7 @@
 namespace surf::io {
 namespace {
 
-constexpr std::size_t most_memory = std::size_t{256} << 20;   // bytes of a level
+constexpr std::size_t most_memory = std::size_t{256} << 20;  // bytes of a level
 
 // Of up to two by two values below a pixel.
 float join(std::span<const float> upper, std::span<const float> lower, std::size_t x, bool label) {
@@ -25,7 +25,8 @@ float join(std::span<const float> upper, std::span<const float> lower, std::size
 }
 
 // Without a lower row it is empty.
-void halve(std::span<const float> upper, std::span<const float> lower, bool label, std::span<float> into) {
+void halve(std::span<const float> upper, std::span<const float> lower, bool label,
+           std::span<float> into) {
   for (std::size_t x = 0; x < into.size(); ++x) into[x] = join(upper, lower, 2 * x, label);
 }
 
@@ -69,11 +70,13 @@ Pyramid::Pyramid(const ImageRows& image, std::span<const std::string> labels, in
 }
 
 Pyramid::Level Pyramid::make_level(ImageSize size) const {
-  const std::size_t bytes = static_cast<std::size_t>(size.width) * static_cast<std::size_t>(size.height) *
-                            sizeof(float) * is_label_.size();
+  const std::size_t bytes = static_cast<std::size_t>(size.width) *
+                            static_cast<std::size_t>(size.height) * sizeof(float) *
+                            is_label_.size();
   Level level;
   for (std::size_t c = 0; c < is_label_.size(); ++c)
-    level.emplace_back(size.width, size.height, bytes > most_memory ? scratch_folder_ : std::string());
+    level.emplace_back(size.width, size.height,
+                       bytes > most_memory ? scratch_folder_ : std::string());
   return level;
 }
 
@@ -82,7 +85,8 @@ void Pyramid::add(std::size_t channel, int first, std::span<const float> rows) {
   const auto width = static_cast<std::size_t>(sizes_[0].width);
   const std::size_t count = rows.size() / width;
   for (std::size_t y = 0; y < count; y += 2)
-    halve(rows.subspan(y * width, width), y + 1 < count ? rows.subspan((y + 1) * width, width) : std::span<const float>(),
+    halve(rows.subspan(y * width, width),
+          y + 1 < count ? rows.subspan((y + 1) * width, width) : std::span<const float>(),
           is_label_[channel], row_of(levels_[0][channel], (first + static_cast<int>(y)) / 2));
 }
 
@@ -93,9 +97,10 @@ void Pyramid::finish() {
     for (std::size_t c = 0; c < is_label_.size(); ++c)
       for (int y = 0; y < sizes_[k + 1].height; ++y) {
         if (y % tile_edge == 0) release();
-        halve(row_of(below[c], 2 * y),
-              2 * y + 1 < below[c].height() ? row_of(below[c], 2 * y + 1) : std::span<const float>(), is_label_[c],
-              row_of(levels_[k][c], y));
+        halve(
+            row_of(below[c], 2 * y),
+            2 * y + 1 < below[c].height() ? row_of(below[c], 2 * y + 1) : std::span<const float>(),
+            is_label_[c], row_of(levels_[k][c], y));
       }
     release();
   }

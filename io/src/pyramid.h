@@ -15,21 +15,25 @@ namespace surf::io {
 /// Pixels across a tile.
 inline constexpr int tile_edge = 128;
 
-/// The sizes of an image and of its halves, rounded up, until neither side is longer than `smallest`.
+/// The sizes of an image and of its halves, rounded up, until neither side is longer than
+/// `smallest`.
 std::vector<ImageSize> pyramid_sizes(int width, int height, int smallest);
 
-/// Placement of level `level` of an image of `height` pixels: its pixels are 2^level times as large, and the
-/// upper left corner stays where it is.
+/// Placement of level `level` of an image of `height` pixels: its pixels are 2^level times as
+/// large, and the upper left corner stays where it is.
 Image placed_at_level(Image image, int height, int level);
 
-/// An image in ever smaller sizes, each value the mean of the up to four finite ones below it; of labels (names of
-/// materials, as numbers) the first of them. Rows are counted from the top here, as in files.
+/// An image in ever smaller sizes, each value the mean of the up to four finite ones below it; of
+/// labels (names of materials, as numbers) the first of them. Rows are counted from the top here,
+/// as in files.
 class Pyramid {
  public:
   /// What takes more than some hundred MB goes into scratch files in `scratch_folder`.
-  Pyramid(const ImageRows& image, std::span<const std::string> labels, int smallest, const std::string& scratch_folder);
+  Pyramid(const ImageRows& image, std::span<const std::string> labels, int smallest,
+          const std::string& scratch_folder);
 
-  /// Of the image itself: `rows` of a channel from row `first` on, which is even; an even number of them, or the last.
+  /// Of the image itself: `rows` of a channel from row `first` on, which is even; an even number of
+  /// them, or the last.
   void add(std::size_t channel, int first, std::span<const float> rows);
 
   /// Once all rows of all channels were added.
@@ -45,14 +49,14 @@ class Pyramid {
   void release() const;
 
  private:
-  using Level = std::vector<LargeGrid<float>>;   // by channel
+  using Level = std::vector<LargeGrid<float>>;  // by channel
 
   Level make_level(ImageSize size) const;
 
   std::vector<ImageSize> sizes_;
   std::vector<bool> is_label_;
   std::string scratch_folder_;
-  std::vector<Level> levels_;                    // from level 1 on
+  std::vector<Level> levels_;  // from level 1 on
 };
 
 }  // namespace surf::io

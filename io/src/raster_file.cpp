@@ -45,13 +45,13 @@ void write_rows(OIIO::ImageOutput& output, const std::string& file, const ImageR
         for (std::size_t x = 0; x < width; ++x, at += channels) block[at] = row[x];
       }
     }
-    check_written(output.write_scanlines(first, end, 0, OIIO::TypeDesc::FLOAT, block.data()), output,
-                  file);
+    check_written(output.write_scanlines(first, end, 0, OIIO::TypeDesc::FLOAT, block.data()),
+                  output, file);
   }
 }
 
-/// Bytes of one row of PNG's pixels as they are compressed, by its header; colour tables make them smaller than
-/// what is read.
+/// Bytes of one row of PNG's pixels as they are compressed, by its header; colour tables make them
+/// smaller than what is read.
 double png_row_bytes(const std::filesystem::path& path, const OIIO::ImageSpec& spec) {
   unsigned char head[26] = {};
   std::ifstream(path, std::ios::binary).read(reinterpret_cast<char*>(head), sizeof head);
@@ -59,10 +59,12 @@ double png_row_bytes(const std::filesystem::path& path, const OIIO::ImageSpec& s
   return spec.width * double(head[24]) / 8 * (has_table ? 1 : spec.nchannels);
 }
 
-/// How many times smaller EXR's compression can make pixels. DWA packs one value for 64, and that once more.
+/// How many times smaller EXR's compression can make pixels. DWA packs one value for 64, and that
+/// once more.
 double exr_ratio(std::string_view compression) {
   if (compression == "none") return 1;
-  if (compression == "pxr24") return 4.0 / 3 * deflate_ratio;   // it leaves out one of four bytes first
+  if (compression == "pxr24")
+    return 4.0 / 3 * deflate_ratio;  // it leaves out one of four bytes first
   return compression.starts_with("dwa") ? 64 * deflate_ratio : deflate_ratio;
 }
 
@@ -79,7 +81,8 @@ void check_stored(const OIIO::ImageInput& input, const std::filesystem::path& pa
     bytes = spec.height * png_row_bytes(path, spec);
   } else {
     bytes = double(spec.image_bytes(true));
-    if (format != "jpeg" && format != "bmp") ratio = unknown_ratio;   // by a name that does not fit its content
+    if (format != "jpeg" && format != "bmp")
+      ratio = unknown_ratio;  // by a name that does not fit its content
   }
   require_stored(path.string(), bytes, bytes / ratio, std::filesystem::file_size(path));
 }
@@ -101,20 +104,33 @@ std::vector<float> read_values(OIIO::ImageInput& input, const std::string& file)
   std::vector<float> values(static_cast<std::size_t>(spec.width) *
                             static_cast<std::size_t>(spec.height) *
                             static_cast<std::size_t>(spec.nchannels));
-  if (!input.read_image(input.current_subimage(), input.current_miplevel(), 0, spec.nchannels, OIIO::TypeDesc::FLOAT,
-                        values.data())) {
+  if (!input.read_image(input.current_subimage(), input.current_miplevel(), 0, spec.nchannels,
+                        OIIO::TypeDesc::FLOAT, values.data())) {
     throw FileError(file, fmt::format("its pixels cannot be read: {}", input.geterror()),
                     "It is cut off or damaged: copy or write it again");
   }
-  double full_scale = 0;   // OpenImageIO maps whole numbers to 0 ... 1 or -1 ... 1
+  double full_scale = 0;  // OpenImageIO maps whole numbers to 0 ... 1 or -1 ... 1
   switch (spec.format.basetype) {
-    case OIIO::TypeDesc::UINT8: full_scale = 0xff; break;
-    case OIIO::TypeDesc::INT8: full_scale = 0x7f; break;
-    case OIIO::TypeDesc::UINT16: full_scale = 0xffff; break;
-    case OIIO::TypeDesc::INT16: full_scale = 0x7fff; break;
-    case OIIO::TypeDesc::UINT32: full_scale = 0xffffffffU; break;
-    case OIIO::TypeDesc::INT32: full_scale = 0x7fffffff; break;
-    default: return values;
+    case OIIO::TypeDesc::UINT8:
+      full_scale = 0xff;
+      break;
+    case OIIO::TypeDesc::INT8:
+      full_scale = 0x7f;
+      break;
+    case OIIO::TypeDesc::UINT16:
+      full_scale = 0xffff;
+      break;
+    case OIIO::TypeDesc::INT16:
+      full_scale = 0x7fff;
+      break;
+    case OIIO::TypeDesc::UINT32:
+      full_scale = 0xffffffffU;
+      break;
+    case OIIO::TypeDesc::INT32:
+      full_scale = 0x7fffffff;
+      break;
+    default:
+      return values;
   }
   for (float& value : values) value = static_cast<float>(std::round(double{value} * full_scale));
   return values;
@@ -183,9 +199,10 @@ int number_of(const OIIO::ImageSpec& spec, const char* key) {
 
 /// What pages there are, of which a TIFF file of ours says more than a plain one.
 struct Pages {
-  int channels = 1;   ///< pages of the image itself
+  int channels = 1;  ///< pages of the image itself
   int levels = 1;
-  bool mip = false;   ///< whether levels are levels for OpenImageIO, too, or pages after those of the image
+  bool mip =
+      false;  ///< whether levels are levels for OpenImageIO, too, or pages after those of the image
 
   int of(int channel, int level) const {
     return mip || level == 0 ? channel : channels + channel * (levels - 1) + level - 1;
@@ -205,9 +222,12 @@ Pages pages_of(OIIO::ImageInput& input) {
   return pages;
 }
 
-void go_to(OIIO::ImageInput& input, const std::string& file, const Pages& pages, int channel, int level) {
+void go_to(OIIO::ImageInput& input, const std::string& file, const Pages& pages, int channel,
+           int level) {
   if (input.seek_subimage(pages.of(channel, level), pages.mip ? level : 0)) return;
-  throw FileError(file, fmt::format("page {} of {} is missing", pages.of(channel, level) + 1, pages.channels * (pages.mip ? 1 : pages.levels)),
+  throw FileError(file,
+                  fmt::format("page {} of {} is missing", pages.of(channel, level) + 1,
+                              pages.channels * (pages.mip ? 1 : pages.levels)),
                   "It is cut off or damaged: copy or write it again");
 }
 
@@ -252,7 +272,8 @@ void write_png_rows(OIIO::ImageOutput& output, const std::string& target, const 
   std::vector<unsigned char> values(static_cast<std::size_t>(width));
   for (int row = 0; row < height; ++row) {
     grey(height - 1 - row, values);
-    check_written(output.write_scanline(row, 0, OIIO::TypeDesc::UINT8, values.data()), output, file);
+    check_written(output.write_scanline(row, 0, OIIO::TypeDesc::UINT8, values.data()), output,
+                  file);
   }
   close_output(output, file);
 }
@@ -279,8 +300,7 @@ void write_tiff(const std::filesystem::path& target, const std::string& file,
                 const ImageRows& rows) {
   const Image& image = rows.head;
   const auto output = create_output("tiff", file);
-  const double bytes = 4.0 * rows.width * rows.height *
-                       static_cast<double>(image.channels.size());
+  const double bytes = 4.0 * rows.width * rows.height * static_cast<double>(image.channels.size());
   auto mode = OIIO::ImageOutput::Create;
   for (std::size_t c = 0; c < image.channels.size(); ++c) {
     const Channel& channel = image.channels[c];
@@ -290,7 +310,7 @@ void write_tiff(const std::filesystem::path& target, const std::string& file,
     spec.attribute("ImageDescription", fmt::format("{}{}={}\n", to_description(page), pages_key,
                                                    image.channels.size()));
     leave_out_date(spec);
-    spec.attribute("compression", "none");   // ImageJ and others cannot read compressed floats
+    spec.attribute("compression", "none");  // ImageJ and others cannot read compressed floats
     if (bytes > 4e9) spec.attribute("tiff:bigtiff", 1);
     set_resolution(spec, image, 4e9);
     check_written(output->open(target.string(), spec, mode), *output, file);
@@ -335,7 +355,8 @@ std::string format_grey_png(const std::string& file, const Grid<std::uint8_t>& g
 Grid<std::uint8_t> parse_grey_png(const std::string& file, std::string_view content) {
   keep_quiet();
   const auto fail = [&](const std::string& reason) {
-    throw FileError(file, fmt::format("its picture cannot be read: {}", reason), "Export the file again");
+    throw FileError(file, fmt::format("its picture cannot be read: {}", reason),
+                    "Export the file again");
   };
   OIIO::Filesystem::IOMemReader source(const_cast<char*>(content.data()), content.size());
   const auto input = OIIO::ImageInput::open("picture.png", nullptr, &source);
@@ -358,7 +379,9 @@ int raster_bits(const std::filesystem::path& path) {
   require_regular_file(path);
   keep_quiet();
   const auto input = OIIO::ImageInput::open(path.string());
-  if (!input) throw FileError(path.string(), "cannot be read as an image: " + OIIO::geterror(), "Check its content");
+  if (!input)
+    throw FileError(path.string(), "cannot be read as an image: " + OIIO::geterror(),
+                    "Check its content");
   const OIIO::ImageSpec& spec = input->spec();
   if (spec.format.is_floating_point()) return 0;
   return spec.get_int_attribute("oiio:BitsPerSample", static_cast<int>(8 * spec.format.size()));
@@ -377,7 +400,8 @@ Image read_raster(const std::filesystem::path& path, int level) {
     else std::move(page.channels.begin(), page.channels.end(), std::back_inserter(image.channels));
   }
   if (std::string_view(input->format_name()) == "png") undo_stretch(image);
-  if (pages.mip) image = placed_at_level(std::move(image), height, level);   // its text is that of the whole file
+  if (pages.mip)
+    image = placed_at_level(std::move(image), height, level);  // its text is that of the whole file
   return image;
 }
 

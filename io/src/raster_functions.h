@@ -7,14 +7,16 @@
 namespace surf::io::openimageio {
 
 void write_exr(const std::filesystem::path& target, const std::string& file, const ImageRows& rows);
-void write_tiff(const std::filesystem::path& target, const std::string& file, const ImageRows& rows);
-void write_tiled_exr(const std::filesystem::path& target, const std::string& file, const ImageRows& rows,
-                     std::span<const std::string> labels);
-void write_tiled_tiff(const std::filesystem::path& target, const std::string& file, const ImageRows& rows,
-                      std::span<const std::string> labels);
-void write_png(const std::filesystem::path& target, const std::string& file, const Image& head, int width, int height,
-               const GreyRow& grey);
-std::string png_content(const std::string& file, const Image& head, int width, int height, const GreyRow& grey);
+void write_tiff(const std::filesystem::path& target, const std::string& file,
+                const ImageRows& rows);
+void write_tiled_exr(const std::filesystem::path& target, const std::string& file,
+                     const ImageRows& rows, std::span<const std::string> labels);
+void write_tiled_tiff(const std::filesystem::path& target, const std::string& file,
+                      const ImageRows& rows, std::span<const std::string> labels);
+void write_png(const std::filesystem::path& target, const std::string& file, const Image& head,
+               int width, int height, const GreyRow& grey);
+std::string png_content(const std::string& file, const Image& head, int width, int height,
+                        const GreyRow& grey);
 std::string format_grey_png(const std::string& file, const Grid<std::uint8_t>& grey);
 Grid<std::uint8_t> parse_grey_png(const std::string& file, std::string_view content);
 int raster_bits(const std::filesystem::path& path);

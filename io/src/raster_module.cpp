@@ -6,10 +6,11 @@ namespace {
 
 using namespace surf::io;
 
-constexpr RasterLibrary table{openimageio::write_exr,       openimageio::write_tiff,      openimageio::write_tiled_exr,
-                              openimageio::write_tiled_tiff, openimageio::write_png,       openimageio::png_content,
-                              openimageio::format_grey_png,  openimageio::parse_grey_png,  openimageio::raster_bits,
-                              openimageio::read_raster,      openimageio::raster_sizes};
+constexpr RasterLibrary table{
+    openimageio::write_exr,        openimageio::write_tiff,     openimageio::write_tiled_exr,
+    openimageio::write_tiled_tiff, openimageio::write_png,      openimageio::png_content,
+    openimageio::format_grey_png,  openimageio::parse_grey_png, openimageio::raster_bits,
+    openimageio::read_raster,      openimageio::raster_sizes};
 
 }  // namespace
 

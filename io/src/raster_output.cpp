@@ -9,17 +9,16 @@
 
 namespace surf::io::openimageio {
 
-void keep_quiet() {
-  [[maybe_unused]] static const bool done = OIIO::attribute("debug", 0);
-}
+void keep_quiet() { [[maybe_unused]] static const bool done = OIIO::attribute("debug", 0); }
 
 std::unique_ptr<OIIO::ImageOutput> create_output(const char* format, const std::string& file) {
   keep_quiet();
   std::unique_ptr<OIIO::ImageOutput> output = OIIO::ImageOutput::create(format);
   if (!output) {
-    const std::string reason = OIIO::geterror();   // none where it could not start its threads
-    throw Unsupported(file, fmt::format("OpenImageIO cannot write {} here ({})", format,
-                                        reason.empty() ? "threads or memory may be short" : reason),
+    const std::string reason = OIIO::geterror();  // none where it could not start its threads
+    throw Unsupported(file,
+                      fmt::format("OpenImageIO cannot write {} here ({})", format,
+                                  reason.empty() ? "threads or memory may be short" : reason),
                       "Raise their limits (ulimit -u, ulimit -v), or choose another format");
   }
   return output;

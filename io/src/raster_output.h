@@ -18,7 +18,8 @@ inline constexpr const char* levels_key = "image:levels";
 /// Debian's OpenImageIO prints notes for its developers otherwise.
 void keep_quiet();
 
-/// Throws Unsupported where the library lacks the format. `file` is the name for messages, here and below.
+/// Throws Unsupported where the library lacks the format. `file` is the name for messages, here and
+/// below.
 std::unique_ptr<OIIO::ImageOutput> create_output(const char* format, const std::string& file);
 
 /// OpenImageIO gives files without a date the present one. A date that is no text is left out.

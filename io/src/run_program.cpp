@@ -75,7 +75,8 @@ ProgramEnd run_program(const std::vector<std::string>& command, const std::strin
 
   ProgramEnd end;
   pid_t child = 0;
-  if (::posix_spawnp(&child, arguments[0], streams.get(), nullptr, arguments.data(), environ) != 0) {
+  if (::posix_spawnp(&child, arguments[0], streams.get(), nullptr, arguments.data(), environ) !=
+      0) {
     return end;
   }
   int status = 0;

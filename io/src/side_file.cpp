@@ -8,10 +8,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-bool leads_out(const fs::path& path) { return path.empty() || path.is_absolute() || *path.begin() == ".."; }
+bool leads_out(const fs::path& path) {
+  return path.empty() || path.is_absolute() || *path.begin() == "..";
+}
 
 /// Both with all links followed.
-bool is_below(const fs::path& file, const fs::path& folder) { return !leads_out(file.lexically_relative(folder)); }
+bool is_below(const fs::path& file, const fs::path& folder) {
+  return !leads_out(file.lexically_relative(folder));
+}
 
 }  // namespace
 
@@ -21,8 +25,10 @@ std::optional<fs::path> side_file(const fs::path& main, const fs::path& name) {
   const fs::path path = main.parent_path() / place;
   std::error_code error;
   const fs::path target = fs::weakly_canonical(fs::absolute(path), error);
-  const fs::path folder = error ? fs::path() : fs::weakly_canonical(fs::absolute(main).parent_path(), error);
-  const fs::path real_folder = error ? fs::path() : fs::weakly_canonical(fs::absolute(main), error).parent_path();
+  const fs::path folder =
+      error ? fs::path() : fs::weakly_canonical(fs::absolute(main).parent_path(), error);
+  const fs::path real_folder =
+      error ? fs::path() : fs::weakly_canonical(fs::absolute(main), error).parent_path();
   if (error || !(is_below(target, folder) || is_below(target, real_folder))) return std::nullopt;
   return path;
 }

@@ -44,12 +44,12 @@ std::vector<TriangleMesh> split_mesh(const TriangleMesh& mesh,
   return parts;
 }
 
-std::vector<MeshPart> split_in_order(const TriangleMesh& mesh, const std::vector<std::uint32_t>& group,
-                                     std::size_t groups) {
+std::vector<MeshPart> split_in_order(const TriangleMesh& mesh,
+                                     const std::vector<std::uint32_t>& group, std::size_t groups) {
   const auto triangles = members(group, groups);
   const std::size_t n = mesh.vertices_nm.size();
   std::vector<MeshPart> parts(groups);
-  std::vector<std::uint32_t> last_group(n, unused);   // the latest one that a vertex was given to
+  std::vector<std::uint32_t> last_group(n, unused);  // the latest one that a vertex was given to
   for (std::size_t g = 0; g < groups; ++g) {
     for (const std::uint32_t t : triangles[g]) {
       for (const std::uint32_t corner : mesh.triangles[t]) {

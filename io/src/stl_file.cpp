@@ -24,9 +24,8 @@ std::uint32_t little_endian_32(const char* bytes) {
 }
 
 bool same_word(std::string_view a, std::string_view lower) {
-  return std::equal(a.begin(), a.end(), lower.begin(), lower.end(), [](unsigned char x, char y) {
-    return std::tolower(x) == y;
-  });
+  return std::equal(a.begin(), a.end(), lower.begin(), lower.end(),
+                    [](unsigned char x, char y) { return std::tolower(x) == y; });
 }
 
 bool starts_with_solid(std::string_view content) {
@@ -146,8 +145,8 @@ ParsedFile parse_stl(const std::string& file, std::string_view content) {
   const std::uint64_t count = little_endian_32(content.data() + 80);
   throw FileError(file,
                   fmt::format("the header announces {} triangles, which take {} bytes, but the "
-                              "file has {}", count, header_bytes + facet_bytes * count,
-                              content.size()),
+                              "file has {}",
+                              count, header_bytes + facet_bytes * count, content.size()),
                   "It is cut off or damaged: copy or export it again");
 }
 

@@ -30,8 +30,8 @@ void check_magnification(const Magnification& magnification, const std::string& 
 SceneView view_of(const SurfaceScene& scene) {
   SceneView view;
   for (const Surface& surface : scene.surfaces) {
-    view.surfaces.push_back({surface.name, &surface.mesh, surface.scalars,
-                             surface.drape ? &*surface.drape : nullptr});
+    view.surfaces.push_back(
+        {surface.name, &surface.mesh, surface.scalars, surface.drape ? &*surface.drape : nullptr});
   }
   view.tracks = scene.tracks;
   view.note.metadata = scene.metadata;
@@ -40,7 +40,8 @@ SceneView view_of(const SurfaceScene& scene) {
 
 void tidy_scalars(Surface& surface) {
   std::erase_if(surface.scalars, [](const VertexScalar& scalar) {
-    return !std::all_of(scalar.values.begin(), scalar.values.end(), [](float v) { return std::isfinite(v); });
+    return !std::all_of(scalar.values.begin(), scalar.values.end(),
+                        [](float v) { return std::isfinite(v); });
   });
   UniqueNames unique("_");
   for (VertexScalar& scalar : surface.scalars) scalar.name = unique(scalar_name(scalar.name));
@@ -56,8 +57,9 @@ const SurfaceFormat& check_surface_target(const std::filesystem::path& path) {
   return format;
 }
 
-std::vector<std::filesystem::path> write_surfaces(const std::filesystem::path& path, const SurfaceScene& scene,
-                    const Magnification& magnification) {
+std::vector<std::filesystem::path> write_surfaces(const std::filesystem::path& path,
+                                                  const SurfaceScene& scene,
+                                                  const Magnification& magnification) {
   const SurfaceFormat& format = surface_format_of(path);
   check_magnification(magnification, path.string());
   validate(scene, path.string().c_str());

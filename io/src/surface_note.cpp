@@ -17,7 +17,7 @@ namespace {
 constexpr std::string_view surface_prefix = "surface:";
 constexpr std::string_view metadata_prefix = "semsurf:";
 constexpr std::string_view stl_start = "semsurf mm magnification=";
-constexpr std::string_view stl_z = " z=";   // no key of the metadata: those have dots
+constexpr std::string_view stl_z = " z=";  // no key of the metadata: those have dots
 constexpr std::size_t stl_header_bytes = 80;
 constexpr std::size_t most_names = 1'000'000;
 
@@ -30,7 +30,8 @@ double positive(std::string_view key, std::string_view text, const std::string& 
   double value = 0;
   const char* const end = text.data() + text.size();
   const auto [stop, error] = std::from_chars(text.data(), end, value);
-  if (error != std::errc{} || stop != end || !(value > 0) || !std::isfinite(value)) fail(file, key, text);
+  if (error != std::errc{} || stop != end || !(value > 0) || !std::isfinite(value))
+    fail(file, key, text);
   return value;
 }
 
@@ -40,7 +41,8 @@ std::size_t place_in(std::string_view key, std::string_view kind) {
   key.remove_prefix(kind.size());
   std::size_t place = 0;
   const auto [stop, error] = std::from_chars(key.data(), key.data() + key.size(), place);
-  const bool is_place = error == std::errc{} && stop == key.data() + key.size() && place <= most_names;
+  const bool is_place =
+      error == std::errc{} && stop == key.data() + key.size() && place <= most_names;
   return is_place ? place : 0;
 }
 
@@ -48,7 +50,8 @@ std::string encoded(std::string_view text, std::string_view also) {
   std::string result;
   for (const char c : text) {
     const auto byte = static_cast<unsigned char>(c);
-    const bool is_plain = byte >= 0x20 && byte != 0x7f && c != '%' && c != '\\' && also.find(c) == also.npos;
+    const bool is_plain =
+        byte >= 0x20 && byte != 0x7f && c != '%' && c != '\\' && also.find(c) == also.npos;
     if (is_plain) result += c;
     else result += fmt::format("%{:02X}", byte);
   }
@@ -60,7 +63,8 @@ std::string decoded(std::string_view text) {
   for (std::size_t i = 0; i < text.size(); ++i) {
     unsigned byte = 0;
     const char* const code = text.data() + i + 1;
-    if (text[i] == '%' && i + 2 < text.size() && std::from_chars(code, code + 2, byte, 16).ptr == code + 2) {
+    if (text[i] == '%' && i + 2 < text.size() &&
+        std::from_chars(code, code + 2, byte, 16).ptr == code + 2) {
       result += static_cast<char>(byte);
       i += 2;
     } else {
@@ -72,7 +76,8 @@ std::string decoded(std::string_view text) {
 
 }  // namespace
 
-std::vector<std::pair<std::string, std::string>> to_entries(const SurfaceNote& note, bool magnified) {
+std::vector<std::pair<std::string, std::string>> to_entries(const SurfaceNote& note,
+                                                            bool magnified) {
   std::vector<std::pair<std::string, std::string>> entries;
   const auto add = [&](const std::string& key, const std::string& value) {
     entries.emplace_back(std::string(surface_prefix) + key, value);
@@ -80,7 +85,8 @@ std::vector<std::pair<std::string, std::string>> to_entries(const SurfaceNote& n
   if (magnified) add("magnification", format_exact(note.magnification));
   else add("unit_nm", format_exact(note.unit_nm));
   if (note.z_exaggeration != 1) add("z_exaggeration", format_exact(note.z_exaggeration));
-  for (std::size_t i = 0; i < note.names.size(); ++i) add(fmt::format("name.{}", i + 1), note.names[i]);
+  for (std::size_t i = 0; i < note.names.size(); ++i)
+    add(fmt::format("name.{}", i + 1), note.names[i]);
   for (const auto& [place, picture] : note.drapes) add(fmt::format("drape.{}", place + 1), picture);
   for (const auto& [scalar, unit] : note.scalar_units) add("unit." + scalar, unit);
   for (const auto& [key, value] : note.metadata) {
@@ -89,7 +95,8 @@ std::vector<std::pair<std::string, std::string>> to_entries(const SurfaceNote& n
   return entries;
 }
 
-void apply_entry(std::string_view key, std::string_view value, const std::string& file, SurfaceNote& note) {
+void apply_entry(std::string_view key, std::string_view value, const std::string& file,
+                 SurfaceNote& note) {
   if (key.starts_with(metadata_prefix)) {
     note.metadata[std::string(key.substr(metadata_prefix.size()))] = value;
     return;
@@ -127,7 +134,8 @@ void apply_line(std::string_view line, const std::string& file, SurfaceNote& not
   apply_entry(decoded(line.substr(0, equals)), decoded(line.substr(equals + 1)), file, note);
 }
 
-void apply_comments(std::string_view content, char mark, const std::string& file, SurfaceNote& note) {
+void apply_comments(std::string_view content, char mark, const std::string& file,
+                    SurfaceNote& note) {
   for (bool is_first = true; !content.empty(); is_first = false) {
     const std::size_t end = std::min(content.find('\n'), content.size());
     std::string_view line = content.substr(0, end);
@@ -143,15 +151,17 @@ void apply_comments(std::string_view content, char mark, const std::string& file
 
 std::string plain_name(std::string_view name) {
   std::string plain(name);
-  std::replace_if(plain.begin(), plain.end(), [](unsigned char c) {
-    return c <= 0x20 || c == 0x7f || c == '#' || c == '\\' || c == '/';
-  }, '_');
+  std::replace_if(
+      plain.begin(), plain.end(),
+      [](unsigned char c) { return c <= 0x20 || c == 0x7f || c == '#' || c == '\\' || c == '/'; },
+      '_');
   return plain;
 }
 
 std::string to_stl_header(const SurfaceNote& note) {
   std::string header = fmt::format("{}{}", stl_start, format_exact(note.magnification));
-  if (note.z_exaggeration != 1) header += fmt::format("{}{}", stl_z, format_exact(note.z_exaggeration));
+  if (note.z_exaggeration != 1)
+    header += fmt::format("{}{}", stl_z, format_exact(note.z_exaggeration));
   for (const auto& [key, value] : note.metadata) {
     const std::string entry = fmt::format(" {}={}", encoded(key, "= "), encoded(value, " "));
     if (header.size() + entry.size() <= stl_header_bytes) header += entry;

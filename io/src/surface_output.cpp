@@ -25,7 +25,7 @@ namespace {
 struct Row {
   SurfaceFormat format;
   bool needs_vtk = false;
-  double least = 1e-290;   // below it, numbers lose digits
+  double least = 1e-290;  // below it, numbers lose digits
 };
 
 constexpr double least_float32 = 1e-30;
@@ -56,10 +56,12 @@ std::string known_extensions() {
 
 const Row& row_of(const std::filesystem::path& path) {
   const std::string extension = lower_extension(path);
-  const auto found = std::find_if(rows().begin(), rows().end(),
-                                  [&](const Row& row) { return row.format.extension == extension; });
+  const auto found = std::find_if(rows().begin(), rows().end(), [&](const Row& row) {
+    return row.format.extension == extension;
+  });
   if (found == rows().end()) {
-    throw UsageError(path.string(), fmt::format("meshes are not written as '{}'", path.extension().string()),
+    throw UsageError(path.string(),
+                     fmt::format("meshes are not written as '{}'", path.extension().string()),
                      fmt::format("Use {}", known_extensions()));
   }
   if (found->needs_vtk) require_vtk(path.string());
@@ -84,18 +86,22 @@ void check_numbers(const SceneView& scene, const Row& row, const std::string& fi
     for (const Vec3& place : surface.mesh->vertices_nm) {
       const Vec3 v = scene.note.to_file(place);
       if (!is_finite(v)) {
-        throw InvalidInput(file, fmt::format("its coordinates are too large for a unit of {} nm",
-                                             format_exact(scene.note.unit_nm)),
+        throw InvalidInput(file,
+                           fmt::format("its coordinates are too large for a unit of {} nm",
+                                       format_exact(scene.note.unit_nm)),
                            "Use a larger unit, or less magnification");
       }
       nm.add(place);
       written.add(v);
     }
   }
-  const auto vanishes = [&](double before, double after) { return after < row.least && before >= row.least; };
+  const auto vanishes = [&](double before, double after) {
+    return after < row.least && before >= row.least;
+  };
   if (!vanishes(nm.sideways, written.sideways) && !vanishes(nm.up, written.up)) return;
-  throw InvalidInput(file, fmt::format("its coordinates are too small for a unit of {} nm",
-                                       format_exact(scene.note.unit_nm)),
+  throw InvalidInput(file,
+                     fmt::format("its coordinates are too small for a unit of {} nm",
+                                 format_exact(scene.note.unit_nm)),
                      "Use a smaller unit, or more magnification");
 }
 
@@ -142,7 +148,9 @@ const std::vector<SurfaceFormat>& surface_formats() {
   return formats;
 }
 
-const SurfaceFormat& surface_format_of(const std::filesystem::path& path) { return row_of(path).format; }
+const SurfaceFormat& surface_format_of(const std::filesystem::path& path) {
+  return row_of(path).format;
+}
 
 bool has_view_writer(const SurfaceFormat& format) {
   return format.extension != ".glb" && format.extension != ".gltf" && format.extension != ".3mf";

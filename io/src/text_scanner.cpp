@@ -122,8 +122,8 @@ void TextScanner::fail_expected(std::string_view what, std::string_view found) c
 }
 
 void TextScanner::fail(const std::string& reason, const std::string& remedy) const {
-  const auto line = 1 + std::count(text_.begin(),
-                                   text_.begin() + static_cast<std::ptrdiff_t>(position_), '\n');
+  const auto line =
+      1 + std::count(text_.begin(), text_.begin() + static_cast<std::ptrdiff_t>(position_), '\n');
   throw FileError(fmt::format("{}, line {}", file_, line), reason,
                   remedy.empty() ? "Repair the file or export it again" : remedy);
 }

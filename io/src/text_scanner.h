@@ -15,8 +15,8 @@ std::string shown(std::string_view word);
 class TextScanner {
  public:
   struct Syntax {
-    char comment = '\0';              ///< from this character to the end of the line; 0: none
-    bool continuation = false;        ///< a backslash at the end of a line joins it with the next
+    char comment = '\0';        ///< from this character to the end of the line; 0: none
+    bool continuation = false;  ///< a backslash at the end of a line joins it with the next
   };
 
   TextScanner(std::string file, std::string_view text) : TextScanner(file, text, Syntax{}) {}

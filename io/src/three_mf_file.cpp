@@ -11,8 +11,8 @@
 #include <set>
 #include <utility>
 
-#include "file_unit.h"
 #include "affine_map.h"
+#include "file_unit.h"
 #include "json_value.h"
 #include "surf/core/error.h"
 #include "surf/core/units.h"
@@ -41,21 +41,22 @@ xml_node child(const xml_node& node, std::string_view name) {
 }
 
 std::string_view attribute(const xml_node& node, std::string_view name) {
-  return node.find_attribute([&](const pugi::xml_attribute& a) { return local(a.name()) == name; }).value();
+  return node.find_attribute([&](const pugi::xml_attribute& a) { return local(a.name()) == name; })
+      .value();
 }
 
 /// What is to be built or put together: an object and how it lies.
 struct Placed {
-  std::string key;   ///< of the object: the model's part and its id
+  std::string key;  ///< of the object: the model's part and its id
   AffineMap map;
 };
 
 /// A mesh, or other objects put together.
 struct Object {
   std::string name;
-  TriangleMesh mesh;   ///< in units of the file
+  TriangleMesh mesh;  ///< in units of the file
   std::vector<Placed> components;
-  double size = 1;     ///< of all that it shows: stops small files from filling the memory
+  double size = 1;  ///< of all that it shows: stops small files from filling the memory
 };
 
 class ThreeMfParser {
@@ -76,7 +77,8 @@ class ThreeMfParser {
       if (local(item.name()) != "item") continue;
       items.push_back(placed(item, part, true));
       size += objects_.at(items.back().key).size;
-      if (size > max_size) fail("build", "there are too many triangles, copies included", "Simplify the model");
+      if (size > max_size)
+        fail("build", "there are too many triangles, copies included", "Simplify the model");
     }
     for (const Placed& item : items) add(item);
     return std::move(scene_);
@@ -101,7 +103,8 @@ class ThreeMfParser {
     const auto result = document.load_buffer(relations.data(), relations.size());
     if (!result) fail("_rels/.rels", fmt::format("its XML is broken: {}", result.description()));
     for (const xml_node& relation : document.document_element().children()) {
-      if (attribute(relation, "Type") == three_mf_model_relation) return std::string(attribute(relation, "Target"));
+      if (attribute(relation, "Type") == three_mf_model_relation)
+        return std::string(attribute(relation, "Target"));
     }
     fail("_rels/.rels", "it names no model", "Export a 3MF file with a model");
   }
@@ -110,7 +113,8 @@ class ThreeMfParser {
     const std::string content = read_part(part);
     const auto result = document.load_buffer(content.data(), content.size());
     if (!result) {
-      fail(part, fmt::format("its XML is broken at byte {}: {}", result.offset, result.description()));
+      fail(part,
+           fmt::format("its XML is broken at byte {}: {}", result.offset, result.description()));
     }
     const xml_node model = document.document_element();
     if (local(model.name()) != "model") fail(part, "it is no model");
@@ -127,7 +131,8 @@ class ThreeMfParser {
       rest.remove_prefix(std::min(blank + 1, rest.size()));
       if (prefix.empty()) continue;
       std::string_view space = model.attribute(("xmlns:" + prefix).c_str()).value();
-      const bool is_known = space.find("/material/") != space.npos || space.find("/production/") != space.npos;
+      const bool is_known =
+          space.find("/material/") != space.npos || space.find("/production/") != space.npos;
       if (is_known) continue;
       constexpr std::string_view usual = "http://schemas.microsoft.com/3dmanufacturing/";
       if (space.starts_with(usual)) space.remove_prefix(usual.size());
@@ -143,7 +148,8 @@ class ThreeMfParser {
     if (name.empty()) name = "millimeter";
     const auto unit = std::find_if(three_mf_units.begin(), three_mf_units.end(),
                                    [&](const ThreeMfUnit& u) { return u.name == name; });
-    if (unit == three_mf_units.end()) fail("model", fmt::format("the unit '{}' is not known", shown(name)));
+    if (unit == three_mf_units.end())
+      fail("model", fmt::format("the unit '{}' is not known", shown(name)));
     double magnification = 1;
     for (const xml_node& node : model.children()) {
       if (local(node.name()) != "metadata") continue;
@@ -152,7 +158,8 @@ class ThreeMfParser {
       if (key == three_mf_magnification) magnification = positive(value, three_mf_magnification);
       if (key == three_mf_exaggeration) z_exaggeration_ = positive(value, three_mf_exaggeration);
       if (key == three_mf_metadata) {
-        const JsonValue object = JsonValue::parse(fmt::format("{}, {}", file_, key), "{\"metadata\":" + value + "}");
+        const JsonValue object =
+            JsonValue::parse(fmt::format("{}, {}", file_, key), "{\"metadata\":" + value + "}");
         scene_.metadata = object.texts("metadata");
       }
     }
@@ -172,7 +179,8 @@ class ThreeMfParser {
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
     // What lies below the smallest number is 0.
     const bool is_tiny = error == std::errc::result_out_of_range && std::abs(value) < 1;
-    if ((error != std::errc{} && !is_tiny) || end != text.data() + text.size() || !std::isfinite(value)) {
+    if ((error != std::errc{} && !is_tiny) || end != text.data() + text.size() ||
+        !std::isfinite(value)) {
       fail(place, fmt::format("'{}' is not a number", shown(text)));
     }
     return value;
@@ -203,7 +211,8 @@ class ThreeMfParser {
         object.components.push_back(placed(component, part, is_root));
         object.size += objects_.at(object.components.back().key).size;
       }
-      if (!objects_.emplace(key, std::move(object)).second) fail(place, "its number is that of another object");
+      if (!objects_.emplace(key, std::move(object)).second)
+        fail(place, "its number is that of another object");
     }
   }
 
@@ -234,13 +243,15 @@ class ThreeMfParser {
   Placed placed(const xml_node& node, const std::string& part, bool is_root) {
     const std::string other(attribute(node, "path"));
     const std::string& owner = other.empty() ? part : other;
-    if (!other.empty() && is_root && parts_.insert(other).second && key_of(other, "") != key_of(part, "")) {
+    if (!other.empty() && is_root && parts_.insert(other).second &&
+        key_of(other, "") != key_of(part, "")) {
       pugi::xml_document document;
       read_objects(open(other, document), other, false);
     }
     Placed result{key_of(owner, attribute(node, "objectid")), transform_of(node)};
     if (objects_.count(result.key) == 0) {
-      fail(node.name(), fmt::format("there is no object '{}' before it", shown(attribute(node, "objectid"))));
+      fail(node.name(),
+           fmt::format("there is no object '{}' before it", shown(attribute(node, "objectid"))));
     }
     return result;
   }
@@ -256,12 +267,13 @@ class ThreeMfParser {
       value = number(text.substr(0, end), "transform");
       text.remove_prefix(end);
     }
-    return {{Vec3{m[0], m[1], m[2]}, Vec3{m[3], m[4], m[5]}, Vec3{m[6], m[7], m[8]}, Vec3{m[9], m[10], m[11]}}};
+    return {{Vec3{m[0], m[1], m[2]}, Vec3{m[3], m[4], m[5]}, Vec3{m[6], m[7], m[8]},
+             Vec3{m[9], m[10], m[11]}}};
   }
 
   /// A surface for each mesh in the object, from the first to the last.
   void add(const Placed& item) {
-    std::vector<Placed> waiting{item};   // the next one is the last
+    std::vector<Placed> waiting{item};  // the next one is the last
     while (!waiting.empty()) {
       const Placed next = std::move(waiting.back());
       waiting.pop_back();
@@ -281,9 +293,10 @@ class ThreeMfParser {
       const Vec3 p = map(v) * unit_nm_;
       v = {p.x, p.y, p.z / z_exaggeration_};
       if (is_finite(v)) continue;
-      throw FileError(file_, fmt::format("its coordinates are too large for a unit of {} nm",
-                                         format_exact(unit_nm_)),
-                      "Check the unit");
+      throw FileError(
+          file_,
+          fmt::format("its coordinates are too large for a unit of {} nm", format_exact(unit_nm_)),
+          "Check the unit");
     }
     if (map.mirrors()) {
       for (Triangle& t : surface.mesh.triangles) std::swap(t[1], t[2]);
@@ -313,7 +326,7 @@ bool is_3mf(std::string_view content) {
     }
   } catch (const Error&) {
   }
-  return content.substr(0, 4096).find("3D/") != content.npos;   // damaged: the reader says how
+  return content.substr(0, 4096).find("3D/") != content.npos;  // damaged: the reader says how
 }
 
 SurfaceScene parse_3mf_scene(const std::filesystem::path& path, std::string_view content,

@@ -16,7 +16,7 @@ inline constexpr const char* three_mf_own = "urn:semsurf:surface:1";
 inline constexpr const char* three_mf_magnification = "semsurf:magnification";
 inline constexpr const char* three_mf_exaggeration = "semsurf:z_exaggeration";
 inline constexpr const char* three_mf_unit = "semsurf:unit";
-inline constexpr const char* three_mf_metadata = "semsurf:metadata";   // a JSON object of texts
+inline constexpr const char* three_mf_metadata = "semsurf:metadata";  // a JSON object of texts
 
 struct ThreeMfUnit {
   std::string_view name;

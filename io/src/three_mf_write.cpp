@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// 3MF (3MF Core Specification 1.3). Written here and not by lib3mf 1.8, which prints 6 digits after the point,
-// refuses coordinates above 1e9, and gives every file random numbers.
+// 3MF (3MF Core Specification 1.3). Written here and not by lib3mf 1.8, which prints 6 digits after
+// the point, refuses coordinates above 1e9, and gives every file random numbers.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -26,16 +26,19 @@ class ThreeMfBuilder {
       : file_(std::move(file)), scene_(scene), magnification_(magnification), zip_(file_) {}
 
   std::string build() {
-    add_part("[Content_Types].xml",
-             "<Types xmlns=\"http://schemas.openxmlformats.org/package/2006/content-types\">\n"
-             "<Default Extension=\"rels\" "
-             "ContentType=\"application/vnd.openxmlformats-package.relationships+xml\"/>\n"
-             "<Default Extension=\"model\" "
-             "ContentType=\"application/vnd.ms-package.3dmanufacturing-3dmodel+xml\"/>\n</Types>\n");
+    add_part(
+        "[Content_Types].xml",
+        "<Types xmlns=\"http://schemas.openxmlformats.org/package/2006/content-types\">\n"
+        "<Default Extension=\"rels\" "
+        "ContentType=\"application/vnd.openxmlformats-package.relationships+xml\"/>\n"
+        "<Default Extension=\"model\" "
+        "ContentType=\"application/vnd.ms-package.3dmanufacturing-3dmodel+xml\"/>\n</Types>\n");
     add_part("_rels/.rels",
-             fmt::format("<Relationships xmlns=\"http://schemas.openxmlformats.org/package/2006/relationships\">\n"
+             fmt::format("<Relationships "
+                         "xmlns=\"http://schemas.openxmlformats.org/package/2006/relationships\">\n"
                          "<Relationship Target=\"/3D/3dmodel.model\" Id=\"rel0\" Type=\"{}\"/>\n"
-                         "</Relationships>\n", three_mf_model_relation));
+                         "</Relationships>\n",
+                         three_mf_model_relation));
     zip_.begin("3D/3dmodel.model");
     add_model();
     zip_.append(text_);
@@ -55,8 +58,9 @@ class ThreeMfBuilder {
   double scale() const { return magnification_.factor / unit().nm; }
 
   void add_model() {
-    text_ = fmt::format("{}<model unit=\"{}\" xml:lang=\"en-US\" xmlns=\"{}\" xmlns:semsurf=\"{}\">\n", xml_head,
-                        unit().name, three_mf_core, three_mf_own);
+    text_ =
+        fmt::format("{}<model unit=\"{}\" xml:lang=\"en-US\" xmlns=\"{}\" xmlns:semsurf=\"{}\">\n",
+                    xml_head, unit().name, three_mf_core, three_mf_own);
     add_metadata();
     text_ += "<resources>\n";
     std::string build = "<build>\n";
@@ -67,8 +71,8 @@ class ThreeMfBuilder {
       add_object(i + 1, surface, center);
       const Vec3 place = in_units(center);
       if (!is_finite(place)) refuse_size(surface);
-      build += fmt::format("<item objectid=\"{}\" transform=\"1 0 0 0 1 0 0 0 1 {} {} {}\"/>\n", i + 1, place.x,
-                           place.y, place.z);
+      build += fmt::format("<item objectid=\"{}\" transform=\"1 0 0 0 1 0 0 0 1 {} {} {}\"/>\n",
+                           i + 1, place.x, place.y, place.z);
     }
     text_ += "</resources>\n" + build + "</build>\n</model>\n";
   }
@@ -80,11 +84,14 @@ class ThreeMfBuilder {
       metadata[key] = as_plain_text(value);
     }
     const auto version = scene_.metadata.find("semsurf.version");
-    add_metadata("Application", version == scene_.metadata.end() ? "semsurf" : "semsurf " + as_plain_text(version->second));
+    add_metadata("Application", version == scene_.metadata.end()
+                                    ? "semsurf"
+                                    : "semsurf " + as_plain_text(version->second));
     const std::string factor = format_exact(magnification_.factor);
     const std::string exaggeration = format_exact(magnification_.z_exaggeration);
-    add_metadata("Description", fmt::format("{} times as large as the specimen, heights {} times more", factor,
-                                            exaggeration));
+    add_metadata("Description",
+                 fmt::format("{} times as large as the specimen, heights {} times more", factor,
+                             exaggeration));
     add_metadata(three_mf_unit, "nm");
     add_metadata(three_mf_magnification, factor);
     add_metadata(three_mf_exaggeration, exaggeration);
@@ -102,11 +109,12 @@ class ThreeMfBuilder {
   void add_object(std::size_t id, const Surface& surface, const Vec3& center) {
     // An open sheet is a surface; a model is a body (4.1).
     const char* const type = check_mesh(surface.mesh).closed_and_oriented ? "model" : "surface";
-    text_ += fmt::format("<object id=\"{}\" type=\"{}\" name=\"{}\">\n<mesh>\n<vertices>\n", id, type,
-                         xml_escaped(as_plain_text(surface.name)));
+    text_ += fmt::format("<object id=\"{}\" type=\"{}\" name=\"{}\">\n<mesh>\n<vertices>\n", id,
+                         type, xml_escaped(as_plain_text(surface.name)));
     for (const Vec3& v : surface.mesh.vertices_nm) {
       const Vec3 p = in_units(v - center);
-      const auto x = static_cast<float>(p.x), y = static_cast<float>(p.y), z = static_cast<float>(p.z);
+      const auto x = static_cast<float>(p.x), y = static_cast<float>(p.y),
+                 z = static_cast<float>(p.z);
       if (!std::isfinite(x) || !std::isfinite(y) || !std::isfinite(z)) refuse_size(surface);
       fmt::format_to(std::back_inserter(text_), "<vertex x=\"{}\" y=\"{}\" z=\"{}\"/>\n", x, y, z);
       pass_on();
@@ -115,11 +123,14 @@ class ThreeMfBuilder {
     for (std::size_t i = 0; i < surface.mesh.triangles.size(); ++i) {
       const Triangle& t = surface.mesh.triangles[i];
       if (t[0] == t[1] || t[1] == t[2] || t[2] == t[0]) {
-        throw InvalidInput(file_, fmt::format("triangle {} of '{}' has one vertex twice, which 3MF forbids", i,
-                                              surface.name),
-                           "Repair the mesh (semsurf mesh --repair), or write another format");
+        throw InvalidInput(
+            file_,
+            fmt::format("triangle {} of '{}' has one vertex twice, which 3MF forbids", i,
+                        surface.name),
+            "Repair the mesh (semsurf mesh --repair), or write another format");
       }
-      fmt::format_to(std::back_inserter(text_), "<triangle v1=\"{}\" v2=\"{}\" v3=\"{}\"/>\n", t[0], t[1], t[2]);
+      fmt::format_to(std::back_inserter(text_), "<triangle v1=\"{}\" v2=\"{}\" v3=\"{}\"/>\n", t[0],
+                     t[1], t[2]);
       pass_on();
     }
     text_ += "</triangles>\n</mesh>\n</object>\n";
@@ -142,7 +153,7 @@ class ThreeMfBuilder {
   const SurfaceScene& scene_;
   Magnification magnification_;
   ZipWriter zip_;
-  std::string text_;   ///< not yet passed on
+  std::string text_;  ///< not yet passed on
 };
 
 }  // namespace

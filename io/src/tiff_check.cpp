@@ -32,16 +32,22 @@ constexpr std::uint16_t tag_tile_bytes = 325;
 /// How many times smaller a compression can make pixels.
 double most_ratio(std::uint64_t compression) {
   switch (compression) {
-    case 1: return 1;          // none
-    case 5: return 1500;       // LZW: texts of up to 3837 bytes in 12 bits
-    case 32773: return 64;     // PackBits: 128 bytes in 2
-    case 8: case 32946: return deflate_ratio;
-    default: return unknown_ratio;   // fax codes of white rows, Zstandard, LZMA
+    case 1:
+      return 1;  // none
+    case 5:
+      return 1500;  // LZW: texts of up to 3837 bytes in 12 bits
+    case 32773:
+      return 64;  // PackBits: 128 bytes in 2
+    case 8:
+    case 32946:
+      return deflate_ratio;
+    default:
+      return unknown_ratio;  // fax codes of white rows, Zstandard, LZMA
   }
 }
 
-/// Follows the directories of a TIFF or BigTIFF file and asks whether what they point at is there, and whether
-/// all their pixels can be.
+/// Follows the directories of a TIFF or BigTIFF file and asks whether what they point at is there,
+/// and whether all their pixels can be.
 class TiffStructure {
  public:
   explicit TiffStructure(const std::filesystem::path& path)
@@ -60,8 +66,8 @@ class TiffStructure {
  private:
   struct Entry {
     std::uint64_t count = 0;
-    std::uint64_t place = 0;   ///< of the values
-    std::uint64_t bytes = 0;   ///< of one value
+    std::uint64_t place = 0;  ///< of the values
+    std::uint64_t bytes = 0;  ///< of one value
   };
 
   [[noreturn]] void fail(std::uint64_t offset) const {
@@ -114,20 +120,47 @@ class TiffStructure {
     for (std::uint64_t i = 0; i < count; ++i) {
       const std::uint64_t place = offset + count_bytes + i * entry_bytes;
       switch (number(place, 2)) {
-        case tag_width: pixels.width = first(entry(place)); break;
-        case tag_height: pixels.height = first(entry(place)); break;
-        case tag_bits: pixels.bits = first(entry(place)); break;
-        case tag_compression: pixels.compression = first(entry(place)); break;
-        case tag_colours: pixels.colours = first(entry(place)); break;
-        case tag_samples: pixels.samples = first(entry(place)); break;
-        case tag_tile_width: pixels.tile_width = first(entry(place)); break;
-        case tag_tile_height: pixels.tile_height = first(entry(place)); break;
-        case tag_description: entry(place); break;
-        case tag_strip_offsets: strip_offsets = entry(place); break;
-        case tag_strip_bytes: strip_bytes = entry(place); break;
-        case tag_tile_offsets: tile_offsets = entry(place); break;
-        case tag_tile_bytes: tile_bytes = entry(place); break;
-        default: break;
+        case tag_width:
+          pixels.width = first(entry(place));
+          break;
+        case tag_height:
+          pixels.height = first(entry(place));
+          break;
+        case tag_bits:
+          pixels.bits = first(entry(place));
+          break;
+        case tag_compression:
+          pixels.compression = first(entry(place));
+          break;
+        case tag_colours:
+          pixels.colours = first(entry(place));
+          break;
+        case tag_samples:
+          pixels.samples = first(entry(place));
+          break;
+        case tag_tile_width:
+          pixels.tile_width = first(entry(place));
+          break;
+        case tag_tile_height:
+          pixels.tile_height = first(entry(place));
+          break;
+        case tag_description:
+          entry(place);
+          break;
+        case tag_strip_offsets:
+          strip_offsets = entry(place);
+          break;
+        case tag_strip_bytes:
+          strip_bytes = entry(place);
+          break;
+        case tag_tile_offsets:
+          tile_offsets = entry(place);
+          break;
+        case tag_tile_bytes:
+          tile_bytes = entry(place);
+          break;
+        default:
+          break;
       }
     }
     check_blocks(strip_offsets, strip_bytes);
@@ -152,7 +185,7 @@ class TiffStructure {
   }
 
   void check_blocks(const Entry& offsets, const Entry& bytes) {
-    if (offsets.count != bytes.count) return;   // libtiff has rules for these
+    if (offsets.count != bytes.count) return;  // libtiff has rules for these
     for (std::uint64_t i = 0; i < offsets.count; ++i) {
       require(number(offsets.place + i * offsets.bytes, offsets.bytes),
               number(bytes.place + i * bytes.bytes, bytes.bytes));
@@ -162,8 +195,8 @@ class TiffStructure {
   std::filesystem::path path_;
   std::ifstream stream_;
   std::uint64_t size_;
-  double pixel_bytes_ = 0;   // of all directories
-  double least_bytes_ = 0;   // that they take in the file
+  double pixel_bytes_ = 0;  // of all directories
+  double least_bytes_ = 0;  // that they take in the file
   bool big_endian_ = false;
   bool big_ = false;
 };

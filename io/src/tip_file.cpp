@@ -43,7 +43,8 @@ bool points_down(const HeightField& field) {
     for (int x = 0; x < w; ++x) {
       if (!field.is_valid(x, y)) continue;
       const bool last = x == 0 || y == 0 || x == w - 1 || y == h - 1 || !field.is_valid(x - 1, y) ||
-                        !field.is_valid(x + 1, y) || !field.is_valid(x, y - 1) || !field.is_valid(x, y + 1);
+                        !field.is_valid(x + 1, y) || !field.is_valid(x, y - 1) ||
+                        !field.is_valid(x, y + 1);
       all += field.z_nm(x, y);
       ++count;
       if (!last) continue;
@@ -118,7 +119,8 @@ bool named_apex(const std::string& text, const std::vector<Place>& places, Place
 
 }  // namespace
 
-Tip to_tip(HeightField field, const std::map<std::string, std::string>& metadata, const std::string& subject) {
+Tip to_tip(HeightField field, const std::map<std::string, std::string>& metadata,
+           const std::string& subject) {
   const std::string kind = text_of(metadata, tip_key);
   const bool physical = kind == "physical";
   const double sign = physical && points_down(field) ? -1 : 1;
@@ -130,14 +132,19 @@ Tip to_tip(HeightField field, const std::map<std::string, std::string>& metadata
     for (int x = 0; x < tip.z_nm.width(); ++x)
       tip.z_nm(x, y) = field.is_valid(x, y) ? sign * tip.z_nm(x, y) : nothing;
   const bool empty = std::ranges::all_of(tip.z_nm.data(), [](double z) { return z == nothing; });
-  if (empty) throw InvalidInput(subject, "it has no samples, only holes", "Give a tip with at least an apex");
+  if (empty)
+    throw InvalidInput(subject, "it has no samples, only holes",
+                       "Give a tip with at least an apex");
   const std::vector<Place> places = highest(tip.z_nm);
   Place apex = middle_of(places);
   if (!named_apex(text_of(metadata, apex_key), places, apex) && !touch(places, tip.z_nm)) {
-    throw InvalidInput(subject, fmt::format("its highest value is found in {} places that do not touch, as at ({}, {}) "
-                                            "and ({}, {}): no apex can be told", places.size(), places.front().x,
-                                            places.front().y, places.back().x, places.back().y),
-                       "Give a tip with one apex");
+    throw InvalidInput(
+        subject,
+        fmt::format("its highest value is found in {} places that do not touch, as at ({}, {}) "
+                    "and ({}, {}): no apex can be told",
+                    places.size(), places.front().x, places.front().y, places.back().x,
+                    places.back().y),
+        "Give a tip with one apex");
   }
   const double top = tip.z_nm(apex.x, apex.y);
   for (double& z : tip.z_nm.data()) z -= top;
@@ -156,7 +163,8 @@ Tip read_tip(const std::filesystem::path& path) {
 
 TipHeights to_heights(const Tip& tip, const char* subject) {
   validate(tip, subject);
-  // Fields of heights have at least 2 x 2 samples: a narrower tip gets samples that it does not have.
+  // Fields of heights have at least 2 x 2 samples: a narrower tip gets samples that it does not
+  // have.
   const int w = std::max(tip.z_nm.width(), 2), h = std::max(tip.z_nm.height(), 2);
   TipHeights heights;
   HeightField& field = heights.field;
@@ -176,7 +184,8 @@ TipHeights to_heights(const Tip& tip, const char* subject) {
     }
   }
   if (!whole) field.valid = std::move(valid);
-  heights.metadata = {{tip_key, "structuring function"}, {apex_key, fmt::format("{} {}", tip.apex_x, tip.apex_y)}};
+  heights.metadata = {{tip_key, "structuring function"},
+                      {apex_key, fmt::format("{} {}", tip.apex_x, tip.apex_y)}};
   if (!tip.doubt.empty()) heights.metadata[doubt_key] = tip.doubt;
   return heights;
 }

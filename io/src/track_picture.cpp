@@ -29,25 +29,30 @@ constexpr Color grid{0.9, 0.9, 0.9};
 struct Group {
   const char* label;
   Color color;
-  double weight;   ///< of the line, relative
+  double weight;  ///< of the line, relative
 };
 
 constexpr std::array<Group, 6> groups{{
-    {"secondaries, absorbed", {0.902, 0.624, 0.000}, 0.7},   // orange
-    {"primaries, absorbed", {0.000, 0.447, 0.698}, 0.9},     // blue
+    {"secondaries, absorbed", {0.902, 0.624, 0.000}, 0.7},  // orange
+    {"primaries, absorbed", {0.000, 0.447, 0.698}, 0.9},    // blue
     {"lost", {0.35, 0.35, 0.35}, 0.9},
-    {"transmitted", {0.800, 0.475, 0.655}, 1.1},             // reddish purple
-    {"SE, escaped below 50 eV", {0.000, 0.620, 0.451}, 1.3}, // bluish green
-    {"BSE, backscattered", {0.835, 0.369, 0.000}, 1.3},      // vermillion
+    {"transmitted", {0.800, 0.475, 0.655}, 1.1},              // reddish purple
+    {"SE, escaped below 50 eV", {0.000, 0.620, 0.451}, 1.3},  // bluish green
+    {"BSE, backscattered", {0.835, 0.369, 0.000}, 1.3},       // vermillion
 }};
 
 std::size_t group_of(const Track& track) {
   switch (track.kind) {
-    case TrackKind::absorbed: return track.secondary ? 0 : 1;
-    case TrackKind::lost: return 2;
-    case TrackKind::transmitted: return 3;
-    case TrackKind::se: return 4;
-    case TrackKind::bse: return 5;
+    case TrackKind::absorbed:
+      return track.secondary ? 0 : 1;
+    case TrackKind::lost:
+      return 2;
+    case TrackKind::transmitted:
+      return 3;
+    case TrackKind::se:
+      return 4;
+    case TrackKind::bse:
+      return 5;
   }
   return 2;
 }
@@ -57,10 +62,10 @@ const CanvasLibrary& canvases(const std::string& file) { return module_for<Canva
 void check_name(const std::filesystem::path& path) {
   const std::string extension = lower_extension(path);
   if (extension == ".png" || extension == ".svg" || extension == ".pdf") return;
-  throw UsageError(path.string(),
-                   fmt::format("pictures of tracks are not written as '{}'",
-                               path.extension().string()),
-                   "Use .png, .svg or .pdf");
+  throw UsageError(
+      path.string(),
+      fmt::format("pictures of tracks are not written as '{}'", path.extension().string()),
+      "Use .png, .svg or .pdf");
 }
 
 void check_options(const TrackPictureOptions& options, const std::string& file) {
@@ -74,8 +79,8 @@ void check_options(const TrackPictureOptions& options, const std::string& file) 
     throw InvalidInput(file, "the outline is not finite", "Give finite corners");
   }
   const auto& w = options.window_nm;
-  if (w && !(w->x1_nm > w->x0_nm && w->z1_nm > w->z0_nm &&
-             std::isfinite(w->x1_nm - w->x0_nm) && std::isfinite(w->z1_nm - w->z0_nm))) {
+  if (w && !(w->x1_nm > w->x0_nm && w->z1_nm > w->z0_nm && std::isfinite(w->x1_nm - w->x0_nm) &&
+             std::isfinite(w->z1_nm - w->z0_nm))) {
     throw InvalidInput(file, "the window is empty", "Give x0 < x1 and z0 < z1, in nm");
   }
 }
@@ -107,8 +112,8 @@ Window choose_window(std::span<const Track> tracks, const TrackPictureOptions& o
     throw InvalidInput(file, "there is nothing to draw", "Give tracks, an outline or a window");
   }
   const double size = std::max({box.size_nm().x, box.size_nm().z, 1e-3});
-  return {box.lower_nm.x - 0.06 * size, box.lower_nm.z - 0.06 * size,
-          box.upper_nm.x + 0.06 * size, box.upper_nm.z + 0.22 * size};
+  return {box.lower_nm.x - 0.06 * size, box.lower_nm.z - 0.06 * size, box.upper_nm.x + 0.06 * size,
+          box.upper_nm.z + 0.22 * size};
 }
 
 /// The smallest of 1, 2, 5 times a power of ten that is not below `step`.
@@ -262,8 +267,8 @@ class Picture {
       electrons.insert(track.electron);
     }
     std::vector<std::pair<std::string, const Group*>> lines;
-    lines.emplace_back(fmt::format("{} primar{}", electrons.size(),
-                                   electrons.size() == 1 ? "y" : "ies"), nullptr);
+    lines.emplace_back(
+        fmt::format("{} primar{}", electrons.size(), electrons.size() == 1 ? "y" : "ies"), nullptr);
     for (std::size_t g = groups.size(); g-- > 0;) {
       if (counts[g] == 0) continue;
       lines.emplace_back(fmt::format("{}: {}", groups[g].label, counts[g]), &groups[g]);
@@ -292,9 +297,9 @@ class Picture {
   Canvas& canvas_;
   const TrackPictureOptions& options_;
   Window window_;
-  double unit_;   ///< of fonts, lines and margins: 1 at 1200 pixels
-  double left_ = 0, top_ = 0, width_ = 0, height_ = 0;   ///< of the plot, in pixels
-  double scale_ = 1;                                      ///< pixels per nm
+  double unit_;  ///< of fonts, lines and margins: 1 at 1200 pixels
+  double left_ = 0, top_ = 0, width_ = 0, height_ = 0;  ///< of the plot, in pixels
+  double scale_ = 1;                                    ///< pixels per nm
   std::vector<Point> line_;
 };
 
@@ -308,8 +313,8 @@ void write_track_picture(const std::filesystem::path& path, std::span<const Trac
   for (const Track& track : tracks) validate(track, file.c_str());
   const Window window = choose_window(tracks, options, file);
   write_atomically(path, [&](const std::filesystem::path& temporary) {
-    const auto canvas =
-        canvases(file).make_canvas(temporary, file, lower_extension(path), options.width_px, options.height_px);
+    const auto canvas = canvases(file).make_canvas(temporary, file, lower_extension(path),
+                                                   options.width_px, options.height_px);
     Picture(*canvas, options, window).draw(tracks);
     canvas->finish();
   });

@@ -37,7 +37,8 @@ TransformFile read_transform(const std::filesystem::path& path) {
     json.fail("it is of another version", "Register again with this semsurf");
   const std::vector<double> numbers = json.numbers("sem_to_afm");
   if (numbers.size() != 6)
-    json.require("sem_to_afm").fail(fmt::format("{} numbers, not 6", numbers.size()), "Give xx, xy, x0, yx, yy, y0");
+    json.require("sem_to_afm")
+        .fail(fmt::format("{} numbers, not 6", numbers.size()), "Give xx, xy, x0, yx, yy, y0");
   TransformFile file;
   file.sem_to_afm = {numbers[0], numbers[1], numbers[2], numbers[3], numbers[4], numbers[5]};
   try {

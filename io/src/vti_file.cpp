@@ -36,7 +36,8 @@ vtkNew<vtkImageData> to_vtk(const Image& image) {
 }
 
 /// `target` empty: to a string, which is returned.
-std::string write_data(const std::filesystem::path& target, const std::string& file, const Image& image) {
+std::string write_data(const std::filesystem::path& target, const std::string& file,
+                       const Image& image) {
   const auto data = to_vtk(image);
   VtkComplaints complaints;
   vtkNew<vtkXMLImageDataWriter> writer;
@@ -44,11 +45,12 @@ std::string write_data(const std::filesystem::path& target, const std::string& f
   if (target.empty()) writer->WriteToOutputStringOn();
   else writer->SetFileName(target.c_str());
   writer->SetInputData(data);
-  writer->SetDataModeToBinary();   // ParaView 5.11 on Debian 12 cannot read appended data
+  writer->SetDataModeToBinary();  // ParaView 5.11 on Debian 12 cannot read appended data
   if (writer->Write() != 1 || writer->GetErrorCode() != 0 || !complaints.text().empty()) {
-    throw FileError(file, fmt::format("cannot be written: error {} {}", writer->GetErrorCode(),
-                                      complaints.text()),
-                    "Check the free space, or choose another place");
+    throw FileError(
+        file,
+        fmt::format("cannot be written: error {} {}", writer->GetErrorCode(), complaints.text()),
+        "Check the free space, or choose another place");
   }
   return target.empty() ? writer->GetOutputString() : std::string{};
 }
@@ -59,6 +61,8 @@ void write_vti(const std::filesystem::path& target, const std::string& file, con
   write_data(target, file, image);
 }
 
-std::string vti_content(const std::string& file, const Image& image) { return write_data({}, file, image); }
+std::string vti_content(const std::string& file, const Image& image) {
+  return write_data({}, file, image);
+}
 
 }  // namespace surf::io::vtk

@@ -19,19 +19,18 @@ using Element = VtkXml::Element;
 struct Extent {
   int width = 0;
   int height = 0;
-  double first_x = 0;   // index of the first point
+  double first_x = 0;  // index of the first point
   double first_y = 0;
 };
 
 Extent read_extent(const Element& image) {
   const std::vector<double> e = image.numbers("WholeExtent", std::vector<double>(6));
   const double width = e[1] - e[0] + 1, height = e[3] - e[2] + 1;
-  const bool is_whole = std::all_of(e.begin(), e.end(), [](double v) {
-    return v == std::floor(v) && std::abs(v) < 1e9;
-  });
+  const bool is_whole = std::all_of(
+      e.begin(), e.end(), [](double v) { return v == std::floor(v) && std::abs(v) < 1e9; });
   if (!is_whole || width < 1 || height < 1 || e[5] != e[4] || width > 1e9 || height > 1e9) {
-    image.fail(fmt::format("{} x {} x {} points are not a picture", width, height,
-                           e[5] - e[4] + 1));
+    image.fail(
+        fmt::format("{} x {} x {} points are not a picture", width, height, e[5] - e[4] + 1));
   }
   return {static_cast<int>(width), static_cast<int>(height), e[0], e[2]};
 }
@@ -45,20 +44,17 @@ void check_direction(const Element& image) {
 
 Element only_piece(const Element& image) {
   const std::vector<Element> pieces = image.children("Piece");
-  if (pieces.size() != 1 ||
-      pieces[0].attribute("Extent") != image.attribute("WholeExtent")) {
-    image.fail(fmt::format("it is in {} pieces, where one with all points belongs",
-                           pieces.size()));
+  if (pieces.size() != 1 || pieces[0].attribute("Extent") != image.attribute("WholeExtent")) {
+    image.fail(fmt::format("it is in {} pieces, where one with all points belongs", pieces.size()));
   }
   return pieces[0];
 }
 
-void append_array(const VtkArray& array, const Element& owner, const Extent& extent,
-                  Image& image) {
+void append_array(const VtkArray& array, const Element& owner, const Extent& extent, Image& image) {
   const auto points = std::size_t(extent.width) * std::size_t(extent.height);
   if (array.tuples() != points) {
-    owner.fail(fmt::format("the array '{}' has {} values for {} points", array.name,
-                           array.tuples(), points));
+    owner.fail(fmt::format("the array '{}' has {} values for {} points", array.name, array.tuples(),
+                           points));
   }
   const std::string name = array.name.empty() ? "L" : array.name;
   for (std::size_t c = 0; c < array.components; ++c) {

@@ -12,7 +12,8 @@
 
 namespace surf::io::vtk {
 
-void write_volume(const std::filesystem::path& target, const std::string& file, const Volume& volume) {
+void write_volume(const std::filesystem::path& target, const std::string& file,
+                  const Volume& volume) {
   vtkNew<vtkImageData> data;
   data->SetDimensions(volume.cells[0] + 1, volume.cells[1] + 1, volume.cells[2] + 1);
   data->SetOrigin(volume.lower_nm.x, volume.lower_nm.y, volume.lower_nm.z);
@@ -28,7 +29,7 @@ void write_volume(const std::filesystem::path& target, const std::string& file, 
   vtkNew<vtkXMLImageDataWriter> writer;
   writer->SetFileName(target.c_str());
   writer->SetInputData(data);
-  writer->SetDataModeToBinary();   // this VTK cannot read appended data back
+  writer->SetDataModeToBinary();  // this VTK cannot read appended data back
   if (!writer->Write() || writer->GetErrorCode() != 0)
     throw FileError(file, "it cannot be written", "Is there space on the disk?");
 }

@@ -66,9 +66,9 @@ std::string inflate_block(const std::string& packed, std::uint64_t bytes) {
   if (bytes / 1032 > packed.size()) throw BadVtkData("a compressed block is damaged");
   std::string block(bytes, '\0');
   uLongf written = static_cast<uLongf>(bytes);
-  const int status = uncompress(reinterpret_cast<Bytef*>(block.data()), &written,
-                                reinterpret_cast<const Bytef*>(packed.data()),
-                                static_cast<uLong>(packed.size()));
+  const int status =
+      uncompress(reinterpret_cast<Bytef*>(block.data()), &written,
+                 reinterpret_cast<const Bytef*>(packed.data()), static_cast<uLong>(packed.size()));
   if (status != Z_OK || written != bytes) throw BadVtkData("a compressed block is damaged");
   return block;
 }

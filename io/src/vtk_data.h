@@ -14,8 +14,8 @@ struct VtkEncoding {
   enum class Data { text, base64, raw };
   Data data = Data::base64;
   bool big_endian = false;
-  bool long_header = false;   ///< counts of 64 bits, else of 32
-  bool compressed = false;    ///< by zlib, in blocks
+  bool long_header = false;  ///< counts of 64 bits, else of 32
+  bool compressed = false;   ///< by zlib, in blocks
 };
 
 /// What is wrong with the bytes; the caller knows the place.
@@ -28,8 +28,7 @@ struct BadVtkData : std::runtime_error {
 std::string decode_vtk_bytes(std::string_view text, const VtkEncoding& encoding);
 
 /// The numbers in the bytes. `type` as VTK writes it: "Float32", "Int64" and so on.
-std::vector<double> vtk_numbers(const std::string& bytes, const std::string& type,
-                                bool big_endian);
+std::vector<double> vtk_numbers(const std::string& bytes, const std::string& type, bool big_endian);
 
 /// Numbers written as text.
 std::vector<double> vtk_numbers_of_text(std::string_view text);

@@ -13,6 +13,7 @@ std::string vti_content(const std::string& file, const Image& image);
 std::string format_vtp(const std::string& file, const SceneView& scene);
 std::string format_tracks(const std::string& file, std::span<const Track> tracks,
                           const std::map<std::string, std::string>& metadata);
-void write_volume(const std::filesystem::path& target, const std::string& file, const Volume& volume);
+void write_volume(const std::filesystem::path& target, const std::string& file,
+                  const Volume& volume);
 
 }  // namespace surf::io::vtk

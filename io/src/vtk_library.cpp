@@ -14,7 +14,9 @@ void write_vti(const std::filesystem::path& target, const std::string& file, con
   vtk_library(file).write_vti(target, file, image);
 }
 
-std::string vti_content(const std::string& file, const Image& image) { return vtk_library(file).vti_content(file, image); }
+std::string vti_content(const std::string& file, const Image& image) {
+  return vtk_library(file).vti_content(file, image);
+}
 
 std::string format_vtp(const std::string& file, const SceneView& scene) {
   return vtk_library(file).format_vtp(file, scene);

@@ -11,13 +11,15 @@ namespace surf::io {
 /// What the module `vtk` gives. Files of VTK are read without it.
 struct VtkLibrary {
   static constexpr ModuleName module{"vtk", "writes VTI, VTP and VTM files",
-                                     "VTK (Debian: paraview or libvtk9.1, as it was built with)", 100};
+                                     "VTK (Debian: paraview or libvtk9.1, as it was built with)",
+                                     100};
 
   decltype(&io::write_vti) write_vti;
   decltype(&io::vti_content) vti_content;
   decltype(&io::format_vtp) format_vtp;
   decltype(&io::format_tracks) format_tracks;
-  void (*write_volume)(const std::filesystem::path& target, const std::string& file, const Volume& volume);
+  void (*write_volume)(const std::filesystem::path& target, const std::string& file,
+                       const Volume& volume);
 };
 
 /// Throws Unsupported, of `file`, where it is missing.

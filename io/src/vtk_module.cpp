@@ -6,7 +6,8 @@ namespace {
 
 using namespace surf::io;
 
-constexpr VtkLibrary table{vtk::write_vti, vtk::vti_content, vtk::format_vtp, vtk::format_tracks, vtk::write_volume};
+constexpr VtkLibrary table{vtk::write_vti, vtk::vti_content, vtk::format_vtp, vtk::format_tracks,
+                           vtk::write_volume};
 
 }  // namespace
 

@@ -19,8 +19,8 @@ struct VtkXml::Impl {
   std::string type;
   pugi::xml_document document;
   VtkEncoding encoding;
-  std::string compressor;        // empty: none
-  std::string_view appended;     // behind the underscore
+  std::string compressor;     // empty: none
+  std::string_view appended;  // behind the underscore
   VtkEncoding::Data appended_data = VtkEncoding::Data::raw;
 };
 
@@ -63,14 +63,13 @@ VtkXml::VtkXml(const std::string& file, std::string_view content, const std::str
     const std::size_t mark = rest.find('_', start);
     if (start == rest.npos || mark == rest.npos) fail({}, "its appended data is cut off");
     const std::string_view tag = rest.substr(0, start);
-    impl_->appended_data = tag.find("raw") != tag.npos ? VtkEncoding::Data::raw
-                                                       : VtkEncoding::Data::base64;
+    impl_->appended_data =
+        tag.find("raw") != tag.npos ? VtkEncoding::Data::raw : VtkEncoding::Data::base64;
     impl_->appended = rest.substr(mark + 1);
     text = std::string(content.substr(0, appendix)) + "</VTKFile>";
     content = text;
   }
-  const pugi::xml_parse_result result =
-      impl_->document.load_buffer(content.data(), content.size());
+  const pugi::xml_parse_result result = impl_->document.load_buffer(content.data(), content.size());
   if (!result) {
     fail({}, fmt::format("its XML is broken at byte {}: {}", result.offset, result.description()));
   }
@@ -188,8 +187,8 @@ VtkArray VtkXml::Element::decoded() const {
     array.texts = split_texts(array.values);
     array.values.clear();
   } else if (array.values.size() % array.components != 0) {
-    fail(fmt::format("{} values are not whole groups of {}", array.values.size(),
-                     array.components));
+    fail(
+        fmt::format("{} values are not whole groups of {}", array.values.size(), array.components));
   }
   return array;
 }

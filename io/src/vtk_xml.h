@@ -14,16 +14,16 @@ namespace surf::io {
 struct VtkArray {
   std::string name;
   std::size_t components = 1;
-  std::vector<double> values;        ///< whole numbers are exact up to 2^53
-  std::vector<std::string> texts;    ///< of an array of type String, which has no values
+  std::vector<double> values;      ///< whole numbers are exact up to 2^53
+  std::vector<std::string> texts;  ///< of an array of type String, which has no values
   bool is_text = false;
 
   std::size_t tuples() const { return is_text ? texts.size() : values.size() / components; }
 };
 
 /// Reads VTK's XML files (VTK File Formats, kitware.com) as they come: text, base64 or appended
-/// (raw or base64) data, plain or compressed with zlib, of either byte order. Nothing in the file is
-/// believed before it is checked. Failures are FileErrors, for other compressors Unsupported.
+/// (raw or base64) data, plain or compressed with zlib, of either byte order. Nothing in the file
+/// is believed before it is checked. Failures are FileErrors, for other compressors Unsupported.
 class VtkXml {
  public:
   /// An element of the file. Attributes that are missing are empty or the fallback.

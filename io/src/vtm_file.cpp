@@ -21,8 +21,9 @@ using Element = VtkXml::Element;
 
 constexpr const char* vtm_type = "vtkMultiBlockDataSet";
 constexpr const char* tracks_block = "electron tracks";
-constexpr const char* tracks_file = "_tracks.vtp";   // behind the stem
-constexpr std::string_view drape_of = "drape of ";   // a block's name: this and that of the surface's block
+constexpr const char* tracks_file = "_tracks.vtp";  // behind the stem
+constexpr std::string_view drape_of =
+    "drape of ";  // a block's name: this and that of the surface's block
 
 struct Block {
   std::string name;
@@ -30,15 +31,17 @@ struct Block {
 };
 
 /// All data sets with a file, in order, whatever blocks they are in.
-void collect(const Element& element, const std::filesystem::path& main, std::vector<Block>& blocks) {
+void collect(const Element& element, const std::filesystem::path& main,
+             std::vector<Block>& blocks) {
   for (const char* kind : {"Block", "Piece"}) {
     for (const Element& inner : element.children(kind)) collect(inner, main, blocks);
   }
   for (const Element& data : element.children("DataSet")) {
     const std::filesystem::path file = data.attribute("file");
-    if (file.empty()) continue;   // an empty block
+    if (file.empty()) continue;  // an empty block
     const auto place = side_file(main, file);
-    if (!place) data.fail(fmt::format("its file '{}' is not in or below the folder", shown(file.string())));
+    if (!place)
+      data.fail(fmt::format("its file '{}' is not in or below the folder", shown(file.string())));
     blocks.push_back({data.attribute("name"), *place});
   }
 }
@@ -52,7 +55,7 @@ std::vector<Block> blocks_of(const std::filesystem::path& path, std::string_view
 
 void add_drape(const Block& block, const std::vector<std::pair<std::string, std::size_t>>& places,
                ParsedFile& parsed) {
-  if (!block.name.starts_with(drape_of)) return;   // an image of its own
+  if (!block.name.starts_with(drape_of)) return;  // an image of its own
   for (const auto& [name, place] : places) {
     if (name != std::string_view(block.name).substr(drape_of.size())) continue;
     parsed.bodies[place].surface.drape = read_drape(block.file);
@@ -76,14 +79,15 @@ std::vector<std::filesystem::path> vtm_part_files(const std::filesystem::path& p
 
 ParsedFile parse_vtm(const std::filesystem::path& path, std::string_view content, Want want) {
   ParsedFile parsed;
-  std::vector<std::pair<std::string, std::size_t>> places;   // of surfaces by their block's name
+  std::vector<std::pair<std::string, std::size_t>> places;  // of surfaces by their block's name
   const std::vector<Block> blocks = blocks_of(path, content);
   for (const Block& block : blocks) {
     const std::string extension = lower_extension(block.file);
-    if (extension == ".vti") continue;   // once the surfaces are there
+    if (extension == ".vti") continue;  // once the surfaces are there
     if (extension != ".vtp") {
-      throw Unsupported(path.string(), fmt::format("its block {} is no surface or picture (.vtp, .vti)",
-                                                   block.file.filename().string()),
+      throw Unsupported(path.string(),
+                        fmt::format("its block {} is no surface or picture (.vtp, .vti)",
+                                    block.file.filename().string()),
                         "Extract the surface of it in ParaView and save that");
     }
     const std::string file = block.file.string();
@@ -96,7 +100,8 @@ ParsedFile parse_vtm(const std::filesystem::path& path, std::string_view content
     if (surfaces.bodies.empty()) continue;
     if (places.empty()) parsed.note = surfaces.note;
     if (surfaces.note.unit_nm != parsed.note.unit_nm) {
-      throw FileError(path.string(), "its blocks have different units", "Read the blocks one by one");
+      throw FileError(path.string(), "its blocks have different units",
+                      "Read the blocks one by one");
     }
     places.emplace_back(block.name, parsed.bodies.size());
     for (ParsedBody& body : surfaces.bodies) {
@@ -105,7 +110,8 @@ ParsedFile parse_vtm(const std::filesystem::path& path, std::string_view content
     }
   }
   for (const Block& block : blocks) {
-    if (want == Want::everything && lower_extension(block.file) == ".vti") add_drape(block, places, parsed);
+    if (want == Want::everything && lower_extension(block.file) == ".vti")
+      add_drape(block, places, parsed);
   }
   return parsed;
 }
@@ -123,17 +129,19 @@ std::vector<OutputFile> format_vtm(const std::filesystem::path& path, const Scen
     const SurfaceView& surface = scene.surfaces[s];
     SceneView one{{surface}, {}, scene.note};
     one.note.names.clear();
-    add(std::string(surface.name), fmt::format("{}_surface{}.vtp", stem, s + 1), format_vtp(file, one));
+    add(std::string(surface.name), fmt::format("{}_surface{}.vtp", stem, s + 1),
+        format_vtp(file, one));
     if (!surface.drape) continue;
-    add(std::string(drape_of) + std::string(surface.name), fmt::format("{}_surface{}.vti", stem, s + 1),
-        vti_content(file, to_image(*surface.drape)));
+    add(std::string(drape_of) + std::string(surface.name),
+        fmt::format("{}_surface{}.vti", stem, s + 1), vti_content(file, to_image(*surface.drape)));
   }
   if (!scene.tracks.empty()) {
     add(tracks_block, stem + tracks_file, format_tracks(file, scene.tracks, scene.note.metadata));
   }
-  files.push_back({path, fmt::format("<?xml version=\"1.0\"?>\n<VTKFile type=\"{0}\" version=\"1.0\" "
-                                     "byte_order=\"LittleEndian\">\n  <{0}>\n{1}  </{0}>\n</VTKFile>\n",
-                                     vtm_type, blocks)});
+  files.push_back(
+      {path, fmt::format("<?xml version=\"1.0\"?>\n<VTKFile type=\"{0}\" version=\"1.0\" "
+                         "byte_order=\"LittleEndian\">\n  <{0}>\n{1}  </{0}>\n</VTKFile>\n",
+                         vtm_type, blocks)});
   return files;
 }
 

@@ -30,8 +30,8 @@ class Cells {
     const auto offsets = element ? element->array("offsets") : std::nullopt;
     if (!corners || !offsets) piece.fail(fmt::format("the arrays of {} are missing", kind));
     if (offsets->values.size() < count) {
-      element->fail(fmt::format("{} cells are announced, and there are {}", count,
-                                offsets->values.size()));
+      element->fail(
+          fmt::format("{} cells are announced, and there are {}", count, offsets->values.size()));
     }
     double last = 0;
     for (std::uint64_t i = 0; i < count; ++i) {
@@ -93,8 +93,7 @@ class Materials {
   }
 
  private:
-  static std::vector<std::string> texts(const Element& piece, const char* kind,
-                                        std::size_t count) {
+  static std::vector<std::string> texts(const Element& piece, const char* kind, std::size_t count) {
     const auto data = piece.child(kind);
     auto array = data ? data->array("material") : std::nullopt;
     if (!array || !array->is_text || array->texts.size() != count) return {};
@@ -109,7 +108,8 @@ class Materials {
 std::vector<double> surface_numbers(const Element& piece, std::size_t cells, std::size_t surfaces) {
   const auto data = piece.child("CellData");
   auto array = data && surfaces > 1 ? data->array("surface") : std::nullopt;
-  if (!array || array->is_text || array->components != 1 || array->values.size() != cells) return {};
+  if (!array || array->is_text || array->components != 1 || array->values.size() != cells)
+    return {};
   const auto is_known = [&](double number) {
     return number >= 0 && number < static_cast<double>(surfaces) && number == std::floor(number);
   };
@@ -156,7 +156,8 @@ class Triangles {
     const std::size_t cells = first + polygons.count() + strips.count();
     const Materials materials(piece, cells, points.size());
     surfaces_ = surface_numbers(piece, cells, names_.size());
-    if (want_ == Want::everything && !points.empty()) add_scalars(read_scalars(piece, points.size()));
+    if (want_ == Want::everything && !points.empty())
+      add_scalars(read_scalars(piece, points.size()));
     mesh_.vertices_nm.insert(mesh_.vertices_nm.end(), points.begin(), points.end());
     add(polygons, first, materials, add_fan);
     add(strips, first + polygons.count(), materials, add_strip);
@@ -164,13 +165,15 @@ class Triangles {
 
   std::vector<ParsedBody> bodies() {
     std::vector<ParsedBody> result;
-    if (kinds_.size() == 1) {   // the vertices keep their order
-      result.push_back({kinds_[0].material, {name_of(kinds_[0]), std::move(mesh_), std::move(scalars_), {}}});
+    if (kinds_.size() == 1) {  // the vertices keep their order
+      result.push_back(
+          {kinds_[0].material, {name_of(kinds_[0]), std::move(mesh_), std::move(scalars_), {}}});
       return result;
     }
     std::vector<MeshPart> parts = split_in_order(mesh_, group_, kinds_.size());
     for (std::size_t i = 0; i < parts.size(); ++i) {
-      ParsedBody body{kinds_[i].material, {.name = name_of(kinds_[i]), .mesh = std::move(parts[i].mesh)}};
+      ParsedBody body{kinds_[i].material,
+                      {.name = name_of(kinds_[i]), .mesh = std::move(parts[i].mesh)}};
       for (const VertexScalar& scalar : scalars_) {
         VertexScalar part{scalar.name, scalar.unit, {}};
         for (const std::uint32_t v : parts[i].vertices) part.values.push_back(scalar.values[v]);
@@ -230,7 +233,7 @@ class Triangles {
   TriangleMesh mesh_;
   std::vector<VertexScalar> scalars_;
   std::uint32_t first_point_ = 0;
-  std::vector<double> surfaces_;       // of this piece's cells
+  std::vector<double> surfaces_;  // of this piece's cells
   std::vector<std::uint32_t> group_;
   std::map<Kind, std::uint32_t> numbers_;
   std::vector<Kind> kinds_;
@@ -262,7 +265,7 @@ ParsedFile parse_vtp(const std::string& file, std::string_view content, Want wan
   Triangles triangles(parsed.note.names, want);
   for (const Element& piece : xml.data().children("Piece")) triangles.add_piece(piece);
   parsed.bodies = triangles.bodies();
-  parsed.note.names.clear();   // the bodies have them
+  parsed.note.names.clear();  // the bodies have them
   return parsed;
 }
 

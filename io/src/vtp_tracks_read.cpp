@@ -15,8 +15,8 @@ namespace {
 using Element = VtkXml::Element;
 
 /// The numbers of an array, which must be as many as there are cells or points.
-std::vector<double> numbers(const Element& piece, const char* kind, const char* name, std::size_t count,
-                            std::size_t components = 1) {
+std::vector<double> numbers(const Element& piece, const char* kind, const char* name,
+                            std::size_t count, std::size_t components = 1) {
   const auto owner = piece.child(kind);
   const auto array = owner ? owner->array(name) : std::nullopt;
   if (!array || array->is_text || array->components != components ||
@@ -86,7 +86,8 @@ void read_piece(const Element& piece, std::vector<Track>& tracks) {
       const auto p = static_cast<std::size_t>(corner);
       track.points_nm.push_back({place[3 * p], place[3 * p + 1], place[3 * p + 2]});
       track.energy_ev.push_back(energy[p]);
-      if (c > begin) track.material.push_back(whole(material[p], piece));   // of the piece that ends there
+      if (c > begin)
+        track.material.push_back(whole(material[p], piece));  // of the piece that ends there
     }
     begin = static_cast<std::size_t>(end);
     try {

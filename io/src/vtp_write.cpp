@@ -36,7 +36,8 @@ void add_triangles(vtkPolyData* data, const SceneView& scene) {
   points->SetNumberOfPoints(static_cast<vtkIdType>(vertices));
   vtkNew<vtkCellArray> polygons;
   // Half the bytes to compress, and to read.
-  if (3 * triangles < (std::size_t{1} << 31) && vertices < (std::size_t{1} << 31)) polygons->Use32BitStorage();
+  if (3 * triangles < (std::size_t{1} << 31) && vertices < (std::size_t{1} << 31))
+    polygons->Use32BitStorage();
   polygons->AllocateExact(static_cast<vtkIdType>(triangles), static_cast<vtkIdType>(3 * triangles));
   vtkNew<vtkIntArray> surfaces;
   surfaces->SetName("surface");
@@ -114,11 +115,13 @@ void add_texture_points(vtkPolyData* data, const SceneView& scene) {
 
 void add_notes(vtkPolyData* data, const SceneView& scene) {
   SurfaceNote note = scene.note;
-  note.names.clear();   // as one array
-  for (const auto& [key, value] : to_entries(note, false)) add_text(data->GetFieldData(), key, value);
+  note.names.clear();  // as one array
+  for (const auto& [key, value] : to_entries(note, false))
+    add_text(data->GetFieldData(), key, value);
   vtkNew<vtkStringArray> names;
   names->SetName(vtp_names_key);
-  for (const SurfaceView& surface : scene.surfaces) names->InsertNextValue(std::string(surface.name));
+  for (const SurfaceView& surface : scene.surfaces)
+    names->InsertNextValue(std::string(surface.name));
   data->GetFieldData()->AddArray(names);
 }
 
@@ -139,9 +142,9 @@ std::string vtp_content(const std::string& file, vtkPolyData* data) {
   vtkNew<vtkXMLPolyDataWriter> writer;
   complaints.listen_to(writer.GetPointer());
   writer->SetInputData(data);
-  writer->SetDataModeToBinary();   // ParaView 5.11 on Debian 12 cannot read appended data
+  writer->SetDataModeToBinary();  // ParaView 5.11 on Debian 12 cannot read appended data
   writer->WriteToOutputStringOn();
-  writer->SetCompressionLevel(1);   // fast rather than small
+  writer->SetCompressionLevel(1);  // fast rather than small
   if (writer->Write() != 1 || !complaints.text().empty()) {
     throw FileError(file, fmt::format("cannot be written: {}", complaints.text()),
                     "Check the memory, or choose another format");

@@ -26,8 +26,9 @@ void check_surface(const WebSurface& surface) {
   const char* const name = surface.name.c_str();
   if (const auto* field = std::get_if<HeightField>(&surface.shape)) {
     validate(*field, name);
-    if (!field->valid.empty() && std::none_of(field->valid.data().begin(), field->valid.data().end(),
-                                              [](unsigned char valid) { return valid != 0; }))
+    if (!field->valid.empty() &&
+        std::none_of(field->valid.data().begin(), field->valid.data().end(),
+                     [](unsigned char valid) { return valid != 0; }))
       throw InvalidInput(surface.name, "every sample is a hole", "Give a surface with heights");
   } else {
     validate(std::get<TriangleMesh>(surface.shape), name);
@@ -35,15 +36,18 @@ void check_surface(const WebSurface& surface) {
   std::set<std::string> names;
   for (const WebScalar& scalar : surface.scalars) {
     if (scalar.name.empty() || !names.insert(scalar.name).second)
-      throw InvalidInput(surface.name, fmt::format("a scalar's name '{}' is empty or used twice", scalar.name),
+      throw InvalidInput(surface.name,
+                         fmt::format("a scalar's name '{}' is empty or used twice", scalar.name),
                          "Name each differently");
     if (scalar.values.size() != places_of(surface))
       throw InvalidInput(surface.name,
-                         fmt::format("scalar '{}' has {} values for {} places", scalar.name, scalar.values.size(),
-                                     places_of(surface)),
+                         fmt::format("scalar '{}' has {} values for {} places", scalar.name,
+                                     scalar.values.size(), places_of(surface)),
                          "Give one for each vertex or sample");
-    if (std::any_of(scalar.values.begin(), scalar.values.end(), [](float value) { return std::isinf(value); }))
-      throw InvalidInput(surface.name, fmt::format("scalar '{}' has an infinite value", scalar.name),
+    if (std::any_of(scalar.values.begin(), scalar.values.end(),
+                    [](float value) { return std::isinf(value); }))
+      throw InvalidInput(surface.name,
+                         fmt::format("scalar '{}' has an infinite value", scalar.name),
                          "Use NaN where nothing is known");
   }
 }
@@ -54,14 +58,17 @@ void check_first_view(const WebPage& page) {
                        [&](const WebScalar& scalar) { return scalar.name == page.scalar; });
   };
   if (!page.scalar.empty() && std::none_of(page.surfaces.begin(), page.surfaces.end(), has_scalar))
-    throw InvalidInput("page", fmt::format("no surface has a scalar '{}' to show first", page.scalar),
+    throw InvalidInput("page",
+                       fmt::format("no surface has a scalar '{}' to show first", page.scalar),
                        "Name one of its scalars");
   if (!page.drape) return;
   if (page.drape->image >= page.images.size() || !page.images[page.drape->image].has_scale ||
       !page.images[page.drape->image].image.find(page.drape->channel))
-    throw InvalidInput("page", fmt::format("there is no image with a scale and a channel '{}' to lay on the surfaces",
-                                           page.drape->channel),
-                       "Name a channel of one of its images");
+    throw InvalidInput(
+        "page",
+        fmt::format("there is no image with a scale and a channel '{}' to lay on the surfaces",
+                    page.drape->channel),
+        "Name a channel of one of its images");
 }
 
 void check_page(const WebPage& page) {
@@ -70,7 +77,8 @@ void check_page(const WebPage& page) {
   std::set<std::string> names;
   for (const WebSurface& surface : page.surfaces) {
     if (surface.name.empty() || !names.insert(surface.name).second)
-      throw InvalidInput("page", fmt::format("a surface's name '{}' is empty or used twice", surface.name),
+      throw InvalidInput("page",
+                         fmt::format("a surface's name '{}' is empty or used twice", surface.name),
                          "Name each differently");
     check_surface(surface);
   }
@@ -92,9 +100,11 @@ std::string escape(std::string_view text) {
   return safe;
 }
 
-// JSON inside an element of HTML: "</script" and "<!--" may not appear. Text of instruments may be no UTF-8.
+// JSON inside an element of HTML: "</script" and "<!--" may not appear. Text of instruments may be
+// no UTF-8.
 std::string to_text(const nlohmann::json& description) {
-  const std::string text = description.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+  const std::string text =
+      description.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
   std::string safe;
   safe.reserve(text.size());
   for (const char c : text) {
@@ -131,7 +141,8 @@ WebPageSummary write_web_page(const std::filesystem::path& path, const WebPage& 
     if (!goes_on()) return {};
     description["images"].push_back(describe(image, blobs));
   }
-  if (page.drape) description["drape"] = {{"image", page.drape->image}, {"channel", page.drape->channel}};
+  if (page.drape)
+    description["drape"] = {{"image", page.drape->image}, {"channel", page.drape->channel}};
   if (!goes_on()) return {};
 
   const std::string_view viewer = web_page_template();
@@ -154,7 +165,8 @@ void check_web_page_target(const std::filesystem::path& path) {
     throw UsageError(path.string(), fmt::format("a page's name ends in .html, not '{}'", extension),
                      "Use a name as page.html");
   if (web_page_template().empty())
-    throw Unsupported(path.string(), "this semsurf was built without Node.js, which bundles the viewer",
+    throw Unsupported(path.string(),
+                      "this semsurf was built without Node.js, which bundles the viewer",
                       "Install nodejs and npm, then configure and build again with a network");
   check_writable(path);
 }

@@ -47,15 +47,18 @@ json describe_mesh(const TriangleMesh& mesh, WebBlobs& blobs) {
   const Vec3 middle = box.lower_nm + 0.5 * box.size_nm();
   std::vector<float> positions;
   positions.reserve(3 * mesh.vertices_nm.size());
-  for (int axis = 0; axis < 3; ++axis) {   // all x, all y, all z: neighbours differ less
+  for (int axis = 0; axis < 3; ++axis) {  // all x, all y, all z: neighbours differ less
     for (const Vec3& vertex : mesh.vertices_nm) {
       const Vec3 from_middle = vertex - middle;
-      positions.push_back(static_cast<float>(axis == 0 ? from_middle.x : axis == 1 ? from_middle.y : from_middle.z));
+      positions.push_back(static_cast<float>(axis == 0   ? from_middle.x
+                                             : axis == 1 ? from_middle.y
+                                                         : from_middle.z));
     }
   }
   std::vector<std::uint32_t> corners;
   corners.reserve(3 * mesh.triangles.size());
-  for (const Triangle& triangle : mesh.triangles) corners.insert(corners.end(), triangle.begin(), triangle.end());
+  for (const Triangle& triangle : mesh.triangles)
+    corners.insert(corners.end(), triangle.begin(), triangle.end());
   return {{"kind", "mesh"},
           {"middle_nm", {middle.x, middle.y, middle.z}},
           {"positions", blobs.add_numbers(positions)},
@@ -65,7 +68,8 @@ json describe_mesh(const TriangleMesh& mesh, WebBlobs& blobs) {
 }  // namespace
 
 json WebBlobs::add(const std::string& kind, const std::string& bytes) {
-  html_ += fmt::format("<script type=\"{}\" id=\"data{}\">{}</script>\n", kind, count_, encode_base64(bytes));
+  html_ += fmt::format("<script type=\"{}\" id=\"data{}\">{}</script>\n", kind, count_,
+                       encode_base64(bytes));
   return {{"data", count_++}};
 }
 
@@ -91,7 +95,9 @@ json WebBlobs::add_numbers(const std::vector<float>& values) {
   return add_words("float32", words);
 }
 
-json WebBlobs::add_numbers(const std::vector<std::uint32_t>& values) { return add_words("uint32", values); }
+json WebBlobs::add_numbers(const std::vector<std::uint32_t>& values) {
+  return add_words("uint32", values);
+}
 
 json WebBlobs::add_png(const std::string& bytes) { return add("semsurf/png", bytes); }
 
@@ -103,8 +109,9 @@ json describe(const WebSurface& surface, WebBlobs& blobs) {
   description["metadata"] = surface.metadata;
   description["scalars"] = json::array();
   for (const WebScalar& scalar : surface.scalars) {
-    description["scalars"].push_back(
-        {{"name", scalar.name}, {"unit", scalar.unit}, {"values", blobs.add_numbers(scalar.values)}});
+    description["scalars"].push_back({{"name", scalar.name},
+                                      {"unit", scalar.unit},
+                                      {"values", blobs.add_numbers(scalar.values)}});
   }
   return description;
 }

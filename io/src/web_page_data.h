@@ -8,11 +8,12 @@
 
 namespace surf::io {
 
-/// A page's numbers and pictures as elements of HTML, which its description names by their position.
+/// A page's numbers and pictures as elements of HTML, which its description names by their
+/// position.
 ///
-/// Numbers of 32 bits (floats as their bits) are replaced by the difference from the one before, split
-/// into four planes of bytes, the lowest first, and deflated: 0.2 to 0.85 of base64 alone for measured
-/// heights, 0.01 for the indices of a grid-like mesh.
+/// Numbers of 32 bits (floats as their bits) are replaced by the difference from the one before,
+/// split into four planes of bytes, the lowest first, and deflated: 0.2 to 0.85 of base64 alone for
+/// measured heights, 0.01 for the indices of a grid-like mesh.
 class WebBlobs {
  public:
   nlohmann::json add_numbers(const std::vector<float>& values);

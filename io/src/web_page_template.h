@@ -5,8 +5,8 @@
 
 namespace surf::io {
 
-/// The viewer of web/, bundled into one page, with the marks below where its title and data belong. Empty
-/// in a build without Node.js.
+/// The viewer of web/, bundled into one page, with the marks below where its title and data belong.
+/// Empty in a build without Node.js.
 std::string_view web_page_template();
 
 inline constexpr std::string_view web_page_title_mark = "<!--semsurf:title-->";

@@ -11,15 +11,16 @@
 
 namespace surf::io {
 
-/// A ZIP archive (PKWARE's APPNOTE 6.3) in memory, as 3MF and other packages are. The same parts give the same
-/// bytes: all are dated 1980.
+/// A ZIP archive (PKWARE's APPNOTE 6.3) in memory, as 3MF and other packages are. The same parts
+/// give the same bytes: all are dated 1980.
 class ZipWriter {
  public:
   /// `file` is the name for messages.
   explicit ZipWriter(std::string file);
   ~ZipWriter();
 
-  /// Begins a part; `append` gives its content, in as many pieces as convenient, which are packed as they come.
+  /// Begins a part; `append` gives its content, in as many pieces as convenient, which are packed
+  /// as they come.
   void begin(const std::string& name);
   void append(std::string_view piece);
   /// Ends the archive and gives it away. Throws InvalidInput for parts beyond 4 GB.
@@ -45,8 +46,8 @@ class ZipReader {
   ZipReader(std::string file, std::string_view content);
 
   std::vector<std::string> names() const;
-  /// The part of that name (letters of either case), unpacked and checked; nothing where there is none. Throws
-  /// FileError, also for parts that unpack to an absurd size, and Unsupported.
+  /// The part of that name (letters of either case), unpacked and checked; nothing where there is
+  /// none. Throws FileError, also for parts that unpack to an absurd size, and Unsupported.
   std::optional<std::string> read(std::string_view name) const;
 
  private:

@@ -7,12 +7,12 @@
 namespace surf::mc {
 namespace {
 
-constexpr int pixels = 4;   // to a side: units of work for the threads
+constexpr int pixels = 4;  // to a side: units of work for the threads
 
 }  // namespace
 
-FlatYields flat_yields(const Material& material, double energy_ev, std::int64_t electrons, const Physics& physics, int threads,
-                       const Watch& watch) {
+FlatYields flat_yields(const Material& material, double energy_ev, std::int64_t electrons,
+                       const Physics& physics, int threads, const Watch& watch) {
   Specimen specimen;
   specimen.materials = {material};
   specimen.substrate = Substrate{};
@@ -25,8 +25,8 @@ FlatYields flat_yields(const Material& material, double energy_ev, std::int64_t 
   options.budget = ElectronsPerPixel{(electrons + pixels * pixels - 1) / (pixels * pixels)};
   options.tile_pixels = 1;
   options.threads = threads;
-  const SimulationResult result =
-      simulate(Scene(specimen, beam, scan, physics), options, {.progress = watch.progress, .cancel = watch.cancel});
+  const SimulationResult result = simulate(Scene(specimen, beam, scan, physics), options,
+                                           {.progress = watch.progress, .cancel = watch.cancel});
   if (!result.complete) throw Interrupted();
   const auto yield = [&](std::size_t detector) {
     Counts sum;

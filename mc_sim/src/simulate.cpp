@@ -23,7 +23,8 @@ namespace {
 // Merges units as they come. Large tallies go back to the disk now and then.
 class Collector {
  public:
-  Collector(const Scan& scan, const SimulationOptions& options) : result(empty_result(scan, options)) {}
+  Collector(const Scan& scan, const SimulationOptions& options)
+      : result(empty_result(scan, options)) {}
 
   void add(const WorkUnit& u, const UnitTally& tally) {
     merge(result, u, tally);
@@ -36,16 +37,17 @@ class Collector {
   SimulationResult result;
 
  private:
-  static constexpr std::size_t most_added = std::size_t{1} << 19;   // pixels between releases
+  static constexpr std::size_t most_added = std::size_t{1} << 19;  // pixels between releases
   std::size_t added_ = 0;
 };
 
 // Hands units out, and merges them as they are finished. For use from many threads.
 class Merging {
  public:
-  Merging(const UnitPlan& plan, Collector& collector, const ProgressCallback& progress, UnitJournal* journal,
-          const CancelToken* cancel)
-      : plan_(plan), collector_(collector), progress_(progress), journal_(journal), cancel_(cancel) {}
+  Merging(const UnitPlan& plan, Collector& collector, const ProgressCallback& progress,
+          UnitJournal* journal, const CancelToken* cancel)
+      : plan_(plan), collector_(collector), progress_(progress), journal_(journal),
+        cancel_(cancel) {}
 
   /// The next unit that the journal does not know.
   std::optional<std::size_t> take() {
@@ -93,8 +95,10 @@ class Merging {
 // What simulates on each of the threads, made when the thread first has something to do.
 class Workers {
  public:
-  Workers(PreparedSimulation& prepared, int threads, const ObserverOfThread& observers, const CancelToken* cancel)
-      : prepared_(prepared), observers_(observers), cancel_(cancel), of_thread_(static_cast<std::size_t>(threads)) {}
+  Workers(PreparedSimulation& prepared, int threads, const ObserverOfThread& observers,
+          const CancelToken* cancel)
+      : prepared_(prepared), observers_(observers), cancel_(cancel),
+        of_thread_(static_cast<std::size_t>(threads)) {}
 
   /// False when it was cancelled. What observers have seen of a unit has to count: then it is not.
   bool simulate(const WorkUnit& unit, int thread, UnitTally& tally) {
@@ -132,23 +136,28 @@ Scan one_pixel() {
 
 void SimulationContext::check(const SimulationOptions& options, const Scene& scene) const {
   if (options.method == Method::replay && observers)
-    throw UsageError("`simulation.method=replay`", "stored cascades show observers nothing between surfaces",
+    throw UsageError("`simulation.method=replay`",
+                     "stored cascades show observers nothing between surfaces",
                      "Use `simulation.method=direct`");
   if (options.method == Method::replay && !can_replay(scene.physics(), scene.materials()))
-    throw UsageError("`simulation.method=replay`", "cascades are joined where energies are equal, which needs "
-                                        "continuous loss",
+    throw UsageError("`simulation.method=replay`",
+                     "cascades are joined where energies are equal, which needs "
+                     "continuous loss",
                      "Use `simulation.method=direct`, loss=joy-luo, or inelastic=dielectric");
   if (accuracy_of(options.budget) > 0 && observers)
-    throw UsageError("`simulation.accuracy`", "what observers see would be of more primaries in some pixels than in others",
+    throw UsageError("`simulation.accuracy`",
+                     "what observers see would be of more primaries in some pixels than in others",
                      "Give `simulation.electrons` instead");
   if (scheduler && observers)
-    throw UsageError("`output.deposit`", "each of several processes would see a part of it", "Run it in one process");
+    throw UsageError("`output.deposit`", "each of several processes would see a part of it",
+                     "Run it in one process");
   if (journal && observers)
     throw UsageError("simulate", "observers would not see the units that a journal recalls",
                      "Leave one of the two out");
 }
 
-SimulationResult simulate(const Scene& scene, const SimulationOptions& options, const SimulationContext& context) {
+SimulationResult simulate(const Scene& scene, const SimulationOptions& options,
+                          const SimulationContext& context) {
   check_options(options);
   context.check(options, scene);
   const auto& [progress, cancel, observers, journal, libraries, given] = context;
@@ -192,7 +201,8 @@ SimulationResult simulate(const Scene& scene, const SimulationOptions& options, 
                  [&](std::size_t number, int thread, UnitTally& tally) {
                    return workers.simulate(plan.unit(number), thread, tally);
                  },
-                 [&](std::size_t number, const UnitTally& tally) { merging.finish(number, tally); }, cancel});
+                 [&](std::size_t number, const UnitTally& tally) { merging.finish(number, tally); },
+                 cancel});
   result.complete = merging.complete() || !scheduler.collects();
   result.seconds = seconds();
   return std::move(result);

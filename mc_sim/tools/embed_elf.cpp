@@ -13,7 +13,8 @@ int main(int argc, char** argv) {
   }
   std::ofstream out(argv[1]);
   out << "// Made by embed_elf from data/elf. Do not edit.\n"
-         "#include \"physics/elf_data.h\"\n\nnamespace surf::mc {\nnamespace {\nconstexpr ElfFile files[] = {\n";
+         "#include \"physics/elf_data.h\"\n\nnamespace surf::mc {\nnamespace {\nconstexpr ElfFile "
+         "files[] = {\n";
   for (int i = 2; i < argc; ++i) {
     const std::filesystem::path path = argv[i];
     std::ifstream in(path);
@@ -25,6 +26,7 @@ int main(int argc, char** argv) {
     }
     out << "{\"" << path.stem().string() << "\", R\"elf(" << text.str() << ")elf\"},\n";
   }
-  out << "};\n}  // namespace\n\nstd::span<const ElfFile> elf_files() { return files; }\n\n}  // namespace surf::mc\n";
+  out << "};\n}  // namespace\n\nstd::span<const ElfFile> elf_files() { return files; }\n\n}  // "
+         "namespace surf::mc\n";
   return out.good() ? 0 : 1;
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Turns data/mott/icdfx_*_Z*.csv into a C++ source with this function: embed_mott OUTPUT.cpp FUNCTION CSV...
+// Turns data/mott/icdfx_*_Z*.csv into a C++ source with this function: embed_mott OUTPUT.cpp
+// FUNCTION CSV...
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
@@ -50,7 +51,8 @@ int main(int argc, char** argv) {
     out << "};\n";
     index += "{" + z + ", rows_" + z + "},\n";
   }
-  out << "constexpr MottElement elements[] = {\n" << index << "};\n}  // namespace\n\n"
+  out << "constexpr MottElement elements[] = {\n"
+      << index << "};\n}  // namespace\n\n"
       << "std::span<const MottElement> " << argv[2] << "() { return elements; }\n\n"
       << "}  // namespace surf::mc\n";
   return out.good() ? 0 : 1;

@@ -23,26 +23,28 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// Made with the plugin, so that Python finds it by name (vtkInformationKeyLookup) before any work is done.
+/// Made with the plugin, so that Python finds it by name (vtkInformationKeyLookup) before any work
+/// is done.
 vtkInformationDoubleKey* const library_seconds =
     vtkInformationDoubleKey::MakeKey("LIBRARY_SECONDS", "vtkSemsurf");
 
 /// What the two threads share.
 struct Run {
-  std::atomic<double> share{0};   // of the work that is done
+  std::atomic<double> share{0};  // of the work that is done
   CancelToken cancel;
   std::mutex mutex;
   std::condition_variable ended;
   bool done = false;
   std::exception_ptr error;
-  double seconds = 0;   // that the job took
+  double seconds = 0;  // that the job took
 };
 
 void do_job(Run& run, const std::function<void(const Watch&)>& job) {
   std::exception_ptr error;
   const auto start = std::chrono::steady_clock::now();
   try {
-    job({[&run](double done, double total) { run.share.store(total > 0 ? done / total : 0); }, &run.cancel});
+    job({[&run](double done, double total) { run.share.store(total > 0 ? done / total : 0); },
+         &run.cancel});
   } catch (...) {
     error = std::current_exception();
   }
@@ -53,7 +55,7 @@ void do_job(Run& run, const std::function<void(const Watch&)>& job) {
   run.ended.notify_one();
 }
 
-}   // namespace
+}  // namespace
 
 int attempt(vtkAlgorithm* self, const std::function<void()>& request) {
   try {
@@ -75,14 +77,15 @@ int attempt_information(vtkAlgorithm* self, vtkInformationVector* outputs,
   if (attempt(self, request)) return 1;
   const int nothing[6] = {0, -1, 0, -1, 0, -1};
   for (int port = 0; port < outputs->GetNumberOfInformationObjects(); ++port)
-    outputs->GetInformationObject(port)->Set(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), nothing, 6);
+    outputs->GetInformationObject(port)->Set(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(),
+                                             nothing, 6);
   return 0;
 }
 
 void work(vtkAlgorithm* self, const std::function<void(const Watch&)>& job) {
   Run run;
   std::thread worker(do_job, std::ref(run), std::cref(job));
-  int told = 0;   // hundredths, so that nobody is told more than a hundred times
+  int told = 0;  // hundredths, so that nobody is told more than a hundred times
   std::unique_lock lock(run.mutex);
   while (!run.ended.wait_for(lock, 50ms, [&] { return run.done; })) {
     lock.unlock();
@@ -101,6 +104,8 @@ void work(vtkAlgorithm* self, const std::function<void(const Watch&)>& job) {
   if (run.cancel.cancelled()) throw Interrupted();
 }
 
-void warn(vtkAlgorithm* self, const std::string& text) { vtkWarningWithObjectMacro(self, << labelled(text)); }
+void warn(vtkAlgorithm* self, const std::string& text) {
+  vtkWarningWithObjectMacro(self, << labelled(text));
+}
 
-}   // namespace surf::pv
+}  // namespace surf::pv

@@ -28,9 +28,11 @@ void complete(workflow::ModelRequest& request, const PropertyValues& values) {
   io::MaterialChoice material;
   values.apply(material);
   if (material.name.empty())
-    throw UsageError("`reconstruction.model`", "no model is named, nor a material", "Give one of the two");
+    throw UsageError("`reconstruction.model`", "no model is named, nor a material",
+                     "Give one of the two");
   if (cache.empty())
-    throw UsageError("`reconstruction.model`", "none is named, and there is no cache to keep one in", "Name one");
+    throw UsageError("`reconstruction.model`",
+                     "none is named, and there is no cache to keep one in", "Name one");
   std::vector<std::string> notes;
   request.material = io::find_material(material, notes);
 }
@@ -38,13 +40,18 @@ void complete(workflow::ModelRequest& request, const PropertyValues& values) {
 void add_chain_record(vtkDataObject* data, const std::string& step, const Record& parameters,
                       const workflow::StoredModel* model) {
   add_record(data, step, parameters);
-  if (model) add_texts(data, {{"model", fmt::format("{} sha256 {}", model->file.filename().string(), model->sha256)}});
+  if (model)
+    add_texts(
+        data,
+        {{"model", fmt::format("{} sha256 {}", model->file.filename().string(), model->sha256)}});
 }
 
 std::vector<LandmarkPair> landmarks_of(vtkPolyData* sem, vtkPolyData* afm) {
-  const vtkIdType of_sem = sem ? sem->GetNumberOfPoints() : 0, of_afm = afm ? afm->GetNumberOfPoints() : 0;
+  const vtkIdType of_sem = sem ? sem->GetNumberOfPoints() : 0,
+                  of_afm = afm ? afm->GetNumberOfPoints() : 0;
   if (of_sem != of_afm)
-    throw UsageError("SEM Landmarks", fmt::format("there are {}, and {} AFM Landmarks", of_sem, of_afm),
+    throw UsageError("SEM Landmarks",
+                     fmt::format("there are {}, and {} AFM Landmarks", of_sem, of_afm),
                      "Give the same places in both, in the same order, or none");
   std::vector<LandmarkPair> pairs;
   for (vtkIdType i = 0; i < of_sem; ++i) {
@@ -53,7 +60,7 @@ std::vector<LandmarkPair> landmarks_of(vtkPolyData* sem, vtkPolyData* afm) {
     afm->GetPoint(i, a);
     pairs.push_back({{s[0], s[1]}, {a[0], a[1]}});
   }
-  if (!pairs.empty()) fit_landmarks(pairs);   // complains of too few, or on a line, before any work
+  if (!pairs.empty()) fit_landmarks(pairs);  // complains of too few, or on a line, before any work
   return pairs;
 }
 
@@ -67,7 +74,9 @@ workflow::Reporter listen(const Watch& watch, int stages, std::vector<std::strin
     ++*begun;
     tell(0);
   };
-  listener.on_progress = [tell](double done, double total, std::string_view) { tell(total > 0 ? std::clamp(done / total, 0.0, 1.0) : 0); };
+  listener.on_progress = [tell](double done, double total, std::string_view) {
+    tell(total > 0 ? std::clamp(done / total, 0.0, 1.0) : 0);
+  };
   listener.on_warning = [&warnings](const std::string& text) { warnings.push_back(text); };
   listener.cancel = watch.cancel;
   return listener;

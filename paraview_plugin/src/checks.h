@@ -3,8 +3,8 @@
 
 namespace surf::pv {
 
-// What properties may be. Each throws UsageError by the property's label: ranges in the XML bind the panel alone,
-// scripts and state files set what they like.
+// What properties may be. Each throws UsageError by the property's label: ranges in the XML bind
+// the panel alone, scripts and state files set what they like.
 
 /// Neither NaN nor infinite.
 void need_number(double value, const char* label);

@@ -13,11 +13,18 @@ namespace surf::pv {
 namespace {
 
 /// What a property is called that is not called as the field is.
-const std::map<std::string_view, std::string> other_names{
-    {"specimen.material", "Materials"}, {"specimen.materials", "Material File"},  {"specimen.substrate_z", "Substrate Top"},
-    {"scan.size", "Pixels"},            {"output", "Model File"},                 {"prediction.model", "Model File"},
-    {"tip.kind", "Shape"},              {"tip.size", "Tip Size"},                 {"reconstruction.model", "Model File"},
-    {"clean.spikes", "Spike Width"},    {"clean.median", "Median Width"},         {"clean.closing", "Closing Width"}};
+const std::map<std::string_view, std::string> other_names{{"specimen.material", "Materials"},
+                                                          {"specimen.materials", "Material File"},
+                                                          {"specimen.substrate_z", "Substrate Top"},
+                                                          {"scan.size", "Pixels"},
+                                                          {"output", "Model File"},
+                                                          {"prediction.model", "Model File"},
+                                                          {"tip.kind", "Shape"},
+                                                          {"tip.size", "Tip Size"},
+                                                          {"reconstruction.model", "Model File"},
+                                                          {"clean.spikes", "Spike Width"},
+                                                          {"clean.median", "Median Width"},
+                                                          {"clean.closing", "Closing Width"}};
 
 std::string label_of(std::string_view field) {
   if (const auto other = other_names.find(field); other != other_names.end()) return other->second;

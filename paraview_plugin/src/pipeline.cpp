@@ -22,7 +22,7 @@ namespace {
 
 using Pipeline = vtkStreamingDemandDrivenPipeline;
 
-}   // namespace
+}  // namespace
 
 void request_whole(vtkInformationVector** inputs, int ports) {
   for (int port = 0; port < ports; ++port) {
@@ -59,7 +59,7 @@ void give(vtkInformation* output, vtkImageData* whole) {
   if (std::equal(asked, asked + 6, has)) return;
   for (int axis = 0; axis < 6; axis += 2) {
     if (asked[axis + 1] >= asked[axis]) continue;
-    image->Initialize();   // a rank without a piece
+    image->Initialize();  // a rank without a piece
     return;
   }
   image->Crop(asked);
@@ -71,7 +71,8 @@ int announce_pieces(vtkInformation* output) {
 }
 
 bool is_first_piece(vtkInformation* output) {
-  return !output->Has(Pipeline::UPDATE_PIECE_NUMBER()) || output->Get(Pipeline::UPDATE_PIECE_NUMBER()) == 0;
+  return !output->Has(Pipeline::UPDATE_PIECE_NUMBER()) ||
+         output->Get(Pipeline::UPDATE_PIECE_NUMBER()) == 0;
 }
 
 void give(vtkInformation* output, vtkPolyData* whole) {
@@ -128,4 +129,4 @@ vtkDataArray* chosen_array(vtkAlgorithm* self, int index, vtkImageData* image) {
   return candidates.empty() ? nullptr : candidates.front();
 }
 
-}   // namespace surf::pv
+}  // namespace surf::pv

@@ -21,7 +21,9 @@ bool PropertyValues::keep(const std::string& name, std::string text) {
   return true;
 }
 
-bool PropertyValues::set(const char* name, const char* text) { return keep(name, text ? text : ""); }
+bool PropertyValues::set(const char* name, const char* text) {
+  return keep(name, text ? text : "");
+}
 
 bool PropertyValues::set(const char* name, double value) { return keep(name, format_exact(value)); }
 
@@ -36,7 +38,9 @@ std::string PropertyValues::text(const std::string& name) const {
   return found == texts_.end() ? std::string() : found->second;
 }
 
-double PropertyValues::number(const std::string& name) const { return std::strtod(text(name).c_str(), nullptr); }
+double PropertyValues::number(const std::string& name) const {
+  return std::strtod(text(name).c_str(), nullptr);
+}
 
 void PropertyValues::take(const Parameter& about, Field& field) const {
   const auto found = texts_.find(about.name);
@@ -46,7 +50,8 @@ void PropertyValues::take(const Parameter& about, Field& field) const {
     const auto choices = field.choices();
     const double index = number(about.name);
     if (!(index >= 0 && index < static_cast<double>(choices.size())) || index != std::floor(index))
-      throw UsageError(about.subject(), fmt::format("there is no choice {}", text), fmt::format("Choose 0 to {}", choices.size() - 1));
+      throw UsageError(about.subject(), fmt::format("there is no choice {}", text),
+                       fmt::format("Choose 0 to {}", choices.size() - 1));
     field.read(choices[static_cast<std::size_t>(index)], about.subject());
     return;
   }

@@ -13,7 +13,8 @@ namespace surf::pv {
 /// What the properties of a proxy say, by the names of the parameters that they stand for.
 class PropertyValues {
  public:
-  // Each returns whether that is something new. A name may carry what says nothing: "beam.current=0".
+  // Each returns whether that is something new. A name may carry what says nothing:
+  // "beam.current=0".
   bool set(const char* name, const char* text);
   bool set(const char* name, double value);
   bool set(const char* name, const std::vector<double>& values);

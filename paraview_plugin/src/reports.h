@@ -13,8 +13,8 @@ class vtkDataObject;
 
 namespace surf::pv {
 
-/// Who hears a job that `work` runs on a thread of its own: `watch` is told of the progress, `warnings` keeps what
-/// `warn` can say when it has ended. Notes are dropped.
+/// Who hears a job that `work` runs on a thread of its own: `watch` is told of the progress,
+/// `warnings` keeps what `warn` can say when it has ended. Notes are dropped.
 workflow::Reporter hear(const Watch& watch, std::vector<std::string>& warnings);
 
 /// Says them all.

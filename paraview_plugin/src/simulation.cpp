@@ -26,7 +26,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr double scene_share = 0.02, library_share = 0.3;   // of the progress
+constexpr double scene_share = 0.02, library_share = 0.3;  // of the progress
 
 /// Leaves to each rank every so many-eth unit: neighbours take alike long.
 class ShareOfRank final : public mc::UnitJournal {
@@ -47,7 +47,7 @@ class ShareOfRank final : public mc::UnitJournal {
     bytes += packed;
   }
 
-  std::string bytes;   // of the units done here
+  std::string bytes;  // of the units done here
 
  private:
   mc::UnitPlan plan_;
@@ -90,8 +90,8 @@ std::string gather(vtkMultiProcessController* ranks, const std::string& own) {
   return all;
 }
 
-/// Does a part of the work that all ranks do, and fails on all if it fails or is aborted on one: who went on alone would
-/// wait for the others for ever.
+/// Does a part of the work that all ranks do, and fails on all if it fails or is aborted on one:
+/// who went on alone would wait for the others for ever.
 void together(vtkMultiProcessController* ranks, const std::function<void()>& part) {
   std::exception_ptr error;
   try {
@@ -108,7 +108,7 @@ void together(vtkMultiProcessController* ranks, const std::function<void()>& par
 /// Progress of a job as a share of the whole, and its warnings.
 workflow::Reporter reporter_of(const Watch& watch, std::vector<std::string>& warnings) {
   workflow::Reporter reporter;
-  auto begun = std::make_shared<double>(scene_share);   // where the simulation itself begins
+  auto begun = std::make_shared<double>(scene_share);  // where the simulation itself begins
   reporter.on_progress = [watch, begun](double done, double total, std::string_view things) {
     if (things == "cascades") {
       *begun = library_share;
@@ -126,7 +126,7 @@ workflow::Reporter reporter_of(const Watch& watch, std::vector<std::string>& war
 struct Exchange {
   std::mutex mutex;
   std::condition_variable changed;
-  std::optional<std::string> own, all;   // units done here, and by everybody
+  std::optional<std::string> own, all;  // units done here, and by everybody
   bool given_up = false, ended = false;
 
   template <class Condition>
@@ -162,11 +162,12 @@ workflow::Simulator sharing(Exchange& exchange, int rank, int count) {
 }
 
 workflow::SimulateSummary simulate_together(vtkAlgorithm* self, const workflow::SimulateJob& job,
-                                            vtkMultiProcessController* ranks, std::vector<std::string>& warnings) {
+                                            vtkMultiProcessController* ranks,
+                                            std::vector<std::string>& warnings) {
   Exchange exchange;
   CancelToken cancel;
   std::mutex telling;
-  Watch told;   // of the phase that ParaView's thread is in
+  Watch told;  // of the phase that ParaView's thread is in
   const Watch forward{[&](double done, double total) {
                         const std::lock_guard lock(telling);
                         if (told.progress) told.progress(done, total);
@@ -176,8 +177,9 @@ workflow::SimulateSummary simulate_together(vtkAlgorithm* self, const workflow::
   std::exception_ptr error;
   std::thread thread([&] {
     try {
-      summary = workflow::run(job, reporter_of(forward, warnings), nullptr,
-                              sharing(exchange, ranks->GetLocalProcessId(), ranks->GetNumberOfProcesses()));
+      summary = workflow::run(
+          job, reporter_of(forward, warnings), nullptr,
+          sharing(exchange, ranks->GetLocalProcessId(), ranks->GetNumberOfProcesses()));
     } catch (...) {
       error = std::current_exception();
     }
@@ -191,7 +193,8 @@ workflow::SimulateSummary simulate_together(vtkAlgorithm* self, const workflow::
           told = watch;
         }
         std::unique_lock lock(exchange.mutex);
-        while (!exchange.changed.wait_for(lock, std::chrono::milliseconds(50), [&] { return there() || exchange.ended; }))
+        while (!exchange.changed.wait_for(lock, std::chrono::milliseconds(50),
+                                          [&] { return there() || exchange.ended; }))
           if (watch.cancel->cancelled()) cancel.cancel();
         lock.unlock();
         const std::lock_guard quiet(telling);
@@ -217,11 +220,14 @@ workflow::SimulateSummary simulate_together(vtkAlgorithm* self, const workflow::
 
 }  // namespace
 
-workflow::SimulateSummary simulate(vtkAlgorithm* self, const workflow::SimulateJob& job, vtkMultiProcessController* ranks) {
+workflow::SimulateSummary simulate(vtkAlgorithm* self, const workflow::SimulateJob& job,
+                                   vtkMultiProcessController* ranks) {
   workflow::SimulateSummary summary;
   std::vector<std::string> warnings;
   if (ranks) summary = simulate_together(self, job, ranks, warnings);
-  else work(self, [&](const Watch& watch) { summary = workflow::run(job, reporter_of(watch, warnings)); });
+  else
+    work(self,
+         [&](const Watch& watch) { summary = workflow::run(job, reporter_of(watch, warnings)); });
   for (const std::string& text : warnings) warn(self, text);
   return summary;
 }
@@ -244,7 +250,7 @@ struct LiveSimulation::Shared {
   }
 
   static constexpr int coarse_electrons = 8;
-  static constexpr int coarsest = 8;            // places along the longer side, doubled again and again
+  static constexpr int coarsest = 8;  // places along the longer side, doubled again and again
   static constexpr std::chrono::milliseconds coarse_time{600};
 
   workflow::SimulateJob job;
@@ -255,15 +261,15 @@ struct LiveSimulation::Shared {
   // Guarded by `mutex`.
   mutable std::mutex mutex;
   mutable std::condition_variable told;
-  mc::SimulationResult coarse, fine;            // the pixels done
-  std::vector<int> strides;                     // of the coarse ones, falling
+  mc::SimulationResult coarse, fine;  // the pixels done
+  std::vector<int> strides;           // of the coarse ones, falling
   std::vector<Track> tracks;
-  std::vector<std::string> warnings;            // nobody has seen yet
+  std::vector<std::string> warnings;  // nobody has seen yet
   Record record;
   std::exception_ptr error;
   bool coarse_done = false, has_fine = false, news = false, ended = false, looked_at = false;
 
-  std::thread thread;                           // last: it uses the others
+  std::thread thread;  // last: it uses the others
 };
 
 namespace {
@@ -276,7 +282,9 @@ class Shown final : public mc::UnitJournal {
       : plan_(scan, options), show_(std::move(show)) {}
 
   bool recall(std::size_t, mc::UnitTally&) override { return false; }
-  void record(std::size_t unit, const mc::UnitTally& tally) override { show_(plan_.unit(unit), tally); }
+  void record(std::size_t unit, const mc::UnitTally& tally) override {
+    show_(plan_.unit(unit), tally);
+  }
 
  private:
   mc::UnitPlan plan_;
@@ -285,25 +293,28 @@ class Shown final : public mc::UnitJournal {
 
 }  // namespace
 
-/// Electrons in few pixels, then in those between, as far as the time goes. They are those of a direct simulation.
+/// Electrons in few pixels, then in those between, as far as the time goes. They are those of a
+/// direct simulation.
 void LiveSimulation::Shared::look_coarsely(const mc::Scene& scene) {
   const auto end = Clock::now() + coarse_time;
   const int longer = std::max(scan.width, scan.height);
   for (int places = coarsest;; places *= 2) {
     const int stride = std::max(1, longer / places);
-    const int columns = (scan.width + stride - 1) / stride, rows = (scan.height + stride - 1) / stride;
+    const int columns = (scan.width + stride - 1) / stride,
+              rows = (scan.height + stride - 1) / stride;
     {
       const std::lock_guard lock(mutex);
       if (strides.empty() || strides.back() != stride) strides.push_back(stride);
     }
-    parallel_for(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows), job.execution.threads,
-                 [&](std::size_t i, int) {
+    parallel_for(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows),
+                 job.execution.threads, [&](std::size_t i, int) {
                    if (cancel.cancelled() || Clock::now() > end) return;
-                   const int x = static_cast<int>(i) % columns * stride, y = static_cast<int>(i) / columns * stride;
+                   const int x = static_cast<int>(i) % columns * stride,
+                             y = static_cast<int>(i) / columns * stride;
                    const mc::WorkUnit unit{x, y, x + 1, y + 1, 0, coarse_electrons};
                    {
                      const std::lock_guard lock(mutex);
-                     if (coarse.pixels(x, y).primaries > 0) return;   // done with a larger stride
+                     if (coarse.pixels(x, y).primaries > 0) return;  // done with a larger stride
                    }
                    const mc::UnitTally tally = mc::simulate_unit(scene, coarse_options, unit);
                    const std::lock_guard lock(mutex);
@@ -396,7 +407,9 @@ LiveSimulation::View LiveSimulation::look() {
   View view;
   view.tracks = shared_->tracks;
   view.warnings = std::exchange(shared_->warnings, {});
-  view.record = shared_->ended ? shared_->record : record_of(static_cast<const mc::SimulationRequest&>(shared_->job.scene));
+  view.record = shared_->ended
+                    ? shared_->record
+                    : record_of(static_cast<const mc::SimulationRequest&>(shared_->job.scene));
   view.image = mc::make_image(shared_->fine, scan);
   view.state = shared_->ended ? "done" : shared_->has_fine ? "refining" : "coarse";
   // A copy: the tallies go on growing.
@@ -422,7 +435,8 @@ LiveSimulation::View LiveSimulation::look() {
         const int u = x - x % *stride, v = y - y % *stride;
         if (shared_->coarse.pixels(u, v).primaries == 0) continue;
         for (Channel& channel : view.image.channels)
-          if (const Channel* of_coarse = coarse.find(channel.name)) channel.values(x, y) = of_coarse->values(u, v);
+          if (const Channel* of_coarse = coarse.find(channel.name))
+            channel.values(x, y) = of_coarse->values(u, v);
         break;
       }
     }

@@ -16,16 +16,19 @@
 namespace surf::pv {
 namespace {
 
-constexpr double share_of_images = 0.8;   // of the progress, where images have to be made first
+constexpr double share_of_images = 0.8;  // of the progress, where images have to be made first
 
 /// How many numbers a model has learnt, or its table holds.
 struct Numbers {
   std::size_t operator()(const SlopeModelParameters& p) const {
     std::size_t count = 0;
-    for (const SlopeChannel& channel : p.channels) count += p.form == SlopeForm::table ? channel.yields.size() : 1;
+    for (const SlopeChannel& channel : p.channels)
+      count += p.form == SlopeForm::table ? channel.yields.size() : 1;
     return count;
   }
-  std::size_t operator()(const FilterBankParameters& p) const { return p.channels.size() * (1 + 3 * p.scales.size()); }
+  std::size_t operator()(const FilterBankParameters& p) const {
+    return p.channels.size() * (1 + 3 * p.scales.size());
+  }
   std::size_t operator()(const FacetNetworkParameters& p) const {
     std::size_t count = 0;
     for (const DenseLayer& layer : p.layers) count += layer.weights.size() + layer.biases.size();
@@ -45,7 +48,8 @@ struct Numbers {
 
 }  // namespace
 
-workflow::TrainSummary train(const workflow::TrainJob& job, const Watch& watch, std::vector<std::string>& notes) {
+workflow::TrainSummary train(const workflow::TrainJob& job, const Watch& watch,
+                             std::vector<std::string>& notes) {
   double learning_from = 0;
   workflow::Reporter listener;
   listener.on_progress = [&](double done, double total, std::string_view things) {
@@ -70,7 +74,8 @@ void fill_errors(vtkTable* table, const TrainingRecord& record) {
   std::vector<int> held_out, widths, heights;
   std::vector<double> electrons;
   std::vector<const std::vector<ModelResidual>*> rows;
-  const auto add = [&](const std::string& name, bool held, const std::vector<ModelResidual>& residuals) -> bool {
+  const auto add = [&](const std::string& name, bool held,
+                       const std::vector<ModelResidual>& residuals) -> bool {
     if (residuals.empty() || residuals.size() != columns.size()) return false;
     names.push_back(name);
     held_out.push_back(held);
@@ -128,7 +133,8 @@ void fill_model(vtkTable* table, const workflow::TrainJob& job, const workflow::
     add("slope_deg_max", fmt::format("{:.4g}", record.range.slope_deg_max));
     add("curvature_per_nm_max", fmt::format("{:.4g}", record.range.curvature_max_per_nm));
   }
-  if (record.condition_number != 0) add("condition_number", fmt::format("{:.4g}", record.condition_number));
+  if (record.condition_number != 0)
+    add("condition_number", fmt::format("{:.4g}", record.condition_number));
   for (const auto& [key, value] : record.notes) add(key, value);
   for (const std::string& warning : record.warnings) add("warning", warning);
   for (const std::string& note : notes) add("note", note);

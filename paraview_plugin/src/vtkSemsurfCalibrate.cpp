@@ -32,7 +32,8 @@ int vtkSemsurfCalibrate::FillOutputPortInformation(int port, vtkInformation* inf
   return 1;
 }
 
-int vtkSemsurfCalibrate::RequestData(vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs) {
+int vtkSemsurfCalibrate::RequestData(vtkInformation*, vtkInformationVector** inputs,
+                                     vtkInformationVector* outputs) {
   return pv::attempt(this, [&] {
     pv::with_labels([&] {
       workflow::CalibrateParameters parameters;
@@ -44,11 +45,14 @@ int vtkSemsurfCalibrate::RequestData(vtkInformation*, vtkInformationVector** inp
       input.image = pv::to_placed_image(real_image, pv::chosen_array(this, 0, real_image), "Input");
       input.simulated = pv::to_image(model_image, "Simulated");
       vtkDataArray* const shown = pv::chosen_array(this, 1, model_image);
-      if (parameters.fit.empty() && !input.simulated.find("SE") && !input.simulated.find("BSE") && shown && shown->GetName())
+      if (parameters.fit.empty() && !input.simulated.find("SE") && !input.simulated.find("BSE") &&
+          shown && shown->GetName())
         parameters.fit = {shown->GetName()};
       std::vector<std::string> warnings;
       workflow::CalibrateResult result;
-      pv::work(this, [&](const Watch& watch) { result = workflow::calibrate(input, parameters, pv::hear(watch, warnings)); });
+      pv::work(this, [&](const Watch& watch) {
+        result = workflow::calibrate(input, parameters, pv::hear(watch, warnings));
+      });
       pv::warn(this, warnings);
 
       const Calibration& c = result.calibration;
@@ -57,9 +61,13 @@ int vtkSemsurfCalibrate::RequestData(vtkInformation*, vtkInformationVector** inp
         q.push_back({"gain " + c.channels[i], c.gains[i]});
         q.push_back({"gain " + c.channels[i] + " stderr", c.gain_stderr(i)});
       }
-      q.insert(q.end(), {{"offset", c.offset}, {"offset stderr", c.offset_stderr()}, {"condition", c.condition_number},
-                         {"residual_rms", c.residual_rms}, {"explained", c.explained},
-                         {"residual_correlation", c.residual_correlation}, {"pixels", double(c.pixels)},
+      q.insert(q.end(), {{"offset", c.offset},
+                         {"offset stderr", c.offset_stderr()},
+                         {"condition", c.condition_number},
+                         {"residual_rms", c.residual_rms},
+                         {"explained", c.explained},
+                         {"residual_correlation", c.residual_correlation},
+                         {"pixels", double(c.pixels)},
                          {"saturated", double(c.saturated)}});
       vtkNew<vtkTable> table;
       pv::add_quantities(table, q);

@@ -4,18 +4,20 @@
 
 #include "vtkSemsurfImageFilter.h"
 
-/// Gains and offset that turn simulated channels (input 1) into a real image (input 0), as `semsurf calibrate`. Output 0
-/// is the fit with its residual, output 1 the numbers.
+/// Gains and offset that turn simulated channels (input 1) into a real image (input 0), as `semsurf
+/// calibrate`. Output 0 is the fit with its residual, output 1 the numbers.
 class VTKSEMSURF_EXPORT vtkSemsurfCalibrate : public vtkSemsurfImageFilter {
  public:
   static vtkSemsurfCalibrate* New();
   vtkTypeMacro(vtkSemsurfCalibrate, vtkSemsurfImageFilter);
 
  protected:
-  vtkSemsurfCalibrate() { this->SetNumberOfInputPorts(2); this->SetNumberOfOutputPorts(2); }
+  vtkSemsurfCalibrate() {
+    this->SetNumberOfInputPorts(2);
+    this->SetNumberOfOutputPorts(2);
+  }
   int FillOutputPortInformation(int port, vtkInformation* info) override;
   int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
-
 };
 
 #endif

@@ -37,7 +37,7 @@ void add_map(vtkImageData* image, const Grid<unsigned char>& level) {
   image->GetPointData()->SetActiveScalars("certain");
 }
 
-}   // namespace
+}  // namespace
 
 int vtkSemsurfCertainty::RequestData(vtkInformation*, vtkInformationVector** inputs,
                                      vtkInformationVector* outputs) {
@@ -48,7 +48,8 @@ int vtkSemsurfCertainty::RequestData(vtkInformation*, vtkInformationVector** inp
     const HeightField field = this->Heights(inputs, name);
     vtkImageData* const tip_image = pv::image_input(inputs, 1, "Tip");
     std::vector<std::string> warnings;
-    const Tip tip = pv::to_tip_for(tip_image, pv::chosen_array(this, 1, tip_image), field, "Tip", warnings);
+    const Tip tip =
+        pv::to_tip_for(tip_image, pv::chosen_array(this, 1, tip_image), field, "Tip", warnings);
     workflow::CertaintyResult certain;
     pv::work(this, [&](const Watch& watch) {
       certain = workflow::certainty(field, tip, parameters, pv::hear(watch, warnings));

@@ -4,7 +4,8 @@
 
 #include "vtkSemsurfImageFilter.h"
 
-/// Where the eroded scan is the surface, as `semsurf certainty` says. Input 0 is the scan, input 1 the tip.
+/// Where the eroded scan is the surface, as `semsurf certainty` says. Input 0 is the scan, input 1
+/// the tip.
 class VTKSEMSURF_EXPORT vtkSemsurfCertainty : public vtkSemsurfImageFilter {
  public:
   static vtkSemsurfCertainty* New();

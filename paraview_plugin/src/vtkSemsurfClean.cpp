@@ -24,7 +24,7 @@ int vtkSemsurfClean::RequestData(vtkInformation*, vtkInformationVector** inputs,
   return pv::attempt(this, [&] {
     workflow::CleanParameters parameters;
     this->Values->apply(parameters);
-    workflow::check(parameters);   // also widths of steps that are off
+    workflow::check(parameters);  // also widths of steps that are off
     pv::need_length(this->SpikeLimit, "Spike Limit");
     if (!this->RemoveSpikes) parameters.spikes.reset();
     else if (this->SpikeLimit > 0) parameters.spikes->limit_nm = this->SpikeLimit;
@@ -34,7 +34,9 @@ int vtkSemsurfClean::RequestData(vtkInformation*, vtkInformationVector** inputs,
     const HeightField scan = this->Heights(inputs, name);
     std::vector<std::string> warnings;
     workflow::CleanResult cleaned;
-    pv::work(this, [&](const Watch& watch) { cleaned = workflow::clean(scan, parameters, pv::hear(watch, warnings)); });
+    pv::work(this, [&](const Watch& watch) {
+      cleaned = workflow::clean(scan, parameters, pv::hear(watch, warnings));
+    });
     pv::warn(this, warnings);
     const auto image = this->WithHeights(inputs, std::move(cleaned.field), name);
     pv::add_record(image, "clean", record_of(cleaned.used));

@@ -4,7 +4,8 @@
 
 #include "vtkSemsurfImageFilter.h"
 
-/// Takes spikes, noise and narrow pits out of a scan, as `semsurf clean` does: in this order, what is on.
+/// Takes spikes, noise and narrow pits out of a scan, as `semsurf clean` does: in this order, what
+/// is on.
 class VTKSEMSURF_EXPORT vtkSemsurfClean : public vtkSemsurfImageFilter {
  public:
   static vtkSemsurfClean* New();
@@ -14,7 +15,7 @@ class VTKSEMSURF_EXPORT vtkSemsurfClean : public vtkSemsurfImageFilter {
   vtkSetMacro(RemoveSpikes, bool);
   vtkSetMacro(MedianFilter, bool);
   vtkSetMacro(Closing, bool);
-  vtkSetMacro(SpikeLimit, double);   ///< nm; 0: six standard deviations of the pixels' noise
+  vtkSetMacro(SpikeLimit, double);  ///< nm; 0: six standard deviations of the pixels' noise
 
  protected:
   vtkSemsurfClean() = default;

@@ -32,7 +32,8 @@ int vtkSemsurfDrape::FillInputPortInformation(int port, vtkInformation* info) {
 
 namespace {
 
-/// Pixels reach half a pixel beyond their centres: there, at the image's rim, the nearest one holds.
+/// Pixels reach half a pixel beyond their centres: there, at the image's rim, the nearest one
+/// holds.
 Point2 onto_centres(const PlacedImage& image, Point2 place_nm) {
   const auto along = [](double nm, double origin_nm, double pitch_nm, int count) {
     const double at = (nm - origin_nm) / pitch_nm, last = count - 1;
@@ -44,18 +45,21 @@ Point2 onto_centres(const PlacedImage& image, Point2 place_nm) {
 
 }  // namespace
 
-int vtkSemsurfDrape::RequestUpdateExtent(vtkInformation*, vtkInformationVector** inputs, vtkInformationVector*) {
+int vtkSemsurfDrape::RequestUpdateExtent(vtkInformation*, vtkInformationVector** inputs,
+                                         vtkInformationVector*) {
   pv::request_whole(inputs, 2);
   return 1;
 }
 
-int vtkSemsurfDrape::RequestData(vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs) {
+int vtkSemsurfDrape::RequestData(vtkInformation*, vtkInformationVector** inputs,
+                                 vtkInformationVector* outputs) {
   return pv::attempt(this, [&] {
     vtkInformation* const output = outputs->GetInformationObject(0);
     if (!pv::is_first_piece(output)) return;
     const Affine to_image = inverse(pv::to_affine(this->Transform));
     vtkPolyData* const surface = pv::surface_input(inputs, 0);
-    if (surface->GetNumberOfPoints() == 0) throw InvalidInput("Input", "it has no points", "Give a surface");
+    if (surface->GetNumberOfPoints() == 0)
+      throw InvalidInput("Input", "it has no points", "Give a surface");
     vtkImageData* const picture = pv::image_input(inputs, 1, "Image");
     vtkDataArray* const array = pv::chosen_array(this, 0, picture);
     const PlacedImage image = pv::to_placed_image(picture, array, "Image");
@@ -67,13 +71,16 @@ int vtkSemsurfDrape::RequestData(vtkInformation*, vtkInformationVector** inputs,
         double p[3];
         surface->GetPoint(static_cast<vtkIdType>(i), p);
         if (!std::isfinite(p[0] + p[1] + p[2]))
-          throw InvalidInput("Input", fmt::format("point {} has no place: ({}, {}, {})", i, p[0], p[1], p[2]),
-                             "'Clean to Grid', 'Threshold' or 'Clip' takes such points out");
+          throw InvalidInput(
+              "Input", fmt::format("point {} has no place: ({}, {}, {})", i, p[0], p[1], p[2]),
+              "'Clean to Grid', 'Threshold' or 'Clip' takes such points out");
         const Point2 q = to_image({p[0], p[1]});
         values[i] = static_cast<float>(sample_image(image, onto_centres(image, q)));
         // A texture's corners are the outer edges of its pixels.
-        places[2 * i] = static_cast<float>(((q.x - image.origin_x_nm) / image.pitch_x_nm + 0.5) / image.values.width());
-        places[2 * i + 1] = static_cast<float>(((q.y - image.origin_y_nm) / image.pitch_y_nm + 0.5) / image.values.height());
+        places[2 * i] = static_cast<float>(((q.x - image.origin_x_nm) / image.pitch_x_nm + 0.5) /
+                                           image.values.width());
+        places[2 * i + 1] = static_cast<float>(
+            ((q.y - image.origin_y_nm) / image.pitch_y_nm + 0.5) / image.values.height());
       }
     });
     vtkNew<vtkPolyData> draped;
@@ -81,7 +88,8 @@ int vtkSemsurfDrape::RequestData(vtkInformation*, vtkInformationVector** inputs,
     const char* const name = array->GetName() ? array->GetName() : "image";
     draped->GetPointData()->AddArray(pv::take_array<vtkFloatArray>(std::move(values), name));
     draped->GetPointData()->SetActiveScalars(name);
-    draped->GetPointData()->SetTCoords(pv::take_array<vtkFloatArray>(std::move(places), "texture", 2));
+    draped->GetPointData()->SetTCoords(
+        pv::take_array<vtkFloatArray>(std::move(places), "texture", 2));
     pv::give(output, draped);
   });
 }

@@ -6,18 +6,21 @@
 
 #include <vtkSemsurfModule.h>
 
-/// Lays an image (input 1, array 0) on a surface (input 0) from straight above: as numbers and as texture coordinates.
+/// Lays an image (input 1, array 0) on a surface (input 0) from straight above: as numbers and as
+/// texture coordinates.
 class VTKSEMSURF_EXPORT vtkSemsurfDrape : public vtkPolyDataAlgorithm {
  public:
   static vtkSemsurfDrape* New();
   vtkTypeMacro(vtkSemsurfDrape, vtkPolyDataAlgorithm);
 
-  vtkSetVector6Macro(Transform, double);   ///< from the image's frame to the surface's: xx xy x0 yx yy y0
+  vtkSetVector6Macro(Transform,
+                     double);  ///< from the image's frame to the surface's: xx xy x0 yx yy y0
 
  protected:
   vtkSemsurfDrape() { this->SetNumberOfInputPorts(2); }
   int FillInputPortInformation(int port, vtkInformation* info) override;
-  int RequestUpdateExtent(vtkInformation*, vtkInformationVector** inputs, vtkInformationVector*) override;
+  int RequestUpdateExtent(vtkInformation*, vtkInformationVector** inputs,
+                          vtkInformationVector*) override;
   int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
 
  private:

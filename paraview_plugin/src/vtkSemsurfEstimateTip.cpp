@@ -62,7 +62,7 @@ void add_candidates(vtkTable* table, const BestTipSummary& summary) {
   add("risk", [](const TipCandidate& c) { return c.risk; });
 }
 
-}   // namespace
+}  // namespace
 
 int vtkSemsurfEstimateTip::FillOutputPortInformation(int port, vtkInformation* info) {
   info->Set(vtkDataObject::DATA_TYPE_NAME(), port == 0 ? "vtkImageData" : "vtkTable");
@@ -77,7 +77,8 @@ workflow::TipParameters vtkSemsurfEstimateTip::Parameters() const {
   if (parameters.answer == workflow::TipAnswer::blind) {
     values.forget("scan.height_noise");
   } else {
-    for (const char* of_blind : {"tip.threshold", "tip.threshold_y", "tip.apex_tolerance", "tip.layer", "tip.maxima"})
+    for (const char* of_blind :
+         {"tip.threshold", "tip.threshold_y", "tip.apex_tolerance", "tip.layer", "tip.maxima"})
       values.forget(of_blind);
   }
   if (parameters.answer != workflow::TipAnswer::sweep)
@@ -107,12 +108,15 @@ int vtkSemsurfEstimateTip::RequestData(vtkInformation*, vtkInformationVector** i
     std::string name;
     const std::vector<HeightField> scans{this->Heights(inputs, name)};
     if (const auto& z = scans[0].z_nm; parameters.size > std::min(z.width(), z.height()))
-      throw UsageError("Tip Size", fmt::format("{} samples are more than the scan's {} x {}", parameters.size, z.width(), z.height()),
+      throw UsageError("Tip Size",
+                       fmt::format("{} samples are more than the scan's {} x {}", parameters.size,
+                                   z.width(), z.height()),
                        "Give fewer");
     std::vector<std::string> warnings;
     workflow::TipResult found;
-    pv::work(this,
-             [&](const Watch& watch) { found = workflow::find_tip(scans, parameters, pv::hear(watch, warnings)); });
+    pv::work(this, [&](const Watch& watch) {
+      found = workflow::find_tip(scans, parameters, pv::hear(watch, warnings));
+    });
     pv::warn(this, warnings);
     vtkNew<vtkTable> table;
     if (found.sweep) add_curve(table, *found.sweep);

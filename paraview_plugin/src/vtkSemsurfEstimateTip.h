@@ -8,10 +8,10 @@ namespace surf {
 namespace workflow {
 struct TipParameters;
 }
-}   // namespace surf
+}  // namespace surf
 
-/// The tip that made a scan, as `semsurf tip` finds it. Output 0 is the tip, output 1 a table: the curve of
-/// thresholds of a sweep, the candidates of the best tip, else how the tip was found.
+/// The tip that made a scan, as `semsurf tip` finds it. Output 0 is the tip, output 1 a table: the
+/// curve of thresholds of a sweep, the candidates of the best tip, else how the tip was found.
 class VTKSEMSURF_EXPORT vtkSemsurfEstimateTip : public vtkSemsurfImageFilter {
  public:
   static vtkSemsurfEstimateTip* New();

@@ -24,7 +24,8 @@ void vtkSemsurfImageFilter::SetParameter(const char* name, double value) {
 void vtkSemsurfImageFilter::SetParameter(const char* name, const char* text) {
   if (this->Values->set(name, text)) this->Modified();
 }
-void vtkSemsurfImageFilter::SetParameter(const char* name, double a, double b, double c, double d, double e, double f) {
+void vtkSemsurfImageFilter::SetParameter(const char* name, double a, double b, double c, double d,
+                                         double e, double f) {
   if (this->Values->set(name, std::vector{a, b, c, d, e, f})) this->Modified();
 }
 
@@ -50,7 +51,8 @@ HeightField vtkSemsurfImageFilter::Heights(vtkInformationVector** inputs, std::s
 }
 
 vtkSmartPointer<vtkImageData> vtkSemsurfImageFilter::WithHeights(vtkInformationVector** inputs,
-                                                                 HeightField field, const std::string& name) {
+                                                                 HeightField field,
+                                                                 const std::string& name) {
   vtkImageData* const input = pv::image_input(inputs, 0, "Input");
   auto image = pv::make_image_like(input);
   image->GetPointData()->ShallowCopy(input->GetPointData());

@@ -17,8 +17,8 @@ class PropertyValues;
 }
 }  // namespace surf
 
-/// What filters from one height field to images of the same samples share: they ask for all of every input.
-/// Input array 0 are the heights; outputs keep the input's other arrays.
+/// What filters from one height field to images of the same samples share: they ask for all of
+/// every input. Input array 0 are the heights; outputs keep the input's other arrays.
 class VTKSEMSURF_EXPORT vtkSemsurfImageFilter : public vtkImageAlgorithm {
  public:
   vtkAbstractTypeMacro(vtkSemsurfImageFilter, vtkImageAlgorithm);
@@ -31,8 +31,10 @@ class VTKSEMSURF_EXPORT vtkSemsurfImageFilter : public vtkImageAlgorithm {
  protected:
   vtkSemsurfImageFilter();
   ~vtkSemsurfImageFilter() override;
-  int RequestInformation(vtkInformation*, vtkInformationVector**, vtkInformationVector* outputs) override;
-  int RequestUpdateExtent(vtkInformation*, vtkInformationVector** inputs, vtkInformationVector*) override;
+  int RequestInformation(vtkInformation*, vtkInformationVector**,
+                         vtkInformationVector* outputs) override;
+  int RequestUpdateExtent(vtkInformation*, vtkInformationVector** inputs,
+                          vtkInformationVector*) override;
 
   /// The chosen heights of input 0, and how they are called.
   surf::HeightField Heights(vtkInformationVector** inputs, std::string& name);
@@ -40,7 +42,7 @@ class VTKSEMSURF_EXPORT vtkSemsurfImageFilter : public vtkImageAlgorithm {
   vtkSmartPointer<vtkImageData> WithHeights(vtkInformationVector** inputs, surf::HeightField field,
                                             const std::string& name);
 
-  std::unique_ptr<surf::pv::PropertyValues> Values;   // of described parameters
+  std::unique_ptr<surf::pv::PropertyValues> Values;  // of described parameters
 };
 
 #endif

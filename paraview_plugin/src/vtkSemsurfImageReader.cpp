@@ -14,7 +14,7 @@ using namespace surf;
 
 struct vtkSemsurfImageReader::Contents {
   vtkSmartPointer<vtkImageData> image;
-  vtkMTimeType read_at = 0;   // the reader's own time then
+  vtkMTimeType read_at = 0;  // the reader's own time then
   std::filesystem::file_time_type written_at;
 };
 
@@ -32,9 +32,10 @@ void vtkSemsurfImageReader::SetFileName(const char* name) {
 
 void vtkSemsurfImageReader::ReadOnce() {
   if (this->FileName.empty()) throw UsageError("FileName", "no file is named", "Name one");
-  std::error_code unreadable;   // then reading says what is wrong
+  std::error_code unreadable;  // then reading says what is wrong
   const auto written = std::filesystem::last_write_time(this->FileName, unreadable);
-  if (this->File->image && this->File->read_at == this->GetMTime() && this->File->written_at == written)
+  if (this->File->image && this->File->read_at == this->GetMTime() &&
+      this->File->written_at == written)
     return;
   this->File->image = this->Read();
   this->File->read_at = this->GetMTime();
@@ -45,7 +46,8 @@ int vtkSemsurfImageReader::RequestInformation(vtkInformation*, vtkInformationVec
                                               vtkInformationVector* outputs) {
   return pv::attempt_information(this, outputs, [&] {
     this->ReadOnce();
-    pv::announce(outputs->GetInformationObject(0), pv::frame_of(this->File->image, this->FileName.c_str()));
+    pv::announce(outputs->GetInformationObject(0),
+                 pv::frame_of(this->File->image, this->FileName.c_str()));
   });
 }
 

@@ -10,8 +10,8 @@
 
 #include <vtkSemsurfModule.h>
 
-/// Images that one file gives whole: SEM images and tips. Read once, as long as the file and the properties
-/// stay.
+/// Images that one file gives whole: SEM images and tips. Read once, as long as the file and the
+/// properties stay.
 class VTKSEMSURF_EXPORT vtkSemsurfImageReader : public vtkImageAlgorithm {
  public:
   vtkAbstractTypeMacro(vtkSemsurfImageReader, vtkImageAlgorithm);

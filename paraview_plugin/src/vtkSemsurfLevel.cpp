@@ -32,8 +32,9 @@ int vtkSemsurfLevel::RequestData(vtkInformation*, vtkInformationVector** inputs,
     const HeightField scan = this->Heights(inputs, name);
     std::vector<std::string> warnings;
     workflow::LevelResult levelled;
-    pv::work(this,
-             [&](const Watch& watch) { levelled = workflow::level(scan, parameters, {}, pv::hear(watch, warnings)); });
+    pv::work(this, [&](const Watch& watch) {
+      levelled = workflow::level(scan, parameters, {}, pv::hear(watch, warnings));
+    });
     pv::warn(this, warnings);
     const auto image = this->WithHeights(inputs, std::move(levelled.field), name);
     if (levelled.hough) pv::add_values(image, std::move(levelled.substrate), "substrate", "1");

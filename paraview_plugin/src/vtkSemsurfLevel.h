@@ -4,8 +4,8 @@
 
 #include "vtkSemsurfImageFilter.h"
 
-/// Takes the plane of the substrate, another background, or steps between scan lines off, as `semsurf level`
-/// does.
+/// Takes the plane of the substrate, another background, or steps between scan lines off, as
+/// `semsurf level` does.
 class VTKSEMSURF_EXPORT vtkSemsurfLevel : public vtkSemsurfImageFilter {
  public:
   static vtkSemsurfLevel* New();

@@ -32,17 +32,20 @@ int vtkSemsurfLineProfile::FillInputPortInformation(int port, vtkInformation* in
   return 1;
 }
 
-int vtkSemsurfLineProfile::RequestUpdateExtent(vtkInformation*, vtkInformationVector** inputs, vtkInformationVector*) {
+int vtkSemsurfLineProfile::RequestUpdateExtent(vtkInformation*, vtkInformationVector** inputs,
+                                               vtkInformationVector*) {
   pv::request_whole(inputs, 3);
   return 1;
 }
 
-int vtkSemsurfLineProfile::RequestData(vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs) {
+int vtkSemsurfLineProfile::RequestData(vtkInformation*, vtkInformationVector** inputs,
+                                       vtkInformationVector* outputs) {
   return pv::attempt(this, [&] {
     vtkInformation* const output = outputs->GetInformationObject(0);
     if (!pv::is_first_piece(output)) return;
     if (this->Samples < 2 || this->Samples > 1000000)
-      throw UsageError("Samples", fmt::format("{} is not in 2 to 1000000", this->Samples), "Give 500 where in doubt");
+      throw UsageError("Samples", fmt::format("{} is not in 2 to 1000000", this->Samples),
+                       "Give 500 where in doubt");
     for (int i = 0; i < 3; ++i) {
       pv::need_moderate(this->Point1[i], "Point1");
       pv::need_moderate(this->Point2[i], "Point2");
@@ -82,7 +85,8 @@ int vtkSemsurfLineProfile::RequestData(vtkInformation*, vtkInformationVector** i
     if (vtkPolyData* const data = pv::surface_input(inputs, 2)) {
       const TriangleMesh mesh = pv::to_mesh(data, "Surface");
       std::vector<double> heights;
-      pv::work(this, [&](const Watch&) { heights = height_profile(mesh, from, to, this->Samples); });
+      pv::work(this,
+               [&](const Watch&) { heights = height_profile(mesh, from, to, this->Samples); });
       pv::add_column(table, "surface_nm", std::move(heights));
     }
     pv::give(output, table);

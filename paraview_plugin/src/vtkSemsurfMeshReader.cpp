@@ -43,7 +43,7 @@ void append(Surface& all, Surface more) {
   });
 }
 
-}   // namespace
+}  // namespace
 
 void vtkSemsurfMeshReader::SetFileName(const char* name) {
   const std::string value = name ? name : "";
@@ -65,23 +65,23 @@ int vtkSemsurfMeshReader::RequestData(vtkInformation*, vtkInformationVector**,
     if (this->FileName.empty()) throw UsageError("FileName", "no file is named", "Name one");
     pv::need_length(this->Unit, "Unit");
     if (this->OverrideUnit && !(this->Unit > 0))
-      throw UsageError("Override Unit", "there is no unit to take in place of the file's", "Give Unit, or leave it out");
+      throw UsageError("Override Unit", "there is no unit to take in place of the file's",
+                       "Give Unit, or leave it out");
     Surface all;
     std::vector<int> numbers;
     std::map<std::string, std::string> texts;
     pv::work(this, [&](const Watch& watch) {
-      SurfaceScene scene =
-          io::read_surfaces(this->FileName, {this->Unit > 0 ? std::optional(this->Unit) : std::nullopt, this->OverrideUnit != 0});
+      SurfaceScene scene = io::read_surfaces(
+          this->FileName,
+          {this->Unit > 0 ? std::optional(this->Unit) : std::nullopt, this->OverrideUnit != 0});
       watch.report(0.8, 1);
       texts = scene.metadata;
       if (this->OverrideUnit) texts["unit_override"] = format_exact(this->Unit) + " nm";
       for (std::size_t i = 0; i < scene.surfaces.size(); ++i) {
         numbers.insert(numbers.end(), scene.surfaces[i].mesh.triangles.size(), static_cast<int>(i));
         texts[fmt::format("surface:{}", i)] = scene.surfaces[i].name;
-        if (i == 0)
-          all = std::move(scene.surfaces[i]);
-        else
-          append(all, std::move(scene.surfaces[i]));
+        if (i == 0) all = std::move(scene.surfaces[i]);
+        else append(all, std::move(scene.surfaces[i]));
       }
     });
     const auto data = pv::to_vtk(std::move(all));

@@ -26,7 +26,8 @@ int vtkSemsurfMorphology::RequestData(vtkInformation*, vtkInformationVector** in
                                       vtkInformationVector* outputs) {
   return pv::attempt(this, [&] {
     if (this->Operation < Erode || this->Operation > Close)
-      throw UsageError("Operation", fmt::format("there is no operation {}", this->Operation), "Choose 0 to 3");
+      throw UsageError("Operation", fmt::format("there is no operation {}", this->Operation),
+                       "Choose 0 to 3");
     workflow::MorphologyParameters parameters;
     this->Values->apply(parameters);
     const auto operation = static_cast<workflow::MorphologyOperation>(this->Operation);
@@ -34,7 +35,8 @@ int vtkSemsurfMorphology::RequestData(vtkInformation*, vtkInformationVector** in
     HeightField field = this->Heights(inputs, name);
     vtkImageData* const tip_image = pv::image_input(inputs, 1, "Tip");
     std::vector<std::string> warnings;
-    const Tip tip = pv::to_tip_for(tip_image, pv::chosen_array(this, 1, tip_image), field, "Tip", warnings);
+    const Tip tip =
+        pv::to_tip_for(tip_image, pv::chosen_array(this, 1, tip_image), field, "Tip", warnings);
     pv::work(this, [&](const Watch& watch) {
       field = workflow::morphology(operation, field, tip, parameters, pv::hear(watch, warnings));
     });

@@ -4,7 +4,8 @@
 
 #include "vtkSemsurfImageFilter.h"
 
-/// What a tip makes of a surface, and back (surf/afm/morphology.h). Input 0 are the heights, input 1 the tip.
+/// What a tip makes of a surface, and back (surf/afm/morphology.h). Input 0 are the heights, input
+/// 1 the tip.
 class VTKSEMSURF_EXPORT vtkSemsurfMorphology : public vtkSemsurfImageFilter {
  public:
   static vtkSemsurfMorphology* New();

@@ -28,7 +28,8 @@ void add_correlations(vtkTable* table, const NoiseCheck& check) {
   std::vector<std::string> direction;
   std::vector<int> lag;
   std::vector<double> correlation, z;
-  for (const auto& [name, lags] : {std::pair{"along", &check.along}, std::pair{"across", &check.across}}) {
+  for (const auto& [name, lags] :
+       {std::pair{"along", &check.along}, std::pair{"across", &check.across}}) {
     for (const LagCorrelation& l : *lags) {
       direction.push_back(name);
       lag.push_back(l.lag);
@@ -42,7 +43,7 @@ void add_correlations(vtkTable* table, const NoiseCheck& check) {
   pv::add_column(table, "z", std::move(z));
 }
 
-}   // namespace
+}  // namespace
 
 vtkSemsurfNoise::vtkSemsurfNoise() : Values(std::make_unique<pv::PropertyValues>()) {
   this->SetNumberOfInputPorts(1);

@@ -12,10 +12,10 @@ namespace surf {
 namespace pv {
 class PropertyValues;
 }
-}   // namespace surf
+}  // namespace surf
 
-/// The noise of a scan along its lines, as `semsurf noise` finds it: a table of quantities, and one of
-/// correlations.
+/// The noise of a scan along its lines, as `semsurf noise` finds it: a table of quantities, and one
+/// of correlations.
 class VTKSEMSURF_EXPORT vtkSemsurfNoise : public vtkTableAlgorithm {
  public:
   static vtkSemsurfNoise* New();
@@ -28,7 +28,8 @@ class VTKSEMSURF_EXPORT vtkSemsurfNoise : public vtkTableAlgorithm {
   vtkSemsurfNoise();
   ~vtkSemsurfNoise() override;
   int FillInputPortInformation(int port, vtkInformation* info) override;
-  int RequestUpdateExtent(vtkInformation*, vtkInformationVector** inputs, vtkInformationVector*) override;
+  int RequestUpdateExtent(vtkInformation*, vtkInformationVector** inputs,
+                          vtkInformationVector*) override;
   int RequestInformation(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
   int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
 

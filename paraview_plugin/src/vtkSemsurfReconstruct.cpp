@@ -40,7 +40,8 @@ using Pipeline = vtkStreamingDemandDrivenPipeline;
 
 void announce_like(vtkInformation* output, vtkInformation* input) {
   for (auto* const key : {Pipeline::WHOLE_EXTENT()}) output->CopyEntry(input, key);
-  for (auto* const key : {vtkDataObject::SPACING(), vtkDataObject::ORIGIN()}) output->CopyEntry(input, key);
+  for (auto* const key : {vtkDataObject::SPACING(), vtkDataObject::ORIGIN()})
+    output->CopyEntry(input, key);
   output->Set(vtkAlgorithm::CAN_PRODUCE_SUB_EXTENT(), 1);
 }
 
@@ -89,78 +90,93 @@ int vtkSemsurfReconstruct::FillInputPortInformation(int port, vtkInformation* in
 }
 
 int vtkSemsurfReconstruct::FillOutputPortInformation(int port, vtkInformation* info) {
-  info->Set(vtkDataObject::DATA_TYPE_NAME(), port == 1 ? "vtkPolyData" : port == 4 ? "vtkTable" : "vtkImageData");
+  info->Set(vtkDataObject::DATA_TYPE_NAME(), port == 1   ? "vtkPolyData"
+                                             : port == 4 ? "vtkTable"
+                                                         : "vtkImageData");
   return 1;
 }
 
 /// The surface and the SEM's residual lie on the SEM's pixels, the scan's on its own.
-int vtkSemsurfReconstruct::RequestInformation(vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs) {
+int vtkSemsurfReconstruct::RequestInformation(vtkInformation*, vtkInformationVector** inputs,
+                                              vtkInformationVector* outputs) {
   vtkInformation* const afm = inputs[0]->GetInformationObject(0);
-  vtkInformation* const sem = inputs[1]->GetNumberOfInformationObjects() > 0 ? inputs[1]->GetInformationObject(0) : afm;
+  vtkInformation* const sem =
+      inputs[1]->GetNumberOfInformationObjects() > 0 ? inputs[1]->GetInformationObject(0) : afm;
   announce_like(outputs->GetInformationObject(0), sem);
   announce_like(outputs->GetInformationObject(2), afm);
   announce_like(outputs->GetInformationObject(3), sem);
   return 1;
 }
 
-int vtkSemsurfReconstruct::RequestData(vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs) {
+int vtkSemsurfReconstruct::RequestData(vtkInformation*, vtkInformationVector** inputs,
+                                       vtkInformationVector* outputs) {
   return pv::attempt(this, [&] {
-    pv::with_labels([&] {
-      vtkImageData* const sem = pv::image_input(inputs, 1, "SEM");
-      workflow::ReconstructJob job;
-      job.picture = false;
-      job.afm.emplace();
-      if (sem) job.sem.emplace();
-      pv::PropertyValues values = *this->Values;
-      if (!this->UseTransform) values.forget("registration.transform");
-      values.apply(job);
-      std::string name;
-      job.afm->scan = this->Heights(inputs, name);
-      if (vtkImageData* const tip = pv::image_input(inputs, 2, "Tip"))
-        job.afm->preparation.tip = pv::to_tip(tip, pv::chosen_array(this, 2, tip), "Tip");
-      if (sem) {
-        pv::complete(job.model, values);
-        job.sem->image = pv::to_placed_image(sem, pv::chosen_array(this, 1, sem), "SEM");
-        job.pose.landmarks = pv::landmarks_of(pv::surface_input(inputs, 4), pv::surface_input(inputs, 3));
-      }
-      std::vector<std::string> warnings;
-      std::optional<workflow::ReconstructSummary> s;
-      pv::work(this, [&](const Watch& watch) { s = workflow::run(job, pv::listen(watch, job.sem ? 5 : 2, warnings)); });
-      for (const std::string& warning : warnings) pv::warn(this, warning);
-      if (s->verdict == workflow::ReconstructionVerdict::not_registered)
-        throw InvalidInput("SEM", s->reasons.at(0), "Give landmarks, Use Transform, or Accept Registration");
-      for (const std::string& reason : s->reasons) pv::warn(this, reason);
-      Reconstruction& r = s->result;
-      const std::map<std::string, std::string> texts{{"verdict", workflow::name(s->verdict)},
-                                                     {pv::transform_text, pv::text_of(r.sem_to_afm)}};
-      pv::give(outputs->GetInformationObject(1), pv::to_vtk(surface_of(r)));
-      vtkNew<vtkTable> history;
-      fill_history(history, r.scales);
-      pv::give(outputs->GetInformationObject(4), history);
-      // Like the inputs, so that pieces of them are the pieces that were announced.
-      const auto afm = pv::make_image_like(pv::image_input(inputs, 0, "Input"));
-      const auto surface = pv::make_image_like(pv::image_input(inputs, job.sem ? 1 : 0, "SEM"));
-      if (!r.afm_residual.empty()) {
-        pv::add_values(afm, std::move(r.afm_residual), "residual", "1");
-        pv::add_values(afm, std::move(r.afm_used), "used", "1");
-        pv::add_heights(afm, std::move(r.simulated_afm), "simulated_nm");
-        afm->GetPointData()->SetActiveScalars("residual");
-      }
-      if (!r.sem_residual.empty()) {
-        const auto compared = pv::make_image_like(surface);
-        pv::add_values(compared, std::move(r.sem_residual), "residual", "1");
-        pv::add_values(compared, std::move(r.simulated_sem), "simulated", "1");
-        compared->GetPointData()->SetActiveScalars("residual");
-        pv::give(outputs->GetInformationObject(3), compared);
-      }
-      if (!r.deviation_nm.empty()) pv::add_values(surface, std::move(r.deviation_nm), "deviation_nm", "nm");
-      if (!r.held_by.empty()) pv::add_values(surface, std::move(r.held_by), "held_by", "1");
-      if (r.start.z_nm.size() == r.surface.z_nm.size()) pv::add_values(surface, std::move(r.start.z_nm), "start_nm", "nm");
-      pv::add_heights(surface, std::move(r.surface));
-      pv::add_texts(surface, texts);
-      pv::add_chain_record(surface, "reconstruct", record_of(job), s->model ? &*s->model : nullptr);
-      pv::give(outputs->GetInformationObject(0), surface);
-      pv::give(outputs->GetInformationObject(2), afm);
-    }, pv::chain_labels);
+    pv::with_labels(
+        [&] {
+          vtkImageData* const sem = pv::image_input(inputs, 1, "SEM");
+          workflow::ReconstructJob job;
+          job.picture = false;
+          job.afm.emplace();
+          if (sem) job.sem.emplace();
+          pv::PropertyValues values = *this->Values;
+          if (!this->UseTransform) values.forget("registration.transform");
+          values.apply(job);
+          std::string name;
+          job.afm->scan = this->Heights(inputs, name);
+          if (vtkImageData* const tip = pv::image_input(inputs, 2, "Tip"))
+            job.afm->preparation.tip = pv::to_tip(tip, pv::chosen_array(this, 2, tip), "Tip");
+          if (sem) {
+            pv::complete(job.model, values);
+            job.sem->image = pv::to_placed_image(sem, pv::chosen_array(this, 1, sem), "SEM");
+            job.pose.landmarks =
+                pv::landmarks_of(pv::surface_input(inputs, 4), pv::surface_input(inputs, 3));
+          }
+          std::vector<std::string> warnings;
+          std::optional<workflow::ReconstructSummary> s;
+          pv::work(this, [&](const Watch& watch) {
+            s = workflow::run(job, pv::listen(watch, job.sem ? 5 : 2, warnings));
+          });
+          for (const std::string& warning : warnings) pv::warn(this, warning);
+          if (s->verdict == workflow::ReconstructionVerdict::not_registered)
+            throw InvalidInput("SEM", s->reasons.at(0),
+                               "Give landmarks, Use Transform, or Accept Registration");
+          for (const std::string& reason : s->reasons) pv::warn(this, reason);
+          Reconstruction& r = s->result;
+          const std::map<std::string, std::string> texts{
+              {"verdict", workflow::name(s->verdict)},
+              {pv::transform_text, pv::text_of(r.sem_to_afm)}};
+          pv::give(outputs->GetInformationObject(1), pv::to_vtk(surface_of(r)));
+          vtkNew<vtkTable> history;
+          fill_history(history, r.scales);
+          pv::give(outputs->GetInformationObject(4), history);
+          // Like the inputs, so that pieces of them are the pieces that were announced.
+          const auto afm = pv::make_image_like(pv::image_input(inputs, 0, "Input"));
+          const auto surface = pv::make_image_like(pv::image_input(inputs, job.sem ? 1 : 0, "SEM"));
+          if (!r.afm_residual.empty()) {
+            pv::add_values(afm, std::move(r.afm_residual), "residual", "1");
+            pv::add_values(afm, std::move(r.afm_used), "used", "1");
+            pv::add_heights(afm, std::move(r.simulated_afm), "simulated_nm");
+            afm->GetPointData()->SetActiveScalars("residual");
+          }
+          if (!r.sem_residual.empty()) {
+            const auto compared = pv::make_image_like(surface);
+            pv::add_values(compared, std::move(r.sem_residual), "residual", "1");
+            pv::add_values(compared, std::move(r.simulated_sem), "simulated", "1");
+            compared->GetPointData()->SetActiveScalars("residual");
+            pv::give(outputs->GetInformationObject(3), compared);
+          }
+          if (!r.deviation_nm.empty())
+            pv::add_values(surface, std::move(r.deviation_nm), "deviation_nm", "nm");
+          if (!r.held_by.empty()) pv::add_values(surface, std::move(r.held_by), "held_by", "1");
+          if (r.start.z_nm.size() == r.surface.z_nm.size())
+            pv::add_values(surface, std::move(r.start.z_nm), "start_nm", "nm");
+          pv::add_heights(surface, std::move(r.surface));
+          pv::add_texts(surface, texts);
+          pv::add_chain_record(surface, "reconstruct", record_of(job),
+                               s->model ? &*s->model : nullptr);
+          pv::give(outputs->GetInformationObject(0), surface);
+          pv::give(outputs->GetInformationObject(2), afm);
+        },
+        pv::chain_labels);
   });
 }

@@ -4,18 +4,21 @@
 
 #include "vtkSemsurfImageFilter.h"
 
-/// The surface that makes a scan (input 0) and an SEM image (input 1, optional) most likely, as `semsurf reconstruct`; input
-/// 2 is the tip, inputs 3 and 4 are landmarks, all optional. Outputs: the surface as an image and as triangles, the
-/// residuals of scan and SEM image, the history.
+/// The surface that makes a scan (input 0) and an SEM image (input 1, optional) most likely, as
+/// `semsurf reconstruct`; input 2 is the tip, inputs 3 and 4 are landmarks, all optional. Outputs:
+/// the surface as an image and as triangles, the residuals of scan and SEM image, the history.
 class VTKSEMSURF_EXPORT vtkSemsurfReconstruct : public vtkSemsurfImageFilter {
  public:
   static vtkSemsurfReconstruct* New();
   vtkTypeMacro(vtkSemsurfReconstruct, vtkSemsurfImageFilter);
 
-  vtkSetMacro(UseTransform, bool);   ///< instead of searching for it
+  vtkSetMacro(UseTransform, bool);  ///< instead of searching for it
 
  protected:
-  vtkSemsurfReconstruct() { this->SetNumberOfInputPorts(5); this->SetNumberOfOutputPorts(5); }
+  vtkSemsurfReconstruct() {
+    this->SetNumberOfInputPorts(5);
+    this->SetNumberOfOutputPorts(5);
+  }
   int FillInputPortInformation(int port, vtkInformation* info) override;
   int FillOutputPortInformation(int port, vtkInformation* info) override;
   int RequestInformation(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;

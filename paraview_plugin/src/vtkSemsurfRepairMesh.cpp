@@ -54,7 +54,7 @@ void add_report(vtkTable* table, const RepairSummary& s) {
   pv::add_column(table, "after", std::move(after));
 }
 
-}   // namespace
+}  // namespace
 
 vtkSemsurfRepairMesh::vtkSemsurfRepairMesh() : Values(std::make_unique<pv::PropertyValues>()) {
   this->SetNumberOfOutputPorts(2);
@@ -105,10 +105,8 @@ int vtkSemsurfRepairMesh::RequestData(vtkInformation*, vtkInformationVector** in
     vtkNew<vtkTable> table;
     add_report(table, summary);
     // Unchanged, it keeps what lies on it.
-    if (summary.changed)
-      pv::give(outputs->GetInformationObject(0), pv::to_vtk(std::move(mended)));
-    else
-      pv::give(outputs->GetInformationObject(0), input);
+    if (summary.changed) pv::give(outputs->GetInformationObject(0), pv::to_vtk(std::move(mended)));
+    else pv::give(outputs->GetInformationObject(0), input);
     if (this->Repair) pv::add_record(table, "mesh", record_of(options));
     pv::give(outputs->GetInformationObject(1), table);
   });

@@ -14,8 +14,8 @@ class PropertyValues;
 }
 }  // namespace surf
 
-/// What is wrong with a mesh, and a mended one. Output 0 is the mesh, output 1 a table: counts before and
-/// after.
+/// What is wrong with a mesh, and a mended one. Output 0 is the mesh, output 1 a table: counts
+/// before and after.
 class VTKSEMSURF_EXPORT vtkSemsurfRepairMesh : public vtkPolyDataAlgorithm {
  public:
   static vtkSemsurfRepairMesh* New();
@@ -29,13 +29,14 @@ class VTKSEMSURF_EXPORT vtkSemsurfRepairMesh : public vtkPolyDataAlgorithm {
   vtkSemsurfRepairMesh();
   ~vtkSemsurfRepairMesh() override;
   int FillOutputPortInformation(int port, vtkInformation* info) override;
-  int RequestUpdateExtent(vtkInformation*, vtkInformationVector** inputs, vtkInformationVector*) override;
+  int RequestUpdateExtent(vtkInformation*, vtkInformationVector** inputs,
+                          vtkInformationVector*) override;
   int RequestInformation(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
   int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
 
  private:
   bool Repair = true;
-  std::unique_ptr<surf::pv::PropertyValues> Values;   // of described parameters
+  std::unique_ptr<surf::pv::PropertyValues> Values;  // of described parameters
 };
 
 #endif

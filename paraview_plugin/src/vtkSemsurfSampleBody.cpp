@@ -48,11 +48,17 @@ int vtkSemsurfSampleBody::RequestData(vtkInformation*, vtkInformationVector**,
         case Cone:
           mesh = make_cone(base, this->Radius, this->TopRadius, this->ConeHeight, this->Segments);
           break;
-        default: throw UsageError("Shape", fmt::format("there is no shape {}", this->Shape), "Choose 0 to 2");
+        default:
+          throw UsageError("Shape", fmt::format("there is no shape {}", this->Shape),
+                           "Choose 0 to 2");
       }
     };
-    pv::with_labels(make, {{"size of the box", "Size"}, {"subdivisions", "Subdivisions"}, {"radius", "Radius"},
-                           {"bottom radius", "Radius"}, {"top radius", "Top Radius"}, {"segments", "Segments"},
+    pv::with_labels(make, {{"size of the box", "Size"},
+                           {"subdivisions", "Subdivisions"},
+                           {"radius", "Radius"},
+                           {"bottom radius", "Radius"},
+                           {"top radius", "Top Radius"},
+                           {"segments", "Segments"},
                            {"height of the cone", "Cone Height"}});
     pv::give(output, pv::to_vtk(std::move(mesh)));
   });

@@ -14,13 +14,13 @@ class VTKSEMSURF_EXPORT vtkSemsurfSampleBody : public vtkPolyDataAlgorithm {
 
   enum Shapes { Box, Sphere, Cone };
   vtkSetMacro(Shape, int);
-  vtkSetVector3Macro(Size, double);   ///< nm, of the box
-  vtkSetMacro(Radius, double);        ///< nm, of the sphere, or of the cone's foot
-  vtkSetMacro(TopRadius, double);     ///< nm, of the cone
-  vtkSetMacro(ConeHeight, double);    ///< nm
-  vtkSetMacro(Subdivisions, int);     ///< of box or sphere
-  vtkSetMacro(Segments, int);         ///< of the cone
-  vtkSetVector3Macro(Base, double);   ///< nm: the middle of where it stands
+  vtkSetVector3Macro(Size, double);  ///< nm, of the box
+  vtkSetMacro(Radius, double);       ///< nm, of the sphere, or of the cone's foot
+  vtkSetMacro(TopRadius, double);    ///< nm, of the cone
+  vtkSetMacro(ConeHeight, double);   ///< nm
+  vtkSetMacro(Subdivisions, int);    ///< of box or sphere
+  vtkSetMacro(Segments, int);        ///< of the cone
+  vtkSetVector3Macro(Base, double);  ///< nm: the middle of where it stands
 
  protected:
   vtkSemsurfSampleBody() { this->SetNumberOfInputPorts(0); }

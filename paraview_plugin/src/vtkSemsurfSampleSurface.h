@@ -9,7 +9,7 @@
 namespace surf {
 struct HeightField;
 struct FieldExtent;
-}   // namespace surf
+}  // namespace surf
 
 /// Specimens as height fields (surf/mesh/shapes.h). Lengths in nm.
 class VTKSEMSURF_EXPORT vtkSemsurfSampleSurface : public vtkImageAlgorithm {

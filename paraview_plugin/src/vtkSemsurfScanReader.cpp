@@ -31,8 +31,8 @@ using namespace surf;
 /// What is known of the file, read once as long as it and the properties stay as they are.
 struct vtkSemsurfScanReader::Contents {
   struct Channel {
-    std::string name;   // unique
-    int number = 1;     // in the file, from 1
+    std::string name;  // unique
+    int number = 1;    // in the file, from 1
     bool is_height = true;
     std::string unit;
   };
@@ -42,8 +42,8 @@ struct vtkSemsurfScanReader::Contents {
   Key key;
   std::vector<Channel> channels;
   int width = 0, height = 0;
-  std::size_t first = 0;      // of the channels: the one that says where the scan lies
-  io::HeightFieldFile head;   // that channel
+  std::size_t first = 0;     // of the channels: the one that says where the scan lies
+  io::HeightFieldFile head;  // that channel
 };
 
 vtkSemsurfScanReader::vtkSemsurfScanReader() : Scan(std::make_unique<Contents>()) {
@@ -91,15 +91,16 @@ std::string unique_name(std::set<std::string>& taken, const std::string& name) {
   return candidate;
 }
 
-}   // namespace
+}  // namespace
 
 void vtkSemsurfScanReader::ReadHead() {
   if (this->FileName.empty()) throw UsageError("FileName", "no file is named", "Name a scan");
   pv::need_length(this->ZUnit, "Height Unit");
   for (const double nm : this->PixelSize) pv::need_length(nm, "Pixel Size");
-  std::error_code unreadable;   // then reading says what is wrong
-  const Contents::Key key{this->FileName, std::filesystem::last_write_time(this->FileName, unreadable),
-                          this->ZUnit, this->PixelSize[0], this->PixelSize[1]};
+  std::error_code unreadable;  // then reading says what is wrong
+  const Contents::Key key{this->FileName,
+                          std::filesystem::last_write_time(this->FileName, unreadable), this->ZUnit,
+                          this->PixelSize[0], this->PixelSize[1]};
   Contents& scan = *this->Scan;
   if (!scan.channels.empty() && scan.key == key) return;
   scan.channels.clear();
@@ -110,7 +111,8 @@ void vtkSemsurfScanReader::ReadHead() {
   const int number = static_cast<int>(first - all.begin()) + 1;
   // What is no height is read as the numbers that the file holds.
   const auto unit_of = [&](const io::HeightChannel& c) { return c.is_height ? this->ZUnit : 1.0; };
-  scan.head = io::read_height_field(this->FileName, options_for(number, unit_of(*first), this->PixelSize));
+  scan.head =
+      io::read_height_field(this->FileName, options_for(number, unit_of(*first), this->PixelSize));
   for (const std::string& note : scan.head.notes) pv::warn(this, this->FileName + ": " + note);
   scan.width = scan.head.field.z_nm.width();
   scan.height = scan.head.field.z_nm.height();
@@ -124,12 +126,12 @@ void vtkSemsurfScanReader::ReadHead() {
     }
     const int here = static_cast<int>(i) + 1;
     if (here == number) scan.first = scan.channels.size();
-    scan.channels.push_back(
-        {unique_name(names, all[i].name), here, all[i].is_height, all[i].is_height ? "nm" : all[i].z_unit});
+    scan.channels.push_back({unique_name(names, all[i].name), here, all[i].is_height,
+                             all[i].is_height ? "nm" : all[i].z_unit});
   }
   if (!left_out.empty())
-    pv::warn(this, fmt::format("{}: left out, as they have another size than '{}': {}", this->FileName,
-                               first->name, left_out));
+    pv::warn(this, fmt::format("{}: left out, as they have another size than '{}': {}",
+                               this->FileName, first->name, left_out));
   // Those of another file go; what the user chose of the same names stays.
   std::set<std::string> here;
   for (const auto& channel : scan.channels) here.insert(channel.name);
@@ -162,12 +164,12 @@ int vtkSemsurfScanReader::RequestData(vtkInformation*, vtkInformationVector**,
       for (std::size_t i = 0; i < read.size(); ++i) {
         watch.report(double(i), double(read.size()));
         if (!wanted(i)) continue;
-        if (i == scan.first)
-          read[i] = scan.head;
+        if (i == scan.first) read[i] = scan.head;
         else
           read[i] = io::read_height_field(
-              this->FileName, options_for(scan.channels[i].number,
-                                          scan.channels[i].is_height ? this->ZUnit : 1.0, this->PixelSize));
+              this->FileName,
+              options_for(scan.channels[i].number, scan.channels[i].is_height ? this->ZUnit : 1.0,
+                          this->PixelSize));
       }
     });
     std::string shown;

@@ -11,7 +11,8 @@
 
 class vtkDataArraySelection;
 
-/// AFM scans of all formats that surf/io/height_field_file.h reads: an array for each channel, heights in nm.
+/// AFM scans of all formats that surf/io/height_field_file.h reads: an array for each channel,
+/// heights in nm.
 class VTKSEMSURF_EXPORT vtkSemsurfScanReader : public vtkImageAlgorithm {
  public:
   static vtkSemsurfScanReader* New();
@@ -34,7 +35,7 @@ class VTKSEMSURF_EXPORT vtkSemsurfScanReader : public vtkImageAlgorithm {
   int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
 
  private:
-  struct Contents;   // of the file
+  struct Contents;  // of the file
   void ReadHead();
 
   std::string FileName;

@@ -8,7 +8,8 @@
 
 #include <vtkSemsurfModule.h>
 
-/// Scene files (surf/io/sim/scene_file.h): a block for the height field and for each body, with their materials.
+/// Scene files (surf/io/sim/scene_file.h): a block for the height field and for each body, with
+/// their materials.
 class VTKSEMSURF_EXPORT vtkSemsurfSceneReader : public vtkMultiBlockDataSetAlgorithm {
  public:
   static vtkSemsurfSceneReader* New();

@@ -29,7 +29,8 @@ vtkSmartPointer<vtkImageData> vtkSemsurfSemReader::Read() {
   if (this->PixelSize[1] > 0) options.pixel_y_nm = this->PixelSize[1];
   io::SemFile file = io::read_sem_image(this->FileName, options);
   for (const std::string& note : file.notes) pv::warn(this, this->FileName + ": " + note);
-  auto image = pv::to_vtk(std::move(file.image), file.channel.empty() ? "signal" : file.channel, "1");
+  auto image =
+      pv::to_vtk(std::move(file.image), file.channel.empty() ? "signal" : file.channel, "1");
   auto texts = file.metadata;
   const auto add = [&](const char* key, const std::optional<double>& value) {
     if (value) texts[key] = fmt::format("{:.9g}", *value);

@@ -11,7 +11,7 @@ class VTKSEMSURF_EXPORT vtkSemsurfSemReader : public vtkSemsurfImageReader {
   vtkTypeMacro(vtkSemsurfSemReader, vtkSemsurfImageReader);
 
   void SetChannel(const char* name);
-  vtkSetVector2Macro(PixelSize, double);   ///< nm; 0: what the file says
+  vtkSetVector2Macro(PixelSize, double);  ///< nm; 0: what the file says
   vtkSetMacro(KeepDatabar, bool);
 
  protected:

@@ -51,10 +51,11 @@ int vtkSemsurfSimplifyMesh::RequestData(vtkInformation*, vtkInformationVector** 
     SimplifyOptions options;
     values.apply(options);
     // Corners at equal places are one, or seams would keep all of theirs.
-    const TriangleMesh mesh = merge_equal_vertices(pv::to_mesh(pv::surface_input(inputs, 0), "Input"));
+    const TriangleMesh mesh =
+        merge_equal_vertices(pv::to_mesh(pv::surface_input(inputs, 0), "Input"));
     if (!(length(bounds(mesh).size_nm()) > 0))
       throw InvalidInput("Input", "all its corners lie at one place", "Give a surface");
-    constexpr double share = 1e-3;   // of the diagonal: no difference to be seen
+    constexpr double share = 1e-3;  // of the diagonal: no difference to be seen
     if (this->Limit != ByTriangles && options.tolerance_nm == 0)
       options.tolerance_nm = share * length(bounds(mesh).size_nm());
     SimplifySummary summary;
@@ -64,8 +65,9 @@ int vtkSemsurfSimplifyMesh::RequestData(vtkInformation*, vtkInformationVector** 
       simple = simplify_mesh(mesh, options, summary);
     });
     if (!summary.reached)
-      pv::warn(this, fmt::format("Triangles: {} are left; fewer would {}", summary.triangles_after,
-                                 options.tolerance_nm > 0 ? "exceed Mesh Tolerance" : "turn faces over"));
+      pv::warn(this,
+               fmt::format("Triangles: {} are left; fewer would {}", summary.triangles_after,
+                           options.tolerance_nm > 0 ? "exceed Mesh Tolerance" : "turn faces over"));
     const auto data = pv::to_vtk(std::move(simple));
     pv::add_texts(data, {{"deviation_nm", fmt::format("{:.9g}", summary.deviation.largest_nm())}});
     pv::add_record(data, "mesh", record_of(options));

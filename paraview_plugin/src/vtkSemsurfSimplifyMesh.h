@@ -28,13 +28,14 @@ class VTKSEMSURF_EXPORT vtkSemsurfSimplifyMesh : public vtkPolyDataAlgorithm {
  protected:
   vtkSemsurfSimplifyMesh();
   ~vtkSemsurfSimplifyMesh() override;
-  int RequestUpdateExtent(vtkInformation*, vtkInformationVector** inputs, vtkInformationVector*) override;
+  int RequestUpdateExtent(vtkInformation*, vtkInformationVector** inputs,
+                          vtkInformationVector*) override;
   int RequestInformation(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
   int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
 
  private:
   int Limit = ByTolerance;
-  std::unique_ptr<surf::pv::PropertyValues> Values;   // of described parameters
+  std::unique_ptr<surf::pv::PropertyValues> Values;  // of described parameters
 };
 
 #endif

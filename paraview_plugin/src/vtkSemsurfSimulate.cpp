@@ -37,22 +37,26 @@ using namespace surf;
 
 struct vtkSemsurfSimulate::State {
   pv::PropertyValues values;
-  std::string settings;             // that the plan is of
-  std::uint64_t input = 0;          // its digest
+  std::string settings;     // that the plan is of
+  std::uint64_t input = 0;  // its digest
   bool planned = false;
   workflow::SimulateJob job;
   mc::Scan scan;
-  std::unique_ptr<pv::LiveSimulation> live;   // of this plan
+  std::unique_ptr<pv::LiveSimulation> live;  // of this plan
 };
 
 namespace {
 
 using Pipeline = vtkStreamingDemandDrivenPipeline;
 
-constexpr double first_wait_s = 0.7, next_wait_s = 0.2;   // of live updates, for something to show
+constexpr double first_wait_s = 0.7, next_wait_s = 0.2;  // of live updates, for something to show
 
 pv::Frame frame_of(const mc::Scan& s) {
-  return {s.width, s.height, s.pixel_x_nm, s.pixel_y_nm, s.center_x_nm - 0.5 * (s.width - 1) * s.pixel_x_nm,
+  return {s.width,
+          s.height,
+          s.pixel_x_nm,
+          s.pixel_y_nm,
+          s.center_x_nm - 0.5 * (s.width - 1) * s.pixel_x_nm,
           s.center_y_nm - 0.5 * (s.height - 1) * s.pixel_y_nm};
 }
 
@@ -97,14 +101,18 @@ pv::SpecimenWish wish_of(const pv::PropertyValues& values) {
   values.apply(said);
   const double top_nm = said.substrate_z_nm.value_or(0);
   if (!(std::abs(top_nm) <= most_nm))
-    throw UsageError("`specimen.substrate_z`", fmt::format("{} nm are not in -{} to {}", top_nm, most_nm, most_nm), "Give 0");
-  return {said.material.value_or("Si"), said.material_files.empty() ? std::string() : said.material_files.front(),
+    throw UsageError("`specimen.substrate_z`",
+                     fmt::format("{} nm are not in -{} to {}", top_nm, most_nm, most_nm), "Give 0");
+  return {said.material.value_or("Si"),
+          said.material_files.empty() ? std::string() : said.material_files.front(),
           said.substrate.value_or(""), top_nm, said.edge.value_or(Edge::mirror)};
 }
 
 }  // namespace
 
-vtkSemsurfSimulate::vtkSemsurfSimulate() : Kept(std::make_unique<State>()) { this->SetNumberOfOutputPorts(3); }
+vtkSemsurfSimulate::vtkSemsurfSimulate() : Kept(std::make_unique<State>()) {
+  this->SetNumberOfOutputPorts(3);
+}
 vtkSemsurfSimulate::~vtkSemsurfSimulate() = default;
 
 int vtkSemsurfSimulate::FillInputPortInformation(int, vtkInformation* info) {
@@ -115,7 +123,9 @@ int vtkSemsurfSimulate::FillInputPortInformation(int, vtkInformation* info) {
 }
 
 int vtkSemsurfSimulate::FillOutputPortInformation(int port, vtkInformation* info) {
-  info->Set(vtkDataObject::DATA_TYPE_NAME(), port == 0 ? "vtkImageData" : port == 1 ? "vtkPolyData" : "vtkTable");
+  info->Set(vtkDataObject::DATA_TYPE_NAME(), port == 0   ? "vtkImageData"
+                                             : port == 1 ? "vtkPolyData"
+                                                         : "vtkTable");
   return 1;
 }
 
@@ -142,15 +152,18 @@ void vtkSemsurfSimulate::Plan(vtkDataObject* input) {
   workflow::SimulateJob job = job_of(k.values, this->Budget);
   const bool by_pixels = !job.scene.scan.pixel_x_nm;
   if (by_pixels && (this->Pixels < 1 || this->Pixels > 16384))
-    throw UsageError("Pixels", fmt::format("{} is not in 1 to 16384", this->Pixels), "Give 256 where in doubt");
+    throw UsageError("Pixels", fmt::format("{} is not in 1 to 16384", this->Pixels),
+                     "Give 256 where in doubt");
   job.scene.specimen = pv::to_specimen(input, heights, wish_of(k.values));
   mc::validate(job.scene);
   const Box extent = mc::extent(job.scene.specimen);
   k.scan = workflow::resolve_scan(job.scene.scan, extent, job.scene.beam);
-  constexpr int usual = 256;   // across the longer side, where nothing is said
+  constexpr int usual = 256;  // across the longer side, where nothing is said
   if (by_pixels && this->Pixels != usual) {
     const double fewer = static_cast<double>(this->Pixels) / usual;
-    const auto pixels = [&](int of_usual) { return std::max(1, static_cast<int>(std::lround(fewer * of_usual))); };
+    const auto pixels = [&](int of_usual) {
+      return std::max(1, static_cast<int>(std::lround(fewer * of_usual)));
+    };
     job.scene.scan.width = pixels(k.scan.width);
     job.scene.scan.height = pixels(k.scan.height);
     k.scan = workflow::resolve_scan(job.scene.scan, extent, job.scene.beam);
@@ -161,8 +174,10 @@ void vtkSemsurfSimulate::Plan(vtkDataObject* input) {
   k.planned = true;
 }
 
-/// How large the image becomes depends on the specimen, so that has to be made before anything is said of it.
-int vtkSemsurfSimulate::RequestInformation(vtkInformation*, vtkInformationVector**, vtkInformationVector* outputs) {
+/// How large the image becomes depends on the specimen, so that has to be made before anything is
+/// said of it.
+int vtkSemsurfSimulate::RequestInformation(vtkInformation*, vtkInformationVector**,
+                                           vtkInformationVector* outputs) {
   return pv::attempt_information(this, outputs, [&] {
     pv::with_labels([&] {
       int port = 0;
@@ -178,20 +193,24 @@ int vtkSemsurfSimulate::RequestInformation(vtkInformation*, vtkInformationVector
   });
 }
 
-int vtkSemsurfSimulate::RequestUpdateExtent(vtkInformation*, vtkInformationVector** inputs, vtkInformationVector*) {
+int vtkSemsurfSimulate::RequestUpdateExtent(vtkInformation*, vtkInformationVector** inputs,
+                                            vtkInformationVector*) {
   pv::request_whole(inputs, 1);
   return 1;
 }
 
-int vtkSemsurfSimulate::RequestData(vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs) {
+int vtkSemsurfSimulate::RequestData(vtkInformation*, vtkInformationVector** inputs,
+                                    vtkInformationVector* outputs) {
   return pv::attempt(this, [&] {
     pv::with_labels([&] {
       this->Plan(vtkDataObject::GetData(inputs[0]->GetInformationObject(0)));
       State& k = *this->Kept;
       vtkInformation* const output = outputs->GetInformationObject(0);
       auto* ranks = vtkMultiProcessController::GetGlobalController();
-      const bool spread = ranks && ranks->GetNumberOfProcesses() > 1 && output->Has(Pipeline::UPDATE_NUMBER_OF_PIECES()) &&
-                          output->Get(Pipeline::UPDATE_NUMBER_OF_PIECES()) == ranks->GetNumberOfProcesses();
+      const bool spread =
+          ranks && ranks->GetNumberOfProcesses() > 1 &&
+          output->Has(Pipeline::UPDATE_NUMBER_OF_PIECES()) &&
+          output->Get(Pipeline::UPDATE_NUMBER_OF_PIECES()) == ranks->GetNumberOfProcesses();
       if (!spread) ranks = nullptr;
       Image image;
       std::vector<Track> tracks;
@@ -201,7 +220,9 @@ int vtkSemsurfSimulate::RequestData(vtkInformation*, vtkInformationVector** inpu
         const bool first = !k.live;
         if (first) k.live = std::make_unique<pv::LiveSimulation>(k.job, k.scan);
         try {
-          pv::work(this, [&](const Watch& watch) { k.live->wait(first ? first_wait_s : next_wait_s, *watch.cancel); });
+          pv::work(this, [&](const Watch& watch) {
+            k.live->wait(first ? first_wait_s : next_wait_s, *watch.cancel);
+          });
         } catch (...) {
           k.live.reset();
           throw;
@@ -230,7 +251,8 @@ int vtkSemsurfSimulate::RequestData(vtkInformation*, vtkInformationVector** inpu
   });
 }
 
-/// Asked by ParaView's timer of live sources, which then marks what follows as modified, but not this.
+/// Asked by ParaView's timer of live sources, which then marks what follows as modified, but not
+/// this.
 bool vtkSemsurfSimulate::GetNeedsUpdate() {
   const bool news = this->Live && this->Kept->live && this->Kept->live->has_news();
   if (news) this->Modified();

@@ -9,8 +9,9 @@
 
 #include <vtkSemsurfModule.h>
 
-/// SEM images by Monte Carlo, as `semsurf simulate`. The input is a surface, an image of heights, or blocks of them. Output
-/// 0 is the image, output 1 the tracks of a few electrons, output 2 a table of the detectors.
+/// SEM images by Monte Carlo, as `semsurf simulate`. The input is a surface, an image of heights,
+/// or blocks of them. Output 0 is the image, output 1 the tracks of a few electrons, output 2 a
+/// table of the detectors.
 class VTKSEMSURF_EXPORT vtkSemsurfSimulate : public vtkImageAlgorithm {
  public:
   static vtkSemsurfSimulate* New();
@@ -18,13 +19,14 @@ class VTKSEMSURF_EXPORT vtkSemsurfSimulate : public vtkImageAlgorithm {
 
   enum Budgets { ByElectrons, ByAccuracy };
 
-  /// The parameter of that name (surf/mc/request/simulation_request.h, surf/io/sim/specimen_request.h): a choice by its number.
+  /// The parameter of that name (surf/mc/request/simulation_request.h,
+  /// surf/io/sim/specimen_request.h): a choice by its number.
   void SetParameter(const char* name, double value);
   void SetParameter(const char* name, const char* text);
   void SetParameter(const char* name, double a, double b, double c, double d);
-  vtkSetMacro(Pixels, int);   ///< across the longer side, without a pixel size
+  vtkSetMacro(Pixels, int);  ///< across the longer side, without a pixel size
   vtkSetMacro(Budget, int);
-  vtkSetMacro(Live, bool);   ///< each update gives what there is so far
+  vtkSetMacro(Live, bool);  ///< each update gives what there is so far
 
   /// Whether an update would show more, of a live simulation.
   bool GetNeedsUpdate();
@@ -39,7 +41,7 @@ class VTKSEMSURF_EXPORT vtkSemsurfSimulate : public vtkImageAlgorithm {
   int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
 
  private:
-  struct State;   // what is kept between requests
+  struct State;  // what is kept between requests
   /// Makes the plan for an input anew if it or a property has changed.
   void Plan(vtkDataObject* input);
 

@@ -21,7 +21,8 @@ int vtkSemsurfSurfaceWriter::FillInputPortInformation(int, vtkInformation* info)
 }
 
 void vtkSemsurfSurfaceWriter::WriteFile() {
-  for (const auto& [value, label] : {std::pair{this->Magnification, "Magnification"}, {this->ZExaggeration, "Z Exaggeration"}})
+  for (const auto& [value, label] :
+       {std::pair{this->Magnification, "Magnification"}, {this->ZExaggeration, "Z Exaggeration"}})
     pv::need_between(value, 1e-12, 1e12, label);
   auto* const data = vtkPolyData::SafeDownCast(this->GetInput());
   SurfaceScene scene;

@@ -44,11 +44,13 @@ int vtkSemsurfTipSource::RequestInformation(vtkInformation*, vtkInformationVecto
   return pv::attempt_information(this, outputs, [&] {
     const int samples = this->Parameters().size;
     const double corner = -(samples / 2) * this->Pitch;
-    pv::announce(outputs->GetInformationObject(0), {samples, samples, this->Pitch, this->Pitch, corner, corner});
+    pv::announce(outputs->GetInformationObject(0),
+                 {samples, samples, this->Pitch, this->Pitch, corner, corner});
   });
 }
 
-int vtkSemsurfTipSource::RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector* outputs) {
+int vtkSemsurfTipSource::RequestData(vtkInformation*, vtkInformationVector**,
+                                     vtkInformationVector* outputs) {
   return pv::attempt(this, [&] {
     const workflow::TipShapeParameters parameters = this->Parameters();
     const auto image = pv::to_vtk(workflow::tip_by_shape(parameters));

@@ -25,7 +25,7 @@ class VTKSEMSURF_EXPORT vtkSemsurfTipSource : public vtkImageAlgorithm {
 
   /// A described parameter of that name: a choice by its number.
   void SetParameter(const char* name, double value);
-  vtkSetMacro(Pitch, double);           ///< nm
+  vtkSetMacro(Pitch, double);  ///< nm
 
  protected:
   vtkSemsurfTipSource();
@@ -36,7 +36,7 @@ class VTKSEMSURF_EXPORT vtkSemsurfTipSource : public vtkImageAlgorithm {
  private:
   surf::workflow::TipShapeParameters Parameters() const;
 
-  std::unique_ptr<surf::pv::PropertyValues> Values;   // of described parameters
+  std::unique_ptr<surf::pv::PropertyValues> Values;  // of described parameters
   double Pitch = 2;
 };
 

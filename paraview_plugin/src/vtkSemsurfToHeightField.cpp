@@ -27,7 +27,8 @@ int vtkSemsurfToHeightField::FillInputPortInformation(int, vtkInformation* info)
 
 double vtkSemsurfToHeightField::PitchFor(double width_nm, double depth_nm) const {
   if (!(width_nm > 0 && depth_nm > 0 && std::isfinite(width_nm + depth_nm)))
-    throw InvalidInput("Input", fmt::format("seen from above it is {} x {} nm large", width_nm, depth_nm),
+    throw InvalidInput("Input",
+                       fmt::format("seen from above it is {} x {} nm large", width_nm, depth_nm),
                        "Give a surface that covers an area: 'Transform' turns it");
   constexpr int most = 16384;
   if (this->Pitch == 0) {
@@ -38,13 +39,16 @@ double vtkSemsurfToHeightField::PitchFor(double width_nm, double depth_nm) const
   }
   if (!(this->Pitch > 0 && this->Pitch <= 2 * std::min(width_nm, depth_nm) &&
         this->Pitch * (most - 1) >= std::max(width_nm, depth_nm)))
-    throw UsageError("Pitch", fmt::format("with {} nm there are no 2 to {} samples across {:.4g} x {:.4g} nm",
-                                          this->Pitch, most, width_nm, depth_nm),
-                     "Give 0 to go by Samples");
+    throw UsageError(
+        "Pitch",
+        fmt::format("with {} nm there are no 2 to {} samples across {:.4g} x {:.4g} nm",
+                    this->Pitch, most, width_nm, depth_nm),
+        "Give 0 to go by Samples");
   return this->Pitch;
 }
 
-/// How large the image becomes depends on the surface, so that has to be made before anything is said of it.
+/// How large the image becomes depends on the surface, so that has to be made before anything is
+/// said of it.
 int vtkSemsurfToHeightField::RequestInformation(vtkInformation*, vtkInformationVector**,
                                                 vtkInformationVector* outputs) {
   return pv::attempt_information(this, outputs, [&] {
@@ -57,7 +61,9 @@ int vtkSemsurfToHeightField::RequestInformation(vtkInformation*, vtkInformationV
     double b[6];
     data->GetPoints()->GetBounds(b);
     const double pitch = this->PitchFor(b[1] - b[0], b[3] - b[2]);
-    const auto samples = [&](double length) { return static_cast<int>(std::round(length / pitch)) + 1; };
+    const auto samples = [&](double length) {
+      return static_cast<int>(std::round(length / pitch)) + 1;
+    };
     pv::announce(outputs->GetInformationObject(0),
                  {samples(b[1] - b[0]), samples(b[3] - b[2]), pitch, pitch, b[0], b[2]});
   });

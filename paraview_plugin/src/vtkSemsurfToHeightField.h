@@ -12,14 +12,15 @@ class VTKSEMSURF_EXPORT vtkSemsurfToHeightField : public vtkImageAlgorithm {
   static vtkSemsurfToHeightField* New();
   vtkTypeMacro(vtkSemsurfToHeightField, vtkImageAlgorithm);
 
-  vtkSetMacro(Samples, int);    ///< along the longer side
-  vtkSetMacro(Pitch, double);   ///< nm; 0: from Samples
+  vtkSetMacro(Samples, int);   ///< along the longer side
+  vtkSetMacro(Pitch, double);  ///< nm; 0: from Samples
 
  protected:
   vtkSemsurfToHeightField() = default;
   int FillInputPortInformation(int port, vtkInformation* info) override;
   int RequestInformation(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
-  int RequestUpdateExtent(vtkInformation*, vtkInformationVector** inputs, vtkInformationVector*) override;
+  int RequestUpdateExtent(vtkInformation*, vtkInformationVector** inputs,
+                          vtkInformationVector*) override;
   int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
 
  private:

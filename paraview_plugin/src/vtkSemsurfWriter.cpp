@@ -30,7 +30,8 @@ void vtkSemsurfWriter::WriteData() {
   if (ranks && ranks->GetLocalProcessId() != 0) return;
   const auto write = [&] {
     std::vector<surf::io::FileUse> outputs;
-    for (const auto& file : surf::io::files_written_with(this->FileName)) outputs.push_back({"File Name", file, {}});
+    for (const auto& file : surf::io::files_written_with(this->FileName))
+      outputs.push_back({"File Name", file, {}});
     surf::pv::refuse_overlaps(this, outputs);
     this->WriteFile();
   };

@@ -15,7 +15,8 @@ class VTKSEMSURF_EXPORT vtkSemsurfWriter : public vtkWriter {
 
   void SetFileName(VTK_FILEPATH const char* name);
   const char* GetFileName() const { return this->FileName.c_str(); }
-  vtkTypeBool ProcessRequest(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
+  vtkTypeBool ProcessRequest(vtkInformation*, vtkInformationVector**,
+                             vtkInformationVector*) override;
 
  protected:
   vtkSemsurfWriter() = default;

@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Makes the properties of proxies from the descriptions of parameters, when the plugin is built: expand_proxies IN.xml OUT.xml.
-// In a proxy,
-//   <Parameters of="simulation" command="SetParameter"/>      is replaced by a property for each parameter of that struct,
-//   <Parameter name="beam.tilt" .../>                         by that one, and the struct's list then leaves it out.
-// A Parameter may say what differs for ParaView: property (its name), label, default, numbers (how many), whole="1", min, max, level,
-// omit="1", help (in place of the description's), entries (of a choice, in their order), the widget's condition show_with="Budget=1 2", documentation, which goes before the description's, none (the number
-// that says nothing) and otherwise (what holds then). What it contains goes into the property: hints, say.
-// Parameters may say the level of all that it stands for.
-// An optional number without any of default and none has 0 for nothing, or -1 where it may be 0; where it may be both, it is a text.
+// Makes the properties of proxies from the descriptions of parameters, when the plugin is built:
+// expand_proxies IN.xml OUT.xml. In a proxy,
+//   <Parameters of="simulation" command="SetParameter"/>      is replaced by a property for each
+//   parameter of that struct, <Parameter name="beam.tilt" .../>                         by that
+//   one, and the struct's list then leaves it out.
+// A Parameter may say what differs for ParaView: property (its name), label, default, numbers (how
+// many), whole="1", min, max, level, omit="1", help (in place of the description's), entries (of a
+// choice, in their order), the widget's condition show_with="Budget=1 2", documentation, which goes
+// before the description's, none (the number that says nothing) and otherwise (what holds then).
+// What it contains goes into the property: hints, say. Parameters may say the level of all that it
+// stands for. An optional number without any of default and none has 0 for nothing, or -1 where it
+// may be 0; where it may be both, it is a text.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -109,7 +112,9 @@ std::string with_spaces(std::string_view name) {
   std::string label;
   for (const char c : name) {
     const bool first = label.empty() || label.back() == ' ';
-    label += c == '_' ? ' ' : first ? static_cast<char>(std::toupper(static_cast<unsigned char>(c))) : c;
+    label += c == '_' ? ' '
+             : first  ? static_cast<char>(std::toupper(static_cast<unsigned char>(c)))
+                      : c;
   }
   return label;
 }
@@ -121,13 +126,20 @@ std::string joined(std::string label) {
 
 const char* unit_word(Unit unit) {
   switch (unit) {
-    case Unit::nm: return "nm";
-    case Unit::ev: return "eV";
-    case Unit::deg: return "degrees";
-    case Unit::pa: return "pA";
-    case Unit::us: return "us";
-    case Unit::s: return "s";
-    default: return "";
+    case Unit::nm:
+      return "nm";
+    case Unit::ev:
+      return "eV";
+    case Unit::deg:
+      return "degrees";
+    case Unit::pa:
+      return "pA";
+    case Unit::us:
+      return "us";
+    case Unit::s:
+      return "s";
+    default:
+      return "";
   }
 }
 
@@ -141,7 +153,9 @@ std::string range_words(const Parameter& about) {
 
 void set_range(pugi::xml_node domain, const Parameter& about, bool whole) {
   // ParaView's whole numbers end earlier than some of ours.
-  const auto text = [&](double value) { return whole ? fmt::format("{:.0f}", value) : fmt::format("{}", value); };
+  const auto text = [&](double value) {
+    return whole ? fmt::format("{:.0f}", value) : fmt::format("{}", value);
+  };
   const auto is_there = [&](double value) {
     return std::isfinite(value) && (!whole || std::abs(value) <= std::numeric_limits<int>::max());
   };
@@ -151,12 +165,15 @@ void set_range(pugi::xml_node domain, const Parameter& about, bool whole) {
 
 std::string sentence(const Described& d, const std::string& own, const std::string& none) {
   std::string text = own.empty() ? d.about.help : own + " " + d.about.help;
-  if (const std::string range = range_words(d.about); !range.empty() && d.kind != FieldKind::choice) text += "; " + range;
-  if (!none.empty() && !d.about.otherwise.empty()) text += fmt::format("; {}: {}", none, d.about.otherwise);
+  if (const std::string range = range_words(d.about); !range.empty() && d.kind != FieldKind::choice)
+    text += "; " + range;
+  if (!none.empty() && !d.about.otherwise.empty())
+    text += fmt::format("; {}: {}", none, d.about.otherwise);
   return text + ".";
 }
 
-/// "0" or "-1": the number that says nothing, which the parameter cannot be; empty where it can be both.
+/// "0" or "-1": the number that says nothing, which the parameter cannot be; empty where it can be
+/// both.
 std::string none_of(const Limits& limits) {
   for (const int number : {0, -1})
     if (!limits.holds(number)) return std::to_string(number);
@@ -169,7 +186,8 @@ struct Widget {
 };
 
 Widget widget_of(const Described& d, bool whole, int numbers) {
-  if (d.kind == FieldKind::choice || d.kind == FieldKind::flag) return {"IntVectorProperty", false, false};
+  if (d.kind == FieldKind::choice || d.kind == FieldKind::flag)
+    return {"IntVectorProperty", false, false};
   if (d.kind == FieldKind::whole || whole) return {"IntVectorProperty", true, false};
   if (d.kind == FieldKind::number || numbers > 0) return {"DoubleVectorProperty", false, true};
   return {"StringVectorProperty", false, false};
@@ -241,7 +259,8 @@ void add_property(pugi::xml_node placeholder, Described d, const char* command) 
   property.append_attribute("initial_string") = name.c_str();
   property.append_attribute("number_of_elements") = std::max(1, numbers);
   property.append_attribute("default_values") = attribute("default", usual).c_str();
-  const bool advanced = attribute("level", d.about.level == Level::advanced ? "advanced" : "basic") == "advanced";
+  const bool advanced =
+      attribute("level", d.about.level == Level::advanced ? "advanced" : "basic") == "advanced";
   if (advanced) property.append_attribute("panel_visibility") = "advanced";
   if (d.kind == FieldKind::choice) {
     std::vector<std::string> entries = d.choices;
@@ -249,24 +268,31 @@ void add_property(pugi::xml_node placeholder, Described d, const char* command) 
     if (const std::string own = said.attribute("entries").value(); !own.empty()) {
       entries.clear();
       for (const std::string_view entry : split(own, ",")) entries.emplace_back(entry);
-      if (entries.size() != d.choices.size()) fail("entries of " + d.about.name + " are not as many as its choices");
+      if (entries.size() != d.choices.size())
+        fail("entries of " + d.about.name + " are not as many as its choices");
     }
     add_choices(property, entries);
   } else if (d.kind == FieldKind::flag) {
     property.append_child("BooleanDomain").append_attribute("name") = "bool";
   } else if (widget.whole || widget.number) {
-    pugi::xml_node domain = property.append_child(widget.whole ? "IntRangeDomain" : "DoubleRangeDomain");
+    pugi::xml_node domain =
+        property.append_child(widget.whole ? "IntRangeDomain" : "DoubleRangeDomain");
     domain.append_attribute("name") = "range";
     set_range(domain, range, widget.whole);
   } else if (d.about.file == FileRole::read) {
     property.append_child("FileListDomain").append_attribute("name") = "files";
   }
-  const bool empty_text = std::string(widget.element) == "StringVectorProperty" && usual.empty() && !said.attribute("default");
-  const std::string nothing = empty_text ? "empty" : numbers > 1 && !none.empty() ? "all " + none : none;
-  property.append_child("Documentation").append_child(pugi::node_pcdata).set_value(
-      sentence(d, said.attribute("documentation").value(), nothing).c_str());
+  const bool empty_text = std::string(widget.element) == "StringVectorProperty" && usual.empty() &&
+                          !said.attribute("default");
+  const std::string nothing = empty_text                     ? "empty"
+                              : numbers > 1 && !none.empty() ? "all " + none
+                                                             : none;
+  property.append_child("Documentation")
+      .append_child(pugi::node_pcdata)
+      .set_value(sentence(d, said.attribute("documentation").value(), nothing).c_str());
   for (pugi::xml_node child : placeholder.children()) property.append_copy(child);
-  if (const std::string condition = said.attribute("show_with").value(); !condition.empty()) add_condition(property, condition);
+  if (const std::string condition = said.attribute("show_with").value(); !condition.empty())
+    add_condition(property, condition);
 }
 
 const Described& find(const std::string& name, const std::vector<std::string>& of) {
@@ -302,7 +328,8 @@ void expand(pugi::xml_node proxy) {
     const bool advanced = std::string(placeholder.attribute("level").value()) == "advanced";
     for (Described d : structs().at(placeholder.attribute("of").value())()) {
       if (advanced) d.about.level = Level::advanced;
-      if (d.about.last_name() != "threads" && done.insert(d.about.name).second) add_property(placeholder, d, "SetParameter");
+      if (d.about.last_name() != "threads" && done.insert(d.about.name).second)
+        add_property(placeholder, d, "SetParameter");
     }
   }
   for (pugi::xml_node placeholder : single) proxy.remove_child(placeholder);
@@ -318,6 +345,7 @@ int main(int count, char** arguments) {
   if (!read) fail(fmt::format("{}: {}", arguments[1], read.description()));
   for (pugi::xml_node group : document.child("ServerManagerConfiguration").children())
     for (pugi::xml_node proxy : group.children()) expand(proxy);
-  if (!document.save_file(arguments[2], "  ")) fail(fmt::format("{}: cannot be written", arguments[2]));
+  if (!document.save_file(arguments[2], "  "))
+    fail(fmt::format("{}: cannot be written", arguments[2]));
   return 0;
 }

@@ -19,8 +19,12 @@ struct Sample {
 };
 
 void describe(ParameterVisitor& visit, Sample& s) {
-  visit(s.width_nm, {.name = "sample.width", .help = "Width of the sample", .unit = Unit::nm, .limits = above(0)});
-  visit(s.count, {.name = "sample.count", .help = "Things", .limits = within(1, 9), .otherwise = "all"});
+  visit(s.width_nm, {.name = "sample.width",
+                     .help = "Width of the sample",
+                     .unit = Unit::nm,
+                     .limits = above(0)});
+  visit(s.count,
+        {.name = "sample.count", .help = "Things", .limits = within(1, 9), .otherwise = "all"});
   visit(s.quick, {.name = "sample.quick", .help = "Hurry"});
   visit(s.plan, {.name = "sample.plan", .help = "What to do", .file = FileRole::read});
 }
@@ -52,7 +56,8 @@ TEST(BoundParameters, TakeWhatWasGiven) {
 }
 
 TEST(BoundParameters, FormerNamesStandForTheSameAndAreNotShown) {
-  const OptionLooks looks{{"sample.width", {.name = "--sample-width", .former = {"--width", "--breadth"}}}};
+  const OptionLooks looks{
+      {"sample.width", {.name = "--sample-width", .former = {"--width", "--breadth"}}}};
   EXPECT_EQ(Program(looks).parse("--sample-width 5nm").width_nm, 5);
   EXPECT_EQ(Program(looks).parse("--breadth 6nm").width_nm, 6);
   Program p(looks);
@@ -81,7 +86,7 @@ TEST(BoundParameters, OtherOptionsMayStandForAParameter) {
 
 TEST(BoundParameters, RolesOfFilesEndWithTheirOptions) {
   CLI::App plain;
-  for (int i = 0; i < 50; ++i) {   // options may lie where bound ones lay
+  for (int i = 0; i < 50; ++i) {  // options may lie where bound ones lay
     Program p;
     EXPECT_EQ(file_role(*p.app.get_option("--plan")), FileRole::read);
     EXPECT_EQ(file_role(*p.app.get_option("--count")), FileRole::none);
@@ -98,7 +103,8 @@ TEST(BoundParameters, EveryOptionOfAFileSaysWhatIsDoneWithIt) {
   int files = 0;
   const std::function<void(const CLI::App&)> look = [&](const CLI::App& command) {
     for (const CLI::Option* option : command.get_options()) {
-      const std::string form = option->get_option_text().empty() ? option->get_type_name() : option->get_option_text();
+      const std::string form =
+          option->get_option_text().empty() ? option->get_type_name() : option->get_option_text();
       SCOPED_TRACE(command.get_name() + " " + option->get_name() + " " + form);
       const auto role = file_role(*option);
       if (form.starts_with("FILE")) {

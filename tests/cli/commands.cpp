@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The commands of good.cmake and bad.cmake, each in a fresh folder that holds the files of data/, all in this process.
+// The commands of good.cmake and bad.cmake, each in a fresh folder that holds the files of data/,
+// all in this process.
 #include <gtest/gtest.h>
 #include <stdlib.h>
 
@@ -24,7 +25,7 @@ struct Case {
   std::string suite, name;
   int exit = 0;
   std::vector<std::string> arguments;
-  std::vector<std::string> out, err, writes;   // regular expressions, and files
+  std::vector<std::string> out, err, writes;  // regular expressions, and files
   std::optional<std::string> info_file;
   std::vector<std::string> info;
 };
@@ -35,7 +36,8 @@ std::vector<Case> read_cases() {
   std::ifstream in(SEMSURF_CLI_CASES);
   for (std::string line; std::getline(in, line);) {
     const std::size_t space = line.find(' ');
-    const std::string kind = line.substr(0, space), value = space == std::string::npos ? "" : line.substr(space + 1);
+    const std::string kind = line.substr(0, space),
+                      value = space == std::string::npos ? "" : line.substr(space + 1);
     if (kind == "CASE") {
       Case& c = cases.emplace_back();
       const std::size_t dot = value.find('.');
@@ -108,11 +110,13 @@ class Command : public testing::Test {
       EXPECT_EQ(lines_that_begin(said.err, "semsurf: error: "), 1);
     }
     for (const std::string& file : case_.writes)
-      EXPECT_EQ(added.count(fs::path(file).lexically_normal().string()), 1u) << file << " was not written";
+      EXPECT_EQ(added.count(fs::path(file).lexically_normal().string()), 1u)
+          << file << " was not written";
     if (case_.info_file) {
       const test::Said info = test::semsurf({"info", *case_.info_file});
       for (const std::string& pattern : case_.info)
-        EXPECT_TRUE(matches(info.out, pattern)) << "info does not match '" << pattern << "':\n" << info.out;
+        EXPECT_TRUE(matches(info.out, pattern)) << "info does not match '" << pattern << "':\n"
+                                                << info.out;
     }
   }
 

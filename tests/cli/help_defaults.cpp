@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Help says in parentheses what holds where an option is not given: the field's own default, or words in its place. Numbers
-// in such words are compared here with the structs that decide them. New ones have to be entered below.
+// Help says in parentheses what holds where an option is not given: the field's own default, or
+// words in its place. Numbers in such words are compared here with the structs that decide them.
+// New ones have to be entered below.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <gmock/gmock.h>
@@ -18,8 +19,8 @@
 #include "surf/afm/blind_tip.h"
 #include "surf/afm/tip_sweep.h"
 #include "surf/io/surface_file.h"
-#include "surf/mc/request/budget.h"
 #include "surf/mc/geometry/specimen.h"
+#include "surf/mc/request/budget.h"
 #include "surf/sem/fit_facet_network.h"
 #include "surf/sem/fit_filter_bank.h"
 #include "surf/workflow/count_job.h"
@@ -42,16 +43,18 @@ std::vector<std::string> commands_of(const std::vector<std::string>& parent) {
   std::istringstream help(test::semsurf(words).out);
   bool listed = false;
   for (std::string line; std::getline(help, line);) {
-    static const std::set<std::string> headings{"Commands:", "SEM:", "AFM:", "AFM + SEM:", "Surfaces and files:",
-                                                "Set-up and study:"};
+    static const std::set<std::string> headings{
+        "Commands:", "SEM:", "AFM:", "AFM + SEM:", "Surfaces and files:", "Set-up and study:"};
     if (!line.empty() && line[0] != ' ') listed = headings.contains(line);
-    else if (listed && line.size() > 2 && line[2] != ' ') names.push_back(line.substr(2, line.find(' ', 2) - 2));
+    else if (listed && line.size() > 2 && line[2] != ' ')
+      names.push_back(line.substr(2, line.find(' ', 2) - 2));
   }
   return names;
 }
 
 /// Descriptions run over several lines, which are indented.
-std::vector<std::pair<std::string, std::string>> options_of(const std::vector<std::string>& command) {
+std::vector<std::pair<std::string, std::string>> options_of(
+    const std::vector<std::string>& command) {
   std::vector<std::string> words = command;
   words.push_back("--help");
   const test::Said said = test::semsurf(words);
@@ -63,7 +66,8 @@ std::vector<std::pair<std::string, std::string>> options_of(const std::vector<st
     static const std::regex begins(R"(^  (?:-\w,)?(--[\w-]+).*)"), goes_on(R"(^ {20,}(\S.*)$)");
     std::smatch found;
     if (std::regex_match(line, found, begins)) options.emplace_back(found[1], line);
-    else if (within && std::regex_match(line, found, goes_on)) options.back().second += " " + found[1].str();
+    else if (within && std::regex_match(line, found, goes_on))
+      options.back().second += " " + found[1].str();
     else {
       within = false;
       continue;
@@ -98,8 +102,8 @@ std::vector<Stated> everything_stated() {
 
 /// The number in front, in nm, eV or degrees; "3%" is 0.03.
 double value_of(const std::string& text) {
-  static const std::map<std::string, double> units{{"", 1}, {"nm", 1}, {"um", 1e3}, {"eV", 1}, {"keV", 1e3},
-                                                   {"deg", 1}, {"%", 0.01}, {"s", 1}};
+  static const std::map<std::string, double> units{{"", 1},      {"nm", 1},  {"um", 1e3}, {"eV", 1},
+                                                   {"keV", 1e3}, {"deg", 1}, {"%", 0.01}, {"s", 1}};
   double value = 0;
   const auto [rest, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   EXPECT_EQ(error, std::errc{}) << text;
@@ -139,20 +143,26 @@ std::vector<Default> defaults() {
        "--table-electrons",
        fmt::format("{} at each, 10240 in all", workflow::SlopeTableOptions{}.electrons)},
       {{"tip"}, "--tip-size", double(BlindTipOptions{}.width)},
-      {{"tip"}, "--sweep", fmt::format("0.3 to 8 standard deviations of the noise, {}", TipSweepOptions{}.thresholds)},
+      {{"tip"},
+       "--sweep",
+       fmt::format("0.3 to 8 standard deviations of the noise, {}", TipSweepOptions{}.thresholds)},
       {chains, "--spot", workflow::ModelRequest{}.spot_nm},
   };
 }
 
-/// Numbers that no struct holds: of files that do not say, of a choice made where it is used, and no defaults at all.
+/// Numbers that no struct holds: of files that do not say, of a choice made where it is used, and
+/// no defaults at all.
 std::vector<Default> others() {
-  const std::vector<std::string> scans{"level", "clean", "noise scan", "erode", "dilate", "open", "close",
-                                       "certainty", "tip"};
-  const std::vector<std::string> chains{"register", "reconstruct"}, libraries{"library build", "library plot"};
+  const std::vector<std::string> scans{"level", "clean", "noise scan", "erode", "dilate",
+                                       "open",  "close", "certainty",  "tip"};
+  const std::vector<std::string> chains{"register", "reconstruct"},
+      libraries{"library build", "library plot"};
   return {
       {scans, "--height-pitch", "1 nm"},
       {chains, "--height-pitch", "1 nm"},
-      {{"mesh", "view", "predict", "simulate", "sweep", "train", "chart"}, "--height-pitch", "1 nm"},
+      {{"mesh", "view", "predict", "simulate", "sweep", "train", "chart"},
+       "--height-pitch",
+       "1 nm"},
       {{"simulate"}, "--layout", "auto: tiles above 64 million pixels"},
       {{"chart"}, "--draws", "10, quickly 3"},
       {{"noise sem"}, "--block", "16, 12 or 8"},
@@ -195,23 +205,24 @@ TEST(HelpDefaults, AreThoseOfTheStructs) {
       ADD_FAILURE() << "enter it in defaults(), with the field that holds it";
       continue;
     }
-    if (const double* const number = std::get_if<double>(&found->expected)) EXPECT_DOUBLE_EQ(value_of(s.text), *number);
+    if (const double* const number = std::get_if<double>(&found->expected))
+      EXPECT_DOUBLE_EQ(value_of(s.text), *number);
     else EXPECT_EQ(s.text, std::get<std::string>(found->expected));
   }
   // Nor may the list hold what is not said any more.
   for (const auto* list : {&known, &fixed})
     for (const Default& d : *list)
       for (const std::string& command : d.commands)
-        EXPECT_TRUE(seen.contains({command, d.option})) << command << " " << d.option << " states no number";
+        EXPECT_TRUE(seen.contains({command, d.option}))
+            << command << " " << d.option << " states no number";
 }
 
 TEST(HelpDefaults, EveryCommandIsLookedAt) {
-  EXPECT_THAT(commands_of({}), testing::ElementsAre(
-                                   "simulate", "sweep", "train", "predict",
-                                   "level", "clean", "noise", "tip", "erode", "dilate", "open", "close", "certainty",
-                                   "sample", "register", "calibrate", "reconstruct",
-                                   "info", "view", "mesh", "materials",
-                                   "library", "chart", "completion"));
+  EXPECT_THAT(commands_of({}),
+              testing::ElementsAre("simulate", "sweep", "train", "predict", "level", "clean",
+                                   "noise", "tip", "erode", "dilate", "open", "close", "certainty",
+                                   "sample", "register", "calibrate", "reconstruct", "info", "view",
+                                   "mesh", "materials", "library", "chart", "completion"));
   EXPECT_THAT(commands_of({"sweep"}), testing::ElementsAre("join"));
   EXPECT_THAT(commands_of({"library"}), testing::ElementsAre("list", "build", "plot", "remove"));
   const auto options = options_of({"reconstruct"});

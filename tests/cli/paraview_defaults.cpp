@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Properties that are written by hand have defaults of their own, in XML. They are those of the plugin's classes, and
-// where the library has such an option those of its struct. The files are read as text: no ParaView is needed.
+// Properties that are written by hand have defaults of their own, in XML. They are those of the
+// plugin's classes, and where the library has such an option those of its struct. The files are
+// read as text: no ParaView is needed.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
@@ -50,10 +51,12 @@ std::map<std::string, Numbers> members_of(const std::string& class_name) {
   static const std::regex initialised(R"(\b([A-Z]\w*)(?:\[\d\])? = (\{[^}]*\}|[^,;{"]+)(?=[,;]))");
   for (std::sregex_iterator it(text.begin(), text.end(), initialised), end; it != end; ++it) {
     const std::string value = (*it)[2];
-    members[(*it)[1]] = enumerators.contains(value) ? Numbers{enumerators[value]} : numbers_in(value);
+    members[(*it)[1]] =
+        enumerators.contains(value) ? Numbers{enumerators[value]} : numbers_in(value);
   }
   static const std::regex parent(R"(class VTKSEMSURF_EXPORT \w+ : public (vtkSemsurf\w+))");
-  if (std::smatch found; std::regex_search(text, found, parent)) members.merge(members_of(found[1]));
+  if (std::smatch found; std::regex_search(text, found, parent))
+    members.merge(members_of(found[1]));
   return members;
 }
 
@@ -69,12 +72,16 @@ std::vector<Property> properties() {
   for (const auto& entry : fs::directory_iterator(plugin / "xml")) {
     pugi::xml_document document;
     EXPECT_TRUE(document.load_file(entry.path().c_str())) << entry.path();
-    for (const pugi::xpath_node& found : document.select_nodes("//*[@default_values and starts-with(@command, 'Set')]")) {
+    for (const pugi::xpath_node& found :
+         document.select_nodes("//*[@default_values and starts-with(@command, 'Set')]")) {
       const pugi::xml_node node = found.node(), proxy = node.parent();
       const std::string type = node.name(), command = node.attribute("command").value();
-      if ((type != "IntVectorProperty" && type != "DoubleVectorProperty") || command == "SetInputArrayToProcess") continue;
-      out.push_back({proxy.attribute("name").value(), proxy.attribute("class").value(), node.attribute("name").value(),
-                     command.substr(3), node.child("Documentation").text().get(),
+      if ((type != "IntVectorProperty" && type != "DoubleVectorProperty") ||
+          command == "SetInputArrayToProcess")
+        continue;
+      out.push_back({proxy.attribute("name").value(), proxy.attribute("class").value(),
+                     node.attribute("name").value(), command.substr(3),
+                     node.child("Documentation").text().get(),
                      numbers_in(node.attribute("default_values").value())});
     }
   }
@@ -83,19 +90,21 @@ std::vector<Property> properties() {
 
 TEST(ParaViewDefaults, AreThoseOfTheClasses) {
   // A proxy may begin elsewhere than its class: the operation that it is.
-  const std::set<std::string> own{"SemsurfErode.Operation", "SemsurfDilate.Operation", "SemsurfOpen.Operation",
-                                  "SemsurfClose.Operation"};
+  const std::set<std::string> own{"SemsurfErode.Operation", "SemsurfDilate.Operation",
+                                  "SemsurfOpen.Operation", "SemsurfClose.Operation"};
   std::size_t compared = 0;
   std::map<std::string, std::map<std::string, Numbers>> members;
   for (const Property& p : properties()) {
     const std::string name = p.proxy + "." + p.name;
     if (own.contains(name)) continue;
     // A base of proxies has no class of its own.
-    const std::string class_name = p.class_name.empty() ? "vtk" + p.proxy.substr(0, p.proxy.find("Base")) : p.class_name;
+    const std::string class_name =
+        p.class_name.empty() ? "vtk" + p.proxy.substr(0, p.proxy.find("Base")) : p.class_name;
     if (!members.contains(class_name)) members[class_name] = members_of(class_name);
     const auto& of_class = members[class_name];
     if (!of_class.contains(p.member)) {
-      ADD_FAILURE() << name << ": " << class_name << " has no member " << p.member << " with a value";
+      ADD_FAILURE() << name << ": " << class_name << " has no member " << p.member
+                    << " with a value";
       continue;
     }
     EXPECT_EQ(p.values, of_class.at(p.member)) << name;
@@ -117,7 +126,8 @@ TEST(ParaViewDefaults, AreThoseOfTheLibrary) {
     seen.insert(name);
     EXPECT_THAT(p.values, testing::ElementsAre(known.at(name))) << name;
   }
-  for (const auto& [name, value] : known) EXPECT_TRUE(seen.contains(name)) << "there is no " << name;
+  for (const auto& [name, value] : known)
+    EXPECT_TRUE(seen.contains(name)) << "there is no " << name;
 }
 
 TEST(ParaViewDefaults, TooltipsSayWhatStandsForTheUsual) {
@@ -125,7 +135,8 @@ TEST(ParaViewDefaults, TooltipsSayWhatStandsForTheUsual) {
   std::set<std::string> said;
   static const std::regex stands_for(R"((?:^|[ ;,])(-?\d+|none): (\d[\d.]*)(?=[ ,;.]|\.<))");
   for (const Property& p : properties()) {
-    for (std::sregex_iterator it(p.documentation.begin(), p.documentation.end(), stands_for), end; it != end; ++it) {
+    for (std::sregex_iterator it(p.documentation.begin(), p.documentation.end(), stands_for), end;
+         it != end; ++it) {
       std::string number = (*it)[2];
       while (number.ends_with('.')) number.pop_back();
       said.insert(fmt::format("{}.{} {}: {}", p.proxy, p.name, (*it)[1].str(), number));
@@ -133,7 +144,8 @@ TEST(ParaViewDefaults, TooltipsSayWhatStandsForTheUsual) {
   }
   // No struct holds these: choices made where they are used, and nm of files that do not say.
   EXPECT_THAT(said, testing::UnorderedElementsAre("SemsurfToSurface.Thickness 0: 5",
-                                                  "SemsurfScanReader.ZUnit 0: 1", "SemsurfScanReader.PixelSize 0: 1"));
+                                                  "SemsurfScanReader.ZUnit 0: 1",
+                                                  "SemsurfScanReader.PixelSize 0: 1"));
 }
 
 }  // namespace

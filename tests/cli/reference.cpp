@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// docs/reference is what the program says, its examples work, and results hold nothing that it does not name.
+// docs/reference is what the program says, its examples work, and results hold nothing that it does
+// not name.
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -46,8 +47,9 @@ TEST(Reference, IsUpToDate) {
     int line = 0;
     do ++line, std::getline(old, before), std::getline(made, now);
     while (before == now && old && made);
-    ADD_FAILURE() << file << ", line " << line << " is not what the program says. Run: cmake --build build --target "
-                                        "reference\n"
+    ADD_FAILURE() << file << ", line " << line
+                  << " is not what the program says. Run: cmake --build build --target "
+                     "reference\n"
                   << "file:    " << before << "\nprogram: " << now;
   }
 }
@@ -61,9 +63,12 @@ TEST(Reference, ExamplesOfSceneTablesAreRead) {
   for (const io::SceneTable& table : io::scene_tables()) {
     SCOPED_TRACE(table.example);
     const bool of_materials = table.example.starts_with("[[material]]");
-    EXPECT_NO_THROW(read(table.example + (of_materials ? "\n[substrate]\nmaterial = \"Si\"\n" : "")));
+    EXPECT_NO_THROW(
+        read(table.example + (of_materials ? "\n[substrate]\nmaterial = \"Si\"\n" : "")));
     for (const io::SceneKey& key : table.keys) {
-      if (key.otherwise == "required") { EXPECT_THAT(table.example, testing::HasSubstr(key.name + " =")); }
+      if (key.otherwise == "required") {
+        EXPECT_THAT(table.example, testing::HasSubstr(key.name + " ="));
+      }
     }
   }
 }
@@ -86,7 +91,8 @@ TEST(Reference, RequiredKeysAreRequired) {
     if (table.heading == "elements") continue;
     for (const io::SceneKey& key : table.keys) {
       if (key.otherwise != "required") continue;
-      const std::string without = std::regex_replace(table.example, std::regex("\n" + key.name + " = [^\n]*"), "");
+      const std::string without =
+          std::regex_replace(table.example, std::regex("\n" + key.name + " = [^\n]*"), "");
       ASSERT_NE(without, table.example);
       EXPECT_ANY_THROW(read(without)) << without;
     }
@@ -108,8 +114,10 @@ TEST(Reference, NamesChannelsAndMetadataOfImages) {
   const fs::path data = SEMSURF_CLI_DATA, image = folder.path() / "image.exr";
   const std::vector<std::vector<std::string>> ways{
       {"--detector", "quadrants", "--current", "10pA", "--dwell", "1us"},
-      {"--electrons", "2", "--substrate", "Si", "--channels", "z_nm,normal,material,electrons,model,variance_left"},
-      {"--accuracy", "50%", "--method", "replay", "--mesh-tolerance", "1nm", "--unit", "um", "--override-unit"}};
+      {"--electrons", "2", "--substrate", "Si", "--channels",
+       "z_nm,normal,material,electrons,model,variance_left"},
+      {"--accuracy", "50%", "--method", "replay", "--mesh-tolerance", "1nm", "--unit", "um",
+       "--override-unit"}};
   std::vector<reference::NamedEntry> channels = reference::image_channels();
   // It would be any name: the detectors are listed here.
   std::erase_if(channels, [](const auto& entry) { return entry.name == "NAME"; });
@@ -117,13 +125,16 @@ TEST(Reference, NamesChannelsAndMetadataOfImages) {
     channels.push_back({detector, ""});
   const std::vector<reference::NamedEntry> metadata = reference::image_metadata();
   for (const std::vector<std::string>& way : ways) {
-    std::vector<std::string> words{"simulate", data / "cube.off", "--size", "4x4", "--cache", "off", "-q", "-o", image};
+    std::vector<std::string> words{
+        "simulate", data / "cube.off", "--size", "4x4", "--cache", "off", "-q", "-o", image};
     words.insert(words.end(), way.begin(), way.end());
     const test::Said said = test::semsurf(words);
     ASSERT_TRUE(said.code == 0 || said.code == 4) << said.err;
     const Image read = io::read_image(image);
-    for (const Channel& channel : read.channels) EXPECT_TRUE(is_named(channel.name, channels)) << channel.name;
-    for (const auto& [key, value] : read.metadata) EXPECT_TRUE(is_named(key, metadata)) << key << " = " << value;
+    for (const Channel& channel : read.channels)
+      EXPECT_TRUE(is_named(channel.name, channels)) << channel.name;
+    for (const auto& [key, value] : read.metadata)
+      EXPECT_TRUE(is_named(key, metadata)) << key << " = " << value;
   }
 }
 

@@ -10,7 +10,8 @@
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   static const surf::test::TemporaryFolder folder;
-  // No Gwyddion is found, which would be asked about what is unknown: its process takes too long here.
+  // No Gwyddion is found, which would be asked about what is unknown: its process takes too long
+  // here.
   [[maybe_unused]] static const int no_programs = ::setenv("PATH", "", 1);
   const auto path = folder.path() / "input." SEMSURF_FUZZ_FORMAT;
   std::ofstream(path, std::ios::binary)

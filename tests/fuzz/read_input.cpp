@@ -30,7 +30,8 @@ void expect_valid(const Data& data) {
 void read_channels(const std::filesystem::path& path) {
   constexpr std::size_t most = 8;
   const std::size_t channels = std::min(io::height_channels(path).size(), most);
-  for (std::size_t i = 1; i <= channels; ++i) expect_valid(io::read_height_field(path, {std::to_string(i), 2.0, {}, {}}).field);
+  for (std::size_t i = 1; i <= channels; ++i)
+    expect_valid(io::read_height_field(path, {std::to_string(i), 2.0, {}, {}}).field);
 }
 
 bool is_scan_name(const std::filesystem::path& path) {
@@ -47,7 +48,7 @@ void read(const std::filesystem::path& path) {
   } else if (io::is_height_field_file(path)) {
     read_channels(path);
   } else if (is_scan_name(path)) {
-    return;   // its mark is damaged: Gwyddion would be asked, whose process takes long
+    return;  // its mark is damaged: Gwyddion would be asked, whose process takes long
   } else if (io::is_image_file(path)) {
     expect_valid(io::read_image(path));
     io::is_sem_image_file(path);

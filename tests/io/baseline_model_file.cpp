@@ -45,7 +45,8 @@ TEST(BaselineModelFile, ComesBackToTheLastDigit) {
 TEST(BaselineModelFile, NamesThePlaceOfAFault) {
   const test::TemporaryFolder folder;
   const auto file = folder.path() / "model.json";
-  const auto complaint = [&](const TrainedModel& model, const std::string& what, const std::string& by) -> std::string {
+  const auto complaint = [&](const TrainedModel& model, const std::string& what,
+                             const std::string& by) -> std::string {
     write_model(file, model);
     std::string text = read_file(file);
     write_text(file, text.replace(text.find(what), what.size(), by));
@@ -56,10 +57,14 @@ TEST(BaselineModelFile, NamesThePlaceOfAFault) {
     }
     return "read";
   };
-  EXPECT_THAT(complaint(stopping_points(), "\"counted\"", "\"guessed\""), testing::HasSubstr("no rule 'guessed'"));
-  EXPECT_THAT(complaint(stopping_points(), "\"rings\": 2", "\"rings\": 3"), testing::HasSubstr("not 3 x 3"));
-  EXPECT_THAT(complaint(diffusion(), "\"heights\": 2", "\"heights\": 9000000"), testing::HasSubstr("too large"));
-  EXPECT_THAT(complaint(diffusion(), "\"moments_per_nm2\"", "\"moments\""), testing::HasSubstr("moments_per_nm2"));
+  EXPECT_THAT(complaint(stopping_points(), "\"counted\"", "\"guessed\""),
+              testing::HasSubstr("no rule 'guessed'"));
+  EXPECT_THAT(complaint(stopping_points(), "\"rings\": 2", "\"rings\": 3"),
+              testing::HasSubstr("not 3 x 3"));
+  EXPECT_THAT(complaint(diffusion(), "\"heights\": 2", "\"heights\": 9000000"),
+              testing::HasSubstr("too large"));
+  EXPECT_THAT(complaint(diffusion(), "\"moments_per_nm2\"", "\"moments\""),
+              testing::HasSubstr("moments_per_nm2"));
 }
 
 }  // namespace

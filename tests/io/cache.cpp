@@ -47,7 +47,7 @@ TEST(Cache, KeepsNothingAtAllAndALot) {
   Cache cache(folder.path());
   EXPECT_TRUE(cache.store("empty", {}));
   EXPECT_EQ(text_in(cache, "empty"), "");
-  std::string large;   // several pieces of reading, the last one not whole
+  std::string large;  // several pieces of reading, the last one not whole
   for (int i = 0; large.size() < 1'000'003; ++i) large += std::to_string(i);
   EXPECT_TRUE(cache.store("large", bytes_of(large)));
   EXPECT_EQ(text_in(cache, "large"), large);
@@ -111,7 +111,7 @@ TEST(Cache, RemovesWhatIsUnusedForLongestButNotWhatIsInUse) {
     Cache earlier(folder.path());
     for (const char* const name : {"a", "b", "c", "d"}) earlier.store(name, payload);
   }
-  Cache cache(folder.path(), 3500);   // three entries of 1049 bytes
+  Cache cache(folder.path(), 3500);  // three entries of 1049 bytes
   int hours = 9;
   for (const char* const name : {"a", "b", "c", "d"}) age(path_of(cache, name), --hours);
   EXPECT_TRUE(cache.load("a"));
@@ -142,8 +142,7 @@ TEST(Cache, DoesNotKeepWhatIsLargerThanTheLimit) {
   Cache cache(folder.path(), 2'000'000);
   EXPECT_TRUE(cache.store("a", bytes_of("x")));
   EXPECT_FALSE(cache.store("b", std::vector<std::byte>(3'000'000)));
-  EXPECT_THAT(cache.take_notes(),
-              ElementsAre(HasSubstr("3 MB are not kept, the limit is 2 MB")));
+  EXPECT_THAT(cache.take_notes(), ElementsAre(HasSubstr("3 MB are not kept, the limit is 2 MB")));
   EXPECT_EQ(text_in(cache, "a"), "x");
 }
 
@@ -162,17 +161,16 @@ TEST(Cache, SweepsWhatCrashedWritersLeftBehind) {
 }
 
 TEST(CacheFolder, IsTheFirstThatIsNamed) {
-  struct Case { const char *option, *semsurf, *xdg, *home, *expected; };
-  for (const Case& c : {Case{"given", "s", "/x", "/h", "given"},
-                        Case{"", "s", "/x", "/h", "s"},
-                        Case{"", nullptr, "/x", "/h", "/x/semsurf"},
-                        Case{"", "", "/x", "/h", "/x/semsurf"},
-                        Case{"", nullptr, "relative", "/h", "/h/.cache/semsurf"},
-                        Case{"", nullptr, nullptr, "/h", "/h/.cache/semsurf"},
-                        Case{"", nullptr, nullptr, nullptr, ""},
-                        Case{"off", "s", "/x", "/h", ""},
-                        Case{"", "off", "/x", "/h", ""},
-                        Case{"given", "off", "/x", "/h", "given"}}) {
+  struct Case {
+    const char *option, *semsurf, *xdg, *home, *expected;
+  };
+  for (const Case& c :
+       {Case{"given", "s", "/x", "/h", "given"}, Case{"", "s", "/x", "/h", "s"},
+        Case{"", nullptr, "/x", "/h", "/x/semsurf"}, Case{"", "", "/x", "/h", "/x/semsurf"},
+        Case{"", nullptr, "relative", "/h", "/h/.cache/semsurf"},
+        Case{"", nullptr, nullptr, "/h", "/h/.cache/semsurf"},
+        Case{"", nullptr, nullptr, nullptr, ""}, Case{"off", "s", "/x", "/h", ""},
+        Case{"", "off", "/x", "/h", ""}, Case{"given", "off", "/x", "/h", "given"}}) {
     const test::Environment environment{
         {"SEMSURF_CACHE", c.semsurf}, {"XDG_CACHE_HOME", c.xdg}, {"HOME", c.home}};
     EXPECT_EQ(cache_folder(c.option), c.expected);

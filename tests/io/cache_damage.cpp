@@ -149,8 +149,8 @@ TEST(CacheFolder, ThatIsAFileIsOneNote) {
   for (const auto& place : {folder.path() / "file", folder.path() / "file" / "below"}) {
     Cache cache(place);
     expect_useless(cache);
-    EXPECT_THAT(cache.take_notes(), ElementsAre(AllOf(HasSubstr(place.string()),
-                                                      HasSubstr("Nothing is kept"))));
+    EXPECT_THAT(cache.take_notes(),
+                ElementsAre(AllOf(HasSubstr(place.string()), HasSubstr("Nothing is kept"))));
   }
 }
 
@@ -158,7 +158,9 @@ TEST(CacheFolder, ThatIsAFileIsOneNote) {
 class Nobody {
  public:
   Nobody() : is_root_(geteuid() == 0), done_(!is_root_ || seteuid(65534) == 0) {}
-  ~Nobody() { if (is_root_ && seteuid(0) != 0) abort(); }
+  ~Nobody() {
+    if (is_root_ && seteuid(0) != 0) abort();
+  }
   Nobody(const Nobody&) = delete;
   Nobody& operator=(const Nobody&) = delete;
   bool done() const { return done_; }

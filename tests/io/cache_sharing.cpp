@@ -26,7 +26,8 @@ bool hammer(const std::filesystem::path& folder, int writer, int rounds) {
     const auto read = cache.load("shared");
     if (!read || read->size() != payload_size) return false;
     if (std::count(read->begin(), read->end(), read->front()) !=
-        static_cast<std::ptrdiff_t>(payload_size)) return false;
+        static_cast<std::ptrdiff_t>(payload_size))
+      return false;
   }
   return cache.take_notes().empty();
 }
@@ -92,7 +93,7 @@ TEST(CacheSharing, WhatAnotherProcessUsesIsNotPruned) {
   cache.prune();
   ASSERT_EQ(cache.list().size(), 1u);
   EXPECT_EQ(cache.list()[0].key, "theirs");
-  close(done[1]);   // the child ends
+  close(done[1]);  // the child ends
   EXPECT_TRUE(succeeded(child));
   for (const int end : {ready[0], ready[1], done[0]}) close(end);
   cache.prune();

@@ -85,10 +85,14 @@ TEST(CalibrationFile, NamesThePlaceOfAFault) {
     return "read";
   };
   EXPECT_THAT(reason_with("\"calibration\"", "\"model\""), ::testing::HasSubstr("no calibration"));
-  EXPECT_THAT(reason_with("\"version\": 1", "\"version\": 2"), ::testing::HasSubstr("another version"));
-  EXPECT_THAT(reason_with("doubtful", "sure"), ::testing::HasSubstr("outcome: 'sure' is no outcome"));
-  EXPECT_THAT(reason_with("\"gain\"", "\"main\""), ::testing::HasSubstr("channels[0]: 'gain' is missing"));
-  EXPECT_THAT(reason_with("\"covariance\": [", "\"covariance\": [ 1,"), ::testing::HasSubstr("10 numbers, not 3 x 3"));
+  EXPECT_THAT(reason_with("\"version\": 1", "\"version\": 2"),
+              ::testing::HasSubstr("another version"));
+  EXPECT_THAT(reason_with("doubtful", "sure"),
+              ::testing::HasSubstr("outcome: 'sure' is no outcome"));
+  EXPECT_THAT(reason_with("\"gain\"", "\"main\""),
+              ::testing::HasSubstr("channels[0]: 'gain' is missing"));
+  EXPECT_THAT(reason_with("\"covariance\": [", "\"covariance\": [ 1,"),
+              ::testing::HasSubstr("10 numbers, not 3 x 3"));
 }
 
 }  // namespace

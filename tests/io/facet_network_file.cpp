@@ -25,7 +25,8 @@ TrainedModel network() {
   double number = 0;
   for (const int to : {3, 2}) {
     DenseLayer layer{from, to, {}, {}};
-    for (int i = 0; i < from * to; ++i) layer.weights.push_back(std::sin(++number) * std::pow(10, i % 7 - 5));
+    for (int i = 0; i < from * to; ++i)
+      layer.weights.push_back(std::sin(++number) * std::pow(10, i % 7 - 5));
     for (int i = 0; i < to; ++i) layer.biases.push_back(std::cos(++number));
     p.layers.push_back(layer);
     from = to;
@@ -92,22 +93,24 @@ TEST_F(FacetNetworkFile, ComesBackToTheLastBit) {
 }
 
 TEST_F(FacetNetworkFile, NamesWhatIsMissing) {
-  for (const char* key : {"scales", "size", "sigma_px", "sky_edges_nm", "channels", "name", "scale", "layers",
-                          "inputs", "outputs", "weights", "biases"})
+  for (const char* key : {"scales", "size", "sigma_px", "sky_edges_nm", "channels", "name", "scale",
+                          "layers", "inputs", "outputs", "weights", "biases"})
     EXPECT_THAT(complaint(std::string("\"") + key + "\":", "\"gone\":"),
                 HasSubstr(std::string("'") + key + "' is missing"));
 }
 
 TEST_F(FacetNetworkFile, RefusesParametersThatNoNetworkHas) {
   EXPECT_THAT(complaint("\"size\": 5", "\"size\": 6"), HasSubstr("parameters"));
-  EXPECT_THAT(complaint("\"inputs\": 13", "\"inputs\": 12"), HasSubstr("layer 1 goes from 12 to 3"));
+  EXPECT_THAT(complaint("\"inputs\": 13", "\"inputs\": 12"),
+              HasSubstr("layer 1 goes from 12 to 3"));
   EXPECT_THAT(complaint("\"outputs\": 3", "\"outputs\": 4"), HasSubstr("39 weights and 3 biases"));
   EXPECT_THAT(complaint("\"outputs\": 3", "\"outputs\": 1e15"),
               HasSubstr("layers[0].outputs: it is too large"));
   EXPECT_THAT(complaint("\"outputs\": 3", "\"outputs\": -3"), HasSubstr("layers[0].outputs"));
   EXPECT_THAT(complaint("4.1", "-4.1"), HasSubstr("a limit of its sky bands is -4.1"));
   EXPECT_THAT(complaint("\"BSE\"", "\"SE\""), HasSubstr("SE"));
-  EXPECT_THAT(complaint("\"weights\": [", "\"weights\": [null, "), HasSubstr("weights[0]: a finite number"));
+  EXPECT_THAT(complaint("\"weights\": [", "\"weights\": [null, "),
+              HasSubstr("weights[0]: a finite number"));
 }
 
 }  // namespace

@@ -34,7 +34,8 @@ TEST(Files, SaysWhyAFileCannotBeRead) {
   EXPECT_THAT(complaint<FileError>([&] { read_file(folder.path() / "six", 5); }),
               HasSubstr("more than 5 bytes"));
   std::filesystem::create_symlink("loop", folder.path() / "loop");
-  EXPECT_THAT(complaint<FileError>([&] { read_file(folder.path() / "loop"); }), HasSubstr("cannot be found"));
+  EXPECT_THAT(complaint<FileError>([&] { read_file(folder.path() / "loop"); }),
+              HasSubstr("cannot be found"));
 }
 
 TEST(Files, DevicesAndNamedPipesAreRefusedAtOnce) {
@@ -53,7 +54,7 @@ TEST(Files, DevicesAndNamedPipesAreRefusedAtOnce) {
 TEST(Files, TheSizeIsJudgedBeforeMemoryIsTaken) {
   const test::TemporaryFolder folder;
   const auto path = write(folder.path() / "sparse", "");
-  std::filesystem::resize_file(path, std::uintmax_t{1} << 40);   // it takes no room on the disk
+  std::filesystem::resize_file(path, std::uintmax_t{1} << 40);  // it takes no room on the disk
   EXPECT_THAT(complaint<FileError>([&] { read_file(path); }), HasSubstr("has more than 8.59 GB"));
 }
 
@@ -67,7 +68,8 @@ TEST(Files, APipeWithoutANameIsReadOnceAndItsHashIsKept) {
   ::close(ends[1]);
   EXPECT_EQ(read_file(path), "abc");
   EXPECT_THAT(complaint<FileError>([&] { read_file(path); }), HasSubstr("needed more than once"));
-  EXPECT_EQ(sha256_of_file(path), "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
+  EXPECT_EQ(sha256_of_file(path),
+            "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
   ::close(ends[0]);
 }
 

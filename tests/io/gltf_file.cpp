@@ -50,7 +50,8 @@ TEST(GltfFile, ReadsTheLetter) {
 
 TEST(GltfFile, ReadsDataUrisAndFilesBesideIt) {
   const GltfWriter gltf = test::gltf_of_f();
-  const std::string data = "data:application/octet-stream;base64," + GltfWriter::base64(gltf.binary);
+  const std::string data =
+      "data:application/octet-stream;base64," + GltfWriter::base64(gltf.binary);
   expect_letter_f(read("f.gltf", gltf.text(data)).at(0).mesh);
 
   const TemporaryFolder folder;
@@ -65,13 +66,14 @@ TEST(GltfFile, AUnitIsOneMetreUnlessGiven) {
   const TemporaryFolder folder;
   const auto path = write(folder.path() / "f.glb", test::gltf_of_f().glb());
   EXPECT_EQ(corners(read_mesh(path)), moved_letter([](const Vec3& v) { return v * 1e9; }));
-  EXPECT_EQ(corners(read_mesh(path, {2.0, true})), moved_letter([](const Vec3& v) { return v * 2; }));
+  EXPECT_EQ(corners(read_mesh(path, {2.0, true})),
+            moved_letter([](const Vec3& v) { return v * 2; }));
 }
 
 TEST(GltfFile, YUpBecomesZUp) {
   GltfWriter gltf;
-  const std::string content = bytes(1.F, false) + bytes(2.F, false) + bytes(3.F, false) +
-                              std::string(24, '\0');
+  const std::string content =
+      bytes(1.F, false) + bytes(2.F, false) + bytes(3.F, false) + std::string(24, '\0');
   const int positions = gltf.add_accessor(gltf.add_view(content), test::gltf_float32, 3, "VEC3");
   gltf.add_node({{"mesh", gltf.add_mesh(positions, -1)}});
   EXPECT_EQ(read_one(gltf).mesh.vertices_nm.at(0), (Vec3{1, -3, 2}));
@@ -81,13 +83,14 @@ TEST(GltfFile, AppliesTransformsFromTheRootDown) {
   GltfWriter gltf = test::gltf_of_f();
   // Scale, then a quarter turn about the vertical (y) axis, then a shift; its parent shifts up.
   gltf.json["nodes"][0].update({{"scale", {2, 2, 2}},
-                                {"rotation", {0, 3, 0, 3}},   // of any length
+                                {"rotation", {0, 3, 0, 3}},  // of any length
                                 {"translation", {10, 0, 0}}});
   const int parent = gltf.add_node({{"children", {0}}, {"translation", {0, 5, 0}}});
   gltf.json["scenes"] = {{{"nodes", json::array()}}, {{"nodes", {parent}}}};
   gltf.json["scene"] = 1;
-  const auto expected =
-      moved_letter([](const Vec3& v) { return Vec3{10 - 2 * v.y, 2 * v.x, 2 * v.z + 5}; });
+  const auto expected = moved_letter([](const Vec3& v) {
+    return Vec3{10 - 2 * v.y, 2 * v.x, 2 * v.z + 5};
+  });
   const auto found = corners(read_one(gltf).mesh);
   ASSERT_EQ(found.size(), expected.size());
   for (std::size_t t = 0; t < found.size(); ++t) {
@@ -99,8 +102,9 @@ TEST(GltfFile, MatricesAreByColumns) {
   GltfWriter gltf = test::gltf_of_f();
   // x -> y, y -> z, z -> x, then (7, 8, 9): in z-up terms (x, y, z) -> (7 - y, -9 - z, 8 + x).
   gltf.json["nodes"][0]["matrix"] = {0, 1, 0, 0, 0, 0, 1, 0, 1, 0, 0, 0, 7, 8, 9, 1};
-  EXPECT_EQ(corners(read_one(gltf).mesh),
-            moved_letter([](const Vec3& v) { return Vec3{7 - v.y, -9 - v.z, 8 + v.x}; }));
+  EXPECT_EQ(corners(read_one(gltf).mesh), moved_letter([](const Vec3& v) {
+              return Vec3{7 - v.y, -9 - v.z, 8 + v.x};
+            }));
 }
 
 TEST(GltfFile, MirroringKeepsNormalsOut) {
@@ -120,8 +124,9 @@ TEST(GltfFile, AMeshIsRepeatedForEveryNode) {
   ASSERT_EQ(meshes.size(), 2u);
   EXPECT_EQ(meshes[0].name, "F");
   EXPECT_EQ(meshes[1].name, "part") << "neither node nor mesh has a name";
-  EXPECT_EQ(corners(meshes[1].mesh),
-            moved_letter([](const Vec3& v) { return v + Vec3{0, 0, 100}; }));
+  EXPECT_EQ(corners(meshes[1].mesh), moved_letter([](const Vec3& v) {
+              return v + Vec3{0, 0, 100};
+            }));
 }
 
 TEST(GltfFile, PrimitivesAreSortedByMaterial) {
@@ -149,8 +154,8 @@ TEST(GltfFile, ReadsEveryTypeOfIndex) {
   for (const Triangle& t : f.triangles) all.insert(all.end(), t.begin(), t.end());
   for (const auto type : {test::gltf_uint8, test::gltf_uint16, test::gltf_uint32}) {
     GltfWriter gltf;
-    gltf.add_node({{"mesh", gltf.add_mesh(gltf.add_positions(f.vertices_nm),
-                                          gltf.add_indices(all, type))}});
+    gltf.add_node(
+        {{"mesh", gltf.add_mesh(gltf.add_positions(f.vertices_nm), gltf.add_indices(all, type))}});
     expect_letter_f(read_one(gltf).mesh);
   }
 }
@@ -169,8 +174,8 @@ TEST(GltfFile, ReadsStripsAndFans) {
   const std::vector<Vec3> square{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}, {0, 2, 0}};
   GltfWriter gltf;
   // The repeated corner joins two strips and is no triangle.
-  gltf.add_node({{"mesh", gltf.add_mesh(gltf.add_positions(square),
-                                        gltf.add_indices({0, 1, 2, 3, 4, 4}))}});
+  gltf.add_node(
+      {{"mesh", gltf.add_mesh(gltf.add_positions(square), gltf.add_indices({0, 1, 2, 3, 4, 4}))}});
   json& primitive = gltf.json["meshes"][0]["primitives"][0];
   primitive["mode"] = 5;
   EXPECT_EQ(read_one(gltf).mesh.triangles,
@@ -188,7 +193,7 @@ TEST(GltfFile, SkipsPointsAndLines) {
     primitives.push_back(primitives[0]);
     primitives.back()["mode"] = mode;
   }
-  primitives.push_back({{"attributes", json::object()}});   // without positions
+  primitives.push_back({{"attributes", json::object()}});  // without positions
   expect_letter_f(read_one(gltf).mesh);
 }
 
@@ -199,7 +204,7 @@ TEST(GltfFile, ReadsStridedViewsAndOffsets) {
     for (const double c : {p.x, p.z, -p.y}) content += bytes(static_cast<float>(c), false);
     content += "normal..";
   }
-  content.resize(content.size() - 8);   // the last element need not be padded
+  content.resize(content.size() - 8);  // the last element need not be padded
   GltfWriter gltf = test::gltf_of_f();
   json& accessor = gltf.json["accessors"][0];
   accessor["bufferView"] = gltf.add_view(content, 20);
@@ -214,14 +219,15 @@ GltfWriter quantized_letter(test::GltfType type, bool normalized, double largest
   std::string content;
   for (const Vec3& p : f.vertices_nm) {
     const double step = normalized ? std::floor(largest / 16) : 1;
-    for (const double c : {p.x, p.z, 3 - p.y}) {   // not below 0
+    for (const double c : {p.x, p.z, 3 - p.y}) {  // not below 0
       content += bytes(static_cast<Integer>(std::lround(4 * c * step)), false);
     }
     content.resize((content.size() + 3) / 4 * 4);
   }
   GltfWriter gltf = test::gltf_of_f();
   json& accessor = gltf.json["accessors"][0];
-  accessor["bufferView"] = gltf.add_view(content, static_cast<int>(content.size() / f.vertices_nm.size()));
+  accessor["bufferView"] =
+      gltf.add_view(content, static_cast<int>(content.size() / f.vertices_nm.size()));
   accessor["componentType"] = type;
   accessor["normalized"] = normalized;
   const double scale = 0.25 * (normalized ? largest / std::floor(largest / 16) : 1);
@@ -255,8 +261,9 @@ TEST(GltfFile, ReadsSparsePositions) {
   const std::string replaced = bytes(50.F, false) + bytes(60.F, false) + bytes(-70.F, false);
   gltf.json["accessors"][0]["sparse"] = {
       {"count", 1},
-      {"indices", {{"bufferView", gltf.add_view(bytes(std::uint16_t{5}, false))},
-                   {"componentType", test::gltf_uint16}}},
+      {"indices",
+       {{"bufferView", gltf.add_view(bytes(std::uint16_t{5}, false))},
+        {"componentType", test::gltf_uint16}}},
       {"values", {{"bufferView", gltf.add_view(replaced)}}}};
   TriangleMesh expected = test::letter_f_triangles();
   expected.vertices_nm.at(5) = {50, 70, 60};
@@ -281,8 +288,8 @@ TEST(GltfFile, DeepNestingIsNoDanger) {
   GltfWriter gltf = test::gltf_of_f();
   const std::string text = gltf.json.dump();
   const std::size_t depth = 300000;
-  const std::string deep = text.substr(0, text.size() - 1) + ",\"extras\":" +
-                           std::string(depth, '[') + std::string(depth, ']') +
+  const std::string deep = text.substr(0, text.size() - 1) +
+                           ",\"extras\":" + std::string(depth, '[') + std::string(depth, ']') +
                            ",\"buffers\":[{\"byteLength\":" + std::to_string(gltf.binary.size()) +
                            "}]}";
   expect_letter_f(read("f.glb", GltfWriter::container(deep, gltf.binary)).at(0).mesh);

@@ -19,8 +19,8 @@ using testing::HasSubstr;
 struct Case {
   const char* label;
   void (*spoil)(json& gltf);
-  const char* place;    ///< named in the message
-  const char* reason;   ///< named in the message
+  const char* place;   ///< named in the message
+  const char* reason;  ///< named in the message
 };
 
 void PrintTo(const Case& c, std::ostream* out) { *out << c.label; }
@@ -28,9 +28,17 @@ void PrintTo(const Case& c, std::ostream* out) { *out << c.label; }
 const std::vector<Case>& broken() {
   static const std::vector<Case> all{
       {"no_asset", [](json& g) { g.erase("asset"); }, "a.glb", "'asset' is missing"},
-      {"node_missing", [](json& g) { g["scenes"] = {{{"nodes", {3}}}}; }, "a.glb", "nodes[3]"},
-      {"scene_missing", [](json& g) { g["scenes"] = {json::object()}; g["scene"] = 1; }, "a.glb",
-       "scenes[1]"},
+      {"node_missing",
+       [](json& g) {
+         g["scenes"] = {{{"nodes", {3}}}};
+       },
+       "a.glb", "nodes[3]"},
+      {"scene_missing",
+       [](json& g) {
+         g["scenes"] = {json::object()};
+         g["scene"] = 1;
+       },
+       "a.glb", "scenes[1]"},
       {"mesh_missing", [](json& g) { g["nodes"][0]["mesh"] = 1; }, "a.glb", "meshes[1]"},
       {"accessor_missing", [](json& g) { g["accessors"].erase(1); }, "a.glb", "accessors[1]"},
       {"view_missing", [](json& g) { g["accessors"][0]["bufferView"] = 7; }, "a.glb",
@@ -39,19 +47,36 @@ const std::vector<Case>& broken() {
        "a.glb", "materials[0]"},
       {"nodes_no_array", [](json& g) { g["nodes"] = 3; }, "nodes", "an array"},
       {"node_no_object", [](json& g) { g["nodes"][0] = 3; }, "nodes[0]", "an object"},
-      {"loop", [](json& g) { g["nodes"][0]["children"] = {0}; g["scenes"] = {{{"nodes", {0}}}}; },
+      {"loop",
+       [](json& g) {
+         g["nodes"][0]["children"] = {0};
+         g["scenes"] = {{{"nodes", {0}}}};
+       },
        "nodes[0]", "child of two nodes"},
       {"only_loop", [](json& g) { g["nodes"][0]["children"] = {0}; }, "a.glb", "no triangles"},
-      {"matrix_short", [](json& g) { g["nodes"][0]["matrix"] = {1, 2}; }, "nodes[0].matrix", "16"},
-      {"matrix_row", [](json& g) {
-         g["nodes"][0]["matrix"] = {1, 0, 0, 1, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}; },
+      {"matrix_short",
+       [](json& g) {
+         g["nodes"][0]["matrix"] = {1, 2};
+       },
+       "nodes[0].matrix", "16"},
+      {"matrix_row",
+       [](json& g) { g["nodes"][0]["matrix"] = {1, 0, 0, 1, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}; },
        "nodes[0].matrix", "last row"},
-      {"rotation_zero", [](json& g) { g["nodes"][0]["rotation"] = {0, 0, 0, 0}; },
+      {"rotation_zero",
+       [](json& g) {
+         g["nodes"][0]["rotation"] = {0, 0, 0, 0};
+       },
        "nodes[0].rotation", "quaternion"},
-      {"scale_text", [](json& g) { g["nodes"][0]["scale"] = {"1", 1, 1}; }, "nodes[0].scale[0]",
-       "finite number"},
-      {"scale_huge", [](json& g) { g["nodes"][0]["scale"] = {1e308, 1e308, 1e308}; }, "a.glb",
-       "too large"},
+      {"scale_text",
+       [](json& g) {
+         g["nodes"][0]["scale"] = {"1", 1, 1};
+       },
+       "nodes[0].scale[0]", "finite number"},
+      {"scale_huge",
+       [](json& g) {
+         g["nodes"][0]["scale"] = {1e308, 1e308, 1e308};
+       },
+       "a.glb", "too large"},
       {"index_too_high", [](json& g) { g["accessors"][0]["count"] = 3; }, "primitives[0]",
        "from 0 to 2"},
       {"not_whole", [](json& g) { g["accessors"][1]["count"] = 4; }, "primitives[0]", "4 corners"},
@@ -73,7 +98,8 @@ const std::vector<Case>& broken() {
        "bufferViews[0]", "outside"},
       {"stride_low", [](json& g) { g["bufferViews"][0]["byteStride"] = 4; }, "accessors[0]",
        "4 bytes apart"},
-      {"no_data", [](json& g) { g["accessors"][0].erase("bufferView"); }, "accessors[0]", "no data"},
+      {"no_data", [](json& g) { g["accessors"][0].erase("bufferView"); }, "accessors[0]",
+       "no data"},
       {"mode", [](json& g) { g["meshes"][0]["primitives"][0]["mode"] = 7; }, "primitives[0]",
        "mode 7"},
       {"only_points", [](json& g) { g["meshes"][0]["primitives"][0]["mode"] = 0; }, "a.glb",
@@ -131,8 +157,7 @@ TEST(GltfFileErrors, DataElsewhere) {
   for (const char* uri : {"data:;base64,A", "data:;base64,A*==", "data:text,abc", "data:"}) {
     EXPECT_THAT(complaint_about("a.gltf", gltf.text(uri)), HasSubstr("not base64"));
   }
-  EXPECT_THAT(complaint_about("a.gltf", gltf.text("data:;base64,AAAA")),
-              HasSubstr("there are 3"));
+  EXPECT_THAT(complaint_about("a.gltf", gltf.text("data:;base64,AAAA")), HasSubstr("there are 3"));
   const TemporaryFolder folder;
   write(folder.path() / "a.bin", "short");
   const auto path = write(folder.path() / "a.gltf", gltf.text("a.bin"));
@@ -151,17 +176,23 @@ TEST(GltfErrors, BuffersLieInOrBelowTheFolder) {
   fs::create_symlink("../out.bin", inside / "link.bin");
   fs::create_symlink("..", inside / "up");
   fs::create_symlink("deep/c.bin", inside / "near.bin");
-  for (const char* uri : {"../out.bin", "%2e%2e/out.bin", "deep/../../out.bin", "%2Fetc/passwd", "link.bin", "up/out.bin",
-                          "up/inside/../out.bin"}) {
+  for (const char* uri : {"../out.bin", "%2e%2e/out.bin", "deep/../../out.bin", "%2Fetc/passwd",
+                          "link.bin", "up/out.bin", "up/inside/../out.bin"}) {
     write(path, gltf.text(uri));
-    EXPECT_THAT(complaint<FileError>([&] { read_mesh(path); }), HasSubstr("not in or below the folder")) << uri;
-    EXPECT_THAT(complaint<FileError>([&] { mesh_input_files(path); }), HasSubstr("not in or below the folder")) << uri;
+    EXPECT_THAT(complaint<FileError>([&] { read_mesh(path); }),
+                HasSubstr("not in or below the folder"))
+        << uri;
+    EXPECT_THAT(complaint<FileError>([&] { mesh_input_files(path); }),
+                HasSubstr("not in or below the folder"))
+        << uri;
   }
-  for (const char* uri : {"a%20b.bin", "./deep/c.bin", "deep/../deep/c.bin", "near.bin", "up/inside/a%20b.bin"}) {
+  for (const char* uri :
+       {"a%20b.bin", "./deep/c.bin", "deep/../deep/c.bin", "near.bin", "up/inside/a%20b.bin"}) {
     write(path, gltf.text(uri));
     EXPECT_NO_THROW(read_mesh(path)) << uri;
   }
-  fs::create_symlink("inside/a.gltf", folder.path() / "a.gltf");   // what lies beside the file itself is near, too
+  fs::create_symlink("inside/a.gltf",
+                     folder.path() / "a.gltf");  // what lies beside the file itself is near, too
   fs::create_symlink("inside/near.bin", folder.path() / "near.bin");
   write(path, gltf.text("near.bin"));
   EXPECT_NO_THROW(read_mesh(folder.path() / "a.gltf"));
@@ -176,7 +207,8 @@ TEST(GltfFileErrors, CompressionIsNotSupported) {
   for (const char* name : {"KHR_draco_mesh_compression", "EXT_meshopt_compression"}) {
     GltfWriter gltf = test::gltf_of_f();
     gltf.json["extensionsRequired"] = {name};
-    EXPECT_THAT(unsupported(gltf), testing::AllOf(HasSubstr(name), HasSubstr("without compression")));
+    EXPECT_THAT(unsupported(gltf),
+                testing::AllOf(HasSubstr(name), HasSubstr("without compression")));
   }
   GltfWriter gltf = test::gltf_of_f();
   gltf.json["meshes"][0]["primitives"][0]["extensions"]["KHR_draco_mesh_compression"] = {};
@@ -186,8 +218,8 @@ TEST(GltfFileErrors, CompressionIsNotSupported) {
   gltf.json["bufferViews"][0]["buffer"] = 1;
   gltf.json["buffers"] = {{{"byteLength", 1}}, {{"byteLength", 1}}};
   const TemporaryFolder folder;
-  const auto path = write(folder.path() / "a.glb",
-                          GltfWriter::container(gltf.json.dump(), gltf.binary));
+  const auto path =
+      write(folder.path() / "a.glb", GltfWriter::container(gltf.json.dump(), gltf.binary));
   EXPECT_THAT(complaint<Unsupported>([&] { read_mesh(path); }), HasSubstr("without compression"));
 }
 
@@ -211,7 +243,7 @@ TEST(GltfFileErrors, SkeletonsAndShapeKeysAreNotSupported) {
   gltf = test::gltf_of_f();
   gltf.json["meshes"][0]["weights"] = {0, 0.5};
   EXPECT_THAT(unsupported(gltf), HasSubstr("shape keys"));
-  gltf.json["nodes"][0]["weights"] = {0, 0};   // the node's own count
+  gltf.json["nodes"][0]["weights"] = {0, 0};  // the node's own count
   const TemporaryFolder folder;
   EXPECT_NO_THROW(read_mesh(write(folder.path() / "a.glb", gltf.glb())));
 }
@@ -226,8 +258,8 @@ TEST(GltfFileErrors, ASmallFileCannotFillTheMemory) {
 
   gltf = test::gltf_of_f();
   const int many = gltf.add_view(std::string(3 << 16, '\0'));
-  gltf.json["accessors"][0].update({{"bufferView", many}, {"componentType", test::gltf_uint8},
-                                    {"count", 1 << 16}});
+  gltf.json["accessors"][0].update(
+      {{"bufferView", many}, {"componentType", test::gltf_uint8}, {"count", 1 << 16}});
   for (int i = 0; i < 5000; ++i) gltf.add_node({{"mesh", 0}, {"name", std::to_string(i)}});
   EXPECT_THAT(complaint_about("a.glb", gltf.glb()), HasSubstr("too many triangles"));
 }

@@ -22,7 +22,8 @@ constexpr double float_step = 1.0 / (1 << 23);
 std::filesystem::path write_gltf(const std::filesystem::path& path, const SurfaceScene& scene,
                                  const Magnification& magnification = {}) {
   validate(scene);
-  for (const OutputFile& file : format_gltf(path, scene, magnification)) test::write(file.path, file.content);
+  for (const OutputFile& file : format_gltf(path, scene, magnification))
+    test::write(file.path, file.content);
   return path;
 }
 
@@ -114,7 +115,8 @@ TEST(GltfWrite, AGivenUnitReplacesTheMagnification) {
   const TemporaryFolder folder;
   Surface f{"F", test::letter_f_triangles(), {}, {}};
   const auto path = write_gltf(folder.path() / "f.glb", scene_of(f), {1e6, 1});
-  const Surface back = read_back(path, 7.0).surfaces.at(0);   // a metre is 7 nm, 1 nm was written as 1 mm
+  const Surface back =
+      read_back(path, 7.0).surfaces.at(0);  // a metre is 7 nm, 1 nm was written as 1 mm
   for (Vec3& v : f.mesh.vertices_nm) v *= 7e-3;
   EXPECT_LE(test::relative_shift(f, back), 2 * float_step);
 }
@@ -123,12 +125,12 @@ TEST(GltfWrite, TheSceneIsInMetresWithYUp) {
   const Magnification magnification{1e6, 2};
   const SurfaceScene scene = scene_of({"F", test::letter_f_triangles(), {}, {}});
   json file = json_of(scene, magnification);
-  file["asset"].erase("extras");   // as a file of somebody else: in metres, nothing undone
+  file["asset"].erase("extras");  // as a file of somebody else: in metres, nothing undone
   const TemporaryFolder folder;
   for (const OutputFile& part : format_gltf(folder.path() / "f.gltf", scene, magnification)) {
     test::write(part.path, part.path.extension() == ".bin" ? part.content : file.dump());
   }
-  const Box box = bounds(read_mesh(folder.path() / "f.gltf", {1e3, true}));   // in mm
+  const Box box = bounds(read_mesh(folder.path() / "f.gltf", {1e3, true}));  // in mm
   const Vec3 size = bounds(scene.surfaces[0].mesh).size_nm();
   EXPECT_NEAR(box.size_nm().x, size.x, 1e-6);
   EXPECT_NEAR(box.size_nm().y, size.y, 1e-6);
@@ -158,7 +160,8 @@ TEST(GltfWrite, SaysWhatItHolds) {
 TEST(GltfWrite, ScalarsOfNearlyTheSameNameStayApart) {
   Surface f{"F", test::letter_f_triangles(), {}, {}};
   const std::size_t n = f.mesh.vertices_nm.size();
-  f.scalars = {{"height", "nm", std::vector<float>(n, 1)}, {"height_nm", "1", std::vector<float>(n, 2)},
+  f.scalars = {{"height", "nm", std::vector<float>(n, 1)},
+               {"height_nm", "1", std::vector<float>(n, 2)},
                {"energy", "1e3 eV", std::vector<float>(n, -3)}};
   expect_same(scene_of(f), round_trip(scene_of(f)));
 }
@@ -166,10 +169,11 @@ TEST(GltfWrite, ScalarsOfNearlyTheSameNameStayApart) {
 TEST(GltfWrite, SixteenBitsNumberWhatTheyCan) {
   const auto index_type = [](int n) {
     const json file = json_of(scene_of(test::wavy_sheet("w", n, {})));
-    return file["accessors"][file["meshes"][0]["primitives"][0]["indices"].get<std::size_t>()]["componentType"];
+    return file["accessors"][file["meshes"][0]["primitives"][0]["indices"].get<std::size_t>()]
+               ["componentType"];
   };
-  EXPECT_EQ(index_type(254), 5123);   // 65,025 vertices
-  EXPECT_EQ(index_type(264), 5125);   // 70,225
+  EXPECT_EQ(index_type(254), 5123);  // 65,025 vertices
+  EXPECT_EQ(index_type(264), 5125);  // 70,225
   const SurfaceScene large = scene_of(test::wavy_sheet("w", 264, {}));
   expect_same(large, round_trip(large));
 }
@@ -188,7 +192,8 @@ TEST(GltfWrite, AnyExtentAndAnyPlace) {
 }
 
 TEST(GltfWrite, TrianglesWithoutAreaHaveNormals) {
-  Surface thin{"thin", {{{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {0, 1, 0}}, {{0, 1, 2}, {1, 1, 1}}}, {}, {}};
+  Surface thin{
+      "thin", {{{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {0, 1, 0}}, {{0, 1, 2}, {1, 1, 1}}}, {}, {}};
   SurfaceScene back = round_trip(scene_of(thin));
   EXPECT_EQ(back.surfaces.at(0).mesh.triangles, thin.mesh.triangles);
   Surface point{"point", {{{5, 5, 5}, {5, 5, 5}, {5, 5, 5}}, {{0, 1, 2}}}, {}, {}};
@@ -205,7 +210,7 @@ TEST(GltfWrite, SameBytes) {
 
 TEST(GltfWrite, NamesOfFilesNeedNotBeUtf8) {
   SurfaceScene scene = scene_of({"caf\xE9", test::letter_f_triangles(), {}, {}});
-  scene.metadata = {{"a", "\xED\xA0\x80 b"}};   // half a surrogate pair
+  scene.metadata = {{"a", "\xED\xA0\x80 b"}};  // half a surrogate pair
   const SurfaceScene back = round_trip(scene);
   EXPECT_EQ(back.surfaces.at(0).name, "caf\uFFFD");
   EXPECT_EQ(back.metadata.at("a"), "\uFFFD\uFFFD\uFFFD b");
@@ -253,7 +258,8 @@ TEST(GltfWrite, AttributesOfOthersBecomeScalars) {
   file["asset"].erase("extras");
   file["meshes"][0].erase("extras");
   const TemporaryFolder folder;
-  const auto parts = format_gltf(folder.path() / "f.gltf", scene_of(test::wavy_sheet("w", 3, {})), {});
+  const auto parts =
+      format_gltf(folder.path() / "f.gltf", scene_of(test::wavy_sheet("w", 3, {})), {});
   test::write(parts.front().path, parts.front().content);
   test::write(parts.back().path, file.dump());
   const Surface back = read_back(parts.back().path).surfaces.at(0);

@@ -10,8 +10,14 @@
 
 namespace surf::test {
 
-enum GltfType { gltf_int8 = 5120, gltf_uint8, gltf_int16, gltf_uint16, gltf_uint32 = 5125,
-                gltf_float32 };
+enum GltfType {
+  gltf_int8 = 5120,
+  gltf_uint8,
+  gltf_int16,
+  gltf_uint16,
+  gltf_uint32 = 5125,
+  gltf_float32
+};
 
 /// Builds a glTF file piece by piece: `json` may be changed at will before it is packed.
 class GltfWriter {
@@ -22,16 +28,16 @@ class GltfWriter {
   /// A view over the bytes, at a multiple of 4 as GLB wants it; its index.
   int add_view(const std::string& content, int stride = 0) {
     binary.resize((binary.size() + 3) / 4 * 4);
-    nlohmann::json view{{"buffer", 0}, {"byteOffset", binary.size()},
-                        {"byteLength", content.size()}};
+    nlohmann::json view{
+        {"buffer", 0}, {"byteOffset", binary.size()}, {"byteLength", content.size()}};
     if (stride > 0) view["byteStride"] = stride;
     binary += content;
     return push("bufferViews", view);
   }
 
   int add_accessor(int view, GltfType type, std::size_t count, const char* shape) {
-    return push("accessors", {{"bufferView", view}, {"componentType", type}, {"count", count},
-                              {"type", shape}});
+    return push("accessors",
+                {{"bufferView", view}, {"componentType", type}, {"count", count}, {"type", shape}});
   }
 
   /// y up, as glTF has it: the reader turns it back.
@@ -59,7 +65,7 @@ class GltfWriter {
   int add_mesh(const TriangleMesh& mesh) {
     std::vector<std::uint32_t> corners;
     for (const Triangle& t : mesh.triangles) corners.insert(corners.end(), t.begin(), t.end());
-    const int positions = add_positions(mesh.vertices_nm);   // accessor 0 of the letter's file
+    const int positions = add_positions(mesh.vertices_nm);  // accessor 0 of the letter's file
     return add_mesh(positions, add_indices(corners));
   }
   int add_mesh(int positions, int indices) {
@@ -98,7 +104,8 @@ class GltfWriter {
     for (std::size_t i = 0; i < content.size(); i += 3) {
       std::uint32_t bits = 0;
       for (std::size_t j = 0; j < 3; ++j) {
-        bits = bits << 8 | (i + j < content.size() ? static_cast<unsigned char>(content[i + j]) : 0u);
+        bits =
+            bits << 8 | (i + j < content.size() ? static_cast<unsigned char>(content[i + j]) : 0u);
       }
       for (std::size_t j = 0; j < 4; ++j) {
         text += i + j <= content.size() ? digits[bits >> (18 - 6 * j) & 63] : '=';

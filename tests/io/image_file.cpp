@@ -49,7 +49,7 @@ void expect_same(const Image& image, const Image& expected) {
 TEST_P(ImageFile, KeepsEverything) {
   const Image image = image_of_f();
   Image with_empty = image;
-  with_empty.metadata["empty"] = "";   // counts as none
+  with_empty.metadata["empty"] = "";  // counts as none
   write_image(file("f"), with_empty);
   expect_same(read_image(file("f")), image);
   EXPECT_EQ(test::files_in(folder_.path()), 1);
@@ -166,19 +166,20 @@ TEST(ImageFileOrientation, TiffPagesDescribeThemselves) {
   EXPECT_THAT(text, HasSubstr("image:channels=A_z\tnm\n"));
   EXPECT_THAT(text, HasSubstr("image:pitch_y_nm=0.1\n"));
   EXPECT_THAT(text, HasSubstr("semsurf:semsurf.version=1.2\n"));
-  EXPECT_NEAR(input->spec().get_float_attribute("XResolution"), 8e6, 1);   // per centimetre
+  EXPECT_NEAR(input->spec().get_float_attribute("XResolution"), 8e6, 1);  // per centimetre
   EXPECT_NEAR(input->spec().get_float_attribute("YResolution"), 1e8, 10);
   EXPECT_FALSE(input->seek_subimage(4, 0));
 }
 
 TEST(ImageFileOrientation, AVtiMayBeginAnywhere) {
   const TemporaryFolder folder;
-  const auto path = test::write(folder.path() / "a.vti",
-                          "<VTKFile type=\"ImageData\"><ImageData WholeExtent=\"2 3 -1 0 5 5\" "
-                          "Origin=\"10 20 0\" Spacing=\"2 3 1\"><Piece Extent=\"2 3 -1 0 5 5\">"
-                          "<PointData><DataArray type=\"Int16\" Name=\"a\" format=\"ascii\" "
-                          "NumberOfComponents=\"2\">1 -1 2 -2 3 -3 4 -4</DataArray></PointData>"
-                          "</Piece></ImageData></VTKFile>");
+  const auto path =
+      test::write(folder.path() / "a.vti",
+                  "<VTKFile type=\"ImageData\"><ImageData WholeExtent=\"2 3 -1 0 5 5\" "
+                  "Origin=\"10 20 0\" Spacing=\"2 3 1\"><Piece Extent=\"2 3 -1 0 5 5\">"
+                  "<PointData><DataArray type=\"Int16\" Name=\"a\" format=\"ascii\" "
+                  "NumberOfComponents=\"2\">1 -1 2 -2 3 -3 4 -4</DataArray></PointData>"
+                  "</Piece></ImageData></VTKFile>");
   const Image image = read_image(path);
   EXPECT_EQ(image.origin_x_nm, 14);
   EXPECT_EQ(image.origin_y_nm, 17);

@@ -32,14 +32,15 @@ TEST(ImageFileErrors, UnknownExtensions) {
 }
 
 /// A TIFF image of one strip, as a few bytes announce it.
-std::string tiny_tiff(std::uint32_t width, std::uint32_t height, std::uint32_t compression, std::uint32_t strip_bytes) {
+std::string tiny_tiff(std::uint32_t width, std::uint32_t height, std::uint32_t compression,
+                      std::uint32_t strip_bytes) {
   std::string text("II*\0\x08\0\0\0", 8);
   const auto add = [&](std::uint32_t value, int bytes) {
     for (int i = 0; i < bytes; ++i) text += static_cast<char>(value >> (8 * i) & 0xff);
   };
-  const std::pair<std::uint32_t, std::uint32_t> tags[] = {{256, width}, {257, height}, {258, 32}, {259, compression},
-                                                          {262, 1}, {273, 200}, {277, 1}, {278, height},
-                                                          {279, strip_bytes}, {339, 3}};
+  const std::pair<std::uint32_t, std::uint32_t> tags[] = {
+      {256, width}, {257, height}, {258, 32},     {259, compression}, {262, 1},
+      {273, 200},   {277, 1},      {278, height}, {279, strip_bytes}, {339, 3}};
   add(std::size(tags), 2);
   for (const auto& [tag, value] : tags) {
     add(tag, 2);
@@ -57,7 +58,8 @@ TEST(ImageFileErrors, PixelsThatTheFileCannotHoldTakeNoMemory) {
   const auto path = folder.path() / "bomb.tif";
   for (const std::uint32_t compression : {1, 5, 8, 32773, 50000}) {
     write(path, tiny_tiff(30000, 30000, compression, 16));
-    EXPECT_THAT(complaint<FileError>([&] { read_image(path); }), HasSubstr("cannot hold so many")) << compression;
+    EXPECT_THAT(complaint<FileError>([&] { read_image(path); }), HasSubstr("cannot hold so many"))
+        << compression;
   }
   write(folder.path() / "plain.tif", tiny_tiff(2, 2, 1, 16));
   EXPECT_EQ(read_image(folder.path() / "plain.tif").width(), 2);
@@ -67,16 +69,18 @@ TEST(ImageFileErrors, PngAndExrPixelsThatTheFileCannotHoldTakeNoMemory) {
   const TemporaryFolder folder;
   const auto png = folder.path() / "bomb.png";
   // A header that is right and no pixels.
-  write(png, std::string("\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\0\x75\x30\0\0\x75\x30\x08\x06\0\0\0", 29) +
-                 std::string("\x66\x27\xf8\xba", 4) + std::string("\0\0\0\0IDAT\x35\xaf\x06\x1e", 12) +
-                 std::string("\0\0\0\0IEND\xae\x42\x60\x82", 12));
+  write(png,
+        std::string("\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\0\x75\x30\0\0\x75\x30\x08\x06\0\0\0", 29) +
+            std::string("\x66\x27\xf8\xba", 4) + std::string("\0\0\0\0IDAT\x35\xaf\x06\x1e", 12) +
+            std::string("\0\0\0\0IEND\xae\x42\x60\x82", 12));
   complaint<FileError>([&] { read_image(png); });
   // The data window is 30000 pixels wide and high, and the rows are those of 5 x 7.
   const auto exr = folder.path() / "bomb.exr";
   write_image(exr, image_of_f());
   std::string content = test::content_of(exr);
   for (const char* name : {"dataWindow", "displayWindow"}) {
-    const std::size_t at = content.find(std::string(name) + '\0' + "box2i") + std::string(name).size() + 1 + 6 + 4;
+    const std::size_t at =
+        content.find(std::string(name) + '\0' + "box2i") + std::string(name).size() + 1 + 6 + 4;
     for (int i = 8; i < 16; i += 4) content.replace(at + i, 4, std::string("\x2f\x75\0\0", 4));
   }
   write(exr, content);
@@ -151,8 +155,8 @@ TEST(ImageFileErrors, FilesThatAreNoImages) {
 TEST(ImageFileErrors, DamagedVti) {
   const TemporaryFolder folder;
   const auto refusal = [&](const std::string& image, const std::string& rest = {}) {
-    const auto path = write(folder.path() / "a.vti", "<VTKFile type=\"ImageData\">" + image + rest +
-                                                         "</VTKFile>");
+    const auto path = write(folder.path() / "a.vti",
+                            "<VTKFile type=\"ImageData\">" + image + rest + "</VTKFile>");
     return complaint<FileError>([&] { read_image(path); });
   };
   const auto image = [](const std::string& attributes, const std::string& array) {
@@ -160,8 +164,9 @@ TEST(ImageFileErrors, DamagedVti) {
            "</PointData></Piece></ImageData>";
   };
   const std::string whole = "WholeExtent=\"0 1 0 1 0 0\"";
-  const std::string values = "<DataArray type=\"Float32\" Name=\"a\" format=\"ascii\">1 2 3"
-                             "</DataArray>";
+  const std::string values =
+      "<DataArray type=\"Float32\" Name=\"a\" format=\"ascii\">1 2 3"
+      "</DataArray>";
   EXPECT_THAT(refusal(image(whole, values)), HasSubstr("'a' has 3 values for 4 points"));
   EXPECT_THAT(refusal(image(whole, "")), HasSubstr("no values"));
   EXPECT_THAT(refusal(image("WholeExtent=\"0 1 0 1 0 4\"", values)), HasSubstr("not a picture"));

@@ -14,7 +14,7 @@ using test::content_of;
 using test::TemporaryFolder;
 using testing::HasSubstr;
 
-constexpr int width = 301, height = 517;   // neither even nor whole tiles
+constexpr int width = 301, height = 517;  // neither even nor whole tiles
 
 Image some_image() {
   Image image;
@@ -36,7 +36,9 @@ Image some_image() {
   return image;
 }
 
-ImageWriteOptions in_tiles() { return {.channel = {}, .layout = Layout::tiles, .labels = {"material"}}; }
+ImageWriteOptions in_tiles() {
+  return {.channel = {}, .layout = Layout::tiles, .labels = {"material"}};
+}
 
 // Level 1 after its definition, by rows from the top.
 float expected_mean(const Grid<float>& whole, int x, int row) {
@@ -54,7 +56,9 @@ float expected_mean(const Grid<float>& whole, int x, int row) {
 
 class ImagePyramid : public testing::TestWithParam<const char*> {
  protected:
-  std::filesystem::path file(const std::string& stem) const { return folder_.path() / (stem + GetParam()); }
+  std::filesystem::path file(const std::string& stem) const {
+    return folder_.path() / (stem + GetParam());
+  }
   TemporaryFolder folder_;
 };
 
@@ -102,7 +106,8 @@ TEST_P(ImagePyramid, LevelsAreMeansOfWhatIsFinite) {
           if (std::isnan(expected)) ASSERT_TRUE(std::isnan(got));
           else ASSERT_EQ(got, expected) << x << " " << y;
         }
-        ASSERT_EQ(half.channels[1].values(x, y), whole.channels[1].values(2 * x, whole.height() - 1 - 2 * row));
+        ASSERT_EQ(half.channels[1].values(x, y),
+                  whole.channels[1].values(2 * x, whole.height() - 1 - 2 * row));
       }
     whole = half;
   }
@@ -118,7 +123,8 @@ TEST_P(ImagePyramid, LevelsAreInTheSamePlace) {
   // The left and the upper edge.
   for (const Image* level : {&half, &quarter}) {
     EXPECT_DOUBLE_EQ(level->origin_x_nm - level->pitch_x_nm / 2, -11);
-    EXPECT_DOUBLE_EQ(level->origin_y_nm + (level->height() - 0.5) * level->pitch_y_nm, 100 + (height - 0.5) * 3);
+    EXPECT_DOUBLE_EQ(level->origin_y_nm + (level->height() - 0.5) * level->pitch_y_nm,
+                     100 + (height - 0.5) * 3);
   }
   EXPECT_EQ(quarter.metadata.at("beam.energy_ev"), "1000");
 }
@@ -134,12 +140,14 @@ TEST_P(ImagePyramid, TheLargestLevelWithinALimitIsFound) {
   EXPECT_EQ(smallest.level, smallest.levels - 1);
   EXPECT_EQ(smallest.whole.width, width);
   EXPECT_EQ(smallest.whole.height, height);
-  EXPECT_THAT(test::complaint<UsageError>([&] { read_image(file("f"), 99); }), HasSubstr("no level 99"));
+  EXPECT_THAT(test::complaint<UsageError>([&] { read_image(file("f"), 99); }),
+              HasSubstr("no level 99"));
   write_image(file("rows"), some_image());
-  const ImageLevel all = read_image_within(file("rows"), 1);   // has no other
+  const ImageLevel all = read_image_within(file("rows"), 1);  // has no other
   EXPECT_EQ(all.levels, 1);
   EXPECT_EQ(all.image.width(), width);
-  EXPECT_THAT(test::complaint<UsageError>([&] { read_image(file("rows"), 1); }), HasSubstr("no pyramid"));
+  EXPECT_THAT(test::complaint<UsageError>([&] { read_image(file("rows"), 1); }),
+              HasSubstr("no pyramid"));
 }
 
 TEST_P(ImagePyramid, TheSameBytesEachTime) {

@@ -17,7 +17,8 @@ class LandmarksFile : public testing::Test {
  protected:
   std::vector<LandmarkPair> read(const std::string& text) {
     write_text(folder_.path() / "marks.csv", text);
-    const PlacedImage sem{Grid<double>(4, 4), {}, 2, 3, 10, 20}, afm{Grid<double>(4, 4), {}, 5, 5, -1, -2};
+    const PlacedImage sem{Grid<double>(4, 4), {}, 2, 3, 10, 20},
+        afm{Grid<double>(4, 4), {}, 5, 5, -1, -2};
     return read_landmarks(folder_.path() / "marks.csv", sem, afm);
   }
   std::string failure(const std::string& text) {
@@ -32,7 +33,9 @@ class LandmarksFile : public testing::Test {
 };
 
 TEST_F(LandmarksFile, HoldsNanometresInAnyOrderOfColumns) {
-  const auto pairs = read("# by hand\nafm_y_nm, name,sem_x_nm,sem_y_nm,afm_x_nm\r\n4,\"a,b\",1,2,+3\n\n-4,c,-1,-2.5e1,-3\n");
+  const auto pairs = read(
+      "# by hand\nafm_y_nm, "
+      "name,sem_x_nm,sem_y_nm,afm_x_nm\r\n4,\"a,b\",1,2,+3\n\n-4,c,-1,-2.5e1,-3\n");
   ASSERT_EQ(pairs.size(), 2U);
   EXPECT_EQ(pairs[0].sem_nm, (Point2{1, 2}));
   EXPECT_EQ(pairs[0].afm_nm, (Point2{3, 4}));
@@ -48,7 +51,7 @@ TEST_F(LandmarksFile, PutsPixelsWhereTheirImageIs) {
 
 TEST_F(LandmarksFile, CountsRowsFromTheTopAsViewersDo) {
   const auto pairs = read("sem_col_px,sem_row_px,afm_x_px,afm_y_px\n1,0,0,3\n0,3,0,0\n");
-  EXPECT_EQ(pairs[0].sem_nm, (Point2{12, 29}));   // the top row of four
+  EXPECT_EQ(pairs[0].sem_nm, (Point2{12, 29}));  // the top row of four
   EXPECT_EQ(pairs[1].sem_nm, (Point2{10, 20}));
   EXPECT_EQ(pairs[0].afm_nm, (Point2{-1, 13}));
   EXPECT_THAT(failure("sem_x_px,sem_row_px,afm_x_nm,afm_y_nm\n"), HasSubstr("different units"));
@@ -63,7 +66,8 @@ TEST_F(LandmarksFile, SaysWhereItIsWrong) {
   EXPECT_THAT(failure(""), HasSubstr("no pairs"));
   EXPECT_THAT(failure("sem_x_nm,sem_y_nm,afm_x_nm\n"), HasSubstr("no column afm_y_nm"));
   EXPECT_THAT(failure("sem_x_nm,sem_y_px,afm_x_nm,afm_y_nm\n"), HasSubstr("different units"));
-  EXPECT_THAT(failure("sem_x_nm,sem_x_px,sem_y_nm,afm_x_nm,afm_y_nm\n"), HasSubstr("two columns of sem_x"));
+  EXPECT_THAT(failure("sem_x_nm,sem_x_px,sem_y_nm,afm_x_nm,afm_y_nm\n"),
+              HasSubstr("two columns of sem_x"));
 }
 
 }  // namespace

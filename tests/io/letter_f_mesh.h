@@ -108,7 +108,7 @@ inline std::string binary_stl(const TriangleMesh& mesh) {
   text.resize(80, ' ');
   text += bytes(static_cast<std::uint32_t>(mesh.triangles.size()), false);
   for (const auto& t : corners(mesh)) {
-    text += std::string(12, '\xff');   // a normal of NaN
+    text += std::string(12, '\xff');  // a normal of NaN
     for (const Vec3& v : t) {
       for (const double c : {v.x, v.y, v.z}) text += bytes(static_cast<float>(c), false);
     }

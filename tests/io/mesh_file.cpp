@@ -39,11 +39,20 @@ std::string obj_of_f() {
     text += "f";
     for (const std::uint32_t c : q) {
       switch (style % 5) {
-        case 0: text += fmt::format(" {}", c + 1); break;
-        case 1: text += fmt::format("\t{}/1", c + 1); break;
-        case 2: text += fmt::format(" {}//1", c + 1); break;
-        case 3: text += fmt::format(" {}/1/1 \\\n", c + 1); break;
-        default: text += fmt::format(" {}/-1/-1", static_cast<int>(c) - count);
+        case 0:
+          text += fmt::format(" {}", c + 1);
+          break;
+        case 1:
+          text += fmt::format("\t{}/1", c + 1);
+          break;
+        case 2:
+          text += fmt::format(" {}//1", c + 1);
+          break;
+        case 3:
+          text += fmt::format(" {}/1/1 \\\n", c + 1);
+          break;
+        default:
+          text += fmt::format(" {}/-1/-1", static_cast<int>(c) - count);
       }
     }
     text += ++style % 2 ? " # after\n\n" : "\n";
@@ -53,8 +62,8 @@ std::string obj_of_f() {
 
 std::string off_of_f(const std::string& keyword, const std::string& extras) {
   const QuadMesh f = test::letter_f_quads();
-  std::string text = fmt::format("# first\n{}\n# second\n{} {} 0\n\n", keyword, f.vertices.size(),
-                                 f.quads.size());
+  std::string text =
+      fmt::format("# first\n{}\n# second\n{} {} 0\n\n", keyword, f.vertices.size(), f.quads.size());
   for (const Vec3& v : f.vertices) text += fmt::format("{} {} {}{}\n", v.x, v.y, v.z, extras);
   for (const auto& q : f.quads) {
     text += fmt::format("4  {} {} {} {}  0.5 0.5 0.5 # grey\n", q[0], q[1], q[2], q[3]);
@@ -112,9 +121,8 @@ TEST(MeshFile, ReadsStl) {
 
 TEST(MeshFile, ReadsStlOfSeveralSolidsInCapitals) {
   std::string text = test::text_stl(test::letter_f_triangles());
-  std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) {
-    return static_cast<char>(std::toupper(c));
-  });
+  std::transform(text.begin(), text.end(), text.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
   expect_letter_f("f.stl", "solid\nendsolid\n" + text);
 }
 
@@ -155,9 +163,10 @@ TEST(MeshFile, ScalesByTheUnit) {
 }
 
 TEST(MeshFile, KeepsEveryDigit) {
-  const auto mesh = read_text(
-      "a.off", "OFF\n3 1 0\n0.1 1e-400 -0\n1.7976931348623157e308 0 0\n0 .3333333333333333 0\n"
-               "3 0 1 2\n");
+  const auto mesh =
+      read_text("a.off",
+                "OFF\n3 1 0\n0.1 1e-400 -0\n1.7976931348623157e308 0 0\n0 .3333333333333333 0\n"
+                "3 0 1 2\n");
   EXPECT_EQ(mesh.vertices_nm.at(0), (Vec3{0.1, 0, 0}));
   EXPECT_EQ(mesh.vertices_nm.at(1).x, 1.7976931348623157e308);
   EXPECT_EQ(mesh.vertices_nm.at(2).y, 0.3333333333333333);
@@ -189,7 +198,7 @@ TEST(MeshFile, ObjMaterialsMakeBodies) {
   };
   expect_body(0, "part", "", {{0, 1, 2}});
   expect_body(1, "cone", "old gold", {{0, 1, 3}, {3, 2, 1}});
-  expect_body(2, "part", "grey", {{1, 2, 3}, {0, 2, 3}});   // faces of two objects
+  expect_body(2, "part", "grey", {{1, 2, 3}, {0, 2, 3}});  // faces of two objects
   EXPECT_EQ(meshes[0].mesh.vertices_nm.size(), 3u);
   EXPECT_EQ(read_mesh(path).vertices_nm.size(), 4u) << "joined, with shared vertices";
   EXPECT_EQ(read_mesh(path).triangles.size(), 5u);
@@ -197,8 +206,8 @@ TEST(MeshFile, ObjMaterialsMakeBodies) {
 
 TEST(MeshFile, OtherFormatsAreOneBodyNamedByTheFile) {
   const TemporaryFolder folder;
-  const auto path = write(folder.path() / "my part.v2.stl",
-                          test::binary_stl(test::letter_f_triangles()));
+  const auto path =
+      write(folder.path() / "my part.v2.stl", test::binary_stl(test::letter_f_triangles()));
   const auto meshes = read_meshes(path);
   ASSERT_EQ(meshes.size(), 1u);
   EXPECT_EQ(meshes[0].name, "my part.v2");
@@ -206,7 +215,8 @@ TEST(MeshFile, OtherFormatsAreOneBodyNamedByTheFile) {
 }
 
 TEST(MeshFile, KnowsItsExtensions) {
-  for (const char* name : {"a.stl", "a.STL", "b/a.Obj", "a.ply", "a.off", "a.glb", "a.gltf", "a.vtp"}) {
+  for (const char* name :
+       {"a.stl", "a.STL", "b/a.Obj", "a.ply", "a.off", "a.glb", "a.gltf", "a.vtp"}) {
     EXPECT_TRUE(is_mesh_file(name));
   }
   for (const char* name : {"a.toml", "stl", "a.stl/b", "a.exr", ""}) {
@@ -216,7 +226,8 @@ TEST(MeshFile, KnowsItsExtensions) {
 
 TEST(MeshFile, KnowsItsContentUnderAnyName) {
   const TemporaryFolder folder;
-  EXPECT_TRUE(has_mesh_content(write(folder.path() / "part.bin", test::binary_stl(test::letter_f_triangles()))));
+  EXPECT_TRUE(has_mesh_content(
+      write(folder.path() / "part.bin", test::binary_stl(test::letter_f_triangles()))));
   EXPECT_FALSE(has_mesh_content(write(folder.path() / "part.stl", "nothing of the kind")));
   EXPECT_FALSE(has_mesh_content(folder.path() / "missing"));
 }

@@ -15,15 +15,16 @@ struct Case {
   const char* label;
   const char* name;
   std::string content;
-  const char* place;    ///< named in the message
-  const char* reason;   ///< named in the message
+  const char* place;   ///< named in the message
+  const char* reason;  ///< named in the message
 };
 
 void PrintTo(const Case& c, std::ostream* out) { *out << c.label; }
 
-const char* const ply_start = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\n"
-                              "property float y\nproperty float z\nelement face 1\n"
-                              "property list uchar int vertex_indices\nend_header\n";
+const char* const ply_start =
+    "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\n"
+    "property float y\nproperty float z\nelement face 1\n"
+    "property list uchar int vertex_indices\nend_header\n";
 
 std::string ply(const std::string& body) { return ply_start + body; }
 
@@ -32,13 +33,15 @@ std::string ply_with(const std::string& from, const std::string& to) {
   return text.replace(text.find(from), from.size(), to);
 }
 
-const char* const zero_faces = "ply\nformat ascii 1.0\nelement vertex 0\nproperty float x\n"
-                               "property float y\nproperty float z\nelement face 0\n"
-                               "property list uchar int vertex_indices\nend_header\n";
+const char* const zero_faces =
+    "ply\nformat ascii 1.0\nelement vertex 0\nproperty float x\n"
+    "property float y\nproperty float z\nelement face 0\n"
+    "property list uchar int vertex_indices\nend_header\n";
 
 std::string stl_text(const std::string& from, const std::string& to) {
-  std::string text = "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\n"
-                     "vertex 0 1 0\nendloop\nendfacet\nendsolid a\n";
+  std::string text =
+      "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\n"
+      "vertex 0 1 0\nendloop\nendfacet\nendsolid a\n";
   return text.replace(text.find(from), from.size(), to);
 }
 
@@ -59,7 +62,9 @@ const std::vector<Case>& cases() {
       {"empty", "a.stl", "", "a.stl", "empty"},
       {"unknown", "a.dat", "v 0 0 0\n", "a.dat", "neither"},
       {"garbage_stl", "a.stl", "\x01\x02\x03", "a.stl", "3 bytes"},
-      {"garbage_obj", "a.obj", "\x01\x02", "line 1", "'?" "?'"},
+      {"garbage_obj", "a.obj", "\x01\x02", "line 1",
+       "'?"
+       "?'"},
       {"garbage_ply", "a.ply", "plx\n", "line 1", "'ply'"},
       {"garbage_off", "a.off", "hello\n", "line 1", "number of vertices"},
       {"binary_stl_short", "a.stl", binary_stl_shorter(), "a.stl", "announces"},
@@ -137,7 +142,8 @@ TEST_P(MeshFileErrors, SaysWhereAndWhy) {
 
 std::string label(const testing::TestParamInfo<Case>& info) {
   std::string text = info.param.label;
-  std::replace_if(text.begin(), text.end(), [](unsigned char c) { return !std::isalnum(c); }, '_');
+  std::replace_if(
+      text.begin(), text.end(), [](unsigned char c) { return !std::isalnum(c); }, '_');
   return text;
 }
 

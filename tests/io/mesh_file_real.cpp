@@ -40,7 +40,7 @@ void expect_facts(const TriangleMesh& mesh, const nlohmann::json& facts, std::si
   const MeshReport report = check_mesh(mesh);
   const auto count = [&](const char* key) { return facts[key].get<std::size_t>(); };
   EXPECT_EQ(mesh.triangles.size(), count("T"));
-  if (facts["fmt"] == "glb") return;   // nothing else is known
+  if (facts["fmt"] == "glb") return;  // nothing else is known
   EXPECT_EQ(mesh.vertices_nm.size(), count("V") - count("dupV") - unused);
   EXPECT_EQ(report.boundary_edges, count("boundary_edges"));
   EXPECT_EQ(report.nonmanifold_edges, count("nonmanifold_edges"));

@@ -108,7 +108,9 @@ TEST(WriteMesh, RefusesWhatCannotBeReadAgain) {
                 write_mesh(path, {{{0, 0, 0}, {nan, 0, 0}, {1, 0, 0}}, {{0, 1, 2}}});
               }),
               HasSubstr("vertex 1"));
-  EXPECT_THAT(complaint<InvalidInput>([&] { write_mesh(path, {{{0, 0, 0}}, {{0, 0, 1}}}); }),
+  EXPECT_THAT(complaint<InvalidInput>([&] {
+                write_mesh(path, {{{0, 0, 0}}, {{0, 0, 1}}});
+              }),
               HasSubstr("corner 1"));
   EXPECT_THAT(complaint<InvalidInput>([&] {
                 write_mesh(folder.path() / "a.stl", {{{0, 0, 0}, {1e39, 0, 0}}, {{0, 1, 1}}});
@@ -128,9 +130,7 @@ TEST(WriteMesh, TargetsAreCheckedEarly) {
   for (const char* name : {"a.jpg", "a", "a.toml", "a.step"}) {
     EXPECT_THAT(complaint<UsageError>([&] { check_mesh_target(root / name); }),
                 HasSubstr("not written"));
-    EXPECT_THAT(complaint<UsageError>([&] {
-                  write_mesh(root / name, test::letter_f_triangles());
-                }),
+    EXPECT_THAT(complaint<UsageError>([&] { write_mesh(root / name, test::letter_f_triangles()); }),
                 HasSubstr(".stl"));
   }
   std::filesystem::create_directory(root / "b.stl");

@@ -31,12 +31,15 @@ TEST(MeshUnit, HasToBeWhatTheFileSays) {
   for (const char* name : {"a.stl", "a.obj", "a.ply", "a.off", "a.gltf", "a.glb", "a.3mf"}) {
     const auto path = folder.path() / name;
     write_mesh(path, mesh, 3);
-    const double unit_nm = std::string(name).starts_with("a.gl") ? 3000 : 3;   // a metre is 1000 mm
+    const double unit_nm = std::string(name).starts_with("a.gl") ? 3000 : 3;  // a metre is 1000 mm
     EXPECT_NEAR(width_nm(read_mesh(path)), 40, 1e-4) << name;
     EXPECT_NEAR(width_nm(read_mesh(path, unit_nm)), 40, 1e-4) << name;
     EXPECT_THAT(complaint<UsageError>([&] { read_mesh(path, 1000.0 * unit_nm); }),
-                AllOf(HasSubstr(name), HasSubstr("says that its unit is 3.00"), HasSubstr("`override_unit`"))) << name;
-    EXPECT_THAT(complaint<UsageError>([&] { read_surfaces(path, 1000.0 * unit_nm); }), HasSubstr(name));
+                AllOf(HasSubstr(name), HasSubstr("says that its unit is 3.00"),
+                      HasSubstr("`override_unit`")))
+        << name;
+    EXPECT_THAT(complaint<UsageError>([&] { read_surfaces(path, 1000.0 * unit_nm); }),
+                HasSubstr(name));
     EXPECT_NEAR(width_nm(read_mesh(path, {1000 * unit_nm, true})), 40e3, 0.1) << name;
   }
 }

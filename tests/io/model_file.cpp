@@ -17,8 +17,10 @@ using testing::HasSubstr;
 
 TrainingRecord some_record() {
   TrainingRecord record;
-  const ModelResidual se{"SE", 0.1 + 0.2, 1e-300, 1.0 / 3, 0.9, 123456789012}, bse{"BSE", 0.05, 0, 0.02, 0.2, 7};
-  record.scenes = {{"blocks", "ab12", 96, 64, 400, false, {se, bse}}, {"a \"quoted\" µ", "", 5, 4, 0, true, {}}};
+  const ModelResidual se{"SE", 0.1 + 0.2, 1e-300, 1.0 / 3, 0.9, 123456789012},
+      bse{"BSE", 0.05, 0, 0.02, 0.2, 7};
+  record.scenes = {{"blocks", "ab12", 96, 64, 400, false, {se, bse}},
+                   {"a \"quoted\" µ", "", 5, 4, 0, true, {}}};
   record.residuals = {se, bse};
   record.held_out_residuals = {bse, se};
   record.range = {71.5, 83.25, 0.1, 1.7};
@@ -94,7 +96,8 @@ class ModelFile : public testing::Test {
 TEST_F(ModelFile, GivesAFilterBankBackToTheLastDigit) {
   const TrainedModel model = bank(), read = through_a_file(model);
   EXPECT_EQ(read.scope, model.scope);
-  const auto &a = std::get<FilterBankParameters>(model.parameters), &b = std::get<FilterBankParameters>(read.parameters);
+  const auto &a = std::get<FilterBankParameters>(model.parameters),
+             &b = std::get<FilterBankParameters>(read.parameters);
   EXPECT_EQ(b.scales, a.scales);
   EXPECT_EQ(b.multi_resolution, a.multi_resolution);
   ASSERT_EQ(b.channels.size(), a.channels.size());
@@ -109,8 +112,9 @@ TEST_F(ModelFile, GivesAFilterBankBackToTheLastDigit) {
 }
 
 TEST_F(ModelFile, GivesEverySlopeModelBack) {
-  for (const SlopeForm form : {SlopeForm::secant, SlopeForm::ikeuchi_exponential, SlopeForm::ikeuchi_secant,
-                               SlopeForm::ikeuchi_mixed, SlopeForm::table}) {
+  for (const SlopeForm form :
+       {SlopeForm::secant, SlopeForm::ikeuchi_exponential, SlopeForm::ikeuchi_secant,
+        SlopeForm::ikeuchi_mixed, SlopeForm::table}) {
     TrainedModel model = table();
     auto& p = std::get<SlopeModelParameters>(model.parameters);
     p.form = form;
@@ -162,14 +166,39 @@ TEST_F(ModelFile, HasTheSameBytesForTheSameModelAndFitsAScreen) {
 }
 
 TEST_F(ModelFile, NamesWhatIsMissing) {
-  for (const char* key : {"format", "version", "kind", "scope", "training", "parameters", "pixel_nm", "energy_ev",
-                          "material", "spot_nm", "scales", "channels", "sigma_px", "size", "offset", "slope",
-                          "max_curvature_nm", "min_curvature_nm", "multi_resolution", "condition_number", "residuals",
-                          "surfaces", "slope_deg_max", "scenes", "name", "width", "rms", "pixels"}) {
+  for (const char* key : {"format",
+                          "version",
+                          "kind",
+                          "scope",
+                          "training",
+                          "parameters",
+                          "pixel_nm",
+                          "energy_ev",
+                          "material",
+                          "spot_nm",
+                          "scales",
+                          "channels",
+                          "sigma_px",
+                          "size",
+                          "offset",
+                          "slope",
+                          "max_curvature_nm",
+                          "min_curvature_nm",
+                          "multi_resolution",
+                          "condition_number",
+                          "residuals",
+                          "surfaces",
+                          "slope_deg_max",
+                          "scenes",
+                          "name",
+                          "width",
+                          "rms",
+                          "pixels"}) {
     const std::string quoted = std::string("\"") + key + "\":";
     const std::string said = complaint(bank(), quoted, "\"gone\":");
     EXPECT_THAT(said, HasSubstr(file_.string()));
-    EXPECT_THAT(said, testing::AnyOf(HasSubstr(std::string("'") + key + "' is missing"), HasSubstr("it is no model")));
+    EXPECT_THAT(said, testing::AnyOf(HasSubstr(std::string("'") + key + "' is missing"),
+                                     HasSubstr("it is no model")));
   }
   for (const char* key : {"form", "facet", "flat_yield", "yields", "table_step_deg"})
     EXPECT_THAT(complaint(table(), std::string("\"") + key + "\":", "\"gone\":"),
@@ -177,23 +206,29 @@ TEST_F(ModelFile, NamesWhatIsMissing) {
 }
 
 TEST_F(ModelFile, NamesWhatIsNotFinite) {
-  EXPECT_THAT(complaint(bank(), "\"pixel_nm\": 3.0", "\"pixel_nm\": null"), HasSubstr("scope.pixel_nm: a finite number"));
-  EXPECT_THAT(complaint(bank(), "\"energy_ev\": 1000.0", "\"energy_ev\": -1000"), HasSubstr("scope.energy_ev: it is negative"));
+  EXPECT_THAT(complaint(bank(), "\"pixel_nm\": 3.0", "\"pixel_nm\": null"),
+              HasSubstr("scope.pixel_nm: a finite number"));
+  EXPECT_THAT(complaint(bank(), "\"energy_ev\": 1000.0", "\"energy_ev\": -1000"),
+              HasSubstr("scope.energy_ev: it is negative"));
   EXPECT_THAT(complaint(bank(), "1000.0", "1e999"), HasSubstr("its JSON is broken"));
-  EXPECT_THAT(complaint(table(), "[0.2, 0.3, 0.5]", "[0.2, null, 0.5]"), HasSubstr("yields[1]: a finite number"));
+  EXPECT_THAT(complaint(table(), "[0.2, 0.3, 0.5]", "[0.2, null, 0.5]"),
+              HasSubstr("yields[1]: a finite number"));
 }
 
 TEST_F(ModelFile, RefusesOtherKindsVersionsAndFiles) {
-  EXPECT_THAT(complaint(bank(), "\"filter bank\"", "\"neural\""),
-              testing::AllOf(HasSubstr("no kind of model 'neural'"), HasSubstr("'filter bank', 'slope'")));
+  EXPECT_THAT(
+      complaint(bank(), "\"filter bank\"", "\"neural\""),
+      testing::AllOf(HasSubstr("no kind of model 'neural'"), HasSubstr("'filter bank', 'slope'")));
   EXPECT_THAT(complaint(table(), "\"table\"", "\"cubic\""), HasSubstr("no form 'cubic'"));
-  EXPECT_THAT(complaint(bank(), "\"version\": 1", "\"version\": 2"), HasSubstr("version 2, this semsurf reads 1"));
+  EXPECT_THAT(complaint(bank(), "\"version\": 1", "\"version\": 2"),
+              HasSubstr("version 2, this semsurf reads 1"));
   EXPECT_THAT(complaint(bank(), "semsurf image model", "geojson"), HasSubstr("it is no model"));
 }
 
 TEST_F(ModelFile, RefusesParametersThatNoModelHas) {
   EXPECT_THAT(complaint(bank(), "\"size\": 5", "\"size\": 6"), HasSubstr("parameters"));
-  EXPECT_THAT(complaint(bank(), "\"size\": 5", "\"size\": 1e15"), HasSubstr("scales[0].size: it is too large"));
+  EXPECT_THAT(complaint(bank(), "\"size\": 5", "\"size\": 1e15"),
+              HasSubstr("scales[0].size: it is too large"));
 }
 
 TEST_F(ModelFile, SurvivesBeingCutOffAnywhere) {
@@ -209,7 +244,8 @@ TEST_F(ModelFile, WritesNothingThatCannotBeRead) {
   TrainedModel model = bank();
   model.record.range.slope_deg_max = std::numeric_limits<double>::quiet_NaN();
   EXPECT_THAT([&] { write_model(file_, model); },
-              testing::ThrowsMessage<InvalidInput>(HasSubstr("training.surfaces.slope_deg_max: it is not finite")));
+              testing::ThrowsMessage<InvalidInput>(
+                  HasSubstr("training.surfaces.slope_deg_max: it is not finite")));
   EXPECT_FALSE(std::filesystem::exists(file_));
   EXPECT_THROW(write_model(folder_.path() / "model.txt", bank()), UsageError);
 }

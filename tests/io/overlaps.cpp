@@ -25,7 +25,9 @@ class Overlaps : public testing::Test {
  protected:
   /// What is said of an output over an input.
   std::string refused(const fs::path& input, const fs::path& output) {
-    return complaint<UsageError>([&] { refuse_overlaps({{"--tip", input, {}}}, {{"--output", output, {}}}); });
+    return complaint<UsageError>([&] {
+      refuse_overlaps({{"--tip", input, {}}}, {{"--output", output, {}}});
+    });
   }
 
   test::TemporaryFolder folder_;
@@ -39,28 +41,35 @@ TEST_F(Overlaps, AreSeenThroughEverySpelling) {
   fs::create_symlink(tip_, here_ / "link.gsf");
   fs::create_symlink("link.gsf", here_ / "link_to_link.gsf");
   fs::create_hard_link(tip_, here_ / "hard.gsf");
-  for (const fs::path& output : {here_ / "tip.gsf", here_ / "." / "sub" / ".." / "tip.gsf", here_ / "sub/back/tip.gsf",
-                                 here_ / "link.gsf", here_ / "link_to_link.gsf", here_ / "hard.gsf", fs::relative(tip_)}) {
+  for (const fs::path& output :
+       {here_ / "tip.gsf", here_ / "." / "sub" / ".." / "tip.gsf", here_ / "sub/back/tip.gsf",
+        here_ / "link.gsf", here_ / "link_to_link.gsf", here_ / "hard.gsf", fs::relative(tip_)}) {
     EXPECT_THAT(refused(tip_, output), HasSubstr("an input")) << output;
     EXPECT_THAT(refused(output, tip_), HasSubstr("an input")) << output;
   }
-  EXPECT_THAT(refused(tip_, here_ / "gone/../tip.gsf"), HasSubstr("an input")) << "writing would make the folder";
-  EXPECT_THAT(refused(tip_, here_ / "link.gsf"), AllOf(HasSubstr("--output"), HasSubstr("link.gsf"), HasSubstr("--tip"),
-                                                       HasSubstr("Choose another name")));
+  EXPECT_THAT(refused(tip_, here_ / "gone/../tip.gsf"), HasSubstr("an input"))
+      << "writing would make the folder";
+  EXPECT_THAT(refused(tip_, here_ / "link.gsf"),
+              AllOf(HasSubstr("--output"), HasSubstr("link.gsf"), HasSubstr("--tip"),
+                    HasSubstr("Choose another name")));
 }
 
 TEST_F(Overlaps, AreSeenAmongOutputsThatDoNotExist) {
   fs::create_directory(here_ / "sub");
   fs::create_directory_symlink(here_, here_ / "sub" / "back");
   const auto both = [&](const fs::path& a, const fs::path& b) {
-    return complaint<UsageError>([&] { refuse_overlaps({}, {{"--output", a, {}}, {"--surface", b, {}}}); });
+    return complaint<UsageError>([&] {
+      refuse_overlaps({}, {{"--output", a, {}}, {"--surface", b, {}}});
+    });
   };
   EXPECT_THAT(both(here_ / "m.tif", here_ / "m.tif"), HasSubstr("--surface"));
   EXPECT_THAT(both(here_ / "m.tif", here_ / "./sub/../m.tif"), HasSubstr("of --output"));
   EXPECT_THAT(both(here_ / "sub/back/m.tif", here_ / "m.tif"), HasSubstr("the same file"));
   EXPECT_THAT(both("m.tif", fs::absolute("m.tif")), HasSubstr("the same file"));
   EXPECT_THAT(both("new/m.tif", "new/./m.tif"), HasSubstr("the same file"));
-  EXPECT_THAT(complaint<UsageError>([&] { refuse_overlaps({}, {{"--output", "a", {}}, {"--output", "a", {}}}); }),
+  EXPECT_THAT(complaint<UsageError>([&] {
+                refuse_overlaps({}, {{"--output", "a", {}}, {"--output", "a", {}}});
+              }),
               HasSubstr("given twice"));
 }
 
@@ -79,7 +88,8 @@ TEST_F(Overlaps, LetDifferentFilesBe) {
                                    {"--plot", here_ / "dangling.gsf", {}},
                                    {"--csv", here_ / "nothing", {}}}));
   // What reads it says that it is missing.
-  EXPECT_NO_THROW(refuse_overlaps({{"INPUT", here_ / "no.gsf", {}}}, {{"--output", here_ / "no.gsf", {}}}));
+  EXPECT_NO_THROW(
+      refuse_overlaps({{"INPUT", here_ / "no.gsf", {}}}, {{"--output", here_ / "no.gsf", {}}}));
 }
 
 TEST_F(Overlaps, SayWhichFileBelongsToWhich) {
@@ -132,10 +142,13 @@ TEST_F(Companions, OfOthersAreNotReplaced) {
 // glTF and OBJ of one name have one name for their pictures.
 TEST_F(Companions, OfASiblingOfSemsurfAreReplaced) {
   write(here_ / "a_drape1.png", "a picture");
-  write(here_ / "a.gltf", R"({"asset": {"generator": "somebody"}, "images": [{"uri": "a_drape1.png"}]})");
-  EXPECT_THAT(complaint<UsageError>([&] { refuse_strangers(here_ / "a.obj", {here_ / "a_drape1.png"}); }),
-              HasSubstr("a_drape1.png"));
-  write(here_ / "a.gltf", R"({"asset": {"extras": {"semsurf.version": "1"}}, "images": [{"uri": "a_drape1.png"}]})");
+  write(here_ / "a.gltf",
+        R"({"asset": {"generator": "somebody"}, "images": [{"uri": "a_drape1.png"}]})");
+  EXPECT_THAT(
+      complaint<UsageError>([&] { refuse_strangers(here_ / "a.obj", {here_ / "a_drape1.png"}); }),
+      HasSubstr("a_drape1.png"));
+  write(here_ / "a.gltf",
+        R"({"asset": {"extras": {"semsurf.version": "1"}}, "images": [{"uri": "a_drape1.png"}]})");
   EXPECT_NO_THROW(refuse_strangers(here_ / "a.obj", {here_ / "a_drape1.png"}));
 }
 
@@ -143,13 +156,15 @@ TEST_F(Companions, WithAMarkOfSemsurfAreReplaced) {
   write(here_ / "a.run.json", "{\"semsurf\": \"1.0\"}");
   write(here_ / "b.run.json", "{\"name\": \"b\"}");
   EXPECT_NO_THROW(refuse_strangers(here_ / "a.exr", {here_ / "a.run.json", here_ / "missing.csv"}));
-  EXPECT_THAT(complaint<UsageError>([&] { refuse_strangers(here_ / "b.exr", {here_ / "b.run.json"}); }),
-              HasSubstr("b.run.json"));
+  EXPECT_THAT(
+      complaint<UsageError>([&] { refuse_strangers(here_ / "b.exr", {here_ / "b.run.json"}); }),
+      HasSubstr("b.run.json"));
   write(here_ / "b.tracks.png", "a picture");
   write(here_ / "b.run.json", "{\"semsurf\": \"1.0\", \"outputs\": [\"/x/b.tracks.png\"]}");
   EXPECT_NO_THROW(refuse_strangers(here_ / "b.run.json", {here_ / "b.tracks.png"}));
   write(here_ / "b.run.json", "{\"semsurf\": \"1.0\", \"outputs\": [\"/x/bb.tracks.png\"]}");
-  EXPECT_THAT(complaint<UsageError>([&] { refuse_strangers(here_ / "b.run.json", {here_ / "b.tracks.png"}); }),
+  EXPECT_THAT(complaint<UsageError>(
+                  [&] { refuse_strangers(here_ / "b.run.json", {here_ / "b.tracks.png"}); }),
               HasSubstr("b.tracks.png"));
 }
 

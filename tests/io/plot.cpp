@@ -42,7 +42,8 @@ class PlotFile : public testing::Test {
 std::pair<unsigned, unsigned> size_of(const std::string& png) {
   const auto number = [&](std::size_t at) {
     unsigned value = 0;
-    for (std::size_t i = 0; i < 4; ++i) value = value << 8 | static_cast<unsigned char>(png.at(at + i));
+    for (std::size_t i = 0; i < 4; ++i)
+      value = value << 8 | static_cast<unsigned char>(png.at(at + i));
     return value;
   };
   return {number(16), number(20)};
@@ -125,7 +126,9 @@ TEST_F(PlotFile, LegendsListWhatHasAName) {
   EXPECT_THAT(svg_of(plot), Not(HasSubstr("legend_1")));
 }
 
-struct Box { double x0, y0, x1, y1; };
+struct Box {
+  double x0, y0, x1, y1;
+};
 
 /// The frame of the legend, in the units of the SVG.
 Box legend_of(const std::string& svg) {
@@ -176,8 +179,8 @@ TEST_F(PlotFile, LegendsCoverNoPoints) {
   }
 }
 
-/// As a chart of time against error: four falling lines close together, a reference across them, named points, and a
-/// legend that finds no room inside.
+/// As a chart of time against error: four falling lines close together, a reference across them,
+/// named points, and a legend that finds no room inside.
 PlotPanel crowded_panel(bool legend) {
   PlotPanel panel;
   panel.x = {"time (s)", true, {}};
@@ -195,7 +198,8 @@ PlotPanel crowded_panel(bool legend) {
   panel.references = {{PlotDirection::horizontal, 22, "noise of the reference"}};
   panel.notes = {{"the scene's default", panel.series[1].x[2], panel.series[1].y[2]}};
   for (const int i : {1, 3, 5})
-    panel.notes.push_back({"--accuracy " + std::to_string(i) + " %", panel.series[2].x[static_cast<std::size_t>(i)],
+    panel.notes.push_back({"--accuracy " + std::to_string(i) + " %",
+                           panel.series[2].x[static_cast<std::size_t>(i)],
                            panel.series[2].y[static_cast<std::size_t>(i)]});
   panel.legend = legend;
   return panel;
@@ -204,20 +208,23 @@ PlotPanel crowded_panel(bool legend) {
 TEST_F(PlotFile, TextsCoverNothing) {
   const char* const python = std::getenv("SEMSURF_PYTHON");
   const auto report = folder.path() / "report.json";
-  const std::string interpreter = python && *python                            ? python
-                                  : std::filesystem::exists("/usr/bin/python3") ? "/usr/bin/python3"
-                                                                                : "python3";   // as plot.cpp looks for it
-  const auto script = test::write(folder.path() / "python",
-                                  "#!/bin/sh\nexec " + interpreter + " \"$@\" '" + report.string() + "'\n");
+  const std::string interpreter = python && *python ? python
+                                  : std::filesystem::exists("/usr/bin/python3")
+                                      ? "/usr/bin/python3"
+                                      : "python3";  // as plot.cpp looks for it
+  const auto script =
+      test::write(folder.path() / "python",
+                  "#!/bin/sh\nexec " + interpreter + " \"$@\" '" + report.string() + "'\n");
   std::filesystem::permissions(script, std::filesystem::perms::owner_all);
   const std::string name = script.string();
   const test::Environment environment{{"SEMSURF_PYTHON", name.c_str()}};
-  Plot plot = plot_of({crowded_panel(false), crowded_panel(true), crowded_panel(false), crowded_panel(false)});
+  Plot plot = plot_of(
+      {crowded_panel(false), crowded_panel(true), crowded_panel(false), crowded_panel(false)});
   plot.columns = 2;
   plot.width_px = 1800;
   write_plot(folder.path() / "plot.svg", plot);
   const auto told = nlohmann::json::parse(content_of(report));
-  ASSERT_EQ(told.size(), 4 * 4 + 1u);   // all notes, and the legend
+  ASSERT_EQ(told.size(), 4 * 4 + 1u);  // all notes, and the legend
   for (const auto& text : told) EXPECT_EQ(text["covers"], 0) << text["text"];
 }
 

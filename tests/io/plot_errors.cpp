@@ -37,8 +37,11 @@ TEST(PlotErrors, SayWhatIsWrongAndWhere) {
       {[&](Plot& p) { p.panels[0].series[0].y[3] = -nan; }, first, "y[3] is nan"},
       {[&](Plot& p) { p.panels[0].series[0].x[2] = infinity; }, first, "x[2] is inf"},
       {[](Plot& p) { p.panels[0].series[0].x[0] = 0; }, first, "x[0] is 0, which a logarithmic"},
-      {[](Plot& p) { p.panels[1].y.log = true; p.panels[1].series[0].y[5] = 0; }, second,
-       "which a logarithmic axis does not have"},
+      {[](Plot& p) {
+         p.panels[1].y.log = true;
+         p.panels[1].series[0].y[5] = 0;
+       },
+       second, "which a logarithmic axis does not have"},
       {[](Plot& p) { p.panels[0].series[0].x.pop_back(); }, first, "x for"},
       {[](Plot& p) { p.panels[1].series[0].x.pop_back(); }, second, "edges of the bins"},
       {[](Plot& p) { p.panels[1].series[0].x[1] = -4; }, second, "do not increase"},
@@ -46,13 +49,25 @@ TEST(PlotErrors, SayWhatIsWrongAndWhere) {
       {[](Plot& p) { p.panels[0].series[0].y_error[1] = -0.1; }, first, "y_error[1] is -0.1"},
       {[&](Plot& p) { p.panels[0].series[0].y_error[1] = nan; }, first, "y_error[1] is nan"},
       {[](Plot& p) { p.panels[0].series[0].color = 8; }, first, "no colour 8"},
-      {[](Plot& p) { p.panels[0].notes = {{"here", -1, 1}}; }, "note 'here'", "its x is -1"},
-      {[&](Plot& p) { p.panels[0].notes = {{"here", 1, nan}}; }, "note 'here'", "its y is nan"},
+      {[](Plot& p) {
+         p.panels[0].notes = {{"here", -1, 1}};
+       },
+       "note 'here'", "its x is -1"},
+      {[&](Plot& p) {
+         p.panels[0].notes = {{"here", 1, nan}};
+       },
+       "note 'here'", "its y is nan"},
       {[&](Plot& p) { p.panels[0].references[0].at = nan; }, "'one for one'", "its place is nan"},
       {[](Plot& p) { p.panels[0].bands[0].from = 0; }, "band 'maximum'", "its begin is 0"},
       {[](Plot& p) { p.panels[0].bands[0].to = 300; }, "band 'maximum'", "empty"},
-      {[](Plot& p) { p.panels[0].x.range = {{0, 1}}; }, "range of x", "its begin is 0"},
-      {[](Plot& p) { p.panels[0].y.range = {{1, 1}}; }, "range of y", "empty"},
+      {[](Plot& p) {
+         p.panels[0].x.range = {{0, 1}};
+       },
+       "range of x", "its begin is 0"},
+      {[](Plot& p) {
+         p.panels[0].y.range = {{1, 1}};
+       },
+       "range of y", "empty"},
   };
   const test::TemporaryFolder folder;
   for (const Case& c : cases) {
@@ -123,9 +138,10 @@ TEST(PlotErrors, WhatThePythonSaysIsPassedOn) {
   EXPECT_THAT(attempt_with(folder.path(), stand_in(folder.path(), "kill -9 $$")),
               HasSubstr("exit code 137"));
   // Far more than a pipe holds.
-  EXPECT_THAT(attempt_with(folder.path(),
-                           stand_in(folder.path(), "yes | head -c 300000 >&2; echo end >&2; exit 1")),
-              HasSubstr(": end)"));
+  EXPECT_THAT(
+      attempt_with(folder.path(),
+                   stand_in(folder.path(), "yes | head -c 300000 >&2; echo end >&2; exit 1")),
+      HasSubstr(": end)"));
   EXPECT_EQ(test::files_in(folder.path()), 1) << "the stand-in alone";
 }
 

@@ -26,9 +26,11 @@ PlotPanel picture(PlotColors colors) {
 
 TEST(PlotImage, PicturesStandBesideCharts) {
   Plot plot;
-  for (const auto colors : {PlotColors::grey, PlotColors::heights, PlotColors::relief, PlotColors::difference})
+  for (const auto colors :
+       {PlotColors::grey, PlotColors::heights, PlotColors::relief, PlotColors::difference})
     plot.panels.push_back(picture(colors));
-  plot.panels[0].series.push_back({"outline", {0, 0.5, 0.5}, {0, 0, 0.3}, {}, PlotStyle::line, false, 1});
+  plot.panels[0].series.push_back(
+      {"outline", {0, 0.5, 0.5}, {0, 0, 0.3}, {}, PlotStyle::line, false, 1});
   PlotPanel band = test::yields_panel();
   band.series[0].style = PlotStyle::band;
   band.columns = 2;
@@ -54,11 +56,17 @@ TEST(PlotImage, BadOnesAreRefused) {
     return test::complaint<InvalidInput>([&] { write_plot(folder.path() / "a.png", plot); });
   };
   EXPECT_THAT(complaint_of([](PlotPanel& p) { p.image->values = {}; }), HasSubstr("no samples"));
-  EXPECT_THAT(complaint_of([](PlotPanel& p) { p.image->pitch_x = 0; }), HasSubstr("pitch or scale is 0"));
-  EXPECT_THAT(complaint_of([](PlotPanel& p) { p.image->range = PlotAxis::Range{2, 1}; }), HasSubstr("range of colours"));
+  EXPECT_THAT(complaint_of([](PlotPanel& p) { p.image->pitch_x = 0; }),
+              HasSubstr("pitch or scale is 0"));
+  EXPECT_THAT(complaint_of([](PlotPanel& p) {
+                p.image->range = PlotAxis::Range{2, 1};
+              }),
+              HasSubstr("range of colours"));
   EXPECT_THAT(complaint_of([](PlotPanel& p) { p.x.log = true; }), HasSubstr("logarithmic"));
   EXPECT_THAT(complaint_of([](PlotPanel& p) { p.columns = 0; }), HasSubstr("columns of a panel"));
-  EXPECT_THAT(complaint_of([](PlotPanel& p) { p.series = {{"b", {1}, {1}, {}, PlotStyle::band, false, {}}}; }),
+  EXPECT_THAT(complaint_of([](PlotPanel& p) {
+                p.series = {{"b", {1}, {1}, {}, PlotStyle::band, false, {}}};
+              }),
               HasSubstr("band without y_error"));
 }
 

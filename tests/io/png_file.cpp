@@ -38,14 +38,20 @@ Image row(std::vector<float> values) {
 
 TEST(PngFile, ShowsTheLetterUpright) {
   std::vector<int> expected;
-  for (const char c : std::string("....." ".###." ".#..." ".##.." ".#..." ".#..." "o....")) {
+  for (const char c : std::string("....."
+                                  ".###."
+                                  ".#..."
+                                  ".##.."
+                                  ".#..."
+                                  ".#..."
+                                  "o....")) {
     expected.push_back(c == '#' ? 255 : c == 'o' ? 85 : 0);
   }
   EXPECT_EQ(levels_of(image_of_f()), expected);
 }
 
 TEST(PngFile, ShowsTheChosenChannel) {
-  const std::vector<int> levels = levels_of(image_of_f(), "A_z");   // -2 times the letter
+  const std::vector<int> levels = levels_of(image_of_f(), "A_z");  // -2 times the letter
   EXPECT_EQ(levels.at(0), 255);
   EXPECT_EQ(levels.at(6), 0);
 }
@@ -55,7 +61,7 @@ TEST(PngFile, StretchesBetweenPercentiles) {
   for (std::size_t i = 0; i < values.size(); ++i) values[i] = static_cast<float>(i);
   values[1000] = 1e9f;
   const std::vector<int> levels = levels_of(row(values));
-  EXPECT_EQ(levels.at(5), 0);      // 0.5 percent
+  EXPECT_EQ(levels.at(5), 0);  // 0.5 percent
   EXPECT_EQ(levels.at(7), 1);
   EXPECT_EQ(levels.at(500), 128);
   EXPECT_EQ(levels.at(992), 254);
@@ -119,7 +125,7 @@ TEST(PngFile, TruncationsAreRefused) {
   const TemporaryFolder folder;
   write_image(folder.path() / "a.png", image_of_f());
   const std::string content = test::content_of(folder.path() / "a.png");
-  for (std::size_t size = 0; size < content.size() - 12; size += 17) {   // IEND takes 12 bytes
+  for (std::size_t size = 0; size < content.size() - 12; size += 17) {  // IEND takes 12 bytes
     SCOPED_TRACE(size);
     const auto cut = test::write(folder.path() / "cut.png", content.substr(0, size));
     test::complaint<FileError>([&] { read_image(cut); });

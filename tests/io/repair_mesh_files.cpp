@@ -24,10 +24,16 @@ TEST(RepairMeshFiles, AllBecomeSoundOrSayWhatRemains) {
   const char* const folder = std::getenv("SEMSURF_TEST_DATA");
   if (!folder || !fs::exists(folder)) GTEST_SKIP() << "SEMSURF_TEST_DATA names no folder";
   // Sheets, tubes with wide ends, or soup: nothing tells what closes them.
-  const std::set<std::string> stay_open{
-      "teapot.stl", "2triangles_open.off", "cube-ouvert.off", "fold.off", "many_small_holes.ply",
-      "mech-holes-shark.off", "non_manif_hole.ply", "quads_to_stitch.off", "soup.stl",
-      "truck_nonmanifold_selfint.obj"};
+  const std::set<std::string> stay_open{"teapot.stl",
+                                        "2triangles_open.off",
+                                        "cube-ouvert.off",
+                                        "fold.off",
+                                        "many_small_holes.ply",
+                                        "mech-holes-shark.off",
+                                        "non_manif_hole.ply",
+                                        "quads_to_stitch.off",
+                                        "soup.stl",
+                                        "truck_nonmanifold_selfint.obj"};
   std::size_t seen = 0, sound = 0;
   for (const char* part : {"mesh", "mesh/broken"}) {
     for (const auto& entry : fs::directory_iterator(fs::path(folder) / part)) {
@@ -38,7 +44,7 @@ TEST(RepairMeshFiles, AllBecomeSoundOrSayWhatRemains) {
       try {
         mesh = read_mesh(entry.path());
       } catch (const FileError&) {
-        continue;   // mesh_file_real.cpp looks at these
+        continue;  // mesh_file_real.cpp looks at these
       }
       RepairSummary s;
       const TriangleMesh mended = repair_mesh(mesh, {}, s);
@@ -57,7 +63,8 @@ TEST(RepairMeshFiles, AllBecomeSoundOrSayWhatRemains) {
       }
       // Whatever is allowed, it ends and makes nothing worse.
       RepairSummary all;
-      repair_mesh(mesh, {.sliver_nm = 1e-3 * length(bounds(mesh).size_nm()), .max_hole_nm = 1e30}, all);
+      repair_mesh(mesh, {.sliver_nm = 1e-3 * length(bounds(mesh).size_nm()), .max_hole_nm = 1e30},
+                  all);
       EXPECT_LE(edge_faults(all.after), edge_faults(all.before));
       RepairSummary again;
       repair_mesh(mended, {}, again);

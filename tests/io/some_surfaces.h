@@ -11,9 +11,11 @@
 
 namespace surf::test {
 
-/// A sheet of (n + 1)^2 vertices over a square of that many nm, with every scalar that a surface may have.
+/// A sheet of (n + 1)^2 vertices over a square of that many nm, with every scalar that a surface
+/// may have.
 inline Surface wavy_sheet(const std::string& name, int n, const Vec3& corner_nm) {
-  Surface surface{name, {}, {{"height", "nm", {}}, {"curvature", "1/nm", {}}, {"certainty", "1", {}}}, {}};
+  Surface surface{
+      name, {}, {{"height", "nm", {}}, {"curvature", "1/nm", {}}, {"certainty", "1", {}}}, {}};
   for (int y = 0; y <= n; ++y) {
     for (int x = 0; x <= n; ++x) {
       const double z = 0.1 * n * std::sin(6.0 * x / n) * std::cos(4.0 * y / n);
@@ -53,7 +55,8 @@ inline SurfaceScene full_scene() {
   scene.surfaces.push_back(wavy_sheet("waves", 20, {10, -3.7, 1.0 / 3}));
   scene.tracks = two_tracks();
   for (Track& track : random_walks(10)) scene.tracks.push_back(std::move(track));
-  scene.metadata = {{"semsurf.version", "1.2"}, {"beam.energy_ev", "1000"}, {"note", "a \"b\" <c> &\n\xC3\xA9"}};
+  scene.metadata = {
+      {"semsurf.version", "1.2"}, {"beam.energy_ev", "1000"}, {"note", "a \"b\" <c> &\n\xC3\xA9"}};
   return scene;
 }
 
@@ -68,7 +71,8 @@ inline double relative_shift(const Surface& before, const Surface& after) {
   const Vec3 size = bounds(before.mesh).size_nm();
   double farthest = 0;
   for (std::size_t i = 0; i < before.mesh.vertices_nm.size(); ++i) {
-    farthest = std::max(farthest, length(before.mesh.vertices_nm[i] - after.mesh.vertices_nm.at(i)));
+    farthest =
+        std::max(farthest, length(before.mesh.vertices_nm[i] - after.mesh.vertices_nm.at(i)));
   }
   return farthest / std::max({size.x, size.y, size.z});
 }

@@ -42,8 +42,8 @@ inline std::vector<Track> random_walks(int count) {
     track.points_nm = {{0, 0, 50}, {0, 0, 0}};
     for (int step = 0; step < 60; ++step) {
       const Vec3 p = track.points_nm.back();
-      track.points_nm.push_back({p.x + 6 * uniform(), p.y + 6 * uniform(),
-                                 p.z + 5 * uniform() - 1.2});
+      track.points_nm.push_back(
+          {p.x + 6 * uniform(), p.y + 6 * uniform(), p.z + 5 * uniform() - 1.2});
     }
     track.energy_ev.assign(track.points_nm.size(), 500);
     track.material.assign(track.points_nm.size() - 1, 0);

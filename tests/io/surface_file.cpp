@@ -2,8 +2,8 @@
 #include "surf/io/surface_file.h"
 
 #include "io_test.h"
-#include "surface_scenes.h"
 #include "surf/io/mesh_file.h"
+#include "surface_scenes.h"
 
 namespace surf::io {
 namespace {
@@ -72,7 +72,7 @@ TEST(SurfaceFile, EveryFormatGivesBackWhatItHolds) {
       const Surface& got = read.surfaces[s];
       const Surface& expected = written.surfaces[s];
       if (is_float32(format)) {
-        expect_same_corners(got.mesh, expected.mesh, 1e-5);   // of 100 nm
+        expect_same_corners(got.mesh, expected.mesh, 1e-5);  // of 100 nm
       } else {
         EXPECT_EQ(got.mesh.vertices_nm, expected.mesh.vertices_nm);
         EXPECT_EQ(got.mesh.triangles, expected.mesh.triangles);
@@ -95,15 +95,15 @@ TEST(SurfaceFile, EveryFormatGivesBackWhatItHolds) {
       EXPECT_EQ(read.tracks[t].parent, written.tracks[t].parent);
       EXPECT_EQ(read.tracks[t].secondary, written.tracks[t].secondary);
     }
-    if (format.extension == ".stl") continue;   // 80 bytes do not hold all
+    if (format.extension == ".stl") continue;  // 80 bytes do not hold all
     EXPECT_EQ(read.metadata, written.metadata);
   }
 }
 
 TEST(SurfaceFile, MagnificationAndExaggerationAreUndone) {
   for (const SurfaceFormat& format : test::written_formats()) {
-    for (const Magnification& m : {Magnification{1, 1}, Magnification{1e6, 5}, Magnification{3.7e5, 1},
-                                   Magnification{3.7e5, 0.3}}) {
+    for (const Magnification& m : {Magnification{1, 1}, Magnification{1e6, 5},
+                                   Magnification{3.7e5, 1}, Magnification{3.7e5, 0.3}}) {
       SCOPED_TRACE(fmt::format("{} {} {}", format.extension, m.factor, m.z_exaggeration));
       const TemporaryFolder folder;
       const auto path = folder.path() / ("f" + format.extension);
@@ -111,7 +111,8 @@ TEST(SurfaceFile, MagnificationAndExaggerationAreUndone) {
       scene.surfaces = {test::letter_surface("F", 0)};
       write_surfaces(path, scene, m);
       const double allowed_nm = is_float32(format) ? 1e-5 : 1e-13;
-      expect_same_corners(read_surfaces(path).surfaces.at(0).mesh, scene.surfaces[0].mesh, allowed_nm);
+      expect_same_corners(read_surfaces(path).surfaces.at(0).mesh, scene.surfaces[0].mesh,
+                          allowed_nm);
       expect_same_corners(read_mesh(path), scene.surfaces[0].mesh, allowed_nm);
     }
   }
@@ -126,12 +127,14 @@ TEST(SurfaceFile, TheNumbersInTheFileAreMillimetresOfTheMagnifiedBody) {
   write_surfaces(folder.path() / "b.obj", scene, {.factor = 1});
   EXPECT_THAT(test::content_of(folder.path() / "b.obj"), HasSubstr("\nv 0 0.0004 8e-05\n"));
   write_surfaces(folder.path() / "c.off", scene, {.factor = 5e5, .z_exaggeration = 3});
-  EXPECT_THAT(test::content_of(folder.path() / "c.off"), HasSubstr("\n0 400 80\n")) << "it holds nm";
+  EXPECT_THAT(test::content_of(folder.path() / "c.off"), HasSubstr("\n0 400 80\n"))
+      << "it holds nm";
 }
 
 TEST(SurfaceFile, AUnitThatOverridesTakesThePlaceOfTheMagnification) {
   for (const SurfaceFormat& format : test::written_formats()) {
-    if (format.extension == ".glb" || format.extension == ".gltf" || format.extension == ".3mf") continue;
+    if (format.extension == ".glb" || format.extension == ".gltf" || format.extension == ".3mf")
+      continue;
     SCOPED_TRACE(format.extension);
     const TemporaryFolder folder;
     const auto path = folder.path() / ("f" + format.extension);
@@ -140,7 +143,9 @@ TEST(SurfaceFile, AUnitThatOverridesTakesThePlaceOfTheMagnification) {
     write_surfaces(path, scene, {.factor = 5e5, .z_exaggeration = 2});
     const double shrunk = format.magnified ? 0.5 : 1;
     const Vec3 expected{0, 400 * 10 * shrunk, 80 * 10 * shrunk};
-    EXPECT_LE(length(read_surfaces(path, {10.0, true}).surfaces.at(0).mesh.vertices_nm.at(2) - expected), 1e-9);
+    EXPECT_LE(
+        length(read_surfaces(path, {10.0, true}).surfaces.at(0).mesh.vertices_nm.at(2) - expected),
+        1e-9);
   }
 }
 
@@ -149,7 +154,8 @@ TEST(SurfaceFile, FilesOfOthersStayInNm) {
   const TriangleMesh letter = test::letter_f_triangles();
   test::write(folder.path() / "old.stl", test::binary_stl(letter));
   EXPECT_EQ(corners(read_surfaces(folder.path() / "old.stl").surfaces.at(0).mesh), corners(letter));
-  EXPECT_EQ(corners(read_mesh(folder.path() / "old.stl", 1000.0))[0][1], corners(letter)[0][1] * 1000);
+  EXPECT_EQ(corners(read_mesh(folder.path() / "old.stl", 1000.0))[0][1],
+            corners(letter)[0][1] * 1000);
 }
 
 TEST(SurfaceFile, SeveralBecomeOneWhereTheFormatHasOne) {
@@ -168,7 +174,8 @@ TEST(SurfaceFile, SeveralBecomeOneWhereTheFormatHasOne) {
     EXPECT_EQ(read.surfaces[0].name, "f");
     if (name != std::string("f.ply")) continue;
     ASSERT_EQ(read.surfaces[0].scalars.size(), 2u) << "those that both have";
-    EXPECT_EQ(read.surfaces[0].scalars[1].values.back(), scene.surfaces[1].scalars[1].values.back());
+    EXPECT_EQ(read.surfaces[0].scalars[1].values.back(),
+              scene.surfaces[1].scalars[1].values.back());
   }
 }
 
@@ -180,7 +187,8 @@ TEST(SurfaceFile, TheSameSceneGivesTheSameBytes) {
     write_surfaces(second.path() / ("f" + format.extension), test::two_letters());
     ASSERT_EQ(test::files_in(first.path()), test::files_in(second.path()));
     for (const auto& entry : std::filesystem::directory_iterator(first.path())) {
-      EXPECT_EQ(test::content_of(entry.path()), test::content_of(second.path() / entry.path().filename()));
+      EXPECT_EQ(test::content_of(entry.path()),
+                test::content_of(second.path() / entry.path().filename()));
     }
   }
 }
@@ -192,23 +200,29 @@ TEST(SurfaceFile, StlSaysInItsHeaderWhatFits) {
   scene.metadata = {{"a.long", std::string(70, 'x')}, {"b.source", "scan 1"}, {"c.date", "none"}};
   write_surfaces(folder.path() / "f.stl", scene, {3.7e5, 5});
   const std::string header = test::content_of(folder.path() / "f.stl").substr(0, 80);
-  EXPECT_THAT(header, testing::StartsWith("semsurf mm magnification=370000 z=5 b.source=scan%201 c.date=none "));
+  EXPECT_THAT(header, testing::StartsWith(
+                          "semsurf mm magnification=370000 z=5 b.source=scan%201 c.date=none "));
   EXPECT_THAT(header, Not(HasSubstr("xxx")));
   EXPECT_EQ(read_surfaces(folder.path() / "f.stl").metadata,
             (std::map<std::string, std::string>{{"b.source", "scan 1"}, {"c.date", "none"}}));
   write_surfaces(folder.path() / "g.stl", scene, {1.2345678901234567e-11, 1.2345678901234567e-11});
-  EXPECT_EQ(test::content_of(folder.path() / "g.stl").size(), test::content_of(folder.path() / "f.stl").size());
+  EXPECT_EQ(test::content_of(folder.path() / "g.stl").size(),
+            test::content_of(folder.path() / "f.stl").size());
 }
 
 TEST(SurfaceFile, ObjPutsEachVertexOnThePixelAboveIt) {
   const TemporaryFolder folder;
   Drape drape{"SE", Grid<std::uint8_t>(4, 2), 10, 5, 100, 50};
   SurfaceScene scene;
-  scene.surfaces = {{"t", {{{100, 50, 0}, {130, 50, 0}, {115, 55, 7}, {0, 0, 0}, {999, 999, 0}},
-                           {{0, 1, 2}, {3, 4, 2}}}, {}, drape}};
+  scene.surfaces = {{"t",
+                     {{{100, 50, 0}, {130, 50, 0}, {115, 55, 7}, {0, 0, 0}, {999, 999, 0}},
+                      {{0, 1, 2}, {3, 4, 2}}},
+                     {},
+                     drape}};
   write_surfaces(folder.path() / "a.obj", scene);
   const std::string text = test::content_of(folder.path() / "a.obj");
-  EXPECT_THAT(text, HasSubstr("vt 0.125 0.25\nvt 0.875 0.25\nvt 0.5 0.75\nvt 0.125 0.25\nvt 0.875 0.75\n"));
+  EXPECT_THAT(
+      text, HasSubstr("vt 0.125 0.25\nvt 0.875 0.25\nvt 0.5 0.75\nvt 0.125 0.25\nvt 0.875 0.75\n"));
   EXPECT_THAT(text, HasSubstr("mtllib a.mtl\n"));
   EXPECT_THAT(text, HasSubstr("usemtl drape1\nf 1/1 2/2 3/3\n"));
   EXPECT_THAT(test::content_of(folder.path() / "a.mtl"), HasSubstr("newmtl drape1\n"));
@@ -219,7 +233,8 @@ TEST(SurfaceFile, ObjPutsEachVertexOnThePixelAboveIt) {
 TEST(SurfaceFile, ScalarsOfOthersGetNamesAndUnits) {
   const TemporaryFolder folder;
   test::write(folder.path() / "a.ply",
-              "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+              "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float "
+              "y\nproperty float z\n"
               "property float nx\nproperty double Quality\nproperty uchar 2nd\nproperty float bad\n"
               "property list uchar int ring\nelement face 1\n"
               "property list uchar int vertex_indices\nend_header\n"

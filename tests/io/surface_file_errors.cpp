@@ -4,9 +4,9 @@
 #include <limits>
 
 #include "io_test.h"
-#include "surface_scenes.h"
 #include "surf/io/mesh_file.h"
 #include "surf/io/surface_file.h"
+#include "surface_scenes.h"
 
 namespace surf::io {
 namespace {
@@ -19,12 +19,14 @@ TEST(SurfaceFileErrors, TargetsAreCheckedEarly) {
   const TemporaryFolder folder;
   const auto& root = folder.path();
   for (const char* name : {"a.jpg", "a", "a.step"}) {
-    EXPECT_THAT(complaint<UsageError>([&] { check_surface_target(root / name); }), HasSubstr(".stl, .obj"));
+    EXPECT_THAT(complaint<UsageError>([&] { check_surface_target(root / name); }),
+                HasSubstr(".stl, .obj"));
     EXPECT_THAT(complaint<UsageError>([&] { write_surfaces(root / name, test::two_letters()); }),
                 HasSubstr("not written"));
   }
   std::filesystem::create_directory(root / "b.ply");
-  EXPECT_THAT(complaint<FileError>([&] { check_surface_target(root / "b.ply"); }), HasSubstr("folder"));
+  EXPECT_THAT(complaint<FileError>([&] { check_surface_target(root / "b.ply"); }),
+              HasSubstr("folder"));
   EXPECT_EQ(check_surface_target(root / "C.Ply").extension, ".ply");
   EXPECT_EQ(test::files_in(root), 1);
 }
@@ -44,13 +46,18 @@ TEST(SurfaceFileErrors, NothingIsHalfWritten) {
     bad = test::two_letters();
     bad.surfaces[0].name = bad.surfaces[1].name;
     EXPECT_THAT(complaint<InvalidInput>([&] { write_surfaces(path, bad); }), HasSubstr("unique"));
-    EXPECT_THAT(complaint<InvalidInput>([&] { write_surfaces(path, {}); }), HasSubstr("no surface"));
+    EXPECT_THAT(complaint<InvalidInput>([&] { write_surfaces(path, {}); }),
+                HasSubstr("no surface"));
     for (const double factor : {0.0, -1.0, nan, std::numeric_limits<double>::infinity(), 1e-310}) {
-      EXPECT_THAT(complaint<UsageError>([&] { write_surfaces(path, test::two_letters(), {factor, 1}); }),
+      EXPECT_THAT(complaint<UsageError>([&] {
+                    write_surfaces(path, test::two_letters(), {factor, 1});
+                  }),
                   HasSubstr("cannot be a"));
       EXPECT_EQ(test::files_in(folder.path()), 0);
     }
-    EXPECT_THAT(complaint<UsageError>([&] { write_surfaces(path, test::two_letters(), {1, -2}); }),
+    EXPECT_THAT(complaint<UsageError>([&] {
+                  write_surfaces(path, test::two_letters(), {1, -2});
+                }),
                 HasSubstr("exaggeration"));
     EXPECT_EQ(test::files_in(folder.path()), 0);
   }
@@ -59,13 +66,15 @@ TEST(SurfaceFileErrors, NothingIsHalfWritten) {
 TEST(SurfaceFileErrors, AFileBesideThatCannotBeWrittenLeavesNothing) {
   const TemporaryFolder folder;
   std::filesystem::create_directories(folder.path() / "f_drape2.png" / "in the way");
-  EXPECT_THAT(complaint<FileError>([&] { write_surfaces(folder.path() / "f.obj", test::two_letters()); }),
-              HasSubstr("f_drape2.png"));
+  EXPECT_THAT(
+      complaint<FileError>([&] { write_surfaces(folder.path() / "f.obj", test::two_letters()); }),
+      HasSubstr("f_drape2.png"));
   EXPECT_EQ(test::files_in(folder.path()), 1);
   if (!test::has_vtk()) return;
   std::filesystem::create_directories(folder.path() / "f_tracks.vtp" / "in the way");
-  EXPECT_THAT(complaint<FileError>([&] { write_surfaces(folder.path() / "f.vtm", test::two_letters()); }),
-              HasSubstr("f_tracks.vtp"));
+  EXPECT_THAT(
+      complaint<FileError>([&] { write_surfaces(folder.path() / "f.vtm", test::two_letters()); }),
+      HasSubstr("f_tracks.vtp"));
   EXPECT_EQ(test::files_in(folder.path()), 2);
 }
 
@@ -95,13 +104,16 @@ TEST(SurfaceFileErrors, PlyRefusesNamesThatMeanSomethingElse) {
 TEST(SurfaceFileErrors, DamagedNotesAreNotBelieved) {
   const TemporaryFolder folder;
   const std::string triangle = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
-  for (const char* note : {"magnification=0", "magnification=1e-320", "magnification=1 nm", "unit_nm=nan",
-                           "z_exaggeration=-1", "magnification="}) {
-    const auto path = test::write(folder.path() / "a.obj", fmt::format("# surface:{}\n{}", note, triangle));
+  for (const char* note : {"magnification=0", "magnification=1e-320", "magnification=1 nm",
+                           "unit_nm=nan", "z_exaggeration=-1", "magnification="}) {
+    const auto path =
+        test::write(folder.path() / "a.obj", fmt::format("# surface:{}\n{}", note, triangle));
     EXPECT_THAT(complaint<FileError>([&] { read_mesh(path); }), HasSubstr("surface:"));
   }
-  const auto path = test::write(folder.path() / "b.obj", "# surface:name.999999999999=x\n# surface:magnification=1\n"
-                                                         "# surface:name.0=y\n" + triangle);
+  const auto path = test::write(folder.path() / "b.obj",
+                                "# surface:name.999999999999=x\n# surface:magnification=1\n"
+                                "# surface:name.0=y\n" +
+                                    triangle);
   EXPECT_EQ(read_surfaces(path).surfaces.at(0).name, "b");
   EXPECT_EQ(read_mesh(path).vertices_nm[1].x, 1e6);
 }
@@ -111,7 +123,8 @@ TEST(SurfaceFileErrors, PicturesAreLookedForBesideTheFileOnly) {
   const auto path = folder.path() / "f.obj";
   write_surfaces(path, test::two_letters());
   std::filesystem::remove(folder.path() / "f_drape2.png");
-  EXPECT_THAT(complaint<FileError>([&] { read_surfaces(path); }), HasSubstr("f_drape2.png is missing"));
+  EXPECT_THAT(complaint<FileError>([&] { read_surfaces(path); }),
+              HasSubstr("f_drape2.png is missing"));
   EXPECT_EQ(read_meshes(path).size(), 2u) << "shapes do not need it";
   std::string text = test::content_of(path);
   text.replace(text.find("f_drape2.png"), 12, "../x/../a.png");

@@ -16,8 +16,8 @@
 #include <vtkXMLPolyDataReader.h>
 
 #include "io_test.h"
-#include "surface_scenes.h"
 #include "surf/io/mesh_file.h"
+#include "surface_scenes.h"
 
 namespace surf::io {
 namespace {
@@ -55,7 +55,8 @@ TEST(SurfaceFileVtk, VtpHasArraysUnitsAndFieldData) {
   EXPECT_EQ(surface->GetTuple1(data->GetNumberOfCells() - 1), 1);
   const auto text = [&](const char* name) {
     const auto* array = vtkStringArray::SafeDownCast(data->GetFieldData()->GetAbstractArray(name));
-    return array ? std::string(const_cast<vtkStringArray*>(array)->GetValue(0)) : std::string("none");
+    return array ? std::string(const_cast<vtkStringArray*>(array)->GetValue(0))
+                 : std::string("none");
   };
   EXPECT_EQ(text("surface:unit_nm"), "1");
   EXPECT_EQ(text("semsurf:title"), scene.metadata.at("title"));
@@ -78,7 +79,8 @@ TEST(SurfaceFileVtk, VtmHasNamedBlocksOfEveryKind) {
   EXPECT_TRUE(vtkPolyData::SafeDownCast(blocks->GetBlock(0)));
   auto* const picture = vtkImageData::SafeDownCast(blocks->GetBlock(2));
   ASSERT_TRUE(picture);
-  EXPECT_EQ(picture->GetPointData()->GetScalars()->GetTuple1(4), double{scene.surfaces[1].drape->grey(1, 1)});
+  EXPECT_EQ(picture->GetPointData()->GetScalars()->GetTuple1(4),
+            double{scene.surfaces[1].drape->grey(1, 1)});
   EXPECT_EQ(picture->GetSpacing()[0], 1.25);
   auto* const tracks = vtkPolyData::SafeDownCast(blocks->GetBlock(3));
   ASSERT_TRUE(tracks);
@@ -111,8 +113,10 @@ TEST(SurfaceFileVtk, BlocksMayLieInBlocksAndBeOfOthers) {
   const TemporaryFolder folder;
   write_mesh(folder.path() / "a.vtp", test::letter_f_triangles());
   test::write(folder.path() / "f.vtm",
-              "<VTKFile type=\"vtkMultiBlockDataSet\" version=\"1.0\"><vtkMultiBlockDataSet><Block index=\"0\" "
-              "name=\"outer\"><DataSet index=\"0\" name=\"inner\" file=\"./a.vtp\"/><DataSet index=\"1\"/></Block>"
+              "<VTKFile type=\"vtkMultiBlockDataSet\" version=\"1.0\"><vtkMultiBlockDataSet><Block "
+              "index=\"0\" "
+              "name=\"outer\"><DataSet index=\"0\" name=\"inner\" file=\"./a.vtp\"/><DataSet "
+              "index=\"1\"/></Block>"
               "</vtkMultiBlockDataSet></VTKFile>\n");
   const SurfaceScene scene = read_surfaces(folder.path() / "f.vtm");
   ASSERT_EQ(scene.surfaces.size(), 1u);

@@ -16,7 +16,8 @@ namespace surf::test {
 /// 3 x 4 pixels, no two equal, placed unevenly over the letter.
 inline Drape picture() {
   Drape drape{"SE in-lens", Grid<std::uint8_t>(3, 4), 1.25, 0.7, 1.0 / 3, 0.25};
-  for (std::size_t i = 0; i < drape.grey.size(); ++i) drape.grey.data()[i] = static_cast<std::uint8_t>(3 + 21 * i);
+  for (std::size_t i = 0; i < drape.grey.size(); ++i)
+    drape.grey.data()[i] = static_cast<std::uint8_t>(3 + 21 * i);
   return drape;
 }
 
@@ -38,10 +39,13 @@ inline Surface letter_surface(const std::string& name, double shift_nm) {
 /// Two surfaces, the second with a picture; awkward names and texts.
 inline SurfaceScene two_letters() {
   SurfaceScene scene;
-  scene.surfaces = {letter_surface("substrate #1, 50 % <\xC3\xA9>", 0), letter_surface("F  on\\ top", 20)};
+  scene.surfaces = {letter_surface("substrate #1, 50 % <\xC3\xA9>", 0),
+                    letter_surface("F  on\\ top", 20)};
   scene.surfaces[1].drape = picture();
   scene.tracks = two_tracks();
-  scene.metadata = {{"semsurf.version", "1.2"}, {"beam.energy_ev", "1000"}, {"empty", ""},
+  scene.metadata = {{"semsurf.version", "1.2"},
+                    {"beam.energy_ev", "1000"},
+                    {"empty", ""},
                     {"title", "a=b \\ \"c\" <d> & \xC3\xA9 50%41\nsecond line\\"}};
   return scene;
 }

@@ -16,9 +16,12 @@ using test::TemporaryFolder;
 constexpr double float_step = 1.0 / (1 << 23);
 constexpr const char* core = "xmlns=\"http://schemas.microsoft.com/3dmanufacturing/core/2015/02\"";
 constexpr const char* tetrahedron =
-    "<mesh><vertices><vertex x=\"0\" y=\"0\" z=\"0\"/><vertex x=\"1\" y=\"0\" z=\"0\"/><vertex x=\"0\" y=\"1\" "
-    "z=\"0\"/><vertex x=\"0\" y=\"0\" z=\"1e0\"/></vertices><triangles><triangle v1=\"0\" v2=\"2\" v3=\"1\"/>"
-    "<triangle v1=\"0\" v2=\"1\" v3=\"3\"/><triangle v1=\"1\" v2=\"2\" v3=\"3\"/><triangle v1=\"2\" v2=\"0\" "
+    "<mesh><vertices><vertex x=\"0\" y=\"0\" z=\"0\"/><vertex x=\"1\" y=\"0\" z=\"0\"/><vertex "
+    "x=\"0\" y=\"1\" "
+    "z=\"0\"/><vertex x=\"0\" y=\"0\" z=\"1e0\"/></vertices><triangles><triangle v1=\"0\" v2=\"2\" "
+    "v3=\"1\"/>"
+    "<triangle v1=\"0\" v2=\"1\" v3=\"3\"/><triangle v1=\"1\" v2=\"2\" v3=\"3\"/><triangle "
+    "v1=\"2\" v2=\"0\" "
     "v3=\"3\"/></triangles></mesh>";
 
 std::string format(const SurfaceScene& scene, const Magnification& magnification = {}) {
@@ -37,11 +40,13 @@ std::string model_of(const std::string& content) {
 }
 
 /// A package of one model, and further parts.
-std::string package(const std::string& model, const std::map<std::string, std::string>& others = {}) {
+std::string package(const std::string& model,
+                    const std::map<std::string, std::string>& others = {}) {
   ZipWriter zip("f.3mf");
   zip.begin("_rels/.rels");
-  zip.append("<Relationships><Relationship Target=\"/3D/3dmodel.model\" Id=\"r\" "
-             "Type=\"http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel\"/></Relationships>");
+  zip.append(
+      "<Relationships><Relationship Target=\"/3D/3dmodel.model\" Id=\"r\" "
+      "Type=\"http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel\"/></Relationships>");
   zip.begin("3D/3dmodel.model");
   zip.append(model);
   for (const auto& [name, content] : others) {
@@ -51,8 +56,10 @@ std::string package(const std::string& model, const std::map<std::string, std::s
   return zip.finish();
 }
 
-std::string model(const std::string& resources, const std::string& items, const std::string& more = "") {
-  return fmt::format("<model {} {}><resources>{}</resources><build>{}</build></model>", core, more, resources, items);
+std::string model(const std::string& resources, const std::string& items,
+                  const std::string& more = "") {
+  return fmt::format("<model {} {}><resources>{}</resources><build>{}</build></model>", core, more,
+                     resources, items);
 }
 
 std::string object(int id, const std::string& content) {
@@ -61,7 +68,8 @@ std::string object(int id, const std::string& content) {
 
 TEST(ThreeMfFile, AllComesBack) {
   SurfaceScene scene = test::full_scene();
-  for (const Magnification& m : {Magnification{}, Magnification{1, 1}, Magnification{999, 3}, Magnification{1e9, 0.5}}) {
+  for (const Magnification& m :
+       {Magnification{}, Magnification{1, 1}, Magnification{999, 3}, Magnification{1e9, 0.5}}) {
     SCOPED_TRACE(m.factor);
     const SurfaceScene back = parse(format(scene, m));
     ASSERT_EQ(back.surfaces.size(), 2u);
@@ -80,9 +88,9 @@ TEST(ThreeMfFile, TheBodyIsAsLargeAsPrinted) {
     return bounds(parse(format(scene, m), 1.0).surfaces.at(0).mesh).size_nm().x;
   };
   EXPECT_THAT(model_of(format(scene)), testing::HasSubstr("unit=\"millimeter\""));
-  EXPECT_NEAR(size_mm({}), 3, 1e-6);   // 3 nm, as 3 mm
+  EXPECT_NEAR(size_mm({}), 3, 1e-6);  // 3 nm, as 3 mm
   EXPECT_THAT(model_of(format(scene, {1, 1})), testing::HasSubstr("unit=\"micron\""));
-  EXPECT_NEAR(size_mm({1, 1}), 3e-3, 1e-9);   // of a micron
+  EXPECT_NEAR(size_mm({1, 1}), 3e-3, 1e-9);  // of a micron
 }
 
 TEST(ThreeMfFile, AnyExtentAndAnyPlace) {
@@ -101,7 +109,8 @@ TEST(ThreeMfFile, AnyExtentAndAnyPlace) {
 
 TEST(ThreeMfFile, BodiesAreModelsAndSheetsAreSurfaces) {
   const std::string text = model_of(format(test::full_scene()));
-  EXPECT_THAT(text, testing::HasSubstr("<object id=\"1\" type=\"model\" name=\"F &lt;1&gt; &amp; &quot;"));
+  EXPECT_THAT(
+      text, testing::HasSubstr("<object id=\"1\" type=\"model\" name=\"F &lt;1&gt; &amp; &quot;"));
   EXPECT_THAT(text, testing::HasSubstr("<object id=\"2\" type=\"surface\" name=\"waves\""));
 }
 
@@ -123,26 +132,31 @@ TEST(ThreeMfFile, LargeAndSameBytes) {
 }
 
 TEST(ThreeMfFile, UnitsOfOthersCount) {
-  for (const auto& [unit, nm] : std::map<std::string, double>{{"", 1e6}, {"micron", 1e3}, {"inch", 25.4e6}}) {
+  for (const auto& [unit, nm] :
+       std::map<std::string, double>{{"", 1e6}, {"micron", 1e3}, {"inch", 25.4e6}}) {
     const std::string more = unit.empty() ? "" : "unit=\"" + unit + "\"";
-    const SurfaceScene scene = parse(package(model(object(1, tetrahedron), "<item objectid=\"1\"/>", more)));
+    const SurfaceScene scene =
+        parse(package(model(object(1, tetrahedron), "<item objectid=\"1\"/>", more)));
     EXPECT_EQ(bounds(scene.surfaces.at(0).mesh).upper_nm, (Vec3{nm, nm, nm})) << unit;
     EXPECT_EQ(scene.surfaces[0].name, "o1");
   }
 }
 
 TEST(ThreeMfFile, ComponentsAreMovedFromTheInsideOut) {
-  const std::string parts = object(1, tetrahedron) +
-                            object(2, "<components><component objectid=\"1\"/><component objectid=\"1\" "
-                                      "transform=\"0 1 0 -1 0 0 0 0 1 10 0 0\"/></components>");
-  const SurfaceScene scene =
-      parse(package(model(parts, "<item objectid=\"2\" transform=\"2 0 0 0 2 0 0 0 -2 0 0 5\"/>")), 1.0);
+  const std::string parts =
+      object(1, tetrahedron) +
+      object(2,
+             "<components><component objectid=\"1\"/><component objectid=\"1\" "
+             "transform=\"0 1 0 -1 0 0 0 0 1 10 0 0\"/></components>");
+  const SurfaceScene scene = parse(
+      package(model(parts, "<item objectid=\"2\" transform=\"2 0 0 0 2 0 0 0 -2 0 0 5\"/>")), 1.0);
   ASSERT_EQ(scene.surfaces.size(), 2u);
   EXPECT_EQ(scene.surfaces[1].name, "o1 2");
   EXPECT_EQ(scene.surfaces[0].mesh.vertices_nm[3], (Vec3{0, 0, 3}));
   // x becomes y and moves by 10, then all doubles.
   EXPECT_EQ(scene.surfaces[1].mesh.vertices_nm[1], (Vec3{20, 2, 5}));
-  EXPECT_EQ(scene.surfaces[1].mesh.triangles[0], (Triangle{0, 1, 2})) << "mirrored: turned the right way round";
+  EXPECT_EQ(scene.surfaces[1].mesh.triangles[0], (Triangle{0, 1, 2}))
+      << "mirrored: turned the right way round";
 }
 
 TEST(ThreeMfFile, ObjectsMayLieInOtherParts) {
@@ -185,17 +199,25 @@ TEST(ThreeMfFile, DamageIsNamed) {
     return complaint(package(model(resources, items)));
   };
   EXPECT_THAT(complaint(package("<model>")), testing::HasSubstr("XML"));
-  EXPECT_THAT(broken(object(1, tetrahedron), "<item objectid=\"2\"/>"), testing::HasSubstr("no object '2'"));
+  EXPECT_THAT(broken(object(1, tetrahedron), "<item objectid=\"2\"/>"),
+              testing::HasSubstr("no object '2'"));
   EXPECT_THAT(broken(object(1, "<components><component objectid=\"1\"/></components>"), ""),
               testing::HasSubstr("no object '1'"));
-  EXPECT_THAT(broken(object(1, "<mesh><vertices><vertex x=\"nan\" y=\"0\" z=\"0\"/></vertices></mesh>"), ""),
-              testing::HasSubstr("not a number"));
-  EXPECT_THAT(broken(object(1, "<mesh><triangles><triangle v1=\"0\" v2=\"1\" v3=\"2\"/></triangles></mesh>"), ""),
-              testing::HasSubstr("not one of the 0 vertices"));
+  EXPECT_THAT(
+      broken(object(1, "<mesh><vertices><vertex x=\"nan\" y=\"0\" z=\"0\"/></vertices></mesh>"),
+             ""),
+      testing::HasSubstr("not a number"));
+  EXPECT_THAT(
+      broken(
+          object(1, "<mesh><triangles><triangle v1=\"0\" v2=\"1\" v3=\"2\"/></triangles></mesh>"),
+          ""),
+      testing::HasSubstr("not one of the 0 vertices"));
   std::string nested = object(1, tetrahedron);
   for (int i = 2; i < 60; ++i) {
-    nested += object(i, fmt::format("<components><component objectid=\"{0}\"/><component objectid=\"{0}\"/>"
-                                    "</components>", i - 1));
+    nested += object(
+        i, fmt::format("<components><component objectid=\"{0}\"/><component objectid=\"{0}\"/>"
+                       "</components>",
+                       i - 1));
   }
   EXPECT_THAT(broken(nested, "<item objectid=\"59\"/>"), testing::HasSubstr("too many"));
 }
@@ -205,10 +227,13 @@ TEST(ThreeMfFile, ExtensionsThatAreNeededAreRefused) {
     return package(model(object(1, tetrahedron), "<item objectid=\"1\"/>",
                          fmt::format("requiredextensions=\"b\" xmlns:b=\"{}\"", space)));
   };
-  EXPECT_EQ(parse(needing("http://schemas.microsoft.com/3dmanufacturing/material/2015/02")).surfaces.size(), 1u);
+  EXPECT_EQ(parse(needing("http://schemas.microsoft.com/3dmanufacturing/material/2015/02"))
+                .surfaces.size(),
+            1u);
   EXPECT_THAT(test::complaint<Unsupported>([&] {
-    parse(needing("http://schemas.microsoft.com/3dmanufacturing/beamlattice/2017/02"));
-  }), testing::HasSubstr("beamlattice"));
+                parse(needing("http://schemas.microsoft.com/3dmanufacturing/beamlattice/2017/02"));
+              }),
+              testing::HasSubstr("beamlattice"));
 }
 
 TEST(ThreeMfFile, OnlyPackagesWithAModelAreTaken) {

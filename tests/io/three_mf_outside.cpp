@@ -27,7 +27,8 @@ void read_strictly(const Model& model, std::string content) {
   PLib3MFModelReader* reader = nullptr;
   CHECK(lib3mf_model_queryreader(model.get, "3mf", &reader));
   CHECK(lib3mf_reader_setstrictmodeactive(reader, true));
-  CHECK(lib3mf_reader_readfrombuffer(reader, reinterpret_cast<BYTE*>(content.data()), content.size()));
+  CHECK(lib3mf_reader_readfrombuffer(reader, reinterpret_cast<BYTE*>(content.data()),
+                                     content.size()));
   DWORD warnings = 0;
   CHECK(lib3mf_reader_getwarningcount(reader, &warnings));
   EXPECT_EQ(warnings, 0u);
@@ -74,7 +75,8 @@ TEST(ThreeMfOutside, Lib3mfReadsOurs) {
     read_strictly(model, format_3mf("f.3mf", scene, m).at(0).content);
     DWORD unit = 0;
     CHECK(lib3mf_model_getunit(model.get, &unit));
-    EXPECT_EQ(unit, static_cast<DWORD>(m.factor == 1 ? MODELUNIT_MICROMETER : MODELUNIT_MILLIMETER));
+    EXPECT_EQ(unit,
+              static_cast<DWORD>(m.factor == 1 ? MODELUNIT_MICROMETER : MODELUNIT_MILLIMETER));
     const std::vector<Seen> seen = objects(model);
     ASSERT_EQ(seen.size(), 2u);
     EXPECT_EQ(seen[0].name, scene.surfaces[0].name);
@@ -84,8 +86,9 @@ TEST(ThreeMfOutside, Lib3mfReadsOurs) {
     EXPECT_FALSE(seen[1].is_closed);
     const Vec3 center = bounds(scene.surfaces[1].mesh).center_nm();
     const double scale = m.factor == 1 ? 1e-3 : 1;
-    EXPECT_FLOAT_EQ(seen[1].first.m_fPosition[0],
-                    static_cast<float>(scale * (scene.surfaces[1].mesh.vertices_nm[0].x - center.x)));
+    EXPECT_FLOAT_EQ(
+        seen[1].first.m_fPosition[0],
+        static_cast<float>(scale * (scene.surfaces[1].mesh.vertices_nm[0].x - center.x)));
   }
 }
 
@@ -98,7 +101,8 @@ TEST(ThreeMfOutside, WeReadTheirs) {
   const TriangleMesh f = test::letter_f_triangles();
   std::vector<MODELMESHVERTEX> vertices;
   for (const Vec3& v : f.vertices_nm) {
-    vertices.push_back({{static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)}});
+    vertices.push_back(
+        {{static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)}});
   }
   std::vector<MODELMESHTRIANGLE> triangles;
   for (const Triangle& t : f.triangles) triangles.push_back({{t[0], t[1], t[2]}});
@@ -119,7 +123,7 @@ TEST(ThreeMfOutside, WeReadTheirs) {
   EXPECT_EQ(scene.surfaces[0].mesh.triangles, f.triangles);
   for (std::size_t i = 0; i < f.vertices_nm.size(); ++i) {
     const Vec3 shifted = scene.surfaces[0].mesh.vertices_nm[i] - f.vertices_nm[i] * 25.4e6;
-    EXPECT_LT(length(shifted), 25.4e6 * 1e-6);   // six digits
+    EXPECT_LT(length(shifted), 25.4e6 * 1e-6);  // six digits
   }
 }
 

@@ -43,7 +43,10 @@ Pixels draw(std::span<const Track> tracks, const TrackPictureOptions& options) {
 }
 
 /// The middle of all pixels whose colour is near this one, and their number.
-struct Spot { double x = 0, y = 0; int count = 0; };
+struct Spot {
+  double x = 0, y = 0;
+  int count = 0;
+};
 
 Spot find_color(const Pixels& pixels, std::array<int, 3> color) {
   Spot spot;
@@ -114,7 +117,7 @@ TEST(TrackPicture, DrawsTheOutlineAndClips) {
 
 TEST(TrackPicture, PicksAWindowAroundWhatIsInside) {
   auto tracks = test::random_walks(40);
-  tracks[0].points_nm.front() = {0, 0, 1e7};   // a beam from far above
+  tracks[0].points_nm.front() = {0, 0, 1e7};  // a beam from far above
   const Pixels pixels = draw(tracks, {});
   EXPECT_GT(find_color(pixels, {0, 114, 178}).count, 500) << "primaries fill the picture";
 }
@@ -145,17 +148,14 @@ TEST(TrackPicture, RefusesWhatCannotBeDrawn) {
   EXPECT_THAT(refusal({.width_px = 100}), HasSubstr("100 pixels"));
   EXPECT_THAT(refusal({.height_px = 30000}), HasSubstr("30000 pixels"));
   EXPECT_THAT(refusal({.outline_nm = {{Vec3{infinity, 0, 0}, Vec3{}}}}), HasSubstr("outline"));
-  EXPECT_THAT(refusal({.window_nm = TrackPictureOptions::Window{0, 0, 0, 1}}),
-              HasSubstr("window"));
+  EXPECT_THAT(refusal({.window_nm = TrackPictureOptions::Window{0, 0, 0, 1}}), HasSubstr("window"));
   EXPECT_THAT(complaint<InvalidInput>([&] { write_track_picture(path, {}); }),
               HasSubstr("nothing to draw"));
   Track bad = tracks[0];
   bad.energy_ev.clear();
   EXPECT_THAT(complaint<InvalidInput>([&] { write_track_picture(path, std::array{bad}); }),
               HasSubstr("energies"));
-  EXPECT_THAT(complaint<UsageError>([&] {
-                write_track_picture(folder.path() / "t.jpg", tracks);
-              }),
+  EXPECT_THAT(complaint<UsageError>([&] { write_track_picture(folder.path() / "t.jpg", tracks); }),
               HasSubstr(".png"));
   EXPECT_EQ(test::files_in(folder.path()), 0);
   check_track_picture_target(folder.path() / "new" / "t.svg");

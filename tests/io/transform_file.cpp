@@ -42,11 +42,14 @@ TEST_F(TransformFileTest, ComesBackToTheLastDigit) {
 
 TEST_F(TransformFileTest, SixNumbersAreEnoughAndLessIsNot) {
   const std::string begin = R"({"semsurf": "transform", "version": 1, "sem_to_afm": )";
-  EXPECT_EQ(read_transform(file(begin + "[1, 0, 5, 0, 1, 7]}")).sem_to_afm, (Affine{1, 0, 5, 0, 1, 7}));
-  EXPECT_THAT([&] { read_transform(file(begin + "[1, 0, 5]}")); }, ThrowsMessage<FileError>(HasSubstr("3 numbers, not 6")));
+  EXPECT_EQ(read_transform(file(begin + "[1, 0, 5, 0, 1, 7]}")).sem_to_afm,
+            (Affine{1, 0, 5, 0, 1, 7}));
+  EXPECT_THAT([&] { read_transform(file(begin + "[1, 0, 5]}")); },
+              ThrowsMessage<FileError>(HasSubstr("3 numbers, not 6")));
   EXPECT_THAT([&] { read_transform(file(begin + "[1, 1, 5, 1, 1, 7]}")); },
               ThrowsMessage<FileError>(AllOf(HasSubstr("sem_to_afm"), HasSubstr("onto a line"))));
-  EXPECT_THAT([&] { read_transform(file(R"({"version": 1})")); }, ThrowsMessage<FileError>(HasSubstr("it is no transform")));
+  EXPECT_THAT([&] { read_transform(file(R"({"version": 1})")); },
+              ThrowsMessage<FileError>(HasSubstr("it is no transform")));
 }
 
 }  // namespace

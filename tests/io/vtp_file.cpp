@@ -24,18 +24,18 @@ using testing::HasSubstr;
 
 std::string array(const char* type, const char* name, const std::string& values,
                   const std::string& attributes = {}) {
-  return fmt::format("<DataArray type=\"{}\" Name=\"{}\" format=\"ascii\" {}>{}</DataArray>\n", type,
-                     name, attributes, values);
+  return fmt::format("<DataArray type=\"{}\" Name=\"{}\" format=\"ascii\" {}>{}</DataArray>\n",
+                     type, name, attributes, values);
 }
 
 /// A VTP file as text: its points, then cells and fields as given.
 std::string vtp(std::size_t points, const std::string& counts, const std::string& coordinates,
                 const std::string& rest, const char* type = "Float64") {
-  return fmt::format("<?xml version=\"1.0\"?>\n<VTKFile type=\"PolyData\" version=\"0.1\" "
-                     "byte_order=\"LittleEndian\">\n<PolyData>\n<Piece NumberOfPoints=\"{}\" {}>\n"
-                     "<Points>{}</Points>\n{}</Piece>\n</PolyData>\n</VTKFile>\n",
-                     points, counts,
-                     array(type, "Points", coordinates, "NumberOfComponents=\"3\""), rest);
+  return fmt::format(
+      "<?xml version=\"1.0\"?>\n<VTKFile type=\"PolyData\" version=\"0.1\" "
+      "byte_order=\"LittleEndian\">\n<PolyData>\n<Piece NumberOfPoints=\"{}\" {}>\n"
+      "<Points>{}</Points>\n{}</Piece>\n</PolyData>\n</VTKFile>\n",
+      points, counts, array(type, "Points", coordinates, "NumberOfComponents=\"3\""), rest);
 }
 
 std::string cells(const char* kind, const std::string& corners, const std::string& offsets) {
@@ -79,11 +79,10 @@ TEST(VtpFile, ReadsTheLetter) {
 }
 
 TEST(VtpFile, ReadsStripsAndSkipsPointsAndLines) {
-  const auto meshes =
-      read(vtp(5, "NumberOfVerts=\"2\" NumberOfLines=\"1\" NumberOfPolys=\"1\" NumberOfStrips=\"1\"",
-               square,
-               cells("Verts", "0 1", "1 2") + cells("Lines", "0 1 2", "3") +
-                   cells("Polys", "0 2 1", "3") + cells("Strips", "0 1 2 3 4 4", "6")));
+  const auto meshes = read(vtp(
+      5, "NumberOfVerts=\"2\" NumberOfLines=\"1\" NumberOfPolys=\"1\" NumberOfStrips=\"1\"", square,
+      cells("Verts", "0 1", "1 2") + cells("Lines", "0 1 2", "3") + cells("Polys", "0 2 1", "3") +
+          cells("Strips", "0 1 2 3 4 4", "6")));
   const TriangleMesh expected{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}, {0, 2, 0}},
                               {{0, 2, 1}, {0, 1, 2}, {1, 3, 2}, {2, 3, 4}}};
   ASSERT_EQ(meshes.size(), 1u);
@@ -97,23 +96,25 @@ std::string texts(const std::vector<std::string>& values) {
     for (const char c : value) list += fmt::format("{} ", static_cast<int>(c));
     list += "0 ";
   }
-  return array("String", "material", list,
-               fmt::format("NumberOfTuples=\"{}\"", values.size()));
+  return array("String", "material", list, fmt::format("NumberOfTuples=\"{}\"", values.size()));
 }
 
 TEST(VtpFile, MaterialsMakeBodies) {
-  const std::string polygons = cells("Verts", "0", "1") + cells("Polys", "0 1 2 1 3 2 2 3 4", "3 6 9");
+  const std::string polygons =
+      cells("Verts", "0", "1") + cells("Polys", "0 1 2 1 3 2 2 3 4", "3 6 9");
   const char* const counts = "NumberOfVerts=\"1\" NumberOfPolys=\"3\"";
-  const auto by_cell = read(vtp(5, counts, square,
-      polygons + "<CellData>" + texts({"none", "Au", "Si", "Au"}) + "</CellData>"));
+  const auto by_cell =
+      read(vtp(5, counts, square,
+               polygons + "<CellData>" + texts({"none", "Au", "Si", "Au"}) + "</CellData>"));
   ASSERT_EQ(by_cell.size(), 2u);
   EXPECT_EQ(by_cell[0].material, "Au");
   EXPECT_EQ(by_cell[0].mesh.triangles.size(), 2u);
   EXPECT_EQ(by_cell[1].material, "Si");
   EXPECT_EQ(by_cell[1].mesh.vertices_nm.front(), (Vec3{1, 0, 0}));
 
-  const auto by_point = read(vtp(5, counts, square,
-      polygons + "<PointData>" + texts({"Au", "Au", "C", "C", "C"}) + "</PointData>"));
+  const auto by_point =
+      read(vtp(5, counts, square,
+               polygons + "<PointData>" + texts({"Au", "Au", "C", "C", "C"}) + "</PointData>"));
   ASSERT_EQ(by_point.size(), 2u);
   EXPECT_EQ(by_point[0].material, "Au");
   EXPECT_EQ(by_point[1].material, "C");
@@ -123,7 +124,8 @@ TEST(VtpFile, MaterialsMakeBodies) {
 std::string written_by_vtk(const std::function<void(vtkXMLPolyDataWriter*)>& choose) {
   vtkNew<vtkPoints> points;
   points->SetDataTypeToDouble();
-  for (const Vec3& v : test::letter_f_triangles().vertices_nm) points->InsertNextPoint(v.x, v.y, v.z);
+  for (const Vec3& v : test::letter_f_triangles().vertices_nm)
+    points->InsertNextPoint(v.x, v.y, v.z);
   vtkNew<vtkCellArray> polygons;
   for (const Triangle& t : test::letter_f_triangles().triangles) {
     polygons->InsertNextCell({vtkIdType{t[0]}, vtkIdType{t[1]}, vtkIdType{t[2]}});
@@ -157,7 +159,7 @@ TEST(VtpFile, ReadsAllThatVtkWrites) {
               writer->SetCompressorType(compressor);
               writer->SetDataMode(mode);
               writer->SetEncodeAppendedData(encoded);
-              writer->SetBlockSize(256);   // several blocks, the last one smaller
+              writer->SetBlockSize(256);  // several blocks, the last one smaller
             }));
             ASSERT_EQ(meshes.size(), 1u);
             EXPECT_EQ(corners(meshes[0].mesh), corners(test::letter_f_triangles()));
@@ -179,8 +181,7 @@ TEST(VtpFile, OtherCompressorsAreNotSupported) {
 
 std::string refusal(const std::string& content) {
   const TemporaryFolder folder;
-  return complaint<FileError>(
-      [&] { read_mesh(write(folder.path() / "a.vtp", content)); });
+  return complaint<FileError>([&] { read_mesh(write(folder.path() / "a.vtp", content)); });
 }
 
 TEST(VtpFile, RefusesDamage) {
@@ -197,9 +198,9 @@ TEST(VtpFile, RefusesDamage) {
   EXPECT_THAT(refusal(vtp(6, "NumberOfPolys=\"1\"", square, "")), HasSubstr("6 points"));
   EXPECT_THAT(refusal(vtp(5, "NumberOfPolys=\"1e99\"", square, "")), HasSubstr("1e99"));
   EXPECT_THAT(refusal(polygons("0 1", "2")), HasSubstr("no triangles"));
-  EXPECT_THAT(refusal(vtp(3, "NumberOfPolys=\"1\"", "0 0 0 nan 0 0 0 1 0",
-                          cells("Polys", "0 1 2", "3"))),
-              HasSubstr("point 1 is not finite"));
+  EXPECT_THAT(
+      refusal(vtp(3, "NumberOfPolys=\"1\"", "0 0 0 nan 0 0 0 1 0", cells("Polys", "0 1 2", "3"))),
+      HasSubstr("point 1 is not finite"));
   const std::string good = vtp_of_f("Float64");
   EXPECT_THAT(refusal(good.substr(0, good.size() / 2)), HasSubstr("cut off"));
   EXPECT_THAT(refusal(good + "<AppendedData encoding=\"raw\">"), HasSubstr("cut off"));

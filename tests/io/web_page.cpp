@@ -35,7 +35,8 @@ struct Opened {
   }
 
   std::string bytes(const nlohmann::json& place) const {
-    static const std::string digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    static const std::string digits =
+        "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     std::string decoded;
     unsigned held = 0;
     int bits = 0;
@@ -114,7 +115,8 @@ class WebPage : public testing::Test {
 
   template <class E = InvalidInput>
   std::string refused(const io::WebPage& page) {
-    const std::string said = complaint<E>([&] { io::write_web_page(folder_.path() / "page.html", page); });
+    const std::string said =
+        complaint<E>([&] { io::write_web_page(folder_.path() / "page.html", page); });
     EXPECT_FALSE(std::filesystem::exists(folder_.path() / "page.html"));
     return said;
   }
@@ -133,7 +135,8 @@ TEST_F(WebPage, KeepsAFieldWhereItLies) {
   const std::vector<float> heights = page.floats(surface.at("heights"));
   const HeightField field = field_of_f();
   ASSERT_EQ(heights.size(), field.z_nm.size());
-  for (std::size_t i = 0; i < heights.size(); ++i)   // row by row, the lowest first, to float32 of the range
+  for (std::size_t i = 0; i < heights.size();
+       ++i)  // row by row, the lowest first, to float32 of the range
     EXPECT_NEAR(middle + double(heights[i]), field.z_nm.data()[i], 1e-7);
 }
 
@@ -145,9 +148,11 @@ TEST_F(WebPage, LeavesHolesOpen) {
   field.z_nm(3, 2) = nan;
   const Opened opened = written(page);
   const std::vector<float> heights = opened.floats(opened.scene.at("surfaces").at(0).at("heights"));
-  for (std::size_t i = 0; i < heights.size(); ++i) EXPECT_EQ(std::isnan(heights[i]), i == 2 * 5 + 3) << i;
+  for (std::size_t i = 0; i < heights.size(); ++i)
+    EXPECT_EQ(std::isnan(heights[i]), i == 2 * 5 + 3) << i;
   for (unsigned char& valid : field.valid.data()) valid = 0;
-  EXPECT_THAT(refused((std::filesystem::remove(folder_.path() / "page.html"), page)), HasSubstr("every sample is a hole"));
+  EXPECT_THAT(refused((std::filesystem::remove(folder_.path() / "page.html"), page)),
+              HasSubstr("every sample is a hole"));
 }
 
 TEST_F(WebPage, KeepsMeshesAndScalars) {
@@ -171,7 +176,8 @@ TEST_F(WebPage, KeepsMeshesAndScalars) {
     EXPECT_NEAR(middle[2] + double(planes[2 * count + i]), vertex.z, 1e-6);
   }
   std::vector<std::uint32_t> corners;
-  for (const Triangle& triangle : mesh.triangles) corners.insert(corners.end(), triangle.begin(), triangle.end());
+  for (const Triangle& triangle : mesh.triangles)
+    corners.insert(corners.end(), triangle.begin(), triangle.end());
   EXPECT_EQ(opened.words(surface.at("corners")), corners);
   const std::vector<float> kept = opened.floats(surface.at("scalars").at(0).at("values"));
   ASSERT_EQ(kept.size(), values.size());
@@ -186,7 +192,7 @@ TEST_F(WebPage, KeepsPicturesInTheirOwnGreys) {
   page.drape = io::WebDrape{0, "BSE.stderr"};
   const Opened opened = written(page);
   const auto& image = opened.scene.at("images").at(0);
-  ASSERT_EQ(image.at("channels").size(), 3u);   // not "valid"
+  ASSERT_EQ(image.at("channels").size(), 3u);  // not "valid"
   EXPECT_EQ(image.at("channels").at(1).at("name"), "BSE.stderr");
   EXPECT_EQ(image.at("origin_nm").at(0), -100.0 / 3);
   EXPECT_EQ(image.at("channels").at(0).at("low"), 0.25);
@@ -197,7 +203,8 @@ TEST_F(WebPage, KeepsPicturesInTheirOwnGreys) {
   ASSERT_EQ(read.height(), 7);
   const Grid<float> f = letter_f();
   for (std::size_t i = 0; i < f.size(); ++i)
-    EXPECT_EQ(read.channels.front().values.data()[i], std::round(255 * (f.data()[i] - 0.25f) / 0.75f));
+    EXPECT_EQ(read.channels.front().values.data()[i],
+              std::round(255 * (f.data()[i] - 0.25f) / 0.75f));
 
   page.images[0].has_scale = false;
   page.drape.reset();
@@ -208,7 +215,8 @@ TEST_F(WebPage, NeedsNothingElse) {
   const std::string html = written(page_of_f()).html;
   for (const char* outside : {"src=\"http", "href=\"http", "<link", "@import", "url(http"})
     EXPECT_THAT(html, Not(HasSubstr(outside)));
-  EXPECT_THAT(html, HasSubstr("Permission is hereby granted"));   // the licence of three.js goes along
+  EXPECT_THAT(html,
+              HasSubstr("Permission is hereby granted"));  // the licence of three.js goes along
   EXPECT_THAT(html, Not(HasSubstr("<!--semsurf:")));
 }
 
@@ -231,12 +239,14 @@ TEST_F(WebPage, IsSmallForALargeField) {
   HeightField field;
   field.z_nm = Grid<double>(512, 512);
   for (int y = 0; y < 512; ++y)
-    for (int x = 0; x < 512; ++x) field.z_nm(x, y) = 10 * std::sin(0.02 * x) * std::cos(0.03 * y) + 1e-3 * ((x * 7919 + y * 104729) % 997);
+    for (int x = 0; x < 512; ++x)
+      field.z_nm(x, y) =
+          10 * std::sin(0.02 * x) * std::cos(0.03 * y) + 1e-3 * ((x * 7919 + y * 104729) % 997);
   io::WebPage page;
   page.surfaces.push_back({"field", field, {}, {}});
   const io::WebPageSummary summary = io::write_web_page(folder_.path() / "page.html", page);
   EXPECT_EQ(summary.bytes, std::filesystem::file_size(folder_.path() / "page.html"));
-  EXPECT_LT(summary.bytes - summary.viewer_bytes, 1'200'000u);   // 1.4 MB of base64 alone
+  EXPECT_LT(summary.bytes - summary.viewer_bytes, 1'200'000u);  // 1.4 MB of base64 alone
   EXPECT_LT(summary.viewer_bytes, 900'000u);
 }
 
@@ -266,16 +276,20 @@ TEST_F(WebPage, RefusesWhatItCannotShow) {
 
 TEST_F(WebPage, RefusesBadTargets) {
   const io::WebPage page = page_of_f();
-  EXPECT_THAT(complaint<UsageError>([&] { io::write_web_page(folder_.path() / "page.glb", page); }), HasSubstr("ends in .html"));
+  EXPECT_THAT(complaint<UsageError>([&] { io::write_web_page(folder_.path() / "page.glb", page); }),
+              HasSubstr("ends in .html"));
   write(folder_.path() / "file", "");
-  EXPECT_THAT(complaint<FileError>([&] { io::write_web_page(folder_.path() / "file" / "page.html", page); }), HasSubstr("page.html"));
+  EXPECT_THAT(complaint<FileError>(
+                  [&] { io::write_web_page(folder_.path() / "file" / "page.html", page); }),
+              HasSubstr("page.html"));
   EXPECT_EQ(files_in(folder_.path()), 1);
 }
 
 TEST_F(WebPage, WritesNothingWhenCancelled) {
   CancelToken cancel;
   cancel.cancel();
-  const io::WebPageSummary summary = io::write_web_page(folder_.path() / "page.html", page_of_f(), {}, &cancel);
+  const io::WebPageSummary summary =
+      io::write_web_page(folder_.path() / "page.html", page_of_f(), {}, &cancel);
   EXPECT_EQ(summary.bytes, 0u);
   EXPECT_EQ(files_in(folder_.path()), 0);
 }

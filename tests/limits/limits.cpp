@@ -13,7 +13,9 @@ namespace {
 
 using testing::HasSubstr;
 
-std::string name_of(const testing::TestParamInfo<std::size_t>& info) { return sweeps()[info.param].name; }
+std::string name_of(const testing::TestParamInfo<std::size_t>& info) {
+  return sweeps()[info.param].name;
+}
 
 class Limits : public testing::TestWithParam<std::size_t> {
  protected:
@@ -36,7 +38,8 @@ TEST_P(Limits, OnePointIsMadeAgain) {
       const double kept = there.rows[i][c + 1];
       ASSERT_EQ(std::isfinite(kept), std::isfinite(row[c])) << sweep().columns[c + 1];
       if (!std::isfinite(kept)) continue;
-      EXPECT_NEAR(row[c], kept, sweep().tolerance * std::max(std::abs(kept), 1e-6)) << sweep().columns[c + 1];
+      EXPECT_NEAR(row[c], kept, sweep().tolerance * std::max(std::abs(kept), 1e-6))
+          << sweep().columns[c + 1];
     }
     return;
   }
@@ -49,7 +52,8 @@ TEST_P(Limits, IsShownOnThePage) {
   for (const auto& entry : std::filesystem::directory_iterator(SEMSURF_LIMITS))
     if (entry.path().extension() == ".md") pages += io::read_file(entry.path());
   // "(" on the pages beside the pictures, "/" on docs/limits.md.
-  EXPECT_THAT(pages, testing::AnyOf(HasSubstr("(" + sweep().name + ".svg"), HasSubstr("limits/" + sweep().name + ".svg")));
+  EXPECT_THAT(pages, testing::AnyOf(HasSubstr("(" + sweep().name + ".svg"),
+                                    HasSubstr("limits/" + sweep().name + ".svg")));
 }
 
 INSTANTIATE_TEST_SUITE_P(Sweeps, Limits, testing::Range(std::size_t{0}, sweeps().size()), name_of);

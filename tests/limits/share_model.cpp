@@ -30,9 +30,10 @@ TEST(ShareModel, FewRanksLoseNothingButTheEnd) {
 
 TEST(ShareModel, TheLeaderBoundsWhatManyRanksGain) {
   UnitCosts costs = long_units();
-  costs.merge_s = 1e-3;   // a hundred threads' worth
+  costs.merge_s = 1e-3;  // a hundred threads' worth
   const Messages m = quick();
-  const Sharing few = simulate_sharing(costs, m, {400, 1}, 40000), many = simulate_sharing(costs, m, {800, 1}, 40000);
+  const Sharing few = simulate_sharing(costs, m, {400, 1}, 40000),
+                many = simulate_sharing(costs, m, {800, 1}, 40000);
   EXPECT_GT(few.leader_busy, 0.95);
   EXPECT_NEAR(many.seconds / few.seconds, 1, 0.02);
   EXPECT_NEAR(few.seconds / bound_sharing(costs, m, {400, 1}, 40000).seconds, 1, 0.05);

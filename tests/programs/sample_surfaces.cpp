@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Usage: sample_surfaces FOLDER. Writes a closed letter F of 300 x 250 x 25 nm in every format, as letter.EXT,
-// with a picture, scalars and electron tracks where the format holds them; the letter and a copy beside it as
-// pair.EXT where it holds several; and expected.json.
+// Usage: sample_surfaces FOLDER. Writes a closed letter F of 300 x 250 x 25 nm in every format, as
+// letter.EXT, with a picture, scalars and electron tracks where the format holds them; the letter
+// and a copy beside it as pair.EXT where it holds several; and expected.json.
 #include <fmt/format.h>
 
 #include <cstdio>
 #include <exception>
 #include <filesystem>
 
-#include "surface_scenes.h"
 #include "surf/io/files.h"
 #include "surf/mesh/measure_mesh.h"
+#include "surface_scenes.h"
 
 namespace surf {
 namespace {
@@ -45,8 +45,9 @@ void write_samples(const std::filesystem::path& folder) {
   io::write_text(folder / "expected.json",
                  fmt::format("{{\"vertices\": {}, \"triangles\": {}, \"low\": [{}, {}, {}], "
                              "\"high\": [{}, {}, {}], \"volume\": {}}}\n",
-                             mesh.vertices_nm.size(), mesh.triangles.size(), box.lower_nm.x, box.lower_nm.y,
-                             box.lower_nm.z, box.upper_nm.x, box.upper_nm.y, box.upper_nm.z, 8 * 100 * 50 * 25));
+                             mesh.vertices_nm.size(), mesh.triangles.size(), box.lower_nm.x,
+                             box.lower_nm.y, box.lower_nm.z, box.upper_nm.x, box.upper_nm.y,
+                             box.upper_nm.z, 8 * 100 * 50 * 25));
 }
 
 }  // namespace

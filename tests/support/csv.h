@@ -11,7 +11,8 @@
 
 namespace surf::test {
 
-/// The rows of a file in data/reference, each from column name to text. Quoted fields may hold commas.
+/// The rows of a file in data/reference, each from column name to text. Quoted fields may hold
+/// commas.
 inline std::vector<std::map<std::string, std::string>> read_reference(const std::string& name) {
   std::ifstream in(std::string(SEMSURF_REFERENCE_DATA) + "/" + name);
   if (!in) throw std::runtime_error("no reference data " + name);

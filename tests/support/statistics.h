@@ -67,7 +67,11 @@ inline void expect_mean(double mean, double standard_error, double truth,
 /// Mean and standard error of a sample.
 class Sample {
  public:
-  void add(double x) { ++n_; sum_ += x; squares_ += x * x; }
+  void add(double x) {
+    ++n_;
+    sum_ += x;
+    squares_ += x * x;
+  }
   double mean() const { return sum_ / n_; }
   double standard_error() const {
     return std::sqrt(std::fmax(0.0, squares_ / n_ - mean() * mean()) / (n_ - 1));

@@ -13,12 +13,13 @@
 
 namespace surf::test {
 
-/// Scans of known surfaces by a known tip: the experiment of Matsunaga et al., Sci. Rep. 13 (2023), made
-/// anew. 20 frames of 30 x 30 pixels of 1.5 nm; in each a heap of atoms, 1 to 7 nm high, on a plane.
+/// Scans of known surfaces by a known tip: the experiment of Matsunaga et al., Sci. Rep. 13 (2023),
+/// made anew. 20 frames of 30 x 30 pixels of 1.5 nm; in each a heap of atoms, 1 to 7 nm high, on a
+/// plane.
 struct TwinExperiment {
   std::vector<HeightField> surfaces, scans;
   Tip tip;
-  Grid<long> touched;   ///< per sample of the tip: pixels of the noiseless scans that it touches in
+  Grid<long> touched;  ///< per sample of the tip: pixels of the noiseless scans that it touches in
 
   /// Of an estimate of the same size, root mean square over the samples that touched, nm.
   double error_of(const Tip& estimate) const {
@@ -34,8 +35,8 @@ struct TwinExperiment {
   }
 };
 
-/// A ball of 2 nm radius on a cone of 20 degrees half angle; `apart_nm` > 0: two of them that far apart, the
-/// second 0.4 nm shorter.
+/// A ball of 2 nm radius on a cone of 20 degrees half angle; `apart_nm` > 0: two of them that far
+/// apart, the second 0.4 nm shorter.
 inline Tip twin_tip(int size, double apart_nm) {
   Tip tip;
   tip.z_nm = Grid<double>(size, size);
@@ -73,7 +74,8 @@ inline TwinExperiment twin_experiment(const AfmNoise& noise, double apart_nm, st
       const int y = pixels / 2 + static_cast<int>(std::lround(out_to * std::sin(turn)));
       surface.z_nm(x, y) = std::max(surface.z_nm(x, y), 1 + 6 * random.uniform());
     }
-    const Grid<double> added = simulate_noise(noise, pixels, pixels, seed + 1000 + static_cast<std::uint64_t>(f));
+    const Grid<double> added =
+        simulate_noise(noise, pixels, pixels, seed + 1000 + static_cast<std::uint64_t>(f));
     HeightField scan = surface;
     for (int y = 0; y < pixels; ++y)
       for (int x = 0; x < pixels; ++x) {

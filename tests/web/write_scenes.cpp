@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Writes every kind of glTF file for the checkers, and beside each the box that it should have in a viewer.
-// Usage: web_scenes FOLDER
+// Writes every kind of glTF file for the checkers, and beside each the box that it should have in a
+// viewer. Usage: web_scenes FOLDER
 #include <fmt/format.h>
 
 #include <exception>
@@ -23,8 +23,8 @@ std::string expected_box(const SurfaceScene& scene, const io::Magnification& mag
   }
   const double s = magnification.factor * 1e-9, z = s * magnification.z_exaggeration;
   const Vec3 &low = box.lower_nm, &high = box.upper_nm;
-  return fmt::format("[[{}, {}, {}], [{}, {}, {}]]\n", s * low.x, z * low.z, -s * high.y, s * high.x, z * high.z,
-                     -s * low.y);
+  return fmt::format("[[{}, {}, {}], [{}, {}, {}]]\n", s * low.x, z * low.z, -s * high.y,
+                     s * high.x, z * high.z, -s * low.y);
 }
 
 void write(const std::filesystem::path& path, const SurfaceScene& scene,
@@ -50,11 +50,15 @@ void write_all(const std::filesystem::path& folder) {
   draped.drape->origin_x_nm = -16;
   draped.drape->origin_y_nm = -20 + 20.0 / 7;
   write(folder / "draped.gltf", test::scene_of(draped));
-  write(folder / "large.glb", test::scene_of(test::wavy_sheet("70,225 vertices", 264, {1e7, 0, 0})));
-  write(folder / "one.glb", test::scene_of({"one", {{{0, 0, 0}, {1e-3, 0, 0}, {0, 1e-3, 0}}, {{0, 1, 2}}}, {}, {}}));
-  write(folder / "thin.glb",
-        test::scene_of({"thin", {{{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {0, 1, 0}}, {{0, 1, 2}, {0, 1, 3}, {1, 1, 1}}},
-                        {}, {}}));
+  write(folder / "large.glb",
+        test::scene_of(test::wavy_sheet("70,225 vertices", 264, {1e7, 0, 0})));
+  write(folder / "one.glb",
+        test::scene_of({"one", {{{0, 0, 0}, {1e-3, 0, 0}, {0, 1e-3, 0}}, {{0, 1, 2}}}, {}, {}}));
+  write(folder / "thin.glb", test::scene_of({"thin",
+                                             {{{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {0, 1, 0}},
+                                              {{0, 1, 2}, {0, 1, 3}, {1, 1, 1}}},
+                                             {},
+                                             {}}));
 }
 
 }  // namespace

@@ -49,8 +49,11 @@ TEST_P(AccuracyOf, SameBytesForAnyThreadsAndCache) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Tiers, AccuracyOf, testing::Values("inelastic=monsel", "inelastic=dielectric"),
-                         [](const auto& instance) { return std::string(instance.param).substr(10); });
+INSTANTIATE_TEST_SUITE_P(Tiers, AccuracyOf,
+                         testing::Values("inelastic=monsel", "inelastic=dielectric"),
+                         [](const auto& instance) {
+                           return std::string(instance.param).substr(10);
+                         });
 
 TEST(Accuracy, IsReachedAndRecorded) {
   const TemporaryFolder folder;
@@ -68,10 +71,12 @@ TEST(Accuracy, IsReachedAndRecorded) {
   const Channel &electrons = *image.find("electrons"), &model = *image.find("model");
   for (int y = 0; y < yield.values.height(); ++y)
     for (int x = 0; x < yield.values.width(); ++x) {
-      EXPECT_LE(error.values(x, y),
-                1.1001 * std::max(0.05f, 0.2f * yield.values(x, y))) << x << ", " << y;
+      EXPECT_LE(error.values(x, y), 1.1001 * std::max(0.05f, 0.2f * yield.values(x, y)))
+          << x << ", " << y;
       EXPECT_GE(model.values(x, y), 2);
-      if (model.values(x, y) != 4) { EXPECT_GE(electrons.values(x, y), 32); }
+      if (model.values(x, y) != 4) {
+        EXPECT_GE(electrons.values(x, y), 32);
+      }
     }
   ASSERT_NE(image.find("BSE.variance_left"), nullptr);
   const auto record = nlohmann::json::parse(bytes_of(folder.path() / "image.run.json"));
@@ -87,7 +92,8 @@ TEST(Accuracy, FewPrimariesAreFollowedDirectly) {
   const SimulateSummary s = run(job);
   EXPECT_EQ(s.choice.method, mc::Method::direct);
   EXPECT_EQ(s.statistics.missed, 0);
-  EXPECT_EQ(s.statistics.models[static_cast<std::size_t>(mc::PixelModel::direct)], s.statistics.seen);
+  EXPECT_EQ(s.statistics.models[static_cast<std::size_t>(mc::PixelModel::direct)],
+            s.statistics.seen);
   EXPECT_EQ(s.statistics.electrons[static_cast<std::size_t>(mc::PixelModel::direct)],
             std::llround(s.statistics.mean_electrons * static_cast<double>(s.statistics.seen)));
   const Image image = io::read_image(job.outputs[0]);
@@ -133,10 +139,11 @@ TEST(Accuracy, WarnsWhereItIsNotReached) {
   EXPECT_THAT(warn_after(result, summary), testing::IsEmpty());
   summary.missed = 5;
   summary.worst = 1.5;
-  EXPECT_THAT(warn_after(result, summary),
-              testing::ElementsAre("5 of 50 pixels (10 %) did not reach the accuracy of 2 %; the worst "
-                                   "standard error is 1.5 times what was asked for"));
-  result.complete = false;   // says so itself
+  EXPECT_THAT(
+      warn_after(result, summary),
+      testing::ElementsAre("5 of 50 pixels (10 %) did not reach the accuracy of 2 %; the worst "
+                           "standard error is 1.5 times what was asked for"));
+  result.complete = false;  // says so itself
   EXPECT_THAT(warn_after(result, summary), testing::IsEmpty());
 }
 

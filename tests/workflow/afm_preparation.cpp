@@ -24,7 +24,8 @@ HeightField scan(double radius_nm) {
     for (int x = 0; x < field.z_nm.width() - 35; ++x)
       field.z_nm(x, y) = std::max(field.z_nm(x, y), other.z_nm(x + 35, y));
   field = dilate(field, conical_tip(radius_nm, 0.35, {pitch, pitch, 25, 25}));
-  const Grid<double> noise = simulate_noise({0.6, 0.02}, field.z_nm.width(), field.z_nm.height(), 2);
+  const Grid<double> noise =
+      simulate_noise({0.6, 0.02}, field.z_nm.width(), field.z_nm.height(), 2);
   for (int y = 0; y < field.z_nm.height(); ++y)
     for (int x = 0; x < field.z_nm.width(); ++x)
       field.z_nm(x, y) += noise(x, y) + 0.01 * field.x_nm(x) + 300;
@@ -50,7 +51,7 @@ TEST(AfmPreparation, TakesWhatIsGiven) {
   EXPECT_EQ(p.image.z_nm, as_read.z_nm);
   EXPECT_EQ(p.noise.innovation_nm2, 0.3);
   EXPECT_TRUE(p.tip_given);
-  EXPECT_EQ(p.tip.z_nm.width(), 17);   // at the scan's pitch
+  EXPECT_EQ(p.tip.z_nm.width(), 17);  // at the scan's pitch
   EXPECT_EQ(p.tip.pitch_x_nm, pitch);
 }
 
@@ -58,7 +59,8 @@ TEST(AfmPreparation, TakesWhatIsGiven) {
 HeightField walls(double radius_nm) {
   HeightField f{Grid<double>(70, 60), {}, pitch, pitch};
   for (int y = 0; y < 60; ++y)
-    for (int x = 0; x < 70; ++x) f.z_nm(x, y) = std::abs(x - 25) < 2 || std::abs(y - 35) < 2 ? 40 : 0;
+    for (int x = 0; x < 70; ++x)
+      f.z_nm(x, y) = std::abs(x - 25) < 2 || std::abs(y - 35) < 2 ? 40 : 0;
   f = dilate(f, conical_tip(radius_nm, 0.35, {pitch, pitch, 25, 25}));
   const Grid<double> noise = simulate_noise({0.6, 0.02}, 70, 60, 4);
   for (std::size_t i = 0; i < noise.size(); ++i) f.z_nm.data()[i] += noise.data()[i];
@@ -72,17 +74,19 @@ TEST(AfmPreparation, TipsAreRoundUnlessASizeIsSaid) {
   const Tip truth = conical_tip(30, 0.35, {pitch, pitch, 13, 13});
   for (int r = 1; r <= 3 && p.tip.apex_x + r < p.tip.z_nm.width(); ++r) {
     EXPECT_LT(p.tip.z_nm(p.tip.apex_x + r, p.tip.apex_y), 0) << r;
-    EXPECT_GT(p.tip.z_nm(p.tip.apex_x + r, p.tip.apex_y), truth.z_nm(8 + r, 6)) << r;   // narrower by less than two samples
+    EXPECT_GT(p.tip.z_nm(p.tip.apex_x + r, p.tip.apex_y), truth.z_nm(8 + r, 6))
+        << r;  // narrower by less than two samples
   }
-  EXPECT_LE(std::ranges::min(p.tip.z_nm.data()), -35);   // down the relief
-  EXPECT_GT(p.image.z_nm(30, 15) - p.eroded().z_nm(30, 15), 2);   // beside a wall the tip's flank is gone
+  EXPECT_LE(std::ranges::min(p.tip.z_nm.data()), -35);  // down the relief
+  EXPECT_GT(p.image.z_nm(30, 15) - p.eroded().z_nm(30, 15),
+            2);  // beside a wall the tip's flank is gone
   AfmPreparationOptions free;
   free.tip_size = 9;
   EXPECT_EQ(prepare_afm(seen, free).tip.z_nm.width(), 9);
 }
 
 TEST(AfmPreparation, AScanThatTellsNothingOfItsTipIsTheSurface) {
-  const PreparedAfm p = prepare_afm(scan(5));   // corners square to the pixel bound no tip
+  const PreparedAfm p = prepare_afm(scan(5));  // corners square to the pixel bound no tip
   EXPECT_EQ(p.tip.z_nm.width(), 1);
   EXPECT_THAT(p.warnings, testing::Contains(testing::HasSubstr("taken as sharp")));
 }
@@ -92,15 +96,18 @@ TEST(AfmPreparation, DoubtsATipThatTheScanDoesNotTell) {
   o.tip_size = 9;
   const PreparedAfm told = prepare_afm(walls(30), o);
   EXPECT_EQ(told.tip.doubt, "");
-  o.noise = AfmNoise{0, 400};   // 20 nm of noise hide walls of 40 nm
+  o.noise = AfmNoise{0, 400};  // 20 nm of noise hide walls of 40 nm
   const PreparedAfm p = prepare_afm(walls(30), o);
   EXPECT_THAT(p.tip.doubt, testing::HasSubstr("is the largest that was tried"));
-  EXPECT_THAT(p.warnings, testing::Contains(testing::HasSubstr("not to be trusted: its threshold of")));
+  EXPECT_THAT(p.warnings,
+              testing::Contains(testing::HasSubstr("not to be trusted: its threshold of")));
   o = {};
-  o.tip = p.tip;   // as from a file
+  o.tip = p.tip;  // as from a file
   const PreparedAfm again = prepare_afm(walls(30), o);
   EXPECT_EQ(again.tip.doubt, p.tip.doubt);
-  EXPECT_THAT(again.warnings, testing::Contains(testing::HasSubstr("tip: it says that this tip is not to be trusted")));
+  EXPECT_THAT(
+      again.warnings,
+      testing::Contains(testing::HasSubstr("tip: it says that this tip is not to be trusted")));
 }
 
 TEST(AfmPreparation, RefusesWhatCannotBe) {
@@ -110,7 +117,7 @@ TEST(AfmPreparation, RefusesWhatCannotBe) {
   wide.tip_size = 99;
   EXPECT_THROW(prepare_afm(scan(5), wide), UsageError);
   HeightField quiet = make_mesa({495, 395, pitch}, 60, 120, 15);
-  EXPECT_THROW(prepare_afm(quiet), InvalidInput);   // no noise to judge tips by
+  EXPECT_THROW(prepare_afm(quiet), InvalidInput);  // no noise to judge tips by
 }
 
 }  // namespace

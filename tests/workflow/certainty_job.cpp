@@ -19,11 +19,13 @@ HeightField scan() {
 
 TEST(CertaintyJob, FindsTheNoiseAndSaysSo) {
   test::Heard heard;
-  const CertaintyResult r = certainty(scan(), conical_tip(5, 0.5, {2, 2, 5, 5}), {}, heard.reporter());
+  const CertaintyResult r =
+      certainty(scan(), conical_tip(5, 0.5, {2, 2, 5, 5}), {}, heard.reporter());
   EXPECT_DOUBLE_EQ(r.used.noise_nm.value_or(0), pixel_noise_nm(scan()));
   EXPECT_EQ(r.used.neighbourhood, r.map.neighbourhood);
   EXPECT_TRUE(r.trustworthy);
-  EXPECT_THAT(heard.notes, testing::ElementsAre(testing::HasSubstr("`scan.height_noise` says otherwise")));
+  EXPECT_THAT(heard.notes,
+              testing::ElementsAre(testing::HasSubstr("`scan.height_noise` says otherwise")));
 }
 
 TEST(CertaintyJob, WarnsOfATipThatCannotHaveMadeTheScan) {
@@ -33,8 +35,8 @@ TEST(CertaintyJob, WarnsOfATipThatCannotHaveMadeTheScan) {
   p.noise_nm = 0.001;
   test::Heard heard;
   EXPECT_FALSE(certainty(scan(), flat, p, heard.reporter()).trustworthy);
-  EXPECT_THAT(heard.warnings,
-              testing::ElementsAre(testing::HasSubstr("or `scan.height_noise` larger. A map of so little")));
+  EXPECT_THAT(heard.warnings, testing::ElementsAre(testing::HasSubstr(
+                                  "or `scan.height_noise` larger. A map of so little")));
 }
 
 TEST(CertaintyJob, TakesNoCorrelation) {

@@ -87,7 +87,8 @@ TEST_F(ChainChart, ShowsEveryMethodInASaneOrder) {
   std::set<std::string> families;
   for (const RegistrationPoint& p : s.registrations) families.insert(p.family);
   for (const ChainFamily& f : chain_chart_families())
-    EXPECT_EQ(f.registers ? families.contains(f.name) : reconstructions.contains(f.name), f.name != "chain")
+    EXPECT_EQ(f.registers ? families.contains(f.name) : reconstructions.contains(f.name),
+              f.name != "chain")
         << f.name;
 
   for (const RegistrationPoint& p : s.registrations) {
@@ -97,7 +98,8 @@ TEST_F(ChainChart, ShowsEveryMethodInASaneOrder) {
   }
   EXPECT_EQ(registrations.at("landmarks-only-0.1px")->right, 1);
   EXPECT_EQ(registrations.at("landmarks-only-16px")->wrong, 1);
-  EXPECT_LT(registrations.at("landmarks-4px")->largest_px, 1);   // refined, it is nearer than they are
+  EXPECT_LT(registrations.at("landmarks-4px")->largest_px,
+            1);  // refined, it is nearer than they are
 
   EXPECT_NEAR(reconstructions.at("erosion")->steps[0].rms_nm, s.eroded_nm, 1e-12);
   EXPECT_LT(reconstructions.at("gauss-newton")->steps.back().rms_nm, s.eroded_nm);
@@ -111,8 +113,9 @@ TEST_F(ChainChart, ShowsEveryMethodInASaneOrder) {
       EXPECT_TRUE(std::isfinite(step.rms_nm)) << p.id;
     }
   }
-  for (const char* name : {"registration.csv", "registration.svg", "registration.png", "reconstruction.csv",
-                           "reconstruction.svg", "reconstruction.png", "chart.json"})
+  for (const char* name :
+       {"registration.csv", "registration.svg", "registration.png", "reconstruction.csv",
+        "reconstruction.svg", "reconstruction.png", "chart.json"})
     EXPECT_GT(fs::file_size(folder.path() / name), 100u) << name;
   EXPECT_EQ(figures(folder.path() / "registration.csv").size(), 1 + s.registrations.size());
 }
@@ -146,24 +149,25 @@ TEST_F(ChainChart, TheSameJobGoesOnToTheSameFigures) {
     EXPECT_LE(done, total + 1e-9);
     last = done;
   };
-  io::write_text(job.folder / "points" / "landmarks-only-4px.json", "{\"job\"");   // damaged
+  io::write_text(job.folder / "points" / "landmarks-only-4px.json", "{\"job\"");  // damaged
   const ChainChartSummary second = run(job, again);
   EXPECT_TRUE(second.complete);
   EXPECT_EQ(second.found, 3);
   same(job.folder);
 
   job.families = {"landmarks-only"};
-  job.seed = 2;   // another job's points do not count
+  job.seed = 2;  // another job's points do not count
   const ChainChartSummary other = run(job);
   EXPECT_EQ(other.found, 0);
   EXPECT_TRUE(other.reconstructions.empty());
-  EXPECT_NE(figures(job.folder / "registration.csv"), figures(folder.path() / "whole" / "registration.csv"));
+  EXPECT_NE(figures(job.folder / "registration.csv"),
+            figures(folder.path() / "whole" / "registration.csv"));
 }
 
 TEST_F(ChainChart, DrawsAreAsFarOffAsTheySay) {
   const SampleTruth sample = read_sample(small_job("unused").sample);
   const Affine& truth = sample.sem.sem_to_afm;
-  PlacedImage everywhere = sample.sem.image;   // whatever the map, it lies on this
+  PlacedImage everywhere = sample.sem.image;  // whatever the map, it lies on this
   everywhere.origin_x_nm = everywhere.origin_y_nm = -1e5;
   everywhere.values = Grid<double>(2, 2);
   everywhere.pitch_x_nm = everywhere.pitch_y_nm = 2e5;
@@ -197,9 +201,11 @@ TEST_F(ChainChart, ReadsWhatIsTrueOfASample) {
   SampleTruth s = read_sample(small_job("unused").sample);
   const auto json = nlohmann::json::parse(s.json);
   EXPECT_EQ(s.name, "pads");
-  EXPECT_NEAR(s.scan.z_nm(0, 0) - s.afm.image.z_nm(0, 0), json["afm"]["offset_nm"].get<double>(), 1e-9);
-  EXPECT_NEAR((s.scan.z_nm(0, 30) - s.afm.image.z_nm(0, 30)) - (s.scan.z_nm(0, 0) - s.afm.image.z_nm(0, 0)),
-              30 * 20 * std::tan(json["afm"]["tilt_y_deg"].get<double>() * std::acos(-1.0) / 180), 1e-9);
+  EXPECT_NEAR(s.scan.z_nm(0, 0) - s.afm.image.z_nm(0, 0), json["afm"]["offset_nm"].get<double>(),
+              1e-9);
+  EXPECT_NEAR(
+      (s.scan.z_nm(0, 30) - s.afm.image.z_nm(0, 30)) - (s.scan.z_nm(0, 0) - s.afm.image.z_nm(0, 0)),
+      30 * 20 * std::tan(json["afm"]["tilt_y_deg"].get<double>() * std::acos(-1.0) / 180), 1e-9);
   EXPECT_EQ(s.sem.sem_to_afm.y0, json["sem_to_afm"][5].get<double>());
   EXPECT_EQ(s.energy_ev, 1000);
 }
@@ -231,7 +237,7 @@ TEST(CaptureRange, EndsWhereSuccessDoes) {
 TEST(ThesisPoints, AreTable10_1) {
   EXPECT_NEAR(thesis_points[2].ratio() * thesis_points[2].ratio(), 0.114, 5e-4);
   EXPECT_NEAR(thesis_points[6].ratio() * thesis_points[6].ratio(), 0.049, 5e-4);
-  EXPECT_GT(thesis_points[1].ratio(), 1);   // it got worse, against the sharper tip's scan
+  EXPECT_GT(thesis_points[1].ratio(), 1);  // it got worse, against the sharper tip's scan
 }
 
 TEST(ChainChartFiles, PointsAreReadBack) {
@@ -267,7 +273,8 @@ TEST_F(ChainChart, SaysWhatIsWrongBeforeAnyWork) {
   refused("chart.draws", [](ChainChartJob& j) { j.draws = -1; });
   refused("'replay' is none of those for samples. Choose of correlation",
           [](ChainChartJob& j) { j.families = {"replay"}; });
-  refused("with `chart.quick` the chain is left out", [](ChainChartJob& j) { j.families = {"chain"}; });
+  refused("with `chart.quick` the chain is left out",
+          [](ChainChartJob& j) { j.families = {"chain"}; });
   refused("no folder is given", [](ChainChartJob& j) { j.folder.clear(); });
   refused("sample's own folder", [](ChainChartJob& j) { j.folder = j.sample; });
   EXPECT_FALSE(fs::exists(good.folder));
@@ -279,5 +286,5 @@ TEST_F(ChainChart, SaysWhatIsWrongBeforeAnyWork) {
   EXPECT_FALSE(fs::exists(good.folder));
 }
 
-}   // namespace
-}   // namespace surf::workflow
+}  // namespace
+}  // namespace surf::workflow

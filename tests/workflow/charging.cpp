@@ -15,7 +15,7 @@ mc::SimulationResult counted(std::int64_t leaving) {
   r.balance.missed = 100;
   r.balance.se = leaving - 50;
   r.balance.bse = 50;
-  r.balance.transmitted = 100;   // those that missed
+  r.balance.transmitted = 100;  // those that missed
   r.budget = mc::dose_of_probe(10, 1);
   return r;
 }
@@ -37,11 +37,14 @@ TEST(Charging, SaysInWhichSenseAndHowFast) {
   ASSERT_TRUE(c);
   EXPECT_DOUBLE_EQ(c->leaving, 1.4);
   EXPECT_NEAR(c->per_nm2, 10e-12 * 1e-6 / 1.602176634e-19 * 0.4 / 4, 1e-6);
-  EXPECT_THAT(describe(*c), testing::AllOf(testing::HasSubstr("SiO2 insulates: 1.400 electrons"), testing::HasSubstr("positive charge"),
+  EXPECT_THAT(describe(*c), testing::AllOf(testing::HasSubstr("SiO2 insulates: 1.400 electrons"),
+                                           testing::HasSubstr("positive charge"),
                                            testing::HasSubstr("4 pA of 10 pA")));
   EXPECT_THAT(describe(*charging_of(materials({"PMMA", "Si"}), counted(700), scan())),
-              testing::AllOf(testing::HasSubstr("PMMA insulates among the materials"), testing::HasSubstr("negative charge stays, 0.300")));
-  EXPECT_THAT(describe(*charging_of(materials({"PMMA", "SiO2"}), counted(1001), scan())), testing::HasSubstr("hardly any"));
+              testing::AllOf(testing::HasSubstr("PMMA insulates among the materials"),
+                             testing::HasSubstr("negative charge stays, 0.300")));
+  EXPECT_THAT(describe(*charging_of(materials({"PMMA", "SiO2"}), counted(1001), scan())),
+              testing::HasSubstr("hardly any"));
 }
 
 TEST(Charging, SaysNothingOfConductors) {

@@ -77,7 +77,8 @@ TEST(ChartJob, EveryMethodIsThereAndMoreElectronsAreMoreAccurate) {
     const double few = 10, many = std::string(family) == "direct" ? 30 : 1000;
     for (const std::size_t channel : {0u, 1u}) {
       const ImageError& a = points.at(fmt::format("{}-{:g}", family, few))->channels[channel].error;
-      const ImageError& b = points.at(fmt::format("{}-{:g}", family, many))->channels[channel].error;
+      const ImageError& b =
+          points.at(fmt::format("{}-{:g}", family, many))->channels[channel].error;
       // 256 pixels: each is known to 1 / sqrt(2 * 256), and counts have longer tails.
       EXPECT_NEAR(std::log(a.rms / b.rms), 0.5 * std::log(many / few), 0.35) << family;
       EXPECT_NEAR(std::log(a.noise / b.noise), 0.5 * std::log(many / few), 0.2) << family;
@@ -88,7 +89,7 @@ TEST(ChartJob, EveryMethodIsThereAndMoreElectronsAreMoreAccurate) {
   for (const ChartPoint& p : s.points) {
     EXPECT_GT(p.run_s, 0) << p.id;
     for (const ChartChannel& c : p.channels) {
-      EXPECT_LE(c.error.mean, 1.000001 * c.error.rms) << p.id;   // flat: pixels may be off alike
+      EXPECT_LE(c.error.mean, 1.000001 * c.error.rms) << p.id;  // flat: pixels may be off alike
       EXPECT_LE(c.error.rms, 1.000001 * c.error.largest) << p.id;
       EXPECT_LE(c.error.percentile95, c.error.largest) << p.id;
     }
@@ -130,7 +131,7 @@ TEST(ChartJob, TheSameJobGoesOnToTheSameFigures) {
   EXPECT_EQ(second.found, 3);
   EXPECT_EQ(figures(job.folder / "chart.csv"), whole);
 
-  job.seed = 2;   // another job's points do not count
+  job.seed = 2;  // another job's points do not count
   EXPECT_EQ(run(job).found, 0);
   EXPECT_NE(figures(job.folder / "chart.csv"), whole);
 }
@@ -139,7 +140,8 @@ TEST(ChartJob, LeavesOutDetailOfHeightFieldsAndSaysWhatCannotBeHad) {
   const TemporaryFolder folder;
   ChartJob job = small_chart(folder.path(), 6);
   job.scene.specimen.substrate.reset();
-  job.scene.specimen.height_field = mc::HeightFieldBody{"rough", make_rough({60, 60, 2}, 2, 10, 1), 0, Edge::mirror};
+  job.scene.specimen.height_field =
+      mc::HeightFieldBody{"rough", make_rough({60, 60, 2}, 2, 10, 1), 0, Edge::mirror};
   job.scene.beam.tilt_deg = 30;
   job.families = {"mesh-tolerance", "secant"};
   const ChartSummary s = run(job);
@@ -165,20 +167,23 @@ TEST(ChartJob, SaysWhatIsWrongBeforeAnyWork) {
   refused("chart.reference", [](ChartJob& j) { j.reference_accuracy = 0.9 * 0.03; });
   refused("chart.compared", [](ChartJob& j) { j.compared_pixels = 3; });
   refused("chart.most", [](ChartJob& j) { j.most_primaries = 10; });
-  refused("'fast' is none of them. Choose of default, direct", [](ChartJob& j) { j.families = {"fast"}; });
+  refused("'fast' is none of them. Choose of default, direct",
+          [](ChartJob& j) { j.families = {"fast"}; });
   refused("`output`", [](ChartJob& j) { j.folder.clear(); });
   refused("current", [](ChartJob& j) { j.scene.budget = mc::dose_of_probe(100, 1); });
   EXPECT_FALSE(fs::exists(good.folder));
 }
 
 TEST(Pareto, IsWhatNothingBeats) {
-  const std::vector<Trade> trades{{3, 1}, {1, 3}, {2, 3}, {2, 2}, {1, 4}, {4, 1}, {NAN, 0}, {5, 0.5}, {1, 3}};
+  const std::vector<Trade> trades{{3, 1}, {1, 3},   {2, 3},   {2, 2}, {1, 4},
+                                  {4, 1}, {NAN, 0}, {5, 0.5}, {1, 3}};
   EXPECT_EQ(pareto_front(trades), (std::vector<std::size_t>{1, 3, 0, 7}));
   EXPECT_TRUE(pareto_front({}).empty());
 }
 
 TEST(ComparedPixels, LieAboutTheMiddleOfTheScan) {
-  for (const auto& [width, height] : {std::pair{160, 160}, {64, 64}, {33, 90}, {7, 3}, {1, 1}, {1000, 2}}) {
+  for (const auto& [width, height] :
+       {std::pair{160, 160}, {64, 64}, {33, 90}, {7, 3}, {1, 1}, {1000, 2}}) {
     mc::Scan scan;
     scan.width = width;
     scan.height = height;
@@ -194,7 +199,8 @@ TEST(ComparedPixels, LieAboutTheMiddleOfTheScan) {
       const mc::Scan few = resolve_scan(request_for(p, scan), {{-1, -1, 0}, {1, 1, 1}}, {});
       EXPECT_EQ(few.width, p.width);
       const double first = few.center_x_nm + (0.5 - 0.5 * few.width) * few.pixel_x_nm;
-      EXPECT_NEAR(first, scan.center_x_nm + (p.first_x + 0.5 - 0.5 * width) * scan.pixel_x_nm, 1e-9);
+      EXPECT_NEAR(first, scan.center_x_nm + (p.first_x + 0.5 - 0.5 * width) * scan.pixel_x_nm,
+                  1e-9);
     }
   }
 }

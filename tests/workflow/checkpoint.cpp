@@ -64,11 +64,11 @@ TEST_F(CheckpointTest, GivesBackWhatItWasTold) {
   const fs::path path = first->path();
   first.reset();
   EXPECT_TRUE(fs::exists(path));
-  EXPECT_EQ(path, checkpoint_path(folder.path() / "another.exr", job).parent_path() /
-                      path.filename());
+  EXPECT_EQ(path,
+            checkpoint_path(folder.path() / "another.exr", job).parent_path() / path.filename());
 
   auto second = open(job);
-  EXPECT_THAT(said, HasSubstr("resuming: 2 % is done"));   // 1 + 2 + 5 + 6 + 7 + 8 of 1000
+  EXPECT_THAT(said, HasSubstr("resuming: 2 % is done"));  // 1 + 2 + 5 + 6 + 7 + 8 of 1000
   EXPECT_THAT(recalled(*second, 10), testing::ElementsAre(0, 1, 4, 5, 6, 7));
   record(*second, 2, 4);
   second.reset();
@@ -92,8 +92,9 @@ TEST_F(CheckpointTest, LosesOnlyWhatIsDamaged) {
   record(*first, 0, 4);
   first.reset();
   std::string bytes = bytes_of(path);
-  const std::size_t block = bytes.rfind("semsurfB") - bytes.rfind("semsurfB", bytes.rfind("semsurfB") - 1);
-  bytes[bytes.size() - block - 1] ^= 1;   // the last byte of the last block but one
+  const std::size_t block =
+      bytes.rfind("semsurfB") - bytes.rfind("semsurfB", bytes.rfind("semsurfB") - 1);
+  bytes[bytes.size() - block - 1] ^= 1;  // the last byte of the last block but one
   io::write_text(path, bytes);
   auto second = open(job);
   EXPECT_THAT(said, HasSubstr("damaged"));
@@ -161,10 +162,10 @@ TEST(JobIdentity, ChangesWithWhatChangesTheResult) {
     change(other);
     return fingerprint(identity_of(resolve(other), {{"seed", "1"}})) != fingerprint(identity);
   };
-  EXPECT_TRUE(differs([](SimulateJob& j) {
-    j.scene.specimen.bodies[0].mesh.vertices_nm[3].x += 1e-9;
-  }));
-  EXPECT_TRUE(differs([](SimulateJob& j) { j.scene.specimen.bodies[0].mesh.triangles.pop_back(); }));
+  EXPECT_TRUE(
+      differs([](SimulateJob& j) { j.scene.specimen.bodies[0].mesh.vertices_nm[3].x += 1e-9; }));
+  EXPECT_TRUE(
+      differs([](SimulateJob& j) { j.scene.specimen.bodies[0].mesh.triangles.pop_back(); }));
   EXPECT_TRUE(differs([](SimulateJob& j) { j.spectra = true; }));
   EXPECT_TRUE(differs([](SimulateJob& j) { j.execution.tile_pixels = 5; }));
   EXPECT_FALSE(differs([](SimulateJob& j) { j.execution.threads = 5; }));

@@ -38,7 +38,8 @@ TEST(CleanJob, FindsTheLimitOfSpikes) {
   HeightField flat = scan();
   std::ranges::fill(flat.z_nm.data(), 1.0);
   test::Heard heard;
-  EXPECT_FALSE(clean(flat, p, heard.reporter()).spikes);   // without noise nothing is a spike for sure
+  EXPECT_FALSE(
+      clean(flat, p, heard.reporter()).spikes);  // without noise nothing is a spike for sure
   EXPECT_THAT(heard.notes, testing::ElementsAre(testing::HasSubstr("`clean.spikes`")));
 }
 

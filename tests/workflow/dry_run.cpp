@@ -39,7 +39,7 @@ TEST(DryRun, FilesAreNoLargerThanItSays) {
   const test::TemporaryFolder folder;
   for (const io::Layout layout : {io::Layout::rows, io::Layout::tiles}) {
     SimulateJob job = job_in(folder.path());
-    job.scene.scan.width = job.scene.scan.height = 384;   // three tiles across
+    job.scene.scan.width = job.scene.scan.height = 384;  // three tiles across
     job.scene.scan.pixel_x_nm = job.scene.scan.pixel_y_nm = 0.2;
     job.scene.budget = mc::ElectronsPerPixel{1};
     job.layout = layout;
@@ -62,7 +62,8 @@ TEST(DryRun, LargeImagesHaveScratchFiles) {
   EXPECT_EQ(bytes_of(dry_run(job, 1, 0.1), "scratch file"), -1);
   job.execution.tally_memory = 0;
   const DryRun run = dry_run(job, 1, 0.1);
-  EXPECT_EQ(bytes_of(run, "scratch file"), static_cast<double>(mc::tally_bytes(run.scan, mc::options_of(job.scene))));
+  EXPECT_EQ(bytes_of(run, "scratch file"),
+            static_cast<double>(mc::tally_bytes(run.scan, mc::options_of(job.scene))));
 }
 
 TEST(DryRun, RanksShareTheTime) {

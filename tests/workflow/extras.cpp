@@ -62,7 +62,7 @@ TEST(Extras, SpectraAddUpToYields) {
   job.spectra = true;
   job.scene.detectors = mc::parse_detectors("side:efficiency=0.5", "test");
   const SimulateSummary summary = run(job);
-  std::map<std::string, double> sums;   // of each detector and quantity
+  std::map<std::string, double> sums;  // of each detector and quantity
   std::istringstream text(bytes_of(folder.path() / "a" / "image.spectra.csv"));
   std::string line;
   std::getline(text, line);
@@ -140,8 +140,9 @@ TEST(Extras, OfThisJobReplaceTheirOwnKindOnly) {
   run(job);
   EXPECT_EQ(refusal(job), "no error") << "the same job again";
   const std::filesystem::path picture = folder.path() / "a" / "image.tracks.png";
-  std::filesystem::remove(folder.path() / "a" / "image.run.json");   // which names it
-  EXPECT_THAT(refusal(job), testing::AllOf(HasSubstr(picture.string()), HasSubstr("did not write")));
+  std::filesystem::remove(folder.path() / "a" / "image.run.json");  // which names it
+  EXPECT_THAT(refusal(job),
+              testing::AllOf(HasSubstr(picture.string()), HasSubstr("did not write")));
   std::filesystem::remove(picture);
   std::ofstream(folder.path() / "a" / "image.spectra.csv") << "wavelength,counts\n";
   EXPECT_THAT(refusal(job), HasSubstr("image.spectra.csv"));
@@ -176,8 +177,9 @@ TEST(Warnings, AreToldAsTheyCome) {
   job.scene.budget = mc::ElectronsPerPixel{1};
   std::vector<std::string> told;
   bool before = true;
-  run(job, {.on_progress = [&](double, double, std::string_view) { before = before && !told.empty(); },
-            .on_warning = [&](const std::string& warning) { told.push_back(warning); }});
+  run(job,
+      {.on_progress = [&](double, double, std::string_view) { before = before && !told.empty(); },
+       .on_warning = [&](const std::string& warning) { told.push_back(warning); }});
   EXPECT_THAT(told, Contains(HasSubstr("one electron per pixel")));
   EXPECT_TRUE(before) << "warnings come before the simulation";
 }

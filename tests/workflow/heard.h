@@ -11,7 +11,7 @@ namespace surf::test {
 /// What a job said.
 struct Heard {
   std::vector<std::string> notes, warnings;
-  double furthest = 0;   ///< the largest share of the work that was told
+  double furthest = 0;  ///< the largest share of the work that was told
 
   workflow::Reporter reporter() {
     workflow::Reporter r;

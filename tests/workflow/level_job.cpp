@@ -21,8 +21,8 @@ HeightField scan(double noise_nm2 = 1e-4) {
   const Grid<double> noise = simulate_noise({0, noise_nm2}, 60, 50, 3);
   for (int y = 0; y < 50; ++y)
     for (int x = 0; x < 60; ++x)
-      f.z_nm(x, y) =
-          0.05 * f.x_nm(x) + (x > 20 && x < 40 && y > 15 && y < 30 ? 20 : 0) + (y == 7 ? 3 : 0) + noise(x, y);
+      f.z_nm(x, y) = 0.05 * f.x_nm(x) + (x > 20 && x < 40 && y > 15 && y < 30 ? 20 : 0) +
+                     (y == 7 ? 3 : 0) + noise(x, y);
   return f;
 }
 
@@ -42,7 +42,7 @@ TEST(LevelJob, TakesStepsBetweenRowsOff) {
   LevelParameters p;
   p.method = LevelMethod::plane;
   p.rows = RowMethod::median;
-  Grid<unsigned char> left(60, 50);   // without the block
+  Grid<unsigned char> left(60, 50);  // without the block
   for (int y = 0; y < 50; ++y)
     for (int x = 0; x < 20; ++x) left(x, y) = 1;
   const LevelResult r = level(scan(), p, left);

@@ -154,7 +154,7 @@ TEST_F(LibrariesTest, ForeignContentIsNeverTaken) {
   for (std::size_t i = 0; i < 16; ++i) huge[i] = std::byte{0xff};
   expect_refused(huge, "cut off");
   expect_refused(page_to_bytes(library.make_page(1, 1)), "another version");
-  CascadePage other = *page_from_bytes(page);   // a later cascade says it has more words
+  CascadePage other = *page_from_bytes(page);  // a later cascade says it has more words
   other.words[other.starts[page_size - 1] + 1] ^= std::uint64_t{1} << 33;
   expect_refused(page_to_bytes(other), "not cascades");
 }
@@ -245,15 +245,13 @@ TEST(LibraryKey, ChangesWithAllThatTheCascadesDependOn) {
   EXPECT_TRUE(changed([](auto& s) { s.material.constituents[0].atomic_weight += 1e-9; }));
   EXPECT_TRUE(changed([](auto& s) { s.material.constituents[0].weight_fraction -= 1e-9; }));
   EXPECT_TRUE(changed([](auto& s) { s.material.constituents[0].mean_ionization_ev += 1e-9; }));
-  EXPECT_TRUE(changed([](auto& s) {
-    s.material.constituents.push_back(s.material.constituents[0]);
-  }));
+  EXPECT_TRUE(
+      changed([](auto& s) { s.material.constituents.push_back(s.material.constituents[0]); }));
   // What is only said about a material, and the cutoff that holds anyway, change nothing.
   EXPECT_FALSE(changed([](auto& s) { s.material.sources = "hearsay"; }));
   EXPECT_FALSE(changed([](auto& s) { s.material.estimates = {{"plasmon_ev", "a rule"}}; }));
-  EXPECT_FALSE(changed([](auto& s) {
-    s.physics.cutoff_ev = mc::effective_cutoff_ev(s.physics, s.material);
-  }));
+  EXPECT_FALSE(changed(
+      [](auto& s) { s.physics.cutoff_ev = mc::effective_cutoff_ev(s.physics, s.material); }));
 }
 
 }  // namespace

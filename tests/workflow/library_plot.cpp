@@ -6,11 +6,11 @@
 
 #include <gmock/gmock.h>
 
+#include "statistics.h"
 #include "surf/core/error.h"
 #include "surf/io/sim/materials.h"
 #include "surf/mc/simulate.h"
 #include "surf/workflow/libraries.h"
-#include "statistics.h"
 
 namespace surf::workflow {
 namespace {

@@ -17,8 +17,9 @@ std::vector<MeasuredYield> read(const std::string& text) {
 }
 
 TEST(MeasuredYields, AreReadByTheNamesOfTheirColumns) {
-  const auto se = read("set,energy_keV,element,delta,note\r\n"
-                       "\"Smith, 1980\",0.5,Si,1.25,\"a, b\"\r\n\r\n,2,PMMA,0.75,\r\n");
+  const auto se = read(
+      "set,energy_keV,element,delta,note\r\n"
+      "\"Smith, 1980\",0.5,Si,1.25,\"a, b\"\r\n\r\n,2,PMMA,0.75,\r\n");
   ASSERT_EQ(se.size(), 2u);
   EXPECT_EQ(se[0].material, "Si");
   EXPECT_EQ(se[0].energy_ev, 500);

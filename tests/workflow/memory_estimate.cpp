@@ -47,13 +47,15 @@ TEST_F(MemoryEstimateTest, CountsTrianglesByHeaderOrSize) {
 TEST_F(MemoryEstimateTest, DoesNotBelieveAHeaderThatTheFileCannotHold) {
   const test::TemporaryFolder folder;
   const auto path = folder.path() / "lie.ply";
-  io::write_text(path, "ply\nformat ascii 1.0\nelement vertex 3\nelement face 4000000000\nend_header\n");
+  io::write_text(path,
+                 "ply\nformat ascii 1.0\nelement vertex 3\nelement face 4000000000\nend_header\n");
   EXPECT_LT(triangles_in(path)->triangles, 100u);
 }
 
 TEST_F(MemoryEstimateTest, GrowsWithProcessesByWhatIsNotShared) {
   const TriangleCount count{1'000'000};
-  const MemoryEstimate one = estimate_specimen(count, {1, 2}), four = estimate_specimen(count, {4, 2});
+  const MemoryEstimate one = estimate_specimen(count, {1, 2}),
+                       four = estimate_specimen(count, {4, 2});
   EXPECT_EQ(one.specimen, four.specimen);
   EXPECT_EQ(4 * one.ray_tracing, four.ray_tracing);
   EXPECT_EQ(one.total(), one.specimen + one.ray_tracing + one.program);
@@ -67,10 +69,11 @@ TEST_F(MemoryEstimateTest, RefusesWhatDoesNotFit) {
                   testing::AllOf(HasSubstr("large.ply"), HasSubstr("100 million triangles"),
                                  HasSubstr("1.00 GB are there by SEMSURF_MEMORY"))));
   setenv("SEMSURF_MEMORY", "1MB", 1);
-  EXPECT_THAT([] { require_memory("cube.off", {7}); },
-              testing::ThrowsMessage<InvalidInput>(
-                  testing::AllOf(HasSubstr("cube.off: this mesh and the program need about 0.19 GB"),
-                                 HasSubstr("less than 0.01 GB is there"), HasSubstr("Make more memory available"))));
+  EXPECT_THAT(
+      [] { require_memory("cube.off", {7}); },
+      testing::ThrowsMessage<InvalidInput>(testing::AllOf(
+          HasSubstr("cube.off: this mesh and the program need about 0.19 GB"),
+          HasSubstr("less than 0.01 GB is there"), HasSubstr("Make more memory available"))));
   setenv("SEMSURF_MEMORY", "off", 1);
   EXPECT_NO_THROW(require_memory("large.ply", {1'000'000'000}));
   for (const char* bad : {"", "much", "-1GB", "0", "5 apples", "1e300GB"}) {
@@ -85,7 +88,7 @@ TEST_F(MemoryEstimateTest, KnowsWhatThereIs) {
   EXPECT_LT(whole.bytes, std::size_t{1} << 50);
   rlimit before{};
   getrlimit(RLIMIT_AS, &before);
-  constexpr std::size_t bytes = std::size_t{1} << 32;   // below what machines have
+  constexpr std::size_t bytes = std::size_t{1} << 32;  // below what machines have
   const rlimit less{bytes, before.rlim_max};
   if (before.rlim_max != RLIM_INFINITY && before.rlim_max < less.rlim_cur)
     GTEST_SKIP() << "there is a lower limit of address space already";

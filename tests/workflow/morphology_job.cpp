@@ -27,7 +27,8 @@ TEST(MorphologyJob, IsTheLibrarys) {
   EXPECT_EQ(morphology(MorphologyOperation::close, f, tip, {}).z_nm, closing(f, tip).z_nm);
   MorphologyParameters away;
   away.distance_nm = 3;
-  EXPECT_EQ(morphology(MorphologyOperation::dilate, f, tip, away).z_nm, dilate_noncontact(f, tip, 3).z_nm);
+  EXPECT_EQ(morphology(MorphologyOperation::dilate, f, tip, away).z_nm,
+            dilate_noncontact(f, tip, 3).z_nm);
   EXPECT_THROW(morphology(MorphologyOperation::open, f, tip, away), UsageError);
   away.upsample = 33;
   EXPECT_THROW(morphology(MorphologyOperation::erode, f, tip, away), UsageError);
@@ -40,8 +41,10 @@ TEST(MorphologyJob, TipsAreMadeToMeetTheScan) {
   const Tip met = tip_for(coarse, scan(), "cone.gsf", heard.reporter());
   EXPECT_EQ(met.pitch_x_nm, 2);
   EXPECT_EQ(met.z_nm.width(), 9);
-  EXPECT_THAT(heard.notes, testing::ElementsAre(testing::HasSubstr("cone.gsf: resampled from 5 x 5")));
-  EXPECT_THAT(heard.warnings, testing::ElementsAre(testing::HasSubstr("not to be trusted: it is flat")));
+  EXPECT_THAT(heard.notes,
+              testing::ElementsAre(testing::HasSubstr("cone.gsf: resampled from 5 x 5")));
+  EXPECT_THAT(heard.warnings,
+              testing::ElementsAre(testing::HasSubstr("not to be trusted: it is flat")));
   heard = {};
   tip_for(conical_tip(5, 0.5, {2, 2, 41, 9}), scan(), "wide.gsf", heard.reporter());
   EXPECT_THAT(heard.warnings, testing::ElementsAre(testing::HasSubstr("more than the scan has")));

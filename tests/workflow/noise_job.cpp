@@ -40,7 +40,8 @@ TEST(NoiseJob, SaysWhereThereMayBeNoSubstrate) {
   const ScanNoise noise = noise_of_scan(rough, {}, {}, heard.reporter());
   ASSERT_TRUE(noise.plane);
   EXPECT_EQ(heard.warnings.size(), noise.plane->verdict == HoughVerdict::clear ? 0u : 1u);
-  if (!heard.warnings.empty()) EXPECT_THAT(heard.warnings[0], testing::HasSubstr("`scan.use` or `scan.exclude`"));
+  if (!heard.warnings.empty())
+    EXPECT_THAT(heard.warnings[0], testing::HasSubstr("`scan.use` or `scan.exclude`"));
 }
 
 }  // namespace

@@ -23,7 +23,8 @@ class PredictJobTest : public testing::Test {
   PredictJobTest() {
     TrainedModel model;
     model.scope = {3, "Si", 1000, 0};
-    model.parameters = SlopeModelParameters{SlopeForm::secant, 5, {5, 0.6}, {{"SE", 0.9, {}}, {"BSE", 0.2, {}}}};
+    model.parameters =
+        SlopeModelParameters{SlopeForm::secant, 5, {5, 0.6}, {{"SE", 0.9, {}}, {"BSE", 0.2, {}}}};
     model.record.range.slope_deg_max = 80;
     io::write_model(path("si.json"), model);
     job_.model = path("si.json");
@@ -49,7 +50,8 @@ TEST_F(PredictJobTest, WritesWhatTheModelPredictsAndWhichMadeIt) {
     ASSERT_EQ(image.find("BSE")->values.data()[i], static_cast<float>(predicted[1].data()[i]));
   EXPECT_EQ(image.pitch_x_nm, 3);
   EXPECT_NEAR(image.origin_x_nm, job_.field.origin_x_nm, 1e-6);
-  EXPECT_THAT(image.metadata.at("model"), HasSubstr("si.json sha256 " + io::sha256_of_file(job_.model)));
+  EXPECT_THAT(image.metadata.at("model"),
+              HasSubstr("si.json sha256 " + io::sha256_of_file(job_.model)));
   EXPECT_THAT(image.metadata.at("input.1"), HasSubstr("heights.gsf sha256 "));
   const std::string first = bytes_of(path("image.exr"));
   job_.threads = 3;
@@ -67,8 +69,10 @@ TEST_F(PredictJobTest, WritesEveryFormat) {
 TEST_F(PredictJobTest, RefusesAnotherPixelSizeMaterialEnergyOrSpot) {
   PredictJob other = job_;
   other.field = make_rough({40, 30, 2}, 4, 9, 1);
-  EXPECT_THAT([&] { run(other); }, testing::ThrowsMessage<InvalidInput>(testing::AllOf(HasSubstr("2"), HasSubstr("3"))));
-  for (const ModelScope& wanted : {ModelScope{0, "Au", 0, 0}, ModelScope{0, "", 2000, 0}, ModelScope{0, "", 0, 1}}) {
+  EXPECT_THAT([&] { run(other); },
+              testing::ThrowsMessage<InvalidInput>(testing::AllOf(HasSubstr("2"), HasSubstr("3"))));
+  for (const ModelScope& wanted :
+       {ModelScope{0, "Au", 0, 0}, ModelScope{0, "", 2000, 0}, ModelScope{0, "", 0, 1}}) {
     other = job_;
     other.wanted = wanted;
     EXPECT_THROW(run(other), UsageError);

@@ -37,16 +37,18 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::ThrowsMessage;
 
-constexpr Affine shift{1, 0, 60, 0, 1, 45};   // of the SEM image in the scan
+constexpr Affine shift{1, 0, 60, 0, 1, 45};  // of the SEM image in the scan
 constexpr double pitch = 5;
 
-/// A hilly place, seen by a dull tip and by a model of 1 / cos with known gains; the SEM image shows the middle of it.
+/// A hilly place, seen by a dull tip and by a model of 1 / cos with known gains; the SEM image
+/// shows the middle of it.
 class ReconstructJobTest : public testing::Test {
  protected:
   ReconstructJobTest() {
     TrainedModel model;
     model.scope = {pitch, "Si", 1000, 0};
-    model.parameters = SlopeModelParameters{SlopeForm::secant, 5, {5, 0.6}, {{"SE", 0.9, {}}, {"BSE", 0.2, {}}}};
+    model.parameters =
+        SlopeModelParameters{SlopeForm::secant, 5, {5, 0.6}, {{"SE", 0.9, {}}, {"BSE", 0.2, {}}}};
     model.record.range.slope_deg_max = 80;
     io::write_model(path("si.json"), model);
     HeightField truth = make_rough({395, 295, pitch}, 10, 40, 3);
@@ -83,7 +85,8 @@ class ReconstructJobTest : public testing::Test {
     const Grid<double> noise = simulate_noise({0, 4}, 50, 40, 9);
     for (int y = 0; y < 40; ++y)
       for (int x = 0; x < 50; ++x)
-        sem.values(x, y) = 100 * images[0](x + 12, y + 9) + 100 * images[1](x + 12, y + 9) + 20 + noise(x, y);
+        sem.values(x, y) =
+            100 * images[0](x + 12, y + 9) + 100 * images[1](x + 12, y + 9) + 20 + noise(x, y);
     return sem;
   }
 
@@ -102,7 +105,8 @@ Reporter stopping(CancelToken& token, const std::filesystem::path& checkpoint) {
   Reporter listener;
   listener.cancel = &token;
   // Parts of the work have copies of this.
-  listener.on_progress = [&token, checkpoint, first = std::make_shared<std::uintmax_t>(0)](double, double, std::string_view) {
+  listener.on_progress = [&token, checkpoint, first = std::make_shared<std::uintmax_t>(0)](
+                             double, double, std::string_view) {
     std::error_code none;
     const auto size = std::filesystem::file_size(checkpoint, none);
     if (!none && *first == 0) *first = size;
@@ -113,14 +117,15 @@ Reporter stopping(CancelToken& token, const std::filesystem::path& checkpoint) {
 
 TEST_F(ReconstructJobTest, FindsTheSurfaceAndSaysHow) {
   HeightField truth = truth_;
-  truth.origin_x_nm = -shift.x0, truth.origin_y_nm = -shift.y0;   // in the SEM's frame
+  truth.origin_x_nm = -shift.x0, truth.origin_y_nm = -shift.y0;  // in the SEM's frame
   job_.truth = truth;
   job_.truth_file = path("scan.txt");
   const ReconstructSummary s = run(job_);
   ASSERT_TRUE(s.truth.has_value());
   EXPECT_LT(s.truth->rms_nm, s.truth->start_rms_nm);
-  for (const char* name : {"surface.vti", "surface.gsf", "surface.glb", "simulated_afm.vti", "simulated_sem.vti", "history.csv",
-                           "transform.json", "tip.txt", "model.json", "report.json"})
+  for (const char* name :
+       {"surface.vti", "surface.gsf", "surface.glb", "simulated_afm.vti", "simulated_sem.vti",
+        "history.csv", "transform.json", "tip.txt", "model.json", "report.json"})
     EXPECT_THAT(s.written, Contains(job_.folder / name));
   EXPECT_FALSE(std::filesystem::exists(job_.folder / "checkpoint"));
   const auto json = report("result");
@@ -139,7 +144,8 @@ TEST_F(ReconstructJobTest, GoesOnToTheSameBytes) {
   const ReconstructSummary s = run(job_);
   EXPECT_TRUE(s.resumed);
   EXPECT_EQ(io::read_file(job_.folder / "surface.vti"), wanted);
-  EXPECT_EQ(io::read_file(job_.folder / "history.csv"), io::read_file(path("result") / "history.csv"));
+  EXPECT_EQ(io::read_file(job_.folder / "history.csv"),
+            io::read_file(path("result") / "history.csv"));
 }
 
 TEST_F(ReconstructJobTest, TheTipIsFittedWhereItWasFoundBlindlyOrAsked) {
@@ -161,8 +167,10 @@ TEST_F(ReconstructJobTest, AFittedTipIsWrittenAndFoundAgain) {
   for (double& z : job_.afm->preparation.tip->z_nm.data()) z *= 0.7;
   job_.refine_tip = true;
   const ReconstructSummary s = run(job_);
-  for (const char* name : {"tip.txt", "first_tip.txt"}) EXPECT_THAT(s.written, Contains(job_.folder / name));
-  const Tip first = io::read_tip(job_.folder / "first_tip.txt"), last = io::read_tip(job_.folder / "tip.txt");
+  for (const char* name : {"tip.txt", "first_tip.txt"})
+    EXPECT_THAT(s.written, Contains(job_.folder / name));
+  const Tip first = io::read_tip(job_.folder / "first_tip.txt"),
+            last = io::read_tip(job_.folder / "tip.txt");
   EXPECT_EQ(first.z_nm, s.afm->tip.z_nm);
   EXPECT_EQ(last.z_nm, s.result.tip.z_nm);
   EXPECT_NE(last.z_nm, first.z_nm);
@@ -180,14 +188,16 @@ TEST_F(ReconstructJobTest, AFittedTipIsWrittenAndFoundAgain) {
   again.options.refine_calibration = options_of(job_, s).refine_calibration;
   again.folder = path("again");
   run(again);
-  EXPECT_EQ(io::read_file(path("again") / "surface.vti"), io::read_file(job_.folder / "surface.vti"));
+  EXPECT_EQ(io::read_file(path("again") / "surface.vti"),
+            io::read_file(job_.folder / "surface.vti"));
   EXPECT_EQ(io::read_file(path("again") / "tip.txt"), io::read_file(job_.folder / "tip.txt"));
   // Stopped after a scale, it goes on with the tip of that scale.
   again.folder = path("stopped");
   CancelToken token;
   EXPECT_THROW(run(again, stopping(token, again.folder / "checkpoint")), Interrupted);
   EXPECT_TRUE(run(again).resumed);
-  EXPECT_EQ(io::read_file(path("stopped") / "surface.vti"), io::read_file(job_.folder / "surface.vti"));
+  EXPECT_EQ(io::read_file(path("stopped") / "surface.vti"),
+            io::read_file(job_.folder / "surface.vti"));
   EXPECT_EQ(io::read_file(path("stopped") / "tip.txt"), io::read_file(job_.folder / "tip.txt"));
 }
 
@@ -197,7 +207,8 @@ TEST_F(ReconstructJobTest, AKeptTipIsWrittenOnce) {
   EXPECT_FALSE(std::filesystem::exists(job_.folder / "first_tip.txt"));
   EXPECT_EQ(report("result")["afm"]["tip"]["fitted"], false);
   EXPECT_FALSE(report("result")["afm"]["tip"].contains("profile_at_the_end_nm"));
-  EXPECT_THAT(report("result")["repeat"].get<std::string>(), AllOf(HasSubstr("/tip.txt "), HasSubstr(" --keep-tip ")));
+  EXPECT_THAT(report("result")["repeat"].get<std::string>(),
+              AllOf(HasSubstr("/tip.txt "), HasSubstr(" --keep-tip ")));
 }
 
 TEST_F(ReconstructJobTest, DoesNotGoOnWithAnotherJob) {
@@ -247,17 +258,19 @@ TEST_F(ReconstructJobTest, AnyOtherInputBeginsAnew) {
 
 TEST_F(ReconstructJobTest, WhatSpeaksAgainstAResultIsSaid) {
   job_.options.iterations = 1;
-  job_.afm->preparation.noise = AfmNoise{0.5, 0.005};   // a tenth of it
+  job_.afm->preparation.noise = AfmNoise{0.5, 0.005};  // a tenth of it
   job_.sem_noise = SemNoise{0, 0.4, 1e-3};
   job_.options.uncertainty = false;
   job_.afm->preparation.tip->doubt = "it is flat";
   const ReconstructSummary s = run(job_);
   EXPECT_EQ(s.verdict, ReconstructionVerdict::flagged);
   EXPECT_EQ(report("result")["verdict"], "flagged");
-  EXPECT_THAT(s.reasons, ElementsAre(HasSubstr("had not settled"), HasSubstr("the AFM scan does not look like noise"),
+  EXPECT_THAT(s.reasons, ElementsAre(HasSubstr("had not settled"),
+                                     HasSubstr("the AFM scan does not look like noise"),
                                      HasSubstr("the SEM image does not look like noise"),
                                      HasSubstr("the AFM tip is not to be trusted: it is flat")));
-  EXPECT_THAT(s.warnings, Contains(HasSubstr("it says that this tip is not to be trusted: it is flat")));
+  EXPECT_THAT(s.warnings,
+              Contains(HasSubstr("it says that this tip is not to be trusted: it is flat")));
   EXPECT_EQ(io::read_tip(path("result") / "tip.txt").doubt, "it is flat");
 }
 
@@ -279,26 +292,30 @@ TEST_F(ReconstructJobTest, OneImageIsEnough) {
 TEST_F(ReconstructJobTest, ImagesThatSayNothingAreRefused) {
   ReconstructJob job = job_;
   job.sem->image.values = Grid<double>(50, 40, 7);
-  EXPECT_THAT([&] { run(job); }, ThrowsMessage<InvalidInput>(HasSubstr("all its pixels that count have one value")));
+  EXPECT_THAT([&] { run(job); },
+              ThrowsMessage<InvalidInput>(HasSubstr("all its pixels that count have one value")));
   job = job_;
   job.pose.transform = Affine{1, 0, 9000, 0, 1, 0};
   EXPECT_THAT([&] { run(job); }, ThrowsMessage<InvalidInput>(HasSubstr("lies on the AFM scan")));
   job = job_;
   job.afm->scan.z_nm = Grid<double>(job.afm->scan.z_nm.width(), job.afm->scan.z_nm.height(), 3);
-  EXPECT_THAT([&] { run(job); }, ThrowsMessage<InvalidInput>(HasSubstr("all its heights are the same")));
+  EXPECT_THAT([&] { run(job); },
+              ThrowsMessage<InvalidInput>(HasSubstr("all its heights are the same")));
   job = job_;
   job.afm->preparation.tip = conical_tip(20, 0.4, {pitch, pitch, 201, 201});
   EXPECT_THAT([&] { run(job); }, ThrowsMessage<InvalidInput>(HasSubstr("wider than the scan")));
   job = job_;
   for (double& v : job.sem->image.values.data()) v = -v;
-  EXPECT_THAT([&] { run(job); }, ThrowsMessage<InvalidInput>(HasSubstr("darker where the simulated image is brighter")));
+  EXPECT_THAT([&] { run(job); }, ThrowsMessage<InvalidInput>(
+                                     HasSubstr("darker where the simulated image is brighter")));
   EXPECT_FALSE(std::filesystem::exists(job_.folder / "report.json"));
 }
 
 TEST(FirstCalibration, LeavesOutSaturatedPixelsOnly) {
   PlacedImage image;
   image.values = Grid<double>(64, 64);
-  for (std::size_t i = 0; i < image.values.size(); ++i) image.values.data()[i] = static_cast<double>(i % 251);
+  for (std::size_t i = 0; i < image.values.size(); ++i)
+    image.values.data()[i] = static_cast<double>(i % 251);
   EXPECT_EQ(leave_out_saturated(image), 0);
   for (std::size_t i = 0; i < 600; ++i) image.values.data()[i] = 255;
   EXPECT_EQ(leave_out_saturated(image), 600);
@@ -332,7 +349,8 @@ TEST(ReconstructionCheckpoint, AStateComesBackToTheLastBit) {
   EXPECT_EQ(back->tip_change, state.tip_change);
   EXPECT_EQ(back->scales[1].ended, "converged");
   EXPECT_FALSE(back->scales[1].sem_residual.like_noise);
-  for (std::size_t size = 0; size < bytes.size(); ++size) EXPECT_FALSE(unpack(bytes.substr(0, size)).has_value()) << size;
+  for (std::size_t size = 0; size < bytes.size(); ++size)
+    EXPECT_FALSE(unpack(bytes.substr(0, size)).has_value()) << size;
   EXPECT_FALSE(unpack(bytes + "x").has_value());
 }
 
@@ -355,7 +373,8 @@ TEST(ReconstructionCheckpoint, GivesBackTheLastStateOfTheSameJob) {
     EXPECT_EQ(same.found()->offset, 3);
   }
   std::string said;
-  ReconstructionCheckpoint other(file, {{"scan", "b"}}, [&](const std::string& note) { said = note; });
+  ReconstructionCheckpoint other(file, {{"scan", "b"}},
+                                 [&](const std::string& note) { said = note; });
   EXPECT_THAT(said, HasSubstr("scan a there and b here"));
   EXPECT_FALSE(other.found().has_value());
 }
@@ -368,7 +387,8 @@ TEST(FirstCalibration, NoiseIsALineThatWallsDoNotBend) {
   surface.z_nm = Grid<double>(160, 120);
   surface.pitch_x_nm = surface.pitch_y_nm = 5;
   for (int y = 0; y < 120; ++y)
-    for (int x = 0; x < 160; ++x) surface.z_nm(x, y) = 20 * std::sin(0.1 * x) + (x % 40 < 20 ? 0 : 15);
+    for (int x = 0; x < 160; ++x)
+      surface.z_nm(x, y) = 20 * std::sin(0.1 * x) + (x % 40 < 20 ? 0 : 15);
   const Grid<double> truth = model->predict(surface).front();
   PlacedImage sem;
   sem.values = Grid<double>(160, 120);
@@ -377,7 +397,8 @@ TEST(FirstCalibration, NoiseIsALineThatWallsDoNotBend) {
   RandomStream random(3, 1, 0);
   for (std::size_t i = 0; i < truth.size(); ++i) {
     const double mean = 100 * truth.data()[i] + 20;
-    const double normal = std::sqrt(-2 * std::log(random.uniform())) * std::cos(6.283185307179586 * random.uniform());
+    const double normal =
+        std::sqrt(-2 * std::log(random.uniform())) * std::cos(6.283185307179586 * random.uniform());
     sem.values.data()[i] = mean + std::sqrt(noise.variance(mean)) * normal;
   }
   FirstCalibration first;
@@ -386,11 +407,13 @@ TEST(FirstCalibration, NoiseIsALineThatWallsDoNotBend) {
   first.noise = {0, 500, 1};
   HeightField rough = surface;
   for (int y = 0; y < 120; ++y)
-    for (int x = 0; x < 160; ++x) rough.z_nm(x, y) -= x % 40 < 20 ? 0 : 3;   // walls 12 nm high, not 15
+    for (int x = 0; x < 160; ++x)
+      rough.z_nm(x, y) -= x % 40 < 20 ? 0 : 3;  // walls 12 nm high, not 15
   EXPECT_TRUE(calibrate_again(sem, rough, *model, true, false, 1, first));
   std::vector<double> levels = sem.values.data();
   for (const double share : {0.2, 0.5, 0.8}) {
-    std::ranges::nth_element(levels, levels.begin() + static_cast<std::ptrdiff_t>(share * double(levels.size())));
+    std::ranges::nth_element(
+        levels, levels.begin() + static_cast<std::ptrdiff_t>(share * double(levels.size())));
     const double level = levels[static_cast<std::size_t>(share * double(levels.size()))];
     EXPECT_GT(first.noise.variance(level), 0.8 * noise.variance(level)) << level;
     EXPECT_LT(first.noise.variance(level), 3.2 * noise.variance(level)) << level;
@@ -412,7 +435,8 @@ TEST(SemFrame, InterpolatesWhereTheMapSays) {
   for (int y = 0; y < 30; ++y)
     for (int x = 0; x < 30; ++x) {
       const Point2 p = map({double(x), double(y)});
-      const bool inside = p.x > 5 - 1e-9 && p.x < 23 + 1e-9 && p.y > -1e-9 && p.y < 21 + 1e-9;   // but for rounding
+      const bool inside =
+          p.x > 5 - 1e-9 && p.x < 23 + 1e-9 && p.y > -1e-9 && p.y < 21 + 1e-9;  // but for rounding
       EXPECT_EQ(under.known(x, y) != 0, inside);
       if (!inside) continue;
       ++known;

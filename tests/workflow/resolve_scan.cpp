@@ -16,7 +16,7 @@ Box box(double x0, double y0, double z0, double x1, double y1, double z1) {
   return b;
 }
 
-const Box specimen = box(-100, 0, 0, 300, 200, 50);   // 400 x 200 nm about (100, 100, 25)
+const Box specimen = box(-100, 0, 0, 300, 200, 50);  // 400 x 200 nm about (100, 100, 25)
 
 mc::ScanRequest size(int width, int height) {
   mc::ScanRequest r;

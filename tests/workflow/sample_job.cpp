@@ -48,7 +48,8 @@ TEST(SampleJob, SaysWhatIsTrue) {
     const auto truth = nlohmann::json::parse(bytes_of(folder.path() / "truth.json"));
     const HeightField scan = io::read_height_field(folder.path() / "afm.gsf").field;
     const HeightField surface = io::read_height_field(folder.path() / "truth.gsf").field;
-    const Image sem = io::read_image(folder.path() / "sem.tif"), yields = io::read_image(folder.path() / "truth_sem.exr");
+    const Image sem = io::read_image(folder.path() / "sem.tif"),
+                yields = io::read_image(folder.path() / "truth_sem.exr");
 
     EXPECT_EQ(surface.pitch_x_nm, 10);
     EXPECT_EQ(sem.pitch_x_nm, 10);
@@ -56,10 +57,12 @@ TEST(SampleJob, SaysWhatIsTrue) {
     EXPECT_EQ(sem.origin_x_nm, 0);
     EXPECT_EQ(scan.origin_x_nm, 0);
     const Grid<float>& signal = sem.find("signal")->values;
-    const double expected = 900 * double{yields.find("SE")->values(7, 5)} + 300 * double{yields.find("BSE")->values(7, 5)} + 120;
+    const double expected = 900 * double{yields.find("SE")->values(7, 5)} +
+                            300 * double{yields.find("BSE")->values(7, 5)} + 120;
     EXPECT_NEAR(signal(7, 5), expected, 1e-3 * expected);
 
-    // Through the map, without tilt and offset, the scan lies on or above the surface, which it touches somewhere.
+    // Through the map, without tilt and offset, the scan lies on or above the surface, which it
+    // touches somewhere.
     const auto m = truth.at("sem_to_afm").get<std::vector<double>>();
     const Affine map{m[0], m[1], m[2], m[3], m[4], m[5]};
     EXPECT_EQ(map, summary.sem_to_afm);
@@ -68,17 +71,19 @@ TEST(SampleJob, SaysWhatIsTrue) {
     for (int y = 0; y < surface.z_nm.height(); ++y)
       for (int x = 0; x < surface.z_nm.width(); ++x) {
         const Point2 p = map({surface.x_nm(x), surface.y_nm(y)});
-        const int column = static_cast<int>(std::lround(p.x / 20)), row = static_cast<int>(std::lround(p.y / 20));
-        ASSERT_GE(std::min(column, row), 14);   // the margins
+        const int column = static_cast<int>(std::lround(p.x / 20)),
+                  row = static_cast<int>(std::lround(p.y / 20));
+        ASSERT_GE(std::min(column, row), 14);  // the margins
         ASSERT_LT(column, scan.z_nm.width() - 14);
         ASSERT_LT(row, scan.z_nm.height() - 14);
         if (std::hypot(p.x - column * 20, p.y - row * 20) > 1.5) continue;
         const double level = std::tan(scene.tilt_x_deg * per_degree) * column * 20 +
-                             std::tan(scene.tilt_y_deg * per_degree) * row * 20 + scene.afm_offset_nm;
+                             std::tan(scene.tilt_y_deg * per_degree) * row * 20 +
+                             scene.afm_offset_nm;
         const double above = scan.z_nm(column, row) - level - surface.z_nm(x, y);
         least = std::min(least, above), most = std::max(most, above);
       }
-    constexpr double noise_and_place = 7;   // 4 standard deviations, and 1.5 nm along a wall
+    constexpr double noise_and_place = 7;  // 4 standard deviations, and 1.5 nm along a wall
     EXPECT_GT(least, -noise_and_place);
     EXPECT_LT(least, noise_and_place);
     EXPECT_LT(most, 120);
@@ -94,13 +99,16 @@ TEST(SampleJob, DependsOnTheSeedAndNotOnThreads) {
   run(job);
   job.folder = c.path(), job.seed = 2;
   run(job);
-  for (const char* name : {"afm.gsf", "sem.tif", "truth.gsf", "truth_tip.gsf", "truth_sem.exr", "truth.json"})
+  for (const char* name :
+       {"afm.gsf", "sem.tif", "truth.gsf", "truth_tip.gsf", "truth_sem.exr", "truth.json"})
     EXPECT_EQ(bytes_of(a.path() / name), bytes_of(b.path() / name)) << name;
   for (const char* name : {"afm.gsf", "sem.tif", "truth_sem.exr"})
     EXPECT_NE(bytes_of(a.path() / name), bytes_of(c.path() / name)) << name;
   // Not only for the seed that is written in them.
   const auto heights = [](const fs::path& file) { return io::read_height_field(file).field.z_nm; };
-  const auto signal = [](const fs::path& file) { return io::read_image(file).find("signal")->values; };
+  const auto signal = [](const fs::path& file) {
+    return io::read_image(file).find("signal")->values;
+  };
   EXPECT_NE(heights(a.path() / "afm.gsf"), heights(c.path() / "afm.gsf"));
   EXPECT_NE(signal(a.path() / "sem.tif"), signal(c.path() / "sem.tif"));
 }
@@ -123,21 +131,24 @@ TEST(SampleJob, LeavesNothingWhenCancelledOrRefused) {
 TEST(SampleJob, GoesOnWhereItWasStopped) {
   const test::TemporaryFolder whole, stopped, cache;
   SampleJob job = small("pads", whole.path());
-  job.cache = cache.path();   // one library for all
-  job.width = 72, job.height = 64;   // several units of work
+  job.cache = cache.path();         // one library for all
+  job.width = 72, job.height = 64;  // several units of work
   job.threads = 1;
   ASSERT_TRUE(run(job).complete);
 
   job.folder = stopped.path();
   CancelToken cancel;
-  const SampleSummary first = run(job, {.on_progress = [&](double, double, std::string_view things) { if (things == "primaries") cancel.cancel(); },
+  const SampleSummary first = run(job, {.on_progress =
+                                            [&](double, double, std::string_view things) {
+                                              if (things == "primaries") cancel.cancel();
+                                            },
                                         .cancel = &cancel});
   EXPECT_FALSE(first.complete);
   EXPECT_TRUE(first.written.empty());
   ASSERT_TRUE(fs::exists(first.checkpoint));
   EXPECT_EQ(first.checkpoint.parent_path(), stopped.path());
 
-  SampleJob other = job;   // neither takes the work of the first nor touches it
+  SampleJob other = job;  // neither takes the work of the first nor touches it
   other.seed = 2;
   CancelToken at_once;
   at_once.cancel();
@@ -151,22 +162,29 @@ TEST(SampleJob, GoesOnWhereItWasStopped) {
   };
   job.threads = 2;
   const SampleSummary second =
-      run(job, {.on_progress = progress, .on_note = [&](const std::string& note) { notes.push_back(note); }});
+      run(job, {.on_progress = progress,
+                .on_note = [&](const std::string& note) { notes.push_back(note); }});
   ASSERT_TRUE(second.complete);
   EXPECT_THAT(notes, testing::Contains(testing::HasSubstr("resuming")));
-  EXPECT_GT(begun_at, 1024 * job.electrons);   // more than its first unit
+  EXPECT_GT(begun_at, 1024 * job.electrons);  // more than its first unit
   EXPECT_FALSE(fs::exists(first.checkpoint));
-  for (const char* name : {"afm.gsf", "sem.tif", "truth.gsf", "truth_tip.gsf", "truth_sem.exr", "truth.json"})
+  for (const char* name :
+       {"afm.gsf", "sem.tif", "truth.gsf", "truth_tip.gsf", "truth_sem.exr", "truth.json"})
     EXPECT_EQ(bytes_of(whole.path() / name), bytes_of(stopped.path() / name)) << name;
 }
 
 TEST(SampleJob, KeepsTheSimulationWhereItsFilesCannotBeWritten) {
   const test::TemporaryFolder folder;
   SampleJob job = small("pads", folder.path());
-  const auto block = [&](double, double, std::string_view) { fs::create_directories(folder.path() / "truth.gsf" / "in the way"); };
+  const auto block = [&](double, double, std::string_view) {
+    fs::create_directories(folder.path() / "truth.gsf" / "in the way");
+  };
   std::vector<std::string> notes;
-  EXPECT_THROW(run(job, {.on_progress = block, .on_note = [&](const std::string& note) { notes.push_back(note); }}), FileError);
-  EXPECT_THAT(notes, testing::ElementsAre(testing::HasSubstr("the same command goes on from there")));
+  EXPECT_THROW(run(job, {.on_progress = block,
+                         .on_note = [&](const std::string& note) { notes.push_back(note); }}),
+               FileError);
+  EXPECT_THAT(notes,
+              testing::ElementsAre(testing::HasSubstr("the same command goes on from there")));
   fs::remove_all(folder.path() / "truth.gsf");
   EXPECT_TRUE(run(job).complete);
 }

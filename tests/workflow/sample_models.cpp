@@ -27,10 +27,12 @@ std::vector<fs::path> models() {
   return found;
 }
 
-/// As many pixels in the middle are compared: whole ones on both sides of the middle, as the field has.
+/// As many pixels in the middle are compared: whole ones on both sides of the middle, as the field
+/// has.
 int compared(int size) { return size - 2 * (size / 4); }
 
-/// The middle of the mesa of samples/ at a model's pixel, simulated with few electrons under the model's conditions.
+/// The middle of the mesa of samples/ at a model's pixel, simulated with few electrons under the
+/// model's conditions.
 Image simulated(const TrainedModel& model, const HeightField& field) {
   const test::TemporaryFolder folder;
   SimulateJob job;
@@ -55,14 +57,14 @@ TEST(SampleModels, PredictTheMesaAsItIsSimulated) {
   for (const fs::path& path : models()) {
     SCOPED_TRACE(path);
     const TrainedModel model = io::read_model(path);
-    const HeightField field =
-        resampled(io::read_scene(samples / "mesa80.toml").specimen.height_field->field, model.scope.pixel_nm);
+    const HeightField field = resampled(
+        io::read_scene(samples / "mesa80.toml").specimen.height_field->field, model.scope.pixel_nm);
     const Image image = simulated(model, field);
     const auto usable = make_model(model);
     const ModelImages predicted = usable->predict(field);
     for (std::size_t c = 0; c < predicted.size(); ++c) {
       const Channel* const seen = image.find(usable->channels()[c]);
-      if (!seen) continue;   // one signal of a microscope: nothing to compare with
+      if (!seen) continue;  // one signal of a microscope: nothing to compare with
       double off = 0, square = 0, signal = 0;
       const int x0 = field.z_nm.width() / 4, y0 = field.z_nm.height() / 4;
       for (int y = 0; y < image.height(); ++y) {
@@ -72,8 +74,9 @@ TEST(SampleModels, PredictTheMesaAsItIsSimulated) {
         }
       }
       const auto n = static_cast<double>(seen->values.size());
-      // Yields of 40 electrons scatter by 20 to 40 % a pixel, the mean over the image by its library's 2 to
-      // 3 %. A mesa of 200 nm is outside what the models have learnt from: 10 % of the mean are allowed.
+      // Yields of 40 electrons scatter by 20 to 40 % a pixel, the mean over the image by its
+      // library's 2 to 3 %. A mesa of 200 nm is outside what the models have learnt from: 10 % of
+      // the mean are allowed.
       EXPECT_LT(std::abs(off), 0.1 * signal) << usable->channels()[c];
       EXPECT_LT(std::sqrt(square / n), 0.6 * signal / n) << usable->channels()[c];
     }

@@ -37,8 +37,8 @@ class ThreadNode : public NodeMemory {
   }
   std::shared_ptr<std::byte> allocate(std::size_t bytes) override {
     if (is_first())
-      machine_.memory = {static_cast<std::byte*>(::operator new(bytes, std::align_val_t{64})),
-                         [](std::byte* p) { ::operator delete(p, std::align_val_t{64}); }};
+      machine_.memory = {static_cast<std::byte*>(::operator new (bytes, std::align_val_t{64})),
+                         [](std::byte* p) { ::operator delete (p, std::align_val_t{64}); }};
     machine_.meet.arrive_and_wait();
     return machine_.memory;
   }
@@ -62,7 +62,8 @@ mc::SceneSurfaces made() {
 
 template <class T>
 bool same(const mc::SharedArray<T>& a, const mc::SharedArray<T>& b) {
-  return a.values.size() == b.values.size() && std::memcmp(a.values.data(), b.values.data(), a.values.size_bytes()) == 0;
+  return a.values.size() == b.values.size() &&
+         std::memcmp(a.values.data(), b.values.data(), a.values.size_bytes()) == 0;
 }
 
 TEST(ShareSurfaces, GivesAllProcessesTheFirstOnesInTheSameMemory) {
@@ -93,7 +94,7 @@ TEST(ShareSurfaces, GivesAllProcessesTheFirstOnesInTheSameMemory) {
     EXPECT_EQ(s.box.upper_nm, expected.box.upper_nm);
   }
   EXPECT_EQ(got[0].mesh.vertices_nm.values.data(), got[1].mesh.vertices_nm.values.data());
-  machine.memory.reset();   // who has surfaces keeps their memory
+  machine.memory.reset();  // who has surfaces keeps their memory
   got[0] = {};
   EXPECT_TRUE(same(got[1].mesh.triangles, expected.mesh.triangles));
 }
@@ -102,7 +103,9 @@ TEST(ShareSurfaces, FailsForAllWhereItFails) {
   Machine machine;
   const auto errors = test::on_ranks(2, [&](int rank) {
     ThreadNode node(machine, rank);
-    share_surfaces(node, []() -> mc::SceneSurfaces { throw InvalidInput("specimen", "it is broken", "Mend it"); });
+    share_surfaces(node, []() -> mc::SceneSurfaces {
+      throw InvalidInput("specimen", "it is broken", "Mend it");
+    });
   });
   EXPECT_THAT(errors[0], HasSubstr("it is broken"));
   EXPECT_THAT(errors[1], HasSubstr("it is broken"));
@@ -113,8 +116,9 @@ TEST(ShareSurfaces, NeedsNoMemoryForABareSubstrate) {
   const auto errors = test::on_ranks(2, [&](int rank) {
     ThreadNode node(machine, rank);
     const mc::Specimen flat = test::flat("Si");
-    const mc::SceneSurfaces s =
-        share_surfaces(node, [&] { return mc::make_surfaces(flat, mc::validate(flat), {}, test::square_scan(100, 4), {}); });
+    const mc::SceneSurfaces s = share_surfaces(node, [&] {
+      return mc::make_surfaces(flat, mc::validate(flat), {}, test::square_scan(100, 4), {});
+    });
     EXPECT_TRUE(s.mesh.empty());
     EXPECT_EQ(s.plane_nm, 0.0);
   });

@@ -73,8 +73,9 @@ TEST(SimplifySpecimen, KeepsMeshesWithinTheTolerance) {
   EXPECT_EQ(done.bodies[0].triangles_before, original.bodies[0].mesh.triangles.size());
   EXPECT_EQ(done.bodies[0].triangles_after, simple.bodies[0].mesh.triangles.size());
   EXPECT_LT(done.bodies[0].triangles_after, done.bodies[0].triangles_before / 4);
-  const double dense = mesh_deviation(original.bodies[0].mesh, simple.bodies[0].mesh,
-                                      {.spacing_nm = 0.2}).largest_nm();
+  const double dense =
+      mesh_deviation(original.bodies[0].mesh, simple.bodies[0].mesh, {.spacing_nm = 0.2})
+          .largest_nm();
   EXPECT_LE(dense, 1.1 * 0.2);
   EXPECT_GT(dense, 0.05) << "the tolerance is made use of";
   EXPECT_TRUE(check_mesh(simple.bodies[0].mesh).closed_and_oriented);
@@ -94,7 +95,7 @@ TEST(SimplifySpecimen, KeepsHeightFieldsWithinTheToleranceAlsoInTheirContinuatio
     const mc::SceneOptions bare{.distance_grid_bytes = 0};
     const mc::Scene a(original, {}, scan(8, 4), {}, bare), b(simple, {}, scan(8, 4), {}, bare);
     double worst = 0;
-    for (double x = -50; x <= 50; x += 1.37)   // the field ends at 30
+    for (double x = -50; x <= 50; x += 1.37)  // the field ends at 30
       for (double y = -50; y <= 50; y += 1.73)
         worst = std::max(worst, std::abs(height(a, x, y) - height(b, x, y)));
     EXPECT_LE(worst, 0.3 + 1e-5);
@@ -119,7 +120,8 @@ TEST(SimplifySpecimen, KeepsWhatTouchesTouching) {
   EXPECT_LT(at(simple.bodies[1].mesh, 20), at(original.bodies[1].mesh, 20) / 2);
   EXPECT_EQ(done.bodies[0].kept, "nothing would be gained");
   EXPECT_THAT(warnings_of(original, done),
-              ElementsAre("lower: with `simulation.mesh_tolerance=0.500 nm` nothing would be gained; it stays as it is"));
+              ElementsAre("lower: with `simulation.mesh_tolerance=0.500 nm` nothing would be "
+                          "gained; it stays as it is"));
 }
 
 TEST(SimplifySpecimen, LeavesAHeightFieldThatBodiesStandOn) {
@@ -132,7 +134,7 @@ TEST(SimplifySpecimen, LeavesAHeightFieldThatBodiesStandOn) {
   Simplification done;
   EXPECT_TRUE(simplified(original, 0.3, done).height_field);
   EXPECT_EQ(done.bodies[0].kept, "bodies stand on it");
-  original.bodies[0].mesh = make_box({-3, -3, 1}, {3, 3, 9});   // sunk in: no faces meet
+  original.bodies[0].mesh = make_box({-3, -3, 1}, {3, 3, 9});  // sunk in: no faces meet
   EXPECT_FALSE(simplified(original, 0.3, done).height_field);
 }
 
@@ -140,12 +142,15 @@ TEST(SimplifySpecimen, LeavesAMeshThatWouldPassThroughItself) {
   // Two shells 0.2 nm apart, wavy: one surface cannot stay clear of the other within 2 nm.
   mc::Specimen original = silicon();
   TriangleMesh mesh = make_sphere({0, 0, 0}, 20, 4);
-  for (Vec3& v : mesh.vertices_nm) v = v * (1 + 0.1 * std::sin(v.x) * std::sin(v.y) * std::sin(v.z));
+  for (Vec3& v : mesh.vertices_nm)
+    v = v * (1 + 0.1 * std::sin(v.x) * std::sin(v.y) * std::sin(v.z));
   TriangleMesh inner = mesh;
   transform(inner, 0.99, {});
   const auto base = static_cast<std::uint32_t>(mesh.vertices_nm.size());
-  mesh.vertices_nm.insert(mesh.vertices_nm.end(), inner.vertices_nm.begin(), inner.vertices_nm.end());
-  for (const Triangle& t : inner.triangles) mesh.triangles.push_back({base + t[0], base + t[2], base + t[1]});
+  mesh.vertices_nm.insert(mesh.vertices_nm.end(), inner.vertices_nm.begin(),
+                          inner.vertices_nm.end());
+  for (const Triangle& t : inner.triangles)
+    mesh.triangles.push_back({base + t[0], base + t[2], base + t[1]});
   original.bodies = {{"shell", mesh, 0}};
   Simplification done;
   const mc::Specimen simple = simplified(original, 2, done);
@@ -181,11 +186,11 @@ TEST(SimplifySpecimen, RefusesTolerancesThatCannotBeMeant) {
 
 // Mean square difference of two images, beyond what scatter makes of it: relative to the mean.
 struct Difference {
-  double beyond, scatter;   // `scatter`: four standard deviations of the first by chance
+  double beyond, scatter;  // `scatter`: four standard deviations of the first by chance
 };
 
-Difference difference(const mc::SimulationResult& a, const mc::SimulationResult& b, std::size_t detector,
-                      int pixels) {
+Difference difference(const mc::SimulationResult& a, const mc::SimulationResult& b,
+                      std::size_t detector, int pixels) {
   const double n = double(pixels) * pixels;
   double mean = 0, squares = 0, variance = 0;
   for (int y = 0; y < pixels; ++y)
@@ -200,7 +205,7 @@ Difference difference(const mc::SimulationResult& a, const mc::SimulationResult&
 
 TEST(SimplifySpecimen, ChangesImagesByLittleForASmallTolerance) {
   constexpr int pixels = 12;
-  constexpr double bound = 0.02;   // of the mean, rms over the pixels, besides scatter
+  constexpr double bound = 0.02;  // of the mean, rms over the pixels, besides scatter
   const mc::Specimen original = rough();
   Simplification done;
   mc::SimulationOptions options;
@@ -225,7 +230,7 @@ TEST(SimplifySpecimen, ChangesImagesByLittleForASmallTolerance) {
 SimulateJob rough_job() {
   SimulateJob job = small_job();
   job.scene.specimen = rough();
-  job.scene.specimen.height_field->field = make_rough({30, 30, 0.5}, 2, 8, 7);   // scenes soon built
+  job.scene.specimen.height_field->field = make_rough({30, 30, 0.5}, 2, 8, 7);  // scenes soon built
   return job;
 }
 

@@ -133,7 +133,9 @@ TEST(SimulateJob, WritesWhatIsDoneWhenCancelled) {
   job.execution.tile_pixels = 1;
   job.outputs = {folder.path() / "image.exr"};
   CancelToken cancel;
-  const auto summary = run(job, {.on_progress = [&](double, double, std::string_view) { cancel.cancel(); }, .cancel = &cancel});
+  const auto summary =
+      run(job, {.on_progress = [&](double, double, std::string_view) { cancel.cancel(); },
+                .cancel = &cancel});
   EXPECT_FALSE(summary.result.complete);
   const Image image = io::read_image(job.outputs[0]);
   EXPECT_EQ(image.metadata.at("partial"), "true");
@@ -158,13 +160,13 @@ TEST(SimulateJob, RefusesBadJobsBeforeWritingAnything) {
     job.outputs = {other.path() / "." / "input.exr"};
   });
   fails_with_usage_error([](SimulateJob& job) { job.scene.budget = mc::ElectronsPerPixel{0}; });
-  fails_with_usage_error([](SimulateJob& job) { job.scene.budget = mc::ElectronsPerPixel{1LL << 40}; });
+  fails_with_usage_error(
+      [](SimulateJob& job) { job.scene.budget = mc::ElectronsPerPixel{1LL << 40}; });
   fails_with_usage_error([](SimulateJob& job) { job.execution.threads = -1; });
   fails_with_usage_error([](SimulateJob& job) { job.scene.beam.energy_ev = 5; });
   fails_with_usage_error([](SimulateJob& job) { job.scene.beam.tilt_deg = 90; });
-  fails_with_usage_error([](SimulateJob& job) {
-    job.scene.scan.width = job.scene.scan.height = 1 << 20;
-  });
+  fails_with_usage_error(
+      [](SimulateJob& job) { job.scene.scan.width = job.scene.scan.height = 1 << 20; });
   fails_with_usage_error([](SimulateJob& job) {
     job.outputs[0].replace_extension(".png");
     job.png_channel = "TE";

@@ -21,8 +21,9 @@ SlopeTableOptions quick(SlopeSpecimen specimen, std::int64_t electrons = 4000) {
 const std::pair<SlopeTable, SlopeTable>& tables() {
   static const auto made = [] {
     mc::FreshLibraries libraries;
-    return std::pair{make_slope_table(silicon(), 1000, quick(SlopeSpecimen::single_plane), &libraries),
-                     make_slope_table(silicon(), 1000, quick(SlopeSpecimen::two_planes), &libraries)};
+    return std::pair{
+        make_slope_table(silicon(), 1000, quick(SlopeSpecimen::single_plane), &libraries),
+        make_slope_table(silicon(), 1000, quick(SlopeSpecimen::two_planes), &libraries)};
   }();
   return made;
 }
@@ -35,10 +36,11 @@ TEST(SlopeTable, RisesWithTheSlope) {
   for (const SlopeTable* table : {&tables().first, &tables().second}) {
     ASSERT_EQ(table->se.size(), 18u);
     ASSERT_EQ(table->bse.size(), 18u);
-    for (std::size_t i = 1; i <= 15; ++i) {   // to 75 degrees
+    for (std::size_t i = 1; i <= 15; ++i) {  // to 75 degrees
       EXPECT_GT(z_of(table->se[i], table->se[i - 1]), -3) << 5 * i << " degrees";
     }
-    for (std::size_t i = 6; i <= 15; i += 3) EXPECT_GT(z_of(table->se[i], table->se[i - 3]), 2) << 5 * i << " degrees";
+    for (std::size_t i = 6; i <= 15; i += 3)
+      EXPECT_GT(z_of(table->se[i], table->se[i - 3]), 2) << 5 * i << " degrees";
     EXPECT_GT(table->se[15].mean, 2 * table->se[0].mean);
     EXPECT_GT(table->bse[15].mean, 1.5 * table->bse[0].mean);
   }
@@ -47,13 +49,15 @@ TEST(SlopeTable, RisesWithTheSlope) {
 TEST(SlopeTable, OfOnePlaneIsATiltedBeam) {
   for (const int i : {0, 6, 12, 16}) {
     const test::Yields direct = test::flat_yields("Si", 1000, 5.0 * i, 6000);
-    EXPECT_LT(std::fabs(z_of(tables().first.se[static_cast<std::size_t>(i)], direct.se)), test::z_limit(8));
-    EXPECT_LT(std::fabs(z_of(tables().first.bse[static_cast<std::size_t>(i)], direct.bse)), test::z_limit(8));
+    EXPECT_LT(std::fabs(z_of(tables().first.se[static_cast<std::size_t>(i)], direct.se)),
+              test::z_limit(8));
+    EXPECT_LT(std::fabs(z_of(tables().first.bse[static_cast<std::size_t>(i)], direct.bse)),
+              test::z_limit(8));
   }
 }
 
 TEST(SlopeTable, TheGroundAddsSecondariesAtSteepSlopes) {
-  mc::Estimate one, two;   // added up over angles, with squares of errors
+  mc::Estimate one, two;  // added up over angles, with squares of errors
   for (const std::size_t i : {9u, 10u, 11u, 12u, 13u, 14u}) {
     one.mean += tables().first.se[i].mean, two.mean += tables().second.se[i].mean;
     one.standard_error = std::hypot(one.standard_error, tables().first.se[i].standard_error);
@@ -62,14 +66,16 @@ TEST(SlopeTable, TheGroundAddsSecondariesAtSteepSlopes) {
   EXPECT_GT(z_of(two, one), 4);
   EXPECT_EQ(tables().second.se[0].mean, tables().first.se[0].mean);
   for (const std::size_t i : {12u, 14u, 16u})
-    EXPECT_LT(z_of(tables().second.bse[i], tables().first.bse[i]), -5) << "the ground catches what goes down";
+    EXPECT_LT(z_of(tables().second.bse[i], tables().first.bse[i]), -5)
+        << "the ground catches what goes down";
 }
 
-/// The shape that the replay and the ground are seen on, simulated directly at another place along the slope.
+/// The shape that the replay and the ground are seen on, simulated directly at another place along
+/// the slope.
 TEST(SlopeTable, DoesNotDependOnWhereTheBeamLands) {
   mc::Specimen specimen;
   specimen.materials = {silicon()};
-  HeightField slope;   // 60 degrees, 200 nm wide: ranges are far less
+  HeightField slope;  // 60 degrees, 200 nm wide: ranges are far less
   slope.z_nm = Grid<double>(40, 2);
   slope.pitch_x_nm = 200, slope.pitch_y_nm = 4000;
   slope.origin_x_nm = -30 * 200.0, slope.origin_y_nm = -2000;

@@ -15,7 +15,7 @@ inline SimulateJob small_job() {
   SimulateJob job;
   job.scene.title = "small";
   job.scene.specimen.materials = {io::find_material("Si", "test")};
-  job.scene.specimen.materials[0].loss_join_fitted = true;   // no warning, whatever the table says
+  job.scene.specimen.materials[0].loss_join_fitted = true;  // no warning, whatever the table says
   job.scene.specimen.substrate = mc::Substrate{0, 0.0};
   job.scene.specimen.bodies = {{"folder/cube", make_box({-20, -20, 0}, {20, 20, 40}), 0}};
   job.scene.scan.width = 12;

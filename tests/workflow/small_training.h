@@ -7,7 +7,8 @@
 
 namespace surf::workflow {
 
-/// A model of 1 / cos from two of semsurf's own surfaces, 16 pixels of 3 nm across, 3 electrons each.
+/// A model of 1 / cos from two of semsurf's own surfaces, 16 pixels of 3 nm across, 3 electrons
+/// each.
 inline TrainJob small_training(const std::filesystem::path& output) {
   TrainJob job;
   job.surfaces = 2;

@@ -30,7 +30,8 @@ TEST(StepRecord, EveryParameterThatIsChangedIsInTheRecord) {
   test::every_change_is_recorded<MorphologyParameters>();
   test::every_change_is_recorded<CertaintyParameters>({{"scan.height_noise", "0.1nm"}});
   test::every_change_is_recorded<ScanNoiseParameters>();
-  test::every_change_is_recorded<TipParameters>({{"scan.height_noise", "0.5nm,0.5"}, {"tip.sweep", "0.1nm,2nm,30"}});
+  test::every_change_is_recorded<TipParameters>(
+      {{"scan.height_noise", "0.5nm,0.5"}, {"tip.sweep", "0.1nm,2nm,30"}});
   test::every_change_is_recorded<CharacterizerParameters>();
   test::every_change_is_recorded<TipShapeParameters>({{"tip.shape", "pyramid:5nm,20deg,3,30deg"}});
 }
@@ -43,8 +44,9 @@ TEST(StepRecord, EveryParameterOfTrainingIsInTheRecord) {
 TEST(StepRecord, EveryParameterOfReconstructionIsInTheRecord) {
   test::every_change_is_recorded<ReconstructionOptions>({{"reconstruction.scales", "16,8,4"}});
   test::every_change_is_recorded<AfmPreparationOptions>({{"scan.height_noise", "0.5nm,0.5"}});
-  test::every_change_is_recorded<AfmInput>(
-      {{"scan.height_noise", "0.5nm,0.5"}, {"scan.height_unit", "2.5um"}, {"scan.height_pitch", "2nmx3nm"}});
+  test::every_change_is_recorded<AfmInput>({{"scan.height_noise", "0.5nm,0.5"},
+                                            {"scan.height_unit", "2.5um"},
+                                            {"scan.height_pitch", "2nmx3nm"}});
   test::every_change_is_recorded<SemInput>({{"scan.pixel_size", "2nmx3nm"}});
   test::every_change_is_recorded<PoseOptions>({{"registration.transform", "1,0,60,0,1,45"}});
 }
@@ -60,16 +62,18 @@ TEST(StepRecord, TheCommandOfATrainingSaysWhatDiffers) {
   job.learn.hidden.emplace();
   job.learn.model_error = 0.013;
   job.learn.multi_resolution = true;
-  job.simulation.threads = 7;   // does not change the model
+  job.simulation.threads = 7;  // does not change the model
   job.simulation.budget = mc::Accuracy{0.02};
   EXPECT_EQ(training_command(job),
-            "semsurf train 'a scan.gwy' --signal image.tif:InLens --material Si --hidden 0 --model-error 1.3% "
+            "semsurf train 'a scan.gwy' --signal image.tif:InLens --material Si --hidden 0 "
+            "--model-error 1.3% "
             "--multi-resolution --energy 2.5keV --accuracy 2% --cutoff 5eV");
-  for (const auto& [name, text] : std::map<std::string, std::string>{{"training.surfaces", "12"},
-                                                                     {"training.edge", "flat"},
-                                                                     {"training.pixel_size", "3"},
-                                                                     {"simulation.seed", "9"},
-                                                                     {"scan.height_pitch", "2nmx3nm"}}) {
+  for (const auto& [name, text] :
+       std::map<std::string, std::string>{{"training.surfaces", "12"},
+                                          {"training.edge", "flat"},
+                                          {"training.pixel_size", "3"},
+                                          {"simulation.seed", "9"},
+                                          {"scan.height_pitch", "2nmx3nm"}}) {
     TrainJob changed;
     set_parameter(changed, name, text);
     EXPECT_NE(record_of(changed), record_of(TrainJob())) << name;

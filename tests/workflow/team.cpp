@@ -42,7 +42,8 @@ std::map<std::string, std::string> results_in(const fs::path& folder) {
   return files;
 }
 
-void expect_same_files(const fs::path& folder, const std::map<std::string, std::string>& wanted, int size) {
+void expect_same_files(const fs::path& folder, const std::map<std::string, std::string>& wanted,
+                       int size) {
   const auto files = results_in(folder);
   EXPECT_EQ(files.size(), wanted.size()) << size;
   for (const auto& [name, bytes] : wanted) {
@@ -51,7 +52,9 @@ void expect_same_files(const fs::path& folder, const std::map<std::string, std::
   }
 }
 
-nlohmann::json ranks_in(const fs::path& record) { return nlohmann::json::parse(io::read_file(record))["ranks"]; }
+nlohmann::json ranks_in(const fs::path& record) {
+  return nlohmann::json::parse(io::read_file(record))["ranks"];
+}
 
 template <class Value>
 std::int64_t sum_of(const nlohmann::json& ranks, const Value& key) {
@@ -101,10 +104,10 @@ TEST(Team, ExchangesTextsByRankAndBroadcastsTheLeaders) {
 }
 
 TEST(Team, LeavesOverOnlyWhatKeepsAllBusyTogether) {
-  EXPECT_EQ(pieces_of(60, 4, 4), 60u);     // even
-  EXPECT_EQ(pieces_of(61, 64, 4), 60u);    // one that all share at the end
-  EXPECT_EQ(pieces_of(63, 64, 4), 63u);    // three at a time are better than three one after another
-  EXPECT_EQ(pieces_of(62, 1, 4), 62u);     // whose image has one tile only
+  EXPECT_EQ(pieces_of(60, 4, 4), 60u);   // even
+  EXPECT_EQ(pieces_of(61, 64, 4), 60u);  // one that all share at the end
+  EXPECT_EQ(pieces_of(63, 64, 4), 63u);  // three at a time are better than three one after another
+  EXPECT_EQ(pieces_of(62, 1, 4), 62u);   // whose image has one tile only
   EXPECT_EQ(pieces_of(1, 64, 4), 0u);
   EXPECT_EQ(pieces_of(0, 64, 4), 0u);
 }
@@ -149,7 +152,7 @@ TEST(Team, SweepsToTheBytesOfOne) {
     EXPECT_THAT(told, testing::UnorderedElementsAre(0, 1, 2, 3, 4));
     const auto ranks = ranks_in(place / "sweep.run.json");
     EXPECT_EQ(sum_of(ranks, "primaries"), 5 * 12 * 9 * 20);
-    EXPECT_EQ(sum_of(ranks, "whole_runs"), 5);   // 12 x 9 pixels are one tile
+    EXPECT_EQ(sum_of(ranks, "whole_runs"), 5);  // 12 x 9 pixels are one tile
   }
 }
 
@@ -180,7 +183,7 @@ TEST(Team, TrainsToTheBytesOfOne) {
   TrainJob job = small_training(folder.path() / "alone" / "m.json");
   job.surfaces = 4;
   job.energy_ev = 500;
-  job.physics.secondaries = false;   // short cascades
+  job.physics.secondaries = false;  // short cascades
   run(job);
   const auto wanted = results_in(folder.path() / "alone");
   EXPECT_EQ(wanted.size(), 5u);
@@ -236,15 +239,18 @@ TEST(Team, ChartsToTheFiguresOfOne) {
     job.folder = folder.path() / std::to_string(size);
     std::atomic<int> points = 0;
     const PointCallback tell = [&](const ChartPoint&) { ++points; };
-    const auto errors = as_team(size, [&](Team& team) { EXPECT_TRUE(run(job, {}, tell, &team).complete); });
+    const auto errors =
+        as_team(size, [&](Team& team) { EXPECT_TRUE(run(job, {}, tell, &team).complete); });
     EXPECT_THAT(errors, Each(IsEmpty()));
     EXPECT_EQ(points, 2);
-    EXPECT_EQ(figures(job.folder / "chart.csv"), figures(folder.path() / "alone" / "chart.csv")) << size;
+    EXPECT_EQ(figures(job.folder / "chart.csv"), figures(folder.path() / "alone" / "chart.csv"))
+        << size;
     EXPECT_TRUE(bytes_of(job.folder / "reference" / "1.exr") ==
                 bytes_of(folder.path() / "alone" / "reference" / "1.exr"));
     for (const auto& [name, bytes] : results_in(job.folder / "models" / "images"))
       EXPECT_TRUE(name == "seconds.json" || wanted.at(name) == bytes) << name;
-    EXPECT_EQ(sum_of(ranks_in(job.folder / "chart.run.json"), "whole_runs"), 4);   // one is the reference
+    EXPECT_EQ(sum_of(ranks_in(job.folder / "chart.run.json"), "whole_runs"),
+              4);  // one is the reference
   }
 }
 
@@ -272,7 +278,7 @@ TEST(Team, WhoFailsInARunEndsTheSweepAndIsNamed) {
   const TemporaryFolder folder;
   const auto errors = as_team(3, [&](Team& team) {
     SweepJob job = small_sweep(folder.path(), 6);
-    auto asked = std::make_shared<int>(0);   // the first is looked at by all
+    auto asked = std::make_shared<int>(0);  // the first is looked at by all
     if (team.rank() == 2)
       for (SweepRun& run : job.runs)
         run.make = [make = run.make, asked] {

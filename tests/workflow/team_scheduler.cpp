@@ -32,7 +32,9 @@ mc::SimulationOptions few_electrons() {
   return options;
 }
 
-mc::Scene flat_scene(const mc::Scan& pixels = scan) { return mc::Scene(test::flat("Si"), {}, pixels); }
+mc::Scene flat_scene(const mc::Scan& pixels = scan) {
+  return mc::Scene(test::flat("Si"), {}, pixels);
+}
 
 TEST(TeamScheduler, GivesTheResultOfOneWhateverItsSize) {
   const mc::Scene scene = flat_scene();
@@ -77,10 +79,13 @@ TEST(TeamScheduler, DoesAllUnitsWhereTheLeaderHasNoThreadFree) {
                          came.push_back(unit.number);
                          EXPECT_EQ(unit.rank, 1);
                          EXPECT_EQ(unit.bytes, "done " + std::to_string(unit.number));
-                       }, nullptr);
-    team.follow([](const TakeUnit& take, const GiveUnit& give) {
-      while (const auto unit = take()) give({*unit, 3, "done " + std::to_string(*unit)});
-    }, 1, 0, nullptr);
+                       },
+                       nullptr);
+    team.follow(
+        [](const TakeUnit& take, const GiveUnit& give) {
+          while (const auto unit = take()) give({*unit, 3, "done " + std::to_string(*unit)});
+        },
+        1, 0, nullptr);
   });
   std::vector<std::size_t> all(units);
   std::iota(all.begin(), all.end(), 0u);
@@ -97,9 +102,11 @@ TEST(TeamScheduler, WhoFailsInAUnitEndsTheSimulationAndIsNamed) {
       mc::simulate(scene, few_electrons(), {.scheduler = &scheduler});
       return;
     }
-    team.follow([](const TakeUnit& take, const GiveUnit&) {
-      if (take()) throw InvalidInput("unit", "the disk is full", "Make room");
-    }, 1, 1, nullptr);
+    team.follow(
+        [](const TakeUnit& take, const GiveUnit&) {
+          if (take()) throw InvalidInput("unit", "the disk is full", "Make room");
+        },
+        1, 1, nullptr);
   });
   EXPECT_THAT(errors[0], HasSubstr("rank 2"));
   EXPECT_THAT(errors[0], HasSubstr("the disk is full"));

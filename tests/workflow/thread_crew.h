@@ -19,13 +19,14 @@
 
 namespace surf::test {
 
-/// What the threads of a crew share: one mailbox, and a table that all put a text on. Whoever waits for long has lost the
-/// others: they did not call the same functions in the same order.
+/// What the threads of a crew share: one mailbox, and a table that all put a text on. Whoever waits
+/// for long has lost the others: they did not call the same functions in the same order.
 class CrewRoom {
  public:
-  explicit CrewRoom(int size) : handed(), given(), size_(static_cast<std::size_t>(size)), replies_(size_), texts_(size_) {}
+  explicit CrewRoom(int size)
+      : handed(), given(), size_(static_cast<std::size_t>(size)), replies_(size_), texts_(size_) {}
 
-  std::vector<std::size_t> handed, given;   ///< numbers of units, in order
+  std::vector<std::size_t> handed, given;  ///< numbers of units, in order
 
   std::vector<std::string> exchange(int rank, const std::string& text) {
     std::unique_lock lock(mutex_);
@@ -126,11 +127,14 @@ class ThreadCrew {
  public:
   ThreadCrew(CrewRoom& room, int rank) : room_(room), rank_(rank) {}
 
-  void lead(const workflow::TakeUnit& take, const workflow::GiveUnit& give, const CancelToken*) { room_.lead(take, give); }
-  void follow(const std::function<void(const workflow::TakeUnit&, const workflow::GiveUnit&)>& work, int, int,
-              const CancelToken* cancel) {
+  void lead(const workflow::TakeUnit& take, const workflow::GiveUnit& give, const CancelToken*) {
+    room_.lead(take, give);
+  }
+  void follow(const std::function<void(const workflow::TakeUnit&, const workflow::GiveUnit&)>& work,
+              int, int, const CancelToken* cancel) {
     try {
-      work([&] { return room_.take(rank_); }, [&](workflow::FinishedUnit unit) { room_.give(rank_, std::move(unit)); });
+      work([&] { return room_.take(rank_); },
+           [&](workflow::FinishedUnit unit) { room_.give(rank_, std::move(unit)); });
       if (cancel && cancel->cancelled()) throw Interrupted();
     } catch (const std::exception& e) {
       room_.end(rank_, "rank " + std::to_string(rank_) + ": " + e.what());

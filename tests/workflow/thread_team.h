@@ -9,7 +9,8 @@ namespace surf::test {
 /// One thread of a team.
 class ThreadTeam : public workflow::Team {
  public:
-  ThreadTeam(CrewRoom& room, int rank, int size) : room_(room), crew_(room, rank), rank_(rank), size_(size) {
+  ThreadTeam(CrewRoom& room, int rank, int size)
+      : room_(room), crew_(room, rank), rank_(rank), size_(size) {
     for (int r = 0; r < size; ++r) members_.push_back({r, "host", 1, 0, 0, 0, 0});
   }
 
@@ -18,10 +19,15 @@ class ThreadTeam : public workflow::Team {
   std::vector<workflow::TeamMember> members() const override { return members_; }
 
   // The kind of call goes with it: all have to do the same.
-  void broadcast(std::string& bytes) override { bytes = meet("broadcast ", leads() ? bytes : "").front(); }
-  std::vector<std::string> exchange(const std::string& text) override { return meet("exchange ", text); }
+  void broadcast(std::string& bytes) override {
+    bytes = meet("broadcast ", leads() ? bytes : "").front();
+  }
+  std::vector<std::string> exchange(const std::string& text) override {
+    return meet("exchange ", text);
+  }
 
-  void lead(const workflow::TakeUnit& take, const workflow::GiveUnit& give, const CancelToken* cancel) override {
+  void lead(const workflow::TakeUnit& take, const workflow::GiveUnit& give,
+            const CancelToken* cancel) override {
     const auto count = [&](workflow::FinishedUnit unit) {
       auto& member = members_[static_cast<std::size_t>(unit.rank)];
       ++member.units;
@@ -30,8 +36,8 @@ class ThreadTeam : public workflow::Team {
     };
     crew_.lead(take, count, cancel);
   }
-  void follow(const std::function<void(const workflow::TakeUnit&, const workflow::GiveUnit&)>& work, int threads, int ahead,
-              const CancelToken* cancel) override {
+  void follow(const std::function<void(const workflow::TakeUnit&, const workflow::GiveUnit&)>& work,
+              int threads, int ahead, const CancelToken* cancel) override {
     crew_.follow(work, threads, ahead, cancel);
   }
 
@@ -51,7 +57,8 @@ class ThreadTeam : public workflow::Team {
   std::vector<workflow::TeamMember> members_;
 };
 
-/// Calls `part(team)` on a thread for each of a team, and tells what each has thrown; empty: nothing.
+/// Calls `part(team)` on a thread for each of a team, and tells what each has thrown; empty:
+/// nothing.
 template <class Part>
 std::vector<std::string> as_team(int size, const Part& part) {
   CrewRoom room(size);

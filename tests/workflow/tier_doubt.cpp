@@ -11,7 +11,8 @@ using testing::HasSubstr;
 
 TEST(TierDoubt, SaysWhenTheCheapTierIsEnough) {
   EXPECT_THAT(*tier_doubt({}, 1, 0.1), HasSubstr("enough for 10 %"));
-  EXPECT_THAT(*tier_doubt({}, 1, 0.04), testing::AllOf(HasSubstr("enough for topography"), HasSubstr("more than the 4 %")));
+  EXPECT_THAT(*tier_doubt({}, 1, 0.04),
+              testing::AllOf(HasSubstr("enough for topography"), HasSubstr("more than the 4 %")));
   EXPECT_THAT(*tier_doubt({}, 1, 0.01), HasSubstr("topography differs by 2 %"));
   EXPECT_THAT(*tier_doubt({}, 2, 0.1), HasSubstr("contrast between materials may be 30 % off"));
 }

@@ -49,14 +49,15 @@ TEST(TimeBudget, KeepsToTheTime) {
     const double cascades = double(mc::library_size(options, 1)) - 10'240;
     const double time = mc::expected_primaries(r, accuracy) * 1e-5 + cascades * 2 / 10'240;
     EXPECT_LE(time, 0.9 * left) << left;
-    EXPECT_GE(time, 0.6 * left) << left;   // two digits lose no more
+    EXPECT_GE(time, 0.6 * left) << left;  // two digits lose no more
   }
 }
 
 TEST(TimeBudget, HasTwoDigits) {
   for (const double left : {10.0, 33.0, 77.0, 500.0}) {
     const double accuracy = accuracy_that_fits(coarse(), seconds(left));
-    EXPECT_LE(format_share(accuracy).size(), std::string("0.13 %").size()) << format_share(accuracy);
+    EXPECT_LE(format_share(accuracy).size(), std::string("0.13 %").size())
+        << format_share(accuracy);
     EXPECT_EQ(parse_share(format_share(accuracy), "test"), accuracy);
   }
 }
@@ -65,7 +66,7 @@ TEST(TimeBudget, StaysCoarseWithoutTimeOrMemory) {
   EXPECT_EQ(accuracy_that_fits(coarse(), seconds(0)), coarse_accuracy);
   EXPECT_EQ(accuracy_that_fits(coarse(), seconds(-3)), coarse_accuracy);
   TimeBudget narrow = seconds(1000);
-  narrow.most_library_cascades = 12'000;   // 4 / 12000 = 0.0183^2
+  narrow.most_library_cascades = 12'000;  // 4 / 12000 = 0.0183^2
   EXPECT_NEAR(accuracy_that_fits(coarse(), narrow), 0.0183, 0.003);
 }
 
@@ -77,7 +78,7 @@ TEST(TimeBudget, PlanesTakeTime) {
   }
   EXPECT_GT(accuracy_that_fits(planes, seconds(5)), 0);
   EXPECT_EQ(mc::planes_used(planes), 100u);
-  planes.seconds = coarse().seconds * (1e5 + 100 * 10'240.0) / 1e5;   // as long for each primary
+  planes.seconds = coarse().seconds * (1e5 + 100 * 10'240.0) / 1e5;  // as long for each primary
   EXPECT_GT(accuracy_that_fits(planes, seconds(100)), accuracy_that_fits(coarse(), seconds(100)));
 }
 

@@ -19,7 +19,8 @@ using testing::HasSubstr;
 HeightField walls() {
   HeightField f{Grid<double>(60, 50), {}, 5, 5};
   for (int y = 0; y < 50; ++y)
-    for (int x = 0; x < 60; ++x) f.z_nm(x, y) = std::abs(x - 20) < 2 || std::abs(y - 30) < 2 ? 40 : 0;
+    for (int x = 0; x < 60; ++x)
+      f.z_nm(x, y) = std::abs(x - 20) < 2 || std::abs(y - 30) < 2 ? 40 : 0;
   f = dilate(f, conical_tip(30, 0.35, {5, 5, 25, 25}));
   const Grid<double> noise = simulate_noise({0, 0.04}, 60, 50, 4);
   for (std::size_t i = 0; i < noise.size(); ++i) f.z_nm.data()[i] += noise.data()[i];
@@ -73,7 +74,8 @@ TEST(TipJob, DoubtsATipThatTheScanDoesNotTell) {
   p.sweep_least_nm = 1, p.sweep_most_nm = 160, p.sweep_thresholds = 6;
   test::Heard heard;
   EXPECT_NE(find_tip({walls()}, p, heard.reporter()).tip.doubt, "");
-  EXPECT_THAT(heard.warnings, Contains(HasSubstr("is `scan.height_noise` right, is `tip.size` large enough?")));
+  EXPECT_THAT(heard.warnings,
+              Contains(HasSubstr("is `scan.height_noise` right, is `tip.size` large enough?")));
 }
 
 TEST(TipJob, RefusesWhatDoesNotFit) {
@@ -107,16 +109,16 @@ TEST(TipJob, ByACharacterizer) {
 }
 
 TEST(TipJob, ByShape) {
-  for (const char* text : {"cone:5nm,20deg", "parabola:5nm", "pyramid:5nm,20deg,3", "pyramid:5nm,20deg,3,30deg",
-                           "ball:5nm", "ball:5nm,2nm,5deg"}) {
+  for (const char* text : {"cone:5nm,20deg", "parabola:5nm", "pyramid:5nm,20deg,3",
+                           "pyramid:5nm,20deg,3,30deg", "ball:5nm", "ball:5nm,2nm,5deg"}) {
     TipShapeParameters p;
     p.shape = parse_tip_shape(text, "shape");
     EXPECT_EQ(format_tip_shape(p.shape), text);
     p.size = 9;
     EXPECT_EQ(tip_by_shape(p).z_nm.width(), 9) << text;
   }
-  for (const char* text : {"", "cone", "cone:5nm", "cone:5nm,20deg,3", "ball:5nm,2nm", "ball:5nm,0nm,5deg",
-                           "pyramid:5nm,20deg,2", "spoon:1nm"})
+  for (const char* text : {"", "cone", "cone:5nm", "cone:5nm,20deg,3", "ball:5nm,2nm",
+                           "ball:5nm,0nm,5deg", "pyramid:5nm,20deg,2", "spoon:1nm"})
     EXPECT_THROW(parse_tip_shape(text, "shape"), UsageError) << text;
   TipShapeParameters steep;
   steep.shape.half_angle_deg = 95;

@@ -32,7 +32,9 @@ TrainJob job_of(const LearnableKind& kind, const fs::path& output) {
 
 class TrainEveryKind : public testing::Test {
  protected:
-  TrainSummary train(const LearnableKind& kind, const fs::path& output) { return run(job_of(kind, output)); }
+  TrainSummary train(const LearnableKind& kind, const fs::path& output) {
+    return run(job_of(kind, output));
+  }
 
   LearnableKind kind(const std::string& name) const {
     const auto all = learnable_kinds();
@@ -69,7 +71,8 @@ TEST_F(TrainEveryKind, FromSurfacesOrTablesToAFileToAnImage) {
         ASSERT_TRUE(std::isfinite(value));
         sum += value;
       }
-      // Secondaries of silicon at 1 keV: about 1 per primary; backscattered electrons a fifth of that.
+      // Secondaries of silicon at 1 keV: about 1 per primary; backscattered electrons a fifth of
+      // that.
       const double mean = sum / static_cast<double>(image.find(channel)->values.size());
       EXPECT_GT(mean, channel[0] == 'S' ? 0.4 : 0.08) << channel;
       EXPECT_LT(mean, channel[0] == 'S' ? 2.5 : 0.7) << channel;
@@ -157,20 +160,26 @@ TEST_F(TrainEveryKind, RefusesWhatDoesNotConcernAKind) {
     spoil(job);
     EXPECT_THAT([&] { run(job); }, testing::ThrowsMessage<UsageError>(HasSubstr(words))) << words;
   };
-  expect("secant", "`training.hidden`: a model 'secant' has none", [](TrainJob& j) { j.learn.hidden = {4}; });
+  expect("secant", "`training.hidden`: a model 'secant' has none",
+         [](TrainJob& j) { j.learn.hidden = {4}; });
   expect("filter-bank", "`training.iterations`: a model 'filter-bank' has none",
          [](TrainJob& j) { j.learn.iterations = 4; });
   expect("filter-bank", "`training.decay`", [](TrainJob& j) { j.learn.decay = 0; });
   expect("slope-table", "`training.model_error`", [](TrainJob& j) { j.learn.model_error = 0; });
-  expect("secant", "add `training.kind=slope-table`", [](TrainJob& j) { j.learn.table_electrons = 100; });
-  expect("facet-network", "add `training.kind=filter-bank`", [](TrainJob& j) { j.learn.least_eigenvalue = 0; });
-  expect("facet-network", "`training.hidden`: 0 is out of range", [](TrainJob& j) { j.learn.hidden = {0}; });
+  expect("secant", "add `training.kind=slope-table`",
+         [](TrainJob& j) { j.learn.table_electrons = 100; });
+  expect("facet-network", "add `training.kind=filter-bank`",
+         [](TrainJob& j) { j.learn.least_eigenvalue = 0; });
+  expect("facet-network", "`training.hidden`: 0 is out of range",
+         [](TrainJob& j) { j.learn.hidden = {0}; });
   expect("facet-network", "tolerance is 2", [](TrainJob& j) { j.learn.model_error = 2; });
   expect("slope-table", "`training.hold_out`", [](TrainJob& j) { j.surfaces = 2, j.held_out = 1; });
-  expect("slope-table", "`training.table_electrons`: 1", [](TrainJob& j) { j.learn.table_electrons = 1; });
+  expect("slope-table", "`training.table_electrons`: 1",
+         [](TrainJob& j) { j.learn.table_electrons = 1; });
   expect("diffusion-matrix", "semsurf calibrate", [](TrainJob& j) { j.signal = "SE"; });
   expect("stopping-points", "knows of no spot", [](TrainJob& j) { j.spot_nm = 1; });
-  expect("stopping-points", "continuous loss", [](TrainJob& j) { j.physics.loss = mc::LossModel::none; });
+  expect("stopping-points", "continuous loss",
+         [](TrainJob& j) { j.physics.loss = mc::LossModel::none; });
   EXPECT_FALSE(fs::exists(path("si.training")));
 }
 

@@ -30,7 +30,8 @@ class TrainJobTest : public testing::Test {
   }
 
   /// Writes an image that is twice 1 / cos of the slope of `field`, in the channels named.
-  void write_image_of(const HeightField& field, const fs::path& file, const std::vector<std::string>& channels) {
+  void write_image_of(const HeightField& field, const fs::path& file,
+                      const std::vector<std::string>& channels) {
     const auto model = make_slope_model({}, {SlopeForm::secant, 5, {5, 0.6}, {{"x", 2, {}}}});
     const ModelImages images = model->predict(field);
     Image image;
@@ -150,7 +151,7 @@ TEST_F(TrainJobTest, LearnsFromGivenImages) {
 
 TEST_F(TrainJobTest, LearnsTheSameFromAnImageAsFromItsFile) {
   TrainJob job = own_training(path("si.json"), 3);
-  job.inputs[0].name = "image.exr";   // the record names the image
+  job.inputs[0].name = "image.exr";  // the record names the image
   write_image_of(job.inputs[0].field, path("image.exr"), {"SE", "BSE"});
   job.inputs[0].image = path("image.exr");
   train(job);
@@ -180,11 +181,12 @@ TEST_F(TrainJobTest, ResamplesFinerSurfacesAndRefusesCoarserOnes) {
   TrainJob job = own_training(path("si.json"), 2);
   job.pixel_nm = 3;
   train(job);
-  EXPECT_THAT(notes_, testing::Contains(HasSubstr("16 x 16 samples of 2.00 nm are resampled to 11 x 11 of 3.00 nm")));
+  EXPECT_THAT(notes_, testing::Contains(HasSubstr(
+                          "16 x 16 samples of 2.00 nm are resampled to 11 x 11 of 3.00 nm")));
   EXPECT_EQ(io::read_model(path("si.json")).record.scenes[0].width, 11);
   job.pixel_nm = 0.9;
-  EXPECT_THAT([&] { train(job); }, testing::ThrowsMessage<InvalidInput>(
-                                       testing::AllOf(HasSubstr("2.00 nm apart"), HasSubstr("0.900 nm"))));
+  EXPECT_THAT([&] { train(job); }, testing::ThrowsMessage<InvalidInput>(testing::AllOf(
+                                       HasSubstr("2.00 nm apart"), HasSubstr("0.900 nm"))));
 }
 
 TEST_F(TrainJobTest, RefusesWhatCannotBeLearntBeforeTimeIsSpent) {
@@ -194,12 +196,17 @@ TEST_F(TrainJobTest, RefusesWhatCannotBeLearntBeforeTimeIsSpent) {
     spoil(job);
     EXPECT_THAT([&] { train(job); }, testing::ThrowsMessage<Error>(HasSubstr(words)));
   };
-  expect("there is no kind 'neural'. Choose one of facet-network, filter-bank", [](TrainJob& j) { j.learn.kind = "neural"; });
+  expect("there is no kind 'neural'. Choose one of facet-network, filter-bank",
+         [](TrainJob& j) { j.learn.kind = "neural"; });
   expect("training.least_eigenvalue", [](TrainJob& j) { j.learn.least_eigenvalue = 0.1; });
   expect("leave none to learn on", [](TrainJob& j) { j.held_out = 1; });
   expect("training.pixel_size", [](TrainJob& j) { j.pixel_nm = 0; });
   expect("there is no image of", [](TrainJob& j) { j.signal = "SE"; });
-  expect("Name its HEIGHTS", [](TrainJob& j) { j.inputs.clear(); j.surfaces = 2; j.signal = "SE"; });
+  expect("Name its HEIGHTS", [](TrainJob& j) {
+    j.inputs.clear();
+    j.surfaces = 2;
+    j.signal = "SE";
+  });
   expect(".json", [](TrainJob& j) { j.output = "model.txt"; });
   expect("missing samples", [](TrainJob& j) {
     j.inputs[0].field.valid = Grid<unsigned char>(16, 16, 1);
@@ -213,16 +220,18 @@ TEST_F(TrainJobTest, RefusesImagesThatDoNotFit) {
   const HeightField small = make_rough({24, 24, 3}, 4, 9, 1);
   write_image_of(small, path("small.exr"), {"SE", "BSE"});
   job.inputs[0].image = path("small.exr");
-  EXPECT_THAT([&] { train(job); }, testing::ThrowsMessage<InvalidInput>(
-                                       testing::AllOf(HasSubstr("9 x 9 pixels"), HasSubstr("16 x 16 samples"))));
+  EXPECT_THAT([&] { train(job); }, testing::ThrowsMessage<InvalidInput>(testing::AllOf(
+                                       HasSubstr("9 x 9 pixels"), HasSubstr("16 x 16 samples"))));
   write_image_of(job.inputs[0].field, path("se.exr"), {"SE"});
   job.inputs[0].image = path("se.exr");
-  EXPECT_THAT([&] { train(job); }, testing::ThrowsMessage<FileError>(HasSubstr("no channel 'BSE'")));
+  EXPECT_THAT([&] { train(job); },
+              testing::ThrowsMessage<FileError>(HasSubstr("no channel 'BSE'")));
   HeightField other = job.inputs[0].field;
   other.pitch_x_nm = other.pitch_y_nm = 2;
   write_image_of(other, path("fine.exr"), {"SE", "BSE"});
   job.inputs[0].image = path("fine.exr");
-  EXPECT_THAT([&] { train(job); }, testing::ThrowsMessage<InvalidInput>(HasSubstr("2.00 nm, the model's 3.00 nm")));
+  EXPECT_THAT([&] { train(job); },
+              testing::ThrowsMessage<InvalidInput>(HasSubstr("2.00 nm, the model's 3.00 nm")));
 }
 
 }  // namespace

@@ -16,7 +16,8 @@ using testing::IsEmpty;
 std::vector<std::string> warnings_of(SimulateJob job) {
   const TemporaryFolder folder;
   job.outputs = {folder.path() / "image.exr"};
-  job.scene.budget = mc::ElectronsPerPixel{std::min<std::int64_t>(mc::electrons_of(job.scene.budget), 2)};
+  job.scene.budget =
+      mc::ElectronsPerPixel{std::min<std::int64_t>(mc::electrons_of(job.scene.budget), 2)};
   return run(job).warnings;
 }
 
@@ -49,7 +50,8 @@ TEST(Warnings, TellOfUnlikelySizes) {
 }
 
 TEST(Warnings, TellOfSpecksThatAreLikelyOfAnotherUnit) {
-  const auto speck = Contains(HasSubstr("the specimen is 2.00 nm wide, but electrons of 1000 eV reach about 31.8 nm in Si"));
+  const auto speck = Contains(HasSubstr(
+      "the specimen is 2.00 nm wide, but electrons of 1000 eV reach about 31.8 nm in Si"));
   const auto cube = [](double factor, bool substrate, bool assumed) {
     SimulateJob job = small_job();
     if (!substrate) job.scene.specimen.substrate.reset();
@@ -60,9 +62,10 @@ TEST(Warnings, TellOfSpecksThatAreLikelyOfAnotherUnit) {
     return warnings_of(job);
   };
   EXPECT_THAT(cube(0.05, false, true), speck);
-  EXPECT_THAT(cube(0.05, false, true), Contains(HasSubstr("With `specimen.unit=um` it would be 2.00 um")));
-  EXPECT_THAT(cube(0.05, false, false), IsEmpty());   // its unit was named
-  EXPECT_THAT(cube(0.05, true, true), IsEmpty());     // a particle on a substrate
+  EXPECT_THAT(cube(0.05, false, true),
+              Contains(HasSubstr("With `specimen.unit=um` it would be 2.00 um")));
+  EXPECT_THAT(cube(0.05, false, false), IsEmpty());  // its unit was named
+  EXPECT_THAT(cube(0.05, true, true), IsEmpty());    // a particle on a substrate
   EXPECT_THAT(cube(0.2, false, true), IsEmpty());
 }
 
@@ -79,7 +82,9 @@ TEST(Warnings, TellOfSpecimensSoFarAwayThatTheyLoseDigits) {
     transform(job.scene.specimen.bodies[0].mesh, 1, {offset_nm, 0, 0});
     scan_about(job, offset_nm);
     const auto far = Contains(HasSubstr("coordinates are 0.0002 nm apart"));
-    EXPECT_THAT(warnings_of(job), offset_nm > 1e11 ? testing::Matcher<std::vector<std::string>>(far) : IsEmpty()) << offset_nm;
+    EXPECT_THAT(warnings_of(job),
+                offset_nm > 1e11 ? testing::Matcher<std::vector<std::string>>(far) : IsEmpty())
+        << offset_nm;
   }
 }
 
@@ -119,7 +124,8 @@ TEST(Warnings, TellOfUnfittedMaterials) {
   job.scene.specimen.materials[0].loss_join_fitted = false;
   EXPECT_THAT(warnings_of(job), Contains(HasSubstr("Si: no measured yields")));
   mc::parse_physics("inelastic=dielectric", job.scene.physics);
-  EXPECT_THAT(warnings_of(job), testing::Not(Contains(HasSubstr("Si: no measured yields")))) << "nothing is fitted to them";
+  EXPECT_THAT(warnings_of(job), testing::Not(Contains(HasSubstr("Si: no measured yields"))))
+      << "nothing is fitted to them";
   mc::Material& si = job.scene.specimen.materials[0];
   si.dielectric = mc::complete(mc::DielectricDraft{}, si);
   EXPECT_THAT(warnings_of(job), Contains(HasSubstr("Si: its energy-loss function is an estimate")));

@@ -24,11 +24,11 @@ namespace surf::workflow {
 namespace {
 
 constexpr int tip_sizes[] = {5, 7, 9, 11, 13, 19, 27, 39, 57};
-constexpr int enough = 9;             // samples that are tried in any case
-constexpr double told_share = 0.1;    // of the directions that a round tip goes by
-constexpr double told_deviations = 3;  // of noise: a tip no deeper is told by noise alone
-constexpr double ground_correlation = 0.5;   // of whitened neighbours in two rows
-constexpr double noise_span = 6;      // standard deviations of noise in the range of heights
+constexpr int enough = 9;                   // samples that are tried in any case
+constexpr double told_share = 0.1;          // of the directions that a round tip goes by
+constexpr double told_deviations = 3;       // of noise: a tip no deeper is told by noise alone
+constexpr double ground_correlation = 0.5;  // of whitened neighbours in two rows
+constexpr double noise_span = 6;            // standard deviations of noise in the range of heights
 
 /// What a step says, kept for later.
 Reporter keeping(PreparedAfm& prepared, const Watch& watch) {
@@ -49,14 +49,17 @@ void level_scan(PreparedAfm& prepared, const HeightField& scan, const AfmPrepara
   if (o.level.method == LevelMethod::polynomial)
     prepared.notes.push_back(fmt::format("levelled by a polynomial of degree {}", o.level.degree));
   if (o.level.method == LevelMethod::plane)
-    prepared.notes.push_back(fmt::format("levelled by the mean plane, tilt {:.3g} deg", levelled.plane->tilt_deg()));
+    prepared.notes.push_back(
+        fmt::format("levelled by the mean plane, tilt {:.3g} deg", levelled.plane->tilt_deg()));
   if (levelled.hough)
-    prepared.notes.push_back(fmt::format("levelled by the plane that {:.0f} % of the scan lies on, tilt {:.3g} deg",
-                                         100 * levelled.hough->inlier_share, prepared.tilt_deg));
+    prepared.notes.push_back(
+        fmt::format("levelled by the plane that {:.0f} % of the scan lies on, tilt {:.3g} deg",
+                    100 * levelled.hough->inlier_share, prepared.tilt_deg));
   prepared.image = std::move(levelled.field);
 }
 
-/// Noise knows nothing of the row before: where a "substrate" goes on from row to row it is rough ground.
+/// Noise knows nothing of the row before: where a "substrate" goes on from row to row it is rough
+/// ground.
 bool is_ground(const SubstrateNoise& found) {
   const Grid<double> white = whiten(found.residual_nm, found.estimate.noise, found.substrate);
   NoiseCheckOptions options;
@@ -79,11 +82,15 @@ void find_noise(PreparedAfm& prepared, const AfmPreparationOptions& o) {
   prepared.noise = estimate.noise;
   prepared.noise_estimate = estimate;
   if (!(prepared.noise.innovation_nm2 > 0))
-    throw InvalidInput("AFM scan", "it has no noise that could be estimated: it may be simulated or filtered",
+    throw InvalidInput("AFM scan",
+                       "it has no noise that could be estimated: it may be simulated or filtered",
                        "Say `scan.height_noise=SIGMA,ALPHA`, as 0.5nm,0.8");
-  prepared.notes.push_back(fmt::format("noise of {}: {} rms, alpha {:.3f}", clear ? "the substrate" : "the differences",
+  prepared.notes.push_back(fmt::format("noise of {}: {} rms, alpha {:.3f}",
+                                       clear ? "the substrate" : "the differences",
                                        format_length(estimate.sigma_nm()), estimate.noise.alpha));
-  if (!clear) tell_noise_doubts(prepared.noise, estimate.alpha_at_limit, prepared.image, keeping(prepared, {}));
+  if (!clear)
+    tell_noise_doubts(prepared.noise, estimate.alpha_at_limit, prepared.image,
+                      keeping(prepared, {}));
 }
 
 BlindTipOptions blind_options(int size, int threads) {
@@ -93,7 +100,8 @@ BlindTipOptions blind_options(int size, int threads) {
   return blind;
 }
 
-TipSweep swept(const HeightField& image, const AfmNoise& noise, int size, const AfmPreparationOptions& o, const Watch& watch) {
+TipSweep swept(const HeightField& image, const AfmNoise& noise, int size,
+               const AfmPreparationOptions& o, const Watch& watch) {
   TipSweepOptions sweep;
   sweep.blind = blind_options(size, o.threads);
   sweep.noise = noise;
@@ -113,56 +121,67 @@ void find_free_tip(PreparedAfm& prepared, const AfmPreparationOptions& o, const 
   TipResult found = find_tip({prepared.image}, parameters, keeping(prepared, watch));
   prepared.tip_threshold_nm = *found.used.threshold_nm;
   prepared.tip = std::move(found.tip);
-  prepared.notes.push_back(fmt::format("tip of {} x {} samples, found blindly at a threshold of {}", o.tip_size, o.tip_size,
+  prepared.notes.push_back(fmt::format("tip of {} x {} samples, found blindly at a threshold of {}",
+                                       o.tip_size, o.tip_size,
                                        format_length(prepared.tip_threshold_nm)));
 }
 
 void find_round_tip(PreparedAfm& prepared, const AfmPreparationOptions& o, const Watch& watch) {
   const HeightField& image = prepared.image;
   const int shorter = std::min(image.z_nm.width(), image.z_nm.height());
-  const double relief = height_range({&image, 1}).span_nm() - noise_span * std::sqrt(prepared.noise.variance_nm2());
+  const double relief =
+      height_range({&image, 1}).span_nm() - noise_span * std::sqrt(prepared.noise.variance_nm2());
   if (!(relief > 0))
-    throw InvalidInput("AFM scan", "its relief is no higher than its noise, so it tells nothing of the tip",
+    throw InvalidInput("AFM scan",
+                       "its relief is no higher than its noise, so it tells nothing of the tip",
                        "Give `reconstruction.tip`, or another scan");
   std::vector<std::vector<double>> told;
   int widest = 0;
-  std::string doubt;   // none where the sweep of any size has none
+  std::string doubt;  // none where the sweep of any size has none
   constexpr auto sizes = static_cast<double>(std::size(tip_sizes));
   for (std::size_t i = 0; i < std::size(tip_sizes); ++i) {
     const int size = tip_sizes[i];
     if (size > (told.empty() ? shorter : shorter / 3)) break;
-    const TipSweep found = swept(image, prepared.noise, size, o, watch.part(double(i) / sizes, double(i + 1) / sizes));
+    const TipSweep found =
+        swept(image, prepared.noise, size, o, watch.part(double(i) / sizes, double(i + 1) / sizes));
     const SweptTip& chosen = found.curve[found.chosen];
     if (told.empty() || !doubt.empty()) doubt = doubt_of_sweep(found);
     widest = size;
     prepared.tip_threshold_nm = chosen.threshold_nm;
     told.push_back(round_profile_nm(chosen.tip, told_share));
     prepared.tip = tip_below(told, image.pitch_x_nm, image.pitch_y_nm, relief, shorter / 2);
-    if (size >= enough && std::max(prepared.tip.z_nm.width(), prepared.tip.z_nm.height()) <= size + 2) break;
+    if (size >= enough &&
+        std::max(prepared.tip.z_nm.width(), prepared.tip.z_nm.height()) <= size + 2)
+      break;
   }
   if (told.empty())
-    throw InvalidInput("AFM scan", fmt::format("it has {} x {} samples, too few to find a tip in", image.z_nm.width(),
-                                               image.z_nm.height()), "Give `reconstruction.tip`");
+    throw InvalidInput("AFM scan",
+                       fmt::format("it has {} x {} samples, too few to find a tip in",
+                                   image.z_nm.width(), image.z_nm.height()),
+                       "Give `reconstruction.tip`");
   prepared.tip_round = true;
   const double noise = told_deviations * std::sqrt(prepared.noise.variance_nm2());
   if (std::ranges::none_of(told, [&](const auto& profile) { return profile.back() < -noise; })) {
     prepared.tip = {Grid<double>(1, 1), image.pitch_x_nm, image.pitch_y_nm, 0, 0};
-    prepared.warnings.push_back("the scan tells nothing of its tip, which is taken as sharp, so that the scan is the surface. "
-                                "Give `reconstruction.tip` if you know it");
+    prepared.warnings.push_back(
+        "the scan tells nothing of its tip, which is taken as sharp, so that the scan is the "
+        "surface. "
+        "Give `reconstruction.tip` if you know it");
     return;
   }
   prepared.tip.doubt = doubt;
   tell_tip_doubt(prepared.tip, keeping(prepared, watch));
-  prepared.notes.push_back(fmt::format("round tip of {} x {} samples, from what blind ones of up to {} samples tell",
-                                       prepared.tip.z_nm.width(), prepared.tip.z_nm.height(), widest));
+  prepared.notes.push_back(
+      fmt::format("round tip of {} x {} samples, from what blind ones of up to {} samples tell",
+                  prepared.tip.z_nm.width(), prepared.tip.z_nm.height(), widest));
 }
 
 Tip meeting(const Tip& tip, PreparedAfm& prepared) {
   Reporter reporter = keeping(prepared, {});
-  reporter.on_note = nullptr;   // of a pitch that differs
+  reporter.on_note = nullptr;  // of a pitch that differs
   Tip met = tip_for(tip, prepared.image, "tip", reporter);
   met.pitch_x_nm = prepared.image.pitch_x_nm,
-  met.pitch_y_nm = prepared.image.pitch_y_nm;   // but for what a file's text rounds
+  met.pitch_y_nm = prepared.image.pitch_y_nm;  // but for what a file's text rounds
   return met;
 }
 
@@ -184,11 +203,15 @@ void choose_tip(PreparedAfm& prepared, const AfmPreparationOptions& o) {
 PreparedAfm prepare_afm(const HeightField& scan, const AfmPreparationOptions& o) {
   validate(scan, "AFM scan");
   if (o.tip_size != 0 && (o.tip_size < 3 || o.tip_size % 2 == 0))
-    throw UsageError("`reconstruction.tip_size`", fmt::format("{} samples have no middle for the apex", o.tip_size), "Give an odd number from 3 on");
+    throw UsageError("`reconstruction.tip_size`",
+                     fmt::format("{} samples have no middle for the apex", o.tip_size),
+                     "Give an odd number from 3 on");
   const int shorter = std::min(scan.z_nm.width(), scan.z_nm.height());
   if (o.tip_size > shorter)
-    throw UsageError("`reconstruction.tip_size`", fmt::format("{} samples, but the scan has {} x {}", o.tip_size, scan.z_nm.width(),
-                                               scan.z_nm.height()), fmt::format("Give {} at most", shorter - (shorter % 2 == 0)));
+    throw UsageError("`reconstruction.tip_size`",
+                     fmt::format("{} samples, but the scan has {} x {}", o.tip_size,
+                                 scan.z_nm.width(), scan.z_nm.height()),
+                     fmt::format("Give {} at most", shorter - (shorter % 2 == 0)));
   if (!(height_range({&scan, 1}).span_nm() > 0))
     throw InvalidInput("AFM scan", "all its heights are the same",
                        "Choose the channel of heights with `scan.height_channel`");
@@ -196,10 +219,13 @@ PreparedAfm prepare_afm(const HeightField& scan, const AfmPreparationOptions& o)
   level_scan(prepared, scan, o);
   find_noise(prepared, o);
   choose_tip(prepared, o);
-  if (prepared.tip.z_nm.width() > scan.z_nm.width() || prepared.tip.z_nm.height() > scan.z_nm.height())
-    throw InvalidInput("`reconstruction.tip`", fmt::format("it is {} x {} samples, wider than the scan of {} x {}",
-                                            prepared.tip.z_nm.width(), prepared.tip.z_nm.height(), scan.z_nm.width(),
-                                            scan.z_nm.height()), "Crop the tip to what can touch the surface, or check its pixel size");
+  if (prepared.tip.z_nm.width() > scan.z_nm.width() ||
+      prepared.tip.z_nm.height() > scan.z_nm.height())
+    throw InvalidInput("`reconstruction.tip`",
+                       fmt::format("it is {} x {} samples, wider than the scan of {} x {}",
+                                   prepared.tip.z_nm.width(), prepared.tip.z_nm.height(),
+                                   scan.z_nm.width(), scan.z_nm.height()),
+                       "Crop the tip to what can touch the surface, or check its pixel size");
   CertaintyOptions certainty;
   certainty.noise_nm = std::sqrt(prepared.noise.variance_nm2());
   certainty.threads = o.threads;

@@ -14,8 +14,8 @@
 namespace surf::workflow {
 namespace {
 
-constexpr double same_pitch = 1e-3;   // relative: as models ask of fields
-constexpr double most_level = 1e9;    // grey levels beyond it would no longer be told apart
+constexpr double same_pitch = 1e-3;  // relative: as models ask of fields
+constexpr double most_level = 1e9;   // grey levels beyond it would no longer be told apart
 
 /// Names of one text with commas, and no list: it is given once.
 class NamesField final : public Field {
@@ -28,7 +28,8 @@ class NamesField final : public Field {
     names_.clear();
     for (const std::string_view name : split(text, ",")) {
       const std::size_t first = name.find_first_not_of(' ');
-      names_.emplace_back(first == name.npos ? "" : name.substr(first, name.find_last_not_of(' ') + 1 - first));
+      names_.emplace_back(
+          first == name.npos ? "" : name.substr(first, name.find_last_not_of(' ') + 1 - first));
     }
   }
   void clear() override { names_.clear(); }
@@ -40,16 +41,23 @@ class NamesField final : public Field {
 void check_same_pixels(const CalibrateInput& input) {
   const PlacedImage& real = input.image;
   const Image& simulated = input.simulated;
-  constexpr const char* remedy = "They have to show the same surface pixel on pixel: register and resample one first";
+  constexpr const char* remedy =
+      "They have to show the same surface pixel on pixel: register and resample one first";
   if (real.values.width() != simulated.width() || real.values.height() != simulated.height())
-    throw InvalidInput(input.name, fmt::format("it has {} x {} pixels, {} has {} x {}", real.values.width(),
-                                               real.values.height(), input.simulated_name, simulated.width(),
-                                               simulated.height()), remedy);
+    throw InvalidInput(input.name,
+                       fmt::format("it has {} x {} pixels, {} has {} x {}", real.values.width(),
+                                   real.values.height(), input.simulated_name, simulated.width(),
+                                   simulated.height()),
+                       remedy);
   const auto differ = [](double a, double b) { return std::fabs(a - b) > same_pitch * b; };
-  if (differ(real.pitch_x_nm, simulated.pitch_x_nm) || differ(real.pitch_y_nm, simulated.pitch_y_nm))
-    throw InvalidInput(input.name, fmt::format("its pixels are {:.6g} x {:.6g} nm, those of {} {:.6g} x {:.6g} nm",
-                                               real.pitch_x_nm, real.pitch_y_nm, input.simulated_name,
-                                               simulated.pitch_x_nm, simulated.pitch_y_nm), remedy);
+  if (differ(real.pitch_x_nm, simulated.pitch_x_nm) ||
+      differ(real.pitch_y_nm, simulated.pitch_y_nm))
+    throw InvalidInput(
+        input.name,
+        fmt::format("its pixels are {:.6g} x {:.6g} nm, those of {} {:.6g} x {:.6g} nm",
+                    real.pitch_x_nm, real.pitch_y_nm, input.simulated_name, simulated.pitch_x_nm,
+                    simulated.pitch_y_nm),
+        remedy);
 }
 
 Grid<double> values(const Image& image, const Channel& channel) {
@@ -72,14 +80,16 @@ CalibrationImages images_of(const CalibrateInput& input, const CalibrateParamete
     throw UsageError(input.simulated_name, "it has no channel SE or BSE",
                      "Say which of its channels to fit with `calibration.fit`");
   if (p.ratio && wanted.size() != 2)
-    throw UsageError("`calibration.ratio`", fmt::format("it is of two channels, not of {}", wanted.size()),
+    throw UsageError("`calibration.ratio`",
+                     fmt::format("it is of two channels, not of {}", wanted.size()),
                      "Fit two channels, or leave it out");
   for (const std::string& name : wanted) {
     const Channel* channel = input.simulated.find(name);
     if (!channel) {
       std::vector<std::string> names;
       for (const Channel& c : input.simulated.channels) names.push_back(c.name);
-      throw UsageError("`calibration.fit`", fmt::format("{} has no channel '{}'", input.simulated_name, name),
+      throw UsageError("`calibration.fit`",
+                       fmt::format("{} has no channel '{}'", input.simulated_name, name),
                        fmt::format("Choose of: {}", fmt::join(names, ", ")));
     }
     images.channels.push_back(name);
@@ -98,14 +108,18 @@ CalibrationOptions options_of(const CalibrateParameters& p) {
 }
 
 /// Multiplies the fit by a gain that varies slowly; where that is not known, the fit is not either.
-void vary_gain(const CalibrateInput& input, const CalibrationImages& images, double range_nm, CalibrateResult& result,
-               const Reporter& reporter) {
-  const auto pixels = [&](double pitch_nm) { return static_cast<int>(std::min(range_nm / pitch_nm, 1e9)); };
-  SlowGain slow = slow_gain(images.real, result.fit, pixels(input.image.pitch_x_nm), pixels(input.image.pitch_y_nm),
-                            images.used);
+void vary_gain(const CalibrateInput& input, const CalibrationImages& images, double range_nm,
+               CalibrateResult& result, const Reporter& reporter) {
+  const auto pixels = [&](double pitch_nm) {
+    return static_cast<int>(std::min(range_nm / pitch_nm, 1e9));
+  };
+  SlowGain slow = slow_gain(images.real, result.fit, pixels(input.image.pitch_x_nm),
+                            pixels(input.image.pitch_y_nm), images.used);
   if (slow.unknown)
-    reporter.warn(fmt::format("{} pixels have nothing around them to take a gain from: they are not valid in the residual",
-                              slow.unknown));
+    reporter.warn(
+        fmt::format("{} pixels have nothing around them to take a gain from: they are not valid in "
+                    "the residual",
+                    slow.unknown));
   for (std::size_t i = 0; i < slow.gain.size(); ++i) {
     result.fit.data()[i] *= slow.gain.data()[i];
     if (!slow.known.data()[i]) result.fit.data()[i] = std::numeric_limits<double>::quiet_NaN();
@@ -124,30 +138,42 @@ void describe(ParameterVisitor& visit, CalibrateParameters& p) {
                .otherwise = "SE,BSE, those that are there",
                .form = "NAMES"},
               fit);
-  visit(p.ratio,
-        {.name = "calibration.ratio", .help = "Gain of the second channel over the first's, where it is known",
+  visit(p.ratio, {.name = "calibration.ratio",
+                  .help = "Gain of the second channel over the first's, where it is known",
                   .otherwise = "fitted"});
-  visit(p.offset, {.name = "calibration.offset", .help = "What the image shows without a signal, where it is known",
-                   .limits = within(-most_level, most_level), .otherwise = "fitted"});
-  visit(p.black, {.name = "calibration.black", .help = "Level from which pixels downwards are saturated and left out",
-                  .limits = within(-most_level, most_level), .otherwise = "none are"});
-  visit(p.white, {.name = "calibration.white", .help = "Level from which pixels upwards are saturated and left out",
-                  .limits = within(-most_level, most_level), .otherwise = "none are"});
-  visit(p.range_nm, {.name = "calibration.range", .help = "Half the width of squares over which the gain may vary",
-                     .unit = Unit::nm, .limits = above(0), .otherwise = "it is constant"});
+  visit(p.offset, {.name = "calibration.offset",
+                   .help = "What the image shows without a signal, where it is known",
+                   .limits = within(-most_level, most_level),
+                   .otherwise = "fitted"});
+  visit(p.black, {.name = "calibration.black",
+                  .help = "Level from which pixels downwards are saturated and left out",
+                  .limits = within(-most_level, most_level),
+                  .otherwise = "none are"});
+  visit(p.white, {.name = "calibration.white",
+                  .help = "Level from which pixels upwards are saturated and left out",
+                  .limits = within(-most_level, most_level),
+                  .otherwise = "none are"});
+  visit(p.range_nm, {.name = "calibration.range",
+                     .help = "Half the width of squares over which the gain may vary",
+                     .unit = Unit::nm,
+                     .limits = above(0),
+                     .otherwise = "it is constant"});
 }
 
 void check(const CalibrateParameters& p) {
   check_parameters(p);
   for (const std::string& name : p.fit)
     if (name.empty() || std::ranges::count(p.fit, name) > 1)
-      throw UsageError("`calibration.fit`", "a channel is named twice, or not at all", "Give names, as SE,BSE");
+      throw UsageError("`calibration.fit`", "a channel is named twice, or not at all",
+                       "Give names, as SE,BSE");
   const CalibrationOptions options = options_of(p);
   if (!(options.black < options.white))
-    throw UsageError("`calibration.white`", "it is not above `calibration.black`", "Exchange the two levels");
+    throw UsageError("`calibration.white`", "it is not above `calibration.black`",
+                     "Exchange the two levels");
 }
 
-CalibrateResult calibrate(const CalibrateInput& input, const CalibrateParameters& p, const Reporter& reporter) {
+CalibrateResult calibrate(const CalibrateInput& input, const CalibrateParameters& p,
+                          const Reporter& reporter) {
   check(p);
   check_same_pixels(input);
   const CalibrationImages images = images_of(input, p);

@@ -15,13 +15,15 @@ void describe(ParameterVisitor& visit, CertaintyParameters& p) {
                                .limits = at_least(0),
                                .otherwise = "from neighbouring pixels",
                                .form = "LENGTH"};
-  visit.form(noise, [&p] { return p.noise_nm ? format_exact(*p.noise_nm) : std::string(); },
-             [&p](std::string_view text, const std::string& subject) {
-               if (text.find(',') != std::string_view::npos)
-                 throw UsageError(subject, fmt::format("'{}' has a correlation, which certainty does not go by", text),
-                                  "Give the standard deviation alone, as 0.1nm");
-               p.noise_nm = parse_value(text, noise, subject);
-             });
+  visit.form(
+      noise, [&p] { return p.noise_nm ? format_exact(*p.noise_nm) : std::string(); },
+      [&p](std::string_view text, const std::string& subject) {
+        if (text.find(',') != std::string_view::npos)
+          throw UsageError(
+              subject, fmt::format("'{}' has a correlation, which certainty does not go by", text),
+              "Give the standard deviation alone, as 0.1nm");
+        p.noise_nm = parse_value(text, noise, subject);
+      });
   visit(p.sigmas, {.name = "certainty.sigmas",
                    .help = "Standard deviations that the noise is taken to be within",
                    .limits = above(0, 1e6),
@@ -32,11 +34,12 @@ void describe(ParameterVisitor& visit, CertaintyParameters& p) {
                           .otherwise = "as flat as the apex is within the noise",
                           .form = "PIXELS",
                           .level = Level::advanced});
-  visit(p.distance_nm, {.name = "certainty.distance",
-                        .help = "Distance that the tip keeps from the surface, of non-contact scans",
-                        .unit = Unit::nm,
-                        .limits = at_least(0),
-                        .level = Level::advanced});
+  visit(p.distance_nm,
+        {.name = "certainty.distance",
+         .help = "Distance that the tip keeps from the surface, of non-contact scans",
+         .unit = Unit::nm,
+         .limits = at_least(0),
+         .level = Level::advanced});
 }
 
 CertaintyResult certainty(const HeightField& scan, const Tip& tip, const CertaintyParameters& p,
@@ -46,23 +49,28 @@ CertaintyResult certainty(const HeightField& scan, const Tip& tip, const Certain
   result.used = p;
   if (!p.noise_nm) {
     result.used.noise_nm = pixel_noise_nm(scan);
-    reporter.note(fmt::format("a noise of {} is taken from neighbouring pixels (their second differences); "
-                              "`scan.height_noise` says otherwise", format_length(*result.used.noise_nm)));
+    reporter.note(
+        fmt::format("a noise of {} is taken from neighbouring pixels (their second differences); "
+                    "`scan.height_noise` says otherwise",
+                    format_length(*result.used.noise_nm)));
   }
-  result.map = certainty_map(scan, tip, {.noise_nm = *result.used.noise_nm,
-                                         .sigmas = p.sigmas,
-                                         .neighbourhood = p.neighbourhood.value_or(CertaintyOptions{}.neighbourhood),
-                                         .distance_nm = p.distance_nm,
-                                         .threads = p.threads,
-                                         .watch = reporter.watch()});
+  result.map =
+      certainty_map(scan, tip,
+                    {.noise_nm = *result.used.noise_nm,
+                     .sigmas = p.sigmas,
+                     .neighbourhood = p.neighbourhood.value_or(CertaintyOptions{}.neighbourhood),
+                     .distance_nm = p.distance_nm,
+                     .threads = p.threads,
+                     .watch = reporter.watch()});
   result.used.neighbourhood = result.map.neighbourhood;
   const std::size_t unexplained = result.map.unexplained, pixels = result.map.image_pixels;
   result.trustworthy = 2 * unexplained <= pixels;
   if (20 * unexplained > pixels)
-    reporter.warn(fmt::format("{:.0f} % of the scan cannot have been made by this tip with this noise: the tip may be "
-                              "sharper than its file says, or `scan.height_noise` larger{}",
-                              100.0 * static_cast<double>(unexplained) / static_cast<double>(pixels),
-                              result.trustworthy ? "" : ". A map of so little of the scan is not to be trusted"));
+    reporter.warn(fmt::format(
+        "{:.0f} % of the scan cannot have been made by this tip with this noise: the tip may be "
+        "sharper than its file says, or `scan.height_noise` larger{}",
+        100.0 * static_cast<double>(unexplained) / static_cast<double>(pixels),
+        result.trustworthy ? "" : ". A map of so little of the scan is not to be trusted"));
   return result;
 }
 

@@ -51,8 +51,9 @@ void read_transform(std::string_view text, const std::string& subject, PoseOptio
 SemNoise read_sem_noise(std::string_view text, const std::string& subject) {
   const std::vector<double> line = numbers_of(text, subject);
   if (line.size() < 2 || line.size() > 3)
-    throw UsageError(subject, fmt::format("'{}' has {} numbers", text, line.size()),
-                     "Give slope and intercept of the variance, and its least value if you like, as 1.2,30");
+    throw UsageError(
+        subject, fmt::format("'{}' has {} numbers", text, line.size()),
+        "Give slope and intercept of the variance, and its least value if you like, as 1.2,30");
   const SemNoise noise{line[0], line[1], line.size() > 2 ? line[2] : SemNoise{}.least_variance};
   try {
     validate(noise);
@@ -65,7 +66,8 @@ SemNoise read_sem_noise(std::string_view text, const std::string& subject) {
 std::vector<double> read_gains(std::string_view text, const std::string& subject) {
   std::vector<double> gains = numbers_of(text, subject);
   if (std::ranges::all_of(gains, [](double gain) { return gain == 0; }))
-    throw UsageError(subject, "all are 0: the image would have nothing of the model", "Give one above 0 at least");
+    throw UsageError(subject, "all are 0: the image would have nothing of the model",
+                     "Give one above 0 at least");
   return gains;
 }
 
@@ -81,9 +83,9 @@ void describe_calibration(ParameterVisitor& visit, std::optional<GivenCalibratio
       });
   std::optional<double> offset;
   if (calibration && !visit.reads()) offset = calibration->offset;
-  visit(
-      offset,
-      {.name = "reconstruction.offset", .help = "Offset of the grey levels, where gains are given", .otherwise = "0"});
+  visit(offset, {.name = "reconstruction.offset",
+                 .help = "Offset of the grey levels, where gains are given",
+                 .otherwise = "0"});
   if (!visit.reads() || !offset) return;
   if (!calibration)
     throw UsageError("`reconstruction.offset`", "without `reconstruction.gains` it is fitted",
@@ -94,10 +96,12 @@ void describe_calibration(ParameterVisitor& visit, std::optional<GivenCalibratio
 /// Whether the tip is fitted, as two flags: neither leaves it to how the tip was found.
 void describe_tip_fit(ParameterVisitor& visit, std::optional<bool>& refine) {
   bool keep = refine == false;
-  visit(keep, {.name = "reconstruction.keep_tip", .help = "Do not fit the tip that was found in the scan further"});
+  visit(keep, {.name = "reconstruction.keep_tip",
+               .help = "Do not fit the tip that was found in the scan further"});
   if (!visit.reads()) return;
   if (keep && refine == true)
-    throw UsageError("`reconstruction.keep_tip`", "with `reconstruction.refine_tip` it contradicts itself",
+    throw UsageError("`reconstruction.keep_tip`",
+                     "with `reconstruction.refine_tip` it contradicts itself",
                      "Leave one of them out");
   if (keep) refine = false;
 }
@@ -140,8 +144,11 @@ void describe(ParameterVisitor& visit, ModelRequest& request) {
   request.spot_given = spot_nm.has_value();
   request.spot_nm = spot_nm.value_or(request.spot_nm);
   describe_path(visit, request.file,
-                {.name = "reconstruction.model", .help = "Fast model, as 'semsurf train' writes it",
-                 .otherwise = "one that was kept, else one is trained and kept", .form = "FILE.json", .recorded = false,
+                {.name = "reconstruction.model",
+                 .help = "Fast model, as 'semsurf train' writes it",
+                 .otherwise = "one that was kept, else one is trained and kept",
+                 .form = "FILE.json",
+                 .recorded = false,
                  .file = FileRole::read});
   visit.form(
       {.name = "job.cache",
@@ -160,17 +167,23 @@ void describe(ParameterVisitor& visit, ModelRequest& request) {
 void describe(ParameterVisitor& visit, PoseOptions& pose) {
   visit(pose.registration.objective, {"correlation", "mutual-information"},
         {.name = "registration.objective", .help = "What is largest where the images agree"});
-  visit(pose.landmarks_only,
-        {.name = "registration.landmarks_only", .help = "Do not refine the landmarks' map by the images"});
-  visit.form({.name = "registration.transform",
-              .help = "Map that is known: a file as 'semsurf register' writes it, or xx,xy,x0,yx,yy,y0 in nm",
-              .otherwise = "searched for", .form = "FILE.json", .file = FileRole::read},
-             [&] {
-               if (!pose.transform) return std::string();
-               const Affine& m = *pose.transform;
-               return text_of({m.xx, m.xy, m.x0, m.yx, m.yy, m.y0});
-             },
-             [&](std::string_view text, const std::string& subject) { read_transform(text, subject, pose); });
+  visit(pose.landmarks_only, {.name = "registration.landmarks_only",
+                              .help = "Do not refine the landmarks' map by the images"});
+  visit.form(
+      {.name = "registration.transform",
+       .help =
+           "Map that is known: a file as 'semsurf register' writes it, or xx,xy,x0,yx,yy,y0 in nm",
+       .otherwise = "searched for",
+       .form = "FILE.json",
+       .file = FileRole::read},
+      [&] {
+        if (!pose.transform) return std::string();
+        const Affine& m = *pose.transform;
+        return text_of({m.xx, m.xy, m.x0, m.yx, m.yy, m.y0});
+      },
+      [&](std::string_view text, const std::string& subject) {
+        read_transform(text, subject, pose);
+      });
   visit(pose.accept_unverified, {.name = "registration.accept_registration",
                                  .help = "Go on where the registration is not verified"});
 }
@@ -180,7 +193,8 @@ void describe(ParameterVisitor& visit, RegisterJob& job) {
   describe(visit, job.sem);
   describe(visit, job.model);
   describe(visit, job.pose);
-  visit(job.afm.preparation.seed, {.name = "tip.seed", .help = "Seed of the noise that tips are judged by"});
+  visit(job.afm.preparation.seed,
+        {.name = "tip.seed", .help = "Seed of the noise that tips are judged by"});
   describe_path(visit, job.transform,
                 {.name = "output",
                  .help = "The map, which 'semsurf reconstruct --transform' takes",
@@ -204,14 +218,17 @@ void describe(ParameterVisitor& visit, ReconstructJob& job) {
     describe_calibration(visit, job.calibration);
     visit.form(
         {.name = "reconstruction.sem_noise",
-         .help = "Variance by the grey level, a line: slope, intercept and, if it matters, least variance",
+         .help = "Variance by the grey level, a line: slope, intercept and, if it matters, least "
+                 "variance",
          .otherwise = "estimated from flat places",
          .form = "SLOPE,INTERCEPT"},
         [&] {
           const auto& n = job.sem_noise;
           return n ? text_of({n->slope, n->intercept, n->least_variance}) : std::string();
         },
-        [&](std::string_view text, const std::string& subject) { job.sem_noise = read_sem_noise(text, subject); });
+        [&](std::string_view text, const std::string& subject) {
+          job.sem_noise = read_sem_noise(text, subject);
+        });
   }
   if (job.afm && job.sem) describe(visit, job.pose);
   ReconstructionOptions options = job.options;
@@ -232,7 +249,8 @@ void describe(ParameterVisitor& visit, ReconstructJob& job) {
   }
   describe_folder(visit, job.folder, "Folder for all results; it is made");
   bool no_picture = !job.picture;
-  visit(no_picture, {.name = "output.no_picture", .help = "Leave out panel.png, which needs Python with Matplotlib",
+  visit(no_picture, {.name = "output.no_picture",
+                     .help = "Leave out panel.png, which needs Python with Matplotlib",
                      .recorded = false});
   job.picture = !no_picture;
   describe_threads(visit, job.options.threads);

@@ -13,10 +13,9 @@
 namespace surf::workflow {
 namespace {
 
-constexpr double square = 1e-3;   // relative: as models ask of fields
+constexpr double square = 1e-3;  // relative: as models ask of fields
 
 }  // namespace
-
 
 void begin(const Reporter& reporter, const char* stage) {
   if (reporter.cancelled()) throw Interrupted();
@@ -29,24 +28,25 @@ PreparedAfm prepare(const AfmInput& afm, int threads, const Reporter& reporter) 
   options.threads = threads;
   options.watch = reporter.watch();
   PreparedAfm prepared = prepare_afm(afm.scan, options);
-  for (const std::string& note : prepared.notes)
-    reporter.note("AFM: " + note);
-  for (const std::string& warning : prepared.warnings)
-    reporter.warn("AFM: " + warning);
+  for (const std::string& note : prepared.notes) reporter.note("AFM: " + note);
+  for (const std::string& warning : prepared.warnings) reporter.warn("AFM: " + warning);
   return prepared;
 }
 
 StoredModel model_of(ModelRequest request, const PlacedImage& sem, const Reporter& reporter) {
   begin(reporter, "model");
   if (std::abs(sem.pitch_x_nm - sem.pitch_y_nm) > square * sem.pitch_x_nm)
-    throw InvalidInput("SEM image", fmt::format("its pixels are {:.6g} x {:.6g} nm, and models are for square ones",
-                                                sem.pitch_x_nm, sem.pitch_y_nm),
-                       "Resample it to square pixels, or correct `sem_pixel_size`");
+    throw InvalidInput(
+        "SEM image",
+        fmt::format("its pixels are {:.6g} x {:.6g} nm, and models are for square ones",
+                    sem.pitch_x_nm, sem.pitch_y_nm),
+        "Resample it to square pixels, or correct `sem_pixel_size`");
   request.pixel_nm = sem.pitch_x_nm;
   return find_model(request, reporter);
 }
 
-PlacedImage simulated_view(const HeightField& surface, const ImageModel& model, double pixel_nm, int threads) {
+PlacedImage simulated_view(const HeightField& surface, const ImageModel& model, double pixel_nm,
+                           int threads) {
   const HeightField fine = resampled(surface, pixel_nm);
   ModelOptions options;
   options.threads = threads;
@@ -54,15 +54,16 @@ PlacedImage simulated_view(const HeightField& surface, const ImageModel& model, 
   PlacedImage view;
   view.values = images.front();
   for (std::size_t c = 1; c < images.size(); ++c)
-    for (std::size_t i = 0; i < view.values.size(); ++i) view.values.data()[i] += images[c].data()[i];
+    for (std::size_t i = 0; i < view.values.size(); ++i)
+      view.values.data()[i] += images[c].data()[i];
   view.valid = fine.valid;
   view.pitch_x_nm = fine.pitch_x_nm, view.pitch_y_nm = fine.pitch_y_nm;
   view.origin_x_nm = fine.origin_x_nm, view.origin_y_nm = fine.origin_y_nm;
   return view;
 }
 
-Pose pose_of(const PoseOptions& o, const PreparedAfm& afm, const PlacedImage& sem, const StoredModel& model, int threads,
-             const Reporter& reporter) {
+Pose pose_of(const PoseOptions& o, const PreparedAfm& afm, const PlacedImage& sem,
+             const StoredModel& model, int threads, const Reporter& reporter) {
   begin(reporter, "registration");
   Pose pose;
   pose.simulated = simulated_view(afm.eroded(), *model.model, sem.pitch_x_nm, threads);
@@ -75,7 +76,8 @@ Pose pose_of(const PoseOptions& o, const PreparedAfm& afm, const PlacedImage& se
     pose.landmarks = fit_landmarks(o.landmarks);
     pose.sem_to_afm = pose.landmarks->sem_to_afm;
     options.start = pose.sem_to_afm;
-    reporter.note(fmt::format("landmarks: {} pairs fit to {} rms", o.landmarks.size(), format_length(pose.landmarks->rms_nm)));
+    reporter.note(fmt::format("landmarks: {} pairs fit to {} rms", o.landmarks.size(),
+                              format_length(pose.landmarks->rms_nm)));
     if (o.landmarks_only) return pose;
   }
   options.threads = threads;
@@ -87,10 +89,14 @@ Pose pose_of(const PoseOptions& o, const PreparedAfm& afm, const PlacedImage& se
 
 const char* name(RegistrationVerdict verdict) {
   switch (verdict) {
-    case RegistrationVerdict::verified: return "verified";
-    case RegistrationVerdict::ambiguous: return "ambiguous";
-    case RegistrationVerdict::unconverged: return "unconverged";
-    case RegistrationVerdict::unrelated: break;
+    case RegistrationVerdict::verified:
+      return "verified";
+    case RegistrationVerdict::ambiguous:
+      return "ambiguous";
+    case RegistrationVerdict::unconverged:
+      return "unconverged";
+    case RegistrationVerdict::unrelated:
+      break;
   }
   return "unrelated";
 }

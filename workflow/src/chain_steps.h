@@ -15,7 +15,7 @@ PreparedAfm prepare(const AfmInput& afm, int threads, const Reporter& reporter);
 /// Of the SEM image's pixels, which must be square.
 StoredModel model_of(ModelRequest request, const PlacedImage& sem, const Reporter& reporter);
 
-Pose pose_of(const PoseOptions& options, const PreparedAfm& afm, const PlacedImage& sem, const StoredModel& model,
-             int threads, const Reporter& reporter);
+Pose pose_of(const PoseOptions& options, const PreparedAfm& afm, const PlacedImage& sem,
+             const StoredModel& model, int threads, const Reporter& reporter);
 
 }  // namespace surf::workflow

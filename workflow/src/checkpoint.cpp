@@ -19,9 +19,9 @@ namespace {
 namespace fs = std::filesystem;
 using Seconds = std::chrono::duration<double>;
 
-constexpr double first_seconds = 10;                       // shorter jobs leave no trace
-constexpr std::size_t most_waiting = std::size_t{16} << 20;   // bytes of memory
-constexpr double most_of_the_time = 0.05;                  // spent on writing
+constexpr double first_seconds = 10;                         // shorter jobs leave no trace
+constexpr std::size_t most_waiting = std::size_t{16} << 20;  // bytes of memory
+constexpr double most_of_the_time = 0.05;                    // spent on writing
 constexpr std::string_view extension = ".checkpoint";
 constexpr std::size_t name_digits = 8;
 
@@ -138,8 +138,9 @@ void Checkpoint::resume() {
   }
   const Identity there = read_identity(file_.read(file_.blocks().front()));
   if (const std::string what = difference(there, identity_); !what.empty())
-    throw FileError(name, "is the checkpoint of another job; different: " + what,
-                    "Choose another name by `job.checkpoint=FILE`, or give up what is in it by `job.restart`");
+    throw FileError(
+        name, "is the checkpoint of another job; different: " + what,
+        "Choose another name by `job.checkpoint=FILE`, or give up what is in it by `job.restart`");
 
   double work = 0, expected = 0;
   for (auto block = file_.blocks().begin() + 1; block != file_.blocks().end(); ++block) {
@@ -150,9 +151,8 @@ void Checkpoint::resume() {
     expected = head.expected;
     batches_.push_back({head.first_unit, *block});
   }
-  std::stable_sort(batches_.begin(), batches_.end(), [](const Batch& a, const Batch& b) {
-    return a.first_unit > b.first_unit;
-  });
+  std::stable_sort(batches_.begin(), batches_.end(),
+                   [](const Batch& a, const Batch& b) { return a.first_unit > b.first_unit; });
   if (file_.damaged())
     warn_(name + ": a part of it is damaged or cut off; that part is done again");
   if (batches_.empty()) return;
@@ -163,8 +163,7 @@ void Checkpoint::resume() {
 // Left by jobs that wrote to the same output and differ: nobody else will find them.
 void Checkpoint::note_others() const {
   const std::string own = path_.filename().string();
-  const std::string stem =
-      own.substr(0, own.size() - extension.size() - name_digits - 1);
+  const std::string stem = own.substr(0, own.size() - extension.size() - name_digits - 1);
   std::vector<fs::path> others;
   std::error_code error;
   const fs::path folder = path_.has_parent_path() ? path_.parent_path() : ".";
@@ -224,9 +223,9 @@ void Checkpoint::record(std::size_t unit, const mc::UnitTally& tally) {
   const auto begin = Clock::now();
   write();
   const auto now = Clock::now();
-  due_ = now + std::max(std::chrono::duration_cast<Clock::duration>(Seconds(options_.seconds)),
-                        std::chrono::duration_cast<Clock::duration>((now - begin) /
-                                                                    most_of_the_time));
+  due_ =
+      now + std::max(std::chrono::duration_cast<Clock::duration>(Seconds(options_.seconds)),
+                     std::chrono::duration_cast<Clock::duration>((now - begin) / most_of_the_time));
 }
 
 bool Checkpoint::write() {
@@ -236,7 +235,8 @@ bool Checkpoint::write() {
   put(content, static_cast<std::uint64_t>(work_waiting_));
   put(content, std::bit_cast<std::uint64_t>(expected_));
   content += waiting_;
-  // Where it cannot be written these units are done again by a job that resumes; later ones need not.
+  // Where it cannot be written these units are done again by a job that resumes; later ones need
+  // not.
   waiting_.clear();
   work_waiting_ = 0;
   try {

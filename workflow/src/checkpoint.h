@@ -17,18 +17,19 @@
 
 namespace surf::workflow {
 
-/// The work of a job that is done so far, on disk: the same job goes on from there to the same bytes.
-/// A job that is done before the first write is due never writes one.
+/// The work of a job that is done so far, on disk: the same job goes on from there to the same
+/// bytes. A job that is done before the first write is due never writes one.
 ///
-/// Its file begins with the job's identity, and goes on with blocks of finished units, in any order;
-/// a lost block costs its units alone. Trouble in writing is a warning: the job goes on.
+/// Its file begins with the job's identity, and goes on with blocks of finished units, in any
+/// order; a lost block costs its units alone. Trouble in writing is a warning: the job goes on.
 class Checkpoint : public mc::UnitJournal {
  public:
   using Say = std::function<void(const std::string&)>;
 
   /// Looks for a checkpoint to go on from, and says so through `note`, or through `warn` that it is
-  /// damaged. One of another job stays as it is: under a name of its own it is noted, under the name
-  /// that was asked for it is a FileError that says what differs. With `restart` all is done anew.
+  /// damaged. One of another job stays as it is: under a name of its own it is noted, under the
+  /// name that was asked for it is a FileError that says what differs. With `restart` all is done
+  /// anew.
   Checkpoint(const CheckpointOptions& options, const std::filesystem::path& output,
              Identity identity, Say note, Say warn);
 
@@ -38,7 +39,8 @@ class Checkpoint : public mc::UnitJournal {
   bool recall(std::size_t unit, mc::UnitTally& tally) override;
   void record(std::size_t unit, const mc::UnitTally& tally) override;
 
-  /// How much work there is in all, in primaries, or in pixels with a wanted accuracy; for messages.
+  /// How much work there is in all, in primaries, or in pixels with a wanted accuracy; for
+  /// messages.
   void expect(double work) { expected_ = work; }
 
   /// Writes what is not written yet. Whether there is a file now.
@@ -68,10 +70,10 @@ class Checkpoint : public mc::UnitJournal {
   CheckpointFile file_;
   double expected_ = 0;
 
-  std::vector<Batch> batches_;                       // to be recalled; the next one last
-  std::map<std::size_t, std::string> recalled_;      // read, not asked for yet
+  std::vector<Batch> batches_;                   // to be recalled; the next one last
+  std::map<std::size_t, std::string> recalled_;  // read, not asked for yet
 
-  std::string waiting_;                              // records that are not written yet
+  std::string waiting_;  // records that are not written yet
   std::size_t first_waiting_ = 0;
   std::int64_t work_waiting_ = 0;
   Clock::time_point due_;

@@ -29,9 +29,10 @@ std::string sha256(const std::string& text) {
 }
 
 [[noreturn]] void fail(const fs::path& path, const std::string& reason) {
-  throw FileError(path.string(), reason,
-                  "Check its folder and the free space, choose another place by `job.checkpoint=FILE`, or "
-                  "do without by `job.checkpoint=off`");
+  throw FileError(
+      path.string(), reason,
+      "Check its folder and the free space, choose another place by `job.checkpoint=FILE`, or "
+      "do without by `job.checkpoint=off`");
 }
 
 std::string head_of(const std::string& content) {
@@ -68,8 +69,8 @@ bool read_at(int file, std::uint64_t offset, std::size_t size, std::string& out)
 bool write_at(int file, std::uint64_t offset, const std::string& bytes) {
   std::size_t done = 0;
   while (done < bytes.size()) {
-    const auto n = ::pwrite(file, bytes.data() + done, bytes.size() - done,
-                            static_cast<off_t>(offset + done));
+    const auto n =
+        ::pwrite(file, bytes.data() + done, bytes.size() - done, static_cast<off_t>(offset + done));
     if (n < 0 && errno == EINTR) continue;
     if (n <= 0) return false;
     done += static_cast<std::size_t>(n);
@@ -115,7 +116,7 @@ std::string CheckpointFile::first_block(const fs::path& path) {
     read_at(file, head_size, size_in(head), content);
   ::close(file);
   return content.empty() || sha256(content) != head.substr(head_size - digits) ? std::string()
-                                                                              : content;
+                                                                               : content;
 }
 
 void CheckpointFile::create(const fs::path& path) {
@@ -141,7 +142,9 @@ void CheckpointFile::find_blocks() {
   damaged_ = false;
   end_ = 0;
   std::string head, content;
-  const auto fail_reading = [&] { fail(path_, std::string("cannot be read: ") + std::strerror(errno)); };
+  const auto fail_reading = [&] {
+    fail(path_, std::string("cannot be read: ") + std::strerror(errno));
+  };
   struct stat status {};
   if (::fstat(file_, &status) != 0) fail_reading();
   const auto file_size = static_cast<std::uint64_t>(status.st_size);
@@ -162,7 +165,7 @@ void CheckpointFile::find_blocks() {
       blocks_.push_back({offset - size, size});
       end_ = offset;
     } else {
-      damaged_ = true;   // whether its length is right shows where the next block should begin
+      damaged_ = true;  // whether its length is right shows where the next block should begin
       if (blocks_.empty()) break;
     }
   }

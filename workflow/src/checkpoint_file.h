@@ -10,15 +10,15 @@
 namespace surf::workflow {
 
 /// A file that grows by blocks, each with its SHA-256, so that a crash at any moment, or a damaged
-/// disk, costs the blocks that it hits and no others. The first block says whose file it is. Held by
-/// one process at a time (where the file system has locks).
+/// disk, costs the blocks that it hits and no others. The first block says whose file it is. Held
+/// by one process at a time (where the file system has locks).
 ///
-/// A block: the 8 letters "semsurfB", its length (8 bytes, lowest first), the 64 hexadecimal digits of
-/// the SHA-256 of its content, the content.
+/// A block: the 8 letters "semsurfB", its length (8 bytes, lowest first), the 64 hexadecimal digits
+/// of the SHA-256 of its content, the content.
 class CheckpointFile {
  public:
   struct Block {
-    std::uint64_t offset = 0;   ///< of its content
+    std::uint64_t offset = 0;  ///< of its content
     std::uint64_t size = 0;
   };
 
@@ -66,7 +66,7 @@ class CheckpointFile {
 
   std::filesystem::path path_;
   int file_ = -1;
-  std::uint64_t end_ = 0;   // behind the last sound block
+  std::uint64_t end_ = 0;  // behind the last sound block
   std::vector<Block> blocks_;
   bool damaged_ = false;
 };

@@ -13,7 +13,7 @@
 namespace surf::workflow {
 namespace {
 
-constexpr double spike_sigmas = 6;   // noise alone passes it once in a billion
+constexpr double spike_sigmas = 6;  // noise alone passes it once in a billion
 constexpr Limits widths = within(1, 2001);
 
 int odd(int width, const std::string& subject) {
@@ -47,15 +47,18 @@ Spikes read_spikes(std::string_view text, const std::string& subject) {
 void describe(ParameterVisitor& visit, CleanParameters& p) {
   visit.form(
       {.name = "clean.spikes",
-       .help =
-           "Take the median of this many samples squared where a height is off it by more than the limit; without a "
-           "limit, by more than six standard deviations of the pixels' noise",
+       .help = "Take the median of this many samples squared where a height is off it by more than "
+               "the limit; without a "
+               "limit, by more than six standard deviations of the pixels' noise",
        .form = "WIDTH[:LENGTH]"},
       [&p] {
         if (!p.spikes) return std::string();
-        return fmt::format("{}{}", p.spikes->width, p.spikes->limit_nm ? ":" + format_exact(*p.spikes->limit_nm) : "");
+        return fmt::format("{}{}", p.spikes->width,
+                           p.spikes->limit_nm ? ":" + format_exact(*p.spikes->limit_nm) : "");
       },
-      [&p](std::string_view text, const std::string& subject) { p.spikes = read_spikes(text, subject); });
+      [&p](std::string_view text, const std::string& subject) {
+        p.spikes = read_spikes(text, subject);
+      });
   visit(p.median, {.name = "clean.median",
                    .help = "Take the median of this many samples squared",
                    .limits = widths,
@@ -65,7 +68,8 @@ void describe(ParameterVisitor& visit, CleanParameters& p) {
                     .limits = widths,
                     .form = "WIDTH"});
   visit(p.disc, {.name = "clean.disc", .help = "Medians of discs instead of squares"});
-  visit(p.fill_holes, {.name = "clean.fill_holes", .help = "Give holes the height found for them too"});
+  visit(p.fill_holes,
+        {.name = "clean.fill_holes", .help = "Give holes the height found for them too"});
 }
 
 void check(const CleanParameters& p) {
@@ -106,14 +110,16 @@ CleanResult clean(const HeightField& scan, const CleanParameters& p, const Repor
       result.spikes = median(p.spikes->width, limit_nm);
     } else {
       reporter.note(
-          "the scan has no noise of single pixels, so that nothing is a spike for sure: say in `clean.spikes` what is");
+          "the scan has no noise of single pixels, so that nothing is a spike for sure: say in "
+          "`clean.spikes` what is");
     }
   }
   if (p.median) result.median = median(*p.median, 0);
   if (p.closing) {
     result.closing.emplace();
     result.field = flat_closing(
-        result.field, {.width = *p.closing, .fill_holes = p.fill_holes, .threads = p.threads, .watch = next()},
+        result.field,
+        {.width = *p.closing, .fill_holes = p.fill_holes, .threads = p.threads, .watch = next()},
         *result.closing);
   }
   return result;

@@ -19,47 +19,67 @@ void describe_threads(ParameterVisitor& visit, int& threads) {
 }
 
 void describe_folder(ParameterVisitor& visit, std::filesystem::path& folder, const char* help) {
-  visit.form({.name = "output", .help = help, .form = "FOLDER", .recorded = false, .file = FileRole::written_folder},
-             [&] { return folder.string(); },
-             [&](std::string_view text, const std::string&) {
-               folder = text;
-               while (folder.filename().empty() && folder.has_parent_path()) folder = folder.parent_path();   // result/
-             });
+  visit.form(
+      {.name = "output",
+       .help = help,
+       .form = "FOLDER",
+       .recorded = false,
+       .file = FileRole::written_folder},
+      [&] { return folder.string(); },
+      [&](std::string_view text, const std::string&) {
+        folder = text;
+        while (folder.filename().empty() && folder.has_parent_path())
+          folder = folder.parent_path();  // result/
+      });
 }
 
 void describe_path(ParameterVisitor& visit, std::filesystem::path& path, const Parameter& about) {
-  visit.form(about, [&] { return path.string(); }, [&](std::string_view text, const std::string&) { path = text; });
+  visit.form(
+      about, [&] { return path.string(); },
+      [&](std::string_view text, const std::string&) { path = text; });
 }
 
-void describe_names(ParameterVisitor& visit, std::vector<std::string>& names, const Parameter& about) {
-  visit.form(about, [&] { return fmt::format("{}", fmt::join(names, ",")); },
-             [&](std::string_view text, const std::string&) {
-               const auto parts = split(text, ",");
-               names.assign(parts.begin(), parts.end());
-             });
+void describe_names(ParameterVisitor& visit, std::vector<std::string>& names,
+                    const Parameter& about) {
+  visit.form(
+      about, [&] { return fmt::format("{}", fmt::join(names, ",")); },
+      [&](std::string_view text, const std::string&) {
+        const auto parts = split(text, ",");
+        names.assign(parts.begin(), parts.end());
+      });
 }
 
 void describe_cache(ParameterVisitor& visit, std::filesystem::path& cache) {
-  visit.form({.name = "job.cache", .help = "Folder that libraries of cascades are kept in for other runs, or off",
-              .otherwise = "$SEMSURF_CACHE, ~/.cache/semsurf", .form = "FOLDER|off", .level = Level::advanced,
-              .recorded = false},
-             [&] { return cache.string(); },
-             [&](std::string_view text, const std::string&) { cache = io::cache_folder(std::string(text)); });
+  visit.form(
+      {.name = "job.cache",
+       .help = "Folder that libraries of cascades are kept in for other runs, or off",
+       .otherwise = "$SEMSURF_CACHE, ~/.cache/semsurf",
+       .form = "FOLDER|off",
+       .level = Level::advanced,
+       .recorded = false},
+      [&] { return cache.string(); },
+      [&](std::string_view text, const std::string&) {
+        cache = io::cache_folder(std::string(text));
+      });
 }
 
-void describe_point(ParameterVisitor& visit, std::optional<std::pair<double, double>>& point_nm, Parameter about) {
+void describe_point(ParameterVisitor& visit, std::optional<std::pair<double, double>>& point_nm,
+                    Parameter about) {
   about.unit = Unit::nm;
   about.form = "X,Y";
-  visit.form(about,
-             [&] {
-               return point_nm ? fmt::format("{},{}", format_exact(point_nm->first), format_exact(point_nm->second))
-                               : std::string();
-             },
-             [&](std::string_view text, const std::string& subject) {
-               const auto parts = split(text, ",");
-               if (parts.size() != 2) throw UsageError(subject, "it is not a point", "Write two lengths, X,Y");
-               point_nm = {parse_length_nm(parts[0], subject), parse_length_nm(parts[1], subject)};
-             });
+  visit.form(
+      about,
+      [&] {
+        return point_nm ? fmt::format("{},{}", format_exact(point_nm->first),
+                                      format_exact(point_nm->second))
+                        : std::string();
+      },
+      [&](std::string_view text, const std::string& subject) {
+        const auto parts = split(text, ",");
+        if (parts.size() != 2)
+          throw UsageError(subject, "it is not a point", "Write two lengths, X,Y");
+        point_nm = {parse_length_nm(parts[0], subject), parse_length_nm(parts[1], subject)};
+      });
 }
 
 }  // namespace surf::workflow

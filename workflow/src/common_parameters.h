@@ -22,12 +22,14 @@ void describe_folder(ParameterVisitor& visit, std::filesystem::path& folder, con
 void describe_path(ParameterVisitor& visit, std::filesystem::path& path, const Parameter& about);
 
 /// "NAME,NAME".
-void describe_names(ParameterVisitor& visit, std::vector<std::string>& names, const Parameter& about);
+void describe_names(ParameterVisitor& visit, std::vector<std::string>& names,
+                    const Parameter& about);
 
 /// job.cache, a folder or "off".
 void describe_cache(ParameterVisitor& visit, std::filesystem::path& cache);
 
 /// "X,Y" in nm.
-void describe_point(ParameterVisitor& visit, std::optional<std::pair<double, double>>& point_nm, Parameter about);
+void describe_point(ParameterVisitor& visit, std::optional<std::pair<double, double>>& point_nm,
+                    Parameter about);
 
 }  // namespace surf::workflow

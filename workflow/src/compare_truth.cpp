@@ -15,7 +15,7 @@ namespace {
 constexpr std::int64_t least_pixels = 16;
 
 struct Differences {
-  HeightField less;    // surface less truth, valid where both are
+  HeightField less;  // surface less truth, valid where both are
   double mean = 0, rms = 0;
   std::int64_t count = 0;
 };
@@ -35,8 +35,10 @@ Differences differences(const HeightField& surface, const HeightField& truth) {
       ++d.count;
     }
   if (d.count < least_pixels)
-    throw InvalidInput("`reconstruction.truth`", fmt::format("it has {} places in common with the surface", d.count),
-                       "Give heights in the frame of the SEM image, or of the scan where there is none");
+    throw InvalidInput(
+        "`reconstruction.truth`",
+        fmt::format("it has {} places in common with the surface", d.count),
+        "Give heights in the frame of the SEM image, or of the scan where there is none");
   d.mean = sum / static_cast<double>(d.count);
   d.rms = std::sqrt(std::max(squared / static_cast<double>(d.count) - d.mean * d.mean, 0.0));
   return d;
@@ -72,13 +74,15 @@ TruthReport compare_with_truth(const Reconstruction& result, const HeightField& 
   report.rms_nm = d.rms;
   report.offset_nm = d.mean;
   report.pixels = d.count;
-  if (result.start.z_nm.width() == there.z_nm.width() && result.start.z_nm.height() == there.z_nm.height())
+  if (result.start.z_nm.width() == there.z_nm.width() &&
+      result.start.z_nm.height() == there.z_nm.height())
     report.start_rms_nm = differences(result.start, there).rms;
   if (!result.deviation_nm.empty()) {
     std::int64_t within_1 = 0, within_2 = 0;
     for (std::size_t i = 0; i < d.less.z_nm.size(); ++i) {
       if (!d.less.valid.data()[i]) continue;
-      const double off = std::abs(d.less.z_nm.data()[i] - d.mean), deviation = result.deviation_nm.data()[i];
+      const double off = std::abs(d.less.z_nm.data()[i] - d.mean),
+                   deviation = result.deviation_nm.data()[i];
       within_1 += off <= deviation;
       within_2 += off <= 2 * deviation;
     }

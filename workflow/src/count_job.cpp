@@ -32,7 +32,8 @@ void check(const CountJob& job) {
     throw UsageError("`counts.electrons`", "no number is given", "Give one or more, as 1,20,100");
   for (const std::int64_t n : job.electrons)
     if (!electrons_of_a_trial.holds(static_cast<double>(n)))
-      throw UsageError("`counts.electrons`", fmt::format("{} in a trial are out of range", n), "Give 1 to 1e6");
+      throw UsageError("`counts.electrons`", fmt::format("{} in a trial are out of range", n),
+                       "Give 1 to 1e6");
 }
 
 /// The beam and the scan that stand still at a point of the scan plane.
@@ -44,8 +45,10 @@ std::pair<mc::Beam, mc::Scan> aim(const CountJob& job) {
   if (job.at_nm) {
     // x and y turned with the beam, by the smallest rotation from -z, as the scan has them.
     const Vec3 d = mc::direction(beam);
-    const double k = 1 / (1 - d.z), dx = job.at_nm->first - centre.x, dy = job.at_nm->second - centre.y;
-    point = centre + Vec3{1 - d.x * d.x * k, -d.x * d.y * k, d.x} * dx + Vec3{-d.x * d.y * k, 1 - d.y * d.y * k, d.y} * dy;
+    const double k = 1 / (1 - d.z), dx = job.at_nm->first - centre.x,
+                 dy = job.at_nm->second - centre.y;
+    point = centre + Vec3{1 - d.x * d.x * k, -d.x * d.y * k, d.x} * dx +
+            Vec3{-d.x * d.y * k, 1 - d.y * d.y * k, d.y} * dy;
     if (beam.working_distance_nm > 0) {
       const Vec3 lens = centre - d * beam.working_distance_nm, ray = normalized(point - lens);
       beam.tilt_deg = std::acos(std::clamp(-ray.z, -1.0, 1.0)) * degrees;
@@ -65,43 +68,57 @@ std::pair<mc::Beam, mc::Scan> aim(const CountJob& job) {
 
 void describe(ParameterVisitor& visit, CountJob& job) {
   describe_point(visit, job.at_nm,
-                 {.name = "counts.at", .help = "Point of the image that the beam stands on", .otherwise = "its middle"});
-  const Parameter electrons{.name = "counts.electrons", .help = "Primaries in a trial", .limits = electrons_of_a_trial,
+                 {.name = "counts.at",
+                  .help = "Point of the image that the beam stands on",
+                  .otherwise = "its middle"});
+  const Parameter electrons{.name = "counts.electrons",
+                            .help = "Primaries in a trial",
+                            .limits = electrons_of_a_trial,
                             .form = "N,N,..."};
-  visit.form(electrons, [&] { return fmt::format("{}", fmt::join(job.electrons, ",")); },
-             [&](std::string_view text, const std::string& subject) {
-               const std::vector<int> numbers = parse_whole_numbers(text, electrons, subject);
-               job.electrons.assign(numbers.begin(), numbers.end());
-             });
-  visit(job.trials,
-        {.name = "counts.trials", .help = "Trials with each number of primaries", .limits = within(100, 10'000'000)});
-  visit(job.seed, {.name = "counts.seed", .help = "Seed of the random numbers", .otherwise = "the scene's, or 1"});
+  visit.form(
+      electrons, [&] { return fmt::format("{}", fmt::join(job.electrons, ",")); },
+      [&](std::string_view text, const std::string& subject) {
+        const std::vector<int> numbers = parse_whole_numbers(text, electrons, subject);
+        job.electrons.assign(numbers.begin(), numbers.end());
+      });
+  visit(job.trials, {.name = "counts.trials",
+                     .help = "Trials with each number of primaries",
+                     .limits = within(100, 10'000'000)});
+  visit(job.seed, {.name = "counts.seed",
+                   .help = "Seed of the random numbers",
+                   .otherwise = "the scene's, or 1"});
   describe_threads(visit, job.threads);
 }
 
 CountSummary run(const CountJob& job, const Reporter& reporter) {
   check(job);
   const auto [beam, scan] = aim(job);
-  const mc::Scene scene(job.scene.specimen, beam, scan, job.scene.physics, {.watch = {{}, reporter.cancel}});
+  const mc::Scene scene(job.scene.specimen, beam, scan, job.scene.physics,
+                        {.watch = {{}, reporter.cancel}});
   CountSummary summary;
   const Vec3 point{scan.center_x_nm, scan.center_y_nm, scan.center_z_nm}, d = mc::direction(beam);
   if (!scene.first_surface(point - d * above_nm, d, summary.hit_nm))
-    throw InvalidInput("specimen", fmt::format("the beam at ({:.6g}, {:.6g}) nm does not meet it", point.x, point.y),
-                       "Choose another point");
+    throw InvalidInput(
+        "specimen",
+        fmt::format("the beam at ({:.6g}, {:.6g}) nm does not meet it", point.x, point.y),
+        "Choose another point");
   mc::SimulationOptions options;
   options.threads = job.threads;
   options.tally_memory = std::numeric_limits<std::size_t>::max();
   for (const mc::Detector& detector : job.scene.detectors) options.detectors.push_back(detector);
   mc::validate(options.detectors);
   const double total = static_cast<double>(job.trials) *
-                       static_cast<double>(std::accumulate(job.electrons.begin(), job.electrons.end(), std::int64_t{0}));
+                       static_cast<double>(std::accumulate(job.electrons.begin(),
+                                                           job.electrons.end(), std::int64_t{0}));
   double before = 0;
   for (std::size_t i = 0; i < job.electrons.size(); ++i) {
     options.budget = mc::ElectronsPerPixel{job.electrons[i]};
-    options.seed = job.seed + 0x9e3779b97f4a7c15u * i;   // sets are draws of their own
+    options.seed = job.seed + 0x9e3779b97f4a7c15u * i;  // sets are draws of their own
     const mc::SimulationResult result = mc::simulate(
         scene, options,
-        {.progress = [&](double done, double) { reporter.progress(before + done, total, "primaries"); }, .cancel = reporter.cancel});
+        {.progress = [&](double done,
+                         double) { reporter.progress(before + done, total, "primaries"); },
+         .cancel = reporter.cancel});
     if (!result.complete) throw Interrupted();
     before += static_cast<double>(job.trials) * static_cast<double>(job.electrons[i]);
     for (std::size_t k = 0; k < result.detectors.size(); ++k) {

@@ -21,7 +21,8 @@ double pixels_of(const mc::Scan& scan) { return static_cast<double>(scan.width) 
 
 std::string extension_of(const fs::path& path) {
   std::string text = path.extension().string();
-  std::ranges::transform(text, text.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  std::ranges::transform(text, text.begin(),
+                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   return text;
 }
 
@@ -31,7 +32,8 @@ fs::path folder_of(const fs::path& file) {
 }
 
 std::string size_text(double bytes) {
-  return bytes < 1e9 ? fmt::format("{:.3g} MB", bytes / 1e6) : fmt::format("{:.3g} GB", bytes / 1e9);
+  return bytes < 1e9 ? fmt::format("{:.3g} MB", bytes / 1e6)
+                     : fmt::format("{:.3g} GB", bytes / 1e9);
 }
 
 // The nearest folder above that is there.
@@ -45,7 +47,8 @@ fs::path existing(fs::path folder) {
 
 }  // namespace
 
-std::vector<DiskNeed> disk_needs(const ResolvedJob& job, const mc::Scan& scan, double packed_bytes) {
+std::vector<DiskNeed> disk_needs(const ResolvedJob& job, const mc::Scan& scan,
+                                 double packed_bytes) {
   std::vector<DiskNeed> needs;
   const double pixels = pixels_of(scan);
   const auto channels = static_cast<double>(image_like_the_result(job).channels.size());
@@ -58,9 +61,11 @@ std::vector<DiskNeed> disk_needs(const ResolvedJob& job, const mc::Scan& scan, d
     const bool raster = extension == ".exr" || extension == ".tif" || extension == ".tiff";
     const io::ImageSize size{scan.width, scan.height};
     const bool tiles = raster && io::in_tiles(job.layout, size);
-    const double bytes = extension == ".png"   ? pixels
-                         : extension == ".vti" ? 4.0 / 3 * 4 * pixels * channels   // as text
-                                               : 4 * static_cast<double>(io::stored_pixels(job.layout, size)) * channels;
+    const double bytes =
+        extension == ".png" ? pixels
+        : extension == ".vti"
+            ? 4.0 / 3 * 4 * pixels * channels  // as text
+            : 4 * static_cast<double>(io::stored_pixels(job.layout, size)) * channels;
     needs.push_back({output.filename().string(), folder_of(output), bytes, true});
     if (tiles) pyramid = std::max(pyramid, 4 * pixels * channels / 3);
   }
@@ -68,8 +73,10 @@ std::vector<DiskNeed> disk_needs(const ResolvedJob& job, const mc::Scan& scan, d
     needs.push_back({"scratch file", job.options.scratch_folder, scratch + pyramid, false});
   if (job.checkpoint.wanted && job.extras.deposit_cells == 0 && !job.outputs.empty()) {
     const double usual = pixels * 4 * (1 + static_cast<double>(job.options.detectors.size()));
-    needs.push_back({"checkpoint", folder_of(job.checkpoint.file.empty() ? job.outputs.front() : job.checkpoint.file),
-                     packed_bytes > 0 ? packed_bytes : usual, false});
+    needs.push_back(
+        {"checkpoint",
+         folder_of(job.checkpoint.file.empty() ? job.outputs.front() : job.checkpoint.file),
+         packed_bytes > 0 ? packed_bytes : usual, false});
   }
   return needs;
 }
@@ -93,8 +100,9 @@ std::vector<std::string> warn_of_full_disks(const std::vector<DiskNeed>& needs) 
     std::error_code error;
     const fs::space_info space = fs::space(disk.folder, error);
     if (error || static_cast<double>(space.available) >= disk.bytes) continue;
-    warnings.push_back(fmt::format("{}: {} are free there, and this may take {}", disk.folder.string(),
-                                   size_text(static_cast<double>(space.available)), size_text(disk.bytes)));
+    warnings.push_back(
+        fmt::format("{}: {} are free there, and this may take {}", disk.folder.string(),
+                    size_text(static_cast<double>(space.available)), size_text(disk.bytes)));
   }
   return warnings;
 }

@@ -40,14 +40,17 @@ std::vector<MemoryNeed> memory_of_results(const ResolvedJob& job, const mc::Scan
   double writing = 256 * 4 * channels * scan.width;
   for (const auto& output : job.outputs) {
     std::string extension = output.extension().string();
-    std::ranges::transform(extension, extension.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    std::ranges::transform(extension, extension.begin(),
+                           [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
     if (extension == ".vti") writing = std::max(writing, 8 * channels * pixels);
   }
-  constexpr double most_of_a_level = 256e6 * 1.05;   // larger ones are in scratch files (io/src/pyramid.cpp)
+  constexpr double most_of_a_level =
+      256e6 * 1.05;  // larger ones are in scratch files (io/src/pyramid.cpp)
   if (io::in_tiles(job.layout, {scan.width, scan.height}))
     for (double level = channels * pixels; level > 1e5; level /= 4)
       if (level <= most_of_a_level) writing += level;
-  if (!job.extras.channels.empty()) writing += std::min(limit, 4 * static_cast<double>(extra_channels(job).size()) * pixels);
+  if (!job.extras.channels.empty())
+    writing += std::min(limit, 4 * static_cast<double>(extra_channels(job).size()) * pixels);
   needs.push_back({"writing", writing});
   return needs;
 }
@@ -68,10 +71,12 @@ DryRun dry_run(SimulateJob asked, int ranks, double seconds, const Reporter& rep
   const mc::Scene scene = make_scene(job, facts, nullptr, reporter.on_note, cancel, summary);
   out.scene = scene.summary();
   out.warnings = warn_before(job, facts, out.scan);
-  out.choice = mc::choose_method(scene, job.options, job.scene.method, {job.extras.deposit_cells > 0});
+  out.choice =
+      mc::choose_method(scene, job.options, job.scene.method, {job.extras.deposit_cells > 0});
   job.options.method = out.choice.method;
   JobLibraries libraries(job.cache, reporter.counting("cascades"), reporter.on_note);
-  out.pilot = mc::run_pilot(scene, job.options, seconds, &libraries, reporter.counting("primaries"), cancel);
+  out.pilot = mc::run_pilot(scene, job.options, seconds, &libraries, reporter.counting("primaries"),
+                            cancel);
   if (!out.pilot.complete) throw Interrupted();
   out.threads = resolve_threads(job.options.threads);
   out.ranks = ranks;
@@ -85,11 +90,13 @@ DryRun dry_run(SimulateJob asked, int ranks, double seconds, const Reporter& rep
   out.memory.push_back({"specimen and program", std::max(0.0, now - scene_bytes - library_bytes)});
   for (const MemoryNeed& need : memory_of_results(job, out.scan)) out.memory.push_back(need);
   for (const MemoryNeed& need : out.memory) out.memory_bytes += need.bytes;
-  out.memory_bytes = std::max(out.memory_bytes, kilobytes_of("/proc/self/status", "VmHWM:"));   // of reading
+  out.memory_bytes =
+      std::max(out.memory_bytes, kilobytes_of("/proc/self/status", "VmHWM:"));  // of reading
   const MemoryThere there = memory_there();
   out.memory_there = there.limit.empty() ? HUGE_VAL : now + static_cast<double>(there.bytes);
   out.disk = disk_needs(job, out.scan, out.pilot.packed_bytes);
-  for (std::string& warning : warn_of_full_disks(out.disk)) out.warnings.push_back(std::move(warning));
+  for (std::string& warning : warn_of_full_disks(out.disk))
+    out.warnings.push_back(std::move(warning));
   return out;
 }
 

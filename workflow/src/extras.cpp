@@ -121,13 +121,16 @@ void check_extras(const Extras& extras) {
       throw UsageError("`output.channels`", fmt::format("there is no '{}'", name),
                        "Choose among z_nm, normal, material, electrons, model and variance_left");
   if (extras.deposit_cells < 0 || extras.deposit_cells > most_deposit_cells)
-    throw UsageError("`output.deposit`", fmt::format("{} cells are out of range", extras.deposit_cells),
+    throw UsageError("`output.deposit`",
+                     fmt::format("{} cells are out of range", extras.deposit_cells),
                      "Give 1 to 1024 cells along the longest side");
   if (extras.trajectories < 0 || extras.trajectories > most_trajectories)
-    throw UsageError("`output.trajectories`", fmt::format("{} is out of range", extras.trajectories),
+    throw UsageError("`output.trajectories`",
+                     fmt::format("{} is out of range", extras.trajectories),
                      "Give 1 to 100000 primaries; 50 make a clear picture");
   if (extras.trajectories_at_nm && extras.trajectories == 0)
-    throw UsageError("`output.trajectories_at`", "no trajectories are asked for", "Add `output.trajectories=50`");
+    throw UsageError("`output.trajectories_at`", "no trajectories are asked for",
+                     "Add `output.trajectories=50`");
 }
 
 std::vector<fs::path> extra_files(const ResolvedJob& job) {
@@ -151,10 +154,11 @@ std::vector<std::string> extra_channels(const ResolvedJob& job) {
   return names;
 }
 
-void add_channels(const mc::Scene& scene, const ResolvedJob& job, const mc::SimulationResult& result,
-                  ImageRows& image) {
+void add_channels(const mc::Scene& scene, const ResolvedJob& job,
+                  const mc::SimulationResult& result, ImageRows& image) {
   if (const auto names = surface_channels(job.extras); !names.empty()) {
-    const double bytes = 4.0 * static_cast<double>(names.size()) * static_cast<double>(result.pixels.size());
+    const double bytes =
+        4.0 * static_cast<double>(names.size()) * static_cast<double>(result.pixels.size());
     const bool large = bytes > static_cast<double>(job.options.tally_memory);
     ImageRows seen = mc::surface_view_rows(scene, names, job.options.threads,
                                            large ? job.options.scratch_folder : std::string());
@@ -167,12 +171,13 @@ void add_channels(const mc::Scene& scene, const ResolvedJob& job, const mc::Simu
     heads.push_back({c.name, "1", {}});
     if (c.name == "model") image.head.metadata["model"] = model_meanings();
   }
-  append(image, std::move(heads),
-         [channels = std::move(channels), &result](std::size_t channel, int y, std::span<float> row) {
-           for (std::size_t x = 0; x < row.size(); ++x)
-             row[x] = static_cast<float>(channels[channel].value(static_cast<int>(x), y));
-           if (y % 64 == 0) result.release();
-         });
+  append(
+      image, std::move(heads),
+      [channels = std::move(channels), &result](std::size_t channel, int y, std::span<float> row) {
+        for (std::size_t x = 0; x < row.size(); ++x)
+          row[x] = static_cast<float>(channels[channel].value(static_cast<int>(x), y));
+        if (y % 64 == 0) result.release();
+      });
 }
 
 std::string spectra_text(const mc::SimulationResult& result) {

@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "surf/mc/transport/energy_deposit.h"
-#include "surf/mc/geometry/scene.h"
 #include "resolved_job.h"
+#include "surf/mc/geometry/scene.h"
+#include "surf/mc/transport/energy_deposit.h"
 
 namespace surf::workflow {
 
@@ -22,10 +22,10 @@ std::filesystem::path extra_path(const ResolvedJob& job, const char* extension);
 /// The files besides the image that a job writes.
 std::vector<std::filesystem::path> extra_files(const ResolvedJob& job);
 
-/// Adds the channels that are wanted besides the detectors'. What the numbers of materials and models
-/// mean goes into the metadata. Refers to `result`.
-void add_channels(const mc::Scene& scene, const ResolvedJob& job, const mc::SimulationResult& result,
-                  ImageRows& image);
+/// Adds the channels that are wanted besides the detectors'. What the numbers of materials and
+/// models mean goes into the metadata. Refers to `result`.
+void add_channels(const mc::Scene& scene, const ResolvedJob& job,
+                  const mc::SimulationResult& result, ImageRows& image);
 
 /// Those among them whose values are numbers of something.
 std::vector<std::string> label_channels();

@@ -13,7 +13,8 @@ namespace surf::workflow {
 
 void title_by_identity(SimulateJob& job, const std::string& what) {
   job.scene.title.clear();
-  const mc::Scan scan = resolve_scan(job.scene.scan, mc::extent(job.scene.specimen), job.scene.beam);
+  const mc::Scan scan =
+      resolve_scan(job.scene.scan, mc::extent(job.scene.specimen), job.scene.beam);
   const ResolvedJob resolved = resolve(job);
   const std::string hash = fingerprint(identity_of(resolved, provenance(resolved, scan, {})));
   job.scene.title = fmt::format("{}, {}", what, hash.substr(0, 32));
@@ -26,9 +27,10 @@ bool is_finished(const SimulateJob& job) {
   try {
     const Image image = io::read_image(file);
     const auto title = image.metadata.find("title");
-    return title != image.metadata.end() && title->second == job.scene.title && !image.metadata.contains("partial");
+    return title != image.metadata.end() && title->second == job.scene.title &&
+           !image.metadata.contains("partial");
   } catch (const Error&) {
-    return false;   // damaged: it is made again
+    return false;  // damaged: it is made again
   }
 }
 

@@ -17,7 +17,7 @@ namespace {
 
 constexpr const char* geometry_key = "geometry";
 constexpr const char* program_key = "program";
-constexpr std::size_t longest_value = 40;   // of what is shown to people
+constexpr std::size_t longest_value = 40;  // of what is shown to people
 
 template <class T>
 std::string hash_of(const std::vector<T>& values) {
@@ -34,8 +34,8 @@ std::string geometry(const mc::Specimen& specimen) {
     hashes += fmt::format("{} {} {}\n", body.material, hash_of(body.mesh.vertices_nm),
                           hash_of(body.mesh.triangles));
   if (const auto& h = specimen.height_field)
-    hashes += fmt::format("field {} {}", hash_of(h->field.z_nm.data()),
-                          hash_of(h->field.valid.data()));
+    hashes +=
+        fmt::format("field {} {}", hash_of(h->field.z_nm.data()), hash_of(h->field.valid.data()));
   return hash_of(hashes);
 }
 
@@ -110,7 +110,8 @@ std::string difference(const Identity& there, const Identity& here) {
   telling.erase(program_key);
   if (telling.empty()) return keys.contains(geometry_key) ? "the specimen" : "the build of semsurf";
   const std::string& key = *telling.begin();
-  std::string text = fmt::format("{} {} there and {} here", key, shown(there, key), shown(here, key));
+  std::string text =
+      fmt::format("{} {} there and {} here", key, shown(there, key), shown(here, key));
   if (telling.size() > 1) text += fmt::format(", and {} more", telling.size() - 1);
   return text;
 }

@@ -14,8 +14,8 @@ namespace surf::workflow {
 using Identity = std::map<std::string, std::string>;
 Identity identity_of(const ResolvedJob& job, const std::map<std::string, std::string>& settings);
 
-/// Of the program that runs: another build may round differently. "unknown" where the system does not show the
-/// program's own file; versions must do there.
+/// Of the program that runs: another build may round differently. "unknown" where the system does
+/// not show the program's own file; versions must do there.
 const std::string& program_hash();
 
 /// What vectorised code is chosen by at run time.

@@ -14,8 +14,9 @@ class JobLibraries : public mc::LibrarySource {
   JobLibraries(const std::filesystem::path& folder, ProgressCallback progress, NoteCallback note)
       : kept_(folder), progress_(std::move(progress)), note_(std::move(note)) {}
 
-  std::shared_ptr<const mc::CascadeLibrary> library(const mc::CascadeSettings& settings, std::size_t cascades,
-                                                    int threads, const ProgressCallback&,
+  std::shared_ptr<const mc::CascadeLibrary> library(const mc::CascadeSettings& settings,
+                                                    std::size_t cascades, int threads,
+                                                    const ProgressCallback&,
                                                     const CancelToken* cancel) override {
     auto library = kept_.library(settings, cascades, threads, progress_, cancel);
     for (const std::string& text : kept_.take_notes())

@@ -22,7 +22,8 @@ std::unique_ptr<Team> join_started_team() {
   try {
     return module<MpiLibrary>().join();
   } catch (const Unsupported& error) {
-    throw Unsupported("mpirun", error.reason(), error.remedy() + ", or start it once, without mpirun");
+    throw Unsupported("mpirun", error.reason(),
+                      error.remedy() + ", or start it once, without mpirun");
   }
 }
 

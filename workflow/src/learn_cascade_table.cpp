@@ -6,18 +6,19 @@
 #include "surf/core/error.h"
 #include "surf/core/units.h"
 #include "surf/mc/cascades/diffusion_matrix.h"
-#include "surf/mc/physics/medium.h"
 #include "surf/mc/cascades/stopping_points.h"
+#include "surf/mc/physics/medium.h"
 #include "surf/workflow/slope_table.h"
 
 namespace surf::workflow {
 namespace {
 
-constexpr std::int64_t usual_cascades = 10240;   // as simulations take: they are in the cache then
+constexpr std::int64_t usual_cascades = 10240;  // as simulations take: they are in the cache then
 
 void check(const TrainJob& job) {
   if (job.spot_nm > 0)
-    throw UsageError("`beam.spot`", fmt::format("a model '{}' knows of no spot", job.learn.kind), "Leave it out");
+    throw UsageError("`beam.spot`", fmt::format("a model '{}' knows of no spot", job.learn.kind),
+                     "Leave it out");
   if (!mc::can_replay(mc::make_medium(job.material, job.physics)))
     throw UsageError(
         "`simulation.physics`",
@@ -28,21 +29,23 @@ void check(const TrainJob& job) {
 std::shared_ptr<const mc::CascadeLibrary> library_of(const TrainJob& job, JobLibraries& libraries,
                                                      const Watch& watch) {
   const double barrier_ev = mc::make_medium(job.material, job.physics).barrier_ev();
-  auto library =
-      libraries.library({job.material, job.physics, job.energy_ev + barrier_ev, job.simulation.seed},
-                        static_cast<std::size_t>(job.learn.table_electrons.value_or(usual_cascades)),
-                        job.simulation.threads, {}, watch.cancel);
+  auto library = libraries.library(
+      {job.material, job.physics, job.energy_ev + barrier_ev, job.simulation.seed},
+      static_cast<std::size_t>(job.learn.table_electrons.value_or(usual_cascades)),
+      job.simulation.threads, {}, watch.cancel);
   if (!library) throw Interrupted();
   return library;
 }
 
-std::map<std::string, std::string> notes_of(const TrainJob& job, const mc::CascadeLibrary& library) {
+std::map<std::string, std::string> notes_of(const TrainJob& job,
+                                            const mc::CascadeLibrary& library) {
   return {{"physics", mc::format_physics(job.physics)},
           {"seed", std::to_string(job.simulation.seed)},
           {"table.electrons", std::to_string(library.cascades())}};
 }
 
-// Secondaries that stop above the surface are far more than those that leave: level ground sets their scale.
+// Secondaries that stop above the surface are far more than those that leave: level ground sets
+// their scale.
 Learnt learn_stopping_points(const Lesson& lesson) {
   const TrainJob& job = lesson.job;
   JobLibraries libraries(job.cache, lesson.reporter.counting("cascades"), lesson.reporter.on_note);
@@ -54,7 +57,8 @@ Learnt learn_stopping_points(const Lesson& lesson) {
   flat.physics = job.physics;
   flat.threads = job.simulation.threads;
   flat.watch = lesson.watch();
-  const mc::Estimate yield = make_slope_table(job.material, job.energy_ev, flat, &libraries).se.front();
+  const mc::Estimate yield =
+      make_slope_table(job.material, job.energy_ev, flat, &libraries).se.front();
   const auto library = library_of(job, libraries, flat.watch);
   mc::CascadeTableOptions options;
   options.flat_se_yield = yield.mean;
@@ -62,12 +66,14 @@ Learnt learn_stopping_points(const Lesson& lesson) {
   notes["table.flat_se"] = fmt::format("{:.4g} +- {:.2g}", yield.mean, yield.standard_error);
   Learnt learnt{mc::stopping_points(*library, options), 0, {}, std::move(notes)};
   if (!(yield.mean > 0))
-    learnt.warnings.push_back("no secondaries left level ground: SE counts all that stop above the surface");
+    learnt.warnings.push_back(
+        "no secondaries left level ground: SE counts all that stop above the surface");
   return learnt;
 }
 
 Learnt learn_diffusion_matrix(const Lesson& lesson) {
-  JobLibraries libraries(lesson.job.cache, lesson.reporter.counting("cascades"), lesson.reporter.on_note);
+  JobLibraries libraries(lesson.job.cache, lesson.reporter.counting("cascades"),
+                         lesson.reporter.on_note);
   const auto library = library_of(lesson.job, libraries, lesson.watch());
   return {mc::diffusion_matrix(*library), 0, {}, notes_of(lesson.job, *library)};
 }
@@ -75,12 +81,15 @@ Learnt learn_diffusion_matrix(const Lesson& lesson) {
 }  // namespace
 
 const Learner stopping_points_learner{
-    "stopping-points",     "electrons that would stop above the surface (Aristov 1991); no images needed",
-    {"table_electrons"}, check,
-    learn_stopping_points, false};
+    "stopping-points",
+    "electrons that would stop above the surface (Aristov 1991); no images needed",
+    {"table_electrons"},
+    check,
+    learn_stopping_points,
+    false};
 const Learner diffusion_matrix_learner{
     "diffusion-matrix",     "their flux through facets (Desai, Czyzewski 1990); no images needed",
-    {"table_electrons"},  check,
+    {"table_electrons"},    check,
     learn_diffusion_matrix, false};
 
 }  // namespace surf::workflow

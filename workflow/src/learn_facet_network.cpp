@@ -41,10 +41,11 @@ Learnt learn(const Lesson& lesson) {
 
 }  // namespace
 
-const Learner facet_network_learner{"facet-network",
-                                    "a small network on what the filter bank sees and on the sky in view",
-                                    {"scales", "hidden", "iterations", "decay", "model_error"},
-                                    check,
-                                    learn};
+const Learner facet_network_learner{
+    "facet-network",
+    "a small network on what the filter bank sees and on the sky in view",
+    {"scales", "hidden", "iterations", "decay", "model_error"},
+    check,
+    learn};
 
 }  // namespace surf::workflow

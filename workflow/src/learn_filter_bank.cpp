@@ -27,7 +27,11 @@ Learnt learn(const Lesson& lesson) {
 
 }  // namespace
 
-const Learner filter_bank_learner{"filter-bank", "gradient and curvatures at ten scales, combined (thesis, chapter 6)",
-                                  {"scales", "multi_resolution", "least_eigenvalue"}, nullptr, learn};
+const Learner filter_bank_learner{
+    "filter-bank",
+    "gradient and curvatures at ten scales, combined (thesis, chapter 6)",
+    {"scales", "multi_resolution", "least_eigenvalue"},
+    nullptr,
+    learn};
 
 }  // namespace surf::workflow

@@ -7,16 +7,18 @@
 namespace surf::workflow {
 namespace {
 
-// The forms are fixed functions of slope: all that is learnt is what a level surface gives, by least
-// squares over all pixels, weighted by their standard errors.
+// The forms are fixed functions of slope: all that is learnt is what a level surface gives, by
+// least squares over all pixels, weighted by their standard errors.
 Learnt learn(const Lesson& lesson, SlopeForm form) {
   SlopeModelParameters parameters;
   parameters.form = form;
-  for (const std::string& channel : lesson.channels) parameters.channels.push_back({channel, 1, {}});
+  for (const std::string& channel : lesson.channels)
+    parameters.channels.push_back({channel, 1, {}});
   const auto relative = make_slope_model(lesson.scope, parameters);
   std::vector<double> products(lesson.channels.size()), squares(lesson.channels.size());
   for (const TrainingImage& image : lesson.images) {
-    const ModelImages shape = relative->predict(image.field, {image.edge, lesson.job.simulation.threads});
+    const ModelImages shape =
+        relative->predict(image.field, {image.edge, lesson.job.simulation.threads});
     for (std::size_t c = 0; c < products.size(); ++c) {
       for (std::size_t k = 0; k < shape[c].size(); ++k) {
         if (!image.used.empty() && !image.used.data()[k]) continue;
@@ -30,7 +32,8 @@ Learnt learn(const Lesson& lesson, SlopeForm form) {
   for (std::size_t c = 0; c < products.size(); ++c) {
     parameters.channels[c].flat_yield = squares[c] > 0 ? products[c] / squares[c] : 0;
     if (!(parameters.channels[c].flat_yield > 0))
-      throw InvalidInput("training images", fmt::format("channel {} holds no signal", lesson.channels[c]),
+      throw InvalidInput("training images",
+                         fmt::format("channel {} holds no signal", lesson.channels[c]),
                          "Give images with a mean above 0");
   }
   return {parameters, 0, {}, {}};
@@ -43,13 +46,22 @@ Learnt learn_form(const Lesson& lesson) {
 
 }  // namespace
 
-const Learner secant_learner{"secant", "1 / cos of the slope (Jones 1994)", {}, nullptr,
-                             learn_form<SlopeForm::secant>};
-const Learner ikeuchi_exponential_learner{"ikeuchi-exponential", "exp(1 - cos) of the slope (Ikeuchi 1981)", {}, nullptr,
+const Learner secant_learner{
+    "secant", "1 / cos of the slope (Jones 1994)", {}, nullptr, learn_form<SlopeForm::secant>};
+const Learner ikeuchi_exponential_learner{"ikeuchi-exponential",
+                                          "exp(1 - cos) of the slope (Ikeuchi 1981)",
+                                          {},
+                                          nullptr,
                                           learn_form<SlopeForm::ikeuchi_exponential>};
-const Learner ikeuchi_secant_learner{"ikeuchi-secant", "1 / cos of 0.8 times the slope (Ikeuchi 1981)", {}, nullptr,
+const Learner ikeuchi_secant_learner{"ikeuchi-secant",
+                                     "1 / cos of 0.8 times the slope (Ikeuchi 1981)",
+                                     {},
+                                     nullptr,
                                      learn_form<SlopeForm::ikeuchi_secant>};
-const Learner ikeuchi_mixed_learner{"ikeuchi-mixed", "half constant, half 1 / cos of the slope (Ikeuchi 1981)", {}, nullptr,
+const Learner ikeuchi_mixed_learner{"ikeuchi-mixed",
+                                    "half constant, half 1 / cos of the slope (Ikeuchi 1981)",
+                                    {},
+                                    nullptr,
                                     learn_form<SlopeForm::ikeuchi_mixed>};
 
 }  // namespace surf::workflow

@@ -11,28 +11,32 @@
 namespace surf::workflow {
 namespace {
 
-constexpr const Learner* all[] = {&facet_network_learner, &filter_bank_learner, &slope_table_learner,
-                                  &slope_table_two_planes_learner, &stopping_points_learner,
-                                  &diffusion_matrix_learner, &secant_learner, &ikeuchi_exponential_learner,
-                                  &ikeuchi_secant_learner, &ikeuchi_mixed_learner};
+constexpr const Learner* all[] = {&facet_network_learner,   &filter_bank_learner,
+                                  &slope_table_learner,     &slope_table_two_planes_learner,
+                                  &stopping_points_learner, &diffusion_matrix_learner,
+                                  &secant_learner,          &ikeuchi_exponential_learner,
+                                  &ikeuchi_secant_learner,  &ikeuchi_mixed_learner};
 
 bool takes(const Learner& learner, std::string_view field) {
   return std::ranges::find(learner.fields, field) != learner.fields.end();
 }
 
 void refuse_options(const Learner& learner, const LearnOptions& o) {
-  const std::pair<bool, const char*> fields[] = {{!o.scales.empty(), "scales"},
-                                                  {o.multi_resolution, "multi_resolution"},
-                                                  {o.least_eigenvalue.has_value(), "least_eigenvalue"},
-                                                  {o.hidden.has_value(), "hidden"},
-                                                  {o.iterations.has_value(), "iterations"},
-                                                  {o.decay.has_value(), "decay"},
-                                                  {o.model_error.has_value(), "model_error"},
-                                                  {o.table_electrons.has_value(), "table_electrons"}};
+  const std::pair<bool, const char*> fields[] = {
+      {!o.scales.empty(), "scales"},
+      {o.multi_resolution, "multi_resolution"},
+      {o.least_eigenvalue.has_value(), "least_eigenvalue"},
+      {o.hidden.has_value(), "hidden"},
+      {o.iterations.has_value(), "iterations"},
+      {o.decay.has_value(), "decay"},
+      {o.model_error.has_value(), "model_error"},
+      {o.table_electrons.has_value(), "table_electrons"}};
   for (const auto& [given, field] : fields) {
     if (!given || takes(learner, field)) continue;
-    const auto other = std::ranges::find_if(all, [&](const Learner* l) { return takes(*l, field); });
-    throw UsageError(fmt::format("`training.{}`", field), fmt::format("a model '{}' has none", learner.name),
+    const auto other =
+        std::ranges::find_if(all, [&](const Learner* l) { return takes(*l, field); });
+    throw UsageError(fmt::format("`training.{}`", field),
+                     fmt::format("a model '{}' has none", learner.name),
                      fmt::format("Leave it out, or add `training.kind={}`", (*other)->name));
   }
 }
@@ -47,7 +51,8 @@ void refuse_learning_from_images(const Learner& learner, const TrainJob& job) {
   if (!job.signal.empty())
     throw UsageError(
         "`training.signal`",
-        fmt::format("a model '{}' gives SE and BSE, not what a microscope makes of them", learner.name),
+        fmt::format("a model '{}' gives SE and BSE, not what a microscope makes of them",
+                    learner.name),
         "Leave it out; 'semsurf calibrate' compares the two");
 }
 
@@ -73,7 +78,8 @@ std::span<const Learner* const> learners() { return all; }
 
 std::vector<LearnableKind> learnable_kinds() {
   std::vector<LearnableKind> kinds;
-  for (const Learner* learner : all) kinds.push_back({learner->name, learner->what, learner->needs_images});
+  for (const Learner* learner : all)
+    kinds.push_back({learner->name, learner->what, learner->needs_images});
   return kinds;
 }
 

@@ -17,7 +17,8 @@ struct Lesson {
   const TrainJob& job;
   ModelScope scope;
   std::vector<std::string> channels;
-  const std::vector<TrainingImage>& images;   ///< without those held out; none for kinds that need none
+  const std::vector<TrainingImage>&
+      images;  ///< without those held out; none for kinds that need none
   const Reporter& reporter;
 
   /// For the whole of learning.
@@ -26,7 +27,7 @@ struct Lesson {
 
 struct Learnt {
   decltype(TrainedModel::parameters) parameters;
-  double condition_number = 0;                ///< 0: none was solved
+  double condition_number = 0;  ///< 0: none was solved
   std::vector<std::string> warnings;
   std::map<std::string, std::string> notes;
 };
@@ -37,16 +38,17 @@ struct Learner {
   const char* what;
   /// Which of LearnOptions concern it. Others are refused.
   std::vector<std::string_view> fields;
-  /// Throws UsageError for what is out of range or cannot be had with this kind: before any time is spent.
-  /// Null: there is no such thing.
+  /// Throws UsageError for what is out of range or cannot be had with this kind: before any time is
+  /// spent. Null: there is no such thing.
   void (*check)(const TrainJob& job);
-  Learnt (*learn)(const Lesson& lesson);   ///< throws Interrupted
+  Learnt (*learn)(const Lesson& lesson);  ///< throws Interrupted
   bool needs_images = true;
 };
 
 // A new kind: its source file, a line here and one in learners.cpp.
 extern const Learner facet_network_learner, filter_bank_learner;
-extern const Learner secant_learner, ikeuchi_exponential_learner, ikeuchi_secant_learner, ikeuchi_mixed_learner;
+extern const Learner secant_learner, ikeuchi_exponential_learner, ikeuchi_secant_learner,
+    ikeuchi_mixed_learner;
 extern const Learner slope_table_learner, slope_table_two_planes_learner;
 extern const Learner stopping_points_learner, diffusion_matrix_learner;
 

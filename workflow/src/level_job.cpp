@@ -15,27 +15,35 @@ namespace {
 
 void tell_doubts(const HoughSummary& s, const Reporter& reporter) {
   if (s.verdict == HoughVerdict::contested)
-    reporter.warn(
-        fmt::format("no plane holds a clear majority: another one, {} {} at the centre, holds {:.1f} % of the image. "
-                    "Say which is meant with `scan.use` or `scan.exclude`, crop the scan, or choose another "
-                    "`level.method`",
-                    format_length(std::fabs(s.runner_up.height_nm - s.plane.height_nm)),
-                    s.runner_up.height_nm > s.plane.height_nm ? "higher" : "lower", 100 * s.runner_up_share));
+    reporter.warn(fmt::format(
+        "no plane holds a clear majority: another one, {} {} at the centre, holds {:.1f} % of the "
+        "image. "
+        "Say which is meant with `scan.use` or `scan.exclude`, crop the scan, or choose another "
+        "`level.method`",
+        format_length(std::fabs(s.runner_up.height_nm - s.plane.height_nm)),
+        s.runner_up.height_nm > s.plane.height_nm ? "higher" : "lower", 100 * s.runner_up_share));
   if (s.verdict == HoughVerdict::weak)
-    reporter.warn(
-        fmt::format("no plane stands out: the best one holds {:.1f} % of the image, chance alone {:.1f} %. The "
-                    "surface is too rough for a substrate; `level.method=plane` may be what is wanted",
-                    100 * s.inlier_share, 100 * s.chance_share));
+    reporter.warn(fmt::format(
+        "no plane stands out: the best one holds {:.1f} % of the image, chance alone {:.1f} %. The "
+        "surface is too rough for a substrate; `level.method=plane` may be what is wanted",
+        100 * s.inlier_share, 100 * s.chance_share));
   if (!s.search_complete)
-    reporter.note("the search for planes ended at its limit: a better one, or a rival, may have been missed");
+    reporter.note(
+        "the search for planes ended at its limit: a better one, or a rival, may have been missed");
 }
 
-void take_off(LevelResult& result, const LevelParameters& p, const Grid<unsigned char>& use, const Watch& watch) {
+void take_off(LevelResult& result, const LevelParameters& p, const Grid<unsigned char>& use,
+              const Watch& watch) {
   result.substrate = use;
   switch (p.method) {
-    case LevelMethod::none: return;
-    case LevelMethod::polynomial: subtract(result.field, fit_polynomial(result.field, p.degree, use)); return;
-    case LevelMethod::plane: result.plane = fit_plane(result.field, use); break;
+    case LevelMethod::none:
+      return;
+    case LevelMethod::polynomial:
+      subtract(result.field, fit_polynomial(result.field, p.degree, use));
+      return;
+    case LevelMethod::plane:
+      result.plane = fit_plane(result.field, use);
+      break;
     case LevelMethod::hough: {
       result.hough = find_plane(result.field, {p.tolerance_nm.value_or(0), watch}, use);
       result.plane = result.hough->plane;
@@ -51,10 +59,12 @@ void take_off(LevelResult& result, const LevelParameters& p, const Grid<unsigned
 void describe(ParameterVisitor& visit, LevelParameters& p) {
   visit(p.method, {"hough", "plane", "polynomial", "none"},
         {.name = "level.method",
-         .help = "What is taken off the heights: the plane that most of them lie on (hough), the mean "
-                 "plane, a polynomial, or nothing"});
-  visit(p.degree,
-        {.name = "level.degree", .help = "Degree of the polynomial that is taken off", .limits = within(0, 6)});
+         .help =
+             "What is taken off the heights: the plane that most of them lie on (hough), the mean "
+             "plane, a polynomial, or nothing"});
+  visit(p.degree, {.name = "level.degree",
+                   .help = "Degree of the polynomial that is taken off",
+                   .limits = within(0, 6)});
   visit(p.tolerance_nm, {.name = "level.tolerance",
                          .help = "Half the thickness of the substrate",
                          .unit = Unit::nm,
@@ -63,7 +73,8 @@ void describe(ParameterVisitor& visit, LevelParameters& p) {
                          .level = Level::advanced});
   visit(p.rows, {"median", "difference"},
         {.name = "level.rows",
-         .help = "Take off steps between scan lines, by the median of each or of the differences to the one below",
+         .help = "Take off steps between scan lines, by the median of each or of the differences "
+                 "to the one below",
          .otherwise = "none"},
         "none");
 }

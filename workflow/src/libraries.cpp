@@ -18,7 +18,7 @@ struct CachedLibraries::Impl {
       : cache(std::move(folder), max_bytes) {}
 
   io::Cache cache;
-  std::map<std::string, mc::CascadeLibrary> kept;   ///< by the key of their first page
+  std::map<std::string, mc::CascadeLibrary> kept;  ///< by the key of their first page
   Pages pages;
   std::vector<std::string> notes;
   std::set<std::string> said;
@@ -87,8 +87,9 @@ std::shared_ptr<const mc::CascadeLibrary> CachedLibraries::library(
     if (cancel && cancel->cancelled()) return nullptr;
     const auto before = static_cast<double>(library.cascades());
     if (impl_->load(library)) report(static_cast<double>(library.cascades()));
-    else if (!impl_->make(library, threads,
-                          [&](double of_page, double) { report(before + of_page); }, cancel))
+    else if (!impl_->make(
+                 library, threads, [&](double of_page, double) { report(before + of_page); },
+                 cancel))
       return nullptr;
   }
   return std::make_shared<const mc::CascadeLibrary>(

@@ -10,7 +10,7 @@ namespace surf::workflow {
 
 LibraryList list_libraries(const io::Cache& cache, io::Cache::Check check) {
   LibraryList list;
-  std::map<std::string, std::map<std::size_t, io::CacheEntry>> pages;   // by library and number
+  std::map<std::string, std::map<std::size_t, io::CacheEntry>> pages;  // by library and number
   std::map<std::string, StoredLibrary> libraries;
   for (io::CacheEntry& entry : cache.list(check)) {
     if (!entry.is_sound) {

@@ -18,8 +18,8 @@ namespace surf::workflow {
 
 namespace {
 
-constexpr std::size_t most_materials = 8;     // colours
-constexpr std::size_t most_distributions = 8; // in one panel
+constexpr std::size_t most_materials = 8;      // colours
+constexpr std::size_t most_distributions = 8;  // in one panel
 constexpr std::size_t bins = 40;
 constexpr double percentile = 0.95;
 
@@ -35,8 +35,8 @@ double mean(const std::vector<double>& values) {
 }
 
 double percentile_of(std::vector<double> values) {
-  const auto at = values.begin() + static_cast<std::ptrdiff_t>(
-                                       percentile * static_cast<double>(values.size() - 1));
+  const auto at = values.begin() +
+                  static_cast<std::ptrdiff_t>(percentile * static_cast<double>(values.size() - 1));
   std::nth_element(values.begin(), at, values.end());
   return *at;
 }
@@ -45,8 +45,8 @@ double percentile_of(std::vector<double> values) {
 struct Findings {
   std::size_t material = 0;
   double energy_ev = 0;
-  std::vector<double> depth_nm, extent_nm;   // of every primary
-  std::vector<mc::Estimate> se, bse;         // by tilt
+  std::vector<double> depth_nm, extent_nm;  // of every primary
+  std::vector<mc::Estimate> se, bse;        // by tilt
 };
 
 class Charts {
@@ -62,11 +62,10 @@ class Charts {
     if (!several()) plot.title = energy_text(options_.energies_ev.front()) + ", " + plot.title;
     const std::string physics = mc::format_physics(options_.physics);
     if (physics != mc::format_physics({})) plot.title += "\n" + physics;
-    plot.panels.push_back(distribution("How deep primaries get", "greatest depth (nm)",
-                                       &Findings::depth_nm));
-    plot.panels.push_back(distribution("How far primaries get",
-                                       "greatest distance from the start (nm)",
-                                       &Findings::extent_nm));
+    plot.panels.push_back(
+        distribution("How deep primaries get", "greatest depth (nm)", &Findings::depth_nm));
+    plot.panels.push_back(distribution(
+        "How far primaries get", "greatest distance from the start (nm)", &Findings::extent_nm));
     if (several()) plot.panels.push_back(ranges());
     plot.panels.push_back(yields("Secondary electrons", "SE per primary", &Findings::se, false));
     plot.panels.push_back(
@@ -101,13 +100,13 @@ class Charts {
     std::vector<const Findings*> out;
     for (std::size_t m = 0; m < options_.materials.size(); ++m)
       for (std::size_t i = 0; i < each; ++i)
-        out.push_back(&findings[m * energies +
-                                (each > 1 ? i * (energies - 1) / (each - 1) : energies / 2)]);
+        out.push_back(
+            &findings[m * energies + (each > 1 ? i * (energies - 1) / (each - 1) : energies / 2)]);
     return out;
   }
 
   io::PlotPanel distribution(const char* title, const char* label,
-                             std::vector<double> Findings::* values) const {
+                             std::vector<double> Findings::*values) const {
     io::PlotPanel panel;
     panel.title = title;
     panel.x.label = label;
@@ -139,7 +138,7 @@ class Charts {
       series.y.assign(bins, 0);
       for (const double v : f->*values) {
         const auto above = std::upper_bound(edges.begin(), edges.end(), v) - edges.begin();
-        if (above == 0) continue;   // before a logarithmic axis begins
+        if (above == 0) continue;  // before a logarithmic axis begins
         const auto bin = std::min<std::ptrdiff_t>(above - 1, bins - 1);
         series.y[static_cast<std::size_t>(bin)] += 100.0 / static_cast<double>((f->*values).size());
       }
@@ -178,14 +177,13 @@ class Charts {
     std::vector<const Findings*> out;
     for (const Findings& f : findings)
       if (f.material == material) out.push_back(&f);
-    std::sort(out.begin(), out.end(), [](const Findings* a, const Findings* b) {
-      return a->energy_ev < b->energy_ev;
-    });
+    std::sort(out.begin(), out.end(),
+              [](const Findings* a, const Findings* b) { return a->energy_ev < b->energy_ev; });
     return out;
   }
 
   io::PlotPanel yields(const char* title, const char* label,
-                       std::vector<mc::Estimate> Findings::* estimates, bool backscattered) const {
+                       std::vector<mc::Estimate> Findings::*estimates, bool backscattered) const {
     io::PlotPanel panel;
     panel.title = title;
     if (several()) panel.x = energy_axis();
@@ -238,7 +236,8 @@ class Charts {
     const auto [low, high] =
         std::minmax_element(options_.energies_ev.begin(), options_.energies_ev.end());
     for (const MeasuredYield& y : options_.measured) {
-      if (y.backscattered != backscattered || (y.material != material.name && y.material != element))
+      if (y.backscattered != backscattered ||
+          (y.material != material.name && y.material != element))
         continue;
       if (y.energy_ev < 0.95 * *low || y.energy_ev > 1.05 * *high) continue;
       series.x.push_back(several() ? 1e-3 * y.energy_ev : 0);
@@ -257,8 +256,8 @@ class Charts {
 
 void check(const LibraryPlotOptions& o) {
   if (o.materials.empty() || o.materials.size() > most_materials)
-    throw UsageError("`library.materials`", fmt::format("{} materials do not fit into one chart",
-                                                 o.materials.size()),
+    throw UsageError("`library.materials`",
+                     fmt::format("{} materials do not fit into one chart", o.materials.size()),
                      "Choose 1 to 8");
   if (o.energies_ev.empty())
     throw UsageError("`library.energy`", "there is none", "Give one or several");
@@ -270,7 +269,7 @@ mc::SimulationOptions simulation_of(const LibraryPlotOptions& o) {
   mc::SimulationOptions options;
   options.method = mc::Method::replay;
   options.budget = mc::Accuracy{std::min(1.0, 3 / std::sqrt(static_cast<double>(o.cascades)))};
-  options.library_memory = 0;   // no more than that
+  options.library_memory = 0;  // no more than that
   options.seed = o.seed;
   options.threads = o.threads;
   return options;
@@ -305,11 +304,17 @@ std::vector<double> tilts_of(const LibraryPlotOptions& o) {
 }  // namespace
 
 void describe(ParameterVisitor& visit, LibraryPlotOptions& o) {
-  const Parameter tilt{.name = "library.tilt", .help = "Angles that yields are shown for", .unit = Unit::deg,
-                       .limits = from_to_below(0, 90), .otherwise = "0; with one energy 0 to 75 degrees",
+  const Parameter tilt{.name = "library.tilt",
+                       .help = "Angles that yields are shown for",
+                       .unit = Unit::deg,
+                       .limits = from_to_below(0, 90),
+                       .otherwise = "0; with one energy 0 to 75 degrees",
                        .form = "ANGLE,..."};
-  visit.form(tilt, [&] { return fmt::format("{}", fmt::join(o.tilts_deg, ",")); },
-             [&](std::string_view text, const std::string& subject) { o.tilts_deg = parse_values(text, tilt, subject); });
+  visit.form(
+      tilt, [&] { return fmt::format("{}", fmt::join(o.tilts_deg, ",")); },
+      [&](std::string_view text, const std::string& subject) {
+        o.tilts_deg = parse_values(text, tilt, subject);
+      });
 }
 
 std::optional<io::Plot> plot_libraries(const LibraryPlotOptions& o, mc::LibrarySource& libraries,
@@ -325,8 +330,7 @@ std::optional<io::Plot> plot_libraries(const LibraryPlotOptions& o, mc::LibraryS
       const auto done = static_cast<double>(charts.findings.size());
       const mc::Medium medium = mc::make_medium(o.materials[m], o.physics);
       const auto library = libraries.library(
-          {o.materials[m], o.physics, energy_ev + medium.barrier_ev(), o.seed}, cascades,
-          o.threads,
+          {o.materials[m], o.physics, energy_ev + medium.barrier_ev(), o.seed}, cascades, o.threads,
           [&](double of, double all) {
             if (progress) progress(done + 0.8 * of / all, total);
           },

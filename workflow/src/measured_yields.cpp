@@ -39,16 +39,14 @@ class Table {
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
     if (error != std::errc{} || end != text.data() + text.size() || !std::isfinite(value) ||
         value < 0)
-      throw FileError(path_.string(),
-                      fmt::format("line {}: '{}' is no {}", number_, text, name),
+      throw FileError(path_.string(), fmt::format("line {}: '{}' is no {}", number_, text, name),
                       "Give a number that is not negative");
     return value;
   }
 
  private:
   std::size_t column(const char* name) const {
-    return static_cast<std::size_t>(std::find(names_.begin(), names_.end(), name) -
-                                    names_.begin());
+    return static_cast<std::size_t>(std::find(names_.begin(), names_.end(), name) - names_.begin());
   }
 
   std::filesystem::path path_;

@@ -23,13 +23,13 @@ namespace {
 namespace fs = std::filesystem;
 
 // Measured with the version of Embree in Debian 12, bytes per triangle.
-constexpr double per_body = 58;           // as read 24, as traced 24 + 6 in single precision, shells 4
-constexpr double per_field = 46;          // a grid is smaller
-constexpr double per_soup = 165;          // while STL is read: the file, corners, who is who
-constexpr double per_built_tree = 100;    // Embree's while it is built; half of it stays
-constexpr double per_faces = 48, per_faces_and_thread = 4;   // distance bounds, while they are made
+constexpr double per_body = 58;   // as read 24, as traced 24 + 6 in single precision, shells 4
+constexpr double per_field = 46;  // a grid is smaller
+constexpr double per_soup = 165;  // while STL is read: the file, corners, who is who
+constexpr double per_built_tree = 100;  // Embree's while it is built; half of it stays
+constexpr double per_faces = 48, per_faces_and_thread = 4;  // distance bounds, while they are made
 constexpr std::size_t program_bytes = std::size_t{180} << 20;
-constexpr double share_to_take = 0.97;    // of what there is
+constexpr double share_to_take = 0.97;  // of what there is
 constexpr std::uint64_t few_triangles = 100000;
 
 constexpr std::size_t no_limit = std::numeric_limits<std::size_t>::max();
@@ -55,11 +55,11 @@ std::string text_of(const fs::path& path, std::size_t most = 65536) {
 
 std::optional<std::size_t> amount(const fs::path& path) {
   const std::string text = text_of(path, 64);
-  return number_after(text, "");   // "max" is none
+  return number_after(text, "");  // "max" is none
 }
 
-// The least that this group and those above it leave; a group may be read as one with fewer parts above
-// it than there are, where only a part of the tree is to be seen.
+// The least that this group and those above it leave; a group may be read as one with fewer parts
+// above it than there are, where only a part of the tree is to be seen.
 void ask_groups(const fs::path& root, std::string group, const char* limit, const char* used,
                 const char* cache, std::size_t& least) {
   for (;;) {
@@ -67,7 +67,8 @@ void ask_groups(const fs::path& root, std::string group, const char* limit, cons
     const auto most = amount(folder / limit), taken = amount(folder / used);
     if (most && taken && *most < (std::size_t{1} << 60)) {
       const auto file_cache = number_after(text_of(folder / "memory.stat"), cache);
-      const std::size_t held = *taken - std::min(*taken, static_cast<std::size_t>(file_cache.value_or(0)));
+      const std::size_t held =
+          *taken - std::min(*taken, static_cast<std::size_t>(file_cache.value_or(0)));
       least = std::min(least, *most - std::min(*most, held));
     }
     if (group.size() < 2) return;
@@ -81,7 +82,8 @@ std::size_t left_by_groups() {
   for (std::string line; std::getline(groups, line);) {
     const std::size_t first = line.find(':'), second = line.find(':', first + 1);
     if (second == std::string::npos) continue;
-    const std::string kind = line.substr(first + 1, second - first - 1), group = line.substr(second + 1);
+    const std::string kind = line.substr(first + 1, second - first - 1),
+                      group = line.substr(second + 1);
     if (kind.empty())
       ask_groups("/sys/fs/cgroup", group, "memory.max", "memory.current", "inactive_file", least);
     else if (("," + kind + ",").find(",memory,") != std::string::npos)
@@ -105,21 +107,28 @@ std::size_t asked_for(const char* text) {
   double value = 0;
   const auto [end, error] = std::from_chars(all.data(), all.data() + all.size(), value);
   const std::string_view unit = all.substr(static_cast<std::size_t>(end - all.data()));
-  const double factor = unit == "GB" ? 1e9 : unit == "GiB" ? 1073741824.0 : unit == "MB" ? 1e6 : unit.empty() ? 1 : 0;
+  const double factor = unit == "GB"    ? 1e9
+                        : unit == "GiB" ? 1073741824.0
+                        : unit == "MB"  ? 1e6
+                        : unit.empty()  ? 1
+                                        : 0;
   if (error != std::errc() || !(value > 0) || !(value * factor > 0) || !(value * factor < 1e18))
     throw UsageError("SEMSURF_MEMORY", fmt::format("'{}' is no amount of memory", all),
                      "Write for example 48GB, or off for no limit");
   return static_cast<std::size_t>(value * factor);
 }
 
-std::size_t bytes(double triangles, double each) { return static_cast<std::size_t>(triangles * each); }
+std::size_t bytes(double triangles, double each) {
+  return static_cast<std::size_t>(triangles * each);
+}
 
 }  // namespace
 
 std::optional<TriangleCount> triangles_in(const fs::path& path) {
   std::error_code error;
   double size = 0;
-  for (const fs::path& part : io::mesh_input_files(path)) {   // of some formats the triangles are in others
+  for (const fs::path& part :
+       io::mesh_input_files(path)) {  // of some formats the triangles are in others
     const auto bytes = fs::file_size(part, error);
     if (error) return {};
     size += static_cast<double>(bytes);
@@ -132,21 +141,23 @@ std::optional<TriangleCount> triangles_in(const fs::path& path) {
   if (head.starts_with("ply")) {
     const auto faces = number_after(head, "element face");
     // No face of a file is smaller than four bytes.
-    return TriangleCount{static_cast<std::uint64_t>(std::min<double>(double(faces.value_or(0)), size / 4))};
+    return TriangleCount{
+        static_cast<std::uint64_t>(std::min<double>(double(faces.value_or(0)), size / 4))};
   }
   if (head.size() > 84) {
     std::uint32_t facets = 0;
-    std::memcpy(&facets, head.data() + 80, sizeof facets);   // little-endian, as we are
+    std::memcpy(&facets, head.data() + 80, sizeof facets);  // little-endian, as we are
     if (size == 84 + 50.0 * facets) return TriangleCount{facets, TriangleSource::soup};
   }
   std::string extension = path.extension().string();
   std::transform(extension.begin(), extension.end(), extension.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  if (extension == ".stl" || head.find("facet normal") != std::string::npos) return about(260, TriangleSource::soup);
+  if (extension == ".stl" || head.find("facet normal") != std::string::npos)
+    return about(260, TriangleSource::soup);
   if (extension == ".obj" || extension == ".off") return about(38, TriangleSource::mesh);
   if (extension == ".vtp" || extension == ".vtm") return about(30, TriangleSource::mesh);
-  if (extension == ".3mf") return about(8, TriangleSource::mesh);   // packed
-  return about(18, TriangleSource::mesh);   // glTF
+  if (extension == ".3mf") return about(8, TriangleSource::mesh);  // packed
+  return about(18, TriangleSource::mesh);                          // glTF
 }
 
 MemoryEstimate estimate_specimen(const TriangleCount& count, const MemoryUse& use) {
@@ -157,7 +168,8 @@ MemoryEstimate estimate_specimen(const TriangleCount& count, const MemoryUse& us
   const double faces = per_faces + per_faces_and_thread * resolve_threads(use.threads);
   out.ray_tracing = bytes(n, std::max(per_built_tree, faces) * use.processes);
   if (count.source == TriangleSource::soup)
-    out.specimen = std::max(out.specimen, bytes(n, per_soup) - std::min(bytes(n, per_soup), out.ray_tracing));
+    out.specimen =
+        std::max(out.specimen, bytes(n, per_soup) - std::min(bytes(n, per_soup), out.ray_tracing));
   if (!use.shared) out.specimen *= static_cast<std::size_t>(use.processes);
   return out;
 }
@@ -180,18 +192,22 @@ void require_memory(const std::string& subject, const TriangleCount& count, cons
   const auto needed = static_cast<double>(estimate_specimen(count, use).total());
   const MemoryThere there = memory_there();
   if (there.bytes == no_limit || needed <= share_to_take * static_cast<double>(there.bytes)) return;
-  const bool small = count.triangles < few_triangles;   // the program itself is what takes the memory
-  const std::string triangles = small ? std::string("this mesh and the program")
-                                      : fmt::format("{:.3g} million triangles", double(count.triangles) / 1e6);
+  const bool small =
+      count.triangles < few_triangles;  // the program itself is what takes the memory
+  const std::string triangles =
+      small ? std::string("this mesh and the program")
+            : fmt::format("{:.3g} million triangles", double(count.triangles) / 1e6);
   const double left_gb = double(there.bytes) / 1e9;
   throw InvalidInput(
       subject,
       fmt::format("{} need about {:.2f} GB of memory{}, and {} {}", triangles, needed / 1e9,
                   use.processes > 1 ? fmt::format(" for {} processes", use.processes) : "",
-                  left_gb < 0.01 ? "less than 0.01 GB is" : fmt::format("{:.2f} GB are", left_gb), there.limit),
+                  left_gb < 0.01 ? "less than 0.01 GB is" : fmt::format("{:.2f} GB are", left_gb),
+                  there.limit),
       fmt::format("{}{}; SEMSURF_MEMORY=off tries nevertheless",
                   small ? "Make more memory available"
-                        : "Crop the mesh or simplify it where there is more memory (semsurf mesh --mesh-tolerance)",
+                        : "Crop the mesh or simplify it where there is more memory (semsurf mesh "
+                          "--mesh-tolerance)",
                   use.processes > 1 ? ", or start one process for each machine" : ""));
 }
 

@@ -36,20 +36,22 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-// From those who follow: how many units they want, what became of them, that they have no more, what went wrong.
-// From the leader: numbers of units.
+// From those who follow: how many units they want, what became of them, that they have no more,
+// what went wrong. From the leader: numbers of units.
 enum Tag : int { wants = 1, tally, finished, failed, units };
 
 constexpr std::uint64_t no_more = ~std::uint64_t{0};
-constexpr std::size_t largest_part = std::size_t{1} << 30;   // MPI counts in int
-// Looking for messages costs tens of microseconds: the longer none has come, the longer it waits for the next. A unit of work
-// takes longer than this, and others ask for more before they have none.
+constexpr std::size_t largest_part = std::size_t{1} << 30;  // MPI counts in int
+// Looking for messages costs tens of microseconds: the longer none has come, the longer it waits
+// for the next. A unit of work takes longer than this, and others ask for more before they have
+// none.
 constexpr std::chrono::microseconds shortest_nap(50), longest_nap(5000);
-constexpr std::chrono::microseconds longest_nap_sending(1000);   // large messages need both sides awake
-constexpr auto between_looks = std::chrono::milliseconds(20);   // at whether the job is cancelled
+constexpr std::chrono::microseconds longest_nap_sending(
+    1000);  // large messages need both sides awake
+constexpr auto between_looks = std::chrono::milliseconds(20);  // at whether the job is cancelled
 constexpr auto awake = std::chrono::milliseconds(1);
-// After the leader was told to stop, how long it waits for what others have begun. Starters of MPI kill
-// everybody a second or so after one has died.
+// After the leader was told to stop, how long it waits for what others have begun. Starters of MPI
+// kill everybody a second or so after one has died.
 constexpr auto patience = std::chrono::milliseconds(700);
 
 void sleep_longer(std::chrono::microseconds& nap, std::chrono::microseconds longest = longest_nap) {
@@ -82,8 +84,8 @@ std::string host() {
   return {name, static_cast<std::size_t>(length)};
 }
 
-// Waits for a collective call without keeping a processor busy, as MPI's own waiting does: the leader may be at work
-// for minutes. What comes at once is not slept over.
+// Waits for a collective call without keeping a processor busy, as MPI's own waiting does: the
+// leader may be at work for minutes. What comes at once is not slept over.
 template <class Begin>
 void await(const Begin& begin) {
   MPI_Request request;
@@ -99,7 +101,8 @@ void await(const Begin& begin) {
   }
 }
 
-// The processes of one machine: memory from MPI's windows, or a copy for each where they cannot be had.
+// The processes of one machine: memory from MPI's windows, or a copy for each where they cannot be
+// had.
 class MpiNode : public NodeMemory {
  public:
   MpiNode() {
@@ -132,16 +135,20 @@ class MpiNode : public NodeMemory {
     // Asked beforehand: where the first one cannot have it, Open MPI leaves the others waiting.
     int room = is_first() && has_room(bytes + alignment);
     await([&](MPI_Request* r) { MPI_Ibcast(&room, 1, MPI_INT, 0, comm_, r); });
-    int good = room && MPI_Win_allocate_shared(size, 1, MPI_INFO_NULL, comm_, &mine, &w.window) == MPI_SUCCESS;
+    int good = room && MPI_Win_allocate_shared(size, 1, MPI_INFO_NULL, comm_, &mine, &w.window) ==
+                           MPI_SUCCESS;
     const bool made = good;
     MPI_Allreduce(MPI_IN_PLACE, &good, 1, MPI_INT, MPI_MIN, comm_);
     if (!good) {
       if (made) MPI_Win_free(&w.window);
       if (is_first() && !told_)
-        std::fprintf(stderr, "semsurf: note: no memory to share (is /dev/shm full?): each process has its own copy\n");
+        std::fprintf(stderr,
+                     "semsurf: note: no memory to share (is /dev/shm full?): each process has its "
+                     "own copy\n");
       told_ = true;
-      const std::shared_ptr<std::byte> copy(static_cast<std::byte*>(::operator new(bytes, std::align_val_t{alignment})),
-                                            [](std::byte* p) { ::operator delete(p, std::align_val_t{alignment}); });
+      const std::shared_ptr<std::byte> copy(
+          static_cast<std::byte*>(::operator new (bytes, std::align_val_t{alignment})),
+          [](std::byte* p) { ::operator delete (p, std::align_val_t{alignment}); });
       copies_.push_back(copy.get());
       return copy;
     }
@@ -149,7 +156,8 @@ class MpiNode : public NodeMemory {
     int unit = 1;
     MPI_Win_shared_query(w.window, 0, &whole, &unit, &mine);
     w.held = std::make_shared<std::atomic<bool>>(true);
-    const auto at = (reinterpret_cast<std::uintptr_t>(mine) + alignment - 1) / alignment * alignment;
+    const auto at =
+        (reinterpret_cast<std::uintptr_t>(mine) + alignment - 1) / alignment * alignment;
     windows_.push_back(w);
     return {reinterpret_cast<std::byte*>(at), [held = w.held](std::byte*) { *held = false; }};
   }
@@ -178,8 +186,9 @@ class MpiNode : public NodeMemory {
   // Open MPI's windows are files there, of five percent more.
   static bool has_room(std::size_t bytes) {
     struct statvfs s {};
-    if (statvfs("/dev/shm", &s) != 0) return true;   // elsewhere, then
-    return static_cast<double>(s.f_bavail) * static_cast<double>(s.f_frsize) > 1.06 * static_cast<double>(bytes) + 1e6;
+    if (statvfs("/dev/shm", &s) != 0) return true;  // elsewhere, then
+    return static_cast<double>(s.f_bavail) * static_cast<double>(s.f_frsize) >
+           1.06 * static_cast<double>(bytes) + 1e6;
   }
 
   // Windows are freed by all together: those that nobody holds any more.
@@ -197,7 +206,7 @@ class MpiNode : public NodeMemory {
   MPI_Comm comm_ = MPI_COMM_NULL;
   int rank_ = 0, size_ = 1;
   bool told_ = false;
-  std::vector<const std::byte*> copies_;   // not shared yet
+  std::vector<const std::byte*> copies_;  // not shared yet
   std::vector<Window> windows_;
 };
 
@@ -215,8 +224,9 @@ class MpiTeam : public Team {
   }
 
   ~MpiTeam() override {
-    if (deaf_) MPI_Abort(MPI_COMM_WORLD, 130);   // who does not answer would be waited for
-    await([](MPI_Request* r) { MPI_Ibarrier(MPI_COMM_WORLD, r); });   // more quietly than what follows
+    if (deaf_) MPI_Abort(MPI_COMM_WORLD, 130);  // who does not answer would be waited for
+    await(
+        [](MPI_Request* r) { MPI_Ibarrier(MPI_COMM_WORLD, r); });  // more quietly than what follows
     node_->leave();
     MPI_Finalize();
   }
@@ -233,7 +243,9 @@ class MpiTeam : public Team {
     bytes.resize(length);
     for (std::size_t from = 0; from < length; from += largest_part) {
       const int part = static_cast<int>(std::min<std::size_t>(largest_part, length - from));
-      await([&](MPI_Request* r) { MPI_Ibcast(bytes.data() + from, part, MPI_CHAR, 0, MPI_COMM_WORLD, r); });
+      await([&](MPI_Request* r) {
+        MPI_Ibcast(bytes.data() + from, part, MPI_CHAR, 0, MPI_COMM_WORLD, r);
+      });
     }
   }
 
@@ -242,15 +254,19 @@ class MpiTeam : public Team {
     if (deaf_) return std::vector<std::string>(count);
     const int length = static_cast<int>(std::min(text.size(), std::size_t{1} << 16));
     std::vector<int> lengths(count), starts(count, 0);
-    await([&](MPI_Request* r) { MPI_Iallgather(&length, 1, MPI_INT, lengths.data(), 1, MPI_INT, MPI_COMM_WORLD, r); });
+    await([&](MPI_Request* r) {
+      MPI_Iallgather(&length, 1, MPI_INT, lengths.data(), 1, MPI_INT, MPI_COMM_WORLD, r);
+    });
     for (std::size_t i = 1; i < count; ++i) starts[i] = starts[i - 1] + lengths[i - 1];
     std::string all(static_cast<std::size_t>(starts.back() + lengths.back()), '\0');
     await([&](MPI_Request* r) {
-      MPI_Iallgatherv(text.data(), length, MPI_CHAR, all.data(), lengths.data(), starts.data(), MPI_CHAR, MPI_COMM_WORLD, r);
+      MPI_Iallgatherv(text.data(), length, MPI_CHAR, all.data(), lengths.data(), starts.data(),
+                      MPI_CHAR, MPI_COMM_WORLD, r);
     });
     std::vector<std::string> out;
     for (std::size_t i = 0; i < count; ++i)
-      out.push_back(all.substr(static_cast<std::size_t>(starts[i]), static_cast<std::size_t>(lengths[i])));
+      out.push_back(
+          all.substr(static_cast<std::size_t>(starts[i]), static_cast<std::size_t>(lengths[i])));
     return out;
   }
 
@@ -258,7 +274,8 @@ class MpiTeam : public Team {
     const ThreadTime time(own().messaging_s);
     int at_work = size_ - 1;
     std::string trouble;
-    std::exception_ptr thrown;   // what `give` has thrown: others are told to end before anything else
+    std::exception_ptr
+        thrown;  // what `give` has thrown: others are told to end before anything else
     Clock::time_point stopped{};
     auto nap = shortest_nap;
     while (at_work > 0) {
@@ -283,7 +300,7 @@ class MpiTeam : public Team {
         case wants:
           try {
             hand_out(take, trouble.empty() && !thrown ? number(bytes, 0) : 0, status.MPI_SOURCE);
-          } catch (...) {   // a damaged checkpoint
+          } catch (...) {  // a damaged checkpoint
             thrown = std::current_exception();
             hand_out(take, 0, status.MPI_SOURCE);
           }
@@ -293,18 +310,23 @@ class MpiTeam : public Team {
           ++member.units;
           member.primaries += primaries;
           try {
-            if (!thrown) give({number(bytes, 0), primaries, bytes.substr(2 * sizeof(std::uint64_t)), status.MPI_SOURCE});
+            if (!thrown)
+              give({number(bytes, 0), primaries, bytes.substr(2 * sizeof(std::uint64_t)),
+                    status.MPI_SOURCE});
           } catch (...) {
             thrown = std::current_exception();
           }
           break;
         }
-        case failed: trouble = "rank " + std::to_string(status.MPI_SOURCE) + ": " + bytes; [[fallthrough]];
+        case failed:
+          trouble = "rank " + std::to_string(status.MPI_SOURCE) + ": " + bytes;
+          [[fallthrough]];
         case finished:
           if (status.MPI_TAG == finished) note_member(bytes, member);
           --at_work;
           break;
-        default: break;
+        default:
+          break;
       }
       all_sent();
     }
@@ -314,8 +336,8 @@ class MpiTeam : public Team {
       throw InvalidInput("team", trouble, "Look at that machine, and start the same command again");
   }
 
-  void follow(const std::function<void(const TakeUnit&, const GiveUnit&)>& work, int threads, int ahead,
-              const CancelToken* cancel) override {
+  void follow(const std::function<void(const TakeUnit&, const GiveUnit&)>& work, int threads,
+              int ahead, const CancelToken* cancel) override {
     Desk desk;
     desk.ahead = static_cast<std::size_t>(ahead);
     own().threads = threads;
@@ -330,8 +352,9 @@ class MpiTeam : public Team {
         desk.leave();
       });
       if (!at_work.joinable()) {
-        error = std::make_exception_ptr(Unsupported("threads", "the system cannot start another one",
-                                                    "Raise the limits of processes and memory (ulimit -u, ulimit -v)"));
+        error = std::make_exception_ptr(
+            Unsupported("threads", "the system cannot start another one",
+                        "Raise the limits of processes and memory (ulimit -u, ulimit -v)"));
         desk.leave();
       }
       const ThreadTime time(own().messaging_s);
@@ -353,7 +376,8 @@ class MpiTeam : public Team {
       std::rethrow_exception(error);
     }
     std::ostringstream sums;
-    sums << me.threads << ' ' << me.waiting_s << ' ' << me.messaging_s << ' ' << me.bytes_sent << ' ' << me.messages << ' ' << me.host;
+    sums << me.threads << ' ' << me.waiting_s << ' ' << me.messaging_s << ' ' << me.bytes_sent
+         << ' ' << me.messages << ' ' << me.host;
     send(sums.str(), finished, 0);
     wait_until_sent();
   }
@@ -362,11 +386,11 @@ class MpiTeam : public Team {
   // Between the thread that sends and receives and those that simulate.
   struct Desk {
     std::mutex mutex;
-    std::condition_variable changed;   // for those who simulate
-    std::condition_variable news;      // for the other
+    std::condition_variable changed;  // for those who simulate
+    std::condition_variable news;     // for the other
     std::deque<std::size_t> in;
     std::deque<FinishedUnit> out;
-    std::size_t ahead = 0, takers = 0;   // takers: who wait for a unit
+    std::size_t ahead = 0, takers = 0;  // takers: who wait for a unit
     bool closed = false, left = false;
     double waiting_s = 0;
 
@@ -450,13 +474,14 @@ class MpiTeam : public Team {
         continue;
       }
       const bool sent = all_sent();
-      if (all_done && !asked) return;   // the rest is waited for with what is said last
+      if (all_done && !asked) return;  // the rest is waited for with what is said last
       if (asked || !sent) {
         sleep_longer(nap, sent ? longest_nap : longest_nap_sending);
         continue;
       }
-      std::unique_lock lock(desk.mutex);   // nothing comes that was not asked for
-      desk.news.wait_for(lock, between_looks, [&] { return !desk.out.empty() || desk.left || desk.has_few(); });
+      std::unique_lock lock(desk.mutex);  // nothing comes that was not asked for
+      desk.news.wait_for(lock, between_looks,
+                         [&] { return !desk.out.empty() || desk.left || desk.has_few(); });
     }
   }
 
@@ -468,7 +493,9 @@ class MpiTeam : public Team {
       numbers.push_back(*unit);
     }
     if (numbers.size() < wanted || wanted == 0) numbers.push_back(no_more);
-    send(std::string(reinterpret_cast<const char*>(numbers.data()), numbers.size() * sizeof(std::uint64_t)), units, to);
+    send(std::string(reinterpret_cast<const char*>(numbers.data()),
+                     numbers.size() * sizeof(std::uint64_t)),
+         units, to);
   }
 
   // Does not wait for the other side, which may be asleep: MPI would look for it all the while.
@@ -477,7 +504,8 @@ class MpiTeam : public Team {
     if (to == 0) own().bytes_sent += static_cast<std::int64_t>(bytes.size());
     sending_.push_back({MPI_REQUEST_NULL, std::move(bytes)});
     const std::string& kept = sending_.back().bytes;
-    MPI_Isend(kept.data(), static_cast<int>(kept.size()), MPI_CHAR, to, tag, MPI_COMM_WORLD, &sending_.back().request);
+    MPI_Isend(kept.data(), static_cast<int>(kept.size()), MPI_CHAR, to, tag, MPI_COMM_WORLD,
+              &sending_.back().request);
   }
 
   bool all_sent() {
@@ -497,7 +525,8 @@ class MpiTeam : public Team {
     int length = 0;
     MPI_Get_count(&status, MPI_CHAR, &length);
     std::string bytes(static_cast<std::size_t>(length), '\0');
-    MPI_Recv(bytes.data(), length, MPI_CHAR, status.MPI_SOURCE, status.MPI_TAG, MPI_COMM_WORLD, MPI_STATUS_IGNORE);
+    MPI_Recv(bytes.data(), length, MPI_CHAR, status.MPI_SOURCE, status.MPI_TAG, MPI_COMM_WORLD,
+             MPI_STATUS_IGNORE);
     return bytes;
   }
 
@@ -509,7 +538,8 @@ class MpiTeam : public Team {
 
   static void note_member(const std::string& text, TeamMember& member) {
     std::istringstream in(text);
-    in >> member.threads >> member.waiting_s >> member.messaging_s >> member.bytes_sent >> member.messages;
+    in >> member.threads >> member.waiting_s >> member.messaging_s >> member.bytes_sent >>
+        member.messages;
     in.ignore();
     std::getline(in, member.host);
   }
@@ -520,7 +550,7 @@ class MpiTeam : public Team {
     MPI_Request request;
     std::string bytes;
   };
-  std::list<Sending> sending_;   // their places stay as they are
+  std::list<Sending> sending_;  // their places stay as they are
   int rank_ = 0, size_ = 1;
   bool deaf_ = false;
   std::optional<MpiNode> node_;

@@ -36,9 +36,12 @@ void add_material(Metadata& out, const std::string& key, const mc::Material& mat
 
 const char* edge_name(Edge edge) {
   switch (edge) {
-    case Edge::mirror: return "mirror";
-    case Edge::flat: return "flat";
-    case Edge::periodic: return "periodic";
+    case Edge::mirror:
+      return "mirror";
+    case Edge::flat:
+      return "flat";
+    case Edge::periodic:
+      return "periodic";
   }
   return "";
 }
@@ -56,11 +59,11 @@ void add_specimen(Metadata& out, const mc::Specimen& specimen) {
         fmt::format("{}, top at {} nm", material(s->material), format_exact(s->top_nm));
   if (const auto& h = specimen.height_field) {
     const HeightField& f = h->field;
-    out["specimen.height_field"] = fmt::format(
-        "{}, {}, {}x{} samples, pitch {} x {} nm, origin {}, {} nm, edge {}", file_name(h->name),
-        material(h->material), f.z_nm.width(), f.z_nm.height(), format_exact(f.pitch_x_nm),
-        format_exact(f.pitch_y_nm), format_exact(f.origin_x_nm), format_exact(f.origin_y_nm),
-        edge_name(h->edge));
+    out["specimen.height_field"] =
+        fmt::format("{}, {}, {}x{} samples, pitch {} x {} nm, origin {}, {} nm, edge {}",
+                    file_name(h->name), material(h->material), f.z_nm.width(), f.z_nm.height(),
+                    format_exact(f.pitch_x_nm), format_exact(f.pitch_y_nm),
+                    format_exact(f.origin_x_nm), format_exact(f.origin_y_nm), edge_name(h->edge));
   }
   int number = 0;
   for (const mc::Body& body : specimen.bodies) {
@@ -82,10 +85,10 @@ std::vector<InputHash> hash_inputs(const std::vector<std::filesystem::path>& inp
 }
 
 Metadata parameters_of(const ResolvedJob& job) {
-  mc::SimulationRequest request = job.scene;   // with what was found of it
+  mc::SimulationRequest request = job.scene;  // with what was found of it
   request.method = job.options.method;
   request.budget = job.options.budget;
-  request.detectors.clear();                   // all are named by themselves
+  request.detectors.clear();  // all are named by themselves
   request.scan = {};
   return surf::record_of(request);
 }
@@ -101,11 +104,13 @@ Metadata provenance(const ResolvedJob& job, const mc::Scan& scan,
         fmt::format("{} sha256 {}", input.path.filename().string(), input.sha256);
   out.merge(parameters_of(job));
   out.merge(surf::record_of(scan));
-  if (const double dose = mc::dose_of(job.options.budget); dose > 0) out["simulation.dose"] = format_exact(dose);
+  if (const double dose = mc::dose_of(job.options.budget); dose > 0)
+    out["simulation.dose"] = format_exact(dose);
   add_specimen(out, job.scene.specimen);
   number = 0;
   for (const auto& [file, unit_nm] : job.scene.unit_overrides)
-    out[fmt::format("unit_override.{}", ++number)] = fmt::format("{}, {} nm", file, format_exact(unit_nm));
+    out[fmt::format("unit_override.{}", ++number)] =
+        fmt::format("{}, {} nm", file, format_exact(unit_nm));
   number = 0;
   for (const mc::Material& material : job.scene.specimen.materials) {
     const std::string key = fmt::format("material.{}", ++number);
@@ -116,7 +121,8 @@ Metadata provenance(const ResolvedJob& job, const mc::Scan& scan,
   for (const mc::Detector& d : job.options.detectors)
     out[fmt::format("detector.{}", ++number)] = mc::format_detector(d);
   // Where energy is watched tracks are followed to their end, with other random numbers.
-  if (job.extras.deposit_cells > 0) out["output.deposit"] = std::to_string(job.extras.deposit_cells);
+  if (job.extras.deposit_cells > 0)
+    out["output.deposit"] = std::to_string(job.extras.deposit_cells);
   return out;
 }
 
@@ -125,7 +131,8 @@ Metadata output_settings(const ResolvedJob& job) {
   Metadata out, defaults;
   const auto keep = [](Metadata& to) {
     return [&to](const Parameter& about, Field& field) {
-      if (about.recorded && about.name.starts_with("output.") && field.given()) to[about.key()] = field.text();
+      if (about.recorded && about.name.starts_with("output.") && field.given())
+        to[about.key()] = field.text();
     };
   };
   for_each_parameter(said, keep(out));
@@ -161,7 +168,8 @@ Metadata outcome(const SimulateSummary& summary) {
       out[fmt::format("pixels.{}", mc::name(static_cast<mc::PixelModel>(i)))] = std::to_string(n);
   if (!result.complete) out["partial"] = "true";
   int number = 0;
-  for (const std::string& warning : summary.warnings) out[fmt::format("warning.{}", ++number)] = warning;
+  for (const std::string& warning : summary.warnings)
+    out[fmt::format("warning.{}", ++number)] = warning;
   return out;
 }
 

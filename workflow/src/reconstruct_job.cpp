@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "surf/workflow/reconstruct_job.h"
 
-#include <algorithm>
 #include <fmt/format.h>
+#include <algorithm>
 
 #include <cmath>
 #include <span>
@@ -20,14 +20,15 @@
 #include "surf/io/files.h"
 #include "surf/io/plot.h"
 #include "surf/io/transform_file.h"
-#include "surf/workflow/version.h"
 #include "surf/workflow/step_record.h"
+#include "surf/workflow/version.h"
 
 namespace surf::workflow {
 namespace {
 
-constexpr int coarse_iterations = 12;   // of each scale of a reconstruction to calibrate with
-constexpr double least_deviation = 0.9, largest_deviation = 1.15, largest_correlation = 0.1;   // of whitened residuals
+constexpr int coarse_iterations = 12;  // of each scale of a reconstruction to calibrate with
+constexpr double least_deviation = 0.9, largest_deviation = 1.15,
+                 largest_correlation = 0.1;  // of whitened residuals
 
 template <class T>
 std::string hash_of(const std::vector<T>& values) {
@@ -36,16 +37,19 @@ std::string hash_of(const std::vector<T>& values) {
 
 std::string text_of(const std::vector<double>& values) {
   std::string text;
-  for (const double value : values) text += fmt::format("{}{}", text.empty() ? "" : ",", format_exact(value));
+  for (const double value : values)
+    text += fmt::format("{}{}", text.empty() ? "" : ",", format_exact(value));
   return text;
 }
 
 std::string map_text(const Affine& m) { return text_of({m.xx, m.xy, m.x0, m.yx, m.yy, m.y0}); }
 
 /// All that the states of the reconstruction depend on.
-Identity identity_of(const ReconstructionOptions& o, const AfmData* afm, const SemData* sem, const StoredModel* model) {
-  Identity id{{"semsurf", version()}, {"program", program_hash()}, {"instruction set", instruction_set()}};
-  ReconstructionOptions steps = o;   // without what comes after them
+Identity identity_of(const ReconstructionOptions& o, const AfmData* afm, const SemData* sem,
+                     const StoredModel* model) {
+  Identity id{
+      {"semsurf", version()}, {"program", program_hash()}, {"instruction set", instruction_set()}};
+  ReconstructionOptions steps = o;  // without what comes after them
   steps.uncertainty = ReconstructionOptions{}.uncertainty;
   steps.probes = ReconstructionOptions{}.probes;
   steps.seed = ReconstructionOptions{}.seed;
@@ -54,14 +58,16 @@ Identity identity_of(const ReconstructionOptions& o, const AfmData* afm, const S
     const HeightField& f = afm->image;
     id["scan"] = hash_of(f.z_nm.data()) + hash_of(f.valid.data()) +
                  text_of({f.pitch_x_nm, f.pitch_y_nm, f.origin_x_nm, f.origin_y_nm});
-    id["tip"] = hash_of(afm->tip.z_nm.data()) + fmt::format(" {} {}", afm->tip.apex_x, afm->tip.apex_y);
+    id["tip"] =
+        hash_of(afm->tip.z_nm.data()) + fmt::format(" {} {}", afm->tip.apex_x, afm->tip.apex_y);
     id["AFM noise"] = text_of({afm->noise.alpha, afm->noise.innovation_nm2});
     id["upsampling"] = std::to_string(afm->upsample);
   }
   if (sem) {
     const PlacedImage& image = sem->image;
-    id["SEM image"] = hash_of(image.values.data()) + hash_of(image.valid.data()) +
-                      text_of({image.pitch_x_nm, image.pitch_y_nm, image.origin_x_nm, image.origin_y_nm});
+    id["SEM image"] =
+        hash_of(image.values.data()) + hash_of(image.valid.data()) +
+        text_of({image.pitch_x_nm, image.pitch_y_nm, image.origin_x_nm, image.origin_y_nm});
     id["model"] = model->sha256;
     id["gains"] = text_of(sem->gains);
     id["offset"] = format_exact(sem->offset);
@@ -73,23 +79,31 @@ Identity identity_of(const ReconstructionOptions& o, const AfmData* afm, const S
 
 void check(const ReconstructJob& job) {
   if (!job.afm && !job.sem)
-    throw UsageError("reconstruct", "neither a scan nor an SEM image is given", "Add `reconstruction.afm=scan.gwy`, `reconstruction.sem=image.tif`, or both");
+    throw UsageError("reconstruct", "neither a scan nor an SEM image is given",
+                     "Add `reconstruction.afm=scan.gwy`, `reconstruction.sem=image.tif`, or both");
   std::error_code ignored;
-  if (std::filesystem::exists(job.folder, ignored) && !std::filesystem::is_directory(job.folder, ignored))
-    throw UsageError("`output`", fmt::format("{} is no folder", job.folder.string()), "Name a folder for all results, as `output=result`");
+  if (std::filesystem::exists(job.folder, ignored) &&
+      !std::filesystem::is_directory(job.folder, ignored))
+    throw UsageError("`output`", fmt::format("{} is no folder", job.folder.string()),
+                     "Name a folder for all results, as `output=result`");
   if (!job.afm && !job.calibration)
-    throw UsageError("`reconstruction.gains`", "without a scan there is nothing to calibrate with", "Say `reconstruction.gains` and `reconstruction.offset`, or give `reconstruction.afm`");
+    throw UsageError(
+        "`reconstruction.gains`", "without a scan there is nothing to calibrate with",
+        "Say `reconstruction.gains` and `reconstruction.offset`, or give `reconstruction.afm`");
   check_parameters(parameters_of(job));
   if (job.sem) validate(job.sem->image, "SEM image");
   if (job.picture && !job.folder.empty()) io::check_plot_target(job.folder / "panel.png");
 }
 
 std::string seen(const ResidualReport& r) {
-  return fmt::format("mean {:.2f}, standard deviation {:.2f}, correlation of neighbours {:.2f} along and {:.2f} across rows",
-                     r.mean, r.deviation, r.along, r.across);
+  return fmt::format(
+      "mean {:.2f}, standard deviation {:.2f}, correlation of neighbours {:.2f} along and {:.2f} "
+      "across rows",
+      r.mean, r.deviation, r.along, r.across);
 }
 
-/// Stricter than chance alone: what is wrong by less changes heights by less than their standard deviations.
+/// Stricter than chance alone: what is wrong by less changes heights by less than their standard
+/// deviations.
 bool like_noise(const ResidualReport& r) {
   return r.like_noise && r.deviation >= least_deviation && r.deviation <= largest_deviation &&
          std::max(std::abs(r.along), std::abs(r.across)) <= largest_correlation;
@@ -99,20 +113,28 @@ bool like_noise(const ResidualReport& r) {
 std::vector<std::string> reasons_of(const ReconstructSummary& s) {
   std::vector<std::string> reasons;
   const Reconstruction& r = s.result;
-  if (!r.converged || (!r.scales.empty() && r.scales.back().ended == "iterations")) reasons.push_back("the optimiser had not settled at the last scale: allow it more `reconstruction.iterations`");
+  if (!r.converged || (!r.scales.empty() && r.scales.back().ended == "iterations"))
+    reasons.push_back(
+        "the optimiser had not settled at the last scale: allow it more "
+        "`reconstruction.iterations`");
   if (!r.scales.empty()) {
     const ScaleReport& last = r.scales.back();
     if (last.afm_residual.pixels > 0 && !like_noise(last.afm_residual))
-      reasons.push_back(fmt::format("what is left of the AFM scan does not look like noise ({}): check the tip and the "
-                                    "scan's noise", seen(last.afm_residual)));
+      reasons.push_back(fmt::format(
+          "what is left of the AFM scan does not look like noise ({}): check the tip and the "
+          "scan's noise",
+          seen(last.afm_residual)));
     if (last.sem_residual.pixels > 0 && !like_noise(last.sem_residual))
-      reasons.push_back(fmt::format("what is left of the SEM image does not look like noise ({}): check the registration, "
-                                    "the model and the calibration", seen(last.sem_residual)));
+      reasons.push_back(fmt::format(
+          "what is left of the SEM image does not look like noise ({}): check the registration, "
+          "the model and the calibration",
+          seen(last.sem_residual)));
   }
   if (s.afm && !s.afm->tip.doubt.empty())
     reasons.push_back(fmt::format("the AFM tip is not to be trusted: {}", s.afm->tip.doubt));
   if (s.pose && !s.pose->verified())
-    reasons.push_back(fmt::format("the registration is {} and was accepted all the same", name(s.pose->registration->verdict)));
+    reasons.push_back(fmt::format("the registration is {} and was accepted all the same",
+                                  name(s.pose->registration->verdict)));
   return reasons;
 }
 
@@ -122,7 +144,8 @@ void keep_registration(const ReconstructJob& job, const PlacedImage& image, Reco
   file.sem_to_afm = s.pose->sem_to_afm;
   file.verified = s.pose->verified();
   if (s.pose->registration)
-    file.verdict = fmt::format("{}: {}", name(s.pose->registration->verdict), s.pose->registration->reason);
+    file.verdict =
+        fmt::format("{}: {}", name(s.pose->registration->verdict), s.pose->registration->reason);
   file.notes = step_record("reconstruct", record_of(job), {job.afm->file, job.sem->file});
   s.written.push_back(job.folder / "transform.json");
   io::write_transform(s.written.back(), file);
@@ -148,20 +171,25 @@ class Warnings {
   Reporter told_;
 };
 
-/// The SEM image, calibrated and with its noise. Both are found twice where there is a scan: the eroded scan is too
-/// broad where it matters, so a first, coarse reconstruction stands in for it (at most `rounds` times).
-SemData sem_data(const ReconstructJob& job, ReconstructSummary& s, const PlacedImage& image, const AfmData* afm,
-                 const Reporter& told) {
+/// The SEM image, calibrated and with its noise. Both are found twice where there is a scan: the
+/// eroded scan is too broad where it matters, so a first, coarse reconstruction stands in for it
+/// (at most `rounds` times).
+SemData sem_data(const ReconstructJob& job, ReconstructSummary& s, const PlacedImage& image,
+                 const AfmData* afm, const Reporter& told) {
   begin(told, "calibration");
   constexpr int rounds = 2;
   const HeightField* eroded = s.afm ? &s.afm->eroded() : nullptr;
   const Affine map = s.pose ? s.pose->sem_to_afm : Affine{};
   const int threads = job.options.threads;
-  FirstCalibration first = calibrate_first(image, eroded, *s.model->model, map, job.calibration, job.sem_noise, threads);
-  const auto data = [&] { return SemData{image, s.model->model, first.gains, first.offset, first.noise, map}; };
+  FirstCalibration first =
+      calibrate_first(image, eroded, *s.model->model, map, job.calibration, job.sem_noise, threads);
+  const auto data = [&] {
+    return SemData{image, s.model->model, first.gains, first.offset, first.noise, map};
+  };
   for (int round = 0; afm && !(job.calibration && job.sem_noise) && round < rounds; ++round) {
     ReconstructionOptions coarse;
-    coarse.scales_px = {default_scales_px(coarse.method, image.values.width(), image.values.height()).front()};
+    coarse.scales_px = {
+        default_scales_px(coarse.method, image.values.width(), image.values.height()).front()};
     coarse.iterations = coarse_iterations;
     coarse.refine_calibration = !first.tied && !job.calibration;
     coarse.refine_transform = job.options.refine_transform;
@@ -172,12 +200,16 @@ SemData sem_data(const ReconstructJob& job, ReconstructSummary& s, const PlacedI
     coarse.watch = told.watch().part(double(round) / rounds, double(round + 1) / rounds);
     const SemData sem = data();
     const Reconstruction r = reconstruct(afm, &sem, coarse);
-    if (!calibrate_again(image, r.surface, *s.model->model, job.calibration.has_value(), job.sem_noise.has_value(), threads, first)) break;
+    if (!calibrate_again(image, r.surface, *s.model->model, job.calibration.has_value(),
+                         job.sem_noise.has_value(), threads, first))
+      break;
   }
   for (const std::string& warning : first.warnings) told.warn(warning);
   if (first.tied)
-    told.warn("the channels of the model cannot be told apart in the SEM image, so all have one gain; say `reconstruction.gains` if you "
-              "know them");
+    told.warn(
+        "the channels of the model cannot be told apart in the SEM image, so all have one gain; "
+        "say `reconstruction.gains` if you "
+        "know them");
   s.gains_tied = first.tied;
   s.calibration = first.fit;
   s.sem_noise = first.noise;
@@ -189,7 +221,8 @@ SemData sem_data(const ReconstructJob& job, ReconstructSummary& s, const PlacedI
 
 ReconstructionOptions options_of(const ReconstructJob& job, const ReconstructSummary& s) {
   ReconstructionOptions o = job.options;
-  if (s.gains_tied) o.refine_calibration = false;   // it would go where the channels cannot be told apart
+  if (s.gains_tied)
+    o.refine_calibration = false;  // it would go where the channels cannot be told apart
   o.refine_tip = job.afm && job.sem && o.method == ReconstructionMethod::gauss_newton &&
                  job.refine_tip.value_or(s.afm && !s.afm->tip_given);
   return o;
@@ -205,9 +238,10 @@ ReconstructSummary run(const ReconstructJob& job, const Reporter& reporter) {
   if (job.sem) {
     image = job.sem->image;
     s.saturated = leave_out_saturated(image);
-    if (s.saturated > 0) told.note(fmt::format("SEM: {} saturated pixels are left out", s.saturated));
+    if (s.saturated > 0)
+      told.note(fmt::format("SEM: {} saturated pixels are left out", s.saturated));
     ModelRequest request = job.model;
-    if (request.folder.empty()) request.folder = job.folder;   // without a cache
+    if (request.folder.empty()) request.folder = job.folder;  // without a cache
     s.model = model_of(request, image, told);
   }
   if (job.afm) s.afm = prepare(*job.afm, threads, told);
@@ -219,7 +253,8 @@ ReconstructSummary run(const ReconstructJob& job, const Reporter& reporter) {
     if (!s.pose->verified() && !job.pose.accept_unverified) {
       keep_registration(job, image, s);
       s.verdict = ReconstructionVerdict::not_registered;
-      s.reasons = {fmt::format("the registration is {}: {}", name(s.pose->registration->verdict), s.pose->registration->reason)};
+      s.reasons = {fmt::format("the registration is {}: {}", name(s.pose->registration->verdict),
+                               s.pose->registration->reason)};
       return s;
     }
   }
@@ -234,11 +269,14 @@ ReconstructSummary run(const ReconstructJob& job, const Reporter& reporter) {
   std::optional<ReconstructionCheckpoint> checkpoint;
   if (!job.folder.empty()) {
     std::filesystem::create_directories(job.folder);
-    checkpoint.emplace(job.folder / "checkpoint",
-                       identity_of(options_of(job, s), afm_data, sem_data, s.model ? &*s.model : nullptr), told.on_note);
+    checkpoint.emplace(
+        job.folder / "checkpoint",
+        identity_of(options_of(job, s), afm_data, sem_data, s.model ? &*s.model : nullptr),
+        told.on_note);
     if (const auto state = checkpoint->found()) {
       s.resumed = true;
-      told.note(fmt::format("{} scales are done already: going on from there", state->scales.size()));
+      told.note(
+          fmt::format("{} scales are done already: going on from there", state->scales.size()));
     }
   }
   ReconstructionOptions options = options_of(job, s);
@@ -256,18 +294,24 @@ ReconstructSummary run(const ReconstructJob& job, const Reporter& reporter) {
 
 const char* name(ReconstructionVerdict verdict) {
   switch (verdict) {
-    case ReconstructionVerdict::sound: return "sound";
-    case ReconstructionVerdict::flagged: return "flagged";
-    case ReconstructionVerdict::not_registered: break;
+    case ReconstructionVerdict::sound:
+      return "sound";
+    case ReconstructionVerdict::flagged:
+      return "flagged";
+    case ReconstructionVerdict::not_registered:
+      break;
   }
   return "not registered";
 }
 
 const char* name(ReconstructionMethod method) {
   switch (method) {
-    case ReconstructionMethod::gauss_newton: return "gauss-newton";
-    case ReconstructionMethod::conjugate_gradients: return "conjugate-gradients";
-    case ReconstructionMethod::lbfgs: break;
+    case ReconstructionMethod::gauss_newton:
+      return "gauss-newton";
+    case ReconstructionMethod::conjugate_gradients:
+      return "conjugate-gradients";
+    case ReconstructionMethod::lbfgs:
+      break;
   }
   return "lbfgs";
 }

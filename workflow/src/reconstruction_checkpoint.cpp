@@ -44,7 +44,8 @@ class Reader {
   std::uint64_t whole() {
     if (!enough(8)) return 0;
     std::uint64_t value = 0;
-    for (int i = 0; i < 8; ++i) value |= std::uint64_t{static_cast<unsigned char>(bytes_[at_++])} << 8 * i;
+    for (int i = 0; i < 8; ++i)
+      value |= std::uint64_t{static_cast<unsigned char>(bytes_[at_++])} << 8 * i;
     return value;
   }
   int small() {
@@ -91,8 +92,11 @@ ResidualReport read_residual(Reader& in) {
 }
 
 void write(Writer& out, const ScaleReport& s) {
-  for (const double value : {s.sigma_px, s.curvature_prior_per_nm, s.afm, s.sem, s.prior, s.gradient_norm}) out.number(value);
-  for (const int value : {s.iterations, s.evaluations, s.products}) out.whole(static_cast<std::uint64_t>(value));
+  for (const double value :
+       {s.sigma_px, s.curvature_prior_per_nm, s.afm, s.sem, s.prior, s.gradient_norm})
+    out.number(value);
+  for (const int value : {s.iterations, s.evaluations, s.products})
+    out.whole(static_cast<std::uint64_t>(value));
   out.text(s.ended);
   write(out, s.afm_residual);
   write(out, s.sem_residual);
@@ -100,7 +104,9 @@ void write(Writer& out, const ScaleReport& s) {
 
 ScaleReport read_scale(Reader& in) {
   ScaleReport s;
-  for (double* value : {&s.sigma_px, &s.curvature_prior_per_nm, &s.afm, &s.sem, &s.prior, &s.gradient_norm}) *value = in.number();
+  for (double* value :
+       {&s.sigma_px, &s.curvature_prior_per_nm, &s.afm, &s.sem, &s.prior, &s.gradient_norm})
+    *value = in.number();
   for (int* value : {&s.iterations, &s.evaluations, &s.products}) *value = in.small();
   s.ended = in.text();
   s.afm_residual = read_residual(in);
@@ -111,7 +117,8 @@ ScaleReport read_scale(Reader& in) {
 void write(Writer& out, const HeightField& f) {
   out.whole(static_cast<std::uint64_t>(f.z_nm.width()));
   out.whole(static_cast<std::uint64_t>(f.z_nm.height()));
-  for (const double value : {f.pitch_x_nm, f.pitch_y_nm, f.origin_x_nm, f.origin_y_nm}) out.number(value);
+  for (const double value : {f.pitch_x_nm, f.pitch_y_nm, f.origin_x_nm, f.origin_y_nm})
+    out.number(value);
   out.numbers(f.z_nm.data());
   out.numbers(f.valid.data());
 }
@@ -119,9 +126,11 @@ void write(Writer& out, const HeightField& f) {
 HeightField read_field(Reader& in) {
   HeightField f;
   const int width = in.small(), height = in.small();
-  for (double* value : {&f.pitch_x_nm, &f.pitch_y_nm, &f.origin_x_nm, &f.origin_y_nm}) *value = in.number();
+  for (double* value : {&f.pitch_x_nm, &f.pitch_y_nm, &f.origin_x_nm, &f.origin_y_nm})
+    *value = in.number();
   const std::vector<double> z = in.numbers(), valid = in.numbers();
-  if (!in.good() || z.size() != static_cast<std::size_t>(width) * static_cast<std::size_t>(height)) return {};
+  if (!in.good() || z.size() != static_cast<std::size_t>(width) * static_cast<std::size_t>(height))
+    return {};
   f.z_nm = Grid<double>(width, height);
   f.z_nm.data() = z;
   if (valid.size() == z.size()) {
@@ -148,8 +157,9 @@ void with_remedy(Work work) {
   try {
     work();
   } catch (const FileError& error) {
-    throw FileError(error.subject(), error.reason(), "Check the folder and the free space, wait if another run is at work there, "
-                                                     "or name another folder by -o");
+    throw FileError(error.subject(), error.reason(),
+                    "Check the folder and the free space, wait if another run is at work there, "
+                    "or name another folder by -o");
   }
 }
 
@@ -172,7 +182,8 @@ std::optional<ReconstructionState> unpack(const std::string& bytes) {
   ReconstructionState state;
   state.surface = read_field(in);
   Affine& m = state.sem_to_afm;
-  for (double* value : {&m.xx, &m.xy, &m.x0, &m.yx, &m.yy, &m.y0, &state.offset}) *value = in.number();
+  for (double* value : {&m.xx, &m.xy, &m.x0, &m.yx, &m.yy, &m.y0, &state.offset})
+    *value = in.number();
   state.gains = in.numbers();
   state.tip_change = in.numbers();
   const std::uint64_t scales = in.whole();
@@ -181,7 +192,8 @@ std::optional<ReconstructionState> unpack(const std::string& bytes) {
   return state;
 }
 
-ReconstructionCheckpoint::ReconstructionCheckpoint(const std::filesystem::path& path, const Identity& identity,
+ReconstructionCheckpoint::ReconstructionCheckpoint(const std::filesystem::path& path,
+                                                   const Identity& identity,
                                                    const NoteCallback& note) {
   with_remedy([&] {
     if (!file_.open(path)) file_.create(path);
@@ -189,8 +201,9 @@ ReconstructionCheckpoint::ReconstructionCheckpoint(const std::filesystem::path& 
   if (!file_.blocks().empty()) {
     const Identity there = identity_in(file_.read(file_.blocks().front()));
     if (there == identity) return;
-    if (note) note(fmt::format("{} is of another reconstruction ({}): it is begun anew", path.string(),
-                               difference(there, identity)));
+    if (note)
+      note(fmt::format("{} is of another reconstruction ({}): it is begun anew", path.string(),
+                       difference(there, identity)));
   }
   file_.clear();
   file_.append(text_of(identity));

@@ -11,11 +11,13 @@
 
 namespace surf::workflow {
 
-/// States of a reconstruction in a file, to the last bit. A first block says of which reconstruction.
+/// States of a reconstruction in a file, to the last bit. A first block says of which
+/// reconstruction.
 class ReconstructionCheckpoint : public ReconstructionJournal {
  public:
   /// A file of another reconstruction is begun anew, which `note` then says. Throws FileError.
-  ReconstructionCheckpoint(const std::filesystem::path& path, const Identity& identity, const NoteCallback& note);
+  ReconstructionCheckpoint(const std::filesystem::path& path, const Identity& identity,
+                           const NoteCallback& note);
 
   std::optional<ReconstructionState> found() override;
   void keep(const ReconstructionState& state) override;

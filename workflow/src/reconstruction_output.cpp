@@ -28,19 +28,21 @@ namespace {
 namespace fs = std::filesystem;
 using Metadata = std::map<std::string, std::string>;
 
-std::string hash_of(const Grid<double>& values) { return io::sha256_of(std::as_bytes(std::span(values.data()))); }
+std::string hash_of(const Grid<double>& values) {
+  return io::sha256_of(std::as_bytes(std::span(values.data())));
+}
 
-/// What made a file: the same for a run that is repeated from the report. `model` is the model's file as it was
-/// written.
-Metadata made_by(const ReconstructJob& job, const ReconstructSummary& s, const AfmData* afm, const SemData* sem,
-                 const fs::path& model) {
+/// What made a file: the same for a run that is repeated from the report. `model` is the model's
+/// file as it was written.
+Metadata made_by(const ReconstructJob& job, const ReconstructSummary& s, const AfmData* afm,
+                 const SemData* sem, const fs::path& model) {
   std::vector<fs::path> inputs;
   if (job.afm) inputs.push_back(job.afm->file);
   if (job.sem) inputs.push_back(job.sem->file);
   Metadata made = step_record("reconstruct", record_of(parameters_used(job, s, afm, sem)), inputs);
   if (afm)
-    made["tip"] = fmt::format("{} x {} samples, sha256 {}", afm->tip.z_nm.width(), afm->tip.z_nm.height(),
-                              hash_of(afm->tip.z_nm));
+    made["tip"] = fmt::format("{} x {} samples, sha256 {}", afm->tip.z_nm.width(),
+                              afm->tip.z_nm.height(), hash_of(afm->tip.z_nm));
   if (!sem) return made;
   made["model"] = fmt::format("{} sha256 {}", model.filename().string(), io::sha256_of_file(model));
   const ModelScope& scope = s.model->trained.scope;
@@ -53,7 +55,8 @@ Metadata made_by(const ReconstructJob& job, const ReconstructSummary& s, const A
 template <class T>
 Channel channel(const std::string& name, const std::string& unit, const Grid<T>& values) {
   Channel c{name, unit, Grid<float>(values.width(), values.height())};
-  std::ranges::transform(values.data(), c.values.data().begin(), [](T v) { return static_cast<float>(v); });
+  std::ranges::transform(values.data(), c.values.data().begin(),
+                         [](T v) { return static_cast<float>(v); });
   return c;
 }
 
@@ -62,7 +65,8 @@ Channel valid_channel(const Grid<unsigned char>& valid, int width, int height) {
   return channel("valid", "1", valid.empty() ? Grid<unsigned char>(width, height, 1) : valid);
 }
 
-Image placed_like(double pitch_x, double pitch_y, double origin_x, double origin_y, const Metadata& made) {
+Image placed_like(double pitch_x, double pitch_y, double origin_x, double origin_y,
+                  const Metadata& made) {
   Image image;
   image.pitch_x_nm = pitch_x, image.pitch_y_nm = pitch_y;
   image.origin_x_nm = origin_x, image.origin_y_nm = origin_y;
@@ -74,8 +78,10 @@ Image placed_like(const HeightField& f, const Metadata& made) {
   return placed_like(f.pitch_x_nm, f.pitch_y_nm, f.origin_x_nm, f.origin_y_nm, made);
 }
 
-/// Certainty of the scan at the surface's samples: 1 where the eroded scan is the surface, 0 where it may lie above.
-Grid<unsigned char> certain_on(const HeightField& surface, const CertaintyMap& map, const Affine& to_afm) {
+/// Certainty of the scan at the surface's samples: 1 where the eroded scan is the surface, 0 where
+/// it may lie above.
+Grid<unsigned char> certain_on(const HeightField& surface, const CertaintyMap& map,
+                               const Affine& to_afm) {
   Grid<unsigned char> certain(surface.z_nm.width(), surface.z_nm.height());
   const HeightField& scan = map.surface;
   for (int y = 0; y < certain.height(); ++y)
@@ -83,8 +89,10 @@ Grid<unsigned char> certain_on(const HeightField& surface, const CertaintyMap& m
       const Point2 p = to_afm({surface.x_nm(x), surface.y_nm(y)});
       const double column = std::round((p.x - scan.origin_x_nm) / scan.pitch_x_nm);
       const double row = std::round((p.y - scan.origin_y_nm) / scan.pitch_y_nm);
-      if (!(column >= 0 && row >= 0 && column < scan.z_nm.width() && row < scan.z_nm.height())) continue;
-      certain(x, y) = map.level(static_cast<int>(column), static_cast<int>(row)) != CertaintyMap::uncertain;
+      if (!(column >= 0 && row >= 0 && column < scan.z_nm.width() && row < scan.z_nm.height()))
+        continue;
+      certain(x, y) =
+          map.level(static_cast<int>(column), static_cast<int>(row)) != CertaintyMap::uncertain;
     }
   return certain;
 }
@@ -94,13 +102,16 @@ Image surface_image(const ReconstructSummary& s, const Metadata& made) {
   const Reconstruction& r = s.result;
   Image image = placed_like(r.surface, made);
   image.channels.push_back(channel("z_nm", "nm", r.surface.z_nm));
-  if (!r.deviation_nm.empty()) image.channels.push_back(channel("deviation_nm", "nm", r.deviation_nm));
+  if (!r.deviation_nm.empty())
+    image.channels.push_back(channel("deviation_nm", "nm", r.deviation_nm));
   if (!r.held_by.empty()) image.channels.push_back(channel("held_by", "1", r.held_by));
   if (s.afm)
-    image.channels.push_back(channel("certain", "1", certain_on(r.surface, s.afm->certainty, s.pose ? r.sem_to_afm : Affine{})));
+    image.channels.push_back(channel(
+        "certain", "1", certain_on(r.surface, s.afm->certainty, s.pose ? r.sem_to_afm : Affine{})));
   if (!r.start.z_nm.empty() && r.start.z_nm.size() == r.surface.z_nm.size())
     image.channels.push_back(channel("start_nm", "nm", r.start.z_nm));
-  image.channels.push_back(valid_channel(r.surface.valid, r.surface.z_nm.width(), r.surface.z_nm.height()));
+  image.channels.push_back(
+      valid_channel(r.surface.valid, r.surface.z_nm.width(), r.surface.z_nm.height()));
   return image;
 }
 
@@ -124,37 +135,43 @@ SurfaceScene surface_scene(const Reconstruction& r, const Metadata& made) {
 
 Image afm_image(const Reconstruction& r, const AfmData& afm, const Metadata& made) {
   Image image = placed_like(afm.image, made);
-  image.channels = {channel("simulated_nm", "nm", r.simulated_afm.z_nm), channel("scan_nm", "nm", afm.image.z_nm),
-                    channel("residual", "1", r.afm_residual), channel("used", "1", r.afm_used),
-                    valid_channel(r.simulated_afm.valid, afm.image.z_nm.width(), afm.image.z_nm.height())};
+  image.channels = {
+      channel("simulated_nm", "nm", r.simulated_afm.z_nm), channel("scan_nm", "nm", afm.image.z_nm),
+      channel("residual", "1", r.afm_residual), channel("used", "1", r.afm_used),
+      valid_channel(r.simulated_afm.valid, afm.image.z_nm.width(), afm.image.z_nm.height())};
   return image;
 }
 
 Image sem_image(const Reconstruction& r, const SemData& sem, const Metadata& made) {
   Image image = placed_like(r.surface, made);
-  image.channels = {channel("simulated", "1", r.simulated_sem), channel("sem", "1", sem.image.values),
-                    channel("residual", "1", r.sem_residual),
-                    valid_channel(sem.image.valid, r.simulated_sem.width(), r.simulated_sem.height())};
+  image.channels = {
+      channel("simulated", "1", r.simulated_sem), channel("sem", "1", sem.image.values),
+      channel("residual", "1", r.sem_residual),
+      valid_channel(sem.image.valid, r.simulated_sem.width(), r.simulated_sem.height())};
   return image;
 }
 
 void append(std::string& line, const ResidualReport& r) {
-  line += fmt::format(",{},{},{},{},{}", format_exact(r.mean), format_exact(r.deviation), format_exact(r.along),
-                      format_exact(r.across), r.like_noise ? 1 : 0);
+  line += fmt::format(",{},{},{},{},{}", format_exact(r.mean), format_exact(r.deviation),
+                      format_exact(r.along), format_exact(r.across), r.like_noise ? 1 : 0);
 }
 
 }  // namespace
 
 std::string history_text(const std::vector<ScaleReport>& scales) {
-  std::string text = "sigma_px,curvature_prior_per_nm,afm,sem,prior,gradient_norm,iterations,evaluations,products,ended";
+  std::string text =
+      "sigma_px,curvature_prior_per_nm,afm,sem,prior,gradient_norm,iterations,evaluations,products,"
+      "ended";
   for (const char* image : {"afm", "sem"})
-    for (const char* what : {"mean", "deviation", "along", "across", "like_noise"}) text += fmt::format(",{}_{}", image, what);
+    for (const char* what : {"mean", "deviation", "along", "across", "like_noise"})
+      text += fmt::format(",{}_{}", image, what);
   text += '\n';
   for (const ScaleReport& s : scales) {
-    std::string line = fmt::format("{},{},{},{},{},{},{},{},{},{}", format_exact(s.sigma_px),
-                                   format_exact(s.curvature_prior_per_nm), format_exact(s.afm),
-                                   format_exact(s.sem), format_exact(s.prior), format_exact(s.gradient_norm), s.iterations,
-                                   s.evaluations, s.products, s.ended);
+    std::string line =
+        fmt::format("{},{},{},{},{},{},{},{},{},{}", format_exact(s.sigma_px),
+                    format_exact(s.curvature_prior_per_nm), format_exact(s.afm),
+                    format_exact(s.sem), format_exact(s.prior), format_exact(s.gradient_norm),
+                    s.iterations, s.evaluations, s.products, s.ended);
     append(line, s.afm_residual);
     append(line, s.sem_residual);
     text += line + "\n";
@@ -164,15 +181,16 @@ std::string history_text(const std::vector<ScaleReport>& scales) {
 
 std::vector<fs::path> reconstruction_files(const fs::path& folder) {
   std::vector<fs::path> files;
-  for (const char* name : {"surface.vti", "surface.gsf", "surface.glb", "simulated_afm.vti", "simulated_sem.vti", "tip.txt",
-                           "first_tip.txt", "model.json", "transform.json", "registration.png", "history.csv", "panel.png",
-                           "report.json", "checkpoint"})
+  for (const char* name :
+       {"surface.vti", "surface.gsf", "surface.glb", "simulated_afm.vti", "simulated_sem.vti",
+        "tip.txt", "first_tip.txt", "model.json", "transform.json", "registration.png",
+        "history.csv", "panel.png", "report.json", "checkpoint"})
     files.push_back(folder / name);
   return files;
 }
 
-std::vector<fs::path> write_reconstruction(const ReconstructJob& job, const ReconstructSummary& s, const AfmData* afm,
-                                           const SemData* sem) {
+std::vector<fs::path> write_reconstruction(const ReconstructJob& job, const ReconstructSummary& s,
+                                           const AfmData* afm, const SemData* sem) {
   const Reconstruction& r = s.result;
   std::vector<fs::path> written;
   const auto file = [&](const char* name) {

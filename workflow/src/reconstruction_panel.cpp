@@ -21,14 +21,17 @@ using io::PlotStyle;
 
 constexpr double nm_per_um = 1000;
 constexpr double blank = std::numeric_limits<double>::quiet_NaN();
-constexpr double deviations_shown = 4;   // of whitened residuals, either way
+constexpr double deviations_shown = 4;  // of whitened residuals, either way
 constexpr double row_height_px = 330;
 
-PlacedImage on_samples(const HeightField& field, Grid<double> values, const Grid<unsigned char>& valid = {}) {
-  return {std::move(values), valid, field.pitch_x_nm, field.pitch_y_nm, field.origin_x_nm, field.origin_y_nm};
+PlacedImage on_samples(const HeightField& field, Grid<double> values,
+                       const Grid<unsigned char>& valid = {}) {
+  return {std::move(values), valid, field.pitch_x_nm, field.pitch_y_nm, field.origin_x_nm,
+          field.origin_y_nm};
 }
 
-PlotPanel picture(const std::string& title, const PlacedImage& image, PlotColors colors, const std::string& label) {
+PlotPanel picture(const std::string& title, const PlacedImage& image, PlotColors colors,
+                  const std::string& label) {
   PlotPanel panel = image_panel(title, picture_um(image));
   panel.image->colors = colors;
   panel.image->label = label;
@@ -49,7 +52,7 @@ struct Section {
 
 struct Line {
   bool along_x = true;
-  int index = 0;   // of the row or column
+  int index = 0;  // of the row or column
 };
 
 /// The row or column whose heights vary most, away from the border.
@@ -72,7 +75,8 @@ Line most_relief(const HeightField& surface, bool along_x) {
   return best;
 }
 
-Section section_of(const Line& line, const Reconstruction& r, const HeightField* scan, const HeightField* truth, double offset) {
+Section section_of(const Line& line, const Reconstruction& r, const HeightField* scan,
+                   const HeightField* truth, double offset) {
   Section s;
   const int length = line.along_x ? r.surface.z_nm.width() : r.surface.z_nm.height();
   for (int i = 0; i < length; ++i) {
@@ -89,7 +93,8 @@ Section section_of(const Line& line, const Reconstruction& r, const HeightField*
 }
 
 /// Values that are not finite are left out of a series.
-PlotSeries series(const std::string& name, const Section& s, const std::vector<double>& values, int color, bool dashed) {
+PlotSeries series(const std::string& name, const Section& s, const std::vector<double>& values,
+                  int color, bool dashed) {
   PlotSeries line;
   line.name = name;
   line.color = color;
@@ -129,24 +134,32 @@ Grid<double> as_numbers(const Grid<unsigned char>& mask) {
 std::string title_of(const ReconstructJob& job, const ReconstructSummary& s) {
   std::string text = job.afm ? job.afm->file.filename().string() : "";
   if (job.sem) text += (text.empty() ? "" : " and ") + job.sem->file.filename().string();
-  text += s.verdict == ReconstructionVerdict::sound ? ": converged, residuals like noise" : ": look at report.json, it is flagged";
-  if (s.truth) text += fmt::format("; {:.2f} nm rms from the truth ({:.2f} nm before)", s.truth->rms_nm, s.truth->start_rms_nm);
+  text += s.verdict == ReconstructionVerdict::sound ? ": converged, residuals like noise"
+                                                    : ": look at report.json, it is flagged";
+  if (s.truth)
+    text += fmt::format("; {:.2f} nm rms from the truth ({:.2f} nm before)", s.truth->rms_nm,
+                        s.truth->start_rms_nm);
   return text;
 }
 
 }  // namespace
 
-io::Plot reconstruction_panel(const ReconstructJob& job, const ReconstructSummary& s, const AfmData* afm, const SemData* sem) {
+io::Plot reconstruction_panel(const ReconstructJob& job, const ReconstructSummary& s,
+                              const AfmData* afm, const SemData* sem) {
   const Reconstruction& r = s.result;
   std::vector<PlotPanel> first, second, third;
   if (afm) {
     const HeightField& scan = afm->image;
-    PlotPanel input = picture("AFM scan, levelled", on_samples(scan, scan.z_nm, scan.valid), PlotColors::relief, "nm");
+    PlotPanel input = picture("AFM scan, levelled", on_samples(scan, scan.z_nm, scan.valid),
+                              PlotColors::relief, "nm");
     PlotPanel simulated = picture("AFM scan, simulated",
-                                  on_samples(scan, r.simulated_afm.z_nm, r.simulated_afm.valid), PlotColors::relief, "nm");
-    PlotPanel residual = residual_panel("AFM residual, whitened", on_samples(scan, r.afm_residual, r.afm_used));
+                                  on_samples(scan, r.simulated_afm.z_nm, r.simulated_afm.valid),
+                                  PlotColors::relief, "nm");
+    PlotPanel residual =
+        residual_panel("AFM residual, whitened", on_samples(scan, r.afm_residual, r.afm_used));
     if (sem)
-      for (PlotPanel* panel : {&input, &simulated, &residual}) panel->series.push_back(outline_um(sem->image, r.sem_to_afm));
+      for (PlotPanel* panel : {&input, &simulated, &residual})
+        panel->series.push_back(outline_um(sem->image, r.sem_to_afm));
     first.push_back(std::move(input));
     second.push_back(std::move(simulated));
     third.push_back(std::move(residual));
@@ -157,30 +170,38 @@ io::Plot reconstruction_panel(const ReconstructJob& job, const ReconstructSummar
     PlotPanel simulated = picture("SEM image, simulated", on_samples(r.surface, r.simulated_sem),
                                   PlotColors::grey, "grey level");
     second.push_back(std::move(simulated));
-    third.push_back(residual_panel("SEM residual, whitened", on_samples(r.surface, r.sem_residual, image.valid)));
+    third.push_back(residual_panel("SEM residual, whitened",
+                                   on_samples(r.surface, r.sem_residual, image.valid)));
   }
-  first.push_back(picture("surface", on_samples(r.surface, r.surface.z_nm, r.surface.valid), PlotColors::relief, "nm"));
+  first.push_back(picture("surface", on_samples(r.surface, r.surface.z_nm, r.surface.valid),
+                          PlotColors::relief, "nm"));
   if (!r.deviation_nm.empty())
-    second.push_back(picture("standard deviation", on_samples(r.surface, r.deviation_nm, r.surface.valid),
+    second.push_back(picture("standard deviation",
+                             on_samples(r.surface, r.deviation_nm, r.surface.valid),
                              PlotColors::heights, "nm"));
   else
-    second.push_back(picture("eroded scan", on_samples(r.start, r.start.z_nm, r.start.valid), PlotColors::relief, "nm"));
+    second.push_back(picture("eroded scan", on_samples(r.start, r.start.z_nm, r.start.valid),
+                             PlotColors::relief, "nm"));
   std::optional<HeightField> truth, scan;
   if (job.truth) truth = truth_on(r.surface, *job.truth);
   if (truth && s.truth) {
     Grid<double> error = r.surface.z_nm;
     for (std::size_t i = 0; i < error.size(); ++i)
-      error.data()[i] = truth->valid.data()[i] ? error.data()[i] - truth->z_nm.data()[i] - s.truth->offset_nm : blank;
-    third.push_back(picture("surface less truth", on_samples(r.surface, std::move(error)), PlotColors::difference, "nm"));
+      error.data()[i] = truth->valid.data()[i]
+                            ? error.data()[i] - truth->z_nm.data()[i] - s.truth->offset_nm
+                            : blank;
+    third.push_back(picture("surface less truth", on_samples(r.surface, std::move(error)),
+                            PlotColors::difference, "nm"));
   } else if (!r.held_by.empty()) {
-    PlotPanel held = picture("held by 1 AFM, 2 SEM, 3 both", on_samples(r.surface, as_numbers(r.held_by)),
-                             PlotColors::heights, "");
+    PlotPanel held = picture("held by 1 AFM, 2 SEM, 3 both",
+                             on_samples(r.surface, as_numbers(r.held_by)), PlotColors::heights, "");
     held.image->range = io::PlotAxis::Range{0, 3};
     third.push_back(std::move(held));
   } else {
     Grid<double> change = r.surface.z_nm;
     for (std::size_t i = 0; i < change.size(); ++i) change.data()[i] -= r.start.z_nm.data()[i];
-    third.push_back(picture("surface less eroded scan", on_samples(r.surface, std::move(change)), PlotColors::difference, "nm"));
+    third.push_back(picture("surface less eroded scan", on_samples(r.surface, std::move(change)),
+                            PlotColors::difference, "nm"));
   }
   io::Plot plot;
   plot.title = title_of(job, s);
@@ -197,9 +218,11 @@ io::Plot reconstruction_panel(const ReconstructJob& job, const ReconstructSummar
     const Line line = most_relief(r.surface, along_x);
     const Section section = section_of(line, r, scan ? &*scan : nullptr, truth ? &*truth : nullptr,
                                        s.truth ? s.truth->offset_nm : 0);
-    const double at = (along_x ? r.surface.y_nm(line.index) : r.surface.x_nm(line.index)) / nm_per_um;
-    PlotPanel panel = section_panel(fmt::format("section at {} = {:.3g} µm", along_x ? "y" : "x", at),
-                                    along_x ? "x (µm)" : "y (µm)", section);
+    const double at =
+        (along_x ? r.surface.y_nm(line.index) : r.surface.x_nm(line.index)) / nm_per_um;
+    PlotPanel panel =
+        section_panel(fmt::format("section at {} = {:.3g} µm", along_x ? "y" : "x", at),
+                      along_x ? "x (µm)" : "y (µm)", section);
     panel.legend = along_x;
     panel.columns = along_x ? std::max(plot.columns - 1, 1) : 1;
     plot.panels.push_back(std::move(panel));

@@ -22,7 +22,8 @@ using Json = nlohmann::ordered_json;
 
 std::string list_of(const std::vector<double>& values) {
   std::string text;
-  for (const double value : values) text += fmt::format("{}{}", text.empty() ? "" : ",", format_exact(value));
+  for (const double value : values)
+    text += fmt::format("{}{}", text.empty() ? "" : ",", format_exact(value));
   return text;
 }
 
@@ -43,7 +44,8 @@ Json map_json(const Affine& m) {
           {"shift_nm", {parts.shift_x_nm, parts.shift_y_nm}}};
 }
 
-/// Heights at 0, 1, 2 ... steps from the apex, the median over all directions; as far as the tip has samples there.
+/// Heights at 0, 1, 2 ... steps from the apex, the median over all directions; as far as the tip
+/// has samples there.
 Json profile_json(const Tip& tip) {
   Json list = Json::array();
   for (const double z : round_profile_nm(tip, 0.5)) list.push_back(number(z));
@@ -56,23 +58,32 @@ Json afm_json(const ReconstructJob& job, const ReconstructSummary& s, const AfmD
   json["pixels"] = {afm.image.z_nm.width(), afm.image.z_nm.height()};
   json["pitch_nm"] = {afm.image.pitch_x_nm, afm.image.pitch_y_nm};
   json["tilt_removed_deg"] = p.tilt_deg;
-  json["noise"] = {{"from", p.noise_estimate ? "estimated" : "given"}, {"alpha", p.noise.alpha},
-                   {"innovation_nm2", p.noise.innovation_nm2}, {"deviation_nm", std::sqrt(p.noise.variance_nm2())}};
+  json["noise"] = {{"from", p.noise_estimate ? "estimated" : "given"},
+                   {"alpha", p.noise.alpha},
+                   {"innovation_nm2", p.noise.innovation_nm2},
+                   {"deviation_nm", std::sqrt(p.noise.variance_nm2())}};
   if (p.noise_estimate) {
     json["noise"]["alpha_stderr"] = number(p.noise_estimate->alpha_stderr);
     json["noise"]["innovation_stderr_nm2"] = number(p.noise_estimate->innovation_stderr_nm2);
   }
-  json["tip"] = {{"from", p.tip_given ? "given" : p.tip_round ? "blind reconstruction, taken as round" : "blind reconstruction"},
+  json["tip"] = {{"from", p.tip_given   ? "given"
+                          : p.tip_round ? "blind reconstruction, taken as round"
+                                        : "blind reconstruction"},
                  {"samples", {p.tip.z_nm.width(), p.tip.z_nm.height()}}};
   if (!p.tip_given) json["tip"]["threshold_nm"] = p.tip_threshold_nm;
   json["tip"]["fitted"] = options_of(job, s).refine_tip;
   json["tip"]["profile_step_nm"] = std::min(p.tip.pitch_x_nm, p.tip.pitch_y_nm);
   json["tip"]["profile_nm"] = profile_json(p.tip);
-  if (options_of(job, s).refine_tip) json["tip"]["profile_at_the_end_nm"] = profile_json(s.result.tip);
-  json["certainty"] = {{"tolerance_nm", p.certainty.tolerance_nm},
-                       {"certain_share", double(p.certainty.certain) / double(std::max<std::size_t>(p.certainty.surface_samples, 1))},
-                       {"image_pixels", p.certainty.image_pixels}, {"single", p.certainty.single},
-                       {"ambiguous", p.certainty.ambiguous}, {"unexplained", p.certainty.unexplained}};
+  if (options_of(job, s).refine_tip)
+    json["tip"]["profile_at_the_end_nm"] = profile_json(s.result.tip);
+  json["certainty"] = {
+      {"tolerance_nm", p.certainty.tolerance_nm},
+      {"certain_share",
+       double(p.certainty.certain) / double(std::max<std::size_t>(p.certainty.surface_samples, 1))},
+      {"image_pixels", p.certainty.image_pixels},
+      {"single", p.certainty.single},
+      {"ambiguous", p.certainty.ambiguous},
+      {"unexplained", p.certainty.unexplained}};
   json["upsample"] = afm.upsample;
   json["notes"] = p.notes;
   return json;
@@ -83,13 +94,23 @@ Json sem_json(const ReconstructJob& job, const ReconstructSummary& s, const SemD
   json["pixels"] = {sem.image.values.width(), sem.image.values.height()};
   json["pixel_nm"] = sem.image.pitch_x_nm;
   json["saturated"] = s.saturated;
-  json["noise"] = {{"from", s.sem_noise_from}, {"slope", sem.noise.slope}, {"intercept", sem.noise.intercept},
+  json["noise"] = {{"from", s.sem_noise_from},
+                   {"slope", sem.noise.slope},
+                   {"intercept", sem.noise.intercept},
                    {"least_variance", sem.noise.least_variance}};
   const ModelScope& scope = s.model->trained.scope;
-  json["model"] = {{"file", s.model->file.filename().string()}, {"sha256", s.model->sha256},
-                   {"kind", io::kind_of(s.model->trained)}, {"material", scope.material}, {"energy_ev", scope.energy_ev},
-                   {"spot_nm", scope.spot_nm}, {"pixel_nm", scope.pixel_nm}, {"channels", s.model->model->channels()}};
-  json["calibration"] = {{"from", s.calibration ? "the images" : "given"}, {"one_gain_for_all", s.gains_tied}, {"gains", sem.gains}, {"offset", sem.offset}};
+  json["model"] = {{"file", s.model->file.filename().string()},
+                   {"sha256", s.model->sha256},
+                   {"kind", io::kind_of(s.model->trained)},
+                   {"material", scope.material},
+                   {"energy_ev", scope.energy_ev},
+                   {"spot_nm", scope.spot_nm},
+                   {"pixel_nm", scope.pixel_nm},
+                   {"channels", s.model->model->channels()}};
+  json["calibration"] = {{"from", s.calibration ? "the images" : "given"},
+                         {"one_gain_for_all", s.gains_tied},
+                         {"gains", sem.gains},
+                         {"offset", sem.offset}};
   if (s.calibration) {
     Json& c = json["calibration"];
     c["residual_rms"] = number(s.calibration->residual_rms);
@@ -103,10 +124,13 @@ Json sem_json(const ReconstructJob& job, const ReconstructSummary& s, const SemD
 
 Json pose_json(const ReconstructJob& job, const ReconstructSummary& s) {
   const Pose& pose = *s.pose;
-  Json json = {{"from", job.pose.transform ? "given" : pose.registration ? "registration" : "landmarks"}};
+  Json json = {{"from", job.pose.transform  ? "given"
+                        : pose.registration ? "registration"
+                                            : "landmarks"}};
   json["transform"] = map_json(pose.sem_to_afm);
   json["transform_at_the_end"] = map_json(s.result.sem_to_afm);
-  if (pose.landmarks) json["landmarks"] = {{"pairs", job.pose.landmarks.size()}, {"rms_nm", pose.landmarks->rms_nm}};
+  if (pose.landmarks)
+    json["landmarks"] = {{"pairs", job.pose.landmarks.size()}, {"rms_nm", pose.landmarks->rms_nm}};
   if (!pose.registration) return json;
   const Registration& r = *pose.registration;
   json["verdict"] = name(r.verdict);
@@ -125,17 +149,29 @@ Json pose_json(const ReconstructJob& job, const ReconstructSummary& s) {
 }
 
 Json residual_json(const ResidualReport& r) {
-  return {{"pixels", r.pixels}, {"mean", number(r.mean)}, {"deviation", number(r.deviation)},
-          {"correlation_along", number(r.along)}, {"correlation_across", number(r.across)}, {"like_noise", r.like_noise}};
+  return {{"pixels", r.pixels},
+          {"mean", number(r.mean)},
+          {"deviation", number(r.deviation)},
+          {"correlation_along", number(r.along)},
+          {"correlation_across", number(r.across)},
+          {"like_noise", r.like_noise}};
 }
 
 Json scales_json(const std::vector<ScaleReport>& scales) {
   Json list = Json::array();
   for (const ScaleReport& s : scales)
-    list.push_back({{"sigma_px", s.sigma_px}, {"curvature_prior_per_nm", s.curvature_prior_per_nm}, {"afm", number(s.afm)}, {"sem", number(s.sem)}, {"prior", number(s.prior)},
-                    {"gradient_norm", number(s.gradient_norm)}, {"iterations", s.iterations},
-                    {"evaluations", s.evaluations}, {"products", s.products}, {"ended", s.ended},
-                    {"afm_residual", residual_json(s.afm_residual)}, {"sem_residual", residual_json(s.sem_residual)}});
+    list.push_back({{"sigma_px", s.sigma_px},
+                    {"curvature_prior_per_nm", s.curvature_prior_per_nm},
+                    {"afm", number(s.afm)},
+                    {"sem", number(s.sem)},
+                    {"prior", number(s.prior)},
+                    {"gradient_norm", number(s.gradient_norm)},
+                    {"iterations", s.iterations},
+                    {"evaluations", s.evaluations},
+                    {"products", s.products},
+                    {"ended", s.ended},
+                    {"afm_residual", residual_json(s.afm_residual)},
+                    {"sem_residual", residual_json(s.sem_residual)}});
   return list;
 }
 
@@ -158,7 +194,9 @@ Json held_json(const Grid<unsigned char>& held_by) {
   constexpr const char* names[] = {"nothing", "afm", "sem", "both"};
   Json json = Json::object();
   for (int what = 0; what < 4; ++what)
-    json[names[what]] = double(std::ranges::count(held_by.data(), static_cast<unsigned char>(what))) / double(held_by.size());
+    json[names[what]] =
+        double(std::ranges::count(held_by.data(), static_cast<unsigned char>(what))) /
+        double(held_by.size());
   return json;
 }
 
@@ -186,8 +224,8 @@ ReconstructJob parameters_of(const ReconstructJob& job) {
   return out;
 }
 
-ReconstructJob parameters_used(const ReconstructJob& job, const ReconstructSummary& s, const AfmData* afm,
-                               const SemData* sem) {
+ReconstructJob parameters_used(const ReconstructJob& job, const ReconstructSummary& s,
+                               const AfmData* afm, const SemData* sem) {
   ReconstructJob used = parameters_of(job);
   used.model = {};
   used.pose = {};
@@ -205,8 +243,8 @@ ReconstructJob parameters_used(const ReconstructJob& job, const ReconstructSumma
   return used;
 }
 
-std::vector<std::string> repeating_command(const ReconstructJob& job, const ReconstructSummary& s, const AfmData* afm,
-                                           const SemData* sem) {
+std::vector<std::string> repeating_command(const ReconstructJob& job, const ReconstructSummary& s,
+                                           const AfmData* afm, const SemData* sem) {
   ReconstructJob used = parameters_used(job, s, afm, sem), usual;
   std::vector<std::string> words{"semsurf", "reconstruct"};
   const auto add = [&](const std::string& option, const std::string& value) {
@@ -215,7 +253,8 @@ std::vector<std::string> repeating_command(const ReconstructJob& job, const Reco
   if (afm) {
     add("afm", job.afm->file.string());
     add("tip", (job.folder / (used.options.refine_tip ? "first_tip.txt" : "tip.txt")).string());
-    add("afm-noise", list_of({afm->noise.alpha, afm->noise.innovation_nm2}));   // exact, as --height-noise is not
+    add("afm-noise",
+        list_of({afm->noise.alpha, afm->noise.innovation_nm2}));  // exact, as --height-noise is not
     used.afm->preparation.noise.reset();
     usual.afm.emplace();
   }
@@ -224,7 +263,8 @@ std::vector<std::string> repeating_command(const ReconstructJob& job, const Reco
     add("model", (job.folder / "model.json").string());
     usual.sem.emplace();
   }
-  const OptionNames names{{"level.method", "--level-method"}, {"level.degree", "--level-degree"},
+  const OptionNames names{{"level.method", "--level-method"},
+                          {"level.degree", "--level-degree"},
                           {"level.tolerance", "--level-tolerance"}};
   const std::vector<std::string> changed = command_words(used, usual, names);
   words.insert(words.end(), changed.begin(), changed.end());
@@ -233,8 +273,8 @@ std::vector<std::string> repeating_command(const ReconstructJob& job, const Reco
   return words;
 }
 
-std::string reconstruction_report(const ReconstructJob& job, const ReconstructSummary& s, const AfmData* afm,
-                                  const SemData* sem) {
+std::string reconstruction_report(const ReconstructJob& job, const ReconstructSummary& s,
+                                  const AfmData* afm, const SemData* sem) {
   const Reconstruction& r = s.result;
   Json json;
   json["semsurf"] = version();
@@ -249,15 +289,20 @@ std::string reconstruction_report(const ReconstructJob& job, const ReconstructSu
   if (s.pose) json["registration"] = pose_json(job, s);
   json["options"] = options_json(parameters_used(job, s, afm, sem));
   json["surface"] = {{"pixels", {r.surface.z_nm.width(), r.surface.z_nm.height()}},
-                     {"pitch_nm", {r.surface.pitch_x_nm, r.surface.pitch_y_nm}}, {"converged", r.converged}};
+                     {"pitch_nm", {r.surface.pitch_x_nm, r.surface.pitch_y_nm}},
+                     {"converged", r.converged}};
   if (!r.held_by.empty()) json["surface"]["held_by"] = held_json(r.held_by);
   json["scales"] = scales_json(r.scales);
   if (s.truth) {
     const TruthReport& t = *s.truth;
     json["truth"] = file_json(job.truth_file);
-    json["truth"].update({{"pixels", t.pixels}, {"rms_nm", t.rms_nm}, {"start_rms_nm", t.start_rms_nm},
-                          {"offset_nm", t.offset_nm}, {"plane_rms_nm", t.plane_rms_nm},
-                          {"within_1_deviation", t.coverage_1}, {"within_2_deviations", t.coverage_2}});
+    json["truth"].update({{"pixels", t.pixels},
+                          {"rms_nm", t.rms_nm},
+                          {"start_rms_nm", t.start_rms_nm},
+                          {"offset_nm", t.offset_nm},
+                          {"plane_rms_nm", t.plane_rms_nm},
+                          {"within_1_deviation", t.coverage_1},
+                          {"within_2_deviations", t.coverage_2}});
   }
   // Paths need not be UTF-8: such bytes are replaced rather than the report lost.
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";

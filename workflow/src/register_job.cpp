@@ -38,7 +38,8 @@ io::TransformFile transform_file(const RegisterJob& job, const RegisterSummary& 
   file.verified = s.pose.verified();
   file.notes = step_record("register", record_of(parameters_of(job)));
   file.notes.merge(std::map<std::string, std::string>{
-      {"afm", hash_line(job.afm.file)}, {"sem", hash_line(job.sem.file)},
+      {"afm", hash_line(job.afm.file)},
+      {"sem", hash_line(job.sem.file)},
       {"model", fmt::format("{} sha256 {}", s.model.file.filename().string(), s.model.sha256)}});
   if (!s.pose.registration) return file;
   const Registration& r = *s.pose.registration;

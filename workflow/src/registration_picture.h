@@ -7,9 +7,11 @@
 
 namespace surf::workflow {
 
-/// The SEM image, the simulated one as it lies under it, squares of both in turn, where edges that go on say that the
-/// map is right, and the simulated image whole with the outline of the SEM image.
-io::Plot registration_picture(const PlacedImage& sem, const PlacedImage& simulated, const Affine& sem_to_afm);
+/// The SEM image, the simulated one as it lies under it, squares of both in turn, where edges that
+/// go on say that the map is right, and the simulated image whole with the outline of the SEM
+/// image.
+io::Plot registration_picture(const PlacedImage& sem, const PlacedImage& simulated,
+                              const Affine& sem_to_afm);
 
 /// The four sides of the SEM image in the AFM's frame, as a closed line, in um.
 io::PlotSeries outline_um(const PlacedImage& sem, const Affine& sem_to_afm);

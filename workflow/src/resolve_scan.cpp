@@ -12,7 +12,7 @@ namespace surf::workflow {
 namespace {
 
 constexpr int default_pixels = 256;
-constexpr double whole_tolerance = 1e-6;   // relative, for a region that must hold whole pixels
+constexpr double whole_tolerance = 1e-6;  // relative, for a region that must hold whole pixels
 
 struct Rectangle {
   double x0_nm, y0_nm, x1_nm, y1_nm;
@@ -30,9 +30,11 @@ struct Rectangle {
 
 void check_request(const mc::ScanRequest& r) {
   if (r.width.has_value() != r.height.has_value())
-    throw UsageError("`scan.size`", "only one of width and height is given", "Write `scan.size=256x256`");
+    throw UsageError("`scan.size`", "only one of width and height is given",
+                     "Write `scan.size=256x256`");
   if (r.pixel_x_nm.has_value() != r.pixel_y_nm.has_value())
-    throw UsageError("`scan.pixel_size`", "only one of x and y is given", "Write `scan.pixel_size=2nm`");
+    throw UsageError("`scan.pixel_size`", "only one of x and y is given",
+                     "Write `scan.pixel_size=2nm`");
   if (r.width && r.pixel_x_nm && r.region)
     throw UsageError("`scan.size`, `scan.pixel_size`, `scan.region`",
                      "all three are given, and any two say it all", "Leave one out");
@@ -82,12 +84,13 @@ double whole_pixels(double length_nm, double pixel_nm, const char* axis) {
   const double whole = std::round(pixels);
   if (whole >= 1 && std::abs(pixels - whole) <= whole_tolerance * whole) return whole;
   const double fewer = std::max(1.0, std::floor(pixels));
-  throw UsageError("`scan.region`, `scan.pixel_size`",
-                   fmt::format("{} nm along {} is {:.7g} pixels of {} nm, not a whole number",
-                               format_exact(length_nm), axis, pixels, format_exact(pixel_nm)),
-                   fmt::format("Give `scan.size` instead, or a pixel size of {:.9g} nm ({} pixels) or "
-                               "{:.9g} nm ({} pixels)",
-                               length_nm / fewer, fewer, length_nm / (fewer + 1), fewer + 1));
+  throw UsageError(
+      "`scan.region`, `scan.pixel_size`",
+      fmt::format("{} nm along {} is {:.7g} pixels of {} nm, not a whole number",
+                  format_exact(length_nm), axis, pixels, format_exact(pixel_nm)),
+      fmt::format("Give `scan.size` instead, or a pixel size of {:.9g} nm ({} pixels) or "
+                  "{:.9g} nm ({} pixels)",
+                  length_nm / fewer, fewer, length_nm / (fewer + 1), fewer + 1));
 }
 
 // Pixels that cover a length: rounded up, but not for a rounding error's sake.
@@ -96,7 +99,7 @@ double covering_pixels(double length_nm, double pixel_nm) {
 }
 
 struct Layout {
-  double width, height;   // whole numbers, as double until they are known to fit
+  double width, height;  // whole numbers, as double until they are known to fit
   double pixel_x_nm, pixel_y_nm;
 };
 
@@ -137,10 +140,9 @@ mc::Scan resolve_scan(const mc::ScanRequest& request, const Box& specimen_extent
                       const mc::Beam& beam) {
   check_request(request);
   mc::validate(beam);
-  const Rectangle around =
-      request.region ? Rectangle{request.region->x0_nm, request.region->y0_nm,
-                                 request.region->x1_nm, request.region->y1_nm}
-                     : specimen_rectangle(specimen_extent, beam);
+  const Rectangle around = request.region ? Rectangle{request.region->x0_nm, request.region->y0_nm,
+                                                      request.region->x1_nm, request.region->y1_nm}
+                                          : specimen_rectangle(specimen_extent, beam);
   const Layout layout =
       request.region ? from_region(request, around) : from_extent(request, around);
   if (!(layout.width * layout.height <= double(mc::max_pixels)))

@@ -7,7 +7,8 @@ namespace surf::workflow {
 
 /// A job with its request as the simulator takes it.
 struct ResolvedJob : SimulateJob {
-  mc::SimulationOptions options;   ///< the budget is no time limit: it is the accuracy that is tried, then the one that fits
+  mc::SimulationOptions options;  ///< the budget is no time limit: it is the accuracy that is
+                                  ///< tried, then the one that fits
 
   /// Wall time, s, that the job may take; 0: any.
   double seconds() const {

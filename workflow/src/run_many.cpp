@@ -21,17 +21,21 @@ using Clock = std::chrono::steady_clock;
 constexpr double largest_whole_px = 4e6;
 constexpr int tile_px = 32;
 
-double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
 
 class Maker {
  public:
   Maker(const ManyRuns& runs, Team* team)
-      : runs_(runs), team_(team), total_(std::accumulate(runs.weights.begin(), runs.weights.end(), 0.0)) {}
+      : runs_(runs), team_(team),
+        total_(std::accumulate(runs.weights.begin(), runs.weights.end(), 0.0)) {}
 
   ManyDone run_all() {
     const std::size_t single = count_pieces();
     if (single > 0) out_.complete = do_pieces(single);
-    for (std::size_t i = single; i < runs_.weights.size() && out_.complete; ++i) out_.complete = do_together(i);
+    for (std::size_t i = single; i < runs_.weights.size() && out_.complete; ++i)
+      out_.complete = do_together(i);
     return std::move(out_);
   }
 
@@ -51,8 +55,11 @@ class Maker {
   bool do_pieces(std::size_t count) {
     check_same_folder(*team_, runs_.folder);
     Pieces pieces;
-    pieces.weights.assign(runs_.weights.begin(), runs_.weights.begin() + static_cast<std::ptrdiff_t>(count));
-    pieces.work = [&](std::size_t i, const ProgressCallback& progress) { return simulate(i, runs_.make(i), progress, nullptr); };
+    pieces.weights.assign(runs_.weights.begin(),
+                          runs_.weights.begin() + static_cast<std::ptrdiff_t>(count));
+    pieces.work = [&](std::size_t i, const ProgressCallback& progress) {
+      return simulate(i, runs_.make(i), progress, nullptr);
+    };
     pieces.finished = [&](std::size_t i, const std::string& outcome) {
       if (runs_.finished) runs_.finished(i, outcome);
     };
@@ -76,11 +83,12 @@ class Maker {
     const auto start = Clock::now();
     const auto show = [&](double done, double of) {
       const std::lock_guard lock(talking_);
-      if (of > 0) runs_.reporter.progress(done_ + runs_.weights[i] * done / of, total_, runs_.things);
+      if (of > 0)
+        runs_.reporter.progress(done_ + runs_.weights[i] * done / of, total_, runs_.things);
     };
     std::optional<FinishedPiece> piece;
     SimulateJob job;
-    together(team_, [&] { job = runs_.make(i); });   // by itself: within it nobody may wait for all
+    together(team_, [&] { job = runs_.make(i); });  // by itself: within it nobody may wait for all
     together(team_, [&] { piece = simulate(i, std::move(job), show, team_); });
     std::string complete = piece ? "yes" : "no";
     if (team_) team_->broadcast(complete);
@@ -95,19 +103,21 @@ class Maker {
   }
 
   // Nothing when cancelled.
-  std::optional<FinishedPiece> simulate(std::size_t i, SimulateJob job, const ProgressCallback& progress, Team* with) {
+  std::optional<FinishedPiece> simulate(std::size_t i, SimulateJob job,
+                                        const ProgressCallback& progress, Team* with) {
     try {
       const SimulateSummary s = run(job, quietly(progress), with);
       if (!s.result.complete) return std::nullopt;
       FinishedPiece piece{s.result.balance.incident - s.result.recalled, {}};
       if (runs_.outcome && leads(with)) piece.outcome = runs_.outcome(i, job, s);
       return piece;
-    } catch (const Interrupted&) {   // before there was anything to keep
+    } catch (const Interrupted&) {  // before there was anything to keep
       return std::nullopt;
     }
   }
 
-  // One voice at a time: other members are told of meanwhile. `progress` is that of the run in the whole.
+  // One voice at a time: other members are told of meanwhile. `progress` is that of the run in the
+  // whole.
   Reporter quietly(const ProgressCallback& progress) {
     Reporter one;
     one.on_progress = [this, progress](double done, double total, std::string_view things) {
@@ -153,8 +163,8 @@ void ManyDone::add(const ManyDone& other) {
 std::string team_record(const Team& team, const ManyDone& done, double seconds, int threads,
                         const std::string& command_line) {
   using Json = nlohmann::ordered_json;
-  Json json{{"semsurf", version()}, {"command", command_line}, {"complete", done.complete}, {"seconds", seconds},
-            {"primaries", done.primaries}, {"ranks", Json::array()}};
+  Json json{{"semsurf", version()}, {"command", command_line},     {"complete", done.complete},
+            {"seconds", seconds},   {"primaries", done.primaries}, {"ranks", Json::array()}};
   const auto members = team.members();
   std::int64_t others = 0;
   for (const TeamMember& m : members) others += m.rank > 0 ? m.primaries : 0;
@@ -175,7 +185,9 @@ std::string team_record(const Team& team, const ManyDone& done, double seconds, 
 }
 
 std::size_t tiles_of(const mc::Scan& scan) {
-  const auto across = [](int pixels) { return static_cast<std::size_t>((pixels + tile_px - 1) / tile_px); };
+  const auto across = [](int pixels) {
+    return static_cast<std::size_t>((pixels + tile_px - 1) / tile_px);
+  };
   return across(scan.width) * across(scan.height);
 }
 

@@ -34,19 +34,23 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double degree = std::numbers::pi / 180;
-constexpr int fine = 3;                   // samples of the true surface per AFM sample
-constexpr int per_pixel = 2;              // samples of the simulated surface per SEM pixel
-constexpr double beyond_nm = 300;         // that the simulated surface goes on beyond the image
+constexpr int fine = 3;            // samples of the true surface per AFM sample
+constexpr int per_pixel = 2;       // samples of the simulated surface per SEM pixel
+constexpr double beyond_nm = 300;  // that the simulated surface goes on beyond the image
 constexpr std::size_t fewest_cascades = 2048;
 
-constexpr const char* files[] = {"afm.gsf", "sem.tif", "truth.gsf", "truth_tip.gsf", "truth_sem.exr", "truth.json"};
+constexpr const char* files[] = {"afm.gsf",       "sem.tif",       "truth.gsf",
+                                 "truth_tip.gsf", "truth_sem.exr", "truth.json"};
 
-/// A library that is larger than so few primaries per pixel call for: its own chance error is common to all pixels.
+/// A library that is larger than so few primaries per pixel call for: its own chance error is
+/// common to all pixels.
 class LargeLibraries : public mc::LibrarySource {
  public:
-  LargeLibraries(mc::LibrarySource& source, std::size_t cascades) : source_(&source), cascades_(cascades) {}
-  std::shared_ptr<const mc::CascadeLibrary> library(const mc::CascadeSettings& settings, std::size_t wanted,
-                                                    int threads, const ProgressCallback& progress,
+  LargeLibraries(mc::LibrarySource& source, std::size_t cascades)
+      : source_(&source), cascades_(cascades) {}
+  std::shared_ptr<const mc::CascadeLibrary> library(const mc::CascadeSettings& settings,
+                                                    std::size_t wanted, int threads,
+                                                    const ProgressCallback& progress,
                                                     const CancelToken* cancel) override {
     return source_->library(settings, std::max(wanted, cascades_), threads, progress, cancel);
   }
@@ -59,14 +63,17 @@ class LargeLibraries : public mc::LibrarySource {
 const SampleScene& find_scene(const std::string& name) {
   const std::string& known = find_sample_surface(name).name;
   const auto& all = sample_scenes();
-  return *std::find_if(all.begin(), all.end(), [&](const SampleScene& s) { return s.name == known; });
+  return *std::find_if(all.begin(), all.end(),
+                       [&](const SampleScene& s) { return s.name == known; });
 }
 
 void check(const SampleJob& job) {
   if (job.width < 16 || job.height < 16 || job.width > 4096 || job.height > 4096)
-    throw UsageError("`sample.size`", fmt::format("{} x {} pixels", job.width, job.height), "Give 16 to 4096 each way");
+    throw UsageError("`sample.size`", fmt::format("{} x {} pixels", job.width, job.height),
+                     "Give 16 to 4096 each way");
   if (job.electrons < 1 || job.electrons > std::int64_t{1} << 31)
-    throw UsageError("`sample.electrons`", fmt::format("{} is out of range", job.electrons), "Give 1 to 2e9 per pixel");
+    throw UsageError("`sample.electrons`", fmt::format("{} is out of range", job.electrons),
+                     "Give 1 to 2e9 per pixel");
   if (job.cascades < fewest_cascades)
     throw UsageError("sample", fmt::format("{} cascades are too few", job.cascades),
                      fmt::format("Give {} or more", fewest_cascades));
@@ -81,7 +88,8 @@ Affine sem_to_surface(const SampleJob& job, const SampleScene& scene) {
   return map;
 }
 
-HeightField empty_field(int width, int height, double pitch_nm, double origin_x_nm, double origin_y_nm) {
+HeightField empty_field(int width, int height, double pitch_nm, double origin_x_nm,
+                        double origin_y_nm) {
   return {Grid<double>(width, height), {}, pitch_nm, pitch_nm, origin_x_nm, origin_y_nm};
 }
 
@@ -104,7 +112,9 @@ AfmFrame afm_frame(const SampleJob& job, const SampleScene& scene) {
     }
   frame.sem_to_afm.x0 = scene.margin_left_nm - low.x;
   frame.sem_to_afm.y0 = scene.margin_bottom_nm - low.y;
-  const auto samples = [&](double length_nm) { return static_cast<int>(std::ceil(length_nm / scene.afm_pitch_nm)) + 1; };
+  const auto samples = [&](double length_nm) {
+    return static_cast<int>(std::ceil(length_nm / scene.afm_pitch_nm)) + 1;
+  };
   frame.width = samples(high.x - low.x + scene.margin_left_nm + scene.margin_right_nm);
   frame.height = samples(high.y - low.y + scene.margin_bottom_nm + scene.margin_top_nm);
   return frame;
@@ -113,8 +123,9 @@ AfmFrame afm_frame(const SampleJob& job, const SampleScene& scene) {
 /// As wide as the tip is `depth_nm` above its apex.
 Tip tip_of(const SampleScene& scene, double pitch_nm, double depth_nm) {
   const double angle = scene.tip_half_angle_deg * degree, radius = scene.tip_radius_nm;
-  const double kink_nm = radius * (1 - std::sin(angle));   // where the sphere ends
-  const double reach_nm = radius * std::cos(angle) + std::max(0.0, depth_nm - kink_nm) * std::tan(angle);
+  const double kink_nm = radius * (1 - std::sin(angle));  // where the sphere ends
+  const double reach_nm =
+      radius * std::cos(angle) + std::max(0.0, depth_nm - kink_nm) * std::tan(angle);
   const int size = 2 * static_cast<int>(std::ceil(reach_nm / pitch_nm)) + 1;
   return conical_tip(radius, angle, {pitch_nm, pitch_nm, size, size});
 }
@@ -124,10 +135,13 @@ double range_of(const HeightField& field) {
   return *high - *low;
 }
 
-/// How deep the tip has to be known: the surface's range over the scan, and something for what lies between samples.
-double depth_of(const SampleJob& job, const SampleScene& scene, const SampleSurface& surface, const AfmFrame& frame) {
+/// How deep the tip has to be known: the surface's range over the scan, and something for what lies
+/// between samples.
+double depth_of(const SampleJob& job, const SampleScene& scene, const SampleSurface& surface,
+                const AfmFrame& frame) {
   HeightField coarse = empty_field(frame.width, frame.height, scene.afm_pitch_nm, 0, 0);
-  sample_heights(surface, compose(sem_to_surface(job, scene), inverse(frame.sem_to_afm)), coarse, job.threads);
+  sample_heights(surface, compose(sem_to_surface(job, scene), inverse(frame.sem_to_afm)), coarse,
+                 job.threads);
   return 1.2 * range_of(coarse);
 }
 
@@ -137,25 +151,31 @@ HeightField dilated(const SampleJob& job, const SampleScene& scene, const Sample
   const Tip tip = tip_of(scene, scene.afm_pitch_nm / fine, depth_nm);
   const int margin = (tip.apex_x + fine - 1) / fine;
   const auto across = [&](int samples) { return (samples - 1 + 2 * margin) * fine + 1; };
-  HeightField finer = empty_field(across(frame.width), across(frame.height), scene.afm_pitch_nm / fine,
-                                  -margin * scene.afm_pitch_nm, -margin * scene.afm_pitch_nm);
-  sample_heights(surface, compose(sem_to_surface(job, scene), inverse(frame.sem_to_afm)), finer, job.threads);
+  HeightField finer =
+      empty_field(across(frame.width), across(frame.height), scene.afm_pitch_nm / fine,
+                  -margin * scene.afm_pitch_nm, -margin * scene.afm_pitch_nm);
+  sample_heights(surface, compose(sem_to_surface(job, scene), inverse(frame.sem_to_afm)), finer,
+                 job.threads);
   MorphologyOptions options;
   options.threads = job.threads;
   options.watch = watch;
   const HeightField image = dilate(finer, tip, options);
   HeightField scan = empty_field(frame.width, frame.height, scene.afm_pitch_nm, 0, 0);
   for (int y = 0; y < frame.height; ++y)
-    for (int x = 0; x < frame.width; ++x) scan.z_nm(x, y) = image.z_nm((x + margin) * fine, (y + margin) * fine);
+    for (int x = 0; x < frame.width; ++x)
+      scan.z_nm(x, y) = image.z_nm((x + margin) * fine, (y + margin) * fine);
   return scan;
 }
 
 void add_noise_and_tilt(const SampleScene& scene, std::uint64_t seed, HeightField& scan) {
-  const Grid<double> noise = simulate_noise(scene.afm_noise, scan.z_nm.width(), scan.z_nm.height(), seed);
-  const double along_x = std::tan(scene.tilt_x_deg * degree), along_y = std::tan(scene.tilt_y_deg * degree);
+  const Grid<double> noise =
+      simulate_noise(scene.afm_noise, scan.z_nm.width(), scan.z_nm.height(), seed);
+  const double along_x = std::tan(scene.tilt_x_deg * degree),
+               along_y = std::tan(scene.tilt_y_deg * degree);
   for (int y = 0; y < scan.z_nm.height(); ++y)
     for (int x = 0; x < scan.z_nm.width(); ++x)
-      scan.z_nm(x, y) += noise(x, y) + along_x * scan.x_nm(x) + along_y * scan.y_nm(y) + scene.afm_offset_nm;
+      scan.z_nm(x, y) +=
+          noise(x, y) + along_x * scan.x_nm(x) + along_y * scan.y_nm(y) + scene.afm_offset_nm;
 }
 
 mc::Scan scan_of(const SampleJob& job, const SampleScene& scene) {
@@ -168,11 +188,13 @@ mc::Scan scan_of(const SampleJob& job, const SampleScene& scene) {
   return scan;
 }
 
-mc::Scene monte_carlo_scene(const SampleJob& job, const SampleScene& scene, const SampleSurface& surface) {
+mc::Scene monte_carlo_scene(const SampleJob& job, const SampleScene& scene,
+                            const SampleSurface& surface) {
   const double pitch = scene.sem_pixel_nm / per_pixel;
   const int margin = static_cast<int>(std::ceil(beyond_nm / pitch));
   const auto across = [&](int pixels) { return (pixels - 1) * per_pixel + 1 + 2 * margin; };
-  HeightField field = empty_field(across(job.width), across(job.height), pitch, -margin * pitch, -margin * pitch);
+  HeightField field =
+      empty_field(across(job.width), across(job.height), pitch, -margin * pitch, -margin * pitch);
   sample_heights(surface, sem_to_surface(job, scene), field, job.threads);
   mc::Specimen specimen;
   specimen.materials = {io::find_material(scene.material, "sample")};
@@ -191,47 +213,50 @@ Image signal_of(const SampleScene& scene, const Image& yields) {
   const auto& bse = yields.find("BSE")->values.data();
   auto& signal = image.channels.front().values.data();
   for (std::size_t i = 0; i < signal.size(); ++i)
-    signal[i] = static_cast<float>(scene.se_gain * double{se[i]} + scene.bse_gain * double{bse[i]} + scene.offset);
+    signal[i] = static_cast<float>(scene.se_gain * double{se[i]} + scene.bse_gain * double{bse[i]} +
+                                   scene.offset);
   return image;
 }
 
-nlohmann::ordered_json truth_of(const SampleJob& job, const SampleScene& scene, const AfmFrame& frame) {
+nlohmann::ordered_json truth_of(const SampleJob& job, const SampleScene& scene,
+                                const AfmFrame& frame) {
   const Affine& map = frame.sem_to_afm;
   const AffineParts parts = parts_of(map);
-  return {{"sample", scene.name},
-          {"what", scene.what},
-          {"semsurf_version", version()},
-          {"seed", job.seed},
-          {"sem_to_afm", {map.xx, map.xy, map.x0, map.yx, map.yy, map.y0}},
-          {"sem_to_afm_parts",
-           {{"rotation_deg", parts.rotation_rad / degree},
-            {"scale_x", parts.scale_x},
-            {"scale_y", parts.scale_y},
-            {"shear", parts.shear},
-            {"shift_x_nm", parts.shift_x_nm},
-            {"shift_y_nm", parts.shift_y_nm}}},
-          {"sem",
-           {{"width", job.width},
-            {"height", job.height},
-            {"pixel_nm", scene.sem_pixel_nm},
-            {"material", scene.material},
-            {"energy_ev", scene.energy_ev},
-            {"spot_nm", scene.spot_nm},
-            {"electrons", job.electrons},
-            {"gains", {{"SE", scene.se_gain}, {"BSE", scene.bse_gain}}},
-            {"offset", scene.offset}}},
-          {"afm",
-           {{"width", frame.width},
-            {"height", frame.height},
-            {"pitch_nm", scene.afm_pitch_nm},
-            {"tip", {{"radius_nm", scene.tip_radius_nm}, {"half_angle_deg", scene.tip_half_angle_deg}}},
-            {"noise",
-             {{"alpha", scene.afm_noise.alpha},
-              {"innovation_nm2", scene.afm_noise.innovation_nm2},
-              {"variance_nm2", scene.afm_noise.variance_nm2()}}},
-            {"tilt_x_deg", scene.tilt_x_deg},
-            {"tilt_y_deg", scene.tilt_y_deg},
-            {"offset_nm", scene.afm_offset_nm}}}};
+  return {
+      {"sample", scene.name},
+      {"what", scene.what},
+      {"semsurf_version", version()},
+      {"seed", job.seed},
+      {"sem_to_afm", {map.xx, map.xy, map.x0, map.yx, map.yy, map.y0}},
+      {"sem_to_afm_parts",
+       {{"rotation_deg", parts.rotation_rad / degree},
+        {"scale_x", parts.scale_x},
+        {"scale_y", parts.scale_y},
+        {"shear", parts.shear},
+        {"shift_x_nm", parts.shift_x_nm},
+        {"shift_y_nm", parts.shift_y_nm}}},
+      {"sem",
+       {{"width", job.width},
+        {"height", job.height},
+        {"pixel_nm", scene.sem_pixel_nm},
+        {"material", scene.material},
+        {"energy_ev", scene.energy_ev},
+        {"spot_nm", scene.spot_nm},
+        {"electrons", job.electrons},
+        {"gains", {{"SE", scene.se_gain}, {"BSE", scene.bse_gain}}},
+        {"offset", scene.offset}}},
+      {"afm",
+       {{"width", frame.width},
+        {"height", frame.height},
+        {"pitch_nm", scene.afm_pitch_nm},
+        {"tip", {{"radius_nm", scene.tip_radius_nm}, {"half_angle_deg", scene.tip_half_angle_deg}}},
+        {"noise",
+         {{"alpha", scene.afm_noise.alpha},
+          {"innovation_nm2", scene.afm_noise.innovation_nm2},
+          {"variance_nm2", scene.afm_noise.variance_nm2()}}},
+        {"tilt_x_deg", scene.tilt_x_deg},
+        {"tilt_y_deg", scene.tilt_y_deg},
+        {"offset_nm", scene.afm_offset_nm}}}};
 }
 
 std::map<std::string, std::string> provenance_of(const SampleJob& job) {
@@ -253,17 +278,20 @@ Identity identity_of(const SampleJob& job, const mc::SimulationOptions& options)
           {"program", program_hash()}};
 }
 
-std::unique_ptr<Checkpoint> make_checkpoint(const SampleJob& job, const mc::SimulationOptions& options,
+std::unique_ptr<Checkpoint> make_checkpoint(const SampleJob& job,
+                                            const mc::SimulationOptions& options,
                                             const NoteCallback& note, const NoteCallback& warn) {
   if (!job.checkpoint.wanted) return nullptr;
   const auto say = [](const std::string&) {};
-  return std::make_unique<Checkpoint>(job.checkpoint, job.folder / "sem.tif", identity_of(job, options),
-                                      note ? note : say, warn ? warn : say);
+  return std::make_unique<Checkpoint>(job.checkpoint, job.folder / "sem.tif",
+                                      identity_of(job, options), note ? note : say,
+                                      warn ? warn : say);
 }
 
 /// All but the simulation, from its result.
-void write_all(const SampleJob& job, const SampleScene& scene, const SampleSurface& surface, const AfmFrame& frame,
-               const Image& yields, const CancelToken* cancel, std::vector<fs::path>& written) {
+void write_all(const SampleJob& job, const SampleScene& scene, const SampleSurface& surface,
+               const AfmFrame& frame, const Image& yields, const CancelToken* cancel,
+               std::vector<fs::path>& written) {
   HeightField truth = empty_field(job.width, job.height, scene.sem_pixel_nm, 0, 0);
   sample_heights(surface, sem_to_surface(job, scene), truth, job.threads);
   Watch watch;
@@ -280,7 +308,7 @@ void write_all(const SampleJob& job, const SampleScene& scene, const SampleSurfa
   const auto made = provenance_of(job);
   io::write_height_field(path("afm.gsf"), scan, made);
   Image sem = signal_of(scene, yields);
-  sem.metadata["beam.energy_ev"] = format_exact(scene.energy_ev);   // a microscope knows it
+  sem.metadata["beam.energy_ev"] = format_exact(scene.energy_ev);  // a microscope knows it
   io::write_image(path("sem.tif"), sem);
   io::write_height_field(path("truth.gsf"), truth, made);
   io::write_tip(path("truth_tip.gsf"), tip_of(scene, scene.afm_pitch_nm, depth_nm), made);
@@ -295,24 +323,30 @@ void describe(ParameterVisitor& visit, SampleJob& job) {
   for (const SampleScene& scene : sample_scenes()) names += (names.empty() ? "" : "|") + scene.name;
   visit(job.name, {.name = "sample.name", .help = "The surface", .form = names});
   describe_folder(visit, job.folder, "Folder for the files; it is made");
-  visit(job.electrons, {.name = "sample.electrons", .help = "Primaries per pixel of the SEM image",
+  visit(job.electrons, {.name = "sample.electrons",
+                        .help = "Primaries per pixel of the SEM image",
                         .limits = within(1, double(std::int64_t{1} << 31))});
-  visit.form({.name = "sample.size", .help = "Pixels of the SEM image, the middle of the view", .form = "WxH"},
-             [&] { return fmt::format("{}x{}", job.width, job.height); },
-             [&](std::string_view text, const std::string& subject) {
-               mc::ScanRequest scan;
-               read_parameters(scan, [&](const Parameter& about, Field& field) {
-                 if (about.name == "scan.size") field.read(text, subject);
-               });
-               job.width = *scan.width, job.height = *scan.height;
-             });
-  visit(job.seed, {.name = "sample.seed", .help = "Seed of noise and simulation: the same seed gives the same files"});
+  visit.form(
+      {.name = "sample.size",
+       .help = "Pixels of the SEM image, the middle of the view",
+       .form = "WxH"},
+      [&] { return fmt::format("{}x{}", job.width, job.height); },
+      [&](std::string_view text, const std::string& subject) {
+        mc::ScanRequest scan;
+        read_parameters(scan, [&](const Parameter& about, Field& field) {
+          if (about.name == "scan.size") field.read(text, subject);
+        });
+        job.width = *scan.width, job.height = *scan.height;
+      });
+  visit(job.seed, {.name = "sample.seed",
+                   .help = "Seed of noise and simulation: the same seed gives the same files"});
   describe_cache(visit, job.cache);
   describe_threads(visit, job.threads);
 }
 
 const std::vector<SampleScene>& sample_scenes() {
-  const auto scene = [](const char* name, AffineParts map, double radius_nm, double half_angle_deg) {
+  const auto scene = [](const char* name, AffineParts map, double radius_nm,
+                        double half_angle_deg) {
     SampleScene s;
     s.name = name;
     s.what = find_sample_surface(name).what;
@@ -328,13 +362,18 @@ const std::vector<SampleScene>& sample_scenes() {
                                scene("pads", {94 * degree, 1.035, 1.01, 0.015}, 70, 28),
                                scene("islands", {-31 * degree, 0.955, 0.98, 0.03}, 80, 27),
                                scene("terrain", {19 * degree, 1.01, 1.045, -0.01}, 65, 26)};
-    constexpr double margins[][4] = {{360, 300, 310, 420}, {300, 440, 380, 320}, {330, 300, 300, 460},
-                                     {300, 340, 320, 300}, {420, 310, 300, 350}};
-    constexpr double tilts[][3] = {{0.45, -0.2, 312}, {-0.3, 0.4, -75}, {0.1, 0.5, 1040}, {-0.5, -0.1, 6}, {0.25, 0.4, 150}};
+    constexpr double margins[][4] = {{360, 300, 310, 420},
+                                     {300, 440, 380, 320},
+                                     {330, 300, 300, 460},
+                                     {300, 340, 320, 300},
+                                     {420, 310, 300, 350}};
+    constexpr double tilts[][3] = {
+        {0.45, -0.2, 312}, {-0.3, 0.4, -75}, {0.1, 0.5, 1040}, {-0.5, -0.1, 6}, {0.25, 0.4, 150}};
     for (std::size_t i = 0; i < s.size(); ++i) {
       s[i].margin_left_nm = margins[i][0], s[i].margin_right_nm = margins[i][1];
       s[i].margin_bottom_nm = margins[i][2], s[i].margin_top_nm = margins[i][3];
-      s[i].tilt_x_deg = tilts[i][0], s[i].tilt_y_deg = tilts[i][1], s[i].afm_offset_nm = tilts[i][2];
+      s[i].tilt_x_deg = tilts[i][0], s[i].tilt_y_deg = tilts[i][1],
+      s[i].afm_offset_nm = tilts[i][2];
     }
     return s;
   }();
@@ -361,7 +400,8 @@ SampleSummary run(const SampleJob& job, const Reporter& reporter) {
   JobLibraries kept(job.cache, reporter.counting("cascades"), note);
   LargeLibraries source(kept, job.cascades);
   const mc::Scene monte_carlo = monte_carlo_scene(job, scene, surface);
-  const std::unique_ptr<Checkpoint> checkpoint = make_checkpoint(job, options, note, reporter.on_warning);
+  const std::unique_ptr<Checkpoint> checkpoint =
+      make_checkpoint(job, options, note, reporter.on_warning);
   const auto show = [&](double done, double total) {
     if (checkpoint) checkpoint->expect(total);
     reporter.progress(done, total, "primaries");
@@ -370,8 +410,9 @@ SampleSummary run(const SampleJob& job, const Reporter& reporter) {
     summary.complete = false;
     if (checkpoint && checkpoint->keep()) summary.checkpoint = checkpoint->path();
   };
-  const mc::SimulationResult result =
-      mc::simulate(monte_carlo, options, {.progress = show, .cancel = cancel, .journal = checkpoint.get(), .libraries = &source});
+  const mc::SimulationResult result = mc::simulate(
+      monte_carlo, options,
+      {.progress = show, .cancel = cancel, .journal = checkpoint.get(), .libraries = &source});
   if (!result.complete) {
     keep();
     return summary;
@@ -386,9 +427,10 @@ SampleSummary run(const SampleJob& job, const Reporter& reporter) {
     summary.written.clear();
     return summary;
   } catch (const Error&) {
-    keep();   // a full disk should not take the work as well
+    keep();  // a full disk should not take the work as well
     if (note && !summary.checkpoint.empty())
-      note(fmt::format("what is done is kept in {}; the same command goes on from there", summary.checkpoint.string()));
+      note(fmt::format("what is done is kept in {}; the same command goes on from there",
+                       summary.checkpoint.string()));
     throw;
   }
   if (checkpoint) checkpoint->finish();

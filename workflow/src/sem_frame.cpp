@@ -9,7 +9,7 @@
 namespace surf::workflow {
 namespace {
 
-constexpr double rounding = 1e-9;   // samples beyond the border that still count as on it
+constexpr double rounding = 1e-9;  // samples beyond the border that still count as on it
 
 /// Heights of holes beside known samples become their mean; returns whether any did.
 bool grow(Grid<double>& z, Grid<unsigned char>& known) {
@@ -26,8 +26,10 @@ bool grow(Grid<double>& z, Grid<unsigned char>& known) {
         sum += z(u, v);
         ++count;
       }
-      if (count > 0) found.emplace_back(static_cast<std::size_t>(y) * static_cast<std::size_t>(w) + static_cast<std::size_t>(x),
-                                        sum / count);
+      if (count > 0)
+        found.emplace_back(
+            static_cast<std::size_t>(y) * static_cast<std::size_t>(w) + static_cast<std::size_t>(x),
+            sum / count);
     }
   for (const auto& [i, height] : found) {
     z.data()[i] = height;
@@ -42,12 +44,14 @@ HeightField with_holes_filled(const HeightField& field) {
   HeightField whole = field;
   if (field.valid.empty()) return whole;
   Grid<unsigned char> known = field.valid;
-  while (grow(whole.z_nm, known)) {}
+  while (grow(whole.z_nm, known)) {
+  }
   whole.valid = {};
   return whole;
 }
 
-SurfaceUnderSem surface_under_sem(const HeightField& afm_surface, const PlacedImage& sem, const Affine& sem_to_afm) {
+SurfaceUnderSem surface_under_sem(const HeightField& afm_surface, const PlacedImage& sem,
+                                  const Affine& sem_to_afm) {
   const HeightField whole = with_holes_filled(afm_surface);
   const int w = sem.values.width(), h = sem.values.height();
   const int columns = whole.z_nm.width(), rows = whole.z_nm.height();
@@ -60,18 +64,23 @@ SurfaceUnderSem surface_under_sem(const HeightField& afm_surface, const PlacedIm
   for (int y = 0; y < h; ++y)
     for (int x = 0; x < w; ++x) {
       const Point2 p = sem_to_afm(sem.place_nm(x, y));
-      const double u = (p.x - whole.origin_x_nm) / whole.pitch_x_nm, v = (p.y - whole.origin_y_nm) / whole.pitch_y_nm;
-      const bool inside = u >= -rounding && v >= -rounding && u <= columns - 1 + rounding && v <= rows - 1 + rounding;
+      const double u = (p.x - whole.origin_x_nm) / whole.pitch_x_nm,
+                   v = (p.y - whole.origin_y_nm) / whole.pitch_y_nm;
+      const bool inside = u >= -rounding && v >= -rounding && u <= columns - 1 + rounding &&
+                          v <= rows - 1 + rounding;
       const double cu = std::clamp(u, 0.0, columns - 1.0), cv = std::clamp(v, 0.0, rows - 1.0);
-      const int i = std::min(static_cast<int>(cu), columns - 2), j = std::min(static_cast<int>(cv), rows - 2);
+      const int i = std::min(static_cast<int>(cu), columns - 2),
+                j = std::min(static_cast<int>(cv), rows - 2);
       const double a = cu - i, b = cv - j;
       const auto z = [&](int s, int t) { return whole.z_nm(i + s, j + t); };
-      surface.z_nm(x, y) = (1 - b) * ((1 - a) * z(0, 0) + a * z(1, 0)) + b * ((1 - a) * z(0, 1) + a * z(1, 1));
+      surface.z_nm(x, y) =
+          (1 - b) * ((1 - a) * z(0, 0) + a * z(1, 0)) + b * ((1 - a) * z(0, 1) + a * z(1, 1));
       const auto valid = [&](int s, int t) { return afm_surface.is_valid(i + s, j + t); };
       under.known(x, y) = inside && valid(0, 0) && valid(1, 0) && valid(0, 1) && valid(1, 1);
     }
   const auto& known = under.known.data();
-  under.overlap = std::accumulate(known.begin(), known.end(), 0.0) / static_cast<double>(known.size());
+  under.overlap =
+      std::accumulate(known.begin(), known.end(), 0.0) / static_cast<double>(known.size());
   return under;
 }
 

@@ -21,19 +21,22 @@ using Clock = std::chrono::steady_clock;
 constexpr auto patience = std::chrono::seconds(60), soon = std::chrono::seconds(5);
 constexpr auto nap = std::chrono::milliseconds(50);
 
-double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
 
 // What is taken, done and told where the team is led.
 class Ledger {
  public:
   Ledger(const Pieces& pieces, std::vector<MemberTally>& tallies)
-      : pieces_(pieces),
-        tallies_(tallies),
+      : pieces_(pieces), tallies_(tallies),
         total_(std::accumulate(pieces.weights.begin(), pieces.weights.end(), 0.0)) {}
 
   std::optional<std::size_t> take() {
     const std::lock_guard lock(*pieces_.talking);
-    if (ended_ || next_ == pieces_.weights.size() || (pieces_.cancel && pieces_.cancel->cancelled())) return std::nullopt;
+    if (ended_ || next_ == pieces_.weights.size() ||
+        (pieces_.cancel && pieces_.cancel->cancelled()))
+      return std::nullopt;
     return next_++;
   }
 
@@ -80,22 +83,26 @@ void do_pieces(const Pieces& pieces, const TakeUnit& take, const GiveUnit& give,
     };
     auto piece = pieces.work(*number, progress);
     if (!piece) return;
-    give({*number, piece->primaries, fmt::format("{:.6f}\t{}", seconds_since(start), piece->outcome)});
+    give({*number, piece->primaries,
+          fmt::format("{:.6f}\t{}", seconds_since(start), piece->outcome)});
   }
 }
 
 void lead(Team& team, const Pieces& pieces, Ledger& ledger) {
   const TakeUnit take = [&] { return ledger.take(); };
   const GiveUnit give = [&](const FinishedUnit& unit) { ledger.give(unit); };
-  lead_while(team, take, give, pieces.cancel,
-             [&] { do_pieces(pieces, take, give, [&](double done) { ledger.show(done); }); }, [&] { ledger.end(); });
+  lead_while(
+      team, take, give, pieces.cancel,
+      [&] { do_pieces(pieces, take, give, [&](double done) { ledger.show(done); }); },
+      [&] { ledger.end(); });
 }
 
 void follow(Team& team, const Pieces& pieces) {
   try {
-    team.follow([&](const TakeUnit& take, const GiveUnit& give) { do_pieces(pieces, take, give, {}); },
-                pieces.threads, 0, pieces.cancel);
-  } catch (const Interrupted&) {   // whoever leads knows, and says that it is not complete
+    team.follow(
+        [&](const TakeUnit& take, const GiveUnit& give) { do_pieces(pieces, take, give, {}); },
+        pieces.threads, 0, pieces.cancel);
+  } catch (const Interrupted&) {  // whoever leads knows, and says that it is not complete
   }
 }
 
@@ -135,13 +142,15 @@ void check_same_folder(Team& team, const fs::path& folder) {
     together(&team, [&] {
       std::error_code ignored;
       const auto seen = [&] {
-        for (const auto& entry : fs::directory_iterator(folder, ignored))   // a network's folder is looked at anew by this
+        for (const auto& entry : fs::directory_iterator(
+                 folder, ignored))  // a network's folder is looked at anew by this
           if (entry.path().filename() == name) return true;
         return fs::exists(folder / name, ignored);
       };
       for (const auto start = Clock::now(); !seen(); std::this_thread::sleep_for(nap))
         if (Clock::now() - start > soon)
-          throw FileError(folder.string(), fmt::format("rank {} does not see what rank 0 writes there", team.rank()),
+          throw FileError(folder.string(),
+                          fmt::format("rank {} does not see what rank 0 writes there", team.rank()),
                           "Write to a folder that all machines share");
     });
   } catch (...) {

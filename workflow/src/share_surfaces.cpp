@@ -13,7 +13,8 @@ namespace {
 
 // All that is of one size.
 struct Header {
-  std::uint64_t shells = 0, solids = 0, vertices = 0, triangles = 0, local = 0, triangles_left_out = 0;
+  std::uint64_t shells = 0, solids = 0, vertices = 0, triangles = 0, local = 0,
+                triangles_left_out = 0;
   std::optional<double> plane_nm;
   Box box;
   Vec3 center_nm;
@@ -86,8 +87,8 @@ class Layout {
 
 // Replaces an array by the same one at a place of the memory; what was there before is freed.
 template <class T>
-void move_to(const std::shared_ptr<std::byte>& memory, std::size_t place, std::uint64_t count, bool fill,
-             mc::SharedArray<T>& array) {
+void move_to(const std::shared_ptr<std::byte>& memory, std::size_t place, std::uint64_t count,
+             bool fill, mc::SharedArray<T>& array) {
   auto* const values = reinterpret_cast<T*>(memory.get() + place);
   if (fill) std::ranges::copy(array.values, values);
   array = mc::SharedArray<T>(std::span<const T>(values, count), memory);
@@ -104,8 +105,10 @@ mc::SceneSurfaces share_surfaces(NodeMemory& node, const std::function<mc::Scene
   const Header header = unpack(text, surfaces);
   if (header.triangles == 0) return surfaces;
   Layout layout;
-  const std::size_t vertices = layout.place<Vec3>(header.vertices), triangles = layout.place<Triangle>(header.triangles),
-                    shells = layout.place<std::uint32_t>(header.triangles), local = layout.place<float>(header.local);
+  const std::size_t vertices = layout.place<Vec3>(header.vertices),
+                    triangles = layout.place<Triangle>(header.triangles),
+                    shells = layout.place<std::uint32_t>(header.triangles),
+                    local = layout.place<float>(header.local);
   const std::shared_ptr<std::byte> memory = node.allocate(layout.bytes());
   const bool fill = node.is_first();
   move_to(memory, vertices, header.vertices, fill, surfaces.mesh.vertices_nm);

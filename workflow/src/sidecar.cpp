@@ -99,15 +99,15 @@ Json method_json(const ResolvedJob& job, const SimulateSummary& s) {
                        {"pages_made", s.pages_made},
                        {"seconds", s.result.library_seconds}};
   if (const double accuracy = mc::accuracy_of(s.result.budget); accuracy > 0)
-    json["accuracy"] = {{"asked", accuracy},
-                        {"pixels_missed", s.statistics.missed},
-                        {"worst", s.statistics.worst}};
+    json["accuracy"] = {
+        {"asked", accuracy}, {"pixels_missed", s.statistics.missed}, {"worst", s.statistics.worst}};
   if (job.seconds() > 0) json["seconds_allowed"] = job.seconds();
   return json;
 }
 
 Json charging_json(const Charging& c) {
-  Json json = {{"materials", c.materials}, {"leaving_per_primary", c.leaving}, {"net_per_primary", c.net()}};
+  Json json = {
+      {"materials", c.materials}, {"leaving_per_primary", c.leaving}, {"net_per_primary", c.net()}};
   if (c.current_pa > 0) json["net_per_nm2"] = c.per_nm2;
   return json;
 }
@@ -118,15 +118,17 @@ Json team_json(const SimulateSummary& s, int threads) {
   std::int64_t others = 0;
   for (const TeamMember& m : s.team) others += m.primaries;
   for (const TeamMember& m : s.team)
-    ranks.push_back({{"rank", m.rank},
-                     {"host", m.host},
-                     {"threads", m.rank == 0 ? threads : m.threads},
-                     {"units", m.units},
-                     {"primaries", m.rank == 0 ? s.result.balance.incident - s.result.recalled - others : m.primaries},
-                     {"waiting_seconds", m.waiting_s},
-                     {"bytes_sent", m.bytes_sent},
-                     {"messages", m.messages},
-                     {"messaging_seconds", m.messaging_s}});
+    ranks.push_back(
+        {{"rank", m.rank},
+         {"host", m.host},
+         {"threads", m.rank == 0 ? threads : m.threads},
+         {"units", m.units},
+         {"primaries",
+          m.rank == 0 ? s.result.balance.incident - s.result.recalled - others : m.primaries},
+         {"waiting_seconds", m.waiting_s},
+         {"bytes_sent", m.bytes_sent},
+         {"messages", m.messages},
+         {"messaging_seconds", m.messaging_s}});
   return ranks;
 }
 
@@ -152,7 +154,8 @@ std::string sidecar_text(const ResolvedJob& job, const SimulateSummary& summary,
                          const RunRecord& record) {
   const mc::SimulationResult& result = summary.result;
   const mc::Balance& b = result.balance;
-  const double per_second = result.seconds > 0 ? double(b.incident - result.recalled) / result.seconds : 0;
+  const double per_second =
+      result.seconds > 0 ? double(b.incident - result.recalled) / result.seconds : 0;
 
   Json json;
   json["semsurf"] = version();
@@ -164,7 +167,8 @@ std::string sidecar_text(const ResolvedJob& job, const SimulateSummary& summary,
   json["outputs"] = files_json(record, "outputs");
   json["host"] = host_name();
   json["threads"] = resolve_threads(job.options.threads);
-  if (!summary.team.empty()) json["ranks"] = team_json(summary, resolve_threads(job.options.threads));
+  if (!summary.team.empty())
+    json["ranks"] = team_json(summary, resolve_threads(job.options.threads));
   json["tile_pixels"] = job.options.tile_pixels;
   json["start"] = utc(record.start);
   json["end"] = utc(record.end);

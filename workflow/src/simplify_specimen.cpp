@@ -22,9 +22,9 @@
 namespace surf::workflow {
 namespace {
 
-constexpr double one_interface_nm = 1e-3;   // faces nearer than this are one (see mc::Specimen)
-constexpr double least_gain = 0.95;         // of the triangles: what leaves more is not worth a change
-constexpr int attempts = 3;                 // each with half the tolerance of the last
+constexpr double one_interface_nm = 1e-3;  // faces nearer than this are one (see mc::Specimen)
+constexpr double least_gain = 0.95;  // of the triangles: what leaves more is not worth a change
+constexpr int attempts = 3;          // each with half the tolerance of the last
 
 constexpr const char* tolerance = "`simulation.mesh_tolerance`";
 
@@ -53,13 +53,16 @@ void check_tolerance(const mc::Specimen& specimen, double tolerance_nm) {
                      "Give a length above 0, as 0.5nm");
   if (const auto& h = specimen.height_field) {
     const HeightField& f = h->field;
-    require_smaller(tolerance_nm, std::min((f.z_nm.width() - 1) * f.pitch_x_nm,
-                                           (f.z_nm.height() - 1) * f.pitch_y_nm), name_of(*h));
+    require_smaller(
+        tolerance_nm,
+        std::min((f.z_nm.width() - 1) * f.pitch_x_nm, (f.z_nm.height() - 1) * f.pitch_y_nm),
+        name_of(*h));
   }
   for (const mc::Body& body : specimen.bodies) {
     const Vec3 size = bounds(body.mesh).size_nm();
     const double flat = std::min(size.x, size.y);
-    require_smaller(tolerance_nm, mc::is_sheet(body) ? flat : std::min(flat, size.z), name_of(body));
+    require_smaller(tolerance_nm, mc::is_sheet(body) ? flat : std::min(flat, size.z),
+                    name_of(body));
   }
 }
 
@@ -94,20 +97,24 @@ bool something_stands_on(const HeightField& field, const std::vector<mc::Body>& 
 }
 
 // Why a simplified mesh cannot stand for the original; empty if it can.
-std::string fault(const TriangleMesh& simple, const TriangleMesh& original, int threads, const Watch& watch) {
+std::string fault(const TriangleMesh& simple, const TriangleMesh& original, int threads,
+                  const Watch& watch) {
   const MeshReport now = check_mesh(simple, watch), before = check_mesh(original, watch);
   if (now.boundary_edges > 0) {
     std::string reason;
-    if (before.boundary_edges == 0 || !extend_open_sheet(simple, 1, reason)) return "it would be open";
+    if (before.boundary_edges == 0 || !extend_open_sheet(simple, 1, reason))
+      return "it would be open";
   } else if (!now.closed_and_oriented || !(now.signed_volume_nm3 * before.signed_volume_nm3 > 0)) {
     return "it would have no inside";
   }
-  const SelfIntersections crossings = find_self_intersections(simple, {.threads = threads, .watch = watch});
+  const SelfIntersections crossings =
+      find_self_intersections(simple, {.threads = threads, .watch = watch});
   if (crossings.pairs.empty() ||
-      crossings.pairs.size() <= find_self_intersections(original, {.threads = threads, .watch = watch}).pairs.size())
+      crossings.pairs.size() <=
+          find_self_intersections(original, {.threads = threads, .watch = watch}).pairs.size())
     return "";
-  return fmt::format("it would pass through itself near ({:g}, {:g}, {:g}) nm", crossings.first_nm.x,
-                     crossings.first_nm.y, crossings.first_nm.z);
+  return fmt::format("it would pass through itself near ({:g}, {:g}, {:g}) nm",
+                     crossings.first_nm.x, crossings.first_nm.y, crossings.first_nm.z);
 }
 
 bool gains(std::size_t after, std::size_t before) {
@@ -119,8 +126,10 @@ SimplifiedBody simplify_body(const mc::Specimen& specimen, std::size_t number, d
   SimplifiedBody done;
   done.name = name_of(body);
   done.triangles_before = done.triangles_after = body.mesh.triangles.size();
-  SimplifyOptions options{.tolerance_nm = tolerance_nm, .fixed_nm = contacts(specimen, number),
-                          .threads = threads, .watch = watch};
+  SimplifyOptions options{.tolerance_nm = tolerance_nm,
+                          .fixed_nm = contacts(specimen, number),
+                          .threads = threads,
+                          .watch = watch};
   for (int i = 0; i < attempts; ++i, options.tolerance_nm /= 2) {
     SimplifySummary summary;
     TriangleMesh simple = simplify_mesh(body.mesh, options, summary);
@@ -139,7 +148,8 @@ SimplifiedBody simplify_body(const mc::Specimen& specimen, std::size_t number, d
 }
 
 SimplifiedBody simplify_field(double tolerance_nm, const mc::Beam& beam, const mc::Scan& scan,
-                              const mc::Physics& physics, const Watch& watch, mc::Specimen& specimen) {
+                              const mc::Physics& physics, const Watch& watch,
+                              mc::Specimen& specimen) {
   const mc::HeightFieldBody& body = *specimen.height_field;
   double reach = 0;
   for (const mc::Material& m : specimen.materials)
@@ -147,15 +157,16 @@ SimplifiedBody simplify_field(double tolerance_nm, const mc::Beam& beam, const m
   const HeightField wide = mc::field_in_reach(body, scan, reach);
   SimplifiedBody done;
   done.name = name_of(body);
-  done.triangles_before = done.triangles_after =
-      std::size_t{2} * static_cast<std::size_t>(wide.z_nm.width() - 1) *
-      static_cast<std::size_t>(wide.z_nm.height() - 1);
+  done.triangles_before = done.triangles_after = std::size_t{2} *
+                                                 static_cast<std::size_t>(wide.z_nm.width() - 1) *
+                                                 static_cast<std::size_t>(wide.z_nm.height() - 1);
   if (something_stands_on(body.field, specimen.bodies)) {
     done.kept = "bodies stand on it";
     return done;
   }
   ThinSummary summary;
-  TriangleMesh sheet = thin_height_field(wide, {.tolerance_nm = tolerance_nm, .watch = watch}, summary);
+  TriangleMesh sheet =
+      thin_height_field(wide, {.tolerance_nm = tolerance_nm, .watch = watch}, summary);
   if (!gains(summary.triangles_after, summary.triangles_before)) {
     done.kept = "nothing would be gained";
   } else {
@@ -180,10 +191,11 @@ mc::Specimen simplify_specimen(const mc::Specimen& specimen, double tolerance_nm
   out.tolerance_nm = tolerance_nm;
   mc::Specimen simple = specimen;
   for (std::size_t i = 0; i < specimen.bodies.size(); ++i)
-    out.bodies.push_back(simplify_body(specimen, i, tolerance_nm, threads,
-                                       {{}, watch.cancel}, simple.bodies[i]));
+    out.bodies.push_back(
+        simplify_body(specimen, i, tolerance_nm, threads, {{}, watch.cancel}, simple.bodies[i]));
   if (specimen.height_field)
-    out.bodies.insert(out.bodies.begin(), simplify_field(tolerance_nm, beam, scan, physics, watch, simple));
+    out.bodies.insert(out.bodies.begin(),
+                      simplify_field(tolerance_nm, beam, scan, physics, watch, simple));
   out.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return simple;
 }
@@ -194,11 +206,11 @@ std::vector<std::string> warnings_of(const mc::Specimen& specimen, const Simplif
     out.push_back(fmt::format("{}: a bare substrate has no triangles to leave out", tolerance));
   for (const SimplifiedBody& body : done.bodies)
     if (!body.kept.empty())
-      out.push_back(fmt::format("{}: with `simulation.mesh_tolerance={}` {}; it stays as it is", body.name,
-                                format_length(done.tolerance_nm), body.kept));
+      out.push_back(fmt::format("{}: with `simulation.mesh_tolerance={}` {}; it stays as it is",
+                                body.name, format_length(done.tolerance_nm), body.kept));
   if (!specimen.height_field) return out;
   const double relief = relief_nm(specimen.height_field->field);
-  if (relief > 0 && relief <= 2 * done.tolerance_nm)   // a plane through its middle would do
+  if (relief > 0 && relief <= 2 * done.tolerance_nm)  // a plane through its middle would do
     out.push_back(fmt::format("{}: its whole relief, {}, is within twice {} and may vanish",
                               name_of(*specimen.height_field), format_length(relief),
                               format_length(done.tolerance_nm)));

@@ -23,12 +23,12 @@
 #include "surf/io/files.h"
 #include "surf/io/image_file.h"
 #include "surf/io/volume_file.h"
+#include "surf/mc/geometry/scene.h"
+#include "surf/mc/sampling/choose_method.h"
+#include "surf/workflow/tier_doubt.h"
+#include "surf/workflow/trajectories.h"
 #include "team_libraries.h"
 #include "team_scheduler.h"
-#include "surf/mc/sampling/choose_method.h"
-#include "surf/mc/geometry/scene.h"
-#include "surf/workflow/trajectories.h"
-#include "surf/workflow/tier_doubt.h"
 #include "time_budget.h"
 #include "warnings.h"
 
@@ -41,10 +41,10 @@ namespace fs = std::filesystem;
 void tell_of_scratch(const ResolvedJob& job, const mc::Scan& scan, const NoteCallback& note) {
   const std::size_t bytes = mc::tally_bytes(scan, job.options);
   if (note && bytes > job.options.tally_memory)
-    note(fmt::format("{} x {} pixels: {:.3g} GB of intermediate results go to a scratch file in {}, "
-                     "not into memory",
-                     scan.width, scan.height, static_cast<double>(bytes) / 1e9,
-                     job.options.scratch_folder));
+    note(fmt::format(
+        "{} x {} pixels: {:.3g} GB of intermediate results go to a scratch file in {}, "
+        "not into memory",
+        scan.width, scan.height, static_cast<double>(bytes) / 1e9, job.options.scratch_folder));
 }
 
 // What went on before, where it can go on.
@@ -67,7 +67,7 @@ std::string option_text(double accuracy) {
 
 struct Simulation {
   mc::SimulationResult result;
-  bool final = false;      ///< whether it is what was asked for, not a way to it
+  bool final = false;  ///< whether it is what was asked for, not a way to it
 };
 
 double seconds_since(std::chrono::system_clock::time_point start) {
@@ -76,12 +76,13 @@ double seconds_since(std::chrono::system_clock::time_point start) {
 
 // For a time budget: simulates coarsely and sets the accuracy that fits. The result stands where
 // there is nothing better, or where it was cancelled.
-Simulation find_accuracy(ResolvedJob& job, const mc::Scene& scene, const JobLibraries& kept, const mc::MethodChoice& choice, const RunRecord& record,
-                         const mc::SimulationContext& context, const Simulator& simulator, const NoteCallback& note,
-                         Team* team) {
+Simulation find_accuracy(ResolvedJob& job, const mc::Scene& scene, const JobLibraries& kept,
+                         const mc::MethodChoice& choice, const RunRecord& record,
+                         const mc::SimulationContext& context, const Simulator& simulator,
+                         const NoteCallback& note, Team* team) {
   Simulation coarse;
   coarse.result = simulator(scene, job.options, context);
-  if (!leads(team)) return coarse;   // counts nothing
+  if (!leads(team)) return coarse;  // counts nothing
   const auto say = [&](const std::string& text) {
     if (note) note(text);
   };
@@ -94,17 +95,18 @@ Simulation find_accuracy(ResolvedJob& job, const mc::Scene& scene, const JobLibr
   budget.most_library_cascades = mc::MethodLimits{}.library_bytes /
                                  (choice.library_bytes / static_cast<double>(choice.cascades));
   const auto pages = kept.pages();
-  budget.cascades_made = (pages.made > 0 ? pages.made : pages.loaded) *
-                         mc::CascadeLibrary::page_cascades;
-  job.options.budget = mc::Accuracy{accuracy_that_fits(coarse.result, budget), mc::floor_of(job.scene.budget)};
+  budget.cascades_made =
+      (pages.made > 0 ? pages.made : pages.loaded) * mc::CascadeLibrary::page_cascades;
+  job.options.budget =
+      mc::Accuracy{accuracy_that_fits(coarse.result, budget), mc::floor_of(job.scene.budget)};
   const double accuracy = mc::accuracy_of(job.options.budget);
   if (accuracy < coarse_accuracy) {
-    say(fmt::format("{} accuracy fits in {:g} s; `simulation.accuracy={}` repeats this exactly", format_share(accuracy),
-                    job.seconds(), option_text(accuracy)));
+    say(fmt::format("{} accuracy fits in {:g} s; `simulation.accuracy={}` repeats this exactly",
+                    format_share(accuracy), job.seconds(), option_text(accuracy)));
     return coarse;
   }
-  const std::string again = fmt::format("`simulation.accuracy={}` repeats this exactly",
-                                        option_text(coarse_accuracy));
+  const std::string again =
+      fmt::format("`simulation.accuracy={}` repeats this exactly", option_text(coarse_accuracy));
   if (spent > job.seconds())
     say(fmt::format("{:g} s are too short: even {} accuracy took {:.2g} s; {}", job.seconds(),
                     format_share(coarse_accuracy), spent, again));
@@ -117,8 +119,9 @@ Simulation find_accuracy(ResolvedJob& job, const mc::Scene& scene, const JobLibr
 
 // The same for all of a team: who leads has seen the counts.
 Simulation simulate_coarsely(ResolvedJob& job, const mc::Scene& scene, const JobLibraries& kept,
-                             const mc::MethodChoice& choice, const RunRecord& record, const mc::SimulationContext& context,
-                             const Simulator& simulator, const NoteCallback& note, Team* team) {
+                             const mc::MethodChoice& choice, const RunRecord& record,
+                             const mc::SimulationContext& context, const Simulator& simulator,
+                             const NoteCallback& note, Team* team) {
   Simulation coarse;
   std::exception_ptr thrown;
   try {
@@ -129,10 +132,14 @@ Simulation simulate_coarsely(ResolvedJob& job, const mc::Scene& scene, const Job
   }
   if (!team) return coarse;
   // What one says to all has to be said in any case: 2 stands for its failure.
-  std::string found = fmt::format("{} {}", thrown ? 2 : coarse.final ? 1 : 0, format_exact(mc::accuracy_of(job.options.budget)));
+  std::string found = fmt::format("{} {}",
+                                  thrown         ? 2
+                                  : coarse.final ? 1
+                                                 : 0,
+                                  format_exact(mc::accuracy_of(job.options.budget)));
   team->broadcast(found);
   if (thrown && leads(team)) std::rethrow_exception(thrown);
-  if (found[0] == '2') throw Interrupted();   // who leads tells why
+  if (found[0] == '2') throw Interrupted();  // who leads tells why
   coarse.final = found[0] == '1';
   job.options.budget = mc::Accuracy{std::stod(found.substr(2)), mc::floor_of(job.scene.budget)};
   return coarse;
@@ -142,12 +149,13 @@ Simulation simulate_coarsely(ResolvedJob& job, const mc::Scene& scene, const Job
 void keep_interrupted(const ResolvedJob& job, Checkpoint* checkpoint, const NoteCallback& note) {
   if (checkpoint && checkpoint->keep()) {
     if (note)
-      note(fmt::format("what is done is kept in {}; the same command{} goes on from there",
-                       checkpoint->path().string(),
-                       job.seconds() > 0
-                           ? fmt::format(" with `simulation.accuracy={}` in place of `simulation.time`",
-                                         option_text(mc::accuracy_of(job.options.budget)))
-                           : ""));
+      note(fmt::format(
+          "what is done is kept in {}; the same command{} goes on from there",
+          checkpoint->path().string(),
+          job.seconds() > 0
+              ? fmt::format(" with `simulation.accuracy={}` in place of `simulation.time`",
+                            option_text(mc::accuracy_of(job.options.budget)))
+              : ""));
   } else if (note && job.extras.deposit_cells > 0) {
     note("deposited energy is not kept on the way: the same command begins anew");
   }
@@ -182,7 +190,8 @@ void write_all(const ResolvedJob& job, const ImageRows& image, SimulateSummary& 
 
 }  // namespace
 
-SimulateSummary run(SimulateJob asked, const Reporter& reporter, Team* team, const Simulator& given) {
+SimulateSummary run(SimulateJob asked, const Reporter& reporter, Team* team,
+                    const Simulator& given) {
   const CancelToken* const cancel = reporter.cancel;
   const NoteCallback& tell = reporter.on_note;
   const NoteCallback& warn = reporter.on_warning;
@@ -202,9 +211,10 @@ SimulateSummary run(SimulateJob asked, const Reporter& reporter, Team* team, con
   together(team, [&] {
     check_extras(asked.extras);
     if (team && asked.extras.deposit_cells > 0)
-      throw UsageError("`output.deposit`", "each of several processes would see a part of it", "Run it in one process");
+      throw UsageError("`output.deposit`", "each of several processes would see a part of it",
+                       "Run it in one process");
     job = resolve(std::move(asked));
-    if (leads(team) && !job.outputs.empty()) {   // who follows writes nothing
+    if (leads(team) && !job.outputs.empty()) {  // who follows writes nothing
       check_outputs(job);
       check_checkpoint(job);
     }
@@ -216,7 +226,8 @@ SimulateSummary run(SimulateJob asked, const Reporter& reporter, Team* team, con
     summary.scan = resolve_scan(job.scene.scan, facts.extent, job.scene.beam);
     check_trajectories(job, summary.scan);
     if (node && !node->is_first())
-      for (mc::Body& body : job.scene.specimen.bodies) body.mesh = {};   // the first one's are traced
+      for (mc::Body& body : job.scene.specimen.bodies)
+        body.mesh = {};  // the first one's are traced
     ready.emplace(make_scene(job, facts, node, tell, cancel, summary));
   });
   together(team, [&] {
@@ -224,9 +235,11 @@ SimulateSummary run(SimulateJob asked, const Reporter& reporter, Team* team, con
     note(warn_before(job, facts, summary.scan));
     // Of this machine today: it is not for the record.
     if (leads(team) && warn)
-      for (const std::string& warning : warn_of_full_disks(disk_needs(job, summary.scan))) warn(warning);
+      for (const std::string& warning : warn_of_full_disks(disk_needs(job, summary.scan)))
+        warn(warning);
     note(warnings_of(job.scene.specimen, summary.simplification));
-    summary.choice = mc::choose_method(*ready, job.options, job.scene.method, {job.extras.deposit_cells > 0});
+    summary.choice =
+        mc::choose_method(*ready, job.options, job.scene.method, {job.extras.deposit_cells > 0});
     job.options.method = summary.choice.method;
   });
   const mc::Scene& scene = *ready;
@@ -236,18 +249,24 @@ SimulateSummary run(SimulateJob asked, const Reporter& reporter, Team* team, con
   if (team) of_team.emplace(*team, kept);
   mc::LibrarySource& libraries = team ? static_cast<mc::LibrarySource&>(*of_team) : kept;
   Simulation simulation;
-  const ProgressCallback progress = reporter.counting(mc::accuracy_of(job.options.budget) > 0 ? "pixels" : "primaries");
+  const ProgressCallback progress =
+      reporter.counting(mc::accuracy_of(job.options.budget) > 0 ? "pixels" : "primaries");
   std::optional<TeamScheduler> processes;
   if (team) processes.emplace(*team);
-  mc::SimulationContext context{
-      .progress = progress, .cancel = cancel, .libraries = &libraries, .scheduler = processes ? &*processes : nullptr};
+  mc::SimulationContext context{.progress = progress,
+                                .cancel = cancel,
+                                .libraries = &libraries,
+                                .scheduler = processes ? &*processes : nullptr};
   if (job.seconds() > 0)
-    simulation = simulate_coarsely(job, scene, kept, summary.choice, record, context, simulator, tell, team);
-  if (job.seconds() > 0 && !simulation.final) {   // as with an accuracy of that number
-    summary.choice = mc::choose_method(scene, job.options, s.method, {job.extras.deposit_cells > 0});
+    simulation =
+        simulate_coarsely(job, scene, kept, summary.choice, record, context, simulator, tell, team);
+  if (job.seconds() > 0 && !simulation.final) {  // as with an accuracy of that number
+    summary.choice =
+        mc::choose_method(scene, job.options, s.method, {job.extras.deposit_cells > 0});
     job.options.method = summary.choice.method;
   }
-  const auto settings = leads(team) ? provenance(job, summary.scan, record.inputs) : std::map<std::string, std::string>();
+  const auto settings = leads(team) ? provenance(job, summary.scan, record.inputs)
+                                    : std::map<std::string, std::string>();
 
   std::optional<Deposits> deposits;
   if (job.extras.deposit_cells > 0) {
@@ -283,7 +302,9 @@ SimulateSummary run(SimulateJob asked, const Reporter& reporter, Team* team, con
   summary.record.merge(output_settings(job));
   if (job.outputs.empty()) {
     if (job.extras.trajectories > 0)
-      summary.tracks = record_trajectories(scene, job.options.seed, job.extras.trajectories, job.extras.trajectories_at_nm).tracks;
+      summary.tracks = record_trajectories(scene, job.options.seed, job.extras.trajectories,
+                                           job.extras.trajectories_at_nm)
+                           .tracks;
     return summary;
   }
   try {

@@ -7,7 +7,8 @@ namespace surf::workflow {
 
 void describe(ParameterVisitor& visit, Extras& extras) {
   visit(extras.channels, {.name = "output.channels",
-                          .help = "More channels. What the beam sees: z_nm, normal, material; how it was simulated: electrons, model, "
+                          .help = "More channels. What the beam sees: z_nm, normal, material; how "
+                                  "it was simulated: electrons, model, "
                                   "variance_left",
                           .level = Level::advanced});
   const auto number = [&](int& count, const Parameter& about) {
@@ -15,31 +16,48 @@ void describe(ParameterVisitor& visit, Extras& extras) {
     visit(given, about);
     count = given.value_or(0);
   };
-  number(extras.deposit_cells,
-         {.name = "output.deposit",
-          .help = "Deposited energy on a grid of this many cells along its longest side, in NAME.deposit.vti",
-          .limits = within(1, 1024), .level = Level::advanced});
-  number(extras.trajectories, {.name = "output.trajectories",
-                               .help = "Tracks of this many primaries, in NAME.tracks.vtp, and a side view, in NAME.tracks.png",
-                               .limits = within(1, 100'000)});
+  number(extras.deposit_cells, {.name = "output.deposit",
+                                .help = "Deposited energy on a grid of this many cells along its "
+                                        "longest side, in NAME.deposit.vti",
+                                .limits = within(1, 1024),
+                                .level = Level::advanced});
+  number(
+      extras.trajectories,
+      {.name = "output.trajectories",
+       .help =
+           "Tracks of this many primaries, in NAME.tracks.vtp, and a side view, in NAME.tracks.png",
+       .limits = within(1, 100'000)});
   describe_point(visit, extras.trajectories_at_nm,
-                 {.name = "output.trajectories_at", .help = "Point of the scan plane where the primaries of tracks land",
-                  .otherwise = "the middle of the scan", .level = Level::advanced});
+                 {.name = "output.trajectories_at",
+                  .help = "Point of the scan plane where the primaries of tracks land",
+                  .otherwise = "the middle of the scan",
+                  .level = Level::advanced});
 }
 
 void describe(ParameterVisitor& visit, CheckpointOptions& checkpoint) {
-  visit.form({.name = "job.checkpoint", .help = "File that unfinished work is kept in, or off",
-              .otherwise = "NAME.XXXXXXXX.checkpoint beside the first output, X standing for the job", .form = "FILE|off",
-              .level = Level::advanced, .recorded = false, .file = FileRole::written},
-             [&] { return checkpoint.wanted ? checkpoint.file.string() : std::string("off"); },
-             [&](std::string_view text, const std::string&) {
-               checkpoint.wanted = text != "off";
-               if (checkpoint.wanted) checkpoint.file = text;
-             });
-  visit(checkpoint.seconds, {.name = "job.checkpoint_every",
-                             .help = "Time between writes of unfinished work; the first is after 10s or less", .unit = Unit::s,
-                             .limits = above(0), .level = Level::advanced, .recorded = false});
-  visit(checkpoint.restart, {.name = "job.restart", .help = "Begin anew, whatever was done before", .level = Level::advanced,
+  visit.form(
+      {.name = "job.checkpoint",
+       .help = "File that unfinished work is kept in, or off",
+       .otherwise = "NAME.XXXXXXXX.checkpoint beside the first output, X standing for the job",
+       .form = "FILE|off",
+       .level = Level::advanced,
+       .recorded = false,
+       .file = FileRole::written},
+      [&] { return checkpoint.wanted ? checkpoint.file.string() : std::string("off"); },
+      [&](std::string_view text, const std::string&) {
+        checkpoint.wanted = text != "off";
+        if (checkpoint.wanted) checkpoint.file = text;
+      });
+  visit(checkpoint.seconds,
+        {.name = "job.checkpoint_every",
+         .help = "Time between writes of unfinished work; the first is after 10s or less",
+         .unit = Unit::s,
+         .limits = above(0),
+         .level = Level::advanced,
+         .recorded = false});
+  visit(checkpoint.restart, {.name = "job.restart",
+                             .help = "Begin anew, whatever was done before",
+                             .level = Level::advanced,
                              .recorded = false});
 }
 
@@ -48,17 +66,29 @@ void describe(ParameterVisitor& visit, SimulateJob& job) {
   describe(visit, job.execution);
   describe_cache(visit, job.cache);
   describe(visit, job.extras);
-  visit(job.spectra, {.name = "output.spectra", .help = "Energies and angles per detector, in NAME.spectra.csv",
-                      .level = Level::advanced, .recorded = false});
-  visit(job.png_channel, {.name = "output.png_channel", .help = "Channel that PNG files show", .otherwise = "SE", .form = "NAME",
+  visit(job.spectra, {.name = "output.spectra",
+                      .help = "Energies and angles per detector, in NAME.spectra.csv",
+                      .level = Level::advanced,
+                      .recorded = false});
+  visit(job.png_channel, {.name = "output.png_channel",
+                          .help = "Channel that PNG files show",
+                          .otherwise = "SE",
+                          .form = "NAME",
                           .level = Level::advanced});
   visit(job.layout, {"auto", "rows", "tiles"},
-        {.name = "output.layout", .help = "Layout of EXR and TIFF: rows, or tiles with smaller sizes for viewing",
-         .otherwise = "auto: tiles above 64 million pixels", .level = Level::advanced});
-  visit.form({.name = "output", .help = "Image to write: .exr .tif .png .vti", .form = "FILE", .recorded = false,
-              .file = FileRole::written},
-             [&] { return job.outputs.empty() ? std::string() : job.outputs.front().string(); },
-             [&](std::string_view text, const std::string&) { job.outputs.emplace_back(text); }, FieldKind::list);
+        {.name = "output.layout",
+         .help = "Layout of EXR and TIFF: rows, or tiles with smaller sizes for viewing",
+         .otherwise = "auto: tiles above 64 million pixels",
+         .level = Level::advanced});
+  visit.form(
+      {.name = "output",
+       .help = "Image to write: .exr .tif .png .vti",
+       .form = "FILE",
+       .recorded = false,
+       .file = FileRole::written},
+      [&] { return job.outputs.empty() ? std::string() : job.outputs.front().string(); },
+      [&](std::string_view text, const std::string&) { job.outputs.emplace_back(text); },
+      FieldKind::list);
   describe(visit, job.checkpoint);
 }
 

@@ -31,13 +31,14 @@ std::vector<io::FileUse> inputs_of(const ResolvedJob& job) {
 /// The images, and what is written beside them.
 std::vector<io::FileUse> outputs_of(const ResolvedJob& job) {
   std::vector<io::FileUse> outputs;
-  std::set<fs::path> records;   // images of one name share theirs
+  std::set<fs::path> records;  // images of one name share theirs
   for (const fs::path& output : job.outputs) {
     outputs.push_back({"`output`", output, {}});
     if (const fs::path record = sidecar_path(output); records.insert(record).second)
       outputs.push_back({"`output`", record, output});
   }
-  for (const fs::path& extra : extra_files(job)) outputs.push_back({"`output`", extra, job.outputs.front()});
+  for (const fs::path& extra : extra_files(job))
+    outputs.push_back({"`output`", extra, job.outputs.front()});
   return outputs;
 }
 
@@ -53,7 +54,8 @@ ResolvedJob resolve(SimulateJob asked) {
   ResolvedJob out{std::move(asked), {}};
   mc::validate(out.scene);
   if (out.execution.tile_pixels < 1)
-    throw UsageError("tile_pixels", fmt::format("{} is out of range", out.execution.tile_pixels), "Give 1 or more");
+    throw UsageError("tile_pixels", fmt::format("{} is out of range", out.execution.tile_pixels),
+                     "Give 1 or more");
   if (out.execution.scratch_folder.empty() && !out.outputs.empty()) {
     const fs::path folder = out.outputs.front().parent_path();
     out.execution.scratch_folder = folder.empty() ? "." : folder.string();
@@ -62,7 +64,8 @@ ResolvedJob resolve(SimulateJob asked) {
   out.options.spectra = out.spectra;
   if (const auto* const limit = std::get_if<mc::TimeLimit>(&out.scene.budget))
     out.options.budget = mc::Accuracy{coarse_accuracy, limit->floor};
-  if (out.png_channel.empty()) out.png_channel = mc::dose_of(out.options.budget) > 0 ? "SE.shot" : "SE";
+  if (out.png_channel.empty())
+    out.png_channel = mc::dose_of(out.options.budget) > 0 ? "SE.shot" : "SE";
   return out;
 }
 
@@ -109,20 +112,25 @@ void check_checkpoint(const ResolvedJob& job) {
 }
 
 mc::Scene make_scene(const ResolvedJob& job, const SpecimenFacts& facts, NodeMemory* node,
-                     const NoteCallback& tell, const CancelToken* cancel, SimulateSummary& summary) {
+                     const NoteCallback& tell, const CancelToken* cancel,
+                     SimulateSummary& summary) {
   const io::SceneFile& s = job.scene;
   const double tolerance_nm = s.mesh_tolerance_nm;
   const Watch watch{{}, cancel};
-  if (tolerance_nm > 0 && tell) tell(fmt::format("leaving out detail below {}", format_length(tolerance_nm)));
+  if (tolerance_nm > 0 && tell)
+    tell(fmt::format("leaving out detail below {}", format_length(tolerance_nm)));
   const auto surfaces = [&] {
     if (tolerance_nm == 0)
-      return mc::make_surfaces(s.specimen, facts.bodies, s.beam, summary.scan, s.physics, {.watch = watch});
-    const mc::Specimen simple = simplify_specimen(s.specimen, tolerance_nm, s.beam, summary.scan, s.physics,
-                                                  job.options.threads, summary.simplification, watch);
-    return mc::make_surfaces(simple, mc::validate(simple, watch), s.beam, summary.scan, s.physics, {.watch = watch});
+      return mc::make_surfaces(s.specimen, facts.bodies, s.beam, summary.scan, s.physics,
+                               {.watch = watch});
+    const mc::Specimen simple =
+        simplify_specimen(s.specimen, tolerance_nm, s.beam, summary.scan, s.physics,
+                          job.options.threads, summary.simplification, watch);
+    return mc::make_surfaces(simple, mc::validate(simple, watch), s.beam, summary.scan, s.physics,
+                             {.watch = watch});
   };
-  return mc::Scene(node ? share_surfaces(*node, surfaces) : surfaces(), s.specimen.materials, s.beam, summary.scan,
-                   s.physics, {.watch = watch});
+  return mc::Scene(node ? share_surfaces(*node, surfaces) : surfaces(), s.specimen.materials,
+                   s.beam, summary.scan, s.physics, {.watch = watch});
 }
 
 }  // namespace surf::workflow

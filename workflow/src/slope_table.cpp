@@ -18,35 +18,43 @@ namespace {
 
 constexpr double steepest_deg = 89;
 constexpr double ranges_to_edge = 3;
-/// Of the floor; the scene goes on flat to twenty times that, far beyond where what leaves the slope lands.
+/// Of the floor; the scene goes on flat to twenty times that, far beyond where what leaves the
+/// slope lands.
 constexpr double floor_in_ranges = 40;
-constexpr std::size_t se = 0, bse = 1;   // of the default detectors
+constexpr std::size_t se = 0, bse = 1;  // of the default detectors
 
 void check(const SlopeTableOptions& o) {
-  if (!(o.step_deg > 0 && std::isfinite(o.step_deg) && o.last_deg >= 0 && o.last_deg <= steepest_deg))
-    throw UsageError("slope table", fmt::format("angles to {:g} in steps of {:g} degrees", o.last_deg, o.step_deg),
-                     fmt::format("Give steps above 0 and a last angle from 0 to {:g}", steepest_deg));
+  if (!(o.step_deg > 0 && std::isfinite(o.step_deg) && o.last_deg >= 0 &&
+        o.last_deg <= steepest_deg))
+    throw UsageError(
+        "slope table",
+        fmt::format("angles to {:g} in steps of {:g} degrees", o.last_deg, o.step_deg),
+        fmt::format("Give steps above 0 and a last angle from 0 to {:g}", steepest_deg));
   if (o.electrons < 2)
-    throw UsageError("slope table", fmt::format("{} electrons have no standard error", o.electrons), "Give 2 or more");
+    throw UsageError("slope table", fmt::format("{} electrons have no standard error", o.electrons),
+                     "Give 2 or more");
 }
 
 /// Ground, slope and top along x; nothing changes along y. The beam's axis is at 0.
 HeightField two_planes(double angle, double range_nm) {
-  const double width = 2 * ranges_to_edge * range_nm * std::cos(angle), height = width * std::tan(angle);
-  const int floor = std::max(2, static_cast<int>(std::ceil(floor_in_ranges * range_nm / width)) + 1);
+  const double width = 2 * ranges_to_edge * range_nm * std::cos(angle),
+               height = width * std::tan(angle);
+  const int floor =
+      std::max(2, static_cast<int>(std::ceil(floor_in_ranges * range_nm / width)) + 1);
   const int columns = floor + std::max(2, static_cast<int>(std::ceil(range_nm / width)) + 1);
   HeightField f;
   f.z_nm = Grid<double>(columns, 2);
   f.pitch_x_nm = width;
   f.pitch_y_nm = floor_in_ranges * range_nm;
-  f.origin_x_nm = -(floor - 0.5) * width;   // the slope is between columns floor - 1 and floor
+  f.origin_x_nm = -(floor - 0.5) * width;  // the slope is between columns floor - 1 and floor
   f.origin_y_nm = -0.5 * f.pitch_y_nm;
   for (int y = 0; y < 2; ++y)
     for (int x = floor; x < columns; ++x) f.z_nm(x, y) = height;
   return f;
 }
 
-mc::Scene make_scene(const mc::Material& material, double energy_ev, double angle_deg, const SlopeTableOptions& o) {
+mc::Scene make_scene(const mc::Material& material, double energy_ev, double angle_deg,
+                     const SlopeTableOptions& o) {
   mc::Beam beam;
   beam.energy_ev = energy_ev;
   mc::Scan scan;
@@ -59,22 +67,24 @@ mc::Scene make_scene(const mc::Material& material, double energy_ev, double angl
     specimen.substrate = mc::Substrate{};
   } else {
     const double range = mc::reach_nm(mc::make_medium(material, o.physics), beam);
-    specimen.height_field = mc::HeightFieldBody{"two planes", two_planes(angle, range), 0, Edge::flat};
+    specimen.height_field =
+        mc::HeightFieldBody{"two planes", two_planes(angle, range), 0, Edge::flat};
   }
   return mc::Scene(specimen, beam, scan, o.physics);
 }
 
 }  // namespace
 
-SlopeTable make_slope_table(const mc::Material& material, double energy_ev, const SlopeTableOptions& o,
-                            mc::LibrarySource* libraries) {
+SlopeTable make_slope_table(const mc::Material& material, double energy_ev,
+                            const SlopeTableOptions& o, mc::LibrarySource* libraries) {
   check(o);
   mc::FreshLibraries fresh;
   mc::SimulationOptions options;
   options.budget = mc::ElectronsPerPixel{o.electrons};
   options.seed = o.seed;
   options.threads = o.threads;
-  options.method = mc::can_replay(mc::make_medium(material, o.physics)) ? mc::Method::replay : mc::Method::direct;
+  options.method = mc::can_replay(mc::make_medium(material, o.physics)) ? mc::Method::replay
+                                                                        : mc::Method::direct;
   SlopeTable table;
   table.step_deg = o.step_deg;
   // Half a thousandth of a step: 85 is one of the angles whatever rounding makes of 17 x 5.
@@ -83,8 +93,10 @@ SlopeTable make_slope_table(const mc::Material& material, double energy_ev, cons
     o.watch.check();
     const Watch part = o.watch.part(double(i) / angles, double(i + 1) / angles);
     const mc::Scene scene = make_scene(material, energy_ev, i * o.step_deg, o);
-    const mc::SimulationResult result =
-        mc::simulate(scene, options, {.progress = part.progress, .cancel = o.watch.cancel, .libraries = libraries ? libraries : &fresh});
+    const mc::SimulationResult result = mc::simulate(scene, options,
+                                                     {.progress = part.progress,
+                                                      .cancel = o.watch.cancel,
+                                                      .libraries = libraries ? libraries : &fresh});
     if (!result.complete) throw Interrupted();
     table.se.push_back(result.yield(se, 0, 0));
     table.bse.push_back(result.yield(bse, 0, 0));

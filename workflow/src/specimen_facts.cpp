@@ -12,7 +12,8 @@ SpecimenFacts facts_of(const mc::Specimen& specimen, NodeMemory* node, const Wat
   const std::string text = once_per_node(node, [&] {
     facts = {mc::extent(specimen), mc::validate(specimen, watch)};
     std::string packed(reinterpret_cast<const char*>(&facts.extent), sizeof(Box));
-    packed.append(reinterpret_cast<const char*>(facts.bodies.data()), facts.bodies.size() * sizeof(mc::BodyFacts));
+    packed.append(reinterpret_cast<const char*>(facts.bodies.data()),
+                  facts.bodies.size() * sizeof(mc::BodyFacts));
     return packed;
   });
   std::memcpy(&facts.extent, text.data(), sizeof(Box));

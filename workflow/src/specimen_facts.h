@@ -3,15 +3,15 @@
 
 #include <vector>
 
-#include "surf/workflow/node_memory.h"
 #include "surf/mc/geometry/specimen.h"
+#include "surf/workflow/node_memory.h"
 
 namespace surf::workflow {
 
 /// What a job has to know of its specimen's shapes besides tracing them.
 struct SpecimenFacts {
-  Box extent;                          ///< mc::extent
-  std::vector<mc::BodyFacts> bodies;   ///< mc::validate
+  Box extent;                         ///< mc::extent
+  std::vector<mc::BodyFacts> bodies;  ///< mc::validate
 };
 
 /// Validates the specimen; on a machine of several processes the first one does, for all.

@@ -10,14 +10,18 @@ namespace surf::workflow {
 
 io::BodyReader specimen_reader(NodeMemory* node, int each) {
   return [node, each](const std::filesystem::path& path, const io::MeshUnit& unit,
-                const io::MaterialNames& names, const io::MaterialLibrary& library) {
+                      const io::MaterialNames& names, const io::MaterialLibrary& library) {
     std::vector<io::MeshBody> bodies;
     const std::string text = once_per_node(node, [&] {
       if (const auto found = triangles_in(path))
-        require_memory(path.string(), *found, {.processes = node ? node->processes() : each, .threads = 0, .shared = node != nullptr});
+        require_memory(path.string(), *found,
+                       {.processes = node ? node->processes() : each,
+                        .threads = 0,
+                        .shared = node != nullptr});
       bodies = io::read_mesh_bodies(path, unit, names, library);
       auto all = nlohmann::json::array();
-      for (const io::MeshBody& b : bodies) all.push_back({b.name, b.file_material, b.material, b.is_default, b.unit_assumed});
+      for (const io::MeshBody& b : bodies)
+        all.push_back({b.name, b.file_material, b.material, b.is_default, b.unit_assumed});
       return all.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
     });
     if (!node || node->is_first()) return bodies;

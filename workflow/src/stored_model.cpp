@@ -20,28 +20,30 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double usual_energy_ev = 1000;
-constexpr double same_pixel = 1e-3;   // relative, as models ask of fields
-constexpr int layout = 1;             // of what the hash is made of
+constexpr double same_pixel = 1e-3;  // relative, as models ask of fields
+constexpr int layout = 1;            // of what the hash is made of
 
 std::string material_text(const mc::Material& m) {
-  std::string text = fmt::format("{} {} {} {} {} {} {} {}", m.name, format_exact(m.density_g_cm3),
-                                 format_exact(m.formula_weight_g_mol), format_exact(m.work_function_ev),
-                                 format_exact(m.barrier_ev), format_exact(m.valence_electrons),
-                                 format_exact(m.plasmon_ev), format_exact(m.loss_join_ev));
+  std::string text =
+      fmt::format("{} {} {} {} {} {} {} {}", m.name, format_exact(m.density_g_cm3),
+                  format_exact(m.formula_weight_g_mol), format_exact(m.work_function_ev),
+                  format_exact(m.barrier_ev), format_exact(m.valence_electrons),
+                  format_exact(m.plasmon_ev), format_exact(m.loss_join_ev));
   for (const mc::Constituent& c : m.constituents)
-    text += fmt::format(" {} {} {} {}", c.atomic_number, format_exact(c.atomic_weight), format_exact(c.weight_fraction),
-                        format_exact(c.mean_ionization_ev));
+    text += fmt::format(" {} {} {} {}", c.atomic_number, format_exact(c.atomic_weight),
+                        format_exact(c.weight_fraction), format_exact(c.mean_ionization_ev));
   return text;
 }
 
 double energy_of(const ModelRequest& r) { return r.energy_ev > 0 ? r.energy_ev : usual_energy_ev; }
 
 std::string key_of(const ModelRequest& r) {
-  std::string text = fmt::format("layout {}\nsemsurf {}\nmaterial {}\nenergy {}\nspot {}\npixel {}\nlearn {} {}\n"
-                                 "surfaces {} {} {}\n", layout, version(), material_text(r.material),
-                                 format_exact(energy_of(r)), format_exact(r.spot_nm), format_exact(r.pixel_nm),
-                                 r.learn.kind, r.learn.iterations.value_or(0), r.surfaces.value_or(0), r.surface_px,
-                                 r.electrons);
+  std::string text = fmt::format(
+      "layout {}\nsemsurf {}\nmaterial {}\nenergy {}\nspot {}\npixel {}\nlearn {} {}\n"
+      "surfaces {} {} {}\n",
+      layout, version(), material_text(r.material), format_exact(energy_of(r)),
+      format_exact(r.spot_nm), format_exact(r.pixel_nm), r.learn.kind,
+      r.learn.iterations.value_or(0), r.surfaces.value_or(0), r.surface_px, r.electrons);
   for (const std::string& line : mc::describe(r.physics, r.material)) text += line + "\n";
   return text;
 }
@@ -49,7 +51,9 @@ std::string key_of(const ModelRequest& r) {
 /// "Si" or "my glass" as a part of a file's name.
 std::string plain(std::string text) {
   for (char& c : text)
-    c = std::isalnum(static_cast<unsigned char>(c)) ? static_cast<char>(std::tolower(static_cast<unsigned char>(c))) : '_';
+    c = std::isalnum(static_cast<unsigned char>(c))
+            ? static_cast<char>(std::tolower(static_cast<unsigned char>(c)))
+            : '_';
   return text;
 }
 
@@ -65,9 +69,11 @@ StoredModel load(const fs::path& file, const ModelRequest& r) {
   if (r.spot_given) wanted.spot_nm = r.spot_nm;
   check_conditions(scope, wanted);
   if (scope.pixel_nm > 0 && std::abs(scope.pixel_nm - r.pixel_nm) > same_pixel * scope.pixel_nm)
-    throw InvalidInput(file.string(), fmt::format("it is for pixels of {:.6g} nm, and those of the SEM image are {:.6g} nm",
-                                                  scope.pixel_nm, r.pixel_nm),
-                       "Leave out `reconstruction.model`, so that one is trained, or check `sem_pixel_size`");
+    throw InvalidInput(
+        file.string(),
+        fmt::format("it is for pixels of {:.6g} nm, and those of the SEM image are {:.6g} nm",
+                    scope.pixel_nm, r.pixel_nm),
+        "Leave out `reconstruction.model`, so that one is trained, or check `sem_pixel_size`");
   stored.model = make_model(stored.trained);
   return stored;
 }
@@ -93,19 +99,20 @@ TrainJob training(const ModelRequest& r, const fs::path& file) {
 std::string kept_name(const ModelRequest& r) {
   const std::string key = key_of(r);
   const std::string hash = io::sha256_of(std::as_bytes(std::span(key)));
-  return fmt::format("{}-{:.4g}ev-{:.4g}nm-{}.json", plain(r.material.name), energy_of(r), r.pixel_nm, hash.substr(0, 16));
+  return fmt::format("{}-{:.4g}ev-{:.4g}nm-{}.json", plain(r.material.name), energy_of(r),
+                     r.pixel_nm, hash.substr(0, 16));
 }
 
 StoredModel find_model(const ModelRequest& r, const Reporter& reporter) {
   if (!r.file.empty()) return load(r.file, r);
   if (r.material.name.empty())
-    throw UsageError("`specimen.material`", "it is missing, and so is `reconstruction.model`", "Say what the specimen is made of, as `specimen.material=Si`");
+    throw UsageError("`specimen.material`", "it is missing, and so is `reconstruction.model`",
+                     "Say what the specimen is made of, as `specimen.material=Si`");
   if (r.folder.empty())
-    throw UsageError("`reconstruction.model`", "it is missing, and there is no cache to keep a trained one in",
+    throw UsageError("`reconstruction.model`",
+                     "it is missing, and there is no cache to keep a trained one in",
                      "Train one with 'semsurf train', or name a folder with `job.cache`");
-  const auto note = [&](const std::string& text) {
-    reporter.note(text);
-  };
+  const auto note = [&](const std::string& text) { reporter.note(text); };
   const fs::path file = r.folder / kept_name(r);
   std::error_code ignored;
   if (fs::exists(file, ignored)) {
@@ -115,11 +122,14 @@ StoredModel find_model(const ModelRequest& r, const Reporter& reporter) {
       note(fmt::format("{}; the model is trained again", error.what()));
     }
   }
-  note(fmt::format("no model of {} at {} with pixels of {} is kept: one is trained, which takes minutes. It stays in {}",
-                   r.material.name, fmt::format("{:g} eV", energy_of(r)), format_length(r.pixel_nm), file.string()));
+  note(
+      fmt::format("no model of {} at {} with pixels of {} is kept: one is trained, which takes "
+                  "minutes. It stays in {}",
+                  r.material.name, fmt::format("{:g} eV", energy_of(r)), format_length(r.pixel_nm),
+                  file.string()));
   if (!run(training(r, file), reporter).complete) throw Interrupted();
   fs::path images = file;
-  fs::remove_all(images.replace_extension(".training"), ignored);   // they have served
+  fs::remove_all(images.replace_extension(".training"), ignored);  // they have served
   StoredModel stored = load(file, r);
   stored.made = true;
   return stored;

@@ -26,7 +26,8 @@ void together(Team* team, const std::function<void()>& part) {
   if (error) std::rethrow_exception(error);
   for (std::size_t rank = 0; rank < all.size(); ++rank)
     if (!all[rank].empty())
-      throw InvalidInput(fmt::format("rank {}", rank), all[rank], "All machines need the same files in the same places");
+      throw InvalidInput(fmt::format("rank {}", rank), all[rank],
+                         "All machines need the same files in the same places");
 }
 
 void lead_while(Team& team, const TakeUnit& take, const GiveUnit& give, const CancelToken* cancel,
@@ -49,7 +50,7 @@ void lead_while(Team& team, const TakeUnit& take, const GiveUnit& give, const Ca
       of_team = std::current_exception();
       end();
     }
-    if (!at_work.joinable()) guarded();   // what the others have left
+    if (!at_work.joinable()) guarded();  // what the others have left
   }
   if (own) std::rethrow_exception(own);
   if (of_team) std::rethrow_exception(of_team);
@@ -69,7 +70,8 @@ std::string once_per_node(NodeMemory* node, const std::function<std::string()>& 
   }
   node->tell(text);
   if (text[0] == '!')
-    throw InvalidInput("specimen", "another process of this machine says: " + text.substr(1), "See there");
+    throw InvalidInput("specimen", "another process of this machine says: " + text.substr(1),
+                       "See there");
   return text.substr(1);
 }
 

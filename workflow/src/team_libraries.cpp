@@ -11,17 +11,16 @@
 
 namespace surf::workflow {
 
-std::shared_ptr<const mc::CascadeLibrary> TeamLibraries::library(const mc::CascadeSettings& settings,
-                                                                 std::size_t cascades, int threads,
-                                                                 const ProgressCallback& progress,
-                                                                 const CancelToken* cancel) {
+std::shared_ptr<const mc::CascadeLibrary> TeamLibraries::library(
+    const mc::CascadeSettings& settings, std::size_t cascades, int threads,
+    const ProgressCallback& progress, const CancelToken* cancel) {
   std::shared_ptr<const mc::CascadeLibrary> library;
   together(&team_, [&] {
     if (team_.leads()) library = own_.library(settings, cascades, threads, progress, cancel);
   });
   std::string pages = library ? std::to_string(library->pages()) : std::string();
   team_.broadcast(pages);
-  if (pages.empty()) return nullptr;   // cancelled
+  if (pages.empty()) return nullptr;  // cancelled
   mc::CascadeLibrary copy(settings);
   const std::size_t count = std::stoul(pages);
   for (std::size_t i = 0; i < count; ++i) {

@@ -6,14 +6,16 @@
 
 namespace surf::workflow {
 
-/// Libraries that the leader gets, and everybody then has: they are made once, however many processes there are.
+/// Libraries that the leader gets, and everybody then has: they are made once, however many
+/// processes there are.
 class TeamLibraries : public mc::LibrarySource {
  public:
   /// `own` serves the leader.
   TeamLibraries(Team& team, mc::LibrarySource& own) : team_(team), own_(own) {}
 
-  std::shared_ptr<const mc::CascadeLibrary> library(const mc::CascadeSettings& settings, std::size_t cascades,
-                                                    int threads, const ProgressCallback& progress,
+  std::shared_ptr<const mc::CascadeLibrary> library(const mc::CascadeSettings& settings,
+                                                    std::size_t cascades, int threads,
+                                                    const ProgressCallback& progress,
                                                     const CancelToken* cancel) override;
 
  private:

@@ -14,11 +14,12 @@ void TeamScheduler::run(const mc::UnitWork& work) {
 }
 
 void TeamScheduler::lead(const mc::UnitWork& work) {
-  std::atomic<bool> ended = false;   // by an error on either side
+  std::atomic<bool> ended = false;  // by an error on either side
   mc::UnitWork shared = work;
   shared.take = [&] { return ended ? std::nullopt : work.take(); };
   lead_while(
-      team_, shared.take, [&](const FinishedUnit& unit) { work.finish(unit.number, mc::deserialize(unit.bytes)); },
+      team_, shared.take,
+      [&](const FinishedUnit& unit) { work.finish(unit.number, mc::deserialize(unit.bytes)); },
       work.cancel, [&] { mc::ThreadScheduler().run(shared); }, [&] { ended = true; });
 }
 
@@ -47,7 +48,7 @@ void TeamScheduler::abandon(const std::exception_ptr& reason, const CancelToken*
           throw Interrupted();
         },
         1, 0, cancel);
-  } catch (...) {   // whoever calls passes the reason on
+  } catch (...) {  // whoever calls passes the reason on
   }
 }
 

@@ -28,7 +28,8 @@ double rounded_up(double accuracy) {
   const double percent = 100 * accuracy;
   const double step = std::pow(10.0, std::floor(std::log10(percent)) - 1);
   const double up = std::ceil(percent / step * (1 - 1e-9)) * step;
-  return std::clamp(parse_share(fmt::format("{:.6g}%", up), "simulation.time"), finest, coarse_accuracy);
+  return std::clamp(parse_share(fmt::format("{:.6g}%", up), "simulation.time"), finest,
+                    coarse_accuracy);
 }
 
 }  // namespace
@@ -42,20 +43,20 @@ double accuracy_that_fits(const mc::SimulationResult& coarse, const TimeBudget& 
   if (!(done > 0)) return coarse_accuracy;
   const double per_primary = coarse.seconds / done;
   const double per_cascade =
-      budget.cascades_made > 0
-          ? coarse.library_seconds / static_cast<double>(budget.cascades_made) : 0;
+      budget.cascades_made > 0 ? coarse.library_seconds / static_cast<double>(budget.cascades_made)
+                               : 0;
   const auto fits = [&](double accuracy) {
     const std::size_t cascades = cascades_for(coarse, accuracy);
     if (static_cast<double>(cascades) > budget.most_library_cascades) return false;
     const double more = static_cast<double>(budget.materials) *
                         (static_cast<double>(cascades) -
                          static_cast<double>(std::min(cascades, coarse.library_cascades)));
-    const double seconds = per_primary * work(mc::expected_primaries(coarse, accuracy), cascades) +
-                           per_cascade * more;
+    const double seconds =
+        per_primary * work(mc::expected_primaries(coarse, accuracy), cascades) + per_cascade * more;
     return seconds <= reserve * budget.seconds_left;
   };
   if (!fits(coarse_accuracy)) return coarse_accuracy;
-  double low = finest, high = coarse_accuracy;   // the latter fits
+  double low = finest, high = coarse_accuracy;  // the latter fits
   if (fits(low)) return low;
   while (high > low * 1.01) {
     const double middle = std::sqrt(low * high);

@@ -19,9 +19,9 @@ struct TimeBudget {
 };
 
 /// The accuracy that fits, rounded up to two digits of a percentage, 1e-4 to `coarse_accuracy`; the
-/// latter too where nothing better fits. Time goes with the number of primaries, those of planes that
-/// pixels are compared with among them, and of cascades in libraries: about 1 / accuracy^2 of the one
-/// and the other, plus what does not depend on it. A tenth of the time is kept in reserve.
+/// latter too where nothing better fits. Time goes with the number of primaries, those of planes
+/// that pixels are compared with among them, and of cascades in libraries: about 1 / accuracy^2 of
+/// the one and the other, plus what does not depend on it. A tenth of the time is kept in reserve.
 double accuracy_that_fits(const mc::SimulationResult& coarse, const TimeBudget& budget);
 
 }  // namespace surf::workflow

@@ -45,15 +45,17 @@ AfmNoise read_noise(std::string_view text, const std::string& subject) {
   try {
     validate(noise);
   } catch (const InvalidInput&) {
-    throw UsageError(subject, fmt::format("'{}' is no noise", text),
-                     "Give a standard deviation above 0, as 0.1nm, or with alpha below 1, as 0.1nm,0.8");
+    throw UsageError(
+        subject, fmt::format("'{}' is no noise", text),
+        "Give a standard deviation above 0, as 0.1nm, or with alpha below 1, as 0.1nm,0.8");
   }
   return noise;
 }
 
 std::string write_noise(const std::optional<AfmNoise>& noise) {
   if (!noise) return {};
-  return fmt::format("{:.15g}{}", sigma_of(*noise), noise->alpha != 0 ? "," + format_exact(noise->alpha) : "");
+  return fmt::format("{:.15g}{}", sigma_of(*noise),
+                     noise->alpha != 0 ? "," + format_exact(noise->alpha) : "");
 }
 
 bool sweeps_as_usual(const TipParameters& p) {
@@ -64,14 +66,16 @@ bool sweeps_as_usual(const TipParameters& p) {
 
 // "FROM,TO,N".
 void read_sweep(std::string_view text, const std::string& subject, TipParameters& p) {
-  const std::size_t first = text.find(','), second = first == text.npos ? first : text.find(',', first + 1);
+  const std::size_t first = text.find(','),
+                    second = first == text.npos ? first : text.find(',', first + 1);
   if (second == text.npos)
     throw UsageError(subject, fmt::format("'{}' is no sweep", text),
                      "Write the least, the most and how many, as 0.1nm,2nm,40");
   const Parameter count{.name = subject, .help = "", .limits = within(2, 10000)};
   const double thresholds = parse_value(text.substr(second + 1), count, subject);
   if (thresholds != std::floor(thresholds))
-    throw UsageError(subject, fmt::format("'{}' is not a whole number", text.substr(second + 1)), "Write 40, say");
+    throw UsageError(subject, fmt::format("'{}' is not a whole number", text.substr(second + 1)),
+                     "Write 40, say");
   p.sweep_least_nm = read_height(text.substr(0, first), subject);
   p.sweep_most_nm = read_height(text.substr(first + 1, second - first - 1), subject);
   p.sweep_thresholds = static_cast<int>(thresholds);
@@ -97,7 +101,8 @@ AfmNoise noise_of(const std::vector<HeightField>& scans, const Reporter& reporte
   if (!(mean.innovation_nm2 > 0))
     throw InvalidInput("scan", "it has no noise that could be estimated",
                        "Give `scan.height_noise`, as 0.1nm, or a `tip.threshold` of 0nm");
-  for (std::size_t i = 0; i < scans.size(); ++i) tell_noise_doubts(mean, at_limit && i == 0, scans[i], reporter);
+  for (std::size_t i = 0; i < scans.size(); ++i)
+    tell_noise_doubts(mean, at_limit && i == 0, scans[i], reporter);
   return mean;
 }
 
@@ -140,10 +145,12 @@ void sweep(const std::vector<HeightField>& scans, TipResult& result, const Repor
   result.tip.doubt = doubt_of_tip(*result.sweep);
   result.used.threshold_nm = chosen.threshold_nm;
   if (result.sweep->verdict == TipSweepVerdict::disagreement)
-    reporter.warn(fmt::format(
-        "the volume jumps at a threshold of {}, but the residuals choose {}: look at the curve of both, as "
-        "'semsurf tip --plot' draws it",
-        format_length(result.sweep->curve[result.sweep->jump].threshold_nm), format_length(chosen.threshold_nm)));
+    reporter.warn(
+        fmt::format("the volume jumps at a threshold of {}, but the residuals choose {}: look at "
+                    "the curve of both, as "
+                    "'semsurf tip --plot' draws it",
+                    format_length(result.sweep->curve[result.sweep->jump].threshold_nm),
+                    format_length(chosen.threshold_nm)));
 }
 
 void fit_best(const std::vector<HeightField>& scans, TipResult& result, const Reporter& reporter) {
@@ -157,15 +164,18 @@ void fit_best(const std::vector<HeightField>& scans, TipResult& result, const Re
   result.used.threshold_nm = result.best->chosen.threshold_nm;
 }
 
-void reconstruct(const std::vector<HeightField>& scans, TipResult& result, const Reporter& reporter) {
+void reconstruct(const std::vector<HeightField>& scans, TipResult& result,
+                 const Reporter& reporter) {
   TipParameters& used = result.used;
   if (used.answer == TipAnswer::outer) {
     double pixels = 0;
     for (const HeightField& s : scans) pixels += static_cast<double>(s.z_nm.size());
-    used.threshold_nm = used.apex_tolerance_nm = outer_threshold_nm(*used.noise, pixels, used.size * used.size);
+    used.threshold_nm = used.apex_tolerance_nm =
+        outer_threshold_nm(*used.noise, pixels, used.size * used.size);
   }
   result.blind.emplace();
-  result.tip = blind_tip(scans, blind_options(used), *result.blind, reporter.counting("tips"), reporter.cancel);
+  result.tip = blind_tip(scans, blind_options(used), *result.blind, reporter.counting("tips"),
+                         reporter.cancel);
   if (result.blind->end == BlindTipEnd::cancelled) throw Interrupted();
 }
 
@@ -182,13 +192,16 @@ std::vector<std::string_view> words_of(std::string_view text) {
 Tip make_tip(const TipShape& s, const TipSampling& sampling) {
   const double half_angle = s.half_angle_deg * degrees_to_radians;
   switch (s.kind) {
-    case TipShape::cone: return conical_tip(s.radius_nm, half_angle, sampling);
-    case TipShape::parabola: return parabolic_tip(s.radius_nm, sampling);
-    case TipShape::ball:   // on a cylinder any radius does
-      return s.stem_radius_nm > 0
-                 ? ball_tip(s.radius_nm, s.stem_radius_nm, s.stem_half_angle_deg * degrees_to_radians, sampling)
-                 : ball_tip(s.radius_nm, 0.5 * s.radius_nm, 0, sampling);
-    case TipShape::pyramid: break;
+    case TipShape::cone:
+      return conical_tip(s.radius_nm, half_angle, sampling);
+    case TipShape::parabola:
+      return parabolic_tip(s.radius_nm, sampling);
+    case TipShape::ball:  // on a cylinder any radius does
+      return s.stem_radius_nm > 0 ? ball_tip(s.radius_nm, s.stem_radius_nm,
+                                             s.stem_half_angle_deg * degrees_to_radians, sampling)
+                                  : ball_tip(s.radius_nm, 0.5 * s.radius_nm, 0, sampling);
+    case TipShape::pyramid:
+      break;
   }
   PyramidShape pyramid;
   pyramid.radius_nm = s.radius_nm;
@@ -200,20 +213,25 @@ Tip make_tip(const TipShape& s, const TipSampling& sampling) {
 }  // namespace
 
 void describe_noise(ParameterVisitor& visit, std::optional<AfmNoise>& noise) {
-  visit.form({.name = "scan.height_noise",
-              .help = "Standard deviation of the scan's noise, and its correlation from one pixel to the next",
-              .unit = Unit::nm,
-              .otherwise = "estimated from the scan",
-              .form = "LENGTH[,ALPHA]"},
-             [&noise] { return write_noise(noise); },
-             [&noise](std::string_view text, const std::string& subject) { noise = read_noise(text, subject); });
+  visit.form(
+      {.name = "scan.height_noise",
+       .help =
+           "Standard deviation of the scan's noise, and its correlation from one pixel to the next",
+       .unit = Unit::nm,
+       .otherwise = "estimated from the scan",
+       .form = "LENGTH[,ALPHA]"},
+      [&noise] { return write_noise(noise); },
+      [&noise](std::string_view text, const std::string& subject) {
+        noise = read_noise(text, subject);
+      });
 }
 
 void describe(ParameterVisitor& visit, TipParameters& p) {
   visit(p.size, {.name = "tip.size", .help = "Samples across the tip, odd", .limits = sizes});
   visit(p.answer, {"sweep", "outer", "best", "blind"},
         {.name = "tip.answer",
-         .help = "What is found: the tip that the noise explains (sweep), an outer bound, the most likely one, or the "
+         .help = "What is found: the tip that the noise explains (sweep), an outer bound, the most "
+                 "likely one, or the "
                  "one at a "
                  "threshold (blind)",
          .otherwise = "sweep; blind with a threshold"});
@@ -239,22 +257,26 @@ void describe(ParameterVisitor& visit, TipParameters& p) {
                      .unit = Unit::nm,
                      .limits = at_least(0),
                      .level = Level::advanced});
-  visit(p.maxima, {.name = "tip.maxima", .help = "Use local maxima of the scan only", .level = Level::advanced});
+  visit(p.maxima, {.name = "tip.maxima",
+                   .help = "Use local maxima of the scan only",
+                   .level = Level::advanced});
   visit.form(
       {.name = "tip.sweep",
        .help = "Thresholds to try",
        .unit = Unit::nm,
-       .otherwise = fmt::format("0.3 to 8 standard deviations of the noise, {}", TipSweepOptions{}.thresholds),
+       .otherwise = fmt::format("0.3 to 8 standard deviations of the noise, {}",
+                                TipSweepOptions{}.thresholds),
        .form = "FROM,TO,N",
        .level = Level::advanced},
       [&p] {
         if (sweeps_as_usual(p)) return std::string();
-        return fmt::format("{},{},{}", format_exact(p.sweep_least_nm), format_exact(p.sweep_most_nm),
-                           p.sweep_thresholds);
+        return fmt::format("{},{},{}", format_exact(p.sweep_least_nm),
+                           format_exact(p.sweep_most_nm), p.sweep_thresholds);
       },
       [&p](std::string_view text, const std::string& subject) { read_sweep(text, subject, p); });
-  visit(p.seed,
-        {.name = "tip.seed", .help = "Seed of the noise that residuals are compared with", .level = Level::advanced});
+  visit(p.seed, {.name = "tip.seed",
+                 .help = "Seed of the noise that residuals are compared with",
+                 .level = Level::advanced});
 }
 
 void describe(ParameterVisitor& visit, CharacterizerParameters& p) {
@@ -269,34 +291,52 @@ void describe(ParameterVisitor& visit, TipShape& s) {
   constexpr double most_nm = 1e9;
   visit(s.kind, {"cone", "parabola", "pyramid", "ball"},
         {.name = "tip.kind",
-         .help = "Shape: cone and pyramid end in a sphere without a kink, a parabola has the radius at its apex, a ball "
+         .help = "Shape: cone and pyramid end in a sphere without a kink, a parabola has the "
+                 "radius at its apex, a ball "
                  "sits on a stem"});
-  visit(s.radius_nm, {.name = "tip.radius", .help = "Radius at the apex, or of the ball", .unit = Unit::nm,
+  visit(s.radius_nm, {.name = "tip.radius",
+                      .help = "Radius at the apex, or of the ball",
+                      .unit = Unit::nm,
                       .limits = above(0, most_nm)});
-  visit(s.half_angle_deg, {.name = "tip.half_angle", .help = "Angle of the side with the axis, of a cone or pyramid",
-                           .unit = Unit::deg, .limits = from_to_below(0, 90)});
-  visit(s.faces, {.name = "tip.faces", .help = "Number of a pyramid's faces", .limits = within(3, 100)});
-  visit(s.rotation_deg, {.name = "tip.rotation", .help = "Azimuth of a pyramid's first face, counter-clockwise from +x",
-                         .unit = Unit::deg, .limits = within(-1e6, 1e6), .level = Level::advanced});
-  visit(s.stem_radius_nm, {.name = "tip.stem_radius",
-                           .help = "Radius of the stem where it leaves a ball, less than the ball's; 0: never seen",
-                           .unit = Unit::nm, .limits = within(0, most_nm), .level = Level::advanced});
+  visit(s.half_angle_deg, {.name = "tip.half_angle",
+                           .help = "Angle of the side with the axis, of a cone or pyramid",
+                           .unit = Unit::deg,
+                           .limits = from_to_below(0, 90)});
+  visit(s.faces,
+        {.name = "tip.faces", .help = "Number of a pyramid's faces", .limits = within(3, 100)});
+  visit(s.rotation_deg, {.name = "tip.rotation",
+                         .help = "Azimuth of a pyramid's first face, counter-clockwise from +x",
+                         .unit = Unit::deg,
+                         .limits = within(-1e6, 1e6),
+                         .level = Level::advanced});
+  visit(s.stem_radius_nm,
+        {.name = "tip.stem_radius",
+         .help = "Radius of the stem where it leaves a ball, less than the ball's; 0: never seen",
+         .unit = Unit::nm,
+         .limits = within(0, most_nm),
+         .level = Level::advanced});
   visit(s.stem_half_angle_deg, {.name = "tip.stem_half_angle",
                                 .help = "Angle by which the stem of a ball widens; 0: a cylinder",
-                                .unit = Unit::deg, .limits = from_to_below(0, 90), .level = Level::advanced});
+                                .unit = Unit::deg,
+                                .limits = from_to_below(0, 90),
+                                .level = Level::advanced});
 }
 
 void describe(ParameterVisitor& visit, TipShapeParameters& p) {
   visit.form(
       {.name = "tip.shape",
        .help = "A tip by its shape, without a scan: parabola:RADIUS, cone:RADIUS,ANGLE, "
-               "pyramid:RADIUS,ANGLE,FACES[,ROTATION], ball:RADIUS or ball:RADIUS,STEM_RADIUS,STEM_ANGLE, with angles "
+               "pyramid:RADIUS,ANGLE,FACES[,ROTATION], ball:RADIUS or "
+               "ball:RADIUS,STEM_RADIUS,STEM_ANGLE, with angles "
                "from the axis",
        .otherwise = "found in a scan",
        .form = "SHAPE"},
       [&p] { return format_tip_shape(p.shape); },
-      [&p](std::string_view text, const std::string& subject) { p.shape = parse_tip_shape(text, subject); });
-  visit(p.size, {.name = "tip.size", .help = "Samples across the tip, odd", .limits = within(1, 4001)});
+      [&p](std::string_view text, const std::string& subject) {
+        p.shape = parse_tip_shape(text, subject);
+      });
+  visit(p.size,
+        {.name = "tip.size", .help = "Samples across the tip, odd", .limits = within(1, 4001)});
 }
 
 void check(const TipParameters& p) {
@@ -304,18 +344,22 @@ void check(const TipParameters& p) {
   check_parameters(p);
   need_odd(p.size);
   if (answer == TipAnswer::blind && !p.threshold_nm)
-    throw UsageError("`tip.threshold`", "this answer needs one", "Give one, as 0.5nm, or leave out `tip.answer`");
+    throw UsageError("`tip.threshold`", "this answer needs one",
+                     "Give one, as 0.5nm, or leave out `tip.answer`");
   if (answer != TipAnswer::blind)
-    for (const auto& [given, name] : {std::pair{p.threshold_nm.has_value(), "`tip.threshold`"},
-                                      std::pair{p.threshold_y_nm.has_value(), "`tip.threshold_y`"},
-                                      std::pair{p.maxima, "`tip.maxima`"}, std::pair{p.layer_nm != 0, "`tip.layer`"},
-                                      std::pair{p.apex_tolerance_nm != 0, "`tip.apex_tolerance`"}})
-      if (given) throw UsageError(name, "this answer finds its own", "Leave it out, or `tip.answer`");
+    for (const auto& [given, name] :
+         {std::pair{p.threshold_nm.has_value(), "`tip.threshold`"},
+          std::pair{p.threshold_y_nm.has_value(), "`tip.threshold_y`"},
+          std::pair{p.maxima, "`tip.maxima`"}, std::pair{p.layer_nm != 0, "`tip.layer`"},
+          std::pair{p.apex_tolerance_nm != 0, "`tip.apex_tolerance`"}})
+      if (given)
+        throw UsageError(name, "this answer finds its own", "Leave it out, or `tip.answer`");
   if (answer != TipAnswer::sweep && !sweeps_as_usual(p))
     throw UsageError("`tip.sweep`", "this answer does not sweep", "Leave it out, or `tip.answer`");
 }
 
-TipResult find_tip(const std::vector<HeightField>& scans, const TipParameters& p, const Reporter& reporter) {
+TipResult find_tip(const std::vector<HeightField>& scans, const TipParameters& p,
+                   const Reporter& reporter) {
   const TipAnswer answer = answer_of(p);
   check(p);
   TipResult result;
@@ -334,7 +378,8 @@ TipResult find_tip(const std::vector<HeightField>& scans, const TipParameters& p
       unconstrained_directions(result.tip, *result.used.threshold_nm + 3 * result.sigma_nm);
   if (!open_ways.empty())
     reporter.warn(
-        fmt::format("the scan does not tell the tip's shape towards {} degrees (counter-clockwise from +x): nothing "
+        fmt::format("the scan does not tell the tip's shape towards {} degrees (counter-clockwise "
+                    "from +x): nothing "
                     "there is steep enough. What is given is the bluntest tip possible",
                     ranges_of(open_ways)));
   tell_tip_doubt(result.tip, reporter);
@@ -351,7 +396,8 @@ CharacterizedTip tip_by_characterizer(const HeightField& scan, const HeightField
   options.threads = p.threads;
   CharacterizedTip found = tip_from_characterizer(scan, characterizer, options);
   if (found.offset_at_limit)
-    reporter.warn(fmt::format("scan and characterizer are {} samples or more apart: crop the scan", p.search));
+    reporter.warn(fmt::format("scan and characterizer are {} samples or more apart: crop the scan",
+                              p.search));
   return found;
 }
 
@@ -381,7 +427,8 @@ TipShape parse_tip_shape(std::string_view text, const std::string& subject) {
     const Parameter faces{.name = subject, .help = "", .limits = within(3, 100)};
     const double number = parse_value(words[2], faces, subject);
     if (number != std::floor(number))
-      throw UsageError(subject, fmt::format("'{}' is no number of faces", words[2]), "Write pyramid:10nm,20deg,4");
+      throw UsageError(subject, fmt::format("'{}' is no number of faces", words[2]),
+                       "Write pyramid:10nm,20deg,4");
     shape.faces = static_cast<int>(number);
     if (words.size() == 4) shape.rotation_deg = angle(3);
     return shape;
@@ -403,12 +450,17 @@ std::string format_tip_shape(const TipShape& s) {
   const auto nm = [](double value) { return format_exact(value) + "nm"; };
   const auto deg = [](double value) { return format_exact(value) + "deg"; };
   switch (s.kind) {
-    case TipShape::cone: return fmt::format("cone:{},{}", nm(s.radius_nm), deg(s.half_angle_deg));
-    case TipShape::parabola: return fmt::format("parabola:{}", nm(s.radius_nm));
+    case TipShape::cone:
+      return fmt::format("cone:{},{}", nm(s.radius_nm), deg(s.half_angle_deg));
+    case TipShape::parabola:
+      return fmt::format("parabola:{}", nm(s.radius_nm));
     case TipShape::ball:
       return fmt::format("ball:{}{}", nm(s.radius_nm),
-                         s.stem_radius_nm > 0 ? "," + nm(s.stem_radius_nm) + "," + deg(s.stem_half_angle_deg) : "");
-    case TipShape::pyramid: break;
+                         s.stem_radius_nm > 0
+                             ? "," + nm(s.stem_radius_nm) + "," + deg(s.stem_half_angle_deg)
+                             : "");
+    case TipShape::pyramid:
+      break;
   }
   return fmt::format("pyramid:{},{},{}{}", nm(s.radius_nm), deg(s.half_angle_deg), s.faces,
                      s.rotation_deg != 0 ? "," + deg(s.rotation_deg) : "");
@@ -420,14 +472,17 @@ Tip tip_by_shape(const TipShapeParameters& p, const std::string& subject) {
   try {
     return make_tip(p.shape, {p.pitch_x_nm, p.pitch_y_nm, p.size, p.size});
   } catch (const InvalidInput& e) {
-    throw UsageError(subject, fmt::format("{}: {}", format_tip_shape(p.shape), e.reason()), e.remedy());
+    throw UsageError(subject, fmt::format("{}: {}", format_tip_shape(p.shape), e.reason()),
+                     e.remedy());
   }
 }
 
-void tell_noise_doubts(const AfmNoise& noise, bool alpha_at_limit, const HeightField& scan, const Reporter& reporter) {
+void tell_noise_doubts(const AfmNoise& noise, bool alpha_at_limit, const HeightField& scan,
+                       const Reporter& reporter) {
   if (alpha_at_limit)
     reporter.warn(
-        "the noise can hardly be told from the structure and may be less. Give `scan.height_noise`, from a flat scan: "
+        "the noise can hardly be told from the structure and may be less. Give "
+        "`scan.height_noise`, from a flat scan: "
         "'semsurf noise scan'");
   if (const std::string doubt = doubt_of_noise(noise, scan); !doubt.empty())
     reporter.warn(doubt + ". Give `scan.height_noise`");
@@ -436,7 +491,8 @@ void tell_noise_doubts(const AfmNoise& noise, bool alpha_at_limit, const HeightF
 void tell_tip_doubt(const Tip& tip, const Reporter& reporter) {
   if (!tip.doubt.empty())
     reporter.warn(
-        fmt::format("this tip is not to be trusted: {}. Is the scan level, is `scan.height_noise` right, is `tip.size` "
+        fmt::format("this tip is not to be trusted: {}. Is the scan level, is `scan.height_noise` "
+                    "right, is `tip.size` "
                     "large enough? Another scan, or a tip by its shape, may do better",
                     tip.doubt));
 }

@@ -13,8 +13,8 @@
 #include "surf/core/units.h"
 #include "surf/io/files.h"
 #include "surf/io/model_file.h"
-#include "surf/mc/physics/material_doubts.h"
 #include "surf/io/overlaps.h"
+#include "surf/mc/physics/material_doubts.h"
 #include "surf/sem/fit_filter_bank.h"
 #include "surf/workflow/step_record.h"
 #include "training_data.h"
@@ -32,27 +32,35 @@ int own_surfaces(const TrainJob& job, const Learner& learner) {
 
 void check_numbers(const TrainJob& job, int own) {
   if (!(job.pixel_nm > 0 && std::isfinite(job.pixel_nm)))
-    throw UsageError("`training.pixel_size`", "it must be above zero", "Give the model's pixel size, as 3nm");
+    throw UsageError("`training.pixel_size`", "it must be above zero",
+                     "Give the model's pixel size, as 3nm");
   mc::validate(job.physics, job.energy_ev);
   mc::validate(job.simulation.budget);
   const int surfaces = own + static_cast<int>(job.inputs.size());
   if (job.held_out < 0 || (job.held_out > 0 && job.held_out >= surfaces))
-    throw UsageError("`training.hold_out`", fmt::format("{} of {} surfaces leave none to learn on", job.held_out, surfaces),
-                     "Give fewer, or more surfaces");
+    throw UsageError(
+        "`training.hold_out`",
+        fmt::format("{} of {} surfaces leave none to learn on", job.held_out, surfaces),
+        "Give fewer, or more surfaces");
   if (job.inputs.empty() && !job.signal.empty())
-    throw UsageError("`training.signal`", "an image is learnt together with the surface that it shows", "Name its HEIGHTS");
+    throw UsageError("`training.signal`",
+                     "an image is learnt together with the surface that it shows",
+                     "Name its HEIGHTS");
   if (!job.signal.empty())
     for (const TrainingInput& input : job.inputs)
       if (!input.has_image())
-        throw UsageError("`training.signal`", fmt::format("there is no image of {}", input.name), "Give one for each of the HEIGHTS");
+        throw UsageError("`training.signal`", fmt::format("there is no image of {}", input.name),
+                         "Give one for each of the HEIGHTS");
 }
 
-void check_target(const TrainJob& job, const std::vector<TrainingSurface>& surfaces, bool is_shared) {
+void check_target(const TrainJob& job, const std::vector<TrainingSurface>& surfaces,
+                  bool is_shared) {
   io::check_model_target(job.output);
   std::vector<io::FileUse> inputs, outputs{{"`output`", job.output, {}}};
   for (const TrainingSurface& surface : surfaces) {
     if (!surface.image.empty()) inputs.push_back({"`training.images`", surface.image, {}});
-    else if (!surface.has_image()) outputs.push_back({"`output`", image_folder(job) / (surface.name + ".exr"), job.output});
+    else if (!surface.has_image())
+      outputs.push_back({"`output`", image_folder(job) / (surface.name + ".exr"), job.output});
   }
   if (is_shared) {
     const std::filesystem::path record = sidecar_path(job.output);
@@ -62,7 +70,8 @@ void check_target(const TrainJob& job, const std::vector<TrainingSurface>& surfa
   io::refuse_overlaps(inputs, outputs);
 }
 
-std::vector<TrainingImage> read_images(const TrainJob& job, const std::vector<TrainingSurface>& surfaces,
+std::vector<TrainingImage> read_images(const TrainJob& job,
+                                       const std::vector<TrainingSurface>& surfaces,
                                        const SimulatedImages& simulated) {
   std::vector<TrainingImage> images;
   for (std::size_t i = 0; i < surfaces.size(); ++i) {
@@ -70,12 +79,14 @@ std::vector<TrainingImage> read_images(const TrainJob& job, const std::vector<Tr
     images.push_back(read_training_image(surfaces[i], file, job));
   }
   // Weights of some images beside none of others would mean nothing.
-  if (std::any_of(images.begin(), images.end(), [](const TrainingImage& i) { return i.standard_errors.empty(); }))
+  if (std::any_of(images.begin(), images.end(),
+                  [](const TrainingImage& i) { return i.standard_errors.empty(); }))
     for (TrainingImage& image : images) image.standard_errors.clear();
   return images;
 }
 
-std::map<std::string, std::string> notes_of(const TrainJob& job, const std::vector<TrainingSurface>& surfaces) {
+std::map<std::string, std::string> notes_of(const TrainJob& job,
+                                            const std::vector<TrainingSurface>& surfaces) {
   std::map<std::string, std::string> notes = step_record(training_command(job), record_of(job));
   if (!surfaces.empty() && samples_per_pixel(job) > 1)
     notes["samples_per_pixel"] = std::to_string(samples_per_pixel(job));
@@ -105,24 +116,28 @@ std::vector<TrainingScene> judge(const TrainJob& job, const ImageModel& model,
 
 /// What surfaces and images say of a finished model. Surfaces are in the order of the images.
 void complete_record(const TrainJob& job, const std::vector<TrainingSurface>& surfaces,
-                     const std::vector<TrainingImage>& learnt, const std::vector<TrainingImage>& held_out,
-                     TrainedModel& model) {
+                     const std::vector<TrainingImage>& learnt,
+                     const std::vector<TrainingImage>& held_out, TrainedModel& model) {
   TrainingRecord& record = model.record;
-  for (const TrainingImage& image : learnt) record.range = united(record.range, surface_range(image.field));
+  for (const TrainingImage& image : learnt)
+    record.range = united(record.range, surface_range(image.field));
   const auto usable = make_model(model);
   if (!learnt.empty()) record.residuals = residuals_of(*usable, learnt, job.simulation.threads);
-  if (!held_out.empty()) record.held_out_residuals = residuals_of(*usable, held_out, job.simulation.threads);
+  if (!held_out.empty())
+    record.held_out_residuals = residuals_of(*usable, held_out, job.simulation.threads);
   record.scenes = judge(job, *usable, surfaces, 0, learnt, false);
   for (TrainingScene& scene : judge(job, *usable, surfaces, learnt.size(), held_out, true))
     record.scenes.push_back(std::move(scene));
 }
 
 /// From images to the model's file. `complete` is false when cancelled.
-void learn(const TrainJob& job, const Learner& learner, const std::vector<TrainingSurface>& surfaces,
-           const SimulatedImages& simulated, const Reporter& reporter, TrainSummary& summary) {
+void learn(const TrainJob& job, const Learner& learner,
+           const std::vector<TrainingSurface>& surfaces, const SimulatedImages& simulated,
+           const Reporter& reporter, TrainSummary& summary) {
   std::vector<TrainingImage> images = read_images(job, surfaces, simulated);
   if (!images.empty()) validate(images);
-  const std::size_t learnt = learner.needs_images ? images.size() - static_cast<std::size_t>(job.held_out) : 0;
+  const std::size_t learnt =
+      learner.needs_images ? images.size() - static_cast<std::size_t>(job.held_out) : 0;
   const auto split = images.begin() + static_cast<std::ptrdiff_t>(learnt);
   const std::vector<TrainingImage> held_out(split, images.end());
   images.erase(split, images.end());
@@ -141,8 +156,7 @@ void learn(const TrainJob& job, const Learner& learner, const std::vector<Traini
     return;
   }
   complete_record(job, surfaces, images, held_out, model);
-  for (const std::string& warning : model.record.warnings)
-    reporter.warn(warning);
+  for (const std::string& warning : model.record.warnings) reporter.warn(warning);
   summary.complete = !reporter.cancelled();
   if (summary.complete) io::write_model(job.output, model);
 }
@@ -177,7 +191,8 @@ TrainSummary run(const TrainJob& job, const Reporter& reporter, Team* team) {
     if (!team || !summary.complete) return;
     summary.written.push_back(sidecar_path(job.output));
     io::write_text(summary.written.back(),
-                   team_record(*team, simulated.runs, seconds.count(), job.simulation.threads, training_command(job)));
+                   team_record(*team, simulated.runs, seconds.count(), job.simulation.threads,
+                               training_command(job)));
   });
   return summary;
 }

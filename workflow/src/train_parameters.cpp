@@ -26,14 +26,16 @@ constexpr double most_pixel_nm = 1e6;
 
 std::string write_scales(const std::vector<FacetScale>& scales) {
   std::string text;
-  for (const FacetScale& scale : scales) text += fmt::format("{}{}", text.empty() ? "" : ",", scale.size);
+  for (const FacetScale& scale : scales)
+    text += fmt::format("{}{}", text.empty() ? "" : ",", scale.size);
   return text;
 }
 
 std::vector<FacetScale> read_scales(std::string_view text, const std::string& subject) {
   const std::vector<FacetScale> all = thesis_scales();
   std::vector<FacetScale> scales;
-  for (const int size : parse_whole_numbers(text, {.name = "scale", .help = "", .limits = within(5, 255)}, subject)) {
+  for (const int size : parse_whole_numbers(
+           text, {.name = "scale", .help = "", .limits = within(5, 255)}, subject)) {
     const auto known = std::ranges::find(all, size, &FacetScale::size);
     if (known == all.end())
       throw UsageError(subject, fmt::format("there is no neighbourhood of {} samples", size),
@@ -46,7 +48,8 @@ std::vector<FacetScale> read_scales(std::string_view text, const std::string& su
 /// "24,12" for two hidden layers, "0" for none.
 std::vector<int> read_hidden(std::string_view text, const std::string& subject) {
   if (text == "0") return {};
-  return parse_whole_numbers(text, {.name = "units", .help = "", .limits = within(1, 256)}, subject);
+  return parse_whole_numbers(text, {.name = "units", .help = "", .limits = within(1, 256)},
+                             subject);
 }
 
 /// Of a network: its layers can also come from elsewhere than a text.
@@ -67,7 +70,8 @@ class HiddenField final : public Field {
     if (!layers_) return;
     for (const int units : *layers_)
       if (units < 1 || units > 256)
-        throw UsageError(subject, fmt::format("{} is out of range", units), "Give 1 to 256 units for each layer");
+        throw UsageError(subject, fmt::format("{} is out of range", units),
+                         "Give 1 to 256 units for each layer");
     if (layers_->size() > most_hidden_layers)
       throw UsageError(subject, fmt::format("{} hidden layers are too many", layers_->size()),
                        "Give 1 to 3, or 0 for none");
@@ -104,7 +108,8 @@ void show_or_none(ParameterVisitor& visit, int& number, const Parameter& about) 
 
 double read_square_nm(std::string_view text, const std::string& subject) {
   const auto [x, y] = parse_two_lengths_nm(text, subject);
-  if (!(x > 0) || x != y) throw UsageError(subject, "a model's pixels are square and above zero", "Write 3nm");
+  if (!(x > 0) || x != y)
+    throw UsageError(subject, "a model's pixels are square and above zero", "Write 3nm");
   if (x > most_pixel_nm)
     throw UsageError(subject, fmt::format("{} is out of range", format_length(x)),
                      fmt::format("Give at most {}", format_length(most_pixel_nm)));
@@ -129,7 +134,8 @@ void describe_simulation(ParameterVisitor& visit, TrainJob& job) {
                   "electrons"},
                  {"simulation.physics"},
                  {"simulation.cutoff"},
-                 {"simulation.seed", "Seed of surfaces and simulations: the same seed gives the same model"}});
+                 {"simulation.seed",
+                  "Seed of surfaces and simulations: the same seed gives the same model"}});
   if (!visit.reads()) return;
   job.energy_ev = request.beam.energy_ev;
   job.spot_nm = request.beam.spot_nm;
@@ -153,66 +159,97 @@ void describe(ParameterVisitor& visit, LearnOptions& learn) {
        .otherwise = "all ten; of a network those that the electrons' range covers",
        .form = "N,N..."},
       [&] { return write_scales(learn.scales); },
-      [&](std::string_view text, const std::string& subject) { learn.scales = read_scales(text, subject); });
+      [&](std::string_view text, const std::string& subject) {
+        learn.scales = read_scales(text, subject);
+      });
   HiddenField hidden(learn.hidden);
-  visit.visit({.name = "training.hidden", .help = "Units of a network's hidden layers, as 24,12; 0 is no layer",
-               .otherwise = fmt::format("{}", fmt::join(network.hidden, ",")), .form = "N,N..."},
+  visit.visit({.name = "training.hidden",
+               .help = "Units of a network's hidden layers, as 24,12; 0 is no layer",
+               .otherwise = fmt::format("{}", fmt::join(network.hidden, ",")),
+               .form = "N,N..."},
               hidden);
-  visit(learn.iterations, {.name = "training.iterations", .help = "Most iterations of a network's training",
-                           .limits = within(1, 100'000), .otherwise = std::to_string(network.iterations)});
-  visit(learn.decay, {.name = "training.decay", .help = "How strongly large weights of a network are held back",
-                      .limits = at_least(0), .otherwise = fmt::format("{:g}", network.decay)});
+  visit(learn.iterations, {.name = "training.iterations",
+                           .help = "Most iterations of a network's training",
+                           .limits = within(1, 100'000),
+                           .otherwise = std::to_string(network.iterations)});
+  visit(learn.decay, {.name = "training.decay",
+                      .help = "How strongly large weights of a network are held back",
+                      .limits = at_least(0),
+                      .otherwise = fmt::format("{:g}", network.decay)});
   visit(learn.model_error, {.name = "training.model_error",
                             .help = "Error that a network is expected to have besides noise",
                             .unit = Unit::share,
                             .limits = at_least(0),
                             .otherwise = format_value(network.tolerance, Unit::share)});
   visit(learn.least_eigenvalue,
-        {.name = "training.least_eigenvalue", .help = "Least eigenvalue of the components that a filter bank keeps",
-         .unit = Unit::share, .limits = at_least(0), .otherwise = fmt::format("{:g}", FilterBankFitOptions{}.eigenvalue_cutoff),
+        {.name = "training.least_eigenvalue",
+         .help = "Least eigenvalue of the components that a filter bank keeps",
+         .unit = Unit::share,
+         .limits = at_least(0),
+         .otherwise = fmt::format("{:g}", FilterBankFitOptions{}.eigenvalue_cutoff),
          .form = "NUMBER"});
-  visit(learn.multi_resolution,
-        {.name = "training.multi_resolution", .help = "Wide neighbourhoods of a filter bank on fewer samples"});
-  visit(learn.table_electrons, {.name = "training.table_electrons",
-                                .help = "Primaries that a table is made of: at each angle of slopes, or in all",
-                                .limits = within(2, most_electrons),
-                                .otherwise = fmt::format("{} at each, 10240 in all", SlopeTableOptions{}.electrons)});
+  visit(learn.multi_resolution, {.name = "training.multi_resolution",
+                                 .help = "Wide neighbourhoods of a filter bank on fewer samples"});
+  visit(learn.table_electrons,
+        {.name = "training.table_electrons",
+         .help = "Primaries that a table is made of: at each angle of slopes, or in all",
+         .limits = within(2, most_electrons),
+         .otherwise = fmt::format("{} at each, 10240 in all", SlopeTableOptions{}.electrons)});
 }
 
 void describe(ParameterVisitor& visit, TrainJob& job) {
-  visit(job.surfaces, {.name = "training.surfaces", .help = "Number of semsurf's own surfaces; there are 20 kinds",
-                       .limits = within(1, 1000), .otherwise = "60; 0 if no images are needed"});
-  visit(job.surface_px, {.name = "training.surface_size", .help = "Pixels across each of semsurf's own surfaces",
+  visit(job.surfaces, {.name = "training.surfaces",
+                       .help = "Number of semsurf's own surfaces; there are 20 kinds",
+                       .limits = within(1, 1000),
+                       .otherwise = "60; 0 if no images are needed"});
+  visit(job.surface_px, {.name = "training.surface_size",
+                         .help = "Pixels across each of semsurf's own surfaces",
                          .limits = within(16, 4096)});
-  visit(job.held_out, {.name = "training.hold_out", .help = "Number of the last surfaces that only judge the model",
+  visit(job.held_out, {.name = "training.hold_out",
+                       .help = "Number of the last surfaces that only judge the model",
                        .limits = within(0, 1000)});
-  show_or_none(visit, job.fine,
-               {.name = "training.fine",
-                .help = "Samples per pixel to simulate with, smooth between them",
-                .limits = within(1, 8),
-                .otherwise = "so many that they are at most a fifth of the electrons' range apart"});
+  show_or_none(
+      visit, job.fine,
+      {.name = "training.fine",
+       .help = "Samples per pixel to simulate with, smooth between them",
+       .limits = within(1, 8),
+       .otherwise = "so many that they are at most a fifth of the electrons' range apart"});
   visit(job.edge, {"mirror", "flat", "periodic"},
         {.name = "training.edge", .help = "Continuation of surfaces outside"});
   describe(visit, job.reading);
-  visit.form({.name = "training.pixel_size", .help = "Size of the images' pixels, which are square", .unit = Unit::nm,
-              .limits = above(0, most_pixel_nm), .otherwise = "that of the first of HEIGHTS", .form = "LENGTH"},
-             [&] { return job.pixel_nm != 0 ? format_exact(job.pixel_nm) : std::string(); },
-             [&](std::string_view text, const std::string& subject) { job.pixel_nm = read_square_nm(text, subject); },
-             FieldKind::number);
+  visit.form(
+      {.name = "training.pixel_size",
+       .help = "Size of the images' pixels, which are square",
+       .unit = Unit::nm,
+       .limits = above(0, most_pixel_nm),
+       .otherwise = "that of the first of HEIGHTS",
+       .form = "LENGTH"},
+      [&] { return job.pixel_nm != 0 ? format_exact(job.pixel_nm) : std::string(); },
+      [&](std::string_view text, const std::string& subject) {
+        job.pixel_nm = read_square_nm(text, subject);
+      },
+      FieldKind::number);
   describe(visit, job.learn);
   describe_simulation(visit, job);
   visit.form(
       {.name = "job.cache",
-       .help = "Folder that libraries of cascades are kept in, 115 MB or so for every image, or off",
+       .help =
+           "Folder that libraries of cascades are kept in, 115 MB or so for every image, or off",
        .otherwise = "off",
        .form = "FOLDER|off",
        .recorded = false},
       [&] { return job.cache.string(); },
-      [&](std::string_view text, const std::string&) { job.cache = io::cache_folder(std::string(text)); });
-  visit.form({.name = "output", .help = "The model to write, .json", .form = "FILE", .recorded = false,
-              .file = FileRole::written},
-             [&] { return job.output.string(); },
-             [&](std::string_view text, const std::string&) { job.output = text; });
+      [&](std::string_view text, const std::string&) {
+        job.cache = io::cache_folder(std::string(text));
+      });
+  visit.form(
+      {.name = "output",
+       .help = "The model to write, .json",
+       .form = "FILE",
+       .recorded = false,
+       .file = FileRole::written},
+      [&] { return job.output.string(); },
+      [&](std::string_view text, const std::string&) { job.output = text; });
   describe(visit, static_cast<mc::Execution&>(job.simulation));
 }
 

@@ -20,10 +20,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double same_pitch = 1e-3;    // relative; as of image models
-constexpr double most_coarse = 2;      // times the model's pixel
+constexpr double same_pitch = 1e-3;  // relative; as of image models
+constexpr double most_coarse = 2;    // times the model's pixel
 
-bool is_pitch(double pitch_nm, double wanted_nm) { return std::abs(pitch_nm - wanted_nm) <= same_pitch * wanted_nm; }
+bool is_pitch(double pitch_nm, double wanted_nm) {
+  return std::abs(pitch_nm - wanted_nm) <= same_pitch * wanted_nm;
+}
 
 std::string hash_of(const HeightField& field) {
   return io::sha256_of(std::as_bytes(std::span(field.z_nm.data())));
@@ -37,7 +39,8 @@ std::string stem_of(const std::string& name) {
 
 std::string unique(const std::string& name, std::set<std::string>& taken) {
   std::string candidate = name;
-  for (int number = 2; !taken.insert(candidate).second; ++number) candidate = fmt::format("{}-{}", name, number);
+  for (int number = 2; !taken.insert(candidate).second; ++number)
+    candidate = fmt::format("{}-{}", name, number);
   return candidate;
 }
 
@@ -49,20 +52,22 @@ HeightField at_pixel(const TrainingInput& input, double pixel_nm, const NoteCall
   if (is_pitch(field.pitch_x_nm, pixel_nm) && is_pitch(field.pitch_y_nm, pixel_nm)) return field;
   const double coarsest = std::max(field.pitch_x_nm, field.pitch_y_nm);
   if (coarsest > most_coarse * pixel_nm)
-    throw InvalidInput(input.name, fmt::format("its samples are {} apart, the model's pixels are {}",
-                                               format_length(coarsest), format_length(pixel_nm)),
-                       fmt::format("What is in between is not known: use `training.pixel_size={}nm`, or leave the file out",
+    throw InvalidInput(input.name,
+                       fmt::format("its samples are {} apart, the model's pixels are {}",
+                                   format_length(coarsest), format_length(pixel_nm)),
+                       fmt::format("What is in between is not known: use "
+                                   "`training.pixel_size={}nm`, or leave the file out",
                                    format_exact(coarsest)));
   HeightField out = resampled(field, pixel_nm);
   if (note)
-    note(fmt::format("{}: {} x {} samples of {} are resampled to {} x {} of {}", input.name, field.z_nm.width(),
-                     field.z_nm.height(), format_length(field.pitch_x_nm), out.z_nm.width(), out.z_nm.height(),
-                     format_length(pixel_nm)));
+    note(fmt::format("{}: {} x {} samples of {} are resampled to {} x {} of {}", input.name,
+                     field.z_nm.width(), field.z_nm.height(), format_length(field.pitch_x_nm),
+                     out.z_nm.width(), out.z_nm.height(), format_length(pixel_nm)));
   return out;
 }
 
-// Electrons counted in a pixel say little of its own standard error: few by chance look precise, and
-// would weigh more. The mean variance of the 25 around is nearly free of that.
+// Electrons counted in a pixel say little of its own standard error: few by chance look precise,
+// and would weigh more. The mean variance of the 25 around is nearly free of that.
 Grid<float> even_errors(const Grid<float>& errors, const Grid<unsigned char>& used) {
   constexpr int reach = 2;
   const int w = errors.width(), h = errors.height();
@@ -79,23 +84,26 @@ Grid<float> even_errors(const Grid<float>& errors, const Grid<unsigned char>& us
       if (out(x, y) > 0) smallest = std::min<double>(smallest, out(x, y));
     }
   if (!std::isfinite(smallest)) return {};
-  for (float& error : out.data()) error = std::max(error, static_cast<float>(smallest));   // no counts at all
+  for (float& error : out.data())
+    error = std::max(error, static_cast<float>(smallest));  // no counts at all
   return out;
 }
 
 }  // namespace
 
-std::vector<TrainingSurface> gather_surfaces(const TrainJob& job, int own, const NoteCallback& note) {
+std::vector<TrainingSurface> gather_surfaces(const TrainJob& job, int own,
+                                             const NoteCallback& note) {
   std::vector<TrainingSurface> surfaces;
   std::set<std::string> taken;
   for (const TrainingInput& input : job.inputs) {
     HeightField field = at_pixel(input, job.pixel_nm, note);
     std::string hash = input.sha256.empty() ? hash_of(field) : input.sha256;
-    surfaces.push_back({unique(stem_of(input.name), taken), std::move(field), std::move(hash), input.image,
-                        input.pixels});
+    surfaces.push_back({unique(stem_of(input.name), taken), std::move(field), std::move(hash),
+                        input.image, input.pixels});
   }
   if (own == 0) return surfaces;
-  for (NamedSurface& made : training_surfaces({job.pixel_nm, job.surface_px, own, job.simulation.seed})) {
+  for (NamedSurface& made :
+       training_surfaces({job.pixel_nm, job.surface_px, own, job.simulation.seed})) {
     std::string hash = hash_of(made.field);
     surfaces.push_back({made.name, std::move(made.field), std::move(hash), {}});
   }
@@ -107,19 +115,25 @@ std::vector<std::string> channels_of(const TrainJob& job) {
   return {"SE", "BSE"};
 }
 
-TrainingImage read_training_image(const TrainingSurface& surface, const fs::path& file, const TrainJob& job) {
+TrainingImage read_training_image(const TrainingSurface& surface, const fs::path& file,
+                                  const TrainJob& job) {
   const Image image = surface.pixels ? *surface.pixels : io::read_image(file);
-  const std::string subject = surface.pixels ? fmt::format("the image of {}", surface.name) : file.string();
+  const std::string subject =
+      surface.pixels ? fmt::format("the image of {}", surface.name) : file.string();
   const HeightField& field = surface.field;
   const int w = field.z_nm.width(), h = field.z_nm.height();
   if (image.width() != w || image.height() != h)
-    throw InvalidInput(subject, fmt::format("it has {} x {} pixels, the surface {} {} x {} samples",
-                                                  image.width(), image.height(), surface.name, w, h),
-                       "Give an image with one pixel on each sample of the surface: crop or register it first");
+    throw InvalidInput(
+        subject,
+        fmt::format("it has {} x {} pixels, the surface {} {} x {} samples", image.width(),
+                    image.height(), surface.name, w, h),
+        "Give an image with one pixel on each sample of the surface: crop or register it first");
   const bool simulated = job.signal.empty();
-  if (simulated && (!is_pitch(image.pitch_x_nm, job.pixel_nm) || !is_pitch(image.pitch_y_nm, job.pixel_nm)))
-    throw InvalidInput(subject, fmt::format("its pixels are {}, the model's {}", format_length(image.pitch_x_nm),
-                                                  format_length(job.pixel_nm)),
+  if (simulated &&
+      (!is_pitch(image.pitch_x_nm, job.pixel_nm) || !is_pitch(image.pitch_y_nm, job.pixel_nm)))
+    throw InvalidInput(subject,
+                       fmt::format("its pixels are {}, the model's {}",
+                                   format_length(image.pitch_x_nm), format_length(job.pixel_nm)),
                        "Give an image of the model's pixel size");
   TrainingImage out;
   out.name = surface.name;
@@ -127,14 +141,16 @@ TrainingImage read_training_image(const TrainingSurface& surface, const fs::path
   out.edge = job.edge;
   out.used = Grid<unsigned char>(w, h, 1);
   if (const Channel* valid = image.find("valid"))
-    for (std::size_t i = 0; i < out.used.size(); ++i) out.used.data()[i] = valid->values.data()[i] != 0;
+    for (std::size_t i = 0; i < out.used.size(); ++i)
+      out.used.data()[i] = valid->values.data()[i] != 0;
   const std::vector<std::string> wanted = simulated ? channels_of(job) : std::vector{job.signal};
   for (const std::string& name : wanted) {
     const Channel* channel = image.find(name);
     if (!channel)
-      throw FileError(subject, fmt::format("it has no channel '{}'", name),
-                      simulated ? "Give an image with SE and BSE, or `training.signal` for that of a microscope"
-                                : "'semsurf info' lists its channels: `training.signal=FILE:CHANNEL`");
+      throw FileError(
+          subject, fmt::format("it has no channel '{}'", name),
+          simulated ? "Give an image with SE and BSE, or `training.signal` for that of a microscope"
+                    : "'semsurf info' lists its channels: `training.signal=FILE:CHANNEL`");
     for (std::size_t i = 0; i < out.used.size(); ++i)
       if (!std::isfinite(channel->values.data()[i])) out.used.data()[i] = 0;
     out.images.push_back(channel->values);

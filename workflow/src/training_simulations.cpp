@@ -23,8 +23,8 @@ SimulateJob simulation_of(const TrainJob& job, const TrainingSurface& surface, s
   SimulateJob out;
   io::SceneFile& scene = out.scene;
   scene.specimen.materials = {job.material};
-  scene.specimen.height_field =
-      mc::HeightFieldBody{surface.name, smoothly_upsampled(surface.field, samples_per_pixel(job)), 0, job.edge};
+  scene.specimen.height_field = mc::HeightFieldBody{
+      surface.name, smoothly_upsampled(surface.field, samples_per_pixel(job)), 0, job.edge};
   scene.beam.energy_ev = job.energy_ev;
   scene.beam.spot_nm = job.spot_nm;
   scene.scan.width = surface.field.z_nm.width();
@@ -34,7 +34,8 @@ SimulateJob simulation_of(const TrainJob& job, const TrainingSurface& surface, s
   scene.physics = job.physics;
   out.execution = job.simulation;
   scene.budget = job.simulation.budget;
-  scene.seed = job.simulation.seed + number;   // the libraries' own chance errors then differ from image to image
+  scene.seed = job.simulation.seed +
+               number;  // the libraries' own chance errors then differ from image to image
   out.cache = job.cache;
   out.extras.channels = {"z_nm"};
   out.outputs = {output};
@@ -47,21 +48,24 @@ std::string counted(std::size_t count, const char* thing) {
   return fmt::format("{} {}{}", count, thing, count == 1 ? "" : "s");
 }
 
-void tell_what_is_there(std::size_t all, std::size_t missing, std::size_t unusable, const fs::path& folder,
-                        const NoteCallback& note) {
+void tell_what_is_there(std::size_t all, std::size_t missing, std::size_t unusable,
+                        const fs::path& folder, const NoteCallback& note) {
   if (!note) return;
   const std::size_t found = all - missing;
-  if (found > 0) note(fmt::format("{} of {} are there already, in {}", found, counted(all, "image"), folder.string()));
+  if (found > 0)
+    note(fmt::format("{} of {} are there already, in {}", found, counted(all, "image"),
+                     folder.string()));
   if (unusable > 0)
-    note(fmt::format("{} there made otherwise, by another build or unfinished, and will be replaced",
-                     unusable == 1 ? "1 image is" : fmt::format("{} images are", unusable)));
+    note(
+        fmt::format("{} there made otherwise, by another build or unfinished, and will be replaced",
+                    unusable == 1 ? "1 image is" : fmt::format("{} images are", unusable)));
 }
 
 constexpr char there = '+', not_there = '-';
 
 // A letter for each. Of a team whoever leads has looked: others may see the folder later than it.
-std::string what_is_missing(const std::vector<SimulateJob>& all, const fs::path& folder, const NoteCallback& note,
-                            Team* team) {
+std::string what_is_missing(const std::vector<SimulateJob>& all, const fs::path& folder,
+                            const NoteCallback& note, Team* team) {
   std::string letters;
   together(team, [&] {
     if (!leads(team)) return;
@@ -144,7 +148,8 @@ SimulatedImages simulate_images(const TrainJob& job, const std::vector<TrainingS
   if (!team || !out.runs.complete) return out;
   together(team, [&] {
     if (!team->leads()) return;
-    for (const SimulateJob& made : missing) await_file(made.outputs.front(), [&] { return is_finished(made); });
+    for (const SimulateJob& made : missing)
+      await_file(made.outputs.front(), [&] { return is_finished(made); });
   });
   return out;
 }

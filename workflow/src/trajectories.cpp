@@ -18,8 +18,8 @@
 namespace surf::workflow {
 namespace {
 
-constexpr int probe_primaries = 100;      // enough to know how far electrons get
-constexpr double exit_share = 0.35;       // of that, how far electrons that leave are drawn
+constexpr int probe_primaries = 100;  // enough to know how far electrons get
+constexpr double exit_share = 0.35;   // of that, how far electrons that leave are drawn
 
 struct Pixel {
   int x, y;
@@ -30,9 +30,10 @@ Pixel pixel_at(const mc::Scan& scan, const std::optional<std::pair<double, doubl
   const double x = (at_nm->first - scan.center_x_nm) / scan.pixel_x_nm + 0.5 * scan.width;
   const double y = (at_nm->second - scan.center_y_nm) / scan.pixel_y_nm + 0.5 * scan.height;
   if (!(x >= 0 && x < scan.width && y >= 0 && y < scan.height))
-    throw UsageError("`output.trajectories_at`",
-                     fmt::format("({:g}, {:g}) nm is outside the scan", at_nm->first, at_nm->second),
-                     "Give a point that the image shows");
+    throw UsageError(
+        "`output.trajectories_at`",
+        fmt::format("({:g}, {:g}) nm is outside the scan", at_nm->first, at_nm->second),
+        "Give a point that the image shows");
   return {static_cast<int>(x), static_cast<int>(y)};
 }
 
@@ -97,7 +98,8 @@ Trajectories record_trajectories(const mc::Scene& scene, std::uint64_t seed, int
   const mc::Scan& scan = scene.scan();
   const Pixel pixel = pixel_at(scan, at_nm);
   Trajectories t;
-  t.inside_nm = longest_side(box_inside(record(scene, seed, pixel, std::min(primaries, probe_primaries), 0)));
+  t.inside_nm =
+      longest_side(box_inside(record(scene, seed, pixel, std::min(primaries, probe_primaries), 0)));
   t.exit_nm = t.inside_nm > 0 ? exit_share * t.inside_nm : scan.width * scan.pixel_x_nm;
   t.tracks = record(scene, seed, pixel, primaries, t.exit_nm);
   return t;

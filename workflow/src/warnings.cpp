@@ -14,11 +14,12 @@
 namespace surf::workflow {
 namespace {
 
-constexpr double widest_nm = 1e9;        // a metre: no specimen chamber is wider
-constexpr double narrowest_nm = 0.1;     // an atom
-constexpr double finest_pixel_nm = 1e-3; // surfaces are no better than this
-constexpr double coarsest_nm = 1e-4;      // of coordinates: a tenth of the distance at which faces are one
-constexpr double transparent_share = 0.1;   // of the electrons' range
+constexpr double widest_nm = 1e9;         // a metre: no specimen chamber is wider
+constexpr double narrowest_nm = 0.1;      // an atom
+constexpr double finest_pixel_nm = 1e-3;  // surfaces are no better than this
+constexpr double coarsest_nm =
+    1e-4;  // of coordinates: a tenth of the distance at which faces are one
+constexpr double transparent_share = 0.1;  // of the electrons' range
 constexpr double lost_fraction = 1e-6;
 
 void warn_about_bodies(const mc::Specimen& specimen, const SpecimenFacts& facts,
@@ -26,8 +27,9 @@ void warn_about_bodies(const mc::Specimen& specimen, const SpecimenFacts& facts,
   for (std::size_t i = 0; i < specimen.bodies.size(); ++i) {
     const mc::Body& body = specimen.bodies[i];
     if (facts.bodies[i].is_sheet)
-      out.push_back(body.name + ": the mesh is open; it is taken as the top of a half-space that goes "
-                                "on flat beyond its rim");
+      out.push_back(body.name +
+                    ": the mesh is open; it is taken as the top of a half-space that goes "
+                    "on flat beyond its rim");
     else if (facts.bodies[i].inward)
       out.push_back(body.name + ": its normals point inward; they are taken as pointing outward");
   }
@@ -43,19 +45,23 @@ void warn_about_size(const Box& extent, std::vector<std::string>& out) {
   const Vec3 size = extent.size_nm();
   const double widest = std::max({size.x, size.y, size.z});
   if (widest > widest_nm || widest < narrowest_nm)
-    out.push_back(fmt::format("the specimen is {} wide; is `specimen.unit` right?", format_length(widest)));
+    out.push_back(
+        fmt::format("the specimen is {} wide; is `specimen.unit` right?", format_length(widest)));
   double farthest = 0;
   for (const Vec3& p : {extent.lower_nm, extent.upper_nm})
     farthest = std::max({farthest, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
   const double step = farthest * std::numeric_limits<double>::epsilon();
   if (step > coarsest_nm)
-    out.push_back(fmt::format("the specimen lies {} from the origin, where coordinates are {:.1g} nm apart; move it closer",
-                              format_length(farthest), step));
+    out.push_back(
+        fmt::format("the specimen lies {} from the origin, where coordinates are {:.1g} nm apart; "
+                    "move it closer",
+                    format_length(farthest), step));
 }
 
-/// A mesh in um that was read as nm is a speck that electrons pass through. Neither films nor particles on a
-/// substrate are meant, nor who named the unit.
-void warn_about_transparency(const io::SceneFile& scene, const SpecimenFacts& facts, std::vector<std::string>& out) {
+/// A mesh in um that was read as nm is a speck that electrons pass through. Neither films nor
+/// particles on a substrate are meant, nor who named the unit.
+void warn_about_transparency(const io::SceneFile& scene, const SpecimenFacts& facts,
+                             std::vector<std::string>& out) {
   const mc::Specimen& specimen = scene.specimen;
   const bool on_matter = specimen.substrate || specimen.height_field ||
                          std::ranges::any_of(facts.bodies, &mc::BodyFacts::is_sheet);
@@ -73,10 +79,13 @@ void warn_about_transparency(const io::SceneFile& scene, const SpecimenFacts& fa
   std::string other;
   for (const auto& [unit, factor] : {std::pair{"um", 1e3}, {"mm", 1e6}, {"m", 1e9}})
     if (other.empty() && factor * widest >= range)
-      other = fmt::format("With `specimen.unit={}` it would be {}. ", unit, format_length(factor * widest));
-  out.push_back(fmt::format("the specimen is {} wide, but electrons of {:g} eV reach about {} in {}: nearly all pass "
-                            "through it. {}Name the mesh file's unit, `specimen.unit` or 'unit' in a scene file; nm if it is right",
-                            format_length(widest), scene.beam.energy_ev, format_length(range), densest->name, other));
+      other = fmt::format("With `specimen.unit={}` it would be {}. ", unit,
+                          format_length(factor * widest));
+  out.push_back(fmt::format(
+      "the specimen is {} wide, but electrons of {:g} eV reach about {} in {}: nearly all pass "
+      "through it. {}Name the mesh file's unit, `specimen.unit` or 'unit' in a scene file; nm if "
+      "it is right",
+      format_length(widest), scene.beam.energy_ev, format_length(range), densest->name, other));
 }
 
 void warn_about_scan(const mc::Specimen& specimen, const Box& extent, const mc::Beam& beam,
@@ -88,7 +97,7 @@ void warn_about_scan(const mc::Specimen& specimen, const Box& extent, const mc::
   if (std::min(scan.pixel_x_nm, scan.pixel_y_nm) < finest_pixel_nm)
     out.push_back(fmt::format("pixels of {} are finer than surfaces are resolved (0.001 nm)",
                               format_length(std::min(scan.pixel_x_nm, scan.pixel_y_nm))));
-  if (beam.tilt_deg != 0) return;   // below, region and specimen are compared along z
+  if (beam.tilt_deg != 0) return;  // below, region and specimen are compared along z
   const bool bare_plane = specimen.bodies.empty() && !specimen.height_field;
   if (bare_plane) return;
   if (x1 <= extent.lower_nm.x || x0 >= extent.upper_nm.x || y1 <= extent.lower_nm.y ||
@@ -116,20 +125,24 @@ std::vector<std::string> warn_before(const ResolvedJob& job, const SpecimenFacts
   warn_about_bodies(specimen, facts, out);
   warn_about_scan(specimen, facts.extent, job.scene.beam, scan, out);
   if (mc::electrons_of(job.options.budget) == 1)
-    out.push_back("one electron per pixel has no scatter: the standard errors are 0 and mean "
-                  "nothing");
+    out.push_back(
+        "one electron per pixel has no scatter: the standard errors are 0 and mean "
+        "nothing");
   for (const mc::Material& material : specimen.materials)
     for (std::string& doubt : mc::doubts(material)) out.push_back(std::move(doubt));
   if (mc::is_dielectric(job.scene.physics)) {
     for (const mc::Material& material : specimen.materials)
       for (const mc::EstimatedValue& e : material.dielectric->estimates)
         if (e.field == "energy_loss_function")
-          out.push_back(fmt::format("{}: its energy-loss function is an estimate ({}); free paths may be 60 % off", material.name, e.rule));
+          out.push_back(fmt::format(
+              "{}: its energy-loss function is an estimate ({}); free paths may be 60 % off",
+              material.name, e.rule));
   } else if (job.scene.physics.secondaries)
     for (const mc::Material& material : specimen.materials)
       if (!material.loss_join_fitted)
-        out.push_back(material.name + ": no measured yields were used to fit its secondary "
-                                      "electrons; trust their contrast, not their number");
+        out.push_back(material.name +
+                      ": no measured yields were used to fit its secondary "
+                      "electrons; trust their contrast, not their number");
   return out;
 }
 
@@ -151,7 +164,8 @@ std::vector<std::string> warn_after(const mc::SimulationResult& result,
   }
   if (result.complete && summary.missed > 0)
     out.push_back(fmt::format(
-        "{} of {} pixels ({:.2g} %) did not reach the accuracy of {}; the worst standard error is {:.2g} "
+        "{} of {} pixels ({:.2g} %) did not reach the accuracy of {}; the worst standard error is "
+        "{:.2g} "
         "times what was asked for",
         summary.missed, summary.seen, 100.0 * double(summary.missed) / double(summary.seen),
         format_share(mc::accuracy_of(result.budget)), summary.worst));

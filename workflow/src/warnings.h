@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "specimen_facts.h"
 #include "resolved_job.h"
+#include "specimen_facts.h"
 
 namespace surf::workflow {
 

@@ -16,7 +16,8 @@ std::string_view Bytes::fixed_text(std::size_t offset, std::size_t size) const {
 }
 
 void Bytes::fail(const std::string& reason, const std::string& remedy) const {
-  throw FileError(file_, reason, remedy.empty() ? "It is damaged: copy or export it again" : remedy);
+  throw FileError(file_, reason,
+                  remedy.empty() ? "It is damaged: copy or export it again" : remedy);
 }
 
 void Bytes::fail_short(std::size_t offset, std::size_t size) const {

@@ -10,8 +10,8 @@
 
 namespace surf::io {
 
-/// The bytes of a scan file, or of a part of it. Nothing outside is ever read: each access that would
-/// leave the part is a FileError that names the file and the byte.
+/// The bytes of a scan file, or of a part of it. Nothing outside is ever read: each access that
+/// would leave the part is a FileError that names the file and the byte.
 class Bytes {
  public:
   Bytes(std::string file, std::string_view data, std::size_t first = 0)
@@ -27,9 +27,13 @@ class Bytes {
   }
 
   template <class T>
-  T little(std::size_t offset) const { return number<T>(offset, std::endian::little); }
+  T little(std::size_t offset) const {
+    return number<T>(offset, std::endian::little);
+  }
   template <class T>
-  T big(std::size_t offset) const { return number<T>(offset, std::endian::big); }
+  T big(std::size_t offset) const {
+    return number<T>(offset, std::endian::big);
+  }
   template <class T>
   T number(std::size_t offset, std::endian order) const {
     static_assert(std::is_arithmetic_v<T>);
@@ -56,7 +60,7 @@ class Bytes {
 
   std::string file_;
   std::string_view data_;
-  std::size_t first_;   ///< of the part in the file, for messages
+  std::size_t first_;  ///< of the part in the file, for messages
 };
 
 }  // namespace surf::io

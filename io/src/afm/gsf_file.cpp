@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Gwyddion Simple Field 1.0 (gwyddion.net/documentation/user-guide-en/gsf.html): a header of lines
-// "Key = value", one to four NULs up to a multiple of four bytes, then 32-bit floats, little-endian, the
-// top row first. Lengths are in metres unless XYUnits and ZUnits say otherwise.
+// "Key = value", one to four NULs up to a multiple of four bytes, then 32-bit floats,
+// little-endian, the top row first. Lengths are in metres unless XYUnits and ZUnits say otherwise.
 #include <fmt/format.h>
 
 #include <bit>
@@ -20,7 +20,7 @@ constexpr double nm_per_m = 1e9;
 
 struct Header {
   std::map<std::string, std::string> keys;
-  std::string description;   ///< lines "KEY=VALUE", for what semsurf adds
+  std::string description;  ///< lines "KEY=VALUE", for what semsurf adds
 };
 
 Header parse_header(std::string_view text) {
@@ -28,7 +28,8 @@ Header parse_header(std::string_view text) {
   for_each_text_line(text, [&](std::string_view line) {
     const std::size_t equals = line.find('=');
     if (equals == std::string_view::npos) return;
-    const std::string_view key = trimmed(line.substr(0, equals)), value = trimmed(line.substr(equals + 1));
+    const std::string_view key = trimmed(line.substr(0, equals)),
+                           value = trimmed(line.substr(equals + 1));
     header.description += fmt::format("{}={}\n", key, value);
     header.keys[std::string(key)] = clean_text(value);
   });
@@ -64,7 +65,8 @@ Scan parse_gsf(const std::string& file, std::string_view content) {
   const std::size_t data = end + (4 - end % 4);
   const Header header = parse_header(content.substr(magic.size(), end - magic.size()));
   ScanChannel channel;
-  const double width = required_count(bytes, header, "XRes"), height = required_count(bytes, header, "YRes");
+  const double width = required_count(bytes, header, "XRes"),
+               height = required_count(bytes, header, "YRes");
   check_scan_size(file, width, height, sizeof(float), content.size());
   channel.width = static_cast<int>(width);
   channel.height = static_cast<int>(height);
@@ -83,25 +85,30 @@ Scan parse_gsf(const std::string& file, std::string_view content) {
     Grid<double> grid(w, h);
     std::size_t at = 0;
     for (int y = h - 1; y >= 0; --y)
-      for (int x = 0; x < w; ++x, at += sizeof(float)) grid(x, y) = double{values.little<float>(at)};
+      for (int x = 0; x < w; ++x, at += sizeof(float))
+        grid(x, y) = double{values.little<float>(at)};
     return grid;
   };
   Scan scan{"Gwyddion Simple Field", {channel}, header.keys, {}};
-  for (const char* key : {"XRes", "YRes", "XReal", "YReal", "XYUnits", "ZUnits", "Title"}) scan.metadata.erase(key);
+  for (const char* key : {"XRes", "YRes", "XReal", "YReal", "XYUnits", "ZUnits", "Title"})
+    scan.metadata.erase(key);
   apply_description(header.description, file, scan);
   return scan;
 }
 
-std::string format_gsf(const HeightField& field, const std::map<std::string, std::string>& metadata) {
+std::string format_gsf(const HeightField& field,
+                       const std::map<std::string, std::string>& metadata) {
   const int w = field.z_nm.width(), h = field.z_nm.height();
   // Gwyddion's y runs down: its offset is that of the upper left corner.
   const double left_nm = field.origin_x_nm - 0.5 * field.pitch_x_nm;
   const double top_nm = field.origin_y_nm + (h - 0.5) * field.pitch_y_nm;
   std::string text = fmt::format(
-      "{}XRes = {}\nYRes = {}\nXReal = {}\nYReal = {}\nXOffset = {}\nYOffset = {}\nXYUnits = m\nZUnits = m\n"
+      "{}XRes = {}\nYRes = {}\nXReal = {}\nYReal = {}\nXOffset = {}\nYOffset = {}\nXYUnits = "
+      "m\nZUnits = m\n"
       "Title = z_nm\n",
-      magic, w, h, format_exact(w * field.pitch_x_nm / nm_per_m), format_exact(h * field.pitch_y_nm / nm_per_m),
-      format_exact(left_nm / nm_per_m), format_exact(-top_nm / nm_per_m));
+      magic, w, h, format_exact(w * field.pitch_x_nm / nm_per_m),
+      format_exact(h * field.pitch_y_nm / nm_per_m), format_exact(left_nm / nm_per_m),
+      format_exact(-top_nm / nm_per_m));
   for_each_text_line(description_of(field, metadata), [&](std::string_view line) {
     const std::size_t equals = line.find('=');
     text += fmt::format("{} = {}\n", line.substr(0, equals), line.substr(equals + 1));

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Gwyddion's own files (gwyddion.net/documentation/user-guide-en/gwyfile-format.html): "GWYP" and one
-// serialised object, a container of items such as "/0/data", an image. Little-endian; the top row first;
-// lengths in the unit that the image names, as a rule m.
+// Gwyddion's own files (gwyddion.net/documentation/user-guide-en/gwyfile-format.html): "GWYP" and
+// one serialised object, a container of items such as "/0/data", an image. Little-endian; the top
+// row first; lengths in the unit that the image names, as a rule m.
 #include <fmt/format.h>
 
 #include <charconv>
@@ -51,14 +51,18 @@ std::size_t item_bytes(char type) {
   switch (type) {
     case 'b':
     case 'c':
-    case 'C': return 1;
+    case 'C':
+      return 1;
     case 'i':
-    case 'I': return 4;
+    case 'I':
+      return 4;
     case 'q':
     case 'Q':
     case 'd':
-    case 'D': return 8;
-    default: return 0;
+    case 'D':
+      return 8;
+    default:
+      return 0;
   }
 }
 
@@ -79,7 +83,8 @@ Bytes value_at(const Bytes& bytes, char type, std::size_t& at) {
   } else if (type == 'o' || type == 'O') {
     for (std::size_t i = 0; i < count; ++i) object_at(bytes, at);
   } else {
-    bytes.fail(fmt::format("it holds a value of the unknown type {:#x}", static_cast<unsigned char>(type)));
+    bytes.fail(fmt::format("it holds a value of the unknown type {:#x}",
+                           static_cast<unsigned char>(type)));
   }
   return bytes.part(first, at - first);
 }
@@ -146,7 +151,9 @@ std::optional<int> image_number(std::string_view key) {
   if (!key.starts_with('/')) return std::nullopt;
   const char* const end = key.data() + key.size();
   const auto [stop, error] = std::from_chars(key.data() + 1, end, number);
-  if (error != std::errc{} || std::string_view(stop, static_cast<std::size_t>(end - stop)) != "/data") return std::nullopt;
+  if (error != std::errc{} ||
+      std::string_view(stop, static_cast<std::size_t>(end - stop)) != "/data")
+    return std::nullopt;
   return number;
 }
 
@@ -166,7 +173,7 @@ Scan parse_gwy(const std::string& file, std::string_view content) {
   const Bytes bytes(file, content);
   std::size_t at = magic_size;
   const Items container = items_of(object_at(bytes, at).content);
-  std::map<int, ScanChannel> channels;   // Gwyddion keeps no order in its files
+  std::map<int, ScanChannel> channels;  // Gwyddion keeps no order in its files
   Scan scan{"Gwyddion", {}, {}, {}};
   for (const auto& [key, item] : container) {
     const auto number = image_number(key);
@@ -178,8 +185,8 @@ Scan parse_gwy(const std::string& file, std::string_view content) {
     channel.name = text_of(container, fmt::format("/{}/data/title", *number));
     add_metadata(container, *number, channel);
     if (find(container, fmt::format("/{}/mask", *number), 'o'))
-      scan.notes.push_back(fmt::format("the mask of '{}' is not used: Gwyddion's masks mark, they are no holes",
-                                       channel.name));
+      scan.notes.push_back(fmt::format(
+          "the mask of '{}' is not used: Gwyddion's masks mark, they are no holes", channel.name));
     channels.insert_or_assign(*number, std::move(channel));
   }
   for (auto& [number, channel] : channels) scan.channels.push_back(std::move(channel));

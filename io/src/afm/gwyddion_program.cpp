@@ -24,7 +24,8 @@ class WorkFolder {
   WorkFolder() {
     std::string name = (fs::temp_directory_path() / "semsurf-gwyddion-XXXXXX").string();
     if (!::mkdtemp(name.data())) {
-      throw FileError(name, std::strerror(errno), "Check the folder for temporary files, $TMPDIR or /tmp");
+      throw FileError(name, std::strerror(errno),
+                      "Check the folder for temporary files, $TMPDIR or /tmp");
     }
     path_ = name;
   }
@@ -45,13 +46,16 @@ class WorkFolder {
 std::optional<std::string> convert_by_gwyddion(const fs::path& path) {
   const WorkFolder folder;
   const fs::path result = folder.path() / "converted.gwy";
-  const ProgramEnd end = run_program({"gwyddion", "--no-log-to-file", "--convert-to-gwy=" + result.string(),
-                                      fs::absolute(path).string()}, "");
+  const ProgramEnd end =
+      run_program({"gwyddion", "--no-log-to-file", "--convert-to-gwy=" + result.string(),
+                   fs::absolute(path).string()},
+                  "");
   if (!end.started || end.code == 127) return std::nullopt;
   std::error_code error;
   if (end.code != 0 || !fs::is_regular_file(result, error)) {
-    throw UnknownScan(path.string(), "neither semsurf nor Gwyddion, which was asked too, can read it as a scan",
-                    "Export the scan as .gwy, .gsf or text");
+    throw UnknownScan(path.string(),
+                      "neither semsurf nor Gwyddion, which was asked too, can read it as a scan",
+                      "Export the scan as .gwy, .gsf or text");
   }
   return read_file(result);
 }

@@ -31,7 +31,8 @@ Grid<double> values_of(const Channel& channel, const Channel* valid) {
   Grid<double> values(channel.values.width(), channel.values.height());
   for (std::size_t i = 0; i < values.size(); ++i) {
     const bool hole = valid && valid->values.data()[i] == 0;
-    values.data()[i] = hole ? std::numeric_limits<double>::quiet_NaN() : double{channel.values.data()[i]};
+    values.data()[i] =
+        hole ? std::numeric_limits<double>::quiet_NaN() : double{channel.values.data()[i]};
   }
   return values;
 }
@@ -49,8 +50,9 @@ Scan parse_image_scan(const std::filesystem::path& path) {
   const Channel* const valid = image->find("valid");
   for (const Channel& channel : image->channels) {
     if (&channel == valid && image->channels.size() > 1) continue;
-    scan.channels.push_back({channel.name, unit_of(channel, !image->metadata.empty()), image->width(), image->height(),
-                             placed ? image->pitch_x_nm : 0, placed ? image->pitch_y_nm : 0, false,
+    scan.channels.push_back({channel.name, unit_of(channel, !image->metadata.empty()),
+                             image->width(), image->height(), placed ? image->pitch_x_nm : 0,
+                             placed ? image->pitch_y_nm : 0, false,
                              [image, &channel, valid] { return values_of(channel, valid); }});
   }
   return scan;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// JPK images (.jpk, .jpk-qi-image): TIFF with a small picture and then a page per channel, the lowest row
-// first. A page has "slots", one calibration built upon another; the default slot says unit, factor and
-// offset of the stored numbers. Factors of heights may be negative.
+// JPK images (.jpk, .jpk-qi-image): TIFF with a small picture and then a page per channel, the
+// lowest row first. A page has "slots", one calibration built upon another; the default slot says
+// unit, factor and offset of the stored numbers. Factors of heights may be negative.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -17,7 +17,7 @@
 namespace surf::io {
 namespace {
 
-constexpr int size_x_tag = 0x8042, size_y_tag = 0x8043;           // of the first page, in m
+constexpr int size_x_tag = 0x8042, size_y_tag = 0x8043;  // of the first page, in m
 constexpr int short_name_tag = 0x8050, retrace_tag = 0x8051, name_tag = 0x8052;
 constexpr int slots_tag = 0x8080, default_slot_tag = 0x8081, first_slot = 0x8090, slot_step = 0x30;
 // From a slot's first tag, its name.
@@ -33,7 +33,8 @@ struct Calibration {
 Calibration calibration_of(const Bytes& bytes, const TiffPage& page) {
   constexpr int most_slots = 64;
   const std::string wanted = page.text(default_slot_tag);
-  const int slots = static_cast<int>(std::min(std::max(page.number(slots_tag).value_or(0), 0.0), double(most_slots)));
+  const int slots = static_cast<int>(
+      std::min(std::max(page.number(slots_tag).value_or(0), 0.0), double(most_slots)));
   for (int slot = 0; slot < slots; ++slot) {
     const int first = first_slot + slot * slot_step;
     if (page.text(first) != wanted) continue;
@@ -41,7 +42,8 @@ Calibration calibration_of(const Bytes& bytes, const TiffPage& page) {
     calibration.unit = page.text(first + unit_step);
     if (page.text(first + scaling_step) != "LinearScaling") return calibration;
     const auto factor = page.number(first + factor_step), offset = page.number(first + offset_step);
-    if (!factor || !offset) bytes.fail(fmt::format("the calibration '{}' of a channel has no numbers", wanted));
+    if (!factor || !offset)
+      bytes.fail(fmt::format("the calibration '{}' of a channel has no numbers", wanted));
     calibration.factor = *factor;
     calibration.offset = *offset;
     return calibration;
@@ -51,18 +53,21 @@ Calibration calibration_of(const Bytes& bytes, const TiffPage& page) {
 
 SampleType sample_type(const Bytes& bytes, const TiffPage& page) {
   const int bits = static_cast<int>(page.number(bits_tag).value_or(0));
-  const int kind = static_cast<int>(page.number(kind_tag).value_or(1));   // 1 unsigned, 2 signed, 3 floating
+  const int kind =
+      static_cast<int>(page.number(kind_tag).value_or(1));  // 1 unsigned, 2 signed, 3 floating
   if (kind == 3 && bits == 32) return SampleType::float32;
   if (kind == 3 && bits == 64) return SampleType::float64;
   if (bits == 16) return kind == 2 ? SampleType::int16 : SampleType::uint16;
   if (bits == 32) return kind == 2 ? SampleType::int32 : SampleType::uint32;
-  bytes.fail(fmt::format("a channel has numbers of {} bits of kind {}", bits, kind), "Export it as .gwy or text");
+  bytes.fail(fmt::format("a channel has numbers of {} bits of kind {}", bits, kind),
+             "Export it as .gwy or text");
 }
 
 /// The strips of a page joined.
 std::shared_ptr<const std::string> joined_strips(const Bytes& bytes, const TiffPage& page) {
   const TiffTag *const strips = page.find(strips_tag), *const sizes = page.find(strip_bytes_tag);
-  if (!strips || !sizes || strips->count() != sizes->count()) bytes.fail("a channel's samples are missing");
+  if (!strips || !sizes || strips->count() != sizes->count())
+    bytes.fail("a channel's samples are missing");
   std::string all;
   for (std::size_t i = 0; i < strips->count(); ++i) {
     const auto at = strips->number(i), size = sizes->number(i);
@@ -92,12 +97,15 @@ Scan parse_jpk(const std::string& file, std::string_view content) {
   if (!size_x || !size_y) bytes.fail("it does not say its size");
   Scan scan{"JPK", {}, {}, {}};
   for (const auto& [tag, key] : {std::pair{0x8000, "version"}, {0x8003, "date"}, {0x8050, "mode"}})
-    if (const std::string text = pages.front().text(tag); !text.empty() && text != "<empty>") scan.metadata[key] = text;
+    if (const std::string text = pages.front().text(tag); !text.empty() && text != "<empty>")
+      scan.metadata[key] = text;
   for (std::size_t i = 1; i < pages.size(); ++i) {
     const TiffPage& page = pages[i];
-    const double width = page.number(width_tag).value_or(0), height = page.number(height_tag).value_or(0);
+    const double width = page.number(width_tag).value_or(0),
+                 height = page.number(height_tag).value_or(0);
     if (page.number(compression_tag).value_or(1) != 1 || page.number(samples_tag).value_or(1) != 1)
-      throw Unsupported(file, "its channels are compressed or in colour", "Export it as .gwy, .gsf or text");
+      throw Unsupported(file, "its channels are compressed or in colour",
+                        "Export it as .gwy, .gsf or text");
     const SampleType type = sample_type(bytes, page);
     check_scan_size(file, width, height, bytes_of(type), content.size());
     const Calibration calibration = calibration_of(bytes, page);
@@ -106,10 +114,13 @@ Scan parse_jpk(const std::string& file, std::string_view content) {
     channel.z_unit = calibration.unit;
     channel.width = static_cast<int>(width);
     channel.height = static_cast<int>(height);
-    channel.pitch_x_nm = std::abs(*size_x) / width * 1e9;   // m
+    channel.pitch_x_nm = std::abs(*size_x) / width * 1e9;  // m
     channel.pitch_y_nm = std::abs(*size_y) / height * 1e9;
-    channel.metadata["line direction"] = page.number(retrace_tag).value_or(0) != 0 ? "retrace" : "trace";
-    const SampleLayout layout{.type = type, .order = tiff_order(content), .scale = calibration.factor,
+    channel.metadata["line direction"] =
+        page.number(retrace_tag).value_or(0) != 0 ? "retrace" : "trace";
+    const SampleLayout layout{.type = type,
+                              .order = tiff_order(content),
+                              .scale = calibration.factor,
                               .offset = calibration.offset};
     channel.values = [bytes, page, w = channel.width, h = channel.height, layout] {
       const auto samples = joined_strips(bytes, page);

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Bruker (Digital Instruments, Veeco) Nanoscope, from version 4.2: lines "\key: value" in sections
-// "\*Ciao image list", ended by 0x1A; the samples of each image at its "Data offset", the lowest row
-// first. Height = sample / 2^(8 "Bytes/pixel") * "Z scale" (V) * the sensitivity that it names (nm/V).
+// "\*Ciao image list", ended by 0x1A; the samples of each image at its "Data offset", the lowest
+// row first. Height = sample / 2^(8 "Bytes/pixel") * "Z scale" (V) * the sensitivity that it names
+// (nm/V).
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -16,11 +17,11 @@
 namespace surf::io {
 namespace {
 
-using Section = std::map<std::string, std::string>;   // keys in small letters: versions differ
+using Section = std::map<std::string, std::string>;  // keys in small letters: versions differ
 
 struct Header {
   std::vector<Section> images;
-  Section all;   ///< of the sections before the images; the first of a key
+  Section all;  ///< of the sections before the images; the first of a key
 };
 
 /// Some files have no first backslash, or begin with "?" for it.
@@ -51,7 +52,8 @@ Header parse_header(std::string_view text) {
     }
     const std::size_t colon = key_part.find(':');
     if (colon == std::string_view::npos) return;
-    current->emplace(fmt::format("{}{}", line.starts_with('@') ? "@" : "", lower_case(trimmed(key_part.substr(0, colon)))),
+    current->emplace(fmt::format("{}{}", line.starts_with('@') ? "@" : "",
+                                 lower_case(trimmed(key_part.substr(0, colon)))),
                      trimmed(key_part.substr(colon + 1)));
   });
   return header;
@@ -62,7 +64,8 @@ std::string text_of(const Section& section, const std::string& key) {
   return found == section.end() ? std::string{} : found->second;
 }
 
-double number_of(const Bytes& bytes, const Section& image, const Section& all, const std::string& key) {
+double number_of(const Bytes& bytes, const Section& image, const Section& all,
+                 const std::string& key) {
   std::string text = text_of(image, key);
   if (text.empty()) text = text_of(all, key);
   const auto value = scan_number(text);
@@ -83,7 +86,8 @@ Scale parse_scale(const Bytes& bytes, const std::string& text) {
   const std::size_t open = rest.find('['), close = rest.find(']');
   if (open != std::string_view::npos && close != std::string_view::npos && open < close)
     scale.sensitivity = lower_case(rest.substr(open + 1, close - open - 1));
-  if (const std::size_t bracket = rest.rfind(')'); bracket != std::string_view::npos) rest.remove_prefix(bracket + 1);
+  if (const std::size_t bracket = rest.rfind(')'); bracket != std::string_view::npos)
+    rest.remove_prefix(bracket + 1);
   else if (close != std::string_view::npos) rest.remove_prefix(close + 1);
   else if (rest.starts_with("V ")) rest.remove_prefix(2);
   std::string_view unit;
@@ -126,7 +130,8 @@ std::array<double, 2> size_nm(const Bytes& bytes, const Section& image, const Se
   if (!x) bytes.fail(fmt::format("an image's scan size is '{:.40}'", text));
   const auto y = leading_number(rest, unit);
   const auto nm = scan_length_nm(y ? unit : rest);
-  if (!nm || !(*x > 0) || !(y.value_or(1) > 0)) bytes.fail(fmt::format("an image's scan size is '{:.40}'", text));
+  if (!nm || !(*x > 0) || !(y.value_or(1) > 0))
+    bytes.fail(fmt::format("an image's scan size is '{:.40}'", text));
   return {*x * *nm, y ? *y * *nm : 0};
 }
 
@@ -136,13 +141,18 @@ ScanChannel image_channel(const Bytes& bytes, const Header& header, const Sectio
   const double width = number("samps/line"), height = number("number of lines");
   check_scan_size(bytes.file(), width, height, 1, bytes.size());
   const bool inside = offset >= 0 && length >= 0 && offset <= double(bytes.size());
-  if (!inside) bytes.fail(fmt::format("an image begins at byte {:.0f}, and the file has {}", offset, bytes.size()));
-  // From version 9.2 on 4 bytes may be stored where "Bytes/pixel" says 2, which still tells the scale.
+  if (!inside)
+    bytes.fail(
+        fmt::format("an image begins at byte {:.0f}, and the file has {}", offset, bytes.size()));
+  // From version 9.2 on 4 bytes may be stored where "Bytes/pixel" says 2, which still tells the
+  // scale.
   const double stated = number("bytes/pixel");
-  if (stated != 2 && stated != 4) bytes.fail(fmt::format("an image has {:g} bytes per pixel", stated));
+  if (stated != 2 && stated != 4)
+    bytes.fail(fmt::format("an image has {:g} bytes per pixel", stated));
   const double each = length / (width * height);
   if (each != 2 && each != 4)
-    bytes.fail(fmt::format("an image of {:.0f} x {:.0f} samples has {:.0f} bytes", width, height, length));
+    bytes.fail(
+        fmt::format("an image of {:.0f} x {:.0f} samples has {:.0f} bytes", width, height, length));
   const Bytes data = bytes.part(static_cast<std::size_t>(offset), static_cast<std::size_t>(length));
   const std::string scale_text = text_of(image, "@z scale");
   if (scale_text.empty() || !image.contains("@image data"))
@@ -159,9 +169,13 @@ ScanChannel image_channel(const Bytes& bytes, const Header& header, const Sectio
   channel.pitch_x_nm = size[0] / width;
   channel.pitch_y_nm = size[1] > 0 ? size[1] / height : channel.pitch_x_nm;
   for (const char* key : {"line direction", "frame direction"})
-    if (const std::string text = text_of(image, key); !text.empty()) channel.metadata[key] = clean_text(text);
-  const SampleLayout layout{.type = each == 2 ? SampleType::int16 : SampleType::int32, .scale = scale.value / std::exp2(8 * stated)};
-  channel.values = [data, w = channel.width, h = channel.height, layout] { return read_samples(data, w, h, layout); };
+    if (const std::string text = text_of(image, key); !text.empty())
+      channel.metadata[key] = clean_text(text);
+  const SampleLayout layout{.type = each == 2 ? SampleType::int16 : SampleType::int32,
+                            .scale = scale.value / std::exp2(8 * stated)};
+  channel.values = [data, w = channel.width, h = channel.height, layout] {
+    return read_samples(data, w, h, layout);
+  };
   return channel;
 }
 
@@ -176,7 +190,8 @@ Scan parse_nanoscope(const std::string& file, std::string_view content) {
   Scan scan{"Bruker Nanoscope", {}, {}, {}};
   for (const auto& [key, value] : header.all)
     if (!key.starts_with('@') && !value.empty()) scan.metadata[clean_text(key)] = clean_text(value);
-  for (const Section& image : header.images) scan.channels.push_back(image_channel(bytes, header, image));
+  for (const Section& image : header.images)
+    scan.channels.push_back(image_channel(bytes, header, image));
   return scan;
 }
 

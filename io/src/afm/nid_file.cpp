@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Nanosurf .nid: sections "[DataSet-0:1]" of lines "key=value" in Latin-1, "#!", then the channels one
-// after the other in the order that "[DataSet]" lists them, the lowest row first.
+// Nanosurf .nid: sections "[DataSet-0:1]" of lines "key=value" in Latin-1, "#!", then the channels
+// one after the other in the order that "[DataSet]" lists them, the lowest row first.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -38,22 +38,25 @@ std::string text_of(const Section& section, std::string_view key) {
 
 double number_of(const Bytes& bytes, const Section& section, std::string_view key) {
   const auto value = scan_number(text_of(section, key));
-  if (!value || !std::isfinite(*value)) bytes.fail(fmt::format("its header does not say {} of a channel", key));
+  if (!value || !std::isfinite(*value))
+    bytes.fail(fmt::format("its header does not say {} of a channel", key));
   return *value;
 }
 
 struct Stored {
   SampleType type;
   std::endian order;
-  double full, lowest;   ///< how many values there are, and the least
+  double full, lowest;  ///< how many values there are, and the least
 };
 
 Stored stored(const Bytes& bytes, const Section& section) {
   const double bits = number_of(bytes, section, "SaveBits");
   const bool is_signed = text_of(section, "SaveSign") != "Unsigned";
-  const std::endian order = text_of(section, "SaveOrder") == "Motorola" ? std::endian::big : std::endian::little;
+  const std::endian order =
+      text_of(section, "SaveOrder") == "Motorola" ? std::endian::big : std::endian::little;
   if (text_of(section, "SaveMode") != "Binary" || (bits != 8 && bits != 16 && bits != 32))
-    bytes.fail(fmt::format("its numbers of {:g} bits, {}, cannot be read here", bits, text_of(section, "SaveMode")),
+    bytes.fail(fmt::format("its numbers of {:g} bits, {}, cannot be read here", bits,
+                           text_of(section, "SaveMode")),
                "Export it as .gwy, .gsf or text");
   const SampleType type = bits == 8    ? is_signed ? SampleType::int8 : SampleType::uint8
                           : bits == 16 ? is_signed ? SampleType::int16 : SampleType::uint16
@@ -70,7 +73,8 @@ std::string name_of(const Section& section) {
   return clean_text(text_of(section, "Dim2Name") + (frame.empty() ? "" : " " + frame));
 }
 
-double pitch_nm(const Bytes& bytes, const Section& section, const std::string& axis, double count, bool& guessed) {
+double pitch_nm(const Bytes& bytes, const Section& section, const std::string& axis, double count,
+                bool& guessed) {
   const auto unit_nm = scan_length_nm(text_of(section, axis + "Unit"));
   guessed = guessed || !unit_nm;
   return std::abs(number_of(bytes, section, axis + "Range")) / count * unit_nm.value_or(1);
@@ -79,7 +83,8 @@ double pitch_nm(const Bytes& bytes, const Section& section, const std::string& a
 }  // namespace
 
 bool is_nid(std::string_view content) {
-  return content.starts_with("[DataSet]") && content.substr(0, 4096).find("GroupCount=") != std::string_view::npos;
+  return content.starts_with("[DataSet]") &&
+         content.substr(0, 4096).find("GroupCount=") != std::string_view::npos;
 }
 
 Scan parse_nid(const std::string& file, std::string_view content) {
@@ -106,9 +111,10 @@ Scan parse_nid(const std::string& file, std::string_view content) {
       const double width = number_of(bytes, s, "Points"), height = number_of(bytes, s, "Lines");
       const Stored form = stored(bytes, s);
       check_scan_size(file, width, height, bytes_of(form.type), content.size());
-      const Bytes data = bytes.part(at, static_cast<std::size_t>(width * height) * bytes_of(form.type));
+      const Bytes data =
+          bytes.part(at, static_cast<std::size_t>(width * height) * bytes_of(form.type));
       at += data.size();
-      if (!scan_length_nm(text_of(s, "Dim1Unit"))) continue;   // curves, not an image
+      if (!scan_length_nm(text_of(s, "Dim1Unit"))) continue;  // curves, not an image
       const double scale = number_of(bytes, s, "Dim2Range") / form.full;
       ScanChannel channel;
       channel.name = name_of(s);
@@ -117,7 +123,9 @@ Scan parse_nid(const std::string& file, std::string_view content) {
       channel.height = static_cast<int>(height);
       channel.pitch_x_nm = pitch_nm(bytes, s, "Dim0", width, channel.pitch_guessed);
       channel.pitch_y_nm = pitch_nm(bytes, s, "Dim1", height, channel.pitch_guessed);
-      const SampleLayout layout{.type = form.type, .order = form.order, .scale = scale,
+      const SampleLayout layout{.type = form.type,
+                                .order = form.order,
+                                .scale = scale,
                                 .offset = number_of(bytes, s, "Dim2Min") - form.lowest * scale};
       channel.values = [data, w = channel.width, h = channel.height, layout] {
         return read_samples(data, w, h, layout);

@@ -28,7 +28,8 @@ std::string_view separators_of(const std::vector<std::string_view>& lines) {
     if (line.find('.') != std::string_view::npos) return with_commas;
     if (line.find_first_of(without) != std::string_view::npos) other_separator = true;
     for (std::size_t i = line.find(','); i != std::string_view::npos; i = line.find(',', i + 1)) {
-      if (i + 1 == line.size() || without.find(line[i + 1]) != std::string_view::npos) return with_commas;
+      if (i + 1 == line.size() || without.find(line[i + 1]) != std::string_view::npos)
+        return with_commas;
     }
   }
   return other_separator ? without : with_commas;
@@ -77,7 +78,8 @@ NumberTable parse_number_table(const std::string& file, std::string_view content
     lines.push_back(line);
     numbers.push_back(number);
   });
-  if (lines.empty()) fail(file, 0, "there are no numbers in it", "Give rows of heights, or lines of x, y and z");
+  if (lines.empty())
+    fail(file, 0, "there are no numbers in it", "Give rows of heights, or lines of x, y and z");
   const std::string_view separators = separators_of(lines);
   for (std::size_t i = 0; i < lines.size(); ++i) {
     const auto count = append_numbers(lines[i], separators, table.values);
@@ -87,7 +89,8 @@ NumberTable parse_number_table(const std::string& file, std::string_view content
     }
     if (table.columns == 0) table.columns = *count;
     if (*count != table.columns) {
-      fail(file, numbers[i], fmt::format("there are {} numbers, and {} in the first row", *count, table.columns),
+      fail(file, numbers[i],
+           fmt::format("there are {} numbers, and {} in the first row", *count, table.columns),
            "Give all rows the same length");
     }
   }

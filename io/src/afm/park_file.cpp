@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Park Systems (PSIA) TIFF: the picture is for viewers; the samples lie in tag 50434, the lowest row
-// first, what they mean in the header of tag 50435. Height = gain * sample; gains may be negative.
+// Park Systems (PSIA) TIFF: the picture is for viewers; the samples lie in tag 50434, the lowest
+// row first, what they mean in the header of tag 50435. Height = gain * sample; gains may be
+// negative.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -17,9 +18,9 @@ constexpr int magic_tag = 50432, version_tag = 50433, data_tag = 50434, header_t
 constexpr std::uint32_t magic = 0x0E031301, first_with_type = 0x01000002;
 
 // Offsets in the header.
-constexpr std::size_t name_at = 4, name_bytes = 64, mode_at = 68, mode_bytes = 16, width_at = 100, height_at = 104,
-                      size_x_at = 140, size_y_at = 148, gain_at = 220, scale_at = 228, zero_at = 236,
-                      unit_at = 244, unit_bytes = 16, type_at = 348;
+constexpr std::size_t name_at = 4, name_bytes = 64, mode_at = 68, mode_bytes = 16, width_at = 100,
+                      height_at = 104, size_x_at = 140, size_y_at = 148, gain_at = 220,
+                      scale_at = 228, zero_at = 236, unit_at = 244, unit_bytes = 16, type_at = 348;
 
 /// UTF-16LE up to a NUL; what is not Latin-1 becomes "?", but the Greek mu is u.
 std::string wide_text(const Bytes& header, std::size_t at, std::size_t size) {
@@ -35,10 +36,14 @@ std::string wide_text(const Bytes& header, std::size_t at, std::size_t size) {
 SampleType sample_type(const Bytes& header, std::uint32_t version) {
   const auto type = version >= first_with_type ? header.little<std::int32_t>(type_at) : 0;
   switch (type) {
-    case 0: return SampleType::int16;
-    case 1: return SampleType::int32;
-    case 2: return SampleType::float32;
-    default: header.fail(fmt::format("its numbers are of the unknown kind {}", type));
+    case 0:
+      return SampleType::int16;
+    case 1:
+      return SampleType::int32;
+    case 2:
+      return SampleType::float32;
+    default:
+      header.fail(fmt::format("its numbers are of the unknown kind {}", type));
   }
 }
 
@@ -61,7 +66,8 @@ Scan parse_park(const std::string& file, std::string_view content) {
     bytes.fail("its samples or their header are missing", "It is damaged or edited: copy it again");
   const Bytes& header = header_value->bytes();
   const auto version = static_cast<std::uint32_t>(page.number(version_tag).value_or(0));
-  const auto width = header.little<std::int32_t>(width_at), height = header.little<std::int32_t>(height_at);
+  const auto width = header.little<std::int32_t>(width_at),
+             height = header.little<std::int32_t>(height_at);
   const SampleType type = sample_type(header, version);
   check_scan_size(file, width, height, bytes_of(type), data->bytes().size());
   ScanChannel channel;
@@ -69,18 +75,21 @@ Scan parse_park(const std::string& file, std::string_view content) {
   channel.z_unit = wide_text(header, unit_at, unit_bytes);
   channel.width = width;
   channel.height = height;
-  channel.pitch_x_nm = std::abs(header.little<double>(size_x_at)) / width * 1e3;   // um
+  channel.pitch_x_nm = std::abs(header.little<double>(size_x_at)) / width * 1e3;  // um
   channel.pitch_y_nm = std::abs(header.little<double>(size_y_at)) / height * 1e3;
   const double scale = header.little<double>(scale_at);
   const double factor = header.little<double>(gain_at) * (scale == 0 ? 1 : scale);
-  const SampleLayout layout{.type = type, .scale = factor, .offset = header.little<double>(zero_at)};
+  const SampleLayout layout{
+      .type = type, .scale = factor, .offset = header.little<double>(zero_at)};
   channel.values = [samples = data->bytes(), width, height, layout] {
     return read_samples(samples, width, height, layout);
   };
   Scan scan{"Park Systems", {std::move(channel)}, {}, {}};
-  if (const std::string mode = wide_text(header, mode_at, mode_bytes); !mode.empty()) scan.metadata["mode"] = mode;
+  if (const std::string mode = wide_text(header, mode_at, mode_bytes); !mode.empty())
+    scan.metadata["mode"] = mode;
   constexpr int software_tag = 305, date_tag = 306;
-  if (const std::string text = page.text(software_tag); !text.empty()) scan.metadata["software"] = text;
+  if (const std::string text = page.text(software_tag); !text.empty())
+    scan.metadata["software"] = text;
   if (const std::string text = page.text(date_tag); !text.empty()) scan.metadata["date"] = text;
   return scan;
 }

@@ -17,13 +17,13 @@ std::size_t bytes_of(SampleType type);
 struct SampleLayout {
   SampleType type = SampleType::int16;
   std::endian order = std::endian::little;
-  bool top_row_first = false;       ///< else the lowest row
+  bool top_row_first = false;  ///< else the lowest row
   bool right_column_first = false;
-  double scale = 1, offset = 0;     ///< value = scale * sample + offset
+  double scale = 1, offset = 0;  ///< value = scale * sample + offset
 };
 
-/// The first width x height samples of `data`, row 0 the lowest. Throws FileError where they are not all
-/// there.
+/// The first width x height samples of `data`, row 0 the lowest. Throws FileError where they are
+/// not all there.
 Grid<double> read_samples(const Bytes& data, int width, int height, const SampleLayout& layout);
 
 }  // namespace surf::io

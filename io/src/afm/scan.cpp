@@ -22,7 +22,11 @@ constexpr std::string_view blanks = std::string_view(" \t\r\n\v\f\0", 7);
 bool is_utf8(std::string_view text) {
   for (std::size_t i = 0; i < text.size();) {
     const auto first = static_cast<unsigned char>(text[i]);
-    const std::size_t more = first < 0x80 ? 0 : first >> 5 == 6 ? 1 : first >> 4 == 14 ? 2 : first >> 3 == 30 ? 3 : 9;
+    const std::size_t more = first < 0x80       ? 0
+                             : first >> 5 == 6  ? 1
+                             : first >> 4 == 14 ? 2
+                             : first >> 3 == 30 ? 3
+                                                : 9;
     if (more == 9 || text.size() - i <= more) return false;
     for (std::size_t k = 1; k <= more; ++k)
       if ((static_cast<unsigned char>(text[i + k]) & 0xC0) != 0x80) return false;
@@ -58,13 +62,18 @@ std::size_t number_length(std::string_view text) {
 }  // namespace
 
 std::optional<double> scan_length_nm(std::string_view unit) {
-  static constexpr std::array<std::pair<std::string_view, double>, 22> units{{
-      {"m", 1e9}, {"meter", 1e9}, {"metre", 1e9}, {"cm", 1e7}, {"mm", 1e6}, {"km", 1e12},
-      {"um", 1e3}, {"~m", 1e3}, {"\xC2\xB5m", 1e3}, {"\xCE\xBCm", 1e3}, {"\xB5m", 1e3}, {"micron", 1e3},
-      {"nm", 1}, {"pm", 1e-3}, {"fm", 1e-6}, {"\xC3\x85", 0.1}, {"\xE2\x84\xAB", 0.1}, {"\xC5", 0.1},
-      {"Ang", 0.1}, {"Angstrom", 0.1}, {"angstrom", 0.1}, {"microns", 1e3}}};
+  static constexpr std::array<std::pair<std::string_view, double>, 22> units{
+      {{"m", 1e9},         {"meter", 1e9},        {"metre", 1e9},
+       {"cm", 1e7},        {"mm", 1e6},           {"km", 1e12},
+       {"um", 1e3},        {"~m", 1e3},           {"\xC2\xB5m", 1e3},
+       {"\xCE\xBCm", 1e3}, {"\xB5m", 1e3},        {"micron", 1e3},
+       {"nm", 1},          {"pm", 1e-3},          {"fm", 1e-6},
+       {"\xC3\x85", 0.1},  {"\xE2\x84\xAB", 0.1}, {"\xC5", 0.1},
+       {"Ang", 0.1},       {"Angstrom", 0.1},     {"angstrom", 0.1},
+       {"microns", 1e3}}};
   unit = trimmed(unit);
-  const auto found = std::find_if(units.begin(), units.end(), [&](const auto& u) { return u.first == unit; });
+  const auto found =
+      std::find_if(units.begin(), units.end(), [&](const auto& u) { return u.first == unit; });
   if (found == units.end()) return std::nullopt;
   return found->second;
 }
@@ -72,8 +81,9 @@ std::optional<double> scan_length_nm(std::string_view unit) {
 bool holds_heights(const ScanChannel& channel) {
   if (!trimmed(channel.z_unit).empty() && !scan_length_nm(channel.z_unit)) return false;
   const std::string name = lower_case(channel.name);
-  for (const char* word : {"amplitude", "deflection", "error", "phase", "friction", "lateral", "current",
-                           "adhesion", "potential", "slope", "frequency", "dissipation", "setpoint"}) {
+  for (const char* word :
+       {"amplitude", "deflection", "error", "phase", "friction", "lateral", "current", "adhesion",
+        "potential", "slope", "frequency", "dissipation", "setpoint"}) {
     if (name.find(word) != std::string::npos) return false;
   }
   return true;
@@ -89,9 +99,11 @@ void check_scan_size(const std::string& file, double width, double height, std::
                     "It is damaged: copy or export it again");
   }
   if (width * height * double(bytes_each) > double(file_bytes)) {
-    throw FileError(file, fmt::format("its {:.0f} x {:.0f} samples take {:.0f} bytes, and the file has {}", width,
-                                      height, width * height * double(bytes_each), file_bytes),
-                    "It is cut off or damaged: copy or export it again");
+    throw FileError(
+        file,
+        fmt::format("its {:.0f} x {:.0f} samples take {:.0f} bytes, and the file has {}", width,
+                    height, width * height * double(bytes_each), file_bytes),
+        "It is cut off or damaged: copy or export it again");
   }
 }
 
@@ -127,7 +139,8 @@ std::optional<double> leading_number(std::string_view text, std::string_view& re
 
 std::optional<double> scan_number(std::string_view text) {
   const std::string word = lower_case(trimmed(text));
-  if (word == "nan" || word == "-nan" || word == "+nan") return std::numeric_limits<double>::quiet_NaN();
+  if (word == "nan" || word == "-nan" || word == "+nan")
+    return std::numeric_limits<double>::quiet_NaN();
   std::string_view rest;
   const auto value = leading_number(text, rest);
   return value && rest.empty() ? value : std::nullopt;

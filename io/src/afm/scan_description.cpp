@@ -14,7 +14,8 @@ Image head_of(const HeightField& field, const std::map<std::string, std::string>
   return head;
 }
 
-std::string description_of(const HeightField& field, const std::map<std::string, std::string>& metadata) {
+std::string description_of(const HeightField& field,
+                           const std::map<std::string, std::string>& metadata) {
   std::string text;
   for_each_text_line(to_description(head_of(field, metadata)), [&](std::string_view line) {
     if (!line.starts_with("image:channels=")) text.append(line).append("\n");
@@ -24,7 +25,8 @@ std::string description_of(const HeightField& field, const std::map<std::string,
 
 bool apply_description(std::string_view lines, const std::string& file, Scan& scan) {
   const Attributes attributes = parse_description(lines);
-  const bool ours = attributes.contains("image:pitch_x_nm") && attributes.contains("image:pitch_y_nm");
+  const bool ours =
+      attributes.contains("image:pitch_x_nm") && attributes.contains("image:pitch_y_nm");
   if (!ours) return false;
   Image head;
   apply_attributes(attributes, file, head);

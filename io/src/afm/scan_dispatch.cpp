@@ -45,9 +45,10 @@ bool is_text_name(const std::filesystem::path& path) {
 }
 
 [[noreturn]] void fail_unknown(const std::string& file) {
-  throw UnknownScan(file, "its content is not that of a scan that semsurf reads by itself",
-                  "Install Gwyddion (apt-get install gwyddion), through which semsurf reads 139 formats "
-                  "more, or export the scan as .gwy, .gsf or text");
+  throw UnknownScan(
+      file, "its content is not that of a scan that semsurf reads by itself",
+      "Install Gwyddion (apt-get install gwyddion), through which semsurf reads 139 formats "
+      "more, or export the scan as .gwy, .gsf or text");
 }
 
 /// False where Gwyddion is not installed.
@@ -89,11 +90,13 @@ ScanFile open_scan(const std::filesystem::path& path) {
 }
 
 bool has_scan_name(const std::filesystem::path& path) {
-  // As the instruments' programs name them; .raw, .dat, .data, .img, .top and the like are everybody's.
+  // As the instruments' programs name them; .raw, .dat, .data, .img, .top and the like are
+  // everybody's.
   static constexpr std::array names{
-      ".gwy", ".gsf",          ".spm",       ".afm",         ".ibw",    ".ardf",     ".nid", ".nhf", ".ezd",
-      ".sxm", ".stp",          ".wsxm",      ".mdt",         ".mi",     ".asd",      ".aris", ".sdf", ".x3p",
-      ".jpk", ".jpk-qi-image", ".jpk-force", ".jpk-qi-data", ".h5-jpk", ".hdf5-jpk", ".opd",  ".opdx", ".plux", ".bcrf"};
+      ".gwy",         ".gsf",    ".spm",      ".afm", ".ibw",  ".ardf",         ".nid",
+      ".nhf",         ".ezd",    ".sxm",      ".stp", ".wsxm", ".mdt",          ".mi",
+      ".asd",         ".aris",   ".sdf",      ".x3p", ".jpk",  ".jpk-qi-image", ".jpk-force",
+      ".jpk-qi-data", ".h5-jpk", ".hdf5-jpk", ".opd", ".opdx", ".plux",         ".bcrf"};
   const std::string extension = lower_extension(path);
   return std::find(names.begin(), names.end(), extension) != names.end();
 }
@@ -109,7 +112,8 @@ bool is_scan_file(const std::filesystem::path& path) {
   start.resize(static_cast<std::size_t>(stream.gcount()));
   // A TIFF file's marks may lie anywhere.
   if (is_tiff(start)) start = read_file(path);
-  return std::any_of(formats.begin(), formats.end(), [&](const Format& format) { return format.is(start); });
+  return std::any_of(formats.begin(), formats.end(),
+                     [&](const Format& format) { return format.is(start); });
 }
 
 }  // namespace surf::io

@@ -12,9 +12,9 @@
 
 namespace surf::io {
 
-// One reader per format, behind read_height_field. `file` is the name for messages, `content` the whole
-// file, which must outlive the scan. `is_...` looks at the content alone. What a reader returns has
-// sizes that fit the file; failures are FileErrors.
+// One reader per format, behind read_height_field. `file` is the name for messages, `content` the
+// whole file, which must outlive the scan. `is_...` looks at the content alone. What a reader
+// returns has sizes that fit the file; failures are FileErrors.
 
 bool is_gsf(std::string_view content);
 Scan parse_gsf(const std::string& file, std::string_view content);
@@ -57,11 +57,15 @@ Scan parse_image_scan(const std::filesystem::path& path);
 Image head_of(const HeightField& field, const std::map<std::string, std::string>& metadata);
 
 /// How a field of ours is described in files: "KEY" to "VALUE" (image_formats.h).
-std::string description_of(const HeightField& field, const std::map<std::string, std::string>& metadata);
-/// Takes placement and metadata from such lines; whether there were any. Lines of others are ignored.
+std::string description_of(const HeightField& field,
+                           const std::map<std::string, std::string>& metadata);
+/// Takes placement and metadata from such lines; whether there were any. Lines of others are
+/// ignored.
 bool apply_description(std::string_view lines, const std::string& file, Scan& scan);
 
-std::string format_gsf(const HeightField& field, const std::map<std::string, std::string>& metadata);
-std::string format_text_field(const HeightField& field, const std::map<std::string, std::string>& metadata);
+std::string format_gsf(const HeightField& field,
+                       const std::map<std::string, std::string>& metadata);
+std::string format_text_field(const HeightField& field,
+                              const std::map<std::string, std::string>& metadata);
 
 }  // namespace surf::io

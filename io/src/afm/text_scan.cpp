@@ -18,11 +18,11 @@ namespace {
 /// What the lines before the numbers say.
 struct TextHeader {
   std::string name, z_unit;
-  std::optional<double> width_nm, height_nm;   ///< of the whole matrix
+  std::optional<double> width_nm, height_nm;  ///< of the whole matrix
   std::optional<double> pitch_nm;
-  std::optional<double> xy_unit_nm;            ///< of coordinates
-  double z_factor = 1;                         ///< from the numbers to z_unit
-  std::string description;                     ///< lines of ours
+  std::optional<double> xy_unit_nm;  ///< of coordinates
+  double z_factor = 1;               ///< from the numbers to z_unit
+  std::string description;           ///< lines of ours
 };
 
 std::optional<double> length_nm(std::string_view text) {
@@ -46,17 +46,19 @@ void apply_header_line(std::string_view key_text, std::string_view value, TextHe
   if (is_one_of(key, {"xy unit", "xy units", "x unit", "x units", "lateral unit"}))
     header.xy_unit_nm = scan_length_nm(value);
   const bool converted = header.z_factor != 1;
-  if (is_one_of(key, {"value units", "value unit", "data unit", "z unit", "z units", "einheit"}) && !converted)
+  if (is_one_of(key, {"value units", "value unit", "data unit", "z unit", "z units", "einheit"}) &&
+      !converted)
     header.z_unit = clean_text(value);
   if (key == "height conversion factor (-> m)") {
     if (const auto factor = scan_number(value); factor && *factor > 0) {
       header.z_factor = *factor;
-      header.z_unit.assign(1, 'm');   // GCC 12 warns of a plain assignment
+      header.z_unit.assign(1, 'm');  // GCC 12 warns of a plain assignment
     }
   }
 }
 
-// Gwyddion writes channel, width, height and unit, in this order and in the words of its user's language.
+// Gwyddion writes channel, width, height and unit, in this order and in the words of its user's
+// language.
 void apply_gwyddion_order(const std::vector<std::string_view>& lines, TextHeader& header) {
   if (lines.size() < 4) return;
   std::string_view values[4];
@@ -117,7 +119,8 @@ struct Axis {
     std::sort(values.begin(), values.end());
     values.erase(std::unique(values.begin(), values.end()), values.end());
     double widest = 0;
-    for (std::size_t i = 1; i < values.size(); ++i) widest = std::max(widest, values[i] - values[i - 1]);
+    for (std::size_t i = 1; i < values.size(); ++i)
+      widest = std::max(widest, values[i] - values[i - 1]);
     constexpr double same = 0.2;
     std::vector<double> apart;
     for (const double v : values)
@@ -131,13 +134,16 @@ struct Axis {
       if (std::abs(values[i] - values.front() - double(i) * pitch) > uneven * pitch) return false;
     return true;
   }
-  int index(double value) const { return static_cast<int>(std::lround((value - values.front()) / pitch)); }
+  int index(double value) const {
+    return static_cast<int>(std::lround((value - values.front()) / pitch));
+  }
 };
 
 /// Points on a grid of which three of four are there and none twice; empty where they are none.
 std::optional<ScanChannel> points(const NumberTable& table, const TextHeader& header) {
   Axis x, y;
-  if (table.columns != 3 || !x.make(table.values, 0) || !y.make(table.values, 1)) return std::nullopt;
+  if (table.columns != 3 || !x.make(table.values, 0) || !y.make(table.values, 1))
+    return std::nullopt;
   constexpr double share = 0.75, fewest = 4;
   const double samples = double(x.values.size()) * double(y.values.size());
   if (double(table.rows) < std::max(share * samples, fewest)) return std::nullopt;
@@ -173,8 +179,9 @@ Scan parse_text_scan(const std::string& file, std::string_view content) {
     scan.format = "text of x, y, z";
     scan.notes.push_back("y is taken to run down, as Gwyddion writes such text");
   } else if (lower_case(file).ends_with(".xyz")) {
-    throw FileError(file, fmt::format("its {} rows of {} numbers are no points x, y, z on a regular grid", table.rows,
-                                      table.columns),
+    throw FileError(file,
+                    fmt::format("its {} rows of {} numbers are no points x, y, z on a regular grid",
+                                table.rows, table.columns),
                     "Give every grid point once, or name a matrix .txt");
   } else {
     scan.format = "text matrix";

@@ -6,10 +6,12 @@
 
 namespace surf::io {
 
-std::string format_text_field(const HeightField& field, const std::map<std::string, std::string>& metadata) {
+std::string format_text_field(const HeightField& field,
+                              const std::map<std::string, std::string>& metadata) {
   const int w = field.z_nm.width(), h = field.z_nm.height();
-  std::string text = fmt::format("# Channel: z_nm\n# Width: {} nm\n# Height: {} nm\n# Value units: nm\n",
-                                 format_exact(w * field.pitch_x_nm), format_exact(h * field.pitch_y_nm));
+  std::string text =
+      fmt::format("# Channel: z_nm\n# Width: {} nm\n# Height: {} nm\n# Value units: nm\n",
+                  format_exact(w * field.pitch_x_nm), format_exact(h * field.pitch_y_nm));
   for_each_text_line(description_of(field, metadata),
                      [&](std::string_view line) { text += fmt::format("# {}\n", line); });
   for (int y = h - 1; y >= 0; --y) {

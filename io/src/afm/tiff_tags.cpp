@@ -20,19 +20,29 @@ std::optional<double> TiffTag::number(std::size_t index) const {
   if (index >= count_) return std::nullopt;
   const std::size_t at = index * bytes_of_type(type_);
   switch (type_) {
-    case 1: return values_.number<std::uint8_t>(at, order_);
-    case 3: return values_.number<std::uint16_t>(at, order_);
-    case 4: return values_.number<std::uint32_t>(at, order_);
+    case 1:
+      return values_.number<std::uint8_t>(at, order_);
+    case 3:
+      return values_.number<std::uint16_t>(at, order_);
+    case 4:
+      return values_.number<std::uint32_t>(at, order_);
     case 5: {
-      const double above = values_.number<std::uint32_t>(at, order_), below = values_.number<std::uint32_t>(at + 4, order_);
+      const double above = values_.number<std::uint32_t>(at, order_),
+                   below = values_.number<std::uint32_t>(at + 4, order_);
       return below > 0 ? std::optional(above / below) : std::nullopt;
     }
-    case 6: return values_.number<std::int8_t>(at, order_);
-    case 8: return values_.number<std::int16_t>(at, order_);
-    case 9: return values_.number<std::int32_t>(at, order_);
-    case 11: return double{values_.number<float>(at, order_)};
-    case 12: return values_.number<double>(at, order_);
-    default: return std::nullopt;
+    case 6:
+      return values_.number<std::int8_t>(at, order_);
+    case 8:
+      return values_.number<std::int16_t>(at, order_);
+    case 9:
+      return values_.number<std::int32_t>(at, order_);
+    case 11:
+      return double{values_.number<float>(at, order_)};
+    case 12:
+      return values_.number<double>(at, order_);
+    default:
+      return std::nullopt;
   }
 }
 
@@ -64,7 +74,7 @@ std::vector<TiffPage> parse_tiff_pages(const Bytes& bytes) {
   constexpr std::size_t most_pages = 4096, entry_bytes = 12, inline_bytes = 4;
   const std::endian order = tiff_order(bytes.text());
   std::vector<TiffPage> pages;
-  std::set<std::size_t> seen;   // a damaged file may run in circles
+  std::set<std::size_t> seen;  // a damaged file may run in circles
   for (std::size_t at = bytes.number<std::uint32_t>(4, order); at != 0 && seen.insert(at).second;) {
     if (pages.size() == most_pages) bytes.fail("it has too many pages");
     TiffPage& page = pages.emplace_back();
@@ -75,9 +85,11 @@ std::vector<TiffPage> parse_tiff_pages(const Bytes& bytes) {
       const int type = bytes.number<std::uint16_t>(entry + 2, order);
       const std::size_t count = bytes.number<std::uint32_t>(entry + 4, order);
       const std::size_t size = count * bytes_of_type(type);
-      const std::size_t place = size > inline_bytes ? bytes.number<std::uint32_t>(entry + 8, order) : entry + 8;
+      const std::size_t place =
+          size > inline_bytes ? bytes.number<std::uint32_t>(entry + 8, order) : entry + 8;
       if (size == 0 || place > bytes.size() || size > bytes.size() - place) continue;
-      page.tags.emplace(bytes.number<std::uint16_t>(entry, order), TiffTag(bytes.part(place, size), type, count, order));
+      page.tags.emplace(bytes.number<std::uint16_t>(entry, order),
+                        TiffTag(bytes.part(place, size), type, count, order));
     }
     at = bytes.number<std::uint32_t>(at + 2 + entries * entry_bytes, order);
   }

@@ -12,7 +12,8 @@
 
 namespace surf::io {
 
-/// A value of a TIFF file's directory. Numbers are read where they are there and of a kind of number.
+/// A value of a TIFF file's directory. Numbers are read where they are there and of a kind of
+/// number.
 class TiffTag {
  public:
   TiffTag(Bytes values, int type, std::size_t count, std::endian order)

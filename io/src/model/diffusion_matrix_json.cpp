@@ -27,6 +27,7 @@ ModelParameters read(const JsonValue& value) {
 
 }  // namespace
 
-const ModelKind diffusion_matrix_kind{"diffusion matrix", holds<DiffusionMatrixParameters>, write, read};
+const ModelKind diffusion_matrix_kind{"diffusion matrix", holds<DiffusionMatrixParameters>, write,
+                                      read};
 
 }  // namespace surf::io

@@ -75,7 +75,8 @@ class Writer {
     text_ += "[";
     std::size_t used = widest;
     for (std::size_t i = 0; i < json.size(); ++i) {
-      const std::string value = plain(json[i], fmt::format("{}[{}]", place, i)) + (i + 1 < json.size() ? "," : "");
+      const std::string value =
+          plain(json[i], fmt::format("{}[{}]", place, i)) + (i + 1 < json.size() ? "," : "");
       if (used + 1 + value.size() > widest) {
         new_line(indent);
         used = indent;

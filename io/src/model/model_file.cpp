@@ -44,11 +44,13 @@ const ModelKind& kind_for(const JsonValue& value) {
 void check_head(const JsonValue& root) {
   const std::string format = root.text("format", "");
   if (format != format_name)
-    root.fail(fmt::format("it is no model: its format is '{}'", format), "Give a file that 'semsurf train' wrote");
+    root.fail(fmt::format("it is no model: its format is '{}'", format),
+              "Give a file that 'semsurf train' wrote");
   const std::uint64_t found = root.require("version").whole();
   if (found > version)
-    root.require("version").fail(fmt::format("the file is of version {}, this semsurf reads {}", found, version),
-                                 "Use a newer semsurf, or train the model again");
+    root.require("version").fail(
+        fmt::format("the file is of version {}, this semsurf reads {}", found, version),
+        "Use a newer semsurf, or train the model again");
 }
 
 nlohmann::ordered_json scope_json(const ModelScope& scope) {
@@ -66,8 +68,8 @@ double not_negative(const JsonValue& scope, const char* key) {
 }
 
 ModelScope scope_of(const JsonValue& value) {
-  return {not_negative(value, "pixel_nm"), value.require("material").text(), not_negative(value, "energy_ev"),
-          not_negative(value, "spot_nm")};
+  return {not_negative(value, "pixel_nm"), value.require("material").text(),
+          not_negative(value, "energy_ev"), not_negative(value, "spot_nm")};
 }
 
 }  // namespace
@@ -103,13 +105,15 @@ void write_model(const std::filesystem::path& path, const TrainedModel& model) {
 
 void check_model_target(const std::filesystem::path& path) {
   if (lower_extension(path) != ".json")
-    throw UsageError("`output`", fmt::format("{} does not end in .json", path.string()), "Add `output=model.json`");
+    throw UsageError("`output`", fmt::format("{} does not end in .json", path.string()),
+                     "Add `output=model.json`");
   check_writable(path);
 }
 
 bool is_model_file(const std::filesystem::path& path) {
   std::error_code error;
-  if (lower_extension(path) != ".json" || !std::filesystem::is_regular_file(path, error)) return false;
+  if (lower_extension(path) != ".json" || !std::filesystem::is_regular_file(path, error))
+    return false;
   std::ifstream in(path, std::ios::binary);
   std::string head(4096, '\0');
   in.read(head.data(), static_cast<std::streamsize>(head.size()));

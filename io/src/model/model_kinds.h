@@ -15,7 +15,7 @@ using ModelParameters = decltype(TrainedModel::parameters);
 struct ModelKind {
   const char* name;
   bool (*is)(const ModelParameters& parameters);
-  nlohmann::ordered_json (*write)(const ModelParameters& parameters);   ///< of this kind only
+  nlohmann::ordered_json (*write)(const ModelParameters& parameters);  ///< of this kind only
   ModelParameters (*read)(const JsonValue& parameters);
 };
 

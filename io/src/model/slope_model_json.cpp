@@ -42,7 +42,8 @@ nlohmann::ordered_json write(const ModelParameters& parameters) {
   json["facet"] = facet_json(p.facet);
   json["channels"] = nlohmann::ordered_json::array();
   for (const SlopeChannel& c : p.channels)
-    json["channels"].push_back({{"name", c.name}, {"flat_yield", c.flat_yield}, {"yields", c.yields}});
+    json["channels"].push_back(
+        {{"name", c.name}, {"flat_yield", c.flat_yield}, {"yields", c.yields}});
   return json;
 }
 

@@ -13,9 +13,10 @@ nlohmann::ordered_json write(const ModelParameters& parameters) {
   const auto& p = std::get<StoppingPointParameters>(parameters);
   nlohmann::ordered_json json = table_json(p);
   for (const StoppingPointChannel& c : p.channels)
-    json["channels"].push_back({{"name", c.name},
-                                {"rule", c.rule == StoppingRule::reflected ? "reflected" : "counted"},
-                                {"density_per_nm", c.density_per_nm}});
+    json["channels"].push_back(
+        {{"name", c.name},
+         {"rule", c.rule == StoppingRule::reflected ? "reflected" : "counted"},
+         {"density_per_nm", c.density_per_nm}});
   return json;
 }
 

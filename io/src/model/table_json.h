@@ -10,8 +10,9 @@ namespace surf::io {
 /// The layout of a table of rings and heights, and an empty array of channels.
 template <class Parameters>
 nlohmann::ordered_json table_json(const Parameters& p) {
-  return {{"ring_nm", p.ring_nm},   {"rings", p.rings},     {"lowest_nm", p.lowest_nm},
-          {"height_step_nm", p.height_step_nm}, {"heights", p.heights}, {"channels", nlohmann::ordered_json::array()}};
+  return {{"ring_nm", p.ring_nm},     {"rings", p.rings},
+          {"lowest_nm", p.lowest_nm}, {"height_step_nm", p.height_step_nm},
+          {"heights", p.heights},     {"channels", nlohmann::ordered_json::array()}};
 }
 
 /// Ranges are for the model to check.

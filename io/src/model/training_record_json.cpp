@@ -10,7 +10,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr const char* infinite = "infinite";   // JSON has no number for it
+constexpr const char* infinite = "infinite";  // JSON has no number for it
 
 Json residuals_json(const std::vector<ModelResidual>& residuals) {
   Json json = Json::array();
@@ -35,15 +35,19 @@ std::vector<ModelResidual> residuals_of(const JsonValue& value, const char* key)
 }
 
 Json scene_json(const TrainingScene& scene) {
-  return {{"name", scene.name},           {"sha256", scene.sha256},
-          {"width", scene.width},         {"height", scene.height},
-          {"electrons", scene.electrons}, {"held_out", scene.held_out},
+  return {{"name", scene.name},
+          {"sha256", scene.sha256},
+          {"width", scene.width},
+          {"height", scene.height},
+          {"electrons", scene.electrons},
+          {"held_out", scene.held_out},
           {"residuals", residuals_json(scene.residuals)}};
 }
 
 int size_of(const JsonValue& value) {
   const std::uint64_t size = value.whole();
-  if (size > static_cast<std::uint64_t>(std::numeric_limits<int>::max())) value.fail("it is too large");
+  if (size > static_cast<std::uint64_t>(std::numeric_limits<int>::max()))
+    value.fail("it is too large");
   return static_cast<int>(size);
 }
 
@@ -68,7 +72,8 @@ Json range_json(const SurfaceRange& range) {
 
 SurfaceRange range_of(const JsonValue& value) {
   return {value.require("slope_deg_p99").number(), value.require("slope_deg_max").number(),
-          value.require("curvature_p99_per_nm").number(), value.require("curvature_max_per_nm").number()};
+          value.require("curvature_p99_per_nm").number(),
+          value.require("curvature_max_per_nm").number()};
 }
 
 double condition_of(const JsonValue& record) {

@@ -22,7 +22,8 @@ SemHeader of_ome(std::string_view text) {
   const auto side = [&](const std::string& name) {
     const std::string unit = attribute(text, name + "Unit");
     const auto number = scan_number(attribute(text, name));
-    const auto nm = scan_length_nm(unit.empty() ? "um" : unit);   // micrometres where nothing is said
+    const auto nm =
+        scan_length_nm(unit.empty() ? "um" : unit);  // micrometres where nothing is said
     return number && nm ? positive(*number * *nm) : std::nullopt;
   };
   set_pixel(header, side("PhysicalSizeX"), side("PhysicalSizeY"), "PhysicalSizeX");

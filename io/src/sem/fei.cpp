@@ -16,12 +16,13 @@ SemHeader parse_fei(std::string_view text, SemSize size) {
   const std::string scan = setting(s, "Beam.Scan").empty() ? "EScan" : setting(s, "Beam.Scan");
   for (const std::string& block : {std::string("Scan"), scan})
     if (header.pixel_x_nm == 0)
-      set_pixel(header, number_of(s, block + ".PixelWidth", metre), number_of(s, block + ".PixelHeight", metre),
-                block + ".PixelWidth");
+      set_pixel(header, number_of(s, block + ".PixelWidth", metre),
+                number_of(s, block + ".PixelHeight", metre), block + ".PixelWidth");
   header.energy_ev = positive(number_of(s, "Beam.HV"));
   if (!header.energy_ev) header.energy_ev = positive(number_of(s, beam + ".HV"));
   header.working_distance_nm = positive(number_of(s, beam + ".WD", metre));
-  if (!header.working_distance_nm) header.working_distance_nm = positive(number_of(s, "Stage.WorkingDistance", metre));
+  if (!header.working_distance_nm)
+    header.working_distance_nm = positive(number_of(s, "Stage.WorkingDistance", metre));
   header.tilt_deg = number_of(s, "Stage.StageT", degrees);
   header.detector = setting(s, "Detectors.Name");
   header.instrument = setting(s, "System.SystemType");
@@ -29,8 +30,9 @@ SemHeader parse_fei(std::string_view text, SemSize size) {
   header.databar_rows = rows_below(size, number_of(s, "Image.ResolutionY"));
   if (number_of(s, "Image.ResolutionX") != double(size.width) && header.pixel_x_nm > 0 &&
       number_of(s, "Image.ResolutionX"))
-    header.notes.push_back("it was scanned with " + setting(s, "Image.ResolutionX") + " pixels across, and has " +
-                           std::to_string(size.width) + ": cropped or resampled since. Check the pixel size");
+    header.notes.push_back("it was scanned with " + setting(s, "Image.ResolutionX") +
+                           " pixels across, and has " + std::to_string(size.width) +
+                           ": cropped or resampled since. Check the pixel size");
   return header;
 }
 

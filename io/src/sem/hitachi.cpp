@@ -26,7 +26,8 @@ bool is_hitachi_text(std::string_view text) { return trimmed(text).starts_with("
 SemHeader parse_hitachi(std::string_view text, SemSize size) {
   SemHeader header;
   header.format = "Hitachi";
-  for (const auto& [key, value] : parse_settings(text)) header.metadata.emplace(key.substr(key.find('.') + 1), value);
+  for (const auto& [key, value] : parse_settings(text))
+    header.metadata.emplace(key.substr(key.find('.') + 1), value);
   const Settings& s = header.metadata;
   set_pixel(header, number_of(s, "PixelSize"), {}, "PixelSize");
   // What is repeated in the image has energy and distance in one line.
@@ -34,7 +35,8 @@ SemHeader parse_hitachi(std::string_view text, SemSize size) {
   header.energy_ev = voltage_ev(setting(s, "AcceleratingVoltage"));
   if (!header.energy_ev) header.energy_ev = voltage_ev(part_of(condition, "Vacc="));
   header.working_distance_nm = length_nm(setting(s, "WorkingDistance"));
-  if (!header.working_distance_nm) header.working_distance_nm = length_nm(part_of(condition, "WD="));
+  if (!header.working_distance_nm)
+    header.working_distance_nm = length_nm(part_of(condition, "WD="));
   header.tilt_deg = number_of(s, "StagePositionT");
   header.detector = setting(s, "SignalName");
   header.instrument = setting(s, "InstructName");

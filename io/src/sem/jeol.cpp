@@ -31,7 +31,9 @@ std::optional<double> second_number(std::string_view text) {
 
 }  // namespace
 
-bool is_jeol_text(std::string_view text) { return text.find("$CM_FORMAT JEOL") != std::string_view::npos; }
+bool is_jeol_text(std::string_view text) {
+  return text.find("$CM_FORMAT JEOL") != std::string_view::npos;
+}
 
 SemHeader parse_jeol(std::string_view text, SemSize size) {
   constexpr double millimetre = 1e6;
@@ -43,8 +45,10 @@ SemHeader parse_jeol(std::string_view text, SemSize size) {
   const auto bar_nm = length_nm(setting(s, "SM_MICRON_MARKER"));
   if (bar_px && bar_nm) {
     set_pixel(header, *bar_nm / *bar_px, {}, "SM_MICRON_BAR");
-    header.notes.push_back(fmt::format("the pixel size, {:.4g} nm, is from a micron bar of whole {:g} pixels: it may be "
-                                       "{:.1f} % off", header.pixel_x_nm, *bar_px, 50 / *bar_px));
+    header.notes.push_back(fmt::format(
+        "the pixel size, {:.4g} nm, is from a micron bar of whole {:g} pixels: it may be "
+        "{:.1f} % off",
+        header.pixel_x_nm, *bar_px, 50 / *bar_px));
   }
   header.energy_ev = positive(number_of(s, "CM_ACCEL_VOLT", 1e3));
   header.working_distance_nm = positive(number_of(s, "SM_WD", millimetre));

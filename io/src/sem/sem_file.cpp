@@ -5,8 +5,8 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <charconv>
+#include <cmath>
 
 #include "../companions.h"
 #include "../image_formats.h"
@@ -22,10 +22,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int tag_comment = 40092;   // Windows' "XPComment", in UTF-16
+constexpr int tag_comment = 40092;  // Windows' "XPComment", in UTF-16
 constexpr std::array tags_fei{34682, 34680};
 constexpr int tag_zeiss = 34118, tag_tescan = 50431;
-constexpr std::size_t most_text = std::size_t{1} << 20;   // of a file beside an image
+constexpr std::size_t most_text = std::size_t{1} << 20;  // of a file beside an image
 
 /// The pages of a TIFF file; none for others.
 std::vector<TiffPage> pages_of(const std::string& file, const std::string& content) {
@@ -36,8 +36,10 @@ std::vector<TiffPage> pages_of(const std::string& file, const std::string& conte
 std::optional<SemHeader> header_in(const TiffPage& page, SemSize size) {
   for (const int tag : tags_fei)
     if (const TiffTag* const found = page.find(tag)) return parse_fei(found->bytes().text(), size);
-  if (const TiffTag* const found = page.find(tag_zeiss)) return parse_zeiss(found->bytes().text(), size);
-  if (const TiffTag* const found = page.find(tag_tescan)) return parse_tescan_tag(found->bytes().text(), size);
+  if (const TiffTag* const found = page.find(tag_zeiss))
+    return parse_zeiss(found->bytes().text(), size);
+  if (const TiffTag* const found = page.find(tag_tescan))
+    return parse_tescan_tag(found->bytes().text(), size);
   return std::nullopt;
 }
 
@@ -79,7 +81,8 @@ std::optional<SemHeader> header_in_comment(const TiffPage& page, SemSize size) {
   return header.pixel_x_nm > 0 ? std::optional(header) : std::nullopt;
 }
 
-std::optional<SemHeader> find_header(const fs::path& path, const std::vector<TiffPage>& pages, SemSize size) {
+std::optional<SemHeader> find_header(const fs::path& path, const std::vector<TiffPage>& pages,
+                                     SemSize size) {
   std::optional<SemHeader> header;
   if (!pages.empty()) header = header_in(pages.front(), size);
   if (!header) header = header_beside(path, size);
@@ -87,18 +90,21 @@ std::optional<SemHeader> find_header(const fs::path& path, const std::vector<Tif
   return header;
 }
 
-std::optional<double> number_in(const std::map<std::string, std::string>& metadata, const char* key) {
+std::optional<double> number_in(const std::map<std::string, std::string>& metadata,
+                                const char* key) {
   const auto found = metadata.find(key);
   if (found == metadata.end()) return std::nullopt;
   double value = 0;
   const std::string& text = found->second;
-  const bool good = std::from_chars(text.data(), text.data() + text.size(), value).ec == std::errc{};
+  const bool good =
+      std::from_chars(text.data(), text.data() + text.size(), value).ec == std::errc{};
   return good && std::isfinite(value) ? std::optional(value) : std::nullopt;
 }
 
 /// Of an image that this program, or another user of this library, has written.
 std::optional<SemHeader> header_of_ours(const Image& image) {
-  const bool ours = image.metadata.contains("semsurf.version") || image.pitch_x_nm != 1 || image.pitch_y_nm != 1;
+  const bool ours =
+      image.metadata.contains("semsurf.version") || image.pitch_x_nm != 1 || image.pitch_y_nm != 1;
   if (!ours) return std::nullopt;
   SemHeader header;
   header.format = "semsurf";
@@ -113,7 +119,8 @@ template <class T>
 void cut_rows(Grid<T>& grid, int rows) {
   if (grid.empty()) return;
   Grid<T> rest(grid.width(), grid.height() - rows);
-  std::copy(grid.data().begin() + std::ptrdiff_t{rows} * grid.width(), grid.data().end(), rest.data().begin());
+  std::copy(grid.data().begin() + std::ptrdiff_t{rows} * grid.width(), grid.data().end(),
+            rest.data().begin());
   grid = std::move(rest);
 }
 
@@ -123,21 +130,28 @@ void check(const SemReadOptions& options) {
       throw UsageError("SEM pixel size", fmt::format("{:g} nm", *size), "It has to be above 0");
 }
 
-void set_pitch(SemFile& out, const SemHeader& header, const SemReadOptions& options, const std::string& file) {
-  const auto given = [](const std::optional<double>& a, const std::optional<double>& b) { return a ? a : b; };
-  const auto x = given(options.pixel_x_nm, options.pixel_y_nm), y = given(options.pixel_y_nm, options.pixel_x_nm);
+void set_pitch(SemFile& out, const SemHeader& header, const SemReadOptions& options,
+               const std::string& file) {
+  const auto given = [](const std::optional<double>& a, const std::optional<double>& b) {
+    return a ? a : b;
+  };
+  const auto x = given(options.pixel_x_nm, options.pixel_y_nm),
+             y = given(options.pixel_y_nm, options.pixel_x_nm);
   if (!x && !(header.pixel_x_nm > 0))
-    throw UsageError(file, header.format.empty()
-                               ? "nothing in it, or beside it, says how large its pixels are"
-                               : fmt::format("what {} wrote of it does not say how large its pixels are", header.format),
+    throw UsageError(file,
+                     header.format.empty()
+                         ? "nothing in it, or beside it, says how large its pixels are"
+                         : fmt::format("what {} wrote of it does not say how large its pixels are",
+                                       header.format),
                      "Add `sem_pixel_size=2nm`, with the size at the specimen");
   out.image.pitch_x_nm = x.value_or(header.pixel_x_nm);
   out.image.pitch_y_nm = y.value_or(header.pixel_y_nm);
   out.pixel_from = x ? "given" : header.pixel_from;
   constexpr double same = 1e-3;
   if (x && header.pixel_x_nm > 0 && std::abs(*x / header.pixel_x_nm - 1) > same)
-    out.notes.push_back(fmt::format("the pixel size given, {:.6g} nm, goes before the file's own, {:.6g} nm", *x,
-                                    header.pixel_x_nm));
+    out.notes.push_back(
+        fmt::format("the pixel size given, {:.6g} nm, goes before the file's own, {:.6g} nm", *x,
+                    header.pixel_x_nm));
 }
 
 }  // namespace
@@ -149,7 +163,8 @@ std::vector<fs::path> sem_settings_beside(const fs::path& image) {
     const std::string text = text_at(beside);
     if (is_jeol_text(text) || is_hitachi_text(text)) files.push_back(std::move(beside));
   }
-  if (fs::path beside = header_name(image); is_tescan_text(text_at(beside))) files.push_back(std::move(beside));
+  if (fs::path beside = header_name(image); is_tescan_text(text_at(beside)))
+    files.push_back(std::move(beside));
   return files;
 }
 
@@ -162,7 +177,8 @@ SemFile read_sem_image(const fs::path& path, const SemReadOptions& options) {
 
   SemPixels pixels;
   Image image;
-  if (!pages.empty() && options.channel.empty()) pixels = palette_pixels(pages.front(), Bytes(file, content));
+  if (!pages.empty() && options.channel.empty())
+    pixels = palette_pixels(pages.front(), Bytes(file, content));
   if (pixels.values.empty()) {
     image = vti ? read_image(path) : read_raster(path);
     pixels = grey_pixels(image, options.channel, file);
@@ -190,7 +206,8 @@ SemFile read_sem_image(const fs::path& path, const SemReadOptions& options) {
   if (out.databar_rows > 0 && !options.keep_databar) {
     cut_rows(out.image.values, out.databar_rows);
     cut_rows(out.image.valid, out.databar_rows);
-    out.notes.push_back(fmt::format("the databar, the lowest {} rows, is left out", out.databar_rows));
+    out.notes.push_back(
+        fmt::format("the databar, the lowest {} rows, is left out", out.databar_rows));
   }
   out.energy_ev = header->energy_ev;
   out.working_distance_nm = header->working_distance_nm;
@@ -208,13 +225,14 @@ namespace {
 std::optional<SemHeader> header_of_maker(const fs::path& path) {
   constexpr std::array extensions{".tif", ".tiff", ".png", ".jpg", ".jpeg", ".bmp"};
   std::error_code ignored;
-  if (std::find(extensions.begin(), extensions.end(), lower_extension(path)) == extensions.end()) return {};
+  if (std::find(extensions.begin(), extensions.end(), lower_extension(path)) == extensions.end())
+    return {};
   if (!fs::is_regular_file(path, ignored)) return {};
   try {
     const std::string content = read_file(path);
     return find_header(path, pages_of(path.string(), content), {2, 2});
   } catch (const FileError&) {
-    return {};   // whoever reads it says why
+    return {};  // whoever reads it says why
   }
 }
 
@@ -226,8 +244,10 @@ void refuse_as_heights(const fs::path& path) {
   const auto header = header_of_maker(path);
   if (!header) return;
   throw InvalidInput(
-      path.string(), fmt::format("it is an SEM image ({}), and its grey levels are no heights", header->format),
-      "Give a scan; an SEM image's noise is found with 'semsurf noise sem'. If it does hold heights, say "
+      path.string(),
+      fmt::format("it is an SEM image ({}), and its grey levels are no heights", header->format),
+      "Give a scan; an SEM image's noise is found with 'semsurf noise sem'. If it does hold "
+      "heights, say "
       "what one grey level is with `scan.height_unit`");
 }
 

@@ -17,7 +17,8 @@ void append_utf8(std::string& text, unsigned code) {
   } else if (code < 0x10000) {
     add(0xe0 | code >> 12), add(0x80 | (code >> 6 & 0x3f)), add(0x80 | (code & 0x3f));
   } else {
-    add(0xf0 | code >> 18), add(0x80 | (code >> 12 & 0x3f)), add(0x80 | (code >> 6 & 0x3f)), add(0x80 | (code & 0x3f));
+    add(0xf0 | code >> 18), add(0x80 | (code >> 12 & 0x3f)), add(0x80 | (code >> 6 & 0x3f)),
+        add(0x80 | (code & 0x3f));
   }
 }
 
@@ -26,7 +27,8 @@ void append_utf8(std::string& text, unsigned code) {
 std::string decoded_utf16(std::string_view bytes, bool low_byte_first) {
   std::string text;
   const auto unit = [&](std::size_t i) {
-    const unsigned a = static_cast<unsigned char>(bytes[i]), b = static_cast<unsigned char>(bytes[i + 1]);
+    const unsigned a = static_cast<unsigned char>(bytes[i]),
+                   b = static_cast<unsigned char>(bytes[i + 1]);
     return low_byte_first ? a | b << 8 : a << 8 | b;
   };
   for (std::size_t i = 0; i + 1 < bytes.size(); i += 2) {
@@ -63,7 +65,8 @@ Settings parse_settings(std::string_view text) {
     const std::size_t equals = line.find('=');
     if (equals == std::string_view::npos || equals == 0) return;
     const std::string value = clean_text(trimmed(line.substr(equals + 1)));
-    if (!value.empty()) settings.emplace(section + clean_text(trimmed(line.substr(0, equals))), value);
+    if (!value.empty())
+      settings.emplace(section + clean_text(trimmed(line.substr(0, equals))), value);
   });
   return settings;
 }
@@ -78,7 +81,7 @@ std::optional<double> number_of(const Settings& settings, const std::string& key
   const std::string text = setting(settings, key);
   const auto number = leading_number(text, rest);
   if (!number || !std::isfinite(*number * factor)) return std::nullopt;
-  return *number * factor + 0.0;   // no -0
+  return *number * factor + 0.0;  // no -0
 }
 
 std::optional<double> positive(std::optional<double> value) {
@@ -102,7 +105,8 @@ std::optional<double> length_nm(std::string_view text) {
   return unit ? positive(*number * *unit) : std::nullopt;
 }
 
-void set_pixel(SemHeader& header, std::optional<double> x_nm, std::optional<double> y_nm, std::string from) {
+void set_pixel(SemHeader& header, std::optional<double> x_nm, std::optional<double> y_nm,
+               std::string from) {
   if (!positive(x_nm)) return;
   header.pixel_x_nm = *x_nm;
   header.pixel_y_nm = positive(y_nm).value_or(*x_nm);

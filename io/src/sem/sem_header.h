@@ -14,9 +14,9 @@ namespace surf::io {
 /// What a microscope says of an image. Numbers that are not there, or impossible, are left out.
 struct SemHeader {
   std::string format;
-  double pixel_x_nm = 0, pixel_y_nm = 0;   ///< 0: not said
+  double pixel_x_nm = 0, pixel_y_nm = 0;  ///< 0: not said
   std::string pixel_from;
-  int databar_rows = 0;                    ///< less than the image's
+  int databar_rows = 0;  ///< less than the image's
   std::optional<double> energy_ev, working_distance_nm, tilt_deg;
   std::string detector, instrument;
   std::map<std::string, std::string> metadata;
@@ -49,18 +49,21 @@ std::optional<SemHeader> described_pixel(const TiffPage& page);
 
 using Settings = std::map<std::string, std::string>;
 
-/// Lines "key=value", the key with "SECTION." before it after a line "[SECTION]"; values are printable.
+/// Lines "key=value", the key with "SECTION." before it after a line "[SECTION]"; values are
+/// printable.
 Settings parse_settings(std::string_view text);
 std::string setting(const Settings& settings, const std::string& key);
 /// A finite number at the front of a setting, times `factor`; or nothing.
-std::optional<double> number_of(const Settings& settings, const std::string& key, double factor = 1);
+std::optional<double> number_of(const Settings& settings, const std::string& key,
+                                double factor = 1);
 std::optional<double> positive(std::optional<double> value);
 /// "5.00 kV", "15000 Volt" in eV; "3.9 mm" in nm.
 std::optional<double> voltage_ev(std::string_view text);
 std::optional<double> length_nm(std::string_view text);
 
 /// Sets both sides, the second one as the first where it is missing; nothing without the first.
-void set_pixel(SemHeader& header, std::optional<double> x_nm, std::optional<double> y_nm, std::string from);
+void set_pixel(SemHeader& header, std::optional<double> x_nm, std::optional<double> y_nm,
+               std::string from);
 /// Rows below `image_rows`, where there are such and fewer than half of the picture.
 int rows_below(SemSize size, std::optional<double> image_rows);
 

@@ -14,14 +14,15 @@ namespace surf::io {
 /// The picture of an SEM file, before anything is cut off.
 struct SemPixels {
   Grid<double> values;
-  Grid<unsigned char> valid;    ///< empty: all are
-  std::string channel;          ///< of files with several
-  int bits = 0;                 ///< 0: floats
+  Grid<unsigned char> valid;  ///< empty: all are
+  std::string channel;        ///< of files with several
+  int bits = 0;               ///< 0: floats
   std::vector<std::string> notes;
 };
 
-/// Of a TIFF page with a palette that is stored as it is: the numbers before the palette, which may be bent, and
-/// whose entries in colour are for annotations. Empty where the page is of another kind.
+/// Of a TIFF page with a palette that is stored as it is: the numbers before the palette, which may
+/// be bent, and whose entries in colour are for annotations. Empty where the page is of another
+/// kind.
 SemPixels palette_pixels(const TiffPage& page, const Bytes& file);
 
 /// Of an image as its library reads it. `channel` as in SemReadOptions.

@@ -12,13 +12,15 @@ SemHeader header_of(Settings settings, SemSize size) {
   SemHeader header;
   header.format = "TESCAN";
   const Settings& s = settings;
-  set_pixel(header, number_of(s, "PixelSizeX", metre), number_of(s, "PixelSizeY", metre), "PixelSizeX");
+  set_pixel(header, number_of(s, "PixelSizeX", metre), number_of(s, "PixelSizeY", metre),
+            "PixelSizeX");
   header.energy_ev = positive(number_of(s, "HV"));
   header.working_distance_nm = positive(number_of(s, "WD", metre));
   header.tilt_deg = number_of(s, "StageTilt");
   header.detector = setting(s, "Detector");
   header.instrument = setting(s, "Device");
-  if (const auto strip = number_of(s, "ImageStripSize")) header.databar_rows = rows_below(size, size.height - *strip);
+  if (const auto strip = number_of(s, "ImageStripSize"))
+    header.databar_rows = rows_below(size, size.height - *strip);
   header.metadata = std::move(settings);
   return header;
 }
@@ -26,14 +28,16 @@ SemHeader header_of(Settings settings, SemSize size) {
 /// As many of the bytes as make a number, the low one first.
 std::size_t little(std::string_view bytes) {
   std::size_t value = 0;
-  for (std::size_t i = bytes.size(); i-- > 0;) value = value << 8 | static_cast<unsigned char>(bytes[i]);
+  for (std::size_t i = bytes.size(); i-- > 0;)
+    value = value << 8 | static_cast<unsigned char>(bytes[i]);
   return value;
 }
 
 }  // namespace
 
 SemHeader parse_tescan_tag(std::string_view tag, SemSize size) {
-  // Blocks of a length in four bytes, then a kind in two and the rest, which it counts: a picture, then texts.
+  // Blocks of a length in four bytes, then a kind in two and the rest, which it counts: a picture,
+  // then texts.
   constexpr std::size_t length_bytes = 4, head_bytes = 6, kind_bytes = head_bytes - length_bytes;
   constexpr std::size_t picture = 1;
   Settings settings;
@@ -51,7 +55,8 @@ SemHeader parse_tescan_tag(std::string_view tag, SemSize size) {
 
 SemHeader parse_tescan_text(std::string_view text, SemSize size) {
   Settings plain;
-  for (const auto& [key, value] : parse_settings(text)) plain.emplace(key.substr(key.find('.') + 1), value);
+  for (const auto& [key, value] : parse_settings(text))
+    plain.emplace(key.substr(key.find('.') + 1), value);
   return header_of(std::move(plain), size);
 }
 

@@ -10,7 +10,7 @@
 namespace surf::io {
 namespace {
 
-constexpr int pixel_line = 3;            // of the numbers without names that the text begins with, in m
+constexpr int pixel_line = 3;  // of the numbers without names that the text begins with, in m
 constexpr double screen_columns = 1024;  // that this number and AP_PIXEL_SIZE are for
 
 /// Pairs of lines, a name as AP_MAG and "Mag = 50.00 K X"; dates have a colon.
@@ -20,8 +20,9 @@ Settings parse_pairs(std::string_view text, double& first_pixel_nm) {
   int number = 0;
   for_each_text_line(text, [&](std::string_view line) {
     if (number++ == pixel_line) first_pixel_nm = 1e9 * scan_number(line).value_or(0);
-    const bool is_name = line.size() > 3 && line[2] == '_' &&
-                         std::all_of(line.begin(), line.end(), [](unsigned char c) { return c > ' ' && c < 0x7f; });
+    const bool is_name =
+        line.size() > 3 && line[2] == '_' &&
+        std::all_of(line.begin(), line.end(), [](unsigned char c) { return c > ' ' && c < 0x7f; });
     if (is_name) {
       name = line;
     } else if (!name.empty()) {
@@ -57,8 +58,9 @@ SemHeader parse_zeiss(std::string_view text, SemSize size) {
     const auto nm = agrees || !screen_nm ? positive(first_nm) : screen_nm;
     if (nm) set_pixel(header, *nm * to_image, {}, "AP_PIXEL_SIZE");
     if (nm && size.width != int(screen_columns))
-      header.notes.push_back(fmt::format("AP_PIXEL_SIZE, {:.5g} nm, is for {:g} columns; of the {} here each is {:.5g} nm",
-                                         *nm, screen_columns, size.width, header.pixel_x_nm));
+      header.notes.push_back(fmt::format(
+          "AP_PIXEL_SIZE, {:.5g} nm, is for {:g} columns; of the {} here each is {:.5g} nm", *nm,
+          screen_columns, size.width, header.pixel_x_nm));
   }
   header.energy_ev = voltage_ev(setting(s, "AP_ACTUALKV"));
   if (!header.energy_ev) header.energy_ev = voltage_ev(setting(s, "AP_MANUALKV"));

@@ -24,7 +24,8 @@ double required(const TomlTable& table, std::string_view key) {
 
 int read_atomic_number(const TomlTable& table) {
   if (table.has("Z") == table.has("symbol")) {
-    throw FileError(table.place(), "it needs either 'Z' or 'symbol'", "Write for example symbol = \"Si\"");
+    throw FileError(table.place(), "it needs either 'Z' or 'symbol'",
+                    "Write for example symbol = \"Si\"");
   }
   if (table.has("symbol")) {
     const mc::Element* const element = mc::find_element(*table.text("symbol"));
@@ -52,32 +53,41 @@ mc::Constituent read_element(const TomlTable& table) {
 }
 
 // One number, or as many as there are.
-std::vector<double> read_numbers(const TomlTable& table, std::string_view key, std::size_t wanted = 0) {
+std::vector<double> read_numbers(const TomlTable& table, std::string_view key,
+                                 std::size_t wanted = 0) {
   std::vector<double> numbers;
   for (const std::string& word : table.words(key)) {
     double value = 0;
     const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
     if (error != std::errc() || end != word.data() + word.size())
-      throw UsageError(table.place(key), fmt::format("'{}' is not a number", word), "Write numbers, as [9130, 5842]");
+      throw UsageError(table.place(key), fmt::format("'{}' is not a number", word),
+                       "Write numbers, as [9130, 5842]");
     numbers.push_back(value);
   }
   if (wanted > 0 && !numbers.empty() && numbers.size() != wanted)
-    throw UsageError(table.place(key), fmt::format("there are {} numbers for {} speeds of sound", numbers.size(), wanted),
-                     "Give as many as in sound_m_s");
+    throw UsageError(
+        table.place(key),
+        fmt::format("there are {} numbers for {} speeds of sound", numbers.size(), wanted),
+        "Give as many as in sound_m_s");
   return numbers;
 }
 
 std::vector<mc::AcousticBranch> read_acoustic(const TomlTable& table) {
   const std::vector<double> speeds = read_numbers(table, "sound_m_s");
   if (speeds.size() > 2)
-    throw UsageError(table.place("sound_m_s"), fmt::format("there are {} speeds of sound", speeds.size()),
+    throw UsageError(table.place("sound_m_s"),
+                     fmt::format("there are {} speeds of sound", speeds.size()),
                      "Give one, or that of longitudinal and that of transverse waves");
-  const auto deformations = read_numbers(table, "deformation_ev", std::max<std::size_t>(speeds.size(), 1));
+  const auto deformations =
+      read_numbers(table, "deformation_ev", std::max<std::size_t>(speeds.size(), 1));
   const auto bends = read_numbers(table, "bend_m2_s", std::max<std::size_t>(speeds.size(), 1));
   std::vector<mc::AcousticBranch> branches;
   for (std::size_t i = 0; i < speeds.size(); ++i)
-    branches.push_back({speeds[i], i < deformations.size() ? deformations[i] : 0, i < bends.size() ? bends[i] : 0,
-                        speeds.size() == 1 ? 3 : i == 0 ? 1 : 2});
+    branches.push_back({speeds[i], i < deformations.size() ? deformations[i] : 0,
+                        i < bends.size() ? bends[i] : 0,
+                        speeds.size() == 1 ? 3
+                        : i == 0           ? 1
+                                           : 2});
   return branches;
 }
 
@@ -100,8 +110,10 @@ mc::DielectricDraft read_dielectric(const TomlTable& table, const TextReader& re
     draft.optical.emplace();
     for (const TomlTable& mode : table.tables("optical_phonons")) {
       mode.allow(keys_of("optical_phonons"));
-      for (const char* key : {"energy_ev", "high_permittivity", "low_permittivity"}) mode.require(key, "every mode has it");
-      draft.optical->push_back({*mode.energy_ev("energy_ev"), *mode.number("high_permittivity"), *mode.number("low_permittivity")});
+      for (const char* key : {"energy_ev", "high_permittivity", "low_permittivity"})
+        mode.require(key, "every mode has it");
+      draft.optical->push_back({*mode.energy_ev("energy_ev"), *mode.number("high_permittivity"),
+                                *mode.number("low_permittivity")});
     }
   }
   draft.trap_per_nm = table.number("trap_per_nm").value_or(0);
@@ -138,7 +150,8 @@ mc::MaterialDraft read_draft(const TomlTable& table, const TextReader& read) {
   draft.plasmon_ev = table.energy_ev("plasmon_ev");
   draft.loss_join_ev = table.energy_ev("loss_join_ev");
   draft.loss_join_fitted = table.flag("loss_join_fitted").value_or(false);
-  if (const auto dielectric = table.table("dielectric")) draft.dielectric = read_dielectric(*dielectric, read);
+  if (const auto dielectric = table.table("dielectric"))
+    draft.dielectric = read_dielectric(*dielectric, read);
   draft.sources = table.text("sources").value_or("");
   return draft;
 }
@@ -147,10 +160,13 @@ mc::MaterialDraft read_draft(const TomlTable& table, const TextReader& read) {
 
 TextReader reader_beside(const std::filesystem::path& file) {
   constexpr std::size_t max_bytes = std::size_t{16} << 20;
-  return [folder = file.parent_path()](const std::string& name) { return read_file(folder / name, max_bytes); };
+  return [folder = file.parent_path()](const std::string& name) {
+    return read_file(folder / name, max_bytes);
+  };
 }
 
-std::vector<mc::Material> read_material_tables(const TomlTable& root, std::span<const mc::Material> known,
+std::vector<mc::Material> read_material_tables(const TomlTable& root,
+                                               std::span<const mc::Material> known,
                                                const TextReader& read) {
   std::vector<mc::Material> materials;
   std::set<std::string> names;

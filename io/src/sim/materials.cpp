@@ -19,7 +19,9 @@ constexpr std::size_t max_file_bytes = std::size_t{16} << 20;
 std::vector<mc::Material> read_builtin_materials() {
   const TomlTable root = TomlTable::parse(materials_toml, "materials.toml");
   root.allow({"material"});
-  return read_material_tables(root, {}, [](const std::string& name) { return std::string(mc::find_energy_loss_file(name)); });
+  return read_material_tables(root, {}, [](const std::string& name) {
+    return std::string(mc::find_energy_loss_file(name));
+  });
 }
 
 const mc::Material& find_in(const std::vector<mc::Material>& materials, const std::string& name,
@@ -43,7 +45,8 @@ const std::vector<mc::Material>& builtin_materials() {
 }
 
 void describe(ParameterVisitor& visit, MaterialChoice& choice) {
-  visit(choice.name, {.name = "specimen.material", .help = "What the specimen is made of", .form = "MATERIAL"});
+  visit(choice.name,
+        {.name = "specimen.material", .help = "What the specimen is made of", .form = "MATERIAL"});
   visit(choice.files, {.name = "specimen.materials",
                        .help = "File of your own materials (TOML)",
                        .form = "FILE",
@@ -61,8 +64,7 @@ const mc::Material& find_material(const std::string& name, const std::string& su
   return find_in(builtin_materials(), name, subject);
 }
 
-MaterialLibrary::MaterialLibrary()
-    : materials_(builtin_materials()), origins_(materials_.size()) {}
+MaterialLibrary::MaterialLibrary() : materials_(builtin_materials()), origins_(materials_.size()) {}
 
 const mc::Material& MaterialLibrary::find(const std::string& name,
                                           const std::string& subject) const {
@@ -71,9 +73,8 @@ const mc::Material& MaterialLibrary::find(const std::string& name,
 
 void MaterialLibrary::add(mc::Material material, const std::string& origin,
                           std::vector<std::string>& notes) {
-  const auto found =
-      std::find_if(materials_.begin(), materials_.end(),
-                   [&](const mc::Material& m) { return m.name == material.name; });
+  const auto found = std::find_if(materials_.begin(), materials_.end(),
+                                  [&](const mc::Material& m) { return m.name == material.name; });
   if (found == materials_.end()) {
     materials_.push_back(std::move(material));
     origins_.push_back(origin);
@@ -92,7 +93,8 @@ void MaterialLibrary::read(const std::filesystem::path& path, std::vector<std::s
   if (!root.has("material")) {
     throw FileError(path.string(), "it holds no material", "Add [[material]] tables");
   }
-  for (mc::Material& material : read_material_tables(root, builtin_materials(), reader_beside(path))) {
+  for (mc::Material& material :
+       read_material_tables(root, builtin_materials(), reader_beside(path))) {
     add(std::move(material), path.string(), notes);
   }
 }

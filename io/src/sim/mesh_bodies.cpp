@@ -29,16 +29,15 @@ void check_meaning(const std::vector<NamedMesh>& meshes, const MaterialNames& na
   for (const auto& [name, material] : names.meaning) {
     library.find(material, names.subject);
     if (in_file.contains(name)) continue;
-    throw UsageError(names.subject, fmt::format("{} has no material '{}'", file, name),
-                     in_file.empty() ? "Leave it out: the file names no materials"
-                                     : fmt::format("Choose one of: {}",
-                                                   join(nearest_first(
-                                                       name, {in_file.begin(), in_file.end()}))));
+    throw UsageError(
+        names.subject, fmt::format("{} has no material '{}'", file, name),
+        in_file.empty() ? "Leave it out: the file names no materials"
+                        : fmt::format("Choose one of: {}",
+                                      join(nearest_first(name, {in_file.begin(), in_file.end()}))));
   }
 }
 
-MeshBody with_material(NamedMesh mesh, const MaterialNames& names,
-                       const MaterialLibrary& library) {
+MeshBody with_material(NamedMesh mesh, const MaterialNames& names, const MaterialLibrary& library) {
   MeshBody body{mesh.name, mesh.material, {}, false, std::move(mesh.mesh), mesh.unit_assumed};
   const auto meaning = names.meaning.find(body.file_material);
   if (meaning != names.meaning.end()) {
@@ -54,10 +53,12 @@ MeshBody with_material(NamedMesh mesh, const MaterialNames& names,
 
 bool is_open(const MeshBody& body) { return !check_mesh(body.mesh).closed_and_oriented; }
 
-/// Where an open piece of the same name and material is, if the piece is open, too; else bodies.end().
+/// Where an open piece of the same name and material is, if the piece is open, too; else
+/// bodies.end().
 auto find_partner(std::vector<MeshBody>& bodies, const MeshBody& piece) {
   return std::find_if(bodies.begin(), bodies.end(), [&](const MeshBody& body) {
-    return body.name == piece.name && body.material == piece.material && is_open(body) && is_open(piece);
+    return body.name == piece.name && body.material == piece.material && is_open(body) &&
+           is_open(piece);
   });
 }
 
@@ -73,9 +74,8 @@ void add_piece(std::vector<MeshBody>& bodies, MeshBody piece) {
 
 }  // namespace
 
-std::vector<MeshBody> read_mesh_bodies(const std::filesystem::path& path,
-                                       const MeshUnit& unit, const MaterialNames& names,
-                                       const MaterialLibrary& library) {
+std::vector<MeshBody> read_mesh_bodies(const std::filesystem::path& path, const MeshUnit& unit,
+                                       const MaterialNames& names, const MaterialLibrary& library) {
   library.find(names.fallback, names.subject);
   std::vector<NamedMesh> meshes = read_meshes(path, unit);
   check_meaning(meshes, names, library, path.string());

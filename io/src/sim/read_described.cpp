@@ -27,11 +27,12 @@ void TomlParameters::visit(const Parameter& about, Field& field) {
   const std::string place = table->place(key);
   const bool is_flag = words.size() == 1 && (words[0] == "true" || words[0] == "false");
   if (is_flag && field.kind() != FieldKind::flag)
-    throw UsageError(place, "the value is neither a finite number nor a text", fmt::format("Write {}", format_limits(about).empty() ? form_of(about, field) : format_limits(about)));
+    throw UsageError(place, "the value is neither a finite number nor a text",
+                     fmt::format("Write {}", format_limits(about).empty() ? form_of(about, field)
+                                                                          : format_limits(about)));
   if (field.kind() == FieldKind::list)
     for (const std::string& word : words) field.add(word, place);
-  else
-    field.read(fmt::format("{}", fmt::join(words, ",")), place);
+  else field.read(fmt::format("{}", fmt::join(words, ",")), place);
 }
 
 void TomlParameters::refuse_others() const {
@@ -48,7 +49,8 @@ void at_parameters(const TomlTable& root, const std::function<void()>& work) {
     const auto table = root.has(group_of(name)) ? root.table(group_of(name)) : std::nullopt;
     const std::string key = name.substr(name.rfind('.') + 1);
     if (!table || !table->has(key)) throw;
-    throw UsageError(table->place(key), with_scene_words(error.reason()), with_scene_words(error.remedy()));
+    throw UsageError(table->place(key), with_scene_words(error.reason()),
+                     with_scene_words(error.remedy()));
   }
 }
 

@@ -8,7 +8,8 @@
 
 namespace surf::io {
 
-/// Takes one parameter after the other from the tables of a file: "beam.tilt" from the key tilt of [beam].
+/// Takes one parameter after the other from the tables of a file: "beam.tilt" from the key tilt of
+/// [beam].
 class TomlParameters final : public ParameterVisitor {
  public:
   explicit TomlParameters(const TomlTable& root) : root_(root) {}
@@ -20,14 +21,15 @@ class TomlParameters final : public ParameterVisitor {
 
  private:
   const TomlTable& root_;
-  std::vector<std::pair<std::string, std::vector<std::string>>> known_;   // keys by table
+  std::vector<std::pair<std::string, std::vector<std::string>>> known_;  // keys by table
 };
 
-/// Runs `work`; what it refuses of a parameter is reported at the parameter's place in the file, if it is there.
+/// Runs `work`; what it refuses of a parameter is reported at the parameter's place in the file, if
+/// it is there.
 void at_parameters(const TomlTable& root, const std::function<void()>& work);
 
-/// All parameters of a struct that the file gives. Throws FileError for keys that are none, UsageError for values, both with
-/// line and key.
+/// All parameters of a struct that the file gives. Throws FileError for keys that are none,
+/// UsageError for values, both with line and key.
 template <class Struct>
 void read_described(const TomlTable& root, Struct& to) {
   at_parameters(root, [&] {

@@ -23,7 +23,8 @@ constexpr std::size_t max_scene_bytes = std::size_t{16} << 20;
 
 void read_materials(const TomlTable& root, const std::filesystem::path& path,
                     const std::vector<std::filesystem::path>& files, SceneFile& scene) {
-  for (mc::Material& material : read_material_tables(root, builtin_materials(), reader_beside(path))) {
+  for (mc::Material& material :
+       read_material_tables(root, builtin_materials(), reader_beside(path))) {
     scene.materials.add(std::move(material), path.string(), scene.notes);
   }
   for (const std::filesystem::path& file : files) scene.materials.read(file, scene.notes);
@@ -69,7 +70,8 @@ std::vector<std::filesystem::path> scene_input_files(const std::filesystem::path
   std::vector<std::filesystem::path> files{path};
   const auto add = [&](const TomlTable& table, std::string_view key) {
     if (!table.has(key)) return;
-    for (auto& file : files_read_with(path.parent_path() / *table.text(key))) files.push_back(std::move(file));
+    for (auto& file : files_read_with(path.parent_path() / *table.text(key)))
+      files.push_back(std::move(file));
   };
   if (const auto field = root.table("height_field")) add(*field, "file");
   for (const TomlTable& body : root.tables("body")) add(body, "mesh");

@@ -46,9 +46,9 @@ Edge read_edge(const TomlTable& table) {
   if (edge == "mirror") return Edge::mirror;
   if (edge == "flat") return Edge::flat;
   if (edge == "periodic") return Edge::periodic;
-  throw UsageError(table.place("edge"), fmt::format("'{}' is not a way to go on", edge),
-                   fmt::format("Choose one of: {}",
-                               join(nearest_first(edge, {"mirror", "flat", "periodic"}))));
+  throw UsageError(
+      table.place("edge"), fmt::format("'{}' is not a way to go on", edge),
+      fmt::format("Choose one of: {}", join(nearest_first(edge, {"mirror", "flat", "periodic"}))));
 }
 
 FieldExtent read_extent(const TomlTable& table) {
@@ -141,7 +141,8 @@ MeshUnit read_unit(const TomlTable& table) {
   const bool overrides = table.flag("override_unit").value_or(false);
   if (text) return {unit_length_nm(*text, table.place("unit")), overrides};
   if (overrides)
-    throw UsageError(table.place("override_unit"), "there is no unit to take", "Add unit = \"um\", or leave it out");
+    throw UsageError(table.place("override_unit"), "there is no unit to take",
+                     "Add unit = \"um\", or leave it out");
   return {};
 }
 
@@ -197,10 +198,10 @@ void place_body(const TomlTable& table, TriangleMesh& mesh) {
 
 void require_one_source(const TomlTable& table, std::string_view file) {
   if (table.has(file) == table.has("shape")) {
-    throw FileError(table.place(),
-                    fmt::format("it needs either '{}' or 'shape'{}", file,
-                                table.has(file) ? ", not both" : ""),
-                    table.has(file) ? "Remove one of them" : "Add one of them");
+    throw FileError(
+        table.place(),
+        fmt::format("it needs either '{}' or 'shape'{}", file, table.has(file) ? ", not both" : ""),
+        table.has(file) ? "Remove one of them" : "Add one of them");
   }
 }
 
@@ -234,7 +235,8 @@ HeightField SceneParts::read_field_file(const TomlTable& table) {
   }
   FieldSource source{path, {table.text("channel").value_or(""), {}, pixel, pixel}};
   if (table.has("z_unit")) source.options.z_unit_nm = z_unit_nm;
-  return at_place(table, "channel", [&] { return read_field(source, path.filename().string(), scene_.notes); });
+  return at_place(table, "channel",
+                  [&] { return read_field(source, path.filename().string(), scene_.notes); });
 }
 
 mc::HeightFieldBody SceneParts::read_height_field(const TomlTable& table) {
@@ -268,10 +270,11 @@ std::vector<mc::Body> SceneParts::read_mesh_file(const TomlTable& table) {
   for (MeshBody& part : read) {
     const std::string name = read.size() == 1 ? path.filename().string() : part.name;
     const auto given = table.text("name");
-    bodies.push_back({!given              ? name
+    bodies.push_back({!given             ? name
                       : read.size() == 1 ? *given
                                          : fmt::format("{}, {}", *given, name),
-                      std::move(part.mesh), add_material(scene_, part.material, table.place("material"))});
+                      std::move(part.mesh),
+                      add_material(scene_, part.material, table.place("material"))});
     scene_.unit_assumed = scene_.unit_assumed || part.unit_assumed;
   }
   return bodies;
@@ -281,7 +284,8 @@ std::vector<mc::Body> SceneParts::read_bodies(const TomlTable& table) {
   require_one_source(table, "mesh");
   std::vector<mc::Body> bodies;
   table.require("material", "every solid has one");
-  scene_.materials.find(*table.text("material"), table.place("material"));   // known, if not always used
+  scene_.materials.find(*table.text("material"),
+                        table.place("material"));  // known, if not always used
   if (table.has("mesh")) {
     bodies = read_mesh_file(table);
   } else {
@@ -301,12 +305,14 @@ std::string with_scene_words(std::string_view text) {
 }
 
 void refuse_at(const TomlTable& table, std::string_view key, const UsageError& error) {
-  const std::string reason = with_scene_words(error.reason()), remedy = with_scene_words(error.remedy());
+  const std::string reason = with_scene_words(error.reason()),
+                    remedy = with_scene_words(error.remedy());
   std::string own;
-  const std::string rest = with_field_words(error.subject(), [&](std::string_view field, std::string_view) {
-    own = last_part(field, '_');
-    return std::string();
-  });
+  const std::string rest =
+      with_field_words(error.subject(), [&](std::string_view field, std::string_view) {
+        own = last_part(field, '_');
+        return std::string();
+      });
   if (rest.empty() && table.has(own)) throw UsageError(table.place(own), reason, remedy);
   throw UsageError(table.place(key), with_scene_words(error.subject()) + ": " + reason, remedy);
 }

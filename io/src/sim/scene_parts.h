@@ -39,7 +39,8 @@ class SceneParts {
 /// `text` with fields as a scene file has them: beam.tilt, beam.tilt = 30deg.
 std::string with_scene_words(std::string_view text);
 
-/// Says what is refused at its place in the scene file: that of the field's own key if the table has it, else of `key`.
+/// Says what is refused at its place in the scene file: that of the field's own key if the table
+/// has it, else of `key`.
 [[noreturn]] void refuse_at(const TomlTable& table, std::string_view key, const UsageError& error);
 
 /// Runs `work`; what it refuses is reported at its place in the scene file.

@@ -21,22 +21,27 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string text_of(const std::optional<double>& nm) { return nm ? format_exact(*nm) + "nm" : std::string(); }
+std::string text_of(const std::optional<double>& nm) {
+  return nm ? format_exact(*nm) + "nm" : std::string();
+}
 
 /// All bodies of a mesh file; materials that its bodies name and semsurf knows are taken as such.
-void add_mesh_bodies(const std::string& input, const SpecimenRequest& request, const std::string& fallback,
-                     const BodyReader& read, SceneFile& scene) {
+void add_mesh_bodies(const std::string& input, const SpecimenRequest& request,
+                     const std::string& fallback, const BodyReader& read, SceneFile& scene) {
   const MeshUnit unit{request.mesh_unit_nm, request.override_unit};
-  std::vector<MeshBody> bodies = read(input, unit, {fallback, {}, "`specimen.material`"}, scene.materials);
+  std::vector<MeshBody> bodies =
+      read(input, unit, {fallback, {}, "`specimen.material`"}, scene.materials);
   for (MeshBody& body : bodies) {
     const std::string name = bodies.size() == 1 ? input : input + ", " + body.name;
     if (body.is_default && !body.file_material.empty())
-      scene.notes.push_back(fmt::format("{}: '{}' is no known material: {}", name, body.file_material, fallback));
+      scene.notes.push_back(
+          fmt::format("{}: '{}' is no known material: {}", name, body.file_material, fallback));
     const int material = add_material(scene, body.material, "`specimen.material`");
     scene.specimen.bodies.push_back({name, std::move(body.mesh), material});
     scene.unit_assumed = scene.unit_assumed || body.unit_assumed;
   }
-  if (unit.overrides_file) scene.unit_overrides.push_back({fs::path(input).filename().string(), *unit.nm});
+  if (unit.overrides_file)
+    scene.unit_overrides.push_back({fs::path(input).filename().string(), *unit.nm});
   for (auto& file : mesh_input_files(input)) scene.inputs.push_back(std::move(file));
 }
 
@@ -55,7 +60,8 @@ SceneFile from_shapes(const SpecimenRequest& request, const BodyReader& read) {
   for (const std::string& input : request.inputs) {
     const fs::path path(input);
     if (is_scene_file(path))
-      throw UsageError(input, "a scene file cannot be combined with other inputs", "Add the others to the scene file");
+      throw UsageError(input, "a scene file cannot be combined with other inputs",
+                       "Add the others to the scene file");
     if (!is_image_file(path) && !is_height_field_file(path)) {
       add_mesh_bodies(input, request, material, read, scene);
       continue;
@@ -64,17 +70,20 @@ SceneFile from_shapes(const SpecimenRequest& request, const BodyReader& read) {
       throw UsageError(input, "there is a height field already", "Give one image at most");
     HeightField field = read_field({path, request.heights}, input, scene.notes);
     scene.specimen.height_field =
-        mc::HeightFieldBody{input, std::move(field), add_material(scene, material, "`specimen.material`"), Edge::mirror};
+        mc::HeightFieldBody{input, std::move(field),
+                            add_material(scene, material, "`specimen.material`"), Edge::mirror};
     scene.inputs.push_back(path);
   }
   scene.notes.insert(scene.notes.end(), of_materials.begin(), of_materials.end());
   const char* const of_heights = request.heights.pitch_x_nm         ? "`scan.height_pitch`"
                                  : request.heights.z_unit_nm        ? "`scan.height_unit`"
-                                 : !request.heights.channel.empty() ? "`scan.height_channel`" : nullptr;
+                                 : !request.heights.channel.empty() ? "`scan.height_channel`"
+                                                                    : nullptr;
   if (of_heights && !scene.specimen.height_field)
     throw UsageError(of_heights, "no input is a height field", "Leave it out, or give an image");
   if (scene.specimen.bodies.empty() && request.mesh_unit_nm)
-    throw UsageError("`specimen.unit`", "no input is a mesh", "Leave it out; `scan.height_unit` scales heights");
+    throw UsageError("`specimen.unit`", "no input is a mesh",
+                     "Leave it out; `scan.height_unit` scales heights");
   return scene;
 }
 
@@ -86,42 +95,64 @@ SceneFile from_file(const SpecimenRequest& request, const BodyReader& read) {
                                     {request.heights.z_unit_nm.has_value(), "`scan.height_unit`"},
                                     {!request.heights.channel.empty(), "`scan.height_channel`"}})
     if (given)
-      throw UsageError(name, "a scene file says this for each of its parts", "Change the scene file, or give a mesh");
-  return read_scene(request.inputs.front(), {request.material_files.begin(), request.material_files.end()}, read);
+      throw UsageError(name, "a scene file says this for each of its parts",
+                       "Change the scene file, or give a mesh");
+  return read_scene(request.inputs.front(),
+                    {request.material_files.begin(), request.material_files.end()}, read);
 }
 
 }  // namespace
 
 void describe(ParameterVisitor& visit, SpecimenRequest& r) {
   visit(r.inputs, {.name = "specimen.input",
-                   .help = "Meshes (STL, OBJ, PLY, OFF, glTF, 3MF, VTP, VTM), a height field (an AFM scan, EXR, TIFF, PNG, VTI) or "
+                   .help = "Meshes (STL, OBJ, PLY, OFF, glTF, 3MF, VTP, VTM), a height field (an "
+                           "AFM scan, EXR, TIFF, PNG, VTI) or "
                            "one scene file (TOML)",
                    .recorded = false,
                    .file = FileRole::read});
-  visit(r.material, {.name = "specimen.material", .help = "Material of meshes and height field", .otherwise = "Si",
+  visit(r.material, {.name = "specimen.material",
+                     .help = "Material of meshes and height field",
+                     .otherwise = "Si",
                      .form = "MATERIAL"});
-  visit(r.material_files, {.name = "specimen.materials", .help = "File of your own materials (TOML)", .level = Level::advanced,
-                           .recorded = false, .file = FileRole::read});
-  visit.form({.name = "specimen.unit", .help = "Length of one unit of the mesh files", .otherwise = "as they say, else nm; glTF: m",
-              .form = "nm|um|mm|m|pm|A|in"},
-             [&] { return text_of(r.mesh_unit_nm); },
-             [&](std::string_view text, const std::string& subject) { r.mesh_unit_nm = parse_unit_nm(text, subject); });
-  visit(r.override_unit, {.name = "specimen.override_unit", .help = "Take the given unit even where a mesh file says another",
+  visit(r.material_files, {.name = "specimen.materials",
+                           .help = "File of your own materials (TOML)",
+                           .level = Level::advanced,
+                           .recorded = false,
+                           .file = FileRole::read});
+  visit.form(
+      {.name = "specimen.unit",
+       .help = "Length of one unit of the mesh files",
+       .otherwise = "as they say, else nm; glTF: m",
+       .form = "nm|um|mm|m|pm|A|in"},
+      [&] { return text_of(r.mesh_unit_nm); },
+      [&](std::string_view text, const std::string& subject) {
+        r.mesh_unit_nm = parse_unit_nm(text, subject);
+      });
+  visit(r.override_unit, {.name = "specimen.override_unit",
+                          .help = "Take the given unit even where a mesh file says another",
                           .level = Level::advanced});
-  visit(r.substrate, {.name = "specimen.substrate", .help = "Material of a half-space below the bodies", .otherwise = "none",
+  visit(r.substrate, {.name = "specimen.substrate",
+                      .help = "Material of a half-space below the bodies",
+                      .otherwise = "none",
                       .form = "MATERIAL"});
-  visit(r.substrate_z_nm, {.name = "specimen.substrate_z", .help = "Height of the substrate's top", .unit = Unit::nm,
-                           .otherwise = format_value(mc::Substrate{}.top_nm, Unit::nm), .level = Level::advanced});
+  visit(r.substrate_z_nm, {.name = "specimen.substrate_z",
+                           .help = "Height of the substrate's top",
+                           .unit = Unit::nm,
+                           .otherwise = format_value(mc::Substrate{}.top_nm, Unit::nm),
+                           .level = Level::advanced});
   visit(r.edge, {"mirror", "flat", "periodic"},
-        {.name = "specimen.edge", .help = "Continuation of a height field outside its samples", .otherwise = "mirror",
+        {.name = "specimen.edge",
+         .help = "Continuation of a height field outside its samples",
+         .otherwise = "mirror",
          .level = Level::advanced});
   describe(visit, r.heights);
 }
 
 SceneFile read_specimen(const SpecimenRequest& request, const BodyReader& read) {
   if (request.inputs.empty())
-    throw UsageError("simulate", "no specimen is given",
-                     "Give a mesh, a height field or a scene file: 'semsurf simulate --help' has examples");
+    throw UsageError(
+        "simulate", "no specimen is given",
+        "Give a mesh, a height field or a scene file: 'semsurf simulate --help' has examples");
   const bool is_file = request.inputs.size() == 1 && is_scene_file(request.inputs.front());
   SceneFile scene = is_file ? from_file(request, read) : from_shapes(request, read);
   mc::Specimen& specimen = scene.specimen;
@@ -131,11 +162,13 @@ SceneFile read_specimen(const SpecimenRequest& request, const BodyReader& read) 
   }
   if (request.substrate_z_nm) {
     if (!specimen.substrate)
-      throw UsageError("`specimen.substrate_z`", "there is no substrate", "Add `specimen.substrate=Si`");
+      throw UsageError("`specimen.substrate_z`", "there is no substrate",
+                       "Add `specimen.substrate=Si`");
     specimen.substrate->top_nm = *request.substrate_z_nm;
   }
   if (request.edge) {
-    if (!specimen.height_field) throw UsageError("`specimen.edge`", "the specimen has no height field", "Leave it out");
+    if (!specimen.height_field)
+      throw UsageError("`specimen.edge`", "the specimen has no height field", "Leave it out");
     specimen.height_field->edge = *request.edge;
   }
   return scene;

@@ -7,8 +7,8 @@
 
 namespace surf::io {
 
-/// The known words, those most like `word` first (fewest letters to change, case apart; of a key such as
-/// "density_g_cm3" a part before '_' may be meant).
+/// The known words, those most like `word` first (fewest letters to change, case apart; of a key
+/// such as "density_g_cm3" a part before '_' may be meant).
 std::vector<std::string> nearest_first(std::string_view word, std::vector<std::string> known);
 
 /// "a, b, c".

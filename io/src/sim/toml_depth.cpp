@@ -11,8 +11,8 @@
 namespace surf::io {
 namespace {
 
-/// Where the text that begins at `at` with a quotation mark ends; where the line or the file ends if its own
-/// end is missing, which the parser then reports.
+/// Where the text that begins at `at` with a quotation mark ends; where the line or the file ends
+/// if its own end is missing, which the parser then reports.
 std::size_t end_of_quoted(std::string_view text, std::size_t at) {
   const char mark = text[at];
   const std::string three(3, mark);
@@ -36,7 +36,7 @@ std::size_t end_of_quoted(std::string_view text, std::size_t at) {
 [[noreturn]] void refuse(std::string_view text, std::size_t begin, const std::string& file) {
   const std::string_view before = text.substr(0, begin);
   const auto line = 1 + std::count(before.begin(), before.end(), '\n');
-  const std::size_t column = begin - (before.rfind('\n') + 1) + 1;   // npos + 1 is 0
+  const std::size_t column = begin - (before.rfind('\n') + 1) + 1;  // npos + 1 is 0
   throw FileError(fmt::format("{}, line {}, column {}", file, line, column),
                   fmt::format("a key has more than {} parts", most_key_parts),
                   "Correct the TOML text there: a key such as beam.energy has two");
@@ -48,7 +48,7 @@ void check_key_depth(std::string_view text, const std::string& file) {
   constexpr std::string_view between_keys = "\n=,[]{}";
   constexpr std::string_view blanks = " \t\r";
   std::size_t begin = 0;
-  int dots = 0;   // since `begin`; a value has one at most
+  int dots = 0;  // since `begin`; a value has one at most
   for (std::size_t at = 0; at < text.size();) {
     const char c = text[at];
     if (c == '#') {

@@ -16,10 +16,10 @@
 namespace surf::io {
 
 struct TomlTable::Impl {
-  std::shared_ptr<const toml::table> root;   // keeps `table` alive
+  std::shared_ptr<const toml::table> root;  // keeps `table` alive
   const toml::table* table;
   std::string file;
-  std::string path;                          // "height_field"; empty for the root
+  std::string path;  // "height_field"; empty for the root
 };
 
 namespace {
@@ -67,7 +67,7 @@ std::vector<std::string> TomlTable::keys() const {
 }
 
 TomlTable TomlTable::parse(std::string_view text, const std::string& file) {
-  check_key_depth(text, file);   // toml++ calls itself for each part of a key
+  check_key_depth(text, file);  // toml++ calls itself for each part of a key
   try {
     auto root = std::make_shared<const toml::table>(toml::parse(text, file));
     const toml::table* const table = root.get();
@@ -92,13 +92,13 @@ void TomlTable::allow(const std::vector<std::string>& words) const {
     if (std::find(words.begin(), words.end(), key.str()) != words.end()) continue;
     const auto nearest = nearest_first(key.str(), words);
     const toml::source_position at = key.source().begin;
-    throw FileError(fmt::format("{}, line {}, column {}", impl_->file, at.line, at.column),
-                    fmt::format("'{}' is not known{}", key.str().substr(0, 40),
-                                impl_->path.empty() ? " at the top"
-                                                    : fmt::format(" in {}", impl_->path)),
-                    nearest.empty() ? "Remove it"
-                                    : fmt::format("Did you mean '{}'? Known are: {}",
-                                                  nearest.front(), join(words)));
+    throw FileError(
+        fmt::format("{}, line {}, column {}", impl_->file, at.line, at.column),
+        fmt::format("'{}' is not known{}", key.str().substr(0, 40),
+                    impl_->path.empty() ? " at the top" : fmt::format(" in {}", impl_->path)),
+        nearest.empty()
+            ? "Remove it"
+            : fmt::format("Did you mean '{}'? Known are: {}", nearest.front(), join(words)));
   }
 }
 
@@ -136,7 +136,7 @@ std::optional<std::int64_t> TomlTable::integer(std::string_view key) const {
   const toml::node* const node = impl_->table->get(key);
   if (!node) return {};
   if (const auto value = node->value_exact<std::int64_t>()) return value;
-  const auto number = node->value_exact<double>();   // 1e6
+  const auto number = node->value_exact<double>();  // 1e6
   if (!number || *number != std::floor(*number) || !(std::abs(*number) < 9e15)) {
     refuse(place(key), "the value is not a whole number", "Write a whole number without quotes");
   }
@@ -190,7 +190,8 @@ std::vector<std::string> TomlTable::words(std::string_view key) const {
     if (const auto flag = one.value_exact<bool>()) return *flag ? "true" : "false";
     const auto number = one.value_exact<double>();
     if (!number || !std::isfinite(*number))
-      refuse(place(key), "the value is neither a finite number nor a text with a unit", "Write for example 2 or \"2nm\"");
+      refuse(place(key), "the value is neither a finite number nor a text with a unit",
+             "Write for example 2 or \"2nm\"");
     return format_exact(*number);
   };
   const toml::array* const array = node->as_array();
@@ -259,8 +260,8 @@ std::vector<TomlTable> TomlTable::tables(std::string_view key) const {
   }
   for (const toml::node& item : *array) {
     const std::string path = fmt::format("{}[{}]", key, result.size() + 1);
-    result.push_back(TomlTable(
-        std::make_shared<Impl>(Impl{impl_->root, item.as_table(), impl_->file, path})));
+    result.push_back(
+        TomlTable(std::make_shared<Impl>(Impl{impl_->root, item.as_table(), impl_->file, path})));
   }
   return result;
 }

@@ -39,8 +39,8 @@ class TomlTable {
   std::optional<double> angle_deg(std::string_view key) const;
   std::optional<double> current_pa(std::string_view key) const;
   std::optional<double> time_us(std::string_view key) const;
-  /// The value as texts, one for each element of an array: numbers as they are read back, true and false as such. Throws for
-  /// tables and what is not finite.
+  /// The value as texts, one for each element of an array: numbers as they are read back, true and
+  /// false as such. Throws for tables and what is not finite.
   std::vector<std::string> words(std::string_view key) const;
   /// An array of texts, or one text; none where the key is missing.
   std::vector<std::string> texts(std::string_view key) const;

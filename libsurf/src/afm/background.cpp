@@ -33,7 +33,7 @@ Powers legendre(double u, int degree) {
 /// normal equations well conditioned wherever it lies.
 struct Basis {
   int degree, terms;
-  double centre_x, centre_y, half_x, half_y;   // columns and rows
+  double centre_x, centre_y, half_x, half_y;  // columns and rows
 
   Powers along_x(int x) const { return legendre((x - centre_x) / half_x, degree); }
   Powers along_y(int y) const { return legendre((y - centre_y) / half_y, degree); }
@@ -49,7 +49,7 @@ struct Basis {
 
 struct Fit {
   Basis basis;
-  double reference_nm;   // of the first sample: sums of differences from it lose no digits
+  double reference_nm;  // of the first sample: sums of differences from it lose no digits
   std::vector<double> coefficients;
 };
 
@@ -65,9 +65,14 @@ Basis basis_over_used(const HeightField& field, const Grid<unsigned char>& use, 
   const int terms = (degree + 1) * (degree + 2) / 2;
   if (samples < static_cast<std::size_t>(terms))
     throw InvalidInput("height field",
-                       fmt::format("{} samples take part, a polynomial of degree {} needs {}", samples, degree, terms),
+                       fmt::format("{} samples take part, a polynomial of degree {} needs {}",
+                                   samples, degree, terms),
                        "Use more of the image, or a lower degree");
-  return {degree, terms, 0.5 * (x0 + x1), 0.5 * (y0 + y1), std::max(0.5, 0.5 * (x1 - x0)),
+  return {degree,
+          terms,
+          0.5 * (x0 + x1),
+          0.5 * (y0 + y1),
+          std::max(0.5, 0.5 * (x1 - x0)),
           std::max(0.5, 0.5 * (y1 - y0))};
 }
 
@@ -95,10 +100,12 @@ Fit fit(const HeightField& field, const Grid<unsigned char>& use, int degree) {
     }
   }
   if (!solve_cholesky(normal, right))
-    throw InvalidInput("height field",
-                       fmt::format("the samples that take part do not determine a polynomial of degree {}: they "
-                                   "lie on too few lines", degree),
-                       "Use more of the image, or a lower degree");
+    throw InvalidInput(
+        "height field",
+        fmt::format("the samples that take part do not determine a polynomial of degree {}: they "
+                    "lie on too few lines",
+                    degree),
+        "Use more of the image, or a lower degree");
   out.coefficients = std::move(right);
   return out;
 }
@@ -112,7 +119,9 @@ double value(const Fit& f, const Powers& px, const Powers& py) {
 
 }  // namespace
 
-double Plane::tilt_deg() const { return std::atan(std::hypot(slope_x, slope_y)) / degrees_to_radians; }
+double Plane::tilt_deg() const {
+  return std::atan(std::hypot(slope_x, slope_y)) / degrees_to_radians;
+}
 
 double Plane::uphill_deg() const {
   const double angle = std::atan2(slope_y, slope_x) / degrees_to_radians;
@@ -120,7 +129,7 @@ double Plane::uphill_deg() const {
 }
 
 Plane fit_plane(const HeightField& field, const Grid<unsigned char>& use) {
-  const Fit f = fit(field, use, 1);   // terms: 1, y, x
+  const Fit f = fit(field, use, 1);  // terms: 1, y, x
   Plane p;
   p.slope_x = f.coefficients[2] / (f.basis.half_x * field.pitch_x_nm);
   p.slope_y = f.coefficients[1] / (f.basis.half_y * field.pitch_y_nm);
@@ -128,13 +137,15 @@ Plane fit_plane(const HeightField& field, const Grid<unsigned char>& use) {
   p.centre_y_nm = field.origin_y_nm + 0.5 * (field.z_nm.height() - 1) * field.pitch_y_nm;
   const double x = field.origin_x_nm + f.basis.centre_x * field.pitch_x_nm;
   const double y = field.origin_y_nm + f.basis.centre_y * field.pitch_y_nm;
-  p.height_nm = f.reference_nm + f.coefficients[0] + p.slope_x * (p.centre_x_nm - x) + p.slope_y * (p.centre_y_nm - y);
+  p.height_nm = f.reference_nm + f.coefficients[0] + p.slope_x * (p.centre_x_nm - x) +
+                p.slope_y * (p.centre_y_nm - y);
   return p;
 }
 
 Grid<double> fit_polynomial(const HeightField& field, int degree, const Grid<unsigned char>& use) {
   if (degree < 0 || degree > highest_degree)
-    throw UsageError("degree", fmt::format("it is {}", degree), fmt::format("Give 0 to {}", highest_degree));
+    throw UsageError("degree", fmt::format("it is {}", degree),
+                     fmt::format("Give 0 to {}", highest_degree));
   const Fit f = fit(field, use, degree);
   Grid<double> out(field.z_nm.width(), field.z_nm.height());
   std::vector<Powers> px;
@@ -155,7 +166,8 @@ void subtract(HeightField& field, const Plane& plane) {
 void subtract(HeightField& field, const Grid<double>& background) {
   require_field(field, {});
   if (background.width() != field.z_nm.width() || background.height() != field.z_nm.height())
-    throw InvalidInput("background", "its size is not that of the heights", "Fit it to the same field");
+    throw InvalidInput("background", "its size is not that of the heights",
+                       "Fit it to the same field");
   for (int y = 0; y < field.z_nm.height(); ++y)
     for (int x = 0; x < field.z_nm.width(); ++x)
       if (field.is_valid(x, y)) field.z_nm(x, y) -= background(x, y);

@@ -19,18 +19,22 @@ namespace surf {
 
 namespace {
 
-// Of the outer bounds to begin with: thresholds, in standard deviations of the noise; so often so many more,
-// where the volume jumps most; apex tolerances, in thresholds. A larger one gives more accurate fits, or none.
+// Of the outer bounds to begin with: thresholds, in standard deviations of the noise; so often so
+// many more, where the volume jumps most; apex tolerances, in thresholds. A larger one gives more
+// accurate fits, or none.
 constexpr int thresholds = 10;
 constexpr double least_sigmas = 2.5, step_sigmas = 0.5;
 constexpr int refinements = 2, between = 3;
 constexpr double tolerances[] = {0.8, 1.25};
-constexpr double hopeless_misfit = 4;   // after a sixteenth of the iterations: the bound is too blunt
+constexpr double hopeless_misfit =
+    4;  // after a sixteenth of the iterations: the bound is too blunt
 
 void check(const BestTipOptions& o) {
-  if (!(std::fabs(o.noise.alpha) < 1 && o.noise.innovation_nm2 > 0 && std::isfinite(o.noise.innovation_nm2)))
-    throw InvalidInput("noise", fmt::format("alpha {:g} with an innovation of {:g} nm^2 is no model",
-                                            o.noise.alpha, o.noise.innovation_nm2),
+  if (!(std::fabs(o.noise.alpha) < 1 && o.noise.innovation_nm2 > 0 &&
+        std::isfinite(o.noise.innovation_nm2)))
+    throw InvalidInput("noise",
+                       fmt::format("alpha {:g} with an innovation of {:g} nm^2 is no model",
+                                   o.noise.alpha, o.noise.innovation_nm2),
                        "Give alpha between -1 and 1 and a variance above 0");
   if (o.iterations < 1) throw UsageError("iterations", "there are none", "Ask for 100");
 }
@@ -56,11 +60,12 @@ std::size_t largest_jump(const std::vector<Start>& starts) {
 
 class OuterBounds {
  public:
-  OuterBounds(const std::vector<HeightField>& scans, const BestTipOptions& options, const CancelToken* cancel)
+  OuterBounds(const std::vector<HeightField>& scans, const BestTipOptions& options,
+              const CancelToken* cancel)
       : scans_(scans), cancel_(cancel) {
     options_.width = options.width;
     options_.height = options.height;
-    options_.threads = 1;   // frames are small: whole families of bounds run beside each other
+    options_.threads = 1;  // frames are small: whole families of bounds run beside each other
     range_nm_ = std::max(height_range(scans).span_nm(), 1e-9);
   }
 
@@ -123,7 +128,8 @@ Tip best_tip(const std::vector<HeightField>& scans, const BestTipOptions& option
   for (const auto& family : by_tolerance) starts.insert(starts.end(), family.begin(), family.end());
   report(families);
   if (stopped()) return starts.empty() ? Tip{} : starts.back().tip;
-  for (const Start& s : starts) summary.candidates.push_back({s.threshold_nm, s.tolerance, 0, 0, 0});
+  for (const Start& s : starts)
+    summary.candidates.push_back({s.threshold_nm, s.tolerance, 0, 0, 0});
   std::vector<TipFit> fits(starts.size());
   parallel_for(fits.size(), threads, [&](std::size_t k, int) {
     if (stopped()) return;
@@ -141,20 +147,20 @@ Tip best_tip(const std::vector<HeightField>& scans, const BestTipOptions& option
   constexpr std::size_t finalists = 3;
   std::vector<std::size_t> order(fits.size());
   for (std::size_t k = 0; k < order.size(); ++k) order[k] = k;
-  std::stable_sort(order.begin(), order.end(),
-                   [&](std::size_t a, std::size_t b) {
-                     return summary.candidates[a].risk < summary.candidates[b].risk;
-                   });
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return summary.candidates[a].risk < summary.candidates[b].risk;
+  });
   order.resize(std::min(order.size(), finalists));
   parallel_for(order.size(), threads, [&](std::size_t k, int) {
     if (!stopped()) fits[order[k]].iterate(options.iterations);
   });
   report(total);
-  const std::size_t best = *std::min_element(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-    return fits[a].risk() < fits[b].risk();
-  });
+  const std::size_t best = *std::min_element(
+      order.begin(), order.end(),
+      [&](std::size_t a, std::size_t b) { return fits[a].risk() < fits[b].risk(); });
   const TipFit& fit = fits[best];
-  summary.chosen = {starts[best].threshold_nm, starts[best].tolerance, fit.misfit(), fit.freedom(), fit.risk()};
+  summary.chosen = {starts[best].threshold_nm, starts[best].tolerance, fit.misfit(), fit.freedom(),
+                    fit.risk()};
   summary.standard_error_nm = fit.standard_errors();
   for (const double e : summary.standard_error_nm.data()) summary.touched += std::isfinite(e);
   return fit.tip();

@@ -21,7 +21,7 @@ namespace {
 struct Point {
   std::uint32_t scan;
   std::int32_t x, y;
-  float misfit;   // how far the scan lies above what the tip can make
+  float misfit;  // how far the scan lies above what the tip can make
 };
 
 void check(const std::vector<HeightField>& scans, const BlindTipOptions& o) {
@@ -31,13 +31,15 @@ void check(const std::vector<HeightField>& scans, const BlindTipOptions& o) {
     if (scan.pitch_x_nm != scans[0].pitch_x_nm || scan.pitch_y_nm != scans[0].pitch_y_nm)
       throw InvalidInput("scans", "they differ in pitch", "Give scans of one pixel size");
     if (o.width > scan.z_nm.width() || o.height > scan.z_nm.height())
-      throw InvalidInput("tip size", fmt::format("{} x {} samples are more than the scan's {} x {}", o.width,
-                                                 o.height, scan.z_nm.width(), scan.z_nm.height()),
+      throw InvalidInput("tip size",
+                         fmt::format("{} x {} samples are more than the scan's {} x {}", o.width,
+                                     o.height, scan.z_nm.width(), scan.z_nm.height()),
                          "Ask for a smaller tip");
   }
   if (o.width < 1 || o.height < 1)
     throw UsageError("tip size", "a tip needs at least one sample", "Ask for 21 x 21, say");
-  for (const double nm : {o.threshold_nm, o.threshold_y_nm.value_or(0), o.apex_tolerance_nm, o.layer_nm})
+  for (const double nm :
+       {o.threshold_nm, o.threshold_y_nm.value_or(0), o.apex_tolerance_nm, o.layer_nm})
     if (!(nm >= 0 && std::isfinite(nm)))
       throw UsageError("threshold", fmt::format("{:g} nm is impossible", nm), "Give 0 nm or more");
   if (!o.start) return;
@@ -47,15 +49,16 @@ void check(const std::vector<HeightField>& scans, const BlindTipOptions& o) {
     throw InvalidInput("tip to start with", "its size or apex is another", "Leave it out");
 }
 
-// Heights about the middle of all scans, so that floats hold them to 1e-7 of the range. `slack_nm` is then
-// more than sums of a few of them can be off: what holds exactly must not fail by rounding.
+// Heights about the middle of all scans, so that floats hold them to 1e-7 of the range. `slack_nm`
+// is then more than sums of a few of them can be off: what holds exactly must not fail by rounding.
 std::vector<Grid<float>> rebased(const std::vector<HeightField>& scans, float& slack_nm) {
   const HeightRange range = height_range(scans);
   const double middle_nm = 0.5 * (range.low_nm + range.high_nm);
   std::vector<Grid<float>> out;
   slack_nm = static_cast<float>(0x1p-20 * range.span_nm());
   for (const HeightField& s : scans) {
-    Grid<float>& z = out.emplace_back(s.z_nm.width(), s.z_nm.height(), std::numeric_limits<float>::quiet_NaN());
+    Grid<float>& z =
+        out.emplace_back(s.z_nm.width(), s.z_nm.height(), std::numeric_limits<float>::quiet_NaN());
     for (int y = 0; y < z.height(); ++y)
       for (int x = 0; x < z.width(); ++x)
         if (s.is_valid(x, y)) z(x, y) = static_cast<float>(s.z_nm(x, y) - middle_nm);
@@ -81,7 +84,8 @@ CarvedTip prepared(const BlindTipOptions& o, float slack_nm) {
       const double dx = i - tip.apex_x, dy = j - tip.apex_y, r = std::hypot(dx, dy);
       tip.lower(k, o.start ? static_cast<float>(o.start->z_nm(i, j)) : 0);
       tip.threshold[k] = static_cast<float>(
-          slack_nm + (r > 0 ? std::hypot(o.threshold_nm * dx / r, along_y * dy / r) : o.threshold_nm));
+          slack_nm +
+          (r > 0 ? std::hypot(o.threshold_nm * dx / r, along_y * dy / r) : o.threshold_nm));
     }
   tip.apex_tolerance = static_cast<float>(o.apex_tolerance_nm) + slack_nm;
   return tip;
@@ -101,10 +105,12 @@ bool is_local_maximum(const Grid<float>& z, int x, int y) {
 class Reconstruction {
  public:
   Reconstruction(const std::vector<HeightField>& scans, const BlindTipOptions& options,
-                 BlindTipSummary& summary, const ProgressCallback& progress, const CancelToken* cancel)
+                 BlindTipSummary& summary, const ProgressCallback& progress,
+                 const CancelToken* cancel)
       : options_(options), summary_(summary), progress_(progress), cancel_(cancel),
-        heights_(rebased(scans, slack_nm_)), tip_(prepared(options, slack_nm_)), threads_(resolve_threads(options.threads)),
-        carvers_(static_cast<std::size_t>(threads_)), demands_(static_cast<std::size_t>(threads_)) {
+        heights_(rebased(scans, slack_nm_)), tip_(prepared(options, slack_nm_)),
+        threads_(resolve_threads(options.threads)), carvers_(static_cast<std::size_t>(threads_)),
+        demands_(static_cast<std::size_t>(threads_)) {
     for (const Grid<float>& z : heights_) {
       scans_.emplace_back(z, options.layer_nm, options.width, options.height);
       tried_.emplace_back(z.width(), z.height());
@@ -134,23 +140,25 @@ class Reconstruction {
     std::vector<Point> out;
     for (std::size_t s = 0; s < scans_.size(); ++s) {
       const CarvedScan& scan = scans_[s];
-      const int dx = options_.border ? 1 : tip_.width - 1, dy = options_.border ? 1 : tip_.height - 1;
+      const int dx = options_.border ? 1 : tip_.width - 1,
+                dy = options_.border ? 1 : tip_.height - 1;
       const Grid<float> made = explained_height(scan, tip_, threads_);
       for (int y = dy; y < scan.height() - dy; ++y)
         for (int x = dx; x < scan.width() - dx; ++x) {
           const float z = scan.bottom(x, y);
           if (z == -std::numeric_limits<float>::infinity()) continue;
-          if (tried_[s](x, y) == version_) continue;   // on this very tip
+          if (tried_[s](x, y) == version_) continue;  // on this very tip
           if (made(x, y) < z && (!maxima || is_local_maximum(heights_[s], x, y)))
             out.push_back({static_cast<std::uint32_t>(s), x, y, maxima ? z : z - made(x, y)});
         }
     }
-    std::stable_sort(out.begin(), out.end(), [](const Point& a, const Point& b) { return a.misfit > b.misfit; });
+    std::stable_sort(out.begin(), out.end(),
+                     [](const Point& a, const Point& b) { return a.misfit > b.misfit; });
     return out;
   }
 
-  // Points in batches that see the same tip: the result is that of any number of threads. True if the tip
-  // has changed by more than rounding.
+  // Points in batches that see the same tip: the result is that of any number of threads. True if
+  // the tip has changed by more than rounding.
   bool carve(const std::vector<Point>& all) {
     constexpr std::size_t batch = 1024, share = 16;
     bool changed = false;
@@ -159,7 +167,8 @@ class Reconstruction {
       for (auto& d : demands_) d.assign(tip_.z.size(), std::numeric_limits<float>::infinity());
       parallel_for((last - first + share - 1) / share, threads_, [&](std::size_t unit, int worker) {
         const auto w = static_cast<std::size_t>(worker);
-        for (std::size_t p = first + unit * share; p < std::min(last, first + (unit + 1) * share); ++p)
+        for (std::size_t p = first + unit * share; p < std::min(last, first + (unit + 1) * share);
+             ++p)
           carvers_[w].carve(scans_[all[p].scan], all[p].x, all[p].y, tip_, demands_[w]);
       });
       summary_.points += static_cast<std::int64_t>(last - first);
@@ -185,17 +194,18 @@ class Reconstruction {
   std::vector<Grid<float>> heights_;
   std::vector<CarvedScan> scans_;
   CarvedTip tip_;
-  int version_ = 1;                           // of the tip
-  std::vector<Grid<int>> tried_;              // the version that a point was tried on last
+  int version_ = 1;               // of the tip
+  std::vector<Grid<int>> tried_;  // the version that a point was tried on last
   int threads_;
   std::vector<TipCarver> carvers_;
-  std::vector<std::vector<float>> demands_;   // per worker
+  std::vector<std::vector<float>> demands_;  // per worker
 };
 
 }  // namespace
 
 Tip blind_tip(const std::vector<HeightField>& scans, const BlindTipOptions& options,
-              BlindTipSummary& summary, const ProgressCallback& progress, const CancelToken* cancel) {
+              BlindTipSummary& summary, const ProgressCallback& progress,
+              const CancelToken* cancel) {
   check(scans, options);
   const CarvedTip carved = Reconstruction(scans, options, summary, progress, cancel).run();
   Tip tip;

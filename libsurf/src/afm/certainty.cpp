@@ -26,20 +26,27 @@ using max_plus::Touch;
 
 void check(const CertaintyOptions& o) {
   const auto demand = [](bool holds, const char* what, double value, const char* remedy) {
-    if (!holds) throw InvalidInput("certainty", fmt::format("{} of {:g} is not possible", what, value), remedy);
+    if (!holds)
+      throw InvalidInput("certainty", fmt::format("{} of {:g} is not possible", what, value),
+                         remedy);
   };
   demand(o.noise_nm >= 0 && std::isfinite(o.noise_nm), "a noise", o.noise_nm, "Give 0 nm or more");
   demand(o.sigmas > 0 && o.sigmas <= 100, "a multiple", o.sigmas, "Give one above 0, as 3");
-  demand(o.neighbourhood >= -1 && o.neighbourhood <= 100, "a neighbourhood", o.neighbourhood, "Give 0 to 100 samples");
-  demand(o.distance_nm >= 0 && std::isfinite(o.distance_nm), "a distance", o.distance_nm, "Give 0 nm or more");
+  demand(o.neighbourhood >= -1 && o.neighbourhood <= 100, "a neighbourhood", o.neighbourhood,
+         "Give 0 to 100 samples");
+  demand(o.distance_nm >= 0 && std::isfinite(o.distance_nm), "a distance", o.distance_nm,
+         "Give 0 nm or more");
 }
 
 /// With so many samples more on each side, holes.
 HeightField framed(const HeightField& f, int left, int below, int right, int above) {
   const int w = f.z_nm.width(), h = f.z_nm.height();
   HeightField out{Grid<double>(w + left + right, h + below + above),
-                  Grid<unsigned char>(w + left + right, h + below + above, 0), f.pitch_x_nm, f.pitch_y_nm,
-                  f.origin_x_nm - left * f.pitch_x_nm, f.origin_y_nm - below * f.pitch_y_nm};
+                  Grid<unsigned char>(w + left + right, h + below + above, 0),
+                  f.pitch_x_nm,
+                  f.pitch_y_nm,
+                  f.origin_x_nm - left * f.pitch_x_nm,
+                  f.origin_y_nm - below * f.pitch_y_nm};
   for (int y = 0; y < h; ++y)
     for (int x = 0; x < w; ++x) {
       out.z_nm(x + left, y + below) = f.z_nm(x, y);
@@ -51,14 +58,18 @@ HeightField framed(const HeightField& f, int left, int below, int right, int abo
 /// One tip that does what the hemisphere and then the tip do, but for the lift.
 Tip kept_away(const Tip& tip, double distance_nm, int width, int height) {
   const Tip sphere = hemisphere_tip(distance_nm, tip.pitch_x_nm, tip.pitch_y_nm, width, height);
-  HeightField field{tip.z_nm, Grid<unsigned char>(tip.z_nm.width(), tip.z_nm.height(), 1), tip.pitch_x_nm,
-                    tip.pitch_y_nm, 0, 0};
+  HeightField field{tip.z_nm,
+                    Grid<unsigned char>(tip.z_nm.width(), tip.z_nm.height(), 1),
+                    tip.pitch_x_nm,
+                    tip.pitch_y_nm,
+                    0,
+                    0};
   for (std::size_t i = 0; i < field.z_nm.size(); ++i) {
     if (std::isfinite(field.z_nm.data()[i])) continue;
     field.valid.data()[i] = 0;
     field.z_nm.data()[i] = 0;
   }
-  const int rx = sphere.apex_x + 1, ry = sphere.apex_y + 1;   // the field needs 2 x 2
+  const int rx = sphere.apex_x + 1, ry = sphere.apex_y + 1;  // the field needs 2 x 2
   const HeightField both = dilate(framed(field, rx, ry, rx, ry), sphere);
   Tip out{both.z_nm, tip.pitch_x_nm, tip.pitch_y_nm, tip.apex_x + rx, tip.apex_y + ry};
   for (int y = 0; y < out.z_nm.height(); ++y)
@@ -69,10 +80,12 @@ Tip kept_away(const Tip& tip, double distance_nm, int width, int height) {
 
 Heights eroded(const Heights& upside_down, const Tip& tip, double quantum, int threads,
                const Watch& watch) {
-  const TipQuanta b = quantise(reflected(tip), quantum, upside_down.z.width(), upside_down.z.height());
+  const TipQuanta b =
+      quantise(reflected(tip), quantum, upside_down.z.width(), upside_down.z.height());
   Heights out{{}, -upside_down.top};
-  max_plus::convolve(upside_down.z, b.z, b.apex_x, b.apex_y, threads, out.z, nullptr, max_plus::Unit::best, watch);
-  Quanta top = 0;   // of -z, whose values are from 0 up
+  max_plus::convolve(upside_down.z, b.z, b.apex_x, b.apex_y, threads, out.z, nullptr,
+                     max_plus::Unit::best, watch);
+  Quanta top = 0;  // of -z, whose values are from 0 up
   for (const Quanta z : out.z.data())
     if (z >= lowest) top = std::max(top, -z);
   for (Quanta& z : out.z.data())
@@ -101,8 +114,8 @@ int apex_neighbourhood(const Tip& tip, double tolerance_nm) {
 }
 
 /// Marks, of what may have touched the tip at an image pixel, what fits best.
-void mark(const Grid<Quanta>& surface, const TipQuanta& tip, int x, int y, const Touch& t, Quanta rounding,
-          unsigned char level, int left, int below, Grid<unsigned char>& map) {
+void mark(const Grid<Quanta>& surface, const TipQuanta& tip, int x, int y, const Touch& t,
+          Quanta rounding, unsigned char level, int left, int below, Grid<unsigned char>& map) {
   const auto reach = [&](int X, int Y) {
     return surface(X, Y) + tip.z(x - X + tip.apex_x, y - Y + tip.apex_y);
   };
@@ -118,14 +131,16 @@ void mark(const Grid<Quanta>& surface, const TipQuanta& tip, int x, int y, const
 
 }  // namespace
 
-CertaintyMap certainty_map(const HeightField& image, const Tip& given, const CertaintyOptions& options) {
+CertaintyMap certainty_map(const HeightField& image, const Tip& given,
+                           const CertaintyOptions& options) {
   check(options);
   max_plus::check_pair(image, given, "image");
   const int w = image.z_nm.width(), h = image.z_nm.height();
   const Tip tip = options.distance_nm > 0 ? kept_away(given, options.distance_nm, w, h) : given;
   // Columns and rows outside that a tip within can touch.
   const int right = std::min(tip.apex_x, w), left = std::min(tip.z_nm.width() - 1 - tip.apex_x, w);
-  const int above = std::min(tip.apex_y, h), below = std::min(tip.z_nm.height() - 1 - tip.apex_y, h);
+  const int above = std::min(tip.apex_y, h),
+            below = std::min(tip.z_nm.height() - 1 - tip.apex_y, h);
   const HeightField wide = framed(image, left, below, right, above);
   const double quantum = choose_quantum(wide, tip, {});
   const Heights surface = eroded(quantise(wide, -1, quantum), tip, quantum, options.threads,
@@ -144,11 +159,12 @@ CertaintyMap certainty_map(const HeightField& image, const Tip& given, const Cer
   Grid<Quanta> least(wide.z_nm.width(), wide.z_nm.height(), max_plus::unknown);
   for (std::size_t i = 0; i < least.size(); ++i)
     if (heights.z.data()[i] >= lowest)
-      least.data()[i] = static_cast<Quanta>(std::clamp(heights.z.data()[i] + to_least, double{lowest}, 0x1p29));
+      least.data()[i] =
+          static_cast<Quanta>(std::clamp(heights.z.data()[i] + to_least, double{lowest}, 0x1p29));
 
   const TipQuanta b = quantise(tip, quantum, wide.z_nm.width(), wide.z_nm.height());
-  const Grid<Touch> touches = max_plus::touching(surface.z, b.z, b.apex_x, b.apex_y, least, options.threads,
-                                                options.watch.part(0.3, 1));
+  const Grid<Touch> touches = max_plus::touching(surface.z, b.z, b.apex_x, b.apex_y, least,
+                                                 options.threads, options.watch.part(0.3, 1));
   out.level = Grid<unsigned char>(w, h, CertaintyMap::uncertain);
   for (int y = below; y < below + h; ++y)
     for (int x = left; x < left + w; ++x) {
@@ -160,12 +176,14 @@ CertaintyMap certainty_map(const HeightField& image, const Tip& given, const Cer
         continue;
       }
       const int half = half_side(t.x1 - t.x0 + 1, t.y1 - t.y0 + 1);
-      if (half > out.neighbourhood || t.x0 < left || t.y0 < below || t.x1 >= left + w || t.y1 >= below + h) {
+      if (half > out.neighbourhood || t.x0 < left || t.y0 < below || t.x1 >= left + w ||
+          t.y1 >= below + h) {
         ++out.ambiguous;
         continue;
       }
       ++out.single;
-      mark(surface.z, b, x, y, t, rounding, static_cast<unsigned char>(half), left, below, out.level);
+      mark(surface.z, b, x, y, t, rounding, static_cast<unsigned char>(half), left, below,
+           out.level);
     }
 
   Heights inner{Grid<Quanta>(w, h), surface.top};
@@ -199,7 +217,7 @@ double pixel_noise_nm(const HeightField& image) {
   if (differences.empty()) return 0;
   const auto middle = differences.begin() + static_cast<std::ptrdiff_t>(differences.size() / 2);
   std::nth_element(differences.begin(), middle, differences.end());
-  return 1.4826 / 6 * *middle;   // of normal noise: the mask's weights have the square sum 36
+  return 1.4826 / 6 * *middle;  // of normal noise: the mask's weights have the square sum 36
 }
 
 }  // namespace surf

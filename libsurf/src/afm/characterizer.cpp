@@ -22,17 +22,21 @@ void check(const HeightField& scan, const HeightField& known, const Characterize
   validate(known, "characterizer");
   const auto differ = [](double a, double b) { return std::abs(a - b) > 1e-6 * std::max(a, b); };
   if (differ(scan.pitch_x_nm, known.pitch_x_nm) || differ(scan.pitch_y_nm, known.pitch_y_nm))
-    throw InvalidInput("characterizer", fmt::format("its pitch is {:g} x {:g} nm, the scan's {:g} x {:g} nm",
-                                                    known.pitch_x_nm, known.pitch_y_nm, scan.pitch_x_nm, scan.pitch_y_nm),
-                       "Resample it to the scan's");
+    throw InvalidInput(
+        "characterizer",
+        fmt::format("its pitch is {:g} x {:g} nm, the scan's {:g} x {:g} nm", known.pitch_x_nm,
+                    known.pitch_y_nm, scan.pitch_x_nm, scan.pitch_y_nm),
+        "Resample it to the scan's");
   if (o.width < 1 || o.height < 1 || o.search < 0 || o.search > 100000)
-    throw InvalidInput("characterizer", fmt::format("a tip of {} x {} samples and a search of {} are not possible",
-                                                    o.width, o.height, o.search), "Give a size above 0 and a search from 0");
+    throw InvalidInput("characterizer",
+                       fmt::format("a tip of {} x {} samples and a search of {} are not possible",
+                                   o.width, o.height, o.search),
+                       "Give a size above 0 and a search from 0");
 }
 
 /// The part of the characterizer that stays inside the scan for every u within `reach`.
 struct Core {
-  int x0, y0, x1, y1;   // [x0, x1)
+  int x0, y0, x1, y1;  // [x0, x1)
 };
 
 Core core_of(const HeightField& scan, const HeightField& known, int reach_x, int reach_y) {
@@ -40,12 +44,14 @@ Core core_of(const HeightField& scan, const HeightField& known, int reach_x, int
                std::min(known.z_nm.width(), scan.z_nm.width() - reach_x),
                std::min(known.z_nm.height(), scan.z_nm.height() - reach_y)};
   if (c.x1 - c.x0 >= 2 && c.y1 - c.y0 >= 2) return c;
-  throw InvalidInput("characterizer", "too little of it stays inside the scan for this tip and search",
+  throw InvalidInput("characterizer",
+                     "too little of it stays inside the scan for this tip and search",
                      "Use a larger scan, a smaller tip or a smaller search");
 }
 
 /// min over the core of I(x + u) - C(x); stops where it falls below `enough`.
-double eroded(const HeightField& scan, const HeightField& known, const Core& c, int u, int v, double enough) {
+double eroded(const HeightField& scan, const HeightField& known, const Core& c, int u, int v,
+              double enough) {
   double least = infinity;
   for (int y = c.y0; y < c.y1 && least >= enough; ++y)
     for (int x = c.x0; x < c.x1; ++x)
@@ -54,7 +60,8 @@ double eroded(const HeightField& scan, const HeightField& known, const Core& c, 
   return least;
 }
 
-double residual(const HeightField& scan, const HeightField& known, const CharacterizedTip& found, int threads) {
+double residual(const HeightField& scan, const HeightField& known, const CharacterizedTip& found,
+                int threads) {
   const HeightField image = dilate(known, found.tip, {.threads = threads});
   double sum = 0;
   std::size_t count = 0;
@@ -75,7 +82,8 @@ CharacterizedTip tip_from_characterizer(const HeightField& scan, const HeightFie
                                         const CharacterizerOptions& o) {
   check(scan, characterizer, o);
   const int apex_x = o.width / 2, apex_y = o.height / 2;
-  const Core core = core_of(scan, characterizer, o.search + o.width - apex_x, o.search + o.height - apex_y);
+  const Core core =
+      core_of(scan, characterizer, o.search + o.width - apex_x, o.search + o.height - apex_y);
   CharacterizedTip out;
   double highest = -infinity;
   // From the middle out: of offsets that are as good, the smallest.
@@ -90,15 +98,19 @@ CharacterizedTip tip_from_characterizer(const HeightField& scan, const HeightFie
         out.offset_y = v;
       }
   if (highest == -infinity)
-    throw InvalidInput("scan", "it and the characterizer have no valid height in common", "Use another scan");
+    throw InvalidInput("scan", "it and the characterizer have no valid height in common",
+                       "Use another scan");
   out.offset_z_nm = highest;
-  out.offset_at_limit = o.search > 0 && std::max(std::abs(out.offset_x), std::abs(out.offset_y)) == o.search;
+  out.offset_at_limit =
+      o.search > 0 && std::max(std::abs(out.offset_x), std::abs(out.offset_y)) == o.search;
   out.tip = {Grid<double>(o.width, o.height), scan.pitch_x_nm, scan.pitch_y_nm, apex_x, apex_y};
   parallel_for(static_cast<std::size_t>(o.height), o.threads, [&](std::size_t row, int) {
     const int j = static_cast<int>(row);
     for (int i = 0; i < o.width; ++i)
-      out.tip.z_nm(i, j) = std::min(0.0, eroded(scan, characterizer, core, out.offset_x + i - apex_x,
-                                                out.offset_y + j - apex_y, -infinity) - highest);
+      out.tip.z_nm(i, j) =
+          std::min(0.0, eroded(scan, characterizer, core, out.offset_x + i - apex_x,
+                               out.offset_y + j - apex_y, -infinity) -
+                            highest);
   });
   out.residual_nm = residual(scan, characterizer, out, o.threads);
   return out;

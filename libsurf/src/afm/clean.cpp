@@ -19,7 +19,8 @@ constexpr int largest_radius = 1000;
 constexpr int rows_per_unit = 4;
 constexpr std::uint32_t no_rank = std::numeric_limits<std::uint32_t>::max();
 
-/// Places in order of their heights: a rank for each sample that is not a hole, and the heights by rank.
+/// Places in order of their heights: a rank for each sample that is not a hole, and the heights by
+/// rank.
 struct Ranks {
   std::vector<std::uint32_t> of;
   std::vector<double> heights;
@@ -30,7 +31,8 @@ Ranks rank(const HeightField& field) {
   std::vector<std::uint32_t> order;
   const std::vector<double>& z = field.z_nm.data();
   for (std::size_t i = 0; i < z.size(); ++i)
-    if (field.valid.empty() || field.valid.data()[i]) order.push_back(static_cast<std::uint32_t>(i));
+    if (field.valid.empty() || field.valid.data()[i])
+      order.push_back(static_cast<std::uint32_t>(i));
   std::sort(order.begin(), order.end(),
             [&](std::uint32_t a, std::uint32_t b) { return z[a] != z[b] ? z[a] < z[b] : a < b; });
   r.of.assign(z.size(), no_rank);
@@ -55,7 +57,8 @@ std::vector<int> half_widths(const MedianOptions& o) {
 class RowMedians {
  public:
   RowMedians(const Ranks& ranks, int width, int height, const std::vector<int>& half_widths)
-      : ranks_(ranks), width_(width), height_(height), half_widths_(half_widths), window_(ranks.heights.size()) {}
+      : ranks_(ranks), width_(width), height_(height), half_widths_(half_widths),
+        window_(ranks.heights.size()) {}
 
   void row(int y, double* out) {
     const int radius = static_cast<int>(half_widths_.size() / 2);
@@ -76,7 +79,8 @@ class RowMedians {
 
  private:
   std::uint32_t at(int x, int y) const {
-    return ranks_.of[static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x)];
+    return ranks_.of[static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) +
+                     static_cast<std::size_t>(x)];
   }
   void add(int x, int y) {
     if (at(x, y) != no_rank) window_.add(at(x, y));
@@ -99,8 +103,8 @@ class RowMedians {
 };
 
 /// Puts the filtered heights (NaN: none) where they belong and counts.
-HeightField apply(const HeightField& field, const Grid<double>& filtered, double limit_nm, bool fill_holes,
-                  CleanSummary& summary) {
+HeightField apply(const HeightField& field, const Grid<double>& filtered, double limit_nm,
+                  bool fill_holes, CleanSummary& summary) {
   summary = {};
   HeightField out = field;
   for (std::size_t i = 0; i < filtered.size(); ++i) {
@@ -122,8 +126,9 @@ HeightField apply(const HeightField& field, const Grid<double>& filtered, double
   return out;
 }
 
-/// A running maximum of `width` values about each one of a line, `stride` apart, of which `count` there are
-/// (van Herk, Gil and Werman): maxima from the left and from the right within blocks of `width`.
+/// A running maximum of `width` values about each one of a line, `stride` apart, of which `count`
+/// there are (van Herk, Gil and Werman): maxima from the left and from the right within blocks of
+/// `width`.
 class RunningMaximum {
  public:
   explicit RunningMaximum(int width) : width_(static_cast<std::size_t>(width)) {}
@@ -139,7 +144,8 @@ class RunningMaximum {
       if (i % width_) from_left_[i] = std::max(from_left_[i], from_left_[i - 1]);
     for (std::size_t i = padded - 1; i-- > 0;)
       if ((i + 1) % width_) from_right_[i] = std::max(from_right_[i], from_right_[i + 1]);
-    for (std::size_t i = 0; i < count; ++i) line[i * stride] = std::max(from_right_[i], from_left_[i + width_ - 1]);
+    for (std::size_t i = 0; i < count; ++i)
+      line[i * stride] = std::max(from_right_[i], from_left_[i + width_ - 1]);
   }
 
  private:
@@ -151,14 +157,21 @@ class RunningMaximum {
 void square_maximum(Grid<double>& grid, int width, int threads, const Watch& watch) {
   const int workers = resolve_threads(threads);
   std::vector<RunningMaximum> runs(static_cast<std::size_t>(workers), RunningMaximum(width));
-  const auto columns = static_cast<std::size_t>(grid.width()), rows = static_cast<std::size_t>(grid.height());
+  const auto columns = static_cast<std::size_t>(grid.width()),
+             rows = static_cast<std::size_t>(grid.height());
   double* const data = grid.data().data();
-  parallel_for(rows, workers, [&](std::size_t y, int worker) {
-    runs[static_cast<std::size_t>(worker)].run(data + y * columns, columns, 1);
-  }, watch.part(0, 0.5));
-  parallel_for(columns, workers, [&](std::size_t x, int worker) {
-    runs[static_cast<std::size_t>(worker)].run(data + x, rows, columns);
-  }, watch.part(0.5, 1));
+  parallel_for(
+      rows, workers,
+      [&](std::size_t y, int worker) {
+        runs[static_cast<std::size_t>(worker)].run(data + y * columns, columns, 1);
+      },
+      watch.part(0, 0.5));
+  parallel_for(
+      columns, workers,
+      [&](std::size_t x, int worker) {
+        runs[static_cast<std::size_t>(worker)].run(data + x, rows, columns);
+      },
+      watch.part(0.5, 1));
 }
 
 }  // namespace
@@ -167,19 +180,23 @@ HeightField median_filter(const HeightField& field, const MedianOptions& o, Clea
   validate(field);
   require_not_negative(o.limit_nm, "limit");
   if (o.radius < 0 || o.radius > largest_radius)
-    throw UsageError("radius", fmt::format("it is {}", o.radius), fmt::format("Give 0 to {}", largest_radius));
+    throw UsageError("radius", fmt::format("it is {}", o.radius),
+                     fmt::format("Give 0 to {}", largest_radius));
   const Ranks ranks = rank(field);
   const std::vector<int> widths = half_widths(o);
   const int width = field.z_nm.width(), height = field.z_nm.height();
   const int workers = resolve_threads(o.threads);
-  std::vector<RowMedians> medians(static_cast<std::size_t>(workers), RowMedians(ranks, width, height, widths));
+  std::vector<RowMedians> medians(static_cast<std::size_t>(workers),
+                                  RowMedians(ranks, width, height, widths));
   Grid<double> filtered(width, height);
-  parallel_for(static_cast<std::size_t>((height + rows_per_unit - 1) / rows_per_unit), workers,
-               [&](std::size_t unit, int worker) {
-                 const int begin = static_cast<int>(unit) * rows_per_unit;
-                 for (int y = begin; y < std::min(height, begin + rows_per_unit); ++y)
-                   medians[static_cast<std::size_t>(worker)].row(y, &filtered(0, y));
-               }, o.watch);
+  parallel_for(
+      static_cast<std::size_t>((height + rows_per_unit - 1) / rows_per_unit), workers,
+      [&](std::size_t unit, int worker) {
+        const int begin = static_cast<int>(unit) * rows_per_unit;
+        for (int y = begin; y < std::min(height, begin + rows_per_unit); ++y)
+          medians[static_cast<std::size_t>(worker)].row(y, &filtered(0, y));
+      },
+      o.watch);
   return apply(field, filtered, o.limit_nm, o.fill_holes, summary);
 }
 
@@ -193,7 +210,8 @@ HeightField flat_closing(const HeightField& field, const ClosingOptions& o, Clea
   for (std::size_t i = 0; i < field.valid.size(); ++i)
     if (!field.valid.data()[i]) grid.data()[i] = nothing;
   square_maximum(grid, o.width, o.threads, o.watch.part(0, 0.5));
-  // The lowest of heights is minus the highest of minus them; where no height was near, nothing stays.
+  // The lowest of heights is minus the highest of minus them; where no height was near, nothing
+  // stays.
   for (double& z : grid.data()) z = z == nothing ? nothing : -z;
   square_maximum(grid, o.width, o.threads, o.watch.part(0.5, 1));
   for (double& z : grid.data()) z = -z;

@@ -20,11 +20,11 @@ namespace {
 constexpr int block = 32;
 constexpr int far = std::numeric_limits<int>::max();
 
-/// Of the places of a block: the first and last columns and lines of the turned b that touch, columns
-/// counted from the end and from the beginning; 0: none.
+/// Of the places of a block: the first and last columns and lines of the turned b that touch,
+/// columns counted from the end and from the beginning; 0: none.
 struct Found {
   std::array<int, block> from_end, from_begin, l0, l1;
-  std::array<int, block> in_line;   ///< whether the line at hand touches
+  std::array<int, block> in_line;  ///< whether the line at hand touches
 };
 
 typedef Quanta V [[gnu::vector_size(32)]];
@@ -69,8 +69,8 @@ Found find(const Kernel& b, const Padded& a, int row, int column_block, const Qu
     for (int c = 0; c < b.chunks; ++c) {
       const std::ptrdiff_t line = static_cast<std::ptrdiff_t>(l) * b.chunks;
       if (a.chunk_max[at * b.chunks + c] + b.chunk_max[line + c] < lowest_asked) continue;
-      find_columns(a.row(row + l) + column_block * block, b.line(l), b.chunk_begin[c], b.chunk_begin[c + 1], b.width,
-                   least, f);
+      find_columns(a.row(row + l) + column_block * block, b.line(l), b.chunk_begin[c],
+                   b.chunk_begin[c + 1], b.width, least, f);
     }
     for (int i = 0; i < block; ++i) {
       if (!f.in_line[i]) continue;
@@ -86,26 +86,30 @@ Found find(const Kernel& b, const Padded& a, int row, int column_block, const Qu
 Grid<Touch> touching(const Grid<Quanta>& a, const Grid<Quanta>& b, int apex_x, int apex_y,
                      const Grid<Quanta>& least, int threads, const Watch& watch) {
   const Kernel kernel = make_kernel(b, apex_x, apex_y);
-  const Padded padded = make_padded(a, kernel, apex_x, apex_y, Unit::avx2);   // for its block's width alone
+  const Padded padded =
+      make_padded(a, kernel, apex_x, apex_y, Unit::avx2);  // for its block's width alone
   const int width = a.width(), left = b.width() - 1 - apex_x, below = b.height() - 1 - apex_y;
   Grid<Touch> out(width, a.height());
-  parallel_for(static_cast<std::size_t>(a.height()), threads, [&](std::size_t unit, int) {
-    const int y = static_cast<int>(unit);
-    std::array<Quanta, block> asked;
-    for (int n = 0; n < padded.blocks; ++n) {
-      for (int i = 0; i < block; ++i) {
-        const int x = n * block + i;
-        asked[i] = x < width && least(x, y) != unknown ? least(x, y) : far;
-      }
-      const Found f = find(kernel, padded, y, n, asked.data());
-      for (int i = 0; i < block && n * block + i < width; ++i) {
-        if (f.from_begin[i] == 0) continue;
-        const int x = n * block + i - left;
-        out(n * block + i, y) = {x + b.width() - f.from_end[i], y - below + f.l0[i], x + f.from_begin[i] - 1,
-                                  y - below + f.l1[i]};
-      }
-    }
-  }, watch);
+  parallel_for(
+      static_cast<std::size_t>(a.height()), threads,
+      [&](std::size_t unit, int) {
+        const int y = static_cast<int>(unit);
+        std::array<Quanta, block> asked;
+        for (int n = 0; n < padded.blocks; ++n) {
+          for (int i = 0; i < block; ++i) {
+            const int x = n * block + i;
+            asked[i] = x < width && least(x, y) != unknown ? least(x, y) : far;
+          }
+          const Found f = find(kernel, padded, y, n, asked.data());
+          for (int i = 0; i < block && n * block + i < width; ++i) {
+            if (f.from_begin[i] == 0) continue;
+            const int x = n * block + i - left;
+            out(n * block + i, y) = {x + b.width() - f.from_end[i], y - below + f.l0[i],
+                                     x + f.from_begin[i] - 1, y - below + f.l1[i]};
+          }
+        }
+      },
+      watch);
   return out;
 }
 

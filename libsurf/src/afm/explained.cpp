@@ -11,7 +11,7 @@ namespace {
 
 constexpr float infinity = std::numeric_limits<float>::infinity();
 
-constexpr int together = 4;   // samples of the tip: what is made is loaded and stored once for all
+constexpr int together = 4;  // samples of the tip: what is made is loaded and stored once for all
 
 // out(x) = min(out(x), in(x + k) + offset[k] of four).
 __attribute__((target_clones("avx512f", "avx2", "default"))) void lower_to(
@@ -44,21 +44,23 @@ __attribute__((target_clones("avx512f", "avx2", "default"))) void raise_to(
 Grid<float> explained_height(const CarvedScan& scan, const CarvedTip& tip, int threads) {
   // The apex may lie outside of the scan by as much as the tip is wide.
   const int w = scan.width() + tip.width - 1, h = scan.height() + tip.height - 1;
-  const int left = tip.width - 1 - tip.apex_x, below = tip.height - 1 - tip.apex_y;   // apex at (x - left, y - below)
-  const auto offsets = [&](int i, int j, float sign, float* four) {   // beyond the tip those that change nothing
+  const int left = tip.width - 1 - tip.apex_x,
+            below = tip.height - 1 - tip.apex_y;  // apex at (x - left, y - below)
+  const auto offsets = [&](int i, int j, float sign,
+                           float* four) {  // beyond the tip those that change nothing
     for (int k = 0; k < together; ++k) {
       const auto at = static_cast<std::size_t>(j * tip.stride + i + k);
       const bool there = i + k < tip.width && tip.z[at] > -infinity;
       four[k] = !there ? -sign * infinity : sign > 0 ? tip.z[at] : tip.threshold[at] - tip.z[at];
     }
   };
-  Grid<float> apex(w + together, h, infinity);   // with a margin on the left
+  Grid<float> apex(w + together, h, infinity);  // with a margin on the left
   parallel_for(static_cast<std::size_t>(h), threads, [&](std::size_t row, int) {
     const int y = static_cast<int>(row);
     float four[together];
     for (int j = 0; j < tip.height; ++j) {
       const int sy = y - below + (j - tip.apex_y);
-      if (sy < 0 || sy >= scan.height()) continue;   // beyond the scan everything is allowed
+      if (sy < 0 || sy >= scan.height()) continue;  // beyond the scan everything is allowed
       for (int i = 0; i < tip.width; i += together) {
         offsets(i, j, -1, four);
         lower_to(&apex(together, y), scan.top(i - tip.apex_x - left, sy), four, w);
@@ -72,7 +74,8 @@ Grid<float> explained_height(const CarvedScan& scan, const CarvedTip& tip, int t
     for (int j = 0; j < tip.height; ++j)
       for (int i = 0; i < tip.width; i += together) {
         offsets(i, j, 1, four);
-        raise_to(&out(0, y), &apex(together - (i - tip.apex_x) + left, y - (j - tip.apex_y) + below), four,
+        raise_to(&out(0, y),
+                 &apex(together - (i - tip.apex_x) + left, y - (j - tip.apex_y) + below), four,
                  scan.width());
       }
   });

@@ -17,7 +17,8 @@ HeightRange height_range(std::span<const HeightField> fields) {
           range.low_nm = std::min(range.low_nm, f.z_nm(x, y));
           range.high_nm = std::max(range.high_nm, f.z_nm(x, y));
         }
-  if (range.low_nm > range.high_nm) throw InvalidInput("scan", "it has no valid pixel", "Give another");
+  if (range.low_nm > range.high_nm)
+    throw InvalidInput("scan", "it has no valid pixel", "Give another");
   return range;
 }
 

@@ -14,8 +14,8 @@
 namespace surf {
 namespace {
 
-constexpr int blocks = 64;                  // along each axis, one vote from each
-constexpr double least_share = 0.2;         // of samples on a plane that the slopes searched must allow
+constexpr int blocks = 64;           // along each axis, one vote from each
+constexpr double least_share = 0.2;  // of samples on a plane that the slopes searched must allow
 constexpr double noise_deviations = 2.5;
 constexpr double clear_factor = 1.5;
 constexpr double weak_share = 0.1;
@@ -27,13 +27,14 @@ constexpr int most_turns = 50;
 struct Frame {
   double centre_x, centre_y, half_x, half_y;
   explicit Frame(const HeightField& f)
-      : centre_x(0.5 * (f.z_nm.width() - 1)), centre_y(0.5 * (f.z_nm.height() - 1)), half_x(centre_x),
-        half_y(centre_y) {}
+      : centre_x(0.5 * (f.z_nm.width() - 1)), centre_y(0.5 * (f.z_nm.height() - 1)),
+        half_x(centre_x), half_y(centre_y) {}
   double u(int x) const { return (x - centre_x) / half_x; }
   double v(int y) const { return (y - centre_y) / half_y; }
 };
 
-Plane to_plane(const SlopedPlane& p, const Plane& rough, const HeightField& field, const Frame& frame) {
+Plane to_plane(const SlopedPlane& p, const Plane& rough, const HeightField& field,
+               const Frame& frame) {
   Plane out = rough;
   out.height_nm += p.offset;
   out.slope_x += p.a / (frame.half_x * field.pitch_x_nm);
@@ -41,7 +42,8 @@ Plane to_plane(const SlopedPlane& p, const Plane& rough, const HeightField& fiel
   return out;
 }
 
-/// A sample from each block that has one: the usable one at a random rank, a function of the block alone.
+/// A sample from each block that has one: the usable one at a random rank, a function of the block
+/// alone.
 Votes draw_votes(const HeightField& field, const Grid<unsigned char>& use, const Plane& rough) {
   const Frame frame(field);
   const int width = field.z_nm.width(), height = field.z_nm.height();
@@ -55,11 +57,13 @@ Votes draw_votes(const HeightField& field, const Grid<unsigned char>& use, const
         for (int x = i * width / across; x < (i + 1) * width / across; ++x)
           if (is_used(field, use, x, y)) usable.emplace_back(x, y);
       if (usable.empty()) continue;
-      const auto word = random_block({0x486f7567, 0x68}, {static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(j), 0, 0})[0];
+      const auto word = random_block({0x486f7567, 0x68}, {static_cast<std::uint32_t>(i),
+                                                          static_cast<std::uint32_t>(j), 0, 0})[0];
       const auto [x, y] = usable[word % usable.size()];
       votes.u.push_back(static_cast<float>(frame.u(x)));
       votes.v.push_back(static_cast<float>(frame.v(y)));
-      votes.z.push_back(static_cast<float>(field.z_nm(x, y) - rough.at(field.x_nm(x), field.y_nm(y))));
+      votes.z.push_back(
+          static_cast<float>(field.z_nm(x, y) - rough.at(field.x_nm(x), field.y_nm(y))));
     }
   }
   return votes;
@@ -97,13 +101,14 @@ double least_tolerance(const HeightField& field, double range) {
   double sigma = 0;
   try {
     sigma = std::sqrt(estimate_noise(field).noise.innovation_nm2);
-  } catch (const InvalidInput&) {   // too small an image, or too many holes, to tell
+  } catch (const InvalidInput&) {  // too small an image, or too many holes, to tell
   }
   return std::max(noise_deviations * sigma, range * 1e-3);
 }
 
 /// From coarse to fine, each tolerance beginning with the best plane of the last.
-Choice choose_tolerance(const Votes& votes, SlopeSearch search, double least, double range, HoughSummary& s) {
+Choice choose_tolerance(const Votes& votes, SlopeSearch search, double least, double range,
+                        HoughSummary& s) {
   Choice best{{}, std::max(least, range / 16)};
   double most = -1;
   std::vector<SlopedPlane> known;
@@ -116,7 +121,7 @@ Choice choose_tolerance(const Votes& votes, SlopeSearch search, double least, do
     const double share = static_cast<double>(found.votes) / static_cast<double>(votes.size());
     const double here = surprise(share, std::min(0.99, 2 * tolerance / range));
     if (here > most) most = here, best = {found, tolerance}, s.search_complete = complete;
-    if (here < 0.5 * most) break;   // finer than the substrate is flat: fewer and fewer votes
+    if (here < 0.5 * most) break;  // finer than the substrate is flat: fewer and fewer votes
   }
   return best;
 }
@@ -145,7 +150,8 @@ Residuals mark_inliers(const HeightField& field, const Grid<unsigned char>& use,
 }
 
 /// Least squares and inliers in turns, as long as the inliers determine a plane and grow in number.
-void refine(const HeightField& field, const Grid<unsigned char>& use, const Watch& watch, HoughSummary& s) {
+void refine(const HeightField& field, const Grid<unsigned char>& use, const Watch& watch,
+            HoughSummary& s) {
   Grid<unsigned char> mask(field.z_nm.width(), field.z_nm.height());
   Residuals best = mark_inliers(field, use, s.plane, s.tolerance_nm, mask);
   s.inliers = mask;
@@ -166,7 +172,8 @@ void refine(const HeightField& field, const Grid<unsigned char>& use, const Watc
     if (same) break;
   }
   s.inlier_share = static_cast<double>(best.inliers) / static_cast<double>(best.samples);
-  s.inlier_rms_nm = std::sqrt(best.squares / static_cast<double>(std::max<std::size_t>(best.inliers, 1)));
+  s.inlier_rms_nm =
+      std::sqrt(best.squares / static_cast<double>(std::max<std::size_t>(best.inliers, 1)));
 }
 
 Votes away_from(const Votes& votes, const SlopedPlane& plane, double distance) {
@@ -185,11 +192,13 @@ HoughVerdict judge(const HoughSummary& s) {
   const bool majority = s.inlier_share >= 0.5;
   if (s.inlier_share < weak_share || (!majority && s.inlier_share < clear_factor * s.chance_share))
     return HoughVerdict::weak;
-  return s.inlier_share < clear_factor * s.runner_up_share ? HoughVerdict::contested : HoughVerdict::clear;
+  return s.inlier_share < clear_factor * s.runner_up_share ? HoughVerdict::contested
+                                                           : HoughVerdict::clear;
 }
 
 /// Heights that are one plane to the last digit.
-HoughSummary exact_plane(const HeightField& field, const Grid<unsigned char>& use, const Plane& plane) {
+HoughSummary exact_plane(const HeightField& field, const Grid<unsigned char>& use,
+                         const Plane& plane) {
   HoughSummary s;
   s.plane = s.runner_up = plane;
   s.inliers = Grid<unsigned char>(field.z_nm.width(), field.z_nm.height());
@@ -200,7 +209,8 @@ HoughSummary exact_plane(const HeightField& field, const Grid<unsigned char>& us
 
 }  // namespace
 
-HoughSummary find_plane(const HeightField& field, const HoughOptions& options, const Grid<unsigned char>& use) {
+HoughSummary find_plane(const HeightField& field, const HoughOptions& options,
+                        const Grid<unsigned char>& use) {
   require_not_negative(options.tolerance_nm, "tolerance");
   const Plane rough = fit_plane(field, use);
   const Frame frame(field);
@@ -209,7 +219,9 @@ HoughSummary find_plane(const HeightField& field, const HoughOptions& options, c
   if (!(range > 1e-12 * largest_height(field, use))) return exact_plane(field, use, rough);
   HoughSummary s;
   options.watch.report(0.1, 1);
-  SlopeSearch search{.largest_slope = range / (2 * least_share), .slack = slack, .limit = planes_per_search,
+  SlopeSearch search{.largest_slope = range / (2 * least_share),
+                     .slack = slack,
+                     .limit = planes_per_search,
                      .watch = options.watch.part(0.1, 0.5)};
   Choice choice;
   if (options.tolerance_nm > 0) {

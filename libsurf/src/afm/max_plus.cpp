@@ -12,8 +12,8 @@
 namespace surf::max_plus {
 namespace {
 
-/// Places of a line by distance from `apex`, of two the one of the larger index first: b is turned, and
-/// ties go to the lower and left sample of the original.
+/// Places of a line by distance from `apex`, of two the one of the larger index first: b is turned,
+/// and ties go to the lower and left sample of the original.
 std::vector<std::int32_t> ranks(int count, int apex, std::vector<int>& place_of_rank) {
   place_of_rank.resize(count);
   std::iota(place_of_rank.begin(), place_of_rank.end(), 0);
@@ -144,26 +144,29 @@ void convolve(const Grid<Quanta>& a, const Grid<Quanta>& b, int apex_x, int apex
   const std::size_t wide = static_cast<std::size_t>(padded.blocks) * padded.block_width;
   std::vector<std::vector<Quanta>> scratch(threads, std::vector<Quanta>(3 * block_rows * wide));
   const std::size_t strips = (static_cast<std::size_t>(height) + block_rows - 1) / block_rows;
-  parallel_for(strips, threads, [&](std::size_t unit_of_work, int worker) {
-    const int y = static_cast<int>(unit_of_work) * block_rows;
-    Quanta* const space = scratch[worker].data();
-    Strip strip;
-    for (int r = 0; r < block_rows; ++r) {
-      strip.sum[r] = space + r * wide;
-      strip.rank[r] = space + (block_rows + r) * wide;
-    }
-    std::int32_t* const columns = space + 2 * block_rows * wide;
-    make_strip(kernel, padded, y, width, height, strip, columns);
-    for (int r = 0; r < block_rows && y + r < height; ++r)
-      for (int x = 0; x < width; ++x) {
-        const bool known = strip.sum[r][x] >= lowest;
-        sum(x, y + r) = known ? strip.sum[r][x] : unknown;
-        if (!contact || !known) continue;
-        const int i = kernel.width - 1 - kernel.column_of_rank[columns[r * width + x]];
-        const int j = kernel.height - 1 - kernel.row_of_rank[strip.rank[r][x]];
-        (*contact)(x, y + r) = i + j * kernel.width;
-      }
-  }, watch);
+  parallel_for(
+      strips, threads,
+      [&](std::size_t unit_of_work, int worker) {
+        const int y = static_cast<int>(unit_of_work) * block_rows;
+        Quanta* const space = scratch[worker].data();
+        Strip strip;
+        for (int r = 0; r < block_rows; ++r) {
+          strip.sum[r] = space + r * wide;
+          strip.rank[r] = space + (block_rows + r) * wide;
+        }
+        std::int32_t* const columns = space + 2 * block_rows * wide;
+        make_strip(kernel, padded, y, width, height, strip, columns);
+        for (int r = 0; r < block_rows && y + r < height; ++r)
+          for (int x = 0; x < width; ++x) {
+            const bool known = strip.sum[r][x] >= lowest;
+            sum(x, y + r) = known ? strip.sum[r][x] : unknown;
+            if (!contact || !known) continue;
+            const int i = kernel.width - 1 - kernel.column_of_rank[columns[r * width + x]];
+            const int j = kernel.height - 1 - kernel.row_of_rank[strip.rank[r][x]];
+            (*contact)(x, y + r) = i + j * kernel.width;
+          }
+      },
+      watch);
 }
 
 }  // namespace surf::max_plus

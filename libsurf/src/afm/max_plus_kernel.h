@@ -17,19 +17,19 @@ inline constexpr int block_vectors = 4;
 /// Columns of b whose contribution is bounded, and left out, together.
 inline constexpr int chunk_columns = 8;
 
-/// b turned by 180 degrees, so that sum(x, y) = max over (k, l) of a(x + k, y + l) + b(k, l) with `a`
-/// padded, and laid out as the kernel reads it. Line l holds b's row l for the first row of a block
-/// and its row l - 1 for the second.
+/// b turned by 180 degrees, so that sum(x, y) = max over (k, l) of a(x + k, y + l) + b(k, l) with
+/// `a` padded, and laid out as the kernel reads it. Line l holds b's row l for the first row of a
+/// block and its row l - 1 for the second.
 struct Kernel {
   int width = 0, height = 0;
-  int chunks = 0;                   ///< per line
-  std::vector<int> chunk_begin;     ///< columns; chunks + 1
-  std::vector<Quanta> lines;        ///< (height + block_rows - 1) x width x block_rows
-  std::vector<Quanta> line_max;     ///< per line
-  std::vector<Quanta> chunk_max;    ///< per line and chunk
-  std::vector<int> order;           ///< of lines: those first that reach highest
-  std::vector<std::int32_t> row_rank, column_rank;   ///< of ties; turned as b is
-  std::vector<int> row_of_rank, column_of_rank;      ///< back
+  int chunks = 0;                 ///< per line
+  std::vector<int> chunk_begin;   ///< columns; chunks + 1
+  std::vector<Quanta> lines;      ///< (height + block_rows - 1) x width x block_rows
+  std::vector<Quanta> line_max;   ///< per line
+  std::vector<Quanta> chunk_max;  ///< per line and chunk
+  std::vector<int> order;         ///< of lines: those first that reach highest
+  std::vector<std::int32_t> row_rank, column_rank;  ///< of ties; turned as b is
+  std::vector<int> row_of_rank, column_of_rank;     ///< back
   const Quanta* line(int l) const {
     return lines.data() + static_cast<std::ptrdiff_t>(l) * width * block_rows;
   }
@@ -37,36 +37,40 @@ struct Kernel {
 
 /// `a` with unknown samples around it, and bounds of what it holds.
 struct Padded {
-  int block_width = 0;              ///< columns of the result in a block
-  int blocks = 0;                   ///< across
+  int block_width = 0;  ///< columns of the result in a block
+  int blocks = 0;       ///< across
   std::ptrdiff_t stride = 0, rows = 0;
   std::vector<Quanta> z;
-  std::vector<Quanta> line_max;     ///< per row and block: over all that a line of b meets
-  std::vector<Quanta> chunk_max;    ///< per row, block and chunk
+  std::vector<Quanta> line_max;   ///< per row and block: over all that a line of b meets
+  std::vector<Quanta> chunk_max;  ///< per row, block and chunk
   const Quanta* row(std::ptrdiff_t y) const { return z.data() + y * stride; }
 
-  /// What the maxima of a row of the result begin with. Where no result is wanted it is higher than all
-  /// that can come, so that it keeps nothing from being left out.
+  /// What the maxima of a row of the result begin with. Where no result is wanted it is higher than
+  /// all that can come, so that it keeps nothing from being left out.
   std::vector<Quanta> begin_inside, begin_outside;
-  const Quanta* begin(bool inside) const { return inside ? begin_inside.data() : begin_outside.data(); }
+  const Quanta* begin(bool inside) const {
+    return inside ? begin_inside.data() : begin_outside.data();
+  }
 };
 
 Kernel make_kernel(const Grid<Quanta>& b, int apex_x, int apex_y);
 Padded make_padded(const Grid<Quanta>& a, const Kernel& b, int apex_x, int apex_y, Unit unit);
 
-/// A pair of rows of the result, `block_width * blocks` wide, and the rank of the row of b that gave it.
+/// A pair of rows of the result, `block_width * blocks` wide, and the rank of the row of b that
+/// gave it.
 struct Strip {
   Quanta* sum[block_rows];
-  std::int32_t* rank[block_rows];   ///< null without contacts
+  std::int32_t* rank[block_rows];  ///< null without contacts
 };
 
-/// Result rows y and y + 1. The result's columns from `width` on and rows from `height` on do not count.
+/// Result rows y and y + 1. The result's columns from `width` on and rows from `height` on do not
+/// count.
 using StripFunction = void (*)(const Kernel&, const Padded&, int y, int width, int height,
                                const Strip&, std::int32_t* column_rank);
 
 StripFunction strip_function(Unit unit, bool with_contact);
-int lanes(Unit unit);       ///< heights in a vector
-Unit resolve(Unit unit);    ///< never `best`, always available
+int lanes(Unit unit);     ///< heights in a vector
+Unit resolve(Unit unit);  ///< never `best`, always available
 
 // The rest is compiled once for each vector unit. Everything is inlined into functions that are
 // compiled for it, and nothing of the standard library is called.
@@ -83,8 +87,8 @@ SEMSURF_INLINE void load(V& v, const Quanta* p) {
   __builtin_memcpy(&v, p, sizeof v);
 }
 
-/// Keeps GCC from loading v a second time where it is used twice: loads are what is short. Clang does not
-/// allow it for vectors that the file's own target lacks.
+/// Keeps GCC from loading v a second time where it is used twice: loads are what is short. Clang
+/// does not allow it for vectors that the file's own target lacks.
 template <class V>
 SEMSURF_INLINE void keep([[maybe_unused]] V& v) {
 #if defined(__x86_64__) && !defined(__clang__)
@@ -159,8 +163,8 @@ SEMSURF_INLINE void strip(const Kernel& b, const Padded& a, int y, int height, c
 }
 
 /// The column of row `b_row` of b that gives `sum` at the place `a` looks from, as its rank.
-SEMSURF_INLINE std::int32_t find_column(const Quanta* a, const Quanta* b_row, const std::int32_t* rank,
-                                        int width, Quanta sum) {
+SEMSURF_INLINE std::int32_t find_column(const Quanta* a, const Quanta* b_row,
+                                        const std::int32_t* rank, int width, Quanta sum) {
   std::int32_t least = width;
   for (int k = 0; k < width; ++k) {
     const std::int32_t here = a[k] + b_row[k * block_rows] == sum ? rank[k] : width;
@@ -170,8 +174,8 @@ SEMSURF_INLINE std::int32_t find_column(const Quanta* a, const Quanta* b_row, co
 }
 
 template <int Bytes>
-SEMSURF_INLINE void strip_with_contact(const Kernel& b, const Padded& a, int y, int width, int height,
-                                       const Strip& out, std::int32_t* column_rank) {
+SEMSURF_INLINE void strip_with_contact(const Kernel& b, const Padded& a, int y, int width,
+                                       int height, const Strip& out, std::int32_t* column_rank) {
   using V = typename Vectors<Bytes>::V;
   constexpr int n = Vectors<Bytes>::count;
   for (int block = 0; block < a.blocks; ++block) {

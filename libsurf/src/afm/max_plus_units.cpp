@@ -5,20 +5,20 @@
 namespace surf::max_plus {
 namespace {
 
-#define SEMSURF_STRIPS(name, bytes, target)                                                             \
-  target void plain_##name(const Kernel& b, const Padded& a, int y, int, int height, const Strip& out,  \
-                           std::int32_t*) {                                                             \
-    strip<bytes>(b, a, y, height, out);                                                                 \
-  }                                                                                                     \
-  target void contact_##name(const Kernel& b, const Padded& a, int y, int width, int height,            \
-                             const Strip& out, std::int32_t* column_rank) {                             \
-    strip_with_contact<bytes>(b, a, y, width, height, out, column_rank);                                \
+#define SEMSURF_STRIPS(name, bytes, target)                                                  \
+  target void plain_##name(const Kernel& b, const Padded& a, int y, int, int height,         \
+                           const Strip& out, std::int32_t*) {                                \
+    strip<bytes>(b, a, y, height, out);                                                      \
+  }                                                                                          \
+  target void contact_##name(const Kernel& b, const Padded& a, int y, int width, int height, \
+                             const Strip& out, std::int32_t* column_rank) {                  \
+    strip_with_contact<bytes>(b, a, y, width, height, out, column_rank);                     \
   }
 
 SEMSURF_STRIPS(portable, 16, )
 #ifdef __x86_64__
 SEMSURF_STRIPS(avx2, 32, [[gnu::target("avx2")]])
-#ifdef __clang__   // which knows no preference here
+#ifdef __clang__  // which knows no preference here
 SEMSURF_STRIPS(avx512, 64, [[gnu::target("avx512f,avx512bw,avx512vl")]])
 #else
 SEMSURF_STRIPS(avx512, 64, [[gnu::target("avx512f,avx512bw,avx512vl,prefer-vector-width=512")]])
@@ -40,7 +40,8 @@ int lanes(Unit unit) { return unit == Unit::avx512 ? 16 : unit == Unit::avx2 ? 8
 
 bool is_available(Unit unit) {
 #ifdef __x86_64__
-  if (unit == Unit::avx512) return __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512vl");
+  if (unit == Unit::avx512)
+    return __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512vl");
   if (unit == Unit::avx2) return __builtin_cpu_supports("avx2");
   return true;
 #else
@@ -50,7 +51,9 @@ bool is_available(Unit unit) {
 
 Unit resolve(Unit unit) {
   if (unit != Unit::best) return is_available(unit) ? unit : Unit::portable;
-  return is_available(Unit::avx512) ? Unit::avx512 : is_available(Unit::avx2) ? Unit::avx2 : Unit::portable;
+  return is_available(Unit::avx512) ? Unit::avx512
+         : is_available(Unit::avx2) ? Unit::avx2
+                                    : Unit::portable;
 }
 
 }  // namespace surf::max_plus

@@ -28,7 +28,7 @@ struct Contacts {
 /// Known values become <= 0 again, the highest 0.
 void rebase(Heights& h) {
   const Quanta top = *std::max_element(h.z.data().begin(), h.z.data().end());
-  if (top < max_plus::lowest) return;   // nothing is known
+  if (top < max_plus::lowest) return;  // nothing is known
   for (Quanta& z : h.z.data())
     if (z >= max_plus::lowest) z -= top;
   h.top += top;
@@ -40,7 +40,8 @@ enum class Operation { dilation, erosion };
 double sign_of(Operation o) { return o == Operation::dilation ? 1.0 : -1.0; }
 Tip tip_of(Operation o, const Tip& tip) { return o == Operation::dilation ? tip : reflected(tip); }
 
-Heights convolve(const Heights& a, const TipQuanta& b, int threads, Contacts* contacts, const Watch& watch) {
+Heights convolve(const Heights& a, const TipQuanta& b, int threads, Contacts* contacts,
+                 const Watch& watch) {
   Heights out{{}, a.top};
   Grid<std::int32_t> index;
   max_plus::convolve(a.z, b.z, b.apex_x, b.apex_y, threads, out.z, contacts ? &index : nullptr,
@@ -59,26 +60,29 @@ Heights convolve(const Heights& a, const TipQuanta& b, int threads, Contacts* co
 
 void check_factor(int upsample) {
   if (upsample < 1 || upsample > 32)
-    throw InvalidInput("upsample", fmt::format("{} is not in 1 to 32", upsample), "2 or 3 is usual");
+    throw InvalidInput("upsample", fmt::format("{} is not in 1 to 32", upsample),
+                       "2 or 3 is usual");
 }
 
-/// One operation. Between samples surface and tip are bilinear, so their sum is bilinear in u in every
-/// cell and largest at a corner: on a finer grid the samples would come out the same (thesis, C.3).
-HeightField apply(Operation operation, const HeightField& field, const Tip& tip, const char* subject,
-                  const MorphologyOptions& o, Contacts* contacts = nullptr) {
+/// One operation. Between samples surface and tip are bilinear, so their sum is bilinear in u in
+/// every cell and largest at a corner: on a finer grid the samples would come out the same (thesis,
+/// C.3).
+HeightField apply(Operation operation, const HeightField& field, const Tip& tip,
+                  const char* subject, const MorphologyOptions& o, Contacts* contacts = nullptr) {
   max_plus::check_pair(field, tip, subject);
   check_factor(o.upsample);
   const double quantum = choose_quantum(field, tip, o), sign = sign_of(operation);
   const int w = field.z_nm.width(), h = field.z_nm.height();
   const Tip used = tip_of(operation, tip);
-  const Heights out =
-      convolve(quantise(field, sign, quantum), quantise(used, quantum, w, h), o.threads, contacts, o.watch);
+  const Heights out = convolve(quantise(field, sign, quantum), quantise(used, quantum, w, h),
+                               o.threads, contacts, o.watch);
   return to_field(out, sign, quantum, field);
 }
 
 /// `work` on what is interpolated to `upsample` samples per pitch, sampled back.
 template <class Work>
-HeightField on_fine_grid(const HeightField& field, const Tip& tip, MorphologyOptions o, const Work& work) {
+HeightField on_fine_grid(const HeightField& field, const Tip& tip, MorphologyOptions o,
+                         const Work& work) {
   const int f = o.upsample;
   o.upsample = 1;
   const HeightField fine =
@@ -100,32 +104,36 @@ MorphologyOptions part_of(MorphologyOptions o, double from, double to) {
 }
 
 /// Two operations with one quantum, so that nothing is rounded in between.
-HeightField apply_both(Operation first, const HeightField& field, const Tip& tip, const char* subject,
-                       const MorphologyOptions& o) {
+HeightField apply_both(Operation first, const HeightField& field, const Tip& tip,
+                       const char* subject, const MorphologyOptions& o) {
   max_plus::check_pair(field, tip, subject);
   if (o.upsample != 1)
-    return on_fine_grid(field, tip, o, [&](const HeightField& f, const Tip& t, const MorphologyOptions& plain) {
-      return apply_both(first, f, t, subject, plain);
-    });
+    return on_fine_grid(field, tip, o,
+                        [&](const HeightField& f, const Tip& t, const MorphologyOptions& plain) {
+                          return apply_both(first, f, t, subject, plain);
+                        });
   const double quantum = choose_quantum(field, tip, o);
   const int w = field.z_nm.width(), h = field.z_nm.height();
   const Operation second = first == Operation::dilation ? Operation::erosion : Operation::dilation;
-  Heights half = convolve(quantise(field, sign_of(first), quantum), quantise(tip_of(first, tip), quantum, w, h),
-                          o.threads, nullptr, o.watch.part(0, 0.5));
+  Heights half = convolve(quantise(field, sign_of(first), quantum),
+                          quantise(tip_of(first, tip), quantum, w, h), o.threads, nullptr,
+                          o.watch.part(0, 0.5));
   // The other way up, and below 0 again.
   for (Quanta& z : half.z.data())
     if (z >= max_plus::lowest) z = -z;
   half.top = -half.top;
   rebase(half);
-  const Heights out = convolve(half, quantise(tip_of(second, tip), quantum, w, h), o.threads, nullptr,
-                               o.watch.part(0.5, 1));
+  const Heights out = convolve(half, quantise(tip_of(second, tip), quantum, w, h), o.threads,
+                               nullptr, o.watch.part(0.5, 1));
   return to_field(out, sign_of(second), quantum, field);
 }
 
 Tip hemisphere_for(const HeightField& field, double distance_nm) {
   if (!(distance_nm >= 0 && std::isfinite(distance_nm)))
-    throw InvalidInput("distance", fmt::format("{:g} nm is not possible", distance_nm), "Give 0 or more");
-  return hemisphere_tip(distance_nm, field.pitch_x_nm, field.pitch_y_nm, field.z_nm.width(), field.z_nm.height());
+    throw InvalidInput("distance", fmt::format("{:g} nm is not possible", distance_nm),
+                       "Give 0 or more");
+  return hemisphere_tip(distance_nm, field.pitch_x_nm, field.pitch_y_nm, field.z_nm.width(),
+                        field.z_nm.height());
 }
 
 void lift(HeightField& field, double by_nm) {
@@ -151,7 +159,8 @@ HeightField closing(const HeightField& surface, const Tip& tip, const Morphology
   return apply_both(Operation::dilation, surface, tip, "surface", options);
 }
 
-Dilation dilate_with_contacts(const HeightField& surface, const Tip& tip, const MorphologyOptions& options) {
+Dilation dilate_with_contacts(const HeightField& surface, const Tip& tip,
+                              const MorphologyOptions& options) {
   Contacts contacts;
   Dilation out{apply(Operation::dilation, surface, tip, "surface", options, &contacts), {}, {}};
   for (Grid<std::int32_t>* grid : {&contacts.x, &contacts.y})
@@ -166,11 +175,13 @@ HeightField dilate_noncontact(const HeightField& surface, const Tip& tip, double
                               const MorphologyOptions& options) {
   max_plus::check_pair(surface, tip, "surface");
   if (options.upsample != 1)
-    return on_fine_grid(surface, tip, options, [&](const HeightField& f, const Tip& t, const MorphologyOptions& o) {
-      return dilate_noncontact(f, t, distance_nm, o);
-    });
-  HeightField image = dilate(dilate(surface, hemisphere_for(surface, distance_nm), part_of(options, 0, 0.5)), tip,
-                             part_of(options, 0.5, 1));
+    return on_fine_grid(surface, tip, options,
+                        [&](const HeightField& f, const Tip& t, const MorphologyOptions& o) {
+                          return dilate_noncontact(f, t, distance_nm, o);
+                        });
+  HeightField image =
+      dilate(dilate(surface, hemisphere_for(surface, distance_nm), part_of(options, 0, 0.5)), tip,
+             part_of(options, 0.5, 1));
   lift(image, distance_nm);
   return image;
 }
@@ -179,11 +190,12 @@ HeightField erode_noncontact(const HeightField& image, const Tip& tip, double di
                              const MorphologyOptions& options) {
   max_plus::check_pair(image, tip, "image");
   if (options.upsample != 1)
-    return on_fine_grid(image, tip, options, [&](const HeightField& f, const Tip& t, const MorphologyOptions& o) {
-      return erode_noncontact(f, t, distance_nm, o);
-    });
-  HeightField surface = erode(erode(image, tip, part_of(options, 0, 0.5)), hemisphere_for(image, distance_nm),
-                              part_of(options, 0.5, 1));
+    return on_fine_grid(image, tip, options,
+                        [&](const HeightField& f, const Tip& t, const MorphologyOptions& o) {
+                          return erode_noncontact(f, t, distance_nm, o);
+                        });
+  HeightField surface = erode(erode(image, tip, part_of(options, 0, 0.5)),
+                              hemisphere_for(image, distance_nm), part_of(options, 0.5, 1));
   lift(surface, -distance_nm);
   return surface;
 }

@@ -13,9 +13,11 @@ namespace surf {
 namespace {
 
 void validate_residual(const Grid<double>& residual_nm, const Grid<unsigned char>& valid) {
-  if (!valid.empty() && (valid.width() != residual_nm.width() || valid.height() != residual_nm.height()))
-    throw InvalidInput("residual", fmt::format("its mask has {} x {} samples, itself {} x {}", valid.width(),
-                                               valid.height(), residual_nm.width(), residual_nm.height()),
+  if (!valid.empty() &&
+      (valid.width() != residual_nm.width() || valid.height() != residual_nm.height()))
+    throw InvalidInput("residual",
+                       fmt::format("its mask has {} x {} samples, itself {} x {}", valid.width(),
+                                   valid.height(), residual_nm.width(), residual_nm.height()),
                        "Give a mask of the same size, or none");
   for (std::size_t i = 0; i < residual_nm.size(); ++i)
     if ((valid.empty() || valid.data()[i]) && !std::isfinite(residual_nm.data()[i]))
@@ -23,12 +25,12 @@ void validate_residual(const Grid<double>& residual_nm, const Grid<unsigned char
                          "Mark it as invalid");
 }
 
-/// Calls `visit(index, previous, carry, variance)` for each valid sample of a row from left to right:
-/// its mean given `previous`, the index of the last valid one, is carry times that one. The first of a
-/// row has carry 0 and the stationary variance.
+/// Calls `visit(index, previous, carry, variance)` for each valid sample of a row from left to
+/// right: its mean given `previous`, the index of the last valid one, is carry times that one. The
+/// first of a row has carry 0 and the stationary variance.
 template <class Visit>
-void follow_row(const AfmNoise& noise, const Grid<unsigned char>& valid, std::size_t first, int width,
-                const Visit& visit) {
+void follow_row(const AfmNoise& noise, const Grid<unsigned char>& valid, std::size_t first,
+                int width, const Visit& visit) {
   const double stationary = noise.variance_nm2();
   std::size_t previous = first;
   double carry = 0;
@@ -46,17 +48,21 @@ void follow_row(const AfmNoise& noise, const Grid<unsigned char>& valid, std::si
 
 void validate(const AfmNoise& noise, const char* subject, bool allow_zero) {
   if (!(std::fabs(noise.alpha) < 1))
-    throw InvalidInput(subject, fmt::format("alpha is {:g}", noise.alpha), "It has to be in (-1, 1)");
+    throw InvalidInput(subject, fmt::format("alpha is {:g}", noise.alpha),
+                       "It has to be in (-1, 1)");
   const double v = noise.innovation_nm2;
-  if (std::isfinite(v) && std::isfinite(noise.variance_nm2()) && (v > 0 || (allow_zero && v == 0))) return;
-  throw InvalidInput(subject, fmt::format("the innovation's variance is {:g} nm^2", v),
-                     allow_zero ? "Give a finite number, 0 or above" : "Give a finite number above 0");
+  if (std::isfinite(v) && std::isfinite(noise.variance_nm2()) && (v > 0 || (allow_zero && v == 0)))
+    return;
+  throw InvalidInput(
+      subject, fmt::format("the innovation's variance is {:g} nm^2", v),
+      allow_zero ? "Give a finite number, 0 or above" : "Give a finite number above 0");
 }
 
 Grid<double> simulate_noise(const AfmNoise& noise, int width, int height, std::uint64_t seed) {
   validate(noise, "noise", true);
   if (width < 1 || height < 1)
-    throw UsageError("noise", fmt::format("{} x {} samples are asked for", width, height), "Ask for 1 x 1 at least");
+    throw UsageError("noise", fmt::format("{} x {} samples are asked for", width, height),
+                     "Ask for 1 x 1 at least");
   Grid<double> out(width, height);
   const double first = std::sqrt(noise.variance_nm2());
   const double step = std::sqrt(noise.innovation_nm2);
@@ -68,7 +74,8 @@ Grid<double> simulate_noise(const AfmNoise& noise, int width, int height, std::u
   return out;
 }
 
-Grid<double> whiten(const Grid<double>& residual_nm, const AfmNoise& noise, const Grid<unsigned char>& valid) {
+Grid<double> whiten(const Grid<double>& residual_nm, const AfmNoise& noise,
+                    const Grid<unsigned char>& valid) {
   validate(noise);
   validate_residual(residual_nm, valid);
   Grid<double> out(residual_nm.width(), residual_nm.height());
@@ -82,15 +89,16 @@ Grid<double> whiten(const Grid<double>& residual_nm, const AfmNoise& noise, cons
   return out;
 }
 
-double log_likelihood(const Grid<double>& residual_nm, const AfmNoise& noise, const Grid<unsigned char>& valid,
-                      Grid<double>* gradient) {
+double log_likelihood(const Grid<double>& residual_nm, const AfmNoise& noise,
+                      const Grid<unsigned char>& valid, Grid<double>* gradient) {
   validate(noise);
   validate_residual(residual_nm, valid);
   if (gradient) *gradient = Grid<double>(residual_nm.width(), residual_nm.height());
   const std::vector<double>& e = residual_nm.data();
   const double log_innovation = std::log(2 * std::numbers::pi * noise.innovation_nm2);
   double total = 0;
-  for (std::size_t first = 0; first < e.size(); first += static_cast<std::size_t>(residual_nm.width())) {
+  for (std::size_t first = 0; first < e.size();
+       first += static_cast<std::size_t>(residual_nm.width())) {
     double row = 0;
     follow_row(noise, valid, first, residual_nm.width(),
                [&](std::size_t i, std::size_t previous, double carry, double variance) {

@@ -13,13 +13,15 @@ namespace surf {
 namespace {
 
 void require_mask(const Grid<double>& values, const Grid<unsigned char>& valid) {
-  if (valid.empty() || (valid.width() == values.width() && valid.height() == values.height())) return;
-  throw InvalidInput("noise", "the mask has another size than the residuals", "Give a mask of the same size");
+  if (valid.empty() || (valid.width() == values.width() && valid.height() == values.height()))
+    return;
+  throw InvalidInput("noise", "the mask has another size than the residuals",
+                     "Give a mask of the same size");
 }
 
 struct Moments {
   std::size_t n = 0;
-  double mean = 0, m2 = 0, m3 = 0, m4 = 0;   // central, divided by n
+  double mean = 0, m2 = 0, m3 = 0, m4 = 0;  // central, divided by n
 };
 
 Moments moments(const Grid<double>& values, const Grid<unsigned char>& valid) {
@@ -29,7 +31,8 @@ Moments moments(const Grid<double>& values, const Grid<unsigned char>& valid) {
       if (valid.empty() || valid.data()[i]) visit(values.data()[i]);
   };
   each([&](double v) {
-    if (!std::isfinite(v)) throw InvalidInput("noise", "a residual is not finite", "Mark it as invalid");
+    if (!std::isfinite(v))
+      throw InvalidInput("noise", "a residual is not finite", "Mark it as invalid");
     m.mean += v, ++m.n;
   });
   const double n = static_cast<double>(std::max<std::size_t>(m.n, 1));
@@ -41,9 +44,11 @@ Moments moments(const Grid<double>& values, const Grid<unsigned char>& valid) {
   return m;
 }
 
-/// The sum of products of values dx columns and dy rows apart, less `mean`, and the number of pairs.
-std::pair<double, std::size_t> products(const Grid<double>& values, const Grid<unsigned char>& valid, int dx,
-                                        int dy, double mean) {
+/// The sum of products of values dx columns and dy rows apart, less `mean`, and the number of
+/// pairs.
+std::pair<double, std::size_t> products(const Grid<double>& values,
+                                        const Grid<unsigned char>& valid, int dx, int dy,
+                                        double mean) {
   double total = 0;
   std::size_t pairs = 0;
   for (int y = dy; y < values.height(); ++y) {
@@ -58,8 +63,9 @@ std::pair<double, std::size_t> products(const Grid<double>& values, const Grid<u
   return {total, pairs};
 }
 
-std::vector<LagCorrelation> correlations(const Grid<double>& values, const Grid<unsigned char>& valid,
-                                         const Moments& m, int lags, bool along) {
+std::vector<LagCorrelation> correlations(const Grid<double>& values,
+                                         const Grid<unsigned char>& valid, const Moments& m,
+                                         int lags, bool along) {
   std::vector<LagCorrelation> out;
   for (int lag = 1; lag <= std::min(lags, (along ? values.width() : values.height()) - 1); ++lag) {
     const auto [sum, pairs] = products(values, valid, along ? lag : 0, along ? 0 : lag, m.mean);
@@ -88,7 +94,8 @@ double chi_squared_tail(double x, int degrees) {
   return std::min(tail, 1.0);
 }
 
-std::vector<double> autocovariance(const Grid<double>& residual, int lags, const Grid<unsigned char>& valid) {
+std::vector<double> autocovariance(const Grid<double>& residual, int lags,
+                                   const Grid<unsigned char>& valid) {
   require_mask(residual, valid);
   std::vector<double> out;
   for (int lag = 0; lag <= lags; ++lag) {
@@ -102,12 +109,15 @@ NoiseCheck check_noise(const Grid<double>& whitened, const Grid<unsigned char>& 
                        const NoiseCheckOptions& options) {
   require_mask(whitened, valid);
   if (options.lags < 1 || options.fitted_parameters < 0)
-    throw UsageError("lags", fmt::format("{} lags, {} fitted parameters", options.lags, options.fitted_parameters),
-                     "Give at least one lag and no negative number");
+    throw UsageError(
+        "lags",
+        fmt::format("{} lags, {} fitted parameters", options.lags, options.fitted_parameters),
+        "Give at least one lag and no negative number");
   const Moments m = moments(whitened, valid);
   if (m.n < 16 || !(m.m2 > 0))
-    throw InvalidInput("noise", m.n < 16 ? fmt::format("{} samples take part", m.n) : "all residuals are equal",
-                       "Use at least 16 samples of an image with noise");
+    throw InvalidInput(
+        "noise", m.n < 16 ? fmt::format("{} samples take part", m.n) : "all residuals are equal",
+        "Use at least 16 samples of an image with noise");
   NoiseCheck c;
   c.samples = m.n;
   c.mean = m.mean;
@@ -118,13 +128,15 @@ NoiseCheck check_noise(const Grid<double>& whitened, const Grid<unsigned char>& 
   c.across_q = sum_of_squares(c.across);
   const int free = static_cast<int>(c.along.size()) - options.fitted_parameters;
   if (free > 0) c.along_p = chi_squared_tail(c.along_q, free);
-  if (!c.across.empty()) c.across_p = chi_squared_tail(c.across_q, static_cast<int>(c.across.size()));
+  if (!c.across.empty())
+    c.across_p = chi_squared_tail(c.across_q, static_cast<int>(c.across.size()));
   const double n = static_cast<double>(m.n);
   c.skewness = m.m3 / std::pow(m.m2, 1.5);
   c.excess_kurtosis = m.m4 / (m.m2 * m.m2) - 3;
   const double variance_of_skewness = 6 * (n - 2) / ((n + 1) * (n + 3));
   const double mean_of_kurtosis = -6 / (n + 1);
-  const double variance_of_kurtosis = 24 * n * (n - 2) * (n - 3) / ((n + 1) * (n + 1) * (n + 3) * (n + 5));
+  const double variance_of_kurtosis =
+      24 * n * (n - 2) * (n - 3) / ((n + 1) * (n + 1) * (n + 3) * (n + 5));
   c.jarque_bera = c.skewness * c.skewness / variance_of_skewness +
                   std::pow(c.excess_kurtosis - mean_of_kurtosis, 2) / variance_of_kurtosis;
   c.normal_p = chi_squared_tail(c.jarque_bera, 2);

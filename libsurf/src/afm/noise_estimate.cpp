@@ -38,8 +38,9 @@ Covariances covariances(const HeightField& residual, const Grid<unsigned char>& 
   return c;
 }
 
-/// A least-squares polynomial takes away the noise's power at frequency 0, r(0) (1 + a) / (1 - a), once
-/// for each of its coefficients (Brockwell and Davis 1991, 7.1): both covariances are low by the same.
+/// A least-squares polynomial takes away the noise's power at frequency 0, r(0) (1 + a) / (1 - a),
+/// once for each of its coefficients (Brockwell and Davis 1991, 7.1): both covariances are low by
+/// the same.
 double removed_power(double r0, double r1, int terms, std::size_t samples) {
   double lost = 0;
   const double share = terms / static_cast<double>(samples);
@@ -63,19 +64,19 @@ NoiseEstimate with_errors(double r0, double alpha, std::size_t samples) {
 
 // Of an image with structure.
 
-constexpr std::size_t most_distances = 4;   // k = 1 ... 4
+constexpr std::size_t most_distances = 4;  // k = 1 ... 4
 constexpr int most_bands = 8;
-constexpr double clip = 4;                       // standard deviations
-constexpr double clipped_variance = 0.99893;     // of a normal number within +-4 standard deviations
+constexpr double clip = 4;                    // standard deviations
+constexpr double clipped_variance = 0.99893;  // of a normal number within +-4 standard deviations
 constexpr double median_of_normal = 0.67448975019608171;
 constexpr double alpha_limit = 0.9;
 constexpr std::size_t enough_centres = 1'000'000;
 
-using Differences = std::array<double, most_distances>;   // D_k about one sample
+using Differences = std::array<double, most_distances>;  // D_k about one sample
 
 struct Centres {
   std::size_t distances = 0;
-  std::vector<std::vector<Differences>> bands;   // of rows
+  std::vector<std::vector<Differences>> bands;  // of rows
 };
 
 /// False if a hole is too near.
@@ -103,7 +104,8 @@ Centres mixed_differences(const HeightField& field) {
   const int every = 1 + static_cast<int>(field.z_nm.size() / enough_centres);
   const int margin = static_cast<int>(out.distances);
   for (int y = 1; y + 1 < height; y += every) {
-    auto& band = out.bands[static_cast<std::size_t>(y - 1) * out.bands.size() / static_cast<std::size_t>(height - 2)];
+    auto& band = out.bands[static_cast<std::size_t>(y - 1) * out.bands.size() /
+                           static_cast<std::size_t>(height - 2)];
     Differences d;
     for (int x = margin; x + margin < width; ++x)
       if (difference(field, x, y, out.distances, d)) band.push_back(d);
@@ -143,7 +145,8 @@ std::vector<BandSum> clipped_sums(const Centres& centres, const Differences& var
   for (std::size_t b = 0; b < sums.size(); ++b) {
     for (const Differences& d : centres.bands[b]) {
       bool calm = true;
-      for (std::size_t k = 0; k < centres.distances; ++k) calm &= d[k] * d[k] <= clip * clip * variance[k];
+      for (std::size_t k = 0; k < centres.distances; ++k)
+        calm &= d[k] * d[k] <= clip * clip * variance[k];
       if (!calm) continue;
       ++sums[b].count;
       for (std::size_t k = 0; k < centres.distances; ++k) sums[b].squares[k] += d[k] * d[k];
@@ -200,8 +203,10 @@ NoiseEstimate estimate_flat_noise(const HeightField& field, const FlatNoiseOptio
   const Covariances c = covariances(residual, use);
   const int terms = (options.degree + 1) * (options.degree + 2) / 2;
   if (c.samples < least_samples + static_cast<std::size_t>(terms) || c.pairs == 0)
-    throw InvalidInput("noise", fmt::format("{} samples and {} pairs beside each other take part", c.samples, c.pairs),
-                       "Use more of the image");
+    throw InvalidInput(
+        "noise",
+        fmt::format("{} samples and {} pairs beside each other take part", c.samples, c.pairs),
+        "Use more of the image");
   if (c.r0 == 0) return with_errors(0, 0, c.samples);
   const double lost = removed_power(c.r0, c.r1, terms, c.samples);
   const double alpha = std::clamp((c.r1 + lost) / (c.r0 + lost), -highest_alpha, highest_alpha);

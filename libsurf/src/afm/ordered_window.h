@@ -7,9 +7,10 @@
 
 namespace surf {
 
-/// A set of different numbers in [0, size) that finds its k-th smallest quickly if it changes little
-/// between questions: a bit for each, counts by block, and a block that follows the answer (the running
-/// median of Huang, Yang and Tang 1979, doi:10.1109/TASSP.1979.1163188, over ranks instead of grey levels).
+/// A set of different numbers in [0, size) that finds its k-th smallest quickly if it changes
+/// little between questions: a bit for each, counts by block, and a block that follows the answer
+/// (the running median of Huang, Yang and Tang 1979, doi:10.1109/TASSP.1979.1163188, over ranks
+/// instead of grey levels).
 class OrderedWindow {
  public:
   explicit OrderedWindow(std::size_t size);

@@ -51,32 +51,39 @@ void check_pair(const HeightField& field, const Tip& tip, const char* subject) {
   validate(tip);
   const auto differ = [](double a, double b) { return std::abs(a - b) > 1e-6 * std::max(a, b); };
   if (differ(field.pitch_x_nm, tip.pitch_x_nm) || differ(field.pitch_y_nm, tip.pitch_y_nm))
-    throw InvalidInput("tip", fmt::format("its pitch is {:g} x {:g} nm, that of the {} {:g} x {:g} nm",
-                                          tip.pitch_x_nm, tip.pitch_y_nm, subject, field.pitch_x_nm,
-                                          field.pitch_y_nm),
-                       "Resample it to the other's");
+    throw InvalidInput(
+        "tip",
+        fmt::format("its pitch is {:g} x {:g} nm, that of the {} {:g} x {:g} nm", tip.pitch_x_nm,
+                    tip.pitch_y_nm, subject, field.pitch_x_nm, field.pitch_y_nm),
+        "Resample it to the other's");
   const auto& valid = field.valid.data();
-  if (!valid.empty() && std::none_of(valid.begin(), valid.end(), [](unsigned char v) { return v != 0; }))
+  if (!valid.empty() &&
+      std::none_of(valid.begin(), valid.end(), [](unsigned char v) { return v != 0; }))
     throw InvalidInput(subject, "it has no valid height", "Use another channel or scan");
 }
 
-double choose_quantum(const HeightField& surface, const Tip& tip, const MorphologyOptions& options) {
+double choose_quantum(const HeightField& surface, const Tip& tip,
+                      const MorphologyOptions& options) {
   const Range r = range_of(surface);
   const double range = r.high - r.low, depth = depth_of(tip), needed = range + 2 * depth;
   const double magnitude = std::max({std::abs(r.low), std::abs(r.high), depth});
   if (!(magnitude < 1e150))
-    throw InvalidInput("morphology", fmt::format("heights of {:g} nm are out of all bounds", magnitude),
+    throw InvalidInput("morphology",
+                       fmt::format("heights of {:g} nm are out of all bounds", magnitude),
                        "Mark such samples as holes");
-  // Rounding adds a few quanta to the range. Whole numbers of quanta have to be exact in a double, and below 2^51 for `nearest`.
+  // Rounding adds a few quanta to the range. Whole numbers of quanta have to be exact in a double,
+  // and below 2^51 for `nearest`.
   const double floor = std::max(std::ldexp(needed * 1.000001, -28), std::ldexp(magnitude, -50));
   const double finest = std::max(std::exp2(std::ceil(std::log2(floor) - 1)), 1e-150);
   if (options.quantum_nm == 0) return floor > 0 ? finest : 1;
   if (options.quantum_nm > 0 && std::isfinite(options.quantum_nm) &&
       needed * 1.000001 <= 0x1p29 * options.quantum_nm && magnitude <= 0x1p50 * options.quantum_nm)
     return options.quantum_nm;
-  throw InvalidInput("quantum", fmt::format("{:g} nm is not possible for heights over {:g} nm and a tip {:g} nm deep",
-                                            options.quantum_nm, range, depth),
-                     fmt::format("Give {:g} nm or more, or 0", finest));
+  throw InvalidInput(
+      "quantum",
+      fmt::format("{:g} nm is not possible for heights over {:g} nm and a tip {:g} nm deep",
+                  options.quantum_nm, range, depth),
+      fmt::format("Give {:g} nm or more, or 0", finest));
 }
 
 Heights quantise(const HeightField& surface, double sign, double quantum_nm) {
@@ -87,7 +94,8 @@ Heights quantise(const HeightField& surface, double sign, double quantum_nm) {
   const unsigned char* const valid = surface.valid.empty() ? nullptr : surface.valid.data().data();
   Quanta* const q = out.z.data().data();
   for (std::size_t i = 0; i < out.z.size(); ++i)
-    q[i] = valid && !valid[i] ? unknown : static_cast<Quanta>(nearest(sign * z[i] / quantum_nm) - out.top);
+    q[i] = valid && !valid[i] ? unknown
+                              : static_cast<Quanta>(nearest(sign * z[i] / quantum_nm) - out.top);
   return out;
 }
 
@@ -105,9 +113,11 @@ TipQuanta quantise(const Tip& tip, double quantum_nm, int width, int height) {
   return out;
 }
 
-HeightField to_field(const Heights& heights, double sign, double quantum_nm, const HeightField& like) {
+HeightField to_field(const Heights& heights, double sign, double quantum_nm,
+                     const HeightField& like) {
   const int w = heights.z.width(), h = heights.z.height();
-  HeightField out{Grid<double>(w, h), {}, like.pitch_x_nm, like.pitch_y_nm, like.origin_x_nm, like.origin_y_nm};
+  HeightField out{Grid<double>(w, h), {}, like.pitch_x_nm, like.pitch_y_nm, like.origin_x_nm,
+                  like.origin_y_nm};
   const Quanta* const q = heights.z.data().data();
   double* const z = out.z_nm.data().data();
   std::size_t holes = 0;

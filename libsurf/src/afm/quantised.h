@@ -9,7 +9,7 @@ namespace surf::max_plus {
 /// Heights as (top + z) quanta, z as max_plus.h has them.
 struct Heights {
   Grid<Quanta> z;
-  double top = 0;   ///< a whole number of quanta
+  double top = 0;  ///< a whole number of quanta
 };
 
 /// What MorphologyOptions::quantum_nm says.
@@ -27,7 +27,8 @@ struct TipQuanta {
 TipQuanta quantise(const Tip& tip, double quantum_nm, int width, int height);
 
 /// Back to nm with pitch and origin of `like`; unknown samples are holes.
-HeightField to_field(const Heights& heights, double sign, double quantum_nm, const HeightField& like);
+HeightField to_field(const Heights& heights, double sign, double quantum_nm,
+                     const HeightField& like);
 
 /// Throws InvalidInput if they cannot be used together.
 void check_pair(const HeightField& field, const Tip& tip, const char* subject);

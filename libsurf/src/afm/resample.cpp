@@ -21,7 +21,7 @@ struct Place {
 
 Place place(double at, int count) {
   const double nearest = std::round(at);
-  if (std::abs(at - nearest) < 1e-9) at = nearest;   // what is meant to be a sample is one
+  if (std::abs(at - nearest) < 1e-9) at = nearest;  // what is meant to be a sample is one
   const int left = std::clamp(static_cast<int>(std::floor(at)), 0, count - 1);
   return {left, left == count - 1 ? 0.0 : at - left};
 }
@@ -43,7 +43,9 @@ struct Extent {
 };
 
 Extent extent(int count, int apex, double ratio) {
-  const auto fit = [&](int samples) { return static_cast<int>(std::floor(samples / ratio + 1e-9)); };
+  const auto fit = [&](int samples) {
+    return static_cast<int>(std::floor(samples / ratio + 1e-9));
+  };
   return {fit(apex), fit(count - 1 - apex)};
 }
 
@@ -59,16 +61,23 @@ Tip resampled(const Tip& tip, double pitch_x_nm, double pitch_y_nm) {
   validate(tip);
   for (const double pitch : {pitch_x_nm, pitch_y_nm})
     if (!(pitch > 0 && std::isfinite(pitch)))
-      throw InvalidInput("tip", fmt::format("it cannot have a pitch of {:g} nm", pitch), "Give one above 0");
+      throw InvalidInput("tip", fmt::format("it cannot have a pitch of {:g} nm", pitch),
+                         "Give one above 0");
   const int w = tip.z_nm.width(), h = tip.z_nm.height();
   const double rx = pitch_x_nm / tip.pitch_x_nm, ry = pitch_y_nm / tip.pitch_y_nm;
   if ((w / rx + 1) * (h / ry + 1) > 0x1p28)
-    throw InvalidInput("tip", fmt::format("{} x {} samples of {:g} nm are too many at a pitch of {:g} nm", w,
-                                          h, tip.pitch_x_nm, pitch_x_nm), "Cut the tip, or use a coarser pitch");
+    throw InvalidInput("tip",
+                       fmt::format("{} x {} samples of {:g} nm are too many at a pitch of {:g} nm",
+                                   w, h, tip.pitch_x_nm, pitch_x_nm),
+                       "Cut the tip, or use a coarser pitch");
   const Extent ex = extent(w, tip.apex_x, rx), ey = extent(h, tip.apex_y, ry);
   const std::vector<Place> xs = places(ex, w, tip.apex_x, rx), ys = places(ey, h, tip.apex_y, ry);
-  Tip out{Grid<double>(static_cast<int>(xs.size()), static_cast<int>(ys.size())), pitch_x_nm, pitch_y_nm,
-          ex.before, ey.before, tip.doubt};
+  Tip out{Grid<double>(static_cast<int>(xs.size()), static_cast<int>(ys.size())),
+          pitch_x_nm,
+          pitch_y_nm,
+          ex.before,
+          ey.before,
+          tip.doubt};
   constexpr double none = -std::numeric_limits<double>::infinity();
   for (std::size_t y = 0; y < ys.size(); ++y)
     for (std::size_t x = 0; x < xs.size(); ++x) {
@@ -83,17 +92,20 @@ HeightField upsampled(const HeightField& surface, int factor) {
   if (factor < 1 || factor > 32)
     throw InvalidInput("upsample", fmt::format("{} is not in 1 to 32", factor), "2 or 3 is usual");
   if (factor == 1) return surface;
-  const int w = (surface.z_nm.width() - 1) * factor + 1, h = (surface.z_nm.height() - 1) * factor + 1;
-  HeightField out{Grid<double>(w, h), {}, surface.pitch_x_nm / factor, surface.pitch_y_nm / factor,
-                  surface.origin_x_nm, surface.origin_y_nm};
+  const int w = (surface.z_nm.width() - 1) * factor + 1,
+            h = (surface.z_nm.height() - 1) * factor + 1;
+  HeightField out{Grid<double>(w, h),          {},
+                  surface.pitch_x_nm / factor, surface.pitch_y_nm / factor,
+                  surface.origin_x_nm,         surface.origin_y_nm};
   if (!surface.valid.empty()) out.valid = Grid<unsigned char>(w, h, 1);
   const auto sample = [&](int x, int y) {
     return surface.is_valid(x, y) ? surface.z_nm(x, y) : std::numeric_limits<double>::quiet_NaN();
   };
   for (int y = 0; y < h; ++y)
     for (int x = 0; x < w; ++x) {
-      const double z = bilinear(sample, place(static_cast<double>(x) / factor, surface.z_nm.width()),
-                                place(static_cast<double>(y) / factor, surface.z_nm.height()));
+      const double z =
+          bilinear(sample, place(static_cast<double>(x) / factor, surface.z_nm.width()),
+                   place(static_cast<double>(y) / factor, surface.z_nm.height()));
       if (std::isnan(z)) out.valid(x, y) = 0;
       else out.z_nm(x, y) = z;
     }
@@ -110,12 +122,14 @@ bool is_whole(const CubicSample& at, const Grid<double>& z) {
   return true;
 }
 
-/// Replaces the bilinear samples of `fine` by cubic ones where the coarse ones around are all known.
+/// Replaces the bilinear samples of `fine` by cubic ones where the coarse ones around are all
+/// known.
 void smooth_over(const Grid<double>& coarse, int factor, Grid<double>& fine) {
   for (int y = 0; y < fine.height(); ++y)
     for (int x = 0; x < fine.width(); ++x) {
       if (x % factor == 0 && y % factor == 0) continue;
-      const CubicSample at(static_cast<double>(x) / factor, static_cast<double>(y) / factor, coarse.width(), coarse.height());
+      const CubicSample at(static_cast<double>(x) / factor, static_cast<double>(y) / factor,
+                           coarse.width(), coarse.height());
       if (is_whole(at, coarse)) fine(x, y) = at.value(coarse);
     }
 }
@@ -126,7 +140,8 @@ HeightField smoothly_upsampled(const HeightField& surface, int factor) {
   HeightField out = upsampled(surface, factor);
   Grid<double> coarse = surface.z_nm;
   for (std::size_t i = 0; i < coarse.size(); ++i)
-    if (!surface.valid.empty() && !surface.valid.data()[i]) coarse.data()[i] = std::numeric_limits<double>::quiet_NaN();
+    if (!surface.valid.empty() && !surface.valid.data()[i])
+      coarse.data()[i] = std::numeric_limits<double>::quiet_NaN();
   smooth_over(coarse, factor, out.z_nm);
   return out;
 }
@@ -153,18 +168,21 @@ HeightField resampled(const HeightField& surface, double pitch_nm) {
   const double across = std::floor((surface.z_nm.width() - 1) / rx + 1e-9) + 1;
   const double down = std::floor((surface.z_nm.height() - 1) / ry + 1e-9) + 1;
   if (across < 2 || down < 2 || across * down > 0x1p28)
-    throw InvalidInput("height field",
-                       fmt::format("at a pitch of {:g} nm it has {:g} x {:g} samples", pitch_nm, across, down),
-                       "2 x 2 to 2^28 are possible: choose another pitch");
+    throw InvalidInput(
+        "height field",
+        fmt::format("at a pitch of {:g} nm it has {:g} x {:g} samples", pitch_nm, across, down),
+        "2 x 2 to 2^28 are possible: choose another pitch");
   const int w = static_cast<int>(across), h = static_cast<int>(down);
-  HeightField out{Grid<double>(w, h), {}, pitch_nm, pitch_nm, surface.origin_x_nm, surface.origin_y_nm};
+  HeightField out{Grid<double>(w, h), {}, pitch_nm, pitch_nm, surface.origin_x_nm,
+                  surface.origin_y_nm};
   if (!surface.valid.empty()) out.valid = Grid<unsigned char>(w, h, 1);
   const auto sample = [&](int x, int y) {
     return surface.is_valid(x, y) ? surface.z_nm(x, y) : std::numeric_limits<double>::quiet_NaN();
   };
   for (int y = 0; y < h; ++y)
     for (int x = 0; x < w; ++x) {
-      const double z = bilinear(sample, place(x * rx, surface.z_nm.width()), place(y * ry, surface.z_nm.height()));
+      const double z = bilinear(sample, place(x * rx, surface.z_nm.width()),
+                                place(y * ry, surface.z_nm.height()));
       if (std::isnan(z)) out.valid(x, y) = 0;
       else out.z_nm(x, y) = z;
     }

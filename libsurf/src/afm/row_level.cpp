@@ -25,7 +25,8 @@ Offsets medians(const HeightField& field, const Grid<unsigned char>& use) {
   return out;
 }
 
-/// The sum of the steps from the first row that has samples; steps go from each such row to the last one.
+/// The sum of the steps from the first row that has samples; steps go from each such row to the
+/// last one.
 Offsets sums_of_differences(const HeightField& field, const Grid<unsigned char>& use) {
   Offsets out(static_cast<std::size_t>(field.z_nm.height()));
   std::vector<double> steps;
@@ -36,10 +37,12 @@ Offsets sums_of_differences(const HeightField& field, const Grid<unsigned char>&
     for (int x = 0; x < field.z_nm.width(); ++x) {
       if (!is_used(field, use, x, y)) continue;
       any = true;
-      if (last >= 0 && is_used(field, use, x, last)) steps.push_back(field.z_nm(x, y) - field.z_nm(x, last));
+      if (last >= 0 && is_used(field, use, x, last))
+        steps.push_back(field.z_nm(x, y) - field.z_nm(x, last));
     }
     if (!any || (last >= 0 && steps.empty())) continue;
-    out[static_cast<std::size_t>(y)] = last < 0 ? 0 : *out[static_cast<std::size_t>(last)] + median_of(steps);
+    out[static_cast<std::size_t>(y)] =
+        last < 0 ? 0 : *out[static_cast<std::size_t>(last)] + median_of(steps);
     last = y;
   }
   return out;
@@ -50,8 +53,10 @@ double nearest(const Offsets& offsets, int y) {
   const int height = static_cast<int>(offsets.size());
   for (int distance = 0; distance < height; ++distance) {
     const int below = y - distance, above = y + distance;
-    if (below >= 0 && offsets[static_cast<std::size_t>(below)]) return *offsets[static_cast<std::size_t>(below)];
-    if (above < height && offsets[static_cast<std::size_t>(above)]) return *offsets[static_cast<std::size_t>(above)];
+    if (below >= 0 && offsets[static_cast<std::size_t>(below)])
+      return *offsets[static_cast<std::size_t>(below)];
+    if (above < height && offsets[static_cast<std::size_t>(above)])
+      return *offsets[static_cast<std::size_t>(above)];
   }
   return 0;
 }
@@ -60,13 +65,13 @@ double nearest(const Offsets& offsets, int y) {
 
 RowLevel level_rows(HeightField& field, RowMethod method, const Grid<unsigned char>& use) {
   require_field(field, use);
-  const Offsets known = method == RowMethod::median ? medians(field, use) : sums_of_differences(field, use);
+  const Offsets known =
+      method == RowMethod::median ? medians(field, use) : sums_of_differences(field, use);
   RowLevel out;
   std::vector<double> present;
   for (const auto& offset : known)
     if (offset) present.push_back(*offset);
-  if (present.empty())
-    throw InvalidInput("rows", "no sample takes part", "Use more of the image");
+  if (present.empty()) throw InvalidInput("rows", "no sample takes part", "Use more of the image");
   const double level = median_of(present);
   for (int y = 0; y < field.z_nm.height(); ++y) {
     out.rows_without_samples += !known[static_cast<std::size_t>(y)];

@@ -11,9 +11,11 @@ namespace surf {
 /// Throws InvalidInput unless the field is sound and the mask empty or of its size.
 inline void require_field(const HeightField& field, const Grid<unsigned char>& use) {
   validate(field);
-  if (use.empty() || (use.width() == field.z_nm.width() && use.height() == field.z_nm.height())) return;
-  throw InvalidInput("mask", fmt::format("it has {} x {} samples, the heights {} x {}", use.width(), use.height(),
-                                         field.z_nm.width(), field.z_nm.height()),
+  if (use.empty() || (use.width() == field.z_nm.width() && use.height() == field.z_nm.height()))
+    return;
+  throw InvalidInput("mask",
+                     fmt::format("it has {} x {} samples, the heights {} x {}", use.width(),
+                                 use.height(), field.z_nm.width(), field.z_nm.height()),
                      "Give a mask of the same size");
 }
 

@@ -15,17 +15,20 @@ constexpr double most_bins = 1 << 20;
 /// Offsets of all samples for one slope, in bins.
 class Offsets {
  public:
-  explicit Offsets(const Votes& votes) : votes_(votes), residual_(votes.size()), bin_(votes.size()) {}
+  explicit Offsets(const Votes& votes)
+      : votes_(votes), residual_(votes.size()), bin_(votes.size()) {}
 
-  /// Afterwards the most samples in any slab of half height `half` lie in `most_in(bins_per_slab + 1)`
-  /// at most, and in `most_in(bins_per_slab)` at least.
+  /// Afterwards the most samples in any slab of half height `half` lie in `most_in(bins_per_slab +
+  /// 1)` at most, and in `most_in(bins_per_slab)` at least.
   void fill(double a, double b, double half) {
     const auto fa = static_cast<float>(a), fb = static_cast<float>(b);
     const std::size_t n = votes_.size();
-    for (std::size_t i = 0; i < n; ++i) residual_[i] = votes_.z[i] - fa * votes_.u[i] - fb * votes_.v[i];
+    for (std::size_t i = 0; i < n; ++i)
+      residual_[i] = votes_.z[i] - fa * votes_.u[i] - fb * votes_.v[i];
     const auto [lowest, highest] = range();
     lowest_ = lowest;
-    height_ = std::max(2 * half / bins_per_slab, (static_cast<double>(highest) - lowest) / most_bins);
+    height_ =
+        std::max(2 * half / bins_per_slab, (static_cast<double>(highest) - lowest) / most_bins);
     const auto bins = static_cast<std::int32_t>((highest - lowest) / height_) + 2;
     counts_.assign(static_cast<std::size_t>(bins) + bins_per_slab + 1, 0);
     const auto per_nm = static_cast<float>(1 / height_);
@@ -43,7 +46,8 @@ class Offsets {
       if (i >= width) sum -= counts_[i - width];
       if (sum > most) most = sum, at = i;
     }
-    return {most, lowest_ + (static_cast<double>(at) + 1 - 0.5 * static_cast<double>(width)) * height_};
+    return {most,
+            lowest_ + (static_cast<double>(at) + 1 - 0.5 * static_cast<double>(width)) * height_};
   }
 
  private:
@@ -96,8 +100,9 @@ SlopedPlane count_votes(const Votes& votes, double a, double b, double tolerance
   return count(offsets, a, b, tolerance);
 }
 
-SlopedPlane search_slopes(const Votes& votes, const SlopeSearch& search, const std::vector<SlopedPlane>& known,
-                          std::size_t& evaluated, bool& complete) {
+SlopedPlane search_slopes(const Votes& votes, const SlopeSearch& search,
+                          const std::vector<SlopedPlane>& known, std::size_t& evaluated,
+                          bool& complete) {
   Offsets offsets(votes);
   SlopedPlane best = count(offsets, 0, 0, search.tolerance);
   for (const SlopedPlane& k : known) {
@@ -124,7 +129,8 @@ SlopedPlane search_slopes(const Votes& votes, const SlopeSearch& search, const s
         const SlopedPlane here = count(offsets, a, b, search.tolerance);
         if (here.votes > best.votes) best = here;
         ++done;
-        if (4 * half <= search.tolerance) continue;   // the corner of the box is off by 2 half: fine enough
+        if (4 * half <= search.tolerance)
+          continue;  // the corner of the box is off by 2 half: fine enough
         offsets.fill(a, b, search.tolerance + 2 * half);
         ++done;
         const std::size_t bound = std::min(box.bound, offsets.most_in(bins_per_slab + 1).first);

@@ -8,7 +8,8 @@
 
 namespace surf {
 
-/// Samples to vote: places in [-1, 1] across the image, heights in nm about a plane that fits roughly.
+/// Samples to vote: places in [-1, 1] across the image, heights in nm about a plane that fits
+/// roughly.
 struct Votes {
   std::vector<float> u, v, z;
   std::size_t size() const { return z.size(); }
@@ -16,23 +17,24 @@ struct Votes {
 
 /// z = offset + a u + b v.
 struct SlopedPlane {
-  double a = 0, b = 0, offset = 0;   // nm from the centre to the edge
+  double a = 0, b = 0, offset = 0;  // nm from the centre to the edge
   std::size_t votes = 0;
 };
 
 struct SlopeSearch {
-  double tolerance = 1;        // nm, half the slab
-  double largest_slope = 1;    // nm from the centre to the edge: of |a| and |b|
-  double slack = 0;            // share of votes by which a better plane may be missed
-  std::size_t limit = 1;       // planes to count at most
-  Watch watch;                 // its token alone
+  double tolerance = 1;      // nm, half the slab
+  double largest_slope = 1;  // nm from the centre to the edge: of |a| and |b|
+  double slack = 0;          // share of votes by which a better plane may be missed
+  std::size_t limit = 1;     // planes to count at most
+  Watch watch;               // its token alone
 };
 
-/// The plane with most votes within the tolerance, to within the height of a bin, an eighth of the slab.
-/// `known` are planes to begin with. Adds what was counted to `evaluated` and clears `complete` at the
-/// limit.
-SlopedPlane search_slopes(const Votes& votes, const SlopeSearch& search, const std::vector<SlopedPlane>& known,
-                          std::size_t& evaluated, bool& complete);
+/// The plane with most votes within the tolerance, to within the height of a bin, an eighth of the
+/// slab. `known` are planes to begin with. Adds what was counted to `evaluated` and clears
+/// `complete` at the limit.
+SlopedPlane search_slopes(const Votes& votes, const SlopeSearch& search,
+                          const std::vector<SlopedPlane>& known, std::size_t& evaluated,
+                          bool& complete);
 
 /// The best offset for given slopes, and its votes.
 SlopedPlane count_votes(const Votes& votes, double a, double b, double tolerance);

@@ -12,14 +12,16 @@
 namespace surf {
 namespace {
 
-constexpr std::size_t terms = 4;   // level, step, slope along x, slope along y
+constexpr std::size_t terms = 4;  // level, step, slope along x, slope along y
 using Row = std::array<double, terms>;
 
 class Regions {
  public:
-  Regions(const HeightField& field, const Grid<unsigned char>& first, const Grid<unsigned char>& second)
+  Regions(const HeightField& field, const Grid<unsigned char>& first,
+          const Grid<unsigned char>& second)
       : field_(field), first_(first), second_(second),
-        half_x_(std::max(1.0, 0.5 * (field.z_nm.width() - 1))), half_y_(std::max(1.0, 0.5 * (field.z_nm.height() - 1))) {}
+        half_x_(std::max(1.0, 0.5 * (field.z_nm.width() - 1))),
+        half_y_(std::max(1.0, 0.5 * (field.z_nm.height() - 1))) {}
 
   /// What multiplies the parameters at a sample; false if it is in neither region.
   bool row(int x, int y, Row& row) const {
@@ -27,7 +29,8 @@ class Regions {
     const bool in_first = first_(x, y), in_second = second_(x, y);
     if (!in_first && !in_second) return false;
     if (in_first && in_second)
-      throw InvalidInput("step", fmt::format("the regions overlap at column {}, row {}", x, y), "Keep them apart");
+      throw InvalidInput("step", fmt::format("the regions overlap at column {}, row {}", x, y),
+                         "Keep them apart");
     row = {1, in_second ? 1.0 : 0.0, x / half_x_ - 1, y / half_y_ - 1};
     return true;
   }
@@ -55,7 +58,7 @@ double dot(const Row& a, const Row& b) {
 }
 
 struct Fit {
-  std::vector<double> factor;   // Cholesky factor of X'X
+  std::vector<double> factor;  // Cholesky factor of X'X
   Row values{};
   double reference_nm = 0;
   std::size_t samples = 0;
@@ -75,20 +78,25 @@ Fit fit(const HeightField& field, const Regions& regions) {
     }
   });
   if (in_second == 0 || in_second == static_cast<double>(f.samples))
-    throw InvalidInput("step", in_second == 0 ? "the second region holds no samples" : "the first region holds no samples",
-                       "Place it over the image, away from holes");
+    throw InvalidInput(
+        "step",
+        in_second == 0 ? "the second region holds no samples" : "the first region holds no samples",
+        "Place it over the image, away from holes");
   if (f.samples <= terms || !solve_cholesky(f.factor, right))
-    throw InvalidInput("step", "the regions do not determine a tilt and a step", "Make them larger in both directions");
+    throw InvalidInput("step", "the regions do not determine a tilt and a step",
+                       "Make them larger in both directions");
   std::copy(right.begin(), right.end(), f.values.begin());
   return f;
 }
 
-/// X' R X for R = alpha^|i - j| within rows, by a running sum from the left and what it owes to the right.
-std::vector<double> correlated_squares(const HeightField& field, const Regions& regions, double alpha) {
+/// X' R X for R = alpha^|i - j| within rows, by a running sum from the left and what it owes to the
+/// right.
+std::vector<double> correlated_squares(const HeightField& field, const Regions& regions,
+                                       double alpha) {
   std::vector<double> out(terms * terms, 0.0);
   Row row;
   for (int y = 0; y < field.z_nm.height(); ++y) {
-    Row before{};   // sum over samples to the left of alpha^distance times their rows
+    Row before{};  // sum over samples to the left of alpha^distance times their rows
     for (int x = 0; x < field.z_nm.width(); ++x) {
       for (double& b : before) b *= alpha;
       if (!regions.row(x, y, row)) continue;
@@ -101,7 +109,8 @@ std::vector<double> correlated_squares(const HeightField& field, const Regions& 
   return out;
 }
 
-void measure_residuals(const HeightField& field, const Regions& regions, const Fit& f, StepHeight& s) {
+void measure_residuals(const HeightField& field, const Regions& regions, const Fit& f,
+                       StepHeight& s) {
   double squares = 0, products = 0;
   std::size_t pairs = 0;
   int last_x = -2, last_y = -1;
@@ -114,7 +123,9 @@ void measure_residuals(const HeightField& field, const Regions& regions, const F
   });
   s.residual_nm = std::sqrt(squares / static_cast<double>(f.samples));
   if (pairs && squares > 0)
-    s.alpha = std::clamp(products / static_cast<double>(pairs) / (squares / static_cast<double>(f.samples)), -0.99, 0.99);
+    s.alpha = std::clamp(
+        products / static_cast<double>(pairs) / (squares / static_cast<double>(f.samples)), -0.99,
+        0.99);
 }
 
 }  // namespace

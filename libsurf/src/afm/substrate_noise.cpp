@@ -14,7 +14,8 @@ constexpr double most_tolerances = 3;
 constexpr int most_turns = 20;
 
 /// Marks what is within `limit` of 0 and returns its root mean square.
-double mark(const HeightField& residual, const Grid<unsigned char>& use, double limit, Grid<unsigned char>& mask) {
+double mark(const HeightField& residual, const Grid<unsigned char>& use, double limit,
+            Grid<unsigned char>& mask) {
   double squares = 0, count = 0;
   for (int y = 0; y < mask.height(); ++y) {
     for (int x = 0; x < mask.width(); ++x) {

@@ -24,7 +24,8 @@ void validate(const Tip& tip, const char* subject) {
     for (int x = 0; x < z.width(); ++x)
       if (!(z(x, y) <= 0)) refuse(fmt::format("sample ({}, {}) is {:g} nm", x, y, z(x, y)));
   for (const double pitch : {tip.pitch_x_nm, tip.pitch_y_nm})
-    if (!(pitch > 0 && std::isfinite(pitch))) refuse(fmt::format("a pitch of {:g} nm is impossible", pitch));
+    if (!(pitch > 0 && std::isfinite(pitch)))
+      refuse(fmt::format("a pitch of {:g} nm is impossible", pitch));
 }
 
 Tip reflected(const Tip& tip) {

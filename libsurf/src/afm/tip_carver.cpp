@@ -5,7 +5,8 @@
 #include <cmath>
 #include <limits>
 
-// Loops over rows of 16 floats: the compiler makes a version of each for the vectors of several processors.
+// Loops over rows of 16 floats: the compiler makes a version of each for the vectors of several
+// processors.
 #define SURF_VECTORS __attribute__((target_clones("avx512f", "avx2", "default")))
 
 namespace surf {
@@ -13,13 +14,13 @@ namespace surf {
 namespace {
 
 constexpr float infinity = std::numeric_limits<float>::infinity();
-constexpr int lanes = 16;   // of the widest vectors
+constexpr int lanes = 16;  // of the widest vectors
 
 float largest(const float* of_lanes) { return *std::max_element(of_lanes, of_lanes + lanes); }
 
 // allowed = max(allowed, scan + offset).
-SURF_VECTORS void allow(float* __restrict allowed, const float* __restrict scan, float offset, int rows,
-                        int stride, std::ptrdiff_t scan_stride) {
+SURF_VECTORS void allow(float* __restrict allowed, const float* __restrict scan, float offset,
+                        int rows, int stride, std::ptrdiff_t scan_stride) {
   for (int j = 0; j < rows; ++j, allowed += stride, scan += scan_stride)
     for (int i = 0; i < stride; ++i) {
       const float v = scan[i] + offset;
@@ -35,7 +36,7 @@ SURF_VECTORS float excess(const float* __restrict tip, const float* __restrict t
   for (int k = 0; k < count; k += lanes)
     for (int l = 0; l < lanes; ++l) {
       const float v = tip[k + l] - threshold[k + l] - allowed[k + l];
-      most[l] = v > most[l] ? v : most[l];   // not where v is NaN
+      most[l] = v > most[l] ? v : most[l];  // not where v is NaN
     }
   return largest(most);
 }
@@ -45,16 +46,19 @@ SURF_VECTORS int place_of_excess(const float* __restrict tip, const float* __res
                                  const float* __restrict allowed, float value) {
   for (int k = 0;; k += lanes) {
     int equal = 0;
-    for (int l = 0; l < lanes; ++l) equal += tip[k + l] - threshold[k + l] - allowed[k + l] == value;
+    for (int l = 0; l < lanes; ++l)
+      equal += tip[k + l] - threshold[k + l] - allowed[k + l] == value;
     if (equal == 0) continue;
     while (!(tip[k] - threshold[k] - allowed[k] == value)) ++k;
     return k;
   }
 }
 
-// ways = tip - here where scan + tip - here >= -tolerance, else -infinity; rows of the scan run downwards.
-SURF_VECTORS void find(float* __restrict ways, const float* __restrict tip, const float* __restrict scan,
-                       float here, float tolerance, int rows, int stride, std::ptrdiff_t scan_stride) {
+// ways = tip - here where scan + tip - here >= -tolerance, else -infinity; rows of the scan run
+// downwards.
+SURF_VECTORS void find(float* __restrict ways, const float* __restrict tip,
+                       const float* __restrict scan, float here, float tolerance, int rows,
+                       int stride, std::ptrdiff_t scan_stride) {
   for (int j = 0; j < rows; ++j, ways += stride, tip += stride, scan -= scan_stride)
     for (int i = 0; i < stride; ++i) {
       const float offset = tip[i] - here;
@@ -69,22 +73,22 @@ SURF_VECTORS int number_of(const float* ways, int count) {
 }
 
 // The largest of ways + scan.
-SURF_VECTORS float best_of(const float* __restrict ways, const float* __restrict scan, int rows, int stride,
-                           std::ptrdiff_t scan_stride) {
+SURF_VECTORS float best_of(const float* __restrict ways, const float* __restrict scan, int rows,
+                           int stride, std::ptrdiff_t scan_stride) {
   float most[lanes];
   for (float& m : most) m = -infinity;
   for (int j = 0; j < rows; ++j, ways += stride, scan -= scan_stride)
     for (int k = 0; k < stride; k += lanes)
       for (int l = 0; l < lanes; ++l) {
         const float v = scan[k + l] + ways[k + l];
-        most[l] = v > most[l] ? v : most[l];   // not where v is NaN
+        most[l] = v > most[l] ? v : most[l];  // not where v is NaN
       }
   return largest(most);
 }
 
 // Where that is.
-SURF_VECTORS int place_of_best(const float* __restrict ways, const float* __restrict scan, int stride,
-                               std::ptrdiff_t scan_stride, float value) {
+SURF_VECTORS int place_of_best(const float* __restrict ways, const float* __restrict scan,
+                               int stride, std::ptrdiff_t scan_stride, float value) {
   for (int first = 0;; first += stride, scan -= scan_stride)
     for (int i = 0; i < stride; i += lanes) {
       int equal = 0;
@@ -98,9 +102,10 @@ SURF_VECTORS int place_of_best(const float* __restrict ways, const float* __rest
 }  // namespace
 
 CarvedScan::CarvedScan(const Grid<float>& heights, double layer, int tip_width, int tip_height)
-    : width_(heights.width()), height_(heights.height()), margin_x_(tip_width + lanes), margin_y_(tip_height),
-      stride_(width_ + 2 * margin_x_) {
-  top_.assign(static_cast<std::size_t>(stride_) * static_cast<std::size_t>(height_ + 2 * margin_y_), infinity);
+    : width_(heights.width()), height_(heights.height()), margin_x_(tip_width + lanes),
+      margin_y_(tip_height), stride_(width_ + 2 * margin_x_) {
+  top_.assign(static_cast<std::size_t>(stride_) * static_cast<std::size_t>(height_ + 2 * margin_y_),
+              infinity);
   bottom_.assign(top_.size(), -infinity);
   for (int y = 0; y < height_; ++y)
     for (int x = 0; x < width_; ++x) {
@@ -114,11 +119,12 @@ CarvedScan::CarvedScan(const Grid<float>& heights, double layer, int tip_width, 
 void TipCarver::carve(const CarvedScan& scan, int x, int y, const CarvedTip& tip,
                       std::vector<float>& demand) {
   ways_.resize(tip.z.size());
-  find(ways_.data(), tip.mirrored.data(), scan.top(x + tip.apex_x - (tip.width - 1), y + tip.apex_y),
-       scan.bottom(x, y), tip.apex_tolerance, tip.height, tip.stride, scan.stride());
+  find(ways_.data(), tip.mirrored.data(),
+       scan.top(x + tip.apex_x - (tip.width - 1), y + tip.apex_y), scan.bottom(x, y),
+       tip.apex_tolerance, tip.height, tip.stride, scan.stride());
   const int count = tip.height * tip.stride;
   allowed_.assign(static_cast<std::size_t>(count), -infinity);
-  const auto try_way = [&](int i, int j, float offset) {   // the tip touches with its sample (i, j)
+  const auto try_way = [&](int i, int j, float offset) {  // the tip touches with its sample (i, j)
     allow(allowed_.data(), scan.top(x - i, y - j), offset, tip.height, tip.stride, scan.stride());
   };
   constexpr int few = 24;
@@ -131,16 +137,16 @@ void TipCarver::carve(const CarvedScan& scan, int x, int y, const CarvedTip& tip
         demand[k] = std::min(demand[k], allowed_[k] + tip.threshold[k]);
     return;
   }
-  // Of many ways few are needed: the sample that those so far allow the least is given the way that allows
-  // it the most. Where that is not enough, no way is, and its demand is known.
+  // Of many ways few are needed: the sample that those so far allow the least is given the way that
+  // allows it the most. Where that is not enough, no way is, and its demand is known.
   for (;;) {
     const float worst = excess(tip.z.data(), tip.threshold.data(), allowed_.data(), count);
     if (!(worst > 0)) return;
     const int k = place_of_excess(tip.z.data(), tip.threshold.data(), allowed_.data(), worst);
     const int u = k % tip.stride, v = k / tip.stride;
-    const float* around = scan.top(x - (tip.width - 1) + u, y + v);   // of mirrored sample (0, 0)
+    const float* around = scan.top(x - (tip.width - 1) + u, y + v);  // of mirrored sample (0, 0)
     const float best = best_of(ways_.data(), around, tip.height, tip.stride, scan.stride());
-    if (best == -infinity) return;   // no way at all
+    if (best == -infinity) return;  // no way at all
     const auto at = static_cast<std::size_t>(k);
     if (best < tip.z[at] - tip.threshold[at]) {
       demand[at] = std::min(demand[at], best + tip.threshold[at]);
@@ -148,7 +154,7 @@ void TipCarver::carve(const CarvedScan& scan, int x, int y, const CarvedTip& tip
       continue;
     }
     const int w = place_of_best(ways_.data(), around, tip.stride, scan.stride(), best);
-    if (best == infinity) allowed_[at] = infinity;   // beyond the border: all that is there
+    if (best == infinity) allowed_[at] = infinity;  // beyond the border: all that is there
     try_way(tip.width - 1 - w % tip.stride, w / tip.stride, ways_[static_cast<std::size_t>(w)]);
   }
 }

@@ -8,8 +8,8 @@
 
 namespace surf {
 
-/// A scan made ready for tips: heights as floats, between a bottom that places tips and a top that carves
-/// them, with a margin in which everything is allowed.
+/// A scan made ready for tips: heights as floats, between a bottom that places tips and a top that
+/// carves them, with a margin in which everything is allowed.
 class CarvedScan {
  public:
   /// Heights that are not finite are holes. `layer` is added to the top and taken from the bottom.
@@ -36,16 +36,17 @@ class CarvedScan {
 /// A tip's samples in rows of `stride` floats, -infinity beyond its width.
 struct CarvedTip {
   int width = 0, height = 0, apex_x = 0, apex_y = 0;
-  int stride = 0;                     ///< a multiple of 16
-  std::vector<float> z, threshold;    ///< of a sample: lowered only by more than that
-  std::vector<float> mirrored;        ///< z with each row backwards: as the scan runs where samples touch
+  int stride = 0;                   ///< a multiple of 16
+  std::vector<float> z, threshold;  ///< of a sample: lowered only by more than that
+  std::vector<float> mirrored;  ///< z with each row backwards: as the scan runs where samples touch
   float apex_tolerance = 0;
 
   /// Sets a sample, k = row * stride + column.
   void lower(std::size_t k, float value) {
     z[k] = value;
     const auto row = k - k % static_cast<std::size_t>(stride);
-    mirrored[row + static_cast<std::size_t>(width - 1) - k % static_cast<std::size_t>(stride)] = value;
+    mirrored[row + static_cast<std::size_t>(width - 1) - k % static_cast<std::size_t>(stride)] =
+        value;
   }
   float at(int i, int j) const { return z[static_cast<std::size_t>(j * stride + i)]; }
 };
@@ -53,14 +54,15 @@ struct CarvedTip {
 /// What one point of a scan demands of a tip.
 class TipCarver {
  public:
-  /// Lowers `demand` (like the tip's samples) to what point (x, y) allows, where that is below the tip by
-  /// more than its threshold.
-  void carve(const CarvedScan& scan, int x, int y, const CarvedTip& tip, std::vector<float>& demand);
+  /// Lowers `demand` (like the tip's samples) to what point (x, y) allows, where that is below the
+  /// tip by more than its threshold.
+  void carve(const CarvedScan& scan, int x, int y, const CarvedTip& tip,
+             std::vector<float>& demand);
 
  private:
   // Of each sample that can touch: tip - scan(x, y), or -infinity where the apex would stick out.
   std::vector<float> ways_;
-  std::vector<float> allowed_;   // by the ways tried so far
+  std::vector<float> allowed_;  // by the ways tried so far
 };
 
 }  // namespace surf

@@ -12,10 +12,10 @@ namespace surf {
 namespace {
 
 constexpr float infinity = std::numeric_limits<float>::infinity();
-constexpr double cost = 2;     // of a free pixel, in units of the misfit (Stein, Akaike)
-constexpr int between_contacts = 4;    // steps along the same contacts
-constexpr int between_thinning = 16;   // pixels taken away too early leave the tip blunt
-constexpr double step = 0.5;   // of the way to where the pixels in contact would have their mean
+constexpr double cost = 2;            // of a free pixel, in units of the misfit (Stein, Akaike)
+constexpr int between_contacts = 4;   // steps along the same contacts
+constexpr int between_thinning = 16;  // pixels taken away too early leave the tip blunt
+constexpr double step = 0.5;  // of the way to where the pixels in contact would have their mean
 
 // Where surface + offset is above what is made, it is made by `sample`, and what was is next.
 __attribute__((target_clones("avx512f", "avx2", "default"))) void raise(
@@ -54,8 +54,9 @@ TipFit::TipFit(const std::vector<HeightField>& scans, const AfmNoise& noise, con
     f.next.resize(area);
     f.touching.resize(area);
     f.next_touching.resize(area);
-    f.surface.assign(static_cast<std::size_t>(f.stride) * static_cast<std::size_t>(f.height + 2 * below_),
-                     infinity);
+    f.surface.assign(
+        static_cast<std::size_t>(f.stride) * static_cast<std::size_t>(f.height + 2 * below_),
+        infinity);
     for (int y = 0; y < f.height; ++y)
       for (int x = 0; x < f.width; ++x) {
         const auto k = static_cast<std::size_t>(y * f.row + x);
@@ -84,7 +85,8 @@ void TipFit::dilate(Frame& f) const {
     for (std::size_t s = 0; s < samples_.size(); ++s)
       raise(&f.made[row], &f.next[row], &f.touching[row], &f.next_touching[row],
             &f.surface[static_cast<std::size_t>(surface_at(f, 0, y, samples_[s]))],
-            static_cast<float>(tip_.z_nm(samples_[s].i, samples_[s].j)), static_cast<std::int32_t>(s), f.row);
+            static_cast<float>(tip_.z_nm(samples_[s].i, samples_[s].j)),
+            static_cast<std::int32_t>(s), f.row);
   }
 }
 
@@ -92,9 +94,10 @@ void TipFit::dilate(Frame& f) const {
 void TipFit::thin(Frame& f) const {
   const double of_v = (1 + noise_.alpha * noise_.alpha) / noise_.innovation_nm2;
   std::vector<float> gain(f.surface.size(), 0);
-  std::vector<std::uint8_t> needed(f.surface.size(), 0);   // by one that is taken away
+  std::vector<std::uint8_t> needed(f.surface.size(), 0);  // by one that is taken away
   const auto at = [&](int x, int y, std::int32_t sample) {
-    return static_cast<std::size_t>(surface_at(f, x, y, samples_[static_cast<std::size_t>(sample)]));
+    return static_cast<std::size_t>(
+        surface_at(f, x, y, samples_[static_cast<std::size_t>(sample)]));
   };
   const auto each_pixel = [&](const auto& look) {
     for (int y = 0; y < f.height; ++y)
@@ -116,8 +119,8 @@ void TipFit::thin(Frame& f) const {
     const std::size_t own = at(x, y, f.touching[k]);
     if (needed[own] & 1) return;
     const std::size_t other = at(x, y, f.next_touching[k]);
-    if (needed[own] & 2) return;          // another's place is taken by it
-    if (needed[other] & 4) {              // its own place would be taken by one that goes
+    if (needed[own] & 2) return;  // another's place is taken by it
+    if (needed[other] & 4) {      // its own place would be taken by one that goes
       needed[own] |= 1;
       return;
     }
@@ -155,7 +158,7 @@ void TipFit::pull(Frame& f, std::vector<double>& slope) {
       valid(x, y) = std::isfinite(f.scan[k]) && f.touching[k] >= 0;
       residual(x, y) = valid(x, y) ? f.made[k] - f.scan[k] : 0;
     }
-  log_likelihood(residual, noise_, valid, &gradient);   // its derivative is -R^-1 e
+  log_likelihood(residual, noise_, valid, &gradient);  // its derivative is -R^-1 e
   for (std::size_t k = 0; k < residual.size(); ++k)
     misfit_ -= residual.data()[k] * gradient.data()[k];
   surface_slope_.assign(f.surface.size(), 0);
@@ -173,7 +176,8 @@ void TipFit::pull(Frame& f, std::vector<double>& slope) {
   const double curvature = (1 + noise_.alpha * noise_.alpha) / noise_.innovation_nm2;
   for (std::size_t k = 0; k < f.surface.size(); ++k)
     if (surface_weight_[k] > 0) {
-      f.surface[k] -= static_cast<float>(step * surface_slope_[k] / (curvature * surface_weight_[k]));
+      f.surface[k] -=
+          static_cast<float>(step * surface_slope_[k] / (curvature * surface_weight_[k]));
       freedom_ += 1;
     }
 }
@@ -182,7 +186,7 @@ void TipFit::iterate(int times) {
   const double sigma = std::sqrt(noise_.variance_nm2());
   const double curvature = (1 + noise_.alpha * noise_.alpha) / noise_.innovation_nm2;
   std::vector<double> slope(samples_.size());
-  for (int n = 0; n <= times; ++n) {   // the last round only looks
+  for (int n = 0; n <= times; ++n) {  // the last round only looks
     std::fill(slope.begin(), slope.end(), 0.0);
     contacts_.assign(samples_.size(), 0);
     misfit_ = freedom_ = 0;
@@ -197,7 +201,8 @@ void TipFit::iterate(int times) {
     if (n == times) break;
     for (std::size_t s = 0; s < samples_.size(); ++s) {
       double& z = tip_.z_nm(samples_[s].i, samples_[s].j);
-      const double weight = curvature * static_cast<double>(std::max<std::int64_t>(contacts_[s], 1));
+      const double weight =
+          curvature * static_cast<double>(std::max<std::int64_t>(contacts_[s], 1));
       z = std::min(0.0, z - std::clamp(step * (slope[s] - 1 / sigma) / weight, -sigma, sigma));
     }
     tip_.z_nm(tip_.apex_x, tip_.apex_y) = 0;
@@ -213,8 +218,8 @@ double TipFit::risk_when_thinned() const {
 }
 
 Grid<double> TipFit::standard_errors() const {
-  // A pixel in contact tells the sum of the surface and the tip there; with as many free surface pixels as
-  // there are, the variance of each is the noise's.
+  // A pixel in contact tells the sum of the surface and the tip there; with as many free surface
+  // pixels as there are, the variance of each is the noise's.
   Grid<double> out(tip_.z_nm.width(), tip_.z_nm.height(), std::numeric_limits<double>::infinity());
   for (std::size_t s = 0; s < samples_.size(); ++s)
     if (contacts_[s] > 0)

@@ -9,8 +9,8 @@
 
 namespace surf {
 
-/// A tip and the surfaces under it, fitted to scans: see best_tip.h. The surfaces reach beyond the scans by
-/// as much as the tip.
+/// A tip and the surfaces under it, fitted to scans: see best_tip.h. The surfaces reach beyond the
+/// scans by as much as the tip.
 class TipFit {
  public:
   TipFit() = default;
@@ -22,25 +22,29 @@ class TipFit {
   void iterate(int times);
 
   const Tip& tip() const { return tip_; }
-  double misfit() const { return misfit_; }     ///< per pixel
-  double freedom() const { return freedom_; }   ///< touched surface pixels per pixel
+  double misfit() const { return misfit_; }    ///< per pixel
+  double freedom() const { return freedom_; }  ///< touched surface pixels per pixel
   double risk() const { return misfit_ + 2 * freedom_; }
   /// The same after surface pixels are taken away that gain too little.
   double risk_when_thinned() const;
-  /// Of each sample of the tip, by the number of pixels it touches in: infinity where there is none.
+  /// Of each sample of the tip, by the number of pixels it touches in: infinity where there is
+  /// none.
   Grid<double> standard_errors() const;
 
  private:
   struct Frame {
-    int width, height;                 // of the scan
-    int row;                           // its width, rounded up to whole vectors
-    std::ptrdiff_t stride;             // of the surface, which has the tip's margin
-    std::vector<float> scan;           // NaN: a hole
-    std::vector<float> surface;        // -infinity: not under any pixel
-    std::vector<float> made, next;     // the dilation, and what it would be without the pixel in contact
-    std::vector<std::int32_t> touching, next_touching;   // sample of the tip
+    int width, height;           // of the scan
+    int row;                     // its width, rounded up to whole vectors
+    std::ptrdiff_t stride;       // of the surface, which has the tip's margin
+    std::vector<float> scan;     // NaN: a hole
+    std::vector<float> surface;  // -infinity: not under any pixel
+    std::vector<float> made,
+        next;  // the dilation, and what it would be without the pixel in contact
+    std::vector<std::int32_t> touching, next_touching;  // sample of the tip
   };
-  struct Sample { int i, j; };         // of the tip, that can touch anything
+  struct Sample {
+    int i, j;
+  };  // of the tip, that can touch anything
 
   void dilate(Frame& frame) const;
   void follow(Frame& frame) const;
@@ -53,11 +57,11 @@ class TipFit {
 
   AfmNoise noise_;
   Tip tip_;
-  int left_ = 0, below_ = 0;           // margins
+  int left_ = 0, below_ = 0;  // margins
   std::vector<Frame> frames_;
   std::vector<Sample> samples_;
   std::vector<double> surface_slope_, surface_weight_;
-  std::vector<std::int64_t> contacts_;   // per sample
+  std::vector<std::int64_t> contacts_;  // per sample
   double misfit_ = 0, freedom_ = 0;
   double pixels_ = 0;
 };

@@ -29,7 +29,8 @@ std::vector<Sample> end_of(const Tip& tip, double depth) {
   while (!open.empty()) {
     const auto [x, y] = open.back();
     open.pop_back();
-    out.push_back({(x - tip.apex_x) * tip.pitch_x_nm, (y - tip.apex_y) * tip.pitch_y_nm, tip.z_nm(x, y)});
+    out.push_back(
+        {(x - tip.apex_x) * tip.pitch_x_nm, (y - tip.apex_y) * tip.pitch_y_nm, tip.z_nm(x, y)});
     for (int v = std::max(0, y - 1); v <= std::min(y + 1, tip.z_nm.height() - 1); ++v)
       for (int u = std::max(0, x - 1); u <= std::min(x + 1, tip.z_nm.width() - 1); ++u)
         if (!seen(u, v) && tip.z_nm(u, v) >= -depth) {
@@ -94,8 +95,9 @@ void fit_paraboloid(const std::vector<Sample>& samples, TipMeasures& out) {
   }
   std::array<double, 6> c{};
   if (samples.size() < 6 || !solve(rows, depth, c))
-    throw InvalidInput("tip", fmt::format("its {} samples at the apex do not determine a radius", samples.size()),
-                       "Fit deeper, or use a tip with more pixels");
+    throw InvalidInput(
+        "tip", fmt::format("its {} samples at the apex do not determine a radius", samples.size()),
+        "Fit deeper, or use a tip with more pixels");
   double sum = 0;
   for (std::size_t i = 0; i < rows.size(); ++i) {
     double left = -depth[i];
@@ -120,7 +122,7 @@ void fit_sphere(const std::vector<Sample>& samples, TipMeasures& out) {
   }
   std::array<double, 4> c{};
   out.sphere_radius_nm = std::numeric_limits<double>::infinity();
-  if (!solve(rows, squares, c)) return;   // flat
+  if (!solve(rows, squares, c)) return;  // flat
   const double cx = c[1] / 2, cy = c[2] / 2, cd = c[3] / 2;
   const double square = c[0] + cx * cx + cy * cy + cd * cd;
   if (!(square > 0)) return;
@@ -155,7 +157,8 @@ void fit_cone(const Tip& tip, double from, double to, TipMeasures& out) {
     const double depth = from + (to - from) * (i + 0.5) / levels;
     const auto inside = std::count_if(tip.z_nm.data().begin(), tip.z_nm.data().end(),
                                       [&](double z) { return z >= -depth; });
-    const double radius = std::sqrt(static_cast<double>(inside) * tip.pitch_x_nm * tip.pitch_y_nm / std::numbers::pi);
+    const double radius =
+        std::sqrt(static_cast<double>(inside) * tip.pitch_x_nm * tip.pitch_y_nm / std::numbers::pi);
     rows.push_back({1, depth});
     radii.push_back(radius);
   }
@@ -170,7 +173,8 @@ void fit_cone(const Tip& tip, double from, double to, TipMeasures& out) {
 void check(const TipMeasureOptions& o) {
   for (const double depth : {o.fit_depth_nm, o.cone_from_nm, o.cone_to_nm})
     if (!(depth >= 0 && std::isfinite(depth)))
-      throw InvalidInput("tip", fmt::format("a depth of {:g} nm cannot be fitted", depth), "Give 0 nm or more");
+      throw InvalidInput("tip", fmt::format("a depth of {:g} nm cannot be fitted", depth),
+                         "Give 0 nm or more");
 }
 
 }  // namespace
@@ -185,14 +189,16 @@ TipMeasures measure_tip(const Tip& tip, const TipMeasureOptions& options) {
   fit_paraboloid(samples, out);
   fit_sphere(samples, out);
   const bool automatic = options.cone_from_nm == 0 && options.cone_to_nm == 0;
-  fit_cone(tip, automatic ? out.fit_depth_nm : options.cone_from_nm, automatic ? rim_depth(tip) : options.cone_to_nm, out);
+  fit_cone(tip, automatic ? out.fit_depth_nm : options.cone_from_nm,
+           automatic ? rim_depth(tip) : options.cone_to_nm, out);
   return out;
 }
 
 double tip_volume_nm3(const Tip& tip, double depth_nm) {
   validate(tip);
   if (!(depth_nm > 0 && std::isfinite(depth_nm)))
-    throw InvalidInput("tip", fmt::format("there is no volume within {:g} nm", depth_nm), "Give a depth above 0 nm");
+    throw InvalidInput("tip", fmt::format("there is no volume within {:g} nm", depth_nm),
+                       "Give a depth above 0 nm");
   double sum = 0;
   for (const double z : tip.z_nm.data()) sum += std::max(0.0, z + depth_nm);
   return sum * tip.pitch_x_nm * tip.pitch_y_nm;

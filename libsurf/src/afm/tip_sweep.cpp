@@ -17,17 +17,19 @@ namespace surf {
 
 namespace {
 
-constexpr double peak_share = 1e-3;      // of the residuals
-constexpr double as_near = 1.1;         // times the least excess
-constexpr double too_much = 6;           // even of the least excess
-constexpr double smooths = 0.6;          // of the most noise that any tip's opening takes away
-constexpr double near_jump = 0.1;        // share of the thresholds between choice and jump that counts as near
+constexpr double peak_share = 1e-3;  // of the residuals
+constexpr double as_near = 1.1;      // times the least excess
+constexpr double too_much = 6;       // even of the least excess
+constexpr double smooths = 0.6;      // of the most noise that any tip's opening takes away
+constexpr double near_jump =
+    0.1;  // share of the thresholds between choice and jump that counts as near
 
 void check(const TipSweepOptions& o) {
   validate(o.noise);
   if (!(o.least_nm >= 0 && o.most_nm >= o.least_nm && std::isfinite(o.most_nm)) ||
       (o.most_nm > 0 && o.most_nm == o.least_nm))
-    throw UsageError("thresholds", fmt::format("{:g} to {:g} nm is no range", o.least_nm, o.most_nm),
+    throw UsageError("thresholds",
+                     fmt::format("{:g} to {:g} nm is no range", o.least_nm, o.most_nm),
                      "Give the smaller first");
   if (o.thresholds < 2 || o.thresholds > 10000)
     throw UsageError("thresholds", "their number must be 2 to 10000", "Ask for 40");
@@ -64,8 +66,10 @@ Residuals summary_of(std::vector<float>& all) {
   double squares = 0;
   for (const float r : all) squares += static_cast<double>(r) * r;
   out.rms = std::sqrt(squares / static_cast<double>(all.size()));
-  const auto few = std::max<std::size_t>(1, static_cast<std::size_t>(peak_share * static_cast<double>(all.size())));
-  std::nth_element(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(few - 1), all.end(), std::greater<>());
+  const auto few = std::max<std::size_t>(
+      1, static_cast<std::size_t>(peak_share * static_cast<double>(all.size())));
+  std::nth_element(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(few - 1), all.end(),
+                   std::greater<>());
   for (std::size_t k = 0; k < few; ++k) out.peaks += all[k] / static_cast<double>(few);
   return out;
 }
@@ -84,8 +88,9 @@ class Opener {
     }
     for (int d = 0; d < o.draws; ++d)
       for (std::size_t s = 0; s < heights_.size(); ++s)
-        noise_.push_back(simulate_noise(o.noise, heights_[s].width(), heights_[s].height(),
-                                        o.seed + static_cast<std::uint64_t>(d) * heights_.size() + s));
+        noise_.push_back(
+            simulate_noise(o.noise, heights_[s].width(), heights_[s].height(),
+                           o.seed + static_cast<std::uint64_t>(d) * heights_.size() + s));
   }
 
   double range_nm() const { return range_nm_; }
@@ -102,7 +107,8 @@ class Opener {
       for (std::size_t s = 0; s < opened.size(); ++s) {
         Grid<float> noisy = opened[s];
         const Grid<double>& e = noise_[static_cast<std::size_t>(d) * opened.size() + s];
-        for (std::size_t k = 0; k < noisy.size(); ++k) noisy.data()[k] += static_cast<float>(e.data()[k]);
+        for (std::size_t k = 0; k < noisy.size(); ++k)
+          noisy.data()[k] += static_cast<float>(e.data()[k]);
         open(noisy, tip, left);
       }
       const Residuals r = summary_of(left);
@@ -130,7 +136,7 @@ class Opener {
   int threads_;
   double range_nm_ = 0;
   std::vector<Grid<float>> heights_;
-  std::vector<Grid<double>> noise_;   // draw by draw, scan by scan
+  std::vector<Grid<double>> noise_;  // draw by draw, scan by scan
 };
 
 // Two tips between which the volume falls by the largest factor: the index of the broader.
@@ -139,7 +145,8 @@ std::size_t above_the_jump(const std::vector<SweptTip>& curve) {
   double largest = 0;
   for (std::size_t k = 1; k < curve.size(); ++k) {
     const double ratio = curve[k].volume_nm3 > 0 && curve[k - 1].volume_nm3 > 0
-                             ? std::log(curve[k - 1].volume_nm3 / curve[k].volume_nm3) : 0;
+                             ? std::log(curve[k - 1].volume_nm3 / curve[k].volume_nm3)
+                             : 0;
     if (std::fabs(ratio) > largest) {
       largest = std::fabs(ratio);
       jump = k;
@@ -171,12 +178,14 @@ TipSweep sweep_tips(const std::vector<HeightField>& scans, const TipSweepOptions
   check(options);
   const double sigma = std::sqrt(options.noise.variance_nm2());
   const bool given = options.most_nm > 0;
-  const double least = given ? options.least_nm : 0.3 * sigma, most = given ? options.most_nm : 8 * sigma;
+  const double least = given ? options.least_nm : 0.3 * sigma,
+               most = given ? options.most_nm : 8 * sigma;
   BlindTipOptions blind = options.blind;
   blind.threshold_y_nm.reset();
   TipSweep out;
   const Opener opener(scans, options);
-  for (int n = options.thresholds - 1; n >= 0; --n) {   // each begins with the tip of the threshold above
+  for (int n = options.thresholds - 1; n >= 0;
+       --n) {  // each begins with the tip of the threshold above
     SweptTip swept;
     swept.threshold_nm = least + (most - least) * n / (options.thresholds - 1);
     blind.threshold_nm = swept.threshold_nm;
@@ -195,7 +204,8 @@ TipSweep sweep_tips(const std::vector<HeightField>& scans, const TipSweepOptions
   }
   std::reverse(out.curve.begin(), out.curve.end());
   out.jump = above_the_jump(out.curve);
-  // A tip that the noise has made leaves the noise alone: it explains everything, and means nothing.
+  // A tip that the noise has made leaves the noise alone: it explains everything, and means
+  // nothing.
   double most_expected = 0, least_excess = HUGE_VAL;
   for (const SweptTip& t : out.curve) most_expected = std::max(most_expected, t.expected_nm);
   const auto counts = [&](const SweptTip& t) { return t.expected_nm >= smooths * most_expected; };
@@ -211,8 +221,9 @@ TipSweep sweep_tips(const std::vector<HeightField>& scans, const TipSweepOptions
     return out;
   }
   const double apart = std::fabs(static_cast<double>(out.chosen) - static_cast<double>(out.jump));
-  out.verdict = apart <= std::max(1.0, near_jump * options.thresholds) ? TipSweepVerdict::clear
-                                                                       : TipSweepVerdict::disagreement;
+  out.verdict = apart <= std::max(1.0, near_jump * options.thresholds)
+                    ? TipSweepVerdict::clear
+                    : TipSweepVerdict::disagreement;
   return out;
 }
 
@@ -220,7 +231,8 @@ double outer_threshold_nm(const AfmNoise& noise, double pixels, double samples) 
   validate(noise);
   constexpr double risk = 0.05;
   const double sigma = std::sqrt(noise.variance_nm2());
-  // Either no pixel is off by half of it, up or down, or no two that a tip brings together by all of it.
+  // Either no pixel is off by half of it, up or down, or no two that a tip brings together by all
+  // of it.
   const double singly = 2 * normal_quantile_above(risk / (2 * pixels));
   const double in_pairs = std::numbers::sqrt2 * normal_quantile_above(risk / (pixels * samples));
   return sigma * std::min(singly, in_pairs);

@@ -10,7 +10,8 @@ namespace surf {
 Affine inverse(const Affine& m) {
   const double d = m.determinant();
   if (!std::isfinite(d) || d == 0 || !std::isfinite(m.x0) || !std::isfinite(m.y0))
-    throw InvalidInput("transform", "it maps the plane onto a line, or is not finite", "Give a map that can be turned back");
+    throw InvalidInput("transform", "it maps the plane onto a line, or is not finite",
+                       "Give a map that can be turned back");
   Affine r;
   r.xx = m.yy / d;
   r.xy = -m.xy / d;

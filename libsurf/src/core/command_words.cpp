@@ -24,8 +24,8 @@ std::string shown(const Parameter& about, const Field& field) {
 
 }  // namespace
 
-void add_command_words(const Parameter& about, const Field& field, const std::string& usual, const OptionNames& names,
-                       std::vector<std::string>& words) {
+void add_command_words(const Parameter& about, const Field& field, const std::string& usual,
+                       const OptionNames& names, std::vector<std::string>& words) {
   if (!about.recorded || !field.given() || field.text() == usual) return;
   std::string option(about.last_name());
   std::ranges::replace(option, '_', '-');

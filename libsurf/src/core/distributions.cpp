@@ -7,7 +7,8 @@
 namespace surf {
 namespace {
 
-constexpr double few = 10;   // below it simple ways are as quick, and transformed rejection is not valid
+constexpr double few =
+    10;  // below it simple ways are as quick, and transformed rejection is not valid
 
 /// ln k!, by Stirling's series from 10 on; its error is below 1e-12.
 double log_factorial(std::int64_t k) {
@@ -18,7 +19,8 @@ double log_factorial(std::int64_t k) {
   }
   constexpr double half_log_of_two_pi = 0.91893853320467274178;
   const double x = static_cast<double>(k) + 1, y = 1 / (x * x);
-  return (x - 0.5) * std::log(x) - x + half_log_of_two_pi + (1.0 / 12 - y * (1.0 / 360 - y * (1.0 / 1260 - y / 1680))) / x;
+  return (x - 0.5) * std::log(x) - x + half_log_of_two_pi +
+         (1.0 / 12 - y * (1.0 / 360 - y * (1.0 / 1260 - y / 1680))) / x;
 }
 
 std::int64_t poisson_by_product(double mean, RandomStream& random) {
@@ -59,8 +61,8 @@ std::int64_t binomial_by_rejection(std::int64_t trials, double p, RandomStream& 
   const double b = 1.15 + 2.53 * spread, a = -0.0873 + 0.0248 * b + 0.01 * p, c = n * p + 0.5;
   const double most = 0.92 - 4.2 / b, alpha = (2.83 + 5.1 / b) * spread, log_odds = std::log(p / q);
   const double mode = std::floor((n + 1) * p);
-  const double at_mode =
-      log_factorial(static_cast<std::int64_t>(mode)) + log_factorial(trials - static_cast<std::int64_t>(mode));
+  const double at_mode = log_factorial(static_cast<std::int64_t>(mode)) +
+                         log_factorial(trials - static_cast<std::int64_t>(mode));
   for (;;) {
     const double u = random.uniform() - 0.5, v = random.uniform();
     const double us = 0.5 - std::fabs(u);
@@ -85,7 +87,8 @@ std::int64_t binomial(std::int64_t trials, double probability, RandomStream& ran
   if (trials <= 0 || !(probability > 0)) return 0;
   if (probability >= 1) return trials;
   if (probability > 0.5) return trials - binomial(trials, 1 - probability, random);
-  if (static_cast<double>(trials) * probability < few) return binomial_by_waiting(trials, probability, random);
+  if (static_cast<double>(trials) * probability < few)
+    return binomial_by_waiting(trials, probability, random);
   return binomial_by_rejection(trials, probability, random);
 }
 

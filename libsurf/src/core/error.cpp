@@ -13,7 +13,7 @@ std::string join(const std::string& subject, const std::string& reason, const st
 }  // namespace
 
 Error::Error(const std::string& subject, const std::string& reason, const std::string& remedy)
-    : std::runtime_error(join(subject, reason, remedy)),
-      subject_(subject), reason_(reason), remedy_(remedy) {}
+    : std::runtime_error(join(subject, reason, remedy)), subject_(subject), reason_(reason),
+      remedy_(remedy) {}
 
 }  // namespace surf

@@ -29,9 +29,9 @@ void validate(const HeightField& field, const char* subject) {
   validate_pitch(field.pitch_x_nm, 'x', subject);
   validate_pitch(field.pitch_y_nm, 'y', subject);
   if (!std::isfinite(field.origin_x_nm) || !std::isfinite(field.origin_y_nm)) {
-    throw InvalidInput(subject, fmt::format("the origin is ({}, {}) nm", field.origin_x_nm,
-                                            field.origin_y_nm),
-                       "Both coordinates must be finite");
+    throw InvalidInput(
+        subject, fmt::format("the origin is ({}, {}) nm", field.origin_x_nm, field.origin_y_nm),
+        "Both coordinates must be finite");
   }
   const Grid<unsigned char>& mask = field.valid;
   if (!mask.empty() && (mask.width() != z.width() || mask.height() != z.height())) {
@@ -44,10 +44,10 @@ void validate(const HeightField& field, const char* subject) {
   for (int row = 0; row < z.height(); ++row) {
     for (int column = 0; column < z.width(); ++column) {
       if (!field.is_valid(column, row) || std::isfinite(z(column, row))) continue;
-      throw InvalidInput(subject,
-                         fmt::format("the height at column {}, row {} is {}", column, row,
-                                     z(column, row)),
-                         "Fill the sample or mark it as invalid");
+      throw InvalidInput(
+          subject,
+          fmt::format("the height at column {}, row {} is {}", column, row, z(column, row)),
+          "Fill the sample or mark it as invalid");
     }
   }
 }

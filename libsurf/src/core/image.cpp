@@ -45,8 +45,8 @@ void validate(const Image& image, const char* subject) {
     if (channel.values.width() != image.width() || channel.values.height() != image.height()) {
       throw InvalidInput(subject,
                          fmt::format("channel '{}' has {} x {} pixels, the first one {} x {}",
-                                     channel.name, channel.values.width(),
-                                     channel.values.height(), image.width(), image.height()),
+                                     channel.name, channel.values.width(), channel.values.height(),
+                                     image.width(), image.height()),
                          "All channels must have one size");
     }
   }

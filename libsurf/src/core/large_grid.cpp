@@ -16,8 +16,9 @@ namespace surf {
 namespace {
 
 [[noreturn]] void fail(const std::string& folder, std::size_t bytes, int error) {
-  throw FileError(folder, fmt::format("{:.3g} GB for intermediate results cannot be had there: {}",
-                                      static_cast<double>(bytes) / 1e9, std::strerror(error)),
+  throw FileError(folder,
+                  fmt::format("{:.3g} GB for intermediate results cannot be had there: {}",
+                              static_cast<double>(bytes) / 1e9, std::strerror(error)),
                   "Free some space, write the output to a larger disk, or ask for fewer pixels");
 }
 

@@ -27,22 +27,27 @@ Linked linked[most_linked];
 int linked_count = 0;
 
 [[noreturn]] void refuse(const ModuleName& module, const std::string& reason) {
-  throw Unsupported(fmt::format("module {}", module.name), fmt::format("what {} cannot be used: {}", module.provides, reason),
+  throw Unsupported(fmt::format("module {}", module.name),
+                    fmt::format("what {} cannot be used: {}", module.provides, reason),
                     fmt::format("Install {} and semsurf with it", module.needs));
 }
 
-// Libraries that cannot start their threads while they are loaded end the program: they are not asked to.
+// Libraries that cannot start their threads while they are loaded end the program: they are not
+// asked to.
 void require_address_space(const ModuleName& module) {
   rlimit limit{};
   if (getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return;
   double pages = 0;
   std::ifstream("/proc/self/statm") >> pages;
-  const double left_mb = (static_cast<double>(limit.rlim_cur) - pages * static_cast<double>(sysconf(_SC_PAGESIZE))) / 1e6;
+  const double left_mb =
+      (static_cast<double>(limit.rlim_cur) - pages * static_cast<double>(sysconf(_SC_PAGESIZE))) /
+      1e6;
   if (left_mb >= module.address_mb) return;
-  throw Unsupported(fmt::format("module {}", module.name),
-                    fmt::format("what {} takes about {} MB of address space, and {:.0f} MB are left", module.provides,
-                                module.address_mb, left_mb),
-                    "Raise the limit (ulimit -v)");
+  throw Unsupported(
+      fmt::format("module {}", module.name),
+      fmt::format("what {} takes about {} MB of address space, and {:.0f} MB are left",
+                  module.provides, module.address_mb, left_mb),
+      "Raise the limit (ulimit -v)");
 }
 
 ModuleEntry loaded_entry(const ModuleName& module) {
@@ -74,7 +79,8 @@ std::string module_folder() {
   char program[PATH_MAX + 1];
   const ssize_t length = readlink("/proc/self/exe", program, PATH_MAX);
   if (length <= 0) return SEMSURF_MODULE_FOLDER;
-  const auto folder = std::filesystem::path(std::string(program, static_cast<std::size_t>(length))).parent_path();
+  const auto folder =
+      std::filesystem::path(std::string(program, static_cast<std::size_t>(length))).parent_path();
   return (folder / SEMSURF_MODULE_FOLDER).lexically_normal().string();
 }
 

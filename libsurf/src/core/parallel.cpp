@@ -74,7 +74,8 @@ int resolve_threads(int requested) {
 #if defined(__linux__)
   // Starters of MPI programs and batch systems leave a process fewer processors than there are.
   cpu_set_t allowed;
-  if (sched_getaffinity(0, sizeof allowed, &allowed) == 0 && CPU_COUNT(&allowed) > 0) return CPU_COUNT(&allowed);
+  if (sched_getaffinity(0, sizeof allowed, &allowed) == 0 && CPU_COUNT(&allowed) > 0)
+    return CPU_COUNT(&allowed);
 #endif
   return std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
 }
@@ -89,7 +90,7 @@ void parallel_for(std::size_t count, int threads,
     others.reserve(static_cast<std::size_t>(workers));
     for (int worker = 1; worker < workers; ++worker) {
       std::jthread other = try_thread([&queue, worker] { queue.run(worker); });
-      if (!other.joinable()) break;   // those there are do all the work
+      if (!other.joinable()) break;  // those there are do all the work
       others.push_back(std::move(other));
     }
     queue.run(0);
@@ -97,8 +98,8 @@ void parallel_for(std::size_t count, int threads,
   queue.rethrow();
 }
 
-void parallel_for(std::size_t count, int threads,
-                  const std::function<void(std::size_t, int)>& work, const Watch& watch) {
+void parallel_for(std::size_t count, int threads, const std::function<void(std::size_t, int)>& work,
+                  const Watch& watch) {
   std::atomic<std::size_t> done{0};
   parallel_for(count, threads, [&](std::size_t unit, int worker) {
     watch.check();

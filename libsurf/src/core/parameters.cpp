@@ -15,7 +15,7 @@
 namespace surf {
 namespace {
 
-constexpr double most_exact = 9007199254740992.0;   // 2^53
+constexpr double most_exact = 9007199254740992.0;  // 2^53
 
 std::string_view trimmed(std::string_view text) {
   const std::size_t first = text.find_first_not_of(" \t");
@@ -31,26 +31,37 @@ bool read_all(std::string_view text, T& value) {
 
 const char* thing(Unit unit, bool whole) {
   switch (unit) {
-    case Unit::none: return whole ? "a whole number" : "a number";
-    case Unit::share: return "a share";
-    case Unit::nm: return "a length";
-    case Unit::ev: return "an energy";
-    case Unit::deg: return "an angle";
-    case Unit::pa: return "a current";
+    case Unit::none:
+      return whole ? "a whole number" : "a number";
+    case Unit::share:
+      return "a share";
+    case Unit::nm:
+      return "a length";
+    case Unit::ev:
+      return "an energy";
+    case Unit::deg:
+      return "an angle";
+    case Unit::pa:
+      return "a current";
     case Unit::us:
-    case Unit::s: return "a time";
+    case Unit::s:
+      return "a time";
   }
   return "a value";
 }
 
-[[noreturn]] void refuse_value(const std::string& shown, const Parameter& about, const std::string& subject, bool whole) {
+[[noreturn]] void refuse_value(const std::string& shown, const Parameter& about,
+                               const std::string& subject, bool whole) {
   const std::string limits = format_limits(about);
   throw UsageError(subject, fmt::format("{} is out of range", shown),
-                   fmt::format("Give {} {}", thing(about.unit, whole), limits.empty() ? "that is finite" : limits));
+                   fmt::format("Give {} {}", thing(about.unit, whole),
+                               limits.empty() ? "that is finite" : limits));
 }
 
-void check_number(double value, const Parameter& about, const std::string& subject, bool whole = false) {
-  if (!about.limits.holds(value)) refuse_value(format_value(value, about.unit), about, subject, whole);
+void check_number(double value, const Parameter& about, const std::string& subject,
+                  bool whole = false) {
+  if (!about.limits.holds(value))
+    refuse_value(format_value(value, about.unit), about, subject, whole);
 }
 
 /// A field whose text is read and written by functions of its type.
@@ -64,7 +75,9 @@ struct Reading<double> {
   static double read(std::string_view text, const Parameter& about, const std::string& subject) {
     return parse_value(text, about, subject);
   }
-  static void check(double value, const Parameter& about, const std::string& subject) { check_number(value, about, subject); }
+  static void check(double value, const Parameter& about, const std::string& subject) {
+    check_number(value, about, subject);
+  }
 };
 
 template <class Whole>
@@ -75,21 +88,25 @@ struct ReadingWhole {
     text = trimmed(text);
     Whole value = 0;
     if (!read_all(text, value)) {
-      double real = 0;   // "1e6" is one, too
+      double real = 0;  // "1e6" is one, too
       if (!read_all(text, real) || !std::isfinite(real) || real != std::floor(real))
-        throw UsageError(subject, fmt::format("'{}' is not a whole number", text),
-                         fmt::format("Give a whole number{}{}", format_limits(about).empty() ? "" : " ", format_limits(about)));
+        throw UsageError(
+            subject, fmt::format("'{}' is not a whole number", text),
+            fmt::format("Give a whole number{}{}", format_limits(about).empty() ? "" : " ",
+                        format_limits(about)));
       const double lowest = static_cast<double>(std::numeric_limits<Whole>::min());
-      const double highest = std::min(most_exact, static_cast<double>(std::numeric_limits<Whole>::max()));
+      const double highest =
+          std::min(most_exact, static_cast<double>(std::numeric_limits<Whole>::max()));
       if (real < lowest || real > highest) {
-        Parameter of_type = about;   // where the parameter itself has no limits
+        Parameter of_type = about;  // where the parameter itself has no limits
         if (format_limits(about).empty())
           of_type.limits = within(lowest, static_cast<double>(std::numeric_limits<Whole>::max()));
         refuse_value(fmt::format("'{}'", text), of_type, subject, true);
       }
       value = static_cast<Whole>(real);
     }
-    if (!about.limits.holds(static_cast<double>(value))) refuse_value(fmt::format("'{}'", text), about, subject, true);
+    if (!about.limits.holds(static_cast<double>(value)))
+      refuse_value(fmt::format("'{}'", text), about, subject, true);
     return value;
   }
   static void check(Whole value, const Parameter& about, const std::string& subject) {
@@ -122,7 +139,9 @@ template <>
 struct Reading<std::string> {
   static constexpr FieldKind kind = FieldKind::text;
   static std::string text(const std::string& value) { return value; }
-  static std::string read(std::string_view text, const Parameter&, const std::string&) { return std::string(text); }
+  static std::string read(std::string_view text, const Parameter&, const std::string&) {
+    return std::string(text);
+  }
   static void check(const std::string&, const Parameter&, const std::string&) {}
 };
 
@@ -136,11 +155,15 @@ class Plain final : public Field {
     else return true;
   }
   std::string text() const override { return Reading<T>::text(value_); }
-  void read(std::string_view text, const std::string& subject) override { value_ = Reading<T>::read(text, about_, subject); }
+  void read(std::string_view text, const std::string& subject) override {
+    value_ = Reading<T>::read(text, about_, subject);
+  }
   void clear() override {
     if constexpr (std::is_same_v<T, std::string>) value_.clear();
   }
-  void check(const std::string& subject) const override { Reading<T>::check(value_, about_, subject); }
+  void check(const std::string& subject) const override {
+    Reading<T>::check(value_, about_, subject);
+  }
 
  private:
   T& value_;
@@ -154,7 +177,9 @@ class Optional final : public Field {
   FieldKind kind() const override { return Reading<T>::kind; }
   bool given() const override { return value_.has_value(); }
   std::string text() const override { return value_ ? Reading<T>::text(*value_) : std::string(); }
-  void read(std::string_view text, const std::string& subject) override { value_ = Reading<T>::read(text, about_, subject); }
+  void read(std::string_view text, const std::string& subject) override {
+    value_ = Reading<T>::read(text, about_, subject);
+  }
   void clear() override { value_.reset(); }
   void check(const std::string& subject) const override {
     if (value_) Reading<T>::check(*value_, about_, subject);
@@ -184,7 +209,9 @@ class List final : public Field {
     for (std::size_t from = 0; from <= text.size();) {
       const std::size_t comma = std::min(text.find(',', from), text.size());
       const std::string_view one = trimmed(text.substr(from, comma - from));
-      if (one.empty() && !text.empty()) throw UsageError(subject, fmt::format("'{}' has an empty name", text), "Leave out the comma");
+      if (one.empty() && !text.empty())
+        throw UsageError(subject, fmt::format("'{}' has an empty name", text),
+                         "Leave out the comma");
       if (!one.empty()) value_.emplace_back(one);
       from = comma + 1;
     }
@@ -198,7 +225,8 @@ class List final : public Field {
 
 class Choice final : public Field {
  public:
-  Choice(int& index, const std::vector<std::string>& names, const char* none) : index_(index), names_(names), none_(none) {}
+  Choice(int& index, const std::vector<std::string>& names, const char* none)
+      : index_(index), names_(names), none_(none) {}
   FieldKind kind() const override { return FieldKind::choice; }
   std::vector<std::string> choices() const override {
     std::vector<std::string> all;
@@ -208,7 +236,9 @@ class Choice final : public Field {
   }
   bool given() const override { return index_ >= 0; }
   std::string text() const override {
-    return index_ >= 0 && index_ < static_cast<int>(names_.size()) ? names_[static_cast<std::size_t>(index_)] : std::string();
+    return index_ >= 0 && index_ < static_cast<int>(names_.size())
+               ? names_[static_cast<std::size_t>(index_)]
+               : std::string();
   }
   void read(std::string_view text, const std::string& subject) override {
     if (none_ && *none_ && text == none_) {
@@ -217,7 +247,8 @@ class Choice final : public Field {
     }
     const auto found = std::ranges::find(names_, text);
     if (found == names_.end())
-      throw UsageError(subject, fmt::format("'{}' is not known", text), "Choose " + in_words(choices()));
+      throw UsageError(subject, fmt::format("'{}' is not known", text),
+                       "Choose " + in_words(choices()));
     index_ = static_cast<int>(found - names_.begin());
   }
   void clear() override {
@@ -225,7 +256,8 @@ class Choice final : public Field {
   }
   void check(const std::string& subject) const override {
     if (index_ >= (none_ ? -1 : 0) && index_ < static_cast<int>(names_.size())) return;
-    throw UsageError(subject, fmt::format("there is no choice {}", index_), "Choose " + in_words(choices()));
+    throw UsageError(subject, fmt::format("there is no choice {}", index_),
+                     "Choose " + in_words(choices()));
   }
 
  private:
@@ -239,12 +271,13 @@ class Choice final : public Field {
 
   int& index_;
   const std::vector<std::string>& names_;
-  const char* none_;   // null: there is always one
+  const char* none_;  // null: there is always one
 };
 
 class Form final : public Field {
  public:
-  Form(FieldKind kind, std::function<std::string()>& write, std::function<void(std::string_view, const std::string&)>& read)
+  Form(FieldKind kind, std::function<std::string()>& write,
+       std::function<void(std::string_view, const std::string&)>& read)
       : kind_(kind), write_(write), read_(read) {}
   FieldKind kind() const override { return kind_; }
   bool given() const override { return !write_().empty(); }
@@ -262,19 +295,27 @@ class Form final : public Field {
 std::string_view unit_suffix(Unit unit) {
   switch (unit) {
     case Unit::none:
-    case Unit::share: return "";
-    case Unit::nm: return "_nm";
-    case Unit::ev: return "_ev";
-    case Unit::deg: return "_deg";
-    case Unit::pa: return "_pa";
-    case Unit::us: return "_us";
-    case Unit::s: return "_s";
+    case Unit::share:
+      return "";
+    case Unit::nm:
+      return "_nm";
+    case Unit::ev:
+      return "_ev";
+    case Unit::deg:
+      return "_deg";
+    case Unit::pa:
+      return "_pa";
+    case Unit::us:
+      return "_us";
+    case Unit::s:
+      return "_s";
   }
   return "";
 }
 
 bool Limits::holds(double value) const {
-  return std::isfinite(value) && (low_open ? value > low : value >= low) && (high_open ? value < high : value <= high);
+  return std::isfinite(value) && (low_open ? value > low : value >= low) &&
+         (high_open ? value < high : value <= high);
 }
 
 std::string_view Parameter::last_name() const {
@@ -336,13 +377,15 @@ void ParameterVisitor::choice(int& index, std::vector<std::string> names, const 
   visit(about, field);
 }
 
-void ParameterVisitor::optional_choice(int& index, std::vector<std::string> names, const Parameter& about, const char* none) {
+void ParameterVisitor::optional_choice(int& index, std::vector<std::string> names,
+                                       const Parameter& about, const char* none) {
   Choice field(index, names, none);
   visit(about, field);
 }
 
 void ParameterVisitor::form(const Parameter& about, std::function<std::string()> write,
-                            std::function<void(std::string_view, const std::string&)> read, FieldKind kind) {
+                            std::function<void(std::string_view, const std::string&)> read,
+                            FieldKind kind) {
   Form field(kind, write, read);
   visit(about, field);
 }
@@ -352,15 +395,30 @@ double parse_value(std::string_view text, const Parameter& about, const std::str
   switch (about.unit) {
     case Unit::none:
       if (!read_all(trimmed(text), value) || !std::isfinite(value))
-        throw UsageError(subject, fmt::format("'{}' is no number", text), "Give a finite number, as 12.5");
+        throw UsageError(subject, fmt::format("'{}' is no number", text),
+                         "Give a finite number, as 12.5");
       break;
-    case Unit::share: value = parse_share(trimmed(text), subject); break;
-    case Unit::nm: value = parse_length_nm(text, subject); break;
-    case Unit::ev: value = parse_energy_ev(text, subject); break;
-    case Unit::deg: value = parse_angle_deg(text, subject); break;
-    case Unit::pa: value = parse_current_pa(text, subject); break;
-    case Unit::us: value = parse_time_us(text, subject); break;
-    case Unit::s: value = parse_duration_s(text, subject); break;
+    case Unit::share:
+      value = parse_share(trimmed(text), subject);
+      break;
+    case Unit::nm:
+      value = parse_length_nm(text, subject);
+      break;
+    case Unit::ev:
+      value = parse_energy_ev(text, subject);
+      break;
+    case Unit::deg:
+      value = parse_angle_deg(text, subject);
+      break;
+    case Unit::pa:
+      value = parse_current_pa(text, subject);
+      break;
+    case Unit::us:
+      value = parse_time_us(text, subject);
+      break;
+    case Unit::s:
+      value = parse_duration_s(text, subject);
+      break;
   }
   if (!about.limits.holds(value)) refuse_value(fmt::format("'{}'", text), about, subject, false);
   return value;
@@ -370,7 +428,7 @@ std::string format_value(double value, Unit unit) {
   const auto number = [](double v) {
     std::string text = fmt::format("{}", v);
     if (!(std::abs(v) >= 1e6)) return text;
-    const std::string power = fmt::format("{:g}", v);   // "1e+08"
+    const std::string power = fmt::format("{:g}", v);  // "1e+08"
     const std::size_t plus = power.find("e+");
     double same = 0;
     if (plus == std::string::npos || !read_all(power, same) || same != v) return text;
@@ -378,7 +436,8 @@ std::string format_value(double value, Unit unit) {
     return digits == std::string::npos ? text : power.substr(0, plus + 1) + power.substr(digits);
   };
   switch (unit) {
-    case Unit::none: return number(value);
+    case Unit::none:
+      return number(value);
     case Unit::share: {
       if (!(value > 0) || !std::isfinite(value)) return number(value);
       std::string share = format_share(value);
@@ -390,11 +449,16 @@ std::string format_value(double value, Unit unit) {
         if (std::abs(value) >= nm && std::fmod(value, nm) == 0) return number(value / nm) + name;
       return number(value) + "nm";
     case Unit::ev:
-      return std::abs(value) >= 1000 && std::isfinite(value) ? number(value / 1000) + "keV" : number(value) + "eV";
-    case Unit::deg: return number(value) + "deg";
-    case Unit::pa: return number(value) + "pA";
-    case Unit::us: return number(value) + "us";
-    case Unit::s: return number(value) + "s";
+      return std::abs(value) >= 1000 && std::isfinite(value) ? number(value / 1000) + "keV"
+                                                             : number(value) + "eV";
+    case Unit::deg:
+      return number(value) + "deg";
+    case Unit::pa:
+      return number(value) + "pA";
+    case Unit::us:
+      return number(value) + "us";
+    case Unit::s:
+      return number(value) + "s";
   }
   return number(value);
 }
@@ -404,7 +468,9 @@ std::string format_limits(const Parameter& about) {
   const std::string low = format_value(l.low, about.unit), high = format_value(l.high, about.unit);
   if (std::isfinite(l.low) && std::isfinite(l.high))
     return fmt::format("{}{} {} {}", l.low_open ? "above " : "", low, l.low_open ? "and" : "to",
-                       l.high_open ? "below " + high : l.low_open ? "at most " + high : high);
+                       l.high_open  ? "below " + high
+                       : l.low_open ? "at most " + high
+                                    : high);
   if (std::isfinite(l.low)) return l.low_open ? "above " + low : low + " or more";
   if (std::isfinite(l.high)) return l.high_open ? "below " + high : high + " or less";
   return "";
@@ -415,22 +481,35 @@ std::string form_of(const Parameter& about, const Field& field) {
   if (about.file == FileRole::written_folder) return "FOLDER";
   if (about.file != FileRole::none) return "FILE";
   switch (field.kind()) {
-    case FieldKind::flag: return "";
-    case FieldKind::whole: return "N";
-    case FieldKind::choice: return fmt::format("{}", fmt::join(field.choices(), "|"));
-    case FieldKind::text: return "TEXT";
-    case FieldKind::list: return "NAME,...";
-    case FieldKind::number: break;
+    case FieldKind::flag:
+      return "";
+    case FieldKind::whole:
+      return "N";
+    case FieldKind::choice:
+      return fmt::format("{}", fmt::join(field.choices(), "|"));
+    case FieldKind::text:
+      return "TEXT";
+    case FieldKind::list:
+      return "NAME,...";
+    case FieldKind::number:
+      break;
   }
   switch (about.unit) {
-    case Unit::none: return "NUMBER";
-    case Unit::share: return "SHARE";
-    case Unit::nm: return "LENGTH";
-    case Unit::ev: return "ENERGY";
-    case Unit::deg: return "ANGLE";
-    case Unit::pa: return "CURRENT";
+    case Unit::none:
+      return "NUMBER";
+    case Unit::share:
+      return "SHARE";
+    case Unit::nm:
+      return "LENGTH";
+    case Unit::ev:
+      return "ENERGY";
+    case Unit::deg:
+      return "ANGLE";
+    case Unit::pa:
+      return "CURRENT";
     case Unit::us:
-    case Unit::s: return "TIME";
+    case Unit::s:
+      return "TIME";
   }
   return "VALUE";
 }

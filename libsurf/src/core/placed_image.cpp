@@ -6,7 +6,8 @@
 namespace surf {
 
 void validate(const PlacedImage& image, const char* subject) {
-  validate(HeightField{image.values, image.valid, image.pitch_x_nm, image.pitch_y_nm, image.origin_x_nm, image.origin_y_nm},
+  validate(HeightField{image.values, image.valid, image.pitch_x_nm, image.pitch_y_nm,
+                       image.origin_x_nm, image.origin_y_nm},
            subject);
 }
 

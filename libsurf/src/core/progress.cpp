@@ -16,7 +16,9 @@ void Watch::report(double done, double total) const {
 
 Watch Watch::part(double from, double to) const {
   if (!progress) return {{}, cancel};
-  return {[whole = progress, from, to](double done, double total) { whole(from + (to - from) * done / total, 1); },
+  return {[whole = progress, from, to](double done, double total) {
+            whole(from + (to - from) * done / total, 1);
+          },
           cancel};
 }
 

@@ -22,8 +22,8 @@ RandomStream::RandomStream(std::uint64_t seed, std::uint64_t pixel, std::uint64_
   key_[1] = static_cast<std::uint32_t>(seed >> 32);
   counter_[0] = static_cast<std::uint32_t>(electron);
   counter_[1] = static_cast<std::uint32_t>(pixel);
-  counter_[2] = static_cast<std::uint32_t>(pixel >> 32) << 16 |
-                static_cast<std::uint32_t>(electron >> 32);
+  counter_[2] =
+      static_cast<std::uint32_t>(pixel >> 32) << 16 | static_cast<std::uint32_t>(electron >> 32);
 }
 
 void RandomStream::refill() {

@@ -5,9 +5,11 @@
 
 namespace surf {
 
-std::vector<int> parse_whole_numbers(std::string_view text, const Parameter& about, const std::string& subject) {
+std::vector<int> parse_whole_numbers(std::string_view text, const Parameter& about,
+                                     const std::string& subject) {
   std::vector<int> numbers;
-  parameters_detail::Calling read([&](const Parameter&, Field& field) { field.read(text, subject); }, true);
+  parameters_detail::Calling read(
+      [&](const Parameter&, Field& field) { field.read(text, subject); }, true);
   for (const std::string_view part : split(text, ",")) {
     int number = 0;
     text = part;
@@ -17,9 +19,11 @@ std::vector<int> parse_whole_numbers(std::string_view text, const Parameter& abo
   return numbers;
 }
 
-std::vector<double> parse_values(std::string_view text, const Parameter& about, const std::string& subject) {
+std::vector<double> parse_values(std::string_view text, const Parameter& about,
+                                 const std::string& subject) {
   std::vector<double> values;
-  for (const std::string_view part : split(text, ",")) values.push_back(parse_value(part, about, subject));
+  for (const std::string_view part : split(text, ","))
+    values.push_back(parse_value(part, about, subject));
   return values;
 }
 

@@ -11,21 +11,25 @@ namespace surf {
 
 const char* name_of(TrackKind kind) {
   switch (kind) {
-    case TrackKind::absorbed: return "absorbed";
-    case TrackKind::se: return "se";
-    case TrackKind::bse: return "bse";
-    case TrackKind::transmitted: return "transmitted";
-    case TrackKind::lost: return "lost";
+    case TrackKind::absorbed:
+      return "absorbed";
+    case TrackKind::se:
+      return "se";
+    case TrackKind::bse:
+      return "bse";
+    case TrackKind::transmitted:
+      return "transmitted";
+    case TrackKind::lost:
+      return "lost";
   }
   return "lost";
 }
 
 void validate(const Track& track, const char* subject) {
   const auto refuse = [&](const std::string& reason) {
-    throw InvalidInput(subject,
-                       fmt::format("track {} of electron {}: {}", track.number, track.electron,
-                                   reason),
-                       "Record every point with its energy and every piece with its material");
+    throw InvalidInput(
+        subject, fmt::format("track {} of electron {}: {}", track.number, track.electron, reason),
+        "Record every point with its energy and every piece with its material");
   };
   const std::size_t points = track.points_nm.size();
   if (points < 2) refuse(fmt::format("{} points make no path", points));

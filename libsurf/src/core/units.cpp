@@ -23,19 +23,21 @@ struct Unit {
 };
 
 constexpr std::array length_units{
-    Unit{"nm", 1, 1},       Unit{"um", 1e3, 1}, Unit{"\u00b5m", 1e3, 1}, Unit{"\u03bcm", 1e3, 1},
-    Unit{"mm", 1e6, 1},     Unit{"m", 1e9, 1},  Unit{"pm", 1, 1e3},      Unit{"A", 1, 10},
-    Unit{"in", 2.54e7, 1},
+    Unit{"nm", 1, 1},        Unit{"um", 1e3, 1}, Unit{"\u00b5m", 1e3, 1},
+    Unit{"\u03bcm", 1e3, 1}, Unit{"mm", 1e6, 1}, Unit{"m", 1e9, 1},
+    Unit{"pm", 1, 1e3},      Unit{"A", 1, 10},   Unit{"in", 2.54e7, 1},
 };
 constexpr std::array energy_units{Unit{"ev", 1, 1}, Unit{"kev", 1e3, 1}, Unit{"mev", 1e6, 1}};
 constexpr std::array angle_units{
-    Unit{"deg", 1, 1}, Unit{"\u00b0", 1, 1}, Unit{"rad", 57.29577951308232, 1},
+    Unit{"deg", 1, 1},
+    Unit{"\u00b0", 1, 1},
+    Unit{"rad", 57.29577951308232, 1},
     Unit{"mrad", 57.29577951308232, 1e3},
 };
 
 constexpr std::array current_units{Unit{"pA", 1, 1}, Unit{"nA", 1e3, 1}, Unit{"uA", 1e6, 1},
                                    Unit{"fA", 1, 1e3}, Unit{"A", 1e12, 1}};
-constexpr std::array time_units{Unit{"us", 1, 1},  Unit{"\u00b5s", 1, 1}, Unit{"\u03bcs", 1, 1},
+constexpr std::array time_units{Unit{"us", 1, 1},   Unit{"\u00b5s", 1, 1}, Unit{"\u03bcs", 1, 1},
                                 Unit{"ns", 1, 1e3}, Unit{"ms", 1e3, 1},    Unit{"s", 1e6, 1}};
 constexpr std::array duration_units{Unit{"s", 1, 1}, Unit{"min", 60, 1}, Unit{"h", 3600, 1},
                                     Unit{"d", 86400, 1}, Unit{"ms", 1, 1e3}};
@@ -59,11 +61,12 @@ constexpr Kind angle_kind{
 constexpr Kind current_kind{"current", "pA",
                             "Write a number and pA, nA, uA, fA or A (bare numbers are pA), for "
                             "example 100pA"};
-constexpr Kind duration_kind{"duration", "s",
-                             "Write a number and s, min, h, d or ms (bare numbers are seconds), for "
-                             "example 5min"};
-constexpr Kind time_kind{"time", "us",
-                         "Write a number and us, ns, ms or s (bare numbers are us), for example 10us"};
+constexpr Kind duration_kind{
+    "duration", "s",
+    "Write a number and s, min, h, d or ms (bare numbers are seconds), for "
+    "example 5min"};
+constexpr Kind time_kind{
+    "time", "us", "Write a number and us, ns, ms or s (bare numbers are us), for example 10us"};
 
 std::string_view trimmed(std::string_view text) {
   constexpr std::string_view blanks = " \t\r\n";
@@ -148,7 +151,8 @@ std::pair<double, double> parse_two_lengths_nm(std::string_view text, std::strin
                      "Write one length, or two for x and y: 2nm or 2nmx3nm");
   const double x = parse_length_nm(text.substr(0, at), subject), y = parse_length_nm(rest, subject);
   if (!(x > 0 && y > 0))
-    throw UsageError(std::string(subject), fmt::format("'{}' is not above zero", text), "Write a length, such as 2nm");
+    throw UsageError(std::string(subject), fmt::format("'{}' is not above zero", text),
+                     "Write a length, such as 2nm");
   return {x, y};
 }
 
@@ -160,11 +164,10 @@ double parse_energy_ev(std::string_view text, std::string_view subject) {
   }
   // The name in the message is the person's own spelling.
   const auto known = std::ranges::find(energy_units, unit, &Unit::name);
-  return scaled(q.value,
-                known != energy_units.end()
-                    ? *known
-                    : find_unit(energy_units, q.unit, subject, energy_kind),
-                text, subject, energy_kind);
+  return scaled(
+      q.value,
+      known != energy_units.end() ? *known : find_unit(energy_units, q.unit, subject, energy_kind),
+      text, subject, energy_kind);
 }
 
 double parse_angle_deg(std::string_view text, std::string_view subject) {
@@ -199,7 +202,8 @@ double parse_share(std::string_view text, std::string_view subject) {
   if (percent && number.find_first_of("eE") == std::string::npos) number += "e-2";
   double share = 0;
   const auto [end, error] = std::from_chars(number.data(), number.data() + number.size(), share);
-  if (error != std::errc{} || end != number.data() + number.size() || !std::isfinite(share) || share < 0)
+  if (error != std::errc{} || end != number.data() + number.size() || !std::isfinite(share) ||
+      share < 0)
     throw UsageError(std::string(subject), fmt::format("'{}' is not a share", text),
                      "Write for example 1% or 0.01");
   return share;
@@ -239,7 +243,8 @@ std::string format_length(double length_nm, int digits) {
 
   // Far from all that is ever measured, zeros would hide the number.
   constexpr int first_digit_of_100_km = 14, first_digit_of_a_femtometre = -6;
-  if (exponent >= first_digit_of_100_km) return fmt::format("{:.{}e} m", length_nm / 1e9, digits - 1);
+  if (exponent >= first_digit_of_100_km)
+    return fmt::format("{:.{}e} m", length_nm / 1e9, digits - 1);
   if (exponent < first_digit_of_a_femtometre) return rounded + " nm";
 
   struct Step {
@@ -250,8 +255,7 @@ std::string format_length(double length_nm, int digits) {
   const Step& step =
       *std::ranges::find_if(steps, [&](const Step& s) { return exponent >= s.exponent; });
   const Unit& unit = *std::ranges::find(length_units, std::string_view(step.unit), &Unit::name);
-  const int unit_exponent =
-      static_cast<int>(std::lround(std::log10(unit.multiply / unit.divide)));
+  const int unit_exponent = static_cast<int>(std::lround(std::log10(unit.multiply / unit.divide)));
 
   double value = 0;
   std::from_chars(rounded.data(), rounded.data() + rounded.size(), value);

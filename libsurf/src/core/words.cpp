@@ -34,12 +34,15 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
 }
 
 std::string quoted_command(const std::vector<std::string>& words) {
-  const auto is_plain = [](unsigned char c) { return c != 0 && (std::isalnum(c) || std::strchr("-_=+./,:%@", c)); };
+  const auto is_plain = [](unsigned char c) {
+    return c != 0 && (std::isalnum(c) || std::strchr("-_=+./,:%@", c));
+  };
   std::string line;
   for (const std::string& word : words) {
     std::string quoted = "'";
     for (const char c : word) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
-    line += (line.empty() ? "" : " ") + (!word.empty() && std::ranges::all_of(word, is_plain) ? word : quoted + "'");
+    line += (line.empty() ? "" : " ") +
+            (!word.empty() && std::ranges::all_of(word, is_plain) ? word : quoted + "'");
   }
   return line;
 }

@@ -44,7 +44,7 @@ std::vector<BoundaryLoop> boundary_loops(const std::vector<Triangle>& triangles,
   };
 
   std::vector<BoundaryLoop> loops;
-  std::vector<std::uint32_t> position(points, none);   // on the path walked now
+  std::vector<std::uint32_t> position(points, none);  // on the path walked now
   for (const Side start : open) {
     std::vector<Side> path;
     std::uint32_t point = side_begin(triangles, start);

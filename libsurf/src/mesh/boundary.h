@@ -10,8 +10,8 @@ namespace surf {
 /// A closed run of sides that no other triangle answers, in the direction of their triangles: a
 /// sheet whose normals point to the viewer lies to the left of it.
 struct BoundaryLoop {
-  std::vector<std::uint32_t> points;   ///< no point twice
-  std::vector<Side> sides;             ///< sides[i] runs from points[i] to the next one
+  std::vector<std::uint32_t> points;  ///< no point twice
+  std::vector<Side> sides;            ///< sides[i] runs from points[i] to the next one
 };
 
 /// The loops of a mesh's boundary, in the order of their first sides. Triangles hold points (see

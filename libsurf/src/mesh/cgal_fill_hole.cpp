@@ -48,7 +48,7 @@ std::vector<Triangle> span_polygon(const std::vector<Vec3>& corners, const Watch
   } catch (const Interrupted&) {
     throw;
   } catch (const std::exception&) {
-    return {};   // corners on a line, for example
+    return {};  // corners on a line, for example
   }
   std::vector<Triangle> triangles;
   for (const auto& t : found) {

@@ -15,9 +15,7 @@ Kernel::Triangle_3 triangle(const Corners& t) { return {point(t.a), point(t.b), 
 
 }  // namespace
 
-bool is_degenerate(const Corners& t) {
-  return CGAL::collinear(point(t.a), point(t.b), point(t.c));
-}
+bool is_degenerate(const Corners& t) { return CGAL::collinear(point(t.a), point(t.b), point(t.c)); }
 
 bool triangles_meet(const Corners& s, const Corners& t) {
   return CGAL::do_intersect(triangle(s), triangle(t));

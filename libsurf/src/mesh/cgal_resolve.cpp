@@ -116,8 +116,9 @@ TriangleMesh unite(const std::vector<TriangleMesh>& bodies, const Watch& watch) 
         continue;
       }
       Mesh united;
-      if (!pmp::corefine_and_compute_union(sum, next, united,
-                                           pmp::parameters::throw_on_self_intersection(true).visitor(Corefining(watch)))) {
+      if (!pmp::corefine_and_compute_union(
+              sum, next, united,
+              pmp::parameters::throw_on_self_intersection(true).visitor(Corefining(watch)))) {
         return {};
       }
       sum = united;
@@ -134,7 +135,8 @@ TriangleMesh mend_self_intersections(const TriangleMesh& mesh, const Watch& watc
   try {
     Mesh mended;
     if (!to_cgal(mesh, mended)) return {};
-    pmp::experimental::remove_self_intersections(mended, CGAL::parameters::preserve_genus(false).visitor(Mending{{}, &watch}));
+    pmp::experimental::remove_self_intersections(
+        mended, CGAL::parameters::preserve_genus(false).visitor(Mending{{}, &watch}));
     return from_cgal(mended);
   } catch (const Interrupted&) {
     throw;

@@ -8,7 +8,8 @@
 
 namespace surf {
 
-// Attempts by CGAL; the caller judges the result. Empty where CGAL gives up. Both throw Interrupted.
+// Attempts by CGAL; the caller judges the result. Empty where CGAL gives up. Both throw
+// Interrupted.
 
 /// The union of closed bodies with outward normals, each free of self-intersections.
 TriangleMesh unite(const std::vector<TriangleMesh>& bodies, const Watch& watch);

@@ -16,9 +16,11 @@ enum class Where : std::uint8_t { unknown, inside, outside };
 
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 using VertexBase = CGAL::Triangulation_vertex_base_with_info_2<std::uint32_t, Kernel>;
-using FaceBase = CGAL::Constrained_triangulation_face_base_2<Kernel, CGAL::Triangulation_face_base_with_info_2<Where, Kernel>>;
+using FaceBase = CGAL::Constrained_triangulation_face_base_2<
+    Kernel, CGAL::Triangulation_face_base_with_info_2<Where, Kernel>>;
 using Triangulation = CGAL::Constrained_Delaunay_triangulation_2<
-    Kernel, CGAL::Triangulation_data_structure_2<VertexBase, FaceBase>, CGAL::No_constraint_intersection_requiring_constructions_tag>;
+    Kernel, CGAL::Triangulation_data_structure_2<VertexBase, FaceBase>,
+    CGAL::No_constraint_intersection_requiring_constructions_tag>;
 using Face = Triangulation::Face_handle;
 
 // From a face whose place is known to all that no constraint keeps apart.
@@ -39,7 +41,7 @@ bool spread(std::vector<Face>& open, Where where) {
 
 // A triangle is bad whose circumcircle's radius is more than this times its shortest side.
 constexpr double largest_ratio = 2;
-constexpr double closest = 0.6;    // of that radius: as near as other points may be to a new one
+constexpr double closest = 0.6;  // of that radius: as near as other points may be to a new one
 constexpr int most_passes = 40;
 
 struct NewPoint {
@@ -52,10 +54,11 @@ std::vector<NewPoint> middles_of_bad(const Triangulation& triangulation) {
   for (auto f = triangulation.finite_faces_begin(); f != triangulation.finite_faces_end(); ++f) {
     if (f->info() != Where::inside) continue;
     const auto &a = f->vertex(0)->point(), &b = f->vertex(1)->point(), &c = f->vertex(2)->point();
-    const double shortest =
-        std::min({CGAL::squared_distance(a, b), CGAL::squared_distance(b, c), CGAL::squared_distance(c, a)});
+    const double shortest = std::min(
+        {CGAL::squared_distance(a, b), CGAL::squared_distance(b, c), CGAL::squared_distance(c, a)});
     const double bax = b.x() - a.x(), bay = b.y() - a.y(), cax = c.x() - a.x(), cay = c.y() - a.y();
-    const double area2 = bax * cay - bay * cax, bb = bax * bax + bay * bay, cc = cax * cax + cay * cay;
+    const double area2 = bax * cay - bay * cax, bb = bax * bax + bay * bay,
+                 cc = cax * cax + cay * cay;
     const double x = (cay * bb - bay * cc) / (2 * area2), y = (bax * cc - cax * bb) / (2 * area2);
     const double squared = x * x + y * y;
     if (!std::isfinite(squared) || squared <= largest_ratio * largest_ratio * shortest) continue;
@@ -64,12 +67,13 @@ std::vector<NewPoint> middles_of_bad(const Triangulation& triangulation) {
   return out;
 }
 
-// Whether a new point may lie in this face: not where it would see an outline's edge under more than a right angle, and not
-// near other points.
+// Whether a new point may lie in this face: not where it would see an outline's edge under more
+// than a right angle, and not near other points.
 bool has_room(const Triangulation& triangulation, const Face& face, const NewPoint& p) {
   if (triangulation.is_infinite(face) || face->info() != Where::inside) return false;
   for (int i = 0; i < 3; ++i) {
-    const auto &a = face->vertex(Triangulation::ccw(i))->point(), &b = face->vertex(Triangulation::cw(i))->point();
+    const auto &a = face->vertex(Triangulation::ccw(i))->point(),
+               &b = face->vertex(Triangulation::cw(i))->point();
     if (CGAL::squared_distance(p.place, a) < closest * closest * p.squared_radius) return false;
     if (face->is_constrained(i) && CGAL::angle(a, p.place, b) != CGAL::ACUTE) return false;
   }
@@ -89,7 +93,8 @@ void grade(Triangulation& triangulation, std::vector<std::array<double, 2>>& poi
       points.push_back({p.place.x(), p.place.y()});
       auto around = triangulation.incident_faces(vertex);
       const auto begin = around;
-      do around->info() = Where::inside; while (++around != begin);
+      do around->info() = Where::inside;
+      while (++around != begin);
       hint = vertex->face();
       any = true;
     }
@@ -99,21 +104,26 @@ void grade(Triangulation& triangulation, std::vector<std::array<double, 2>>& poi
 
 }  // namespace
 
-std::vector<Triangle> triangulate_region(std::vector<std::array<double, 2>>& points, const std::vector<PlanarEdge>& edges,
-                                         bool graded) {
+std::vector<Triangle> triangulate_region(std::vector<std::array<double, 2>>& points,
+                                         const std::vector<PlanarEdge>& edges, bool graded) {
   Triangulation triangulation;
   std::vector<std::pair<Kernel::Point_2, std::uint32_t>> all;
-  for (const auto& p : points) all.emplace_back(Kernel::Point_2(p[0], p[1]), static_cast<std::uint32_t>(all.size()));
+  for (const auto& p : points)
+    all.emplace_back(Kernel::Point_2(p[0], p[1]), static_cast<std::uint32_t>(all.size()));
   triangulation.insert(all.begin(), all.end());
   if (triangulation.number_of_vertices() != points.size()) return {};
   std::vector<Triangulation::Vertex_handle> vertices(points.size());
-  for (auto v = triangulation.finite_vertices_begin(); v != triangulation.finite_vertices_end(); ++v) vertices[v->info()] = v;
+  for (auto v = triangulation.finite_vertices_begin(); v != triangulation.finite_vertices_end();
+       ++v)
+    vertices[v->info()] = v;
   try {
-    for (const PlanarEdge& e : edges) triangulation.insert_constraint(vertices[e.from], vertices[e.to]);
+    for (const PlanarEdge& e : edges)
+      triangulation.insert_constraint(vertices[e.from], vertices[e.to]);
   } catch (const Triangulation::Intersection_of_constraints_exception&) {
     return {};
   }
-  for (auto f = triangulation.all_faces_begin(); f != triangulation.all_faces_end(); ++f) f->info() = Where::unknown;
+  for (auto f = triangulation.all_faces_begin(); f != triangulation.all_faces_end(); ++f)
+    f->info() = Where::unknown;
   std::vector<Face> open;
   for (const PlanarEdge& e : edges) {
     Face face;
@@ -122,7 +132,8 @@ std::vector<Triangle> triangulate_region(std::vector<std::array<double, 2>>& poi
     if (!triangulation.is_edge(vertices[e.from], vertices[e.to], face, opposite)) return {};
     // `face` lies to the left of the edge as it is found, which may be from either end.
     const bool found_forward = face->vertex(Triangulation::ccw(opposite)) == vertices[e.from];
-    const Face left = found_forward ? face : face->neighbor(opposite), right = found_forward ? face->neighbor(opposite) : face;
+    const Face left = found_forward ? face : face->neighbor(opposite),
+               right = found_forward ? face->neighbor(opposite) : face;
     open.assign(1, left);
     if (triangulation.is_infinite(left) || !spread(open, Where::inside)) return {};
     open.assign(1, right);
@@ -131,7 +142,8 @@ std::vector<Triangle> triangulate_region(std::vector<std::array<double, 2>>& poi
   if (graded) grade(triangulation, points);
   std::vector<Triangle> out;
   for (auto f = triangulation.finite_faces_begin(); f != triangulation.finite_faces_end(); ++f)
-    if (f->info() == Where::inside) out.push_back({f->vertex(0)->info(), f->vertex(1)->info(), f->vertex(2)->info()});
+    if (f->info() == Where::inside)
+      out.push_back({f->vertex(0)->info(), f->vertex(1)->info(), f->vertex(2)->info()});
   return out;
 }
 

@@ -13,12 +13,13 @@ struct PlanarEdge {
   std::uint32_t from, to;
 };
 
-/// Triangles that fill the region between closed lines in a plane, counter-clockwise: a constrained Delaunay triangulation. The
-/// region lies left of each edge; outlines may have holes and touch at points. Empty where edges cross or points coincide.
-/// With `graded`, points are added inside the region, and appended to `points`, so that triangles grow from where outlines have
-/// many points to where there are none: without it they are as long as the region is wide (refinement after Chew,
+/// Triangles that fill the region between closed lines in a plane, counter-clockwise: a constrained
+/// Delaunay triangulation. The region lies left of each edge; outlines may have holes and touch at
+/// points. Empty where edges cross or points coincide. With `graded`, points are added inside the
+/// region, and appended to `points`, so that triangles grow from where outlines have many points to
+/// where there are none: without it they are as long as the region is wide (refinement after Chew,
 /// doi:10.1145/160985.161150, that leaves the outlines alone).
-std::vector<Triangle> triangulate_region(std::vector<std::array<double, 2>>& points, const std::vector<PlanarEdge>& edges,
-                                         bool graded);
+std::vector<Triangle> triangulate_region(std::vector<std::array<double, 2>>& points,
+                                         const std::vector<PlanarEdge>& edges, bool graded);
 
 }  // namespace surf

@@ -76,8 +76,8 @@ class Fans {
 
 constexpr std::size_t edges_between_looks = std::size_t{1} << 16;
 
-void count_edges(const TriangleMesh& mesh, const Weld& weld,
-                 const std::vector<Triangle>& triangles, const Watch& watch, MeshReport& report) {
+void count_edges(const TriangleMesh& mesh, const Weld& weld, const std::vector<Triangle>& triangles,
+                 const Watch& watch, MeshReport& report) {
   bool balanced = true;
   std::size_t edges = 0;
   Fans fans(3 * triangles.size());
@@ -197,8 +197,7 @@ std::vector<std::string> faults(const MeshReport& r) {
   add(r.nonmanifold_edges, "more than two triangles at ", plural(r.nonmanifold_edges, "edge"),
       r.first_nonmanifold_nm);
   add(r.nonmanifold_vertices, "parts that touch in a point at ",
-      r.nonmanifold_vertices == 1 ? "1 vertex"
-                                  : fmt::format("{} vertices", r.nonmanifold_vertices),
+      r.nonmanifold_vertices == 1 ? "1 vertex" : fmt::format("{} vertices", r.nonmanifold_vertices),
       r.first_nonmanifold_vertex_nm);
   add(r.degenerate_triangles, "", plural(r.degenerate_triangles, "degenerate triangle"),
       r.first_degenerate_nm);

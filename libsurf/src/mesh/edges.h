@@ -16,7 +16,7 @@ namespace surf {
 /// Numbers gathered per point and sorted there: a counting sort followed by many tiny sorts, much
 /// quicker than one large sort.
 struct Buckets {
-  std::vector<std::size_t> begin;      ///< of every point's values; one more at the end
+  std::vector<std::size_t> begin;  ///< of every point's values; one more at the end
   std::vector<std::uint64_t> values;
 };
 
@@ -30,9 +30,8 @@ Buckets gather(std::size_t points, const ForEach& for_each) {
   std::partial_sum(begin.begin(), begin.end(), begin.begin());
   buckets.values.resize(begin.back());
   // begin[p] is p's end here, and becomes its beginning while the bucket is filled.
-  for_each([&](std::uint32_t point, std::uint64_t value) {
-    buckets.values[--begin[point]] = value;
-  });
+  for_each(
+      [&](std::uint32_t point, std::uint64_t value) { buckets.values[--begin[point]] = value; });
   const auto first = buckets.values.begin();
   for (std::size_t p = 0; p < points; ++p) {
     std::sort(first + static_cast<std::ptrdiff_t>(begin[p]),

@@ -13,9 +13,7 @@ namespace {
 using Complex = std::complex<double>;
 using Row = std::vector<Complex>;
 
-Complex turn(double part) {
-  return std::polar(1.0, 2 * std::numbers::pi * part);
-}
+Complex turn(double part) { return std::polar(1.0, 2 * std::numbers::pi * part); }
 
 /// In place, forward, unscaled; the length is a power of two.
 void transform_power_of_two(Row& row) {
@@ -96,8 +94,8 @@ Grid<double> filtered(const Grid<double>& grid, const std::function<double(doubl
   for (int y = 0; y < work.height(); ++y) {
     for (int x = 0; x < work.width(); ++x) {
       // Backwards is forwards of the conjugate, conjugated: the end result is real.
-      work(x, y) = std::conj(work(x, y)) *
-                   gain(frequency(x, work.width()), frequency(y, work.height()));
+      work(x, y) =
+          std::conj(work(x, y)) * gain(frequency(x, work.width()), frequency(y, work.height()));
     }
   }
   work = transformed_transpose(transformed_transpose(work));

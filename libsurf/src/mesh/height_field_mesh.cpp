@@ -34,8 +34,10 @@ std::vector<Triangle> raster_triangles(std::uint32_t width, std::uint32_t height
 int continued_index(int index, int count, Edge edge) {
   const auto wrap = [index](int period) { return (index % period + period) % period; };
   switch (edge) {
-    case Edge::flat: return std::clamp(index, 0, count - 1);
-    case Edge::periodic: return wrap(count);
+    case Edge::flat:
+      return std::clamp(index, 0, count - 1);
+    case Edge::periodic:
+      return wrap(count);
     case Edge::mirror: {
       const int period = 2 * (count - 1);
       const int folded = wrap(period);
@@ -76,9 +78,9 @@ void require_no_holes(const HeightField& field) {
   for (int row = 0; row < field.z_nm.height(); ++row) {
     for (int column = 0; column < field.z_nm.width(); ++column) {
       if (field.is_valid(column, row)) continue;
-      throw InvalidInput("height field",
-                         fmt::format("the sample at column {}, row {} is invalid", column, row),
-                         "A surface has no holes: fill them (semsurf clean --closing 9 --fill-holes) or crop");
+      throw InvalidInput(
+          "height field", fmt::format("the sample at column {}, row {} is invalid", column, row),
+          "A surface has no holes: fill them (semsurf clean --closing 9 --fill-holes) or crop");
     }
   }
   if (static_cast<double>(field.z_nm.size()) > max_samples) {
@@ -113,11 +115,11 @@ HeightField extend_height_field(const HeightField& field, double margin_x_nm, do
   const double extra_x = margin_pitches(margin_x_nm, field.pitch_x_nm);
   const double extra_y = margin_pitches(margin_y_nm, field.pitch_y_nm);
   if (!((width + 2 * extra_x) * (height + 2 * extra_y) <= max_samples)) {
-    throw UsageError("margin",
-                     fmt::format("{} x {} nm around the field makes {:.4g} x {:.4g} samples",
-                                 margin_x_nm, margin_y_nm, width + 2 * extra_x,
-                                 height + 2 * extra_y),
-                     "Give a smaller margin or a field of wider pitch");
+    throw UsageError(
+        "margin",
+        fmt::format("{} x {} nm around the field makes {:.4g} x {:.4g} samples", margin_x_nm,
+                    margin_y_nm, width + 2 * extra_x, height + 2 * extra_y),
+        "Give a smaller margin or a field of wider pitch");
   }
 
   const int margin_x = static_cast<int>(extra_x);
@@ -138,8 +140,7 @@ TriangleMesh half_space_top(const HeightField& field, double apron_nm) {
   require_positive(apron_nm, "apron");
   require_no_holes(field);
   // One more ring of samples at the outermost heights, moved out from one pitch to the apron.
-  HeightField ringed =
-      extend_height_field(field, field.pitch_x_nm, field.pitch_y_nm, Edge::flat);
+  HeightField ringed = extend_height_field(field, field.pitch_x_nm, field.pitch_y_nm, Edge::flat);
   TriangleMesh mesh = height_field_sheet(ringed);
   const int width = ringed.z_nm.width();
   const int height = ringed.z_nm.height();

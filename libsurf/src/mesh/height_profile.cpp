@@ -9,7 +9,8 @@
 
 namespace surf {
 
-std::vector<double> height_profile(const TriangleMesh& mesh, Point2 from_nm, Point2 to_nm, int samples) {
+std::vector<double> height_profile(const TriangleMesh& mesh, Point2 from_nm, Point2 to_nm,
+                                   int samples) {
   const double length = std::hypot(to_nm.x - from_nm.x, to_nm.y - from_nm.y);
   if (!(length > 0) || !std::isfinite(length))
     throw UsageError("line", "its ends are one point", "Choose two points that differ in x or y");
@@ -27,7 +28,8 @@ std::vector<double> height_profile(const TriangleMesh& mesh, Point2 from_nm, Poi
   options.region_nm->extend(Vec3{0, 0, 0});
   options.region_nm->extend(Vec3{length, options.pitch_nm, 0});
   const HeightField field = mesh_height_field(turned, options);
-  std::vector<double> heights(static_cast<std::size_t>(samples), std::numeric_limits<double>::quiet_NaN());
+  std::vector<double> heights(static_cast<std::size_t>(samples),
+                              std::numeric_limits<double>::quiet_NaN());
   for (int i = 0; i < samples && i < field.z_nm.width(); ++i)
     if (field.is_valid(i, 0)) heights[static_cast<std::size_t>(i)] = field.z_nm(i, 0);
   return heights;

@@ -8,14 +8,16 @@
 namespace surf {
 namespace {
 
-__extension__ using Wide = __int128;   // a determinant of fourth order takes more than 64 bits
+__extension__ using Wide = __int128;  // a determinant of fourth order takes more than 64 bits
 
 /// Whether `p` lies strictly inside the circle through a, b, c, which run counter-clockwise.
 bool in_circle(LatticePoint a, LatticePoint b, LatticePoint c, LatticePoint p) {
   const auto x = [&](LatticePoint q) { return std::int64_t{q.x} - p.x; };
   const auto y = [&](LatticePoint q) { return std::int64_t{q.y} - p.y; };
   const auto squared = [&](LatticePoint q) { return x(q) * x(q) + y(q) * y(q); };
-  const auto minor = [&](LatticePoint q, LatticePoint r) { return Wide(x(q) * y(r) - x(r) * y(q)); };
+  const auto minor = [&](LatticePoint q, LatticePoint r) {
+    return Wide(x(q) * y(r) - x(r) * y(q));
+  };
   return squared(a) * minor(b, c) + squared(b) * minor(c, a) + squared(c) * minor(a, b) > 0;
 }
 
@@ -56,7 +58,7 @@ std::uint32_t LatticeDelaunay::find(LatticePoint p, std::uint32_t start) const {
       ++k;
       continue;
     }
-    t = opposite_[3 * t + k] / 3;   // a convex whole: beyond the rim there is no point to look for
+    t = opposite_[3 * t + k] / 3;  // a convex whole: beyond the rim there is no point to look for
     k = 0;
   }
   return t;
@@ -70,8 +72,8 @@ bool LatticeDelaunay::breaks_delaunay(std::uint32_t side) const {
                    points_[triangles_[other / 3][previous_side(other) % 3]]);
 }
 
-// Before: the side runs from r to l, its triangle's third corner is a, the other one's b. After: the
-// side's triangle is (a, b, l), the other one (b, a, r).
+// Before: the side runs from r to l, its triangle's third corner is a, the other one's b. After:
+// the side's triangle is (a, b, l), the other one (b, a, r).
 void LatticeDelaunay::flip(std::uint32_t side) {
   const std::uint32_t other = opposite_[side];
   const std::uint32_t s = side / 3, o = other / 3;
@@ -96,7 +98,7 @@ void LatticeDelaunay::restore(std::vector<std::uint32_t>& suspects,
     flip(side);
     changed.push_back(s);
     changed.push_back(o);
-    suspects.push_back(3 * s + 1);   // b to l, and r to b, seen from a
+    suspects.push_back(3 * s + 1);  // b to l, and r to b, seen from a
     suspects.push_back(3 * o + 2);
   }
 }
@@ -104,9 +106,10 @@ void LatticeDelaunay::restore(std::vector<std::uint32_t>& suspects,
 void LatticeDelaunay::insert(LatticePoint p, std::uint32_t triangle,
                              std::vector<std::uint32_t>& changed) {
   const auto n = static_cast<std::uint32_t>(points_.size());
-  std::uint32_t on = none;   // the side that the point is on
+  std::uint32_t on = none;  // the side that the point is on
   for (std::uint32_t k = 0; k < 3; ++k)
-    if (doubled_area(corner(triangle, k), corner(triangle, (k + 1) % 3), p) == 0) on = 3 * triangle + k;
+    if (doubled_area(corner(triangle, k), corner(triangle, (k + 1) % 3), p) == 0)
+      on = 3 * triangle + k;
   points_.push_back(p);
   std::vector<std::uint32_t> suspects;
   if (on == none) {
@@ -121,7 +124,8 @@ void LatticeDelaunay::insert(LatticePoint p, std::uint32_t triangle,
   } else {
     // The side from r to l, its triangle's third corner a: it falls into (a, r, n) and (l, a, n).
     const std::uint32_t other = opposite_[on];
-    const std::uint32_t r = triangles_[triangle][on % 3], l = triangles_[triangle][next_side(on) % 3],
+    const std::uint32_t r = triangles_[triangle][on % 3],
+                        l = triangles_[triangle][next_side(on) % 3],
                         a = triangles_[triangle][previous_side(on) % 3];
     const std::uint32_t la = opposite_[next_side(on)], ar = opposite_[previous_side(on)];
     const std::uint32_t u = add();

@@ -22,8 +22,9 @@ inline std::int64_t doubled_area(LatticePoint a, LatticePoint b, LatticePoint c)
 }
 
 /// A Delaunay triangulation of whole-number points that fills a rectangle, grown point by point;
-/// all predicates are exact. Coordinates are below 2^30. Side 3 t + k runs from corner k of triangle
-/// t to the next one. Which of two diagonals four points on a circle have depends on their order.
+/// all predicates are exact. Coordinates are below 2^30. Side 3 t + k runs from corner k of
+/// triangle t to the next one. Which of two diagonals four points on a circle have depends on their
+/// order.
 class LatticeDelaunay {
  public:
   static constexpr std::uint32_t none = 0xffffffffu;
@@ -59,7 +60,7 @@ class LatticeDelaunay {
 
   std::vector<LatticePoint> points_;
   std::vector<Triangle> triangles_;
-  std::vector<std::uint32_t> opposite_;   // of every side
+  std::vector<std::uint32_t> opposite_;  // of every side
 };
 
 }  // namespace surf

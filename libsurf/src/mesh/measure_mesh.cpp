@@ -13,15 +13,15 @@ namespace {
 
 /// Sums over the triangles around each point.
 struct Sums {
-  std::vector<double> angle;      ///< of their corners there
-  std::vector<double> area;       ///< what it has of theirs
-  std::vector<Vec3> pull;         ///< of the area's gradient: sum of cotangents times edges, halved
+  std::vector<double> angle;  ///< of their corners there
+  std::vector<double> area;   ///< what it has of theirs
+  std::vector<Vec3> pull;     ///< of the area's gradient: sum of cotangents times edges, halved
   std::vector<Vec3> normal;
-  std::vector<unsigned char> inner;   ///< every edge there has two triangles
+  std::vector<unsigned char> inner;  ///< every edge there has two triangles
 };
 
-/// What corner k has of a triangle: the part nearest to it, or a fixed share where that part reaches
-/// out of the triangle (Meyer et al., section 3.3).
+/// What corner k has of a triangle: the part nearest to it, or a fixed share where that part
+/// reaches out of the triangle (Meyer et al., section 3.3).
 double mixed_area(const Vec3* v, std::size_t k, double area) {
   const auto along = [v](std::size_t at) {
     return dot(v[(at + 1) % 3] - v[at], v[(at + 2) % 3] - v[at]);
@@ -83,7 +83,9 @@ MeshMeasures measure_mesh(const TriangleMesh& mesh) {
   m.volume_nm3 = report.signed_volume_nm3;
   const Weld weld = weld_equal_vertices(mesh);
   const std::vector<Triangle> triangles = welded_triangles(mesh, weld);
-  const auto place = [&](std::uint32_t point) { return mesh.vertices_nm[weld.first_vertex[point]]; };
+  const auto place = [&](std::uint32_t point) {
+    return mesh.vertices_nm[weld.first_vertex[point]];
+  };
   for (const Triangle& t : triangles) {
     const double area = 0.5 * length(cross(place(t[1]) - place(t[0]), place(t[2]) - place(t[0])));
     m.centroid_nm += (place(t[0]) + place(t[1]) + place(t[2])) * (area / 3);

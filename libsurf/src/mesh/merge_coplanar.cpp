@@ -16,12 +16,13 @@ namespace surf {
 namespace {
 
 constexpr std::uint32_t none = 0xffffffffu;
-constexpr std::size_t watched_size = 4096;    // triangles between looks at the watch
-constexpr double needle = 1e-6;               // width over length of triangles whose plane is not trusted
-constexpr std::size_t worth_grading = 64;     // triangles of a region
-constexpr double area_rounding = 1e-9;        // relative, of a region before and after
+constexpr std::size_t watched_size = 4096;  // triangles between looks at the watch
+constexpr double needle = 1e-6;  // width over length of triangles whose plane is not trusted
+constexpr std::size_t worth_grading = 64;  // triangles of a region
+constexpr double area_rounding = 1e-9;     // relative, of a region before and after
 
-// Regions of triangles in one plane: they are found, their outlines are straightened, and they are filled anew.
+// Regions of triangles in one plane: they are found, their outlines are straightened, and they are
+// filled anew.
 class CoplanarRegions {
  public:
   CoplanarRegions(TriangleMesh& mesh, const MergeCoplanarOptions& options)
@@ -30,14 +31,17 @@ class CoplanarRegions {
   void merge() {
     find_neighbours();
     find_regions();
-    if (first_of_.size() == mesh_.triangles.size()) return;   // each by itself
-    do drop_corners(); while (!fill_all());
+    if (first_of_.size() == mesh_.triangles.size()) return;  // each by itself
+    do drop_corners();
+    while (!fill_all());
     replace();
   }
 
  private:
   Vec3 at(std::uint32_t vertex) const { return mesh_.vertices_nm[vertex]; }
-  std::uint32_t corner(std::size_t triangle, std::size_t k) const { return mesh_.triangles[triangle][k % 3]; }
+  std::uint32_t corner(std::size_t triangle, std::size_t k) const {
+    return mesh_.triangles[triangle][k % 3];
+  }
 
   void look(std::size_t i) const {
     if (i % watched_size == 0) watch_.check();
@@ -51,7 +55,8 @@ class CoplanarRegions {
       for (std::size_t i = 0; i < n; ++i)
         for (std::size_t k = 0; k < 3; ++k) {
           const std::uint32_t a = corner(i, k), b = corner(i, k + 1);
-          put(std::min(a, b), std::uint64_t{std::max(a, b)} << 32 | static_cast<std::uint32_t>(3 * i + k));
+          put(std::min(a, b),
+              std::uint64_t{std::max(a, b)} << 32 | static_cast<std::uint32_t>(3 * i + k));
         }
     });
     for (std::size_t p = 0; p + 1 < edges.begin.size(); ++p)
@@ -60,7 +65,8 @@ class CoplanarRegions {
         std::size_t end = i + 1;
         while (end < edges.begin[p + 1] && edges.values[end] >> 32 == edges.values[i] >> 32) ++end;
         if (end == i + 2) {
-          const auto s = static_cast<std::uint32_t>(edges.values[i]), t = static_cast<std::uint32_t>(edges.values[i + 1]);
+          const auto s = static_cast<std::uint32_t>(edges.values[i]),
+                     t = static_cast<std::uint32_t>(edges.values[i + 1]);
           if (mesh_.triangles[s / 3][s % 3] != mesh_.triangles[t / 3][t % 3]) {
             neighbours_[s] = t / 3;
             neighbours_[t] = s / 3;
@@ -81,9 +87,11 @@ class CoplanarRegions {
       first_of_.push_back(seed);
       size_of_.push_back(1);
       region_[seed] = number;
-      const Vec3 a = at(corner(seed, 0)), ab = at(corner(seed, 1)) - a, ac = at(corner(seed, 2)) - a;
+      const Vec3 a = at(corner(seed, 0)), ab = at(corner(seed, 1)) - a,
+                 ac = at(corner(seed, 2)) - a;
       Vec3 normal = cross(ab, ac);
-      const double area2 = length(normal), longest = std::max({dot(ab, ab), dot(ac, ac), dot(ac - ab, ac - ab)});
+      const double area2 = length(normal),
+                   longest = std::max({dot(ab, ab), dot(ac, ac), dot(ac - ab, ac - ab)});
       normal_of_.push_back(area2 > 0 ? normal * (1 / area2) : Vec3{});
       if (!(area2 > needle * longest)) continue;
       normal = normal_of_.back();
@@ -123,11 +131,12 @@ class CoplanarRegions {
       }
   }
 
-  // A corner that two outlines alone pass, in opposite directions and straight on, is dropped from both.
+  // A corner that two outlines alone pass, in opposite directions and straight on, is dropped from
+  // both.
   void drop_corners() {
     struct Passing {
-      std::uint32_t next = none, before = none;   // of the first outline that comes
-      std::uint8_t begin = 0, end = 0;            // sides of outlines that do
+      std::uint32_t next = none, before = none;  // of the first outline that comes
+      std::uint8_t begin = 0, end = 0;           // sides of outlines that do
       bool fixed = false;
     };
     std::vector<Passing> passing(mesh_.vertices_nm.size());
@@ -154,7 +163,8 @@ class CoplanarRegions {
       look(v);
       if (!dropped_[v] || seen[v]) continue;
       run.assign(1, v);
-      const auto walk = [&](std::uint32_t from, std::uint32_t to) {   // to the end of the run, which is kept
+      const auto walk = [&](std::uint32_t from,
+                            std::uint32_t to) {  // to the end of the run, which is kept
         run.push_back(to);
         while (dropped_[to] && to != v) {
           const Passing& p = passing[to];
@@ -164,7 +174,7 @@ class CoplanarRegions {
         }
       };
       walk(v, passing[v].next);
-      if (run.back() == v) {   // all around: rounding at its worst
+      if (run.back() == v) {  // all around: rounding at its worst
         for (const std::uint32_t u : run) dropped_[u] = 0;
         continue;
       }
@@ -178,7 +188,8 @@ class CoplanarRegions {
   bool lies_on(std::uint32_t v, std::uint32_t a, std::uint32_t b) const {
     const Vec3 along = at(b) - at(a), to = at(v) - at(a);
     const double squared = dot(along, along), share = dot(to, along);
-    return squared > 0 && share > 0 && share < squared && length(to - along * (share / squared)) <= tolerance_;
+    return squared > 0 && share > 0 && share < squared &&
+           length(to - along * (share / squared)) <= tolerance_;
   }
 
   // Ramer, Douglas and Peucker.
@@ -206,7 +217,8 @@ class CoplanarRegions {
     }
   }
 
-  // False where a region could not be filled: it stays as it was, with all its corners, and all have to be done anew.
+  // False where a region could not be filled: it stays as it was, with all its corners, and all
+  // have to be done anew.
   bool fill_all() {
     const std::size_t regions = first_of_.size();
     const Buckets outlines = gather(regions, [&](const auto& put) {
@@ -216,20 +228,24 @@ class CoplanarRegions {
     });
     std::vector<double> area(regions, 0);
     for (std::size_t i = 0; i < mesh_.triangles.size(); ++i)
-      if (is_merged(region_[i])) area[region_[i]] += area2_of(mesh_.triangles[i], normal_of_[region_[i]]);
+      if (is_merged(region_[i]))
+        area[region_[i]] += area2_of(mesh_.triangles[i], normal_of_[region_[i]]);
     filled_.assign(regions, {});
     bool all = true;
     for (std::uint32_t r = 0; r < regions; ++r) {
       if (!is_merged(r)) continue;
       look(r);
-      fill(r, std::span(outlines.values).subspan(outlines.begin[r], outlines.begin[r + 1] - outlines.begin[r]));
+      fill(r, std::span(outlines.values)
+                  .subspan(outlines.begin[r], outlines.begin[r + 1] - outlines.begin[r]));
       double after = 0, outline = 0;
       for (const Triangle& t : filled_[r]) after += area2_of(t, normal_of_[r]);
       for (std::size_t i = outlines.begin[r]; i < outlines.begin[r + 1]; ++i)
         outline += length(at(corner(outlines.values[i] / 3, outlines.values[i] % 3 + 1)) -
                           at(corner(outlines.values[i] / 3, outlines.values[i] % 3)));
       const double rounding = area_rounding * area[r] + 2 * tolerance_ * outline;
-      if (!filled_[r].empty() && filled_[r].size() <= size_of_[r] && std::fabs(after - area[r]) <= rounding) continue;
+      if (!filled_[r].empty() && filled_[r].size() <= size_of_[r] &&
+          std::fabs(after - area[r]) <= rounding)
+        continue;
       size_of_[r] = 1;
       all = false;
     }
@@ -241,7 +257,8 @@ class CoplanarRegions {
   }
 
   void fill(std::uint32_t region, std::span<const std::uint64_t> outline) {
-    // Seen along the axis that the normal is nearest to: what is straight along another axis stays so.
+    // Seen along the axis that the normal is nearest to: what is straight along another axis stays
+    // so.
     const Vec3 n = normal_of_[region];
     const double x = std::fabs(n.x), y = std::fabs(n.y), z = std::fabs(n.z);
     double Vec3::*u = &Vec3::x;
@@ -254,7 +271,8 @@ class CoplanarRegions {
     std::vector<std::uint32_t> vertices;
     std::unordered_map<std::uint32_t, std::uint32_t> number;
     const auto point = [&](std::uint32_t vertex) {
-      const auto [place, is_new] = number.try_emplace(vertex, static_cast<std::uint32_t>(points.size()));
+      const auto [place, is_new] =
+          number.try_emplace(vertex, static_cast<std::uint32_t>(points.size()));
       if (is_new) {
         points.push_back({at(vertex).*u, at(vertex).*v});
         vertices.push_back(vertex);
@@ -264,7 +282,8 @@ class CoplanarRegions {
     // From each kept corner past those that are dropped.
     std::unordered_map<std::uint32_t, std::uint32_t> after_dropped;
     for (const std::uint64_t s : outline)
-      if (dropped_[corner(s / 3, s % 3)]) after_dropped[corner(s / 3, s % 3)] = corner(s / 3, s % 3 + 1);
+      if (dropped_[corner(s / 3, s % 3)])
+        after_dropped[corner(s / 3, s % 3)] = corner(s / 3, s % 3 + 1);
     std::vector<PlanarEdge> edges;
     for (const std::uint64_t s : outline) {
       const std::uint32_t from = corner(s / 3, s % 3);
@@ -301,14 +320,16 @@ class CoplanarRegions {
     for (std::size_t i = 0; i < mesh_.triangles.size(); ++i) {
       const std::uint32_t r = region_[i];
       if (!is_merged(r)) triangles.push_back(mesh_.triangles[i]);
-      else if (first_of_[r] == i) triangles.insert(triangles.end(), filled_[r].begin(), filled_[r].end());
+      else if (first_of_[r] == i)
+        triangles.insert(triangles.end(), filled_[r].begin(), filled_[r].end());
     }
     mesh_.triangles = std::move(triangles);
     drop_unused();
   }
 
   void drop_unused() {
-    std::vector<std::uint32_t> number(mesh_.vertices_nm.size(), none);   // those of regions that were filled twice, too
+    std::vector<std::uint32_t> number(mesh_.vertices_nm.size(),
+                                      none);  // those of regions that were filled twice, too
     for (const Triangle& t : mesh_.triangles)
       for (const std::uint32_t v : t) number[v] = 0;
     std::uint32_t count = 0;
@@ -326,13 +347,13 @@ class CoplanarRegions {
   TriangleMesh& mesh_;
   double tolerance_;
   const Watch& watch_;
-  std::vector<std::uint32_t> neighbours_;     // per side
-  std::vector<std::uint32_t> region_;         // per triangle
-  std::vector<std::uint32_t> first_of_;       // per region: its first triangle
-  std::vector<std::uint32_t> size_of_;        // triangles; 1 where they are left as they are
+  std::vector<std::uint32_t> neighbours_;  // per side
+  std::vector<std::uint32_t> region_;      // per triangle
+  std::vector<std::uint32_t> first_of_;    // per region: its first triangle
+  std::vector<std::uint32_t> size_of_;     // triangles; 1 where they are left as they are
   std::vector<Vec3> normal_of_;
-  std::vector<std::uint8_t> dropped_;         // per vertex
-  std::vector<std::vector<Triangle>> filled_; // per region
+  std::vector<std::uint8_t> dropped_;          // per vertex
+  std::vector<std::vector<Triangle>> filled_;  // per region
 };
 
 }  // namespace

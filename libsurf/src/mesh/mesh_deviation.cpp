@@ -5,15 +5,16 @@
 #include <vector>
 
 #include "core/argument.h"
-#include "surf/mesh/triangle_tree.h"
 #include "surf/core/parallel.h"
+#include "surf/mesh/triangle_tree.h"
 
 namespace surf {
 namespace {
 
 constexpr std::size_t block_size = 1024;
-constexpr double default_spacing = 1.5;   // mean edges: the longest side of a typical triangle
-constexpr double max_pieces = 4096;   // along a side: a sample less dense than asked is better than none
+constexpr double default_spacing = 1.5;  // mean edges: the longest side of a typical triangle
+constexpr double max_pieces =
+    4096;  // along a side: a sample less dense than asked is better than none
 
 double mean_edge(const TriangleMesh& mesh) {
   double sum = 0;
@@ -33,7 +34,8 @@ template <class Visit>
 void visit_samples(const TriangleMesh& mesh, const Triangle& t, double spacing_nm,
                    const Visit& visit) {
   Vec3 v[] = {mesh.vertices_nm[t[0]], mesh.vertices_nm[t[1]], mesh.vertices_nm[t[2]]};
-  for (int turn = 0; turn < 2 && length(v[1] - v[0]) < std::max(length(v[2] - v[1]), length(v[0] - v[2]));
+  for (int turn = 0;
+       turn < 2 && length(v[1] - v[0]) < std::max(length(v[2] - v[1]), length(v[0] - v[2]));
        ++turn) {
     std::rotate(v, v + 1, v + 3);
   }
@@ -44,7 +46,7 @@ void visit_samples(const TriangleMesh& mesh, const Triangle& t, double spacing_n
   for (int row = 0; row < rows; ++row) {
     const double share = double(row) / rows;
     const int columns = pieces(longest * (1 - share), spacing_nm);
-    const bool corners = row == 0;   // at both ends, and visited already
+    const bool corners = row == 0;  // at both ends, and visited already
     for (int column = corners; column <= columns - corners; ++column) {
       visit(v[0] + up * share + along * ((1 - share) * column / columns));
     }
@@ -58,19 +60,22 @@ double largest_distance(const TriangleMesh& from, const TriangleTree& tree, doub
   const std::size_t count = corners + from.triangles.size();
   const std::size_t blocks = (count + block_size - 1) / block_size;
   std::vector<double> largest(blocks, 0);
-  parallel_for(blocks, threads, [&](std::size_t block, int) {
-    std::uint32_t near = 0;
-    const auto look = [&](const Vec3& p) {
-      const TriangleTree::Closest found = tree.closest(p, near);
-      near = found.triangle;
-      largest[block] = std::max(largest[block], found.distance_nm);
-    };
-    const std::size_t end = std::min(count, (block + 1) * block_size);
-    for (std::size_t i = block * block_size; i < end; ++i) {
-      if (i < corners) look(from.vertices_nm[i]);
-      else visit_samples(from, from.triangles[i - corners], spacing_nm, look);
-    }
-  }, watch);
+  parallel_for(
+      blocks, threads,
+      [&](std::size_t block, int) {
+        std::uint32_t near = 0;
+        const auto look = [&](const Vec3& p) {
+          const TriangleTree::Closest found = tree.closest(p, near);
+          near = found.triangle;
+          largest[block] = std::max(largest[block], found.distance_nm);
+        };
+        const std::size_t end = std::min(count, (block + 1) * block_size);
+        for (std::size_t i = block * block_size; i < end; ++i) {
+          if (i < corners) look(from.vertices_nm[i]);
+          else visit_samples(from, from.triangles[i - corners], spacing_nm, look);
+        }
+      },
+      watch);
   return largest.empty() ? 0 : *std::ranges::max_element(largest);
 }
 
@@ -85,13 +90,13 @@ MeshDeviation mesh_deviation(const TriangleMesh& first, const TriangleMesh& seco
   const Watch& watch = options.watch;
   watch.check();
   const TriangleMesh a = merge_equal_vertices(first), b = merge_equal_vertices(second);
-  d.spacing_nm = options.spacing_nm > 0
-                     ? options.spacing_nm
-                     : default_spacing * std::min(mean_edge(a), mean_edge(b));
+  d.spacing_nm = options.spacing_nm > 0 ? options.spacing_nm
+                                        : default_spacing * std::min(mean_edge(a), mean_edge(b));
   const auto from = [&](const TriangleMesh& one, const TriangleMesh& other, double begin) {
     watch.report(begin, 1);
     const TriangleTree tree(other, watch, options.threads);
-    return largest_distance(one, tree, d.spacing_nm, options.threads, watch.part(begin + 0.1, begin + 0.5));
+    return largest_distance(one, tree, d.spacing_nm, options.threads,
+                            watch.part(begin + 0.1, begin + 0.5));
   };
   d.from_first_nm = from(a, b, 0);
   d.from_second_nm = from(b, a, 0.5);

@@ -16,20 +16,21 @@ namespace {
 
 constexpr int rows_per_unit = 32;
 constexpr int max_samples_a_side = 65536;
-constexpr double slack = 1e-9;   // of barycentric coordinates
+constexpr double slack = 1e-9;  // of barycentric coordinates
 
 int sample_count(double length_nm, double pitch_nm, const char* subject) {
   const double count = std::round(length_nm / pitch_nm) + 1;
   if (count >= 2 && count <= max_samples_a_side) return static_cast<int>(count);
-  throw UsageError(subject,
-                   fmt::format("{} nm at a pitch of {} nm makes {:.6g} samples", length_nm,
-                               pitch_nm, count),
-                   fmt::format("Choose both so that there are 2 to {}", max_samples_a_side));
+  throw UsageError(
+      subject,
+      fmt::format("{} nm at a pitch of {} nm makes {:.6g} samples", length_nm, pitch_nm, count),
+      fmt::format("Choose both so that there are 2 to {}", max_samples_a_side));
 }
 
 HeightField empty_field(const TriangleMesh& mesh, const MeshHeightFieldOptions& options) {
   const Box region = options.region_nm.value_or(bounds(mesh));
-  for (const double x : {region.lower_nm.x, region.lower_nm.y, region.upper_nm.x, region.upper_nm.y}) {
+  for (const double x :
+       {region.lower_nm.x, region.lower_nm.y, region.upper_nm.x, region.upper_nm.y}) {
     require_finite(x, "region");
   }
   HeightField field;
@@ -59,14 +60,17 @@ Range samples(double low, double high, double origin, double pitch, int count) {
 void raise(HeightField& field, const Vec3& a, const Vec3& b, const Vec3& c, int first_row,
            int last_row) {
   const double twice_area = (b.x - a.x) * (c.y - a.y) - (c.x - a.x) * (b.y - a.y);
-  const double longest = std::max({std::hypot(b.x - a.x, b.y - a.y), std::hypot(c.x - a.x, c.y - a.y),
-                                   std::hypot(c.x - b.x, c.y - b.y)});
-  if (std::abs(twice_area) <= 1e-12 * longest * longest) return;   // seen on edge
+  const double longest =
+      std::max({std::hypot(b.x - a.x, b.y - a.y), std::hypot(c.x - a.x, c.y - a.y),
+                std::hypot(c.x - b.x, c.y - b.y)});
+  if (std::abs(twice_area) <= 1e-12 * longest * longest) return;  // seen on edge
   const auto [low_x, high_x] = std::minmax({a.x, b.x, c.x});
   const auto [low_y, high_y] = std::minmax({a.y, b.y, c.y});
   const auto [low_z, high_z] = std::minmax({a.z, b.z, c.z});
-  const Range columns = samples(low_x, high_x, field.origin_x_nm, field.pitch_x_nm, field.z_nm.width());
-  const Range rows = samples(low_y, high_y, field.origin_y_nm, field.pitch_y_nm, field.z_nm.height());
+  const Range columns =
+      samples(low_x, high_x, field.origin_x_nm, field.pitch_x_nm, field.z_nm.width());
+  const Range rows =
+      samples(low_y, high_y, field.origin_y_nm, field.pitch_y_nm, field.z_nm.height());
   for (int row = std::max(rows.first, first_row); row <= std::min(rows.last, last_row); ++row) {
     for (int column = columns.first; column <= columns.last; ++column) {
       const double x = field.x_nm(column), y = field.y_nm(row);
@@ -87,14 +91,16 @@ HeightField mesh_height_field(const TriangleMesh& mesh, const MeshHeightFieldOpt
   options.watch.report(0, 1);
   HeightField field = empty_field(mesh, options);
   const int height = field.z_nm.height();
-  parallel_for(static_cast<std::size_t>((height + rows_per_unit - 1) / rows_per_unit),
-               options.threads, [&](std::size_t unit, int) {
-    const int first = static_cast<int>(unit) * rows_per_unit;
-    const int last = std::min(height, first + rows_per_unit) - 1;
-    for (const auto& [a, b, c] : mesh.triangles) {
-      raise(field, mesh.vertices_nm[a], mesh.vertices_nm[b], mesh.vertices_nm[c], first, last);
-    }
-  }, options.watch);
+  parallel_for(
+      static_cast<std::size_t>((height + rows_per_unit - 1) / rows_per_unit), options.threads,
+      [&](std::size_t unit, int) {
+        const int first = static_cast<int>(unit) * rows_per_unit;
+        const int last = std::min(height, first + rows_per_unit) - 1;
+        for (const auto& [a, b, c] : mesh.triangles) {
+          raise(field, mesh.vertices_nm[a], mesh.vertices_nm[b], mesh.vertices_nm[c], first, last);
+        }
+      },
+      options.watch);
   std::size_t covered = 0;
   Grid<unsigned char> valid(field.z_nm.width(), height, 1);
   for (std::size_t i = 0; i < valid.size(); ++i) {

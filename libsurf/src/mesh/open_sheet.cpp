@@ -40,7 +40,8 @@ double reach(const Box& box, const RimCentroid& c) {
                     std::max(c.y - box.lower_nm.y, box.upper_nm.y - c.y));
 }
 
-constexpr double beyond_rim = 0.01;   // of the rim's size: more is not a sheet but a body with a hole
+constexpr double beyond_rim =
+    0.01;  // of the rim's size: more is not a sheet but a body with a hole
 
 /// A vertex of the sheet that seen from above lies well outside the rim, or nothing. The rim runs
 /// counter-clockwise about the centroid, `angle` being between neighbours.
@@ -51,7 +52,7 @@ std::optional<Vec3> beyond(const TriangleMesh& mesh, std::uint32_t of_triangle,
   for (const Vec3& v : rim) box.extend(v);
   const Vec3 size = box.size_nm();
   const double slack = beyond_rim * std::max(size.x, size.y);
-  std::vector<double> turned{0};   // from the first rim vertex to each
+  std::vector<double> turned{0};  // from the first rim vertex to each
   for (const double a : angle) turned.push_back(turned.back() + a);
   const Vec3 start = rim[0] - Vec3{c.x, c.y, 0};
 
@@ -76,7 +77,8 @@ std::optional<Vec3> beyond(const TriangleMesh& mesh, std::uint32_t of_triangle,
 void turn_component(TriangleMesh& mesh, std::uint32_t of_triangle) {
   const std::vector<std::uint32_t> component = triangle_components(mesh);
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-    if (component[t] == component[of_triangle]) std::swap(mesh.triangles[t][1], mesh.triangles[t][2]);
+    if (component[t] == component[of_triangle])
+      std::swap(mesh.triangles[t][1], mesh.triangles[t][2]);
   }
 }
 

@@ -7,15 +7,15 @@
 namespace surf {
 namespace {
 
-constexpr int max_passes = 16;   // a pass may bare the next sliver of a chain
-constexpr double relative_area = 4 * std::numeric_limits<double>::epsilon();   // as check_mesh
+constexpr int max_passes = 16;  // a pass may bare the next sliver of a chain
+constexpr double relative_area = 4 * std::numeric_limits<double>::epsilon();  // as check_mesh
 
 /// The triangle's shape: which corner faces the longest side, and how high it stands above it.
 struct Shape {
   std::size_t apex;
   double height_nm;
   double shortest_nm;
-  bool flat;   ///< no area, to rounding
+  bool flat;  ///< no area, to rounding
 };
 
 Shape shape(const TriangleMesh& mesh, const Triangle& t) {

@@ -109,8 +109,7 @@ std::vector<Triangle> patch_for(TriangleMesh& mesh, const BoundaryLoop& loop,
 
 std::size_t fill_holes(TriangleMesh& mesh, std::optional<double> max_hole_nm,
                        std::size_t& fill_triangles, const Watch& watch) {
-  const std::vector<BoundaryLoop> loops =
-      boundary_loops(mesh.triangles, mesh.vertices_nm.size());
+  const std::vector<BoundaryLoop> loops = boundary_loops(mesh.triangles, mesh.vertices_nm.size());
   if (loops.empty()) return 0;
   const std::vector<double> diagonal = diagonals(mesh);
   Occupied occupied(mesh, loops);
@@ -130,8 +129,7 @@ std::size_t fill_holes(TriangleMesh& mesh, std::optional<double> max_hole_nm,
 
 std::vector<OpenHole> open_holes(const TriangleMesh& mesh, std::optional<double> max_hole_nm) {
   std::vector<OpenHole> holes;
-  const std::vector<BoundaryLoop> loops =
-      boundary_loops(mesh.triangles, mesh.vertices_nm.size());
+  const std::vector<BoundaryLoop> loops = boundary_loops(mesh.triangles, mesh.vertices_nm.size());
   if (loops.empty()) return holes;
   const std::vector<double> diagonal = diagonals(mesh);
   for (const BoundaryLoop& loop : loops) {

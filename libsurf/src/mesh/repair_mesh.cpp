@@ -17,9 +17,10 @@
 namespace surf {
 namespace {
 
-constexpr double default_stitch = 1e-6;        // of the diagonal
-constexpr std::size_t max_mended_pairs = 20000;   // beyond these CGAL would take minutes
-constexpr double size_kept = 0.5;   // a mended body keeps this share of its volume, a sheet of its area
+constexpr double default_stitch = 1e-6;          // of the diagonal
+constexpr std::size_t max_mended_pairs = 20000;  // beyond these CGAL would take minutes
+constexpr double size_kept =
+    0.5;  // a mended body keeps this share of its volume, a sheet of its area
 
 void check_options(const RepairOptions& o) {
   if (o.stitch_nm) require_not_negative(*o.stitch_nm, "stitch distance");
@@ -61,20 +62,24 @@ class Work {
   }
 
  private:
-  const Watch* watch_;   // is told nothing
+  const Watch* watch_;  // is told nothing
   TriangleMesh mesh_;
   MeshReport report_;
 };
 
 bool fits_in(const Box& inner, const Box& outer) {
   const double slack = 1e-6 * length(outer.size_nm());
-  return inner.lower_nm.x >= outer.lower_nm.x - slack && inner.lower_nm.y >= outer.lower_nm.y - slack &&
-         inner.lower_nm.z >= outer.lower_nm.z - slack && inner.upper_nm.x <= outer.upper_nm.x + slack &&
-         inner.upper_nm.y <= outer.upper_nm.y + slack && inner.upper_nm.z <= outer.upper_nm.z + slack;
+  return inner.lower_nm.x >= outer.lower_nm.x - slack &&
+         inner.lower_nm.y >= outer.lower_nm.y - slack &&
+         inner.lower_nm.z >= outer.lower_nm.z - slack &&
+         inner.upper_nm.x <= outer.upper_nm.x + slack &&
+         inner.upper_nm.y <= outer.upper_nm.y + slack &&
+         inner.upper_nm.z <= outer.upper_nm.z + slack;
 }
 
 /// The bodies that pass through each other become one; the rest of the mesh stays as it is.
-TriangleMesh united(const TriangleMesh& mesh, const SelfIntersections& crossings, const Watch& watch) {
+TriangleMesh united(const TriangleMesh& mesh, const SelfIntersections& crossings,
+                    const Watch& watch) {
   const std::vector<std::uint32_t> component = triangle_components(mesh);
   std::vector<unsigned char> crosses;
   crosses.assign(*std::ranges::max_element(component) + 1, 0);
@@ -103,19 +108,22 @@ TriangleMesh united(const TriangleMesh& mesh, const SelfIntersections& crossings
   if (sum.triangles.empty()) return {};
   const auto first = static_cast<std::uint32_t>(rest.vertices_nm.size());
   rest.vertices_nm.insert(rest.vertices_nm.end(), sum.vertices_nm.begin(), sum.vertices_nm.end());
-  for (const auto& [a, b, c] : sum.triangles) rest.triangles.push_back({first + a, first + b, first + c});
+  for (const auto& [a, b, c] : sum.triangles)
+    rest.triangles.push_back({first + a, first + b, first + c});
   return merge_equal_vertices(rest);
 }
 
 /// Takes a mended mesh over where it is better and still the same body.
-bool adopt(TriangleMesh& mesh, SelfIntersections& found, TriangleMesh mended, int threads, const Watch& watch) {
+bool adopt(TriangleMesh& mesh, SelfIntersections& found, TriangleMesh mended, int threads,
+           const Watch& watch) {
   if (mended.triangles.empty()) return false;
   mended = merge_equal_vertices(mended);
   remove_degenerate(mended, 0);
   if (mended.triangles.empty()) return false;
   const MeshReport before = check_mesh(mesh, watch);
   const MeshReport now = check_mesh(mended, watch);
-  if (!no_worse(now, before) || now.degenerate_triangles > before.degenerate_triangles) return false;
+  if (!no_worse(now, before) || now.degenerate_triangles > before.degenerate_triangles)
+    return false;
   if (!fits_in(now.bounds_nm, before.bounds_nm)) return false;
   if (now.area_nm2 < size_kept * before.area_nm2 && !before.closed_and_oriented) return false;
   if (now.signed_volume_nm3 < size_kept * before.signed_volume_nm3) return false;
@@ -131,7 +139,8 @@ std::size_t resolve(TriangleMesh& mesh, SelfIntersections& found, int threads, c
   const std::size_t before = found.pairs.size();
   if (check_mesh(mesh, watch).closed_and_oriented)
     adopt(mesh, found, united(mesh, found, watch), threads, watch);
-  if (!found.pairs.empty()) adopt(mesh, found, mend_self_intersections(mesh, watch), threads, watch);
+  if (!found.pairs.empty())
+    adopt(mesh, found, mend_self_intersections(mesh, watch), threads, watch);
   return before - found.pairs.size();
 }
 
@@ -206,8 +215,8 @@ TriangleMesh repair_mesh(const TriangleMesh& mesh, const RepairOptions& options,
   watch.report(0.55, 1);
   summary.turned_triangles += work.step(turn_outward);
 
-  SelfIntersections found =
-      find_self_intersections(work.mesh(), {.threads = options.threads, .watch = watch.part(0.6, 0.8)});
+  SelfIntersections found = find_self_intersections(
+      work.mesh(), {.threads = options.threads, .watch = watch.part(0.6, 0.8)});
   summary.self_intersections_before = found.pairs.size();
   if (!found.pairs.empty() && options.resolve_self_intersections) {
     work.step([&](TriangleMesh& m) { return resolve(m, found, options.threads, silent); });
@@ -217,10 +226,11 @@ TriangleMesh repair_mesh(const TriangleMesh& mesh, const RepairOptions& options,
   summary.first_self_intersection_nm = found.first_nm;
 
   summary.changed = summary.merged_vertices + summary.stitched_vertices +
-                        summary.removed_degenerate + summary.removed_duplicates +
-                        summary.turned_triangles + summary.dropped_components +
-                        summary.filled_holes >
-                    0 || summary.self_intersections_after < summary.self_intersections_before;
+                            summary.removed_degenerate + summary.removed_duplicates +
+                            summary.turned_triangles + summary.dropped_components +
+                            summary.filled_holes >
+                        0 ||
+                    summary.self_intersections_after < summary.self_intersections_before;
   summary.open_holes = open_holes(work.mesh(), options.max_hole_nm);
   if (!summary.changed) {
     summary.after = summary.before;
@@ -236,14 +246,15 @@ std::vector<std::string> describe(const RepairSummary& s) {
   const auto did = [&](std::size_t n, const std::string& text) {
     if (n > 0) lines.push_back(text);
   };
-  did(s.merged_vertices, "merged " + count(s.merged_vertices, "vertex", "vertices") + " at equal places");
+  did(s.merged_vertices,
+      "merged " + count(s.merged_vertices, "vertex", "vertices") + " at equal places");
   did(s.stitched_vertices, "stitched " + count(s.stitched_vertices, "rim vertex", "rim vertices"));
   did(s.removed_degenerate, "removed " + count(s.removed_degenerate, "triangle") + " without area");
   did(s.removed_duplicates, "removed " + count(s.removed_duplicates, "duplicate triangle"));
   did(s.turned_triangles, "turned " + count(s.turned_triangles, "triangle"));
   did(s.dropped_components, "dropped " + count(s.dropped_components, "small component"));
-  did(s.filled_holes, "filled " + count(s.filled_holes, "hole") + " with " +
-                          count(s.fill_triangles, "triangle"));
+  did(s.filled_holes,
+      "filled " + count(s.filled_holes, "hole") + " with " + count(s.fill_triangles, "triangle"));
   if (s.self_intersections_before > s.self_intersections_after) {
     lines.push_back("resolved " + count(s.self_intersections_before - s.self_intersections_after,
                                         "self-intersection"));
@@ -261,7 +272,8 @@ std::vector<std::string> describe(const RepairSummary& s) {
     lines.push_back(fmt::format("left open: {} more holes", s.open_holes.size() - most_holes));
   }
   if (s.self_intersections_after > 0) {
-    lines.push_back(fmt::format("remains: {} {}", count(s.self_intersections_after, "self-intersection"),
+    lines.push_back(fmt::format("remains: {} {}",
+                                count(s.self_intersections_after, "self-intersection"),
                                 place(s.first_self_intersection_nm)));
   }
   for (const std::string& fault : faults(s.after)) lines.push_back("remains: " + fault);

@@ -76,8 +76,8 @@ std::vector<std::uint32_t> rim_points(const TriangleMesh& mesh) {
 
 /// Sets of triangles that hang together by edges of exactly two, and who must turn within them.
 struct Patches {
-  std::vector<std::uint32_t> patch;    ///< of every triangle, from 0
-  std::vector<unsigned char> turn;     ///< of every triangle: against its patch's first one
+  std::vector<std::uint32_t> patch;  ///< of every triangle, from 0
+  std::vector<unsigned char> turn;   ///< of every triangle: against its patch's first one
   std::uint32_t count = 0;
 };
 
@@ -184,7 +184,8 @@ Box box_of(const TriangleMesh& mesh, const std::vector<std::uint32_t>& triangles
 }
 
 /// How often closed triangles wind around a point.
-double winding(const TriangleMesh& mesh, const std::vector<std::uint32_t>& triangles, const Vec3& p) {
+double winding(const TriangleMesh& mesh, const std::vector<std::uint32_t>& triangles,
+               const Vec3& p) {
   double sum = 0;
   for (const std::uint32_t t : triangles) {
     const Vec3 a = mesh.vertices_nm[mesh.triangles[t][0]] - p;
@@ -205,7 +206,8 @@ std::vector<unsigned char> closed_components(const TriangleMesh& mesh, std::size
   const std::vector<std::uint32_t> number = triangle_components(mesh);
   std::vector<unsigned char> closed(count, 1);
   visit_edges(mesh.triangles, mesh.vertices_nm.size(), [&](const EdgeUse& edge) {
-    if (2 * count_forward(mesh.triangles, edge) != edge.uses()) closed[number[edge.side(0) / 3]] = 0;
+    if (2 * count_forward(mesh.triangles, edge) != edge.uses())
+      closed[number[edge.side(0) / 3]] = 0;
   });
   return closed;
 }
@@ -239,17 +241,18 @@ std::size_t remove_duplicates(TriangleMesh& mesh) {
     for (std::uint32_t i = 0; i < triangles; ++i) {
       Triangle t = mesh.triangles[i];
       std::ranges::sort(t);
-      put(t[0], std::uint64_t{t[1]} << 32 | i);   // the same first two corners are neighbours
+      put(t[0], std::uint64_t{t[1]} << 32 | i);  // the same first two corners are neighbours
     }
   });
   std::vector<unsigned char> drop(triangles, 0);
-  std::vector<std::uint32_t> balanced;   // one of each group that runs both ways equally often
+  std::vector<std::uint32_t> balanced;  // one of each group that runs both ways equally often
   const auto is_even = [](Triangle t) {
     const bool odd = (t[0] > t[1]) ^ (t[0] > t[2]) ^ (t[1] > t[2]);
     return !odd;
   };
   const auto settle = [&](const std::vector<std::uint32_t>& copies) {
-    const auto even = std::ranges::count_if(copies, [&](auto i) { return is_even(mesh.triangles[i]); });
+    const auto even =
+        std::ranges::count_if(copies, [&](auto i) { return is_even(mesh.triangles[i]); });
     const auto odd = std::ssize(copies) - even;
     const auto keep = std::ranges::find_if(
         copies, [&](auto i) { return is_even(mesh.triangles[i]) == (even >= odd); });
@@ -320,7 +323,8 @@ std::size_t turn_outward(TriangleMesh& mesh) {
   for (const auto& set : sets) {
     boxes.push_back(box_of(mesh, set));
     double sum = 0;
-    for (const std::uint32_t t : set) sum += volume(mesh, mesh.triangles[t], boxes.back().center_nm());
+    for (const std::uint32_t t : set)
+      sum += volume(mesh, mesh.triangles[t], boxes.back().center_nm());
     volumes.push_back(sum);
   }
   std::vector<std::size_t> inside_out;

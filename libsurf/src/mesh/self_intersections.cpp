@@ -5,9 +5,9 @@
 
 #include "mesh/cgal_predicates.h"
 #include "mesh/edges.h"
-#include "surf/mesh/triangle_tree.h"
 #include "surf/core/error.h"
 #include "surf/core/parallel.h"
+#include "surf/mesh/triangle_tree.h"
 
 namespace surf {
 namespace {
@@ -34,12 +34,15 @@ class Meeting {
       }
     }
     switch (shared) {
-      case 0: return triangles_meet(tree_.corners(s), tree_.corners(t));
+      case 0:
+        return triangles_meet(tree_.corners(s), tree_.corners(t));
       case 1:
         return triangles_meet_beyond_corner(from(s, in_s[0], (in_s[0] + 1) % 3),
                                             from(t, in_t[0], (in_t[0] + 1) % 3));
-      case 2: return triangles_meet_beyond_edge(from(s, in_s[0], in_s[1]), from(t, in_t[0], in_t[1]));
-      default: return true;   // the same triangle twice
+      case 2:
+        return triangles_meet_beyond_edge(from(s, in_s[0], in_s[1]), from(t, in_t[0], in_t[1]));
+      default:
+        return true;  // the same triangle twice
     }
   }
 
@@ -76,14 +79,16 @@ SelfIntersections find_self_intersections(const TriangleMesh& mesh,
   const std::size_t triangles = mesh.triangles.size();
   const Meeting meet(tree, welded_triangles(mesh, weld_equal_vertices(mesh)));
   std::vector<unsigned char> flat(triangles);
-  parallel_for((triangles + block_size - 1) / block_size, options.threads, [&](std::size_t b, int) {
-    const std::size_t end = std::min(triangles, (b + 1) * block_size);
-    for (std::size_t t = b * block_size; t < end; ++t) {
-      flat[t] = is_degenerate(tree.corners(static_cast<std::uint32_t>(t)));
-    }
-  }, Watch{{}, watch.cancel});
+  parallel_for((triangles + block_size - 1) / block_size, options.threads,
+               [&](std::size_t b, int) {
+                 const std::size_t end = std::min(triangles, (b + 1) * block_size);
+                 for (std::size_t t = b * block_size; t < end; ++t) {
+                   flat[t] = is_degenerate(tree.corners(static_cast<std::uint32_t>(t)));
+                 }
+               },
+               Watch{{}, watch.cancel});
 
-  constexpr double searching_from = 0.2;   // of the progress
+  constexpr double searching_from = 0.2;  // of the progress
   watch.report(searching_from, 1);
   SelfIntersections result;
   std::vector<std::vector<Pair>> found;
@@ -91,20 +96,24 @@ SelfIntersections find_self_intersections(const TriangleMesh& mesh,
   for (std::size_t begin = 0; begin < triangles; begin += round) {
     const std::size_t blocks = (std::min(round, triangles - begin) + block_size - 1) / block_size;
     found.resize(blocks);
-    parallel_for(blocks, options.threads, [&](std::size_t b, int) {
-      found[b].clear();
-      const std::size_t last = std::min(triangles, begin + (b + 1) * block_size);
-      for (std::size_t i = begin + b * block_size; i < last; ++i) {
-        const auto s = static_cast<std::uint32_t>(i);
-        if (flat[s]) continue;
-        tree.visit_overlapping(tree.box_of(s), [&](std::uint32_t t) {
-          if (t > s && !flat[t] && meet(s, t)) found[b].push_back({s, t});
-        });
-        if (found[b].size() >= options.limit) break;
-      }
-      std::ranges::sort(found[b]);
-    }, Watch{{}, watch.cancel});
-    const double done = static_cast<double>(std::min(begin + round, triangles)) / static_cast<double>(triangles);
+    parallel_for(
+        blocks, options.threads,
+        [&](std::size_t b, int) {
+          found[b].clear();
+          const std::size_t last = std::min(triangles, begin + (b + 1) * block_size);
+          for (std::size_t i = begin + b * block_size; i < last; ++i) {
+            const auto s = static_cast<std::uint32_t>(i);
+            if (flat[s]) continue;
+            tree.visit_overlapping(tree.box_of(s), [&](std::uint32_t t) {
+              if (t > s && !flat[t] && meet(s, t)) found[b].push_back({s, t});
+            });
+            if (found[b].size() >= options.limit) break;
+          }
+          std::ranges::sort(found[b]);
+        },
+        Watch{{}, watch.cancel});
+    const double done =
+        static_cast<double>(std::min(begin + round, triangles)) / static_cast<double>(triangles);
     watch.report(searching_from + (1 - searching_from) * done, 1);
     for (const std::vector<Pair>& pairs : found) {
       result.pairs.insert(result.pairs.end(), pairs.begin(), pairs.end());

@@ -15,10 +15,10 @@ int sample_count(double length_nm, double pitch_nm, const char* subject) {
   require_positive(length_nm, subject);
   const double count = std::round(length_nm / pitch_nm) + 1;
   if (count >= 2 && count <= 65536) return static_cast<int>(count);
-  throw UsageError(subject,
-                   fmt::format("{} nm at a pitch of {} nm makes {:.6g} samples", length_nm,
-                               pitch_nm, count),
-                   "Choose both so that there are 2 to 65536");
+  throw UsageError(
+      subject,
+      fmt::format("{} nm at a pitch of {} nm makes {:.6g} samples", length_nm, pitch_nm, count),
+      "Choose both so that there are 2 to 65536");
 }
 
 /// Distance of a sample from the middle of the field; exactly the same on both sides.
@@ -112,9 +112,8 @@ HeightField make_via(const FieldExtent& extent, double depth_nm, double bottom_w
   HeightField field = flat_field(extent);
   const double run_nm = wall_run_nm > 0 ? wall_run_nm : extent.pitch_nm;
   raise(field, [&](int column, int row) {
-    const double distance_nm =
-        std::hypot(from_middle(column, field.z_nm.width(), extent.pitch_nm),
-                   from_middle(row, field.z_nm.height(), extent.pitch_nm));
+    const double distance_nm = std::hypot(from_middle(column, field.z_nm.width(), extent.pitch_nm),
+                                          from_middle(row, field.z_nm.height(), extent.pitch_nm));
     return 0.0 - depth_nm * ramp(distance_nm, 0.5 * bottom_width_nm, run_nm);
   });
   return field;

@@ -78,10 +78,10 @@ void make_white(HeightField& field, std::uint64_t seed) {
 void require_short(double correlation_nm, const HeightField& field) {
   const double period_nm = std::min(field.z_nm.width(), field.z_nm.height()) * field.pitch_x_nm;
   if (correlation_nm > 0.5 * period_nm) {
-    throw UsageError("correlation length",
-                     fmt::format("{} nm is more than half of the field's {} nm", correlation_nm,
-                                 period_nm),
-                     "A periodic surface cannot vary that slowly: enlarge the field");
+    throw UsageError(
+        "correlation length",
+        fmt::format("{} nm is more than half of the field's {} nm", correlation_nm, period_nm),
+        "A periodic surface cannot vary that slowly: enlarge the field");
   }
 }
 
@@ -96,8 +96,8 @@ void set_rms(HeightField& field, double rms_nm) {
 
 /// The spectrum between its points.
 double density(const std::vector<SpectralDensity>& spectrum, double frequency_per_nm) {
-  const auto above = std::ranges::lower_bound(spectrum, frequency_per_nm, {},
-                                              &SpectralDensity::frequency_per_nm);
+  const auto above =
+      std::ranges::lower_bound(spectrum, frequency_per_nm, {}, &SpectralDensity::frequency_per_nm);
   if (above == spectrum.end()) return 0;
   if (above->frequency_per_nm == frequency_per_nm) return above->density_nm4;
   if (above == spectrum.begin()) return 0;
@@ -109,14 +109,16 @@ double density(const std::vector<SpectralDensity>& spectrum, double frequency_pe
 
 void require_spectrum(const std::vector<SpectralDensity>& spectrum) {
   if (spectrum.size() < 2) {
-    throw UsageError("spectrum", fmt::format("it has {} points", spectrum.size()), "Give two or more");
+    throw UsageError("spectrum", fmt::format("it has {} points", spectrum.size()),
+                     "Give two or more");
   }
   double last = 0;
   for (const SpectralDensity& point : spectrum) {
     require_positive(point.frequency_per_nm, "frequency of the spectrum");
     require_not_negative(point.density_nm4, "density of the spectrum");
     if (!(point.frequency_per_nm > last)) {
-      throw UsageError("spectrum", fmt::format("{} per nm follows {}", point.frequency_per_nm, last),
+      throw UsageError("spectrum",
+                       fmt::format("{} per nm follows {}", point.frequency_per_nm, last),
                        "Give rising frequencies");
     }
     last = point.frequency_per_nm;

@@ -64,8 +64,8 @@ void add_side(TriangleMesh& mesh, const Ticks& t, std::size_t axis, bool high) {
 TriangleMesh icosahedron() {
   const double g = std::numbers::phi;
   TriangleMesh mesh;
-  mesh.vertices_nm = {{-1, g, 0}, {1, g, 0}, {-1, -g, 0}, {1, -g, 0}, {0, -1, g}, {0, 1, g},
-                      {0, -1, -g}, {0, 1, -g}, {g, 0, -1}, {g, 0, 1}, {-g, 0, -1}, {-g, 0, 1}};
+  mesh.vertices_nm = {{-1, g, 0},  {1, g, 0},  {-1, -g, 0}, {1, -g, 0}, {0, -1, g},  {0, 1, g},
+                      {0, -1, -g}, {0, 1, -g}, {g, 0, -1},  {g, 0, 1},  {-g, 0, -1}, {-g, 0, 1}};
   for (Vec3& v : mesh.vertices_nm) v = normalized(v);
   mesh.triangles = {{0, 11, 5}, {0, 5, 1},  {0, 1, 7},   {0, 7, 10}, {0, 10, 11},
                     {1, 5, 9},  {5, 11, 4}, {11, 10, 2}, {10, 7, 6}, {7, 1, 8},
@@ -91,8 +91,8 @@ TriangleMesh split_sphere(const TriangleMesh& coarse) {
   TriangleMesh fine;
   fine.vertices_nm = coarse.vertices_nm;
   for (const std::uint64_t edge : edges) {
-    fine.vertices_nm.push_back(normalized(coarse.vertices_nm[edge >> 32] +
-                                          coarse.vertices_nm[edge & 0xffffffffu]));
+    fine.vertices_nm.push_back(
+        normalized(coarse.vertices_nm[edge >> 32] + coarse.vertices_nm[edge & 0xffffffffu]));
   }
   const auto middle = [&](std::uint32_t a, std::uint32_t b) {
     const auto found = std::ranges::lower_bound(edges, edge_key(a, b));
@@ -149,7 +149,8 @@ TriangleMesh make_cone(const Vec3& base_nm, double bottom_radius_nm, double top_
   const auto ring = [&](double radius, double z) {
     for (std::uint32_t i = 0; i < n; ++i) {
       const double angle = 2 * std::numbers::pi * i / n;
-      mesh.vertices_nm.push_back(base_nm + Vec3{radius * std::cos(angle), radius * std::sin(angle), z});
+      mesh.vertices_nm.push_back(base_nm +
+                                 Vec3{radius * std::cos(angle), radius * std::sin(angle), z});
     }
   };
   ring(bottom_radius_nm, 0);

@@ -21,7 +21,8 @@ namespace {
 constexpr std::uint32_t none = 0xffffffffu;
 
 [[noreturn]] void refuse(const std::string& reason) {
-  throw InvalidInput("sheet", reason, "Walls and a base need an open sheet that lies like a landscape");
+  throw InvalidInput("sheet", reason,
+                     "Walls and a base need an open sheet that lies like a landscape");
 }
 
 void check_sheet(const TriangleMesh& sheet, const Watch& watch) {
@@ -36,15 +37,18 @@ void check_base(const TriangleMesh& sheet, double base_z_nm) {
   require_finite(base_z_nm, "base");
   const double lowest = bounds(sheet).lower_nm.z;
   if (base_z_nm < lowest) return;
-  throw UsageError("base", fmt::format("{} nm is not below the lowest height, {} nm", base_z_nm, lowest),
+  throw UsageError("base",
+                   fmt::format("{} nm is not below the lowest height, {} nm", base_z_nm, lowest),
                    "Give a lower base");
 }
 
 void check_no_overhang(const TriangleMesh& sheet) {
   for (const Triangle& t : sheet.triangles) {
-    const Vec3 a = sheet.vertices_nm[t[0]], b = sheet.vertices_nm[t[1]], c = sheet.vertices_nm[t[2]];
+    const Vec3 a = sheet.vertices_nm[t[0]], b = sheet.vertices_nm[t[1]],
+               c = sheet.vertices_nm[t[2]];
     if (cross_xy(b - a, c - a) > 0) continue;
-    refuse(fmt::format("it has holes or a ragged rim, and overhangs near ({:.6g}, {:.6g}) nm", a.x, a.y));
+    refuse(fmt::format("it has holes or a ragged rim, and overhangs near ({:.6g}, {:.6g}) nm", a.x,
+                       a.y));
   }
 }
 

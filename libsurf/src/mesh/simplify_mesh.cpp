@@ -24,22 +24,23 @@ struct Traits : OpenMesh::DefaultTraits {
   using Normal = OpenMesh::Vec3d;
 };
 using HalfedgeMesh = OpenMesh::TriMesh_ArrayKernelT<Traits>;
-using PointNumber = OpenMesh::VPropHandleT<std::uint32_t>;   // a vertex's number in the merged mesh
+using PointNumber = OpenMesh::VPropHandleT<std::uint32_t>;  // a vertex's number in the merged mesh
 using Decimater = OpenMesh::Decimater::DecimaterT<HalfedgeMesh>;
 
-constexpr unsigned max_valence = 64;    // beyond it OpenMesh's costs grow with its square
-constexpr std::size_t step_down = 4;   // fewer triangles from run to run
+constexpr unsigned max_valence = 64;  // beyond it OpenMesh's costs grow with its square
+constexpr std::size_t step_down = 4;  // fewer triangles from run to run
 constexpr Side sides_between_looks = 3 * 16384;
-constexpr int bisections = 5;   // of the last step: the number ends within a few per cent of the fewest
+constexpr int bisections =
+    5;  // of the last step: the number ends within a few per cent of the fewest
 
 bool before(const Vec3& a, const Vec3& b) {
   return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z);
 }
 
 /// A halfedge mesh of a merged mesh, cut where more than two triangles meet or disagree; vertices
-/// along cuts and rims are locked: cuts fit together again, rims stay; so are hubs of great fans and
-/// the places of `fixed`, which is sorted. Coordinates are taken from `middle`: OpenMesh computes
-/// plane equations, which suffer far from the origin.
+/// along cuts and rims are locked: cuts fit together again, rims stay; so are hubs of great fans
+/// and the places of `fixed`, which is sorted. Coordinates are taken from `middle`: OpenMesh
+/// computes plane equations, which suffer far from the origin.
 HalfedgeMesh to_halfedges(const TriangleMesh& mesh, const Vec3& middle, PointNumber& number,
                           const std::vector<Vec3>& fixed, const Watch& watch) {
   const std::vector<Triangle>& triangles = mesh.triangles;
@@ -58,7 +59,8 @@ HalfedgeMesh to_halfedges(const TriangleMesh& mesh, const Vec3& middle, PointNum
   out.request_edge_status();
   out.request_face_status();
   out.reserve(mesh.vertices_nm.size(), 3 * triangles.size() / 2, triangles.size());
-  std::vector<HalfedgeMesh::VertexHandle> of_fan(3 * triangles.size()), of_point(mesh.vertices_nm.size());
+  std::vector<HalfedgeMesh::VertexHandle> of_fan(3 * triangles.size()),
+      of_point(mesh.vertices_nm.size());
   for (Side corner = 0; corner < 3 * triangles.size(); ++corner) {
     const std::uint32_t fan = fans.find(corner);
     if (of_fan[fan].is_valid()) continue;
@@ -78,7 +80,8 @@ HalfedgeMesh to_halfedges(const TriangleMesh& mesh, const Vec3& middle, PointNum
     out.add_face(of_fan[fans.find(side)], of_fan[fans.find(side + 1)], of_fan[fans.find(side + 2)]);
   }
   for (const auto v : out.vertices()) {
-    const bool stays = std::ranges::binary_search(fixed, mesh.vertices_nm[out.property(number, v)], before);
+    const bool stays =
+        std::ranges::binary_search(fixed, mesh.vertices_nm[out.property(number, v)], before);
     if (stays || out.is_boundary(v) || out.valence(v) > max_valence) out.status(v).set_locked(true);
   }
   out.update_face_normals();
@@ -99,7 +102,7 @@ TriangleMesh from_halfedges(const HalfedgeMesh& mesh, const PointNumber& number,
 }
 
 /// Allows all; it is asked before every vertex that may go, and told of every one that has gone.
-template <class MeshT>   // as the macro wants it
+template <class MeshT>  // as the macro wants it
 class Looking : public OpenMesh::Decimater::ModBaseT<MeshT> {
  public:
   DECIMATING_MODULE(Looking, MeshT, Looking);
@@ -121,7 +124,7 @@ class Looking : public OpenMesh::Decimater::ModBaseT<MeshT> {
   }
 
  private:
-  static constexpr std::size_t between_looks = 2048;   // a millisecond or so
+  static constexpr std::size_t between_looks = 2048;  // a millisecond or so
   const Watch* watch_ = nullptr;
   double to_go_ = 1;
   std::size_t asked_ = 0, gone_ = 0;
@@ -143,8 +146,9 @@ TriangleMesh decimated(const TriangleMesh& mesh, std::size_t triangles,
   decimater.module(flipping).set_max_normal_deviation(90);
   Looking<HalfedgeMesh>::Handle looking;
   decimater.add(looking);
-  const double faces_to_go = static_cast<double>(mesh.triangles.size()) - static_cast<double>(triangles);
-  decimater.module(looking).watch(watch, std::max(1.0, 0.5 * faces_to_go));   // a vertex has two
+  const double faces_to_go =
+      static_cast<double>(mesh.triangles.size()) - static_cast<double>(triangles);
+  decimater.module(looking).watch(watch, std::max(1.0, 0.5 * faces_to_go));  // a vertex has two
   watch.check();
   if (!decimater.initialize()) {
     throw std::logic_error("simplify_mesh: the decimater refuses its modules");
@@ -189,7 +193,8 @@ class Descent {
     TriangleMesh next = decimated(best_, triangles, fixed_, watch.part(0, 0.7));
     if (next.triangles.empty() || next.triangles.size() >= best_.triangles.size()) return false;
     ++summary_.attempts;
-    const MeshDeviation d = mesh_deviation(original_, next, {.threads = options_.threads, .watch = watch.part(0.7, 1)});
+    const MeshDeviation d =
+        mesh_deviation(original_, next, {.threads = options_.threads, .watch = watch.part(0.7, 1)});
     if (options_.tolerance_nm > 0 && !(d.largest_nm() <= options_.tolerance_nm)) return false;
     best_ = std::move(next);
     summary_.deviation = d;
@@ -208,7 +213,7 @@ class Descent {
   const SimplifyOptions& options_;
   SimplifySummary& summary_;
   TriangleMesh best_;
-  std::vector<Vec3> fixed_;   // sorted
+  std::vector<Vec3> fixed_;  // sorted
   int tries_ = 0;
 };
 

@@ -18,7 +18,7 @@ void require_share(double value, const char* subject) {
 /// Which points are joined by an edge, each pair once, and which points may move.
 struct Net {
   std::vector<std::pair<std::uint32_t, std::uint32_t>> edges;
-  std::vector<double> share;   ///< 1 / number of neighbours; 0 where a point stays
+  std::vector<double> share;  ///< 1 / number of neighbours; 0 where a point stays
 };
 
 Net make_net(const std::vector<Triangle>& triangles, std::size_t points) {

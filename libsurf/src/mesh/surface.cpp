@@ -19,7 +19,8 @@ bool is_digit(char c) { return c >= '0' && c <= '9'; }
 void validate_scalars(const Surface& surface, const char* subject) {
   std::set<std::string_view> names;
   for (const VertexScalar& scalar : surface.scalars) {
-    const std::string what = fmt::format("the scalar '{}' of surface '{}'", scalar.name, surface.name);
+    const std::string what =
+        fmt::format("the scalar '{}' of surface '{}'", scalar.name, surface.name);
     if (!is_scalar_name(scalar.name)) {
       throw InvalidInput(subject, what + " has a name that files cannot hold",
                          "Use lower-case letters, digits and '_', a letter first");
@@ -29,16 +30,17 @@ void validate_scalars(const Surface& surface, const char* subject) {
     }
     const std::size_t vertices = surface.mesh.vertices_nm.size();
     if (scalar.values.size() != vertices) {
-      throw InvalidInput(subject, fmt::format("{} has {} values for {} vertices", what,
-                                              scalar.values.size(), vertices),
-                         "Give one for each vertex");
+      throw InvalidInput(
+          subject,
+          fmt::format("{} has {} values for {} vertices", what, scalar.values.size(), vertices),
+          "Give one for each vertex");
     }
     const auto bad = std::find_if(scalar.values.begin(), scalar.values.end(),
                                   [](float value) { return !std::isfinite(value); });
     if (bad == scalar.values.end()) continue;
-    throw InvalidInput(subject, fmt::format("{} is {} at vertex {}", what, *bad,
-                                            bad - scalar.values.begin()),
-                       "Every value must be finite");
+    throw InvalidInput(
+        subject, fmt::format("{} is {} at vertex {}", what, *bad, bad - scalar.values.begin()),
+        "Every value must be finite");
   }
 }
 

@@ -19,7 +19,7 @@ namespace {
 constexpr int most_searches = 8;
 constexpr double close_enough = 1.02;
 
-std::int64_t floor_divided(std::int64_t a, std::int64_t b) {   // b > 0
+std::int64_t floor_divided(std::int64_t a, std::int64_t b) {  // b > 0
   return a >= 0 ? a / b : -((-a + b - 1) / b);
 }
 
@@ -27,10 +27,7 @@ std::int64_t floor_divided(std::int64_t a, std::int64_t b) {   // b > 0
 class Thinning {
  public:
   Thinning(const HeightField& field, double tolerance_nm, std::size_t limit, const Watch& watch)
-      : field_(field),
-        tolerance_nm_(tolerance_nm),
-        limit_(limit),
-        watch_(watch),
+      : field_(field), tolerance_nm_(tolerance_nm), limit_(limit), watch_(watch),
         mesh_(field.z_nm.width(), field.z_nm.height()),
         used_(field.z_nm.width(), field.z_nm.height()) {
     for (const LatticePoint p : mesh_.points()) used_(p.x, p.y) = 1;
@@ -113,7 +110,7 @@ class Thinning {
     std::ranges::sort(changed_);
     changed_.erase(std::unique(changed_.begin(), changed_.end()), changed_.end());
     worst_.resize(mesh_.triangles().size());
-    if (worst_.size() < few) watch_.check();   // triangles are large, and take long
+    if (worst_.size() < few) watch_.check();  // triangles are large, and take long
     for (const std::uint32_t t : changed_) {
       worst_[t] = worst_of(t);
       if (worst_[t].error_nm > tolerance_nm_) waiting_.push({worst_[t].error_nm, t});
@@ -135,7 +132,8 @@ class Thinning {
   // Triangles grow in number about as one over the error.
   void report(double error_nm) const {
     if (mesh_.triangles().size() % 1024 > 1) return;
-    const double by_number = static_cast<double>(mesh_.triangles().size()) / static_cast<double>(limit_);
+    const double by_number =
+        static_cast<double>(mesh_.triangles().size()) / static_cast<double>(limit_);
     watch_.report(std::min(1.0, std::max(by_number, tolerance_nm_ / error_nm)), 1);
   }
 
@@ -156,19 +154,28 @@ class Thinning {
   static void visit_crossings(LatticePoint p, LatticePoint q, const Visit& visit) {
     const std::int64_t dx = std::int64_t{q.x} - p.x, dy = std::int64_t{q.y} - p.y;
     // Columns (x = k), rows (y = k) and the cells' diagonals (x - y = k).
-    const struct { std::int64_t per, across; LatticePoint step; int kind; } families[] = {
-        {dx, dy, {0, 1}, 0}, {dy, dx, {1, 0}, 1}, {dx - dy, dy, {1, 1}, 2}};
+    const struct {
+      std::int64_t per, across;
+      LatticePoint step;
+      int kind;
+    } families[] = {{dx, dy, {0, 1}, 0}, {dy, dx, {1, 0}, 1}, {dx - dy, dy, {1, 1}, 2}};
     for (const auto& f : families) {
       const std::int64_t count = std::abs(f.per), sign = f.per < 0 ? -1 : 1;
       for (std::int64_t i = 1; i < count; ++i) {
         // Along the family's lines, positions are p's plus i * across / count.
         const std::int64_t moved = i * f.across, whole = floor_divided(moved, count);
         const std::int64_t rest = moved - whole * count;
-        if (rest == 0) continue;   // at a sample
+        if (rest == 0) continue;  // at a sample
         LatticePoint before;
-        if (f.kind == 0) before = {p.x + static_cast<std::int32_t>(sign * i), p.y + static_cast<std::int32_t>(whole)};
-        else if (f.kind == 1) before = {p.x + static_cast<std::int32_t>(whole), p.y + static_cast<std::int32_t>(sign * i)};
-        else before = {p.x + static_cast<std::int32_t>(whole + sign * i), p.y + static_cast<std::int32_t>(whole)};
+        if (f.kind == 0)
+          before = {p.x + static_cast<std::int32_t>(sign * i),
+                    p.y + static_cast<std::int32_t>(whole)};
+        else if (f.kind == 1)
+          before = {p.x + static_cast<std::int32_t>(whole),
+                    p.y + static_cast<std::int32_t>(sign * i)};
+        else
+          before = {p.x + static_cast<std::int32_t>(whole + sign * i),
+                    p.y + static_cast<std::int32_t>(whole)};
         visit(before, LatticePoint{before.x + f.step.x, before.y + f.step.y},
               static_cast<double>(rest) / static_cast<double>(count),
               static_cast<double>(i) / static_cast<double>(count));
@@ -212,11 +219,11 @@ class Thinning {
 
   const HeightField& field_;
   double tolerance_nm_;
-  std::size_t limit_;   // of triangles
+  std::size_t limit_;  // of triangles
   const Watch& watch_;
   LatticeDelaunay mesh_;
   Grid<unsigned char> used_;
-  std::vector<Worst> worst_;   // of every triangle
+  std::vector<Worst> worst_;  // of every triangle
   std::priority_queue<Waiting> waiting_;
   std::vector<std::uint32_t> changed_;
   double crossing_nm_ = 0;
@@ -233,15 +240,16 @@ Thinned thin(const HeightField& field, double tolerance_nm, std::size_t limit, c
   return {thinning.mesh(), thinning.deviation_nm(), thinning.sample_deviation_nm()};
 }
 
-/// The best of so many triangles: samples alone would be served first, and edges between them left far off. So
-/// the least tolerance that they allow is searched.
+/// The best of so many triangles: samples alone would be served first, and edges between them left
+/// far off. So the least tolerance that they allow is searched.
 Thinned thin_to_limit(const HeightField& field, const ThinOptions& o) {
   Thinned best = thin(field, o.tolerance_nm, o.triangles, o.watch.part(0, 0.3));
   double low = std::max(o.tolerance_nm, best.sample_deviation_nm);
   for (int step = 0; step < most_searches && best.deviation_nm > close_enough * low; ++step) {
     const double tolerance = low > 0 ? std::sqrt(low * best.deviation_nm) : best.deviation_nm / 4;
     const double share = 0.7 / most_searches;
-    Thinned here = thin(field, tolerance, o.triangles, o.watch.part(0.3 + share * step, 0.3 + share * (step + 1)));
+    Thinned here = thin(field, tolerance, o.triangles,
+                        o.watch.part(0.3 + share * step, 0.3 + share * (step + 1)));
     if (here.deviation_nm > tolerance) low = tolerance;
     if (here.deviation_nm < best.deviation_nm) best = std::move(here);
   }
@@ -250,14 +258,16 @@ Thinned thin_to_limit(const HeightField& field, const ThinOptions& o) {
 
 }  // namespace
 
-TriangleMesh thin_height_field(const HeightField& field, const ThinOptions& options, ThinSummary& summary) {
+TriangleMesh thin_height_field(const HeightField& field, const ThinOptions& options,
+                               ThinSummary& summary) {
   require_not_negative(options.tolerance_nm, "tolerance");
   if (options.triangles == 1)
     throw UsageError("triangles", "one triangle does not fill a rectangle", "Give 2 or more");
   require_no_holes(field);
   Thinned thinned = options.triangles
                         ? thin_to_limit(field, options)
-                        : thin(field, options.tolerance_nm, std::numeric_limits<std::size_t>::max(), options.watch);
+                        : thin(field, options.tolerance_nm, std::numeric_limits<std::size_t>::max(),
+                               options.watch);
   summary.triangles_before = std::size_t{2} * static_cast<std::size_t>(field.z_nm.width() - 1) *
                              static_cast<std::size_t>(field.z_nm.height() - 1);
   summary.triangles_after = thinned.mesh.triangles.size();

@@ -11,8 +11,8 @@ namespace surf {
 namespace {
 
 constexpr std::size_t leaf_size = 4;
-constexpr std::size_t block_size = 65536;   // triangles of a unit of work
-constexpr double negligible = 1e-12;        // of the diagonal: a point that near lies on the surface
+constexpr std::size_t block_size = 65536;  // triangles of a unit of work
+constexpr double negligible = 1e-12;       // of the diagonal: a point that near lies on the surface
 
 double squared(const Vec3& v) { return dot(v, v); }
 
@@ -40,7 +40,7 @@ TriangleTree::TriangleTree(const MeshView& mesh, const Box& region, const Watch&
 }
 
 void TriangleTree::build(const Watch& watched, int threads) {
-  const Watch watch{{}, watched.cancel};   // it is short beside what it is for
+  const Watch watch{{}, watched.cancel};  // it is short beside what it is for
   struct Item {
     std::array<float, 3> middle;
     std::uint32_t triangle;
@@ -48,14 +48,18 @@ void TriangleTree::build(const Watch& watched, int threads) {
   const std::size_t n = faces_.size();
   while ((n >> levels_) > leaf_size) ++levels_;
   std::vector<Item> items(n);
-  parallel_for((n + block_size - 1) / block_size, threads, [&](std::size_t block, int) {
-    for (std::size_t i = block * block_size; i < std::min(n, (block + 1) * block_size); ++i) {
-      const Corners t = corners(faces_[i]);
-      const Vec3 sum = (t.a - origin_) + (t.b - origin_) + (t.c - origin_);
-      items[i] = {{static_cast<float>(sum.x), static_cast<float>(sum.y), static_cast<float>(sum.z)},
-                  faces_[i]};
-    }
-  }, watch);
+  parallel_for(
+      (n + block_size - 1) / block_size, threads,
+      [&](std::size_t block, int) {
+        for (std::size_t i = block * block_size; i < std::min(n, (block + 1) * block_size); ++i) {
+          const Corners t = corners(faces_[i]);
+          const Vec3 sum = (t.a - origin_) + (t.b - origin_) + (t.c - origin_);
+          items[i] = {
+              {static_cast<float>(sum.x), static_cast<float>(sum.y), static_cast<float>(sum.z)},
+              faces_[i]};
+        }
+      },
+      watch);
   nodes_.resize((std::size_t{2} << levels_) - 1);
   const auto split = [&](std::size_t node, int level) {
     const Range all = range({node, level}), half = range({2 * node + 1, level + 1});
@@ -79,33 +83,37 @@ void TriangleTree::build(const Watch& watched, int threads) {
   // The top one level at a time, then whole branches.
   const int top = std::min(levels_, 8);
   for (int level = 0; level < top; ++level)
-    parallel_for(std::size_t{1} << level, threads, [&](std::size_t k, int) {
-      split((std::size_t{1} << level) - 1 + k, level);
-    }, watch);
-  parallel_for(std::size_t{1} << top, threads, [&](std::size_t k, int) {
-    for (int level = top; level <= levels_; ++level) {
-      const std::size_t wide = std::size_t{1} << (level - top);
-      const std::size_t first = (std::size_t{1} << level) - 1 + k * wide;
-      if (level < levels_) {
-        for (std::size_t node = first; node < first + wide; ++node) split(node, level);
-        continue;
-      }
-      for (std::size_t node = first; node < first + wide; ++node) {
-        const Range r = range({node, level});
-        for (std::size_t i = r.first; i < r.last; ++i) faces_[i] = items[i].triangle;
-      }
-    }
-    for (int level = levels_; level >= top; --level) {
-      const std::size_t wide = std::size_t{1} << (level - top);
-      const std::size_t first = (std::size_t{1} << level) - 1 + k * wide;
-      for (std::size_t node = first; node < first + wide; ++node) bound({node, level});
-    }
-  }, watch);
+    parallel_for(
+        std::size_t{1} << level, threads,
+        [&](std::size_t k, int) { split((std::size_t{1} << level) - 1 + k, level); }, watch);
+  parallel_for(
+      std::size_t{1} << top, threads,
+      [&](std::size_t k, int) {
+        for (int level = top; level <= levels_; ++level) {
+          const std::size_t wide = std::size_t{1} << (level - top);
+          const std::size_t first = (std::size_t{1} << level) - 1 + k * wide;
+          if (level < levels_) {
+            for (std::size_t node = first; node < first + wide; ++node) split(node, level);
+            continue;
+          }
+          for (std::size_t node = first; node < first + wide; ++node) {
+            const Range r = range({node, level});
+            for (std::size_t i = r.first; i < r.last; ++i) faces_[i] = items[i].triangle;
+          }
+        }
+        for (int level = levels_; level >= top; --level) {
+          const std::size_t wide = std::size_t{1} << (level - top);
+          const std::size_t first = (std::size_t{1} << level) - 1 + k * wide;
+          for (std::size_t node = first; node < first + wide; ++node) bound({node, level});
+        }
+      },
+      watch);
   for (std::size_t node = (std::size_t{1} << top) - 1; node-- > 0;) bound({node, -1});
   Vec3 diagonal;
   for (double Vec3::*axis : {&Vec3::x, &Vec3::y, &Vec3::z}) {
     const std::size_t k = axis == &Vec3::x ? 0 : axis == &Vec3::y ? 1 : 2;
-    diagonal.*axis = static_cast<double>(nodes_[0].upper[k]) - static_cast<double>(nodes_[0].lower[k]);
+    diagonal.*axis =
+        static_cast<double>(nodes_[0].upper[k]) - static_cast<double>(nodes_[0].lower[k]);
   }
   negligible_squared_ = negligible * negligible * squared(diagonal);
 }

@@ -13,12 +13,14 @@ namespace surf {
 namespace {
 
 constexpr std::size_t points_per_unit = 4096;
-constexpr double ridge = 1e-9;   // of the mean square of the terms: decides only what nothing else does
+constexpr double ridge =
+    1e-9;  // of the mean square of the terms: decides only what nothing else does
 
 /// z = p0 x + p1 y + p2 x^2 / 2 + p3 x y + p4 y^2 / 2 + p5.
 using Quadric = std::array<double, 6>;
 
-/// Least squares by the normal equations, of which the lower triangle is summed; positive definite by the ridge.
+/// Least squares by the normal equations, of which the lower triangle is summed; positive definite
+/// by the ridge.
 class QuadricFit {
  public:
   void add(double x, double y, double z) {
@@ -60,13 +62,14 @@ class QuadricFit {
 
 double mean_curvature_of(const Quadric& p) {
   const double u = p[0], v = p[1];
-  const double up = ((1 + v * v) * p[2] - 2 * u * v * p[3] + (1 + u * u) * p[4]) / (2 * std::pow(1 + u * u + v * v, 1.5));
+  const double up = ((1 + v * v) * p[2] - 2 * u * v * p[3] + (1 + u * u) * p[4]) /
+                    (2 * std::pow(1 + u * u + v * v, 1.5));
   return -up;
 }
 
 struct Net {
   std::vector<Vec3> place, normal;
-  Buckets neighbours;   // of every point, some twice
+  Buckets neighbours;  // of every point, some twice
 };
 
 Net make_net(const TriangleMesh& mesh, const Weld& weld) {
@@ -90,8 +93,8 @@ Net make_net(const TriangleMesh& mesh, const Weld& weld) {
   return net;
 }
 
-/// The points up to two edges away, itself included, each once; of the second those alone that face its way,
-/// not the other side of something thin.
+/// The points up to two edges away, itself included, each once; of the second those alone that face
+/// its way, not the other side of something thin.
 void collect(const Net& net, std::uint32_t point, std::vector<std::uint32_t>& out) {
   const auto add_neighbours = [&](std::uint32_t p) {
     for (std::size_t i = net.neighbours.begin[p]; i < net.neighbours.begin[p + 1]; ++i)
@@ -102,9 +105,10 @@ void collect(const Net& net, std::uint32_t point, std::vector<std::uint32_t>& ou
   const std::size_t near = out.size();
   for (std::size_t i = 1; i < near; ++i) add_neighbours(out[i]);
   const auto far = out.begin() + static_cast<std::ptrdiff_t>(near);
-  out.erase(std::remove_if(far, out.end(),
-                           [&](std::uint32_t q) { return !(dot(net.normal[q], net.normal[point]) > 0); }),
-            out.end());
+  out.erase(
+      std::remove_if(far, out.end(),
+                     [&](std::uint32_t q) { return !(dot(net.normal[q], net.normal[point]) > 0); }),
+      out.end());
   std::ranges::sort(out);
   out.erase(std::unique(out.begin(), out.end()), out.end());
 }
@@ -117,7 +121,8 @@ double curvature_at(const Net& net, std::uint32_t point, std::vector<std::uint32
   const Vec3 e = normalized(cross(n, away)), f = cross(n, e);
   collect(net, point, scratch);
   double radius = 0;
-  for (const std::uint32_t q : scratch) radius = std::max(radius, length(net.place[q] - net.place[point]));
+  for (const std::uint32_t q : scratch)
+    radius = std::max(radius, length(net.place[q] - net.place[point]));
   if (!(radius > 0)) return 0;
   QuadricFit fit;
   for (const std::uint32_t q : scratch) {
@@ -139,12 +144,15 @@ std::vector<float> mean_curvature(const TriangleMesh& mesh, int threads, const W
   const int workers = resolve_threads(threads);
   std::vector<std::vector<std::uint32_t>> scratch(static_cast<std::size_t>(workers));
   std::vector<float> of_point(weld.points());
-  parallel_for((of_point.size() + points_per_unit - 1) / points_per_unit, workers, [&](std::size_t unit, int worker) {
-    const std::size_t end = std::min(of_point.size(), (unit + 1) * points_per_unit);
-    for (std::size_t p = unit * points_per_unit; p < end; ++p)
-      of_point[p] = static_cast<float>(
-          curvature_at(net, static_cast<std::uint32_t>(p), scratch[static_cast<std::size_t>(worker)]));
-  }, watch.part(0.3, 1));
+  parallel_for((of_point.size() + points_per_unit - 1) / points_per_unit, workers,
+               [&](std::size_t unit, int worker) {
+                 const std::size_t end = std::min(of_point.size(), (unit + 1) * points_per_unit);
+                 for (std::size_t p = unit * points_per_unit; p < end; ++p)
+                   of_point[p] =
+                       static_cast<float>(curvature_at(net, static_cast<std::uint32_t>(p),
+                                                       scratch[static_cast<std::size_t>(worker)]));
+               },
+               watch.part(0.3, 1));
   std::vector<float> result(mesh.vertices_nm.size(), 0);
   for (std::size_t v = 0; v < result.size(); ++v)
     if (weld.point[v] != Weld::unused) result[v] = of_point[weld.point[v]];

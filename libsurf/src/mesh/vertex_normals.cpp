@@ -37,7 +37,7 @@ std::vector<Vec3> vertex_normals(const TriangleMesh& mesh) {
       normals[t[corner]] += normal * std::atan2(size, cosine);
     }
   }
-  constexpr double cancelled = 1e-12;   // beside angles of pi/3
+  constexpr double cancelled = 1e-12;  // beside angles of pi/3
   for (Vec3& normal : normals) {
     const double size = length(normal);
     normal = size > cancelled ? normal * (1 / size) : Vec3{0, 0, 1};

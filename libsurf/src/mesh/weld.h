@@ -17,7 +17,7 @@ struct Weld {
   /// For every vertex the number of its point, or `unused` where no triangle has it as a corner.
   /// Points are numbered in the order of the vertices.
   std::vector<std::uint32_t> point;
-  std::vector<std::uint32_t> first_vertex;   ///< of every point
+  std::vector<std::uint32_t> first_vertex;  ///< of every point
 
   std::size_t points() const { return first_vertex.size(); }
   Triangle operator()(const Triangle& t) const { return {point[t[0]], point[t[1]], point[t[2]]}; }

@@ -16,10 +16,9 @@ namespace {
 constexpr float deepest = -std::numeric_limits<float>::infinity();
 
 // What a tip sample adds to a row of the surface, where that is higher than what was found before.
-__attribute__((target_clones("avx512f", "avx2", "default"))) void raise(float* __restrict made,
-                                                                       std::int32_t* __restrict touching,
-                                                                       const float* __restrict surface, float offset,
-                                                                       std::int32_t sample, int count) {
+__attribute__((target_clones("avx512f", "avx2", "default"))) void raise(
+    float* __restrict made, std::int32_t* __restrict touching, const float* __restrict surface,
+    float offset, std::int32_t sample, int count) {
   for (int x = 0; x < count; ++x) {
     const float v = surface[x] + offset;
     const bool higher = v > made[x];
@@ -34,8 +33,9 @@ int floor_div(int a, int b) { return a >= 0 ? a / b : -((b - 1 - a) / b); }
 
 AfmTerm::AfmTerm(const AfmData& data, const HeightField& outside, const SurfaceFrame& frame,
                  const Affine& surface_to_afm, int threads)
-    : image_(data.image), noise_(data.noise), first_tip_(data.tip), tip_(smoothly_upsampled(data.tip, data.upsample)),
-      family_(tip_), factor_(data.upsample), frame_(frame), threads_(resolve_threads(threads)) {
+    : image_(data.image), noise_(data.noise), first_tip_(data.tip),
+      tip_(smoothly_upsampled(data.tip, data.upsample)), family_(tip_), factor_(data.upsample),
+      frame_(frame), threads_(resolve_threads(threads)) {
   set_outside(outside);
   const int w = image_.z_nm.width(), h = image_.z_nm.height();
   used_ = Grid<unsigned char>(w, h);
@@ -63,12 +63,15 @@ AfmTerm::AfmTerm(const AfmData& data, const HeightField& outside, const SurfaceF
   reach_nm_ = std::max({right - left, high - low, frame_.pitch_nm}) / 2;
 }
 
-void AfmTerm::set_outside(const HeightField& outside) { outside_ = smoothly_upsampled(outside, factor_).z_nm; }
+void AfmTerm::set_outside(const HeightField& outside) {
+  outside_ = smoothly_upsampled(outside, factor_).z_nm;
+}
 
 /// From the AFM's frame to samples of the surface.
 Affine AfmTerm::to_samples(const Affine& surface_to_afm) const {
   const double f = 1 / frame_.pitch_nm;
-  return compose({f, 0, -frame_.origin_x_nm * f, 0, f, -frame_.origin_y_nm * f}, inverse(surface_to_afm));
+  return compose({f, 0, -frame_.origin_x_nm * f, 0, f, -frame_.origin_y_nm * f},
+                 inverse(surface_to_afm));
 }
 
 Affine AfmTerm::moved(const Affine& surface_to_afm, const MapChange& c) const {
@@ -85,7 +88,8 @@ Affine AfmTerm::moved(const Affine& surface_to_afm, const MapChange& c) const {
   return inverse(compose({p, 0, frame_.origin_x_nm, 0, p, frame_.origin_y_nm}, m));
 }
 
-AfmTerm::State AfmTerm::evaluate(const Grid<double>& z, const Affine& surface_to_afm, const TipChange& tip_change) const {
+AfmTerm::State AfmTerm::evaluate(const Grid<double>& z, const Affine& surface_to_afm,
+                                 const TipChange& tip_change) const {
   State s;
   const Tip tip = family_.changed(tip_, tip_change, &s.by_tip);
   const int w = image_.z_nm.width(), h = image_.z_nm.height();
@@ -100,28 +104,31 @@ AfmTerm::State AfmTerm::evaluate(const Grid<double>& z, const Affine& surface_to
   const int f = factor_, tw = tip.z_nm.width(), th = tip.z_nm.height();
   const double step_x = image_.pitch_x_nm / f, step_y = image_.pitch_y_nm / f;
 
-  // Fine samples that the tip can reach from the used pixels: columns [begin, begin + f plane), rows likewise.
-  // Tip sample i lies over surface column f x - (i - apex), so the surface's reach is the tip's, turned round.
+  // Fine samples that the tip can reach from the used pixels: columns [begin, begin + f plane),
+  // rows likewise. Tip sample i lies over surface column f x - (i - apex), so the surface's reach
+  // is the tip's, turned round.
   int first_column = w, last_column = -1;
   for (const auto& span : spans_) {
     first_column = std::min(first_column, span[0]);
     last_column = std::max(last_column, span[1]);
   }
-  const int right_of = tip.apex_x, left_of = tw - 1 - tip.apex_x;   // of a pixel, in fine samples
+  const int right_of = tip.apex_x, left_of = tw - 1 - tip.apex_x;  // of a pixel, in fine samples
   const int above = tip.apex_y, below = th - 1 - tip.apex_y;
-  const int first_plane = floor_div(f * first_column - left_of, f), last_plane = floor_div(f * last_column + right_of, f);
+  const int first_plane = floor_div(f * first_column - left_of, f),
+            last_plane = floor_div(f * last_column + right_of, f);
   const int plane = last_plane - first_plane + 1;
   const int begin_row = f * first_row_ - below, rows = f * last_row_ + above - begin_row + 1;
   const std::size_t stride = (static_cast<std::size_t>(plane) + 31) / 16 * 16;
 
-  std::vector<float> fine(stride * f * rows, deepest);   // [row][phase][column]
+  std::vector<float> fine(stride * f * rows, deepest);  // [row][phase][column]
   Grid<double> heights(f * plane, rows);
   Grid<unsigned char> inside(f * plane, rows);
   double sum = 0;
   for (int y = first_row_; y <= last_row_; ++y)
     for (int x = spans_[y][0]; x <= spans_[y][1]; ++x)
       if (used_(x, y)) sum += image_.z_nm(x, y);
-  const double middle = sum / static_cast<double>(used_pixels_);   // so that floats hold small numbers
+  const double middle =
+      sum / static_cast<double>(used_pixels_);  // so that floats hold small numbers
   std::vector<float> lowest(rows, std::numeric_limits<float>::infinity()), highest(rows, deepest);
   parallel_for(rows, threads_, [&](std::size_t r, int) {
     const int row = static_cast<int>(r), global_row = begin_row + row;
@@ -136,12 +143,14 @@ AfmTerm::State AfmTerm::evaluate(const Grid<double>& z, const Affine& surface_to
     }
     for (int global = left; global <= right; ++global) {
       const int column = global - f * first_plane;
-      const Point2 p = map({image_.origin_x_nm + global * step_x, image_.origin_y_nm + global_row * step_y});
+      const Point2 p =
+          map({image_.origin_x_nm + global * step_x, image_.origin_y_nm + global_row * step_y});
       double v;
       if (p.x >= 0 && p.y >= 0 && p.x <= frame_.width - 1 && p.y <= frame_.height - 1) {
         v = CubicSample(p.x, p.y, frame_.width, frame_.height).value(z);
         inside(column, row) = 1;
-      } else if (global >= 0 && global_row >= 0 && global < outside_.width() && global_row < outside_.height()) {
+      } else if (global >= 0 && global_row >= 0 && global < outside_.width() &&
+                 global_row < outside_.height()) {
         v = outside_(global, global_row);
       } else {
         continue;
@@ -156,7 +165,8 @@ AfmTerm::State AfmTerm::evaluate(const Grid<double>& z, const Affine& surface_to
   const float floor = *std::min_element(lowest.begin(), lowest.end());
 
   parallel_for(last_row_ - first_row_ + 1, threads_, [&](std::size_t i, int) {
-    const int y = first_row_ + static_cast<int>(i), left = spans_[y][0], count = spans_[y][1] - left + 1;
+    const int y = first_row_ + static_cast<int>(i), left = spans_[y][0],
+              count = spans_[y][1] - left + 1;
     if (count <= 0) return;
     thread_local std::vector<float> made;
     thread_local std::vector<std::int32_t> touching;
@@ -170,7 +180,8 @@ AfmTerm::State AfmTerm::evaluate(const Grid<double>& z, const Affine& surface_to
         if (offset + highest[row] < floor) continue;
         const int column = f * left - (k - tip.apex_x) - f * first_plane;
         raise(made.data(), touching.data(),
-              fine.data() + (static_cast<std::size_t>(row) * f + column % f) * stride + column / f, offset, j * tw + k, count);
+              fine.data() + (static_cast<std::size_t>(row) * f + column % f) * stride + column / f,
+              offset, j * tw + k, count);
       }
     }
     for (int c = 0; c < count; ++c) {
@@ -184,7 +195,9 @@ AfmTerm::State AfmTerm::evaluate(const Grid<double>& z, const Affine& surface_to
       Contact& contact = s.contacts[static_cast<std::size_t>(y) * w + x];
       contact.tip_sample = touching[c];
       contact.inside = inside(column, row);
-      const Point2 nm{image_.origin_x_nm + global * step_x, image_.origin_y_nm + global_row * step_y}, p = map(nm);
+      const Point2 nm{image_.origin_x_nm + global * step_x,
+                      image_.origin_y_nm + global_row * step_y},
+          p = map(nm);
       contact.x = p.x;
       contact.y = p.y;
       contact.from_middle_x = (nm.x - middle_.x) / reach_nm_;
@@ -196,8 +209,8 @@ AfmTerm::State AfmTerm::evaluate(const Grid<double>& z, const Affine& surface_to
   return s;
 }
 
-void AfmTerm::add_gradient(const State& s, const Grid<double>& z, const Grid<double>& weights, Grid<double>& out,
-                           MapChange* map, TipChange* tip) const {
+void AfmTerm::add_gradient(const State& s, const Grid<double>& z, const Grid<double>& weights,
+                           Grid<double>& out, MapChange* map, TipChange* tip) const {
   for (std::size_t i = 0; i < s.contacts.size(); ++i) {
     const Contact& c = s.contacts[i];
     const double weight = weights.data()[i];
@@ -217,8 +230,8 @@ void AfmTerm::add_gradient(const State& s, const Grid<double>& z, const Grid<dou
   }
 }
 
-Grid<double> AfmTerm::change(const State& s, const Grid<double>& z, const Grid<double>& dz, const MapChange& map,
-                             const TipChange& tip) const {
+Grid<double> AfmTerm::change(const State& s, const Grid<double>& z, const Grid<double>& dz,
+                             const MapChange& map, const TipChange& tip) const {
   Grid<double> out(image_.z_nm.width(), image_.z_nm.height());
   const bool moves = std::any_of(map.begin(), map.end(), [](double m) { return m != 0; });
   for (std::size_t i = 0; i < s.contacts.size(); ++i) {

@@ -12,38 +12,41 @@ namespace surf::reconstruction {
 
 /// Where the tip touches for one AFM pixel.
 struct Contact {
-  double x = 0, y = 0;            ///< surface samples
-  std::uint8_t inside = 0;        ///< 0: it touches outside of the surface, which no height changes
-  double from_middle_x = 0, from_middle_y = 0;   ///< of the contact, in reaches: see MapChange
-  std::int32_t tip_sample = -1;   ///< which of the tip's, row-major; -1: none, as for pixels that play no part
+  double x = 0, y = 0;      ///< surface samples
+  std::uint8_t inside = 0;  ///< 0: it touches outside of the surface, which no height changes
+  double from_middle_x = 0, from_middle_y = 0;  ///< of the contact, in reaches: see MapChange
+  std::int32_t tip_sample =
+      -1;  ///< which of the tip's, row-major; -1: none, as for pixels that play no part
 };
 
-/// The scan, given a surface: dilation of its samples by the tip, and the negative log-likelihood of what is
-/// left (thesis, 9.2.1), without constants.
+/// The scan, given a surface: dilation of its samples by the tip, and the negative log-likelihood
+/// of what is left (thesis, 9.2.1), without constants.
 class AfmTerm {
  public:
-  /// `outside`: heights on the AFM's samples, as of the eroded scan, that stand where the surface does not
-  /// reach. AFM pixels that lie on the surface, by `surface_to_afm`, play a part.
-  AfmTerm(const AfmData& data, const HeightField& outside, const SurfaceFrame& frame, const Affine& surface_to_afm,
-          int threads);
+  /// `outside`: heights on the AFM's samples, as of the eroded scan, that stand where the surface
+  /// does not reach. AFM pixels that lie on the surface, by `surface_to_afm`, play a part.
+  AfmTerm(const AfmData& data, const HeightField& outside, const SurfaceFrame& frame,
+          const Affine& surface_to_afm, int threads);
 
   struct State {
-    Grid<double> simulated;       ///< on the AFM's samples; 0 where not used
-    Grid<double> residual;        ///< image - simulated, 0 where not used
-    Grid<double> pull;            ///< derivative of the term by each simulated pixel
+    Grid<double> simulated;  ///< on the AFM's samples; 0 where not used
+    Grid<double> residual;   ///< image - simulated, 0 where not used
+    Grid<double> pull;       ///< derivative of the term by each simulated pixel
     std::vector<Contact> contacts;
-    std::vector<TipChange> by_tip;   ///< derivatives of the tip's samples
+    std::vector<TipChange> by_tip;  ///< derivatives of the tip's samples
     double value = 0;
   };
 
-  State evaluate(const Grid<double>& z_nm, const Affine& surface_to_afm, const TipChange& tip = {}) const;
+  State evaluate(const Grid<double>& z_nm, const Affine& surface_to_afm,
+                 const TipChange& tip = {}) const;
 
-  /// The transpose: out += J^T w for pixels' weights w; `map` and `tip` get the derivatives by these, if given.
-  void add_gradient(const State& state, const Grid<double>& z_nm, const Grid<double>& weights, Grid<double>& out,
-                    MapChange* map, TipChange* tip = nullptr) const;
+  /// The transpose: out += J^T w for pixels' weights w; `map` and `tip` get the derivatives by
+  /// these, if given.
+  void add_gradient(const State& state, const Grid<double>& z_nm, const Grid<double>& weights,
+                    Grid<double>& out, MapChange* map, TipChange* tip = nullptr) const;
   /// J (dz, map, tip).
-  Grid<double> change(const State& state, const Grid<double>& z_nm, const Grid<double>& dz_nm, const MapChange& map,
-                      const TipChange& tip = {}) const;
+  Grid<double> change(const State& state, const Grid<double>& z_nm, const Grid<double>& dz_nm,
+                      const MapChange& map, const TipChange& tip = {}) const;
   /// The precision of the noise times v: what the second derivative by the simulated pixels is.
   Grid<double> precision(const Grid<double>& v) const;
 
@@ -64,17 +67,17 @@ class AfmTerm {
 
   HeightField image_;
   AfmNoise noise_;
-  Tip first_tip_;           // on the scan's samples
-  Tip tip_;                 // the same on the fine ones
+  Tip first_tip_;  // on the scan's samples
+  Tip tip_;        // the same on the fine ones
   TipFamily family_;
   int factor_;
   SurfaceFrame frame_;
-  Grid<double> outside_;    // on the fine samples
+  Grid<double> outside_;  // on the fine samples
   Grid<unsigned char> used_;
   std::int64_t used_pixels_ = 0;
-  int first_row_ = 0, last_row_ = -1;                // of used pixels
-  std::vector<std::array<int, 2>> spans_;            // first and last used column of each row
-  Point2 middle_;           // of the used pixels, AFM nm
+  int first_row_ = 0, last_row_ = -1;      // of used pixels
+  std::vector<std::array<int, 2>> spans_;  // first and last used column of each row
+  Point2 middle_;                          // of the used pixels, AFM nm
   double reach_nm_ = 1;
   int threads_;
 };

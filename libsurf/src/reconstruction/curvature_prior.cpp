@@ -6,7 +6,8 @@
 namespace surf::reconstruction {
 namespace {
 
-/// Second differences over the pitch squared: along x and y at samples, mixed in the cell up and right.
+/// Second differences over the pitch squared: along x and y at samples, mixed in the cell up and
+/// right.
 struct Differences {
   Grid<double> xx, yy, xy;
 
@@ -18,7 +19,8 @@ struct Differences {
       for (int x = 0; x < w; ++x) {
         if (x > 0 && x + 1 < w) xx(x, y) = f * (z(x - 1, y) - 2 * z(x, y) + z(x + 1, y));
         if (y > 0 && y + 1 < h) yy(x, y) = f * (z(x, y - 1) - 2 * z(x, y) + z(x, y + 1));
-        if (x + 1 < w && y + 1 < h) xy(x, y) = f * (z(x, y) - z(x + 1, y) - z(x, y + 1) + z(x + 1, y + 1));
+        if (x + 1 < w && y + 1 < h)
+          xy(x, y) = f * (z(x, y) - z(x + 1, y) - z(x, y + 1) + z(x + 1, y + 1));
       }
   }
 
@@ -43,7 +45,8 @@ double squared(double v) { return v * v; }
 
 }  // namespace
 
-double CurvaturePrior::evaluate(const Grid<double>& z, Grid<double>* gradient, Grid<double>* weights) const {
+double CurvaturePrior::evaluate(const Grid<double>& z, Grid<double>* gradient,
+                                Grid<double>* weights) const {
   Differences d(z, pitch_nm_);
   const int w = z.width(), h = z.height();
   const double scale = degrees * curvature_ * curvature_;
@@ -106,7 +109,8 @@ Grid<double> CurvaturePrior::weights_of(const Grid<double>& squared_curvature) c
   return w;
 }
 
-void CurvaturePrior::add_product(const Grid<double>& weight, const Grid<double>& dz, Grid<double>& out) const {
+void CurvaturePrior::add_product(const Grid<double>& weight, const Grid<double>& dz,
+                                 Grid<double>& out) const {
   Differences d(dz, pitch_nm_);
   const int w = dz.width(), h = dz.height();
   for (int y = 0; y < h; ++y)

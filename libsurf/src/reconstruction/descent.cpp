@@ -15,7 +15,8 @@ namespace {
 
 class Problem final : public solvers::SmoothFunction {
  public:
-  Problem(const Objective& objective, const Unknowns& base, const GaussianBasis& basis, const Watch& watch)
+  Problem(const Objective& objective, const Unknowns& base, const GaussianBasis& basis,
+          const Watch& watch)
       : objective_(objective), base_(base), basis_(basis), watch_(watch) {}
 
   bool evaluate(const double* coefficients, double* cost, double* gradient) const override {
@@ -67,8 +68,8 @@ class Settled {
 
 }  // namespace
 
-DescentReport descend(const Objective& objective, Unknowns& at, double sigma_px, bool first, ReconstructionMethod method,
-                      const DescentOptions& options, int threads) {
+DescentReport descend(const Objective& objective, Unknowns& at, double sigma_px, bool first,
+                      ReconstructionMethod method, const DescentOptions& options, int threads) {
   const GaussianBasis basis(sigma_px, threads);
   Unknowns base = at;
   std::vector<double> coefficients(at.z_nm.size(), 0.0);
@@ -78,7 +79,8 @@ DescentReport descend(const Objective& objective, Unknowns& at, double sigma_px,
   }
   const Problem problem(objective, base, basis, options.watch);
   solvers::MinimiseOptions how;
-  how.search = method == ReconstructionMethod::lbfgs ? solvers::Search::lbfgs : solvers::Search::conjugate_gradient;
+  how.search = method == ReconstructionMethod::lbfgs ? solvers::Search::lbfgs
+                                                     : solvers::Search::conjugate_gradient;
   how.most_iterations = options.iterations;
   how.most_step_sizes = 30;
   how.function_tolerance = 0;
@@ -124,7 +126,8 @@ void fit_few(const Objective& o, Unknowns& at, const Watch& watch) {
       for (int i = 0; i < map_numbers; ++i)
         for (std::size_t p = 0; p < change[i].size(); ++p) {
           g(i) += change[i].data()[p] * state.afm->pull.data()[p];
-          for (int k = 0; k < map_numbers; ++k) a(i, k) += change[i].data()[p] * weighed[k].data()[p];
+          for (int k = 0; k < map_numbers; ++k)
+            a(i, k) += change[i].data()[p] * weighed[k].data()[p];
         }
     }
     if (of_mixture) {
@@ -135,7 +138,8 @@ void fit_few(const Objective& o, Unknowns& at, const Watch& watch) {
         for (int i = 0; i < of_mixture; ++i) {
           g(of_map + i) += state.sem->pull.data()[p] * value(i, p);
           for (int k = 0; k < of_mixture; ++k)
-            a(of_map + i, of_map + k) += state.sem->information.data()[p] * value(i, p) * value(k, p);
+            a(of_map + i, of_map + k) +=
+                state.sem->information.data()[p] * value(i, p) * value(k, p);
         }
     }
     bool better = false;

@@ -24,8 +24,8 @@ double largest(const Grid<double>& g) {
 
 struct Inner {
   Step step;
-  double promised = 0;   // by how much the quadratic model falls
-  double length = 0;     // in the preconditioner's norm
+  double promised = 0;  // by how much the quadratic model falls
+  double length = 0;    // in the preconditioner's norm
   int products = 0;
   bool at_border = false;
 };
@@ -41,23 +41,27 @@ struct Quadratic {
   Step product(const Step& v) const { return objective.product(at, state, v, &near); }
 };
 
-/// Minimises it within a ball of the preconditioner's norm, until the residual is `reduction` of what it was.
-Inner steihaug(const Quadratic& q, const Preconditioner& m, double radius, double reduction, int most,
-               const Watch& watch) {
+/// Minimises it within a ball of the preconditioner's norm, until the residual is `reduction` of
+/// what it was.
+Inner steihaug(const Quadratic& q, const Preconditioner& m, double radius, double reduction,
+               int most, const Watch& watch) {
   Inner in;
   in.step = q.objective.zero();
   Step r = q.gradient, z = m.solve(r), p = in.step;
   add(p, -1, z);
   double rz = dot(r, z);
   const double begin = rz;
-  if (!(rz > 0)) return in;   // nothing pulls: as at a level surface, where a model has no slope
-  double dd = 0, dp = 0, pp = rz;   // products in the norm of M: of the step, the step and the direction, the direction
+  if (!(rz > 0)) return in;  // nothing pulls: as at a level surface, where a model has no slope
+  double
+      dd = 0,
+      dp = 0,
+      pp = rz;  // products in the norm of M: of the step, the step and the direction, the direction
   while (in.products < most) {
     watch.check();
     const Step ap = q.product(p);
     ++in.products;
     const double curvature = dot(p, ap);
-    if (!(curvature > 0) && !std::isfinite(radius)) return in;   // within rounding of nothing
+    if (!(curvature > 0) && !std::isfinite(radius)) return in;  // within rounding of nothing
     const double alpha = rz / curvature;
     const double next = dd + 2 * alpha * dp + alpha * alpha * pp;
     if (!(curvature > 0) || next >= radius * radius) {
@@ -102,8 +106,8 @@ DescentReport gauss_newton(const Objective& o, Unknowns& at, const DescentOption
   int fresh_products = 0;
   while (report.iterations < options.iterations) {
     options.watch.report(report.iterations, report.iterations + usual_iterations);
-    // Little changes at the end: what the quadratic is made of is kept until its steps take more than making
-    // it would.
+    // Little changes at the end: what the quadratic is made of is kept until its steps take more
+    // than making it would.
     if (stale) {
       m.factor(o, at, state);
       if (o.sem) near = o.sem->near(*state.sem, at.mixture);

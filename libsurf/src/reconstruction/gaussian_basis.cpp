@@ -25,7 +25,8 @@ struct Padded {
   Padded(int beyond, int samples) : z(samples + 2 * beyond), reach(beyond), count(samples) {}
   template <class Get>
   void load(const Get& get) {
-    for (int i = -reach; i < count + reach; ++i) z[i + reach] = get(border_sample(i, count, Edge::mirror));
+    for (int i = -reach; i < count + reach; ++i)
+      z[i + reach] = get(border_sample(i, count, Edge::mirror));
   }
   template <class Give>
   void unload(const Give& give) const {
@@ -103,8 +104,8 @@ Grid<double> GaussianBasis::transpose(const Grid<double>& weights) const {
   return out;
 }
 
-Grid<double> GaussianBasis::deconvolved(const Grid<double>& heights, double tolerance, int iterations,
-                                        double relaxation) const {
+Grid<double> GaussianBasis::deconvolved(const Grid<double>& heights, double tolerance,
+                                        int iterations, double relaxation) const {
   Grid<double> c = heights;
   for (int i = 0; i < iterations; ++i) {
     const Grid<double> made = sum(c);

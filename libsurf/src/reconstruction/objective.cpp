@@ -6,7 +6,7 @@
 namespace surf::reconstruction {
 namespace {
 
-constexpr double largest_tip_change = 2;   // a factor of 7.4 of its slope
+constexpr double largest_tip_change = 2;  // a factor of 7.4 of its slope
 
 }  // namespace
 
@@ -20,7 +20,8 @@ double dot(const Step& a, const Step& b) {
 }
 
 void add(Step& to, double factor, const Step& step) {
-  for (std::size_t i = 0; i < to.z_nm.size(); ++i) to.z_nm.data()[i] += factor * step.z_nm.data()[i];
+  for (std::size_t i = 0; i < to.z_nm.size(); ++i)
+    to.z_nm.data()[i] += factor * step.z_nm.data()[i];
   for (std::size_t i = 0; i < to.map.size(); ++i) to.map[i] += factor * step.map[i];
   for (std::size_t i = 0; i < to.mixture.size(); ++i) to.mixture[i] += factor * step.mixture[i];
   for (std::size_t i = 0; i < to.tip.size(); ++i) to.tip[i] += factor * step.tip[i];
@@ -47,15 +48,16 @@ Objective::State Objective::evaluate(const Unknowns& at) const {
   return s;
 }
 
-Step Objective::zero() const {
-  return {Grid<double>(frame.width, frame.height), {}, {}};
-}
+Step Objective::zero() const { return {Grid<double>(frame.width, frame.height), {}, {}}; }
 
 Step Objective::gradient(const Unknowns& at, const State& s) const {
   Step g = zero();
   if (afm)
-    afm->add_gradient(*s.afm, at.z_nm, s.afm->pull, g.z_nm, fit_map ? &g.map : nullptr, fit_tip ? &g.tip : nullptr);
-  if (sem) sem->add_gradient(*s.sem, at.mixture, s.sem->pull, nullptr, g.z_nm, fit_mixture ? &g.mixture : nullptr);
+    afm->add_gradient(*s.afm, at.z_nm, s.afm->pull, g.z_nm, fit_map ? &g.map : nullptr,
+                      fit_tip ? &g.tip : nullptr);
+  if (sem)
+    sem->add_gradient(*s.sem, at.mixture, s.sem->pull, nullptr, g.z_nm,
+                      fit_mixture ? &g.mixture : nullptr);
   prior.evaluate(at.z_nm, &g.z_nm, nullptr);
   if (anchor_per_nm2 > 0)
     for (std::size_t i = 0; i < start.size(); ++i)
@@ -65,19 +67,24 @@ Step Objective::gradient(const Unknowns& at, const State& s) const {
   return g;
 }
 
-Step Objective::product(const Unknowns& at, const State& s, const Step& v, const SemTerm::Near* near) const {
+Step Objective::product(const Unknowns& at, const State& s, const Step& v,
+                        const SemTerm::Near* near) const {
   Step out = zero();
   if (afm)
-    afm->add_gradient(*s.afm, at.z_nm, afm->precision(afm->change(*s.afm, at.z_nm, v.z_nm, v.map, v.tip)), out.z_nm,
+    afm->add_gradient(*s.afm, at.z_nm,
+                      afm->precision(afm->change(*s.afm, at.z_nm, v.z_nm, v.map, v.tip)), out.z_nm,
                       fit_map ? &out.map : nullptr, fit_tip ? &out.tip : nullptr);
   if (sem) {
     Grid<double> change = sem->change(*s.sem, at.mixture, v.z_nm, v.mixture, near);
-    for (std::size_t i = 0; i < change.size(); ++i) change.data()[i] *= s.sem->information.data()[i];
-    sem->add_gradient(*s.sem, at.mixture, change, near, out.z_nm, fit_mixture ? &out.mixture : nullptr);
+    for (std::size_t i = 0; i < change.size(); ++i)
+      change.data()[i] *= s.sem->information.data()[i];
+    sem->add_gradient(*s.sem, at.mixture, change, near, out.z_nm,
+                      fit_mixture ? &out.mixture : nullptr);
   }
   prior.add_product(s.prior_weights, v.z_nm, out.z_nm);
   if (anchor_per_nm2 > 0)
-    for (std::size_t i = 0; i < start.size(); ++i) out.z_nm.data()[i] += anchor_per_nm2 * v.z_nm.data()[i];
+    for (std::size_t i = 0; i < start.size(); ++i)
+      out.z_nm.data()[i] += anchor_per_nm2 * v.z_nm.data()[i];
   if (fit_tip)
     for (int k = 0; k < tip_numbers; ++k) out.tip[k] += tip_precision * v.tip[k];
   return out;
@@ -88,11 +95,13 @@ Unknowns Objective::moved(const Unknowns& at, const Step& step) const {
   for (std::size_t i = 0; i < next.z_nm.size(); ++i) next.z_nm.data()[i] += step.z_nm.data()[i];
   if (afm && fit_map) next.surface_to_afm = afm->moved(at.surface_to_afm, step.map);
   if (fit_mixture) {
-    for (std::size_t c = 0; c + 1 < next.mixture.size(); ++c) next.mixture[c] *= 1 + step.mixture[0];
+    for (std::size_t c = 0; c + 1 < next.mixture.size(); ++c)
+      next.mixture[c] *= 1 + step.mixture[0];
     next.mixture.back() += step.mixture[1];
   }
-  if (fit_tip)   // within what a tip may be: a long step must not end at no number
-    for (int k = 0; k < tip_numbers; ++k) next.tip[k] = std::clamp(at.tip[k] + step.tip[k], -largest_tip_change, largest_tip_change);
+  if (fit_tip)  // within what a tip may be: a long step must not end at no number
+    for (int k = 0; k < tip_numbers; ++k)
+      next.tip[k] = std::clamp(at.tip[k] + step.tip[k], -largest_tip_change, largest_tip_change);
   return next;
 }
 

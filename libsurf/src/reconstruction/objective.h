@@ -13,23 +13,24 @@ namespace surf::reconstruction {
 
 /// Everything that is fitted.
 struct Unknowns {
-  Grid<double> z_nm;                 ///< on the surface's samples
+  Grid<double> z_nm;  ///< on the surface's samples
   Affine surface_to_afm;
-  std::vector<double> mixture;       ///< a gain for each channel and the offset; empty without SEM
-  TipChange tip{};                   ///< from the tip that is given
+  std::vector<double> mixture;  ///< a gain for each channel and the offset; empty without SEM
+  TipChange tip{};              ///< from the tip that is given
 };
 
 /// A change of it, or a derivative by it.
 struct Step {
   Grid<double> z_nm;
-  MapChange map{};                   ///< all 0 where the map is not fitted
-  MixtureChange mixture{};           ///< likewise
-  TipChange tip{};                   ///< likewise
+  MapChange map{};          ///< all 0 where the map is not fitted
+  MixtureChange mixture{};  ///< likewise
+  TipChange tip{};          ///< likewise
 };
 double dot(const Step& a, const Step& b);
 void add(Step& to, double factor, const Step& step);
 
-/// The negative log-likelihood of both images and the prior, without constants, and its derivatives.
+/// The negative log-likelihood of both images and the prior, without constants, and its
+/// derivatives.
 class Objective {
  public:
   std::optional<AfmTerm> afm;
@@ -37,10 +38,12 @@ class Objective {
   CurvaturePrior prior;
   SurfaceFrame frame;
   bool fit_map = false, fit_mixture = false;
-  /// Precision of a height, 1 / nm^2, that keeps a surface in place that no AFM image holds: about `start`.
+  /// Precision of a height, 1 / nm^2, that keeps a surface in place that no AFM image holds: about
+  /// `start`.
   double anchor_per_nm2 = 0;
   Grid<double> start;
-  /// The tip is fitted, about the one that is given. Where nothing speaks for another its slope is right within a third.
+  /// The tip is fitted, about the one that is given. Where nothing speaks for another its slope is
+  /// right within a third.
   bool fit_tip = false;
   double tip_precision = 9;
 
@@ -54,10 +57,11 @@ class Objective {
 
   State evaluate(const Unknowns& at) const;
   Step gradient(const Unknowns& at, const State& state) const;
-  /// The Gauss-Newton second derivative times v: J^T (precision or information) J, and the prior's with its
-  /// weights held, which bounds it from above. Positive semidefinite. `near`, if given, stands for the SEM's
-  /// J, at a third of the price.
-  Step product(const Unknowns& at, const State& state, const Step& v, const SemTerm::Near* near = nullptr) const;
+  /// The Gauss-Newton second derivative times v: J^T (precision or information) J, and the prior's
+  /// with its weights held, which bounds it from above. Positive semidefinite. `near`, if given,
+  /// stands for the SEM's J, at a third of the price.
+  Step product(const Unknowns& at, const State& state, const Step& v,
+               const SemTerm::Near* near = nullptr) const;
   Unknowns moved(const Unknowns& at, const Step& step) const;
   Step zero() const;
 };

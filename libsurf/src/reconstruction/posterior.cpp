@@ -11,22 +11,24 @@ namespace {
 
 constexpr int rounds = 3;
 constexpr int cheap_draws[rounds] = {12, 12, 48};
-constexpr double around_px = 3;   // over which the ratio of variances is averaged
+constexpr double around_px = 3;  // over which the ratio of variances is averaged
 
-/// What noise of both images does to the gradient: normal with the precision that they bring. `near`: see
-/// SemTerm::Near; null: the SEM's own.
-Step data_pull(const Objective& o, const Unknowns& at, const Objective::State& s, const SemTerm::Near* near,
-               std::uint64_t seed) {
+/// What noise of both images does to the gradient: normal with the precision that they bring.
+/// `near`: see SemTerm::Near; null: the SEM's own.
+Step data_pull(const Objective& o, const Unknowns& at, const Objective::State& s,
+               const SemTerm::Near* near, std::uint64_t seed) {
   Step r = o.zero();
   if (o.afm) {
-    const Grid<double> e = simulate_noise(o.afm->noise(), s.afm->residual.width(), s.afm->residual.height(), seed);
+    const Grid<double> e =
+        simulate_noise(o.afm->noise(), s.afm->residual.width(), s.afm->residual.height(), seed);
     o.afm->add_gradient(*s.afm, at.z_nm, o.afm->precision(e), r.z_nm, o.fit_map ? &r.map : nullptr,
                         o.fit_tip ? &r.tip : nullptr);
   }
   if (o.sem) {
     NormalNumbers normal(seed, 1);
     Grid<double> w(o.frame.width, o.frame.height);
-    for (std::size_t i = 0; i < w.size(); ++i) w.data()[i] = std::sqrt(s.sem->information.data()[i]) * normal();
+    for (std::size_t i = 0; i < w.size(); ++i)
+      w.data()[i] = std::sqrt(s.sem->information.data()[i]) * normal();
     o.sem->add_gradient(*s.sem, at.mixture, w, near, r.z_nm, o.fit_mixture ? &r.mixture : nullptr);
   }
   return r;
@@ -35,8 +37,8 @@ Step data_pull(const Objective& o, const Unknowns& at, const Objective::State& s
 /// The same of the prior.
 void add_prior_pull(const Objective& o, const Objective::State& s, std::uint64_t seed, Step& r) {
   NormalNumbers normal(seed, 2);
-  o.prior.for_each_difference(s.prior_weights, [&](int x, int y, int count, const int* dx, const int* dy,
-                                                   const double* c, double weight) {
+  o.prior.for_each_difference(s.prior_weights, [&](int x, int y, int count, const int* dx,
+                                                   const int* dy, const double* c, double weight) {
     const double n = std::sqrt(weight) * normal();
     for (int k = 0; k < count; ++k) r.z_nm(x + dx[k], y + dy[k]) += n * c[k];
   });
@@ -46,11 +48,11 @@ void add_prior_pull(const Objective& o, const Objective::State& s, std::uint64_t
     for (double& v : r.tip) v += std::sqrt(o.tip_precision) * normal();
 }
 
-/// x with A x = r by preconditioned conjugate gradients, until the residual, in the preconditioner's norm, is
-/// `reduction` of what it was. `product` is A.
+/// x with A x = r by preconditioned conjugate gradients, until the residual, in the
+/// preconditioner's norm, is `reduction` of what it was. `product` is A.
 template <class Product>
-Step solve(const Objective& o, const Product& product, const Preconditioner& m, const Step& right, double reduction,
-           const Watch& watch) {
+Step solve(const Objective& o, const Product& product, const Preconditioner& m, const Step& right,
+           double reduction, const Watch& watch) {
   Step x = o.zero(), r = right, z = m.solve(r), p = z;
   double rz = dot(r, z);
   const double begin = rz;
@@ -73,7 +75,8 @@ Step solve(const Objective& o, const Product& product, const Preconditioner& m, 
 
 }  // namespace
 
-Posterior posterior(const Objective& o, const Unknowns& at, int draws, std::uint64_t seed, int threads, const Watch& watch) {
+Posterior posterior(const Objective& o, const Unknowns& at, int draws, std::uint64_t seed,
+                    int threads, const Watch& watch) {
   Objective::State state = o.evaluate(at);
   const Grid<double> found = o.prior.squared_curvature(at.z_nm);
   const SemTerm::Near near = o.sem ? o.sem->near(*state.sem, at.mixture) : SemTerm::Near();
@@ -85,7 +88,7 @@ Posterior posterior(const Objective& o, const Unknowns& at, int draws, std::uint
     Preconditioner::Variances drawn = m.variances(o.prior, cheap_draws[round], seed, watch);
     without_sem = std::move(drawn.height_nm2);
     if (round + 1 == rounds) break;
-    Grid<double>& curvature = drawn.curvature_per_nm2;   // uncertain and found, squared
+    Grid<double>& curvature = drawn.curvature_per_nm2;  // uncertain and found, squared
     for (std::size_t i = 0; i < curvature.size(); ++i) curvature.data()[i] += found.data()[i];
     state.prior_weights = o.prior.weights_of(curvature);
   }
@@ -96,17 +99,20 @@ Posterior posterior(const Objective& o, const Unknowns& at, int draws, std::uint
     Step r = data_pull(o, at, state, &near, seed + static_cast<std::uint64_t>(d));
     add_prior_pull(o, state, seed + static_cast<std::uint64_t>(d), r);
     const Step x = solve(o, product, m, r, 0.05, watch);
-    for (std::size_t i = 0; i < drawn.size(); ++i) drawn.data()[i] += x.z_nm.data()[i] * x.z_nm.data()[i] / draws;
+    for (std::size_t i = 0; i < drawn.size(); ++i)
+      drawn.data()[i] += x.z_nm.data()[i] * x.z_nm.data()[i] / draws;
   }
   const GaussianBasis around(around_px, threads);
   const Grid<double> mean = around.sum(drawn), expected = around.sum(without_sem);
-  // The prior's pull, which no draw of noise shows: where to the surface would go without it, to first order.
+  // The prior's pull, which no draw of noise shows: where to the surface would go without it, to
+  // first order.
   Step pull = o.zero();
   o.prior.evaluate(at.z_nm, &pull.z_nm, nullptr);
   Grid<double> bias = solve(o, product, m, pull, 0.05, watch).z_nm;
   for (double& b : bias.data()) b *= b;
   bias = around.sum(bias);
-  Posterior out{Grid<double>(o.frame.width, o.frame.height), Grid<unsigned char>(o.frame.width, o.frame.height)};
+  Posterior out{Grid<double>(o.frame.width, o.frame.height),
+                Grid<unsigned char>(o.frame.width, o.frame.height)};
   for (std::size_t i = 0; i < drawn.size(); ++i) {
     const double ratio = mean.data()[i] / expected.data()[i];
     out.deviation_nm.data()[i] = std::sqrt(without_sem.data()[i] * ratio + bias.data()[i]);
@@ -118,13 +124,15 @@ Posterior posterior(const Objective& o, const Unknowns& at, int draws, std::uint
   return out;
 }
 
-Grid<double> linear_error(const Objective& o, const Unknowns& at, const Objective::State& state, const Preconditioner& m,
-                          std::uint64_t seed, const Watch& watch) {
+Grid<double> linear_error(const Objective& o, const Unknowns& at, const Objective::State& state,
+                          const Preconditioner& m, std::uint64_t seed, const Watch& watch) {
   Step r = data_pull(o, at, state, nullptr, seed);
   Step prior = o.zero();
   o.prior.evaluate(at.z_nm, &prior.z_nm, nullptr);
   add(r, -1, prior);
-  return solve(o, [&](const Step& v) { return o.product(at, state, v); }, m, r, 0.01, watch).z_nm;
+  return solve(
+             o, [&](const Step& v) { return o.product(at, state, v); }, m, r, 0.01, watch)
+      .z_nm;
 }
 
 }  // namespace surf::reconstruction

@@ -14,8 +14,8 @@
 namespace surf::reconstruction {
 namespace {
 
-/// Samples that neighbouring tiles reach into each other: three times as far as a contact's height carries in
-/// a plain.
+/// Samples that neighbouring tiles reach into each other: three times as far as a contact's height
+/// carries in a plain.
 constexpr int overlap_px = 10;
 
 /// Bilinear weights of a place, inside the samples.
@@ -34,10 +34,11 @@ struct Corners {
 };
 
 void add_prior(const Objective& o, const Objective::State& s, StencilMatrix& m) {
-  o.prior.for_each_difference(s.prior_weights, [&](int x, int y, int count, const int* dx, const int* dy, const double* c,
-                                                   double weight) {
+  o.prior.for_each_difference(s.prior_weights, [&](int x, int y, int count, const int* dx,
+                                                   const int* dy, const double* c, double weight) {
     for (int a = 0; a < count; ++a)
-      for (int b = a; b < count; ++b) m.add(x + dx[a], y + dy[a], x + dx[b], y + dy[b], weight * c[a] * c[b]);
+      for (int b = a; b < count; ++b)
+        m.add(x + dx[a], y + dy[a], x + dx[b], y + dy[b], weight * c[a] * c[b]);
   });
   double largest = 0;
   for (const double p : s.prior_weights.data()) largest = std::max(largest, p);
@@ -47,12 +48,14 @@ void add_prior(const Objective& o, const Objective::State& s, StencilMatrix& m) 
 }
 
 void add_contacts(const Objective& o, const Objective::State& s, StencilMatrix& m) {
-  const double q = (1 - o.afm->noise().alpha * o.afm->noise().alpha) / o.afm->noise().innovation_nm2;
+  const double q =
+      (1 - o.afm->noise().alpha * o.afm->noise().alpha) / o.afm->noise().innovation_nm2;
   for (const Contact& c : s.afm->contacts) {
     if (!c.inside) continue;
     const Corners k(c, m.width(), m.height());
     for (int a = 0; a < 4; ++a)
-      for (int b = a; b < 4; ++b) m.add(k.x + a % 2, k.y + a / 2, k.x + b % 2, k.y + b / 2, q * k.w[a] * k.w[b]);
+      for (int b = a; b < 4; ++b)
+        m.add(k.x + a % 2, k.y + a / 2, k.x + b % 2, k.y + b / 2, q * k.w[a] * k.w[b]);
   }
 }
 
@@ -65,11 +68,12 @@ double product(const Grid<double>& a, const Grid<double>& b) {
 /// The symmetric matrix nearest to one whose eigenvalues are `least` or more.
 Eigen::MatrixXd at_least(const Eigen::MatrixXd& m, double least) {
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> parts(0.5 * (m + m.transpose()));
-  return parts.eigenvectors() * parts.eigenvalues().cwiseMax(least).asDiagonal() * parts.eigenvectors().transpose();
+  return parts.eigenvectors() * parts.eigenvalues().cwiseMax(least).asDiagonal() *
+         parts.eigenvectors().transpose();
 }
 
-/// Samples [begin, end) of a tile along one axis, with those it shares with its neighbours, and its weights
-/// there.
+/// Samples [begin, end) of a tile along one axis, with those it shares with its neighbours, and its
+/// weights there.
 struct Span {
   int begin = 0, end = 0, own_begin = 0, own_end = 0;
   std::vector<double> weights;
@@ -77,12 +81,20 @@ struct Span {
 
 /// Equal parts of an axis, each reaching into its neighbours, with weights that add up to 1.
 std::vector<Span> spans(int samples, int tile) {
-  const int count = tile > 0 ? std::max(1, static_cast<int>(std::lround(samples / static_cast<double>(tile)))) : 1;
+  const int count =
+      tile > 0 ? std::max(1, static_cast<int>(std::lround(samples / static_cast<double>(tile))))
+               : 1;
   std::vector<Span> out;
   for (int i = 0; i < count; ++i) {
     const bool first = i == 0, last = i + 1 == count;
-    const auto cut = [&](int k) { return static_cast<int>(static_cast<std::int64_t>(samples) * k / count); };
-    Span s{first ? 0 : cut(i) - overlap_px, last ? samples : cut(i + 1) + overlap_px, cut(i), cut(i + 1), {}};
+    const auto cut = [&](int k) {
+      return static_cast<int>(static_cast<std::int64_t>(samples) * k / count);
+    };
+    Span s{first ? 0 : cut(i) - overlap_px,
+           last ? samples : cut(i + 1) + overlap_px,
+           cut(i),
+           cut(i + 1),
+           {}};
     for (int x = s.begin; x < s.end; ++x) {
       double weight = 1;
       if (!first) weight = std::min(weight, (x + 0.5 - s.begin) / (2 * overlap_px));
@@ -98,17 +110,20 @@ std::vector<Span> spans(int samples, int tile) {
 
 struct Preconditioner::Blocks {
   Eigen::LDLT<Eigen::MatrixXd> map, mixture, tip;
-  std::array<Grid<double>, tip_numbers> follows;   // how the surface gives way to the tip
+  std::array<Grid<double>, tip_numbers> follows;  // how the surface gives way to the tip
   bool has_map = false, has_mixture = false, has_tip = false;
 
   void eliminate_tip(const Objective& o, const Objective::State& s, const Preconditioner& surface);
 };
 
-/// The tip with the surface: what one takes off a contact the other can give back, so that a block of its own would leave
-/// a long valley. Tiles are no exact inverse, so that the rest could fall below what the tip's prior leaves.
-void Preconditioner::Blocks::eliminate_tip(const Objective& o, const Objective::State& s, const Preconditioner& surface) {
+/// The tip with the surface: what one takes off a contact the other can give back, so that a block
+/// of its own would leave a long valley. Tiles are no exact inverse, so that the rest could fall
+/// below what the tip's prior leaves.
+void Preconditioner::Blocks::eliminate_tip(const Objective& o, const Objective::State& s,
+                                           const Preconditioner& surface) {
   const int w = o.frame.width, h = o.frame.height;
-  const double q = (1 - o.afm->noise().alpha * o.afm->noise().alpha) / o.afm->noise().innovation_nm2;
+  const double q =
+      (1 - o.afm->noise().alpha * o.afm->noise().alpha) / o.afm->noise().innovation_nm2;
   Eigen::MatrixXd block = o.tip_precision * Eigen::MatrixXd::Identity(tip_numbers, tip_numbers);
   std::array<Step, tip_numbers> coupling;
   coupling.fill(o.zero());
@@ -120,7 +135,8 @@ void Preconditioner::Blocks::eliminate_tip(const Objective& o, const Objective::
     if (!c.inside) continue;
     const Corners at(c, w, h);
     for (int k = 0; k < tip_numbers; ++k)
-      for (int a = 0; a < 4; ++a) coupling[k].z_nm(at.x + a % 2, at.y + a / 2) += q * at.w[a] * d[k];
+      for (int a = 0; a < 4; ++a)
+        coupling[k].z_nm(at.x + a % 2, at.y + a / 2) += q * at.w[a] * d[k];
   }
   has_tip = false;
   for (int k = 0; k < tip_numbers; ++k) follows[k] = surface.solve(coupling[k]).z_nm;
@@ -139,10 +155,13 @@ void Preconditioner::make_tiles(int width, int height) {
   const int tile = tile_px_ > 0 ? std::max(tile_px_, 4 * overlap_px) : 0;
   for (const Span& v : spans(height, tile))
     for (const Span& u : spans(width, tile)) {
-      Tile t{{u.begin, v.begin, u.end, v.end}, {u.own_begin, v.own_begin, u.own_end, v.own_end},
-             Grid<double>(u.end - u.begin, v.end - v.begin), {}};
+      Tile t{{u.begin, v.begin, u.end, v.end},
+             {u.own_begin, v.own_begin, u.own_end, v.own_end},
+             Grid<double>(u.end - u.begin, v.end - v.begin),
+             {}};
       for (int y = 0; y < t.share.height(); ++y)
-        for (int x = 0; x < t.share.width(); ++x) t.share(x, y) = std::sqrt(u.weights[x] * v.weights[y]);
+        for (int x = 0; x < t.share.width(); ++x)
+          t.share(x, y) = std::sqrt(u.weights[x] * v.weights[y]);
       tiles_.push_back(std::move(t));
     }
 }
@@ -168,7 +187,9 @@ void Preconditioner::factor(const Objective& o, const Unknowns& at, const Object
       const Grid<double> none(w, h);
       Grid<double> unused(w, h);
       MapChange column{};
-      o.afm->add_gradient(*s.afm, at.z_nm, o.afm->precision(o.afm->change(*s.afm, at.z_nm, none, unit)), unused, &column);
+      o.afm->add_gradient(*s.afm, at.z_nm,
+                          o.afm->precision(o.afm->change(*s.afm, at.z_nm, none, unit)), unused,
+                          &column);
       for (int i = 0; i < map_numbers; ++i) block(i, k) = column[i];
     }
     block = 0.5 * (block + block.transpose()).eval();
@@ -180,7 +201,8 @@ void Preconditioner::factor(const Objective& o, const Unknowns& at, const Object
   if (few.has_mixture) {
     Eigen::MatrixXd block = Eigen::MatrixXd::Zero(2, 2);
     for (std::size_t i = 0; i < s.sem->information.size(); ++i) {
-      const double q = s.sem->information.data()[i], gain = s.sem->simulated.data()[i] - at.mixture.back();
+      const double q = s.sem->information.data()[i],
+                   gain = s.sem->simulated.data()[i] - at.mixture.back();
       block(0, 0) += q * gain * gain;
       block(0, 1) += q * gain;
       block(1, 1) += q;
@@ -200,14 +222,15 @@ Step Preconditioner::solve(const Step& r) const {
     out.z_nm = tiles_.front().factor.solve(r.z_nm);
   } else {
     std::vector<Grid<double>> parts(tiles_.size());
-    parallel_for(tiles_.size(), std::min(threads_, OneBlasThread::most_at_once()), [&](std::size_t i, int) {
-      const Tile& t = tiles_[i];
-      Grid<double> right(t.area.width(), t.area.height());
-      for (int y = 0; y < right.height(); ++y)
-        for (int x = 0; x < right.width(); ++x)
-          right(x, y) = t.share(x, y) * r.z_nm(x + t.area.x_begin, y + t.area.y_begin);
-      parts[i] = t.factor.solve(right);
-    });
+    parallel_for(tiles_.size(), std::min(threads_, OneBlasThread::most_at_once()),
+                 [&](std::size_t i, int) {
+                   const Tile& t = tiles_[i];
+                   Grid<double> right(t.area.width(), t.area.height());
+                   for (int y = 0; y < right.height(); ++y)
+                     for (int x = 0; x < right.width(); ++x)
+                       right(x, y) = t.share(x, y) * r.z_nm(x + t.area.x_begin, y + t.area.y_begin);
+                   parts[i] = t.factor.solve(right);
+                 });
     out.z_nm = Grid<double>(r.z_nm.width(), r.z_nm.height());
     for (std::size_t i = 0; i < parts.size(); ++i) {
       const Tile& t = tiles_[i];
@@ -228,14 +251,15 @@ Step Preconditioner::solve(const Step& r) const {
     const Eigen::VectorXd tip = blocks_->tip.solve(right);
     for (int k = 0; k < tip_numbers; ++k) {
       out.tip[k] = tip(k);
-      for (std::size_t i = 0; i < out.z_nm.size(); ++i) out.z_nm.data()[i] -= tip(k) * blocks_->follows[k].data()[i];
+      for (std::size_t i = 0; i < out.z_nm.size(); ++i)
+        out.z_nm.data()[i] -= tip(k) * blocks_->follows[k].data()[i];
     }
   }
   return out;
 }
 
-Preconditioner::Variances Preconditioner::variances(const CurvaturePrior& prior, int draws, std::uint64_t seed,
-                                                    const Watch& watch) const {
+Preconditioner::Variances Preconditioner::variances(const CurvaturePrior& prior, int draws,
+                                                    std::uint64_t seed, const Watch& watch) const {
   const OneBlasThread alone;
   int width = 0, height = 0;
   for (const Tile& t : tiles_) {
@@ -243,22 +267,23 @@ Preconditioner::Variances Preconditioner::variances(const CurvaturePrior& prior,
     height = std::max(height, t.area.y_end);
   }
   Variances out{Grid<double>(width, height), Grid<double>(width, height)};
-  parallel_for(tiles_.size(), std::min(threads_, OneBlasThread::most_at_once()), [&](std::size_t i, int) {
-    const Tile& t = tiles_[i];
-    NormalNumbers normal(seed, 3 + i);
-    for (int d = 0; d < draws; ++d) {
-      if (watch.cancel && watch.cancel->cancelled()) return;
-      Grid<double> white(t.area.width(), t.area.height());
-      for (double& v : white.data()) v = normal();
-      const Grid<double> z = t.factor.draw(white), curvature = prior.squared_curvature(z);
-      for (int y = t.own.y_begin; y < t.own.y_end; ++y)
-        for (int x = t.own.x_begin; x < t.own.x_end; ++x) {
-          const int u = x - t.area.x_begin, v = y - t.area.y_begin;
-          out.height_nm2(x, y) += z(u, v) * z(u, v) / draws;
-          out.curvature_per_nm2(x, y) += curvature(u, v) / draws;
+  parallel_for(
+      tiles_.size(), std::min(threads_, OneBlasThread::most_at_once()), [&](std::size_t i, int) {
+        const Tile& t = tiles_[i];
+        NormalNumbers normal(seed, 3 + i);
+        for (int d = 0; d < draws; ++d) {
+          if (watch.cancel && watch.cancel->cancelled()) return;
+          Grid<double> white(t.area.width(), t.area.height());
+          for (double& v : white.data()) v = normal();
+          const Grid<double> z = t.factor.draw(white), curvature = prior.squared_curvature(z);
+          for (int y = t.own.y_begin; y < t.own.y_end; ++y)
+            for (int x = t.own.x_begin; x < t.own.x_end; ++x) {
+              const int u = x - t.area.x_begin, v = y - t.area.y_begin;
+              out.height_nm2(x, y) += z(u, v) * z(u, v) / draws;
+              out.curvature_per_nm2(x, y) += curvature(u, v) / draws;
+            }
         }
-    }
-  });
+      });
   watch.check();
   return out;
 }

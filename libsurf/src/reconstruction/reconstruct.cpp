@@ -7,8 +7,8 @@
 #include <fmt/format.h>
 
 #include "descent.h"
-#include "gaussian_basis.h"
 #include "gauss_newton.h"
+#include "gaussian_basis.h"
 #include "posterior.h"
 #include "start.h"
 #include "surf/core/error.h"
@@ -18,14 +18,17 @@ namespace {
 
 using namespace reconstruction;
 
-constexpr int least_pixels = 256;   // 16 x 16 in common
-constexpr double share_of_scales = 0.75;   // of the time, deviations take the rest
-constexpr double coarsely = 20;     // times the tolerance, where the prior is still to change
-constexpr double rough_looseness = 3;   // times the likely curvature: what neither image holds is not white
+constexpr int least_pixels = 256;         // 16 x 16 in common
+constexpr double share_of_scales = 0.75;  // of the time, deviations take the rest
+constexpr double coarsely = 20;           // times the tolerance, where the prior is still to change
+constexpr double rough_looseness =
+    3;  // times the likely curvature: what neither image holds is not white
 constexpr double worth_loosening = 1.3;
 
 void check(const AfmData* afm, const SemData* sem, const ReconstructionOptions& o) {
-  if (!afm && !sem) throw InvalidInput("reconstruct", "neither an AFM nor an SEM image is given", "Give one or both");
+  if (!afm && !sem)
+    throw InvalidInput("reconstruct", "neither an AFM nor an SEM image is given",
+                       "Give one or both");
   if (afm) {
     validate(afm->image, "AFM image");
     validate(afm->tip, "tip");
@@ -36,20 +39,26 @@ void check(const AfmData* afm, const SemData* sem, const ReconstructionOptions& 
   if (sem) {
     validate(sem->image, "SEM image");
     validate(sem->noise);
-    if (!sem->model) throw InvalidInput("SEM image", "there is no model of it", "Train or load one");
+    if (!sem->model)
+      throw InvalidInput("SEM image", "there is no model of it", "Train or load one");
     if (sem->gains.size() != sem->model->channels().size())
-      throw InvalidInput("SEM image", "there is not one gain for each channel of the model", "Calibrate the model");
+      throw InvalidInput("SEM image", "there is not one gain for each channel of the model",
+                         "Calibrate the model");
     if (std::fabs(sem->image.pitch_x_nm / sem->image.pitch_y_nm - 1) > 1e-3)
       throw InvalidInput("SEM image", "its pixels are not square", "Resample it");
     const double scene = sem->model->scope().pixel_nm;
     if (scene > 0 && std::fabs(scene / sem->image.pitch_x_nm - 1) > 1e-3)
-      throw InvalidInput("SEM image", fmt::format("its pixels are {} nm wide, the model's {} nm", sem->image.pitch_x_nm, scene),
-                         "Train a model for this pixel size");
+      throw InvalidInput(
+          "SEM image",
+          fmt::format("its pixels are {} nm wide, the model's {} nm", sem->image.pitch_x_nm, scene),
+          "Train a model for this pixel size");
     inverse(sem->sem_to_afm);
   }
   for (std::size_t i = 0; i < o.scales_px.size(); ++i)
-    if (!(o.scales_px[i] > 0.2 && o.scales_px[i] <= 1000) || (i > 0 && o.scales_px[i] >= o.scales_px[i - 1]))
-      throw UsageError("scales", "scales must fall, from at most 1000 to more than 0.2 pixels", "As 16,8,4,2,1");
+    if (!(o.scales_px[i] > 0.2 && o.scales_px[i] <= 1000) ||
+        (i > 0 && o.scales_px[i] >= o.scales_px[i - 1]))
+      throw UsageError("scales", "scales must fall, from at most 1000 to more than 0.2 pixels",
+                       "As 16,8,4,2,1");
   if (o.iterations < 0 || o.tolerance < 0 || o.curvature_prior_per_nm < 0 || o.probes < 2)
     throw UsageError("reconstruct", "an option is out of range", "See the help for ranges");
 }
@@ -78,12 +87,15 @@ ResidualReport judge(const Grid<double>& white, const Grid<unsigned char>& used)
   const double n = static_cast<double>(r.pixels), variance = squares / n;
   r.mean = sum / n;
   r.deviation = std::sqrt(std::max(squares / n - r.mean * r.mean, 0.0));
-  if (variance > 0 && pairs_along > 0) r.along = along / static_cast<double>(pairs_along) / variance;
-  if (variance > 0 && pairs_across > 0) r.across = across / static_cast<double>(pairs_across) / variance;
+  if (variance > 0 && pairs_along > 0)
+    r.along = along / static_cast<double>(pairs_along) / variance;
+  if (variance > 0 && pairs_across > 0)
+    r.across = across / static_cast<double>(pairs_across) / variance;
   // What chance allows, and what is too small to matter.
   const double chance = 5 / std::sqrt(n);
-  r.like_noise = std::fabs(r.mean) < 0.1 + chance && r.deviation > 0.8 - chance && r.deviation < 1.15 + chance &&
-                 std::fabs(r.along) < 0.1 + chance && std::fabs(r.across) < 0.1 + chance;
+  r.like_noise = std::fabs(r.mean) < 0.1 + chance && r.deviation > 0.8 - chance &&
+                 r.deviation < 1.15 + chance && std::fabs(r.along) < 0.1 + chance &&
+                 std::fabs(r.across) < 0.1 + chance;
   return r;
 }
 
@@ -101,8 +113,11 @@ class Work {
       at_.z_nm = on_frame(outside, frame, at_.surface_to_afm);
       objective_.afm.emplace(*afm, outside, frame, at_.surface_to_afm, options.threads);
       if (objective_.afm->used_pixels() < least_pixels)
-        throw InvalidInput("registration", fmt::format("{} AFM pixels lie in the SEM image", objective_.afm->used_pixels()),
-                           "The images must overlap by 256 pixels at least: check the transform and the pixel sizes");
+        throw InvalidInput(
+            "registration",
+            fmt::format("{} AFM pixels lie in the SEM image", objective_.afm->used_pixels()),
+            "The images must overlap by 256 pixels at least: check the transform and the pixel "
+            "sizes");
     } else {
       objective_.anchor_per_nm2 = 1e-6;
       objective_.start = at_.z_nm;
@@ -115,21 +130,26 @@ class Work {
     }
     objective_.fit_map = afm && sem && options.refine_transform;
     objective_.fit_mixture = sem && options.refine_calibration;
-    objective_.fit_tip = afm && sem && options.refine_tip && options.method == ReconstructionMethod::gauss_newton &&
+    objective_.fit_tip = afm && sem && options.refine_tip &&
+                         options.method == ReconstructionMethod::gauss_newton &&
                          objective_.afm->tip_can_change();
     curvature_ = options.curvature_prior_per_nm > 0 ? options.curvature_prior_per_nm : 1e-3;
     set_prior(curvature_);
   }
 
   Reconstruction run(ReconstructionJournal* journal) {
-    const std::vector<double> scales = options_.scales_px.empty()
-        ? default_scales_px(options_.method, objective_.frame.width, objective_.frame.height) : options_.scales_px;
+    const std::vector<double> scales =
+        options_.scales_px.empty()
+            ? default_scales_px(options_.method, objective_.frame.width, objective_.frame.height)
+            : options_.scales_px;
     if (journal)
       if (const auto found = journal->found()) take(*found);
     for (std::size_t i = reports_.size(); i < scales.size(); ++i) {
-      const double share = (options_.uncertainty ? share_of_scales : 1) / static_cast<double>(scales.size());
+      const double share =
+          (options_.uncertainty ? share_of_scales : 1) / static_cast<double>(scales.size());
       const auto done = static_cast<double>(i);
-      scale(scales[i], i == 0, i + 1 == scales.size(), options_.watch.part(done * share, (done + 1) * share));
+      scale(scales[i], i == 0, i + 1 == scales.size(),
+            options_.watch.part(done * share, (done + 1) * share));
       if (journal) journal->keep(state());
     }
     return result();
@@ -141,7 +161,8 @@ class Work {
   void take(const ReconstructionState& s) {
     at_.z_nm = s.surface.z_nm;
     at_.surface_to_afm = s.sem_to_afm;
-    std::copy_n(s.tip_change.begin(), std::min(s.tip_change.size(), at_.tip.size()), at_.tip.begin());
+    std::copy_n(s.tip_change.begin(), std::min(s.tip_change.size(), at_.tip.size()),
+                at_.tip.begin());
     erode_again();
     if (sem_) {
       at_.mixture = s.gains;
@@ -162,8 +183,9 @@ class Work {
     return s;
   }
 
-  /// What stands beyond the surface is the scan less the tip as it is now: a scan that was eroded by a blunter one would
-  /// hold the tip back, as dilation of it by a sharper one is lower than the scan.
+  /// What stands beyond the surface is the scan less the tip as it is now: a scan that was eroded
+  /// by a blunter one would hold the tip back, as dilation of it by a sharper one is lower than the
+  /// scan.
   void erode_again() {
     if (!objective_.fit_tip) return;
     AfmData now = *afm_;
@@ -176,7 +198,10 @@ class Work {
     DescentOptions o;
     const bool newton = options_.method == ReconstructionMethod::gauss_newton;
     o.iterations = options_.iterations > 0 ? options_.iterations : newton ? 60 : 200;
-    o.tolerance = (options_.tolerance > 0 ? options_.tolerance : newton ? 5e-4 : 5e-5) * static_cast<double>(pixels());
+    o.tolerance = (options_.tolerance > 0 ? options_.tolerance
+                   : newton               ? 5e-4
+                                          : 5e-5) *
+                  static_cast<double>(pixels());
     o.threads = options_.threads;
     o.watch = watch;
     DescentReport d;
@@ -194,7 +219,8 @@ class Work {
       o.tolerance *= coarsely;
       go_on(0, last ? 0.5 : 1);
       if (last) {
-        while (d.iterations < most && options_.curvature_prior_per_nm == 0 && loosen_prior()) go_on(0.5, 0.5);
+        while (d.iterations < most && options_.curvature_prior_per_nm == 0 && loosen_prior())
+          go_on(0.5, 0.5);
         o.tolerance = settled;
         go_on(0.5, 1);
       }
@@ -204,8 +230,18 @@ class Work {
     }
     erode_again();
     const Objective::State s = objective_.evaluate(at_);
-    ScaleReport r{sigma_px, objective_.prior.curvature_per_nm(), s.afm_value, s.sem_value, s.prior_value, d.gradient_norm, d.iterations, d.evaluations, d.products,
-                  d.ended, {}, {}};
+    ScaleReport r{sigma_px,
+                  objective_.prior.curvature_per_nm(),
+                  s.afm_value,
+                  s.sem_value,
+                  s.prior_value,
+                  d.gradient_norm,
+                  d.iterations,
+                  d.evaluations,
+                  d.products,
+                  d.ended,
+                  {},
+                  {}};
     if (s.afm) r.afm_residual = judge(afm_white(s), objective_.afm->used());
     if (s.sem) r.sem_residual = judge(sem_white(s), objective_.sem->used());
     converged_ = d.ended == "converged";
@@ -216,12 +252,14 @@ class Work {
     objective_.prior = CurvaturePrior(objective_.frame.pitch_nm, curvature_per_nm);
   }
 
-  /// Rough ground bends everywhere; a prior for plateaus and edges would pull it flat. Where a surface that
-  /// was made under this prior bends more than that at half its samples, it gets one that only holds what the
-  /// images do not. False if nothing was to be done. A surface never bends more than the true one under a
-  /// prior that is too stiff, so that a specimen of plateaus is not taken for rough ground.
+  /// Rough ground bends everywhere; a prior for plateaus and edges would pull it flat. Where a
+  /// surface that was made under this prior bends more than that at half its samples, it gets one
+  /// that only holds what the images do not. False if nothing was to be done. A surface never bends
+  /// more than the true one under a prior that is too stiff, so that a specimen of plateaus is not
+  /// taken for rough ground.
   bool loosen_prior() {
-    const double likely = objective_.prior.likely_curvature_per_nm(at_.z_nm), now = objective_.prior.curvature_per_nm();
+    const double likely = objective_.prior.likely_curvature_per_nm(at_.z_nm),
+                 now = objective_.prior.curvature_per_nm();
     rough_ = rough_ || likely > now;
     if (!rough_ || rough_looseness * likely < worth_loosening * now) return false;
     set_prior(rough_looseness * likely);
@@ -237,23 +275,27 @@ class Work {
   }
 
   std::int64_t pixels() const {
-    return (objective_.afm ? objective_.afm->used_pixels() : 0) + (objective_.sem ? objective_.sem->used_pixels() : 0);
+    return (objective_.afm ? objective_.afm->used_pixels() : 0) +
+           (objective_.sem ? objective_.sem->used_pixels() : 0);
   }
 
   Grid<double> afm_white(const Objective::State& s) const {
     return whiten(s.afm->residual, afm_->noise, objective_.afm->used());
   }
   Grid<double> sem_white(const Objective::State& s) const {
-    return whiten(objective_.sem->image(), s.sem->simulated, objective_.sem->noise(), objective_.sem->used());
+    return whiten(objective_.sem->image(), s.sem->simulated, objective_.sem->noise(),
+                  objective_.sem->used());
   }
 
   void add_warnings(Reconstruction& out) const {
-    if (!converged_) out.warnings.push_back("the last scale ended before it settled: give more iterations");
+    if (!converged_)
+      out.warnings.push_back("the last scale ended before it settled: give more iterations");
     if (reports_.empty()) return;
     const auto judge_image = [&](const ResidualReport& r, const char* image) {
       if (r.pixels == 0 || r.like_noise) return;
       out.warnings.push_back(fmt::format(
-          "what is left of the {} image does not look like its noise (deviation {:.2f} of 1, neighbours' correlation {:.2f} "
+          "what is left of the {} image does not look like its noise (deviation {:.2f} of 1, "
+          "neighbours' correlation {:.2f} "
           "along and {:.2f} across rows): look at its residual for what no surface explains",
           image, r.deviation, r.along, r.across));
     };
@@ -268,7 +310,12 @@ class Work {
   }
   HeightField cut_field(const Grid<double>& z) const {
     const SurfaceFrame& f = objective_.frame;
-    return {cut(z), {}, f.pitch_nm, f.pitch_nm, f.origin_x_nm + margin_ * f.pitch_nm, f.origin_y_nm + margin_ * f.pitch_nm};
+    return {cut(z),
+            {},
+            f.pitch_nm,
+            f.pitch_nm,
+            f.origin_x_nm + margin_ * f.pitch_nm,
+            f.origin_y_nm + margin_ * f.pitch_nm};
   }
 
   Reconstruction result() {
@@ -296,8 +343,8 @@ class Work {
       out.sem_residual = cut(sem_white(s));
     }
     if (options_.uncertainty) {
-      const Posterior p = posterior(objective_, at_, options_.probes, options_.seed, options_.threads,
-                                    options_.watch.part(share_of_scales, 1));
+      const Posterior p = posterior(objective_, at_, options_.probes, options_.seed,
+                                    options_.threads, options_.watch.part(share_of_scales, 1));
       out.deviation_nm = cut(p.deviation_nm);
       out.held_by = cut(p.held_by);
     }
@@ -309,12 +356,16 @@ class Work {
     const SurfaceFrame& f = objective_.frame;
     const int w = f.width - 2 * margin_, h = f.height - 2 * margin_;
     if (truth.z_nm.width() != w || truth.z_nm.height() != h)
-      throw InvalidInput("truth", fmt::format("it has {} x {} samples, the surface {} x {}", truth.z_nm.width(),
-                                              truth.z_nm.height(), w, h), "Give it on the surface's samples");
+      throw InvalidInput("truth",
+                         fmt::format("it has {} x {} samples, the surface {} x {}",
+                                     truth.z_nm.width(), truth.z_nm.height(), w, h),
+                         "Give it on the surface's samples");
     for (int y = 0; y < h; ++y)
       for (int x = 0; x < w; ++x) at_.z_nm(x + margin_, y + margin_) = truth.z_nm(x, y);
     if (options_.method == ReconstructionMethod::gauss_newton) {
-      const double scale = options_.scales_px.empty() ? default_scales_px(options_.method, f.width, f.height).back() : options_.scales_px.back();
+      const double scale = options_.scales_px.empty()
+                               ? default_scales_px(options_.method, f.width, f.height).back()
+                               : options_.scales_px.back();
       set_prior(curvature_ * scale * scale);
     }
     if (options_.curvature_prior_per_nm == 0) loosen_prior();
@@ -323,7 +374,8 @@ class Work {
     m.factor(objective_, at_, s);
     double sum = 0;
     for (int d = 0; d < draws; ++d) {
-      const Grid<double> e = cut(linear_error(objective_, at_, s, m, options_.seed + static_cast<std::uint64_t>(d), options_.watch));
+      const Grid<double> e = cut(linear_error(
+          objective_, at_, s, m, options_.seed + static_cast<std::uint64_t>(d), options_.watch));
       for (const double v : e.data()) sum += v * v / (static_cast<double>(e.size()) * draws);
     }
     return std::sqrt(sum);
@@ -347,21 +399,22 @@ class Work {
 std::vector<double> default_scales_px(ReconstructionMethod method, int width, int height) {
   if (method == ReconstructionMethod::gauss_newton) return {5, 1.4};
   std::vector<double> scales;
-  // Jones's schedule from where descents get through: begun at 60 pixels they stall far off (docs/methods/reconstruction.md).
+  // Jones's schedule from where descents get through: begun at 60 pixels they stall far off
+  // (docs/methods/reconstruction.md).
   const double widest = std::min(10.0, std::min(width, height) / 3.0);
   for (double s = 60; s > 0.38; s /= 1.875)
     if (s <= widest) scales.push_back(s);
   return scales;
 }
 
-Reconstruction reconstruct(const AfmData* afm, const SemData* sem, const ReconstructionOptions& options,
-                           ReconstructionJournal* journal) {
+Reconstruction reconstruct(const AfmData* afm, const SemData* sem,
+                           const ReconstructionOptions& options, ReconstructionJournal* journal) {
   check(afm, sem, options);
   return Work(afm, sem, options).run(journal);
 }
 
-double noise_floor_nm(const AfmData* afm, const SemData* sem, const HeightField& truth, const ReconstructionOptions& options,
-                      int draws) {
+double noise_floor_nm(const AfmData* afm, const SemData* sem, const HeightField& truth,
+                      const ReconstructionOptions& options, int draws) {
   check(afm, sem, options);
   return Work(afm, sem, options).noise_floor_nm(truth, draws);
 }

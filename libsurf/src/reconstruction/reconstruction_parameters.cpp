@@ -56,34 +56,45 @@ void describe(ParameterVisitor& visit, ReconstructionOptions& o) {
   visit(o.method, {"gauss-newton", "conjugate-gradients", "lbfgs"},
         {.name = "reconstruction.optimiser", .help = "How the surface is searched for"});
   ScalesField scales(o.scales_px);
-  visit.visit({.name = "reconstruction.scales",
-               .help = "Standard deviations of the Gaussians that the surface is a sum of, falling, in pixels",
-               .otherwise = "the optimiser's own", .form = "PX,PX..."},
-              scales);
-  show_or_own(visit, o.iterations, {.name = "reconstruction.iterations", .help = "Most iterations of each scale",
-                                    .limits = within(1, 1'000'000), .otherwise = "the optimiser's own"});
+  visit.visit(
+      {.name = "reconstruction.scales",
+       .help =
+           "Standard deviations of the Gaussians that the surface is a sum of, falling, in pixels",
+       .otherwise = "the optimiser's own",
+       .form = "PX,PX..."},
+      scales);
+  show_or_own(visit, o.iterations,
+              {.name = "reconstruction.iterations",
+               .help = "Most iterations of each scale",
+               .limits = within(1, 1'000'000),
+               .otherwise = "the optimiser's own"});
   show_or_own(visit, o.tolerance,
               {.name = "reconstruction.optimiser_tolerance",
-               .help = "Gain of the objective per pixel below which an iteration ends its scale", .limits = above(0),
-               .otherwise = "the optimiser's own"});
-  show_or_own(visit, o.curvature_prior_per_nm,
-              {.name = "reconstruction.prior",
-               .help = "Expected second derivative of the surface where no image says anything, in 1/nm",
+               .help = "Gain of the objective per pixel below which an iteration ends its scale",
                .limits = above(0),
-               .otherwise = "0.001, more on rough ground"});
+               .otherwise = "the optimiser's own"});
+  show_or_own(
+      visit, o.curvature_prior_per_nm,
+      {.name = "reconstruction.prior",
+       .help = "Expected second derivative of the surface where no image says anything, in 1/nm",
+       .limits = above(0),
+       .otherwise = "0.001, more on rough ground"});
   show_unless(visit, o.refine_transform,
-              {.name = "reconstruction.fixed_transform", .help = "Do not fit the map further with the surface"});
-  show_unless(
-      visit, o.refine_calibration,
-      {.name = "reconstruction.fixed_calibration", .help = "Do not fit gains and offset further with the surface"});
-  visit(o.refine_tip,
-        {.name = "reconstruction.refine_tip", .help = "Fit the tip with the surface, even one that is given"});
-  show_unless(visit, o.uncertainty, {.name = "reconstruction.no_uncertainty",
-                                     .help = "Leave out the standard deviations of heights, which take a while"});
-  visit(o.probes, {.name = "reconstruction.probes", .help = "Random vectors that the uncertainty is estimated from",
+              {.name = "reconstruction.fixed_transform",
+               .help = "Do not fit the map further with the surface"});
+  show_unless(visit, o.refine_calibration,
+              {.name = "reconstruction.fixed_calibration",
+               .help = "Do not fit gains and offset further with the surface"});
+  visit(o.refine_tip, {.name = "reconstruction.refine_tip",
+                       .help = "Fit the tip with the surface, even one that is given"});
+  show_unless(visit, o.uncertainty,
+              {.name = "reconstruction.no_uncertainty",
+               .help = "Leave out the standard deviations of heights, which take a while"});
+  visit(o.probes, {.name = "reconstruction.probes",
+                   .help = "Random vectors that the uncertainty is estimated from",
                    .limits = within(2, 100'000)});
-  visit(o.seed,
-        {.name = "reconstruction.seed", .help = "Seed of random vectors, and of the noise that tips are judged by"});
+  visit(o.seed, {.name = "reconstruction.seed",
+                 .help = "Seed of random vectors, and of the noise that tips are judged by"});
 }
 
 }  // namespace surf

@@ -11,7 +11,8 @@ namespace surf {
 namespace {
 
 constexpr double degree = std::numbers::pi / 180;
-constexpr double reach_in_blurs = 9;   // beyond it a blurred edge is 0 to the last bit of a double's 1
+constexpr double reach_in_blurs =
+    9;  // beyond it a blurred edge is 0 to the last bit of a double's 1
 
 Point2 unit(double angle) { return {std::cos(angle), std::sin(angle)}; }
 double dot(Point2 a, Point2 b) { return a.x * b.x + a.y * b.y; }
@@ -21,7 +22,9 @@ Point2 plus(Point2 a, Point2 b, double factor) { return {a.x + factor * b.x, a.y
 double apart(Point2 a, Point2 b) { return std::hypot(a.x - b.x, a.y - b.y); }
 
 /// A step that begins to rise left of 0, blurred.
-double blurred_step(double x_nm, double blur_nm) { return 0.5 * std::erfc(-x_nm / (blur_nm * std::numbers::sqrt2)); }
+double blurred_step(double x_nm, double blur_nm) {
+  return 0.5 * std::erfc(-x_nm / (blur_nm * std::numbers::sqrt2));
+}
 
 /// A strip of that half width about 0, blurred: even and smooth, also at 0.
 double blurred_strip(double x_nm, double half_width_nm, double blur_nm) {
@@ -85,8 +88,8 @@ double Stroke::operator()(Point2 p) const {
 }
 
 Pad::Pad(Point2 centre, double width_nm, double depth_nm, double turn_deg, double blur_nm)
-    : centre_(centre), along_(unit(turn_deg * degree)), half_width_nm_(0.5 * width_nm), half_depth_nm_(0.5 * depth_nm),
-      blur_nm_(blur_nm) {}
+    : centre_(centre), along_(unit(turn_deg * degree)), half_width_nm_(0.5 * width_nm),
+      half_depth_nm_(0.5 * depth_nm), blur_nm_(blur_nm) {}
 
 double Pad::operator()(Point2 p) const {
   const Point2 q = minus(p, centre_);
@@ -94,10 +97,10 @@ double Pad::operator()(Point2 p) const {
          blurred_strip(cross(along_, q), half_depth_nm_, blur_nm_);
 }
 
-Island::Island(Point2 centre, double radius_nm, std::vector<double> amplitudes, std::vector<double> phases,
-               double blur_nm)
-    : centre_(centre), radius_nm_(radius_nm), amplitudes_(std::move(amplitudes)), phases_(std::move(phases)),
-      blur_nm_(blur_nm) {}
+Island::Island(Point2 centre, double radius_nm, std::vector<double> amplitudes,
+               std::vector<double> phases, double blur_nm)
+    : centre_(centre), radius_nm_(radius_nm), amplitudes_(std::move(amplitudes)),
+      phases_(std::move(phases)), blur_nm_(blur_nm) {}
 
 double Island::operator()(Point2 p) const {
   const Point2 q = minus(p, centre_);

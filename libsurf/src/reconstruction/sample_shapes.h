@@ -7,20 +7,21 @@
 
 namespace surf {
 
-// Shapes as a share of their height, in [0, 1]: what a Gaussian blur of standard deviation `blur_nm` makes of a
-// binary pattern, exactly for straight edges and rectangles, up to the curvature of an edge otherwise. Lengths
-// are nm, angles degrees counter-clockwise from +x.
+// Shapes as a share of their height, in [0, 1]: what a Gaussian blur of standard deviation
+// `blur_nm` makes of a binary pattern, exactly for straight edges and rectangles, up to the
+// curvature of an edge otherwise. Lengths are nm, angles degrees counter-clockwise from +x.
 
 /// One piece of a stroke's middle line: straight, or an arc.
 struct StrokePiece {
-  double length_nm;      ///< > 0
-  double turn_deg = 0;   ///< by which the heading changes evenly along it
+  double length_nm;     ///< > 0
+  double turn_deg = 0;  ///< by which the heading changes evenly along it
 };
 
 /// A line of even width with round ends. Without pieces: a disc.
 class Stroke {
  public:
-  Stroke(Point2 start, double heading_deg, double width_nm, double blur_nm, const std::vector<StrokePiece>& pieces);
+  Stroke(Point2 start, double heading_deg, double width_nm, double blur_nm,
+         const std::vector<StrokePiece>& pieces);
   double operator()(Point2 p) const;
 
  private:
@@ -37,7 +38,7 @@ class Stroke {
   std::vector<Piece> pieces_;
   double half_width_nm_, blur_nm_;
   Point2 start_;
-  double reach_nm_;   // from there; 0 beyond
+  double reach_nm_;  // from there; 0 beyond
 };
 
 /// A rectangle about `centre`, turned.
@@ -55,7 +56,8 @@ class Pad {
 /// amplitudes[k - 2] cos(k angle + phases[k - 2])), which must stay above four blurs.
 class Island {
  public:
-  Island(Point2 centre, double radius_nm, std::vector<double> amplitudes, std::vector<double> phases, double blur_nm);
+  Island(Point2 centre, double radius_nm, std::vector<double> amplitudes,
+         std::vector<double> phases, double blur_nm);
   double operator()(Point2 p) const;
 
  private:

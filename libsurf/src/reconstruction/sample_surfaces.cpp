@@ -36,8 +36,10 @@ class Draw {
 using Shape = std::function<double(Point2)>;
 
 /// Shapes of one height that may touch and cross: none rises above another where they do.
-SampleSurface merged(std::string name, std::string what, std::vector<Shape> shapes, double height_nm) {
-  return {std::move(name), std::move(what), [shapes = std::move(shapes), height_nm](double x, double y) {
+SampleSurface merged(std::string name, std::string what, std::vector<Shape> shapes,
+                     double height_nm) {
+  return {std::move(name), std::move(what),
+          [shapes = std::move(shapes), height_nm](double x, double y) {
             double ground = 1;
             for (const Shape& shape : shapes) ground *= 1 - shape({x, y});
             return height_nm * (1 - ground);
@@ -46,7 +48,7 @@ SampleSurface merged(std::string name, std::string what, std::vector<Shape> shap
 
 struct Raised {
   Shape shape;
-  double height_nm;   ///< below 0: a pit
+  double height_nm;  ///< below 0: a pit
 };
 
 SampleSurface stacked(std::string name, std::string what, std::vector<Raised> shapes) {
@@ -62,24 +64,27 @@ SampleSurface thick_lines() {
   const auto line = [](double x, double y, double heading, std::vector<StrokePiece> pieces) {
     return Shape(Stroke({x, y}, heading, width, blur, pieces));
   };
-  return merged("nist0523-thick", "silicon lines 100 nm high, 300 nm wide and 3.5 to 5.5 um long, with bends and ends",
-                {line(-1750, -560, 7, {{2300}, {500, 60}, {1900}}),
-                 line(-3100, 380, -4, {{1750}, {420, 50}, {900}, {500, -55}, {1500}}),
-                 line(1950, -1500, 97, {{1150}, {450, -35}, {2300}}),
-                 line(-560, 2100, -78, {{1780}, {420, 65}, {1700}}),
-                 line(-3600, -1500, 3, {{2400}, {450, -35}, {1700}}),
-                 line(-4200, 1600, 10, {{2000}, {450, 40}, {2000}}),
-                 line(900, 2700, -20, {{2000}, {450, 45}, {1800}}),
-                 line(-3500, 2900, -12, {{2400}, {400, 25}, {2000}}),
-                 line(-2600, -2900, 12, {{2200}, {450, -30}, {2400}}),
-                 line(3700, -2800, 110, {{2000}, {450, -50}, {1400}})},
-                100);
+  return merged(
+      "nist0523-thick",
+      "silicon lines 100 nm high, 300 nm wide and 3.5 to 5.5 um long, with bends and ends",
+      {line(-1750, -560, 7, {{2300}, {500, 60}, {1900}}),
+       line(-3100, 380, -4, {{1750}, {420, 50}, {900}, {500, -55}, {1500}}),
+       line(1950, -1500, 97, {{1150}, {450, -35}, {2300}}),
+       line(-560, 2100, -78, {{1780}, {420, 65}, {1700}}),
+       line(-3600, -1500, 3, {{2400}, {450, -35}, {1700}}),
+       line(-4200, 1600, 10, {{2000}, {450, 40}, {2000}}),
+       line(900, 2700, -20, {{2000}, {450, 45}, {1800}}),
+       line(-3500, 2900, -12, {{2400}, {400, 25}, {2000}}),
+       line(-2600, -2900, 12, {{2200}, {450, -30}, {2400}}),
+       line(3700, -2800, 110, {{2000}, {450, -50}, {1400}})},
+      100);
 }
 
 SampleSurface thin_lines() {
   constexpr double blur = 15;
   std::vector<Shape> lines;
-  const auto line = [&](double x, double y, double heading, double line_width, std::vector<StrokePiece> pieces) {
+  const auto line = [&](double x, double y, double heading, double line_width,
+                        std::vector<StrokePiece> pieces) {
     lines.emplace_back(Stroke({x, y}, heading, line_width, blur, pieces));
   };
   line(-2050, -520, 11, 58, {{1500}, {300, 35}, {900}});
@@ -94,12 +99,14 @@ SampleSurface thin_lines() {
   Draw draw(1);
   for (int i = 0; i < 60; ++i) {
     const Point2 start{draw(-half_width_nm, half_width_nm), draw(-half_depth_nm, half_depth_nm)};
-    const double heading = draw(-180, 180), length = draw(700, 1700), turn = draw(-50, 50), more = draw(400, 1200);
+    const double heading = draw(-180, 180), length = draw(700, 1700), turn = draw(-50, 50),
+                 more = draw(400, 1200);
     // The view has its own.
     const bool near = std::abs(start.x) < 3300 && std::abs(start.y) < 1900;
     if (!near) line(start.x, start.y, heading, draw(50, 60), {{length}, {300, turn}, {more}});
   }
-  return merged("nist0523-thin", "silicon lines 100 nm high and 50 to 60 nm wide, which cross, bend and end",
+  return merged("nist0523-thin",
+                "silicon lines 100 nm high and 50 to 60 nm wide, which cross, bend and end",
                 std::move(lines), 100);
 }
 
@@ -123,15 +130,18 @@ SampleSurface pads_and_pits() {
   Draw draw(2);
   std::vector<Raised> pads;
   strew(draw, 430, [&](Point2 p) {
-    const double kind = draw(0, 1), height = draw(60, 100), across = std::exp(draw(std::log(110), std::log(420)));
+    const double kind = draw(0, 1), height = draw(60, 100),
+                 across = std::exp(draw(std::log(110), std::log(420)));
     const double other = draw(0.5, 1) * across, turn = draw(0, 180);
     const double z = kind < 0.7 ? height : -0.7 * height;
     if (draw(0, 1) < 0.45) pads.push_back({Stroke(p, 0, across, blur, {}), z});
     else pads.push_back({Pad(p, across, other, turn, blur), z});
     // Some carry a smaller one.
-    if (z > 0 && across > 300) pads.push_back({Stroke({p.x + 20, p.y - 25}, 0, 0.35 * across, blur, {}), 40});
+    if (z > 0 && across > 300)
+      pads.push_back({Stroke({p.x + 20, p.y - 25}, 0, 0.35 * across, blur, {}), 40});
   });
-  return stacked("pads", "round and square pads and pits, 110 to 420 nm across and 40 to 100 nm high",
+  return stacked("pads",
+                 "round and square pads and pits, 110 to 420 nm across and 40 to 100 nm high",
                  std::move(pads));
 }
 
@@ -147,11 +157,13 @@ SampleSurface islands() {
     }
     outlines.emplace_back(Island(p, draw(130, 330), amplitudes, phases, blur));
   });
-  return merged("islands", "islands of irregular outline, 90 nm high, some grown together", std::move(outlines), 90);
+  return merged("islands", "islands of irregular outline, 90 nm high, some grown together",
+                std::move(outlines), 90);
 }
 
-/// A sum of waves in every direction, whose amplitude is a power of their length: self-affine (Voss, in
-/// Fundamental Algorithms for Computer Graphics, 1985) between the shortest and the longest, and known everywhere.
+/// A sum of waves in every direction, whose amplitude is a power of their length: self-affine
+/// (Voss, in Fundamental Algorithms for Computer Graphics, 1985) between the shortest and the
+/// longest, and known everywhere.
 class Waves {
  public:
   Waves(Draw& draw, int count, double shortest_nm, double longest_nm, double hurst, double rms_nm) {
@@ -161,7 +173,8 @@ class Waves {
       const double share = (i + draw(0, 1)) / count;
       const double length = longest_nm * std::pow(shortest_nm / longest_nm, share);
       const double turn = draw(0, 2 * pi), amplitude = std::pow(length, hurst);
-      waves_.push_back({2 * pi / length * std::cos(turn), 2 * pi / length * std::sin(turn), draw(0, 2 * pi), amplitude});
+      waves_.push_back({2 * pi / length * std::cos(turn), 2 * pi / length * std::sin(turn),
+                        draw(0, 2 * pi), amplitude});
       power += 0.5 * amplitude * amplitude;
     }
     for (Wave& wave : waves_) wave.amplitude *= rms_nm / std::sqrt(power);
@@ -169,7 +182,8 @@ class Waves {
 
   double operator()(double x, double y) const {
     double z = 0;
-    for (const Wave& wave : waves_) z += wave.amplitude * std::cos(wave.kx * x + wave.ky * y + wave.phase);
+    for (const Wave& wave : waves_)
+      z += wave.amplitude * std::cos(wave.kx * x + wave.ky * y + wave.phase);
     return z;
   }
 
@@ -186,27 +200,31 @@ SampleSurface terrain() {
   return {"terrain", "rough terrain with valleys, 200 nm in all and up to 55 degrees steep",
           [ridges, rough](double x, double y) {
             const double r = ridges(x, y);
-            return 35 * std::sqrt(r * r + 0.02) + rough(x, y);   // valleys where r changes its sign
+            return 35 * std::sqrt(r * r + 0.02) + rough(x, y);  // valleys where r changes its sign
           }};
 }
 
 }  // namespace
 
 const std::vector<SampleSurface>& sample_surfaces() {
-  static const std::vector<SampleSurface> all{thick_lines(), thin_lines(), pads_and_pits(), islands(), terrain()};
+  static const std::vector<SampleSurface> all{thick_lines(), thin_lines(), pads_and_pits(),
+                                              islands(), terrain()};
   return all;
 }
 
 const SampleSurface& find_sample_surface(const std::string& name) {
   const auto& all = sample_surfaces();
-  const auto found = std::find_if(all.begin(), all.end(), [&](const SampleSurface& s) { return s.name == name; });
+  const auto found =
+      std::find_if(all.begin(), all.end(), [&](const SampleSurface& s) { return s.name == name; });
   if (found != all.end()) return *found;
   std::vector<std::string> names;
   for (const SampleSurface& s : all) names.push_back(s.name);
-  throw UsageError(name, "there is no such sample", fmt::format("Choose one of {}", fmt::join(names, ", ")));
+  throw UsageError(name, "there is no such sample",
+                   fmt::format("Choose one of {}", fmt::join(names, ", ")));
 }
 
-void sample_heights(const SampleSurface& surface, const Affine& to_surface, HeightField& field, int threads) {
+void sample_heights(const SampleSurface& surface, const Affine& to_surface, HeightField& field,
+                    int threads) {
   validate(field);
   parallel_for(static_cast<std::size_t>(field.z_nm.height()), threads, [&](std::size_t row, int) {
     const int y = static_cast<int>(row);

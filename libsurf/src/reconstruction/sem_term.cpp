@@ -7,8 +7,9 @@
 namespace surf::reconstruction {
 
 SemTerm::SemTerm(const SemData& data, const SurfaceFrame& frame, int left, int below, int threads)
-    : model_(data.model), frame_(frame), noise_(data.noise), channels_(data.model->channels().size()),
-      image_(frame.width, frame.height), used_(frame.width, frame.height) {
+    : model_(data.model), frame_(frame), noise_(data.noise),
+      channels_(data.model->channels().size()), image_(frame.width, frame.height),
+      used_(frame.width, frame.height) {
   options_.threads = threads;
   for (int y = 0; y < data.image.values.height(); ++y)
     for (int x = 0; x < data.image.values.width(); ++x) {
@@ -35,8 +36,9 @@ SemTerm::State SemTerm::evaluate(const Grid<double>& z, const std::vector<double
   return s;
 }
 
-void SemTerm::add_gradient(const State& s, const std::vector<double>& mixture, const Grid<double>& weights,
-                           const Near* near, Grid<double>& out, MixtureChange* by_mixture) const {
+void SemTerm::add_gradient(const State& s, const std::vector<double>& mixture,
+                           const Grid<double>& weights, const Near* near, Grid<double>& out,
+                           MixtureChange* by_mixture) const {
   if (near) {
     for (int y = 0; y < frame_.height; ++y)
       for (int x = 0; x < frame_.width; ++x) near->scatter(weights(x, y), x, y, out);
@@ -56,8 +58,9 @@ void SemTerm::add_gradient(const State& s, const std::vector<double>& mixture, c
   }
 }
 
-Grid<double> SemTerm::change(const State& s, const std::vector<double>& mixture, const Grid<double>& dz,
-                             const MixtureChange& mixture_change, const Near* near) const {
+Grid<double> SemTerm::change(const State& s, const std::vector<double>& mixture,
+                             const Grid<double>& dz, const MixtureChange& mixture_change,
+                             const Near* near) const {
   Grid<double> out(frame_.width, frame_.height, mixture_change[1]);
   if (near) {
     for (int y = 0; y < frame_.height; ++y)
@@ -84,7 +87,8 @@ SemTerm::Near SemTerm::near(const State& s, const std::vector<double>& mixture) 
         sine(x, y) = std::sin(k * (axis == 0 ? x : y));
       }
     const Grid<double> c = change(s, mixture, cosine, {}), d = change(s, mixture, sine, {});
-    Grid<double>&before = axis == 0 ? out.left : out.below, &after = axis == 0 ? out.right : out.above;
+    Grid<double>&before = axis == 0 ? out.left : out.below,
+    &after = axis == 0 ? out.right : out.above;
     for (int y = 1; y + 1 < frame_.height; ++y)
       for (int x = 1; x + 1 < frame_.width; ++x) {
         // J exp(ikx) = exp(ikx) (i sin(k) slope + (2 cos(k) - 2) bend)
@@ -101,8 +105,8 @@ SemTerm::Near SemTerm::near(const State& s, const std::vector<double>& mixture) 
 
 double SemTerm::Near::change(const Grid<double>& dz, int x, int y) const {
   if (x == 0 || y == 0 || x + 1 == dz.width() || y + 1 == dz.height()) return 0;
-  return left(x, y) * dz(x - 1, y) + right(x, y) * dz(x + 1, y) + below(x, y) * dz(x, y - 1) + above(x, y) * dz(x, y + 1) +
-         own(x, y) * dz(x, y);
+  return left(x, y) * dz(x - 1, y) + right(x, y) * dz(x + 1, y) + below(x, y) * dz(x, y - 1) +
+         above(x, y) * dz(x, y + 1) + own(x, y) * dz(x, y);
 }
 
 void SemTerm::Near::scatter(double weight, int x, int y, Grid<double>& out) const {

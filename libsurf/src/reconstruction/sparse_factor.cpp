@@ -9,7 +9,9 @@ namespace surf::reconstruction {
 
 using solvers::solvers;
 
-OneBlasThread::OneBlasThread() : before_(solvers().blas_threads()) { solvers().set_blas_threads(1); }
+OneBlasThread::OneBlasThread() : before_(solvers().blas_threads()) {
+  solvers().set_blas_threads(1);
+}
 OneBlasThread::~OneBlasThread() { solvers().set_blas_threads(before_); }
 // Debian's serial build hands one buffer to all who call: factors come out wrong, or fail.
 int OneBlasThread::most_at_once() {
@@ -20,7 +22,9 @@ SparseFactor::SparseFactor() : factor_(solvers().make_factor()) {}
 SparseFactor::~SparseFactor() = default;
 SparseFactor::SparseFactor(SparseFactor&&) noexcept = default;
 
-void SparseFactor::compute(const StencilMatrix& matrix, const Area& area) { factor_->compute(matrix, area); }
+void SparseFactor::compute(const StencilMatrix& matrix, const Area& area) {
+  factor_->compute(matrix, area);
+}
 Grid<double> SparseFactor::solve(const Grid<double>& right) const { return factor_->solve(right); }
 Grid<double> SparseFactor::draw(const Grid<double>& normal) const { return factor_->draw(normal); }
 

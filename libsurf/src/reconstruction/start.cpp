@@ -43,8 +43,11 @@ SurfaceFrame frame_of(const AfmData* afm, const SemData* sem, int margin) {
   }
   const HeightField& f = afm->image;
   const double pitch = std::min(f.pitch_x_nm, f.pitch_y_nm);
-  const auto across = [&](int count, double own) { return static_cast<int>(std::floor((count - 1) * own / pitch + 1e-9)) + 1; };
-  return {across(f.z_nm.width(), f.pitch_x_nm), across(f.z_nm.height(), f.pitch_y_nm), pitch, f.origin_x_nm, f.origin_y_nm};
+  const auto across = [&](int count, double own) {
+    return static_cast<int>(std::floor((count - 1) * own / pitch + 1e-9)) + 1;
+  };
+  return {across(f.z_nm.width(), f.pitch_x_nm), across(f.z_nm.height(), f.pitch_y_nm), pitch,
+          f.origin_x_nm, f.origin_y_nm};
 }
 
 HeightField eroded(const AfmData& afm, int threads) {
@@ -55,12 +58,14 @@ HeightField eroded(const AfmData& afm, int threads) {
   return field;
 }
 
-Grid<double> on_frame(const HeightField& field, const SurfaceFrame& frame, const Affine& surface_to_field) {
+Grid<double> on_frame(const HeightField& field, const SurfaceFrame& frame,
+                      const Affine& surface_to_field) {
   Grid<double> out(frame.width, frame.height);
   const int w = field.z_nm.width(), h = field.z_nm.height();
   for (int y = 0; y < frame.height; ++y)
     for (int x = 0; x < frame.width; ++x) {
-      const Point2 p = surface_to_field({frame.origin_x_nm + x * frame.pitch_nm, frame.origin_y_nm + y * frame.pitch_nm});
+      const Point2 p = surface_to_field(
+          {frame.origin_x_nm + x * frame.pitch_nm, frame.origin_y_nm + y * frame.pitch_nm});
       const double u = std::clamp((p.x - field.origin_x_nm) / field.pitch_x_nm, 0.0, w - 1.0);
       const double v = std::clamp((p.y - field.origin_y_nm) / field.pitch_y_nm, 0.0, h - 1.0);
       out(x, y) = CubicSample(u, v, w, h).value(field.z_nm);

@@ -6,14 +6,16 @@
 
 namespace surf::reconstruction {
 
-/// The samples of the surface: those of the SEM image and `margin` more on every side, or the AFM's.
+/// The samples of the surface: those of the SEM image and `margin` more on every side, or the
+/// AFM's.
 SurfaceFrame frame_of(const AfmData* afm, const SemData* sem, int margin);
 
 /// The eroded scan, its holes filled with the nearest heights, on the AFM's samples.
 HeightField eroded(const AfmData& afm, int threads);
 
 /// Heights of a field without holes on the surface's samples; beyond it the outermost go on.
-Grid<double> on_frame(const HeightField& field, const SurfaceFrame& frame, const Affine& surface_to_field);
+Grid<double> on_frame(const HeightField& field, const SurfaceFrame& frame,
+                      const Affine& surface_to_field);
 
 /// The middle `width` x `height` samples from (`left`, `below`).
 template <class T>

@@ -15,11 +15,11 @@ struct Area {
   int samples() const { return width() * height(); }
 };
 
-/// A symmetric matrix between samples of a field that are at most two apart along x and y. Of each pair the
-/// later sample, row by row, holds the entry.
+/// A symmetric matrix between samples of a field that are at most two apart along x and y. Of each
+/// pair the later sample, row by row, holds the entry.
 class StencilMatrix {
  public:
-  static constexpr int slots = 13;   // two rows of five before, and three of its own
+  static constexpr int slots = 13;  // two rows of five before, and three of its own
 
   StencilMatrix(int width, int height)
       : width_(width), height_(height), values_(static_cast<std::size_t>(width) * height * slots) {}
@@ -33,12 +33,13 @@ class StencilMatrix {
       std::swap(x0, x1);
       std::swap(y0, y1);
     }
-    values_[(static_cast<std::size_t>(y0) * width_ + x0) * slots + (y1 - y0 + 2) * 5 + (x1 - x0) + 2] += v;
+    values_[(static_cast<std::size_t>(y0) * width_ + x0) * slots + (y1 - y0 + 2) * 5 + (x1 - x0) +
+            2] += v;
   }
 
-  /// Calls entry(row, value) for column k of the matrix of the area's samples alone, numbered row by row:
-  /// rows rising, the diagonal last. All that lie in the area are there, so that the pattern does not depend
-  /// on the values.
+  /// Calls entry(row, value) for column k of the matrix of the area's samples alone, numbered row
+  /// by row: rows rising, the diagonal last. All that lie in the area are there, so that the
+  /// pattern does not depend on the values.
   template <class Entry>
   void for_each_in_column(const Area& area, int k, const Entry& entry) const {
     const int x = k % area.width() + area.x_begin, y = k / area.width() + area.y_begin;

@@ -13,14 +13,17 @@ struct SurfaceFrame {
   int width = 0, height = 0;
   double pitch_nm = 1, origin_x_nm = 0, origin_y_nm = 0;
 
-  Point2 to_samples(Point2 nm) const { return {(nm.x - origin_x_nm) / pitch_nm, (nm.y - origin_y_nm) / pitch_nm}; }
+  Point2 to_samples(Point2 nm) const {
+    return {(nm.x - origin_x_nm) / pitch_nm, (nm.y - origin_y_nm) / pitch_nm};
+  }
   HeightField field(const Grid<double>& z) const {
     return {z, {}, pitch_nm, pitch_nm, origin_x_nm, origin_y_nm};
   }
 };
 
-/// A change of the map from the AFM's frame to the surface's samples: of the place, in samples, at the middle
-/// of the scan's used part (0 and 3) and at one reach of it along x (1, 4) and y (2, 5): all of one size.
+/// A change of the map from the AFM's frame to the surface's samples: of the place, in samples, at
+/// the middle of the scan's used part (0 and 3) and at one reach of it along x (1, 4) and y (2, 5):
+/// all of one size.
 inline constexpr int map_numbers = 6;
 using MapChange = std::array<double, map_numbers>;
 

@@ -9,7 +9,7 @@
 namespace surf::reconstruction {
 namespace {
 
-constexpr double crowding = 1.5;   // places are at the rim's distance times (k / last) to this power
+constexpr double crowding = 1.5;  // places are at the rim's distance times (k / last) to this power
 
 /// How much each of the numbers counts at a step: linear between two neighbours.
 TipChange shares(std::size_t step, std::size_t steps) {
@@ -31,14 +31,15 @@ TipFamily::TipFamily(const Tip& finest) : step_nm_(std::min(finest.pitch_x_nm, f
   if (std::ranges::all_of(slopes_, [](double s) { return s == 0; })) slopes_.clear();
 }
 
-Tip TipFamily::changed(const Tip& tip, const TipChange& change, std::vector<TipChange>* by_change) const {
+Tip TipFamily::changed(const Tip& tip, const TipChange& change,
+                       std::vector<TipChange>* by_change) const {
   Tip out = tip;
   if (by_change) by_change->assign(tip.z_nm.size(), {});
   if (slopes_.empty()) return out;
   const bool changes = std::ranges::any_of(change, [](double c) { return c != 0; });
   if (!changes && !by_change) return out;
-  // Factors of the heights at the ends of all steps, and their derivatives. At the apex, and as far as the tip is flat, no
-  // factor changes anything.
+  // Factors of the heights at the ends of all steps, and their derivatives. At the apex, and as far
+  // as the tip is flat, no factor changes anything.
   const std::size_t steps = slopes_.size();
   std::vector<double> factor(steps + 1, 1.0);
   std::vector<TipChange> slope_of_factor(steps + 1, TipChange{});
@@ -62,14 +63,17 @@ Tip TipFamily::changed(const Tip& tip, const TipChange& change, std::vector<TipC
     for (int x = 0; x < tip.z_nm.width(); ++x) {
       const double z = tip.z_nm(x, y);
       if (z == 0 || !std::isfinite(z)) continue;
-      const double r = std::hypot((x - tip.apex_x) * tip.pitch_x_nm, (y - tip.apex_y) * tip.pitch_y_nm) / step_nm_;
-      const double at = std::min(r, static_cast<double>(steps));   // beyond the rim as at it
+      const double r =
+          std::hypot((x - tip.apex_x) * tip.pitch_x_nm, (y - tip.apex_y) * tip.pitch_y_nm) /
+          step_nm_;
+      const double at = std::min(r, static_cast<double>(steps));  // beyond the rim as at it
       const std::size_t i = std::min(static_cast<std::size_t>(at), steps - 1);
       const double t = at - static_cast<double>(i);
       if (changes) out.z_nm(x, y) = z * ((1 - t) * factor[i] + t * factor[i + 1]);
       if (!by_change) continue;
       TipChange& d = (*by_change)[static_cast<std::size_t>(y) * tip.z_nm.width() + x];
-      for (int k = 0; k < tip_numbers; ++k) d[k] = z * ((1 - t) * slope_of_factor[i][k] + t * slope_of_factor[i + 1][k]);
+      for (int k = 0; k < tip_numbers; ++k)
+        d[k] = z * ((1 - t) * slope_of_factor[i][k] + t * slope_of_factor[i + 1][k]);
     }
   return out;
 }

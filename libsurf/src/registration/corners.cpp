@@ -15,8 +15,9 @@ Point2 middle(const PlacedImage& image) {
 
 CornerFrame::CornerFrame(const PlacedImage& sem, const PlacedImage& afm)
     : width_(sem.values.width()), height_(sem.values.height()),
-      pixel_nm_(std::sqrt(sem.pitch_x_nm * sem.pitch_y_nm)), sem_middle_(middle(sem)), afm_middle_(middle(afm)),
-      corners_nm_{sem.place_nm(0, 0), sem.place_nm(width_ - 1, 0), sem.place_nm(0, height_ - 1)} {}
+      pixel_nm_(std::sqrt(sem.pitch_x_nm * sem.pitch_y_nm)), sem_middle_(middle(sem)),
+      afm_middle_(middle(afm)), corners_nm_{sem.place_nm(0, 0), sem.place_nm(width_ - 1, 0),
+                                            sem.place_nm(0, height_ - 1)} {}
 
 Corners CornerFrame::corners(const Affine& m) const {
   Corners c{};
@@ -29,7 +30,8 @@ Corners CornerFrame::corners(const Affine& m) const {
 }
 
 Affine CornerFrame::affine(const Corners& c) const {
-  const double width_nm = corners_nm_[1].x - corners_nm_[0].x, height_nm = corners_nm_[2].y - corners_nm_[0].y;
+  const double width_nm = corners_nm_[1].x - corners_nm_[0].x,
+               height_nm = corners_nm_[2].y - corners_nm_[0].y;
   Affine m;
   m.xx = (c[2] - c[0]) * pixel_nm_ / width_nm;
   m.yx = (c[3] - c[1]) * pixel_nm_ / width_nm;

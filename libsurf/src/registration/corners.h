@@ -8,15 +8,16 @@
 
 namespace surf {
 
-/// An affine map as three landmarks, like the thesis (7.2.1): where the SEM image's lower left, lower right
-/// and upper left corners lie in the AFM's frame, x0 y0 x1 y1 x2 y2. All six have the same scale. Lengths in
-/// registration's sources are SEM pixels, about the middle of each image.
+/// An affine map as three landmarks, like the thesis (7.2.1): where the SEM image's lower left,
+/// lower right and upper left corners lie in the AFM's frame, x0 y0 x1 y1 x2 y2. All six have the
+/// same scale. Lengths in registration's sources are SEM pixels, about the middle of each image.
 using Corners = std::array<double, 6>;
 
 /// Weights of the three corners at a place of the SEM image; they add up to 1.
 using Shares = std::array<double, 3>;
 
-/// Means of products of shares over the places that matter: what turns corners into a root mean square.
+/// Means of products of shares over the places that matter: what turns corners into a root mean
+/// square.
 using Moments = std::array<std::array<double, 3>, 3>;
 
 class CornerFrame {
@@ -30,7 +31,7 @@ class CornerFrame {
     return {1 - s - t, s, t};
   }
 
-  double pixel_nm() const { return pixel_nm_; }   ///< the geometric mean of both pitches
+  double pixel_nm() const { return pixel_nm_; }  ///< the geometric mean of both pitches
   Point2 sem_middle_nm() const { return sem_middle_; }
   Point2 afm_middle_nm() const { return afm_middle_; }
 

@@ -13,7 +13,7 @@ namespace {
 constexpr std::size_t fewest_samples = 24;
 constexpr double settled_px = 2e-3;
 constexpr double difference_px = 0.05;
-constexpr double least_stiffness = 1e-6;   // over the largest: what is softer is left alone
+constexpr double least_stiffness = 1e-6;  // over the largest: what is softer is left alone
 constexpr double longest_step_px = 1;
 
 using Matrix6 = Eigen::Matrix<double, 6, 6>;
@@ -95,7 +95,7 @@ double Correlation::evaluate(const double* at, double* residuals, double* jacobi
     }
     double along_a = 0;
     for (std::size_t k = 0; k < n; ++k) {
-      column[k] -= along_b * b[k];   // how the normalised b changes
+      column[k] -= along_b * b[k];  // how the normalised b changes
       along_a += column[k] * a_[k];
     }
     for (std::size_t k = 0; k < n; ++k) column[k] = -r * column[k] - along_a * b[k];
@@ -142,9 +142,10 @@ Slopes slopes_at(const Correlation& correlation, const Corners& corners) {
     below[p] -= difference_px;
     const Corners up = correlation.gradient(above), down = correlation.gradient(below);
     for (std::size_t i = 0; i < 6; ++i)
-      h(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(p)) = (up[i] - down[i]) / (2 * difference_px);
+      h(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(p)) =
+          (up[i] - down[i]) / (2 * difference_px);
   }
-  h = (0.5 * (h + h.transpose())).eval();   // but for rounding it is symmetric
+  h = (0.5 * (h + h.transpose())).eval();  // but for rounding it is symmetric
   Slopes slopes{correlation.gradient(corners), {}};
   std::copy_n(h.data(), 36, slopes.second.begin());
   return slopes;
@@ -152,8 +153,8 @@ Slopes slopes_at(const Correlation& correlation, const Corners& corners) {
 
 namespace {
 
-/// Newton's steps. With noise in the AFM's image the product of slopes is far too stiff along motions that
-/// little holds, and Levenberg and Marquardt's method crawls.
+/// Newton's steps. With noise in the AFM's image the product of slopes is far too stiff along
+/// motions that little holds, and Levenberg and Marquardt's method crawls.
 class Newton {
  public:
   /// Returns how far it went, pixels.
@@ -166,7 +167,8 @@ class Newton {
       evaluations += 12;
     }
     const Corners gradient = correlation.gradient(corners);
-    const Vector6 pull = eigen_.eigenvectors().transpose() * Eigen::Map<const Vector6>(gradient.data());
+    const Vector6 pull =
+        eigen_.eigenvectors().transpose() * Eigen::Map<const Vector6>(gradient.data());
     const Vector6& stiffness = eigen_.eigenvalues();
     Vector6 along = Vector6::Zero();
     for (Eigen::Index i = 0; i < 6; ++i)
@@ -180,7 +182,8 @@ class Newton {
     const double here = correlation.evaluate(corners.data(), residual.data(), nullptr);
     evaluations += 2;
     fresh_enough_ = length < 0.25 * longest_step_px;
-    for (int half = 0; half < 6; ++half, step *= 0.5, length *= 0.5, ++evaluations, fresh_enough_ = false) {
+    for (int half = 0; half < 6;
+         ++half, step *= 0.5, length *= 0.5, ++evaluations, fresh_enough_ = false) {
       Corners next = corners;
       for (std::size_t i = 0; i < 6; ++i) next[i] += step[static_cast<Eigen::Index>(i)];
       if (correlation.evaluate(next.data(), residual.data(), nullptr) < here) continue;
@@ -192,13 +195,13 @@ class Newton {
 
  private:
   Eigen::SelfAdjointEigenSolver<Matrix6> eigen_;
-  bool fresh_enough_ = false;   // the last step changed the stiffness little
+  bool fresh_enough_ = false;  // the last step changed the stiffness little
 };
 
 }  // namespace
 
-CorrelationFit fit_correlation(const BlurLevel& level, const Corners& start, int rounds, int iterations,
-                               int newton_steps) {
+CorrelationFit fit_correlation(const BlurLevel& level, const Corners& start, int rounds,
+                               int iterations, int newton_steps) {
   CorrelationFit fit;
   fit.corners = start;
   ceres::TinySolver<Misfit> solver;
@@ -210,7 +213,8 @@ CorrelationFit fit_correlation(const BlurLevel& level, const Corners& start, int
     const Correlation correlation(level, fit.corners);
     if (correlation.size() < fewest_samples) break;
     const Misfit misfit{correlation, fit.evaluations};
-    Eigen::Matrix<double, 6, 1> x = Eigen::Map<const Eigen::Matrix<double, 6, 1>>(fit.corners.data());
+    Eigen::Matrix<double, 6, 1> x =
+        Eigen::Map<const Eigen::Matrix<double, 6, 1>>(fit.corners.data());
     solver.Solve(misfit, &x);
     if (!x.allFinite()) break;
     double moved = 0;
@@ -222,7 +226,8 @@ CorrelationFit fit_correlation(const BlurLevel& level, const Corners& start, int
   }
   Newton newton;
   for (int step = 0; step < newton_steps && (step == 0 || !fit.settled); ++step)
-    fit.settled = newton.step(level, fit.corners, fit.evaluations) < settled_px * std::max(1, level.stride);
+    fit.settled =
+        newton.step(level, fit.corners, fit.evaluations) < settled_px * std::max(1, level.stride);
   fit.agreement = agreement_of(level, fit.corners);
   return fit;
 }

@@ -14,7 +14,8 @@ namespace surf {
 namespace {
 
 constexpr int fewest_bins = 2, most_bins = 128;
-constexpr int bins_of_a_window = 4;      // Parzen's windows are sampled by so many bins for one deviation
+constexpr int bins_of_a_window =
+    4;  // Parzen's windows are sampled by so many bins for one deviation
 constexpr std::size_t fewest_samples = 24;
 constexpr double settled_px = 0.01;
 constexpr int most_evaluations = 600;
@@ -43,7 +44,8 @@ std::vector<double> values_of(const BlurLevel& level) {
 std::vector<double> afm_values_of(const BlurLevel& level) {
   std::vector<double> values;
   const Grid<double>& grid = level.afm.samples();
-  for (std::size_t i = 0; i < grid.size(); i += std::max<std::size_t>(1, grid.size() / std::max<std::size_t>(1, level.samples.size())))
+  for (std::size_t i = 0; i < grid.size();
+       i += std::max<std::size_t>(1, grid.size() / std::max<std::size_t>(1, level.samples.size())))
     if (level.afm.is_valid(static_cast<int>(i) % grid.width(), static_cast<int>(i) / grid.width()))
       values.push_back(grid.data()[i]);
   return values;
@@ -56,7 +58,8 @@ void spread(std::vector<double>& table, int rows, int columns, bool along_rows, 
   if (reach < 1 || !(sigma > 0)) return;
   std::vector<double> taps;
   double sum = 0;
-  for (int i = -reach; i <= reach; ++i) taps.push_back(std::exp(-0.5 * i * i / (sigma * sigma))), sum += taps.back();
+  for (int i = -reach; i <= reach; ++i)
+    taps.push_back(std::exp(-0.5 * i * i / (sigma * sigma))), sum += taps.back();
   std::vector<double> line(static_cast<std::size_t>(n));
   for (int k = 0; k < (along_rows ? rows : columns); ++k) {
     const auto at = [&](int i) -> double& {
@@ -67,7 +70,8 @@ void spread(std::vector<double>& table, int rows, int columns, bool along_rows, 
       const double value = at(i) / sum;
       if (value == 0) continue;
       for (int j = -reach; j <= reach; ++j)
-        line[static_cast<std::size_t>(std::clamp(i + j, 0, n - 1))] += value * taps[static_cast<std::size_t>(j + reach)];
+        line[static_cast<std::size_t>(std::clamp(i + j, 0, n - 1))] +=
+            value * taps[static_cast<std::size_t>(j + reach)];
     }
     for (int i = 0; i < n; ++i) at(i) = line[static_cast<std::size_t>(i)];
   }
@@ -87,7 +91,7 @@ double asked(unsigned, const double* x, double*, void* data) {
   try {
     search.watch.check();
     return search.information({x[0], x[1], x[2], x[3], x[4], x[5]});
-  } catch (...) {   // NLopt is C
+  } catch (...) {  // NLopt is C
     search.failure = std::current_exception();
     nlopt_force_stop(search.optimiser);
     return 0;
@@ -110,7 +114,8 @@ int JointHistogram::Axis::bin(double value) const {
   return std::clamp(static_cast<int>((value - least) / width), 0, count - 1);
 }
 
-JointHistogram::Axis JointHistogram::axis_for(const std::vector<double>& values, const MutualInformationOptions& options) {
+JointHistogram::Axis JointHistogram::axis_for(const std::vector<double>& values,
+                                              const MutualInformationOptions& options) {
   Axis axis;
   if (values.empty()) return axis;
   const auto [least, largest] = std::minmax_element(values.begin(), values.end());
@@ -119,7 +124,8 @@ JointHistogram::Axis JointHistogram::axis_for(const std::vector<double>& values,
   const bool parzen = options.estimate == EntropyEstimate::parzen;
   const double wanted = parzen ? rule / bins_of_a_window : rule;
   axis.least = *least;
-  axis.count = static_cast<int>(std::clamp(std::ceil(range / wanted), double{fewest_bins}, double{most_bins}));
+  axis.count = static_cast<int>(
+      std::clamp(std::ceil(range / wanted), double{fewest_bins}, double{most_bins}));
   axis.width = range / axis.count;
   axis.window_bins = parzen ? rule / axis.width : 0;
   return axis;
@@ -127,7 +133,8 @@ JointHistogram::Axis JointHistogram::axis_for(const std::vector<double>& values,
 
 JointHistogram::JointHistogram(const std::vector<double>& a, const std::vector<double>& b,
                                const MutualInformationOptions& options)
-    : parzen_(options.estimate == EntropyEstimate::parzen), a_(axis_for(a, options)), b_(axis_for(b, options)) {
+    : parzen_(options.estimate == EntropyEstimate::parzen), a_(axis_for(a, options)),
+      b_(axis_for(b, options)) {
   clear();
 }
 
@@ -143,7 +150,8 @@ double JointHistogram::information() const {
     spread(table, a_.count, b_.count, false, a_.window_bins);
   }
   double total = 0, weight = 0;
-  std::vector<double> of_a(static_cast<std::size_t>(a_.count)), of_b(static_cast<std::size_t>(b_.count));
+  std::vector<double> of_a(static_cast<std::size_t>(a_.count)),
+      of_b(static_cast<std::size_t>(b_.count));
   for (std::size_t i = 0; i < table.size(); ++i) {
     total += table[i];
     of_a[i / of_b.size()] += table[i];
@@ -155,19 +163,27 @@ double JointHistogram::information() const {
     const double here = parzen_ ? asked_[i] : table[i];
     if (!(here > 0)) continue;
     weight += here;
-    // Where no window reaches, a density of nothing would be worth -infinity: one pair in all is less than any.
+    // Where no window reaches, a density of nothing would be worth -infinity: one pair in all is
+    // less than any.
     const double joint = std::max(table[i], 1e-3 / total);
-    sum += here * std::log(joint * total / (std::max(of_a[i / of_b.size()], joint) * std::max(of_b[i % of_b.size()], joint)));
+    sum +=
+        here *
+        std::log(joint * total /
+                 (std::max(of_a[i / of_b.size()], joint) * std::max(of_b[i % of_b.size()], joint)));
   }
   return weight > 0 ? sum / weight : 0;
 }
 
-MutualInformation::MutualInformation(const BlurLevel& level, const MutualInformationOptions& options)
-    : level_(level), options_(options), histogram_(values_of(level), afm_values_of(level), options) {
-  for (const BlurLevel::Sample& sample : level.samples) sem_bins_.push_back(histogram_.bin_a(sample.value));
+MutualInformation::MutualInformation(const BlurLevel& level,
+                                     const MutualInformationOptions& options)
+    : level_(level), options_(options),
+      histogram_(values_of(level), afm_values_of(level), options) {
+  for (const BlurLevel::Sample& sample : level.samples)
+    sem_bins_.push_back(histogram_.bin_a(sample.value));
   const Grid<double>& afm = level.afm.samples();
   afm_bins_ = Grid<int>(afm.width(), afm.height());
-  for (std::size_t i = 0; i < afm.size(); ++i) afm_bins_.data()[i] = histogram_.bin_b(afm.data()[i]);
+  for (std::size_t i = 0; i < afm.size(); ++i)
+    afm_bins_.data()[i] = histogram_.bin_b(afm.data()[i]);
 }
 
 double MutualInformation::operator()(const Corners& corners) {
@@ -184,7 +200,8 @@ double MutualInformation::operator()(const Corners& corners) {
       histogram_.add(sem_bins_[i], histogram_.bin_b(level_.afm.value(p.x, p.y)), 1);
     } else {
       const double u = level_.afm.column(p.x), v = level_.afm.row(p.y);
-      const int x = std::min(static_cast<int>(u), afm_bins_.width() - 2), y = std::min(static_cast<int>(v), afm_bins_.height() - 2);
+      const int x = std::min(static_cast<int>(u), afm_bins_.width() - 2),
+                y = std::min(static_cast<int>(v), afm_bins_.height() - 2);
       const double s = u - x, t = v - y;
       histogram_.add(sem_bins_[i], afm_bins_(x, y), (1 - s) * (1 - t));
       histogram_.add(sem_bins_[i], afm_bins_(x + 1, y), s * (1 - t));
@@ -195,11 +212,12 @@ double MutualInformation::operator()(const Corners& corners) {
   return inside < fewest_samples ? 0 : histogram_.information();
 }
 
-InformationFit fit_information(const BlurLevel& level, const MutualInformationOptions& options, const Corners& start,
-                               const Watch& watch) {
+InformationFit fit_information(const BlurLevel& level, const MutualInformationOptions& options,
+                               const Corners& start, const Watch& watch) {
   InformationFit fit;
   fit.corners = start;
-  const std::unique_ptr<nlopt_opt_s, void (*)(nlopt_opt)> optimiser(nlopt_create(NLOPT_LN_BOBYQA, 6), nlopt_destroy);
+  const std::unique_ptr<nlopt_opt_s, void (*)(nlopt_opt)> optimiser(
+      nlopt_create(NLOPT_LN_BOBYQA, 6), nlopt_destroy);
   Search search{MutualInformation(level, options), watch, optimiser.get(), 0, nullptr};
   const double reach = std::max(6.0, 4 * level.blur_px);
   std::array<double, 6> lower{}, upper{}, x = start;
@@ -215,17 +233,19 @@ InformationFit fit_information(const BlurLevel& level, const MutualInformationOp
   fit.evaluations = search.evaluations;
   if (search.failure) std::rethrow_exception(search.failure);
   // Rounding may end it where nothing is left to gain, which is as good.
-  const bool ended = result == NLOPT_XTOL_REACHED || result == NLOPT_FTOL_REACHED || result == NLOPT_SUCCESS ||
-                     result == NLOPT_ROUNDOFF_LIMITED;
+  const bool ended = result == NLOPT_XTOL_REACHED || result == NLOPT_FTOL_REACHED ||
+                     result == NLOPT_SUCCESS || result == NLOPT_ROUNDOFF_LIMITED;
   bool at_limit = false;
-  for (std::size_t i = 0; i < 6; ++i) at_limit |= x[i] <= lower[i] + settled_px || x[i] >= upper[i] - settled_px;
+  for (std::size_t i = 0; i < 6; ++i)
+    at_limit |= x[i] <= lower[i] + settled_px || x[i] >= upper[i] - settled_px;
   if (std::all_of(x.begin(), x.end(), [](double v) { return std::isfinite(v); })) fit.corners = x;
   fit.information = search.information(fit.corners);
   fit.settled = ended && !at_limit;
   return fit;
 }
 
-std::array<double, 36> information_covariance(const BlurLevel& level, const MutualInformationOptions& options,
+std::array<double, 36> information_covariance(const BlurLevel& level,
+                                              const MutualInformationOptions& options,
                                               const Corners& corners, double independent_share) {
   // Differences wide enough to see past the histogram's own roughness.
   constexpr double step = 0.7;
@@ -243,7 +263,9 @@ std::array<double, 36> information_covariance(const BlurLevel& level, const Mutu
     for (std::size_t j = 0; j <= i; ++j) {
       const double second =
           i == j ? (at(i, step, i, 0) + at(i, -step, i, 0) - 2 * here) / (step * step)
-                 : (at(i, step, j, step) + at(i, -step, j, -step) - at(i, step, j, -step) - at(i, -step, j, step)) / (4 * step * step);
+                 : (at(i, step, j, step) + at(i, -step, j, -step) - at(i, step, j, -step) -
+                    at(i, -step, j, step)) /
+                       (4 * step * step);
       negative[6 * i + j] = negative[6 * j + i] = -n * second;
     }
   return negative;

@@ -9,17 +9,20 @@
 
 namespace surf {
 
-/// Width of histogram bins for a sample (thesis, appendix F): 2 IQR N^-1/3, or 3.49 sigma N^-1/3. Where half
-/// the values are one, so that the first is 0, the second. 0 for values that are all one.
+/// Width of histogram bins for a sample (thesis, appendix F): 2 IQR N^-1/3, or 3.49 sigma N^-1/3.
+/// Where half the values are one, so that the first is 0, the second. 0 for values that are all
+/// one.
 double bin_width(std::vector<double> values, BinRule rule);
 
-/// Mutual information of two samples of intensities in pairs, in nats, as appendix F has it (with the minus
-/// sign that its first formula lacks): from a histogram, or with densities estimated from the samples of even
-/// index by Gaussian windows and averaged over those of odd index. Samples of one colour share nothing: 0.
+/// Mutual information of two samples of intensities in pairs, in nats, as appendix F has it (with
+/// the minus sign that its first formula lacks): from a histogram, or with densities estimated from
+/// the samples of even index by Gaussian windows and averaged over those of odd index. Samples of
+/// one colour share nothing: 0.
 class JointHistogram {
  public:
   /// Bins over all of `a` and all of `b`, as many as the rule gives, 2 to 128 for each.
-  JointHistogram(const std::vector<double>& a, const std::vector<double>& b, const MutualInformationOptions& options);
+  JointHistogram(const std::vector<double>& a, const std::vector<double>& b,
+                 const MutualInformationOptions& options);
 
   int bin_a(double value) const { return a_.bin(value); }
   int bin_b(double value) const { return b_.bin(value); }
@@ -37,8 +40,14 @@ class JointHistogram {
   };
   static Axis axis_for(const std::vector<double>& values, const MutualInformationOptions& options);
 
-  double& count(int a, int b) { return counts_[static_cast<std::size_t>(a) * static_cast<std::size_t>(b_.count) + static_cast<std::size_t>(b)]; }
-  double& asked(int a, int b) { return asked_[static_cast<std::size_t>(a) * static_cast<std::size_t>(b_.count) + static_cast<std::size_t>(b)]; }
+  double& count(int a, int b) {
+    return counts_[static_cast<std::size_t>(a) * static_cast<std::size_t>(b_.count) +
+                   static_cast<std::size_t>(b)];
+  }
+  double& asked(int a, int b) {
+    return asked_[static_cast<std::size_t>(a) * static_cast<std::size_t>(b_.count) +
+                  static_cast<std::size_t>(b)];
+  }
 
   bool parzen_;
   Axis a_, b_;
@@ -58,24 +67,26 @@ class MutualInformation {
   MutualInformationOptions options_;
   JointHistogram histogram_;
   std::vector<int> sem_bins_;
-  Grid<int> afm_bins_;   // of the AFM's samples, for partial volumes
+  Grid<int> afm_bins_;  // of the AFM's samples, for partial volumes
 };
 
 struct InformationFit {
   Corners corners{};
   double information = 0;
   int evaluations = 0;
-  bool settled = false;   ///< to a hundredth of a pixel, and not at the limit of how far it may go
+  bool settled = false;  ///< to a hundredth of a pixel, and not at the limit of how far it may go
 };
 
-/// Largest mutual information from a start on, by Powell's BOBYQA (NLopt), which needs no derivatives: those
-/// of histograms tell nothing.
-InformationFit fit_information(const BlurLevel& level, const MutualInformationOptions& options, const Corners& start,
-                               const Watch& watch);
+/// Largest mutual information from a start on, by Powell's BOBYQA (NLopt), which needs no
+/// derivatives: those of histograms tell nothing.
+InformationFit fit_information(const BlurLevel& level, const MutualInformationOptions& options,
+                               const Corners& start, const Watch& watch);
 
-/// Standard errors from the curvature of N times the mutual information, which is the log-likelihood ratio
-/// against independence, with N less by what `independent_share` says of the samples' residuals.
-std::array<double, 36> information_covariance(const BlurLevel& level, const MutualInformationOptions& options,
+/// Standard errors from the curvature of N times the mutual information, which is the
+/// log-likelihood ratio against independence, with N less by what `independent_share` says of the
+/// samples' residuals.
+std::array<double, 36> information_covariance(const BlurLevel& level,
+                                              const MutualInformationOptions& options,
                                               const Corners& corners, double independent_share);
 
 }  // namespace surf

@@ -6,12 +6,14 @@
 
 namespace surf {
 
-BlurLevel::BlurLevel(const PlacedImage& sem_image, const PlacedImage& afm_image, const CornerFrame& frame,
-                     double blur)
+BlurLevel::BlurLevel(const PlacedImage& sem_image, const PlacedImage& afm_image,
+                     const CornerFrame& frame, double blur)
     : blur_px(blur), stride(std::max(1, static_cast<int>(std::lround(blur)))),
-      sem_step_x(sem_image.pitch_x_nm / frame.pixel_nm()), sem_step_y(sem_image.pitch_y_nm / frame.pixel_nm()),
+      sem_step_x(sem_image.pitch_x_nm / frame.pixel_nm()),
+      sem_step_y(sem_image.pitch_y_nm / frame.pixel_nm()),
       sem(sem_image, sem_step_x, sem_step_y, blur),
-      afm(afm_image, afm_image.pitch_x_nm / frame.pixel_nm(), afm_image.pitch_y_nm / frame.pixel_nm(), blur) {
+      afm(afm_image, afm_image.pitch_x_nm / frame.pixel_nm(),
+          afm_image.pitch_y_nm / frame.pixel_nm(), blur) {
   // Small images keep enough samples to tell six numbers from.
   const int w = sem_image.values.width(), h = sem_image.values.height();
   stride = std::clamp(std::min(w, h) / 12, 1, stride);
@@ -34,13 +36,15 @@ Moments moments_of(const BlurLevel& level, const std::vector<std::size_t>& overl
   for (const std::size_t i : overlap)
     for (std::size_t j = 0; j < 3; ++j)
       for (std::size_t k = 0; k < 3; ++k)
-        m[j][k] += level.samples[i].shares[j] * level.samples[i].shares[k] / static_cast<double>(overlap.size());
+        m[j][k] += level.samples[i].shares[j] * level.samples[i].shares[k] /
+                   static_cast<double>(overlap.size());
   return m;
 }
 
 double overlap_share(const BlurLevel& level, const Corners& c, std::size_t overlapping) {
   if (level.samples.empty()) return 0;
-  const double of_sem = static_cast<double>(overlapping) / static_cast<double>(level.samples.size());
+  const double of_sem =
+      static_cast<double>(overlapping) / static_cast<double>(level.samples.size());
   const double sem_area = std::abs((c[2] - c[0]) * (c[5] - c[1]) - (c[3] - c[1]) * (c[4] - c[0]));
   const double afm_area = 4 * level.afm.half_width() * level.afm.half_height();
   return std::min(1.0, of_sem * std::max(1.0, sem_area / afm_area));
@@ -48,7 +52,8 @@ double overlap_share(const BlurLevel& level, const Corners& c, std::size_t overl
 
 double Agreement::evidence() const {
   if (!(correlation > 0)) return 0;
-  return -0.5 * static_cast<double>(samples) * std::log1p(-std::min(correlation * correlation, 1 - 1e-12));
+  return -0.5 * static_cast<double>(samples) *
+         std::log1p(-std::min(correlation * correlation, 1 - 1e-12));
 }
 
 Agreement agreement_of(const BlurLevel& level, const Corners& corners) {

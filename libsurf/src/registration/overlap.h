@@ -10,7 +10,8 @@ namespace surf {
 
 /// One blur of both images: the SEM's at some of its pixels, the AFM's everywhere.
 struct BlurLevel {
-  BlurLevel(const PlacedImage& sem, const PlacedImage& afm, const CornerFrame& frame, double blur_px);
+  BlurLevel(const PlacedImage& sem, const PlacedImage& afm, const CornerFrame& frame,
+            double blur_px);
 
   struct Sample {
     Shares shares;
@@ -19,9 +20,9 @@ struct BlurLevel {
   };
 
   double blur_px;
-  int stride;                    ///< pixels between samples: as many as the blur leaves to tell apart
-  std::vector<Sample> samples;   ///< valid ones, row by row
-  double sem_step_x, sem_step_y; ///< pixels of each axis in SEM pixels of the frame
+  int stride;  ///< pixels between samples: as many as the blur leaves to tell apart
+  std::vector<Sample> samples;    ///< valid ones, row by row
+  double sem_step_x, sem_step_y;  ///< pixels of each axis in SEM pixels of the frame
   SmoothImage sem, afm;
 };
 
@@ -38,8 +39,9 @@ struct Agreement {
   double correlation = 0;
   std::size_t samples = 0;
 
-  /// Log-likelihood ratio of a line between the intensities against none; 0 for falling lines. Larger with
-  /// more samples, so that a chance likeness of a corner does not beat a good fit of everything.
+  /// Log-likelihood ratio of a line between the intensities against none; 0 for falling lines.
+  /// Larger with more samples, so that a chance likeness of a corner does not beat a good fit of
+  /// everything.
   double evidence() const;
 };
 Agreement agreement_of(const BlurLevel& level, const Corners& corners);

@@ -11,15 +11,15 @@
 namespace surf {
 namespace {
 
-constexpr double samples_across = 46;    // of the square of the SEM's area
-constexpr double turn_miss = 1.0;        // root mean square, samples, halfway between two turns
+constexpr double samples_across = 46;  // of the square of the SEM's area
+constexpr double turn_miss = 1.0;      // root mean square, samples, halfway between two turns
 constexpr double scale_miss = 0.8;
 constexpr std::size_t peaks_of_pose = 3;
-constexpr double least_share_of_wanted = 0.85;   // a coarse place may overlap less than the fine one
-constexpr double apart = 2.5;            // samples: candidates nearer than this are one
+constexpr double least_share_of_wanted = 0.85;  // a coarse place may overlap less than the fine one
+constexpr double apart = 2.5;                   // samples: candidates nearer than this are one
 
 struct Pose {
-  double xx, xy, yx, yy;   // SEM to AFM
+  double xx, xy, yx, yy;  // SEM to AFM
 };
 
 int steps_for(double range, double step) {
@@ -35,7 +35,8 @@ std::vector<double> scales_between(double least, double largest, double reach) {
   return scales;
 }
 
-std::vector<Pose> poses_for(const BlurLevel& level, double pitch, const RegistrationOptions& options) {
+std::vector<Pose> poses_for(const BlurLevel& level, double pitch,
+                            const RegistrationOptions& options) {
   // Root mean square distances from the middle, in samples.
   const double reach_x = std::max(1.0, 2 * level.sem.half_width() / std::sqrt(12.0) / pitch);
   const double reach_y = std::max(1.0, 2 * level.sem.half_height() / std::sqrt(12.0) / pitch);
@@ -50,11 +51,12 @@ std::vector<Pose> poses_for(const BlurLevel& level, double pitch, const Registra
   return poses;
 }
 
-/// The SEM's image as it lies in the AFM's frame but for the shift: sampled at a pitch over the rectangle
-/// that bounds it, about its middle.
+/// The SEM's image as it lies in the AFM's frame but for the shift: sampled at a pitch over the
+/// rectangle that bounds it, about its middle.
 class Turned {
  public:
-  Turned(const BlurLevel& level, const Pose& pose, double pitch) : level_(level), pose_(pose), pitch_(pitch) {
+  Turned(const BlurLevel& level, const Pose& pose, double pitch)
+      : level_(level), pose_(pose), pitch_(pitch) {
     const double w = level.sem.half_width(), h = level.sem.half_height();
     width_ = 1 + 2 * static_cast<int>((std::abs(pose.xx) * w + std::abs(pose.xy) * h) / pitch);
     height_ = 1 + 2 * static_cast<int>((std::abs(pose.yx) * w + std::abs(pose.yy) * h) / pitch);
@@ -68,15 +70,16 @@ class Turned {
       const double x = (i - width_ / 2) * pitch_, y = (j - height_ / 2) * pitch_;
       return {(pose_.yy * x - pose_.xy * y) / d, (pose_.xx * y - pose_.yx * x) / d};
     };
-    return sampled(width_, height_,
-                   [&](int i, int j) {
-                     const Point2 p = back(i, j);
-                     return level_.sem.value(p.x, p.y);
-                   },
-                   [&](int i, int j) {
-                     const Point2 p = back(i, j);
-                     return level_.sem.holds(p.x, p.y);
-                   });
+    return sampled(
+        width_, height_,
+        [&](int i, int j) {
+          const Point2 p = back(i, j);
+          return level_.sem.value(p.x, p.y);
+        },
+        [&](int i, int j) {
+          const Point2 p = back(i, j);
+          return level_.sem.holds(p.x, p.y);
+        });
   }
 
   /// The map, where the middle goes to `x`, `y`.
@@ -99,11 +102,12 @@ class Turned {
 }  // namespace
 
 double search_pitch_px(const PlacedImage& sem) {
-  return std::max(1.0, std::sqrt(double(sem.values.width()) * sem.values.height()) / samples_across);
+  return std::max(1.0,
+                  std::sqrt(double(sem.values.width()) * sem.values.height()) / samples_across);
 }
 
-PoseSearch search_poses(const BlurLevel& level, double pitch, const RegistrationOptions& options, std::size_t wanted,
-                        const Watch& watch) {
+PoseSearch search_poses(const BlurLevel& level, double pitch, const RegistrationOptions& options,
+                        std::size_t wanted, const Watch& watch) {
   const std::vector<Pose> poses = poses_for(level, pitch, options);
   std::vector<std::pair<int, int>> sizes;
   for (const Pose& pose : poses) sizes.push_back(Turned(level, pose, pitch).size());
@@ -112,17 +116,22 @@ PoseSearch search_poses(const BlurLevel& level, double pitch, const Registration
   const auto x_of = [&](double column) { return (column - columns / 2) * pitch; };
   const auto y_of = [&](double row) { return (row - rows / 2) * pitch; };
   const ShiftSearch shifts(
-      sampled(columns, rows, [&](int i, int j) { return level.afm.value(x_of(i), y_of(j)); },
-              [&](int i, int j) { return level.afm.holds(x_of(i), y_of(j)); }),
+      sampled(
+          columns, rows, [&](int i, int j) { return level.afm.value(x_of(i), y_of(j)); },
+          [&](int i, int j) { return level.afm.holds(x_of(i), y_of(j)); }),
       least_share_of_wanted * options.least_overlap, sizes);
 
   std::vector<std::vector<PoseSearch::Candidate>> found(poses.size());
-  parallel_for(poses.size(), resolve_threads(options.threads), [&](std::size_t p, int) {
-    const Turned turned(level, poses[p], pitch);
-    const auto [width, height] = turned.size();
-    for (const ShiftPeak& peak : shifts.peaks(turned.samples(), peaks_of_pose))
-      found[p].push_back({turned.corners(x_of(peak.x + width / 2), y_of(peak.y + height / 2)), peak.evidence});
-  }, watch);
+  parallel_for(
+      poses.size(), resolve_threads(options.threads),
+      [&](std::size_t p, int) {
+        const Turned turned(level, poses[p], pitch);
+        const auto [width, height] = turned.size();
+        for (const ShiftPeak& peak : shifts.peaks(turned.samples(), peaks_of_pose))
+          found[p].push_back(
+              {turned.corners(x_of(peak.x + width / 2), y_of(peak.y + height / 2)), peak.evidence});
+      },
+      watch);
 
   PoseSearch result;
   std::vector<PoseSearch::Candidate> all;
@@ -131,15 +140,17 @@ PoseSearch search_poses(const BlurLevel& level, double pitch, const Registration
     all.insert(all.end(), of_pose.begin(), of_pose.end());
   }
   std::sort(result.best_of_pose.begin(), result.best_of_pose.end());
-  std::stable_sort(all.begin(), all.end(), [](const auto& a, const auto& b) { return a.evidence > b.evidence; });
+  std::stable_sort(all.begin(), all.end(),
+                   [](const auto& a, const auto& b) { return a.evidence > b.evidence; });
   std::vector<std::size_t> everything(level.samples.size());
   for (std::size_t i = 0; i < everything.size(); ++i) everything[i] = i;
   const Moments moments = moments_of(level, everything);
   for (const PoseSearch::Candidate& candidate : all) {
     if (result.candidates.size() == wanted) break;
-    const bool fresh = std::none_of(result.candidates.begin(), result.candidates.end(), [&](const auto& other) {
-      return distance_px(candidate.corners, other.corners, moments) < apart * pitch;
-    });
+    const bool fresh =
+        std::none_of(result.candidates.begin(), result.candidates.end(), [&](const auto& other) {
+          return distance_px(candidate.corners, other.corners, moments) < apart * pitch;
+        });
     if (fresh) result.candidates.push_back(candidate);
   }
   return result;

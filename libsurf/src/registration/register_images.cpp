@@ -20,17 +20,18 @@
 namespace surf {
 namespace {
 
-// How many places are followed how far. The true one is nearly always among the first ten of the search.
+// How many places are followed how far. The true one is nearly always among the first ten of the
+// search.
 constexpr std::size_t places_searched = 120, places_coarse = 24, places_fine = 8, places_sharp = 3,
                       places_repeated = 6;
 constexpr Effort coarse_effort{3, 8, 0}, fine_effort{6, 12, 0};
-constexpr Effort sharp_effort{1, 4, 10};   // noise is in the slopes: see Newton's steps
-constexpr double sharp_blur_px = 2;    // from here on every pixel counts, and costs
+constexpr Effort sharp_effort{1, 4, 10};  // noise is in the slopes: see Newton's steps
+constexpr double sharp_blur_px = 2;       // from here on every pixel counts, and costs
 constexpr double probe_blur_px = 3, widest_result_px = 2, slip_blur_px = 2;
 constexpr double probes_px[] = {-8, -4, 4, 8};
-constexpr double rival_apart_px = 1;   // nearer than this it is the same place
+constexpr double rival_apart_px = 1;  // nearer than this it is the same place
 constexpr double chance_odds = 1000;
-constexpr double sure_correlation = 0.5;   // of images that overlap by a third and more
+constexpr double sure_correlation = 0.5;  // of images that overlap by a third and more
 constexpr double unit_score_error_of_information = 2;
 
 void require(bool good, const char* subject, const std::string& value, const char* remedy) {
@@ -38,26 +39,29 @@ void require(bool good, const char* subject, const std::string& value, const cha
 }
 
 void validate(const RegistrationOptions& o) {
-  require(!o.blurs_px.empty() && o.blurs_px.size() <= 100, "blurs", fmt::format("a number of {}", o.blurs_px.size()),
-          "Give 1 to 100");
+  require(!o.blurs_px.empty() && o.blurs_px.size() <= 100, "blurs",
+          fmt::format("a number of {}", o.blurs_px.size()), "Give 1 to 100");
   for (const double blur : o.blurs_px)
     require(blur >= 0 && blur <= 1000, "blur", format_exact(blur) + " px", "Give 0 to 1000 pixels");
   require(o.least_scale > 0 && o.least_scale <= o.largest_scale && std::isfinite(o.largest_scale) &&
-              o.largest_scale <= 10 * o.least_scale, "scales",
+              o.largest_scale <= 10 * o.least_scale,
+          "scales",
           fmt::format("{} to {}", format_exact(o.least_scale), format_exact(o.largest_scale)),
           "Give numbers above 0, the largest at most ten times the least");
-  require(o.largest_shear >= 0 && o.largest_shear <= 1, "largest shear", format_exact(o.largest_shear), "Give 0 to 1");
-  require(o.least_overlap > 0 && o.least_overlap <= 1, "least overlap", format_exact(o.least_overlap),
-          "Give a share above 0, at most 1");
-  require(o.rival_sigmas >= 0 && std::isfinite(o.rival_sigmas), "rival sigmas", format_exact(o.rival_sigmas),
-          "Give 0 or more");
-  require(o.largest_stderr_px > 0, "largest standard error", format_exact(o.largest_stderr_px) + " px",
-          "Give more than 0 pixels");
+  require(o.largest_shear >= 0 && o.largest_shear <= 1, "largest shear",
+          format_exact(o.largest_shear), "Give 0 to 1");
+  require(o.least_overlap > 0 && o.least_overlap <= 1, "least overlap",
+          format_exact(o.least_overlap), "Give a share above 0, at most 1");
+  require(o.rival_sigmas >= 0 && std::isfinite(o.rival_sigmas), "rival sigmas",
+          format_exact(o.rival_sigmas), "Give 0 or more");
+  require(o.largest_stderr_px > 0, "largest standard error",
+          format_exact(o.largest_stderr_px) + " px", "Give more than 0 pixels");
   if (!o.start) return;
   const Affine& m = *o.start;
   for (const double v : {m.xx, m.xy, m.x0, m.yx, m.yy, m.y0})
     require(std::isfinite(v), "start", format_exact(v), "Give six finite numbers");
-  require(m.determinant() != 0, "start", "a map of the plane onto a line", "Give one that can be turned back");
+  require(m.determinant() != 0, "start", "a map of the plane onto a line",
+          "Give one that can be turned back");
 }
 
 void require_colours(const PlacedImage& image, const char* subject) {
@@ -71,7 +75,8 @@ void require_colours(const PlacedImage& image, const char* subject) {
       largest = count == 0 ? v : std::max(largest, v);
       ++count;
     }
-  if (count == 0) throw InvalidInput(subject, "no pixel of it is valid", "Give an image with valid pixels");
+  if (count == 0)
+    throw InvalidInput(subject, "no pixel of it is valid", "Give an image with valid pixels");
   if (!(largest - least > 1e-12 * std::max(std::abs(least), std::abs(largest))))
     throw InvalidInput(subject, "it is of one colour", "Give an image that shows something");
 }
@@ -79,11 +84,13 @@ void require_colours(const PlacedImage& image, const char* subject) {
 /// Steepness, which is where it is whatever the intensities mean.
 PlacedImage edges_of(const PlacedImage& image, double blur_px, double pixel_nm) {
   PlacedImage edges = image;
-  const SmoothImage smooth(image, image.pitch_x_nm / pixel_nm, image.pitch_y_nm / pixel_nm, blur_px);
+  const SmoothImage smooth(image, image.pitch_x_nm / pixel_nm, image.pitch_y_nm / pixel_nm,
+                           blur_px);
   for (int y = 0; y < image.values.height(); ++y)
     for (int x = 0; x < image.values.width(); ++x) {
-      const SmoothImage::Value v = smooth.at(x * image.pitch_x_nm / pixel_nm - smooth.half_width(),
-                                             y * image.pitch_y_nm / pixel_nm - smooth.half_height());
+      const SmoothImage::Value v =
+          smooth.at(x * image.pitch_x_nm / pixel_nm - smooth.half_width(),
+                    y * image.pitch_y_nm / pixel_nm - smooth.half_height());
       edges.values(x, y) = std::hypot(v.dx, v.dy);
     }
   return edges;
@@ -105,14 +112,16 @@ class Registrar {
     const Watch fine = options_.watch.part(searched ? 0.7 : 0, 0.95);
     const std::vector<double> blurs = blurs_to_use();
     for (const double blur : blurs) {
-      const Watch of_blur = fine.part(double(done) / double(blurs.size()), double(done + 1) / double(blurs.size()));
+      const Watch of_blur =
+          fine.part(double(done) / double(blurs.size()), double(done + 1) / double(blurs.size()));
       refine(trials, level(blur), options_.objective, effort_at(blur), options_, of_blur);
       ++done;
       if (!searched) continue;
       prune(trials, level(blur), frame_, options_, std::max(rival_apart_px, 0.5 * blur),
             blur <= sharp_blur_px ? places_sharp : places_fine);
       hold(trials, blur);
-      if (blur <= probe_blur_px && trials.size() > 1) drop_hopeless(trials, level(blur), trials.front().corners);
+      if (blur <= probe_blur_px && trials.size() > 1)
+        drop_hopeless(trials, level(blur), trials.front().corners);
     }
     return conclude(std::move(trials));
   }
@@ -140,7 +149,8 @@ class Registrar {
       return BlurLevel(steep ? sem : sem_, steep ? afm : afm_, frame_, blur);
     };
     const BlurLevel coarse = blurred_by(pitch_);
-    const PoseSearch search = search_poses(coarse, pitch_, options_, places_searched, options_.watch.part(0, 0.5));
+    const PoseSearch search =
+        search_poses(coarse, pitch_, options_, places_searched, options_.watch.part(0, 0.5));
     chance_evidence_ = chance_bound(search.best_of_pose, chance_odds);
     std::vector<Trial> trials;
     for (const PoseSearch::Candidate& candidate : search.candidates) {
@@ -150,27 +160,31 @@ class Registrar {
       best_coarse_evidence_ = std::max(best_coarse_evidence_, candidate.evidence);
     }
     hold(trials, pitch_);
-    refine(trials, coarse, RegistrationObjective::correlation, coarse_effort, options_, options_.watch.part(0.5, 0.65));
+    refine(trials, coarse, RegistrationObjective::correlation, coarse_effort, options_,
+           options_.watch.part(0.5, 0.65));
     prune(trials, coarse, frame_, options_, pitch_, places_coarse);
     hold(trials, pitch_);
     for (const Trial& trial : trials) {
       coarse_.push_back(trial);
-      best_coarse_evidence_ = std::max(best_coarse_evidence_, trial.evidence * samples_ratio(trial));
+      best_coarse_evidence_ =
+          std::max(best_coarse_evidence_, trial.evidence * samples_ratio(trial));
     }
     const BlurLevel finer = blurred_by(0.5 * pitch_);
-    refine(trials, finer, RegistrationObjective::correlation, coarse_effort, options_, options_.watch.part(0.65, 0.7));
+    refine(trials, finer, RegistrationObjective::correlation, coarse_effort, options_,
+           options_.watch.part(0.65, 0.7));
     prune(trials, finer, frame_, options_, 0.5 * pitch_, places_fine);
     hold(trials, 0.5 * pitch_);
     for (Trial& trial : trials) trial.steps.clear(), trial.places.clear();
     return trials;
   }
 
-  /// The best places that lay within the limits at last, should all leave them; not the worst ones that are left
-  /// when those that agreed have gone.
+  /// The best places that lay within the limits at last, should all leave them; not the worst ones
+  /// that are left when those that agreed have gone.
   void hold(const std::vector<Trial>& trials, double blur) {
     if (trials.empty()) return;
     std::vector<Trial> best = trials;
-    std::stable_sort(best.begin(), best.end(), [](const Trial& a, const Trial& b) { return a.score > b.score; });
+    std::stable_sort(best.begin(), best.end(),
+                     [](const Trial& a, const Trial& b) { return a.score > b.score; });
     best.resize(std::min(places_sharp, best.size()));
     if (!held_.empty() && best.front().score < 0.5 * held_.front().score) return;
     held_ = std::move(best);
@@ -179,8 +193,8 @@ class Registrar {
     for (const Trial& trial : held_) best_correlation_ = std::max(best_correlation_, trial.score);
   }
 
-  /// More than chance allows while all was coarse, or so well when it was sharper that chance is out of
-  /// question: a fine pattern is not there to be seen while all is coarse.
+  /// More than chance allows while all was coarse, or so well when it was sharper that chance is
+  /// out of question: a fine pattern is not there to be seen while all is coarse.
   bool are_related() const {
     return best_coarse_evidence_ >= chance_evidence_ || best_correlation_ > sure_correlation;
   }
@@ -201,7 +215,8 @@ class Registrar {
     if (by_correlation()) return score_error(last, trial.corners);
     // 2 N I is noncentral chi-squared, of variance 8 N I.
     const double n = static_cast<double>(trial.samples) * independent_share(last, trial.corners);
-    return n > 0 ? std::sqrt(unit_score_error_of_information * std::max(trial.score, 1 / n) / n) : 1;
+    return n > 0 ? std::sqrt(unit_score_error_of_information * std::max(trial.score, 1 / n) / n)
+                 : 1;
   }
 
   Uncertainty known(const Place& trial) {
@@ -210,15 +225,16 @@ class Registrar {
       const EdgeSlip slip = edge_slip(level(std::max(blur_, slip_blur_px)), trial.corners);
       return uncertainty_of(last, trial.corners, slip);
     }
-    Uncertainty u = uncertainty_from(information_covariance(last, options_.mutual_information, trial.corners,
-                                                            independent_share(last, trial.corners)),
-                                     last, trial.corners);
+    Uncertainty u =
+        uncertainty_from(information_covariance(last, options_.mutual_information, trial.corners,
+                                                independent_share(last, trial.corners)),
+                         last, trial.corners);
     u.score = error_of(trial);
     return u;
   }
 
-  /// Sharp images show what differs least from a tip's doing, blurred ones have less noise: the map is taken
-  /// from the blur where it is known best. All trials go back to it.
+  /// Sharp images show what differs least from a tip's doing, blurred ones have less noise: the map
+  /// is taken from the blur where it is known best. All trials go back to it.
   Uncertainty choose_blur(std::vector<Trial>& trials) {
     const Trial best = trials.front();
     std::optional<Uncertainty> least;
@@ -238,10 +254,12 @@ class Registrar {
     return *least;
   }
 
-  /// How far off the nearest place is where the scan looks like itself, SEM pixels; 0: there is none.
+  /// How far off the nearest place is where the scan looks like itself, SEM pixels; 0: there is
+  /// none.
   double repeat_px(const Trial& best, const Moments& moments) {
     double nearest = 0;
-    for (const Corners& c : repeats_of(level(std::max(blur_, slip_blur_px)), best.corners, places_repeated)) {
+    for (const Corners& c :
+         repeats_of(level(std::max(blur_, slip_blur_px)), best.corners, places_repeated)) {
       const double distance = distance_px(c, best.corners, moments);
       if (nearest == 0 || distance < nearest) nearest = distance;
     }
@@ -253,7 +271,8 @@ class Registrar {
     if (!by_correlation()) return;
     const double here = agreement_of(at, best).correlation;
     const double error = score_error(at, best);
-    std::erase_if(trials, [&](const Trial& t) { return here - t.score > 2 * options_.rival_sigmas * error; });
+    std::erase_if(
+        trials, [&](const Trial& t) { return here - t.score > 2 * options_.rival_sigmas * error; });
   }
 
   /// Places to either side along the motions that are known least.
@@ -262,13 +281,14 @@ class Registrar {
     for (const Corners& motion : u.loosest)
       for (const double far : probes_px) {
         moved.emplace_back();
-        for (std::size_t i = 0; i < 6; ++i) moved.back().corners[i] = best.corners[i] + far * motion[i];
+        for (std::size_t i = 0; i < 6; ++i)
+          moved.back().corners[i] = best.corners[i] + far * motion[i];
       }
     return moved;
   }
 
-  /// Other optima along those motions, and where the scan looks like itself: on patterns that slide or repeat
-  /// they are as good. Which place of a lattice is meant a start that is given says.
+  /// Other optima along those motions, and where the scan looks like itself: on patterns that slide
+  /// or repeat they are as good. Which place of a lattice is meant a start that is given says.
   std::vector<Trial> probe(const Trial& best, const Uncertainty& u) {
     std::vector<Trial> probes = displaced(best, u);
     if (!options_.start) {
@@ -280,22 +300,27 @@ class Registrar {
     }
     const auto drop_same = [&](const BlurLevel& at, double apart) {
       const Moments moments = moments_of(at, overlap_of(at, best.corners));
-      std::erase_if(probes, [&](const Trial& t) { return distance_px(t.corners, best.corners, moments) < apart; });
+      std::erase_if(probes, [&](const Trial& t) {
+        return distance_px(t.corners, best.corners, moments) < apart;
+      });
       prune(probes, at, frame_, options_, rival_apart_px, places_sharp);
     };
     std::vector<double> blurs;
     for (const RegistrationStep& step : best.steps)
-      if (step.blur_px <= std::max(probe_blur_px, blur_) && step.blur_px >= blur_) blurs.push_back(step.blur_px);
+      if (step.blur_px <= std::max(probe_blur_px, blur_) && step.blur_px >= blur_)
+        blurs.push_back(step.blur_px);
     for (const double blur : blurs) {
-      refine(probes, level(blur), options_.objective, effort_at(blur), options_, {{}, options_.watch.cancel});
+      refine(probes, level(blur), options_.objective, effort_at(blur), options_,
+             {{}, options_.watch.cancel});
       drop_same(level(blur), rival_apart_px);
-      if (blur == blurs.front() && !probes.empty()) drop_hopeless(probes, level(blur), best.corners);
+      if (blur == blurs.front() && !probes.empty())
+        drop_hopeless(probes, level(blur), best.corners);
     }
     return probes;
   }
 
-  /// Every place left the limits of the search: what slides is of no place, and those from which it slid are
-  /// as good as any.
+  /// Every place left the limits of the search: what slides is of no place, and those from which it
+  /// slid are as good as any.
   Registration slid_off(Evidence evidence) {
     blur_ = held_blur_;
     Registration r;
@@ -309,7 +334,8 @@ class Registrar {
     r.overlap = overlap_at(best.corners);
     const Moments moments = moments_of(level(blur_), overlap_of(level(blur_), best.corners));
     const auto add_rival = [&](const Corners& corners, double score) {
-      r.rivals.push_back({frame_.affine(corners), score, distance_px(corners, best.corners, moments)});
+      r.rivals.push_back(
+          {frame_.affine(corners), score, distance_px(corners, best.corners, moments)});
     };
     for (std::size_t i = 1; i < held_.size(); ++i) add_rival(held_[i].corners, held_[i].score);
     if (by_correlation())
@@ -317,8 +343,9 @@ class Registrar {
         const double score = agreement_of(level(blur_), moved.corners).correlation;
         if (best.score - score <= options_.rival_sigmas * u.score) add_rival(moved.corners, score);
       }
-    std::stable_sort(r.rivals.begin(), r.rivals.end(),
-                     [](const RegistrationRival& a, const RegistrationRival& b) { return a.score > b.score; });
+    std::stable_sort(
+        r.rivals.begin(), r.rivals.end(),
+        [](const RegistrationRival& a, const RegistrationRival& b) { return a.score > b.score; });
     evidence.slid_off = true;
     judge(r, evidence);
     return r;
@@ -326,7 +353,8 @@ class Registrar {
 
   double overlap_at(const Corners& corners) {
     const BlurLevel& all = level(0);
-    return static_cast<double>(overlap_of(all, corners).size()) / static_cast<double>(all.samples.size());
+    return static_cast<double>(overlap_of(all, corners).size()) /
+           static_cast<double>(all.samples.size());
   }
 
   Registration conclude(std::vector<Trial> trials) {
@@ -359,21 +387,25 @@ class Registrar {
     const std::vector<Trial> probes = probe(best, u);
     others.insert(others.end(), probes.begin(), probes.end());
     const Moments moments = moments_of(last, overlap_of(last, best.corners));
-    std::stable_sort(others.begin(), others.end(), [](const Trial& a, const Trial& b) { return a.score > b.score; });
+    std::stable_sort(others.begin(), others.end(),
+                     [](const Trial& a, const Trial& b) { return a.score > b.score; });
     std::vector<Corners> known_rivals;
     for (const Trial& other : others) {
       const double distance = distance_px(other.corners, best.corners, moments);
       if (distance < rival_apart_px) continue;
-      if (std::any_of(known_rivals.begin(), known_rivals.end(),
-                      [&](const Corners& c) { return distance_px(c, other.corners, moments) < rival_apart_px; }))
+      if (std::any_of(known_rivals.begin(), known_rivals.end(), [&](const Corners& c) {
+            return distance_px(c, other.corners, moments) < rival_apart_px;
+          }))
         continue;
-      if (best.score - other.score > options_.rival_sigmas * std::hypot(u.score, error_of(other))) continue;
+      if (best.score - other.score > options_.rival_sigmas * std::hypot(u.score, error_of(other)))
+        continue;
       known_rivals.push_back(other.corners);
       r.rivals.push_back({frame_.affine(other.corners), other.score, distance});
     }
 
     evidence.settled = best.settled;
-    evidence.within_limits = options_.start ? true : within_limits(best.corners, last, frame_, options_);
+    evidence.within_limits =
+        options_.start ? true : within_limits(best.corners, last, frame_, options_);
     evidence.score = best.score;
     evidence.score_error = u.score;
     evidence.loosest_px = u.loosest_px;
@@ -381,7 +413,8 @@ class Registrar {
     // The place that won may not be the one that led when all was coarse.
     for (const Trial& trial : coarse_)
       if (distance_px(trial.corners, best.corners, moments) < 2 * pitch_)
-        evidence.coarse_evidence = std::max(evidence.coarse_evidence, trial.evidence * samples_ratio(trial));
+        evidence.coarse_evidence =
+            std::max(evidence.coarse_evidence, trial.evidence * samples_ratio(trial));
     if (options_.start) evidence.repeat_px = repeat_px(best, moments);
     judge(r, evidence);
     options_.watch.report(1, 1);
@@ -394,7 +427,8 @@ class Registrar {
     const double area = std::abs((c[2] - c[0]) * (c[5] - c[1]) - (c[3] - c[1]) * (c[4] - c[0]));
     const double nodes = area / (pitch_ * pitch_);
     const int stride = std::max(1, static_cast<int>(std::lround(pitch_)));
-    const double samples = double(sem_.values.width()) * sem_.values.height() / (double(stride) * stride);
+    const double samples =
+        double(sem_.values.width()) * sem_.values.height() / (double(stride) * stride);
     return nodes / samples;
   }
 
@@ -404,14 +438,15 @@ class Registrar {
   CornerFrame frame_;
   std::map<double, std::unique_ptr<BlurLevel>> levels_;
   double pitch_ = 0, chance_evidence_ = 0, best_coarse_evidence_ = 0, best_correlation_ = 0;
-  double blur_ = 0;   // of the result
+  double blur_ = 0;  // of the result
   std::vector<Trial> coarse_, held_;
   double held_blur_ = 0;
 };
 
 }  // namespace
 
-Registration register_images(const PlacedImage& sem, const PlacedImage& simulated, const RegistrationOptions& options) {
+Registration register_images(const PlacedImage& sem, const PlacedImage& simulated,
+                             const RegistrationOptions& options) {
   validate(sem, "SEM image");
   validate(simulated, "simulated image");
   validate(options);

@@ -9,10 +9,11 @@
 namespace surf {
 namespace {
 
-constexpr double alike = 0.5;                // least correlation of the AFM's image with itself
-constexpr double least_share = 0.5;          // of the part that must stay in the AFM's image
+constexpr double alike = 0.5;        // least correlation of the AFM's image with itself
+constexpr double least_share = 0.5;  // of the part that must stay in the AFM's image
 constexpr double blur_per_sample = 2;
-constexpr double largest_side = 512;         // samples: transforms of larger images cost more than they tell
+constexpr double largest_side =
+    512;  // samples: transforms of larger images cost more than they tell
 
 /// Where in the SEM's image a place of the AFM's lies: the way back of `place`.
 class WayBack {
@@ -36,8 +37,10 @@ class WayBack {
 
 std::vector<Corners> repeats_of(const BlurLevel& level, const Corners& best, std::size_t wanted) {
   const double w = level.afm.half_width(), h = level.afm.half_height();
-  const double pitch = std::max({1.0, level.blur_px / blur_per_sample, 2 * std::sqrt(w * h) / largest_side});
-  const int columns = 1 + static_cast<int>(2 * w / pitch), rows = 1 + static_cast<int>(2 * h / pitch);
+  const double pitch =
+      std::max({1.0, level.blur_px / blur_per_sample, 2 * std::sqrt(w * h) / largest_side});
+  const int columns = 1 + static_cast<int>(2 * w / pitch),
+            rows = 1 + static_cast<int>(2 * h / pitch);
   const auto x_of = [&](int column) { return column * pitch - w; };
   const auto y_of = [&](int row) { return row * pitch - h; };
   const WayBack back(best);
@@ -50,7 +53,8 @@ std::vector<Corners> repeats_of(const BlurLevel& level, const Corners& best, std
   std::vector<Corners> repeats;
   // The highest peak is the part in its own place.
   for (const ShiftPeak& peak : shifts.peaks(part, wanted + 1)) {
-    if (peak.correlation < alike || std::hypot(peak.x, peak.y) < 2 || repeats.size() == wanted) continue;
+    if (peak.correlation < alike || std::hypot(peak.x, peak.y) < 2 || repeats.size() == wanted)
+      continue;
     repeats.push_back(best);
     for (std::size_t i = 0; i < 6; i += 2) {
       repeats.back()[i] += peak.x * pitch;

@@ -19,17 +19,13 @@ struct Free {
 using Reals = std::unique_ptr<float[], Free>;
 using Spectrum = std::unique_ptr<std::complex<float>[], Free>;
 
-Reals reals(std::size_t n) {
-  return Reals(static_cast<float*>(fftwf_malloc(n * sizeof(float))));
-}
+Reals reals(std::size_t n) { return Reals(static_cast<float*>(fftwf_malloc(n * sizeof(float)))); }
 
 Spectrum spectrum(std::size_t n) {
   return Spectrum(static_cast<std::complex<float>*>(fftwf_malloc(n * sizeof(std::complex<float>))));
 }
 
-fftwf_complex* raw(std::complex<float>* p) {
-  return reinterpret_cast<fftwf_complex*>(p);
-}
+fftwf_complex* raw(std::complex<float>* p) { return reinterpret_cast<fftwf_complex*>(p); }
 
 /// The next length that is quick to transform.
 int quick_length(int n) {
@@ -48,7 +44,7 @@ double count_of(const Grid<float>& mask) {
 }
 
 std::mutex& planner() {
-  static std::mutex mutex;   // FFTW plans in one thread at a time
+  static std::mutex mutex;  // FFTW plans in one thread at a time
   return mutex;
 }
 
@@ -58,7 +54,7 @@ struct ShiftSearch::Plan {
   int width, height;
   std::size_t reals_count, spectrum_count;
   fftwf_plan forward, backward;
-  std::array<Spectrum, 3> resting;   // of the mask, the values and their squares
+  std::array<Spectrum, 3> resting;  // of the mask, the values and their squares
 
   Plan(int w, int h)
       : width(w), height(h), reals_count(std::size_t(w) * std::size_t(h)),
@@ -85,7 +81,9 @@ struct ShiftSearch::Plan {
       for (int y = 0; y < image.values.height(); ++y)
         for (int x = 0; x < image.values.width(); ++x) {
           const float v = image.values(x, y);
-          r[std::size_t(y) * std::size_t(width) + std::size_t(x)] = power == 0 ? image.mask(x, y) : power == 1 ? v : v * v;
+          r[std::size_t(y) * std::size_t(width) + std::size_t(x)] = power == 0   ? image.mask(x, y)
+                                                                    : power == 1 ? v
+                                                                                 : v * v;
         }
       result[static_cast<std::size_t>(power)] = spectrum(spectrum_count);
       fftwf_execute_dft_r2c(forward, r.get(), raw(result[static_cast<std::size_t>(power)].get()));
@@ -98,7 +96,8 @@ struct ShiftSearch::Plan {
     const Spectrum product = spectrum(spectrum_count);
     const float scale = 1.0F / static_cast<float>(reals_count);
     for (std::size_t i = 0; i < spectrum_count; ++i) {
-      const float a = f[i].real(), b = f[i].imag(), c = g[i].real() * scale, d = -g[i].imag() * scale;
+      const float a = f[i].real(), b = f[i].imag(), c = g[i].real() * scale,
+                  d = -g[i].imag() * scale;
       product[i] = {a * c - b * d, a * d + b * c};
     }
     Reals result = reals(reals_count);
@@ -108,7 +107,8 @@ struct ShiftSearch::Plan {
 };
 
 ShiftSearch::ShiftSearch(MaskedGrid resting, double least_share, const std::vector<Size>& sizes)
-    : resting_(std::move(resting)), least_share_(least_share), resting_samples_(count_of(resting_.mask)) {
+    : resting_(std::move(resting)), least_share_(least_share),
+      resting_samples_(count_of(resting_.mask)) {
   for (const auto& [w, h] : sizes) {
     std::unique_ptr<Plan>& plan = plans_[size_for(w, h)];
     if (plan) continue;
@@ -122,7 +122,8 @@ ShiftSearch::~ShiftSearch() = default;
 /// Shifts by nearly a whole image wrap round onto each other: they overlap too little to count.
 ShiftSearch::Size ShiftSearch::size_for(int width, int height) const {
   const auto length = [&](int moving, int rest) {
-    return quick_length(moving + rest - static_cast<int>(0.5 * least_share_ * std::min(moving, rest)));
+    return quick_length(moving + rest -
+                        static_cast<int>(0.5 * least_share_ * std::min(moving, rest)));
   };
   return {length(width, resting_.values.width()), length(height, resting_.values.height())};
 }
@@ -131,14 +132,17 @@ std::vector<ShiftPeak> ShiftSearch::peaks(const MaskedGrid& moving, std::size_t 
   const Plan& plan = *plans_.at(size_for(moving.values.width(), moving.values.height()));
   const std::array<Spectrum, 3> g = plan.transforms(moving);
   const auto& f = plan.resting;
-  const Reals n = plan.correlated(f[0], g[0]), sf = plan.correlated(f[1], g[0]), sff = plan.correlated(f[2], g[0]),
-              sg = plan.correlated(f[0], g[1]), sgg = plan.correlated(f[0], g[2]), sfg = plan.correlated(f[1], g[1]);
-  const double least = std::max(16.0, least_share_ * std::min(resting_samples_, count_of(moving.mask)));
+  const Reals n = plan.correlated(f[0], g[0]), sf = plan.correlated(f[1], g[0]),
+              sff = plan.correlated(f[2], g[0]), sg = plan.correlated(f[0], g[1]),
+              sgg = plan.correlated(f[0], g[2]), sfg = plan.correlated(f[1], g[1]);
+  const double least =
+      std::max(16.0, least_share_ * std::min(resting_samples_, count_of(moving.mask)));
   Grid<double> evidence(plan.width, plan.height), correlation(plan.width, plan.height);
   for (std::size_t i = 0; i < plan.reals_count; ++i) {
     const double samples = n[i];
     if (samples < least) continue;
-    const double ff = sff[i] - double(sf[i]) * sf[i] / samples, gg = sgg[i] - double(sg[i]) * sg[i] / samples;
+    const double ff = sff[i] - double(sf[i]) * sf[i] / samples,
+                 gg = sgg[i] - double(sg[i]) * sg[i] / samples;
     // Values are about unit variance: below this there is next to no structure, or only rounding.
     if (!(ff > 1e-3 * samples && gg > 1e-3 * samples)) continue;
     const double r = (sfg[i] - double(sf[i]) * sg[i] / samples) / std::sqrt(ff * gg);
@@ -156,7 +160,8 @@ std::vector<ShiftPeak> ShiftSearch::peaks(const MaskedGrid& moving, std::size_t 
         for (int dx = -1; dx <= 1 && highest; ++dx)
           highest = evidence((x + dx + w) % w, (y + dy + h) % h) <= here;
       if (!highest) continue;
-      ShiftPeak peak{x < resting_.values.width() ? x : x - w, y < resting_.values.height() ? y : y - h, correlation(x, y),
+      ShiftPeak peak{x < resting_.values.width() ? x : x - w,
+                     y < resting_.values.height() ? y : y - h, correlation(x, y),
                      n[std::size_t(y) * std::size_t(w) + std::size_t(x)], here};
       found.push_back(peak);
     }

@@ -33,27 +33,32 @@ MaskedGrid sampled(int width, int height, const ValueAt& value_at, const HoldsAt
       count += 1;
     }
   if (count == 0) return grid;
-  const double mean = sum / count, deviation = std::sqrt(std::max(0.0, squares / count - mean * mean));
+  const double mean = sum / count,
+               deviation = std::sqrt(std::max(0.0, squares / count - mean * mean));
   const double scale = deviation > 1e-9 * std::abs(mean) ? 1 / deviation : 0;
   for (std::size_t i = 0; i < grid.values.size(); ++i)
-    grid.values.data()[i] = grid.mask.data()[i] != 0 ? static_cast<float>((grid.values.data()[i] - mean) * scale) : 0.0F;
+    grid.values.data()[i] = grid.mask.data()[i] != 0
+                                ? static_cast<float>((grid.values.data()[i] - mean) * scale)
+                                : 0.0F;
   return grid;
 }
 
 /// Where one image lies in another.
 struct ShiftPeak {
-  int x = 0, y = 0;            ///< sample (0, 0) of the moving image is this sample of the resting one
+  int x = 0, y = 0;  ///< sample (0, 0) of the moving image is this sample of the resting one
   double correlation = 0;
-  double samples = 0;          ///< that overlap
-  double evidence = 0;         ///< as of Agreement
+  double samples = 0;   ///< that overlap
+  double evidence = 0;  ///< as of Agreement
 };
 
 /// Normalised cross-correlation of masked images at every shift at once, by Fourier transforms
 /// (Padfield 2012, doi:10.1109/TIP.2011.2181402).
 class ShiftSearch {
  public:
-  /// `least_share` of the smaller image must overlap. Images to be moved are at most as large as one of `sizes`.
-  ShiftSearch(MaskedGrid resting, double least_share, const std::vector<std::pair<int, int>>& sizes);
+  /// `least_share` of the smaller image must overlap. Images to be moved are at most as large as
+  /// one of `sizes`.
+  ShiftSearch(MaskedGrid resting, double least_share,
+              const std::vector<std::pair<int, int>>& sizes);
   ~ShiftSearch();
 
   /// The best `count` peaks, best first; fewer where there are fewer. From any thread.

@@ -17,7 +17,8 @@ std::vector<double> gaussian(double sigma) {
   return taps;
 }
 
-/// Both ways along one axis; what lies outside takes no part, and is made up for by the mask's own blur.
+/// Both ways along one axis; what lies outside takes no part, and is made up for by the mask's own
+/// blur.
 Grid<double> convolved(const Grid<double>& in, const std::vector<double>& taps, bool along_x) {
   const int w = in.width(), h = in.height(), reach = static_cast<int>(taps.size()) - 1;
   if (reach == 0) return in;
@@ -26,7 +27,8 @@ Grid<double> convolved(const Grid<double>& in, const std::vector<double>& taps, 
     for (int y = 0; y < h; ++y)
       for (int x = 0; x < w; ++x) {
         double sum = 0;
-        for (int i = std::max(-reach, -x); i <= std::min(reach, w - 1 - x); ++i) sum += taps[static_cast<std::size_t>(std::abs(i))] * in(x + i, y);
+        for (int i = std::max(-reach, -x); i <= std::min(reach, w - 1 - x); ++i)
+          sum += taps[static_cast<std::size_t>(std::abs(i))] * in(x + i, y);
         out(x, y) = sum;
       }
     return out;
@@ -41,14 +43,16 @@ Grid<double> convolved(const Grid<double>& in, const std::vector<double>& taps, 
   return out;
 }
 
-/// A row of samples becomes the coefficients of the spline that goes through them, mirrored at its ends.
+/// A row of samples becomes the coefficients of the spline that goes through them, mirrored at its
+/// ends.
 void to_coefficients(double* c, int n, std::ptrdiff_t stride) {
   const double pole = std::sqrt(3.0) - 2;
   if (n < 2) return;
   const auto at = [&](int i) -> double& { return c[i * stride]; };
   const int period = 2 * n - 2;
   double first = 0, power = 1;
-  for (int i = 0; i < std::min(period, 60); ++i, power *= pole) first += power * at(i < n ? i : period - i);   // beyond is below the last digit
+  for (int i = 0; i < std::min(period, 60); ++i, power *= pole)
+    first += power * at(i < n ? i : period - i);  // beyond is below the last digit
   first /= 1 - std::pow(pole, period);
   const double gain = 6;
   at(0) = gain * first;
@@ -63,7 +67,8 @@ struct Weights {
 
 Weights weights_of(double t) {
   const double r = 1 - t;
-  return {{r * r * r / 6, 2.0 / 3 - 0.5 * t * t * (2 - t), 2.0 / 3 - 0.5 * r * r * (2 - r), t * t * t / 6},
+  return {{r * r * r / 6, 2.0 / 3 - 0.5 * t * t * (2 - t), 2.0 / 3 - 0.5 * r * r * (2 - r),
+           t * t * t / 6},
           {-0.5 * r * r, t * (1.5 * t - 2), r * (2 - 1.5 * r), 0.5 * t * t}};
 }
 
@@ -101,13 +106,19 @@ SmoothImage::SmoothImage(const PlacedImage& image, double step_x, double step_y,
   coefficients_ = Grid<double>(w + 2, h + 2);
   for (int y = -1; y <= h; ++y)
     for (int x = -1; x <= w; ++x)
-      coefficients_(x + 1, y + 1) = c(x < 0 ? 1 : x == w ? w - 2 : x, y < 0 ? 1 : y == h ? h - 2 : y);
+      coefficients_(x + 1, y + 1) = c(x < 0    ? 1
+                                      : x == w ? w - 2
+                                               : x,
+                                      y < 0    ? 1
+                                      : y == h ? h - 2
+                                               : y);
   if (valid_.empty()) return;
   safe_ = Grid<unsigned char>(w, h, 0);
   for (int y = 0; y < h; ++y)
     for (int x = 0; x < w; ++x) {
       const int right = std::min(x + 1, w - 1), above = std::min(y + 1, h - 1);
-      safe_(x, y) = is_valid(x, y) && is_valid(right, y) && is_valid(x, above) && is_valid(right, above);
+      safe_(x, y) =
+          is_valid(x, y) && is_valid(right, y) && is_valid(x, above) && is_valid(right, above);
     }
 }
 
@@ -115,13 +126,16 @@ SmoothImage::Value SmoothImage::at(double x, double y) const {
   const double last_x = coefficients_.width() - 3, last_y = coefficients_.height() - 3;
   const double wanted_u = column(x), wanted_v = row(y);
   const double u = std::clamp(wanted_u, 0.0, last_x), v = std::clamp(wanted_v, 0.0, last_y);
-  const int i = std::min(static_cast<int>(u), coefficients_.width() - 4), j = std::min(static_cast<int>(v), coefficients_.height() - 4);
+  const int i = std::min(static_cast<int>(u), coefficients_.width() - 4),
+            j = std::min(static_cast<int>(v), coefficients_.height() - 4);
   const Weights across = weights_of(u - i), up = weights_of(v - j);
   Value sum;
   for (int k = 0; k < 4; ++k) {
     const double* const c = &coefficients_(i, j + k);
-    const double value = across.value[0] * c[0] + across.value[1] * c[1] + across.value[2] * c[2] + across.value[3] * c[3];
-    const double slope = across.slope[0] * c[0] + across.slope[1] * c[1] + across.slope[2] * c[2] + across.slope[3] * c[3];
+    const double value = across.value[0] * c[0] + across.value[1] * c[1] + across.value[2] * c[2] +
+                         across.value[3] * c[3];
+    const double slope = across.slope[0] * c[0] + across.slope[1] * c[1] + across.slope[2] * c[2] +
+                         across.slope[3] * c[3];
     sum.value += up.value[k] * value;
     sum.dx += up.value[k] * slope;
     sum.dy += up.slope[k] * value;
@@ -132,13 +146,16 @@ SmoothImage::Value SmoothImage::at(double x, double y) const {
 }
 
 double SmoothImage::value(double x, double y) const {
-  const double u = std::clamp(column(x), 0.0, coefficients_.width() - 3.0), v = std::clamp(row(y), 0.0, coefficients_.height() - 3.0);
-  const int i = std::min(static_cast<int>(u), coefficients_.width() - 4), j = std::min(static_cast<int>(v), coefficients_.height() - 4);
+  const double u = std::clamp(column(x), 0.0, coefficients_.width() - 3.0),
+               v = std::clamp(row(y), 0.0, coefficients_.height() - 3.0);
+  const int i = std::min(static_cast<int>(u), coefficients_.width() - 4),
+            j = std::min(static_cast<int>(v), coefficients_.height() - 4);
   const Weights across = weights_of(u - i), up = weights_of(v - j);
   double sum = 0;
   for (int k = 0; k < 4; ++k) {
     const double* const c = &coefficients_(i, j + k);
-    sum += up.value[k] * (across.value[0] * c[0] + across.value[1] * c[1] + across.value[2] * c[2] + across.value[3] * c[3]);
+    sum += up.value[k] * (across.value[0] * c[0] + across.value[1] * c[1] + across.value[2] * c[2] +
+                          across.value[3] * c[3]);
   }
   return sum;
 }

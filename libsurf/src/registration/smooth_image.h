@@ -8,28 +8,29 @@
 
 namespace surf {
 
-/// An image after a Gaussian blur of `blur_x`, `blur_y` samples (0: none), what is not valid taking no part:
-/// values where anything valid is near, their mean elsewhere.
+/// An image after a Gaussian blur of `blur_x`, `blur_y` samples (0: none), what is not valid taking
+/// no part: values where anything valid is near, their mean elsewhere.
 Grid<double> blurred(const PlacedImage& image, double blur_x, double blur_y);
 
-/// An image between its samples: a cubic spline, whose slopes have no kinks that would hold an optimum at
-/// the samples (Unser 1999, doi:10.1109/79.799930).
+/// An image between its samples: a cubic spline, whose slopes have no kinks that would hold an
+/// optimum at the samples (Unser 1999, doi:10.1109/79.799930).
 class SmoothImage {
  public:
   struct Value {
-    double value = 0, dx = 0, dy = 0;   ///< slopes per sample
+    double value = 0, dx = 0, dy = 0;  ///< slopes per sample
   };
 
   SmoothImage() = default;
-  /// Places in x and y are (column - middle) * step; blurs in the unit of `step`. Samples whose blur reaches
-  /// beyond the image count too, though what is left of it there lies a little farther inside: the rim holds
-  /// turns and scales best, and errors are larger without it.
+  /// Places in x and y are (column - middle) * step; blurs in the unit of `step`. Samples whose
+  /// blur reaches beyond the image count too, though what is left of it there lies a little farther
+  /// inside: the rim holds turns and scales best, and errors are larger without it.
   SmoothImage(const PlacedImage& image, double step_x, double step_y, double blur);
 
   /// Whether the place lies between valid samples.
   bool holds(double x, double y) const {
     const double u = column(x), v = row(y);
-    if (!(u >= 0 && v >= 0 && u <= coefficients_.width() - 3 && v <= coefficients_.height() - 3)) return false;
+    if (!(u >= 0 && v >= 0 && u <= coefficients_.width() - 3 && v <= coefficients_.height() - 3))
+      return false;
     return safe_.empty() || safe_(static_cast<int>(u), static_cast<int>(v)) != 0;
   }
 
@@ -37,7 +38,7 @@ class SmoothImage {
   Value at(double x, double y) const;
   double value(double x, double y) const;
 
-  const Grid<double>& samples() const { return samples_; }   ///< blurred
+  const Grid<double>& samples() const { return samples_; }  ///< blurred
   bool is_valid(int column, int row) const { return valid_.empty() || valid_(column, row) != 0; }
   double column(double x) const { return x / step_x_ + middle_x_; }
   double row(double y) const { return y / step_y_ + middle_y_; }
@@ -47,8 +48,8 @@ class SmoothImage {
  private:
   double step_x_ = 1, step_y_ = 1, middle_x_ = 0, middle_y_ = 0;
   Grid<double> samples_;
-  Grid<double> coefficients_;   // one more on each side
-  Grid<unsigned char> valid_, safe_;   // samples, and cells between four valid ones; empty: all
+  Grid<double> coefficients_;         // one more on each side
+  Grid<unsigned char> valid_, safe_;  // samples, and cells between four valid ones; empty: all
 };
 
 }  // namespace surf

@@ -12,15 +12,15 @@ namespace surf {
 struct Place {
   Corners corners{};
   double score = 0;
-  double evidence = 0;     ///< log-likelihood ratio against chance, samples taken as independent
-  std::size_t samples = 0; ///< that overlap
+  double evidence = 0;      ///< log-likelihood ratio against chance, samples taken as independent
+  std::size_t samples = 0;  ///< that overlap
   bool settled = false;
 };
 
 /// One place that is followed from blur to blur.
 struct Trial : Place {
   std::vector<RegistrationStep> steps;
-  std::vector<Place> places;   ///< after each step
+  std::vector<Place> places;  ///< after each step
 };
 
 /// How hard to try at one blur.
@@ -30,11 +30,11 @@ struct Effort {
 };
 
 /// Refines all trials at a level, with the objective that is given.
-void refine(std::vector<Trial>& trials, const BlurLevel& level, RegistrationObjective objective, const Effort& effort,
-            const RegistrationOptions& options, const Watch& watch);
+void refine(std::vector<Trial>& trials, const BlurLevel& level, RegistrationObjective objective,
+            const Effort& effort, const RegistrationOptions& options, const Watch& watch);
 
-/// Drops what lies outside the limits of the search, keeps of several nearer than `apart_px` the best, and of
-/// all the best `kept`, best first.
+/// Drops what lies outside the limits of the search, keeps of several nearer than `apart_px` the
+/// best, and of all the best `kept`, best first.
 void prune(std::vector<Trial>& trials, const BlurLevel& level, const CornerFrame& frame,
            const RegistrationOptions& options, double apart_px, std::size_t kept);
 

@@ -14,12 +14,13 @@ using Vector6 = Eigen::Matrix<double, 6, 1>;
 using Columns = Eigen::Matrix<double, Eigen::Dynamic, 6>;
 
 constexpr int fewest_blocks = 40;
-constexpr double unknown_px = 1e3;   // standard error of a motion that nothing holds
+constexpr double unknown_px = 1e3;  // standard error of a motion that nothing holds
 constexpr int farthest_lag = 24;
-constexpr double edge_block_px = 16;   // a wall, but not both walls of a line
+constexpr double edge_block_px = 16;  // a wall, but not both walls of a line
 
 /// Integral of the residuals' autocorrelation along rows and columns, samples, up to where it ends.
-double correlation_length(const BlurLevel& level, const Correlation& correlation, const Eigen::VectorXd& residual) {
+double correlation_length(const BlurLevel& level, const Correlation& correlation,
+                          const Eigen::VectorXd& residual) {
   std::map<std::pair<int, int>, double> at;
   int columns = 0, rows = 0;
   for (std::size_t k = 0; k < correlation.size(); ++k) {
@@ -54,7 +55,7 @@ double correlation_length(const BlurLevel& level, const Correlation& correlation
 struct Blocks {
   std::vector<std::size_t> of_sample;
   std::size_t count = 0;
-  int side = 1;   // samples
+  int side = 1;  // samples
 };
 
 Blocks blocks_of(const BlurLevel& level, const Correlation& correlation, int wanted_side) {
@@ -65,31 +66,34 @@ Blocks blocks_of(const BlurLevel& level, const Correlation& correlation, int wan
   std::map<std::pair<int, int>, std::size_t> numbers;
   for (const std::size_t i : correlation.overlap()) {
     const auto& s = level.samples[i];
-    const std::pair<int, int> block{s.column / level.stride / blocks.side, s.row / level.stride / blocks.side};
+    const std::pair<int, int> block{s.column / level.stride / blocks.side,
+                                    s.row / level.stride / blocks.side};
     blocks.of_sample.push_back(numbers.try_emplace(block, numbers.size()).first->second);
   }
   blocks.count = numbers.size();
   return blocks;
 }
 
-int side_for(double length) {
-  return static_cast<int>(std::ceil(2 + 6 * length));
-}
+int side_for(double length) { return static_cast<int>(std::ceil(2 + 6 * length)); }
 
 Blocks blocks_for(const BlurLevel& level, const Correlation& correlation, double length) {
   return blocks_of(level, correlation, side_for(length));
 }
 
-/// Variance of a sum of parts whose blocks are independent, with what the `spent` numbers took of it.
+/// Variance of a sum of parts whose blocks are independent, with what the `spent` numbers took of
+/// it.
 Eigen::MatrixXd variance_of(const Blocks& blocks, const Eigen::MatrixXd& parts, double spent) {
-  Eigen::MatrixXd sums = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(blocks.count), parts.cols());
+  Eigen::MatrixXd sums =
+      Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(blocks.count), parts.cols());
   for (Eigen::Index k = 0; k < parts.rows(); ++k)
-    sums.row(static_cast<Eigen::Index>(blocks.of_sample[static_cast<std::size_t>(k)])) += parts.row(k);
+    sums.row(static_cast<Eigen::Index>(blocks.of_sample[static_cast<std::size_t>(k)])) +=
+        parts.row(k);
   const auto count = static_cast<double>(blocks.count);
   return sums.transpose() * sums * (count / std::max(1.0, count - spent));
 }
 
-double score_error(const Blocks& blocks, const Correlation& correlation, const Eigen::VectorXd& residual, double r) {
+double score_error(const Blocks& blocks, const Correlation& correlation,
+                   const Eigen::VectorXd& residual, double r) {
   if (!(r > 0)) return 1;
   Eigen::MatrixXd parts(residual.size(), 1);
   for (Eigen::Index k = 0; k < residual.size(); ++k) {
@@ -106,10 +110,12 @@ void fill(Uncertainty& u, const Matrix6& h, const Matrix6& pull_variance, const 
   for (Eigen::Index i = 0; i < 3; ++i)
     for (Eigen::Index j = 0; j < 3; ++j)
       for (Eigen::Index axis = 0; axis < 2; ++axis)
-        metric(2 * i + axis, 2 * j + axis) += moments[static_cast<std::size_t>(i)][static_cast<std::size_t>(j)];
+        metric(2 * i + axis, 2 * j + axis) +=
+            moments[static_cast<std::size_t>(i)][static_cast<std::size_t>(j)];
   const Matrix6 to_motion = metric.llt().matrixL().transpose();
   const Matrix6 from_motion = to_motion.inverse();
-  const Eigen::SelfAdjointEigenSolver<Matrix6> eigen(Matrix6(from_motion.transpose() * h * from_motion));
+  const Eigen::SelfAdjointEigenSolver<Matrix6> eigen(
+      Matrix6(from_motion.transpose() * h * from_motion));
   const Matrix6 axes = from_motion * eigen.eigenvectors();
   const Matrix6 pull = axes.transpose() * pull_variance * axes;
   const Vector6 stiffness = eigen.eigenvalues();
@@ -119,7 +125,9 @@ void fill(Uncertainty& u, const Matrix6& h, const Matrix6& pull_variance, const 
   for (Eigen::Index i = 0; i < 6; ++i)
     for (Eigen::Index j = 0; j < 6; ++j) {
       const bool held = stiffness[i] > floor && stiffness[j] > floor;
-      cov(i, j) = held ? pull(i, j) / (stiffness[i] * stiffness[j]) : i == j ? unknown_px * unknown_px : 0;
+      cov(i, j) = held     ? pull(i, j) / (stiffness[i] * stiffness[j])
+                  : i == j ? unknown_px * unknown_px
+                           : 0;
     }
   const Eigen::SelfAdjointEigenSolver<Matrix6> spread(cov);
   u.loosest_px = std::min(unknown_px, std::sqrt(std::max(0.0, spread.eigenvalues()[5])));
@@ -129,11 +137,12 @@ void fill(Uncertainty& u, const Matrix6& h, const Matrix6& pull_variance, const 
       u.loosest[static_cast<std::size_t>(k)][static_cast<std::size_t>(i)] = axes(i, k);
   const Matrix6 of_corners = axes * cov * axes.transpose();
   for (Eigen::Index i = 0; i < 6; ++i)
-    for (Eigen::Index j = 0; j < 6; ++j) u.covariance[static_cast<std::size_t>(6 * i + j)] = of_corners(i, j);
+    for (Eigen::Index j = 0; j < 6; ++j)
+      u.covariance[static_cast<std::size_t>(6 * i + j)] = of_corners(i, j);
 }
 
-/// Variance of the sum of pulls: each block's as if the map had been found without it, or blocks that hold
-/// it alone, the few ends of lines, would seem to agree with themselves.
+/// Variance of the sum of pulls: each block's as if the map had been found without it, or blocks
+/// that hold it alone, the few ends of lines, would seem to agree with themselves.
 Matrix6 jackknifed(const Blocks& blocks, const Columns& jacobian, const Eigen::VectorXd& residual) {
   std::vector<Vector6> pulls(blocks.count, Vector6::Zero());
   std::vector<Matrix6> parts(blocks.count, Matrix6::Zero());
@@ -155,8 +164,8 @@ Matrix6 jackknifed(const Blocks& blocks, const Columns& jacobian, const Eigen::V
   return variance;
 }
 
-/// Slopes of the AFM's image over its norm and times the correlation, so that a motion of the place changes
-/// the residual by minus them: the Jacobian's columns of three corners that move together.
+/// Slopes of the AFM's image over its norm and times the correlation, so that a motion of the place
+/// changes the residual by minus them: the Jacobian's columns of three corners that move together.
 Eigen::Matrix<double, Eigen::Dynamic, 2> along_axes(const Columns& jacobian) {
   Eigen::Matrix<double, Eigen::Dynamic, 2> g(jacobian.rows(), 2);
   g.col(0) = jacobian.col(0) + jacobian.col(2) + jacobian.col(4);
@@ -164,13 +173,15 @@ Eigen::Matrix<double, Eigen::Dynamic, 2> along_axes(const Columns& jacobian) {
   return g;
 }
 
-/// Variance of the sum of pulls where each block is displaced as a whole, on its own, by `slip_px` along each axis.
+/// Variance of the sum of pulls where each block is displaced as a whole, on its own, by `slip_px`
+/// along each axis.
 Matrix6 displaced(const Blocks& blocks, const Columns& jacobian, double slip_px) {
   using Couple = Eigen::Matrix<double, 6, 2>;
   const Eigen::Matrix<double, Eigen::Dynamic, 2> g = along_axes(jacobian);
   std::vector<Couple> couples(blocks.count, Couple::Zero());
   for (Eigen::Index k = 0; k < jacobian.rows(); ++k)
-    couples[blocks.of_sample[static_cast<std::size_t>(k)]].noalias() += jacobian.row(k).transpose() * g.row(k);
+    couples[blocks.of_sample[static_cast<std::size_t>(k)]].noalias() +=
+        jacobian.row(k).transpose() * g.row(k);
   Matrix6 variance = Matrix6::Zero();
   for (const Couple& c : couples) variance += c * c.transpose();
   return slip_px * slip_px * variance;
@@ -195,7 +206,8 @@ double score_error(const BlurLevel& level, const Corners& corners) {
   Eigen::VectorXd residual(static_cast<Eigen::Index>(correlation.size()));
   if (residual.size() == 0) return 1;
   const double r = correlation.evaluate(corners.data(), residual.data(), nullptr);
-  const Blocks blocks = blocks_for(level, correlation, correlation_length(level, correlation, residual));
+  const Blocks blocks =
+      blocks_for(level, correlation, correlation_length(level, correlation, residual));
   return score_error(blocks, correlation, residual, r);
 }
 
@@ -206,7 +218,8 @@ EdgeSlip edge_slip(const BlurLevel& level, const Corners& corners) {
   Eigen::VectorXd residual(n);
   Columns jacobian(n, 6);
   correlation.evaluate(corners.data(), residual.data(), jacobian.data());
-  const Blocks blocks = blocks_of(level, correlation, std::max(1, static_cast<int>(edge_block_px / level.stride)));
+  const Blocks blocks =
+      blocks_of(level, correlation, std::max(1, static_cast<int>(edge_block_px / level.stride)));
   const Eigen::Matrix<double, Eigen::Dynamic, 2> g = along_axes(jacobian);
   std::vector<Eigen::Vector2d> pulls(blocks.count, Eigen::Vector2d::Zero());
   std::vector<Eigen::Matrix2d> stiffness(blocks.count, Eigen::Matrix2d::Zero());
@@ -216,7 +229,8 @@ EdgeSlip edge_slip(const BlurLevel& level, const Corners& corners) {
     stiffness[b].noalias() += g.row(k).transpose() * g.row(k);
   }
   double pulled = 0, stiff = 0;
-  for (std::size_t b = 0; b < blocks.count; ++b) pulled += pulls[b].squaredNorm(), stiff += stiffness[b].squaredNorm();
+  for (std::size_t b = 0; b < blocks.count; ++b)
+    pulled += pulls[b].squaredNorm(), stiff += stiffness[b].squaredNorm();
   EdgeSlip slip;
   if (stiff > 0) slip.px = std::sqrt(pulled / stiff);
   slip.reach_px = side_for(correlation_length(level, correlation, residual)) * level.stride;
@@ -229,9 +243,11 @@ Uncertainty uncertainty_of(const BlurLevel& level, const Corners& corners, const
   const auto n = static_cast<Eigen::Index>(correlation.size());
   Eigen::VectorXd residual(n);
   Columns jacobian(n, 6);
-  const double r = n > 0 ? correlation.evaluate(corners.data(), residual.data(), jacobian.data()) : 0;
+  const double r =
+      n > 0 ? correlation.evaluate(corners.data(), residual.data(), jacobian.data()) : 0;
   const int own_side = n > 0 ? side_for(correlation_length(level, correlation, residual)) : 1;
-  const Blocks blocks = blocks_of(level, correlation, std::max(own_side, slip.reach_px / level.stride));
+  const Blocks blocks =
+      blocks_of(level, correlation, std::max(own_side, slip.reach_px / level.stride));
   Matrix6 h = Matrix6::Zero();
   if (n > 0) h = Eigen::Map<const Matrix6>(slopes_at(correlation, corners).second.data());
   const Moments moments = moments_of(level, correlation.overlap());
@@ -244,15 +260,19 @@ Uncertainty uncertainty_of(const BlurLevel& level, const Corners& corners, const
   return u;
 }
 
-Uncertainty uncertainty_from(const std::array<double, 36>& information, const BlurLevel& level, const Corners& corners) {
+Uncertainty uncertainty_from(const std::array<double, 36>& information, const BlurLevel& level,
+                             const Corners& corners) {
   Uncertainty u;
   const Matrix6 h = Eigen::Map<const Matrix6>(information.data());
   fill(u, h, h, moments_of(level, overlap_of(level, corners)));
   return u;
 }
 
-std::array<double, 36> affine_covariance(const CornerFrame& frame, const std::array<double, 36>& corners) {
-  const auto numbers = [](const Affine& m) { return std::array<double, 6>{m.xx, m.xy, m.x0, m.yx, m.yy, m.y0}; };
+std::array<double, 36> affine_covariance(const CornerFrame& frame,
+                                         const std::array<double, 36>& corners) {
+  const auto numbers = [](const Affine& m) {
+    return std::array<double, 6>{m.xx, m.xy, m.x0, m.yx, m.yy, m.y0};
+  };
   const std::array<double, 6> at_zero = numbers(frame.affine(Corners{}));
   Matrix6 by_corner;
   for (std::size_t p = 0; p < 6; ++p) {
@@ -260,11 +280,13 @@ std::array<double, 36> affine_covariance(const CornerFrame& frame, const std::ar
     one[p] = 1;
     const std::array<double, 6> at_one = numbers(frame.affine(one));
     for (std::size_t i = 0; i < 6; ++i)
-      by_corner(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(p)) = at_one[i] - at_zero[i];
+      by_corner(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(p)) =
+          at_one[i] - at_zero[i];
   }
   const Eigen::Map<const Eigen::Matrix<double, 6, 6, Eigen::RowMajor>> from(corners.data());
   std::array<double, 36> result{};
-  Eigen::Map<Eigen::Matrix<double, 6, 6, Eigen::RowMajor>>(result.data()) = by_corner * from * by_corner.transpose();
+  Eigen::Map<Eigen::Matrix<double, 6, 6, Eigen::RowMajor>>(result.data()) =
+      by_corner * from * by_corner.transpose();
   return result;
 }
 

@@ -26,8 +26,8 @@ std::vector<FacetScale> fine_scales(const FilterBankParameters& parameters) {
 }  // namespace
 
 template <class T>
-BankEngine<T>::BankEngine(const FilterBankParameters& parameters, double pitch_x_nm, double pitch_y_nm,
-                          const ModelOptions& options)
+BankEngine<T>::BankEngine(const FilterBankParameters& parameters, double pitch_x_nm,
+                          double pitch_y_nm, const ModelOptions& options)
     : parameters_(parameters), options_(options), pitch_x_nm_(pitch_x_nm), pitch_y_nm_(pitch_y_nm),
       pass_(fine_scales(parameters), pitch_x_nm, pitch_y_nm) {
   options_.threads = resolve_threads(options.threads);
@@ -43,14 +43,16 @@ BankEngine<T>::BankEngine(const FilterBankParameters& parameters, double pitch_x
 
 template <class T>
 facet::CoarseFits<T> BankEngine<T>::coarse_fits(const Grid<double>& z_nm) const {
-  facet::CoarseFits<T> coarse(parameters_.multi_resolution ? parameters_.scales : std::vector<FacetScale>(),
-                              pitch_x_nm_, pitch_y_nm_);
+  facet::CoarseFits<T> coarse(
+      parameters_.multi_resolution ? parameters_.scales : std::vector<FacetScale>(), pitch_x_nm_,
+      pitch_y_nm_);
   coarse.load(z_nm, options_.edge, options_.threads, {{}, options_.watch.cancel});
   return coarse;
 }
 
 template <class T>
-const T* BankEngine<T>::fit(int scale, const facet::CoarseFits<T>& coarse, const Block& block, Scratch& s) const {
+const T* BankEngine<T>::fit(int scale, const facet::CoarseFits<T>& coarse, const Block& block,
+                            Scratch& s) const {
   if (fine_of_[scale] >= 0) return pass_.fit(fine_of_[scale], s.fine);
   s.coarse.resize(static_cast<std::size_t>(block.rows) * facet::coefficients * pass_.columns());
   coarse.at(scale, block, pass_.columns(), s.between, s.coarse.data());
@@ -58,7 +60,8 @@ const T* BankEngine<T>::fit(int scale, const facet::CoarseFits<T>& coarse, const
 }
 
 template <class T>
-facet::Floors<T> BankEngine<T>::floors(int scale, const facet::CoarseFits<T>& coarse, const Scratch& s) const {
+facet::Floors<T> BankEngine<T>::floors(int scale, const facet::CoarseFits<T>& coarse,
+                                       const Scratch& s) const {
   return fine_of_[scale] >= 0 ? pass_.floors(fine_of_[scale], s.fine) : coarse.floors(scale);
 }
 
@@ -71,7 +74,8 @@ ModelImages BankEngine<T>::blank(const Grid<double>& z_nm, bool with_offset) con
 }
 
 template <class T>
-void BankEngine<T>::add(const Block& block, const AlignedVector<T>& sum, double unit, ModelImages& images) const {
+void BankEngine<T>::add(const Block& block, const AlignedVector<T>& sum, double unit,
+                        ModelImages& images) const {
   const T* from = sum.data();
   for (Grid<double>& image : images)
     for (int y = 0; y < block.rows; ++y, from += pass_.columns())
@@ -89,15 +93,19 @@ ModelImages BankEngine<T>::predict(const Grid<double>& z_nm) const {
     AlignedVector<T> sum;
   };
   std::vector<Worker> workers(options_.threads);
-  parallel_for(blocks.size(), options_.threads, [&](std::size_t i, int w) {
-    const Block& block = blocks[i];
-    auto& [scratch, sum] = workers[w];
-    sum.assign(static_cast<std::size_t>(channels) * block.rows * pass_.columns(), T(0));
-    pass_.load(z_nm, options_.edge, block, scratch.fine);
-    for (int s = 0; s < scales(); ++s)
-      pass_.loops().combine(fit(s, coarse, block, scratch), block.rows, weights_[s].data(), channels, sum.data());
-    add(block, sum, 1, images);
-  }, options_.watch);
+  parallel_for(
+      blocks.size(), options_.threads,
+      [&](std::size_t i, int w) {
+        const Block& block = blocks[i];
+        auto& [scratch, sum] = workers[w];
+        sum.assign(static_cast<std::size_t>(channels) * block.rows * pass_.columns(), T(0));
+        pass_.load(z_nm, options_.edge, block, scratch.fine);
+        for (int s = 0; s < scales(); ++s)
+          pass_.loops().combine(fit(s, coarse, block, scratch), block.rows, weights_[s].data(),
+                                channels, sum.data());
+        add(block, sum, 1, images);
+      },
+      options_.watch);
   return images;
 }
 
@@ -124,17 +132,21 @@ Grid<double> BankEngine<T>::gradient(const Grid<double>& z_nm, const ModelImages
   const auto pull_back = [&](int w, int scale, const Block& column, T* out) {
     for (std::size_t i = column.x / columns; i < blocks.size(); i += strips) {
       Scratch& scratch = workers[w];
-      if (fine_of_[scale] >= 0) pass_.load(z_nm, options_.edge, blocks[i], scratch.fine, fine_of_[scale]);
+      if (fine_of_[scale] >= 0)
+        pass_.load(z_nm, options_.edge, blocks[i], scratch.fine, fine_of_[scale]);
       const T* const k = fit(scale, coarse, blocks[i], scratch);
-      pass_.loops().pull_back(k, blocks[i].rows, floors(scale, coarse, scratch), weights_[scale].data(),
-                              channels, block_weights[i].data(),
-                              out + static_cast<std::ptrdiff_t>(blocks[i].y) * facet::coefficients * columns);
+      pass_.loops().pull_back(
+          k, blocks[i].rows, floors(scale, coarse, scratch), weights_[scale].data(), channels,
+          block_weights[i].data(),
+          out + static_cast<std::ptrdiff_t>(blocks[i].y) * facet::coefficients * columns);
     }
   };
   pass_.transpose(
       options_.edge, options_.threads,
-      [&](int w, int fine, const Block& column, T* out) { pull_back(w, scale_of_[fine], column, out); }, unit,
-      gradient);
+      [&](int w, int fine, const Block& column, T* out) {
+        pull_back(w, scale_of_[fine], column, out);
+      },
+      unit, gradient);
   coarse.transpose(pull_back, columns, options_.edge, options_.threads, unit, gradient);
   return gradient;
 }
@@ -162,8 +174,8 @@ ModelImages BankEngine<T>::change(const Grid<double>& z_nm, const Grid<double>& 
     pass_.load(direction, options_.edge, block, along.fine);
     for (int s = 0; s < scales(); ++s) {
       const T* const k = fit(s, coarse, block, at);
-      pass_.loops().push_forward(k, fit(s, coarse_direction, block, along), block.rows, floors(s, coarse, at),
-                                 weights_[s].data(), channels, sum.data());
+      pass_.loops().push_forward(k, fit(s, coarse_direction, block, along), block.rows,
+                                 floors(s, coarse, at), weights_[s].data(), channels, sum.data());
     }
     add(block, sum, unit, images);
   });

@@ -25,10 +25,9 @@ class BankEngine {
     return pass_.blocks(z_nm.width(), z_nm.height());
   }
 
-  /// Told, from several threads, of all invariants at block i: for every scale its slope, largest and
-  /// smallest principal curvature, row by row and `columns` each.
-  using Sink =
-      std::function<void(std::size_t i, const facet::Block& block, int columns,
+  /// Told, from several threads, of all invariants at block i: for every scale its slope, largest
+  /// and smallest principal curvature, row by row and `columns` each.
+  using Sink = std::function<void(std::size_t i, const facet::Block& block, int columns,
                                   const std::vector<AlignedVector<T>>& scales)>;
   void invariants(const Grid<double>& z_nm, const Sink& sink) const;
 
@@ -39,19 +38,22 @@ class BankEngine {
     AlignedVector<T> coarse, between;
   };
   facet::CoarseFits<T> coarse_fits(const Grid<double>& z_nm) const;
-  const T* fit(int scale, const facet::CoarseFits<T>& coarse, const facet::Block& block, Scratch& scratch) const;
-  facet::Floors<T> floors(int scale, const facet::CoarseFits<T>& coarse, const Scratch& scratch) const;
+  const T* fit(int scale, const facet::CoarseFits<T>& coarse, const facet::Block& block,
+               Scratch& scratch) const;
+  facet::Floors<T> floors(int scale, const facet::CoarseFits<T>& coarse,
+                          const Scratch& scratch) const;
   int scales() const { return static_cast<int>(fine_of_.size()); }
   ModelImages blank(const Grid<double>& z_nm, bool with_offset) const;
-  void add(const facet::Block& block, const AlignedVector<T>& sum, double unit, ModelImages& images) const;
+  void add(const facet::Block& block, const AlignedVector<T>& sum, double unit,
+           ModelImages& images) const;
 
   const FilterBankParameters& parameters_;
   ModelOptions options_;
   double pitch_x_nm_, pitch_y_nm_;
-  std::vector<int> fine_of_;       ///< [scale]: its index in pass_, or -1 where heights are subsampled
-  std::vector<int> scale_of_;      ///< back
+  std::vector<int> fine_of_;   ///< [scale]: its index in pass_, or -1 where heights are subsampled
+  std::vector<int> scale_of_;  ///< back
   facet::FacetPass<T> pass_;
-  std::vector<std::vector<facet::Weights<T>>> weights_;   ///< [scale][channel]
+  std::vector<std::vector<facet::Weights<T>>> weights_;  ///< [scale][channel]
 };
 
 extern template class BankEngine<float>;
@@ -61,7 +63,8 @@ extern template class BankEngine<double>;
 template <class Work>
 auto run_bank(const FilterBankParameters& parameters, double pitch_x_nm, double pitch_y_nm,
               const ModelOptions& options, const Work& work) {
-  if (options.double_precision) return work(BankEngine<double>(parameters, pitch_x_nm, pitch_y_nm, options));
+  if (options.double_precision)
+    return work(BankEngine<double>(parameters, pitch_x_nm, pitch_y_nm, options));
   return work(BankEngine<float>(parameters, pitch_x_nm, pitch_y_nm, options));
 }
 

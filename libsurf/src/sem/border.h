@@ -5,8 +5,8 @@
 
 namespace surf {
 
-/// The sample that stands for sample `i` of a line of `count` (at least 2), as `edge` says. Reflections
-/// and periods are repeated as often as it takes.
+/// The sample that stands for sample `i` of a line of `count` (at least 2), as `edge` says.
+/// Reflections and periods are repeated as often as it takes.
 inline int border_sample(int i, int count, Edge edge) {
   if (i >= 0 && i < count) return i;
   if (edge == Edge::flat) return i < 0 ? 0 : count - 1;

@@ -27,15 +27,17 @@ std::vector<int> neighbours(int count) {
 }
 
 /// Every other sample, smoothed, less a level. Sample i of a line is from[i + 1].
-Grid<double> halve(const Grid<double>& z, const std::vector<int>& from_x, const std::vector<int>& from_y,
-                   double level) {
-  Grid<double> out(static_cast<int>(from_x.size() - 1) / 2, static_cast<int>(from_y.size() - 1) / 2);
+Grid<double> halve(const Grid<double>& z, const std::vector<int>& from_x,
+                   const std::vector<int>& from_y, double level) {
+  Grid<double> out(static_cast<int>(from_x.size() - 1) / 2,
+                   static_cast<int>(from_y.size() - 1) / 2);
   std::vector<double> line(z.width());
   for (int y = 0; y < out.height(); ++y) {
     const double *const a = &z(0, from_y[2 * y]), *const b = &z(0, from_y[2 * y + 1]),
                         *const c = &z(0, from_y[2 * y + 2]);
     for (int x = 0; x < z.width(); ++x)
-      line[x] = smooth[0] * (a[x] - level) + smooth[1] * (b[x] - level) + smooth[2] * (c[x] - level);
+      line[x] =
+          smooth[0] * (a[x] - level) + smooth[1] * (b[x] - level) + smooth[2] * (c[x] - level);
     for (int x = 0; x < out.width(); ++x)
       out(x, y) = smooth[0] * line[from_x[2 * x]] + smooth[1] * line[from_x[2 * x + 1]] +
                   smooth[2] * line[from_x[2 * x + 2]];
@@ -44,8 +46,8 @@ Grid<double> halve(const Grid<double>& z, const std::vector<int>& from_x, const 
 }
 
 /// The transpose: adds to z.
-void halve_transposed(const Grid<double>& out, const std::vector<int>& from_x, const std::vector<int>& from_y,
-                      Grid<double>& z) {
+void halve_transposed(const Grid<double>& out, const std::vector<int>& from_x,
+                      const std::vector<int>& from_y, Grid<double>& z) {
   std::vector<double> line(z.width());
   for (int y = 0; y < out.height(); ++y) {
     std::fill(line.begin(), line.end(), 0.0);
@@ -67,7 +69,8 @@ int halvings(const FacetScale& scale) {
 }
 
 template <class T>
-CoarseFits<T>::CoarseFits(const std::vector<FacetScale>& scales, double pitch_x_nm, double pitch_y_nm) {
+CoarseFits<T>::CoarseFits(const std::vector<FacetScale>& scales, double pitch_x_nm,
+                          double pitch_y_nm) {
   for (const FacetScale& scale : scales) {
     Fit& fit = fits_.emplace_back();
     fit.level = halvings(scale);
@@ -77,7 +80,8 @@ CoarseFits<T>::CoarseFits(const std::vector<FacetScale>& scales, double pitch_x_
     fit.radius = coarse.size / 2;
     fit.pass.emplace_back(std::vector{coarse}, pitch_x_nm * step, pitch_y_nm * step);
     levels_ = std::max(levels_, fit.level);
-    margin_ = std::max(margin_, (coarse.size / 2 + 3) * step);   // the fit, smoothing and interpolation
+    margin_ =
+        std::max(margin_, (coarse.size / 2 + 3) * step);  // the fit, smoothing and interpolation
   }
   const int whole = 1 << levels_;
   margin_ = (margin_ + whole - 1) / whole * whole;
@@ -86,7 +90,8 @@ CoarseFits<T>::CoarseFits(const std::vector<FacetScale>& scales, double pitch_x_
 template <class T>
 std::vector<int> CoarseFits<T>::continued(int count, Edge edge) const {
   std::vector<int> from;
-  for (int i = -margin_ - 1; i <= count + margin_; ++i) from.push_back(border_sample(i, count, edge));
+  for (int i = -margin_ - 1; i <= count + margin_; ++i)
+    from.push_back(border_sample(i, count, edge));
   return from;
 }
 
@@ -102,7 +107,8 @@ void CoarseFits<T>::load(const Grid<double>& z_nm, Edge edge, int threads, const
   if (levels_ == 0) return;
   threads = resolve_threads(threads);
   // Relative to a height: smoothing would round what is constant.
-  Grid<double> z = halve(z_nm, continued(z_nm.width(), edge), continued(z_nm.height(), edge), z_nm(0, 0));
+  Grid<double> z =
+      halve(z_nm, continued(z_nm.width(), edge), continued(z_nm.height(), edge), z_nm(0, 0));
   for (int level = 1; level <= levels_; ++level) {
     if (level > 1) z = halve(z, neighbours(z.width()), neighbours(z.height()), 0);
     for (Fit& fit : fits_)
@@ -111,28 +117,32 @@ void CoarseFits<T>::load(const Grid<double>& z_nm, Edge edge, int threads, const
 }
 
 template <class T>
-void CoarseFits<T>::fit_level(const Grid<double>& z, int width, int height, int threads, const Watch& watch,
-                              Fit& fit) const {
+void CoarseFits<T>::fit_level(const Grid<double>& z, int width, int height, int threads,
+                              const Watch& watch, Fit& fit) const {
   const Range x = range(fit, width), y = range(fit, height);
   Grid<double> part(x.count, y.count);
-  for (int row = 0; row < y.count; ++row) std::copy_n(&z(x.first, y.first + row), x.count, &part(0, row));
+  for (int row = 0; row < y.count; ++row)
+    std::copy_n(&z(x.first, y.first + row), x.count, &part(0, row));
   const FacetPass<T>& pass = fit.pass[0];
   fit.width = x.count;
   fit.planes.resize(coefficients * part.size());
   const std::vector<Block> blocks = pass.blocks(x.count, y.count);
   std::vector<typename FacetPass<T>::Scratch> workers(threads);
   std::vector<Floors<T>> floors(blocks.size());
-  parallel_for(blocks.size(), threads, [&](std::size_t i, int w) {
-    const Block& block = blocks[i];
-    pass.load(part, Edge::flat, block, workers[w]);
-    const T* k = pass.fit(0, workers[w]);
-    floors[i] = pass.floors(0, workers[w]);
-    for (int row = block.y; row < block.y + block.rows; ++row)
-      for (int c = 0; c < coefficients; ++c, k += pass.columns())
-        std::copy_n(
-            k, block.width,
-            fit.planes.data() + (static_cast<std::size_t>(row) * coefficients + c) * x.count + block.x);
-  }, watch);
+  parallel_for(
+      blocks.size(), threads,
+      [&](std::size_t i, int w) {
+        const Block& block = blocks[i];
+        pass.load(part, Edge::flat, block, workers[w]);
+        const T* k = pass.fit(0, workers[w]);
+        floors[i] = pass.floors(0, workers[w]);
+        for (int row = block.y; row < block.y + block.rows; ++row)
+          for (int c = 0; c < coefficients; ++c, k += pass.columns())
+            std::copy_n(k, block.width,
+                        fit.planes.data() +
+                            (static_cast<std::size_t>(row) * coefficients + c) * x.count + block.x);
+      },
+      watch);
   fit.floors = {};
   for (const Floors<T>& f : floors)
     fit.floors = {std::max(fit.floors.slope, f.slope), std::max(fit.floors.curvature, f.curvature)};
@@ -140,7 +150,8 @@ void CoarseFits<T>::fit_level(const Grid<double>& z, int width, int height, int 
 
 /// What coarse samples are worth to the pixels of a block.
 template <class T>
-typename CoarseFits<T>::Worth CoarseFits<T>::worth(const Fit& fit, const Block& block, int columns) const {
+typename CoarseFits<T>::Worth CoarseFits<T>::worth(const Fit& fit, const Block& block,
+                                                   int columns) const {
   const int step = 1 << fit.level, first = (block.x + margin_) / step;
   Worth worth;
   worth.first = first - range(fit, 1).first;
@@ -162,28 +173,31 @@ typename CoarseFits<T>::Range CoarseFits<T>::rows_of(const Fit& fit, const Block
 }
 
 template <class T>
-void CoarseFits<T>::at(int scale, const Block& block, int columns, AlignedVector<T>& memory, T* out) const {
+void CoarseFits<T>::at(int scale, const Block& block, int columns, AlignedVector<T>& memory,
+                       T* out) const {
   const Fit& fit = fits_[scale];
   const Operations<T>& loops = fit.pass[0].loops();
   const Worth of = worth(fit, block, columns);
   const Range rows = rows_of(fit, block);
   memory.resize(static_cast<std::size_t>(rows.count) * coefficients * columns);
-  const T* from =
-      fit.planes.data() + static_cast<std::size_t>(rows.first) * coefficients * fit.width + of.first;
+  const T* from = fit.planes.data() +
+                  static_cast<std::size_t>(rows.first) * coefficients * fit.width + of.first;
   for (int i = 0; i < rows.count * coefficients; ++i, from += fit.width)
-    loops.spread(from, of.count, of.of.data(), memory.data() + static_cast<std::ptrdiff_t>(i) * columns);
+    loops.spread(from, of.count, of.of.data(),
+                 memory.data() + static_cast<std::ptrdiff_t>(i) * columns);
   const int step = 1 << fit.level;
   loops.between_rows(memory.data(), (block.y + margin_) % step, step, block.rows, out);
 }
 
 template <class T>
-void CoarseFits<T>::transpose(const Source& source, int columns, Edge edge, int threads, double unit,
-                              Grid<double>& gradient) const {
+void CoarseFits<T>::transpose(const Source& source, int columns, Edge edge, int threads,
+                              double unit, Grid<double>& gradient) const {
   if (levels_ == 0) return;
   const int width = gradient.width(), height = gradient.height();
   const std::vector<int> from_x = continued(width, edge), from_y = continued(height, edge);
   std::vector<Grid<double>> levels{{}};
-  for (int w = width + 2 * margin_, h = height + 2 * margin_; static_cast<int>(levels.size()) <= levels_;) {
+  for (int w = width + 2 * margin_, h = height + 2 * margin_;
+       static_cast<int>(levels.size()) <= levels_;) {
     w = (w + 1) / 2;
     h = (h + 1) / 2;
     levels.emplace_back(w, h);
@@ -200,8 +214,8 @@ void CoarseFits<T>::transpose(const Source& source, int columns, Edge edge, int 
 }
 
 template <class T>
-void CoarseFits<T>::transpose_fit(int scale, const Source& source, int columns, int threads, double unit,
-                                  int width, int height, Grid<double>& level) const {
+void CoarseFits<T>::transpose_fit(int scale, const Source& source, int columns, int threads,
+                                  double unit, int width, int height, Grid<double>& level) const {
   const Fit& fit = fits_[scale];
   const FacetPass<T>& pass = fit.pass[0];
   const Operations<T>& loops = pass.loops();
@@ -219,29 +233,35 @@ void CoarseFits<T>::transpose_fit(int scale, const Source& source, int columns, 
     weights[w].resize(static_cast<std::size_t>(height) * coefficients * columns);
     source(w, scale, column, weights[w].data());
     samples[w].assign(static_cast<std::size_t>(rows.count) * coefficients * columns, T(0));
-    loops.between_rows_transposed(weights[w].data(), margin_ % step, step, height, samples[w].data());
+    loops.between_rows_transposed(weights[w].data(), margin_ % step, step, height,
+                                  samples[w].data());
     const Worth& of = worths[strip] = worth(fit, column, columns);
     found[strip].assign(static_cast<std::size_t>(rows.count) * coefficients * of.count, T(0));
     for (int i = 0; i < rows.count * coefficients; ++i)
-      loops.spread_transposed(samples[w].data() + static_cast<std::ptrdiff_t>(i) * columns, of.count,
-                              of.of.data(), found[strip].data() + static_cast<std::ptrdiff_t>(i) * of.count);
+      loops.spread_transposed(samples[w].data() + static_cast<std::ptrdiff_t>(i) * columns,
+                              of.count, of.of.data(),
+                              found[strip].data() + static_cast<std::ptrdiff_t>(i) * of.count);
   });
   Planes coarse(static_cast<std::size_t>(y.count) * coefficients * x.count, T(0));
   for (int strip = 0; strip < strips; ++strip) {
     const T* from = found[strip].data();
-    T* to =
-        coarse.data() + static_cast<std::size_t>(rows.first) * coefficients * x.count + worths[strip].first;
+    T* to = coarse.data() + static_cast<std::size_t>(rows.first) * coefficients * x.count +
+            worths[strip].first;
     for (int i = 0; i < rows.count * coefficients; ++i, to += x.count)
       for (int j = 0; j < worths[strip].count; ++j) to[j] += *from++;
   }
   Grid<double> part(x.count, y.count);
-  pass.transpose(Edge::flat, threads, [&](int, int, const Block& column, T* out) {
-    const T* from = coarse.data() + column.x;
-    for (int i = 0; i < column.rows * coefficients; ++i, out += pass.columns(), from += x.count) {
-      std::fill_n(out, pass.columns(), T(0));
-      std::copy_n(from, column.width, out);
-    }
-  }, unit, part);
+  pass.transpose(
+      Edge::flat, threads,
+      [&](int, int, const Block& column, T* out) {
+        const T* from = coarse.data() + column.x;
+        for (int i = 0; i < column.rows * coefficients;
+             ++i, out += pass.columns(), from += x.count) {
+          std::fill_n(out, pass.columns(), T(0));
+          std::copy_n(from, column.width, out);
+        }
+      },
+      unit, part);
   for (int row = 0; row < y.count; ++row)
     for (int i = 0; i < x.count; ++i) level(x.first + i, y.first + row) += part(i, row);
 }

@@ -10,13 +10,15 @@
 
 namespace surf::facet {
 
-/// How often a neighbourhood's heights are halved before its fit (thesis, 6.8.4): as often as leaves its
-/// sigma at 0.84 coarse samples or more, so that the Gaussian is still sampled; never for uniform weights.
+/// How often a neighbourhood's heights are halved before its fit (thesis, 6.8.4): as often as
+/// leaves its sigma at 0.84 coarse samples or more, so that the Gaussian is still sampled; never
+/// for uniform weights.
 int halvings(const FacetScale& scale);
 
-/// Fits of wide neighbourhoods on a pyramid of coarser heights. Each level is the one below, smoothed by
-/// (1, 2, 1) / 4 along both axes, at every other sample; coefficients between its samples are
-/// interpolated linearly. The field is continued as its edge says as far as any of this reaches.
+/// Fits of wide neighbourhoods on a pyramid of coarser heights. Each level is the one below,
+/// smoothed by (1, 2, 1) / 4 along both axes, at every other sample; coefficients between its
+/// samples are interpolated linearly. The field is continued as its edge says as far as any of this
+/// reaches.
 template <class T>
 class CoarseFits {
  public:
@@ -26,12 +28,14 @@ class CoarseFits {
   bool has(int scale) const { return fits_[scale].level > 0; }
   void load(const Grid<double>& z_nm, Edge edge, int threads, const Watch& watch);
 
-  /// A scale's coefficients at a block's pixels, row by row, `columns` (those of FacetPass) apart; 0 beyond
-  /// its width.
-  void at(int scale, const Block& block, int columns, AlignedVector<T>& memory, T* coefficients) const;
+  /// A scale's coefficients at a block's pixels, row by row, `columns` (those of FacetPass) apart;
+  /// 0 beyond its width.
+  void at(int scale, const Block& block, int columns, AlignedVector<T>& memory,
+          T* coefficients) const;
   const Floors<T>& floors(int scale) const { return fits_[scale].floors; }
 
-  /// The transpose of load and `at` for all scales that are halved: adds to `gradient`, times `unit`.
+  /// The transpose of load and `at` for all scales that are halved: adds to `gradient`, times
+  /// `unit`.
   using Source = typename FacetPass<T>::Source;
   void transpose(const Source& source, int columns, Edge edge, int threads, double unit,
                  Grid<double>& gradient) const;
@@ -40,25 +44,26 @@ class CoarseFits {
   using Planes = AlignedVector<T>;
   struct Fit {
     int level = 0, radius = 0;
-    std::vector<FacetPass<T>> pass;   ///< one, of the halved scale
-    int width = 0;                    ///< of its samples
-    Planes planes;                    ///< K2 to K6 row by row
+    std::vector<FacetPass<T>> pass;  ///< one, of the halved scale
+    int width = 0;                   ///< of its samples
+    Planes planes;                   ///< K2 to K6 row by row
     Floors<T> floors;
   };
   struct Range {
     int first, count;
   };
   struct Worth {
-    int first, count;      ///< samples of the fit
-    AlignedVector<T> of;   ///< [sample][column]
+    int first, count;     ///< samples of the fit
+    AlignedVector<T> of;  ///< [sample][column]
   };
   std::vector<int> continued(int count, Edge edge) const;
   Range range(const Fit& fit, int count) const;
   Range rows_of(const Fit& fit, const Block& block) const;
   Worth worth(const Fit& fit, const Block& block, int columns) const;
-  void fit_level(const Grid<double>& z, int width, int height, int threads, const Watch& watch, Fit& fit) const;
-  void transpose_fit(int scale, const Source& source, int columns, int threads, double unit, int width,
-                     int height, Grid<double>& level) const;
+  void fit_level(const Grid<double>& z, int width, int height, int threads, const Watch& watch,
+                 Fit& fit) const;
+  void transpose_fit(int scale, const Source& source, int columns, int threads, double unit,
+                     int width, int height, Grid<double>& level) const;
 
   std::vector<Fit> fits_;
   int levels_ = 0, margin_ = 0;

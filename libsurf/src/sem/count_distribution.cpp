@@ -18,7 +18,9 @@ constexpr double least_expected = 25;
 double below(double z) { return 0.5 * std::erfc(-z / std::sqrt(2.0)); }
 
 /// Probability of (from, to), exact in both tails.
-double between(double from, double to) { return from > 0 ? below(-from) - below(-to) : below(to) - below(from); }
+double between(double from, double to) {
+  return from > 0 ? below(-from) - below(-to) : below(to) - below(from);
+}
 
 /// The standard normal number of x.
 double score(const LogNormalCounts& d, double x) {
@@ -38,12 +40,13 @@ CountFit test(const CountHistogram& counts, const Distribution& distribution, in
   double rest = static_cast<double>(trials);
   for (std::size_t k = 0; k < counts.size(); ++k) {
     if (cells.back().expected >= least_expected && rest >= least_expected) cells.emplace_back();
-    const double expected = static_cast<double>(trials) * distribution.probability(static_cast<std::int64_t>(k));
+    const double expected =
+        static_cast<double>(trials) * distribution.probability(static_cast<std::int64_t>(k));
     cells.back().seen += static_cast<double>(counts[k]);
     cells.back().expected += expected;
     rest -= expected;
   }
-  cells.back().expected += std::max(rest, 0.0);   // counts larger than any seen
+  cells.back().expected += std::max(rest, 0.0);  // counts larger than any seen
   CountFit fit;
   for (const Cell& c : cells)
     fit.chi_squared += (c.seen - c.expected) * (c.seen - c.expected) / std::max(c.expected, 1e-12);
@@ -77,13 +80,15 @@ CountMoments moments(const CountHistogram& counts) {
   CountMoments m;
   double sum = 0;
   for (std::size_t k = 0; k < counts.size(); ++k) {
-    if (counts[k] < 0) throw InvalidInput("counts", "a count was seen less than 0 times", "Give a histogram");
+    if (counts[k] < 0)
+      throw InvalidInput("counts", "a count was seen less than 0 times", "Give a histogram");
     m.trials += counts[k];
     sum += static_cast<double>(k) * static_cast<double>(counts[k]);
   }
   if (m.trials < 100)
-    throw InvalidInput("counts", fmt::format("{} trials are too few to say how counts are distributed", m.trials),
-                       "Make 100 or more");
+    throw InvalidInput(
+        "counts", fmt::format("{} trials are too few to say how counts are distributed", m.trials),
+        "Make 100 or more");
   const double n = static_cast<double>(m.trials);
   m.mean = sum / n;
   double squares = 0, cubes = 0;
@@ -100,7 +105,8 @@ PoissonCounts fit_poisson(const CountHistogram& counts) { return {moments(counts
 
 NormalCounts fit_normal(const CountHistogram& counts) {
   const CountMoments m = moments(counts);
-  if (!(m.variance > 0)) throw InvalidInput("counts", "all trials gave the same count", "Use more primaries in a trial");
+  if (!(m.variance > 0))
+    throw InvalidInput("counts", "all trials gave the same count", "Use more primaries in a trial");
   const double rounding = 1.0 / 12;
   return {m.mean, m.variance > 2 * rounding ? m.variance - rounding : m.variance};
 }
@@ -108,12 +114,20 @@ NormalCounts fit_normal(const CountHistogram& counts) {
 double log_likelihood(const CountHistogram& counts, const LogNormalCounts& distribution) {
   double sum = 0;
   for (std::size_t k = 0; k < counts.size(); ++k)
-    if (counts[k] > 0) sum += static_cast<double>(counts[k]) * std::log(distribution.probability(static_cast<std::int64_t>(k)));
+    if (counts[k] > 0)
+      sum += static_cast<double>(counts[k]) *
+             std::log(distribution.probability(static_cast<std::int64_t>(k)));
   return sum;
 }
 
-CountFit test_fit(const CountHistogram& counts, const PoissonCounts& d) { return test(counts, d, 1); }
-CountFit test_fit(const CountHistogram& counts, const LogNormalCounts& d) { return test(counts, d, 3); }
-CountFit test_fit(const CountHistogram& counts, const NormalCounts& d) { return test(counts, d, 2); }
+CountFit test_fit(const CountHistogram& counts, const PoissonCounts& d) {
+  return test(counts, d, 1);
+}
+CountFit test_fit(const CountHistogram& counts, const LogNormalCounts& d) {
+  return test(counts, d, 3);
+}
+CountFit test_fit(const CountHistogram& counts, const NormalCounts& d) {
+  return test(counts, d, 2);
+}
 
 }  // namespace surf

@@ -12,9 +12,10 @@
 namespace surf {
 
 /// A model whose images and derivatives an engine makes. `Kind` names its `Parameters` and has
-///     static auto run(const Parameters&, double pitch_x_nm, double pitch_y_nm, const ModelOptions&, work)
-/// which gives work(engine), of an engine in the precision that the options ask for. Engines refer to the
-/// parameters and know predict, gradient and change.
+///     static auto run(const Parameters&, double pitch_x_nm, double pitch_y_nm, const
+///     ModelOptions&, work)
+/// which gives work(engine), of an engine in the precision that the options ask for. Engines refer
+/// to the parameters and know predict, gradient and change.
 template <class Kind>
 class EngineLinearization final : public Linearization {
  public:
@@ -22,11 +23,11 @@ class EngineLinearization final : public Linearization {
 
   EngineLinearization(std::shared_ptr<const Parameters> parameters, const HeightField& field,
                       const ModelOptions& options)
-      : parameters_(std::move(parameters)), options_(options), z_nm_(field.z_nm), pitch_x_nm_(field.pitch_x_nm),
-        pitch_y_nm_(field.pitch_y_nm) {
+      : parameters_(std::move(parameters)), options_(options), z_nm_(field.z_nm),
+        pitch_x_nm_(field.pitch_x_nm), pitch_y_nm_(field.pitch_y_nm) {
     images_ = Kind::run(*parameters_, pitch_x_nm_, pitch_y_nm_, options_,
                         [&](const auto& engine) { return engine.predict(z_nm_); });
-    options_.watch = {};   // who watches may be gone when derivatives are asked for
+    options_.watch = {};  // who watches may be gone when derivatives are asked for
   }
 
   const ModelImages& images() const override { return images_; }
@@ -46,7 +47,8 @@ class EngineLinearization final : public Linearization {
  private:
   std::shared_ptr<const Parameters> parameters_;
   ModelOptions options_;
-  Grid<double> z_nm_;   // the derivatives are made anew from it: as fast as to read them, and a tenth the memory
+  Grid<double> z_nm_;  // the derivatives are made anew from it: as fast as to read them, and a
+                       // tenth the memory
   double pitch_x_nm_, pitch_y_nm_;
   ModelImages images_;
 };
@@ -70,7 +72,8 @@ class EngineModel final : public ImageModel {
                      [&](const auto& engine) { return engine.predict(field.z_nm); });
   }
 
-  std::unique_ptr<Linearization> linearize(const HeightField& field, const ModelOptions& options) const override {
+  std::unique_ptr<Linearization> linearize(const HeightField& field,
+                                           const ModelOptions& options) const override {
     check_field(scope_, field);
     check_span(field);
     return std::make_unique<EngineLinearization<Kind>>(parameters_, field, options);

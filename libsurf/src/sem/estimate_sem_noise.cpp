@@ -12,10 +12,10 @@
 namespace surf {
 namespace {
 
-constexpr double cut = 3.5;                    // standard errors from the line
-constexpr double most_saturated = 0.005;       // share of a block's pixels
-constexpr double core_share = 0.3;             // of the blocks, to find where they crowd
-constexpr double lower_cut = 4, upper_cut = 1; // standard deviations of slow shares
+constexpr double cut = 3.5;                     // standard errors from the line
+constexpr double most_saturated = 0.005;        // share of a block's pixels
+constexpr double core_share = 0.3;              // of the blocks, to find where they crowd
+constexpr double lower_cut = 4, upper_cut = 1;  // standard deviations of slow shares
 constexpr int wanted_blocks = 20;
 constexpr int least_blocks = 5;
 
@@ -32,12 +32,13 @@ struct Crowd {
   double centre = 0, deviation = 0;
 };
 
-/// Flat blocks crowd at the slow share of the noise, with structure above them. Where they crowd is about the
-/// narrowest interval with a share of all; how narrowly, what lies below it tells.
+/// Flat blocks crowd at the slow share of the noise, with structure above them. Where they crowd is
+/// about the narrowest interval with a share of all; how narrowly, what lies below it tells.
 Crowd find_crowd(const std::vector<double>& sorted) {
   const std::size_t n = sorted.size();
-  const std::size_t core = std::clamp<std::size_t>(static_cast<std::size_t>(core_share * static_cast<double>(n)),
-                                                   std::min<std::size_t>(n, 4), n);
+  const std::size_t core =
+      std::clamp<std::size_t>(static_cast<std::size_t>(core_share * static_cast<double>(n)),
+                              std::min<std::size_t>(n, 4), n);
   std::size_t best = 0;
   for (std::size_t i = 0; i + core <= n; ++i)
     if (sorted[i + core - 1] - sorted[i] < sorted[best + core - 1] - sorted[best]) best = i;
@@ -54,8 +55,8 @@ Crowd find_crowd(const std::vector<double>& sorted) {
   return crowd;
 }
 
-/// Blocks below the upper cut are flat. Of these the typical ones are as far from the crowd's centre on either
-/// side: the others' correlations would be too small.
+/// Blocks below the upper cut are flat. Of these the typical ones are as far from the crowd's
+/// centre on either side: the others' correlations would be too small.
 std::vector<char> choose_flat(const std::vector<FlatSample>& samples, bool& clear) {
   std::vector<double> sorted;
   for (const FlatSample& s : samples)
@@ -69,9 +70,10 @@ std::vector<char> choose_flat(const std::vector<FlatSample>& samples, bool& clea
     if (samples[i].squares > 0 && from >= -lower_cut && from <= upper_cut)
       chosen[i] = from >= -upper_cut ? typical : flat;
   }
-  // White noise scatters by sqrt(2 * 3.46 / n) of its share: 3.46 is the sum of squares of the weights in
-  // `slow_share` but the first.
-  const double expected = crowd.centre * std::sqrt(2 * 3.46 / static_cast<double>(samples.front().pixels));
+  // White noise scatters by sqrt(2 * 3.46 / n) of its share: 3.46 is the sum of squares of the
+  // weights in `slow_share` but the first.
+  const double expected =
+      crowd.centre * std::sqrt(2 * 3.46 / static_cast<double>(samples.front().pixels));
   clear = crowd.deviation < 2.5 * expected;
   return chosen;
 }
@@ -79,7 +81,8 @@ std::vector<char> choose_flat(const std::vector<FlatSample>& samples, bool& clea
 Grid<unsigned char> unsaturated(const PlacedImage& image, const Saturation& saturated) {
   Grid<unsigned char> good(image.values.width(), image.values.height(), 1);
   for (std::size_t i = 0; i < good.size(); ++i)
-    good.data()[i] = (image.valid.empty() || image.valid.data()[i]) && !saturated(image.values.data()[i]);
+    good.data()[i] =
+        (image.valid.empty() || image.valid.data()[i]) && !saturated(image.values.data()[i]);
   return good;
 }
 
@@ -93,14 +96,16 @@ std::int64_t count(const Grid<unsigned char>& mask, const PixelRectangle& r) {
 
 std::int64_t area(const PixelRectangle& r) { return std::int64_t{r.x1 - r.x0} * (r.y1 - r.y0); }
 
-FlatSamples blocks_of(const PlacedImage& image, const Grid<unsigned char>& good, int side, int degree) {
+FlatSamples blocks_of(const PlacedImage& image, const Grid<unsigned char>& good, int side,
+                      int degree) {
   static const Grid<unsigned char> all;
   FlatSamples blocks(image.values, all, degree);
   for (int y = 0; y + side <= image.values.height(); y += side)
     for (int x = 0; x + side <= image.values.width(); x += side) {
       const PixelRectangle r{x, y, x + side, y + side};
       const double saturated = static_cast<double>(area(r) - count(good, r));
-      if (count(image.valid, r) == area(r) && saturated <= most_saturated * static_cast<double>(area(r)))
+      if (count(image.valid, r) == area(r) &&
+          saturated <= most_saturated * static_cast<double>(area(r)))
         blocks.add(r);
     }
   return blocks;
@@ -108,59 +113,72 @@ FlatSamples blocks_of(const PlacedImage& image, const Grid<unsigned char>& good,
 
 struct Chosen {
   FlatSamples flat;
-  std::vector<char> used;   // Flatness
+  std::vector<char> used;  // Flatness
 };
 
 /// The largest blocks of which enough are flat.
-Chosen find_flat(const PlacedImage& image, const Grid<unsigned char>& good, const SemNoiseOptions& o,
-                 SemNoiseEstimate& e) {
-  const std::vector<int> sides = o.block_px ? std::vector<int>{o.block_px} : std::vector<int>{16, 12, 8};
+Chosen find_flat(const PlacedImage& image, const Grid<unsigned char>& good,
+                 const SemNoiseOptions& o, SemNoiseEstimate& e) {
+  const std::vector<int> sides =
+      o.block_px ? std::vector<int>{o.block_px} : std::vector<int>{16, 12, 8};
   bool any = false;
   for (const int side : sides) {
     Chosen c{blocks_of(image, good, side, o.degree), {}};
-    any = any || std::ranges::any_of(c.flat.samples, [](const FlatSample& s) { return s.squares > 0; });
+    any = any ||
+          std::ranges::any_of(c.flat.samples, [](const FlatSample& s) { return s.squares > 0; });
     bool clear = false;
     if (!c.flat.samples.empty()) c.used = choose_flat(c.flat.samples, clear);
     const auto found = std::ranges::count_if(c.used, [](char f) { return f != structured; });
     if (found < (side == sides.back() ? least_blocks : wanted_blocks)) continue;
     e.blocks = static_cast<int>(c.flat.samples.size());
     if (!clear)
-      e.warnings.push_back("no crowd of flat places stands out from the structure: the noise is likely to be "
-                           "overestimated. Give flat regions");
+      e.warnings.push_back(
+          "no crowd of flat places stands out from the structure: the noise is likely to be "
+          "overestimated. Give flat regions");
     return c;
   }
-  const std::string size = fmt::format("{} x {} pixels", image.values.width(), image.values.height());
+  const std::string size =
+      fmt::format("{} x {} pixels", image.values.width(), image.values.height());
   if (any)
-    throw InvalidInput("SEM noise", fmt::format("no {} flat places of {} x {} pixels are found in {}", least_blocks,
-                                                sides.back(), sides.back(), size),
+    throw InvalidInput("SEM noise",
+                       fmt::format("no {} flat places of {} x {} pixels are found in {}",
+                                   least_blocks, sides.back(), sides.back(), size),
                        "Give flat regions, or smaller blocks");
   throw InvalidInput("SEM noise",
-                     e.black + e.white > 0 ? "hardly a place is free of saturated pixels and has noise"
-                                           : fmt::format("there is no noise in {}", size),
+                     e.black + e.white > 0
+                         ? "hardly a place is free of saturated pixels and has noise"
+                         : fmt::format("there is no noise in {}", size),
                      "Give an image as the microscope made it, with noise and not too small");
 }
 
-Chosen given_regions(const PlacedImage& image, const Grid<unsigned char>& good, const SemNoiseOptions& o) {
+Chosen given_regions(const PlacedImage& image, const Grid<unsigned char>& good,
+                     const SemNoiseOptions& o) {
   Chosen c{FlatSamples(image.values, good, o.degree), {}};
   for (std::size_t i = 0; i < o.regions.size(); ++i) {
     const PixelRectangle& r = o.regions[i];
     const std::string subject = fmt::format("region {}", i + 1);
-    if (r.x0 < 0 || r.y0 < 0 || r.x1 > image.values.width() || r.y1 > image.values.height() || r.x0 >= r.x1 ||
-        r.y0 >= r.y1)
-      throw InvalidInput(subject, fmt::format("columns {} to {} and rows {} to {} are not inside the image, which has {} x {}",
-                                              r.x0, r.x1, r.y0, r.y1, image.values.width(), image.values.height()),
-                         "Give its lower-left corner and the upper-right one, which is not part of it");
+    if (r.x0 < 0 || r.y0 < 0 || r.x1 > image.values.width() || r.y1 > image.values.height() ||
+        r.x0 >= r.x1 || r.y0 >= r.y1)
+      throw InvalidInput(
+          subject,
+          fmt::format(
+              "columns {} to {} and rows {} to {} are not inside the image, which has {} x {}",
+              r.x0, r.x1, r.y0, r.y1, image.values.width(), image.values.height()),
+          "Give its lower-left corner and the upper-right one, which is not part of it");
     if (!c.flat.add(r))
-      throw InvalidInput(subject, fmt::format("{} pixels of it are valid and not saturated", count(good, r)),
+      throw InvalidInput(subject,
+                         fmt::format("{} pixels of it are valid and not saturated", count(good, r)),
                          fmt::format("Give a region of {} at least", 4 * c.flat.coefficients()));
     if (!(c.flat.samples.back().squares > 0))
-      throw InvalidInput(subject, "there is no noise in it", "Give a region that is not saturated or synthetic");
+      throw InvalidInput(subject, "there is no noise in it",
+                         "Give a region that is not saturated or synthetic");
   }
   c.used.assign(c.flat.samples.size(), typical);
   return c;
 }
 
-/// Mean of the fourth powers over the squared variance, less 3, which is what it is for normal noise.
+/// Mean of the fourth powers over the squared variance, less 3, which is what it is for normal
+/// noise.
 double kurtosis_of(const Chosen& c) {
   double sum = 0, weight = 0;
   for (std::size_t i = 0; i < c.used.size(); ++i) {
@@ -174,7 +192,8 @@ double kurtosis_of(const Chosen& c) {
 }
 
 /// The line, given the variance of each place as far as it is known, for the correlation.
-void fit(const Chosen& c, const std::vector<double>& variances, const SemNoiseOptions& options, SemNoiseEstimate& e) {
+void fit(const Chosen& c, const std::vector<double>& variances, const SemNoiseOptions& options,
+         SemNoiseEstimate& e) {
   const LagSums correlation = pooled_correlation(c.flat, variances);
   set_correlation(correlation, e);
   e.excess_kurtosis = kurtosis_of(c);
@@ -184,8 +203,10 @@ void fit(const Chosen& c, const std::vector<double>& variances, const SemNoiseOp
   for (std::size_t i = 0; i < c.used.size(); ++i) {
     if (!c.used[i]) continue;
     const FlatSample& s = c.flat.samples[i];
-    const double variance = variance_of(s, c.flat.responses[static_cast<std::size_t>(s.geometry)], correlation);
-    points.push_back({s.mean, variance, 2 * static_cast<double>(s.pixels - c.flat.coefficients()) / spread});
+    const double variance =
+        variance_of(s, c.flat.responses[static_cast<std::size_t>(s.geometry)], correlation);
+    points.push_back(
+        {s.mean, variance, 2 * static_cast<double>(s.pixels - c.flat.coefficients()) / spread});
     e.points.push_back({s.region, s.pixels, s.mean, variance, 0, true});
   }
   set_line(points, options.least_share, options.regions.empty() ? cut : 0, e);
@@ -199,15 +220,20 @@ SemNoiseEstimate estimate_sem_noise(const PlacedImage& image, const SemNoiseOpti
   SemNoiseEstimate e;
   const Saturation saturated = find_saturation(image.values, image.valid, options, e);
   const Grid<unsigned char> good = unsaturated(image, saturated);
-  const Chosen c = options.regions.empty() ? find_flat(image, good, options, e) : given_regions(image, good, options);
-  // A place over its own variance makes the correlation a little too small: the second time over the line's.
+  const Chosen c = options.regions.empty() ? find_flat(image, good, options, e)
+                                           : given_regions(image, good, options);
+  // A place over its own variance makes the correlation a little too small: the second time over
+  // the line's.
   std::vector<double> variances(c.used.size(), 0);
   for (std::size_t i = 0; i < variances.size(); ++i)
-    if (c.used[i] == typical) variances[i] = c.flat.samples[i].squares / static_cast<double>(c.flat.samples[i].pixels);
+    if (c.used[i] == typical)
+      variances[i] = c.flat.samples[i].squares / static_cast<double>(c.flat.samples[i].pixels);
   fit(c, variances, options, e);
   for (std::size_t i = 0, point = 0; i < variances.size(); ++i) {
     if (!c.used[i]) continue;
-    variances[i] = e.points[point++].used && c.used[i] == typical ? e.noise.variance(c.flat.samples[i].mean) : 0;
+    variances[i] = e.points[point++].used && c.used[i] == typical
+                       ? e.noise.variance(c.flat.samples[i].mean)
+                       : 0;
   }
   fit(c, variances, options, e);
   set_off_line_share(image.values, good, e);

@@ -12,7 +12,8 @@ namespace {
 
 void check(const FacetScale& scale) {
   if (scale.size < 5 || scale.size > 255 || scale.size % 2 == 0)
-    throw InvalidInput("filter bank", fmt::format("a neighbourhood is {} samples across", scale.size),
+    throw InvalidInput("filter bank",
+                       fmt::format("a neighbourhood is {} samples across", scale.size),
                        "Give an odd number from 5 to 255");
   if (scale.sigma_px != 0 && !(scale.sigma_px >= 0.3 && scale.sigma_px <= 1000))
     throw InvalidInput("filter bank",
@@ -28,9 +29,10 @@ FacetKernel facet_kernel(const FacetScale& scale, double pitch_nm) {
   const int r = kernel.radius = scale.size / 2;
   std::vector<double> weight(r + 1, 1.0);
   if (scale.sigma_px > 0)
-    for (int u = 0; u <= r; ++u) weight[u] = std::exp(-0.5 * u * u / (scale.sigma_px * scale.sigma_px));
+    for (int u = 0; u <= r; ++u)
+      weight[u] = std::exp(-0.5 * u * u / (scale.sigma_px * scale.sigma_px));
 
-  double m[4] = {};   // moments of even order: of 1, u^2, u^4, u^6
+  double m[4] = {};  // moments of even order: of 1, u^2, u^4, u^6
   for (int u = 0; u <= r; ++u) {
     double power = u == 0 ? weight[u] : 2 * weight[u];
     for (double& moment : m) {

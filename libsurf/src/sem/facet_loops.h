@@ -5,14 +5,15 @@
 
 #include "facet_units.h"
 
-// Compiled once for each vector unit. Everything is inlined into functions that are compiled for it, and
-// nothing of the standard library is called.
+// Compiled once for each vector unit. Everything is inlined into functions that are compiled for
+// it, and nothing of the standard library is called.
 namespace surf::facet {
 
 #define SEMSURF_INLINE [[gnu::always_inline]] inline
 #define SEMSURF_INLINE_LAMBDA __attribute__((always_inline))
 
-/// Vectors that are made together: what is broadcast serves them all, and all sums stay in registers.
+/// Vectors that are made together: what is broadcast serves them all, and all sums stay in
+/// registers.
 inline constexpr int vectors = 2;
 
 template <class T, int Bytes>
@@ -29,9 +30,8 @@ struct Loops {
     store(p, sum + v);
   }
 
-
-  /// Both for a sum and a difference. Keeps GCC from loading b a second time: loads are what is short. Clang
-  /// does not allow it for vectors that the file's own target lacks.
+  /// Both for a sum and a difference. Keeps GCC from loading b a second time: loads are what is
+  /// short. Clang does not allow it for vectors that the file's own target lacks.
   SEMSURF_INLINE static void load_pair(V& a, V& b, const T* p, const T* q) {
     load(a, p);
     load(b, q);
@@ -72,8 +72,8 @@ struct Loops {
     }
   }
 
-  /// A vector of two neighbouring rows of results, which share all but one of the rows that they look at to
-  /// each side.
+  /// A vector of two neighbouring rows of results, which share all but one of the rows that they
+  /// look at to each side.
   struct Rows {
     V row[2] = {};
 
@@ -95,11 +95,12 @@ struct Loops {
     return rows;
   }
 
-  /// use(tap, k % 2, row, above, below) with what lies k rows above and below both rows, for k from `begin`
-  /// on. Each vector is loaded once: what is new beside one row lies beside the other a step later.
+  /// use(tap, k % 2, row, above, below) with what lies k rows above and below both rows, for k from
+  /// `begin` on. Each vector is loaded once: what is new beside one row lies beside the other a
+  /// step later.
   template <class Use>
-  SEMSURF_INLINE static void each_pair(const T* p, std::ptrdiff_t stride, const Tap<T>* taps, int begin,
-                                       int radius, const Use& use) {
+  SEMSURF_INLINE static void each_pair(const T* p, std::ptrdiff_t stride, const Tap<T>* taps,
+                                       int begin, int radius, const Use& use) {
     V above[2], below[2];
     load_pair(above[0], below[0], p + begin * stride, p + (1 - begin) * stride);
     const auto step = [&](int k, int phase) SEMSURF_INLINE_LAMBDA {
@@ -115,14 +116,15 @@ struct Loops {
     if (k == radius) step(k, 0);
   }
 
-  /// Sums (sign 1) or differences of samples above and below, filtered by a factor. In two halves, so that
-  /// sums need not wait for one another.
+  /// Sums (sign 1) or differences of samples above and below, filtered by a factor. In two halves,
+  /// so that sums need not wait for one another.
   template <auto Factor, int Sign>
-  SEMSURF_INLINE static Rows filtered(const T* p, std::ptrdiff_t stride, const Tap<T>* taps, int begin,
-                                      int radius) {
+  SEMSURF_INLINE static Rows filtered(const T* p, std::ptrdiff_t stride, const Tap<T>* taps,
+                                      int begin, int radius) {
     Rows half[2];
     each_pair(p, stride, taps, begin, radius,
-              [&](const Tap<T>& t, int phase, int row, const V& above, const V& below) SEMSURF_INLINE_LAMBDA {
+              [&](const Tap<T>& t, int phase, int row, const V& above,
+                  const V& below) SEMSURF_INLINE_LAMBDA {
                 half[phase].row[row] += (Sign > 0 ? above + below : above - below) * (t.*Factor);
               });
     half[0] += half[1];
@@ -131,11 +133,12 @@ struct Loops {
 
   /// The same by two factors; adds to `first` and `second`.
   template <auto First, int FirstSign, auto Second, int SecondSign>
-  SEMSURF_INLINE static void add_filtered(const T* p, std::ptrdiff_t stride, const Tap<T>* taps, int begin,
-                                          int radius, Rows& first, Rows& second) {
+  SEMSURF_INLINE static void add_filtered(const T* p, std::ptrdiff_t stride, const Tap<T>* taps,
+                                          int begin, int radius, Rows& first, Rows& second) {
     Rows a[2], b[2];
     each_pair(p, stride, taps, begin, radius,
-              [&](const Tap<T>& t, int phase, int row, const V& above, const V& below) SEMSURF_INLINE_LAMBDA {
+              [&](const Tap<T>& t, int phase, int row, const V& above,
+                  const V& below) SEMSURF_INLINE_LAMBDA {
                 a[phase].row[row] += (FirstSign > 0 ? above + below : above - below) * (t.*First);
                 b[phase].row[row] += (SecondSign > 0 ? above + below : above - below) * (t.*Second);
               });
@@ -145,7 +148,8 @@ struct Loops {
     second += b[0];
   }
 
-  SEMSURF_INLINE static void store_rows(T* p, std::ptrdiff_t stride, const Rows& rows, T factor = 1) {
+  SEMSURF_INLINE static void store_rows(T* p, std::ptrdiff_t stride, const Rows& rows,
+                                        T factor = 1) {
     store(p, rows.row[0] * factor);
     store(p + stride, rows.row[1] * factor);
   }
@@ -175,8 +179,9 @@ struct Loops {
       }
   }
 
-  SEMSURF_INLINE static void along_transposed(const T* weight, int rows, const Tap<T>* taps, int begin,
-                                              int radius, bool add, T* const* out, std::ptrdiff_t plane) {
+  SEMSURF_INLINE static void along_transposed(const T* weight, int rows, const Tap<T>* taps,
+                                              int begin, int radius, bool add, T* const* out,
+                                              std::ptrdiff_t plane) {
     using F = Tap<T>;
     constexpr std::ptrdiff_t stride = coefficients * columns;
     const F& t = taps[0];
@@ -220,13 +225,14 @@ struct Loops {
   SEMSURF_INLINE static void transpose(V (&rows)[lanes]) {
     if constexpr (Step > 0) {
       for (int i = 0; i < lanes; ++i)
-        if (!(i & Step)) exchange<Step>(rows[i], rows[i + Step], std::make_integer_sequence<int, lanes>());
+        if (!(i & Step))
+          exchange<Step>(rows[i], rows[i + Step], std::make_integer_sequence<int, lanes>());
       transpose<Step / 2>(rows);
     }
   }
 
-  SEMSURF_INLINE static void turn(const T* plane, std::ptrdiff_t stride, int count, std::ptrdiff_t out_stride,
-                                  T* out) {
+  SEMSURF_INLINE static void turn(const T* plane, std::ptrdiff_t stride, int count,
+                                  std::ptrdiff_t out_stride, T* out) {
     for (int x = 0; x < count; x += lanes)
       for (int part = 0; part < vectors; ++part) {
         V rows[lanes];
@@ -236,8 +242,8 @@ struct Loops {
       }
   }
 
-  SEMSURF_INLINE static void across_transposed(const T* moment, int count, const Tap<T>* taps, int radius,
-                                               T* sum) {
+  SEMSURF_INLINE static void across_transposed(const T* moment, int count, const Tap<T>* taps,
+                                               int radius, T* sum) {
     using F = Tap<T>;
     constexpr std::ptrdiff_t stride = moments * columns;
     for (int i = 0; i < count; i += 2, moment += 2 * stride, sum += 2 * columns)
@@ -265,8 +271,11 @@ struct Loops {
     __builtin_memcpy(&x, each, sizeof x);
   }
 
-  /// 1 / root, and 0 where the root is 0: the mean of the one-sided derivatives of a length is 0 there.
-  SEMSURF_INLINE static void invert(V& length, T floor) { length = length > floor ? 1 / length : V{}; }
+  /// 1 / root, and 0 where the root is 0: the mean of the one-sided derivatives of a length is 0
+  /// there.
+  SEMSURF_INLINE static void invert(V& length, T floor) {
+    length = length > floor ? 1 / length : V{};
+  }
 
   /// The coefficients of some pixels, and the roots of their invariants.
   struct Pixels {
@@ -288,8 +297,9 @@ struct Loops {
   };
 
   /// Adds a channel's share of a scale.
-  SEMSURF_INLINE static void add_channels(const V& slope, const V& mean, const V& half, const Weights<T>* weights,
-                                          int channels, std::ptrdiff_t plane, T* sum) {
+  SEMSURF_INLINE static void add_channels(const V& slope, const V& mean, const V& half,
+                                          const Weights<T>* weights, int channels,
+                                          std::ptrdiff_t plane, T* sum) {
     for (int c = 0; c < channels; ++c) {
       const Weights<T> w = weights[c];
       increase(sum + c * plane, slope * w.slope + mean * (w.max_curvature + w.min_curvature) +
@@ -310,7 +320,8 @@ struct Loops {
       }
   }
 
-  SEMSURF_INLINE static void combine(const T* k, int rows, const Weights<T>* weights, int channels, T* sum) {
+  SEMSURF_INLINE static void combine(const T* k, int rows, const Weights<T>* weights, int channels,
+                                     T* sum) {
     const std::ptrdiff_t plane = static_cast<std::ptrdiff_t>(rows) * columns;
     for (int y = 0; y < rows; ++y, k += coefficients * columns, sum += columns)
       for (int x = 0; x < columns; x += lanes) {
@@ -321,10 +332,12 @@ struct Loops {
       }
   }
 
-  SEMSURF_INLINE static void pull_back(const T* k, int rows, const Floors<T>& floors, const Weights<T>* weights,
-                                       int channels, const T* weight, T* out) {
+  SEMSURF_INLINE static void pull_back(const T* k, int rows, const Floors<T>& floors,
+                                       const Weights<T>* weights, int channels, const T* weight,
+                                       T* out) {
     const std::ptrdiff_t plane = static_cast<std::ptrdiff_t>(rows) * columns;
-    for (int y = 0; y < rows; ++y, k += coefficients * columns, out += coefficients * columns, weight += columns)
+    for (int y = 0; y < rows;
+         ++y, k += coefficients * columns, out += coefficients * columns, weight += columns)
       for (int x = 0; x < columns; x += lanes) {
         V slope = {}, mean = {}, half = {};
         for (int c = 0; c < channels; ++c) {
@@ -351,10 +364,12 @@ struct Loops {
       }
   }
 
-  SEMSURF_INLINE static void push_forward(const T* k, const T* dk, int rows, const Floors<T>& floors,
-                                          const Weights<T>* weights, int channels, T* sum) {
+  SEMSURF_INLINE static void push_forward(const T* k, const T* dk, int rows,
+                                          const Floors<T>& floors, const Weights<T>* weights,
+                                          int channels, T* sum) {
     const std::ptrdiff_t plane = static_cast<std::ptrdiff_t>(rows) * columns;
-    for (int y = 0; y < rows; ++y, k += coefficients * columns, dk += coefficients * columns, sum += columns)
+    for (int y = 0; y < rows;
+         ++y, k += coefficients * columns, dk += coefficients * columns, sum += columns)
       for (int x = 0; x < columns; x += lanes) {
         const Pixels p(k + x), d(dk + x);
         V slope, half;
@@ -367,19 +382,31 @@ struct Loops {
       }
   }
 
-  /// arctan of x >= 0, to 2e-16 (the rational function of Moshier's Cephes library; fractions turn x to below
-  /// 0.66). Without branches, so that vectors can do it.
+  /// arctan of x >= 0, to 2e-16 (the rational function of Moshier's Cephes library; fractions turn
+  /// x to below 0.66). Without branches, so that vectors can do it.
   SEMSURF_INLINE static double arc_tangent(double x) {
     const bool large = x > 2.414213562373095, middle = x > 0.66;
-    const double u = (large ? -1 : middle ? x - 1 : x) / (large ? x : middle ? x + 1 : 1), v = u * u;
+    const double u = (large    ? -1
+                      : middle ? x - 1
+                               : x) /
+                     (large    ? x
+                      : middle ? x + 1
+                               : 1),
+                 v = u * u;
     const double p = (((-0.8750608600031904 * v - 16.15753718733365) * v - 75.00855792314705) * v -
-                      122.8866684490136) * v - 64.85021904942025;
-    const double q = ((((v + 24.85846490142306) * v + 165.0270098316988) * v + 432.8810604912903) * v +
-                      485.3903996359137) * v + 194.5506571482614;
+                      122.8866684490136) *
+                         v -
+                     64.85021904942025;
+    const double q =
+        ((((v + 24.85846490142306) * v + 165.0270098316988) * v + 432.8810604912903) * v +
+         485.3903996359137) *
+            v +
+        194.5506571482614;
     return (large ? 1.5707963267948966 : middle ? 0.7853981633974483 : 0) + (u + u * v * p / q);
   }
 
-  SEMSURF_INLINE static void angles(const T* k, int rows, double* tangent, double* secant, double* angle) {
+  SEMSURF_INLINE static void angles(const T* k, int rows, double* tangent, double* secant,
+                                    double* angle) {
     for (int y = 0; y < rows; ++y, k += coefficients * columns)
       for (int x = 0; x < columns; ++x) {
         const double k2 = k[x], k3 = k[columns + x], square = k2 * k2 + k3 * k3,
@@ -402,7 +429,8 @@ struct Loops {
     for (int v = 0; v < vectors; ++v) store(out + v * lanes, sum[v]);
   }
 
-  SEMSURF_INLINE static void spread_transposed(const T* weight, int count, const T* worth, T* samples) {
+  SEMSURF_INLINE static void spread_transposed(const T* weight, int count, const T* worth,
+                                               T* samples) {
     for (int i = 0; i < count; ++i) {
       V products = {};
       for (int v = 0; v < vectors; ++v) {

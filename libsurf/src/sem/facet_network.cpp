@@ -15,17 +15,21 @@ namespace surf {
 namespace {
 
 constexpr const char* subject = "facet network";
-constexpr double most = 1e6;       // of a weight or a bias
+constexpr double most = 1e6;  // of a weight or a bias
 constexpr int widest_layer = 1024;
 
 void check_layer(const DenseLayer& layer, std::size_t number, int inputs) {
   if (layer.inputs != inputs || layer.outputs < 1 || layer.outputs > widest_layer)
-    throw InvalidInput(subject, fmt::format("layer {} goes from {} to {} numbers", number + 1, layer.inputs, layer.outputs),
-                       fmt::format("It takes {} and gives 1 to {}", inputs, widest_layer));
+    throw InvalidInput(
+        subject,
+        fmt::format("layer {} goes from {} to {} numbers", number + 1, layer.inputs, layer.outputs),
+        fmt::format("It takes {} and gives 1 to {}", inputs, widest_layer));
   const std::size_t weights = static_cast<std::size_t>(layer.inputs) * layer.outputs;
-  if (layer.weights.size() != weights || layer.biases.size() != static_cast<std::size_t>(layer.outputs))
-    throw InvalidInput(subject, fmt::format("layer {} has {} weights and {} biases", number + 1,
-                                            layer.weights.size(), layer.biases.size()),
+  if (layer.weights.size() != weights ||
+      layer.biases.size() != static_cast<std::size_t>(layer.outputs))
+    throw InvalidInput(subject,
+                       fmt::format("layer {} has {} weights and {} biases", number + 1,
+                                   layer.weights.size(), layer.biases.size()),
                        fmt::format("Give {} and {}", weights, layer.outputs));
   for (const auto* numbers : {&layer.weights, &layer.biases})
     for (const double value : *numbers)
@@ -42,7 +46,8 @@ void check(const FacetNetworkParameters& p) {
     throw InvalidInput(subject, fmt::format("has {} limits of sky bands", p.sky_edges_nm.size()),
                        "Give none, or 2 to 13");
   for (std::size_t i = 0; i < p.sky_edges_nm.size(); ++i)
-    if (i == 0 ? p.sky_edges_nm[0] != 0 : !(p.sky_edges_nm[i] > p.sky_edges_nm[i - 1] && p.sky_edges_nm[i] < 1e5))
+    if (i == 0 ? p.sky_edges_nm[0] != 0
+               : !(p.sky_edges_nm[i] > p.sky_edges_nm[i - 1] && p.sky_edges_nm[i] < 1e5))
       throw InvalidInput(subject, fmt::format("a limit of its sky bands is {}", p.sky_edges_nm[i]),
                          "They rise from 0, in nm");
   if (p.layers.empty() || p.layers.size() > 4)
@@ -53,19 +58,21 @@ void check(const FacetNetworkParameters& p) {
     inputs = p.layers[i].outputs;
   }
   if (static_cast<std::size_t>(inputs) != p.channels.size())
-    throw InvalidInput(subject, fmt::format("has {} outputs for {} channels", inputs, p.channels.size()),
+    throw InvalidInput(subject,
+                       fmt::format("has {} outputs for {} channels", inputs, p.channels.size()),
                        "Give one for each");
   for (const FacetNetworkParameters::Channel& channel : p.channels)
     if (!(channel.scale > 0 && channel.scale <= most))
-      throw InvalidInput(subject, fmt::format("the scale of channel {} is {}", channel.name, channel.scale),
+      throw InvalidInput(subject,
+                         fmt::format("the scale of channel {} is {}", channel.name, channel.scale),
                          fmt::format("It lies above 0, up to {:g}", most));
 }
 
 struct FacetNetwork {
   using Parameters = FacetNetworkParameters;
   template <class Work>
-  static auto run(const Parameters& parameters, double pitch_nm, double, const ModelOptions& options,
-                  const Work& work) {
+  static auto run(const Parameters& parameters, double pitch_nm, double,
+                  const ModelOptions& options, const Work& work) {
     if (options.double_precision) return work(NetworkEngine<double>(parameters, pitch_nm, options));
     return work(NetworkEngine<float>(parameters, pitch_nm, options));
   }
@@ -75,7 +82,8 @@ struct FacetNetwork {
 
 int network_inputs(const FacetNetworkParameters& parameters) {
   const int edges = static_cast<int>(parameters.sky_edges_nm.size());
-  return network::facet_inputs * static_cast<int>(parameters.scales.size()) + (edges > 1 ? 2 * (edges - 1) + 1 : 0);
+  return network::facet_inputs * static_cast<int>(parameters.scales.size()) +
+         (edges > 1 ? 2 * (edges - 1) + 1 : 0);
 }
 
 std::shared_ptr<const ImageModel> make_facet_network(const ModelScope& scope,

@@ -13,7 +13,8 @@
 namespace surf::facet {
 namespace {
 
-// With the widest neighbourhood of the thesis a block of so many rows and its moments stay in the L2 cache.
+// With the widest neighbourhood of the thesis a block of so many rows and its moments stay in the
+// L2 cache.
 constexpr int most_rows = 320;
 
 double sum_of_magnitudes(const std::vector<double>& factors) {
@@ -29,7 +30,8 @@ double slope_noise(const FacetKernel& a, const FacetKernel& b) {
 }  // namespace
 
 template <class T>
-FacetPass<T>::FacetPass(const std::vector<FacetScale>& scales, double pitch_x_nm, double pitch_y_nm, Unit unit)
+FacetPass<T>::FacetPass(const std::vector<FacetScale>& scales, double pitch_x_nm, double pitch_y_nm,
+                        Unit unit)
     : loops_(&operations<T>(unit)) {
   for (const FacetScale& scale : scales) {
     const FacetKernel x = facet_kernel(scale, pitch_x_nm), y = facet_kernel(scale, pitch_y_nm);
@@ -60,8 +62,8 @@ std::vector<Block> FacetPass<T>::blocks(int width, int height) const {
   return blocks;
 }
 
-/// Rows of the field that the block's fits look at, each once, those nearest to the block first, so that a
-/// smaller radius needs the first ones only.
+/// Rows of the field that the block's fits look at, each once, those nearest to the block first, so
+/// that a smaller radius needs the first ones only.
 template <class T>
 void FacetPass<T>::list_rows(int height, Edge edge, Scratch& s) const {
   const Block& block = s.block;
@@ -91,7 +93,7 @@ template <class T>
 void FacetPass<T>::fill_tile(const Grid<double>& z_nm, Edge edge, Scratch& s) const {
   const int width = z_nm.width(), stride = columns() + 2 * s.radius;
   const std::size_t samples = s.rows.size() * static_cast<std::size_t>(stride);
-  s.tile.resize((samples / columns() + 1) * columns());   // whole vectors
+  s.tile.resize((samples / columns() + 1) * columns());  // whole vectors
   std::fill(s.tile.begin() + static_cast<std::ptrdiff_t>(samples), s.tile.end(), T(0));
   const double level = z_nm(s.block.x + s.block.width / 2, s.block.y + s.block.rows / 2);
   const int first = s.block.x - s.radius;
@@ -114,7 +116,8 @@ void FacetPass<T>::load(const Grid<double>& z_nm, Edge edge, const Block& block,
 }
 
 template <class T>
-void FacetPass<T>::load(const Grid<double>& z_nm, Edge edge, const Block& block, Scratch& s, int scale) const {
+void FacetPass<T>::load(const Grid<double>& z_nm, Edge edge, const Block& block, Scratch& s,
+                        int scale) const {
   s.block = block;
   s.radius = kernels_[scale].radius;
   list_rows(z_nm.height(), edge, s);
@@ -147,8 +150,9 @@ const T* FacetPass<T>::fit(int scale, Scratch& s) const {
 
 template <class T>
 Floors<T> FacetPass<T>::floors(int scale, const Scratch& s) const {
-  const double rounding = std::numeric_limits<T>::epsilon() *
-                          loops_->largest(s.tile.data(), static_cast<std::ptrdiff_t>(s.tile.size()));
+  const double rounding =
+      std::numeric_limits<T>::epsilon() *
+      loops_->largest(s.tile.data(), static_cast<std::ptrdiff_t>(s.tile.size()));
   return {T(rounding * kernels_[scale].slope_noise), T(rounding * kernels_[scale].curvature_noise)};
 }
 
@@ -161,11 +165,11 @@ void FacetPass<T>::scale_weights(const Scaling<T>& scaling, int height, T* row) 
     }
 }
 
-/// Weights of moments at all pixels of a column from weights of coefficients; what rows outside the field
-/// would get goes to those that stand for them.
+/// Weights of moments at all pixels of a column from weights of coefficients; what rows outside the
+/// field would get goes to those that stand for them.
 template <class T>
-void FacetPass<T>::transpose_along(const Kernel& kernel, Edge edge, const Block& column, const T* weights,
-                                   T* planes, std::ptrdiff_t plane) const {
+void FacetPass<T>::transpose_along(const Kernel& kernel, Edge edge, const Block& column,
+                                   const T* weights, T* planes, std::ptrdiff_t plane) const {
   const int r = kernel.radius, height = column.rows;
   const std::ptrdiff_t row_size = static_cast<std::ptrdiff_t>(coefficients) * columns();
   std::vector<T*> rows(height + 2 * r);
@@ -182,13 +186,14 @@ void FacetPass<T>::transpose_along(const Kernel& kernel, Edge edge, const Block&
   }
 }
 
-/// Adds what some rows' weights of moments give the heights to `sums`, from `radius_` columns left of the
-/// field on; `turned` is memory for the moments.
+/// Adds what some rows' weights of moments give the heights to `sums`, from `radius_` columns left
+/// of the field on; `turned` is memory for the moments.
 template <class T>
-void FacetPass<T>::transpose_across(const Kernel& kernel, int width, const T* planes, std::ptrdiff_t plane,
-                                    AlignedVector<T>& turned, T* sums) const {
+void FacetPass<T>::transpose_across(const Kernel& kernel, int width, const T* planes,
+                                    std::ptrdiff_t plane, AlignedVector<T>& turned, T* sums) const {
   const int r = kernel.radius, wide = columns();
-  const std::ptrdiff_t stride = static_cast<std::ptrdiff_t>(moments) * wide, before = 2 * r * stride;
+  const std::ptrdiff_t stride = static_cast<std::ptrdiff_t>(moments) * wide,
+                       before = 2 * r * stride;
   turned.resize(2 * before + (plane + 1) * stride);
   std::fill_n(turned.begin(), before, T(0));
   std::fill(turned.begin() + before + plane * stride, turned.end(), T(0));
@@ -204,8 +209,8 @@ void FacetPass<T>::transpose(Edge edge, int threads, const Source& source, doubl
                              Grid<double>& gradient) const {
   const int width = gradient.width(), height = gradient.height(), wide = columns();
   const int strips = (width + wide - 1) / wide, groups = (height + wide - 1) / wide;
-  // Moments of a row, one plane after the other; and sums of as many rows as strips are wide, turned, with
-  // what falls outside the field, which is folded back at the end.
+  // Moments of a row, one plane after the other; and sums of as many rows as strips are wide,
+  // turned, with what falls outside the field, which is folded back at the end.
   const std::ptrdiff_t plane = std::ptrdiff_t{strips} * wide;
   const std::ptrdiff_t group_size = std::ptrdiff_t{wide} * moments * plane;
   const std::ptrdiff_t sum_size = (std::ptrdiff_t{width} + 2 * radius_ + 1) * wide;

@@ -16,50 +16,56 @@ namespace surf {
 namespace {
 
 constexpr const char* subject = "training";
-// Of the range. The far bands are for what shadows and catches electrons outside, which no range limits:
-// without them level ground came out 2 % too dark where training surfaces are crowded.
+// Of the range. The far bands are for what shadows and catches electrons outside, which no range
+// limits: without them level ground came out 2 % too dark where training surfaces are crowded.
 constexpr double widest_sigma = 0.65, sky_limits[] = {0, 0.13, 0.33, 0.67, 1.33, 2.67, 5.33};
 constexpr std::size_t fewest_scales = 4;
-constexpr double farthest_px = 128;   // of the sky: fields are continued by as much
+constexpr double farthest_px = 128;  // of the sky: fields are continued by as much
 
 }  // namespace
 
 void validate(const FacetNetworkFitOptions& o) {
   const auto refuse = [](const char* name, double value, const char* range) {
-    throw UsageError("training", fmt::format("{} is {}", name, value), fmt::format("Give {}", range));
+    throw UsageError("training", fmt::format("{} is {}", name, value),
+                     fmt::format("Give {}", range));
   };
-  if (!(o.range_nm > 0 && o.range_nm < 1e6)) refuse("the range of electrons", o.range_nm, "a length above 0");
-  if (o.hidden.size() > 3) refuse("the number of hidden layers", static_cast<double>(o.hidden.size()), "0 to 3");
+  if (!(o.range_nm > 0 && o.range_nm < 1e6))
+    refuse("the range of electrons", o.range_nm, "a length above 0");
+  if (o.hidden.size() > 3)
+    refuse("the number of hidden layers", static_cast<double>(o.hidden.size()), "0 to 3");
   for (const int units : o.hidden)
     if (units < 1 || units > 256) refuse("the number of hidden units", units, "1 to 256");
-  if (o.iterations < 1 || o.iterations > 100000) refuse("the number of iterations", o.iterations, "1 to 100,000");
+  if (o.iterations < 1 || o.iterations > 100000)
+    refuse("the number of iterations", o.iterations, "1 to 100,000");
   if (!(o.decay >= 0 && o.decay < 1e6)) refuse("the decay", o.decay, "a number not below 0");
   if (!(o.tolerance >= 0 && o.tolerance <= 1)) refuse("the tolerance", o.tolerance, "0 to 1");
 }
 
 namespace {
 
-/// Pixels that are used: inputs of the network, signals in units of the channels' means, and what share of
-/// the mean signal is variance, image by image.
+/// Pixels that are used: inputs of the network, signals in units of the channels' means, and what
+/// share of the mean signal is variance, image by image.
 struct Lesson {
   TrainerData data;
-  std::vector<double> means, scales;   // of the inputs: taken off, divided by
+  std::vector<double> means, scales;  // of the inputs: taken off, divided by
 };
 
 double pixel_of(const std::vector<TrainingImage>& images) {
   const double pixel = images.front().field.pitch_x_nm;
   for (const TrainingImage& image : images) {
     const HeightField& f = image.field;
-    if (std::abs(f.pitch_x_nm - pixel) > 1e-3 * pixel || std::abs(f.pitch_y_nm - pixel) > 1e-3 * pixel)
-      throw InvalidInput(image.name, fmt::format("has pixels of {:.4g} x {:.4g} nm, the first image {:.4g} nm",
-                                                 f.pitch_x_nm, f.pitch_y_nm, pixel),
+    if (std::abs(f.pitch_x_nm - pixel) > 1e-3 * pixel ||
+        std::abs(f.pitch_y_nm - pixel) > 1e-3 * pixel)
+      throw InvalidInput(image.name,
+                         fmt::format("has pixels of {:.4g} x {:.4g} nm, the first image {:.4g} nm",
+                                     f.pitch_x_nm, f.pitch_y_nm, pixel),
                          "A network is learnt for one size of square pixels: resample the surface");
   }
   return pixel;
 }
 
-void add_inputs(const FacetNetworkParameters& parameters, const TrainingImage& image, double pixel_nm, int threads,
-                int inputs, std::vector<float>& out) {
+void add_inputs(const FacetNetworkParameters& parameters, const TrainingImage& image,
+                double pixel_nm, int threads, int inputs, std::vector<float>& out) {
   ModelOptions options;
   options.edge = image.edge;
   options.threads = threads;
@@ -82,9 +88,11 @@ bool is_used(const TrainingImage& image, std::size_t i) {
   return image.used.empty() || image.used.data()[i] != 0;
 }
 
-Lesson gather(const std::vector<TrainingImage>& images, const FacetNetworkParameters& parameters, double pixel_nm,
-              const FacetNetworkFitOptions& options, std::vector<double>& signal_means) {
-  const int inputs = network_inputs(parameters), channels = static_cast<int>(parameters.channels.size());
+Lesson gather(const std::vector<TrainingImage>& images, const FacetNetworkParameters& parameters,
+              double pixel_nm, const FacetNetworkFitOptions& options,
+              std::vector<double>& signal_means) {
+  const int inputs = network_inputs(parameters),
+            channels = static_cast<int>(parameters.channels.size());
   Lesson lesson;
   TrainerData& data = lesson.data;
   data.inputs = inputs;
@@ -116,18 +124,22 @@ Lesson gather(const std::vector<TrainingImage>& images, const FacetNetworkParame
           }
       data.noise.push_back(signal > 0 ? noise / signal : 0);
     }
-    for (std::size_t i = first; i < end; ++i) data.image.push_back(static_cast<int>(&image - images.data()));
+    for (std::size_t i = first; i < end; ++i)
+      data.image.push_back(static_cast<int>(&image - images.data()));
   }
   const std::size_t pixels = data.image.size();
   if (pixels == 0) throw InvalidInput(subject, "no pixel is used", "Give images with some");
   for (int c = 0; c < channels; ++c) {
     const double mean = sums[c] / static_cast<double>(pixels);
     if (!(mean > 0))
-      throw InvalidInput(subject, fmt::format("the mean of channel {} is {:.4g}", parameters.channels[c].name, mean),
-                         "A network learns signals above 0: add an offset to the image");
+      throw InvalidInput(
+          subject,
+          fmt::format("the mean of channel {} is {:.4g}", parameters.channels[c].name, mean),
+          "A network learns signals above 0: add an offset to the image");
     signal_means.push_back(mean);
     for (std::size_t i = 0; i < images.size(); ++i) data.noise[i * channels + c] /= mean;
-    for (std::size_t i = 0; i < pixels; ++i) data.y[i * channels + c] = static_cast<float>(data.y[i * channels + c] / mean);
+    for (std::size_t i = 0; i < pixels; ++i)
+      data.y[i * channels + c] = static_cast<float>(data.y[i * channels + c] / mean);
   }
   data.has_noise = !images.front().standard_errors.empty();
   data.tolerance = options.tolerance;
@@ -144,7 +156,8 @@ Lesson gather(const std::vector<TrainingImage>& images, const FacetNetworkParame
     // What never varies says nothing: whatever it is, the network does not see it.
     lesson.scales[i] = deviation > 1e-6 ? 1 / deviation : 0;
     for (std::size_t p = 0; p < pixels; ++p)
-      data.x[p * inputs + i] = static_cast<float>((data.x[p * inputs + i] - mean) * lesson.scales[i]);
+      data.x[p * inputs + i] =
+          static_cast<float>((data.x[p * inputs + i] - mean) * lesson.scales[i]);
   }
   return lesson;
 }
@@ -182,7 +195,8 @@ void fold(const Lesson& lesson, DenseLayer& layer) {
 
 std::vector<FacetScale> network_scales(double pixel_nm, double range_nm) {
   std::vector<FacetScale> scales = thesis_scales();
-  while (scales.size() > fewest_scales && scales.back().sigma_px * pixel_nm > widest_sigma * range_nm)
+  while (scales.size() > fewest_scales &&
+         scales.back().sigma_px * pixel_nm > widest_sigma * range_nm)
     scales.pop_back();
   return scales;
 }
@@ -196,7 +210,8 @@ std::vector<double> network_sky_edges(double pixel_nm, double range_nm) {
   return edges;
 }
 
-FacetNetworkFit fit_facet_network(const std::vector<TrainingImage>& images, const std::vector<std::string>& channels,
+FacetNetworkFit fit_facet_network(const std::vector<TrainingImage>& images,
+                                  const std::vector<std::string>& channels,
                                   const FacetNetworkFitOptions& options) {
   validate(options);
   validate(images);
@@ -204,11 +219,13 @@ FacetNetworkFit fit_facet_network(const std::vector<TrainingImage>& images, cons
   FacetNetworkFit fit;
   FacetNetworkParameters& p = fit.parameters;
   p.scales = options.scales.empty() ? network_scales(pixel_nm, options.range_nm) : options.scales;
-  p.sky_edges_nm = options.sky_edges_nm.empty() ? network_sky_edges(pixel_nm, options.range_nm) : options.sky_edges_nm;
+  p.sky_edges_nm = options.sky_edges_nm.empty() ? network_sky_edges(pixel_nm, options.range_nm)
+                                                : options.sky_edges_nm;
   for (const std::string& name : channels) p.channels.push_back({name, 1});
   if (images.front().images.size() != channels.size())
-    throw InvalidInput(subject, fmt::format("there are {} images of each surface for {} channels",
-                                            images.front().images.size(), channels.size()),
+    throw InvalidInput(subject,
+                       fmt::format("there are {} images of each surface for {} channels",
+                                   images.front().images.size(), channels.size()),
                        "Name one channel for each");
 
   std::vector<double> signal_means;
@@ -217,7 +234,8 @@ FacetNetworkFit fit_facet_network(const std::vector<TrainingImage>& images, cons
   sizes.insert(sizes.end(), options.hidden.begin(), options.hidden.end());
   sizes.push_back(lesson.data.outputs);
   p.layers = first_guess(sizes, options.seed);
-  const TrainerResult result = train_network(lesson.data, {options.iterations, options.decay, options.threads, options.watch}, p.layers);
+  const TrainerResult result = train_network(
+      lesson.data, {options.iterations, options.decay, options.threads, options.watch}, p.layers);
   fold(lesson, p.layers.front());
   for (std::size_t c = 0; c < channels.size(); ++c) p.channels[c].scale = signal_means[c];
   fit.cost = result.cost;
@@ -227,9 +245,10 @@ FacetNetworkFit fit_facet_network(const std::vector<TrainingImage>& images, cons
   for (const DenseLayer& layer : p.layers) numbers += layer.weights.size() + layer.biases.size();
   const std::size_t pixels = lesson.data.image.size();
   if (pixels < 20 * numbers)
-    fit.warnings.push_back(fmt::format("{} pixels are few for a network of {} numbers: it may have learnt their "
-                                       "noise. Give more or larger images, or fewer hidden units",
-                                       pixels, numbers));
+    fit.warnings.push_back(
+        fmt::format("{} pixels are few for a network of {} numbers: it may have learnt their "
+                    "noise. Give more or larger images, or fewer hidden units",
+                    pixels, numbers));
   ModelScope scope;
   scope.pixel_nm = pixel_nm;
   fit.residuals = residuals_of(*make_facet_network(scope, p), images, options.threads);

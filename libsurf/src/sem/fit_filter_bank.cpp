@@ -5,12 +5,12 @@
 #include <cmath>
 #include <cstdint>
 
-#include <Eigen/Dense>
 #include <fmt/format.h>
+#include <Eigen/Dense>
 
 #include "bank_engine.h"
-#include "model_input.h"
 #include "core/argument.h"
+#include "model_input.h"
 #include "surf/core/error.h"
 
 namespace surf {
@@ -20,7 +20,8 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 using facet::Block;
 
-// Above it, surfaces a little unlike those trained on get errors many times larger: docs/methods/filter_bank.md.
+// Above it, surfaces a little unlike those trained on get errors many times larger:
+// docs/methods/filter_bank.md.
 constexpr double trusted_condition = 100;
 constexpr double pixels_per_unknown = 20;
 
@@ -47,7 +48,8 @@ void merge(MatrixXd& sum, const MatrixXd& next) {
   sum = triangle(both);
 }
 
-/// Triangles of what all pixels say. Columns: 1, outputs; and for each channel those and its image, weighted.
+/// Triangles of what all pixels say. Columns: 1, outputs; and for each channel those and its image,
+/// weighted.
 struct Triangles {
   MatrixXd outputs;
   std::vector<MatrixXd> channels;
@@ -72,7 +74,8 @@ Rows collect(const TrainingImage& image, const Block& block, int columns,
       rows.pixels.push_back(pixel);
       at.push_back(y * 3 * columns + x);
     }
-  rows.outputs.resize(static_cast<Eigen::Index>(at.size()), 1 + 3 * static_cast<Eigen::Index>(scales.size()));
+  rows.outputs.resize(static_cast<Eigen::Index>(at.size()),
+                      1 + 3 * static_cast<Eigen::Index>(scales.size()));
   rows.outputs.col(0).setOnes();
   for (std::size_t s = 0; s < scales.size(); ++s)
     for (int kind = 0; kind < 3; ++kind)
@@ -82,7 +85,8 @@ Rows collect(const TrainingImage& image, const Block& block, int columns,
   return rows;
 }
 
-/// With `misfit`, the variance of each channel that is not noise, pixels weigh 1 / (standard error^2 + misfit).
+/// With `misfit`, the variance of each channel that is not noise, pixels weigh 1 / (standard
+/// error^2 + misfit).
 Triangles reduce(const TrainingImage& image, const Rows& rows, const std::vector<double>& misfit) {
   Triangles result;
   result.pixels = static_cast<std::int64_t>(rows.pixels.size());
@@ -105,23 +109,26 @@ Triangles reduce(const TrainingImage& image, const Rows& rows, const std::vector
   return result;
 }
 
-Triangles reduce(const std::vector<TrainingImage>& images, const FilterBankParameters& bank, int threads,
-                 const std::vector<double>& misfit) {
+Triangles reduce(const std::vector<TrainingImage>& images, const FilterBankParameters& bank,
+                 int threads, const std::vector<double>& misfit) {
   Triangles sum;
   sum.channels.resize(images.front().images.size());
   for (const TrainingImage& image : images) {
     const HeightField& field = image.field;
-    const BankEngine<double> engine(bank, field.pitch_x_nm, field.pitch_y_nm,
-                                    {.edge = image.edge, .threads = threads, .double_precision = true});
+    const BankEngine<double> engine(
+        bank, field.pitch_x_nm, field.pitch_y_nm,
+        {.edge = image.edge, .threads = threads, .double_precision = true});
     // Merged in the order of the blocks, whichever thread was first.
     std::vector<Triangles> parts(engine.blocks(field.z_nm).size());
-    engine.invariants(field.z_nm, [&](std::size_t i, const Block& block, int columns, const auto& scales) {
-      parts[i] = reduce(image, collect(image, block, columns, scales), misfit);
-    });
+    engine.invariants(field.z_nm,
+                      [&](std::size_t i, const Block& block, int columns, const auto& scales) {
+                        parts[i] = reduce(image, collect(image, block, columns, scales), misfit);
+                      });
     for (const Triangles& part : parts) {
       if (part.pixels == 0) continue;
       merge(sum.outputs, part.outputs);
-      for (std::size_t c = 0; c < sum.channels.size(); ++c) merge(sum.channels[c], part.channels[c]);
+      for (std::size_t c = 0; c < sum.channels.size(); ++c)
+        merge(sum.channels[c], part.channels[c]);
       sum.pixels += part.pixels;
     }
   }
@@ -164,8 +171,8 @@ double solve(const MatrixXd& weighted, const Components& components, FilterBankC
   const Eigen::Index n = weighted.cols() - 2, kept = components.directions.cols();
   MatrixXd a(weighted.rows(), kept + 1);
   a.col(0) = weighted.col(0);
-  a.rightCols(kept) =
-      (weighted.middleCols(1, n) - weighted.col(0) * components.mean.transpose()) * components.directions;
+  a.rightCols(kept) = (weighted.middleCols(1, n) - weighted.col(0) * components.mean.transpose()) *
+                      components.directions;
   const VectorXd singular = Eigen::JacobiSVD<MatrixXd>(a).singularValues();
   const double condition = singular[0] / std::max(singular[kept], 1e-16 * singular[0]);
   // Columns of one length lose fewer digits.
@@ -185,7 +192,8 @@ double solve(const MatrixXd& weighted, const Components& components, FilterBankC
   return condition;
 }
 
-void solve(const std::vector<MatrixXd>& weighted, const Components& components, FilterBankFit& fit) {
+void solve(const std::vector<MatrixXd>& weighted, const Components& components,
+           FilterBankFit& fit) {
   fit.condition_number = 0;
   for (std::size_t c = 0; c < weighted.size(); ++c) {
     FilterBankChannel& channel = fit.parameters.channels[c];
@@ -196,27 +204,34 @@ void solve(const std::vector<MatrixXd>& weighted, const Components& components, 
 
 void warn(FilterBankFit& fit, std::int64_t pixels) {
   if (fit.components == 0)
-    fit.warnings.push_back("The surfaces have no relief to learn from: the model is a constant. "
-                           "Train on rougher ones");
+    fit.warnings.push_back(
+        "The surfaces have no relief to learn from: the model is a constant. "
+        "Train on rougher ones");
   if (fit.condition_number > trusted_condition)
-    fit.warnings.push_back(fmt::format(
-        "The least squares is ill-conditioned (condition number {:.2g}, {:.0f} at most is sound): the model may be "
-        "far off on surfaces that it was not trained on. Raise the eigenvalue cut-off or train on more kinds of "
-        "surfaces", fit.condition_number, trusted_condition));
+    fit.warnings.push_back(
+        fmt::format("The least squares is ill-conditioned (condition number {:.2g}, {:.0f} at most "
+                    "is sound): the model may be "
+                    "far off on surfaces that it was not trained on. Raise the eigenvalue cut-off "
+                    "or train on more kinds of "
+                    "surfaces",
+                    fit.condition_number, trusted_condition));
   if (static_cast<double>(pixels) < pixels_per_unknown * (fit.components + 1))
-    fit.warnings.push_back(fmt::format("{} pixels are few for {} unknowns a channel: train on more or larger images",
-                                       pixels, fit.components + 1));
+    fit.warnings.push_back(
+        fmt::format("{} pixels are few for {} unknowns a channel: train on more or larger images",
+                    pixels, fit.components + 1));
 }
 
 }  // namespace
 
-FilterBankFit fit_filter_bank(const std::vector<TrainingImage>& images, const std::vector<std::string>& channels,
+FilterBankFit fit_filter_bank(const std::vector<TrainingImage>& images,
+                              const std::vector<std::string>& channels,
                               const FilterBankFitOptions& options) {
   require_not_negative(options.eigenvalue_cutoff, "eigenvalue cut-off");
   validate(images);
   if (channels.size() != images.front().images.size())
-    throw InvalidInput("training", fmt::format("there are {} names for {} channels", channels.size(),
-                                               images.front().images.size()),
+    throw InvalidInput("training",
+                       fmt::format("there are {} names for {} channels", channels.size(),
+                                   images.front().images.size()),
                        "Give one for each channel");
   FilterBankFit fit;
   FilterBankParameters& bank = fit.parameters;
@@ -226,19 +241,20 @@ FilterBankFit fit_filter_bank(const std::vector<TrainingImage>& images, const st
     const std::vector<double> none(options.scales.size());
     bank.channels.push_back({name, 0, none, none, none});
   }
-  make_filter_bank({}, bank);   // throws where something is out of range
+  make_filter_bank({}, bank);  // throws where something is out of range
   for (const TrainingImage& image : images) check_span(image.field);
 
   const Triangles sum = reduce(images, bank, options.threads, {});
   if (sum.pixels == 0) throw InvalidInput("training", "no pixel is used", "Mark some as used");
-  const Components components = principal_components(sum.outputs, sum.pixels, options.eigenvalue_cutoff);
+  const Components components =
+      principal_components(sum.outputs, sum.pixels, options.eigenvalue_cutoff);
   fit.eigenvalues = components.eigenvalues;
   fit.components = static_cast<int>(components.directions.cols());
   solve(sum.channels, components, fit);
   fit.residuals = residuals_of(*make_filter_bank({}, bank), images, options.threads);
-  const bool known_errors = std::any_of(images.begin(), images.end(), [](const TrainingImage& image) {
-    return !image.standard_errors.empty();
-  });
+  const bool known_errors =
+      std::any_of(images.begin(), images.end(),
+                  [](const TrainingImage& image) { return !image.standard_errors.empty(); });
   if (known_errors) {
     std::vector<double> misfit;
     for (const ModelResidual& r : fit.residuals) misfit.push_back(r.rms * r.rms);

@@ -12,8 +12,8 @@
 namespace surf {
 namespace {
 
-/// The standard normal number of x, its density, and the derivatives of its distribution function by median,
-/// logarithm of the scale, and logarithm of the shape.
+/// The standard normal number of x, its density, and the derivatives of its distribution function
+/// by median, logarithm of the scale, and logarithm of the shape.
 struct Edge {
   double z = 0;
   double by[3] = {0, 0, 0};
@@ -49,7 +49,7 @@ class Likelihood final : public solvers::SmoothFunction {
     for (std::size_t k = 0; k < counts_.size(); ++k) {
       if (counts_[k] == 0) continue;
       const double probability = d.probability(static_cast<std::int64_t>(k));
-      if (!(probability > 0)) return false;   // outside: the line search comes back
+      if (!(probability > 0)) return false;  // outside: the line search comes back
       const double share = static_cast<double>(counts_[k]) / trials_, x = static_cast<double>(k);
       *cost -= share * std::log(probability);
       if (!gradient) continue;
@@ -78,7 +78,8 @@ double shape_of(double skewness) {
 
 LogNormalCounts fit_log_normal(const CountHistogram& counts) {
   const CountMoments m = moments(counts);
-  if (!(m.variance > 0)) throw InvalidInput("counts", "all trials gave the same count", "Use more primaries in a trial");
+  if (!(m.variance > 0))
+    throw InvalidInput("counts", "all trials gave the same count", "Use more primaries in a trial");
   const Likelihood likelihood(counts, static_cast<double>(m.trials));
   solvers::MinimiseOptions how;
   how.search = solvers::Search::bfgs;
@@ -90,14 +91,17 @@ LogNormalCounts fit_log_normal(const CountHistogram& counts) {
   double best_cost = std::numeric_limits<double>::infinity();
   LogNormalCounts best{m.mean, std::sqrt(m.variance), 0};
   for (const double shape : {shape_of(m.skewness), 0.05, 0.3, 1.0}) {
-    const double variance_per_scale = std::expm1(shape * shape) * std::exp(shape * shape) / (shape * shape);
+    const double variance_per_scale =
+        std::expm1(shape * shape) * std::exp(shape * shape) / (shape * shape);
     const double scale = std::sqrt(m.variance / variance_per_scale);
     const double median = m.mean - scale * std::expm1(0.5 * shape * shape) / shape;
     double p[3] = {median, std::log(scale), std::log(shape)};
     double cost = 0;
     if (!likelihood.evaluate(p, &cost, nullptr)) continue;
-    const solvers::Minimised done = solvers::solvers().minimise(likelihood, std::span<double>(p), how);
-    const bool usable = done.ended == solvers::Ended::settled || done.ended == solvers::Ended::iterations;
+    const solvers::Minimised done =
+        solvers::solvers().minimise(likelihood, std::span<double>(p), how);
+    const bool usable =
+        done.ended == solvers::Ended::settled || done.ended == solvers::Ended::iterations;
     if (!usable || !(done.value < best_cost)) continue;
     best_cost = done.value;
     best = {p[0], std::exp(p[1]), std::exp(p[2])};

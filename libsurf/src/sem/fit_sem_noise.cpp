@@ -14,14 +14,19 @@ namespace {
 constexpr std::size_t least_pixels = 16, most_bins = 30, least_in_bin = 100;
 
 Grid<unsigned char> pixels_that_count(const Grid<double>& real, const Grid<double>& mean,
-                                      const Grid<unsigned char>& used, const SemNoiseOptions& options,
-                                      SemNoiseEstimate& e) {
-  const auto differs = [&](const auto& grid) { return grid.width() != real.width() || grid.height() != real.height(); };
+                                      const Grid<unsigned char>& used,
+                                      const SemNoiseOptions& options, SemNoiseEstimate& e) {
+  const auto differs = [&](const auto& grid) {
+    return grid.width() != real.width() || grid.height() != real.height();
+  };
   if (real.empty() || differs(mean) || (!used.empty() && differs(used)))
-    throw InvalidInput("SEM noise", "the image, its mean and the mask differ in size", "Give them pixel on pixel");
+    throw InvalidInput("SEM noise", "the image, its mean and the mask differ in size",
+                       "Give them pixel on pixel");
   for (std::size_t i = 0; i < real.size(); ++i)
-    if ((used.empty() || used.data()[i]) && !(std::isfinite(real.data()[i]) && std::isfinite(mean.data()[i])))
-      throw InvalidInput("SEM noise", "a pixel that counts is not finite", "Leave it out by the mask");
+    if ((used.empty() || used.data()[i]) &&
+        !(std::isfinite(real.data()[i]) && std::isfinite(mean.data()[i])))
+      throw InvalidInput("SEM noise", "a pixel that counts is not finite",
+                         "Leave it out by the mask");
   const Saturation saturated = find_saturation(real, used, options, e);
   Grid<unsigned char> counts(real.width(), real.height());
   for (std::size_t i = 0; i < real.size(); ++i)
@@ -73,20 +78,24 @@ double kurtosis_of(const Grid<double>& white, const Grid<unsigned char>& counts)
 
 }  // namespace
 
-SemNoiseEstimate fit_sem_noise(const Grid<double>& real, const Grid<double>& mean, const Grid<unsigned char>& used,
-                               const SemNoiseOptions& options) {
+SemNoiseEstimate fit_sem_noise(const Grid<double>& real, const Grid<double>& mean,
+                               const Grid<unsigned char>& used, const SemNoiseOptions& options) {
   check_options(options);
   SemNoiseEstimate e;
   const Grid<unsigned char> counts = pixels_that_count(real, mean, used, options, e);
   const std::vector<Residual> residuals = residuals_by_mean(real, mean, counts);
   const std::size_t n = residuals.size();
   if (n < least_pixels)
-    throw InvalidInput("SEM noise", fmt::format("{} pixels count", n), "Use 16 or more that are not saturated");
+    throw InvalidInput("SEM noise", fmt::format("{} pixels count", n),
+                       "Use 16 or more that are not saturated");
   double mean_square = 0;
   for (const Residual& r : residuals) mean_square += r.value * r.value / static_cast<double>(n);
-  if (!(mean_square > 0)) throw InvalidInput("SEM noise", "the model is the image: there is no noise", "Give a real image");
+  if (!(mean_square > 0))
+    throw InvalidInput("SEM noise", "the model is the image: there is no noise",
+                       "Give a real image");
 
-  // Each squared residual is a variance with one degree of freedom. Its fit is that of greatest likelihood.
+  // Each squared residual is a variance with one degree of freedom. Its fit is that of greatest
+  // likelihood.
   const double least = std::max(options.least_share * mean_square, e.quantum * e.quantum / 12);
   std::vector<VariancePoint> pixels;
   for (const Residual& r : residuals) pixels.push_back({r.mean, r.value * r.value, 1});
@@ -97,9 +106,10 @@ SemNoiseEstimate fit_sem_noise(const Grid<double>& real, const Grid<double>& mea
   e.excess_kurtosis = kurtosis_of(white, counts);
   const double spread = std::max(2 * e.correlation_squares + e.excess_kurtosis, 0.2) / 2;
   const double range = residuals.back().mean - residuals.front().mean;
-  e.slope_known = line.covariance[0] > 0 &&
-                  std::sqrt(spread * line.covariance[0]) * 0.5 * range <=
-                      0.5 * e.noise.variance(0.5 * (residuals.front().mean + residuals.back().mean));
+  e.slope_known =
+      line.covariance[0] > 0 &&
+      std::sqrt(spread * line.covariance[0]) * 0.5 * range <=
+          0.5 * e.noise.variance(0.5 * (residuals.front().mean + residuals.back().mean));
   if (!e.slope_known) {
     line = fit_variance_line(pixels, {true, least, 0});
     e.noise = {line.slope, line.intercept, least};

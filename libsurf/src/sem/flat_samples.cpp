@@ -7,8 +7,19 @@
 
 namespace surf {
 
-const std::array<Lag, lag_count> lags{{{0, 0}, {1, 0}, {2, 0}, {-2, 1}, {-1, 1}, {0, 1}, {1, 1}, {2, 1},
-                                       {-2, 2}, {-1, 2}, {0, 2}, {1, 2}, {2, 2}}};
+const std::array<Lag, lag_count> lags{{{0, 0},
+                                       {1, 0},
+                                       {2, 0},
+                                       {-2, 1},
+                                       {-1, 1},
+                                       {0, 1},
+                                       {1, 1},
+                                       {2, 1},
+                                       {-2, 2},
+                                       {-1, 2},
+                                       {0, 2},
+                                       {1, 2},
+                                       {2, 2}}};
 
 namespace {
 
@@ -23,7 +34,8 @@ double dot(const std::vector<double>& a, const std::vector<double>& b) {
 
 /// Calls visit(i, j) for each pair of pixels that are a lag apart.
 template <class Visit>
-void each_pair(int width, int height, const std::vector<int>& index, const Lag& lag, const Visit& visit) {
+void each_pair(int width, int height, const std::vector<int>& index, const Lag& lag,
+               const Visit& visit) {
   for (int y = 0; y + lag.dy < height; ++y)
     for (int x = std::max(0, -lag.dx); x < width - std::max(0, lag.dx); ++x) {
       const int i = index[static_cast<std::size_t>(y * width + x)];
@@ -43,7 +55,7 @@ void orthonormalise(std::vector<std::vector<double>>& columns) {
         for (std::size_t i = 0; i < column.size(); ++i) column[i] -= share * k[i];
       }
     const double length = std::sqrt(dot(column, column));
-    if (!(length > 1e-9 * before)) continue;   // as of a rectangle one pixel wide
+    if (!(length > 1e-9 * before)) continue;  // as of a rectangle one pixel wide
     for (double& v : column) v /= length;
     kept.push_back(std::move(column));
   }
@@ -58,7 +70,8 @@ const FlatSamples::Basis& FlatSamples::basis_of(const PixelRectangle& r) {
   int n = 0;
   for (int y = 0; y < h; ++y)
     for (int x = 0; x < w; ++x)
-      if (valid_.empty() || valid_(r.x0 + x, r.y0 + y)) index[static_cast<std::size_t>(y * w + x)] = n++;
+      if (valid_.empty() || valid_(r.x0 + x, r.y0 + y))
+        index[static_cast<std::size_t>(y * w + x)] = n++;
   if (basis_.width == w && basis_.height == h && basis_.index == index) return basis_;
   basis_ = {w, h, std::move(index), {}, static_cast<int>(responses.size())};
   for (int power = 0; power <= degree_; ++power)
@@ -67,7 +80,8 @@ const FlatSamples::Basis& FlatSamples::basis_of(const PixelRectangle& r) {
       for (int y = 0; y < h; ++y)
         for (int x = 0; x < w; ++x)
           if (basis_.index[static_cast<std::size_t>(y * w + x)] >= 0)
-            column.push_back(std::pow(2.0 * x / w - 1, power - of_y) * std::pow(2.0 * y / h - 1, of_y));
+            column.push_back(std::pow(2.0 * x / w - 1, power - of_y) *
+                             std::pow(2.0 * y / h - 1, of_y));
       basis_.columns.push_back(std::move(column));
     }
   orthonormalise(basis_.columns);
@@ -75,12 +89,12 @@ const FlatSamples::Basis& FlatSamples::basis_of(const PixelRectangle& r) {
   return basis_;
 }
 
-// With S_k the symmetric matrix of pairs k apart (half of it for k = 0: the identity) and M = 1 - Q Q' what
-// takes the polynomial off, noise of variance 1 and correlation r_k has E[e' S_h e] = sum over k of
-// r_k tr(S_h M S_k M), and tr = tr(S_h S_k) - 2 tr(Q' S_h S_k Q) + tr(Q' S_h Q Q' S_k Q).
+// With S_k the symmetric matrix of pairs k apart (half of it for k = 0: the identity) and M = 1 - Q
+// Q' what takes the polynomial off, noise of variance 1 and correlation r_k has E[e' S_h e] = sum
+// over k of r_k tr(S_h M S_k M), and tr = tr(S_h S_k) - 2 tr(Q' S_h S_k Q) + tr(Q' S_h Q Q' S_k Q).
 LagResponse FlatSamples::response_of(const Basis& b) {
   const std::size_t n = b.columns.empty() ? 0 : b.columns.front().size(), m = b.columns.size();
-  std::vector<std::vector<std::vector<double>>> shifted(lag_count);   // S_k q
+  std::vector<std::vector<std::vector<double>>> shifted(lag_count);  // S_k q
   LagSums count{};
   for (std::size_t k = 0; k < lag_count; ++k)
     for (const std::vector<double>& q : b.columns) {
@@ -88,16 +102,16 @@ LagResponse FlatSamples::response_of(const Basis& b) {
       count[k] = 0;
       if (k == 0) s = q, count[k] = static_cast<double>(n);
       else
-        each_pair(b.width, b.height, b.index, lags[k], [&](std::size_t i, std::size_t j) {
-          s[i] += q[j], s[j] += q[i], count[k] += 2;
-        });
+        each_pair(b.width, b.height, b.index, lags[k],
+                  [&](std::size_t i, std::size_t j) { s[i] += q[j], s[j] += q[i], count[k] += 2; });
       shifted[k].push_back(std::move(s));
     }
-  std::vector<Eigen::MatrixXd> inner(lag_count, Eigen::MatrixXd(m, m));   // Q' S_k Q
+  std::vector<Eigen::MatrixXd> inner(lag_count, Eigen::MatrixXd(m, m));  // Q' S_k Q
   for (std::size_t k = 0; k < lag_count; ++k)
     for (std::size_t i = 0; i < m; ++i)
       for (std::size_t j = 0; j < m; ++j)
-        inner[k](static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) = dot(b.columns[i], shifted[k][j]);
+        inner[k](static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) =
+            dot(b.columns[i], shifted[k][j]);
   LagResponse response{};
   for (std::size_t h = 0; h < lag_count; ++h)
     for (std::size_t k = 0; k < lag_count; ++k) {
@@ -153,7 +167,8 @@ LagSums pooled_correlation(const FlatSamples& flat, const std::vector<double>& v
       products[static_cast<Eigen::Index>(h)] += s.products[h] / variances[i];
       pairs[h] += s.pairs[h];
       for (std::size_t k = 0; k < lag_count; ++k)
-        response(static_cast<Eigen::Index>(h), static_cast<Eigen::Index>(k)) += r[h * lag_count + k];
+        response(static_cast<Eigen::Index>(h), static_cast<Eigen::Index>(k)) +=
+            r[h * lag_count + k];
     }
   }
   LagSums correlation{1};

@@ -24,14 +24,14 @@ struct FlatSample {
   PixelRectangle region;
   std::int64_t pixels = 0;
   double mean = 0;
-  double squares = 0, fourths = 0;   ///< sums of powers of the residuals
-  LagSums products{};                ///< of residuals so far apart, summed; the first is `squares`
-  LagSums pairs{};                   ///< number of them
-  int geometry = 0;                  ///< index of its `LagResponse`
+  double squares = 0, fourths = 0;  ///< sums of powers of the residuals
+  LagSums products{};               ///< of residuals so far apart, summed; the first is `squares`
+  LagSums pairs{};                  ///< number of them
+  int geometry = 0;                 ///< index of its `LagResponse`
 };
 
-/// What noise of each correlation adds to the expected `products` of a place, per unit of variance: the
-/// polynomial takes some of the noise with it. Row-major, products by correlations.
+/// What noise of each correlation adds to the expected `products` of a place, per unit of variance:
+/// the polynomial takes some of the noise with it. Row-major, products by correlations.
 using LagResponse = std::array<double, lag_count * lag_count>;
 
 /// Collects samples; places without holes of the same size share their response.
@@ -52,8 +52,8 @@ class FlatSamples {
  private:
   struct Basis {
     int width = 0, height = 0;
-    std::vector<int> index;                      ///< of a pixel of the rectangle; -1: not valid
-    std::vector<std::vector<double>> columns;    ///< orthonormal, over the valid pixels
+    std::vector<int> index;                    ///< of a pixel of the rectangle; -1: not valid
+    std::vector<std::vector<double>> columns;  ///< orthonormal, over the valid pixels
     int geometry = 0;
   };
   const Basis& basis_of(const PixelRectangle& region);
@@ -65,14 +65,17 @@ class FlatSamples {
   Basis basis_;
 };
 
-/// The noise's correlation at each lag, 1 first, from residuals of many places, each over its `variances` (one
-/// per sample; 0: it does not count). What is within four standard errors of 0 is 0.
+/// The noise's correlation at each lag, 1 first, from residuals of many places, each over its
+/// `variances` (one per sample; 0: it does not count). What is within four standard errors of 0 is
+/// 0.
 LagSums pooled_correlation(const FlatSamples& flat, const std::vector<double>& variances);
 
 /// Variance of the noise in a place, free of what the polynomial took.
-double variance_of(const FlatSample& sample, const LagResponse& response, const LagSums& correlation);
+double variance_of(const FlatSample& sample, const LagResponse& response,
+                   const LagSums& correlation);
 
-/// Share of the residuals' power in means of 3 x 3 pixels, times 9: 1 for white noise, 9 for slow structure.
+/// Share of the residuals' power in means of 3 x 3 pixels, times 9: 1 for white noise, 9 for slow
+/// structure.
 double slow_share(const FlatSample& sample);
 
 /// Sum over all distances, those on the other side too.

@@ -8,18 +8,21 @@
 
 namespace surf {
 
-FilterBankParameters fold_calibration(const FilterBankParameters& parameters, const std::vector<double>& gains,
-                                      double offset) {
+FilterBankParameters fold_calibration(const FilterBankParameters& parameters,
+                                      const std::vector<double>& gains, double offset) {
   if (gains.size() != parameters.channels.size())
-    throw InvalidInput("calibration", fmt::format("has {} gains for {} channels", gains.size(),
-                                                  parameters.channels.size()),
-                       "Give one for each channel");
+    throw InvalidInput(
+        "calibration",
+        fmt::format("has {} gains for {} channels", gains.size(), parameters.channels.size()),
+        "Give one for each channel");
   FilterBankParameters folded{parameters.scales, parameters.multi_resolution, {}};
   const std::vector<double> none(parameters.scales.size());
-  FilterBankChannel& signal = folded.channels.emplace_back(FilterBankChannel{"signal", offset, none, none, none});
+  FilterBankChannel& signal =
+      folded.channels.emplace_back(FilterBankChannel{"signal", offset, none, none, none});
   for (std::size_t c = 0; c < gains.size(); ++c) {
     if (!std::isfinite(gains[c]))
-      throw InvalidInput("calibration", fmt::format("a gain is {}", gains[c]), "Gains must be finite");
+      throw InvalidInput("calibration", fmt::format("a gain is {}", gains[c]),
+                         "Gains must be finite");
     const FilterBankChannel& channel = parameters.channels[c];
     signal.offset += gains[c] * channel.offset;
     for (std::size_t i = 0; i < none.size(); ++i) {
@@ -28,7 +31,7 @@ FilterBankParameters fold_calibration(const FilterBankParameters& parameters, co
       signal.min_curvature[i] += gains[c] * channel.min_curvature.at(i);
     }
   }
-  make_filter_bank({}, folded);   // throws where something is out of range
+  make_filter_bank({}, folded);  // throws where something is out of range
   return folded;
 }
 

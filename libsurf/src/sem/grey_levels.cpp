@@ -41,7 +41,7 @@ double quantum_of(const std::vector<Level>& levels) {
   }
   if (pixels < 2 * static_cast<std::int64_t>(levels.size())) return 0;
   const double range = levels.back().value - levels.front().value;
-  step = range / std::round(range / step);   // of levels that were rounded themselves
+  step = range / std::round(range / step);  // of levels that were rounded themselves
   for (const Level& level : levels) {
     const double steps = (level.value - levels.front().value) / step;
     if (std::fabs(steps - std::round(steps)) > 1e-3) return 0;
@@ -52,9 +52,11 @@ double quantum_of(const std::vector<Level>& levels) {
 bool is_pile(const std::vector<Level>& levels, bool top) {
   if (levels.size() < least_levels) return false;
   std::int64_t beside = 0;
-  for (std::size_t i = 1; i <= neighbours; ++i) beside += levels[top ? levels.size() - 1 - i : i].pixels;
+  for (std::size_t i = 1; i <= neighbours; ++i)
+    beside += levels[top ? levels.size() - 1 - i : i].pixels;
   const std::int64_t here = (top ? levels.back() : levels.front()).pixels;
-  return here > least_pile && static_cast<double>(here) > 3.0 * static_cast<double>(beside) / neighbours;
+  return here > least_pile &&
+         static_cast<double>(here) > 3.0 * static_cast<double>(beside) / neighbours;
 }
 
 }  // namespace

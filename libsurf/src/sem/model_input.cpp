@@ -13,12 +13,14 @@
 namespace surf {
 namespace {
 
-constexpr double most_span = 1e12;   // in pixels, and nm/pixel^2: the squares of curvatures fit into float
+constexpr double most_span =
+    1e12;  // in pixels, and nm/pixel^2: the squares of curvatures fit into float
 
 void check_finite(const Grid<double>& values, const Grid<double>& z_nm, const char* subject) {
   if (values.width() != z_nm.width() || values.height() != z_nm.height())
-    throw InvalidInput(subject, fmt::format("has {} x {} pixels, the heights have {} x {}", values.width(),
-                                            values.height(), z_nm.width(), z_nm.height()),
+    throw InvalidInput(subject,
+                       fmt::format("has {} x {} pixels, the heights have {} x {}", values.width(),
+                                   values.height(), z_nm.width(), z_nm.height()),
                        "Give one value for each sample");
   for (const double value : values.data())
     if (!std::isfinite(value))
@@ -31,15 +33,18 @@ void check_span(const HeightField& field) {
   const auto [low, high] = std::minmax_element(field.z_nm.data().begin(), field.z_nm.data().end());
   const double pitch = std::min(field.pitch_x_nm, field.pitch_y_nm), span = (*high - *low) / pitch;
   if (span <= most_span && span / pitch <= most_span) return;
-  throw InvalidInput("height field", fmt::format("spans {} nm at samples {} nm apart", format_exact(*high - *low),
-                                                 format_exact(pitch)),
+  throw InvalidInput("height field",
+                     fmt::format("spans {} nm at samples {} nm apart", format_exact(*high - *low),
+                                 format_exact(pitch)),
                      "No image model holds for that: check the units of the heights");
 }
 
 void check_weights(const ModelImages& weights, std::size_t channels, const Grid<double>& z_nm) {
   if (weights.size() != channels)
-    throw InvalidInput("weights", fmt::format("are {} images, the model has {} channels", weights.size(), channels),
-                       "Give one image for each channel");
+    throw InvalidInput(
+        "weights",
+        fmt::format("are {} images, the model has {} channels", weights.size(), channels),
+        "Give one image for each channel");
   for (const Grid<double>& image : weights) check_finite(image, z_nm, "weights");
 }
 
@@ -60,7 +65,8 @@ void check_channels(const std::vector<std::string>& names, const char* subject) 
   for (const std::string& name : names) {
     if (name.empty()) throw InvalidInput(subject, "has a channel without a name", "Name it");
     if (!seen.insert(name).second)
-      throw InvalidInput(subject, fmt::format("has two channels \"{}\"", name), "Give each its own name");
+      throw InvalidInput(subject, fmt::format("has two channels \"{}\"", name),
+                         "Give each its own name");
   }
 }
 

@@ -8,7 +8,8 @@
 
 namespace surf {
 
-/// Throws InvalidInput where heights span so much that single precision cannot hold their curvatures.
+/// Throws InvalidInput where heights span so much that single precision cannot hold their
+/// curvatures.
 void check_span(const HeightField& field);
 
 /// Throws InvalidInput unless there is a finite image of the heights' size for each channel.
@@ -17,8 +18,8 @@ void check_weights(const ModelImages& weights, std::size_t channels, const Grid<
 /// Throws InvalidInput unless the change of heights is finite and of their size.
 void check_change(const Grid<double>& dz_nm, const Grid<double>& z_nm);
 
-/// A power of two near the largest magnitude, by which values can be divided without a change to their
-/// digits, to keep them in single precision's range; 0 if all are 0.
+/// A power of two near the largest magnitude, by which values can be divided without a change to
+/// their digits, to keep them in single precision's range; 0 if all are 0.
 double magnitude(const std::vector<double>& values);
 
 /// Throws InvalidInput unless there are 1 to 8 channels of different names, none empty.

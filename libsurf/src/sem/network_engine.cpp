@@ -26,8 +26,8 @@ double length_nm(const FacetScale& scale, double pitch_nm) {
 template <class T>
 struct NetworkEngine<T>::Worker {
   typename facet::FacetPass<T>::Scratch scratch, along;
-  AlignedVector<T> inputs;            // [row][input][column]
-  AlignedVector<T> values, slopes;    // of the units at a row
+  AlignedVector<T> inputs;          // [row][input][column]
+  AlignedVector<T> values, slopes;  // of the units at a row
   AlignedVector<T> in, out, work, along_sky;
 };
 
@@ -41,10 +41,11 @@ template <class T>
 NetworkEngine<T>::NetworkEngine(const FacetNetworkParameters& parameters, double pitch_nm,
                                 const ModelOptions& options)
     : parameters_(parameters), options_(options), pass_(parameters.scales, pitch_nm, pitch_nm),
-      view_(parameters.sky_edges_nm, pitch_nm), loops_(&network::operations<T>(network::Unit::best)),
-      inputs_(network_inputs(parameters)) {
+      view_(parameters.sky_edges_nm, pitch_nm),
+      loops_(&network::operations<T>(network::Unit::best)), inputs_(network_inputs(parameters)) {
   options_.threads = resolve_threads(options.threads);
-  for (const FacetScale& scale : parameters.scales) lengths_.push_back(T(length_nm(scale, pitch_nm)));
+  for (const FacetScale& scale : parameters.scales)
+    lengths_.push_back(T(length_nm(scale, pitch_nm)));
   for (const DenseLayer& layer : parameters.layers) {
     for (const double w : layer.weights) numbers_.push_back(T(w));
     for (const double b : layer.biases) numbers_.push_back(T(b));
@@ -66,8 +67,8 @@ ModelImages NetworkEngine<T>::blank(const Grid<double>& z_nm) const {
 }
 
 template <class T>
-void NetworkEngine<T>::take_inputs(const Grid<double>& z_nm, const Planes& planes, const Block& block,
-                                   Worker& worker) const {
+void NetworkEngine<T>::take_inputs(const Grid<double>& z_nm, const Planes& planes,
+                                   const Block& block, Worker& worker) const {
   const int columns = pass_.columns();
   const std::ptrdiff_t stride = std::ptrdiff_t{inputs_} * columns;
   worker.inputs.resize(static_cast<std::size_t>(block.rows * stride));
@@ -83,15 +84,16 @@ void NetworkEngine<T>::take_inputs(const Grid<double>& z_nm, const Planes& plane
 
 /// Runs the network over the block's inputs and writes what comes out.
 template <class T>
-void NetworkEngine<T>::put(const Block& block, double unit, Worker& worker, ModelImages& images) const {
+void NetworkEngine<T>::put(const Block& block, double unit, Worker& worker,
+                           ModelImages& images) const {
   const int columns = pass_.columns();
   worker.values.resize(static_cast<std::size_t>(units_) * columns);
   worker.slopes.resize(worker.values.size());
   const T* const last = worker.values.data() + (units_ - layers_.back().outputs) * columns;
   for (int y = 0; y < block.rows; ++y) {
     loops_->forward(layers_.data(), static_cast<int>(layers_.size()),
-                    worker.inputs.data() + std::ptrdiff_t{y} * inputs_ * columns, worker.values.data(),
-                    worker.slopes.data());
+                    worker.inputs.data() + std::ptrdiff_t{y} * inputs_ * columns,
+                    worker.values.data(), worker.slopes.data());
     for (std::size_t c = 0; c < images.size(); ++c) {
       const double scale = unit * parameters_.channels[c].scale;
       for (int x = 0; x < block.width; ++x)
@@ -107,10 +109,13 @@ ModelImages NetworkEngine<T>::predict(const Grid<double>& z_nm) const {
   Planes planes{{z_nm, z_nm(0, 0), 1, options_.edge, view_.reach(), pass_.columns()}, {}};
   planes.samples = network::in_plane<T>(view_, planes.heights.stride);
   std::vector<Worker> workers(options_.threads);
-  parallel_for(blocks.size(), options_.threads, [&](std::size_t i, int w) {
-    take_inputs(z_nm, planes, blocks[i], workers[w]);
-    put(blocks[i], 1, workers[w], images);
-  }, options_.watch);
+  parallel_for(
+      blocks.size(), options_.threads,
+      [&](std::size_t i, int w) {
+        take_inputs(z_nm, planes, blocks[i], workers[w]);
+        put(blocks[i], 1, workers[w], images);
+      },
+      options_.watch);
   return images;
 }
 
@@ -127,7 +132,8 @@ void NetworkEngine<T>::inputs(const Grid<double>& z_nm, const Sink& sink) const 
 }
 
 template <class T>
-Grid<double> NetworkEngine<T>::gradient(const Grid<double>& z_nm, const ModelImages& weights) const {
+Grid<double> NetworkEngine<T>::gradient(const Grid<double>& z_nm,
+                                        const ModelImages& weights) const {
   Grid<double> gradient(z_nm.width(), z_nm.height());
   double unit = 0;
   for (std::size_t c = 0; c < weights.size(); ++c)
@@ -139,14 +145,14 @@ Grid<double> NetworkEngine<T>::gradient(const Grid<double>& z_nm, const ModelIma
   const std::vector<Block> blocks = pass_.blocks(z_nm.width(), z_nm.height());
   Planes planes{{z_nm, z_nm(0, 0), 1, options_.edge, view_.reach(), columns}, {}};
   planes.samples = network::in_plane<T>(view_, planes.heights.stride);
-  // What the sky view gives back of a block lies in a tile of its own, added to the others' afterwards, in
-  // the order of the blocks, so that threads change nothing.
+  // What the sky view gives back of a block lies in a tile of its own, added to the others'
+  // afterwards, in the order of the blocks, so that threads change nothing.
   const int reach = view_.reach();
   const std::ptrdiff_t tile_stride = columns + 2 * reach;
   std::vector<std::ptrdiff_t> to;
   for (const network::SkyView::Sample& s : view_.samples()) to.push_back(s.dy * tile_stride + s.dx);
   struct Given {
-    AlignedVector<T> inputs;   // weights of the inputs, [row][input][column]
+    AlignedVector<T> inputs;  // weights of the inputs, [row][input][column]
     AlignedVector<T> tile;
   };
   std::vector<Given> given(blocks.size());
@@ -173,9 +179,10 @@ Grid<double> NetworkEngine<T>::gradient(const Grid<double>& z_nm, const ModelIma
             worker.out[c * columns + x] = T(weights[c](block.x + x, block.y + y) * scale);
         }
         T* const back = mine.inputs.data() + y * stride;
-        loops_->forward(layers_.data(), count, worker.inputs.data() + y * stride, worker.values.data(),
-                        worker.slopes.data());
-        loops_->backward(layers_.data(), count, worker.slopes.data(), worker.out.data(), worker.work.data(), back);
+        loops_->forward(layers_.data(), count, worker.inputs.data() + y * stride,
+                        worker.values.data(), worker.slopes.data());
+        loops_->backward(layers_.data(), count, worker.slopes.data(), worker.out.data(),
+                         worker.work.data(), back);
         if (view_.bands() > 0)
           loops_->sky_back(planes.heights.at(block.x, block.y + y), planes.samples.data(),
                            static_cast<int>(planes.samples.size()), view_.bands(),
@@ -192,7 +199,8 @@ Grid<double> NetworkEngine<T>::gradient(const Grid<double>& z_nm, const ModelIma
         // Beyond the block's width there are none but zeros: their weights are 0.
         for (int x = -reach; x < columns + reach; ++x)
           if (from[x] != 0)
-            gradient(border_sample(block.x + x, z_nm.width(), options_.edge), row) += unit * from[x];
+            gradient(border_sample(block.x + x, z_nm.width(), options_.edge), row) +=
+                unit * from[x];
       }
       given[i].tile = {};
     }
@@ -203,9 +211,10 @@ Grid<double> NetworkEngine<T>::gradient(const Grid<double>& z_nm, const ModelIma
     Worker& worker = workers[w];
     for (std::size_t i = column.x / columns; i < blocks.size(); i += strips) {
       pass_.load(z_nm, options_.edge, blocks[i], worker.scratch, scale);
-      loops_->facets_back(pass_.fit(scale, worker.scratch), blocks[i].rows, lengths_[scale],
-                          given[i].inputs.data() + scale * network::facet_inputs * columns, stride,
-                          out + static_cast<std::ptrdiff_t>(blocks[i].y) * facet::coefficients * columns);
+      loops_->facets_back(
+          pass_.fit(scale, worker.scratch), blocks[i].rows, lengths_[scale],
+          given[i].inputs.data() + scale * network::facet_inputs * columns, stride,
+          out + static_cast<std::ptrdiff_t>(blocks[i].y) * facet::coefficients * columns);
     }
   };
   pass_.transpose(options_.edge, options_.threads, source, unit, gradient);
@@ -234,8 +243,9 @@ ModelImages NetworkEngine<T>::change(const Grid<double>& z_nm, const Grid<double
     pass_.load(direction, options_.edge, block, worker.along);
     worker.in.resize(static_cast<std::size_t>(block.rows * stride));
     for (int s = 0; s < pass_.scales(); ++s)
-      loops_->facets_change(pass_.fit(s, worker.scratch), pass_.fit(s, worker.along), block.rows, lengths_[s],
-                            worker.in.data() + s * network::facet_inputs * columns, stride);
+      loops_->facets_change(pass_.fit(s, worker.scratch), pass_.fit(s, worker.along), block.rows,
+                            lengths_[s], worker.in.data() + s * network::facet_inputs * columns,
+                            stride);
     worker.values.resize(static_cast<std::size_t>(units_) * columns);
     worker.slopes.resize(worker.values.size());
     worker.work.resize(2 * static_cast<std::size_t>(widest_) * columns);
@@ -244,11 +254,12 @@ ModelImages NetworkEngine<T>::change(const Grid<double>& z_nm, const Grid<double
       T* const in = worker.in.data() + y * stride;
       if (view_.bands() > 0)
         loops_->sky_change(planes.heights.at(block.x, block.y + y), moved.at(block.x, block.y + y),
-                           planes.samples.data(), static_cast<int>(planes.samples.size()), view_.bands(),
-                           in + pass_.scales() * network::facet_inputs * columns);
-      loops_->forward(layers_.data(), count, worker.inputs.data() + y * stride, worker.values.data(),
-                      worker.slopes.data());
-      loops_->change(layers_.data(), count, worker.slopes.data(), in, worker.work.data(), worker.out.data());
+                           planes.samples.data(), static_cast<int>(planes.samples.size()),
+                           view_.bands(), in + pass_.scales() * network::facet_inputs * columns);
+      loops_->forward(layers_.data(), count, worker.inputs.data() + y * stride,
+                      worker.values.data(), worker.slopes.data());
+      loops_->change(layers_.data(), count, worker.slopes.data(), in, worker.work.data(),
+                     worker.out.data());
       for (std::size_t c = 0; c < images.size(); ++c)
         for (int x = 0; x < block.width; ++x)
           images[c](block.x + x, block.y + y) =

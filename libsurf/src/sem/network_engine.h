@@ -12,12 +12,13 @@
 
 namespace surf {
 
-/// A network's passes in float or double. Parameters and fields have been checked. Without layers there are
-/// its inputs only.
+/// A network's passes in float or double. Parameters and fields have been checked. Without layers
+/// there are its inputs only.
 template <class T>
 class NetworkEngine {
  public:
-  NetworkEngine(const FacetNetworkParameters& parameters, double pitch_nm, const ModelOptions& options);
+  NetworkEngine(const FacetNetworkParameters& parameters, double pitch_nm,
+                const ModelOptions& options);
 
   ModelImages predict(const Grid<double>& z_nm) const;
   Grid<double> gradient(const Grid<double>& z_nm, const ModelImages& weights) const;
@@ -30,7 +31,8 @@ class NetworkEngine {
  private:
   struct Worker;
   struct Planes;
-  void take_inputs(const Grid<double>& z_nm, const Planes& planes, const facet::Block& block, Worker& worker) const;
+  void take_inputs(const Grid<double>& z_nm, const Planes& planes, const facet::Block& block,
+                   Worker& worker) const;
   void put(const facet::Block& block, double unit, Worker& worker, ModelImages& images) const;
   ModelImages blank(const Grid<double>& z_nm) const;
 
@@ -39,10 +41,10 @@ class NetworkEngine {
   facet::FacetPass<T> pass_;
   network::SkyView view_;
   const network::Operations<T>* loops_;
-  std::vector<T> lengths_;                  ///< of the scales
-  std::vector<T> numbers_;                  ///< of the layers, one after the other
+  std::vector<T> lengths_;  ///< of the scales
+  std::vector<T> numbers_;  ///< of the layers, one after the other
   std::vector<network::Layer<T>> layers_;
-  int inputs_, units_ = 0, widest_ = 0;     ///< units: of all layers; widest: of inputs and layers
+  int inputs_, units_ = 0, widest_ = 0;  ///< units: of all layers; widest: of inputs and layers
 };
 
 extern template class NetworkEngine<float>;

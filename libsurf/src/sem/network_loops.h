@@ -9,7 +9,7 @@ namespace surf::network {
 template <class T, int Bytes>
 struct Loops {
   static constexpr int columns = 2 * Bytes / static_cast<int>(sizeof(T));
-  static constexpr T hidden_sky = T(0.9);   // below 1, so that its logarithm has a derivative
+  static constexpr T hidden_sky = T(0.9);  // below 1, so that its logarithm has a derivative
 
 #define SURF_ALWAYS [[gnu::always_inline]] inline
 
@@ -26,7 +26,7 @@ struct Loops {
 
   /// What a scale's inputs are made of, at a pixel.
   struct Facet {
-    T gg, r, mean, mean_r, split, difference, along, along_r;   // r: fourth roots of 1 + square
+    T gg, r, mean, mean_r, split, difference, along, along_r;  // r: fourth roots of 1 + square
   };
   SURF_ALWAYS static Facet facet(T k2, T k3, T k4, T k5, T k6, T length) {
     Facet f;
@@ -56,7 +56,8 @@ struct Loops {
       }
   }
 
-  /// Derivatives of the four inputs by what they are made of: |g|^2, trace, the two parts of the difference.
+  /// Derivatives of the four inputs by what they are made of: |g|^2, trace, the two parts of the
+  /// difference.
   struct Slopes {
     T gg, mean, difference, mixed, along;
   };
@@ -66,8 +67,8 @@ struct Loops {
             T(0.5) * mixed / split3, slope(f.along, f.along_r)};
   }
 
-  SURF_ALWAYS static void facets_back(const T* k, int rows, T length, const T* weight, std::ptrdiff_t stride,
-                                      T* out) {
+  SURF_ALWAYS static void facets_back(const T* k, int rows, T length, const T* weight,
+                                      std::ptrdiff_t stride, T* out) {
     for (int y = 0; y < rows; ++y, k += facet::coefficients * columns, weight += stride,
              out += facet::coefficients * columns)
       for (int x = 0; x < columns; ++x) {
@@ -89,18 +90,18 @@ struct Loops {
 
   SURF_ALWAYS static void facets_change(const T* k, const T* dk, int rows, T length, T* out,
                                         std::ptrdiff_t stride) {
-    for (int y = 0; y < rows; ++y, k += facet::coefficients * columns, dk += facet::coefficients * columns,
-             out += stride)
+    for (int y = 0; y < rows; ++y, k += facet::coefficients * columns,
+             dk += facet::coefficients * columns, out += stride)
       for (int x = 0; x < columns; ++x) {
         const T k2 = k[x], k3 = k[columns + x], k4 = k[2 * columns + x], k5 = k[3 * columns + x],
                 k6 = k[4 * columns + x];
-        const T d2 = dk[x], d3 = dk[columns + x], d4 = dk[2 * columns + x], d5 = dk[3 * columns + x],
-                d6 = dk[4 * columns + x];
+        const T d2 = dk[x], d3 = dk[columns + x], d4 = dk[2 * columns + x],
+                d5 = dk[3 * columns + x], d6 = dk[4 * columns + x];
         const Facet f = facet(k2, k3, k4, k5, k6, length);
         const Slopes s = slopes(f, k5 * length);
         const T dgg = 2 * (k2 * d2 + k3 * d3);
-        const T quadratic = d3 * (k2 * k5 + 2 * k3 * k6) + d2 * (k3 * k5 + 2 * k2 * k4) + k3 * k3 * d6 +
-                            k3 * k2 * d5 + k2 * k2 * d4;
+        const T quadratic = d3 * (k2 * k5 + 2 * k3 * k6) + d2 * (k3 * k5 + 2 * k2 * k4) +
+                            k3 * k3 * d6 + k3 * k2 * d5 + k2 * k2 * d4;
         out[x] = s.gg * dgg;
         out[columns + x] = s.mean * length * (d6 + d4);
         out[2 * columns + x] = length * (s.difference * (d6 - d4) + s.mixed * d5);
@@ -108,7 +109,8 @@ struct Loops {
       }
   }
 
-  SURF_ALWAYS static void sky(const T* z, const SkySample<T>* samples, int count, int bands, T* out) {
+  SURF_ALWAYS static void sky(const T* z, const SkySample<T>* samples, int count, int bands,
+                              T* out) {
     for (int i = 0; i < (2 * bands + 1) * columns; ++i) out[i] = 0;
     T* const open = out + 2 * bands * columns;
     T seen[columns];
@@ -162,8 +164,8 @@ struct Loops {
       }
       first = end;
     }
-    // Samples of a direction lie in few rows and overlap: what was just written would be waited for. So one of
-    // each direction after the other.
+    // Samples of a direction lie in few rows and overlap: what was just written would be waited
+    // for. So one of each direction after the other.
     const int apart = count / 16;
     for (int start = 0; start < apart; ++start)
       for (int i = start; i < count; i += apart) {
@@ -178,19 +180,21 @@ struct Loops {
     }
   }
 
-  SURF_ALWAYS static void sky_change(const T* z, const T* dz, const SkySample<T>* samples, int count, int bands,
-                                     T* out) {
+  SURF_ALWAYS static void sky_change(const T* z, const T* dz, const SkySample<T>* samples,
+                                     int count, int bands, T* out) {
     for (int i = 0; i < (2 * bands + 1) * columns; ++i) out[i] = 0;
     T* const open = out + 2 * bands * columns;
-    T seen[columns], rate[columns];   // and the derivative of its logarithm
+    T seen[columns], rate[columns];  // and the derivative of its logarithm
     for (int x = 0; x < columns; ++x) seen[x] = T(1) / 16, rate[x] = 0;
     for (int i = 0; i < count; ++i) {
       const SkySample<T>& a = samples[i];
       const T *const far = z + a.offset, *const dfar = dz + a.offset;
       T *const mean = out + 2 * a.band * columns, *const square = mean + columns;
       for (int x = 0; x < columns; ++x) {
-        const T e = (far[x] - z[x]) * a.per_distance, r = 1 / root(1 + e * e), s = e * r, up = positive(s);
-        const T ds = (dfar[x] - dz[x]) * a.per_distance * r * r * r, left = 1 - hidden_sky * up * up;
+        const T e = (far[x] - z[x]) * a.per_distance, r = 1 / root(1 + e * e), s = e * r,
+                up = positive(s);
+        const T ds = (dfar[x] - dz[x]) * a.per_distance * r * r * r,
+                left = 1 - hidden_sky * up * up;
         mean[x] += a.weight * ds;
         square[x] += a.weight * 2 * s * ds;
         seen[x] *= left;
@@ -205,10 +209,10 @@ struct Loops {
     }
   }
 
-  /// sums[o] = start + sum over i of matrix[o * row + i * column] * in[i], four outputs at a time so that
-  /// what is loaded serves them all.
-  SURF_ALWAYS static void multiply(const T* matrix, std::ptrdiff_t row, std::ptrdiff_t column, const T* start,
-                                   int inputs, int outputs, const T* in, T* out) {
+  /// sums[o] = start + sum over i of matrix[o * row + i * column] * in[i], four outputs at a time
+  /// so that what is loaded serves them all.
+  SURF_ALWAYS static void multiply(const T* matrix, std::ptrdiff_t row, std::ptrdiff_t column,
+                                   const T* start, int inputs, int outputs, const T* in, T* out) {
     typedef T V [[gnu::vector_size(Bytes)]];
     constexpr int lanes = columns / 2;
     int o = 0;
@@ -240,10 +244,12 @@ struct Loops {
     }
   }
 
-  SURF_ALWAYS static void forward(const Layer<T>* layers, int count, const T* in, T* values, T* slopes) {
+  SURF_ALWAYS static void forward(const Layer<T>* layers, int count, const T* in, T* values,
+                                  T* slopes) {
     for (int l = 0; l < count; ++l) {
       const Layer<T>& layer = layers[l];
-      multiply(layer.weights, layer.inputs, 1, layer.biases, layer.inputs, layer.outputs, in, values);
+      multiply(layer.weights, layer.inputs, 1, layer.biases, layer.inputs, layer.outputs, in,
+               values);
       const int n = layer.outputs * columns;
       if (l + 1 < count)
         for (int i = 0; i < n; ++i) {
@@ -264,8 +270,8 @@ struct Loops {
     }
   }
 
-  SURF_ALWAYS static void backward(const Layer<T>* layers, int count, const T* slopes, const T* weight, T* work,
-                                   T* out) {
+  SURF_ALWAYS static void backward(const Layer<T>* layers, int count, const T* slopes,
+                                   const T* weight, T* work, T* out) {
     std::ptrdiff_t widest = 0, at = 0;
     for (int l = 0; l < count; ++l) {
       if (layers[l].outputs > widest) widest = layers[l].outputs;
@@ -276,7 +282,8 @@ struct Loops {
       const Layer<T>& layer = layers[l];
       at -= layer.outputs;
       for (int i = 0; i < layer.outputs * columns; ++i) a[i] = weight[i] * slopes[at * columns + i];
-      multiply(layer.weights, 1, layer.inputs, nullptr, layer.outputs, layer.inputs, a, l > 0 ? b : out);
+      multiply(layer.weights, 1, layer.inputs, nullptr, layer.outputs, layer.inputs, a,
+               l > 0 ? b : out);
       T* const product = b;
       b = a;
       a = product;
@@ -284,7 +291,8 @@ struct Loops {
     }
   }
 
-  SURF_ALWAYS static void change(const Layer<T>* layers, int count, const T* slopes, const T* in, T* work, T* out) {
+  SURF_ALWAYS static void change(const Layer<T>* layers, int count, const T* slopes, const T* in,
+                                 T* work, T* out) {
     std::ptrdiff_t widest = 0;
     for (int l = 0; l < count; ++l)
       if (layers[l].outputs > widest) widest = layers[l].outputs;

@@ -15,17 +15,17 @@
 namespace surf {
 namespace {
 
-using Matrix = Eigen::MatrixXf;   // a column for each pixel
+using Matrix = Eigen::MatrixXf;  // a column for each pixel
 using Row = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-constexpr std::size_t pixels_at_once = 512;     // their activations stay in the cache
-constexpr std::size_t at_once_in_a_part = 8;    // sums of a part are merged with others' in order
+constexpr std::size_t pixels_at_once = 512;   // their activations stay in the cache
+constexpr std::size_t at_once_in_a_part = 8;  // sums of a part are merged with others' in order
 constexpr int lbfgs_rank = 40;
-constexpr double faintest = 0.02;   // of the mean signal: below, the noise is taken as there
+constexpr double faintest = 0.02;  // of the mean signal: below, the noise is taken as there
 
 struct Shape {
   std::vector<int> sizes;
-  std::vector<std::size_t> starts;   // of the layers' numbers: weights [output][input], then biases
+  std::vector<std::size_t> starts;  // of the layers' numbers: weights [output][input], then biases
   std::size_t numbers = 0;
 };
 
@@ -48,13 +48,15 @@ class Net {
       const int in = shape.sizes[l], out = shape.sizes[l + 1];
       const double* const at = numbers + shape.starts[l];
       weights_.push_back(
-          Eigen::Map<const Eigen::Matrix<double, -1, -1, Eigen::RowMajor>>(at, out, in).cast<float>());
-      biases_.push_back(Eigen::Map<const Eigen::VectorXd>(at + std::ptrdiff_t{in} * out, out).cast<float>());
+          Eigen::Map<const Eigen::Matrix<double, -1, -1, Eigen::RowMajor>>(at, out, in)
+              .cast<float>());
+      biases_.push_back(
+          Eigen::Map<const Eigen::VectorXd>(at + std::ptrdiff_t{in} * out, out).cast<float>());
     }
   }
 
   struct Pass {
-    std::vector<Matrix> values, slopes;   // values[0]: the inputs
+    std::vector<Matrix> values, slopes;  // values[0]: the inputs
   };
 
   void forward(Pass& pass) const {
@@ -126,7 +128,8 @@ class Cost final : public solvers::SmoothFunction {
     *cost = 0;
     for (const Part& part : done) *cost += share * part.cost;
     residual_ = *cost;
-    for (std::size_t i = 0; i < shape_.numbers; ++i) *cost += options_.decay * numbers[i] * numbers[i];
+    for (std::size_t i = 0; i < shape_.numbers; ++i)
+      *cost += options_.decay * numbers[i] * numbers[i];
     if (gradient) {
       for (std::size_t i = 0; i < shape_.numbers; ++i) {
         gradient[i] = 2 * options_.decay * numbers[i];
@@ -136,8 +139,8 @@ class Cost final : public solvers::SmoothFunction {
     return std::isfinite(*cost);
   }
 
-  /// Deviations from what the network gives now. The signal's own noise would favour pixels that happen to
-  /// be dark.
+  /// Deviations from what the network gives now. The signal's own noise would favour pixels that
+  /// happen to be dark.
   void weigh(const double* numbers) {
     if (!data_.has_noise) return;
     const Net net(shape_, numbers);
@@ -149,9 +152,11 @@ class Cost final : public solvers::SmoothFunction {
       net.forward(pass);
       for (std::size_t i = 0; i < count; ++i)
         for (int c = 0; c < outputs; ++c) {
-          const double signal = std::max<double>(pass.values.back()(c, static_cast<Eigen::Index>(i)), faintest);
+          const double signal =
+              std::max<double>(pass.values.back()(c, static_cast<Eigen::Index>(i)), faintest);
           const double miss = data_.tolerance * signal;
-          const double variance = data_.noise[data_.image[first + i] * std::size_t(outputs) + c] * signal + miss * miss;
+          const double variance =
+              data_.noise[data_.image[first + i] * std::size_t(outputs) + c] * signal + miss * miss;
           precision_[(first + i) * outputs + c] = static_cast<float>(1 / std::max(variance, 1e-8));
         }
     }
@@ -171,8 +176,10 @@ class Cost final : public solvers::SmoothFunction {
     const auto columns = static_cast<Eigen::Index>(count);
     take(first, count, pass);
     net.forward(pass);
-    const Eigen::Map<const Matrix> y(data_.y.data() + first * data_.outputs, data_.outputs, columns);
-    const Eigen::Map<const Matrix> precision(precision_.data() + first * data_.outputs, data_.outputs, columns);
+    const Eigen::Map<const Matrix> y(data_.y.data() + first * data_.outputs, data_.outputs,
+                                     columns);
+    const Eigen::Map<const Matrix> precision(precision_.data() + first * data_.outputs,
+                                             data_.outputs, columns);
     const Matrix error = pass.values.back() - y;
     const Matrix weighted = error.array() * precision.array();
     cost += (weighted.array() * error.array()).cast<double>().sum();
@@ -183,13 +190,14 @@ class Cost final : public solvers::SmoothFunction {
   const TrainerOptions& options_;
   const Shape& shape_;
   std::size_t pixels_;
-  std::vector<float> precision_;   // of each residual
+  std::vector<float> precision_;  // of each residual
   mutable double residual_ = 0;
 };
 
 }  // namespace
 
-TrainerResult train_network(const TrainerData& data, const TrainerOptions& options, std::vector<DenseLayer>& layers) {
+TrainerResult train_network(const TrainerData& data, const TrainerOptions& options,
+                            std::vector<DenseLayer>& layers) {
   const Shape shape = shape_of(layers);
   std::vector<double> numbers;
   for (const DenseLayer& layer : layers) {
@@ -205,7 +213,8 @@ TrainerResult train_network(const TrainerData& data, const TrainerOptions& optio
   how.parameter_tolerance = 1e-12;
 
   TrainerResult result;
-  // A rough network tells the deviations, a better one tells them again, and the last round uses them.
+  // A rough network tells the deviations, a better one tells them again, and the last round uses
+  // them.
   constexpr double shares[] = {0.15, 0.25, 0.6};
   for (const double share : shares) {
     if (share != shares[0]) cost.weigh(numbers.data());

@@ -15,8 +15,9 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr int off_line_block = 4;
-constexpr double least_spread = 10;      // variance of the means over that of their noise: a slope 10 % too small
-constexpr double least_correlation_sum = 1.0 / 25;   // 25 pixels enter it
+constexpr double least_spread =
+    10;  // variance of the means over that of their noise: a slope 10 % too small
+constexpr double least_correlation_sum = 1.0 / 25;  // 25 pixels enter it
 
 double median_variance(const std::vector<VariancePoint>& points) {
   std::vector<double> v;
@@ -32,11 +33,13 @@ struct Range {
 Range means_of(const std::vector<VariancePoint>& points, const std::vector<char>& used) {
   Range r;
   for (std::size_t i = 0; i < points.size(); ++i)
-    if (used[i]) r.least = std::min(r.least, points[i].mean), r.largest = std::max(r.largest, points[i].mean);
+    if (used[i])
+      r.least = std::min(r.least, points[i].mean), r.largest = std::max(r.largest, points[i].mean);
   return r;
 }
 
-/// Whether means differ by more than their noise: else a slope would be that of mean on variance by chance.
+/// Whether means differ by more than their noise: else a slope would be that of mean on variance by
+/// chance.
 bool spread_is_real(const SemNoiseEstimate& e, const std::vector<char>& used) {
   double n = 0, mean = 0, squares = 0, error = 0;
   for (std::size_t i = 0; i < used.size(); ++i) {
@@ -54,24 +57,29 @@ bool spread_is_real(const SemNoiseEstimate& e, const std::vector<char>& used) {
 double SemNoiseEstimate::slope_stderr() const { return std::sqrt(covariance[0]); }
 double SemNoiseEstimate::intercept_stderr() const { return std::sqrt(covariance[3]); }
 double SemNoiseEstimate::variance_stderr(double mean) const {
-  return std::sqrt(std::max(0.0, covariance[0] * mean * mean + 2 * covariance[1] * mean + covariance[3]));
+  return std::sqrt(
+      std::max(0.0, covariance[0] * mean * mean + 2 * covariance[1] * mean + covariance[3]));
 }
 
 void check_options(const SemNoiseOptions& o) {
   if (o.degree < 0 || o.degree > 2)
-    throw UsageError("SEM noise", fmt::format("a polynomial of degree {}", o.degree), "Choose 0, 1 or 2");
+    throw UsageError("SEM noise", fmt::format("a polynomial of degree {}", o.degree),
+                     "Choose 0, 1 or 2");
   if (o.block_px != 0 && (o.block_px < 6 || o.block_px > 64))
-    throw UsageError("SEM noise", fmt::format("blocks of {} pixels", o.block_px), "Choose 6 to 64, or 0");
+    throw UsageError("SEM noise", fmt::format("blocks of {} pixels", o.block_px),
+                     "Choose 6 to 64, or 0");
   if (!(o.least_share > 0 && o.least_share <= 1))
-    throw UsageError("SEM noise", fmt::format("a least variance of {} of the median", o.least_share),
+    throw UsageError("SEM noise",
+                     fmt::format("a least variance of {} of the median", o.least_share),
                      "Give a share above 0 and up to 1");
   if ((o.black && std::isnan(*o.black)) || (o.white && std::isnan(*o.white)) ||
       (o.black && o.white && !(*o.black < *o.white)))
-    throw UsageError("SEM noise", "the black level is not below the white one", "Give levels in this order, or none");
+    throw UsageError("SEM noise", "the black level is not below the white one",
+                     "Give levels in this order, or none");
 }
 
-Saturation find_saturation(const Grid<double>& values, const Grid<unsigned char>& valid, const SemNoiseOptions& options,
-                           SemNoiseEstimate& e) {
+Saturation find_saturation(const Grid<double>& values, const Grid<unsigned char>& valid,
+                           const SemNoiseOptions& options, SemNoiseEstimate& e) {
   const GreyLevels levels = grey_levels(values, valid);
   e.quantum = levels.quantum;
   const Saturation s{options.black.value_or(levels.black.value_or(-infinity)),
@@ -93,8 +101,8 @@ void set_correlation(const LagSums& correlation, SemNoiseEstimate& e) {
   e.correlation_squares = sum_of_squares(correlation);
 }
 
-void test_line(const std::vector<VariancePoint>& points, const VarianceLine& line, double parameters,
-               SemNoiseEstimate& e) {
+void test_line(const std::vector<VariancePoint>& points, const VarianceLine& line,
+               double parameters, SemNoiseEstimate& e) {
   double count = -parameters;
   e.chi_squared = 0, e.pixels = 0;
   for (std::size_t i = 0; i < points.size(); ++i) {
@@ -118,15 +126,18 @@ void test_line(const std::vector<VariancePoint>& points, const VarianceLine& lin
   e.bend = curvature.departure;
 }
 
-void set_line(const std::vector<VariancePoint>& points, double least_share, double cut, SemNoiseEstimate& e) {
+void set_line(const std::vector<VariancePoint>& points, double least_share, double cut,
+              SemNoiseEstimate& e) {
   const double least = std::max(least_share * median_variance(points), e.quantum * e.quantum / 12);
   VarianceLineOptions options{false, least, cut};
   VarianceLine line = fit_variance_line(points, options);
   const Range means = means_of(points, line.used);
   const double middle = 0.5 * (means.least + means.largest);
-  // Half the range of means times the slope's error: how much less is known of an end than of the middle.
+  // Half the range of means times the slope's error: how much less is known of an end than of the
+  // middle.
   const double unknown = std::sqrt(line.covariance[0]) * 0.5 * (means.largest - means.least);
-  e.slope_known = line.covariance[0] > 0 && spread_is_real(e, line.used) && unknown <= 0.5 * std::fabs(line.slope * middle + line.intercept);
+  e.slope_known = line.covariance[0] > 0 && spread_is_real(e, line.used) &&
+                  unknown <= 0.5 * std::fabs(line.slope * middle + line.intercept);
   if (!e.slope_known) {
     options.constant = true;
     line = fit_variance_line(points, options);
@@ -137,7 +148,8 @@ void set_line(const std::vector<VariancePoint>& points, double least_share, doub
   for (double& c : e.covariance) c *= std::max(e.dispersion, 1.0);
 }
 
-void set_off_line_share(const Grid<double>& values, const Grid<unsigned char>& valid, SemNoiseEstimate& e) {
+void set_off_line_share(const Grid<double>& values, const Grid<unsigned char>& valid,
+                        SemNoiseEstimate& e) {
   std::int64_t blocks = 0, off = 0;
   for (int y = 0; y + off_line_block <= values.height(); y += off_line_block)
     for (int x = 0; x + off_line_block <= values.width(); x += off_line_block) {
@@ -150,7 +162,8 @@ void set_off_line_share(const Grid<double>& values, const Grid<unsigned char>& v
         }
       if (!whole) continue;
       ++blocks;
-      off += e.noise.slope * sum / (off_line_block * off_line_block) + e.noise.intercept < 2 * e.noise.least_variance;
+      off += e.noise.slope * sum / (off_line_block * off_line_block) + e.noise.intercept <
+             2 * e.noise.least_variance;
     }
   e.off_line_share = blocks ? static_cast<double>(off) / static_cast<double>(blocks) : 0;
 }
@@ -159,39 +172,54 @@ void add_warnings(SemNoiseEstimate& e) {
   const auto warn = [&](std::string text) { e.warnings.push_back(std::move(text)); };
   const double typical = e.noise.variance(0.5 * (e.least_mean + e.largest_mean));
   if (!e.slope_known)
-    warn(fmt::format("the means range from {:.4g} to {:.4g} only, too little to tell how the variance changes with "
-                     "intensity: it is taken as constant. Give regions of other brightness",
-                     e.least_mean, e.largest_mean));
+    warn(
+        fmt::format("the means range from {:.4g} to {:.4g} only, too little to tell how the "
+                    "variance changes with "
+                    "intensity: it is taken as constant. Give regions of other brightness",
+                    e.least_mean, e.largest_mean));
   if (e.slope_known && e.noise.slope < 0 && -e.noise.slope > 3 * e.slope_stderr())
-    warn("the noise falls as the image gets brighter, which no count of electrons does: the image may be inverted, "
-         "saturated, or its grey levels bent by a gamma");
+    warn(
+        "the noise falls as the image gets brighter, which no count of electrons does: the image "
+        "may be inverted, "
+        "saturated, or its grey levels bent by a gamma");
   if (e.off_line_share > 0)
-    warn(fmt::format("the line is at or below the least variance at {:.2g} % of the image, which is darker than "
-                     "{:.4g}: there the variance bends to {:.3g} and stays",
-                     100 * e.off_line_share, (2 * e.noise.least_variance - e.noise.intercept) / e.noise.slope,
-                     e.noise.least_variance));
+    warn(fmt::format(
+        "the line is at or below the least variance at {:.2g} % of the image, which is darker than "
+        "{:.4g}: there the variance bends to {:.3g} and stays",
+        100 * e.off_line_share, (2 * e.noise.least_variance - e.noise.intercept) / e.noise.slope,
+        e.noise.least_variance));
   if (e.correlation_squares > 1.1)
-    warn(fmt::format("the noise of neighbouring pixels is correlated ({:.2f} along rows, {:.2f} across): the image was "
-                     "filtered, compressed or resampled. A likelihood that takes pixels as independent counts "
-                     "{:.2g} times too many",
-                     e.correlation_x, e.correlation_y, e.correlation_sum));
+    warn(fmt::format(
+        "the noise of neighbouring pixels is correlated ({:.2f} along rows, {:.2f} across): the "
+        "image was "
+        "filtered, compressed or resampled. A likelihood that takes pixels as independent counts "
+        "{:.2g} times too many",
+        e.correlation_x, e.correlation_y, e.correlation_sum));
   if (e.quantum > 0 && typical < e.quantum * e.quantum)
-    warn(fmt::format("the noise (standard deviation {:.2g}) is finer than the steps of the grey levels ({:g}): it is "
-                     "not normal. Use an image of more bits, if there is one",
-                     std::sqrt(typical), e.quantum));
+    warn(
+        fmt::format("the noise (standard deviation {:.2g}) is finer than the steps of the grey "
+                    "levels ({:g}): it is "
+                    "not normal. Use an image of more bits, if there is one",
+                    std::sqrt(typical), e.quantum));
   if (e.black + e.white > 0)
-    warn(fmt::format("{} pixels are saturated (black {}, white {}): what is there of them is not noise, and they are "
-                     "left out",
-                     e.black + e.white, e.black, e.white));
+    warn(
+        fmt::format("{} pixels are saturated (black {}, white {}): what is there of them is not "
+                    "noise, and they are "
+                    "left out",
+                    e.black + e.white, e.black, e.white));
   const bool bends = std::fabs(e.curvature_z) > 4 && e.bend > 0.1;
   if (bends)
-    warn(fmt::format("the variances do not lie on a line: a parabola is up to {:.0f} % off it (z = {:.1f}). A gamma or "
-                     "another processing of the grey levels is likely",
-                     100 * e.bend, e.curvature_z));
+    warn(
+        fmt::format("the variances do not lie on a line: a parabola is up to {:.0f} % off it (z = "
+                    "{:.1f}). A gamma or "
+                    "another processing of the grey levels is likely",
+                    100 * e.bend, e.curvature_z));
   if (!bends && e.degrees > 1 && e.p < 1e-3)
-    warn(fmt::format("the variances scatter {:.2g} times as much about the line as their own errors say: not all "
-                     "places are flat, or the noise is uneven; standard errors are enlarged by it",
-                     std::sqrt(e.dispersion)));
+    warn(
+        fmt::format("the variances scatter {:.2g} times as much about the line as their own errors "
+                    "say: not all "
+                    "places are flat, or the noise is uneven; standard errors are enlarged by it",
+                    std::sqrt(e.dispersion)));
 }
 
 }  // namespace surf

@@ -9,7 +9,8 @@ PaddedField::PaddedField(const HeightField& field, int margin, Edge edge)
     : width_(field.z_nm.width()), height_(field.z_nm.height()), margin_(margin),
       per_two_x_(0.5 / field.pitch_x_nm), per_two_y_(0.5 / field.pitch_y_nm) {
   for (int x = -margin; x < width_ + margin; ++x) from_x_.push_back(border_sample(x, width_, edge));
-  for (int y = -margin; y < height_ + margin; ++y) from_y_.push_back(border_sample(y, height_, edge));
+  for (int y = -margin; y < height_ + margin; ++y)
+    from_y_.push_back(border_sample(y, height_, edge));
   fill(field.z_nm);
 }
 

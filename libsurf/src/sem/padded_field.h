@@ -8,8 +8,8 @@
 
 namespace surf {
 
-/// Heights with their continuation, and slopes by central differences. Places count from the field's lower
-/// left sample, from -margin on; slopes need one more sample around.
+/// Heights with their continuation, and slopes by central differences. Places count from the
+/// field's lower left sample, from -margin on; slopes need one more sample around.
 class PaddedField {
  public:
   /// `margin` >= 1 samples on each side.
@@ -28,9 +28,10 @@ class PaddedField {
   Grid<double> none() const { return Grid<double>(z_.width(), z_.height()); }
   double& at(Grid<double>& padded, int x, int y) const { return padded(x + margin_, y + margin_); }
 
-  /// The other way: derivatives by heights and by slopes at all places become derivatives by the field's own
-  /// heights. Those by slopes are 0 in the outermost samples.
-  Grid<double> fold(Grid<double> by_z, const Grid<double>& by_slope_x, const Grid<double>& by_slope_y) const;
+  /// The other way: derivatives by heights and by slopes at all places become derivatives by the
+  /// field's own heights. Those by slopes are 0 in the outermost samples.
+  Grid<double> fold(Grid<double> by_z, const Grid<double>& by_slope_x,
+                    const Grid<double>& by_slope_y) const;
 
  private:
   void fill(const Grid<double>& z_nm);

@@ -14,7 +14,8 @@ struct Sums {
   std::int64_t pixels = 0, positive = 0;
 };
 
-void add(const TrainingImage& image, std::size_t channel, const Grid<double>& predicted, Sums& sums) {
+void add(const TrainingImage& image, std::size_t channel, const Grid<double>& predicted,
+         Sums& sums) {
   const std::vector<float>& measured = image.images[channel].data();
   for (std::size_t i = 0; i < measured.size(); ++i) {
     if (!image.used.empty() && image.used.data()[i] == 0) continue;
@@ -35,17 +36,19 @@ void add(const TrainingImage& image, std::size_t channel, const Grid<double>& pr
 
 }  // namespace
 
-std::vector<ModelResidual> residuals_of(const ImageModel& model, const std::vector<TrainingImage>& images,
-                                        int threads) {
+std::vector<ModelResidual> residuals_of(const ImageModel& model,
+                                        const std::vector<TrainingImage>& images, int threads) {
   validate(images);
   const std::size_t channels = model.channels().size();
   if (images.front().images.size() != channels)
-    throw InvalidInput(images.front().name, fmt::format("has {} channels, the model has {}",
-                                                        images.front().images.size(), channels),
-                       "Give images of the model's channels");
+    throw InvalidInput(
+        images.front().name,
+        fmt::format("has {} channels, the model has {}", images.front().images.size(), channels),
+        "Give images of the model's channels");
   std::vector<Sums> sums(channels);
   for (const TrainingImage& image : images) {
-    const ModelImages predicted = model.predict(image.field, {.edge = image.edge, .threads = threads});
+    const ModelImages predicted =
+        model.predict(image.field, {.edge = image.edge, .threads = threads});
     for (std::size_t c = 0; c < channels; ++c) add(image, c, predicted[c], sums[c]);
   }
   std::vector<ModelResidual> residuals;

@@ -9,16 +9,20 @@
 namespace surf {
 namespace {
 
-void check_sizes(const Grid<double>& real, const Grid<double>& mean, const Grid<unsigned char>& used) {
-  const auto differs = [&](const auto& grid) { return grid.width() != real.width() || grid.height() != real.height(); };
+void check_sizes(const Grid<double>& real, const Grid<double>& mean,
+                 const Grid<unsigned char>& used) {
+  const auto differs = [&](const auto& grid) {
+    return grid.width() != real.width() || grid.height() != real.height();
+  };
   if (real.empty() || differs(mean) || (!used.empty() && differs(used)))
-    throw InvalidInput("SEM image", "the image, its mean and the mask differ in size", "Give them pixel on pixel");
+    throw InvalidInput("SEM image", "the image, its mean and the mask differ in size",
+                       "Give them pixel on pixel");
 }
 
 }  // namespace
 
-// With the line v = slope mean + intercept and f the least variance: f for v <= 0, v for v >= 2 f, and
-// between f + v^2 / (4 f), which meets both with their derivatives.
+// With the line v = slope mean + intercept and f the least variance: f for v <= 0, v for v >= 2 f,
+// and between f + v^2 / (4 f), which meets both with their derivatives.
 double SemNoise::variance(double mean) const {
   const double v = slope * mean + intercept;
   if (v >= 2 * least_variance) return v;
@@ -34,14 +38,17 @@ double SemNoise::variance_slope(double mean) const {
 }
 
 void validate(const SemNoise& noise, const char* subject) {
-  if (!std::isfinite(noise.slope) || !std::isfinite(noise.intercept) || !std::isfinite(noise.least_variance))
+  if (!std::isfinite(noise.slope) || !std::isfinite(noise.intercept) ||
+      !std::isfinite(noise.least_variance))
     throw InvalidInput(subject, "one of its numbers is not finite", "Give finite numbers");
   if (!(noise.least_variance > 0))
-    throw InvalidInput(subject, "its least variance is not above 0", "Give a variance that no pixel is below");
+    throw InvalidInput(subject, "its least variance is not above 0",
+                       "Give a variance that no pixel is below");
 }
 
 double log_likelihood(const Grid<double>& real, const Grid<double>& mean, const SemNoise& noise,
-                      const Grid<unsigned char>& used, Grid<double>* gradient, Grid<double>* information) {
+                      const Grid<unsigned char>& used, Grid<double>* gradient,
+                      Grid<double>* information) {
   validate(noise);
   check_sizes(real, mean, used);
   if (gradient) *gradient = Grid<double>(real.width(), real.height());
@@ -51,8 +58,11 @@ double log_likelihood(const Grid<double>& real, const Grid<double>& mean, const 
     double row = 0;
     for (int x = 0; x < real.width(); ++x) {
       if (!used.empty() && !used(x, y)) continue;
-      const double e = real(x, y) - mean(x, y), v = noise.variance(mean(x, y)), dv = noise.variance_slope(mean(x, y));
-      if (!std::isfinite(e)) throw InvalidInput("SEM image", "a pixel that counts is not finite", "Leave it out by the mask");
+      const double e = real(x, y) - mean(x, y), v = noise.variance(mean(x, y)),
+                   dv = noise.variance_slope(mean(x, y));
+      if (!std::isfinite(e))
+        throw InvalidInput("SEM image", "a pixel that counts is not finite",
+                           "Leave it out by the mask");
       row -= 0.5 * (std::log(2 * std::numbers::pi * v) + e * e / v);
       if (gradient) (*gradient)(x, y) = e / v + 0.5 * dv / v * (e * e / v - 1);
       if (information) (*information)(x, y) = 1 / v + 0.5 * (dv / v) * (dv / v);
@@ -69,7 +79,8 @@ Grid<double> whiten(const Grid<double>& real, const Grid<double>& mean, const Se
   Grid<double> white(real.width(), real.height());
   for (std::size_t i = 0; i < real.size(); ++i)
     if (used.empty() || used.data()[i])
-      white.data()[i] = (real.data()[i] - mean.data()[i]) / std::sqrt(noise.variance(mean.data()[i]));
+      white.data()[i] =
+          (real.data()[i] - mean.data()[i]) / std::sqrt(noise.variance(mean.data()[i]));
   return white;
 }
 

@@ -10,7 +10,7 @@ namespace surf::network {
 namespace {
 
 constexpr int directions = 16;
-constexpr int most_steps = 2;   // of a direction in a band
+constexpr int most_steps = 2;  // of a direction in a band
 
 /// Of the four quarters of the plane's directions: turned by 90 degrees they give the others.
 struct Step {
@@ -29,8 +29,10 @@ std::vector<int> steps_within(double from_nm, double to_nm, double step_nm) {
   }
   // At a quarter and at three quarters of the band, in its logarithm where it does not begin at 0.
   const double low = std::max<double>(first, from_nm / step_nm), ratio = last / low;
-  const int near = std::clamp(static_cast<int>(std::lround(low * std::pow(ratio, 0.25))), first, last - 1);
-  const int far = std::clamp(static_cast<int>(std::lround(low * std::pow(ratio, 0.8))), near + 1, last);
+  const int near =
+      std::clamp(static_cast<int>(std::lround(low * std::pow(ratio, 0.25))), first, last - 1);
+  const int far =
+      std::clamp(static_cast<int>(std::lround(low * std::pow(ratio, 0.8))), near + 1, last);
   return {near, far};
 }
 
@@ -55,10 +57,11 @@ SkyView::SkyView(const std::vector<double>& edges_nm, double pitch_nm)
 }
 
 template <class T>
-SkyPlane<T>::SkyPlane(const Grid<double>& z_nm, double level, double unit, Edge edge, int around, int columns)
+SkyPlane<T>::SkyPlane(const Grid<double>& z_nm, double level, double unit, Edge edge, int around,
+                      int columns)
     : reach(around) {
   const int width = z_nm.width(), height = z_nm.height();
-  const int whole = (width + columns - 1) / columns * columns;   // strips are computed whole
+  const int whole = (width + columns - 1) / columns * columns;  // strips are computed whole
   stride = whole + 2 * std::ptrdiff_t{reach};
   values.resize(static_cast<std::size_t>(stride * (height + 2 * reach)));
   for (int y = -reach; y < height + reach; ++y) {

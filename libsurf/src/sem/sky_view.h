@@ -11,22 +11,22 @@
 
 namespace surf::network {
 
-/// Which samples the sky view looks at: in 16 directions, each a whole number of its shortest step of
-/// samples away, so that a quarter turn of the surface turns the outcome; in each band of distances at most
-/// two, and where a band has none the nearest step to its far end.
+/// Which samples the sky view looks at: in 16 directions, each a whole number of its shortest step
+/// of samples away, so that a quarter turn of the surface turns the outcome; in each band of
+/// distances at most two, and where a band has none the nearest step to its far end.
 class SkyView {
  public:
   struct Sample {
     int dx, dy, band;
     double distance_nm, weight;
-    bool last;   ///< of its direction
+    bool last;  ///< of its direction
   };
 
   SkyView(const std::vector<double>& edges_nm, double pitch_nm);
 
   int bands() const { return bands_; }
   int inputs() const { return bands_ == 0 ? 0 : 2 * bands_ + 1; }
-  int reach() const { return reach_; }   ///< in samples
+  int reach() const { return reach_; }  ///< in samples
   const std::vector<Sample>& samples() const { return samples_; }
 
  private:
@@ -35,7 +35,8 @@ class SkyView {
   std::vector<Sample> samples_;
 };
 
-/// Heights in T, relative to the field's first, with what lies around within `reach` as `edge` says.
+/// Heights in T, relative to the field's first, with what lies around within `reach` as `edge`
+/// says.
 template <class T>
 struct SkyPlane {
   SkyPlane() = default;

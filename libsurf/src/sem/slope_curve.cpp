@@ -27,14 +27,18 @@ void check(const SlopeModelParameters& p, const SlopeChannel& channel) {
                        "Give a finite number above 0");
   }
   if (channel.yields.size() < 2)
-    throw InvalidInput(name, fmt::format("its table has {} yields", channel.yields.size()), "Give two at least");
-  if (!(p.table_step_deg > 0 && p.table_step_deg * static_cast<double>(channel.yields.size() - 1) <= 90 + 1e-9))
-    throw InvalidInput(name, fmt::format("its table has {} yields in steps of {} degrees", channel.yields.size(),
-                                         p.table_step_deg),
+    throw InvalidInput(name, fmt::format("its table has {} yields", channel.yields.size()),
+                       "Give two at least");
+  if (!(p.table_step_deg > 0 &&
+        p.table_step_deg * static_cast<double>(channel.yields.size() - 1) <= 90 + 1e-9))
+    throw InvalidInput(name,
+                       fmt::format("its table has {} yields in steps of {} degrees",
+                                   channel.yields.size(), p.table_step_deg),
                        "Angles go from 0 to 90 degrees at most");
   for (const double yield : channel.yields)
     if (!(std::abs(yield) <= most_yield))
-      throw InvalidInput(name, fmt::format("its table holds {}", yield), "All yields must be finite");
+      throw InvalidInput(name, fmt::format("its table holds {}", yield),
+                         "All yields must be finite");
 }
 
 /// Yields relative to those of a surface across the beam; of all forms but tables.
@@ -44,13 +48,16 @@ void relative_yields(SlopeForm form, const SlopeRow& row, double* out) {
   };
   switch (form) {
     case SlopeForm::ikeuchi_exponential:
-      return each([](double secant, double) { return std::exp(exponential_rate * (1 - 1 / secant)); });
+      return each(
+          [](double secant, double) { return std::exp(exponential_rate * (1 - 1 / secant)); });
     case SlopeForm::ikeuchi_secant:
       return each([](double, double angle) { return 1 / std::cos(secant_angle * angle); });
     case SlopeForm::ikeuchi_mixed:
-      return each(
-          [](double secant, double) { return 1 - mixed_part + mixed_part * std::min(secant, held_secant); });
-    default: return each([](double secant, double) { return secant; });
+      return each([](double secant, double) {
+        return 1 - mixed_part + mixed_part * std::min(secant, held_secant);
+      });
+    default:
+      return each([](double secant, double) { return secant; });
   }
 }
 
@@ -59,14 +66,17 @@ double relative_derivative(SlopeForm form, double slope, double secant, double a
   const double cosine = 1 / secant;
   switch (form) {
     case SlopeForm::ikeuchi_exponential:
-      return std::exp(exponential_rate * (1 - cosine)) * exponential_rate * slope * cosine * cosine * cosine;
+      return std::exp(exponential_rate * (1 - cosine)) * exponential_rate * slope * cosine *
+             cosine * cosine;
     case SlopeForm::ikeuchi_secant:
-      return std::tan(secant_angle * angle) / std::cos(secant_angle * angle) * secant_angle * cosine * cosine;
+      return std::tan(secant_angle * angle) / std::cos(secant_angle * angle) * secant_angle *
+             cosine * cosine;
     case SlopeForm::ikeuchi_mixed: {
       const double rise = mixed_part * slope * cosine;
       return slope < mixed_end ? rise : slope > mixed_end ? 0 : rise / 2;
     }
-    default: return slope * cosine;
+    default:
+      return slope * cosine;
   }
 }
 
@@ -82,7 +92,8 @@ SlopeCurves::SlopeCurves(const SlopeModelParameters& p)
 }
 
 void SlopeCurves::times_flat_yields(int count, double* const* out) const {
-  for (std::size_t c = channels(); c-- > 0;)   // the first one last: it holds what all are multiples of
+  for (std::size_t c = channels();
+       c-- > 0;)  // the first one last: it holds what all are multiples of
     for (int i = 0; i < count; ++i) out[c][i] = flat_yields_[c] * out[0][i];
 }
 

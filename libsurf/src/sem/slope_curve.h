@@ -13,8 +13,8 @@ struct SlopeRow {
   int count;
 };
 
-/// A slope model's yields and their derivatives by the slope, tan theta. At a kink the derivative is the mean
-/// of those to both sides. What channels have in common is computed once.
+/// A slope model's yields and their derivatives by the slope, tan theta. At a kink the derivative
+/// is the mean of those to both sides. What channels have in common is computed once.
 class SlopeCurves {
  public:
   /// Throws InvalidInput for parameters out of range.

@@ -24,7 +24,8 @@ struct Slopes {
 template <class T>
 class SlopeEngine {
  public:
-  SlopeEngine(const Slopes& slopes, double pitch_x_nm, double pitch_y_nm, const ModelOptions& options)
+  SlopeEngine(const Slopes& slopes, double pitch_x_nm, double pitch_y_nm,
+              const ModelOptions& options)
       : slopes_(slopes), options_(options), pass_(slopes.scale, pitch_x_nm, pitch_y_nm) {
     options_.threads = resolve_threads(options.threads);
   }
@@ -33,16 +34,20 @@ class SlopeEngine {
     ModelImages images = blank(z_nm);
     const std::vector<Block> blocks = pass_.blocks(z_nm.width(), z_nm.height());
     std::vector<Worker> workers(options_.threads);
-    parallel_for(blocks.size(), options_.threads, [&](std::size_t i, int w) {
-      const Block& block = blocks[i];
-      Worker& worker = workers[w];
-      measure(fit(z_nm, block, worker.scratch), block, worker);
-      std::vector<double*> to(images.size());
-      for (int y = 0; y < block.rows; ++y) {
-        for (std::size_t c = 0; c < images.size(); ++c) to[c] = &images[c](block.x, block.y + y);
-        slopes_.curves.yields(worker.row(y, pass_.columns(), block.width), to.data());
-      }
-    }, options_.watch);
+    parallel_for(
+        blocks.size(), options_.threads,
+        [&](std::size_t i, int w) {
+          const Block& block = blocks[i];
+          Worker& worker = workers[w];
+          measure(fit(z_nm, block, worker.scratch), block, worker);
+          std::vector<double*> to(images.size());
+          for (int y = 0; y < block.rows; ++y) {
+            for (std::size_t c = 0; c < images.size(); ++c)
+              to[c] = &images[c](block.x, block.y + y);
+            slopes_.curves.yields(worker.row(y, pass_.columns(), block.width), to.data());
+          }
+        },
+        options_.watch);
     return images;
   }
 
@@ -55,29 +60,34 @@ class SlopeEngine {
     const std::vector<Block> blocks = pass_.blocks(z_nm.width(), z_nm.height());
     const std::size_t strips = (z_nm.width() + columns - 1) / columns;
     std::vector<Worker> workers(options_.threads);
-    pass_.transpose(options_.edge, options_.threads, [&](int w, int, const Block& column, T* out) {
-      std::fill_n(out, static_cast<std::size_t>(column.rows) * facet::coefficients * columns, T(0));
-      for (std::size_t i = column.x / columns; i < blocks.size(); i += strips) {
-        const Block& block = blocks[i];
-        const T* k = fit(z_nm, block, workers[w].scratch);
-        const double floor = pass_.floors(0, workers[w].scratch).slope;
-        measure(k, block, workers[w]);
-        T* to = out + static_cast<std::ptrdiff_t>(block.y) * facet::coefficients * columns;
-        for (int y = 0; y < block.rows;
-             ++y, k += facet::coefficients * columns, to += facet::coefficients * columns) {
-          const SlopeRow row = workers[w].row(y, columns, block.width);
-          const std::vector<double*>& derivatives = derivatives_at(row, workers[w]);
-          for (int x = 0; x < block.width; ++x) {
-            if (row.tangent[x] <= floor) continue;   // the mean of the one-sided derivatives of a length is 0
-            double sum = 0;
-            for (std::size_t c = 0; c < weights.size(); ++c)
-              sum += weights[c](block.x + x, block.y + y) / unit * derivatives[c][x];
-            to[x] = T(sum * (k[x] / row.tangent[x]));
-            to[x + columns] = T(sum * (k[x + columns] / row.tangent[x]));
+    pass_.transpose(
+        options_.edge, options_.threads,
+        [&](int w, int, const Block& column, T* out) {
+          std::fill_n(out, static_cast<std::size_t>(column.rows) * facet::coefficients * columns,
+                      T(0));
+          for (std::size_t i = column.x / columns; i < blocks.size(); i += strips) {
+            const Block& block = blocks[i];
+            const T* k = fit(z_nm, block, workers[w].scratch);
+            const double floor = pass_.floors(0, workers[w].scratch).slope;
+            measure(k, block, workers[w]);
+            T* to = out + static_cast<std::ptrdiff_t>(block.y) * facet::coefficients * columns;
+            for (int y = 0; y < block.rows;
+                 ++y, k += facet::coefficients * columns, to += facet::coefficients * columns) {
+              const SlopeRow row = workers[w].row(y, columns, block.width);
+              const std::vector<double*>& derivatives = derivatives_at(row, workers[w]);
+              for (int x = 0; x < block.width; ++x) {
+                if (row.tangent[x] <= floor)
+                  continue;  // the mean of the one-sided derivatives of a length is 0
+                double sum = 0;
+                for (std::size_t c = 0; c < weights.size(); ++c)
+                  sum += weights[c](block.x + x, block.y + y) / unit * derivatives[c][x];
+                to[x] = T(sum * (k[x] / row.tangent[x]));
+                to[x + columns] = T(sum * (k[x + columns] / row.tangent[x]));
+              }
+            }
           }
-        }
-      }
-    }, unit, gradient);
+        },
+        unit, gradient);
     return gradient;
   }
 
@@ -118,7 +128,7 @@ class SlopeEngine {
   struct Worker {
     Scratch scratch;
     AlignedVector<double> tangent, secant, angle, derivatives;
-    std::vector<double*> channels;   ///< into derivatives
+    std::vector<double*> channels;  ///< into derivatives
 
     SlopeRow row(int y, int columns, int width) const {
       const std::ptrdiff_t at = std::ptrdiff_t{y} * columns;
@@ -139,7 +149,8 @@ class SlopeEngine {
     const std::size_t count = static_cast<std::size_t>(block.rows) * pass_.columns();
     for (AlignedVector<double>* values : {&worker.tangent, &worker.secant, &worker.angle})
       values->resize(count);
-    pass_.loops().angles(k, block.rows, worker.tangent.data(), worker.secant.data(), worker.angle.data());
+    pass_.loops().angles(k, block.rows, worker.tangent.data(), worker.secant.data(),
+                         worker.angle.data());
   }
 
   const std::vector<double*>& derivatives_at(const SlopeRow& row, Worker& worker) const {
@@ -160,17 +171,19 @@ class SlopeEngine {
 struct SlopeModel {
   using Parameters = Slopes;
   template <class Work>
-  static auto run(const Parameters& slopes, double pitch_x_nm, double pitch_y_nm, const ModelOptions& options,
-                  const Work& work) {
-    if (options.double_precision) return work(SlopeEngine<double>(slopes, pitch_x_nm, pitch_y_nm, options));
+  static auto run(const Parameters& slopes, double pitch_x_nm, double pitch_y_nm,
+                  const ModelOptions& options, const Work& work) {
+    if (options.double_precision)
+      return work(SlopeEngine<double>(slopes, pitch_x_nm, pitch_y_nm, options));
     return work(SlopeEngine<float>(slopes, pitch_x_nm, pitch_y_nm, options));
   }
 };
 
 }  // namespace
 
-std::shared_ptr<const ImageModel> make_slope_model(const ModelScope& scope, const SlopeModelParameters& parameters) {
-  facet_kernel(parameters.facet, 1);   // throws where it is out of range
+std::shared_ptr<const ImageModel> make_slope_model(const ModelScope& scope,
+                                                   const SlopeModelParameters& parameters) {
+  facet_kernel(parameters.facet, 1);  // throws where it is out of range
   Slopes slopes{{parameters.facet}, SlopeCurves(parameters)};
   std::vector<std::string> names;
   for (const SlopeChannel& channel : parameters.channels) names.push_back(channel.name);

@@ -8,18 +8,20 @@
 namespace surf {
 namespace {
 
-constexpr double least_signal = 1e-3;   // of the image's mean absolute signal
+constexpr double least_signal = 1e-3;  // of the image's mean absolute signal
 
 /// Sums over windows cut at the ends, of a row or column of `n` numbers `stride` apart.
-void window_sums(double* data, std::size_t n, std::size_t stride, std::size_t range, std::vector<double>& line) {
-  line.assign(n + 1, 0);   // cumulative
+void window_sums(double* data, std::size_t n, std::size_t stride, std::size_t range,
+                 std::vector<double>& line) {
+  line.assign(n + 1, 0);  // cumulative
   for (std::size_t i = 0; i < n; ++i) line[i + 1] = line[i] + data[i * stride];
   for (std::size_t i = 0; i < n; ++i)
     data[i * stride] = line[i + std::min(range, n - 1 - i) + 1] - line[i - std::min(range, i)];
 }
 
 Grid<double> box_sums(Grid<double> g, int range_x, int range_y) {
-  const auto width = static_cast<std::size_t>(g.width()), height = static_cast<std::size_t>(g.height());
+  const auto width = static_cast<std::size_t>(g.width()),
+             height = static_cast<std::size_t>(g.height());
   std::vector<double> line;
   for (std::size_t y = 0; y < height; ++y)
     window_sums(g.data().data() + y * width, width, 1, static_cast<std::size_t>(range_x), line);
@@ -30,12 +32,13 @@ Grid<double> box_sums(Grid<double> g, int range_x, int range_y) {
 
 }  // namespace
 
-SlowGain slow_gain(const Grid<double>& real, const Grid<double>& signal, int range_x_px, int range_y_px,
-                   const Grid<unsigned char>& used) {
+SlowGain slow_gain(const Grid<double>& real, const Grid<double>& signal, int range_x_px,
+                   int range_y_px, const Grid<unsigned char>& used) {
   const int width = real.width(), height = real.height();
   const auto same = [&](const auto& g) { return g.width() == width && g.height() == height; };
   if (real.empty() || !same(signal) || !(used.empty() || same(used)))
-    throw InvalidInput("slow gain", "the images differ in size or are empty", "Give images of one size");
+    throw InvalidInput("slow gain", "the images differ in size or are empty",
+                       "Give images of one size");
   if (range_x_px < 0 || range_y_px < 0)
     throw UsageError("slow gain", "the range is below 0", "Give 0 or above");
   Grid<double> e(width, height), s(width, height), count(width, height);
@@ -53,7 +56,8 @@ SlowGain slow_gain(const Grid<double>& real, const Grid<double>& signal, int ran
   SlowGain out{Grid<double>(width, height, 1), Grid<unsigned char>(width, height, 1), 0};
   for (std::size_t i = 0; i < e.size(); ++i) {
     // Half a pixel: sums of ones are exact, and 0 means none.
-    if (count.data()[i] > 0.5 && s.data()[i] != 0 && std::fabs(s.data()[i]) >= least * count.data()[i]) {
+    if (count.data()[i] > 0.5 && s.data()[i] != 0 &&
+        std::fabs(s.data()[i]) >= least * count.data()[i]) {
       out.gain.data()[i] = e.data()[i] / s.data()[i];
     } else {
       out.known.data()[i] = 0;

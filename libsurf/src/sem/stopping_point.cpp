@@ -21,17 +21,23 @@ constexpr int most_bins = 4096;
 
 void check(const ModelScope& scope, const StoppingPointParameters& p) {
   const auto positive = [](double v) { return std::isfinite(v) && v > 0; };
-  if (!positive(scope.pixel_nm)) refuse("it has no pixel size", "Give one: columns are as wide as pixels");
+  if (!positive(scope.pixel_nm))
+    refuse("it has no pixel size", "Give one: columns are as wide as pixels");
   if (!positive(p.ring_nm) || !positive(p.height_step_nm) || !std::isfinite(p.lowest_nm))
-    refuse("a step of its table is not above 0 or its lowest height not finite", "Make the table again");
+    refuse("a step of its table is not above 0 or its lowest height not finite",
+           "Make the table again");
   if (p.rings < 1 || p.rings > most_bins || p.heights < 2 || p.heights > most_bins)
-    refuse(fmt::format("its table has {} rings of {} heights", p.rings, p.heights), "Make the table again");
+    refuse(fmt::format("its table has {} rings of {} heights", p.rings, p.heights),
+           "Make the table again");
   for (const StoppingPointChannel& c : p.channels) {
-    if (c.density_per_nm.size() != static_cast<std::size_t>(p.rings) * static_cast<std::size_t>(p.heights))
-      refuse(fmt::format("channel '{}' has {} numbers, not {} x {}", c.name, c.density_per_nm.size(), p.rings,
-                         p.heights), "Make the table again");
+    if (c.density_per_nm.size() !=
+        static_cast<std::size_t>(p.rings) * static_cast<std::size_t>(p.heights))
+      refuse(fmt::format("channel '{}' has {} numbers, not {} x {}", c.name,
+                         c.density_per_nm.size(), p.rings, p.heights),
+             "Make the table again");
     if (!std::ranges::all_of(c.density_per_nm, [](double d) { return std::isfinite(d) && d >= 0; }))
-      refuse(fmt::format("channel '{}' has densities below 0 or not finite", c.name), "Make the table again");
+      refuse(fmt::format("channel '{}' has densities below 0 or not finite", c.name),
+             "Make the table again");
     // Else the density would jump, and the image have a kink.
     for (std::size_t k = 0; k < static_cast<std::size_t>(p.rings); ++k) {
       const auto heights = static_cast<std::size_t>(p.heights);
@@ -46,13 +52,13 @@ void check(const ModelScope& scope, const StoppingPointParameters& p) {
            "Use pixels that are larger, or another model");
 }
 
-/// For each pixel around: how many stop in its column above a height. The density is linear between heights,
-/// so what lies above is quadratic and smooth to its first derivative.
+/// For each pixel around: how many stop in its column above a height. The density is linear between
+/// heights, so what lies above is quadratic and smooth to its first derivative.
 class Columns {
  public:
   Columns(const ModelScope& scope, const StoppingPointParameters& p)
-      : reach_(ring_reach(p.rings, p.ring_nm, scope.pixel_nm)), lowest_(p.lowest_nm), step_(p.height_step_nm),
-        heights_(static_cast<std::size_t>(p.heights)) {
+      : reach_(ring_reach(p.rings, p.ring_nm, scope.pixel_nm)), lowest_(p.lowest_nm),
+        step_(p.height_step_nm), heights_(static_cast<std::size_t>(p.heights)) {
     for (const StoppingPointChannel& c : p.channels) add(scope, p, c);
   }
 
@@ -65,7 +71,8 @@ class Columns {
     if (t <= 0) return {node[0].above, 0, 0, 0};
     if (t >= static_cast<double>(heights_ - 1)) return {};
     const auto i = static_cast<std::size_t>(t);
-    const double u = t - static_cast<double>(i), from = node[i].density, change = node[i + 1].density - from;
+    const double u = t - static_cast<double>(i), from = node[i].density,
+                 change = node[i + 1].density - from;
     return {node[i].above - step_ * u * (from + 0.5 * u * change), -(from + u * change), 0, 0};
   }
 
@@ -77,18 +84,19 @@ class Columns {
 
  private:
   struct Node {
-    double density = 0, above = 0;   // per nm; stops above it
+    double density = 0, above = 0;  // per nm; stops above it
   };
   struct Table {
     StoppingRule rule;
-    std::vector<Node> nodes;         // [column][height]
+    std::vector<Node> nodes;  // [column][height]
   };
 
   std::size_t column(int dx, int dy) const {
     return static_cast<std::size_t>((dy + reach_) * (2 * reach_ + 1) + dx + reach_);
   }
 
-  void add(const ModelScope& scope, const StoppingPointParameters& p, const StoppingPointChannel& channel) {
+  void add(const ModelScope& scope, const StoppingPointParameters& p,
+           const StoppingPointChannel& channel) {
     const auto across = static_cast<std::size_t>(2 * reach_ + 1);
     Table table{channel.rule, std::vector<Node>(across * across * heights_)};
     for (int k = 0; k < p.rings; ++k) {
@@ -96,7 +104,8 @@ class Columns {
       const double share = 1.0 / static_cast<double>(points.size());
       std::vector<double> shares(across * across, 0);
       for (const RingPoint& point : points) shares[column(point.dx, point.dy)] += share;
-      const double* density = channel.density_per_nm.data() + static_cast<std::size_t>(k) * heights_;
+      const double* density =
+          channel.density_per_nm.data() + static_cast<std::size_t>(k) * heights_;
       for (std::size_t c = 0; c < shares.size(); ++c)
         for (std::size_t i = 0; shares[c] > 0 && i < heights_; ++i)
           table.nodes[c * heights_ + i].density += shares[c] * density[i];

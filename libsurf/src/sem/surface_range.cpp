@@ -76,7 +76,8 @@ SurfaceRange united(const SurfaceRange& a, const SurfaceRange& b) {
 double share_steeper(const HeightField& field, double slope_deg) {
   require_whole(field);
   const std::vector<double> slopes = slopes_deg(field);
-  const auto steeper = std::count_if(slopes.begin(), slopes.end(), [&](double s) { return s > slope_deg; });
+  const auto steeper =
+      std::count_if(slopes.begin(), slopes.end(), [&](double s) { return s > slope_deg; });
   return static_cast<double>(steeper) / static_cast<double>(slopes.size());
 }
 

@@ -5,23 +5,28 @@ namespace surf {
 namespace {
 
 // One overload per kind of model.
-std::shared_ptr<const ImageModel> make(const ModelScope& scope, const SlopeModelParameters& parameters) {
+std::shared_ptr<const ImageModel> make(const ModelScope& scope,
+                                       const SlopeModelParameters& parameters) {
   return make_slope_model(scope, parameters);
 }
 
-std::shared_ptr<const ImageModel> make(const ModelScope& scope, const FilterBankParameters& parameters) {
+std::shared_ptr<const ImageModel> make(const ModelScope& scope,
+                                       const FilterBankParameters& parameters) {
   return make_filter_bank(scope, parameters);
 }
 
-std::shared_ptr<const ImageModel> make(const ModelScope& scope, const StoppingPointParameters& parameters) {
+std::shared_ptr<const ImageModel> make(const ModelScope& scope,
+                                       const StoppingPointParameters& parameters) {
   return make_stopping_point(scope, parameters);
 }
 
-std::shared_ptr<const ImageModel> make(const ModelScope& scope, const DiffusionMatrixParameters& parameters) {
+std::shared_ptr<const ImageModel> make(const ModelScope& scope,
+                                       const DiffusionMatrixParameters& parameters) {
   return make_diffusion_matrix(scope, parameters);
 }
 
-std::shared_ptr<const ImageModel> make(const ModelScope& scope, const FacetNetworkParameters& parameters) {
+std::shared_ptr<const ImageModel> make(const ModelScope& scope,
+                                       const FacetNetworkParameters& parameters) {
   return make_facet_network(scope, parameters);
 }
 

@@ -20,8 +20,9 @@ struct Block {
   double at(double x, double y) const {
     const double c = std::cos(turn), s = std::sin(turn);
     const double u = (x - x_nm) * c + (y - y_nm) * s, v = (y - y_nm) * c - (x - x_nm) * s;
-    const double outside = round ? (std::hypot(u / half_width_nm, v / half_depth_nm) - 1) * half_width_nm
-                                 : std::max(std::abs(u) - half_width_nm, std::abs(v) - half_depth_nm);
+    const double outside =
+        round ? (std::hypot(u / half_width_nm, v / half_depth_nm) - 1) * half_width_nm
+              : std::max(std::abs(u) - half_width_nm, std::abs(v) - half_depth_nm);
     return height_nm * std::clamp(1 - outside / run_nm, 0.0, 1.0);
   }
 };
@@ -41,7 +42,9 @@ TrainingShapes::TrainingShapes(double pixel_nm, int size_px, std::uint64_t seed,
     : pixel_nm_(pixel_nm), size_px_(size_px), half_nm_(0.5 * size_px * pixel_nm),
       random_(seed, static_cast<std::uint64_t>(surface), stream) {}
 
-double TrainingShapes::uniform(double from, double to) { return from + (to - from) * random_.uniform(); }
+double TrainingShapes::uniform(double from, double to) {
+  return from + (to - from) * random_.uniform();
+}
 
 std::uint64_t TrainingShapes::seed() {
   const std::uint64_t high = random_.bits();
@@ -115,8 +118,10 @@ HeightField TrainingShapes::outline() {
   const int last = size_px_ - 1;
   for (int y = 0; y <= last; ++y)
     for (int x = 0; x <= last; ++x) {
-      const int l = std::max(x - 1, 0), r = std::min(x + 1, last), b = std::max(y - 1, 0), t = std::min(y + 1, last);
-      const double slope = std::hypot((z(r, y) - z(l, y)) / (r - l), (z(x, t) - z(x, b)) / (t - b)) / pixel_nm_;
+      const int l = std::max(x - 1, 0), r = std::min(x + 1, last), b = std::max(y - 1, 0),
+                t = std::min(y + 1, last);
+      const double slope =
+          std::hypot((z(r, y) - z(l, y)) / (r - l), (z(x, t) - z(x, b)) / (t - b)) / pixel_nm_;
       // Where the field is level there is no outline near.
       field.z_nm(x, y) = (z(x, y) - level) / std::hypot(slope, 0.2 / length);
     }
@@ -126,7 +131,8 @@ HeightField TrainingShapes::outline() {
 HeightField TrainingShapes::pattern(double highest_nm) {
   const double height = uniform(0.2 * highest_nm, highest_nm), blur = uniform(0.7, 3) * pixel_nm_;
   HeightField field = outline();
-  for (double& z : field.z_nm.data()) z = 0.5 * height * (1 + std::erf(z / (std::numbers::sqrt2 * blur)));
+  for (double& z : field.z_nm.data())
+    z = 0.5 * height * (1 + std::erf(z / (std::numbers::sqrt2 * blur)));
   return field;
 }
 
@@ -135,7 +141,9 @@ HeightField TrainingShapes::trace(double highest_nm) {
   const double half = uniform(1.5, 8) * pixel_nm_;
   HeightField field = outline();
   for (double& z : field.z_nm.data())
-    z = 0.5 * height * (std::erf((half - z) / (std::numbers::sqrt2 * blur)) + std::erf((half + z) / (std::numbers::sqrt2 * blur)));
+    z = 0.5 * height *
+        (std::erf((half - z) / (std::numbers::sqrt2 * blur)) +
+         std::erf((half + z) / (std::numbers::sqrt2 * blur)));
   return field;
 }
 
@@ -186,7 +194,9 @@ HeightField TrainingShapes::pyramids(int count, double highest_nm) {
   return field;
 }
 
-double TrainingShapes::shortened(double correlation_nm) const { return std::min(correlation_nm, 0.8 * half_nm_); }
+double TrainingShapes::shortened(double correlation_nm) const {
+  return std::min(correlation_nm, 0.8 * half_nm_);
+}
 
 HeightField TrainingShapes::rough(double rms_nm, double correlation_nm) {
   const double across = (size_px_ - 1) * pixel_nm_;
@@ -195,7 +205,8 @@ HeightField TrainingShapes::rough(double rms_nm, double correlation_nm) {
 
 HeightField TrainingShapes::self_affine(double rms_nm, double correlation_nm, double hurst) {
   const double across = (size_px_ - 1) * pixel_nm_;
-  return make_self_affine({across, across, pixel_nm_}, rms_nm, shortened(correlation_nm), hurst, seed());
+  return make_self_affine({across, across, pixel_nm_}, rms_nm, shortened(correlation_nm), hurst,
+                          seed());
 }
 
 }  // namespace surf

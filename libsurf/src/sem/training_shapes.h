@@ -8,8 +8,8 @@
 
 namespace surf {
 
-/// Draws and adds random features to square fields about (0, 0). What is drawn depends on the seed and
-/// the number of the surface only.
+/// Draws and adds random features to square fields about (0, 0). What is drawn depends on the seed
+/// and the number of the surface only.
 class TrainingShapes {
  public:
   TrainingShapes(double pixel_nm, int size_px, std::uint64_t seed, int surface);
@@ -41,7 +41,7 @@ class TrainingShapes {
   double uniform(double from, double to);
   /// Distance from the winding outline of a random field, nm; above 0 inside.
   HeightField outline();
-  double run();   ///< of a wall
+  double run();  ///< of a wall
   std::uint64_t seed();
   double shortened(double correlation_nm) const;
 

@@ -23,8 +23,8 @@ HeightField sum(HeightField a, const HeightField& b, double factor = 1) {
 
 /// What a kind of surface is made with.
 struct Scale {
-  double height;   ///< what heights are multiplied by
-  double pixel;    ///< the pixel over 3 nm, of which roughness is made up
+  double height;  ///< what heights are multiplied by
+  double pixel;   ///< the pixel over 3 nm, of which roughness is made up
 };
 
 struct Kind {
@@ -40,13 +40,20 @@ constexpr Kind kinds[] = {
        HeightField z = t.blocks(22, 45 * s.height);
        return sum(std::move(z), t.rough(0.5 * s.height, 20 * s.pixel + 4));
      }},
-    {"pits", [](TrainingShapes& t, const Scale& s) { return sum(t.flat(), t.blocks(14, 40 * s.height), -1); }},
-    {"hole", [](TrainingShapes& t, const Scale& s) { return sum(t.flat(), t.island(40 * s.height), -1); }},
-    {"rough-fine", [](TrainingShapes& t, const Scale& s) { return t.rough(3 * s.pixel + 1, 15 * s.pixel + 4); }},
-    {"rough", [](TrainingShapes& t, const Scale& s) { return t.rough(10 * s.pixel + 2, 30 * s.pixel + 6); }},
-    {"rough-coarse", [](TrainingShapes& t, const Scale& s) { return t.rough(20 * s.pixel + 4, 60 * s.pixel + 10); }},
+    {"pits", [](TrainingShapes& t,
+                const Scale& s) { return sum(t.flat(), t.blocks(14, 40 * s.height), -1); }},
+    {"hole",
+     [](TrainingShapes& t, const Scale& s) { return sum(t.flat(), t.island(40 * s.height), -1); }},
+    {"rough-fine",
+     [](TrainingShapes& t, const Scale& s) { return t.rough(3 * s.pixel + 1, 15 * s.pixel + 4); }},
+    {"rough",
+     [](TrainingShapes& t, const Scale& s) { return t.rough(10 * s.pixel + 2, 30 * s.pixel + 6); }},
+    {"rough-coarse", [](TrainingShapes& t,
+                        const Scale& s) { return t.rough(20 * s.pixel + 4, 60 * s.pixel + 10); }},
     {"self-affine",
-     [](TrainingShapes& t, const Scale& s) { return t.self_affine(8 * s.pixel + 3, 40 * s.pixel + 10, 0.7); }},
+     [](TrainingShapes& t, const Scale& s) {
+       return t.self_affine(8 * s.pixel + 3, 40 * s.pixel + 10, 0.7);
+     }},
     {"line", [](TrainingShapes& t, const Scale& s) { return t.line(40 * s.height); }},
     {"bumps", [](TrainingShapes& t, const Scale&) { return t.bumps(40); }},
     {"lines", [](TrainingShapes& t, const Scale& s) { return t.lines(40 * s.height); }},
@@ -64,7 +71,8 @@ constexpr Kind kinds[] = {
      }},
     {"pattern", [](TrainingShapes& t, const Scale& s) { return t.pattern(45 * s.height); }},
     {"trace", [](TrainingShapes& t, const Scale& s) { return t.trace(45 * s.height); }},
-    {"pits-pattern", [](TrainingShapes& t, const Scale& s) { return sum(t.flat(), t.trace(30 * s.height), -1); }},
+    {"pits-pattern",
+     [](TrainingShapes& t, const Scale& s) { return sum(t.flat(), t.trace(30 * s.height), -1); }},
     {"low-pattern", [](TrainingShapes& t, const Scale& s) { return t.pattern(25 * s.height); }},
 };
 static_assert(std::size(kinds) == training_surface_kinds);
@@ -74,8 +82,10 @@ static_assert(std::size(kinds) == training_surface_kinds);
 std::vector<NamedSurface> training_surfaces(const TrainingSurfaceOptions& o) {
   require(o.pixel_nm >= 0.1 && o.pixel_nm <= 100, "pixel size", format_exact(o.pixel_nm) + " nm",
           "Training surfaces are made for pixels of 0.1 to 100 nm");
-  require(o.size_px >= 16 && o.size_px <= 4096, "size", std::to_string(o.size_px), "Give 16 to 4096 pixels");
-  require(o.count >= 1 && o.count <= 1000, "number of surfaces", std::to_string(o.count), "Give 1 to 1000");
+  require(o.size_px >= 16 && o.size_px <= 4096, "size", std::to_string(o.size_px),
+          "Give 16 to 4096 pixels");
+  require(o.count >= 1 && o.count <= 1000, "number of surfaces", std::to_string(o.count),
+          "Give 1 to 1000");
   const double across_nm = o.size_px * o.pixel_nm;
   const Scale scale{std::max(1.0, o.pixel_nm / 3) * std::min(1.0, across_nm / 96), o.pixel_nm / 3};
   std::vector<NamedSurface> surfaces;
@@ -83,7 +93,8 @@ std::vector<NamedSurface> training_surfaces(const TrainingSurfaceOptions& o) {
     const Kind& kind = kinds[i % training_surface_kinds];
     const int round = i / training_surface_kinds + 1;
     TrainingShapes shapes(o.pixel_nm, o.size_px, o.seed, i);
-    surfaces.push_back({round == 1 ? kind.name : fmt::format("{}-{}", kind.name, round), kind.make(shapes, scale)});
+    surfaces.push_back({round == 1 ? kind.name : fmt::format("{}-{}", kind.name, round),
+                        kind.make(shapes, scale)});
   }
   return surfaces;
 }

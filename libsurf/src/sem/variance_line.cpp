@@ -15,8 +15,8 @@ constexpr int most_steps = 200;
 constexpr double first_cut = 6;
 
 struct Sums {
-  double weight = 0, mean = 0, response = 0;   // of means and responses: weighted averages
-  double xx = 0, xy = 0;                       // about them
+  double weight = 0, mean = 0, response = 0;  // of means and responses: weighted averages
+  double xx = 0, xy = 0;                      // about them
 };
 
 struct Working {
@@ -24,7 +24,8 @@ struct Working {
 };
 
 template <class Work>
-Sums sums(const std::vector<VariancePoint>& points, const std::vector<char>& used, const Work& work) {
+Sums sums(const std::vector<VariancePoint>& points, const std::vector<char>& used,
+          const Work& work) {
   Sums s;
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (!used[i]) continue;
@@ -42,10 +43,14 @@ Sums sums(const std::vector<VariancePoint>& points, const std::vector<char>& use
   return s;
 }
 
-SemNoise noise_of(const VarianceLine& line, double floor) { return {line.slope, line.intercept, floor}; }
+SemNoise noise_of(const VarianceLine& line, double floor) {
+  return {line.slope, line.intercept, floor};
+}
 
-/// One step of Fisher scoring. Where the variance has left the line, only what it still follows of it counts.
-void step(const std::vector<VariancePoint>& points, const VarianceLineOptions& o, VarianceLine& line) {
+/// One step of Fisher scoring. Where the variance has left the line, only what it still follows of
+/// it counts.
+void step(const std::vector<VariancePoint>& points, const VarianceLineOptions& o,
+          VarianceLine& line) {
   const SemNoise old = noise_of(line, o.floor);
   const Sums s = sums(points, line.used, [&](const VariancePoint& p) -> Working {
     const double on_line = old.slope * p.mean + old.intercept, v = old.variance(p.mean);
@@ -68,7 +73,8 @@ double median(std::vector<double> values) {
 }
 
 /// The line through medians of points of neighbouring means: structure does not pull it.
-void start_robustly(const std::vector<VariancePoint>& points, const VarianceLineOptions& o, VarianceLine& line) {
+void start_robustly(const std::vector<VariancePoint>& points, const VarianceLineOptions& o,
+                    VarianceLine& line) {
   std::vector<std::size_t> order(points.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::ranges::sort(order, [&](std::size_t a, std::size_t b) {
@@ -82,7 +88,8 @@ void start_robustly(const std::vector<VariancePoint>& points, const VarianceLine
     for (std::size_t i = g * n / groups; i < (g + 1) * n / groups; ++i) {
       const VariancePoint& p = points[order[i]];
       means.push_back(p.mean), freedoms.push_back(p.freedom);
-      variances.push_back(p.variance / std::pow(std::max(1 - 2 / (9 * p.freedom), 0.1), 3));   // median of chi-squared
+      variances.push_back(p.variance / std::pow(std::max(1 - 2 / (9 * p.freedom), 0.1),
+                                                3));  // median of chi-squared
     }
     middles.push_back({median(means), median(variances), median(freedoms)});
   }
@@ -102,21 +109,24 @@ double score(const VariancePoint& p, double expected) {
   return (std::cbrt(std::max(p.variance, 0.0) / expected) - (1 - k)) / std::sqrt(k);
 }
 
-VarianceLine fit_variance_line(const std::vector<VariancePoint>& points, const VarianceLineOptions& o) {
+VarianceLine fit_variance_line(const std::vector<VariancePoint>& points,
+                               const VarianceLineOptions& o) {
   VarianceLine line;
   line.used.assign(points.size(), 1);
   const bool robust = o.cut > 0 && points.size() > 3;
   if (robust) {
     start_robustly(points, o, line);
   } else {
-    for (const VariancePoint& p : points) line.intercept += p.variance / static_cast<double>(points.size());
+    for (const VariancePoint& p : points)
+      line.intercept += p.variance / static_cast<double>(points.size());
   }
   double cut = first_cut;
   for (int i = 0; i < most_steps; ++i) {
     const VarianceLine old = line;
     if (robust) {
       for (std::size_t k = 0; k < points.size(); ++k)
-        line.used[k] = std::fabs(score(points[k], noise_of(line, o.floor).variance(points[k].mean))) <= cut;
+        line.used[k] =
+            std::fabs(score(points[k], noise_of(line, o.floor).variance(points[k].mean))) <= cut;
       if (std::ranges::count(line.used, 1) < 3) line.used.assign(points.size(), 1);
     }
     step(points, o, line);
@@ -133,7 +143,8 @@ VarianceLine fit_variance_line(const std::vector<VariancePoint>& points, const V
   return line;
 }
 
-Curvature fit_curvature(const std::vector<VariancePoint>& points, const VarianceLine& line, double floor) {
+Curvature fit_curvature(const std::vector<VariancePoint>& points, const VarianceLine& line,
+                        double floor) {
   const SemNoise noise = noise_of(line, floor);
   const auto work = [&](const VariancePoint& p) -> Working {
     const double v = noise.variance(p.mean);
@@ -142,12 +153,14 @@ Curvature fit_curvature(const std::vector<VariancePoint>& points, const Variance
   const Sums s = sums(points, line.used, work);
   if (!(s.xx > 0)) return {};
   const double scale = std::sqrt(s.xx / s.weight);
-  double w1 = 0, w2 = 0, w3 = 0, w4 = 0;   // sums of weight times powers of the standardised mean
+  double w1 = 0, w2 = 0, w3 = 0, w4 = 0;  // sums of weight times powers of the standardised mean
   const auto each = [&](const auto& visit) {
     for (std::size_t i = 0; i < points.size(); ++i)
       if (line.used[i]) visit(work(points[i]), (points[i].mean - s.mean) / scale);
   };
-  each([&](const Working& w, double x) { w1 += w.weight, w2 += w.weight * x * x, w3 += w.weight * x * x * x; });
+  each([&](const Working& w, double x) {
+    w1 += w.weight, w2 += w.weight * x * x, w3 += w.weight * x * x * x;
+  });
   // The square less what a line says of it.
   const auto square = [&](double x) { return x * x - w2 / w1 - w3 / w2 * x; };
   double xy = 0, least = 0, largest = 0;
@@ -158,7 +171,8 @@ Curvature fit_curvature(const std::vector<VariancePoint>& points, const Variance
   if (!(w4 > 1e-9 * w1)) return {};
   Curvature c{xy / std::sqrt(w4), 0};
   for (const double x : {least, 0.5 * (least + largest), largest})
-    c.departure = std::max(c.departure, std::fabs(xy / w4 * square(x)) / noise.variance(s.mean + scale * x));
+    c.departure =
+        std::max(c.departure, std::fabs(xy / w4 * square(x)) / noise.variance(s.mean + scale * x));
   return c;
 }
 

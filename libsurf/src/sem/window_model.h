@@ -12,8 +12,8 @@
 #include "surf/core/parallel.h"
 #include "surf/sem/image_model.h"
 
-// Models whose pixel is a sum over the surface around it: of kernel(offset, height above the pixel, slope
-// there), then a function of that sum. A Kernel has
+// Models whose pixel is a sum over the surface around it: of kernel(offset, height above the pixel,
+// slope there), then a function of that sum. A Kernel has
 //   int reach() const                               columns to each side
 //   std::size_t channels() const
 //   WindowTerm term(channel, dx, dy, dz_nm, slope_x, slope_y) const      with its derivatives
@@ -33,15 +33,20 @@ struct WindowSignal {
 template <class Kernel>
 class WindowLinearization final : public Linearization {
  public:
-  WindowLinearization(std::shared_ptr<const Kernel> kernel, const HeightField& field, const ModelOptions& options)
-      : kernel_(std::move(kernel)), field_(field, kernel_->reach() + 1, options.edge), threads_(options.threads) {
+  WindowLinearization(std::shared_ptr<const Kernel> kernel, const HeightField& field,
+                      const ModelOptions& options)
+      : kernel_(std::move(kernel)), field_(field, kernel_->reach() + 1, options.edge),
+        threads_(options.threads) {
     const Grid<double> none(field_.width(), field_.height());
     images_.assign(kernel_->channels(), none);
     by_sum_ = by_own_height_ = images_;
-    rows(field_.height(), [&](int y) {
-      for (std::size_t c = 0; c < images_.size(); ++c)
-        for (int x = 0; x < field_.width(); ++x) look(c, x, y);
-    }, options.watch);
+    rows(
+        field_.height(),
+        [&](int y) {
+          for (std::size_t c = 0; c < images_.size(); ++c)
+            for (int x = 0; x < field_.width(); ++x) look(c, x, y);
+        },
+        options.watch);
   }
 
   const ModelImages& images() const override { return images_; }
@@ -49,7 +54,8 @@ class WindowLinearization final : public Linearization {
 
   Grid<double> gradient(const ModelImages& weights) const override {
     check_weights(weights, kernel_->channels(), images_.front());
-    // Every place asks the pixels around it, those beyond the edge too: no two threads write to one place.
+    // Every place asks the pixels around it, those beyond the edge too: no two threads write to one
+    // place.
     Grid<double> z = field_.none(), slope_x = z, slope_y = z;
     const int reach = kernel_->reach();
     rows(field_.height() + 2 * reach, [&](int row) {
@@ -80,7 +86,8 @@ class WindowLinearization final : public Linearization {
           for (int dy = -reach; dy <= reach; ++dy)
             for (int dx = -reach; dx <= reach; ++dx) {
               const WindowTerm t = term(c, x, y, dx, dy);
-              sum += t.by_height * step.z(x + dx, y + dy) + t.by_slope_x * step.slope_x(x + dx, y + dy) +
+              sum += t.by_height * step.z(x + dx, y + dy) +
+                     t.by_slope_x * step.slope_x(x + dx, y + dy) +
                      t.by_slope_y * step.slope_y(x + dx, y + dy);
             }
           out[c](x, y) = by_sum_[c](x, y) * sum;
@@ -92,13 +99,14 @@ class WindowLinearization final : public Linearization {
  private:
   template <class Work>
   void rows(int count, const Work& work, const Watch& watch = {}) const {
-    parallel_for(static_cast<std::size_t>(count), threads_,
-                 [&](std::size_t y, int) { work(static_cast<int>(y)); }, watch);
+    parallel_for(
+        static_cast<std::size_t>(count), threads_,
+        [&](std::size_t y, int) { work(static_cast<int>(y)); }, watch);
   }
 
   WindowTerm term(std::size_t c, int x, int y, int dx, int dy) const {
-    return kernel_->term(c, dx, dy, field_.z(x + dx, y + dy) - field_.z(x, y), field_.slope_x(x + dx, y + dy),
-                         field_.slope_y(x + dx, y + dy));
+    return kernel_->term(c, dx, dy, field_.z(x + dx, y + dy) - field_.z(x, y),
+                         field_.slope_x(x + dx, y + dy), field_.slope_y(x + dx, y + dy));
   }
 
   void look(std::size_t c, int x, int y) {
@@ -137,14 +145,15 @@ class WindowLinearization final : public Linearization {
   PaddedField field_;
   int threads_;
   ModelImages images_;
-  ModelImages by_sum_;          // derivative of the signal by its sum
-  ModelImages by_own_height_;   // sum of the terms' derivatives: less of it is the pixel's own
+  ModelImages by_sum_;         // derivative of the signal by its sum
+  ModelImages by_own_height_;  // sum of the terms' derivatives: less of it is the pixel's own
 };
 
 template <class Kernel>
 class WindowModel final : public ImageModel {
  public:
-  WindowModel(ModelScope scope, std::vector<std::string> names, std::shared_ptr<const Kernel> kernel)
+  WindowModel(ModelScope scope, std::vector<std::string> names,
+              std::shared_ptr<const Kernel> kernel)
       : scope_(std::move(scope)), names_(std::move(names)), kernel_(std::move(kernel)) {}
 
   const std::vector<std::string>& channels() const override { return names_; }
@@ -154,7 +163,8 @@ class WindowModel final : public ImageModel {
     check_field(scope_, field);
     return WindowLinearization<Kernel>(kernel_, field, options).take_images();
   }
-  std::unique_ptr<Linearization> linearize(const HeightField& field, const ModelOptions& options) const override {
+  std::unique_ptr<Linearization> linearize(const HeightField& field,
+                                           const ModelOptions& options) const override {
     check_field(scope_, field);
     return std::make_unique<WindowLinearization<Kernel>>(kernel_, field, options);
   }

@@ -26,9 +26,12 @@ class Teller final : public ceres::IterationCallback {
   explicit Teller(const MinimiseOptions& options) : options_(options) {}
   ceres::CallbackReturnType operator()(const ceres::IterationSummary& s) override {
     switch (options_.after(s.iteration, s.cost_change)) {
-      case Then::go_on: return ceres::SOLVER_CONTINUE;
-      case Then::settled: return ceres::SOLVER_TERMINATE_SUCCESSFULLY;
-      case Then::stop: break;
+      case Then::go_on:
+        return ceres::SOLVER_CONTINUE;
+      case Then::settled:
+        return ceres::SOLVER_TERMINATE_SUCCESSFULLY;
+      case Then::stop:
+        break;
     }
     return ceres::SOLVER_ABORT;
   }
@@ -40,21 +43,27 @@ class Teller final : public ceres::IterationCallback {
 Ended ended(ceres::TerminationType type) {
   switch (type) {
     case ceres::CONVERGENCE:
-    case ceres::USER_SUCCESS: return Ended::settled;
-    case ceres::NO_CONVERGENCE: return Ended::iterations;
-    case ceres::USER_FAILURE: return Ended::stopped;
-    default: return Ended::line_search;
+    case ceres::USER_SUCCESS:
+      return Ended::settled;
+    case ceres::NO_CONVERGENCE:
+      return Ended::iterations;
+    case ceres::USER_FAILURE:
+      return Ended::stopped;
+    default:
+      return Ended::line_search;
   }
 }
 
 }  // namespace
 
-Minimised ceres_minimise(const SmoothFunction& function, std::span<double> at, const MinimiseOptions& options) {
-  const ceres::GradientProblem problem(new Problem(function));   // which owns it
+Minimised ceres_minimise(const SmoothFunction& function, std::span<double> at,
+                         const MinimiseOptions& options) {
+  const ceres::GradientProblem problem(new Problem(function));  // which owns it
   ceres::GradientProblemSolver::Options solver;
-  solver.line_search_direction_type = options.search == Search::bfgs    ? ceres::BFGS
-                                      : options.search == Search::lbfgs ? ceres::LBFGS
-                                                                        : ceres::NONLINEAR_CONJUGATE_GRADIENT;
+  solver.line_search_direction_type = options.search == Search::bfgs ? ceres::BFGS
+                                      : options.search == Search::lbfgs
+                                          ? ceres::LBFGS
+                                          : ceres::NONLINEAR_CONJUGATE_GRADIENT;
   solver.nonlinear_conjugate_gradient_type = ceres::POLAK_RIBIERE;
   solver.line_search_type = ceres::WOLFE;
   solver.max_lbfgs_rank = options.lbfgs_rank;
@@ -69,8 +78,8 @@ Minimised ceres_minimise(const SmoothFunction& function, std::span<double> at, c
   if (options.after) solver.callbacks.push_back(&teller);
   ceres::GradientProblemSolver::Summary summary;
   ceres::Solve(solver, problem, at.data(), &summary);
-  return {ended(summary.termination_type), std::max(0, static_cast<int>(summary.iterations.size()) - 1),
-          summary.final_cost};
+  return {ended(summary.termination_type),
+          std::max(0, static_cast<int>(summary.iterations.size()) - 1), summary.final_cost};
 }
 
 }  // namespace surf::solvers

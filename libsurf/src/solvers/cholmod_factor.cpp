@@ -14,16 +14,17 @@ namespace {
 using reconstruction::Area;
 using reconstruction::StencilMatrix;
 
-/// Nested dissection: both halves first, then the two rows or columns between them, which is as far as the
-/// stencil reaches. METIS finds no better one for a field, takes longer, and another one each time if two
-/// threads ask at once.
+/// Nested dissection: both halves first, then the two rows or columns between them, which is as far
+/// as the stencil reaches. METIS finds no better one for a field, takes longer, and another one
+/// each time if two threads ask at once.
 void add_dissected(const Area& part, int width, std::vector<int>& order) {
-  constexpr int reach = 2, small = 24;   // samples that are not cut any further
+  constexpr int reach = 2, small = 24;  // samples that are not cut any further
   const auto add = [&](const Area& a) {
     for (int y = a.y_begin; y < a.y_end; ++y)
       for (int x = a.x_begin; x < a.x_end; ++x) order.push_back(y * width + x);
   };
-  if (part.samples() <= small || std::max(part.width(), part.height()) <= 2 * reach) return add(part);
+  if (part.samples() <= small || std::max(part.width(), part.height()) <= 2 * reach)
+    return add(part);
   Area before = part, between = part, after = part;
   if (part.width() >= part.height()) {
     before.x_end = between.x_begin = part.x_begin + (part.width() - reach) / 2;
@@ -58,8 +59,8 @@ class CholmodFactor final : public Factor {
   void compute(const StencilMatrix& m, const Area& area) override;
   Grid<double> solve(const Grid<double>& right) override { return solved(CHOLMOD_A, right); }
   Grid<double> draw(const Grid<double>& normal) override {
-    // A = P^T L L^T P: L^-T turns white numbers into such of covariance (L L^T)^-1, P^T puts them back in
-    // order.
+    // A = P^T L L^T P: L^-T turns white numbers into such of covariance (L L^T)^-1, P^T puts them
+    // back in order.
     return solved(CHOLMOD_Pt, solved(CHOLMOD_Lt, normal));
   }
 
@@ -81,16 +82,18 @@ class CholmodFactor final : public Factor {
 
   cholmod_common common_;
   cholmod_factor* factor_ = nullptr;
-  cholmod_dense *x_ = nullptr, *y_ = nullptr, *e_ = nullptr;   // of solve, kept
+  cholmod_dense *x_ = nullptr, *y_ = nullptr, *e_ = nullptr;  // of solve, kept
   int width_ = 0, height_ = 0;
 };
 
 void CholmodFactor::compute(const StencilMatrix& m, const Area& area) {
   const int n = area.samples();
   cholmod_common* const with = &common_;
-  cholmod_sparse* a = cholmod_allocate_sparse(n, n, static_cast<std::size_t>(n) * StencilMatrix::slots, true, true, 1,
-                                              CHOLMOD_REAL, with);
-  if (!a) throw Error("reconstruct", "there is not enough memory for a surface of this size", "Cut the image");
+  cholmod_sparse* a = cholmod_allocate_sparse(
+      n, n, static_cast<std::size_t>(n) * StencilMatrix::slots, true, true, 1, CHOLMOD_REAL, with);
+  if (!a)
+    throw Error("reconstruct", "there is not enough memory for a surface of this size",
+                "Cut the image");
   auto* start = static_cast<int*>(a->p);
   auto* row = static_cast<int*>(a->i);
   auto* value = static_cast<double*>(a->x);
@@ -111,7 +114,8 @@ void CholmodFactor::compute(const StencilMatrix& m, const Area& area) {
   cholmod_factorize(a, factor_, with);
   cholmod_free_sparse(&a, with);
   if (with->status != CHOLMOD_OK)
-    throw InvalidInput("reconstruct", "the surface is not determined", "Give an AFM image, or a stronger prior");
+    throw InvalidInput("reconstruct", "the surface is not determined",
+                       "Give an AFM image, or a stronger prior");
   width_ = area.width();
   height_ = area.height();
 }

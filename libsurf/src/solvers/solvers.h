@@ -21,11 +21,12 @@ class SmoothFunction {
  public:
   virtual ~SmoothFunction() = default;
   virtual int size() const = 0;
-  /// False where it has no value. `gradient` is null where it is not wanted. What it throws passes through.
+  /// False where it has no value. `gradient` is null where it is not wanted. What it throws passes
+  /// through.
   virtual bool evaluate(const double* at, double* value, double* gradient) const = 0;
 };
 
-enum class Search { bfgs, lbfgs, conjugate_gradient };   ///< the last after Polak and Ribière
+enum class Search { bfgs, lbfgs, conjugate_gradient };  ///< the last after Polak and Ribière
 
 enum class Then { go_on, settled, stop };
 
@@ -33,7 +34,7 @@ struct MinimiseOptions {
   Search search = Search::lbfgs;
   int lbfgs_rank = 20;
   int most_iterations = 50;
-  int most_step_sizes = 20;   ///< of one line search
+  int most_step_sizes = 20;  ///< of one line search
   double function_tolerance = 1e-6;
   double gradient_tolerance = 1e-10;
   double parameter_tolerance = 1e-8;
@@ -53,24 +54,27 @@ struct Minimised {
 class Factor {
  public:
   virtual ~Factor() = default;
-  virtual void compute(const reconstruction::StencilMatrix& matrix, const reconstruction::Area& area) = 0;
+  virtual void compute(const reconstruction::StencilMatrix& matrix,
+                       const reconstruction::Area& area) = 0;
   virtual Grid<double> solve(const Grid<double>& right) = 0;
   virtual Grid<double> draw(const Grid<double>& normal) = 0;
 };
 
 /// What the module gives.
 struct Solvers {
-  static constexpr ModuleName module{"solvers", "fits models and reconstructs surfaces",
-                                     "Ceres, CHOLMOD and OpenBLAS (Debian: libceres3, libcholmod3, libopenblas0-pthread)", 200};
+  static constexpr ModuleName module{
+      "solvers", "fits models and reconstructs surfaces",
+      "Ceres, CHOLMOD and OpenBLAS (Debian: libceres3, libcholmod3, libopenblas0-pthread)", 200};
 
   /// Lowers `function` from `at`, by Ceres.
-  Minimised (*minimise)(const SmoothFunction& function, std::span<double> at, const MinimiseOptions& options);
+  Minimised (*minimise)(const SmoothFunction& function, std::span<double> at,
+                        const MinimiseOptions& options);
   /// By CHOLMOD.
   std::unique_ptr<Factor> (*make_factor)();
   // OpenBLAS's own.
   void (*set_blas_threads)(int count);
   int (*blas_threads)();
-  int (*blas_is_parallel)();   ///< 0: built for one thread
+  int (*blas_is_parallel)();  ///< 0: built for one thread
 };
 
 inline const Solvers& solvers() { return surf::module<Solvers>(); }

@@ -10,8 +10,9 @@ int openblas_get_parallel();
 
 namespace {
 
-constexpr surf::solvers::Solvers table{surf::solvers::ceres_minimise, surf::solvers::make_cholmod_factor,
-                                       openblas_set_num_threads, openblas_get_num_threads, openblas_get_parallel};
+constexpr surf::solvers::Solvers table{surf::solvers::ceres_minimise,
+                                       surf::solvers::make_cholmod_factor, openblas_set_num_threads,
+                                       openblas_get_num_threads, openblas_get_parallel};
 
 }  // namespace
 

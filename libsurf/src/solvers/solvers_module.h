@@ -6,7 +6,8 @@
 
 namespace surf::solvers {
 
-Minimised ceres_minimise(const SmoothFunction& function, std::span<double> at, const MinimiseOptions& options);
+Minimised ceres_minimise(const SmoothFunction& function, std::span<double> at,
+                         const MinimiseOptions& options);
 std::unique_ptr<Factor> make_cholmod_factor();
 
 }  // namespace surf::solvers

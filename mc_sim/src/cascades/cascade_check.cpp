@@ -7,7 +7,7 @@ namespace surf::mc {
 
 namespace {
 
-constexpr int coarsest_exponent = 30;   // 1e9 nm
+constexpr int coarsest_exponent = 30;  // 1e9 nm
 constexpr int finest_exponent = -16;
 // Nodes inside each other; at 30 keV there are a few dozen.
 constexpr int most_nested = 1000;
@@ -35,13 +35,15 @@ class Check {
     const PackedNode& n = view.node;
     if (n.level != level || n.words != end - begin || n.exponent != exponent ||
         n.exponent < finest_exponent || n.exponent > coarsest_exponent ||
-        !(n.generated_ev >= 0 && n.generated_ev < 1e30f) || EnergyCode::energy_part(n.start.energy) > energy)
+        !(n.generated_ev >= 0 && n.generated_ev < 1e30f) ||
+        EnergyCode::energy_part(n.start.energy) > energy)
       return false;
     if (n.count > (level > 0 ? nodes_per_node : segments_per_node) ||
         (level > 0 ? n.births != 0 || n.count == 0 : n.births >> n.count != 0))
       return false;
     const auto children = static_cast<std::size_t>(view.children());
-    const std::size_t own = header_words + (level > 0 ? 0 : n.count) + children + (children + 1) / 2;
+    const std::size_t own =
+        header_words + (level > 0 ? 0 : n.count) + children + (children + 1) / 2;
     if (end - begin < own) return false;
     energy = EnergyCode::energy_part(n.start.energy);
     std::uint32_t inside = 0;
@@ -70,7 +72,7 @@ class Check {
     for (int i = 0; i < view.node.count; ++i) {
       const std::uint16_t here = EnergyCode::energy_part(read_vertex(view.vertex(i)).energy);
       if (here > energy) return false;
-      std::uint16_t theirs = energy;   // a secondary has no more than the electron before the event
+      std::uint16_t theirs = energy;  // a secondary has no more than the electron before the event
       energy = here;
       if (!(view.node.births & 1u << i)) continue;
       std::size_t next = 0;
@@ -83,8 +85,10 @@ class Check {
     return at == end;
   }
 
-  // Whether child i begins at `at` and has its header before `end`; sets where it ends, at most there.
-  bool child(const NodeView& view, int i, std::size_t at, std::size_t end, std::size_t& next) const {
+  // Whether child i begins at `at` and has its header before `end`; sets where it ends, at most
+  // there.
+  bool child(const NodeView& view, int i, std::size_t at, std::size_t end,
+             std::size_t& next) const {
     if (view.child(i) != words_ + at || end - at < header_words) return false;
     const std::uint32_t words = read_node(words_ + at).words;
     next = at + words;

@@ -22,9 +22,9 @@ inline constexpr int cascade_format_version = 2;
 //                         branch, and the branches
 //               above:    a sphere per node below, the place of each, and the nodes
 //
-// A sphere holds everything in a node or branch, secondaries and theirs included. It is kept with the
-// parent, so that what is far from every surface is passed over without being looked at. Places are
-// in words from the parent's header, two to a word. Coordinates count from the electron's first
+// A sphere holds everything in a node or branch, secondaries and theirs included. It is kept with
+// the parent, so that what is far from every surface is passed over without being looked at. Places
+// are in words from the parent's header, two to a word. Coordinates count from the electron's first
 // point, in units of 2^exponent nm.
 
 /// A point of a track, the energy there and what it forgets (see EnergyCode).
@@ -39,16 +39,17 @@ struct PackedSphere {
 };
 
 struct PackedNode {
-  std::uint8_t level;           ///< 0: holds segments
-  std::uint8_t count;           ///< of segments on level 0, of nodes above: 1 to 8
-  std::uint8_t births;          ///< level 0: bit i: a secondary starts at the end of segment i
+  std::uint8_t level;   ///< 0: holds segments
+  std::uint8_t count;   ///< of segments on level 0, of nodes above: 1 to 8
+  std::uint8_t births;  ///< level 0: bit i: a secondary starts at the end of segment i
   std::int8_t exponent;
-  std::uint32_t generated;      ///< secondaries in the node, theirs included
-  float generated_ev;           ///< their total energies
-  std::uint32_t words;          ///< of the node with all that is in it
-  PackedVertex start;           ///< where its first segment starts
+  std::uint32_t generated;  ///< secondaries in the node, theirs included
+  float generated_ev;       ///< their total energies
+  std::uint32_t words;      ///< of the node with all that is in it
+  PackedVertex start;       ///< where its first segment starts
 };
-static_assert(offsetof(PackedNode, start) == sizeof(PackedNode) - sizeof(PackedVertex));   // the vertices follow
+static_assert(offsetof(PackedNode, start) ==
+              sizeof(PackedNode) - sizeof(PackedVertex));  // the vertices follow
 static_assert(sizeof(PackedVertex) == 8 && sizeof(PackedSphere) == 8 && sizeof(PackedNode) == 24);
 
 inline constexpr int segments_per_node = 8;
@@ -65,11 +66,13 @@ inline PackedVertex read_vertex(const std::uint64_t* at) {
   return std::bit_cast<PackedVertex>(*at);
 }
 
-/// How many of eight bits are set. Processors count them, but not those that every build has to run on.
+/// How many of eight bits are set. Processors count them, but not those that every build has to run
+/// on.
 inline int bits_in(unsigned eight) {
   static constexpr auto counts = [] {
     std::array<std::uint8_t, 256> table{};
-    for (std::size_t i = 1; i < table.size(); ++i) table[i] = static_cast<std::uint8_t>(table[i / 2] + i % 2);
+    for (std::size_t i = 1; i < table.size(); ++i)
+      table[i] = static_cast<std::uint8_t>(table[i / 2] + i % 2);
     return table;
   }();
   return counts[eight];
@@ -102,9 +105,9 @@ inline float power_of_two(int exponent) {
   return std::bit_cast<float>(static_cast<std::uint32_t>(127 + exponent) << 23);
 }
 
-/// Energies are packed as the root of what they are above the cutoff: fine where they are small. The
-/// lowest bit says that the electron was scattered into all directions alike: what comes after does
-/// not remember the direction before.
+/// Energies are packed as the root of what they are above the cutoff: fine where they are small.
+/// The lowest bit says that the electron was scattered into all directions alike: what comes after
+/// does not remember the direction before.
 class EnergyCode {
  public:
   EnergyCode(double cutoff_ev, double top_ev)
@@ -121,7 +124,9 @@ class EnergyCode {
     return static_cast<std::uint16_t>(code << 1 | (forgets ? 1u : 0u));
   }
   /// Falls with the energy, whatever is forgotten.
-  static std::uint16_t energy_part(std::uint16_t code) { return static_cast<std::uint16_t>(code >> 1); }
+  static std::uint16_t energy_part(std::uint16_t code) {
+    return static_cast<std::uint16_t>(code >> 1);
+  }
   static bool forgets(std::uint64_t vertex) { return (vertex >> 48 & 1) != 0; }
 
  private:

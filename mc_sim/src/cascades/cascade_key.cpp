@@ -28,8 +28,7 @@ std::map<std::string, std::string> read_lines(std::string_view text) {
     const std::string_view line = text.substr(0, end);
     text.remove_prefix(std::min(end + 1, text.size()));
     const std::size_t at = line.find(" = ");
-    if (at != std::string_view::npos)
-      values.emplace(line.substr(0, at), line.substr(at + 3));
+    if (at != std::string_view::npos) values.emplace(line.substr(0, at), line.substr(at + 3));
   }
   return values;
 }
@@ -54,11 +53,13 @@ std::string digest(const DielectricData& d) {
     add(static_cast<double>(numbers->size()));
     for (const double value : *numbers) add(value);
   }
-  for (const double value : {d.band.filled_ev, d.band.gap_ev, d.exhausted_ev, d.vacuum_ev, d.lattice_nm, d.resistivity_ohm_m,
-                             d.effective_mass, d.density_of_states_mass, d.trap_per_nm, d.trap_ev})
+  for (const double value :
+       {d.band.filled_ev, d.band.gap_ev, d.exhausted_ev, d.vacuum_ev, d.lattice_nm,
+        d.resistivity_ohm_m, d.effective_mass, d.density_of_states_mass, d.trap_per_nm, d.trap_ev})
     add(value);
   for (const AcousticBranch& b : d.acoustic)
-    for (const double value : {b.speed_m_s, b.deformation_ev, b.bend_m2_s, double(b.count)}) add(value);
+    for (const double value : {b.speed_m_s, b.deformation_ev, b.bend_m2_s, double(b.count)})
+      add(value);
   for (const OpticalMode& m : d.optical)
     for (const double value : {m.energy_ev, m.high_permittivity, m.low_permittivity}) add(value);
   return fmt::format("{:016x}", hash);
@@ -81,11 +82,13 @@ std::string cascade_page_key(const CascadeSettings& s, std::size_t number) {
       format_exact(m.work_function_ev), format_exact(m.barrier_ev),
       format_exact(m.valence_electrons), format_exact(m.plasmon_ev), format_exact(m.loss_join_ev));
   if (is_dielectric(s.physics)) {
-    key += fmt::format("vacuum_barrier_ev = {}\ndielectric = {}\n", format_exact(m.dielectric->barrier_ev()), digest(*m.dielectric));
+    key += fmt::format("vacuum_barrier_ev = {}\ndielectric = {}\n",
+                       format_exact(m.dielectric->barrier_ev()), digest(*m.dielectric));
   }
   for (const Constituent& c : m.constituents)
-    key += fmt::format("constituent = {} {} {} {}\n", c.atomic_number, format_exact(c.atomic_weight),
-                       format_exact(c.weight_fraction), format_exact(c.mean_ionization_ev));
+    key +=
+        fmt::format("constituent = {} {} {} {}\n", c.atomic_number, format_exact(c.atomic_weight),
+                    format_exact(c.weight_fraction), format_exact(c.mean_ionization_ev));
   return key;
 }
 
@@ -108,15 +111,17 @@ std::optional<CascadePageName> read_cascade_page_key(const std::string& key) {
                       name.cascades == CascadeLibrary::page_cascades;
     name.material = text("material");
     parse_physics(text("physics"), name.physics);
-    const double inside_ev = is_dielectric(name.physics)                     ? number<double>(text("vacuum_barrier_ev"))
-                             : name.physics.barrier == BarrierModel::off ? 0 : number<double>(text("barrier_ev"));
+    const double inside_ev = is_dielectric(name.physics) ? number<double>(text("vacuum_barrier_ev"))
+                             : name.physics.barrier == BarrierModel::off
+                                 ? 0
+                                 : number<double>(text("barrier_ev"));
     const double cutoff_ev = number<double>(text("cutoff_ev"));
     name.is_usual_cutoff = cutoff_ev == effective_cutoff_ev(name.physics, inside_ev);
     name.physics.cutoff_ev = cutoff_ev;
     name.beam_energy_ev = number<double>(text("start_energy_ev")) - inside_ev;
     name.seed = number<std::uint64_t>(text("seed"));
   } catch (const std::exception&) {
-    return std::nullopt;   // of another version, which wrote other lines
+    return std::nullopt;  // of another version, which wrote other lines
   }
   return name;
 }

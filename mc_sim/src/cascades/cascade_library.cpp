@@ -31,7 +31,9 @@ double page_reach_nm(const CascadePage& page) {
   for (std::size_t i = 0; i + 1 < page.starts.size(); ++i) {
     const NodeView root(page.words.data() + page.starts[i]);
     const double unit = power_of_two(root.node.exponent);
-    const auto distance = [&](double x, double y, double z) { return unit * std::sqrt(x * x + y * y + z * z); };
+    const auto distance = [&](double x, double y, double z) {
+      return unit * std::sqrt(x * x + y * y + z * z);
+    };
     for (int k = 0; root.node.level == 0 && k < root.node.count; ++k) {
       const PackedVertex v = read_vertex(root.vertex(k));
       farthest = std::max(farthest, distance(v.x, v.y, v.z));
@@ -84,10 +86,10 @@ CascadeLibrary::CascadeLibrary(CascadeSettings settings)
                      "Choose loss=joy-luo or inelastic=dielectric, or direct simulation");
   if (!(settings_.start_energy_ev > medium_->cutoff_ev()) ||
       settings_.start_energy_ev > 2 * max_beam_energy_ev)
-    throw UsageError("cascade library",
-                     fmt::format("cascades cannot start at {:g} eV", settings_.start_energy_ev),
-                     fmt::format("Choose an energy above the cutoff of {:g} eV",
-                                 medium_->cutoff_ev()));
+    throw UsageError(
+        "cascade library",
+        fmt::format("cascades cannot start at {:g} eV", settings_.start_energy_ev),
+        fmt::format("Choose an energy above the cutoff of {:g} eV", medium_->cutoff_ev()));
 }
 
 std::size_t CascadeLibrary::bytes() const {
@@ -113,8 +115,9 @@ void ask_for_large_pages([[maybe_unused]] void* begin, [[maybe_unused]] std::siz
 
 namespace {
 
-// Makes pages on some threads. Who finishes a page's last unit puts it together, while the others are
-// at the next page; what units lay in is used again, as getting memory takes as long as filling it.
+// Makes pages on some threads. Who finishes a page's last unit puts it together, while the others
+// are at the next page; what units lay in is used again, as getting memory takes as long as filling
+// it.
 class PageMaker {
  public:
   PageMaker(const CascadeLibrary& library, std::size_t first_page, std::size_t pages)
@@ -198,9 +201,9 @@ class PageMaker {
   const CascadeLibrary& library_;
   std::size_t first_page_;
   std::vector<Draft> drafts_;
-  std::mutex mutex_;                  // of all that follows, and of the drafts' counts
+  std::mutex mutex_;  // of all that follows, and of the drafts' counts
   std::size_t cascades_ = 0;
-  std::vector<CascadePage> blanks_;   // empty, with memory
+  std::vector<CascadePage> blanks_;  // empty, with memory
 };
 
 }  // namespace
@@ -269,10 +272,13 @@ double CascadeLibrary::reach_nm() const {
   return reaches_nm_.empty() ? 0 : *std::ranges::max_element(reaches_nm_);
 }
 
-bool can_replay(const Medium& medium) { return medium.loses_continuously() || medium.loses_in_events(); }
+bool can_replay(const Medium& medium) {
+  return medium.loses_continuously() || medium.loses_in_events();
+}
 
 bool can_replay(const Physics& physics, std::span<const Material> materials) {
-  return std::ranges::any_of(materials, [&](const Material& m) { return can_replay(make_medium(m, physics)); });
+  return std::ranges::any_of(
+      materials, [&](const Material& m) { return can_replay(make_medium(m, physics)); });
 }
 
 namespace {
@@ -288,7 +294,8 @@ void survey(const NodeView& view, bool primary, CascadeStatistics& out, double& 
   out.electrons_per_cascade += view.children();
   for (int i = 0; primary && i < node.count; ++i) {
     const PackedVertex v = read_vertex(view.vertex(i));
-    const Vec3 p = Vec3{double(v.x), double(v.y), double(v.z)} * double(power_of_two(node.exponent));
+    const Vec3 p =
+        Vec3{double(v.x), double(v.y), double(v.z)} * double(power_of_two(node.exponent));
     depth = std::max(depth, -p.z);
     extent = std::max(extent, length(p));
   }
@@ -302,7 +309,8 @@ CascadeSample sample_cascades(const CascadeSettings& settings) {
   Maker maker(library);
   CascadePage page;
   std::size_t made = 0;
-  while (made < fewest || (page.words.size() < enough_words && made < CascadeLibrary::page_cascades))
+  while (made < fewest ||
+         (page.words.size() < enough_words && made < CascadeLibrary::page_cascades))
     maker.make(made++, page);
   CascadeStatistics counted;
   double depth = 0, extent = 0;

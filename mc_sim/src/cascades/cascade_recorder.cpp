@@ -9,8 +9,8 @@ namespace surf::mc {
 
 namespace {
 
-constexpr int largest_coordinate = 32000;   // leaves room for the rounding of those before
-constexpr int finest_exponent = -16;        // 1.5e-5 nm
+constexpr int largest_coordinate = 32000;  // leaves room for the rounding of those before
+constexpr int finest_exponent = -16;       // 1.5e-5 nm
 
 std::size_t segments_of_level(int level) {
   std::size_t n = segments_per_node;
@@ -38,11 +38,11 @@ int exponent_for(double extent_nm) {
 
 // An electron on its way into words.
 struct CascadeRecorder::Branch {
-  std::size_t first, end;   // of its points
-  Vec3 origin;              // its first point, as it will be unpacked
+  std::size_t first, end;  // of its points
+  Vec3 origin;             // its first point, as it will be unpacked
   double unit_nm;
   int exponent;
-  int next_birth;           // the electron that is born next
+  int next_birth;  // the electron that is born next
 
   std::size_t segments() const { return end - first - 1; }
 };
@@ -56,7 +56,8 @@ void CascadeRecorder::begin_track(int number, int parent, int, const Vec3& posit
     // Electrons that wait are followed last in, first out: of one parent's, the latest comes first.
     Electron& from = electrons_[static_cast<std::size_t>(parent)];
     if (from.first_child < 0) from.unborn = from.end;
-    while (!(points_[--from.unborn].position == position)) {}
+    while (!(points_[--from.unborn].position == position)) {
+    }
     birth = from.unborn - from.first;
     next = from.first_child;
     from.first_child = number;
@@ -77,13 +78,12 @@ void CascadeRecorder::finish(std::vector<std::uint64_t>& words) {
 }
 
 void CascadeRecorder::measure() {
-  for (std::size_t i = electrons_.size(); i-- > 0;) {   // children come after their parents
+  for (std::size_t i = electrons_.size(); i-- > 0;) {  // children come after their parents
     Electron& electron = electrons_[i];
     Box box = electron.box;
     for (std::size_t k = electron.first; k < electron.end; ++k) box.extend(points_[k].position);
     electron.box = box;
-    if (electron.parent >= 0)
-      electrons_[static_cast<std::size_t>(electron.parent)].box.extend(box);
+    if (electron.parent >= 0) electrons_[static_cast<std::size_t>(electron.parent)].box.extend(box);
   }
 }
 
@@ -93,8 +93,8 @@ CascadeRecorder::Packed CascadeRecorder::pack_branch(const Electron& electron, c
   const Vec3 a = start - electron.box.lower_nm;
   const Vec3 b = electron.box.upper_nm - start;
   const int exponent = exponent_for(std::max({a.x, a.y, a.z, b.x, b.y, b.z}));
-  Branch branch{electron.first, electron.end, origin, power_of_two(exponent), exponent,
-                electron.first_child};
+  Branch branch{electron.first,         electron.end, origin,
+                power_of_two(exponent), exponent,     electron.first_child};
   const double per_nm = power_of_two(-exponent);
   for (std::size_t i = electron.first; i < electron.end; ++i) {
     Point& p = points_[i];
@@ -139,7 +139,8 @@ CascadeRecorder::Packed CascadeRecorder::pack_node(Branch& branch, std::size_t f
   const std::size_t spheres = packed.word + header_words + own, places = spheres + children;
   words.resize(places + (children + 1) / 2);
   if (own > 0)
-    std::memcpy(&words[packed.word + header_words], &vertices_[start + 1], own * sizeof(PackedVertex));
+    std::memcpy(&words[packed.word + header_words], &vertices_[start + 1],
+                own * sizeof(PackedVertex));
 
   for (std::size_t i = 0; i < children; ++i) {
     Packed child;

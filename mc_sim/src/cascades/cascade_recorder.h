@@ -13,8 +13,10 @@ namespace surf::mc {
 /// Watches the transport loop in an endless medium and packs one cascade after the other.
 class CascadeRecorder {
  public:
-  /// `paid`: whether electrons pay for the secondaries that they make, so that these bring no energy of their own.
-  CascadeRecorder(EnergyCode code, double barrier_ev, bool paid) : code_(code), barrier_ev_(barrier_ev), paid_(paid) {}
+  /// `paid`: whether electrons pay for the secondaries that they make, so that these bring no
+  /// energy of their own.
+  CascadeRecorder(EnergyCode code, double barrier_ev, bool paid)
+      : code_(code), barrier_ev_(barrier_ev), paid_(paid) {}
 
   void begin_track(int number, int parent, int generation, const Vec3& position, const Vec3&,
                    double energy_ev);
@@ -35,16 +37,16 @@ class CascadeRecorder {
   struct Point {
     Vec3 position;
     double energy_ev;
-    bool forgets;                // whether its direction is a new one from this point on
+    bool forgets;  // whether its direction is a new one from this point on
   };
   // Electrons are followed one after the other: each one's points are a piece of all.
   struct Electron {
-    std::size_t first, end;      // of its points
-    std::size_t unborn;          // vertices before this one may still have a birth
-    std::size_t birth;           // the vertex of its parent that it starts from
+    std::size_t first, end;  // of its points
+    std::size_t unborn;      // vertices before this one may still have a birth
+    std::size_t birth;       // the vertex of its parent that it starts from
     int parent;
-    int first_child, next;       // its first to be born; the next of the same parent
-    Box box;                     // of it and all that it generates
+    int first_child, next;  // its first to be born; the next of the same parent
+    Box box;                // of it and all that it generates
   };
   struct Branch;
   struct Content {
@@ -60,13 +62,13 @@ class CascadeRecorder {
   struct Bound {
     Vec3 center;
     double radius_nm;
-    std::size_t first_point, end_point;   // its own
+    std::size_t first_point, end_point;  // its own
     std::size_t end;
   };
 
   // A packed node or branch.
   struct Packed {
-    std::size_t word;            // where it begins
+    std::size_t word;  // where it begins
     std::size_t bound;
     Box box;
     Content content;
@@ -85,9 +87,9 @@ class CascadeRecorder {
   bool paid_;
   // Reused from cascade to cascade.
   std::vector<Electron> electrons_;
-  std::vector<Point> points_;             // once packed, as they will be unpacked
-  std::vector<PackedVertex> vertices_;    // of the points, once packed
-  std::vector<Bound> bounds_;             // depth first
+  std::vector<Point> points_;           // once packed, as they will be unpacked
+  std::vector<PackedVertex> vertices_;  // of the points, once packed
+  std::vector<Bound> bounds_;           // depth first
 };
 
 }  // namespace surf::mc

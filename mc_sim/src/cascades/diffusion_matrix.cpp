@@ -12,8 +12,8 @@
 namespace surf::mc {
 namespace {
 
-/// Probability to get out, averaged over directions of Lambert's law: integral of 2 c T(E c^2) over the
-/// cosine c from 0 to 1. Tabled evenly in the logarithm of the energy.
+/// Probability to get out, averaged over directions of Lambert's law: integral of 2 c T(E c^2) over
+/// the cosine c from 0 to 1. Tabled evenly in the logarithm of the energy.
 class Escape {
  public:
   Escape(BarrierModel model, double barrier_ev, double top_ev) : barrier_ev_(barrier_ev) {
@@ -37,7 +37,8 @@ class Escape {
     if (!(t > 0)) return 0;
     const int i = std::min(static_cast<int>(t), steps - 1);
     const double u = std::min(t - i, 1.0);
-    return (1 - u) * table_[static_cast<std::size_t>(i)] + u * table_[static_cast<std::size_t>(i) + 1];
+    return (1 - u) * table_[static_cast<std::size_t>(i)] +
+           u * table_[static_cast<std::size_t>(i) + 1];
   }
 
  private:
@@ -60,16 +61,18 @@ struct Extent {
 struct Fill {
   DiffusionMatrixParameters& table;
   const Escape& escape;
-  double split_ev;      // from the bottom of the band
+  double split_ev;  // from the bottom of the band
 
   void segment(const CascadeSegment& s) {
     const Vec3 way = s.to - s.from;
     const double path = length(way);
     if (!counts(s) || path <= 0) return;
     const Vec3 v = way * (1 / path);
-    const int pieces = 1 + static_cast<int>(2 * path / std::min(table.ring_nm, table.height_step_nm));
+    const int pieces =
+        1 + static_cast<int>(2 * path / std::min(table.ring_nm, table.height_step_nm));
     for (int i = 0; i < pieces; ++i) {
-      const double t = (i + 0.5) / pieces, energy = s.energy_from_ev + t * (s.energy_to_ev - s.energy_from_ev);
+      const double t = (i + 0.5) / pieces,
+                   energy = s.energy_from_ev + t * (s.energy_to_ev - s.energy_from_ev);
       add(s.from + way * t, v, path / pieces * escape(energy), energy >= split_ev ? 1 : 0);
     }
   }
@@ -79,9 +82,11 @@ struct Fill {
   void add(const Vec3& at, const Vec3& v, double weight, std::size_t channel) {
     const double r = std::hypot(at.x, at.y), c = r > 0 ? at.x / r : 1, s = r > 0 ? at.y / r : 0;
     const double outward = v.x * c + v.y * s, around = v.y * c - v.x * s;
-    const auto height = static_cast<std::size_t>((at.z - table.lowest_nm) / table.height_step_nm + 0.5);
-    double* m = table.channels[channel].moments_per_nm2.data() +
-                (ring_of(table, at) * static_cast<std::size_t>(table.heights) + height) * diffusion_moments;
+    const auto height =
+        static_cast<std::size_t>((at.z - table.lowest_nm) / table.height_step_nm + 0.5);
+    double* m =
+        table.channels[channel].moments_per_nm2.data() +
+        (ring_of(table, at) * static_cast<std::size_t>(table.heights) + height) * diffusion_moments;
     m[0] += weight * outward;
     m[1] += weight * v.z;
     m[2] += weight * outward * outward;
@@ -93,25 +98,31 @@ struct Fill {
 
 }  // namespace
 
-DiffusionMatrixParameters diffusion_matrix(const CascadeLibrary& library, const CascadeTableOptions& options) {
+DiffusionMatrixParameters diffusion_matrix(const CascadeLibrary& library,
+                                           const CascadeTableOptions& options) {
   check_table(library, options);
-  const double barrier_ev = library.medium().barrier_ev(), top_ev = library.settings().start_energy_ev;
+  const double barrier_ev = library.medium().barrier_ev(),
+               top_ev = library.settings().start_energy_ev;
   Extent extent;
   walk_all(library, extent);
   DiffusionMatrixParameters table;
   extent.bins.lay_out(options, table);
-  const std::size_t bins = static_cast<std::size_t>(table.rings) * static_cast<std::size_t>(table.heights);
+  const std::size_t bins =
+      static_cast<std::size_t>(table.rings) * static_cast<std::size_t>(table.heights);
   const std::vector<double> none(bins * diffusion_moments, 0.0);
   table.channels = {{"SE", none}, {"BSE", none}};
-  const Escape escape(library.settings().physics.barrier, barrier_ev, std::max(top_ev, 2 * barrier_ev));
+  const Escape escape(library.settings().physics.barrier, barrier_ev,
+                      std::max(top_ev, 2 * barrier_ev));
   Fill fill{table, escape, barrier_ev + se_bse_split_ev};
   walk_all(library, fill);
   for (DiffusionMatrixChannel& c : table.channels)
     for (int k = 0; k < table.rings; ++k) {
       const double area = std::numbers::pi * (2 * k + 1) * table.ring_nm * table.ring_nm;
-      const double factor = 1 / (static_cast<double>(library.cascades()) * area * table.height_step_nm);
+      const double factor =
+          1 / (static_cast<double>(library.cascades()) * area * table.height_step_nm);
       const auto row = static_cast<std::size_t>(table.heights) * diffusion_moments;
-      for (std::size_t i = 0; i < row; ++i) c.moments_per_nm2[static_cast<std::size_t>(k) * row + i] *= factor;
+      for (std::size_t i = 0; i < row; ++i)
+        c.moments_per_nm2[static_cast<std::size_t>(k) * row + i] *= factor;
     }
   return table;
 }

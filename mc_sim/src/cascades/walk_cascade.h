@@ -10,14 +10,15 @@ namespace surf::mc {
 
 /// A straight piece of an electron's way in a cascade.
 struct CascadeSegment {
-  Vec3 from, to;             // nm
+  Vec3 from, to;  // nm
   double energy_from_ev, energy_to_ev;
   bool primary;
-  bool first;                // of its electron
+  bool first;  // of its electron
 };
 
-/// Tells a visitor of a packed cascade: `segment(const CascadeSegment&)` for each piece of each electron, and
-/// `stop(position, primary)` where an electron ends. A secondary comes between the pieces of its parent.
+/// Tells a visitor of a packed cascade: `segment(const CascadeSegment&)` for each piece of each
+/// electron, and `stop(position, primary)` where an electron ends. A secondary comes between the
+/// pieces of its parent.
 template <class Visitor>
 class CascadeWalk {
  public:
@@ -39,7 +40,8 @@ class CascadeWalk {
 
   void branch(const std::uint64_t* words, const Vec3& origin, bool primary) {
     const PackedNode root = read_node(words);
-    Way way{origin, origin, power_of_two(root.exponent), code_.decode(root.start.energy), primary, true};
+    Way way{origin,  origin, power_of_two(root.exponent), code_.decode(root.start.energy),
+            primary, true};
     node(words, way);
     visitor_.stop(way.at, primary);
   }

@@ -12,24 +12,25 @@ namespace surf::mc {
 namespace {
 
 constexpr double steps = 32767;
-constexpr double half_diagonal = 0.8660254037844388 * (1 + 1e-6);   // of a cube of edge 1
+constexpr double half_diagonal = 0.8660254037844388 * (1 + 1e-6);  // of a cube of edge 1
 // Positions are good to this: hits lie on triangles up to rounding.
 constexpr double slack_nm = 1e-3;
 // Farther surfaces than this many edges count as being so far.
 constexpr double brick_span = 26, cell_span = 16;
 constexpr double smallest_cell_nm = 0.75;
-constexpr double near_nm = 3;            // bricks farther from a surface are not cut,
-constexpr double flat_nm = 0.05;         // nor those that fall no shorter than this
-constexpr double flat_share = 0.15;      // and this share of their distance
-constexpr double slab_edges = 2.5;       // surfaces farther than this many edges get no slab
-constexpr double most_in_brick = 1500;   // nor bricks where more triangles would be looked at
-constexpr double small_edges = 0.75;     // triangles up to this many edges stand as their corners
+constexpr double near_nm = 3;           // bricks farther from a surface are not cut,
+constexpr double flat_nm = 0.05;        // nor those that fall no shorter than this
+constexpr double flat_share = 0.15;     // and this share of their distance
+constexpr double slab_edges = 2.5;      // surfaces farther than this many edges get no slab
+constexpr double most_in_brick = 1500;  // nor bricks where more triangles would be looked at
+constexpr double small_edges = 0.75;    // triangles up to this many edges stand as their corners
 constexpr std::size_t most_bricks = std::size_t{1} << 21;
 // More cells than this would take longer to fill than a coarse surface is worth.
 constexpr double few_cells = 3e5, cells_per_triangle = 1.5, most_cells = 4e5;
 
 // A polygon's part on one side of a plane across an axis.
-std::vector<Vec3> clipped(const std::vector<Vec3>& polygon, double Vec3::*axis, double limit, double sign) {
+std::vector<Vec3> clipped(const std::vector<Vec3>& polygon, double Vec3::*axis, double limit,
+                          double sign) {
   std::vector<Vec3> out;
   for (std::size_t i = 0; i < polygon.size(); ++i) {
     const Vec3 &a = polygon[i], &b = polygon[(i + 1) % polygon.size()];
@@ -48,7 +49,8 @@ double area_within(const MeshView& mesh, const Box& box) {
     bool inside = true, outside = false;
     for (const std::uint32_t v : t) part.push_back(mesh.vertices_nm[v]);
     for (double Vec3::*x : {&Vec3::x, &Vec3::y, &Vec3::z}) {
-      const double low = std::min({part[0].*x, part[1].*x, part[2].*x}), high = std::max({part[0].*x, part[1].*x, part[2].*x});
+      const double low = std::min({part[0].*x, part[1].*x, part[2].*x}),
+                   high = std::max({part[0].*x, part[1].*x, part[2].*x});
       inside = inside && low >= box.lower_nm.*x && high <= box.upper_nm.*x;
       outside = outside || high < box.lower_nm.*x || low > box.upper_nm.*x;
     }
@@ -57,7 +59,8 @@ double area_within(const MeshView& mesh, const Box& box) {
       for (double Vec3::*x : {&Vec3::x, &Vec3::y, &Vec3::z})
         part = clipped(clipped(part, x, box.upper_nm.*x, 1), x, box.lower_nm.*x, -1);
     Vec3 across;
-    for (std::size_t i = 2; i < part.size(); ++i) across += cross(part[i - 1] - part[0], part[i] - part[0]);
+    for (std::size_t i = 2; i < part.size(); ++i)
+      across += cross(part[i - 1] - part[0], part[i] - part[0]);
     sum += 0.5 * length(across);
   }
   return sum;
@@ -70,14 +73,12 @@ class DistanceGridBuilder {
   using Cell = DistanceGrid::Cell;
 
   DistanceGridBuilder(const MeshView& mesh, const Box& domain, std::size_t bytes, int threads,
-                   const Watch& watch, DistanceGrid& field)
+                      const Watch& watch, DistanceGrid& field)
       : watch_{{}, watch.cancel}, field_(field), domain_(domain), bytes_(bytes), threads_(threads),
-        most_cells_(std::min({static_cast<double>(bytes) / sizeof(Cell), most_cells,
-                              few_cells + cells_per_triangle *
-                                              static_cast<double>(mesh.triangles.size())})),
-        area_(area_within(mesh, domain)),
-        cell_(first_cell(area_)),
-        widest_(1.5 * cell_),
+        most_cells_(std::min(
+            {static_cast<double>(bytes) / sizeof(Cell), most_cells,
+             few_cells + cells_per_triangle * static_cast<double>(mesh.triangles.size())})),
+        area_(area_within(mesh, domain)), cell_(first_cell(area_)), widest_(1.5 * cell_),
         tree_(mesh, grown(domain, (brick_span + 4) * DistanceGrid::cut * widest_), watch_, threads),
         per_area_(static_cast<double>(tree_.size()) / std::max(area_, 1e-9)) {}
 
@@ -85,8 +86,9 @@ class DistanceGridBuilder {
     for (;;) {
       lay_out();
       std::vector<std::uint32_t> cut = fill_bricks();
-      const double excess = static_cast<double>((bricks_.size() + cut.size() * in_brick) *
-                                                sizeof(Cell)) / static_cast<double>(bytes_);
+      const double excess =
+          static_cast<double>((bricks_.size() + cut.size() * in_brick) * sizeof(Cell)) /
+          static_cast<double>(bytes_);
       if (excess <= 1 || cell_ >= widest_) {
         // At worst the last bricks stay whole, to be within the memory.
         cut.resize(std::min(cut.size(), bytes_ / sizeof(Cell) / in_brick));
@@ -102,7 +104,7 @@ class DistanceGridBuilder {
 
   struct Fit {
     Cell cell;
-    double shortfall_nm;   // at the centre; the slab's thickness where the surface is in the cell
+    double shortfall_nm;  // at the centre; the slab's thickness where the surface is in the cell
     double floor_nm;
   };
 
@@ -119,9 +121,10 @@ class DistanceGridBuilder {
       const double brick = DistanceGrid::cut * h;
       const double bricks = (size.x / brick + 4) * (size.y / brick + 4) * (size.z / brick + 4);
       const double cells = area * 2 * (near_nm + 0.5 * brick) / (h * h * h);
-      if (bricks <= most_bricks && 1.25 * bricks + std::min(cells, bricks * in_brick) <= most_cells_)
+      if (bricks <= most_bricks &&
+          1.25 * bricks + std::min(cells, bricks * in_brick) <= most_cells_)
         return h;
-      if (bricks <= 65) return h;   // as few as can be
+      if (bricks <= 65) return h;  // as few as can be
     }
   }
 
@@ -164,18 +167,21 @@ class DistanceGridBuilder {
     std::vector<std::uint8_t> wanted(bricks_.size(), 0);
     const auto ny = static_cast<std::size_t>(field_.ny_);
     std::vector<LocalTriangles> surface = lists();
-    parallel_for(static_cast<std::size_t>(field_.nz_) * ny, threads_, [&](std::size_t row, int worker) {
-      const int y = static_cast<int>(row % ny), z = static_cast<int>(row / ny);
-      std::uint32_t guess = TriangleTree::none;
-      for (int x = 0; x < field_.nx_; ++x) {
-        const Vec3 center = brick_lower(x, y, z) + Vec3{0.5, 0.5, 0.5} * edge_;
-        const Fit fit = brick(center, surface[static_cast<std::size_t>(worker)], guess);
-        const std::size_t i = field_.index(x, y, z);
-        bricks_[i] = fit.cell;
-        wanted[i] = fit.floor_nm < near_nm &&
-                    fit.shortfall_nm > flat_nm + flat_share * fit.floor_nm;
-      }
-    }, watch_);
+    parallel_for(
+        static_cast<std::size_t>(field_.nz_) * ny, threads_,
+        [&](std::size_t row, int worker) {
+          const int y = static_cast<int>(row % ny), z = static_cast<int>(row / ny);
+          std::uint32_t guess = TriangleTree::none;
+          for (int x = 0; x < field_.nx_; ++x) {
+            const Vec3 center = brick_lower(x, y, z) + Vec3{0.5, 0.5, 0.5} * edge_;
+            const Fit fit = brick(center, surface[static_cast<std::size_t>(worker)], guess);
+            const std::size_t i = field_.index(x, y, z);
+            bricks_[i] = fit.cell;
+            wanted[i] =
+                fit.floor_nm < near_nm && fit.shortfall_nm > flat_nm + flat_share * fit.floor_nm;
+          }
+        },
+        watch_);
     std::vector<std::uint32_t> cut;
     for (std::size_t i = 0; i < wanted.size(); ++i)
       if (wanted[i]) cut.push_back(static_cast<std::uint32_t>(i));
@@ -201,22 +207,26 @@ class DistanceGridBuilder {
       }
     }
     bricks_ = {};
-    const auto nx = static_cast<std::uint32_t>(field_.nx_), ny = static_cast<std::uint32_t>(field_.ny_);
+    const auto nx = static_cast<std::uint32_t>(field_.nx_),
+               ny = static_cast<std::uint32_t>(field_.ny_);
     constexpr std::size_t block = 16;
     std::vector<LocalTriangles> surface = lists();
-    parallel_for((cut.size() + block - 1) / block, threads_, [&](std::size_t b, int worker) {
-      for (std::size_t k = b * block; k < std::min(cut.size(), (b + 1) * block); ++k) {
-        const std::uint32_t i = cut[k];
-        const Vec3 lower = brick_lower(static_cast<int>(i % nx), static_cast<int>(i / nx % ny),
-                                       static_cast<int>(i / nx / ny));
-        fill(lower + Vec3{0.5, 0.5, 0.5} * edge_, surface[static_cast<std::size_t>(worker)],
-             &cells[field_.bricks_[i] & ~DistanceGrid::is_cut]);
-      }
-    }, watch_);
+    parallel_for(
+        (cut.size() + block - 1) / block, threads_,
+        [&](std::size_t b, int worker) {
+          for (std::size_t k = b * block; k < std::min(cut.size(), (b + 1) * block); ++k) {
+            const std::uint32_t i = cut[k];
+            const Vec3 lower = brick_lower(static_cast<int>(i % nx), static_cast<int>(i / nx % ny),
+                                           static_cast<int>(i / nx / ny));
+            fill(lower + Vec3{0.5, 0.5, 0.5} * edge_, surface[static_cast<std::size_t>(worker)],
+                 &cells[field_.bricks_[i] & ~DistanceGrid::is_cut]);
+          }
+        },
+        watch_);
   }
 
-  // The cells of a brick, by way of its eighths. Cells that are not near the surface get no slab and
-  // need to know little of it.
+  // The cells of a brick, by way of its eighths. Cells that are not near the surface get no slab
+  // and need to know little of it.
   void fill(const Vec3& center, LocalTriangles& surface, Cell* out) const {
     const auto corner = [](int i) {
       return Vec3{i & 1 ? 0.5 : -0.5, i & 2 ? 0.5 : -0.5, i & 4 ? 0.5 : -0.5};
@@ -237,12 +247,14 @@ class DistanceGridBuilder {
       if (!is_far) surface.narrow(surface.all(), middle, part_covered, part);
       for (int c = 0; c < 8; ++c) {
         const Vec3 offset = corner(c) * cell_;
-        const int x = 2 * (e & 1) + (c & 1), y = (e & 2) + (c >> 1 & 1), z = (e >> 1 & 2) + (c >> 2);
+        const int x = 2 * (e & 1) + (c & 1), y = (e & 2) + (c >> 1 & 1),
+                  z = (e >> 1 & 2) + (c >> 2);
         const double at_least = std::max(0.0, part_distance - length(offset));
         out[(z * DistanceGrid::cut + y) * DistanceGrid::cut + x] =
             (is_far ? without_slab(at_least, cell_, cell_span)
-                    : fitted(surface, part, middle + offset, at_least, part_covered - length(offset),
-                             cell_, cell_span)).cell;
+                    : fitted(surface, part, middle + offset, at_least,
+                             part_covered - length(offset), cell_, cell_span))
+                .cell;
       }
     }
   }
@@ -255,8 +267,8 @@ class DistanceGridBuilder {
     improve(tree_, center, nearest);
     guess = nearest.triangle;
     const double d = nearest.distance, covered = d + 2 * r + 4 * slack_nm;
-    const double in_ball =
-        std::min(static_cast<double>(tree_.size()), per_area_ * 3.14159265 * (covered * covered - d * d));
+    const double in_ball = std::min(static_cast<double>(tree_.size()),
+                                    per_area_ * 3.14159265 * (covered * covered - d * d));
     if (d >= slab_within(edge_) || in_ball > most_in_brick)
       return without_slab(d, edge_, brick_span);
     surface.collect(center, covered, small_edges * edge_);
@@ -276,7 +288,7 @@ class DistanceGridBuilder {
     fit.shortfall_nm = r;
     fit.cell = {};
     fit.cell.distance = down((distance - slack_nm) * steps / (span * edge));
-    fit.cell.low = -32768;   // everywhere: the floor is the bound
+    fit.cell.low = -32768;  // everywhere: the floor is the bound
     fit.cell.high = 32767;
     return fit;
   }
@@ -306,7 +318,9 @@ class DistanceGridBuilder {
       fit.cell = cell;
     };
     // A thin slab cannot be bettered by much.
-    const auto is_thin = [&] { return best >= 0 && fit.cell.high - fit.cell.low < 0.1 * edge / unit; };
+    const auto is_thin = [&] {
+      return best >= 0 && fit.cell.high - fit.cell.low < 0.1 * edge / unit;
+    };
     try_normal(nearest.away);
     if (d < r && !is_thin()) try_normal(surface.mean_normal());
     if (best < 0) try_normal({0, 0, 1});
@@ -331,7 +345,7 @@ class DistanceGridBuilder {
     const auto clamped = [](double v) {
       return static_cast<std::int16_t>(std::clamp(v, -32768.0, steps));
     };
-    cell.low = 32767;   // nowhere
+    cell.low = 32767;  // nowhere
     cell.high = -32768;
     if (slab.low <= slab.high) {
       cell.low = clamped(std::floor(slab.low / unit - slack));
@@ -343,12 +357,12 @@ class DistanceGridBuilder {
   static double mean_bound(const Cell& cell, const DistanceGrid::Level& level) {
     double sum = 0;
     for (int i = 0; i < 8; ++i)
-      sum += DistanceGrid::bound(cell, i & 1 ? 0.9f : 0.1f, i & 2 ? 0.9f : 0.1f, i & 4 ? 0.9f : 0.1f,
-                              level);
+      sum += DistanceGrid::bound(cell, i & 1 ? 0.9f : 0.1f, i & 2 ? 0.9f : 0.1f,
+                                 i & 4 ? 0.9f : 0.1f, level);
     return sum;
   }
 
-  const Watch watch_;   // tells nobody; first: the tree below is built with it
+  const Watch watch_;  // tells nobody; first: the tree below is built with it
   DistanceGrid& field_;
   Box domain_;
   std::size_t bytes_;
@@ -356,15 +370,15 @@ class DistanceGridBuilder {
   double most_cells_;
   double area_;
   double cell_;
-  double widest_;   // that the tree allows for
+  double widest_;  // that the tree allows for
   TriangleTree tree_;
-  double per_area_;   // triangles per nm^2
+  double per_area_;  // triangles per nm^2
   double edge_ = 0;
   std::vector<Cell> bricks_;
 };
 
 DistanceGrid::DistanceGrid(const MeshView& mesh, const Box& domain, std::size_t bytes, int threads,
-                     const Watch& watch)
+                           const Watch& watch)
     : surface_box_(bounds(mesh)) {
   if (mesh.triangles.empty() || bytes < 4096 || domain.empty()) return;
   DistanceGridBuilder(mesh, domain, bytes, resolve_threads(threads), watch, *this).build();

@@ -17,10 +17,11 @@ namespace surf::mc {
 /// surface is nearly flat.
 ///
 /// Space is cut into bricks, and bricks near surfaces that are not flat into 4 x 4 x 4 cells. Each
-/// brick or cell knows a slab: all surface within a ball around its centre c lies between the planes
-/// n.(x - c) = low and high. The ball has the radius d + 2 r, where d is the distance of c from the
-/// surface and r the distance of the brick's or cell's corners from c; a smaller one would limit the
-/// bound, a larger one would only make the slab thicker. At a point p of the cell the bound is
+/// brick or cell knows a slab: all surface within a ball around its centre c lies between the
+/// planes n.(x - c) = low and high. The ball has the radius d + 2 r, where d is the distance of c
+/// from the surface and r the distance of the brick's or cell's corners from c; a smaller one would
+/// limit the bound, a larger one would only make the slab thicker. At a point p of the cell the
+/// bound is
 ///   max(0, d - r, min(gap between p and the slab, d + r)).
 /// All numbers are kept in 16 bits, rounded so that the bound stays one.
 class DistanceGrid {
@@ -32,9 +33,9 @@ class DistanceGrid {
   /// `threads` >= 0; 0: one per hardware thread. The result does not depend on it.
   /// Throws Interrupted.
   DistanceGrid(const MeshView& mesh, const Box& domain, std::size_t bytes, int threads = 0,
-            const Watch& watch = {});
+               const Watch& watch = {});
 
-  double cell_nm() const { return cell_nm_; }   ///< the smallest cells; 0 without any
+  double cell_nm() const { return cell_nm_; }  ///< the smallest cells; 0 without any
   std::size_t bytes() const {
     return bricks_.size() * sizeof(std::uint32_t) + cells_.size() * sizeof(Cell);
   }
@@ -54,31 +55,32 @@ class DistanceGrid {
     const int cx = std::min(static_cast<int>(fx), level.last);
     const int cy = std::min(static_cast<int>(fy), level.last);
     const int cz = std::min(static_cast<int>(fz), level.last);
-    const Cell& cell = cells_[(brick & ~is_cut) + static_cast<std::uint32_t>((cz * cut + cy) * cut + cx)];
+    const Cell& cell =
+        cells_[(brick & ~is_cut) + static_cast<std::uint32_t>((cz * cut + cy) * cut + cx)];
     return bound(cell, fx - static_cast<float>(cx), fy - static_cast<float>(cy),
                  fz - static_cast<float>(cz), level);
   }
 
  private:
   friend class DistanceGridBuilder;
-  static constexpr int cut = 4;                          // cells along a brick
-  static constexpr std::uint32_t is_cut = 0x80000000u;   // of a brick's number of its first cell
+  static constexpr int cut = 4;                         // cells along a brick
+  static constexpr std::uint32_t is_cut = 0x80000000u;  // of a brick's number of its first cell
 
   // Lengths in units of the level, `n` in 1/32767.
   struct Cell {
     std::array<std::int16_t, 3> n;
     std::int16_t low, high;
-    std::uint16_t distance;   // d
+    std::uint16_t distance;  // d
   };
 
   // Whole bricks, and cells.
   struct Level {
-    float cells = 1;          // along a brick
-    int last = 0;             // of them
-    float scale = 0;          // from n.x in cells to units
+    float cells = 1;  // along a brick
+    int last = 0;     // of them
+    float scale = 0;  // from n.x in cells to units
     float unit_nm = 0;
-    float beyond = 0;         // r, rounded down
-    float inside = 0;         // r, rounded up
+    float beyond = 0;  // r, rounded down
+    float inside = 0;  // r, rounded up
   };
 
   // `x` etc. are within the cell, 0 to 1.
@@ -94,7 +96,8 @@ class DistanceGrid {
 
   std::size_t index(int x, int y, int z) const {
     return (static_cast<std::size_t>(z) * static_cast<std::size_t>(ny_) +
-            static_cast<std::size_t>(y)) * static_cast<std::size_t>(nx_) +
+            static_cast<std::size_t>(y)) *
+               static_cast<std::size_t>(nx_) +
            static_cast<std::size_t>(x);
   }
   double outside_nm(const Vec3& p) const;
@@ -104,7 +107,7 @@ class DistanceGrid {
   int nx_ = 0, ny_ = 0, nz_ = 0;
   std::array<Level, 2> levels_;
   double cell_nm_ = 0;
-  Box surface_box_;                                // around all triangles
+  Box surface_box_;  // around all triangles
   std::vector<std::uint32_t> bricks_;
   std::vector<Cell> cells_;
 };

@@ -9,8 +9,8 @@
 #include <limits>
 #include <vector>
 
-#include "surf/core/triangle_geometry.h"
 #include "surf/core/error.h"
+#include "surf/core/triangle_geometry.h"
 #include "surf/mc/geometry/scene.h"
 
 namespace surf::mc {
@@ -21,7 +21,7 @@ namespace {
 constexpr double interface_nm = 1e-3;
 
 struct Context {
-  RTCIntersectContext embree;   // first: Embree hands its address back
+  RTCIntersectContext embree;  // first: Embree hands its address back
   const MeshView* mesh;
   Vec3 origin;
   Vec3 direction;
@@ -81,7 +81,7 @@ EmbreeScene::Hit hit_of(const MeshView& mesh, std::uint32_t triangle, const Vec3
 struct EmbreeScene::Impl {
   RTCDevice device = nullptr;
   RTCScene scene = nullptr;
-  SceneMesh all;   // outlives the scene, which reads it
+  SceneMesh all;  // outlives the scene, which reads it
   MeshView mesh;
   Vec3 center;
   double start_back = interface_nm;
@@ -111,7 +111,9 @@ EmbreeScene::EmbreeScene(SceneMesh all, const Watch& watch) : impl_(std::make_un
   if (!impl_->device && rtcGetDeviceError(nullptr) != RTC_ERROR_UNSUPPORTED_CPU)
     throw Error("ray tracing", "Embree cannot start: memory, threads or address space are short",
                 "Raise the limits (ulimit -v, ulimit -u), or give `job.threads=1`");
-  if (!impl_->device) throw Unsupported("ray tracing", "Embree finds no usable device", "Check that the processor has SSE2 or NEON");
+  if (!impl_->device)
+    throw Unsupported("ray tracing", "Embree finds no usable device",
+                      "Check that the processor has SSE2 or NEON");
   rtcSetDeviceMemoryMonitorFunction(
       impl_->device,
       [](void* user, ssize_t bytes, bool) {
@@ -120,9 +122,9 @@ EmbreeScene::EmbreeScene(SceneMesh all, const Watch& watch) : impl_(std::make_un
       },
       impl_.get());
   impl_->scene = rtcNewScene(impl_->device);
-  rtcSetSceneFlags(impl_->scene,
-                   static_cast<RTCSceneFlags>(RTC_SCENE_FLAG_ROBUST |
-                                              RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION));
+  rtcSetSceneFlags(
+      impl_->scene,
+      static_cast<RTCSceneFlags>(RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION));
   RTCGeometry geometry = rtcNewGeometry(impl_->device, RTC_GEOMETRY_TYPE_TRIANGLE);
   rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
                              impl_->all.local_nm.values.data(), 0, 3 * sizeof(float),
@@ -143,7 +145,8 @@ EmbreeScene::EmbreeScene(SceneMesh all, const Watch& watch) : impl_(std::make_un
       const_cast<CancelToken*>(watch.cancel));
   rtcCommitScene(impl_->scene);
   watch.check();
-  rtcSetSceneProgressMonitorFunction(impl_->scene, nullptr, nullptr);   // the token may go before the scene
+  rtcSetSceneProgressMonitorFunction(impl_->scene, nullptr,
+                                     nullptr);  // the token may go before the scene
   if (rtcGetDeviceError(impl_->device) != RTC_ERROR_NONE)
     throw InvalidInput("ray tracing", "Embree could not build the scene (out of memory?)",
                        "Simplify the mesh");
@@ -154,9 +157,8 @@ EmbreeScene::~EmbreeScene() = default;
 double EmbreeScene::tolerance_nm() const { return impl_->start_back; }
 
 std::size_t EmbreeScene::memory_bytes() const {
-  return static_cast<std::size_t>(impl_->bytes.load()) +
-         impl_->mesh.vertices_nm.size_bytes() + impl_->mesh.triangles.size_bytes() +
-         impl_->all.local_nm.values.size_bytes();
+  return static_cast<std::size_t>(impl_->bytes.load()) + impl_->mesh.vertices_nm.size_bytes() +
+         impl_->mesh.triangles.size_bytes() + impl_->all.local_nm.values.size_bytes();
 }
 
 bool EmbreeScene::nearest(const Vec3& origin, const Vec3& direction, double length, Accept accept,
@@ -203,8 +205,8 @@ bool EmbreeScene::nearest_of(std::span<const std::uint32_t> faces, const Vec3& o
     const Vec3 a = mesh.vertices_nm[t[0]] - origin;
     const Vec3 b = mesh.vertices_nm[t[1]] - origin;
     const Vec3 c = mesh.vertices_nm[t[2]] - origin;
-    // On which side of each edge the ray passes, but for rounding: where triangles share an edge or a
-    // corner, one of them at least is met, and nothing slips through.
+    // On which side of each edge the ray passes, but for rounding: where triangles share an edge or
+    // a corner, one of them at least is met, and nothing slips through.
     const double rounding = 1e-15 * (dot(a, a) + dot(b, b) + dot(c, c));
     const double u = dot(direction, cross(b, c));
     const double v = dot(direction, cross(c, a));
@@ -240,7 +242,7 @@ bool EmbreeScene::within(const Vec3& point, double radius, std::size_t most,
     auto& s = *static_cast<Search*>(args->userPtr);
     s.out.push_back(args->primID);
     if (s.out.size() <= s.most) return false;
-    args->query->radius = 0;   // enough
+    args->query->radius = 0;  // enough
     return true;
   };
   rtcPointQuery(impl_->scene, &query, &context, collect, &search);
@@ -257,7 +259,7 @@ struct FlatSearch {
   Vec3 point, normal;
   double tolerance;
   double radius;
-  std::int64_t shell;      // -1: none seen yet
+  std::int64_t shell;  // -1: none seen yet
   int looked_at;
 };
 
@@ -297,8 +299,7 @@ double EmbreeScene::flat_radius(const Vec3& point, const Vec3& normal, double to
     FlatSearch search{&impl_->mesh, shell_of, point, normal, tolerance, radius + slack, -1, 0};
     const Vec3 local = point - impl_->center;
     RTCPointQuery query{static_cast<float>(local.x), static_cast<float>(local.y),
-                        static_cast<float>(local.z), 0.0f,
-                        static_cast<float>(radius + slack)};
+                        static_cast<float>(local.z), 0.0f, static_cast<float>(radius + slack)};
     RTCPointQueryContext context;
     rtcInitPointQueryContext(&context);
     rtcPointQuery(impl_->scene, &query, &context, look_at, &search);

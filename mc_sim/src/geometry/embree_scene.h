@@ -23,9 +23,9 @@ using KnownFaces = std::optional<std::span<const std::uint32_t>>;
 class EmbreeScene {
  public:
   struct Hit {
-    double distance = 0;         ///< along the ray, >= 0
-    Vec3 position;               ///< on the triangle
-    Vec3 normal;                 ///< unit, the triangle's own sense
+    double distance = 0;  ///< along the ray, >= 0
+    Vec3 position;        ///< on the triangle
+    Vec3 normal;          ///< unit, the triangle's own sense
     std::uint32_t triangle = 0;
   };
 
@@ -33,7 +33,7 @@ class EmbreeScene {
   /// normal, never 0; `distance` is to the triangle's plane, in double: negative behind the origin.
   using Accept = bool (*)(void* user, std::uint32_t triangle, double cosine, double distance);
 
-  explicit EmbreeScene(SceneMesh mesh, const Watch& watch = {});   ///< throws Interrupted
+  explicit EmbreeScene(SceneMesh mesh, const Watch& watch = {});  ///< throws Interrupted
   explicit EmbreeScene(TriangleMesh mesh, const Watch& watch = {});
   ~EmbreeScene();
   EmbreeScene(const EmbreeScene&) = delete;
@@ -49,16 +49,17 @@ class EmbreeScene {
   bool nearest_of(std::span<const std::uint32_t> faces, const Vec3& origin, const Vec3& direction,
                   double length, Accept accept, void* user, Hit& hit) const;
 
-  /// Appends all triangles within `radius` of a point, and maybe some that are not. False, and nothing
-  /// is known, where there would be more than `most`.
+  /// Appends all triangles within `radius` of a point, and maybe some that are not. False, and
+  /// nothing is known, where there would be more than `most`.
   bool within(const Vec3& point, double radius, std::size_t most,
               std::vector<std::uint32_t>& out) const;
 
   const MeshView& mesh() const;
 
-  /// The largest radius up to `most` within which all triangles about a point lie in the plane through
-  /// it, but for `tolerance`, and belong to one shell; a little smaller where rounding asks for it,
-  /// and where very many triangles would have to be looked at. With a zero normal no triangle does.
+  /// The largest radius up to `most` within which all triangles about a point lie in the plane
+  /// through it, but for `tolerance`, and belong to one shell; a little smaller where rounding asks
+  /// for it, and where very many triangles would have to be looked at. With a zero normal no
+  /// triangle does.
   double flat_radius(const Vec3& point, const Vec3& normal, double tolerance, double most,
                      std::span<const std::uint32_t> shell_of) const;
 

@@ -10,20 +10,22 @@ namespace surf::mc {
 /// What a path met.
 enum class Crossing { none, surface, wrong_side };
 
-/// What electrons move in, for one thread: a scene, a half space, an endless medium or a user's own boundary function.
+/// What electrons move in, for one thread: a scene, a half space, an endless medium or a user's own
+/// boundary function.
 ///
 ///   State                       which bodies a point is in; a small value
-///   Surface                     a place where the material changes: distance, position, position_ahead, normal, state_ahead
-///   material(state)             -1: vacuum
-///   clearance(point)            lower bound of the distance to the nearest surface, nm
-///   crossing(start, direction, length, state, surface)
-///                               the first place along the path where the material changes; the state follows silent
-///                               crossings (into a body inside another of the same material)
+///   Surface                     a place where the material changes: distance, position,
+///   position_ahead, normal, state_ahead material(state)             -1: vacuum clearance(point)
+///   lower bound of the distance to the nearest surface, nm crossing(start, direction, length,
+///   state, surface)
+///                               the first place along the path where the material changes; the
+///                               state follows silent crossings (into a body inside another of the
+///                               same material)
 ///   farthest()                  no path inside matter is this long, nm
 ///   flies_free(point, direction)  true only where a ray through vacuum meets nothing
 template <class G>
-concept Geometry = requires(G geometry, const G& known, typename G::State state, typename G::Surface surface, const Vec3& v,
-                            double length) {
+concept Geometry = requires(G geometry, const G& known, typename G::State state,
+                            typename G::Surface surface, const Vec3& v, double length) {
   { known.material(state) } -> std::convertible_to<int>;
   { known.clearance(v) } -> std::convertible_to<double>;
   { geometry.crossing(v, v, length, state, surface) } -> std::same_as<Crossing>;

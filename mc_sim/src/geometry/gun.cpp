@@ -12,8 +12,8 @@
 namespace surf::mc {
 
 namespace {
-constexpr double above_nm = 1;           // of the highest surface
-constexpr double shallowest_cosine = 1e-3;   // of a beam with -z
+constexpr double above_nm = 1;              // of the highest surface
+constexpr double shallowest_cosine = 1e-3;  // of a beam with -z
 }  // namespace
 
 Gun::Gun(const Beam& beam, const Scan& scan, double top_nm)
@@ -31,11 +31,12 @@ Gun::Gun(const Beam& beam, const Scan& scan, double top_nm)
   if (working_distance_nm_ > 0) {
     const double lens_nm = (center_ - direction_ * working_distance_nm_).z;
     if (lens_nm < start_nm_)
-      throw UsageError("`beam.working_distance`",
-                       fmt::format("{} from the middle of the scan is not above the specimen, whose "
-                                   "top is at z = {}", format_length(working_distance_nm_),
-                                   format_length(top_nm)),
-                       "Give a longer one: microscopes have millimetres");
+      throw UsageError(
+          "`beam.working_distance`",
+          fmt::format("{} from the middle of the scan is not above the specimen, whose "
+                      "top is at z = {}",
+                      format_length(working_distance_nm_), format_length(top_nm)),
+          "Give a longer one: microscopes have millimetres");
   }
   // The steepest beam is at a corner, at the rim of the cone.
   for (const int column : {0, scan.width - 1})
@@ -43,10 +44,11 @@ Gun::Gun(const Beam& beam, const Scan& scan, double top_nm)
       const Vec3 d = middle(column, row).direction;
       const double polar = std::acos(-d.z) + beam.convergence_deg * degrees_to_radians;
       if (std::cos(polar) < shallowest_cosine)
-        throw UsageError("`beam.tilt`",
-                         "part of the beam, with its cone and perspective, would come from below or less than "
-                         "0.06 degrees above the horizon",
-                         "Choose a smaller tilt or convergence, or a longer working distance");
+        throw UsageError(
+            "`beam.tilt`",
+            "part of the beam, with its cone and perspective, would come from below or less than "
+            "0.06 degrees above the horizon",
+            "Choose a smaller tilt or convergence, or a longer working distance");
     }
 }
 

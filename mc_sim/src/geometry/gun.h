@@ -32,13 +32,13 @@ class Gun {
 
   Scan scan_;
   Vec3 center_;
-  Vec3 direction_;             // of the beam in the middle of the scan
-  Vec3 across_, up_;           // the scan's axes
+  Vec3 direction_;    // of the beam in the middle of the scan
+  Vec3 across_, up_;  // the scan's axes
   double spot_nm_;
   double tan_convergence_;
   double focus_nm_;
   double working_distance_nm_;
-  double start_nm_;            // z where electrons start
+  double start_nm_;  // z where electrons start
 };
 
 }  // namespace surf::mc

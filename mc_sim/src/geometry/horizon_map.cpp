@@ -13,7 +13,7 @@ namespace surf::mc {
 namespace {
 
 constexpr float nothing = -std::numeric_limits<float>::infinity();
-constexpr int longest_side = 1000;   // columns; all farther rings are outside
+constexpr int longest_side = 1000;  // columns; all farther rings are outside
 constexpr double eighth = 0.78539816339744831;
 
 float upward(double v) {
@@ -48,8 +48,9 @@ class HorizonMapBuilder {
     const Vec3 size = domain.size_nm();
     const double longest = std::max({size.x, size.y, 1e-3});
     const double width =
-        std::max({std::sqrt(size.x * size.y / static_cast<double>(columns)),
-                  longest / longest_side, longest / static_cast<double>(columns)}) * (1 + 1e-9);
+        std::max({std::sqrt(size.x * size.y / static_cast<double>(columns)), longest / longest_side,
+                  longest / static_cast<double>(columns)}) *
+        (1 + 1e-9);
     sky.lower_x_ = domain.lower_nm.x;
     sky.lower_y_ = domain.lower_nm.y;
     sky.columns_per_nm_ = 1 / width;
@@ -75,8 +76,9 @@ class HorizonMapBuilder {
     const auto rings = static_cast<int>(HorizonMap::rings);
     while (static_cast<int>(heights_.size()) <= level_of(rings - 1)) heights_.push_back(halved());
     sky_.heights_.assign(static_cast<std::size_t>(sky_.nx_) * static_cast<std::size_t>(sky_.ny_) *
-                             HorizonMap::sectors * HorizonMap::rings, upward(outside_));
-    for (int ring = 0; ring < rings - 1; ++ring) {   // the last one is outside
+                             HorizonMap::sectors * HorizonMap::rings,
+                         upward(outside_));
+    for (int ring = 0; ring < rings - 1; ++ring) {  // the last one is outside
       watch.check();
       fill(ring, threads);
     }
@@ -94,26 +96,26 @@ class HorizonMapBuilder {
     double highest = -HUGE_VAL;
     for (int v = y - 1; v <= y + 1; ++v)
       for (int u = x - 1; u <= x + 1; ++u)
-        highest = std::max(highest, u >= 0 && v >= 0 && u < sky_.nx_ && v < sky_.ny_
-                                        ? exact_(u, v) : outside_);
+        highest = std::max(
+            highest, u >= 0 && v >= 0 && u < sky_.nx_ && v < sky_.ny_ ? exact_(u, v) : outside_);
     return highest;
   }
 
-  // Where all surface faces upward there is one sheet of it, unbroken, and vacuum is above. From there a
-  // ray that rises more steeply than any of it does not meet it.
+  // Where all surface faces upward there is one sheet of it, unbroken, and vacuum is above. From
+  // there a ray that rises more steeply than any of it does not meet it.
   float steepest_around(int x, int y) const {
     float steepest = 0;
     for (int v = y - 1; v <= y + 1; ++v)
       for (int u = x - 1; u <= x + 1; ++u)
-        steepest = std::max(steepest, u >= 0 && v >= 0 && u < sky_.nx_ && v < sky_.ny_
-                                          ? slopes_(u, v) : -nothing);
+        steepest = std::max(
+            steepest, u >= 0 && v >= 0 && u < sky_.nx_ && v < sky_.ny_ ? slopes_(u, v) : -nothing);
     return steepest;
   }
 
   static float slope(const Vec3& a, const Vec3& b, const Vec3& c) {
     const Vec3 normal = cross(b - a, c - a);
     const double level = length(Vec3{normal.x, normal.y, 0});
-    constexpr double steepest = 20;   // beyond, nothing is gained
+    constexpr double steepest = 20;  // beyond, nothing is gained
     return normal.z > 0 && level < steepest * normal.z ? upward(level / normal.z * (1 + 1e-6))
                                                        : -nothing;
   }
@@ -129,8 +131,9 @@ class HorizonMapBuilder {
       box.extend(v[i]);
     }
     const double top = box.upper_nm.z;
-    const float steep = slope(mesh_.vertices_nm[t[0]], mesh_.vertices_nm[t[1]], mesh_.vertices_nm[t[2]]);
-    constexpr double hair = 1e-6;   // columns
+    const float steep =
+        slope(mesh_.vertices_nm[t[0]], mesh_.vertices_nm[t[1]], mesh_.vertices_nm[t[2]]);
+    constexpr double hair = 1e-6;  // columns
     if (box.lower_nm.x < 0 || box.lower_nm.y < 0 || box.upper_nm.x > sky_.nx_ ||
         box.upper_nm.y > sky_.ny_)
       outside_ = std::max(outside_, top);
@@ -176,7 +179,8 @@ class HorizonMapBuilder {
     const int most = static_cast<int>(outer / block) + 1;
     for (int y = -most; y <= most; ++y)
       for (int x = -most; x <= most; ++x) {
-        const double nearest = std::hypot(std::max(0, std::abs(x) - 1), std::max(0, std::abs(y) - 1));
+        const double nearest =
+            std::hypot(std::max(0, std::abs(x) - 1), std::max(0, std::abs(y) - 1));
         const double farthest = std::hypot(std::abs(x) + 1, std::abs(y) + 1);
         if (nearest * block > outer || farthest * block < inner) continue;
         for (std::size_t k = 0; k < HorizonMap::sectors; ++k)
@@ -189,7 +193,7 @@ class HorizonMapBuilder {
   static bool may_be_in(std::size_t k, int x, int y) {
     if (std::abs(x) <= 1 && std::abs(y) <= 1) return true;
     const double about = std::atan2(y, x);
-    double low = 0, high = 0;   // of the corners, about the middle
+    double low = 0, high = 0;  // of the corners, about the middle
     for (const int dy : {-1, 1})
       for (const int dx : {-1, 1}) {
         const double turn = std::remainder(std::atan2(y + dy, x + dx) - about, 8 * eighth);
@@ -219,9 +223,9 @@ class HorizonMapBuilder {
           }
           for (int y = by << level; y < std::min((by + 1) << level, sky_.ny_); ++y)
             for (int x = bx << level; x < std::min((bx + 1) << level, sky_.nx_); ++x) {
-              const std::size_t column = static_cast<std::size_t>(y) *
-                                             static_cast<std::size_t>(sky_.nx_) +
-                                         static_cast<std::size_t>(x);
+              const std::size_t column =
+                  static_cast<std::size_t>(y) * static_cast<std::size_t>(sky_.nx_) +
+                  static_cast<std::size_t>(x);
               sky_.heights_[(column * HorizonMap::sectors + k) * HorizonMap::rings +
                             static_cast<std::size_t>(ring)] = highest;
             }
@@ -234,10 +238,11 @@ class HorizonMapBuilder {
   double outside_ = -HUGE_VAL;
   Grid<double> exact_;
   Grid<float> slopes_;
-  std::vector<Grid<float>> heights_;   // of blocks of 2^level columns
+  std::vector<Grid<float>> heights_;  // of blocks of 2^level columns
 };
 
-HorizonMap::HorizonMap(const MeshView& mesh, const Box& domain, std::size_t columns, int threads, const Watch& watch) {
+HorizonMap::HorizonMap(const MeshView& mesh, const Box& domain, std::size_t columns, int threads,
+                       const Watch& watch) {
   if (mesh.triangles.empty()) return;
   top_nm_ = bounds(mesh).upper_nm.z;
   if (columns == 0 || domain.empty()) return;

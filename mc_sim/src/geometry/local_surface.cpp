@@ -10,8 +10,8 @@ namespace surf::mc {
 
 namespace {
 
-constexpr std::size_t most_triangles = 1000;   // about a cube
-constexpr double hair = 1e-4;                 // nm: of rounding, and of paths that begin on a surface
+constexpr std::size_t most_triangles = 1000;  // about a cube
+constexpr double hair = 1e-4;  // nm: of rounding, and of paths that begin on a surface
 
 }  // namespace
 
@@ -80,14 +80,14 @@ class LocalSurfaceBuilder {
           box.upper_nm.y < -h || box.upper_nm.z < -h)
         continue;
       const auto first = [&](double low) {
-        return static_cast<int>(std::clamp(std::ceil((low - hair) / w + across / 2 - 1.5), 0.0,
-                                           double(across)));
+        return static_cast<int>(
+            std::clamp(std::ceil((low - hair) / w + across / 2 - 1.5), 0.0, double(across)));
       };
       const auto end = [&](double high) {
-        return static_cast<int>(std::clamp(std::floor((high + hair) / w + across / 2 + 0.5) + 1, 0.0,
-                                           double(across)));
+        return static_cast<int>(
+            std::clamp(std::floor((high + hair) / w + across / 2 + 0.5) + 1, 0.0, double(across)));
       };
-      const bool small = size < 0.2 * w;   // its box will do
+      const bool small = size < 0.2 * w;  // its box will do
       for (int y = first(box.lower_nm.y); y < end(box.upper_nm.y); ++y)
         for (int x = first(box.lower_nm.x); x < end(box.upper_nm.x); ++x) {
           const double mx = middle(x, level), my = middle(y, level);
@@ -101,8 +101,7 @@ class LocalSurfaceBuilder {
           }
           const std::size_t at = column(x, y, level);
           widen(bands_[at], low, high);
-          if (++patch_.lists_[at].count > LocalSurface::most_faces)
-            continue;
+          if (++patch_.lists_[at].count > LocalSurface::most_faces) continue;
           if (face == none) {
             face = static_cast<std::uint16_t>(patch_.faces_.size());
             patch_.faces_.push_back(face_of(v, box, shape));
@@ -165,9 +164,12 @@ class LocalSurfaceBuilder {
     }
   }
 
-  static LocalSurface::Face face_of(const Vec3 (&v)[3], const Box& box, const TriangleShape& shape) {
-    LocalSurface::Face out{Float4{}, {static_cast<float>(box.lower_nm.x), static_cast<float>(box.lower_nm.y),
-                                      static_cast<float>(box.upper_nm.x), static_cast<float>(box.upper_nm.y)}};
+  static LocalSurface::Face face_of(const Vec3 (&v)[3], const Box& box,
+                                    const TriangleShape& shape) {
+    LocalSurface::Face out{
+        Float4{},
+        {static_cast<float>(box.lower_nm.x), static_cast<float>(box.lower_nm.y),
+         static_cast<float>(box.upper_nm.x), static_cast<float>(box.upper_nm.y)}};
     if (shape.is_needle()) return out;
     const Vec3 normal = shape.across * (1 / shape.area2);
     out.plane = float4(normal);
@@ -208,7 +210,7 @@ class LocalSurfaceBuilder {
   int levels_ = 0;
   std::vector<std::uint32_t> near_, known_;
   std::vector<Heights> bands_;
-  std::vector<std::pair<std::uint32_t, std::uint16_t>> pairs_;   // column, face
+  std::vector<std::pair<std::uint32_t, std::uint16_t>> pairs_;  // column, face
 };
 
 LocalSurface::LocalSurface(const EmbreeScene& triangles, std::optional<double> plane_nm,

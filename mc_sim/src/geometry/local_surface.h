@@ -19,28 +19,26 @@ namespace surf::mc {
 
 /// Between which heights surfaces lie: nothing of them is below or above.
 struct Band {
-  float low = -HUGE_VALF, high = HUGE_VALF;   ///< nm; at first: nobody knows
+  float low = -HUGE_VALF, high = HUGE_VALF;  ///< nm; at first: nobody knows
 
   bool is_known() const { return low > -HUGE_VALF; }
   bool is_clear(float height, float radius) const {
     return height + radius < low || height - radius > high;
   }
   /// The same for what reaches from one height to another.
-  bool is_beside(float a, float b) const {
-    return std::max(a, b) < low || std::min(a, b) > high;
-  }
+  bool is_beside(float a, float b) const { return std::max(a, b) < low || std::min(a, b) > high; }
 };
 
 /// All surface about one point, for many quick questions there.
 ///
 /// A patch has a frame of its own: the point is its origin, z is the surface's normal there. Cubes
 /// about the origin, each twice as large as the one before, are cut into 16 x 16 columns along z. A
-/// column knows between which heights all surface lies in it and half a column's width beside it, and,
-/// where they are few, the triangles. Places are in nm in the patch's frame.
+/// column knows between which heights all surface lies in it and half a column's width beside it,
+/// and, where they are few, the triangles. Places are in nm in the patch's frame.
 class LocalSurface {
  public:
-  /// `normal`: unit. `plane_nm`: the height of an endless horizontal surface in the specimen, if there
-  /// is one. How far a patch reaches depends on how many triangles there are.
+  /// `normal`: unit. `plane_nm`: the height of an endless horizontal surface in the specimen, if
+  /// there is one. How far a patch reaches depends on how many triangles there are.
   LocalSurface(const EmbreeScene& triangles, std::optional<double> plane_nm, const Vec3& origin,
                const Vec3& normal);
 
@@ -66,7 +64,7 @@ class LocalSurface {
     static constexpr std::size_t most = 12;
     std::array<std::uint16_t, most> numbers{};
     std::uint8_t count = 0;
-    bool is_known = false;   ///< else there may be more
+    bool is_known = false;  ///< else there may be more
   };
 
   /// Those near a ball; not known where it has too many or lies too far from the patch's origin.
@@ -93,16 +91,19 @@ class LocalSurface {
     std::uint8_t kept = 0;
     for (std::uint8_t i = 0; i < faces.count; ++i) {
       const std::uint16_t n = faces.numbers[i];
-      if (n == the_level ? is_beyond(level_, center, radius) : is_far(faces_[n], center, radius)) continue;
+      if (n == the_level ? is_beyond(level_, center, radius) : is_far(faces_[n], center, radius))
+        continue;
       faces.numbers[kept++] = n;
     }
     faces.count = kept;
   }
 
   /// Unit normal and height of a triangle's plane; 0 where it has none.
-  const Float4& plane(std::uint16_t number) const { return number == the_level ? level_ : faces_[number].plane; }
+  const Float4& plane(std::uint16_t number) const {
+    return number == the_level ? level_ : faces_[number].plane;
+  }
 
-  static constexpr float search_nm = 2e-3f;      ///< searches begin within this before a way
+  static constexpr float search_nm = 2e-3f;  ///< searches begin within this before a way
 
   /// Triangles that a way may cross.
   struct Crossed {
@@ -112,8 +113,8 @@ class LocalSurface {
     std::size_t count = 0;
   };
 
-  /// Those that the straight way from `a` to `b` crosses, and maybe more. All of them lie near `a` or
-  /// are crossed on the way.
+  /// Those that the straight way from `a` to `b` crosses, and maybe more. All of them lie near `a`
+  /// or are crossed on the way.
   void crossed(const Float4& a, const Float4& b, Crossed& out) const {
     const Float4 half = (b - a) * 0.5f;
     Place place;
@@ -134,7 +135,7 @@ class LocalSurface {
       const float from = above(face.plane, a), to = above(face.plane, b);
       if (is_beside(from, to)) continue;
       const float fall = from - to;
-      if (std::fabs(fall) > grazing_nm) {   // else rounding says little about where it is crossed
+      if (std::fabs(fall) > grazing_nm) {  // else rounding says little about where it is crossed
         const Float4 at = a + (b - a) * (from / fall);
         if (std::min({at[0] - face.box[0], at[1] - face.box[1], face.box[2] - at[0],
                       face.box[3] - at[1]}) < -search_nm)
@@ -148,28 +149,28 @@ class LocalSurface {
 
  private:
   friend class LocalSurfaceBuilder;
-  static constexpr int across = 16;              // columns of a cube
-  static constexpr float finest_nm = 0.5f;       // columns of the smallest cube
-  static constexpr float widest_nm = 64;         // patch
+  static constexpr int across = 16;         // columns of a cube
+  static constexpr float finest_nm = 0.5f;  // columns of the smallest cube
+  static constexpr float widest_nm = 64;    // patch
   static constexpr float grazing_nm = 0.01f;
-  static constexpr std::uint16_t the_level = 0xffff;   // in place of a face's number
+  static constexpr std::uint16_t the_level = 0xffff;  // in place of a face's number
   static constexpr std::uint32_t most_faces = 16;
-  static constexpr float units = 3000;           // of height to a column's width
+  static constexpr float units = 3000;  // of height to a column's width
 
   struct PackedBand {
-    std::int16_t low = 32767, high = -32767;     // no surface
+    std::int16_t low = 32767, high = -32767;  // no surface
   };
   struct List {
-    std::uint32_t first = 0, count = 0;          // in listed_
+    std::uint32_t first = 0, count = 0;  // in listed_
   };
   struct Face {
-    Float4 plane;             // unit normal, height of the plane; 0 where it has none
-    Float4 box;               // lower x, y, upper x, y
+    Float4 plane;  // unit normal, height of the plane; 0 where it has none
+    Float4 box;    // lower x, y, upper x, y
   };
   struct Place {
     std::size_t column;
     float unit;
-    bool shrinks;             // a smaller ball has a smaller column
+    bool shrinks;  // a smaller ball has a smaller column
   };
 
   static float above(const Float4& plane, const Float4& p) {
@@ -181,8 +182,9 @@ class LocalSurface {
   }
   static bool is_far(const Face& face, const Float4& center, float radius) {
     const float room = radius + search_nm;
-    return is_beyond(face.plane, center, radius) || center[0] + room < face.box[0] || center[1] + room < face.box[1] ||
-           center[0] - room > face.box[2] || center[1] - room > face.box[3];
+    return is_beyond(face.plane, center, radius) || center[0] + room < face.box[0] ||
+           center[1] + room < face.box[1] || center[0] - room > face.box[2] ||
+           center[1] - room > face.box[3];
   }
   static bool is_beside(float from, float to) {
     return std::min(from, to) > search_nm || std::max(from, to) < -search_nm;
@@ -209,13 +211,13 @@ class LocalSurface {
 
   Frame frame_;
   float reach_nm_ = 0;
-  bool has_level_ = false;                // the endless horizontal surface, as a plane
+  bool has_level_ = false;  // the endless horizontal surface, as a plane
   Float4 level_{};
-  std::vector<PackedBand> bands_;         // level, y, x
+  std::vector<PackedBand> bands_;  // level, y, x
   std::vector<List> lists_;
-  std::vector<std::uint16_t> listed_;     // numbers of faces
+  std::vector<std::uint16_t> listed_;  // numbers of faces
   std::vector<Face> faces_;
-  std::vector<std::uint32_t> numbers_;    // their triangles
+  std::vector<std::uint32_t> numbers_;  // their triangles
 };
 
 }  // namespace surf::mc

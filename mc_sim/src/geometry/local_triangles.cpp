@@ -13,9 +13,9 @@ namespace {
 using Float4 = float __attribute__((vector_size(16)));
 using Int4 = std::int32_t __attribute__((vector_size(16)));
 
-constexpr double rounding = 1e-9;        // of doubles, relative to the ball
-constexpr double single_rounding = 1e-6; // of single precision
-constexpr float nowhere = 1e18f;         // stands where fours are filled up
+constexpr double rounding = 1e-9;         // of doubles, relative to the ball
+constexpr double single_rounding = 1e-6;  // of single precision
+constexpr float nowhere = 1e18f;          // stands where fours are filled up
 
 Float4 load(const std::vector<float>& v, std::size_t i) {
   return Float4{v[i], v[i + 1], v[i + 2], v[i + 3]};
@@ -48,13 +48,14 @@ void LocalTriangles::add_face(const Vec3 (&v)[3], const Vec3& across, double are
   };
   f.middle = {half_way(&Vec3::x), half_way(&Vec3::y), half_way(&Vec3::z)};
   double squared = 0;
-  for (const Vec3& corner : v) squared = std::max(squared, dot(corner - f.middle, corner - f.middle));
+  for (const Vec3& corner : v)
+    squared = std::max(squared, dot(corner - f.middle, corner - f.middle));
   f.reach = std::sqrt(squared);
   all_.fx.push_back(static_cast<float>(f.middle.x));
   all_.fy.push_back(static_cast<float>(f.middle.y));
   all_.fz.push_back(static_cast<float>(f.middle.z));
-  all_.reach.push_back(static_cast<float>(
-      f.reach + single_rounding * (length(f.middle) + f.reach + radius)));
+  all_.reach.push_back(
+      static_cast<float>(f.reach + single_rounding * (length(f.middle) + f.reach + radius)));
   all_.faces.push_back(static_cast<std::uint32_t>(faces_.size()));
   faces_.push_back(f);
 }
@@ -124,7 +125,7 @@ void LocalTriangles::fill_up(Part& part) {
 // Visits the faces whose spheres come within `radius` of `p`; it may shrink on the way.
 template <class Visit>
 void LocalTriangles::visit_faces(const Part& part, const Vec3& p, const float& radius,
-                              const Visit& visit) const {
+                                 const Visit& visit) const {
   const Float4 px = all4(p.x), py = all4(p.y), pz = all4(p.z);
   for (std::size_t i = 0; i < part.faces.size(); i += 4) {
     const Float4 x = load(part.fx, i) - px, y = load(part.fy, i) - py, z = load(part.fz, i) - pz;
@@ -182,8 +183,8 @@ LocalTriangles::Nearest LocalTriangles::nearest(const Part& part, const Vec3& p)
 }
 
 void LocalTriangles::narrow(const Part& part, const Vec3& p, double radius, Part& out) const {
-  for (auto* v : {&out.x, &out.y, &out.z, &out.nx, &out.ny, &out.nz, &out.fx, &out.fy, &out.fz,
-                  &out.reach})
+  for (auto* v :
+       {&out.x, &out.y, &out.z, &out.nx, &out.ny, &out.nz, &out.fx, &out.fy, &out.fz, &out.reach})
     v->clear();
   out.faces.clear();
   const auto reach = static_cast<float>(radius * (1 + single_rounding));
@@ -198,7 +199,8 @@ void LocalTriangles::narrow(const Part& part, const Vec3& p, double radius, Part
     out.faces.push_back(part.faces[i]);
   });
   const auto limit = static_cast<float>(radius + longest_ + rounding_);
-  const auto px = static_cast<float>(p.x), py = static_cast<float>(p.y), pz = static_cast<float>(p.z);
+  const auto px = static_cast<float>(p.x), py = static_cast<float>(p.y),
+             pz = static_cast<float>(p.z);
   for (std::size_t i = 0; i < part.x.size(); ++i) {
     const float x = part.x[i] - px, y = part.y[i] - py, z = part.z[i] - pz;
     if (x * x + y * y + z * z > limit * limit) continue;
@@ -242,8 +244,8 @@ LocalTriangles::Slab LocalTriangles::slab(const Vec3& n) {
     if (!(f.normal == Vec3{})) {
       // What lies both in the ball and in the triangle's plane is a disc.
       const double off = dot(f.normal, v[0]), nm = dot(n, f.normal);
-      const double wide = std::sqrt(std::max(0.0, reach * reach - off * off) *
-                                    std::max(0.0, nn - nm * nm));
+      const double wide =
+          std::sqrt(std::max(0.0, reach * reach - off * off) * std::max(0.0, nn - nm * nm));
       low = std::max(low, off * nm - wide - margin);
       high = std::min(high, off * nm + wide + margin);
       if (low >= s.low && high <= s.high) continue;

@@ -6,15 +6,15 @@
 #include <cstdint>
 #include <vector>
 
-#include "surf/mesh/triangle_tree.h"
 #include "surf/core/vec3.h"
+#include "surf/mesh/triangle_tree.h"
 
 namespace surf::mc {
 
 /// The surface within a ball, listed once for many questions about smaller balls in it. Triangles
 /// that are small against what is asked stand as their corners, so that the cost hardly depends on
-/// how finely a surface is meshed. Answers are conservative, as `NearestTriangle`'s. Positions are about
-/// the ball's centre. Holds scratch space: one per thread.
+/// how finely a surface is meshed. Answers are conservative, as `NearestTriangle`'s. Positions are
+/// about the ball's centre. Holds scratch space: one per thread.
 class LocalTriangles {
  public:
   explicit LocalTriangles(const TriangleTree& tree) : tree_(tree) {}
@@ -29,8 +29,8 @@ class LocalTriangles {
   const Part& all() const { return all_; }
 
   struct Nearest {
-    double distance = HUGE_VAL;   ///< at most the true one
-    Vec3 away;                    ///< out of the surface there, about; zero: not known
+    double distance = HUGE_VAL;  ///< at most the true one
+    Vec3 away;                   ///< out of the surface there, about; zero: not known
   };
 
   /// The surface nearest to `p`, of a part.
@@ -57,18 +57,18 @@ class LocalTriangles {
  private:
   struct Face {
     Vec3 corners[3];
-    Vec3 normal;                // zero: a needle
-    double area2;               // twice the area
+    Vec3 normal;   // zero: a needle
+    double area2;  // twice the area
     Vec3 middle;
-    double reach;               // of the corners from the middle
+    double reach;  // of the corners from the middle
   };
 
  public:
   struct Part {
-    std::vector<float> x, y, z;             // corners of small triangles, filled up to fours
-    std::vector<float> nx, ny, nz;          // sums of the areas around them, as vectors
-    std::vector<float> fx, fy, fz, reach;   // other triangles' spheres, filled up to fours
-    std::vector<std::uint32_t> faces;       // which they are
+    std::vector<float> x, y, z;            // corners of small triangles, filled up to fours
+    std::vector<float> nx, ny, nz;         // sums of the areas around them, as vectors
+    std::vector<float> fx, fy, fz, reach;  // other triangles' spheres, filled up to fours
+    std::vector<std::uint32_t> faces;      // which they are
   };
 
  private:
@@ -82,9 +82,9 @@ class LocalTriangles {
   std::vector<std::uint32_t> triangles_;
   std::vector<Face> faces_;
   Part all_;
-  double longest_ = 0;     // side of the small triangles
-  double rounding_ = 0;    // of positions of their corners
-  std::uint32_t guess_ = 0;   // a face that may be near
+  double longest_ = 0;       // side of the small triangles
+  double rounding_ = 0;      // of positions of their corners
+  std::uint32_t guess_ = 0;  // a face that may be near
   // What is looked at.
   const Part* part_ = nullptr;
   Vec3 center_;

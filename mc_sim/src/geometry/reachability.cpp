@@ -12,12 +12,14 @@ namespace surf::mc {
 namespace {
 
 constexpr double most_boxes = 1 << 18;
-constexpr double most_touched = 3e8;     // boxes of triangles; more is not worth the time
-constexpr double most_angles = 5e7;      // solid angles of triangles, likewise
-constexpr double inside_turns = 0.25;    // a closed shell is seen under 1 or 0, a sheet under +-0.5
+constexpr double most_touched = 3e8;   // boxes of triangles; more is not worth the time
+constexpr double most_angles = 5e7;    // solid angles of triangles, likewise
+constexpr double inside_turns = 0.25;  // a closed shell is seen under 1 or 0, a sheet under +-0.5
 
 // The solid angle of a triangle seen from 0, over 4 pi.
-double turns(const Vec3& a, const Vec3& b, const Vec3& c) { return half_solid_angle(a, b, c) / (2 * 3.14159265358979324); }
+double turns(const Vec3& a, const Vec3& b, const Vec3& c) {
+  return half_solid_angle(a, b, c) / (2 * 3.14159265358979324);
+}
 
 class Boxes {
  public:
@@ -29,7 +31,8 @@ class Boxes {
     const double whole[] = {size.x, size.y, size.z};
     for (int k = 0; k < 3; ++k) n_[k] = static_cast<int>(whole[k] / edge_) + 3;
     state_.assign(static_cast<std::size_t>(n_[0]) * static_cast<std::size_t>(n_[1]) *
-                      static_cast<std::size_t>(n_[2]), 0);
+                      static_cast<std::size_t>(n_[2]),
+                  0);
   }
 
   // Marks what triangles touch; false where that would take too long.
@@ -55,7 +58,8 @@ class Boxes {
       return a.size() > b.size() || (a.size() == b.size() && a[0] < b[0]);
     });
     const double affordable = most_angles / static_cast<double>(mesh_.triangles.size());
-    for (std::size_t k = 0; k < regions.size() && static_cast<double>(k) < std::max(affordable, 2.0); ++k) {
+    for (std::size_t k = 0;
+         k < regions.size() && static_cast<double>(k) < std::max(affordable, 2.0); ++k) {
       watch.check();
       if (is_matter(middle(regions[k][0]), shell_of, shells))
         for (const std::size_t i : regions[k]) state_[i] |= matter;
@@ -87,7 +91,8 @@ class Boxes {
       waiting.pop_back();
       for (int z = std::max(at[2] - 1, 0); z <= std::min(at[2] + 1, n_[2] - 1); ++z)
         for (int y = std::max(at[1] - 1, 0); y <= std::min(at[1] + 1, n_[1] - 1); ++y)
-          for (int x = std::max(at[0] - 1, 0); x <= std::min(at[0] + 1, n_[0] - 1); ++x) reach(x, y, z);
+          for (int x = std::max(at[0] - 1, 0); x <= std::min(at[0] + 1, n_[0] - 1); ++x)
+            reach(x, y, z);
     }
   }
 
@@ -98,7 +103,9 @@ class Boxes {
     for (const Triangle& t : mesh_.triangles) {
       Range r;
       bool is_reachable = !range(t, r);
-      for_each(r, [&](std::size_t i) { is_reachable = is_reachable || static_cast<double>(squared[i]) <= limit; });
+      for_each(r, [&](std::size_t i) {
+        is_reachable = is_reachable || static_cast<double>(squared[i]) <= limit;
+      });
       reachable.push_back(is_reachable);
     }
     return reachable;
@@ -118,7 +125,8 @@ class Boxes {
 
   std::size_t index(int x, int y, int z) const {
     return (static_cast<std::size_t>(z) * static_cast<std::size_t>(n_[1]) +
-            static_cast<std::size_t>(y)) * static_cast<std::size_t>(n_[0]) +
+            static_cast<std::size_t>(y)) *
+               static_cast<std::size_t>(n_[0]) +
            static_cast<std::size_t>(x);
   }
   void place(std::size_t i, int (&at)[3]) const {
@@ -137,7 +145,8 @@ class Boxes {
   bool range(const Triangle& t, Range& r) const {
     Box box;
     for (const std::uint32_t v : t) box.extend(mesh_.vertices_nm[v]);
-    const Vec3 low = (box.lower_nm - lower_) * (1 / edge_), high = (box.upper_nm - lower_) * (1 / edge_);
+    const Vec3 low = (box.lower_nm - lower_) * (1 / edge_),
+               high = (box.upper_nm - lower_) * (1 / edge_);
     const double from[] = {low.x, low.y, low.z}, to[] = {high.x, high.y, high.z};
     bool within = true;
     constexpr double hair = 1e-6;
@@ -202,7 +211,7 @@ class Boxes {
       const std::size_t stride = axis == 0 ? 1 : axis == 1 ? index(0, 1, 0) : index(0, 0, 1);
       const auto n = static_cast<std::size_t>(n_[axis]);
       for (std::size_t i = 0; i < squared.size(); ++i) {
-        if (i / stride % n != 0) continue;   // the first box of a line
+        if (i / stride % n != 0) continue;  // the first box of a line
         line.clear();
         for (std::size_t k = 0; k < n; ++k) line.push_back(squared[i + k * stride]);
         for (std::size_t k = 0; k < n; ++k) {
@@ -228,10 +237,10 @@ class Boxes {
 }  // namespace
 
 std::vector<std::uint8_t> reachable_triangles(const MeshView& mesh,
-                                         std::span<const std::uint32_t> shell_of,
-                                         const std::vector<Shell>& shells,
-                                         std::optional<double> plane_nm, const Box& domain,
-                                         double reach_nm, const Watch& watch) {
+                                              std::span<const std::uint32_t> shell_of,
+                                              const std::vector<Shell>& shells,
+                                              std::optional<double> plane_nm, const Box& domain,
+                                              double reach_nm, const Watch& watch) {
   const std::vector<std::uint8_t> all(mesh.triangles.size(), 1);
   // One shell alone has nothing within it.
   if (shells.size() < 2 || domain.empty() || !std::isfinite(reach_nm)) return all;

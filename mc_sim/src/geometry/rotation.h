@@ -49,7 +49,7 @@ inline Rotation beam_frame(const Vec3& to, double azimuth) {
   sin_cos_turn(azimuth, s, c);
   const auto sine = static_cast<float>(s), cosine = static_cast<float>(c);
   const Rotation about_z{{cosine, sine, 0, 0}, {-sine, cosine, 0, 0}, {0, 0, 1, 0}};
-  if (to.z > 0.9) return turn({0, 0, -1}, to) * about_z;   // there is no smallest one straight up
+  if (to.z > 0.9) return turn({0, 0, -1}, to) * about_z;  // there is no smallest one straight up
   const double k = 1.0 / (1.0 - to.z);
   const Rotation tilt{float4({1 - k * to.x * to.x, -k * to.x * to.y, to.x}),
                       float4({-k * to.x * to.y, 1 - k * to.y * to.y, to.y}),

@@ -23,8 +23,8 @@ Box near_scan(const Box& surface, const Scan& scan, const Beam& beam, double rea
   if (beam.tilt_deg > 0) {
     // A tilted beam meets the surface beside the scan plane by up to its depth times tan(tilt).
     const double slope = std::tan(std::min(beam.tilt_deg, 85.0) * degrees_to_radians);
-    half_x = half_y = std::hypot(half_x, half_y) * std::sqrt(1 + slope * slope) +
-                      surface.size_nm().z * slope;
+    half_x = half_y =
+        std::hypot(half_x, half_y) * std::sqrt(1 + slope * slope) + surface.size_nm().z * slope;
   }
   Box box = surface;
   box.lower_nm.x = std::max(box.lower_nm.x, scan.center_x_nm - half_x - reach);
@@ -34,8 +34,8 @@ Box near_scan(const Box& surface, const Scan& scan, const Beam& beam, double rea
   return box;
 }
 
-SceneSurfaces surfaces_of(const Specimen& specimen, const Beam& beam, const Scan& scan, const Physics& physics,
-                          const SceneOptions& options) {
+SceneSurfaces surfaces_of(const Specimen& specimen, const Beam& beam, const Scan& scan,
+                          const Physics& physics, const SceneOptions& options) {
   options.watch.check();
   const std::vector<BodyFacts> facts = validate(specimen, options.watch.part(0, 0.1));
   return make_surfaces(specimen, facts, beam, scan, physics, {.watch = options.watch});
@@ -45,10 +45,11 @@ SceneSurfaces surfaces_of(const Specimen& specimen, const Beam& beam, const Scan
 
 Scene::Scene(const Specimen& specimen, const Beam& beam, const Scan& scan, const Physics& physics,
              const SceneOptions& options)
-    : Scene(surfaces_of(specimen, beam, scan, physics, options), specimen.materials, beam, scan, physics, options) {}
+    : Scene(surfaces_of(specimen, beam, scan, physics, options), specimen.materials, beam, scan,
+            physics, options) {}
 
-Scene::Scene(SceneSurfaces surfaces, std::vector<Material> materials, const Beam& beam, const Scan& scan,
-             const Physics& physics, const SceneOptions& options)
+Scene::Scene(SceneSurfaces surfaces, std::vector<Material> materials, const Beam& beam,
+             const Scan& scan, const Physics& physics, const SceneOptions& options)
     : impl_(std::make_unique<Impl>()) {
   const auto begin = std::chrono::steady_clock::now();
   validate(beam);
@@ -87,10 +88,12 @@ Scene::Scene(SceneSurfaces surfaces, std::vector<Material> materials, const Beam
   s.summary.triangles = s.shell_of.size();
   s.summary.shells = s.shells.size();
   s.summary.grid_cell_nm = s.near.cell_nm();
-  s.summary.memory_bytes = s.near.bytes() + s.sky.bytes() + s.shell_of.size() * sizeof(std::uint32_t) +
+  s.summary.memory_bytes = s.near.bytes() + s.sky.bytes() +
+                           s.shell_of.size() * sizeof(std::uint32_t) +
                            (s.triangles ? s.triangles->memory_bytes() : 0);
   s.summary.build_seconds =
-      surfaces.build_seconds + std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+      surfaces.build_seconds +
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 }
 
 Scene::~Scene() = default;

@@ -7,9 +7,9 @@
 namespace surf::mc {
 
 namespace {
-constexpr double interface_nm = 1e-3;   // faces closer than this are one interface
+constexpr double interface_nm = 1e-3;  // faces closer than this are one interface
 constexpr int most_coinciding = 16;
-constexpr double rounding_nm = 1e-7;    // of positions in double, up to millimetres from the origin
+constexpr double rounding_nm = 1e-7;  // of positions in double, up to millimetres from the origin
 constexpr int most_silent_crossings = 1000;
 }  // namespace
 
@@ -106,15 +106,15 @@ Crossing SceneGeometry::next_face(const Vec3& start, const Vec3& direction, doub
   }
   // Embree's robust mode still lets some rays through exactly at an edge. They then meet a surface
   // from behind, and the search is repeated a hair beside.
-  static constexpr Vec3 nudges[] = {{0, 0, 0}, {0.1, 0.02, 0.05}, {-0.03, 0.1, -0.06},
-                                    {-0.08, -0.09, 0.02}};
+  static constexpr Vec3 nudges[] = {
+      {0, 0, 0}, {0.1, 0.02, 0.05}, {-0.03, 0.1, -0.06}, {-0.08, -0.09, 0.02}};
   for (const Vec3& nudge : nudges) {
     asking_ = state;
     wrong_side_at_ = HUGE_VAL;
     EmbreeScene::Hit hit;
-    const bool found = scene_.triangles->nearest(start, direction, face.distance,
-                                                 &SceneGeometry::accept, this, hit,
-                                                 nudge * scene_.triangles->tolerance_nm());
+    const bool found =
+        scene_.triangles->nearest(start, direction, face.distance, &SceneGeometry::accept, this,
+                                  hit, nudge * scene_.triangles->tolerance_nm());
     if (wrong_side_at_ < (found ? hit.distance : face.distance)) continue;
     if (!found) return met;
     face = {hit.distance, hit.position, hit.normal, scene_.shell_of[hit.triangle]};
@@ -140,8 +140,8 @@ Crossing SceneGeometry::crossing(const Vec3& start, const Vec3& direction, doubl
       for (int k = 0; k < most_coinciding; ++k) {
         const double cosine = std::fabs(dot(face.normal, direction));
         Face next;
-        if (next_face(face.position, direction, interface_nm / std::max(cosine, 1e-6), ahead,
-                      {}, next) != Crossing::surface)
+        if (next_face(face.position, direction, interface_nm / std::max(cosine, 1e-6), ahead, {},
+                      next) != Crossing::surface)
           break;
         const double steepest = std::max(cosine, std::fabs(dot(next.normal, direction)));
         if (next.distance * steepest > interface_nm) break;
@@ -156,7 +156,7 @@ Crossing SceneGeometry::crossing(const Vec3& start, const Vec3& direction, doubl
     from = face.position;
     done = dot(from - start, direction);
   }
-  return Crossing::wrong_side;   // a knot of faces that leads nowhere
+  return Crossing::wrong_side;  // a knot of faces that leads nowhere
 }
 
 }  // namespace surf::mc

@@ -32,16 +32,17 @@ struct Scene::Impl {
 
   std::vector<Solid> solids;
   std::vector<Shell> shells;
-  std::optional<double> plane_nm;          ///< top of the substrate
+  std::optional<double> plane_nm;  ///< top of the substrate
   std::uint32_t plane_shell = 0;
-  std::span<const std::uint32_t> shell_of; ///< per triangle
-  std::unique_ptr<EmbreeScene> triangles;  ///< null for a bare substrate; holds what is per triangle
+  std::span<const std::uint32_t> shell_of;  ///< per triangle
+  std::unique_ptr<EmbreeScene>
+      triangles;  ///< null for a bare substrate; holds what is per triangle
   DistanceGrid near;
   HorizonMap sky;
-  double top_nm = 0;                       ///< highest surface
-  double bottom_nm = 0;                    ///< lowest surface
-  bool half_space = false;                 ///< whether something goes on below without end
-  double farthest_nm = 0;                  ///< longer than any path inside the solids
+  double top_nm = 0;        ///< highest surface
+  double bottom_nm = 0;     ///< lowest surface
+  bool half_space = false;  ///< whether something goes on below without end
+  double farthest_nm = 0;   ///< longer than any path inside the solids
 
   double clearance_nm(const Vec3& p) const {
     double bound = triangles ? near.bound_nm(p) : std::numeric_limits<double>::infinity();
@@ -59,11 +60,11 @@ struct Scene::Impl {
 /// Follows which shells a path is inside of. Holds scratch space: one per thread.
 class SceneGeometry {
  public:
-  using State = int;                       ///< index into `states_`; 0 is vacuum
+  using State = int;  ///< index into `states_`; 0 is vacuum
   struct Surface {
     double distance = 0;
-    Vec3 position;                         ///< on the near side
-    Vec3 position_ahead;                   ///< on the far side: behind all faces that coincide
+    Vec3 position;        ///< on the near side
+    Vec3 position_ahead;  ///< on the far side: behind all faces that coincide
     Vec3 normal;
     State state_ahead = 0;
   };
@@ -83,7 +84,7 @@ class SceneGeometry {
 
  private:
   struct Nesting {
-    std::vector<std::uint32_t> inside;     // shells, sorted
+    std::vector<std::uint32_t> inside;  // shells, sorted
     int material = -1;
     std::vector<std::pair<std::uint32_t, State>> next;
   };
@@ -107,7 +108,7 @@ class SceneGeometry {
   const Scene::Impl& scene_;
   const bool faces_may_coincide_;
   std::vector<Nesting> states_;
-  State asking_ = 0;                       // for `accept`
+  State asking_ = 0;  // for `accept`
   double wrong_side_at_ = 0;
 };
 

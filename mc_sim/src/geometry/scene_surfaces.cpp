@@ -34,7 +34,7 @@ struct Assembly {
 void append(Assembly& all, TriangleMesh mesh, std::vector<std::uint32_t> component) {
   const auto base = static_cast<std::uint32_t>(all.mesh.vertices_nm.size());
   const auto first_shell = static_cast<std::uint32_t>(all.shells.size());
-  if (base == 0) {   // mostly there is only one
+  if (base == 0) {  // mostly there is only one
     all.mesh = std::move(mesh);
     all.shell_of = std::move(component);
     for (std::uint32_t& shell : all.shell_of) shell += first_shell;
@@ -49,7 +49,8 @@ void append(Assembly& all, TriangleMesh mesh, std::vector<std::uint32_t> compone
   }
 }
 
-// Signed volume of every component, about a point of its own: far from the origin digits would cancel.
+// Signed volume of every component, about a point of its own: far from the origin digits would
+// cancel.
 std::vector<double> volumes(const TriangleMesh& mesh, const std::vector<std::uint32_t>& component) {
   constexpr std::uint32_t none = 0xffffffffu;
   const std::uint32_t count = 1 + *std::max_element(component.begin(), component.end());
@@ -61,7 +62,8 @@ std::vector<double> volumes(const TriangleMesh& mesh, const std::vector<std::uin
     if (vertex == none) vertex = t[0];
     const Vec3& o = mesh.vertices_nm[vertex];
     volume[component[i]] += dot(mesh.vertices_nm[t[0]] - o,
-                                cross(mesh.vertices_nm[t[1]] - o, mesh.vertices_nm[t[2]] - o)) / 6;
+                                cross(mesh.vertices_nm[t[1]] - o, mesh.vertices_nm[t[2]] - o)) /
+                            6;
   }
   return volume;
 }
@@ -82,16 +84,17 @@ void add_body(Assembly& all, const Body& body, const Watch& watch) {
 }
 
 // A sheet goes on flat as far as electrons of the scan reach, and further.
-void add_sheet(Assembly& all, const Body& body, const Scan& scan, double reach, const Watch& watch) {
+void add_sheet(Assembly& all, const Body& body, const Scan& scan, double reach,
+               const Watch& watch) {
   Box needed = bounds(body.mesh);
   const double half = 0.5 * std::hypot(scan.width * scan.pixel_x_nm, scan.height * scan.pixel_y_nm);
   const Vec3 size = needed.size_nm();
   const Vec3 away = Vec3{scan.center_x_nm, scan.center_y_nm, 0} - needed.center_nm();
-  const double apron = apron_in_widths * std::max(size.x, size.y) + reach + half +
-                       std::hypot(away.x, away.y);
+  const double apron =
+      apron_in_widths * std::max(size.x, size.y) + reach + half + std::hypot(away.x, away.y);
   std::string reason;
   const TriangleMesh merged = merge_coplanar(merge_equal_vertices(body.mesh), {.watch = watch});
-  TriangleMesh mesh = *extend_open_sheet(merged, apron, reason);   // validated
+  TriangleMesh mesh = *extend_open_sheet(merged, apron, reason);  // validated
   std::vector<std::uint32_t> component = triangle_components(mesh);
   const std::vector<double> volume = volumes(mesh, component);
   // The apron's vertices come last: what holds the last one is the sheet.
@@ -102,14 +105,16 @@ void add_sheet(Assembly& all, const Body& body, const Scan& scan, double reach, 
       if (v == last) sheet = component[i];
   append(all, std::move(mesh), std::move(component));
   for (std::uint32_t c = 0; c < volume.size(); ++c)
-    all.shells.push_back({static_cast<int>(all.solids.size()), c != sheet && volume[c] < 0 ? -1 : 1});
+    all.shells.push_back(
+        {static_cast<int>(all.solids.size()), c != sheet && volume[c] < 0 ? -1 : 1});
   all.solids.push_back({body.material});
 }
 
-void add_height_field(Assembly& all, const HeightFieldBody& body, const Scan& scan, double reach, const Watch& watch) {
+void add_height_field(Assembly& all, const HeightFieldBody& body, const Scan& scan, double reach,
+                      const Watch& watch) {
   HeightField wide = field_in_reach(body, scan, reach);
-  const double width = std::max(wide.z_nm.width() * wide.pitch_x_nm,
-                                wide.z_nm.height() * wide.pitch_y_nm);
+  const double width =
+      std::max(wide.z_nm.width() * wide.pitch_x_nm, wide.z_nm.height() * wide.pitch_y_nm);
   TriangleMesh sheet = half_space_top(wide, apron_in_widths * width);
   wide = {};
   sheet = merge_coplanar(std::move(sheet), {.watch = watch});
@@ -122,7 +127,8 @@ void add_height_field(Assembly& all, const HeightFieldBody& body, const Scan& sc
 // Drops the triangles that no electron comes near, and says how many.
 std::size_t leave_out_unreachable(Assembly& all, std::optional<double> plane_nm, const Box& box,
                                   double reach, const Watch& watch) {
-  const double lowest = box.lower_nm.z, highest = std::max(box.upper_nm.z, plane_nm.value_or(-HUGE_VAL));
+  const double lowest = box.lower_nm.z,
+               highest = std::max(box.upper_nm.z, plane_nm.value_or(-HUGE_VAL));
   if (all.shells.size() < 2 || highest - lowest <= reach) return 0;
   const std::vector<std::uint8_t> reachable =
       reachable_triangles(all.mesh, all.shell_of, all.shells, plane_nm, box, reach, watch);
@@ -139,8 +145,9 @@ std::size_t leave_out_unreachable(Assembly& all, std::optional<double> plane_nm,
 
 }  // namespace
 
-SceneSurfaces make_surfaces(const Specimen& specimen, const std::vector<BodyFacts>& facts, const Beam& beam,
-                            const Scan& scan, const Physics& physics, const SurfaceOptions& options) {
+SceneSurfaces make_surfaces(const Specimen& specimen, const std::vector<BodyFacts>& facts,
+                            const Beam& beam, const Scan& scan, const Physics& physics,
+                            const SurfaceOptions& options) {
   const auto begin = std::chrono::steady_clock::now();
   validate(beam);
   validate(scan);
@@ -171,11 +178,14 @@ SceneSurfaces make_surfaces(const Specimen& specimen, const std::vector<BodyFact
     out.box.extend(facts[i].box);
   }
   if (options.leave_out_unreachable && !out.box.empty())
-    out.triangles_left_out = leave_out_unreachable(all, out.plane_nm, out.box, reach.through_all_nm, watch);
+    out.triangles_left_out =
+        leave_out_unreachable(all, out.plane_nm, out.box, reach.through_all_nm, watch);
   out.shells = std::move(all.shells);
   out.solids = std::move(all.solids);
-  if (!all.mesh.triangles.empty()) out.mesh = make_scene_mesh(std::move(all.mesh), std::move(all.shell_of));
-  out.build_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  if (!all.mesh.triangles.empty())
+    out.mesh = make_scene_mesh(std::move(all.mesh), std::move(all.shell_of));
+  out.build_seconds =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return out;
 }
 

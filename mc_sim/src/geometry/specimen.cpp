@@ -17,11 +17,9 @@ namespace surf::mc {
 
 namespace {
 
-constexpr double thinnest_nm = 0.01;   // ten times the distance at which faces are one interface
+constexpr double thinnest_nm = 0.01;  // ten times the distance at which faces are one interface
 
-std::string place(const Vec3& p) {
-  return fmt::format("({:g}, {:g}, {:g}) nm", p.x, p.y, p.z);
-}
+std::string place(const Vec3& p) { return fmt::format("({:g}, {:g}, {:g}) nm", p.x, p.y, p.z); }
 
 Box field_box(const HeightField& f) {
   Box box;
@@ -52,7 +50,8 @@ std::string repair_command(const std::string& name) {
       fmt::format("the mesh is open: {} of its edges have a triangle on one side only, the first "
                   "near {}; and it cannot stand for the top of a half-space: {}",
                   report.boundary_edges, place(report.first_boundary_nm), why_no_sheet),
-      fmt::format("Try: semsurf mesh {} --repair -o {} (--max-hole LENGTH fills larger holes)", subject, repaired(subject)));
+      fmt::format("Try: semsurf mesh {} --repair -o {} (--max-hole LENGTH fills larger holes)",
+                  subject, repaired(subject)));
 }
 
 [[noreturn]] void refuse_unoriented(const std::string& subject, const MeshReport& report) {
@@ -62,7 +61,8 @@ std::string repair_command(const std::string& name) {
           ? fmt::format("at {} edges several triangles meet without an inside, the first near {}",
                         report.nonmanifold_edges, place(report.first_nonmanifold_nm))
           : fmt::format("triangles next to each other face opposite ways at {} edges, the first "
-                        "near {}", report.inconsistent_edges, place(report.first_inconsistent_nm)),
+                        "near {}",
+                        report.inconsistent_edges, place(report.first_inconsistent_nm)),
       repair_command(subject));
 }
 
@@ -70,8 +70,11 @@ void check_reach(const Box& box, const std::string& subject, const char* remedy)
   for (const Vec3& p : {box.lower_nm, box.upper_nm})
     for (const double at_nm : {p.x, p.y, p.z})
       if (!(std::abs(at_nm) <= largest_length_nm))
-        throw InvalidInput(subject, fmt::format("it reaches {:.6g} nm from the origin, and {:g} nm (10 km) is the most",
-                                                std::abs(at_nm), largest_length_nm), remedy);
+        throw InvalidInput(
+            subject,
+            fmt::format("it reaches {:.6g} nm from the origin, and {:g} nm (10 km) is the most",
+                        std::abs(at_nm), largest_length_nm),
+            remedy);
 }
 
 BodyFacts check_body(const Body& body, const Watch& watch) {
@@ -89,7 +92,8 @@ BodyFacts check_body(const Body& body, const Watch& watch) {
   if (std::min({size.x, size.y, size.z}) < thinnest_nm)
     throw InvalidInput(subject,
                        fmt::format("the body is only {:g} nm thick: faces within 1e-3 nm count as "
-                                   "one", std::min({size.x, size.y, size.z})),
+                                   "one",
+                                   std::min({size.x, size.y, size.z})),
                        "Check its unit (`specimen.unit`)");
   if (report.signed_volume_nm3 == 0)
     throw InvalidInput(subject, "the mesh encloses no volume", "Give it thickness");
@@ -98,7 +102,9 @@ BodyFacts check_body(const Body& body, const Watch& watch) {
 
 }  // namespace
 
-bool is_sheet(const Body& body, const Watch& watch) { return check_mesh(body.mesh, watch).boundary_edges > 0; }
+bool is_sheet(const Body& body, const Watch& watch) {
+  return check_mesh(body.mesh, watch).boundary_edges > 0;
+}
 
 std::vector<BodyFacts> validate(const Specimen& specimen, const Watch& watch) {
   const Watch silent{{}, watch.cancel};
@@ -109,8 +115,9 @@ std::vector<BodyFacts> validate(const Specimen& specimen, const Watch& watch) {
     check_material(specimen, specimen.substrate->material, "substrate");
     const double top_nm = specimen.substrate->top_nm;
     if (!(std::abs(top_nm) <= largest_length_nm))
-      throw InvalidInput("substrate", fmt::format("its top at {:.6g} nm is not in -{:g} to {:g} nm", top_nm,
-                                                  largest_length_nm, largest_length_nm),
+      throw InvalidInput("substrate",
+                         fmt::format("its top at {:.6g} nm is not in -{:g} to {:g} nm", top_nm,
+                                     largest_length_nm, largest_length_nm),
                          "Give a height such as 0nm (`specimen.substrate_z`)");
   }
   if (specimen.height_field) {
@@ -118,7 +125,8 @@ std::vector<BodyFacts> validate(const Specimen& specimen, const Watch& watch) {
     check_material(specimen, specimen.height_field->material, "height field");
     const std::string subject = name.empty() ? "height field" : name;
     surf::validate(specimen.height_field->field, subject.c_str());
-    check_reach(field_box(specimen.height_field->field), subject, "Check its units (`scan.height_pitch`, `scan.height_unit`)");
+    check_reach(field_box(specimen.height_field->field), subject,
+                "Check its units (`scan.height_pitch`, `scan.height_unit`)");
   }
   std::vector<BodyFacts> facts;
   for (const Body& body : specimen.bodies) {

@@ -35,12 +35,16 @@ Seen look(SceneGeometry& geometry, const Gun::Start& beam) {
   return {true, surface.position.z, out, geometry.material(surface.state_ahead)};
 }
 
-constexpr std::array<std::array<const char*, 2>, 6> all_channels{{{"z_nm", "nm"}, {"normal.x", "1"},
-                                                                  {"normal.y", "1"}, {"normal.z", "1"},
-                                                                  {"material", "1"}, {"valid", "1"}}};
+constexpr std::array<std::array<const char*, 2>, 6> all_channels{{{"z_nm", "nm"},
+                                                                  {"normal.x", "1"},
+                                                                  {"normal.y", "1"},
+                                                                  {"normal.z", "1"},
+                                                                  {"material", "1"},
+                                                                  {"valid", "1"}}};
 
 std::array<double, 6> values_of(const Seen& seen) {
-  return {seen.z_nm, seen.normal.x, seen.normal.y, seen.normal.z, seen.material + 1.0, seen.anything ? 1.0 : 0.0};
+  return {seen.z_nm,     seen.normal.x,       seen.normal.y,
+          seen.normal.z, seen.material + 1.0, seen.anything ? 1.0 : 0.0};
 }
 
 std::size_t number_of(const std::string& name) {
@@ -52,15 +56,16 @@ std::size_t number_of(const std::string& name) {
 
 }  // namespace
 
-ImageRows surface_view_rows(const Scene& scene, const std::vector<std::string>& channels, int threads,
-                            const std::string& scratch_folder) {
+ImageRows surface_view_rows(const Scene& scene, const std::vector<std::string>& channels,
+                            int threads, const std::string& scratch_folder) {
   const Scan& scan = scene.scan();
   const Scene::Impl& impl = scene.impl();
   const Gun gun(scene.beam(), scan, impl.top_nm);
   std::vector<std::size_t> wanted;
   for (const std::string& name : channels) wanted.push_back(number_of(name));
   const auto seen_of = std::make_shared<std::vector<LargeGrid<float>>>();
-  for (std::size_t c = 0; c < wanted.size(); ++c) seen_of->emplace_back(scan.width, scan.height, scratch_folder);
+  for (std::size_t c = 0; c < wanted.size(); ++c)
+    seen_of->emplace_back(scan.width, scan.height, scratch_folder);
 
   constexpr int rows_between_releases = 256;
   const int workers = resolve_threads(threads);
@@ -73,7 +78,8 @@ ImageRows surface_view_rows(const Scene& scene, const std::vector<std::string>& 
       const int y = first + static_cast<int>(row);
       for (int x = 0; x < scan.width; ++x) {
         const auto values = values_of(look(*geometry, gun.middle(x, y)));
-        for (std::size_t c = 0; c < wanted.size(); ++c) (*seen_of)[c](x, y) = static_cast<float>(values[wanted[c]]);
+        for (std::size_t c = 0; c < wanted.size(); ++c)
+          (*seen_of)[c](x, y) = static_cast<float>(values[wanted[c]]);
       }
     });
     for (const auto& grid : *seen_of) grid.release();
@@ -86,10 +92,12 @@ ImageRows surface_view_rows(const Scene& scene, const std::vector<std::string>& 
   rows.head.pitch_y_nm = scan.pixel_y_nm;
   rows.head.origin_x_nm = scan.center_x_nm - 0.5 * (scan.width - 1) * scan.pixel_x_nm;
   rows.head.origin_y_nm = scan.center_y_nm - 0.5 * (scan.height - 1) * scan.pixel_y_nm;
-  for (const std::size_t c : wanted) rows.head.channels.push_back({all_channels[c][0], all_channels[c][1], {}});
+  for (const std::size_t c : wanted)
+    rows.head.channels.push_back({all_channels[c][0], all_channels[c][1], {}});
   rows.read = [seen_of](std::size_t channel, int y, std::span<float> row) {
     const LargeGrid<float>& grid = (*seen_of)[channel];
-    std::ranges::copy(grid.data().subspan(static_cast<std::size_t>(y) * row.size(), row.size()), row.begin());
+    std::ranges::copy(grid.data().subspan(static_cast<std::size_t>(y) * row.size(), row.size()),
+                      row.begin());
     if (y % rows_between_releases == 0) grid.release();
   };
   return rows;

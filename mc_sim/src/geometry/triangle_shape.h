@@ -14,9 +14,9 @@ struct TriangleShape {
   /// Width over length of triangles whose plane is not trusted.
   static constexpr double needle = 1e-6;
 
-  Vec3 across;              ///< normal, as long as twice the area
-  double area2 = 0;         ///< twice the area
-  double longest_squared = 0;   ///< of the sides
+  Vec3 across;                 ///< normal, as long as twice the area
+  double area2 = 0;            ///< twice the area
+  double longest_squared = 0;  ///< of the sides
 
   explicit TriangleShape(const Vec3 (&v)[3]) : across(cross(v[1] - v[0], v[2] - v[0])) {
     area2 = length(across);

@@ -20,8 +20,8 @@ double browning_cross_section_nm2(int atomic_number, double energy_ev) {
 
 namespace {
 
-// Of the Rutherford-like part over the isotropic one. The paper's exponent 1 - Z/2000; some codes drop it and are 9 % off for gold
-// at 30 keV.
+// Of the Rutherford-like part over the isotropic one. The paper's exponent 1 - Z/2000; some codes
+// drop it and are 9 % off for gold at 30 keV.
 double ratio_of_parts(int z, double e) {
   return 300.0 * std::pow(e, 1.0 - z / 2000.0) / z + static_cast<double>(z) * z * z / (3e5 * e);
 }
@@ -43,8 +43,10 @@ class Browning final : public Scattering {
       : z_(atomic_number), atoms_per_nm3_(atoms_per_nm3) {}
 
   std::string describe() const override {
-    return fmt::format("elastic, Z = {}: Browning's fit to Mott cross-sections, 100 eV to 30 keV "
-                       "(doi:10.1063/1.357669)", z_);
+    return fmt::format(
+        "elastic, Z = {}: Browning's fit to Mott cross-sections, 100 eV to 30 keV "
+        "(doi:10.1063/1.357669)",
+        z_);
   }
 
   double inverse_mean_free_path_per_nm(double energy_ev) const override {

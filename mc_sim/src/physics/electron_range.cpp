@@ -14,7 +14,7 @@ double kanaya_okayama_range_nm(const Material& material, double energy_ev) {
   if (!(energy_ev > 0 && std::isfinite(energy_ev)))
     throw InvalidInput("electron range", fmt::format("the energy is {} eV", energy_ev),
                        "Give an energy above 0");
-  double atoms = 0, weight = 0, charge = 0;   // per gram, in moles
+  double atoms = 0, weight = 0, charge = 0;  // per gram, in moles
   for (const Constituent& c : material.constituents) {
     const double share = c.weight_fraction / c.atomic_weight;
     atoms += share;

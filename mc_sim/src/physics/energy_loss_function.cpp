@@ -14,7 +14,8 @@
 namespace surf::mc {
 namespace {
 
-constexpr double steepest_slope = -2.5;   // at least so steep beyond the last energy: sums stay finite
+constexpr double steepest_slope =
+    -2.5;  // at least so steep beyond the last energy: sums stay finite
 constexpr int steps_per_interval = 16;
 
 /// The square of the plasma energy of one electron per nm^3, eV^2: hbar^2 e^2 / (epsilon_0 m).
@@ -34,17 +35,20 @@ double integrate(const std::vector<double>& energies, double from, const F& f) {
 }
 
 [[noreturn]] void refuse(const std::string& name, int line, const std::string& what) {
-  throw InvalidInput(name, fmt::format("line {}: {}", line, what),
-                     "Write two comment lines (source, binding energies in eV), then lines of energy_eV,ELF");
+  throw InvalidInput(
+      name, fmt::format("line {}: {}", line, what),
+      "Write two comment lines (source, binding energies in eV), then lines of energy_eV,ELF");
 }
 
 double number(std::string_view text, const std::string& name, int line) {
   while (!text.empty() && (text.front() == ' ' || text.front() == '\t')) text.remove_prefix(1);
   double value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || !std::isfinite(value)) refuse(name, line, fmt::format("'{}' is not a number", text));
+  if (error != std::errc() || !std::isfinite(value))
+    refuse(name, line, fmt::format("'{}' is not a number", text));
   for (const char* c = end; c != text.data() + text.size(); ++c)
-    if (*c != ' ' && *c != '\t' && *c != '\r') refuse(name, line, fmt::format("'{}' is not a number", text));
+    if (*c != ' ' && *c != '\t' && *c != '\r')
+      refuse(name, line, fmt::format("'{}' is not a number", text));
   return value;
 }
 
@@ -55,7 +59,7 @@ std::vector<double> shells_of(std::string_view text, const std::string& name, in
     if (begin == std::string_view::npos) break;
     const std::size_t end = std::min(text.find_first_of(" \t\r", begin), text.size());
     const double shell = number(text.substr(begin, end - begin), name, line);
-    if (shell < 0) break;   // -1 ends the list
+    if (shell < 0) break;  // -1 ends the list
     shells.push_back(shell);
     at = end;
   }
@@ -66,19 +70,26 @@ std::vector<double> shells_of(std::string_view text, const std::string& name, in
 
 EnergyLossFunction::EnergyLossFunction(std::vector<double> energies_ev, std::vector<double> values,
                                        std::vector<double> shells_ev, std::string source)
-    : energies_(std::move(energies_ev)), values_(std::move(values)), shells_(std::move(shells_ev)), source_(std::move(source)) {
+    : energies_(std::move(energies_ev)), values_(std::move(values)), shells_(std::move(shells_ev)),
+      source_(std::move(source)) {
   const auto refuse = [](const std::string& what) {
-    throw InvalidInput("energy-loss function", what, "Give energies that rise, in eV, and values of 0 or more");
+    throw InvalidInput("energy-loss function", what,
+                       "Give energies that rise, in eV, and values of 0 or more");
   };
-  if (energies_.size() != values_.size() || energies_.size() < 3) refuse("it has fewer than three points");
+  if (energies_.size() != values_.size() || energies_.size() < 3)
+    refuse("it has fewer than three points");
   for (std::size_t i = 0; i < energies_.size(); ++i) {
     if (!(energies_[i] > (i == 0 ? 0 : energies_[i - 1])) || !std::isfinite(energies_[i]))
-      refuse(fmt::format("point {}: the energy {} eV is not above the one before", i + 1, energies_[i]));
-    if (!(values_[i] >= 0) || !std::isfinite(values_[i])) refuse(fmt::format("point {}: the value is {}", i + 1, values_[i]));
+      refuse(fmt::format("point {}: the energy {} eV is not above the one before", i + 1,
+                         energies_[i]));
+    if (!(values_[i] >= 0) || !std::isfinite(values_[i]))
+      refuse(fmt::format("point {}: the value is {}", i + 1, values_[i]));
   }
   const double last = energies_.back(), decade = std::max(last / 10, energies_.front());
   const double from = (*this)(decade), to = values_.back();
-  slope_ = from > 0 && to > 0 ? std::min(steepest_slope, std::log(to / from) / std::log(last / decade)) : steepest_slope;
+  slope_ = from > 0 && to > 0
+               ? std::min(steepest_slope, std::log(to / from) / std::log(last / decade))
+               : steepest_slope;
 }
 
 double EnergyLossFunction::operator()(double w) const {
@@ -88,7 +99,8 @@ double EnergyLossFunction::operator()(double w) const {
   const auto above = std::ranges::upper_bound(energies_, w);
   const auto i = static_cast<std::size_t>(above - energies_.begin()) - 1;
   const double share = std::log(w / energies_[i]) / std::log(energies_[i + 1] / energies_[i]);
-  if (!(values_[i] > 0 && values_[i + 1] > 0)) return values_[i] + share * (values_[i + 1] - values_[i]);
+  if (!(values_[i] > 0 && values_[i + 1] > 0))
+    return values_[i] + share * (values_[i + 1] - values_[i]);
   return values_[i] * std::pow(values_[i + 1] / values_[i], share);
 }
 
@@ -104,8 +116,10 @@ EnergyLossFunction EnergyLossFunction::times(double factor) const {
   return denser;
 }
 
-double EnergyLossFunction::loss_of_electrons_ev(double electrons, double formula_units_per_nm3) const {
-  const double wanted = electrons * formula_units_per_nm3 * squared_plasma_ev2_nm3 * std::numbers::pi / 2;
+double EnergyLossFunction::loss_of_electrons_ev(double electrons,
+                                                double formula_units_per_nm3) const {
+  const double wanted =
+      electrons * formula_units_per_nm3 * squared_plasma_ev2_nm3 * std::numbers::pi / 2;
   double sum = 0;
   for (std::size_t i = 0; i + 1 < energies_.size(); ++i) {
     const double a = std::log(std::max(energies_[i], cut_ev_)), b = std::log(energies_[i + 1]);
@@ -122,7 +136,8 @@ double EnergyLossFunction::loss_of_electrons_ev(double electrons, double formula
 
 double EnergyLossFunction::screening_sum() const {
   const double inside = integrate(energies_, cut_ev_, *this);
-  const double below = cut_ev_ < energies_.front() ? values_.front() * (1 - cut_ev_ / energies_.front()) : 0;
+  const double below =
+      cut_ev_ < energies_.front() ? values_.front() * (1 - cut_ev_ / energies_.front()) : 0;
   return 2 / std::numbers::pi * (inside + below + values_.back() / -slope_);
 }
 
@@ -155,12 +170,16 @@ EnergyLossFunction parse_energy_loss_function(std::string_view text, const std::
     if (comma == std::string_view::npos) refuse(name, line, "there is no comma");
     energies.push_back(number(row.substr(0, comma), name, line));
     values.push_back(number(row.substr(comma + 1), name, line));
-    if (!(energies.back() > 0) || (energies.size() > 1 && !(energies.back() > energies[energies.size() - 2])))
-      refuse(name, line, fmt::format("the energy {} eV is not above the one before", energies.back()));
-    if (values.back() < 0) refuse(name, line, fmt::format("the value {} is negative", values.back()));
+    if (!(energies.back() > 0) ||
+        (energies.size() > 1 && !(energies.back() > energies[energies.size() - 2])))
+      refuse(name, line,
+             fmt::format("the energy {} eV is not above the one before", energies.back()));
+    if (values.back() < 0)
+      refuse(name, line, fmt::format("the value {} is negative", values.back()));
   }
   if (energies.size() < 3) refuse(name, line, "there are fewer than three points");
-  return EnergyLossFunction(std::move(energies), std::move(values), std::move(shells), std::move(source));
+  return EnergyLossFunction(std::move(energies), std::move(values), std::move(shells),
+                            std::move(source));
 }
 
 }  // namespace surf::mc

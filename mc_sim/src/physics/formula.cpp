@@ -15,7 +15,7 @@ namespace surf::mc {
 
 namespace {
 
-constexpr std::size_t max_length = 200;   // letters; groups then nest no deeper than the stack likes
+constexpr std::size_t max_length = 200;  // letters; groups then nest no deeper than the stack likes
 constexpr double max_count = 1e6;
 
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
@@ -38,10 +38,10 @@ class Reader {
 
  private:
   [[noreturn]] void fail(const std::string& reason) const {
-    throw UsageError(std::string(subject_),
-                     fmt::format("{}, at letter {} of '{}'", reason, at_ + 1,
-                                 text_.substr(0, max_length)),
-                     "Write a formula such as SiO2, Ca(OH)2 or Al0.3Ga0.7As");
+    throw UsageError(
+        std::string(subject_),
+        fmt::format("{}, at letter {} of '{}'", reason, at_ + 1, text_.substr(0, max_length)),
+        "Write a formula such as SiO2, Ca(OH)2 or Al0.3Ga0.7As");
   }
 
   char next() const { return at_ < text_.size() ? text_[at_] : '\0'; }
@@ -75,10 +75,11 @@ class Reader {
         at_ += length;
         return e->atomic_number;
       }
-      break;   // "Xx" is a mistake, not X and something else
+      break;  // "Xx" is a mistake, not X and something else
     }
-    fail(fmt::format("there is no element '{}'",
-                     text_.substr(at_, at_ + 1 < text_.size() && is_lower(text_[at_ + 1]) ? 2 : 1)));
+    fail(
+        fmt::format("there is no element '{}'",
+                    text_.substr(at_, at_ + 1 < text_.size() && is_lower(text_[at_ + 1]) ? 2 : 1)));
   }
 
   // 1 where none is written.
@@ -100,10 +101,8 @@ class Reader {
       const auto found = std::find_if(to.begin(), to.end(), [&](const FormulaPart& p) {
         return p.atomic_number == part.atomic_number;
       });
-      if (found == to.end())
-        to.push_back({part.atomic_number, times * part.atoms});
-      else
-        found->atoms += times * part.atoms;
+      if (found == to.end()) to.push_back({part.atomic_number, times * part.atoms});
+      else found->atoms += times * part.atoms;
     }
   }
 

@@ -21,11 +21,13 @@ class JoyLuo final : public ContinuousLoss {
         power_at_join_(joy_luo(join_ev_)) {}
 
   std::string describe() const override {
-    return fmt::format("continuous loss: Joy-Luo with MONSEL's k (doi:10.1002/sca.4950110404); as "
-                       "E^(5/2) below E_b = {:g} eV ({})", join_ev_,
-                       join_ev_ < material_.loss_join_ev   ? "no secondaries"
-                       : material_.loss_join_fitted ? "fitted to measured SE yields"
-                                                    : "not fitted");
+    return fmt::format(
+        "continuous loss: Joy-Luo with MONSEL's k (doi:10.1002/sca.4950110404); as "
+        "E^(5/2) below E_b = {:g} eV ({})",
+        join_ev_,
+        join_ev_ < material_.loss_join_ev ? "no secondaries"
+        : material_.loss_join_fitted      ? "fitted to measured SE yields"
+                                          : "not fitted");
   }
 
   double stopping_power_ev_per_nm(double energy_ev) const override {
@@ -37,8 +39,9 @@ class JoyLuo final : public ContinuousLoss {
   double joy_luo(double energy_ev) const {
     double sum = 0;
     for (const Constituent& c : material_.constituents) {
-      sum += c.weight_fraction * c.atomic_number / c.atomic_weight *
-             std::log(1.166 * std::max(energy_ev - zero_ev_ - 1.0, 0.0) / c.mean_ionization_ev + 1.0);
+      sum +=
+          c.weight_fraction * c.atomic_number / c.atomic_weight *
+          std::log(1.166 * std::max(energy_ev - zero_ev_ - 1.0, 0.0) / c.mean_ionization_ev + 1.0);
     }
     return 7850.0 * material_.density_g_cm3 / energy_ev * sum;
   }

@@ -11,7 +11,7 @@ namespace surf::mc {
 
 namespace {
 
-constexpr double avogadro_cm3_per_nm3 = 602.214076;   // N_A in 1/mol, times cm^3 per nm^3
+constexpr double avogadro_cm3_per_nm3 = 602.214076;  // N_A in 1/mol, times cm^3 per nm^3
 
 [[noreturn]] void fail(const Material& m, const std::string& reason) {
   throw InvalidInput("material " + (m.name.empty() ? "(no name)" : m.name), reason,
@@ -47,8 +47,9 @@ void validate(const Material& m) {
   require(m, not_negative(m.valence_electrons), "valence_electrons", m.valence_electrons,
           "0 or more");
   require(m, not_negative(m.plasmon_ev), "plasmon_ev", m.plasmon_ev, "0 or more");
-  require(m, std::isfinite(m.loss_join_ev) &&
-                 m.loss_join_ev > std::fmax(m.barrier_ev, m.work_function_ev) + 1,
+  require(m,
+          std::isfinite(m.loss_join_ev) &&
+              m.loss_join_ev > std::fmax(m.barrier_ev, m.work_function_ev) + 1,
           "loss_join_ev", m.loss_join_ev, "more than 1 eV above the barrier and the work function");
 }
 

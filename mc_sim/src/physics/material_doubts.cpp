@@ -12,13 +12,15 @@ namespace {
 
 constexpr int hydrogen = 1, carbon = 6;
 constexpr int insulating[] = {7, 8, 9, 15, 16, 17, 33, 34, 35, 52, 53};
-constexpr double least_share = 0.25;   // of the atoms: less is an alloy's
+constexpr double least_share = 0.25;  // of the atoms: less is an alloy's
 
 bool has_carbon(const Material& m) {
-  return std::ranges::any_of(m.constituents, [](const Constituent& c) { return c.atomic_number == carbon; });
+  return std::ranges::any_of(m.constituents,
+                             [](const Constituent& c) { return c.atomic_number == carbon; });
 }
 
-/// The symbols of those elements that make most compounds insulators; empty where there are few such atoms.
+/// The symbols of those elements that make most compounds insulators; empty where there are few
+/// such atoms.
 std::string insulating_elements(const Material& m) {
   if (m.constituents.size() < 2) return {};
   const bool organic = has_carbon(m);
@@ -41,9 +43,13 @@ std::string insulating_elements(const Material& m) {
 std::optional<std::string> doubt_of_a_metal(const Material& m) {
   const std::string symbols = m.taken_for_metal ? insulating_elements(m) : std::string();
   if (symbols.empty()) return std::nullopt;
-  return fmt::format("{}: it is taken for a metal, as its band_gap_ev is not given, but most compounds with {} are "
-                     "insulators or semiconductors. Its barrier of {:.3g} eV, and so its yield, may be far off. Give "
-                     "band_gap_ev, or 0 if it is a metal", m.name, symbols, m.barrier_ev);
+  return fmt::format(
+      "{}: it is taken for a metal, as its band_gap_ev is not given, but most compounds with {} "
+      "are "
+      "insulators or semiconductors. Its barrier of {:.3g} eV, and so its yield, may be far off. "
+      "Give "
+      "band_gap_ev, or 0 if it is a metal",
+      m.name, symbols, m.barrier_ev);
 }
 
 std::vector<std::string> doubts(const Material& m) {
@@ -53,8 +59,10 @@ std::vector<std::string> doubts(const Material& m) {
   for (const EstimatedValue& e : m.estimates)
     if (e.field != "loss_join_ev") fields += (fields.empty() ? "" : ", ") + e.field;
   if (!fields.empty())
-    out.push_back(fmt::format("{}: these numbers are estimates: {}. 'semsurf materials {}' tells how they are made; give "
-                              "those that you know", m.name, fields, m.name));
+    out.push_back(fmt::format(
+        "{}: these numbers are estimates: {}. 'semsurf materials {}' tells how they are made; give "
+        "those that you know",
+        m.name, fields, m.name));
   return out;
 }
 

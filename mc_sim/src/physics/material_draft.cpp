@@ -13,10 +13,10 @@ namespace surf::mc {
 
 namespace {
 
-constexpr double usual_work_function_ev = 4.5;   // metals: 4 to 5.5 eV
+constexpr double usual_work_function_ev = 4.5;  // metals: 4 to 5.5 eV
 constexpr double wide_gap_ev = 4.0;
-constexpr double affinity_of_narrow_gaps_ev = 4.0;   // Si 4.05, Ge 4.0, GaAs 4.07, TiO2 4
-constexpr double affinity_of_wide_gaps_ev = 1.0;     // SiO2 0.9 to 1.1
+constexpr double affinity_of_narrow_gaps_ev = 4.0;  // Si 4.05, Ge 4.0, GaAs 4.07, TiO2 4
+constexpr double affinity_of_wide_gaps_ev = 1.0;    // SiO2 0.9 to 1.1
 
 // Plasmon energy and Fermi energy of a free-electron gas (Kittel, Introduction to Solid State
 // Physics): 28.816 eV sqrt(n rho / M) with n electrons per formula unit.
@@ -33,8 +33,10 @@ void compose(const MaterialDraft& draft, Material& m) {
   if (!draft.formula.empty()) {
     m.constituents.clear();
     for (const FormulaPart& part : draft.formula)
-      m.constituents.push_back({.atomic_number = part.atomic_number, .atomic_weight = 0,
-                                .weight_fraction = part.atoms, .mean_ionization_ev = 0});
+      m.constituents.push_back({.atomic_number = part.atomic_number,
+                                .atomic_weight = 0,
+                                .weight_fraction = part.atoms,
+                                .mean_ionization_ev = 0});
   }
   for (Constituent& c : m.constituents) {
     if (c.atomic_number < 1 || c.atomic_number > static_cast<int>(elements().size())) return;
@@ -93,12 +95,12 @@ class Completion {
     set_plasmon();
     set_work_function();
     set_barrier();
-    if (draft_.loss_join_ev)
-      m_.loss_join_ev = *draft_.loss_join_ev;
+    if (draft_.loss_join_ev) m_.loss_join_ev = *draft_.loss_join_ev;
     else
-      estimate("loss_join_ev", m_.loss_join_ev,
-               estimated_loss_join_ev(m_.barrier_ev, m_.work_function_ev),
-               "6.72 U0 + 1.87 gap, the regression over the materials fitted to measured SE yields");
+      estimate(
+          "loss_join_ev", m_.loss_join_ev,
+          estimated_loss_join_ev(m_.barrier_ev, m_.work_function_ev),
+          "6.72 U0 + 1.87 gap, the regression over the materials fitted to measured SE yields");
     validate(m_);
     m_.dielectric = complete(draft_.dielectric, m_);
     return m_;
@@ -143,14 +145,15 @@ class Completion {
     double sum = 0;
     for (const Constituent& c : m_.constituents)
       sum += atoms_per_formula_unit(m_, c) * element(c.atomic_number).valence_electrons;
-    estimate("valence_electrons", m_.valence_electrons, sum, "sum of the elements' outer electrons");
+    estimate("valence_electrons", m_.valence_electrons, sum,
+             "sum of the elements' outer electrons");
   }
 
   void set_plasmon() {
-    if (draft_.plasmon_ev)
-      m_.plasmon_ev = *draft_.plasmon_ev;
+    if (draft_.plasmon_ev) m_.plasmon_ev = *draft_.plasmon_ev;
     else
-      estimate("plasmon_ev", m_.plasmon_ev, free_plasmon_ev(std::max(m_.valence_electrons, 0.0), m_),
+      estimate("plasmon_ev", m_.plasmon_ev,
+               free_plasmon_ev(std::max(m_.valence_electrons, 0.0), m_),
                "free-electron gas of the valence electrons, 28.816 eV sqrt(n rho / M)");
   }
 
@@ -162,11 +165,12 @@ class Completion {
     } else if (gap > 0 && draft_.barrier_ev) {
       w = gap + *draft_.barrier_ev;
     } else if (gap > 0) {
-      const double affinity = gap < wide_gap_ev ? affinity_of_narrow_gaps_ev
-                                                : affinity_of_wide_gaps_ev;
-      estimate("work_function_ev", w, gap + affinity,
-               fmt::format("band gap plus an electron affinity of {:g} eV, usual for gaps {} {:g} eV",
-                           affinity, gap < wide_gap_ev ? "below" : "of or above", wide_gap_ev));
+      const double affinity =
+          gap < wide_gap_ev ? affinity_of_narrow_gaps_ev : affinity_of_wide_gaps_ev;
+      estimate(
+          "work_function_ev", w, gap + affinity,
+          fmt::format("band gap plus an electron affinity of {:g} eV, usual for gaps {} {:g} eV",
+                      affinity, gap < wide_gap_ev ? "below" : "of or above", wide_gap_ev));
     } else if (const auto mean = mean_over_atoms(
                    m_, known_, [](const Material& k) { return k.work_function_ev; })) {
       estimate("work_function_ev", w, *mean, "mean of the pure elements', by atoms");
@@ -193,9 +197,11 @@ class Completion {
       double electrons = 0;
       for (const Constituent& c : m_.constituents)
         electrons += atoms_per_formula_unit(m_, c) * element(c.atomic_number).free_electrons;
-      estimate("barrier_ev", u0, w + free_fermi_ev(electrons, m_),
-               fmt::format("a metal: work function plus the Fermi energy of {:.3g} free electrons per "
-                           "formula unit; give band_gap_ev if it is none", electrons));
+      estimate(
+          "barrier_ev", u0, w + free_fermi_ev(electrons, m_),
+          fmt::format("a metal: work function plus the Fermi energy of {:.3g} free electrons per "
+                      "formula unit; give band_gap_ev if it is none",
+                      electrons));
     }
   }
 

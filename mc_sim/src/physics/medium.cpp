@@ -24,9 +24,9 @@ constexpr int samples_per_bin = 8;
 Medium::Medium(std::vector<std::unique_ptr<const Scattering>> scatterings,
                std::unique_ptr<const ContinuousLoss> loss, double barrier_ev, double cutoff_ev)
     : scatterings_(std::move(scatterings)), loss_(std::move(loss)),
-      loses_in_events_(!loss_ && std::ranges::any_of(scatterings_, [](const auto& s) { return s->debits(); })),
-      barrier_ev_(barrier_ev),
-      cutoff_ev_(std::max(cutoff_ev, EnergyBins::lowest_ev)),
+      loses_in_events_(
+          !loss_ && std::ranges::any_of(scatterings_, [](const auto& s) { return s->debits(); })),
+      barrier_ev_(barrier_ev), cutoff_ev_(std::max(cutoff_ev, EnergyBins::lowest_ev)),
       cutoff_bin_(EnergyBins::bin(cutoff_ev_)), bins_(EnergyBins::count),
       cumulative_(EnergyBins::count * scatterings_.size()) {
   const std::size_t n = scatterings_.size();
@@ -58,8 +58,8 @@ Medium::Medium(std::vector<std::unique_ptr<const Scattering>> scatterings,
       cumulative_[static_cast<std::size_t>(i) * n + k] =
           total > 0 ? static_cast<float>(sum / total) : 1.0f;
     }
-    bins_[static_cast<std::size_t>(i)] = {lower, slowness, 1.0 / slowness, total,
-                                          total > 0 ? 1.0 / total : 0.0, 0.0, slowness};
+    bins_[static_cast<std::size_t>(i)] = {
+        lower, slowness, 1.0 / slowness, total, total > 0 ? 1.0 / total : 0.0, 0.0, slowness};
   }
   for (int i = cutoff_bin_ + 1; i < EnergyBins::count; ++i) {
     const Bin& below = bins_[static_cast<std::size_t>(i - 1)];
@@ -71,8 +71,9 @@ Medium::Medium(std::vector<std::unique_ptr<const Scattering>> scatterings,
 // Secondaries are not debited from the electron that makes them: the continuous loss pays. So what
 // the mechanisms hand out has to be that loss, on average. Where their published rates cost more
 // (below some 100 eV, where cascades would grow out of nothing), all are scaled down alike. Where
-// they cost less, the rest goes to the mechanisms that take it: generation then follows the stopping
-// power, the principle of Salow and Bethe (Lin and Joy, Surf. Interface Anal. 37, 895 (2005)).
+// they cost less, the rest goes to the mechanisms that take it: generation then follows the
+// stopping power, the principle of Salow and Bethe (Lin and Joy, Surf. Interface Anal. 37, 895
+// (2005)).
 Medium::RateFactors Medium::rate_factors(double energy_ev, double power_ev_per_nm) const {
   double fixed = 0, flexible = 0;
   for (const auto& s : scatterings_)
@@ -131,9 +132,12 @@ using Scatterings = std::vector<std::unique_ptr<const Scattering>>;
 Scatterings elastic_of(const Material& material, const Physics& physics) {
   Scatterings atoms;
   for (const Constituent& c : material.constituents)
-    atoms.push_back(physics.elastic == ElasticModel::browning ? make_browning(material, c) : make_mott(material, c, physics.atoms));
+    atoms.push_back(physics.elastic == ElasticModel::browning
+                        ? make_browning(material, c)
+                        : make_mott(material, c, physics.atoms));
   if (physics.elastic != ElasticModel::mott_phonon) return atoms;
-  return fade(make_acoustic_phonons(material, *material.dielectric, is_dielectric(physics)), std::move(atoms));
+  return fade(make_acoustic_phonons(material, *material.dielectric, is_dielectric(physics)),
+              std::move(atoms));
 }
 
 }  // namespace
@@ -145,7 +149,8 @@ Medium make_medium(const Material& material, const Physics& physics) {
   if (is_dielectric(physics)) {
     const DielectricData& data = *material.dielectric;
     scatterings.push_back(make_dielectric(material, physics));
-    for (const OpticalMode& mode : data.optical) scatterings.push_back(make_optical_phonons(mode, data));
+    for (const OpticalMode& mode : data.optical)
+      scatterings.push_back(make_optical_phonons(mode, data));
     if (data.trap_per_nm > 0) scatterings.push_back(make_polaron_traps(data));
   } else {
     if (physics.secondaries) {

@@ -24,9 +24,10 @@ class Moller final : public Scattering {
         level_ev_(filled_level_ev) {}
 
   std::string describe() const override {
-    return fmt::format("secondaries: Moeller collisions with {:.1f} valence electrons per nm^3, "
-                       "handing over {:g} eV or more (doi:10.1002/sca.1996.4950180406)",
-                       electrons_per_nm3_, least_ev_);
+    return fmt::format(
+        "secondaries: Moeller collisions with {:.1f} valence electrons per nm^3, "
+        "handing over {:g} eV or more (doi:10.1002/sca.1996.4950180406)",
+        electrons_per_nm3_, least_ev_);
   }
 
   double inverse_mean_free_path_per_nm(double energy_ev) const override {
@@ -40,7 +41,7 @@ class Moller final : public Scattering {
   double secondary_power_ev_per_nm(double energy_ev) const override {
     const double e = energy_ev - level_ev_;
     if (e <= 2.0 * least_ev_) return 0.0;
-    const auto moment = [](double x) {   // integral of eps times the density
+    const auto moment = [](double x) {  // integral of eps times the density
       return std::log(x) + 1.0 / (1.0 - x) + 2.0 * std::log(1.0 - x);
     };
     return electrons_per_nm3_ * pi_e4_ev2_nm2 / e * (moment(0.5) - moment(least_ev_ / e));
@@ -51,7 +52,8 @@ class Moller final : public Scattering {
   void scatter(double energy_ev, RandomStream& random, ScatterEvent& event) const override {
     const double e = energy_ev - level_ev_;
     if (e <= 2.0 * least_ev_) return;
-    // Draw from 1/eps^2 and accept with f eps^2 = 1 - q + q^2, q = eps / (1 - eps), within 3/4 to 1.
+    // Draw from 1/eps^2 and accept with f eps^2 = 1 - q + q^2, q = eps / (1 - eps), within 3/4
+    // to 1.
     const double most = e / least_ev_;
     double eps, q;
     do {

@@ -14,7 +14,8 @@
 namespace surf::mc {
 
 const MottElement* find_mott_element(int atomic_number, MottAtoms atoms) {
-  for (const MottElement& element : atoms == MottAtoms::free ? free_mott_elements() : solid_mott_elements())
+  for (const MottElement& element :
+       atoms == MottAtoms::free ? free_mott_elements() : solid_mott_elements())
     if (element.atomic_number == atomic_number) return &element;
   return nullptr;
 }
@@ -33,8 +34,8 @@ std::string symbols_with_tables() {
 // Elastic scattering by one element from partial-wave tables. Cross-sections are interpolated
 // log-log. For the angle one of the two neighbouring tables is drawn, with the probability of the
 // position between them on the logarithmic scale.
-// Below the lowest table (50 eV) free-atom calculations mean little in a solid; what counts there is
-// the transport cross-section. It is taken from the table's end with the energy dependence of
+// Below the lowest table (50 eV) free-atom calculations mean little in a solid; what counts there
+// is the transport cross-section. It is taken from the table's end with the energy dependence of
 // Browning's fit, and scattering is isotropic, as in that fit's low-energy limit.
 class Mott final : public Scattering {
  public:
@@ -49,13 +50,14 @@ class Mott final : public Scattering {
   }
 
   std::string describe() const override {
-    return fmt::format("elastic, Z = {}: Mott tables, ELSEPA {}, {:g} "
-                       "eV to {:g} eV (doi:10.1016/j.cpc.2004.09.006); below, isotropic",
-                       element_.atomic_number,
-                       atoms_ == MottAtoms::free ? "with the settings of NIST SRD 64"
-                                                 : "for atoms in a solid: muffin-tin, correlation and polarisation",
-                       element_.rows.front().energy_ev,
-                       element_.rows.back().energy_ev);
+    return fmt::format(
+        "elastic, Z = {}: Mott tables, ELSEPA {}, {:g} "
+        "eV to {:g} eV (doi:10.1016/j.cpc.2004.09.006); below, isotropic",
+        element_.atomic_number,
+        atoms_ == MottAtoms::free
+            ? "with the settings of NIST SRD 64"
+            : "for atoms in a solid: muffin-tin, correlation and polarisation",
+        element_.rows.front().energy_ev, element_.rows.back().energy_ev);
   }
 
   double inverse_mean_free_path_per_nm(double energy_ev) const override {
@@ -94,9 +96,9 @@ class Mott final : public Scattering {
   // The row below and the logarithmic position towards the next, in [0, 1].
   Choice locate(double energy_ev) const {
     const auto& rows = element_.rows;
-    const auto above = std::upper_bound(
-        rows.begin(), rows.end(), energy_ev,
-        [](double e, const MottRow& row) { return e < row.energy_ev; });
+    const auto above =
+        std::upper_bound(rows.begin(), rows.end(), energy_ev,
+                         [](double e, const MottRow& row) { return e < row.energy_ev; });
     if (above == rows.begin()) return {0, 0.0f};
     if (above == rows.end()) return {static_cast<int>(rows.size()) - 2, 1.0f};
     const int row = static_cast<int>(above - rows.begin()) - 1;
@@ -129,14 +131,15 @@ class Mott final : public Scattering {
 
 }  // namespace
 
-std::unique_ptr<const Scattering> make_mott(const Material& material, const Constituent& c, MottAtoms atoms) {
+std::unique_ptr<const Scattering> make_mott(const Material& material, const Constituent& c,
+                                            MottAtoms atoms) {
   const MottElement* tables = find_mott_element(c.atomic_number, atoms);
   if (!tables)
-    throw InvalidInput("material " + material.name,
-                       fmt::format("there is no Mott table for {} (Z = {}), only for {}",
-                                   element(c.atomic_number).symbol, c.atomic_number,
-                                   symbols_with_tables()),
-                       "Use `simulation.physics=elastic=browning`, which needs none");
+    throw InvalidInput(
+        "material " + material.name,
+        fmt::format("there is no Mott table for {} (Z = {}), only for {}",
+                    element(c.atomic_number).symbol, c.atomic_number, symbols_with_tables()),
+        "Use `simulation.physics=elastic=browning`, which needs none");
   return std::make_unique<Mott>(*tables, number_density_per_nm3(material, c), atoms);
 }
 
@@ -150,7 +153,9 @@ double inverse_transport_path_per_nm(const Material& material, double energy_ev)
       while (i + 2 < tables->rows.size() && tables->rows[i + 1].energy_ev <= energy_ev) ++i;
       const MottRow &a = tables->rows[i], &b = tables->rows[i + 1];
       const double share = std::log(energy_ev / a.energy_ev) / std::log(b.energy_ev / a.energy_ev);
-      transport_nm2 = a.transport_cross_section_nm2 * std::pow(b.transport_cross_section_nm2 / a.transport_cross_section_nm2, share);
+      transport_nm2 =
+          a.transport_cross_section_nm2 *
+          std::pow(b.transport_cross_section_nm2 / a.transport_cross_section_nm2, share);
     }
     sum += number_density_per_nm3(material, c) * transport_nm2;
   }

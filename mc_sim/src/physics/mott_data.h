@@ -14,17 +14,17 @@ struct MottRow {
   double energy_ev;
   double cross_section_nm2;
   double transport_cross_section_nm2;
-  double a;                 ///< shape of mu = a x / (1 + a - x)
+  double a;  ///< shape of mu = a x / (1 + a - x)
   float x[points];
 };
 
 struct MottElement {
   int atomic_number;
-  std::span<const MottRow> rows;   ///< rising in energy
+  std::span<const MottRow> rows;  ///< rising in energy
 };
 
-/// ELSEPA tables (Salvat, Jablonski, Powell, doi:10.1016/j.cpc.2004.09.006), made at build time from data/mott: of free atoms,
-/// with the settings of NIST SRD 64, and of atoms in a solid.
+/// ELSEPA tables (Salvat, Jablonski, Powell, doi:10.1016/j.cpc.2004.09.006), made at build time
+/// from data/mott: of free atoms, with the settings of NIST SRD 64, and of atoms in a solid.
 std::span<const MottElement> free_mott_elements();
 std::span<const MottElement> solid_mott_elements();
 

@@ -14,7 +14,8 @@ constexpr double bohr_radius_nm = 0.0529177;
 
 // Bulk plasmons that decay into one secondary each (Quinn, Phys. Rev. 126, 1453 (1962); Kotera,
 // Jpn. J. Appl. Phys. 29, 2277 (1990)). With E from the bottom of a free-electron band:
-//   1/lambda = hw / (2 a0 E) ln{[sqrt(EF + hw) - sqrt(EF)] / [sqrt(E) - sqrt(E - hw)]},  E > EF + hw.
+//   1/lambda = hw / (2 a0 E) ln{[sqrt(EF + hw) - sqrt(EF)] / [sqrt(E) - sqrt(E - hw)]},  E > EF +
+//   hw.
 // The secondary gets the plasmon's energy from the highest filled level, in any direction; the
 // primary keeps its own: the continuous loss pays.
 class Plasmon final : public Scattering {
@@ -24,8 +25,10 @@ class Plasmon final : public Scattering {
         fermi_ev_(0.29436 * std::pow(plasmon_ev, 4.0 / 3.0)) {}
 
   std::string describe() const override {
-    return fmt::format("secondaries: plasmons of {:g} eV, one secondary each "
-                       "(doi:10.1103/PhysRev.126.1453, doi:10.1143/JJAP.29.2277)", plasmon_ev_);
+    return fmt::format(
+        "secondaries: plasmons of {:g} eV, one secondary each "
+        "(doi:10.1103/PhysRev.126.1453, doi:10.1143/JJAP.29.2277)",
+        plasmon_ev_);
   }
 
   double inverse_mean_free_path_per_nm(double energy_ev) const override {
@@ -55,7 +58,7 @@ class Plasmon final : public Scattering {
  private:
   double plasmon_ev_;
   double level_ev_;
-  double fermi_ev_;   // of a free-electron gas with this plasmon energy
+  double fermi_ev_;  // of a free-electron gas with this plasmon energy
 };
 
 }  // namespace

@@ -17,24 +17,28 @@ inline Float4 coordinates(std::uint64_t word) {
 
 /// A plane in the frame that branches lie in.
 struct FramedPlane {
-  Float4 point{}, normal{};   ///< `normal` has unit length
+  Float4 point{}, normal{};  ///< `normal` has unit length
 
-  float along(const Float4& v) const { return normal[0] * v[0] + normal[1] * v[1] + normal[2] * v[2]; }
+  float along(const Float4& v) const {
+    return normal[0] * v[0] + normal[1] * v[1] + normal[2] * v[2];
+  }
   Float4 mirrored(const Float4& v) const { return v - normal * (2 * along(v)); }
 };
 
-/// How a branch of a stored cascade lies in a frame: its first point, and a rotation from the branch's coordinates. A surface
-/// changes the rest of a branch as a rigid motion does, so a pose is all that has to be kept. Lengths are nm in the frame.
+/// How a branch of a stored cascade lies in a frame: its first point, and a rotation from the
+/// branch's coordinates. A surface changes the rest of a branch as a rigid motion does, so a pose
+/// is all that has to be kept. Lengths are nm in the frame.
 struct BranchPose {
-  Float4 origin{};          ///< the branch's first point
-  Rotation scaled;          ///< from the branch's coordinates
-  Float4 over_plane{};      ///< heights over the flat surroundings' plane: of the coordinates, and of the origin
-  Float4 over_frame{};      ///< heights along the frame's z, likewise
-  int exponent = 0;         ///< of the branch's unit
-  int changes = 0;          ///< of the pose
-  int moves = 0;            ///< changes other than mirrors in that plane
-  bool left_ball = false;   ///< it came otherwise than through matter from the ball's centre
-  bool deflected = false;   ///< by a surface, since it last forgot its direction
+  Float4 origin{};      ///< the branch's first point
+  Rotation scaled;      ///< from the branch's coordinates
+  Float4 over_plane{};  ///< heights over the flat surroundings' plane: of the coordinates, and of
+                        ///< the origin
+  Float4 over_frame{};  ///< heights along the frame's z, likewise
+  int exponent = 0;     ///< of the branch's unit
+  int changes = 0;      ///< of the pose
+  int moves = 0;        ///< changes other than mirrors in that plane
+  bool left_ball = false;  ///< it came otherwise than through matter from the ball's centre
+  bool deflected = false;  ///< by a surface, since it last forgot its direction
 
   /// Changes the unit, not the pose.
   void scale(int to) {
@@ -95,9 +99,9 @@ struct BranchPose {
     note_change();
   }
 
-  /// Where an electron is scattered into all directions alike, the rest of its branch may lie as it likes. It lies as `home`,
-  /// the cascade as it entered, so that a surface that is a little higher or lower moves it a little, where a mirror would
-  /// send it elsewhere.
+  /// Where an electron is scattered into all directions alike, the rest of its branch may lie as it
+  /// likes. It lies as `home`, the cascade as it entered, so that a surface that is a little higher
+  /// or lower moves it a little, where a mirror would send it elsewhere.
   void resample_direction(const Rotation& home, std::uint64_t vertex, const FramedPlane& plane) {
     const Float4 here = point(vertex);
     const float height = height_over_plane(vertex);

@@ -8,8 +8,9 @@
 
 namespace surf::mc {
 
-/// The books of one replayed primary. A node that is passed over counts as a whole: what it generates is in its header. So
-/// the walk enters a node's generation when it comes to it, and takes off what an electron that is gone does not generate.
+/// The books of one replayed primary. A node that is passed over counts as a whole: what it
+/// generates is in its header. So the walk enters a node's generation when it comes to it, and
+/// takes off what an electron that is gone does not generate.
 class Ledger {
  public:
   explicit Ledger(Balance& balance) : balance_(balance) {}
@@ -57,7 +58,8 @@ class Ledger {
     balance_.escaped_energy.add(energy_ev);
   }
 
-  /// Direct simulation follows the electron from here, and keeps books of its own of what comes of it.
+  /// Direct simulation follows the electron from here, and keeps books of its own of what comes of
+  /// it.
   void hand_over(double total_ev) {
     ++left_;
     energy_out_ += total_ev;

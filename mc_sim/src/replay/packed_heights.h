@@ -15,9 +15,10 @@
 
 namespace surf::mc {
 
-/// Heights of many packed points over a plane at once, in whole numbers: to tell which of them need a closer look. Answers err
-/// towards a closer look by at most four units of the packed coordinates, which is more than what single precision does to
-/// `BranchPose`'s heights. They are the same on every processor.
+/// Heights of many packed points over a plane at once, in whole numbers: to tell which of them need
+/// a closer look. Answers err towards a closer look by at most four units of the packed
+/// coordinates, which is more than what single precision does to `BranchPose`'s heights. They are
+/// the same on every processor.
 class PackedHeights {
  public:
   /// `over`: what `BranchPose` has of a plane; `exponent`: of its unit.
@@ -41,7 +42,9 @@ class PackedHeights {
     const std::int32_t least = -margin - offset_;
 #if defined(__SSE2__)
     const __m128i limit = _mm_set1_epi32(least);
-    for_pairs(points, count, [&](int i, const __m128i& words) { bits |= each(_mm_cmpgt_epi32(along(words), limit)) << i; });
+    for_pairs(points, count, [&](int i, const __m128i& words) {
+      bits |= each(_mm_cmpgt_epi32(along(words), limit)) << i;
+    });
 #else
     for (int i = 0; i < count; ++i) bits |= along(points[i]) > least ? 1u << i : 0u;
 #endif
@@ -83,7 +86,7 @@ class PackedHeights {
     for_pairs(spheres, count, [&](int i, const __m128i& words) {
       const __m128i height = _mm_add_epi32(along(words), offset), sign = _mm_srai_epi32(height, 31);
       const __m128i distance = _mm_sub_epi32(_mm_xor_si128(height, sign), sign);
-      const __m128i radius = _mm_slli_epi32(_mm_srli_epi64(words, 48), 14);   // in the lower halves
+      const __m128i radius = _mm_slli_epi32(_mm_srli_epi64(words, 48), 14);  // in the lower halves
       const __m128i met = _mm_cmpgt_epi32(distance, _mm_add_epi32(radius, beyond));
       bits |= each(_mm_shuffle_epi32(met, 0xa0)) << i;
     });
@@ -98,29 +101,35 @@ class PackedHeights {
   }
 
  private:
-  // A weight is a direction's cosine in 2^-14: off by half of one at most, so that three coordinates of 2^15 are off by
-  // 3 * 2^14, or three units.
+  // A weight is a direction's cosine in 2^-14: off by half of one at most, so that three
+  // coordinates of 2^15 are off by 3 * 2^14, or three units.
   static constexpr float one = 16384;
   static constexpr std::int32_t margin = 4 * 16384;
-  // Farther away the sign of a height does not depend on the point: coordinates come to less than 2^30. So do radii, and sums of
-  // two of these stay below 2^31.
+  // Farther away the sign of a height does not depend on the point: coordinates come to less than
+  // 2^30. So do radii, and sums of two of these stay below 2^31.
   static constexpr float farthest = 1e9f;
 
-  static std::int32_t whole(float parts) { return static_cast<std::int32_t>(std::clamp(parts, -farthest, farthest)); }
+  static std::int32_t whole(float parts) {
+    return static_cast<std::int32_t>(std::clamp(parts, -farthest, farthest));
+  }
 
 #if defined(__SSE2__)
   // The height without offset of two points, each in both halves of its place.
   __m128i along(const __m128i& words) const {
-    const __m128i products = _mm_madd_epi16(words, _mm_set1_epi64x(weights_));   // of x and y, and of z
+    const __m128i products =
+        _mm_madd_epi16(words, _mm_set1_epi64x(weights_));  // of x and y, and of z
     return _mm_add_epi32(products, _mm_shuffle_epi32(products, 0xb1));
   }
-  static unsigned each(const __m128i& met) { return static_cast<unsigned>(_mm_movemask_pd(_mm_castsi128_pd(met))); }
+  static unsigned each(const __m128i& met) {
+    return static_cast<unsigned>(_mm_movemask_pd(_mm_castsi128_pd(met)));
+  }
 
   // Two at a time; nothing beyond them is read.
   template <class Visit>
   static void for_pairs(const std::uint64_t* words, int count, const Visit& visit) {
     int i = 0;
-    for (; i + 1 < count; i += 2) visit(i, _mm_loadu_si128(reinterpret_cast<const __m128i*>(words + i)));
+    for (; i + 1 < count; i += 2)
+      visit(i, _mm_loadu_si128(reinterpret_cast<const __m128i*>(words + i)));
     if (i < count) visit(i, _mm_loadl_epi64(reinterpret_cast<const __m128i*>(words + i)));
   }
 #else
@@ -132,7 +141,7 @@ class PackedHeights {
   }
 #endif
 
-  std::int64_t weights_ = 0;   // of x, y and z, each of 16 bits, and 0 for what is packed with them
+  std::int64_t weights_ = 0;  // of x, y and z, each of 16 bits, and 0 for what is packed with them
   std::int32_t offset_ = 0;
   float parts_per_nm_ = 0;
 };

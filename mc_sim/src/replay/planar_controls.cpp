@@ -16,17 +16,17 @@ namespace surf::mc {
 
 namespace {
 
-constexpr double step_deg = 1;             // between controls, where azimuths do not count
-constexpr double coarse_step_deg = 5;      // where they do
+constexpr double step_deg = 1;         // between controls, where azimuths do not count
+constexpr double coarse_step_deg = 5;  // where they do
 constexpr double steepest_deg = 86;
-constexpr double exact_steps = 1e9;        // normals that agree to this are one
+constexpr double exact_steps = 1e9;  // normals that agree to this are one
 
-thread_local double spent_here = 0;        // seconds
+thread_local double spent_here = 0;  // seconds
 
 // Everything below a plane through the origin.
 class HalfSpace {
  public:
-  using State = int;   // 0: vacuum, 1: matter
+  using State = int;  // 0: vacuum, 1: matter
   struct Surface {
     double distance = 0;
     Vec3 position, position_ahead, normal;
@@ -38,7 +38,9 @@ class HalfSpace {
   int material(State s) const { return s == 0 ? -1 : material_; }
   double clearance(const Vec3& p) const { return std::fabs(dot(p, normal_)); }
   double farthest() const { return 1e12; }
-  bool flies_free(const Vec3& p, const Vec3& d) const { return dot(p, normal_) >= 0 && dot(d, normal_) > 0; }
+  bool flies_free(const Vec3& p, const Vec3& d) const {
+    return dot(p, normal_) >= 0 && dot(d, normal_) > 0;
+  }
 
   Crossing crossing(const Vec3& start, const Vec3& direction, double most, State& state,
                     Surface& surface, const KnownFaces& = {}) const {
@@ -77,7 +79,7 @@ struct PlanarControls::Slot {
 };
 
 PlanarControls::PlanarControls(const Scene::Impl& scene, const SimulationOptions& options,
-                             const Libraries& libraries, const CancelToken* cancel)
+                               const Libraries& libraries, const CancelToken* cancel)
     : scene_(scene), options_(options), libraries_(libraries), cancel_(cancel),
       axial_(axial(scene, options.detectors)), against_(-direction(scene.beam)) {
   // The smallest rotation of x and y with -z onto the beam.
@@ -127,10 +129,10 @@ PlanarControls::Place PlanarControls::place(int material, const Vec3& normal, bo
     const double step = axial_ ? step_deg : coarse_step_deg;
     const auto i = std::llround(std::min(polar, steepest_deg) / step);
     // As many sectors as keep neighbours about a step apart.
-    const auto sectors = axial_ || i == 0
-                             ? std::int64_t{1}
-                             : std::llround(360 / step * std::sin(double(i) * step *
-                                                                  degrees_to_radians));
+    const auto sectors =
+        axial_ || i == 0
+            ? std::int64_t{1}
+            : std::llround(360 / step * std::sin(double(i) * step * degrees_to_radians));
     const auto j = axial_ ? 0 : std::llround(azimuth * double(sectors)) % sectors;
     plane = at(double(i) * step, axial_ ? 0 : double(j) / double(sectors));
     key = {-1 - material, i, j, 0};
@@ -176,7 +178,7 @@ PlanarControls::Match PlanarControls::match(int material, const Vec3& normal, bo
 }
 
 std::shared_ptr<const PlanarControl> PlanarControls::make(int material, const Vec3& normal,
-                                                        std::uint64_t number) const {
+                                                          std::uint64_t number) const {
   const std::size_t detectors = options_.detectors.size();
   auto control = std::make_shared<PlanarControl>();
   control->normal = normal;
@@ -201,7 +203,8 @@ std::shared_ptr<const PlanarControl> PlanarControls::make(int material, const Ve
   const Vec3 beam = -against_;
   HalfSpace::Surface entry;
   int state = 0;
-  if (geometry.crossing(against_, beam, HUGE_VAL, state, entry) != Crossing::surface) return control;
+  if (geometry.crossing(against_, beam, HUGE_VAL, state, entry) != Crossing::surface)
+    return control;
   for (std::size_t i = 0; i < cascades_; ++i) {
     if (cancel_ && cancel_->cancelled()) throw Interrupted();
     if (i + 1 < cascades_) replay.fetch(material, i + 1);

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-// Retraces stored cascades in a specimen. The medium is isotropic and does not remember, so a surface
-// acts on the rest of a cascade as a rigid motion: a reflection mirrors it, a way out and back in
-// turns and moves it. Statistically nothing distinguishes it from transport.h.
+// Retraces stored cascades in a specimen. The medium is isotropic and does not remember, so a
+// surface acts on the rest of a cascade as a rigid motion: a reflection mirrors it, a way out and
+// back in turns and moves it. Statistically nothing distinguishes it from transport.h.
 
 #include <algorithm>
 #include <cmath>
@@ -34,21 +34,22 @@ class Replay {
   using Direct = Transport<G, NoObserver>;
 
   /// `libraries` by material, each starting at the beam's energy plus the material's barrier; where
-  /// one is missing (null), `direct` follows the electrons. `watch_turns`: whether detectors ask for
-  /// what was generated before the primary turned back.
+  /// one is missing (null), `direct` follows the electrons. `watch_turns`: whether detectors ask
+  /// for what was generated before the primary turned back.
   Replay(G& geometry, const std::vector<const Medium*>& media,
          const std::vector<const CascadeLibrary*>& libraries, BarrierModel barrier,
          bool watch_turns, Direct& direct, Detection& detection, Balance& balance)
-      : geometry_(geometry), query_(geometry), barrier_(barrier), watch_turns_(watch_turns), direct_(direct),
-        detection_(detection), balance_(balance), ledger_(balance), walker_(*this) {
+      : geometry_(geometry), query_(geometry), barrier_(barrier), watch_turns_(watch_turns),
+        direct_(direct), detection_(detection), balance_(balance), ledger_(balance),
+        walker_(*this) {
     for (std::size_t i = 0; i < media.size(); ++i) {
       const CascadeLibrary* l = libraries[i];
       materials_.push_back({l, media[i], media[i]->barrier_ev(), media[i]->loses_in_events(),
-                            EnergyCode(media[i]->cutoff_ev(),
-                                       l ? l->settings().start_energy_ev : 2 * max_beam_energy_ev)});
+                            EnergyCode(media[i]->cutoff_ev(), l ? l->settings().start_energy_ev
+                                                                : 2 * max_beam_energy_ev)});
     }
   }
-  Replay(const Replay&) = delete;   // the walker refers to it
+  Replay(const Replay&) = delete;  // the walker refers to it
 
   /// A primary that comes through vacuum. Where it enters the specimen it becomes a cascade of the
   /// material's library. True if it met the specimen.
@@ -62,8 +63,8 @@ class Replay {
   }
 
   /// The same for a primary known to have come as far as `surface`, through `state`.
-  void run_from(const Surface& surface, const Vec3& direction, double energy_ev,
-                State state, const ReplayedPrimary& primary) {
+  void run_from(const Surface& surface, const Vec3& direction, double energy_ev, State state,
+                const ReplayedPrimary& primary) {
     begin(direction, energy_ev, primary);
     hit_ = true;
     Free electron{surface.position, direction, energy_ev, state};
@@ -94,20 +95,24 @@ class Replay {
 
   // What the walk asks of its handler.
 
-  const ReplayMaterial& medium(int material) const { return materials_[static_cast<std::size_t>(material)]; }
+  const ReplayMaterial& medium(int material) const {
+    return materials_[static_cast<std::size_t>(material)];
+  }
   Ledger& ledger() { return ledger_; }
 
   bool passes(Branch<State>& branch, std::uint64_t sphere, Near& near) const {
     return query_.misses(branch, branch.state, sphere, near) && !watching(branch);
   }
 
-  unsigned passed(const Branch<State>& branch, const std::uint64_t* spheres, int count, const Near& near) const {
+  unsigned passed(const Branch<State>& branch, const std::uint64_t* spheres, int count,
+                  const Near& near) const {
     return watching(branch) ? 0 : query_.clear_of(branch, spheres, count, near);
   }
 
   unsigned eventful(const NodeView& node, const Branch<State>& branch, const Near& near) const {
     const int segments = node.node.count;
-    if (watching(branch) || (branch.deflected && common_random_numbers_)) return (1u << segments) - 1;
+    if (watching(branch) || (branch.deflected && common_random_numbers_))
+      return (1u << segments) - 1;
     return query_.may_meet(branch, node.points(), segments, near);
   }
 
@@ -117,20 +122,24 @@ class Replay {
       return s.high > 0 ? cross_plane(s, branch) : Moved::no;
     }
     if (!watching(branch) && !s.inside && near.band.is_beside(s.low, s.high)) return Moved::no;
-    const Float4 from = s.inside ? float4(query_.frame().in(s.inside->position)) : branch.point(s.before);
+    const Float4 from =
+        s.inside ? float4(query_.frame().in(s.inside->position)) : branch.point(s.before);
     const Float4 way = branch.point(s.vertex) - from;
     if (watching(branch)) note_turn(way);
     if (query_.is_clear(from, way)) return Moved::no;
-    const double energy = s.inside ? s.inside->energy_ev : medium(branch.material).energy_ev(s.view, s.number);
+    const double energy =
+        s.inside ? s.inside->energy_ev : medium(branch.material).energy_ev(s.view, s.number);
     random_.at(event(s));
     return cross_segment(from, way, energy, branch, true);
   }
 
   bool scattered(const WalkedSegment& s, Moved moved, Branch<State>& branch, Near& near) {
-    if (moved != Moved::no && watching(branch)) note_turn(branch.point(s.vertex) - branch.point(s.before));
-    if (!branch.deflected || !common_random_numbers_ || !EnergyCode::forgets(s.vertex)) return false;
+    if (moved != Moved::no && watching(branch))
+      note_turn(branch.point(s.vertex) - branch.point(s.before));
+    if (!branch.deflected || !common_random_numbers_ || !EnergyCode::forgets(s.vertex))
+      return false;
     branch.resample_direction(home_, s.vertex, query_.plane());
-    if (!query_.flat().whole || branch.left_ball) {   // what comes may leave the surroundings
+    if (!query_.flat().whole || branch.left_ball) {  // what comes may leave the surroundings
       ++branch.moves;
       near = {};
     }
@@ -165,9 +174,8 @@ class Replay {
       ++balance_.steps;
       if (hit_ && geometry_.flies_free(e.position, e.direction)) return escape(e, generation > 0);
       ++balance_.rays;
-      const Crossing met = geometry_.crossing(e.position, e.direction,
-                                              std::numeric_limits<double>::infinity(), e.state,
-                                              surface_);
+      const Crossing met = geometry_.crossing(
+          e.position, e.direction, std::numeric_limits<double>::infinity(), e.state, surface_);
       if (met == Crossing::wrong_side) return lose(LossCause::wrong_side, e.energy);
       if (met == Crossing::none) return escape(e, generation > 0);
       hit_ = true;
@@ -188,8 +196,8 @@ class Replay {
     return geometry_.material(e.state) >= 0;
   }
 
-  // A hair inside: where the first scattering is packed into the very point of entry, and that lies on
-  // an edge, what starts there could leave unseen between two faces.
+  // A hair inside: where the first scattering is packed into the very point of entry, and that lies
+  // on an edge, what starts there could leave unseen between two faces.
   void enter(const Free& e, const Vec3& normal) {
     const int material = geometry_.material(e.state);
     const CascadeLibrary* library = medium(material).library;
@@ -271,8 +279,9 @@ class Replay {
     }
     move(branch, direction, met_at, e);
     const double left = whole - share * whole;
-    if (left > 0 && cross_segment(float4(frame.in(e.position)),
-                                  float4(frame.direction_in(e.direction) * left), e.energy, branch, false) == Moved::gone)
+    if (left > 0 &&
+        cross_segment(float4(frame.in(e.position)), float4(frame.direction_in(e.direction) * left),
+                      e.energy, branch, false) == Moved::gone)
       return Moved::gone;
     return Moved::yes;
   }
@@ -280,8 +289,8 @@ class Replay {
   // The rest of the branch goes on from where the electron is, in its direction.
   void move(Branch<State>& branch, const Vec3& direction, const Vec3& met_at, const Free& e) const {
     const Frame& frame = query_.frame();
-    branch.move(turn(frame.direction_in(direction), frame.direction_in(e.direction)), float4(frame.in(met_at)),
-                float4(frame.in(e.position)));
+    branch.move(turn(frame.direction_in(direction), frame.direction_in(e.direction)),
+                float4(frame.in(met_at)), float4(frame.in(e.position)));
     branch.state = e.state;
   }
 
@@ -297,8 +306,8 @@ class Replay {
     const ReplayMaterial& m = medium(branch.material);
     Moved moved = Moved::no;
     for (int bounces = 0;; ++bounces) {
-      const Crossing met =
-          query_.first_crossing(from, direction, left, branch.state, surface_, asked && bounces == 0, balance_.rays);
+      const Crossing met = query_.first_crossing(from, direction, left, branch.state, surface_,
+                                                 asked && bounces == 0, balance_.rays);
       if (met == Crossing::none) return moved;
       if (met == Crossing::wrong_side || bounces > most_bounces) {
         lose(met == Crossing::wrong_side ? LossCause::wrong_side : LossCause::too_many_steps,
@@ -326,8 +335,8 @@ class Replay {
     }
   }
 
-  // Goes on with a track of the material's library where its energy is the electron's, turned to its
-  // direction: exact, where energy falls by continuous loss alone.
+  // Goes on with a track of the material's library where its energy is the electron's, turned to
+  // its direction: exact, where energy falls by continuous loss alone.
   void join(const Free& e, int generation) {
     const int material = geometry_.material(e.state);
     const ReplayMaterial& m = medium(material);
@@ -338,28 +347,29 @@ class Replay {
       return;
     }
     const std::uint64_t* root =
-        m.library->cascade(static_cast<std::size_t>(random_.uniform() *
-                                                    static_cast<double>(m.library->cascades())))
+        m.library
+            ->cascade(static_cast<std::size_t>(random_.uniform() *
+                                               static_cast<double>(m.library->cascades())))
             .data();
     NodeView leaf(root);
     while (leaf.node.level > 0) leaf = NodeView(leaf.child(walker_.child_at(leaf, e.energy, m)));
     const int segment = walker_.segment_at(leaf, e.energy, m);
-    if (segment == leaf.node.count) return;   // within rounding of the cutoff, where tracks end
+    if (segment == leaf.node.count) return;  // within rounding of the cutoff, where tracks end
     const float unit = power_of_two(leaf.node.exponent);
-    const std::uint64_t before = segment == 0 ? std::bit_cast<std::uint64_t>(leaf.node.start)
-                                              : *leaf.vertex(segment - 1);
+    const std::uint64_t before =
+        segment == 0 ? std::bit_cast<std::uint64_t>(leaf.node.start) : *leaf.vertex(segment - 1);
     const Vec3 a = vec3(coordinates(before) * unit);
     const Vec3 way = vec3(coordinates(*leaf.vertex(segment)) * unit) - a;
     const double whole = length(way);
     const Vec3 along = whole > 0 ? way * (1 / whole) : Vec3{0, 0, -1};
-    const double done = m.medium->range_nm(m.energy_ev(leaf, segment)) -
-                        m.medium->range_nm(e.energy);
+    const double done =
+        m.medium->range_nm(m.energy_ev(leaf, segment)) - m.medium->range_nm(e.energy);
     const Vec3 begin = a + along * std::clamp(done, 0.0, whole);
     const Frame& frame = query_.frame();
     Branch<State> branch;
     const Rotation before_joining = home_;
-    home_ = rotation_in(frame, beam_frame(e.direction, random_.uniform())) *
-            turn(along, {0, 0, -1});
+    home_ =
+        rotation_in(frame, beam_frame(e.direction, random_.uniform())) * turn(along, {0, 0, -1});
     branch.scaled = home_;
     branch.origin = float4(frame.in(e.position)) - branch.scaled(float4(begin));
     branch.state = e.state;
@@ -375,7 +385,8 @@ class Replay {
     home_ = before_joining;
   }
 
-  // A material without a library, or with one that has no track of this energy: direct simulation follows the electron and all that it generates.
+  // A material without a library, or with one that has no track of this energy: direct simulation
+  // follows the electron and all that it generates.
   void hand_over(const Free& e, int generation) {
     const double total_ev = e.energy - barrier_of(geometry_.material(e.state));
     if (handed_over_ == random_streams::most_handed_over) {
@@ -383,7 +394,8 @@ class Replay {
       return;
     }
     ledger_.hand_over(total_ev);
-    RandomStream random(primary_.seed, primary_.pixel, random_streams::handed_over(primary_.electron, handed_over_++));
+    RandomStream random(primary_.seed, primary_.pixel,
+                        random_streams::handed_over(primary_.electron, handed_over_++));
     direct_.take_over({e.position, e.direction, e.energy, e.state, generation, -1, turned_}, beam_,
                       random);
   }
@@ -400,7 +412,7 @@ class Replay {
     return false;
   }
 
-  static constexpr double here_nm = 0.01;   // nearer than this, two places are one
+  static constexpr double here_nm = 0.01;  // nearer than this, two places are one
   static constexpr double inside_nm = 1e-4;
   static constexpr int most_bounces = 1000;
   static constexpr int most_joined = 2000;
@@ -413,7 +425,7 @@ class Replay {
   Detection& detection_;
   Balance& balance_;
   std::vector<ReplayMaterial> materials_;
-  Surface surface_;   // scratch
+  Surface surface_;  // scratch
   double flat_step_ev_ = 0;
   bool common_random_numbers_ = false;
 
@@ -423,8 +435,8 @@ class Replay {
   ReplayedPrimary primary_;
   ReplayRandom random_;
   Vec3 beam_;
-  Float4 beam_in_{};   // in the frame
-  Rotation home_;   // how the cascade lay when it entered
+  Float4 beam_in_{};  // in the frame
+  Rotation home_;     // how the cascade lay when it entered
   bool hit_ = false;
   bool turned_ = false;
   int joined_ = 0;

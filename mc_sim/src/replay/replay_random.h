@@ -13,10 +13,10 @@ namespace surf::mc {
 /// Which primary is replayed: what its random numbers depend on, and what it replays.
 struct ReplayedPrimary {
   std::uint64_t seed = 1;
-  std::uint64_t pixel = 0;       ///< below 2^48, like `electron`
+  std::uint64_t pixel = 0;  ///< below 2^48, like `electron`
   std::uint64_t electron = 0;
-  std::size_t cascade = 0;       ///< of the material that it enters
-  double azimuth = 0;            ///< of the cascade about its first direction, in turns, [0, 1)
+  std::size_t cascade = 0;  ///< of the material that it enters
+  double azimuth = 0;       ///< of the cascade about its first direction, in turns, [0, 1)
 };
 
 /// Random numbers of a replayed primary, a function of the primary and of where in the cascade they
@@ -33,7 +33,8 @@ class ReplayRandom {
 
   /// From now on draws belong to `event`, counted modulo 2^23.
   void at(std::uint32_t event) {
-    counter_[0] = random_streams::first_replay_block | (event << 8 & (random_streams::first_replay_block - 1));
+    counter_[0] = random_streams::first_replay_block |
+                  (event << 8 & (random_streams::first_replay_block - 1));
     left_ = 0;
   }
 
@@ -57,7 +58,7 @@ class ReplayRandom {
 inline double azimuth_of(const ReplayedPrimary& primary) {
   ReplayRandom random;
   random.begin(primary);
-  random.at(1);   // no vertex comes first in a cascade
+  random.at(1);  // no vertex comes first in a cascade
   return random.uniform();
 }
 

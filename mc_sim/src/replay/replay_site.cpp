@@ -15,7 +15,7 @@ constexpr double plane_nm = 1e-6;
 
 // Pixels that share a patch: their surfaces are no farther apart and no more turned than this.
 constexpr double shared_nm = 12, shared_cosine = 0.9;
-constexpr int most_shared = 8;           // pixels along a block
+constexpr int most_shared = 8;  // pixels along a block
 constexpr std::size_t most_patches = 512;
 
 bool any_origin(const std::vector<Detector>& detectors) {
@@ -33,7 +33,8 @@ std::vector<const CascadeLibrary*> pointers(const Libraries& libraries) {
 
 SiteReplay::SiteReplay(const Scene::Impl& scene, const SimulationOptions& options,
                        const Libraries& libraries)
-    : scene_(scene), libraries_(libraries), geometry_(scene), gun_(scene.beam, scene.scan, scene.top_nm),
+    : scene_(scene), libraries_(libraries), geometry_(scene),
+      gun_(scene.beam, scene.scan, scene.top_nm),
       detection_(options.detectors, scene.beam, options.spectra),
       direct_(geometry_, scene.medium_pointers, scene.physics.barrier, true, nobody_, detection_,
               balance_),
@@ -63,14 +64,18 @@ ReplaySite SiteReplay::site_alone(int x, int y) {
   if (!site.hit) return site;
   site.material = geometry_.material(site.surface.state_ahead);
   const Vec3& n = site.surface.normal;
-  site.flat = {site.surface.position, dot(n, site.middle.direction) > 0 ? -n : n, 0, false,
-               site.surface.state_ahead, site.before};
+  site.flat = {site.surface.position,
+               dot(n, site.middle.direction) > 0 ? -n : n,
+               0,
+               false,
+               site.surface.state_ahead,
+               site.before};
   return site;
 }
 
-// Neighbours share a patch: that of the pixel in the middle of their block, where the surface there is
-// near enough and about as steep. Which one a pixel gets depends on the scan alone, as the frame's
-// rounding may decide an electron's fate.
+// Neighbours share a patch: that of the pixel in the middle of their block, where the surface there
+// is near enough and about as steep. Which one a pixel gets depends on the scan alone, as the
+// frame's rounding may decide an electron's fate.
 std::shared_ptr<const LocalSurface> SiteReplay::patch(int x, int y, const ReplaySite& site) {
   const auto own = [&](const ReplaySite& s) {
     return std::make_shared<const LocalSurface>(*scene_.triangles, scene_.plane_nm,
@@ -118,8 +123,7 @@ void SiteReplay::find_plane(ReplaySite& site) const {
 }
 
 bool SiteReplay::proved_plane(const ReplaySite& site) {
-  if (!site.single || !site.flat.whole || scene_.beam.working_distance_nm > 0)
-    return false;
+  if (!site.single || !site.flat.whole || scene_.beam.working_distance_nm > 0) return false;
   if (!scene_.triangles) return true;
   // Whoever leaves must not come back: nothing may stand above the plane.
   const Vec3& n = site.flat.normal;

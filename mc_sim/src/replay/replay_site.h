@@ -16,14 +16,14 @@ namespace surf::mc {
 
 /// What all primaries of a pixel have in common.
 struct ReplaySite {
-  Gun::Start middle;                  ///< of the pixel's beam
-  bool single = false;                ///< all primaries start there
-  bool hit = false;                   ///< whether the middle of the beam meets the specimen
-  SceneGeometry::State before = 0;    ///< where it flies
-  SceneGeometry::Surface surface;     ///< where it meets it
+  Gun::Start middle;                ///< of the pixel's beam
+  bool single = false;              ///< all primaries start there
+  bool hit = false;                 ///< whether the middle of the beam meets the specimen
+  SceneGeometry::State before = 0;  ///< where it flies
+  SceneGeometry::Surface surface;   ///< where it meets it
   FlatSurroundings<SceneGeometry::State> flat;
-  int material = -1;                  ///< behind the surface
-  std::shared_ptr<const LocalSurface> patch;   ///< null where nobody looked, or all is flat
+  int material = -1;                          ///< behind the surface
+  std::shared_ptr<const LocalSurface> patch;  ///< null where nobody looked, or all is flat
 };
 
 /// Replays primaries in a scene, on one thread.
@@ -36,14 +36,12 @@ class SiteReplay {
   /// make up for it.
   ReplaySite site(int x, int y, bool look_around);
 
-  /// Replays a primary at a site; true if it met the specimen. `start` is asked for where the site is
-  /// not single. Counts are in `detection()`, all else in `balance()`.
+  /// Replays a primary at a site; true if it met the specimen. `start` is asked for where the site
+  /// is not single. Counts are in `detection()`, all else in `balance()`.
   bool run(const ReplaySite& site, const Gun::Start& start, const ReplayedPrimary& primary);
 
   /// The next primaries are at this site.
-  void go_to(const ReplaySite& site) {
-    replay_.surroundings(site.flat, site.patch.get());
-  }
+  void go_to(const ReplaySite& site) { replay_.surroundings(site.flat, site.patch.get()); }
 
   /// The primary after the next one at this site replays this cascade.
   void fetch(const ReplaySite& site, std::size_t cascade) const {
@@ -54,15 +52,18 @@ class SiteReplay {
   Detection& detection() { return detection_; }
   Balance& balance() { return balance_; }
 
-  /// Whether the surface around the site is a plane as far as any electron gets: nothing else can be
-  /// met. Then only its direction counts.
+  /// Whether the surface around the site is a plane as far as any electron gets: nothing else can
+  /// be met. Then only its direction counts.
   bool proved_plane(const ReplaySite& site);
 
   /// Farther than any electron gets inside a material.
   double range_nm(int material) const;
 
-  /// Of the library that cascades in this material come from; null where direct simulation follows its electrons.
-  const CascadeLibrary* library(int material) const { return libraries_[static_cast<std::size_t>(material)].get(); }
+  /// Of the library that cascades in this material come from; null where direct simulation follows
+  /// its electrons.
+  const CascadeLibrary* library(int material) const {
+    return libraries_[static_cast<std::size_t>(material)].get();
+  }
 
  private:
   ReplaySite site_alone(int x, int y);
@@ -86,9 +87,9 @@ class SiteReplay {
   std::vector<KnownPlane> planes_;
   struct BlockSurface {
     Vec3 normal;
-    std::shared_ptr<const LocalSurface> patch;   // null where the beam meets nothing
+    std::shared_ptr<const LocalSurface> patch;  // null where the beam meets nothing
   };
-  int block_;                         // of pixels to a side that may share a patch
+  int block_;  // of pixels to a side that may share a patch
   std::map<std::pair<int, int>, BlockSurface> patches_;
 };
 

@@ -9,15 +9,17 @@ namespace surf::mc {
 void check_options(const SimulationOptions& options) {
   validate(options.budget);
   if (std::holds_alternative<TimeLimit>(options.budget))
-    throw UsageError("`simulation.time`", "the simulator itself knows no clock", "Run it as a job, or give `simulation.accuracy`");
+    throw UsageError("`simulation.time`", "the simulator itself knows no clock",
+                     "Run it as a job, or give `simulation.accuracy`");
   if (options.tile_pixels < 1)
     throw UsageError("tile size", "a tile needs at least one pixel", "Ask for 1024, say");
-  if (options.detectors.empty())
-    throw UsageError("detectors", "there are none", "Use SE and BSE");
+  if (options.detectors.empty()) throw UsageError("detectors", "there are none", "Use SE and BSE");
   validate(options.detectors);
   if (accuracy_of(options.budget) > 0 && options.spectra)
-    throw UsageError("`simulation.accuracy`", "pixels then get different numbers of electrons, and spectra would mean nothing",
-                     "Give `simulation.electrons` with `output.spectra`");
+    throw UsageError(
+        "`simulation.accuracy`",
+        "pixels then get different numbers of electrons, and spectra would mean nothing",
+        "Give `simulation.electrons` with `output.spectra`");
 }
 
 }  // namespace surf::mc

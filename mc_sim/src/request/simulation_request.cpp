@@ -17,7 +17,8 @@ namespace {
 
 int pixels(std::string_view text, const std::string& subject) {
   std::optional<int> count;
-  parameters_detail::Calling read([&](const Parameter&, Field& field) { field.read(text, subject); }, true);
+  parameters_detail::Calling read(
+      [&](const Parameter&, Field& field) { field.read(text, subject); }, true);
   read(count, {.name = "pixels", .limits = at_least(1)});
   return *count;
 }
@@ -25,7 +26,8 @@ int pixels(std::string_view text, const std::string& subject) {
 void read_size(std::string_view text, const std::string& subject, ScanRequest& scan) {
   const auto parts = split(text, "xX");
   if (parts.size() > 2)
-    throw UsageError(subject, fmt::format("'{}' is not a size", text), "Write width x height in pixels, as 256x192");
+    throw UsageError(subject, fmt::format("'{}' is not a size", text),
+                     "Write width x height in pixels, as 256x192");
   const int width = pixels(parts[0], subject);
   scan.height = parts.size() == 1 ? width : pixels(parts[1], subject);
   scan.width = width;
@@ -40,10 +42,12 @@ void read_region(std::string_view text, const std::string& subject, ScanRequest&
   if (parts.size() != 4)
     throw UsageError(subject, fmt::format("'{}' has {} numbers", text, parts.size()),
                      "Give the outer edges X0,Y0,X1,Y1, as -96,-96,96,96");
-  const ScanRequest::Region r{parse_length_nm(parts[0], subject), parse_length_nm(parts[1], subject),
-                              parse_length_nm(parts[2], subject), parse_length_nm(parts[3], subject)};
+  const ScanRequest::Region r{
+      parse_length_nm(parts[0], subject), parse_length_nm(parts[1], subject),
+      parse_length_nm(parts[2], subject), parse_length_nm(parts[3], subject)};
   if (!(r.x1_nm > r.x0_nm && r.y1_nm > r.y0_nm))
-    throw UsageError(subject, "the region is empty", "Give the outer edges X0,Y0,X1,Y1 with X0 < X1 and Y0 < Y1");
+    throw UsageError(subject, "the region is empty",
+                     "Give the outer edges X0,Y0,X1,Y1 with X0 < X1 and Y0 < Y1");
   scan.region = r;
 }
 
@@ -63,12 +67,14 @@ class DetectorsField final : public Field {
     for (std::size_t from = 0; from < text.size();) {
       const std::size_t end = std::min(text.find(';', from), text.size());
       const std::size_t first = text.find_first_not_of(' ', from);
-      if (first < end) add(text.substr(first, text.find_last_not_of(' ', end - 1) + 1 - first), subject);
+      if (first < end)
+        add(text.substr(first, text.find_last_not_of(' ', end - 1) + 1 - first), subject);
       from = end + 1;
     }
   }
   void add(std::string_view text, const std::string& subject) override {
-    for (Detector& d : parse_detectors(std::string(text), subject)) detectors_.push_back(std::move(d));
+    for (Detector& d : parse_detectors(std::string(text), subject))
+      detectors_.push_back(std::move(d));
   }
 
  private:
@@ -80,28 +86,38 @@ class DetectorsField final : public Field {
 void describe(ParameterVisitor& visit, ScanRequest& scan) {
   const ScanRequest before = scan;
   if (visit.reads()) scan = {};
-  visit.form({.name = "scan.size", .help = "Pixels of the image, as 256x192", .form = "WxH"},
-             [&] { return scan.width ? fmt::format("{}x{}", *scan.width, *scan.height) : std::string(); },
-             [&](std::string_view text, const std::string& subject) { read_size(text, subject, scan); });
-  visit.form({.name = "scan.pixel_size", .help = "Width and height of a pixel, as 2nm or 2nmx3nm", .unit = Unit::nm,
-              .form = "LENGTH"},
-             [&] {
-               if (!scan.pixel_x_nm) return std::string();
-               return fmt::format("{}x{}", format_exact(*scan.pixel_x_nm), format_exact(*scan.pixel_y_nm));
-             },
-             [&](std::string_view text, const std::string& subject) { read_pixel_size(text, subject, scan); });
-  visit.form({.name = "scan.region", .help = "Outer pixel edges of what is imaged, as -96,-96,96,96", .unit = Unit::nm,
-              .form = "X0,Y0,X1,Y1", .level = Level::advanced},
-             [&] {
-               if (!scan.region) return std::string();
-               const auto& r = *scan.region;
-               return fmt::format("{},{},{},{}", format_exact(r.x0_nm), format_exact(r.y0_nm), format_exact(r.x1_nm),
-                                  format_exact(r.y1_nm));
-             },
-             [&](std::string_view text, const std::string& subject) { read_region(text, subject, scan); });
+  visit.form(
+      {.name = "scan.size", .help = "Pixels of the image, as 256x192", .form = "WxH"},
+      [&] { return scan.width ? fmt::format("{}x{}", *scan.width, *scan.height) : std::string(); },
+      [&](std::string_view text, const std::string& subject) { read_size(text, subject, scan); });
+  visit.form(
+      {.name = "scan.pixel_size",
+       .help = "Width and height of a pixel, as 2nm or 2nmx3nm",
+       .unit = Unit::nm,
+       .form = "LENGTH"},
+      [&] {
+        if (!scan.pixel_x_nm) return std::string();
+        return fmt::format("{}x{}", format_exact(*scan.pixel_x_nm), format_exact(*scan.pixel_y_nm));
+      },
+      [&](std::string_view text, const std::string& subject) {
+        read_pixel_size(text, subject, scan);
+      });
+  visit.form(
+      {.name = "scan.region",
+       .help = "Outer pixel edges of what is imaged, as -96,-96,96,96",
+       .unit = Unit::nm,
+       .form = "X0,Y0,X1,Y1",
+       .level = Level::advanced},
+      [&] {
+        if (!scan.region) return std::string();
+        const auto& r = *scan.region;
+        return fmt::format("{},{},{},{}", format_exact(r.x0_nm), format_exact(r.y0_nm),
+                           format_exact(r.x1_nm), format_exact(r.y1_nm));
+      },
+      [&](std::string_view text, const std::string& subject) { read_region(text, subject, scan); });
   if (!visit.reads()) return;
   const int said = scan.width.has_value() + scan.pixel_x_nm.has_value() + scan.region.has_value();
-  if (said >= 2) return;   // two say it all, three are too many: whoever resolves the scan says so
+  if (said >= 2) return;  // two say it all, three are too many: whoever resolves the scan says so
   const ScanRequest now = scan;
   scan = before;
   if (now.width) scan.width = now.width, scan.height = now.height;
@@ -113,8 +129,11 @@ void describe(ParameterVisitor& visit, ScanRequest& scan) {
 }
 
 void describe(ParameterVisitor& visit, Execution& execution) {
-  visit(execution.threads, {.name = "job.threads", .help = "Number of threads, which does not change the result",
-                            .limits = within(0, 4096), .otherwise = "one per hardware thread", .level = Level::advanced,
+  visit(execution.threads, {.name = "job.threads",
+                            .help = "Number of threads, which does not change the result",
+                            .limits = within(0, 4096),
+                            .otherwise = "one per hardware thread",
+                            .level = Level::advanced,
                             .recorded = false});
 }
 
@@ -126,25 +145,28 @@ void describe(ParameterVisitor& visit, SimulationRequest& request) {
   if (visit.reads()) request.budget = budget_of(words, request.budget);
   visit(request.method, {"direct", "replay"},
         {.name = "simulation.method",
-         .help = "Follow each electron (direct), or retrace stored cascades (replay): both have the same statistics",
+         .help = "Follow each electron (direct), or retrace stored cascades (replay): both have "
+                 "the same statistics",
          .otherwise = "auto: whichever is less work",
          .level = Level::advanced},
         "auto");
-  visit(request.mesh_tolerance_nm,
-        {.name = "simulation.mesh_tolerance",
-         .help = "Leave out detail of meshes and height fields, moving no surface by more than this; 0 simulates all of it",
-         .unit = Unit::nm,
-         .limits = at_least(0),
-         .level = Level::advanced});
+  visit(request.mesh_tolerance_nm, {.name = "simulation.mesh_tolerance",
+                                    .help = "Leave out detail of meshes and height fields, moving "
+                                            "no surface by more than this; 0 simulates all of it",
+                                    .unit = Unit::nm,
+                                    .limits = at_least(0),
+                                    .level = Level::advanced});
   DetectorsField detectors(request.detectors);
   visit.visit({.name = "simulation.detectors",
-               .help = "Detector besides SE and BSE: one of these, changed after a colon (side:axis=60deg/90deg), or one of your "
+               .help = "Detector besides SE and BSE: one of these, changed after a colon "
+                       "(side:axis=60deg/90deg), or one of your "
                        "own (loss:energy=900eV..,cone=30deg)",
                .form = "SE1|SE2|quadrants|annular|in-lens|side",
                .level = Level::advanced},
               detectors);
   describe(visit, request.physics);
-  visit(request.seed, {.name = "simulation.seed", .help = "Seed of the random numbers: the same seed gives the same bytes",
+  visit(request.seed, {.name = "simulation.seed",
+                       .help = "Seed of the random numbers: the same seed gives the same bytes",
                        .level = Level::advanced});
 }
 
@@ -161,7 +183,8 @@ SimulationOptions options_of(const SimulationRequest& request, const Execution& 
   options.budget = request.budget;
   options.method = request.method.value_or(Method::direct);
   options.seed = request.seed;
-  options.detectors.insert(options.detectors.end(), request.detectors.begin(), request.detectors.end());
+  options.detectors.insert(options.detectors.end(), request.detectors.begin(),
+                           request.detectors.end());
   return options;
 }
 

@@ -9,7 +9,7 @@ namespace surf::mc {
 
 namespace {
 
-constexpr std::size_t most_read = std::size_t{32} << 20;   // bytes of tallies between releases
+constexpr std::size_t most_read = std::size_t{32} << 20;  // bytes of tallies between releases
 
 // The channels of a result, each as a function of the pixel.
 class Builder {
@@ -39,11 +39,11 @@ class Builder {
     const double dose = dose_of(r.budget);
     if (dose <= 0) return;
     channel(name + ".shot", [&r, d, dose](int x, int y) {
-      const auto pixel = static_cast<std::uint64_t>(y) *
-                             static_cast<std::uint64_t>(r.pixels.width()) +
-                         static_cast<std::uint64_t>(x);
-      const std::int64_t seen = detected(r.counts[d](x, y).sum, r.detectors[d].efficiency, r.seed,
-                                         pixel, d);
+      const auto pixel =
+          static_cast<std::uint64_t>(y) * static_cast<std::uint64_t>(r.pixels.width()) +
+          static_cast<std::uint64_t>(x);
+      const std::int64_t seen =
+          detected(r.counts[d](x, y).sum, r.detectors[d].efficiency, r.seed, pixel, d);
       return static_cast<double>(seen) / dose;
     });
   }
@@ -73,7 +73,8 @@ class Builder {
 ImageRows make_image_rows(const SimulationResult& result, const Scan& scan) {
   Builder builder(result, scan);
   for (std::size_t d = 0; d < result.detectors.size(); ++d) builder.detector(d);
-  builder.channel("valid", [&r = result](int x, int y) { return r.pixels(x, y).hits > 0 ? 1.0 : 0.0; });
+  builder.channel("valid",
+                  [&r = result](int x, int y) { return r.pixels(x, y).hits > 0 ? 1.0 : 0.0; });
   return builder.finish();
 }
 

@@ -17,9 +17,10 @@ namespace {
 double common_error(const SimulationResult& r, std::size_t d, int x, int y, const Estimate& e) {
   if (r.library_cascades == 0) return 0;
   const double efficiency = r.detectors[d].efficiency;
-  const double of_control = r.controls.empty() ? 0 : r.controls[d](x, y).standard_error * efficiency;
-  const double drawn = static_cast<double>(r.pixels(x, y).primaries) /
-                       static_cast<double>(r.library_cascades);
+  const double of_control =
+      r.controls.empty() ? 0 : r.controls[d](x, y).standard_error * efficiency;
+  const double drawn =
+      static_cast<double>(r.pixels(x, y).primaries) / static_cast<double>(r.library_cascades);
   return std::min(e.standard_error,
                   std::hypot(of_control, e.standard_error * std::sqrt(std::min(1.0, drawn))));
 }
@@ -28,11 +29,16 @@ double common_error(const SimulationResult& r, std::size_t d, int x, int y, cons
 
 const char* name(PixelModel model) {
   switch (model) {
-    case PixelModel::none: return "none";
-    case PixelModel::direct: return "direct";
-    case PixelModel::replay: return "replay";
-    case PixelModel::difference: return "difference";
-    case PixelModel::plane: return "plane";
+    case PixelModel::none:
+      return "none";
+    case PixelModel::direct:
+      return "direct";
+    case PixelModel::replay:
+      return "replay";
+    case PixelModel::difference:
+      return "difference";
+    case PixelModel::plane:
+      return "plane";
   }
   return "unknown";
 }
@@ -73,7 +79,8 @@ ResultSummary summarize(const SimulationResult& r) {
   if (s.seen == 0) s.fewest_electrons = 0;
   s.mean_electrons /= n;
   for (std::size_t d = 0; d < detectors; ++d)
-    s.yields.push_back({sum[d] / n, std::hypot(std::sqrt(std::max(0.0, variance[d])), common[d]) / n});
+    s.yields.push_back(
+        {sum[d] / n, std::hypot(std::sqrt(std::max(0.0, variance[d])), common[d]) / n});
   return s;
 }
 

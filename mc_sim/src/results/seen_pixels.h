@@ -7,7 +7,8 @@
 
 namespace surf::mc {
 
-/// The standard error that this accuracy asks for of a detector whose mean yield at a pixel this is.
+/// The standard error that this accuracy asks for of a detector whose mean yield at a pixel this
+/// is.
 inline double target(const SimulationResult& r, std::size_t d, double mean, double accuracy) {
   return std::max(accuracy * mean, floor_of(r.budget) * r.detectors[d].efficiency);
 }

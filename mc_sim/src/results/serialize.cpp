@@ -69,7 +69,8 @@ class Unpacker {
 
  private:
   [[noreturn]] static void refuse() {
-    throw InvalidInput("packed tally", "its bytes are damaged or cut off", "Simulate the unit anew");
+    throw InvalidInput("packed tally", "its bytes are damaged or cut off",
+                       "Simulate the unit anew");
   }
   unsigned char next() {
     if (rest_.empty()) refuse();
@@ -96,8 +97,8 @@ void balance(Way& way, Balance& b) {
                       &b.absorbed, &b.dropped, &b.steps, &b.rays, &b.handed_over})
     way.number(*count);
   for (auto& count : b.lost) way.number(count);
-  for (auto* sum : {&b.incident_energy, &b.generated_energy, &b.escaped_energy,
-                    &b.deposited_energy, &b.lost_energy})
+  for (auto* sum : {&b.incident_energy, &b.generated_energy, &b.escaped_energy, &b.deposited_energy,
+                    &b.lost_energy})
     energy(way, *sum);
 }
 

@@ -38,14 +38,14 @@ Estimate SimulationResult::yield(std::size_t detector, int x, int y) const {
     // The control's mean is over all cascades, the pixel's among them: with the covariance at its
     // largest the two errors add up to no more than this.
     const Control& c = controls[detector](x, y);
-    const double common = library_cascades > 0
-                              ? std::sqrt(static_cast<double>(n) /
-                                          static_cast<double>(library_cascades))
-                              : 0;
+    const double common =
+        library_cascades > 0
+            ? std::sqrt(static_cast<double>(n) / static_cast<double>(library_cascades))
+            : 0;
     e.mean += c.mean;
-    e.standard_error = std::sqrt(e.standard_error * e.standard_error +
-                                 c.standard_error * c.standard_error +
-                                 2 * common * e.standard_error * c.standard_error);
+    e.standard_error =
+        std::sqrt(e.standard_error * e.standard_error + c.standard_error * c.standard_error +
+                  2 * common * e.standard_error * c.standard_error);
   }
   e.mean *= detectors[detector].efficiency;
   e.standard_error *= detectors[detector].efficiency;
@@ -69,14 +69,16 @@ UnitTally empty_tally(const WorkUnit& unit, const SimulationOptions& options) {
   UnitTally tally;
   clear(tally, unit, options.detectors.size());
   if (accuracy_of(options.budget) > 0)
-    tally.controls.assign(options.detectors.size(), Grid<Control>(tally.pixels.width(), tally.pixels.height()));
+    tally.controls.assign(options.detectors.size(),
+                          Grid<Control>(tally.pixels.width(), tally.pixels.height()));
   return tally;
 }
 
 SimulationResult empty_result(const Scan& scan, const SimulationOptions& options) {
   SimulationResult result;
   result.detectors = options.detectors;
-  const std::string folder = tally_bytes(scan, options) > options.tally_memory ? options.scratch_folder : "";
+  const std::string folder =
+      tally_bytes(scan, options) > options.tally_memory ? options.scratch_folder : "";
   result.pixels = LargeGrid<PixelTally>(scan.width, scan.height, folder);
   for (std::size_t d = 0; d < options.detectors.size(); ++d)
     result.counts.emplace_back(scan.width, scan.height, folder);

@@ -11,15 +11,18 @@
 
 namespace surf::mc {
 
-/// Serves each pixel until a wanted accuracy is reached. A pilot tells how much the counts scatter, by themselves and as
-/// differences to their control; then the number of primaries is set, and fresh ones are counted. The pilot's are not: who stops
-/// when the dice were good, or goes on because they were bad, gets the mean wrong.
+/// Serves each pixel until a wanted accuracy is reached. A pilot tells how much the counts scatter,
+/// by themselves and as differences to their control; then the number of primaries is set, and
+/// fresh ones are counted. The pilot's are not: who stops when the dice were good, or goes on
+/// because they were bad, gets the mean wrong.
 template <PrimarySource Source>
 class AdaptiveSampler final : public UnitWorker {
  public:
   template <class... Arguments>
-  AdaptiveSampler(const Scene::Impl& scene, const SimulationOptions& options, const Arguments&... arguments)
-      : options_(options), detectors_(options.detectors.size()), source_(scene, options, arguments...) {}
+  AdaptiveSampler(const Scene::Impl& scene, const SimulationOptions& options,
+                  const Arguments&... arguments)
+      : options_(options), detectors_(options.detectors.size()),
+        source_(scene, options, arguments...) {}
 
   /// Nobody observes: what is seen of a pilot would not count.
   void simulate(const WorkUnit& unit, Observer*, UnitTally& out) override {
@@ -41,15 +44,16 @@ class AdaptiveSampler final : public UnitWorker {
   }
 
  private:
-  // A control's error takes no more of the target. Beside steep walls it would, and the difference could not make up for it.
+  // A control's error takes no more of the target. Beside steep walls it would, and the difference
+  // could not make up for it.
   static constexpr double most_share = 0.9;
 
   struct Pixel {
     explicit Pixel(std::size_t detectors) : plain(detectors), difference(detectors) {}
 
-    bool is_open = false;                    // primaries are to be counted
-    bool hit = false;                        // any primary of the pilot
-    std::vector<Sample> plain, difference;   // the pilot's, then those that count; per detector
+    bool is_open = false;                   // primaries are to be counted
+    bool hit = false;                       // any primary of the pilot
+    std::vector<Sample> plain, difference;  // the pilot's, then those that count; per detector
   };
 
   void run_pilots() {
@@ -68,8 +72,9 @@ class AdaptiveSampler final : public UnitWorker {
     });
   }
 
-  // How many primaries bring a detector's standard error down to the target. With n of them and N primaries behind the control's
-  // mean the square of the error is, at most (SimulationResult::yield),
+  // How many primaries bring a detector's standard error down to the target. With n of them and N
+  // primaries behind the control's mean the square of the error is, at most
+  // (SimulationResult::yield),
   //   v / n + share^2 + 2 sqrt(v / N) share.
   double needed(double variance, double mean, double share) const {
     const double t = wanted_error(options_, mean);
@@ -99,15 +104,18 @@ class AdaptiveSampler final : public UnitWorker {
         left += pixels_[k].difference[d];
       });
       const double more = all.unseen_variance();
-      plain = std::max(plain, needed(std::max(all.variance(), pixels_[i].plain[d].variance()) + more, all.mean(), 0));
+      plain = std::max(
+          plain,
+          needed(std::max(all.variance(), pixels_[i].plain[d].variance()) + more, all.mean(), 0));
       if (!controlled) continue;
       const Estimate control = source_.control(i, d);
       const double mean = control.mean + left.mean();
-      if (control.standard_error > most_share * wanted_error(options_, mean))
-        difference = HUGE_VAL;
+      if (control.standard_error > most_share * wanted_error(options_, mean)) difference = HUGE_VAL;
       else
-        difference = std::max(difference, needed(std::max(left.variance(), pixels_[i].difference[d].variance()) + more, mean,
-                                                 control.standard_error));
+        difference =
+            std::max(difference,
+                     needed(std::max(left.variance(), pixels_[i].difference[d].variance()) + more,
+                            mean, control.standard_error));
     }
     const bool by_difference = controlled && difference < plain;
     if (by_difference) tally.model = PixelModel::difference;
@@ -120,7 +128,8 @@ class AdaptiveSampler final : public UnitWorker {
     if (model == PixelModel::plane || model == PixelModel::difference)
       for (std::size_t d = 0; d < detectors_; ++d) {
         const Estimate e = source_.control(i, d);
-        out.controls[d].data()[i] = {e.mean, e.standard_error, model == PixelModel::plane ? 0.0 : 1.0};
+        out.controls[d].data()[i] = {e.mean, e.standard_error,
+                                     model == PixelModel::plane ? 0.0 : 1.0};
       }
     p.plain.assign(detectors_, {});
     p.difference.assign(detectors_, {});
@@ -128,7 +137,8 @@ class AdaptiveSampler final : public UnitWorker {
   }
 
   std::uint64_t allowed(double primaries) const {
-    return static_cast<std::uint64_t>(std::min(std::ceil(primaries), static_cast<double>(source_.most_primaries())));
+    return static_cast<std::uint64_t>(
+        std::min(std::ceil(primaries), static_cast<double>(source_.most_primaries())));
   }
 
   bool is_anything_open() const {
@@ -159,14 +169,16 @@ class AdaptiveSampler final : public UnitWorker {
     double more = 0, plain = 0;
     for (std::size_t d = 0; d < detectors_; ++d) {
       const Control& c = out.controls[d].data()[i];
-      more = std::max(more, needed(p.difference[d].high_variance(), c.mean + p.difference[d].mean(), c.standard_error));
+      more = std::max(more, needed(p.difference[d].high_variance(), c.mean + p.difference[d].mean(),
+                                   c.standard_error));
       plain = std::max(plain, needed(p.plain[d].high_variance(), p.plain[d].mean(), 0));
     }
     if (more > counted && plain < more && out.pixels.data()[i].model == PixelModel::difference) {
       give_up_control(i, out);
       more = plain;
     }
-    if (more > counted) ranges_[i].end = pilot_primaries + allowed(std::max(1.02 * more, least_growth * counted));
+    if (more > counted)
+      ranges_[i].end = pilot_primaries + allowed(std::max(1.02 * more, least_growth * counted));
   }
 
   // The same primaries count as they are. Beside steep walls the pilot may promise too much.
@@ -189,7 +201,8 @@ class AdaptiveSampler final : public UnitWorker {
     if (!Source::misses_are_known && tally.hits == 0) tally.model = PixelModel::none;
     for (std::size_t d = 0; d < detectors_; ++d)
       if (p.plain[d].variance() > 0)
-        out.controls[d].data()[i].variance_left = p.difference[d].variance() / p.plain[d].variance();
+        out.controls[d].data()[i].variance_left =
+            p.difference[d].variance() / p.plain[d].variance();
   }
 
   const SimulationOptions& options_;

@@ -12,12 +12,13 @@ namespace surf::mc {
 // How many primaries a pixel gets where an accuracy is wanted: the workers that spend them and what
 // foretells their number agree here.
 
-inline constexpr std::int64_t pilot_primaries = 24;    ///< only tell how many it needs
-inline constexpr std::int64_t fewest_primaries = 32;   ///< whose counts are kept
-inline constexpr double reserve_of_primaries = 1.1;    ///< over what the estimate of variance asks for
-inline constexpr int pilot_neighbours = 2;             ///< pixels to each side whose pilots count with its own
-inline constexpr int most_rounds = 8;                  ///< of adding where the estimate turns out short,
-inline constexpr double least_growth = 1.1;            ///< each by this factor or more
+inline constexpr std::int64_t pilot_primaries = 24;   ///< only tell how many it needs
+inline constexpr std::int64_t fewest_primaries = 32;  ///< whose counts are kept
+inline constexpr double reserve_of_primaries =
+    1.1;                                    ///< over what the estimate of variance asks for
+inline constexpr int pilot_neighbours = 2;  ///< pixels to each side whose pilots count with its own
+inline constexpr int most_rounds = 8;       ///< of adding where the estimate turns out short,
+inline constexpr double least_growth = 1.1;  ///< each by this factor or more
 
 /// Sums of counts, from which come their mean and variance.
 struct Sample {
@@ -35,19 +36,17 @@ struct Sample {
     fourths += b.fourths;
   }
   double mean() const { return n > 0 ? sum / n : 0; }
-  double variance() const {
-    return n > 1 ? std::max(0.0, (squares - sum * sum / n) / (n - 1)) : 0;
-  }
-  /// The variance and its own standard error (from the fourth moment about 0: differences to a plane are
-  /// mostly 0). Where few primaries make up most of it, it is badly known.
+  double variance() const { return n > 1 ? std::max(0.0, (squares - sum * sum / n) / (n - 1)) : 0; }
+  /// The variance and its own standard error (from the fourth moment about 0: differences to a
+  /// plane are mostly 0). Where few primaries make up most of it, it is badly known.
   double high_variance() const {
     if (!(n > 1)) return 0;
     const double v = variance(), second = squares / n;
     return v + std::sqrt(std::max(0.0, fourths / n - second * second) / n);
   }
-  /// What may be missing in its variance. Were there a kind of event of which one in m primaries has
-  /// one, m primaries would have missed it with a probability of 1/e^3 at 3/m (the rule of three). Each
-  /// would count 1.5 electrons.
+  /// What may be missing in its variance. Were there a kind of event of which one in m primaries
+  /// has one, m primaries would have missed it with a probability of 1/e^3 at 3/m (the rule of
+  /// three). Each would count 1.5 electrons.
   double unseen_variance() const { return n > 0 ? 3 * 1.5 * 1.5 / (n * n) : 0; }
 };
 
@@ -60,9 +59,12 @@ inline double wanted_error(const SimulationOptions& options, double mean) {
 template <class Visit>
 void for_pilots_near(std::size_t i, int width, int height, const Visit& visit) {
   const int x = static_cast<int>(i) % width, y = static_cast<int>(i) / width;
-  for (int v = std::max(0, y - pilot_neighbours); v <= std::min(height - 1, y + pilot_neighbours); ++v)
-    for (int u = std::max(0, x - pilot_neighbours); u <= std::min(width - 1, x + pilot_neighbours); ++u)
-      visit(static_cast<std::size_t>(v) * static_cast<std::size_t>(width) + static_cast<std::size_t>(u));
+  for (int v = std::max(0, y - pilot_neighbours); v <= std::min(height - 1, y + pilot_neighbours);
+       ++v)
+    for (int u = std::max(0, x - pilot_neighbours); u <= std::min(width - 1, x + pilot_neighbours);
+         ++u)
+      visit(static_cast<std::size_t>(v) * static_cast<std::size_t>(width) +
+            static_cast<std::size_t>(u));
 }
 
 }  // namespace surf::mc

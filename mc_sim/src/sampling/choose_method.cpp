@@ -19,9 +19,10 @@ namespace surf::mc {
 
 namespace {
 
-// What a segment of a cascade costs to make, in steps of direct simulation, by the share of a primary's
-// work that replay then saves. Measured on flat silicon, the mesa and waves of 25 nm radius: 1.1 to 2.4
-// by 0.60 to 0.97, so 1.5 to 2.5, from 0.5 to 10 keV; 3.7 at 30 keV (choice, in bench_replay).
+// What a segment of a cascade costs to make, in steps of direct simulation, by the share of a
+// primary's work that replay then saves. Measured on flat silicon, the mesa and waves of 25 nm
+// radius: 1.1 to 2.4 by 0.60 to 0.97, so 1.5 to 2.5, from 0.5 to 10 keV; 3.7 at 30 keV (choice, in
+// bench_replay).
 constexpr double making_by_saving = 2.5;
 
 // Primaries of a pixel that foretell how many an accuracy takes.
@@ -44,8 +45,8 @@ double primaries_needed(const SimulationOptions& options, const UnitTally& tally
 
 // What some pixels, spread evenly, tell of direct simulation.
 struct DirectWork {
-  double steps = 0;       // of a primary, where electrons that cannot reach a surface are given up
-  double primaries = 0;   // of a pixel, on average
+  double steps = 0;      // of a primary, where electrons that cannot reach a surface are given up
+  double primaries = 0;  // of a pixel, on average
 };
 
 // With a wanted accuracy from the scatter of a few primaries more.
@@ -68,12 +69,14 @@ DirectWork direct_work(const Scene& scene, const SimulationOptions& options) {
       if (accurate) work.primaries += primaries_needed(options, tally) / (across * across);
     }
   work.steps = static_cast<double>(balance.steps) / static_cast<double>(balance.incident);
-  if (!accurate) work.primaries = std::max(dose_of(options.budget), static_cast<double>(electrons_of(options.budget)));
+  if (!accurate)
+    work.primaries =
+        std::max(dose_of(options.budget), static_cast<double>(electrons_of(options.budget)));
   return work;
 }
 
 struct LibraryWork {
-  double bytes = 0, segments = 0;   // of one cascade of each material
+  double bytes = 0, segments = 0;  // of one cascade of each material
 };
 
 double start_energy_ev(const Scene& scene, std::size_t material) {
@@ -100,7 +103,8 @@ std::string count(double n) {
 
 // What a pixel gets at most: with a dose, numbers scatter about it.
 std::int64_t most_primaries(const SimulationOptions& o) {
-  if (const double dose = dose_of(o.budget); dose > 0) return static_cast<std::int64_t>(std::ceil(dose + 6 * std::sqrt(dose) + 6));
+  if (const double dose = dose_of(o.budget); dose > 0)
+    return static_cast<std::int64_t>(std::ceil(dose + 6 * std::sqrt(dose) + 6));
   return electrons_of(o.budget);
 }
 
@@ -111,8 +115,10 @@ struct Obstacle {
 // Why replay cannot serve these physics at all, if it cannot.
 std::optional<Obstacle> obstacle(const Scene& scene, const MethodLimits& limits) {
   if (limits.observed)
-    return Obstacle{"deposited energy needs every electron's whole track, which stored cascades do "
-                    "not show", "Leave out `output.deposit`"};
+    return Obstacle{
+        "deposited energy needs every electron's whole track, which stored cascades do "
+        "not show",
+        "Leave out `output.deposit`"};
   if (!can_replay(scene.physics(), scene.materials()))
     return Obstacle{"without continuous loss there is no energy at which cascades could be joined",
                     "Use loss=joy-luo or inelastic=dielectric"};
@@ -126,11 +132,13 @@ std::optional<Obstacle> too_large(const Scene& scene, const MethodChoice& choice
       fmt::format("{} cascades of {} at {:g} keV take about {:.2g} GB of memory, more than {:.2g}",
                   choice.cascades,
                   scene.materials().size() == 1
-                      ? "one material" : fmt::format("each of {} materials", scene.materials().size()),
+                      ? "one material"
+                      : fmt::format("each of {} materials", scene.materials().size()),
                   scene.beam().energy_ev / 1e3, choice.library_bytes / 1e9,
                   limits.library_bytes / 1e9),
-      accuracy_of(options.budget) > 0 ? "Ask for less accuracy, or a lower `beam.energy`"
-                           : "Ask for fewer electrons per pixel, or a lower `beam.energy`"};
+      accuracy_of(options.budget) > 0
+          ? "Ask for less accuracy, or a lower `beam.energy`"
+          : "Ask for fewer electrons per pixel, or a lower `beam.energy`"};
 }
 
 }  // namespace
@@ -151,8 +159,10 @@ MethodChoice choose_method(const Scene& scene, const SimulationOptions& options,
   MethodChoice choice;
   choice.cascades = library_size(options, most_primaries(options));
   if (accuracy_of(options.budget) > 0 && limits.observed)
-    throw UsageError("`simulation.accuracy`", "deposited energy would be of more primaries in some pixels than in others",
-                     "Leave out `output.deposit`, or give `simulation.electrons` instead of the accuracy");
+    throw UsageError(
+        "`simulation.accuracy`",
+        "deposited energy would be of more primaries in some pixels than in others",
+        "Leave out `output.deposit`, or give `simulation.electrons` instead of the accuracy");
   if (asked == Method::direct) {
     choice.reason = "as asked for";
     return choice;
@@ -164,7 +174,8 @@ MethodChoice choose_method(const Scene& scene, const SimulationOptions& options,
     choice.library_bytes = static_cast<double>(choice.cascades) * work.bytes;
     no_replay = too_large(scene, choice, options, limits);
   }
-  if (no_replay && asked) throw UsageError("`simulation.method=replay`", no_replay->reason, no_replay->remedy);
+  if (no_replay && asked)
+    throw UsageError("`simulation.method=replay`", no_replay->reason, no_replay->remedy);
   if (no_replay) {
     choice.reason = no_replay->reason;
     return choice;
@@ -177,14 +188,15 @@ MethodChoice choose_method(const Scene& scene, const SimulationOptions& options,
   const DirectWork direct = direct_work(scene, options);
   const double primaries = direct.primaries * static_cast<double>(scene.scan().width) *
                            static_cast<double>(scene.scan().height);
-  const bool pays =
-      making_by_saving * work.segments * static_cast<double>(choice.cascades) < primaries * direct.steps;
+  const bool pays = making_by_saving * work.segments * static_cast<double>(choice.cascades) <
+                    primaries * direct.steps;
   choice.method = pays ? Method::replay : Method::direct;
-  const std::string these = fmt::format(
-      "{}{} primaries{}", accuracy_of(options.budget) > 0 ? "about " : "", count(primaries),
-      accuracy_of(options.budget) > 0 ? " for this accuracy" : "");
-  const std::string those = fmt::format("{} cascades{}", count(static_cast<double>(choice.cascades)),
-                                        materials > 1 ? " of each material" : "");
+  const std::string these =
+      fmt::format("{}{} primaries{}", accuracy_of(options.budget) > 0 ? "about " : "",
+                  count(primaries), accuracy_of(options.budget) > 0 ? " for this accuracy" : "");
+  const std::string those =
+      fmt::format("{} cascades{}", count(static_cast<double>(choice.cascades)),
+                  materials > 1 ? " of each material" : "");
   choice.reason = pays ? fmt::format("{} share {}", these, those)
                        : fmt::format("{} are too few for {} to pay off", these, those);
   return choice;

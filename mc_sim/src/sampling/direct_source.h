@@ -22,8 +22,8 @@ class DirectSource {
   static constexpr bool misses_are_known = false;
 
   DirectSource(const Scene::Impl& scene, const SimulationOptions& options)
-      : scene_(scene), seed_(options.seed), accuracy_(accuracy_of(options.budget)), numbers_(scene.scan, options),
-        geometry_(scene), gun_(scene.beam, scene.scan, scene.top_nm),
+      : scene_(scene), seed_(options.seed), accuracy_(accuracy_of(options.budget)),
+        numbers_(scene.scan, options), geometry_(scene), gun_(scene.beam, scene.scan, scene.top_nm),
         detection_(options.detectors, scene.beam, options.spectra) {}
 
   void begin(const SourceTask& task) {
@@ -49,10 +49,11 @@ class DirectSource {
     tally.spectra = detection_.take_spectra();
   }
 
-  /// As many as a pixel takes where one primary in a hundred gives an electron: without a floor of the accuracy a dark one
-  /// would go on for ever.
+  /// As many as a pixel takes where one primary in a hundred gives an electron: without a floor of
+  /// the accuracy a dark one would go on for ever.
   std::uint64_t most_primaries() const {
-    return static_cast<std::uint64_t>(std::min(std::max(1e4, 100 / (accuracy_ * accuracy_)), 2147483648.0));
+    return static_cast<std::uint64_t>(
+        std::min(std::max(1e4, 100 / (accuracy_ * accuracy_)), 2147483648.0));
   }
   bool misses(std::size_t) const { return false; }
   bool settled(std::size_t) const { return false; }
@@ -63,19 +64,23 @@ class DirectSource {
   template <class Watcher, class Visit>
   void serve_watched(std::span<const PrimaryRange> ranges, Watcher& watcher, const Visit& visit) {
     // Electrons too far from all surfaces are given up where nobody sees it.
-    Transport transport(geometry_, scene_.medium_pointers, scene_.physics.barrier, observer_ == nullptr, watcher, detection_,
-                        balance_);
+    Transport transport(geometry_, scene_.medium_pointers, scene_.physics.barrier,
+                        observer_ == nullptr, watcher, detection_, balance_);
     const int width = unit_.x1 - unit_.x0;
     for (std::size_t i = 0; i < ranges.size(); ++i) {
-      const int x = unit_.x0 + static_cast<int>(i) % width, y = unit_.y0 + static_cast<int>(i) / width;
+      const int x = unit_.x0 + static_cast<int>(i) % width,
+                y = unit_.y0 + static_cast<int>(i) / width;
       const std::uint64_t number = numbers_.number(x, y);
       for (std::uint64_t e = ranges[i].first; e < ranges[i].end; ++e) {
         if (cancel_ && cancel_->cancelled()) throw Interrupted();
-        if (observer_) observer_->primary(static_cast<std::int64_t>(number), static_cast<std::int64_t>(e));
+        if (observer_)
+          observer_->primary(static_cast<std::int64_t>(number), static_cast<std::int64_t>(e));
         RandomStream random(seed_, number, e);
         const Gun::Start start = gun_.primary(x, y, random);
-        const bool hit = transport.run(start.position, start.direction, scene_.beam.energy_ev, 0, random);
-        visit(i, hit, [&](std::size_t d) { return std::pair<int, int>(detection_.counts()[d], 0); });
+        const bool hit =
+            transport.run(start.position, start.direction, scene_.beam.energy_ev, 0, random);
+        visit(i, hit,
+              [&](std::size_t d) { return std::pair<int, int>(detection_.counts()[d], 0); });
         detection_.end_primary();
       }
     }

@@ -15,8 +15,10 @@ template <PrimarySource Source>
 class FixedSampler final : public UnitWorker {
  public:
   template <class... Arguments>
-  FixedSampler(const Scene::Impl& scene, const SimulationOptions& options, const Arguments&... arguments)
-      : detectors_(options.detectors.size()), primaries_per_pixel_(scene.scan, options), source_(scene, options, arguments...) {}
+  FixedSampler(const Scene::Impl& scene, const SimulationOptions& options,
+               const Arguments&... arguments)
+      : detectors_(options.detectors.size()), primaries_per_pixel_(scene.scan, options),
+        source_(scene, options, arguments...) {}
 
   void simulate(const WorkUnit& unit, Observer* observer, UnitTally& out) override {
     clear(out, unit, detectors_);
@@ -24,7 +26,8 @@ class FixedSampler final : public UnitWorker {
     expected_.clear();
     for (int y = unit.y0; y < unit.y1; ++y)
       for (int x = unit.x0; x < unit.x1; ++x) {
-        const std::int64_t end = std::min(primaries_per_pixel_.of(x, y), unit.first_electron + unit.electrons);
+        const std::int64_t end =
+            std::min(primaries_per_pixel_.of(x, y), unit.first_electron + unit.electrons);
         expected_.push_back(std::max<std::int64_t>(end - unit.first_electron, 0));
         const auto first = static_cast<std::uint64_t>(unit.first_electron);
         ranges_.push_back({first, first + static_cast<std::uint64_t>(expected_.back())});

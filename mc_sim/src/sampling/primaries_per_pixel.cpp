@@ -7,7 +7,8 @@
 namespace surf::mc {
 
 PrimariesPerPixel::PrimariesPerPixel(const Scan& scan, const SimulationOptions& o)
-    : width_(scan.width), electrons_(electrons_of(o.budget)), dose_(dose_of(o.budget)), seed_(o.seed) {}
+    : width_(scan.width), electrons_(electrons_of(o.budget)), dose_(dose_of(o.budget)),
+      seed_(o.seed) {}
 
 std::int64_t PrimariesPerPixel::of(int x, int y) const {
   return dose_ > 0 ? primaries_of_pixel(dose_, seed_, number(x, y)) : electrons_;

@@ -8,8 +8,8 @@
 
 namespace surf::mc {
 
-/// How many primaries each pixel gets, where that is settled beforehand: a fixed number, or one from a Poisson distribution
-/// that is a function of seed and pixel.
+/// How many primaries each pixel gets, where that is settled beforehand: a fixed number, or one
+/// from a Poisson distribution that is a function of seed and pixel.
 class PrimariesPerPixel {
  public:
   PrimariesPerPixel(const Scan& scan, const SimulationOptions& options);
@@ -18,7 +18,8 @@ class PrimariesPerPixel {
 
   /// The pixel's number: its coordinate of random streams.
   std::uint64_t number(int x, int y) const {
-    return static_cast<std::uint64_t>(y) * static_cast<std::uint64_t>(width_) + static_cast<std::uint64_t>(x);
+    return static_cast<std::uint64_t>(y) * static_cast<std::uint64_t>(width_) +
+           static_cast<std::uint64_t>(x);
   }
 
  private:

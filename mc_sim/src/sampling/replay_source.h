@@ -18,17 +18,18 @@
 
 namespace surf::mc {
 
-/// Primaries that are stored cascades, of each pixel its own part of the library. With planar controls, the same cascades on a
-/// plane are their control.
+/// Primaries that are stored cascades, of each pixel its own part of the library. With planar
+/// controls, the same cascades on a plane are their control.
 class ReplaySource {
  public:
   static constexpr PixelModel model = PixelModel::replay;
   static constexpr bool misses_are_known = true;
 
   /// `controls`: null, or what has been made of the same libraries.
-  ReplaySource(const Scene::Impl& scene, const SimulationOptions& options, const Libraries& libraries,
-               PlanarControls* controls)
-      : options_(options), controls_(controls), numbers_(scene.scan, options), replay_(scene, options, libraries) {
+  ReplaySource(const Scene::Impl& scene, const SimulationOptions& options,
+               const Libraries& libraries, PlanarControls* controls)
+      : options_(options), controls_(controls), numbers_(scene.scan, options),
+        replay_(scene, options, libraries) {
     for (const auto& l : libraries)
       if (l) cascades_ = cascades_ == 0 ? l->cascades() : std::min(cascades_, l->cascades());
   }
@@ -39,9 +40,10 @@ class ReplaySource {
     pixels_.clear();
     for (int y = task.unit.y0; y < task.unit.y1; ++y)
       for (int x = task.unit.x0; x < task.unit.x1; ++x) {
-        check();   // the first pixel on a plane waits for its control
-        const std::int64_t expected =
-            task.expected.empty() ? std::numeric_limits<std::int64_t>::max() : task.expected[pixels_.size()];
+        check();  // the first pixel on a plane waits for its control
+        const std::int64_t expected = task.expected.empty()
+                                          ? std::numeric_limits<std::int64_t>::max()
+                                          : task.expected[pixels_.size()];
         look(x, y, expected >= worth_looking_around);
       }
   }
@@ -52,10 +54,11 @@ class ReplaySource {
       pixels_[i].used = ranges[i].first;
       pixels_[i].end = ranges[i].end;
     }
-    by_blocks(pixels_, cascades_, replay_, [&](std::size_t i, std::uint64_t electron, std::size_t cascade) {
-      check();
-      run(i, electron, cascade, visit);
-    });
+    by_blocks(pixels_, cascades_, replay_,
+              [&](std::size_t i, std::uint64_t electron, std::size_t cascade) {
+                check();
+                run(i, electron, cascade, visit);
+              });
   }
 
   void finish(UnitTally& tally) {
@@ -74,16 +77,17 @@ class ReplaySource {
   }
 
  private:
-  static constexpr std::int64_t worth_looking_around = 50;   // primaries of a pixel
+  static constexpr std::int64_t worth_looking_around = 50;  // primaries of a pixel
 
   struct Pixel {
     int x = 0, y = 0;
     std::uint64_t number = 0;
     ReplaySite site;
     PlanarControls::Match match;
-    bool plane = false;               // and it is the very plane of the control
+    bool plane = false;  // and it is the very plane of the control
     StratifiedPermutation subset;
-    std::uint64_t used = 0, end = 0;  // of its primaries: the first to be served, and one past the last
+    std::uint64_t used = 0,
+                  end = 0;  // of its primaries: the first to be served, and one past the last
   };
 
   void check() const {
@@ -94,7 +98,13 @@ class ReplaySource {
     const std::uint64_t number = numbers_.number(x, y);
     RandomStream own(options_.seed, number, random_streams::order_of_cascades);
     const std::uint32_t a = own.bits(), b = own.bits();
-    pixels_.push_back({x, y, number, replay_.site(x, y, around), {}, false, StratifiedPermutation(cascades_, a, b)});
+    pixels_.push_back({x,
+                       y,
+                       number,
+                       replay_.site(x, y, around),
+                       {},
+                       false,
+                       StratifiedPermutation(cascades_, a, b)});
     Pixel& p = pixels_.back();
     if (!controls_ || !p.site.hit || !options_.planar_control) return;
     p.plane = replay_.proved_plane(p.site);
@@ -121,7 +131,8 @@ class ReplaySource {
     }
     const bool hit = replay_.run(p.site, start, primary);
     visit(i, hit, [&](std::size_t d) {
-      return std::pair<int, int>(replay_.detection().counts()[d], control ? control->counts[d][cascade] : 0);
+      return std::pair<int, int>(replay_.detection().counts()[d],
+                                 control ? control->counts[d][cascade] : 0);
     });
     replay_.detection().end_primary();
   }

@@ -10,8 +10,8 @@ namespace surf::mc {
 
 /// The order in which a pixel takes cascades from a library: one small run of neighbours from each
 /// block in turn, beginning with a block and at places within the blocks that are the pixel's own;
-/// none twice before all were taken. Cascades are independent of each other, so any choice that does
-/// not look at them is as good as a random one. Pixels that are served together go through the
+/// none twice before all were taken. Cascades are independent of each other, so any choice that
+/// does not look at them is as good as a random one. Pixels that are served together go through the
 /// library block by block, so that the processor's cache holds what they replay.
 class StratifiedPermutation {
  public:
@@ -32,7 +32,8 @@ class StratifiedPermutation {
 
   /// take(i, cascade) for each primary from `first` to before `end` whose cascade is of this block.
   template <class Take>
-  void each_of_block(std::uint64_t b, std::uint64_t first, std::uint64_t end, const Take& take) const {
+  void each_of_block(std::uint64_t b, std::uint64_t first, std::uint64_t end,
+                     const Take& take) const {
     std::uint64_t turn = (b + blocks_ - first_) % blocks_;
     const std::uint64_t begin = first / run;
     if (turn < begin) turn += (begin - turn + blocks_ - 1) / blocks_ * blocks_;
@@ -46,9 +47,7 @@ class StratifiedPermutation {
  private:
   static constexpr std::uint64_t runs = block / run;
 
-  std::uint64_t offset(std::uint64_t b) const {
-    return ((key_ + b) * 0x9e3779b97f4a7c15u) >> 40;
-  }
+  std::uint64_t offset(std::uint64_t b) const { return ((key_ + b) * 0x9e3779b97f4a7c15u) >> 40; }
 
   std::uint64_t blocks_, first_, key_;
 };

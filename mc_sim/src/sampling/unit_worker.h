@@ -14,7 +14,8 @@ namespace surf::mc {
 
 class PlanarControls;
 
-/// Simulates units of work, one thread's share. A unit's tally depends on scene, options and unit alone.
+/// Simulates units of work, one thread's share. A unit's tally depends on scene, options and unit
+/// alone.
 class UnitWorker {
  public:
   virtual ~UnitWorker() = default;
@@ -22,14 +23,18 @@ class UnitWorker {
   /// `out` is empty at first. `observer` may be null. Throws Interrupted, with `out` of no use.
   virtual void simulate(const WorkUnit& unit, Observer* observer, UnitTally& out) = 0;
 
-  const CancelToken* cancel = nullptr;   ///< may be null
+  const CancelToken* cancel = nullptr;  ///< may be null
 };
 
-// How many primaries a pixel gets (fixed_sampler.h, adaptive_sampler.h) goes by the options' budget; where their outcome comes
-// from (direct_source.h, replay_source.h) by which of these is called. Scene, options and libraries must outlive the worker.
-std::unique_ptr<UnitWorker> make_direct_worker(const Scene::Impl& scene, const SimulationOptions& options);
+// How many primaries a pixel gets (fixed_sampler.h, adaptive_sampler.h) goes by the options'
+// budget; where their outcome comes from (direct_source.h, replay_source.h) by which of these is
+// called. Scene, options and libraries must outlive the worker.
+std::unique_ptr<UnitWorker> make_direct_worker(const Scene::Impl& scene,
+                                               const SimulationOptions& options);
 /// `controls` are needed with an accuracy, and not used without.
-std::unique_ptr<UnitWorker> make_replay_worker(const Scene::Impl& scene, const SimulationOptions& options,
-                                               const Libraries& libraries, PlanarControls* controls = nullptr);
+std::unique_ptr<UnitWorker> make_replay_worker(const Scene::Impl& scene,
+                                               const SimulationOptions& options,
+                                               const Libraries& libraries,
+                                               PlanarControls* controls = nullptr);
 
 }  // namespace surf::mc

@@ -20,20 +20,26 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr int block = 2;                // pixels across, of a part of a unit
-constexpr double share_of_parts = 0.2;  // of the time: whether units are short enough to be tried whole
+constexpr int block = 2;  // pixels across, of a part of a unit
+constexpr double share_of_parts =
+    0.2;  // of the time: whether units are short enough to be tried whole
 constexpr double longest_share = 0.1;   // of the time, that such a unit takes on average
 constexpr double most_for_planes = 2;   // times the time, on top of it
 constexpr int pixels_looked_at = 4096;  // for planes
 
-double since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+double since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
 
-// Numbers 0 to count - 1, each once, any few in a row spread evenly; then once again. Steps of the golden section: what
-// comes back after so many units, as rows of an image do, is met at all its places.
+// Numbers 0 to count - 1, each once, any few in a row spread evenly; then once again. Steps of the
+// golden section: what comes back after so many units, as rows of an image do, is met at all its
+// places.
 class Spread {
  public:
-  explicit Spread(std::size_t count) : count_(count), step_(static_cast<std::size_t>(0.6180339887 * static_cast<double>(count))) {
-    while (std::gcd(++step_, count_) != 1) {}
+  explicit Spread(std::size_t count)
+      : count_(count), step_(static_cast<std::size_t>(0.6180339887 * static_cast<double>(count))) {
+    while (std::gcd(++step_, count_) != 1) {
+    }
   }
   std::size_t next() {
     if (given_ == count_) {
@@ -59,7 +65,8 @@ double work(const WorkUnit& u) {
 // A few pixels of a unit, at another place in each and each time.
 WorkUnit part_of(const WorkUnit& u, std::size_t number, std::size_t round) {
   WorkUnit part = u;
-  const std::uint64_t hash = (number * 0x9e3779b97f4a7c15u + round * 0xc2b2ae3d27d4eb4fu) ^ (number >> 7);
+  const std::uint64_t hash =
+      (number * 0x9e3779b97f4a7c15u + round * 0xc2b2ae3d27d4eb4fu) ^ (number >> 7);
   const auto place = [](int from, int to, std::uint64_t bits) {
     const int blocks = std::max(1, (to - from) / block);
     return from + block * static_cast<int>(bits % static_cast<std::uint64_t>(blocks));
@@ -101,8 +108,10 @@ void conclude(const Sums& sums, double all_work, bool whole, int threads, Pilot&
   const double per_work = sums.seconds / sums.work;
   const double about_it = std::max(0.0, sums.seconds_squared - 2 * per_work * sums.seconds_by_work +
                                             per_work * per_work * sums.work_squared);
-  const double variance = sums.units > 1 ? about_it / (sums.units - 1) : sums.seconds_squared;   // of one unit
-  const double left = whole ? std::max(0.0, 1 - sums.units / all_units) : 1;   // nothing is where all were tried
+  const double variance =
+      sums.units > 1 ? about_it / (sums.units - 1) : sums.seconds_squared;  // of one unit
+  const double left =
+      whole ? std::max(0.0, 1 - sums.units / all_units) : 1;  // nothing is where all were tried
   pilot.standard_error_s = each / at_once * std::sqrt(variance * left * sums.units);
   pilot.primaries = sums.primaries * each;
   pilot.rays = sums.rays * each;
@@ -112,8 +121,9 @@ void conclude(const Sums& sums, double all_work, bool whole, int threads, Pilot&
 
 }  // namespace
 
-Pilot run_pilot(const Scene& scene, const SimulationOptions& options, double seconds, LibrarySource* libraries,
-                const ProgressCallback& progress, const CancelToken* cancel) {
+Pilot run_pilot(const Scene& scene, const SimulationOptions& options, double seconds,
+                LibrarySource* libraries, const ProgressCallback& progress,
+                const CancelToken* cancel) {
   if (!(seconds > 0 && std::isfinite(seconds)))
     throw UsageError("pilot", "it needs some time", "Give it ten seconds, say");
   check_options(options);
@@ -124,7 +134,8 @@ Pilot run_pilot(const Scene& scene, const SimulationOptions& options, double sec
   PreparedSimulation prepared;
   const auto cancelled = [&] { return cancel && cancel->cancelled(); };
   try {
-    if (!prepared.prepare(scene, options, libraries, plan.most(), progress, cancel)) throw Interrupted();
+    if (!prepared.prepare(scene, options, libraries, plan.most(), progress, cancel))
+      throw Interrupted();
     pilot.library_seconds = since(begin);
     pilot.library_cascades = prepared.cascades();
     pilot.library_bytes = prepared.library_bytes();
@@ -141,13 +152,16 @@ Pilot run_pilot(const Scene& scene, const SimulationOptions& options, double sec
       const double for_planes = (prepared.planes_made().seconds - made_before.seconds) / threads;
       return since(start) - std::min(for_planes, most_for_planes * seconds) > seconds;
     };
-    const auto probing = [&] { return parts.units < threads || since(start) < share_of_parts * seconds; };
+    const auto probing = [&] {
+      return parts.units < threads || since(start) < share_of_parts * seconds;
+    };
     const auto short_enough = [&] { return parts.seconds / parts.units < longest_share * seconds; };
     parallel_for(static_cast<std::size_t>(threads), threads, [&](std::size_t, int) {
       const auto worker = prepared.worker();
       worker->cancel = cancel;
       UnitTally tally;
-      worker->simulate(part_of(plan.unit(0), 0, 0), nullptr, tally);   // gets tables and memory ready
+      worker->simulate(part_of(plan.unit(0), 0, 0), nullptr,
+                       tally);  // gets tables and memory ready
       for (;;) {
         WorkUnit unit, tried;
         bool whole = false;
@@ -157,7 +171,7 @@ Pilot run_pilot(const Scene& scene, const SimulationOptions& options, double sec
           whole = !probing() && short_enough();
           if (whole && of_units.round() > 0) return;
           const std::size_t number = whole ? of_units.next() : of_parts.next();
-          if (whole && of_units.round() > 0) return;   // that was the first one again
+          if (whole && of_units.round() > 0) return;  // that was the first one again
           unit = plan.unit(number);
           tried = whole ? unit : part_of(unit, number, of_parts.round());
         }
@@ -176,11 +190,13 @@ Pilot run_pilot(const Scene& scene, const SimulationOptions& options, double sec
     const Sums& sums = pilot.whole ? units : parts;
     if (cancelled() || sums.units == 0) throw Interrupted();
     pilot.seconds = since(start);
-    const double all_work = static_cast<double>(scene.scan().width) * scene.scan().height * static_cast<double>(plan.most());
+    const double all_work = static_cast<double>(scene.scan().width) * scene.scan().height *
+                            static_cast<double>(plan.most());
     conclude(sums, all_work, pilot.whole, threads, pilot);
     if (const PlanarControls::Made made = prepared.planes_made(); made.planes > 0) {
       pilot.planes = planes;
-      pilot.planes_s = made.seconds / static_cast<double>(made.planes) * static_cast<double>(planes) / threads;
+      pilot.planes_s =
+          made.seconds / static_cast<double>(made.planes) * static_cast<double>(planes) / threads;
       pilot.expected_s += pilot.planes_s;
     }
   } catch (const Interrupted&) {

@@ -30,8 +30,9 @@ std::size_t library_size(const SimulationOptions& options, std::int64_t most_pri
   return static_cast<std::size_t>(pages) * CascadeLibrary::page_cascades;
 }
 
-bool PreparedSimulation::prepare(const Scene& scene, const SimulationOptions& options, LibrarySource* source,
-                       std::int64_t most_primaries, const ProgressCallback& progress, const CancelToken* cancel) {
+bool PreparedSimulation::prepare(const Scene& scene, const SimulationOptions& options,
+                                 LibrarySource* source, std::int64_t most_primaries,
+                                 const ProgressCallback& progress, const CancelToken* cancel) {
   scene_ = &scene.impl();
   options_ = &options;
   if (options.method == Method::direct) return true;
@@ -41,7 +42,8 @@ bool PreparedSimulation::prepare(const Scene& scene, const SimulationOptions& op
   if (!get(scene, *source, least, progress, cancel)) return false;
   if (!(accuracy_of(options.budget) > 0)) return true;
   measure_yields(static_cast<int>(scene.materials().size()));
-  const double share = options.planar_control && only_planes() ? all_of_the_variance : usual_share_of_variance;
+  const double share =
+      options.planar_control && only_planes() ? all_of_the_variance : usual_share_of_variance;
   const std::size_t wanted = std::min(library_size(options, most_primaries, yields_, share),
                                       cascades_that_fit(options.library_memory));
   if (wanted > least && !get(scene, *source, wanted, progress, cancel)) return false;
@@ -49,13 +51,13 @@ bool PreparedSimulation::prepare(const Scene& scene, const SimulationOptions& op
   return true;
 }
 
-bool PreparedSimulation::get(const Scene& scene, LibrarySource& source, std::size_t wanted, const ProgressCallback& progress,
-                   const CancelToken* cancel) {
+bool PreparedSimulation::get(const Scene& scene, LibrarySource& source, std::size_t wanted,
+                             const ProgressCallback& progress, const CancelToken* cancel) {
   libraries_.clear();
   cascades_ = 0;
   for (std::size_t m = 0; m < scene.materials().size(); ++m) {
     const Medium& medium = *scene_->medium_pointers[m];
-    if (!can_replay(medium)) {   // its electrons are followed directly
+    if (!can_replay(medium)) {  // its electrons are followed directly
       libraries_.emplace_back();
       continue;
     }
@@ -66,7 +68,8 @@ bool PreparedSimulation::get(const Scene& scene, LibrarySource& source, std::siz
     libraries_.push_back(std::move(library));
   }
   for (const auto& library : libraries_)
-    if (library) cascades_ = cascades_ == 0 ? library->cascades() : std::min(cascades_, library->cascades());
+    if (library)
+      cascades_ = cascades_ == 0 ? library->cascades() : std::min(cascades_, library->cascades());
   return true;
 }
 
@@ -84,7 +87,8 @@ std::size_t PreparedSimulation::planes_expected(int pixels) const {
   for (int y = stride / 2; y < scene_->scan.height; y += stride)
     for (int x = stride / 2; x < scene_->scan.width; x += stride) {
       const ReplaySite site = replay.site(x, y, true);
-      if (site.hit) keys.insert(controls_->key(site.material, site.flat.normal, replay.proved_plane(site)));
+      if (site.hit)
+        keys.insert(controls_->key(site.material, site.flat.normal, replay.proved_plane(site)));
     }
   return std::max(keys.size(), controls_->made().planes);
 }
@@ -101,9 +105,10 @@ void PreparedSimulation::measure_yields(int materials) {
   constexpr std::size_t pilot = 5 * CascadeLibrary::page_cascades;
   Libraries first;
   for (const auto& library : libraries_)
-    first.push_back(library ? std::make_shared<CascadeLibrary>(library->first(pilot / CascadeLibrary::page_cascades))
+    first.push_back(library ? std::make_shared<CascadeLibrary>(
+                                  library->first(pilot / CascadeLibrary::page_cascades))
                             : nullptr);
-  PlanarControls controls(*scene_, *options_, first, nullptr);   // of some thousand cascades
+  PlanarControls controls(*scene_, *options_, first, nullptr);  // of some thousand cascades
   for (int m = 0; m < materials; ++m) {
     const auto match = controls.match(m, -direction(scene_->beam), false);
     for (const Counts& sums : match.control->sums) {
@@ -114,8 +119,8 @@ void PreparedSimulation::measure_yields(int materials) {
   }
 }
 
-// Whether every pixel is proved to be a plane, so that nothing but the library's error is in it. Ends at
-// the first that is not.
+// Whether every pixel is proved to be a plane, so that nothing but the library's error is in it.
+// Ends at the first that is not.
 bool PreparedSimulation::only_planes() const {
   SiteReplay replay(*scene_, *options_, libraries_);
   for (int y = 0; y < scene_->scan.height; ++y)
@@ -130,7 +135,8 @@ std::size_t PreparedSimulation::cascades_that_fit(double bytes) const {
   constexpr std::size_t page = CascadeLibrary::page_cascades;
   double of_a_page = 0;
   for (const auto& library : libraries_)
-    if (library) of_a_page += static_cast<double>(library->bytes()) / static_cast<double>(library->pages());
+    if (library)
+      of_a_page += static_cast<double>(library->bytes()) / static_cast<double>(library->pages());
   return static_cast<std::size_t>(bytes / of_a_page) * page;
 }
 

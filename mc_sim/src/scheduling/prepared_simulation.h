@@ -16,10 +16,11 @@ namespace surf::mc {
 /// What the workers of a simulation share: libraries, and planes to compare with.
 class PreparedSimulation {
  public:
-  /// False when cancelled. Scene and options must outlive it. `cancel` is asked by the source alone: where it serves several
-  /// processes, all of them go on or none.
+  /// False when cancelled. Scene and options must outlive it. `cancel` is asked by the source
+  /// alone: where it serves several processes, all of them go on or none.
   bool prepare(const Scene& scene, const SimulationOptions& options, LibrarySource* source,
-               std::int64_t most_primaries, const ProgressCallback& progress, const CancelToken* cancel);
+               std::int64_t most_primaries, const ProgressCallback& progress,
+               const CancelToken* cancel);
 
   /// Of each material in each detector, with a wanted accuracy.
   const std::vector<CascadeYield>& yields() const { return yields_; }
@@ -29,7 +30,9 @@ class PreparedSimulation {
   /// Of each material, those that there are; 0 without replay.
   std::size_t cascades() const { return cascades_; }
   /// Planes made so far to compare with; nothing without a wanted accuracy and replay.
-  PlanarControls::Made planes_made() const { return controls_ ? controls_->made() : PlanarControls::Made{}; }
+  PlanarControls::Made planes_made() const {
+    return controls_ ? controls_->made() : PlanarControls::Made{};
+  }
   /// How many there will be, from so many pixels of the scan, about, that are looked at.
   std::size_t planes_expected(int pixels) const;
 
@@ -37,8 +40,8 @@ class PreparedSimulation {
   std::size_t library_bytes() const;
 
  private:
-  bool get(const Scene& scene, LibrarySource& source, std::size_t wanted, const ProgressCallback& progress,
-           const CancelToken* cancel);
+  bool get(const Scene& scene, LibrarySource& source, std::size_t wanted,
+           const ProgressCallback& progress, const CancelToken* cancel);
   void measure_yields(int materials);
   bool only_planes() const;
   std::size_t cascades_that_fit(double bytes) const;

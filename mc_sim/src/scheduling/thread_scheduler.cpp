@@ -7,7 +7,7 @@
 namespace surf::mc {
 
 void ThreadScheduler::run(const UnitWork& work) {
-  std::atomic<bool> failed = false;   // on one thread: the others take no more
+  std::atomic<bool> failed = false;  // on one thread: the others take no more
   parallel_for(static_cast<std::size_t>(work.threads), work.threads, [&](std::size_t, int thread) {
     try {
       while (!failed) {

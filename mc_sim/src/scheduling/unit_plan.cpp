@@ -8,7 +8,8 @@
 namespace surf::mc {
 
 UnitPlan::UnitPlan(const Scan& scan, const SimulationOptions& options) : scan_(scan) {
-  if (accuracy_of(options.budget) > 0) {   // a pixel looks at its neighbours within the tile: fixed tiles
+  if (accuracy_of(options.budget) >
+      0) {  // a pixel looks at its neighbours within the tile: fixed tiles
     run_ = height_ = tile;
     by_pixel_ = true;
     runs_ = (scan.width + tile - 1) / tile;
@@ -27,10 +28,11 @@ UnitPlan::UnitPlan(const Scan& scan, const SimulationOptions& options) : scan_(s
     most_ = electrons_of(options.budget);
     total_ = static_cast<double>(most_) * scan.width * scan.height;
   }
-  // Long jobs have many units, which somebody has to merge: longer ones, while there are enough for all.
+  // Long jobs have many units, which somebody has to merge: longer ones, while there are enough for
+  // all.
   std::int64_t pixels = std::max<std::int64_t>(1, (total_ > much ? 4 : 1) * chunk_ / most_);
   std::int64_t longest = scan.width;
-  if (options.method == Method::replay) {   // pixels of a tile share what they read of the library
+  if (options.method == Method::replay) {  // pixels of a tile share what they read of the library
     chunk_ = replayed_chunk;
     pixels = std::clamp<std::int64_t>(4 * chunk_ / most_, 1, tile * tile);
     longest = std::min(longest, std::int64_t{tile});
@@ -52,7 +54,11 @@ WorkUnit UnitPlan::unit(std::size_t number) const {
   const std::int64_t first = n % chunks_ * chunk_;
   const int x = static_cast<int>(n / chunks_ % runs_) * run_;
   const int y = static_cast<int>(n / chunks_ / runs_) * height_;
-  return {x, y, std::min(x + run_, scan_.width), std::min(y + height_, scan_.height), first,
+  return {x,
+          y,
+          std::min(x + run_, scan_.width),
+          std::min(y + height_, scan_.height),
+          first,
           std::min(chunk_, most_ - first)};
 }
 

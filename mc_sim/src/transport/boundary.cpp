@@ -15,7 +15,7 @@ namespace {
 // A caller's boundary function as a Geometry.
 class CustomGeometry {
  public:
-  using State = int;   // the material itself
+  using State = int;  // the material itself
   struct Surface {
     double distance = 0;
     Vec3 position, position_ahead, normal;
@@ -35,9 +35,10 @@ class CustomGeometry {
     if (!hit) return Crossing::none;
     if (!std::isfinite(hit->distance_nm) || hit->distance_nm < 0 ||
         hit->material_ahead >= static_cast<int>(specimen_.media.size()))
-      throw InvalidInput("boundary function",
-                         "it gave a distance that is negative or not finite, or an unknown material",
-                         "Return nothing where there is no boundary ahead");
+      throw InvalidInput(
+          "boundary function",
+          "it gave a distance that is negative or not finite, or an unknown material",
+          "Return nothing where there is no boundary ahead");
     surface.distance = hit->distance_nm;
     surface.position = surface.position_ahead = start + direction * hit->distance_nm;
     surface.normal = hit->normal;

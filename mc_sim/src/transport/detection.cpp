@@ -35,8 +35,8 @@ Spectra& Spectra::operator+=(const Spectra& b) {
 
 Spectra make_spectra(const Detector& d, const Beam& beam) {
   // No electron leaves with more than the beam's energy but for a barrier's step between materials.
-  const double top = std::max(std::min(d.max_energy_ev, beam.energy_ev * (1 + 1e-9)),
-                              d.min_energy_ev + 1e-6);
+  const double top =
+      std::max(std::min(d.max_energy_ev, beam.energy_ev * (1 + 1e-9)), d.min_energy_ev + 1e-6);
   Spectra s;
   s.energy_ev = {d.min_energy_ev, top, std::vector<Counts>(100)};
   s.polar_deg = {0, 180, std::vector<Counts>(90)};

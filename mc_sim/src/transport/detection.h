@@ -11,10 +11,10 @@ namespace surf::mc {
 
 /// An electron that has left the specimen for good.
 struct Escape {
-  double energy_ev = 0;      ///< in vacuum
+  double energy_ev = 0;  ///< in vacuum
   Vec3 direction;
   bool secondary = false;
-  bool turned = false;       ///< generated after the primary had turned by more than 90 degrees
+  bool turned = false;  ///< generated after the primary had turned by more than 90 degrees
 };
 
 /// Detectors at work: counts the electrons of one primary at a time. One per thread.
@@ -43,7 +43,7 @@ class Detection {
     Origin origin;
     bool whole_sphere, whole_turn;
     Vec3 axis, across, up;
-    double min_cosine, max_cosine;   // counted: min <= cosine < max
+    double min_cosine, max_cosine;  // counted: min <= cosine < max
     double from_turn_deg, to_turn_deg;
   };
 
@@ -56,7 +56,7 @@ class Detection {
   std::vector<Compiled> detectors_;
   std::vector<int> counts_;
   std::vector<Spectra> spectra_;
-  std::vector<Counts*> touched_;     // bins that the current primary has counts in, once per count
+  std::vector<Counts*> touched_;  // bins that the current primary has counts in, once per count
 };
 
 }  // namespace surf::mc

@@ -144,8 +144,8 @@ void apply(Detector& d, const std::string& key, const std::string& value,
       throw UsageError(place, fmt::format("'{}' is no range", value),
                        "Write FROM..TO, such as 50eV.. or 900eV..1keV");
     d.min_energy_ev = r.from.empty() ? 0 : parse_energy_ev(r.from, place);
-    d.max_energy_ev = r.to.empty() ? std::numeric_limits<double>::infinity()
-                                   : parse_energy_ev(r.to, place);
+    d.max_energy_ev =
+        r.to.empty() ? std::numeric_limits<double>::infinity() : parse_energy_ev(r.to, place);
   } else if (key == "cone") {
     d.min_angle_deg = r.from.empty() ? 0 : parse_angle_deg(r.from, place);
     d.max_angle_deg = r.to.empty() ? 180 : parse_angle_deg(r.to, place);
@@ -177,16 +177,18 @@ void check(const Detector& d) {
   if (!(d.min_energy_ev >= 0 && d.min_energy_ev < d.max_energy_ev))
     throw UsageError(subject, "its energy window is empty", "Give 0 <= FROM < TO");
   if (!(d.min_angle_deg >= 0 && d.min_angle_deg < d.max_angle_deg && d.max_angle_deg <= 180))
-    throw UsageError(subject, fmt::format("a cone of {:g} to {:g} degrees from its axis is empty or "
-                                          "beyond 180", d.min_angle_deg, d.max_angle_deg),
+    throw UsageError(subject,
+                     fmt::format("a cone of {:g} to {:g} degrees from its axis is empty or "
+                                 "beyond 180",
+                                 d.min_angle_deg, d.max_angle_deg),
                      "Give 0 <= FROM < TO <= 180deg");
   const auto in_turn = [](double a) { return a >= 0 && a <= 360; };
   if (!in_turn(d.from_azimuth_deg) || !in_turn(d.to_azimuth_deg) ||
       d.from_azimuth_deg == d.to_azimuth_deg)
     throw UsageError(subject, "its sector is empty or beyond 0 to 360 degrees",
                      "Write for example 315deg..45deg");
-  if (d.axis && !(d.axis->polar_deg >= 0 && d.axis->polar_deg <= 180 &&
-                  std::isfinite(d.axis->azimuth_deg)))
+  if (d.axis &&
+      !(d.axis->polar_deg >= 0 && d.axis->polar_deg <= 180 && std::isfinite(d.axis->azimuth_deg)))
     throw UsageError(subject, "its axis is not 0 to 180 degrees from z",
                      "Write POLAR/AZIMUTH, such as 60deg/90deg");
   if (!(d.efficiency > 0 && d.efficiency <= 1))
@@ -222,10 +224,10 @@ std::vector<Detector> parse_detectors(const std::string& text, const std::string
       if (equals == std::string::npos)
         throw UsageError(subject, fmt::format("'{}' has no value", item), keys);
       if (item.starts_with("name=") && out.size() > 1)
-        throw UsageError(subject, fmt::format("{} are {} detectors with names of their own", name,
-                                              out.size()), "Leave name= out");
-      for (Detector& d : out)
-        apply(d, item.substr(0, equals), item.substr(equals + 1), subject);
+        throw UsageError(
+            subject, fmt::format("{} are {} detectors with names of their own", name, out.size()),
+            "Leave name= out");
+      for (Detector& d : out) apply(d, item.substr(0, equals), item.substr(equals + 1), subject);
     }
   for (const Detector& d : out) check(d);
   return out;
@@ -233,9 +235,9 @@ std::vector<Detector> parse_detectors(const std::string& text, const std::string
 
 std::string format_detector(const Detector& d) {
   const auto upper = std::isinf(d.max_energy_ev) ? "" : format_exact(d.max_energy_ev) + "eV";
-  const auto axis = d.axis ? format_exact(d.axis->polar_deg) + "deg/" +
-                                 format_exact(d.axis->azimuth_deg) + "deg"
-                           : "beam";
+  const auto axis =
+      d.axis ? format_exact(d.axis->polar_deg) + "deg/" + format_exact(d.axis->azimuth_deg) + "deg"
+             : "beam";
   return fmt::format(
       "{}:energy={}eV..{},cone={}deg..{}deg,axis={},sector={}deg..{}deg,side={},origin={},"
       "efficiency={}",

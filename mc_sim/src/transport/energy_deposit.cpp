@@ -56,13 +56,13 @@ EnergyDeposit::EnergyDeposit(const DepositGrid& grid) : grid_(grid) {
   const auto& n = grid.cells;
   const Vec3 size = grid.box_nm.size_nm();
   if (grid.box_nm.empty() || !(size.x > 0 && size.y > 0 && size.z > 0) ||
-      std::min({n[0], n[1], n[2]}) < 1 ||
-      static_cast<double>(n[0]) * n[1] * n[2] > most_cells)
+      std::min({n[0], n[1], n[2]}) < 1 || static_cast<double>(n[0]) * n[1] * n[2] > most_cells)
     throw UsageError("deposit grid", "it is empty, or has more than 2^28 cells",
                      "Give a box with a volume and at least one cell each way");
   cell_nm_ = {size.x / n[0], size.y / n[1], size.z / n[2]};
   sums_.resize(static_cast<std::size_t>(n[0]) * static_cast<std::size_t>(n[1]) *
-                   static_cast<std::size_t>(n[2]) + 1);
+                   static_cast<std::size_t>(n[2]) +
+               1);
 }
 
 std::size_t EnergyDeposit::index(const std::array<int, 3>& c) const {
@@ -83,7 +83,8 @@ void EnergyDeposit::deposit(const Vec3& from, const Vec3& to, double energy_ev) 
     const double origin = along(grid_.box_nm.lower_nm, a), edge = along(cell_nm_, a);
     const double n = grid_.cells[static_cast<std::size_t>(a)];
     const double u = (along(from, a) - origin) / edge, v = (along(to, a) - origin) / edge;
-    if ((u < 0 && v < 0) || (u >= n && v >= n) || std::fabs(u) > 1e6 + n || std::fabs(v) > 1e6 + n) {
+    if ((u < 0 && v < 0) || (u >= n && v >= n) || std::fabs(u) > 1e6 + n ||
+        std::fabs(v) > 1e6 + n) {
       sums_.back().add(energy_ev);
       return;
     }
@@ -103,8 +104,8 @@ void EnergyDeposit::deposit(const Vec3& from, const Vec3& to, double energy_ev) 
       const auto i = static_cast<std::size_t>(a);
       if (cell[i] == last[i]) continue;
       const bool up = last[i] > cell[i];
-      const double wall = along(grid_.box_nm.lower_nm, a) +
-                          (cell[i] + (up ? 1 : 0)) * along(cell_nm_, a);
+      const double wall =
+          along(grid_.box_nm.lower_nm, a) + (cell[i] + (up ? 1 : 0)) * along(cell_nm_, a);
       const double at_wall = (wall - along(from, a)) / along(way, a);
       if (at_wall < next) {
         next = at_wall;

@@ -9,10 +9,14 @@ namespace surf::mc {
 
 const char* name(LossCause cause) {
   switch (cause) {
-    case LossCause::no_surface_ahead: return "no surface ahead";
-    case LossCause::wrong_side: return "surface met from the wrong side";
-    case LossCause::too_many_steps: return "too many steps";
-    case LossCause::too_many_secondaries: return "too many secondaries";
+    case LossCause::no_surface_ahead:
+      return "no surface ahead";
+    case LossCause::wrong_side:
+      return "surface met from the wrong side";
+    case LossCause::too_many_steps:
+      return "too many steps";
+    case LossCause::too_many_secondaries:
+      return "too many secondaries";
   }
   return "unknown";
 }

@@ -9,8 +9,8 @@
 #include <limits>
 #include <vector>
 
-#include "physics/directions.h"
 #include "geometry/geometry.h"
+#include "physics/directions.h"
 #include "surf/core/vec3.h"
 #include "surf/mc/physics/barrier.h"
 #include "surf/mc/physics/medium.h"
@@ -22,8 +22,8 @@
 namespace surf::mc {
 
 struct Limits {
-  static constexpr std::int64_t max_steps = 100'000'000;   ///< of one primary with its secondaries
-  static constexpr std::size_t max_waiting = 1'000'000;    ///< tracks not yet followed
+  static constexpr std::int64_t max_steps = 100'000'000;  ///< of one primary with its secondaries
+  static constexpr std::size_t max_waiting = 1'000'000;   ///< tracks not yet followed
 };
 
 /// Adds an electron that has left for good to the balance (without its energy). `hit`: whether its
@@ -72,7 +72,7 @@ class Transport {
     State state;
     int generation;
     int parent;
-    bool turned;   // the primary had, by more than 90 degrees, when this cascade began
+    bool turned;  // the primary had, by more than 90 degrees, when this cascade began
   };
 
   /// Follows an electron inside the specimen that another method gives up, with all that it
@@ -119,9 +119,8 @@ class Transport {
     if (geometry_.flies_free(t.position, t.direction)) return escape(t);
     ++balance_.rays;
     typename G::Surface& surface = surface_;
-    const Crossing met = geometry_.crossing(t.position, t.direction,
-                                            std::numeric_limits<double>::infinity(), t.state,
-                                            surface);
+    const Crossing met = geometry_.crossing(
+        t.position, t.direction, std::numeric_limits<double>::infinity(), t.state, surface);
     if (met == Crossing::wrong_side) return lose(t, LossCause::wrong_side);
     if (met == Crossing::none) return escape(t);
     hit_ = true;
@@ -138,7 +137,8 @@ class Transport {
     // Within this distance there is nothing but this material: where no surface can be reached,
     // there is no ray, and where none can be reached ever again, a cascade is not followed.
     double clear = geometry_.clearance(t.position);
-    // Where losses come in events, reaches are long and steps many: what is left of a clearance is as good as a new one.
+    // Where losses come in events, reaches are long and steps many: what is left of a clearance is
+    // as good as a new one.
     const bool in_events = medium.loses_in_events();
     for (;;) {
       if (++steps_ > Limits::max_steps) return lose(t, LossCause::too_many_steps);
@@ -195,11 +195,12 @@ class Transport {
     mechanism.scatter(t.energy, random, event);
     deposited_ += event.energy_loss_ev;
     if (event.energy_loss_ev != 0) watcher_.deposit(t.position, t.position, event.energy_loss_ev);
-    if (event.has_secondary &&
-        !add_secondary(t, medium, clear, event.secondary_energy_ev, event.secondary_direction, event.energy_loss_ev > 0))
+    if (event.has_secondary && !add_secondary(t, medium, clear, event.secondary_energy_ev,
+                                              event.secondary_direction, event.energy_loss_ev > 0))
       return lose(t, LossCause::too_many_secondaries);
     if (event.auger_energy_ev > 0) {
-      watcher_.segment(t.position, t.position, t.energy, t.energy, geometry_.material(t.state));   // a point for each birth
+      watcher_.segment(t.position, t.position, t.energy, t.energy,
+                       geometry_.material(t.state));  // a point for each birth
       if (!add_secondary(t, medium, clear, event.auger_energy_ev, event.auger_direction, true))
         return lose(t, LossCause::too_many_secondaries);
     }
@@ -213,9 +214,9 @@ class Transport {
   }
 
   // False when too many are waiting. `paid`: the energy is part of what an electron has lost.
-  bool add_secondary(const Track& t, const Medium& medium, double clear, double energy, const Vec3& direction,
-                     bool paid) {
-    if (energy <= medium.cutoff_ev()) return true;   // it never was an electron that moves
+  bool add_secondary(const Track& t, const Medium& medium, double clear, double energy,
+                     const Vec3& direction, bool paid) {
+    if (energy <= medium.cutoff_ev()) return true;  // it never was an electron that moves
     const double total = energy - medium.barrier_ev();
     ++balance_.generated;
     if (paid) deposited_ -= total;
@@ -232,7 +233,8 @@ class Transport {
       balance_.lost_energy.add(total);
       return false;
     }
-    waiting_.push_back({t.position, from_frame_of(t.direction, direction), energy, t.state, t.generation + 1, number_, t.turned});
+    waiting_.push_back({t.position, from_frame_of(t.direction, direction), energy, t.state,
+                        t.generation + 1, number_, t.turned});
     return true;
   }
 
@@ -271,11 +273,11 @@ class Transport {
   W& watcher_;
   Detection& detection_;
   Balance& balance_;
-  Vec3 beam_;              // the primary's direction at its start
+  Vec3 beam_;  // the primary's direction at its start
   bool hit_ = false;
   std::vector<Track> waiting_;
-  typename G::Surface surface_;   // scratch
-  double deposited_ = 0;   // by the current track
+  typename G::Surface surface_;  // scratch
+  double deposited_ = 0;         // by the current track
   std::int64_t steps_ = 0;
   int tracks_ = 0;
   int number_ = 0;

@@ -6,10 +6,11 @@
 
 namespace surf::mc {
 
-/// Watches one thread's electrons, told of each step as it happens (surf/mc/transport/observer.h says what of). It is part of
-/// the loop, so that a loop that nobody watches costs nothing.
+/// Watches one thread's electrons, told of each step as it happens (surf/mc/transport/observer.h
+/// says what of). It is part of the loop, so that a loop that nobody watches costs nothing.
 template <class W>
-concept Watcher = requires(W watcher, int number, const Vec3& v, double energy_ev, bool isotropic, TrackKind end) {
+concept Watcher = requires(W watcher, int number, const Vec3& v, double energy_ev, bool isotropic,
+                           TrackKind end) {
   watcher.begin_track(number, number, number, v, v, energy_ev);
   watcher.segment(v, v, energy_ev, energy_ev, number);
   watcher.deposit(v, v, energy_ev);

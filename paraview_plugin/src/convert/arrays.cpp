@@ -30,4 +30,4 @@ std::vector<double> values_of(vtkDataArray* array) {
   return values;
 }
 
-}   // namespace surf::pv
+}  // namespace surf::pv

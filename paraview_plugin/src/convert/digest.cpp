@@ -57,7 +57,8 @@ class Digest {
       add(fields->GetArrayName(i));
       if (auto* const numbers = fields->GetArray(i)) add(numbers);
       auto* const texts = vtkStringArray::SafeDownCast(fields->GetAbstractArray(i));
-      for (vtkIdType k = 0; texts && k < texts->GetNumberOfValues(); ++k) add(texts->GetValue(k).c_str());
+      for (vtkIdType k = 0; texts && k < texts->GetNumberOfValues(); ++k)
+        add(texts->GetValue(k).c_str());
     }
   }
 
@@ -75,7 +76,8 @@ class Digest {
       auto at = vtkSmartPointer<vtkCompositeDataIterator>::Take(blocks->NewIterator());
       for (at->InitTraversal(); !at->IsDoneWithTraversal(); at->GoToNextItem()) {
         mix(at->GetCurrentFlatIndex());
-        if (at->HasCurrentMetaData()) add(at->GetCurrentMetaData()->Get(vtkCompositeDataSet::NAME()));
+        if (at->HasCurrentMetaData())
+          add(at->GetCurrentMetaData()->Get(vtkCompositeDataSet::NAME()));
         add(at->GetCurrentDataObject());
       }
     }

@@ -7,8 +7,8 @@ class vtkDataObject;
 
 namespace surf::pv {
 
-/// A number that tells data of other points, cells, extents or arrays apart, blocks included. Times do not serve: ParaView
-/// runs what lies upstream again without any change.
+/// A number that tells data of other points, cells, extents or arrays apart, blocks included. Times
+/// do not serve: ParaView runs what lies upstream again without any change.
 std::uint64_t digest(vtkDataObject* data);
 
 }  // namespace surf::pv

@@ -29,8 +29,9 @@ void check_plain(vtkImageData* image, const char* subject) {
   if (extent[1] < extent[0] || extent[3] < extent[2])
     throw InvalidInput(subject, "it is empty", "Apply the filters before it first");
   if (extent[5] != extent[4])
-    throw InvalidInput(subject, fmt::format("it has {} layers along z", extent[5] - extent[4] + 1),
-                       "Give an image of one layer in the plane of x and y: 'Extract Subset' takes one out");
+    throw InvalidInput(
+        subject, fmt::format("it has {} layers along z", extent[5] - extent[4] + 1),
+        "Give an image of one layer in the plane of x and y: 'Extract Subset' takes one out");
   if (!image->GetDirectionMatrix()->IsIdentity())
     throw InvalidInput(subject, "its axes are turned", "Give an image along x and y");
 }
@@ -41,27 +42,31 @@ void check_array(vtkImageData* image, vtkDataArray* array, const char* subject) 
                        "'Cell Data to Point Data' makes one of cells, 'Calculator' of vectors");
   const std::string name = array->GetName() ? array->GetName() : "";
   if (array->GetNumberOfComponents() != 1)
-    throw InvalidInput(subject,
-                       fmt::format("'{}' has {} numbers at each point", name, array->GetNumberOfComponents()),
-                       "Choose an array with one");
+    throw InvalidInput(
+        subject,
+        fmt::format("'{}' has {} numbers at each point", name, array->GetNumberOfComponents()),
+        "Choose an array with one");
   if (array->GetNumberOfTuples() != image->GetNumberOfPoints())
     throw InvalidInput(subject, fmt::format("'{}' is not of the points", name),
                        "Choose an array of the points");
 }
 
-// What cannot be a scan in nm, so that nothing is computed of lengths in m or of numbers that mean something else.
+// What cannot be a scan in nm, so that nothing is computed of lengths in m or of numbers that mean
+// something else.
 void check_pitch(const HeightField& field, const char* subject) {
   constexpr double least_pitch_nm = 1e-6;
   const double pitch = std::min(field.pitch_x_nm, field.pitch_y_nm);
   if (pitch < least_pitch_nm)
-    throw InvalidInput(subject, fmt::format("its points are {:.3g} nm apart, which no scan is", pitch),
+    throw InvalidInput(subject,
+                       fmt::format("its points are {:.3g} nm apart, which no scan is", pitch),
                        "Lengths are nm: multiply Spacing and heights by 1e9 if they are m");
 }
 
 void check_heights(const HeightField& field, const std::string& name, const char* subject) {
   for (const double z : field.z_nm.data())
     if (std::abs(z) > most_height_nm)
-      throw InvalidInput(subject, fmt::format("'{}' holds {:.3g}, which is no height in nm", name, z),
+      throw InvalidInput(subject,
+                         fmt::format("'{}' holds {:.3g}, which is no height in nm", name, z),
                          "Choose another array under Scalars, or make holes of such points (NaN)");
 }
 
@@ -74,7 +79,8 @@ vtkDataArray* mask_of(vtkImageData* image, vtkDataArray* values_array) {
 }
 
 /// Takes what is not finite, or masked, out of the values; the mask is empty if there are no holes.
-Grid<unsigned char> take_holes(vtkImageData* image, vtkDataArray* values_array, Grid<double>& values) {
+Grid<unsigned char> take_holes(vtkImageData* image, vtkDataArray* values_array,
+                               Grid<double>& values) {
   Grid<unsigned char> valid;
   vtkDataArray* const mask = mask_of(image, values_array);
   for (std::size_t i = 0; i < values.size(); ++i) {
@@ -98,7 +104,8 @@ Placed placed(const Frame& f) {
   return p;
 }
 
-Grid<double> read_values(vtkImageData* image, vtkDataArray* array, const Frame& frame, const char* subject) {
+Grid<double> read_values(vtkImageData* image, vtkDataArray* array, const Frame& frame,
+                         const char* subject) {
   check_array(image, array, subject);
   Grid<double> values(frame.width, frame.height);
   copy_values(array, values.data());
@@ -124,7 +131,7 @@ void add(vtkImageData* image, Grid<T> values, const std::string& name, const cha
   image->GetPointData()->AddArray(array);
 }
 
-}   // namespace
+}  // namespace
 
 Frame frame_of(vtkImageData* image, const char* subject) {
   check_plain(image, subject);
@@ -133,8 +140,9 @@ Frame frame_of(vtkImageData* image, const char* subject) {
   image->GetExtent(extent);
   image->GetSpacing(spacing);
   image->GetOrigin(origin);
-  return {extent[1] - extent[0] + 1,          extent[3] - extent[2] + 1,         spacing[0], spacing[1],
-          origin[0] + extent[0] * spacing[0], origin[1] + extent[2] * spacing[1]};
+  return {
+      extent[1] - extent[0] + 1,          extent[3] - extent[2] + 1,         spacing[0], spacing[1],
+      origin[0] + extent[0] * spacing[0], origin[1] + extent[2] * spacing[1]};
 }
 
 vtkSmartPointer<vtkImageData> make_image(const Frame& frame) {
@@ -155,7 +163,8 @@ HeightField to_height_field(vtkImageData* image, vtkDataArray* heights, const ch
   const Frame frame = frame_of(image, subject);
   HeightField field = placed<HeightField>(frame);
   field.z_nm = read_values(image, heights, frame, subject);
-  // What is usual, heights without a hole, is looked through but once: millions of them cost a millisecond each time.
+  // What is usual, heights without a hole, is looked through but once: millions of them cost a
+  // millisecond each time.
   const bool usual = !mask_of(image, heights) && all_within(field.z_nm.data(), most_height_nm);
   if (!usual) field.valid = take_holes(image, heights, field.z_nm);
   validate(field, subject);
@@ -183,7 +192,8 @@ Image to_image(vtkImageData* image, const char* subject) {
     values.resize(static_cast<std::size_t>(array->GetNumberOfTuples()));
     copy_values(array, values);
     Channel channel{array->GetName(), "1", Grid<float>(frame.width, frame.height)};
-    std::ranges::transform(values, channel.values.data().begin(), [](double v) { return static_cast<float>(v); });
+    std::ranges::transform(values, channel.values.data().begin(),
+                           [](double v) { return static_cast<float>(v); });
     result.channels.push_back(std::move(channel));
   }
   validate(result, subject);
@@ -196,15 +206,18 @@ void add_heights(vtkImageData* image, HeightField field, const std::string& name
   image->GetPointData()->SetActiveScalars(name.c_str());
 }
 
-void add_values(vtkImageData* image, Grid<double> values, const std::string& name, const char* unit) {
+void add_values(vtkImageData* image, Grid<double> values, const std::string& name,
+                const char* unit) {
   add<vtkDoubleArray>(image, std::move(values), name, unit);
 }
 
-void add_values(vtkImageData* image, Grid<float> values, const std::string& name, const char* unit) {
+void add_values(vtkImageData* image, Grid<float> values, const std::string& name,
+                const char* unit) {
   add<vtkFloatArray>(image, std::move(values), name, unit);
 }
 
-void add_values(vtkImageData* image, Grid<unsigned char> values, const std::string& name, const char* unit) {
+void add_values(vtkImageData* image, Grid<unsigned char> values, const std::string& name,
+                const char* unit) {
   add<vtkUnsignedCharArray>(image, std::move(values), name, unit);
 }
 
@@ -214,7 +227,8 @@ vtkSmartPointer<vtkImageData> to_vtk(HeightField field, const std::string& name)
   return image;
 }
 
-vtkSmartPointer<vtkImageData> to_vtk(PlacedImage placed_image, const std::string& name, const char* unit) {
+vtkSmartPointer<vtkImageData> to_vtk(PlacedImage placed_image, const std::string& name,
+                                     const char* unit) {
   auto image = make_image(frame_of(placed_image.values, placed_image));
   add_holes(image, placed_image.values, std::move(placed_image.valid));
   add_values(image, std::move(placed_image.values), name, unit);
@@ -227,7 +241,8 @@ vtkSmartPointer<vtkImageData> to_vtk(Image source) {
                            source.origin_x_nm, source.origin_y_nm});
   for (Channel& channel : source.channels)
     add_values(image, std::move(channel.values), channel.name, channel.unit.c_str());
-  if (!source.channels.empty()) image->GetPointData()->SetActiveScalars(source.channels.front().name.c_str());
+  if (!source.channels.empty())
+    image->GetPointData()->SetActiveScalars(source.channels.front().name.c_str());
   add_texts(image, source.metadata);
   return image;
 }
@@ -252,4 +267,4 @@ std::map<std::string, std::string> texts_of(vtkDataObject* data) {
   return texts;
 }
 
-}   // namespace surf::pv
+}  // namespace surf::pv

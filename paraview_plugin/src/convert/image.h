@@ -16,25 +16,26 @@ class vtkDataObject;
 
 namespace surf::pv {
 
-// VTK's images and semsurf's agree in their order: sample (0, 0) is the lower-left one, x runs fastest. Only
-// names differ: a point of an image at z = 0 is a sample, and a hole is NaN. `subject` names the input in
-// errors. Into semsurf values are copied once, as a Grid owns its own; out of it memory is handed over.
+// VTK's images and semsurf's agree in their order: sample (0, 0) is the lower-left one, x runs
+// fastest. Only names differ: a point of an image at z = 0 is a sample, and a hole is NaN.
+// `subject` names the input in errors. Into semsurf values are copied once, as a Grid owns its own;
+// out of it memory is handed over.
 
-inline constexpr const char* heights_name = "z_nm";   // as in files that semsurf writes
-inline constexpr const char* mask_name = "valid";     // 0 in holes; there if there are any
+inline constexpr const char* heights_name = "z_nm";  // as in files that semsurf writes
+inline constexpr const char* mask_name = "valid";    // 0 in holes; there if there are any
 
 /// What is common to all samples of an image.
 struct Frame {
   int width = 0, height = 0;
   double pitch_x_nm = 1, pitch_y_nm = 1;
-  double origin_x_nm = 0, origin_y_nm = 0;   // centre of sample (0, 0)
+  double origin_x_nm = 0, origin_y_nm = 0;  // centre of sample (0, 0)
 
   friend bool operator==(const Frame&, const Frame&) = default;
 };
 
 /// Throws InvalidInput for an image that is no plane of x and y, is turned, or runs backwards.
 Frame frame_of(vtkImageData* image, const char* subject);
-template <class Placed>   // HeightField, PlacedImage
+template <class Placed>  // HeightField, PlacedImage
 Frame frame_of(const Grid<double>& values, const Placed& placed) {
   return {values.width(),    values.height(),    placed.pitch_x_nm,
           placed.pitch_y_nm, placed.origin_x_nm, placed.origin_y_nm};
@@ -54,9 +55,11 @@ Image to_image(vtkImageData* image, const char* subject);
 
 /// Adds the heights, and the mask if there are holes; they become what is shown.
 void add_heights(vtkImageData* image, HeightField field, const std::string& name = heights_name);
-void add_values(vtkImageData* image, Grid<double> values, const std::string& name, const char* unit);
+void add_values(vtkImageData* image, Grid<double> values, const std::string& name,
+                const char* unit);
 void add_values(vtkImageData* image, Grid<float> values, const std::string& name, const char* unit);
-void add_values(vtkImageData* image, Grid<unsigned char> values, const std::string& name, const char* unit);
+void add_values(vtkImageData* image, Grid<unsigned char> values, const std::string& name,
+                const char* unit);
 
 vtkSmartPointer<vtkImageData> to_vtk(HeightField field, const std::string& name = heights_name);
 vtkSmartPointer<vtkImageData> to_vtk(PlacedImage image, const std::string& name, const char* unit);
@@ -67,4 +70,4 @@ vtkSmartPointer<vtkImageData> to_vtk(Image image);
 void add_texts(vtkDataObject* data, const std::map<std::string, std::string>& texts);
 std::map<std::string, std::string> texts_of(vtkDataObject* data);
 
-}   // namespace surf::pv
+}  // namespace surf::pv

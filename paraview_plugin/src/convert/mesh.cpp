@@ -35,10 +35,8 @@ std::vector<Vec3> vertices_of(vtkPolyData* data) {
       value += 3;
     }
   };
-  if (auto* doubles = vtkDoubleArray::FastDownCast(points))
-    copy(doubles->GetPointer(0));
-  else if (auto* floats = vtkFloatArray::FastDownCast(points))
-    copy(floats->GetPointer(0));
+  if (auto* doubles = vtkDoubleArray::FastDownCast(points)) copy(doubles->GetPointer(0));
+  else if (auto* floats = vtkFloatArray::FastDownCast(points)) copy(floats->GetPointer(0));
   else
     for (std::size_t i = 0; i < vertices.size(); ++i) {
       double p[3];
@@ -60,7 +58,8 @@ void for_each_cell(vtkCellArray* cells, const Add& add) {
 }
 
 Triangle triangle(vtkIdType a, vtkIdType b, vtkIdType c) {
-  return {static_cast<std::uint32_t>(a), static_cast<std::uint32_t>(b), static_cast<std::uint32_t>(c)};
+  return {static_cast<std::uint32_t>(a), static_cast<std::uint32_t>(b),
+          static_cast<std::uint32_t>(c)};
 }
 
 std::vector<Triangle> triangles_of(vtkPolyData* data) {
@@ -70,7 +69,7 @@ std::vector<Triangle> triangles_of(vtkPolyData* data) {
     for (vtkIdType k = 2; k < count; ++k) triangles.push_back(triangle(p[0], p[k - 1], p[k]));
   });
   for_each_cell(data->GetStrips(), [&](vtkIdType count, const vtkIdType* p) {
-    for (vtkIdType k = 2; k < count; ++k)   // every second one runs the other way
+    for (vtkIdType k = 2; k < count; ++k)  // every second one runs the other way
       triangles.push_back(k % 2 == 0 ? triangle(p[k - 2], p[k - 1], p[k])
                                      : triangle(p[k - 1], p[k - 2], p[k]));
   });
@@ -82,7 +81,7 @@ std::string unit_of(vtkDataArray* array) {
   return keys->Has(vtkDataArray::UNITS_LABEL()) ? keys->Get(vtkDataArray::UNITS_LABEL()) : "1";
 }
 
-}   // namespace
+}  // namespace
 
 TriangleMesh to_mesh(vtkPolyData* data, const char* subject) {
   // A triangle's corners are 32-bit numbers, and VTK's are signed.
@@ -91,7 +90,8 @@ TriangleMesh to_mesh(vtkPolyData* data, const char* subject) {
                        "Simplify it first");
   TriangleMesh mesh{vertices_of(data), triangles_of(data)};
   if (mesh.triangles.empty())
-    throw InvalidInput(subject, "it has no polygons", "Give a surface: 'Extract Surface' makes one of cells");
+    throw InvalidInput(subject, "it has no polygons",
+                       "Give a surface: 'Extract Surface' makes one of cells");
   validate(mesh, subject);
   constexpr double most_nm = 1e12;
   for (const Vec3& v : mesh.vertices_nm)
@@ -129,13 +129,14 @@ vtkSmartPointer<vtkPolyData> to_vtk(TriangleMesh mesh) {
   const auto points = vtkSmartPointer<vtkPoints>::New();
   points->SetDataTypeToDouble();
   points->SetData(TakenArray<vtkDoubleArray, Vertices>::make<double>(
-      std::move(mesh.vertices_nm), [](Vertices& v) { return reinterpret_cast<double*>(v.data()); }, values,
-      3));
+      std::move(mesh.vertices_nm), [](Vertices& v) { return reinterpret_cast<double*>(v.data()); },
+      values, 3));
   const auto polygons = vtkSmartPointer<vtkCellArray>::New();
-  polygons->SetData(take_array<vtkTypeInt32Array>(std::move(starts), ""),
-                    TakenArray<vtkTypeInt32Array, Triangles>::make<std::int32_t>(
-                        std::move(mesh.triangles),
-                        [](Triangles& t) { return reinterpret_cast<std::int32_t*>(t.data()); }, corners, 1));
+  polygons->SetData(
+      take_array<vtkTypeInt32Array>(std::move(starts), ""),
+      TakenArray<vtkTypeInt32Array, Triangles>::make<std::int32_t>(
+          std::move(mesh.triangles),
+          [](Triangles& t) { return reinterpret_cast<std::int32_t*>(t.data()); }, corners, 1));
   auto data = vtkSmartPointer<vtkPolyData>::New();
   data->SetPoints(points);
   data->SetPolys(polygons);
@@ -149,9 +150,10 @@ vtkSmartPointer<vtkPolyData> to_vtk(Surface surface) {
     auto array = take_array<vtkFloatArray>(std::move(scalar.values), scalar.name);
     set_unit(array, scalar.unit.c_str());
     arrays->AddArray(array);
-    if (!arrays->GetScalars() || scalar.name == "height") arrays->SetActiveScalars(scalar.name.c_str());
+    if (!arrays->GetScalars() || scalar.name == "height")
+      arrays->SetActiveScalars(scalar.name.c_str());
   }
   return data;
 }
 
-}   // namespace surf::pv
+}  // namespace surf::pv

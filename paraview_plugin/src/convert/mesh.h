@@ -9,8 +9,9 @@
 
 namespace surf::pv {
 
-/// The polygons and strips, fanned into triangles; lines and points are left out. Points keep their order,
-/// none is merged. Throws InvalidInput, naming `subject`, where nothing or damaged triangles are left.
+/// The polygons and strips, fanned into triangles; lines and points are left out. Points keep their
+/// order, none is merged. Throws InvalidInput, naming `subject`, where nothing or damaged triangles
+/// are left.
 TriangleMesh to_mesh(vtkPolyData* data, const char* subject);
 
 /// The same with every array of its points that has one finite number for each, names made fit
@@ -22,4 +23,4 @@ vtkSmartPointer<vtkPolyData> to_vtk(TriangleMesh mesh);
 /// With scalars, "height" or else the first being shown.
 vtkSmartPointer<vtkPolyData> to_vtk(Surface surface);
 
-}   // namespace surf::pv
+}  // namespace surf::pv

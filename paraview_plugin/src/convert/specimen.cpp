@@ -59,13 +59,16 @@ class Maker {
   }
 
   void add_substrate(const std::map<std::string, std::string>& texts) {
-    const auto said = [&](const char* key) { return texts.contains(key) ? texts.at(key) : std::string(); };
+    const auto said = [&](const char* key) {
+      return texts.contains(key) ? texts.at(key) : std::string();
+    };
     const bool own = wish_.substrate.empty();
     const std::string name = own ? said(substrate_text) : wish_.substrate;
     if (name.empty()) return;
     const std::string top = said(substrate_top_text);
-    specimen.substrate = mc::Substrate{index_of(name, "Substrate"),
-                                       own && !top.empty() ? parse_length_nm(top, "substrate") : wish_.substrate_top_nm};
+    specimen.substrate = mc::Substrate{
+        index_of(name, "Substrate"),
+        own && !top.empty() ? parse_length_nm(top, "substrate") : wish_.substrate_top_nm};
   }
 
   mc::Specimen specimen;
@@ -73,26 +76,33 @@ class Maker {
  private:
   void add_field(vtkImageData* image, const std::string& name, vtkDataArray* heights) {
     if (specimen.height_field)
-      throw InvalidInput(name, "there is an image of heights already", "Give one at most, or make surfaces of them");
+      throw InvalidInput(name, "there is an image of heights already",
+                         "Give one at most, or make surfaces of them");
     if (!heights) heights = image->GetPointData()->GetArray(heights_name);
     if (!heights) heights = image->GetPointData()->GetScalars();
-    specimen.height_field =
-        mc::HeightFieldBody{name, to_height_field(image, heights, name.c_str()), material_of(texts_of(image), ""), wish_.edge};
+    specimen.height_field = mc::HeightFieldBody{name, to_height_field(image, heights, name.c_str()),
+                                                material_of(texts_of(image), ""), wish_.edge};
     const auto texts = texts_of(image);
     if (const auto edge = texts.find(edge_text); edge != texts.end())
-      specimen.height_field->edge = edge->second == "flat" ? Edge::flat : edge->second == "periodic" ? Edge::periodic : Edge::mirror;
+      specimen.height_field->edge = edge->second == "flat"       ? Edge::flat
+                                    : edge->second == "periodic" ? Edge::periodic
+                                                                 : Edge::mirror;
   }
 
   void add_bodies(vtkPolyData* data, const std::string& name) {
-    if (data->GetNumberOfPolys() + data->GetNumberOfStrips() == 0) return;   // lines, or a block without a part here
+    if (data->GetNumberOfPolys() + data->GetNumberOfStrips() == 0)
+      return;  // lines, or a block without a part here
     const auto texts = texts_of(data);
     vtkDataArray* const numbers = data->GetCellData()->GetArray("surface");
     std::set<double> which;
-    if (numbers && numbers->GetNumberOfComponents() == 1 && data->GetNumberOfPolys() == data->GetNumberOfCells())
-      for (vtkIdType i = 0; i < numbers->GetNumberOfTuples(); ++i) which.insert(numbers->GetComponent(i, 0));
+    if (numbers && numbers->GetNumberOfComponents() == 1 &&
+        data->GetNumberOfPolys() == data->GetNumberOfCells())
+      for (vtkIdType i = 0; i < numbers->GetNumberOfTuples(); ++i)
+        which.insert(numbers->GetComponent(i, 0));
     // Corners at equal places are one: ParaView's sources give each face its own.
     if (which.size() < 2) {
-      specimen.bodies.push_back({name, merge_equal_vertices(to_mesh(data, name.c_str())), material_of(texts, "")});
+      specimen.bodies.push_back(
+          {name, merge_equal_vertices(to_mesh(data, name.c_str())), material_of(texts, "")});
       return;
     }
     for (const double number : which) {
@@ -124,7 +134,9 @@ class Maker {
     auto& all = specimen.materials;
     const auto found = std::ranges::find(all, name, &mc::Material::name);
     if (found != all.end()) return static_cast<int>(found - all.begin());
-    const auto knows = [&] { return std::ranges::count(library_.all(), name, &mc::Material::name) > 0; };
+    const auto knows = [&] {
+      return std::ranges::count(library_.all(), name, &mc::Material::name) > 0;
+    };
     if (!knows() && !scene_file_.empty()) library_ = io::read_scene(scene_file_).materials;
     all.push_back(library_.find(name, subject));
     return static_cast<int>(all.size()) - 1;
@@ -146,10 +158,12 @@ mc::Specimen to_specimen(vtkDataObject* data, vtkDataArray* heights, const Speci
     const auto each = vtkSmartPointer<vtkCompositeDataIterator>::Take(blocks->NewIterator());
     int number = 0;
     for (each->InitTraversal(); !each->IsDoneWithTraversal(); each->GoToNextItem()) {
-      vtkInformation* const about = each->HasCurrentMetaData() ? each->GetCurrentMetaData() : nullptr;
+      vtkInformation* const about =
+          each->HasCurrentMetaData() ? each->GetCurrentMetaData() : nullptr;
       const bool named = about && about->Has(vtkCompositeDataSet::NAME());
       maker.add(each->GetCurrentDataObject(),
-                named ? about->Get(vtkCompositeDataSet::NAME()) : fmt::format("block {}", number), nullptr);
+                named ? about->Get(vtkCompositeDataSet::NAME()) : fmt::format("block {}", number),
+                nullptr);
       ++number;
     }
   } else {
@@ -158,7 +172,8 @@ mc::Specimen to_specimen(vtkDataObject* data, vtkDataArray* heights, const Speci
   maker.add_substrate(texts_of(data));
   const mc::Specimen& s = maker.specimen;
   if (s.bodies.empty() && !s.height_field && !s.substrate)
-    throw InvalidInput("Input", "it has no surface", "Give one, an image of heights, or blocks of them");
+    throw InvalidInput("Input", "it has no surface",
+                       "Give one, an image of heights, or blocks of them");
   return std::move(maker.specimen);
 }
 

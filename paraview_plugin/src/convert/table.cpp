@@ -36,4 +36,4 @@ void add_quantities(vtkTable* table, const std::vector<Quantity>& quantities) {
   add_column(table, "value", std::move(values));
 }
 
-}   // namespace surf::pv
+}  // namespace surf::pv

@@ -20,4 +20,4 @@ struct Quantity {
 };
 void add_quantities(vtkTable* table, const std::vector<Quantity>& quantities);
 
-}   // namespace surf::pv
+}  // namespace surf::pv

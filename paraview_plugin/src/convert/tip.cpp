@@ -11,8 +11,8 @@ Tip to_tip(vtkImageData* image, vtkDataArray* heights, const char* subject) {
   return io::to_tip(to_height_field(image, heights, subject), texts_of(image), subject);
 }
 
-Tip to_tip_for(vtkImageData* image, vtkDataArray* heights, const HeightField& scan, const char* subject,
-               std::vector<std::string>& warnings) {
+Tip to_tip_for(vtkImageData* image, vtkDataArray* heights, const HeightField& scan,
+               const char* subject, std::vector<std::string>& warnings) {
   return workflow::tip_for(to_tip(image, heights, subject), scan, subject, hear({}, warnings));
 }
 
@@ -23,4 +23,4 @@ vtkSmartPointer<vtkImageData> to_vtk(const Tip& tip) {
   return image;
 }
 
-}   // namespace surf::pv
+}  // namespace surf::pv

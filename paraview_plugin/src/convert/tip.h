@@ -11,13 +11,14 @@
 
 namespace surf::pv {
 
-/// Any image of heights whose highest place is the apex; what files say of tips counts (surf/io/tip_file.h).
+/// Any image of heights whose highest place is the apex; what files say of tips counts
+/// (surf/io/tip_file.h).
 Tip to_tip(vtkImageData* image, vtkDataArray* heights, const char* subject);
 /// The same as it meets a scan (`workflow::tip_for`), whose warnings are added to `warnings`.
-Tip to_tip_for(vtkImageData* image, vtkDataArray* heights, const HeightField& scan, const char* subject,
-               std::vector<std::string>& warnings);
+Tip to_tip_for(vtkImageData* image, vtkDataArray* heights, const HeightField& scan,
+               const char* subject, std::vector<std::string>& warnings);
 
 /// The structuring function about (0, 0), NaN where the tip has no sample.
 vtkSmartPointer<vtkImageData> to_vtk(const Tip& tip);
 
-}   // namespace surf::pv
+}  // namespace surf::pv

@@ -15,7 +15,8 @@ namespace surf::pv {
 namespace {
 
 template <class Array, class Value>
-void add_line_array(vtkPolyData* data, const char* name, const std::vector<Track>& tracks, const Value& value) {
+void add_line_array(vtkPolyData* data, const char* name, const std::vector<Track>& tracks,
+                    const Value& value) {
   vtkNew<Array> array;
   array->SetName(name);
   for (const Track& track : tracks) array->InsertNextValue(value(track));
@@ -47,10 +48,14 @@ vtkSmartPointer<vtkPolyData> to_vtk(const std::vector<Track>& tracks) {
   data->GetPointData()->AddArray(energy);
   data->GetPointData()->SetActiveScalars("energy_ev");
   data->GetPointData()->AddArray(take_array<vtkIntArray>(std::move(materials), "material"));
-  add_line_array<vtkIntArray>(data, "kind", tracks, [](const Track& t) { return static_cast<int>(t.kind); });
-  add_line_array<vtkIntArray>(data, "secondary", tracks, [](const Track& t) { return t.secondary ? 1 : 0; });
-  add_line_array<vtkIntArray>(data, "generation", tracks, [](const Track& t) { return t.generation; });
-  add_line_array<vtkTypeInt64Array>(data, "electron", tracks, [](const Track& t) { return t.electron; });
+  add_line_array<vtkIntArray>(data, "kind", tracks,
+                              [](const Track& t) { return static_cast<int>(t.kind); });
+  add_line_array<vtkIntArray>(data, "secondary", tracks,
+                              [](const Track& t) { return t.secondary ? 1 : 0; });
+  add_line_array<vtkIntArray>(data, "generation", tracks,
+                              [](const Track& t) { return t.generation; });
+  add_line_array<vtkTypeInt64Array>(data, "electron", tracks,
+                                    [](const Track& t) { return t.electron; });
   add_line_array<vtkIntArray>(data, "number", tracks, [](const Track& t) { return t.number; });
   add_line_array<vtkIntArray>(data, "parent", tracks, [](const Track& t) { return t.parent; });
   return data;

@@ -10,8 +10,8 @@
 
 namespace surf::pv {
 
-/// Polylines with the arrays of the files that `semsurf simulate --trajectories` writes: energy_ev and material at
-/// points; kind, secondary, generation, electron, number and parent of lines.
+/// Polylines with the arrays of the files that `semsurf simulate --trajectories` writes: energy_ev
+/// and material at points; kind, secondary, generation, electron, number and parent of lines.
 vtkSmartPointer<vtkPolyData> to_vtk(const std::vector<Track>& tracks);
 
 }  // namespace surf::pv

@@ -11,10 +11,11 @@
 namespace surf::pv {
 
 Affine to_affine(const double v[6]) {
-  constexpr double most = 1e9;   // nm: what lies farther away is no image's
+  constexpr double most = 1e9;  // nm: what lies farther away is no image's
   for (int i = 0; i < 6; ++i)
     if (!(std::abs(v[i]) <= most))
-      throw UsageError("Transform", fmt::format("{} is no number within +-{}", v[i], most), "Give 1 0 0 0 1 0 for none");
+      throw UsageError("Transform", fmt::format("{} is no number within +-{}", v[i], most),
+                       "Give 1 0 0 0 1 0 for none");
   const Affine map{v[0], v[1], v[2], v[3], v[4], v[5]};
   try {
     inverse(map);
@@ -26,7 +27,8 @@ Affine to_affine(const double v[6]) {
 
 std::string text_of(const Affine& m) {
   std::string text;
-  for (const double value : {m.xx, m.xy, m.x0, m.yx, m.yy, m.y0}) text += fmt::format("{}{}", text.empty() ? "" : " ", format_exact(value));
+  for (const double value : {m.xx, m.xy, m.x0, m.yx, m.yy, m.y0})
+    text += fmt::format("{}{}", text.empty() ? "" : " ", format_exact(value));
   return text;
 }
 

@@ -8,7 +8,8 @@
 
 namespace surf::pv {
 
-/// Six numbers, xx xy x0 yx yy y0, as properties hold them. Throws UsageError naming Transform if there is no way back.
+/// Six numbers, xx xy x0 yx yy y0, as properties hold them. Throws UsageError naming Transform if
+/// there is no way back.
 Affine to_affine(const double numbers[6]);
 
 /// The same as text, for field data.

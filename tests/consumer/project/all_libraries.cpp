@@ -14,7 +14,8 @@
 int main() {
   using namespace surf;
   const auto& silicon = io::find_material("Si", "material");
-  const auto scan = workflow::resolve_scan({.width = 8, .height = 8}, {{0, 0, 0}, {80, 80, 10}}, {});
+  const auto scan =
+      workflow::resolve_scan({.width = 8, .height = 8}, {{0, 0, 0}, {80, 80, 10}}, {});
   std::printf("%s, %zu mechanisms, %s a pixel\n", silicon.name.c_str(),
               mc::describe({}, silicon).size(), format_length(scan.pixel_x_nm).c_str());
   // Modules are linked, not looked for beside this program: else these throw.

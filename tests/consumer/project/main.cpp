@@ -8,7 +8,7 @@
 
 int main() {
   using namespace surf;
-  mc::MaterialDraft gold;   // what is not given here is estimated
+  mc::MaterialDraft gold;  // what is not given here is estimated
   gold.name = "Au";
   gold.density_g_cm3 = 19.3;
   gold.formula = mc::parse_formula("Au", "gold");

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What Gwyddion 2.62 (libgwyprocess) gives for a real scan, ../shared/data/afm/Park_034.gwy, where its
-// definitions are ours. Where they differ:
+// What Gwyddion 2.62 (libgwyprocess) gives for a real scan, ../shared/data/afm/Park_034.gwy, where
+// its definitions are ours. Where they differ:
 // - its dilation and erosion take the physical tip, apex up, the structuring function turned by 180
 //   degrees; what its blind reconstruction gives is the structuring function itself;
 // - its heights are quantised to a 10,000th of their range for blind tips;
-// - beyond the border its morphology repeats the edge, ours takes what is known: compared inside only;
+// - beyond the border its morphology repeats the edge, ours takes what is known: compared inside
+// only;
 // - its median filter is compared in bench_level alone (docs/methods/levelling.md).
 #include <cmath>
 
@@ -24,7 +25,7 @@ class GwyddionNumbers : public test::RealFiles {
     RealFiles::SetUp();
     if (IsSkipped()) return;
     scan_ = read_height_field(root_ / "afm" / "Park_034.gwy").field;
-    scan_.pitch_x_nm = scan_.pitch_y_nm = 1;   // as there: one unit per pixel
+    scan_.pitch_x_nm = scan_.pitch_y_nm = 1;  // as there: one unit per pixel
   }
 
   // By column and row from the top, as there.
@@ -48,7 +49,8 @@ Tip lopsided() {
   for (int row = 0; row < 9; ++row)
     for (int column = 0; column < 9; ++column) {
       const double x = column - 4, y = row - 4;
-      physical.z_nm(column, 8 - row) = -(x * x + 0.5 * y * y + 0.25 * x * y) * 0.1 - 0.05 * std::max(0.0, x);
+      physical.z_nm(column, 8 - row) =
+          -(x * x + 0.5 * y * y + 0.25 * x * y) * 0.1 - 0.05 * std::max(0.0, x);
     }
   return physical;
 }
@@ -63,18 +65,25 @@ TEST_F(GwyddionNumbers, RoughnessOfTheScan) {
 
 TEST_F(GwyddionNumbers, DilationAndErosion) {
   const HeightField dilated = dilate(scan_, reflected(lopsided()));
-  for (const Probe& p : {Probe{30, 40, 0.340509653}, {100, 65, 4.48717594}, {128, 128, 0.244122708},
-                         {200, 31, 0.463562047}, {77, 213, 0.0763024449}})
+  for (const Probe& p : {Probe{30, 40, 0.340509653},
+                         {100, 65, 4.48717594},
+                         {128, 128, 0.244122708},
+                         {200, 31, 0.463562047},
+                         {77, 213, 0.0763024449}})
     EXPECT_NEAR(at(dilated, p.column, p.row), p.z_nm, 1e-6) << p.column << " " << p.row;
   const HeightField eroded = erode(scan_, reflected(lopsided()));
-  for (const Probe& p : {Probe{30, 40, -0.738089323}, {100, 65, -2.33930426}, {128, 128, -1.71547174},
-                         {200, 31, -1.38664594}, {77, 213, -1.71035519}})
+  for (const Probe& p : {Probe{30, 40, -0.738089323},
+                         {100, 65, -2.33930426},
+                         {128, 128, -1.71547174},
+                         {200, 31, -1.38664594},
+                         {77, 213, -1.71035519}})
     EXPECT_NEAR(at(eroded, p.column, p.row), p.z_nm, 1e-6) << p.column << " " << p.row;
 }
 
 // gwy_tip_estimate_partial, then _full, threshold 0.3 nm, no border.
 TEST_F(GwyddionNumbers, BlindTip) {
-  constexpr double theirs[9][9] = {   // rows from the top
+  constexpr double theirs[9][9] = {
+      // rows from the top
       {-9.67466, -8.82569, -8.38686, -8.47893, -8.63557, -8.78623, -9.63639, -10.43873, -10.65037},
       {-9.17006, -7.89541, -7.05003, -6.72240, -7.35374, -7.78540, -9.17604, -10.22350, -10.57624},
       {-8.72764, -7.31548, -5.64504, -4.97663, -5.09023, -6.20704, -7.65507, -9.04570, -9.73444},
@@ -84,7 +93,7 @@ TEST_F(GwyddionNumbers, BlindTip) {
       {-7.74953, -6.47488, -4.83673, -3.91243, -3.60513, -4.43736, -6.24411, -7.40277, -8.26130},
       {-7.52234, -6.69131, -6.07192, -5.25763, -5.27317, -5.82082, -6.70088, -7.54028, -8.51719},
       {-8.15967, -7.41592, -6.95437, -6.72718, -6.60402, -7.12297, -7.98150, -8.50165, -8.63557}};
-  constexpr double quantum_nm = 12.0 / 10000;   // of the scan's range
+  constexpr double quantum_nm = 12.0 / 10000;  // of the scan's range
   BlindTipOptions options;
   options.width = options.height = 9;
   options.threshold_nm = 0.3;
@@ -93,7 +102,8 @@ TEST_F(GwyddionNumbers, BlindTip) {
   const Tip tip = blind_tip({scan_}, options, summary);
   for (int row = 0; row < 9; ++row)
     for (int column = 0; column < 9; ++column)
-      EXPECT_NEAR(tip.z_nm(column, 8 - row), theirs[row][column], 3 * quantum_nm) << column << " " << row;
+      EXPECT_NEAR(tip.z_nm(column, 8 - row), theirs[row][column], 3 * quantum_nm)
+          << column << " " << row;
 }
 
 }  // namespace

@@ -51,15 +51,19 @@ void expect_same(const HeightField& field, const HeightField& expected, double t
 class HeightFieldFormats : public testing::TestWithParam<const char*> {
  protected:
   void SetUp() override {
-    if (std::string(GetParam()) == ".vti" && image_library_versions().find("VTK") == std::string::npos)
+    if (std::string(GetParam()) == ".vti" &&
+        image_library_versions().find("VTK") == std::string::npos)
       GTEST_SKIP() << "built without VTK";
   }
-  std::filesystem::path file(const std::string& stem = "f") const { return folder_.path() / (stem + GetParam()); }
+  std::filesystem::path file(const std::string& stem = "f") const {
+    return folder_.path() / (stem + GetParam());
+  }
   TemporaryFolder folder_;
 };
 
 TEST_P(HeightFieldFormats, KeepsTheF) {
-  const std::map<std::string, std::string> metadata{{"semsurf.version", "1.2"}, {"title", "a=b \\ \xC3\xA9\nsecond"}};
+  const std::map<std::string, std::string> metadata{{"semsurf.version", "1.2"},
+                                                    {"title", "a=b \\ \xC3\xA9\nsecond"}};
   write_height_field(file(), field_of_f(), metadata);
   const HeightFieldFile read = read_height_field(file());
   const double tolerance = std::string(GetParam()) == ".txt" ? 0 : 1e-6;
@@ -80,12 +84,14 @@ TEST_P(HeightFieldFormats, AllHolesAreRefused) {
   HeightField field = field_of_f();
   field.valid = Grid<unsigned char>(5, 7);
   write_height_field(file(), field);
-  EXPECT_THAT(test::complaint<InvalidInput>([&] { read_height_field(file()); }), HasSubstr("no pixel of its channel"));
+  EXPECT_THAT(test::complaint<InvalidInput>([&] { read_height_field(file()); }),
+              HasSubstr("no pixel of its channel"));
 }
 
-/// Whether a text file cut off here has a last row of fewer than the five numbers of those before it, or no row.
+/// Whether a text file cut off here has a last row of fewer than the five numbers of those before
+/// it, or no row.
 bool ends_within_a_row(const std::string& start) {
-  const std::size_t line = start.rfind('\n') + 1;   // npos + 1 is 0
+  const std::size_t line = start.rfind('\n') + 1;  // npos + 1 is 0
   const std::string last = start.substr(line);
   if (last.starts_with('#') || start.empty()) return true;
   const bool is_first = line == 0 || start[start.rfind('\n', line - 2) + 1] == '#';
@@ -101,8 +107,8 @@ TEST_P(HeightFieldFormats, CutOffFilesAreRefused) {
   std::size_t cut = 0;
   for (std::size_t size = 0; size < content.size() - 8; size += is_text ? 1 : 13) {
     SCOPED_TRACE(size);
-    // Text that ends with a row, or within its last number, is a smaller matrix or another number. Elsewhere
-    // within a row it is no matrix.
+    // Text that ends with a row, or within its last number, is a smaller matrix or another number.
+    // Elsewhere within a row it is no matrix.
     const std::string start = content.substr(0, size);
     if (is_text && !ends_within_a_row(start)) continue;
     ++cut;
@@ -127,15 +133,18 @@ std::string gsf_of(const std::string& header, const std::vector<float>& values) 
 
 class HeightFieldText : public testing::Test {
  protected:
-  HeightFieldFile read(const std::string& content, const char* name = "a.txt", const HeightReadOptions& options = {}) {
+  HeightFieldFile read(const std::string& content, const char* name = "a.txt",
+                       const HeightReadOptions& options = {}) {
     return read_height_field(test::write(folder_.path() / name, content), options);
   }
   TemporaryFolder folder_;
 };
 
 TEST_F(HeightFieldText, GsfOfOthersKeepsUnitsAndOblongPixels) {
-  const auto file = read(gsf_of("XRes = 2\nYRes=3\nXReal = 4e-6\nYReal = 3\nXYUnits = um\nZUnits = mm\nTitle = H\n",
-                                {1, 2, 3, 4, 5, 6}), "a.gsf");
+  const auto file = read(
+      gsf_of("XRes = 2\nYRes=3\nXReal = 4e-6\nYReal = 3\nXYUnits = um\nZUnits = mm\nTitle = H\n",
+             {1, 2, 3, 4, 5, 6}),
+      "a.gsf");
   EXPECT_DOUBLE_EQ(file.field.pitch_x_nm, 2e-3);
   EXPECT_DOUBLE_EQ(file.field.pitch_y_nm, 1e3);
   EXPECT_DOUBLE_EQ(file.field.z_nm(0, 2), 1e6);
@@ -163,24 +172,27 @@ TEST_F(HeightFieldText, CommasArePointsOnlyWhereTheyMustBe) {
 }
 
 TEST_F(HeightFieldText, BadTextNamesItsLine) {
-  EXPECT_THAT(test::complaint<FileError>([&] { read("1 2\n3 4 5\n"); }), HasSubstr("a.txt, line 2"));
+  EXPECT_THAT(test::complaint<FileError>([&] { read("1 2\n3 4 5\n"); }),
+              HasSubstr("a.txt, line 2"));
   EXPECT_THAT(test::complaint<FileError>([&] { read("1 2\n3 x\n"); }), HasSubstr("a.txt, line 2"));
   EXPECT_THAT(test::complaint<FileError>([&] { read("hello\n"); }), HasSubstr("no numbers"));
   EXPECT_THAT(test::complaint<FileError>([&] { read(""); }), HasSubstr("empty"));
   EXPECT_THAT(test::complaint<InvalidInput>([&] { read("1 2 3 4\n"); }), HasSubstr("4 x 1"));
-  EXPECT_THAT(test::complaint<InvalidInput>([&] { read("nan nan\nnan nan\n"); }), HasSubstr("no pixel"));
+  EXPECT_THAT(test::complaint<InvalidInput>([&] { read("nan nan\nnan nan\n"); }),
+              HasSubstr("no pixel"));
 }
 
 TEST_F(HeightFieldText, SizesAreCheckedBeforeMemoryIsTaken) {
-  for (const char* sizes : {"XRes = 1000000\nYRes = 1000000\n", "XRes = -1\nYRes = 2\n", "XRes = 2\n",
-                            "XRes = 1e300\nYRes = 2\n", "XRes = 2.5\nYRes = 2\n"}) {
+  for (const char* sizes : {"XRes = 1000000\nYRes = 1000000\n", "XRes = -1\nYRes = 2\n",
+                            "XRes = 2\n", "XRes = 1e300\nYRes = 2\n", "XRes = 2.5\nYRes = 2\n"}) {
     SCOPED_TRACE(sizes);
     test::complaint<FileError>([&] { read(gsf_of(sizes, {1, 2, 3, 4}), "a.gsf"); });
   }
 }
 
 TEST_F(HeightFieldText, UnknownFormatsPointToGwyddion) {
-  EXPECT_THAT(test::complaint<FileError>([&] { read("no format\x01", "a.unknown"); }), HasSubstr("Gwyddion"));
+  EXPECT_THAT(test::complaint<FileError>([&] { read("no format\x01", "a.unknown"); }),
+              HasSubstr("Gwyddion"));
 }
 
 TEST_F(HeightFieldText, HeightsOfASimulatedImageAreFound) {
@@ -197,8 +209,9 @@ TEST_F(HeightFieldText, HeightsOfASimulatedImageAreFound) {
 
 TEST(HeightFieldTargets, OtherNamesAreRefused) {
   const TemporaryFolder folder;
-  EXPECT_THAT(test::complaint<UsageError>([&] { check_height_field_target(folder.path() / "a.png"); }),
-              HasSubstr(".gsf"));
+  EXPECT_THAT(
+      test::complaint<UsageError>([&] { check_height_field_target(folder.path() / "a.png"); }),
+      HasSubstr(".gsf"));
   test::complaint<UsageError>([&] { write_height_field(folder.path() / "a", field_of_f()); });
   EXPECT_EQ(test::files_in(folder.path()), 0);
 }

@@ -40,7 +40,9 @@ void expect_same(const HeightField& field, const std::vector<float>& truth) {
   for (int y = 0; y < h; ++y)
     for (int x = 0; x < w; ++x)
       if (!field.is_valid(x, y) ||
-          std::abs(field.z_nm(x, y) - truth[std::size_t(h - 1 - y) * std::size_t(w) + std::size_t(x)]) > 2e-7 * largest)
+          std::abs(field.z_nm(x, y) -
+                   truth[std::size_t(h - 1 - y) * std::size_t(w) + std::size_t(x)]) >
+              2e-7 * largest)
         ++wrong;
   EXPECT_EQ(wrong, 0);
 }
@@ -49,7 +51,7 @@ TEST_F(RealScans, EveryPixelIsThatOfAnotherReader) {
   int read = 0;
   for (const auto& entry : fs::directory_iterator(root_ / "afm")) {
     const std::string name = entry.path().filename().string();
-    if (entry.path().extension() == ".txt") continue;   // small ones, without a truth
+    if (entry.path().extension() == ".txt") continue;  // small ones, without a truth
     SCOPED_TRACE(name);
     const auto fact = facts(name);
     const HeightFieldFile file = read_height_field(entry.path());
@@ -66,8 +68,9 @@ TEST_F(RealScans, EveryPixelIsThatOfAnotherReader) {
 }
 
 TEST_F(RealScans, EveryChannelIsListedInTheFilesOrder) {
-  for (const char* name : {"AR_20211011.ibw", "AR_20211011_4ch.gwy", "CL_0deg_xcal.spm", "NanoSurf_20160301.nid",
-                           "Si_7x7_012.sxm", "di-1.di", "file.jpk-qi-image", "stp-1.stp"}) {
+  for (const char* name :
+       {"AR_20211011.ibw", "AR_20211011_4ch.gwy", "CL_0deg_xcal.spm", "NanoSurf_20160301.nid",
+        "Si_7x7_012.sxm", "di-1.di", "file.jpk-qi-image", "stp-1.stp"}) {
     SCOPED_TRACE(name);
     const auto channels = height_channels(scan(name));
     const auto known = facts(name)["all_channels"];
@@ -76,8 +79,10 @@ TEST_F(RealScans, EveryChannelIsListedInTheFilesOrder) {
       SCOPED_TRACE(i);
       EXPECT_EQ(channels[i].name, known[i]["title"].get<std::string>());
       if (!channels[i].is_height) continue;
-      const HeightField field = read_height_field(scan(name), {.channel = std::to_string(i + 1)}).field;
-      const auto [low, high] = std::minmax_element(field.z_nm.data().begin(), field.z_nm.data().end());
+      const HeightField field =
+          read_height_field(scan(name), {.channel = std::to_string(i + 1)}).field;
+      const auto [low, high] =
+          std::minmax_element(field.z_nm.data().begin(), field.z_nm.data().end());
       const double span = known[i]["max"].get<double>() - known[i]["min"].get<double>();
       EXPECT_NEAR(*low * 1e-9, known[i]["min"].get<double>(), 1e-6 * span);
       EXPECT_NEAR(*high * 1e-9, known[i]["max"].get<double>(), 1e-6 * span);
@@ -87,11 +92,14 @@ TEST_F(RealScans, EveryChannelIsListedInTheFilesOrder) {
 
 TEST_F(RealScans, WhatIsNoHeightIsReadOnlyWithAUnit) {
   const fs::path file = scan("AR_20211011.ibw");
-  const std::string said = test::complaint<InvalidInput>([&] { read_height_field(file, {.channel = "PhaseRetrace"}); });
+  const std::string said =
+      test::complaint<InvalidInput>([&] { read_height_field(file, {.channel = "PhaseRetrace"}); });
   EXPECT_THAT(said, testing::HasSubstr("deg, which is no length"));
   EXPECT_THAT(said, testing::HasSubstr("HeightRetrace"));
-  const HeightField field = read_height_field(file, {.channel = "phaseretrace", .z_unit_nm = 2}).field;
-  EXPECT_NEAR(*std::max_element(field.z_nm.data().begin(), field.z_nm.data().end()), 2 * 85.1892318725586, 1e-6);
+  const HeightField field =
+      read_height_field(file, {.channel = "phaseretrace", .z_unit_nm = 2}).field;
+  EXPECT_NEAR(*std::max_element(field.z_nm.data().begin(), field.z_nm.data().end()),
+              2 * 85.1892318725586, 1e-6);
   test::complaint<UsageError>([&] { read_height_field(file, {.channel = "Haight"}); });
 }
 
@@ -115,9 +123,9 @@ TEST_F(RealScans, SmallTextFilesAreReadAsTheyAreMeant) {
   const HeightField one = read("xyz-1.txt"), other = read("xyz-1-different-order.txt");
   EXPECT_EQ(one.z_nm.width(), 4);
   EXPECT_EQ(one.z_nm.height(), 4);
-  EXPECT_EQ(other.z_nm(1, 2), 2);   // x = 1, y = 1
+  EXPECT_EQ(other.z_nm(1, 2), 2);  // x = 1, y = 1
   const HeightField holes = read("xyz-2.txt");
-  EXPECT_FALSE(holes.is_valid(1, 3));   // x = 1, y = 0
+  EXPECT_FALSE(holes.is_valid(1, 3));  // x = 1, y = 0
   EXPECT_FALSE(holes.is_valid(2, 2));
   EXPECT_TRUE(holes.is_valid(2, 1));
 }

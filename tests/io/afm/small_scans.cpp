@@ -9,13 +9,14 @@ namespace {
 
 struct Small {
   const char* file;
-  const char* channel;           ///< what is asked for
-  const char* name;              ///< and what it is called
+  const char* channel;  ///< what is asked for
+  const char* name;     ///< and what it is called
   double pitch_x_nm, pitch_y_nm;
   double lower_left_nm, lower_right_nm, upper_left_nm, upper_right_nm;
 };
 
-constexpr double spm_nm = 3 * 20 / 65536.0, nid_nm = 2e4 / 65536, stp_nm = 13.7 / 11, park_nm = -4.5 * 1.5e-6;
+constexpr double spm_nm = 3 * 20 / 65536.0, nid_nm = 2e4 / 65536, stp_nm = 13.7 / 11,
+                 park_nm = -4.5 * 1.5e-6;
 constexpr Small small_scans[] = {
     {"gwy/small", "", "Height", 1000, 2000, 13.5, 16.5, 0, 3},
     {"gsf/small", "", "Height", 1000, 2000, 13.5, 16.5, 0, 3},
@@ -33,8 +34,8 @@ constexpr Small small_scans[] = {
 TEST(SmallScans, CornersLieWhereTheyBelong) {
   for (const Small& scan : small_scans) {
     SCOPED_TRACE(scan.file);
-    const HeightFieldFile read = read_height_field(std::filesystem::path(SEMSURF_FUZZ_CORPUS) / scan.file,
-                                                   {scan.channel, {}, {}, {}});
+    const HeightFieldFile read = read_height_field(
+        std::filesystem::path(SEMSURF_FUZZ_CORPUS) / scan.file, {scan.channel, {}, {}, {}});
     EXPECT_EQ(read.channel, scan.name);
     const HeightField& field = read.field;
     ASSERT_EQ(field.z_nm.width(), 3);
@@ -49,7 +50,8 @@ TEST(SmallScans, CornersLieWhereTheyBelong) {
 }
 
 TEST(SmallScans, AMaskOfGwyddionIsNoHole) {
-  const HeightFieldFile read = read_height_field(std::filesystem::path(SEMSURF_FUZZ_CORPUS) / "gwy/small");
+  const HeightFieldFile read =
+      read_height_field(std::filesystem::path(SEMSURF_FUZZ_CORPUS) / "gwy/small");
   EXPECT_TRUE(read.field.valid.empty());
   EXPECT_THAT(read.notes, testing::ElementsAre(testing::HasSubstr("mask")));
   EXPECT_EQ(read.metadata.at("Mode"), "tapping");
@@ -76,14 +78,17 @@ TEST(SmallScans, OtherFormatsComeThroughGwyddion) {
   EXPECT_NEAR(read.field.z_nm(2, 0), 11, 1e-9);
 }
 
-/// A program of that name in a folder of its own, which is all of the search path but /bin and /usr/bin.
+/// A program of that name in a folder of its own, which is all of the search path but /bin and
+/// /usr/bin.
 class FakeGwyddion : public testing::Test {
  protected:
   void install(const std::string& script) {
     const auto file = test::write(folder_.path() / "gwyddion", "#!/bin/sh\n" + script);
     std::filesystem::permissions(file, std::filesystem::perms::owner_all);
   }
-  std::filesystem::path scan(const std::string& name) { return test::write(folder_.path() / name, "?\x01 no mark"); }
+  std::filesystem::path scan(const std::string& name) {
+    return test::write(folder_.path() / name, "?\x01 no mark");
+  }
 
   const test::TemporaryFolder folder_;
   const std::string path_ = folder_.path().string() + ":/bin:/usr/bin";
@@ -92,7 +97,8 @@ class FakeGwyddion : public testing::Test {
 
 TEST_F(FakeGwyddion, IsAskedOnceForAllChannels) {
   const std::string counted = (folder_.path() / "runs").string();
-  install("echo run >> '" + counted + "'\nfor word; do case $word in --convert-to-gwy=*) out=${word#*=};; esac; done\ncp '" +
+  install("echo run >> '" + counted +
+          "'\nfor word; do case $word in --convert-to-gwy=*) out=${word#*=};; esac; done\ncp '" +
           SEMSURF_FUZZ_CORPUS "/gwy/small' \"$out\"\n");
   const HeightFile file(scan("a.mi"));
   ASSERT_FALSE(file.channels().empty());
@@ -104,18 +110,22 @@ TEST_F(FakeGwyddion, IsAskedOnceForAllChannels) {
 TEST_F(FakeGwyddion, MayNotKnowTheFileEither) {
   install("exit 1\n");
   const auto file = scan("a.mi");
-  EXPECT_THAT(test::complaint<UnknownScan>([&] { HeightFile{file}; }), testing::HasSubstr("neither semsurf nor Gwyddion"));
+  EXPECT_THAT(test::complaint<UnknownScan>([&] { HeightFile{file}; }),
+              testing::HasSubstr("neither semsurf nor Gwyddion"));
 }
 
 TEST_F(FakeGwyddion, IsNamedWhereItIsMissing) {
   const test::Environment nowhere{{"PATH", folder_.path().c_str()}};
   const auto file = scan("a.h5-jpk");
-  EXPECT_THAT(test::complaint<UnknownScan>([&] { HeightFile{file}; }), testing::HasSubstr("apt-get install gwyddion"));
+  EXPECT_THAT(test::complaint<UnknownScan>([&] { HeightFile{file}; }),
+              testing::HasSubstr("apt-get install gwyddion"));
 }
 
 TEST(SmallScans, NamesOfInstruments) {
-  for (const char* name : {"a.mi", "a.SDF", "b/a.h5-jpk", "a.x3p", "a.stp", "a.asd"}) EXPECT_TRUE(has_scan_name(name)) << name;
-  for (const char* name : {"a.stl", "a.pdf", "a.tif", "mi", "a.txt", "a"}) EXPECT_FALSE(has_scan_name(name)) << name;
+  for (const char* name : {"a.mi", "a.SDF", "b/a.h5-jpk", "a.x3p", "a.stp", "a.asd"})
+    EXPECT_TRUE(has_scan_name(name)) << name;
+  for (const char* name : {"a.stl", "a.pdf", "a.tif", "mi", "a.txt", "a"})
+    EXPECT_FALSE(has_scan_name(name)) << name;
 }
 
 }  // namespace

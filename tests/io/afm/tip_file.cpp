@@ -77,7 +77,7 @@ HeightField field_of(const Tip& tip, double sign, double shift) {
 TEST(TipFile, PhysicalTipsAreTurnedWhereverTheyPoint) {
   const test::TemporaryFolder folder;
   const auto file = folder.path() / "physical.txt";
-  for (const double sign : {1.0, -1.0}) {   // apex up, apex down
+  for (const double sign : {1.0, -1.0}) {  // apex up, apex down
     write_height_field(file, field_of(some_tip(), sign, 100), {{"tip", "physical"}});
     expect_same(read_tip(file), reflected(some_tip()));
   }
@@ -99,8 +99,9 @@ TEST(TipFile, AnApexMustBeOne) {
   const test::TemporaryFolder folder;
   const auto file = folder.path() / "two.txt";
   test::write(file, "0 -1 0\n-1 -2 -1\n");
-  EXPECT_THAT(test::complaint<InvalidInput>([&] { read_tip(file); }), testing::HasSubstr("2 places"));
-  test::write(file, "-1 -1 -1 -1\n-1 0 0 0\n-1 -1 -1 -1\n");   // flat, but one
+  EXPECT_THAT(test::complaint<InvalidInput>([&] { read_tip(file); }),
+              testing::HasSubstr("2 places"));
+  test::write(file, "-1 -1 -1 -1\n-1 0 0 0\n-1 -1 -1 -1\n");  // flat, but one
   const Tip tip = read_tip(file);
   EXPECT_EQ(tip.apex_x, 2);
   EXPECT_EQ(tip.apex_y, 1);
@@ -109,7 +110,7 @@ TEST(TipFile, AnApexMustBeOne) {
 TEST(TipFile, AFlatTipKeepsTheApexItWasGiven) {
   const test::TemporaryFolder folder;
   Tip tip = some_tip();
-  tip.z_nm(3, 2) = 0;   // does not touch the apex
+  tip.z_nm(3, 2) = 0;  // does not touch the apex
   write_tip(folder.path() / "a.gsf", tip);
   expect_same(read_tip(folder.path() / "a.gsf"), tip);
 }

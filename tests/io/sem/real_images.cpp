@@ -15,7 +15,8 @@ class RealSemImages : public test::RealFiles {};
 /// The pixel size that the table has of Zeiss's image is that of the screen's 1024 columns.
 double pixel_nm(const Json& truth) {
   const double table = truth.at("pixel_x_nm");
-  return truth.at("vendor") == "Zeiss SmartSEM" ? table * 1024 / truth.at("nx").get<double>() : table;
+  return truth.at("vendor") == "Zeiss SmartSEM" ? table * 1024 / truth.at("nx").get<double>()
+                                                : table;
 }
 
 std::optional<double> energy_ev(const Json& truth) {
@@ -26,7 +27,8 @@ std::optional<double> energy_ev(const Json& truth) {
 }
 
 int databar_rows(const Json& truth) {
-  if (truth.contains("strip_databar_rows")) return std::stoi(truth.at("strip_databar_rows").get<std::string>());
+  if (truth.contains("strip_databar_rows"))
+    return std::stoi(truth.at("strip_databar_rows").get<std::string>());
   if (truth.contains("full_size")) return truth.at("ny").get<int>() - 960;
   return truth.value("databar_rows", 0);
 }
@@ -41,7 +43,8 @@ TEST_F(RealSemImages, AreReadAsTheirMakersMeant) {
     SCOPED_TRACE(path);
     EXPECT_TRUE(is_sem_image_file(path));
     const SemFile file = read_sem_image(path);
-    EXPECT_EQ(file.format.substr(file.format == "Thermo/FEI" ? 7 : 0, 3), truth.at("vendor").get<std::string>().substr(0, 3));
+    EXPECT_EQ(file.format.substr(file.format == "Thermo/FEI" ? 7 : 0, 3),
+              truth.at("vendor").get<std::string>().substr(0, 3));
     EXPECT_NEAR(file.image.pitch_x_nm / pixel_nm(truth), 1, 1e-5);
     EXPECT_EQ(file.image.pitch_y_nm, file.image.pitch_x_nm);
     EXPECT_EQ(file.databar_rows, databar_rows(truth));
@@ -50,7 +53,8 @@ TEST_F(RealSemImages, AreReadAsTheirMakersMeant) {
     EXPECT_EQ(file.bits, truth.at("dtype") == "uint16" ? 16 : 8);
     EXPECT_EQ(file.energy_ev, energy_ev(truth));
     EXPECT_GT(file.working_distance_nm.value_or(0), 1e6);
-    EXPECT_THAT(truth.value("detector", truth.value("signal", "")), testing::HasSubstr(file.detector));
+    EXPECT_THAT(truth.value("detector", truth.value("signal", "")),
+                testing::HasSubstr(file.detector));
     EXPECT_FALSE(file.detector.empty());
     EXPECT_FALSE(file.instrument.empty());
   }

@@ -39,7 +39,7 @@ TEST_F(RealSemNoise, JeolObeysTheLaw) {
   EXPECT_GT(e.p, 1e-3);
   EXPECT_LT(e.bend, 0.1);
   EXPECT_LT(std::fabs(e.correlation_x), 0.05);
-  EXPECT_LT(e.noise.intercept, 0);   // the line ends above black
+  EXPECT_LT(e.noise.intercept, 0);  // the line ends above black
 }
 
 TEST_F(RealSemNoise, ThermoFisherBends) {

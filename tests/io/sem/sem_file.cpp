@@ -11,13 +11,14 @@
 namespace surf::io {
 namespace {
 
+using test::complaint;
+using test::TiffMaker;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
-using test::complaint;
-using test::TiffMaker;
 
-/// 4 x 4 pixels whose numbers are 16 * (row of the file) + column, so that turned or mirrored ones show.
+/// 4 x 4 pixels whose numbers are 16 * (row of the file) + column, so that turned or mirrored ones
+/// show.
 constexpr int side = 4;
 std::string numbered() {
   std::string pixels;
@@ -32,7 +33,9 @@ class SemFileTest : public testing::Test {
   SemFile read(const TiffMaker& tiff, const SemReadOptions& options = {}) {
     return read_sem_image(test::write(folder_.path() / "image.tif", tiff.file()), options);
   }
-  void beside(const std::string& name, const std::string& text) { test::write(folder_.path() / name, text); }
+  void beside(const std::string& name, const std::string& text) {
+    test::write(folder_.path() / name, text);
+  }
   std::filesystem::path path() const { return folder_.path() / "image.tif"; }
 
   test::TemporaryFolder folder_;
@@ -42,15 +45,17 @@ class SemFileTest : public testing::Test {
 void expect_upper_rows(const PlacedImage& image) {
   ASSERT_EQ(image.values.width(), 4);
   ASSERT_EQ(image.values.height(), 3);
-  EXPECT_EQ(image.values(0, 0), 32);   // row 2 of the file is the lowest that is left
+  EXPECT_EQ(image.values(0, 0), 32);  // row 2 of the file is the lowest that is left
   EXPECT_EQ(image.values(3, 2), 3);
   EXPECT_EQ(image.origin_x_nm, 0);
   EXPECT_EQ(image.origin_y_nm, 0);
 }
 
 const std::string fei_text =
-    "[Beam]\r\nHV=2000\r\nBeam=EBeam\r\nScan=EScan\r\n[EBeam]\r\nWD=0.0097\r\n[Scan]\r\nPixelWidth=7.5e-009\r\n"
-    "PixelHeight=8e-009\r\n[Stage]\r\nStageT=0.5\r\n[System]\r\nSystemType=Teneo\r\n[Image]\r\nResolutionX=4\r\n"
+    "[Beam]\r\nHV=2000\r\nBeam=EBeam\r\nScan=EScan\r\n[EBeam]\r\nWD=0.0097\r\n[Scan]\r\nPixelWidth="
+    "7.5e-009\r\n"
+    "PixelHeight=8e-009\r\n[Stage]\r\nStageT=0.5\r\n[System]\r\nSystemType=Teneo\r\n[Image]"
+    "\r\nResolutionX=4\r\n"
     "ResolutionY=3\r\n[Detectors]\r\nName=ETD\r\n";
 
 TEST_F(SemFileTest, ReadsThermoFisher) {
@@ -95,8 +100,10 @@ TEST_F(SemFileTest, KeepsTheDatabarWhereItIsWanted) {
 
 std::string zeiss_text(const std::string& pixel) {
   return "0\r\n0\r\n0\r\n5.824988e-009\r\n5.0e+004\r\nAP_WD\r\nWD =  3.9 mm\r\n" + pixel +
-         "AP_ACTUALKV\r\nEHT =  5.00 kV\r\nDP_DETECTOR_CHANNEL\r\nSignal A = InLens\r\nAP_STAGE_AT_T\r\n"
-         "Stage at T =   12.5 \xb0\r\nAP_DATE\r\nDate :25 Sep 2018\r\nSV_SERIAL_NUMBER\r\nSerial No. = ULTRA 55\r\n";
+         "AP_ACTUALKV\r\nEHT =  5.00 kV\r\nDP_DETECTOR_CHANNEL\r\nSignal A = "
+         "InLens\r\nAP_STAGE_AT_T\r\n"
+         "Stage at T =   12.5 \xb0\r\nAP_DATE\r\nDate :25 Sep 2018\r\nSV_SERIAL_NUMBER\r\nSerial "
+         "No. = ULTRA 55\r\n";
 }
 
 TEST_F(SemFileTest, ReadsZeissWhosePixelSizeMayBeTheScreens) {
@@ -118,7 +125,7 @@ TEST_F(SemFileTest, BelievesZeissWhereItSpeaksOfTheImage) {
   TiffMaker tiff = picture();
   tiff.text(34118, zeiss_text("AP_IMAGE_PIXEL_SIZE\r\nImage Pixel Size = 1.491 \xb5m\r\n"));
   const SemFile file = read(tiff);
-  EXPECT_DOUBLE_EQ(file.image.pitch_x_nm, 5.824988 * 1024 / 4);   // the same, with more digits
+  EXPECT_DOUBLE_EQ(file.image.pitch_x_nm, 5.824988 * 1024 / 4);  // the same, with more digits
   EXPECT_THAT(file.notes, IsEmpty());
   TiffMaker other = picture();
   other.text(34118, zeiss_text("AP_IMAGE_PIXEL_SIZE\r\nImage Pixel Size = 700.0 pm\r\n"));
@@ -131,10 +138,15 @@ std::string tescan_block(const TiffMaker& tiff, unsigned kind, const std::string
 
 TEST_F(SemFileTest, ReadsTescan) {
   TiffMaker tiff = picture();
-  const std::string picture_block = "\xff\xd8=\nPixelSizeX=3\n";   // noise that is no text
-  const std::string main = std::string("Device=MIRA3\r\nImageStripSize=1\r\nPixelSizeX=2.5e-9\r\nPixelSizeY=2.5e-9\r\n") + '\0';
-  const std::string sem = std::string("Detector=SE\r\nHV=10.0000e3\r\nStageTilt=3.0\r\nWD=13.250e-3\r\n") + '\0';
-  tiff.bytes(50431, tescan_block(tiff, 1, picture_block) + tescan_block(tiff, 2, main) + tescan_block(tiff, 3, sem));
+  const std::string picture_block = "\xff\xd8=\nPixelSizeX=3\n";  // noise that is no text
+  const std::string main =
+      std::string(
+          "Device=MIRA3\r\nImageStripSize=1\r\nPixelSizeX=2.5e-9\r\nPixelSizeY=2.5e-9\r\n") +
+      '\0';
+  const std::string sem =
+      std::string("Detector=SE\r\nHV=10.0000e3\r\nStageTilt=3.0\r\nWD=13.250e-3\r\n") + '\0';
+  tiff.bytes(50431, tescan_block(tiff, 1, picture_block) + tescan_block(tiff, 2, main) +
+                        tescan_block(tiff, 3, sem));
   const SemFile file = read(tiff);
   EXPECT_EQ(file.format, "TESCAN");
   EXPECT_DOUBLE_EQ(file.image.pitch_x_nm, 2.5);
@@ -154,8 +166,10 @@ TEST_F(SemFileTest, ReadsTescansTextBesideTheImage) {
 }
 
 TEST_F(SemFileTest, ReadsJeolsTextBesideTheImage) {
-  beside("image.txt", "$CM_SIGNAL SEI\r\n$CM_ACCEL_VOLT 1.00\r\n$$SM_WD 2.77\r\n$CM_FORMAT JEOL-SEM\r\n"
-                      "$CM_INSTRUMENT 7600F\r\n$$SM_MICRON_BAR 50\r\n$$SM_MICRON_MARKER 100nm\r\n$CM_FULL_SIZE 4 3\r\n");
+  beside("image.txt",
+         "$CM_SIGNAL SEI\r\n$CM_ACCEL_VOLT 1.00\r\n$$SM_WD 2.77\r\n$CM_FORMAT JEOL-SEM\r\n"
+         "$CM_INSTRUMENT 7600F\r\n$$SM_MICRON_BAR 50\r\n$$SM_MICRON_MARKER 100nm\r\n$CM_FULL_SIZE "
+         "4 3\r\n");
   const SemFile file = read(picture());
   EXPECT_EQ(file.format, "JEOL");
   EXPECT_DOUBLE_EQ(file.image.pitch_x_nm, 2);
@@ -178,9 +192,11 @@ std::string utf16(const std::u16string& text, bool low_byte_first) {
 
 TEST_F(SemFileTest, ReadsHitachisTextInUtf16) {
   for (const bool low_byte_first : {true, false}) {
-    beside("image.txt", utf16(u"[SemImageFile]\r\nInstructName=TM4000\r\nImageName=花粉\r\nDataSize=4x3\r\n"
-                              u"PixelSize=82.68229\r\nSignalName=BSE\r\nAcceleratingVoltage=15000 Volt\r\n"
-                              u"WorkingDistance=7920.5 um\r\nStagePositionT=1.5\r\n", low_byte_first));
+    beside("image.txt",
+           utf16(u"[SemImageFile]\r\nInstructName=TM4000\r\nImageName=花粉\r\nDataSize=4x3\r\n"
+                 u"PixelSize=82.68229\r\nSignalName=BSE\r\nAcceleratingVoltage=15000 Volt\r\n"
+                 u"WorkingDistance=7920.5 um\r\nStagePositionT=1.5\r\n",
+                 low_byte_first));
     const SemFile file = read(picture());
     EXPECT_EQ(file.format, "Hitachi");
     EXPECT_DOUBLE_EQ(file.image.pitch_x_nm, 82.68229);
@@ -194,7 +210,10 @@ TEST_F(SemFileTest, ReadsHitachisTextInUtf16) {
 
 TEST_F(SemFileTest, ReadsWhatHitachiRepeatsInTheImage) {
   TiffMaker tiff = picture();
-  tiff.bytes(40092, utf16(u"PixelSize=82.5\r\nCondition=Vacc=15.0kV Mag=x1.20k WD=7.9mm LensMode=3\r\n", true).substr(2));
+  tiff.bytes(
+      40092,
+      utf16(u"PixelSize=82.5\r\nCondition=Vacc=15.0kV Mag=x1.20k WD=7.9mm LensMode=3\r\n", true)
+          .substr(2));
   const SemFile file = read(tiff);
   EXPECT_DOUBLE_EQ(file.image.pitch_x_nm, 82.5);
   EXPECT_EQ(file.energy_ev, 15000);
@@ -204,15 +223,18 @@ TEST_F(SemFileTest, ReadsWhatHitachiRepeatsInTheImage) {
 TEST_F(SemFileTest, IsNotTakenForHeightsUnlessSomebodySaysHowHighAGreyLevelIs) {
   TiffMaker tiff = picture();
   test::write(path(), tiff.file());
-  EXPECT_NO_THROW(read_height_field(path()));   // a plain picture may hold heights
+  EXPECT_NO_THROW(read_height_field(path()));  // a plain picture may hold heights
   tiff.text(34118, zeiss_text("AP_PIXEL_SIZE\r\nPixel Size = 5.825 nm\r\n"));
   test::write(path(), tiff.file());
-  EXPECT_THAT(complaint<InvalidInput>([&] { read_height_field(path()); }),
-              testing::AllOf(HasSubstr("image.tif: it is an SEM image (Zeiss SmartSEM), and its grey levels are no heights"),
-                             HasSubstr("semsurf noise sem"), HasSubstr("scan.height_unit")));
+  EXPECT_THAT(
+      complaint<InvalidInput>([&] { read_height_field(path()); }),
+      testing::AllOf(
+          HasSubstr(
+              "image.tif: it is an SEM image (Zeiss SmartSEM), and its grey levels are no heights"),
+          HasSubstr("semsurf noise sem"), HasSubstr("scan.height_unit")));
   HeightReadOptions options;
   options.z_unit_nm = 0.5;
-  EXPECT_EQ(read_height_field(path(), options).field.z_nm(0, 0), 24);   // 48 in the lowest row
+  EXPECT_EQ(read_height_field(path(), options).field.z_nm(0, 0), 24);  // 48 in the lowest row
 }
 
 TEST_F(SemFileTest, ReadsImageJAndOme) {
@@ -223,14 +245,16 @@ TEST_F(SemFileTest, ReadsImageJAndOme) {
   EXPECT_DOUBLE_EQ(file.image.pitch_x_nm, 5);
   EXPECT_DOUBLE_EQ(file.image.pitch_y_nm, 6);
   TiffMaker ome = picture();
-  ome.text(270, "<?xml version=\"1.0\"?><OME><Pixels PhysicalSizeX=\"0.002\" PhysicalSizeY=\"3\" PhysicalSizeYUnit=\"nm\"/></OME>");
+  ome.text(270,
+           "<?xml version=\"1.0\"?><OME><Pixels PhysicalSizeX=\"0.002\" PhysicalSizeY=\"3\" "
+           "PhysicalSizeYUnit=\"nm\"/></OME>");
   EXPECT_DOUBLE_EQ(read(ome).image.pitch_x_nm, 2);
   EXPECT_DOUBLE_EQ(read(ome).image.pitch_y_nm, 3);
 }
 
 TEST_F(SemFileTest, AsksForAPixelSizeThatNobodySays) {
   TiffMaker dots = picture();
-  dots.ratio(282, 96, 1), dots.ratio(283, 96, 1);   // of a screen, not of the specimen
+  dots.ratio(282, 96, 1), dots.ratio(283, 96, 1);  // of a screen, not of the specimen
   EXPECT_THAT(complaint<UsageError>([&] { read(dots); }), HasSubstr("`sem_pixel_size=2nm`"));
   SemReadOptions options;
   options.pixel_x_nm = 3;
@@ -256,7 +280,8 @@ TEST_F(SemFileTest, TakesImpossibleNumbersForNotSaid) {
   for (const char* pixel : {"-1e-9", "0", "nan", "1e400", "inf", "", "wide"}) {
     SCOPED_TRACE(pixel);
     TiffMaker tiff = picture();
-    tiff.text(34682, fmt::format("[Beam]\nHV=-5\n[Scan]\nPixelWidth={}\n[Image]\nResolutionY=-7\n", pixel));
+    tiff.text(34682, fmt::format("[Beam]\nHV=-5\n[Scan]\nPixelWidth={}\n[Image]\nResolutionY=-7\n",
+                                 pixel));
     EXPECT_THAT(complaint<UsageError>([&] { read(tiff); }), HasSubstr("Thermo/FEI wrote"));
     SemReadOptions options;
     options.pixel_x_nm = 2;
@@ -269,7 +294,9 @@ TEST_F(SemFileTest, TakesImpossibleNumbersForNotSaid) {
 TEST_F(SemFileTest, ReadsNumbersBeforeTheirPalette) {
   TiffMaker tiff = picture();
   // Bent at both ends, and 17 is for annotations.
-  tiff.palette([](int i, int part) { return i == 17 ? (part == 0 ? 65535 : 0) : i < 3 ? 0 : 257 * i; });
+  tiff.palette([](int i, int part) {
+    return i == 17 ? (part == 0 ? 65535 : 0) : i < 3 ? 0 : 257 * i;
+  });
   SemReadOptions options;
   options.pixel_x_nm = 1;
   const SemFile file = read(tiff, options);
@@ -283,7 +310,8 @@ TEST_F(SemFileTest, ReadsNumbersBeforeTheirPalette) {
 
 Image colours(double green) {
   Image image;
-  for (const char* name : {"R", "G", "B"}) image.channels.push_back({name, "1", Grid<float>(5, 4, 9.0f)});
+  for (const char* name : {"R", "G", "B"})
+    image.channels.push_back({name, "1", Grid<float>(5, 4, 9.0f)});
   for (std::size_t i = 0; i < 20; ++i)
     for (Channel& c : image.channels) c.values.data()[i] = static_cast<float>(i);
   image.channels[1].values(2, 1) = static_cast<float>(green);
@@ -303,12 +331,14 @@ TEST_F(SemFileTest, TakesGreyPicturesInRgbAndRefusesColour) {
   Image all = colours(7);
   for (float& value : all.channels[1].values.data()) value += 3;
   write_image(exr, all);
-  EXPECT_THAT(complaint<InvalidInput>([&] { read_sem_image(exr, options); }), HasSubstr("100 % of it is in colour"));
+  EXPECT_THAT(complaint<InvalidInput>([&] { read_sem_image(exr, options); }),
+              HasSubstr("100 % of it is in colour"));
 }
 
 TEST_F(SemFileTest, ReadsSemsurfsOwnImagesWhereTheyLie) {
   Image image;
-  image.channels = {{"SE", "1", Grid<float>(5, 4, 0.5f)}, {"BSE", "1", Grid<float>(5, 4, 0.25f)},
+  image.channels = {{"SE", "1", Grid<float>(5, 4, 0.5f)},
+                    {"BSE", "1", Grid<float>(5, 4, 0.25f)},
                     {"valid", "1", Grid<float>(5, 4, 1.0f)}};
   image.channels[2].values(4, 0) = 0;
   image.pitch_x_nm = image.pitch_y_nm = 2.5;
@@ -335,7 +365,8 @@ TEST_F(SemFileTest, ReadsSemsurfsOwnImagesWhereTheyLie) {
     bse.channel = "BSE";
     EXPECT_EQ(read_sem_image(path, bse).image.values(0, 0), 0.25);
     bse.channel = "XE";
-    EXPECT_THAT(complaint<UsageError>([&] { read_sem_image(path, bse); }), HasSubstr("SE, BSE, valid"));
+    EXPECT_THAT(complaint<UsageError>([&] { read_sem_image(path, bse); }),
+                HasSubstr("SE, BSE, valid"));
   }
 }
 

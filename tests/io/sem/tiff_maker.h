@@ -14,14 +14,17 @@ class TiffMaker {
  public:
   TiffMaker(int width, int height, std::string pixels, bool low_byte_first = true)
       : low_byte_first_(low_byte_first), pixels_(std::move(pixels)) {
-    whole(256, width), whole(257, height), whole(258, 8), whole(259, 1), whole(262, 1), whole(277, 1);
+    whole(256, width), whole(257, height), whole(258, 8), whole(259, 1), whole(262, 1),
+        whole(277, 1);
     whole(278, height);
   }
 
   void whole(int tag, unsigned value) { tags_[tag] = {3, 1, number(value, 2)}; }
   void text(int tag, const std::string& value) { tags_[tag] = {2, value.size() + 1, value + '\0'}; }
   void bytes(int tag, const std::string& value) { tags_[tag] = {1, value.size(), value}; }
-  void ratio(int tag, unsigned above, unsigned below) { tags_[tag] = {5, 1, number(above, 4) + number(below, 4)}; }
+  void ratio(int tag, unsigned above, unsigned below) {
+    tags_[tag] = {5, 1, number(above, 4) + number(below, 4)};
+  }
 
   /// Shown through a palette: `red(i)` and so on of 256 entries.
   template <class Colour>

@@ -35,17 +35,17 @@ TEST(Materials, SiliconIsSilicon) {
 }
 
 TEST(Materials, UnknownNamesAreAnsweredWithTheNearestFirst) {
-  EXPECT_THAT(test::complaint<UsageError>([] { find_material("si", "--material"); }),
-              testing::AllOf(HasSubstr("--material: "), HasSubstr("'si'"),
-                             HasSubstr("Choose one of: Si")));
+  EXPECT_THAT(
+      test::complaint<UsageError>([] { find_material("si", "--material"); }),
+      testing::AllOf(HasSubstr("--material: "), HasSubstr("'si'"), HasSubstr("Choose one of: Si")));
 }
 
 TEST(Materials, AreAllThatAreKnown) {
   std::vector<std::string> names;
   for (const mc::Material& material : builtin_materials()) names.push_back(material.name);
-  EXPECT_THAT(names, testing::ElementsAre("Si", "SiO2", "C", "graphite", "Al", "Cu", "Au", "Ag", "W",
-                                          "Ge", "Ti", "TiO2", "Cr", "Ni", "Mo", "Pt", "Fe", "Ta",
-                                          "PMMA"));
+  EXPECT_THAT(names,
+              testing::ElementsAre("Si", "SiO2", "C", "graphite", "Al", "Cu", "Au", "Ag", "W", "Ge",
+                                   "Ti", "TiO2", "Cr", "Ni", "Mo", "Pt", "Fe", "Ta", "PMMA"));
 }
 
 // Only E_b may be missing in the file, and is not called fitted then.
@@ -118,10 +118,14 @@ TEST_F(MaterialFileTest, ReplacesOnesOfTheSameNameAndSaysSo) {
 }
 
 TEST_F(MaterialFileTest, TakesWhatLossesInEventsNeed) {
-  test::write(folder_.path() / "nitride.csv", "# made for a test; source: me\n# 100 400 -1\n5,0.1\n20,1\n24,1.2\n40,0.2\n100,0.02\n1000,1e-5\n");
+  test::write(folder_.path() / "nitride.csv",
+              "# made for a test; source: me\n# 100 400 "
+              "-1\n5,0.1\n20,1\n24,1.2\n40,0.2\n100,0.02\n1000,1e-5\n");
   read(std::string(nitride) +
-       "band_gap_ev = 5.3\n[material.dielectric]\nenergy_loss_function = \"nitride.csv\"\nfilled_band_ev = 8\nvacuum_ev = \"7.3eV\"\n"
-       "sound_m_s = [11000, 6200]\ndeformation_ev = [8, 5]\noptical_phonons = [{ energy_ev = 0.11, high_permittivity = 4, "
+       "band_gap_ev = 5.3\n[material.dielectric]\nenergy_loss_function = "
+       "\"nitride.csv\"\nfilled_band_ev = 8\nvacuum_ev = \"7.3eV\"\n"
+       "sound_m_s = [11000, 6200]\ndeformation_ev = [8, 5]\noptical_phonons = [{ energy_ev = 0.11, "
+       "high_permittivity = 4, "
        "low_permittivity = 7.5 }]\ntrap_per_nm = 0.1\ntrap_ev = 1\nsources = \"a test\"\n");
   const mc::DielectricData& d = *library_.find("nitride", "test").dielectric;
   EXPECT_EQ(d.elf.source(), "me");
@@ -141,19 +145,26 @@ TEST_F(MaterialFileTest, TakesWhatLossesInEventsNeed) {
 TEST_F(MaterialFileTest, NamesMistakesInWhatLossesInEventsNeed) {
   const std::string start = std::string(nitride) + "band_gap_ev = 5.3\n[material.dielectric]\n";
   EXPECT_THAT(refused<FileError>(start + "energy_loss = \"x.csv\"\n"), HasSubstr("energy_loss"));
-  EXPECT_THAT(refused<FileError>(start + "energy_loss_function = \"missing.csv\"\n"), HasSubstr("missing.csv"));
-  EXPECT_THAT(refused<UsageError>(start + "sound_m_s = [1000, 2000]\ndeformation_ev = [3]\n"), HasSubstr("as many as in sound_m_s"));
-  EXPECT_THAT(refused<UsageError>(start + "sound_m_s = [1000, 2000, 3000]\n"), HasSubstr("3 speeds"));
-  EXPECT_THAT(refused<FileError>(start + "optical_phonons = [{ energy_ev = 0.1 }]\n"), HasSubstr("high_permittivity"));
-  EXPECT_THAT(refused<InvalidInput>(start + "filled_band_ev = 1000\n"), HasSubstr("dielectric.filled_band_ev is 1000"));
+  EXPECT_THAT(refused<FileError>(start + "energy_loss_function = \"missing.csv\"\n"),
+              HasSubstr("missing.csv"));
+  EXPECT_THAT(refused<UsageError>(start + "sound_m_s = [1000, 2000]\ndeformation_ev = [3]\n"),
+              HasSubstr("as many as in sound_m_s"));
+  EXPECT_THAT(refused<UsageError>(start + "sound_m_s = [1000, 2000, 3000]\n"),
+              HasSubstr("3 speeds"));
+  EXPECT_THAT(refused<FileError>(start + "optical_phonons = [{ energy_ev = 0.1 }]\n"),
+              HasSubstr("high_permittivity"));
+  EXPECT_THAT(refused<InvalidInput>(start + "filled_band_ev = 1000\n"),
+              HasSubstr("dielectric.filled_band_ev is 1000"));
 }
 
 TEST_F(MaterialFileTest, MistakesAreNamedWithTheirPlace) {
-  EXPECT_THAT(refused<FileError>(std::string(nitride) + "bandgap = 5\n"),
-              testing::AllOf(HasSubstr("line 5, column 1"), HasSubstr("Did you mean 'band_gap_ev'")));
+  EXPECT_THAT(
+      refused<FileError>(std::string(nitride) + "bandgap = 5\n"),
+      testing::AllOf(HasSubstr("line 5, column 1"), HasSubstr("Did you mean 'band_gap_ev'")));
   EXPECT_THAT(refused<FileError>("[substrate]\n"), HasSubstr("'substrate' is not known"));
   EXPECT_THAT(refused<FileError>(""), HasSubstr("holds no material"));
-  EXPECT_THAT(refused<FileError>("[[material]]\nformula = \"Si\"\n"), HasSubstr("'name' is missing"));
+  EXPECT_THAT(refused<FileError>("[[material]]\nformula = \"Si\"\n"),
+              HasSubstr("'name' is missing"));
   EXPECT_THAT(refused<FileError>("[[material]]\nname = \"a\"\n"),
               HasSubstr("either 'formula' or 'elements'"));
   EXPECT_THAT(refused<FileError>("[[material]]\nname = \"a\"\nformula = \"Si\"\nelements = []\n"),
@@ -170,7 +181,8 @@ TEST_F(MaterialFileTest, MistakesAreNamedWithTheirPlace) {
   EXPECT_THAT(refused<InvalidInput>(start + "formula = \"Si\"\nband_gap_ev = -1"),
               testing::AllOf(HasSubstr("line 1, material[1]"), HasSubstr("material a"),
                              HasSubstr("band_gap_ev is -1")));
-  EXPECT_THAT(refused<UsageError>(std::string(nitride) + nitride), HasSubstr("two materials 'nitride'"));
+  EXPECT_THAT(refused<UsageError>(std::string(nitride) + nitride),
+              HasSubstr("two materials 'nitride'"));
   EXPECT_THAT(refused<UsageError>("[[material]]\nname = \"\"\nformula = \"Si\"\n"),
               HasSubstr("name is empty"));
 }

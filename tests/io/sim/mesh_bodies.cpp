@@ -61,16 +61,19 @@ TEST_F(MeshBodies, MeaningsComeFirst) {
 }
 
 TEST_F(MeshBodies, RefusesNamesThatMeanNothing) {
-  EXPECT_THAT(complaint<UsageError>([&] {
-                read_mesh_bodies(path_, {1.0, true}, {.meaning = {{"pain", "C"}}, .subject = "--materials"});
-              }),
-              testing::AllOf(HasSubstr("--materials"), HasSubstr("'pain'"),
-                             HasSubstr("paint, Au")));
+  EXPECT_THAT(
+      complaint<UsageError>([&] {
+        read_mesh_bodies(path_, {1.0, true},
+                         {.meaning = {{"pain", "C"}}, .subject = "--materials"});
+      }),
+      testing::AllOf(HasSubstr("--materials"), HasSubstr("'pain'"), HasSubstr("paint, Au")));
   EXPECT_THAT(complaint<UsageError>([&] {
                 read_mesh_bodies(path_, {1.0, true}, {.meaning = {{"paint", "Xx"}}});
               }),
               HasSubstr("Xx"));
-  EXPECT_THAT(complaint<UsageError>([&] { read_mesh_bodies(path_, {1.0, true}, {.fallback = "Xx"}); }),
+  EXPECT_THAT(complaint<UsageError>([&] {
+                read_mesh_bodies(path_, {1.0, true}, {.fallback = "Xx"});
+              }),
               HasSubstr("Xx"));
 }
 
@@ -116,7 +119,8 @@ TEST_F(MeshBodies, SceneFilesTakeThemAll) {
   EXPECT_EQ(bounds(specimen.bodies[1].mesh).lower_nm.z, 11) << "moved";
   EXPECT_EQ(bounds(specimen.bodies[4].mesh).lower_nm.z, 1e10) << "in metres";
 
-  write(scene_path, "[[body]]\nmesh = \"three.glb\"\nmaterial = \"Si\"\nmaterials = { x = \"C\" }\n");
+  write(scene_path,
+        "[[body]]\nmesh = \"three.glb\"\nmaterial = \"Si\"\nmaterials = { x = \"C\" }\n");
   EXPECT_THAT(complaint<UsageError>([&] { read_scene(scene_path); }),
               testing::AllOf(HasSubstr("body[1].materials"), HasSubstr("'x'")));
 }

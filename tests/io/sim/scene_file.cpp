@@ -130,7 +130,10 @@ TEST_F(SceneFileTest, ReadsEverything) {
 TEST_F(SceneFileTest, TurnsBodiesAboutEachAxis) {
   const auto corner = [&](const char* turns) {
     return read(std::string("[[body]]\nmaterial = \"Si\"\nshape = \"box\"\nlower = [0, 0, 0]\n"
-                            "upper = [1, 2, 3]\n") + turns).specimen.bodies[0].mesh;
+                            "upper = [1, 2, 3]\n") +
+                turns)
+        .specimen.bodies[0]
+        .mesh;
   };
   const auto box = [&](const char* turns) { return bounds(corner(turns)); };
   // x to y to z to x, a quarter turn each.
@@ -173,8 +176,9 @@ TEST_F(SceneFileTest, ReadsShapesOfFields) {
 }
 
 TEST_F(SceneFileTest, ReadsCones) {
-  const mc::Body body = read("[[body]]\nmaterial = \"Si\"\nshape = \"cone\"\nbase = [1, 2, 3]\n"
-                             "bottom_radius = 5\ntop_radius = 2\nheight = 7\nsegments = 12")
+  const mc::Body body = read(
+                            "[[body]]\nmaterial = \"Si\"\nshape = \"cone\"\nbase = [1, 2, 3]\n"
+                            "bottom_radius = 5\ntop_radius = 2\nheight = 7\nsegments = 12")
                             .specimen.bodies.at(0);
   EXPECT_EQ(body.name, "cone");
   EXPECT_EQ(body.mesh.vertices_nm, make_cone({1, 2, 3}, 5, 2, 7, 12).vertices_nm);
@@ -187,7 +191,7 @@ TEST_F(SceneFileTest, ReadsFieldsFromImages) {
         .specimen.height_field->field;
   };
   const HeightField plain = read_field("");
-  EXPECT_EQ(plain.z_nm(2, 3), 1);   // the F's middle stroke
+  EXPECT_EQ(plain.z_nm(2, 3), 1);  // the F's middle stroke
   EXPECT_EQ(plain.pitch_x_nm, 1.25);
   EXPECT_EQ(plain.origin_x_nm, -100.0 / 3);
   const HeightField other = read_field("channel = \"A_z\"\nz_unit = \"um\"\npixel_size = \"2nm\"");
@@ -246,16 +250,21 @@ TEST_F(SceneFileTest, SyntaxErrorsHaveLineAndColumn) {
 }
 
 TEST_F(SceneFileTest, UnknownKeysAreErrorsWithASuggestion) {
-  EXPECT_THAT(refused<FileError>("[beam]\nenergie = 1000\n"),
-              testing::AllOf(HasSubstr("line 2, column 1"),
-                             HasSubstr("'energie' is not known in beam"),
-                             HasSubstr("Did you mean 'energy'?")));
+  EXPECT_THAT(
+      refused<FileError>("[beam]\nenergie = 1000\n"),
+      testing::AllOf(HasSubstr("line 2, column 1"), HasSubstr("'energie' is not known in beam"),
+                     HasSubstr("Did you mean 'energy'?")));
   const std::string material = "[[material]]\nname = \"x\"\nformula = \"Si3N4\"\n";
-  for (const auto& [key, meant] : {std::pair{"density", "density_g_cm3"}, {"densty", "density_g_cm3"}, {"band_gap", "band_gap_ev"},
-                                   {"plasmon", "plasmon_ev"}, {"nam", "name"}})
-    EXPECT_THAT(refused<FileError>(material + key + " = 3\n"), HasSubstr(std::string("Did you mean '") + meant + "'?"));
+  for (const auto& [key, meant] : {std::pair{"density", "density_g_cm3"},
+                                   {"densty", "density_g_cm3"},
+                                   {"band_gap", "band_gap_ev"},
+                                   {"plasmon", "plasmon_ev"},
+                                   {"nam", "name"}})
+    EXPECT_THAT(refused<FileError>(material + key + " = 3\n"),
+                HasSubstr(std::string("Did you mean '") + meant + "'?"));
   EXPECT_THAT(refused<FileError>("[Beam]\n"), HasSubstr("Did you mean 'beam'?"));
-  EXPECT_THAT(refused<FileError>(std::string(substrate) + "[[body]]\nmaterial = \"Si\"\n"
+  EXPECT_THAT(refused<FileError>(std::string(substrate) +
+                                 "[[body]]\nmaterial = \"Si\"\n"
                                  "shape = \"sphere\"\nradius = 1\ncentre = [0, 0, 0]\n"),
               testing::AllOf(HasSubstr("line 7"), HasSubstr("in body[1]"),
                              HasSubstr("Did you mean 'center'?")));
@@ -285,7 +294,8 @@ TEST_F(SceneFileTest, WrongValuesAreNamedWithTheirPlace) {
   };
   expect("[beam]\nenergy = \"1 kV\"", "line 2, beam.energy", "kV");
   expect("[beam]\nenergy = true", "line 2, beam.energy", "neither");
-  expect("[beam]\nenergy = 1e3\ntilt = 91", "line 3, beam.tilt: '91' is out of range", "below 90deg");
+  expect("[beam]\nenergy = 1e3\ntilt = 91", "line 3, beam.tilt: '91' is out of range",
+         "below 90deg");
   expect("[beam]\nenergy = nan", "line 2, beam.energy", "neither");
   expect("[beam]\ntilt = 95", "line 2, beam.tilt", "95");
   expect("beam = 3", "line 1, beam", "not a table");
@@ -306,7 +316,8 @@ TEST_F(SceneFileTest, WrongValuesAreNamedWithTheirPlace) {
   expect("[simulation]\ncutoff = \"-5eV\"", "simulation.cutoff", "-5 eV is outside 0.5 eV to");
   expect("[simulation]\ncutoff = \"40keV\"", "simulation.cutoff", "40000 eV is outside 0.5 eV to");
   expect("[simulation]\nseed = -1", "simulation.seed", "whole number");
-  expect("[simulation]\nphysics = \"elastic=mot\"", "line 2, simulation.physics: 'mot' is no choice", "mott");
+  expect("[simulation]\nphysics = \"elastic=mot\"",
+         "line 2, simulation.physics: 'mot' is no choice", "mott");
   const std::string field = "[height_field]\nmaterial = \"Si\"\n";
   expect(field + "shape = \"mesh\"", "height_field.shape", "Choose one of: mesa");
   expect(field + "shape = \"mesa\"\nedge = \"mirrored\"", "edge", "of: mirror");
@@ -346,11 +357,15 @@ TEST_F(SceneFileTest, OverridesAUnitOnlyWhereItSaysSo) {
 }
 
 TEST_F(SceneFileTest, TellsItsFilesUnread) {
-  write(path_, "[height_field]\nfile = \"a.gsf\"\n[[body]]\nmesh = \"sub/b.off\"\n[[body]]\nmesh = \"c.gltf\"\n");
-  write(folder_.path() / "c.gltf", R"({"asset":{"version":"2.0"},"buffers":[{"byteLength":1,"uri":"d.bin"}]})");
+  write(path_,
+        "[height_field]\nfile = \"a.gsf\"\n[[body]]\nmesh = \"sub/b.off\"\n[[body]]\nmesh = "
+        "\"c.gltf\"\n");
+  write(folder_.path() / "c.gltf",
+        R"({"asset":{"version":"2.0"},"buffers":[{"byteLength":1,"uri":"d.bin"}]})");
   const auto here = folder_.path();
   EXPECT_THAT(scene_input_files(path_),
-              testing::ElementsAre(path_, here / "a.gsf", here / "sub/b.off", here / "c.gltf", here / "d.bin"));
+              testing::ElementsAre(path_, here / "a.gsf", here / "sub/b.off", here / "c.gltf",
+                                   here / "d.bin"));
 }
 
 }  // namespace

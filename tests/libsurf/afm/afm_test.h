@@ -26,7 +26,8 @@ inline double random_normal(RandomStream& random) {
 }
 
 /// Rough, of multiples of `step`; a share `holes` of the samples is invalid.
-inline HeightField random_field(std::uint64_t seed, int width, int height, double step, double holes = 0) {
+inline HeightField random_field(std::uint64_t seed, int width, int height, double step,
+                                double holes = 0) {
   RandomStream random(seed, 1, 0);
   HeightField field{Grid<double>(width, height), {}, 1.5, 2, 10, -20};
   if (holes > 0) field.valid = Grid<unsigned char>(width, height, 1);
@@ -41,7 +42,8 @@ inline HeightField random_field(std::uint64_t seed, int width, int height, doubl
 }
 
 /// Asymmetric: not square, its apex off the middle, with samples it does not have.
-inline Tip random_tip(std::uint64_t seed, int width, int height, double step, double missing = 0.1) {
+inline Tip random_tip(std::uint64_t seed, int width, int height, double step,
+                      double missing = 0.1) {
   RandomStream random(seed, 2, 0);
   Tip tip{Grid<double>(width, height), 1.5, 2, width / 3, 2 * height / 3};
   for (double& z : tip.z_nm.data())

@@ -55,8 +55,10 @@ TEST(FitPolynomial, ReproducesPolynomialsOfItsDegreeFromACornerOfTheImage) {
   Grid<unsigned char> use(40, 30, 0);
   for (int y = 20; y < 30; ++y)
     for (int x = 0; x < 9; ++x) use(x, y) = 1;
-  for (const Grid<double>& fitted : {fit_polynomial(f, 3), fit_polynomial(f, 6), fit_polynomial(f, 3, use)})
-    for (std::size_t i = 0; i < fitted.size(); ++i) EXPECT_NEAR(fitted.data()[i], f.z_nm.data()[i], 1e-6);
+  for (const Grid<double>& fitted :
+       {fit_polynomial(f, 3), fit_polynomial(f, 6), fit_polynomial(f, 3, use)})
+    for (std::size_t i = 0; i < fitted.size(); ++i)
+      EXPECT_NEAR(fitted.data()[i], f.z_nm.data()[i], 1e-6);
   EXPECT_GT(std::fabs(fit_polynomial(f, 2)(0, 0) - f.z_nm(0, 0)), 0.1);
 }
 

@@ -32,7 +32,8 @@ double error_of_estimate(double alpha, double apart_nm, std::uint64_t seed) {
 double error_over(int seeds, double alpha, double apart_nm) {
   double squares = 0;
   for (int seed = 1; seed <= seeds; ++seed)
-    squares += std::pow(error_of_estimate(alpha, apart_nm, static_cast<std::uint64_t>(seed)), 2) / seeds;
+    squares +=
+        std::pow(error_of_estimate(alpha, apart_nm, static_cast<std::uint64_t>(seed)), 2) / seeds;
   return std::sqrt(squares);
 }
 
@@ -56,7 +57,7 @@ TEST(BestTip, IsTheSameForAnyThreadsAndStops) {
   CancelToken cancel;
   cancel.cancel();
   options.noise.alpha = 0;
-  best_tip(twin.scans, options, summary, {}, &cancel);   // comes back
+  best_tip(twin.scans, options, summary, {}, &cancel);  // comes back
 }
 
 }  // namespace

@@ -45,7 +45,8 @@ HeightField spikes(int pixels, std::uint64_t seed, double highest_nm = 12) {
   f.z_nm = Grid<double>(pixels, pixels);
   RandomStream random(seed, 0, 0);
   for (int k = 0; k < pixels * pixels / 40; ++k) {
-    const int x = static_cast<int>(random.uniform() * pixels), y = static_cast<int>(random.uniform() * pixels);
+    const int x = static_cast<int>(random.uniform() * pixels),
+              y = static_cast<int>(random.uniform() * pixels);
     f.z_nm(x, y) = highest_nm * random.uniform();
   }
   return f;
@@ -53,8 +54,8 @@ HeightField spikes(int pixels, std::uint64_t seed, double highest_nm = 12) {
 
 HeightField with_noise(HeightField f, double sigma_nm, std::uint64_t seed, double alpha = 0) {
   if (sigma_nm == 0) return f;
-  const Grid<double> e = simulate_noise({alpha, sigma_nm * sigma_nm * (1 - alpha * alpha)}, f.z_nm.width(),
-                                        f.z_nm.height(), seed);
+  const Grid<double> e = simulate_noise({alpha, sigma_nm * sigma_nm * (1 - alpha * alpha)},
+                                        f.z_nm.width(), f.z_nm.height(), seed);
   for (std::size_t k = 0; k < e.size(); ++k) f.z_nm.data()[k] += e.data()[k];
   return f;
 }
@@ -94,7 +95,8 @@ TEST(BlindTip, BoundsTheTipFromOutsideAndReproducesTheScan) {
       EXPECT_LT(sharper_by(tip, truth), 1e-4);
       const HeightField opened = opening(scan, tip);
       for (int y = size; y < 60 - size; ++y)
-        for (int x = size; x < 60 - size; ++x) EXPECT_NEAR(opened.z_nm(x, y), scan.z_nm(x, y), 1e-3);
+        for (int x = size; x < 60 - size; ++x)
+          EXPECT_NEAR(opened.z_nm(x, y), scan.z_nm(x, y), 1e-3);
     }
 }
 
@@ -118,7 +120,8 @@ TEST(BlindTip, IsTheSameForAnyThreadsAndScansTogetherTellMore) {
   o.threads = 3;
   EXPECT_TRUE(blind_tip({a, b}, o, summary).z_nm == both.z_nm);
   EXPECT_TRUE(blind_tip({b, a}, o, summary).z_nm == both.z_nm);
-  EXPECT_LT(sharper_by(estimate(a, options(0.5, 0.5)), both), 1e-5);   // both together are no blunter
+  EXPECT_LT(sharper_by(estimate(a, options(0.5, 0.5)), both),
+            1e-5);  // both together are no blunter
   o.start = estimate(a, options(0.5, 0.5));
   const Tip warm = blind_tip({a, b}, o, summary);
   for (std::size_t k = 0; k < both.z_nm.size(); ++k)
@@ -163,9 +166,12 @@ TEST(BlindTip, OuterThresholdBoundsTheTipInNearlyAllDraws) {
     EXPECT_LT(threshold, 12 * sigma);
     int bounded = 0;
     for (std::uint64_t seed = 1; seed <= draws; ++seed)
-      bounded += sharper_by(estimate(with_noise(dilate(spikes(50, seed), truth), sigma, seed, alpha),
-                                     options(threshold, threshold)), truth) == 0;
-    EXPECT_GE(bounded, 54);   // of 60 at 95 %: fewer have a probability of 3e-2 at most; all do, in fact
+      bounded +=
+          sharper_by(estimate(with_noise(dilate(spikes(50, seed), truth), sigma, seed, alpha),
+                              options(threshold, threshold)),
+                     truth) == 0;
+    EXPECT_GE(bounded,
+              54);  // of 60 at 95 %: fewer have a probability of 3e-2 at most; all do, in fact
   }
 }
 
@@ -191,7 +197,7 @@ TEST(BlindTip, AThresholdOfItsOwnAcrossRowsToleratesRowOffsets) {
   }
   BlindTipOptions o = options(0.02, 0.7);
   EXPECT_GT(sharper_by(estimate(scan, o), truth), 0.1);
-  o.threshold_y_nm = 4;   // directions near the row's get a share of it
+  o.threshold_y_nm = 4;  // directions near the row's get a share of it
   const Tip tip = estimate(scan, o);
   for (int i = 0; i < size; ++i) EXPECT_GE(tip.z_nm(i, radius), truth.z_nm(i, radius) - 0.03) << i;
   for (int j = 0; j < size; ++j) EXPECT_GE(tip.z_nm(radius, j), truth.z_nm(radius, j)) << j;
@@ -204,7 +210,8 @@ TEST(BlindTip, HolesAllowEverything) {
   scan.valid = Grid<unsigned char>(60, 60, 1);
   RandomStream random(1, 1, 1);
   for (int k = 0; k < 300; ++k) {
-    const int x = static_cast<int>(60 * random.uniform()), y = static_cast<int>(60 * random.uniform());
+    const int x = static_cast<int>(60 * random.uniform()),
+              y = static_cast<int>(60 * random.uniform());
     scan.valid(x, y) = 0;
     scan.z_nm(x, y) = std::nan("");
   }

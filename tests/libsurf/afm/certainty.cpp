@@ -24,7 +24,8 @@ HeightField specimen() {
   HeightField s{Grid<double>(size, size), {}, 1, 1, 0, 0};
   for (int y = 0; y < size; ++y)
     for (int x = 0; x < size; ++x)
-      s.z_nm(x, y) = 3 * std::sin(0.11 * x) * std::cos(0.07 * y) + (x > 60 && x / 16 % 2 ? 12 : 0) - (y % 40 < 4 ? 8 : 0);
+      s.z_nm(x, y) = 3 * std::sin(0.11 * x) * std::cos(0.07 * y) + (x > 60 && x / 16 % 2 ? 12 : 0) -
+                     (y % 40 < 4 ? 8 : 0);
   return s;
 }
 
@@ -35,7 +36,8 @@ HeightField noisy(HeightField image, double sigma, std::uint64_t seed) {
 }
 
 /// The definition of Pingali and Jain, word by word, on what the image shows.
-Grid<unsigned char> classical(const HeightField& image, const Grid<double>& r, const Tip& t, double tolerance) {
+Grid<unsigned char> classical(const HeightField& image, const Grid<double>& r, const Tip& t,
+                              double tolerance) {
   const int w = image.z_nm.width(), h = image.z_nm.height();
   Grid<unsigned char> certain(w, h, 0);
   for (int y = 0; y < h; ++y)
@@ -64,14 +66,15 @@ Grid<unsigned char> classical(const HeightField& image, const Grid<double>& r, c
 }
 
 struct Judged {
-  double certain = 0;   ///< share of all
-  double here = 0;      ///< share of these within the bound of the surface
-  double near = 0;      ///< ... there, or as near as the map says
+  double certain = 0;  ///< share of all
+  double here = 0;     ///< share of these within the bound of the surface
+  double near = 0;     ///< ... there, or as near as the map says
 };
 
 Judged judge(const CertaintyMap& map, const HeightField& truth, double bound) {
   const auto is_right = [&](int x, int y) {
-    return x >= 0 && y >= 0 && x < size && y < size && std::abs(map.surface.z_nm(x, y) - truth.z_nm(x, y)) <= bound;
+    return x >= 0 && y >= 0 && x < size && y < size &&
+           std::abs(map.surface.z_nm(x, y) - truth.z_nm(x, y)) <= bound;
   };
   Judged j;
   for (int y = 0; y < size; ++y)
@@ -80,7 +83,7 @@ Judged judge(const CertaintyMap& map, const HeightField& truth, double bound) {
       if (level == CertaintyMap::uncertain) continue;
       ++j.certain;
       j.here += is_right(x, y);
-      bool near = false;   // anywhere in a square of half side `level` that holds (x, y)
+      bool near = false;  // anywhere in a square of half side `level` that holds (x, y)
       for (int v = -2 * level; v <= 2 * level; ++v)
         for (int u = -2 * level; u <= 2 * level; ++u) near = near || is_right(x + u, y + v);
       j.near += near;
@@ -145,7 +148,8 @@ TEST(Certainty, BottomsTheTipDoesNotReachAreUncertain) {
   const HeightField image = noisy(dilate(truth, cone), 0.05, 3);
   const CertaintyMap map = certainty_map(image, cone, {.noise_nm = 0.05});
   for (int y = 8; y < 32; ++y)
-    for (int x = 26; x < 34; ++x) EXPECT_EQ(map.level(x, y), CertaintyMap::uncertain) << x << ", " << y;
+    for (int x = 26; x < 34; ++x)
+      EXPECT_EQ(map.level(x, y), CertaintyMap::uncertain) << x << ", " << y;
 }
 
 TEST(Certainty, NoncontactImagesKeepTheirDistance) {
@@ -179,7 +183,7 @@ TEST(Certainty, WhatTouchedOutsideIsNotTakenForInside) {
 
 TEST(Certainty, UnexplainedPixelsAreCounted) {
   HeightField image = dilate(specimen(), cone);
-  image.z_nm(40, 50) += 5;   // sharper than the tip
+  image.z_nm(40, 50) += 5;  // sharper than the tip
   const CertaintyMap map = certainty_map(image, cone, {.noise_nm = 0.1});
   EXPECT_EQ(map.unexplained, 1u);
   EXPECT_EQ(map.image_pixels, static_cast<std::size_t>(size * size));

@@ -39,12 +39,14 @@ HeightField moved(const HeightField& image, int dx, int dy, double dz) {
 TEST(Characterizer, SharpSpikesGiveTheTipAndTheOffset) {
   const Tip tip = asymmetric();
   const HeightField scan = moved(dilate(spikes(), tip), 4, -3, 17);
-  const CharacterizedTip found = tip_from_characterizer(scan, spikes(), {.width = 17, .height = 13, .search = 6});
+  const CharacterizedTip found =
+      tip_from_characterizer(scan, spikes(), {.width = 17, .height = 13, .search = 6});
   EXPECT_EQ(found.offset_x, 4);
   EXPECT_EQ(found.offset_y, -3);
   EXPECT_NEAR(found.offset_z_nm, 17, 1e-5);
   EXPECT_FALSE(found.offset_at_limit);
-  for (std::size_t i = 0; i < tip.z_nm.size(); ++i) EXPECT_NEAR(found.tip.z_nm.data()[i], tip.z_nm.data()[i], 1e-5);
+  for (std::size_t i = 0; i < tip.z_nm.size(); ++i)
+    EXPECT_NEAR(found.tip.z_nm.data()[i], tip.z_nm.data()[i], 1e-5);
   EXPECT_EQ(found.tip.apex_x, tip.apex_x);
 }
 
@@ -53,14 +55,17 @@ TEST(Characterizer, WhatItGivesIsAnUpperBoundThatReproducesTheScan) {
   for (int y = 0; y < 90; ++y)
     for (int x = 0; x < 100; ++x) steps.z_nm(x, y) = 10 * (x / 20 % 2) + 6 * (y / 25 % 2);
   const Tip tip = asymmetric();
-  const CharacterizedTip found = tip_from_characterizer(dilate(steps, tip), steps, {.width = 17, .height = 13, .search = 0});
-  for (std::size_t i = 0; i < tip.z_nm.size(); ++i) EXPECT_GE(found.tip.z_nm.data()[i], tip.z_nm.data()[i] - 1e-5);
+  const CharacterizedTip found =
+      tip_from_characterizer(dilate(steps, tip), steps, {.width = 17, .height = 13, .search = 0});
+  for (std::size_t i = 0; i < tip.z_nm.size(); ++i)
+    EXPECT_GE(found.tip.z_nm.data()[i], tip.z_nm.data()[i] - 1e-5);
   EXPECT_LT(found.residual_nm, 1e-5);
 }
 
 TEST(Characterizer, SaysWhenTheOffsetIsAtTheLimit) {
   const HeightField scan = moved(dilate(spikes(), asymmetric()), 6, 0, 0);
-  EXPECT_TRUE(tip_from_characterizer(scan, spikes(), {.width = 17, .height = 13, .search = 3}).offset_at_limit);
+  EXPECT_TRUE(tip_from_characterizer(scan, spikes(), {.width = 17, .height = 13, .search = 3})
+                  .offset_at_limit);
 }
 
 TEST(Characterizer, Refuses) {

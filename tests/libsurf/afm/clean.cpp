@@ -28,7 +28,8 @@ HeightField noisy(int width, int height, double holes) {
 }
 
 bool inside(const MedianOptions& o, int dx, int dy) {
-  return o.neighbourhood == Neighbourhood::square || dx * dx + dy * dy <= (o.radius + 0.5) * (o.radius + 0.5);
+  return o.neighbourhood == Neighbourhood::square ||
+         dx * dx + dy * dy <= (o.radius + 0.5) * (o.radius + 0.5);
 }
 
 double median_by_sorting(const HeightField& f, const MedianOptions& o, int x, int y) {
@@ -53,7 +54,8 @@ TEST(MedianFilter, IsTheSortedMiddleOfEachNeighbourhood) {
       const HeightField out = median_filter(f, o, s);
       for (int y = 0; y < 29; ++y)
         for (int x = 0; x < 37; ++x) {
-          if (f.is_valid(x, y)) EXPECT_EQ(out.z_nm(x, y), median_by_sorting(f, o, x, y)) << x << " " << y;
+          if (f.is_valid(x, y))
+            EXPECT_EQ(out.z_nm(x, y), median_by_sorting(f, o, x, y)) << x << " " << y;
           else EXPECT_TRUE(std::isnan(out.z_nm(x, y)));
         }
       EXPECT_EQ(out.valid, f.valid);
@@ -66,7 +68,8 @@ TEST(MedianFilter, GivesTheSameForAnyNumberOfThreads) {
   const HeightField f = noisy(70, 130, 0);
   CleanSummary s;
   const Grid<double> one = median_filter(f, {.radius = 3, .threads = 1}, s).z_nm;
-  for (const int threads : {2, 5}) EXPECT_EQ(median_filter(f, {.radius = 3, .threads = threads}, s).z_nm, one);
+  for (const int threads : {2, 5})
+    EXPECT_EQ(median_filter(f, {.radius = 3, .threads = threads}, s).z_nm, one);
 }
 
 TEST(MedianFilter, FillsHolesIfAskedAndIfItCan) {
@@ -172,7 +175,8 @@ TEST(FlatClosing, FillsHolesItReaches) {
 
 TEST(FlatClosing, RefusesEvenWidths) {
   CleanSummary s;
-  for (const int width : {0, 4, -3, 100001}) EXPECT_THROW(flat_closing(noisy(5, 5, 0), {.width = width}, s), UsageError);
+  for (const int width : {0, 4, -3, 100001})
+    EXPECT_THROW(flat_closing(noisy(5, 5, 0), {.width = width}, s), UsageError);
 }
 
 }  // namespace

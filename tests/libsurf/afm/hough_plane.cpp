@@ -44,7 +44,8 @@ HeightField under_pillars(int size, double share, Grid<unsigned char>& bare) {
 void expect_substrate(const HeightField& f, const HoughSummary& s, double off_nm) {
   for (const int y : {0, f.z_nm.height() - 1})
     for (const int x : {0, f.z_nm.width() - 1})
-      EXPECT_NEAR(s.plane.at(f.x_nm(x), f.y_nm(y)), 30 + slope_x * f.x_nm(x) + slope_y * f.y_nm(y), off_nm);
+      EXPECT_NEAR(s.plane.at(f.x_nm(x), f.y_nm(y)), 30 + slope_x * f.x_nm(x) + slope_y * f.y_nm(y),
+                  off_nm);
 }
 
 TEST(FindPlane, FindsASubstrateThatIsLessThanAThirdOfTheImage) {

@@ -16,8 +16,8 @@ namespace {
 
 using namespace test;
 
-constexpr double step = 0x1p-6;                       // heights are multiples of it
-const MorphologyOptions exact{.quantum_nm = 0x1p-10}; // so that nothing is rounded
+constexpr double step = 0x1p-6;                        // heights are multiples of it
+const MorphologyOptions exact{.quantum_nm = 0x1p-10};  // so that nothing is rounded
 
 void expect_equal(const HeightField& field, const Grid<double>& expected) {
   for (int y = 0; y < expected.height(); ++y)
@@ -28,13 +28,16 @@ void expect_equal(const HeightField& field, const Grid<double>& expected) {
     }
 }
 
-bool same(const HeightField& a, const HeightField& b) { return a.z_nm == b.z_nm && a.valid == b.valid; }
+bool same(const HeightField& a, const HeightField& b) {
+  return a.z_nm == b.z_nm && a.valid == b.valid;
+}
 
 // Everywhere where both are known.
 bool is_below(const HeightField& low, const HeightField& high) {
   for (int y = 0; y < low.z_nm.height(); ++y)
     for (int x = 0; x < low.z_nm.width(); ++x)
-      if (low.is_valid(x, y) && high.is_valid(x, y) && low.z_nm(x, y) > high.z_nm(x, y)) return false;
+      if (low.is_valid(x, y) && high.is_valid(x, y) && low.z_nm(x, y) > high.z_nm(x, y))
+        return false;
   return true;
 }
 
@@ -53,7 +56,8 @@ TEST(Morphology, IsTheDefinition) {
 }
 
 TEST(Morphology, KeepsPitchAndPlace) {
-  const HeightField field = random_field(3, 9, 8, step), out = dilate(field, random_tip(4, 3, 3, step));
+  const HeightField field = random_field(3, 9, 8, step),
+                    out = dilate(field, random_tip(4, 3, 3, step));
   EXPECT_EQ(out.pitch_x_nm, field.pitch_x_nm);
   EXPECT_EQ(out.pitch_y_nm, field.pitch_y_nm);
   EXPECT_EQ(out.origin_x_nm, field.origin_x_nm);
@@ -86,7 +90,7 @@ TEST(Morphology, ErosionAndDilationAreAdjoint) {
     const HeightField image = random_field(100 + seed, 12, 10, 0.5);
     const Tip tip = random_tip(300 + seed, 3, 4, 0.5);
     HeightField surface = erode(image, tip, exact);
-    RandomStream random(seed, 3, 0);   // about half the cases break the bound somewhere
+    RandomStream random(seed, 3, 0);  // about half the cases break the bound somewhere
     for (double& z : surface.z_nm.data()) z += random.uniform() < 0.006 ? 0.5 : -random.uniform();
     for (double& z : surface.z_nm.data()) z = std::floor(z * 1024) / 1024;
     const bool bounded = is_below(surface, erode(image, tip, exact));
@@ -106,7 +110,7 @@ TEST(Morphology, OpeningAndClosingAreIdempotentAndBound) {
     EXPECT_TRUE(is_below(field, closed));
     EXPECT_FALSE(is_below(field, opened));
     EXPECT_FALSE(is_below(closed, field));
-    if (holes > 0) continue;   // holes are filled by the first, and the second then sees more
+    if (holes > 0) continue;  // holes are filled by the first, and the second then sees more
     EXPECT_TRUE(same(opening(opened, tip, exact), opened));
     EXPECT_TRUE(same(closing(closed, tip, exact), closed));
     EXPECT_TRUE(same(dilate(erode(field, tip, exact), tip, exact), opened));
@@ -120,7 +124,8 @@ TEST(Morphology, OpeningReproducesADilation) {
   EXPECT_TRUE(same(opening(image, tip, exact), image));
 }
 
-// Beyond the border nothing is known: a wall just outside cannot raise the image, a pit cannot bound it.
+// Beyond the border nothing is known: a wall just outside cannot raise the image, a pit cannot
+// bound it.
 TEST(Morphology, WhatIsKnownAtTheBorderIsABoundOfTheWhole) {
   const HeightField whole = random_field(11, 40, 30, step);
   const Tip tip = random_tip(12, 7, 7, step);
@@ -166,7 +171,8 @@ TEST(Morphology, UpsampledIsTheFineOneSampled) {
         for (int x = 0; x < 14; ++x) {
           ASSERT_EQ(result.is_valid(x, y), full.is_valid(factor * x, factor * y));
           if (!result.is_valid(x, y)) continue;
-          ASSERT_NEAR(result.z_nm(x, y), full.z_nm(factor * x, factor * y), 0x1p-21);   // thirds are rounded
+          ASSERT_NEAR(result.z_nm(x, y), full.z_nm(factor * x, factor * y),
+                      0x1p-21);  // thirds are rounded
         }
     };
     expect_sampled(dilate(field, tip, options), dilate(fine, fine_tip, plain));

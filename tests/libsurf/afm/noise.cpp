@@ -22,7 +22,8 @@ Grid<unsigned char> some_holes(int width, int height) {
 }
 
 /// The density of a row by its whole covariance matrix, s^2 alpha^|i - j|, by Gaussian elimination.
-double dense_log_likelihood(const Grid<double>& e, const AfmNoise& noise, const Grid<unsigned char>& valid) {
+double dense_log_likelihood(const Grid<double>& e, const AfmNoise& noise,
+                            const Grid<unsigned char>& valid) {
   double total = 0;
   for (int y = 0; y < e.height(); ++y) {
     std::vector<int> at;
@@ -57,12 +58,14 @@ TEST(AfmNoise, HasTheVarianceAndCorrelationOfItsModelFromTheFirstColumnOn) {
       pair.add(e(x, y) * e(0, y));
     }
     test::expect_mean(square.mean(), square.standard_error(), noise.variance_nm2(), 6);
-    test::expect_mean(pair.mean(), pair.standard_error(), noise.variance_nm2() * std::pow(noise.alpha, x), 6);
+    test::expect_mean(pair.mean(), pair.standard_error(),
+                      noise.variance_nm2() * std::pow(noise.alpha, x), 6);
   }
 }
 
 TEST(AfmNoise, KeepsRowsWhenTheImageGrows) {
-  const Grid<double> small = simulate_noise({0.5, 1}, 5, 4, 3), large = simulate_noise({0.5, 1}, 9, 6, 3);
+  const Grid<double> small = simulate_noise({0.5, 1}, 5, 4, 3),
+                     large = simulate_noise({0.5, 1}, 9, 6, 3);
   for (int y = 0; y < 4; ++y)
     for (int x = 0; x < 5; ++x) EXPECT_EQ(small(x, y), large(x, y));
   EXPECT_NE(small, simulate_noise({0.5, 1}, 5, 4, 4));

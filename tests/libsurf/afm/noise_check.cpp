@@ -64,9 +64,12 @@ TEST(CheckNoise, DividesSkewnessAndKurtosisByTheirExactVariances) {
   Grid<double> e(20, 1);
   for (int x = 0; x < 20; ++x) e(x, 0) = x * x;
   const NoiseCheck c = check_noise(e);
-  const double n = 20, of_skewness = 6 * 18 / (21.0 * 23), of_kurtosis = 24 * n * 18 * 17 / (21.0 * 21 * 23 * 25);
-  EXPECT_NEAR(c.jarque_bera, c.skewness * c.skewness / of_skewness +
-                                 std::pow(c.excess_kurtosis + 6 / 21.0, 2) / of_kurtosis, 1e-12);
+  const double n = 20, of_skewness = 6 * 18 / (21.0 * 23),
+               of_kurtosis = 24 * n * 18 * 17 / (21.0 * 21 * 23 * 25);
+  EXPECT_NEAR(c.jarque_bera,
+              c.skewness * c.skewness / of_skewness +
+                  std::pow(c.excess_kurtosis + 6 / 21.0, 2) / of_kurtosis,
+              1e-12);
   EXPECT_NEAR(c.normal_p, std::exp(-c.jarque_bera / 2), 1e-12);
 }
 
@@ -89,7 +92,8 @@ TEST(CheckNoise, RefusesTooLittleAndAllEqual) {
 TEST(Autocovariance, FollowsTheModel) {
   const AfmNoise noise{0.8, 0.36};
   const std::vector<double> r = autocovariance(simulate_noise(noise, 256, 256, 1), 3);
-  for (std::size_t k = 0; k < r.size(); ++k) EXPECT_NEAR(r[k], std::pow(0.8, static_cast<double>(k)), 0.05);
+  for (std::size_t k = 0; k < r.size(); ++k)
+    EXPECT_NEAR(r[k], std::pow(0.8, static_cast<double>(k)), 0.05);
 }
 
 }  // namespace

@@ -18,10 +18,12 @@ HeightField noisy(const AfmNoise& noise, int width, int height, std::uint64_t se
 
 void add_bow(HeightField& f) {
   for (int y = 0; y < f.z_nm.height(); ++y)
-    for (int x = 0; x < f.z_nm.width(); ++x) f.z_nm(x, y) += 300 + 0.1 * x - 0.2 * y + 1e-3 * x * x + 2e-3 * x * y;
+    for (int x = 0; x < f.z_nm.width(); ++x)
+      f.z_nm(x, y) += 300 + 0.1 * x - 0.2 * y + 1e-3 * x * x + 2e-3 * x * y;
 }
 
-/// z-test over draws: the mean of many estimates, and the scatter against the stated standard errors.
+/// z-test over draws: the mean of many estimates, and the scatter against the stated standard
+/// errors.
 template <class Estimate>
 void expect_recovered(const AfmNoise& noise, const Estimate& estimate, double bias_allowed) {
   constexpr int draws = 60;
@@ -39,7 +41,8 @@ void expect_recovered(const AfmNoise& noise, const Estimate& estimate, double bi
   test::expect_mean(alpha.mean(), alpha.standard_error(), noise.alpha, 36, bias_allowed);
   test::expect_mean(innovation.mean(), innovation.standard_error(), noise.innovation_nm2, 36,
                     bias_allowed * noise.innovation_nm2);
-  test::expect_mean(sigma.mean(), sigma.standard_error(), true_sigma, 36, bias_allowed * true_sigma);
+  test::expect_mean(sigma.mean(), sigma.standard_error(), true_sigma, 36,
+                    bias_allowed * true_sigma);
   const auto compare = [](const test::Sample& scatter, const test::Sample& stated) {
     const double ratio = draws * std::pow(scatter.standard_error(), 2) / stated.mean();
     EXPECT_GT(ratio, 0.4) << "standard errors are too large";
@@ -52,31 +55,39 @@ void expect_recovered(const AfmNoise& noise, const Estimate& estimate, double bi
 
 TEST(EstimateFlatNoise, RecoversTheModelUnderABow) {
   for (const AfmNoise noise : {AfmNoise{0.825, 0.201}, AfmNoise{0, 0.01}, AfmNoise{-0.4, 3}})
-    expect_recovered(noise, [&](std::uint64_t seed) {
-      HeightField f = noisy(noise, 96, 80, seed);
-      add_bow(f);
-      return estimate_flat_noise(f);
-    }, 1e-3);
+    expect_recovered(
+        noise,
+        [&](std::uint64_t seed) {
+          HeightField f = noisy(noise, 96, 80, seed);
+          add_bow(f);
+          return estimate_flat_noise(f);
+        },
+        1e-3);
 }
 
 TEST(EstimateFlatNoise, MakesUpForWhatThePolynomialTakesOfSmallScans) {
   const AfmNoise noise{0.8, 0.2};
-  expect_recovered(noise, [&](std::uint64_t seed) { return estimate_flat_noise(noisy(noise, 64, 16, seed)); }, 0.01);
+  expect_recovered(
+      noise, [&](std::uint64_t seed) { return estimate_flat_noise(noisy(noise, 64, 16, seed)); },
+      0.01);
 }
 
 TEST(EstimateFlatNoise, LeavesOutHolesAndWhatIsMasked) {
   const AfmNoise noise{0.6, 1};
-  expect_recovered(noise, [&](std::uint64_t seed) {
-    HeightField f = noisy(noise, 96, 80, seed);
-    f.valid = Grid<unsigned char>(96, 80, 1);
-    Grid<unsigned char> use(96, 80, 1);
-    for (int y = 0; y < 80; ++y) {
-      f.z_nm(7, y) = NAN;
-      f.valid(7, y) = 0;
-      for (int x = 40; x < 60; ++x) f.z_nm(x, y) += 50, use(x, y) = 0;
-    }
-    return estimate_flat_noise(f, {}, use);
-  }, 2e-3);
+  expect_recovered(
+      noise,
+      [&](std::uint64_t seed) {
+        HeightField f = noisy(noise, 96, 80, seed);
+        f.valid = Grid<unsigned char>(96, 80, 1);
+        Grid<unsigned char> use(96, 80, 1);
+        for (int y = 0; y < 80; ++y) {
+          f.z_nm(7, y) = NAN;
+          f.valid(7, y) = 0;
+          for (int x = 40; x < 60; ++x) f.z_nm(x, y) += 50, use(x, y) = 0;
+        }
+        return estimate_flat_noise(f, {}, use);
+      },
+      2e-3);
 }
 
 TEST(EstimateFlatNoise, OfNothingIsNothing) {
@@ -93,17 +104,23 @@ TEST(EstimateFlatNoise, RefusesTooLittle) {
 
 TEST(EstimateNoise, RecoversTheModelOfAFlatScan) {
   for (const AfmNoise noise : {AfmNoise{0.7, 0.2}, AfmNoise{0, 0.01}, AfmNoise{-0.4, 3}})
-    expect_recovered(noise, [&](std::uint64_t seed) { return estimate_noise(noisy(noise, 160, 160, seed)); }, 0.02);
+    expect_recovered(
+        noise, [&](std::uint64_t seed) { return estimate_noise(noisy(noise, 160, 160, seed)); },
+        0.02);
 }
 
 TEST(EstimateNoise, SeesPastTiltRowOffsetsAndLines) {
   const AfmNoise noise{0.5, 0.04};
-  expect_recovered(noise, [&](std::uint64_t seed) {
-    HeightField f = noisy(noise, 160, 160, seed);
-    for (int y = 0; y < 160; ++y)
-      for (int x = 0; x < 160; ++x) f.z_nm(x, y) += 3 * x - y + (y * 7 % 13) + (x / 20 % 2 ? 100 : 0);
-    return estimate_noise(f);
-  }, 0.03);
+  expect_recovered(
+      noise,
+      [&](std::uint64_t seed) {
+        HeightField f = noisy(noise, 160, 160, seed);
+        for (int y = 0; y < 160; ++y)
+          for (int x = 0; x < 160; ++x)
+            f.z_nm(x, y) += 3 * x - y + (y * 7 % 13) + (x / 20 % 2 ? 100 : 0);
+        return estimate_noise(f);
+      },
+      0.03);
 }
 
 TEST(EstimateNoise, IsLittleTooLargeOnSmoothStructure) {

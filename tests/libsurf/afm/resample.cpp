@@ -24,7 +24,8 @@ TEST(ResampledTip, KeepsTheApexAndWhatIsBilinear) {
     for (int y = 0; y < out.z_nm.height(); ++y)
       for (int x = 0; x < out.z_nm.width(); ++x)
         EXPECT_NEAR(out.z_nm(x, y),
-                    -std::abs(x - out.apex_x) * 4 * ratio - std::abs(y - out.apex_y) * 6 * ratio, 1e-9);
+                    -std::abs(x - out.apex_x) * 4 * ratio - std::abs(y - out.apex_y) * 6 * ratio,
+                    1e-9);
   }
 }
 
@@ -51,7 +52,8 @@ TEST(Upsampled, InterpolatesAndSpreadsHoles) {
   EXPECT_EQ(fine.pitch_y_nm, 2);
   EXPECT_EQ(fine.origin_x_nm, 5);
   EXPECT_EQ(fine.z_nm(1, 1), 5);
-  EXPECT_EQ(fine.valid.data(), (std::vector<unsigned char>{1, 1, 1, 1, 1, 1, 1, 1, 0, 0, 1, 1, 1, 0, 0}));
+  EXPECT_EQ(fine.valid.data(),
+            (std::vector<unsigned char>{1, 1, 1, 1, 1, 1, 1, 1, 0, 0, 1, 1, 1, 0, 0}));
   EXPECT_THROW(upsampled(field, 0), InvalidInput);
   EXPECT_THROW(upsampled(field, 33), InvalidInput);
 }
@@ -74,8 +76,10 @@ TEST(ResampledField, KeepsPlanesAndItsPlace) {
 TEST(ResampledField, SpreadsHolesAndRefuses) {
   HeightField field{Grid<double>(3, 2), Grid<unsigned char>(3, 2, 1), 2, 2, 0, 0};
   field.valid(2, 1) = 0;
-  EXPECT_EQ(resampled(field, 1).valid.data(), (std::vector<unsigned char>{1, 1, 1, 1, 1, 1, 1, 1, 0, 0, 1, 1, 1, 0, 0}));
-  for (const double bad : {0.0, -1.0, std::nan(""), 5.0, 1e-6}) EXPECT_THROW(resampled(field, bad), InvalidInput);
+  EXPECT_EQ(resampled(field, 1).valid.data(),
+            (std::vector<unsigned char>{1, 1, 1, 1, 1, 1, 1, 1, 0, 0, 1, 1, 1, 0, 0}));
+  for (const double bad : {0.0, -1.0, std::nan(""), 5.0, 1e-6})
+    EXPECT_THROW(resampled(field, bad), InvalidInput);
 }
 
 }  // namespace surf

@@ -14,7 +14,8 @@ TEST(Roughness, OfASineIsKnown) {
   HeightField f;
   f.z_nm = Grid<double>(400, 40);
   for (int y = 0; y < 40; ++y)
-    for (int x = 0; x < 400; ++x) f.z_nm(x, y) = 1e6 + 3 * std::sin(2 * M_PI * (x + 0.5) / 40) * (y % 2 ? 1 : -1);
+    for (int x = 0; x < 400; ++x)
+      f.z_nm(x, y) = 1e6 + 3 * std::sin(2 * M_PI * (x + 0.5) / 40) * (y % 2 ? 1 : -1);
   const Roughness r = measure_roughness(f);
   EXPECT_NEAR(r.sq_nm, 3 / std::sqrt(2.0), 1e-9);
   EXPECT_NEAR(r.sa_nm, 6 / M_PI, 3e-3);

@@ -29,10 +29,12 @@ TEST(RoundTip, WhatIsToldAcrossLinesHoldsAllAround) {
   const Tip cone = conical_tip(40, 0.4, {pitch, pitch, 13, 13});
   const Tip made = tip_below({round_profile_nm(told_across(cone), 0)}, pitch, pitch, 1, 6);
   const Tip whole = tip_below({round_profile_nm(told_across(cone), 0)}, pitch, pitch, 1e6, 9);
-  EXPECT_LT(made.z_nm.width(), whole.z_nm.width());   // no wider than it has to be
+  EXPECT_LT(made.z_nm.width(), whole.z_nm.width());  // no wider than it has to be
   ASSERT_GE(whole.apex_x, 6);
   for (int j = 0; j < 13; ++j)
-    for (int i = 0; i < 13; ++i) EXPECT_NEAR(whole.z_nm(i + whole.apex_x - 6, j + whole.apex_y - 6), cone.z_nm(i, j), 2.5) << i << " " << j;
+    for (int i = 0; i < 13; ++i)
+      EXPECT_NEAR(whole.z_nm(i + whole.apex_x - 6, j + whole.apex_y - 6), cone.z_nm(i, j), 2.5)
+          << i << " " << j;
   EXPECT_EQ(whole.z_nm(whole.apex_x, whole.apex_y), 0);
 }
 
@@ -45,10 +47,13 @@ TEST(RoundTip, CornersTellWhereAllElseIsFlat) {
 }
 
 TEST(RoundTip, GoesOnAsSteeplyWhereNothingIsTold) {
-  const Tip cone = conical_tip(20, 0.5, {pitch, pitch, 7, 7}), wide = conical_tip(20, 0.5, {pitch, pitch, 21, 21});
+  const Tip cone = conical_tip(20, 0.5, {pitch, pitch, 7, 7}),
+            wide = conical_tip(20, 0.5, {pitch, pitch, 21, 21});
   const Tip made = tip_below({round_profile_nm(cone, 0.5)}, pitch, pitch, -wide.z_nm(20, 10), 50);
   ASSERT_GE(made.apex_x, 10);
-  for (int r = 0; r <= 10; ++r) EXPECT_NEAR(made.z_nm(made.apex_x + r, made.apex_y), wide.z_nm(10 + r, 10), 4);   // corners are interpolated
+  for (int r = 0; r <= 10; ++r)
+    EXPECT_NEAR(made.z_nm(made.apex_x + r, made.apex_y), wide.z_nm(10 + r, 10),
+                4);  // corners are interpolated
 }
 
 TEST(RoundTip, IsBelowEveryBound) {

@@ -35,7 +35,8 @@ TEST(LevelRows, TakesStepsBetweenRowsOff) {
     const RowLevel r = level_rows(f, method);
     expect_level(f, 4);
     EXPECT_NEAR(f.z_nm(4, 0), 100 + std::sin(1.2) + 2, 1e-12) << "the level of the whole is kept";
-    for (std::size_t y = 0; y < shifts.size(); ++y) EXPECT_NEAR(r.offsets_nm[y], shifts[y] - 2, 1e-12);
+    for (std::size_t y = 0; y < shifts.size(); ++y)
+      EXPECT_NEAR(r.offsets_nm[y], shifts[y] - 2, 1e-12);
     EXPECT_EQ(r.rows_without_samples, 0);
   }
 }
@@ -50,7 +51,8 @@ TEST(LevelRows, MasksKeepFeaturesFromDeciding) {
     HeightField without = f;
     level_rows(f, method, use);
     // Medians of other parts of the wave differ a little; differences do not.
-    for (int y = 1; y < 15; ++y) EXPECT_NEAR(f.z_nm(2, y), f.z_nm(2, 0), method == RowMethod::median ? 1.5 : 1e-12);
+    for (int y = 1; y < 15; ++y)
+      EXPECT_NEAR(f.z_nm(2, y), f.z_nm(2, 0), method == RowMethod::median ? 1.5 : 1e-12);
     level_rows(without, method);
     EXPECT_GT(std::fabs(without.z_nm(2, 6) - without.z_nm(2, 0)), 10);
   }

@@ -23,7 +23,8 @@ Scene tilted_step(const AfmNoise& noise, std::uint64_t seed) {
   s.field.pitch_x_nm = 2, s.field.pitch_y_nm = 3;
   for (int y = 0; y < 24; ++y) {
     for (int x = 0; x < 60; ++x) {
-      s.field.z_nm(x, y) += 1e4 + 0.2 * s.field.x_nm(x) - 0.1 * s.field.y_nm(y) + (x >= 30 ? height_nm : 0);
+      s.field.z_nm(x, y) +=
+          1e4 + 0.2 * s.field.x_nm(x) - 0.1 * s.field.y_nm(y) + (x >= 30 ? height_nm : 0);
       if (x >= 5 && x < 25) s.first(x, y) = 1;
       if (x >= 35 && x < 55) s.second(x, y) = 1;
     }
@@ -68,7 +69,7 @@ TEST(MeasureStep, RefusesRegionsThatTellNothing) {
   const Scene s = tilted_step({0, 1}, 1);
   const Grid<unsigned char> none(60, 24, 0);
   Grid<unsigned char> left(60, 24, 0), right(60, 24, 0);
-  for (int y = 0; y < 24; ++y) left(3, y) = right(50, y) = 1;   // single columns: tilt or step?
+  for (int y = 0; y < 24; ++y) left(3, y) = right(50, y) = 1;  // single columns: tilt or step?
   EXPECT_THROW(measure_step(s.field, s.first, none), InvalidInput);
   EXPECT_THROW(measure_step(s.field, none, s.second), InvalidInput);
   EXPECT_THROW(measure_step(s.field, s.first, s.first), InvalidInput);

@@ -20,7 +20,8 @@ TEST(SubstrateNoise, IsThatBetweenTheFeatures) {
     for (int y = 0; y < 128; ++y)
       for (int x = 0; x < 128; ++x) f.z_nm(x, y) += 0.3 * x + 5;
     for (int i = 0; i < 20; ++i) {
-      const int left = static_cast<int>(112 * random.uniform()), low = static_cast<int>(112 * random.uniform());
+      const int left = static_cast<int>(112 * random.uniform()),
+                low = static_cast<int>(112 * random.uniform());
       const double top = 10 + 20 * random.uniform();
       for (int y = low; y < low + 16; ++y)
         for (int x = left; x < left + 16; ++x) f.z_nm(x, y) += top;

@@ -29,7 +29,7 @@ TEST(MeasureTip, FindsASphere) {
   const TipMeasures m = measure_tip(ball_tip(10, 1, 0, {0.5, 0.5, 61, 61}), {.fit_depth_nm = 4});
   EXPECT_NEAR(m.sphere_radius_nm, 10, 1e-6);
   EXPECT_LT(m.sphere_residual_nm, 1e-6);
-  EXPECT_GT(m.radius_residual_nm, 1e-3);   // it is no paraboloid
+  EXPECT_GT(m.radius_residual_nm, 1e-3);  // it is no paraboloid
 }
 
 TEST(MeasureTip, TellsTheTwoRadiiOfAnEllipticTip) {
@@ -53,10 +53,12 @@ TEST(MeasureTip, FindsTheAngleOfConesAndPyramids) {
     EXPECT_LT(m.half_angle_residual_nm, 0.05);
   }
   // The cone of the same cross section: area 4 (z tan a)^2 = pi (z tan b)^2.
-  const Tip pyramid = pyramidal_tip({std::vector<double>(4, 30 * degree), 0.4, 0}, {0.25, 0.25, 201, 201});
+  const Tip pyramid =
+      pyramidal_tip({std::vector<double>(4, 30 * degree), 0.4, 0}, {0.25, 0.25, 201, 201});
   const TipMeasures m = measure_tip(pyramid);
   ASSERT_TRUE(m.half_angle_rad);
-  EXPECT_NEAR(std::tan(*m.half_angle_rad), std::tan(30 * degree) * std::sqrt(4 / std::numbers::pi), 0.01);
+  EXPECT_NEAR(std::tan(*m.half_angle_rad), std::tan(30 * degree) * std::sqrt(4 / std::numbers::pi),
+              0.01);
 }
 
 TEST(MeasureTip, OfAFlatEndTheRadiusIsInfinite) {
@@ -75,7 +77,8 @@ TEST(MeasureTip, Refuses) {
 TEST(TipVolume, IsThatOfTheSolid) {
   const double pi = std::numbers::pi;
   EXPECT_NEAR(tip_volume_nm3(parabolic_tip(10, {0.1, 0.1, 301, 301}), 5), pi * 10 * 25, 1);
-  EXPECT_NEAR(tip_volume_nm3(conical_tip(0, 45 * degree, {0.1, 0.2, 301, 151}), 10), pi * 1000 / 3, 2);
+  EXPECT_NEAR(tip_volume_nm3(conical_tip(0, 45 * degree, {0.1, 0.2, 301, 151}), 10), pi * 1000 / 3,
+              2);
   EXPECT_NEAR(tip_volume_nm3(ball_tip(5, 1, 0, {0.05, 0.05, 221, 221}), 5), 2 * pi * 125 / 3, 1);
   EXPECT_THROW(tip_volume_nm3(parabolic_tip(5, {}), 0), InvalidInput);
 }

@@ -25,7 +25,8 @@ double rolled(const Tip& sharp, double radius, double x, double y) {
   double lowest = 1e9;
   for (int j = 0; j < sharp.z_nm.height(); ++j)
     for (int i = 0; i < sharp.z_nm.width(); ++i) {
-      const double dx = (i - sharp.apex_x) * sharp.pitch_x_nm - x, dy = (j - sharp.apex_y) * sharp.pitch_y_nm - y;
+      const double dx = (i - sharp.apex_x) * sharp.pitch_x_nm - x,
+                   dy = (j - sharp.apex_y) * sharp.pitch_y_nm - y;
       const double rest = radius * radius - dx * dx - dy * dy;
       if (rest >= 0) lowest = std::min(lowest, -sharp.z_nm(i, j) - std::sqrt(rest));
     }
@@ -76,7 +77,8 @@ TEST(TipShapes, PyramidIsRoundedAsASphereRolls) {
   const Tip tip = pyramidal_tip(shape, {1, 1, 11, 11});
   validate(tip);
   for (int y = -5; y <= 5; ++y)
-    for (int x = -5; x <= 5; ++x) EXPECT_NEAR(-z(tip, x, y), rolled(sharp, 3, x, y), 3e-3) << x << ", " << y;
+    for (int x = -5; x <= 5; ++x)
+      EXPECT_NEAR(-z(tip, x, y), rolled(sharp, 3, x, y), 3e-3) << x << ", " << y;
 }
 
 TEST(TipShapes, ManyFacesAreACone) {

@@ -22,7 +22,8 @@ HeightField noisy_scan(const Tip& tip, bool lines) {
   f.z_nm = Grid<double>(pixels, pixels);
   RandomStream random(4, 0, 0);
   for (int k = 0; k < 150; ++k) {
-    const int x = static_cast<int>(random.uniform() * pixels), y = static_cast<int>(random.uniform() * pixels);
+    const int x = static_cast<int>(random.uniform() * pixels),
+              y = static_cast<int>(random.uniform() * pixels);
     if (!lines) f.z_nm(x, y) = 2 + 10 * random.uniform();
   }
   for (int y = 0; lines && y < pixels; ++y)
@@ -62,7 +63,7 @@ TEST(TipSweep, FindsAThresholdWhoseTipIsAmongTheBest) {
     const SweptTip& t = sweep.curve[k];
     if (k > 0) {
       EXPECT_GT(t.threshold_nm, sweep.curve[k - 1].threshold_nm);
-      EXPECT_GE(t.volume_nm3, 0.9 * sweep.curve[k - 1].volume_nm3);   // thresholds blunt
+      EXPECT_GE(t.volume_nm3, 0.9 * sweep.curve[k - 1].volume_nm3);  // thresholds blunt
     }
     best = std::min(best, rms_error(t.tip, truth(), 5));
   }
@@ -70,7 +71,7 @@ TEST(TipSweep, FindsAThresholdWhoseTipIsAmongTheBest) {
   EXPECT_TRUE(chosen.consistent);
   EXPECT_LE(rms_error(chosen.tip, truth(), 5), 1.5 * best);
   EXPECT_GT(rms_error(sweep.curve.front().tip, truth(), 5), 3 * best);   // too sharp
-  EXPECT_GT(rms_error(sweep.curve.back().tip, truth(), 5), 1.5 * best);   // too blunt
+  EXPECT_GT(rms_error(sweep.curve.back().tip, truth(), 5), 1.5 * best);  // too blunt
 }
 
 TEST(TipSweep, TheWorseOfAllAndOfTheLargestResidualsDecides) {
@@ -84,7 +85,8 @@ TEST(TipSweep, TheWorseOfAllAndOfTheLargestResidualsDecides) {
   EXPECT_EQ(t.excess(), 4);
 }
 
-// Sharp tips made of noise leave the noise in the opening: little is expected to be lacking, and little is.
+// Sharp tips made of noise leave the noise in the opening: little is expected to be lacking, and
+// little is.
 TEST(TipSweep, TipsThatLeaveTheNoiseInDoNotCount) {
   HeightField flat;
   flat.z_nm = simulate_noise({0, sigma_nm * sigma_nm}, 96, 96, 7);
@@ -98,7 +100,8 @@ TEST(TipSweep, TipsThatLeaveTheNoiseInDoNotCount) {
     EXPECT_TRUE(smooths || !t.consistent) << t.threshold_nm;
   }
   for (const SweptTip& t : sweep.curve)
-    left_out += t.expected_nm < 0.6 * most_expected && t.excess() <= 1.1 * std::max(1.0, least_excess);
+    left_out +=
+        t.expected_nm < 0.6 * most_expected && t.excess() <= 1.1 * std::max(1.0, least_excess);
   EXPECT_GT(left_out, 0) << "else this scan does not show it";
 }
 
@@ -135,7 +138,8 @@ TEST(UnconstrainedDirections, AreThoseAlongParallelLines) {
   const std::vector<double> along = unconstrained_directions(lines.curve[lines.chosen].tip, 1);
   ASSERT_FALSE(along.empty());
   for (const double degrees : along)
-    EXPECT_LT(std::fabs(std::cos(degrees * 3.14159265358979324 / 180)), 0.8) << degrees;   // about +y or -y
+    EXPECT_LT(std::fabs(std::cos(degrees * 3.14159265358979324 / 180)), 0.8)
+        << degrees;  // about +y or -y
   const TipSweep spikes = sweep_tips({noisy_scan(truth(), false)}, options());
   EXPECT_TRUE(unconstrained_directions(spikes.curve[spikes.chosen].tip, 1).empty());
 }
@@ -144,7 +148,7 @@ TEST(OuterThreshold, GrowsWithTheScanAndTheNoise) {
   const AfmNoise noise{0, 1};
   EXPECT_GT(outer_threshold_nm(noise, 1e6, 100), outer_threshold_nm(noise, 1e4, 100));
   EXPECT_NEAR(outer_threshold_nm({0, 4}, 1e4, 100), 2 * outer_threshold_nm(noise, 1e4, 100), 1e-9);
-  EXPECT_NEAR(outer_threshold_nm(noise, 1, 1), 1.6449 * std::sqrt(2), 1e-3);   // one pair at 95 %
+  EXPECT_NEAR(outer_threshold_nm(noise, 1, 1), 1.6449 * std::sqrt(2), 1e-3);  // one pair at 95 %
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Every operation on scans that takes a Watch tells its progress, ends when asked to, and gives what it gives unwatched.
+// Every operation on scans that takes a Watch tells its progress, ends when asked to, and gives
+// what it gives unwatched.
 #include "surf/core/progress.h"
 
 #include <gtest/gtest.h>
@@ -23,7 +24,8 @@ HeightField waves() {
   HeightField f{Grid<double>(60, 50), {}, 1, 1, 0, 0};
   RandomStream random(3, 0, 0);
   for (int y = 0; y < 50; ++y)
-    for (int x = 0; x < 60; ++x) f.z_nm(x, y) = std::sin(0.3 * x) + std::cos(0.2 * y) + 0.1 * random.uniform();
+    for (int x = 0; x < 60; ++x)
+      f.z_nm(x, y) = std::sin(0.3 * x) + std::cos(0.2 * y) + 0.1 * random.uniform();
   return f;
 }
 
@@ -43,16 +45,24 @@ std::vector<Operation> operations() {
   const auto morphology = [](auto run) {
     return [run](const HeightField& f, const Watch& watch) {
       MorphologyOptions o;
-      o.threads = 1;   // of several, the calling one may come to no unit at all
+      o.threads = 1;  // of several, the calling one may come to no unit at all
       o.watch = watch;
       return run(f, o).z_nm;
     };
   };
   return {
-      {"dilate", morphology([](const HeightField& f, const MorphologyOptions& o) { return dilate(f, tip(), o); })},
-      {"erode", morphology([](const HeightField& f, const MorphologyOptions& o) { return erode(f, tip(), o); })},
-      {"opening", morphology([](const HeightField& f, const MorphologyOptions& o) { return opening(f, tip(), o); })},
-      {"closing", morphology([](const HeightField& f, const MorphologyOptions& o) { return closing(f, tip(), o); })},
+      {"dilate", morphology([](const HeightField& f, const MorphologyOptions& o) {
+         return dilate(f, tip(), o);
+       })},
+      {"erode", morphology([](const HeightField& f, const MorphologyOptions& o) {
+         return erode(f, tip(), o);
+       })},
+      {"opening", morphology([](const HeightField& f, const MorphologyOptions& o) {
+         return opening(f, tip(), o);
+       })},
+      {"closing", morphology([](const HeightField& f, const MorphologyOptions& o) {
+         return closing(f, tip(), o);
+       })},
       {"upsampled", morphology([](const HeightField& f, MorphologyOptions o) {
          o.upsample = 2;
          return erode_noncontact(f, tip(), 2, o);
@@ -106,12 +116,12 @@ TEST_P(WatchedScan, TellsAndGivesTheSame) {
   double last = 0;
   int calls = 0;
   const Grid<double> watched = GetParam().run(field, {[&](double done, double total) {
-    EXPECT_GT(total, 0);
-    EXPECT_GE(done / total, last);
-    EXPECT_LE(done / total, 1 + 1e-12);
-    last = done / total;
-    ++calls;
-  }});
+                                                EXPECT_GT(total, 0);
+                                                EXPECT_GE(done / total, last);
+                                                EXPECT_LE(done / total, 1 + 1e-12);
+                                                last = done / total;
+                                                ++calls;
+                                              }});
   EXPECT_GT(calls, 1);
   EXPECT_GT(last, 0.5);
   EXPECT_EQ(watched, GetParam().run(field, {}));

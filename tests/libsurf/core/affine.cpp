@@ -20,8 +20,10 @@ TEST(Affine, InverseLeadsBack) {
 
 TEST(Affine, InverseRefusesWhatLeadsNowhere) {
   EXPECT_THROW(inverse({1, 2, 0, 2, 4, 0}), InvalidInput);
-  for (double Affine::*number : {&Affine::xx, &Affine::xy, &Affine::x0, &Affine::yx, &Affine::yy, &Affine::y0})
-    for (const double wrong : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
+  for (double Affine::*number :
+       {&Affine::xx, &Affine::xy, &Affine::x0, &Affine::yx, &Affine::yy, &Affine::y0})
+    for (const double wrong :
+         {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
       Affine map = some;
       map.*number = wrong;
       EXPECT_THROW(inverse(map), InvalidInput);

@@ -17,7 +17,8 @@ TEST(AllWithin, SeesTheOneThatIsNot) {
     EXPECT_TRUE(all_within(values, most));
     for (double& value : values) {
       const double kept = value;
-      for (const double beyond : {std::nextafter(most, 2 * most), Limits::infinity(), Limits::quiet_NaN()})
+      for (const double beyond :
+           {std::nextafter(most, 2 * most), Limits::infinity(), Limits::quiet_NaN()})
         for (const double sign : {1.0, -1.0}) {
           value = sign * beyond;
           EXPECT_FALSE(all_within(values, most)) << value;

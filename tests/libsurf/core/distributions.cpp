@@ -14,7 +14,8 @@ namespace {
 constexpr int draws = 200'000;
 
 /// The counts of numbers around the middle, those beyond it in the first and last cell.
-void expect_drawn(double middle, double spread, const std::function<std::int64_t(RandomStream&)>& draw,
+void expect_drawn(double middle, double spread,
+                  const std::function<std::int64_t(RandomStream&)>& draw,
                   const std::function<double(double)>& log_probability) {
   const auto first = static_cast<std::int64_t>(std::max(0.0, std::floor(middle - 6 * spread)));
   const auto cells = static_cast<std::size_t>(std::ceil(12 * spread)) + 3;
@@ -24,30 +25,41 @@ void expect_drawn(double middle, double spread, const std::function<std::int64_t
   for (int i = 0; i < draws; ++i) {
     const std::int64_t k = draw(random);
     ASSERT_GE(k, 0);
-    ++counts[static_cast<std::size_t>(std::clamp<std::int64_t>(k - first, 0, static_cast<std::int64_t>(cells) - 1))];
+    ++counts[static_cast<std::size_t>(
+        std::clamp<std::int64_t>(k - first, 0, static_cast<std::int64_t>(cells) - 1))];
   }
   for (std::size_t i = 0; i < cells; ++i)
-    expected[i] = draws * std::exp(log_probability(static_cast<double>(first) + static_cast<double>(i)));
+    expected[i] =
+        draws * std::exp(log_probability(static_cast<double>(first) + static_cast<double>(i)));
   test::expect_distributed(counts, expected, 10);
 }
 
 TEST(Distributions, PoissonNumbersAre) {
   for (const double mean : {0.01, 0.7, 9.99, 10.0, 12.5, 40.0, 3000.0}) {
     SCOPED_TRACE(mean);
-    expect_drawn(mean, std::sqrt(mean), [&](RandomStream& random) { return poisson(mean, random); },
-                 [&](double k) { return k * std::log(mean) - mean - std::lgamma(k + 1); });
+    expect_drawn(
+        mean, std::sqrt(mean), [&](RandomStream& random) { return poisson(mean, random); },
+        [&](double k) { return k * std::log(mean) - mean - std::lgamma(k + 1); });
   }
 }
 
 TEST(Distributions, BinomialNumbersAre) {
-  for (const auto& [n, p] : {std::pair{3, 0.4}, {20, 0.05}, {25, 0.5}, {100, 0.3}, {100, 0.97}, {40, 0.75}, {100'000, 0.002}}) {
+  for (const auto& [n, p] : {std::pair{3, 0.4},
+                             {20, 0.05},
+                             {25, 0.5},
+                             {100, 0.3},
+                             {100, 0.97},
+                             {40, 0.75},
+                             {100'000, 0.002}}) {
     SCOPED_TRACE(testing::Message() << n << " trials of " << p);
-    expect_drawn(n * p, std::sqrt(n * p * (1 - p)), [&, n = n, p = p](RandomStream& random) { return binomial(n, p, random); },
-                 [&, n = double(n), p = p](double k) {
-                   if (k > n) return -HUGE_VAL;
-                   return std::lgamma(n + 1) - std::lgamma(k + 1) - std::lgamma(n - k + 1) + k * std::log(p) +
-                          (n - k) * std::log1p(-p);
-                 });
+    expect_drawn(
+        n * p, std::sqrt(n * p * (1 - p)),
+        [&, n = n, p = p](RandomStream& random) { return binomial(n, p, random); },
+        [&, n = double(n), p = p](double k) {
+          if (k > n) return -HUGE_VAL;
+          return std::lgamma(n + 1) - std::lgamma(k + 1) - std::lgamma(n - k + 1) +
+                 k * std::log(p) + (n - k) * std::log1p(-p);
+        });
   }
 }
 

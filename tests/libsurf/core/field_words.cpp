@@ -21,8 +21,8 @@ TEST(FieldWords, SaysFieldsWithAndWithoutValues) {
 }
 
 TEST(FieldWords, LeavesOtherTextAlone) {
-  for (const char* text : {"", "nothing", "`", "``", "it`s", "`My File`", "`a..b`", "`.a`", "`a.`", "`A`", "`_a`", "`a.1`",
-                           "`=1`", "--tilt", "`a b`", "`open"})
+  for (const char* text : {"", "nothing", "`", "``", "it`s", "`My File`", "`a..b`", "`.a`", "`a.`",
+                           "`A`", "`_a`", "`a.1`", "`=1`", "--tilt", "`a b`", "`open"})
     EXPECT_EQ(said(text), text);
 }
 

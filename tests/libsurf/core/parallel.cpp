@@ -120,9 +120,8 @@ TEST(ParallelFor, OfSeveralErrorsTheLowestUnitsIsRethrown) {
 
 TEST(ParallelFor, MayBeNested) {
   std::atomic<int> calls{0};
-  parallel_for(4, 2, [&](std::size_t, int) {
-    parallel_for(10, 2, [&](std::size_t, int) { ++calls; });
-  });
+  parallel_for(4, 2,
+               [&](std::size_t, int) { parallel_for(10, 2, [&](std::size_t, int) { ++calls; }); });
   EXPECT_EQ(calls, 40);
 }
 

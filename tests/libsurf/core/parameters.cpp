@@ -31,8 +31,10 @@ struct Everything {
 };
 
 void describe(ParameterVisitor& visit, Everything& e) {
-  visit(e.length_nm, {.name = "all.length", .help = "Length", .unit = Unit::nm, .limits = above(0, 100)});
-  visit(e.share, {.name = "all.share", .help = "Share", .unit = Unit::share, .limits = within(0, 1)});
+  visit(e.length_nm,
+        {.name = "all.length", .help = "Length", .unit = Unit::nm, .limits = above(0, 100)});
+  visit(e.share,
+        {.name = "all.share", .help = "Share", .unit = Unit::share, .limits = within(0, 1)});
   visit(e.plain, {.name = "all.plain", .help = "Number"});
   visit(e.count, {.name = "all.count", .help = "Count", .limits = within(1, 10)});
   visit(e.many, {.name = "all.many", .help = "Large count", .limits = at_least(1)});
@@ -41,7 +43,8 @@ void describe(ParameterVisitor& visit, Everything& e) {
   visit(e.text, {.name = "all.text", .help = "Text"});
   visit(e.names, {.name = "all.names", .help = "Names"});
   visit(e.files, {.name = "all.files", .help = "Files", .file = FileRole::read});
-  visit(e.angle_deg, {.name = "all.angle", .help = "Angle", .unit = Unit::deg, .limits = from_to_below(0, 90)});
+  visit(e.angle_deg,
+        {.name = "all.angle", .help = "Angle", .unit = Unit::deg, .limits = from_to_below(0, 90)});
   visit(e.perhaps, {.name = "all.perhaps", .help = "Perhaps a count"});
   visit(e.colour, {"red", "green", "blue"}, {.name = "all.colour", .help = "Colour"});
   visit(e.other, {"red", "green", "blue"}, {.name = "all.other", .help = "Another colour"}, "none");
@@ -74,7 +77,7 @@ TEST(Parameters, TextsBecomeValuesInNativeUnits) {
   EXPECT_TRUE(e.flag);
   set_parameter(e, "all.names", "a, b,c");
   EXPECT_THAT(e.names, testing::ElementsAre("a", "b", "c"));
-  set_parameter(e, "all.files", "a,b.stl");   // a comma may be in a name
+  set_parameter(e, "all.files", "a,b.stl");  // a comma may be in a name
   EXPECT_THAT(e.files, testing::ElementsAre("a,b.stl"));
   set_parameter(e, "all.angle", "30deg");
   EXPECT_EQ(e.angle_deg, 30);
@@ -88,10 +91,13 @@ TEST(Parameters, TextsBecomeValuesInNativeUnits) {
 }
 
 TEST(Parameters, WhatIsWrongIsNamedWithRangeAndRemedy) {
-  EXPECT_EQ(refusal("all.length", "0nm"), "`all.length`: '0nm' is out of range. Give a length above 0nm and at most 100nm");
-  EXPECT_THAT(refusal("all.length", "nan"), HasSubstr("`all.length`: 'nan' is not a finite number"));
+  EXPECT_EQ(refusal("all.length", "0nm"),
+            "`all.length`: '0nm' is out of range. Give a length above 0nm and at most 100nm");
+  EXPECT_THAT(refusal("all.length", "nan"),
+              HasSubstr("`all.length`: 'nan' is not a finite number"));
   EXPECT_THAT(refusal("all.plain", "inf"), HasSubstr("is no number"));
-  EXPECT_THAT(refusal("all.count", "2.5"), HasSubstr("'2.5' is not a whole number. Give a whole number 1 to 10"));
+  EXPECT_THAT(refusal("all.count", "2.5"),
+              HasSubstr("'2.5' is not a whole number. Give a whole number 1 to 10"));
   EXPECT_THAT(refusal("all.count", "1e300"), HasSubstr("out of range"));
   EXPECT_THAT(refusal("all.many", "0"), HasSubstr("1 or more"));
   EXPECT_THAT(refusal("all.seed", "-1"), HasSubstr("Give a whole number 0 to "));
@@ -133,7 +139,8 @@ TEST(Parameters, RecordsReadBackAsTheyWere) {
   EXPECT_FALSE(record.contains("all.hidden"));
   Everything again;
   for_each_parameter(again, [&](const Parameter& about, Field& field) {
-    if (const auto found = record.find(about.key()); found != record.end()) field.read(found->second, about.subject());
+    if (const auto found = record.find(about.key()); found != record.end())
+      field.read(found->second, about.subject());
   });
   EXPECT_EQ(record_of(again), record);
   EXPECT_EQ(again.length_nm, e.length_nm);

@@ -23,7 +23,9 @@ TEST(Watch, WithoutAnyoneDoesNothing) {
 
 TEST(Watch, PartsAreSharesOfTheWhole) {
   std::vector<std::pair<double, double>> told;
-  const Watch part = Watch{[&](double done, double total) { told.emplace_back(done, total); }}.part(0.5, 1).part(0, 0.5);
+  const Watch part =
+      Watch{[&](double done, double total) { told.emplace_back(done, total); }}.part(0.5, 1).part(
+          0, 0.5);
   part.report(0, 8);
   part.report(4, 8);
   part.report(8, 8);
@@ -44,7 +46,9 @@ TEST(WatchedParallelFor, TellsFromTheCallingThreadAlone) {
     const std::thread::id caller = std::this_thread::get_id();
     double last = 0;
     std::size_t calls = 0;
-    const auto work = [](std::size_t, int) { std::this_thread::sleep_for(std::chrono::microseconds(200)); };
+    const auto work = [](std::size_t, int) {
+      std::this_thread::sleep_for(std::chrono::microseconds(200));
+    };
     parallel_for(50, threads, work, {[&](double done, double total) {
                    EXPECT_EQ(std::this_thread::get_id(), caller);
                    EXPECT_EQ(total, 50);
@@ -63,10 +67,13 @@ TEST(WatchedParallelFor, StopsWhenTheTokenIsSet) {
   for (const int threads : {1, 4}) {
     CancelToken token;
     std::atomic<int> done{0};
-    EXPECT_THROW(parallel_for(1000, threads, [&](std::size_t unit, int) {
-                   ++done;
-                   if (unit == 10) token.cancel();
-                 }, {{}, &token}), Interrupted);
+    EXPECT_THROW(parallel_for(1000, threads,
+                              [&](std::size_t unit, int) {
+                                ++done;
+                                if (unit == 10) token.cancel();
+                              },
+                              {{}, &token}),
+                 Interrupted);
     EXPECT_LT(done, 1000);
   }
 }

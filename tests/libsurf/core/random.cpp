@@ -23,8 +23,12 @@ TEST(RandomStream, IsAFunctionOfItsKeyAlone) {
 }
 
 TEST(RandomStream, DiffersWithEachPartOfTheKey) {
-  const std::vector<RandomStream> streams{{1, 2, 3}, {2, 2, 3}, {1, 3, 3}, {1, 2, 4},
-                                          {1, 2 + (1ull << 32), 3}, {1, 2, 3 + (1ull << 32)},
+  const std::vector<RandomStream> streams{{1, 2, 3},
+                                          {2, 2, 3},
+                                          {1, 3, 3},
+                                          {1, 2, 4},
+                                          {1, 2 + (1ull << 32), 3},
+                                          {1, 2, 3 + (1ull << 32)},
                                           {1 + (1ull << 32), 2, 3}};
   std::vector<std::uint32_t> first;
   for (RandomStream s : streams) first.push_back(s.bits());
@@ -42,7 +46,8 @@ TEST(RandomStream, IsUniformAcrossStreams) {
   std::vector<std::int64_t> counts(100);
   const int n = 200000;
   for (int i = 0; i < n; ++i) {
-    RandomStream random(1, static_cast<std::uint64_t>(i % 400), static_cast<std::uint64_t>(i / 400));
+    RandomStream random(1, static_cast<std::uint64_t>(i % 400),
+                        static_cast<std::uint64_t>(i / 400));
     const double u = random.uniform();
     ASSERT_GT(u, 0);
     ASSERT_LT(u, 1);

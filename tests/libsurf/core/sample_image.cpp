@@ -21,7 +21,8 @@ TEST(SampleImage, IsBilinearAndExactAtSamples) {
   const PlacedImage image = ramp();
   EXPECT_EQ(sample_image(image, image.place_nm(3, 2)), image.values(3, 2));
   EXPECT_EQ(sample_image(image, image.place_nm(0, 0)), 100);
-  EXPECT_DOUBLE_EQ(sample_image(image, image.place_nm(1.25, 0.5)), 100 + 3 * 1.25 + 7 * 0.5 + 1.25 * 0.5);
+  EXPECT_DOUBLE_EQ(sample_image(image, image.place_nm(1.25, 0.5)),
+                   100 + 3 * 1.25 + 7 * 0.5 + 1.25 * 0.5);
 }
 
 TEST(SampleImage, KnowsNothingOutsideAndBesideHoles) {
@@ -31,7 +32,8 @@ TEST(SampleImage, KnowsNothingOutsideAndBesideHoles) {
   image.valid = Grid<unsigned char>(4, 3, 1);
   image.valid(1, 1) = 0;
   EXPECT_TRUE(std::isnan(sample_image(image, image.place_nm(0.5, 0.5))));
-  EXPECT_FALSE(std::isnan(sample_image(image, image.place_nm(0, 0.5))));   // beside it, but the hole does not count
+  EXPECT_FALSE(std::isnan(
+      sample_image(image, image.place_nm(0, 0.5))));  // beside it, but the hole does not count
 }
 
 }  // namespace

@@ -19,14 +19,16 @@ double least_distance(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& p
   double least = HUGE_VAL;
   for (int i = 0; i <= steps; ++i)
     for (int j = 0; i + j <= steps; ++j)
-      least = std::min(least, length(a + (b - a) * (double(i) / steps) + (c - a) * (double(j) / steps) - p));
+      least = std::min(
+          least, length(a + (b - a) * (double(i) / steps) + (c - a) * (double(j) / steps) - p));
   return least;
 }
 
 TEST(ClosestPoint, NoPointOfTheTriangleIsNearer) {
   RandomStream random(1, 2, 3);
   for (int i = 0; i < 400; ++i) {
-    const Vec3 a = anywhere(random), b = anywhere(random), c = anywhere(random), p = anywhere(random);
+    const Vec3 a = anywhere(random), b = anywhere(random), c = anywhere(random),
+               p = anywhere(random);
     const double found = length(closest_point(a, b, c, p) - p), tried = least_distance(a, b, c, p);
     EXPECT_LE(found, tried + 1e-12);
     EXPECT_NEAR(found, tried, 0.06);
@@ -36,9 +38,11 @@ TEST(ClosestPoint, NoPointOfTheTriangleIsNearer) {
 TEST(ClosestPoint, OfALineOrAPointIsOnIt) {
   RandomStream random(2, 2, 3);
   for (int i = 0; i < 400; ++i) {
-    const Vec3 a = anywhere(random), b = anywhere(random), p = anywhere(random), middle = (a + b) * 0.5;
+    const Vec3 a = anywhere(random), b = anywhere(random), p = anywhere(random),
+               middle = (a + b) * 0.5;
     const double to_line = least_distance(a, b, a, p);
-    for (const auto& [u, v, w] : {std::tuple{a, a, b}, {a, b, a}, {b, a, a}, {a, b, b}, {a, b, middle}, {a, middle, b}}) {
+    for (const auto& [u, v, w] :
+         {std::tuple{a, a, b}, {a, b, a}, {b, a, a}, {a, b, b}, {a, b, middle}, {a, middle, b}}) {
       const Vec3 q = closest_point(u, v, w, p);
       EXPECT_NEAR(length(q - p), to_line, 0.06);
     }

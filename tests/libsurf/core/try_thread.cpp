@@ -14,8 +14,9 @@
 namespace surf {
 namespace {
 
-/// From here on the process gets no more address space than for a little heap: a thread's stack takes more.
-/// Stacks that threads have left are used up by threads that wait until the process ends.
+/// From here on the process gets no more address space than for a little heap: a thread's stack
+/// takes more. Stacks that threads have left are used up by threads that wait until the process
+/// ends.
 void refuse_threads() {
   std::size_t pages = 0;
   std::ifstream("/proc/self/statm") >> pages;
@@ -34,7 +35,9 @@ void refuse_threads() {
 
 TEST(TryThread, DoesTheWork) {
   std::atomic<int> done{0};
-  { const std::jthread thread = try_thread([&] { ++done; }); }
+  {
+    const std::jthread thread = try_thread([&] { ++done; });
+  }
   EXPECT_EQ(done, 1);
   EXPECT_EQ(take_refused_threads(), 0);
 }

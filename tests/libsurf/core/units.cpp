@@ -58,9 +58,10 @@ TEST(ParseLength, AcceptsSignsBlanksAndExponents) {
 }
 
 TEST(ParseLength, RefusesWhatIsNoLength) {
-  for (const char* text : {"", "  ", "nm", "abc", "2nn", "2 nm x", "2NM", "2Um", "1.2.3", "0x10",
-                           "+-2", "++2", "-", "2nm3", "nan", "nannm", "inf", "-inf", "infinity",
-                           "1e999", "1e308m", "0,5um", "2e", "5keV", "5a"}) {
+  for (const char* text :
+       {"",         "  ",    "nm",     "abc",   "2nn",  "2 nm x", "2NM",   "2Um", "1.2.3",
+        "0x10",     "+-2",   "++2",    "-",     "2nm3", "nan",    "nannm", "inf", "-inf",
+        "infinity", "1e999", "1e308m", "0,5um", "2e",   "5keV",   "5a"}) {
     EXPECT_THAT(refusal(parse_length_nm, text), HasSubstr("--thing: ")) << text;
   }
 }
@@ -182,9 +183,9 @@ TEST(Share, PercentAndNumberAreTheSame) {
   EXPECT_EQ(parse_share("1%", "x"), 0.01);
   EXPECT_EQ(parse_share("1.3 %", "x"), 0.013);
   EXPECT_EQ(parse_share("0.013", "x"), parse_share("1.3%", "x"));
-  for (int i = 1; i < 1000; ++i)
-    EXPECT_EQ(parse_share(std::to_string(i) + "%", "x"), i / 100.0);
-  for (const char* zero : {"0", "0.0", "0%", "0.00 %"}) EXPECT_EQ(parse_share(zero, "x"), 0) << zero;
+  for (int i = 1; i < 1000; ++i) EXPECT_EQ(parse_share(std::to_string(i) + "%", "x"), i / 100.0);
+  for (const char* zero : {"0", "0.0", "0%", "0.00 %"})
+    EXPECT_EQ(parse_share(zero, "x"), 0) << zero;
   for (const char* bad : {"", "%", "-1%", "nan", "inf", "1%%", "1 percent", "0x1"})
     EXPECT_THROW(parse_share(bad, "--accuracy"), UsageError) << bad;
 }

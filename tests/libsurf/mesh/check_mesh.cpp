@@ -175,8 +175,8 @@ TEST(CheckMesh, SaysWhereFacesAreFaulty) {
   const MeshReport r = check_mesh(mesh);
   EXPECT_EQ(r.first_degenerate_nm, (Vec3{8, 8, 8}));
   const Triangle t = mesh.triangles[0];
-  const Vec3 middle = (mesh.vertices_nm[t[0]] + mesh.vertices_nm[t[1]] + mesh.vertices_nm[t[2]]) *
-                      (1.0 / 3);
+  const Vec3 middle =
+      (mesh.vertices_nm[t[0]] + mesh.vertices_nm[t[1]] + mesh.vertices_nm[t[2]]) * (1.0 / 3);
   EXPECT_EQ(r.first_duplicate_nm, middle);
   EXPECT_THAT(faults(r), testing::Contains("1 degenerate triangle near (8, 8, 8) nm"));
 }

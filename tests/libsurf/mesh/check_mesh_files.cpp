@@ -21,7 +21,7 @@ struct Truth {
   bool closed;
   std::size_t components;
   double area;
-  double volume;   ///< of closed meshes
+  double volume;  ///< of closed meshes
 
   friend std::ostream& operator<<(std::ostream& out, const Truth& t) { return out << t.file; }
 };

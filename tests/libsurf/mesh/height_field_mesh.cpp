@@ -19,10 +19,10 @@ using testing::HasSubstr;
 HeightField letter_f() {
   HeightField field;
   field.z_nm = Grid<double>(4, 5);
-  field.z_nm.data() = {5, 0, 0, 0,   //
-                       5, 0, 0, 0,   //
-                       5, 5, 5, 0,   //
-                       5, 0, 0, 0,   //
+  field.z_nm.data() = {5, 0, 0, 0,  //
+                       5, 0, 0, 0,  //
+                       5, 5, 5, 0,  //
+                       5, 0, 0, 0,  //
                        5, 5, 5, 6};
   field.pitch_x_nm = 2;
   field.pitch_y_nm = 3;
@@ -147,7 +147,7 @@ TEST(ExtendHeightField, MarginsMayExceedTheFieldManyTimes) {
   ASSERT_EQ(mirror.z_nm.height(), 45);
   for (int y = 0; y < 45; ++y) {
     for (int x = 0; x < 44; ++x) {
-      int mx = x - 20;   // folded step by step, unlike the code under test
+      int mx = x - 20;  // folded step by step, unlike the code under test
       while (mx < 0 || mx > 3) mx = mx < 0 ? -mx : 6 - mx;
       int my = y - 20;
       while (my < 0 || my > 4) my = my < 0 ? -my : 8 - my;

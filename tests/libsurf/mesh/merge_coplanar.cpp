@@ -36,7 +36,8 @@ double area(const TriangleMesh& mesh) {
   return sum;
 }
 
-// The same point set: as large, closed where it was, and nowhere farther than rounding from what it was.
+// The same point set: as large, closed where it was, and nowhere farther than rounding from what it
+// was.
 void expect_same_surface(const TriangleMesh& before, const TriangleMesh& after) {
   EXPECT_NEAR(area(after), area(before), 1e-9 * area(before));
   EXPECT_NEAR(volume(after), volume(before), 1e-9 * std::fabs(volume(before)));
@@ -78,7 +79,8 @@ TEST(MergeCoplanar, KeepsCurvedSurfacesAsTheyAre) {
   const TriangleMesh merged = merge_coplanar(sphere);
   EXPECT_EQ(merged.triangles, sphere.triangles);
   ASSERT_EQ(merged.vertices_nm.size(), sphere.vertices_nm.size());
-  for (std::size_t i = 0; i < merged.vertices_nm.size(); ++i) EXPECT_TRUE(merged.vertices_nm[i] == sphere.vertices_nm[i]);
+  for (std::size_t i = 0; i < merged.vertices_nm.size(); ++i)
+    EXPECT_TRUE(merged.vertices_nm[i] == sphere.vertices_nm[i]);
 }
 
 TEST(MergeCoplanar, FillsRegionsWithHoles) {
@@ -87,7 +89,8 @@ TEST(MergeCoplanar, FillsRegionsWithHoles) {
   field.z_nm = Grid<double>(41, 41);
   field.pitch_x_nm = field.pitch_y_nm = 1;
   for (int y = 0; y < 41; ++y)
-    for (int x = 0; x < 41; ++x) field.z_nm(x, y) = std::hypot(x - 20, y - 20) < 8 ? 5 + 0.01 * x * x : 0;
+    for (int x = 0; x < 41; ++x)
+      field.z_nm(x, y) = std::hypot(x - 20, y - 20) < 8 ? 5 + 0.01 * x * x : 0;
   const TriangleMesh fine = height_field_solid(field, -10);
   const TriangleMesh merged = merge_coplanar(fine);
   EXPECT_LT(merged.triangles.size(), 0.5 * static_cast<double>(fine.triangles.size()));
@@ -114,12 +117,14 @@ TEST(MergeCoplanar, KeepsTheRimOfASheet) {
 
 TEST(MergeCoplanar, KeepsBodiesApartThatTouch) {
   TriangleMesh two = make_box({0, 0, 0}, {1, 1, 1}, 4);
-  append(two, make_box({1, 0, 0}, {2, 1, 1}, 4));   // their upper sides are in one plane, and share no corner's number
+  append(two, make_box({1, 0, 0}, {2, 1, 1},
+                       4));  // their upper sides are in one plane, and share no corner's number
   EXPECT_EQ(merge_coplanar(two).triangles.size(), 24u);
 }
 
 TEST(MergeCoplanar, KeepsCornersThatOthersNeed) {
-  // Half of the upper side is moved a little: the edge between both has many corners on one side only at first.
+  // Half of the upper side is moved a little: the edge between both has many corners on one side
+  // only at first.
   TriangleMesh body = make_box({0, 0, 0}, {8, 8, 2}, 8);
   for (Vec3& v : body.vertices_nm)
     if (v.z == 2 && v.x > 4) v.z += 0.05 * (v.x - 4) * (1 + 0.1 * v.y * v.y);
@@ -159,7 +164,8 @@ TEST(MergeCoplanar, LeavesNeedlesAndOpenEdgesAlone) {
 TEST(MergeCoplanar, IsInterrupted) {
   CancelToken cancel;
   cancel.cancel();
-  EXPECT_THROW(merge_coplanar(make_box({0, 0, 0}, {1, 1, 1}, 30), {.watch = {{}, &cancel}}), Interrupted);
+  EXPECT_THROW(merge_coplanar(make_box({0, 0, 0}, {1, 1, 1}, 30), {.watch = {{}, &cancel}}),
+               Interrupted);
 }
 
 }  // namespace

@@ -15,10 +15,10 @@ namespace {
 HeightField letter_f() {
   HeightField field;
   field.z_nm = Grid<double>(4, 5);
-  field.z_nm.data() = {5, 0, 0, 0,   //
-                       5, 0, 0, 0,   //
-                       5, 5, 5, 0,   //
-                       5, 0, 0, 0,   //
+  field.z_nm.data() = {5, 0, 0, 0,  //
+                       5, 0, 0, 0,  //
+                       5, 5, 5, 0,  //
+                       5, 0, 0, 0,  //
                        5, 5, 5, 6};
   field.pitch_x_nm = field.pitch_y_nm = 2;
   field.origin_x_nm = 10;
@@ -29,7 +29,8 @@ HeightField letter_f() {
 }  // namespace
 
 TEST(MeshHeightField, GivesAFieldBack) {
-  for (const TriangleMesh& mesh : {height_field_sheet(letter_f()), height_field_solid(letter_f(), -9)}) {
+  for (const TriangleMesh& mesh :
+       {height_field_sheet(letter_f()), height_field_solid(letter_f(), -9)}) {
     const HeightField field = mesh_height_field(mesh, {.pitch_nm = 2});
     EXPECT_EQ(field.origin_x_nm, 10);
     EXPECT_EQ(field.origin_y_nm, -20);
@@ -53,7 +54,8 @@ TEST(MeshHeightField, GivesARoughFieldBackWithinRounding) {
 TEST(MeshHeightField, TakesTheHighestPointAndMarksHoles) {
   TriangleMesh mesh = make_sphere({0, 0, 0}, 10, 5);
   test::append(mesh, make_box({-2, -2, 20}, {2, 2, 21}));
-  const HeightField field = mesh_height_field(mesh, {.pitch_nm = 1, .region_nm = Box{{-12, -12, 0}, {12, 12, 0}}});
+  const HeightField field =
+      mesh_height_field(mesh, {.pitch_nm = 1, .region_nm = Box{{-12, -12, 0}, {12, 12, 0}}});
   ASSERT_EQ(field.z_nm.width(), 25);
   EXPECT_EQ(field.z_nm(12, 12), 21) << "the box above the sphere";
   EXPECT_NEAR(field.z_nm(12 + 6, 12), 8, 0.05);
@@ -73,8 +75,10 @@ TEST(MeshHeightField, RefusesBadArguments) {
   EXPECT_THROW(mesh_height_field(box, {.pitch_nm = 0}), UsageError);
   EXPECT_THROW(mesh_height_field(box, {.pitch_nm = 100}), UsageError);
   EXPECT_THROW(mesh_height_field(box, {.pitch_nm = 1e-6}), UsageError);
-  EXPECT_THROW(mesh_height_field(box, {.pitch_nm = 1, .region_nm = Box{{5, 5, 0}, {1, 1, 0}}}), UsageError);
-  EXPECT_THROW(mesh_height_field(box, {.pitch_nm = 1, .region_nm = Box{{50, 50, 0}, {60, 60, 0}}}), InvalidInput);
+  EXPECT_THROW(mesh_height_field(box, {.pitch_nm = 1, .region_nm = Box{{5, 5, 0}, {1, 1, 0}}}),
+               UsageError);
+  EXPECT_THROW(mesh_height_field(box, {.pitch_nm = 1, .region_nm = Box{{50, 50, 0}, {60, 60, 0}}}),
+               InvalidInput);
   EXPECT_THROW(mesh_height_field({}, {.pitch_nm = 1}), InvalidInput);
 }
 

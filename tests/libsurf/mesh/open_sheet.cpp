@@ -73,8 +73,10 @@ void expect_extended(const TriangleMesh& sheet, double apron_nm) {
     area += 0.5 * (a.x * b.y - a.y * b.x);
     for (int k = 0; k <= 16; ++k) {
       const Vec3 p = a + (b - a) * (k / 16.0);
-      const double dx = std::max({before.bounds_nm.lower_nm.x - p.x, p.x - before.bounds_nm.upper_nm.x, 0.0});
-      const double dy = std::max({before.bounds_nm.lower_nm.y - p.y, p.y - before.bounds_nm.upper_nm.y, 0.0});
+      const double dx =
+          std::max({before.bounds_nm.lower_nm.x - p.x, p.x - before.bounds_nm.upper_nm.x, 0.0});
+      const double dy =
+          std::max({before.bounds_nm.lower_nm.y - p.y, p.y - before.bounds_nm.upper_nm.y, 0.0});
       EXPECT_GE(std::hypot(dx, dy), apron_nm * (1 - 1e-9));
     }
   }
@@ -86,7 +88,8 @@ void expect_extended(const TriangleMesh& sheet, double apron_nm) {
 TEST(ExtendOpenSheet, DrawsTheRimOutHorizontally) {
   for (const double apron : {0.001, 10.0, 1e5}) expect_extended(rough_sheet(), apron);
   expect_extended(fan({{1, 0}, {0, 1}, {-1, -1}}), 3);
-  expect_extended(fan({{9, -1}, {9, 1}, {2, 2}, {0, 8}, {-2, 2}, {-9, 0}, {-2, -2}, {0, -8}, {2, -2}}), 3);
+  expect_extended(
+      fan({{9, -1}, {9, 1}, {2, 2}, {0, 8}, {-2, 2}, {-9, 0}, {-2, -2}, {0, -8}, {2, -2}}), 3);
 }
 
 TEST(ExtendOpenSheet, MovesRimVerticesRadiallyAtTheirHeight) {
@@ -188,9 +191,10 @@ TEST(ExtendOpenSheet, SaysWhyNot) {
 TEST(ExtendOpenSheet, RefusesARimThatGoesRoundTwice) {
   std::vector<std::pair<double, double>> rim;
   for (int i = 0; i < 12; ++i) {
-    rim.emplace_back(10 * std::cos(std::numbers::pi * i / 3), 10 * std::sin(std::numbers::pi * i / 3));
+    rim.emplace_back(10 * std::cos(std::numbers::pi * i / 3),
+                     10 * std::sin(std::numbers::pi * i / 3));
   }
-  const TriangleMesh spiral = fan(rim);   // heights tell the two turns apart
+  const TriangleMesh spiral = fan(rim);  // heights tell the two turns apart
   EXPECT_EQ(check_mesh(spiral).boundary_edges, 12u);
   EXPECT_THAT(refusal(spiral), HasSubstr("star-shaped"));
 }

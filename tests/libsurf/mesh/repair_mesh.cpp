@@ -54,14 +54,17 @@ TriangleMesh hollow_sphere() {
 
 TEST(RepairMesh, AGoodMeshComesBackUnchanged) {
   TriangleMesh pair = make_box({0, 0, 0}, {1, 1, 1});
-  append(pair, make_box({1, 1, 0}, {2, 2, 1}));   // they touch along an edge
+  append(pair, make_box({1, 1, 0}, {2, 2, 1}));  // they touch along an edge
   TriangleMesh spare = make_sphere({0, 0, 0}, 5, 2);
-  spare.vertices_nm.push_back({99, 99, 99});      // of no triangle
-  const std::vector<TriangleMesh> good{
-      make_box({0, 0, 0}, {1, 2, 3}, 4), make_sphere({0, 0, 0}, 5, 4), hollow_sphere(), merge_equal_vertices(pair), spare,
-      height_field_solid(make_rough({60, 40, 2}, 5, 8, 1), -50),
-      height_field_sheet(make_rough({60, 40, 2}, 5, 8, 1)),
-      height_field_sheet(make_mesa({40, 40, 2}, 5, 8, 1))};
+  spare.vertices_nm.push_back({99, 99, 99});  // of no triangle
+  const std::vector<TriangleMesh> good{make_box({0, 0, 0}, {1, 2, 3}, 4),
+                                       make_sphere({0, 0, 0}, 5, 4),
+                                       hollow_sphere(),
+                                       merge_equal_vertices(pair),
+                                       spare,
+                                       height_field_solid(make_rough({60, 40, 2}, 5, 8, 1), -50),
+                                       height_field_sheet(make_rough({60, 40, 2}, 5, 8, 1)),
+                                       height_field_sheet(make_mesa({40, 40, 2}, 5, 8, 1))};
   for (std::size_t i = 0; i < good.size(); ++i) {
     for (const double scale : {1e-6, 1.0, 1e9}) {
       TriangleMesh mesh = good[i];
@@ -77,7 +80,8 @@ TEST(RepairMesh, AGoodMeshComesBackUnchanged) {
 TEST(RepairMesh, WhatItMendedItLeavesAlone) {
   TriangleMesh mesh = exploded(make_sphere({0, 0, 0}, 5, 3));
   mesh.triangles.erase(mesh.triangles.begin() + 7, mesh.triangles.begin() + 10);
-  for (std::size_t t = 0; t < mesh.triangles.size(); t += 3) std::swap(mesh.triangles[t][0], mesh.triangles[t][1]);
+  for (std::size_t t = 0; t < mesh.triangles.size(); t += 3)
+    std::swap(mesh.triangles[t][0], mesh.triangles[t][1]);
   const Repaired once = repaired(mesh);
   EXPECT_TRUE(once.summary.sound());
   const Repaired twice = repaired(once.mesh);
@@ -109,7 +113,8 @@ TEST(RepairMesh, StitchesRimsThatAreNearlyEqual) {
 TEST(RepairMesh, TurnsTrianglesByTheMajority) {
   const TriangleMesh sphere = make_sphere({0, 0, 0}, 5, 3);
   TriangleMesh mesh = sphere;
-  for (const std::size_t t : {3, 4, 77, 1000}) std::swap(mesh.triangles[t][0], mesh.triangles[t][1]);
+  for (const std::size_t t : {3, 4, 77, 1000})
+    std::swap(mesh.triangles[t][0], mesh.triangles[t][1]);
   const Repaired r = repaired(mesh);
   expect_mended(r, sphere);
   EXPECT_EQ(r.summary.turned_triangles, 4u);
@@ -132,7 +137,7 @@ TEST(RepairMesh, RemovesCopiesAndFaceBackToBack) {
   expect_mended(repaired(mesh), box);
   EXPECT_EQ(repaired(mesh).summary.removed_duplicates, 2u);
 
-  mesh = box;   // a wall inside, seen from both sides
+  mesh = box;  // a wall inside, seen from both sides
   const auto n = static_cast<std::uint32_t>(mesh.vertices_nm.size());
   mesh.vertices_nm.push_back({0.5, 0.5, 0.5});
   const auto [a, b, c] = box.triangles[0];
@@ -140,7 +145,7 @@ TEST(RepairMesh, RemovesCopiesAndFaceBackToBack) {
   mesh.triangles.push_back({b, a, n});
   expect_mended(repaired(mesh), box);
 
-  mesh = box;   // a face that closes the surface, and its copy turned over
+  mesh = box;  // a face that closes the surface, and its copy turned over
   mesh.triangles.push_back({b, a, c});
   const Repaired kept = repaired(mesh);
   EXPECT_TRUE(kept.summary.sound());
@@ -172,7 +177,7 @@ TEST(RepairMesh, RemovesSliversOnRequest) {
   TriangleMesh mesh = make_box({0, 0, 0}, {8, 8, 8}, 4);
   mesh.vertices_nm.push_back({});
   for (Vec3& v : mesh.vertices_nm) {
-    if (v == Vec3{2, 2, 8}) v = {3.999, 2.0005, 8};   // beside (4, 2, 8)
+    if (v == Vec3{2, 2, 8}) v = {3.999, 2.0005, 8};  // beside (4, 2, 8)
   }
   EXPECT_FALSE(repaired(mesh).summary.changed);
   const Repaired r = repaired(mesh, {.sliver_nm = 0.01});
@@ -184,7 +189,8 @@ TEST(RepairMesh, RemovesSliversOnRequest) {
 TEST(RepairMesh, FillsHolesUpToTheLimit) {
   const TriangleMesh sphere = make_sphere({0, 0, 0}, 10, 4);
   TriangleMesh mesh = sphere;
-  std::erase_if(mesh.triangles, [&](const Triangle& t) { return sphere.vertices_nm[t[0]].z > 9.5; });
+  std::erase_if(mesh.triangles,
+                [&](const Triangle& t) { return sphere.vertices_nm[t[0]].z > 9.5; });
   mesh.triangles.erase(mesh.triangles.begin());
   Repaired r = repaired(mesh);
   EXPECT_TRUE(r.summary.sound());
@@ -204,7 +210,8 @@ TEST(RepairMesh, FillsHolesUpToTheLimit) {
 TEST(RepairMesh, FillsTheSideOfABoxIfToldSo) {
   TriangleMesh mesh = make_box({0, 0, 0}, {1, 1, 1}, 3);
   std::erase_if(mesh.triangles, [&](const Triangle& t) {
-    return mesh.vertices_nm[t[0]].z == 1 && mesh.vertices_nm[t[1]].z == 1 && mesh.vertices_nm[t[2]].z == 1;
+    return mesh.vertices_nm[t[0]].z == 1 && mesh.vertices_nm[t[1]].z == 1 &&
+           mesh.vertices_nm[t[2]].z == 1;
   });
   EXPECT_FALSE(repaired(mesh).summary.changed) << "its rim is longer than the diagonal";
   const Repaired r = repaired(mesh, {.max_hole_nm = 4.01});
@@ -238,7 +245,7 @@ TEST(RepairMesh, UnitesBodiesThatPassThroughEachOther) {
 
 TEST(RepairMesh, MendsASurfaceThatPassesThroughItself) {
   TriangleMesh mesh = make_sphere({0, 0, 0}, 10, 4);
-  mesh.vertices_nm[200] = mesh.vertices_nm[200] * -1.1;   // through the far side
+  mesh.vertices_nm[200] = mesh.vertices_nm[200] * -1.1;  // through the far side
   ASSERT_FALSE(find_self_intersections(mesh).pairs.empty());
   const Repaired r = repaired(mesh);
   EXPECT_TRUE(r.summary.sound());

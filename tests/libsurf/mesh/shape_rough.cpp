@@ -24,8 +24,8 @@ double power_along_x(const HeightField& f, int waves) {
   for (int y = 0; y < f.z_nm.height(); ++y) {
     std::complex<double> amplitude = 0;
     for (int x = 0; x < f.z_nm.width(); ++x) {
-      amplitude += f.z_nm(x, y) *
-                   std::polar(1.0, -2 * std::numbers::pi * waves * x / f.z_nm.width());
+      amplitude +=
+          f.z_nm(x, y) * std::polar(1.0, -2 * std::numbers::pi * waves * x / f.z_nm.width());
     }
     sum += std::norm(amplitude);
   }
@@ -59,12 +59,15 @@ TEST(MakeSelfAffine, FallsWithItsExponent) {
 
 TEST(MakeSelfAffine, TheSeedDecidesEverything) {
   const FieldExtent extent{60, 44, 1};
-  EXPECT_EQ(make_self_affine(extent, 1, 5, 0.7, 3).z_nm, make_self_affine(extent, 1, 5, 0.7, 3).z_nm);
-  EXPECT_NE(make_self_affine(extent, 1, 5, 0.7, 3).z_nm, make_self_affine(extent, 1, 5, 0.7, 4).z_nm);
+  EXPECT_EQ(make_self_affine(extent, 1, 5, 0.7, 3).z_nm,
+            make_self_affine(extent, 1, 5, 0.7, 3).z_nm);
+  EXPECT_NE(make_self_affine(extent, 1, 5, 0.7, 3).z_nm,
+            make_self_affine(extent, 1, 5, 0.7, 4).z_nm);
 }
 
 TEST(MakeRoughFromSpectrum, HasTheSpectrumsPower) {
-  // A ring of density 50 nm^4 between 0.05 and 0.1 per nm has the mean square 50 pi (0.1^2 - 0.05^2).
+  // A ring of density 50 nm^4 between 0.05 and 0.1 per nm has the mean square 50 pi (0.1^2 -
+  // 0.05^2).
   const std::vector<SpectralDensity> ring{{0.05, 50}, {0.1, 50}};
   const double truth = 50 * std::numbers::pi * (0.01 - 0.0025);
   for (const double pitch : {1.0, 2.0}) {

@@ -84,7 +84,7 @@ TEST(MakeSphere, IsWatertightWithSharedVertices) {
 
 TEST(MakeSphere, TheIcosahedronHasItsKnownVolumeAndArea) {
   const MeshReport r = check_mesh(make_sphere({0, 0, 0}, 1, 0));
-  const double edge = 1 / std::sin(2 * std::numbers::pi / 5);   // circumradius 1
+  const double edge = 1 / std::sin(2 * std::numbers::pi / 5);  // circumradius 1
   EXPECT_NEAR(r.signed_volume_nm3, 5.0 / 12 * (3 + std::sqrt(5.0)) * edge * edge * edge, 1e-13);
   EXPECT_NEAR(r.area_nm2, 5 * std::sqrt(3.0) * edge * edge, 1e-13);
 }

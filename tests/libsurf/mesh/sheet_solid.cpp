@@ -23,7 +23,8 @@ HeightField rough() { return make_rough({41, 31, 2}, 3, 9, 5); }
 double volume_over(const TriangleMesh& sheet, double base_nm) {
   double volume = 0;
   for (const Triangle& t : sheet.triangles) {
-    const Vec3 a = sheet.vertices_nm[t[0]], b = sheet.vertices_nm[t[1]], c = sheet.vertices_nm[t[2]];
+    const Vec3 a = sheet.vertices_nm[t[0]], b = sheet.vertices_nm[t[1]],
+               c = sheet.vertices_nm[t[2]];
     volume += 0.5 * cross(b - a, c - a).z * ((a.z + b.z + c.z) / 3 - base_nm);
   }
   return volume;
@@ -34,9 +35,11 @@ void expect_sound(const TriangleMesh& sheet, double base_nm) {
   const MeshReport r = check_mesh(solid);
   EXPECT_TRUE(r.closed_and_oriented);
   EXPECT_EQ(r.bounds_nm.lower_nm.z, base_nm);
-  EXPECT_NEAR(measure_mesh(solid).volume_nm3, volume_over(sheet, base_nm), 1e-9 * volume_over(sheet, base_nm));
+  EXPECT_NEAR(measure_mesh(solid).volume_nm3, volume_over(sheet, base_nm),
+              1e-9 * volume_over(sheet, base_nm));
   EXPECT_EQ(find_self_intersections(solid).pairs.size(), 0u);
-  for (std::size_t t = 0; t < sheet.triangles.size(); ++t) EXPECT_EQ(solid.triangles[t], sheet.triangles[t]);
+  for (std::size_t t = 0; t < sheet.triangles.size(); ++t)
+    EXPECT_EQ(solid.triangles[t], sheet.triangles[t]);
 }
 
 }  // namespace
@@ -46,7 +49,8 @@ TEST(SheetSolid, ClosesHeightFieldsThickAndThin) {
   ThinSummary ignored;
   expect_sound(thin_height_field(rough(), {1}, ignored), -40);
   const std::size_t thin = thin_height_field(rough(), {1}, ignored).triangles.size();
-  EXPECT_LT(sheet_solid(thin_height_field(rough(), {1}, ignored), -40).triangles.size(), thin + 3 * 144 + 1)
+  EXPECT_LT(sheet_solid(thin_height_field(rough(), {1}, ignored), -40).triangles.size(),
+            thin + 3 * 144 + 1)
       << "the base is a fan, not a copy";
 }
 
@@ -54,7 +58,7 @@ TEST(SheetSolid, ClosesSheetsWithHolesAndRaggedRims) {
   TriangleMesh sheet = height_field_sheet(rough());
   std::erase_if(sheet.triangles, [&](const Triangle& t) {
     const Vec3 v = sheet.vertices_nm[t[0]] - sheet.vertices_nm[15 * 41 + 20];
-    return std::hypot(v.x, v.y) < 9 || (std::abs(v.y) < 3 && v.x < 0);   // a hole, and a bay into it
+    return std::hypot(v.x, v.y) < 9 || (std::abs(v.y) < 3 && v.x < 0);  // a hole, and a bay into it
   });
   expect_sound(sheet, -40);
   TriangleMesh holed = height_field_sheet(rough());
@@ -70,10 +74,12 @@ TEST(SheetSolid, JoinsTrianglesThatBringTheirOwnCorners) {
   TriangleMesh soup;
   for (const Triangle& t : sheet.triangles)
     for (const std::uint32_t v : t) soup.vertices_nm.push_back(sheet.vertices_nm[v]);
-  for (std::uint32_t v = 0; v < soup.vertices_nm.size(); v += 3) soup.triangles.push_back({v, v + 1, v + 2});
+  for (std::uint32_t v = 0; v < soup.vertices_nm.size(); v += 3)
+    soup.triangles.push_back({v, v + 1, v + 2});
   const TriangleMesh solid = sheet_solid(soup, -40);
   EXPECT_TRUE(check_mesh(solid).closed_and_oriented);
-  EXPECT_TRUE(std::equal(soup.vertices_nm.begin(), soup.vertices_nm.end(), solid.vertices_nm.begin()));
+  EXPECT_TRUE(
+      std::equal(soup.vertices_nm.begin(), soup.vertices_nm.end(), solid.vertices_nm.begin()));
 }
 
 TEST(SheetSolid, RefusesWhatHasNoInside) {

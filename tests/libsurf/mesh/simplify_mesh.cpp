@@ -46,7 +46,8 @@ TEST(MeshDeviation, SeesBetweenTheCorners) {
   const MeshDeviation d = mesh_deviation(flat, roof, {.spacing_nm = 0.05});
   EXPECT_DOUBLE_EQ(d.from_second_nm, 1);
   EXPECT_NEAR(d.from_first_nm, 2 / std::sqrt(5.0), 0.03);
-  EXPECT_EQ(mesh_deviation(flat, roof, {.spacing_nm = 0.05, .threads = 3}).from_first_nm, d.from_first_nm);
+  EXPECT_EQ(mesh_deviation(flat, roof, {.spacing_nm = 0.05, .threads = 3}).from_first_nm,
+            d.from_first_nm);
   EXPECT_THROW(mesh_deviation(flat, roof, {.spacing_nm = -1}), UsageError);
   EXPECT_THROW(mesh_deviation(flat, {}), InvalidInput);
 }

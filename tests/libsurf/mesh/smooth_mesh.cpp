@@ -62,9 +62,10 @@ TEST(SmoothMesh, RimsStayAndPlanesStayFlat) {
 
 TEST(SmoothMesh, VerticesAtEqualPlacesMoveTogether) {
   const TriangleMesh merged = smooth_mesh(noisy_sphere(), {});
-  EXPECT_TRUE(test::same(smooth_mesh(test::exploded(noisy_sphere()), {}), test::exploded(merged)) ||
-              length(merge_equal_vertices(smooth_mesh(test::exploded(noisy_sphere()), {})).vertices_nm[0] -
-                     merge_equal_vertices(test::exploded(merged)).vertices_nm[0]) < 1e-9);
+  EXPECT_TRUE(
+      test::same(smooth_mesh(test::exploded(noisy_sphere()), {}), test::exploded(merged)) ||
+      length(merge_equal_vertices(smooth_mesh(test::exploded(noisy_sphere()), {})).vertices_nm[0] -
+             merge_equal_vertices(test::exploded(merged)).vertices_nm[0]) < 1e-9);
   EXPECT_EQ(check_mesh(smooth_mesh(test::exploded(noisy_sphere()), {})).boundary_edges, 0u);
 }
 

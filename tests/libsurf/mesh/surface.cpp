@@ -6,8 +6,10 @@
 namespace surf {
 
 TEST(ScalarName, IsLowerCaseWithALetterFirst) {
-  for (const char* good : {"height", "a", "se_stderr", "a__1_"}) EXPECT_TRUE(is_scalar_name(good)) << good;
-  for (const char* bad : {"", "Height", "_a", "1a", "a b", "a-b", "\xc3\xa4"}) EXPECT_FALSE(is_scalar_name(bad)) << bad;
+  for (const char* good : {"height", "a", "se_stderr", "a__1_"})
+    EXPECT_TRUE(is_scalar_name(good)) << good;
+  for (const char* bad : {"", "Height", "_a", "1a", "a b", "a-b", "\xc3\xa4"})
+    EXPECT_FALSE(is_scalar_name(bad)) << bad;
 }
 
 TEST(ScalarName, OfAnyTextHasThatForm) {
@@ -17,7 +19,8 @@ TEST(ScalarName, OfAnyTextHasThatForm) {
   EXPECT_EQ(scalar_name("2nd"), "scalar_2nd");
   EXPECT_EQ(scalar_name("--"), "scalar");
   EXPECT_EQ(scalar_name("a__1_"), "a__1_") << "as it is";
-  for (const char* text : {"", "\xc3\xa4", "9", "A B", "__x"}) EXPECT_TRUE(is_scalar_name(scalar_name(text))) << text;
+  for (const char* text : {"", "\xc3\xa4", "9", "A B", "__x"})
+    EXPECT_TRUE(is_scalar_name(scalar_name(text))) << text;
 }
 
 }  // namespace surf

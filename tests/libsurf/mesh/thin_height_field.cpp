@@ -28,7 +28,8 @@ double height(const HeightField& f, double x_nm, double y_nm) {
   const double a = u - x, b = v - y;
   const double low = f.z_nm(x, y), high = f.z_nm(x + 1, y + 1);
   const double side = a > b ? f.z_nm(x + 1, y) : f.z_nm(x, y + 1);
-  return a > b ? low + a * (side - low) + b * (high - side) : low + b * (side - low) + a * (high - side);
+  return a > b ? low + a * (side - low) + b * (high - side)
+               : low + b * (side - low) + a * (high - side);
 }
 
 // By brute force: points all over every triangle.
@@ -67,9 +68,11 @@ TEST(ThinHeightField, StaysWithinTheToleranceEverywhere) {
     const TriangleMesh mesh = thin_height_field(field, {tolerance}, s);
     EXPECT_LE(s.deviation_nm, tolerance);
     const double measured = vertical_deviation(field, mesh);
-    EXPECT_LE(measured, s.deviation_nm * (1 + 1e-12)) << "proven for every place, not for samples only";
+    EXPECT_LE(measured, s.deviation_nm * (1 + 1e-12))
+        << "proven for every place, not for samples only";
     EXPECT_GE(measured, 0.8 * s.deviation_nm);
-    EXPECT_LE(mesh_deviation(height_field_sheet(field), mesh, {.spacing_nm = 0.2}).largest_nm(), tolerance);
+    EXPECT_LE(mesh_deviation(height_field_sheet(field), mesh, {.spacing_nm = 0.2}).largest_nm(),
+              tolerance);
     EXPECT_LT(s.triangles_after, previous) << "a wider tolerance takes fewer triangles";
     EXPECT_EQ(s.triangles_after, mesh.triangles.size());
     EXPECT_EQ(s.triangles_before, 2u * 81 * 57);
@@ -87,17 +90,21 @@ TEST(ThinHeightField, GivesASoundSheetOverTheSameRectangle) {
   EXPECT_NEAR(area_from_above(mesh), 81 * 57 * 1.7, 1e-6);
   const MeshReport r = check_mesh(mesh);
   EXPECT_EQ(r.components, 1u);
-  EXPECT_EQ(r.nonmanifold_edges + r.inconsistent_edges + r.nonmanifold_vertices + r.degenerate_triangles, 0u);
+  EXPECT_EQ(
+      r.nonmanifold_edges + r.inconsistent_edges + r.nonmanifold_vertices + r.degenerate_triangles,
+      0u);
   EXPECT_TRUE(find_self_intersections(mesh).pairs.empty());
   std::string reason;
   EXPECT_TRUE(extend_open_sheet(mesh, 10, reason)) << reason;
   for (const Vec3& v : mesh.vertices_nm)
-    EXPECT_EQ(v.z, field.z_nm(static_cast<int>(std::lround((v.x - field.origin_x_nm) / field.pitch_x_nm)),
-                              static_cast<int>(std::lround((v.y - field.origin_y_nm) / field.pitch_y_nm))));
+    EXPECT_EQ(
+        v.z,
+        field.z_nm(static_cast<int>(std::lround((v.x - field.origin_x_nm) / field.pitch_x_nm)),
+                   static_cast<int>(std::lround((v.y - field.origin_y_nm) / field.pitch_y_nm))));
 }
 
 TEST(ThinHeightField, LeavesOutWhatIsFlatAndKeepsTheLettersPlace) {
-  HeightField field;   // an F, so that neither a flip nor a transposition goes unseen
+  HeightField field;  // an F, so that neither a flip nor a transposition goes unseen
   field.z_nm = Grid<double>(40, 30);
   for (int y = 5; y < 25; ++y)
     for (int x = 10; x < 25; ++x)
@@ -140,7 +147,8 @@ TEST(ThinHeightField, KeepsToTheTrianglesAllowed) {
     ThinSummary s;
     const TriangleMesh mesh = thin_height_field(field, {0, triangles}, s);
     EXPECT_LE(mesh.triangles.size(), triangles);
-    EXPECT_GE(mesh.triangles.size(), 0.8 * static_cast<double>(triangles) - 1) << "and makes use of them";
+    EXPECT_GE(mesh.triangles.size(), 0.8 * static_cast<double>(triangles) - 1)
+        << "and makes use of them";
     EXPECT_FALSE(s.reached);
     EXPECT_GE(s.deviation_nm * (1 + 1e-12), vertical_deviation(field, mesh)) << "proven here too";
     EXPECT_LT(s.deviation_nm, previous);

@@ -12,9 +12,7 @@ namespace {
 
 using testing::HasSubstr;
 
-TriangleMesh one_triangle() {
-  return {{{0, 0, 0}, {1, 0, 0}, {0, 2, 0}}, {{0, 1, 2}}};
-}
+TriangleMesh one_triangle() { return {{{0, 0, 0}, {1, 0, 0}, {0, 2, 0}}, {{0, 1, 2}}}; }
 
 std::string complaint(const TriangleMesh& mesh) {
   try {
@@ -71,8 +69,8 @@ TEST(MergeEqualVertices, UndoesAnExplodedMesh) {
 }
 
 TEST(MergeEqualVertices, KeepsOrderAndDropsUnused) {
-  const TriangleMesh mesh{
-      {{9, 9, 9}, {0, 0, 0}, {1, 0, 0}, {0, 0, 0}, {0, 1, 0}, {8, 8, 8}}, {{4, 3, 2}, {1, 2, 4}}};
+  const TriangleMesh mesh{{{9, 9, 9}, {0, 0, 0}, {1, 0, 0}, {0, 0, 0}, {0, 1, 0}, {8, 8, 8}},
+                          {{4, 3, 2}, {1, 2, 4}}};
   const TriangleMesh merged = merge_equal_vertices(mesh);
   EXPECT_EQ(merged.vertices_nm, (std::vector<Vec3>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}));
   EXPECT_EQ(merged.triangles, (std::vector<Triangle>{{2, 0, 1}, {0, 1, 2}}));

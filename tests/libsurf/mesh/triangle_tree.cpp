@@ -57,7 +57,7 @@ TEST(TriangleTree, VisitsJustTheTrianglesWhoseBoxesMeetABox) {
     tree.visit_overlapping(box, [&](std::uint32_t t) { EXPECT_TRUE(found.insert(t).second); });
     EXPECT_EQ(found, expected);
   }
-  Box corner;   // a box that is a vertex touches
+  Box corner;  // a box that is a vertex touches
   corner.extend(mesh.vertices_nm[17]);
   int touched = 0;
   tree.visit_overlapping(corner, [&](std::uint32_t) { ++touched; });
@@ -71,13 +71,17 @@ TEST(TriangleTree, HoldsTheTrianglesNearARegionAlone) {
   region.extend(Vec3{11, 11, 11});
   const TriangleTree tree(mesh, region);
   std::size_t expected = 0;
-  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) expected += overlap(tree.box_of(t), region) ? 1 : 0;
+  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t)
+    expected += overlap(tree.box_of(t), region) ? 1 : 0;
   EXPECT_EQ(tree.size(), expected);
-  tree.visit_near({0, 0, 0}, [] { return 1e6; }, [&](std::uint32_t t) { EXPECT_TRUE(overlap(tree.box_of(t), region)); });
+  tree.visit_near(
+      {0, 0, 0}, [] { return 1e6; },
+      [&](std::uint32_t t) { EXPECT_TRUE(overlap(tree.box_of(t), region)); });
   region.lower_nm = region.upper_nm = Vec3{100, 100, 100};
   const TriangleTree none(mesh, region);
   EXPECT_EQ(none.size(), 0u);
-  none.visit_near({}, [] { return HUGE_VAL; }, [](std::uint32_t) { FAIL(); });
+  none.visit_near(
+      {}, [] { return HUGE_VAL; }, [](std::uint32_t) { FAIL(); });
   none.visit_overlapping(region, [](std::uint32_t) { FAIL(); });
 }
 
@@ -89,7 +93,8 @@ TEST(TriangleTree, VisitsAllWithinAReach) {
     const Vec3 p = random_point(random, 15);
     const double reach = 0.5 + 0.01 * i;
     std::set<std::uint32_t> found;
-    tree.visit_near(p, [&] { return reach * reach; }, [&](std::uint32_t t) { found.insert(t); });
+    tree.visit_near(
+        p, [&] { return reach * reach; }, [&](std::uint32_t t) { found.insert(t); });
     for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t)
       EXPECT_TRUE(found.contains(t) || length(closest_point(tree.corners(t), p) - p) >= reach);
   }
@@ -99,7 +104,9 @@ TEST(TriangleTree, IsTheSameWithAnyThreads) {
   const TriangleMesh mesh = make_sphere({}, 10, 5);
   const auto order = [&](int threads) {
     std::vector<std::uint32_t> all;
-    TriangleTree(mesh, {}, threads).visit_near({}, [] { return HUGE_VAL; }, [&](std::uint32_t t) { all.push_back(t); });
+    TriangleTree(mesh, {}, threads)
+        .visit_near(
+            {}, [] { return HUGE_VAL; }, [&](std::uint32_t t) { all.push_back(t); });
     return all;
   };
   EXPECT_EQ(order(1), order(3));

@@ -31,8 +31,9 @@ TEST(VertexNormals, DoNotDependOnHowFacesAreCut) {
 
 TEST(VertexNormals, AreUprightWhereNothingCounts) {
   // A vertex without triangles, one of triangles without area, one whose triangles cancel.
-  const TriangleMesh mesh{{{9, 9, 9}, {0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {5, 0, 0}, {6, 0, 0}, {5, 0, 1}},
-                          {{1, 2, 3}, {1, 1, 2}, {4, 5, 6}, {4, 6, 5}}};
+  const TriangleMesh mesh{
+      {{9, 9, 9}, {0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {5, 0, 0}, {6, 0, 0}, {5, 0, 1}},
+      {{1, 2, 3}, {1, 1, 2}, {4, 5, 6}, {4, 6, 5}}};
   for (const Vec3& normal : vertex_normals(mesh)) EXPECT_EQ(normal, (Vec3{0, 0, 1}));
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What takes long on large meshes tells of its progress, and ends within a second once it is told to.
+// What takes long on large meshes tells of its progress, and ends within a second once it is told
+// to.
 #include <gtest/gtest.h>
 
 #include <chrono>
@@ -35,36 +36,43 @@ TriangleMesh broken(TriangleMesh mesh) {
   const Vec3 middle = bounds(mesh).center_nm();
   const TriangleMesh ball = make_sphere(middle, 6, 2);
   mesh.vertices_nm.insert(mesh.vertices_nm.end(), ball.vertices_nm.begin(), ball.vertices_nm.end());
-  for (const auto& [a, b, c] : ball.triangles) mesh.triangles.push_back({first + a, first + b, first + c});
+  for (const auto& [a, b, c] : ball.triangles)
+    mesh.triangles.push_back({first + a, first + b, first + c});
   return mesh;
 }
 
 std::vector<Work> works() {
-  return {{"check_mesh", [](const TriangleMesh& m, const Watch& w) { check_mesh(m, w); }},
-          {"find_self_intersections",
-           [](const TriangleMesh& m, const Watch& w) { find_self_intersections(m, {.watch = w}); }},
-          {"mean_curvature", [](const TriangleMesh& m, const Watch& w) { mean_curvature(m, 0, w); }},
-          {"mesh_deviation", [](const TriangleMesh& m, const Watch& w) { mesh_deviation(m, m, {.watch = w}); }},
-          {"mesh_height_field",
-           [](const TriangleMesh& m, const Watch& w) { mesh_height_field(m, {.pitch_nm = 0.5, .watch = w}); }},
-          {"sheet_solid", [](const TriangleMesh& m, const Watch& w) { sheet_solid(m, -1000, w); }},
-          {"simplify_mesh, tolerance",
-           [](const TriangleMesh& m, const Watch& w) {
-             SimplifySummary summary;
-             simplify_mesh(m, {.tolerance_nm = 0.3, .watch = w}, summary);
-           }},
-          {"simplify_mesh, triangles",
-           [](const TriangleMesh& m, const Watch& w) {
-             SimplifySummary summary;
-             simplify_mesh(m, {.triangles = 1000, .watch = w}, summary);
-           }},
-          {"repair_mesh", [](const TriangleMesh& m, const Watch& w) {
-             RepairSummary summary;
-             repair_mesh(broken(m), {.watch = w}, summary);
-           }}};
+  return {
+      {"check_mesh", [](const TriangleMesh& m, const Watch& w) { check_mesh(m, w); }},
+      {"find_self_intersections",
+       [](const TriangleMesh& m, const Watch& w) { find_self_intersections(m, {.watch = w}); }},
+      {"mean_curvature", [](const TriangleMesh& m, const Watch& w) { mean_curvature(m, 0, w); }},
+      {"mesh_deviation",
+       [](const TriangleMesh& m, const Watch& w) { mesh_deviation(m, m, {.watch = w}); }},
+      {"mesh_height_field",
+       [](const TriangleMesh& m, const Watch& w) {
+         mesh_height_field(m, {.pitch_nm = 0.5, .watch = w});
+       }},
+      {"sheet_solid", [](const TriangleMesh& m, const Watch& w) { sheet_solid(m, -1000, w); }},
+      {"simplify_mesh, tolerance",
+       [](const TriangleMesh& m, const Watch& w) {
+         SimplifySummary summary;
+         simplify_mesh(m, {.tolerance_nm = 0.3, .watch = w}, summary);
+       }},
+      {"simplify_mesh, triangles",
+       [](const TriangleMesh& m, const Watch& w) {
+         SimplifySummary summary;
+         simplify_mesh(m, {.triangles = 1000, .watch = w}, summary);
+       }},
+      {"repair_mesh", [](const TriangleMesh& m, const Watch& w) {
+         RepairSummary summary;
+         repair_mesh(broken(m), {.watch = w}, summary);
+       }}};
 }
 
-TriangleMesh sheet(int samples) { return height_field_sheet(make_rough({samples - 1.0, samples - 1.0, 1}, 4, 12, 3)); }
+TriangleMesh sheet(int samples) {
+  return height_field_sheet(make_rough({samples - 1.0, samples - 1.0, 1}, 4, 12, 3));
+}
 
 TEST(WatchedMeshes, TellARisingProgress) {
   const TriangleMesh mesh = sheet(70);

@@ -20,7 +20,14 @@ enum class Images { both, afm, sem };
 
 Objective make_objective(const test::SmallScene& scene, Images which) {
   const bool with_afm = which != Images::sem, with_sem = which != Images::afm;
-  Objective o{{}, {}, CurvaturePrior(10, 2e-3), frame_of(&scene.afm, &scene.sem, 4), with_afm && with_sem, with_sem, 0, {}};
+  Objective o{{},
+              {},
+              CurvaturePrior(10, 2e-3),
+              frame_of(&scene.afm, &scene.sem, 4),
+              with_afm && with_sem,
+              with_sem,
+              0,
+              {}};
   if (with_afm) o.afm.emplace(scene.afm, eroded(scene.afm, 1), o.frame, scene.sem.sem_to_afm, 1);
   if (with_sem) o.sem.emplace(scene.sem, o.frame, 4, 4, 1);
   if (!with_afm) {
@@ -32,7 +39,8 @@ Objective make_objective(const test::SmallScene& scene, Images which) {
 }
 
 Unknowns start_at(const test::SmallScene& scene, const Objective& o) {
-  Unknowns at{on_frame(eroded(scene.afm, 1), o.frame, scene.sem.sem_to_afm), scene.sem.sem_to_afm, {}};
+  Unknowns at{
+      on_frame(eroded(scene.afm, 1), o.frame, scene.sem.sem_to_afm), scene.sem.sem_to_afm, {}};
   if (o.sem) at.mixture = {90, 25};
   if (o.fit_tip) at.tip = {0.2, -0.1, 0.15, 0.05, -0.2, 0.1, 0.3};
   // An eroded scan touches the tip in several places at once, where there is no derivative.
@@ -54,9 +62,11 @@ Step random_step(const Objective& o, std::uint64_t seed, double heights = 1) {
   return s;
 }
 
-/// The derivative along a direction against central differences. Contacts that move within the step bend the
-/// objective, so the step is small; they are found in single precision, so that it must not be too small.
-void expect_gradient(const Objective& o, const Unknowns& at, const Step& direction, double tolerance) {
+/// The derivative along a direction against central differences. Contacts that move within the step
+/// bend the objective, so the step is small; they are found in single precision, so that it must
+/// not be too small.
+void expect_gradient(const Objective& o, const Unknowns& at, const Step& direction,
+                     double tolerance) {
   const Step g = o.gradient(at, o.evaluate(at));
   const double step = 3e-4;
   Step up = o.zero(), down = o.zero();
@@ -133,7 +143,7 @@ TEST(Objective, ProductPredictsTheGradientOfWhatIsQuadratic) {
   const Unknowns at = start_at(scene, o);
   const Objective::State s = o.evaluate(at);
   Step d = random_step(o, 6, 1e-7);
-  d.tip = {};   // an exponential, not linear
+  d.tip = {};  // an exponential, not linear
   const Step p = o.product(at, s, d);
   const Unknowns there = o.moved(at, d);
   Step g = o.gradient(there, o.evaluate(there));
@@ -171,8 +181,10 @@ TEST(Objective, DilationIsThatOfTheLibrary) {
   HeightField surface = scene.afm.image;
   surface.z_nm = z;
   for (const TipChange& change : {TipChange{}, TipChange{0.3, 0.2, -0.2, 0.1, 0.4, -0.1, 0.2}}) {
-    const Grid<double> expected = dilate(surface, term.tip(change)).z_nm, got = term.evaluate(z, {}, change).simulated;
-    for (std::size_t i = 0; i < got.size(); ++i) ASSERT_NEAR(got.data()[i], expected.data()[i], 1e-5);
+    const Grid<double> expected = dilate(surface, term.tip(change)).z_nm,
+                       got = term.evaluate(z, {}, change).simulated;
+    for (std::size_t i = 0; i < got.size(); ++i)
+      ASSERT_NEAR(got.data()[i], expected.data()[i], 1e-5);
   }
   EXPECT_EQ(term.tip({}).z_nm, scene.afm.tip.z_nm);
 }
@@ -182,7 +194,8 @@ TEST(Preconditioner, SolvesTheMatrixThatItHolds) {
   test::SmallScene scene;
   scene.afm.upsample = 1;
   scene.afm.noise = {0, 0.5};
-  Objective o{{}, {}, CurvaturePrior(20, 2e-3), frame_of(&scene.afm, nullptr, 0), false, false, 0, {}};
+  Objective o{{}, {}, CurvaturePrior(20, 2e-3), frame_of(&scene.afm, nullptr, 0), false, false,
+              0,  {}};
   o.afm.emplace(scene.afm, eroded(scene.afm, 1), o.frame, Affine{}, 1);
   const Unknowns at{eroded(scene.afm, 1).z_nm, {}, {}};
   const Objective::State s = o.evaluate(at);
@@ -191,7 +204,8 @@ TEST(Preconditioner, SolvesTheMatrixThatItHolds) {
     Preconditioner m(0, 0);
     m.factor(o, at, s);
     const Step v = random_step(o, 8), back = m.solve(o.product(at, s, v));
-    for (std::size_t i = 0; i < v.z_nm.size(); ++i) ASSERT_NEAR(back.z_nm.data()[i], v.z_nm.data()[i], 1e-5);
+    for (std::size_t i = 0; i < v.z_nm.size(); ++i)
+      ASSERT_NEAR(back.z_nm.data()[i], v.z_nm.data()[i], 1e-5);
     for (int k = 0; k < tip_numbers; ++k) ASSERT_NEAR(back.tip[k], v.tip[k], 1e-5);
   }
 }
@@ -199,7 +213,7 @@ TEST(Preconditioner, SolvesTheMatrixThatItHolds) {
 TEST(Preconditioner, DrawsHaveItsInverseAsCovariance) {
   const test::SmallScene scene(5, 24, 18);
   Objective o = make_objective(scene, Images::both);
-  o.fit_tip = false;   // draws hold it
+  o.fit_tip = false;  // draws hold it
   const Unknowns at = start_at(scene, o);
   Preconditioner m(0, 0);
   m.factor(o, at, o.evaluate(at));
@@ -247,12 +261,15 @@ TEST(SemTerm, NearDoesToWavesOfTwelveSamplesWhatTheModelDoes) {
   for (const bool along_x : {true, false}) {
     Grid<double> wave(o.frame.width, o.frame.height);
     for (int y = 0; y < wave.height(); ++y)
-      for (int x = 0; x < wave.width(); ++x) wave(x, y) = std::cos(std::numbers::pi / 6 * (along_x ? x : y) + 0.7);
-    const Grid<double> exact = o.sem->change(*s.sem, at.mixture, wave, {}), sparse = o.sem->change(*s.sem, at.mixture, wave, {}, &near);
+      for (int x = 0; x < wave.width(); ++x)
+        wave(x, y) = std::cos(std::numbers::pi / 6 * (along_x ? x : y) + 0.7);
+    const Grid<double> exact = o.sem->change(*s.sem, at.mixture, wave, {}),
+                       sparse = o.sem->change(*s.sem, at.mixture, wave, {}, &near);
     double size = 0;
     for (const double v : exact.data()) size = std::max(size, std::fabs(v));
     for (int y = 1; y + 1 < wave.height(); ++y)
-      for (int x = 1; x + 1 < wave.width(); ++x) ASSERT_NEAR(sparse(x, y), exact(x, y), 1e-6 * size) << x << " " << y;
+      for (int x = 1; x + 1 < wave.width(); ++x)
+        ASSERT_NEAR(sparse(x, y), exact(x, y), 1e-6 * size) << x << " " << y;
   }
 }
 
@@ -284,7 +301,8 @@ TEST(CurvaturePrior, LikelyCurvatureIsThatOfHalfTheSamples) {
       half(x, y) = x < 20 ? bowl(x, y) : bowl(20, y) - 3 * (x - 20);
     }
   const CurvaturePrior prior(10, 1e-3);
-  EXPECT_NEAR(prior.likely_curvature_per_nm(bowl), 3e-3, 1.5e-4);   // rows at the border have no second difference
+  EXPECT_NEAR(prior.likely_curvature_per_nm(bowl), 3e-3,
+              1.5e-4);  // rows at the border have no second difference
   EXPECT_LT(prior.likely_curvature_per_nm(half), 1e-8);
   EXPECT_LE(prior.likely_curvature_per_nm(Grid<double>(60, 50)), 2e-9);
 }
@@ -313,7 +331,8 @@ TEST(GaussianBasis, DeconvolutionGivesBackWhatWasBlurred) {
   Grid<double> z(40, 30);
   for (int y = 0; y < 30; ++y)
     for (int x = 0; x < 40; ++x) z(x, y) = 10 * std::sin(0.2 * x) + 5 * std::cos(0.25 * y);
-  const Grid<double> blurred = basis.sum(z), again = basis.sum(basis.deconvolved(blurred, 1e-4, 500));
+  const Grid<double> blurred = basis.sum(z),
+                     again = basis.sum(basis.deconvolved(blurred, 1e-4, 500));
   for (std::size_t i = 0; i < z.size(); ++i) ASSERT_NEAR(again.data()[i], blurred.data()[i], 1e-3);
 }
 

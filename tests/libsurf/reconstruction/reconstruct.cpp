@@ -20,7 +20,8 @@ ReconstructionOptions quick() {
 }
 
 bool is_finite(const Grid<double>& grid) {
-  return std::all_of(grid.data().begin(), grid.data().end(), [](double v) { return std::isfinite(v); });
+  return std::all_of(grid.data().begin(), grid.data().end(),
+                     [](double v) { return std::isfinite(v); });
 }
 
 TEST(Reconstruct, BothImagesGiveTheSurfaceFarBetterThanErosion) {
@@ -55,7 +56,7 @@ TEST(Reconstruct, FindsGainsThatAreOffByATenth) {
   scene.sem.gains[0] *= 1.1;
   scene.sem.offset -= 10;
   const Reconstruction r = reconstruct(&scene.afm, &scene.sem, quick());
-  EXPECT_NEAR(r.gains[0] + r.offset, 120, 1.5);   // a plain's brightness
+  EXPECT_NEAR(r.gains[0] + r.offset, 120, 1.5);  // a plain's brightness
 }
 
 TEST(Reconstruct, FindsATipThatIsTooBluntOrTooSharp) {
@@ -70,10 +71,12 @@ TEST(Reconstruct, FindsATipThatIsTooBluntOrTooSharp) {
     o.refine_tip = true;
     const Reconstruction r = reconstruct(&scene.afm, &scene.sem, o);
     EXPECT_NO_THROW(validate(r.tip));
-    // Begun 20 % off; where it touches walls, 40 to 80 nm from the apex, it ends within some percent and the noise from
-    // either side.
-    const std::vector<double> is = round_profile_nm(r.tip, 0.5), should = round_profile_nm(truth, 0.5);
-    for (const int step : {2, 3, 4}) EXPECT_NEAR(is[step], should[step], 0.07 * -should[step] + 0.5) << step;
+    // Begun 20 % off; where it touches walls, 40 to 80 nm from the apex, it ends within some
+    // percent and the noise from either side.
+    const std::vector<double> is = round_profile_nm(r.tip, 0.5),
+                              should = round_profile_nm(truth, 0.5);
+    for (const int step : {2, 3, 4})
+      EXPECT_NEAR(is[step], should[step], 0.07 * -should[step] + 0.5) << step;
     EXPECT_LT(scene.rms_error(r.surface), 0.8 * scene.rms_error(kept.surface));
   }
 }
@@ -112,7 +115,8 @@ TEST(Reconstruct, WorksWithEitherImageAlone) {
 
 TEST(Reconstruct, DescentsReachTheSameFromTheThesissScales) {
   const test::SmallScene scene;
-  for (const ReconstructionMethod method : {ReconstructionMethod::conjugate_gradients, ReconstructionMethod::lbfgs}) {
+  for (const ReconstructionMethod method :
+       {ReconstructionMethod::conjugate_gradients, ReconstructionMethod::lbfgs}) {
     ReconstructionOptions o = quick();
     o.method = method;
     o.scales_px = {8, 4, 2, 1, 0.5};
@@ -127,21 +131,23 @@ TEST(Reconstruct, DescentsReachTheSameFromTheThesissScales) {
 }
 
 TEST(Reconstruct, DeviationsHoldTheErrors) {
-  // Over three draws of the noise. Of normal errors two thirds and 95 % lie within one and two deviations.
+  // Over three draws of the noise. Of normal errors two thirds and 95 % lie within one and two
+  // deviations.
   double within = 0, within_two = 0, count = 0;
   for (const std::uint64_t seed : {5, 6, 7}) {
     const test::SmallScene scene(seed);
     const Reconstruction r = reconstruct(&scene.afm, &scene.sem);
     for (std::size_t i = 0; i < r.deviation_nm.size(); ++i) {
       ASSERT_GT(r.deviation_nm.data()[i], 0);
-      const double z = std::fabs(r.surface.z_nm.data()[i] - scene.truth.z_nm.data()[i]) / r.deviation_nm.data()[i];
+      const double z = std::fabs(r.surface.z_nm.data()[i] - scene.truth.z_nm.data()[i]) /
+                       r.deviation_nm.data()[i];
       within += z < 1;
       within_two += z < 2;
       ++count;
     }
   }
-  // Its edges are rounder and its curvature more even than the prior expects, so errors are larger than that; on the sample
-  // scenes 0.56 and 0.84 lie within (docs/methods/reconstruction.md).
+  // Its edges are rounder and its curvature more even than the prior expects, so errors are larger
+  // than that; on the sample scenes 0.56 and 0.84 lie within (docs/methods/reconstruction.md).
   EXPECT_GT(within / count, 0.3);
   EXPECT_LT(within / count, 0.85);
   EXPECT_GT(within_two / count, 0.55);
@@ -151,12 +157,14 @@ TEST(Reconstruct, RoughGroundMayBendMoreThanPlateaus) {
   const test::SmallScene rough(5, 56, 40, 1, test::rough_height), plateau;
   ReconstructionOptions stiff = quick();
   stiff.curvature_prior_per_nm = 1e-3;
-  const Reconstruction free = reconstruct(&rough.afm, &rough.sem, quick()), held = reconstruct(&rough.afm, &rough.sem, stiff);
+  const Reconstruction free = reconstruct(&rough.afm, &rough.sem, quick()),
+                       held = reconstruct(&rough.afm, &rough.sem, stiff);
   EXPECT_GT(free.scales.back().curvature_prior_per_nm, 1e-2);
   EXPECT_LT(rough.rms_error(free.surface), 0.8 * rough.rms_error(held.surface));
   EXPECT_LT(rough.rms_error(free.surface), rough.rms_error(free.start));
   EXPECT_NEAR(held.scales.back().curvature_prior_per_nm, 1.96e-3, 1e-9);
-  EXPECT_NEAR(reconstruct(&plateau.afm, &plateau.sem, quick()).scales.back().curvature_prior_per_nm, 1.96e-3, 1e-9);
+  EXPECT_NEAR(reconstruct(&plateau.afm, &plateau.sem, quick()).scales.back().curvature_prior_per_nm,
+              1.96e-3, 1e-9);
 }
 
 TEST(Reconstruct, DoesNotDependOnThreads) {
@@ -165,7 +173,8 @@ TEST(Reconstruct, DoesNotDependOnThreads) {
   one.iterations = three.iterations = 3;
   one.threads = 1;
   three.threads = 3;
-  EXPECT_EQ(reconstruct(&scene.afm, &scene.sem, one).surface.z_nm, reconstruct(&scene.afm, &scene.sem, three).surface.z_nm);
+  EXPECT_EQ(reconstruct(&scene.afm, &scene.sem, one).surface.z_nm,
+            reconstruct(&scene.afm, &scene.sem, three).surface.z_nm);
 }
 
 class Journal final : public ReconstructionJournal {
@@ -209,7 +218,8 @@ TEST(Reconstruct, GoesOnFromAJournalToTheSameBits) {
 }
 
 TEST(Reconstruct, DeviationsDoNotDependOnWhereItWasInterrupted) {
-  // Killed when all scales were done: the prior that the last one ended with holds for the deviations, too.
+  // Killed when all scales were done: the prior that the last one ended with holds for the
+  // deviations, too.
   const test::SmallScene rough(5, 56, 40, 1, test::rough_height);
   Journal journal;
   const Reconstruction whole = reconstruct(&rough.afm, &rough.sem, {}, &journal);
@@ -246,7 +256,8 @@ TEST(Reconstruct, FlagsAnImageThatNoSurfaceExplains) {
   test::SmallScene scene;
   for (int y = 0; y < scene.sem.image.values.height(); ++y)
     for (int x = 0; x < scene.sem.image.values.width(); ++x)
-      if ((x / 4 + y / 4) % 2 == 0) scene.sem.image.values(x, y) -= 60;   // darker than any slope can be
+      if ((x / 4 + y / 4) % 2 == 0)
+        scene.sem.image.values(x, y) -= 60;  // darker than any slope can be
   const Reconstruction r = reconstruct(&scene.afm, &scene.sem, quick());
   EXPECT_FALSE(r.scales.back().sem_residual.like_noise);
   EXPECT_FALSE(r.warnings.empty());
@@ -313,7 +324,7 @@ TEST(Reconstruct, RefusesWhatCannotBe) {
     change(afm, sem);
     EXPECT_THROW(reconstruct(&afm, &sem, quick()), Error);
   };
-  refused([](AfmData&, SemData& s) { s.sem_to_afm.x0 += 1e5; });   // no overlap
+  refused([](AfmData&, SemData& s) { s.sem_to_afm.x0 += 1e5; });  // no overlap
   refused([](AfmData&, SemData& s) { s.sem_to_afm = {0, 0, 0, 0, 0, 0}; });
   refused([](AfmData&, SemData& s) { s.gains = {}; });
   refused([](AfmData&, SemData& s) { s.model = nullptr; });

@@ -43,18 +43,21 @@ TEST(SampleSurfaces, AreSteepHighAndSmooth) {
   for (const SampleSurface& s : sample_surfaces()) {
     SCOPED_TRACE(s.name);
     const HeightField field = view(s, pitch);
-    const auto [low, high] = std::minmax_element(field.z_nm.data().begin(), field.z_nm.data().end());
+    const auto [low, high] =
+        std::minmax_element(field.z_nm.data().begin(), field.z_nm.data().end());
     EXPECT_GT(*high - *low, 85);
     EXPECT_LT(*high - *low, 220);
     const SurfaceRange range = surface_range(field);
     EXPECT_GT(range.slope_deg_max, s.name == "terrain" ? 45 : 60);
     EXPECT_LT(range.slope_deg_max, 73);
-    // No walls between samples: what lies in between is the mean of its neighbours, as far as a curved edge allows.
+    // No walls between samples: what lies in between is the mean of its neighbours, as far as a
+    // curved edge allows.
     double worst = 0;
     for (int y = 0; y < field.z_nm.height(); y += 4)
       for (int x = 1; x < field.z_nm.width(); ++x) {
         const double between = s.z_nm(field.x_nm(x) - 0.5 * pitch, field.y_nm(y));
-        worst = std::max(worst, std::abs(between - 0.5 * (field.z_nm(x, y) + field.z_nm(x - 1, y))));
+        worst =
+            std::max(worst, std::abs(between - 0.5 * (field.z_nm(x, y) + field.z_nm(x - 1, y))));
       }
     EXPECT_LT(worst, 4);
   }
@@ -66,17 +69,20 @@ TEST(SampleSurfaces, GoOnAroundTheView) {
     HeightField field;
     field.z_nm = Grid<double>(100, 40);
     field.pitch_x_nm = field.pitch_y_nm = 20;
-    for (const auto& [x, y] : {std::pair{-4000.0, -400.0}, {2400.0, -400.0}, {-1000.0, -2500.0}, {-1000.0, 1500.0}}) {
+    for (const auto& [x, y] :
+         {std::pair{-4000.0, -400.0}, {2400.0, -400.0}, {-1000.0, -2500.0}, {-1000.0, 1500.0}}) {
       field.origin_x_nm = x, field.origin_y_nm = y;
       sample_heights(s, {}, field);
-      const auto [low, high] = std::minmax_element(field.z_nm.data().begin(), field.z_nm.data().end());
+      const auto [low, high] =
+          std::minmax_element(field.z_nm.data().begin(), field.z_nm.data().end());
       EXPECT_GT(*high - *low, 50);
     }
   }
 }
 
 TEST(SampleSurfaces, DoNotDependOnThreads) {
-  for (const SampleSurface& s : sample_surfaces()) EXPECT_EQ(view(s, 40, 1).z_nm, view(s, 40, 3).z_nm);
+  for (const SampleSurface& s : sample_surfaces())
+    EXPECT_EQ(view(s, 40, 1).z_nm, view(s, 40, 3).z_nm);
 }
 
 TEST(SampleSurfaces, AreSampledThroughAMap) {

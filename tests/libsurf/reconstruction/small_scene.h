@@ -16,14 +16,17 @@ namespace surf::test {
 /// A rounded block beside a dimple, 100 nm high: the surface of every place, nm.
 inline double small_height(Point2 p) {
   const auto edge = [](double d) { return 0.5 * (1 + std::erf(d / 28)); };
-  const double block = edge(p.x + 150) * edge(60 - p.x) * edge(p.y + 110) * edge(90 - p.y + 0.3 * p.x);
-  const double dimple = std::exp(-((p.x - 170) * (p.x - 170) + (p.y + 40) * (p.y + 40)) / (2 * 45 * 45));
+  const double block =
+      edge(p.x + 150) * edge(60 - p.x) * edge(p.y + 110) * edge(90 - p.y + 0.3 * p.x);
+  const double dimple =
+      std::exp(-((p.x - 170) * (p.x - 170) + (p.y + 40) * (p.y + 40)) / (2 * 45 * 45));
   return 80 * block - 25 * dimple;
 }
 
 /// Ground that bends everywhere.
 inline double rough_height(Point2 p) {
-  return 12 * std::sin(0.031 * p.x + 0.3 + std::sin(0.011 * p.y)) + 12 * std::sin(0.027 * p.y + 0.9 * std::sin(0.013 * p.x)) +
+  return 12 * std::sin(0.031 * p.x + 0.3 + std::sin(0.011 * p.y)) +
+         12 * std::sin(0.027 * p.y + 0.9 * std::sin(0.013 * p.x)) +
          4 * std::sin(0.061 * (p.x - p.y));
 }
 
@@ -31,12 +34,13 @@ inline double rough_height(Point2 p) {
 struct SmallScene {
   AfmData afm;
   SemData sem;
-  HeightField truth;   ///< on the SEM's pixels
+  HeightField truth;  ///< on the SEM's pixels
 
   explicit SmallScene(std::uint64_t seed = 5, int width = 56, int height = 40, double noise = 1,
                       const std::function<double(Point2)>& height_nm = small_height) {
     const double pitch = 10;
-    truth = {Grid<double>(width, height), {}, pitch, pitch, -0.5 * (width - 1) * pitch, -0.5 * (height - 1) * pitch};
+    truth = {Grid<double>(width, height), {}, pitch, pitch, -0.5 * (width - 1) * pitch,
+             -0.5 * (height - 1) * pitch};
     for (int y = 0; y < height; ++y)
       for (int x = 0; x < width; ++x) truth.z_nm(x, y) = height_nm({truth.x_nm(x), truth.y_nm(y)});
 
@@ -54,17 +58,23 @@ struct SmallScene {
     RandomStream random(seed, 1, 0);
     for (double& v : sem.image.values.data()) {
       v = 100 * v + 20;
-      v += noise * std::sqrt(sem.noise.variance(v)) * std::sqrt(-2 * std::log(random.uniform())) * std::cos(6.283185307179586 * random.uniform());
+      v += noise * std::sqrt(sem.noise.variance(v)) * std::sqrt(-2 * std::log(random.uniform())) *
+           std::cos(6.283185307179586 * random.uniform());
     }
 
     // The scan, on three samples per pitch, larger than the SEM image.
     const double afm_pitch = 20;
     const int n = 44, m = 38, f = 3;
-    HeightField fine{Grid<double>((n - 1) * f + 1, (m - 1) * f + 1), {}, afm_pitch / f, afm_pitch / f,
-                     -0.5 * (n - 1) * afm_pitch, -0.5 * (m - 1) * afm_pitch};
+    HeightField fine{Grid<double>((n - 1) * f + 1, (m - 1) * f + 1),
+                     {},
+                     afm_pitch / f,
+                     afm_pitch / f,
+                     -0.5 * (n - 1) * afm_pitch,
+                     -0.5 * (m - 1) * afm_pitch};
     const Affine back = inverse(sem.sem_to_afm);
     for (int y = 0; y < fine.z_nm.height(); ++y)
-      for (int x = 0; x < fine.z_nm.width(); ++x) fine.z_nm(x, y) = height_nm(back({fine.x_nm(x), fine.y_nm(y)}));
+      for (int x = 0; x < fine.z_nm.width(); ++x)
+        fine.z_nm(x, y) = height_nm(back({fine.x_nm(x), fine.y_nm(y)}));
     const Tip blunt = parabolic_tip(80, {afm_pitch / f, afm_pitch / f, 31, 31});
     const HeightField image = dilate(fine, blunt);
     afm.image = {Grid<double>(n, m), {}, afm_pitch, afm_pitch, fine.origin_x_nm, fine.origin_y_nm};

@@ -27,7 +27,8 @@ TEST(TipFamily, AFactorForAllSlopesIsOneForAllHeights) {
   TipChange all;
   all.fill(std::log(1.25));
   const Tip changed = TipFamily(tip).changed(tip, all);
-  for (std::size_t i = 0; i < tip.z_nm.size(); ++i) ASSERT_NEAR(changed.z_nm.data()[i], 1.25 * tip.z_nm.data()[i], 1e-9);
+  for (std::size_t i = 0; i < tip.z_nm.size(); ++i)
+    ASSERT_NEAR(changed.z_nm.data()[i], 1.25 * tip.z_nm.data()[i], 1e-9);
 }
 
 TEST(TipFamily, AnyChangeIsATipThatFallsOutwards) {
@@ -74,7 +75,8 @@ TEST(TipFamily, DerivativesAreThoseOfCentralDifferences) {
 }
 
 TEST(TipFamily, IsTheSameOnCoarserSamples) {
-  const Tip fine = conical_tip(50, 0.5, {5, 5, 61, 61}), coarse = conical_tip(50, 0.5, {20, 20, 15, 15});
+  const Tip fine = conical_tip(50, 0.5, {5, 5, 61, 61}),
+            coarse = conical_tip(50, 0.5, {20, 20, 15, 15});
   const TipFamily family(fine);
   const TipChange change{0.3, -0.2, 0.1, 0.4, -0.5, 0.2, -0.1};
   const Tip a = family.changed(fine, change), b = family.changed(coarse, change);

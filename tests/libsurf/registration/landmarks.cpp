@@ -31,7 +31,8 @@ std::string failure(const std::vector<LandmarkPair>& pairs) {
 }
 
 TEST(Landmarks, ThreeGiveTheMapFarFromTheOriginToo) {
-  const LandmarkFit fit = fit_landmarks(pairs_at({{1e6, 1e6}, {1e6 + 500, 1e6}, {1e6 + 100, 1e6 + 300}}));
+  const LandmarkFit fit =
+      fit_landmarks(pairs_at({{1e6, 1e6}, {1e6 + 500, 1e6}, {1e6 + 100, 1e6 + 300}}));
   EXPECT_NEAR(fit.sem_to_afm.xx, map.xx, 1e-10);
   EXPECT_NEAR(fit.sem_to_afm.xy, map.xy, 1e-10);
   EXPECT_NEAR(fit.sem_to_afm.yx, map.yx, 1e-10);
@@ -51,8 +52,10 @@ TEST(Landmarks, MoreAreFittedByLeastSquares) {
 
 TEST(Landmarks, SaysWhichDoNotDetermineIt) {
   EXPECT_THAT(failure(pairs_at({{0, 0}, {1, 2}})), HasSubstr("there are 2 pairs"));
-  EXPECT_THAT(failure(pairs_at({{0, 0}, {1, 2}, {2, 4}, {3, 6}})), HasSubstr("pairs 1, 2, 3 and 4 all lie on a line in the SEM"));
-  EXPECT_THAT(failure(pairs_at({{0, 0}, {5, 1}, {0, 0}})), HasSubstr("pairs 1 and 3 lie at one place in the SEM"));
+  EXPECT_THAT(failure(pairs_at({{0, 0}, {1, 2}, {2, 4}, {3, 6}})),
+              HasSubstr("pairs 1, 2, 3 and 4 all lie on a line in the SEM"));
+  EXPECT_THAT(failure(pairs_at({{0, 0}, {5, 1}, {0, 0}})),
+              HasSubstr("pairs 1 and 3 lie at one place in the SEM"));
   EXPECT_THAT(failure(pairs_at({{7, 7}, {7, 7}, {7, 7}})), HasSubstr("lie at one place"));
   std::vector<LandmarkPair> flat = pairs_at({{0, 0}, {10, 0}, {0, 10}});
   for (LandmarkPair& pair : flat) pair.afm_nm.y = 3;
@@ -64,7 +67,8 @@ TEST(Landmarks, SaysWhichDoNotDetermineIt) {
 TEST(Landmarks, OneLineIsJudgedWithoutASenseOfScale) {
   for (const double scale : {1e-6, 1.0, 1e6}) {
     EXPECT_NO_THROW(fit_landmarks(pairs_at({{0, 0}, {scale, 0}, {0.5 * scale, 0.01 * scale}})));
-    EXPECT_THROW(fit_landmarks(pairs_at({{0, 0}, {scale, 0}, {0.5 * scale, 1e-6 * scale}})), InvalidInput);
+    EXPECT_THROW(fit_landmarks(pairs_at({{0, 0}, {scale, 0}, {0.5 * scale, 1e-6 * scale}})),
+                 InvalidInput);
   }
 }
 

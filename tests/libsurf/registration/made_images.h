@@ -19,11 +19,13 @@ class Spots {
     RandomStream random(seed, 1, 1);
     const auto between = [&](double a, double b) { return a + (b - a) * random.uniform(); };
     for (int i = 0; i < 260; ++i)
-      spots_.push_back({between(-half, half), between(-half, half), between(3, 9), between(-1, 1.5)});
+      spots_.push_back(
+          {between(-half, half), between(-half, half), between(3, 9), between(-1, 1.5)});
   }
   double operator()(double x, double y) const {
     double sum = 0;
-    for (const auto& [cx, cy, s, a] : spots_) sum += a * std::exp(-0.5 * ((x - cx) * (x - cx) + (y - cy) * (y - cy)) / (s * s));
+    for (const auto& [cx, cy, s, a] : spots_)
+      sum += a * std::exp(-0.5 * ((x - cx) * (x - cx) + (y - cy) * (y - cy)) / (s * s));
     return sum;
   }
 
@@ -37,8 +39,10 @@ class Spots {
 using Scene = std::function<double(double, double)>;
 
 /// What a microscope shows of the scene through the map, in pixels of `pitch` nm about (0, 0).
-inline PlacedImage image_of(const Scene& scene, const Affine& map, int w, int h, double pitch, double noise, std::uint64_t seed) {
-  PlacedImage image{Grid<double>(w, h), {}, pitch, pitch, -0.5 * (w - 1) * pitch, -0.5 * (h - 1) * pitch};
+inline PlacedImage image_of(const Scene& scene, const Affine& map, int w, int h, double pitch,
+                            double noise, std::uint64_t seed) {
+  PlacedImage image{Grid<double>(w, h),    {}, pitch, pitch, -0.5 * (w - 1) * pitch,
+                    -0.5 * (h - 1) * pitch};
   for (int y = 0; y < h; ++y)
     for (int x = 0; x < w; ++x) {
       RandomStream random(seed, static_cast<std::uint64_t>(y), static_cast<std::uint64_t>(x));
@@ -50,7 +54,8 @@ inline PlacedImage image_of(const Scene& scene, const Affine& map, int w, int h,
   return image;
 }
 
-/// Root mean square of the distance, over the SEM's pixels of 1 nm that lie in an image of `half` nm about the middle.
+/// Root mean square of the distance, over the SEM's pixels of 1 nm that lie in an image of `half`
+/// nm about the middle.
 inline double error_px(const Affine& a, const Affine& b, int w, int h, double half) {
   double sum = 0;
   int count = 0;
@@ -67,7 +72,8 @@ inline double error_px(const Affine& a, const Affine& b, int w, int h, double ha
 /// Discs on a square lattice.
 inline Scene lattice_of(double period) {
   return [period](double x, double y) {
-    return 1 / (1 + std::exp(4 * (std::hypot(std::remainder(x, period), std::remainder(y, period)) - 0.27 * period)));
+    return 1 / (1 + std::exp(4 * (std::hypot(std::remainder(x, period), std::remainder(y, period)) -
+                                  0.27 * period)));
   };
 }
 

@@ -30,7 +30,8 @@ using test::Spots;
 Affine random_map(std::uint64_t seed) {
   RandomStream random(seed, 5, 5);
   const auto between = [&](double a, double b) { return a + (b - a) * random.uniform(); };
-  return make_affine({between(-3.1, 3.1), between(0.8, 1.25), between(0.8, 1.25), between(-0.05, 0.05), between(-12, 12), between(-12, 12)});
+  return make_affine({between(-3.1, 3.1), between(0.8, 1.25), between(0.8, 1.25),
+                      between(-0.05, 0.05), between(-12, 12), between(-12, 12)});
 }
 
 /// Whether a place of the SEM image lies in an image of `half` nm about the middle, and where.
@@ -47,11 +48,12 @@ struct Overlap {
   }
 };
 
-/// Cramer and Rao's bound of the error's mean square over the overlap, for the six numbers of the map beside
-/// an unknown gain and offset: what white noise in the SEM's image allows at best.
-double least_square_error_px2(const Scene& scene, const Affine& truth, const Overlap& overlap, double noise) {
+/// Cramer and Rao's bound of the error's mean square over the overlap, for the six numbers of the
+/// map beside an unknown gain and offset: what white noise in the SEM's image allows at best.
+double least_square_error_px2(const Scene& scene, const Affine& truth, const Overlap& overlap,
+                              double noise) {
   constexpr std::size_t n = 8;
-  constexpr double d = 0.01, unit = 40;   // nm of either, so that all six numbers have one size
+  constexpr double d = 0.01, unit = 40;  // nm of either, so that all six numbers have one size
   std::array<std::array<double, 2 * n>, n> m{};
   std::array<std::array<double, 3>, 3> moments{};
   double count = 0;
@@ -59,7 +61,7 @@ double least_square_error_px2(const Scene& scene, const Affine& truth, const Ove
     const double gx = (scene(q.x + d, q.y) - scene(q.x - d, q.y)) / (2 * d);
     const double gy = (scene(q.x, q.y + d) - scene(q.x, q.y - d)) / (2 * d);
     const double u[] = {1, p.x / unit, p.y / unit};
-    const double row[n] = {gx * u[0], gx * u[1], gx * u[2],      gy * u[0],
+    const double row[n] = {gx * u[0], gx * u[1], gx * u[2],       gy * u[0],
                            gy * u[1], gy * u[2], scene(q.x, q.y), 1};
     for (std::size_t i = 0; i < n; ++i)
       for (std::size_t j = 0; j < n; ++j) m[i][j] += row[i] * row[j] / (noise * noise);
@@ -79,7 +81,8 @@ double least_square_error_px2(const Scene& scene, const Affine& truth, const Ove
   }
   double sum = 0;
   for (std::size_t i = 0; i < 3; ++i)
-    for (std::size_t j = 0; j < 3; ++j) sum += moments[i][j] / count * (m[i][n + j] + m[i + 3][n + j + 3]);
+    for (std::size_t j = 0; j < 3; ++j)
+      sum += moments[i][j] / count * (m[i][n + j] + m[i + 3][n + j + 3]);
   return sum;
 }
 
@@ -120,14 +123,15 @@ TEST(RegisterImages, FindsSmallNoisyImagesAsWellAsTheirNoiseAllows) {
     squares += error * error;
     least += least_square_error_px2(spots, truth, {90, 70, 43}, 0.3);
   }
-  EXPECT_GT(least, 10 * 0.2 * 0.2);   // of ten maps and more
+  EXPECT_GT(least, 10 * 0.2 * 0.2);  // of ten maps and more
   EXPECT_LT(squares, 1.6 * least);
 }
 
 TEST(RegisterImages, MutualInformationFindsInvertedImages) {
   const Spots spots(3);
   const Affine truth = make_affine({0.4, 1.1, 0.95, 0.02, 4, -3});
-  const PlacedImage sem = image_of([&](double x, double y) { return -std::tanh(spots(x, y)); }, truth, 90, 70, 1, 0.1, 1);
+  const PlacedImage sem = image_of([&](double x, double y) { return -std::tanh(spots(x, y)); },
+                                   truth, 90, 70, 1, 0.1, 1);
   const PlacedImage afm = image_of(spots, {}, 90, 90, 1, 0.02, 2);
   for (const EntropyEstimate estimate : {EntropyEstimate::histogram, EntropyEstimate::parzen}) {
     RegistrationOptions options;
@@ -143,10 +147,12 @@ TEST(RegisterImages, MutualInformationFindsInvertedImages) {
 TEST(RegisterImages, BeginsAtAStartThatIsGivenAndLooksPastHoles) {
   const Spots spots(4);
   const Affine truth = make_affine({2, 0.9, 1.05, -0.03, 3, 5});
-  PlacedImage sem = image_of(spots, truth, 90, 70, 1, 0.1, 1), afm = image_of(spots, {}, 90, 90, 1, 0.02, 2);
+  PlacedImage sem = image_of(spots, truth, 90, 70, 1, 0.1, 1),
+              afm = image_of(spots, {}, 90, 90, 1, 0.02, 2);
   sem.valid = Grid<unsigned char>(90, 70, 1);
   for (int y = 20; y < 35; ++y)
-    for (int x = 10; x < 40; ++x) sem.valid(x, y) = 0, sem.values(x, y) = std::numeric_limits<double>::quiet_NaN();
+    for (int x = 10; x < 40; ++x)
+      sem.valid(x, y) = 0, sem.values(x, y) = std::numeric_limits<double>::quiet_NaN();
   afm.valid = Grid<unsigned char>(90, 90, 1);
   for (int y = 50; y < 75; ++y)
     for (int x = 20; x < 50; ++x)
@@ -168,10 +174,14 @@ TEST(RegisterImages, BeginsAtAStartThatIsGivenAndLooksPastHoles) {
 
 TEST(RegisterImages, IsAmbiguousWhereTheSceneRepeatsOrSlides) {
   const Scene grating = [](double x, double) { return std::cos(x / 3); };
-  const Scene dots = [](double x, double y) { return std::pow(std::cos(x / 5) * std::cos(y / 5), 2); };
+  const Scene dots = [](double x, double y) {
+    return std::pow(std::cos(x / 5) * std::cos(y / 5), 2);
+  };
   const Scene line = [](double x, double) { return std::exp(-x * x / 50); };
   for (const Scene& scene : {grating, dots, line}) {
-    const Registration r = register_images(image_of(scene, make_affine({0.3, 1, 1, 0, 2, 3}), 80, 70, 1, 0.1, 1), image_of(scene, {}, 80, 80, 1, 0.05, 2));
+    const Registration r =
+        register_images(image_of(scene, make_affine({0.3, 1, 1, 0, 2, 3}), 80, 70, 1, 0.1, 1),
+                        image_of(scene, {}, 80, 80, 1, 0.05, 2));
     EXPECT_NE(r.verdict, RegistrationVerdict::verified) << r.reason;
     EXPECT_NE(r.verdict, RegistrationVerdict::unrelated) << r.reason;
   }
@@ -180,8 +190,10 @@ TEST(RegisterImages, IsAmbiguousWhereTheSceneRepeatsOrSlides) {
 TEST(RegisterImages, AFineGratingIsAmbiguousAndHasItsRivals) {
   const Scene fine = [](double x, double) { return std::cos(2 * std::numbers::pi * x / 8); };
   const Affine map = make_affine({0.3, 1, 1, 0, 2, 3});
-  const PlacedImage sem = image_of(fine, map, 240, 100, 1, 0.1, 1), afm = image_of(fine, {}, 150, 150, 1, 0.05, 2);
-  RegistrationOptions narrow;   // nothing holds lengths along the lines: every place leaves these limits
+  const PlacedImage sem = image_of(fine, map, 240, 100, 1, 0.1, 1),
+                    afm = image_of(fine, {}, 150, 150, 1, 0.05, 2);
+  RegistrationOptions
+      narrow;  // nothing holds lengths along the lines: every place leaves these limits
   narrow.least_scale = 0.995, narrow.largest_scale = 1.005, narrow.largest_shear = 0;
   for (const RegistrationOptions& options : {RegistrationOptions{}, narrow}) {
     const Registration r = register_images(sem, afm, options);
@@ -193,14 +205,16 @@ TEST(RegisterImages, AFineGratingIsAmbiguousAndHasItsRivals) {
 }
 
 TEST(RegisterImages, FindsTheRivalsOfALatticeTooFineForTheSearch) {
-  // What is broad finds the place and the search has no other; sharp images show mostly what repeats.
+  // What is broad finds the place and the search has no other; sharp images show mostly what
+  // repeats.
   constexpr double period = 12;
   const Scene dots = lattice_of(period);
   const Affine truth = make_affine({0.7, 1.05, 0.95, 0.02, 20, -15});
   for (const std::uint64_t seed : {5, 6}) {
     const Spots spots(seed);
     const Scene scene = [&](double x, double y) { return dots(x, y) + 0.4 * spots(x / 5, y / 5); };
-    const PlacedImage sem = image_of(scene, truth, 300, 180, 1, 0.7, 1), afm = image_of(scene, {}, 185, 185, 1.25, 0.03, 2);
+    const PlacedImage sem = image_of(scene, truth, 300, 180, 1, 0.7, 1),
+                      afm = image_of(scene, {}, 185, 185, 1.25, 0.03, 2);
     const Registration r = register_images(sem, afm);
     EXPECT_EQ(r.verdict, RegistrationVerdict::ambiguous) << r.reason;
     EXPECT_FALSE(r.rivals.empty());
@@ -229,7 +243,8 @@ TEST(RegisterImages, SaysThatLandmarksOnALatticeMustBeRightToHalfAPeriod) {
   options.blurs_px = {3, 2, 1, 0};
   options.start = compose(Affine{1, 0, 12, 0, 1, 0}, truth);
   const auto reason_of = [&](const Scene& scene) {
-    const Registration r = register_images(image_of(scene, truth, 100, 80, 1, 0.3, 1), image_of(scene, {}, 110, 110, 1, 0.03, 2), options);
+    const Registration r = register_images(image_of(scene, truth, 100, 80, 1, 0.3, 1),
+                                           image_of(scene, {}, 110, 110, 1, 0.03, 2), options);
     EXPECT_EQ(r.verdict, RegistrationVerdict::verified) << r.reason;
     return r.reason;
   };
@@ -242,7 +257,8 @@ TEST(RegisterImages, DoesNotAcceptAStartThatIsTooFarOff) {
   for (const std::uint64_t seed : {1, 2, 3}) {
     const Spots spots(seed);
     const Affine truth = random_map(seed);
-    const PlacedImage sem = image_of(spots, truth, 120, 90, 1, 0.3, 1), afm = image_of(spots, {}, 120, 120, 1, 0.03, 2);
+    const PlacedImage sem = image_of(spots, truth, 120, 90, 1, 0.3, 1),
+                      afm = image_of(spots, {}, 120, 120, 1, 0.03, 2);
     RegistrationOptions options;
     for (const Affine& off : {Affine{1, 0, 50, 0, 1, 0}, make_affine({1.5, 1, 1, 0, 0, 0})}) {
       options.start = compose(truth, off);
@@ -256,7 +272,8 @@ TEST(RegisterImages, AsksForTheOverlapThatIsWanted) {
   // A quarter in common: found when that is allowed.
   const Spots spots(2);
   const Affine truth{1, 0, 90, 0, 1, 0};
-  const PlacedImage sem = image_of(spots, truth, 120, 100, 1, 0.3, 1), afm = image_of(spots, {}, 120, 100, 1, 0.03, 2);
+  const PlacedImage sem = image_of(spots, truth, 120, 100, 1, 0.3, 1),
+                    afm = image_of(spots, {}, 120, 100, 1, 0.03, 2);
   RegistrationOptions options;
   options.least_scale = 0.95, options.largest_scale = 1.05, options.largest_shear = 0.02;
   EXPECT_NE(register_images(sem, afm, options).verdict, RegistrationVerdict::verified);
@@ -269,7 +286,8 @@ TEST(RegisterImages, AsksForTheOverlapThatIsWanted) {
 TEST(Repeats, AreOtherPlacesOfALatticeAndNoneOfSpots) {
   const Affine map = make_affine({0.3, 1.1, 0.9, 0.03, 7, -4});
   const auto repeats_in = [&](const Scene& scene, Corners& best) {
-    const PlacedImage sem = image_of(scene, map, 90, 70, 1, 0.3, 1), afm = image_of(scene, {}, 80, 70, 1.25, 0.03, 2);
+    const PlacedImage sem = image_of(scene, map, 90, 70, 1, 0.3, 1),
+                      afm = image_of(scene, {}, 80, 70, 1.25, 0.03, 2);
     const CornerFrame frame(sem, afm);
     best = frame.corners(map);
     return repeats_of({sem, afm, frame, 2}, best, 4);
@@ -303,18 +321,21 @@ TEST(RegisterImages, DoesNotAcceptAScaleBeyondItsLimits) {
 
 TEST(RegisterImages, DoesNotAcceptImagesOfDifferentPlaces) {
   for (std::uint64_t seed = 1; seed <= 4; ++seed) {
-    const Registration r = register_images(image_of(Spots(seed), {}, 80, 70, 1, 0.3, 1), image_of(Spots(seed + 50), {}, 80, 80, 1, 0.03, 2));
+    const Registration r = register_images(image_of(Spots(seed), {}, 80, 70, 1, 0.3, 1),
+                                           image_of(Spots(seed + 50), {}, 80, 80, 1, 0.03, 2));
     EXPECT_EQ(r.verdict, RegistrationVerdict::unrelated) << r.reason;
   }
   RegistrationOptions options;
   options.start = Affine{1, 0, 1e5, 0, 1, 0};
-  const Registration apart = register_images(image_of(Spots(1), {}, 80, 70, 1, 0.3, 1), image_of(Spots(1), {}, 80, 80, 1, 0.03, 2), options);
+  const Registration apart = register_images(image_of(Spots(1), {}, 80, 70, 1, 0.3, 1),
+                                             image_of(Spots(1), {}, 80, 80, 1, 0.03, 2), options);
   EXPECT_EQ(apart.verdict, RegistrationVerdict::unrelated);
 }
 
 TEST(RegisterImages, GivesTheSameForAnyThreadCount) {
   const Spots spots(6);
-  const PlacedImage sem = image_of(spots, random_map(6), 70, 60, 1, 0.3, 1), afm = image_of(spots, {}, 70, 70, 1, 0.03, 2);
+  const PlacedImage sem = image_of(spots, random_map(6), 70, 60, 1, 0.3, 1),
+                    afm = image_of(spots, {}, 70, 70, 1, 0.03, 2);
   RegistrationOptions one, three;
   one.threads = 1, three.threads = 3;
   const Registration a = register_images(sem, afm, one), b = register_images(sem, afm, three);
@@ -350,7 +371,8 @@ TEST(RegisterImages, RefusesWhatItCannotUse) {
 TEST(RegisterImages, SaturatedAndTinyImagesEndInAVerdict) {
   PlacedImage saturated{Grid<double>(60, 60, 255), {}, 1, 1, 0, 0};
   saturated.values(30, 30) = 254;
-  const PlacedImage other = image_of(Spots(8), {}, 60, 60, 1, 0.1, 1), tiny = image_of(Spots(8), {}, 3, 2, 1, 0.1, 1);
+  const PlacedImage other = image_of(Spots(8), {}, 60, 60, 1, 0.1, 1),
+                    tiny = image_of(Spots(8), {}, 3, 2, 1, 0.1, 1);
   for (const PlacedImage& bad : {saturated, tiny}) {
     const Registration r = register_images(bad, other), s = register_images(other, bad);
     EXPECT_NE(r.verdict, RegistrationVerdict::verified);
@@ -377,7 +399,8 @@ TEST(Verdict, SaysWhatIsAmissBeforeItAccepts) {
   good.chance_evidence = 50;
   good.loosest_px = 0.2;
   good.largest_stderr_px = 0.4;
-  const auto verdict_of = [](const Evidence& evidence, std::size_t rivals = 0, double stderr_px = 0.1) {
+  const auto verdict_of = [](const Evidence& evidence, std::size_t rivals = 0,
+                             double stderr_px = 0.1) {
     Registration r;
     r.stderr_px = stderr_px;
     r.rivals.resize(rivals);
@@ -397,7 +420,8 @@ TEST(Verdict, SaysWhatIsAmissBeforeItAccepts) {
   EXPECT_EQ(verdict_of(bad), ambiguous);
   bad = good, bad.loosest_px = 1.1;
   EXPECT_EQ(verdict_of(bad), ambiguous);
-  bad = good, bad.coarse_evidence = 40;   // another place agreed while all was coarse, this one did not
+  bad = good,
+  bad.coarse_evidence = 40;  // another place agreed while all was coarse, this one did not
   EXPECT_EQ(verdict_of(bad), ambiguous);
   bad = good, bad.settled = false;
   EXPECT_EQ(verdict_of(bad), unconverged);
@@ -410,7 +434,8 @@ TEST(Verdict, SaysWhatIsAmissBeforeItAccepts) {
 }
 
 TEST(Verdict, ChanceIsExceededOnceInSoManySearches) {
-  // The best of 500 values that follow Gumbel's law: in one of 20 searches it is above the bound of that odds.
+  // The best of 500 values that follow Gumbel's law: in one of 20 searches it is above the bound of
+  // that odds.
   constexpr int searches = 2000, poses = 500;
   int above = 0;
   for (int search = 0; search < searches; ++search) {
@@ -426,7 +451,8 @@ TEST(Verdict, ChanceIsExceededOnceInSoManySearches) {
 
 TEST(Correlation, DerivativesAreThoseOfDifferences) {
   const Spots spots(2);
-  const PlacedImage sem = image_of(spots, {}, 40, 30, 1, 0.1, 1), afm = image_of(spots, {}, 40, 40, 1.3, 0.1, 2);
+  const PlacedImage sem = image_of(spots, {}, 40, 30, 1, 0.1, 1),
+                    afm = image_of(spots, {}, 40, 40, 1.3, 0.1, 2);
   const CornerFrame frame(sem, afm);
   const BlurLevel level(sem, afm, frame, 1);
   Corners c = frame.corners(make_affine({0.1, 1.02, 0.97, 0.01, 1.3, -0.4}));
@@ -440,7 +466,8 @@ TEST(Correlation, DerivativesAreThoseOfDifferences) {
     up[p] += step, down[p] -= step;
     correlation.evaluate(up.data(), above.data(), nullptr);
     correlation.evaluate(down.data(), below.data(), nullptr);
-    for (std::size_t k = 0; k < n; k += 7) EXPECT_NEAR(jacobian[p * n + k], (above[k] - below[k]) / (2 * step), 1e-7);
+    for (std::size_t k = 0; k < n; k += 7)
+      EXPECT_NEAR(jacobian[p * n + k], (above[k] - below[k]) / (2 * step), 1e-7);
   }
 }
 
@@ -462,7 +489,8 @@ TEST(MutualInformation, BinsFollowTheirRules) {
   std::vector<double> values;
   for (int i = 0; i <= 1000; ++i) values.push_back(i);
   EXPECT_NEAR(bin_width(values, BinRule::interquartile), 2 * 500 / std::cbrt(1001), 1e-9);
-  EXPECT_NEAR(bin_width(values, BinRule::deviation), 3.49 * std::sqrt(1001.0 * 1001 / 12) / std::cbrt(1001), 0.01);
+  EXPECT_NEAR(bin_width(values, BinRule::deviation),
+              3.49 * std::sqrt(1001.0 * 1001 / 12) / std::cbrt(1001), 0.01);
   EXPECT_EQ(bin_width({3, 3, 3}, BinRule::interquartile), 0);
 }
 

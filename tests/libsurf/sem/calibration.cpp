@@ -16,10 +16,12 @@ using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
 double normal(RandomStream& random) {
-  return std::sqrt(-2 * std::log(random.uniform())) * std::cos(2 * std::numbers::pi * random.uniform());
+  return std::sqrt(-2 * std::log(random.uniform())) *
+         std::cos(2 * std::numbers::pi * random.uniform());
 }
 
-/// SE and BSE of something with relief, with the given correlation of what is left beside their means.
+/// SE and BSE of something with relief, with the given correlation of what is left beside their
+/// means.
 CalibrationImages two_channels(int width, int height, double correlation) {
   CalibrationImages images;
   images.channels = {"SE", "BSE"};
@@ -30,15 +32,18 @@ CalibrationImages two_channels(int width, int height, double correlation) {
     const double a = normal(random), b = normal(random);
     images.simulated[0].data()[i] = 0.9 + 0.2 * a;
     images.simulated[1].data()[i] =
-        0.25 + 0.05 * (correlation * a + std::sqrt(std::fmax(0, 1 - correlation * correlation)) * b);
+        0.25 +
+        0.05 * (correlation * a + std::sqrt(std::fmax(0, 1 - correlation * correlation)) * b);
   }
   return images;
 }
 
-void expose(CalibrationImages& images, double se, double bse, double offset, double noise, std::uint64_t seed) {
+void expose(CalibrationImages& images, double se, double bse, double offset, double noise,
+            std::uint64_t seed) {
   RandomStream random(seed, 1, 0);
   for (std::size_t i = 0; i < images.real.size(); ++i)
-    images.real.data()[i] = se * images.simulated[0].data()[i] + bse * images.simulated[1].data()[i] + offset +
+    images.real.data()[i] = se * images.simulated[0].data()[i] +
+                            bse * images.simulated[1].data()[i] + offset +
                             (noise > 0 ? noise * normal(random) : 0);
 }
 
@@ -96,7 +101,8 @@ TEST(Calibrate, WeightsCountNoisyPixelsLess) {
   expose(images, 100, 200, 5, 1, 3);
   images.weights = Grid<double>(40, 40, 1);
   for (int y = 0; y < 20; ++y)
-    for (int x = 0; x < 40; ++x) images.real(x, y) += x % 2 ? 300 : -300, images.weights(x, y) = 1e-8;
+    for (int x = 0; x < 40; ++x)
+      images.real(x, y) += x % 2 ? 300 : -300, images.weights(x, y) = 1e-8;
   const Calibration c = calibrate(images);
   test::expect_mean(c.gains[0], c.gain_stderr(0), 100, 3);
   test::expect_mean(c.gains[1], c.gain_stderr(1), 200, 3);
@@ -154,10 +160,13 @@ TEST(Calibrate, WarnsWhereChannelsAreNearlyProportional) {
 TEST(Calibrate, ProportionalChannelsLeaveTheGainsOpen) {
   for (const bool fixed : {false, true}) {
     CalibrationImages images = two_channels(30, 30, 0.5);
-    for (std::size_t i = 0; i < images.real.size(); ++i)   // as it comes out of a file of 32-bit floats
-      images.simulated[1].data()[i] = static_cast<float>(0.3 * images.simulated[0].data()[i] + (fixed ? 0 : 0.1));
+    for (std::size_t i = 0; i < images.real.size();
+         ++i)  // as it comes out of a file of 32-bit floats
+      images.simulated[1].data()[i] =
+          static_cast<float>(0.3 * images.simulated[0].data()[i] + (fixed ? 0 : 0.1));
     expose(images, 100, 200, 5, 0, 3);
-    const Calibration c = calibrate(images, {.offset = fixed ? std::optional<double>(5) : std::nullopt});
+    const Calibration c =
+        calibrate(images, {.offset = fixed ? std::optional<double>(5) : std::nullopt});
     EXPECT_EQ(c.outcome, CalibrationOutcome::undetermined);
     EXPECT_TRUE(std::isinf(c.condition_number));
     EXPECT_TRUE(std::isinf(c.gain_stderr(0)));
@@ -242,8 +251,10 @@ TEST(Calibrate, RefusesWhatDoesNotFit) {
 }
 
 TEST(FoldCalibration, GivesTheCalibratedFilterBank) {
-  const FilterBankParameters bank{{{5, 0.6}, {7, 0.9}}, false,
-                                  {{"SE", 0.9, {1, 2}, {3, 4}, {5, 6}}, {"BSE", 0.2, {-1, 0}, {0, 1}, {2, 3}}}};
+  const FilterBankParameters bank{
+      {{5, 0.6}, {7, 0.9}},
+      false,
+      {{"SE", 0.9, {1, 2}, {3, 4}, {5, 6}}, {"BSE", 0.2, {-1, 0}, {0, 1}, {2, 3}}}};
   Calibration c;
   c.channels = {"BSE", "SE"};
   c.gains = {10, 100};

@@ -22,7 +22,8 @@ CountHistogram poisson_counts(double mean, int trials, std::uint64_t seed) {
   RandomStream random(seed, 0, 0);
   for (int i = 0; i < trials; ++i) {
     std::int64_t k = 0;
-    for (double product = random.uniform(); product > std::exp(-mean); product *= random.uniform()) ++k;
+    for (double product = random.uniform(); product > std::exp(-mean); product *= random.uniform())
+      ++k;
     count(counts, k);
   }
   return counts;
@@ -33,7 +34,8 @@ CountHistogram log_normal_counts(const LogNormalCounts& d, int trials, std::uint
   RandomStream random(seed, 0, 0);
   for (int i = 0; i < trials; ++i) {
     const double z = test::normal(random);
-    count(counts, std::max<std::int64_t>(0, std::llround(d.median + d.scale * std::expm1(d.shape * z) / d.shape)));
+    count(counts, std::max<std::int64_t>(
+                      0, std::llround(d.median + d.scale * std::expm1(d.shape * z) / d.shape)));
   }
   return counts;
 }
@@ -53,7 +55,7 @@ TEST(CountDistribution, ProbabilitiesAddUpToOne) {
   EXPECT_NEAR(total(NormalCounts{0.4, 2}), 1, 1e-12);
   // The far tail is not lost to rounding.
   EXPECT_GT((LogNormalCounts{30, 1, 0}.probability(50)), 0);
-  EXPECT_EQ((LogNormalCounts{30, 1, 0.5}.probability(3)), 0);   // it begins at 28
+  EXPECT_EQ((LogNormalCounts{30, 1, 0.5}.probability(3)), 0);  // it begins at 28
 }
 
 TEST(CountDistribution, MomentsAreThose) {
@@ -90,7 +92,8 @@ TEST(CountDistribution, LogNormalIsRecovered) {
     EXPECT_GE(log_likelihood(counts, d), log_likelihood(counts, truth));
     ++of_p[std::min<std::size_t>(static_cast<std::size_t>(8 * test_fit(counts, d).p), 7)];
   }
-  // Estimates of greatest likelihood are off by less than their own scatter over the root of the trials.
+  // Estimates of greatest likelihood are off by less than their own scatter over the root of the
+  // trials.
   test::expect_mean(median.mean(), median.standard_error(), 12, 4, 0.01);
   test::expect_mean(scale.mean(), scale.standard_error(), 4, 4, 0.01);
   test::expect_mean(shape.mean(), shape.standard_error(), 0.4, 4, 0.003);
@@ -98,7 +101,8 @@ TEST(CountDistribution, LogNormalIsRecovered) {
 }
 
 TEST(CountDistribution, LogNormalFitIsAMaximum) {
-  for (const LogNormalCounts& truth : {LogNormalCounts{0.2, 0.8, 0.7}, LogNormalCounts{80, 12, 0.1}}) {
+  for (const LogNormalCounts& truth :
+       {LogNormalCounts{0.2, 0.8, 0.7}, LogNormalCounts{80, 12, 0.1}}) {
     const CountHistogram counts = log_normal_counts(truth, 10000, 3);
     const LogNormalCounts d = fit_log_normal(counts);
     const double largest = log_likelihood(counts, d);
@@ -128,8 +132,9 @@ TEST(CountDistribution, OddHistogramsDoNoHarm) {
   EXPECT_THROW(fit_normal({500}), InvalidInput);
   EXPECT_EQ(fit_poisson({500}).mean, 0);
   EXPECT_EQ(test_fit({500}, fit_poisson({500})).degrees, 0);
-  for (const CountHistogram& counts : {CountHistogram{400, 100}, CountHistogram{0, 500, 1}, CountHistogram{499, 0, 0, 0, 1},
-                                       CountHistogram{250, 0, 250}}) {
+  for (const CountHistogram& counts :
+       {CountHistogram{400, 100}, CountHistogram{0, 500, 1}, CountHistogram{499, 0, 0, 0, 1},
+        CountHistogram{250, 0, 250}}) {
     const LogNormalCounts d = fit_log_normal(counts);
     EXPECT_TRUE(std::isfinite(d.median) && d.scale > 0 && d.shape >= 0);
     const CountFit fit = test_fit(counts, d);

@@ -59,7 +59,8 @@ TEST(DiffusionMatrix, GrowsWithTheAreaOfFacets) {
   const auto tilted = [](double slope) {
     return test::sampled(30, 30, pitch, [&](int x, int) { return slope * pitch * x; });
   };
-  const double level = model()->predict(tilted(0))[0](15, 15), steep = model()->predict(tilted(0.75))[0](15, 15);
+  const double level = model()->predict(tilted(0))[0](15, 15),
+               steep = model()->predict(tilted(0.75))[0](15, 15);
   EXPECT_GT(steep / level, 1.1);
   EXPECT_LT(steep / level, 1.25) << "the area grows by 1.25, the flux falls off";
 }
@@ -77,7 +78,8 @@ TEST(DiffusionMatrix, TurnsWithTheSurfaceAndKnowsNoOrigin) {
   HeightField other = rough;
   other.z_nm = test::turned(rough.z_nm);
   const ModelImages a = model()->predict(rough), b = model()->predict(other);
-  for (std::size_t c = 0; c < 2; ++c) EXPECT_LT(test::largest_difference(test::turned(a[c]), b[c]), 1e-12);
+  for (std::size_t c = 0; c < 2; ++c)
+    EXPECT_LT(test::largest_difference(test::turned(a[c]), b[c]), 1e-12);
   other = rough;
   for (double& z : other.z_nm.data()) z += 1000;
   EXPECT_LT(test::largest_difference(a[1], model()->predict(other)[1]), 1e-9);
@@ -85,7 +87,9 @@ TEST(DiffusionMatrix, TurnsWithTheSurfaceAndKnowsNoOrigin) {
 }
 
 TEST(DiffusionMatrix, StaysFiniteOnWalls) {
-  const HeightField walls = test::sampled(12, 12, pitch, [](int x, int y) { return x > 5 ? 1e5 : y > 5 ? -1e5 : 0.0; });
+  const HeightField walls = test::sampled(12, 12, pitch, [](int x, int y) {
+    return x > 5 ? 1e5 : y > 5 ? -1e5 : 0.0;
+  });
   test::expect_finite(*model(), walls, Edge::mirror);
   test::expect_finite(*model(), test::rough_field(4, 4, pitch, 50), Edge::periodic);
 }

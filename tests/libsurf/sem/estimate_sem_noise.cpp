@@ -20,13 +20,30 @@ using ::testing::Not;
 const SemNoise true_noise{0.6, 5, 1e-3};
 
 void expect_finite(const SemNoiseEstimate& e) {
-  for (const double v : {e.noise.slope, e.noise.intercept, e.noise.least_variance, e.covariance[0], e.covariance[1],
-                         e.covariance[3], e.chi_squared, e.p, e.dispersion, e.curvature_z, e.bend, e.least_mean, e.largest_mean,
-                         e.off_line_share, e.correlation_x, e.correlation_y, e.correlation_sum, e.correlation_squares,
-                         e.excess_kurtosis, e.quantum})
+  for (const double v : {e.noise.slope,
+                         e.noise.intercept,
+                         e.noise.least_variance,
+                         e.covariance[0],
+                         e.covariance[1],
+                         e.covariance[3],
+                         e.chi_squared,
+                         e.p,
+                         e.dispersion,
+                         e.curvature_z,
+                         e.bend,
+                         e.least_mean,
+                         e.largest_mean,
+                         e.off_line_share,
+                         e.correlation_x,
+                         e.correlation_y,
+                         e.correlation_sum,
+                         e.correlation_squares,
+                         e.excess_kurtosis,
+                         e.quantum})
     EXPECT_TRUE(std::isfinite(v));
   for (const NoisePoint& p : e.points)
-    EXPECT_TRUE(std::isfinite(p.mean) && std::isfinite(p.variance) && std::isfinite(p.variance_stderr));
+    EXPECT_TRUE(std::isfinite(p.mean) && std::isfinite(p.variance) &&
+                std::isfinite(p.variance_stderr));
 }
 
 TEST(EstimateSemNoise, RecoversTheLineOfAStructuredImage) {
@@ -35,7 +52,8 @@ TEST(EstimateSemNoise, RecoversTheLineOfAStructuredImage) {
   expect_finite(e);
   EXPECT_TRUE(e.slope_known);
   for (const double at : {50.0, 90.0, 140.0})
-    EXPECT_NEAR(e.noise.variance(at), true_noise.variance(at), 0.03 * true_noise.variance(at)) << at;
+    EXPECT_NEAR(e.noise.variance(at), true_noise.variance(at), 0.03 * true_noise.variance(at))
+        << at;
   EXPECT_GT(e.p, 1e-3);
   EXPECT_LT(std::fabs(e.curvature_z), 4);
   EXPECT_NEAR(e.correlation_squares, 1, 0.01);
@@ -43,7 +61,8 @@ TEST(EstimateSemNoise, RecoversTheLineOfAStructuredImage) {
   EXPECT_EQ(e.off_line_share, 0);
   EXPECT_THAT(e.warnings, IsEmpty());
   // The ripple over the right quarter is not flat.
-  const auto rippled = std::ranges::count_if(e.points, [](const NoisePoint& p) { return p.region.x0 >= 368; });
+  const auto rippled =
+      std::ranges::count_if(e.points, [](const NoisePoint& p) { return p.region.x0 >= 368; });
   EXPECT_LT(rippled, 5);
   EXPECT_GT(e.points.size(), 100u);
 }
@@ -55,16 +74,18 @@ TEST(EstimateSemNoise, IntervalsCoverTheTruthOnStructuredImages) {
   test::Sample low, high, share;
   int covered_slope = 0, covered_low = 0;
   for (int i = 0; i < images; ++i) {
-    const SemNoiseEstimate e = estimate_sem_noise(test::placed(test::draw(mean, true_noise, 100 + i)));
+    const SemNoiseEstimate e =
+        estimate_sem_noise(test::placed(test::draw(mean, true_noise, 100 + i)));
     covered_slope += std::fabs(e.noise.slope - true_noise.slope) <= 1.96 * e.slope_stderr();
-    covered_low += std::fabs(e.noise.variance(60) - true_noise.variance(60)) <= 1.96 * e.variance_stderr(60);
+    covered_low +=
+        std::fabs(e.noise.variance(60) - true_noise.variance(60)) <= 1.96 * e.variance_stderr(60);
     low.add(e.noise.variance(60) / true_noise.variance(60));
     high.add(e.noise.variance(140) / true_noise.variance(140));
     share.add(e.p < 0.05);
   }
   RecordProperty("covered_slope", covered_slope);
   RecordProperty("covered_low", covered_low);
-  EXPECT_GE(covered_slope, 178);   // 95 %: 190 of 200, and four standard deviations of that
+  EXPECT_GE(covered_slope, 178);  // 95 %: 190 of 200, and four standard deviations of that
   EXPECT_GE(covered_low, 178);
   EXPECT_NEAR(low.mean(), 1, 0.01);
   EXPECT_NEAR(high.mean(), 1, 0.01);
@@ -80,7 +101,8 @@ TEST(EstimateSemNoise, ChoosingBlocksDoesNotBiasFlatImages) {
     Grid<double> mean(160, 160);
     for (int y = 0; y < 160; ++y)
       for (int x = 0; x < 160; ++x) mean(x, y) = 40 + 0.5 * x;
-    const SemNoiseEstimate e = estimate_sem_noise(test::placed(test::draw(mean, true_noise, 1000 + i)));
+    const SemNoiseEstimate e =
+        estimate_sem_noise(test::placed(test::draw(mean, true_noise, 1000 + i)));
     ratio.add(e.noise.variance(80) / true_noise.variance(80));
     z.add((e.noise.slope - true_noise.slope) / e.slope_stderr());
     ++counts[std::min<std::size_t>(static_cast<std::size_t>(10 * e.p), 9)];
@@ -96,7 +118,7 @@ TEST(EstimateSemNoise, AGammaIsSeen) {
   const SemNoiseEstimate e = estimate_sem_noise(test::placed(image));
   expect_finite(e);
   EXPECT_THAT(e.warnings, Not(IsEmpty()));
-  EXPECT_LT(e.noise.slope, 0.1);   // the law is lost
+  EXPECT_LT(e.noise.slope, 0.1);  // the law is lost
 }
 
 TEST(EstimateSemNoise, RegionsOfAUser) {
@@ -104,12 +126,14 @@ TEST(EstimateSemNoise, RegionsOfAUser) {
   SemNoiseOptions options;
   for (int column = 0; column < 3; ++column)
     for (int row = 0; row < 3; ++row)
-      options.regions.push_back({column * 120 + 78, row * 120 + 78, column * 120 + 102, row * 120 + 102});
+      options.regions.push_back(
+          {column * 120 + 78, row * 120 + 78, column * 120 + 102, row * 120 + 102});
   constexpr int images = 100;
   int covered = 0;
   test::Sample ratio;
   for (int i = 0; i < images; ++i) {
-    const SemNoiseEstimate e = estimate_sem_noise(test::placed(test::draw(mean, true_noise, 50 + i)), options);
+    const SemNoiseEstimate e =
+        estimate_sem_noise(test::placed(test::draw(mean, true_noise, 50 + i)), options);
     EXPECT_EQ(e.points.size(), 9u);
     EXPECT_EQ(e.degrees, 7);
     EXPECT_EQ(e.pixels, 9 * 24 * 24);
@@ -124,7 +148,8 @@ TEST(EstimateSemNoise, OneRegionGivesAConstant) {
   const Grid<double> mean = test::plateaus(480, 360);
   SemNoiseOptions options;
   options.regions = {{78, 78, 102, 102}};
-  const SemNoiseEstimate e = estimate_sem_noise(test::placed(test::draw(mean, true_noise, 1)), options);
+  const SemNoiseEstimate e =
+      estimate_sem_noise(test::placed(test::draw(mean, true_noise, 1)), options);
   expect_finite(e);
   EXPECT_FALSE(e.slope_known);
   EXPECT_EQ(e.noise.slope, 0);
@@ -134,7 +159,8 @@ TEST(EstimateSemNoise, OneRegionGivesAConstant) {
 
 TEST(EstimateSemNoise, ImagesOfOneColourGiveAConstant) {
   const SemNoise noise{0, 9, 1e-3};
-  const SemNoiseEstimate e = estimate_sem_noise(test::placed(test::draw(Grid<double>(200, 200, 50), noise, 1)));
+  const SemNoiseEstimate e =
+      estimate_sem_noise(test::placed(test::draw(Grid<double>(200, 200, 50), noise, 1)));
   expect_finite(e);
   EXPECT_FALSE(e.slope_known);
   EXPECT_NEAR(e.noise.intercept, 9, 5 * e.intercept_stderr());
@@ -148,7 +174,8 @@ TEST(EstimateSemNoise, SeesThatAnImageWasFiltered) {
   const Grid<double> image = test::draw(mean, true_noise, 4);
   Grid<double> filtered(480, 360);
   for (int y = 0; y < 360; ++y)
-    for (int x = 0; x < 480; ++x) filtered(x, y) = (image(x, y) + image(x + 1, y) + image(x + 2, y)) / 3;
+    for (int x = 0; x < 480; ++x)
+      filtered(x, y) = (image(x, y) + image(x + 1, y) + image(x + 2, y)) / 3;
   const SemNoiseEstimate e = estimate_sem_noise(test::placed(filtered));
   EXPECT_NEAR(e.correlation_x, 2.0 / 3, 0.02);
   EXPECT_NEAR(e.correlation_y, 0, 0.02);
@@ -156,12 +183,14 @@ TEST(EstimateSemNoise, SeesThatAnImageWasFiltered) {
   EXPECT_NEAR(e.correlation_squares, 1 + 2 * (4.0 / 9 + 1.0 / 9), 0.05);
   EXPECT_THAT(e.warnings, Contains(HasSubstr("correlated")));
   for (const double at : {60.0, 120.0})
-    EXPECT_NEAR(e.noise.variance(at), true_noise.variance(at) / 3, 0.06 * true_noise.variance(at) / 3);
+    EXPECT_NEAR(e.noise.variance(at), true_noise.variance(at) / 3,
+                0.06 * true_noise.variance(at) / 3);
   EXPECT_GT(e.p, 1e-4);
 }
 
 TEST(EstimateSemNoise, LineBelowZeroInTheImageIsReported) {
-  // Counts with a gain of 1, shown with 40 taken off: variance = mean + 40 - 40; here too much is taken off.
+  // Counts with a gain of 1, shown with 40 taken off: variance = mean + 40 - 40; here too much is
+  // taken off.
   const SemNoise noise{1, -60, 1e-3};
   const Grid<double> mean = test::plateaus(480, 360);
   const SemNoiseEstimate e = estimate_sem_noise(test::placed(test::draw(mean, noise, 4)));
@@ -175,14 +204,17 @@ TEST(EstimateSemNoise, LineBelowZeroInTheImageIsReported) {
 }
 
 TEST(EstimateSemNoise, QuantisationIsPartOfTheNoise) {
-  const SemNoise noise{0.02, 0, 1e-3};   // standard deviations of 0.9 to 1.7 grey levels
+  const SemNoise noise{0.02, 0, 1e-3};  // standard deviations of 0.9 to 1.7 grey levels
   const Grid<double> mean = test::plateaus(480, 360);
-  const SemNoiseEstimate e = estimate_sem_noise(test::placed(test::rounded(test::draw(mean, noise, 4), 0, 255)));
+  const SemNoiseEstimate e =
+      estimate_sem_noise(test::placed(test::rounded(test::draw(mean, noise, 4), 0, 255)));
   EXPECT_EQ(e.quantum, 1);
-  for (const double at : {60.0, 120.0}) EXPECT_NEAR(e.noise.variance(at), noise.variance(at) + 1.0 / 12, 0.06);
+  for (const double at : {60.0, 120.0})
+    EXPECT_NEAR(e.noise.variance(at), noise.variance(at) + 1.0 / 12, 0.06);
   const SemNoise coarse{0.002, 0, 1e-3};
-  EXPECT_THAT(estimate_sem_noise(test::placed(test::rounded(test::draw(mean, coarse, 4), 0, 255))).warnings,
-              Contains(HasSubstr("steps of the grey levels")));
+  EXPECT_THAT(
+      estimate_sem_noise(test::placed(test::rounded(test::draw(mean, coarse, 4), 0, 255))).warnings,
+      Contains(HasSubstr("steps of the grey levels")));
 }
 
 TEST(EstimateSemNoise, SaturatedPixelsAreLeftOut) {
@@ -194,7 +226,8 @@ TEST(EstimateSemNoise, SaturatedPixelsAreLeftOut) {
   EXPECT_THAT(e.warnings, Contains(HasSubstr("saturated")));
   EXPECT_LT(e.largest_mean, 122);
   for (const double at : {50.0, 100.0})
-    EXPECT_NEAR(e.noise.variance(at), true_noise.variance(at), 0.04 * true_noise.variance(at)) << at;
+    EXPECT_NEAR(e.noise.variance(at), true_noise.variance(at), 0.04 * true_noise.variance(at))
+        << at;
   // Told that nothing is saturated, it believes it: the bright plateaus seem to have little noise.
   SemNoiseOptions options;
   options.white = std::numeric_limits<double>::infinity();
@@ -220,14 +253,16 @@ TEST(EstimateSemNoise, HolesDoNotCount) {
   PlacedImage image = test::placed(test::draw(mean, true_noise, 1));
   image.valid = Grid<unsigned char>(480, 360, 1);
   for (int y = 0; y < 360; ++y)
-    for (int x = 0; x < 240; ++x) image.valid(x, y) = 0, image.values(x, y) = std::numeric_limits<double>::quiet_NaN();
+    for (int x = 0; x < 240; ++x)
+      image.valid(x, y) = 0, image.values(x, y) = std::numeric_limits<double>::quiet_NaN();
   const SemNoiseEstimate e = estimate_sem_noise(image);
   expect_finite(e);
   for (const NoisePoint& p : e.points) EXPECT_GE(p.region.x0, 240);
 }
 
 TEST(EstimateSemNoise, SaysWhatIsWrongWithHopelessImages) {
-  const auto message = [](const Grid<double>& image, const SemNoiseOptions& options = {}) -> std::string {
+  const auto message = [](const Grid<double>& image,
+                          const SemNoiseOptions& options = {}) -> std::string {
     try {
       expect_finite(estimate_sem_noise(test::placed(image), options));
     } catch (const InvalidInput& error) {

@@ -19,7 +19,8 @@ std::vector<FacetScale> uniform_scales() {
   return scales;
 }
 
-// A field that is one cubic everywhere: the fit far from the border must give it back at every pixel.
+// A field that is one cubic everywhere: the fit far from the border must give it back at every
+// pixel.
 template <class T>
 double worst_recovery(const std::vector<FacetScale>& scales, double pitch_x, double pitch_y) {
   RandomStream random(3, 0, 0);
@@ -29,8 +30,8 @@ double worst_recovery(const std::vector<FacetScale>& scales, double pitch_x, dou
   const double length = 60;
   const int n = 120, margin = 42;
   const auto value = [&](double x, double y) {
-    return k[1] + k[2] * y + k[3] * x + k[4] * y * y + k[5] * x * y + k[6] * x * x + k[7] * y * y * y +
-           k[8] * y * y * x + k[9] * y * x * x + k[10] * x * x * x;
+    return k[1] + k[2] * y + k[3] * x + k[4] * y * y + k[5] * x * y + k[6] * x * x +
+           k[7] * y * y * y + k[8] * y * y * x + k[9] * y * x * x + k[10] * x * x * x;
   };
   HeightField field{Grid<double>(n, n), {}, pitch_x, pitch_y, 0, 0};
   const auto at = [&](int i) { return (i - n / 2) / length; };
@@ -49,12 +50,15 @@ double worst_recovery(const std::vector<FacetScale>& scales, double pitch_x, dou
           const int px = block.x + column, py = block.y + row;
           if (px < margin || py < margin || px >= n - margin || py >= n - margin) continue;
           const double x = at(px), y = at(py), ux = length * pitch_x, uy = length * pitch_y;
-          const double want[5] = {
-              (k[2] + 2 * k[4] * y + k[5] * x + 3 * k[7] * y * y + 2 * k[8] * y * x + k[9] * x * x) / uy,
-              (k[3] + k[5] * y + 2 * k[6] * x + k[8] * y * y + 2 * k[9] * y * x + 3 * k[10] * x * x) / ux,
-              (k[4] + 3 * k[7] * y + k[8] * x) / (uy * uy),
-              (k[5] + 2 * k[8] * y + 2 * k[9] * x) / (ux * uy),
-              (k[6] + k[9] * y + 3 * k[10] * x) / (ux * ux)};
+          const double want[5] = {(k[2] + 2 * k[4] * y + k[5] * x + 3 * k[7] * y * y +
+                                   2 * k[8] * y * x + k[9] * x * x) /
+                                      uy,
+                                  (k[3] + k[5] * y + 2 * k[6] * x + k[8] * y * y +
+                                   2 * k[9] * y * x + 3 * k[10] * x * x) /
+                                      ux,
+                                  (k[4] + 3 * k[7] * y + k[8] * x) / (uy * uy),
+                                  (k[5] + 2 * k[8] * y + 2 * k[9] * x) / (ux * uy),
+                                  (k[6] + k[9] * y + 3 * k[10] * x) / (ux * ux)};
           const double unit[5] = {uy, ux, uy * uy, ux * uy, ux * ux};
           for (int i = 0; i < 5; ++i) {
             const double got = fit[(row * facet::coefficients + i) * pass.columns() + column];
@@ -70,7 +74,8 @@ TEST(FacetKernels, GiveCubicsBackAtEveryNeighbourhood) {
   for (const auto& scales : {thesis_scales(), uniform_scales()}) {
     EXPECT_LT(worst_recovery<double>(scales, 1, 1), 3e-11);
     EXPECT_LT(worst_recovery<double>(scales, 3, 0.7), 3e-11);
-    EXPECT_LT(worst_recovery<float>(scales, 1, 1), 3e-2);   // second derivatives of the smallest, 60^2 times rounding
+    EXPECT_LT(worst_recovery<float>(scales, 1, 1),
+              3e-2);  // second derivatives of the smallest, 60^2 times rounding
   }
 }
 
@@ -88,8 +93,9 @@ TEST(FacetKernels, OfAConstantAreNothing) {
 }
 
 TEST(FacetKernels, RefuseWhatCannotBeFitted) {
-  for (const FacetScale& scale : {FacetScale{3, 0.6}, FacetScale{6, 1}, FacetScale{257, 9}, FacetScale{5, 0.1},
-                                  FacetScale{5, -1}, FacetScale{5, std::nan("")}})
+  for (const FacetScale& scale :
+       {FacetScale{3, 0.6}, FacetScale{6, 1}, FacetScale{257, 9}, FacetScale{5, 0.1},
+        FacetScale{5, -1}, FacetScale{5, std::nan("")}})
     EXPECT_THROW(facet_kernel(scale, 1), InvalidInput);
 }
 

@@ -84,7 +84,8 @@ TEST(FacetNetwork, InputsAreWhatTheFormulasSayOfAParaboloid) {
     const double length = 2 * sigma[s] * 2, g2 = 0.16;
     EXPECT_NEAR(input(4 * s, bowl, 50, 30), std::pow(1 + g2, 0.25) - 1, 1e-9);
     EXPECT_NEAR(input(4 * s + 1, bowl, 50, 30), c(0.5 * 0.026 * length), 1e-9);
-    EXPECT_NEAR(input(4 * s + 2, bowl, 50, 30), std::pow(1 + std::pow(0.5 * 0.014 * length, 2), 0.25) - 1, 1e-9);
+    EXPECT_NEAR(input(4 * s + 2, bowl, 50, 30),
+                std::pow(1 + std::pow(0.5 * 0.014 * length, 2), 0.25) - 1, 1e-9);
     EXPECT_NEAR(input(4 * s + 3, bowl, 50, 30), c(length * 0.5 * 0.02 * g2 / (1 + g2)), 1e-9);
   }
 }
@@ -92,7 +93,8 @@ TEST(FacetNetwork, InputsAreWhatTheFormulasSayOfAParaboloid) {
 TEST(FacetNetwork, SkyInputsAreWhatTheFormulasSayInACone) {
   // From the bottom of a cone everything is seen at the same elevation.
   const double slope = 0.75, sine = 0.6;
-  const HeightField pit = sampled(81, 81, 2, [&](int x, int y) { return slope * 2 * std::hypot(x - 40, y - 40); });
+  const HeightField pit =
+      sampled(81, 81, 2, [&](int x, int y) { return slope * 2 * std::hypot(x - 40, y - 40); });
   const network::SkyView view({0, 3, 9, 30}, 2);
   double open = 0, factor = 1;
   int per_direction = 0;
@@ -139,7 +141,8 @@ TEST(FacetNetwork, TurnsWithTheSurface) {
   for (const Edge edge : all_edges) {
     const ModelImages a = network()->predict(field, {.edge = edge, .double_precision = true});
     const ModelImages b = network()->predict(other, {.edge = edge, .double_precision = true});
-    for (std::size_t ch = 0; ch < a.size(); ++ch) EXPECT_LT(largest_difference(turned(a[ch]), b[ch]), 1e-11);
+    for (std::size_t ch = 0; ch < a.size(); ++ch)
+      EXPECT_LT(largest_difference(turned(a[ch]), b[ch]), 1e-11);
   }
 }
 
@@ -153,9 +156,11 @@ TEST(FacetNetwork, KnowsNothingOfTheHeightAboveZero) {
 
 TEST(FacetNetwork, FloatIsAsGoodAsDouble) {
   const HeightField field = rough_field(70, 50);
-  const auto fast = network()->linearize(field), exact = network()->linearize(field, {.double_precision = true});
+  const auto fast = network()->linearize(field),
+             exact = network()->linearize(field, {.double_precision = true});
   for (std::size_t ch = 0; ch < 2; ++ch)
-    EXPECT_LT(largest_difference(fast->images()[ch], exact->images()[ch]), 2e-4 * largest(exact->images()[ch]));
+    EXPECT_LT(largest_difference(fast->images()[ch], exact->images()[ch]),
+              2e-4 * largest(exact->images()[ch]));
   const ModelImages w = random_weights(field, 2);
   const Grid<double> g = exact->gradient(w);
   EXPECT_LT(largest_difference(fast->gradient(w), g), 5e-4 * largest(g));
@@ -164,9 +169,8 @@ TEST(FacetNetwork, FloatIsAsGoodAsDouble) {
 TEST(FacetNetwork, LinearizationIsExact) {
   const HeightField flat = sampled(30, 30, 2, [](int, int) { return 7.0; });
   const HeightField plane = sampled(30, 30, 2, [](int x, int y) { return 0.25 * x - 0.5 * y; });
-  const HeightField bowl = sampled(31, 31, 2, [](int x, int y) {
-    return ((x - 15) * (x - 15) + (y - 15) * (y - 15)) / 64.0;
-  });
+  const HeightField bowl = sampled(
+      31, 31, 2, [](int x, int y) { return ((x - 15) * (x - 15) + (y - 15) * (y - 15)) / 64.0; });
   const HeightField sphere = sampled(40, 40, 2, [](int x, int y) {
     const double r2 = 4.0 * ((x - 20) * (x - 20) + (y - 20) * (y - 20));
     return r2 < 900 ? std::sqrt(900 - r2) : 0.0;
@@ -175,7 +179,8 @@ TEST(FacetNetwork, LinearizationIsExact) {
     for (const bool sky : {true, false}) {
       const auto model = network(some_network(hidden, sky));
       for (const Edge edge : all_edges) {
-        SCOPED_TRACE(std::to_string(hidden.size()) + " hidden layers, edge " + std::to_string(int(edge)));
+        SCOPED_TRACE(std::to_string(hidden.size()) + " hidden layers, edge " +
+                     std::to_string(int(edge)));
         expect_exact_derivatives(*model, rough_field(37, 29), edge, 1e-4, 1e-6);
         expect_exact_derivatives(*model, rough_field(37, 29, 2, 60), edge, 1e-4, 1e-5);
         for (const HeightField& field : {flat, plane, bowl, sphere}) {
@@ -200,7 +205,8 @@ TEST(FacetNetwork, SmallFieldsAreContinuedAsOftenAsItTakes) {
 
 TEST(FacetNetwork, SameBytesOnAnyNumberOfThreads) {
   const HeightField field = rough_field(100, 700);
-  const auto one = network()->linearize(field, {.threads = 1}), many = network()->linearize(field, {.threads = 5});
+  const auto one = network()->linearize(field, {.threads = 1}),
+             many = network()->linearize(field, {.threads = 5});
   const ModelImages w = random_weights(field, 2);
   EXPECT_EQ(one->images(), many->images());
   EXPECT_EQ(one->gradient(w), many->gradient(w));
@@ -224,11 +230,11 @@ TEST(FacetNetwork, RefusesWhatItCannotBe) {
   refuses([](auto& p) { p.channels[1].scale = 0; });
   refuses([](auto& p) { p.sky_edges_nm = {0, 5, 5}; });
   refuses([](auto& p) { p.sky_edges_nm = {1, 5}; });
-  EXPECT_THROW(make_facet_network({}, some_network()), InvalidInput);   // no pixel size
+  EXPECT_THROW(make_facet_network({}, some_network()), InvalidInput);  // no pixel size
   HeightField field = rough_field(20, 20);
   field.z_nm(3, 4) = std::numeric_limits<double>::quiet_NaN();
   EXPECT_THROW(network()->predict(field), InvalidInput);
-  EXPECT_THROW(network()->predict(rough_field(20, 20, 3)), InvalidInput);   // other pixels
+  EXPECT_THROW(network()->predict(rough_field(20, 20, 3)), InvalidInput);  // other pixels
 }
 
 TrainingImage taught_by(const ImageModel& teacher, std::uint64_t seed, double noise) {
@@ -240,7 +246,8 @@ TrainingImage taught_by(const ImageModel& teacher, std::uint64_t seed, double no
     Grid<float> seen(60, 50), error(60, 50);
     for (std::size_t i = 0; i < seen.size(); ++i) {
       error.data()[i] = static_cast<float>(noise * std::sqrt(truth.data()[i]));
-      const double normal = std::sqrt(-2 * std::log(random.uniform())) * std::cos(2 * std::numbers::pi * random.uniform());
+      const double normal = std::sqrt(-2 * std::log(random.uniform())) *
+                            std::cos(2 * std::numbers::pi * random.uniform());
       seen.data()[i] = static_cast<float>(truth.data()[i] + error.data()[i] * normal);
     }
     image.images.push_back(std::move(seen));
@@ -259,15 +266,21 @@ class Teacher final : public ImageModel {
     ModelImages images(2, Grid<double>(w, h));
     for (int y = 0; y < h; ++y)
       for (int x = 0; x < w; ++x) {
-        const auto z = [&](int i, int j) { return field.z_nm(std::abs(std::min(i, 2 * w - 2 - i)), std::abs(std::min(j, 2 * h - 2 - j))); };
+        const auto z = [&](int i, int j) {
+          return field.z_nm(std::abs(std::min(i, 2 * w - 2 - i)),
+                            std::abs(std::min(j, 2 * h - 2 - j)));
+        };
         const double sx = (z(x + 1, y) - z(x - 1, y)) / 4, sy = (z(x, y + 1) - z(x, y - 1)) / 4;
-        const double bend = (z(x + 2, y) + z(x - 2, y) + z(x, y + 2) + z(x, y - 2) - 4 * z(x, y)) / 16;
+        const double bend =
+            (z(x + 2, y) + z(x - 2, y) + z(x, y + 2) + z(x, y - 2) - 4 * z(x, y)) / 16;
         images[0](x, y) = std::sqrt(1 + sx * sx + sy * sy) / (1 + std::exp(bend));
         images[1](x, y) = 0.2 + 0.1 * std::tanh(std::hypot(sx, sy)) - 0.05 * std::tanh(bend);
       }
     return images;
   }
-  std::unique_ptr<Linearization> linearize(const HeightField&, const ModelOptions&) const override { return nullptr; }
+  std::unique_ptr<Linearization> linearize(const HeightField&, const ModelOptions&) const override {
+    return nullptr;
+  }
 
  private:
   std::vector<std::string> names_{"SE", "BSE"};
@@ -285,12 +298,13 @@ FacetNetworkFitOptions quick() {
 
 TEST(FitFacetNetwork, LearnsWhatALinearBankCannotAndSaysHowFarItIsOff) {
   std::vector<TrainingImage> images;
-  for (std::uint64_t seed = 1; seed <= 6; ++seed) images.push_back(taught_by(Teacher(), seed, 0.05));
+  for (std::uint64_t seed = 1; seed <= 6; ++seed)
+    images.push_back(taught_by(Teacher(), seed, 0.05));
   const FacetNetworkFit fit = fit_facet_network(images, {"SE", "BSE"}, quick());
   ASSERT_EQ(fit.residuals.size(), 2U);
   EXPECT_EQ(fit.parameters.channels[1].name, "BSE");
   EXPECT_LE(fit.iterations, 150);
-  EXPECT_NEAR(fit.cost, 1, 0.25);   // residuals are noise, and what the model is given to miss by
+  EXPECT_NEAR(fit.cost, 1, 0.25);  // residuals are noise, and what the model is given to miss by
   const auto bank = fit_filter_bank(images, {"SE", "BSE"});
   const auto held = taught_by(Teacher(), 77, 1e-6);
   ModelScope scope;
@@ -300,7 +314,8 @@ TEST(FitFacetNetwork, LearnsWhatALinearBankCannotAndSaysHowFarItIsOff) {
   EXPECT_LT(judged[0].rms, 0.05 * judged[0].mean_signal);
   EXPECT_LT(judged[0].rms, 0.5 * judged_bank[0].rms);
   // The residual on the training images, less their noise, is about the one without noise.
-  EXPECT_NEAR(fit.residuals[0].rms / fit.residuals[0].mean_signal, judged[0].rms / judged[0].mean_signal, 0.03);
+  EXPECT_NEAR(fit.residuals[0].rms / fit.residuals[0].mean_signal,
+              judged[0].rms / judged[0].mean_signal, 0.03);
 }
 
 TEST(FitFacetNetwork, SameNumbersOnAnyNumberOfThreads) {
@@ -315,7 +330,8 @@ TEST(FitFacetNetwork, SameNumbersOnAnyNumberOfThreads) {
   for (std::size_t l = 0; l < one.parameters.layers.size(); ++l)
     EXPECT_EQ(one.parameters.layers[l].weights, four.parameters.layers[l].weights);
   o.seed = 2;
-  EXPECT_NE(fit_facet_network(images, {"SE", "BSE"}, o).parameters.layers[0].weights, one.parameters.layers[0].weights);
+  EXPECT_NE(fit_facet_network(images, {"SE", "BSE"}, o).parameters.layers[0].weights,
+            one.parameters.layers[0].weights);
 }
 
 TEST(FitFacetNetwork, LeavesOutWhatIsNotUsedAndKeepsPixelsOfOneImage) {

@@ -50,7 +50,8 @@ TEST(FilterBank, GivesWhatTheFormulasSayOfAPlaneAndABowl) {
   c.max_curvature.assign(10, 2);
   c.min_curvature.assign(10, 7);
   const auto model = make_filter_bank({}, p);
-  const HeightField plane = sampled(120, 120, 2, [](int x, int y) { return 2 * (0.3 * x + 0.4 * y); });
+  const HeightField plane =
+      sampled(120, 120, 2, [](int x, int y) { return 2 * (0.3 * x + 0.4 * y); });
   const ModelOptions exact{.double_precision = true};
   EXPECT_NEAR(model->predict(plane, exact)[0](60, 60), 0.5 + 10 * 0.5, 1e-10);
   // Principal curvatures 0.02 and 0.006 /nm.
@@ -68,7 +69,8 @@ TEST(FilterBank, TurnsWithTheSurface) {
   for (const Edge edge : edges) {
     const ModelImages a = bank()->predict(field, {.edge = edge, .double_precision = true});
     const ModelImages b = bank()->predict(other, {.edge = edge, .double_precision = true});
-    for (std::size_t c = 0; c < a.size(); ++c) EXPECT_LT(largest_difference(turned(a[c]), b[c]), 1e-11);
+    for (std::size_t c = 0; c < a.size(); ++c)
+      EXPECT_LT(largest_difference(turned(a[c]), b[c]), 1e-11);
   }
 }
 
@@ -95,9 +97,11 @@ TEST(FilterBank, FloatIsAsGoodAsDouble) {
   for (const bool multi : {false, true}) {
     const auto model = bank(multi);
     const HeightField field = rough_field(120, 90);
-    const auto fast = model->linearize(field), exact = model->linearize(field, {.double_precision = true});
+    const auto fast = model->linearize(field),
+               exact = model->linearize(field, {.double_precision = true});
     const ModelImages w = random_weights(field, 2);
-    for (std::size_t c = 0; c < 2; ++c) EXPECT_LT(largest_difference(fast->images()[c], exact->images()[c]), 2e-4);
+    for (std::size_t c = 0; c < 2; ++c)
+      EXPECT_LT(largest_difference(fast->images()[c], exact->images()[c]), 2e-4);
     const Grid<double> g = exact->gradient(w);
     double most = 0;
     for (const double v : g.data()) most = std::max(most, std::abs(v));
@@ -108,9 +112,11 @@ TEST(FilterBank, FloatIsAsGoodAsDouble) {
 TEST(FilterBank, LinearizationIsExactOnRoughAndSteepSurfaces) {
   for (const bool multi : {false, true})
     for (const Edge edge : edges) {
-      SCOPED_TRACE(std::string(multi ? "multi-resolution" : "full") + ", edge " + std::to_string(int(edge)));
+      SCOPED_TRACE(std::string(multi ? "multi-resolution" : "full") + ", edge " +
+                   std::to_string(int(edge)));
       expect_exact_derivatives(*bank(multi), rough_field(37, 29), edge, 1e-4, 2e-7);
-      expect_exact_derivatives(*bank(multi), rough_field(37, 29, 2, 500), edge, 1e-2, 2e-7);   // slopes of hundreds
+      expect_exact_derivatives(*bank(multi), rough_field(37, 29, 2, 500), edge, 1e-2,
+                               2e-7);  // slopes of hundreds
       expect_adjoint(*bank(multi), rough_field(61, 90), edge, 1e-12);
     }
 }
@@ -122,13 +128,13 @@ TEST(FilterBank, GradientIsTheTransposeOnTallAndWideFields) {
       expect_adjoint(*bank(multi), rough_field(width, height), Edge::mirror, 1e-12);
 }
 
-// Where roots are zero the one-sided derivatives differ: their mean is what central differences give.
+// Where roots are zero the one-sided derivatives differ: their mean is what central differences
+// give.
 TEST(FilterBank, LinearizationIsFiniteAndTheMeanOfBothSidesWhereRootsAreZero) {
   const HeightField flat = sampled(40, 40, 2, [](int, int) { return 7.0; });
   const HeightField plane = sampled(40, 40, 2, [](int x, int y) { return 0.25 * x - 0.5 * y; });
-  const HeightField bowl = sampled(41, 41, 2, [](int x, int y) {
-    return ((x - 20) * (x - 20) + (y - 20) * (y - 20)) / 64.0;
-  });
+  const HeightField bowl = sampled(
+      41, 41, 2, [](int x, int y) { return ((x - 20) * (x - 20) + (y - 20) * (y - 20)) / 64.0; });
   for (const bool multi : {false, true})
     for (const HeightField& field : {flat, plane, bowl})
       for (const Edge edge : edges) {
@@ -150,7 +156,8 @@ TEST(FilterBank, SameBytesOnAnyNumberOfThreads) {
   for (const bool multi : {false, true}) {
     const auto model = bank(multi);
     const HeightField field = rough_field(100, 700);
-    const auto one = model->linearize(field, {.threads = 1}), many = model->linearize(field, {.threads = 5});
+    const auto one = model->linearize(field, {.threads = 1}),
+               many = model->linearize(field, {.threads = 5});
     const ModelImages w = random_weights(field, 2);
     EXPECT_EQ(one->images(), many->images());
     EXPECT_EQ(one->images(), model->predict(field, {.threads = 3}));
@@ -165,39 +172,44 @@ TEST(FilterBank, GoesOnBeyondTheBorderAsTheEdgeSays) {
     for (const Edge edge : edges)
       for (const bool multi : {false, true}) {
         const HeightField field = rough_field(width, height);
-        const int margin = 96;   // whole coarse samples
+        const int margin = 96;  // whole coarse samples
         const auto at = [&](int i, int n) {
           if (edge == Edge::flat) return std::clamp(i, 0, n - 1);
           if (edge == Edge::periodic) return ((i % n) + n) % n;
           const int period = 2 * (n - 1), j = ((i % period) + period) % period;
           return j < n ? j : period - j;
         };
-        const HeightField wide = sampled(width + 2 * margin, height + 2 * margin, 2, [&](int x, int y) {
-          return field.z_nm(at(x - margin, width), at(y - margin, height));
-        });
+        const HeightField wide =
+            sampled(width + 2 * margin, height + 2 * margin, 2, [&](int x, int y) {
+              return field.z_nm(at(x - margin, width), at(y - margin, height));
+            });
         const ModelOptions exact{.edge = edge, .double_precision = true};
-        const ModelImages a = bank(multi)->predict(field, exact), b = bank(multi)->predict(wide, exact);
+        const ModelImages a = bank(multi)->predict(field, exact),
+                          b = bank(multi)->predict(wide, exact);
         for (std::size_t c = 0; c < a.size(); ++c)
           for (int y = 0; y < height; ++y)
             for (int x = 0; x < width; ++x)
-              ASSERT_NEAR(a[c](x, y), b[c](x + margin, y + margin), 1e-10) << width << " x " << height;
+              ASSERT_NEAR(a[c](x, y), b[c](x + margin, y + margin), 1e-10)
+                  << width << " x " << height;
         if (!multi) expect_exact_derivatives(*bank(), field, edge, 1e-5, 1e-6);
         expect_adjoint(*bank(multi), field, edge, 1e-12);
       }
 }
 
 TEST(FilterBank, SubsamplingHardlyChangesWhatIsSmooth) {
-  const HeightField field = sampled(120, 110, 2, [](int x, int y) { return 9 * std::sin(0.1 * x) * std::cos(0.08 * y); });
+  const HeightField field =
+      sampled(120, 110, 2, [](int x, int y) { return 9 * std::sin(0.1 * x) * std::cos(0.08 * y); });
   const ModelImages a = bank()->predict(field), b = bank(true)->predict(field);
   double spread = 0;
   for (const double v : a[0].data()) spread = std::max(spread, std::abs(v - a[0](0, 0)));
   EXPECT_LT(largest_difference(a[0], b[0]), 0.2 * spread);
-  EXPECT_GT(largest_difference(a[0], b[0]), 1e-4 * spread);   // it is another model
+  EXPECT_GT(largest_difference(a[0], b[0]), 1e-4 * spread);  // it is another model
 }
 
 TEST(FilterBank, VectorUnitsAgree) {
   const HeightField field = rough_field(50, 60);
-  const facet::FacetPass<float> best(thesis_scales(), 2, 2), plain(thesis_scales(), 2, 2, facet::Unit::portable);
+  const facet::FacetPass<float> best(thesis_scales(), 2, 2),
+      plain(thesis_scales(), 2, 2, facet::Unit::portable);
   const auto k2 = [&](const facet::FacetPass<float>& pass) {
     Grid<double> out(50, 60);
     facet::FacetPass<float>::Scratch scratch;
@@ -240,7 +252,8 @@ TEST(FilterBank, RefusesBadFieldsAndWeights) {
   const auto linear = model->linearize(field);
   EXPECT_THROW(linear->gradient({Grid<double>(20, 20)}), InvalidInput);
   EXPECT_THROW(linear->gradient({Grid<double>(20, 20), Grid<double>(20, 19)}), InvalidInput);
-  EXPECT_THROW(linear->gradient({Grid<double>(20, 20), Grid<double>(20, 20, std::nan(""))}), InvalidInput);
+  EXPECT_THROW(linear->gradient({Grid<double>(20, 20), Grid<double>(20, 20, std::nan(""))}),
+               InvalidInput);
   EXPECT_THROW(linear->change(Grid<double>(19, 20)), InvalidInput);
   field.z_nm(3, 4) = std::nan("");
   EXPECT_THROW(model->predict(field), InvalidInput);

@@ -53,7 +53,8 @@ TEST(FitSemNoise, OnlyUsedPixelsCount) {
   Grid<double> real = test::draw(mean, true_noise, 1);
   Grid<unsigned char> used(120, 90, 1);
   for (int y = 0; y < 90; ++y)
-    for (int x = 0; x < 40; ++x) used(x, y) = 0, real(x, y) = std::numeric_limits<double>::quiet_NaN();
+    for (int x = 0; x < 40; ++x)
+      used(x, y) = 0, real(x, y) = std::numeric_limits<double>::quiet_NaN();
   const SemNoiseEstimate e = fit_sem_noise(real, mean, used);
   EXPECT_EQ(e.pixels, 80 * 90);
   EXPECT_NEAR(e.noise.variance(90), true_noise.variance(90), 0.1 * true_noise.variance(90));
@@ -73,7 +74,7 @@ TEST(FitSemNoise, LineBelowZeroBends) {
 TEST(FitSemNoise, WhatTheModelIsOffByIsSeen) {
   const Grid<double> mean = test::plateaus(240, 180);
   const Grid<double> real = test::draw(mean, true_noise, 1);
-  Grid<double> smooth = mean;   // a model that knows no edges
+  Grid<double> smooth = mean;  // a model that knows no edges
   for (int y = 2; y < 178; ++y)
     for (int x = 2; x < 238; ++x) {
       double sum = 0;
@@ -92,7 +93,8 @@ TEST(FitSemNoise, RefusesWhatHasNoNoise) {
   EXPECT_THROW(fit_sem_noise(mean, mean), InvalidInput);
   EXPECT_THROW(fit_sem_noise(mean, Grid<double>(3, 3)), InvalidInput);
   EXPECT_THROW(fit_sem_noise(Grid<double>(3, 3, 1), Grid<double>(3, 3)), InvalidInput);
-  const SemNoiseEstimate e = fit_sem_noise(test::draw(Grid<double>(40, 30, 50), true_noise, 1), Grid<double>(40, 30, 50));
+  const SemNoiseEstimate e =
+      fit_sem_noise(test::draw(Grid<double>(40, 30, 50), true_noise, 1), Grid<double>(40, 30, 50));
   EXPECT_FALSE(e.slope_known);
   EXPECT_NEAR(e.noise.variance(50), 35, 7);
   EXPECT_TRUE(std::isfinite(e.slope_stderr()));

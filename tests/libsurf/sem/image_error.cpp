@@ -16,7 +16,8 @@ namespace {
 using Values = std::vector<double>;
 
 TEST(ImageError, IsRelativeToThePixelDownToATenthOfTheMean) {
-  const Values reference{1, 3, 0, 4}, values{1.1, 3, 0.02, 3.6};   // mean 2: the dark one counts as 0.2
+  const Values reference{1, 3, 0, 4},
+      values{1.1, 3, 0.02, 3.6};  // mean 2: the dark one counts as 0.2
   const ImageError e = image_error(values, {}, reference, {});
   EXPECT_EQ(e.pixels, 4);
   EXPECT_DOUBLE_EQ(e.mean_signal, 2);

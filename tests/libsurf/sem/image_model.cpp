@@ -59,7 +59,9 @@ TEST(ImageModel, NamesBothConditions) {
   text = message<UsageError>([&] { check_conditions(scope, {3, "Si", 5000, 0}); });
   EXPECT_SAYS(text, "1000 eV");
   EXPECT_SAYS(text, "5000 eV");
-  text = message<UsageError>([&] { check_conditions(scope, {3, "Si", 1000, 2}); });   // a point, not any spot
+  text = message<UsageError>([&] {
+    check_conditions(scope, {3, "Si", 1000, 2});
+  });  // a point, not any spot
   EXPECT_SAYS(text, "a spot of 0 nm");
   text = message<UsageError>([&] { check_conditions({0, "", 0, 1}, {0, "", 0, 2}); });
   EXPECT_SAYS(text, "1 nm");
@@ -67,8 +69,12 @@ TEST(ImageModel, NamesBothConditions) {
 }
 
 TrainingImage training_image() {
-  return {"dots", test::rough_field(6, 5, 1), Edge::flat, {Grid<float>(6, 5, 1.0F), Grid<float>(6, 5, 2.0F)},
-          {Grid<float>(6, 5, 0.1F), Grid<float>(6, 5, 0.1F)}, {}};
+  return {"dots",
+          test::rough_field(6, 5, 1),
+          Edge::flat,
+          {Grid<float>(6, 5, 1.0F), Grid<float>(6, 5, 2.0F)},
+          {Grid<float>(6, 5, 0.1F), Grid<float>(6, 5, 0.1F)},
+          {}};
 }
 
 TEST(TrainingImage, IsCheckedPixelByPixel) {
@@ -80,7 +86,13 @@ TEST(TrainingImage, IsCheckedPixelByPixel) {
     const std::string text = message<InvalidInput>([&] { validate({training_image(), image}); });
     EXPECT_SAYS(text, part);
   };
-  says([](auto& i) { i.images.pop_back(); i.standard_errors.pop_back(); i.name = "lines"; }, "lines");
+  says(
+      [](auto& i) {
+        i.images.pop_back();
+        i.standard_errors.pop_back();
+        i.name = "lines";
+      },
+      "lines");
   says([](auto& i) { i.images.clear(); }, "no channels");
   says([](auto& i) { i.images[1] = Grid<float>(5, 5); }, "5 x 5");
   says([](auto& i) { i.images[1](3, 2) = NAN; }, "column 3, row 2");

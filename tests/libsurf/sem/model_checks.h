@@ -14,7 +14,8 @@
 // What holds for every fast model of images.
 namespace surf::test {
 
-inline ModelImages random_weights(const HeightField& field, std::size_t channels, std::uint64_t seed = 11) {
+inline ModelImages random_weights(const HeightField& field, std::size_t channels,
+                                  std::uint64_t seed = 11) {
   RandomStream random(seed, 0, 0);
   ModelImages weights(channels, Grid<double>(field.z_nm.width(), field.z_nm.height()));
   for (Grid<double>& image : weights)
@@ -34,10 +35,10 @@ inline double largest(const Grid<double>& a) {
   return most;
 }
 
-/// J dz against central differences of the images at `step_nm`, in parts of the largest; and <w, J dz>
-/// against <J^T w, dz>.
-inline void expect_exact_derivatives(const ImageModel& model, const HeightField& field, Edge edge, double step_nm,
-                                     double tolerance) {
+/// J dz against central differences of the images at `step_nm`, in parts of the largest; and <w, J
+/// dz> against <J^T w, dz>.
+inline void expect_exact_derivatives(const ImageModel& model, const HeightField& field, Edge edge,
+                                     double step_nm, double tolerance) {
   const ModelOptions exact{.edge = edge, .double_precision = true};
   const auto linear = model.linearize(field, exact);
   EXPECT_EQ(linear->images(), model.predict(field, exact));
@@ -47,7 +48,8 @@ inline void expect_exact_derivatives(const ImageModel& model, const HeightField&
     up.z_nm.data()[i] += step_nm * dz.data()[i];
     down.z_nm.data()[i] -= step_nm * dz.data()[i];
   }
-  const ModelImages a = model.predict(up, exact), b = model.predict(down, exact), change = linear->change(dz);
+  const ModelImages a = model.predict(up, exact), b = model.predict(down, exact),
+                    change = linear->change(dz);
   const ModelImages w = random_weights(field, a.size());
   double slope = 0, size = 0;
   for (std::size_t c = 0; c < a.size(); ++c) {
@@ -56,7 +58,8 @@ inline void expect_exact_derivatives(const ImageModel& model, const HeightField&
       difference.data()[i] = (a[c].data()[i] - b[c].data()[i]) / (2 * step_nm);
     const double most = std::max(largest(difference), 1e-3);
     for (std::size_t i = 0; i < difference.size(); ++i)
-      ASSERT_NEAR(change[c].data()[i], difference.data()[i], tolerance * most) << "channel " << c << ", pixel " << i;
+      ASSERT_NEAR(change[c].data()[i], difference.data()[i], tolerance * most)
+          << "channel " << c << ", pixel " << i;
     slope += dot(w[c], difference);
     size += most * std::sqrt(static_cast<double>(difference.size()));
   }
@@ -64,10 +67,12 @@ inline void expect_exact_derivatives(const ImageModel& model, const HeightField&
 }
 
 /// <w, J dz> = <J^T w, dz> to rounding.
-inline void expect_adjoint(const ImageModel& model, const HeightField& field, Edge edge, double tolerance) {
+inline void expect_adjoint(const ImageModel& model, const HeightField& field, Edge edge,
+                           double tolerance) {
   const auto linear = model.linearize(field, {.edge = edge, .double_precision = true});
   const Grid<double> dz = random_weights(field, 1, 22)[0];
-  const ModelImages w = random_weights(field, linear->images().size(), 23), change = linear->change(dz);
+  const ModelImages w = random_weights(field, linear->images().size(), 23),
+                    change = linear->change(dz);
   const Grid<double> gradient = linear->gradient(w);
   double a = 0, size = 0;
   for (std::size_t c = 0; c < w.size(); ++c) {
@@ -83,7 +88,8 @@ inline void expect_finite(const ImageModel& model, const HeightField& field, Edg
     const auto linear = model.linearize(field, {.edge = edge, .double_precision = exact});
     const ModelImages w = random_weights(field, linear->images().size());
     const auto finite = [](const Grid<double>& grid) {
-      return std::all_of(grid.data().begin(), grid.data().end(), [](double v) { return std::isfinite(v); });
+      return std::all_of(grid.data().begin(), grid.data().end(),
+                         [](double v) { return std::isfinite(v); });
     };
     for (const Grid<double>& image : linear->images()) EXPECT_TRUE(finite(image));
     for (const Grid<double>& image : linear->change(w[0])) EXPECT_TRUE(finite(image));
@@ -91,7 +97,8 @@ inline void expect_finite(const ImageModel& model, const HeightField& field, Edg
   }
 }
 
-/// Tells of a rising progress, and is left at the first look at a token that is set. Watched or not, the same image.
+/// Tells of a rising progress, and is left at the first look at a token that is set. Watched or
+/// not, the same image.
 inline void expect_watched(const ImageModel& model, const HeightField& field) {
   double last = 0;
   int told = 0;
@@ -101,7 +108,8 @@ inline void expect_watched(const ImageModel& model, const HeightField& field) {
     last = done;
     ++told;
   };
-  EXPECT_EQ(model.predict(field, {.threads = 1, .watch = {tell, nullptr}}), model.predict(field, {.threads = 1}));
+  EXPECT_EQ(model.predict(field, {.threads = 1, .watch = {tell, nullptr}}),
+            model.predict(field, {.threads = 1}));
   EXPECT_GE(told, 4) << "blocks are small";
   CancelToken before;
   before.cancel();

@@ -13,13 +13,15 @@
 namespace surf {
 namespace {
 
-const SemNoise true_noise{18, -9000, 1};   // as of 200 electrons per pixel: no variance at a level of 500
+const SemNoise true_noise{18, -9000,
+                          1};  // as of 200 electrons per pixel: no variance at a level of 500
 
 /// Levels from 850 to 2000, most of them near 1000.
 Grid<double> levels() {
   Grid<double> mean(300, 150);
   for (int y = 0; y < 150; ++y)
-    for (int x = 0; x < 300; ++x) mean(x, y) = 1000 + 60 * std::sin(0.05 * x) + (x % 60 < 8 ? 120.0 * (x % 60) : 0);
+    for (int x = 0; x < 300; ++x)
+      mean(x, y) = 1000 + 60 * std::sin(0.05 * x) + (x % 60 < 8 ? 120.0 * (x % 60) : 0);
   return mean;
 }
 
@@ -29,17 +31,20 @@ void expect_line(const SemNoise& noise, double share) {
 }
 
 TEST(NoiseOfResiduals, IsTheLine) {
-  for (const std::uint64_t seed : {1, 2, 3}) expect_line(noise_of_residuals(test::draw(levels(), true_noise, seed), levels()), 0.1);
+  for (const std::uint64_t seed : {1, 2, 3})
+    expect_line(noise_of_residuals(test::draw(levels(), true_noise, seed), levels()), 0.1);
 }
 
 TEST(NoiseOfResiduals, WhatAModelIsOffByOnWallsIsNotNoise) {
-  // The model is off by long waves, by the brightness of stripes, and every third of these is a pixel beside its place.
+  // The model is off by long waves, by the brightness of stripes, and every third of these is a
+  // pixel beside its place.
   const Grid<double> mean = levels();
   Grid<double> model = mean;
   for (int y = 0; y < mean.height(); ++y)
     for (int x = 0; x < mean.width(); ++x) {
       const double bright = x % 60 < 8 ? 1 : 0;
-      model(x, y) = mean(x < 299 && x / 60 % 3 == 1 ? x + 1 : x, y) + 0.2 * bright * (mean(x, y) - 1000) + 90 * std::sin(0.05 * (x + y));
+      model(x, y) = mean(x < 299 && x / 60 % 3 == 1 ? x + 1 : x, y) +
+                    0.2 * bright * (mean(x, y) - 1000) + 90 * std::sin(0.05 * (x + y));
     }
   const Grid<double> real = test::draw(mean, true_noise, 4);
   expect_line(noise_of_residuals(real, model), 0.3);
@@ -57,7 +62,8 @@ TEST(NoiseOfResiduals, OnlyUsedPixelsCount) {
   Grid<double> real = test::draw(levels(), true_noise, 1);
   Grid<unsigned char> used(300, 150, 1);
   for (int y = 0; y < 150; ++y)
-    for (int x = 0; x < 90; ++x) used(x, y) = 0, real(x, y) = std::numeric_limits<double>::quiet_NaN();
+    for (int x = 0; x < 90; ++x)
+      used(x, y) = 0, real(x, y) = std::numeric_limits<double>::quiet_NaN();
   expect_line(noise_of_residuals(real, levels(), used), 0.15);
   EXPECT_THROW(noise_of_residuals(real, levels()), InvalidInput);
 }

@@ -46,8 +46,10 @@ TEST(SemNoise, BendsWithoutAStep) {
       const double v = noise.variance(mean), h = 1e-6;
       EXPECT_GE(v, 0.1);
       EXPECT_LE(std::fabs(v - before), 1.01e-3 * std::fabs(slope));
-      EXPECT_NEAR((noise.variance(mean + h) - noise.variance(mean - h)) / (2 * h), noise.variance_slope(mean), 1e-5);
-      EXPECT_LE(std::fabs(noise.variance_slope(mean + 1e-3) - noise.variance_slope(mean)), 1.01e-3 * slope * slope / 0.2);
+      EXPECT_NEAR((noise.variance(mean + h) - noise.variance(mean - h)) / (2 * h),
+                  noise.variance_slope(mean), 1e-5);
+      EXPECT_LE(std::fabs(noise.variance_slope(mean + 1e-3) - noise.variance_slope(mean)),
+                1.01e-3 * slope * slope / 0.2);
       before = v;
     }
     // Both ends of the bend: where the line is 0 and where it is twice the least variance.
@@ -99,14 +101,15 @@ TEST(SemNoise, GradientIsThatOfTheLikelihood) {
   for (std::size_t i = 0; i < mean.size(); ++i) {
     Grid<double> up = mean, down = mean;
     up.data()[i] += 1e-5, down.data()[i] -= 1e-5;
-    const double difference = (log_likelihood(real, up, noise) - log_likelihood(real, down, noise)) / 2e-5;
+    const double difference =
+        (log_likelihood(real, up, noise) - log_likelihood(real, down, noise)) / 2e-5;
     EXPECT_NEAR(gradient.data()[i], difference, 1e-5 * std::fmax(1, std::fabs(difference))) << i;
   }
 }
 
 TEST(SemNoise, InformationIsTheScatterOfTheGradient) {
   constexpr int draws = 40000;
-  for (const double intensity : {-1.0, 0.9, 10.0}) {   // floor, bend, line
+  for (const double intensity : {-1.0, 0.9, 10.0}) {  // floor, bend, line
     const SemNoise noise{0.5, -0.2, 0.4};
     const Grid<double> mean(200, draws / 200, intensity);
     Grid<double> gradient, information;
@@ -134,7 +137,9 @@ TEST(SemNoise, RefusesWhatItCannotUse) {
   EXPECT_THROW(validate(SemNoise{1, 1, 0}), InvalidInput);
   EXPECT_THROW(validate(SemNoise{1, 1, nan}), InvalidInput);
   EXPECT_THROW(log_likelihood(Grid<double>(2, 2), Grid<double>(2, 3), {}), InvalidInput);
-  EXPECT_THROW(log_likelihood(Grid<double>(2, 2), Grid<double>(2, 2), {}, Grid<unsigned char>(1, 1)), InvalidInput);
+  EXPECT_THROW(
+      log_likelihood(Grid<double>(2, 2), Grid<double>(2, 2), {}, Grid<unsigned char>(1, 1)),
+      InvalidInput);
   EXPECT_THROW(whiten(Grid<double>(2, 2), Grid<double>(3, 2), {}), InvalidInput);
   EXPECT_THROW(log_likelihood({}, {}, {}), InvalidInput);
 }

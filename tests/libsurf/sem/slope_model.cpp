@@ -15,19 +15,25 @@ namespace {
 using namespace surf;
 using namespace surf::test;
 
-constexpr SlopeForm forms[] = {SlopeForm::secant, SlopeForm::ikeuchi_exponential, SlopeForm::ikeuchi_secant,
-                               SlopeForm::ikeuchi_mixed, SlopeForm::table};
+constexpr SlopeForm forms[] = {SlopeForm::secant, SlopeForm::ikeuchi_exponential,
+                               SlopeForm::ikeuchi_secant, SlopeForm::ikeuchi_mixed,
+                               SlopeForm::table};
 
 SlopeModelParameters slopes(SlopeForm form) {
-  return {form, 5, {5, 0.6},
-          {{"SE", 0.5, {1, 1.01, 1.05, 1.1, 1.2, 1.3, 1.5, 1.7, 2, 2.2, 2.3, 2.4, 2.4, 2.3, 2, 1.8, 1.6, 1.5}},
+  return {form,
+          5,
+          {5, 0.6},
+          {{"SE",
+            0.5,
+            {1, 1.01, 1.05, 1.1, 1.2, 1.3, 1.5, 1.7, 2, 2.2, 2.3, 2.4, 2.4, 2.3, 2, 1.8, 1.6, 1.5}},
            {"BSE", 0.2, {0.3, 0.31, 0.35}}}};
 }
 
 double yield_at(SlopeForm form, double degrees, int channel = 0) {
   const double slope = std::tan(degrees * std::numbers::pi / 180);
   const HeightField plane = sampled(12, 12, 3, [&](int x, int) { return 3 * slope * x; });
-  return make_slope_model({}, slopes(form))->predict(plane, {.double_precision = true})[channel](6, 6);
+  return make_slope_model({}, slopes(form))
+      ->predict(plane, {.double_precision = true})[channel](6, 6);
 }
 
 TEST(SlopeModel, GivesEachFormsYieldOfTiltedPlanes) {
@@ -42,7 +48,7 @@ TEST(SlopeModel, GivesEachFormsYieldOfTiltedPlanes) {
   EXPECT_NEAR(yield_at(SlopeForm::ikeuchi_mixed, 80), held, 1e-12);
   EXPECT_NEAR(yield_at(SlopeForm::table, 0), 1, 1e-12);
   EXPECT_NEAR(yield_at(SlopeForm::table, 32), 1.5 + 0.4 * 0.2, 1e-12);
-  EXPECT_NEAR(yield_at(SlopeForm::table, 88), 1.5 - 0.6 * 0.1, 1e-11);   // its last line goes on
+  EXPECT_NEAR(yield_at(SlopeForm::table, 88), 1.5 - 0.6 * 0.1, 1e-11);  // its last line goes on
   EXPECT_NEAR(yield_at(SlopeForm::table, 15, 1), 0.39, 1e-12);
 }
 
@@ -66,7 +72,8 @@ TEST(SlopeModel, IsFiniteOnFlatAndSteepSurfaces) {
     const auto model = make_slope_model({}, slopes(form));
     expect_finite(*model, flat, Edge::mirror);
     expect_exact_derivatives(*model, flat, Edge::mirror, 1e-4, 1e-6);
-    for (const double relief : {1e-300, 1e-30, 1e6, 1e10}) expect_finite(*model, rough_field(9, 14, 2, relief), Edge::flat);
+    for (const double relief : {1e-300, 1e-30, 1e6, 1e10})
+      expect_finite(*model, rough_field(9, 14, 2, relief), Edge::flat);
   }
 }
 
@@ -76,8 +83,10 @@ TEST(SlopeModel, TakesTheMeanOfBothSidesAtAKink) {
   p.table_step_deg = 45;
   p.channels = {{"SE", 1, {1, 1.5, 1.75}}};
   const HeightField plane = sampled(8, 8, 1, [](int x, int) { return double(x); });
-  const auto linear = make_slope_model({}, p)->linearize(plane, {.edge = Edge::flat, .double_precision = true});
-  const ModelImages change = linear->change(sampled(8, 8, 1, [](int x, int) { return double(x); }).z_nm);
+  const auto linear =
+      make_slope_model({}, p)->linearize(plane, {.edge = Edge::flat, .double_precision = true});
+  const ModelImages change =
+      linear->change(sampled(8, 8, 1, [](int x, int) { return double(x); }).z_nm);
   const double per_slope = 0.5 / (std::numbers::pi / 4);
   EXPECT_GT(change[0](4, 4), 0.25 * per_slope - 1e-9);
   EXPECT_LT(change[0](4, 4), 0.5 * per_slope + 1e-9);
@@ -99,6 +108,8 @@ TEST(SlopeModel, RefusesBadParameters) {
   refused(SlopeForm::table, [](auto& p) { p.table_step_deg = 0; });
 }
 
-TEST(SlopeModel, IsWatched) { expect_watched(*make_slope_model({}, slopes(SlopeForm::table)), rough_field(150, 700)); }
+TEST(SlopeModel, IsWatched) {
+  expect_watched(*make_slope_model({}, slopes(SlopeForm::table)), rough_field(150, 700));
+}
 
 }  // namespace

@@ -51,7 +51,7 @@ TEST(RingPoints, SpreadEvenlyOverTheRing) {
     EXPECT_NEAR(y, 0, 1e-9);
     EXPECT_NEAR(xx / static_cast<double>(points.size()), 0.5, 1e-9);
   }
-  const auto points = ring_points(2, 4, 2);   // 8 to 12 nm: the pixel 5 to the right is whole in it
+  const auto points = ring_points(2, 4, 2);  // 8 to 12 nm: the pixel 5 to the right is whole in it
   double inside = 0;
   for (const RingPoint& p : points) inside += p.dx == 5 && p.dy == 0;
   EXPECT_NEAR(inside / static_cast<double>(points.size()), 4 / (3.14159265 * (144 - 64)), 3e-4);
@@ -60,7 +60,7 @@ TEST(RingPoints, SpreadEvenlyOverTheRing) {
 TEST(StoppingPoint, GivesWhatStopsAboveAFlatSurface) {
   const StoppingPointParameters p = bell();
   double above = 0;
-  for (int k = 0; k < p.rings; ++k)   // trapezes, from height 0 up
+  for (int k = 0; k < p.rings; ++k)  // trapezes, from height 0 up
     for (int i = 32; i + 1 < p.heights; ++i) {
       const auto at = static_cast<std::size_t>(k * p.heights + i);
       above += 0.25 * (p.channels[0].density_per_nm[at] + p.channels[0].density_per_nm[at + 1]);
@@ -75,7 +75,8 @@ TEST(StoppingPoint, GivesWhatStopsAboveAFlatSurface) {
 
 TEST(StoppingPoint, SpikesGiveMoreThanPitsAndAllIsFinite) {
   const auto with = [](double z_nm) {
-    return test::sampled(21, 21, pitch, [&](int x, int y) { return x == 10 && y == 10 ? z_nm : 0.0; });
+    return test::sampled(21, 21, pitch,
+                         [&](int x, int y) { return x == 10 && y == 10 ? z_nm : 0.0; });
   };
   const ModelImages spike = model()->predict(with(1e4)), pit = model()->predict(with(-1e4));
   for (std::size_t c = 0; c < 2; ++c) {
@@ -87,7 +88,8 @@ TEST(StoppingPoint, SpikesGiveMoreThanPitsAndAllIsFinite) {
 
 TEST(StoppingPoint, GoesOnByItsTangentWhereAllComesBack) {
   // The whole bell lies above: I is far beyond 1/2.
-  const ModelImages images = model(6)->predict(test::sampled(5, 5, pitch, [](int, int) { return 0.0; }));
+  const ModelImages images =
+      model(6)->predict(test::sampled(5, 5, pitch, [](int, int) { return 0.0; }));
   ASSERT_GT(images[0](2, 2), 0.5);
   EXPECT_DOUBLE_EQ(images[1](2, 2), 4 * images[0](2, 2) - 1);
 }
@@ -105,7 +107,8 @@ TEST(StoppingPoint, TurnsWithTheSurfaceAndKnowsNoOrigin) {
   HeightField other = rough;
   other.z_nm = test::turned(rough.z_nm);
   const ModelImages a = model()->predict(rough), b = model()->predict(other);
-  for (std::size_t c = 0; c < 2; ++c) EXPECT_LT(test::largest_difference(test::turned(a[c]), b[c]), 1e-12);
+  for (std::size_t c = 0; c < 2; ++c)
+    EXPECT_LT(test::largest_difference(test::turned(a[c]), b[c]), 1e-12);
   other = rough;
   for (double& z : other.z_nm.data()) z += 1000;
   EXPECT_LT(test::largest_difference(a[0], model()->predict(other)[0]), 1e-9);

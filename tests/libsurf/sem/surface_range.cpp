@@ -18,16 +18,19 @@ HeightField field_of(int w, int h, double pitch, double (*z)(double, double)) {
 }
 
 TEST(SurfaceRange, OfATiltedPlaneIsItsSlope) {
-  const SurfaceRange range = surface_range(field_of(9, 7, 2, [](double x, double y) { return 3 * x + 4 * y; }));
+  const SurfaceRange range =
+      surface_range(field_of(9, 7, 2, [](double x, double y) { return 3 * x + 4 * y; }));
   EXPECT_NEAR(range.slope_deg_max, std::atan(5) * 180 / M_PI, 1e-9);
   EXPECT_NEAR(range.slope_deg_p99, range.slope_deg_max, 1e-9);
   EXPECT_NEAR(range.curvature_max_per_nm, 0, 1e-12);
 }
 
 TEST(SurfaceRange, OfAParabolaIsItsSecondDerivative) {
-  const SurfaceRange range = surface_range(field_of(9, 9, 2, [](double x, double) { return 0.25 * x * x; }));
+  const SurfaceRange range =
+      surface_range(field_of(9, 9, 2, [](double x, double) { return 0.25 * x * x; }));
   EXPECT_NEAR(range.curvature_max_per_nm, 0.5, 1e-12);
-  EXPECT_NEAR(range.slope_deg_max, std::atan(0.5 * 15) * 180 / M_PI, 1e-9);   // on the rim between 14 and 16 nm
+  EXPECT_NEAR(range.slope_deg_max, std::atan(0.5 * 15) * 180 / M_PI,
+              1e-9);  // on the rim between 14 and 16 nm
 }
 
 TEST(SurfaceRange, UnitesToWhatHoldsBoth) {

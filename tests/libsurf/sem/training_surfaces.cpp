@@ -60,13 +60,15 @@ TEST(TrainingSurfaces, DependOnTheSeedAndOnNothingElse) {
 }
 
 TEST(TrainingSurfaces, WorkInTheSmallestField) {
-  for (const NamedSurface& s : training_surfaces({0.1, 16, 20, 3})) EXPECT_NO_THROW(validate(s.field)) << s.name;
+  for (const NamedSurface& s : training_surfaces({0.1, 16, 20, 3}))
+    EXPECT_NO_THROW(validate(s.field)) << s.name;
 }
 
 TEST(TrainingSurfaces, RefuseWhatIsOutOfRange) {
   for (const TrainingSurfaceOptions& bad :
-       {TrainingSurfaceOptions{0, 96, 16, 1}, TrainingSurfaceOptions{NAN, 96, 16, 1}, TrainingSurfaceOptions{3, 15, 16, 1},
-        TrainingSurfaceOptions{3, 5000, 16, 1}, TrainingSurfaceOptions{3, 96, 0, 1}})
+       {TrainingSurfaceOptions{0, 96, 16, 1}, TrainingSurfaceOptions{NAN, 96, 16, 1},
+        TrainingSurfaceOptions{3, 15, 16, 1}, TrainingSurfaceOptions{3, 5000, 16, 1},
+        TrainingSurfaceOptions{3, 96, 0, 1}})
     EXPECT_THROW(training_surfaces(bad), UsageError);
 }
 

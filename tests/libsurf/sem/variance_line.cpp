@@ -57,11 +57,13 @@ TEST(VarianceLine, SeesABend) {
   const VarianceLine line = fit_variance_line(points, {false, 1e-3, 0});
   const Curvature c = fit_curvature(points, line, 1e-3);
   EXPECT_GT(c.z, 5);
-  // The parabola is 0.01 (x - 55)^2: seen from the best line, about a third of its height at the ends.
+  // The parabola is 0.01 (x - 55)^2: seen from the best line, about a third of its height at the
+  // ends.
   EXPECT_GT(c.departure, 0.1);
   EXPECT_LT(c.departure, 1);
   const std::vector<VariancePoint> straight = some_points(60, 2);
-  EXPECT_LT(fit_curvature(straight, fit_variance_line(straight, {false, 1e-3, 0}), 1e-3).departure, 0.15);
+  EXPECT_LT(fit_curvature(straight, fit_variance_line(straight, {false, 1e-3, 0}), 1e-3).departure,
+            0.15);
 }
 
 TEST(VarianceLine, OnePointOrOneMeanGivesAConstant) {
@@ -83,7 +85,8 @@ TEST(FlatSamples, CorrelationAndVarianceAreFreeOfThePolynomial) {
     for (double& v : white.data()) v = test::normal(random);
     for (int y = 0; y < 96; ++y)
       for (int x = 0; x < 96; ++x)
-        image(x, y) = (white(x, y) + white(x + 1, y) + white(x + 2, y)) / std::sqrt(3.0) + 0.1 * x - 0.002 * y * y;
+        image(x, y) = (white(x, y) + white(x + 1, y) + white(x + 2, y)) / std::sqrt(3.0) + 0.1 * x -
+                      0.002 * y * y;
     const Grid<unsigned char> all;
     FlatSamples flat(image, all, 2);
     for (int y = 0; y + 12 <= 96; y += 12)
@@ -91,10 +94,11 @@ TEST(FlatSamples, CorrelationAndVarianceAreFreeOfThePolynomial) {
     EXPECT_EQ(flat.responses.size(), 1u);
     const LagSums r = pooled_correlation(flat, std::vector<double>(flat.samples.size(), 1));
     along.add(r[1]), two.add(r[2]), across.add(r[5]);
-    for (const FlatSample& s : flat.samples) variance.add(variance_of(s, flat.responses[0], {1, 2.0 / 3, 1.0 / 3}));
+    for (const FlatSample& s : flat.samples)
+      variance.add(variance_of(s, flat.responses[0], {1, 2.0 / 3, 1.0 / 3}));
   }
   test::expect_mean(variance.mean(), variance.standard_error(), 1, 4);
-  test::expect_mean(along.mean(), along.standard_error(), 2.0 / 3, 4, 0.003);   // a ratio of sums
+  test::expect_mean(along.mean(), along.standard_error(), 2.0 / 3, 4, 0.003);  // a ratio of sums
   test::expect_mean(two.mean(), two.standard_error(), 1.0 / 3, 4, 0.003);
   test::expect_mean(across.mean(), across.standard_error(), 0, 4, 0.003);
 }
@@ -123,7 +127,8 @@ TEST(GreyLevels, FindsStepsAndPiles) {
   Grid<double> sixteen = test::rounded(smooth, 80, 110);
   for (double& v : sixteen.data()) v *= 257.0 / 65535;
   EXPECT_NEAR(grey_levels(sixteen, {}).quantum, 257.0 / 65535, 1e-12);
-  Grid<double> sums = test::rounded(smooth, 0, 255);   // a palette's grey as a mixture of its three colours
+  Grid<double> sums =
+      test::rounded(smooth, 0, 255);  // a palette's grey as a mixture of its three colours
   for (double& v : sums.data()) {
     const auto f = static_cast<float>(v);
     v = 0.2126f * f + 0.7152f * f + 0.0722f * f;

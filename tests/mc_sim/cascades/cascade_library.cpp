@@ -46,8 +46,8 @@ CascadeLibrary one_page(const CascadeSettings& settings) {
 }
 
 CascadeReader read(const CascadeLibrary& library, std::size_t number) {
-  return {library.cascade(number), library.medium().cutoff_ev(),
-          library.settings().start_energy_ev, library.medium().barrier_ev()};
+  return {library.cascade(number), library.medium().cutoff_ev(), library.settings().start_energy_ev,
+          library.medium().barrier_ev()};
 }
 
 struct SeenElectron {
@@ -97,7 +97,8 @@ void expect_same(const CascadeReader& packed, std::size_t packed_number,
   for (std::size_t i = 0; i < p.points_nm.size(); ++i) {
     EXPECT_LE(length(p.points_nm[i] - s.points_nm[i]), 1.001 * p.blur_nm + 1e-9);
     const double e = s.energies_ev[i];
-    EXPECT_LE(packed.energy_ev(std::max(p.energies[i] - 1, 0)), e);   // the root is kept to one part in 65535
+    EXPECT_LE(packed.energy_ev(std::max(p.energies[i] - 1, 0)),
+              e);  // the root is kept to one part in 65535
     EXPECT_GE(packed.energy_ev(p.energies[i] + 1), e);
   }
   // Of one electron's children the last born is followed first.
@@ -124,7 +125,7 @@ TEST_P(Packing, KeepsEveryTrackOfEveryElectron) {
   }
 }
 
-TEST_P(Packing, SaysTheTruthAboutEveryNode) {   // as far as the reader knows it
+TEST_P(Packing, SaysTheTruthAboutEveryNode) {  // as far as the reader knows it
   const CascadeLibrary library = one_page(GetParam());
   for (std::size_t number = 0; number < 300; ++number) {
     const CascadeReader packed = read(library, number);
@@ -172,7 +173,7 @@ TEST(CascadeLibrary, IsDistributedAsCascadesAre) {
       return static_cast<std::size_t>(std::clamp(octave, 0.0, 11.0));
     }
     test::Sample depth, extent, secondaries;
-    std::vector<std::int64_t> counts;   // of secondaries by energy
+    std::vector<std::int64_t> counts;  // of secondaries by energy
 
    private:
     double lowest_;

@@ -19,10 +19,10 @@ namespace surf::test {
 
 struct PackedElectron {
   std::vector<Vec3> points_nm;
-  std::vector<int> energies;                   ///< as packed, without the bit for what is forgotten
-  std::map<std::size_t, std::size_t> births;   ///< number of the point to that of the electron
+  std::vector<int> energies;                  ///< as packed, without the bit for what is forgotten
+  std::map<std::size_t, std::size_t> births;  ///< number of the point to that of the electron
   double unit_nm = 0;
-  double blur_nm = 0;                          ///< how far rounding may have moved its points
+  double blur_nm = 0;  ///< how far rounding may have moved its points
 };
 
 class CascadeReader {
@@ -34,7 +34,7 @@ class CascadeReader {
     EXPECT_EQ(branch(0, {}, 0).end, words.size());
   }
 
-  std::vector<PackedElectron> electrons;       ///< the primary first
+  std::vector<PackedElectron> electrons;  ///< the primary first
 
   double energy_ev(int packed) const {
     const double share = packed / 32767.0;
@@ -43,10 +43,10 @@ class CascadeReader {
 
  private:
   struct Part {
-    std::size_t end = 0;                       // the word behind it
-    std::vector<Vec3> points;                  // all that lie in it
+    std::size_t end = 0;       // the word behind it
+    std::vector<Vec3> points;  // all that lie in it
     std::uint64_t generated = 0;
-    double generated_ev = 0;                   // their energies above the barrier
+    double generated_ev = 0;  // their energies above the barrier
   };
 
   static std::uint64_t bits(std::uint64_t word, int from, int count) {
@@ -84,7 +84,7 @@ class CascadeReader {
     };
     const std::uint64_t start = words_[at + 2];
     std::size_t next = at + 3;
-    std::vector<std::size_t> bearing;          // points
+    std::vector<std::size_t> bearing;  // points
     if (electrons[electron].points_nm.empty()) keep(start);
     EXPECT_EQ(electrons[electron].points_nm.back(), origin + point(start) * unit);
     EXPECT_EQ(electrons[electron].energies.back(), static_cast<int>(bits(start, 49, 15)));
@@ -106,8 +106,8 @@ class CascadeReader {
       } else {
         const std::size_t number = electrons.size();
         electrons[electron].births[bearing[i]] = number;
-        child = branch(next, electrons[electron].points_nm[bearing[i]],
-                       electrons[electron].blur_nm);
+        child =
+            branch(next, electrons[electron].points_nm[bearing[i]], electrons[electron].blur_nm);
         part.generated += 1;
         part.generated_ev += energy_ev(electrons[number].energies[0]) - barrier_ev_;
       }

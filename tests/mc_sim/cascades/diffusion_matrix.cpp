@@ -22,7 +22,8 @@ struct Crossings {
   double split_ev = 0, se = 0, bse = 0;
   void segment(const CascadeSegment& s) {
     if (!(s.from.z < 0 && s.to.z >= 0)) return;
-    const double energy = s.energy_from_ev + (s.energy_to_ev - s.energy_from_ev) * s.from.z / (s.from.z - s.to.z);
+    const double energy =
+        s.energy_from_ev + (s.energy_to_ev - s.energy_from_ev) * s.from.z / (s.from.z - s.to.z);
     (energy >= split_ev ? bse : se) += 1;
   }
   void stop(const Vec3&, bool) {}
@@ -52,11 +53,13 @@ TEST(DiffusionMatrixTable, SecondOrderMomentsAddUpAndTheBarrierHoldsBack) {
     for (std::size_t i = 0; i < c.moments_per_nm2.size(); i += diffusion_moments) {
       const double* m = c.moments_per_nm2.data() + i;
       for (int j = 2; j <= 4; ++j) ASSERT_GE(m[j], 0);
-      ASSERT_LE(m[0] * m[0] + m[1] * m[1], (m[2] + m[3] + m[4]) * (m[2] + m[3] + m[4]) * (1 + 1e-9));
+      ASSERT_LE(m[0] * m[0] + m[1] * m[1],
+                (m[2] + m[3] + m[4]) * (m[2] + m[3] + m[4]) * (1 + 1e-9));
       ASSERT_LE(m[5] * m[5], m[2] * m[4] * (1 + 1e-9));
     }
   const auto flat = [&](const CascadeLibrary& l) {
-    return make_diffusion_matrix({.pixel_nm = 3}, diffusion_matrix(l))->predict({Grid<double>(4, 3), {}, 3, 3});
+    return make_diffusion_matrix({.pixel_nm = 3}, diffusion_matrix(l))
+        ->predict({Grid<double>(4, 3), {}, 3, 3});
   };
   const ModelImages held = flat(library);
   const auto yields = test::flat_yields("Si", 1000, 0, 20000);

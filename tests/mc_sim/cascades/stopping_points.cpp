@@ -92,10 +92,12 @@ TEST(StoppingPoints, GiveTheLibrarysOwnValueOnFlatGround) {
 }
 
 TEST(StoppingPoints, AreScaledToAKnownYield) {
-  const auto model = make_stopping_point({.pixel_nm = 3}, stopping_points(silicon(), {.flat_se_yield = 0.9}));
+  const auto model =
+      make_stopping_point({.pixel_nm = 3}, stopping_points(silicon(), {.flat_se_yield = 0.9}));
   EXPECT_NEAR(model->predict({Grid<double>(4, 3, 7), {}, 3, 3})[0](1, 1), 0.9, 1e-9);
   const auto plain = make_stopping_point({.pixel_nm = 3}, stopping_points(silicon()));
-  EXPECT_EQ(model->predict({Grid<double>(4, 3), {}, 3, 3})[1], plain->predict({Grid<double>(4, 3), {}, 3, 3})[1]);
+  EXPECT_EQ(model->predict({Grid<double>(4, 3), {}, 3, 3})[1],
+            plain->predict({Grid<double>(4, 3), {}, 3, 3})[1]);
 }
 
 TEST(StoppingPoints, RefuseNothingAndNonsense) {

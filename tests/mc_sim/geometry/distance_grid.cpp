@@ -24,12 +24,14 @@ double distance_to_segment(const Vec3& p, const Vec3& a, const Vec3& b) {
 }
 
 double distance_to_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
-  const double to_edges = std::min({distance_to_segment(p, a, b), distance_to_segment(p, b, c),
-                                    distance_to_segment(p, c, a)});
+  const double to_edges = std::min(
+      {distance_to_segment(p, a, b), distance_to_segment(p, b, c), distance_to_segment(p, c, a)});
   const Vec3 across = cross(b - a, c - a);
   if (!(length(across) > 0)) return to_edges;
   const Vec3 n = normalized(across);
-  const auto left_of = [&](const Vec3& u, const Vec3& v) { return dot(cross(v - u, p - u), n) >= 0; };
+  const auto left_of = [&](const Vec3& u, const Vec3& v) {
+    return dot(cross(v - u, p - u), n) >= 0;
+  };
   if (left_of(a, b) && left_of(b, c) && left_of(c, a)) return std::fabs(dot(p - a, n));
   return to_edges;
 }
@@ -59,23 +61,25 @@ Vec3 near_surface(const TriangleMesh& mesh, double away, RandomStream& random) {
 }
 
 struct Shortfall {
-  double mean_nm = 0;      // within 3 nm of the surface
+  double mean_nm = 0;  // within 3 nm of the surface
   double mean_far_nm = 0;
 };
 
 // The proof by trial: no bound exceeds the true distance, near the surface and all over the domain.
-Shortfall expect_bounds(const TriangleMesh& mesh, const Box& domain, std::size_t bytes, int points) {
+Shortfall expect_bounds(const TriangleMesh& mesh, const Box& domain, std::size_t bytes,
+                        int points) {
   const DistanceGrid field(mesh, domain, bytes);
   RandomStream random(1, bytes, mesh.triangles.size());
   const Vec3 size = domain.size_nm(), margin = size * 0.2;
   Shortfall out;
   int near = 0, far = 0;
   for (int i = 0; i < points; ++i) {
-    const Vec3 p = i % 2 == 0
-                       ? near_surface(mesh, 4, random)
-                       : Vec3{domain.lower_nm.x - margin.x + (size.x + 2 * margin.x) * random.uniform(),
-                              domain.lower_nm.y - margin.y + (size.y + 2 * margin.y) * random.uniform(),
-                              domain.lower_nm.z - margin.z + (size.z + 2 * margin.z) * random.uniform()};
+    const Vec3 p =
+        i % 2 == 0
+            ? near_surface(mesh, 4, random)
+            : Vec3{domain.lower_nm.x - margin.x + (size.x + 2 * margin.x) * random.uniform(),
+                   domain.lower_nm.y - margin.y + (size.y + 2 * margin.y) * random.uniform(),
+                   domain.lower_nm.z - margin.z + (size.z + 2 * margin.z) * random.uniform()};
     const double d = distance(mesh, p), bound = field.bound_nm(p);
     EXPECT_GE(bound, 0);
     EXPECT_LE(bound, d) << p.x << " " << p.y << " " << p.z;
@@ -145,7 +149,7 @@ TEST(DistanceGrid, HoldsFarFromTheOrigin) {
 }
 
 TEST(DistanceGrid, HoldsForTrianglesSmallerThanItsCellsAmongLargeOnes) {
-  TriangleMesh mesh = make_sphere({3, 2, 20}, 7, 4);   // sides of half a nanometre
+  TriangleMesh mesh = make_sphere({3, 2, 20}, 7, 4);  // sides of half a nanometre
   const TriangleMesh box = make_box({-60, -60, -20}, {60, 60, 10});
   const auto base = static_cast<std::uint32_t>(mesh.vertices_nm.size());
   mesh.vertices_nm.insert(mesh.vertices_nm.end(), box.vertices_nm.begin(), box.vertices_nm.end());
@@ -154,7 +158,7 @@ TEST(DistanceGrid, HoldsForTrianglesSmallerThanItsCellsAmongLargeOnes) {
   const Shortfall of_fine = expect_bounds(mesh, bounds(mesh), memory, 5000);
   EXPECT_LT(of_fine.mean_nm, 0.5);
   expect_bounds(mesh, bounds(mesh), 1 << 18, 2000);
-  const TriangleMesh coarse = make_sphere({0, 0, 0}, 40, 3);   // sides of 5 nm in cells of about 9
+  const TriangleMesh coarse = make_sphere({0, 0, 0}, 40, 3);  // sides of 5 nm in cells of about 9
   expect_bounds(coarse, bounds(coarse), 1 << 16, 5000);
 }
 
@@ -164,8 +168,9 @@ TEST(DistanceGrid, HoldsForNeedlesAndTrianglesWithoutArea) {
   for (std::uint32_t i = 0; i < 60; ++i) {
     const Vec3 a = isotropic(random) * 30.0, along = isotropic(random) * 40.0;
     const double width = i % 3 == 0 ? 0 : i % 3 == 1 ? 1e-7 : 1e-3;
-    mesh.vertices_nm.insert(mesh.vertices_nm.end(),
-                            {a, a + along, a + along * random.uniform() + isotropic(random) * width});
+    mesh.vertices_nm.insert(
+        mesh.vertices_nm.end(),
+        {a, a + along, a + along * random.uniform() + isotropic(random) * width});
     mesh.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
   }
   EXPECT_LT(expect_bounds(mesh, bounds(mesh), memory, 100000).mean_nm, 0.5);

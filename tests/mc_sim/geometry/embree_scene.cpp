@@ -60,7 +60,8 @@ std::vector<Body> bodies() {
           {"box", make_box({-8, -8, -8}, {8, 8, 8}, 4), {0, 0, 0}}};
 }
 
-// Exactly one way in from outside to the middle, and one out on the other side, near where it is said.
+// Exactly one way in from outside to the middle, and one out on the other side, near where it is
+// said.
 void expect_in_and_out(const EmbreeScene& scene, const std::vector<std::uint32_t>& faces,
                        const Vec3& from, const Vec3& through, const Vec3& to) {
   const Vec3 direction = normalized(to - from);
@@ -202,7 +203,7 @@ TEST(EmbreeScene, FindsAllTrianglesWithinABall) {
         if (length(closest_point(c.v[0], c.v[1], c.v[2], {})) <= radius) expected.push_back(t);
       }
       constexpr std::size_t most = 100;
-      std::vector<std::uint32_t> found{7, 7};   // stay
+      std::vector<std::uint32_t> found{7, 7};  // stay
       const bool known = scene.within(point, radius, most, found);
       ASSERT_GE(found.size(), 2u);
       EXPECT_EQ(found[0] + found[1], 14u);

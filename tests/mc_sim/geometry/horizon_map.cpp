@@ -26,13 +26,16 @@ double share_of_free(const TriangleMesh& mesh, const Box& domain, bool from_tops
   int free = 0, proven = 0;
   for (int i = 0; i < 200000; ++i) {
     const Vec3 d = isotropic(random);
-    Vec3 p{domain.lower_nm.x + size.x * random.uniform(), domain.lower_nm.y + size.y * random.uniform(),
+    Vec3 p{domain.lower_nm.x + size.x * random.uniform(),
+           domain.lower_nm.y + size.y * random.uniform(),
            domain.lower_nm.z - 5 + (size.z + 10) * random.uniform()};
     const bool leaves = i % 2 == 0;
     EmbreeScene::Hit hit;
     const auto any = [](void*, std::uint32_t, double, double) { return true; };
     // What was left a rounding error ago is not met.
-    const auto ahead = [](void*, std::uint32_t, double, double distance) { return distance > 1e-6; };
+    const auto ahead = [](void*, std::uint32_t, double, double distance) {
+      return distance > 1e-6;
+    };
     if (leaves) {
       p.z = domain.upper_nm.z + 10;
       if (!rays.nearest(p, {0, 0, -1}, HUGE_VAL, any, nullptr, hit)) continue;
@@ -40,7 +43,7 @@ double share_of_free(const TriangleMesh& mesh, const Box& domain, bool from_tops
       if (from_tops && dot(hit.normal, d) <= 0) continue;
     }
     const bool meets = rays.nearest(p, d, HUGE_VAL, ahead, nullptr, hit);
-    if (meets && dot(hit.normal, d) > 0) continue;   // it began in matter
+    if (meets && dot(hit.normal, d) > 0) continue;  // it began in matter
     const bool says = sky.is_free(p, d);
     EXPECT_FALSE(says && meets) << p.x << " " << p.y << " " << p.z << ", " << d.x << " " << d.y
                                 << " " << d.z;
@@ -64,14 +67,17 @@ TEST(HorizonMap, IsNeverFreeWhereSomethingIsMet) {
       share_of_free(half_space_top(mesa, 4000), bounds(height_field_sheet(mesa)), true);
   EXPECT_GT(of_mesa, 0.7);
   const HeightField rough = make_rough({120, 120, 2}, 8, 25, 1);
-  EXPECT_GT(share_of_free(half_space_top(rough, 2000), bounds(height_field_sheet(rough)), true), 0.2);
+  EXPECT_GT(share_of_free(half_space_top(rough, 2000), bounds(height_field_sheet(rough)), true),
+            0.2);
   HeightField gentle = rough;
   for (double& z : gentle.z_nm.data()) z *= 0.2;
-  EXPECT_GT(share_of_free(half_space_top(gentle, 2000), bounds(height_field_sheet(gentle)), true), 0.5);
+  EXPECT_GT(share_of_free(half_space_top(gentle, 2000), bounds(height_field_sheet(gentle)), true),
+            0.5);
   TriangleMesh cubes = make_box({-50, -50, 0}, {-10, 50, 33.3});
   const TriangleMesh roof = make_box({20, -30, 40}, {60, 30, 44});
   const auto base = static_cast<std::uint32_t>(cubes.vertices_nm.size());
-  cubes.vertices_nm.insert(cubes.vertices_nm.end(), roof.vertices_nm.begin(), roof.vertices_nm.end());
+  cubes.vertices_nm.insert(cubes.vertices_nm.end(), roof.vertices_nm.begin(),
+                           roof.vertices_nm.end());
   for (const Triangle& t : roof.triangles)
     cubes.triangles.push_back({base + t[0], base + t[1], base + t[2]});
   EXPECT_GT(share_of_free(cubes, bounds(cubes), true), 0.6);
@@ -104,7 +110,9 @@ TEST(HorizonMap, KnowsTheWallNextToAPoint) {
     const Vec3 p = out * far + Vec3{0, 0, 11 - 4 * random.uniform()};
     const Vec3 d = normalized(isotropic(random) + Vec3{0, 0, 1.5});
     EmbreeScene::Hit hit;
-    const auto ahead = [](void*, std::uint32_t, double, double distance) { return distance > 1e-6; };
+    const auto ahead = [](void*, std::uint32_t, double, double distance) {
+      return distance > 1e-6;
+    };
     const bool meets = rays.nearest(p, d, HUGE_VAL, ahead, nullptr, hit);
     const bool says = sky.is_free(p, d);
     ASSERT_FALSE(says && meets) << p.x << " " << p.y << " " << p.z;
@@ -116,7 +124,8 @@ TEST(HorizonMap, KnowsTheWallNextToAPoint) {
 }
 
 TEST(HorizonMap, KnowsTheNextToothWithinAColumn) {
-  // Teeth much narrower than columns: by the next column a ray from between them is above all others.
+  // Teeth much narrower than columns: by the next column a ray from between them is above all
+  // others.
   HeightField teeth;
   teeth.pitch_x_nm = teeth.pitch_y_nm = 0.25;
   teeth.z_nm = Grid<double>(129, 129);
@@ -129,7 +138,9 @@ TEST(HorizonMap, KnowsTheNextToothWithinAColumn) {
   int met = 0, free = 0;
   for (int i = 0; i < 100000; ++i) {
     const auto any = [](void*, std::uint32_t, double, double) { return true; };
-    const auto ahead = [](void*, std::uint32_t, double, double distance) { return distance > 1e-6; };
+    const auto ahead = [](void*, std::uint32_t, double, double distance) {
+      return distance > 1e-6;
+    };
     const Vec3 over{8 + 16 * random.uniform(), 8 + 16 * random.uniform(), 5};
     EmbreeScene::Hit hit;
     ASSERT_TRUE(rays.nearest(over, {0, 0, -1}, HUGE_VAL, any, nullptr, hit));

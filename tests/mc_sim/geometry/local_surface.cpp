@@ -39,7 +39,8 @@ TriangleMesh moved(TriangleMesh mesh, const Vec3& by) {
 // The first point of a sheet below (x, y), with the normal of its triangle.
 Place on_sheet(std::string name, TriangleMesh mesh, double x, double y) {
   for (const Triangle& t : mesh.triangles) {
-    const Vec3 &a = mesh.vertices_nm[t[0]], &b = mesh.vertices_nm[t[1]], &c = mesh.vertices_nm[t[2]];
+    const Vec3 &a = mesh.vertices_nm[t[0]], &b = mesh.vertices_nm[t[1]],
+               &c = mesh.vertices_nm[t[2]];
     const auto side = [&](const Vec3& p, const Vec3& q) {
       return (q.x - p.x) * (y - p.y) - (q.y - p.y) * (x - p.x);
     };
@@ -59,8 +60,10 @@ TriangleMesh needles() {
   RandomStream random(1, 2, 3);
   for (int i = 0; i < 60; ++i) {
     const Vec3 a{40 * random.uniform() - 20, 40 * random.uniform() - 20, 10 * random.uniform() - 5};
-    const Vec3 way{20 * random.uniform() - 10, 20 * random.uniform() - 10, 8 * random.uniform() - 4};
-    const Vec3 aside = normalized(cross(way, {0.3, 0.2, 1})) * std::pow(10.0, -10 * random.uniform());
+    const Vec3 way{20 * random.uniform() - 10, 20 * random.uniform() - 10,
+                   8 * random.uniform() - 4};
+    const Vec3 aside =
+        normalized(cross(way, {0.3, 0.2, 1})) * std::pow(10.0, -10 * random.uniform());
     const Vec3 b = i % 10 == 0 ? a + way * 0.5 : a + way * 0.5 + aside;
     test::append(mesh, {{a, a + way, b}, {{0, 1, 2}}});
   }
@@ -106,8 +109,8 @@ std::vector<Place> places() {
 struct Around {
   EmbreeScene scene;
   LocalSurface patch;
-  Vec3 up;                       // the specimen's z
-  std::optional<double> gap;     // the endless plane is up.p = gap
+  Vec3 up;                    // the specimen's z
+  std::optional<double> gap;  // the endless plane is up.p = gap
   struct Corners {
     Vec3 v[3];
     std::uint32_t number;
@@ -143,20 +146,21 @@ struct Heights {
 
 // Of what a ball holds of the plane n.p = offset: its highest and lowest points, if `holds` them.
 template <class Holds>
-void extend_by_disc(Heights& heights, const Vec3& center, double radius, const Vec3& n, double offset,
-                    const Holds& holds) {
+void extend_by_disc(Heights& heights, const Vec3& center, double radius, const Vec3& n,
+                    double offset, const Holds& holds) {
   const double away = offset - dot(n, center);
   if (std::fabs(away) > radius) return;
   const Vec3 middle = center + n * away;
   const Vec3 steepest = Vec3{0, 0, 1} - n * n.z;
   const double slope = length(steepest);
-  const Vec3 to = slope > 1e-7 ? steepest * (std::sqrt(radius * radius - away * away) / slope) : Vec3{};
+  const Vec3 to =
+      slope > 1e-7 ? steepest * (std::sqrt(radius * radius - away * away) / slope) : Vec3{};
   for (const Vec3& p : {middle + to, middle - to})
     if (holds(p)) heights.extend(p.z);
 }
 
-// Of what a ball holds of a triangle: extremes are at corners, where edges leave the ball, or at those
-// of the disc.
+// Of what a ball holds of a triangle: extremes are at corners, where edges leave the ball, or at
+// those of the disc.
 void extend_by_triangle(Heights& heights, const Vec3& center, double radius, const Vec3 (&v)[3]) {
   for (int i = 0; i < 3; ++i) {
     const Vec3& a = v[i];
@@ -165,7 +169,8 @@ void extend_by_triangle(Heights& heights, const Vec3& center, double radius, con
     const double squared = dot(way, way), half = dot(from, way);
     const double root = half * half - squared * (dot(from, from) - radius * radius);
     if (!(squared > 0) || root < 0) continue;
-    for (const double t : {(-half - std::sqrt(root)) / squared, (-half + std::sqrt(root)) / squared})
+    for (const double t :
+         {(-half - std::sqrt(root)) / squared, (-half + std::sqrt(root)) / squared})
       if (t >= 0 && t <= 1) heights.extend(a.z + way.z * t);
   }
   const Vec3 across = cross(v[1] - v[0], v[2] - v[0]);
@@ -180,9 +185,11 @@ void extend_by_triangle(Heights& heights, const Vec3& center, double radius, con
 
 Heights heights_in(const Around& around, const Vec3& center, double radius) {
   Heights heights;
-  for (const Around::Corners& t : around.triangles) extend_by_triangle(heights, center, radius, t.v);
+  for (const Around::Corners& t : around.triangles)
+    extend_by_triangle(heights, center, radius, t.v);
   if (around.gap)
-    extend_by_disc(heights, center, radius, around.up, *around.gap, [](const Vec3&) { return true; });
+    extend_by_disc(heights, center, radius, around.up, *around.gap,
+                   [](const Vec3&) { return true; });
   return heights;
 }
 
@@ -246,8 +253,8 @@ void expect_all_crossed(const Around& around, const Float4& a, const Float4& b, 
   const Vec3 to = vec3(b), way = to - vec3(a);
   const Vec3 from = vec3(a) - way * (1e-3 / length(way));
   const auto where = [&] {
-    return testing::Message() << "from " << from.x << ", " << from.y << ", " << from.z << " by " << way.x
-                              << ", " << way.y << ", " << way.z;
+    return testing::Message() << "from " << from.x << ", " << from.y << ", " << from.z << " by "
+                              << way.x << ", " << way.y << ", " << way.z;
   };
   for (const Around::Corners& t : around.triangles) {
     if (!meets(from, to, t.v)) continue;
@@ -275,7 +282,8 @@ TEST_P(SurfacePatchOf, KnowsHeightsThatHoldAllSurface) {
     const auto radius = static_cast<float>(of_any_size(random, 1e-3, reach));
     const Band band = around.patch.band(center, radius);
     const Vec3 c = vec3(center);
-    const double farthest = std::max({std::fabs(c.x), std::fabs(c.y), std::fabs(c.z)}) + double(radius);
+    const double farthest =
+        std::max({std::fabs(c.x), std::fabs(c.y), std::fabs(c.z)}) + double(radius);
     if (farthest < 0.5 * reach) {
       ++near;
       near_known += band.is_known();
@@ -348,12 +356,13 @@ TEST_P(SurfacePatchOf, TakesLittleMemory) {
   EXPECT_LT(around.patch.bytes(), 200000u);
 }
 
-INSTANTIATE_TEST_SUITE_P(Places, SurfacePatchOf, testing::ValuesIn(places()), [](const auto& place) {
-  std::string name;
-  for (const char c : place.param.name)
-    if (std::isalnum(static_cast<unsigned char>(c))) name += c;
-  return name;
-});
+INSTANTIATE_TEST_SUITE_P(Places, SurfacePatchOf, testing::ValuesIn(places()),
+                         [](const auto& place) {
+                           std::string name;
+                           for (const char c : place.param.name)
+                             if (std::isalnum(static_cast<unsigned char>(c))) name += c;
+                           return name;
+                         });
 
 TEST(LocalSurface, KnowsNothingWhereTrianglesAreTooMany) {
   const EmbreeScene dust(height_field_sheet(make_rough({4, 4, 0.05}, 0.2, 1, 1)));
@@ -385,7 +394,8 @@ TEST(LocalSurface, SaysNothingOfBallsBeyondItsReach) {
 
 // Where many triangles are, halves of a way have few.
 TEST(LocalSurface, CallsLongWaysAmongManyTrianglesCrowded) {
-  const Place fine = on_sheet("fine", height_field_sheet(make_rough({21, 21, 0.7}, 0.5, 4, 4)), 0, 0);
+  const Place fine =
+      on_sheet("fine", height_field_sheet(make_rough({21, 21, 0.7}, 0.5, 4, 4)), 0, 0);
   const EmbreeScene scene(fine.mesh);
   const LocalSurface patch(scene, {}, fine.origin, fine.normal);
   LocalSurface::Crossed crossed;

@@ -16,7 +16,8 @@ struct Bodies {
 
   void add(TriangleMesh body, int solid, int sense = 1) {
     const auto base = static_cast<std::uint32_t>(mesh.vertices_nm.size());
-    mesh.vertices_nm.insert(mesh.vertices_nm.end(), body.vertices_nm.begin(), body.vertices_nm.end());
+    mesh.vertices_nm.insert(mesh.vertices_nm.end(), body.vertices_nm.begin(),
+                            body.vertices_nm.end());
     for (const Triangle& t : body.triangles) {
       const auto a = base + t[0], b = base + t[1], c = base + t[2];
       mesh.triangles.push_back(sense > 0 ? Triangle{a, b, c} : Triangle{a, c, b});
@@ -57,8 +58,8 @@ TEST(Felt, LeavesOutBuriedCavitiesButNotThoseWithAWayOut) {
   buried.add(small, 0, -1);
   EXPECT_EQ(buried.reachable(10)[1], 0);
   Bodies open;
-  open.add(make_box({-100, -100, -100}, {-10, 100, 0}, 4), 0);   // a slit between two bodies,
-  open.add(make_box({-9.9, -100, -100}, {100, 100, 0}, 4), 0);   // narrower than any box
+  open.add(make_box({-100, -100, -100}, {-10, 100, 0}, 4), 0);  // a slit between two bodies,
+  open.add(make_box({-9.9, -100, -100}, {100, 100, 0}, 4), 0);  // narrower than any box
   open.add(make_box({-12, -10, -60}, {-11, 10, -40}), 1);
   EXPECT_EQ(open.reachable(2)[2], 12);
 }

@@ -13,8 +13,8 @@ namespace {
 using test::isotropic;
 
 void expect_near(const Vec3& a, const Vec3& b, double tolerance) {
-  EXPECT_LE(length(a - b), tolerance) << a.x << " " << a.y << " " << a.z << " for " << b.x << " "
-                                      << b.y << " " << b.z;
+  EXPECT_LE(length(a - b), tolerance)
+      << a.x << " " << a.y << " " << a.z << " for " << b.x << " " << b.y << " " << b.z;
 }
 
 void expect_at_right_angles(const Vec3& x, const Vec3& y, const Vec3& z, double tolerance) {
@@ -26,7 +26,7 @@ Rotation any_rotation(RandomStream& random) {
   return beam_frame(isotropic(random), 2 * random.uniform()) * turn(isotropic(random), {0, 0, 1});
 }
 
-constexpr double single = 1e-6, twice = 1e-14;   // rounding
+constexpr double single = 1e-6, twice = 1e-14;  // rounding
 
 }  // namespace
 
@@ -35,13 +35,14 @@ TEST(Frame, StandsOnItsZ) {
   for (int i = 0; i < 2000; ++i) {
     // Along the axes, too, where what is aside of z could vanish.
     Vec3 z = isotropic(random);
-    if (i < 6) z = {i / 2 == 0 ? 1 - 2.0 * (i % 2) : 0, i / 2 == 1 ? 1 - 2.0 * (i % 2) : 0,
-                    i / 2 == 2 ? 1 - 2.0 * (i % 2) : 0};
+    if (i < 6)
+      z = {i / 2 == 0 ? 1 - 2.0 * (i % 2) : 0, i / 2 == 1 ? 1 - 2.0 * (i % 2) : 0,
+           i / 2 == 2 ? 1 - 2.0 * (i % 2) : 0};
     const Frame f = frame_about({1, 2, 3}, z);
     EXPECT_EQ(f.z, z);
     EXPECT_EQ(f.origin, (Vec3{1, 2, 3}));
     expect_at_right_angles(f.x, f.y, f.z, twice);
-    expect_near(cross(f.x, f.y), f.z, twice);   // right-handed
+    expect_near(cross(f.x, f.y), f.z, twice);  // right-handed
   }
 }
 

@@ -34,7 +34,7 @@ class Inside final : public Observer {
   explicit Inside(std::function<int(const Vec3&)> material) : material_(std::move(material)) {}
   void segment(const Vec3& a, const Vec3& b, double, double, int material) override {
     const Vec3 middle = (a + b) * 0.5;
-    if (length(b - a) < 0.02) return;   // too near a surface to tell
+    if (length(b - a) < 0.02) return;  // too near a surface to tell
     ++segments;
     wrong += material_(middle) != material ? 1 : 0;
   }
@@ -45,8 +45,8 @@ class Inside final : public Observer {
 };
 
 Balance observe(const Scene& scene, Observer& observer, int electrons) {
-  return simulate_unit(scene, test::seeded(1), {0, 0, scene.scan().width, scene.scan().height, 0, electrons},
-                       &observer)
+  return simulate_unit(scene, test::seeded(1),
+                       {0, 0, scene.scan().width, scene.scan().height, 0, electrons}, &observer)
       .balance;
 }
 
@@ -97,7 +97,7 @@ TEST(Scene, KeepsElectronsWhereTheirMaterialIs) {
   Inside observer([&](const Vec3& p) {
     const double r = length(p - Vec3{0, 0, 34});
     if (r < ball * 0.995) return 1;
-    if (r < ball + 1e-9) return -2;   // between the facets and the sphere: either
+    if (r < ball + 1e-9) return -2;  // between the facets and the sphere: either
     if (std::fabs(p.x) < 20 && std::fabs(p.y) < 20 && p.z > 0 && p.z < 40) return 0;
     return p.z < 0 ? 1 : -1;
   });
@@ -128,8 +128,10 @@ TEST(Scene, TreatsFacesThatCoincideAsOneInterface) {
   parts.bodies.push_back({"right", make_box({0, -30, 5e-4}, {30, 30, 20}), 0});
   const auto a = test::yields(test::simulate(one, {}, square_scan(90, 12), 400));
   const auto b = test::yields(test::simulate(parts, {}, square_scan(90, 12), 400, {}, 2));
-  test::expect_mean(a.se.mean - b.se.mean, std::hypot(a.se.standard_error, b.se.standard_error), 0, 2);
-  test::expect_mean(a.bse.mean - b.bse.mean, std::hypot(a.bse.standard_error, b.bse.standard_error), 0, 2);
+  test::expect_mean(a.se.mean - b.se.mean, std::hypot(a.se.standard_error, b.se.standard_error), 0,
+                    2);
+  test::expect_mean(a.bse.mean - b.bse.mean, std::hypot(a.bse.standard_error, b.bse.standard_error),
+                    0, 2);
 }
 
 TEST(Scene, LetsTheLaterBodyWinWhereTwoOverlap) {
@@ -149,7 +151,8 @@ TEST(Scene, SeesHollowsInBodies) {
   TriangleMesh shell = make_box({-50, -50, -50}, {50, 50, 50});
   const TriangleMesh hole = make_box({-48, -48, -48}, {48, 48, 48});
   const auto base = static_cast<std::uint32_t>(shell.vertices_nm.size());
-  shell.vertices_nm.insert(shell.vertices_nm.end(), hole.vertices_nm.begin(), hole.vertices_nm.end());
+  shell.vertices_nm.insert(shell.vertices_nm.end(), hole.vertices_nm.begin(),
+                           hole.vertices_nm.end());
   for (const Triangle& t : hole.triangles)
     shell.triangles.push_back({base + t[0], base + t[2], base + t[1]});
   s.bodies.push_back({"shell", shell, 1});
@@ -164,9 +167,11 @@ TEST(Scene, SeesHollowsInBodies) {
 TEST(Scene, TurnsABodyWhoseNormalsPointInward) {
   TriangleMesh hollow = make_box({-20, -20, -20}, {20, 20, 20});
   const TriangleMesh hole = make_box({-10, -10, -10}, {10, 10, 10});
-  for (const Triangle& t : hole.triangles) hollow.triangles.push_back({8 + t[0], 8 + t[2], 8 + t[1]});
+  for (const Triangle& t : hole.triangles)
+    hollow.triangles.push_back({8 + t[0], 8 + t[2], 8 + t[1]});
   ASSERT_EQ(hollow.vertices_nm.size(), 8u);
-  hollow.vertices_nm.insert(hollow.vertices_nm.end(), hole.vertices_nm.begin(), hole.vertices_nm.end());
+  hollow.vertices_nm.insert(hollow.vertices_nm.end(), hole.vertices_nm.begin(),
+                            hole.vertices_nm.end());
   for (Triangle& t : hollow.triangles) std::swap(t[1], t[2]);
   Specimen s = nested();
   s.bodies.push_back({"hollow", hollow, 1});
@@ -188,10 +193,11 @@ TEST(Scene, LeavesOutWhatNoElectronReachesAndChangesNothing) {
   s.bodies.push_back({"block", make_box({-200, -200, -600}, {200, 200, 0}, 4), 0});
   s.bodies.push_back({"buried", make_box({-50, -50, -400}, {50, 50, -300}, 4), 1});
   const Scan scan = square_scan(40, 4);
-  const Scene all(make_surfaces(s, validate(s), {}, scan, {}, {.leave_out_unreachable = false}), s.materials, {}, scan);
+  const Scene all(make_surfaces(s, validate(s), {}, scan, {}, {.leave_out_unreachable = false}),
+                  s.materials, {}, scan);
   const Scene some(s, {}, scan);
   EXPECT_EQ(all.summary().triangles_left_out, 0u);
-  EXPECT_GE(some.summary().triangles_left_out, 12u);   // the merged box
+  EXPECT_GE(some.summary().triangles_left_out, 12u);  // the merged box
   EXPECT_EQ(some.summary().triangles + some.summary().triangles_left_out, all.summary().triangles);
   const auto nowhere = [](const Vec3&) { return 0; };
   // Watched, so that no electron is given up early: which ones are depends on the bounds.

@@ -26,7 +26,9 @@ Specimen mesa() {
   return s;
 }
 
-SceneSurfaces surfaces_of(const Specimen& s, const Scan& scan) { return make_surfaces(s, validate(s), {}, scan, {}); }
+SceneSurfaces surfaces_of(const Specimen& s, const Scan& scan) {
+  return make_surfaces(s, validate(s), {}, scan, {});
+}
 
 bool accept_all(void*, std::uint32_t, double, double) { return true; }
 
@@ -41,13 +43,15 @@ TEST(SceneSurfaces, MergedPlanesAreHitWhereTheirTrianglesWere) {
   RandomStream random(1, 0, 0);
   int hits = 0;
   for (int i = 0; i < 20000; ++i) {
-    const Vec3 start{140 * random.uniform() - 70, 140 * random.uniform() - 70, 61 + 20 * random.uniform()};
+    const Vec3 start{140 * random.uniform() - 70, 140 * random.uniform() - 70,
+                     61 + 20 * random.uniform()};
     Vec3 down = test::isotropic(random);
     down.z = -std::fabs(down.z);
     Vec3 hit;
     EmbreeScene::Hit expected;
     const bool met = before.nearest(start, down, 1e4, accept_all, nullptr, expected);
-    if (!met || std::max(std::fabs(expected.position.x), std::fabs(expected.position.y)) > 74) continue;
+    if (!met || std::max(std::fabs(expected.position.x), std::fabs(expected.position.y)) > 74)
+      continue;
     ++hits;
     ASSERT_TRUE(after.first_surface(start, down, hit));
     EXPECT_LT(length(hit - expected.position), 1e-9);
@@ -69,8 +73,10 @@ TEST(SceneSurfaces, GiveTheSceneThatTheirSpecimenGives) {
   SimulationOptions options;
   options.budget = ElectronsPerPixel{20};
   options.method = Method::direct;
-  const Image a = make_image(simulate(one, options), scan), b = make_image(simulate(other, options), scan);
-  for (std::size_t c = 0; c < a.channels.size(); ++c) EXPECT_EQ(a.channels[c].values, b.channels[c].values);
+  const Image a = make_image(simulate(one, options), scan),
+              b = make_image(simulate(other, options), scan);
+  for (std::size_t c = 0; c < a.channels.size(); ++c)
+    EXPECT_EQ(a.channels[c].values, b.channels[c].values);
 }
 
 TEST(SceneSurfaces, ABareSubstrateHasNoTriangles) {
@@ -85,7 +91,9 @@ TEST(SceneSurfaces, AreInterrupted) {
   CancelToken cancel;
   cancel.cancel();
   const Specimen s = mesa();
-  EXPECT_THROW(make_surfaces(s, validate(s), {}, test::square_scan(100, 4), {}, {.watch = {{}, &cancel}}), Interrupted);
+  EXPECT_THROW(
+      make_surfaces(s, validate(s), {}, test::square_scan(100, 4), {}, {.watch = {{}, &cancel}}),
+      Interrupted);
 }
 
 }  // namespace

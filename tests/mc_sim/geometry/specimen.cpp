@@ -43,8 +43,10 @@ TEST(Specimen, ReachesNoFartherThanTheLargestLength) {
   const double most = largest_length_nm;
   EXPECT_EQ(complaint(with(make_box({-most, -most, -most}, {most, most, most}))), "");
   for (const double far : {1.001 * most, 1e19, 1e300}) {
-    EXPECT_THAT(complaint(with(make_box({0, 0, 0}, {1, far, 1}))), AllOf(HasSubstr("part.stl: it reaches"), HasSubstr("specimen.unit")));
-    EXPECT_THAT(complaint(with(make_box({-far, 0, 0}, {1, 1, 1}))), HasSubstr("part.stl: it reaches"));
+    EXPECT_THAT(complaint(with(make_box({0, 0, 0}, {1, far, 1}))),
+                AllOf(HasSubstr("part.stl: it reaches"), HasSubstr("specimen.unit")));
+    EXPECT_THAT(complaint(with(make_box({-far, 0, 0}, {1, 1, 1}))),
+                HasSubstr("part.stl: it reaches"));
     Specimen substrate = with(make_box({0, 0, 0}, {1, 1, 1}));
     substrate.substrate = Substrate{0, -far};
     EXPECT_THAT(complaint(substrate), HasSubstr("specimen.substrate_z"));
@@ -87,7 +89,8 @@ TEST(Specimen, RefusesMixedOrientation) {
 
 TEST(Specimen, RefusesBodiesThinnerThanInterfaces) {
   EXPECT_EQ(complaint(with(make_box({0, 0, 0}, {10, 10, 0.011}))), "");
-  EXPECT_THAT(complaint(with(make_box({0, 0, 0}, {10, 10, 0.009}))), HasSubstr("only 0.009 nm thick"));
+  EXPECT_THAT(complaint(with(make_box({0, 0, 0}, {10, 10, 0.009}))),
+              HasSubstr("only 0.009 nm thick"));
 }
 
 TEST(Specimen, RefusesNaNEmptinessAndWrongNumbers) {

@@ -11,10 +11,11 @@ TEST(SurfaceView, ShowsHeightNormalAndMaterial) {
   Specimen specimen;
   specimen.materials = {io::find_material("Si", "test"), io::find_material("Au", "test")};
   specimen.bodies.push_back({"box", make_box({-20, -20, 0}, {20, 20, 30}), 1});
-  specimen.bodies.push_back({"wedge", {{{30, -20, 0}, {50, -20, 0}, {50, -20, 20}, {30, 20, 0},
-                                        {50, 20, 0}, {50, 20, 20}},
-                                       {{0, 1, 2}, {3, 5, 4}, {0, 2, 5}, {0, 5, 3}, {0, 3, 4},
-                                        {0, 4, 1}, {1, 4, 5}, {1, 5, 2}}}, 0});
+  specimen.bodies.push_back(
+      {"wedge",
+       {{{30, -20, 0}, {50, -20, 0}, {50, -20, 20}, {30, 20, 0}, {50, 20, 0}, {50, 20, 20}},
+        {{0, 1, 2}, {3, 5, 4}, {0, 2, 5}, {0, 5, 3}, {0, 3, 4}, {0, 4, 1}, {1, 4, 5}, {1, 5, 2}}},
+       0});
   Scan scan = test::square_scan(110, 11);
   const Image v = surface_view(Scene(specimen, {}, scan), 2);
   const auto at = [&](const char* channel, int x, int y) {
@@ -37,7 +38,7 @@ TEST(SurfaceView, FollowsATiltedBeam) {
   Specimen specimen = test::flat("Si");
   specimen.bodies.push_back({"box", test::pillar(40, 60), 0});
   Beam beam;
-  beam.tilt_deg = 45;   // towards +x: the beam meets the face at x = -20
+  beam.tilt_deg = 45;  // towards +x: the beam meets the face at x = -20
   Scan scan = test::square_scan(100, 50);
   scan.center_z_nm = 30;
   const Image v = surface_view(Scene(specimen, beam, scan));

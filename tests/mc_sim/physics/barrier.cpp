@@ -25,8 +25,10 @@ TEST(Barrier, ClassicalTransmissionIsAllOrNothing) {
 TEST(Barrier, KeepsTangentialMomentumAndEnergy) {
   RandomStream random(1, 0, 0);
   for (int i = 0; i < 2000; ++i) {
-    const Vec3 normal = normalized({random.uniform() - 0.5, random.uniform() - 0.5, random.uniform() - 0.5});
-    const Vec3 before = normalized({random.uniform() - 0.5, random.uniform() - 0.5, random.uniform() - 0.5});
+    const Vec3 normal =
+        normalized({random.uniform() - 0.5, random.uniform() - 0.5, random.uniform() - 0.5});
+    const Vec3 before =
+        normalized({random.uniform() - 0.5, random.uniform() - 0.5, random.uniform() - 0.5});
     const double energy = 1 + 20 * random.uniform(), step = 8 * (random.uniform() - 0.5);
     Vec3 after = before;
     double left = energy;

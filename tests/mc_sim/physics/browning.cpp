@@ -21,12 +21,14 @@ TEST(Browning, SamplesItsMixture) {
       const double ratio = 300 * std::pow(e, 1 - z / 2000) / z + z * z * z / (3e5 * e);
       std::vector<double> edges;
       for (int i = 1; i < 12; ++i) edges.push_back(std::pow(i / 12.0, 3));
-      expect_sampled(*browning, energy, 100000, edges,
-                     [](const ScatterEvent& s) { return (1 - s.cos_theta) / 2; },
-                     [&](double mu) {
-                       const double rutherford = mu * (1 + a) / (mu + a);
-                       return (ratio * rutherford + mu) / (1 + ratio);
-                     }, 6);
+      expect_sampled(
+          *browning, energy, 100000, edges,
+          [](const ScatterEvent& s) { return (1 - s.cos_theta) / 2; },
+          [&](double mu) {
+            const double rutherford = mu * (1 + a) / (mu + a);
+            return (ratio * rutherford + mu) / (1 + ratio);
+          },
+          6);
     }
   }
 }

@@ -36,8 +36,8 @@ TEST(Compound, HasItsValenceElectronsPerFormulaUnit) {
 TEST(Compound, HasThePlasmonOfItsElectronDensity) {
   for (const char* name : {"SiO2", "TiO2", "PMMA"}) {
     const Material& m = material(name);
-    const double free = 28.816 * std::sqrt(m.valence_electrons * m.density_g_cm3 /
-                                           m.formula_weight_g_mol);
+    const double free =
+        28.816 * std::sqrt(m.valence_electrons * m.density_g_cm3 / m.formula_weight_g_mol);
     EXPECT_NEAR(m.plasmon_ev, free, 0.01) << name;
   }
 }
@@ -56,8 +56,8 @@ TEST(Compound, LosesEnergyAsTheSumOfItsElements) {
       pure.constituents[0].weight_fraction = 1;
       sum += c.weight_fraction * make_joy_luo(pure, plain)->stopping_power_ev_per_nm(energy);
       z_a += c.weight_fraction * c.atomic_number / c.atomic_weight;
-      ln_j += c.weight_fraction * c.atomic_number / c.atomic_weight *
-              std::log(c.mean_ionization_ev);
+      ln_j +=
+          c.weight_fraction * c.atomic_number / c.atomic_weight * std::log(c.mean_ionization_ev);
     }
     const double power = compound->stopping_power_ev_per_nm(energy);
     EXPECT_NEAR(power, sum, 1e-12 * sum);
@@ -81,7 +81,7 @@ TEST(Compound, IsScatteredByItsElementsByTheirShare) {
   double total = 0;
   for (const Constituent& c : m.constituents) {
     const auto mott = make_mott(m, c);
-    double rate = 0;   // of the energy bin, as the medium takes it
+    double rate = 0;  // of the energy bin, as the medium takes it
     const double low = EnergyBins::lower_ev(EnergyBins::bin(energy));
     const double high = EnergyBins::lower_ev(EnergyBins::bin(energy) + 1);
     for (int i = 0; i < 8; ++i)

@@ -24,14 +24,16 @@ TEST(DielectricData, IsThereForEveryMaterialThatComesWithSemsurf) {
     const SinglePole losses(data->elf, data->band);
     double before = 0;
     for (double energy_ev = 300; energy_ev < 3e4; energy_ev *= 2) {
-      const double path = 1 / losses.inverse_mean_free_path_per_nm(energy_ev + data->band.filled_ev);
+      const double path =
+          1 / losses.inverse_mean_free_path_per_nm(energy_ev + data->band.filled_ev);
       EXPECT_GT(path, before) << m.name << ", " << energy_ev;
       before = path;
     }
   }
 }
 
-// The f-sum counts all electrons of an atom; published sums of these files (see data/README.md) are 0.81 to 1.07.
+// The f-sum counts all electrons of an atom; published sums of these files (see data/README.md) are
+// 0.81 to 1.07.
 TEST(DielectricData, SumsCountTheElectrons) {
   io::MaterialLibrary library;
   for (const Material& m : library.all()) {
@@ -39,7 +41,9 @@ TEST(DielectricData, SumsCountTheElectrons) {
     for (const Constituent& c : m.constituents) z += c.atomic_number * atoms_per_formula_unit(m, c);
     const auto data = m.dielectric;
     EXPECT_NEAR(data->elf.electron_sum(formula_units_per_nm3(m)) / z, 0.95, 0.16) << m.name;
-    EXPECT_NEAR(data->elf.above(data->band.gap_ev).screening_sum(), data->expected_screening_sum, 0.13) << m.name;
+    EXPECT_NEAR(data->elf.above(data->band.gap_ev).screening_sum(), data->expected_screening_sum,
+                0.13)
+        << m.name;
   }
 }
 

@@ -24,9 +24,9 @@ TEST(ElectronRange, IsKanayaAndOkayamas) {
 TEST(ElectronRange, TakesMeansOverTheAtomsOfACompound) {
   const Material& oxide = io::find_material("SiO2", "test");
   // One silicon, two oxygen atoms: Z is 10, A is 20.03.
-  EXPECT_NEAR(kanaya_okayama_range_nm(oxide, 1000), 27.6 * 20.03 / (std::pow(10, 0.89) * oxide.density_g_cm3),
-              0.05);
-  Material halves = io::find_material("Si", "test");   // of the same element twice
+  EXPECT_NEAR(kanaya_okayama_range_nm(oxide, 1000),
+              27.6 * 20.03 / (std::pow(10, 0.89) * oxide.density_g_cm3), 0.05);
+  Material halves = io::find_material("Si", "test");  // of the same element twice
   halves.constituents.push_back(halves.constituents.front());
   for (Constituent& half : halves.constituents) half.weight_fraction = 0.5;
   EXPECT_NEAR(kanaya_okayama_range_nm(halves, 1000),

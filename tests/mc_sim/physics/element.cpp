@@ -31,8 +31,11 @@ TEST(Elements, AreInOrderWithRisingWeightsButForTheKnownPairs) {
 
 // Mendeleev's order: the groups of the periodic table, seen in a few columns.
 TEST(Elements, OfAGroupHaveTheSameValence) {
-  for (const auto& column : {std::set<int>{6, 14, 32, 50, 82}, {8, 16, 34, 52, 84},
-                             {29, 47, 79}, {24, 42, 74}, {11, 19, 37, 55, 87}}) {
+  for (const auto& column : {std::set<int>{6, 14, 32, 50, 82},
+                             {8, 16, 34, 52, 84},
+                             {29, 47, 79},
+                             {24, 42, 74},
+                             {11, 19, 37, 55, 87}}) {
     for (const int z : column)
       EXPECT_EQ(element(z).valence_electrons, element(*column.begin()).valence_electrons) << z;
   }

@@ -16,13 +16,15 @@ using testing::AllOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-// Of Drude's electron gas: w g wp^2 / ((w^2 - wp^2)^2 + w^2 g^2). Its sums are 1, and the gas's electrons.
+// Of Drude's electron gas: w g wp^2 / ((w^2 - wp^2)^2 + w^2 g^2). Its sums are 1, and the gas's
+// electrons.
 EnergyLossFunction drude(double plasmon_ev, double width_ev) {
   std::vector<double> energies, values;
   for (double w = 0.01; w < 2e4; w *= 1.02) {
     const double square = w * w - plasmon_ev * plasmon_ev;
     energies.push_back(w);
-    values.push_back(w * width_ev * plasmon_ev * plasmon_ev / (square * square + w * w * width_ev * width_ev));
+    values.push_back(w * width_ev * plasmon_ev * plasmon_ev /
+                     (square * square + w * w * width_ev * width_ev));
   }
   return {energies, values};
 }
@@ -52,7 +54,7 @@ TEST(EnergyLossFunction, InterpolatesLogarithmsAndGoesOnBeyondItsEnds) {
   EXPECT_DOUBLE_EQ(elf(1), 1);
   EXPECT_NEAR(elf(std::sqrt(10.0)), 0.1, 1e-12);
   EXPECT_NEAR(elf(50), 0.01 * std::pow(5, -3), 1e-12);
-  EXPECT_NEAR(elf(1000), 1e-8, 1e-14);   // as over the last decade
+  EXPECT_NEAR(elf(1000), 1e-8, 1e-14);  // as over the last decade
   EXPECT_NEAR(elf(0.1), 0.1, 1e-15);
   EXPECT_EQ(elf(0), 0);
   // A tail that rises or hardly falls would make sums infinite.
@@ -74,8 +76,10 @@ TEST(EnergyLossFunction, IsNothingBelowAGap) {
 }
 
 TEST(EnergyLossFunction, IsReadFromItsFile) {
-  const EnergyLossFunction elf =
-      parse_energy_loss_function("# outer shells line then energy_eV,ELF ; source: a book\r\n# 1.12\t5 100 -1\n1, 0.5\n2,0.25\n\n4,0\n", "x.csv");
+  const EnergyLossFunction elf = parse_energy_loss_function(
+      "# outer shells line then energy_eV,ELF ; source: a book\r\n# 1.12\t5 100 -1\n1, "
+      "0.5\n2,0.25\n\n4,0\n",
+      "x.csv");
   EXPECT_THAT(elf.shells_ev(), ElementsAre(1.12, 5, 100));
   EXPECT_EQ(elf.source(), "a book");
   EXPECT_EQ(elf.highest_ev(), 4);
@@ -84,18 +88,24 @@ TEST(EnergyLossFunction, IsReadFromItsFile) {
 
 TEST(EnergyLossFunction, RefusesFilesWithTheLineThatIsWrong) {
   const std::string head = "# source: a\n# 5 -1\n";
-  const auto said = [&](const std::string& rows) { return complaint([&] { parse_energy_loss_function(head + rows, "mine.csv"); }); };
-  EXPECT_THAT(said("1,0.5\n2;0.25\n"), AllOf(HasSubstr("mine.csv"), HasSubstr("line 4"), HasSubstr("no comma")));
+  const auto said = [&](const std::string& rows) {
+    return complaint([&] { parse_energy_loss_function(head + rows, "mine.csv"); });
+  };
+  EXPECT_THAT(said("1,0.5\n2;0.25\n"),
+              AllOf(HasSubstr("mine.csv"), HasSubstr("line 4"), HasSubstr("no comma")));
   EXPECT_THAT(said("1,0.5\n2,x\n"), AllOf(HasSubstr("line 4"), HasSubstr("'x' is not a number")));
   EXPECT_THAT(said("1,0.5\n1,0.5\n2,1\n"), AllOf(HasSubstr("line 4"), HasSubstr("not above")));
   EXPECT_THAT(said("1,0.5\n2,-0.5\n3,1\n"), AllOf(HasSubstr("line 4"), HasSubstr("negative")));
   EXPECT_THAT(said("1,0.5\n2,nan\n3,1\n"), HasSubstr("line 4"));
   EXPECT_THAT(said("1,0.5\n2,0.5 eV\n3,1\n"), HasSubstr("line 4"));
   EXPECT_THAT(said("1,0.5\n"), HasSubstr("fewer than three"));
-  EXPECT_THAT(complaint([] { parse_energy_loss_function("# s\n# 5 x\n1,1\n2,1\n3,1\n", "a"); }), HasSubstr("line 2"));
+  EXPECT_THAT(complaint([] { parse_energy_loss_function("# s\n# 5 x\n1,1\n2,1\n3,1\n", "a"); }),
+              HasSubstr("line 2"));
   EXPECT_THAT(complaint([] { EnergyLossFunction({1, 2}, {1, 1}); }), HasSubstr("fewer than three"));
   EXPECT_THAT(complaint([] { EnergyLossFunction({1, 3, 2}, {1, 1, 1}); }), HasSubstr("point 3"));
-  EXPECT_THAT(complaint([] { EnergyLossFunction({1, 2, 3}, {1, std::numeric_limits<double>::infinity(), 1}); }),
+  EXPECT_THAT(complaint([] {
+                EnergyLossFunction({1, 2, 3}, {1, std::numeric_limits<double>::infinity(), 1});
+              }),
               HasSubstr("point 2"));
 }
 

@@ -6,8 +6,8 @@ namespace surf::mc {
 
 TEST(JoyLuo, GivesTheReferenceStoppingPowers) {
   Physics physics;
-  physics.barrier = BarrierModel::off;   // as the reference counts energy
-  physics.secondaries = false;           // plain Joy-Luo down to 50 eV
+  physics.barrier = BarrierModel::off;  // as the reference counts energy
+  physics.secondaries = false;          // plain Joy-Luo down to 50 eV
   const int energies[] = {200, 500, 1000, 2000, 5000, 10000, 20000, 30000};
   for (const auto& row : test::read_reference("stopping_joyluo.csv")) {
     const std::string& name = row.at("element");
@@ -24,8 +24,8 @@ TEST(JoyLuo, GoesOnAsAPowerBelowTheJoin) {
   const Material& si = material("Si");
   const auto loss = make_joy_luo(si, {});
   const double join = si.loss_join_ev;
-  EXPECT_NEAR(loss->stopping_power_ev_per_nm(join - 1e-9), loss->stopping_power_ev_per_nm(join + 1e-9),
-              1e-6);
+  EXPECT_NEAR(loss->stopping_power_ev_per_nm(join - 1e-9),
+              loss->stopping_power_ev_per_nm(join + 1e-9), 1e-6);
   EXPECT_NEAR(loss->stopping_power_ev_per_nm(join / 2) / loss->stopping_power_ev_per_nm(join),
               std::pow(0.5, 2.5), 1e-9);
 }

@@ -24,14 +24,15 @@ MaterialDraft draft(const char* formula) {
   return d;
 }
 
-const auto taken_for_metal = Contains(HasSubstr("taken for a metal, as its band_gap_ev is not given"));
+const auto taken_for_metal =
+    Contains(HasSubstr("taken for a metal, as its band_gap_ev is not given"));
 
 TEST(MaterialDoubts, NameAnInsulatorThatIsTakenForAMetal) {
   for (const char* formula : {"Si3N4", "Al2O3", "MgF2", "NaCl", "ZnS", "GaAs", "C8H8", "C2H4"})
     EXPECT_THAT(doubts(complete(draft(formula))), taken_for_metal) << formula;
   for (const char* formula : {"Cu3Zn2", "CoSi2", "WC", "Ni9P", "C", "TaN"}) {
     MaterialDraft d = draft(formula);
-    if (d.name == "TaN") d.band_gap_ev = 0;   // it is one, and its user says so
+    if (d.name == "TaN") d.band_gap_ev = 0;  // it is one, and its user says so
     EXPECT_THAT(doubts(complete(d)), Not(taken_for_metal)) << formula;
   }
 }
@@ -39,7 +40,7 @@ TEST(MaterialDoubts, NameAnInsulatorThatIsTakenForAMetal) {
 TEST(MaterialDoubts, NeedNoGapWhereItFollows) {
   MaterialDraft d = draft("Si3N4");
   d.barrier_ev = 1;
-  EXPECT_THAT(doubts(complete(d)), taken_for_metal);   // the work function would be a metal's
+  EXPECT_THAT(doubts(complete(d)), taken_for_metal);  // the work function would be a metal's
   d.work_function_ev = 6.3;
   EXPECT_THAT(doubts(complete(d)), Not(taken_for_metal));
 }
@@ -47,9 +48,11 @@ TEST(MaterialDoubts, NeedNoGapWhereItFollows) {
 TEST(MaterialDoubts, NameTheEstimates) {
   MaterialDraft d = draft("Si3N4");
   d.band_gap_ev = 5.3;
-  EXPECT_THAT(doubts(complete(d)),
-              ElementsAre(HasSubstr("estimates: valence_electrons, plasmon_ev, work_function_ev, barrier_ev. 'semsurf "
-                                    "materials Si3N4'")));
+  EXPECT_THAT(
+      doubts(complete(d)),
+      ElementsAre(HasSubstr(
+          "estimates: valence_electrons, plasmon_ev, work_function_ev, barrier_ev. 'semsurf "
+          "materials Si3N4'")));
   d.valence_electrons = 32;
   d.plasmon_ev = 24;
   d.barrier_ev = 1;

@@ -49,7 +49,7 @@ TEST(MaterialDraft, OfAnInsulatorIsCompletedByTheStatedRules) {
   EXPECT_NEAR(formula_units_per_nm3(m), 602.214076 * 3.17 / 140.283, 1e-9);
   EXPECT_EQ(m.valence_electrons, 32);
   EXPECT_NEAR(m.plasmon_ev, 28.816 * std::sqrt(32 * 3.17 / 140.283), 1e-9);
-  EXPECT_DOUBLE_EQ(m.work_function_ev, 6.3);   // a wide gap: affinity 1 eV
+  EXPECT_DOUBLE_EQ(m.work_function_ev, 6.3);  // a wide gap: affinity 1 eV
   EXPECT_DOUBLE_EQ(m.barrier_ev, 1.0);
   EXPECT_EQ(m.loss_join_ev, estimated_loss_join_ev(1.0, 6.3));
   EXPECT_FALSE(m.loss_join_fitted);
@@ -126,8 +126,9 @@ TEST(MaterialDraft, TakesElementsByWeight) {
   EXPECT_NEAR(m.constituents[0].mean_ionization_ev, 9.76 * 29 + 58.8 * std::pow(29, -0.19), 1e-9);
   EXPECT_EQ(m.constituents[1].atomic_weight, 65.4);
   EXPECT_EQ(m.constituents[1].mean_ionization_ev, 330);
-  EXPECT_NEAR(atoms_per_formula_unit(m, m.constituents[0]) +
-                  atoms_per_formula_unit(m, m.constituents[1]), 1, 1e-12);
+  EXPECT_NEAR(
+      atoms_per_formula_unit(m, m.constituents[0]) + atoms_per_formula_unit(m, m.constituents[1]),
+      1, 1e-12);
   EXPECT_NEAR(m.valence_electrons, 11 + atoms_per_formula_unit(m, m.constituents[1]), 1e-12);
 }
 

@@ -82,7 +82,8 @@ TEST(Medium, LosesEnergyAsIntegrated) {
       EXPECT_NEAR(m.range_nm(e) - m.range_nm(s.energy_ev), s.length_nm, 1e-6 * (1 + s.length_nm));
       e = s.energy_ev;
     }
-    const double exact = integral([&](double x) { return 1 / (5 * std::pow(x / 100, exponent)); }, e, 800);
+    const double exact =
+        integral([&](double x) { return 1 / (5 * std::pow(x / 100, exponent)); }, e, 800);
     EXPECT_NEAR(path / exact, 1, 0.005) << exponent;
   }
 }
@@ -157,7 +158,9 @@ TEST(Medium, LosesContinuouslyOnlyIfNoMechanismDebits) {
     std::string describe() const override { return "debiting"; }
     double inverse_mean_free_path_per_nm(double) const override { return 1; }
     bool debits() const override { return true; }
-    void scatter(double, RandomStream&, ScatterEvent& event) const override { event.energy_loss_ev = 1; }
+    void scatter(double, RandomStream&, ScatterEvent& event) const override {
+      event.energy_loss_ev = 1;
+    }
   };
   EXPECT_TRUE(make(1, std::make_unique<Power>(5, 0)).loses_continuously());
   EXPECT_FALSE(make(1, nullptr).loses_continuously());

@@ -77,14 +77,15 @@ TEST(Mott, SamplesTheTablesAroundAnEnergy) {
     while (element.rows[i + 1].energy_ev <= middle) ++i;
     const MottRow &low = element.rows[i], &high = element.rows[i + 1];
     const double f = std::log(middle / low.energy_ev) / std::log(high.energy_ev / low.energy_ev);
-    expect_sampled(*mott, energy, 200000, {std::begin(edges), std::end(edges)},
-                   [](const ScatterEvent& e) { return (1 - e.cos_theta) / 2; },
-                   [&](double mu) { return (1 - f) * table_cdf(low, mu) + f * table_cdf(high, mu); },
-                   8);
+    expect_sampled(
+        *mott, energy, 200000, {std::begin(edges), std::end(edges)},
+        [](const ScatterEvent& e) { return (1 - e.cos_theta) / 2; },
+        [&](double mu) { return (1 - f) * table_cdf(low, mu) + f * table_cdf(high, mu); }, 8);
     std::vector<double> turns;
     for (int k = 1; k < 16; ++k) turns.push_back(k / 16.0);
-    expect_sampled(*mott, energy, 100000, turns, [](const ScatterEvent& e) { return e.turn; },
-                   [](double t) { return t; }, 8, 2);
+    expect_sampled(
+        *mott, energy, 100000, turns, [](const ScatterEvent& e) { return e.turn; },
+        [](double t) { return t; }, 8, 2);
   }
 }
 
@@ -94,24 +95,30 @@ TEST(Mott, RateIsDensityTimesCrossSection) {
   // 1.376e-16 cm^2 at 1 keV (NIST SRD 64) and 2.33 g/cm^3.
   EXPECT_NEAR(mott->inverse_mean_free_path_per_nm(1000), 1.376e-2 * 602.214 * 2.33 / 28.086, 5e-4);
   // Below the lowest table: isotropic, with the transport cross-section of that table's end.
-  EXPECT_NEAR(mott->inverse_mean_free_path_per_nm(49.999), 3.7249e-2 * 602.214 * 2.33 / 28.086, 5e-4);
+  EXPECT_NEAR(mott->inverse_mean_free_path_per_nm(49.999), 3.7249e-2 * 602.214 * 2.33 / 28.086,
+              5e-4);
   EXPECT_GT(mott->inverse_mean_free_path_per_nm(4), 0);
   EXPECT_LT(mott->inverse_mean_free_path_per_nm(4), mott->inverse_mean_free_path_per_nm(49));
   std::vector<double> edges;
   for (int i = 1; i < 10; ++i) edges.push_back(-1 + i / 5.0);
-  expect_sampled(*mott, 20, 50000, edges, [](const ScatterEvent& e) { return e.cos_theta; },
-                 [](double c) { return (1 + c) / 2; });
+  expect_sampled(
+      *mott, 20, 50000, edges, [](const ScatterEvent& e) { return e.cos_theta; },
+      [](double c) { return (1 + c) / 2; });
 }
 
-// In a solid forward scattering is cut off: the total path is longer, the transport path hardly differs.
+// In a solid forward scattering is cut off: the total path is longer, the transport path hardly
+// differs.
 TEST(Mott, HasTablesOfAtomsInASolid) {
   const Material& si = material("Si");
-  const auto free = make_mott(si, si.constituents[0]), solid = make_mott(si, si.constituents[0], MottAtoms::solid);
+  const auto free = make_mott(si, si.constituents[0]),
+             solid = make_mott(si, si.constituents[0], MottAtoms::solid);
   EXPECT_NEAR(1 / free->inverse_mean_free_path_per_nm(1000), 1.45, 0.02);
   EXPECT_NEAR(1 / solid->inverse_mean_free_path_per_nm(1000), 2.18, 0.05 * 2.18);
   const auto transport_nm = [&](MottAtoms atoms) {
     for (const MottRow& row : find_mott_element(14, atoms)->rows)
-      if (row.energy_ev == 1000) return 1 / (row.transport_cross_section_nm2 * number_density_per_nm3(si, si.constituents[0]));
+      if (row.energy_ev == 1000)
+        return 1 /
+               (row.transport_cross_section_nm2 * number_density_per_nm3(si, si.constituents[0]));
     return 0.0;
   };
   EXPECT_NEAR(transport_nm(MottAtoms::free), 15, 0.75);

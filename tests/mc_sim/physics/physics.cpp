@@ -36,7 +36,8 @@ TEST(Physics, RefusesUnknownWords) {
   }
 }
 
-// What is usual with a tier comes with it, wherever in the text it stands; what is said too goes before that.
+// What is usual with a tier comes with it, wherever in the text it stands; what is said too goes
+// before that.
 TEST(Physics, ATierBringsWhatIsUsualWithIt) {
   Physics p;
   parse_physics("atoms=free,inelastic=dielectric", p);
@@ -44,7 +45,8 @@ TEST(Physics, ATierBringsWhatIsUsualWithIt) {
   EXPECT_EQ(p.elastic, ElasticModel::mott_phonon);
   EXPECT_EQ(p.atoms, MottAtoms::free);
   EXPECT_EQ(format_physics(p),
-            "inelastic=dielectric,inelastic-model=full-penn,auger=off,elastic=mott-phonon,atoms=free,secondaries=on,barrier=quantum");
+            "inelastic=dielectric,inelastic-model=full-penn,auger=off,elastic=mott-phonon,atoms="
+            "free,secondaries=on,barrier=quantum");
   Physics again;
   parse_physics(format_physics(p), again);
   EXPECT_EQ(format_physics(again), format_physics(p));
@@ -61,7 +63,8 @@ TEST(Physics, RefusesToCountDielectricEnergiesFromTheVacuum) {
   EXPECT_THROW(validate(p), UsageError);
 }
 
-// The tiers count energies from different bands: in silicon from the conduction band, and from the valence band.
+// The tiers count energies from different bands: in silicon from the conduction band, and from the
+// valence band.
 TEST(Physics, CountsFromTheBandOfItsTier) {
   const Material& si = material("Si");
   Physics p;
@@ -93,7 +96,7 @@ TEST(Physics, RefusesACutoffThatLeavesNothingToTrack) {
     p.cutoff_ev = bad;
     EXPECT_THROW(validate(p, 1000), UsageError) << bad;
   }
-  for (const double bad : {-5.0, 0.4, double(INFINITY), double(NAN)}) {   // for a beam of any energy
+  for (const double bad : {-5.0, 0.4, double(INFINITY), double(NAN)}) {  // for a beam of any energy
     p.cutoff_ev = bad;
     EXPECT_THROW(make_medium(material("Si"), p), UsageError) << bad;
   }

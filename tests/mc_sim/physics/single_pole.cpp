@@ -14,7 +14,9 @@ namespace {
 
 constexpr double hartree_ev = 27.211386246;
 
-DielectricData data_of(const std::string& name) { return *io::find_material(name, "test").dielectric; }
+DielectricData data_of(const std::string& name) {
+  return *io::find_material(name, "test").dielectric;
+}
 
 // Tanuma, Powell and Penn (2011), full Penn algorithm; energies count from the Fermi level.
 TEST(SinglePole, HasThePublishedFreePaths) {
@@ -23,7 +25,8 @@ TEST(SinglePole, HasThePublishedFreePaths) {
     if (energy_ev < 99) continue;
     for (const char* name : {"Au", "Cu", "Si", "Ni", "Ge", "Ag", "W"}) {
       const DielectricData d = data_of(name);
-      const double path = 1 / SinglePole(d.elf, d.band).inverse_mean_free_path_per_nm(energy_ev + d.band.filled_ev);
+      const double path =
+          1 / SinglePole(d.elf, d.band).inverse_mean_free_path_per_nm(energy_ev + d.band.filled_ev);
       EXPECT_NEAR(path / std::stod(row.at(name)), 1, 0.08) << name << ", " << energy_ev << " eV";
     }
   }
@@ -33,12 +36,15 @@ TEST(SinglePole, HasThePublishedFreePaths) {
 TEST(SinglePole, LosesAsMuchAsTheLossFormulaAtHighEnergies) {
   for (const auto& row : test::read_reference("stopping_joyluo.csv")) {
     const std::string name = row.at("element");
-    if (name != "Al" && name != "Si" && name != "Cu" && name != "Ag" && name != "Au" && name != "Ni" && name != "Ge") continue;
+    if (name != "Al" && name != "Si" && name != "Cu" && name != "Ag" && name != "Au" &&
+        name != "Ni" && name != "Ge")
+      continue;
     const DielectricData d = data_of(name);
     const SinglePole losses(d.elf, d.band);
     for (const int energy_ev : {2000, 5000, 10000}) {
       const double formula = std::stod(row.at("S_" + std::to_string(energy_ev) + "eV_eV_per_nm"));
-      EXPECT_NEAR(losses.stopping_power_ev_per_nm(energy_ev + d.band.filled_ev) / formula, 1, 0.15) << name << ", " << energy_ev;
+      EXPECT_NEAR(losses.stopping_power_ev_per_nm(energy_ev + d.band.filled_ev) / formula, 1, 0.15)
+          << name << ", " << energy_ev;
     }
   }
 }
@@ -68,14 +74,18 @@ TEST(SinglePole, HandsOverNoMomentumThatIsNotThere) {
 TEST(SinglePole, LosesNothingWhereNoStateIsFree) {
   const DielectricData silicon = data_of("Si"), oxide = data_of("SiO2");
   const SinglePole in_silicon(silicon.elf, silicon.band), in_oxide(oxide.elf, oxide.band);
-  EXPECT_EQ(in_silicon.inverse_mean_free_path_per_nm(silicon.band.filled_ev + 2 * silicon.band.gap_ev - 0.01), 0);
+  EXPECT_EQ(in_silicon.inverse_mean_free_path_per_nm(silicon.band.filled_ev +
+                                                     2 * silicon.band.gap_ev - 0.01),
+            0);
   EXPECT_GT(in_silicon.inverse_mean_free_path_per_nm(30), 0);
-  EXPECT_EQ(in_oxide.inverse_mean_free_path_per_nm(oxide.band.filled_ev + 17.9), 0);   // a gap above the conduction band's bottom
+  EXPECT_EQ(in_oxide.inverse_mean_free_path_per_nm(oxide.band.filled_ev + 17.9),
+            0);  // a gap above the conduction band's bottom
   EXPECT_EQ(in_oxide.stopping_power_ev_per_nm(oxide.band.filled_ev + 17.9), 0);
   EXPECT_GT(in_oxide.inverse_mean_free_path_per_nm(oxide.band.filled_ev + 60), 0);
 }
 
-// Silicon, 20 eV above the bottom of the band: with the gap alone forbidden, not the filled band, it would be 3.8 nm.
+// Silicon, 20 eV above the bottom of the band: with the gap alone forbidden, not the filled band,
+// it would be 3.8 nm.
 TEST(SinglePole, KeepsLossesOutOfTheFilledBand) {
   const DielectricData d = data_of("Si");
   EXPECT_NEAR(1 / SinglePole(d.elf, d.band).inverse_mean_free_path_per_nm(20), 8.2, 0.8);

@@ -65,7 +65,8 @@ TEST(BackscatterYield, OfBrowningAgreesWithTheSameReference) {
     const double energy = 1000 * test::number(row, "E_keV");
     if (row.at("mott") != "0" || energy > 5000) continue;
     const char* name = row.at("Z") == "14" ? "Si" : "Au";
-    EXPECT_NEAR(test::flat_yields(name, energy, 0, 20000, p).bse.mean, test::number(row, "eta"), 0.015)
+    EXPECT_NEAR(test::flat_yields(name, energy, 0, 20000, p).bse.mean, test::number(row, "eta"),
+                0.015)
         << name << " at " << energy << " eV";
   }
 }
@@ -85,8 +86,8 @@ std::optional<double> interpolated(const std::map<double, double>& points, doubl
 
 // Every energy that was measured (neighbours within 3 % together) is judged by the spread of all
 // experiments whose curves pass it.
-// Most energies have a point of a single experiment, and experiments differ by up to a factor of two
-// (carbon, where a layer of contamination counts most).
+// Most energies have a point of a single experiment, and experiments differ by up to a factor of
+// two (carbon, where a layer of contamination counts most).
 class BackscatterYieldOf : public testing::TestWithParam<const char*> {};
 
 TEST_P(BackscatterYieldOf, TheFullModelIsWithinTheMeasurements) {
@@ -123,8 +124,7 @@ INSTANTIATE_TEST_SUITE_P(Elements, BackscatterYieldOf, testing::Values("C", "Al"
 
 TEST(SecondaryYield, OfSiliconIsWithinAFactorOfTwoOfTheMeasurements) {
   double last = 1e9;
-  for (const auto& [energy, values] :
-       measured("se_delta_joy2001.csv", "Si", "delta", 490, 10100)) {
+  for (const auto& [energy, values] : measured("se_delta_joy2001.csv", "Si", "delta", 490, 10100)) {
     const auto y = test::flat_yields("Si", energy, 0, 40000);
     const double mean = geometric_mean(values);
     EXPECT_GT(y.se.mean, mean / 2) << energy;
@@ -146,7 +146,7 @@ TEST(SecondaryYield, HitsTheMeasurementsItWasFittedTo) {
                                  name == "graphite" ? "C" : name.c_str(), "delta", 975, 1025);
     ASSERT_EQ(values.size(), 1u) << name;
     auto y = test::flat_yields(name.c_str(), 1000, 0, 40000);
-    if (name == "PMMA") {   // measured together
+    if (name == "PMMA") {  // measured together
       y.se.mean += y.bse.mean;
       y.se.standard_error += y.bse.standard_error;
     }

@@ -45,7 +45,7 @@ TEST(CompoundYield, BseLieBetweenThoseOfTheElementsAndNearHeinrichsRule) {
     for (const double energy : {3000.0, 10000.0}) {
       double low = 1, high = 0, by_weight = 0, worst = 0;
       for (const Constituent& c : compound.constituents) {
-        if (c.atomic_number == 1) continue;   // practically no BSE, and 8 % of the mass of PMMA
+        if (c.atomic_number == 1) continue;  // practically no BSE, and 8 % of the mass of PMMA
         const auto y = flat_yields(bare_element(c.atomic_number, compound), energy, 16000);
         low = std::min(low, y.bse.mean);
         high = std::max(high, y.bse.mean);
@@ -70,9 +70,10 @@ test::Yields film(double thickness_nm, double energy_ev, std::int64_t electrons)
   Specimen specimen;
   specimen.materials = {material("Si"), material("Au")};
   specimen.substrate = Substrate{};
-  const double half = 3000;   // beyond the range
+  const double half = 3000;  // beyond the range
   if (thickness_nm > 0)
-    specimen.bodies.push_back({"film", make_box({-half, -half, 0}, {half, half, thickness_nm}, 1), 1});
+    specimen.bodies.push_back(
+        {"film", make_box({-half, -half, 0}, {half, half, thickness_nm}, 1), 1});
   Beam beam;
   beam.energy_ev = energy_ev;
   return test::yields(test::simulate(specimen, beam, test::square_scan(10, 4), electrons / 16));

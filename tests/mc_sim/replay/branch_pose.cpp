@@ -12,7 +12,8 @@ namespace {
 std::uint64_t vertex(std::int16_t x, std::int16_t y, std::int16_t z) {
   return std::bit_cast<std::uint64_t>(PackedVertex{x, y, z, 77});
 }
-const std::uint64_t places[] = {vertex(0, 0, 0), vertex(100, -20, 7), vertex(-32000, 31000, 5), vertex(1, 2, -3)};
+const std::uint64_t places[] = {vertex(0, 0, 0), vertex(100, -20, 7), vertex(-32000, 31000, 5),
+                                vertex(1, 2, -3)};
 
 FramedPlane some_plane() {
   FramedPlane plane;
@@ -94,7 +95,8 @@ TEST(BranchPose, AChildBeginsAtItsVertex) {
   expect_near(child.point(places[0]), pose.point(places[1]));
   EXPECT_NEAR(child.height_over_plane(places[0]), pose.height_over_plane(places[1]), 2e-4);
   EXPECT_NEAR(child.height_over_frame(places[0]), pose.height_over_frame(places[1]), 2e-4);
-  expect_near(child.point(places[3]) - child.point(places[0]), pose.point(places[3]) - pose.point(places[0]));
+  expect_near(child.point(places[3]) - child.point(places[0]),
+              pose.point(places[3]) - pose.point(places[0]));
 }
 
 TEST(BranchPose, ANewDirectionKeepsThePlaceAndItsHeight) {
@@ -108,7 +110,8 @@ TEST(BranchPose, ANewDirectionKeepsThePlaceAndItsHeight) {
   expect_near(pose.point(places[1]), place);
   EXPECT_FLOAT_EQ(pose.height_over_plane(places[1]), height);
   const Float4 way = pose.point(places[3]) - place;
-  expect_near(way, home(coordinates(places[3]) - coordinates(places[1])) * power_of_two(pose.exponent));
+  expect_near(way,
+              home(coordinates(places[3]) - coordinates(places[1])) * power_of_two(pose.exponent));
   expect_heights(pose);
 }
 

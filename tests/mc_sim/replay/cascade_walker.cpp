@@ -33,7 +33,7 @@ struct Handler {
   bool passes_all = false;
   std::int64_t gone_at = -1;
   std::int64_t segments = 0, asked = 0;
-  std::vector<double> energies;   // at the beginning of segments
+  std::vector<double> energies;  // at the beginning of segments
   Balance balance;
   Ledger books{balance};
   ReplayMaterial only = material();
@@ -45,7 +45,9 @@ struct Handler {
     return passes_all;
   }
   unsigned passed(const Branch<int>&, const std::uint64_t*, int, const Near&) { return 0; }
-  unsigned eventful(const NodeView& node, const Branch<int>&, const Near&) { return (1u << node.node.count) - 1; }
+  unsigned eventful(const NodeView& node, const Branch<int>&, const Near&) {
+    return (1u << node.node.count) - 1;
+  }
   Moved meets(const WalkedSegment& s, Branch<int>&, const Near&) {
     energies.push_back(s.inside ? s.inside->energy_ev : only.energy_ev(s.view, s.number));
     return segments++ == gone_at ? Moved::gone : Moved::no;
@@ -85,7 +87,8 @@ TEST(CascadeWalker, ComesToEverySegmentAndCountsEverySecondary) {
     EXPECT_EQ(handler.segments, all.segments);
     EXPECT_EQ(handler.balance.generated, all.electrons - 1);
     EXPECT_NEAR(handler.balance.generated_energy.ev(),
-                all.total_ev - double(all.electrons - 1) * material().barrier_ev, 1e-3 * all.total_ev + 1e-6);
+                all.total_ev - double(all.electrons - 1) * material().barrier_ev,
+                1e-3 * all.total_ev + 1e-6);
   }
 }
 
@@ -108,7 +111,7 @@ TEST(CascadeWalker, TakesOffWhatAnElectronThatIsGoneDoesNotGenerate) {
     walk(gone, cascade);
     EXPECT_EQ(gone.segments, 1);
     EXPECT_EQ(gone.balance.generated, 0);
-    EXPECT_NEAR(gone.balance.generated_energy.ev(), 0, 2e-5 * beam_ev);   // nodes keep floats
+    EXPECT_NEAR(gone.balance.generated_energy.ev(), 0, 2e-5 * beam_ev);  // nodes keep floats
     // In the midst of it: more than none, fewer than all.
     Handler later;
     later.gone_at = whole.segments / 2;

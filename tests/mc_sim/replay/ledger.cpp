@@ -18,7 +18,7 @@ TEST(Ledger, EveryElectronIsCountedOnce) {
   Ledger ledger(b);
   ledger.begin(1000);
   ledger.add(node(7, 70));
-  ledger.take_off(node(2, 20));   // of nodes that an electron that is gone did not reach
+  ledger.take_off(node(2, 20));  // of nodes that an electron that is gone did not reach
   ledger.add(5.0);
   ledger.take_off(5.0);
   ledger.escape(12);

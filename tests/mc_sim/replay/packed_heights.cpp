@@ -15,13 +15,16 @@ namespace surf::mc {
 namespace {
 
 std::uint64_t random_word(RandomStream& random) {
-  const auto coordinate = [&] { return static_cast<std::int16_t>(std::lround((2 * random.uniform() - 1) * 32767)); };
+  const auto coordinate = [&] {
+    return static_cast<std::int16_t>(std::lround((2 * random.uniform() - 1) * 32767));
+  };
   const double radius = 65535 * random.uniform() * random.uniform() * random.uniform();
   return std::bit_cast<std::uint64_t>(
       PackedSphere{coordinate(), coordinate(), coordinate(), static_cast<std::uint16_t>(radius)});
 }
 
-// A plane and a branch of this unit, and the plane's heights as `BranchPose` and as PackedHeights have them.
+// A plane and a branch of this unit, and the plane's heights as `BranchPose` and as PackedHeights
+// have them.
 struct Case {
   BranchPose pose;
   Float4 over;
@@ -30,7 +33,8 @@ struct Case {
     pose.exponent = exponent;
     const Vec3 z = test::isotropic(random), n = test::isotropic(random);
     const Frame frame = frame_about({}, z);
-    pose.scaled = Rotation{float4(frame.x), float4(frame.y), float4(frame.z)} * power_of_two(exponent);
+    pose.scaled =
+        Rotation{float4(frame.x), float4(frame.y), float4(frame.z)} * power_of_two(exponent);
     const auto along = [&](const Float4& v) { return static_cast<float>(dot(n, vec3(v))); };
     over = Float4{along(pose.scaled.x), along(pose.scaled.y), along(pose.scaled.z),
                   static_cast<float>((2 * random.uniform() - 1) * apart)};
@@ -38,7 +42,8 @@ struct Case {
   }
   /// Moves the plane to within a few units of a point: rounding decides on which side that is.
   void move_near(std::uint64_t point, RandomStream& random) {
-    over[3] += static_cast<float>(6 * (2 * random.uniform() - 1) * unit()) - pose.height_over_plane(point);
+    over[3] +=
+        static_cast<float>(6 * (2 * random.uniform() - 1) * unit()) - pose.height_over_plane(point);
     pose.over_plane = over;
   }
   double unit() const { return power_of_two(pose.exponent); }
@@ -51,7 +56,8 @@ constexpr std::array far_in_units{100.0, 1e4, 5e4, 1e6, 1e9};
 template <std::size_t N>
 Case random_case(RandomStream& random, int round, std::array<std::uint64_t, N>& words) {
   const int exponent = -12 + round % 8;
-  Case c(random, exponent, far_in_units[static_cast<std::size_t>(round) % 5] * power_of_two(exponent));
+  Case c(random, exponent,
+         far_in_units[static_cast<std::size_t>(round) % 5] * power_of_two(exponent));
   for (std::uint64_t& w : words) w = random_word(random);
   if (round % 2) c.move_near(words[static_cast<std::size_t>(round) % N], random);
   return c;
@@ -73,7 +79,8 @@ TEST(PackedHeights, AskForACloserLookWhereverAPointMayBeAbove) {
         above += height > 0;
         asked += bits >> i & 1;
         EXPECT_TRUE(!(height > 0) || (bits >> i & 1)) << height;
-        EXPECT_TRUE(height > -9 * c.unit() || !(bits >> i & 1) || std::fabs(c.over[3]) > 5e4 * c.unit());
+        EXPECT_TRUE(height > -9 * c.unit() || !(bits >> i & 1) ||
+                    std::fabs(c.over[3]) > 5e4 * c.unit());
       }
     }
   }
@@ -118,7 +125,8 @@ TEST(PackedHeights, ClearSpheresAreFartherThanTheirRadii) {
         const double room = std::fabs(c.pose.height_over_plane(s)) - c.pose.radius(s);
         EXPECT_TRUE(!(bits >> i & 1) || room > 0.002);
         clear += bits >> i & 1;
-        missed += !(bits >> i & 1) && room > 0.002 + 9 * c.unit() && std::fabs(c.over[3]) < 5e4 * c.unit();
+        missed += !(bits >> i & 1) && room > 0.002 + 9 * c.unit() &&
+                  std::fabs(c.over[3]) < 5e4 * c.unit();
       }
     }
   }

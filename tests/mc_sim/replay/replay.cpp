@@ -104,7 +104,9 @@ void expect_same_for_any_threads(const Scene& scene) {
 
 }  // namespace
 
-TEST(Replay, GivesTheSameNumbersForAnyThreadsAndTiles) { expect_same_for_any_threads(Scene(mesa(), slow(), test::square_scan(60, 4))); }
+TEST(Replay, GivesTheSameNumbersForAnyThreadsAndTiles) {
+  expect_same_for_any_threads(Scene(mesa(), slow(), test::square_scan(60, 4)));
+}
 
 // Electrons that change the material are followed directly.
 TEST(Replay, GivesTheSameNumbersWithLossesInEvents) {
@@ -133,7 +135,8 @@ TEST(Replay, GeneratesAsManySecondariesAsTracksFollowedToTheirEnd) {
     for (int b = 0; b < 40; ++b)
       direct.add(static_cast<double>(
                      simulate_unit(scene, test::seeded(1), {x, 0, x + 1, 1, 50 * b, 50}, &nobody)
-                         .balance.generated) / 50);
+                         .balance.generated) /
+                 50);
     const test::Sample& generated = replay.pixels[static_cast<std::size_t>(x)].generated;
     scores.compare(direct.mean(), direct.standard_error(), generated.mean(),
                    generated.standard_error(), "generated at pixel " + std::to_string(x));
@@ -171,8 +174,9 @@ TEST(Replay, HandsOverWhereAMaterialHasNoLibrary) {
 TEST(Replay, ReportsTheCascadesThatThereAre) {
   class Generous final : public FreshLibraries {
    public:
-    std::shared_ptr<const CascadeLibrary> library(const CascadeSettings& settings, std::size_t asked,
-                                                  int threads, const ProgressCallback& progress,
+    std::shared_ptr<const CascadeLibrary> library(const CascadeSettings& settings,
+                                                  std::size_t asked, int threads,
+                                                  const ProgressCallback& progress,
                                                   const CancelToken* cancel) override {
       return FreshLibraries::library(settings, asked + CascadeLibrary::page_cascades, threads,
                                      progress, cancel);
@@ -189,14 +193,15 @@ TEST(LibrarySize, KeepsTheLibraryToAQuarterOfTheVariance) {
   SimulationOptions options;
   EXPECT_GE(library_size(options, 1'000'000), 4'000'000u);
   options.budget = Accuracy{0.01};
-  const auto share = [&](const CascadeYield& y) {   // of the variance asked for
+  const auto share = [&](const CascadeYield& y) {  // of the variance asked for
     const double error = std::max(0.01 * y.mean, floor_of(options.budget));
-    return y.variance / static_cast<double>(library_size(options, 1, std::array{y})) / (error * error);
+    return y.variance / static_cast<double>(library_size(options, 1, std::array{y})) /
+           (error * error);
   };
   EXPECT_EQ(library_size(options, 1), library_size(options, 1, std::array{CascadeYield{0, 0}}));
   for (const CascadeYield& y : {CascadeYield{1.1, 3}, {0.2, 0.16}, {0.01, 0.01}, {5, 100}})
     EXPECT_LE(share(y), 0.25) << y.mean;
-  EXPECT_GT(share({5, 100}), 0.23);   // and it is no larger than that takes
+  EXPECT_GT(share({5, 100}), 0.23);  // and it is no larger than that takes
   options.budget = Accuracy{0.01, 0};
   EXPECT_GT(library_size(options, 1, std::array{CascadeYield{0, 0}}), 0u);
 }
@@ -207,7 +212,7 @@ TEST(LibrarySize, GrowsByWhatTheCascadesAreMeasuredToScatterAndFitsIntoMemory) {
   options.threads = 1;
   const Scene scene(mesa(), slow(), test::square_scan(40, 2));
   const auto grown = simulate(scene, options);
-  ASSERT_EQ(grown.cascade_yields.size(), 2u);   // one material, SE and BSE
+  ASSERT_EQ(grown.cascade_yields.size(), 2u);  // one material, SE and BSE
   EXPECT_GT(grown.library_cascades, library_size(options, 1));
   EXPECT_EQ(grown.library_cascades, library_size(options, 1, grown.cascade_yields));
   options.library_memory = 0;
@@ -225,7 +230,8 @@ TEST(Replay, RefusesWhatItCannotDo) {
   accurate.budget = Accuracy{0.1};
   SimulationOptions wrong = accurate;
   wrong.method = Method::direct;
-  EXPECT_THAT(refusal(wrong, {}, [](int) { return nullptr; }), HasSubstr("more primaries in some pixels"));
+  EXPECT_THAT(refusal(wrong, {}, [](int) { return nullptr; }),
+              HasSubstr("more primaries in some pixels"));
   wrong = accurate;
   wrong.budget = TimeLimit{10};
   EXPECT_THAT(refusal(wrong), HasSubstr("no clock"));

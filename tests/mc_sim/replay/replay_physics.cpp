@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Replay gives what direct simulation gives: in every detector, in mean, mean square and spectra, over
-// independently drawn libraries.
+// Replay gives what direct simulation gives: in every detector, in mean, mean square and spectra,
+// over independently drawn libraries.
 #include <cmath>
 
 #include "mesh_test.h"
@@ -55,7 +55,8 @@ void expect_same(const Setup& setup, int primaries, int libraries = 4) {
   }
   test::expect_balanced(direct.balance);
   test::expect_balanced(replay.balance);
-  // Cascades of electrons that lose in events cannot be joined: those that enter another material go on directly.
+  // Cascades of electrons that lose in events cannot be joined: those that enter another material
+  // go on directly.
   const bool joins = !is_dielectric(setup.physics) || setup.specimen.materials.size() == 1;
   EXPECT_EQ(replay.balance.handed_over == 0, joins);
   test::expect_same_sample(direct, replay, options.detectors);
@@ -122,7 +123,8 @@ TEST(ReplaySameness, OnAMesa) {
 
 TEST(ReplaySameness, InATrench) {
   expect_same({field(make_trench({240, 240, 8}, 80, 40, 8), Edge::mirror), beam_of(1000),
-               row_of_pixels(0, 13, 4)}, 3200, 2);
+               row_of_pixels(0, 13, 4)},
+              3200, 2);
 }
 
 TEST(ReplaySameness, OnASphereOnASubstrate) {
@@ -145,13 +147,15 @@ TEST(ReplaySameness, InAThinMembrane) {
 }
 
 TEST(ReplaySameness, OfAGoldSphereOnSilicon) {
-  expect_same({with_body(make_sphere({0, 0, 15}, 15, 3), true), beam_of(1500),
-               row_of_pixels(0, 8, 3)}, 2000, 1);
+  expect_same(
+      {with_body(make_sphere({0, 0, 15}, 15, 3), true), beam_of(1500), row_of_pixels(0, 8, 3)},
+      2000, 1);
 }
 
 TEST(ReplaySameness, OfAGoldFilmOnSilicon) {
   expect_same({with_body(make_box({-3000, -3000, 0}, {3000, 3000, 4}), true), beam_of(1000),
-               row_of_pixels(0, 100, 1)}, 4000, 2);
+               row_of_pixels(0, 100, 1)},
+              4000, 2);
 }
 
 TEST(ReplaySameness, UnderATiltedBeam) {
@@ -172,8 +176,9 @@ TEST(ReplaySameness, UnderASpotAConeAndPerspective) {
 // Farther away than any electron gets through matter, but not through vacuum: electrons from the
 // floor come back in through a wall of the same body.
 TEST(ReplaySameness, BesideAFarWallOfTheSameBody) {
-  expect_same({field(make_trench({600, 600, 10}, 300, 60, 10)), beam_of(300),
-               row_of_pixels(0, 1, 1)}, 48000, 12);
+  expect_same(
+      {field(make_trench({600, 600, 10}, 300, 60, 10)), beam_of(300), row_of_pixels(0, 1, 1)},
+      48000, 12);
 }
 
 // Most primaries of a wide spot come down elsewhere than its middle.
@@ -185,16 +190,20 @@ TEST(ReplaySameness, UnderASpotWiderThanAnyRange) {
 
 TEST(ReplaySameness, OfLossesInEventsOnAPlane) {
   expect_same({test::flat("Si"), beam_of(1000), row_of_pixels(0, 1, 1), in_events()}, 8000);
-  expect_same({test::flat("Au"), beam_of(5000), row_of_pixels(0, 1, 1), in_events("auger=on")}, 1600, 1);
+  expect_same({test::flat("Au"), beam_of(5000), row_of_pixels(0, 1, 1), in_events("auger=on")},
+              1600, 1);
 }
 
 TEST(ReplaySameness, OfLossesInEventsOnAMesa) {
   expect_same({mesa(), beam_of(1000), row_of_pixels(0, 14, 4), in_events()}, 4000);
-  expect_same({mesa(), beam_of(1000, 40, 30), row_of_pixels(-48, 32, 4), in_events("inelastic-model=single-pole")}, 3200, 2);
+  expect_same({mesa(), beam_of(1000, 40, 30), row_of_pixels(-48, 32, 4),
+               in_events("inelastic-model=single-pole")},
+              3200, 2);
 }
 
 TEST(ReplaySameness, OfLossesInEventsInATrench) {
-  expect_same({field(make_trench({240, 240, 8}, 80, 40, 8), Edge::mirror), beam_of(1000), row_of_pixels(0, 13, 4), in_events()},
+  expect_same({field(make_trench({240, 240, 8}, 80, 40, 8), Edge::mirror), beam_of(1000),
+               row_of_pixels(0, 13, 4), in_events()},
               3200, 2);
 }
 
@@ -206,7 +215,8 @@ TEST(ReplaySameness, OfLossesInEventsUnderAnOverhang) {
 }
 
 TEST(ReplaySameness, OfLossesInEventsWithAGoldFilm) {
-  expect_same({with_body(make_box({-3000, -3000, 0}, {3000, 3000, 4}), true), beam_of(1000), row_of_pixels(0, 100, 1), in_events()},
+  expect_same({with_body(make_box({-3000, -3000, 0}, {3000, 3000, 4}), true), beam_of(1000),
+               row_of_pixels(0, 100, 1), in_events()},
               4000, 2);
 }
 

@@ -50,8 +50,9 @@ inline mc::Libraries make_libraries(const mc::Scene& scene, std::uint64_t seed, 
 class SmallLibraries final : public mc::LibrarySource {
  public:
   explicit SmallLibraries(std::size_t pages) : pages_(pages) {}
-  std::shared_ptr<const mc::CascadeLibrary> library(const mc::CascadeSettings& settings, std::size_t,
-                                                    int threads, const ProgressCallback&,
+  std::shared_ptr<const mc::CascadeLibrary> library(const mc::CascadeSettings& settings,
+                                                    std::size_t, int threads,
+                                                    const ProgressCallback&,
                                                     const CancelToken*) override {
     auto& known = known_[{settings.material.name, settings.start_energy_ev, settings.seed}];
     if (!known) {
@@ -65,16 +66,17 @@ class SmallLibraries final : public mc::LibrarySource {
  private:
   std::size_t pages_;
   std::map<std::tuple<std::string, double, std::uint64_t>,
-           std::shared_ptr<const mc::CascadeLibrary>> known_;
+           std::shared_ptr<const mc::CascadeLibrary>>
+      known_;
 };
 
-/// What the primaries of one pixel gave, in blocks of equally many: the scatter between blocks tells
-/// how well any of their means is known.
+/// What the primaries of one pixel gave, in blocks of equally many: the scatter between blocks
+/// tells how well any of their means is known.
 struct PixelSample {
-  std::vector<mc::Counts> counts;                 ///< per detector
-  std::vector<Sample> squares;                    ///< per detector: a block's mean of squared counts
-  std::vector<mc::Spectra> spectra;               ///< per detector
-  Sample generated;                               ///< secondaries per primary
+  std::vector<mc::Counts> counts;    ///< per detector
+  std::vector<Sample> squares;       ///< per detector: a block's mean of squared counts
+  std::vector<mc::Spectra> spectra;  ///< per detector
+  Sample generated;                  ///< secondaries per primary
   std::int64_t primaries = 0;
   std::int64_t hits = 0;
 };
@@ -116,7 +118,7 @@ inline void expect_balanced(const mc::Balance& b) {
   EXPECT_EQ(b.incident + b.generated, b.se + b.bse + b.transmitted + b.absorbed + b.total_lost());
   const double in = b.incident_energy.ev() + b.generated_energy.ev();
   const double out = b.escaped_energy.ev() + b.deposited_energy.ev() + b.lost_energy.ev();
-  EXPECT_NEAR(out, in, 1e-9 * in + 1e-4 * static_cast<double>(b.incident));   // each is rounded
+  EXPECT_NEAR(out, in, 1e-9 * in + 1e-4 * static_cast<double>(b.incident));  // each is rounded
 }
 
 /// z-scores of differences, judged together: none beyond what chance allows one of them.
@@ -148,12 +150,12 @@ class ZScores {
 /// One detector's histogram and how its counts scatter.
 struct Spread {
   const mc::Histogram& histogram;
-  const mc::Counts& counts;        ///< of the detector
+  const mc::Counts& counts;  ///< of the detector
   std::int64_t primaries;
 };
 
-/// Compares two histograms in up to `most` wider bins. Electrons of one primary come together: counts
-/// in a bin scatter more than their root, in proportion no more than the detector's.
+/// Compares two histograms in up to `most` wider bins. Electrons of one primary come together:
+/// counts in a bin scatter more than their root, in proportion no more than the detector's.
 inline void compare_histograms(const Spread& a, const Spread& b, int most, const std::string& what,
                                ZScores& scores) {
   const std::vector<mc::Counts>& bins_a = a.histogram.bins;
@@ -170,7 +172,7 @@ inline void compare_histograms(const Spread& a, const Spread& b, int most, const
     in_b += bins_b[i].sum;
     if (in_a + in_b < enough) continue;
     const double n_a = static_cast<double>(a.primaries), n_b = static_cast<double>(b.primaries);
-    const double rate = static_cast<double>(in_a + in_b) / (n_a + n_b);   // as if they were the same
+    const double rate = static_cast<double>(in_a + in_b) / (n_a + n_b);  // as if they were the same
     scores.compare(static_cast<double>(in_a) / n_a, std::sqrt(clustering * rate / n_a),
                    static_cast<double>(in_b) / n_b, std::sqrt(clustering * rate / n_b),
                    what + " from " + std::to_string(a.histogram.edge(from)));
@@ -189,7 +191,7 @@ inline void expect_same_sample(const SceneSample& a, const SceneSample& b,
     const PixelSample& q = b.pixels[i];
     for (std::size_t d = 0; d < detectors.size(); ++d) {
       const std::string what = detectors[d].name + " at pixel " + std::to_string(i);
-      if (p.counts[d].sum + q.counts[d].sum < 50) continue;   // too few for the normal approximation
+      if (p.counts[d].sum + q.counts[d].sum < 50) continue;  // too few for the normal approximation
       const mc::Estimate mean_p = mc::estimate(p.primaries, p.counts[d]);
       const mc::Estimate mean_q = mc::estimate(q.primaries, q.counts[d]);
       scores.compare(mean_p.mean, mean_p.standard_error, mean_q.mean, mean_q.standard_error, what);

@@ -20,7 +20,9 @@ namespace {
 /// Beside a bump of a rough surface, with the patch there or without.
 class SurfaceQueries : public testing::TestWithParam<bool> {
  protected:
-  SurfaceQueries() : scene_(specimen(), {}, test::square_scan(40, 4)), geometry_(scene_.impl()), query_(geometry_) {
+  SurfaceQueries()
+      : scene_(specimen(), {}, test::square_scan(40, 4)), geometry_(scene_.impl()),
+        query_(geometry_) {
     SceneGeometry::Surface met;
     SceneGeometry::State state = 0;
     if (geometry_.crossing({1.3, -2.1, 100}, {0, 0, -1}, HUGE_VAL, state, met) != Crossing::surface)
@@ -43,7 +45,8 @@ class SurfaceQueries : public testing::TestWithParam<bool> {
     double least = HUGE_VAL;
     const MeshView& mesh = scene_.impl().triangles->mesh();
     for (const Triangle& t : mesh.triangles) {
-      const Vec3 v[3] = {mesh.vertices_nm[t[0]] - p, mesh.vertices_nm[t[1]] - p, mesh.vertices_nm[t[2]] - p};
+      const Vec3 v[3] = {mesh.vertices_nm[t[0]] - p, mesh.vertices_nm[t[1]] - p,
+                         mesh.vertices_nm[t[2]] - p};
       least = std::min(least, length(closest_point(v[0], v[1], v[2], {})));
     }
     return least;
@@ -58,7 +61,8 @@ class SurfaceQueries : public testing::TestWithParam<bool> {
     const Vec3 place = somewhere(random);
     SceneGeometry::Surface met;
     SceneGeometry::State state = 0;
-    EXPECT_EQ(geometry_.crossing({place.x, place.y, 100}, {0, 0, -1}, HUGE_VAL, state, met), Crossing::surface);
+    EXPECT_EQ(geometry_.crossing({place.x, place.y, 100}, {0, 0, -1}, HUGE_VAL, state, met),
+              Crossing::surface);
     return met.position - Vec3{0, 0, 0.01 + depth_nm * random.uniform()};
   }
 
@@ -79,7 +83,7 @@ TEST_P(SurfaceQueries, ASphereThatMissesIsFartherThanItsRadius) {
     pose.exponent = -8;
     pose.scaled = Rotation{} * power_of_two(pose.exponent);
     pose.note_change();
-    const auto radius = static_cast<std::uint64_t>(1 + random.uniform() * 800);   // of 2^-8 nm
+    const auto radius = static_cast<std::uint64_t>(1 + random.uniform() * 800);  // of 2^-8 nm
     Near near;
     if (!query_.misses(pose, inside_, radius << 48, near)) continue;
     ++missed;
@@ -94,10 +98,12 @@ TEST_P(SurfaceQueries, AClearWayMeetsNothing) {
   for (int i = 0; i < 1000; ++i) {
     const Vec3 from = below(random), direction = test::isotropic(random);
     const double whole = 3 * random.uniform();
-    const Float4 start = float4(query_.frame().in(from)), way = float4(query_.frame().direction_in(direction) * whole);
+    const Float4 start = float4(query_.frame().in(from)),
+                 way = float4(query_.frame().direction_in(direction) * whole);
     if (query_.is_clear(start, way)) {
       ++clear;
-      for (const double t : {0.0, 0.25, 0.5, 0.75, 1.0}) EXPECT_GT(distance(from + direction * (t * whole)), 0);
+      for (const double t : {0.0, 0.25, 0.5, 0.75, 1.0})
+        EXPECT_GT(distance(from + direction * (t * whole)), 0);
     }
     // The same first surface as without patch.
     SceneGeometry::State a = inside_, b = inside_;
@@ -114,7 +120,8 @@ TEST_P(SurfaceQueries, AClearWayMeetsNothing) {
   EXPECT_GT(met, 15);
 }
 
-// A node that lies anywhere near the surface: what is left out of it has to be clear of every triangle.
+// A node that lies anywhere near the surface: what is left out of it has to be clear of every
+// triangle.
 TEST_P(SurfaceQueries, WhatIsLeftOutOfANodeMeetsNothing) {
   RandomStream random(5, 1, GetParam());
   int out = 0, known = 0, spheres_out = 0;
@@ -122,18 +129,22 @@ TEST_P(SurfaceQueries, WhatIsLeftOutOfANodeMeetsNothing) {
     BranchPose pose;
     pose.exponent = -12;
     const Frame turned = frame_about({}, test::isotropic(random));
-    pose.scaled = Rotation{float4(turned.x), float4(turned.y), float4(turned.z)} * power_of_two(pose.exponent);
+    pose.scaled = Rotation{float4(turned.x), float4(turned.y), float4(turned.z)} *
+                  power_of_two(pose.exponent);
     pose.origin = float4(query_.frame().in(below(random, 0.5)));
     pose.note_change();
     // A walk of eight steps within the ball that stands for the node.
     const double size = 0.05 + 0.5 * random.uniform();
     std::array<std::uint64_t, 9> points;
     for (std::uint64_t& p : points) {
-      const Vec3 v = test::isotropic(random) * (size * std::cbrt(random.uniform()) / power_of_two(pose.exponent));
-      p = std::bit_cast<std::uint64_t>(PackedSphere{static_cast<std::int16_t>(v.x), static_cast<std::int16_t>(v.y),
-                                                    static_cast<std::int16_t>(v.z), static_cast<std::uint16_t>(200)});
+      const Vec3 v = test::isotropic(random) *
+                     (size * std::cbrt(random.uniform()) / power_of_two(pose.exponent));
+      p = std::bit_cast<std::uint64_t>(
+          PackedSphere{static_cast<std::int16_t>(v.x), static_cast<std::int16_t>(v.y),
+                       static_cast<std::int16_t>(v.z), static_cast<std::uint16_t>(200)});
     }
-    const auto ball = static_cast<std::uint64_t>(std::ceil(size / power_of_two(pose.exponent))) + 201;
+    const auto ball =
+        static_cast<std::uint64_t>(std::ceil(size / power_of_two(pose.exponent))) + 201;
     Near near;
     if (query_.misses(pose, inside_, ball << 48, near)) continue;
     const unsigned may = query_.may_meet(pose, points.data(), 8, near);
@@ -141,10 +152,12 @@ TEST_P(SurfaceQueries, WhatIsLeftOutOfANodeMeetsNothing) {
     for (std::size_t i = 0; i < 8; ++i) {
       if (may >> i & 1) continue;
       ++out;
-      const Vec3 from = query_.frame().out(vec3(pose.point(points[i]))), to = query_.frame().out(vec3(pose.point(points[i + 1])));
+      const Vec3 from = query_.frame().out(vec3(pose.point(points[i]))),
+                 to = query_.frame().out(vec3(pose.point(points[i + 1])));
       SceneGeometry::State state = inside_;
       SceneGeometry::Surface met;
-      EXPECT_EQ(geometry_.crossing(from, normalized(to - from), length(to - from), state, met), Crossing::none);
+      EXPECT_EQ(geometry_.crossing(from, normalized(to - from), length(to - from), state, met),
+                Crossing::none);
     }
     const unsigned clear = query_.clear_of(pose, points.data(), 8, near);
     for (std::size_t i = 0; i < 8; ++i) {
@@ -158,8 +171,9 @@ TEST_P(SurfaceQueries, WhatIsLeftOutOfANodeMeetsNothing) {
   EXPECT_EQ(spheres_out > 1000, GetParam());
 }
 
-INSTANTIATE_TEST_SUITE_P(Beside, SurfaceQueries, testing::Bool(),
-                         [](const auto& about) { return about.param ? "WithPatch" : "WithoutPatch"; });
+INSTANTIATE_TEST_SUITE_P(Beside, SurfaceQueries, testing::Bool(), [](const auto& about) {
+  return about.param ? "WithPatch" : "WithoutPatch";
+});
 
 }  // namespace
 }  // namespace surf::mc

@@ -9,8 +9,8 @@
 namespace surf::mc {
 namespace {
 
-// Four pixels: beside the specimen, a plane, a difference to it and replay alone; each of the latter
-// with 100 primaries of which 40 count one (or differ by one).
+// Four pixels: beside the specimen, a plane, a difference to it and replay alone; each of the
+// latter with 100 primaries of which 40 count one (or differ by one).
 SimulationResult result_of_every_kind() {
   SimulationResult r;
   r.detectors = {default_detectors()[0]};
@@ -50,21 +50,21 @@ TEST(ResultSummary, ErrorsOfLibrariesAddUp) {
   // where 100 of 10000 cascades are drawn, with that of the plane where there is one.
   const double difference = r.yield(0, 2, 0).standard_error;
   const double common[] = {0.01, std::hypot(0.01, 0.1 * difference), 0.1 * own_error};
-  const double variance = difference * difference - common[1] * common[1] +
-                          own_error * own_error - common[2] * common[2];
+  const double variance = difference * difference - common[1] * common[1] + own_error * own_error -
+                          common[2] * common[2];
   EXPECT_NEAR(e.standard_error,
               std::hypot(std::sqrt(variance), common[0] + common[1] + common[2]) / 3, 1e-12);
 }
 
 TEST(ResultSummary, FindsPixelsThatMissedTheAccuracy) {
   SimulationResult r = result_of_every_kind();
-  ResultSummary s = summarize(r);   // asked for: 0.1, 0.14, 0.04; only the last is not reached
+  ResultSummary s = summarize(r);  // asked for: 0.1, 0.14, 0.04; only the last is not reached
   EXPECT_EQ(s.missed, 1);
   EXPECT_NEAR(s.worst, own_error / 0.04, 1e-12);
   r.budget = Accuracy{0.2, 0.002};
   EXPECT_EQ(summarize(r).missed, 0);
   r.budget = Accuracy{0.01, 0.002};
-  EXPECT_EQ(summarize(r).missed, 2);   // the plane: 0.01 of 0.01
+  EXPECT_EQ(summarize(r).missed, 2);  // the plane: 0.01 of 0.01
 }
 
 TEST(ResultSummary, NobodySeesNothing) {

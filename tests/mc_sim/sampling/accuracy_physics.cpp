@@ -20,9 +20,10 @@ test::SmallLibraries& libraries() {
 }
 
 struct Spent {
-  test::Sample deviation;   ///< per seed: mean over pixels and detectors, in standard errors asked for
-  int inside = 0, estimates = 0;        ///< within 1.96 standard errors of the reference
-  int differences = 0, planes = 0;      ///< by model
+  test::Sample
+      deviation;  ///< per seed: mean over pixels and detectors, in standard errors asked for
+  int inside = 0, estimates = 0;    ///< within 1.96 standard errors of the reference
+  int differences = 0, planes = 0;  ///< by model
 };
 
 enum class How { with_control, without_control, direct };
@@ -78,7 +79,8 @@ Spent spend(const Scene& scene, How how, const std::vector<std::vector<Estimate>
   return spent;
 }
 
-void expect_well_spent(const Specimen& specimen, const Scan& scan, bool planes = false, const Physics& physics = {}) {
+void expect_well_spent(const Specimen& specimen, const Scan& scan, bool planes = false,
+                       const Physics& physics = {}) {
   Beam beam;
   beam.energy_ev = 400;
   const Scene scene(specimen, beam, scan, physics);
@@ -93,7 +95,9 @@ void expect_well_spent(const Specimen& specimen, const Scan& scan, bool planes =
     }
   known = std::sqrt(known) / terms;
   for (const How how : {How::with_control, How::without_control, How::direct}) {
-    SCOPED_TRACE(how == How::with_control ? "with control" : how == How::direct ? "direct" : "without control");
+    SCOPED_TRACE(how == How::with_control ? "with control"
+                 : how == How::direct     ? "direct"
+                                          : "without control");
     const bool control = how == How::with_control;
     const Spent s = spend(scene, how, truth);
     test::expect_mean(s.deviation.mean(), std::hypot(s.deviation.standard_error(), known), 0, 12);
@@ -115,7 +119,9 @@ Specimen field(const HeightField& f) {
 
 }  // namespace
 
-TEST(Accuracy, OnAPlane) { expect_well_spent(test::flat("Si"), test::row_of_pixels(0, 5, 1), true); }
+TEST(Accuracy, OnAPlane) {
+  expect_well_spent(test::flat("Si"), test::row_of_pixels(0, 5, 1), true);
+}
 
 TEST(Accuracy, BesideAWallsFoot) {
   // From its top over the wall to where nothing but rare electrons tell of it.
@@ -125,7 +131,8 @@ TEST(Accuracy, BesideAWallsFoot) {
 TEST(Accuracy, WithLossesInEvents) {
   Physics physics;
   parse_physics("inelastic=dielectric", physics);
-  expect_well_spent(field(make_mesa({240, 240, 8}, 60, 60, 8)), test::row_of_pixels(20, 14, 5), false, physics);
+  expect_well_spent(field(make_mesa({240, 240, 8}, 60, 60, 8)), test::row_of_pixels(20, 14, 5),
+                    false, physics);
 }
 
 TEST(Accuracy, BesideAnIsolatedEdge) {
@@ -157,11 +164,12 @@ TEST(Accuracy, IsReached) {
         above += e.standard_error > asked;
         EXPECT_LT(e.standard_error, 1.15 * asked);
       }
-    EXPECT_LE(above, 8);   // of 162
+    EXPECT_LE(above, 8);  // of 162
   }
 }
 
-// Threads and the tiles' order change nothing; where the beam meets nothing no electrons are wasted.
+// Threads and the tiles' order change nothing; where the beam meets nothing no electrons are
+// wasted.
 TEST(Accuracy, DirectIsTheSameForAnyThreads) {
   Specimen s = test::flat("Si");
   s.substrate.reset();
@@ -193,7 +201,7 @@ TEST(Accuracy, DirectEndsWithoutAFloor) {
   const Scene scene(test::flat("Si"), beam, test::row_of_pixels(0, 2, 1), physics);
   SimulationOptions options = spending(How::direct);
   options.budget = Accuracy{0.5, 0};
-  options.detectors.resize(1);   // SE: none leave
+  options.detectors.resize(1);  // SE: none leave
   options.detectors[0].max_energy_ev = 1e-6;
   const SimulationResult r = simulate(scene, options);
   EXPECT_LE(r.pixels(0, 0).primaries, 10000);
@@ -203,7 +211,8 @@ TEST(Accuracy, DirectEndsWithoutAFloor) {
 TEST(Accuracy, StopsAtItsFloor) {
   Beam beam;
   beam.energy_ev = 400;
-  const Scene scene(field(make_mesa({240, 240, 8}, 60, 60, 8)), beam, test::row_of_pixels(20, 14, 5));
+  const Scene scene(field(make_mesa({240, 240, 8}, 60, 60, 8)), beam,
+                    test::row_of_pixels(20, 14, 5));
   SimulationOptions options = spending(How::with_control);
   const auto primaries = [&](double floor) {
     options.budget = Accuracy{accuracy, floor};
@@ -226,7 +235,7 @@ TEST(ReplayNoise, CorrelatesPixelsNoMoreThanTheyShareCascades) {
   Beam beam;
   beam.energy_ev = 400;
   const Scene scene(test::flat("Si"), beam, scan);
-  constexpr int primaries = 1024;   // half the library
+  constexpr int primaries = 1024;  // half the library
   SimulationOptions options;
   options.method = Method::replay;
   options.budget = ElectronsPerPixel{primaries};
@@ -251,7 +260,7 @@ TEST(ReplayNoise, CorrelatesPixelsNoMoreThanTheyShareCascades) {
   const double bound = double(primaries) / double(CascadeLibrary::page_cascades);
   RecordProperty("correlation", std::to_string(correlation));
   EXPECT_LT(correlation, bound + test::z_limit(2) * error);
-  EXPECT_GT(correlation, 0.2 * bound);   // they do share
+  EXPECT_GT(correlation, 0.2 * bound);  // they do share
 }
 
 }  // namespace surf::mc

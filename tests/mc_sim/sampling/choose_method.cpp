@@ -74,7 +74,8 @@ TEST(ChooseMethod, WhatReplayCannotServeIsDirect) {
     SimulationOptions accurate;
     accurate.budget = Accuracy{0.1};
     if (c.limits.observed) EXPECT_THROW(choose_method(c.scene, accurate, {}, c.limits), UsageError);
-    else EXPECT_EQ(choose_method(c.scene, accurate, {}, c.limits).method, Method::direct) << c.reason;
+    else
+      EXPECT_EQ(choose_method(c.scene, accurate, {}, c.limits).method, Method::direct) << c.reason;
   }
 }
 

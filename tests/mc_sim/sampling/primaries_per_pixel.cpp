@@ -21,7 +21,8 @@ TEST(Dose, PrimariesOfPixelsArePoisson) {
     }
     std::vector<double> expected;
     for (std::size_t k = 0; k < cells; ++k)
-      expected.push_back(n * std::exp(double(k) * std::log(dose) - dose - std::lgamma(double(k) + 1)));
+      expected.push_back(n *
+                         std::exp(double(k) * std::log(dose) - dose - std::lgamma(double(k) + 1)));
     test::expect_distributed(counts, expected, 3);
   }
 }
@@ -47,7 +48,8 @@ TEST(Dose, TheImageHasAMicroscopesNoise) {
   const Image image = make_image(r, scan);
   Counts all;
   for (const Counts& c : r.counts[test::se].data()) all += c;
-  const double mean_square = static_cast<double>(all.squares) / static_cast<double>(r.balance.incident);
+  const double mean_square =
+      static_cast<double>(all.squares) / static_cast<double>(r.balance.incident);
   double squares = 0;
   test::Sample shot;
   const double truth = test::mean_yield(r, test::se).mean;

@@ -13,7 +13,8 @@ TEST(StratifiedPermutation, TakesEachCascadeOnceBeforeAnyTwice) {
     const StratifiedPermutation subset(cascades, 123456789, 987654321);
     for (const std::uint64_t round : {0, 1, 2}) {
       std::set<std::size_t> taken;
-      for (std::uint64_t i = round * cascades; i < (round + 1) * cascades; ++i) taken.insert(subset[i]);
+      for (std::uint64_t i = round * cascades; i < (round + 1) * cascades; ++i)
+        taken.insert(subset[i]);
       EXPECT_EQ(taken.size(), cascades);
       EXPECT_EQ(*taken.rbegin(), cascades - 1);
     }
@@ -27,9 +28,9 @@ TEST(StratifiedPermutation, GivesTheSamePrimariesBlockByBlock) {
   };
   for (const std::uint64_t cascades : {64u, 128u, 320u, 64u * 17u})
     for (const std::uint32_t a : {0u, 1u, 77u, 0xffffffffu})
-      for (const Range r : {Range{0, 0}, Range{0, 1}, Range{0, 31}, Range{0, 400}, Range{17, 18},
-                            Range{31, 33}, Range{100, 1000}, Range{cascades, 3 * cascades + 5},
-                            Range{1000001, 1003000}}) {
+      for (const Range r :
+           {Range{0, 0}, Range{0, 1}, Range{0, 31}, Range{0, 400}, Range{17, 18}, Range{31, 33},
+            Range{100, 1000}, Range{cascades, 3 * cascades + 5}, Range{1000001, 1003000}}) {
         const StratifiedPermutation subset(cascades, a, 3 * a + 5);
         std::set<std::uint64_t> served;
         for (std::uint64_t b = 0; b < cascades / StratifiedPermutation::block; ++b)
@@ -39,7 +40,8 @@ TEST(StratifiedPermutation, GivesTheSamePrimariesBlockByBlock) {
             EXPECT_EQ(cascade / StratifiedPermutation::block, b) << i;
             EXPECT_TRUE(i >= r.first && i < r.end) << i << " of " << r.first << " to " << r.end;
           });
-        EXPECT_EQ(served.size(), r.end - r.first) << r.first << " to " << r.end << " of " << cascades;
+        EXPECT_EQ(served.size(), r.end - r.first)
+            << r.first << " to " << r.end << " of " << cascades;
       }
 }
 
@@ -47,7 +49,8 @@ TEST(StratifiedPermutation, IsEachPixelsOwn) {
   const StratifiedPermutation one(64 * 100, 5, 7), other(64 * 100, 6, 7), third(64 * 100, 5, 8);
   EXPECT_NE(one[0], other[0]);
   int different = 0;
-  for (std::uint64_t i = 0; i < 6400; i += StratifiedPermutation::run) different += one[i] != third[i];
+  for (std::uint64_t i = 0; i < 6400; i += StratifiedPermutation::run)
+    different += one[i] != third[i];
   EXPECT_GT(different, 50);
 }
 

@@ -35,7 +35,8 @@ SimulationOptions options_of(Method method, std::int64_t electrons, double accur
 }
 
 // What it foretells beside what a simulation counts. Times are for bench/.
-void expect_foretold(const Scene& scene, const SimulationOptions& options, double seconds, double within) {
+void expect_foretold(const Scene& scene, const SimulationOptions& options, double seconds,
+                     double within) {
   const Pilot pilot = run_pilot(scene, options, seconds);
   const SimulationResult done = simulate(scene, options);
   ASSERT_TRUE(pilot.complete);
@@ -61,34 +62,43 @@ TEST(Pilot, TriesAllThatTakesLessThanTheTime) {
   EXPECT_EQ(pilot.standard_error_s, 0);
 }
 
-TEST(Pilot, ForetellsFromAPart) { expect_foretold(scene_of(48), options_of(Method::direct, 60), 0.3, 0.3); }
+TEST(Pilot, ForetellsFromAPart) {
+  expect_foretold(scene_of(48), options_of(Method::direct, 60), 0.3, 0.3);
+}
 
-// Four units to a row, of which the first and last see less: every fourth unit alone would be of one column.
+// Four units to a row, of which the first and last see less: every fourth unit alone would be of
+// one column.
 TEST(Pilot, IsNotMisledByRows) {
   SimulationOptions options = options_of(Method::direct, 100);
   options.tile_pixels = 10;
   expect_foretold(scene_of(40), options, 0.4, 0.15);
 }
 
-TEST(Pilot, ForetellsReplay) { expect_foretold(scene_of(64), options_of(Method::replay, 50), 0.3, 0.25); }
+TEST(Pilot, ForetellsReplay) {
+  expect_foretold(scene_of(64), options_of(Method::replay, 50), 0.3, 0.25);
+}
 
-TEST(Pilot, ForetellsAnAccuracy) { expect_foretold(scene_of(64), options_of(Method::replay, 1, 0.2), 0.5, 0.4); }
+TEST(Pilot, ForetellsAnAccuracy) {
+  expect_foretold(scene_of(64), options_of(Method::replay, 1, 0.2), 0.5, 0.4);
+}
 
 TEST(Pilot, LongUnitsAreTriedInPieces) {
-  const Scene scene = scene_of(64);   // four tiles
+  const Scene scene = scene_of(64);  // four tiles
   const SimulationOptions options = options_of(Method::direct, 1, 0.02);
   const Pilot pilot = run_pilot(scene, options, 0.3);
   EXPECT_FALSE(pilot.whole);
   EXPECT_EQ(pilot.units_in_all, 4u);
   EXPECT_GT(pilot.expected_s, 0.3);
-  EXPECT_LT(pilot.seconds, 0.2 * pilot.expected_s * 2);   // it did not do all of it
+  EXPECT_LT(pilot.seconds, 0.2 * pilot.expected_s * 2);  // it did not do all of it
 }
 
 TEST(Pilot, CancelledItIsNotComplete) {
   CancelToken cancel;
   cancel.cancel();
-  EXPECT_FALSE(run_pilot(scene_of(32), options_of(Method::direct, 100), 10, nullptr, {}, &cancel).complete);
-  EXPECT_FALSE(run_pilot(scene_of(32), options_of(Method::replay, 100), 10, nullptr, {}, &cancel).complete);
+  EXPECT_FALSE(
+      run_pilot(scene_of(32), options_of(Method::direct, 100), 10, nullptr, {}, &cancel).complete);
+  EXPECT_FALSE(
+      run_pilot(scene_of(32), options_of(Method::replay, 100), 10, nullptr, {}, &cancel).complete);
 }
 
 TEST(Pilot, RefusesNoTimeAndBadOptions) {

@@ -44,9 +44,7 @@ SimulationOptions with_spectra(int threads) {
 
 const Scan scan = test::square_scan(84, 9);
 
-Scene small_scene() {
-  return Scene(test::flat("Si"), {}, scan);
-}
+Scene small_scene() { return Scene(test::flat("Si"), {}, scan); }
 
 void expect_same(const SimulationResult& a, const SimulationResult& b) {
   const Image image_a = make_image(a, scan), image_b = make_image(b, scan);
@@ -72,7 +70,7 @@ TEST(UnitJournal, IsToldOfEveryUnitAndGivesTheSameResultBack) {
   const SimulationResult first = simulate(scene, with_spectra(2), {.journal = &journal});
   expect_same(first, plain);
   EXPECT_EQ(first.recalled, 0);
-  EXPECT_EQ(journal.units.size(), 18u);   // runs of 5 and 4 pixels in each of 9 rows
+  EXPECT_EQ(journal.units.size(), 18u);  // runs of 5 and 4 pixels in each of 9 rows
 
   for (std::size_t unit = 0; unit < 18; unit += 3) journal.units.erase(unit);
   const std::size_t known = journal.units.size();
@@ -109,7 +107,8 @@ TEST(UnitJournal, IsNotToldOfUnitsThatWereAbandonedAndGetsThemLater) {
   const SimulationOptions options = with_spectra(1);
   const SimulationResult plain = simulate(scene, options);
   Stopping journal;
-  const SimulationResult stopped = simulate(scene, options, {.cancel = &journal.cancel, .journal = &journal});
+  const SimulationResult stopped =
+      simulate(scene, options, {.cancel = &journal.cancel, .journal = &journal});
   EXPECT_FALSE(stopped.complete);
   EXPECT_EQ(journal.units.size(), 7u) << "the unit that had begun is left out";
   expect_same(simulate(scene, options, {.journal = &journal}), plain);
@@ -123,7 +122,9 @@ TEST(UnitJournal, WhatObserversHaveSeenOfAUnitCounts) {
     CancelToken cancel;
     std::int64_t seen = 0;
   } observer;
-  const SimulationResult r = simulate(small_scene(), with_spectra(1), {.cancel = &observer.cancel, .observers = [&](int) { return &observer; }});
+  const SimulationResult r =
+      simulate(small_scene(), with_spectra(1),
+               {.cancel = &observer.cancel, .observers = [&](int) { return &observer; }});
   EXPECT_FALSE(r.complete);
   EXPECT_EQ(r.balance.incident, observer.seen);
 }
@@ -138,7 +139,8 @@ TEST(UnitJournal, OfAnotherSimulationIsRefused) {
   other = with_spectra(1);
   other.detectors = parse_detectors("in-lens", "test");
   EXPECT_THROW(simulate(scene, other, {.journal = &journal}), InvalidInput);
-  EXPECT_THROW(simulate(scene, with_spectra(1), {.observers = [](int) { return nullptr; }, .journal = &journal}),
+  EXPECT_THROW(simulate(scene, with_spectra(1),
+                        {.observers = [](int) { return nullptr; }, .journal = &journal}),
                UsageError);
 }
 
@@ -166,7 +168,8 @@ TEST(Pack, KeepsEveryNumber) {
 }
 
 TEST(Pack, RefusesWhatIsNoTally) {
-  const std::string good = serialize(simulate_unit(small_scene(), with_spectra(1), {0, 0, 3, 2, 0, 10}));
+  const std::string good =
+      serialize(simulate_unit(small_scene(), with_spectra(1), {0, 0, 3, 2, 0, 10}));
   EXPECT_EQ(serialize(deserialize(good)), good);
   for (std::size_t n = 0; n < good.size(); ++n)
     EXPECT_THROW(deserialize(std::string_view(good).substr(0, n)), InvalidInput) << n;

@@ -50,7 +50,8 @@ std::vector<Case> cases() {
           {"accuracy", scan_of(70, 67), options_of(Method::replay, 1, 0.05)}};
 }
 
-/// What a simulation of the unit would have counted, without one: a count that tells pixels and primaries apart.
+/// What a simulation of the unit would have counted, without one: a count that tells pixels and
+/// primaries apart.
 UnitTally pretended(const WorkUnit& unit, const SimulationOptions& options) {
   UnitTally tally = empty_tally(unit, options);
   for (int y = unit.y0; y < unit.y1; ++y)
@@ -64,20 +65,22 @@ UnitTally pretended(const WorkUnit& unit, const SimulationOptions& options) {
 }
 
 bool same(const WorkUnit& a, const WorkUnit& b) {
-  return a.x0 == b.x0 && a.y0 == b.y0 && a.x1 == b.x1 && a.y1 == b.y1 && a.first_electron == b.first_electron &&
-         a.electrons == b.electrons;
+  return a.x0 == b.x0 && a.y0 == b.y0 && a.x1 == b.x1 && a.y1 == b.y1 &&
+         a.first_electron == b.first_electron && a.electrons == b.electrons;
 }
 
 bool same_pixels(const SimulationResult& a, const SimulationResult& b) {
-  return std::ranges::equal(a.pixels.data(), b.pixels.data(), [](const PixelTally& p, const PixelTally& q) {
-    return p.primaries == q.primaries && p.hits == q.hits;
-  });
+  return std::ranges::equal(a.pixels.data(), b.pixels.data(),
+                            [](const PixelTally& p, const PixelTally& q) {
+                              return p.primaries == q.primaries && p.hits == q.hits;
+                            });
 }
 
 TEST(UnitPlan, DoesEveryPrimaryOfEveryPixelOnce) {
   for (const Case& c : cases()) {
     const UnitPlan plan(c.scan, c.options);
-    Grid<std::int64_t> next(c.scan.width, c.scan.height);   // the primary that comes next, as units come in order
+    Grid<std::int64_t> next(c.scan.width,
+                            c.scan.height);  // the primary that comes next, as units come in order
     for (std::size_t i = 0; i < plan.units(); ++i) {
       const WorkUnit u = plan.unit(i);
       ASSERT_TRUE(0 <= u.x0 && u.x0 < u.x1 && u.x1 <= c.scan.width) << c.what << ", unit " << i;
@@ -89,7 +92,8 @@ TEST(UnitPlan, DoesEveryPrimaryOfEveryPixelOnce) {
           next(x, y) += u.electrons;
         }
     }
-    const std::int64_t wanted = accuracy_of(c.options.budget) > 0 ? plan.most() : electrons_of(c.options.budget);
+    const std::int64_t wanted =
+        accuracy_of(c.options.budget) > 0 ? plan.most() : electrons_of(c.options.budget);
     for (const std::int64_t n : next.data()) ASSERT_EQ(n, wanted) << c.what;
   }
 }
@@ -115,7 +119,8 @@ TEST(UnitPlan, DependsOnNoThreadsNorSeeds) {
     other.seed = 99;
     const UnitPlan one(c.scan, c.options), two(c.scan, other);
     ASSERT_EQ(one.units(), two.units()) << c.what;
-    for (std::size_t i = 0; i < one.units(); ++i) ASSERT_TRUE(same(one.unit(i), two.unit(i))) << c.what;
+    for (std::size_t i = 0; i < one.units(); ++i)
+      ASSERT_TRUE(same(one.unit(i), two.unit(i))) << c.what;
   }
 }
 
@@ -123,7 +128,8 @@ TEST(UnitPlan, CountsWhatIsDoneUpToTheTotal) {
   for (const Case& c : cases()) {
     const UnitPlan plan(c.scan, c.options);
     double done = 0;
-    for (std::size_t i = 0; i < plan.units(); ++i) done += plan.done(plan.unit(i), pretended(plan.unit(i), c.options));
+    for (std::size_t i = 0; i < plan.units(); ++i)
+      done += plan.done(plan.unit(i), pretended(plan.unit(i), c.options));
     EXPECT_EQ(done, plan.total()) << c.what;
   }
 }
@@ -132,13 +138,16 @@ TEST(UnitPlan, SharesOfRanksMergeToTheWholeInAnyOrder) {
   for (const Case& c : cases()) {
     const UnitPlan plan(c.scan, c.options);
     SimulationResult whole = empty_result(c.scan, c.options);
-    for (std::size_t i = 0; i < plan.units(); ++i) merge(whole, plan.unit(i), pretended(plan.unit(i), c.options));
+    for (std::size_t i = 0; i < plan.units(); ++i)
+      merge(whole, plan.unit(i), pretended(plan.unit(i), c.options));
     for (const std::size_t ranks : {2, 3}) {
       SimulationResult all = empty_result(c.scan, c.options);
       for (std::size_t rank = ranks; rank-- > 0;)
-        for (std::size_t i = plan.units(); i-- > 0;) {   // each sees all units, and leaves those of others empty
+        for (std::size_t i = plan.units();
+             i-- > 0;) {  // each sees all units, and leaves those of others empty
           const bool own = i % ranks == rank;
-          merge(all, plan.unit(i), own ? pretended(plan.unit(i), c.options) : empty_tally(plan.unit(i), c.options));
+          merge(all, plan.unit(i),
+                own ? pretended(plan.unit(i), c.options) : empty_tally(plan.unit(i), c.options));
         }
       EXPECT_TRUE(same_pixels(all, whole)) << c.what << ", " << ranks << " ranks";
       EXPECT_EQ(all.balance.incident, whole.balance.incident) << c.what;
@@ -164,10 +173,11 @@ TEST(UnitPlan, LongJobsHaveLongerUnits) {
     const WorkUnit unit = UnitPlan(scan_of(side, side), options).unit(0);
     return (unit.x1 - unit.x0) * (unit.y1 - unit.y0) * unit.electrons;
   };
-  EXPECT_EQ(primaries(3000), 4000);    // 9e8 in all
-  EXPECT_EQ(primaries(3200), 16300);   // 1.02e9
+  EXPECT_EQ(primaries(3000), 4000);   // 9e8 in all
+  EXPECT_EQ(primaries(3200), 16300);  // 1.02e9
   // Pixels of very many primaries are cut as ever.
-  EXPECT_EQ(UnitPlan(scan_of(3200, 3200), options_of(Method::direct, 10000)).unit(0).electrons, 4096);
+  EXPECT_EQ(UnitPlan(scan_of(3200, 3200), options_of(Method::direct, 10000)).unit(0).electrons,
+            4096);
 }
 
 }  // namespace

@@ -59,7 +59,8 @@ TEST(UnitScheduler, TheResultDoesNotDependOnTheOrder) {
   EXPECT_EQ(backwards.units, UnitPlan(scan, few_electrons()).units());
   EXPECT_EQ(result.balance.deposited_energy.parts(), usual.balance.deposited_energy.parts());
   const Image a = make_image(result, scan), b = make_image(usual, scan);
-  for (std::size_t c = 0; c < a.channels.size(); ++c) EXPECT_EQ(a.channels[c].values, b.channels[c].values);
+  for (std::size_t c = 0; c < a.channels.size(); ++c)
+    EXPECT_EQ(a.channels[c].values, b.channels[c].values);
 }
 
 // What comes to nobody: units are done, and given elsewhere.
@@ -83,7 +84,8 @@ TEST(UnitScheduler, WhereNothingIsCollectedTheResultCountsNothing) {
 
 TEST(UnitScheduler, IsAbandonedWhereThereAreNoLibraries) {
   struct Cancelled : LibrarySource {
-    std::shared_ptr<const CascadeLibrary> library(const CascadeSettings&, std::size_t, int, const ProgressCallback&,
+    std::shared_ptr<const CascadeLibrary> library(const CascadeSettings&, std::size_t, int,
+                                                  const ProgressCallback&,
                                                   const CancelToken*) override {
       return nullptr;
     }
@@ -92,7 +94,8 @@ TEST(UnitScheduler, IsAbandonedWhereThereAreNoLibraries) {
   SimulationOptions options = few_electrons();
   options.method = Method::replay;
   Backwards backwards;
-  const SimulationResult result = simulate(scene, options, {.libraries = &none, .scheduler = &backwards});
+  const SimulationResult result =
+      simulate(scene, options, {.libraries = &none, .scheduler = &backwards});
   EXPECT_TRUE(backwards.abandoned);
   EXPECT_FALSE(result.complete);
   EXPECT_EQ(backwards.units, 0u);
@@ -125,9 +128,10 @@ TEST(ThreadScheduler, FinishesEveryUnitOnce) {
 
 TEST(ThreadScheduler, AFailureEndsAllThreads) {
   std::atomic<std::size_t> next = 0;
-  const UnitWork work{4, [&] { return std::optional(next++); },   // without end
+  const UnitWork work{4, [&] { return std::optional(next++); },  // without end
                       [](std::size_t number, int, UnitTally&) -> bool {
-                        if (number == 20) throw InvalidInput("unit", "the disk is full", "Make room");
+                        if (number == 20)
+                          throw InvalidInput("unit", "the disk is full", "Make room");
                         return true;
                       },
                       [](std::size_t, const UnitTally&) {}};

@@ -47,10 +47,11 @@ std::int64_t total(const SimulationResult& r, std::size_t detector) {
 
 TEST(Detection, QuadrantsAndWindowsAndConesPartitionTheTotal) {
   for (const double tilt : {0.0, 50.0}) {
-    const auto r = run({"quadrants", "a:energy=50..300,side=up", "b:energy=300..700,side=up",
-                        "c:energy=700..,side=up", "k:energy=50..,side=up,cone=0..20",
-                        "l:energy=50..,side=up,cone=20..60", "m:energy=50..,side=up,cone=60..180",
-                        "SE1", "SE2"}, tilt);
+    const auto r = run(
+        {"quadrants", "a:energy=50..300,side=up", "b:energy=300..700,side=up",
+         "c:energy=700..,side=up", "k:energy=50..,side=up,cone=0..20",
+         "l:energy=50..,side=up,cone=20..60", "m:energy=50..,side=up,cone=60..180", "SE1", "SE2"},
+        tilt);
     expect_partition(r, test::bse, 2, 6);
     expect_partition(r, test::bse, 6, 9);
     expect_partition(r, test::bse, 9, 12);
@@ -62,8 +63,8 @@ TEST(Detection, QuadrantsAndWindowsAndConesPartitionTheTotal) {
 }
 
 TEST(Detection, SectorsLieAsTheyAreNamed) {
-  const std::vector<Vec3> directions{{0.6, 0.1, 0.79}, {-0.1, 0.6, 0.79}, {-0.6, 0, 0.8},
-                                     {0.1, -0.6, 0.79}};
+  const std::vector<Vec3> directions{
+      {0.6, 0.1, 0.79}, {-0.1, 0.6, 0.79}, {-0.6, 0, 0.8}, {0.1, -0.6, 0.79}};
   for (std::size_t i = 0; i < 4; ++i) {
     Detection one(parse_detectors("quadrants", "test"), {}, false);
     one.escaped({100, normalized(directions[i]), false, false});
@@ -102,8 +103,8 @@ TEST(Spectra, AddUpToTheCountsForAnyThreads) {
   const auto r = run({"quadrants"}, 30, 300, true);
   ASSERT_EQ(r.spectra.size(), 6u);
   for (std::size_t d = 0; d < 6; ++d) {
-    for (const Histogram* h : {&r.spectra[d].energy_ev, &r.spectra[d].polar_deg,
-                               &r.spectra[d].azimuth_deg}) {
+    for (const Histogram* h :
+         {&r.spectra[d].energy_ev, &r.spectra[d].polar_deg, &r.spectra[d].azimuth_deg}) {
       std::int64_t sum = 0;
       for (const Counts& c : h->bins) {
         sum += c.sum;

@@ -25,13 +25,13 @@ double sum(const EnergyDeposit& d, const DepositGrid& g) {
 
 TEST(EnergyDeposit, SharesAPieceByLength) {
   EnergyDeposit d(unit_grid());
-  d.deposit({0.5, 0.5, 0.5}, {3, 0.5, 0.5}, 10);   // 0.5, 1, 1 of 2.5; it ends on a wall
+  d.deposit({0.5, 0.5, 0.5}, {3, 0.5, 0.5}, 10);  // 0.5, 1, 1 of 2.5; it ends on a wall
   EXPECT_NEAR(d.cell(0, 0, 0).ev(), 2, 1e-4);
   EXPECT_NEAR(d.cell(1, 0, 0).ev(), 4, 1e-4);
   EXPECT_NEAR(d.cell(2, 0, 0).ev(), 4, 1e-4);
   d.deposit({3.5, 1.5, 1.5}, {3.5, 1.5, 1.5}, 1);
   EXPECT_EQ(d.cell(3, 1, 1).ev(), 1);
-  d.deposit({-3, 0.5, 1.5}, {1, 0.5, 1.5}, 8);     // three quarters outside
+  d.deposit({-3, 0.5, 1.5}, {1, 0.5, 1.5}, 8);  // three quarters outside
   EXPECT_NEAR(d.cell(0, 0, 1).ev(), 2, 1e-4);
   EXPECT_NEAR(d.outside().ev(), 6, 1e-4);
 }
@@ -64,8 +64,8 @@ TEST(EnergyDeposit, HoldsWhatDidNotEscape) {
   options.threads = 3;
   options.tile_pixels = 1;
   const auto r = simulate(scene, options, {.observers = [&](int thread) {
-    return &per_thread[static_cast<std::size_t>(thread)];
-  }});
+                            return &per_thread[static_cast<std::size_t>(thread)];
+                          }});
   EnergyDeposit all(grid);
   for (const EnergyDeposit& d : per_thread) all += d;
   const Balance& b = r.balance;

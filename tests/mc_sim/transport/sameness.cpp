@@ -30,7 +30,7 @@ void expect_same(const SimulationResult& a, const SimulationResult& b, const Map
   double squares = 0;
   int cells = 0;
   const auto compare = [&](const Estimate& x, const Estimate& y, std::int64_t counts) {
-    if (counts < 50) return;   // too few for the normal approximation
+    if (counts < 50) return;  // too few for the normal approximation
     const double z = (x.mean - y.mean) / std::hypot(x.standard_error, y.standard_error);
     EXPECT_LT(std::fabs(z), test::z_limit(2 * comparisons));
     squares += z * z;
@@ -40,7 +40,8 @@ void expect_same(const SimulationResult& a, const SimulationResult& b, const Map
     for (int x = 0; x < w; ++x) {
       const auto [bx, by] = map(x, y);
       for (const std::size_t d : {test::se, test::bse})
-        compare(a.yield(d, x, y), b.yield(d, bx, by), a.counts[d](x, y).sum + b.counts[d](bx, by).sum);
+        compare(a.yield(d, x, y), b.yield(d, bx, by),
+                a.counts[d](x, y).sum + b.counts[d](bx, by).sum);
     }
   ASSERT_GT(cells, 20);
   // The z-scores are standard normal: neither too large nor too small.
@@ -140,13 +141,14 @@ TEST(Sameness, TheDistanceBoundsChangeNothing) {
   const auto with = simulate(Scene(letter_l(), {}, scan), options);
   options.seed = 2;
   const auto without = simulate(Scene(letter_l(), {}, scan, {}, {0}), options);
-  EXPECT_LT(static_cast<double>(with.balance.rays), 0.8 * static_cast<double>(without.balance.rays));
+  EXPECT_LT(static_cast<double>(with.balance.rays),
+            0.8 * static_cast<double>(without.balance.rays));
   expect_same(with, without, same_pixel);
 }
 
 TEST(Sameness, AnOpenSheetIsTheTopOfAHalfSpace) {
   const HeightField mesa = make_mesa({120, 120, 4}, 40, 40, 8);
-  const Scan scan = square_scan(140, 10);   // beyond its rim, too
+  const Scan scan = square_scan(140, 10);  // beyond its rim, too
   Specimen field = test::flat("Si"), sheet = test::flat("Si");
   field.substrate.reset();
   sheet.substrate.reset();

@@ -36,8 +36,7 @@ TEST(EnergySum, DoesNotDependOnOrder) {
 }
 
 TEST(LossCause, HasNames) {
-  for (int c = 0; c < loss_causes; ++c)
-    EXPECT_STRNE(name(static_cast<LossCause>(c)), "unknown");
+  for (int c = 0; c < loss_causes; ++c) EXPECT_STRNE(name(static_cast<LossCause>(c)), "unknown");
 }
 
 }  // namespace surf::mc

@@ -61,8 +61,11 @@ TEST(SinCosTurn, IsAccurate) {
 TEST(Deflected, TurnsByTheAngleAndAroundTheAxis) {
   RandomStream random(1, 0, 0);
   for (int i = 0; i < 2000; ++i) {
-    const Vec3 d = i == 0 ? Vec3{0, 0, 1} : i == 1 ? Vec3{0, 0, -1}
-        : normalized({random.uniform() - 0.5, random.uniform() - 0.5, random.uniform() - 0.5});
+    const Vec3 d =
+        i == 0 ? Vec3{0, 0, 1}
+        : i == 1
+            ? Vec3{0, 0, -1}
+            : normalized({random.uniform() - 0.5, random.uniform() - 0.5, random.uniform() - 0.5});
     const double cosine = 1 - 2 * random.uniform(), turn = random.uniform();
     const Vec3 a = deflected(d, cosine, turn), b = deflected(d, cosine, turn + 0.25);
     EXPECT_NEAR(length(a), 1, 1e-9);
@@ -106,7 +109,7 @@ class AtEnergy final : public Observer {
   void segment(const Vec3& from, const Vec3& to, double e0, double e1, int) override {
     if (done_ || e1 > mark_ev_) return;
     done_ = true;
-    const double f = (e0 - mark_ev_) / (e0 - e1);   // the loss is nearly constant over a step
+    const double f = (e0 - mark_ev_) / (e0 - e1);  // the loss is nearly constant over a step
     const Vec3 p = from + (to - from) * f, d = normalized(to - from);
     cosine.add(d.z);
     cosine_squared.add(d.z * d.z);
@@ -122,7 +125,7 @@ class AtEnergy final : public Observer {
 };
 
 struct TransportRates {
-  std::vector<double> log_e, log_1, log_2;   // of sigma_tr1 and sigma_tr2 in nm^2
+  std::vector<double> log_e, log_1, log_2;  // of sigma_tr1 and sigma_tr2 in nm^2
 
   explicit TransportRates(int z) {
     for (const auto& row : test::read_reference("elsepa_totals.csv")) {
@@ -164,7 +167,8 @@ TEST(Transport, HasLewisMoments) {
     const double start = 4000, mark = 2500;
     AtEnergy observer(mark);
     const CustomSpecimen everywhere{
-        {&medium}, [](const Vec3&, const Vec3&, double, int) { return std::optional<BoundaryHit>(); },
+        {&medium},
+        [](const Vec3&, const Vec3&, double, int) { return std::optional<BoundaryHit>(); },
         {}};
     simulate_custom(everywhere, {}, {0, 0, 1}, start, 0, BarrierModel::off, 1, 20000, &observer);
 
@@ -212,8 +216,8 @@ TEST(Transport, TakesACallersOwnBoundary) {
     return BoundaryHit{best, {0, 0, 1}, inside < 0 ? 0 : -1};
   };
   const CustomSpecimen specimen{{&medium}, film, {}};
-  const CustomResult r = simulate_custom(specimen, {0, 0, 10}, {0, 0, -1}, 1000, -1,
-                                         BarrierModel::quantum, 1, 3000);
+  const CustomResult r =
+      simulate_custom(specimen, {0, 0, 10}, {0, 0, -1}, 1000, -1, BarrierModel::quantum, 1, 3000);
   EXPECT_GT(r.balance.transmitted, 1000);
   EXPECT_GT(r.balance.se, 1000);
   EXPECT_EQ(r.balance.total_lost(), 0);

@@ -19,7 +19,7 @@ Json to_json(const CaptureRange& r) {
           {"median_s", r.median_s}};
 }
 
-}   // namespace
+}  // namespace
 
 Json to_json(const RegistrationPoint& p) {
   return {{"id", p.id},
@@ -79,8 +79,9 @@ void from_json(const Json& j, ReconstructionPoint& p) {
   p.evaluations = j.at("evaluations");
   p.products = j.at("products");
   p.ended = j.at("ended");
-  for (const Json& s : j.at("steps")) p.steps.push_back({s.at("sigma_px"), s.at("run_s"), s.at("rms_nm")});
-  p.steps.at(0);   // a point has one
+  for (const Json& s : j.at("steps"))
+    p.steps.push_back({s.at("sigma_px"), s.at("run_s"), s.at("rms_nm")});
+  p.steps.at(0);  // a point has one
 }
 
 std::string registration_csv(const ChainChartSummary& summary) {
@@ -89,20 +90,21 @@ std::string registration_csv(const ChainChartSummary& summary) {
   for (const RegistrationPoint& p : summary.registrations)
     text += fmt::format("{},{},{},{},{},{},{},{},{:.6g},{:.6g},{:.4g}\n", p.id, p.family,
                         p.any_start ? "" : fmt::format("{:g}", p.offset_px),
-                        p.any_start ? "" : fmt::format("{:g}", p.offset_deg), p.draws, p.verified, p.right,
-                        p.wrong, p.median_px, p.largest_px, p.median_s);
+                        p.any_start ? "" : fmt::format("{:g}", p.offset_deg), p.draws, p.verified,
+                        p.right, p.wrong, p.median_px, p.largest_px, p.median_s);
   return text;
 }
 
 std::string reconstruction_csv(const ChainChartSummary& summary) {
   std::string text =
-      "id,family,setting,sigma_px,run_s,preparation_s,peak_mb,rms_nm,over_eroded,over_floor,default\n";
+      "id,family,setting,sigma_px,run_s,preparation_s,peak_mb,rms_nm,over_eroded,over_floor,"
+      "default\n";
   for (const ReconstructionPoint& p : summary.reconstructions)
     for (const ReconstructionStep& s : p.steps)
-      text +=
-          fmt::format("{},{},\"{}\",{:.6g},{:.4g},{:.4g},{:.4g},{:.6g},{:.6g},{:.6g},{}\n", p.id, p.family,
-                      p.setting, s.sigma_px, s.run_s, p.preparation_s, p.peak_bytes / 1e6, s.rms_nm,
-                      s.rms_nm / summary.eroded_nm, s.rms_nm / summary.floor_nm, p.is_default ? 1 : 0);
+      text += fmt::format("{},{},\"{}\",{:.6g},{:.4g},{:.4g},{:.4g},{:.6g},{:.6g},{:.6g},{}\n",
+                          p.id, p.family, p.setting, s.sigma_px, s.run_s, p.preparation_s,
+                          p.peak_bytes / 1e6, s.rms_nm, s.rms_nm / summary.eroded_nm,
+                          s.rms_nm / summary.floor_nm, p.is_default ? 1 : 0);
   return text;
 }
 
@@ -122,7 +124,8 @@ std::string chain_json(const ChainChartJob& job, const ChainChartSummary& summar
          {"thesis", Json::array()}};
   for (const RegistrationPoint& p : summary.registrations) j["registrations"].push_back(to_json(p));
   for (const CaptureRange& r : summary.ranges) j["capture_ranges"].push_back(to_json(r));
-  for (const ReconstructionPoint& p : summary.reconstructions) j["reconstructions"].push_back(to_json(p));
+  for (const ReconstructionPoint& p : summary.reconstructions)
+    j["reconstructions"].push_back(to_json(p));
   for (const ThesisPoint& t : thesis_points)
     j["thesis"].push_back({{"test", t.test},
                            {"afm_squares", t.afm_squares},
@@ -135,8 +138,9 @@ std::string chain_json(const ChainChartJob& job, const ChainChartSummary& summar
 std::vector<std::filesystem::path> chain_chart_files(const std::filesystem::path& folder) {
   std::vector<std::filesystem::path> files{folder / "chart.json", folder / "points"};
   for (const char* name : {"registration", "reconstruction"})
-    for (const char* extension : {".csv", ".svg", ".png"}) files.push_back(folder / (std::string(name) + extension));
+    for (const char* extension : {".csv", ".svg", ".png"})
+      files.push_back(folder / (std::string(name) + extension));
   return files;
 }
 
-}   // namespace surf::workflow
+}  // namespace surf::workflow

@@ -18,4 +18,4 @@ std::string registration_csv(const ChainChartSummary& summary);
 std::string reconstruction_csv(const ChainChartSummary& summary);
 std::string chain_json(const ChainChartJob& job, const ChainChartSummary& summary);
 
-}   // namespace surf::workflow
+}  // namespace surf::workflow

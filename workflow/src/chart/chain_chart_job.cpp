@@ -30,7 +30,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr int usual_draws = 10, quick_draws = 3;
-constexpr double prepared_weight = 1;   // of the progress: a point's
+constexpr double prepared_weight = 1;  // of the progress: a point's
 
 ChainChartJob complete(const ChainChartJob& asked) {
   check_parameters(asked);
@@ -38,7 +38,8 @@ ChainChartJob complete(const ChainChartJob& asked) {
   if (job.draws == 0) job.draws = job.quick ? quick_draws : usual_draws;
   const auto& all = chain_chart_families();
   for (const std::string& family : job.families)
-    if (std::none_of(all.begin(), all.end(), [&](const ChainFamily& f) { return f.name == family; })) {
+    if (std::none_of(all.begin(), all.end(),
+                     [&](const ChainFamily& f) { return f.name == family; })) {
       std::string names;
       for (const ChainFamily& f : all) names += (names.empty() ? "" : ", ") + f.name;
       throw UsageError("`chart.methods`", fmt::format("'{}' is none of those for samples", family),
@@ -47,7 +48,8 @@ ChainChartJob complete(const ChainChartJob& asked) {
   if (job.folder.empty()) throw UsageError("`output`", "no folder is given", "Add `output=chart`");
   std::error_code ignored;
   if (fs::equivalent(job.folder, job.sample, ignored))
-    throw UsageError("`output`", "it is the sample's own folder", "Name another one, as `output=chart`");
+    throw UsageError("`output`", "it is the sample's own folder",
+                     "Name another one, as `output=chart`");
   return job;
 }
 
@@ -66,7 +68,8 @@ std::string identity_of(const ChainSetting& setting) {
   return fingerprint(id).substr(0, 32);
 }
 
-StoredModel find_model(const ChainChartJob& job, const SampleTruth& sample, const Reporter& reporter) {
+StoredModel find_model(const ChainChartJob& job, const SampleTruth& sample,
+                       const Reporter& reporter) {
   ModelRequest request;
   request.file = job.model;
   request.folder = job.models;
@@ -82,10 +85,7 @@ class Runner {
  public:
   Runner(const ChainSetting& setting, const Reporter& reporter, double total,
          ChainChartSummary& summary)
-      : setting_(setting),
-        reporter_(reporter),
-        identity_(identity_of(setting)),
-        total_(total),
+      : setting_(setting), reporter_(reporter), identity_(identity_of(setting)), total_(total),
         summary_(summary) {}
 
   Watch watch() const {
@@ -110,7 +110,7 @@ class Runner {
         ++summary_.found;
         advance();
         return true;
-      } catch (const nlohmann::json::exception&) {   // damaged: made again
+      } catch (const nlohmann::json::exception&) {  // damaged: made again
       } catch (const std::out_of_range&) {
       }
     }
@@ -162,7 +162,9 @@ class Runner {
 
  private:
   bool cancelled() const { return reporter_.cancelled(); }
-  fs::path file_of(const std::string& id) const { return setting_.job.folder / "points" / (id + ".json"); }
+  fs::path file_of(const std::string& id) const {
+    return setting_.job.folder / "points" / (id + ".json");
+  }
 
   const ChainSetting& setting_;
   const Reporter& reporter_;
@@ -194,11 +196,12 @@ void write(const ChainChartJob& job, ChainChartSummary& s) {
   }
 }
 
-}   // namespace
+}  // namespace
 
 const std::vector<ChainFamily>& chain_chart_families() {
   static const std::vector<ChainFamily> families{
-      {"correlation", "registration from a start that is off, by normalised cross-correlation", true},
+      {"correlation", "registration from a start that is off, by normalised cross-correlation",
+       true},
       {"mutual-information", "the same by mutual information", true},
       {"landmarks", "from four landmarks that are off, refined by correlation", true},
       {"landmarks-only", "the landmarks' own map", true},
@@ -209,7 +212,8 @@ const std::vector<ChainFamily>& chain_chart_families() {
       {"gauss-newton", "from both, with the usual method", false},
       {"conjugate-gradients", "from both, with the thesis's method", false},
       {"lbfgs", "from both, with L-BFGS", false},
-      {"chain", "as 'semsurf reconstruct' does it, tip, map and gains found; not in a quick chart", false}};
+      {"chain", "as 'semsurf reconstruct' does it, tip, map and gains found; not in a quick chart",
+       false}};
   return families;
 }
 
@@ -218,7 +222,8 @@ bool wants(const ChainChartJob& job, const std::string& family) {
          std::find(job.families.begin(), job.families.end(), family) != job.families.end();
 }
 
-ChainChartSummary run(const ChainChartJob& asked, const Reporter& reporter, const ChainChartCallbacks& on_point) {
+ChainChartSummary run(const ChainChartJob& asked, const Reporter& reporter,
+                      const ChainChartCallbacks& on_point) {
   const ChainChartJob job = complete(asked);
   ChainChartSummary summary;
   const auto registrations = list_registrations(job);
@@ -234,7 +239,8 @@ ChainChartSummary run(const ChainChartJob& asked, const Reporter& reporter, cons
   if (!registrations.empty()) io::check_plot_target(job.folder / "registration.png");
   if (!reconstructions.empty()) io::check_plot_target(job.folder / "reconstruction.png");
 
-  const double total = prepared_weight + static_cast<double>(registrations.size() + reconstructions.size()) +
+  const double total = prepared_weight +
+                       static_cast<double>(registrations.size() + reconstructions.size()) +
                        (reconstructions.empty() ? 0 : 1);
   Reporter training;
   training.on_note = reporter.on_note;
@@ -254,7 +260,8 @@ ChainChartSummary run(const ChainChartJob& asked, const Reporter& reporter, cons
   MorphologyOptions morphology;
   morphology.threads = job.threads;
   HeightField eroded = erode(sample.afm.image, sample.afm.tip, morphology);
-  PlacedImage simulated = simulated_view(eroded, *model.model, sample.sem.image.pitch_x_nm, job.threads);
+  PlacedImage simulated =
+      simulated_view(eroded, *model.model, sample.sem.image.pitch_x_nm, job.threads);
   SurfaceUnderSem under = surface_under_sem(eroded, sample.sem.image, sample.sem.sem_to_afm);
   under.surface.valid = under.known;
   summary.eroded_nm = rms_off(under.surface, sample.truth);
@@ -263,7 +270,8 @@ ChainChartSummary run(const ChainChartJob& asked, const Reporter& reporter, cons
 
   Runner runner(setting, reporter, total, summary);
   for (const auto& method : registrations)
-    if (summary.complete) summary.complete = runner.run(method, on_point.registration, summary.registrations);
+    if (summary.complete)
+      summary.complete = runner.run(method, on_point.registration, summary.registrations);
   if (!reconstructions.empty() && summary.complete) summary.complete = runner.find_floor();
   for (const auto& method : reconstructions)
     if (summary.complete)
@@ -277,4 +285,4 @@ ChainChartSummary run(const ChainChartJob& asked, const Reporter& reporter, cons
   return summary;
 }
 
-}   // namespace surf::workflow
+}  // namespace surf::workflow

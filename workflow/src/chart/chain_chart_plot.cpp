@@ -53,8 +53,9 @@ std::vector<std::string> families_of(const auto& points) {
 }
 
 // A way that never arrives has a range of 0; one without a start has none, and a line of its time.
-io::PlotPanel range_panel(const ChainChartSummary& summary, std::optional<double> CaptureRange::*range,
-                          bool CaptureRange::*open, double RegistrationPoint::*offset, const char* unit) {
+io::PlotPanel range_panel(const ChainChartSummary& summary,
+                          std::optional<double> CaptureRange::*range, bool CaptureRange::*open,
+                          double RegistrationPoint::*offset, const char* unit) {
   io::PlotPanel panel;
   panel.title = fmt::format("Capture range, {}", unit);
   panel.x = {"time of one registration (s)", true, {}};
@@ -84,13 +85,15 @@ io::PlotPanel success_panel(const ChainChartSummary& summary, double Registratio
   io::PlotPanel panel;
   panel.title = "Success";
   panel.x = {fmt::format("offset of the start or of each landmark ({})", unit), true, {}};
-  panel.y = {fmt::format("verified and within {:g} px (%)", right_px), false, io::PlotAxis::Range{-5, 105}};
+  panel.y = {fmt::format("verified and within {:g} px (%)", right_px), false,
+             io::PlotAxis::Range{-5, 105}};
   for (const std::string& family : families_of(summary.registrations)) {
     io::PlotSeries series = series_of(family, io::PlotStyle::line_points);
     for (const RegistrationPoint& p : summary.registrations)
       if (p.family == family) {
         if (p.any_start)
-          panel.references.push_back({io::PlotDirection::horizontal, 100 * p.share(), "search, no start"});
+          panel.references.push_back(
+              {io::PlotDirection::horizontal, 100 * p.share(), "search, no start"});
         else if (p.*offset > 0) {
           series.x.push_back(p.*offset);
           series.y.push_back(100 * p.share());
@@ -110,16 +113,18 @@ io::PlotPanel error_panel(const ChainChartSummary& summary, bool relative) {
   const double unit = relative ? summary.eroded_nm : 1;
   std::vector<Trade> trades;
   for (const ReconstructionPoint& p : summary.reconstructions) {
-    io::PlotSeries series =
-        series_of(p.family, p.steps.size() > 1 ? io::PlotStyle::line_points : io::PlotStyle::points);
-    if (std::ranges::any_of(panel.series, [&](const io::PlotSeries& s) { return s.name == series.name; }))
-      series.name.clear();   // one line of the legend for all settings
+    io::PlotSeries series = series_of(
+        p.family, p.steps.size() > 1 ? io::PlotStyle::line_points : io::PlotStyle::points);
+    if (std::ranges::any_of(panel.series,
+                            [&](const io::PlotSeries& s) { return s.name == series.name; }))
+      series.name.clear();  // one line of the legend for all settings
     for (const ReconstructionStep& s : p.steps) {
       series.x.push_back(std::max(least_s, p.preparation_s + s.run_s));
       series.y.push_back(std::max(least_nm, s.rms_nm) / unit);
     }
     trades.push_back({series.x.back(), series.y.back()});
-    if (p.is_default) panel.notes.push_back({"semsurf reconstruct", series.x.back(), series.y.back()});
+    if (p.is_default)
+      panel.notes.push_back({"semsurf reconstruct", series.x.back(), series.y.back()});
     panel.series.push_back(std::move(series));
   }
   panel.series.push_back(front_series(trades));
@@ -145,25 +150,26 @@ io::PlotPanel error_panel(const ChainChartSummary& summary, bool relative) {
   return panel;
 }
 
-}   // namespace
+}  // namespace
 
 io::Plot registration_plot(const ChainChartSummary& summary) {
   io::Plot plot;
   plot.title = fmt::format("{}: how far off registration may begin ({} draws each)", summary.sample,
                            summary.registrations.front().draws);
   const auto drawn = [](const io::PlotPanel& p) { return !p.series.empty(); };
-  for (io::PlotPanel& panel :
-       std::vector<io::PlotPanel>{range_panel(summary, &CaptureRange::px, &CaptureRange::px_open,
-                                              &RegistrationPoint::offset_px, "SEM pixels"),
-                                  success_panel(summary, &RegistrationPoint::offset_px, "SEM pixels"),
-                                  range_panel(summary, &CaptureRange::deg, &CaptureRange::deg_open,
-                                              &RegistrationPoint::offset_deg, "degrees"),
-                                  success_panel(summary, &RegistrationPoint::offset_deg, "degrees")})
+  for (io::PlotPanel& panel : std::vector<io::PlotPanel>{
+           range_panel(summary, &CaptureRange::px, &CaptureRange::px_open,
+                       &RegistrationPoint::offset_px, "SEM pixels"),
+           success_panel(summary, &RegistrationPoint::offset_px, "SEM pixels"),
+           range_panel(summary, &CaptureRange::deg, &CaptureRange::deg_open,
+                       &RegistrationPoint::offset_deg, "degrees"),
+           success_panel(summary, &RegistrationPoint::offset_deg, "degrees")})
     if (drawn(panel)) plot.panels.push_back(std::move(panel));
-  if (plot.panels.empty()) {   // the search alone: its success over its time
+  if (plot.panels.empty()) {  // the search alone: its success over its time
     io::PlotPanel panel;
     panel.x = {"time of one registration (s)", true, {}};
-    panel.y = {fmt::format("verified and within {:g} px (%)", right_px), false, io::PlotAxis::Range{-5, 105}};
+    panel.y = {fmt::format("verified and within {:g} px (%)", right_px), false,
+               io::PlotAxis::Range{-5, 105}};
     const RegistrationPoint& p = summary.registrations.front();
     io::PlotSeries series = series_of(p.family, io::PlotStyle::points);
     series.x = {std::max(least_s, p.median_s)};
@@ -178,11 +184,12 @@ io::Plot registration_plot(const ChainChartSummary& summary) {
 
 io::Plot reconstruction_plot(const ChainChartSummary& summary) {
   io::Plot plot;
-  plot.title = fmt::format("{}: time against error of reconstructions\n* {}", summary.sample, thesis_source);
+  plot.title =
+      fmt::format("{}: time against error of reconstructions\n* {}", summary.sample, thesis_source);
   plot.panels = {error_panel(summary, false), error_panel(summary, true)};
   plot.columns = 2;
   plot.width_px = 1800;
   return plot;
 }
 
-}   // namespace surf::workflow
+}  // namespace surf::workflow

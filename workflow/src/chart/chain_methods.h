@@ -15,11 +15,11 @@ namespace surf::workflow {
 
 /// What every method of a chart of the chain is told.
 struct ChainSetting {
-  const ChainChartJob& job;   ///< complete: `draws` is there
+  const ChainChartJob& job;  ///< complete: `draws` is there
   SampleTruth sample;
   StoredModel model;
-  HeightField eroded;      ///< the scan with the true tip taken off
-  PlacedImage simulated;   ///< the SEM image predicted of it
+  HeightField eroded;     ///< the scan with the true tip taken off
+  PlacedImage simulated;  ///< the SEM image predicted of it
 };
 
 /// One point before it is there: what names it, and how the rest is found. Throws Interrupted.
@@ -35,8 +35,8 @@ std::vector<ChainMethod<ReconstructionPoint>> list_reconstructions(const ChainCh
 /// Whether the job asks for a family.
 bool wants(const ChainChartJob& job, const std::string& family);
 
-/// Root mean square over the overlap of where the pixels of an SEM image are put less where they belong, SEM
-/// pixels. Every third along x and y is looked at.
+/// Root mean square over the overlap of where the pixels of an SEM image are put less where they
+/// belong, SEM pixels. Every third along x and y is looked at.
 double registration_error_px(const Affine& truth, const Affine& found, const PlacedImage& sem,
                              const PlacedImage& simulated);
 
@@ -44,9 +44,9 @@ double registration_error_px(const Affine& truth, const Affine& found, const Pla
 struct RegistrationDraw {
   PlacedImage sem;
   Affine start;
-  std::vector<std::pair<Point2, Point2>> pairs;   ///< four landmarks, SEM and AFM, nm
+  std::vector<std::pair<Point2, Point2>> pairs;  ///< four landmarks, SEM and AFM, nm
 };
 RegistrationDraw draw_registration(const SampleTruth& sample, double offset_px, double offset_deg,
                                    std::uint64_t seed, int number);
 
-}   // namespace surf::workflow
+}  // namespace surf::workflow

@@ -10,10 +10,12 @@
 namespace surf::workflow {
 
 /// Keeps a point for the same job started again. `identity` says of which job it is.
-void write_point(const std::filesystem::path& path, const ChartPoint& point, const std::string& identity);
+void write_point(const std::filesystem::path& path, const ChartPoint& point,
+                 const std::string& identity);
 
 /// The point, if the file is there, whole and of this job.
-std::optional<ChartPoint> read_point(const std::filesystem::path& path, const std::string& identity);
+std::optional<ChartPoint> read_point(const std::filesystem::path& path,
+                                     const std::string& identity);
 
 /// A time that was measured, to be remembered. 0 where there is none.
 double read_seconds(const std::filesystem::path& path);

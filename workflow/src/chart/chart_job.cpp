@@ -21,8 +21,8 @@
 #include "surf/io/files.h"
 #include "surf/io/image_file.h"
 #include "surf/io/plot.h"
-#include "surf/mc/sampling/choose_method.h"
 #include "surf/mc/geometry/scene.h"
+#include "surf/mc/sampling/choose_method.h"
 #include "surf/workflow/step_record.h"
 #include "surf/workflow/train_job.h"
 
@@ -44,41 +44,50 @@ ChartJob complete(const ChartJob& asked) {
   }
   if (job.reference_accuracy == 0) job.reference_accuracy = job.finest / 3;
   if (job.reference_accuracy > 0.5 * job.finest)
-    throw UsageError("`chart.reference`", fmt::format("{} is not well below the finest accuracy, {}",
-                                                format_share(job.reference_accuracy), format_share(job.finest)),
+    throw UsageError("`chart.reference`",
+                     fmt::format("{} is not well below the finest accuracy, {}",
+                                 format_share(job.reference_accuracy), format_share(job.finest)),
                      "Give at most half of it, and 0.01% at least");
   for (const std::string& family : job.families) {
     const auto& all = chart_families();
-    if (std::none_of(all.begin(), all.end(), [&](const ChartFamily& f) { return f.name == family; })) {
+    if (std::none_of(all.begin(), all.end(),
+                     [&](const ChartFamily& f) { return f.name == family; })) {
       std::string names;
       for (const ChartFamily& f : all) names += (names.empty() ? "" : ", ") + f.name;
-      throw UsageError("`chart.methods`", fmt::format("'{}' is none of them", family), "Choose of " + names);
+      throw UsageError("`chart.methods`", fmt::format("'{}' is none of them", family),
+                       "Choose of " + names);
     }
   }
   if (job.folder.empty()) throw UsageError("`output`", "no folder is given", "Add `output=chart`");
   if (mc::dose_of(job.scene.budget) > 0)
-    throw UsageError("scene", "with a current and a dwell time pixels get random numbers of electrons",
+    throw UsageError("scene",
+                     "with a current and a dwell time pixels get random numbers of electrons",
                      "Leave both out: the chart compares numbers of electrons");
   return job;
 }
 
 std::vector<double> accuracies_of(const ChartJob& job) {
   std::vector<double> out;
-  for (const double a : job.quick ? std::vector<double>{0.1, 0.03} : std::vector<double>{0.1, 0.05, 0.03, 0.02, 0.01})
+  for (const double a : job.quick ? std::vector<double>{0.1, 0.03}
+                                  : std::vector<double>{0.1, 0.05, 0.03, 0.02, 0.01})
     if (a > job.finest * (1 + 1e-9)) out.push_back(a);
   out.push_back(job.finest);
   return out;
 }
 
-// So fine that libraries of cascades take too much memory: several images with libraries of their own, their mean.
+// So fine that libraries of cascades take too much memory: several images with libraries of their
+// own, their mean.
 constexpr double finest_at_once = 0.007;
 
 double floor_of_scene(const ChartJob& job) {
-  return mc::accuracy_of(job.scene.budget) > 0 ? mc::floor_of(job.scene.budget) : mc::Accuracy{}.floor;
+  return mc::accuracy_of(job.scene.budget) > 0 ? mc::floor_of(job.scene.budget)
+                                               : mc::Accuracy{}.floor;
 }
 
-std::vector<SimulateJob> reference_jobs(const ChartJob& job, const ComparedPixels& pixels, const mc::Scan& scan) {
-  const int parts = std::max(1, static_cast<int>(std::ceil(std::pow(finest_at_once / job.reference_accuracy, 2) - 1e-9)));
+std::vector<SimulateJob> reference_jobs(const ChartJob& job, const ComparedPixels& pixels,
+                                        const mc::Scan& scan) {
+  const int parts = std::max(
+      1, static_cast<int>(std::ceil(std::pow(finest_at_once / job.reference_accuracy, 2) - 1e-9)));
   std::vector<SimulateJob> out;
   for (int i = 0; i < parts; ++i) {
     SimulateJob part;
@@ -121,11 +130,12 @@ Image mean_of(const std::vector<SimulateJob>& parts) {
 // Of all that errors depend on: a point of another job counts no more.
 std::string identity(const ChartJob& job, const std::vector<SimulateJob>& reference,
                      const std::vector<double>& accuracies) {
-  Identity id{{"reference", reference.front().scene.title},
-              {"parts", std::to_string(reference.size())},
-              {"seed", std::to_string(job.seed)},
-              {"quick", job.quick ? "yes" : "no"},
-              {"training", fmt::format("{} {} {}", job.surfaces, job.surface_px, job.training_electrons)}};
+  Identity id{
+      {"reference", reference.front().scene.title},
+      {"parts", std::to_string(reference.size())},
+      {"seed", std::to_string(job.seed)},
+      {"quick", job.quick ? "yes" : "no"},
+      {"training", fmt::format("{} {} {}", job.surfaces, job.surface_px, job.training_electrons)}};
   id.merge(surf::record_of(mc::words_of(job.scene.budget)));
   id["tolerance"] = format_exact(job.scene.mesh_tolerance_nm);
   if (job.scene.method) id["method"] = mc::name(*job.scene.method);
@@ -133,7 +143,8 @@ std::string identity(const ChartJob& job, const std::vector<SimulateJob>& refere
   return fingerprint(id).substr(0, 32);
 }
 
-std::vector<ChartChoice> choices_of(const ChartSetting& setting, const std::vector<ChartPoint>& points) {
+std::vector<ChartChoice> choices_of(const ChartSetting& setting,
+                                    const std::vector<ChartPoint>& points) {
   std::vector<ChartChoice> out;
   const ChartJob& job = setting.job;
   const mc::Scene scene(job.scene.specimen, job.scene.beam, setting.scan, job.scene.physics);
@@ -145,7 +156,8 @@ std::vector<ChartChoice> choices_of(const ChartSetting& setting, const std::vect
     ChartChoice c;
     c.accuracy = setting.accuracies[i];
     c.reason = fmt::format("{}: {}", mc::name(choice.method), choice.reason);
-    const std::string id = id_of_accuracy(choice.method, options.planar_control, setting.accuracies[i]);
+    const std::string id =
+        id_of_accuracy(choice.method, options.planar_control, setting.accuracies[i]);
     const ChartPoint *chosen = nullptr, *fastest = nullptr;
     for (const ChartPoint& p : points) {
       if (p.id == id) chosen = &p;
@@ -167,16 +179,18 @@ fs::path point_file(const ChartJob& job, const ChartMethod& method) {
 }
 
 // Before any point is timed. Without a team they come with the first point that needs them.
-ManyDone make_images_for(const ChartSetting& setting, const std::vector<ChartMethod>& methods, const std::string& id,
-                         const ProgressCallback& progress, const CancelToken* cancel, Team& team) {
+ManyDone make_images_for(const ChartSetting& setting, const std::vector<ChartMethod>& methods,
+                         const std::string& id, const ProgressCallback& progress,
+                         const CancelToken* cancel, Team& team) {
   std::string wanted = "no";
-  for (const ChartMethod& method : methods)   // whoever leads has them
+  for (const ChartMethod& method : methods)  // whoever leads has them
     if (method.needs_images && !read_point(point_file(setting.job, method), id)) wanted = "yes";
   team.broadcast(wanted);
   return wanted == "yes" ? make_images(setting, progress, cancel, &team) : ManyDone{};
 }
 
-// Of all points and before them; the reference counts as much as all together: it takes the most electrons.
+// Of all points and before them; the reference counts as much as all together: it takes the most
+// electrons.
 class Course {
  public:
   Course(const Reporter& reporter, double points) : reporter_(reporter), points_(points) {}
@@ -198,9 +212,10 @@ class Course {
   double points_, before_ = 0;
 };
 
-ManyDone make_reference(const ChartJob& job, const std::vector<SimulateJob>& parts, const mc::Scan& scan,
-                        const Reporter& reporter, Course& course, Team* team) {
-  std::string letters;   // whoever leads has looked
+ManyDone make_reference(const ChartJob& job, const std::vector<SimulateJob>& parts,
+                        const mc::Scan& scan, const Reporter& reporter, Course& course,
+                        Team* team) {
+  std::string letters;  // whoever leads has looked
   for (const SimulateJob& part : parts) letters += leads(team) && is_finished(part) ? '+' : '-';
   if (team) team->broadcast(letters);
   std::vector<const SimulateJob*> missing;
@@ -223,15 +238,16 @@ ManyDone make_reference(const ChartJob& job, const std::vector<SimulateJob>& par
   if (!team || !done.complete) return done;
   together(team, [&] {
     if (!team->leads()) return;
-    for (const SimulateJob* part : missing) await_file(part->outputs.front(), [&] { return is_finished(*part); });
+    for (const SimulateJob* part : missing)
+      await_file(part->outputs.front(), [&] { return is_finished(*part); });
   });
   return done;
 }
 
 // Runs what is not there yet.
-void make_points(const ChartSetting& setting, const std::vector<ChartMethod>& methods, const std::string& id,
-                 const Reporter& reporter, const PointCallback& on_point, Course& course,
-                 ChartSummary& summary) {
+void make_points(const ChartSetting& setting, const std::vector<ChartMethod>& methods,
+                 const std::string& id, const Reporter& reporter, const PointCallback& on_point,
+                 Course& course, ChartSummary& summary) {
   for (const ChartMethod& method : methods) {
     const fs::path file = point_file(setting.job, method);
     std::optional<ChartPoint> point = read_point(file, id);
@@ -265,7 +281,8 @@ void write_chart(const ChartJob& job, ChartSummary& summary) {
   io::write_text(job.folder / "chart.json", json_text(job, summary));
   summary.written = {job.folder / "chart.csv", job.folder / "chart.json"};
   io::Plot plot = chart_plot(job, summary);
-  plot.metadata = step_record("chart", records_of(job, static_cast<const mc::SimulationRequest&>(job.scene)));
+  plot.metadata =
+      step_record("chart", records_of(job, static_cast<const mc::SimulationRequest&>(job.scene)));
   for (const char* name : {"chart.svg", "chart.png"}) {
     io::write_plot(job.folder / name, plot);
     summary.written.push_back(job.folder / name);
@@ -280,11 +297,13 @@ const std::vector<ChartFamily>& chart_families() {
         {"default", "what 'semsurf simulate' does with the scene, nothing else being said", true},
         {"direct", "each electron followed, the same number for each pixel", true},
         {"replay", "stored cascades retraced, the same number for each pixel", true},
-        {"accuracy", "replay, as many electrons as each pixel needs, with planes as controls", true},
+        {"accuracy", "replay, as many electrons as each pixel needs, with planes as controls",
+         true},
         {"accuracy-without-planes", "the same without planes", true},
         {"direct-accuracy", "the same with electrons that are followed", true},
         {"mesh-tolerance", "a height field simplified, at one accuracy", true}};
-    for (const LearnableKind& kind : learnable_kinds()) all.push_back({kind.name, kind.what, false});
+    for (const LearnableKind& kind : learnable_kinds())
+      all.push_back({kind.name, kind.what, false});
     return all;
   }();
   return families;
@@ -301,7 +320,8 @@ double ChartPoint::worst_rms() const {
   return worst;
 }
 
-ChartSummary run(const ChartJob& asked, const Reporter& reporter, const PointCallback& on_point, Team* team) {
+ChartSummary run(const ChartJob& asked, const Reporter& reporter, const PointCallback& on_point,
+                 Team* team) {
   const auto start = std::chrono::steady_clock::now();
   ChartJob job;
   together(team, [&] { job = complete(asked); });
@@ -310,7 +330,7 @@ ChartSummary run(const ChartJob& asked, const Reporter& reporter, const PointCal
   ComparedPixels pixels;
   std::vector<SimulateJob> parts;
   std::string id;
-  std::vector<ChartMethod> methods;   // where the team is led
+  std::vector<ChartMethod> methods;  // where the team is led
   together(team, [&] {
     setting.scan = resolve_scan(job.scene.scan, mc::extent(job.scene.specimen), job.scene.beam);
     pixels = choose_pixels(setting.scan, job.compared_pixels);
@@ -325,7 +345,8 @@ ChartSummary run(const ChartJob& asked, const Reporter& reporter, const PointCal
       std::ranges::move(list.left_out, std::back_inserter(summary.left_out));
     }
     if (methods.empty())
-      throw UsageError("`chart.methods`", "none of them can be had with this scene", "Leave it out for all that can");
+      throw UsageError("`chart.methods`", "none of them can be had with this scene",
+                       "Leave it out for all that can");
   });
 
   Course course(reporter, static_cast<double>(methods.size()));
@@ -334,7 +355,8 @@ ChartSummary run(const ChartJob& asked, const Reporter& reporter, const PointCal
   compared.height = pixels.height;
   ManyDone done = make_reference(job, parts, compared, reporter, course, team);
   try {
-    if (team && done.complete) done.add(make_images_for(setting, methods, id, course.show(1), reporter.cancel, *team));
+    if (team && done.complete)
+      done.add(make_images_for(setting, methods, id, course.show(1), reporter.cancel, *team));
   } catch (const Interrupted&) {
     done.complete = false;
   }
@@ -343,8 +365,7 @@ ChartSummary run(const ChartJob& asked, const Reporter& reporter, const PointCal
 
   together(team, [&] {
     if (!leads(team)) return;
-    const Reference reference = read_reference(
-        mean_of(parts), pixels, floor_of_scene(job));
+    const Reference reference = read_reference(mean_of(parts), pixels, floor_of_scene(job));
     setting.reference = &reference;
     for (const ComparedChannel& c : reference.channels)
       summary.reference.push_back({c.name, image_error(c.values, {}, c.values, c.standard_errors)});

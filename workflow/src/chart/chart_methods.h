@@ -16,8 +16,8 @@ namespace surf::workflow {
 struct ChartSetting {
   const ChartJob& job;
   mc::Scan scan;
-  const Reference* reference = nullptr;   ///< not there while methods are only listed
-  std::vector<double> accuracies;         ///< coarsest first
+  const Reference* reference = nullptr;  ///< not there while methods are only listed
+  std::vector<double> accuracies;        ///< coarsest first
 };
 
 /// One point before it is there.
@@ -25,13 +25,14 @@ struct ChartMethod {
   std::string id, family, setting;
   bool is_default = false;
   /// Fills in the point's times, primaries, channels and targets. Throws Interrupted.
-  std::function<void(const ChartSetting&, const ProgressCallback&, const CancelToken*, ChartPoint&)> run;
-  bool needs_images = false;   ///< those of make_images
+  std::function<void(const ChartSetting&, const ProgressCallback&, const CancelToken*, ChartPoint&)>
+      run;
+  bool needs_images = false;  ///< those of make_images
 };
 
 struct ChartMethods {
   std::vector<ChartMethod> methods;
-  std::vector<std::string> left_out;   ///< sentences
+  std::vector<std::string> left_out;  ///< sentences
 };
 
 /// By Monte Carlo: direct and replayed electrons, wanted accuracies, simplified specimens.
@@ -43,10 +44,11 @@ std::string id_of_accuracy(mc::Method method, bool planar_control, double accura
 /// By the models that `train` makes, where they hold for the scene.
 ChartMethods list_models(const ChartSetting& setting);
 
-/// The images that models learn from, once for all of them. Keeps how long they took: each is simulated by one process, so
-/// that a team's times mean the same. Throws Interrupted, on all of a team.
-ManyDone make_images(const ChartSetting& setting, const ProgressCallback& progress, const CancelToken* cancel,
-                     Team* team);
+/// The images that models learn from, once for all of them. Keeps how long they took: each is
+/// simulated by one process, so that a team's times mean the same. Throws Interrupted, on all of a
+/// team.
+ManyDone make_images(const ChartSetting& setting, const ProgressCallback& progress,
+                     const CancelToken* cancel, Team* team);
 
 /// Whether the job asks for a family.
 bool wants(const ChartJob& job, const std::string& family);

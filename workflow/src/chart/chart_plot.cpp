@@ -18,7 +18,7 @@ constexpr double least_error = 1e-6, least_s = 1e-5;
 
 struct Place {
   const ChartPoint* point;
-  double time, error;   // s, %
+  double time, error;  // s, %
 };
 
 std::vector<Place> places(const ChartSummary& summary, std::size_t channel, bool prepared) {
@@ -29,8 +29,8 @@ std::vector<Place> places(const ChartSummary& summary, std::size_t channel, bool
   return out;
 }
 
-// One look for each family; models before the filter bank share one. Dashed: as many electrons as an
-// accuracy takes.
+// One look for each family; models before the filter bank share one. Dashed: as many electrons as
+// an accuracy takes.
 struct Look {
   const char* legend;
   int color;
@@ -55,16 +55,20 @@ io::PlotPanel panel(const ChartSummary& summary, std::size_t channel, bool prepa
   io::PlotPanel panel;
   const std::string& name = summary.points.front().channels[channel].name;
   panel.title = fmt::format("{}, {}", name, prepared ? "all prepared" : "from nothing");
-  panel.x = {prepared ? "time of the image alone (s)" : "time with scene, library, training (s)", true, {}};
+  panel.x = {prepared ? "time of the image alone (s)" : "time with scene, library, training (s)",
+             true,
+             {}};
   panel.y = {fmt::format("rms error of {} (%)", name), true, {}};
   const std::vector<Place> all = places(summary, channel, prepared);
-  const auto [low, high] = std::minmax_element(all.begin(), all.end(), [](const Place& a, const Place& b) { return a.error < b.error; });
+  const auto [low, high] = std::minmax_element(
+      all.begin(), all.end(), [](const Place& a, const Place& b) { return a.error < b.error; });
   panel.y.range = io::PlotAxis::Range{low->error / 1.8, high->error * 1.8};
   std::vector<Look> looks;
   for (const Place& p : all) {
     const Look look = look_of(p.point->family);
-    if (!p.point->is_default &&
-        std::none_of(looks.begin(), looks.end(), [&](const Look& l) { return l.legend == std::string_view(look.legend); }))
+    if (!p.point->is_default && std::none_of(looks.begin(), looks.end(), [&](const Look& l) {
+          return l.legend == std::string_view(look.legend);
+        }))
       looks.push_back(look);
   }
   for (const Look& look : looks) {
@@ -74,7 +78,8 @@ io::PlotPanel panel(const ChartSummary& summary, std::size_t channel, bool prepa
     series.style = look.style;
     series.dashed = look.dashed;
     for (const Place& p : all)
-      if (!p.point->is_default && look_of(p.point->family).legend == std::string_view(look.legend)) {
+      if (!p.point->is_default &&
+          look_of(p.point->family).legend == std::string_view(look.legend)) {
         series.x.push_back(p.time);
         series.y.push_back(p.error);
       }
@@ -89,10 +94,12 @@ io::PlotPanel panel(const ChartSummary& summary, std::size_t channel, bool prepa
   for (const ChartChoice& choice : summary.choices)
     for (const Place& p : all)
       if (p.point->id == choice.id)
-        panel.notes.push_back({fmt::format("accuracy {}", format_share(choice.accuracy)), p.time, p.error});
+        panel.notes.push_back(
+            {fmt::format("accuracy {}", format_share(choice.accuracy)), p.time, p.error});
   const double floor = summary.reference[channel].error.reference_noise;
   if (floor > 0)
-    panel.references.push_back({io::PlotDirection::horizontal, 100 * floor, "noise of the reference"});
+    panel.references.push_back(
+        {io::PlotDirection::horizontal, 100 * floor, "noise of the reference"});
   return panel;
 }
 
@@ -100,12 +107,14 @@ io::PlotPanel panel(const ChartSummary& summary, std::size_t channel, bool prepa
 
 io::Plot chart_plot(const ChartJob& job, const ChartSummary& summary) {
   io::Plot plot;
-  plot.title = fmt::format("{}: time against error", job.scene.title.empty() ? "scene" : job.scene.title);
+  plot.title =
+      fmt::format("{}: time against error", job.scene.title.empty() ? "scene" : job.scene.title);
   const std::size_t channels = summary.points.front().channels.size();
   for (const bool prepared : {false, true})
     for (std::size_t c = 0; c < channels; ++c) {
       plot.panels.push_back(panel(summary, c, prepared));
-      plot.panels.back().legend = plot.panels.size() == channels;   // beside the last of the first row
+      plot.panels.back().legend =
+          plot.panels.size() == channels;  // beside the last of the first row
     }
   plot.columns = static_cast<int>(channels);
   plot.width_px = 1800;

@@ -12,7 +12,8 @@ namespace {
 
 constexpr double most_rms = 1.1, most_short = 0.02, missed_by = 1.1;
 
-// How many of every `step`-th pixel fit so that as much is left on both sides, and the first of them.
+// How many of every `step`-th pixel fit so that as much is left on both sides, and the first of
+// them.
 std::pair<int, int> fit(int pixels, int step) {
   int count = (pixels - 1) / step + 1;
   if ((pixels - 1 - step * (count - 1)) % 2 != 0) --count;
@@ -49,14 +50,17 @@ Reference read_reference(const Image& image, const ComparedPixels& pixels, doubl
   out.pixels = pixels;
   out.accuracy_floor = accuracy_floor;
   const Channel* valid = image.find("valid");
-  for (std::size_t i = 0; i < static_cast<std::size_t>(pixels.width) * static_cast<std::size_t>(pixels.height); ++i)
+  for (std::size_t i = 0;
+       i < static_cast<std::size_t>(pixels.width) * static_cast<std::size_t>(pixels.height); ++i)
     out.seen.push_back(!valid || valid->values.data()[i] > 0.5f);
   if (std::find(out.seen.begin(), out.seen.end(), true) == out.seen.end())
-    throw InvalidInput("scene", "the beam meets the specimen in none of the pixels", "Check `scan.region` and the specimen");
+    throw InvalidInput("scene", "the beam meets the specimen in none of the pixels",
+                       "Check `scan.region` and the specimen");
   for (const char* name : {"SE", "BSE"}) {
     const Channel *value = image.find(name), *error = image.find(std::string(name) + ".stderr");
     if (!value || !error)
-      throw InvalidInput("reference.exr", std::string("there is no channel ") + name, "Delete the file: it is made again");
+      throw InvalidInput("reference.exr", std::string("there is no channel ") + name,
+                         "Delete the file: it is made again");
     ComparedChannel channel{name, {}, {}};
     for (std::size_t i = 0; i < out.seen.size(); ++i) {
       if (!out.seen[i]) continue;
@@ -74,7 +78,8 @@ void judge(const Reference& reference, const std::vector<ComparedChannel>& chann
   point.targets.clear();
   for (std::size_t c = 0; c < channels.size(); ++c) {
     const ComparedChannel &a = channels[c], &r = reference.channels[c];
-    point.channels.push_back({a.name, image_error(a.values, a.standard_errors, r.values, r.standard_errors)});
+    point.channels.push_back(
+        {a.name, image_error(a.values, a.standard_errors, r.values, r.standard_errors)});
   }
   for (const double accuracy : accuracies) {
     ChartTarget target;
@@ -91,7 +96,8 @@ void judge(const Reference& reference, const std::vector<ComparedChannel>& chann
         squares += (off * off - r.standard_errors[i] * r.standard_errors[i]) / (asked * asked);
         if (known && a.standard_errors[i] > missed_by * asked) missed[i] = true;
       }
-      target.rms = std::max(target.rms, std::sqrt(std::max(0.0, squares / static_cast<double>(a.values.size()))));
+      target.rms = std::max(
+          target.rms, std::sqrt(std::max(0.0, squares / static_cast<double>(a.values.size()))));
     }
     target.short_of = static_cast<double>(std::count(missed.begin(), missed.end(), true)) /
                       static_cast<double>(missed.size());

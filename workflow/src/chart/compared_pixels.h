@@ -11,8 +11,8 @@
 
 namespace surf::workflow {
 
-/// Pixels of a scan that lie evenly spread and symmetrically about its middle, so that they are a scan
-/// of their own, in the same places: every `step`-th along x and y from `first_x`, `first_y`.
+/// Pixels of a scan that lie evenly spread and symmetrically about its middle, so that they are a
+/// scan of their own, in the same places: every `step`-th along x and y from `first_x`, `first_y`.
 struct ComparedPixels {
   int step = 1, first_x = 0, first_y = 0, width = 0, height = 0;
 };
@@ -26,14 +26,14 @@ mc::ScanRequest request_for(const ComparedPixels& pixels, const mc::Scan& scan);
 /// One channel at the compared pixels that the reference sees.
 struct ComparedChannel {
   std::string name;
-  std::vector<double> values, standard_errors;   ///< the latter may be empty
+  std::vector<double> values, standard_errors;  ///< the latter may be empty
 };
 
 /// The reference, as its file holds it.
 struct Reference {
   ComparedPixels pixels;
-  std::vector<bool> seen;                    ///< whether the beam meets the specimen
-  std::vector<ComparedChannel> channels;     ///< SE and BSE
+  std::vector<bool> seen;                 ///< whether the beam meets the specimen
+  std::vector<ComparedChannel> channels;  ///< SE and BSE
   double accuracy_floor = 0;
 };
 
@@ -43,7 +43,8 @@ Reference read_reference(const Image& image, const ComparedPixels& pixels, doubl
 /// Takes from an image of the whole scan what is compared. `value(channel, x, y)` and, unless null,
 /// `error` alike.
 template <class Value, class Error>
-std::vector<ComparedChannel> take_compared(const Reference& reference, const Value& value, const Error* error) {
+std::vector<ComparedChannel> take_compared(const Reference& reference, const Value& value,
+                                           const Error* error) {
   std::vector<ComparedChannel> out;
   const ComparedPixels& p = reference.pixels;
   for (std::size_t c = 0; c < reference.channels.size(); ++c) {

@@ -19,4 +19,4 @@ std::optional<nlohmann::ordered_json> kept_point(const std::filesystem::path& pa
 /// What a file holds; nothing where there is none or it is damaged.
 std::optional<nlohmann::ordered_json> read_json(const std::filesystem::path& path);
 
-}   // namespace surf::workflow
+}  // namespace surf::workflow

@@ -13,9 +13,9 @@
 #include "chart_methods.h"
 #include "surf/core/error.h"
 #include "surf/io/model_file.h"
-#include "surf/mc/physics/electron_range.h"
 #include "surf/mc/geometry/scene.h"
 #include "surf/mc/geometry/surface_view.h"
+#include "surf/mc/physics/electron_range.h"
 #include "surf/sem/filter_bank.h"
 #include "surf/workflow/train_job.h"
 
@@ -25,7 +25,7 @@ namespace {
 namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
-constexpr int repeats = 3;        // of what is over sooner than this:
+constexpr int repeats = 3;  // of what is over sooner than this:
 constexpr double short_s = 0.5;
 // Models look past the image's edge: so far, unless that is more than so many pixels.
 constexpr double margin_ranges = 2;
@@ -44,7 +44,8 @@ std::optional<std::string> obstacle(const ChartSetting& setting) {
     return "they are for a parallel beam from straight above";
   if (std::abs(setting.scan.pixel_x_nm - setting.scan.pixel_y_nm) > 1e-9 * setting.scan.pixel_x_nm)
     return "they are for square pixels";
-  if (setting.scan.width < 2 || setting.scan.height < 2) return "they need an image of two pixels or more each way";
+  if (setting.scan.width < 2 || setting.scan.height < 2)
+    return "they need an image of two pixels or more each way";
   const mc::Scene scene(s.specimen, s.beam, setting.scan, s.physics);
   if (scene.materials().size() != 1) return "they are for one material";
   const Image view = mc::surface_view(scene, setting.job.threads);
@@ -56,28 +57,34 @@ std::optional<std::string> obstacle(const ChartSetting& setting) {
 
 const mc::Material& material_of(const io::SceneFile& scene) {
   const mc::Specimen& s = scene.specimen;
-  const int used = s.height_field ? s.height_field->material : s.bodies.empty() ? s.substrate->material : s.bodies[0].material;
+  const int used = s.height_field     ? s.height_field->material
+                   : s.bodies.empty() ? s.substrate->material
+                                      : s.bodies[0].material;
   return s.materials[static_cast<std::size_t>(used)];
 }
 
 struct Heights {
   HeightField field;
-  int margin = 0;   // pixels on each side that are not in the image
+  int margin = 0;  // pixels on each side that are not in the image
 };
 
 // What the beam sees from above, past the image's edge.
 Heights heights_of(const ChartSetting& setting) {
   const io::SceneFile& s = setting.job.scene;
-  const double range_px =
-      margin_ranges * mc::kanaya_okayama_range_nm(material_of(s), s.beam.energy_ev) / setting.scan.pixel_x_nm;
-  for (const int margin : {static_cast<int>(std::min<double>(most_margin_px, std::ceil(range_px))), 0}) {
+  const double range_px = margin_ranges *
+                          mc::kanaya_okayama_range_nm(material_of(s), s.beam.energy_ev) /
+                          setting.scan.pixel_x_nm;
+  for (const int margin :
+       {static_cast<int>(std::min<double>(most_margin_px, std::ceil(range_px))), 0}) {
     mc::Scan scan = setting.scan;
     scan.width += 2 * margin;
     scan.height += 2 * margin;
-    const Image view = mc::surface_view(mc::Scene(s.specimen, s.beam, scan, s.physics), setting.job.threads);
+    const Image view =
+        mc::surface_view(mc::Scene(s.specimen, s.beam, scan, s.physics), setting.job.threads);
     const auto& valid = view.find("valid")->values.data();
     // The specimen may end with the image.
-    if (margin > 0 && std::any_of(valid.begin(), valid.end(), [](float v) { return v < 0.5f; })) continue;
+    if (margin > 0 && std::any_of(valid.begin(), valid.end(), [](float v) { return v < 0.5f; }))
+      continue;
     Heights out;
     out.margin = margin;
     out.field.z_nm = Grid<double>(scan.width, scan.height);
@@ -99,7 +106,8 @@ TrainJob training(const ChartSetting& setting, const LearnOptions& learn, const 
   out.energy_ev = job.scene.beam.energy_ev;
   out.spot_nm = job.scene.beam.spot_nm;
   out.physics = job.scene.physics;
-  out.simulation.budget = mc::ElectronsPerPixel{job.quick ? std::min(job.training_electrons, quick_electrons) : job.training_electrons};
+  out.simulation.budget = mc::ElectronsPerPixel{
+      job.quick ? std::min(job.training_electrons, quick_electrons) : job.training_electrons};
   out.simulation.threads = job.threads;
   out.simulation.seed = job.seed;
   out.learn = learn;
@@ -118,8 +126,9 @@ TrainJob training_of_images(const ChartSetting& setting) {
 
 fs::path times_of_images(const TrainJob& job) { return job.images / "seconds.json"; }
 
-void predict(const LearnOptions& learn, const std::string& id, bool needs_images, const ChartSetting& setting,
-             const ProgressCallback& progress, const CancelToken* cancel, ChartPoint& point) {
+void predict(const LearnOptions& learn, const std::string& id, bool needs_images,
+             const ChartSetting& setting, const ProgressCallback& progress,
+             const CancelToken* cancel, ChartPoint& point) {
   const auto part = [&](double from, double to) -> ProgressCallback {
     return [&progress, from, to](double done, double total) {
       if (progress && total > 0) progress(from + (to - from) * done / total, 1);
@@ -131,7 +140,7 @@ void predict(const LearnOptions& learn, const std::string& id, bool needs_images
     preparation_s = read_seconds(times_of_images(training_of_images(setting)));
   }
   TrainJob job = training(setting, learn, id);
-  if (!needs_images) job.surfaces.reset();   // none, where nothing asks for images
+  if (!needs_images) job.surfaces.reset();  // none, where nothing asks for images
   Reporter reporter;
   const ProgressCallback show = part(0.5, 0.9);
   reporter.on_progress = [&](double done, double total, std::string_view things) {
@@ -164,7 +173,8 @@ void predict(const LearnOptions& learn, const std::string& id, bool needs_images
     const auto& image = images[static_cast<std::size_t>(at - names.begin())];
     return image(x + heights.margin, y + heights.margin);
   };
-  judge(*setting.reference, take_compared(*setting.reference, value, static_cast<const decltype(value)*>(nullptr)),
+  judge(*setting.reference,
+        take_compared(*setting.reference, value, static_cast<const decltype(value)*>(nullptr)),
         setting.accuracies, point);
 }
 
@@ -178,8 +188,8 @@ std::vector<FacetScale> first_scales(int count, bool uniform) {
 
 }  // namespace
 
-ManyDone make_images(const ChartSetting& setting, const ProgressCallback& progress, const CancelToken* cancel,
-                     Team* team) {
+ManyDone make_images(const ChartSetting& setting, const ProgressCallback& progress,
+                     const CancelToken* cancel, Team* team) {
   const TrainJob job = training_of_images(setting);
   std::vector<TrainingSurface> surfaces;
   together(team, [&] { surfaces = gather_surfaces(job, *job.surfaces, {}); });
@@ -209,8 +219,9 @@ ChartMethods list_models(const ChartSetting& setting) {
     out.left_out.push_back("fast models: " + *reason);
     return out;
   }
-  const auto add = [&](const std::string& family, const std::string& id, const std::string& setting_text,
-                       const LearnOptions& learn, bool needs_images = true) {
+  const auto add = [&](const std::string& family, const std::string& id,
+                       const std::string& setting_text, const LearnOptions& learn,
+                       bool needs_images = true) {
     if (!wants(job, family)) return;
     ChartMethod method{id, family, setting_text, false, {}};
     method.run = [learn, id, needs_images](const ChartSetting& s, const ProgressCallback& progress,
@@ -226,7 +237,8 @@ ChartMethods list_models(const ChartSetting& setting) {
     return learn;
   };
   add("facet-network", "facet-network", "as train makes it", kind("facet-network"));
-  for (const int scales : job.quick ? std::vector<int>{2, 10} : std::vector<int>{1, 2, 3, 5, 7, 10}) {
+  for (const int scales :
+       job.quick ? std::vector<int>{2, 10} : std::vector<int>{1, 2, 3, 5, 7, 10}) {
     LearnOptions bank = kind("filter-bank");
     bank.scales = first_scales(scales, false);
     add("filter-bank", fmt::format("filter-bank-{}", scales),
@@ -235,8 +247,8 @@ ChartMethods list_models(const ChartSetting& setting) {
   for (const int scales : job.quick ? std::vector<int>{10} : std::vector<int>{3, 10}) {
     LearnOptions bank = kind("filter-bank");
     bank.scales = first_scales(scales, true);
-    add("filter-bank", fmt::format("filter-bank-{}-uniform", scales), fmt::format("{} scales, uniform weights", scales),
-        bank);
+    add("filter-bank", fmt::format("filter-bank-{}-uniform", scales),
+        fmt::format("{} scales, uniform weights", scales), bank);
   }
   LearnOptions coarse = kind("filter-bank");
   coarse.scales = first_scales(10, false);
@@ -246,7 +258,8 @@ ChartMethods list_models(const ChartSetting& setting) {
     if (k.name != "facet-network" && k.name != "filter-bank") {
       LearnOptions learn = kind(k.name.c_str());
       if (job.quick && !k.needs_images) learn.table_electrons = quick_table;
-      add(k.name, k.name, k.needs_images ? "gain learnt from images" : "from Monte Carlo of its own", learn,
+      add(k.name, k.name,
+          k.needs_images ? "gain learnt from images" : "from Monte Carlo of its own", learn,
           k.needs_images);
     }
   return out;

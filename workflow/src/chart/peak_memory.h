@@ -8,7 +8,7 @@ namespace surf::workflow {
 class PeakMemory {
  public:
   PeakMemory();
-  double bytes() const;   ///< 0 where it is not known
+  double bytes() const;  ///< 0 where it is not known
 
  private:
   double before_ = 0;

@@ -19,4 +19,4 @@ io::PlotSeries front_series(const std::vector<Trade>& trades) {
   return front;
 }
 
-}   // namespace surf::workflow
+}  // namespace surf::workflow

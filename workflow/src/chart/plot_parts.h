@@ -11,4 +11,4 @@ namespace surf::workflow {
 /// The Pareto front as steps: between two of its points the earlier one's error is to be had.
 io::PlotSeries front_series(const std::vector<Trade>& trades);
 
-}   // namespace surf::workflow
+}  // namespace surf::workflow

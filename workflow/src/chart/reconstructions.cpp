@@ -31,11 +31,13 @@ double rms_under_sem(const HeightField& surface, const SampleTruth& sample) {
 /// Writes down when each scale ended and how far its surface was off; looking is not counted.
 class Steps : public ReconstructionJournal {
  public:
-  Steps(const HeightField& truth, std::vector<ReconstructionStep>& steps) : truth_(truth), steps_(steps) {}
+  Steps(const HeightField& truth, std::vector<ReconstructionStep>& steps)
+      : truth_(truth), steps_(steps) {}
   std::optional<ReconstructionState> found() override { return {}; }
   void keep(const ReconstructionState& state) override {
     const auto asked = Clock::now();
-    steps_.push_back({state.scales.back().sigma_px, std::chrono::duration<double>(asked - begin_).count(),
+    steps_.push_back({state.scales.back().sigma_px,
+                      std::chrono::duration<double>(asked - begin_).count(),
                       rms_off(state.surface, truth_)});
     begin_ += Clock::now() - asked;
   }
@@ -58,27 +60,26 @@ void count(const Reconstruction& r, ReconstructionPoint& point) {
 
 enum class Data { afm, sem, both };
 
-void measure(Data data, ReconstructionOptions options, const ChainSetting& setting, const Watch& watch,
-             ReconstructionPoint& point) {
+void measure(Data data, ReconstructionOptions options, const ChainSetting& setting,
+             const Watch& watch, ReconstructionPoint& point) {
   const SampleTruth& sample = setting.sample;
   options.uncertainty = false;
   options.threads = setting.job.threads;
   options.watch = watch;
   Steps steps(sample.truth, point.steps);
-  // The scan alone is reconstructed on its own samples: only the end is brought over to the truth's.
-  const Reconstruction r =
-      reconstruct(data == Data::sem ? nullptr : &sample.afm, data == Data::afm ? nullptr : &sample.sem,
-                  options, data == Data::afm ? nullptr : &steps);
+  // The scan alone is reconstructed on its own samples: only the end is brought over to the
+  // truth's.
+  const Reconstruction r = reconstruct(data == Data::sem ? nullptr : &sample.afm,
+                                       data == Data::afm ? nullptr : &sample.sem, options,
+                                       data == Data::afm ? nullptr : &steps);
   const double run_s = steps.seconds();
   count(r, point);
   const double sigma_px = r.scales.empty() ? 0 : r.scales.back().sigma_px;
   const ReconstructionStep end{
       sigma_px, run_s,
       data == Data::afm ? rms_under_sem(r.surface, sample) : rms_off(r.surface, sample.truth)};
-  if (point.steps.empty())
-    point.steps.push_back(end);
-  else
-    point.steps.back() = end;   // the last scale's, with what follows it
+  if (point.steps.empty()) point.steps.push_back(end);
+  else point.steps.back() = end;  // the last scale's, with what follows it
 }
 
 void erode_alone(const ChainSetting& setting, const Watch& watch, ReconstructionPoint& point) {
@@ -109,9 +110,10 @@ void whole_chain(const ChainSetting& setting, const Watch& watch, Reconstruction
     if (stage == "reconstruction") prepared_s = seconds_since(begin);
     stages += 1;
   };
-  constexpr double all_stages = 5;   // model, scan, registration, calibration, reconstruction
+  constexpr double all_stages = 5;  // model, scan, registration, calibration, reconstruction
   reporter.on_progress = [&](double done, double total, std::string_view) {
-    if (total > 0) watch.report(std::min(all_stages, std::max(stages, 1.0) - 1 + done / total), all_stages);
+    if (total > 0)
+      watch.report(std::min(all_stages, std::max(stages, 1.0) - 1 + done / total), all_stages);
   };
   const ReconstructSummary s = run(job, reporter);
   if (s.verdict == ReconstructionVerdict::not_registered)
@@ -122,12 +124,13 @@ void whole_chain(const ChainSetting& setting, const Watch& watch, Reconstruction
                   seconds_since(begin) - prepared_s, s.truth->rms_nm}};
 }
 
-}   // namespace
+}  // namespace
 
 std::vector<ChainMethod<ReconstructionPoint>> list_reconstructions(const ChainChartJob& job) {
   using Run = std::function<void(const ChainSetting&, const Watch&, ReconstructionPoint&)>;
   std::vector<ChainMethod<ReconstructionPoint>> out;
-  const auto add = [&](const std::string& family, const std::string& id, const std::string& text, Run run) {
+  const auto add = [&](const std::string& family, const std::string& id, const std::string& text,
+                       Run run) {
     if (!wants(job, family)) return;
     ReconstructionPoint point;
     point.id = id;
@@ -141,9 +144,10 @@ std::vector<ChainMethod<ReconstructionPoint>> list_reconstructions(const ChainCh
     o.method = method;
     o.iterations = iterations;
     o.tolerance = tolerance;
-    add(name(method), id, text, [o](const ChainSetting& s, const Watch& watch, ReconstructionPoint& p) {
-      measure(Data::both, o, s, watch, p);
-    });
+    add(name(method), id, text,
+        [o](const ChainSetting& s, const Watch& watch, ReconstructionPoint& p) {
+          measure(Data::both, o, s, watch, p);
+        });
   };
   add("erosion", "erosion", "the scan with the tip taken off", erode_alone);
   ReconstructionOptions one;
@@ -176,4 +180,4 @@ std::vector<ChainMethod<ReconstructionPoint>> list_reconstructions(const ChainCh
   return out;
 }
 
-}   // namespace surf::workflow
+}  // namespace surf::workflow

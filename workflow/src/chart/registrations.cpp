@@ -18,9 +18,9 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr double degree = std::numbers::pi / 180;
-constexpr double part = 0.85;                   // of the image's sides that a draw sees
-constexpr double captured = 0.9;                // of the draws
-constexpr std::uint64_t draw_stream = 0x9e57;   // apart from all other uses of the seed
+constexpr double part = 0.85;                  // of the image's sides that a draw sees
+constexpr double captured = 0.9;               // of the draws
+constexpr std::uint64_t draw_stream = 0x9e57;  // apart from all other uses of the seed
 
 enum class Way { correlation, mutual_information, search, landmarks, landmarks_only };
 
@@ -80,8 +80,8 @@ void measure(Way way, const ChainSetting& setting, const Watch& watch, Registrat
     const RegistrationDraw draw =
         draw_registration(setting.sample, point.offset_px, point.offset_deg, setting.job.seed, i);
     const auto begin = Clock::now();
-    const auto map =
-        registered(way, setting, draw, watch.part(double(i) / point.draws, double(i + 1) / point.draws));
+    const auto map = registered(way, setting, draw,
+                                watch.part(double(i) / point.draws, double(i + 1) / point.draws));
     times.push_back(std::chrono::duration<double>(Clock::now() - begin).count());
     if (!map) continue;
     const double off =
@@ -95,17 +95,19 @@ void measure(Way way, const ChainSetting& setting, const Watch& watch, Registrat
   point.median_s = median(times);
 }
 
-}   // namespace
+}  // namespace
 
 double registration_error_px(const Affine& truth, const Affine& found, const PlacedImage& sem,
                              const PlacedImage& simulated) {
-  const Point2 last = simulated.place_nm(simulated.values.width() - 1, simulated.values.height() - 1);
+  const Point2 last =
+      simulated.place_nm(simulated.values.width() - 1, simulated.values.height() - 1);
   double sum = 0;
   int count = 0;
   for (int y = 0; y < sem.values.height(); y += 3)
     for (int x = 0; x < sem.values.width(); x += 3) {
       const Point2 p = sem.place_nm(x, y), a = truth(p), b = found(p);
-      if (a.x < simulated.origin_x_nm || a.y < simulated.origin_y_nm || a.x > last.x || a.y > last.y)
+      if (a.x < simulated.origin_x_nm || a.y < simulated.origin_y_nm || a.x > last.x ||
+          a.y > last.y)
         continue;
       const double dx = a.x - b.x, dy = a.y - b.y;
       sum += dx * dx + dy * dy;
@@ -120,7 +122,9 @@ RegistrationDraw draw_registration(const SampleTruth& sample, double offset_px, 
   const PlacedImage& whole = sample.sem.image;
   const auto size = [](int all) { return static_cast<int>(std::lround(part * all)); };
   const int width = size(whole.values.width()), height = size(whole.values.height());
-  const auto first = [&](int all, int some) { return static_cast<int>(random.uniform() * (all - some + 1)); };
+  const auto first = [&](int all, int some) {
+    return static_cast<int>(random.uniform() * (all - some + 1));
+  };
   const int x0 = first(whole.values.width(), width), y0 = first(whole.values.height(), height);
   RegistrationDraw draw;
   draw.sem = part_of(whole, x0, y0, width, height);
@@ -148,7 +152,8 @@ RegistrationDraw draw_registration(const SampleTruth& sample, double offset_px, 
 std::vector<ChainMethod<RegistrationPoint>> list_registrations(const ChainChartJob& job) {
   const std::vector<double> shifts =
       job.quick ? std::vector<double>{4, 16} : std::vector<double>{2, 4, 8, 16, 32, 64};
-  const std::vector<double> turns = job.quick ? std::vector<double>{} : std::vector<double>{2, 5, 10, 20};
+  const std::vector<double> turns =
+      job.quick ? std::vector<double>{} : std::vector<double>{2, 5, 10, 20};
   std::vector<ChainMethod<RegistrationPoint>> out;
   const auto add = [&](const std::string& family, Way way, double px, double deg) {
     if (!wants(job, family)) return;
@@ -160,9 +165,8 @@ std::vector<ChainMethod<RegistrationPoint>> list_registrations(const ChainChartJ
                                : fmt::format("{}-{:g}px", family, px);
     point.offset_px = px;
     point.offset_deg = deg;
-    out.push_back({std::move(point), [way](const ChainSetting& s, const Watch& watch, RegistrationPoint& p) {
-                     measure(way, s, watch, p);
-                   }});
+    out.push_back({std::move(point), [way](const ChainSetting& s, const Watch& watch,
+                                           RegistrationPoint& p) { measure(way, s, watch, p); }});
   };
   for (const auto& [family, way] : {std::pair{"correlation", Way::correlation},
                                     std::pair{"mutual-information", Way::mutual_information}}) {
@@ -171,7 +175,7 @@ std::vector<ChainMethod<RegistrationPoint>> list_registrations(const ChainChartJ
   }
   for (const auto& [family, way] :
        {std::pair{"landmarks", Way::landmarks}, std::pair{"landmarks-only", Way::landmarks_only}}) {
-    if (way == Way::landmarks_only)   // what is a tenth of a pixel off is right to begin with
+    if (way == Way::landmarks_only)  // what is a tenth of a pixel off is right to begin with
       for (const double px : {0.1, 0.3, 1.0}) add(family, way, px, 0);
     for (const double px : shifts) add(family, way, px, 0);
   }
@@ -179,7 +183,8 @@ std::vector<ChainMethod<RegistrationPoint>> list_registrations(const ChainChartJ
   return out;
 }
 
-CaptureRange capture_range(const std::vector<RegistrationPoint>& points, const std::string& family) {
+CaptureRange capture_range(const std::vector<RegistrationPoint>& points,
+                           const std::string& family) {
   CaptureRange range;
   range.family = family;
   std::vector<const RegistrationPoint*> own;
@@ -191,8 +196,10 @@ CaptureRange capture_range(const std::vector<RegistrationPoint>& points, const s
       range.any_start = range.any_start || p.any_start;
     }
   range.median_s = median(times);
-  const auto largest = [&](double RegistrationPoint::*offset, std::optional<double>& found, bool& open) {
-    std::sort(own.begin(), own.end(), [&](const auto* a, const auto* b) { return a->*offset < b->*offset; });
+  const auto largest = [&](double RegistrationPoint::*offset, std::optional<double>& found,
+                           bool& open) {
+    std::sort(own.begin(), own.end(),
+              [&](const auto* a, const auto* b) { return a->*offset < b->*offset; });
     bool tried = false;
     open = true;
     for (const RegistrationPoint* p : own) {
@@ -211,4 +218,4 @@ CaptureRange capture_range(const std::vector<RegistrationPoint>& points, const s
   return range;
 }
 
-}   // namespace surf::workflow
+}  // namespace surf::workflow

@@ -58,7 +58,7 @@ void read_truth(const Json& t, SampleTruth& s) {
       h.z_nm(x, y) -= offset_nm + along_x * h.x_nm(x) + along_y * h.y_nm(y);
 }
 
-}   // namespace
+}  // namespace
 
 bool is_sample(const fs::path& folder) {
   std::error_code ignored;
@@ -67,20 +67,23 @@ bool is_sample(const fs::path& folder) {
 
 SampleTruth read_sample(const fs::path& folder) {
   if (!is_sample(folder))
-    throw UsageError(folder.string(),
-                     "it is a folder without truth.json: errors need a truth, which is known of samples only",
-                     "Make one with 'semsurf sample pads -o pads', and chart that");
+    throw UsageError(
+        folder.string(),
+        "it is a folder without truth.json: errors need a truth, which is known of samples only",
+        "Make one with 'semsurf sample pads -o pads', and chart that");
   SampleTruth s;
   s.scan = io::read_height_field(folder / "afm.gsf").field;
   const Image image = io::read_image(folder / "sem.tif");
-  if (image.channels.empty()) throw InvalidInput((folder / "sem.tif").string(), "it holds no signal", remedy);
+  if (image.channels.empty())
+    throw InvalidInput((folder / "sem.tif").string(), "it holds no signal", remedy);
   s.sem.image = placed(image);
   s.truth = io::read_height_field(folder / "truth.gsf").field;
   if (s.truth.z_nm.width() != image.width() || s.truth.z_nm.height() != image.height())
-    throw InvalidInput((folder / "truth.gsf").string(),
-                       fmt::format("it has {} x {} samples, and sem.tif {} x {} pixels", s.truth.z_nm.width(),
-                                   s.truth.z_nm.height(), image.width(), image.height()),
-                       remedy);
+    throw InvalidInput(
+        (folder / "truth.gsf").string(),
+        fmt::format("it has {} x {} samples, and sem.tif {} x {} pixels", s.truth.z_nm.width(),
+                    s.truth.z_nm.height(), image.width(), image.height()),
+        remedy);
   s.afm.tip = io::read_tip(folder / "truth_tip.gsf");
   s.json = io::read_file(folder / "truth.json");
   try {
@@ -96,14 +99,16 @@ void give_model(SampleTruth& s, const std::shared_ptr<const ImageModel>& model, 
   s.sem.model = model;
   s.sem.gains.clear();
   const Json gains = Json::parse(s.json).at("sem").at("gains");
-  for (const std::string& channel : model->channels()) s.sem.gains.push_back(gains.value(channel, 0.0));
+  for (const std::string& channel : model->channels())
+    s.sem.gains.push_back(gains.value(channel, 0.0));
   Grid<double> mean(s.truth.z_nm.width(), s.truth.z_nm.height(), s.sem.offset);
   ModelOptions options;
   options.threads = threads;
   const ModelImages made = model->predict(s.truth, options);
   for (std::size_t c = 0; c < made.size(); ++c)
-    for (std::size_t i = 0; i < mean.size(); ++i) mean.data()[i] += s.sem.gains[c] * made[c].data()[i];
+    for (std::size_t i = 0; i < mean.size(); ++i)
+      mean.data()[i] += s.sem.gains[c] * made[c].data()[i];
   s.sem.noise = fit_sem_noise(s.sem.image.values, mean, {}).noise;
 }
 
-}   // namespace surf::workflow
+}  // namespace surf::workflow

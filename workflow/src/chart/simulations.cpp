@@ -9,8 +9,8 @@
 #include "surf/core/error.h"
 #include "surf/core/units.h"
 #include "surf/mc/cascades/cascade_library.h"
-#include "surf/mc/sampling/choose_method.h"
 #include "surf/mc/geometry/scene.h"
+#include "surf/mc/sampling/choose_method.h"
 #include "surf/mc/simulate.h"
 #include "surf/workflow/simplify_specimen.h"
 
@@ -48,19 +48,23 @@ void simulate(const Simulation& what, const ChartSetting& setting, const Progres
     mc::Specimen specimen = scene.specimen;
     Simplification done;
     if (what.tolerance_nm > 0)
-      specimen = simplify_specimen(scene.specimen, what.tolerance_nm, scene.beam, setting.scan, scene.physics,
-                                   setting.job.threads, done);
+      specimen = simplify_specimen(scene.specimen, what.tolerance_nm, scene.beam, setting.scan,
+                                   scene.physics, setting.job.threads, done);
     const mc::Scene ready(specimen, scene.beam, setting.scan, scene.physics);
     const double building_s = seconds_since(start);
-    const mc::SimulationResult r = mc::simulate(ready, what.options, {.progress = progress, .cancel = cancel});
+    const mc::SimulationResult r =
+        mc::simulate(ready, what.options, {.progress = progress, .cancel = cancel});
     if (!r.complete) throw Interrupted();
     run_s.push_back(r.seconds);
     preparation_s.push_back(building_s + r.library_seconds);
     if (i == 0) {
       point.primaries = r.balance.incident;
       const auto value = [&](std::size_t d, int x, int y) { return r.yield(d, x, y).mean; };
-      const auto error = [&](std::size_t d, int x, int y) { return r.yield(d, x, y).standard_error; };
-      judge(*setting.reference, take_compared(*setting.reference, value, &error), setting.accuracies, point);
+      const auto error = [&](std::size_t d, int x, int y) {
+        return r.yield(d, x, y).standard_error;
+      };
+      judge(*setting.reference, take_compared(*setting.reference, value, &error),
+            setting.accuracies, point);
     }
     if (seconds_since(start) > short_s) break;
   }
@@ -74,13 +78,15 @@ class List {
       : setting_(setting), pixels_(static_cast<double>(setting.scan.width) * setting.scan.height) {
     options_.seed = setting.job.seed;
     options_.threads = setting.job.threads;
-    if (mc::accuracy_of(setting.job.scene.budget) > 0) floor_ = mc::floor_of(setting.job.scene.budget);
+    if (mc::accuracy_of(setting.job.scene.budget) > 0)
+      floor_ = mc::floor_of(setting.job.scene.budget);
   }
 
   ChartMethods out;
 
   void electrons(const char* family, mc::Method method, std::int64_t n) {
-    const double most = setting_.job.most_primaries * (method == mc::Method::direct ? direct_share : 1);
+    const double most =
+        setting_.job.most_primaries * (method == mc::Method::direct ? direct_share : 1);
     const std::string text = fmt::format("{} electrons per pixel", n);
     if (static_cast<double>(n) * pixels_ > most) return too_long(family, text);
     Simulation what{options_, 0};
@@ -91,8 +97,12 @@ class List {
 
   void accuracy(const char* family, mc::Method method, bool control, double accuracy) {
     // Of a primary that counts 0 or 1, three times of four 0; where planes help fewer are enough.
-    const double each = (method == mc::Method::direct ? 3 : control ? 0.3 : 3) / (accuracy * accuracy);
-    const double most = setting_.job.most_primaries * (method == mc::Method::direct ? direct_share : 1);
+    const double each = (method == mc::Method::direct ? 3
+                         : control                    ? 0.3
+                                                      : 3) /
+                        (accuracy * accuracy);
+    const double most =
+        setting_.job.most_primaries * (method == mc::Method::direct ? direct_share : 1);
     const std::string text = fmt::format("{} accuracy", format_share(accuracy));
     if (each * pixels_ > most) return too_long(family, text);
     Simulation what{options_, 0};
@@ -107,7 +117,9 @@ class List {
     what.options.method = mc::Method::replay;
     what.options.budget = mc::Accuracy{accuracy, floor_};
     add("mesh-tolerance", fmt::format("mesh-tolerance-{:g}nm", nm),
-        fmt::format("detail below {} left out, {} accuracy", format_length(nm), format_share(accuracy)), what);
+        fmt::format("detail below {} left out, {} accuracy", format_length(nm),
+                    format_share(accuracy)),
+        what);
   }
 
   // What `simulate` does with the scene as it is.
@@ -119,20 +131,22 @@ class List {
     const mc::Scene scene(s.specimen, s.beam, setting_.scan, s.physics);
     what.options.method = mc::choose_method(scene, what.options, s.method).method;
     const std::string text = accuracy > 0 ? fmt::format("{} accuracy", format_share(accuracy))
-                                          : fmt::format("{:g} electrons per pixel", mc::mean_electrons_of(what.options.budget));
+                                          : fmt::format("{:g} electrons per pixel",
+                                                        mc::mean_electrons_of(what.options.budget));
     add("default", "default", fmt::format("{}, {}", text, mc::name(what.options.method)), what);
     out.methods.back().is_default = true;
   }
 
  private:
   void too_long(const char* family, const std::string& text) {
-    out.left_out.push_back(fmt::format("{}, {}: more than {:.2g} primaries in the whole image", family, text,
-                                       setting_.job.most_primaries));
+    out.left_out.push_back(fmt::format("{}, {}: more than {:.2g} primaries in the whole image",
+                                       family, text, setting_.job.most_primaries));
   }
 
   void add(const char* family, std::string id, std::string text, const Simulation& what) {
     ChartMethod method{std::move(id), family, std::move(text), false, {}};
-    method.run = [what](const ChartSetting& setting, const ProgressCallback& progress, const CancelToken* cancel,
+    method.run = [what](const ChartSetting& setting, const ProgressCallback& progress,
+                        const CancelToken* cancel,
                         ChartPoint& point) { simulate(what, setting, progress, cancel, point); };
     out.methods.push_back(std::move(method));
   }
@@ -148,9 +162,10 @@ class List {
 std::string percent_text(double share) { return fmt::format("{:.6g}", 100 * share); }
 
 std::string id_of_accuracy(mc::Method method, bool planar_control, double accuracy) {
-  return fmt::format("{}-{}%", method == mc::Method::direct ? "direct-accuracy"
-                               : planar_control              ? "accuracy"
-                                                             : "accuracy-without-planes",
+  return fmt::format("{}-{}%",
+                     method == mc::Method::direct ? "direct-accuracy"
+                     : planar_control             ? "accuracy"
+                                                  : "accuracy-without-planes",
                      percent_text(accuracy));
 }
 
@@ -159,17 +174,19 @@ ChartMethods list_simulations(const ChartSetting& setting) {
   List list(setting);
   const bool replays = mc::can_replay(job.scene.physics, job.scene.specimen.materials);
   if (!replays) list.out.left_out.push_back("replay: without continuous loss there is none");
-  const std::vector<std::int64_t> few = job.quick ? std::vector<std::int64_t>{10, 30}
-                                                  : std::vector<std::int64_t>{10, 30, 100, 300};
-  const std::vector<std::int64_t> many = job.quick ? std::vector<std::int64_t>{10, 100, 1000}
-                                                   : std::vector<std::int64_t>{10, 30, 100, 300, 1000, 3000, 10000};
+  const std::vector<std::int64_t> few =
+      job.quick ? std::vector<std::int64_t>{10, 30} : std::vector<std::int64_t>{10, 30, 100, 300};
+  const std::vector<std::int64_t> many =
+      job.quick ? std::vector<std::int64_t>{10, 100, 1000}
+                : std::vector<std::int64_t>{10, 30, 100, 300, 1000, 3000, 10000};
   if (wants(job, "default")) list.by_default();
   if (wants(job, "direct"))
     for (const std::int64_t n : few) list.electrons("direct", mc::Method::direct, n);
   if (replays && wants(job, "replay"))
     for (const std::int64_t n : many) list.electrons("replay", mc::Method::replay, n);
   for (const double accuracy : setting.accuracies) {
-    if (wants(job, "direct-accuracy")) list.accuracy("direct-accuracy", mc::Method::direct, false, accuracy);
+    if (wants(job, "direct-accuracy"))
+      list.accuracy("direct-accuracy", mc::Method::direct, false, accuracy);
     if (!replays) continue;
     if (wants(job, "accuracy")) list.accuracy("accuracy", mc::Method::replay, true, accuracy);
     if (wants(job, "accuracy-without-planes"))
@@ -180,7 +197,8 @@ ChartMethods list_simulations(const ChartSetting& setting) {
       list.out.left_out.push_back("mesh-tolerance: the specimen is no height field");
     } else {
       const double accuracy = setting.accuracies[setting.accuracies.size() / 2];
-      for (const double nm : job.quick ? std::vector<double>{1} : std::vector<double>{0.1, 0.3, 1, 3})
+      for (const double nm :
+           job.quick ? std::vector<double>{1} : std::vector<double>{0.1, 0.3, 1, 3})
         list.tolerance(nm, accuracy);
     }
   }

@@ -5,19 +5,21 @@
 
 namespace surf::workflow {
 
-/// What the thesis measured (table 10-1): sums of squared height differences of the eroded scan and of the
-/// reconstruction from scan and SEM image, and the time of the latter on a 1.3 GHz Pentium M. Its surfaces
-/// are others and its heights' number is not told, so that only the ratio can be compared.
+/// What the thesis measured (table 10-1): sums of squared height differences of the eroded scan and
+/// of the reconstruction from scan and SEM image, and the time of the latter on a 1.3 GHz Pentium
+/// M. Its surfaces are others and its heights' number is not told, so that only the ratio can be
+/// compared.
 struct ThesisPoint {
   const char* test;
-  bool real;   ///< against the eroded scan of a sharper tip; else against the true surface
+  bool real;  ///< against the eroded scan of a sharper tip; else against the true surface
   double afm_squares, both_squares;
   double hours;
 
-  double ratio() const { return std::sqrt(both_squares / afm_squares); }   ///< of root mean squares
+  double ratio() const { return std::sqrt(both_squares / afm_squares); }  ///< of root mean squares
 };
 
-inline constexpr const char* thesis_source = "Seeger 2004, table 10-1; 1.3 GHz Pentium M, other surfaces";
+inline constexpr const char* thesis_source =
+    "Seeger 2004, table 10-1; 1.3 GHz Pentium M, other surfaces";
 
 inline constexpr ThesisPoint thesis_points[] = {
     {"real data test 1", true, 15.7e6, 3.19e6, 3.5},
@@ -29,4 +31,4 @@ inline constexpr ThesisPoint thesis_points[] = {
     {"synthetic data test 5", false, 0.536e6, 0.0261e6, 3.5},
 };
 
-}   // namespace surf::workflow
+}  // namespace surf::workflow

@@ -65,8 +65,9 @@ class Cache {
 
   enum class Check { header, everything };
   /// The entries, the one used last first. `is_sound` says, after reading the first bytes of each
-  /// (`header`), that length, version and key are right, or, after reading all of it (`everything`),
-  /// that the checksum is too. Files that are not a cache's are left out. Marks nothing as used.
+  /// (`header`), that length, version and key are right, or, after reading all of it
+  /// (`everything`), that the checksum is too. Files that are not a cache's are left out. Marks
+  /// nothing as used.
   std::vector<CacheEntry> list(Check check = Check::header) const;
 
   /// Removes an entry, in use or not (who has loaded it keeps what was loaded). Returns whether it
@@ -83,8 +84,8 @@ class Cache {
 
 /// Where semsurf keeps its cache: `option` if it is not empty, else $SEMSURF_CACHE, else
 /// $XDG_CACHE_HOME/semsurf (if that is absolute, as its specification asks), else
-/// $HOME/.cache/semsurf. Empty, which is no cache, if the first of these that is set is "off", or if
-/// none is.
+/// $HOME/.cache/semsurf. Empty, which is no cache, if the first of these that is set is "off", or
+/// if none is.
 std::filesystem::path cache_folder(const std::string& option = {});
 
 }  // namespace surf::io

@@ -9,23 +9,24 @@
 
 namespace surf::io {
 
-/// The whole file, or what comes through a pipe such as the shell's <(command), once and at most 512 MiB.
-/// Throws FileError (missing, a folder, a device, a named pipe, unreadable, larger than `max_bytes`: that is
-/// judged before memory is taken).
+/// The whole file, or what comes through a pipe such as the shell's <(command), once and at most
+/// 512 MiB. Throws FileError (missing, a folder, a device, a named pipe, unreadable, larger than
+/// `max_bytes`: that is judged before memory is taken).
 std::string read_file(const std::filesystem::path& path,
                       std::size_t max_bytes = std::size_t{8} << 30);
 
-/// Throws FileError unless `path` is an ordinary file: for readers that open it themselves, or twice.
+/// Throws FileError unless `path` is an ordinary file: for readers that open it themselves, or
+/// twice.
 void require_regular_file(const std::filesystem::path& path);
 
-/// Calls `write(temporary)` with a name in the same folder and renames the result to `path`, so that
-/// a crash never leaves half a file under the real name. On failure the temporary is removed and
-/// FileError is thrown. Creates missing parent folders.
+/// Calls `write(temporary)` with a name in the same folder and renames the result to `path`, so
+/// that a crash never leaves half a file under the real name. On failure the temporary is removed
+/// and FileError is thrown. Creates missing parent folders.
 void write_atomically(const std::filesystem::path& path,
                       const std::function<void(const std::filesystem::path& temporary)>& write);
 
-/// Whether a file has the name of a temporary of `write_atomically`: one that is old was left behind
-/// by a process that was killed.
+/// Whether a file has the name of a temporary of `write_atomically`: one that is old was left
+/// behind by a process that was killed.
 bool is_temporary_name(const std::filesystem::path& path);
 
 /// Writes text through `write_atomically`.

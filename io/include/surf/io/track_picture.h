@@ -13,18 +13,20 @@
 namespace surf::io {
 
 struct TrackPictureOptions {
-  std::string title;             ///< above the picture; empty: none
-  std::string subtitle;          ///< smaller, below the title: beam, material ...
-  int width_px = 1600;           ///< 200 to 20000; PDF and SVG take 96 px for an inch
-  int height_px = 1200;          ///< the same
+  std::string title;     ///< above the picture; empty: none
+  std::string subtitle;  ///< smaller, below the title: beam, material ...
+  int width_px = 1600;   ///< 200 to 20000; PDF and SVG take 96 px for an inch
+  int height_px = 1200;  ///< the same
 
   /// The specimen's section: straight pieces in nm, drawn where their x and z lie; y is ignored.
   std::vector<std::array<Vec3, 2>> outline_nm;
 
   /// What is shown, in nm. By default the paths inside matter with some space around them, and more
-  /// of it above, where beam and escaping electrons are seen. Widened where the axes, which have one
-  /// scale, leave room.
-  struct Window { double x0_nm, z0_nm, x1_nm, z1_nm; };
+  /// of it above, where beam and escaping electrons are seen. Widened where the axes, which have
+  /// one scale, leave room.
+  struct Window {
+    double x0_nm, z0_nm, x1_nm, z1_nm;
+  };
   std::optional<Window> window_nm;
 };
 

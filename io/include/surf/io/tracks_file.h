@@ -11,12 +11,12 @@
 
 namespace surf::io {
 
-/// Writes electron tracks for ParaView: a VTP file (inline binary) with one polyline per track in nm.
-/// Points carry `energy_ev` and `material` (of the piece that ends there; the first point has that
-/// of the piece after it; -1 is vacuum). Lines carry `kind` (the number of the TrackKind: absorbed
-/// 0, se 1, bse 2, transmitted 3, lost 4), `secondary`, `generation`, `electron`, `number`,
-/// `parent`. Each entry of `metadata` becomes a text in the field data, an empty value as "".
-/// The file appears under its name only when it is complete. No tracks give an empty data set.
+/// Writes electron tracks for ParaView: a VTP file (inline binary) with one polyline per track in
+/// nm. Points carry `energy_ev` and `material` (of the piece that ends there; the first point has
+/// that of the piece after it; -1 is vacuum). Lines carry `kind` (the number of the TrackKind:
+/// absorbed 0, se 1, bse 2, transmitted 3, lost 4), `secondary`, `generation`, `electron`,
+/// `number`, `parent`. Each entry of `metadata` becomes a text in the field data, an empty value as
+/// "". The file appears under its name only when it is complete. No tracks give an empty data set.
 /// Throws UsageError for another extension than .vtp, InvalidInput for an invalid track, FileError,
 /// Unsupported where this build lacks VTK.
 void write_tracks(const std::filesystem::path& path, std::span<const Track> tracks,

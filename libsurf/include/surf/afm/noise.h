@@ -7,28 +7,28 @@
 
 namespace surf {
 
-/// Noise of an AFM image along its scan lines, e(t) = alpha e(t - 1) + v(t) with independent normal v
-/// (thesis, 8.1.1). Each scan line, a row from left to right, begins with a new draw from the stationary
-/// distribution, of variance innovation / (1 - alpha^2); rows are independent.
+/// Noise of an AFM image along its scan lines, e(t) = alpha e(t - 1) + v(t) with independent normal
+/// v (thesis, 8.1.1). Each scan line, a row from left to right, begins with a new draw from the
+/// stationary distribution, of variance innovation / (1 - alpha^2); rows are independent.
 struct AfmNoise {
-  double alpha = 0;                    ///< in (-1, 1); 0: white
-  double innovation_nm2 = 1;           ///< variance of v, > 0; estimates of noiseless heights give 0
+  double alpha = 0;           ///< in (-1, 1); 0: white
+  double innovation_nm2 = 1;  ///< variance of v, > 0; estimates of noiseless heights give 0
   double variance_nm2() const { return innovation_nm2 / (1 - alpha * alpha); }
 };
 
-/// Throws InvalidInput (naming `subject`) if alpha is not in (-1, 1) or the innovation's variance is
-/// negative, not finite, or 0 where a density is needed (`allow_zero` false).
+/// Throws InvalidInput (naming `subject`) if alpha is not in (-1, 1) or the innovation's variance
+/// is negative, not finite, or 0 where a density is needed (`allow_zero` false).
 void validate(const AfmNoise& noise, const char* subject = "noise", bool allow_zero = false);
 
-/// A draw of the noise, nm. Each row is a function of (seed, row) alone: an image that is cut off above
-/// or to the right keeps the rest. Throws InvalidInput for an impossible model, UsageError for a size
-/// below 1 x 1.
+/// A draw of the noise, nm. Each row is a function of (seed, row) alone: an image that is cut off
+/// above or to the right keeps the rest. Throws InvalidInput for an impossible model, UsageError
+/// for a size below 1 x 1.
 Grid<double> simulate_noise(const AfmNoise& noise, int width, int height, std::uint64_t seed);
 
-/// Residuals to what would be independent standard normal numbers if they were this noise: each sample
-/// less what the last one before it in its row predicts, alpha^k of it k columns on, over the standard
-/// deviation of what is left. Samples that are 0 in `valid` (same size, or empty: all count) give 0 and
-/// predict nothing. Throws InvalidInput.
+/// Residuals to what would be independent standard normal numbers if they were this noise: each
+/// sample less what the last one before it in its row predicts, alpha^k of it k columns on, over
+/// the standard deviation of what is left. Samples that are 0 in `valid` (same size, or empty: all
+/// count) give 0 and predict nothing. Throws InvalidInput.
 Grid<double> whiten(const Grid<double>& residual_nm, const AfmNoise& noise,
                     const Grid<unsigned char>& valid = {});
 

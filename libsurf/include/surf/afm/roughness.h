@@ -8,17 +8,17 @@
 
 namespace surf {
 
-/// Areal height parameters (ISO 25178-2, 4.1) about the mean of the samples that take part. Nothing is
-/// levelled or filtered first: `tilt` tells what a mean plane would still take off.
+/// Areal height parameters (ISO 25178-2, 4.1) about the mean of the samples that take part. Nothing
+/// is levelled or filtered first: `tilt` tells what a mean plane would still take off.
 struct Roughness {
-  double sa_nm = 0;          ///< mean absolute deviation
-  double sq_nm = 0;          ///< root mean square deviation
-  double sz_nm = 0;          ///< highest less lowest
-  double ssk = 0, sku = 3;   ///< skewness, kurtosis (a normal distribution: 0, 3)
+  double sa_nm = 0;         ///< mean absolute deviation
+  double sq_nm = 0;         ///< root mean square deviation
+  double sz_nm = 0;         ///< highest less lowest
+  double ssk = 0, sku = 3;  ///< skewness, kurtosis (a normal distribution: 0, 3)
   double mean_nm = 0;
   std::size_t samples = 0;
-  Plane tilt;                ///< the mean plane left in the heights
-  double sq_levelled_nm = 0; ///< Sq if that plane were taken off
+  Plane tilt;                 ///< the mean plane left in the heights
+  double sq_levelled_nm = 0;  ///< Sq if that plane were taken off
 };
 
 /// Samples that are 0 in `use` (same size, or empty: all count) and holes play no part.

@@ -12,15 +12,16 @@ struct SubstrateNoise {
   Grid<unsigned char> substrate;  ///< 1 for the samples that the estimate is from
   double substrate_share = 0;     ///< of the samples that take part
   NoiseEstimate estimate;
-  Grid<double> residual_nm;       ///< the heights less a polynomial through the substrate
+  Grid<double> residual_nm;  ///< the heights less a polynomial through the substrate
 };
 
-/// Finds the plane most samples lie on (`find_plane`) and estimates the noise (`estimate_flat_noise`) from
-/// what lies within four of its own standard deviations of that plane, and three tolerances of it at most:
-/// the inliers themselves are cut off too close to the plane, which would make the noise too small. The
-/// foot of features counts as noise where it is within. Only as good as `plane.verdict` says.
-/// Throws as these two do.
-SubstrateNoise estimate_substrate_noise(const HeightField& field, const FlatNoiseOptions& options = {},
+/// Finds the plane most samples lie on (`find_plane`) and estimates the noise
+/// (`estimate_flat_noise`) from what lies within four of its own standard deviations of that plane,
+/// and three tolerances of it at most: the inliers themselves are cut off too close to the plane,
+/// which would make the noise too small. The foot of features counts as noise where it is within.
+/// Only as good as `plane.verdict` says. Throws as these two do.
+SubstrateNoise estimate_substrate_noise(const HeightField& field,
+                                        const FlatNoiseOptions& options = {},
                                         const Grid<unsigned char>& use = {});
 
 }  // namespace surf

@@ -8,8 +8,9 @@ struct Point2 {
   friend bool operator==(const Point2&, const Point2&) = default;
 };
 
-/// An affine map of the plane, x' = xx x + xy y + x0 and y' = yx x + yy y + y0, all in nm. Between images it
-/// is written SEM to AFM, and the six numbers in the order of the 2 x 3 matrix: xx xy x0 yx yy y0.
+/// An affine map of the plane, x' = xx x + xy y + x0 and y' = yx x + yy y + y0, all in nm. Between
+/// images it is written SEM to AFM, and the six numbers in the order of the 2 x 3 matrix: xx xy x0
+/// yx yy y0.
 struct Affine {
   double xx = 1, xy = 0, x0 = 0;
   double yx = 0, yy = 1, y0 = 0;

@@ -7,14 +7,15 @@
 
 namespace surf {
 
-/// Whether no value is farther from 0 than `most`, which is above 0, and none NaN. A pass without branches, for
-/// millions of values that usually are.
+/// Whether no value is farther from 0 than `most`, which is above 0, and none NaN. A pass without
+/// branches, for millions of values that usually are.
 inline bool all_within(std::span<const double> values, double most) {
   // Without their signs doubles have the order of their bits, and NaN comes last.
   constexpr std::int64_t without_sign = 0x7fffffffffffffff;
   const auto limit = std::bit_cast<std::int64_t>(most);
   std::int64_t below_0_if_beyond = 0;
-  for (const double v : values) below_0_if_beyond |= limit - (std::bit_cast<std::int64_t>(v) & without_sign);
+  for (const double v : values)
+    below_0_if_beyond |= limit - (std::bit_cast<std::int64_t>(v) & without_sign);
   return below_0_if_beyond >= 0;
 }
 

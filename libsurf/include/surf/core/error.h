@@ -7,8 +7,8 @@
 namespace surf {
 
 /// Base of every exception semsurf throws. A message has three parts: the subject (a file or a
-/// field), the reason, and the remedy; `what()` joins them as "subject: reason. remedy". Fields are in backticks
-/// wherever they are named: see surf/core/field_words.h.
+/// field), the reason, and the remedy; `what()` joins them as "subject: reason. remedy". Fields are
+/// in backticks wherever they are named: see surf/core/field_words.h.
 class Error : public std::runtime_error {
  public:
   Error(const std::string& subject, const std::string& reason, const std::string& remedy);

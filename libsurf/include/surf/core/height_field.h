@@ -7,11 +7,11 @@ namespace surf {
 
 /// Heights on a regular grid: z up, sample (0, 0) lower-left.
 struct HeightField {
-  Grid<double> z_nm;               ///< at least 2x2, finite where valid
-  Grid<unsigned char> valid;       ///< same size as z_nm, or empty: everything is valid
-  double pitch_x_nm = 1;           ///< distance of neighbouring samples, > 0
-  double pitch_y_nm = 1;           ///< distance of neighbouring rows, > 0
-  double origin_x_nm = 0;          ///< centre of sample (0, 0)
+  Grid<double> z_nm;          ///< at least 2x2, finite where valid
+  Grid<unsigned char> valid;  ///< same size as z_nm, or empty: everything is valid
+  double pitch_x_nm = 1;      ///< distance of neighbouring samples, > 0
+  double pitch_y_nm = 1;      ///< distance of neighbouring rows, > 0
+  double origin_x_nm = 0;     ///< centre of sample (0, 0)
   double origin_y_nm = 0;
 
   double x_nm(int column) const { return origin_x_nm + column * pitch_x_nm; }

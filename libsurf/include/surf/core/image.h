@@ -12,17 +12,17 @@ namespace surf {
 
 /// One named quantity of an image.
 struct Channel {
-  std::string name;        ///< "SE", "SE.stderr", "BSE", "valid" ...
-  std::string unit;        ///< "1" for counts per primary, "nm" ...
+  std::string name;  ///< "SE", "SE.stderr", "BSE", "valid" ...
+  std::string unit;  ///< "1" for counts per primary, "nm" ...
   Grid<float> values;
 };
 
 /// Named float channels of one size. Pixel (0, 0) is the lower-left one.
 struct Image {
-  std::vector<Channel> channels;   ///< one size; unique names
-  double pitch_x_nm = 1;           ///< pixel width, > 0
-  double pitch_y_nm = 1;           ///< pixel height, > 0
-  double origin_x_nm = 0;          ///< centre of pixel (0, 0)
+  std::vector<Channel> channels;  ///< one size; unique names
+  double pitch_x_nm = 1;          ///< pixel width, > 0
+  double pitch_y_nm = 1;          ///< pixel height, > 0
+  double origin_x_nm = 0;         ///< centre of pixel (0, 0)
   double origin_y_nm = 0;
   /// Provenance and settings, written into every file that can hold text. Keys are lower case
   /// with dots ("semsurf.version", "beam.energy_ev"); nothing here depends on threads or clocks.

@@ -12,8 +12,8 @@
 
 namespace surf {
 
-/// Bytes in a nameless file that the system reads and writes as they are used, all zero at first. The
-/// file is gone with the object, or with the program, however that ends.
+/// Bytes in a nameless file that the system reads and writes as they are used, all zero at first.
+/// The file is gone with the object, or with the program, however that ends.
 class ScratchMemory {
  public:
   /// Takes `bytes` (> 0) of the disk at once. Throws FileError where they cannot be had.
@@ -81,7 +81,7 @@ class LargeGrid {
   }
 
   int width_ = 0, height_ = 0;
-  std::vector<T> values_;                     // moving it leaves its elements where they are
+  std::vector<T> values_;  // moving it leaves its elements where they are
   std::unique_ptr<ScratchMemory> scratch_;
   T* data_ = nullptr;
 };

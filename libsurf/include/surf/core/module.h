@@ -5,23 +5,25 @@
 
 namespace surf {
 
-// A module is a part of semsurf that stands on large libraries of others and gives its functions as one table. A
-// program either links it, or loads it from a file when it is first used, so that the libraries behind it cost nothing
-// before. `semsurf_module` in cmake/modules.cmake makes both; docs/architecture.md says which there are.
+// A module is a part of semsurf that stands on large libraries of others and gives its functions as
+// one table. A program either links it, or loads it from a file when it is first used, so that the
+// libraries behind it cost nothing before. `semsurf_module` in cmake/modules.cmake makes both;
+// docs/architecture.md says which there are.
 
 /// What a module is called and what to say where it is missing.
 struct ModuleName {
   const char* name;      ///< of the file NAME.so, and of its function semsurf_module_NAME
   const char* provides;  ///< "writes VTI and VTP files"
   const char* needs;     ///< "VTK (Debian: libvtk9.1 ...)"
-  int address_mb;        ///< of address space, with the threads that its libraries start when they are loaded
+  int address_mb;  ///< of address space, with the threads that its libraries start when they are
+                   ///< loaded
 };
 
 /// The module's table of functions; null where the module was built for another version of semsurf.
 using ModuleEntry = const void* (*)(const char* version);
 
-/// The table of the module of that name, which is loaded the first time. Throws Unsupported where it is missing or
-/// cannot be loaded, with what to install. Any thread may call it.
+/// The table of the module of that name, which is loaded the first time. Throws Unsupported where
+/// it is missing or cannot be loaded, with what to install. Any thread may call it.
 const void* find_module(const ModuleName& module);
 
 /// Whether `find_module` would give it. Loads it.
@@ -49,10 +51,10 @@ const char* module_version();
 }  // namespace surf
 
 /// In one source of a module: says that `table` is what `find_module` gives.
-#define SEMSURF_MODULE(name, table)                                                         \
-  extern "C" const void* semsurf_module_##name(const char* version) {                       \
-    return std::string(version) == surf::module_version() ? &(table) : nullptr;             \
-  }                                                                                         \
-  namespace {                                                                               \
-  const surf::LinkedModule linked_module_##name(#name, &semsurf_module_##name);             \
+#define SEMSURF_MODULE(name, table)                                             \
+  extern "C" const void* semsurf_module_##name(const char* version) {           \
+    return std::string(version) == surf::module_version() ? &(table) : nullptr; \
+  }                                                                             \
+  namespace {                                                                   \
+  const surf::LinkedModule linked_module_##name(#name, &semsurf_module_##name); \
   }

@@ -20,6 +20,7 @@ void parallel_for(std::size_t count, int threads,
 
 /// The same, watched: told of the units done from the calling thread alone. Throws Interrupted.
 void parallel_for(std::size_t count, int threads,
-                  const std::function<void(std::size_t unit, int worker)>& work, const Watch& watch);
+                  const std::function<void(std::size_t unit, int worker)>& work,
+                  const Watch& watch);
 
 }  // namespace surf

@@ -15,11 +15,13 @@
 
 namespace surf {
 
-// A struct of parameters says of each field once what it is: its name, unit, range and one sentence. Command line, scene
-// files, sweeps, records, checks, ParaView and the reference are made from that (docs/development/parameters.md).
-// The member initialisers of the struct are the only defaults.
+// A struct of parameters says of each field once what it is: its name, unit, range and one
+// sentence. Command line, scene files, sweeps, records, checks, ParaView and the reference are made
+// from that (docs/development/parameters.md). The member initialisers of the struct are the only
+// defaults.
 
-/// What a number counts. Texts may carry it ("5mrad"); names of fields and records end in it ("convergence_deg").
+/// What a number counts. Texts may carry it ("5mrad"); names of fields and records end in it
+/// ("convergence_deg").
 enum class Unit { none, share, nm, ev, deg, pa, us, s };
 
 /// "_nm" and so on; empty for plain numbers and shares.
@@ -29,15 +31,19 @@ std::string_view unit_suffix(Unit unit);
 struct Limits {
   double low = -std::numeric_limits<double>::infinity();
   double high = std::numeric_limits<double>::infinity();
-  bool low_open = false, high_open = false;   ///< the end itself is not allowed
+  bool low_open = false, high_open = false;  ///< the end itself is not allowed
 
   bool holds(double value) const;
 };
 
 constexpr Limits within(double low, double high) { return {low, high, false, false}; }
 constexpr Limits from_to_below(double low, double high) { return {low, high, false, true}; }
-constexpr Limits above(double low, double high = std::numeric_limits<double>::infinity()) { return {low, high, true, false}; }
-constexpr Limits at_least(double low) { return {low, std::numeric_limits<double>::infinity(), false, false}; }
+constexpr Limits above(double low, double high = std::numeric_limits<double>::infinity()) {
+  return {low, high, true, false};
+}
+constexpr Limits at_least(double low) {
+  return {low, std::numeric_limits<double>::infinity(), false, false};
+}
 
 /// Who needs it: everybody, or those who know what they do.
 enum class Level { basic, advanced };
@@ -47,15 +53,17 @@ enum class FileRole { none, read, written, written_folder };
 
 /// What is true of a parameter wherever it is met.
 struct Parameter {
-  std::string name;                  ///< group and name, in snake case without unit: "beam.working_distance"
-  std::string help;                  ///< a noun phrase or an imperative that makes sense alone, without default and range
+  std::string name;  ///< group and name, in snake case without unit: "beam.working_distance"
+  std::string
+      help;  ///< a noun phrase or an imperative that makes sense alone, without default and range
   Unit unit = Unit::none;
   Limits limits = {};
-  std::string otherwise = {};        ///< what holds where nothing is given, in words: "as its file says"; else the default
-  std::string form = {};             ///< how its text is written, "WxH"; empty: by its kind and unit
+  std::string otherwise =
+      {};  ///< what holds where nothing is given, in words: "as its file says"; else the default
+  std::string form = {};  ///< how its text is written, "WxH"; empty: by its kind and unit
   Level level = Level::basic;
-  bool recorded = true;              ///< whether the result depends on it
-  FileRole file = FileRole::none;    ///< of a parameter that names a file
+  bool recorded = true;            ///< whether the result depends on it
+  FileRole file = FileRole::none;  ///< of a parameter that names a file
 
   /// "working_distance".
   std::string_view last_name() const;
@@ -76,9 +84,11 @@ class Field {
   virtual std::vector<std::string> choices() const { return {}; }
   /// Whether there is a value: false for an optional without one, an empty text or list.
   virtual bool given() const = 0;
-  /// The value as `read` reads it back exactly, in the native unit; of a list, with commas. Empty where it is not given.
+  /// The value as `read` reads it back exactly, in the native unit; of a list, with commas. Empty
+  /// where it is not given.
   virtual std::string text() const = 0;
-  /// Takes the value from text. Throws UsageError that names `subject`, also for numbers out of range.
+  /// Takes the value from text. Throws UsageError that names `subject`, also for numbers out of
+  /// range.
   virtual void read(std::string_view text, const std::string& subject) = 0;
   /// One more of a list; else as `read`.
   virtual void add(std::string_view text, const std::string& subject) { read(text, subject); }
@@ -94,7 +104,8 @@ class ParameterVisitor {
   virtual ~ParameterVisitor() = default;
 
   virtual void visit(const Parameter& about, Field& field) = 0;
-  /// Whether it gives values: what is one of several ways then shows none of them, so that those given can be told.
+  /// Whether it gives values: what is one of several ways then shows none of them, so that those
+  /// given can be told.
   virtual bool reads() const { return false; }
 
   void operator()(double& value, const Parameter& about);
@@ -111,7 +122,7 @@ class ParameterVisitor {
 
   /// One of several words; `names` in the order of the enumeration.
   template <class Enum>
-    requires std::is_enum_v<Enum>
+  requires std::is_enum_v<Enum>
   void operator()(Enum& value, std::vector<std::string> names, const Parameter& about) {
     int index = static_cast<int>(value);
     choice(index, std::move(names), about);
@@ -119,24 +130,29 @@ class ParameterVisitor {
   }
   /// The same, or none of them: `none` is the word for that, or empty where there is no word.
   template <class Enum>
-    requires std::is_enum_v<Enum>
-  void operator()(std::optional<Enum>& value, std::vector<std::string> names, const Parameter& about, const char* none = "") {
+  requires std::is_enum_v<Enum>
+  void operator()(std::optional<Enum>& value, std::vector<std::string> names,
+                  const Parameter& about, const char* none = "") {
     int index = value ? static_cast<int>(*value) : -1;
     optional_choice(index, std::move(names), about, none);
     if (index < 0) value.reset();
     else value = static_cast<Enum>(index);
   }
 
-  /// What has a form of its own: `write` gives an empty text for nothing, `read` throws UsageError naming the subject.
+  /// What has a form of its own: `write` gives an empty text for nothing, `read` throws UsageError
+  /// naming the subject.
   void form(const Parameter& about, std::function<std::string()> write,
-            std::function<void(std::string_view text, const std::string& subject)> read, FieldKind kind = FieldKind::text);
+            std::function<void(std::string_view text, const std::string& subject)> read,
+            FieldKind kind = FieldKind::text);
 
  private:
   void choice(int& index, std::vector<std::string> names, const Parameter& about);
-  void optional_choice(int& index, std::vector<std::string> names, const Parameter& about, const char* none);
+  void optional_choice(int& index, std::vector<std::string> names, const Parameter& about,
+                       const char* none);
 };
 
-/// A number as text to the parameter's unit; names `subject` in what it throws. The limits are checked.
+/// A number as text to the parameter's unit; names `subject` in what it throws. The limits are
+/// checked.
 double parse_value(std::string_view text, const Parameter& about, const std::string& subject);
 
 /// "1keV", "0.002", "30deg": for people.
@@ -157,7 +173,8 @@ namespace parameters_detail {
 /// `visit` with a function.
 class Calling final : public ParameterVisitor {
  public:
-  Calling(std::function<void(const Parameter&, Field&)> call, bool reads) : call_(std::move(call)), reads_(reads) {}
+  Calling(std::function<void(const Parameter&, Field&)> call, bool reads)
+      : call_(std::move(call)), reads_(reads) {}
   void visit(const Parameter& about, Field& field) override { call_(about, field); }
   bool reads() const override { return reads_; }
 
@@ -185,7 +202,7 @@ void read_parameters(Struct& to, std::function<void(const Parameter&, Field&)> c
 /// Throws UsageError that names the field for the first value that is not allowed.
 template <class Struct>
 void check_parameters(const Struct& of) {
-  Struct copy = of;   // a description may change what it describes
+  Struct copy = of;  // a description may change what it describes
   for_each_parameter(copy, parameters_detail::check_field);
 }
 
@@ -193,11 +210,14 @@ template <class Struct>
 Record record_of(const Struct& of) {
   Struct copy = of;
   Record record;
-  for_each_parameter(copy, [&](const Parameter& about, Field& field) { parameters_detail::record_field(about, field, record); });
+  for_each_parameter(copy, [&](const Parameter& about, Field& field) {
+    parameters_detail::record_field(about, field, record);
+  });
   return record;
 }
 
-/// Sets one parameter from text. Throws UsageError where there is none of that name, or its value is not allowed.
+/// Sets one parameter from text. Throws UsageError where there is none of that name, or its value
+/// is not allowed.
 template <class Struct>
 void set_parameter(Struct& of, std::string_view name, std::string_view text) {
   bool found = false;

@@ -21,17 +21,18 @@ class CancelToken {
   static_assert(std::atomic<bool>::is_always_lock_free, "needed inside signal handlers");
 };
 
-/// Reports the progress of a long function to its caller, and lets the caller cancel it. A cancelled function throws
-/// `Interrupted` (error.h).
+/// Reports the progress of a long function to its caller, and lets the caller cancel it. A
+/// cancelled function throws `Interrupted` (error.h).
 struct Watch {
-  ProgressCallback progress;             ///< may be empty
-  const CancelToken* cancel = nullptr;   ///< may be null
+  ProgressCallback progress;            ///< may be empty
+  const CancelToken* cancel = nullptr;  ///< may be null
 
   /// Throws Interrupted if the token is set.
   void check() const;
   /// Calls `check`, then `progress`.
   void report(double done, double total) const;
-  /// The watch to hand to a part of the work: its progress from 0 to 1 is reported as `from` to `to`, in [0, 1].
+  /// The watch to hand to a part of the work: its progress from 0 to 1 is reported as `from` to
+  /// `to`, in [0, 1].
   Watch part(double from, double to) const;
 };
 

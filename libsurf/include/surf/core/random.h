@@ -6,8 +6,8 @@
 
 namespace surf {
 
-/// Four uniform 32-bit words, a function of key and counter: Philox4x32 with 7 rounds, the fewest that
-/// pass all of BigCrush (Salmon et al., SC11, doi:10.1145/2063384.2063405).
+/// Four uniform 32-bit words, a function of key and counter: Philox4x32 with 7 rounds, the fewest
+/// that pass all of BigCrush (Salmon et al., SC11, doi:10.1145/2063384.2063405).
 std::array<std::uint32_t, 4> random_block(const std::array<std::uint32_t, 2>& key,
                                           const std::array<std::uint32_t, 4>& counter);
 

@@ -10,14 +10,16 @@
 
 namespace surf {
 
-/// One of the parameters of a struct, as part of another: empty members are as the struct describes them.
+/// One of the parameters of a struct, as part of another: empty members are as the struct describes
+/// them.
 struct SomeParameter {
-  std::string name;            ///< as the struct describes it
+  std::string name;  ///< as the struct describes it
   std::string help = {};
   std::string otherwise = {};
 };
 
-/// Shows some parameters of a struct, in the struct's own order: for structs that use only these of it.
+/// Shows some parameters of a struct, in the struct's own order: for structs that use only these of
+/// it.
 template <class Struct>
 void describe_some(ParameterVisitor& visit, Struct& of, const std::vector<SomeParameter>& some) {
   const auto show = [&](const Parameter& about, Field& field) {
@@ -34,9 +36,12 @@ void describe_some(ParameterVisitor& visit, Struct& of, const std::vector<SomePa
 }
 
 /// "24,12" as whole numbers, each as `about` allows. Throws UsageError naming `subject`.
-std::vector<int> parse_whole_numbers(std::string_view text, const Parameter& about, const std::string& subject);
+std::vector<int> parse_whole_numbers(std::string_view text, const Parameter& about,
+                                     const std::string& subject);
 
-/// "X,Y" of lengths, angles and so on: as many numbers as there are commas and one. Throws UsageError naming `subject`.
-std::vector<double> parse_values(std::string_view text, const Parameter& about, const std::string& subject);
+/// "X,Y" of lengths, angles and so on: as many numbers as there are commas and one. Throws
+/// UsageError naming `subject`.
+std::vector<double> parse_values(std::string_view text, const Parameter& about,
+                                 const std::string& subject);
 
 }  // namespace surf

@@ -14,15 +14,15 @@ enum class TrackKind { absorbed, se, bse, transmitted, lost };
 
 /// The path of one electron through vacuum and specimen, from its beginning to its end.
 struct Track {
-  int number = 0;                      ///< among those of its primary, from 0 (the primary itself)
-  int parent = -1;                     ///< the number of the track that it came from; -1: none
-  int generation = 0;                  ///< 0: a primary
-  bool secondary = false;              ///< set free in the specimen, not from the beam
+  int number = 0;          ///< among those of its primary, from 0 (the primary itself)
+  int parent = -1;         ///< the number of the track that it came from; -1: none
+  int generation = 0;      ///< 0: a primary
+  bool secondary = false;  ///< set free in the specimen, not from the beam
   TrackKind kind = TrackKind::absorbed;
-  std::int64_t electron = 0;           ///< the number of its primary
-  std::vector<Vec3> points_nm;         ///< two or more, in the order of flight
-  std::vector<double> energy_ev;       ///< at each point, >= 0
-  std::vector<int> material;           ///< of each straight piece, one less than points; -1: vacuum
+  std::int64_t electron = 0;      ///< the number of its primary
+  std::vector<Vec3> points_nm;    ///< two or more, in the order of flight
+  std::vector<double> energy_ev;  ///< at each point, >= 0
+  std::vector<int> material;      ///< of each straight piece, one less than points; -1: vacuum
 };
 
 /// "absorbed", "se", "bse", "transmitted", "lost".

@@ -15,8 +15,8 @@ inline Vec3 closest_point_of_line(const Vec3& a, const Vec3& b, const Vec3& p) {
   return along < whole ? a + ab * (along / whole) : b;
 }
 
-/// The point of a triangle nearest to `p` (Ericson, Real-Time Collision Detection, 5.1.5). A triangle that is a line or a point
-/// is that line or point; corners have to be finite.
+/// The point of a triangle nearest to `p` (Ericson, Real-Time Collision Detection, 5.1.5). A
+/// triangle that is a line or a point is that line or point; corners have to be finite.
 inline Vec3 closest_point(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& p) {
   const Vec3 ab = b - a, ac = c - a, ap = p - a;
   const double d1 = dot(ab, ap), d2 = dot(ac, ap);
@@ -34,9 +34,11 @@ inline Vec3 closest_point(const Vec3& a, const Vec3& b, const Vec3& c, const Vec
   const double va = d3 * d6 - d5 * d4;
   const double run = (d4 - d3) + (d5 - d6);
   if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0 && run > 0) return b + (c - b) * ((d4 - d3) / run);
-  const double area_squared = va + vb + vc;   // of the parallelogram
-  if (!(area_squared > 1e-14 * dot(ab, ab) * dot(ac, ac))) {   // as good as a line: the nearest of its sides'
-    const Vec3 sides[] = {closest_point_of_line(a, b, p), closest_point_of_line(b, c, p), closest_point_of_line(c, a, p)};
+  const double area_squared = va + vb + vc;  // of the parallelogram
+  if (!(area_squared >
+        1e-14 * dot(ab, ab) * dot(ac, ac))) {  // as good as a line: the nearest of its sides'
+    const Vec3 sides[] = {closest_point_of_line(a, b, p), closest_point_of_line(b, c, p),
+                          closest_point_of_line(c, a, p)};
     const Vec3* best = sides;
     for (const Vec3& side : sides)
       if (length(side - p) < length(*best - p)) best = &side;
@@ -46,13 +48,15 @@ inline Vec3 closest_point(const Vec3& a, const Vec3& b, const Vec3& c, const Vec
   return a + ab * (vb * scale) + ac * (vc * scale);
 }
 
-/// Half the solid angle under which a triangle is seen from 0, -pi to pi: positive where a, b, c run counterclockwise about
-/// the view of it from behind, as of a closed mesh's outward triangles seen from within. Of all triangles of a closed mesh the
-/// sum is 2 pi times how often it winds around 0 (van Oosterom and Strackee 1983, doi:10.1109/TBME.1983.325207). 0 of a
-/// triangle whose plane 0 lies in, but for points on the triangle itself, where it is any of the two sides'.
+/// Half the solid angle under which a triangle is seen from 0, -pi to pi: positive where a, b, c
+/// run counterclockwise about the view of it from behind, as of a closed mesh's outward triangles
+/// seen from within. Of all triangles of a closed mesh the sum is 2 pi times how often it winds
+/// around 0 (van Oosterom and Strackee 1983, doi:10.1109/TBME.1983.325207). 0 of a triangle whose
+/// plane 0 lies in, but for points on the triangle itself, where it is any of the two sides'.
 inline double half_solid_angle(const Vec3& a, const Vec3& b, const Vec3& c) {
   const double la = length(a), lb = length(b), lc = length(c);
-  return std::atan2(dot(a, cross(b, c)), la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb);
+  return std::atan2(dot(a, cross(b, c)),
+                    la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb);
 }
 
 }  // namespace surf

@@ -42,7 +42,8 @@ std::string format_share(double share);
 /// The nm in one `unit` ("nm", "um", "mm", "m", "pm", "A", "in"). Throws UsageError if unknown.
 double unit_length_nm(std::string_view unit, std::string_view subject);
 
-/// A length for people, with `digits` significant digits: "398 nm", "1.20 um", "3.5 mm"; far out, "1.00e+291 m".
+/// A length for people, with `digits` significant digits: "398 nm", "1.20 um", "3.5 mm"; far out,
+/// "1.00e+291 m".
 std::string format_length(double length_nm, int digits = 3);
 
 /// The shortest decimal text that reads back as exactly `value`.

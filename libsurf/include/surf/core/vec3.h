@@ -12,9 +12,24 @@ struct Vec3 {
   double y = 0;
   double z = 0;
 
-  constexpr Vec3& operator+=(const Vec3& b) { x += b.x; y += b.y; z += b.z; return *this; }
-  constexpr Vec3& operator-=(const Vec3& b) { x -= b.x; y -= b.y; z -= b.z; return *this; }
-  constexpr Vec3& operator*=(double s) { x *= s; y *= s; z *= s; return *this; }
+  constexpr Vec3& operator+=(const Vec3& b) {
+    x += b.x;
+    y += b.y;
+    z += b.z;
+    return *this;
+  }
+  constexpr Vec3& operator-=(const Vec3& b) {
+    x -= b.x;
+    y -= b.y;
+    z -= b.z;
+    return *this;
+  }
+  constexpr Vec3& operator*=(double s) {
+    x *= s;
+    y *= s;
+    z *= s;
+    return *this;
+  }
   friend constexpr Vec3 operator+(Vec3 a, const Vec3& b) { return a += b; }
   friend constexpr Vec3 operator-(Vec3 a, const Vec3& b) { return a -= b; }
   friend constexpr Vec3 operator-(const Vec3& a) { return {-a.x, -a.y, -a.z}; }
@@ -48,7 +63,7 @@ struct Box {
   Vec3 center_nm() const { return (lower_nm + upper_nm) * 0.5; }
 
   /// A coordinate that is not a number changes nothing.
-  void extend(const Vec3& p) {   // std::fmin would be a call into the C library
+  void extend(const Vec3& p) {  // std::fmin would be a call into the C library
     lower_nm.x = p.x < lower_nm.x ? p.x : lower_nm.x;
     lower_nm.y = p.y < lower_nm.y ? p.y : lower_nm.y;
     lower_nm.z = p.z < lower_nm.z ? p.z : lower_nm.z;

@@ -14,13 +14,13 @@ namespace surf {
 /// A quantity in the cells of a regular grid in space. Cell (i, j, k) is at
 /// i + nx (j + ny k) and fills lower_nm + (i, j, k) cell_nm to the next.
 struct Volume {
-  std::string name;                     ///< of the quantity
+  std::string name;  ///< of the quantity
   std::string unit;
-  std::array<int, 3> cells{0, 0, 0};    ///< along x, y, z, each >= 1
-  Vec3 lower_nm;                        ///< lower corner of cell (0, 0, 0)
-  Vec3 cell_nm{1, 1, 1};                ///< edges of a cell, > 0
+  std::array<int, 3> cells{0, 0, 0};  ///< along x, y, z, each >= 1
+  Vec3 lower_nm;                      ///< lower corner of cell (0, 0, 0)
+  Vec3 cell_nm{1, 1, 1};              ///< edges of a cell, > 0
   std::vector<double> values;
-  std::map<std::string, std::string> metadata;   ///< as an Image's
+  std::map<std::string, std::string> metadata;  ///< as an Image's
 
   std::size_t size() const {
     return static_cast<std::size_t>(cells[0]) * static_cast<std::size_t>(cells[1]) *

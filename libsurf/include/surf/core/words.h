@@ -8,7 +8,8 @@
 
 namespace surf {
 
-/// The parts between any of the separators, empty ones too: one more than there are separators. They point into `text`.
+/// The parts between any of the separators, empty ones too: one more than there are separators.
+/// They point into `text`.
 std::vector<std::string_view> split(std::string_view text, std::string_view separators);
 
 /// Levenshtein's distance: letters to insert, remove or replace.

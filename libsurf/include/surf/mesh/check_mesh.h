@@ -15,30 +15,32 @@ namespace surf {
 struct MeshReport {
   std::size_t vertices = 0;
   std::size_t triangles = 0;
-  std::size_t degenerate_triangles = 0;   ///< zero area, or a corner used twice
-  std::size_t duplicate_triangles = 0;    ///< triangles beyond the first on the same three corners
-  std::size_t boundary_edges = 0;         ///< edges of exactly one triangle
-  std::size_t nonmanifold_edges = 0;      ///< edges of more than two triangles
-  std::size_t inconsistent_edges = 0;     ///< edges of two triangles that run through them the same way
-  std::size_t doubled_directed_edges = 0; ///< directed edges that several triangles run through
-  std::size_t nonmanifold_vertices = 0;   ///< points whose triangles hang together in several fans
-  std::size_t components = 0;             ///< sets of triangles connected through shared vertices
+  std::size_t degenerate_triangles = 0;  ///< zero area, or a corner used twice
+  std::size_t duplicate_triangles = 0;   ///< triangles beyond the first on the same three corners
+  std::size_t boundary_edges = 0;        ///< edges of exactly one triangle
+  std::size_t nonmanifold_edges = 0;     ///< edges of more than two triangles
+  std::size_t inconsistent_edges =
+      0;  ///< edges of two triangles that run through them the same way
+  std::size_t doubled_directed_edges = 0;  ///< directed edges that several triangles run through
+  std::size_t nonmanifold_vertices = 0;    ///< points whose triangles hang together in several fans
+  std::size_t components = 0;              ///< sets of triangles connected through shared vertices
   double area_nm2 = 0;
-  double signed_volume_nm3 = 0;           ///< > 0 when normals point out; meaningful when closed
+  double signed_volume_nm3 = 0;  ///< > 0 when normals point out; meaningful when closed
   Box bounds_nm;
-  Vec3 first_boundary_nm;                 ///< midpoint of one boundary edge, if there is any
-  Vec3 first_nonmanifold_nm;              ///< midpoint of one non-manifold edge, if there is any
-  Vec3 first_inconsistent_nm;             ///< midpoint of one inconsistent edge, if there is any
-  Vec3 first_nonmanifold_vertex_nm;       ///< one such vertex, if there is any
-  Vec3 first_degenerate_nm;               ///< middle of one such triangle, if there is any
-  Vec3 first_duplicate_nm;                ///< the same
+  Vec3 first_boundary_nm;            ///< midpoint of one boundary edge, if there is any
+  Vec3 first_nonmanifold_nm;         ///< midpoint of one non-manifold edge, if there is any
+  Vec3 first_inconsistent_nm;        ///< midpoint of one inconsistent edge, if there is any
+  Vec3 first_nonmanifold_vertex_nm;  ///< one such vertex, if there is any
+  Vec3 first_degenerate_nm;          ///< middle of one such triangle, if there is any
+  Vec3 first_duplicate_nm;           ///< the same
 
   /// Every edge is run through equally often in both directions, so that inside and outside are
   /// defined everywhere. Non-manifold edges are allowed if they balance.
   bool closed_and_oriented = false;
 };
 
-/// Examines the mesh in O(n log n). Corners at exactly equal coordinates count as one vertex. Throws Interrupted.
+/// Examines the mesh in O(n log n). Corners at exactly equal coordinates count as one vertex.
+/// Throws Interrupted.
 MeshReport check_mesh(const TriangleMesh& mesh, const Watch& watch = {});
 
 /// The component (see MeshReport::components) of every triangle: numbers from 0, in the order of

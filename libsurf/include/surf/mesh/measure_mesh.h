@@ -12,20 +12,20 @@ namespace surf {
 struct MeshMeasures {
   Box bounds_nm;
   double area_nm2 = 0;
-  double volume_nm3 = 0;          ///< > 0 when normals point out; meaningful when closed
-  Vec3 centroid_nm;               ///< of the surface
+  double volume_nm3 = 0;  ///< > 0 when normals point out; meaningful when closed
+  Vec3 centroid_nm;       ///< of the surface
   double shortest_edge_nm = 0;
   double mean_edge_nm = 0;
   double longest_edge_nm = 0;
-  double gaussian_integral = 0;   ///< over the inner points; 4 pi for each ball-like body
-  double mean_integral_nm = 0;    ///< of the mean curvature over the surface
+  double gaussian_integral = 0;  ///< over the inner points; 4 pi for each ball-like body
+  double mean_integral_nm = 0;   ///< of the mean curvature over the surface
 };
 
 /// Curvature at a vertex; 0 at rims, non-manifold edges and unused vertices.
 struct Curvature {
-  double mean_per_nm = 0;         ///< half the sum of the principal ones; > 0 on a ball, normals out
-  double gaussian_per_nm2 = 0;    ///< their product
-  double area_nm2 = 0;            ///< of the surface nearest to the vertex
+  double mean_per_nm = 0;       ///< half the sum of the principal ones; > 0 on a ball, normals out
+  double gaussian_per_nm2 = 0;  ///< their product
+  double area_nm2 = 0;          ///< of the surface nearest to the vertex
 };
 
 /// Throws InvalidInput on damaged meshes. Triangles of no area count for nothing.

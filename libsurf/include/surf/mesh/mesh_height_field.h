@@ -12,13 +12,13 @@ namespace surf {
 // The way back, from a height field to a mesh, is in height_field_mesh.h.
 
 struct MeshHeightFieldOptions {
-  double pitch_nm = 1;   ///< distance of samples along x and y, > 0
+  double pitch_nm = 1;  ///< distance of samples along x and y, > 0
 
   /// Rectangle of the outermost samples' centres in x and y (z is ignored); its upper end is met as
   /// closely as whole pitches allow. Default: the mesh's own box.
   std::optional<Box> region_nm;
 
-  int threads = 0;       ///< 0: one per hardware thread. Does not change the result
+  int threads = 0;  ///< 0: one per hardware thread. Does not change the result
   Watch watch;
 };
 

@@ -14,7 +14,8 @@ struct MeshView {
   std::span<const Triangle> triangles;
 
   MeshView() = default;
-  MeshView(std::span<const Vec3> vertices, std::span<const Triangle> corners) : vertices_nm(vertices), triangles(corners) {}
+  MeshView(std::span<const Vec3> vertices, std::span<const Triangle> corners)
+      : vertices_nm(vertices), triangles(corners) {}
   MeshView(const TriangleMesh& mesh) : vertices_nm(mesh.vertices_nm), triangles(mesh.triangles) {}
 };
 

@@ -29,8 +29,8 @@ struct RepairOptions {
   /// Components whose box has a shorter diagonal are dropped; >= 0, 0 keeps all.
   double min_component_nm = 0;
 
-  bool resolve_self_intersections = true;   ///< false: they are counted only
-  int threads = 0;                          ///< 0: one per hardware thread; same result
+  bool resolve_self_intersections = true;  ///< false: they are counted only
+  int threads = 0;                         ///< 0: one per hardware thread; same result
   Watch watch;
 };
 /// mesh.stitch, mesh.sliver and so on.
@@ -38,19 +38,19 @@ void describe(ParameterVisitor& visit, RepairOptions& options);
 
 /// A hole that was left open.
 struct OpenHole {
-  Vec3 place_nm;               ///< a point of its rim
+  Vec3 place_nm;  ///< a point of its rim
   double perimeter_nm = 0;
   std::size_t edges = 0;
-  bool too_large = false;      ///< longer than the limit; else no fill fits it
+  bool too_large = false;  ///< longer than the limit; else no fill fits it
 };
 
 struct RepairSummary {
   MeshReport before;
   MeshReport after;
-  std::size_t merged_vertices = 0;        ///< at equal places
-  std::size_t stitched_vertices = 0;      ///< at places within stitch_nm
-  std::size_t removed_degenerate = 0;     ///< triangles without area, and slivers
-  std::size_t removed_duplicates = 0;     ///< copies; both of a pair that runs against each other
+  std::size_t merged_vertices = 0;     ///< at equal places
+  std::size_t stitched_vertices = 0;   ///< at places within stitch_nm
+  std::size_t removed_degenerate = 0;  ///< triangles without area, and slivers
+  std::size_t removed_duplicates = 0;  ///< copies; both of a pair that runs against each other
   std::size_t turned_triangles = 0;
   std::size_t dropped_components = 0;
   std::size_t filled_holes = 0;
@@ -59,22 +59,23 @@ struct RepairSummary {
   std::size_t self_intersections_before = 0;  ///< pairs of triangles, counted up to 100,000, after
                                               ///< the steps above
   std::size_t self_intersections_after = 0;
-  Vec3 first_self_intersection_nm;            ///< of those left, if there are any
+  Vec3 first_self_intersection_nm;  ///< of those left, if there are any
 
-  bool changed = false;   ///< false: the mesh came back as it was, to the last bit
+  bool changed = false;  ///< false: the mesh came back as it was, to the last bit
 
   /// Closed, oriented, normals outward, nothing degenerate or double, no self-intersections.
   bool sound() const;
 };
 
 /// Mends a mesh, in this order: merges equal vertices, stitches gaps, removes degenerate and double
-/// triangles, turns triangles so that neighbours agree, drops tiny components, fills holes, resolves
-/// self-intersections, turns closed components outward (cavities inward stay). Every step is undone
-/// if it leaves more open, non-manifold or inconsistent edges than there were; a mesh without
-/// faults comes back unchanged. What could not be mended is in the summary.
+/// triangles, turns triangles so that neighbours agree, drops tiny components, fills holes,
+/// resolves self-intersections, turns closed components outward (cavities inward stay). Every step
+/// is undone if it leaves more open, non-manifold or inconsistent edges than there were; a mesh
+/// without faults comes back unchanged. What could not be mended is in the summary.
 ///
 /// Deterministic. Seconds for a million triangles, if there are few self-intersections.
-/// Throws InvalidInput on damaged meshes (`validate`), UsageError on options out of range, Interrupted.
+/// Throws InvalidInput on damaged meshes (`validate`), UsageError on options out of range,
+/// Interrupted.
 TriangleMesh repair_mesh(const TriangleMesh& mesh, const RepairOptions& options,
                          RepairSummary& summary);
 

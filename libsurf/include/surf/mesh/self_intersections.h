@@ -14,7 +14,7 @@ namespace surf {
 struct SelfIntersectionOptions {
   /// Pairs after which the search stops, >= 1. 1 only answers whether there are any.
   std::size_t limit = 100000;
-  int threads = 0;   ///< 0: one per hardware thread. Does not change the result
+  int threads = 0;  ///< 0: one per hardware thread. Does not change the result
   Watch watch;
 };
 
@@ -23,8 +23,8 @@ struct SelfIntersections {
   /// Triangles that have more in common than the corners they share, the lower number first, in
   /// rising order; at most as many as the limit.
   std::vector<std::array<std::uint32_t, 2>> pairs;
-  bool complete = true;   ///< false: the limit was reached, there may be more
-  Vec3 first_nm;          ///< a place near the first pair's, if there is any
+  bool complete = true;  ///< false: the limit was reached, there may be more
+  Vec3 first_nm;         ///< a place near the first pair's, if there is any
 };
 
 /// Finds all pairs with exact predicates. Triangles that share an edge count if they lie on each

@@ -18,17 +18,17 @@ TriangleMesh make_box(const Vec3& lower_nm, const Vec3& upper_nm, int subdivisio
 /// times (0 to 9), 20 * 4^subdivisions triangles.
 TriangleMesh make_sphere(const Vec3& center_nm, double radius_nm, int subdivisions = 4);
 
-/// A cone on its base, cut off at the top: `bottom_radius_nm` at z = base, `top_radius_nm` (>= 0; 0 is
-/// a tip) `height_nm` above it, about a vertical axis through `base_nm`. `segments` (3 to 100,000)
-/// flat sides with their edges on the cone.
+/// A cone on its base, cut off at the top: `bottom_radius_nm` at z = base, `top_radius_nm` (>= 0; 0
+/// is a tip) `height_nm` above it, about a vertical axis through `base_nm`. `segments` (3 to
+/// 100,000) flat sides with their edges on the cone.
 TriangleMesh make_cone(const Vec3& base_nm, double bottom_radius_nm, double top_radius_nm,
                        double height_nm, int segments = 64);
 
 /// Size and sampling of a height field centred on (0, 0).
 struct FieldExtent {
-  double width_nm = 400;    ///< from the centre of the first sample to that of the last, along x
-  double depth_nm = 400;    ///< the same along y
-  double pitch_nm = 2;      ///< sample distance; width and depth are rounded to whole pitches
+  double width_nm = 400;  ///< from the centre of the first sample to that of the last, along x
+  double depth_nm = 400;  ///< the same along y
+  double pitch_nm = 2;    ///< sample distance; width and depth are rounded to whole pitches
 };
 
 /// A square, flat-topped mesa on a plane at z = 0: `top_width_nm` wide at the top, walls sloping
@@ -51,8 +51,8 @@ HeightField make_line(const FieldExtent& extent, double height_nm, double top_wi
 HeightField make_via(const FieldExtent& extent, double depth_nm, double bottom_width_nm,
                      double wall_run_nm);
 
-/// A step along y: 0 left of the middle, `height_nm` right of it, the wall centred on the middle and
-/// `wall_run_nm` (>= 0; 0 means one pitch) long.
+/// A step along y: 0 left of the middle, `height_nm` right of it, the wall centred on the middle
+/// and `wall_run_nm` (>= 0; 0 means one pitch) long.
 HeightField make_step(const FieldExtent& extent, double height_nm, double wall_run_nm);
 
 /// Lines along y as of make_line, `period_nm` apart, one of them in the middle. The period must
@@ -76,8 +76,8 @@ HeightField make_self_affine(const FieldExtent& extent, double rms_nm, double co
 /// A value of a two-dimensional, isotropic power spectral density: its integral over the plane of
 /// frequencies is the mean square height.
 struct SpectralDensity {
-  double frequency_per_nm;   ///< cycles per nm, > 0
-  double density_nm4;        ///< >= 0
+  double frequency_per_nm;  ///< cycles per nm, > 0
+  double density_nm4;       ///< >= 0
 };
 
 /// A Gaussian rough surface of zero mean with a tabulated spectrum: frequencies rising, at least

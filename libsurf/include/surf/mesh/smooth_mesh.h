@@ -6,13 +6,13 @@
 namespace surf {
 
 struct SmoothOptions {
-  int iterations = 10;   ///< >= 0; 0 changes nothing. One is a step in and a step out
+  int iterations = 10;  ///< >= 0; 0 changes nothing. One is a step in and a step out
 
   /// Share of the way to the mean of its neighbours that a vertex goes in the step in; in (0, 1).
   double step = 0.5;
 
-  /// What the two steps leave unchanged: waves of this relative frequency; in (0, 1). The step out is
-  /// 1 / (pass_band - 1 / step), Taubin's k_PB. Lower values smooth coarser shapes too.
+  /// What the two steps leave unchanged: waves of this relative frequency; in (0, 1). The step out
+  /// is 1 / (pass_band - 1 / step), Taubin's k_PB. Lower values smooth coarser shapes too.
   double pass_band = 0.1;
 };
 

@@ -15,7 +15,7 @@ using Triangle = std::array<std::uint32_t, 3>;
 /// counter-clockwise: its normal points out. Closedness is not assumed; `check_mesh` reports it.
 struct TriangleMesh {
   std::vector<Vec3> vertices_nm;
-  std::vector<Triangle> triangles;   ///< indices into vertices_nm
+  std::vector<Triangle> triangles;  ///< indices into vertices_nm
 };
 
 /// The box around all vertices; empty for a mesh without vertices.

@@ -26,13 +26,16 @@ struct Corners {
 };
 
 /// The point of a triangle that is nearest to `p` (Ericson, Real-Time Collision Detection, 5.1.5).
-inline Vec3 closest_point(const Corners& t, const Vec3& p) { return closest_point(t.a, t.b, t.c, p); }
+inline Vec3 closest_point(const Corners& t, const Vec3& p) {
+  return closest_point(t.a, t.b, t.c, p);
+}
 
-/// A bounding-volume hierarchy over the triangles of a mesh, or over those near a region. The mesh must outlive it unchanged.
-/// Building takes O(n log n) and does not depend on the number of threads; queries may run at once from several threads.
+/// A bounding-volume hierarchy over the triangles of a mesh, or over those near a region. The mesh
+/// must outlive it unchanged. Building takes O(n log n) and does not depend on the number of
+/// threads; queries may run at once from several threads.
 ///
-/// The tree is complete, so it needs no pointers: node i has the children 2i + 1 and 2i + 2, and each level shares out the
-/// triangles evenly. Boxes are kept in single precision, rounded outward.
+/// The tree is complete, so it needs no pointers: node i has the children 2i + 1 and 2i + 2, and
+/// each level shares out the triangles evenly. Boxes are kept in single precision, rounded outward.
 class TriangleTree {
  public:
   static constexpr std::uint32_t none = 0xffffffffu;
@@ -58,8 +61,9 @@ class TriangleTree {
     return box;
   }
 
-  /// Calls visit(triangle) for triangles whose boxes come within the root of `reach_squared()` of a point, nearer ones first
-  /// where boxes do not overlap, and maybe for more. The reach may shrink on the way.
+  /// Calls visit(triangle) for triangles whose boxes come within the root of `reach_squared()` of a
+  /// point, nearer ones first where boxes do not overlap, and maybe for more. The reach may shrink
+  /// on the way.
   template <class Reach, class Visit>
   void visit_near(const Vec3& center, const Reach& reach_squared, const Visit& visit) const;
 
@@ -76,10 +80,10 @@ class TriangleTree {
   Closest closest(const Vec3& p, std::uint32_t start = 0) const;
 
  private:
-  static constexpr double rounding = 1e-9;   // of squares of distances
+  static constexpr double rounding = 1e-9;  // of squares of distances
   static constexpr std::size_t most_on_stack = 80;
 
-  struct Node {   // about origin_, rounded outward
+  struct Node {  // about origin_, rounded outward
     float lower[3];
     float upper[3];
   };
@@ -91,7 +95,7 @@ class TriangleTree {
     int level;
   };
   struct NearPlace : Place {
-    double squared;   // distance of the node's box
+    double squared;  // distance of the node's box
   };
 
   Range range(const Place& p) const {
@@ -104,13 +108,14 @@ class TriangleTree {
   const MeshView mesh_;
   Vec3 origin_;
   double negligible_squared_ = 0;
-  int levels_ = 0;                      // leaves are at this level
+  int levels_ = 0;  // leaves are at this level
   std::vector<std::uint32_t> faces_;
   std::vector<Node> nodes_;
 };
 
 template <class Reach, class Visit>
-void TriangleTree::visit_near(const Vec3& center, const Reach& reach_squared, const Visit& visit) const {
+void TriangleTree::visit_near(const Vec3& center, const Reach& reach_squared,
+                              const Visit& visit) const {
   if (faces_.empty()) return;
   const Vec3 c = center - origin_;
   std::array<NearPlace, most_on_stack> stack;
@@ -152,8 +157,8 @@ void TriangleTree::visit_overlapping(const Box& box, const Visit& visit) const {
   while (size > 0) {
     const Place e = stack[--size];
     const Node& b = nodes_[e.node];
-    if (b.lower[0] > upper.x || b.lower[1] > upper.y || b.lower[2] > upper.z || b.upper[0] < lower.x ||
-        b.upper[1] < lower.y || b.upper[2] < lower.z)
+    if (b.lower[0] > upper.x || b.lower[1] > upper.y || b.lower[2] > upper.z ||
+        b.upper[0] < lower.x || b.upper[1] < lower.y || b.upper[2] < lower.z)
       continue;
     if (e.level != levels_) {
       stack[size++] = {2 * e.node + 1, e.level + 1};

@@ -15,9 +15,9 @@ struct FlatYields {
   Estimate se, bse;
 };
 
-/// By direct simulation of at least `electrons` primaries on `threads` threads (0: one per hardware thread). Throws Interrupted, and as
-/// Scene does.
-FlatYields flat_yields(const Material& material, double energy_ev, std::int64_t electrons, const Physics& physics = {},
-                       int threads = 0, const Watch& watch = {});
+/// By direct simulation of at least `electrons` primaries on `threads` threads (0: one per hardware
+/// thread). Throws Interrupted, and as Scene does.
+FlatYields flat_yields(const Material& material, double energy_ev, std::int64_t electrons,
+                       const Physics& physics = {}, int threads = 0, const Watch& watch = {});
 
 }  // namespace surf::mc

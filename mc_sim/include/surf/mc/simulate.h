@@ -21,21 +21,26 @@ class UnitScheduler;
 
 /// Who takes part in a simulation, and who watches it. All of it may be left out.
 struct SimulationContext {
-  ProgressCallback progress;             ///< counts primaries, with an accuracy pixels; told after each unit that is simulated
+  ProgressCallback progress;  ///< counts primaries, with an accuracy pixels; told after each unit
+                              ///< that is simulated
   const CancelToken* cancel = nullptr;
-  ObserverOfThread observers;            ///< every track is then followed to its end, as in `simulate_unit`
-  /// Is told of every finished unit and asked for those done before: of the same scene and options, `tile_pixels` among them.
+  ObserverOfThread observers;  ///< every track is then followed to its end, as in `simulate_unit`
+  /// Is told of every finished unit and asked for those done before: of the same scene and options,
+  /// `tile_pixels` among them.
   UnitJournal* journal = nullptr;
-  LibrarySource* libraries = nullptr;    ///< where replay gets its cascades; null: they are made on the spot
-  UnitScheduler* scheduler = nullptr;    ///< who simulates which units; null: threads of this process
+  LibrarySource* libraries =
+      nullptr;  ///< where replay gets its cascades; null: they are made on the spot
+  UnitScheduler* scheduler = nullptr;  ///< who simulates which units; null: threads of this process
 
   /// Throws UsageError for what cannot go together.
   void check(const SimulationOptions& options, const Scene& scene) const;
 };
 
-/// Simulates the whole scan, in parallel. On cancellation returns what is done. Replay cannot serve observers, nor physics
-/// without continuous loss; observers go with neither a journal nor a scheduler nor an accuracy (UsageError). Where the scheduler
-/// does not collect, the result counts nothing and is complete, and the journal is not used.
-SimulationResult simulate(const Scene& scene, const SimulationOptions& options, const SimulationContext& context = {});
+/// Simulates the whole scan, in parallel. On cancellation returns what is done. Replay cannot serve
+/// observers, nor physics without continuous loss; observers go with neither a journal nor a
+/// scheduler nor an accuracy (UsageError). Where the scheduler does not collect, the result counts
+/// nothing and is complete, and the journal is not used.
+SimulationResult simulate(const Scene& scene, const SimulationOptions& options,
+                          const SimulationContext& context = {});
 
 }  // namespace surf::mc

@@ -8,10 +8,12 @@
 namespace surf::mc::atomic {
 
 inline constexpr double hartree_ev = 27.211386246, bohr_nm = 0.0529177210903;
-inline constexpr double rest_energy = 18778.865;   // of an electron, hartree
+inline constexpr double rest_energy = 18778.865;  // of an electron, hartree
 
 /// p^2 = 2 T (1 + T / 2 m c^2).
-inline double squared_momentum(double energy) { return 2 * energy * (1 + energy / (2 * rest_energy)); }
+inline double squared_momentum(double energy) {
+  return 2 * energy * (1 + energy / (2 * rest_energy));
+}
 inline double momentum(double energy) { return std::sqrt(squared_momentum(std::max(0.0, energy))); }
 /// m v^2 / 2, which stands where the kinetic energy does in slower electrons' cross-sections.
 inline double half_squared_speed(double energy) {

@@ -5,11 +5,11 @@
 
 #include <fmt/format.h>
 
-#include "physics/directions.h"
 #include "physics/dielectric/atomic_units.h"
 #include "physics/dielectric/kept_tables.h"
 #include "physics/dielectric/loss_sampler.h"
 #include "physics/dielectric/shells.h"
+#include "physics/directions.h"
 #include "physics/mechanisms.h"
 #include "surf/core/error.h"
 
@@ -18,25 +18,30 @@ namespace {
 
 using atomic::hartree_ev;
 
-constexpr double largest_auger_binding_ev = 3000;   // deeper holes rather shine
+constexpr double largest_auger_binding_ev = 3000;  // deeper holes rather shine
 
-// Losses to electrons, each one paid by the electron that makes it. An event frees one electron: of the valence band, or of an
-// inner shell. Those of the valence band start from a state E_i that the loss w lifts above the filled band and the gap, with the
-// weight of free electrons' states, sqrt(E_i (E_i + w)). A plasmon decays into any direction; where a single electron of the gas
-// can take loss and momentum, it does, and momentum is conserved. Holes stay, or an Auger electron fills those of inner shells.
+// Losses to electrons, each one paid by the electron that makes it. An event frees one electron: of
+// the valence band, or of an inner shell. Those of the valence band start from a state E_i that the
+// loss w lifts above the filled band and the gap, with the weight of free electrons' states,
+// sqrt(E_i (E_i + w)). A plasmon decays into any direction; where a single electron of the gas can
+// take loss and momentum, it does, and momentum is conserved. Holes stay, or an Auger electron
+// fills those of inner shells.
 class Dielectric final : public Scattering {
  public:
-  Dielectric(const DielectricData& data, std::shared_ptr<const LossSampler> losses, const Physics& physics)
-      : band_(data.band), top_ev_(data.elf.highest_ev()), losses_(std::move(losses)), shells_(data), secondaries_(physics.secondaries), auger_(physics.auger),
-        model_(physics.inelastic_model) {}
+  Dielectric(const DielectricData& data, std::shared_ptr<const LossSampler> losses,
+             const Physics& physics)
+      : band_(data.band), top_ev_(data.elf.highest_ev()), losses_(std::move(losses)), shells_(data),
+        secondaries_(physics.secondaries), auger_(physics.auger), model_(physics.inelastic_model) {}
 
   std::string describe() const override {
-    return fmt::format("losses: energy-loss function to {:.4g} eV, {}, tables of {:.1f} MB{}{}", top_ev_,
-                       model_ == InelasticModel::single_pole ? "extended by a single pole (doi:10.1103/PhysRevB.35.482)"
-                                                             : "full Penn algorithm (doi:10.1002/sia.5789)",
-                       static_cast<double>(losses_->bytes()) / 1e6,
-                       secondaries_ ? "; each frees one electron" : "",
-                       secondaries_ && auger_ ? ", and holes of inner shells an Auger electron" : "");
+    return fmt::format(
+        "losses: energy-loss function to {:.4g} eV, {}, tables of {:.1f} MB{}{}", top_ev_,
+        model_ == InelasticModel::single_pole
+            ? "extended by a single pole (doi:10.1103/PhysRevB.35.482)"
+            : "full Penn algorithm (doi:10.1002/sia.5789)",
+        static_cast<double>(losses_->bytes()) / 1e6,
+        secondaries_ ? "; each frees one electron" : "",
+        secondaries_ && auger_ ? ", and holes of inner shells an Auger electron" : "");
   }
 
   double inverse_mean_free_path_per_nm(double energy_ev) const override {
@@ -49,9 +54,11 @@ class Dielectric final : public Scattering {
     Loss loss;
     if (!losses_->draw(energy_ev, random, loss)) return;
     const double energy = energy_ev / hartree_ev, q = loss.momentum;
-    const double before2 = atomic::squared_momentum(energy), after2 = atomic::squared_momentum(energy - loss.energy);
+    const double before2 = atomic::squared_momentum(energy),
+                 after2 = atomic::squared_momentum(energy - loss.energy);
     const double before = std::sqrt(before2);
-    event.cos_theta = std::clamp((before2 + after2 - q * q) / (2 * before * std::sqrt(after2)), -1.0, 1.0);
+    event.cos_theta =
+        std::clamp((before2 + after2 - q * q) / (2 * before * std::sqrt(after2)), -1.0, 1.0);
     event.turn = random.uniform();
     event.energy_loss_ev = loss.energy * hartree_ev;
     if (!secondaries_) return;
@@ -77,12 +84,14 @@ class Dielectric final : public Scattering {
     }
   }
 
-  void free_valence(const Loss& loss, double cos_of_q, RandomStream& random, ScatterEvent& event) const {
+  void free_valence(const Loss& loss, double cos_of_q, RandomStream& random,
+                    ScatterEvent& event) const {
     const double w = event.energy_loss_ev;
     double least = std::max(0.0, band_.free_ev() - w);
     bool binary = false;
     if (!loss.collective) {
-      const double slowest = 0.5 * (2 * loss.energy - loss.momentum * loss.momentum) / loss.momentum;
+      const double slowest =
+          0.5 * (2 * loss.energy - loss.momentum * loss.momentum) / loss.momentum;
       const double needed = 0.5 * slowest * slowest * hartree_ev;
       if (needed < band_.filled_ev) {
         least = std::max(least, needed);
@@ -107,7 +116,8 @@ class Dielectric final : public Scattering {
     if (!auger_ || binding_ev > largest_auger_binding_ev) return;
     const double next = shells_.next_ev(binding_ev);
     // Both electrons from the next shell, or from the valence band.
-    const double from = next > 0 ? 2 * (band_.filled_ev - next) : initial_ev(0, 0, random) + initial_ev(0, 0, random);
+    const double from = next > 0 ? 2 * (band_.filled_ev - next)
+                                 : initial_ev(0, 0, random) + initial_ev(0, 0, random);
     const double energy = from + binding_ev - band_.filled_ev;
     if (!(energy > band_.free_ev())) return;
     event.auger_energy_ev = energy;
@@ -115,7 +125,7 @@ class Dielectric final : public Scattering {
   }
 
   BandLimits band_;
-  double top_ev_;   // of the energy-loss function
+  double top_ev_;  // of the energy-loss function
   std::shared_ptr<const LossSampler> losses_;
   Shells shells_;
   bool secondaries_, auger_;
@@ -124,8 +134,10 @@ class Dielectric final : public Scattering {
 
 }  // namespace
 
-std::unique_ptr<const Scattering> make_dielectric(const Material& material, const Physics& physics) {
-  return std::make_unique<Dielectric>(*material.dielectric, kept_losses(material, physics), physics);
+std::unique_ptr<const Scattering> make_dielectric(const Material& material,
+                                                  const Physics& physics) {
+  return std::make_unique<Dielectric>(*material.dielectric, kept_losses(material, physics),
+                                      physics);
 }
 
 }  // namespace surf::mc

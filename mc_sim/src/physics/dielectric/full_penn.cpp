@@ -18,8 +18,8 @@ using atomic::hartree_ev;
 
 constexpr double first_loss_ev = 0.02, last_loss_ev = 3e4;
 constexpr double last_plasma_ev = 3e4;
-constexpr double optical = 0.02;      // of x and of q: below, the function is that of light
-constexpr int most_points = 96;       // of an integral over plasma energies
+constexpr double optical = 0.02;  // of x and of q: below, the function is that of light
+constexpr int most_points = 96;   // of an integral over plasma energies
 
 // Logarithmic, finer where the functions of solids have their peaks.
 std::vector<double> loss_edges(double least_ev) {
@@ -57,7 +57,8 @@ FullPenn::Parts FullPenn::Table::value(double w, double q) const {
     parts.inner = parts.plasmon * inner_share(w);
     return parts;
   }
-  // The gas on whose continuum's edge (q, w) lies: denser ones have pairs there; of thinner ones, the plasmon may.
+  // The gas on whose continuum's edge (q, w) lies: denser ones have pairs there; of thinner ones,
+  // the plasmon may.
   const double edge = std::fabs(w - 0.5 * q * q) / q;
   const double least = Lindhard::plasma_energy(edge);
   if (w > 0.5 * q * q) {
@@ -70,7 +71,8 @@ FullPenn::Parts FullPenn::Table::value(double w, double q) const {
         (real(middle) > 0 ? low : high) = middle;
       }
       const double plasma = 0.5 * (low + high), step = 1e-4 * plasma;
-      const double slope = (real(plasma) - real(plasma - step)) / step;   // from below: above may be the continuum
+      const double slope =
+          (real(plasma) - real(plasma - step)) / step;  // from below: above may be the continuum
       parts.plasmon = weight(elf, plasma) * std::numbers::pi / std::fabs(slope);
       parts.inner += parts.plasmon * inner_share(plasma);
     }
@@ -82,7 +84,8 @@ FullPenn::Parts FullPenn::Table::value(double w, double q) const {
   for (int i = 0; i < most_points; ++i) {
     const double y = (i + 0.5) / most_points, log_plasma = log_from + y * y * whole;
     const double place = (log_plasma - first_log) / step_log;
-    const auto k = static_cast<std::size_t>(std::clamp(place, 0.0, static_cast<double>(weights.size() - 2)));
+    const auto k =
+        static_cast<std::size_t>(std::clamp(place, 0.0, static_cast<double>(weights.size() - 2)));
     const double g = weights[k] + (place - static_cast<double>(k)) * (weights[k + 1] - weights[k]);
     if (!(g > 0)) continue;
     const Lindhard gas = Lindhard::of_log_plasma_energy(log_plasma);
@@ -97,9 +100,11 @@ FullPenn::Parts FullPenn::Table::value(double w, double q) const {
 }
 
 FullPenn::Table::Table(const DielectricData& d)
-    : data(d), elf(d.band.gap_ev > 0 ? d.elf.above(d.band.gap_ev) : d.elf), shells(d), edges(momentum_edges()) {
+    : data(d), elf(d.band.gap_ev > 0 ? d.elf.above(d.band.gap_ev) : d.elf), shells(d),
+      edges(momentum_edges()) {
   first_log = std::log(1e-4), step_log = 1.0 / 256;
-  for (double at = first_log; at < std::log(last_plasma_ev / hartree_ev) + 2 * step_log; at += step_log)
+  for (double at = first_log; at < std::log(last_plasma_ev / hartree_ev) + 2 * step_log;
+       at += step_log)
     weights.push_back(static_cast<float>(weight(elf, std::exp(at)) * std::exp(at)));
   const std::vector<double> bounds = loss_edges(std::max(first_loss_ev, d.band.gap_ev));
   for (std::size_t i = 0; i + 1 < bounds.size(); ++i) {
@@ -142,12 +147,15 @@ double FullPenn::Table::density(double energy, std::size_t row) const {
 
 FullPenn::FullPenn(const DielectricData& data) : table_(std::make_shared<const Table>(data)) {}
 
-FullPenn::Parts FullPenn::value(double loss, double momentum) const { return table_->value(loss, momentum); }
+FullPenn::Parts FullPenn::value(double loss, double momentum) const {
+  return table_->value(loss, momentum);
+}
 
 double FullPenn::between_per_nm(double energy_ev, double from_ev, double to_ev) const {
   const Table& t = *table_;
   const double energy = energy_ev / hartree_ev;
-  const double most = std::min(to_ev, energy_ev - t.data.band.free_ev()) / hartree_ev, least = from_ev / hartree_ev;
+  const double most = std::min(to_ev, energy_ev - t.data.band.free_ev()) / hartree_ev,
+               least = from_ev / hartree_ev;
   double sum = 0;
   for (std::size_t i = 0; i < t.rows(); ++i) {
     const double half = 0.5 * t.widths[i], low = std::max(least, t.losses[i] * std::exp(-half));
@@ -157,14 +165,17 @@ double FullPenn::between_per_nm(double energy_ev, double from_ev, double to_ev) 
   return sum / bohr_nm;
 }
 
-double FullPenn::inverse_mean_free_path_per_nm(double energy_ev) const { return between_per_nm(energy_ev, 0, energy_ev); }
+double FullPenn::inverse_mean_free_path_per_nm(double energy_ev) const {
+  return between_per_nm(energy_ev, 0, energy_ev);
+}
 
 double FullPenn::stopping_power_ev_per_nm(double energy_ev) const {
   const Table& t = *table_;
   const double energy = energy_ev / hartree_ev, most = energy - t.data.band.free_ev() / hartree_ev;
   double sum = 0;
   for (std::size_t i = 0; i < t.rows(); ++i) {
-    const double half = 0.5 * t.widths[i], low = t.losses[i] * std::exp(-half), high = std::min(most, t.losses[i] * std::exp(half));
+    const double half = 0.5 * t.widths[i], low = t.losses[i] * std::exp(-half),
+                 high = std::min(most, t.losses[i] * std::exp(half));
     if (!(high > low)) break;
     const double w = std::sqrt(low * high);
     sum += std::log(high / low) * std::min(w, most - w) * t.density(energy, i);

@@ -17,11 +17,11 @@ namespace {
 
 using atomic::hartree_ev;
 
-constexpr int cells = 384;          // of a loss's momenta
+constexpr int cells = 384;  // of a loss's momenta
 
-// Most of a loss's momenta are the smallest, which fast electrons alone can hand over. What slow electrons hand over lies among the
-// largest: cells shrink towards them.
-double rest_below(int cell) {   // the part of momenta that are larger than those below a cell
+// Most of a loss's momenta are the smallest, which fast electrons alone can hand over. What slow
+// electrons hand over lies among the largest: cells shrink towards them.
+double rest_below(int cell) {  // the part of momenta that are larger than those below a cell
   const double r = 1 - double(cell) / cells;
   return r * r * r * r;
 }
@@ -32,7 +32,8 @@ constexpr int most_redraws = 1000;
 class FullPennSampler final : public LossSampler {
  public:
   explicit FullPennSampler(const DielectricData& data)
-      : penn_(data), band_(data.band), shells_(data), losses_(data.band, penn_.table().losses.front() * hartree_ev) {
+      : penn_(data), band_(data.band), shells_(data),
+        losses_(data.band, penn_.table().losses.front() * hartree_ev) {
     make_guide();
     invert_rows();
     for (int i = 0; i <= EnergyBins::count; ++i)
@@ -47,7 +48,9 @@ class FullPennSampler final : public LossSampler {
     return rates_per_nm_[i] + share * (rates_per_nm_[i + 1] - rates_per_nm_[i]);
   }
 
-  double stopping_power_ev_per_nm(double energy_ev) const override { return penn_.stopping_power_ev_per_nm(energy_ev); }
+  double stopping_power_ev_per_nm(double energy_ev) const override {
+    return penn_.stopping_power_ev_per_nm(energy_ev);
+  }
 
   bool draw(double energy_ev, RandomStream& random, Loss& loss) const override {
     if (!losses_.can_lose(energy_ev)) return false;
@@ -62,7 +65,8 @@ class FullPennSampler final : public LossSampler {
       const double f = c - k;
       const Cell* const a = &cells_[row.number * (cells + 1) + static_cast<std::size_t>(k)];
       const Cell* const b = a + (cells + 1);
-      const double lower = a[0].log_x + f * (a[1].log_x - a[0].log_x), upper = b[0].log_x + f * (b[1].log_x - b[0].log_x);
+      const double lower = a[0].log_x + f * (a[1].log_x - a[0].log_x),
+                   upper = b[0].log_x + f * (b[1].log_x - b[0].log_x);
       const double q = std::exp(lower + row.share * (upper - lower)) * std::sqrt(2 * w);
       const double after = atomic::momentum(energy - w);
       if (!(q >= before - after && q <= before + after)) continue;
@@ -77,14 +81,18 @@ class FullPennSampler final : public LossSampler {
     return false;
   }
 
-  std::size_t bytes() const override { return losses_.bytes() + cells_.size() * sizeof(Cell) + penn_.table().bytes(); }
+  std::size_t bytes() const override {
+    return losses_.bytes() + cells_.size() * sizeof(Cell) + penn_.table().bytes();
+  }
 
   // What LossQuantiles asks.
-  void integrate(double energy_ev, double most_ev, std::vector<double>& edges, std::vector<double>& sums) const {
+  void integrate(double energy_ev, double most_ev, std::vector<double>& edges,
+                 std::vector<double>& sums) const {
     const FullPenn::Table& t = penn_.table();
     for (std::size_t row = 0; row < t.rows(); ++row) {
       const double half = 0.5 * t.widths[row];
-      const double from = std::max(edges.back(), row_ev_[row] * std::exp(-half)), to = std::min(most_ev, row_ev_[row] * std::exp(half));
+      const double from = std::max(edges.back(), row_ev_[row] * std::exp(-half)),
+                   to = std::min(most_ev, row_ev_[row] * std::exp(half));
       if (!(to > from)) continue;
       sums.push_back(sums.back() + std::log(to / from) * t.density(energy_ev / hartree_ev, row));
       edges.push_back(to);
@@ -93,11 +101,14 @@ class FullPennSampler final : public LossSampler {
 
   // Momenta as the part of the loss's momenta that are larger.
   LossAndRange range(double energy_ev, double w_ev) const {
-    const double energy = energy_ev / hartree_ev, w = std::min(w_ev, energy_ev - band_.free_ev()) / hartree_ev;
-    const double p = atomic::momentum(energy), after = atomic::momentum(energy - w), unit = std::sqrt(2 * w);
+    const double energy = energy_ev / hartree_ev,
+                 w = std::min(w_ev, energy_ev - band_.free_ev()) / hartree_ev;
+    const double p = atomic::momentum(energy), after = atomic::momentum(energy - w),
+                 unit = std::sqrt(2 * w);
     const Row row = row_of(w_ev);
     const auto part = [&](double q) {
-      const double lower = part_above(row.number, q / unit), upper = part_above(row.number + 1, q / unit);
+      const double lower = part_above(row.number, q / unit),
+                   upper = part_above(row.number + 1, q / unit);
       return static_cast<float>(lower + row.share * (upper - lower));
     };
     return LossAndRange{static_cast<float>(w_ev), part(p - after), part(p + after)};
@@ -105,12 +116,12 @@ class FullPennSampler final : public LossSampler {
 
  private:
   struct Cell {
-    float log_x;              // at its lower edge
-    float plasmon, inner;     // shares in it
+    float log_x;           // at its lower edge
+    float plasmon, inner;  // shares in it
   };
   struct Row {
     std::size_t number;
-    double share;             // towards the next
+    double share;  // towards the next
   };
 
   // The row at or below a loss, of those that have one above.
@@ -122,7 +133,7 @@ class FullPennSampler final : public LossSampler {
 
   // The row at or below the lower edge of each of many bins of losses.
   struct Guide {
-    static constexpr int bits = 6;   // of the mantissa
+    static constexpr int bits = 6;  // of the mantissa
     static constexpr double lowest_ev = 1.0 / 128;
     static std::size_t bin(double w_ev) {
       constexpr int shift = 52 - bits;
@@ -132,7 +143,8 @@ class FullPennSampler final : public LossSampler {
     }
     static double lower_ev(std::size_t bin) {
       constexpr int shift = 52 - bits;
-      return std::bit_cast<double>(((std::bit_cast<std::uint64_t>(lowest_ev) >> shift) + bin) << shift);
+      return std::bit_cast<double>(((std::bit_cast<std::uint64_t>(lowest_ev) >> shift) + bin)
+                                   << shift);
     }
     static constexpr std::size_t bins = 23 << bits;
   };
@@ -151,7 +163,9 @@ class FullPennSampler final : public LossSampler {
   double part_above(std::size_t row, double x) const {
     const FullPenn::Table& t = penn_.table();
     const double whole = t.integral[(row + 1) * t.edges.size() - 1];
-    return whole > 0 ? std::clamp((whole - t.up_to(row, x * std::sqrt(2 * t.losses[row]))) / whole, 0.0, 1.0) : 1;
+    return whole > 0 ? std::clamp((whole - t.up_to(row, x * std::sqrt(2 * t.losses[row]))) / whole,
+                                  0.0, 1.0)
+                     : 1;
   }
 
   void invert_rows() {
@@ -165,14 +179,17 @@ class FullPennSampler final : public LossSampler {
         const double wanted = whole * (1 - rest_below(i));
         while (k + 1 < t.cells() && sums[k + 1] <= wanted && (sums[k + 1] < whole)) ++k;
         while (i == 0 && k + 1 < t.cells() && !(sums[k + 1] > 0)) ++k;
-        const double width = sums[k + 1] - sums[k], f = width > 0 ? std::clamp((wanted - sums[k]) / width, 0.0, 1.0) : 0;
+        const double width = sums[k + 1] - sums[k],
+                     f = width > 0 ? std::clamp((wanted - sums[k]) / width, 0.0, 1.0) : 0;
         const double low = std::log(t.edges[k]), high = std::log(t.edges[k + 1]);
         // The kind is that of the cell's middle.
         std::size_t m = k;
-        const double middle = whole * (1 - 0.5 * (rest_below(i) + rest_below(std::min(i + 1, cells))));
+        const double middle =
+            whole * (1 - 0.5 * (rest_below(i) + rest_below(std::min(i + 1, cells))));
         while (m + 1 < t.cells() && sums[m + 1] <= middle) ++m;
-        cells_[row * (cells + 1) + static_cast<std::size_t>(i)] = {static_cast<float>(low + f * (high - low)),
-                                                                   t.plasmon[row * t.cells() + m], t.inner[row * t.cells() + m]};
+        cells_[row * (cells + 1) + static_cast<std::size_t>(i)] = {
+            static_cast<float>(low + f * (high - low)), t.plasmon[row * t.cells() + m],
+            t.inner[row * t.cells() + m]};
       }
     }
   }
@@ -181,10 +198,10 @@ class FullPennSampler final : public LossSampler {
   BandLimits band_;
   Shells shells_;
   LossQuantiles losses_;
-  std::vector<double> row_ev_;          // losses of rows
+  std::vector<double> row_ev_;  // losses of rows
   std::vector<std::size_t> guide_;
-  std::vector<double> rates_per_nm_;   // 1 / lambda at the edges of energy bins
-  std::vector<Cell> cells_;     // [row][cell]
+  std::vector<double> rates_per_nm_;  // 1 / lambda at the edges of energy bins
+  std::vector<Cell> cells_;           // [row][cell]
 };
 
 }  // namespace

@@ -13,7 +13,8 @@
 namespace surf::mc {
 namespace {
 
-// Data are told by where they are; each table keeps its own alive, so that nothing else comes to lie there.
+// Data are told by where they are; each table keeps its own alive, so that nothing else comes to
+// lie there.
 struct Kept {
   std::shared_ptr<const DielectricData> data;
   std::shared_ptr<const LossSampler> losses;
@@ -39,16 +40,20 @@ std::shared_ptr<const LossSampler> kept_losses(const Material& material, const P
   const std::lock_guard lock(mutex());
   Kept& entry = kept(material, full ? "full Penn" : "single pole");
   if (!entry.losses)
-    entry.losses = full ? make_full_penn_sampler(*material.dielectric) : make_single_pole_sampler(*material.dielectric);
+    entry.losses = full ? make_full_penn_sampler(*material.dielectric)
+                        : make_single_pole_sampler(*material.dielectric);
   return entry.losses;
 }
 
-std::vector<double> kept_reach_nm(const Medium& medium, const Material& material, const Physics& physics) {
+std::vector<double> kept_reach_nm(const Medium& medium, const Material& material,
+                                  const Physics& physics) {
   const auto losses = kept_losses(material, physics);
   const std::lock_guard lock(mutex());
-  Kept& entry = kept(material, fmt::format("reach {} {:.17g}", format_physics(physics), medium.cutoff_ev()));
+  Kept& entry =
+      kept(material, fmt::format("reach {} {:.17g}", format_physics(physics), medium.cutoff_ev()));
   if (entry.reach_nm.empty())
-    entry.reach_nm = measured_reach_nm(medium, [&](double energy_ev) { return losses->stopping_power_ev_per_nm(energy_ev); });
+    entry.reach_nm = measured_reach_nm(
+        medium, [&](double energy_ev) { return losses->stopping_power_ev_per_nm(energy_ev); });
   return entry.reach_nm;
 }
 

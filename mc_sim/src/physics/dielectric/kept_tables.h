@@ -11,12 +11,14 @@
 
 namespace surf::mc {
 
-// Tables that take a second to make, kept as long as the program runs: media of the same material share them. From any thread.
+// Tables that take a second to make, kept as long as the program runs: media of the same material
+// share them. From any thread.
 
 /// What `physics.inelastic_model` makes of the material's energy-loss function.
 std::shared_ptr<const LossSampler> kept_losses(const Material& material, const Physics& physics);
 
 /// `measured_reach_nm` of the medium that this is of.
-std::vector<double> kept_reach_nm(const Medium& medium, const Material& material, const Physics& physics);
+std::vector<double> kept_reach_nm(const Medium& medium, const Material& material,
+                                  const Physics& physics);
 
 }  // namespace surf::mc

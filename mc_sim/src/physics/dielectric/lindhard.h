@@ -6,12 +6,14 @@
 
 namespace surf::mc {
 
-/// Lindhard's dielectric function of a free-electron gas (Kgl. Danske Videnskab. Selskab Mat.-Fys. Medd. 28, no. 8 (1954)), atomic
-/// units, q > 0 and w > 0.
+/// Lindhard's dielectric function of a free-electron gas (Kgl. Danske Videnskab. Selskab Mat.-Fys.
+/// Medd. 28, no. 8 (1954)), atomic units, q > 0 and w > 0.
 class Lindhard {
  public:
   /// Of the gas whose plasma energy is w_p.
-  static Lindhard of_plasma_energy(double wp) { return Lindhard(std::cbrt(0.75 * std::numbers::pi * wp * wp)); }
+  static Lindhard of_plasma_energy(double wp) {
+    return Lindhard(std::cbrt(0.75 * std::numbers::pi * wp * wp));
+  }
   static Lindhard of_log_plasma_energy(double log_wp) {
     static const double factor = std::cbrt(0.75 * std::numbers::pi);
     return Lindhard(factor * std::exp(2.0 / 3 * log_wp));
@@ -25,7 +27,8 @@ class Lindhard {
 
   double real(double q, double w) const {
     const double z = 0.5 * q / k_, u = w / (q * k_);
-    // Far from the continuum the logarithms nearly cancel: w_p^2 / w^2 is left, with two more terms of its series.
+    // Far from the continuum the logarithms nearly cancel: w_p^2 / w^2 is left, with two more terms
+    // of its series.
     if (u > 50 * (1 + z)) {
       const double u2 = u * u, z2 = z * z;
       return 1 - scale(z) / (3 * u2) * (1 + (0.6 + z2) / u2);

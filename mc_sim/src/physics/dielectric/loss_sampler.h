@@ -10,14 +10,15 @@ namespace surf::mc {
 
 /// A loss to electrons, in atomic units.
 struct Loss {
-  double energy = 0;       ///< that the electron loses
-  double momentum = 0;     ///< that it hands over
-  double shell_ev = 0;     ///< binding energy of the inner shell that it ionizes; 0: it goes to the valence band
-  bool collective = false; ///< a plasmon's
+  double energy = 0;    ///< that the electron loses
+  double momentum = 0;  ///< that it hands over
+  double shell_ev =
+      0;  ///< binding energy of the inner shell that it ionizes; 0: it goes to the valence band
+  bool collective = false;  ///< a plasmon's
 };
 
-/// A way to extend an energy-loss function to momenta: how often electrons lose, and what. Energies inside count from the bottom
-/// of the filled band.
+/// A way to extend an energy-loss function to momenta: how often electrons lose, and what. Energies
+/// inside count from the bottom of the filled band.
 class LossSampler {
  public:
   virtual ~LossSampler() = default;

@@ -12,8 +12,8 @@ namespace surf::mc {
 namespace {
 
 constexpr std::size_t electrons = 3000;
-constexpr double first_ev = 1, last_ev = 512;     // above the vacuum level
-constexpr double straight = 1.2;                  // longer than the mean way of a straight electron
+constexpr double first_ev = 1, last_ev = 512;  // above the vacuum level
+constexpr double straight = 1.2;               // longer than the mean way of a straight electron
 constexpr double wanted_decades = 6, safety = 1.1;
 constexpr std::uint64_t seed = 1;
 constexpr int most_steps = 100000;
@@ -24,7 +24,8 @@ struct Electron {
 };
 
 // The greatest distance of a cascade from its start.
-double extent_nm(const Medium& medium, double energy_ev, RandomStream& random, std::vector<Electron>& waiting) {
+double extent_nm(const Medium& medium, double energy_ev, RandomStream& random,
+                 std::vector<Electron>& waiting) {
   double squared = 0;
   waiting.assign(1, {{}, {0, 0, -1}, energy_ev});
   while (!waiting.empty()) {
@@ -36,11 +37,13 @@ double extent_nm(const Medium& medium, double energy_ev, RandomStream& random, s
       ScatterEvent event;
       medium.choose(e.energy_ev, random.uniform()).scatter(e.energy_ev, random, event);
       const auto free = [&](double energy, const Vec3& local) {
-        if (energy > medium.cutoff_ev()) waiting.push_back({e.position, from_frame_of(e.direction, local), energy});
+        if (energy > medium.cutoff_ev())
+          waiting.push_back({e.position, from_frame_of(e.direction, local), energy});
       };
       if (event.has_secondary) free(event.secondary_energy_ev, event.secondary_direction);
       if (event.auger_energy_ev > 0) free(event.auger_energy_ev, event.auger_direction);
-      e.direction = event.isotropic ? from_axis(event.cos_theta, event.turn) : deflected(e.direction, event.cos_theta, event.turn);
+      e.direction = event.isotropic ? from_axis(event.cos_theta, event.turn)
+                                    : deflected(e.direction, event.cos_theta, event.turn);
       e.energy_ev -= event.energy_loss_ev;
     }
   }
@@ -55,14 +58,16 @@ double measure_nm(const Medium& medium, double energy_ev, std::uint64_t number) 
     extents.push_back(extent_nm(medium, energy_ev, random, waiting));
   }
   std::ranges::sort(extents, std::greater<>());
-  const double tenth = extents[electrons / 10], hundredth = extents[electrons / 100], thousandth = extents[electrons / 1000];
+  const double tenth = extents[electrons / 10], hundredth = extents[electrons / 100],
+               thousandth = extents[electrons / 1000];
   const double per_decade = std::max(hundredth - tenth, 0.5 * (thousandth - tenth));
   return hundredth + (wanted_decades - 2) * safety * per_decade;
 }
 
 }  // namespace
 
-std::vector<double> measured_reach_nm(const Medium& medium, const std::function<double(double)>& stopping_power_ev_per_nm) {
+std::vector<double> measured_reach_nm(
+    const Medium& medium, const std::function<double(double)>& stopping_power_ev_per_nm) {
   std::vector<double> energies, reaches;
   const double zero = std::max(medium.barrier_ev(), medium.cutoff_ev());
   double most = 0;
@@ -75,8 +80,9 @@ std::vector<double> measured_reach_nm(const Medium& medium, const std::function<
     const double energy = EnergyBins::lower_ev(i);
     if (energy <= medium.cutoff_ev()) {
       out.push_back(0);
-    } else if (energy <= energies.back()) {   // as far as the next higher one that was measured
-      out.push_back(reaches[static_cast<std::size_t>(std::ranges::lower_bound(energies, energy) - energies.begin())]);
+    } else if (energy <= energies.back()) {  // as far as the next higher one that was measured
+      out.push_back(reaches[static_cast<std::size_t>(std::ranges::lower_bound(energies, energy) -
+                                                     energies.begin())]);
     } else {
       const double before = std::max(energies.back(), EnergyBins::lower_ev(i - 1));
       const double way = (energy - before) / stopping_power_ev_per_nm(0.5 * (before + energy));

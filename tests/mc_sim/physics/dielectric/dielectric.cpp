@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <cmath>
 
-#include "physics/directions.h"
 #include "physics/dielectric/atomic_units.h"
 #include "physics/dielectric/kept_tables.h"
+#include "physics/directions.h"
 #include "physics/mechanism_test.h"
 #include "transport/detection.h"
 #include "transport/endless.h"
@@ -45,8 +45,8 @@ TEST(Dielectric, MovesElectronsFromFilledToFreeStates) {
   }
 }
 
-// Where a single electron takes loss and momentum, the three momenta of before are those of after: what the secondary had lies
-// inside the filled band, in its size and in its energy.
+// Where a single electron takes loss and momentum, the three momenta of before are those of after:
+// what the secondary had lies inside the filled band, in its size and in its energy.
 TEST(Dielectric, ConservesMomentumInBinaryCollisions) {
   const DielectricData& d = *material("Al").dielectric;
   const auto losses = make_dielectric(material("Al"), tier());
@@ -56,10 +56,13 @@ TEST(Dielectric, ConservesMomentumInBinaryCollisions) {
   for (int i = 0; i < 20000; ++i) {
     ScatterEvent e;
     losses->scatter(energy, random, e);
-    if (!e.has_secondary || e.energy_loss_ev < 100) continue;   // far beyond the plasmon: pairs, or the L shell
-    const double before = atomic::momentum(energy / hartree_ev), after = atomic::momentum((energy - e.energy_loss_ev) / hartree_ev);
+    if (!e.has_secondary || e.energy_loss_ev < 100)
+      continue;  // far beyond the plasmon: pairs, or the L shell
+    const double before = atomic::momentum(energy / hartree_ev),
+                 after = atomic::momentum((energy - e.energy_loss_ev) / hartree_ev);
     const Vec3 given = Vec3{0, 0, before} - from_axis(e.cos_theta, e.turn) * after;
-    const Vec3 had = e.secondary_direction * std::sqrt(2 * e.secondary_energy_ev / hartree_ev) - given;
+    const Vec3 had =
+        e.secondary_direction * std::sqrt(2 * e.secondary_energy_ev / hartree_ev) - given;
     const double had_ev = 0.5 * dot(had, had) * hartree_ev;
     ++all;
     if (std::fabs(had_ev - (e.secondary_energy_ev - e.energy_loss_ev)) > 1e-6 * energy) continue;
@@ -80,11 +83,13 @@ TEST(Dielectric, FreesAugerElectronsOnDemand) {
     losses->scatter(8000, random, e);
     if (!(e.auger_energy_ev > 0)) continue;
     ++auger;
-    // From the L shell by two valence electrons, 92 eV measured; from the K shell by two of the L shell, 1616 eV measured.
+    // From the L shell by two valence electrons, 92 eV measured; from the K shell by two of the L
+    // shell, 1616 eV measured.
     const bool k_shell = e.auger_energy_ev > 200;
     EXPECT_NEAR(e.auger_energy_ev - d.barrier_ev(), k_shell ? 1616 : 92, k_shell ? 25 : 14);
     of_the_k_shell += k_shell;
-    EXPECT_LE(e.auger_energy_ev + e.secondary_energy_ev, e.energy_loss_ev + 3 * d.band.filled_ev + 1e-9);
+    EXPECT_LE(e.auger_energy_ev + e.secondary_energy_ev,
+              e.energy_loss_ev + 3 * d.band.filled_ev + 1e-9);
   }
   EXPECT_GT(auger, 1000);
   EXPECT_GT(of_the_k_shell, 100);
@@ -129,7 +134,8 @@ TEST(Dielectric, BoundsTheReachOfElectrons) {
     Farthest farthest;
     Detection detection(default_detectors(), {}, false);
     Balance balance;
-    Transport<Endless, Farthest> transport(endless, media, BarrierModel::quantum, false, farthest, detection, balance);
+    Transport<Endless, Farthest> transport(endless, media, BarrierModel::quantum, false, farthest,
+                                           detection, balance);
     for (std::uint64_t i = 0; i < (above > 500 ? 3000u : 20000u); ++i) {
       RandomStream random(9, 0, i);
       transport.run({}, {0, 0, -1}, energy, 0, random);

@@ -18,7 +18,8 @@ bool is_estimated(const DielectricData& d, const std::string& field) {
   return false;
 }
 
-// The estimate counts all electrons and has the mean ionization energy of the elements, whatever the material.
+// The estimate counts all electrons and has the mean ionization energy of the elements, whatever
+// the material.
 TEST(DielectricDraft, EstimatesALossFunctionByItsSums) {
   for (const char* name : {"Si", "Au", "PMMA", "TiO2", "W"}) {
     const Material& m = io::find_material(name, "test");
@@ -47,12 +48,14 @@ TEST(DielectricDraft, EstimatesFreePathsWithinSixtyPercent) {
 TEST(DielectricDraft, MarksWhatItEstimates) {
   const Material& si = io::find_material("Si", "test");
   const auto estimated = complete(DielectricDraft{}, si);
-  for (const char* field : {"energy_loss_function", "filled_band_ev", "lattice_nm", "sound_m_s", "deformation_ev"})
+  for (const char* field :
+       {"energy_loss_function", "filled_band_ev", "lattice_nm", "sound_m_s", "deformation_ev"})
     EXPECT_TRUE(is_estimated(*estimated, field)) << field;
   EXPECT_FALSE(is_estimated(*estimated, "optical_phonons")) << "not of an element";
   EXPECT_NEAR(estimated->band.gap_ev, 1.1, 1e-9);
   EXPECT_TRUE(si.dielectric->estimates.empty());
-  EXPECT_TRUE(is_estimated(*complete(DielectricDraft{}, io::find_material("TiO2", "test")), "optical_phonons"));
+  EXPECT_TRUE(is_estimated(*complete(DielectricDraft{}, io::find_material("TiO2", "test")),
+                           "optical_phonons"));
 }
 
 TEST(DielectricDraft, TakesAMetalsBandFromItsBarrier) {
@@ -66,7 +69,7 @@ TEST(DielectricDraft, RefusesWhatCannotBe) {
   d.filled_band_ev = 0.1;
   EXPECT_THROW(complete(d, si), InvalidInput);
   d = {};
-  d.vacuum_ev = 0.5;   // in the gap
+  d.vacuum_ev = 0.5;  // in the gap
   EXPECT_THROW(complete(d, si), InvalidInput);
   d = {};
   d.optical = std::vector<OpticalMode>{{0.1, 5, 3}};

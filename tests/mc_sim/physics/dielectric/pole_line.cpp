@@ -18,7 +18,8 @@ TEST(PoleLine, IntegratesAndInvertsInClosedForm) {
       EXPECT_NEAR(line.integral(first, last) / sum, 1, 1e-6) << w0 << ", " << first;
       EXPECT_NEAR(std::sqrt(line.square_of_momentum(line.log_t(last))) / last, 1, 1e-9);
       EXPECT_NEAR(line.momentum(line.loss(last)) / last, 1, 1e-9);
-      EXPECT_NEAR(line.slope(last, line.loss(last)), (line.loss(last + 1e-5) - line.loss(last - 1e-5)) / 2e-5, 1e-6);
+      EXPECT_NEAR(line.slope(last, line.loss(last)),
+                  (line.loss(last + 1e-5) - line.loss(last - 1e-5)) / 2e-5, 1e-6);
     }
   }
 }

@@ -8,7 +8,9 @@
 namespace surf::mc {
 namespace {
 
-const DielectricData& data_of(const char* name) { return *io::find_material(name, "test").dielectric; }
+const DielectricData& data_of(const char* name) {
+  return *io::find_material(name, "test").dielectric;
+}
 
 TEST(Shells, TakeWhatIsAboveTheContinuationFromBelowTheEdge) {
   const Shells silicon(data_of("Si"));

@@ -17,8 +17,8 @@ namespace surf::workflow {
 /// missing is made and stored, and all stays in memory for as long as this lives.
 ///
 /// A page from the cache counts only if the cache finds it sound (io::Cache), it holds a page of
-/// cascades, and its first cascades are word for word what this program makes (a few ms); else it is
-/// made again and replaced. So the libraries are the same with any cache and without one.
+/// cascades, and its first cascades are word for word what this program makes (a few ms); else it
+/// is made again and replaced. So the libraries are the same with any cache and without one.
 class CachedLibraries : public mc::LibrarySource {
  public:
   /// `folder` as io::cache_folder gives it; empty: no cache. `max_bytes`: what io::Cache keeps to.
@@ -36,9 +36,9 @@ class CachedLibraries : public mc::LibrarySource {
 
   /// Pages so far, for run records.
   struct Pages {
-    std::size_t loaded = 0;   ///< from the cache
+    std::size_t loaded = 0;  ///< from the cache
     std::size_t made = 0;
-    std::size_t stored = 0;   ///< of those made
+    std::size_t stored = 0;  ///< of those made
   };
   Pages pages() const;
 

@@ -14,7 +14,7 @@ namespace surf::workflow {
 
 /// A library of cascades as it lies in a cache.
 struct StoredLibrary {
-  mc::CascadePageName name;                   ///< of its first page
+  mc::CascadePageName name;  ///< of its first page
   std::size_t cascades = 0;
   std::uint64_t bytes = 0;                    ///< of all its files
   std::filesystem::file_time_type last_used;  ///< of the page used last
@@ -23,8 +23,8 @@ struct StoredLibrary {
 
 /// What a cache holds.
 struct LibraryList {
-  std::vector<StoredLibrary> libraries;   ///< by material, energy and seed
-  std::vector<io::CacheEntry> damaged;    ///< whatever they were
+  std::vector<StoredLibrary> libraries;  ///< by material, energy and seed
+  std::vector<io::CacheEntry> damaged;   ///< whatever they were
 };
 
 /// `check` as io::Cache::list has it: `everything` reads all files.

@@ -16,12 +16,12 @@ namespace surf::workflow {
 
 /// Which libraries of cascades there are to be.
 struct LibraryParameters {
-  std::vector<double> energies_ev = {mc::Beam{}.energy_ev};   ///< of the beams, each once
-  std::optional<std::int64_t> cascades;   ///< in each, rounded up to whole pages
-  std::optional<double> accuracy;         ///< of images that begin with so many; not with `cascades`
-  mc::SimulationRequest simulation;       ///< its physics and seed
-  std::filesystem::path cache;            ///< empty: none
-  int threads = 0;                        ///< 0: one per hardware thread
+  std::vector<double> energies_ev = {mc::Beam{}.energy_ev};  ///< of the beams, each once
+  std::optional<std::int64_t> cascades;                      ///< in each, rounded up to whole pages
+  std::optional<double> accuracy;    ///< of images that begin with so many; not with `cascades`
+  mc::SimulationRequest simulation;  ///< its physics and seed
+  std::filesystem::path cache;       ///< empty: none
+  int threads = 0;                   ///< 0: one per hardware thread
 };
 void describe(ParameterVisitor& visit, LibraryParameters& parameters);
 
@@ -32,6 +32,7 @@ std::vector<double> parse_energies_ev(std::string_view text, const std::string& 
 std::size_t cascades_of(const LibraryParameters& parameters);
 
 /// Of one material, at each energy. Throws UsageError where no library can be of it.
-std::vector<mc::CascadeSettings> libraries_of(const LibraryParameters& parameters, const mc::Material& material);
+std::vector<mc::CascadeSettings> libraries_of(const LibraryParameters& parameters,
+                                              const mc::Material& material);
 
 }  // namespace surf::workflow

@@ -14,26 +14,27 @@
 namespace surf::workflow {
 
 struct LibraryPlotOptions {
-  std::vector<mc::Material> materials;     ///< 1 to 8
-  std::vector<double> energies_ev;         ///< of the beam, at least one, 100 to 30000
-  /// Angles of the beam that yields are shown for, 0 to below 90. Empty: 0, and with one energy 0 to
-  /// 75 in steps of 15.
+  std::vector<mc::Material> materials;  ///< 1 to 8
+  std::vector<double> energies_ev;      ///< of the beam, at least one, 100 to 30000
+  /// Angles of the beam that yields are shown for, 0 to below 90. Empty: 0, and with one energy 0
+  /// to 75 in steps of 15.
   std::vector<double> tilts_deg;
   mc::Physics physics;
   std::uint64_t seed = 1;
-  /// In each library, at least 1; a simulation takes 10240 or more (mc::library_size), and so does this.
+  /// In each library, at least 1; a simulation takes 10240 or more (mc::library_size), and so does
+  /// this.
   std::size_t cascades = 10240;
-  int threads = 0;                         ///< 0: one per hardware thread
-  std::vector<MeasuredYield> measured;     ///< shown beside yields at normal incidence
+  int threads = 0;                      ///< 0: one per hardware thread
+  std::vector<MeasuredYield> measured;  ///< shown beside yields at normal incidence
 };
 
 /// library.tilt.
 void describe(ParameterVisitor& visit, LibraryPlotOptions& options);
 
-/// What is in libraries and what comes of it: how deep and how far primaries get, against the energy
-/// where there are several, and the yields of flat specimens, replayed from the same libraries, with
-/// their standard errors, against the energy or else the tilt. Nothing when cancelled. Throws
-/// UsageError for options out of range. Progress has no unit.
+/// What is in libraries and what comes of it: how deep and how far primaries get, against the
+/// energy where there are several, and the yields of flat specimens, replayed from the same
+/// libraries, with their standard errors, against the energy or else the tilt. Nothing when
+/// cancelled. Throws UsageError for options out of range. Progress has no unit.
 std::optional<io::Plot> plot_libraries(const LibraryPlotOptions& options,
                                        mc::LibrarySource& libraries,
                                        const ProgressCallback& progress = {},

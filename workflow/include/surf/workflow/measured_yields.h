@@ -9,9 +9,9 @@ namespace surf::workflow {
 
 /// A yield of a flat specimen, seen from above, as somebody measured it.
 struct MeasuredYield {
-  std::string material;     ///< an element's symbol or a material's name
-  double energy_ev = 0;     ///< > 0
-  double yield = 0;         ///< per primary, >= 0
+  std::string material;  ///< an element's symbol or a material's name
+  double energy_ev = 0;  ///< > 0
+  double yield = 0;      ///< per primary, >= 0
   bool backscattered = false;
 };
 

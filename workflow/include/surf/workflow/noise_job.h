@@ -13,7 +13,7 @@
 namespace surf::workflow {
 
 struct ScanNoiseParameters {
-  bool flat = false;                       ///< all of the scan is flat; else the noise is that of the substrate
+  bool flat = false;  ///< all of the scan is flat; else the noise is that of the substrate
   int degree = FlatNoiseOptions{}.degree;
   int lags = NoiseCheckOptions{}.lags;
 };
@@ -22,15 +22,15 @@ void describe(ParameterVisitor& visit, ScanNoiseParameters& parameters);
 
 struct ScanNoise {
   NoiseEstimate estimate;
-  Grid<unsigned char> samples;             ///< 1 where the estimate is from
-  Grid<double> residual_nm, white;         ///< what is left of the heights, and of that by the model
-  double substrate_share = 1;              ///< of the samples that take part
-  std::optional<HoughSummary> plane;       ///< of the substrate
-  std::optional<NoiseCheck> check;         ///< none where there is no noise at all
+  Grid<unsigned char> samples;        ///< 1 where the estimate is from
+  Grid<double> residual_nm, white;    ///< what is left of the heights, and of that by the model
+  double substrate_share = 1;         ///< of the samples that take part
+  std::optional<HoughSummary> plane;  ///< of the substrate
+  std::optional<NoiseCheck> check;    ///< none where there is no noise at all
 };
 
-/// Samples that are 0 in `use` (of the scan's size, or empty) play no part. Throws InvalidInput, UsageError,
-/// Interrupted.
+/// Samples that are 0 in `use` (of the scan's size, or empty) play no part. Throws InvalidInput,
+/// UsageError, Interrupted.
 ScanNoise noise_of_scan(const HeightField& scan, const ScanNoiseParameters& parameters,
                         const Grid<unsigned char>& use = {}, const Reporter& reporter = {});
 

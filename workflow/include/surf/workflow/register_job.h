@@ -25,25 +25,25 @@ struct AfmInput {
   HeightField scan;
   std::filesystem::path file;
   AfmPreparationOptions preparation;
-  io::HeightReadOptions reading = {};      ///< how the file was read: of the record
+  io::HeightReadOptions reading = {};  ///< how the file was read: of the record
 };
 void describe(ParameterVisitor& visit, AfmInput& input);
 
 struct SemInput {
   PlacedImage image;
   std::filesystem::path file;
-  io::SemReadOptions reading = {};         ///< as of AfmInput
+  io::SemReadOptions reading = {};  ///< as of AfmInput
 };
 void describe(ParameterVisitor& visit, SemInput& input);
 
 /// How the two images come to lie on each other.
 struct PoseOptions {
-  std::optional<Affine> transform;         ///< SEM to AFM, known: nothing is searched for
-  std::string transform_doubt;             ///< what its file says of it where it is not verified
-  std::vector<LandmarkPair> landmarks;     ///< none: the start is searched for
-  bool landmarks_only = false;             ///< the map of the landmarks is not refined
+  std::optional<Affine> transform;      ///< SEM to AFM, known: nothing is searched for
+  std::string transform_doubt;          ///< what its file says of it where it is not verified
+  std::vector<LandmarkPair> landmarks;  ///< none: the start is searched for
+  bool landmarks_only = false;          ///< the map of the landmarks is not refined
   RegistrationOptions registration;
-  bool accept_unverified = false;          ///< go on with a registration that is not verified
+  bool accept_unverified = false;  ///< go on with a registration that is not verified
 };
 /// registration.objective, registration.transform and so on; not the landmarks.
 void describe(ParameterVisitor& visit, PoseOptions& options);
@@ -51,10 +51,13 @@ void describe(ParameterVisitor& visit, PoseOptions& options);
 struct Pose {
   Affine sem_to_afm;
   std::optional<LandmarkFit> landmarks;
-  std::optional<Registration> registration;   ///< absent: given, or by landmarks alone
-  PlacedImage simulated;                   ///< of the eroded scan, in the AFM's frame: what the SEM image was laid on
+  std::optional<Registration> registration;  ///< absent: given, or by landmarks alone
+  PlacedImage
+      simulated;  ///< of the eroded scan, in the AFM's frame: what the SEM image was laid on
 
-  bool verified() const { return !registration || registration->verdict == RegistrationVerdict::verified; }
+  bool verified() const {
+    return !registration || registration->verdict == RegistrationVerdict::verified;
+  }
 };
 
 struct RegisterJob {
@@ -63,8 +66,9 @@ struct RegisterJob {
   ModelRequest model;
   PoseOptions pose;
   int threads = 0;
-  std::filesystem::path transform;         ///< file to write, .json; or empty
-  std::filesystem::path picture;           ///< both images and how they lie on each other, .png or .svg; or empty
+  std::filesystem::path transform;  ///< file to write, .json; or empty
+  std::filesystem::path
+      picture;  ///< both images and how they lie on each other, .png or .svg; or empty
 };
 void describe(ParameterVisitor& visit, RegisterJob& job);
 
@@ -74,12 +78,15 @@ struct RegisterSummary {
   Pose pose;
 };
 
-/// Prepares the scan, predicts the SEM image of what is left of it when the tip is taken off, at the SEM's pixel size,
-/// and registers. Files are written whatever the verdict, which they say. Throws as its steps do.
+/// Prepares the scan, predicts the SEM image of what is left of it when the tip is taken off, at
+/// the SEM's pixel size, and registers. Files are written whatever the verdict, which they say.
+/// Throws as its steps do.
 RegisterSummary run(const RegisterJob& job, const Reporter& reporter = {});
 
-/// The predicted image of a surface at the model's pixel: the sum of its channels, valid where the surface is.
-PlacedImage simulated_view(const HeightField& surface, const ImageModel& model, double pixel_nm, int threads);
+/// The predicted image of a surface at the model's pixel: the sum of its channels, valid where the
+/// surface is.
+PlacedImage simulated_view(const HeightField& surface, const ImageModel& model, double pixel_nm,
+                           int threads);
 
 /// "verified", "ambiguous", "unconverged" or "unrelated".
 const char* name(RegistrationVerdict verdict);

@@ -6,37 +6,40 @@
 #include <vector>
 
 #include "surf/mc/geometry/beam.h"
-#include "surf/mc/physics/physics.h"
 #include "surf/mc/geometry/specimen.h"
+#include "surf/mc/physics/physics.h"
 
 namespace surf::workflow {
 
 /// What became of a body or a height field.
 struct SimplifiedBody {
   std::string name;
-  std::size_t triangles_before = 0;   ///< of a height field: with the continuation that the scan needs
+  std::size_t triangles_before =
+      0;  ///< of a height field: with the continuation that the scan needs
   std::size_t triangles_after = 0;
   /// Largest distance of the two surfaces, measured afterwards, nm: of a height field proven, of a
   /// mesh at samples (see mesh_deviation.h). 0 if it stays as it is.
   double deviation_nm = 0;
-  std::string kept;                   ///< why it stays as it is; empty: it is simplified
+  std::string kept;  ///< why it stays as it is; empty: it is simplified
 };
 
 struct Simplification {
-  double tolerance_nm = 0;            ///< 0: nothing was asked for
-  std::vector<SimplifiedBody> bodies; ///< the height field first, then in the specimen's order
+  double tolerance_nm = 0;             ///< 0: nothing was asked for
+  std::vector<SimplifiedBody> bodies;  ///< the height field first, then in the specimen's order
   double seconds = 0;
 };
 
-/// The specimen with fewer triangles, no surface moved by more than `tolerance_nm` (> 0). Meshes are
-/// simplified (simplify_mesh.h), but for their vertices within 1e-3 nm of the substrate's top or of
-/// another body: what is one interface stays one. A height field is thinned (thin_height_field.h)
-/// with its continuation for this beam and scan, and becomes the first body, a sheet. A body stays
-/// as it is where nothing would be gained, where bodies stand on a height field, or where its mesh,
-/// tried with a quarter of the tolerance at last, would open, turn over or pass through itself.
+/// The specimen with fewer triangles, no surface moved by more than `tolerance_nm` (> 0). Meshes
+/// are simplified (simplify_mesh.h), but for their vertices within 1e-3 nm of the substrate's top
+/// or of another body: what is one interface stays one. A height field is thinned
+/// (thin_height_field.h) with its continuation for this beam and scan, and becomes the first body,
+/// a sheet. A body stays as it is where nothing would be gained, where bodies stand on a height
+/// field, or where its mesh, tried with a quarter of the tolerance at last, would open, turn over
+/// or pass through itself.
 ///
 /// `threads` (0: one per hardware thread) do not change the result. Throws UsageError if the
-/// tolerance is not above 0 and finite or a body is no thicker than it, and as mc::validate does, Interrupted.
+/// tolerance is not above 0 and finite or a body is no thicker than it, and as mc::validate does,
+/// Interrupted.
 mc::Specimen simplify_specimen(const mc::Specimen& specimen, double tolerance_nm,
                                const mc::Beam& beam, const mc::Scan& scan,
                                const mc::Physics& physics, int threads, Simplification& out,

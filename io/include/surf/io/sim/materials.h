@@ -15,12 +15,13 @@ const std::vector<mc::Material>& builtin_materials();
 
 /// A material by its name, of those that come with semsurf or of files of one's own.
 struct MaterialChoice {
-  std::string name;                    ///< empty: none is said
-  std::vector<std::string> files;      ///< as MaterialLibrary::read takes them
+  std::string name;                ///< empty: none is said
+  std::vector<std::string> files;  ///< as MaterialLibrary::read takes them
 };
 /// specimen.material and specimen.materials.
 void describe(ParameterVisitor& visit, MaterialChoice& choice);
-/// Throws UsageError naming specimen.material, and as the files do. `notes`: see MaterialLibrary::add.
+/// Throws UsageError naming specimen.material, and as the files do. `notes`: see
+/// MaterialLibrary::add.
 mc::Material find_material(const MaterialChoice& choice, std::vector<std::string>& notes);
 
 /// The built-in material of that name; see MaterialLibrary::find.
@@ -28,8 +29,8 @@ const mc::Material& find_material(const std::string& name, const std::string& su
 
 /// Materials by name: those that come with semsurf and the user's own, which go before them.
 ///
-/// A file of materials is TOML with [[material]] tables and nothing else; a scene file may hold such
-/// tables too. All keys (numbers are eV or g/cm^3):
+/// A file of materials is TOML with [[material]] tables and nothing else; a scene file may hold
+/// such tables too. All keys (numbers are eV or g/cm^3):
 ///
 ///     [[material]]
 ///     name = "nitride"
@@ -48,8 +49,8 @@ class MaterialLibrary {
   /// Built-in ones first, then new ones in the order in which they were added.
   const std::vector<mc::Material>& all() const { return materials_; }
 
-  /// The material of that name (case matters: "Co" is not "CO"). Throws UsageError, naming `subject`
-  /// and listing the names, nearest first.
+  /// The material of that name (case matters: "Co" is not "CO"). Throws UsageError, naming
+  /// `subject` and listing the names, nearest first.
   const mc::Material& find(const std::string& name, const std::string& subject) const;
 
   /// Adds a material, or puts it in the place of the one of the same name and says so in `notes`.
@@ -61,7 +62,7 @@ class MaterialLibrary {
 
  private:
   std::vector<mc::Material> materials_;
-  std::vector<std::string> origins_;   // empty for built-in ones; in step with materials_
+  std::vector<std::string> origins_;  // empty for built-in ones; in step with materials_
 };
 
 }  // namespace surf::io

@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <memory>
 #include <span>
-#include <span>
 #include <vector>
 
 #include "surf/core/progress.h"
@@ -20,14 +19,14 @@ namespace surf::mc {
 /// `starts[i]` and ends where the next begins, at `starts[i + 1]`.
 struct CascadePage {
   std::vector<std::uint64_t> words;
-  std::vector<std::uint32_t> starts;   ///< one more than there are cascades
+  std::vector<std::uint32_t> starts;  ///< one more than there are cascades
 };
 
 /// What a library's cascades depend on. Cascade number k is a pure function of these and k.
 struct CascadeSettings {
   Material material;
-  Physics physics;                ///< `barrier` matters for what energies count from
-  double start_energy_ev = 0;     ///< of the primaries inside: above the bottom of the band
+  Physics physics;             ///< `barrier` matters for what energies count from
+  double start_energy_ev = 0;  ///< of the primaries inside: above the bottom of the band
   std::uint64_t seed = 1;
 };
 
@@ -66,7 +65,8 @@ class CascadeLibrary {
   /// The same library with its first `pages` pages alone; they are shared, not copied.
   CascadeLibrary first(std::size_t pages) const;
 
-  /// Makes pages until there are at least `cascades`. Progress counts cascades; stops when cancelled.
+  /// Makes pages until there are at least `cascades`. Progress counts cascades; stops when
+  /// cancelled.
   void grow(std::size_t cascades, int threads, const ProgressCallback& progress = {},
             const CancelToken* cancel = nullptr);
 
@@ -78,7 +78,8 @@ class CascadeLibrary {
     for (std::size_t i = 0; i < end; i += line_words) __builtin_prefetch(words.data() + i);
   }
 
-  /// How far from their start cascades get: with continuous loss, what no cascade exceeds; else the farthest of those that there are.
+  /// How far from their start cascades get: with continuous loss, what no cascade exceeds; else the
+  /// farthest of those that there are.
   double reach_nm() const;
 
   /// The words of a cascade, number < cascades().
@@ -92,12 +93,13 @@ class CascadeLibrary {
   CascadeSettings settings_;
   std::shared_ptr<const Medium> medium_;
   std::vector<std::shared_ptr<const CascadePage>> pages_;
-  std::vector<double> reaches_nm_;   // of the cascades of each page
+  std::vector<double> reaches_nm_;  // of the cascades of each page
 };
 
-/// Whether cascades in this medium can be turned and mirrored, and gone on with where an electron comes back into it with the
-/// energy that it left with: energy falls by continuous loss alone, or in events alone. Where electrons enter with any other
-/// energy, only continuous loss lets them join a cascade; else they are followed directly.
+/// Whether cascades in this medium can be turned and mirrored, and gone on with where an electron
+/// comes back into it with the energy that it left with: energy falls by continuous loss alone, or
+/// in events alone. Where electrons enter with any other energy, only continuous loss lets them
+/// join a cascade; else they are followed directly.
 bool can_replay(const Medium& medium);
 /// Whether it can in one at least of these: in the others electrons are followed directly.
 bool can_replay(const Physics& physics, std::span<const Material> materials);
@@ -107,9 +109,10 @@ struct CascadeStatistics {
   std::size_t cascades = 0;
   double bytes_per_cascade = 0;
   double segments_per_cascade = 0;
-  double electrons_per_cascade = 0;        ///< the primary and its secondaries
-  std::vector<double> primary_depth_nm;    ///< per cascade: the deepest point of the primary
-  std::vector<double> primary_extent_nm;   ///< per cascade: the primary's greatest distance from its start
+  double electrons_per_cascade = 0;      ///< the primary and its secondaries
+  std::vector<double> primary_depth_nm;  ///< per cascade: the deepest point of the primary
+  std::vector<double>
+      primary_extent_nm;  ///< per cascade: the primary's greatest distance from its start
 };
 CascadeStatistics describe(const CascadeLibrary& library, std::size_t cascades);
 

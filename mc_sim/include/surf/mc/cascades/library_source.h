@@ -38,7 +38,7 @@ class FreshLibraries : public LibrarySource {
                                                 const CancelToken* cancel) override;
 
  private:
-  std::map<std::string, CascadeLibrary> kept_;   // by the key of their first page
+  std::map<std::string, CascadeLibrary> kept_;  // by the key of their first page
 };
 
 }  // namespace surf::mc

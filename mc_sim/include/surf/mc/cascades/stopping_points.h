@@ -7,17 +7,19 @@
 namespace surf::mc {
 
 struct CascadeTableOptions {
-  int rings = 48;      ///< of the table, around the beam, out to the farthest stopping point, 1 to 1024
-  int heights = 96;    ///< of the table, from the lowest to the highest stopping point, 2 to 1024
-  /// If above 0, the SE channel of stopping points is scaled so that level ground gives this yield. If 0, the channel counts all
-  /// secondaries that stop above the surface, also those that started there. That is ten to a hundred times the number that
-  /// leaves a real surface. `diffusion_matrix` does not use it.
+  int rings = 48;  ///< of the table, around the beam, out to the farthest stopping point, 1 to 1024
+  int heights = 96;  ///< of the table, from the lowest to the highest stopping point, 2 to 1024
+  /// If above 0, the SE channel of stopping points is scaled so that level ground gives this yield.
+  /// If 0, the channel counts all secondaries that stop above the surface, also those that started
+  /// there. That is ten to a hundred times the number that leaves a real surface.
+  /// `diffusion_matrix` does not use it.
   double flat_se_yield = 0;
 };
 
-/// Where the electrons of all cascades of a library stop: the channels BSE, of primaries (rule `reflected`), and
-/// SE, of all others (rule `counted`), per primary. 0 is where the primaries start. Throws InvalidInput for an
-/// empty library, UsageError for options out of range.
-StoppingPointParameters stopping_points(const CascadeLibrary& library, const CascadeTableOptions& options = {});
+/// Where the electrons of all cascades of a library stop: the channels BSE, of primaries (rule
+/// `reflected`), and SE, of all others (rule `counted`), per primary. 0 is where the primaries
+/// start. Throws InvalidInput for an empty library, UsageError for options out of range.
+StoppingPointParameters stopping_points(const CascadeLibrary& library,
+                                        const CascadeTableOptions& options = {});
 
 }  // namespace surf::mc

@@ -24,11 +24,11 @@ struct SceneOptions {
 };
 
 struct SceneSummary {
-  std::size_t triangles = 0;          ///< as traced (with a height field's continuation)
-  std::size_t triangles_left_out = 0; ///< besides: out of every electron's reach
-  std::size_t shells = 0;             ///< connected closed surfaces
-  std::size_t memory_bytes = 0;       ///< triangles, ray-tracing structures, distance bounds
-  double grid_cell_nm = 0;            ///< finest cells of the distance bounds; 0 without
+  std::size_t triangles = 0;           ///< as traced (with a height field's continuation)
+  std::size_t triangles_left_out = 0;  ///< besides: out of every electron's reach
+  std::size_t shells = 0;              ///< connected closed surfaces
+  std::size_t memory_bytes = 0;        ///< triangles, ray-tracing structures, distance bounds
+  double grid_cell_nm = 0;             ///< finest cells of the distance bounds; 0 without
   double build_seconds = 0;
 };
 
@@ -40,7 +40,8 @@ class Scene {
   /// reach, and the distance bounds cover that. Throws Interrupted.
   Scene(const Specimen& specimen, const Beam& beam, const Scan& scan, const Physics& physics = {},
         const SceneOptions& options = {});
-  /// The same of surfaces that `make_surfaces` has made, here or in another process, for the same beam, scan and physics.
+  /// The same of surfaces that `make_surfaces` has made, here or in another process, for the same
+  /// beam, scan and physics.
   Scene(SceneSurfaces surfaces, std::vector<Material> materials, const Beam& beam, const Scan& scan,
         const Physics& physics = {}, const SceneOptions& options = {});
   ~Scene();

@@ -16,8 +16,8 @@ namespace surf::mc {
 
 /// A closed connected surface, or the substrate's plane.
 struct Shell {
-  int solid = 0;      ///< which solid it bounds
-  int sense = 1;      ///< 1: normals point out of what it encloses; -1: a cavity
+  int solid = 0;  ///< which solid it bounds
+  int sense = 1;  ///< 1: normals point out of what it encloses; -1: a cavity
 };
 
 /// A body, height field or substrate. Later ones win where they overlap.
@@ -27,13 +27,13 @@ struct Solid {
 
 /// The surfaces of a specimen as a `Scene` traces them: whoever has them needs no bodies any more.
 struct SceneSurfaces {
-  SceneMesh mesh;                          ///< empty for a bare substrate; a height field goes on beyond its samples
+  SceneMesh mesh;  ///< empty for a bare substrate; a height field goes on beyond its samples
   std::vector<Shell> shells;
   std::vector<Solid> solids;
-  std::optional<double> plane_nm;          ///< top of the substrate, which is shell 0
-  Box box;                                 ///< the surface without what was added beyond samples and sheets
-  std::size_t triangles_left_out = 0;      ///< besides those in `mesh`: out of every electron's reach
-  bool half_space = false;                 ///< whether something goes on below without end
+  std::optional<double> plane_nm;  ///< top of the substrate, which is shell 0
+  Box box;                         ///< the surface without what was added beyond samples and sheets
+  std::size_t triangles_left_out = 0;  ///< besides those in `mesh`: out of every electron's reach
+  bool half_space = false;             ///< whether something goes on below without end
   double build_seconds = 0;
 };
 
@@ -45,9 +45,10 @@ struct SurfaceOptions {
   Watch watch;
 };
 
-/// Assembles the surfaces of a specimen, of which `validate` has said `facts`. Height fields and sheets are continued as far as
-/// electrons from the scanned region reach. Throws Interrupted.
-SceneSurfaces make_surfaces(const Specimen& specimen, const std::vector<BodyFacts>& facts, const Beam& beam,
-                            const Scan& scan, const Physics& physics, const SurfaceOptions& options = {});
+/// Assembles the surfaces of a specimen, of which `validate` has said `facts`. Height fields and
+/// sheets are continued as far as electrons from the scanned region reach. Throws Interrupted.
+SceneSurfaces make_surfaces(const Specimen& specimen, const std::vector<BodyFacts>& facts,
+                            const Beam& beam, const Scan& scan, const Physics& physics,
+                            const SurfaceOptions& options = {});
 
 }  // namespace surf::mc

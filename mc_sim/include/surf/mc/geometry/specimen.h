@@ -17,9 +17,9 @@ namespace surf::mc {
 /// A triangle mesh filled with one material: closed, or an open sheet (`extend_open_sheet`), which
 /// is the top of a half-space and goes on flat beyond its rim.
 struct Body {
-  std::string name;       ///< for messages: usually the file's name
-  TriangleMesh mesh;      ///< normals outward (`validate` accepts all-inward and says so)
-  int material = 0;       ///< index into Specimen::materials
+  std::string name;   ///< for messages: usually the file's name
+  TriangleMesh mesh;  ///< normals outward (`validate` accepts all-inward and says so)
+  int material = 0;   ///< index into Specimen::materials
 };
 
 /// Everything below the plane z = `top_nm`.
@@ -52,13 +52,13 @@ bool is_sheet(const Body& body, const Watch& watch = {});
 struct BodyFacts {
   std::size_t triangles = 0;
   Box box;
-  bool is_sheet = false;   ///< see `is_sheet`
-  bool inward = false;     ///< a closed mesh whose normals point inward
+  bool is_sheet = false;  ///< see `is_sheet`
+  bool inward = false;    ///< a closed mesh whose normals point inward
 };
 
 /// Checks materials, indices, meshes (closed, or sheets; consistently oriented) and the field.
-/// Throws InvalidInput with the place of the first fault. At least one solid is needed. The answer is
-/// of every body: finding it again would take as long.
+/// Throws InvalidInput with the place of the first fault. At least one solid is needed. The answer
+/// is of every body: finding it again would take as long.
 std::vector<BodyFacts> validate(const Specimen& specimen, const Watch& watch = {});
 
 /// The box around bodies and height field; for a bare substrate 1000 nm around its origin.

@@ -17,9 +17,9 @@ namespace surf::mc {
 /// All are 0 where the beam meets nothing; the channel valid is 0 there and 1 elsewhere.
 Image surface_view(const Scene& scene, int threads = 0);
 
-/// Only the channels of these names, row by row; in scratch files where `scratch_folder` is named (see LargeGrid).
-/// Throws UsageError for a name that is not among the above.
-ImageRows surface_view_rows(const Scene& scene, const std::vector<std::string>& channels, int threads,
-                            const std::string& scratch_folder);
+/// Only the channels of these names, row by row; in scratch files where `scratch_folder` is named
+/// (see LargeGrid). Throws UsageError for a name that is not among the above.
+ImageRows surface_view_rows(const Scene& scene, const std::vector<std::string>& channels,
+                            int threads, const std::string& scratch_folder);
 
 }  // namespace surf::mc

@@ -10,8 +10,8 @@ namespace surf::mc {
 
 /// Probability that an electron gets over a potential step, from the energy `normal_ev` of its
 /// motion along the normal and the height `step_ev` it has to climb (negative: it falls).
-/// quantum: T = 4 k1 k2 / (k1 + k2)^2 of an abrupt step, k1 = sqrt(normal), k2 = sqrt(normal - step)
-/// (Cohen-Tannoudji, Quantum Mechanics, H_I); classical: 1 where normal > step; off: 1.
+/// quantum: T = 4 k1 k2 / (k1 + k2)^2 of an abrupt step, k1 = sqrt(normal), k2 = sqrt(normal -
+/// step) (Cohen-Tannoudji, Quantum Mechanics, H_I); classical: 1 where normal > step; off: 1.
 inline double transmission(BarrierModel model, double normal_ev, double step_ev) {
   if (model == BarrierModel::off) return 1.0;
   if (normal_ev <= step_ev || normal_ev <= 0) return 0.0;

@@ -10,12 +10,13 @@ namespace surf::mc {
 struct Element {
   int atomic_number = 0;
   const char* symbol = "";
-  double atomic_weight = 0;    ///< g/mol: IUPAC's standard weights of 2021, abridged to five digits;
-                               ///< of the longest-lived isotope where there is none
-  int valence_electrons = 0;   ///< s, p and d electrons outside closed shells, as MONSEL counts them:
-                               ///< the group up to 12, then the group less 10; helium 2, lanthanides 3
-  int free_electrons = 0;      ///< of a free-electron gas with about the metal's band width: as above,
-                               ///< but 2 in the groups 4 to 10 and 12 and 1 in group 11
+  double atomic_weight = 0;  ///< g/mol: IUPAC's standard weights of 2021, abridged to five digits;
+                             ///< of the longest-lived isotope where there is none
+  int valence_electrons =
+      0;                   ///< s, p and d electrons outside closed shells, as MONSEL counts them:
+                           ///< the group up to 12, then the group less 10; helium 2, lanthanides 3
+  int free_electrons = 0;  ///< of a free-electron gas with about the metal's band width: as above,
+                           ///< but 2 in the groups 4 to 10 and 12 and 1 in group 11
 };
 
 /// All of them, by rising Z.

@@ -9,7 +9,7 @@ namespace surf::mc {
 /// One element of a chemical formula.
 struct FormulaPart {
   int atomic_number = 0;
-  double atoms = 0;        ///< in a formula unit, > 0
+  double atoms = 0;  ///< in a formula unit, > 0
 };
 
 /// Reads "SiO2", "C5H8O2", "Ca(OH)2" or "Al0.3Ga0.7As": symbols with counts, whole or decimal, and

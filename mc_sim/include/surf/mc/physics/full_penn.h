@@ -8,11 +8,12 @@
 
 namespace surf::mc {
 
-/// The energy-loss function extended to momenta by the full Penn algorithm (Penn, Phys. Rev. B 35, 482 (1987),
-/// doi:10.1103/PhysRevB.35.482; Shinotsuka et al., Surf. Interface Anal. 47, 871 (2015), doi:10.1002/sia.5789): a sum over
-/// free-electron gases of all plasma energies w_p, each with the weight g(w_p) = 2 ELF(w_p) / (pi w_p) and Lindhard's dielectric
-/// function. A gas loses to its plasmon, a line, and to pairs of an electron and a hole, a continuum. Kept as a table of losses
-/// and momenta.
+/// The energy-loss function extended to momenta by the full Penn algorithm (Penn, Phys. Rev. B 35,
+/// 482 (1987), doi:10.1103/PhysRevB.35.482; Shinotsuka et al., Surf. Interface Anal. 47, 871
+/// (2015), doi:10.1002/sia.5789): a sum over free-electron gases of all plasma energies w_p, each
+/// with the weight g(w_p) = 2 ELF(w_p) / (pi w_p) and Lindhard's dielectric function. A gas loses
+/// to its plasmon, a line, and to pairs of an electron and a hole, a continuum. Kept as a table of
+/// losses and momenta.
 class FullPenn {
  public:
   /// Makes the table: about a second. Losses below the gap are left out.
@@ -28,7 +29,7 @@ class FullPenn {
   /// Im[-1 / eps] at a loss and a momentum in atomic units, by its parts.
   struct Parts {
     double plasmon = 0, pairs = 0;
-    double inner = 0;        ///< of both, what ionizes an inner shell
+    double inner = 0;  ///< of both, what ionizes an inner shell
   };
   Parts value(double loss, double momentum) const;
 

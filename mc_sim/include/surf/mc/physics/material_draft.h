@@ -18,10 +18,10 @@ namespace surf::mc {
 struct MaterialDraft {
   std::string name;
   double density_g_cm3 = 0;
-  std::vector<FormulaPart> formula;        ///< either this
-  std::vector<Constituent> constituents;   ///< or this; the formula unit is then the mean atom
+  std::vector<FormulaPart> formula;       ///< either this
+  std::vector<Constituent> constituents;  ///< or this; the formula unit is then the mean atom
   std::optional<double> work_function_ev, barrier_ev, valence_electrons, plasmon_ev, loss_join_ev;
-  std::optional<double> band_gap_ev;       ///< 0 for metals
+  std::optional<double> band_gap_ev;  ///< 0 for metals
   bool loss_join_fitted = false;
   DielectricDraft dielectric;
   std::string sources;
@@ -31,12 +31,14 @@ struct MaterialDraft {
 /// gap, barrier and work function where two are given: it follows):
 /// - valence_electrons: the sum of the elements' own (surf/mc/physics/element.h);
 /// - plasmon_ev: of a free-electron gas of these, 28.816 eV sqrt(n rho / M);
-/// - work_function_ev W: with a gap, gap + barrier, or where that is missing gap + 4 eV below a gap of
+/// - work_function_ev W: with a gap, gap + barrier, or where that is missing gap + 4 eV below a gap
+/// of
 ///   4 eV and gap + 1 eV above; without one, the mean over the atoms where `known` has all elements
 ///   as pure materials, otherwise 4.5 eV;
-/// - barrier_ev U0: with a gap, W - gap; without one, W plus the mean over the atoms of U0 - W where
-///   `known` has all elements, otherwise W plus the Fermi energy of a free-electron gas of the elements'
-///   free electrons;
+/// - barrier_ev U0: with a gap, W - gap; without one, W plus the mean over the atoms of U0 - W
+/// where
+///   `known` has all elements, otherwise W plus the Fermi energy of a free-electron gas of the
+///   elements' free electrons;
 /// - loss_join_ev E_b: `estimated_loss_join_ev`;
 /// - dielectric: see dielectric_draft.h.
 /// Throws InvalidInput, as `validate` does.

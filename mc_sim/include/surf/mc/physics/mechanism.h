@@ -11,15 +11,16 @@ namespace surf::mc {
 
 /// What one scattering event did. Angles are relative to the electron's direction before it.
 struct ScatterEvent {
-  double cos_theta = 1;            ///< deflection of the electron
-  double turn = 0;                 ///< azimuth of the deflection in turns, [0, 1)
-  bool isotropic = false;          ///< all directions alike: the two above count from any axis
-  double energy_loss_ev = 0;       ///< debited from the electron (0 where the continuous loss pays)
+  double cos_theta = 1;       ///< deflection of the electron
+  double turn = 0;            ///< azimuth of the deflection in turns, [0, 1)
+  bool isotropic = false;     ///< all directions alike: the two above count from any axis
+  double energy_loss_ev = 0;  ///< debited from the electron (0 where the continuous loss pays)
   bool has_secondary = false;
-  double secondary_energy_ev = 0;  ///< counted as the electron's
-  Vec3 secondary_direction{0, 0, 1};   ///< unit; z is the electron's direction before the event
-  double auger_energy_ev = 0;      ///< of an electron that carries off the energy of an inner shell's hole; 0: none
-  Vec3 auger_direction{0, 0, 1};       ///< likewise
+  double secondary_energy_ev = 0;     ///< counted as the electron's
+  Vec3 secondary_direction{0, 0, 1};  ///< unit; z is the electron's direction before the event
+  double auger_energy_ev =
+      0;  ///< of an electron that carries off the energy of an inner shell's hole; 0: none
+  Vec3 auger_direction{0, 0, 1};  ///< likewise
 };
 
 /// A kind of event that happens at points along an electron's path: elastic scattering, a collision
@@ -43,8 +44,8 @@ class Scattering {
   /// rate is raised until the secondaries take up the whole continuous loss.
   virtual bool takes_remaining_loss() const { return false; }
 
-  /// Whether an event may take energy from the electron (`energy_loss_ev`). Cascades of electrons that lose energy in steps
-  /// cannot be joined where energies are equal (`can_replay`).
+  /// Whether an event may take energy from the electron (`energy_loss_ev`). Cascades of electrons
+  /// that lose energy in steps cannot be joined where energies are equal (`can_replay`).
   virtual bool debits() const = 0;
 
   /// Draws one event. A secondary never has more energy than the electron that made it.

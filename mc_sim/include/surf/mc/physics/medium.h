@@ -53,7 +53,7 @@ class Medium {
   /// The way to the next event or, if `stopped`, to where the energy reaches the cutoff.
   struct Step {
     double length_nm;
-    double energy_ev;   ///< at its end
+    double energy_ev;  ///< at its end
     bool stopped;
   };
 
@@ -80,9 +80,10 @@ class Medium {
   /// Energy left after `length_nm`, not below the cutoff.
   double energy_after(double energy_ev, double length_nm) const;
 
-  /// Neither the electron nor any secondary of its gets farther from where it is. With continuous loss it is the path length
-  /// until the cutoff, as secondaries never have more energy than the electron has when it makes them. Where losses are paid
-  /// event by event, no such length exists: one in a million gets farther at most. Practically endless without any loss.
+  /// Neither the electron nor any secondary of its gets farther from where it is. With continuous
+  /// loss it is the path length until the cutoff, as secondaries never have more energy than the
+  /// electron has when it makes them. Where losses are paid event by event, no such length exists:
+  /// one in a million gets farther at most. Practically endless without any loss.
   double range_nm(double energy_ev) const {
     const Bin& bin = bins_[static_cast<std::size_t>(EnergyBins::bin(energy_ev))];
     return bin.range_nm + (energy_ev - bin.lower_ev) * bin.range_nm_per_ev;
@@ -115,13 +116,13 @@ class Medium {
     double ev_per_nm;
     double rate_per_nm;
     double mean_free_path_nm;
-    double range_nm;   // of an electron at lower_ev
+    double range_nm;  // of an electron at lower_ev
     double range_nm_per_ev;
   };
 
   struct RateFactors {
-    double fixed;      // for mechanisms that keep their published rate where it can be paid
-    double flexible;   // for those that take the remaining loss
+    double fixed;     // for mechanisms that keep their published rate where it can be paid
+    double flexible;  // for those that take the remaining loss
   };
   RateFactors rate_factors(double energy_ev, double power_ev_per_nm) const;
 
@@ -132,7 +133,7 @@ class Medium {
   double cutoff_ev_;
   int cutoff_bin_;
   std::vector<Bin> bins_;
-  std::vector<float> cumulative_;   // [bin][scattering]: probability of this one or one before it
+  std::vector<float> cumulative_;  // [bin][scattering]: probability of this one or one before it
 };
 
 /// The medium that `physics` makes of a material.

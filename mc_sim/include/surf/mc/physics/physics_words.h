@@ -6,7 +6,8 @@
 
 namespace surf::mc {
 
-/// A key of `simulation.physics` and its values, the default first: "elastic" and "mott", "browning".
+/// A key of `simulation.physics` and its values, the default first: "elastic" and "mott",
+/// "browning".
 struct PhysicsWords {
   std::string key;
   std::vector<std::string> values;

@@ -17,8 +17,8 @@ enum class Method { direct, replay };
 
 /// How the work is carried out. Nothing of it changes the result.
 struct Execution {
-  int threads = 0;                ///< 0: one per hardware thread
-  int tile_pixels = 1024;         ///< pixels in a unit of work, >= 1
+  int threads = 0;         ///< 0: one per hardware thread
+  int tile_pixels = 1024;  ///< pixels in a unit of work, >= 1
   /// Tallies of more bytes than this (16 per pixel, and 16 per pixel and detector) go into scratch
   /// files in `scratch_folder`; never where that is empty.
   std::size_t tally_memory = std::size_t{1} << 30;
@@ -28,13 +28,14 @@ struct Execution {
 void describe(ParameterVisitor& visit, Execution& execution);
 
 struct SimulationOptions : Execution {
-  Budget budget;                  ///< no TimeLimit
+  Budget budget;  ///< no TimeLimit
   Method method = Method::direct;
-  bool planar_control = true;     ///< with an accuracy: average the difference to a plane's outcome
+  bool planar_control = true;  ///< with an accuracy: average the difference to a plane's outcome
   std::uint64_t seed = 1;
-  std::vector<Detector> detectors = default_detectors();   ///< at least one; unique names
-  bool spectra = false;           ///< collect `Spectra` per detector
-  /// With an accuracy, all libraries together grow beyond their least size only up to this many bytes.
+  std::vector<Detector> detectors = default_detectors();  ///< at least one; unique names
+  bool spectra = false;                                   ///< collect `Spectra` per detector
+  /// With an accuracy, all libraries together grow beyond their least size only up to this many
+  /// bytes.
   double library_memory = 2.0 * (1u << 30);
 };
 

@@ -26,8 +26,8 @@ struct ResultSummary {
   /// Per detector the yield's mean over those pixels. Its standard error takes the share that comes
   /// from the library as common to all pixels, the rest as independent.
   std::vector<Estimate> yields;
-  /// With an accuracy: pixels where some detector's standard error is more than `missed_by` times what
-  /// was asked for, and the worst of all, as a multiple.
+  /// With an accuracy: pixels where some detector's standard error is more than `missed_by` times
+  /// what was asked for, and the worst of all, as a multiple.
   std::int64_t missed = 0;
   double worst = 0;
 

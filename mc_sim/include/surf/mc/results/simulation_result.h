@@ -16,21 +16,21 @@
 namespace surf::mc {
 
 struct SimulationResult {
-  std::vector<Detector> detectors;       ///< as in the options
+  std::vector<Detector> detectors;  ///< as in the options
   LargeGrid<PixelTally> pixels;
-  std::vector<LargeGrid<Counts>> counts; ///< per detector
-  std::vector<LargeGrid<Control>> controls;   ///< per detector, with `accuracy`
-  std::vector<Spectra> spectra;          ///< per detector, where asked for
+  std::vector<LargeGrid<Counts>> counts;     ///< per detector
+  std::vector<LargeGrid<Control>> controls;  ///< per detector, with `accuracy`
+  std::vector<Spectra> spectra;              ///< per detector, where asked for
   Balance balance;
-  Budget budget;                         ///< as in the options
+  Budget budget;  ///< as in the options
   std::uint64_t seed = 1;
-  std::size_t library_cascades = 0;      ///< of each material, with replay
-  std::vector<CascadeYield> cascade_yields;   ///< with `accuracy`: per material and detector
-  double library_seconds = 0;            ///< wall time to get the libraries
-  std::int64_t recalled = 0;             ///< primaries among `balance` that a journal knew already
-  bool complete = true;          ///< false when cancelled: some pixels have fewer primaries, or none
-  double seconds = 0;            ///< wall time of the simulation, scene building and recalled units
-                                 ///< apart
+  std::size_t library_cascades = 0;          ///< of each material, with replay
+  std::vector<CascadeYield> cascade_yields;  ///< with `accuracy`: per material and detector
+  double library_seconds = 0;                ///< wall time to get the libraries
+  std::int64_t recalled = 0;  ///< primaries among `balance` that a journal knew already
+  bool complete = true;       ///< false when cancelled: some pixels have fewer primaries, or none
+  double seconds = 0;         ///< wall time of the simulation, scene building and recalled units
+                              ///< apart
 
   /// Yield of a detector at a pixel, its efficiency included. With a control the standard error
   /// includes the library's own share.
@@ -42,8 +42,8 @@ struct SimulationResult {
 
 /// Per detector the channels NAME and NAME.stderr, in counts per primary; with a dose also
 /// NAME.shot, what a microscope would show: electrons counted over the mean number of primaries.
-/// Then valid: 1 where the beam meets the specimen and at least one primary was simulated. Placed in
-/// the scan plane.
+/// Then valid: 1 where the beam meets the specimen and at least one primary was simulated. Placed
+/// in the scan plane.
 Image make_image(const SimulationResult& result, const Scan& scan);
 
 /// The same, row by row. Refers to `result`.
@@ -55,10 +55,12 @@ std::size_t tally_bytes(const Scan& scan, const SimulationOptions& options);
 /// A unit's tally that counts nothing: for units that somebody else simulates.
 UnitTally empty_tally(const WorkUnit& unit, const SimulationOptions& options);
 
-/// A result that counts nothing yet. `scratch_folder` as in the options, for tallies too large for the memory.
+/// A result that counts nothing yet. `scratch_folder` as in the options, for tallies too large for
+/// the memory.
 SimulationResult empty_result(const Scan& scan, const SimulationOptions& options);
 
-/// Adds a unit's tally; the order of units does not matter. Throws InvalidInput for one of another simulation.
+/// Adds a unit's tally; the order of units does not matter. Throws InvalidInput for one of another
+/// simulation.
 void merge(SimulationResult& result, const WorkUnit& unit, const UnitTally& tally);
 
 }  // namespace surf::mc

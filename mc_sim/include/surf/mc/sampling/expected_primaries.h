@@ -5,8 +5,8 @@
 
 namespace surf::mc {
 
-/// How many primaries an accuracy takes, from what a result shows of how each pixel's counts scatter:
-/// for planning, within some ten percent. 0 < accuracy; needs a result with an accuracy.
+/// How many primaries an accuracy takes, from what a result shows of how each pixel's counts
+/// scatter: for planning, within some ten percent. 0 < accuracy; needs a result with an accuracy.
 double expected_primaries(const SimulationResult& result, double accuracy);
 
 }  // namespace surf::mc

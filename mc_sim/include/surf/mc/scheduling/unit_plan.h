@@ -9,15 +9,16 @@
 
 namespace surf::mc {
 
-/// How `simulate` cuts a scan into units of work: runs of pixels along a row, or tiles where they are replayed. Long
-/// counts of electrons are split, so that one pixel can keep all threads busy. For whoever keeps, sends or shows
-/// units by their number (`UnitJournal`): it depends on the scan and the options alone.
+/// How `simulate` cuts a scan into units of work: runs of pixels along a row, or tiles where they
+/// are replayed. Long counts of electrons are split, so that one pixel can keep all threads busy.
+/// For whoever keeps, sends or shows units by their number (`UnitJournal`): it depends on the scan
+/// and the options alone.
 class UnitPlan {
  public:
   UnitPlan(const Scan& scan, const SimulationOptions& options);
 
   std::size_t units() const;
-  WorkUnit unit(std::size_t number) const;   ///< numbered rather than listed: there may be very many
+  WorkUnit unit(std::size_t number) const;  ///< numbered rather than listed: there may be very many
 
   /// Primaries of the pixel that has most.
   std::int64_t most() const { return most_; }
@@ -26,9 +27,9 @@ class UnitPlan {
   double done(const WorkUnit& unit, const UnitTally& tally) const;
 
  private:
-  static constexpr std::int64_t direct_chunk = 4096;   // primaries: a fraction of a second
+  static constexpr std::int64_t direct_chunk = 4096;  // primaries: a fraction of a second
   static constexpr std::int64_t replayed_chunk = 16 * direct_chunk;
-  static constexpr double much = 1e9;                   // primaries
+  static constexpr double much = 1e9;  // primaries
   static constexpr int tile = 32;
   Scan scan_;
   bool by_pixel_ = false;

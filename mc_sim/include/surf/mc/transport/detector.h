@@ -11,9 +11,9 @@
 
 namespace surf::mc {
 
-/// Which electrons by where they come from. SE1: secondaries generated before the primary has turned
-/// by more than 90 degrees from the beam, with everything that they generate in turn; SE2: all
-/// others, the primary itself among them. The two add up to `any`.
+/// Which electrons by where they come from. SE1: secondaries generated before the primary has
+/// turned by more than 90 degrees from the beam, with everything that they generate in turn; SE2:
+/// all others, the primary itself among them. The two add up to `any`.
 enum class Origin { any, se1, se2 };
 
 /// Which electrons by the sign of their direction's z: up counts horizontal ones.
@@ -29,17 +29,17 @@ struct Axis {
 /// of it) and an efficiency. Electrons fly straight: the cone is of directions as they leave, seen
 /// from far away. Ranges that touch share no electron and leave none out.
 struct Detector {
-  std::string name;                    ///< of the channel: letters, digits, '-', '_'
-  double min_energy_ev = 0;            ///< energy in vacuum: min <= E < max
+  std::string name;          ///< of the channel: letters, digits, '-', '_'
+  double min_energy_ev = 0;  ///< energy in vacuum: min <= E < max
   double max_energy_ev = std::numeric_limits<double>::infinity();
   Side side = Side::any;
   Origin origin = Origin::any;
-  std::optional<Axis> axis;            ///< of the cone; absent: back along the beam
-  double min_angle_deg = 0;            ///< from the axis: min < angle <= max; 0 counts the axis itself
+  std::optional<Axis> axis;  ///< of the cone; absent: back along the beam
+  double min_angle_deg = 0;  ///< from the axis: min < angle <= max; 0 counts the axis itself
   double max_angle_deg = 180;
-  double from_azimuth_deg = 0;         ///< about the axis: from <= azimuth < to, each 0 to 360;
-  double to_azimuth_deg = 360;         ///< from > to goes through 0. Azimuth 0 is the image's x
-  double efficiency = 1;               ///< share of those electrons that is counted, in (0, 1]
+  double from_azimuth_deg = 0;  ///< about the axis: from <= azimuth < to, each 0 to 360;
+  double to_azimuth_deg = 360;  ///< from > to goes through 0. Azimuth 0 is the image's x
+  double efficiency = 1;        ///< share of those electrons that is counted, in (0, 1]
 };
 
 /// The two that every simulation has, first: SE (below 50 eV, any direction) and BSE (from 50 eV,

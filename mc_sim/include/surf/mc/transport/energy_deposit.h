@@ -15,7 +15,7 @@ namespace surf::mc {
 /// A regular grid of cells in space.
 struct DepositGrid {
   Box box_nm;
-  std::array<int, 3> cells{64, 64, 64};   ///< along x, y, z; each >= 1, at most 2^28 in all
+  std::array<int, 3> cells{64, 64, 64};  ///< along x, y, z; each >= 1, at most 2^28 in all
 };
 
 /// The grid that holds what a scene's beam leaves behind: the scan and, around and below it, as far
@@ -27,10 +27,10 @@ DepositGrid deposit_grid(const Scene& scene, int cells_across = 64);
 /// whole multiples of 2^-16 eV: grids of several threads add up to the same in any order.
 class EnergyDeposit final : public Observer {
  public:
-  explicit EnergyDeposit(const DepositGrid& grid);   ///< throws UsageError on an empty grid
+  explicit EnergyDeposit(const DepositGrid& grid);  ///< throws UsageError on an empty grid
 
   void deposit(const Vec3& from_nm, const Vec3& to_nm, double energy_ev) override;
-  EnergyDeposit& operator+=(const EnergyDeposit& other);   ///< of the same grid
+  EnergyDeposit& operator+=(const EnergyDeposit& other);  ///< of the same grid
 
   const EnergySum& cell(int i, int j, int k) const;
   const EnergySum& outside() const { return sums_.back(); }
@@ -43,7 +43,7 @@ class EnergyDeposit final : public Observer {
 
   DepositGrid grid_;
   Vec3 cell_nm_;
-  std::vector<EnergySum> sums_;   // of the cells, then of all outside
+  std::vector<EnergySum> sums_;  // of the cells, then of all outside
 };
 
 }  // namespace surf::mc

@@ -30,8 +30,8 @@ class Observer {
 
   /// Energy left in the matter along the straight piece between two points (or at a point), eV.
   /// Negative where a secondary starts: secondaries are not debited from the electron that makes
-  /// them but from what its continuous loss has left there. All of it adds up to the incident energy
-  /// less what escaped and what was lost.
+  /// them but from what its continuous loss has left there. All of it adds up to the incident
+  /// energy less what escaped and what was lost.
   virtual void deposit(const Vec3& /*from_nm*/, const Vec3& /*to_nm*/, double /*energy_ev*/) {}
 
   /// The current track ends, with its last energy: in vacuum for se, bse and transmitted.

@@ -14,7 +14,10 @@ class EnergySum {
     const double scaled = energy_ev * 65536.0;
     sum_ += static_cast<std::int64_t>(scaled < 0 ? scaled - 0.5 : scaled + 0.5);
   }
-  EnergySum& operator+=(const EnergySum& b) { sum_ += b.sum_; return *this; }
+  EnergySum& operator+=(const EnergySum& b) {
+    sum_ += b.sum_;
+    return *this;
+  }
   double ev() const { return static_cast<double>(sum_) / 65536.0; }
 
   /// The sum as it is kept, in 2^-16 eV.
@@ -26,15 +29,15 @@ class EnergySum {
   }
 
  private:
-  std::int64_t sum_ = 0;   // 1e14 eV in all: 3e9 primaries of 30 keV
+  std::int64_t sum_ = 0;  // 1e14 eV in all: 3e9 primaries of 30 keV
 };
 
 /// Why an electron was given up. None of these should happen on a closed specimen.
 enum class LossCause {
-  no_surface_ahead,       ///< inside a body, but nothing to leave it through
-  wrong_side,             ///< met a surface from the side it was not on
-  too_many_steps,         ///< a cascade of 10^8 steps
-  too_many_secondaries,   ///< 10^6 electrons waiting to be followed
+  no_surface_ahead,      ///< inside a body, but nothing to leave it through
+  wrong_side,            ///< met a surface from the side it was not on
+  too_many_steps,        ///< a cascade of 10^8 steps
+  too_many_secondaries,  ///< 10^6 electrons waiting to be followed
 };
 inline constexpr int loss_causes = 4;
 const char* name(LossCause cause);
@@ -46,21 +49,21 @@ const char* name(LossCause cause);
 /// changes nothing. Secondaries are not debited from the electron that made them (the continuous
 /// loss pays for them), so `generated` is a source of energy of its own.
 struct Balance {
-  std::int64_t incident = 0;       ///< primaries, those that miss everything included
-  std::int64_t missed = 0;         ///< primaries that met nothing; they also count as transmitted
-  std::int64_t generated = 0;      ///< secondaries
-  std::int64_t se = 0;             ///< left for good below 50 eV, in any direction
-  std::int64_t bse = 0;            ///< left for good at 50 eV or more, upward
-  std::int64_t transmitted = 0;    ///< left for good at 50 eV or more, downward: not detected
-  std::int64_t absorbed = 0;       ///< stopped inside
-  std::int64_t dropped = 0;        ///< of those: given up early, too far from any surface to matter
+  std::int64_t incident = 0;     ///< primaries, those that miss everything included
+  std::int64_t missed = 0;       ///< primaries that met nothing; they also count as transmitted
+  std::int64_t generated = 0;    ///< secondaries
+  std::int64_t se = 0;           ///< left for good below 50 eV, in any direction
+  std::int64_t bse = 0;          ///< left for good at 50 eV or more, upward
+  std::int64_t transmitted = 0;  ///< left for good at 50 eV or more, downward: not detected
+  std::int64_t absorbed = 0;     ///< stopped inside
+  std::int64_t dropped = 0;      ///< of those: given up early, too far from any surface to matter
   std::array<std::int64_t, loss_causes> lost{};
 
   EnergySum incident_energy, generated_energy, escaped_energy, deposited_energy, lost_energy;
 
-  std::int64_t steps = 0;          ///< path segments inside matter and in vacuum
-  std::int64_t rays = 0;           ///< segments that asked for the surface
-  std::int64_t handed_over = 0;    ///< electrons of replayed primaries that were simulated directly
+  std::int64_t steps = 0;        ///< path segments inside matter and in vacuum
+  std::int64_t rays = 0;         ///< segments that asked for the surface
+  std::int64_t handed_over = 0;  ///< electrons of replayed primaries that were simulated directly
 
   std::int64_t total_lost() const;
   Balance& operator+=(const Balance& other);
@@ -68,17 +71,17 @@ struct Balance {
 
 /// What gave a pixel its value.
 enum class PixelModel : std::int64_t {
-  none,         ///< the beam misses everything
+  none,  ///< the beam misses everything
   direct,
   replay,
-  difference,   ///< replay, as the difference to the outcome on a plane
-  plane,        ///< the surface is proved to be a plane as far as electrons reach
+  difference,  ///< replay, as the difference to the outcome on a plane
+  plane,       ///< the surface is proved to be a plane as far as electrons reach
 };
 
 /// What happened to the primaries of one pixel, whatever is detected.
 struct PixelTally {
-  std::int64_t primaries = 0;      ///< whose counts were kept
-  std::int64_t hits = 0;           ///< primaries that met the specimen
+  std::int64_t primaries = 0;  ///< whose counts were kept
+  std::int64_t hits = 0;       ///< primaries that met the specimen
   PixelModel model = PixelModel::none;
 
   PixelTally& operator+=(const PixelTally& other);
@@ -94,16 +97,20 @@ struct Counts {
     sum += of_one_primary;
     squares += of_one_primary * of_one_primary;
   }
-  Counts& operator+=(const Counts& b) { sum += b.sum; squares += b.squares; return *this; }
+  Counts& operator+=(const Counts& b) {
+    sum += b.sum;
+    squares += b.squares;
+    return *this;
+  }
   friend bool operator==(const Counts&, const Counts&) = default;
 };
 
-/// What is known of a pixel's yield beside its counts: they are then of the difference to a control,
-/// whose mean this is.
+/// What is known of a pixel's yield beside its counts: they are then of the difference to a
+/// control, whose mean this is.
 struct Control {
-  double mean = 0;                 ///< counts per primary; 0 without a control
-  double standard_error = 0;       ///< of it, from the library's size
-  double variance_left = 1;        ///< variance of a primary's counts over what it is without control
+  double mean = 0;            ///< counts per primary; 0 without a control
+  double standard_error = 0;  ///< of it, from the library's size
+  double variance_left = 1;   ///< variance of a primary's counts over what it is without control
 };
 
 /// Counts in bins of equal width from `lower` to `upper`; what lies outside is in no bin.
@@ -120,7 +127,7 @@ struct Histogram {
   double edge(std::size_t i) const {
     return lower + (upper - lower) * double(i) / double(bins.size());
   }
-  Histogram& operator+=(const Histogram& other);   ///< the same bins
+  Histogram& operator+=(const Histogram& other);  ///< the same bins
 };
 
 /// Mean counts per primary, and the standard error of that mean from the scatter of the primaries'

@@ -23,7 +23,7 @@ class TrackRecorder final : public Observer {
   void end_track(TrackKind end, const Vec3& position_nm, const Vec3& direction,
                  double energy_ev) override;
 
-  std::vector<Track> tracks;   ///< in the order in which they were followed
+  std::vector<Track> tracks;  ///< in the order in which they were followed
 
  private:
   double exit_nm_;
