@@ -18,7 +18,7 @@
 #include "surf/afm/morphology.h"
 #include "surf/afm/tip_shapes.h"
 #include "surf/core/error.h"
-#include "surf/io/model_file.h"
+#include "surf/io/model/model_file.h"
 #include "surf/io/sim/materials.h"
 #include "surf/mc/geometry/scene.h"
 #include "surf/mc/simulate.h"

@@ -31,7 +31,7 @@
 
 #include "surf/core/random.h"
 #include "surf/io/image_file.h"
-#include "surf/io/model_file.h"
+#include "surf/io/model/model_file.h"
 #include "surf/io/plot.h"
 #include "surf/io/sim/materials.h"
 #include "surf/mc/simulate.h"

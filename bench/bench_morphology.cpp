@@ -17,7 +17,7 @@
 
 #include <fmt/core.h>
 
-#include "max_plus.h"
+#include "afm/max_plus.h"
 #include "surf/afm/certainty.h"
 #include "surf/afm/morphology.h"
 #include "surf/afm/tip_shapes.h"

@@ -13,11 +13,11 @@
 #include <string>
 #include <vector>
 
-#include "objective.h"
-#include "preconditioner.h"
+#include "reconstruction/objective.h"
+#include "reconstruction/preconditioner.h"
+#include "reconstruction/start.h"
 #include "sample_truth.h"
-#include "start.h"
-#include "surf/io/model_file.h"
+#include "surf/io/model/model_file.h"
 #include "surf/io/plot.h"
 
 namespace {

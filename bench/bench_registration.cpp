@@ -27,7 +27,7 @@
 
 #include "chain_methods.h"
 #include "registration_scenes.h"
-#include "surf/io/model_file.h"
+#include "surf/io/model/model_file.h"
 #include "surf/registration/register_images.h"
 
 namespace {

@@ -6,7 +6,7 @@
 #include "surf/core/some_parameters.h"
 #include "surf/io/files.h"
 #include "surf/io/image_file.h"
-#include "surf/io/model_file.h"
+#include "surf/io/model/model_file.h"
 #include "surf/io/scan_parameters.h"
 
 namespace surf::cli {

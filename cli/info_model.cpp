@@ -5,7 +5,7 @@
 
 #include "info.h"
 #include "model_tables.h"
-#include "surf/io/model_file.h"
+#include "surf/io/model/model_file.h"
 #include "terminal.h"
 
 namespace surf::cli {

@@ -94,7 +94,7 @@ MeshWork make_work(const Options& o, const Plan& plan) {
 void refuse_what_the_format_lacks(const Options& o, const MeshParameters& p,
                                   const io::SurfaceFormat& format) {
   const auto refuse = [&](const char* option, const char* what, bool io::SurfaceFormat::*held) {
-    std::vector<std::string> others;
+    std::vector<std::string_view> others;
     for (const io::SurfaceFormat& f : io::surface_formats())
       if (f.*held) others.push_back(f.extension);
     throw UsageError(option, fmt::format("{} files hold no {}", format.extension, what),
@@ -273,7 +273,8 @@ void add_mesh(CLI::App& app, Action& action) {
   add(shown, {"mesh.plain"});
   const char* output = "Output";
   std::string suffixes;
-  for (const io::SurfaceFormat& format : io::surface_formats()) suffixes += " " + format.extension;
+  for (const io::SurfaceFormat& format : io::surface_formats())
+    suffixes += fmt::format(" {}", format.extension);
   with_role(sub->add_option("-o,--output", o->output, "To write:" + suffixes)
                 ->type_name("FILE")
                 ->group(output),

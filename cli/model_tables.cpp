@@ -7,7 +7,7 @@
 #include <algorithm>
 
 #include "surf/core/units.h"
-#include "surf/io/model_file.h"
+#include "surf/io/model/model_file.h"
 #include "terminal.h"
 
 namespace surf::cli {

@@ -5,8 +5,8 @@
 
 #include "common_options.h"
 #include "surf/core/error.h"
-#include "surf/io/calibration_file.h"
 #include "surf/io/height_field_file.h"
+#include "surf/io/model/calibration_file.h"
 
 namespace surf::cli {
 namespace {

@@ -13,7 +13,7 @@
 #include "surf/core/units.h"
 #include "surf/io/files.h"
 #include "surf/io/image_file.h"
-#include "surf/io/model_file.h"
+#include "surf/io/model/model_file.h"
 #include "terminal.h"
 
 namespace surf::cli {

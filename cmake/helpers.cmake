@@ -1,9 +1,15 @@
-# semsurf_library(NAME SOURCES ... PUBLIC libs... PRIVATE libs...): a static library with its public
-# headers in include/, its private ones in src/, warnings on.
+# semsurf_library(NAME COMPONENT component SOURCES ... PUBLIC libs... PRIVATE libs...): a static library with its public
+# headers in include/, its private ones in src/, warnings on. It is installed as semsurf::COMPONENT, and
+# find_package(semsurf COMPONENTS COMPONENT) looks for what it stands on alone (cmake/semsurfConfig.cmake.in).
 function(semsurf_library name)
-  cmake_parse_arguments(ARG "" "" "SOURCES;PUBLIC;PRIVATE" ${ARGN})
+  cmake_parse_arguments(ARG "" "COMPONENT" "SOURCES;PUBLIC;PRIVATE" ${ARGN})
   add_library(${name} STATIC ${ARG_SOURCES})
-  add_library(semsurf::${name} ALIAS ${name})
+  if(ARG_COMPONENT)
+    add_library(semsurf::${ARG_COMPONENT} ALIAS ${name})
+    set_target_properties(${name} PROPERTIES EXPORT_NAME ${ARG_COMPONENT} SEMSURF_COMPONENT ${ARG_COMPONENT})
+    set_property(GLOBAL APPEND PROPERTY SEMSURF_COMPONENTS ${ARG_COMPONENT})
+    install(TARGETS ${name} EXPORT semsurf_${ARG_COMPONENT} ARCHIVE DESTINATION "${CMAKE_INSTALL_LIBDIR}/semsurf")
+  endif()
   target_include_directories(${name}
     PUBLIC $<BUILD_INTERFACE:${CMAKE_CURRENT_SOURCE_DIR}/include>
            $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>
@@ -18,7 +24,8 @@ function(semsurf_warnings target)
                          -Wno-missing-field-initializers)
   if(CMAKE_CXX_COMPILER_ID STREQUAL GNU AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
     # libstdc++ 12's strings draw these from themselves (GCC bugs 105329, 105651).
-    target_compile_options(${target} PRIVATE -Wno-restrict -Wno-array-bounds -Wno-stringop-overflow)
+    target_compile_options(${target} PRIVATE -Wno-restrict -Wno-array-bounds -Wno-stringop-overflow
+                           -Wno-stringop-overread)
   endif()
 endfunction()
 

@@ -2,8 +2,6 @@
 include(CMakePackageConfigHelpers)
 set(SEMSURF_PACKAGE_DIR "${CMAKE_INSTALL_LIBDIR}/cmake/semsurf")
 
-install(TARGETS surf mc io io_sim workflow EXPORT semsurfTargets
-        ARCHIVE DESTINATION "${CMAKE_INSTALL_LIBDIR}/semsurf")
 foreach(folder libsurf mc_sim io workflow)
   install(DIRECTORY ${folder}/include/ DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}"
           FILES_MATCHING PATTERN "*.h")
@@ -30,7 +28,10 @@ install(FILES "${CMAKE_BINARY_DIR}/completions/semsurf.fish"
 install(FILES docs/reference/semsurf.1 DESTINATION "${CMAKE_INSTALL_MANDIR}/man1")
 install(FILES LICENSE README.md CHANGELOG.md DESTINATION "${CMAKE_INSTALL_DOCDIR}")
 
-install(EXPORT semsurfTargets NAMESPACE semsurf:: DESTINATION "${SEMSURF_PACKAGE_DIR}")
+get_property(SEMSURF_COMPONENTS GLOBAL PROPERTY SEMSURF_COMPONENTS)
+foreach(component IN LISTS SEMSURF_COMPONENTS)
+  install(EXPORT semsurf_${component} NAMESPACE semsurf:: DESTINATION "${SEMSURF_PACKAGE_DIR}")
+endforeach()
 set(SEMSURF_VTK_OF_PARAVIEW OFF)
 if(SEMSURF_VTK AND ParaView_FOUND)
   set(SEMSURF_VTK_OF_PARAVIEW ON)

@@ -13,6 +13,7 @@ add_custom_target(semsurf_modules)
 function(semsurf_module name)
   cmake_parse_arguments(ARG "" "OF" "SOURCES;LIBS;INCLUDES" ${ARGN})
   semsurf_library(${name}_module SOURCES ${ARG_SOURCES} PUBLIC ${ARG_OF} PRIVATE ${ARG_LIBS})
+  add_library(semsurf::${name}_module ALIAS ${name}_module)
   target_include_directories(${name}_module PRIVATE ${ARG_INCLUDES})
   # Nobody calls it by name: the linker is told to take it.
   target_link_options(${name}_module INTERFACE "LINKER:-u,semsurf_module_${name}")
@@ -26,7 +27,8 @@ function(semsurf_module name)
                         LINKER_LANGUAGE CXX
                         LIBRARY_OUTPUT_DIRECTORY "${CMAKE_BINARY_DIR}/${SEMSURF_MODULE_LIBRARY_FOLDER}")
   add_dependencies(semsurf_modules ${name}_file)
-  install(TARGETS ${name}_module EXPORT semsurfTargets ARCHIVE DESTINATION "${SEMSURF_MODULE_LIBRARY_FOLDER}")
+  get_target_property(component ${ARG_OF} SEMSURF_COMPONENT)
+  install(TARGETS ${name}_module EXPORT semsurf_${component} ARCHIVE DESTINATION "${SEMSURF_MODULE_LIBRARY_FOLDER}")
   install(TARGETS ${name}_file LIBRARY DESTINATION "${SEMSURF_MODULE_LIBRARY_FOLDER}")
 endfunction()
 

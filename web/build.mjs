@@ -39,7 +39,7 @@ for (let i = 0; i < bytes.length; i += 8192) {
 }
 writeFileSync(output, `// SPDX-License-Identifier: GPL-3.0-or-later
 // Made from web/ by web/build.mjs.
-#include "web_page_template.h"
+#include "web/web_page_template.h"
 
 namespace surf::io {
 namespace {

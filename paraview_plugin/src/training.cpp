@@ -11,7 +11,7 @@
 #include "convert/table.h"
 #include "surf/core/error.h"
 #include "surf/core/units.h"
-#include "surf/io/model_file.h"
+#include "surf/io/model/model_file.h"
 
 namespace surf::pv {
 namespace {

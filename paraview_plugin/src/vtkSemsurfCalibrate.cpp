@@ -20,7 +20,7 @@
 #include "pipeline.h"
 #include "property_values.h"
 #include "reports.h"
-#include "surf/io/calibration_file.h"
+#include "surf/io/model/calibration_file.h"
 #include "surf/workflow/calibrate_job.h"
 
 vtkStandardNewMacro(vtkSemsurfCalibrate);

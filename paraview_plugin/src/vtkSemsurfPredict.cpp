@@ -14,7 +14,7 @@
 #include "property_values.h"
 #include "reports.h"
 #include "surf/core/error.h"
-#include "surf/io/model_file.h"
+#include "surf/io/model/model_file.h"
 #include "surf/workflow/predict_job.h"
 
 vtkStandardNewMacro(vtkSemsurfPredict);

@@ -15,29 +15,49 @@ import tempfile
 # The rooms of mc_sim: each may include those before it. What lies in none is the last.
 ROOMS = ["physics", "geometry", "transport", "request", "cascades", "replay", "results", "sampling", "scheduling"]
 MC = {f"mc/{room}" for room in ROOMS} | {"mc"}
+# The rooms of libsurf's models of SEM images, likewise.
+SEM_ROOMS = ["model", "minimise", "facet", "network", "baselines", "noise", "calibration", "training"]
+SEM = {f"sem/{room}" for room in SEM_ROOMS} | {"sem"}
+SURF = {"core", "mesh", "afm", "registration", "reconstruction"} | SEM
 
 
 def rooms_of_mc():
     parts = {f"mc/{room}": ([f"mc_sim/src/{room}/*", f"mc_sim/include/surf/mc/{room}/*"],
-                            {"surf"} | {f"mc/{before}" for before in ROOMS[:i]}) for i, room in enumerate(ROOMS)}
-    return {**parts, "mc": (["mc_sim/*"], {"surf"} | MC)}
+                            {"core", "mesh"} | {f"mc/{before}" for before in ROOMS[:i]}) for i, room in enumerate(ROOMS)}
+    tables = {"mc_tables": (["mc_sim/src/tables/*", "mc_sim/include/surf/mc/tables/*"], {"core", "mesh", "sem"} | MC)}
+    return {**parts, **tables, "mc": (["mc_sim/*"], {"core", "mesh"} | MC)}
+
+
+def parts_of_libsurf():
+    def places(part):
+        return [f"libsurf/src/{part}/*", f"libsurf/include/surf/{part}/*"]
+    rooms = {f"sem/{room}": (places(f"sem/{room}"),
+                             {"core", "mesh", "afm", "sem"} | {f"sem/{before}" for before in SEM_ROOMS[:i]})
+             for i, room in enumerate(SEM_ROOMS)}
+    return {"core": (places("core"), set()), "mesh": (places("mesh"), {"core"}), "afm": (places("afm"), {"core"}),
+            "registration": (places("registration"), {"core"}), **rooms,
+            "sem": (places("sem"), {"core", "mesh", "afm"} | SEM),
+            "reconstruction": (places("reconstruction"), {"core", "afm"} | SEM)}
 
 
 # A part of the project: the folder patterns it lives in and the parts it may include. First match.
+ALL = SURF | MC | {"mc_tables", "io", "io_models", "io_sim", "workflow"}
 PARTS = {
-    "io_sim": (["io/include/surf/io/sim/*", "io/src/sim/*"], {"surf", "io"} | MC),
-    "io": (["io/*"], {"surf"}),
-    "surf": (["libsurf/*"], set()),
+    "io_sim": (["io/include/surf/io/sim/*", "io/src/sim/*"], {"core", "mesh", "io"} | MC),
+    "io_models": (["io/include/surf/io/model/*", "io/src/model/*"], {"core", "sem", "io"}),
+    "io": (["io/*"], {"core", "mesh", "afm"}),
+    **parts_of_libsurf(),
     **rooms_of_mc(),
-    "workflow": (["workflow/*"], {"surf", "io", "io_sim"} | MC),
-    "cli": (["cli/*"], {"surf", "io", "io_sim", "workflow"} | MC),
-    "samples": (["samples/*"], {"surf", "io", "io_sim", "workflow"} | MC),
-    "paraview_plugin": (["paraview_plugin/*"], {"surf", "io", "io_sim", "workflow"} | MC),
+    "workflow": (["workflow/*"], ALL - {"workflow"}),
+    "cli": (["cli/*"], ALL),
+    "samples": (["samples/*"], ALL),
+    "paraview_plugin": (["paraview_plugin/*"], ALL),
 }
 # Whose header "surf/..." is. First match.
-OWNERS = [("surf/io/sim/", "io_sim"), ("surf/io/", "io"),
-          *((f"surf/mc/{room}/", f"mc/{room}") for room in ROOMS), ("surf/mc/", "mc"),
-          ("surf/workflow/", "workflow"), ("surf/", "surf")]
+OWNERS = [("surf/io/sim/", "io_sim"), ("surf/io/model/", "io_models"), ("surf/io/", "io"),
+          *((f"surf/mc/{room}/", f"mc/{room}") for room in ROOMS), ("surf/mc/tables/", "mc_tables"), ("surf/mc/", "mc"),
+          ("surf/workflow/", "workflow"),
+          *((f"surf/{part}/", part) for part in ["core", "mesh", "afm", "sem", "registration", "reconstruction"])]
 # Third-party headers <...> and the files that may include them. First match; public headers never.
 THIRD_PARTY = [
     ("embree*/*", ["mc_sim/src/geometry/embree_scene.cpp"]),
@@ -45,22 +65,23 @@ THIRD_PARTY = [
     ("OpenMesh/*", ["libsurf/src/mesh/simplify_mesh.cpp"]),
     ("Eigen/*", ["libsurf/src/reconstruction/descent.cpp", "libsurf/src/reconstruction/preconditioner.cpp",
                  "libsurf/src/registration/correlation.cpp", "libsurf/src/registration/landmarks.cpp",
-                 "libsurf/src/registration/uncertainty.cpp", "libsurf/src/sem/calibration.cpp",
-                 "libsurf/src/sem/fit_filter_bank.cpp", "libsurf/src/sem/flat_samples.cpp",
-                 "libsurf/src/sem/network_trainer.cpp"]),
+                 "libsurf/src/registration/uncertainty.cpp", "libsurf/src/sem/calibration/calibration.cpp",
+                 "libsurf/src/sem/facet/fit_filter_bank.cpp", "libsurf/src/sem/noise/flat_samples.cpp",
+                 "libsurf/src/sem/network/network_trainer.cpp"]),
     # In correlation.cpp only what needs no library.
-    ("ceres/*", ["libsurf/src/solvers/ceres_minimise.cpp", "libsurf/src/registration/correlation.cpp"]),
-    ("cholmod.h", ["libsurf/src/solvers/cholmod_factor.cpp"]),
+    ("ceres/*", ["libsurf/src/sem/minimise/ceres_module.cpp", "libsurf/src/registration/correlation.cpp"]),
+    ("cholmod.h", ["libsurf/src/reconstruction/cholmod_module.cpp"]),
     ("fftw3.h", ["libsurf/src/registration/shift_search.cpp"]),
     ("nlopt.h", ["libsurf/src/registration/mutual_information.cpp"]),
-    ("OpenImageIO/*", ["io/src/raster_*"]),
-    ("vtk*", ["io/src/vti_file.cpp", "io/src/vti_volume.cpp", "io/src/vtp_*.cpp", "io/src/vtk_support.h",
+    ("OpenImageIO/*", ["io/src/raster/raster_*"]),
+    ("vtk*", ["io/src/vtk/vti_file.cpp", "io/src/vtk/vti_volume.cpp", "io/src/vtk/vtp_*.cpp", "io/src/vtk/vtk_support.h",
               "paraview_plugin/*"]),
-    ("pugixml.hpp", ["io/src/vtk_xml.cpp", "io/src/three_mf_file.cpp", "paraview_plugin/tools/expand_proxies.cpp"]),
-    ("zlib.h", ["io/src/deflate.cpp", "io/src/vtk_data.cpp", "io/src/zip_file.cpp"]),
-    ("tiny_gltf.h", ["io/src/gltf_write.cpp"]),
-    ("cairo*.h", ["io/src/canvas.cpp"]),
-    ("xxhash.h", ["io/src/cache_entry.cpp"]),
+    ("pugixml.hpp", ["io/src/vtk/vtk_xml.cpp", "io/src/mesh/three_mf_file.cpp",
+                    "paraview_plugin/tools/expand_proxies.cpp"]),
+    ("zlib.h", ["io/src/files/deflate.cpp", "io/src/vtk/vtk_data.cpp", "io/src/files/zip_file.cpp"]),
+    ("tiny_gltf.h", ["io/src/gltf/write_gltf.cpp"]),
+    ("cairo*.h", ["io/src/pictures/canvas.cpp"]),
+    ("xxhash.h", ["io/src/files/cache_entry.cpp"]),
     ("toml++/*", ["io/src/sim/*"]),
     ("nlohmann/*", ["workflow/src/*", "io/src/*"]),
     ("openssl/*", ["io/src/*"]),
@@ -75,7 +96,7 @@ THIRD_PARTY = [
     ("*intrin.h", ["*"]),
     ("dlfcn.h", ["libsurf/src/core/module.cpp"]),
     ("fcntl.h", ["*"]),
-    ("linux/magic.h", ["io/src/files.cpp"]),
+    ("linux/magic.h", ["io/src/files/files.cpp"]),
     ("malloc.h", ["*"]),
     ("poll.h", ["*"]),
     ("sched.h", ["*"]),
@@ -172,8 +193,12 @@ GOOD = {
     "mc_sim/include/surf/mc/physics/b.h": "",
     "mc_sim/src/geometry/embree_scene.cpp": '#include <embree3/rtcore.h>\n#include "surf/mc/physics/b.h"\n',
     "mc_sim/src/physics/b.cpp": '#include "surf/mc/physics/b.h"\n',
+    "libsurf/include/surf/mesh/mesh.h": '#include "surf/core/a.h"\n',
+    "libsurf/include/surf/afm/scan.h": '#include "surf/core/a.h"\n',
+    "libsurf/src/sem/model/padded.h": '#include "surf/core/a.h"\n',
+    "libsurf/src/sem/facet/pass.cpp": '#include "sem/model/padded.h"\n#include "surf/mesh/mesh.h"\n',
     "mc_sim/src/private.h": '#include <fmt/format.h>\n#include "surf/mc/a.h"\n',
-    "io/src/raster_file.cpp": "#include <OpenImageIO/imageio.h>\n",
+    "io/src/raster/raster_file.cpp": "#include <OpenImageIO/imageio.h>\n",
     "io/src/private.h": '#include "surf/io/files.h"\n',
     "io/src/sim/scene_file.cpp": '#include <toml++/toml.h>\n#include "surf/mc/a.h"\n#include "private.h"\n',
     "workflow/src/job.cpp": '#include <nlohmann/json.hpp>\n#include "surf/io/sim/scene_file.h"\n',
@@ -187,6 +212,8 @@ BAD = {
                                       "#include <unistd.h>", '#include "hidden.h"'],
     "libsurf/src/core/parallel.cpp": ['#include "surf/io/files.h"', "#include <surf/core/a.h>",
                                       "  #  include <Random123/philox.h>"],
+    "libsurf/include/surf/mesh/mesh.h": ['#include "surf/afm/scan.h"', '#include "surf/sem/model.h"'],
+    "libsurf/src/sem/model/padded.h": ['#include "sem/facet/pass.cpp"', '#include "surf/reconstruction/reconstruct.h"'],
     "mc_sim/include/surf/mc/a.h": ["#include <embree3/rtcore.h>", '#include "surf/workflow/job.h"'],
     "mc_sim/src/physics/b.cpp": ['#include "geometry/hidden.h"', '#include "surf/mc/transport/c.h"', '#include "surf/mc/a.h"'],
     "mc_sim/src/private.h": ["#include <embree3/rtcore.h>", '#include "surf/io/files.h"',

@@ -19,10 +19,11 @@ OTHERS = {"io/src/afm/gwyddion_program.cpp": {"--no-log-to-file", "--convert-to-
           "workflow/src/train_parameters.cpp": {"--images", "--signal", "--materials", "--material"},
           "workflow/src/reconstruction_report.cpp": {"--height-noise", "--level-method", "--level-degree",
                                                      "--level-tolerance"},
-          "io/src/web_page_template.h": {"--semsurf"}}   # <!--semsurf:title-->
+          "io/src/web/web_page_template.h": {"--semsurf"}}   # <!--semsurf:title-->
 # Characters first: '"' begins no text. Of a comment or a text, what it says.
 SAID = re.compile(r"""'(?:[^'\\\n]|\\.)'|//(?P<line>[^\n]*)|/\*(?P<block>.*?)\*/"""
-                  r"""|R"(?P<mark>\w*)\((?P<raw>.*?)\)(?P=mark)"|"(?P<text>(?:[^"\\\n]|\\.)*)\"""", re.S)
+                  r"""|R"(?P<mark>\w*)\((?P<raw>.*?)\)(?P=mark)"|(?P<text>"(?:[^"\\\n]|\\.)*"(?:\s*"(?:[^"\\\n]|\\.)*")*)""", re.S)
+JOINT = re.compile(r'"\s*"')   # of texts that the compiler joins
 BARE_FIELD = re.compile(r'UsageError\("([a-z_]+\.[a-z_.]+)"')   # a subject without backticks is not translated
 OPTION = re.compile(r"(?<![\w-])(?:--[a-z][a-z-]*|-o(?= [a-z]))")
 COMMAND = re.compile(r"semsurf [a-z]+\b[^'.;\n]*$")   # ends in the option that is looked at
@@ -35,8 +36,10 @@ def faults_of(name, source):
     for said in SAID.finditer(source):
         for kind in ("line", "block", "raw", "text"):
             words = said.group(kind)
+            if kind == "text" and words:   # joined, each joint as long as it was
+                words = JOINT.sub(lambda joint: "\0" * len(joint.group()), words)
             for option in OPTION.finditer(words or ""):
-                if COMMAND.search(words[:option.start()]) or option.group() in OTHERS.get(name, ()):
+                if COMMAND.search(words[:option.start()].replace("\0", "")) or option.group() in OTHERS.get(name, ()):
                     continue
                 line = source.count("\n", 0, said.start(kind) + option.start()) + 1
                 yield f"{name}:{line}: {option.group()} is the command line's: name the field, as `scan.pixel_size`"

@@ -9,7 +9,7 @@
 #include "surf/io/height_field_file.h"
 #include "surf/io/image_file.h"
 #include "surf/io/mesh_file.h"
-#include "surf/io/model_file.h"
+#include "surf/io/model/model_file.h"
 #include "surf/io/sem_file.h"
 #include "surf/io/sim/scene_file.h"
 #include "surf/io/surface_file.h"

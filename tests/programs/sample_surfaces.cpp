@@ -8,9 +8,9 @@
 #include <exception>
 #include <filesystem>
 
+#include "mesh/surface_scenes.h"
 #include "surf/io/files.h"
 #include "surf/mesh/measure_mesh.h"
-#include "surface_scenes.h"
 
 namespace surf {
 namespace {
@@ -37,8 +37,8 @@ void write_samples(const std::filesystem::path& folder) {
   one.metadata = {{"semsurf.version", "test"}, {"source", "letter F"}};
   two.surfaces = {letter("left", 0), letter("right", 500)};
   for (const io::SurfaceFormat& format : test::written_formats()) {
-    io::write_surfaces(folder / ("letter" + format.extension), one);
-    if (format.several) io::write_surfaces(folder / ("pair" + format.extension), two);
+    io::write_surfaces(folder / ("letter" + std::string(format.extension)), one);
+    if (format.several) io::write_surfaces(folder / ("pair" + std::string(format.extension)), two);
   }
   const TriangleMesh& mesh = one.surfaces[0].mesh;
   const Box box = bounds(mesh);

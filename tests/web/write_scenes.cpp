@@ -7,8 +7,8 @@
 #include <filesystem>
 #include <fstream>
 
-#include "some_surfaces.h"
-#include "surface_formats.h"
+#include "mesh/some_surfaces.h"
+#include "mesh/through_format.h"
 
 namespace {
 
@@ -30,7 +30,7 @@ std::string expected_box(const SurfaceScene& scene, const io::Magnification& mag
 void write(const std::filesystem::path& path, const SurfaceScene& scene,
            const io::Magnification& magnification = {}) {
   validate(scene);
-  for (const io::OutputFile& file : io::format_gltf(path, scene, magnification)) {
+  for (const io::OutputFile& file : test::formatted(io::gltf_format, path, scene, magnification)) {
     std::ofstream(file.path, std::ios::binary) << file.content;
   }
   std::ofstream(path.string() + ".box.json") << expected_box(scene, magnification);

@@ -8,7 +8,7 @@
 #include "surf/io/files.h"
 #include "surf/io/height_field_file.h"
 #include "surf/io/image_file.h"
-#include "surf/io/model_file.h"
+#include "surf/io/model/model_file.h"
 #include "surf/mesh/shapes.h"
 #include "temporary_folder.h"
 

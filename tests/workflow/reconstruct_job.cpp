@@ -21,7 +21,7 @@
 #include "surf/core/random.h"
 #include "surf/io/files.h"
 #include "surf/io/height_field_file.h"
-#include "surf/io/model_file.h"
+#include "surf/io/model/model_file.h"
 #include "surf/io/tip_file.h"
 #include "surf/mesh/shapes.h"
 #include "surf/sem/slope_model.h"

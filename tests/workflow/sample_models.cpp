@@ -8,7 +8,7 @@
 
 #include "surf/afm/resample.h"
 #include "surf/io/image_file.h"
-#include "surf/io/model_file.h"
+#include "surf/io/model/model_file.h"
 #include "surf/io/sim/scene_file.h"
 #include "surf/workflow/simulate_job.h"
 #include "temporary_folder.h"

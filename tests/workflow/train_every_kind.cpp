@@ -9,7 +9,7 @@
 #include "surf/core/error.h"
 #include "surf/io/height_field_file.h"
 #include "surf/io/image_file.h"
-#include "surf/io/model_file.h"
+#include "surf/io/model/model_file.h"
 #include "surf/workflow/predict_job.h"
 #include "temporary_folder.h"
 

@@ -8,7 +8,7 @@
 #include "surf/core/error.h"
 #include "surf/io/files.h"
 #include "surf/io/image_file.h"
-#include "surf/io/model_file.h"
+#include "surf/io/model/model_file.h"
 #include "temporary_folder.h"
 
 namespace surf::workflow {

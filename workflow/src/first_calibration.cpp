@@ -112,7 +112,7 @@ Calibration fitted(const CalibrationImages& images, FirstCalibration& first) {
         "SEM image",
         "it is darker where the simulated image is brighter, so the two do not show the same",
         "Check the registration (semsurf register --picture), the material and the energy, or give "
-        "--gains");
+        "`reconstruction.gains`");
   return fit;
 }
 

@@ -5,9 +5,8 @@
 #include "learners.h"
 #include "surf/core/error.h"
 #include "surf/core/units.h"
-#include "surf/mc/cascades/diffusion_matrix.h"
-#include "surf/mc/cascades/stopping_points.h"
 #include "surf/mc/physics/medium.h"
+#include "surf/mc/tables/cascade_tables.h"
 #include "surf/workflow/slope_table.h"
 
 namespace surf::workflow {

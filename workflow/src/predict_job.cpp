@@ -14,7 +14,7 @@
 #include "surf/core/units.h"
 #include "surf/io/files.h"
 #include "surf/io/image_file.h"
-#include "surf/io/model_file.h"
+#include "surf/io/model/model_file.h"
 #include "surf/io/overlaps.h"
 #include "surf/io/scan_parameters.h"
 #include "surf/mc/geometry/largest_length.h"

@@ -14,7 +14,7 @@
 #include "surf/io/files.h"
 #include "surf/io/height_field_file.h"
 #include "surf/io/image_file.h"
-#include "surf/io/model_file.h"
+#include "surf/io/model/model_file.h"
 #include "surf/io/plot.h"
 #include "surf/io/surface_file.h"
 #include "surf/io/tip_file.h"

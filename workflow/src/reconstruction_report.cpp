@@ -12,7 +12,7 @@
 #include "surf/core/units.h"
 #include "surf/core/words.h"
 #include "surf/io/files.h"
-#include "surf/io/model_file.h"
+#include "surf/io/model/model_file.h"
 #include "surf/workflow/version.h"
 
 namespace surf::workflow {

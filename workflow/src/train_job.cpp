@@ -12,7 +12,7 @@
 #include "surf/core/error.h"
 #include "surf/core/units.h"
 #include "surf/io/files.h"
-#include "surf/io/model_file.h"
+#include "surf/io/model/model_file.h"
 #include "surf/io/overlaps.h"
 #include "surf/mc/physics/material_doubts.h"
 #include "surf/sem/fit_filter_bank.h"

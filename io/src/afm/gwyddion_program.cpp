@@ -8,7 +8,7 @@
 #include <cstring>
 #include <system_error>
 
-#include "../run_program.h"
+#include "files/run_program.h"
 #include "surf/core/error.h"
 #include "surf/io/files.h"
 #include "surf/io/height_field_file.h"

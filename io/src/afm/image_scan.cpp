@@ -5,8 +5,8 @@
 #include <memory>
 #include <utility>
 
-#include "../image_formats.h"
-#include "../lower_extension.h"
+#include "files/lower_extension.h"
+#include "raster/image_formats.h"
 #include "scan_formats.h"
 #include "surf/io/image_file.h"
 

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <optional>
 
-#include "../text_scanner.h"
+#include "files/text_scanner.h"
 #include "scan.h"
 #include "surf/core/error.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "../image_formats.h"
+#include "raster/image_formats.h"
 #include "scan_formats.h"
 
 namespace surf::io {

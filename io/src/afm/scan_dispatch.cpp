@@ -7,7 +7,7 @@
 #include <system_error>
 #include <utility>
 
-#include "../lower_extension.h"
+#include "files/lower_extension.h"
 #include "gwyddion_program.h"
 #include "scan_formats.h"
 #include "surf/core/error.h"

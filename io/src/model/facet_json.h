@@ -3,7 +3,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "json_value.h"
+#include "files/json_value.h"
 #include "surf/sem/filter_bank.h"
 
 namespace surf::io {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "surf/io/model_file.h"
+#include "surf/io/model/model_file.h"
 
 #include <fmt/format.h>
 
@@ -7,8 +7,8 @@
 #include <nlohmann/json.hpp>
 #include <system_error>
 
-#include "lower_extension.h"
-#include "model/json_text.h"
+#include "files/json_text.h"
+#include "files/lower_extension.h"
 #include "model/model_kinds.h"
 #include "model/training_record_json.h"
 #include "surf/core/error.h"

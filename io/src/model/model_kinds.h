@@ -4,7 +4,7 @@
 #include <nlohmann/json_fwd.hpp>
 #include <variant>
 
-#include "json_value.h"
+#include "files/json_value.h"
 #include "surf/sem/trained_model.h"
 
 namespace surf::io {

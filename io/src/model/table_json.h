@@ -3,7 +3,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "json_value.h"
+#include "files/json_value.h"
 
 namespace surf::io {
 

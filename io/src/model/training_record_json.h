@@ -3,7 +3,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 
-#include "json_value.h"
+#include "files/json_value.h"
 #include "surf/sem/trained_model.h"
 
 namespace surf::io {

@@ -8,11 +8,11 @@
 #include <charconv>
 #include <cmath>
 
-#include "../companions.h"
-#include "../image_formats.h"
-#include "../lower_extension.h"
+#include "files/lower_extension.h"
+#include "raster/image_formats.h"
 #include "sem_header.h"
 #include "sem_pixels.h"
+#include "sem_settings.h"
 #include "surf/core/error.h"
 #include "surf/io/files.h"
 #include "surf/io/image_file.h"

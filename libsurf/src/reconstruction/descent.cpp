@@ -7,7 +7,7 @@
 #include <Eigen/Dense>
 
 #include "gaussian_basis.h"
-#include "solvers/solvers.h"
+#include "sem/minimise/minimise.h"
 #include "surf/core/error.h"
 
 namespace surf::reconstruction {
@@ -87,7 +87,7 @@ DescentReport descend(const Objective& objective, Unknowns& at, double sigma_px,
   how.parameter_tolerance = 0;
   how.gradient_tolerance = 1e-12;
   how.after = Settled(options.tolerance);
-  const solvers::Minimised done = solvers::solvers().minimise(problem, coefficients, how);
+  const solvers::Minimised done = solvers::minimise(problem, coefficients, how);
   at = problem.surface_of(coefficients.data());
 
   DescentReport report;

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "../sem/border.h"
+#include "sem/model/border.h"
 #include "surf/core/parallel.h"
 
 namespace surf::reconstruction {

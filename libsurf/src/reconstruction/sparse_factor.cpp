@@ -3,22 +3,20 @@
 
 #include <limits>
 
-#include "solvers/solvers.h"
+#include "cholmod_library.h"
 
 namespace surf::reconstruction {
 
-using solvers::solvers;
-
-OneBlasThread::OneBlasThread() : before_(solvers().blas_threads()) {
-  solvers().set_blas_threads(1);
+OneBlasThread::OneBlasThread() : before_(cholmod_library().blas_threads()) {
+  cholmod_library().set_blas_threads(1);
 }
-OneBlasThread::~OneBlasThread() { solvers().set_blas_threads(before_); }
+OneBlasThread::~OneBlasThread() { cholmod_library().set_blas_threads(before_); }
 // Debian's serial build hands one buffer to all who call: factors come out wrong, or fail.
 int OneBlasThread::most_at_once() {
-  return solvers().blas_is_parallel() == 0 ? 1 : std::numeric_limits<int>::max();
+  return cholmod_library().blas_is_parallel() == 0 ? 1 : std::numeric_limits<int>::max();
 }
 
-SparseFactor::SparseFactor() : factor_(solvers().make_factor()) {}
+SparseFactor::SparseFactor() : factor_(cholmod_library().make_factor()) {}
 SparseFactor::~SparseFactor() = default;
 SparseFactor::SparseFactor(SparseFactor&&) noexcept = default;
 

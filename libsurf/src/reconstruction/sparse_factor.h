@@ -6,11 +6,9 @@
 #include "stencil_matrix.h"
 #include "surf/core/grid.h"
 
-namespace surf::solvers {
-class Factor;
-}
-
 namespace surf::reconstruction {
+
+class Factor;
 
 /// While one lives, OpenBLAS computes in the thread that calls it: threads of its own would fight
 /// with ours and change the last bits.
@@ -47,7 +45,7 @@ class SparseFactor {
   Grid<double> draw(const Grid<double>& normal) const;
 
  private:
-  std::unique_ptr<solvers::Factor> factor_;
+  std::unique_ptr<Factor> factor_;
 };
 
 }  // namespace surf::reconstruction

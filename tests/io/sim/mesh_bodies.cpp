@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "surf/io/sim/mesh_bodies.h"
 
-#include "../gltf_writer.h"
 #include "../io_test.h"
+#include "gltf/gltf_writer.h"
 #include "surf/io/sim/scene_file.h"
 #include "surf/mesh/check_mesh.h"
 

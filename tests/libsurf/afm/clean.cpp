@@ -131,7 +131,9 @@ TEST(FlatClosing, IsTheLowestOfTheHighest) {
     const HeightField expected = extreme(extreme(f, width, 1), width, -1);
     for (int y = 0; y < 29; ++y)
       for (int x = 0; x < 37; ++x)
-        if (f.is_valid(x, y)) EXPECT_EQ(out.z_nm(x, y), expected.z_nm(x, y)) << width;
+        if (f.is_valid(x, y)) {
+          EXPECT_EQ(out.z_nm(x, y), expected.z_nm(x, y)) << width;
+        }
     EXPECT_EQ(out.valid, f.valid);
   }
 }

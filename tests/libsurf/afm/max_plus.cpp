@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "max_plus.h"
+#include "afm/max_plus.h"
 
 #include <gtest/gtest.h>
 

@@ -136,6 +136,6 @@ TEST_P(WatchedScan, EndsWhenAskedTo) {
 }
 
 INSTANTIATE_TEST_SUITE_P(All, WatchedScan, testing::ValuesIn(operations()),
-                         [](const auto& info) { return info.param.name; });
+                         [](const auto& operation) { return operation.param.name; });
 
 }  // namespace surf

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "objective.h"
+#include "reconstruction/objective.h"
 
 #include <gtest/gtest.h>
 
@@ -7,10 +7,10 @@
 #include <numbers>
 
 #include "afm/normal_numbers.h"
-#include "gaussian_basis.h"
-#include "preconditioner.h"
+#include "reconstruction/gaussian_basis.h"
+#include "reconstruction/preconditioner.h"
+#include "reconstruction/start.h"
 #include "small_scene.h"
-#include "start.h"
 #include "surf/core/random.h"
 
 namespace surf::reconstruction {

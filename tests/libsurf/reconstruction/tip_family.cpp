@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "tip_family.h"
+#include "reconstruction/tip_family.h"
 
 #include <gtest/gtest.h>
 

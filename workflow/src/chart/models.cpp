@@ -12,7 +12,7 @@
 #include "chart_files.h"
 #include "chart_methods.h"
 #include "surf/core/error.h"
-#include "surf/io/model_file.h"
+#include "surf/io/model/model_file.h"
 #include "surf/mc/geometry/scene.h"
 #include "surf/mc/geometry/surface_view.h"
 #include "surf/mc/physics/electron_range.h"

@@ -4,8 +4,8 @@
 #include <filesystem>
 #include <vector>
 
+#include "surf/core/landmark_pair.h"
 #include "surf/core/placed_image.h"
-#include "surf/registration/landmarks.h"
 
 namespace surf::io {
 

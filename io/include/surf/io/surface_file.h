@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "surf/core/image.h"
@@ -23,8 +24,8 @@ struct Magnification {
 
 /// What a format can hold besides triangles.
 struct SurfaceFormat {
-  std::string extension;  ///< ".glb"
-  bool several = false;   ///< several surfaces with their names; else they become one
+  std::string_view extension;  ///< ".glb"
+  bool several = false;        ///< several surfaces with their names; else they become one
   bool scalars = false;
   bool drape = false;
   bool tracks = false;

@@ -13,9 +13,9 @@ struct TipSweepOptions {
   /// Size, border, start and threads of each reconstruction. Thresholds and apex tolerance are the
   /// sweep's.
   BlindTipOptions blind;
-  AfmNoise noise;                    ///< of the scans
-  double least_nm = 0, most_nm = 0;  ///< thresholds, evenly from one to the other, 0 <= least <
-                                     ///< most; both 0: 0.3 to 8 standard deviations of the noise
+  AfmNoise noise;                      ///< of the scans
+  double least_nm = 0, most_nm = 0;    ///< thresholds, evenly from one to the other, 0 <= least <
+                                       ///< most; both 0: 0.3 to 8 standard deviations of the noise
   int thresholds = 40;                 ///< 2 to 10000
   double tolerance_per_threshold = 1;  ///< apex tolerance, >= 0; 0 is Villarrubia's algorithm
   int draws = 3;           ///< of the noise, to tell what residuals to expect, 2 to 1000

@@ -4,13 +4,9 @@
 #include <vector>
 
 #include "surf/core/affine.h"
+#include "surf/core/landmark_pair.h"
 
 namespace surf {
-
-/// One place, seen in both images.
-struct LandmarkPair {
-  Point2 sem_nm, afm_nm;
-};
 
 struct LandmarkFit {
   Affine sem_to_afm;

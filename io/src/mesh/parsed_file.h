@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "surf/core/track.h"
+#include "surf/mesh/surface.h"
+#include "surface_note.h"
+
+namespace surf::io {
+
+/// A body in a file, in the file's units and under the file's name, which may be empty.
+struct ParsedBody {
+  std::string material;  ///< what the file calls it; empty where it says nothing
+  Surface surface;  ///< scalars have names of the form that `validate` asks for, and finite values
+};
+
+/// All that a file holds, in its units; the note says what these are.
+struct ParsedFile {
+  std::vector<ParsedBody> bodies;
+  std::vector<Track> tracks;
+  SurfaceNote note;
+  bool is_in_nm = false;      ///< the parser converted coordinates itself
+  bool unit_assumed = false;  ///< neither the file nor its reader said what a 1 is: 1 nm
+};
+
+/// What is wanted of a file: scalars, pictures and tracks take time and can be damaged.
+enum class Want { shapes, everything };
+
+/// Splits a polygon into triangles around its first corner.
+inline void add_fan(const std::vector<std::uint32_t>& corners, std::vector<Triangle>& triangles) {
+  for (std::size_t i = 2; i < corners.size(); ++i) {
+    triangles.push_back({corners[0], corners[i - 1], corners[i]});
+  }
+}
+
+/// Splits a strip: every other triangle runs the other way round. A corner given twice joins two
+/// strips and makes no triangle.
+inline void add_strip(const std::vector<std::uint32_t>& corners, std::vector<Triangle>& triangles) {
+  for (std::size_t i = 2; i < corners.size(); ++i) {
+    const std::size_t odd = i % 2;
+    const Triangle t{corners[i - 2], corners[i - 1 + odd], corners[i - odd]};
+    if (t[0] != t[1] && t[1] != t[2] && t[2] != t[0]) triangles.push_back(t);
+  }
+}
+
+inline constexpr std::uint64_t max_mesh_vertices = std::uint64_t{1} << 32;
+
+}  // namespace surf::io

@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "surf/core/affine.h"
+
+namespace surf {
+
+/// One place, seen in both images.
+struct LandmarkPair {
+  Point2 sem_nm, afm_nm;
+};
+
+}  // namespace surf

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <vector>
+
+#include "facet_units.h"
+#include "sem/model/aligned.h"
+#include "surf/core/edge.h"
+#include "surf/core/grid.h"
+#include "surf/sem/filter_bank.h"
+
+namespace surf::facet {
+
+/// Pixels that are fitted together: `columns` wide at most (those beyond the last count for
+/// nothing).
+struct Block {
+  int x = 0, y = 0;
+  int width = 0, rows = 0;
+};
+
+/// Fits of the cubic facet model at several neighbourhoods, as separable passes over blocks of
+/// pixels that stay in the cache. Heights go into T relative to one of the block's own, so that
+/// adding a constant changes nothing and float keeps what is high above zero. Fields may be smaller
+/// than the neighbourhoods. How pixels are divided into blocks depends on the vector unit and on
+/// nothing else.
+template <class T>
+class FacetPass {
+ public:
+  /// Throws InvalidInput for scales out of range.
+  FacetPass(const std::vector<FacetScale>& scales, double pitch_x_nm, double pitch_y_nm,
+            Unit unit = Unit::best);
+
+  int scales() const { return static_cast<int>(kernels_.size()); }
+  int columns() const { return loops_->columns; }
+  const Operations<T>& loops() const { return *loops_; }
+  /// From left to right, then upwards: neighbours look at the same heights.
+  std::vector<Block> blocks(int width, int height) const;
+
+  /// A worker's memory: the heights around a block, and what its fits need. It fits any block in
+  /// turn.
+  struct Scratch {
+    Block block;
+    int radius = 0;
+    AlignedVector<T> tile, moments, coefficients;
+    std::vector<int> rows, index, tile_rows;
+  };
+
+  /// Takes up the heights around a block for fits at all scales, or at one. `z_nm` is finite.
+  void load(const Grid<double>& z_nm, Edge edge, const Block& block, Scratch& scratch) const;
+  void load(const Grid<double>& z_nm, Edge edge, const Block& block, Scratch& scratch,
+            int scale) const;
+
+  /// The coefficients K2 to K6 of a scale at the pixels of the block that was loaded, row by row as
+  /// `Operations` has them. Until the next call.
+  const T* fit(int scale, Scratch& scratch) const;
+
+  /// What rounding alone makes of a plane among the heights of the block that was loaded.
+  Floors<T> floors(int scale, const Scratch& scratch) const;
+
+  /// Fills in, row by row, the weights of a scale's coefficients at the pixels of a column of
+  /// pixels: a block of the field's full height. Called from several threads.
+  using Source = std::function<void(int worker, int scale, const Block& column, T* weights)>;
+
+  /// The transpose of the fits: adds to `gradient` (of the size of the heights) the derivative, by
+  /// the heights, of the sum of weight times coefficient over all pixels, coefficients and scales,
+  /// times `unit`.
+  void transpose(Edge edge, int threads, const Source& source, double unit,
+                 Grid<double>& gradient) const;
+
+ private:
+  struct Kernel {
+    int radius;
+    std::vector<Tap<T>> across, along;
+    Scaling<T> scaling;
+    double slope_noise, curvature_noise;  ///< sums of the magnitudes of all factors
+  };
+  void list_rows(int height, Edge edge, Scratch& scratch) const;
+  void fill_tile(const Grid<double>& z_nm, Edge edge, Scratch& scratch) const;
+  void scale_weights(const Scaling<T>& scaling, int height, T* weights) const;
+  void transpose_along(const Kernel& kernel, Edge edge, const Block& column, const T* weights,
+                       T* planes, std::ptrdiff_t plane) const;
+  void transpose_across(const Kernel& kernel, int width, const T* planes, std::ptrdiff_t plane,
+                        AlignedVector<T>& turned, T* sums) const;
+
+  std::vector<Kernel> kernels_;
+  int radius_ = 0;  ///< the largest
+  const Operations<T>* loops_;
+};
+
+extern template class FacetPass<float>;
+extern template class FacetPass<double>;
+
+}  // namespace surf::facet

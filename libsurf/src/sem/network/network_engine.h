@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "network_units.h"
+#include "sem/facet/facet_pass.h"
+#include "sky_view.h"
+#include "surf/sem/facet_network.h"
+#include "surf/sem/image_model.h"
+
+namespace surf {
+
+/// A network's passes in float or double. Parameters and fields have been checked. Without layers
+/// there are its inputs only.
+template <class T>
+class NetworkEngine {
+ public:
+  NetworkEngine(const FacetNetworkParameters& parameters, double pitch_nm,
+                const ModelOptions& options);
+
+  ModelImages predict(const Grid<double>& z_nm) const;
+  Grid<double> gradient(const Grid<double>& z_nm, const ModelImages& weights) const;
+  ModelImages change(const Grid<double>& z_nm, const Grid<double>& dz_nm) const;
+
+  /// Told, from several threads, of the inputs at a block: row after row, each `columns` long.
+  using Sink = std::function<void(const facet::Block& block, int columns, const T* inputs)>;
+  void inputs(const Grid<double>& z_nm, const Sink& sink) const;
+
+ private:
+  struct Worker;
+  struct Planes;
+  void take_inputs(const Grid<double>& z_nm, const Planes& planes, const facet::Block& block,
+                   Worker& worker) const;
+  void put(const facet::Block& block, double unit, Worker& worker, ModelImages& images) const;
+  ModelImages blank(const Grid<double>& z_nm) const;
+
+  const FacetNetworkParameters& parameters_;
+  ModelOptions options_;
+  facet::FacetPass<T> pass_;
+  network::SkyView view_;
+  const network::Operations<T>* loops_;
+  std::vector<T> lengths_;  ///< of the scales
+  std::vector<T> numbers_;  ///< of the layers, one after the other
+  std::vector<network::Layer<T>> layers_;
+  int inputs_, units_ = 0, widest_ = 0;  ///< units: of all layers; widest: of inputs and layers
+};
+
+extern template class NetworkEngine<float>;
+extern template class NetworkEngine<double>;
+
+}  // namespace surf
