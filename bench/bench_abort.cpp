@@ -107,14 +107,14 @@ int main(int argc, char** argv) {
   measure("find_plane", wanted, [&](const Watch& w) { find_plane(field, {.watch = w}); });
   measure("median_filter 9 x 9", wanted, [&](const Watch& w) {
     CleanSummary summary;
-    median_filter(field, {.radius = 4, .watch = w}, summary);
+    summary = median_filter(field, {.radius = 4, .watch = w}).summary;
   });
   measure("erode", wanted, [&](const Watch& w) { erode(field, tip, {.watch = w}); });
   measure("certainty_map", wanted,
           [&](const Watch& w) { certainty_map(field, tip, {.watch = w}); });
   measure("thin_height_field", wanted, [&](const Watch& w) {
     ThinSummary summary;
-    thin_height_field(field, {.tolerance_nm = 0.1, .watch = w}, summary);
+    summary = thin_height_field(field, {.tolerance_nm = 0.1, .watch = w}).summary;
   });
   measure("mean_curvature", wanted, [&](const Watch& w) { mean_curvature(sheet, 0, w); });
   measure("sheet_solid", wanted, [&](const Watch& w) { sheet_solid(sheet, -1000, w); });
@@ -125,15 +125,15 @@ int main(int argc, char** argv) {
           [&](const Watch& w) { find_self_intersections(sheet, {.watch = w}); });
   measure("repair_mesh, sound", wanted, [&](const Watch& w) {
     RepairSummary summary;
-    repair_mesh(sheet, {.watch = w}, summary);
+    summary = repair_mesh(sheet, {.watch = w}).summary;
   });
   measure("repair_mesh, torn", wanted, [&](const Watch& w) {
     RepairSummary summary;
-    repair_mesh(torn, {.watch = w}, summary);
+    summary = repair_mesh(torn, {.watch = w}).summary;
   });
   measure("simplify_mesh to a tenth", wanted, [&](const Watch& w) {
     SimplifySummary summary;
-    simplify_mesh(sheet, {.triangles = sheet.triangles.size() / 10, .watch = w}, summary);
+    summary = simplify_mesh(sheet, {.triangles = sheet.triangles.size() / 10, .watch = w}).summary;
   });
   measure("mc::Scene, field", wanted,
           [&](const Watch& w) { mc::Scene(specimen, {}, scan, {}, {.watch = w}); });
@@ -152,8 +152,9 @@ int main(int argc, char** argv) {
     const std::string name = fmt::format("mc::simulate, direct, {:g} keV", energy_ev / 1000);
     if (name.find(wanted) == std::string::npos) continue;
     const mc::Scene scene(coarse, beam, scan);
-    measure(name, wanted,
-            [&](const Watch& w) { mc::simulate(scene, options, {.cancel = w.cancel}); });
+    measure(name, wanted, [&](const Watch& w) {
+      mc::simulate(scene, options, {.watch = {{}, w.cancel}});
+    });
   }
   if (argc > 2) {
     const TrainedModel trained = io::read_model(argv[2]);

@@ -108,7 +108,7 @@ void compare(const HeightField& scan, double threshold_nm, int size) {
   Tip tip;
   for (const int threads : {1, 2}) {
     options.threads = threads;
-    const double s = seconds([&] { tip = blind_tip({scan}, options, summary); });
+    const double s = seconds([&] { tip = blind_tip({scan}, options).tip; });
     fmt::print("threshold {} nm, {} thread{}: {:.3f} s, {} points in {} rounds\n", threshold_nm,
                threads, threads > 1 ? "s" : "", s, summary.points, summary.rounds);
   }
@@ -160,16 +160,13 @@ int main(int argc, char** argv) {
       BestTipOptions best;
       best.width = best.height = twin.tip.z_nm.width();
       best.noise = noise;
-      BestTipSummary summary;
-      time += seconds([&] {
-                squares += std::pow(twin.error_of(best_tip(twin.scans, best, summary)), 2);
-              }) /
-              seeds;
+      time +=
+          seconds([&] { squares += std::pow(twin.error_of(best_tip(twin.scans, best).tip), 2); }) /
+          seeds;
       BlindTipOptions blind;
       blind.width = blind.height = best.width;
       blind.threshold_nm = 0.9;
-      BlindTipSummary ignored;
-      classical += std::pow(twin.error_of(blind_tip(twin.scans, blind, ignored)), 2);
+      classical += std::pow(twin.error_of(blind_tip(twin.scans, blind).tip), 2);
     }
     fmt::print(
         "twin experiment, {}: best estimate {:.3f} nm in {:.2f} s, classical at 3 sigma {:.3f} "

@@ -38,7 +38,7 @@ double seconds(const std::function<void()>& work) {
 
 /// Smooth hills, of curvature about 1/400 per nm.
 HeightField hills(int width) {
-  HeightField f{Grid<double>(width, width), {}, 1, 1, 0, 0};
+  HeightField f{{}, Grid<double>(width, width)};
   for (int y = 0; y < width; ++y)
     for (int x = 0; x < width; ++x)
       f.z_nm(x, y) =
@@ -66,7 +66,7 @@ double coarse_deviation_nm(const HeightField& f, int step) {
 void compare_sizes(const char* name, const HeightField& f, double tolerance_nm,
                    bool with_quadrics) {
   ThinSummary s;
-  const double took = seconds([&] { thin_height_field(f, {tolerance_nm}, s); });
+  const double took = seconds([&] { s = thin_height_field(f, {tolerance_nm}).summary; });
   fmt::print("{:<28}{:>9.3g} nm{:>11}{:>11} {:>6.2f} s", name, tolerance_nm, s.triangles_before,
              s.triangles_after, took);
   int step = 1;
@@ -77,7 +77,7 @@ void compare_sizes(const char* name, const HeightField& f, double tolerance_nm,
     SimplifyOptions options;
     options.tolerance_nm = tolerance_nm;
     const TriangleMesh sheet = height_field_sheet(f);
-    const double quadrics = seconds([&] { simplify_mesh(sheet, options, q); });
+    const double quadrics = seconds([&] { q = simplify_mesh(sheet, options).summary; });
     fmt::print("{:>11} {:>6.1f} s", q.triangles_after, quadrics);
   }
   fmt::print("\n");

@@ -82,7 +82,7 @@ double peak() { return std::numeric_limits<double>::quiet_NaN(); }
 #endif
 
 HeightField rough(int n) {
-  HeightField f{Grid<double>(n, n), {}, 2, 2, 0, 0};
+  HeightField f{{2, 2}, Grid<double>(n, n)};
   RandomStream random(1, 0, 0);
   for (int y = 0; y < n; ++y)
     for (int x = 0; x < n; ++x)

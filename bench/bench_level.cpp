@@ -94,9 +94,8 @@ void compare(const HeightField& f, const HeightField& median_of_ours, json& out)
       gwy_data_field_filter_median(copy, width);
     });
     if (width == 11) {
-      CleanSummary unused;
-      const HeightField disc = median_filter(
-          f, {.radius = 5, .neighbourhood = Neighbourhood::disc, .threads = 1}, unused);
+      const auto [disc, unused] =
+          median_filter(f, {.radius = 5, .neighbourhood = Neighbourhood::disc, .threads = 1});
       for (const auto& [shape, ours] :
            {std::pair{"square", &median_of_ours}, std::pair{"disc", &disc}}) {
         double largest = 0;
@@ -137,10 +136,10 @@ int main(int argc, char** argv) {
   HeightField median;
   for (const int radius : {20, 1, 5})
     s[fmt::format("median_{}", 2 * radius + 1)] =
-        seconds([&] { median = median_filter(f, {.radius = radius, .threads = 1}, summary); });
+        seconds([&] { median = median_filter(f, {.radius = radius, .threads = 1}).field; });
   for (const int width : {3, 41})
     s[fmt::format("closing_{}", width)] =
-        seconds([&] { flat_closing(f, {.width = width, .threads = 1}, summary); });
+        seconds([&] { summary = flat_closing(f, {.width = width, .threads = 1}).summary; });
   s["noise_differences"] = seconds([&] { estimate_noise(f); });
   s["noise_flat"] = seconds([&] { estimate_flat_noise(f); });
   Grid<double> gradient;

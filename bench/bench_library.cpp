@@ -34,13 +34,13 @@ void measure(const std::string& material, double kev, std::size_t cascades) {
   std::filesystem::remove_all(folder);
   std::shared_ptr<const mc::CascadeLibrary> library;
   mc::FreshLibraries fresh;
-  const double make = seconds([&] { library = fresh.library(settings, cascades, 0, {}, nullptr); });
+  const double make = seconds([&] { library = fresh.library(settings, cascades, 0, {}); });
   const double share = double(cascades) / double(library->cascades());  // whole pages are made
   const auto statistics = mc::describe(*library, cascades);
 
-  workflow::CachedLibraries(folder).library(settings, 1, 0, {}, nullptr);
+  workflow::CachedLibraries(folder).library(settings, 1, 0, {});
   const double load =
-      seconds([&] { workflow::CachedLibraries(folder).library(settings, 1, 0, {}, nullptr); });
+      seconds([&] { workflow::CachedLibraries(folder).library(settings, 1, 0, {}); });
   mc::CascadeLibrary empty(settings);
   const auto page = std::make_shared<const mc::CascadePage>(empty.make_page(0, 0));
   const double check = seconds([&] { empty.add_page(page); });

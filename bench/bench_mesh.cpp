@@ -92,23 +92,24 @@ int main(int argc, char** argv) {
   s["self_intersections_1_thread"] =
       seconds([&] { find_self_intersections(mesh, {.threads = 1}); });
   RepairSummary repair;
-  s["repair_sound"] = seconds([&] { repair_mesh(mesh, {}, repair); });
+  s["repair_sound"] = seconds([&] { repair = repair_mesh(mesh).summary; });
   out["sound_unchanged"] = !repair.changed;
-  s["repair_broken"] = seconds([&] { repair_mesh(soup, {}, repair); });
+  s["repair_broken"] = seconds([&] { repair = repair_mesh(soup).summary; });
   out["repaired"] = {{"sound", repair.sound()},
                      {"merged", repair.merged_vertices},
                      {"turned", repair.turned_triangles},
                      {"filled", repair.filled_holes},
                      {"duplicates", repair.removed_duplicates}};
   s["repair_broken_without_self_intersections"] =
-      seconds([&] { repair_mesh(soup, {.resolve_self_intersections = false}, repair); });
+      seconds([&] { repair = repair_mesh(soup, {.resolve_self_intersections = false}).summary; });
   s["smooth_10"] = seconds([&] { smooth_mesh(mesh, {}); });
   s["measure"] = seconds([&] { measure_mesh(mesh); });
   s["height_field"] = seconds([&] { mesh_height_field(mesh, {.pitch_nm = 0.5}); });
   const TriangleMesh part = height_field_solid(make_rough({220, 220, 1}, 4, 10, 1), -50);
   for (const double tolerance : {0.1, 1.0}) {
     SimplifySummary simple;
-    const double t = seconds([&] { simplify_mesh(part, {.tolerance_nm = tolerance}, simple); });
+    const double t =
+        seconds([&] { simple = simplify_mesh(part, {.tolerance_nm = tolerance}).summary; });
     out["simplify"].push_back({{"tolerance_nm", tolerance},
                                {"seconds", t},
                                {"triangles_before", simple.triangles_before},

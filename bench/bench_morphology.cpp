@@ -74,12 +74,11 @@ PEAK(peak_avx2, 32, [[gnu::target("avx2")]])
 PEAK(peak_avx512, 64, [[gnu::target("avx512f,avx512bw,avx512vl,prefer-vector-width=512")]])
 
 double peak() {
-  using max_plus::Unit;
   double most = 0;  // of several: the machine may be doing other things
   for (int i = 0; i < 5; ++i)
-    most = std::max(most, is_available(Unit::avx512) ? peak_avx512()
-                          : is_available(Unit::avx2) ? peak_avx2()
-                                                     : peak_portable());
+    most = std::max(most, __builtin_cpu_supports("avx512bw") ? peak_avx512()
+                          : __builtin_cpu_supports("avx2")   ? peak_avx2()
+                                                             : peak_portable());
   return most;
 }
 #else
@@ -92,7 +91,7 @@ double normal(RandomStream& random) {
 }
 
 HeightField smooth_scan(int n, double noise) {
-  HeightField f{Grid<double>(n, n), {}, 1, 1, 0, 0};
+  HeightField f{{}, Grid<double>(n, n)};
   RandomStream random(1, 0, 0);
   for (int y = 0; y < n; ++y)
     for (int x = 0; x < n; ++x)
@@ -102,7 +101,7 @@ HeightField smooth_scan(int n, double noise) {
 }
 
 HeightField white_scan(int n) {
-  HeightField f{Grid<double>(n, n), {}, 1, 1, 0, 0};
+  HeightField f{{}, Grid<double>(n, n)};
   RandomStream random(2, 0, 0);
   for (double& z : f.z_nm.data()) z = 20 * random.uniform();
   return f;
@@ -110,7 +109,7 @@ HeightField white_scan(int n) {
 
 // With white noise: no bound can leave anything out.
 Tip random_tip(int n) {
-  Tip tip{Grid<double>(n, n), 1, 1, n / 2, n / 2};
+  Tip tip{{1, 1}, Grid<double>(n, n), n / 2, n / 2};
   RandomStream random(3, 0, 0);
   for (double& z : tip.z_nm.data()) z = -10 * random.uniform();
   tip.z_nm(tip.apex_x, tip.apex_y) = 0;

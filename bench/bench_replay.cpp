@@ -67,13 +67,12 @@ class KeptLibraries : public mc::LibrarySource {
  public:
   std::shared_ptr<const mc::CascadeLibrary> library(const mc::CascadeSettings& settings,
                                                     std::size_t cascades, int threads,
-                                                    const ProgressCallback& progress,
-                                                    const CancelToken* cancel) override {
+                                                    const Watch& watch) override {
     Kept& kept = kept_[{settings.start_energy_ev, cascades}];
     saved_ += kept.seconds;
     if (kept.library) return kept.library;
     const auto begin = std::chrono::steady_clock::now();
-    kept.library = fresh_.library(settings, cascades, threads, progress, cancel);
+    kept.library = fresh_.library(settings, cascades, threads, watch);
     kept.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     return kept.library;
   }

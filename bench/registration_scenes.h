@@ -209,8 +209,8 @@ class SceneMaker {
   PlacedImage sem_image(const HeightField& surface, const Affine& map, int width, int height,
                         double pitch) {
     const Grid<double> ideal = model_->predict(surface)[0];
-    PlacedImage image{Grid<double>(width, height), {}, pitch, pitch, -0.5 * (width - 1) * pitch,
-                      -0.5 * (height - 1) * pitch};
+    PlacedImage image{{pitch, pitch, -0.5 * (width - 1) * pitch, -0.5 * (height - 1) * pitch},
+                      Grid<double>(width, height)};
     double mean = 0;
     for (const double v : ideal.data()) mean += v / double(ideal.size());
     for (int y = 0; y < height; ++y)
@@ -233,8 +233,8 @@ class SceneMaker {
     const int n = int(afm_nm / coarse), margin = 10, full = n + 2 * margin;
     const TipSampling fine{pitch, pitch, 41, 41};
     const HeightField dilated = dilate(surface, conical_tip(15, 0.3, fine));
-    HeightField scan{Grid<double>(full, full),  {}, coarse, coarse, -0.5 * (full - 1) * coarse,
-                     -0.5 * (full - 1) * coarse};
+    HeightField scan{{coarse, coarse, -0.5 * (full - 1) * coarse, -0.5 * (full - 1) * coarse},
+                     Grid<double>(full, full)};
     const Grid<double> noise = simulate_noise({0.825, 0.201}, full, full,
                                               static_cast<std::uint64_t>(1e9 * random_.uniform()));
     for (int y = 0; y < full; ++y)
@@ -247,8 +247,8 @@ class SceneMaker {
     const Grid<double> simulated = model_->predict(eroded)[0];
     const int cut = margin * factor, size = eroded.z_nm.width() - 2 * cut;
     PlacedImage image{
-        Grid<double>(size, size),        {}, pitch, pitch, eroded.origin_x_nm + cut * pitch,
-        eroded.origin_y_nm + cut * pitch};
+        {pitch, pitch, eroded.origin_x_nm + cut * pitch, eroded.origin_y_nm + cut * pitch},
+        Grid<double>(size, size)};
     for (int y = 0; y < size; ++y)
       for (int x = 0; x < size; ++x) image.values(x, y) = simulated(x + cut, y + cut);
     return image;

@@ -44,9 +44,9 @@ void describe(ParameterVisitor& visit, MaskInput& input) {
                         .file = FileRole::read});
 }
 
-Grid<unsigned char> read_masks(const MaskInput& input, const HeightField& field) {
+Mask read_masks(const MaskInput& input, const HeightField& field) {
   if (!input.use && !input.exclude) return {};
-  Grid<unsigned char> mask(field.z_nm.width(), field.z_nm.height(), 1);
+  Mask mask(field.z_nm.width(), field.z_nm.height(), 1);
   const auto narrow = [&](const std::string& path, bool keep) {
     const Grid<float> values = read_mask(path, field);
     for (std::size_t i = 0; i < mask.size(); ++i) mask.data()[i] &= (values.data()[i] != 0) == keep;
@@ -54,16 +54,15 @@ Grid<unsigned char> read_masks(const MaskInput& input, const HeightField& field)
   if (input.use) narrow(*input.use, true);
   if (input.exclude) narrow(*input.exclude, false);
   for (std::size_t i = 0; i < mask.size(); ++i)
-    if (mask.data()[i] && (field.valid.empty() || field.valid.data()[i])) return mask;
+    if (mask.data()[i] && field.valid.includes(i)) return mask;
   throw InvalidInput(input.use ? *input.use : *input.exclude,
                      "no sample of the scan remains to count",
                      "Check which of `scan.use` and `scan.exclude` is meant");
 }
 
-Grid<unsigned char> parse_mask_region(const std::string& text, const char* subject,
-                                      const HeightField& field) {
+Mask parse_mask_region(const std::string& text, const char* subject, const HeightField& field) {
   const auto r = parse_region(text, subject);
-  Grid<unsigned char> mask(field.z_nm.width(), field.z_nm.height());
+  Mask mask(field.z_nm.width(), field.z_nm.height());
   bool any = false;
   for (int y = 0; y < mask.height(); ++y) {
     for (int x = 0; x < mask.width(); ++x) {
@@ -79,14 +78,13 @@ Grid<unsigned char> parse_mask_region(const std::string& text, const char* subje
                   field.origin_y_nm, field.x_nm(mask.width() - 1), field.y_nm(mask.height() - 1)));
 }
 
-void write_mask(const std::string& path, const Grid<unsigned char>& mask, const HeightField& field,
+void write_mask(const std::string& path, const Mask& mask, const HeightField& field,
                 const std::map<std::string, std::string>& made) {
   Image image;
   image.metadata = made;
   image.channels.push_back({"mask", "1", Grid<float>(mask.width(), mask.height())});
   std::copy(mask.data().begin(), mask.data().end(), image.channels.front().values.data().begin());
-  image.pitch_x_nm = field.pitch_x_nm, image.pitch_y_nm = field.pitch_y_nm;
-  image.origin_x_nm = field.origin_x_nm, image.origin_y_nm = field.origin_y_nm;
+  image.placement() = field.placement();
   io::write_image(path, image);
 }
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "surf/core/height_field.h"
+#include "surf/core/mask.h"
 #include "surf/core/parameters.h"
 
 namespace surf::cli {
@@ -24,15 +25,14 @@ void describe(ParameterVisitor& visit, MaskInput& input);
 
 /// 1 where a sample decides; empty if neither is given. Throws UsageError, FileError, InvalidInput
 /// if a size differs or nothing remains.
-Grid<unsigned char> read_masks(const MaskInput& input, const HeightField& field);
+Mask read_masks(const MaskInput& input, const HeightField& field);
 
 /// 1 at samples whose centre lies in "X0,Y0,X1,Y1" (nm, in the scan's coordinates). Throws
 /// UsageError, also where there are none.
-Grid<unsigned char> parse_mask_region(const std::string& text, const char* subject,
-                                      const HeightField& field);
+Mask parse_mask_region(const std::string& text, const char* subject, const HeightField& field);
 
 /// As an image of 0 and 1; `made` says how.
-void write_mask(const std::string& path, const Grid<unsigned char>& mask, const HeightField& field,
+void write_mask(const std::string& path, const Mask& mask, const HeightField& field,
                 const std::map<std::string, std::string>& made);
 
 }  // namespace surf::cli

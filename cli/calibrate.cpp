@@ -68,19 +68,13 @@ CalibrateInput read_input(const CalibrateFiles& o) {
   const Channel* const valid = image.find("valid");
   CalibrateInput input;
   input.name = o.image;
-  input.image = {Grid<double>(image.width(), image.height()),
-                 {},
-                 image.pitch_x_nm,
-                 image.pitch_y_nm,
-                 image.origin_x_nm,
-                 image.origin_y_nm};
+  input.image = {image.placement(), Grid<double>(image.width(), image.height())};
   for (std::size_t i = 0; i < input.image.values.size(); ++i)
     input.image.values.data()[i] =
         valid && valid->values.data()[i] == 0 ? NAN : double{channel->values.data()[i]};
   HeightField place;
   place.z_nm = input.image.values;
-  place.pitch_x_nm = image.pitch_x_nm, place.pitch_y_nm = image.pitch_y_nm;
-  place.origin_x_nm = image.origin_x_nm, place.origin_y_nm = image.origin_y_nm;
+  place.placement() = image.placement();
   input.image.valid = read_masks(o.masks, place);
   return input;
 }
@@ -89,8 +83,7 @@ void write_residual(const std::string& path, const PlacedImage& like,
                     const workflow::CalibrateResult& result,
                     const std::map<std::string, std::string>& made) {
   Image out;
-  out.pitch_x_nm = like.pitch_x_nm, out.pitch_y_nm = like.pitch_y_nm;
-  out.origin_x_nm = like.origin_x_nm, out.origin_y_nm = like.origin_y_nm;
+  out.placement() = like.placement();
   out.metadata = made;
   const Grid<float> none(like.values.width(), like.values.height());
   out.channels = {{"calibrated", "1", none}, {"residual", "1", none}, {"valid", "1", none}};

@@ -38,10 +38,7 @@ struct Options {
 Image to_image(const CertaintyMap& map) {
   const int w = map.level.width(), h = map.level.height();
   Image image;
-  image.pitch_x_nm = map.surface.pitch_x_nm;
-  image.pitch_y_nm = map.surface.pitch_y_nm;
-  image.origin_x_nm = map.surface.origin_x_nm;
-  image.origin_y_nm = map.surface.origin_y_nm;
+  image.placement() = map.surface.placement();
   Grid<float> certain(w, h), radius(w, h), surface(w, h);
   for (std::size_t i = 0; i < certain.size(); ++i) {
     const bool is_certain = map.level.data()[i] != CertaintyMap::uncertain;

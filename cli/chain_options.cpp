@@ -67,9 +67,7 @@ void take_level(const ChainOptions& o, workflow::LevelParameters& level) {
 }
 
 /// Where the samples of a scan lie, for its pixels.
-PlacedImage place_of(const HeightField& f) {
-  return {f.z_nm, f.valid, f.pitch_x_nm, f.pitch_y_nm, f.origin_x_nm, f.origin_y_nm};
-}
+PlacedImage place_of(const HeightField& f) { return {f.placement(), f.z_nm, f.valid}; }
 
 }  // namespace
 

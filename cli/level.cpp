@@ -101,7 +101,7 @@ int work(const Options& o) {
   if (o.output) io::check_height_field_target(*o.output);
   if (o.substrate_mask) io::check_image_target(*o.substrate_mask);
   const HeightField scan = read_scan(o.scan, reading, o.quiet).field;
-  const Grid<unsigned char> use = read_masks(masks, scan);
+  const Mask use = read_masks(masks, scan);
   const workflow::LevelResult levelled =
       workflow::level(scan, parameters, use, JobReporter(o.quiet));
   const HeightField& field = levelled.field;

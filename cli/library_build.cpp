@@ -39,31 +39,22 @@ void check_size(const mc::CascadeLibrary& begun, std::size_t cascades, const std
       fmt::format("Ask for at most {}", fit));
 }
 
-struct Built {
-  std::uint64_t bytes = 0;
-  bool complete = false;
-};
-
-// One library; its cascades leave the memory when it is done.
-Built build_one(const mc::CascadeSettings& settings, const std::string& title,
-                const LibraryRequest& request, bool quiet, const ProgressCallback& progress,
-                const CancelToken* cancel, ProgressBar& bar) {
+// One library, whose bytes it returns; its cascades leave the memory when it is done.
+std::uint64_t build_one(const mc::CascadeSettings& settings, const std::string& title,
+                        const LibraryRequest& request, bool quiet, const Watch& watch,
+                        ProgressBar& bar) {
   workflow::CachedLibraries libraries(request.parameters.cache);
   // Its first page tells how large it will be.
   auto library = libraries.library(settings, mc::CascadeLibrary::page_cascades,
-                                   request.parameters.threads, progress, cancel);
-  if (library) {
-    check_size(*library, request.cascades, title);
-    library =
-        libraries.library(settings, request.cascades, request.parameters.threads, progress, cancel);
-  }
+                                   request.parameters.threads, watch);
+  check_size(*library, request.cascades, title);
+  library = libraries.library(settings, request.cascades, request.parameters.threads, watch);
   bar.clear();
   for (const std::string& note : libraries.take_notes()) print_warning(note);
   const auto pages = libraries.pages();
   if (pages.stored < pages.made)
     throw FileError(request.parameters.cache.string(), title + " cannot be kept there",
                     "Check its permissions and the free space, or choose another `job.cache`");
-  if (!library) return {};
   if (!quiet)
     print("{:<18} {} cascades, {}, {:.1f} kB each; {}\n", title, library->cascades(),
           format_bytes(double(library->bytes())),
@@ -71,7 +62,7 @@ Built build_one(const mc::CascadeSettings& settings, const std::string& title,
           pages.made == 0
               ? "all were there"
               : fmt::format("{} are new", pages.made * mc::CascadeLibrary::page_cascades));
-  return {library->bytes(), true};
+  return library->bytes();
 }
 
 int build(const LibraryOptions& options) {
@@ -90,11 +81,9 @@ int build(const LibraryOptions& options) {
     const std::string title =
         library_title(request.libraries[i].material.name,
                       request.parameters.energies_ev[i % request.parameters.energies_ev.size()]);
-    const Built built = build_one(
+    bytes += build_one(
         request.libraries[i], title, request, options.quiet,
-        [&](double done, double) { bar.show(before + done, total); }, interrupts.token(), bar);
-    if (!built.complete) return exit_interrupted;
-    bytes += built.bytes;
+        {[&](double done, double) { bar.show(before + done, total); }, interrupts.token()}, bar);
   }
   if (bytes > io::Cache::default_max_bytes)
     print_warning(fmt::format(

@@ -64,25 +64,24 @@ int plot(const LibraryOptions& options) {
   }
   io::check_plot_target(files.output);
 
-  std::optional<io::Plot> plot;
+  io::Plot plot;
   workflow::CachedLibraries libraries(parameters.cache);
   {
     InterruptGuard interrupts;
     ProgressBar bar(!options.quiet);
-    const auto cascades = static_cast<double>(o.cascades);
-    plot = workflow::plot_libraries(
-        o, libraries,
-        [&](double done, double total) { bar.show(done * cascades, total * cascades); },
-        interrupts.token());
+    const double cascades =
+        static_cast<double>(o.cascades * o.materials.size() * o.energies_ev.size());
+    o.watch = {[&](double done, double total) { bar.show(done * cascades, total * cascades); },
+               interrupts.token()};
+    plot = workflow::plot_libraries(o, libraries);
   }
   for (const std::string& note : libraries.take_notes()) print_warning(note);
-  if (!plot) return exit_interrupted;
   LibraryMaterials materials;
   options.bound.apply(materials);
-  plot->metadata =
+  plot.metadata =
       workflow::step_record("library plot", workflow::records_of(materials, parameters, o),
                             {files.measured.begin(), files.measured.end()});
-  io::write_plot(files.output, *plot);
+  io::write_plot(files.output, plot);
   if (!options.quiet) print("written    {}\n", files.output);
   return 0;
 }

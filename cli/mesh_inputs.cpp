@@ -103,9 +103,8 @@ class Treatment {
 
  private:
   TriangleMesh thinned(const HeightField& field) {
-    ThinSummary s;
-    TriangleMesh mesh = thin_height_field(
-        field, {work_.reduce.tolerance_nm / work_.scale, work_.reduce.triangles, watch_}, s);
+    auto [mesh, s] = thin_height_field(
+        field, {work_.reduce.tolerance_nm / work_.scale, work_.reduce.triangles, watch_});
     if (!work_.quiet)
       print("{:<10} {} triangles to {}, nowhere more than {} above or below (proven)\n", "simplify",
             s.triangles_before, s.triangles_after, format_length(s.deviation_nm * work_.scale));
@@ -113,7 +112,7 @@ class Treatment {
       print_warning(fmt::format(
           "--triangles: with {} of them the surface is {} off, more than --mesh-tolerance",
           s.triangles_after, format_length(s.deviation_nm * work_.scale)));
-    return mesh;
+    return std::move(mesh);
   }
 
   void whole_mesh() {
@@ -123,10 +122,10 @@ class Treatment {
     TriangleMesh& mesh = surface.mesh;
     if (work_.scale != 1) transform(mesh, work_.scale, {});
     if (work_.repair) {
-      RepairSummary summary;
       RepairOptions repair = *work_.repair;
       repair.watch = watch_;
-      mesh = repair_mesh(mesh, repair, summary);
+      auto [mended, summary] = repair_mesh(mesh, repair);
+      mesh = std::move(mended);
       if (!work_.quiet) {
         print_repair(summary);
         advise(summary);
@@ -136,10 +135,10 @@ class Treatment {
     if (work_.smooth.iterations > 0) mesh = smooth_mesh(mesh, work_.smooth);
     watch_.check();
     if (work_.reduces()) {
-      SimplifySummary summary;
       SimplifyOptions reduce = work_.reduce;
       reduce.watch = watch_;
-      mesh = simplify_mesh(mesh, reduce, summary);
+      auto [simple, summary] = simplify_mesh(mesh, reduce);
+      mesh = std::move(simple);
       if (!work_.quiet) print_simplified(summary);
       if (!summary.reached)
         print_warning(fmt::format(

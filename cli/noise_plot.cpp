@@ -14,7 +14,7 @@ constexpr int most_lags = 30;
 constexpr double farthest = 5;  // standard deviations
 
 io::PlotPanel autocovariances(const Grid<double>& residual_nm, const Grid<double>& white,
-                              const Grid<unsigned char>& samples, const AfmNoise& noise) {
+                              const Mask& samples, const AfmNoise& noise) {
   const int lags = std::min(most_lags, residual_nm.width() - 1);
   io::PlotSeries before{.name = "residual", .style = io::PlotStyle::points};
   io::PlotSeries model{.name = fmt::format("model, alpha {:.3f}", noise.alpha), .dashed = true};
@@ -36,8 +36,7 @@ io::PlotPanel autocovariances(const Grid<double>& residual_nm, const Grid<double
   return panel;
 }
 
-io::PlotPanel density(const Grid<double>& white, const Grid<unsigned char>& samples,
-                      const NoiseCheck& check) {
+io::PlotPanel density(const Grid<double>& white, const Mask& samples, const NoiseCheck& check) {
   const int bins =
       std::clamp(static_cast<int>(std::sqrt(static_cast<double>(check.samples)) / 3), 10, 100);
   io::PlotSeries found{.name = "whitened", .style = io::PlotStyle::bars}, normal{.name = "normal"};
@@ -65,9 +64,8 @@ io::PlotPanel density(const Grid<double>& white, const Grid<unsigned char>& samp
 
 }  // namespace
 
-io::Plot plot_noise(const Grid<double>& residual_nm, const Grid<double>& white,
-                    const Grid<unsigned char>& samples, const AfmNoise& noise,
-                    const NoiseCheck& check) {
+io::Plot plot_noise(const Grid<double>& residual_nm, const Grid<double>& white, const Mask& samples,
+                    const AfmNoise& noise, const NoiseCheck& check) {
   io::Plot plot;
   plot.panels = {autocovariances(residual_nm, white, samples, noise),
                  density(white, samples, check)};

@@ -65,10 +65,7 @@ io::WebImage read_scan_channel(const FileChannel& input, const GivenPitch& given
   const io::HeightFieldFile file = io::read_height_field(input.file, options);
   const HeightField& field = file.field;
   io::WebImage picture{input.file.filename().string(), {}};
-  picture.image.pitch_x_nm = field.pitch_x_nm;
-  picture.image.pitch_y_nm = field.pitch_y_nm;
-  picture.image.origin_x_nm = field.origin_x_nm;
-  picture.image.origin_y_nm = field.origin_y_nm;
+  picture.image.placement() = field.placement();
   picture.image.metadata = file.metadata;
   Channel channel{file.channel.empty() ? "values" : file.channel, unit,
                   Grid<float>(field.z_nm.width(), field.z_nm.height())};

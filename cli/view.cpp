@@ -141,22 +141,21 @@ int work(const Options& o) {
   ProgressBar bar(!o.quiet);
   const double steps = 2 * double(inputs.size() + scalars.size());  // reading, then writing
   double done = 0;
-  const auto goes_on = [&] {
+  const auto next = [&] {
     bar.show(done++, steps, "files");
-    return !interrupt.token()->cancelled();
+    reading.watch.check();
   };
-  constexpr int interrupted = 130;
   io::WebPage page;
   page.title = o.title.value_or(inputs.front().file.stem().string());
   for (const FileChannel& input : inputs) {
-    if (!goes_on()) return interrupted;
+    next();
     add_view_input(input, reading, page);
   }
   if ((drape || !scalars.empty()) && page.surfaces.empty())
     throw UsageError(drape ? "--drape" : "--scalar", "there is no surface to lay it on",
                      "Give a scan or a mesh");
   for (const FileChannel& scalar : scalars) {
-    if (!goes_on()) return interrupted;
+    next();
     add_scalar(scalar, reading, page);
   }
   if (drape) add_drape(*drape, reading, page);
@@ -172,10 +171,9 @@ int work(const Options& o) {
 
   const auto summary = io::write_web_page(
       *o.output, page,
-      [&](double part, double total) { bar.show(steps / 2 * (1 + part / total), steps, "files"); },
-      interrupt.token());
+      {[&](double part, double total) { bar.show(steps / 2 * (1 + part / total), steps, "files"); },
+       interrupt.token()});
   bar.clear();
-  if (summary.bytes == 0) return interrupted;
   if (!o.quiet) report(page, summary, *o.output);
   if (double(summary.bytes) > heavy_page_bytes)
     print_warning(fmt::format(

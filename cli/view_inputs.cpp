@@ -51,9 +51,9 @@ class Adder {
       surface.metadata["view.every"] = std::to_string(reading_.every);
     }
     if (reading_.mesh_tolerance_nm) {
-      ThinSummary summary;
-      surface.shape = thin_height_field(
-          field, {.tolerance_nm = *reading_.mesh_tolerance_nm, .watch = reading_.watch}, summary);
+      auto [sheet, summary] = thin_height_field(
+          field, {.tolerance_nm = *reading_.mesh_tolerance_nm, .watch = reading_.watch});
+      surface.shape = std::move(sheet);
       note(fmt::format("{} triangles instead of {}, nowhere more than {} off",
                        summary.triangles_after, summary.triangles_before,
                        format_length(summary.deviation_nm)));
@@ -94,8 +94,8 @@ class Adder {
         SimplifyOptions options;
         options.tolerance_nm = *reading_.mesh_tolerance_nm;
         options.watch = reading_.watch;
-        SimplifySummary summary;
-        body.mesh = simplify_mesh(merge_equal_vertices(body.mesh), options, summary);
+        auto [simple, summary] = simplify_mesh(merge_equal_vertices(body.mesh), options);
+        body.mesh = std::move(simple);
         note(fmt::format("{} triangles instead of {}, at most {} apart", summary.triangles_after,
                          summary.triangles_before, format_length(summary.deviation.largest_nm())));
         if (!body.scalars.empty())
@@ -120,10 +120,7 @@ class Adder {
     std::copy(drape.grey.data().begin(), drape.grey.data().end(), channel.values.data().begin());
     if (!page_.drape) page_.drape = {page_.images.size(), channel.name};
     picture.image.channels.push_back(std::move(channel));
-    picture.image.pitch_x_nm = drape.pitch_x_nm;
-    picture.image.pitch_y_nm = drape.pitch_y_nm;
-    picture.image.origin_x_nm = drape.origin_x_nm;
-    picture.image.origin_y_nm = drape.origin_y_nm;
+    picture.image.placement() = drape.placement();
     page_.images.push_back(std::move(picture));
   }
 
@@ -206,7 +203,7 @@ HeightField every_sample(const HeightField& field, int step) {
   some.origin_x_nm = field.origin_x_nm;
   some.origin_y_nm = field.origin_y_nm;
   some.z_nm = Grid<double>(width, height);
-  if (!field.valid.empty()) some.valid = Grid<unsigned char>(width, height);
+  if (!field.valid.empty()) some.valid = Mask(width, height);
   for (int y = 0; y < height; ++y) {
     for (int x = 0; x < width; ++x) {
       some.z_nm(x, y) = field.z_nm(x * step, y * step);

@@ -21,7 +21,7 @@ endfunction()
 
 function(semsurf_warnings target)
   target_compile_options(${target} PRIVATE -Wall -Wextra -Wshadow -Wnon-virtual-dtor
-                         -Wno-missing-field-initializers)
+                         -Wno-missing-field-initializers -Werror=narrowing)
   if(CMAKE_CXX_COMPILER_ID STREQUAL GNU AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
     # libstdc++ 12's strings draw these from themselves (GCC bugs 105329, 105651).
     target_compile_options(${target} PRIVATE -Wno-restrict -Wno-array-bounds -Wno-stringop-overflow

@@ -13,6 +13,7 @@ packages=(
   libeigen3-dev libceres-dev                                      # least squares, learning networks
   libsuitesparse-dev libopenblas-pthread-dev                      # factoring sparse matrices
   libfftw3-dev libnlopt-dev                                       # registering images
+  libhwy-dev                                                      # loops for each instruction set
   libopenimageio-dev openimageio-tools                            # images
   libtomlplusplus-dev nlohmann-json3-dev libssl-dev               # scene files, records, hashes
   libcli11-dev libfmt-dev                                         # command line, text

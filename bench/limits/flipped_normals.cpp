@@ -25,7 +25,7 @@ std::vector<double> at(double percent) {
     refused = 1;
   }
   RepairSummary repair;
-  repair_mesh(mesh, {}, repair);
+  repair = repair_mesh(mesh).summary;
   const auto share = [&](std::size_t n) {
     return 100 * static_cast<double>(n) / static_cast<double>(mesh.triangles.size());
   };

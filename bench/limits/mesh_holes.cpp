@@ -37,8 +37,7 @@ std::vector<double> at(double hole_deg) {
   } catch (const InvalidInput&) {
     refused = 1;
   }
-  RepairSummary repair;
-  const TriangleMesh closed = repair_mesh(open, {}, repair);
+  const auto [closed, repair] = repair_mesh(open);
   double mended = repair.sound() ? 1 : 0, off_mended = none, chance = none;
   if (repair.sound()) {
     const Apart a = apart(of_whole, image(closed));

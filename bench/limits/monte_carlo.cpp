@@ -17,9 +17,8 @@ class SharedLibraries : public mc::LibrarySource {
  public:
   std::shared_ptr<const mc::CascadeLibrary> library(const mc::CascadeSettings& settings,
                                                     std::size_t wanted, int threads,
-                                                    const ProgressCallback& progress,
-                                                    const CancelToken* cancel) override {
-    return kept_.library(settings, std::max(wanted, cascades), threads, progress, cancel);
+                                                    const Watch& watch) override {
+    return kept_.library(settings, std::max(wanted, cascades), threads, watch);
   }
 
  private:

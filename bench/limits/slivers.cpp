@@ -26,7 +26,7 @@ std::vector<double> at(double aspect) {
                                                    image(clean, mc::Method::replay)};
   const MeshReport report = check_mesh(mesh);
   RepairSummary repair;
-  repair_mesh(mesh, {}, repair);
+  repair = repair_mesh(mesh).summary;
   std::vector<double> row{0, static_cast<double>(report.degenerate_triangles),
                           static_cast<double>(repair.removed_degenerate)};
   try {

@@ -55,9 +55,8 @@ std::vector<double> at(double threshold_sigma) {
   TipError with, without;
   for (int k = 0; k < scans; ++k) {
     const double t = threshold_sigma * sigma_nm;
-    BlindTipSummary ignored;
-    const TipError a = error_of(blind_tip({scan(k)}, options(t, t), ignored), truth(), depth_nm);
-    const TipError b = error_of(blind_tip({scan(k)}, options(t, 0), ignored), truth(), depth_nm);
+    const TipError a = error_of(blind_tip({scan(k)}, options(t, t)).tip, truth(), depth_nm);
+    const TipError b = error_of(blind_tip({scan(k)}, options(t, 0)).tip, truth(), depth_nm);
     with.rms_nm += a.rms_nm / scans, with.mean_nm += a.mean_nm / scans;
     without.rms_nm += b.rms_nm / scans, without.mean_nm += b.mean_nm / scans;
   }

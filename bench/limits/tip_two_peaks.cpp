@@ -42,9 +42,8 @@ std::vector<double> at(double shorter_nm) {
   o.thresholds = 20;
   const TipSweep sweep = sweep_tips({scan}, o);
   const SweptTip& chosen = sweep.curve[sweep.chosen];
-  BlindTipSummary ignored;
   const double t = 3 * sigma_nm;
-  const Tip classical = blind_tip({scan}, options(t, 0), ignored);
+  const auto [classical, ignored] = blind_tip({scan}, options(t, 0));
   const int second = truth.apex_x + apart_px, mirrored = truth.apex_x - apart_px;
   const auto depth = [&](const Tip& tip, int x) { return -tip.z_nm(x, tip.apex_y); };
   return {error_of(chosen.tip, truth, depth_nm).rms_nm,

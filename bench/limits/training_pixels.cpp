@@ -18,7 +18,7 @@ std::vector<TrainingImage> thinned(double pixels) {
   std::vector<TrainingImage> images = gentle_training();
   std::vector<unsigned char*> all;
   for (TrainingImage& image : images) {
-    image.used = Grid<unsigned char>(image.field.z_nm.width(), image.field.z_nm.height(), 0);
+    image.used = Mask(image.field.z_nm.width(), image.field.z_nm.height(), 0);
     for (unsigned char& used : image.used.data()) all.push_back(&used);
   }
   RandomStream random(5, 0, 0);

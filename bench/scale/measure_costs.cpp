@@ -205,8 +205,7 @@ limits::Table measure_costs(const fs::path& folder, bool quick) {
                                          1000 + io::find_material("Si", "bench").barrier_ev,
                                          1};
       mc::SimulationOptions options;
-      const auto library =
-          libraries.library(settings, mc::library_size(options, electrons), 1, {}, nullptr);
+      const auto library = libraries.library(settings, mc::library_size(options, electrons), 1, {});
       row[10] = static_cast<double>(library->bytes());
       row[11] = static_cast<double>(library->pages());
     }

@@ -25,8 +25,8 @@ FlatYields flat_yields(const Material& material, double energy_ev, std::int64_t 
   options.budget = ElectronsPerPixel{(electrons + pixels * pixels - 1) / (pixels * pixels)};
   options.tile_pixels = 1;
   options.threads = threads;
-  const SimulationResult result = simulate(Scene(specimen, beam, scan, physics), options,
-                                           {.progress = watch.progress, .cancel = watch.cancel});
+  const SimulationResult result =
+      simulate(Scene(specimen, beam, scan, physics), options, {.watch = watch});
   if (!result.complete) throw Interrupted();
   const auto yield = [&](std::size_t detector) {
     Counts sum;

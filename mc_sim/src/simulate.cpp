@@ -44,15 +44,13 @@ class Collector {
 // Hands units out, and merges them as they are finished. For use from many threads.
 class Merging {
  public:
-  Merging(const UnitPlan& plan, Collector& collector, const ProgressCallback& progress,
-          UnitJournal* journal, const CancelToken* cancel)
-      : plan_(plan), collector_(collector), progress_(progress), journal_(journal),
-        cancel_(cancel) {}
+  Merging(const UnitPlan& plan, Collector& collector, UnitJournal* journal, const Watch& watch)
+      : plan_(plan), collector_(collector), journal_(journal), watch_(watch) {}
 
   /// The next unit that the journal does not know.
   std::optional<std::size_t> take() {
     const std::lock_guard lock(mutex_);
-    while (next_ < plan_.units() && !(cancel_ && cancel_->cancelled()))
+    while (next_ < plan_.units() && !watch_.cancelled())
       if (const std::size_t number = next_++; !recall(number)) return number;
     return std::nullopt;
   }
@@ -60,7 +58,7 @@ class Merging {
   void finish(std::size_t number, const UnitTally& tally) {
     const std::lock_guard lock(mutex_);
     add(number, tally);
-    if (progress_) progress_(done_, plan_.total());
+    if (watch_.progress) watch_.progress(done_, plan_.total());
     if (journal_) journal_->record(number, tally);
   }
 
@@ -84,9 +82,8 @@ class Merging {
 
   const UnitPlan& plan_;
   Collector& collector_;
-  const ProgressCallback& progress_;
   UnitJournal* journal_;
-  const CancelToken* cancel_;
+  const Watch& watch_;
   std::mutex mutex_;
   std::size_t next_ = 0;
   double done_ = 0;
@@ -160,7 +157,7 @@ SimulationResult simulate(const Scene& scene, const SimulationOptions& options,
                           const SimulationContext& context) {
   check_options(options);
   context.check(options, scene);
-  const auto& [progress, cancel, observers, journal, libraries, given] = context;
+  const auto& [watch, observers, journal, libraries, given] = context;
   ThreadScheduler own_threads;
   UnitScheduler& scheduler = given ? *given : own_threads;
   auto begin = std::chrono::steady_clock::now();
@@ -175,14 +172,15 @@ SimulationResult simulate(const Scene& scene, const SimulationOptions& options,
   std::exception_ptr trouble;
   bool ready = false;
   try {
-    ready = prepared.prepare(scene, options, libraries, plan.most(), {}, cancel);
+    prepared.prepare(scene, options, libraries, plan.most(), {{}, watch.cancel});
+    ready = true;
     collector.emplace(collected, options);
   } catch (const Interrupted&) {
     ready = false;
   } catch (...) {
     trouble = std::current_exception();
   }
-  if (!ready || trouble) scheduler.abandon(trouble, cancel);
+  if (!ready || trouble) scheduler.abandon(trouble, watch.cancel);
   if (trouble) std::rethrow_exception(trouble);
   if (!collector) collector.emplace(collected, options);
   SimulationResult& result = collector->result;
@@ -195,14 +193,14 @@ SimulationResult simulate(const Scene& scene, const SimulationOptions& options,
   result.library_seconds = seconds();
   begin = std::chrono::steady_clock::now();
   const int threads = resolve_threads(options.threads);
-  Merging merging(plan, *collector, progress, journal, cancel);
-  Workers workers(prepared, threads, observers, cancel);
+  Merging merging(plan, *collector, journal, watch);
+  Workers workers(prepared, threads, observers, watch.cancel);
   scheduler.run({threads, [&] { return merging.take(); },
                  [&](std::size_t number, int thread, UnitTally& tally) {
                    return workers.simulate(plan.unit(number), thread, tally);
                  },
                  [&](std::size_t number, const UnitTally& tally) { merging.finish(number, tally); },
-                 cancel});
+                 watch.cancel});
   result.complete = merging.complete() || !scheduler.collects();
   result.seconds = seconds();
   return std::move(result);

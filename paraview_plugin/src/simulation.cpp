@@ -149,13 +149,13 @@ workflow::Simulator sharing(Exchange& exchange, int rank, int count) {
     mc::SimulationContext own = context;
     own.journal = &share;
     mc::simulate(scene, options, own);
-    if (context.cancel && context.cancel->cancelled()) throw Interrupted();
+    context.watch.check();
     exchange.tell([&] { exchange.own = std::move(share.bytes); });
     exchange.await([&] { return exchange.all || exchange.given_up; });
     if (exchange.given_up) throw Interrupted();
     AllRanks journal(*exchange.all);
     mc::SimulationContext whole = context;
-    whole.progress = {};
+    whole.watch.progress = {};
     whole.journal = &journal;
     return mc::simulate(scene, options, whole);
   };

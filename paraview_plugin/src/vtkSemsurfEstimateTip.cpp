@@ -96,7 +96,7 @@ int vtkSemsurfEstimateTip::RequestInformation(vtkInformation*, vtkInformationVec
     inputs[0]->GetInformationObject(0)->Get(vtkDataObject::SPACING(), pitch);
     const int samples = std::max(size, 2), apex = size / 2;
     pv::announce(outputs->GetInformationObject(0),
-                 {samples, samples, pitch[0], pitch[1], -apex * pitch[0], -apex * pitch[1]});
+                 {{pitch[0], pitch[1], -apex * pitch[0], -apex * pitch[1]}, samples, samples});
     pv::announce_pieces(outputs->GetInformationObject(1));
   });
 }

@@ -90,8 +90,8 @@ int vtkSemsurfRepairMesh::RequestData(vtkInformation*, vtkInformationVector** in
     this->Values->apply(options);
     vtkPolyData* const input = pv::surface_input(inputs, 0);
     const TriangleMesh mesh = pv::to_mesh(input, "Input");
-    TriangleMesh mended;
-    RepairSummary summary;
+    RepairedMesh mended;
+    RepairSummary& summary = mended.summary;
     pv::work(this, [&](const Watch& watch) {
       if (!this->Repair) {
         summary.before = summary.after = check_mesh(mesh, watch.part(0, 0.3));
@@ -100,12 +100,13 @@ int vtkSemsurfRepairMesh::RequestData(vtkInformation*, vtkInformationVector** in
         return;
       }
       options.watch = watch;
-      mended = repair_mesh(mesh, options, summary);
+      mended = repair_mesh(mesh, options);
     });
     vtkNew<vtkTable> table;
     add_report(table, summary);
     // Unchanged, it keeps what lies on it.
-    if (summary.changed) pv::give(outputs->GetInformationObject(0), pv::to_vtk(std::move(mended)));
+    if (summary.changed)
+      pv::give(outputs->GetInformationObject(0), pv::to_vtk(std::move(mended.mesh)));
     else pv::give(outputs->GetInformationObject(0), input);
     if (this->Repair) pv::add_record(table, "mesh", record_of(options));
     pv::give(outputs->GetInformationObject(1), table);

@@ -36,12 +36,10 @@ int samples_along(double length_nm, double pitch_nm, const char* property) {
 pv::Frame frame_of(const FieldExtent& extent) {
   const int width = samples_along(extent.width_nm, extent.pitch_nm, "Width");
   const int height = samples_along(extent.depth_nm, extent.pitch_nm, "Depth");
-  return {width,
-          height,
-          extent.pitch_nm,
-          extent.pitch_nm,
-          -0.5 * (width - 1) * extent.pitch_nm,
-          -0.5 * (height - 1) * extent.pitch_nm};
+  return {{extent.pitch_nm, extent.pitch_nm, -0.5 * (width - 1) * extent.pitch_nm,
+           -0.5 * (height - 1) * extent.pitch_nm},
+          width,
+          height};
 }
 
 }  // namespace

@@ -58,17 +58,17 @@ int vtkSemsurfSimplifyMesh::RequestData(vtkInformation*, vtkInformationVector** 
     constexpr double share = 1e-3;  // of the diagonal: no difference to be seen
     if (this->Limit != ByTriangles && options.tolerance_nm == 0)
       options.tolerance_nm = share * length(bounds(mesh).size_nm());
-    SimplifySummary summary;
-    TriangleMesh simple;
+    SimplifiedMesh simple;
     pv::work(this, [&](const Watch& watch) {
       options.watch = watch;
-      simple = simplify_mesh(mesh, options, summary);
+      simple = simplify_mesh(mesh, options);
     });
+    const SimplifySummary& summary = simple.summary;
     if (!summary.reached)
       pv::warn(this,
                fmt::format("Triangles: {} are left; fewer would {}", summary.triangles_after,
                            options.tolerance_nm > 0 ? "exceed Mesh Tolerance" : "turn faces over"));
-    const auto data = pv::to_vtk(std::move(simple));
+    const auto data = pv::to_vtk(std::move(simple.mesh));
     pv::add_texts(data, {{"deviation_nm", fmt::format("{:.9g}", summary.deviation.largest_nm())}});
     pv::add_record(data, "mesh", record_of(options));
     pv::give(output, data);

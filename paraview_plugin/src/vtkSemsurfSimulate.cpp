@@ -52,12 +52,10 @@ using Pipeline = vtkStreamingDemandDrivenPipeline;
 constexpr double first_wait_s = 0.7, next_wait_s = 0.2;  // of live updates, for something to show
 
 pv::Frame frame_of(const mc::Scan& s) {
-  return {s.width,
-          s.height,
-          s.pixel_x_nm,
-          s.pixel_y_nm,
-          s.center_x_nm - 0.5 * (s.width - 1) * s.pixel_x_nm,
-          s.center_y_nm - 0.5 * (s.height - 1) * s.pixel_y_nm};
+  return {{s.pixel_x_nm, s.pixel_y_nm, s.center_x_nm - 0.5 * (s.width - 1) * s.pixel_x_nm,
+           s.center_y_nm - 0.5 * (s.height - 1) * s.pixel_y_nm},
+          s.width,
+          s.height};
 }
 
 /// A row for each detector, then where all electrons went.

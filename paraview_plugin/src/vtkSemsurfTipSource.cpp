@@ -45,7 +45,7 @@ int vtkSemsurfTipSource::RequestInformation(vtkInformation*, vtkInformationVecto
     const int samples = this->Parameters().size;
     const double corner = -(samples / 2) * this->Pitch;
     pv::announce(outputs->GetInformationObject(0),
-                 {samples, samples, this->Pitch, this->Pitch, corner, corner});
+                 {{this->Pitch, this->Pitch, corner, corner}, samples, samples});
   });
 }
 

@@ -65,7 +65,7 @@ int vtkSemsurfToHeightField::RequestInformation(vtkInformation*, vtkInformationV
       return static_cast<int>(std::round(length / pitch)) + 1;
     };
     pv::announce(outputs->GetInformationObject(0),
-                 {samples(b[1] - b[0]), samples(b[3] - b[2]), pitch, pitch, b[0], b[2]});
+                 {{pitch, pitch, b[0], b[2]}, samples(b[1] - b[0]), samples(b[3] - b[2])});
   });
 }
 

@@ -55,16 +55,17 @@ int vtkSemsurfToSurface::RequestData(vtkInformation*, vtkInformationVector** inp
     vtkImageData* const image = pv::image_input(inputs, 0, "Input");
     const HeightField field = pv::to_height_field(image, pv::chosen_array(this, 0, image), "Input");
     Surface surface;
-    ThinSummary summary;
+    ThinSheet thin;
     pv::work(this, [&](const Watch& watch) {
-      surface.mesh =
-          this->Simplify
-              ? thin_height_field(field,
-                                  {.tolerance_nm = this->Tolerance,
-                                   .triangles = static_cast<std::size_t>(this->MaximumTriangles),
-                                   .watch = watch.part(0, 0.8)},
-                                  summary)
-              : height_field_sheet(field);
+      if (this->Simplify) {
+        thin =
+            thin_height_field(field, {.tolerance_nm = this->Tolerance,
+                                      .triangles = static_cast<std::size_t>(this->MaximumTriangles),
+                                      .watch = watch.part(0, 0.8)});
+        surface.mesh = std::move(thin.mesh);
+      } else {
+        surface.mesh = height_field_sheet(field);
+      }
       // Thinning takes most of the time, where there is any.
       const double curvature_from = this->Simplify ? 0.8 : 0.1;
       watch.report(curvature_from, 1);
@@ -90,10 +91,10 @@ int vtkSemsurfToSurface::RequestData(vtkInformation*, vtkInformationVector** inp
       curvature.values.resize(surface.mesh.vertices_nm.size(), 0);  // the walls' feet
       surface.scalars.push_back(std::move(curvature));
     });
-    if (!summary.reached)
+    if (!thin.summary.reached)
       pv::warn(this,
                fmt::format("with {} triangles the surface is {:.4g} nm off, more than Tolerance",
-                           summary.triangles_after, summary.deviation_nm));
+                           thin.summary.triangles_after, thin.summary.deviation_nm));
     pv::give(output, pv::to_vtk(std::move(surface)));
   });
 }

@@ -25,7 +25,7 @@ Surface letter(const char* name, double shift_nm) {
     surface.scalars[0].values.push_back(static_cast<float>(v.z));
     surface.scalars[1].values.push_back(static_cast<float>(v.y / 250));
   }
-  surface.drape = Drape{"SE", Grid<std::uint8_t>(30, 25, 90), 10, 10, shift_nm + 5, 5};
+  surface.drape = Drape{{10, 10, shift_nm + 5, 5}, "SE", Grid<std::uint8_t>(30, 25, 90)};
   for (int x = 0; x < 30; ++x) surface.drape->grey(x, 20) = 255;
   return surface;
 }

@@ -57,7 +57,7 @@ TEST(AfmPreparation, TakesWhatIsGiven) {
 
 /// Two narrow walls that cross, which tell their tip.
 HeightField walls(double radius_nm) {
-  HeightField f{Grid<double>(70, 60), {}, pitch, pitch};
+  HeightField f{{pitch, pitch}, Grid<double>(70, 60)};
   for (int y = 0; y < 60; ++y)
     for (int x = 0; x < 70; ++x)
       f.z_nm(x, y) = std::abs(x - 25) < 2 || std::abs(y - 35) < 2 ? 40 : 0;

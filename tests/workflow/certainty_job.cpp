@@ -12,7 +12,7 @@ namespace surf::workflow {
 namespace {
 
 HeightField scan() {
-  HeightField f{Grid<double>(40, 30), {}, 2, 2};
+  HeightField f{{2, 2}, Grid<double>(40, 30)};
   f.z_nm = simulate_noise({0, 1}, 40, 30, 1);
   return f;
 }

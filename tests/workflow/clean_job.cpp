@@ -11,7 +11,7 @@ namespace surf::workflow {
 namespace {
 
 HeightField scan() {
-  HeightField f{Grid<double>(30, 20), {}, 2, 2};
+  HeightField f{{2, 2}, Grid<double>(30, 20)};
   f.z_nm = simulate_noise({0, 0.01}, 30, 20, 1);
   f.z_nm(10, 10) = 50;
   return f;

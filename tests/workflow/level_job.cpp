@@ -17,7 +17,7 @@ using testing::HasSubstr;
 
 /// A block on a tilted plane; row 7 is shifted.
 HeightField scan(double noise_nm2 = 1e-4) {
-  HeightField f{Grid<double>(60, 50), {}, 2, 2};
+  HeightField f{{2, 2}, Grid<double>(60, 50)};
   const Grid<double> noise = simulate_noise({0, noise_nm2}, 60, 50, 3);
   for (int y = 0; y < 50; ++y)
     for (int x = 0; x < 60; ++x)
@@ -42,7 +42,7 @@ TEST(LevelJob, TakesStepsBetweenRowsOff) {
   LevelParameters p;
   p.method = LevelMethod::plane;
   p.rows = RowMethod::median;
-  Grid<unsigned char> left(60, 50);  // without the block
+  Mask left(60, 50);  // without the block
   for (int y = 0; y < 50; ++y)
     for (int x = 0; x < 20; ++x) left(x, y) = 1;
   const LevelResult r = level(scan(), p, left);
@@ -65,7 +65,7 @@ TEST(LevelJob, OtherMethodsMarkNoSubstrate) {
 }
 
 TEST(LevelJob, SaysWhatMayBeWrongByTheNamesOfFields) {
-  HeightField rough{Grid<double>(60, 50), {}, 2, 2};
+  HeightField rough{{2, 2}, Grid<double>(60, 50)};
   rough.z_nm = simulate_noise({0, 100}, 60, 50, 5);
   for (int y = 0; y < 50; ++y)
     for (int x = 0; x < 60; ++x) rough.z_nm(x, y) += x < 30 ? 0 : 100 + 3 * (x - 30);

@@ -37,7 +37,7 @@ CascadeSettings quick() {
 
 std::shared_ptr<const CascadeLibrary> get(CachedLibraries& libraries, const CascadeSettings& s,
                                           std::size_t cascades, int threads = 1) {
-  return libraries.library(s, cascades, threads, {}, nullptr);
+  return libraries.library(s, cascades, threads, {});
 }
 
 std::vector<std::uint64_t> words(const CascadeLibrary& library) {
@@ -201,10 +201,10 @@ TEST_F(LibrariesTest, TellHowFarTheyAreAndCanBeCancelled) {
     last = done;
     if (done > page_size) cancel.cancel();
   };
-  EXPECT_EQ(libraries.library(quick(), 3 * page_size - 5, 1, watch, &cancel), nullptr);
+  EXPECT_THROW(libraries.library(quick(), 3 * page_size - 5, 1, {watch, &cancel}), Interrupted);
   EXPECT_EQ(libraries.pages().made, 1u) << "whole pages are kept";
-  const auto library = libraries.library(
-      quick(), 3 * page_size - 5, 1, [&](double done, double) { last = done; }, nullptr);
+  const auto library =
+      libraries.library(quick(), 3 * page_size - 5, 1, {[&](double done, double) { last = done; }});
   EXPECT_EQ(last, 3.0 * page_size - 5);
   EXPECT_EQ(words(*library), fresh(quick(), 3 * page_size));
 }

@@ -29,7 +29,7 @@ LibraryPlotOptions options_of(std::vector<double> energies_ev) {
 
 io::Plot plot_of(const LibraryPlotOptions& options) {
   CachedLibraries libraries({});
-  return *plot_libraries(options, libraries);
+  return plot_libraries(options, libraries);
 }
 
 TEST(LibraryPlot, ShowsYieldsAgainstTheTilt) {
@@ -62,11 +62,12 @@ TEST(LibraryPlot, ShowsRangesAndYieldsAgainstTheEnergy) {
   options.measured = {{"Si", 200, 0.8, false}, {"Si", 5000, 0.9, false}};
   double last = 0;
   CachedLibraries libraries({});
-  const io::Plot plot = *plot_libraries(options, libraries, [&](double done, double total) {
+  options.watch.progress = [&](double done, double total) {
     EXPECT_LE(last, done);
     EXPECT_LE(done, total);
     last = done;
-  });
+  };
+  const io::Plot plot = plot_libraries(options, libraries);
   EXPECT_GT(last, 0);
   ASSERT_THAT(plot.panels, SizeIs(5));
   const auto& ranges = plot.panels[2].series;
@@ -123,7 +124,9 @@ TEST(LibraryPlot, CanBeCancelled) {
   CachedLibraries libraries({});
   CancelToken cancel;
   cancel.cancel();
-  EXPECT_FALSE(plot_libraries(options_of({500}), libraries, {}, &cancel));
+  LibraryPlotOptions options = options_of({500});
+  options.watch.cancel = &cancel;
+  EXPECT_THROW(plot_libraries(options, libraries), Interrupted);
 }
 
 }  // namespace

@@ -12,7 +12,7 @@ namespace surf::workflow {
 namespace {
 
 HeightField scan() {
-  HeightField f{Grid<double>(30, 20), {}, 2, 2};
+  HeightField f{{2, 2}, Grid<double>(30, 20)};
   f.z_nm = simulate_noise({0, 1}, 30, 20, 1);
   return f;
 }

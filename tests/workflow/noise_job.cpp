@@ -10,7 +10,7 @@ namespace surf::workflow {
 namespace {
 
 TEST(NoiseJob, FindsTheModelOfAFlatScan) {
-  HeightField f{Grid<double>(100, 80), {}, 2, 2};
+  HeightField f{{2, 2}, Grid<double>(100, 80)};
   f.z_nm = simulate_noise({0.6, 0.02}, 100, 80, 2);
   ScanNoiseParameters p;
   p.flat = true;
@@ -23,7 +23,7 @@ TEST(NoiseJob, FindsTheModelOfAFlatScan) {
 }
 
 TEST(NoiseJob, SaysWhereThereIsNone) {
-  HeightField f{Grid<double>(40, 30, 1.0), {}, 2, 2};
+  HeightField f{{2, 2}, Grid<double>(40, 30, 1.0)};
   ScanNoiseParameters p;
   p.flat = true;
   test::Heard heard;
@@ -32,7 +32,7 @@ TEST(NoiseJob, SaysWhereThereIsNone) {
 }
 
 TEST(NoiseJob, SaysWhereThereMayBeNoSubstrate) {
-  HeightField rough{Grid<double>(60, 50), {}, 2, 2};
+  HeightField rough{{2, 2}, Grid<double>(60, 50)};
   rough.z_nm = simulate_noise({0.9, 100}, 60, 50, 5);
   for (int y = 0; y < 50; ++y)
     for (int x = 0; x < 60; ++x) rough.z_nm(x, y) += x < 30 ? 0 : 400;
@@ -40,8 +40,9 @@ TEST(NoiseJob, SaysWhereThereMayBeNoSubstrate) {
   const ScanNoise noise = noise_of_scan(rough, {}, {}, heard.reporter());
   ASSERT_TRUE(noise.plane);
   EXPECT_EQ(heard.warnings.size(), noise.plane->verdict == HoughVerdict::clear ? 0u : 1u);
-  if (!heard.warnings.empty())
+  if (!heard.warnings.empty()) {
     EXPECT_THAT(heard.warnings[0], testing::HasSubstr("`scan.use` or `scan.exclude`"));
+  }
 }
 
 }  // namespace

@@ -330,7 +330,7 @@ TEST(ReconstructionCheckpoint, AStateComesBackToTheLastBit) {
   ReconstructionState state;
   state.surface.z_nm = Grid<double>(3, 2);
   state.surface.z_nm.data() = {1.0 / 3, -0.0, 5e-324, 1e300, 2, 3};
-  state.surface.valid = Grid<unsigned char>(3, 2, 1);
+  state.surface.valid = Mask(3, 2, 1);
   state.surface.pitch_x_nm = 0.1;
   state.sem_to_afm = {1, 2, 3, 4, 5, 6};
   state.gains = {0.1, 0.2};
@@ -449,7 +449,7 @@ TEST(SemFrame, HolesTakeTheHeightOfTheirNeighbours) {
   HeightField field;
   field.z_nm = Grid<double>(3, 2);
   field.z_nm.data() = {1, 99, 3, 1, 99, 3};
-  field.valid = Grid<unsigned char>(3, 2);
+  field.valid = Mask(3, 2);
   field.valid.data() = {1, 0, 1, 1, 0, 1};
   const HeightField whole = with_holes_filled(field);
   EXPECT_THAT(whole.z_nm.data(), ElementsAre(1, 2, 3, 1, 2, 3));

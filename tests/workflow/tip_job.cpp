@@ -17,7 +17,7 @@ using testing::HasSubstr;
 
 /// Two narrow walls that cross, seen by a cone.
 HeightField walls() {
-  HeightField f{Grid<double>(60, 50), {}, 5, 5};
+  HeightField f{{5, 5}, Grid<double>(60, 50)};
   for (int y = 0; y < 50; ++y)
     for (int x = 0; x < 60; ++x)
       f.z_nm(x, y) = std::abs(x - 20) < 2 || std::abs(y - 30) < 2 ? 40 : 0;

@@ -209,7 +209,7 @@ TEST_F(TrainJobTest, RefusesWhatCannotBeLearntBeforeTimeIsSpent) {
   });
   expect(".json", [](TrainJob& j) { j.output = "model.txt"; });
   expect("missing samples", [](TrainJob& j) {
-    j.inputs[0].field.valid = Grid<unsigned char>(16, 16, 1);
+    j.inputs[0].field.valid = Mask(16, 16, 1);
     j.inputs[0].field.valid(3, 3) = 0;
   });
   EXPECT_FALSE(fs::exists(path("si.training")));

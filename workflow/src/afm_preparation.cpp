@@ -106,9 +106,8 @@ TipSweep swept(const HeightField& image, const AfmNoise& noise, int size,
   sweep.blind = blind_options(size, o.threads);
   sweep.noise = noise;
   sweep.seed = o.seed;
-  TipSweep found = sweep_tips({image}, sweep, watch.progress, watch.cancel);
-  if (found.verdict == TipSweepVerdict::cancelled) throw Interrupted();
-  return found;
+  sweep.watch = watch;
+  return sweep_tips({image}, sweep);
 }
 
 void find_free_tip(PreparedAfm& prepared, const AfmPreparationOptions& o, const Watch& watch) {
@@ -162,7 +161,7 @@ void find_round_tip(PreparedAfm& prepared, const AfmPreparationOptions& o, const
   prepared.tip_round = true;
   const double noise = told_deviations * std::sqrt(prepared.noise.variance_nm2());
   if (std::ranges::none_of(told, [&](const auto& profile) { return profile.back() < -noise; })) {
-    prepared.tip = {Grid<double>(1, 1), image.pitch_x_nm, image.pitch_y_nm, 0, 0};
+    prepared.tip = {image.pitch(), Grid<double>(1, 1), 0, 0};
     prepared.warnings.push_back(
         "the scan tells nothing of its tip, which is taken as sharp, so that the scan is the "
         "surface. "
@@ -180,8 +179,7 @@ Tip meeting(const Tip& tip, PreparedAfm& prepared) {
   Reporter reporter = keeping(prepared, {});
   reporter.on_note = nullptr;  // of a pitch that differs
   Tip met = tip_for(tip, prepared.image, "tip", reporter);
-  met.pitch_x_nm = prepared.image.pitch_x_nm,
-  met.pitch_y_nm = prepared.image.pitch_y_nm;  // but for what a file's text rounds
+  met.pitch() = prepared.image.pitch();  // but for what a file's text rounds
   return met;
 }
 

@@ -57,8 +57,7 @@ PlacedImage simulated_view(const HeightField& surface, const ImageModel& model, 
     for (std::size_t i = 0; i < view.values.size(); ++i)
       view.values.data()[i] += images[c].data()[i];
   view.valid = fine.valid;
-  view.pitch_x_nm = fine.pitch_x_nm, view.pitch_y_nm = fine.pitch_y_nm;
-  view.origin_x_nm = fine.origin_x_nm, view.origin_y_nm = fine.origin_y_nm;
+  view.placement() = fine.placement();
   return view;
 }
 

@@ -92,16 +92,14 @@ CleanResult clean(const HeightField& scan, const CleanParameters& p, const Repor
   };
   const auto neighbourhood = p.disc ? Neighbourhood::disc : Neighbourhood::square;
   const auto median = [&](int width, double limit_nm) {
-    CleanSummary summary;
-    result.field = median_filter(result.field,
-                                 {.radius = width / 2,
-                                  .neighbourhood = neighbourhood,
-                                  .limit_nm = limit_nm,
-                                  .fill_holes = p.fill_holes,
-                                  .threads = p.threads,
-                                  .watch = next()},
-                                 summary);
-    return summary;
+    Cleaned cleaned = median_filter(result.field, {.radius = width / 2,
+                                                   .neighbourhood = neighbourhood,
+                                                   .limit_nm = limit_nm,
+                                                   .fill_holes = p.fill_holes,
+                                                   .threads = p.threads,
+                                                   .watch = next()});
+    result.field = std::move(cleaned.field);
+    return cleaned.summary;
   };
   if (p.spikes) {
     const double limit_nm = p.spikes->limit_nm.value_or(spike_sigmas * pixel_noise_nm(scan));
@@ -116,11 +114,11 @@ CleanResult clean(const HeightField& scan, const CleanParameters& p, const Repor
   }
   if (p.median) result.median = median(*p.median, 0);
   if (p.closing) {
-    result.closing.emplace();
-    result.field = flat_closing(
+    Cleaned closed = flat_closing(
         result.field,
-        {.width = *p.closing, .fill_holes = p.fill_holes, .threads = p.threads, .watch = next()},
-        *result.closing);
+        {.width = *p.closing, .fill_holes = p.fill_holes, .threads = p.threads, .watch = next()});
+    result.field = std::move(closed.field);
+    result.closing = closed.summary;
   }
   return result;
 }

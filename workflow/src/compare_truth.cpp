@@ -22,7 +22,7 @@ struct Differences {
 
 Differences differences(const HeightField& surface, const HeightField& truth) {
   Differences d{surface, 0, 0, 0};
-  d.less.valid = Grid<unsigned char>(surface.z_nm.width(), surface.z_nm.height());
+  d.less.valid = Mask(surface.z_nm.width(), surface.z_nm.height());
   double sum = 0, squared = 0;
   for (int y = 0; y < surface.z_nm.height(); ++y)
     for (int x = 0; x < surface.z_nm.width(); ++x) {
@@ -56,8 +56,7 @@ double rms_of(const HeightField& field) {
 HeightField truth_on(const HeightField& surface, const HeightField& truth) {
   PlacedImage place;
   place.values = surface.z_nm;
-  place.pitch_x_nm = surface.pitch_x_nm, place.pitch_y_nm = surface.pitch_y_nm;
-  place.origin_x_nm = surface.origin_x_nm, place.origin_y_nm = surface.origin_y_nm;
+  place.placement() = surface.placement();
   SurfaceUnderSem under = surface_under_sem(truth, place, Affine{});
   under.surface.valid = under.known;
   return under.surface;

@@ -116,9 +116,9 @@ CountSummary run(const CountJob& job, const Reporter& reporter) {
     options.seed = job.seed + 0x9e3779b97f4a7c15u * i;  // sets are draws of their own
     const mc::SimulationResult result = mc::simulate(
         scene, options,
-        {.progress = [&](double done,
-                         double) { reporter.progress(before + done, total, "primaries"); },
-         .cancel = reporter.cancel});
+        {.watch = {
+             [&](double done, double) { reporter.progress(before + done, total, "primaries"); },
+             reporter.cancel}});
     if (!result.complete) throw Interrupted();
     before += static_cast<double>(job.trials) * static_cast<double>(job.electrons[i]);
     for (std::size_t k = 0; k < result.detectors.size(); ++k) {

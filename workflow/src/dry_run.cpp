@@ -75,9 +75,8 @@ DryRun dry_run(SimulateJob asked, int ranks, double seconds, const Reporter& rep
       mc::choose_method(scene, job.options, job.scene.method, {job.extras.deposit_cells > 0});
   job.options.method = out.choice.method;
   JobLibraries libraries(job.cache, reporter.counting("cascades"), reporter.on_note);
-  out.pilot = mc::run_pilot(scene, job.options, seconds, &libraries, reporter.counting("primaries"),
-                            cancel);
-  if (!out.pilot.complete) throw Interrupted();
+  out.pilot = mc::run_pilot(scene, job.options, seconds, &libraries,
+                            {reporter.counting("primaries"), cancel});
   out.threads = resolve_threads(job.options.threads);
   out.ranks = ranks;
   out.expected_s = job.seconds() > 0 ? job.seconds() : out.pilot.expected_s / ranks;

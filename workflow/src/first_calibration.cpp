@@ -54,7 +54,7 @@ Grid<double> mean_of(const ModelImages& predicted, const std::vector<double>& ga
   return mean;
 }
 
-double variance_of(const Grid<double>& values, const Grid<unsigned char>& used) {
+double variance_of(const Grid<double>& values, const Mask& used) {
   double sum = 0, squared = 0, count = 0;
   for (std::size_t i = 0; i < values.size(); ++i)
     if (used.data()[i])
@@ -137,8 +137,7 @@ std::int64_t leave_out_saturated(PlacedImage& image) {
     if (e.next == 0 || static_cast<double>(e.count) <= share ||
         static_cast<double>(e.count) <= telling_step * double(e.next))
       continue;
-    if (image.valid.empty())
-      image.valid = Grid<unsigned char>(image.values.width(), image.values.height(), 1);
+    if (image.valid.empty()) image.valid = Mask(image.values.width(), image.values.height(), 1);
     for (std::size_t i = 0; i < image.values.size(); ++i)
       if (image.valid.data()[i] && image.values.data()[i] == e.value) {
         image.valid.data()[i] = 0;
@@ -161,8 +160,7 @@ FirstCalibration calibrate_first(const PlacedImage& sem, const HeightField* erod
         "Give one for each of the model's channels, 0 for those that the image has nothing of");
   CalibrationImages images;
   images.real = sem.values;
-  images.used = sem.valid.empty() ? Grid<unsigned char>(sem.values.width(), sem.values.height(), 1)
-                                  : sem.valid;
+  images.used = sem.valid.empty() ? Mask(sem.values.width(), sem.values.height(), 1) : sem.valid;
   if (!(variance_of(images.real, images.used) > 0))
     throw InvalidInput("SEM image", "all its pixels that count have one value",
                        "Give an image that shows something, and is not saturated");

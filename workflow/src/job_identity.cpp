@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "surf/core/error.h"
+#include "surf/core/instruction_set.h"
 #include "surf/io/files.h"
 #include "surf/mc/geometry/scene.h"
 #include "surf/workflow/version.h"
@@ -54,18 +55,6 @@ const std::string& program() {
 
 const std::string& program_hash() { return program(); }
 
-std::string instruction_set() {
-#if defined(__x86_64__)
-  if (__builtin_cpu_supports("avx512f")) return "x86-64 with AVX-512";
-  if (__builtin_cpu_supports("avx2")) return "x86-64 with AVX2";
-  return "x86-64";
-#elif defined(__aarch64__)
-  return "AArch64";
-#else
-  return "unknown";
-#endif
-}
-
 namespace {
 
 std::string shown(const Identity& identity, const std::string& key) {
@@ -83,7 +72,7 @@ Identity identity_of(const ResolvedJob& job, const std::map<std::string, std::st
   identity["spectra"] = job.spectra ? "yes" : "no";
   identity["tile_pixels"] = std::to_string(job.options.tile_pixels);
   identity["planar_control"] = job.options.planar_control ? "yes" : "no";
-  identity["instruction set"] = instruction_set();
+  identity["instruction set"] = std::string(instruction_set());
   identity["ray tracer"] = mc::ray_tracer_version();
   identity[program_key] = program();
   return identity;

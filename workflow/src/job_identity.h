@@ -18,9 +18,6 @@ Identity identity_of(const ResolvedJob& job, const std::map<std::string, std::st
 /// not show the program's own file; versions must do there.
 const std::string& program_hash();
 
-/// What vectorised code is chosen by at run time.
-std::string instruction_set();
-
 /// Lower-case hexadecimal SHA-256 of an identity.
 std::string fingerprint(const Identity& identity);
 

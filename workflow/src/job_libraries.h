@@ -16,9 +16,8 @@ class JobLibraries : public mc::LibrarySource {
 
   std::shared_ptr<const mc::CascadeLibrary> library(const mc::CascadeSettings& settings,
                                                     std::size_t cascades, int threads,
-                                                    const ProgressCallback&,
-                                                    const CancelToken* cancel) override {
-    auto library = kept_.library(settings, cascades, threads, progress_, cancel);
+                                                    const Watch& watch) override {
+    auto library = kept_.library(settings, cascades, threads, {progress_, watch.cancel});
     for (const std::string& text : kept_.take_notes())
       if (note_) note_(text);
     return library;

@@ -28,12 +28,10 @@ void check(const TrainJob& job) {
 std::shared_ptr<const mc::CascadeLibrary> library_of(const TrainJob& job, JobLibraries& libraries,
                                                      const Watch& watch) {
   const double barrier_ev = mc::make_medium(job.material, job.physics).barrier_ev();
-  auto library = libraries.library(
+  return libraries.library(
       {job.material, job.physics, job.energy_ev + barrier_ev, job.simulation.seed},
       static_cast<std::size_t>(job.learn.table_electrons.value_or(usual_cascades)),
-      job.simulation.threads, {}, watch.cancel);
-  if (!library) throw Interrupted();
-  return library;
+      job.simulation.threads, {{}, watch.cancel});
 }
 
 std::map<std::string, std::string> notes_of(const TrainJob& job,

@@ -32,8 +32,7 @@ void tell_doubts(const HoughSummary& s, const Reporter& reporter) {
         "the search for planes ended at its limit: a better one, or a rival, may have been missed");
 }
 
-void take_off(LevelResult& result, const LevelParameters& p, const Grid<unsigned char>& use,
-              const Watch& watch) {
+void take_off(LevelResult& result, const LevelParameters& p, const Mask& use, const Watch& watch) {
   result.substrate = use;
   switch (p.method) {
     case LevelMethod::none:
@@ -79,7 +78,7 @@ void describe(ParameterVisitor& visit, LevelParameters& p) {
         "none");
 }
 
-LevelResult level(const HeightField& scan, const LevelParameters& p, const Grid<unsigned char>& use,
+LevelResult level(const HeightField& scan, const LevelParameters& p, const Mask& use,
                   const Reporter& reporter) {
   check_parameters(p);
   if (p.tolerance_nm && p.method != LevelMethod::hough)

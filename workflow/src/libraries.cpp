@@ -53,18 +53,14 @@ struct CachedLibraries::Impl {
     return true;
   }
 
-  /// Adds the next page and stores it; false when cancelled.
-  bool make(mc::CascadeLibrary& library, int threads, const ProgressCallback& progress,
-            const CancelToken* cancel) {
+  /// Adds the next page and stores it.
+  void make(mc::CascadeLibrary& library, int threads, const Watch& watch) {
     const std::size_t number = library.pages();
-    auto page = std::make_shared<const mc::CascadePage>(
-        library.make_page(number, threads, cancel, progress));
-    if (cancel && cancel->cancelled()) return false;
+    auto page = std::make_shared<const mc::CascadePage>(library.make_page(number, threads, watch));
     if (cache.store(mc::cascade_page_key(library.settings(), number), page_to_bytes(*page)))
       ++pages.stored;
     library.add_page(std::move(page));
     ++pages.made;
-    return true;
   }
 };
 
@@ -74,23 +70,21 @@ CachedLibraries::CachedLibraries(std::filesystem::path folder, std::uint64_t max
 CachedLibraries::~CachedLibraries() = default;
 
 std::shared_ptr<const mc::CascadeLibrary> CachedLibraries::library(
-    const mc::CascadeSettings& settings, std::size_t cascades, int threads,
-    const ProgressCallback& progress, const CancelToken* cancel) {
+    const mc::CascadeSettings& settings, std::size_t cascades, int threads, const Watch& watch) {
   constexpr std::size_t page_size = mc::CascadeLibrary::page_cascades;
   mc::CascadeLibrary& library =
       impl_->kept.try_emplace(mc::cascade_page_key(settings, 0), settings).first->second;
   const auto report = [&](double done) {
     const auto total = static_cast<double>(cascades);
-    if (progress) progress(std::min(done, total), total);
+    if (watch.progress) watch.progress(std::min(done, total), total);
   };
   while (library.cascades() < cascades) {
-    if (cancel && cancel->cancelled()) return nullptr;
+    watch.check();
     const auto before = static_cast<double>(library.cascades());
     if (impl_->load(library)) report(static_cast<double>(library.cascades()));
-    else if (!impl_->make(
-                 library, threads, [&](double of_page, double) { report(before + of_page); },
-                 cancel))
-      return nullptr;
+    else
+      impl_->make(library, threads,
+                  {[&](double of_page, double) { report(before + of_page); }, watch.cancel});
   }
   return std::make_shared<const mc::CascadeLibrary>(
       library.first((cascades + page_size - 1) / page_size));

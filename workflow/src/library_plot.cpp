@@ -276,8 +276,8 @@ mc::SimulationOptions simulation_of(const LibraryPlotOptions& o) {
 }
 
 // Yields of a flat specimen, on average over all of the library's cascades.
-bool find_yields(const LibraryPlotOptions& o, double tilt_deg, mc::LibrarySource& libraries,
-                 const CancelToken* cancel, Findings& findings) {
+void find_yields(const LibraryPlotOptions& o, double tilt_deg, mc::LibrarySource& libraries,
+                 Findings& findings) {
   mc::Specimen specimen;
   specimen.materials = {o.materials[findings.material]};
   specimen.substrate = mc::Substrate{};
@@ -288,11 +288,10 @@ bool find_yields(const LibraryPlotOptions& o, double tilt_deg, mc::LibrarySource
   scan.width = scan.height = 1;
   const mc::SimulationResult result =
       mc::simulate(mc::Scene(specimen, beam, scan, o.physics), simulation_of(o),
-                   {.cancel = cancel, .libraries = &libraries});
-  if (!result.complete) return false;
+                   {.watch = {{}, o.watch.cancel}, .libraries = &libraries});
+  if (!result.complete) throw Interrupted();
   findings.se.push_back(result.yield(0, 0, 0));
   findings.bse.push_back(result.yield(1, 0, 0));
-  return true;
 }
 
 std::vector<double> tilts_of(const LibraryPlotOptions& o) {
@@ -317,9 +316,8 @@ void describe(ParameterVisitor& visit, LibraryPlotOptions& o) {
       });
 }
 
-std::optional<io::Plot> plot_libraries(const LibraryPlotOptions& o, mc::LibrarySource& libraries,
-                                       const ProgressCallback& progress,
-                                       const CancelToken* cancel) {
+io::Plot plot_libraries(const LibraryPlotOptions& o, mc::LibrarySource& libraries) {
+  const Watch& watch = o.watch;
   check(o);
   const std::vector<double> tilts_deg = tilts_of(o);
   const std::size_t cascades = mc::library_size(simulation_of(o), 0);
@@ -329,21 +327,16 @@ std::optional<io::Plot> plot_libraries(const LibraryPlotOptions& o, mc::LibraryS
     for (const double energy_ev : o.energies_ev) {
       const auto done = static_cast<double>(charts.findings.size());
       const mc::Medium medium = mc::make_medium(o.materials[m], o.physics);
-      const auto library = libraries.library(
-          {o.materials[m], o.physics, energy_ev + medium.barrier_ev(), o.seed}, cascades, o.threads,
-          [&](double of, double all) {
-            if (progress) progress(done + 0.8 * of / all, total);
-          },
-          cancel);
-      if (!library) return std::nullopt;
+      const auto library =
+          libraries.library({o.materials[m], o.physics, energy_ev + medium.barrier_ev(), o.seed},
+                            cascades, o.threads, watch.part(done / total, (done + 0.8) / total));
       mc::CascadeStatistics statistics = mc::describe(*library, cascades);
       Findings found;
       found.material = m;
       found.energy_ev = energy_ev;
       found.depth_nm = std::move(statistics.primary_depth_nm);
       found.extent_nm = std::move(statistics.primary_extent_nm);
-      for (const double tilt_deg : tilts_deg)
-        if (!find_yields(o, tilt_deg, libraries, cancel, found)) return std::nullopt;
+      for (const double tilt_deg : tilts_deg) find_yields(o, tilt_deg, libraries, found);
       charts.findings.push_back(std::move(found));
     }
   }

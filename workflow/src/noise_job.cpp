@@ -9,22 +9,20 @@
 namespace surf::workflow {
 namespace {
 
-ScanNoise of_flat_scan(const HeightField& scan, const FlatNoiseOptions& options,
-                       const Grid<unsigned char>& use) {
+ScanNoise of_flat_scan(const HeightField& scan, const FlatNoiseOptions& options, const Mask& use) {
   ScanNoise noise;
   noise.estimate = estimate_flat_noise(scan, options, use);
   HeightField residual = scan;
   subtract(residual, fit_polynomial(scan, options.degree, use));
   noise.residual_nm = std::move(residual.z_nm);
-  noise.samples = Grid<unsigned char>(scan.z_nm.width(), scan.z_nm.height(), 1);
+  noise.samples = Mask(scan.z_nm.width(), scan.z_nm.height(), 1);
   for (std::size_t i = 0; i < noise.samples.size(); ++i)
-    noise.samples.data()[i] =
-        (use.empty() || use.data()[i]) && (scan.valid.empty() || scan.valid.data()[i]);
+    noise.samples.data()[i] = use.includes(i) && (scan.valid.includes(i));
   return noise;
 }
 
-ScanNoise of_substrate(const HeightField& scan, const FlatNoiseOptions& options,
-                       const Grid<unsigned char>& use, const Reporter& reporter) {
+ScanNoise of_substrate(const HeightField& scan, const FlatNoiseOptions& options, const Mask& use,
+                       const Reporter& reporter) {
   SubstrateNoise s = estimate_substrate_noise(scan, options, use);
   if (s.plane.verdict != HoughVerdict::clear)
     reporter.warn(
@@ -56,8 +54,8 @@ void describe(ParameterVisitor& visit, ScanNoiseParameters& p) {
                  .level = Level::advanced});
 }
 
-ScanNoise noise_of_scan(const HeightField& scan, const ScanNoiseParameters& p,
-                        const Grid<unsigned char>& use, const Reporter& reporter) {
+ScanNoise noise_of_scan(const HeightField& scan, const ScanNoiseParameters& p, const Mask& use,
+                        const Reporter& reporter) {
   check_parameters(p);
   const FlatNoiseOptions options{p.degree, reporter.watch(0, 0.9)};
   ScanNoise noise =

@@ -59,10 +59,7 @@ std::string name_of(const PredictJob& job) {
 Image image_of(const PredictJob& job, const TrainedModel& model, const HeightField& field,
                const std::vector<std::string>& channels) {
   Image image;
-  image.pitch_x_nm = field.pitch_x_nm;
-  image.pitch_y_nm = field.pitch_y_nm;
-  image.origin_x_nm = field.origin_x_nm;
-  image.origin_y_nm = field.origin_y_nm;
+  image.placement() = field.placement();
   for (const std::string& name : channels)
     image.channels.push_back({name, "1", Grid<float>(field.z_nm.width(), field.z_nm.height())});
   auto& made = image.metadata;

@@ -16,6 +16,7 @@
 #include "reconstruction_report.h"
 #include "registration_picture.h"
 #include "surf/core/error.h"
+#include "surf/core/instruction_set.h"
 #include "surf/core/units.h"
 #include "surf/io/files.h"
 #include "surf/io/plot.h"
@@ -47,8 +48,9 @@ std::string map_text(const Affine& m) { return text_of({m.xx, m.xy, m.x0, m.yx, 
 /// All that the states of the reconstruction depend on.
 Identity identity_of(const ReconstructionOptions& o, const AfmData* afm, const SemData* sem,
                      const StoredModel* model) {
-  Identity id{
-      {"semsurf", version()}, {"program", program_hash()}, {"instruction set", instruction_set()}};
+  Identity id{{"semsurf", version()},
+              {"program", program_hash()},
+              {"instruction set", std::string(instruction_set())}};
   ReconstructionOptions steps = o;  // without what comes after them
   steps.uncertainty = ReconstructionOptions{}.uncertainty;
   steps.probes = ReconstructionOptions{}.probes;

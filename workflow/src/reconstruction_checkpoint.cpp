@@ -134,7 +134,7 @@ HeightField read_field(Reader& in) {
   f.z_nm = Grid<double>(width, height);
   f.z_nm.data() = z;
   if (valid.size() == z.size()) {
-    f.valid = Grid<unsigned char>(width, height);
+    f.valid = Mask(width, height);
     for (std::size_t i = 0; i < z.size(); ++i) f.valid.data()[i] = valid[i] != 0;
   }
   return f;

@@ -61,28 +61,21 @@ Channel channel(const std::string& name, const std::string& unit, const Grid<T>&
 }
 
 /// A mask, or 1 everywhere.
-Channel valid_channel(const Grid<unsigned char>& valid, int width, int height) {
-  return channel("valid", "1", valid.empty() ? Grid<unsigned char>(width, height, 1) : valid);
+Channel valid_channel(const Mask& valid, int width, int height) {
+  return channel("valid", "1", valid.empty() ? Mask(width, height, 1) : valid);
 }
 
-Image placed_like(double pitch_x, double pitch_y, double origin_x, double origin_y,
-                  const Metadata& made) {
+Image placed_like(const Placement& placement, const Metadata& made) {
   Image image;
-  image.pitch_x_nm = pitch_x, image.pitch_y_nm = pitch_y;
-  image.origin_x_nm = origin_x, image.origin_y_nm = origin_y;
+  image.placement() = placement;
   image.metadata = made;
   return image;
 }
 
-Image placed_like(const HeightField& f, const Metadata& made) {
-  return placed_like(f.pitch_x_nm, f.pitch_y_nm, f.origin_x_nm, f.origin_y_nm, made);
-}
-
 /// Certainty of the scan at the surface's samples: 1 where the eroded scan is the surface, 0 where
 /// it may lie above.
-Grid<unsigned char> certain_on(const HeightField& surface, const CertaintyMap& map,
-                               const Affine& to_afm) {
-  Grid<unsigned char> certain(surface.z_nm.width(), surface.z_nm.height());
+Mask certain_on(const HeightField& surface, const CertaintyMap& map, const Affine& to_afm) {
+  Mask certain(surface.z_nm.width(), surface.z_nm.height());
   const HeightField& scan = map.surface;
   for (int y = 0; y < certain.height(); ++y)
     for (int x = 0; x < certain.width(); ++x) {

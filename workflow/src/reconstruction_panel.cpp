@@ -24,10 +24,8 @@ constexpr double blank = std::numeric_limits<double>::quiet_NaN();
 constexpr double deviations_shown = 4;  // of whitened residuals, either way
 constexpr double row_height_px = 330;
 
-PlacedImage on_samples(const HeightField& field, Grid<double> values,
-                       const Grid<unsigned char>& valid = {}) {
-  return {std::move(values), valid, field.pitch_x_nm, field.pitch_y_nm, field.origin_x_nm,
-          field.origin_y_nm};
+PlacedImage on_samples(const HeightField& field, Grid<double> values, const Mask& valid = {}) {
+  return {field.placement(), std::move(values), valid};
 }
 
 PlotPanel picture(const std::string& title, const PlacedImage& image, PlotColors colors,

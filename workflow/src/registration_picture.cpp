@@ -29,8 +29,7 @@ PlacedImage under_sem(const PlacedImage& sem, const PlacedImage& simulated, cons
   HeightField field;
   field.z_nm = simulated.values;
   field.valid = simulated.valid;
-  field.pitch_x_nm = simulated.pitch_x_nm, field.pitch_y_nm = simulated.pitch_y_nm;
-  field.origin_x_nm = simulated.origin_x_nm, field.origin_y_nm = simulated.origin_y_nm;
+  field.placement() = simulated.placement();
   const SurfaceUnderSem under = surface_under_sem(field, sem, map);
   PlacedImage image = sem;
   image.values = under.surface.z_nm;

@@ -16,6 +16,7 @@
 #include "surf/afm/morphology.h"
 #include "surf/afm/tip_shapes.h"
 #include "surf/core/error.h"
+#include "surf/core/instruction_set.h"
 #include "surf/core/units.h"
 #include "surf/io/files.h"
 #include "surf/io/height_field_file.h"
@@ -50,9 +51,8 @@ class LargeLibraries : public mc::LibrarySource {
       : source_(&source), cascades_(cascades) {}
   std::shared_ptr<const mc::CascadeLibrary> library(const mc::CascadeSettings& settings,
                                                     std::size_t wanted, int threads,
-                                                    const ProgressCallback& progress,
-                                                    const CancelToken* cancel) override {
-    return source_->library(settings, std::max(wanted, cascades_), threads, progress, cancel);
+                                                    const Watch& watch) override {
+    return source_->library(settings, std::max(wanted, cascades_), threads, watch);
   }
 
  private:
@@ -90,7 +90,7 @@ Affine sem_to_surface(const SampleJob& job, const SampleScene& scene) {
 
 HeightField empty_field(int width, int height, double pitch_nm, double origin_x_nm,
                         double origin_y_nm) {
-  return {Grid<double>(width, height), {}, pitch_nm, pitch_nm, origin_x_nm, origin_y_nm};
+  return {{pitch_nm, pitch_nm, origin_x_nm, origin_y_nm}, Grid<double>(width, height)};
 }
 
 struct AfmFrame {
@@ -273,7 +273,7 @@ Identity identity_of(const SampleJob& job, const mc::SimulationOptions& options)
           {"cascades", std::to_string(job.cascades)},
           {"seed", std::to_string(job.seed)},
           {"tile_pixels", std::to_string(options.tile_pixels)},
-          {"instruction set", instruction_set()},
+          {"instruction set", std::string(instruction_set())},
           {"ray tracer", mc::ray_tracer_version()},
           {"program", program_hash()}};
 }
@@ -410,9 +410,9 @@ SampleSummary run(const SampleJob& job, const Reporter& reporter) {
     summary.complete = false;
     if (checkpoint && checkpoint->keep()) summary.checkpoint = checkpoint->path();
   };
-  const mc::SimulationResult result = mc::simulate(
-      monte_carlo, options,
-      {.progress = show, .cancel = cancel, .journal = checkpoint.get(), .libraries = &source});
+  const mc::SimulationResult result =
+      mc::simulate(monte_carlo, options,
+                   {.watch = {show, cancel}, .journal = checkpoint.get(), .libraries = &source});
   if (!result.complete) {
     keep();
     return summary;

@@ -12,7 +12,7 @@ namespace {
 constexpr double rounding = 1e-9;  // samples beyond the border that still count as on it
 
 /// Heights of holes beside known samples become their mean; returns whether any did.
-bool grow(Grid<double>& z, Grid<unsigned char>& known) {
+bool grow(Grid<double>& z, Mask& known) {
   const int w = z.width(), h = z.height();
   std::vector<std::pair<std::size_t, double>> found;
   for (int y = 0; y < h; ++y)
@@ -43,7 +43,7 @@ bool grow(Grid<double>& z, Grid<unsigned char>& known) {
 HeightField with_holes_filled(const HeightField& field) {
   HeightField whole = field;
   if (field.valid.empty()) return whole;
-  Grid<unsigned char> known = field.valid;
+  Mask known = field.valid;
   while (grow(whole.z_nm, known)) {
   }
   whole.valid = {};
@@ -58,9 +58,8 @@ SurfaceUnderSem surface_under_sem(const HeightField& afm_surface, const PlacedIm
   SurfaceUnderSem under;
   HeightField& surface = under.surface;
   surface.z_nm = Grid<double>(w, h);
-  surface.pitch_x_nm = sem.pitch_x_nm, surface.pitch_y_nm = sem.pitch_y_nm;
-  surface.origin_x_nm = sem.origin_x_nm, surface.origin_y_nm = sem.origin_y_nm;
-  under.known = Grid<unsigned char>(w, h);
+  surface.placement() = sem.placement();
+  under.known = Mask(w, h);
   for (int y = 0; y < h; ++y)
     for (int x = 0; x < w; ++x) {
       const Point2 p = sem_to_afm(sem.place_nm(x, y));

@@ -3,6 +3,7 @@
 
 #include "surf/core/affine.h"
 #include "surf/core/height_field.h"
+#include "surf/core/mask.h"
 #include "surf/core/placed_image.h"
 
 namespace surf::workflow {
@@ -14,9 +15,9 @@ HeightField with_holes_filled(const HeightField& field);
 /// A surface of the AFM's frame on the pixels of an SEM image: each at the place that the map says,
 /// between samples in proportion to the four around. Beyond the field its edge goes on.
 struct SurfaceUnderSem {
-  HeightField surface;        ///< whole
-  Grid<unsigned char> known;  ///< 1: between samples of the field that are no holes
-  double overlap = 0;         ///< share of the pixels that are
+  HeightField surface;  ///< whole
+  Mask known;           ///< 1: between samples of the field that are no holes
+  double overlap = 0;   ///< share of the pixels that are
 };
 SurfaceUnderSem surface_under_sem(const HeightField& afm_surface, const PlacedImage& sem,
                                   const Affine& sem_to_afm);

@@ -131,8 +131,7 @@ SimplifiedBody simplify_body(const mc::Specimen& specimen, std::size_t number, d
                           .threads = threads,
                           .watch = watch};
   for (int i = 0; i < attempts; ++i, options.tolerance_nm /= 2) {
-    SimplifySummary summary;
-    TriangleMesh simple = simplify_mesh(body.mesh, options, summary);
+    auto [simple, summary] = simplify_mesh(body.mesh, options);
     if (!gains(summary.triangles_after, summary.triangles_before)) {
       if (done.kept.empty()) done.kept = "nothing would be gained";
       return done;
@@ -164,9 +163,7 @@ SimplifiedBody simplify_field(double tolerance_nm, const mc::Beam& beam, const m
     done.kept = "bodies stand on it";
     return done;
   }
-  ThinSummary summary;
-  TriangleMesh sheet =
-      thin_height_field(wide, {.tolerance_nm = tolerance_nm, .watch = watch}, summary);
+  auto [sheet, summary] = thin_height_field(wide, {.tolerance_nm = tolerance_nm, .watch = watch});
   if (!gains(summary.triangles_after, summary.triangles_before)) {
     done.kept = "nothing would be gained";
   } else {

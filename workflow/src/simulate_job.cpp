@@ -253,8 +253,7 @@ SimulateSummary run(SimulateJob asked, const Reporter& reporter, Team* team,
       reporter.counting(mc::accuracy_of(job.options.budget) > 0 ? "pixels" : "primaries");
   std::optional<TeamScheduler> processes;
   if (team) processes.emplace(*team);
-  mc::SimulationContext context{.progress = progress,
-                                .cancel = cancel,
+  mc::SimulationContext context{.watch = {progress, cancel},
                                 .libraries = &libraries,
                                 .scheduler = processes ? &*processes : nullptr};
   if (job.seconds() > 0)
@@ -278,7 +277,7 @@ SimulateSummary run(SimulateJob asked, const Reporter& reporter, Team* team,
   together(team, [&] {
     if (!simulation.final && leads(team)) checkpoint = make_checkpoint(job, settings, tell, warn);
   });
-  context.progress = [&](double done, double total) {
+  context.watch.progress = [&](double done, double total) {
     if (checkpoint) checkpoint->expect(total);
     progress(done, total);
   };

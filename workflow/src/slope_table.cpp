@@ -93,10 +93,8 @@ SlopeTable make_slope_table(const mc::Material& material, double energy_ev,
     o.watch.check();
     const Watch part = o.watch.part(double(i) / angles, double(i + 1) / angles);
     const mc::Scene scene = make_scene(material, energy_ev, i * o.step_deg, o);
-    const mc::SimulationResult result = mc::simulate(scene, options,
-                                                     {.progress = part.progress,
-                                                      .cancel = o.watch.cancel,
-                                                      .libraries = libraries ? libraries : &fresh});
+    const mc::SimulationResult result =
+        mc::simulate(scene, options, {.watch = part, .libraries = libraries ? libraries : &fresh});
     if (!result.complete) throw Interrupted();
     table.se.push_back(result.yield(se, 0, 0));
     table.bse.push_back(result.yield(bse, 0, 0));

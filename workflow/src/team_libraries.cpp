@@ -12,15 +12,18 @@
 namespace surf::workflow {
 
 std::shared_ptr<const mc::CascadeLibrary> TeamLibraries::library(
-    const mc::CascadeSettings& settings, std::size_t cascades, int threads,
-    const ProgressCallback& progress, const CancelToken* cancel) {
+    const mc::CascadeSettings& settings, std::size_t cascades, int threads, const Watch& watch) {
   std::shared_ptr<const mc::CascadeLibrary> library;
   together(&team_, [&] {
-    if (team_.leads()) library = own_.library(settings, cascades, threads, progress, cancel);
+    if (!team_.leads()) return;
+    try {
+      library = own_.library(settings, cascades, threads, watch);
+    } catch (const Interrupted&) {  // all of them are told below
+    }
   });
   std::string pages = library ? std::to_string(library->pages()) : std::string();
   team_.broadcast(pages);
-  if (pages.empty()) return nullptr;  // cancelled
+  if (pages.empty()) throw Interrupted();
   mc::CascadeLibrary copy(settings);
   const std::size_t count = std::stoul(pages);
   for (std::size_t i = 0; i < count; ++i) {

@@ -15,8 +15,7 @@ class TeamLibraries : public mc::LibrarySource {
 
   std::shared_ptr<const mc::CascadeLibrary> library(const mc::CascadeSettings& settings,
                                                     std::size_t cascades, int threads,
-                                                    const ProgressCallback& progress,
-                                                    const CancelToken* cancel) override;
+                                                    const Watch& watch) override;
 
  private:
   Team& team_;

@@ -138,8 +138,8 @@ void sweep(const std::vector<HeightField>& scans, TipResult& result, const Repor
   options.least_nm = result.used.sweep_least_nm, options.most_nm = result.used.sweep_most_nm;
   options.thresholds = result.used.sweep_thresholds;
   options.seed = result.used.seed;
-  result.sweep = sweep_tips(scans, options, reporter.counting("tips"), reporter.cancel);
-  if (result.sweep->verdict == TipSweepVerdict::cancelled) throw Interrupted();
+  options.watch = {reporter.counting("tips"), reporter.cancel};
+  result.sweep = sweep_tips(scans, options);
   const SweptTip& chosen = result.sweep->curve[result.sweep->chosen];
   result.tip = chosen.tip;
   result.tip.doubt = doubt_of_tip(*result.sweep);
@@ -158,9 +158,10 @@ void fit_best(const std::vector<HeightField>& scans, TipResult& result, const Re
   options.width = options.height = result.used.size;
   options.noise = *result.used.noise;
   options.threads = result.used.threads;
-  result.best.emplace();
-  result.tip = best_tip(scans, options, *result.best, reporter.counting("tips"), reporter.cancel);
-  if (reporter.cancelled()) throw Interrupted();
+  options.watch = {reporter.counting("tips"), reporter.cancel};
+  BestTip best = best_tip(scans, options);
+  result.tip = std::move(best.tip);
+  result.best = std::move(best.summary);
   result.used.threshold_nm = result.best->chosen.threshold_nm;
 }
 
@@ -173,10 +174,11 @@ void reconstruct(const std::vector<HeightField>& scans, TipResult& result,
     used.threshold_nm = used.apex_tolerance_nm =
         outer_threshold_nm(*used.noise, pixels, used.size * used.size);
   }
-  result.blind.emplace();
-  result.tip = blind_tip(scans, blind_options(used), *result.blind, reporter.counting("tips"),
-                         reporter.cancel);
-  if (result.blind->end == BlindTipEnd::cancelled) throw Interrupted();
+  BlindTipOptions options = blind_options(used);
+  options.watch = {reporter.counting("tips"), reporter.cancel};
+  BlindTip blind = blind_tip(scans, options);
+  result.tip = std::move(blind.tip);
+  result.blind = blind.summary;
 }
 
 std::vector<std::string_view> words_of(std::string_view text) {

@@ -68,7 +68,7 @@ HeightField at_pixel(const TrainingInput& input, double pixel_nm, const NoteCall
 
 // Electrons counted in a pixel say little of its own standard error: few by chance look precise,
 // and would weigh more. The mean variance of the 25 around is nearly free of that.
-Grid<float> even_errors(const Grid<float>& errors, const Grid<unsigned char>& used) {
+Grid<float> even_errors(const Grid<float>& errors, const Mask& used) {
   constexpr int reach = 2;
   const int w = errors.width(), h = errors.height();
   Grid<float> out(w, h);
@@ -139,7 +139,7 @@ TrainingImage read_training_image(const TrainingSurface& surface, const fs::path
   out.name = surface.name;
   out.field = field;
   out.edge = job.edge;
-  out.used = Grid<unsigned char>(w, h, 1);
+  out.used = Mask(w, h, 1);
   if (const Channel* valid = image.find("valid"))
     for (std::size_t i = 0; i < out.used.size(); ++i)
       out.used.data()[i] = valid->values.data()[i] != 0;

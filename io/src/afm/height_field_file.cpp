@@ -113,7 +113,7 @@ double pitch_nm(const std::string& file, char axis, double of_file, bool guessed
 void set_heights(const std::string& file, const ScanChannel& channel, double unit_nm,
                  HeightField& field) {
   field.z_nm = channel.values();
-  Grid<unsigned char> valid(field.z_nm.width(), field.z_nm.height(), 1);
+  Mask valid(field.z_nm.width(), field.z_nm.height(), 1);
   std::size_t holes = 0;
   for (std::size_t i = 0; i < valid.size(); ++i) {
     double& z = field.z_nm.data()[i];

@@ -6,10 +6,7 @@ namespace surf::io {
 
 Image head_of(const HeightField& field, const std::map<std::string, std::string>& metadata) {
   Image head;
-  head.pitch_x_nm = field.pitch_x_nm;
-  head.pitch_y_nm = field.pitch_y_nm;
-  head.origin_x_nm = field.origin_x_nm;
-  head.origin_y_nm = field.origin_y_nm;
+  head.placement() = field.placement();
   head.metadata = metadata;
   return head;
 }

@@ -156,7 +156,7 @@ std::optional<ScanChannel> points(const NumberTable& table, const TextHeader& he
   channel.pitch_guessed = !header.xy_unit_nm;
   auto grid = std::make_shared<Grid<double>>(channel.width, channel.height,
                                              std::numeric_limits<double>::quiet_NaN());
-  Grid<unsigned char> seen(channel.width, channel.height);
+  Mask seen(channel.width, channel.height);
   for (std::size_t i = 0; i < table.rows; ++i) {
     const double* const point = &table.values[3 * i];
     const int column = x.index(point[0]), row = channel.height - 1 - y.index(point[1]);

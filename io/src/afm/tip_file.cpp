@@ -66,7 +66,7 @@ std::vector<Place> highest(const Grid<double>& z) {
 
 /// Whether the places hang together, by edges or corners.
 bool touch(const std::vector<Place>& places, const Grid<double>& z) {
-  Grid<unsigned char> waiting(z.width(), z.height());
+  Mask waiting(z.width(), z.height());
   for (const Place p : places) waiting(p.x, p.y) = 1;
   std::vector<Place> open{places.front()};
   waiting(open[0].x, open[0].y) = 0;
@@ -125,8 +125,7 @@ Tip to_tip(HeightField field, const std::map<std::string, std::string>& metadata
   const bool physical = kind == "physical";
   const double sign = physical && points_down(field) ? -1 : 1;
   Tip tip;
-  tip.pitch_x_nm = field.pitch_x_nm;
-  tip.pitch_y_nm = field.pitch_y_nm;
+  tip.pitch() = field.pitch();
   tip.z_nm = std::move(field.z_nm);
   for (int y = 0; y < tip.z_nm.height(); ++y)
     for (int x = 0; x < tip.z_nm.width(); ++x)
@@ -168,12 +167,11 @@ TipHeights to_heights(const Tip& tip, const char* subject) {
   const int w = std::max(tip.z_nm.width(), 2), h = std::max(tip.z_nm.height(), 2);
   TipHeights heights;
   HeightField& field = heights.field;
-  field.pitch_x_nm = tip.pitch_x_nm;
-  field.pitch_y_nm = tip.pitch_y_nm;
+  field.pitch() = tip.pitch();
   field.origin_x_nm = -tip.apex_x * tip.pitch_x_nm;
   field.origin_y_nm = -tip.apex_y * tip.pitch_y_nm;
   field.z_nm = Grid<double>(w, h);
-  Grid<unsigned char> valid(w, h);
+  Mask valid(w, h);
   bool whole = true;
   for (int y = 0; y < h; ++y) {
     for (int x = 0; x < w; ++x) {

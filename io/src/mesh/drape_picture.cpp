@@ -23,10 +23,7 @@ double along(double place_nm, double origin_nm, double pitch_nm, int pixels) {
 /// Name and place, without pixels.
 Image placed(const Drape& drape) {
   Image image;
-  image.pitch_x_nm = drape.pitch_x_nm;
-  image.pitch_y_nm = drape.pitch_y_nm;
-  image.origin_x_nm = drape.origin_x_nm;
-  image.origin_y_nm = drape.origin_y_nm;
+  image.placement() = drape.placement();
   image.channels.push_back({drape.name, "1", {}});
   return image;
 }
@@ -36,9 +33,7 @@ Image placed(const Drape& drape) {
 Drape make_drape(const Image& image, const std::string& channel) {
   const auto at = std::ranges::find(image.channels, channel, &Channel::name);
   const auto number = static_cast<std::size_t>(at - image.channels.begin());
-  return {channel,           make_grey_picture(rows_of(image), number).grey,
-          image.pitch_x_nm,  image.pitch_y_nm,
-          image.origin_x_nm, image.origin_y_nm};
+  return {image.placement(), channel, make_grey_picture(rows_of(image), number).grey};
 }
 
 TexturePoint texture_point(const Drape& drape, const Vec3& place_nm) {
@@ -66,9 +61,7 @@ Image to_image(const Drape& drape) {
 Drape read_drape(const std::filesystem::path& path) {
   const Image image = read_image(path);
   const Channel& channel = image.channels.front();
-  Drape drape{channel.name,      Grid<std::uint8_t>(image.width(), image.height()),
-              image.pitch_x_nm,  image.pitch_y_nm,
-              image.origin_x_nm, image.origin_y_nm};
+  Drape drape{image.placement(), channel.name, Grid<std::uint8_t>(image.width(), image.height())};
   for (std::size_t i = 0; i < channel.values.size(); ++i) {
     const float value = channel.values.data()[i];
     if (!(value >= 0 && value <= 255)) {

@@ -214,12 +214,9 @@ HeightField to_height_field(const Image& image, const std::string& channel, doub
   const Channel& heights = find_channel(image, channel, "height field");
   const Channel* const mask = image.find("valid");
   HeightField field;
-  field.pitch_x_nm = image.pitch_x_nm;
-  field.pitch_y_nm = image.pitch_y_nm;
-  field.origin_x_nm = image.origin_x_nm;
-  field.origin_y_nm = image.origin_y_nm;
+  field.placement() = image.placement();
   field.z_nm = Grid<double>(image.width(), image.height());
-  Grid<unsigned char> valid(image.width(), image.height(), 1);
+  Mask valid(image.width(), image.height(), 1);
   bool has_holes = false;
   for (std::size_t i = 0; i < heights.values.size(); ++i) {
     const float value = heights.values.data()[i];

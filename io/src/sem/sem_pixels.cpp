@@ -89,7 +89,7 @@ SemPixels palette_pixels(const TiffPage& page, const Bytes& file) {
       strip_bytes(page, file, static_cast<std::size_t>(w) * static_cast<std::size_t>(h));
   const auto in_colour = coloured(*page.find(tag_palette));
   pixels.values = Grid<double>(w, h);
-  pixels.valid = Grid<unsigned char>(w, h, 1);
+  pixels.valid = Mask(w, h, 1);
   pixels.bits = 8;
   for (int y = 0; y < h; ++y)
     for (int x = 0; x < w; ++x) {
@@ -119,7 +119,7 @@ SemPixels grey_pixels(const Image& image, const std::string& channel, const std:
   const Channel* const mask = image.find("valid");
   if (image.channels.size() > 1 && !rgb) pixels.channel = chosen->name;
   pixels.values = Grid<double>(image.width(), image.height());
-  pixels.valid = Grid<unsigned char>(image.width(), image.height(), 1);
+  pixels.valid = Mask(image.width(), image.height(), 1);
   std::size_t holes = 0;
   for (std::size_t i = 0; i < pixels.values.size(); ++i) {
     const double value = chosen->values.data()[i];

@@ -8,15 +8,16 @@
 #include "../afm/tiff_tags.h"
 #include "surf/core/grid.h"
 #include "surf/core/image.h"
+#include "surf/core/mask.h"
 
 namespace surf::io {
 
 /// The picture of an SEM file, before anything is cut off.
 struct SemPixels {
   Grid<double> values;
-  Grid<unsigned char> valid;  ///< empty: all are
-  std::string channel;        ///< of files with several
-  int bits = 0;               ///< 0: floats
+  Mask valid;           ///< empty: all are
+  std::string channel;  ///< of files with several
+  int bits = 0;         ///< 0: floats
   std::vector<std::string> notes;
 };
 

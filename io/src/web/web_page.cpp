@@ -117,15 +117,12 @@ std::string to_text(const nlohmann::json& description) {
 }  // namespace
 
 WebPageSummary write_web_page(const std::filesystem::path& path, const WebPage& page,
-                              const ProgressCallback& progress, const CancelToken* cancel) {
+                              const Watch& watch) {
   check_web_page_target(path);
   check_page(page);
   const double total = static_cast<double>(page.surfaces.size() + page.images.size());
   double done = 0;
-  const auto goes_on = [&] {
-    if (progress) progress(done++, total);
-    return !(cancel && cancel->cancelled());
-  };
+  const auto next = [&] { watch.report(done++, total); };
   WebBlobs blobs;
   nlohmann::json description = {{"format", 1},
                                 {"title", page.title},
@@ -134,16 +131,16 @@ WebPageSummary write_web_page(const std::filesystem::path& path, const WebPage& 
                                 {"images", nlohmann::json::array()},
                                 {"scalar", page.scalar}};
   for (const WebSurface& surface : page.surfaces) {
-    if (!goes_on()) return {};
+    next();
     description["surfaces"].push_back(describe(surface, blobs));
   }
   for (const WebImage& image : page.images) {
-    if (!goes_on()) return {};
+    next();
     description["images"].push_back(describe(image, blobs));
   }
   if (page.drape)
     description["drape"] = {{"image", page.drape->image}, {"channel", page.drape->channel}};
-  if (!goes_on()) return {};
+  next();
 
   const std::string_view viewer = web_page_template();
   const std::size_t title = viewer.find(web_page_title_mark);

@@ -31,8 +31,7 @@ json describe_field(const HeightField& field, WebBlobs& blobs) {
   const double middle = low <= high ? low + (high - low) / 2 : 0;
   std::vector<float> heights(field.z_nm.size(), std::numeric_limits<float>::quiet_NaN());
   for (std::size_t i = 0; i < heights.size(); ++i) {
-    if (field.valid.empty() || field.valid.data()[i] != 0)
-      heights[i] = static_cast<float>(field.z_nm.data()[i] - middle);
+    if (field.valid.includes(i)) heights[i] = static_cast<float>(field.z_nm.data()[i] - middle);
   }
   return {{"kind", "grid"},
           {"size", {field.z_nm.width(), field.z_nm.height()}},

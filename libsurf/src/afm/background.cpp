@@ -53,7 +53,7 @@ struct Fit {
   std::vector<double> coefficients;
 };
 
-Basis basis_over_used(const HeightField& field, const Grid<unsigned char>& use, int degree) {
+Basis basis_over_used(const HeightField& field, const Mask& use, int degree) {
   int x0 = std::numeric_limits<int>::max(), x1 = -1, y0 = x0, y1 = -1;
   std::size_t samples = 0;
   for (int y = 0; y < field.z_nm.height(); ++y)
@@ -76,7 +76,7 @@ Basis basis_over_used(const HeightField& field, const Grid<unsigned char>& use, 
           std::max(0.5, 0.5 * (y1 - y0))};
 }
 
-Fit fit(const HeightField& field, const Grid<unsigned char>& use, int degree) {
+Fit fit(const HeightField& field, const Mask& use, int degree) {
   require_field(field, use);
   Fit out{basis_over_used(field, use, degree), 0, {}};
   const Basis& b = out.basis;
@@ -128,7 +128,7 @@ double Plane::uphill_deg() const {
   return angle < 0 ? angle + 360 : angle;
 }
 
-Plane fit_plane(const HeightField& field, const Grid<unsigned char>& use) {
+Plane fit_plane(const HeightField& field, const Mask& use) {
   const Fit f = fit(field, use, 1);  // terms: 1, y, x
   Plane p;
   p.slope_x = f.coefficients[2] / (f.basis.half_x * field.pitch_x_nm);
@@ -142,7 +142,7 @@ Plane fit_plane(const HeightField& field, const Grid<unsigned char>& use) {
   return p;
 }
 
-Grid<double> fit_polynomial(const HeightField& field, int degree, const Grid<unsigned char>& use) {
+Grid<double> fit_polynomial(const HeightField& field, int degree, const Mask& use) {
   if (degree < 0 || degree > highest_degree)
     throw UsageError("degree", fmt::format("it is {}", degree),
                      fmt::format("Give 0 to {}", highest_degree));

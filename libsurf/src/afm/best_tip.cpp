@@ -60,11 +60,11 @@ std::size_t largest_jump(const std::vector<Start>& starts) {
 
 class OuterBounds {
  public:
-  OuterBounds(const std::vector<HeightField>& scans, const BestTipOptions& options,
-              const CancelToken* cancel)
-      : scans_(scans), cancel_(cancel) {
+  OuterBounds(const std::vector<HeightField>& scans, const BestTipOptions& options)
+      : scans_(scans) {
     options_.width = options.width;
     options_.height = options.height;
+    options_.watch = {{}, options.watch.cancel};
     options_.threads = 1;  // frames are small: whole families of bounds run beside each other
     range_nm_ = std::max(height_range(scans).span_nm(), 1e-9);
   }
@@ -74,20 +74,18 @@ class OuterBounds {
     o.threshold_nm = threshold_nm;
     o.apex_tolerance_nm = tolerance * threshold_nm;
     if (broader) o.start = broader->tip;
-    BlindTipSummary ignored;
-    Start start{threshold_nm, tolerance, 0, blind_tip(scans_, o, ignored, {}, cancel_)};
+    Start start{threshold_nm, tolerance, 0, blind_tip(scans_, o).tip};
     start.volume_nm3 = tip_volume_nm3(start.tip, range_nm_);
     return start;
   }
 
   // By falling threshold; each begins with the one before.
-  template <class Stopped>
-  std::vector<Start> family(double sigma_nm, double tolerance, const Stopped& stopped) const {
+  std::vector<Start> family(double sigma_nm, double tolerance) const {
     std::vector<Start> starts;
-    for (int n = thresholds - 1; n >= 0 && !stopped(); --n)
+    for (int n = thresholds - 1; n >= 0; --n)
       starts.push_back(at((least_sigmas + n * step_sigmas) * sigma_nm, tolerance,
                           starts.empty() ? nullptr : &starts.back()));
-    for (int n = 0; n < refinements && !stopped(); ++n) {
+    for (int n = 0; n < refinements; ++n) {
       const std::size_t upper = largest_jump(starts);
       const double from = starts[upper].threshold_nm, to = starts[upper + 1].threshold_nm;
       for (int k = 1; k <= between; ++k) {
@@ -101,38 +99,32 @@ class OuterBounds {
 
  private:
   const std::vector<HeightField>& scans_;
-  const CancelToken* cancel_;
   BlindTipOptions options_;
   double range_nm_ = 0;
 };
 
 }  // namespace
 
-Tip best_tip(const std::vector<HeightField>& scans, const BestTipOptions& options,
-             BestTipSummary& summary, const ProgressCallback& progress, const CancelToken* cancel) {
+BestTip best_tip(const std::vector<HeightField>& scans, const BestTipOptions& options) {
   check(options);
-  summary = {};
+  BestTip out;
+  BestTipSummary& summary = out.summary;
   const double sigma = std::sqrt(options.noise.variance_nm2());
-  const OuterBounds bounds(scans, options, cancel);
+  const OuterBounds bounds(scans, options);
   constexpr double families = std::size(tolerances), total = families + 2;
-  const auto report = [&](double done) {
-    if (progress) progress(done, total);
-  };
-  const auto stopped = [&] { return cancel && cancel->cancelled(); };
+  const Watch& watch = options.watch;
   std::vector<Start> starts;
   const int threads = resolve_threads(options.threads);
   std::vector<std::vector<Start>> by_tolerance(std::size(tolerances));
-  parallel_for(by_tolerance.size(), threads, [&](std::size_t k, int) {
-    by_tolerance[k] = bounds.family(sigma, tolerances[k], stopped);
-  });
+  parallel_for(by_tolerance.size(), threads,
+               [&](std::size_t k, int) { by_tolerance[k] = bounds.family(sigma, tolerances[k]); });
   for (const auto& family : by_tolerance) starts.insert(starts.end(), family.begin(), family.end());
-  report(families);
-  if (stopped()) return starts.empty() ? Tip{} : starts.back().tip;
+  watch.report(families, total);
   for (const Start& s : starts)
     summary.candidates.push_back({s.threshold_nm, s.tolerance, 0, 0, 0});
   std::vector<TipFit> fits(starts.size());
   parallel_for(fits.size(), threads, [&](std::size_t k, int) {
-    if (stopped()) return;
+    watch.check();
     fits[k] = TipFit(scans, options.noise, starts[k].tip);
     fits[k].iterate(std::max(1, options.iterations / 16));
     const bool hopeless = fits[k].misfit() > hopeless_misfit;
@@ -141,8 +133,7 @@ Tip best_tip(const std::vector<HeightField>& scans, const BestTipOptions& option
     c = {c.threshold_nm, c.tolerance, fits[k].misfit(), fits[k].freedom(),
          hopeless ? fits[k].risk() : fits[k].risk_when_thinned()};
   });
-  report(total - 1);
-  if (stopped()) return starts.back().tip;
+  watch.report(total - 1, total);
   // The few best are fitted to the end.
   constexpr std::size_t finalists = 3;
   std::vector<std::size_t> order(fits.size());
@@ -152,9 +143,10 @@ Tip best_tip(const std::vector<HeightField>& scans, const BestTipOptions& option
   });
   order.resize(std::min(order.size(), finalists));
   parallel_for(order.size(), threads, [&](std::size_t k, int) {
-    if (!stopped()) fits[order[k]].iterate(options.iterations);
+    watch.check();
+    fits[order[k]].iterate(options.iterations);
   });
-  report(total);
+  watch.report(total, total);
   const std::size_t best = *std::min_element(
       order.begin(), order.end(),
       [&](std::size_t a, std::size_t b) { return fits[a].risk() < fits[b].risk(); });
@@ -163,7 +155,8 @@ Tip best_tip(const std::vector<HeightField>& scans, const BestTipOptions& option
                     fit.risk()};
   summary.standard_error_nm = fit.standard_errors();
   for (const double e : summary.standard_error_nm.data()) summary.touched += std::isfinite(e);
-  return fit.tip();
+  out.tip = fit.tip();
+  return out;
 }
 
 }  // namespace surf

@@ -105,12 +105,10 @@ bool is_local_maximum(const Grid<float>& z, int x, int y) {
 class Reconstruction {
  public:
   Reconstruction(const std::vector<HeightField>& scans, const BlindTipOptions& options,
-                 BlindTipSummary& summary, const ProgressCallback& progress,
-                 const CancelToken* cancel)
-      : options_(options), summary_(summary), progress_(progress), cancel_(cancel),
-        heights_(rebased(scans, slack_nm_)), tip_(prepared(options, slack_nm_)),
-        threads_(resolve_threads(options.threads)), carvers_(static_cast<std::size_t>(threads_)),
-        demands_(static_cast<std::size_t>(threads_)) {
+                 BlindTipSummary& summary)
+      : options_(options), summary_(summary), heights_(rebased(scans, slack_nm_)),
+        tip_(prepared(options, slack_nm_)), threads_(resolve_threads(options.threads)),
+        carvers_(static_cast<std::size_t>(threads_)), demands_(static_cast<std::size_t>(threads_)) {
     for (const Grid<float>& z : heights_) {
       scans_.emplace_back(z, options.layer_nm, options.width, options.height);
       tried_.emplace_back(z.width(), z.height());
@@ -118,23 +116,19 @@ class Reconstruction {
   }
 
   CarvedTip run() {
-    summary_ = {};
     // Few points, and nearly all of what there is to learn.
     std::vector<Point> maxima = points(true);
-    while (!stopped() && carve(maxima)) ++summary_.rounds;
-    for (bool changed = !options_.maxima_only; changed && !stopped();) {
+    while (carve(maxima)) ++summary_.rounds;
+    for (bool changed = !options_.maxima_only; changed;) {
       std::vector<Point> all = points(false);
       changed = carve(all);
       ++summary_.rounds;
-      if (progress_) progress_(summary_.rounds, summary_.rounds + 1);
+      options_.watch.report(summary_.rounds, summary_.rounds + 1);
     }
-    summary_.end = stopped() ? BlindTipEnd::cancelled : BlindTipEnd::converged;
     return tip_;
   }
 
  private:
-  bool stopped() const { return cancel_ && cancel_->cancelled(); }
-
   // Those that the tip cannot have made, the worst first.
   std::vector<Point> points(bool maxima) const {
     std::vector<Point> out;
@@ -162,7 +156,8 @@ class Reconstruction {
   bool carve(const std::vector<Point>& all) {
     constexpr std::size_t batch = 1024, share = 16;
     bool changed = false;
-    for (std::size_t first = 0; first < all.size() && !stopped(); first += batch) {
+    for (std::size_t first = 0; first < all.size(); first += batch) {
+      options_.watch.check();
       const std::size_t last = std::min(all.size(), first + batch);
       for (auto& d : demands_) d.assign(tip_.z.size(), std::numeric_limits<float>::infinity());
       parallel_for((last - first + share - 1) / share, threads_, [&](std::size_t unit, int worker) {
@@ -188,8 +183,6 @@ class Reconstruction {
 
   const BlindTipOptions& options_;
   BlindTipSummary& summary_;
-  const ProgressCallback& progress_;
-  const CancelToken* cancel_;
   float slack_nm_ = 0;
   std::vector<Grid<float>> heights_;
   std::vector<CarvedScan> scans_;
@@ -203,21 +196,19 @@ class Reconstruction {
 
 }  // namespace
 
-Tip blind_tip(const std::vector<HeightField>& scans, const BlindTipOptions& options,
-              BlindTipSummary& summary, const ProgressCallback& progress,
-              const CancelToken* cancel) {
+BlindTip blind_tip(const std::vector<HeightField>& scans, const BlindTipOptions& options) {
   check(scans, options);
-  const CarvedTip carved = Reconstruction(scans, options, summary, progress, cancel).run();
-  Tip tip;
-  tip.pitch_x_nm = scans[0].pitch_x_nm;
-  tip.pitch_y_nm = scans[0].pitch_y_nm;
+  BlindTip out;
+  const CarvedTip carved = Reconstruction(scans, options, out.summary).run();
+  Tip& tip = out.tip;
+  tip.pitch() = scans[0].pitch();
   tip.apex_x = carved.apex_x;
   tip.apex_y = carved.apex_y;
   tip.z_nm = Grid<double>(carved.width, carved.height);
   for (int j = 0; j < carved.height; ++j)
     for (int i = 0; i < carved.width; ++i) tip.z_nm(i, j) = std::min(0.0f, carved.at(i, j));
   tip.z_nm(tip.apex_x, tip.apex_y) = 0;
-  return tip;
+  return out;
 }
 
 }  // namespace surf

@@ -41,12 +41,10 @@ void check(const CertaintyOptions& o) {
 /// With so many samples more on each side, holes.
 HeightField framed(const HeightField& f, int left, int below, int right, int above) {
   const int w = f.z_nm.width(), h = f.z_nm.height();
-  HeightField out{Grid<double>(w + left + right, h + below + above),
-                  Grid<unsigned char>(w + left + right, h + below + above, 0),
-                  f.pitch_x_nm,
-                  f.pitch_y_nm,
-                  f.origin_x_nm - left * f.pitch_x_nm,
-                  f.origin_y_nm - below * f.pitch_y_nm};
+  HeightField out{{f.pitch_x_nm, f.pitch_y_nm, f.origin_x_nm - left * f.pitch_x_nm,
+                   f.origin_y_nm - below * f.pitch_y_nm},
+                  Grid<double>(w + left + right, h + below + above),
+                  Mask(w + left + right, h + below + above, 0)};
   for (int y = 0; y < h; ++y)
     for (int x = 0; x < w; ++x) {
       out.z_nm(x + left, y + below) = f.z_nm(x, y);
@@ -58,12 +56,7 @@ HeightField framed(const HeightField& f, int left, int below, int right, int abo
 /// One tip that does what the hemisphere and then the tip do, but for the lift.
 Tip kept_away(const Tip& tip, double distance_nm, int width, int height) {
   const Tip sphere = hemisphere_tip(distance_nm, tip.pitch_x_nm, tip.pitch_y_nm, width, height);
-  HeightField field{tip.z_nm,
-                    Grid<unsigned char>(tip.z_nm.width(), tip.z_nm.height(), 1),
-                    tip.pitch_x_nm,
-                    tip.pitch_y_nm,
-                    0,
-                    0};
+  HeightField field{{tip.pitch()}, tip.z_nm, Mask(tip.z_nm.width(), tip.z_nm.height(), 1)};
   for (std::size_t i = 0; i < field.z_nm.size(); ++i) {
     if (std::isfinite(field.z_nm.data()[i])) continue;
     field.valid.data()[i] = 0;
@@ -71,7 +64,7 @@ Tip kept_away(const Tip& tip, double distance_nm, int width, int height) {
   }
   const int rx = sphere.apex_x + 1, ry = sphere.apex_y + 1;  // the field needs 2 x 2
   const HeightField both = dilate(framed(field, rx, ry, rx, ry), sphere);
-  Tip out{both.z_nm, tip.pitch_x_nm, tip.pitch_y_nm, tip.apex_x + rx, tip.apex_y + ry};
+  Tip out{tip.pitch(), both.z_nm, tip.apex_x + rx, tip.apex_y + ry};
   for (int y = 0; y < out.z_nm.height(); ++y)
     for (int x = 0; x < out.z_nm.width(); ++x)
       if (!both.is_valid(x, y)) out.z_nm(x, y) = -std::numeric_limits<double>::infinity();
@@ -83,8 +76,7 @@ Heights eroded(const Heights& upside_down, const Tip& tip, double quantum, int t
   const TipQuanta b =
       quantise(reflected(tip), quantum, upside_down.z.width(), upside_down.z.height());
   Heights out{{}, -upside_down.top};
-  max_plus::convolve(upside_down.z, b.z, b.apex_x, b.apex_y, threads, out.z, nullptr,
-                     max_plus::Unit::best, watch);
+  max_plus::convolve(upside_down.z, b.z, b.apex_x, b.apex_y, threads, out.z, nullptr, watch);
   Quanta top = 0;  // of -z, whose values are from 0 up
   for (const Quanta z : out.z.data())
     if (z >= lowest) top = std::max(top, -z);
@@ -97,7 +89,7 @@ Heights eroded(const Heights& upside_down, const Tip& tip, double quantum, int t
 double largest_height(const HeightField& f) {
   double most = 0;
   for (std::size_t i = 0; i < f.z_nm.size(); ++i)
-    if (f.valid.empty() || f.valid.data()[i]) most = std::max(most, std::abs(f.z_nm.data()[i]));
+    if (f.valid.includes(i)) most = std::max(most, std::abs(f.z_nm.data()[i]));
   return most;
 }
 

@@ -103,7 +103,7 @@ CharacterizedTip tip_from_characterizer(const HeightField& scan, const HeightFie
   out.offset_z_nm = highest;
   out.offset_at_limit =
       o.search > 0 && std::max(std::abs(out.offset_x), std::abs(out.offset_y)) == o.search;
-  out.tip = {Grid<double>(o.width, o.height), scan.pitch_x_nm, scan.pitch_y_nm, apex_x, apex_y};
+  out.tip = {scan.pitch(), Grid<double>(o.width, o.height), apex_x, apex_y};
   parallel_for(static_cast<std::size_t>(o.height), o.threads, [&](std::size_t row, int) {
     const int j = static_cast<int>(row);
     for (int i = 0; i < o.width; ++i)

@@ -1,39 +1,34 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "afm/cholesky.h"
 
-#include <cmath>
-#include <cstddef>
+#include <Eigen/Cholesky>
 
 namespace surf {
+namespace {
+
+using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+}  // namespace
 
 bool solve_cholesky(std::vector<double>& a, std::vector<double>& b) {
-  const std::size_t n = b.size();
-  for (std::size_t j = 0; j < n; ++j) {
-    const double before = a[j * n + j];
-    double pivot = before;
-    for (std::size_t k = 0; k < j; ++k) pivot -= a[j * n + k] * a[j * n + k];
-    if (!(pivot > 1e-10 * before)) return false;
-    a[j * n + j] = std::sqrt(pivot);
-    for (std::size_t i = j + 1; i < n; ++i) {
-      double sum = a[i * n + j];
-      for (std::size_t k = 0; k < j; ++k) sum -= a[i * n + k] * a[j * n + k];
-      a[i * n + j] = sum / a[j * n + j];
-    }
-  }
+  const auto n = static_cast<Eigen::Index>(b.size());
+  Eigen::Map<Matrix> matrix(a.data(), n, n);
+  const Eigen::VectorXd before = matrix.diagonal();
+  Eigen::Ref<Matrix> in_place(matrix);
+  if (Eigen::LLT<Eigen::Ref<Matrix>>(in_place).info() != Eigen::Success) return false;
+  // What is left of a column after those before it.
+  if (!(matrix.diagonal().array().square() > 1e-10 * before.array()).all()) return false;
   solve_factored(a, b);
   return true;
 }
 
 void solve_factored(const std::vector<double>& a, std::vector<double>& b) {
-  const std::size_t n = b.size();
-  for (std::size_t i = 0; i < n; ++i) {
-    for (std::size_t k = 0; k < i; ++k) b[i] -= a[i * n + k] * b[k];
-    b[i] /= a[i * n + i];
-  }
-  for (std::size_t i = n; i-- > 0;) {
-    for (std::size_t k = i + 1; k < n; ++k) b[i] -= a[k * n + i] * b[k];
-    b[i] /= a[i * n + i];
-  }
+  const auto n = static_cast<Eigen::Index>(b.size());
+  const Eigen::Map<const Matrix> matrix(a.data(), n, n);
+  Eigen::Map<Eigen::VectorXd> x(b.data(), n);
+  const auto factor = matrix.triangularView<Eigen::Lower>();
+  factor.solveInPlace(x);
+  factor.transpose().solveInPlace(x);
 }
 
 }  // namespace surf

@@ -31,8 +31,7 @@ Ranks rank(const HeightField& field) {
   std::vector<std::uint32_t> order;
   const std::vector<double>& z = field.z_nm.data();
   for (std::size_t i = 0; i < z.size(); ++i)
-    if (field.valid.empty() || field.valid.data()[i])
-      order.push_back(static_cast<std::uint32_t>(i));
+    if (field.valid.includes(i)) order.push_back(static_cast<std::uint32_t>(i));
   std::sort(order.begin(), order.end(),
             [&](std::uint32_t a, std::uint32_t b) { return z[a] != z[b] ? z[a] < z[b] : a < b; });
   r.of.assign(z.size(), no_rank);
@@ -103,10 +102,10 @@ class RowMedians {
 };
 
 /// Puts the filtered heights (NaN: none) where they belong and counts.
-HeightField apply(const HeightField& field, const Grid<double>& filtered, double limit_nm,
-                  bool fill_holes, CleanSummary& summary) {
-  summary = {};
-  HeightField out = field;
+Cleaned apply(const HeightField& field, const Grid<double>& filtered, double limit_nm,
+              bool fill_holes) {
+  Cleaned cleaned{field, {}};
+  auto& [out, summary] = cleaned;
   for (std::size_t i = 0; i < filtered.size(); ++i) {
     const double value = filtered.data()[i];
     double& z = out.z_nm.data()[i];
@@ -123,7 +122,7 @@ HeightField apply(const HeightField& field, const Grid<double>& filtered, double
       z = value;
     }
   }
-  return out;
+  return cleaned;
 }
 
 /// A running maximum of `width` values about each one of a line, `stride` apart, of which `count`
@@ -176,7 +175,7 @@ void square_maximum(Grid<double>& grid, int width, int threads, const Watch& wat
 
 }  // namespace
 
-HeightField median_filter(const HeightField& field, const MedianOptions& o, CleanSummary& summary) {
+Cleaned median_filter(const HeightField& field, const MedianOptions& o) {
   validate(field);
   require_not_negative(o.limit_nm, "limit");
   if (o.radius < 0 || o.radius > largest_radius)
@@ -197,10 +196,10 @@ HeightField median_filter(const HeightField& field, const MedianOptions& o, Clea
           medians[static_cast<std::size_t>(worker)].row(y, &filtered(0, y));
       },
       o.watch);
-  return apply(field, filtered, o.limit_nm, o.fill_holes, summary);
+  return apply(field, filtered, o.limit_nm, o.fill_holes);
 }
 
-HeightField flat_closing(const HeightField& field, const ClosingOptions& o, CleanSummary& summary) {
+Cleaned flat_closing(const HeightField& field, const ClosingOptions& o) {
   validate(field);
   if (o.width < 1 || o.width > 2 * largest_radius + 1 || o.width % 2 == 0)
     throw UsageError("width", fmt::format("it is {}", o.width),
@@ -215,7 +214,7 @@ HeightField flat_closing(const HeightField& field, const ClosingOptions& o, Clea
   for (double& z : grid.data()) z = z == nothing ? nothing : -z;
   square_maximum(grid, o.width, o.threads, o.watch.part(0.5, 1));
   for (double& z : grid.data()) z = -z;
-  return apply(field, grid, 0, o.fill_holes, summary);
+  return apply(field, grid, 0, o.fill_holes);
 }
 
 }  // namespace surf

@@ -2,36 +2,27 @@
 #include "contact_squares.h"
 
 #include <algorithm>
-#include <array>
 #include <limits>
 
+#include "contact_squares_found.h"
 #include "max_plus_kernel.h"
 #include "surf/core/parallel.h"
 
-#ifdef __x86_64__
-#define SEMSURF_CLONES [[gnu::target_clones("avx2", "default")]]
-#else
-#define SEMSURF_CLONES
-#endif
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "afm/contact_squares.cpp"
+#include "core/each_target.h"
 
-namespace surf::max_plus {
-namespace {
-
-constexpr int block = 32;
-constexpr int far = std::numeric_limits<int>::max();
-
-/// Of the places of a block: the first and last columns and lines of the turned b that touch,
-/// columns counted from the end and from the beginning; 0: none.
-struct Found {
-  std::array<int, block> from_end, from_begin, l0, l1;
-  std::array<int, block> in_line;  ///< whether the line at hand touches
-};
+HWY_BEFORE_NAMESPACE();
+namespace surf::max_plus::HWY_NAMESPACE {
 
 typedef Quanta V [[gnu::vector_size(32)]];
 constexpr int lanes_of_v = 8;
 
-SEMSURF_CLONES void find_columns(const Quanta* a, const Quanta* b, int begin, int end, int width,
-                                 const Quanta* least, Found& f) {
+HWY_INLINE void load(V& v, const Quanta* p) { __builtin_memcpy(&v, p, sizeof v); }
+HWY_INLINE void store(Quanta* p, const V& v) { __builtin_memcpy(p, &v, sizeof v); }
+
+void find_columns(const Quanta* a, const Quanta* b, int begin, int end, int width,
+                  const Quanta* least, Found& f) {
   for (int i = 0; i < block; i += lanes_of_v) {
     V asked, in_line, from_end, from_begin;
     load(asked, least + i);
@@ -54,6 +45,17 @@ SEMSURF_CLONES void find_columns(const Quanta* a, const Quanta* b, int begin, in
   }
 }
 
+}  // namespace surf::max_plus::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace surf::max_plus {
+namespace {
+
+HWY_EXPORT(find_columns);
+
+constexpr int far = std::numeric_limits<int>::max();
+
 Found find(const Kernel& b, const Padded& a, int row, int column_block, const Quanta* least) {
   Found f;
   f.from_end.fill(0);
@@ -69,8 +71,9 @@ Found find(const Kernel& b, const Padded& a, int row, int column_block, const Qu
     for (int c = 0; c < b.chunks; ++c) {
       const std::ptrdiff_t line = static_cast<std::ptrdiff_t>(l) * b.chunks;
       if (a.chunk_max[at * b.chunks + c] + b.chunk_max[line + c] < lowest_asked) continue;
-      find_columns(a.row(row + l) + column_block * block, b.line(l), b.chunk_begin[c],
-                   b.chunk_begin[c + 1], b.width, least, f);
+      HWY_DYNAMIC_DISPATCH(find_columns)
+      (a.row(row + l) + column_block * block, b.line(l), b.chunk_begin[c], b.chunk_begin[c + 1],
+       b.width, least, f);
     }
     for (int i = 0; i < block; ++i) {
       if (!f.in_line[i]) continue;
@@ -86,8 +89,7 @@ Found find(const Kernel& b, const Padded& a, int row, int column_block, const Qu
 Grid<Touch> touching(const Grid<Quanta>& a, const Grid<Quanta>& b, int apex_x, int apex_y,
                      const Grid<Quanta>& least, int threads, const Watch& watch) {
   const Kernel kernel = make_kernel(b, apex_x, apex_y);
-  const Padded padded =
-      make_padded(a, kernel, apex_x, apex_y, Unit::avx2);  // for its block's width alone
+  const Padded padded = make_padded(a, kernel, apex_x, apex_y, block / block_vectors);
   const int width = a.width(), left = b.width() - 1 - apex_x, below = b.height() - 1 - apex_y;
   Grid<Touch> out(width, a.height());
   parallel_for(
@@ -114,3 +116,4 @@ Grid<Touch> touching(const Grid<Quanta>& a, const Grid<Quanta>& b, int apex_x, i
 }
 
 }  // namespace surf::max_plus
+#endif

@@ -5,17 +5,15 @@
 
 #include "surf/core/parallel.h"
 
-namespace surf {
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "afm/explained.cpp"
+#include "core/each_target.h"
 
-namespace {
-
-constexpr float infinity = std::numeric_limits<float>::infinity();
-
-constexpr int together = 4;  // samples of the tip: what is made is loaded and stored once for all
+HWY_BEFORE_NAMESPACE();
+namespace surf::HWY_NAMESPACE {
 
 // out(x) = min(out(x), in(x + k) + offset[k] of four).
-__attribute__((target_clones("avx512f", "avx2", "default"))) void lower_to(
-    float* __restrict out, const float* __restrict in, const float* offset, int count) {
+void lower_to(float* __restrict out, const float* __restrict in, const float* offset, int count) {
   const float a = offset[0], b = offset[1], c = offset[2], d = offset[3];
   for (int x = 0; x < count; ++x) {
     const float v = in[x] + a, w = in[x + 1] + b, y = in[x + 2] + c, z = in[x + 3] + d;
@@ -25,8 +23,7 @@ __attribute__((target_clones("avx512f", "avx2", "default"))) void lower_to(
 }
 
 // out(x) = max(out(x), in(x - k) + offset[k] of four); -infinity + infinity does not count.
-__attribute__((target_clones("avx512f", "avx2", "default"))) void raise_to(
-    float* __restrict out, const float* __restrict in, const float* offset, int count) {
+void raise_to(float* __restrict out, const float* __restrict in, const float* offset, int count) {
   const float a = offset[0], b = offset[1], c = offset[2], d = offset[3];
   for (int x = 0; x < count; ++x) {
     float most = out[x];
@@ -38,6 +35,20 @@ __attribute__((target_clones("avx512f", "avx2", "default"))) void raise_to(
     out[x] = most;
   }
 }
+
+}  // namespace surf::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace surf {
+namespace {
+
+HWY_EXPORT(lower_to);
+HWY_EXPORT(raise_to);
+
+constexpr float infinity = std::numeric_limits<float>::infinity();
+
+constexpr int together = 4;  // samples of the tip: what is made is loaded and stored once for all
 
 }  // namespace
 
@@ -63,7 +74,8 @@ Grid<float> explained_height(const CarvedScan& scan, const CarvedTip& tip, int t
       if (sy < 0 || sy >= scan.height()) continue;  // beyond the scan everything is allowed
       for (int i = 0; i < tip.width; i += together) {
         offsets(i, j, -1, four);
-        lower_to(&apex(together, y), scan.top(i - tip.apex_x - left, sy), four, w);
+        HWY_DYNAMIC_DISPATCH(lower_to)
+        (&apex(together, y), scan.top(i - tip.apex_x - left, sy), four, w);
       }
     }
   });
@@ -74,12 +86,13 @@ Grid<float> explained_height(const CarvedScan& scan, const CarvedTip& tip, int t
     for (int j = 0; j < tip.height; ++j)
       for (int i = 0; i < tip.width; i += together) {
         offsets(i, j, 1, four);
-        raise_to(&out(0, y),
-                 &apex(together - (i - tip.apex_x) + left, y - (j - tip.apex_y) + below), four,
-                 scan.width());
+        HWY_DYNAMIC_DISPATCH(raise_to)
+        (&out(0, y), &apex(together - (i - tip.apex_x) + left, y - (j - tip.apex_y) + below), four,
+         scan.width());
       }
   });
   return out;
 }
 
 }  // namespace surf
+#endif

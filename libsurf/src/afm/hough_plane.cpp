@@ -44,7 +44,7 @@ Plane to_plane(const SlopedPlane& p, const Plane& rough, const HeightField& fiel
 
 /// A sample from each block that has one: the usable one at a random rank, a function of the block
 /// alone.
-Votes draw_votes(const HeightField& field, const Grid<unsigned char>& use, const Plane& rough) {
+Votes draw_votes(const HeightField& field, const Mask& use, const Plane& rough) {
   const Frame frame(field);
   const int width = field.z_nm.width(), height = field.z_nm.height();
   const int across = std::min(blocks, width), up = std::min(blocks, height);
@@ -84,7 +84,7 @@ double height_range(const Votes& votes) {
   return static_cast<double>(z[z.size() - 1 - cut]) - z[cut];
 }
 
-double largest_height(const HeightField& field, const Grid<unsigned char>& use) {
+double largest_height(const HeightField& field, const Mask& use) {
   double largest = 0;
   for (int y = 0; y < field.z_nm.height(); ++y)
     for (int x = 0; x < field.z_nm.width(); ++x)
@@ -131,8 +131,8 @@ struct Residuals {
   double squares = 0;
 };
 
-Residuals mark_inliers(const HeightField& field, const Grid<unsigned char>& use, const Plane& plane,
-                       double tolerance, Grid<unsigned char>& mask) {
+Residuals mark_inliers(const HeightField& field, const Mask& use, const Plane& plane,
+                       double tolerance, Mask& mask) {
   Residuals r;
   for (int y = 0; y < mask.height(); ++y) {
     for (int x = 0; x < mask.width(); ++x) {
@@ -150,9 +150,8 @@ Residuals mark_inliers(const HeightField& field, const Grid<unsigned char>& use,
 }
 
 /// Least squares and inliers in turns, as long as the inliers determine a plane and grow in number.
-void refine(const HeightField& field, const Grid<unsigned char>& use, const Watch& watch,
-            HoughSummary& s) {
-  Grid<unsigned char> mask(field.z_nm.width(), field.z_nm.height());
+void refine(const HeightField& field, const Mask& use, const Watch& watch, HoughSummary& s) {
+  Mask mask(field.z_nm.width(), field.z_nm.height());
   Residuals best = mark_inliers(field, use, s.plane, s.tolerance_nm, mask);
   s.inliers = mask;
   for (int turn = 0; turn < most_turns; ++turn) {
@@ -197,11 +196,10 @@ HoughVerdict judge(const HoughSummary& s) {
 }
 
 /// Heights that are one plane to the last digit.
-HoughSummary exact_plane(const HeightField& field, const Grid<unsigned char>& use,
-                         const Plane& plane) {
+HoughSummary exact_plane(const HeightField& field, const Mask& use, const Plane& plane) {
   HoughSummary s;
   s.plane = s.runner_up = plane;
-  s.inliers = Grid<unsigned char>(field.z_nm.width(), field.z_nm.height());
+  s.inliers = Mask(field.z_nm.width(), field.z_nm.height());
   mark_inliers(field, use, plane, std::numeric_limits<double>::max(), s.inliers);
   s.inlier_share = 1;
   return s;
@@ -209,8 +207,7 @@ HoughSummary exact_plane(const HeightField& field, const Grid<unsigned char>& us
 
 }  // namespace
 
-HoughSummary find_plane(const HeightField& field, const HoughOptions& options,
-                        const Grid<unsigned char>& use) {
+HoughSummary find_plane(const HeightField& field, const HoughOptions& options, const Mask& use) {
   require_not_negative(options.tolerance_nm, "tolerance");
   const Plane rough = fit_plane(field, use);
   const Frame frame(field);

@@ -97,9 +97,9 @@ class RangeMax {
 
 }  // namespace
 
-Padded make_padded(const Grid<Quanta>& a, const Kernel& b, int apex_x, int apex_y, Unit unit) {
+Padded make_padded(const Grid<Quanta>& a, const Kernel& b, int apex_x, int apex_y, int lanes) {
   Padded p;
-  p.block_width = lanes(unit) * block_vectors;
+  p.block_width = lanes * block_vectors;
   p.blocks = (a.width() + p.block_width - 1) / p.block_width;
   p.stride = static_cast<std::ptrdiff_t>(p.blocks) * p.block_width + b.width - 1;
   const int strips = (a.height() + block_rows - 1) / block_rows;
@@ -131,11 +131,10 @@ Padded make_padded(const Grid<Quanta>& a, const Kernel& b, int apex_x, int apex_
 }
 
 void convolve(const Grid<Quanta>& a, const Grid<Quanta>& b, int apex_x, int apex_y, int threads,
-              Grid<Quanta>& sum, Grid<std::int32_t>* contact, Unit unit, const Watch& watch) {
-  unit = resolve(unit);
+              Grid<Quanta>& sum, Grid<std::int32_t>* contact, const Watch& watch) {
   const Kernel kernel = make_kernel(b, apex_x, apex_y);
-  const Padded padded = make_padded(a, kernel, apex_x, apex_y, unit);
-  const StripFunction make_strip = strip_function(unit, contact != nullptr);
+  const Padded padded = make_padded(a, kernel, apex_x, apex_y, strips().lanes);
+  const StripFunction make_strip = contact ? strips().with_contact : strips().plain;
   const int width = a.width(), height = a.height();
   sum = Grid<Quanta>(width, height, unknown);
   if (contact) *contact = Grid<std::int32_t>(width, height, -1);
@@ -143,9 +142,9 @@ void convolve(const Grid<Quanta>& a, const Grid<Quanta>& b, int apex_x, int apex
   threads = resolve_threads(threads);
   const std::size_t wide = static_cast<std::size_t>(padded.blocks) * padded.block_width;
   std::vector<std::vector<Quanta>> scratch(threads, std::vector<Quanta>(3 * block_rows * wide));
-  const std::size_t strips = (static_cast<std::size_t>(height) + block_rows - 1) / block_rows;
+  const std::size_t units = (static_cast<std::size_t>(height) + block_rows - 1) / block_rows;
   parallel_for(
-      strips, threads,
+      units, threads,
       [&](std::size_t unit_of_work, int worker) {
         const int y = static_cast<int>(unit_of_work) * block_rows;
         Quanta* const space = scratch[worker].data();

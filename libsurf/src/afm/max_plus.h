@@ -14,10 +14,6 @@ using Quanta = std::int32_t;
 inline constexpr Quanta unknown = -(1 << 30);
 inline constexpr Quanta lowest = -(1 << 29);  ///< of a known height, and of a sum of two
 
-/// Which vector unit to use; every choice gives the same numbers.
-enum class Unit { best, portable, avx2, avx512 };
-bool is_available(Unit unit);
-
 /// sum(x, y) = max over (i, j) of a(x - (i - apex_x), y - (j - apex_y)) + b(i, j), `unknown` where
 /// nothing known contributes; as large as a. Exact: no rounding and no overflow if a known height
 /// of a and one of b are together in [lowest, 0].
@@ -26,7 +22,6 @@ bool is_available(Unit unit);
 /// several the one of the row nearest the apex, of two the lower one; then of the column nearest
 /// the apex, of two the left one.
 void convolve(const Grid<Quanta>& a, const Grid<Quanta>& b, int apex_x, int apex_y, int threads,
-              Grid<Quanta>& sum, Grid<std::int32_t>* contact = nullptr, Unit unit = Unit::best,
-              const Watch& watch = {});
+              Grid<Quanta>& sum, Grid<std::int32_t>* contact = nullptr, const Watch& watch = {});
 
 }  // namespace surf::max_plus

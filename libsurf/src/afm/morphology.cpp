@@ -45,7 +45,7 @@ Heights convolve(const Heights& a, const TipQuanta& b, int threads, Contacts* co
   Heights out{{}, a.top};
   Grid<std::int32_t> index;
   max_plus::convolve(a.z, b.z, b.apex_x, b.apex_y, threads, out.z, contacts ? &index : nullptr,
-                     max_plus::Unit::best, watch);
+                     watch);
   if (!contacts) return out;
   const int w = a.z.width(), h = a.z.height();
   *contacts = {Grid<std::int32_t>(w, h, -1), Grid<std::int32_t>(w, h, -1)};
@@ -89,7 +89,7 @@ HeightField on_fine_grid(const HeightField& field, const Tip& tip, MorphologyOpt
       work(upsampled(field, f), resampled(tip, tip.pitch_x_nm / f, tip.pitch_y_nm / f), o);
   HeightField out = field;
   out.valid = {};
-  if (!fine.valid.empty()) out.valid = Grid<unsigned char>(field.z_nm.width(), field.z_nm.height());
+  if (!fine.valid.empty()) out.valid = Mask(field.z_nm.width(), field.z_nm.height());
   for (int y = 0; y < field.z_nm.height(); ++y)
     for (int x = 0; x < field.z_nm.width(); ++x) {
       out.z_nm(x, y) = fine.z_nm(x * f, y * f);
@@ -138,7 +138,7 @@ Tip hemisphere_for(const HeightField& field, double distance_nm) {
 
 void lift(HeightField& field, double by_nm) {
   for (std::size_t i = 0; i < field.z_nm.size(); ++i)
-    if (field.valid.empty() || field.valid.data()[i]) field.z_nm.data()[i] += by_nm;
+    if (field.valid.includes(i)) field.z_nm.data()[i] += by_nm;
 }
 
 }  // namespace

@@ -12,7 +12,7 @@
 namespace surf {
 namespace {
 
-void validate_residual(const Grid<double>& residual_nm, const Grid<unsigned char>& valid) {
+void validate_residual(const Grid<double>& residual_nm, const Mask& valid) {
   if (!valid.empty() &&
       (valid.width() != residual_nm.width() || valid.height() != residual_nm.height()))
     throw InvalidInput("residual",
@@ -20,7 +20,7 @@ void validate_residual(const Grid<double>& residual_nm, const Grid<unsigned char
                                    valid.height(), residual_nm.width(), residual_nm.height()),
                        "Give a mask of the same size, or none");
   for (std::size_t i = 0; i < residual_nm.size(); ++i)
-    if ((valid.empty() || valid.data()[i]) && !std::isfinite(residual_nm.data()[i]))
+    if (valid.includes(i) && !std::isfinite(residual_nm.data()[i]))
       throw InvalidInput("residual", fmt::format("sample {} is {}", i, residual_nm.data()[i]),
                          "Mark it as invalid");
 }
@@ -29,8 +29,8 @@ void validate_residual(const Grid<double>& residual_nm, const Grid<unsigned char
 /// right: its mean given `previous`, the index of the last valid one, is carry times that one. The
 /// first of a row has carry 0 and the stationary variance.
 template <class Visit>
-void follow_row(const AfmNoise& noise, const Grid<unsigned char>& valid, std::size_t first,
-                int width, const Visit& visit) {
+void follow_row(const AfmNoise& noise, const Mask& valid, std::size_t first, int width,
+                const Visit& visit) {
   const double stationary = noise.variance_nm2();
   std::size_t previous = first;
   double carry = 0;
@@ -74,8 +74,7 @@ Grid<double> simulate_noise(const AfmNoise& noise, int width, int height, std::u
   return out;
 }
 
-Grid<double> whiten(const Grid<double>& residual_nm, const AfmNoise& noise,
-                    const Grid<unsigned char>& valid) {
+Grid<double> whiten(const Grid<double>& residual_nm, const AfmNoise& noise, const Mask& valid) {
   validate(noise);
   validate_residual(residual_nm, valid);
   Grid<double> out(residual_nm.width(), residual_nm.height());
@@ -89,8 +88,8 @@ Grid<double> whiten(const Grid<double>& residual_nm, const AfmNoise& noise,
   return out;
 }
 
-double log_likelihood(const Grid<double>& residual_nm, const AfmNoise& noise,
-                      const Grid<unsigned char>& valid, Grid<double>* gradient) {
+double log_likelihood(const Grid<double>& residual_nm, const AfmNoise& noise, const Mask& valid,
+                      Grid<double>* gradient) {
   validate(noise);
   validate_residual(residual_nm, valid);
   if (gradient) *gradient = Grid<double>(residual_nm.width(), residual_nm.height());

@@ -12,7 +12,7 @@
 namespace surf {
 namespace {
 
-void require_mask(const Grid<double>& values, const Grid<unsigned char>& valid) {
+void require_mask(const Grid<double>& values, const Mask& valid) {
   if (valid.empty() || (valid.width() == values.width() && valid.height() == values.height()))
     return;
   throw InvalidInput("noise", "the mask has another size than the residuals",
@@ -24,11 +24,11 @@ struct Moments {
   double mean = 0, m2 = 0, m3 = 0, m4 = 0;  // central, divided by n
 };
 
-Moments moments(const Grid<double>& values, const Grid<unsigned char>& valid) {
+Moments moments(const Grid<double>& values, const Mask& valid) {
   Moments m;
   const auto each = [&](const auto& visit) {
     for (std::size_t i = 0; i < values.size(); ++i)
-      if (valid.empty() || valid.data()[i]) visit(values.data()[i]);
+      if (valid.includes(i)) visit(values.data()[i]);
   };
   each([&](double v) {
     if (!std::isfinite(v))
@@ -46,9 +46,8 @@ Moments moments(const Grid<double>& values, const Grid<unsigned char>& valid) {
 
 /// The sum of products of values dx columns and dy rows apart, less `mean`, and the number of
 /// pairs.
-std::pair<double, std::size_t> products(const Grid<double>& values,
-                                        const Grid<unsigned char>& valid, int dx, int dy,
-                                        double mean) {
+std::pair<double, std::size_t> products(const Grid<double>& values, const Mask& valid, int dx,
+                                        int dy, double mean) {
   double total = 0;
   std::size_t pairs = 0;
   for (int y = dy; y < values.height(); ++y) {
@@ -63,9 +62,8 @@ std::pair<double, std::size_t> products(const Grid<double>& values,
   return {total, pairs};
 }
 
-std::vector<LagCorrelation> correlations(const Grid<double>& values,
-                                         const Grid<unsigned char>& valid, const Moments& m,
-                                         int lags, bool along) {
+std::vector<LagCorrelation> correlations(const Grid<double>& values, const Mask& valid,
+                                         const Moments& m, int lags, bool along) {
   std::vector<LagCorrelation> out;
   for (int lag = 1; lag <= std::min(lags, (along ? values.width() : values.height()) - 1); ++lag) {
     const auto [sum, pairs] = products(values, valid, along ? lag : 0, along ? 0 : lag, m.mean);
@@ -94,8 +92,7 @@ double chi_squared_tail(double x, int degrees) {
   return std::min(tail, 1.0);
 }
 
-std::vector<double> autocovariance(const Grid<double>& residual, int lags,
-                                   const Grid<unsigned char>& valid) {
+std::vector<double> autocovariance(const Grid<double>& residual, int lags, const Mask& valid) {
   require_mask(residual, valid);
   std::vector<double> out;
   for (int lag = 0; lag <= lags; ++lag) {
@@ -105,7 +102,7 @@ std::vector<double> autocovariance(const Grid<double>& residual, int lags,
   return out;
 }
 
-NoiseCheck check_noise(const Grid<double>& whitened, const Grid<unsigned char>& valid,
+NoiseCheck check_noise(const Grid<double>& whitened, const Mask& valid,
                        const NoiseCheckOptions& options) {
   require_mask(whitened, valid);
   if (options.lags < 1 || options.fitted_parameters < 0)

@@ -20,7 +20,7 @@ struct Covariances {
   std::size_t samples = 0, pairs = 0;
 };
 
-Covariances covariances(const HeightField& residual, const Grid<unsigned char>& use) {
+Covariances covariances(const HeightField& residual, const Mask& use) {
   Covariances c;
   for (int y = 0; y < residual.z_nm.height(); ++y) {
     for (int x = 0; x < residual.z_nm.width(); ++x) {
@@ -197,7 +197,7 @@ AfmNoise fit_model(const Differences& variance, std::size_t distances) {
 double NoiseEstimate::sigma_nm() const { return std::sqrt(noise.variance_nm2()); }
 
 NoiseEstimate estimate_flat_noise(const HeightField& field, const FlatNoiseOptions& options,
-                                  const Grid<unsigned char>& use) {
+                                  const Mask& use) {
   HeightField residual = field;
   subtract(residual, fit_polynomial(field, options.degree, use));
   const Covariances c = covariances(residual, use);

@@ -116,8 +116,7 @@ TipQuanta quantise(const Tip& tip, double quantum_nm, int width, int height) {
 HeightField to_field(const Heights& heights, double sign, double quantum_nm,
                      const HeightField& like) {
   const int w = heights.z.width(), h = heights.z.height();
-  HeightField out{Grid<double>(w, h), {}, like.pitch_x_nm, like.pitch_y_nm, like.origin_x_nm,
-                  like.origin_y_nm};
+  HeightField out{like.placement(), Grid<double>(w, h)};
   const Quanta* const q = heights.z.data().data();
   double* const z = out.z_nm.data().data();
   std::size_t holes = 0;
@@ -127,7 +126,7 @@ HeightField to_field(const Heights& heights, double sign, double quantum_nm,
     holes += !known;
   }
   if (holes == 0) return out;
-  out.valid = Grid<unsigned char>(w, h, 1);
+  out.valid = Mask(w, h, 1);
   for (std::size_t i = 0; i < out.z_nm.size(); ++i) out.valid.data()[i] = q[i] >= lowest;
   return out;
 }

@@ -72,9 +72,8 @@ Tip resampled(const Tip& tip, double pitch_x_nm, double pitch_y_nm) {
                        "Cut the tip, or use a coarser pitch");
   const Extent ex = extent(w, tip.apex_x, rx), ey = extent(h, tip.apex_y, ry);
   const std::vector<Place> xs = places(ex, w, tip.apex_x, rx), ys = places(ey, h, tip.apex_y, ry);
-  Tip out{Grid<double>(static_cast<int>(xs.size()), static_cast<int>(ys.size())),
-          pitch_x_nm,
-          pitch_y_nm,
+  Tip out{{pitch_x_nm, pitch_y_nm},
+          Grid<double>(static_cast<int>(xs.size()), static_cast<int>(ys.size())),
           ex.before,
           ey.before,
           tip.doubt};
@@ -94,10 +93,10 @@ HeightField upsampled(const HeightField& surface, int factor) {
   if (factor == 1) return surface;
   const int w = (surface.z_nm.width() - 1) * factor + 1,
             h = (surface.z_nm.height() - 1) * factor + 1;
-  HeightField out{Grid<double>(w, h),          {},
-                  surface.pitch_x_nm / factor, surface.pitch_y_nm / factor,
-                  surface.origin_x_nm,         surface.origin_y_nm};
-  if (!surface.valid.empty()) out.valid = Grid<unsigned char>(w, h, 1);
+  HeightField out{{surface.pitch_x_nm / factor, surface.pitch_y_nm / factor, surface.origin_x_nm,
+                   surface.origin_y_nm},
+                  Grid<double>(w, h)};
+  if (!surface.valid.empty()) out.valid = Mask(w, h, 1);
   const auto sample = [&](int x, int y) {
     return surface.is_valid(x, y) ? surface.z_nm(x, y) : std::numeric_limits<double>::quiet_NaN();
   };
@@ -173,9 +172,9 @@ HeightField resampled(const HeightField& surface, double pitch_nm) {
         fmt::format("at a pitch of {:g} nm it has {:g} x {:g} samples", pitch_nm, across, down),
         "2 x 2 to 2^28 are possible: choose another pitch");
   const int w = static_cast<int>(across), h = static_cast<int>(down);
-  HeightField out{Grid<double>(w, h), {}, pitch_nm, pitch_nm, surface.origin_x_nm,
-                  surface.origin_y_nm};
-  if (!surface.valid.empty()) out.valid = Grid<unsigned char>(w, h, 1);
+  HeightField out{{pitch_nm, pitch_nm, surface.origin_x_nm, surface.origin_y_nm},
+                  Grid<double>(w, h)};
+  if (!surface.valid.empty()) out.valid = Mask(w, h, 1);
   const auto sample = [&](int x, int y) {
     return surface.is_valid(x, y) ? surface.z_nm(x, y) : std::numeric_limits<double>::quiet_NaN();
   };

@@ -9,7 +9,7 @@
 
 namespace surf {
 
-Roughness measure_roughness(const HeightField& field, const Grid<unsigned char>& use) {
+Roughness measure_roughness(const HeightField& field, const Mask& use) {
   require_field(field, use);
   Roughness r;
   r.tilt = fit_plane(field, use);

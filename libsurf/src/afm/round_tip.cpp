@@ -89,7 +89,7 @@ Tip tip_below(const std::vector<std::vector<double>>& profiles, double pitch_x, 
   const double step = std::min(pitch_x, pitch_y), reach = step * static_cast<double>(z.size() - 1);
   const int half_x = std::max(1, static_cast<int>(std::floor(reach / pitch_x * (1 + rounding))));
   const int half_y = std::max(1, static_cast<int>(std::floor(reach / pitch_y * (1 + rounding))));
-  Tip tip{Grid<double>(2 * half_x + 1, 2 * half_y + 1), pitch_x, pitch_y, half_x, half_y};
+  Tip tip{{pitch_x, pitch_y}, Grid<double>(2 * half_x + 1, 2 * half_y + 1), half_x, half_y};
   if (z.size() < 2) z.push_back(0);
   for (int y = -half_y; y <= half_y; ++y)
     for (int x = -half_x; x <= half_x; ++x) {

@@ -13,7 +13,7 @@ namespace {
 
 using Offsets = std::vector<std::optional<double>>;
 
-Offsets medians(const HeightField& field, const Grid<unsigned char>& use) {
+Offsets medians(const HeightField& field, const Mask& use) {
   Offsets out(static_cast<std::size_t>(field.z_nm.height()));
   std::vector<double> row;
   for (int y = 0; y < field.z_nm.height(); ++y) {
@@ -27,7 +27,7 @@ Offsets medians(const HeightField& field, const Grid<unsigned char>& use) {
 
 /// The sum of the steps from the first row that has samples; steps go from each such row to the
 /// last one.
-Offsets sums_of_differences(const HeightField& field, const Grid<unsigned char>& use) {
+Offsets sums_of_differences(const HeightField& field, const Mask& use) {
   Offsets out(static_cast<std::size_t>(field.z_nm.height()));
   std::vector<double> steps;
   int last = -1;
@@ -63,7 +63,7 @@ double nearest(const Offsets& offsets, int y) {
 
 }  // namespace
 
-RowLevel level_rows(HeightField& field, RowMethod method, const Grid<unsigned char>& use) {
+RowLevel level_rows(HeightField& field, RowMethod method, const Mask& use) {
   require_field(field, use);
   const Offsets known =
       method == RowMethod::median ? medians(field, use) : sums_of_differences(field, use);

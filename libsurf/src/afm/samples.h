@@ -5,11 +5,12 @@
 
 #include "surf/core/error.h"
 #include "surf/core/height_field.h"
+#include "surf/core/mask.h"
 
 namespace surf {
 
 /// Throws InvalidInput unless the field is sound and the mask empty or of its size.
-inline void require_field(const HeightField& field, const Grid<unsigned char>& use) {
+inline void require_field(const HeightField& field, const Mask& use) {
   validate(field);
   if (use.empty() || (use.width() == field.z_nm.width() && use.height() == field.z_nm.height()))
     return;
@@ -19,8 +20,8 @@ inline void require_field(const HeightField& field, const Grid<unsigned char>& u
                      "Give a mask of the same size");
 }
 
-inline bool is_used(const HeightField& field, const Grid<unsigned char>& use, int x, int y) {
-  return field.is_valid(x, y) && (use.empty() || use(x, y));
+inline bool is_used(const HeightField& field, const Mask& use, int x, int y) {
+  return field.is_valid(x, y) && use.includes(x, y);
 }
 
 }  // namespace surf

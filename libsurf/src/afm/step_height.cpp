@@ -17,8 +17,7 @@ using Row = std::array<double, terms>;
 
 class Regions {
  public:
-  Regions(const HeightField& field, const Grid<unsigned char>& first,
-          const Grid<unsigned char>& second)
+  Regions(const HeightField& field, const Mask& first, const Mask& second)
       : field_(field), first_(first), second_(second),
         half_x_(std::max(1.0, 0.5 * (field.z_nm.width() - 1))),
         half_y_(std::max(1.0, 0.5 * (field.z_nm.height() - 1))) {}
@@ -39,7 +38,7 @@ class Regions {
 
  private:
   const HeightField& field_;
-  const Grid<unsigned char>&first_, &second_;
+  const Mask &first_, &second_;
   double half_x_, half_y_;
 };
 
@@ -130,8 +129,7 @@ void measure_residuals(const HeightField& field, const Regions& regions, const F
 
 }  // namespace
 
-StepHeight measure_step(const HeightField& field, const Grid<unsigned char>& first,
-                        const Grid<unsigned char>& second) {
+StepHeight measure_step(const HeightField& field, const Mask& first, const Mask& second) {
   for (const auto* region : {&first, &second}) {
     if (region->empty()) throw InvalidInput("step", "a region is empty", "Give two masks");
     require_field(field, *region);

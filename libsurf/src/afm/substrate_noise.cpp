@@ -14,8 +14,7 @@ constexpr double most_tolerances = 3;
 constexpr int most_turns = 20;
 
 /// Marks what is within `limit` of 0 and returns its root mean square.
-double mark(const HeightField& residual, const Grid<unsigned char>& use, double limit,
-            Grid<unsigned char>& mask) {
+double mark(const HeightField& residual, const Mask& use, double limit, Mask& mask) {
   double squares = 0, count = 0;
   for (int y = 0; y < mask.height(); ++y) {
     for (int x = 0; x < mask.width(); ++x) {
@@ -30,7 +29,7 @@ double mark(const HeightField& residual, const Grid<unsigned char>& use, double 
 }  // namespace
 
 SubstrateNoise estimate_substrate_noise(const HeightField& field, const FlatNoiseOptions& options,
-                                        const Grid<unsigned char>& use) {
+                                        const Mask& use) {
   SubstrateNoise out;
   out.plane = find_plane(field, {.watch = options.watch}, use);
   HeightField residual = field;

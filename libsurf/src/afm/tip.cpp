@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "surf/afm/tip.h"
 
-#include <cmath>
-
 #include <fmt/format.h>
 
 #include "surf/core/error.h"
@@ -23,9 +21,7 @@ void validate(const Tip& tip, const char* subject) {
   for (int y = 0; y < z.height(); ++y)
     for (int x = 0; x < z.width(); ++x)
       if (!(z(x, y) <= 0)) refuse(fmt::format("sample ({}, {}) is {:g} nm", x, y, z(x, y)));
-  for (const double pitch : {tip.pitch_x_nm, tip.pitch_y_nm})
-    if (!(pitch > 0 && std::isfinite(pitch)))
-      refuse(fmt::format("a pitch of {:g} nm is impossible", pitch));
+  validate(tip.pitch(), subject);
 }
 
 Tip reflected(const Tip& tip) {

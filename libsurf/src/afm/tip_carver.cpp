@@ -5,13 +5,13 @@
 #include <cmath>
 #include <limits>
 
-// Loops over rows of 16 floats: the compiler makes a version of each for the vectors of several
-// processors.
-#define SURF_VECTORS __attribute__((target_clones("avx512f", "avx2", "default")))
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "afm/tip_carver.cpp"
+#include "core/each_target.h"
 
-namespace surf {
-
-namespace {
+// Loops over rows of 16 floats, as many as the widest vectors hold.
+HWY_BEFORE_NAMESPACE();
+namespace surf::HWY_NAMESPACE {
 
 constexpr float infinity = std::numeric_limits<float>::infinity();
 constexpr int lanes = 16;  // of the widest vectors
@@ -19,8 +19,8 @@ constexpr int lanes = 16;  // of the widest vectors
 float largest(const float* of_lanes) { return *std::max_element(of_lanes, of_lanes + lanes); }
 
 // allowed = max(allowed, scan + offset).
-SURF_VECTORS void allow(float* __restrict allowed, const float* __restrict scan, float offset,
-                        int rows, int stride, std::ptrdiff_t scan_stride) {
+void allow(float* __restrict allowed, const float* __restrict scan, float offset, int rows,
+           int stride, std::ptrdiff_t scan_stride) {
   for (int j = 0; j < rows; ++j, allowed += stride, scan += scan_stride)
     for (int i = 0; i < stride; ++i) {
       const float v = scan[i] + offset;
@@ -29,8 +29,8 @@ SURF_VECTORS void allow(float* __restrict allowed, const float* __restrict scan,
 }
 
 // The largest of tip - threshold - allowed.
-SURF_VECTORS float excess(const float* __restrict tip, const float* __restrict threshold,
-                          const float* __restrict allowed, int count) {
+float excess(const float* __restrict tip, const float* __restrict threshold,
+             const float* __restrict allowed, int count) {
   float most[lanes];
   for (float& m : most) m = -infinity;
   for (int k = 0; k < count; k += lanes)
@@ -42,8 +42,8 @@ SURF_VECTORS float excess(const float* __restrict tip, const float* __restrict t
 }
 
 // Where the largest of tip - threshold - allowed is.
-SURF_VECTORS int place_of_excess(const float* __restrict tip, const float* __restrict threshold,
-                                 const float* __restrict allowed, float value) {
+int place_of_excess(const float* __restrict tip, const float* __restrict threshold,
+                    const float* __restrict allowed, float value) {
   for (int k = 0;; k += lanes) {
     int equal = 0;
     for (int l = 0; l < lanes; ++l)
@@ -56,9 +56,8 @@ SURF_VECTORS int place_of_excess(const float* __restrict tip, const float* __res
 
 // ways = tip - here where scan + tip - here >= -tolerance, else -infinity; rows of the scan run
 // downwards.
-SURF_VECTORS void find(float* __restrict ways, const float* __restrict tip,
-                       const float* __restrict scan, float here, float tolerance, int rows,
-                       int stride, std::ptrdiff_t scan_stride) {
+void find(float* __restrict ways, const float* __restrict tip, const float* __restrict scan,
+          float here, float tolerance, int rows, int stride, std::ptrdiff_t scan_stride) {
   for (int j = 0; j < rows; ++j, ways += stride, tip += stride, scan -= scan_stride)
     for (int i = 0; i < stride; ++i) {
       const float offset = tip[i] - here;
@@ -66,15 +65,15 @@ SURF_VECTORS void find(float* __restrict ways, const float* __restrict tip,
     }
 }
 
-SURF_VECTORS int number_of(const float* ways, int count) {
+int number_of(const float* ways, int count) {
   int number = 0;
   for (int k = 0; k < count; ++k) number += ways[k] > -infinity;
   return number;
 }
 
 // The largest of ways + scan.
-SURF_VECTORS float best_of(const float* __restrict ways, const float* __restrict scan, int rows,
-                           int stride, std::ptrdiff_t scan_stride) {
+float best_of(const float* __restrict ways, const float* __restrict scan, int rows, int stride,
+              std::ptrdiff_t scan_stride) {
   float most[lanes];
   for (float& m : most) m = -infinity;
   for (int j = 0; j < rows; ++j, ways += stride, scan -= scan_stride)
@@ -87,8 +86,8 @@ SURF_VECTORS float best_of(const float* __restrict ways, const float* __restrict
 }
 
 // Where that is.
-SURF_VECTORS int place_of_best(const float* __restrict ways, const float* __restrict scan,
-                               int stride, std::ptrdiff_t scan_stride, float value) {
+int place_of_best(const float* __restrict ways, const float* __restrict scan, int stride,
+                  std::ptrdiff_t scan_stride, float value) {
   for (int first = 0;; first += stride, scan -= scan_stride)
     for (int i = 0; i < stride; i += lanes) {
       int equal = 0;
@@ -98,6 +97,24 @@ SURF_VECTORS int place_of_best(const float* __restrict ways, const float* __rest
       return first + i;
     }
 }
+
+}  // namespace surf::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace surf {
+namespace {
+
+HWY_EXPORT(allow);
+HWY_EXPORT(excess);
+HWY_EXPORT(place_of_excess);
+HWY_EXPORT(find);
+HWY_EXPORT(number_of);
+HWY_EXPORT(best_of);
+HWY_EXPORT(place_of_best);
+
+constexpr float infinity = std::numeric_limits<float>::infinity();
+constexpr int lanes = 16;  // of the widest vectors
 
 }  // namespace
 
@@ -119,16 +136,17 @@ CarvedScan::CarvedScan(const Grid<float>& heights, double layer, int tip_width, 
 void TipCarver::carve(const CarvedScan& scan, int x, int y, const CarvedTip& tip,
                       std::vector<float>& demand) {
   ways_.resize(tip.z.size());
-  find(ways_.data(), tip.mirrored.data(),
-       scan.top(x + tip.apex_x - (tip.width - 1), y + tip.apex_y), scan.bottom(x, y),
-       tip.apex_tolerance, tip.height, tip.stride, scan.stride());
+  HWY_DYNAMIC_DISPATCH(find)
+  (ways_.data(), tip.mirrored.data(), scan.top(x + tip.apex_x - (tip.width - 1), y + tip.apex_y),
+   scan.bottom(x, y), tip.apex_tolerance, tip.height, tip.stride, scan.stride());
   const int count = tip.height * tip.stride;
   allowed_.assign(static_cast<std::size_t>(count), -infinity);
   const auto try_way = [&](int i, int j, float offset) {  // the tip touches with its sample (i, j)
-    allow(allowed_.data(), scan.top(x - i, y - j), offset, tip.height, tip.stride, scan.stride());
+    HWY_DYNAMIC_DISPATCH(allow)
+    (allowed_.data(), scan.top(x - i, y - j), offset, tip.height, tip.stride, scan.stride());
   };
   constexpr int few = 24;
-  if (number_of(ways_.data(), count) <= few) {
+  if (HWY_DYNAMIC_DISPATCH(number_of)(ways_.data(), count) <= few) {
     for (int w = 0; w < count; ++w)
       if (const float offset = ways_[static_cast<std::size_t>(w)]; offset > -infinity)
         try_way(tip.width - 1 - w % tip.stride, w / tip.stride, offset);
@@ -140,12 +158,15 @@ void TipCarver::carve(const CarvedScan& scan, int x, int y, const CarvedTip& tip
   // Of many ways few are needed: the sample that those so far allow the least is given the way that
   // allows it the most. Where that is not enough, no way is, and its demand is known.
   for (;;) {
-    const float worst = excess(tip.z.data(), tip.threshold.data(), allowed_.data(), count);
+    const float worst =
+        HWY_DYNAMIC_DISPATCH(excess)(tip.z.data(), tip.threshold.data(), allowed_.data(), count);
     if (!(worst > 0)) return;
-    const int k = place_of_excess(tip.z.data(), tip.threshold.data(), allowed_.data(), worst);
+    const int k = HWY_DYNAMIC_DISPATCH(place_of_excess)(tip.z.data(), tip.threshold.data(),
+                                                        allowed_.data(), worst);
     const int u = k % tip.stride, v = k / tip.stride;
     const float* around = scan.top(x - (tip.width - 1) + u, y + v);  // of mirrored sample (0, 0)
-    const float best = best_of(ways_.data(), around, tip.height, tip.stride, scan.stride());
+    const float best =
+        HWY_DYNAMIC_DISPATCH(best_of)(ways_.data(), around, tip.height, tip.stride, scan.stride());
     if (best == -infinity) return;  // no way at all
     const auto at = static_cast<std::size_t>(k);
     if (best < tip.z[at] - tip.threshold[at]) {
@@ -153,10 +174,12 @@ void TipCarver::carve(const CarvedScan& scan, int x, int y, const CarvedTip& tip
       allowed_[at] = infinity;
       continue;
     }
-    const int w = place_of_best(ways_.data(), around, tip.stride, scan.stride(), best);
+    const int w =
+        HWY_DYNAMIC_DISPATCH(place_of_best)(ways_.data(), around, tip.stride, scan.stride(), best);
     if (best == infinity) allowed_[at] = infinity;  // beyond the border: all that is there
     try_way(tip.width - 1 - w % tip.stride, w / tip.stride, ways_[static_cast<std::size_t>(w)]);
   }
 }
 
 }  // namespace surf
+#endif

@@ -7,21 +7,17 @@
 
 #include "surf/afm/height_range.h"
 
-namespace surf {
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "afm/tip_fit.cpp"
+#include "core/each_target.h"
 
-namespace {
-
-constexpr float infinity = std::numeric_limits<float>::infinity();
-constexpr double cost = 2;            // of a free pixel, in units of the misfit (Stein, Akaike)
-constexpr int between_contacts = 4;   // steps along the same contacts
-constexpr int between_thinning = 16;  // pixels taken away too early leave the tip blunt
-constexpr double step = 0.5;  // of the way to where the pixels in contact would have their mean
+HWY_BEFORE_NAMESPACE();
+namespace surf::HWY_NAMESPACE {
 
 // Where surface + offset is above what is made, it is made by `sample`, and what was is next.
-__attribute__((target_clones("avx512f", "avx2", "default"))) void raise(
-    float* __restrict made, float* __restrict next, std::int32_t* __restrict touching,
-    std::int32_t* __restrict next_touching, const float* __restrict surface, float offset,
-    std::int32_t sample, int count) {
+void raise(float* __restrict made, float* __restrict next, std::int32_t* __restrict touching,
+           std::int32_t* __restrict next_touching, const float* __restrict surface, float offset,
+           std::int32_t sample, int count) {
   for (int x = 0; x < count; ++x) {
     const float v = surface[x] + offset;
     const bool first = v > made[x], second = !first && v > next[x];
@@ -31,6 +27,22 @@ __attribute__((target_clones("avx512f", "avx2", "default"))) void raise(
     touching[x] = first ? sample : touching[x];
   }
 }
+
+}  // namespace surf::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace surf {
+
+namespace {
+
+HWY_EXPORT(raise);
+
+constexpr float infinity = std::numeric_limits<float>::infinity();
+constexpr double cost = 2;            // of a free pixel, in units of the misfit (Stein, Akaike)
+constexpr int between_contacts = 4;   // steps along the same contacts
+constexpr int between_thinning = 16;  // pixels taken away too early leave the tip blunt
+constexpr double step = 0.5;  // of the way to where the pixels in contact would have their mean
 
 }  // namespace
 
@@ -82,11 +94,11 @@ void TipFit::dilate(Frame& f) const {
   std::fill(f.next_touching.begin(), f.next_touching.end(), -1);
   for (int y = 0; y < f.height; ++y) {
     const auto row = static_cast<std::size_t>(y * f.row);
-    for (std::size_t s = 0; s < samples_.size(); ++s)
-      raise(&f.made[row], &f.next[row], &f.touching[row], &f.next_touching[row],
-            &f.surface[static_cast<std::size_t>(surface_at(f, 0, y, samples_[s]))],
-            static_cast<float>(tip_.z_nm(samples_[s].i, samples_[s].j)),
-            static_cast<std::int32_t>(s), f.row);
+    for (std::size_t s = 0; s < samples_.size(); ++s) HWY_DYNAMIC_DISPATCH(raise)
+    (&f.made[row], &f.next[row], &f.touching[row], &f.next_touching[row],
+     &f.surface[static_cast<std::size_t>(surface_at(f, 0, y, samples_[s]))],
+     static_cast<float>(tip_.z_nm(samples_[s].i, samples_[s].j)), static_cast<std::int32_t>(s),
+     f.row);
   }
 }
 
@@ -151,7 +163,7 @@ void TipFit::follow(Frame& f) const {
 // Moves the surface, adds to the tip's slope and contacts, and to misfit and freedom.
 void TipFit::pull(Frame& f, std::vector<double>& slope) {
   Grid<double> residual(f.width, f.height), gradient;
-  Grid<unsigned char> valid(f.width, f.height, 1);
+  Mask valid(f.width, f.height, 1);
   for (int y = 0; y < f.height; ++y)
     for (int x = 0; x < f.width; ++x) {
       const auto k = static_cast<std::size_t>(y * f.row + x);
@@ -230,3 +242,4 @@ Grid<double> TipFit::standard_errors() const {
 }
 
 }  // namespace surf
+#endif

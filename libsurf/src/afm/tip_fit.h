@@ -6,6 +6,7 @@
 
 #include "surf/afm/noise.h"
 #include "surf/afm/tip.h"
+#include "surf/core/height_field.h"
 
 namespace surf {
 

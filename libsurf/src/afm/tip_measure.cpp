@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 
 #include "surf/core/error.h"
+#include "surf/core/mask.h"
 
 namespace surf {
 namespace {
@@ -22,7 +23,7 @@ struct Sample {
 
 /// Samples no deeper than `depth` that are joined to the apex through such samples.
 std::vector<Sample> end_of(const Tip& tip, double depth) {
-  Grid<unsigned char> seen(tip.z_nm.width(), tip.z_nm.height(), 0);
+  Mask seen(tip.z_nm.width(), tip.z_nm.height(), 0);
   std::vector<std::pair<int, int>> open{{tip.apex_x, tip.apex_y}};
   seen(tip.apex_x, tip.apex_y) = 1;
   std::vector<Sample> out;

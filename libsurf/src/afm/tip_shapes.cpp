@@ -32,7 +32,7 @@ void check(const TipSampling& s) {
 /// Samples height(x, y) of the physical tip.
 template <class Height>
 Tip sample(const TipSampling& s, const Height& height) {
-  Tip tip{Grid<double>(s.width, s.height), s.pitch_x_nm, s.pitch_y_nm, s.width / 2, s.height / 2};
+  Tip tip{{s.pitch_x_nm, s.pitch_y_nm}, Grid<double>(s.width, s.height), s.width / 2, s.height / 2};
   for (int y = 0; y < s.height; ++y)
     for (int x = 0; x < s.width; ++x) {
       const double z = height(-(x - tip.apex_x) * s.pitch_x_nm, -(y - tip.apex_y) * s.pitch_y_nm);

@@ -173,8 +173,7 @@ double SweptTip::excess() const {
   return std::max(residual_nm / expected_nm, peaks_nm / expected_peaks_nm);
 }
 
-TipSweep sweep_tips(const std::vector<HeightField>& scans, const TipSweepOptions& options,
-                    const ProgressCallback& progress, const CancelToken* cancel) {
+TipSweep sweep_tips(const std::vector<HeightField>& scans, const TipSweepOptions& options) {
   check(options);
   const double sigma = std::sqrt(options.noise.variance_nm2());
   const bool given = options.most_nm > 0;
@@ -182,6 +181,7 @@ TipSweep sweep_tips(const std::vector<HeightField>& scans, const TipSweepOptions
                most = given ? options.most_nm : 8 * sigma;
   BlindTipOptions blind = options.blind;
   blind.threshold_y_nm.reset();
+  blind.watch = {{}, options.watch.cancel};
   TipSweep out;
   const Opener opener(scans, options);
   for (int n = options.thresholds - 1; n >= 0;
@@ -190,17 +190,12 @@ TipSweep sweep_tips(const std::vector<HeightField>& scans, const TipSweepOptions
     swept.threshold_nm = least + (most - least) * n / (options.thresholds - 1);
     blind.threshold_nm = swept.threshold_nm;
     blind.apex_tolerance_nm = options.tolerance_per_threshold * swept.threshold_nm;
-    BlindTipSummary ignored;
-    swept.tip = blind_tip(scans, blind, ignored, {}, cancel);
-    if (cancel && cancel->cancelled()) {
-      out.verdict = TipSweepVerdict::cancelled;
-      return out;
-    }
+    swept.tip = blind_tip(scans, blind).tip;
     swept.volume_nm3 = tip_volume_nm3(swept.tip, opener.range_nm());
     opener.judge(swept);
     blind.start = swept.tip;
     out.curve.push_back(std::move(swept));
-    if (progress) progress(options.thresholds - n, options.thresholds);
+    options.watch.report(options.thresholds - n, options.thresholds);
   }
   std::reverse(out.curve.begin(), out.curve.end());
   out.jump = above_the_jump(out.curve);

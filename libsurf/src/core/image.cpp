@@ -3,22 +3,11 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
 #include <set>
 
 #include "surf/core/error.h"
 
 namespace surf {
-namespace {
-
-void validate_pitch(double pitch_nm, char axis, const char* subject) {
-  if (std::isfinite(pitch_nm) && pitch_nm > 0) return;
-  throw InvalidInput(subject, fmt::format("the pixel pitch along {} is {} nm", axis, pitch_nm),
-                     "It must be finite and above 0");
-}
-
-}  // namespace
-
 const Channel* Image::find(std::string_view name) const {
   for (const Channel& channel : channels) {
     if (channel.name == name) return &channel;
@@ -30,8 +19,7 @@ void validate(const Image& image, const char* subject) {
   if (image.channels.empty() || image.channels.front().values.empty()) {
     throw InvalidInput(subject, "it has no pixels", "Give at least one channel of at least 1 x 1");
   }
-  validate_pitch(image.pitch_x_nm, 'x', subject);
-  validate_pitch(image.pitch_y_nm, 'y', subject);
+  validate(image.placement(), subject);
   std::set<std::string_view> names;
   for (const Channel& channel : image.channels) {
     if (channel.name.empty()) {

@@ -8,10 +8,7 @@ namespace surf {
 
 ImageRows rows_of(const Image& image) {
   ImageRows rows;
-  rows.head.pitch_x_nm = image.pitch_x_nm;
-  rows.head.pitch_y_nm = image.pitch_y_nm;
-  rows.head.origin_x_nm = image.origin_x_nm;
-  rows.head.origin_y_nm = image.origin_y_nm;
+  rows.head.placement() = image.placement();
   rows.head.metadata = image.metadata;
   for (const Channel& channel : image.channels)
     rows.head.channels.push_back({channel.name, channel.unit, {}});

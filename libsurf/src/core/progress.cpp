@@ -17,7 +17,7 @@ void Watch::report(double done, double total) const {
 Watch Watch::part(double from, double to) const {
   if (!progress) return {{}, cancel};
   return {[whole = progress, from, to](double done, double total) {
-            whole(from + (to - from) * done / total, 1);
+            whole(total > 0 ? from + (to - from) * done / total : from, 1);
           },
           cancel};
 }

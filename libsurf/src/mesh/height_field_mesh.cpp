@@ -128,9 +128,8 @@ HeightField extend_height_field(const HeightField& field, double margin_x_nm, do
   const std::vector<int> rows = continued_indices(height, margin_y, edge);
   HeightField result;
   result.z_nm = picked(field.z_nm, columns, rows);
-  if (!field.valid.empty()) result.valid = picked(field.valid, columns, rows);
-  result.pitch_x_nm = field.pitch_x_nm;
-  result.pitch_y_nm = field.pitch_y_nm;
+  if (!field.valid.empty()) result.valid = Mask(picked(field.valid, columns, rows));
+  result.pitch() = field.pitch();
   result.origin_x_nm = field.x_nm(-margin_x);
   result.origin_y_nm = field.y_nm(-margin_y);
   return result;

@@ -102,7 +102,7 @@ HeightField mesh_height_field(const TriangleMesh& mesh, const MeshHeightFieldOpt
       },
       options.watch);
   std::size_t covered = 0;
-  Grid<unsigned char> valid(field.z_nm.width(), height, 1);
+  Mask valid(field.z_nm.width(), height, 1);
   for (std::size_t i = 0; i < valid.size(); ++i) {
     if (std::isfinite(field.z_nm.data()[i])) {
       ++covered;

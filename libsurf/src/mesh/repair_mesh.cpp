@@ -166,11 +166,10 @@ bool RepairSummary::sound() const {
          after.degenerate_triangles + after.duplicate_triangles + self_intersections_after == 0;
 }
 
-TriangleMesh repair_mesh(const TriangleMesh& mesh, const RepairOptions& options,
-                         RepairSummary& summary) {
+RepairedMesh repair_mesh(const TriangleMesh& mesh, const RepairOptions& options) {
   check_options(options);
   validate(mesh);
-  summary = {};
+  RepairSummary summary;
   const Watch& watch = options.watch;
   const Watch silent{{}, watch.cancel};
   summary.before = check_mesh(mesh, watch.part(0, 0.15));
@@ -234,11 +233,11 @@ TriangleMesh repair_mesh(const TriangleMesh& mesh, const RepairOptions& options,
   summary.open_holes = open_holes(work.mesh(), options.max_hole_nm);
   if (!summary.changed) {
     summary.after = summary.before;
-    return mesh;
+    return {mesh, std::move(summary)};
   }
   TriangleMesh result = merge_equal_vertices(work.mesh());
   summary.after = check_mesh(result, watch.part(0.95, 1));
-  return result;
+  return {std::move(result), std::move(summary)};
 }
 
 std::vector<std::string> describe(const RepairSummary& s) {

@@ -219,22 +219,21 @@ class Descent {
 
 }  // namespace
 
-TriangleMesh simplify_mesh(const TriangleMesh& mesh, const SimplifyOptions& options,
-                           SimplifySummary& summary) {
+SimplifiedMesh simplify_mesh(const TriangleMesh& mesh, const SimplifyOptions& options) {
   require_not_negative(options.tolerance_nm, "tolerance");
   if (options.tolerance_nm == 0 && options.triangles == 0) {
     throw UsageError("simplify", "neither a tolerance nor a number of triangles is given",
                      "Give one of them, or both");
   }
   validate(mesh);
-  summary = {};
+  SimplifySummary summary;
   summary.triangles_before = mesh.triangles.size();
   options.watch.check();
   const TriangleMesh original = merge_equal_vertices(mesh);
   TriangleMesh result = Descent(original, options, summary).run();
   summary.triangles_after = result.triangles.size();
   summary.reached = options.triangles == 0 || result.triangles.size() <= options.triangles;
-  return result;
+  return {std::move(result), summary};
 }
 
 }  // namespace surf

@@ -222,7 +222,7 @@ class Thinning {
   std::size_t limit_;  // of triangles
   const Watch& watch_;
   LatticeDelaunay mesh_;
-  Grid<unsigned char> used_;
+  Mask used_;
   std::vector<Worst> worst_;  // of every triangle
   std::priority_queue<Waiting> waiting_;
   std::vector<std::uint32_t> changed_;
@@ -258,8 +258,7 @@ Thinned thin_to_limit(const HeightField& field, const ThinOptions& o) {
 
 }  // namespace
 
-TriangleMesh thin_height_field(const HeightField& field, const ThinOptions& options,
-                               ThinSummary& summary) {
+ThinSheet thin_height_field(const HeightField& field, const ThinOptions& options) {
   require_not_negative(options.tolerance_nm, "tolerance");
   if (options.triangles == 1)
     throw UsageError("triangles", "one triangle does not fill a rectangle", "Give 2 or more");
@@ -268,12 +267,13 @@ TriangleMesh thin_height_field(const HeightField& field, const ThinOptions& opti
                         ? thin_to_limit(field, options)
                         : thin(field, options.tolerance_nm, std::numeric_limits<std::size_t>::max(),
                                options.watch);
+  ThinSummary summary;
   summary.triangles_before = std::size_t{2} * static_cast<std::size_t>(field.z_nm.width() - 1) *
                              static_cast<std::size_t>(field.z_nm.height() - 1);
   summary.triangles_after = thinned.mesh.triangles.size();
   summary.deviation_nm = thinned.deviation_nm;
   summary.reached = summary.deviation_nm <= options.tolerance_nm;
-  return std::move(thinned.mesh);
+  return {std::move(thinned.mesh), summary};
 }
 
 }  // namespace surf

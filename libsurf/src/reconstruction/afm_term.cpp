@@ -10,15 +10,16 @@
 #include "surf/core/error.h"
 #include "surf/core/parallel.h"
 
-namespace surf::reconstruction {
-namespace {
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "reconstruction/afm_term.cpp"
+#include "core/each_target.h"
 
-constexpr float deepest = -std::numeric_limits<float>::infinity();
+HWY_BEFORE_NAMESPACE();
+namespace surf::reconstruction::HWY_NAMESPACE {
 
 // What a tip sample adds to a row of the surface, where that is higher than what was found before.
-__attribute__((target_clones("avx512f", "avx2", "default"))) void raise(
-    float* __restrict made, std::int32_t* __restrict touching, const float* __restrict surface,
-    float offset, std::int32_t sample, int count) {
+void raise(float* __restrict made, std::int32_t* __restrict touching,
+           const float* __restrict surface, float offset, std::int32_t sample, int count) {
   for (int x = 0; x < count; ++x) {
     const float v = surface[x] + offset;
     const bool higher = v > made[x];
@@ -26,6 +27,17 @@ __attribute__((target_clones("avx512f", "avx2", "default"))) void raise(
     made[x] = higher ? v : made[x];
   }
 }
+
+}  // namespace surf::reconstruction::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace surf::reconstruction {
+namespace {
+
+HWY_EXPORT(raise);
+
+constexpr float deepest = -std::numeric_limits<float>::infinity();
 
 int floor_div(int a, int b) { return a >= 0 ? a / b : -((b - 1 - a) / b); }
 
@@ -38,7 +50,7 @@ AfmTerm::AfmTerm(const AfmData& data, const HeightField& outside, const SurfaceF
       frame_(frame), threads_(resolve_threads(threads)) {
   set_outside(outside);
   const int w = image_.z_nm.width(), h = image_.z_nm.height();
-  used_ = Grid<unsigned char>(w, h);
+  used_ = Mask(w, h);
   spans_.assign(h, {w, -1});
   const Affine map = to_samples(surface_to_afm);
   first_row_ = h;
@@ -122,7 +134,7 @@ AfmTerm::State AfmTerm::evaluate(const Grid<double>& z, const Affine& surface_to
 
   std::vector<float> fine(stride * f * rows, deepest);  // [row][phase][column]
   Grid<double> heights(f * plane, rows);
-  Grid<unsigned char> inside(f * plane, rows);
+  Mask inside(f * plane, rows);
   double sum = 0;
   for (int y = first_row_; y <= last_row_; ++y)
     for (int x = spans_[y][0]; x <= spans_[y][1]; ++x)
@@ -179,9 +191,10 @@ AfmTerm::State AfmTerm::evaluate(const Grid<double>& z, const Affine& surface_to
         // So deep that even the highest of the row stays below what the apex makes of the lowest.
         if (offset + highest[row] < floor) continue;
         const int column = f * left - (k - tip.apex_x) - f * first_plane;
-        raise(made.data(), touching.data(),
-              fine.data() + (static_cast<std::size_t>(row) * f + column % f) * stride + column / f,
-              offset, j * tw + k, count);
+        HWY_DYNAMIC_DISPATCH(raise)
+        (made.data(), touching.data(),
+         fine.data() + (static_cast<std::size_t>(row) * f + column % f) * stride + column / f,
+         offset, j * tw + k, count);
       }
     }
     for (int c = 0; c < count; ++c) {
@@ -259,3 +272,4 @@ Grid<double> AfmTerm::precision(const Grid<double>& v) const {
 }
 
 }  // namespace surf::reconstruction
+#endif

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <vector>
+#include "surf/core/mask.h"
 
 #include "surf/reconstruction/reconstruct.h"
 #include "surface_frame.h"
@@ -58,7 +59,7 @@ class AfmTerm {
   /// Heights beyond the surface, as for the constructor: those of the scan eroded by another tip.
   void set_outside(const HeightField& outside);
 
-  const Grid<unsigned char>& used() const { return used_; }
+  const Mask& used() const { return used_; }
   std::int64_t used_pixels() const { return used_pixels_; }
   const AfmNoise& noise() const { return noise_; }
 
@@ -73,7 +74,7 @@ class AfmTerm {
   int factor_;
   SurfaceFrame frame_;
   Grid<double> outside_;  // on the fine samples
-  Grid<unsigned char> used_;
+  Mask used_;
   std::int64_t used_pixels_ = 0;
   int first_row_ = 0, last_row_ = -1;      // of used pixels
   std::vector<std::array<int, 2>> spans_;  // first and last used column of each row

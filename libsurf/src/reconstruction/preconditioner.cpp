@@ -272,7 +272,7 @@ Preconditioner::Variances Preconditioner::variances(const CurvaturePrior& prior,
         const Tile& t = tiles_[i];
         NormalNumbers normal(seed, 3 + i);
         for (int d = 0; d < draws; ++d) {
-          if (watch.cancel && watch.cancel->cancelled()) return;
+          if (watch.cancelled()) return;
           Grid<double> white(t.area.width(), t.area.height());
           for (double& v : white.data()) v = normal();
           const Grid<double> z = t.factor.draw(white), curvature = prior.squared_curvature(z);

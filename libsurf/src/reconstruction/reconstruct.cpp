@@ -63,11 +63,11 @@ void check(const AfmData* afm, const SemData* sem, const ReconstructionOptions& 
     throw UsageError("reconstruct", "an option is out of range", "See the help for ranges");
 }
 
-ResidualReport judge(const Grid<double>& white, const Grid<unsigned char>& used) {
+ResidualReport judge(const Grid<double>& white, const Mask& used) {
   ResidualReport r;
   double sum = 0, squares = 0, along = 0, across = 0;
   std::int64_t pairs_along = 0, pairs_across = 0;
-  const auto counts = [&](int x, int y) { return used.empty() || used(x, y) != 0; };
+  const auto counts = [&](int x, int y) { return used.includes(x, y); };
   for (int y = 0; y < white.height(); ++y)
     for (int x = 0; x < white.width(); ++x) {
       if (!counts(x, y)) continue;
@@ -310,12 +310,9 @@ class Work {
   }
   HeightField cut_field(const Grid<double>& z) const {
     const SurfaceFrame& f = objective_.frame;
-    return {cut(z),
-            {},
-            f.pitch_nm,
-            f.pitch_nm,
-            f.origin_x_nm + margin_ * f.pitch_nm,
-            f.origin_y_nm + margin_ * f.pitch_nm};
+    return {{f.pitch_nm, f.pitch_nm, f.origin_x_nm + margin_ * f.pitch_nm,
+             f.origin_y_nm + margin_ * f.pitch_nm},
+            cut(z)};
   }
 
   Reconstruction result() {

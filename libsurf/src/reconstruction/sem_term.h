@@ -4,6 +4,7 @@
 #include <array>
 #include <memory>
 #include <vector>
+#include "surf/core/mask.h"
 
 #include "surf/reconstruction/reconstruct.h"
 #include "surface_frame.h"
@@ -58,7 +59,7 @@ class SemTerm {
 
   std::size_t channels() const { return channels_; }
   const Grid<double>& image() const { return image_; }  ///< on the surface's samples
-  const Grid<unsigned char>& used() const { return used_; }
+  const Mask& used() const { return used_; }
   std::int64_t used_pixels() const { return used_pixels_; }
   const SemNoise& noise() const { return noise_; }
 
@@ -71,7 +72,7 @@ class SemTerm {
   ModelOptions options_;
   std::size_t channels_ = 0;
   Grid<double> image_;
-  Grid<unsigned char> used_;
+  Mask used_;
   std::int64_t used_pixels_ = 0;
 };
 

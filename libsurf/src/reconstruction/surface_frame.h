@@ -17,7 +17,7 @@ struct SurfaceFrame {
     return {(nm.x - origin_x_nm) / pitch_nm, (nm.y - origin_y_nm) / pitch_nm};
   }
   HeightField field(const Grid<double>& z) const {
-    return {z, {}, pitch_nm, pitch_nm, origin_x_nm, origin_y_nm};
+    return {{pitch_nm, pitch_nm, origin_x_nm, origin_y_nm}, z};
   }
 };
 

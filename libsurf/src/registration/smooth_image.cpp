@@ -113,7 +113,7 @@ SmoothImage::SmoothImage(const PlacedImage& image, double step_x, double step_y,
                                       : y == h ? h - 2
                                                : y);
   if (valid_.empty()) return;
-  safe_ = Grid<unsigned char>(w, h, 0);
+  safe_ = Mask(w, h, 0);
   for (int y = 0; y < h; ++y)
     for (int x = 0; x < w; ++x) {
       const int right = std::min(x + 1, w - 1), above = std::min(y + 1, h - 1);

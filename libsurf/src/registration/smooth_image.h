@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "surf/core/grid.h"
+#include "surf/core/mask.h"
 #include "surf/core/placed_image.h"
 
 namespace surf {
@@ -39,7 +40,7 @@ class SmoothImage {
   double value(double x, double y) const;
 
   const Grid<double>& samples() const { return samples_; }  ///< blurred
-  bool is_valid(int column, int row) const { return valid_.empty() || valid_(column, row) != 0; }
+  bool is_valid(int column, int row) const { return valid_.includes(column, row); }
   double column(double x) const { return x / step_x_ + middle_x_; }
   double row(double y) const { return y / step_y_ + middle_y_; }
   double half_width() const { return middle_x_ * step_x_; }
@@ -48,8 +49,8 @@ class SmoothImage {
  private:
   double step_x_ = 1, step_y_ = 1, middle_x_ = 0, middle_y_ = 0;
   Grid<double> samples_;
-  Grid<double> coefficients_;         // one more on each side
-  Grid<unsigned char> valid_, safe_;  // samples, and cells between four valid ones; empty: all
+  Grid<double> coefficients_;  // one more on each side
+  Mask valid_, safe_;          // samples, and cells between four valid ones; empty: all
 };
 
 }  // namespace surf

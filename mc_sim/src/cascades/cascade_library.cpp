@@ -124,12 +124,11 @@ class PageMaker {
       : library_(library), first_page_(first_page), drafts_(pages) {}
 
   /// The pages, up to the first that was not finished when cancelled. Progress counts cascades.
-  std::vector<std::shared_ptr<CascadePage>> make(int threads, const CancelToken* cancel,
-                                                 const ProgressCallback& progress) {
+  std::vector<std::shared_ptr<CascadePage>> make(int threads, const Watch& watch) {
     threads = resolve_threads(threads);
     std::vector<std::unique_ptr<Maker>> makers(static_cast<std::size_t>(threads));
     parallel_for(drafts_.size() * units_per_page, threads, [&](std::size_t unit, int worker) {
-      if (cancel && cancel->cancelled()) return;
+      if (watch.cancelled()) return;
       auto& maker = makers[static_cast<std::size_t>(worker)];
       if (!maker) maker = std::make_unique<Maker>(library_);
       Draft& draft = drafts_[unit / units_per_page];
@@ -137,7 +136,7 @@ class PageMaker {
       part = blank();
       const std::size_t first = first_page_ * CascadeLibrary::page_cascades + unit * unit_cascades;
       for (std::size_t i = 0; i < unit_cascades; ++i) maker->make(first + i, part);
-      if (is_last(draft, progress)) finish(draft);
+      if (is_last(draft, watch.progress)) finish(draft);
     });
     std::vector<std::shared_ptr<CascadePage>> pages;
     for (Draft& draft : drafts_) {
@@ -208,10 +207,10 @@ class PageMaker {
 
 }  // namespace
 
-CascadePage CascadeLibrary::make_page(std::size_t number, int threads, const CancelToken* cancel,
-                                      const ProgressCallback& progress) const {
-  const auto pages = PageMaker(*this, number, 1).make(threads, cancel, progress);
-  return pages.empty() ? CascadePage{} : std::move(*pages[0]);
+CascadePage CascadeLibrary::make_page(std::size_t number, int threads, const Watch& watch) const {
+  const auto pages = PageMaker(*this, number, 1).make(threads, watch);
+  watch.check();
+  return std::move(*pages.front());
 }
 
 void CascadeLibrary::add_page(std::shared_ptr<const CascadePage> page) {
@@ -239,30 +238,30 @@ CascadeLibrary CascadeLibrary::first(std::size_t pages) const {
   return library;
 }
 
-void CascadeLibrary::grow(std::size_t cascades, int threads, const ProgressCallback& progress,
-                          const CancelToken* cancel) {
+void CascadeLibrary::grow(std::size_t cascades, int threads, const Watch& watch) {
+  watch.check();
   const std::size_t old = this->cascades();
   if (old >= cascades) return;
   const std::size_t pages = (cascades - old + page_cascades - 1) / page_cascades;
   const auto report = [&](double made, double) {
-    progress(std::min(static_cast<double>(old) + made, static_cast<double>(cascades)),
-             static_cast<double>(cascades));
+    watch.progress(std::min(static_cast<double>(old) + made, static_cast<double>(cascades)),
+                   static_cast<double>(cascades));
   };
   PageMaker maker(*this, this->pages(), pages);
-  for (auto& page : maker.make(threads, cancel, progress ? report : ProgressCallback{})) {
+  for (auto& page :
+       maker.make(threads, {watch.progress ? report : ProgressCallback{}, watch.cancel})) {
     reaches_nm_.push_back(page_reach_nm(*page));
     pages_.push_back(std::move(page));
   }
+  watch.check();
 }
 
 std::shared_ptr<const CascadeLibrary> FreshLibraries::library(const CascadeSettings& settings,
                                                               std::size_t cascades, int threads,
-                                                              const ProgressCallback& progress,
-                                                              const CancelToken* cancel) {
+                                                              const Watch& watch) {
   CascadeLibrary& library =
       kept_.try_emplace(cascade_page_key(settings, 0), settings).first->second;
-  library.grow(cascades, threads, progress, cancel);
-  if (cancel && cancel->cancelled()) return nullptr;
+  library.grow(cascades, threads, watch);
   constexpr std::size_t page = CascadeLibrary::page_cascades;
   return std::make_shared<const CascadeLibrary>(library.first((cascades + page - 1) / page));
 }

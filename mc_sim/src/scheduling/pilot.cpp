@@ -122,8 +122,7 @@ void conclude(const Sums& sums, double all_work, bool whole, int threads, Pilot&
 }  // namespace
 
 Pilot run_pilot(const Scene& scene, const SimulationOptions& options, double seconds,
-                LibrarySource* libraries, const ProgressCallback& progress,
-                const CancelToken* cancel) {
+                LibrarySource* libraries, const Watch& watch) {
   if (!(seconds > 0 && std::isfinite(seconds)))
     throw UsageError("pilot", "it needs some time", "Give it ten seconds, say");
   check_options(options);
@@ -132,75 +131,69 @@ Pilot run_pilot(const Scene& scene, const SimulationOptions& options, double sec
   pilot.units_in_all = plan.units();
   const auto begin = Clock::now();
   PreparedSimulation prepared;
-  const auto cancelled = [&] { return cancel && cancel->cancelled(); };
-  try {
-    if (!prepared.prepare(scene, options, libraries, plan.most(), progress, cancel))
-      throw Interrupted();
-    pilot.library_seconds = since(begin);
-    pilot.library_cascades = prepared.cascades();
-    pilot.library_bytes = prepared.library_bytes();
+  prepared.prepare(scene, options, libraries, plan.most(), watch);
+  pilot.library_seconds = since(begin);
+  pilot.library_cascades = prepared.cascades();
+  pilot.library_bytes = prepared.library_bytes();
 
-    const int threads = resolve_threads(options.threads);
-    Spread of_parts(plan.units()), of_units(plan.units());
-    std::mutex mutex;
-    Sums parts, units;
-    // Who is the first on a plane makes it: that is no matter of the unit.
-    const std::size_t planes = prepared.planes_expected(pixels_looked_at);
-    const PlanarControls::Made made_before = prepared.planes_made();
-    const auto start = Clock::now();
-    const auto out_of_time = [&] {
-      const double for_planes = (prepared.planes_made().seconds - made_before.seconds) / threads;
-      return since(start) - std::min(for_planes, most_for_planes * seconds) > seconds;
-    };
-    const auto probing = [&] {
-      return parts.units < threads || since(start) < share_of_parts * seconds;
-    };
-    const auto short_enough = [&] { return parts.seconds / parts.units < longest_share * seconds; };
-    parallel_for(static_cast<std::size_t>(threads), threads, [&](std::size_t, int) {
-      const auto worker = prepared.worker();
-      worker->cancel = cancel;
-      UnitTally tally;
-      worker->simulate(part_of(plan.unit(0), 0, 0), nullptr,
-                       tally);  // gets tables and memory ready
-      for (;;) {
-        WorkUnit unit, tried;
-        bool whole = false;
-        {
-          const std::lock_guard lock(mutex);
-          if (cancelled() || (out_of_time() && parts.units > 0)) return;
-          whole = !probing() && short_enough();
-          if (whole && of_units.round() > 0) return;
-          const std::size_t number = whole ? of_units.next() : of_parts.next();
-          if (whole && of_units.round() > 0) return;  // that was the first one again
-          unit = plan.unit(number);
-          tried = whole ? unit : part_of(unit, number, of_parts.round());
-        }
-        tally = {};
-        const auto now = Clock::now();
-        const double planes_before = PlanarControls::seconds_of_this_thread();
-        worker->simulate(tried, nullptr, tally);
-        const double took = since(now) - (PlanarControls::seconds_of_this_thread() - planes_before);
+  const int threads = resolve_threads(options.threads);
+  Spread of_parts(plan.units()), of_units(plan.units());
+  std::mutex mutex;
+  Sums parts, units;
+  // Who is the first on a plane makes it: that is no matter of the unit.
+  const std::size_t planes = prepared.planes_expected(pixels_looked_at);
+  const PlanarControls::Made made_before = prepared.planes_made();
+  const auto start = Clock::now();
+  const auto out_of_time = [&] {
+    const double for_planes = (prepared.planes_made().seconds - made_before.seconds) / threads;
+    return since(start) - std::min(for_planes, most_for_planes * seconds) > seconds;
+  };
+  const auto probing = [&] {
+    return parts.units < threads || since(start) < share_of_parts * seconds;
+  };
+  const auto short_enough = [&] { return parts.seconds / parts.units < longest_share * seconds; };
+  parallel_for(static_cast<std::size_t>(threads), threads, [&](std::size_t, int) {
+    const auto worker = prepared.worker();
+    worker->cancel = watch.cancel;
+    UnitTally tally;
+    worker->simulate(part_of(plan.unit(0), 0, 0), nullptr,
+                     tally);  // gets tables and memory ready
+    for (;;) {
+      WorkUnit unit, tried;
+      bool whole = false;
+      {
         const std::lock_guard lock(mutex);
-        (whole ? units : parts).add(took, tally, unit, tried);
-        if (progress) progress(std::min(seconds, since(start)), seconds);
+        watch.check();
+        if (out_of_time() && parts.units > 0) return;
+        whole = !probing() && short_enough();
+        if (whole && of_units.round() > 0) return;
+        const std::size_t number = whole ? of_units.next() : of_parts.next();
+        if (whole && of_units.round() > 0) return;  // that was the first one again
+        unit = plan.unit(number);
+        tried = whole ? unit : part_of(unit, number, of_parts.round());
       }
-    });
-    // A thread may have got one whole unit before parts showed that they are long.
-    pilot.whole = units.units >= 2 && (short_enough() || units.units >= parts.units);
-    const Sums& sums = pilot.whole ? units : parts;
-    if (cancelled() || sums.units == 0) throw Interrupted();
-    pilot.seconds = since(start);
-    const double all_work = static_cast<double>(scene.scan().width) * scene.scan().height *
-                            static_cast<double>(plan.most());
-    conclude(sums, all_work, pilot.whole, threads, pilot);
-    if (const PlanarControls::Made made = prepared.planes_made(); made.planes > 0) {
-      pilot.planes = planes;
-      pilot.planes_s =
-          made.seconds / static_cast<double>(made.planes) * static_cast<double>(planes) / threads;
-      pilot.expected_s += pilot.planes_s;
+      tally = {};
+      const auto now = Clock::now();
+      const double planes_before = PlanarControls::seconds_of_this_thread();
+      worker->simulate(tried, nullptr, tally);
+      const double took = since(now) - (PlanarControls::seconds_of_this_thread() - planes_before);
+      const std::lock_guard lock(mutex);
+      (whole ? units : parts).add(took, tally, unit, tried);
+      watch.report(std::min(seconds, since(start)), seconds);
     }
-  } catch (const Interrupted&) {
-    pilot.complete = false;
+  });
+  // A thread may have got one whole unit before parts showed that they are long.
+  pilot.whole = units.units >= 2 && (short_enough() || units.units >= parts.units);
+  const Sums& sums = pilot.whole ? units : parts;
+  pilot.seconds = since(start);
+  const double all_work = static_cast<double>(scene.scan().width) * scene.scan().height *
+                          static_cast<double>(plan.most());
+  conclude(sums, all_work, pilot.whole, threads, pilot);
+  if (const PlanarControls::Made made = prepared.planes_made(); made.planes > 0) {
+    pilot.planes = planes;
+    pilot.planes_s =
+        made.seconds / static_cast<double>(made.planes) * static_cast<double>(planes) / threads;
+    pilot.expected_s += pilot.planes_s;
   }
   return pilot;
 }

@@ -30,29 +30,28 @@ std::size_t library_size(const SimulationOptions& options, std::int64_t most_pri
   return static_cast<std::size_t>(pages) * CascadeLibrary::page_cascades;
 }
 
-bool PreparedSimulation::prepare(const Scene& scene, const SimulationOptions& options,
+void PreparedSimulation::prepare(const Scene& scene, const SimulationOptions& options,
                                  LibrarySource* source, std::int64_t most_primaries,
-                                 const ProgressCallback& progress, const CancelToken* cancel) {
+                                 const Watch& watch) {
   scene_ = &scene.impl();
   options_ = &options;
-  if (options.method == Method::direct) return true;
+  if (options.method == Method::direct) return;
   FreshLibraries fresh;
   if (!source) source = &fresh;
   const std::size_t least = library_size(options, most_primaries);
-  if (!get(scene, *source, least, progress, cancel)) return false;
-  if (!(accuracy_of(options.budget) > 0)) return true;
+  get(scene, *source, least, watch);
+  if (!(accuracy_of(options.budget) > 0)) return;
   measure_yields(static_cast<int>(scene.materials().size()));
   const double share =
       options.planar_control && only_planes() ? all_of_the_variance : usual_share_of_variance;
   const std::size_t wanted = std::min(library_size(options, most_primaries, yields_, share),
                                       cascades_that_fit(options.library_memory));
-  if (wanted > least && !get(scene, *source, wanted, progress, cancel)) return false;
-  controls_.emplace(*scene_, options, libraries_, cancel);
-  return true;
+  if (wanted > least) get(scene, *source, wanted, watch);
+  controls_.emplace(*scene_, options, libraries_, watch.cancel);
 }
 
-bool PreparedSimulation::get(const Scene& scene, LibrarySource& source, std::size_t wanted,
-                             const ProgressCallback& progress, const CancelToken* cancel) {
+void PreparedSimulation::get(const Scene& scene, LibrarySource& source, std::size_t wanted,
+                             const Watch& watch) {
   libraries_.clear();
   cascades_ = 0;
   for (std::size_t m = 0; m < scene.materials().size(); ++m) {
@@ -63,14 +62,11 @@ bool PreparedSimulation::get(const Scene& scene, LibrarySource& source, std::siz
     }
     const CascadeSettings settings{scene.materials()[m], scene.physics(),
                                    scene.beam().energy_ev + medium.barrier_ev(), options_->seed};
-    auto library = source.library(settings, wanted, options_->threads, progress, cancel);
-    if (!library) return false;
-    libraries_.push_back(std::move(library));
+    libraries_.push_back(source.library(settings, wanted, options_->threads, watch));
   }
   for (const auto& library : libraries_)
     if (library)
       cascades_ = cascades_ == 0 ? library->cascades() : std::min(cascades_, library->cascades());
-  return true;
 }
 
 std::unique_ptr<UnitWorker> PreparedSimulation::worker() {

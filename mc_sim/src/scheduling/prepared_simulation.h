@@ -16,11 +16,10 @@ namespace surf::mc {
 /// What the workers of a simulation share: libraries, and planes to compare with.
 class PreparedSimulation {
  public:
-  /// False when cancelled. Scene and options must outlive it. `cancel` is asked by the source
-  /// alone: where it serves several processes, all of them go on or none.
-  bool prepare(const Scene& scene, const SimulationOptions& options, LibrarySource* source,
-               std::int64_t most_primaries, const ProgressCallback& progress,
-               const CancelToken* cancel);
+  /// Scene and options must outlive it. The source alone asks whether it is cancelled: where it
+  /// serves several processes, all of them go on or none. Throws Interrupted.
+  void prepare(const Scene& scene, const SimulationOptions& options, LibrarySource* source,
+               std::int64_t most_primaries, const Watch& watch);
 
   /// Of each material in each detector, with a wanted accuracy.
   const std::vector<CascadeYield>& yields() const { return yields_; }
@@ -40,8 +39,7 @@ class PreparedSimulation {
   std::size_t library_bytes() const;
 
  private:
-  bool get(const Scene& scene, LibrarySource& source, std::size_t wanted,
-           const ProgressCallback& progress, const CancelToken* cancel);
+  void get(const Scene& scene, LibrarySource& source, std::size_t wanted, const Watch& watch);
   void measure_yields(int materials);
   bool only_planes() const;
   std::size_t cascades_that_fit(double bytes) const;

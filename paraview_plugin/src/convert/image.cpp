@@ -79,9 +79,8 @@ vtkDataArray* mask_of(vtkImageData* image, vtkDataArray* values_array) {
 }
 
 /// Takes what is not finite, or masked, out of the values; the mask is empty if there are no holes.
-Grid<unsigned char> take_holes(vtkImageData* image, vtkDataArray* values_array,
-                               Grid<double>& values) {
-  Grid<unsigned char> valid;
+Mask take_holes(vtkImageData* image, vtkDataArray* values_array, Grid<double>& values) {
+  Mask valid;
   vtkDataArray* const mask = mask_of(image, values_array);
   for (std::size_t i = 0; i < values.size(); ++i) {
     const bool hole =
@@ -97,10 +96,7 @@ Grid<unsigned char> take_holes(vtkImageData* image, vtkDataArray* values_array,
 template <class Placed>
 Placed placed(const Frame& f) {
   Placed p;
-  p.pitch_x_nm = f.pitch_x_nm;
-  p.pitch_y_nm = f.pitch_y_nm;
-  p.origin_x_nm = f.origin_x_nm;
-  p.origin_y_nm = f.origin_y_nm;
+  p.placement() = f.placement();
   return p;
 }
 
@@ -113,7 +109,7 @@ Grid<double> read_values(vtkImageData* image, vtkDataArray* array, const Frame& 
 }
 
 /// The mask as an array of the image, and NaN in the holes.
-void add_holes(vtkImageData* image, Grid<double>& values, Grid<unsigned char> valid) {
+void add_holes(vtkImageData* image, Grid<double>& values, Mask valid) {
   if (valid.empty()) return;
   bool holes = false;
   for (std::size_t i = 0; i < values.size(); ++i) {
@@ -140,9 +136,10 @@ Frame frame_of(vtkImageData* image, const char* subject) {
   image->GetExtent(extent);
   image->GetSpacing(spacing);
   image->GetOrigin(origin);
-  return {
-      extent[1] - extent[0] + 1,          extent[3] - extent[2] + 1,         spacing[0], spacing[1],
-      origin[0] + extent[0] * spacing[0], origin[1] + extent[2] * spacing[1]};
+  return {{spacing[0], spacing[1], origin[0] + extent[0] * spacing[0],
+           origin[1] + extent[2] * spacing[1]},
+          extent[1] - extent[0] + 1,
+          extent[3] - extent[2] + 1};
 }
 
 vtkSmartPointer<vtkImageData> make_image(const Frame& frame) {
@@ -237,8 +234,7 @@ vtkSmartPointer<vtkImageData> to_vtk(PlacedImage placed_image, const std::string
 }
 
 vtkSmartPointer<vtkImageData> to_vtk(Image source) {
-  auto image = make_image({source.width(), source.height(), source.pitch_x_nm, source.pitch_y_nm,
-                           source.origin_x_nm, source.origin_y_nm});
+  auto image = make_image({source.placement(), source.width(), source.height()});
   for (Channel& channel : source.channels)
     add_values(image, std::move(channel.values), channel.name, channel.unit.c_str());
   if (!source.channels.empty())

@@ -25,20 +25,16 @@ inline constexpr const char* heights_name = "z_nm";  // as in files that semsurf
 inline constexpr const char* mask_name = "valid";    // 0 in holes; there if there are any
 
 /// What is common to all samples of an image.
-struct Frame {
+struct Frame : Placement {
   int width = 0, height = 0;
-  double pitch_x_nm = 1, pitch_y_nm = 1;
-  double origin_x_nm = 0, origin_y_nm = 0;  // centre of sample (0, 0)
 
   friend bool operator==(const Frame&, const Frame&) = default;
 };
 
 /// Throws InvalidInput for an image that is no plane of x and y, is turned, or runs backwards.
 Frame frame_of(vtkImageData* image, const char* subject);
-template <class Placed>  // HeightField, PlacedImage
-Frame frame_of(const Grid<double>& values, const Placed& placed) {
-  return {values.width(),    values.height(),    placed.pitch_x_nm,
-          placed.pitch_y_nm, placed.origin_x_nm, placed.origin_y_nm};
+inline Frame frame_of(const Grid<double>& values, const Placement& placement) {
+  return {placement, values.width(), values.height()};
 }
 
 /// Without arrays, extent beginning at 0.

@@ -98,8 +98,7 @@ TEST_F(GwyddionNumbers, BlindTip) {
   options.width = options.height = 9;
   options.threshold_nm = 0.3;
   options.border = false;
-  BlindTipSummary summary;
-  const Tip tip = blind_tip({scan_}, options, summary);
+  const auto [tip, summary] = blind_tip({scan_}, options);
   for (int row = 0; row < 9; ++row)
     for (int column = 0; column < 9; ++column)
       EXPECT_NEAR(tip.z_nm(column, 8 - row), theirs[row][column], 3 * quantum_nm)

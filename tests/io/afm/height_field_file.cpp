@@ -21,7 +21,7 @@ HeightField field_of_f() {
   const Grid<float> f = test::letter_f();
   field.z_nm = Grid<double>(f.width(), f.height());
   for (std::size_t i = 0; i < f.size(); ++i) field.z_nm.data()[i] = 10.0 * double(f.data()[i]) - 3;
-  field.valid = Grid<unsigned char>(f.width(), f.height(), 1);
+  field.valid = Mask(f.width(), f.height(), 1);
   field.valid(4, 0) = 0;
   field.pitch_x_nm = 1.25;
   field.pitch_y_nm = 0.1;
@@ -82,7 +82,7 @@ TEST_P(HeightFieldFormats, WritesTheSameBytesEachTime) {
 
 TEST_P(HeightFieldFormats, AllHolesAreRefused) {
   HeightField field = field_of_f();
-  field.valid = Grid<unsigned char>(5, 7);
+  field.valid = Mask(5, 7);
   write_height_field(file(), field);
   EXPECT_THAT(test::complaint<InvalidInput>([&] { read_height_field(file()); }),
               HasSubstr("no pixel of its channel"));

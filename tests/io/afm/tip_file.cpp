@@ -62,10 +62,9 @@ TEST(TipFile, ADoubtStaysWithTheTip) {
 
 HeightField field_of(const Tip& tip, double sign, double shift) {
   HeightField field;
-  field.pitch_x_nm = tip.pitch_x_nm;
-  field.pitch_y_nm = tip.pitch_y_nm;
+  field.pitch() = tip.pitch();
   field.z_nm = tip.z_nm;
-  field.valid = Grid<unsigned char>(tip.z_nm.width(), tip.z_nm.height(), 1);
+  field.valid = Mask(tip.z_nm.width(), tip.z_nm.height(), 1);
   for (std::size_t i = 0; i < field.z_nm.size(); ++i) {
     double& z = field.z_nm.data()[i];
     if (z == nothing) field.valid.data()[i] = 0;

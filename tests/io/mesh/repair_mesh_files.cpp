@@ -46,8 +46,7 @@ TEST(RepairMeshFiles, AllBecomeSoundOrSayWhatRemains) {
       } catch (const FileError&) {
         continue;  // mesh_file_real.cpp looks at these
       }
-      RepairSummary s;
-      const TriangleMesh mended = repair_mesh(mesh, {}, s);
+      const auto [mended, s] = repair_mesh(mesh);
       ++seen;
       sound += s.sound();
       EXPECT_LE(edge_faults(s.after), edge_faults(s.before));
@@ -63,11 +62,12 @@ TEST(RepairMeshFiles, AllBecomeSoundOrSayWhatRemains) {
       }
       // Whatever is allowed, it ends and makes nothing worse.
       RepairSummary all;
-      repair_mesh(mesh, {.sliver_nm = 1e-3 * length(bounds(mesh).size_nm()), .max_hole_nm = 1e30},
-                  all);
+      all = repair_mesh(mesh,
+                        {.sliver_nm = 1e-3 * length(bounds(mesh).size_nm()), .max_hole_nm = 1e30})
+                .summary;
       EXPECT_LE(edge_faults(all.after), edge_faults(all.before));
       RepairSummary again;
-      repair_mesh(mended, {}, again);
+      again = repair_mesh(mended).summary;
       EXPECT_LE(edge_faults(again.after), edge_faults(s.after));
       EXPECT_LE(again.self_intersections_after, s.self_intersections_after);
     }

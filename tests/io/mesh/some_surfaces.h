@@ -37,7 +37,7 @@ inline Surface wavy_sheet(const std::string& name, int n, const Vec3& corner_nm)
 
 /// An F in grey, which no flip leaves as it is.
 inline Drape letter_f_drape() {
-  Drape drape{"SE \xC3\xA9", Grid<std::uint8_t>(5, 7, 40), 0.8, 0.6, 0.25, -1e-3};
+  Drape drape{{0.8, 0.6, 0.25, -1e-3}, "SE \xC3\xA9", Grid<std::uint8_t>(5, 7, 40)};
   const char* const rows[7] = {".....", ".###.", ".#...", ".##..", ".#...", ".#...", "o...."};
   for (int y = 0; y < 7; ++y) {
     for (int x = 0; x < 5; ++x) {

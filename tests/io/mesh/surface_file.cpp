@@ -212,7 +212,7 @@ TEST(SurfaceFile, StlSaysInItsHeaderWhatFits) {
 
 TEST(SurfaceFile, ObjPutsEachVertexOnThePixelAboveIt) {
   const TemporaryFolder folder;
-  Drape drape{"SE", Grid<std::uint8_t>(4, 2), 10, 5, 100, 50};
+  Drape drape{{10, 5, 100, 50}, "SE", Grid<std::uint8_t>(4, 2)};
   SurfaceScene scene;
   scene.surfaces = {{"t",
                      {{{100, 50, 0}, {130, 50, 0}, {115, 55, 7}, {0, 0, 0}, {999, 999, 0}},

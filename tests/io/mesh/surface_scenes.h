@@ -15,7 +15,7 @@ namespace surf::test {
 
 /// 3 x 4 pixels, no two equal, placed unevenly over the letter.
 inline Drape picture() {
-  Drape drape{"SE in-lens", Grid<std::uint8_t>(3, 4), 1.25, 0.7, 1.0 / 3, 0.25};
+  Drape drape{{1.25, 0.7, 1.0 / 3, 0.25}, "SE in-lens", Grid<std::uint8_t>(3, 4)};
   for (std::size_t i = 0; i < drape.grey.size(); ++i)
     drape.grey.data()[i] = static_cast<std::uint8_t>(3 + 21 * i);
   return drape;

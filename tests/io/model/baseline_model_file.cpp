@@ -35,7 +35,7 @@ TEST(BaselineModelFile, ComesBackToTheLastDigit) {
     EXPECT_EQ(back.scope, model.scope);
     write_model(again, back);
     EXPECT_EQ(read_file(file), read_file(again));
-    HeightField field{Grid<double>(5, 4), {}, model.scope.pixel_nm, model.scope.pixel_nm};
+    HeightField field{{model.scope.pixel_nm, model.scope.pixel_nm}, Grid<double>(5, 4)};
     field.z_nm(2, 2) = 0.1;
     EXPECT_EQ(make_model(back)->predict(field), make_model(model)->predict(field));
     EXPECT_EQ(make_model(back)->channels(), make_model(model)->channels());

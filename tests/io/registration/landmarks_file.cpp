@@ -17,8 +17,8 @@ class LandmarksFile : public testing::Test {
  protected:
   std::vector<LandmarkPair> read(const std::string& text) {
     write_text(folder_.path() / "marks.csv", text);
-    const PlacedImage sem{Grid<double>(4, 4), {}, 2, 3, 10, 20},
-        afm{Grid<double>(4, 4), {}, 5, 5, -1, -2};
+    const PlacedImage sem{{2, 3, 10, 20}, Grid<double>(4, 4)},
+        afm{{5, 5, -1, -2}, Grid<double>(4, 4)};
     return read_landmarks(folder_.path() / "marks.csv", sem, afm);
   }
   std::string failure(const std::string& text) {

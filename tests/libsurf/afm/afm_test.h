@@ -8,6 +8,7 @@
 
 #include "surf/afm/tip.h"
 #include "surf/core/height_field.h"
+#include "surf/core/mask.h"
 #include "surf/core/random.h"
 
 namespace surf::test {
@@ -29,8 +30,8 @@ inline double random_normal(RandomStream& random) {
 inline HeightField random_field(std::uint64_t seed, int width, int height, double step,
                                 double holes = 0) {
   RandomStream random(seed, 1, 0);
-  HeightField field{Grid<double>(width, height), {}, 1.5, 2, 10, -20};
-  if (holes > 0) field.valid = Grid<unsigned char>(width, height, 1);
+  HeightField field{{1.5, 2, 10, -20}, Grid<double>(width, height)};
+  if (holes > 0) field.valid = Mask(width, height, 1);
   for (std::size_t i = 0; i < field.z_nm.size(); ++i) {
     field.z_nm.data()[i] = 7 + random_height(random, 10, step);
     if (holes > 0 && random.uniform() < holes) {
@@ -45,7 +46,7 @@ inline HeightField random_field(std::uint64_t seed, int width, int height, doubl
 inline Tip random_tip(std::uint64_t seed, int width, int height, double step,
                       double missing = 0.1) {
   RandomStream random(seed, 2, 0);
-  Tip tip{Grid<double>(width, height), 1.5, 2, width / 3, 2 * height / 3};
+  Tip tip{{1.5, 2}, Grid<double>(width, height), width / 3, 2 * height / 3};
   for (double& z : tip.z_nm.data())
     z = random.uniform() < missing ? none : random_height(random, 6, step);
   tip.z_nm(tip.apex_x, tip.apex_y) = 0;

@@ -37,9 +37,9 @@ TEST(FitPlane, FindsAPlaneInRealUnits) {
 
 TEST(FitPlane, LeavesOutHolesAndMaskedSamples) {
   HeightField f = field_of(31, 17, tilted);
-  f.valid = Grid<unsigned char>(31, 17, 1);
+  f.valid = Mask(31, 17, 1);
   f.valid(3, 3) = 0, f.z_nm(3, 3) = NAN;
-  Grid<unsigned char> use(31, 17, 1);
+  Mask use(31, 17, 1);
   for (int y = 0; y < 9; ++y)
     for (int x = 12; x < 31; ++x) use(x, y) = 0, f.z_nm(x, y) += 500;
   const Plane p = fit_plane(f, use);
@@ -52,7 +52,7 @@ TEST(FitPlane, LeavesOutHolesAndMaskedSamples) {
 
 TEST(FitPolynomial, ReproducesPolynomialsOfItsDegreeFromACornerOfTheImage) {
   const HeightField f = field_of(40, 30, cubic);
-  Grid<unsigned char> use(40, 30, 0);
+  Mask use(40, 30, 0);
   for (int y = 20; y < 30; ++y)
     for (int x = 0; x < 9; ++x) use(x, y) = 1;
   for (const Grid<double>& fitted :
@@ -70,10 +70,10 @@ TEST(FitPolynomial, OfDegreeZeroIsTheMean) {
 
 TEST(FitPlane, RefusesSamplesThatDetermineNone) {
   const HeightField f = field_of(9, 9, tilted);
-  Grid<unsigned char> row(9, 9, 0), diagonal(9, 9, 0), none(9, 9, 0);
+  Mask row(9, 9, 0), diagonal(9, 9, 0), none(9, 9, 0);
   for (int i = 0; i < 9; ++i) row(i, 4) = 1, diagonal(i, i) = 1;
   for (const auto& use : {row, diagonal, none}) EXPECT_THROW(fit_plane(f, use), InvalidInput);
-  EXPECT_THROW(fit_plane(f, Grid<unsigned char>(3, 3, 1)), InvalidInput);
+  EXPECT_THROW(fit_plane(f, Mask(3, 3, 1)), InvalidInput);
   EXPECT_THROW(fit_polynomial(f, 7), UsageError);
   EXPECT_THROW(fit_polynomial(f, -1), UsageError);
 }

@@ -23,8 +23,7 @@ double error_of_estimate(double alpha, double apart_nm, std::uint64_t seed) {
   BestTipOptions options;
   options.width = options.height = twin.tip.z_nm.width();
   options.noise = noise_of(alpha);
-  BestTipSummary summary;
-  const Tip tip = best_tip(twin.scans, options, summary);
+  const auto [tip, summary] = best_tip(twin.scans, options);
   return twin.error_of(tip);
 }
 
@@ -46,18 +45,18 @@ TEST(BestTip, IsTheSameForAnyThreadsAndStops) {
   BestTipOptions options;
   options.width = options.height = twin.tip.z_nm.width();
   options.noise = noise_of(0);
-  BestTipSummary summary;
   options.threads = 1;
-  const Tip one = best_tip(twin.scans, options, summary);
+  const auto [one, summary] = best_tip(twin.scans, options);
   EXPECT_GT(summary.touched, 0);
   options.threads = 3;
-  EXPECT_TRUE(best_tip(twin.scans, options, summary).z_nm == one.z_nm);
+  EXPECT_TRUE(best_tip(twin.scans, options).tip.z_nm == one.z_nm);
   options.noise.alpha = 1;
-  EXPECT_THROW(best_tip(twin.scans, options, summary), InvalidInput);
+  EXPECT_THROW(best_tip(twin.scans, options), InvalidInput);
   CancelToken cancel;
   cancel.cancel();
   options.noise.alpha = 0;
-  best_tip(twin.scans, options, summary, {}, &cancel);  // comes back
+  options.watch.cancel = &cancel;
+  EXPECT_THROW(best_tip(twin.scans, options), Interrupted);
 }
 
 }  // namespace

@@ -21,7 +21,7 @@ const Tip cone = conical_tip(8, 0.35, {1, 1, 31, 31});
 
 /// Waves, trenches of 4 nm that the tip does not enter, and lines 12 nm high.
 HeightField specimen() {
-  HeightField s{Grid<double>(size, size), {}, 1, 1, 0, 0};
+  HeightField s{{}, Grid<double>(size, size)};
   for (int y = 0; y < size; ++y)
     for (int x = 0; x < size; ++x)
       s.z_nm(x, y) = 3 * std::sin(0.11 * x) * std::cos(0.07 * y) + (x > 60 && x / 16 % 2 ? 12 : 0) -
@@ -36,10 +36,9 @@ HeightField noisy(HeightField image, double sigma, std::uint64_t seed) {
 }
 
 /// The definition of Pingali and Jain, word by word, on what the image shows.
-Grid<unsigned char> classical(const HeightField& image, const Grid<double>& r, const Tip& t,
-                              double tolerance) {
+Mask classical(const HeightField& image, const Grid<double>& r, const Tip& t, double tolerance) {
   const int w = image.z_nm.width(), h = image.z_nm.height();
-  Grid<unsigned char> certain(w, h, 0);
+  Mask certain(w, h, 0);
   for (int y = 0; y < h; ++y)
     for (int x = 0; x < w; ++x) {
       int contacts = 0, cx = 0, cy = 0;
@@ -101,7 +100,7 @@ TEST(Certainty, WithoutNoiseItIsTheClassicalMap) {
   const HeightField image = dilate(random_field(1, 30, 26, 1.0 / 64), tip);
   const CertaintyMap map = certainty_map(image, tip);
   EXPECT_EQ(map.neighbourhood, 0);
-  const Grid<unsigned char> expected = classical(image, map.surface.z_nm, tip, map.tolerance_nm);
+  const Mask expected = classical(image, map.surface.z_nm, tip, map.tolerance_nm);
   std::size_t certain = 0;
   for (std::size_t i = 0; i < expected.size(); ++i) {
     EXPECT_EQ(map.level.data()[i] == 0, expected.data()[i] == 1) << i;
@@ -142,7 +141,7 @@ TEST(Certainty, HoldsWithNoise) {
 
 // Wider than the neighbourhood: narrower ones cannot be told from the rim beside them.
 TEST(Certainty, BottomsTheTipDoesNotReachAreUncertain) {
-  HeightField truth{Grid<double>(60, 40, 0.0), {}, 1, 1, 0, 0};
+  HeightField truth{{}, Grid<double>(60, 40, 0.0)};
   for (int y = 0; y < 40; ++y)
     for (int x = 24; x < 36; ++x) truth.z_nm(x, y) = -30;
   const HeightField image = noisy(dilate(truth, cone), 0.05, 3);
@@ -166,7 +165,7 @@ TEST(Certainty, WhatTouchedOutsideIsNotTakenForInside) {
   HeightField whole = specimen();
   for (int y = 0; y < size; y += 5) whole.z_nm(38, y) = 25;
   const HeightField image = dilate(whole, cone);
-  HeightField truth{Grid<double>(60, 60), {}, 1, 1, 0, 0}, part = truth;
+  HeightField truth{{}, Grid<double>(60, 60)}, part = truth;
   for (int y = 0; y < 60; ++y)
     for (int x = 0; x < 60; ++x) {
       truth.z_nm(x, y) = whole.z_nm(x + 40, y + 30);
@@ -191,7 +190,7 @@ TEST(Certainty, UnexplainedPixelsAreCounted) {
 
 TEST(Certainty, HolesAndThreads) {
   HeightField image = noisy(dilate(specimen(), cone), 0.1, 5);
-  image.valid = Grid<unsigned char>(size, size, 1);
+  image.valid = Mask(size, size, 1);
   for (int y = 20; y < 60; ++y)
     for (int x = 20; x < 70; ++x) image.valid(x, y) = 0;
   const CertaintyMap one = certainty_map(image, cone, {.noise_nm = 0.1, .threads = 1});
@@ -209,7 +208,7 @@ TEST(Certainty, RefusesWhatIsOutOfRange) {
 }
 
 TEST(PixelNoise, IsFoundOnASmoothSurface) {
-  HeightField image{Grid<double>(200, 200), {}, 1, 1, 0, 0};
+  HeightField image{{}, Grid<double>(200, 200)};
   for (int y = 0; y < 200; ++y)
     for (int x = 0; x < 200; ++x) image.z_nm(x, y) = 100 + 0.3 * x + 5 * std::sin(0.05 * y);
   EXPECT_NEAR(pixel_noise_nm(noisy(image, 0.2, 11)), 0.2, 0.006);

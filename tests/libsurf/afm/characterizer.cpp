@@ -17,7 +17,7 @@ using namespace test;
 
 /// Sharp spikes.
 HeightField spikes() {
-  HeightField f{Grid<double>(100, 90, 0.0), {}, 1, 1, 0, 0};
+  HeightField f{{}, Grid<double>(100, 90, 0.0)};
   for (const auto& [x, y] : {std::pair{40, 45}, {60, 40}, {50, 55}}) f.z_nm(x, y) = 200;
   return f;
 }
@@ -75,7 +75,7 @@ TEST(Characterizer, Refuses) {
   EXPECT_THROW(tip_from_characterizer(spikes(), spikes(), {.width = 0}), InvalidInput);
   EXPECT_THROW(tip_from_characterizer(spikes(), spikes(), {.search = 60}), InvalidInput);
   HeightField holes = spikes();
-  holes.valid = Grid<unsigned char>(100, 90, 0);
+  holes.valid = Mask(100, 90, 0);
   EXPECT_THROW(tip_from_characterizer(holes, spikes(), {.width = 9, .height = 9}), InvalidInput);
 }
 

@@ -18,7 +18,7 @@ namespace {
 HeightField noisy(int width, int height, double holes) {
   HeightField f;
   f.z_nm = simulate_noise({0.5, 1}, width, height, 4);
-  f.valid = Grid<unsigned char>(width, height, 1);
+  f.valid = Mask(width, height, 1);
   RandomStream random(3, 0, 0);
   for (std::size_t i = 0; i < f.z_nm.size(); ++i) {
     if (i % 3 == 0) f.z_nm.data()[i] = std::round(f.z_nm.data()[i]);
@@ -50,8 +50,7 @@ TEST(MedianFilter, IsTheSortedMiddleOfEachNeighbourhood) {
     for (const int radius : {0, 1, 2, 5, 40}) {
       const HeightField f = noisy(37, 29, 0.2);
       const MedianOptions o{.radius = radius, .neighbourhood = shape};
-      CleanSummary s;
-      const HeightField out = median_filter(f, o, s);
+      const auto [out, s] = median_filter(f, o);
       for (int y = 0; y < 29; ++y)
         for (int x = 0; x < 37; ++x) {
           if (f.is_valid(x, y))
@@ -66,18 +65,16 @@ TEST(MedianFilter, IsTheSortedMiddleOfEachNeighbourhood) {
 
 TEST(MedianFilter, GivesTheSameForAnyNumberOfThreads) {
   const HeightField f = noisy(70, 130, 0);
-  CleanSummary s;
-  const Grid<double> one = median_filter(f, {.radius = 3, .threads = 1}, s).z_nm;
+  const Grid<double> one = median_filter(f, {.radius = 3, .threads = 1}).field.z_nm;
   for (const int threads : {2, 5})
-    EXPECT_EQ(median_filter(f, {.radius = 3, .threads = threads}, s).z_nm, one);
+    EXPECT_EQ(median_filter(f, {.radius = 3, .threads = threads}).field.z_nm, one);
 }
 
 TEST(MedianFilter, FillsHolesIfAskedAndIfItCan) {
   HeightField f = noisy(20, 20, 0);
   for (int y = 5; y < 12; ++y)
     for (int x = 5; x < 12; ++x) f.valid(x, y) = 0;
-  CleanSummary s;
-  const HeightField out = median_filter(f, {.radius = 1, .fill_holes = true}, s);
+  const auto [out, s] = median_filter(f, {.radius = 1, .fill_holes = true});
   EXPECT_EQ(s.filled, 49u - 25);
   EXPECT_EQ(s.holes, 25u);
   EXPECT_EQ(out.z_nm(5, 5), median_by_sorting(f, {.radius = 1}, 5, 5));
@@ -89,8 +86,7 @@ TEST(MedianFilter, WithALimitTakesSpikesAndLeavesTheRest) {
   for (double& z : f.z_nm.data()) z *= 0.01;
   const Grid<double> before = f.z_nm;
   f.z_nm(7, 9) = 30, f.z_nm(0, 0) = -30;
-  CleanSummary s;
-  const HeightField out = median_filter(f, {.radius = 1, .limit_nm = 1}, s);
+  const auto [out, s] = median_filter(f, {.radius = 1, .limit_nm = 1});
   EXPECT_EQ(s.changed, 2u);
   for (int y = 0; y < 40; ++y)
     for (int x = 0; x < 40; ++x) {
@@ -101,10 +97,9 @@ TEST(MedianFilter, WithALimitTakesSpikesAndLeavesTheRest) {
 }
 
 TEST(MedianFilter, RefusesImpossibleOptions) {
-  CleanSummary s;
-  EXPECT_THROW(median_filter(noisy(5, 5, 0), {.radius = -1}, s), UsageError);
-  EXPECT_THROW(median_filter(noisy(5, 5, 0), {.limit_nm = -1}, s), UsageError);
-  EXPECT_THROW(median_filter(noisy(5, 5, 0), {.limit_nm = NAN}, s), UsageError);
+  EXPECT_THROW(median_filter(noisy(5, 5, 0), {.radius = -1}), UsageError);
+  EXPECT_THROW(median_filter(noisy(5, 5, 0), {.limit_nm = -1}), UsageError);
+  EXPECT_THROW(median_filter(noisy(5, 5, 0), {.limit_nm = NAN}), UsageError);
 }
 
 /// The highest (sign 1) or the lowest (-1) of a square, by looking at all of it.
@@ -126,8 +121,7 @@ HeightField extreme(const HeightField& f, int width, int sign) {
 TEST(FlatClosing, IsTheLowestOfTheHighest) {
   for (const int width : {1, 3, 7, 61}) {
     const HeightField f = noisy(37, 29, 0.2);
-    CleanSummary s;
-    const HeightField out = flat_closing(f, {.width = width}, s);
+    const auto [out, s] = flat_closing(f, {.width = width});
     const HeightField expected = extreme(extreme(f, width, 1), width, -1);
     for (int y = 0; y < 29; ++y)
       for (int x = 0; x < 37; ++x)
@@ -140,12 +134,12 @@ TEST(FlatClosing, IsTheLowestOfTheHighest) {
 
 TEST(FlatClosing, OnlyRaisesAndTwiceIsOnce) {
   const HeightField f = noisy(64, 50, 0);
-  CleanSummary s;
-  const HeightField once = flat_closing(f, {.width = 5}, s);
+  const auto [once, s] = flat_closing(f, {.width = 5});
   EXPECT_GT(s.changed, 0u);
   for (std::size_t i = 0; i < f.z_nm.size(); ++i) EXPECT_GE(once.z_nm.data()[i], f.z_nm.data()[i]);
-  EXPECT_EQ(flat_closing(once, {.width = 5}, s).z_nm, once.z_nm);
-  EXPECT_EQ(s.changed, 0u);
+  const Cleaned twice = flat_closing(once, {.width = 5});
+  EXPECT_EQ(twice.field.z_nm, once.z_nm);
+  EXPECT_EQ(twice.summary.changed, 0u);
 }
 
 TEST(FlatClosing, FillsNarrowPitsToTheirRimAndLeavesWideOnes) {
@@ -155,8 +149,7 @@ TEST(FlatClosing, FillsNarrowPitsToTheirRimAndLeavesWideOnes) {
     for (const int x : {4, 5}) f.z_nm(x, y) = 0;
     for (int x = 12; x < 25; ++x) f.z_nm(x, y) = 0;
   }
-  CleanSummary s;
-  const HeightField out = flat_closing(f, {.width = 3}, s);
+  const auto [out, s] = flat_closing(f, {.width = 3});
   EXPECT_EQ(out.z_nm(4, 10), 5);
   EXPECT_EQ(out.z_nm(18, 10), 0);
   EXPECT_EQ(out.z_nm(12, 3), 0) << "corners of the wide pit stay";
@@ -167,8 +160,7 @@ TEST(FlatClosing, FillsHolesItReaches) {
   HeightField f = noisy(20, 20, 0);
   for (int y = 5; y < 14; ++y)
     for (int x = 5; x < 14; ++x) f.valid(x, y) = 0;
-  CleanSummary s;
-  const HeightField out = flat_closing(f, {.width = 3, .fill_holes = true}, s);
+  const auto [out, s] = flat_closing(f, {.width = 3, .fill_holes = true});
   EXPECT_EQ(s.filled + s.holes, 81u);
   EXPECT_TRUE(out.is_valid(5, 5));
   EXPECT_TRUE(std::isfinite(out.z_nm(5, 5)));
@@ -176,9 +168,8 @@ TEST(FlatClosing, FillsHolesItReaches) {
 }
 
 TEST(FlatClosing, RefusesEvenWidths) {
-  CleanSummary s;
   for (const int width : {0, 4, -3, 100001})
-    EXPECT_THROW(flat_closing(noisy(5, 5, 0), {.width = width}, s), UsageError);
+    EXPECT_THROW(flat_closing(noisy(5, 5, 0), {.width = width}), UsageError);
 }
 
 }  // namespace

@@ -26,9 +26,9 @@ HeightField substrate(int width, int height) {
 }
 
 /// Pillars of 16 x 16 samples with sloping tops of random heights stand on all but `share` of it.
-HeightField under_pillars(int size, double share, Grid<unsigned char>& bare) {
+HeightField under_pillars(int size, double share, Mask& bare) {
   HeightField f = substrate(size, size);
-  bare = Grid<unsigned char>(size, size, 1);
+  bare = Mask(size, size, 1);
   RandomStream random(1, 0, 0);
   for (int j = 0; j < size; j += 16) {
     for (int i = 0; i < size; i += 16) {
@@ -49,7 +49,7 @@ void expect_substrate(const HeightField& f, const HoughSummary& s, double off_nm
 }
 
 TEST(FindPlane, FindsASubstrateThatIsLessThanAThirdOfTheImage) {
-  Grid<unsigned char> bare;
+  Mask bare;
   const HeightField f = under_pillars(256, 0.27, bare);
   const HoughSummary s = find_plane(f);
   expect_substrate(f, s, 0.1);
@@ -98,8 +98,8 @@ TEST(FindPlane, SaysWhenThereIsNoPlane) {
 TEST(FindPlane, IsNotMisledByHolesMasksSpikesOrHeightsFarFromZero) {
   HeightField f = substrate(200, 120);
   f.z_nm(5, 5) = 1e6, f.z_nm(100, 70) = -1e5;
-  f.valid = Grid<unsigned char>(200, 120, 1);
-  Grid<unsigned char> use(200, 120, 1);
+  f.valid = Mask(200, 120, 1);
+  Mask use(200, 120, 1);
   for (int y = 0; y < 120; ++y) {
     f.valid(9, y) = 0, f.z_nm(9, y) = NAN;
     for (int x = 40; x < 190; ++x) f.z_nm(x, y) += 50, use(x, y) = 0;
@@ -122,7 +122,7 @@ TEST(FindPlane, OfAnExactPlaneIsThatPlane) {
 }
 
 TEST(FindPlane, KeepsToAToleranceThatIsGiven) {
-  Grid<unsigned char> bare;
+  Mask bare;
   const HoughSummary s = find_plane(under_pillars(256, 0.5, bare), {.tolerance_nm = 0.3});
   EXPECT_EQ(s.tolerance_nm, 0.3);
   EXPECT_NEAR(s.inlier_share, 0.5 * std::erf(0.3 / sigma_nm / std::sqrt(2.0)), 0.05);
@@ -130,7 +130,7 @@ TEST(FindPlane, KeepsToAToleranceThatIsGiven) {
 
 TEST(FindPlane, RefusesTooLittle) {
   EXPECT_THROW(find_plane(substrate(9, 9), {.tolerance_nm = -1}), UsageError);
-  EXPECT_THROW(find_plane(substrate(9, 9), {}, Grid<unsigned char>(9, 9, 0)), InvalidInput);
+  EXPECT_THROW(find_plane(substrate(9, 9), {}, Mask(9, 9, 0)), InvalidInput);
   HeightField tiny = substrate(2, 2);
   EXPECT_NO_THROW(find_plane(tiny));
 }

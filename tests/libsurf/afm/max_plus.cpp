@@ -8,6 +8,7 @@
 #include <string>
 
 #include "surf/core/random.h"
+#include "vector_targets.h"
 
 namespace surf::max_plus {
 namespace {
@@ -52,30 +53,25 @@ Naive naive(const Grid<Quanta>& a, const Grid<Quanta>& b, int apex_x, int apex_y
   return out;
 }
 
-void expect_like_naive(const Grid<Quanta>& a, const Grid<Quanta>& b, int apex_x, int apex_y,
-                       Unit unit) {
+void expect_like_naive(const Grid<Quanta>& a, const Grid<Quanta>& b, int apex_x, int apex_y) {
   const Naive expected = naive(a, b, apex_x, apex_y);
   Grid<Quanta> sum;
   Grid<std::int32_t> contact;
   for (const int threads : {1, 3}) {
-    convolve(a, b, apex_x, apex_y, threads, sum, nullptr, unit);
+    convolve(a, b, apex_x, apex_y, threads, sum);
     EXPECT_EQ(sum, expected.sum);
-    convolve(a, b, apex_x, apex_y, threads, sum, &contact, unit);
+    convolve(a, b, apex_x, apex_y, threads, sum, &contact);
     EXPECT_EQ(sum, expected.sum);
     EXPECT_EQ(contact, expected.contact);
   }
 }
 
-class MaxPlus : public testing::TestWithParam<Unit> {
- protected:
-  void SetUp() override {
-    if (!is_available(GetParam())) GTEST_SKIP() << "this machine has no such vector unit";
-  }
+class MaxPlus : public testing::TestWithParam<std::int64_t> {
+  const test::OnlyTarget target_{GetParam()};
 };
 
-std::string name_of(const testing::TestParamInfo<Unit>& unit) {
-  constexpr const char* names[] = {"best", "portable", "avx2", "avx512"};
-  return names[static_cast<int>(unit.param)];
+std::string name_of(const testing::TestParamInfo<std::int64_t>& target) {
+  return test::name_of_target(target.param);
 }
 
 }  // namespace
@@ -94,7 +90,7 @@ TEST_P(MaxPlus, IsTheDefinition) {
         SCOPED_TRACE(testing::Message() << c.w << " x " << c.h << " by " << c.tw << " x " << c.th
                                         << ", depth " << depth << ", holes " << holes);
         expect_like_naive(random_grid(1, c.w, c.h, depth, holes),
-                          random_grid(2, c.tw, c.th, depth, holes / 2), c.ax, c.ay, GetParam());
+                          random_grid(2, c.tw, c.th, depth, holes / 2), c.ax, c.ay);
       }
 }
 
@@ -108,7 +104,7 @@ TEST_P(MaxPlus, LeavesOutOnlyWhatCannotCount) {
       b(x, y) = -std::min((x - 4) * (x - 4) + (y - 20) * (y - 20),
                           2 * ((x - 27) * (x - 27) + (y - 2) * (y - 2))) *
                 25;
-  expect_like_naive(a, b, 4, 20, GetParam());
+  expect_like_naive(a, b, 4, 20);
 }
 
 TEST_P(MaxPlus, HoldsTheWholeRange) {
@@ -116,12 +112,10 @@ TEST_P(MaxPlus, HoldsTheWholeRange) {
   a.data() = {0, lowest, unknown};
   b.data() = {0, lowest};
   Grid<Quanta> sum;
-  convolve(a, b, 0, 0, 1, sum, nullptr, GetParam());
+  convolve(a, b, 0, 0, 1, sum);
   EXPECT_EQ(sum.data(), (std::vector<Quanta>{0, lowest, unknown}));
 }
 
-INSTANTIATE_TEST_SUITE_P(Units, MaxPlus,
-                         testing::Values(Unit::portable, Unit::avx2, Unit::avx512, Unit::best),
-                         name_of);
+INSTANTIATE_TEST_SUITE_P(Targets, MaxPlus, testing::ValuesIn(test::vector_targets()), name_of);
 
 }  // namespace surf::max_plus

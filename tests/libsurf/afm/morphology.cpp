@@ -130,7 +130,7 @@ TEST(Morphology, WhatIsKnownAtTheBorderIsABoundOfTheWhole) {
   const HeightField whole = random_field(11, 40, 30, step);
   const Tip tip = random_tip(12, 7, 7, step);
   HeightField part = whole;
-  part.valid = Grid<unsigned char>(40, 30, 0);
+  part.valid = Mask(40, 30, 0);
   for (int y = 8; y < 22; ++y)
     for (int x = 8; x < 32; ++x) part.valid(x, y) = 1;
   EXPECT_TRUE(is_below(dilate(part, tip, exact), dilate(whole, tip, exact)));
@@ -185,9 +185,9 @@ TEST(Morphology, UpsampledIsTheFineOneSampled) {
 
 // With the sphere sampled at a third of the pitch, a spike's image is rounder than with all of it.
 TEST(Noncontact, IsFinerOnAFinerGrid) {
-  HeightField spike{Grid<double>(21, 21, 0.0), {}, 2, 2, 0, 0};
+  HeightField spike{{2, 2}, Grid<double>(21, 21, 0.0)};
   spike.z_nm(10, 10) = 30;
-  const Tip point{Grid<double>(1, 1, 0.0), 2, 2, 0, 0};
+  const Tip point{{2, 2}, Grid<double>(1, 1, 0.0), 0, 0};
   const HeightField fine = dilate_noncontact(spike, point, 5, {.upsample = 4});
   EXPECT_TRUE(is_below(dilate_noncontact(spike, point, 5), fine));
   EXPECT_FALSE(is_below(fine, dilate_noncontact(spike, point, 5)));
@@ -195,7 +195,7 @@ TEST(Noncontact, IsFinerOnAFinerGrid) {
 }
 
 TEST(Noncontact, LiftsAPlaneAndRoundsAStepBySphereAndTip) {
-  HeightField step_field{Grid<double>(60, 8, 0.0), {}, 1, 1, 0, 0};
+  HeightField step_field{{}, Grid<double>(60, 8, 0.0)};
   for (int y = 0; y < 8; ++y)
     for (int x = 30; x < 60; ++x) step_field.z_nm(x, y) = 20;
   const Tip sharp = conical_tip(0, 1e-3, {1, 1, 41, 41});
@@ -236,7 +236,7 @@ TEST(Morphology, RefusesWhatCannotBeUsed) {
   EXPECT_THROW(dilate_noncontact(field, tip, -1), InvalidInput);
   EXPECT_THROW(erode_noncontact(field, tip, std::nan("")), InvalidInput);
   HeightField nothing = field;
-  nothing.valid = Grid<unsigned char>(8, 8, 0);
+  nothing.valid = Mask(8, 8, 0);
   EXPECT_THROW(erode(nothing, tip), InvalidInput);
   HeightField huge = field;
   huge.z_nm(2, 2) = 1e300;
@@ -245,8 +245,8 @@ TEST(Morphology, RefusesWhatCannotBeUsed) {
 
 TEST(Morphology, FlatStaysFlat) {
   for (const double z : {0.0, 1e5, -3.25}) {
-    const HeightField flat{Grid<double>(5, 4, z), {}, 1, 1, 0, 0};
-    const Tip point{Grid<double>(1, 1, 0.0), 1, 1, 0, 0};
+    const HeightField flat{{}, Grid<double>(5, 4, z)};
+    const Tip point{{1, 1}, Grid<double>(1, 1, 0.0), 0, 0};
     EXPECT_EQ(dilate(flat, point).z_nm, flat.z_nm);
     EXPECT_EQ(erode(flat, point).z_nm, flat.z_nm);
   }

@@ -12,8 +12,8 @@ namespace surf {
 namespace {
 
 /// Holes of one, two and many columns, at the start and the end of rows, and a row of holes.
-Grid<unsigned char> some_holes(int width, int height) {
-  Grid<unsigned char> valid(width, height, 1);
+Mask some_holes(int width, int height) {
+  Mask valid(width, height, 1);
   valid(3, 0) = 0;
   valid(0, 1) = valid(1, 1) = valid(width - 1, 1) = 0;
   for (int x = 0; x < width; ++x) valid(x, 2) = 0;
@@ -22,8 +22,7 @@ Grid<unsigned char> some_holes(int width, int height) {
 }
 
 /// The density of a row by its whole covariance matrix, s^2 alpha^|i - j|, by Gaussian elimination.
-double dense_log_likelihood(const Grid<double>& e, const AfmNoise& noise,
-                            const Grid<unsigned char>& valid) {
+double dense_log_likelihood(const Grid<double>& e, const AfmNoise& noise, const Mask& valid) {
   double total = 0;
   for (int y = 0; y < e.height(); ++y) {
     std::vector<int> at;
@@ -78,7 +77,7 @@ TEST(AfmNoise, WithoutInnovationIsZero) {
 TEST(Whiten, MakesIndependentStandardNormalNumbersOfTheNoiseWithHolesToo) {
   const AfmNoise noise{0.7, 0.04};
   constexpr int rows = 20000, width = 8;
-  Grid<unsigned char> valid(width, rows, 1);
+  Mask valid(width, rows, 1);
   for (int y = 0; y < rows; ++y) valid(3, y) = valid(4, y) = 0;
   const Grid<double> w = whiten(simulate_noise(noise, width, rows, 5), noise, valid);
   for (const int x : {0, 1, 2, 5, 6}) {
@@ -95,18 +94,18 @@ TEST(Whiten, MakesIndependentStandardNormalNumbersOfTheNoiseWithHolesToo) {
 }
 
 TEST(LogLikelihood, IsThatOfTheWholeCovarianceMatrix) {
-  const Grid<unsigned char> valid = some_holes(9, 5);
+  const Mask valid = some_holes(9, 5);
   for (const double alpha : {-0.6, 0.0, 0.3, 0.95}) {
     const AfmNoise noise{alpha, 0.3};
     const Grid<double> e = simulate_noise({0.4, 2}, 9, 5, 11);
     EXPECT_NEAR(log_likelihood(e, noise, valid), dense_log_likelihood(e, noise, valid), 1e-9);
-    const Grid<unsigned char> whole(9, 5, 1);
+    const Mask whole(9, 5, 1);
     EXPECT_NEAR(log_likelihood(e, noise), dense_log_likelihood(e, noise, whole), 1e-9);
   }
 }
 
 TEST(LogLikelihood, HasTheGradientOfFiniteDifferences) {
-  const Grid<unsigned char> valid = some_holes(9, 5);
+  const Mask valid = some_holes(9, 5);
   const AfmNoise noise{0.825, 0.201};
   Grid<double> e = simulate_noise(noise, 9, 5, 2), gradient;
   log_likelihood(e, noise, valid, &gradient);
@@ -122,7 +121,7 @@ TEST(LogLikelihood, HasTheGradientOfFiniteDifferences) {
 }
 
 TEST(LogLikelihood, IgnoresWhatIsInHoles) {
-  const Grid<unsigned char> valid = some_holes(9, 5);
+  const Mask valid = some_holes(9, 5);
   Grid<double> e = simulate_noise({0.5, 1}, 9, 5, 2);
   const double before = log_likelihood(e, {0.5, 1}, valid);
   e(3, 0) = std::numeric_limits<double>::quiet_NaN();
@@ -136,7 +135,7 @@ TEST(AfmNoise, RefusesImpossibleModelsAndSizes) {
   EXPECT_THROW(simulate_noise({0, 1}, 0, 2, 1), UsageError);
   EXPECT_THROW(log_likelihood(Grid<double>(2, 2), {0, 0}), InvalidInput);
   EXPECT_THROW(whiten(Grid<double>(2, 2, NAN), {0, 1}), InvalidInput);
-  EXPECT_THROW(whiten(Grid<double>(2, 2), {0, 1}, Grid<unsigned char>(2, 3)), InvalidInput);
+  EXPECT_THROW(whiten(Grid<double>(2, 2), {0, 1}, Mask(2, 3)), InvalidInput);
 }
 
 }  // namespace

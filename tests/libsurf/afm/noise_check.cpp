@@ -75,7 +75,7 @@ TEST(CheckNoise, DividesSkewnessAndKurtosisByTheirExactVariances) {
 
 TEST(CheckNoise, LeavesOutHoles) {
   Grid<double> e = simulate_noise({0, 1}, 64, 64, 1);
-  Grid<unsigned char> valid(64, 64, 1);
+  Mask valid(64, 64, 1);
   for (int y = 0; y < 64; ++y) valid(9, y) = 0, e(9, y) = NAN;
   const NoiseCheck c = check_noise(e, valid);
   EXPECT_EQ(c.samples, 63u * 64);
@@ -86,7 +86,7 @@ TEST(CheckNoise, RefusesTooLittleAndAllEqual) {
   EXPECT_THROW(check_noise(Grid<double>(3, 3, 1)), InvalidInput);
   EXPECT_THROW(check_noise(Grid<double>(9, 9, 1)), InvalidInput);
   EXPECT_THROW(check_noise(Grid<double>(9, 9, NAN)), InvalidInput);
-  EXPECT_THROW(check_noise(Grid<double>(9, 9), Grid<unsigned char>(2, 2)), InvalidInput);
+  EXPECT_THROW(check_noise(Grid<double>(9, 9), Mask(2, 2)), InvalidInput);
 }
 
 TEST(Autocovariance, FollowsTheModel) {

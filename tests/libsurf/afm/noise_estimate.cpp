@@ -78,8 +78,8 @@ TEST(EstimateFlatNoise, LeavesOutHolesAndWhatIsMasked) {
       noise,
       [&](std::uint64_t seed) {
         HeightField f = noisy(noise, 96, 80, seed);
-        f.valid = Grid<unsigned char>(96, 80, 1);
-        Grid<unsigned char> use(96, 80, 1);
+        f.valid = Mask(96, 80, 1);
+        Mask use(96, 80, 1);
         for (int y = 0; y < 80; ++y) {
           f.z_nm(7, y) = NAN;
           f.valid(7, y) = 0;
@@ -98,7 +98,7 @@ TEST(EstimateFlatNoise, RefusesTooLittle) {
   EXPECT_THROW(estimate_flat_noise(noisy({0, 1}, 4, 5, 1)), InvalidInput);
   EXPECT_THROW(estimate_flat_noise(noisy({0, 1}, 40, 50, 1), {.degree = 7}), UsageError);
   HeightField holes = noisy({0, 1}, 40, 50, 1);
-  holes.valid = Grid<unsigned char>(40, 50, 0);
+  holes.valid = Mask(40, 50, 0);
   EXPECT_THROW(estimate_flat_noise(holes), InvalidInput);
 }
 

@@ -13,7 +13,7 @@ namespace surf {
 using namespace test;
 
 TEST(ResampledTip, KeepsTheApexAndWhatIsBilinear) {
-  Tip tip{Grid<double>(7, 5), 2, 3, 2, 3};
+  Tip tip{{2, 3}, Grid<double>(7, 5), 2, 3};
   for (int y = 0; y < 5; ++y)
     for (int x = 0; x < 7; ++x) tip.z_nm(x, y) = -std::abs(x - 2) * 4.0 - std::abs(y - 3) * 6.0;
   for (const double ratio : {0.25, 0.7, 1.0, 1.5}) {
@@ -30,7 +30,7 @@ TEST(ResampledTip, KeepsTheApexAndWhatIsBilinear) {
 }
 
 TEST(ResampledTip, OfMissingSamplesNothingIsMade) {
-  Tip tip{Grid<double>(3, 1, -1.0), 1, 1, 0, 0};
+  Tip tip{{1, 1}, Grid<double>(3, 1, -1.0), 0, 0};
   tip.z_nm.data() = {0, -1, none};
   const Tip out = resampled(tip, 0.5, 1);
   EXPECT_EQ(out.z_nm.data(), (std::vector<double>{0, -0.5, -1, none, none}));
@@ -44,7 +44,7 @@ TEST(ResampledTip, Refuses) {
 }
 
 TEST(Upsampled, InterpolatesAndSpreadsHoles) {
-  HeightField field{Grid<double>(3, 2), Grid<unsigned char>(3, 2, 1), 2, 4, 5, 6};
+  HeightField field{{2, 4, 5, 6}, Grid<double>(3, 2), Mask(3, 2, 1)};
   field.z_nm.data() = {0, 2, 4, 8, 10, 12};
   field.valid(2, 1) = 0;
   const HeightField fine = upsampled(field, 2);
@@ -59,7 +59,7 @@ TEST(Upsampled, InterpolatesAndSpreadsHoles) {
 }
 
 TEST(ResampledField, KeepsPlanesAndItsPlace) {
-  HeightField field{Grid<double>(11, 7), {}, 2, 4, 5, 6};
+  HeightField field{{2, 4, 5, 6}, Grid<double>(11, 7)};
   for (int y = 0; y < 7; ++y)
     for (int x = 0; x < 11; ++x) field.z_nm(x, y) = 3 * field.x_nm(x) - field.y_nm(y);
   for (const double pitch : {0.7, 2.0, 3.0, 8.0}) {
@@ -74,7 +74,7 @@ TEST(ResampledField, KeepsPlanesAndItsPlace) {
 }
 
 TEST(ResampledField, SpreadsHolesAndRefuses) {
-  HeightField field{Grid<double>(3, 2), Grid<unsigned char>(3, 2, 1), 2, 2, 0, 0};
+  HeightField field{{2, 2}, Grid<double>(3, 2), Mask(3, 2, 1)};
   field.valid(2, 1) = 0;
   EXPECT_EQ(resampled(field, 1).valid.data(),
             (std::vector<unsigned char>{1, 1, 1, 1, 1, 1, 1, 1, 0, 0, 1, 1, 1, 0, 0}));

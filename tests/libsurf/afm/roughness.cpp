@@ -31,7 +31,7 @@ TEST(Roughness, SaysWhatTiltIsLeftAndWhatItAdds) {
   HeightField f;
   f.z_nm = Grid<double>(101, 11);
   f.pitch_x_nm = 2;
-  f.valid = Grid<unsigned char>(101, 11, 1);
+  f.valid = Mask(101, 11, 1);
   for (int y = 0; y < 11; ++y)
     for (int x = 0; x < 101; ++x) f.z_nm(x, y) = 0.1 * x + ((x + y) % 2 ? 0.5 : -0.5);
   f.valid(50, 5) = 0, f.z_nm(50, 5) = NAN;
@@ -45,12 +45,12 @@ TEST(Roughness, OfAMaskIsThatOfItsSamples) {
   HeightField f;
   f.z_nm = Grid<double>(10, 10, 5.0);
   f.z_nm(9, 9) = 1000;
-  Grid<unsigned char> use(10, 10, 1);
+  Mask use(10, 10, 1);
   use(9, 9) = 0;
   const Roughness r = measure_roughness(f, use);
   EXPECT_EQ(r.sz_nm, 0);
   EXPECT_NEAR(r.sq_nm, 0, 1e-12);
-  EXPECT_THROW(measure_roughness(f, Grid<unsigned char>(10, 10, 0)), InvalidInput);
+  EXPECT_THROW(measure_roughness(f, Mask(10, 10, 0)), InvalidInput);
 }
 
 }  // namespace

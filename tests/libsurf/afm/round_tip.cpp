@@ -39,7 +39,7 @@ TEST(RoundTip, WhatIsToldAcrossLinesHoldsAllAround) {
 }
 
 TEST(RoundTip, CornersTellWhereAllElseIsFlat) {
-  Tip square{Grid<double>(9, 9), pitch, pitch, 4, 4};
+  Tip square{{pitch, pitch}, Grid<double>(9, 9), 4, 4};
   for (const int j : {0, 8})
     for (const int i : {0, 8}) square.z_nm(i, j) = -40;
   EXPECT_EQ(round_profile_nm(square, 0.05)[4], 0);
@@ -68,7 +68,7 @@ TEST(RoundTip, IsBelowEveryBound) {
 TEST(RoundTip, MissingSamplesAndPoorTipsDoNoHarm) {
   const auto ball = round_profile_nm(ball_tip(30, 10, 0, {pitch, pitch, 9, 9}), 0.1);
   EXPECT_TRUE(std::ranges::none_of(ball, [](double z) { return std::isnan(z) || z > 0; }));
-  EXPECT_THAT(round_profile_nm({Grid<double>(1, 1), pitch, pitch, 0, 0}, 0.1), ElementsAre(0));
+  EXPECT_THAT(round_profile_nm({{pitch, pitch}, Grid<double>(1, 1), 0, 0}, 0.1), ElementsAre(0));
   EXPECT_EQ(tip_below({{0}}, pitch, pitch, 10, 5).z_nm(2, 2), 0);
   EXPECT_THROW(round_profile_nm(conical_tip(5, 0.4, {1, 1, 5, 5}), 1.5), UsageError);
   EXPECT_THROW(tip_below({{1, 0}}, pitch, pitch, 10, 5), UsageError);

@@ -45,7 +45,7 @@ TEST(LevelRows, MasksKeepFeaturesFromDeciding) {
   for (const RowMethod method : {RowMethod::median, RowMethod::difference}) {
     std::vector<double> shifts;
     HeightField f = shifted_rows(30, 15, shifts);
-    Grid<unsigned char> use(30, 15, 1);
+    Mask use(30, 15, 1);
     for (int y = 4; y < 9; ++y)
       for (int x = 5; x < 25; ++x) f.z_nm(x, y) += 50, use(x, y) = 0;
     HeightField without = f;
@@ -62,7 +62,7 @@ TEST(LevelRows, RowsWithoutSamplesFollowTheNearest) {
   for (const RowMethod method : {RowMethod::median, RowMethod::difference}) {
     std::vector<double> shifts;
     HeightField f = shifted_rows(31, 15, shifts);
-    f.valid = Grid<unsigned char>(31, 15, 1);
+    f.valid = Mask(31, 15, 1);
     for (int x = 0; x < 31; ++x) f.valid(x, 7) = 0, f.z_nm(x, 7) = NAN;
     const RowLevel r = level_rows(f, method);
     EXPECT_EQ(r.rows_without_samples, 1);
@@ -75,8 +75,8 @@ TEST(LevelRows, RowsWithoutSamplesFollowTheNearest) {
 TEST(LevelRows, RefusesNothing) {
   std::vector<double> shifts;
   HeightField f = shifted_rows(5, 5, shifts);
-  EXPECT_THROW(level_rows(f, RowMethod::median, Grid<unsigned char>(5, 5, 0)), InvalidInput);
-  EXPECT_THROW(level_rows(f, RowMethod::median, Grid<unsigned char>(4, 5, 1)), InvalidInput);
+  EXPECT_THROW(level_rows(f, RowMethod::median, Mask(5, 5, 0)), InvalidInput);
+  EXPECT_THROW(level_rows(f, RowMethod::median, Mask(4, 5, 1)), InvalidInput);
 }
 
 }  // namespace

@@ -14,7 +14,7 @@ constexpr double height_nm = 12;
 
 struct Scene {
   HeightField field;
-  Grid<unsigned char> first{60, 24, 0}, second{60, 24, 0};
+  Mask first{60, 24, 0}, second{60, 24, 0};
 };
 
 Scene tilted_step(const AfmNoise& noise, std::uint64_t seed) {
@@ -60,21 +60,21 @@ TEST(MeasureStep, ScattersAsItsStandardErrorSaysUnderCorrelatedNoise) {
 
 TEST(MeasureStep, LeavesOutHoles) {
   Scene s = tilted_step({0, 0}, 1);
-  s.field.valid = Grid<unsigned char>(60, 24, 1);
+  s.field.valid = Mask(60, 24, 1);
   for (int y = 0; y < 24; ++y) s.field.valid(10, y) = 0, s.field.z_nm(10, y) = NAN;
   EXPECT_NEAR(measure_step(s.field, s.first, s.second).height_nm, height_nm, 1e-8);
 }
 
 TEST(MeasureStep, RefusesRegionsThatTellNothing) {
   const Scene s = tilted_step({0, 1}, 1);
-  const Grid<unsigned char> none(60, 24, 0);
-  Grid<unsigned char> left(60, 24, 0), right(60, 24, 0);
+  const Mask none(60, 24, 0);
+  Mask left(60, 24, 0), right(60, 24, 0);
   for (int y = 0; y < 24; ++y) left(3, y) = right(50, y) = 1;  // single columns: tilt or step?
   EXPECT_THROW(measure_step(s.field, s.first, none), InvalidInput);
   EXPECT_THROW(measure_step(s.field, none, s.second), InvalidInput);
   EXPECT_THROW(measure_step(s.field, s.first, s.first), InvalidInput);
   EXPECT_THROW(measure_step(s.field, left, right), InvalidInput);
-  EXPECT_THROW(measure_step(s.field, s.first, Grid<unsigned char>(3, 3, 1)), InvalidInput);
+  EXPECT_THROW(measure_step(s.field, s.first, Mask(3, 3, 1)), InvalidInput);
   EXPECT_THROW(measure_step(s.field, s.first, {}), InvalidInput);
 }
 

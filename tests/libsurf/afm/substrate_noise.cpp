@@ -40,7 +40,7 @@ TEST(SubstrateNoise, IsThatBetweenTheFeatures) {
 TEST(SubstrateNoise, RefusesNothing) {
   HeightField f;
   f.z_nm = Grid<double>(20, 20);
-  EXPECT_THROW(estimate_substrate_noise(f, {}, Grid<unsigned char>(20, 20, 0)), InvalidInput);
+  EXPECT_THROW(estimate_substrate_noise(f, {}, Mask(20, 20, 0)), InvalidInput);
   EXPECT_EQ(estimate_substrate_noise(f).estimate.noise.innovation_nm2, 0);
 }
 

@@ -33,7 +33,7 @@ TEST(MeasureTip, FindsASphere) {
 }
 
 TEST(MeasureTip, TellsTheTwoRadiiOfAnEllipticTip) {
-  Tip tip{Grid<double>(31, 31), 1, 1, 12, 18};
+  Tip tip{{1, 1}, Grid<double>(31, 31), 12, 18};
   for (int y = 0; y < 31; ++y)
     for (int x = 0; x < 31; ++x) {
       const double u = (x - 12 + y - 18) / std::sqrt(2.0), v = (x - 12 - y + 18) / std::sqrt(2.0);
@@ -62,14 +62,14 @@ TEST(MeasureTip, FindsTheAngleOfConesAndPyramids) {
 }
 
 TEST(MeasureTip, OfAFlatEndTheRadiusIsInfinite) {
-  const TipMeasures m = measure_tip({Grid<double>(9, 9, 0.0), 1, 1, 4, 4});
+  const TipMeasures m = measure_tip({{1, 1}, Grid<double>(9, 9, 0.0), 4, 4});
   EXPECT_TRUE(std::isinf(m.radius_nm));
   EXPECT_TRUE(std::isinf(m.sphere_radius_nm));
   EXPECT_FALSE(m.half_angle_rad);
 }
 
 TEST(MeasureTip, Refuses) {
-  EXPECT_THROW(measure_tip({Grid<double>(2, 2, 0.0), 1, 1, 0, 0}), InvalidInput);
+  EXPECT_THROW(measure_tip({{1, 1}, Grid<double>(2, 2, 0.0), 0, 0}), InvalidInput);
   EXPECT_THROW(measure_tip(parabolic_tip(5, {}), {.fit_depth_nm = -1}), InvalidInput);
   EXPECT_THROW(measure_tip(parabolic_tip(5, {}), {.cone_to_nm = std::nan("")}), InvalidInput);
 }

@@ -130,7 +130,9 @@ TEST(TipSweep, RefusesImpossibleOptionsAndStops) {
   }
   CancelToken cancel;
   cancel.cancel();
-  EXPECT_EQ(sweep_tips({scan}, options(), {}, &cancel).verdict, TipSweepVerdict::cancelled);
+  TipSweepOptions stopped = options();
+  stopped.watch.cancel = &cancel;
+  EXPECT_THROW(sweep_tips({scan}, stopped), Interrupted);
 }
 
 TEST(UnconstrainedDirections, AreThoseAlongParallelLines) {

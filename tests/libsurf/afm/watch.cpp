@@ -21,7 +21,7 @@ namespace surf {
 namespace {
 
 HeightField waves() {
-  HeightField f{Grid<double>(60, 50), {}, 1, 1, 0, 0};
+  HeightField f{{}, Grid<double>(60, 50)};
   RandomStream random(3, 0, 0);
   for (int y = 0; y < 50; ++y)
     for (int x = 0; x < 60; ++x)
@@ -83,15 +83,14 @@ std::vector<Operation> operations() {
          MedianOptions o;
          o.threads = 1;
          o.watch = watch;
-         return median_filter(f, o, ignored).z_nm;
+         return median_filter(f, o).field.z_nm;
        }},
       {"flat_closing",
        [](const HeightField& f, const Watch& watch) {
-         CleanSummary ignored;
          ClosingOptions o;
          o.threads = 1;
          o.watch = watch;
-         return flat_closing(f, o, ignored).z_nm;
+         return flat_closing(f, o).field.z_nm;
        }},
       {"plane",
        [](const HeightField& f, const Watch& watch) {

@@ -73,9 +73,9 @@ TEST(HeightField, RefusesAnOriginThatIsNotFinite) {
 
 TEST(HeightField, RefusesAMaskOfAnotherSize) {
   HeightField field = small_field();
-  field.valid = Grid<unsigned char>(2, 3, 1);
+  field.valid = Mask(2, 3, 1);
   EXPECT_THAT(complaint(field), HasSubstr("mask has 2 x 3"));
-  field.valid = Grid<unsigned char>(3, 3, 1);
+  field.valid = Mask(3, 3, 1);
   EXPECT_THAT(complaint(field), HasSubstr("mask has 3 x 3"));
 }
 
@@ -88,7 +88,7 @@ TEST(HeightField, NamesTheHeightThatIsNotFinite) {
 TEST(HeightField, InvalidSamplesNeedNoHeight) {
   HeightField field = small_field();
   field.z_nm(2, 1) = NAN;
-  field.valid = Grid<unsigned char>(3, 2, 1);
+  field.valid = Mask(3, 2, 1);
   EXPECT_NE(complaint(field), "");
   field.valid(2, 1) = 0;
   EXPECT_EQ(complaint(field), "");

@@ -29,7 +29,7 @@ TEST(SampleImage, KnowsNothingOutsideAndBesideHoles) {
   PlacedImage image = ramp();
   EXPECT_TRUE(std::isnan(sample_image(image, image.place_nm(3.01, 1))));
   EXPECT_TRUE(std::isnan(sample_image(image, image.place_nm(1, -0.01))));
-  image.valid = Grid<unsigned char>(4, 3, 1);
+  image.valid = Mask(4, 3, 1);
   image.valid(1, 1) = 0;
   EXPECT_TRUE(std::isnan(sample_image(image, image.place_nm(0.5, 0.5))));
   EXPECT_FALSE(std::isnan(

@@ -101,7 +101,7 @@ TEST(HeightFieldSheet, FacesUpAndOnlyItsRimIsOpen) {
 
 TEST(HeightFieldSheet, RefusesHolesAndSaysWhere) {
   HeightField field = letter_f();
-  field.valid = Grid<unsigned char>(4, 5, 1);
+  field.valid = Mask(4, 5, 1);
   EXPECT_NO_THROW(height_field_sheet(field));
   field.valid(3, 2) = 0;
   try {
@@ -185,7 +185,7 @@ TEST(ExtendHeightField, RoundingAddsNoPitch) {
 
 TEST(ExtendHeightField, ContinuesTheMaskToo) {
   HeightField field = letter_f();
-  field.valid = Grid<unsigned char>(4, 5, 1);
+  field.valid = Mask(4, 5, 1);
   field.valid(0, 1) = 0;
   field.z_nm(0, 1) = NAN;
   const HeightField e = extend_height_field(field, 2, 0, Edge::periodic);

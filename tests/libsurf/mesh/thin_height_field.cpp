@@ -64,8 +64,7 @@ TEST(ThinHeightField, StaysWithinTheToleranceEverywhere) {
   const HeightField field = rough();
   std::size_t previous = height_field_sheet(field).triangles.size() + 1;
   for (const double tolerance : {0.02, 0.1, 0.5, 2.0}) {
-    ThinSummary s;
-    const TriangleMesh mesh = thin_height_field(field, {tolerance}, s);
+    const auto [mesh, s] = thin_height_field(field, {tolerance});
     EXPECT_LE(s.deviation_nm, tolerance);
     const double measured = vertical_deviation(field, mesh);
     EXPECT_LE(measured, s.deviation_nm * (1 + 1e-12))
@@ -85,8 +84,7 @@ TEST(ThinHeightField, GivesASoundSheetOverTheSameRectangle) {
   HeightField field = rough();
   field.pitch_y_nm = 1.7;
   field.origin_x_nm = 1e5;
-  ThinSummary s;
-  const TriangleMesh mesh = thin_height_field(field, {0.3}, s);
+  const auto [mesh, s] = thin_height_field(field, {0.3});
   EXPECT_NEAR(area_from_above(mesh), 81 * 57 * 1.7, 1e-6);
   const MeshReport r = check_mesh(mesh);
   EXPECT_EQ(r.components, 1u);
@@ -109,8 +107,7 @@ TEST(ThinHeightField, LeavesOutWhatIsFlatAndKeepsTheLettersPlace) {
   for (int y = 5; y < 25; ++y)
     for (int x = 10; x < 25; ++x)
       if (x < 14 || y >= 21 || (y >= 13 && y < 16 && x < 20)) field.z_nm(x, y) = 10;
-  ThinSummary s;
-  const TriangleMesh mesh = thin_height_field(field, {0}, s);
+  const auto [mesh, s] = thin_height_field(field, {0});
   EXPECT_EQ(s.deviation_nm, 0);
   EXPECT_LT(mesh.triangles.size(), s.triangles_before / 2);
   const HeightField back = mesh_height_field(mesh, {.pitch_nm = 1});
@@ -120,32 +117,29 @@ TEST(ThinHeightField, LeavesOutWhatIsFlatAndKeepsTheLettersPlace) {
 
   HeightField flat;
   flat.z_nm = Grid<double>(300, 2);
-  EXPECT_EQ(thin_height_field(flat, {1}, s).triangles.size(), 2u);
+  EXPECT_EQ(thin_height_field(flat, {1}).mesh.triangles.size(), 2u);
 }
 
 TEST(ThinHeightField, GivesTheFieldItselfWhereNothingFits) {
   HeightField field = make_rough({20, 14, 1}, 5, 0.5, 3);
-  ThinSummary s;
-  const TriangleMesh mesh = thin_height_field(field, {0}, s);
+  const auto [mesh, s] = thin_height_field(field, {0});
   EXPECT_EQ(mesh.triangles.size(), s.triangles_before);
   EXPECT_EQ(vertical_deviation(field, mesh) > 1e-12, false);
 }
 
 TEST(ThinHeightField, RefusesWhatItCannotTake) {
   HeightField field = rough();
-  ThinSummary s;
-  EXPECT_THROW(thin_height_field(field, {-1}, s), UsageError);
-  EXPECT_THROW(thin_height_field(field, {NAN}, s), UsageError);
-  field.valid = Grid<unsigned char>(field.z_nm.width(), field.z_nm.height());
-  EXPECT_THROW(thin_height_field(field, {1}, s), InvalidInput);
+  EXPECT_THROW(thin_height_field(field, {-1}), UsageError);
+  EXPECT_THROW(thin_height_field(field, {NAN}), UsageError);
+  field.valid = Mask(field.z_nm.width(), field.z_nm.height());
+  EXPECT_THROW(thin_height_field(field, {1}), InvalidInput);
 }
 
 TEST(ThinHeightField, KeepsToTheTrianglesAllowed) {
   const HeightField field = rough();
   double previous = 1e9;
   for (const std::size_t triangles : {3u, 100u, 1001u, 5000u}) {
-    ThinSummary s;
-    const TriangleMesh mesh = thin_height_field(field, {0, triangles}, s);
+    const auto [mesh, s] = thin_height_field(field, {0, triangles});
     EXPECT_LE(mesh.triangles.size(), triangles);
     EXPECT_GE(mesh.triangles.size(), 0.8 * static_cast<double>(triangles) - 1)
         << "and makes use of them";
@@ -160,8 +154,8 @@ TEST(ThinHeightField, SoManyTrianglesComeAsNearAsTheirToleranceDoes) {
   const HeightField field = rough();
   for (const double tolerance : {0.1, 0.5, 2.0}) {
     ThinSummary by_tolerance, by_number;
-    thin_height_field(field, {tolerance}, by_tolerance);
-    thin_height_field(field, {0, by_tolerance.triangles_after + 2}, by_number);
+    by_tolerance = thin_height_field(field, {tolerance}).summary;
+    by_number = thin_height_field(field, {0, by_tolerance.triangles_after + 2}).summary;
     EXPECT_LE(by_number.deviation_nm, 1.1 * tolerance) << by_tolerance.triangles_after;
   }
 }
@@ -169,16 +163,16 @@ TEST(ThinHeightField, SoManyTrianglesComeAsNearAsTheirToleranceDoes) {
 TEST(ThinHeightField, TheFirstOfTwoLimitsCounts) {
   const HeightField field = rough();
   ThinSummary s;
-  thin_height_field(field, {2.0, 100'000}, s);
+  s = thin_height_field(field, {2.0, 100'000}).summary;
   EXPECT_TRUE(s.reached);
   EXPECT_LE(s.deviation_nm, 2.0);
-  EXPECT_EQ(thin_height_field(field, {2.0}, s).triangles.size(), s.triangles_after);
-  thin_height_field(field, {0.02, 50}, s);
+  EXPECT_EQ(thin_height_field(field, {2.0}).mesh.triangles.size(), s.triangles_after);
+  s = thin_height_field(field, {0.02, 50}).summary;
   EXPECT_FALSE(s.reached);
   EXPECT_GT(s.deviation_nm, 0.02);
-  thin_height_field(field, {0, 1'000'000}, s);
+  s = thin_height_field(field, {0, 1'000'000}).summary;
   EXPECT_TRUE(s.reached) << "all of it: nothing is left out";
-  EXPECT_THROW(thin_height_field(field, {0, 1}, s), UsageError);
+  EXPECT_THROW(thin_height_field(field, {0, 1}), UsageError);
 }
 
 }  // namespace surf

@@ -36,7 +36,7 @@ TriangleMesh sphere(double radius_nm, const Vec3& centre, int times) {
 }
 
 HeightField field_of(double (*z)(double, double)) {
-  HeightField f{Grid<double>(31, 21), {}, 0.5, 0.5, -7.5, -5};
+  HeightField f{{0.5, 0.5, -7.5, -5}, Grid<double>(31, 21)};
   for (int y = 0; y < 21; ++y)
     for (int x = 0; x < 31; ++x) f.z_nm(x, y) = z(f.x_nm(x), f.y_nm(y));
   return f;
@@ -95,7 +95,7 @@ TEST(MeanCurvature, IsFiniteWhereVerticesAreTooFewOrDegenerate) {
 }
 
 TEST(MeanCurvature, DoesNotLookAtTheOtherSide) {
-  HeightField f{Grid<double>(2, 2, 1.0), {}, 1, 1, 0, 0};
+  HeightField f{{}, Grid<double>(2, 2, 1.0)};
   for (const float h : mean_curvature(height_field_solid(f, 0)))
     EXPECT_GE(h, -1e-6) << "a cube is convex";
   EXPECT_GT(mean_curvature(height_field_solid(f, 0))[0], 0.3);

@@ -57,16 +57,16 @@ std::vector<Work> works() {
       {"simplify_mesh, tolerance",
        [](const TriangleMesh& m, const Watch& w) {
          SimplifySummary summary;
-         simplify_mesh(m, {.tolerance_nm = 0.3, .watch = w}, summary);
+         summary = simplify_mesh(m, {.tolerance_nm = 0.3, .watch = w}).summary;
        }},
       {"simplify_mesh, triangles",
        [](const TriangleMesh& m, const Watch& w) {
          SimplifySummary summary;
-         simplify_mesh(m, {.triangles = 1000, .watch = w}, summary);
+         summary = simplify_mesh(m, {.triangles = 1000, .watch = w}).summary;
        }},
       {"repair_mesh", [](const TriangleMesh& m, const Watch& w) {
          RepairSummary summary;
-         repair_mesh(broken(m), {.watch = w}, summary);
+         summary = repair_mesh(broken(m), {.watch = w}).summary;
        }}};
 }
 

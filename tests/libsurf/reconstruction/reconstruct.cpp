@@ -94,9 +94,9 @@ TEST(Reconstruct, ATipWithoutAnyShapeStaysAsItIs) {
   ReconstructionOptions o = quick();
   o.refine_tip = true;
   o.iterations = 3;
-  scene.afm.tip = {Grid<double>(1, 1), 20, 20, 0, 0};
+  scene.afm.tip = {{20, 20}, Grid<double>(1, 1), 0, 0};
   EXPECT_EQ(reconstruct(&scene.afm, &scene.sem, o).tip.z_nm, scene.afm.tip.z_nm);
-  scene.afm.tip = {Grid<double>(3, 3), 20, 20, 1, 1};
+  scene.afm.tip = {{20, 20}, Grid<double>(3, 3), 1, 1};
   EXPECT_EQ(reconstruct(&scene.afm, &scene.sem, o).tip.z_nm, scene.afm.tip.z_nm);
 }
 
@@ -349,7 +349,7 @@ TEST(Reconstruct, ATipWiderThanTheScanIsTakenOrRefused) {
 TEST(Reconstruct, HolesInBothImagesPlayNoPart) {
   test::SmallScene scene;
   const auto hide = [](auto& image, auto& values) {
-    image.valid = Grid<unsigned char>(values.width(), values.height(), 1);
+    image.valid = Mask(values.width(), values.height(), 1);
     for (int y = 10; y < 16; ++y)
       for (int x = 12; x < 20; ++x) {
         image.valid(x, y) = 0;

@@ -39,8 +39,8 @@ struct SmallScene {
   explicit SmallScene(std::uint64_t seed = 5, int width = 56, int height = 40, double noise = 1,
                       const std::function<double(Point2)>& height_nm = small_height) {
     const double pitch = 10;
-    truth = {Grid<double>(width, height), {}, pitch, pitch, -0.5 * (width - 1) * pitch,
-             -0.5 * (height - 1) * pitch};
+    truth = {{pitch, pitch, -0.5 * (width - 1) * pitch, -0.5 * (height - 1) * pitch},
+             Grid<double>(width, height)};
     for (int y = 0; y < height; ++y)
       for (int x = 0; x < width; ++x) truth.z_nm(x, y) = height_nm({truth.x_nm(x), truth.y_nm(y)});
 
@@ -54,7 +54,7 @@ struct SmallScene {
     sem.noise = {0.05, 1, 0.1};
     sem.sem_to_afm = make_affine({0.3, 1.04, 0.97, 0.02, 15, -8});
     const ModelImages made = sem.model->predict(truth);
-    sem.image = {made[0], {}, pitch, pitch, truth.origin_x_nm, truth.origin_y_nm};
+    sem.image = {{pitch, pitch, truth.origin_x_nm, truth.origin_y_nm}, made[0]};
     RandomStream random(seed, 1, 0);
     for (double& v : sem.image.values.data()) {
       v = 100 * v + 20;
@@ -65,19 +65,16 @@ struct SmallScene {
     // The scan, on three samples per pitch, larger than the SEM image.
     const double afm_pitch = 20;
     const int n = 44, m = 38, f = 3;
-    HeightField fine{Grid<double>((n - 1) * f + 1, (m - 1) * f + 1),
-                     {},
-                     afm_pitch / f,
-                     afm_pitch / f,
-                     -0.5 * (n - 1) * afm_pitch,
-                     -0.5 * (m - 1) * afm_pitch};
+    HeightField fine{
+        {afm_pitch / f, afm_pitch / f, -0.5 * (n - 1) * afm_pitch, -0.5 * (m - 1) * afm_pitch},
+        Grid<double>((n - 1) * f + 1, (m - 1) * f + 1)};
     const Affine back = inverse(sem.sem_to_afm);
     for (int y = 0; y < fine.z_nm.height(); ++y)
       for (int x = 0; x < fine.z_nm.width(); ++x)
         fine.z_nm(x, y) = height_nm(back({fine.x_nm(x), fine.y_nm(y)}));
     const Tip blunt = parabolic_tip(80, {afm_pitch / f, afm_pitch / f, 31, 31});
     const HeightField image = dilate(fine, blunt);
-    afm.image = {Grid<double>(n, m), {}, afm_pitch, afm_pitch, fine.origin_x_nm, fine.origin_y_nm};
+    afm.image = {{afm_pitch, afm_pitch, fine.origin_x_nm, fine.origin_y_nm}, Grid<double>(n, m)};
     afm.noise = {0.825, 0.201};
     const Grid<double> e = simulate_noise(afm.noise, n, m, seed);
     for (int y = 0; y < m; ++y)

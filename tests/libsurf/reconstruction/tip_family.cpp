@@ -100,7 +100,7 @@ TEST(TipFamily, SamplesThatTheTipDoesNotHaveAndFlatEndsStay) {
 }
 
 TEST(TipFamily, WithoutASlopeNothingCanChange) {
-  const Tip point{Grid<double>(1, 1), 5, 5, 0, 0}, flat{Grid<double>(5, 5), 5, 5, 2, 2};
+  const Tip point{{5, 5}, Grid<double>(1, 1), 0, 0}, flat{{5, 5}, Grid<double>(5, 5), 2, 2};
   for (const Tip& tip : {point, flat}) {
     const TipFamily family(tip);
     EXPECT_FALSE(family.can_change());

@@ -41,8 +41,8 @@ using Scene = std::function<double(double, double)>;
 /// What a microscope shows of the scene through the map, in pixels of `pitch` nm about (0, 0).
 inline PlacedImage image_of(const Scene& scene, const Affine& map, int w, int h, double pitch,
                             double noise, std::uint64_t seed) {
-  PlacedImage image{Grid<double>(w, h),    {}, pitch, pitch, -0.5 * (w - 1) * pitch,
-                    -0.5 * (h - 1) * pitch};
+  PlacedImage image{{pitch, pitch, -0.5 * (w - 1) * pitch, -0.5 * (h - 1) * pitch},
+                    Grid<double>(w, h)};
   for (int y = 0; y < h; ++y)
     for (int x = 0; x < w; ++x) {
       RandomStream random(seed, static_cast<std::uint64_t>(y), static_cast<std::uint64_t>(x));

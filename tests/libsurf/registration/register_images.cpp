@@ -149,11 +149,11 @@ TEST(RegisterImages, BeginsAtAStartThatIsGivenAndLooksPastHoles) {
   const Affine truth = make_affine({2, 0.9, 1.05, -0.03, 3, 5});
   PlacedImage sem = image_of(spots, truth, 90, 70, 1, 0.1, 1),
               afm = image_of(spots, {}, 90, 90, 1, 0.02, 2);
-  sem.valid = Grid<unsigned char>(90, 70, 1);
+  sem.valid = Mask(90, 70, 1);
   for (int y = 20; y < 35; ++y)
     for (int x = 10; x < 40; ++x)
       sem.valid(x, y) = 0, sem.values(x, y) = std::numeric_limits<double>::quiet_NaN();
-  afm.valid = Grid<unsigned char>(90, 90, 1);
+  afm.valid = Mask(90, 90, 1);
   for (int y = 50; y < 75; ++y)
     for (int x = 20; x < 50; ++x)
       afm.valid(x, y) = 0, afm.values(x, y) = std::numeric_limits<double>::quiet_NaN();
@@ -349,7 +349,7 @@ TEST(RegisterImages, RefusesWhatItCannotUse) {
   const PlacedImage good = image_of(spots, {}, 40, 40, 1, 0.1, 1);
   PlacedImage flat = good, holed = good, broken = good;
   flat.values = Grid<double>(40, 40, 7);
-  holed.valid = Grid<unsigned char>(40, 40, 0);
+  holed.valid = Mask(40, 40, 0);
   broken.values(3, 3) = std::numeric_limits<double>::quiet_NaN();
   for (const PlacedImage& bad : {flat, holed, broken}) {
     EXPECT_THROW(register_images(bad, good), InvalidInput);
@@ -369,7 +369,7 @@ TEST(RegisterImages, RefusesWhatItCannotUse) {
 }
 
 TEST(RegisterImages, SaturatedAndTinyImagesEndInAVerdict) {
-  PlacedImage saturated{Grid<double>(60, 60, 255), {}, 1, 1, 0, 0};
+  PlacedImage saturated{{}, Grid<double>(60, 60, 255)};
   saturated.values(30, 30) = 254;
   const PlacedImage other = image_of(Spots(8), {}, 60, 60, 1, 0.1, 1),
                     tiny = image_of(Spots(8), {}, 3, 2, 1, 0.1, 1);

@@ -5,11 +5,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <memory>
 
 #include "surf/core/error.h"
 #include "surf/core/random.h"
 #include "surf/sem/image_model.h"
+#include "vector_targets.h"
 
 // What holds for every fast model of images.
 namespace surf::test {
@@ -131,6 +133,35 @@ inline void expect_watched(const ImageModel& model, const HeightField& field) {
     gone.cancel();
     EXPECT_NO_THROW(linear->change(field.z_nm));
     EXPECT_NO_THROW(linear->gradient(linear->images()));
+  }
+}
+
+inline double largest_gap(const Grid<double>& a, const Grid<double>& b) {
+  double most = 0;
+  for (std::size_t i = 0; i < a.size(); ++i)
+    most = std::max(most, std::abs(a.data()[i] - b.data()[i]));
+  return most;
+}
+
+/// On every instruction set that the machine has: images and gradient are the same for any number
+/// of threads, to the last bit, and those of the others to rounding.
+inline void expect_same_on_every_target(
+    const std::function<std::shared_ptr<const ImageModel>()>& make, const HeightField& field) {
+  std::vector<Grid<double>> first;
+  for (const std::int64_t target : vector_targets()) {
+    SCOPED_TRACE(name_of_target(target));
+    const OnlyTarget only(target);
+    const auto results = [&](int threads) {
+      const auto linear = make()->linearize(field, {.threads = threads});
+      std::vector<Grid<double>> all = linear->images();
+      all.push_back(linear->gradient(random_weights(field, all.size())));
+      return all;
+    };
+    const std::vector<Grid<double>> one = results(1);
+    EXPECT_TRUE(results(3) == one);
+    if (first.empty()) first = one;
+    for (std::size_t i = 0; i < one.size(); ++i)
+      EXPECT_LT(largest_gap(one[i], first[i]), 2e-5 * largest(first[i])) << i;
   }
 }
 

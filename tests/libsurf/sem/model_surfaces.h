@@ -11,7 +11,7 @@ namespace surf::test {
 
 template <class Height>
 HeightField sampled(int width, int height, double pitch_nm, const Height& z) {
-  HeightField field{Grid<double>(width, height), {}, pitch_nm, pitch_nm, 0, 0};
+  HeightField field{{pitch_nm, pitch_nm}, Grid<double>(width, height)};
   for (int y = 0; y < height; ++y)
     for (int x = 0; x < width; ++x) field.z_nm(x, y) = z(x, y);
   return field;

@@ -321,12 +321,12 @@ TEST(CascadeLibrary, CountsWhatIsDone) {
     EXPECT_LE(done, total);
     last = done;
   };
-  const auto library = fresh.library(settings_of("Si", 100), 3000, 2, watch, nullptr);
+  const auto library = fresh.library(settings_of("Si", 100), 3000, 2, {watch});
   EXPECT_EQ(library->cascades(), 4096u);
   EXPECT_EQ(last, 3000);
   CancelToken cancel;
   cancel.cancel();
-  EXPECT_EQ(fresh.library(settings_of("Si", 100), 3000, 2, {}, &cancel), nullptr);
+  EXPECT_THROW(fresh.library(settings_of("Si", 100), 3000, 2, {{}, &cancel}), Interrupted);
 }
 
 }  // namespace

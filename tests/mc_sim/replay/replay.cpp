@@ -176,10 +176,9 @@ TEST(Replay, ReportsTheCascadesThatThereAre) {
    public:
     std::shared_ptr<const CascadeLibrary> library(const CascadeSettings& settings,
                                                   std::size_t asked, int threads,
-                                                  const ProgressCallback& progress,
-                                                  const CancelToken* cancel) override {
+                                                  const Watch& watch) override {
       return FreshLibraries::library(settings, asked + CascadeLibrary::page_cascades, threads,
-                                     progress, cancel);
+                                     watch);
     }
   } generous;
   const SimulationOptions options = replaying(10);

@@ -52,8 +52,7 @@ class SmallLibraries final : public mc::LibrarySource {
   explicit SmallLibraries(std::size_t pages) : pages_(pages) {}
   std::shared_ptr<const mc::CascadeLibrary> library(const mc::CascadeSettings& settings,
                                                     std::size_t, int threads,
-                                                    const ProgressCallback&,
-                                                    const CancelToken*) override {
+                                                    const Watch&) override {
     auto& known = known_[{settings.material.name, settings.start_energy_ev, settings.seed}];
     if (!known) {
       auto library = std::make_shared<mc::CascadeLibrary>(settings);

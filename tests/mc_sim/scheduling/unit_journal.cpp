@@ -108,7 +108,7 @@ TEST(UnitJournal, IsNotToldOfUnitsThatWereAbandonedAndGetsThemLater) {
   const SimulationResult plain = simulate(scene, options);
   Stopping journal;
   const SimulationResult stopped =
-      simulate(scene, options, {.cancel = &journal.cancel, .journal = &journal});
+      simulate(scene, options, {.watch = {{}, &journal.cancel}, .journal = &journal});
   EXPECT_FALSE(stopped.complete);
   EXPECT_EQ(journal.units.size(), 7u) << "the unit that had begun is left out";
   expect_same(simulate(scene, options, {.journal = &journal}), plain);
@@ -124,7 +124,7 @@ TEST(UnitJournal, WhatObserversHaveSeenOfAUnitCounts) {
   } observer;
   const SimulationResult r =
       simulate(small_scene(), with_spectra(1),
-               {.cancel = &observer.cancel, .observers = [&](int) { return &observer; }});
+               {.watch = {{}, &observer.cancel}, .observers = [&](int) { return &observer; }});
   EXPECT_FALSE(r.complete);
   EXPECT_EQ(r.balance.incident, observer.seen);
 }

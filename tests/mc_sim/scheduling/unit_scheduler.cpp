@@ -85,9 +85,8 @@ TEST(UnitScheduler, WhereNothingIsCollectedTheResultCountsNothing) {
 TEST(UnitScheduler, IsAbandonedWhereThereAreNoLibraries) {
   struct Cancelled : LibrarySource {
     std::shared_ptr<const CascadeLibrary> library(const CascadeSettings&, std::size_t, int,
-                                                  const ProgressCallback&,
-                                                  const CancelToken*) override {
-      return nullptr;
+                                                  const Watch&) override {
+      throw Interrupted();
     }
   } none;
   const Scene scene(test::flat("Si"), {}, scan);

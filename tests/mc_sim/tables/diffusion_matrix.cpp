@@ -40,7 +40,7 @@ TEST(DiffusionMatrixTable, GivesTheLibrarysOwnValueOnFlatGround) {
   const double n = static_cast<double>(library.cascades());
   const DiffusionMatrixParameters table = diffusion_matrix(library, {.rings = 64, .heights = 200});
   const auto model = make_diffusion_matrix({.pixel_nm = 3}, table);
-  const ModelImages images = model->predict({Grid<double>(4, 3), {}, 3, 3});
+  const ModelImages images = model->predict({{3, 3}, Grid<double>(4, 3)});
   EXPECT_NEAR(images[0](1, 1), up.se / n, 0.1 * up.se / n);
   EXPECT_NEAR(images[1](1, 1), up.bse / n, 0.1 * up.bse / n);
 }
@@ -59,7 +59,7 @@ TEST(DiffusionMatrixTable, SecondOrderMomentsAddUpAndTheBarrierHoldsBack) {
     }
   const auto flat = [&](const CascadeLibrary& l) {
     return make_diffusion_matrix({.pixel_nm = 3}, diffusion_matrix(l))
-        ->predict({Grid<double>(4, 3), {}, 3, 3});
+        ->predict({{3, 3}, Grid<double>(4, 3)});
   };
   const ModelImages held = flat(library);
   const auto yields = test::flat_yields("Si", 1000, 0, 20000);

@@ -82,7 +82,7 @@ TEST(StoppingPoints, GiveTheLibrarysOwnValueOnFlatGround) {
   const double n = static_cast<double>(silicon().cascades()), above = ends.primaries_above / n;
   for (const double pitch : {1.0, 3.0}) {
     const auto model = make_stopping_point({.pixel_nm = pitch}, stopping_points(silicon()));
-    const ModelImages images = model->predict({Grid<double>(4, 3), {}, pitch, pitch});
+    const ModelImages images = model->predict({{pitch, pitch}, Grid<double>(4, 3)});
     EXPECT_NEAR(images[0](1, 1), ends.others_above / n, 0.03 * ends.others_above / n);
     EXPECT_NEAR(images[1](1, 1), above / (1 - above), 0.03 * above / (1 - above));
   }
@@ -94,10 +94,10 @@ TEST(StoppingPoints, GiveTheLibrarysOwnValueOnFlatGround) {
 TEST(StoppingPoints, AreScaledToAKnownYield) {
   const auto model =
       make_stopping_point({.pixel_nm = 3}, stopping_points(silicon(), {.flat_se_yield = 0.9}));
-  EXPECT_NEAR(model->predict({Grid<double>(4, 3, 7), {}, 3, 3})[0](1, 1), 0.9, 1e-9);
+  EXPECT_NEAR(model->predict({{3, 3}, Grid<double>(4, 3, 7)})[0](1, 1), 0.9, 1e-9);
   const auto plain = make_stopping_point({.pixel_nm = 3}, stopping_points(silicon()));
-  EXPECT_EQ(model->predict({Grid<double>(4, 3), {}, 3, 3})[1],
-            plain->predict({Grid<double>(4, 3), {}, 3, 3})[1]);
+  EXPECT_EQ(model->predict({{3, 3}, Grid<double>(4, 3)})[1],
+            plain->predict({{3, 3}, Grid<double>(4, 3)})[1]);
 }
 
 TEST(StoppingPoints, RefuseNothingAndNonsense) {

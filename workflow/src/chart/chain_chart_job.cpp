@@ -17,6 +17,7 @@
 #include "peak_memory.h"
 #include "surf/afm/morphology.h"
 #include "surf/core/error.h"
+#include "surf/core/instruction_set.h"
 #include "surf/io/files.h"
 #include "surf/io/plot.h"
 #include "surf/io/sim/materials.h"
@@ -58,7 +59,7 @@ std::string identity_of(const ChainSetting& setting) {
   const ChainChartJob& job = setting.job;
   Identity id{{"semsurf", version()},
               {"program", program_hash()},
-              {"instruction set", instruction_set()},
+              {"instruction set", std::string(instruction_set())},
               {"model", setting.model.sha256},
               {"seed", std::to_string(job.seed)},
               {"draws", std::to_string(job.draws)},

@@ -180,13 +180,12 @@ fs::path point_file(const ChartJob& job, const ChartMethod& method) {
 
 // Before any point is timed. Without a team they come with the first point that needs them.
 ManyDone make_images_for(const ChartSetting& setting, const std::vector<ChartMethod>& methods,
-                         const std::string& id, const ProgressCallback& progress,
-                         const CancelToken* cancel, Team& team) {
+                         const std::string& id, const Watch& watch, Team& team) {
   std::string wanted = "no";
   for (const ChartMethod& method : methods)  // whoever leads has them
     if (method.needs_images && !read_point(point_file(setting.job, method), id)) wanted = "yes";
   team.broadcast(wanted);
-  return wanted == "yes" ? make_images(setting, progress, cancel, &team) : ManyDone{};
+  return wanted == "yes" ? make_images(setting, watch, &team) : ManyDone{};
 }
 
 // Of all points and before them; the reference counts as much as all together: it takes the most
@@ -262,7 +261,7 @@ void make_points(const ChartSetting& setting, const std::vector<ChartMethod>& me
       point->is_default = method.is_default;
       try {
         const PeakMemory memory;
-        method.run(setting, course.show(1), reporter.cancel, *point);
+        method.run(setting, {course.show(1), reporter.cancel}, *point);
         point->peak_bytes = memory.bytes();
       } catch (const Interrupted&) {
         summary.complete = false;
@@ -356,7 +355,7 @@ ChartSummary run(const ChartJob& asked, const Reporter& reporter, const PointCal
   ManyDone done = make_reference(job, parts, compared, reporter, course, team);
   try {
     if (team && done.complete)
-      done.add(make_images_for(setting, methods, id, course.show(1), reporter.cancel, *team));
+      done.add(make_images_for(setting, methods, id, {course.show(1), reporter.cancel}, *team));
   } catch (const Interrupted&) {
     done.complete = false;
   }

@@ -25,8 +25,7 @@ struct ChartMethod {
   std::string id, family, setting;
   bool is_default = false;
   /// Fills in the point's times, primaries, channels and targets. Throws Interrupted.
-  std::function<void(const ChartSetting&, const ProgressCallback&, const CancelToken*, ChartPoint&)>
-      run;
+  std::function<void(const ChartSetting&, const Watch&, ChartPoint&)> run;
   bool needs_images = false;  ///< those of make_images
 };
 
@@ -47,8 +46,7 @@ ChartMethods list_models(const ChartSetting& setting);
 /// The images that models learn from, once for all of them. Keeps how long they took: each is
 /// simulated by one process, so that a team's times mean the same. Throws Interrupted, on all of a
 /// team.
-ManyDone make_images(const ChartSetting& setting, const ProgressCallback& progress,
-                     const CancelToken* cancel, Team* team);
+ManyDone make_images(const ChartSetting& setting, const Watch& watch, Team* team);
 
 /// Whether the job asks for a family.
 bool wants(const ChartJob& job, const std::string& family);

@@ -127,26 +127,20 @@ TrainJob training_of_images(const ChartSetting& setting) {
 fs::path times_of_images(const TrainJob& job) { return job.images / "seconds.json"; }
 
 void predict(const LearnOptions& learn, const std::string& id, bool needs_images,
-             const ChartSetting& setting, const ProgressCallback& progress,
-             const CancelToken* cancel, ChartPoint& point) {
-  const auto part = [&](double from, double to) -> ProgressCallback {
-    return [&progress, from, to](double done, double total) {
-      if (progress && total > 0) progress(from + (to - from) * done / total, 1);
-    };
-  };
+             const ChartSetting& setting, const Watch& watch, ChartPoint& point) {
   double preparation_s = 0;
   if (needs_images) {
-    make_images(setting, part(0, 0.5), cancel, nullptr);
+    make_images(setting, watch.part(0, 0.5), nullptr);
     preparation_s = read_seconds(times_of_images(training_of_images(setting)));
   }
   TrainJob job = training(setting, learn, id);
   if (!needs_images) job.surfaces.reset();  // none, where nothing asks for images
   Reporter reporter;
-  const ProgressCallback show = part(0.5, 0.9);
+  const Watch learning = watch.part(0.5, 0.9);
   reporter.on_progress = [&](double done, double total, std::string_view things) {
-    if (things.empty()) show(done, total);
+    if (learning.progress && things.empty()) learning.progress(done, total);
   };
-  reporter.cancel = cancel;
+  reporter.cancel = watch.cancel;
   const auto start = Clock::now();
   const TrainSummary trained = run(job, reporter);
   if (!trained.complete) throw Interrupted();
@@ -188,16 +182,15 @@ std::vector<FacetScale> first_scales(int count, bool uniform) {
 
 }  // namespace
 
-ManyDone make_images(const ChartSetting& setting, const ProgressCallback& progress,
-                     const CancelToken* cancel, Team* team) {
+ManyDone make_images(const ChartSetting& setting, const Watch& watch, Team* team) {
   const TrainJob job = training_of_images(setting);
   std::vector<TrainingSurface> surfaces;
   together(team, [&] { surfaces = gather_surfaces(job, *job.surfaces, {}); });
   Reporter reporter;
   reporter.on_progress = [&](double done, double total, std::string_view things) {
-    if (progress && things == "pixels") progress(done, total);
+    if (watch.progress && things == "pixels") watch.progress(done, total);
   };
-  reporter.cancel = cancel;
+  reporter.cancel = watch.cancel;
   const SimulatedImages done = simulate_images(job, surfaces, reporter, team, true);
   together(team, [&] {
     const fs::path times = times_of_images(job);
@@ -224,9 +217,9 @@ ChartMethods list_models(const ChartSetting& setting) {
                        bool needs_images = true) {
     if (!wants(job, family)) return;
     ChartMethod method{id, family, setting_text, false, {}};
-    method.run = [learn, id, needs_images](const ChartSetting& s, const ProgressCallback& progress,
-                                           const CancelToken* cancel, ChartPoint& point) {
-      predict(learn, id, needs_images, s, progress, cancel, point);
+    method.run = [learn, id, needs_images](const ChartSetting& s, const Watch& watch,
+                                           ChartPoint& point) {
+      predict(learn, id, needs_images, s, watch, point);
     };
     method.needs_images = needs_images;
     out.methods.push_back(std::move(method));

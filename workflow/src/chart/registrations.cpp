@@ -34,7 +34,7 @@ Point2 normal_pair(RandomStream& random) {
 PlacedImage part_of(const PlacedImage& image, int x0, int y0, int width, int height) {
   PlacedImage out = image;
   out.values = Grid<double>(width, height);
-  if (!image.valid.empty()) out.valid = Grid<unsigned char>(width, height);
+  if (!image.valid.empty()) out.valid = Mask(width, height);
   for (int y = 0; y < height; ++y)
     for (int x = 0; x < width; ++x) {
       out.values(x, y) = image.values(x0 + x, y0 + y);

@@ -26,12 +26,7 @@ constexpr double degree = std::numbers::pi / 180;
 constexpr const char* remedy = "Make the sample again: semsurf sample pads -o pads";
 
 PlacedImage placed(const Image& image) {
-  PlacedImage out{Grid<double>(image.width(), image.height()),
-                  {},
-                  image.pitch_x_nm,
-                  image.pitch_y_nm,
-                  image.origin_x_nm,
-                  image.origin_y_nm};
+  PlacedImage out{image.placement(), Grid<double>(image.width(), image.height())};
   std::ranges::copy(image.channels.front().values.data(), out.values.data().begin());
   return out;
 }

@@ -39,8 +39,8 @@ double median(std::vector<double> values) {
   return values[values.size() / 2];
 }
 
-void simulate(const Simulation& what, const ChartSetting& setting, const ProgressCallback& progress,
-              const CancelToken* cancel, ChartPoint& point) {
+void simulate(const Simulation& what, const ChartSetting& setting, const Watch& watch,
+              ChartPoint& point) {
   const io::SceneFile& scene = setting.job.scene;
   std::vector<double> run_s, preparation_s;
   for (int i = 0; i < repeats; ++i) {
@@ -52,8 +52,7 @@ void simulate(const Simulation& what, const ChartSetting& setting, const Progres
                                    scene.physics, setting.job.threads, done);
     const mc::Scene ready(specimen, scene.beam, setting.scan, scene.physics);
     const double building_s = seconds_since(start);
-    const mc::SimulationResult r =
-        mc::simulate(ready, what.options, {.progress = progress, .cancel = cancel});
+    const mc::SimulationResult r = mc::simulate(ready, what.options, {.watch = watch});
     if (!r.complete) throw Interrupted();
     run_s.push_back(r.seconds);
     preparation_s.push_back(building_s + r.library_seconds);
@@ -145,9 +144,9 @@ class List {
 
   void add(const char* family, std::string id, std::string text, const Simulation& what) {
     ChartMethod method{std::move(id), family, std::move(text), false, {}};
-    method.run = [what](const ChartSetting& setting, const ProgressCallback& progress,
-                        const CancelToken* cancel,
-                        ChartPoint& point) { simulate(what, setting, progress, cancel, point); };
+    method.run = [what](const ChartSetting& setting, const Watch& watch, ChartPoint& point) {
+      simulate(what, setting, watch, point);
+    };
     out.methods.push_back(std::move(method));
   }
 

@@ -62,14 +62,13 @@ struct WebPageSummary {
 };
 
 /// One HTML file that shows the surfaces in any browser, with nothing else needed and nothing
-/// fetched: see docs/methods/view.md. The same page gives the same bytes. `progress` counts
-/// surfaces and images; where `cancel` is set, nothing is written and the summary is empty. Throws
-/// InvalidInput for a page with neither surface nor image, a damaged mesh, field, image or scalar,
-/// a name that is empty or used twice, or a drape or scalar that is not there; FileError;
-/// UsageError for a name that does not end in .html; Unsupported where the viewer was not built.
+/// fetched: see docs/methods/view.md. The same page gives the same bytes. The watch counts
+/// surfaces and images. Throws Interrupted before anything is written; InvalidInput for a page with
+/// neither surface nor image, a damaged mesh, field, image or scalar, a name that is empty or used
+/// twice, or a drape or scalar that is not there; FileError; UsageError for a name that does not
+/// end in .html; Unsupported where the viewer was not built.
 WebPageSummary write_web_page(const std::filesystem::path& path, const WebPage& page,
-                              const ProgressCallback& progress = {},
-                              const CancelToken* cancel = nullptr);
+                              const Watch& watch = {});
 
 /// Throws what `write_web_page` would for the name, folder or build, before any work is spent.
 void check_web_page_target(const std::filesystem::path& path);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "surf/core/height_field.h"
+#include "surf/core/mask.h"
 
 namespace surf {
 
@@ -24,13 +25,12 @@ struct Plane {
 /// The plane of least squares of the vertical distances. Samples that are 0 in `use` (same size, or
 /// empty: all count) and holes play no part.
 /// Throws InvalidInput if what is left is fewer than three samples or lies on one line.
-Plane fit_plane(const HeightField& field, const Grid<unsigned char>& use = {});
+Plane fit_plane(const HeightField& field, const Mask& use = {});
 
 /// The same with a polynomial of all terms x^i y^j, i + j <= degree (0 to 6), evaluated at every
 /// sample, holes too. Far from the samples used it means little. Throws InvalidInput if the samples
 /// do not determine it, UsageError for another degree.
-Grid<double> fit_polynomial(const HeightField& field, int degree,
-                            const Grid<unsigned char>& use = {});
+Grid<double> fit_polynomial(const HeightField& field, int degree, const Mask& use = {});
 
 /// Takes it off the heights; holes stay as they are.
 void subtract(HeightField& field, const Plane& plane);

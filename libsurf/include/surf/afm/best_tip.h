@@ -6,6 +6,7 @@
 
 #include "surf/afm/noise.h"
 #include "surf/afm/tip.h"
+#include "surf/core/height_field.h"
 #include "surf/core/progress.h"
 
 namespace surf {
@@ -16,6 +17,7 @@ struct BestTipOptions {
   AfmNoise noise;       ///< of all scans
   int iterations = 64;  ///< of the last fit, >= 1; the first takes an eighth
   int threads = 0;      ///< 0: one per hardware thread. Does not change the result
+  Watch watch;
 };
 
 /// A tip that was fitted, from the outer bound at some threshold.
@@ -35,6 +37,11 @@ struct BestTipSummary {
   std::int64_t touched = 0;        ///< samples of the tip that touched something
 };
 
+struct BestTip {
+  Tip tip;
+  BestTipSummary summary;
+};
+
 /// The tip and the surfaces that make the scans most likely: scan = dilation of the surface by the
 /// tip plus noise. Surfaces are free, so sharper tips always fit better, noise as well as the
 /// surface. Two things keep the tip blunt, and neither needs a number set by hand:
@@ -48,9 +55,7 @@ struct BestTipSummary {
 ///   in use.
 /// The likelihood is followed by scaled gradient steps through the contacts of the dilation.
 /// Several scans by one tip are fitted together; all have one pitch. Throws InvalidInput,
-/// UsageError; on cancellation the best so far.
-Tip best_tip(const std::vector<HeightField>& scans, const BestTipOptions& options,
-             BestTipSummary& summary, const ProgressCallback& progress = {},
-             const CancelToken* cancel = nullptr);
+/// UsageError, Interrupted.
+BestTip best_tip(const std::vector<HeightField>& scans, const BestTipOptions& options);
 
 }  // namespace surf

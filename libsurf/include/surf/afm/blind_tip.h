@@ -37,17 +37,17 @@ struct BlindTipOptions {
   bool maxima_only = false;
   std::optional<Tip> start;  ///< an outer bound to begin with, of this size and pitch; none: flat
   int threads = 0;           ///< 0: one per hardware thread. Does not change the result
-};
-
-enum class BlindTipEnd {
-  converged,  ///< no point of any scan lowers the tip
-  cancelled,  ///< what is there still bounds the answer from outside
+  Watch watch;               ///< counts rounds
 };
 
 struct BlindTipSummary {
-  BlindTipEnd end = BlindTipEnd::converged;
-  int rounds = 0;           ///< passes over all scans
+  int rounds = 0;           ///< passes over all scans, until no point of any lowers the tip
   std::int64_t points = 0;  ///< points of the scans that were tried on the tip
+};
+
+struct BlindTip {
+  Tip tip;
+  BlindTipSummary summary;
 };
 
 /// The largest tip that can have made every point of every scan: the outer bound of the true one
@@ -57,9 +57,7 @@ struct BlindTipSummary {
 ///   tolerance,
 /// until nothing changes. The result does not depend on the order of points, since each step can
 /// only lower the tip, and lowers it less where it is larger. Holes allow everything. All scans
-/// have one pitch. Throws InvalidInput, UsageError.
-Tip blind_tip(const std::vector<HeightField>& scans, const BlindTipOptions& options,
-              BlindTipSummary& summary, const ProgressCallback& progress = {},
-              const CancelToken* cancel = nullptr);
+/// have one pitch. Throws InvalidInput, UsageError, Interrupted.
+BlindTip blind_tip(const std::vector<HeightField>& scans, const BlindTipOptions& options);
 
 }  // namespace surf

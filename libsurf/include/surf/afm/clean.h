@@ -29,12 +29,16 @@ struct CleanSummary {
   std::size_t holes = 0;    ///< that are left
 };
 
+struct Cleaned {
+  HeightField field;
+  CleanSummary summary;
+};
+
 /// Each height becomes the median of its neighbourhood (of an even number, the mean of the two
 /// middle ones), or does so only where it is farther than the limit from it, which takes spikes and
 /// leaves the rest. At the border of the image and near holes the neighbourhood is what there is of
 /// it. The time grows with the radius, not with its square. Throws InvalidInput, UsageError.
-HeightField median_filter(const HeightField& field, const MedianOptions& options,
-                          CleanSummary& summary);
+Cleaned median_filter(const HeightField& field, const MedianOptions& options);
 
 struct ClosingOptions {
   int width = 3;  ///< samples along each side of the square, odd, 1 to 2001; 1 changes nothing
@@ -48,7 +52,6 @@ struct ClosingOptions {
 /// falls; twice is the same as once. What is outside the image, and holes, take no part in either
 /// step. The time does not grow with the width (van Herk 1992, doi:10.1016/0167-8655(92)90069-C;
 /// Gil and Werman 1993, doi:10.1109/34.211471). Throws InvalidInput, UsageError.
-HeightField flat_closing(const HeightField& field, const ClosingOptions& options,
-                         CleanSummary& summary);
+Cleaned flat_closing(const HeightField& field, const ClosingOptions& options);
 
 }  // namespace surf

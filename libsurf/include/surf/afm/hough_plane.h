@@ -5,6 +5,7 @@
 
 #include "surf/afm/background.h"
 #include "surf/core/height_field.h"
+#include "surf/core/mask.h"
 #include "surf/core/progress.h"
 
 namespace surf {
@@ -24,8 +25,8 @@ enum class HoughVerdict {
 };
 
 struct HoughSummary {
-  Plane plane;                  ///< least squares of the inliers
-  Grid<unsigned char> inliers;  ///< 1 within the tolerance of the plane
+  Plane plane;   ///< least squares of the inliers
+  Mask inliers;  ///< 1 within the tolerance of the plane
   double tolerance_nm = 0;
   double inlier_share = 0;     ///< of the samples that take part
   Plane runner_up;             ///< the best plane of the samples away from the first
@@ -55,6 +56,6 @@ struct HoughSummary {
 /// Samples that are 0 in `use` (same size, or empty) and holes play no part. Deterministic.
 /// Throws InvalidInput as `fit_plane` does, UsageError for a negative tolerance.
 HoughSummary find_plane(const HeightField& field, const HoughOptions& options = {},
-                        const Grid<unsigned char>& use = {});
+                        const Mask& use = {});
 
 }  // namespace surf

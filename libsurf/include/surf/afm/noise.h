@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "surf/core/grid.h"
+#include "surf/core/mask.h"
 
 namespace surf {
 
@@ -29,14 +30,13 @@ Grid<double> simulate_noise(const AfmNoise& noise, int width, int height, std::u
 /// sample less what the last one before it in its row predicts, alpha^k of it k columns on, over
 /// the standard deviation of what is left. Samples that are 0 in `valid` (same size, or empty: all
 /// count) give 0 and predict nothing. Throws InvalidInput.
-Grid<double> whiten(const Grid<double>& residual_nm, const AfmNoise& noise,
-                    const Grid<unsigned char>& valid = {});
+Grid<double> whiten(const Grid<double>& residual_nm, const AfmNoise& noise, const Mask& valid = {});
 
 /// The natural logarithm of the density of the residuals (in nm^-n for n samples) under the model,
 /// exact for rows with holes too, as the process is Markov. If `gradient` is given it becomes the
 /// derivative by each residual, per nm, 0 in holes. Takes time in proportion to the samples.
 /// Throws InvalidInput.
 double log_likelihood(const Grid<double>& residual_nm, const AfmNoise& noise,
-                      const Grid<unsigned char>& valid = {}, Grid<double>* gradient = nullptr);
+                      const Mask& valid = {}, Grid<double>* gradient = nullptr);
 
 }  // namespace surf

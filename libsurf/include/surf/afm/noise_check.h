@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "surf/core/grid.h"
+#include "surf/core/mask.h"
 
 namespace surf {
 
@@ -40,13 +41,12 @@ struct NoiseCheck {
 /// With many samples the smallest deviation is significant: look at the correlations themselves
 /// too. Samples that are 0 in `valid` (same size, or empty) take no part. Throws InvalidInput if
 /// the mask has another size, a sample is not finite, fewer than 16 remain, or all are equal.
-NoiseCheck check_noise(const Grid<double>& whitened, const Grid<unsigned char>& valid = {},
+NoiseCheck check_noise(const Grid<double>& whitened, const Mask& valid = {},
                        const NoiseCheckOptions& options = {});
 
 /// The autocovariance along rows of a residual about 0, lags 0 to `lags`, in its unit squared.
 /// Lags without a pair give 0.
-std::vector<double> autocovariance(const Grid<double>& residual, int lags,
-                                   const Grid<unsigned char>& valid = {});
+std::vector<double> autocovariance(const Grid<double>& residual, int lags, const Mask& valid = {});
 
 /// The chance that chi-squared with `degrees` (>= 1) exceeds `x`.
 double chi_squared_tail(double x, int degrees);

@@ -3,6 +3,7 @@
 
 #include "surf/afm/noise.h"
 #include "surf/core/height_field.h"
+#include "surf/core/mask.h"
 #include "surf/core/progress.h"
 
 namespace surf {
@@ -36,7 +37,7 @@ struct FlatNoiseOptions {
 /// more than the polynomial has coefficients or no two beside each other, UsageError for a degree
 /// out of range.
 NoiseEstimate estimate_flat_noise(const HeightField& field, const FlatNoiseOptions& options = {},
-                                  const Grid<unsigned char>& use = {});
+                                  const Mask& use = {});
 
 /// The model of the noise of an image with structure, without levelling. Looks at second
 /// differences across three rows of second differences along rows, D_k = d_y^2 d_x,k^2 z with k = 1

@@ -5,6 +5,7 @@
 
 #include "surf/afm/background.h"
 #include "surf/core/height_field.h"
+#include "surf/core/mask.h"
 
 namespace surf {
 
@@ -23,6 +24,6 @@ struct Roughness {
 
 /// Samples that are 0 in `use` (same size, or empty: all count) and holes play no part.
 /// Throws InvalidInput as `fit_plane` does.
-Roughness measure_roughness(const HeightField& field, const Grid<unsigned char>& use = {});
+Roughness measure_roughness(const HeightField& field, const Mask& use = {});
 
 }  // namespace surf

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "surf/core/height_field.h"
+#include "surf/core/mask.h"
 
 namespace surf {
 
@@ -22,6 +23,6 @@ struct RowLevel {
 /// Takes steps between scan lines off the heights, keeping the level of the whole. Samples that are
 /// 0 in `use` (same size, or empty: all count) and holes do not decide, but are shifted with their
 /// row. Throws InvalidInput if nothing remains to decide by.
-RowLevel level_rows(HeightField& field, RowMethod method, const Grid<unsigned char>& use = {});
+RowLevel level_rows(HeightField& field, RowMethod method, const Mask& use = {});
 
 }  // namespace surf

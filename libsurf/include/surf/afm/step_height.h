@@ -4,6 +4,7 @@
 #include <cstddef>
 
 #include "surf/core/height_field.h"
+#include "surf/core/mask.h"
 
 namespace surf {
 
@@ -23,7 +24,6 @@ struct StepHeight {
 /// low-frequency structure and row offsets are not in it.
 /// Regions are samples that are not 0 (masks of the field's size) and not holes.
 /// Throws InvalidInput if a region is empty, they overlap, or they do not determine tilt and step.
-StepHeight measure_step(const HeightField& field, const Grid<unsigned char>& first,
-                        const Grid<unsigned char>& second);
+StepHeight measure_step(const HeightField& field, const Mask& first, const Mask& second);
 
 }  // namespace surf

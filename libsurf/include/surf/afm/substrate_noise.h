@@ -3,14 +3,15 @@
 
 #include "surf/afm/hough_plane.h"
 #include "surf/afm/noise_estimate.h"
+#include "surf/core/mask.h"
 
 namespace surf {
 
 /// The noise of the substrate of a scan with features on it.
 struct SubstrateNoise {
-  HoughSummary plane;             ///< what the substrate is
-  Grid<unsigned char> substrate;  ///< 1 for the samples that the estimate is from
-  double substrate_share = 0;     ///< of the samples that take part
+  HoughSummary plane;          ///< what the substrate is
+  Mask substrate;              ///< 1 for the samples that the estimate is from
+  double substrate_share = 0;  ///< of the samples that take part
   NoiseEstimate estimate;
   Grid<double> residual_nm;  ///< the heights less a polynomial through the substrate
 };
@@ -21,7 +22,6 @@ struct SubstrateNoise {
 /// which would make the noise too small. The foot of features counts as noise where it is within.
 /// Only as good as `plane.verdict` says. Throws as these two do.
 SubstrateNoise estimate_substrate_noise(const HeightField& field,
-                                        const FlatNoiseOptions& options = {},
-                                        const Grid<unsigned char>& use = {});
+                                        const FlatNoiseOptions& options = {}, const Mask& use = {});
 
 }  // namespace surf

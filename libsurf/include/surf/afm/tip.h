@@ -3,19 +3,18 @@
 
 #include <string>
 
-#include "surf/core/height_field.h"
+#include "surf/core/grid.h"
+#include "surf/core/placement.h"
 
 namespace surf {
 
 /// The structuring function of an AFM tip, T(x, y) = -tip(-x, -y): a scan is the dilation of the
 /// surface by it, I(x) = max over u of S(x - u) + T(u). Its largest value is exactly 0, at the
 /// apex; samples that the tip does not have are -infinity.
-struct Tip {
-  Grid<double> z_nm;      ///< at least 1x1; row-major, sample (0, 0) lower-left; <= 0 or -infinity
-  double pitch_x_nm = 1;  ///< > 0, as of the scan that the tip meets
-  double pitch_y_nm = 1;  ///< > 0
-  int apex_x = 0;         ///< column of the apex: the sample at u = 0
-  int apex_y = 0;         ///< row of the apex
+struct Tip : Pitch {
+  Grid<double> z_nm;  ///< at least 1x1; row-major, sample (0, 0) lower-left; <= 0 or -infinity
+  int apex_x = 0;     ///< column of the apex: the sample at u = 0
+  int apex_y = 0;     ///< row of the apex
   std::string doubt =
       {};  ///< why the tip is not to be trusted, for people; empty: nothing is known against it
 };

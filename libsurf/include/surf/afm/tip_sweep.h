@@ -10,8 +10,8 @@
 namespace surf {
 
 struct TipSweepOptions {
-  /// Size, border, start and threads of each reconstruction. Thresholds and apex tolerance are the
-  /// sweep's.
+  /// Size, border, start and threads of each reconstruction. Thresholds, apex tolerance and watch
+  /// are the sweep's.
   BlindTipOptions blind;
   AfmNoise noise;                      ///< of the scans
   double least_nm = 0, most_nm = 0;    ///< thresholds, evenly from one to the other, 0 <= least <
@@ -20,6 +20,7 @@ struct TipSweepOptions {
   double tolerance_per_threshold = 1;  ///< apex tolerance, >= 0; 0 is Villarrubia's algorithm
   int draws = 3;           ///< of the noise, to tell what residuals to expect, 2 to 1000
   std::uint64_t seed = 1;  ///< of the draws
+  Watch watch;             ///< counts thresholds
 };
 
 /// A tip of the sweep, and whether the noise explains what it leaves of the scans.
@@ -42,7 +43,6 @@ enum class TipSweepVerdict {
   disagreement,  ///< the broadest consistent tip lies elsewhere: look at the curve
   none,  ///< no tip explains the scans: even the nearest leaves six times as much as the noise
          ///< would
-  cancelled,
 };
 
 struct TipSweep {
@@ -58,9 +58,9 @@ struct TipSweep {
 /// opening, and that opened again. Of the tips that come as near to it as any, the broadest is
 /// chosen (thesis, 10.1). Tips that noise has sharpened leave it in the scans: those whose opening
 /// takes less than 0.6 of the noise away that the smoothest takes do not count. Thresholds blunt
-/// tips, so a little more than the noise is always lacking. Throws InvalidInput, UsageError.
-TipSweep sweep_tips(const std::vector<HeightField>& scans, const TipSweepOptions& options,
-                    const ProgressCallback& progress = {}, const CancelToken* cancel = nullptr);
+/// tips, so a little more than the noise is always lacking. Throws InvalidInput, UsageError,
+/// Interrupted.
+TipSweep sweep_tips(const std::vector<HeightField>& scans, const TipSweepOptions& options);
 
 /// The threshold and apex tolerance at which `blind_tip` bounds every touched sample of the true
 /// tip from outside in 95 % of noise draws at least, for scans of `pixels` in all. Normal noise: by

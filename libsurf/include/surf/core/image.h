@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "surf/core/grid.h"
+#include "surf/core/placement.h"
 
 namespace surf {
 
@@ -18,12 +19,8 @@ struct Channel {
 };
 
 /// Named float channels of one size. Pixel (0, 0) is the lower-left one.
-struct Image {
+struct Image : Placement {
   std::vector<Channel> channels;  ///< one size; unique names
-  double pitch_x_nm = 1;          ///< pixel width, > 0
-  double pitch_y_nm = 1;          ///< pixel height, > 0
-  double origin_x_nm = 0;         ///< centre of pixel (0, 0)
-  double origin_y_nm = 0;
   /// Provenance and settings, written into every file that can hold text. Keys are lower case
   /// with dots ("semsurf.version", "beam.energy_ev"); nothing here depends on threads or clocks.
   std::map<std::string, std::string> metadata;
@@ -36,7 +33,7 @@ struct Image {
 };
 
 /// Throws InvalidInput (naming `subject`) if there is no channel, a size differs, a name is empty
-/// or used twice, or a pitch is not positive and finite.
+/// or used twice, or its placement is none.
 void validate(const Image& image, const char* subject = "image");
 
 }  // namespace surf

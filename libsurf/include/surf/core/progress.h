@@ -21,12 +21,14 @@ class CancelToken {
   static_assert(std::atomic<bool>::is_always_lock_free, "needed inside signal handlers");
 };
 
-/// Reports the progress of a long function to its caller, and lets the caller cancel it. A
-/// cancelled function throws `Interrupted` (error.h).
+/// The one way in which long work is watched and stopped. A function that is cancelled throws
+/// `Interrupted` (error.h), unless what is done so far is of use: then its summary says that it is
+/// not complete. What only has to look whether it should stop takes the token alone.
 struct Watch {
   ProgressCallback progress;            ///< may be empty
   const CancelToken* cancel = nullptr;  ///< may be null
 
+  bool cancelled() const { return cancel && cancel->cancelled(); }
   /// Throws Interrupted if the token is set.
   void check() const;
   /// Calls `check`, then `progress`.

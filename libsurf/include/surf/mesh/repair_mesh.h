@@ -67,6 +67,11 @@ struct RepairSummary {
   bool sound() const;
 };
 
+struct RepairedMesh {
+  TriangleMesh mesh;
+  RepairSummary summary;
+};
+
 /// Mends a mesh, in this order: merges equal vertices, stitches gaps, removes degenerate and double
 /// triangles, turns triangles so that neighbours agree, drops tiny components, fills holes,
 /// resolves self-intersections, turns closed components outward (cavities inward stay). Every step
@@ -76,8 +81,7 @@ struct RepairSummary {
 /// Deterministic. Seconds for a million triangles, if there are few self-intersections.
 /// Throws InvalidInput on damaged meshes (`validate`), UsageError on options out of range,
 /// Interrupted.
-TriangleMesh repair_mesh(const TriangleMesh& mesh, const RepairOptions& options,
-                         RepairSummary& summary);
+RepairedMesh repair_mesh(const TriangleMesh& mesh, const RepairOptions& options = {});
 
 /// What was done and what remains, a line each, for people.
 std::vector<std::string> describe(const RepairSummary& summary);

@@ -33,6 +33,11 @@ struct SimplifySummary {
   bool reached = false;  ///< the number of triangles asked for; true if none was
 };
 
+struct SimplifiedMesh {
+  TriangleMesh mesh;
+  SimplifySummary summary;
+};
+
 /// Removes vertices where they matter least (quadric error, Garland and Heckbert 1997,
 /// doi:10.1145/258734.258849), one at a time into a neighbour, so that what remains are vertices of
 /// the original. Faces do not turn over; closedness, components and holes are kept. Vertices at
@@ -44,7 +49,6 @@ struct SimplifySummary {
 ///
 /// Deterministic. Throws InvalidInput on damaged meshes, UsageError if no limit is given or one is
 /// out of range, Interrupted.
-TriangleMesh simplify_mesh(const TriangleMesh& mesh, const SimplifyOptions& options,
-                           SimplifySummary& summary);
+SimplifiedMesh simplify_mesh(const TriangleMesh& mesh, const SimplifyOptions& options);
 
 }  // namespace surf

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "surf/core/grid.h"
+#include "surf/core/placement.h"
 #include "surf/core/track.h"
 #include "surf/mesh/triangle_mesh.h"
 
@@ -29,13 +30,9 @@ std::string scalar_name(std::string_view name);
 
 /// A grey picture laid on a surface from straight above: each vertex shows the pixel over its x and
 /// y. Places beyond the picture show its nearest edge.
-struct Drape {
+struct Drape : Placement {
   std::string name;         ///< what it shows, as "SE"
   Grid<std::uint8_t> grey;  ///< pixel (0, 0) is the lower-left one
-  double pitch_x_nm = 1;    ///< pixel width, > 0
-  double pitch_y_nm = 1;    ///< pixel height, > 0
-  double origin_x_nm = 0;   ///< centre of pixel (0, 0)
-  double origin_y_nm = 0;
 };
 
 /// A mesh with what is known about its places.

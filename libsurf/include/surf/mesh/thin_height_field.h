@@ -24,6 +24,11 @@ struct ThinSummary {
   bool reached = true;  ///< within the tolerance; else the limit came first
 };
 
+struct ThinSheet {
+  TriangleMesh mesh;
+  ThinSummary summary;
+};
+
 /// An open sheet of fewer triangles over the same rectangle, nowhere farther than the tolerance
 /// above or below `height_field_sheet`, or as near as it comes to that with the triangles allowed.
 /// It has one height over every place as the field has, so that it cannot pass through itself; its
@@ -38,7 +43,6 @@ struct ThinSummary {
 ///
 /// Throws InvalidInput on a damaged field or one with invalid samples, UsageError on bad options,
 /// Interrupted.
-TriangleMesh thin_height_field(const HeightField& field, const ThinOptions& options,
-                               ThinSummary& summary);
+ThinSheet thin_height_field(const HeightField& field, const ThinOptions& options);
 
 }  // namespace surf

@@ -11,6 +11,7 @@
 #include "surf/afm/tip.h"
 #include "surf/core/affine.h"
 #include "surf/core/height_field.h"
+#include "surf/core/mask.h"
 #include "surf/core/parameters.h"
 #include "surf/core/placed_image.h"
 #include "surf/core/progress.h"
@@ -129,12 +130,12 @@ struct Reconstruction {
   Tip tip;            ///< as fitted, else as given, on the AFM's samples; empty without AFM
   HeightField start;  ///< what it began with: the eroded scan on the surface's samples
 
-  HeightField simulated_afm;     ///< on the AFM's samples; holes where the surface does not reach.
-                                 ///< Empty without AFM
-  Grid<double> afm_residual;     ///< whitened
-  Grid<unsigned char> afm_used;  ///< 1: the pixel plays a part
-  Grid<double> simulated_sem;    ///< on the surface's samples. Empty without SEM
-  Grid<double> sem_residual;     ///< whitened
+  HeightField simulated_afm;   ///< on the AFM's samples; holes where the surface does not reach.
+                               ///< Empty without AFM
+  Grid<double> afm_residual;   ///< whitened
+  Mask afm_used;               ///< 1: the pixel plays a part
+  Grid<double> simulated_sem;  ///< on the surface's samples. Empty without SEM
+  Grid<double> sem_residual;   ///< whitened
 
   Grid<double> deviation_nm;  ///< of each height, linearised: noise and the prior's pull; empty if
                               ///< not asked for

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "surf/core/grid.h"
+#include "surf/core/mask.h"
 #include "surf/sem/filter_bank.h"
 #include "surf/sem/image_model.h"
 
@@ -17,9 +18,9 @@ namespace surf {
 struct CalibrationImages {
   Grid<double> real;                  ///< E, grey levels or any unit that is linear in the signal
   std::vector<std::string> channels;  ///< names, 1 to 8: SE and BSE, or one of them
-  ModelImages simulated;     ///< one per channel, counts per primary, of the size of `real`
-  Grid<unsigned char> used;  ///< 0: the pixel is left out; or empty: all count
-  Grid<double> weights;      ///< 1 / variance of each pixel, up to a factor, >= 0; or empty: alike
+  ModelImages simulated;  ///< one per channel, counts per primary, of the size of `real`
+  Mask used;              ///< 0: the pixel is left out; or empty: all count
+  Grid<double> weights;   ///< 1 / variance of each pixel, up to a factor, >= 0; or empty: alike
 };
 
 struct CalibrationOptions {
@@ -80,9 +81,9 @@ Grid<double> calibrated_image(const Calibration& calibration, const ModelImages&
 
 /// A gain that varies slowly over the image (Davidson 1999; thesis, 6.7.1).
 struct SlowGain {
-  Grid<double> gain;          ///< F; 1 where it is not known
-  Grid<unsigned char> known;  ///< 0: nothing to divide by there, see `slow_gain`
-  std::int64_t unknown = 0;   ///< pixels
+  Grid<double> gain;         ///< F; 1 where it is not known
+  Mask known;                ///< 0: nothing to divide by there, see `slow_gain`
+  std::int64_t unknown = 0;  ///< pixels
 };
 
 /// F = mean of E / mean of the model's signal over the square of pixels whose centres are at most
@@ -93,7 +94,7 @@ struct SlowGain {
 /// (thesis, 6.7.1): it is for comparing, not for descending. Throws InvalidInput for sizes that
 /// differ, UsageError for a negative range.
 SlowGain slow_gain(const Grid<double>& real, const Grid<double>& signal, int range_x_px,
-                   int range_y_px, const Grid<unsigned char>& used = {});
+                   int range_y_px, const Mask& used = {});
 
 /// A filter bank with the gains and the offset folded into its coefficients (thesis, Equation 6-3):
 /// one channel `name`, in units of E. Throws InvalidInput if the bank lacks a channel of the

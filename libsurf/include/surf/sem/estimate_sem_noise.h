@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 #include <vector>
+#include "surf/core/mask.h"
 
 #include "surf/core/parameters.h"
 #include "surf/core/placed_image.h"
@@ -106,7 +107,6 @@ SemNoiseEstimate estimate_sem_noise(const PlacedImage& image, const SemNoiseOpti
 /// and `least_share` do. Throws InvalidInput for sizes that differ, values that are not finite,
 /// fewer than 16 pixels, or residuals that are all 0.
 SemNoiseEstimate fit_sem_noise(const Grid<double>& real, const Grid<double>& mean,
-                               const Grid<unsigned char>& used = {},
-                               const SemNoiseOptions& options = {});
+                               const Mask& used = {}, const SemNoiseOptions& options = {});
 
 }  // namespace surf

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "surf/core/mask.h"
 #include "surf/sem/sem_noise.h"
 
 namespace surf {
@@ -14,6 +15,6 @@ namespace surf {
 /// within two of its standard errors of 0, the variance is constant. Throws InvalidInput for sizes
 /// that differ, values that are not finite, or fewer than 100 second differences that are not 0.
 SemNoise noise_of_residuals(const Grid<double>& real, const Grid<double>& mean,
-                            const Grid<unsigned char>& used = {});
+                            const Mask& used = {});
 
 }  // namespace surf

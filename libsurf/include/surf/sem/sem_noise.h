@@ -2,6 +2,7 @@
 #pragma once
 
 #include "surf/core/grid.h"
+#include "surf/core/mask.h"
 
 namespace surf {
 
@@ -31,11 +32,11 @@ void validate(const SemNoise& noise, const char* subject = "SEM noise");
 /// v^2), 0 where a pixel does not count. Throws InvalidInput for sizes that differ and values that
 /// are not finite.
 double log_likelihood(const Grid<double>& real, const Grid<double>& mean, const SemNoise& noise,
-                      const Grid<unsigned char>& used = {}, Grid<double>* gradient = nullptr,
+                      const Mask& used = {}, Grid<double>* gradient = nullptr,
                       Grid<double>* information = nullptr);
 
 /// Residuals over their standard deviation; 0 where a pixel does not count.
 Grid<double> whiten(const Grid<double>& real, const Grid<double>& mean, const SemNoise& noise,
-                    const Grid<unsigned char>& used = {});
+                    const Mask& used = {});
 
 }  // namespace surf

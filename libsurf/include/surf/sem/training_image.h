@@ -7,6 +7,7 @@
 #include "surf/core/edge.h"
 #include "surf/core/grid.h"
 #include "surf/core/height_field.h"
+#include "surf/core/mask.h"
 
 namespace surf {
 
@@ -18,8 +19,8 @@ struct TrainingImage {
   /// One per channel that is learnt, of the field's size, finite where used.
   std::vector<Grid<float>> images;
   std::vector<Grid<float>>
-      standard_errors;       ///< of the same sizes, > 0 where used; or none: all weigh alike
-  Grid<unsigned char> used;  ///< 0: the pixel is left out; or empty: all are used
+      standard_errors;  ///< of the same sizes, > 0 where used; or none: all weigh alike
+  Mask used;            ///< 0: the pixel is left out; or empty: all are used
 };
 
 /// Throws InvalidInput, naming the image, for sizes that differ, values that are not finite, or if

@@ -33,7 +33,7 @@ Grid<double> box_sums(Grid<double> g, int range_x, int range_y) {
 }  // namespace
 
 SlowGain slow_gain(const Grid<double>& real, const Grid<double>& signal, int range_x_px,
-                   int range_y_px, const Grid<unsigned char>& used) {
+                   int range_y_px, const Mask& used) {
   const int width = real.width(), height = real.height();
   const auto same = [&](const auto& g) { return g.width() == width && g.height() == height; };
   if (real.empty() || !same(signal) || !(used.empty() || same(used)))
@@ -53,7 +53,7 @@ SlowGain slow_gain(const Grid<double>& real, const Grid<double>& signal, int ran
   e = box_sums(std::move(e), range_x_px, range_y_px);
   s = box_sums(std::move(s), range_x_px, range_y_px);
   count = box_sums(std::move(count), range_x_px, range_y_px);
-  SlowGain out{Grid<double>(width, height, 1), Grid<unsigned char>(width, height, 1), 0};
+  SlowGain out{Grid<double>(width, height, 1), Mask(width, height, 1), 0};
   for (std::size_t i = 0; i < e.size(); ++i) {
     // Half a pixel: sums of ones are exact, and 0 means none.
     if (count.data()[i] > 0.5 && s.data()[i] != 0 &&

@@ -30,9 +30,8 @@ double slope_noise(const FacetKernel& a, const FacetKernel& b) {
 }  // namespace
 
 template <class T>
-FacetPass<T>::FacetPass(const std::vector<FacetScale>& scales, double pitch_x_nm, double pitch_y_nm,
-                        Unit unit)
-    : loops_(&operations<T>(unit)) {
+FacetPass<T>::FacetPass(const std::vector<FacetScale>& scales, double pitch_x_nm, double pitch_y_nm)
+    : loops_(&operations<T>()) {
   for (const FacetScale& scale : scales) {
     const FacetKernel x = facet_kernel(scale, pitch_x_nm), y = facet_kernel(scale, pitch_y_nm);
     Kernel& kernel = kernels_.emplace_back();

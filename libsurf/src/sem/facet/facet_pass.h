@@ -5,7 +5,7 @@
 #include <functional>
 #include <vector>
 
-#include "facet_units.h"
+#include "facet_operations.h"
 #include "sem/model/aligned.h"
 #include "surf/core/edge.h"
 #include "surf/core/grid.h"
@@ -29,8 +29,7 @@ template <class T>
 class FacetPass {
  public:
   /// Throws InvalidInput for scales out of range.
-  FacetPass(const std::vector<FacetScale>& scales, double pitch_x_nm, double pitch_y_nm,
-            Unit unit = Unit::best);
+  FacetPass(const std::vector<FacetScale>& scales, double pitch_x_nm, double pitch_y_nm);
 
   int scales() const { return static_cast<int>(kernels_.size()); }
   int columns() const { return loops_->columns; }

@@ -84,9 +84,7 @@ void add_inputs(const FacetNetworkParameters& parameters, const TrainingImage& i
   });
 }
 
-bool is_used(const TrainingImage& image, std::size_t i) {
-  return image.used.empty() || image.used.data()[i] != 0;
-}
+bool is_used(const TrainingImage& image, std::size_t i) { return image.used.includes(i); }
 
 Lesson gather(const std::vector<TrainingImage>& images, const FacetNetworkParameters& parameters,
               double pixel_nm, const FacetNetworkFitOptions& options,

@@ -41,8 +41,8 @@ template <class T>
 NetworkEngine<T>::NetworkEngine(const FacetNetworkParameters& parameters, double pitch_nm,
                                 const ModelOptions& options)
     : parameters_(parameters), options_(options), pass_(parameters.scales, pitch_nm, pitch_nm),
-      view_(parameters.sky_edges_nm, pitch_nm),
-      loops_(&network::operations<T>(network::Unit::best)), inputs_(network_inputs(parameters)) {
+      view_(parameters.sky_edges_nm, pitch_nm), loops_(&network::operations<T>()),
+      inputs_(network_inputs(parameters)) {
   options_.threads = resolve_threads(options.threads);
   for (const FacetScale& scale : parameters.scales)
     lengths_.push_back(T(length_nm(scale, pitch_nm)));

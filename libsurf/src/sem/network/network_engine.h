@@ -4,7 +4,7 @@
 #include <functional>
 #include <vector>
 
-#include "network_units.h"
+#include "network_operations.h"
 #include "sem/facet/facet_pass.h"
 #include "sky_view.h"
 #include "surf/sem/facet_network.h"

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "network_units.h"
+#include "network_operations.h"
 #include "sem/model/aligned.h"
 #include "surf/core/edge.h"
 #include "surf/core/grid.h"

@@ -78,27 +78,25 @@ std::vector<char> choose_flat(const std::vector<FlatSample>& samples, bool& clea
   return chosen;
 }
 
-Grid<unsigned char> unsaturated(const PlacedImage& image, const Saturation& saturated) {
-  Grid<unsigned char> good(image.values.width(), image.values.height(), 1);
+Mask unsaturated(const PlacedImage& image, const Saturation& saturated) {
+  Mask good(image.values.width(), image.values.height(), 1);
   for (std::size_t i = 0; i < good.size(); ++i)
-    good.data()[i] =
-        (image.valid.empty() || image.valid.data()[i]) && !saturated(image.values.data()[i]);
+    good.data()[i] = image.valid.includes(i) && !saturated(image.values.data()[i]);
   return good;
 }
 
 /// Number of pixels that are 1.
-std::int64_t count(const Grid<unsigned char>& mask, const PixelRectangle& r) {
+std::int64_t count(const Mask& mask, const PixelRectangle& r) {
   std::int64_t n = 0;
   for (int y = r.y0; y < r.y1; ++y)
-    for (int x = r.x0; x < r.x1; ++x) n += mask.empty() || mask(x, y);
+    for (int x = r.x0; x < r.x1; ++x) n += mask.includes(x, y);
   return n;
 }
 
 std::int64_t area(const PixelRectangle& r) { return std::int64_t{r.x1 - r.x0} * (r.y1 - r.y0); }
 
-FlatSamples blocks_of(const PlacedImage& image, const Grid<unsigned char>& good, int side,
-                      int degree) {
-  static const Grid<unsigned char> all;
+FlatSamples blocks_of(const PlacedImage& image, const Mask& good, int side, int degree) {
+  static const Mask all;
   FlatSamples blocks(image.values, all, degree);
   for (int y = 0; y + side <= image.values.height(); y += side)
     for (int x = 0; x + side <= image.values.width(); x += side) {
@@ -117,8 +115,8 @@ struct Chosen {
 };
 
 /// The largest blocks of which enough are flat.
-Chosen find_flat(const PlacedImage& image, const Grid<unsigned char>& good,
-                 const SemNoiseOptions& o, SemNoiseEstimate& e) {
+Chosen find_flat(const PlacedImage& image, const Mask& good, const SemNoiseOptions& o,
+                 SemNoiseEstimate& e) {
   const std::vector<int> sides =
       o.block_px ? std::vector<int>{o.block_px} : std::vector<int>{16, 12, 8};
   bool any = false;
@@ -151,8 +149,7 @@ Chosen find_flat(const PlacedImage& image, const Grid<unsigned char>& good,
                      "Give an image as the microscope made it, with noise and not too small");
 }
 
-Chosen given_regions(const PlacedImage& image, const Grid<unsigned char>& good,
-                     const SemNoiseOptions& o) {
+Chosen given_regions(const PlacedImage& image, const Mask& good, const SemNoiseOptions& o) {
   Chosen c{FlatSamples(image.values, good, o.degree), {}};
   for (std::size_t i = 0; i < o.regions.size(); ++i) {
     const PixelRectangle& r = o.regions[i];
@@ -219,7 +216,7 @@ SemNoiseEstimate estimate_sem_noise(const PlacedImage& image, const SemNoiseOpti
   check_options(options);
   SemNoiseEstimate e;
   const Saturation saturated = find_saturation(image.values, image.valid, options, e);
-  const Grid<unsigned char> good = unsaturated(image, saturated);
+  const Mask good = unsaturated(image, saturated);
   const Chosen c = options.regions.empty() ? find_flat(image, good, options, e)
                                            : given_regions(image, good, options);
   // A place over its own variance makes the correlation a little too small: the second time over

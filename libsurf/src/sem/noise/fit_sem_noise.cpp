@@ -13,9 +13,8 @@ namespace {
 
 constexpr std::size_t least_pixels = 16, most_bins = 30, least_in_bin = 100;
 
-Grid<unsigned char> pixels_that_count(const Grid<double>& real, const Grid<double>& mean,
-                                      const Grid<unsigned char>& used,
-                                      const SemNoiseOptions& options, SemNoiseEstimate& e) {
+Mask pixels_that_count(const Grid<double>& real, const Grid<double>& mean, const Mask& used,
+                       const SemNoiseOptions& options, SemNoiseEstimate& e) {
   const auto differs = [&](const auto& grid) {
     return grid.width() != real.width() || grid.height() != real.height();
   };
@@ -23,14 +22,13 @@ Grid<unsigned char> pixels_that_count(const Grid<double>& real, const Grid<doubl
     throw InvalidInput("SEM noise", "the image, its mean and the mask differ in size",
                        "Give them pixel on pixel");
   for (std::size_t i = 0; i < real.size(); ++i)
-    if ((used.empty() || used.data()[i]) &&
-        !(std::isfinite(real.data()[i]) && std::isfinite(mean.data()[i])))
+    if (used.includes(i) && !(std::isfinite(real.data()[i]) && std::isfinite(mean.data()[i])))
       throw InvalidInput("SEM noise", "a pixel that counts is not finite",
                          "Leave it out by the mask");
   const Saturation saturated = find_saturation(real, used, options, e);
-  Grid<unsigned char> counts(real.width(), real.height());
+  Mask counts(real.width(), real.height());
   for (std::size_t i = 0; i < real.size(); ++i)
-    counts.data()[i] = (used.empty() || used.data()[i]) && !saturated(real.data()[i]);
+    counts.data()[i] = used.includes(i) && !saturated(real.data()[i]);
   return counts;
 }
 
@@ -39,7 +37,7 @@ struct Residual {
 };
 
 std::vector<Residual> residuals_by_mean(const Grid<double>& real, const Grid<double>& mean,
-                                        const Grid<unsigned char>& counts) {
+                                        const Mask& counts) {
   std::vector<Residual> out;
   for (std::size_t i = 0; i < real.size(); ++i)
     if (counts.data()[i]) out.push_back({mean.data()[i], real.data()[i] - mean.data()[i]});
@@ -48,7 +46,7 @@ std::vector<Residual> residuals_by_mean(const Grid<double>& real, const Grid<dou
 }
 
 /// Of the whitened residuals; what is within four standard errors of 0 is 0.
-LagSums correlation_of(const Grid<double>& white, const Grid<unsigned char>& counts) {
+LagSums correlation_of(const Grid<double>& white, const Mask& counts) {
   LagSums correlation{1};
   double squares = 0, n = 0;
   for (std::size_t i = 0; i < white.size(); ++i)
@@ -66,7 +64,7 @@ LagSums correlation_of(const Grid<double>& white, const Grid<unsigned char>& cou
   return correlation;
 }
 
-double kurtosis_of(const Grid<double>& white, const Grid<unsigned char>& counts) {
+double kurtosis_of(const Grid<double>& white, const Mask& counts) {
   double squares = 0, fourths = 0, n = 0;
   for (std::size_t i = 0; i < white.size(); ++i) {
     if (!counts.data()[i]) continue;
@@ -78,11 +76,11 @@ double kurtosis_of(const Grid<double>& white, const Grid<unsigned char>& counts)
 
 }  // namespace
 
-SemNoiseEstimate fit_sem_noise(const Grid<double>& real, const Grid<double>& mean,
-                               const Grid<unsigned char>& used, const SemNoiseOptions& options) {
+SemNoiseEstimate fit_sem_noise(const Grid<double>& real, const Grid<double>& mean, const Mask& used,
+                               const SemNoiseOptions& options) {
   check_options(options);
   SemNoiseEstimate e;
-  const Grid<unsigned char> counts = pixels_that_count(real, mean, used, options, e);
+  const Mask counts = pixels_that_count(real, mean, used, options, e);
   const std::vector<Residual> residuals = residuals_by_mean(real, mean, counts);
   const std::size_t n = residuals.size();
   if (n < least_pixels)

@@ -70,8 +70,7 @@ const FlatSamples::Basis& FlatSamples::basis_of(const PixelRectangle& r) {
   int n = 0;
   for (int y = 0; y < h; ++y)
     for (int x = 0; x < w; ++x)
-      if (valid_.empty() || valid_(r.x0 + x, r.y0 + y))
-        index[static_cast<std::size_t>(y * w + x)] = n++;
+      if (valid_.includes(r.x0 + x, r.y0 + y)) index[static_cast<std::size_t>(y * w + x)] = n++;
   if (basis_.width == w && basis_.height == h && basis_.index == index) return basis_;
   basis_ = {w, h, std::move(index), {}, static_cast<int>(responses.size())};
   for (int power = 0; power <= degree_; ++power)
@@ -131,7 +130,7 @@ bool FlatSamples::add(const PixelRectangle& r) {
   std::vector<double> e;
   for (int y = r.y0; y < r.y1; ++y)
     for (int x = r.x0; x < r.x1; ++x)
-      if (valid_.empty() || valid_(x, y)) e.push_back(values_(x, y)), s.mean += values_(x, y);
+      if (valid_.includes(x, y)) e.push_back(values_(x, y)), s.mean += values_(x, y);
   s.pixels = static_cast<std::int64_t>(e.size());
   if (s.pixels < least_pixels_per_coefficient * coefficients() || b.columns.empty()) return false;
   s.mean /= static_cast<double>(s.pixels);

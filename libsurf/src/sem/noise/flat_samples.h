@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "surf/core/grid.h"
+#include "surf/core/mask.h"
 #include "surf/sem/estimate_sem_noise.h"
 
 namespace surf {
@@ -38,7 +39,7 @@ using LagResponse = std::array<double, lag_count * lag_count>;
 class FlatSamples {
  public:
   /// `degree` 0 to 2. Refers to both grids, which have the same size (or `valid` is empty).
-  FlatSamples(const Grid<double>& values, const Grid<unsigned char>& valid, int degree)
+  FlatSamples(const Grid<double>& values, const Mask& valid, int degree)
       : values_(values), valid_(valid), degree_(degree) {}
 
   /// Adds a place, unless it has fewer than four pixels for each coefficient.
@@ -60,7 +61,7 @@ class FlatSamples {
   static LagResponse response_of(const Basis& basis);
 
   const Grid<double>& values_;
-  const Grid<unsigned char>& valid_;
+  const Mask& valid_;
   int degree_;
   Basis basis_;
 };

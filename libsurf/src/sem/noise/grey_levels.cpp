@@ -17,10 +17,10 @@ struct Level {
   std::int64_t pixels;
 };
 
-std::vector<Level> levels_of(const Grid<double>& values, const Grid<unsigned char>& valid) {
+std::vector<Level> levels_of(const Grid<double>& values, const Mask& valid) {
   std::vector<double> sorted;
   for (std::size_t i = 0; i < values.size(); ++i)
-    if (valid.empty() || valid.data()[i]) sorted.push_back(values.data()[i]);
+    if (valid.includes(i)) sorted.push_back(values.data()[i]);
   std::ranges::sort(sorted);
   std::vector<Level> levels;
   for (const double v : sorted) {
@@ -61,7 +61,7 @@ bool is_pile(const std::vector<Level>& levels, bool top) {
 
 }  // namespace
 
-GreyLevels grey_levels(const Grid<double>& values, const Grid<unsigned char>& valid) {
+GreyLevels grey_levels(const Grid<double>& values, const Mask& valid) {
   const std::vector<Level> levels = levels_of(values, valid);
   GreyLevels g;
   g.quantum = quantum_of(levels);

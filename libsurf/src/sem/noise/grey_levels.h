@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "surf/core/grid.h"
+#include "surf/core/mask.h"
 
 namespace surf {
 
@@ -17,6 +18,6 @@ struct GreyLevels {
 /// Of the pixels that are not 0 in `valid` (same size, or empty), which are finite. A level is a
 /// pile if it is the least or largest of 16 or more, and holds more than three times the mean of
 /// the five levels next to it and ten pixels.
-GreyLevels grey_levels(const Grid<double>& values, const Grid<unsigned char>& valid);
+GreyLevels grey_levels(const Grid<double>& values, const Mask& valid);
 
 }  // namespace surf

@@ -78,7 +78,7 @@ void check_options(const SemNoiseOptions& o) {
                      "Give levels in this order, or none");
 }
 
-Saturation find_saturation(const Grid<double>& values, const Grid<unsigned char>& valid,
+Saturation find_saturation(const Grid<double>& values, const Mask& valid,
                            const SemNoiseOptions& options, SemNoiseEstimate& e) {
   const GreyLevels levels = grey_levels(values, valid);
   e.quantum = levels.quantum;
@@ -148,8 +148,7 @@ void set_line(const std::vector<VariancePoint>& points, double least_share, doub
   for (double& c : e.covariance) c *= std::max(e.dispersion, 1.0);
 }
 
-void set_off_line_share(const Grid<double>& values, const Grid<unsigned char>& valid,
-                        SemNoiseEstimate& e) {
+void set_off_line_share(const Grid<double>& values, const Mask& valid, SemNoiseEstimate& e) {
   std::int64_t blocks = 0, off = 0;
   for (int y = 0; y + off_line_block <= values.height(); y += off_line_block)
     for (int x = 0; x + off_line_block <= values.width(); x += off_line_block) {
@@ -157,7 +156,7 @@ void set_off_line_share(const Grid<double>& values, const Grid<unsigned char>& v
       bool whole = true;
       for (int j = 0; j < off_line_block; ++j)
         for (int i = 0; i < off_line_block; ++i) {
-          whole = whole && (valid.empty() || valid(x + i, y + j));
+          whole = whole && valid.includes(x + i, y + j);
           if (whole) sum += values(x + i, y + j);
         }
       if (!whole) continue;

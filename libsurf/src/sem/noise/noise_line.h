@@ -2,6 +2,7 @@
 #pragma once
 
 #include <vector>
+#include "surf/core/mask.h"
 
 #include "flat_samples.h"
 #include "grey_levels.h"
@@ -30,12 +31,11 @@ struct Saturation {
   double black, white;
   bool operator()(double value) const { return value <= black || value >= white; }
 };
-Saturation find_saturation(const Grid<double>& values, const Grid<unsigned char>& valid,
+Saturation find_saturation(const Grid<double>& values, const Mask& valid,
                            const SemNoiseOptions& options, SemNoiseEstimate& estimate);
 
 /// The off-line share, from means of 4 x 4 pixels of `values`.
-void set_off_line_share(const Grid<double>& values, const Grid<unsigned char>& valid,
-                        SemNoiseEstimate& estimate);
+void set_off_line_share(const Grid<double>& values, const Mask& valid, SemNoiseEstimate& estimate);
 
 /// What people should know of an estimate: `estimate.warnings` gets more.
 void add_warnings(SemNoiseEstimate& estimate);

@@ -33,7 +33,7 @@ double middle(std::vector<double>& values) {
 }
 
 std::vector<Difference> second_differences(const Grid<double>& real, const Grid<double>& mean,
-                                           const Grid<unsigned char>& used) {
+                                           const Mask& used) {
   std::vector<Difference> out;
   for (int y = 0; y < real.height(); ++y)
     for (int x = 1; x + 1 < real.width(); ++x) {
@@ -50,8 +50,7 @@ std::vector<Difference> second_differences(const Grid<double>& real, const Grid<
 
 }  // namespace
 
-SemNoise noise_of_residuals(const Grid<double>& real, const Grid<double>& mean,
-                            const Grid<unsigned char>& used) {
+SemNoise noise_of_residuals(const Grid<double>& real, const Grid<double>& mean, const Mask& used) {
   const auto differs = [&](const auto& grid) {
     return grid.width() != real.width() || grid.height() != real.height();
   };

@@ -9,8 +9,7 @@
 namespace surf {
 namespace {
 
-void check_sizes(const Grid<double>& real, const Grid<double>& mean,
-                 const Grid<unsigned char>& used) {
+void check_sizes(const Grid<double>& real, const Grid<double>& mean, const Mask& used) {
   const auto differs = [&](const auto& grid) {
     return grid.width() != real.width() || grid.height() != real.height();
   };
@@ -47,8 +46,7 @@ void validate(const SemNoise& noise, const char* subject) {
 }
 
 double log_likelihood(const Grid<double>& real, const Grid<double>& mean, const SemNoise& noise,
-                      const Grid<unsigned char>& used, Grid<double>* gradient,
-                      Grid<double>* information) {
+                      const Mask& used, Grid<double>* gradient, Grid<double>* information) {
   validate(noise);
   check_sizes(real, mean, used);
   if (gradient) *gradient = Grid<double>(real.width(), real.height());
@@ -73,12 +71,12 @@ double log_likelihood(const Grid<double>& real, const Grid<double>& mean, const 
 }
 
 Grid<double> whiten(const Grid<double>& real, const Grid<double>& mean, const SemNoise& noise,
-                    const Grid<unsigned char>& used) {
+                    const Mask& used) {
   validate(noise);
   check_sizes(real, mean, used);
   Grid<double> white(real.width(), real.height());
   for (std::size_t i = 0; i < real.size(); ++i)
-    if (used.empty() || used.data()[i])
+    if (used.includes(i))
       white.data()[i] =
           (real.data()[i] - mean.data()[i]) / std::sqrt(noise.variance(mean.data()[i]));
   return white;

@@ -53,7 +53,7 @@ std::uint64_t TrainingShapes::seed() {
 
 HeightField TrainingShapes::flat() const {
   const double first = -0.5 * (size_px_ - 1) * pixel_nm_;
-  return {Grid<double>(size_px_, size_px_), {}, pixel_nm_, pixel_nm_, first, first};
+  return {{pixel_nm_, pixel_nm_, first, first}, Grid<double>(size_px_, size_px_)};
 }
 
 HeightField TrainingShapes::blocks(int count, double highest_nm) {

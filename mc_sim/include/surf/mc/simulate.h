@@ -21,9 +21,7 @@ class UnitScheduler;
 
 /// Who takes part in a simulation, and who watches it. All of it may be left out.
 struct SimulationContext {
-  ProgressCallback progress;  ///< counts primaries, with an accuracy pixels; told after each unit
-                              ///< that is simulated
-  const CancelToken* cancel = nullptr;
+  Watch watch;                 ///< counts primaries, with an accuracy pixels; told after each unit
   ObserverOfThread observers;  ///< every track is then followed to its end, as in `simulate_unit`
   /// Is told of every finished unit and asked for those done before: of the same scene and options,
   /// `tile_pixels` among them.

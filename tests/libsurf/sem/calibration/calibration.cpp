@@ -113,7 +113,7 @@ TEST(Calibrate, WeightsCountNoisyPixelsLess) {
 TEST(Calibrate, LeavesOutWhatIsMaskedNotFiniteOrSaturated) {
   CalibrationImages images = two_channels(30, 30, 0.3);
   expose(images, 100, 200, 5, 0, 3);
-  images.used = Grid<unsigned char>(30, 30, 1);
+  images.used = Mask(30, 30, 1);
   images.used(3, 4) = 0, images.real(3, 4) = 1e6;
   images.real(5, 6) = NAN;
   images.simulated[1](7, 8) = std::numeric_limits<double>::infinity();

@@ -19,7 +19,7 @@ Grid<double> rough(int width, int height, std::uint64_t seed) {
 
 TEST(SlowGain, IsTheRatioOfMeansOverTheWindow) {
   const Grid<double> e = rough(13, 9, 1), s = rough(13, 9, 2);
-  Grid<unsigned char> used(13, 9, 1);
+  Mask used(13, 9, 1);
   used(4, 4) = used(0, 0) = 0;
   const SlowGain slow = slow_gain(e, s, 3, 2, used);
   for (int y = 0; y < 9; ++y) {

@@ -33,7 +33,7 @@ double worst_recovery(const std::vector<FacetScale>& scales, double pitch_x, dou
     return k[1] + k[2] * y + k[3] * x + k[4] * y * y + k[5] * x * y + k[6] * x * x +
            k[7] * y * y * y + k[8] * y * y * x + k[9] * y * x * x + k[10] * x * x * x;
   };
-  HeightField field{Grid<double>(n, n), {}, pitch_x, pitch_y, 0, 0};
+  HeightField field{{pitch_x, pitch_y}, Grid<double>(n, n)};
   const auto at = [&](int i) { return (i - n / 2) / length; };
   for (int y = 0; y < n; ++y)
     for (int x = 0; x < n; ++x) field.z_nm(x, y) = value(at(x), at(y));

@@ -7,7 +7,6 @@
 #include <limits>
 #include <string>
 
-#include "sem/facet/facet_pass.h"
 #include "sem/model_checks.h"
 #include "sem/model_surfaces.h"
 #include "surf/core/error.h"
@@ -206,23 +205,9 @@ TEST(FilterBank, SubsamplingHardlyChangesWhatIsSmooth) {
   EXPECT_GT(largest_difference(a[0], b[0]), 1e-4 * spread);  // it is another model
 }
 
-TEST(FilterBank, VectorUnitsAgree) {
-  const HeightField field = rough_field(50, 60);
-  const facet::FacetPass<float> best(thesis_scales(), 2, 2),
-      plain(thesis_scales(), 2, 2, facet::Unit::portable);
-  const auto k2 = [&](const facet::FacetPass<float>& pass) {
-    Grid<double> out(50, 60);
-    facet::FacetPass<float>::Scratch scratch;
-    for (const facet::Block& b : pass.blocks(50, 60)) {
-      pass.load(field.z_nm, Edge::mirror, b, scratch);
-      const float* k = pass.fit(6, scratch);
-      for (int y = 0; y < b.rows; ++y)
-        for (int x = 0; x < b.width; ++x)
-          out(b.x + x, b.y + y) = k[y * facet::coefficients * pass.columns() + x];
-    }
-    return out;
-  };
-  EXPECT_LT(largest_difference(k2(best), k2(plain)), 1e-5);
+TEST(FilterBank, InstructionSetsAgreeAndDoNotDependOnThreads) {
+  for (const bool multi : {false, true})
+    expect_same_on_every_target([&] { return bank(multi); }, rough_field(50, 60));
 }
 
 TEST(FilterBank, StaysFiniteWhateverTheHeights) {

@@ -116,7 +116,7 @@ TEST(FitFilterBank, WeighsPixelsByTheirStandardErrorAndReportsNoiseApart) {
 TEST(FitFilterBank, LeavesOutPixelsThatAreNotUsed) {
   const FilterBankParameters bank = truth(three);
   TrainingImage image = imaged(bank, rough_field(64, 48), Edge::flat, 0, 4);
-  image.used = Grid<unsigned char>(64, 48, 1);
+  image.used = Mask(64, 48, 1);
   for (int y = 10; y < 20; ++y)
     for (int x = 0; x < 64; ++x) {
       image.used(x, y) = 0;

@@ -43,7 +43,7 @@ TEST(ImageModel, NamesBothPixelSizes) {
 
 TEST(ImageModel, SaysHowToFillMaskedSamples) {
   HeightField field = test::rough_field(8, 8, 1);
-  field.valid = Grid<unsigned char>(8, 8, 1);
+  field.valid = Mask(8, 8, 1);
   EXPECT_NO_THROW(check_field({}, field));
   field.valid(2, 3) = 0;
   EXPECT_SAYS(message<InvalidInput>([&] { check_field({}, field); }), "semsurf clean");
@@ -98,9 +98,9 @@ TEST(TrainingImage, IsCheckedPixelByPixel) {
   says([](auto& i) { i.images[1](3, 2) = NAN; }, "column 3, row 2");
   says([](auto& i) { i.standard_errors[0](3, 2) = 0; }, "standard error");
   says([](auto& i) { i.standard_errors.pop_back(); }, "standard errors");
-  says([](auto& i) { i.used = Grid<unsigned char>(2, 2); }, "mask");
+  says([](auto& i) { i.used = Mask(2, 2); }, "mask");
   TrainingImage masked = training_image();
-  masked.used = Grid<unsigned char>(6, 5, 1);
+  masked.used = Mask(6, 5, 1);
   masked.used(3, 2) = 0;
   masked.images[1](3, 2) = NAN;
   masked.standard_errors[1](3, 2) = 0;

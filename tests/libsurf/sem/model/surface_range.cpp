@@ -11,7 +11,7 @@ namespace surf {
 namespace {
 
 HeightField field_of(int w, int h, double pitch, double (*z)(double, double)) {
-  HeightField field{Grid<double>(w, h), {}, pitch, pitch, 0, 0};
+  HeightField field{{pitch, pitch}, Grid<double>(w, h)};
   for (int y = 0; y < h; ++y)
     for (int x = 0; x < w; ++x) field.z_nm(x, y) = z(field.x_nm(x), field.y_nm(y));
   return field;
@@ -46,7 +46,7 @@ TEST(SurfaceRange, CountsWhatIsSteeper) {
 TEST(SurfaceRange, WorksOnTheSmallestFieldAndRefusesHoles) {
   HeightField field = field_of(2, 2, 1, [](double x, double) { return x; });
   EXPECT_NEAR(surface_range(field).slope_deg_max, 45, 1e-9);
-  field.valid = Grid<unsigned char>(2, 2, 1);
+  field.valid = Mask(2, 2, 1);
   field.valid(0, 0) = 0;
   EXPECT_THROW(surface_range(field), InvalidInput);
 }

@@ -59,6 +59,10 @@ std::shared_ptr<const ImageModel> network(const FacetNetworkParameters& p = some
   return make_facet_network(scope, p);
 }
 
+TEST(FacetNetwork, InstructionSetsAgreeAndDoNotDependOnThreads) {
+  expect_same_on_every_target([] { return network(); }, rough_field(50, 60));
+}
+
 /// The one input i of a network, as a channel: its last layer inverts o + sqrt(1 + o^2).
 double input(int i, const HeightField& field, int x, int y) {
   FacetNetworkParameters p = some_network({});
@@ -337,7 +341,7 @@ TEST(FitFacetNetwork, SameNumbersOnAnyNumberOfThreads) {
 TEST(FitFacetNetwork, LeavesOutWhatIsNotUsedAndKeepsPixelsOfOneImage) {
   std::vector<TrainingImage> images{taught_by(Teacher(), 1, 0.05), taught_by(Teacher(), 2, 0.05)};
   for (TrainingImage& image : images) {
-    image.used = Grid<unsigned char>(60, 50, 1);
+    image.used = Mask(60, 50, 1);
     for (int x = 0; x < 60; ++x) {
       image.used(x, 7) = 0;
       image.images[0](x, 7) = 1e6F;

@@ -251,7 +251,7 @@ TEST(EstimateSemNoise, CountsAreNotTakenForSaturation) {
 TEST(EstimateSemNoise, HolesDoNotCount) {
   const Grid<double> mean = test::plateaus(480, 360);
   PlacedImage image = test::placed(test::draw(mean, true_noise, 1));
-  image.valid = Grid<unsigned char>(480, 360, 1);
+  image.valid = Mask(480, 360, 1);
   for (int y = 0; y < 360; ++y)
     for (int x = 0; x < 240; ++x)
       image.valid(x, y) = 0, image.values(x, y) = std::numeric_limits<double>::quiet_NaN();

@@ -51,7 +51,7 @@ TEST(FitSemNoise, IsWhereTheLikelihoodIsLargest) {
 TEST(FitSemNoise, OnlyUsedPixelsCount) {
   const Grid<double> mean = test::plateaus(120, 90);
   Grid<double> real = test::draw(mean, true_noise, 1);
-  Grid<unsigned char> used(120, 90, 1);
+  Mask used(120, 90, 1);
   for (int y = 0; y < 90; ++y)
     for (int x = 0; x < 40; ++x)
       used(x, y) = 0, real(x, y) = std::numeric_limits<double>::quiet_NaN();

@@ -60,7 +60,7 @@ TEST(NoiseOfResiduals, IsConstantWhereNothingTellsTheSlope) {
 
 TEST(NoiseOfResiduals, OnlyUsedPixelsCount) {
   Grid<double> real = test::draw(levels(), true_noise, 1);
-  Grid<unsigned char> used(300, 150, 1);
+  Mask used(300, 150, 1);
   for (int y = 0; y < 150; ++y)
     for (int x = 0; x < 90; ++x)
       used(x, y) = 0, real(x, y) = std::numeric_limits<double>::quiet_NaN();
@@ -72,7 +72,7 @@ TEST(NoiseOfResiduals, ImpossibleImagesAreRefused) {
   const Grid<double> mean = levels();
   EXPECT_THROW(noise_of_residuals(mean, mean), InvalidInput);
   EXPECT_THROW(noise_of_residuals(mean, Grid<double>(3, 3)), InvalidInput);
-  EXPECT_THROW(noise_of_residuals(mean, mean, Grid<unsigned char>(3, 3)), InvalidInput);
+  EXPECT_THROW(noise_of_residuals(mean, mean, Mask(3, 3)), InvalidInput);
   EXPECT_THROW(noise_of_residuals(Grid<double>(8, 8, 1), Grid<double>(8, 8)), InvalidInput);
 }
 

@@ -77,7 +77,7 @@ TEST(SemNoise, PixelsThatAreNotUsedMayBeAnything) {
   const Grid<double> mean = ramp(4, 3, 5, 20);
   const SemNoise noise{0.5, 1, 0.3};
   Grid<double> real = test::draw(mean, noise, 3);
-  Grid<unsigned char> used(4, 3, 1);
+  Mask used(4, 3, 1);
   used(1, 1) = 0;
   const double all = log_likelihood(real, mean, noise);
   const double e = real(1, 1) - mean(1, 1), v = noise.variance(mean(1, 1));
@@ -137,9 +137,8 @@ TEST(SemNoise, RefusesWhatItCannotUse) {
   EXPECT_THROW(validate(SemNoise{1, 1, 0}), InvalidInput);
   EXPECT_THROW(validate(SemNoise{1, 1, nan}), InvalidInput);
   EXPECT_THROW(log_likelihood(Grid<double>(2, 2), Grid<double>(2, 3), {}), InvalidInput);
-  EXPECT_THROW(
-      log_likelihood(Grid<double>(2, 2), Grid<double>(2, 2), {}, Grid<unsigned char>(1, 1)),
-      InvalidInput);
+  EXPECT_THROW(log_likelihood(Grid<double>(2, 2), Grid<double>(2, 2), {}, Mask(1, 1)),
+               InvalidInput);
   EXPECT_THROW(whiten(Grid<double>(2, 2), Grid<double>(3, 2), {}), InvalidInput);
   EXPECT_THROW(log_likelihood({}, {}, {}), InvalidInput);
 }

@@ -87,7 +87,7 @@ TEST(FlatSamples, CorrelationAndVarianceAreFreeOfThePolynomial) {
       for (int x = 0; x < 96; ++x)
         image(x, y) = (white(x, y) + white(x + 1, y) + white(x + 2, y)) / std::sqrt(3.0) + 0.1 * x -
                       0.002 * y * y;
-    const Grid<unsigned char> all;
+    const Mask all;
     FlatSamples flat(image, all, 2);
     for (int y = 0; y + 12 <= 96; y += 12)
       for (int x = 0; x + 12 <= 96; x += 12) ASSERT_TRUE(flat.add({x, y, x + 12, y + 12}));
@@ -105,7 +105,7 @@ TEST(FlatSamples, CorrelationAndVarianceAreFreeOfThePolynomial) {
 
 TEST(FlatSamples, WhiteNoiseLosesOneDegreeForEachCoefficient) {
   const Grid<double> image = test::draw(Grid<double>(12, 12, 5), {0, 1, 1e-3}, 1);
-  const Grid<unsigned char> all;
+  const Mask all;
   for (const int degree : {0, 1, 2}) {
     FlatSamples flat(image, all, degree);
     ASSERT_TRUE(flat.add({0, 0, 12, 12}));

@@ -7,6 +7,7 @@
 #include "surf/afm/hough_plane.h"
 #include "surf/afm/row_level.h"
 #include "surf/core/height_field.h"
+#include "surf/core/mask.h"
 #include "surf/core/parameters.h"
 #include "surf/workflow/reporter.h"
 
@@ -30,7 +31,7 @@ void describe(ParameterVisitor& visit, LevelParameters& parameters);
 
 struct LevelResult {
   HeightField field;
-  Grid<unsigned char>
+  Mask
       substrate;  ///< 1 where rows and roughness go by it: of hough the plane's inliers, else `use`
   std::optional<Plane> plane;         ///< the one taken off last, of hough and plane
   std::optional<HoughSummary> hough;  ///< of the plane taken off last; its inliers are `substrate`
@@ -41,7 +42,7 @@ struct LevelResult {
 /// The background is taken off; with `rows` then the rows by what lies on it, and once more what is
 /// left of it. Samples that are 0 in `use` (of the scan's size, or empty) do not decide. Throws
 /// InvalidInput, UsageError, Interrupted.
-LevelResult level(const HeightField& scan, const LevelParameters& parameters,
-                  const Grid<unsigned char>& use = {}, const Reporter& reporter = {});
+LevelResult level(const HeightField& scan, const LevelParameters& parameters, const Mask& use = {},
+                  const Reporter& reporter = {});
 
 }  // namespace surf::workflow

@@ -31,8 +31,7 @@ class CachedLibraries : public mc::LibrarySource {
   /// Throws UsageError for settings that no library can have.
   std::shared_ptr<const mc::CascadeLibrary> library(const mc::CascadeSettings& settings,
                                                     std::size_t cascades, int threads,
-                                                    const ProgressCallback& progress,
-                                                    const CancelToken* cancel) override;
+                                                    const Watch& watch) override;
 
   /// Pages so far, for run records.
   struct Pages {

@@ -26,6 +26,7 @@ struct LibraryPlotOptions {
   std::size_t cascades = 10240;
   int threads = 0;                      ///< 0: one per hardware thread
   std::vector<MeasuredYield> measured;  ///< shown beside yields at normal incidence
+  Watch watch;
 };
 
 /// library.tilt.
@@ -33,11 +34,8 @@ void describe(ParameterVisitor& visit, LibraryPlotOptions& options);
 
 /// What is in libraries and what comes of it: how deep and how far primaries get, against the
 /// energy where there are several, and the yields of flat specimens, replayed from the same
-/// libraries, with their standard errors, against the energy or else the tilt. Nothing when
-/// cancelled. Throws UsageError for options out of range. Progress has no unit.
-std::optional<io::Plot> plot_libraries(const LibraryPlotOptions& options,
-                                       mc::LibrarySource& libraries,
-                                       const ProgressCallback& progress = {},
-                                       const CancelToken* cancel = nullptr);
+/// libraries, with their standard errors, against the energy or else the tilt. Throws
+/// UsageError for options out of range, Interrupted.
+io::Plot plot_libraries(const LibraryPlotOptions& options, mc::LibrarySource& libraries);
 
 }  // namespace surf::workflow

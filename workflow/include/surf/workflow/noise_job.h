@@ -7,6 +7,7 @@
 #include "surf/afm/noise_check.h"
 #include "surf/afm/noise_estimate.h"
 #include "surf/core/height_field.h"
+#include "surf/core/mask.h"
 #include "surf/core/parameters.h"
 #include "surf/workflow/reporter.h"
 
@@ -22,7 +23,7 @@ void describe(ParameterVisitor& visit, ScanNoiseParameters& parameters);
 
 struct ScanNoise {
   NoiseEstimate estimate;
-  Grid<unsigned char> samples;        ///< 1 where the estimate is from
+  Mask samples;                       ///< 1 where the estimate is from
   Grid<double> residual_nm, white;    ///< what is left of the heights, and of that by the model
   double substrate_share = 1;         ///< of the samples that take part
   std::optional<HoughSummary> plane;  ///< of the substrate
@@ -32,6 +33,6 @@ struct ScanNoise {
 /// Samples that are 0 in `use` (of the scan's size, or empty) play no part. Throws InvalidInput,
 /// UsageError, Interrupted.
 ScanNoise noise_of_scan(const HeightField& scan, const ScanNoiseParameters& parameters,
-                        const Grid<unsigned char>& use = {}, const Reporter& reporter = {});
+                        const Mask& use = {}, const Reporter& reporter = {});
 
 }  // namespace surf::workflow

@@ -47,10 +47,9 @@ class CascadeLibrary {
   std::size_t cascades() const { return pages_.size() * page_cascades; }
   std::size_t bytes() const;
 
-  /// A page made from scratch, on `threads` threads (0: one per hardware thread). Empty when
-  /// cancelled. Progress counts the page's cascades.
-  CascadePage make_page(std::size_t number, int threads, const CancelToken* cancel = nullptr,
-                        const ProgressCallback& progress = {}) const;
+  /// A page made from scratch, on `threads` threads (0: one per hardware thread). The watch counts
+  /// the page's cascades. Throws Interrupted.
+  CascadePage make_page(std::size_t number, int threads, const Watch& watch = {}) const;
 
   /// Takes the next page. Throws InvalidInput where it is not a page: one that is can be replayed
   /// safely, wherever it comes from.
@@ -65,10 +64,9 @@ class CascadeLibrary {
   /// The same library with its first `pages` pages alone; they are shared, not copied.
   CascadeLibrary first(std::size_t pages) const;
 
-  /// Makes pages until there are at least `cascades`. Progress counts cascades; stops when
-  /// cancelled.
-  void grow(std::size_t cascades, int threads, const ProgressCallback& progress = {},
-            const CancelToken* cancel = nullptr);
+  /// Makes pages until there are at least `cascades`. The watch counts cascades. Throws
+  /// Interrupted; the pages that were finished before stay.
+  void grow(std::size_t cascades, int threads, const Watch& watch = {});
 
   /// Has the beginning of a cascade fetched from memory: it will be asked for soon.
   void fetch(std::size_t number) const {

@@ -21,12 +21,11 @@ class LibrarySource {
   virtual ~LibrarySource() = default;
 
   /// A library of at least `cascades` cascades, with no more pages than that takes, so that what is
-  /// drawn from it does not depend on who asked before; or null when cancelled. Called from one
-  /// thread at a time. Progress counts cascades.
+  /// drawn from it does not depend on who asked before. Called from one thread at a time. The watch
+  /// counts cascades. Throws Interrupted.
   virtual std::shared_ptr<const CascadeLibrary> library(const CascadeSettings& settings,
                                                         std::size_t cascades, int threads,
-                                                        const ProgressCallback& progress,
-                                                        const CancelToken* cancel) = 0;
+                                                        const Watch& watch) = 0;
 };
 
 /// Makes what is asked for on the spot, and keeps it for who asks for more.
@@ -34,8 +33,7 @@ class FreshLibraries : public LibrarySource {
  public:
   std::shared_ptr<const CascadeLibrary> library(const CascadeSettings& settings,
                                                 std::size_t cascades, int threads,
-                                                const ProgressCallback& progress,
-                                                const CancelToken* cancel) override;
+                                                const Watch& watch) override;
 
  private:
   std::map<std::string, CascadeLibrary> kept_;  // by the key of their first page

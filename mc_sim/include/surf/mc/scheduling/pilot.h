@@ -26,16 +26,13 @@ struct Pilot {
   double planes_s = 0;     ///< to make them, in `expected_s`
   double primaries = 0, rays = 0, steps = 0;
   double packed_bytes = 0;  ///< of all units' tallies, as checkpoints and messages hold them
-
-  bool complete = true;  ///< false when cancelled: the rest means nothing
 };
 
 /// Gets the libraries, then simulates units for about `seconds` (> 0), or all units where that
 /// takes less. The units are spread evenly over the scan. It begins with a few pixels of each unit;
 /// where a whole unit would take a tenth of the time or more, it goes on with such parts. Throws
-/// what `simulate` throws for options.
+/// what `simulate` throws for options, and Interrupted.
 Pilot run_pilot(const Scene& scene, const SimulationOptions& options, double seconds,
-                LibrarySource* libraries = nullptr, const ProgressCallback& progress = {},
-                const CancelToken* cancel = nullptr);
+                LibrarySource* libraries = nullptr, const Watch& watch = {});
 
 }  // namespace surf::mc

@@ -5,11 +5,6 @@
 
 namespace surf::facet {
 
-/// The vector unit that does the work. Results of different ones differ by rounding.
-enum class Unit { best, portable, avx2, avx512 };
-
-Unit resolve(Unit unit);  ///< never `best`, always available
-
 /// Factors along one axis at an offset: see FacetKernel. Across, o1 is times -mix_y and e2 times
 /// -mix_x, so that the five coefficients need the four plain factors only.
 template <class T>
@@ -40,7 +35,7 @@ struct Floors {
   T slope = 0, curvature = 0;
 };
 
-/// The inner loops, each compiled for every vector unit. Blocks are `columns` wide.
+/// The inner loops. Blocks are `columns` wide, which depends on the instruction set.
 template <class T>
 struct Operations {
   int columns;
@@ -105,7 +100,8 @@ struct Operations {
   T (*largest)(const T* values, std::ptrdiff_t count);
 };
 
+/// The best that the processor has. Results of different instruction sets differ by rounding.
 template <class T>
-const Operations<T>& operations(Unit unit);
+const Operations<T>& operations();
 
 }  // namespace surf::facet

@@ -1,30 +1,34 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#pragma once
-
+// Compiled once for each instruction set (core/each_target.h). Everything is inlined into functions
+// that are compiled for it, and nothing of the standard library is called.
 #include <utility>
 
-#include "facet_units.h"
+#include "core/each_target.h"
+#include "sem/facet/facet_operations.h"
 
-// Compiled once for each vector unit. Everything is inlined into functions that are compiled for
-// it, and nothing of the standard library is called.
-namespace surf::facet {
+#if defined(SURF_FACET_LOOPS_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef SURF_FACET_LOOPS_INL_H
+#undef SURF_FACET_LOOPS_INL_H
+#else
+#define SURF_FACET_LOOPS_INL_H
+#endif
 
-#define SEMSURF_INLINE [[gnu::always_inline]] inline
-#define SEMSURF_INLINE_LAMBDA __attribute__((always_inline))
+HWY_BEFORE_NAMESPACE();
+namespace surf::facet::HWY_NAMESPACE {
 
 /// Vectors that are made together: what is broadcast serves them all, and all sums stay in
 /// registers.
-inline constexpr int vectors = 2;
+constexpr int vectors = 2;
 
-template <class T, int Bytes>
+template <class T>
 struct Loops {
-  typedef T V [[gnu::vector_size(Bytes)]];
-  static constexpr int lanes = Bytes / static_cast<int>(sizeof(T));
+  typedef T V [[gnu::vector_size(SEMSURF_VECTOR_BYTES)]];
+  static constexpr int lanes = SEMSURF_VECTOR_BYTES / static_cast<int>(sizeof(T));
   static constexpr int columns = vectors * lanes;
 
-  SEMSURF_INLINE static void load(V& v, const T* p) { __builtin_memcpy(&v, p, sizeof v); }
-  SEMSURF_INLINE static void store(T* p, const V& v) { __builtin_memcpy(p, &v, sizeof v); }
-  SEMSURF_INLINE static void increase(T* p, const V& v) {
+  HWY_INLINE static void load(V& v, const T* p) { __builtin_memcpy(&v, p, sizeof v); }
+  HWY_INLINE static void store(T* p, const V& v) { __builtin_memcpy(p, &v, sizeof v); }
+  HWY_INLINE static void increase(T* p, const V& v) {
     V sum;
     load(sum, p);
     store(p, sum + v);
@@ -32,7 +36,7 @@ struct Loops {
 
   /// Both for a sum and a difference. Keeps GCC from loading b a second time: loads are what is
   /// short. Clang does not allow it for vectors that the file's own target lacks.
-  SEMSURF_INLINE static void load_pair(V& a, V& b, const T* p, const T* q) {
+  HWY_INLINE static void load_pair(V& a, V& b, const T* p, const T* q) {
     load(a, p);
     load(b, q);
 #if defined(__x86_64__) && !defined(__clang__)
@@ -40,8 +44,8 @@ struct Loops {
 #endif
   }
 
-  SEMSURF_INLINE static void across(const T* z, std::ptrdiff_t stride, int rows, const Tap<T>* taps,
-                                    int radius, T* out) {
+  HWY_INLINE static void across(const T* z, std::ptrdiff_t stride, int rows, const Tap<T>* taps,
+                                int radius, T* out) {
     for (int y = 0; y < rows; ++y, z += stride, out += moments * columns) {
       V m0[vectors], m1[vectors], m2[vectors], m3[vectors];
       for (int v = 0; v < vectors; ++v) {
@@ -77,17 +81,17 @@ struct Loops {
   struct Rows {
     V row[2] = {};
 
-    SEMSURF_INLINE void operator+=(const Rows& other) {
+    HWY_INLINE void operator+=(const Rows& other) {
       row[0] += other.row[0];
       row[1] += other.row[1];
     }
-    SEMSURF_INLINE void operator-=(const Rows& other) {
+    HWY_INLINE void operator-=(const Rows& other) {
       row[0] -= other.row[0];
       row[1] -= other.row[1];
     }
   };
 
-  SEMSURF_INLINE static Rows times(const T* p, std::ptrdiff_t stride, T factor) {
+  HWY_INLINE static Rows times(const T* p, std::ptrdiff_t stride, T factor) {
     Rows rows;
     load_pair(rows.row[0], rows.row[1], p, p + stride);
     rows.row[0] *= factor;
@@ -99,11 +103,11 @@ struct Loops {
   /// `begin` on. Each vector is loaded once: what is new beside one row lies beside the other a
   /// step later.
   template <class Use>
-  SEMSURF_INLINE static void each_pair(const T* p, std::ptrdiff_t stride, const Tap<T>* taps,
-                                       int begin, int radius, const Use& use) {
+  HWY_INLINE static void each_pair(const T* p, std::ptrdiff_t stride, const Tap<T>* taps, int begin,
+                                   int radius, const Use& use) {
     V above[2], below[2];
     load_pair(above[0], below[0], p + begin * stride, p + (1 - begin) * stride);
-    const auto step = [&](int k, int phase) SEMSURF_INLINE_LAMBDA {
+    const auto step = [&](int k, int phase) HWY_ATTR __attribute__((always_inline)) {
       load_pair(above[1 - phase], below[1 - phase], p + (k + 1) * stride, p - k * stride);
       use(taps[k], phase, 0, above[phase], below[1 - phase]);
       use(taps[k], phase, 1, above[1 - phase], below[phase]);
@@ -119,43 +123,44 @@ struct Loops {
   /// Sums (sign 1) or differences of samples above and below, filtered by a factor. In two halves,
   /// so that sums need not wait for one another.
   template <auto Factor, int Sign>
-  SEMSURF_INLINE static Rows filtered(const T* p, std::ptrdiff_t stride, const Tap<T>* taps,
-                                      int begin, int radius) {
+  HWY_INLINE static Rows filtered(const T* p, std::ptrdiff_t stride, const Tap<T>* taps, int begin,
+                                  int radius) {
     Rows half[2];
-    each_pair(p, stride, taps, begin, radius,
-              [&](const Tap<T>& t, int phase, int row, const V& above,
-                  const V& below) SEMSURF_INLINE_LAMBDA {
-                half[phase].row[row] += (Sign > 0 ? above + below : above - below) * (t.*Factor);
-              });
+    each_pair(
+        p, stride, taps, begin, radius,
+        [&](const Tap<T>& t, int phase, int row, const V& above, const V& below) HWY_ATTR
+        __attribute__((always_inline)) {
+          half[phase].row[row] += (Sign > 0 ? above + below : above - below) * (t.*Factor);
+        });
     half[0] += half[1];
     return half[0];
   }
 
   /// The same by two factors; adds to `first` and `second`.
   template <auto First, int FirstSign, auto Second, int SecondSign>
-  SEMSURF_INLINE static void add_filtered(const T* p, std::ptrdiff_t stride, const Tap<T>* taps,
-                                          int begin, int radius, Rows& first, Rows& second) {
+  HWY_INLINE static void add_filtered(const T* p, std::ptrdiff_t stride, const Tap<T>* taps,
+                                      int begin, int radius, Rows& first, Rows& second) {
     Rows a[2], b[2];
-    each_pair(p, stride, taps, begin, radius,
-              [&](const Tap<T>& t, int phase, int row, const V& above,
-                  const V& below) SEMSURF_INLINE_LAMBDA {
-                a[phase].row[row] += (FirstSign > 0 ? above + below : above - below) * (t.*First);
-                b[phase].row[row] += (SecondSign > 0 ? above + below : above - below) * (t.*Second);
-              });
+    each_pair(
+        p, stride, taps, begin, radius,
+        [&](const Tap<T>& t, int phase, int row, const V& above, const V& below) HWY_ATTR
+        __attribute__((always_inline)) {
+          a[phase].row[row] += (FirstSign > 0 ? above + below : above - below) * (t.*First);
+          b[phase].row[row] += (SecondSign > 0 ? above + below : above - below) * (t.*Second);
+        });
     a[0] += a[1];
     b[0] += b[1];
     first += a[0];
     second += b[0];
   }
 
-  SEMSURF_INLINE static void store_rows(T* p, std::ptrdiff_t stride, const Rows& rows,
-                                        T factor = 1) {
+  HWY_INLINE static void store_rows(T* p, std::ptrdiff_t stride, const Rows& rows, T factor = 1) {
     store(p, rows.row[0] * factor);
     store(p + stride, rows.row[1] * factor);
   }
 
-  SEMSURF_INLINE static void along(const T* moment, int rows, const Tap<T>* taps, int radius,
-                                   const Scaling<T>& scaling, T* out) {
+  HWY_INLINE static void along(const T* moment, int rows, const Tap<T>* taps, int radius,
+                               const Scaling<T>& scaling, T* out) {
     using F = Tap<T>;
     constexpr std::ptrdiff_t stride = moments * columns, out_stride = coefficients * columns;
     const F& t = taps[0];
@@ -179,15 +184,16 @@ struct Loops {
       }
   }
 
-  SEMSURF_INLINE static void along_transposed(const T* weight, int rows, const Tap<T>* taps,
-                                              int begin, int radius, bool add, T* const* out,
-                                              std::ptrdiff_t plane) {
+  HWY_INLINE static void along_transposed(const T* weight, int rows, const Tap<T>* taps, int begin,
+                                          int radius, bool add, T* const* out,
+                                          std::ptrdiff_t plane) {
     using F = Tap<T>;
     constexpr std::ptrdiff_t stride = coefficients * columns;
     const F& t = taps[0];
     for (int y = 0; y < rows; y += 2, weight += 2 * stride, out += 2)
       for (int x = 0; x < columns; x += lanes) {
-        const auto put = [&](std::ptrdiff_t at, const Rows& moment) SEMSURF_INLINE_LAMBDA {
+        const auto put = [&](std::ptrdiff_t at, const Rows& moment) HWY_ATTR
+            __attribute__((always_inline)) {
           for (int row = 0; row < 2 && y + row < rows; ++row) {
             if (add) increase(out[row] + at + x, moment.row[row]);
             else store(out[row] + at + x, moment.row[row]);
@@ -216,13 +222,13 @@ struct Loops {
 
   /// Rows become columns: in log2(lanes) steps that exchange halves of pairs, quarters, and so on.
   template <int Step, int... I>
-  SEMSURF_INLINE static void exchange(V& a, V& b, std::integer_sequence<int, I...>) {
+  HWY_INLINE static void exchange(V& a, V& b, std::integer_sequence<int, I...>) {
     const V low = __builtin_shufflevector(a, b, (I & Step ? lanes + I - Step : I)...);
     b = __builtin_shufflevector(a, b, (I & Step ? lanes + I : I + Step)...);
     a = low;
   }
   template <int Step = lanes / 2>
-  SEMSURF_INLINE static void transpose(V (&rows)[lanes]) {
+  HWY_INLINE static void transpose(V (&rows)[lanes]) {
     if constexpr (Step > 0) {
       for (int i = 0; i < lanes; ++i)
         if (!(i & Step))
@@ -231,8 +237,8 @@ struct Loops {
     }
   }
 
-  SEMSURF_INLINE static void turn(const T* plane, std::ptrdiff_t stride, int count,
-                                  std::ptrdiff_t out_stride, T* out) {
+  HWY_INLINE static void turn(const T* plane, std::ptrdiff_t stride, int count,
+                              std::ptrdiff_t out_stride, T* out) {
     for (int x = 0; x < count; x += lanes)
       for (int part = 0; part < vectors; ++part) {
         V rows[lanes];
@@ -242,8 +248,8 @@ struct Loops {
       }
   }
 
-  SEMSURF_INLINE static void across_transposed(const T* moment, int count, const Tap<T>* taps,
-                                               int radius, T* sum) {
+  HWY_INLINE static void across_transposed(const T* moment, int count, const Tap<T>* taps,
+                                           int radius, T* sum) {
     using F = Tap<T>;
     constexpr std::ptrdiff_t stride = moments * columns;
     for (int i = 0; i < count; i += 2, moment += 2 * stride, sum += 2 * columns)
@@ -261,7 +267,7 @@ struct Loops {
       }
   }
 
-  SEMSURF_INLINE static void take_root(V& x) {
+  HWY_INLINE static void take_root(V& x) {
     T each[lanes];
     __builtin_memcpy(each, &x, sizeof x);
     for (T& value : each) {
@@ -273,22 +279,20 @@ struct Loops {
 
   /// 1 / root, and 0 where the root is 0: the mean of the one-sided derivatives of a length is 0
   /// there.
-  SEMSURF_INLINE static void invert(V& length, T floor) {
-    length = length > floor ? 1 / length : V{};
-  }
+  HWY_INLINE static void invert(V& length, T floor) { length = length > floor ? 1 / length : V{}; }
 
   /// The coefficients of some pixels, and the roots of their invariants.
   struct Pixels {
     V k2, k3, k4, k5, k6;
 
-    [[gnu::always_inline]] explicit Pixels(const T* k) {
+    HWY_INLINE explicit Pixels(const T* k) {
       load(k2, k);
       load(k3, k + columns);
       load(k4, k + 2 * columns);
       load(k5, k + 3 * columns);
       load(k6, k + 4 * columns);
     }
-    SEMSURF_INLINE void roots(V& slope, V& half_difference) const {
+    HWY_INLINE void roots(V& slope, V& half_difference) const {
       slope = k2 * k2 + k3 * k3;
       half_difference = (k6 - k4) * (k6 - k4) + k5 * k5;
       take_root(slope);
@@ -297,9 +301,9 @@ struct Loops {
   };
 
   /// Adds a channel's share of a scale.
-  SEMSURF_INLINE static void add_channels(const V& slope, const V& mean, const V& half,
-                                          const Weights<T>* weights, int channels,
-                                          std::ptrdiff_t plane, T* sum) {
+  HWY_INLINE static void add_channels(const V& slope, const V& mean, const V& half,
+                                      const Weights<T>* weights, int channels, std::ptrdiff_t plane,
+                                      T* sum) {
     for (int c = 0; c < channels; ++c) {
       const Weights<T> w = weights[c];
       increase(sum + c * plane, slope * w.slope + mean * (w.max_curvature + w.min_curvature) +
@@ -307,7 +311,7 @@ struct Loops {
     }
   }
 
-  SEMSURF_INLINE static void invariants(const T* k, int rows, T* out) {
+  HWY_INLINE static void invariants(const T* k, int rows, T* out) {
     for (int y = 0; y < rows; ++y, k += coefficients * columns, out += 3 * columns)
       for (int x = 0; x < columns; x += lanes) {
         const Pixels p(k + x);
@@ -320,8 +324,8 @@ struct Loops {
       }
   }
 
-  SEMSURF_INLINE static void combine(const T* k, int rows, const Weights<T>* weights, int channels,
-                                     T* sum) {
+  HWY_INLINE static void combine(const T* k, int rows, const Weights<T>* weights, int channels,
+                                 T* sum) {
     const std::ptrdiff_t plane = static_cast<std::ptrdiff_t>(rows) * columns;
     for (int y = 0; y < rows; ++y, k += coefficients * columns, sum += columns)
       for (int x = 0; x < columns; x += lanes) {
@@ -332,9 +336,9 @@ struct Loops {
       }
   }
 
-  SEMSURF_INLINE static void pull_back(const T* k, int rows, const Floors<T>& floors,
-                                       const Weights<T>* weights, int channels, const T* weight,
-                                       T* out) {
+  HWY_INLINE static void pull_back(const T* k, int rows, const Floors<T>& floors,
+                                   const Weights<T>* weights, int channels, const T* weight,
+                                   T* out) {
     const std::ptrdiff_t plane = static_cast<std::ptrdiff_t>(rows) * columns;
     for (int y = 0; y < rows;
          ++y, k += coefficients * columns, out += coefficients * columns, weight += columns)
@@ -364,9 +368,8 @@ struct Loops {
       }
   }
 
-  SEMSURF_INLINE static void push_forward(const T* k, const T* dk, int rows,
-                                          const Floors<T>& floors, const Weights<T>* weights,
-                                          int channels, T* sum) {
+  HWY_INLINE static void push_forward(const T* k, const T* dk, int rows, const Floors<T>& floors,
+                                      const Weights<T>* weights, int channels, T* sum) {
     const std::ptrdiff_t plane = static_cast<std::ptrdiff_t>(rows) * columns;
     for (int y = 0; y < rows;
          ++y, k += coefficients * columns, dk += coefficients * columns, sum += columns)
@@ -384,7 +387,7 @@ struct Loops {
 
   /// arctan of x >= 0, to 2e-16 (the rational function of Moshier's Cephes library; fractions turn
   /// x to below 0.66). Without branches, so that vectors can do it.
-  SEMSURF_INLINE static double arc_tangent(double x) {
+  HWY_INLINE static double arc_tangent(double x) {
     const bool large = x > 2.414213562373095, middle = x > 0.66;
     const double u = (large    ? -1
                       : middle ? x - 1
@@ -405,8 +408,8 @@ struct Loops {
     return (large ? 1.5707963267948966 : middle ? 0.7853981633974483 : 0) + (u + u * v * p / q);
   }
 
-  SEMSURF_INLINE static void angles(const T* k, int rows, double* tangent, double* secant,
-                                    double* angle) {
+  HWY_INLINE static void angles(const T* k, int rows, double* tangent, double* secant,
+                                double* angle) {
     for (int y = 0; y < rows; ++y, k += coefficients * columns)
       for (int x = 0; x < columns; ++x) {
         const double k2 = k[x], k3 = k[columns + x], square = k2 * k2 + k3 * k3,
@@ -418,7 +421,7 @@ struct Loops {
       }
   }
 
-  SEMSURF_INLINE static void spread(const T* samples, int count, const T* worth, T* out) {
+  HWY_INLINE static void spread(const T* samples, int count, const T* worth, T* out) {
     V sum[vectors] = {};
     for (int i = 0; i < count; ++i)
       for (int v = 0; v < vectors; ++v) {
@@ -429,8 +432,7 @@ struct Loops {
     for (int v = 0; v < vectors; ++v) store(out + v * lanes, sum[v]);
   }
 
-  SEMSURF_INLINE static void spread_transposed(const T* weight, int count, const T* worth,
-                                               T* samples) {
+  HWY_INLINE static void spread_transposed(const T* weight, int count, const T* worth, T* samples) {
     for (int i = 0; i < count; ++i) {
       V products = {};
       for (int v = 0; v < vectors; ++v) {
@@ -444,7 +446,7 @@ struct Loops {
     }
   }
 
-  SEMSURF_INLINE static void between_rows(const T* samples, int first, int step, int rows, T* out) {
+  HWY_INLINE static void between_rows(const T* samples, int first, int step, int rows, T* out) {
     constexpr int size = coefficients * columns;
     for (int y = 0; y < rows; ++y, out += size) {
       const T* const low = samples + (first + y) / step * size;
@@ -457,8 +459,8 @@ struct Loops {
     }
   }
 
-  SEMSURF_INLINE static void between_rows_transposed(const T* weight, int first, int step, int rows,
-                                                     T* samples) {
+  HWY_INLINE static void between_rows_transposed(const T* weight, int first, int step, int rows,
+                                                 T* samples) {
     constexpr int size = coefficients * columns;
     for (int y = 0; y < rows; ++y, weight += size) {
       T* const low = samples + (first + y) / step * size;
@@ -472,11 +474,11 @@ struct Loops {
     }
   }
 
-  SEMSURF_INLINE static void relative(const double* z, int count, double level, T* out) {
+  HWY_INLINE static void relative(const double* z, int count, double level, T* out) {
     for (int i = 0; i < count; ++i) out[i] = static_cast<T>(z[i] - level);
   }
 
-  SEMSURF_INLINE static T largest(const T* values, std::ptrdiff_t count) {
+  HWY_INLINE static T largest(const T* values, std::ptrdiff_t count) {
     V most = {};
     for (std::ptrdiff_t i = 0; i + lanes <= count; i += lanes) {
       V v;
@@ -490,4 +492,7 @@ struct Loops {
   }
 };
 
-}  // namespace surf::facet
+}  // namespace surf::facet::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif

@@ -1,25 +1,30 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#pragma once
+// Compiled once for each instruction set, as facet_loops-inl.h.
+#include "core/each_target.h"
+#include "sem/network/network_operations.h"
 
-#include "network_units.h"
+#if defined(SURF_NETWORK_LOOPS_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef SURF_NETWORK_LOOPS_INL_H
+#undef SURF_NETWORK_LOOPS_INL_H
+#else
+#define SURF_NETWORK_LOOPS_INL_H
+#endif
 
-// Compiled once for each vector unit, as facet_loops.h.
-namespace surf::network {
+HWY_BEFORE_NAMESPACE();
+namespace surf::network::HWY_NAMESPACE {
 
-template <class T, int Bytes>
+template <class T>
 struct Loops {
-  static constexpr int columns = 2 * Bytes / static_cast<int>(sizeof(T));
+  static constexpr int columns = 2 * SEMSURF_VECTOR_BYTES / static_cast<int>(sizeof(T));
   static constexpr T hidden_sky = T(0.9);  // below 1, so that its logarithm has a derivative
 
-#define SURF_ALWAYS [[gnu::always_inline]] inline
-
-  SURF_ALWAYS static T root(T x) {
+  HWY_INLINE static T root(T x) {
     if constexpr (sizeof(T) == sizeof(float)) return __builtin_sqrtf(x);
     else return __builtin_sqrt(x);
   }
 
   /// max(x, 0), without a comparison, which would keep loops from being made into vectors.
-  SURF_ALWAYS static T positive(T x) {
+  HWY_INLINE static T positive(T x) {
     if constexpr (sizeof(T) == sizeof(float)) return T(0.5) * (x + __builtin_fabsf(x));
     else return T(0.5) * (x + __builtin_fabs(x));
   }
@@ -28,7 +33,7 @@ struct Loops {
   struct Facet {
     T gg, r, mean, mean_r, split, difference, along, along_r;  // r: fourth roots of 1 + square
   };
-  SURF_ALWAYS static Facet facet(T k2, T k3, T k4, T k5, T k6, T length) {
+  HWY_INLINE static Facet facet(T k2, T k3, T k4, T k5, T k6, T length) {
     Facet f;
     f.gg = k2 * k2 + k3 * k3;
     f.r = root(root(1 + f.gg));
@@ -42,9 +47,9 @@ struct Loops {
     return f;
   }
   /// Of c(x) = x / r, r = (1 + x^2)^(1/4).
-  SURF_ALWAYS static T slope(T x, T r) { return (1 + T(0.5) * x * x) / ((1 + x * x) * r); }
+  HWY_INLINE static T slope(T x, T r) { return (1 + T(0.5) * x * x) / ((1 + x * x) * r); }
 
-  SURF_ALWAYS static void facets(const T* k, int rows, T length, T* out, std::ptrdiff_t stride) {
+  HWY_INLINE static void facets(const T* k, int rows, T length, T* out, std::ptrdiff_t stride) {
     for (int y = 0; y < rows; ++y, k += facet::coefficients * columns, out += stride)
       for (int x = 0; x < columns; ++x) {
         const Facet f = facet(k[x], k[columns + x], k[2 * columns + x], k[3 * columns + x],
@@ -61,14 +66,14 @@ struct Loops {
   struct Slopes {
     T gg, mean, difference, mixed, along;
   };
-  SURF_ALWAYS static Slopes slopes(const Facet& f, T mixed) {
+  HWY_INLINE static Slopes slopes(const Facet& f, T mixed) {
     const T split3 = f.split * f.split * f.split;
     return {T(0.25) / (f.r * f.r * f.r), slope(f.mean, f.mean_r), T(0.5) * f.difference / split3,
             T(0.5) * mixed / split3, slope(f.along, f.along_r)};
   }
 
-  SURF_ALWAYS static void facets_back(const T* k, int rows, T length, const T* weight,
-                                      std::ptrdiff_t stride, T* out) {
+  HWY_INLINE static void facets_back(const T* k, int rows, T length, const T* weight,
+                                     std::ptrdiff_t stride, T* out) {
     for (int y = 0; y < rows; ++y, k += facet::coefficients * columns, weight += stride,
              out += facet::coefficients * columns)
       for (int x = 0; x < columns; ++x) {
@@ -88,8 +93,8 @@ struct Loops {
       }
   }
 
-  SURF_ALWAYS static void facets_change(const T* k, const T* dk, int rows, T length, T* out,
-                                        std::ptrdiff_t stride) {
+  HWY_INLINE static void facets_change(const T* k, const T* dk, int rows, T length, T* out,
+                                       std::ptrdiff_t stride) {
     for (int y = 0; y < rows; ++y, k += facet::coefficients * columns,
              dk += facet::coefficients * columns, out += stride)
       for (int x = 0; x < columns; ++x) {
@@ -109,8 +114,8 @@ struct Loops {
       }
   }
 
-  SURF_ALWAYS static void sky(const T* z, const SkySample<T>* samples, int count, int bands,
-                              T* out) {
+  HWY_INLINE static void sky(const T* z, const SkySample<T>* samples, int count, int bands,
+                             T* out) {
     for (int i = 0; i < (2 * bands + 1) * columns; ++i) out[i] = 0;
     T* const open = out + 2 * bands * columns;
     T seen[columns];
@@ -133,8 +138,8 @@ struct Loops {
     }
   }
 
-  SURF_ALWAYS static void sky_back(const T* z, const SkySample<T>* samples, int count, int bands,
-                                   const T* weight, T* dz, const std::ptrdiff_t* to, T* work) {
+  HWY_INLINE static void sky_back(const T* z, const SkySample<T>* samples, int count, int bands,
+                                  const T* weight, T* dz, const std::ptrdiff_t* to, T* work) {
     const T* const open = weight + 2 * bands * columns;
     for (int first = 0; first < count;) {
       T seen[columns];
@@ -180,8 +185,8 @@ struct Loops {
     }
   }
 
-  SURF_ALWAYS static void sky_change(const T* z, const T* dz, const SkySample<T>* samples,
-                                     int count, int bands, T* out) {
+  HWY_INLINE static void sky_change(const T* z, const T* dz, const SkySample<T>* samples, int count,
+                                    int bands, T* out) {
     for (int i = 0; i < (2 * bands + 1) * columns; ++i) out[i] = 0;
     T* const open = out + 2 * bands * columns;
     T seen[columns], rate[columns];  // and the derivative of its logarithm
@@ -211,9 +216,9 @@ struct Loops {
 
   /// sums[o] = start + sum over i of matrix[o * row + i * column] * in[i], four outputs at a time
   /// so that what is loaded serves them all.
-  SURF_ALWAYS static void multiply(const T* matrix, std::ptrdiff_t row, std::ptrdiff_t column,
-                                   const T* start, int inputs, int outputs, const T* in, T* out) {
-    typedef T V [[gnu::vector_size(Bytes)]];
+  HWY_INLINE static void multiply(const T* matrix, std::ptrdiff_t row, std::ptrdiff_t column,
+                                  const T* start, int inputs, int outputs, const T* in, T* out) {
+    typedef T V [[gnu::vector_size(SEMSURF_VECTOR_BYTES)]];
     constexpr int lanes = columns / 2;
     int o = 0;
     for (; o + 4 <= outputs; o += 4) {
@@ -244,8 +249,8 @@ struct Loops {
     }
   }
 
-  SURF_ALWAYS static void forward(const Layer<T>* layers, int count, const T* in, T* values,
-                                  T* slopes) {
+  HWY_INLINE static void forward(const Layer<T>* layers, int count, const T* in, T* values,
+                                 T* slopes) {
     for (int l = 0; l < count; ++l) {
       const Layer<T>& layer = layers[l];
       multiply(layer.weights, layer.inputs, 1, layer.biases, layer.inputs, layer.outputs, in,
@@ -270,8 +275,8 @@ struct Loops {
     }
   }
 
-  SURF_ALWAYS static void backward(const Layer<T>* layers, int count, const T* slopes,
-                                   const T* weight, T* work, T* out) {
+  HWY_INLINE static void backward(const Layer<T>* layers, int count, const T* slopes,
+                                  const T* weight, T* work, T* out) {
     std::ptrdiff_t widest = 0, at = 0;
     for (int l = 0; l < count; ++l) {
       if (layers[l].outputs > widest) widest = layers[l].outputs;
@@ -291,8 +296,8 @@ struct Loops {
     }
   }
 
-  SURF_ALWAYS static void change(const Layer<T>* layers, int count, const T* slopes, const T* in,
-                                 T* work, T* out) {
+  HWY_INLINE static void change(const Layer<T>* layers, int count, const T* slopes, const T* in,
+                                T* work, T* out) {
     std::ptrdiff_t widest = 0;
     for (int l = 0; l < count; ++l)
       if (layers[l].outputs > widest) widest = layers[l].outputs;
@@ -305,7 +310,9 @@ struct Loops {
       in = to;
     }
   }
-#undef SURF_ALWAYS
 };
 
-}  // namespace surf::network
+}  // namespace surf::network::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif

@@ -3,11 +3,9 @@
 
 #include <cstddef>
 
-#include "sem/facet/facet_units.h"
+#include "sem/facet/facet_operations.h"
 
 namespace surf::network {
-
-using facet::Unit;
 
 inline constexpr int facet_inputs = 4;  ///< of a scale
 
@@ -30,7 +28,7 @@ struct SkySample {
   bool last;  ///< of its direction
 };
 
-/// The inner loops, each compiled for every vector unit. Rows of inputs, outputs and weights hold
+/// The inner loops. Rows of inputs, outputs and weights hold
 /// their numbers one after the other, each `columns` long, as facet::Operations has them.
 template <class T>
 struct Operations {
@@ -63,7 +61,8 @@ struct Operations {
   void (*change)(const Layer<T>* layers, int count, const T* slopes, const T* in, T* work, T* out);
 };
 
+/// The best that the processor has.
 template <class T>
-const Operations<T>& operations(Unit unit);
+const Operations<T>& operations();
 
 }  // namespace surf::network

@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <string_view>
+
+namespace surf {
+
+/// The instruction set that loops over vectors are chosen for in this process: "x86-64 with
+/// AVX-512", "x86-64 with AVX2", "x86-64", "AArch64". Results of different ones differ by rounding.
+std::string_view instruction_set();
+
+}  // namespace surf

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "surf/core/affine.h"
+
+namespace surf {
+
+/// The distances of neighbouring samples of a grid.
+struct Pitch {
+  double pitch_x_nm = 1;  ///< between columns, > 0
+  double pitch_y_nm = 1;  ///< between rows, > 0
+
+  const Pitch& pitch() const { return *this; }
+  Pitch& pitch() { return *this; }
+  friend bool operator==(const Pitch&, const Pitch&) = default;
+};
+
+/// Where the samples of a grid lie: z up, x right, y up.
+struct Placement : Pitch {
+  double origin_x_nm = 0;  ///< centre of sample (0, 0), which is the lower-left one
+  double origin_y_nm = 0;
+
+  double x_nm(double column) const { return origin_x_nm + column * pitch_x_nm; }
+  double y_nm(double row) const { return origin_y_nm + row * pitch_y_nm; }
+  Point2 place_nm(double column, double row) const { return {x_nm(column), y_nm(row)}; }
+
+  /// A grid takes its place from another one by `a.placement() = b.placement()`.
+  const Placement& placement() const { return *this; }
+  Placement& placement() { return *this; }
+  friend bool operator==(const Placement&, const Placement&) = default;
+};
+
+/// Throws InvalidInput (naming `subject`) if a pitch is not positive and finite.
+void validate(const Pitch& pitch, const char* subject);
+
+/// Throws InvalidInput (naming `subject`) if a pitch is not positive and finite or the origin is
+/// not finite.
+void validate(const Placement& placement, const char* subject);
+
+}  // namespace surf

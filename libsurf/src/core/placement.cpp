@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "surf/core/placement.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "surf/core/error.h"
+
+namespace surf {
+namespace {
+
+void validate_pitch(double pitch_nm, char axis, const char* subject) {
+  if (std::isfinite(pitch_nm) && pitch_nm > 0) return;
+  throw InvalidInput(subject, fmt::format("the pitch along {} is {} nm", axis, pitch_nm),
+                     "The distance of neighbouring samples must be finite and above 0");
+}
+
+}  // namespace
+
+void validate(const Pitch& pitch, const char* subject) {
+  validate_pitch(pitch.pitch_x_nm, 'x', subject);
+  validate_pitch(pitch.pitch_y_nm, 'y', subject);
+}
+
+void validate(const Placement& placement, const char* subject) {
+  validate(placement.pitch(), subject);
+  if (std::isfinite(placement.origin_x_nm) && std::isfinite(placement.origin_y_nm)) return;
+  throw InvalidInput(
+      subject,
+      fmt::format("the origin is ({}, {}) nm", placement.origin_x_nm, placement.origin_y_nm),
+      "Both coordinates must be finite");
+}
+
+}  // namespace surf
