@@ -154,14 +154,14 @@ int main(int argc, char** argv) {
     const Grid<double> noise = simulate_noise({0.8, 0.0025}, width, width, 1);
     for (std::size_t i = 0; i < noise.size(); ++i) noisy.z_nm.data()[i] += noise.data()[i];
     compare_sizes("the same, noise of 0.083 nm", noisy, tolerance, false);
-    compare_sizes("rough, 4 nm rms over 30 nm", make_rough({width, width, 1}, 4, 30, 1), tolerance,
-                  false);
+    compare_sizes("rough, 4 nm rms over 30 nm", make_rough({1.0 * width, 1.0 * width, 1}, 4, 30, 1),
+                  tolerance, false);
   }
 
   const int side = quick ? 708 : 2237;
   SurfaceScene scene;
   scene.surfaces.push_back(
-      {"surface", height_field_sheet(make_rough({side, side, 1}, 4, 30, 1)), {}, {}});
+      {"surface", height_field_sheet(make_rough({1.0 * side, 1.0 * side, 1}, 4, 30, 1)), {}, {}});
   Surface& surface = scene.surfaces[0];
   VertexScalar height{"height", "nm", {}};
   for (const Vec3& v : surface.mesh.vertices_nm) height.values.push_back(static_cast<float>(v.z));
@@ -176,6 +176,6 @@ int main(int argc, char** argv) {
       "", "file", "written", "", "plainly", "", "memory", "read", "", "MB", "s", "MB/s", "MB/s",
       "ratio", "MB more", "s");
   for (const io::SurfaceFormat& format : io::surface_formats())
-    write_and_read(scene, format.extension, folder);
+    write_and_read(scene, std::string(format.extension), folder);
   std::filesystem::remove_all(folder);
 }

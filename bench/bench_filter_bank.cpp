@@ -13,13 +13,16 @@
 #include <cstdio>
 #include <cstdlib>
 #include <limits>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include <fmt/core.h>
 
 #include "surf/core/random.h"
+#include "surf/sem/facet_network.h"
 #include "surf/sem/filter_bank.h"
+#include "surf/sem/fit_facet_network.h"
 #include "surf/sem/slope_model.h"
 
 namespace {
@@ -99,6 +102,27 @@ FilterBankParameters bank(const std::vector<FacetScale>& scales, bool multi_reso
   return p;
 }
 
+/// Of the shape that is learnt for silicon at 1 keV with 3 nm pixels; weights do not matter here.
+std::shared_ptr<const ImageModel> network() {
+  FacetNetworkParameters p;
+  p.scales = network_scales(3, 30);
+  p.sky_edges_nm = network_sky_edges(3, 30);
+  p.channels = {{"SE", 1}, {"BSE", 0.2}};
+  RandomStream random(2, 0, 0);
+  int inputs = network_inputs(p);
+  for (const int outputs : {32, 2}) {
+    DenseLayer& layer = p.layers.emplace_back();
+    layer.inputs = inputs;
+    layer.outputs = outputs;
+    for (int i = 0; i < inputs * outputs; ++i) layer.weights.push_back(random.uniform() - 0.5);
+    for (int i = 0; i < outputs; ++i) layer.biases.push_back(random.uniform() - 0.5);
+    inputs = outputs;
+  }
+  ModelScope scope;
+  scope.pixel_nm = 2;
+  return make_facet_network(scope, p);
+}
+
 double operations(const std::vector<FacetScale>& scales) {
   double count = 0;
   for (const FacetScale& scale : scales) count += 20.0 * (scale.size / 2) + 9;
@@ -162,10 +186,13 @@ int main(int argc, char** argv) {
   slopes.form = SlopeForm::secant;
   print("  secant", measure(*make_slope_model({}, slopes), field, runs), 90000,
         operations({{5, 0.6}}), most);
+  const auto net = network();
+  print("  facet network", measure(*net, field, runs), 90000, per_pixel, most);
   for (int n = 128; n <= most_pixels; n *= 2) {
     const HeightField large = rough(n);
     const double pixels = static_cast<double>(n) * n;
-    print(fmt::format("{} x {}", n, n), measure(*full, large, std::clamp(runs * 300 / n, 1, runs)),
-          pixels, per_pixel, most);
+    const int fewer = std::clamp(runs * 300 / n, 1, runs);
+    print(fmt::format("{} x {}", n, n), measure(*full, large, fewer), pixels, per_pixel, most);
+    print("  facet network", measure(*net, large, fewer), pixels, per_pixel, most);
   }
 }

@@ -260,8 +260,7 @@ class Only : public mc::LibrarySource {
  public:
   explicit Only(std::shared_ptr<const mc::CascadeLibrary> library) : library_(std::move(library)) {}
   std::shared_ptr<const mc::CascadeLibrary> library(const mc::CascadeSettings&, std::size_t, int,
-                                                    const ProgressCallback&,
-                                                    const CancelToken*) override {
+                                                    const Watch&) override {
     return library_;
   }
 

@@ -30,7 +30,8 @@ class SlopeEngine {
     options_.threads = resolve_threads(options.threads);
   }
 
-  ModelImages predict(const Grid<double>& z_nm) const {
+  struct Kept {};  // a fit at one scale takes as long as reading it
+  ModelImages predict(const Grid<double>& z_nm, Kept* = nullptr) const {
     ModelImages images = blank(z_nm);
     const std::vector<Block> blocks = pass_.blocks(z_nm.width(), z_nm.height());
     std::vector<Worker> workers(options_.threads);
@@ -51,7 +52,7 @@ class SlopeEngine {
     return images;
   }
 
-  Grid<double> gradient(const Grid<double>& z_nm, const ModelImages& weights) const {
+  Grid<double> gradient(const Grid<double>& z_nm, const ModelImages& weights, const Kept&) const {
     Grid<double> gradient(z_nm.width(), z_nm.height());
     double unit = 0;
     for (const Grid<double>& image : weights) unit = std::max(unit, magnitude(image.data()));
@@ -91,7 +92,7 @@ class SlopeEngine {
     return gradient;
   }
 
-  ModelImages change(const Grid<double>& z_nm, const Grid<double>& dz_nm) const {
+  ModelImages change(const Grid<double>& z_nm, const Grid<double>& dz_nm, const Kept&) const {
     ModelImages images = blank(z_nm);
     const double unit = magnitude(dz_nm.data());
     if (unit == 0) return images;

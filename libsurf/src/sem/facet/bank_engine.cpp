@@ -83,7 +83,7 @@ void BankEngine<T>::add(const Block& block, const AlignedVector<T>& sum, double 
 }
 
 template <class T>
-ModelImages BankEngine<T>::predict(const Grid<double>& z_nm) const {
+ModelImages BankEngine<T>::predict(const Grid<double>& z_nm, Kept* kept) const {
   ModelImages images = blank(z_nm, true);
   const int channels = static_cast<int>(images.size());
   const facet::CoarseFits<T> coarse = coarse_fits(z_nm);
@@ -92,6 +92,8 @@ ModelImages BankEngine<T>::predict(const Grid<double>& z_nm) const {
     Scratch scratch;
     AlignedVector<T> sum;
   };
+  if (kept) kept->prepare(blocks, scales(), pass_.columns());
+  const bool keeps = kept && !kept->empty();
   std::vector<Worker> workers(options_.threads);
   parallel_for(
       blocks.size(), options_.threads,
@@ -100,9 +102,11 @@ ModelImages BankEngine<T>::predict(const Grid<double>& z_nm) const {
         auto& [scratch, sum] = workers[w];
         sum.assign(static_cast<std::size_t>(channels) * block.rows * pass_.columns(), T(0));
         pass_.load(z_nm, options_.edge, block, scratch.fine);
-        for (int s = 0; s < scales(); ++s)
-          pass_.loops().combine(fit(s, coarse, block, scratch), block.rows, weights_[s].data(),
-                                channels, sum.data());
+        for (int s = 0; s < scales(); ++s) {
+          const T* const k = fit(s, coarse, block, scratch);
+          pass_.loops().combine(k, block.rows, weights_[s].data(), channels, sum.data());
+          if (keeps) kept->keep(i, s, block.rows, pass_.columns(), k, floors(s, coarse, scratch));
+        }
         add(block, sum, 1, images);
       },
       options_.watch);
@@ -110,7 +114,8 @@ ModelImages BankEngine<T>::predict(const Grid<double>& z_nm) const {
 }
 
 template <class T>
-Grid<double> BankEngine<T>::gradient(const Grid<double>& z_nm, const ModelImages& weights) const {
+Grid<double> BankEngine<T>::gradient(const Grid<double>& z_nm, const ModelImages& weights,
+                                     const Kept& kept) const {
   Grid<double> gradient(z_nm.width(), z_nm.height());
   double unit = 0;
   for (const Grid<double>& image : weights) unit = std::max(unit, magnitude(image.data()));
@@ -131,14 +136,20 @@ Grid<double> BankEngine<T>::gradient(const Grid<double>& z_nm, const ModelImages
   std::vector<Scratch> workers(options_.threads);
   const auto pull_back = [&](int w, int scale, const Block& column, T* out) {
     for (std::size_t i = column.x / columns; i < blocks.size(); i += strips) {
+      const auto pull = [&](const T* k, const facet::Floors<T>& least) {
+        pass_.loops().pull_back(
+            k, blocks[i].rows, least, weights_[scale].data(), channels, block_weights[i].data(),
+            out + static_cast<std::ptrdiff_t>(blocks[i].y) * facet::coefficients * columns);
+      };
+      if (!kept.empty()) {
+        pull(kept.at(i, scale).coefficients.data(), kept.at(i, scale).floors);
+        continue;
+      }
       Scratch& scratch = workers[w];
       if (fine_of_[scale] >= 0)
         pass_.load(z_nm, options_.edge, blocks[i], scratch.fine, fine_of_[scale]);
       const T* const k = fit(scale, coarse, blocks[i], scratch);
-      pass_.loops().pull_back(
-          k, blocks[i].rows, floors(scale, coarse, scratch), weights_[scale].data(), channels,
-          block_weights[i].data(),
-          out + static_cast<std::ptrdiff_t>(blocks[i].y) * facet::coefficients * columns);
+      pull(k, floors(scale, coarse, scratch));
     }
   };
   pass_.transpose(
@@ -152,7 +163,8 @@ Grid<double> BankEngine<T>::gradient(const Grid<double>& z_nm, const ModelImages
 }
 
 template <class T>
-ModelImages BankEngine<T>::change(const Grid<double>& z_nm, const Grid<double>& dz_nm) const {
+ModelImages BankEngine<T>::change(const Grid<double>& z_nm, const Grid<double>& dz_nm,
+                                  const Kept& kept) const {
   ModelImages images = blank(z_nm, false);
   const double unit = magnitude(dz_nm.data());
   if (unit == 0) return images;
@@ -170,12 +182,14 @@ ModelImages BankEngine<T>::change(const Grid<double>& z_nm, const Grid<double>& 
     const Block& block = blocks[i];
     auto& [at, along, sum] = workers[w];
     sum.assign(static_cast<std::size_t>(channels) * block.rows * pass_.columns(), T(0));
-    pass_.load(z_nm, options_.edge, block, at.fine);
+    if (kept.empty()) pass_.load(z_nm, options_.edge, block, at.fine);
     pass_.load(direction, options_.edge, block, along.fine);
     for (int s = 0; s < scales(); ++s) {
-      const T* const k = fit(s, coarse, block, at);
-      pass_.loops().push_forward(k, fit(s, coarse_direction, block, along), block.rows,
-                                 floors(s, coarse, at), weights_[s].data(), channels, sum.data());
+      const T* const k =
+          kept.empty() ? fit(s, coarse, block, at) : kept.at(i, s).coefficients.data();
+      const facet::Floors<T> least = kept.empty() ? floors(s, coarse, at) : kept.at(i, s).floors;
+      pass_.loops().push_forward(k, fit(s, coarse_direction, block, along), block.rows, least,
+                                 weights_[s].data(), channels, sum.data());
     }
     add(block, sum, unit, images);
   });

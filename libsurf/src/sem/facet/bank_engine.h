@@ -5,6 +5,7 @@
 
 #include "coarse_fits.h"
 #include "facet_pass.h"
+#include "kept_fits.h"
 #include "surf/sem/filter_bank.h"
 #include "surf/sem/image_model.h"
 
@@ -17,9 +18,11 @@ class BankEngine {
   BankEngine(const FilterBankParameters& parameters, double pitch_x_nm, double pitch_y_nm,
              const ModelOptions& options);
 
-  ModelImages predict(const Grid<double>& z_nm) const;
-  Grid<double> gradient(const Grid<double>& z_nm, const ModelImages& weights) const;
-  ModelImages change(const Grid<double>& z_nm, const Grid<double>& dz_nm) const;
+  using Kept = facet::KeptFits<T>;
+  ModelImages predict(const Grid<double>& z_nm, Kept* kept = nullptr) const;
+  Grid<double> gradient(const Grid<double>& z_nm, const ModelImages& weights,
+                        const Kept& kept) const;
+  ModelImages change(const Grid<double>& z_nm, const Grid<double>& dz_nm, const Kept& kept) const;
 
   std::vector<facet::Block> blocks(const Grid<double>& z_nm) const {
     return pass_.blocks(z_nm.width(), z_nm.height());

@@ -68,14 +68,18 @@ ModelImages NetworkEngine<T>::blank(const Grid<double>& z_nm) const {
 
 template <class T>
 void NetworkEngine<T>::take_inputs(const Grid<double>& z_nm, const Planes& planes,
-                                   const Block& block, Worker& worker) const {
+                                   const Block& block, Worker& worker, facet::KeptFits<T>* kept,
+                                   std::size_t number) const {
   const int columns = pass_.columns();
   const std::ptrdiff_t stride = std::ptrdiff_t{inputs_} * columns;
   worker.inputs.resize(static_cast<std::size_t>(block.rows * stride));
   pass_.load(z_nm, options_.edge, block, worker.scratch);
   T* out = worker.inputs.data();
-  for (int s = 0; s < pass_.scales(); ++s, out += network::facet_inputs * columns)
-    loops_->facets(pass_.fit(s, worker.scratch), block.rows, lengths_[s], out, stride);
+  for (int s = 0; s < pass_.scales(); ++s, out += network::facet_inputs * columns) {
+    const T* const k = pass_.fit(s, worker.scratch);
+    loops_->facets(k, block.rows, lengths_[s], out, stride);
+    if (kept) kept->keep(number, s, block.rows, columns, k, {});
+  }
   if (view_.bands() == 0) return;
   for (int y = 0; y < block.rows; ++y)
     loops_->sky(planes.heights.at(block.x, block.y + y), planes.samples.data(),
@@ -103,17 +107,25 @@ void NetworkEngine<T>::put(const Block& block, double unit, Worker& worker,
 }
 
 template <class T>
-ModelImages NetworkEngine<T>::predict(const Grid<double>& z_nm) const {
+ModelImages NetworkEngine<T>::predict(const Grid<double>& z_nm, Kept* kept) const {
   ModelImages images = blank(z_nm);
   const std::vector<Block> blocks = pass_.blocks(z_nm.width(), z_nm.height());
   Planes planes{{z_nm, z_nm(0, 0), 1, options_.edge, view_.reach(), pass_.columns()}, {}};
   planes.samples = network::in_plane<T>(view_, planes.heights.stride);
+  if (kept) {
+    const std::size_t bytes = static_cast<std::size_t>(z_nm.height()) * planes.heights.stride *
+                              static_cast<std::size_t>(inputs_) * sizeof(T);
+    kept->fits.prepare(blocks, pass_.scales(), pass_.columns(), bytes);
+    if (kept->fits.empty()) kept = nullptr;
+    else kept->inputs.resize(blocks.size());
+  }
   std::vector<Worker> workers(options_.threads);
   parallel_for(
       blocks.size(), options_.threads,
       [&](std::size_t i, int w) {
-        take_inputs(z_nm, planes, blocks[i], workers[w]);
+        take_inputs(z_nm, planes, blocks[i], workers[w], kept ? &kept->fits : nullptr, i);
         put(blocks[i], 1, workers[w], images);
+        if (kept) kept->inputs[i] = workers[w].inputs;
       },
       options_.watch);
   return images;
@@ -132,8 +144,8 @@ void NetworkEngine<T>::inputs(const Grid<double>& z_nm, const Sink& sink) const 
 }
 
 template <class T>
-Grid<double> NetworkEngine<T>::gradient(const Grid<double>& z_nm,
-                                        const ModelImages& weights) const {
+Grid<double> NetworkEngine<T>::gradient(const Grid<double>& z_nm, const ModelImages& weights,
+                                        const Kept& kept) const {
   Grid<double> gradient(z_nm.width(), z_nm.height());
   double unit = 0;
   for (std::size_t c = 0; c < weights.size(); ++c)
@@ -164,12 +176,13 @@ Grid<double> NetworkEngine<T>::gradient(const Grid<double>& z_nm,
       const Block& block = blocks[first + i];
       Given& mine = given[first + i];
       Worker& worker = workers[w];
-      take_inputs(z_nm, planes, block, worker);
+      if (kept.inputs.empty()) take_inputs(z_nm, planes, block, worker);
+      const AlignedVector<T>& inputs = kept.inputs.empty() ? worker.inputs : kept.inputs[first + i];
       worker.values.resize(static_cast<std::size_t>(units_) * columns);
       worker.slopes.resize(worker.values.size());
       worker.work.resize(2 * static_cast<std::size_t>(widest_) * columns);
       worker.out.assign(static_cast<std::size_t>(columns) * weights.size(), T(0));
-      worker.along_sky.resize(planes.samples.size() * columns);
+      worker.along_sky.resize(2 * planes.samples.size() * columns);
       mine.inputs.resize(static_cast<std::size_t>(block.rows * stride));
       mine.tile.assign(static_cast<std::size_t>(tile_stride * (block.rows + 2 * reach)), T(0));
       for (int y = 0; y < block.rows; ++y) {
@@ -179,8 +192,8 @@ Grid<double> NetworkEngine<T>::gradient(const Grid<double>& z_nm,
             worker.out[c * columns + x] = T(weights[c](block.x + x, block.y + y) * scale);
         }
         T* const back = mine.inputs.data() + y * stride;
-        loops_->forward(layers_.data(), count, worker.inputs.data() + y * stride,
-                        worker.values.data(), worker.slopes.data());
+        loops_->forward(layers_.data(), count, inputs.data() + y * stride, worker.values.data(),
+                        worker.slopes.data());
         loops_->backward(layers_.data(), count, worker.slopes.data(), worker.out.data(),
                          worker.work.data(), back);
         if (view_.bands() > 0)
@@ -210,9 +223,11 @@ Grid<double> NetworkEngine<T>::gradient(const Grid<double>& z_nm,
   const auto source = [&](int w, int scale, const Block& column, T* out) {
     Worker& worker = workers[w];
     for (std::size_t i = column.x / columns; i < blocks.size(); i += strips) {
-      pass_.load(z_nm, options_.edge, blocks[i], worker.scratch, scale);
+      if (kept.inputs.empty()) pass_.load(z_nm, options_.edge, blocks[i], worker.scratch, scale);
       loops_->facets_back(
-          pass_.fit(scale, worker.scratch), blocks[i].rows, lengths_[scale],
+          kept.inputs.empty() ? pass_.fit(scale, worker.scratch)
+                              : kept.fits.at(i, scale).coefficients.data(),
+          blocks[i].rows, lengths_[scale],
           given[i].inputs.data() + scale * network::facet_inputs * columns, stride,
           out + static_cast<std::ptrdiff_t>(blocks[i].y) * facet::coefficients * columns);
     }
@@ -222,7 +237,8 @@ Grid<double> NetworkEngine<T>::gradient(const Grid<double>& z_nm,
 }
 
 template <class T>
-ModelImages NetworkEngine<T>::change(const Grid<double>& z_nm, const Grid<double>& dz_nm) const {
+ModelImages NetworkEngine<T>::change(const Grid<double>& z_nm, const Grid<double>& dz_nm,
+                                     const Kept& kept) const {
   ModelImages images = blank(z_nm);
   const double unit = magnitude(dz_nm.data());
   if (unit == 0) return images;
@@ -239,13 +255,15 @@ ModelImages NetworkEngine<T>::change(const Grid<double>& z_nm, const Grid<double
   parallel_for(blocks.size(), options_.threads, [&](std::size_t i, int w) {
     const Block& block = blocks[i];
     Worker& worker = workers[w];
-    take_inputs(z_nm, planes, block, worker);
+    if (kept.inputs.empty()) take_inputs(z_nm, planes, block, worker);
+    const AlignedVector<T>& inputs = kept.inputs.empty() ? worker.inputs : kept.inputs[i];
     pass_.load(direction, options_.edge, block, worker.along);
     worker.in.resize(static_cast<std::size_t>(block.rows * stride));
     for (int s = 0; s < pass_.scales(); ++s)
-      loops_->facets_change(pass_.fit(s, worker.scratch), pass_.fit(s, worker.along), block.rows,
-                            lengths_[s], worker.in.data() + s * network::facet_inputs * columns,
-                            stride);
+      loops_->facets_change(kept.inputs.empty() ? pass_.fit(s, worker.scratch)
+                                                : kept.fits.at(i, s).coefficients.data(),
+                            pass_.fit(s, worker.along), block.rows, lengths_[s],
+                            worker.in.data() + s * network::facet_inputs * columns, stride);
     worker.values.resize(static_cast<std::size_t>(units_) * columns);
     worker.slopes.resize(worker.values.size());
     worker.work.resize(2 * static_cast<std::size_t>(widest_) * columns);
@@ -256,8 +274,8 @@ ModelImages NetworkEngine<T>::change(const Grid<double>& z_nm, const Grid<double
         loops_->sky_change(planes.heights.at(block.x, block.y + y), moved.at(block.x, block.y + y),
                            planes.samples.data(), static_cast<int>(planes.samples.size()),
                            view_.bands(), in + pass_.scales() * network::facet_inputs * columns);
-      loops_->forward(layers_.data(), count, worker.inputs.data() + y * stride,
-                      worker.values.data(), worker.slopes.data());
+      loops_->forward(layers_.data(), count, inputs.data() + y * stride, worker.values.data(),
+                      worker.slopes.data());
       loops_->change(layers_.data(), count, worker.slopes.data(), in, worker.work.data(),
                      worker.out.data());
       for (std::size_t c = 0; c < images.size(); ++c)

@@ -141,6 +141,7 @@ struct Loops {
   HWY_INLINE static void sky_back(const T* z, const SkySample<T>* samples, int count, int bands,
                                   const T* weight, T* dz, const std::ptrdiff_t* to, T* work) {
     const T* const open = weight + 2 * bands * columns;
+    T* const kept = work + count * columns;  // roots of the direction at hand
     for (int first = 0; first < count;) {
       T seen[columns];
       for (int x = 0; x < columns; ++x) seen[x] = open[x] / 16;
@@ -149,19 +150,22 @@ struct Loops {
         const SkySample<T>& a = samples[end];
         last = a.last;
         const T* const far = z + a.offset;
+        T *const sines = work + end * columns, *const roots = kept + (end - first) * columns;
         for (int x = 0; x < columns; ++x) {
-          const T e = (far[x] - z[x]) * a.per_distance, s = e / root(1 + e * e), up = positive(s);
+          const T e = (far[x] - z[x]) * a.per_distance, r = 1 / root(1 + e * e), s = e * r,
+                  up = positive(s);
           seen[x] *= 1 - hidden_sky * up * up;
+          sines[x] = s;
+          roots[x] = r;
         }
       }
       for (int i = first; i < end; ++i) {
         const SkySample<T>& a = samples[i];
-        const T* const far = z + a.offset;
+        const T* const roots = kept + (i - first) * columns;
         const T *const mean = weight + 2 * a.band * columns, *const square = mean + columns;
         T* const change = work + i * columns;
         for (int x = 0; x < columns; ++x) {
-          const T e = (far[x] - z[x]) * a.per_distance, r = 1 / root(1 + e * e), s = e * r,
-                  up = positive(s);
+          const T s = change[x], r = roots[x], up = positive(s);
           const T ds = a.weight * (mean[x] + 2 * s * square[x]) -
                        seen[x] * 2 * hidden_sky * up / (1 - hidden_sky * up * up);
           change[x] = ds * r * r * r * a.per_distance;

@@ -45,8 +45,8 @@ struct Operations {
   /// Inputs of a row from the heights `z` at its first pixel: mean and mean square of each band,
   /// the sky.
   void (*sky)(const T* z, const SkySample<T>* samples, int count, int bands, T* out);
-  /// Adds the weights of the heights to `dz`, where sample i lies at to[i]; `work` holds a row for
-  /// each sample.
+  /// Adds the weights of the heights to `dz`, where sample i lies at to[i]; `work` holds two
+  /// rows for each sample.
   void (*sky_back)(const T* z, const SkySample<T>* samples, int count, int bands, const T* weight,
                    T* dz, const std::ptrdiff_t* to, T* work);
   void (*sky_change)(const T* z, const T* dz, const SkySample<T>* samples, int count, int bands,
